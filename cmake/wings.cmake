@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: Apache-2.0
+# cluxel_wing(NAME USES wings... LIBS libraries...): the static library of one wing, from src/NAME/*.cpp.
+
+function(cluxel_wing name)
+  cmake_parse_arguments(WING "" "" "USES;LIBS;PRIVATE_LIBS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
+  if(NOT sources)
+    add_library(cluxel_${name} INTERFACE)
+    set(scope INTERFACE)
+  else()
+    add_library(cluxel_${name} STATIC ${sources})
+    set(scope PUBLIC)
+    target_include_directories(cluxel_${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  endif()
+  target_include_directories(cluxel_${name} ${scope} ${PROJECT_SOURCE_DIR}/include)
+  list(TRANSFORM WING_USES PREPEND cluxel_)
+  target_link_libraries(cluxel_${name} ${scope} ${WING_USES} Eigen3::Eigen ${WING_LIBS})
+  if(sources)
+    target_link_libraries(cluxel_${name} PRIVATE nlohmann_json::nlohmann_json ${WING_PRIVATE_LIBS})
+  endif()
+endfunction()

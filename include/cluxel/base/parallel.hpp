@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Independent pieces of work on several threads.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace cluxel {
+
+/// Calls `work(i)` once for every i in [0, count), on up to `threads` threads, in no order. Each call must write only
+/// what belongs to its own i: then the outcome is the same for every number of threads. The exception of the smallest
+/// failing i is thrown again.
+void parallelFor(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& work);
+
+}  // namespace cluxel

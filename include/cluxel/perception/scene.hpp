@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// The scene: all primitives with their relations, and the cluxels beneath them with their graph. Reasoning starts here.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "cluxel/perception/primitive.hpp"
+
+namespace cluxel {
+
+/// Relations between primitives; formulas and tolerances stand in relationInfos().
+enum class RelationKind : std::uint8_t {
+  Intersects, Touches, TouchesGround, Above, Below, Supports, StandsOn, Inside, Near, ParallelTo, Alongside, Count_
+};
+inline constexpr std::size_t kRelationKindCount = static_cast<std::size_t>(RelationKind::Count_);
+
+struct RelationInfo {
+  RelationKind kind;
+  std::string_view name;       ///< snake_case, as rules write it: "touches_ground"
+  std::string_view property;   ///< local name of the RDF property: "touchesGround"
+  std::string_view help;       ///< the formula in words, with its tolerance in metres
+};
+const std::array<RelationInfo, kRelationKindCount>& relationInfos();
+std::optional<RelationKind> relationKindOf(std::string_view name);
+
+struct Relation {
+  RelationKind kind = RelationKind::Near;
+  PrimitiveIndex from = 0, to = 0;
+  double measure = 0;          ///< what the tolerance is compared with: a gap or distance [m], or a share
+  auto operator<=>(const Relation&) const = default;
+};
+
+/// Cluxels of the whole scene as a structure of arrays, sorted by tile and number, with their graph in CSR form.
+struct SceneCluxels {
+  std::vector<CluxelName> name;
+  std::vector<Eigen::Vector3d> center;            ///< mean of own points [m, map]
+  std::vector<Eigen::Vector3f> extent;            ///< size of the box around own points [m]
+  std::vector<std::uint32_t> point_count;
+  std::vector<PrimitiveIndex> primitive;
+  std::vector<PrimitiveLabel> label;
+  std::vector<std::array<float, kPrimitiveLabelCount>> probability;
+  std::vector<float> height_above_ground;         ///< of the centre [m]
+  std::vector<std::uint32_t> edge_offset;         ///< size() + 1 entries
+  std::vector<std::uint32_t> edge_target;         ///< ascending within a cluxel; both directions are stored
+
+  std::size_t size() const { return name.size(); }
+  std::span<const std::uint32_t> neighbours(std::uint32_t cluxel) const {
+    return {edge_target.data() + edge_offset[cluxel], edge_target.data() + edge_offset[cluxel + 1]};
+  }
+};
+
+struct Scene {
+  SceneCluxels cluxels;
+  std::vector<Primitive> primitives;     ///< sorted by id
+  std::vector<Relation> relations;       ///< sorted; symmetric ones are stored in both directions
+  std::vector<std::uint32_t> relation_offset;   ///< per primitive, the first of its relations (`from`); size + 1 entries
+
+  std::span<const Relation> relationsOf(PrimitiveIndex primitive) const {
+    return {relations.data() + relation_offset[primitive], relations.data() + relation_offset[primitive + 1]};
+  }
+};
+
+/// Sorts relations and fills relation_offset.
+void indexRelations(Scene& scene);
+
+/// The share of a's cluxel edges to other primitives that lead to b; 0 when it has none. Cost O(edges of a).
+double adjacentFraction(const Scene& scene, PrimitiveIndex a, PrimitiveIndex b);
+
+}  // namespace cluxel

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fixed tiles of the map frame: the unit of computing, storing and invalidating.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <compare>
+#include <cstdint>
+
+#include <Eigen/Core>
+
+namespace cluxel {
+
+/// The edge of a tile [m]: a multiple of the largest cluxel radius, and exact as a float.
+inline constexpr double kTileSize_m = 16.0;
+
+struct TileKey {
+  std::int32_t x = 0, y = 0;
+  auto operator<=>(const TileKey&) const = default;
+};
+
+inline TileKey tileOf(const Eigen::Vector3d& p_map) {
+  return {static_cast<std::int32_t>(std::floor(p_map.x() / kTileSize_m)),
+          static_cast<std::int32_t>(std::floor(p_map.y() / kTileSize_m))};
+}
+
+/// The corner with the smallest x and y, at z = 0, in the map frame. Local floats of a tile are relative to it.
+inline Eigen::Vector3d cornerOf(const TileKey& key) { return {key.x * kTileSize_m, key.y * kTileSize_m, 0.0}; }
+
+/// The tile itself and its 8 neighbours, row by row from (x-1, y-1); entry 4 is the tile itself.
+inline std::array<TileKey, 9> ringOf(const TileKey& key) {
+  std::array<TileKey, 9> ring;
+  for (int i = 0; i < 9; ++i) ring[static_cast<std::size_t>(i)] = {key.x + i % 3 - 1, key.y + i / 3 - 1};
+  return ring;
+}
+inline constexpr int kRingCentre = 4;
+
+/// A cluxel as seen from a tile: which tile of its ring, and the cluxel's number there.
+struct RingIndex {
+  std::uint32_t ring : 4 = kRingCentre;
+  std::uint32_t index : 28 = 0;
+  bool operator==(const RingIndex&) const = default;
+};
+
+}  // namespace cluxel

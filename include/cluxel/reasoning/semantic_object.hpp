@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the rules make of a scene: objects with class, parts and reasons, and a verdict on every primitive.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cluxel/base/content_hash.hpp"
+#include "cluxel/perception/scene.hpp"
+
+namespace cluxel {
+
+/// Which cluxels of the scene play which part in an object.
+struct ObjectPart {
+  std::string part_class;                 ///< IRI: clx:TreeTrunk; the object's class when the rule names no part
+  std::vector<PrimitiveIndex> primitives; ///< ascending; a primitive that is parted stands in several objects
+  std::vector<std::uint32_t> cluxels;     ///< numbers in SceneCluxels, ascending; disjoint between all objects
+};
+
+/// One test on the way to a leaf, with what it measured.
+struct DecisionStep {
+  std::string rule_id;
+  std::string test;                       ///< as people read it: "height of pole >= 6 m"
+  std::string file;                       ///< where the test stands
+  std::size_t line = 0;
+  std::optional<double> measured, threshold;   ///< SI
+  std::string unit;
+  bool passed = false;
+};
+
+/// Why a rule accepted or rejected a seed primitive.
+struct Decision {
+  std::string rule_id;
+  PrimitiveIndex seed = 0;
+  bool accepted = false;
+  std::string reason;                     ///< the leaf's own words, or what was accepted
+  std::vector<DecisionStep> path;
+};
+
+struct SemanticObject {
+  ContentHash id;                         ///< hash of class and sorted members
+  std::string class_iri;
+  double confidence = 0;
+  std::string rule_id;
+  std::vector<ObjectPart> parts;
+  std::size_t decision = 0;               ///< number in ReasoningResult::decisions
+};
+
+struct ReasoningResult {
+  std::vector<SemanticObject> objects;    ///< sorted by id
+  std::vector<Decision> decisions;        ///< accepted and rejected, in the order they were taken
+};
+
+}  // namespace cluxel
