@@ -16,10 +16,10 @@ namespace cluxel {
 
 /// A place in an input. Lines and columns count from 1 (0: unknown); columns count bytes.
 struct SourceLocation {
-  std::string file;
+  std::string file = {};
   std::size_t line = 0;
   std::size_t column = 0;
-  std::optional<std::uint64_t> byte_offset;  ///< for binary files, instead of line and column
+  std::optional<std::uint64_t> byte_offset = std::nullopt;  ///< for binary files, instead of line and column
 };
 
 /// "file:line:col", "file: byte N" or "file", as far as it is known.
