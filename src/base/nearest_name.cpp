@@ -3,6 +3,7 @@
 #include "cluxel/base/nearest_name.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace cluxel {
