@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scans and poses out to files that the readers of this wing take back unchanged.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <vector>
+
+#include "cluxel/scan/scan.hpp"
+
+namespace cluxel {
+
+/// Writes one scan as binary PCD: x y z, then intensity, label and ray origins as far as the scan has them. VIEWPOINT
+/// holds the pose in metres to the nine digits of PCL's header, for viewers; a poses file beside the scans is the exact
+/// one. The time is not stored: it belongs into times.txt or a manifest. Throws InputError for an empty scan or arrays of different lengths, Error
+/// (StoreUnavailable) when the disk refuses; the file is whole or not there.
+void writeScanFile(const Scan& scan, const std::filesystem::path& path);
+
+/// Writes one line of 16 numbers a pose (4x4, row by row), each with the digits that give back the same double.
+/// In a folder of scans the file is named poses.txt and its lines follow the scans' file names in natural order.
+void writePoses(const std::vector<Eigen::Isometry3d>& T_map_sensor, const std::filesystem::path& path);
+
+/// Writes one line a scan, in seconds, as times.txt in a folder of scans.
+void writeTimes(const std::vector<double>& time_s, const std::filesystem::path& path);
+
+}  // namespace cluxel
