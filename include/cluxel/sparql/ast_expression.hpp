@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Syntax tree of SPARQL, the small parts: variables, nodes of patterns, property paths and expressions.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "cluxel/knowledge/term.hpp"
+
+namespace cluxel::ast {
+
+/// Where something stands in the request's text [bytes from its start]. `locate()` makes line and column of it.
+using SourceOffset = std::uint32_t;
+
+/// The number of a variable in the VariableTable of its query or update operation.
+using VariableIndex = std::uint32_t;
+
+struct Variable {
+  std::string name;         ///< without ? or $; of a hidden variable something no query can write ("_:label")
+  /// Stands for a blank node of a pattern (each blank node label is one hidden variable, whose scope the parser has
+  /// checked), or was made by the parser. Hidden ones are in no result and not in SELECT *.
+  bool hidden = false;
+};
+
+/// All variables of one query (sub-selects included: the same name is the same index, although an inner variable
+/// that is not projected is another variable) or of one update operation.
+using VariableTable = std::vector<Variable>;
+
+/// A variable or a term. In patterns a term is never a blank node (those are hidden variables); in templates of
+/// CONSTRUCT and INSERT a blank node term stands for a fresh blank node per solution, the same label for the same one.
+struct PatternTerm {
+  std::variant<VariableIndex, Term> value;
+  SourceOffset at = 0;
+
+  bool isVariable() const { return value.index() == 0; }
+  VariableIndex variable() const { return std::get<VariableIndex>(value); }
+  const Term& term() const { return std::get<Term>(value); }
+};
+
+struct Path {
+  enum class Kind : std::uint8_t {
+    Link,          ///< iri
+    Inverse,       ///< ^parts[0]
+    Sequence,      ///< parts[0] / parts[1] / …
+    Alternative,   ///< parts[0] | parts[1] | …
+    ZeroOrMore,    ///< parts[0]*
+    OneOrMore,     ///< parts[0]+
+    ZeroOrOne,     ///< parts[0]?
+    NegatedSet     ///< !(forward… | ^backward…); either list may be empty
+  };
+  Kind kind = Kind::Link;
+  Term iri;
+  std::vector<Path> parts;
+  std::vector<Term> forward, backward;
+  SourceOffset at = 0;
+};
+
+/// The built-in functions, but for those that are operators or aggregates. URI is Iri.
+enum class Builtin : std::uint8_t {
+  Str, Lang, LangMatches, Datatype, Bound, Iri, Bnode, Rand, Abs, Ceil, Floor, Round, Concat, Strlen, Ucase, Lcase,
+  EncodeForUri, Contains, StrStarts, StrEnds, StrBefore, StrAfter, Year, Month, Day, Hours, Minutes, Seconds, Timezone,
+  Tz, Now, Uuid, StrUuid, Md5, Sha1, Sha256, Sha384, Sha512, Coalesce, If, StrLang, StrDt, SameTerm, IsIri, IsBlank,
+  IsLiteral, IsNumeric, Regex, Substr, Replace, Count_
+};
+
+enum class AggregateFunction : std::uint8_t { Count, Sum, Min, Max, Avg, Sample, GroupConcat };
+
+struct GroupPattern;
+
+struct Expression {
+  enum class Kind : std::uint8_t {
+    Variable,      ///< variable
+    Constant,      ///< term: an IRI or a literal
+    Or, And, Not,
+    Equal, NotEqual, Less, Greater, LessEqual, GreaterEqual,
+    In, NotIn,     ///< arguments[0] IN (arguments[1…])
+    Add, Subtract, Multiply, Divide, Negate, Plus,
+    Call,          ///< builtin(arguments…)
+    Function,      ///< term is the function's IRI: a cast, a GeoSPARQL or extension function; `distinct` may be set
+    Aggregate,     ///< aggregate([distinct] arguments[0]); COUNT(*) has no argument
+    Exists, NotExists   ///< pattern
+  };
+  Kind kind = Kind::Constant;
+  Builtin builtin = Builtin::Count_;
+  AggregateFunction aggregate = AggregateFunction::Count;
+  bool distinct = false;
+  VariableIndex variable = 0;
+  SourceOffset at = 0;
+  Term term;
+  std::vector<Expression> arguments;
+  std::string separator = {};                       ///< GROUP_CONCAT; " " when the query names none
+  std::shared_ptr<const GroupPattern> pattern = {};
+};
+
+/// True when an aggregate stands in the expression (outside EXISTS).
+bool hasAggregate(const Expression& expression);
+
+/// The keyword of a built-in ("STRLEN") or aggregate ("GROUP_CONCAT").
+std::string_view nameOf(Builtin builtin);
+std::string_view nameOf(AggregateFunction aggregate);
+
+}  // namespace cluxel::ast
