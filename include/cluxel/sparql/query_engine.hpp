@@ -14,7 +14,7 @@
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/knowledge/quad_store.hpp"
 #include "cluxel/knowledge/term.hpp"
-#include "cluxel/sparql/result_sink.hpp"
+#include "cluxel/sparql/result_table.hpp"
 
 namespace cluxel {
 
@@ -47,25 +47,6 @@ struct QueryOptions {
   bool refuse_volatile = false;   ///< BNODE, RAND, NOW, UUID, STRUUID are errors (SPARQL rules)
 };
 
-enum class QueryForm { Select, Ask, Construct, Describe };
-
-struct Triple {
-  Term subject, predicate, object;
-  auto operator<=>(const Triple&) const = default;
-};
-
-/// A whole answer as values: for tests and small questions. Large answers go through a ResultSink.
-struct QueryResult {
-  QueryForm form = QueryForm::Select;
-  std::vector<std::string> variables;
-  std::vector<std::vector<std::optional<Term>>> rows;
-  bool truth = false;
-  std::vector<Triple> triples;
-
-  /// The value of `variable` in row `row`, or nothing.
-  std::optional<Term> at(std::size_t row, std::string_view variable) const;
-};
-
 using Binding = std::pair<std::string, Term>;   ///< a variable's name without '?', and its value
 
 /// A query parsed and planned once for one snapshot, run many times. Not thread-safe; the reader must outlive it.
@@ -80,8 +61,9 @@ class PreparedQuery {
   PreparedQuery& operator=(PreparedQuery&&) noexcept;
   ~PreparedQuery();
 
-  QueryForm form() const;
+  ast::QueryForm form() const;
   const std::vector<std::string>& variables() const;   ///< of a SELECT, in order
+  /// The sink is called only when the answer is whole: a budget that runs out leaves it untouched.
   void run(ResultSink& sink, const std::vector<Binding>& bindings = {});
   QueryResult evaluate(const std::vector<Binding>& bindings = {});
   /// Whether there is a solution (ASK's answer): stops at the first.

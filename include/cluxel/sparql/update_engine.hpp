@@ -20,8 +20,8 @@ struct UpdateOptions {
   /// them is written.
   std::vector<std::string> writable_graphs = {std::string(vocabulary::kGraphOperator)};
   bool any_graph_writable = false;   ///< then text without a graph writes the unnamed graph
-  /// Gives the quads' triples behind a LOAD's IRI; absent: LOAD is refused.
-  std::function<std::vector<Triple>(const std::string& iri)> load = {};
+  /// Gives the triples behind a LOAD's IRI (their graph terms are ignored); absent: LOAD is refused.
+  std::function<std::vector<Quad>(const std::string& iri)> load = {};
 };
 
 struct UpdateReport {
