@@ -2,17 +2,32 @@
 // Output of the feature stage: one row of numbers per cluxel, and the graph of intersecting cluxels. The CRF reads it.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <Eigen/Core>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cluxel/base/content_hash.hpp"
+#include "cluxel/perception/cluxel_tile.hpp"
+#include "cluxel/perception/ground_tile.hpp"
 #include "cluxel/perception/tile.hpp"
 
 namespace cluxel {
+
+/// Groups of features, described in docs/features.md; scale-free and metric ones are switched apart.
+struct FeatureParams {
+  bool hor = true;             ///< histogram of oriented residuals of the 2-ring (scale-free)
+  bool shape = true;           ///< eigenvalue shape and directions of ball, 1-ring, 2-ring (scale-free)
+  bool wide_shape = true;      ///< the same in wide cubes, and their lengths (metric)
+  bool height = true;          ///< height above the local ground and profile of the map column around it (metric)
+  bool extent = true;          ///< sizes of the supports (metric)
+  bool density = true;         ///< spacing of points and numbers of neighbours (metric)
+  bool intensity = false;      ///< mean and spread of the intensity, 0 where a scan has none
+};
+void describe(FeatureParams& params, ParameterVisitor& visitor);
 
 /// The names of the feature columns and edge feature columns that one setting of the feature stage computes.
 struct FeatureLayout {
@@ -34,6 +49,16 @@ struct FeatureTile {
 
   std::size_t size() const { return center.size(); }
 };
+
+/// The columns that computeFeatures() fills with these settings.
+FeatureLayout featureLayout(const FeatureParams& params);
+
+/// Graph and features of the ring's centre tile. Cost: some 5 microseconds a cluxel.
+FeatureTile computeFeatures(const Ring<CluxelTile>& cluxels, const Ring<GroundTile>& ground, const FeatureParams& params);
+
+std::string toBytes(const FeatureTile& tile);
+/// Throws Error (StoreUnavailable) when the bytes are not such a tile.
+FeatureTile featureTileFromBytes(std::string_view bytes);
 
 /// Output of the labelling stage, per cluxel of the tile.
 struct LabelTile {

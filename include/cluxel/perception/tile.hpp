@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 
 #include <Eigen/Core>
@@ -34,6 +35,26 @@ inline std::array<TileKey, 9> ringOf(const TileKey& key) {
   return ring;
 }
 inline constexpr int kRingCentre = 4;
+
+/// One stage's stored outputs of a tile and its 8 neighbours, in the order of ringOf(); null where there is none.
+template <typename Tile>
+using Ring = std::array<const Tile*, 9>;
+
+/// The ring around `key` in a map from TileKey to tiles.
+template <typename Tiles>
+auto ringIn(const Tiles& tiles, const TileKey& key) {
+  Ring<typename Tiles::mapped_type> ring{};
+  const auto keys = ringOf(key);
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    if (const auto found = tiles.find(keys[i]); found != tiles.end()) ring[i] = &found->second;
+  return ring;
+}
+
+/// The corner of a ring's tile relative to the corner of the ring's centre [m]; exact.
+inline Eigen::Vector3f ringShift(int ring) {
+  return {static_cast<float>(ring % 3 - 1) * static_cast<float>(kTileSize_m),
+          static_cast<float>(ring / 3 - 1) * static_cast<float>(kTileSize_m), 0.0F};
+}
 
 /// A cluxel as seen from a tile: which tile of its ring, and the cluxel's number there.
 struct RingIndex {
