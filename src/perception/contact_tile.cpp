@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// Contacts from the edges of the cluxel graph, and from footprint cells that lie near each other.
+#include "cluxel/perception/contact_tile.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <unordered_map>
+
+namespace cluxel {
+
+namespace {
+
+/// Contacts by their three numbers; finish() sorts them, so the order in the hash table does not matter.
+class ContactCollector {
+ public:
+  Contact& at(std::uint32_t from, std::uint32_t to_ring, std::uint32_t to) {
+    const std::uint64_t key = std::uint64_t{from} << 36U | std::uint64_t{to_ring} << 32U | to;
+    const auto [place, is_new] = number_.try_emplace(key, static_cast<std::uint32_t>(contacts_.size()));
+    if (is_new) {
+      Contact contact;
+      contact.from = from, contact.to_ring = to_ring, contact.to = to;
+      contact.gap = std::numeric_limits<double>::infinity();
+      contacts_.push_back(contact);
+    }
+    return contacts_[place->second];
+  }
+
+  std::vector<Contact> finish() {
+    std::sort(contacts_.begin(), contacts_.end(), [](const Contact& a, const Contact& b) {
+      return std::tie(a.from, a.to_ring, a.to) < std::tie(b.from, b.to_ring, b.to);
+    });
+    return std::move(contacts_);
+  }
+
+ private:
+  std::unordered_map<std::uint64_t, std::uint32_t> number_;
+  std::vector<Contact> contacts_;
+};
+
+void addEdges(const Ring<ComponentTile>& components, const Ring<CluxelTile>& cluxels, const FeatureTile& graph,
+              float largest_gap, ContactCollector& contacts) {
+  const CluxelTile& own = *cluxels[kRingCentre];
+  const ComponentTile& own_components = *components[kRingCentre];
+  for (std::uint32_t a = 0; a < own.size(); ++a)
+    for (std::uint32_t e = graph.edge_offset[a]; e < graph.edge_offset[a + 1]; ++e) {
+      const std::size_t ring = graph.edge_target[e].ring;
+      const std::uint32_t b = graph.edge_target[e].index;
+      const CluxelTile& other = *cluxels[ring];
+      const std::uint32_t from = own_components.component_of[a], to = components[ring]->component_of[b];
+      if (ring == kRingCentre && from == to) continue;
+      const Eigen::Vector3f shift = ringShift(static_cast<int>(ring));
+      const float gap = boxGap(own.box_min[a], own.box_max[a], other.box_min[b] + shift, other.box_max[b] + shift);
+      const bool same_label = own_components.components[from].label == components[ring]->components[to].label;
+      Contact& contact = contacts.at(from, static_cast<std::uint32_t>(ring), to);
+      ++contact.edges;
+      if (same_label && gap <= largest_gap) ++contact.linked_edges;
+      contact.gap = std::min<double>(contact.gap, gap);
+    }
+}
+
+/// One component's part of a footprint cell, seen from the centre tile.
+struct CellEntry {
+  std::uint32_t ring = 0, component = 0;
+  int x = 0, y = 0;                                   ///< cell, from the centre tile's corner
+  Eigen::Vector3f min, max;
+  float mean_z = 0;
+};
+
+/// Cells of the ring within reach of the centre tile, in CSR form over a padded grid.
+class CellGrid {
+ public:
+  CellGrid(const Ring<ComponentTile>& components, const ContactParams& params)
+      : reach_(static_cast<int>(std::ceil(params.near_m / kFootprintCell_m))),
+        width_(kFootprintCellsPerTile + 2 * reach_) {
+    std::vector<CellEntry> entries;
+    for (std::size_t ring = 0; ring < components.size(); ++ring)
+      if (components[ring] != nullptr) collect(*components[ring], ring, params, entries);
+    offset_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(width_) + 1, 0);
+    for (const CellEntry& entry : entries) ++offset_[slot(entry.x, entry.y) + 1];
+    for (std::size_t i = 1; i < offset_.size(); ++i) offset_[i] += offset_[i - 1];
+    std::vector<std::uint32_t> next(offset_.begin(), offset_.end() - 1);
+    entries_.resize(entries.size());
+    for (const CellEntry& entry : entries) entries_[next[slot(entry.x, entry.y)]++] = entry;
+  }
+
+  int reach() const { return reach_; }
+  std::span<const CellEntry> at(int x, int y) const {
+    const std::size_t cell = slot(x, y);
+    return {entries_.data() + offset_[cell], entries_.data() + offset_[cell + 1]};
+  }
+
+ private:
+  std::size_t slot(int x, int y) const {
+    return static_cast<std::size_t>(y + reach_) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x + reach_);
+  }
+
+  void collect(const ComponentTile& tile, std::size_t ring, const ContactParams& params,
+               std::vector<CellEntry>& entries) const {
+    const Eigen::Vector3f shift = ringShift(static_cast<int>(ring));
+    const int shift_x = (static_cast<int>(ring) % 3 - 1) * kFootprintCellsPerTile;
+    const int shift_y = (static_cast<int>(ring) / 3 - 1) * kFootprintCellsPerTile;
+    for (std::uint32_t c = 0; c < tile.size(); ++c)
+      for (const FootprintCell& cell : tile.cellsOf(c)) {
+        const int x = cell.x + shift_x, y = cell.y + shift_y;
+        const int end = kFootprintCellsPerTile + reach_;
+        if (x < -reach_ || x >= end || y < -reach_ || y >= end) continue;
+        const bool is_plane = tile.components[c].label == static_cast<std::uint32_t>(PrimitiveLabel::HorizontalPlane);
+        if (is_plane && cell.highest < static_cast<float>(params.ground_layer_m)) continue;
+        entries.push_back({static_cast<std::uint32_t>(ring), c, x, y, Eigen::Vector3f(cell.min.data()) + shift,
+                           Eigen::Vector3f(cell.max.data()) + shift, cell.mean_z});
+      }
+  }
+
+  int reach_, width_;
+  std::vector<std::uint32_t> offset_;
+  std::vector<CellEntry> entries_;
+};
+
+void addNear(const CellEntry& own, const CellEntry& other, float near, ContactCollector& contacts) {
+  if (other.ring == kRingCentre && other.component == own.component) return;
+  const bool touches = std::abs(own.x - other.x) <= 1 && std::abs(own.y - other.y) <= 1;
+  const float gap = boxGap(own.min, own.max, other.min, other.max);
+  if (!touches && gap > near) return;
+  Contact& contact = contacts.at(own.component, other.ring, other.component);
+  contact.gap = std::min<double>(contact.gap, gap);
+  if (!touches) return;
+  ++contact.overlaps;
+  contact.height_difference += static_cast<double>(own.mean_z) - static_cast<double>(other.mean_z);
+}
+
+void addCells(const CellGrid& grid, const ContactParams& params, ContactCollector& contacts) {
+  const auto near = static_cast<float>(params.near_m);
+  for (int y = 0; y < kFootprintCellsPerTile; ++y)
+    for (int x = 0; x < kFootprintCellsPerTile; ++x)
+      for (const CellEntry& own : grid.at(x, y)) {
+        if (own.ring != kRingCentre) continue;
+        for (int other_y = y - grid.reach(); other_y <= y + grid.reach(); ++other_y)
+          for (int other_x = x - grid.reach(); other_x <= x + grid.reach(); ++other_x)
+            for (const CellEntry& other : grid.at(other_x, other_y)) addNear(own, other, near, contacts);
+      }
+}
+
+}  // namespace
+
+void describe(ContactParams& params, ParameterVisitor& visitor) {
+  visitor.real({"contact.near", "m", 0.1, 8, "pairs of primitives farther apart are not looked at"}, params.near_m);
+  visitor.real({"contact.ground_layer", "m", 0, 5, "horizontal planes below this height above the ground are ground"},
+               params.ground_layer_m);
+}
+
+ContactTile contactsOf(const Ring<ComponentTile>& components, const Ring<CluxelTile>& cluxels, const FeatureTile& graph,
+                       const ComponentParams& component_params, const ContactParams& params) {
+  ContactCollector contacts;
+  addEdges(components, cluxels, graph, static_cast<float>(component_params.largest_gap_m), contacts);
+  addCells(CellGrid(components, params), params, contacts);
+  ContactTile tile;
+  tile.key = graph.key;
+  tile.contacts = contacts.finish();
+  return tile;
+}
+
+}  // namespace cluxel

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// Components in two levels: within tiles they are stored, here the graph of tile components is joined.
+#include "cluxel/perception/scene_assembly.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+#include "perception/disjoint_sets.hpp"
+#include "perception/merged_component.hpp"
+#include "perception/scene_relations.hpp"
+
+namespace cluxel {
+
+namespace {
+
+/// Numbers of things in tiles as one range over all tiles in key order.
+class TileNumbering {
+ public:
+  template <typename Tiles>
+  explicit TileNumbering(const Tiles& tiles) {
+    for (const auto& [key, tile] : tiles) {
+      base_.emplace(key, total_);
+      total_ += static_cast<std::uint32_t>(tile.size());
+    }
+  }
+  std::uint32_t of(const TileKey& key) const { return base_.at(key); }
+  std::uint32_t total() const { return total_; }
+
+ private:
+  std::map<TileKey, std::uint32_t> base_;
+  std::uint32_t total_ = 0;
+};
+
+/// The primitive of every component, numbered in the order of first components.
+std::vector<std::uint32_t> joinComponents(const SceneTiles& tiles, const TileNumbering& components) {
+  DisjointSets sets(components.total());
+  for (const auto& [key, tile] : tiles.contacts) {
+    const auto ring = ringOf(key);
+    for (const Contact& contact : tile.contacts)
+      if (contact.linked_edges > 0)
+        sets.join(components.of(key) + contact.from, components.of(ring[contact.to_ring]) + contact.to);
+  }
+  return sets.numbers();
+}
+
+void appendCluxels(const SceneTiles& tiles, const TileKey& key, const TileNumbering& numbering, SceneCluxels& all) {
+  const CluxelTile& cluxels = tiles.cluxels.at(key);
+  const FeatureTile& graph = tiles.features.at(key);
+  const LabelTile& labels = tiles.labels.at(key);
+  const auto ground = ringIn(tiles.ground, key);
+  const auto ring = ringOf(key);
+  for (std::uint32_t c = 0; c < cluxels.size(); ++c) {
+    const Eigen::Vector3f& center = cluxels.own[c].mean;
+    all.name.push_back({key, c});
+    all.center.emplace_back(cornerOf(key) + center.cast<double>());
+    all.extent.emplace_back(cluxels.box_max[c] - cluxels.box_min[c]);
+    all.point_count.push_back(static_cast<std::uint32_t>(cluxels.own[c].count));
+    all.label.push_back(static_cast<PrimitiveLabel>(labels.label[c]));
+    all.probability.push_back(labels.probability[c]);
+    all.height_above_ground.push_back(static_cast<float>(center.z() - groundHeightAt(ground, center.x(), center.y())));
+    const std::size_t first = all.edge_target.size();
+    for (std::uint32_t e = graph.edge_offset[c]; e < graph.edge_offset[c + 1]; ++e)
+      all.edge_target.push_back(numbering.of(ring[graph.edge_target[e].ring]) + graph.edge_target[e].index);
+    std::sort(all.edge_target.begin() + static_cast<std::ptrdiff_t>(first), all.edge_target.end());
+    all.edge_offset.push_back(static_cast<std::uint32_t>(all.edge_target.size()));
+  }
+}
+
+SceneCluxels gatherCluxels(const SceneTiles& tiles) {
+  const TileNumbering numbering(tiles.cluxels);
+  SceneCluxels all;
+  all.edge_offset.push_back(0);
+  for (const auto& [key, tile] : tiles.cluxels) appendCluxels(tiles, key, numbering, all);
+  return all;
+}
+
+/// The hash of the label and of the members' seeds, which name a cluxel independently of what else lies in its tile.
+ContentHash nameOf(const Primitive& primitive, const SceneTiles& tiles, const SceneCluxels& cluxels) {
+  ContentHasher hasher;
+  hasher.add(primitive.label);
+  for (const std::uint32_t member : primitive.cluxels) {
+    const CluxelName& name = cluxels.name[member];
+    const TilePoints& points = tiles.points.at(name.tile);
+    const std::uint32_t seed = tiles.cluxels.at(name.tile).seed[name.index];
+    hasher.add(points.scans[points.scan[seed]]).add(points.point[seed]);
+  }
+  return hasher.finish();
+}
+
+/// Sorts the primitives by id and tells every old number's new one.
+std::vector<std::uint32_t> sortById(std::vector<Primitive>& primitives) {
+  std::vector<std::uint32_t> order(primitives.size()), rank(primitives.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return primitives[a].id < primitives[b].id; });
+  std::vector<Primitive> sorted;
+  sorted.reserve(primitives.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    rank[order[i]] = i;
+    sorted.push_back(std::move(primitives[order[i]]));
+  }
+  primitives = std::move(sorted);
+  return rank;
+}
+
+void fillPrimitives(const SceneTiles& tiles, const std::vector<std::uint32_t>& primitive_of, std::size_t count,
+                    Scene& scene) {
+  std::vector<MergedComponent> merged(count);
+  scene.primitives.resize(count);
+  std::uint32_t component = 0, cluxel = 0;
+  for (const auto& [key, tile] : tiles.components) {
+    for (const std::uint32_t own : tile.component_of)
+      scene.primitives[primitive_of[component + own]].cluxels.push_back(cluxel++);
+    for (std::size_t number = 0; number < tile.size(); ++number, ++component) {
+      scene.primitives[primitive_of[component]].label = static_cast<PrimitiveLabel>(tile.components[number].label);
+      merged[primitive_of[component]].add(tile, number);
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    merged[i].describe(scene.primitives[i]);
+    scene.primitives[i].id = nameOf(scene.primitives[i], tiles, scene.cluxels);
+  }
+}
+
+/// All contacts between different primitives, summed in canonical order.
+std::vector<PrimitiveContact> mergeContacts(const SceneTiles& tiles, const TileNumbering& components,
+                                            const std::vector<std::uint32_t>& primitive_of) {
+  std::vector<PrimitiveContact> all;
+  for (const auto& [key, tile] : tiles.contacts) {
+    const auto ring = ringOf(key);
+    for (const Contact& contact : tile.contacts) {
+      const std::uint32_t from = primitive_of[components.of(key) + contact.from];
+      const std::uint32_t to = primitive_of[components.of(ring[contact.to_ring]) + contact.to];
+      if (from != to)
+        all.push_back({from, to, contact.edges, contact.overlaps, contact.height_difference, contact.gap});
+    }
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const auto& a, const auto& b) { return std::tie(a.from, a.to) < std::tie(b.from, b.to); });
+  std::vector<PrimitiveContact> merged;
+  for (const PrimitiveContact& contact : all) {
+    if (merged.empty() || merged.back().from != contact.from || merged.back().to != contact.to) {
+      merged.push_back(contact);
+      continue;
+    }
+    PrimitiveContact& sum = merged.back();
+    sum.edges += contact.edges, sum.overlaps += contact.overlaps;
+    sum.height_difference += contact.height_difference;
+    sum.gap = std::min(sum.gap, contact.gap);
+  }
+  return merged;
+}
+
+}  // namespace
+
+void describe(RelationParams& params, ParameterVisitor& visitor) {
+  visitor.real({"relation.touches", "m", 0, 2, "largest gap of things that touch"}, params.touches_m);
+  visitor.real({"relation.near", "m", 0, 8, "largest gap of things that are near"}, params.near_m);
+  visitor.real({"relation.above", "m", 0, 10, "least mean height difference of what is above"}, params.above_m);
+  visitor.real({"relation.stands_on", "m", 0, 2, "largest gap of what stands on another"}, params.stands_on_m);
+  visitor.real({"relation.ground", "m", 0, 5, "largest height above the ground of what touches it"}, params.ground_m);
+  visitor.real({"relation.inside", "1", 0, 1, "least share of a box that lies inside"}, params.inside_share);
+  visitor.real({"relation.parallel", "rad", 0, 1.5708, "largest angle of parallel things"}, params.parallel_rad);
+}
+
+Scene assembleScene(const SceneTiles& tiles, const RelationParams& params) {
+  Scene scene;
+  scene.cluxels = gatherCluxels(tiles);
+  const TileNumbering components(tiles.components);
+  std::vector<std::uint32_t> primitive_of = joinComponents(tiles, components);
+  const auto last = std::max_element(primitive_of.begin(), primitive_of.end());
+  fillPrimitives(tiles, primitive_of, last == primitive_of.end() ? 0 : *last + 1, scene);
+  const std::vector<std::uint32_t> rank = sortById(scene.primitives);
+  for (std::uint32_t& primitive : primitive_of) primitive = rank[primitive];
+  scene.cluxels.primitive.resize(scene.cluxels.size());
+  for (PrimitiveIndex i = 0; i < scene.primitives.size(); ++i)
+    for (const std::uint32_t cluxel : scene.primitives[i].cluxels) scene.cluxels.primitive[cluxel] = i;
+  appendRelations(mergeContacts(tiles, components, primitive_of), params, scene);
+  indexRelations(scene);
+  return scene;
+}
+
+}  // namespace cluxel
