@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// The cover: one pass over the sorted cells, in which only earlier cells can hold earlier seeds.
+#include "cluxel/perception/cluxel_tile.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "perception/cover_volumes.hpp"
+#include "perception/moments.hpp"
+#include "perception/point_grid.hpp"
+
+namespace cluxel {
+namespace {
+
+/// Seeds found so far: numbers ascend with cells, so the seeds of a run of cells are a run of seeds.
+struct Seeds {
+  std::vector<float> x, y, z;
+  std::vector<std::uint32_t> before;   ///< per cell: seeds in earlier cells
+
+  bool isNear(std::size_t seed, float px, float py, float pz, float squared) const {
+    const float dx = x[seed] - px, dy = y[seed] - py, dz = z[seed] - pz;
+    return dx * dx + dy * dy + dz * dz <= squared;
+  }
+};
+
+/// The first seed within the radius of the point among runs of seeds, or the number of seeds.
+std::uint32_t earliestSeed(const Seeds& seeds, const std::array<std::pair<std::size_t, std::size_t>, 5>& runs,
+                           float x, float y, float z, float squared) {
+  for (const auto& [first, last] : runs)
+    for (std::size_t seed = first; seed < last; ++seed)
+      if (seeds.isNear(seed, x, y, z, squared)) return static_cast<std::uint32_t>(seed);
+  return static_cast<std::uint32_t>(seeds.x.size());
+}
+
+/// Gives each own point its cluxel; cells are visited in canonical order.
+void assignPoints(const PointGrid& grid, float radius_m, CluxelTile& tile) {
+  Seeds seeds;
+  seeds.before.resize(grid.cells() + 1);
+  NeighbourWalk walk(grid.cell_key);
+  std::array<std::pair<std::size_t, std::size_t>, 5> runs;
+  for (std::size_t cell = 0; cell < grid.cells(); ++cell) {
+    seeds.before[cell] = static_cast<std::uint32_t>(seeds.x.size());
+    walk.moveTo(grid.cell_key[cell]);
+    for (std::size_t k = 0; k < runs.size(); ++k)
+      runs[k] = {seeds.before[std::min(walk.first(k), cell)], seeds.before[std::min(walk.last(k), cell)]};
+    for (std::uint32_t i = grid.cell_start[cell]; i < grid.cell_start[cell + 1]; ++i) {
+      if (grid.own[i] == PointGrid::kForeign) continue;
+      runs[4].second = seeds.x.size();
+      const float x = grid.x[i], y = grid.y[i], z = grid.z[i];
+      const std::uint32_t seed = earliestSeed(seeds, runs, x, y, z, radius_m * radius_m);
+      tile.point_cluxel[grid.own[i]] = seed;
+      if (seed < seeds.x.size()) continue;
+      tile.seed.push_back(grid.own[i]);
+      seeds.x.push_back(x);
+      seeds.y.push_back(y);
+      seeds.z.push_back(z);
+    }
+  }
+}
+
+/// Moments and box of each cluxel's own points, relative to its seed.
+void measureOwnPoints(const TilePoints& points, CluxelTile& tile) {
+  std::vector<MomentSum> sums(tile.size());
+  tile.box_min.resize(tile.size());
+  tile.box_max.resize(tile.size());
+  for (std::size_t c = 0; c < tile.size(); ++c) tile.box_min[c] = tile.box_max[c] = points.at(tile.seed[c]);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint32_t c = tile.point_cluxel[i];
+    const Eigen::Vector3f p = points.at(i);
+    const Eigen::Vector3f d = p - points.at(tile.seed[c]);
+    sums[c].add(d.x(), d.y(), d.z());
+    tile.box_min[c] = tile.box_min[c].cwiseMin(p);
+    tile.box_max[c] = tile.box_max[c].cwiseMax(p);
+  }
+  tile.own.resize(tile.size());
+  for (std::size_t c = 0; c < tile.size(); ++c) tile.own[c] = sums[c].finish(points.at(tile.seed[c]));
+}
+
+void measureIntensity(const TilePoints& points, CluxelTile& tile) {
+  if (points.intensity.empty()) return;
+  std::vector<double> sum(tile.size()), squares(tile.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    sum[tile.point_cluxel[i]] += points.intensity[i];
+    squares[tile.point_cluxel[i]] += double{points.intensity[i]} * points.intensity[i];
+  }
+  tile.intensity_mean.resize(tile.size());
+  tile.intensity_deviation.resize(tile.size());
+  for (std::size_t c = 0; c < tile.size(); ++c) {
+    const double mean = sum[c] / tile.own[c].count;
+    tile.intensity_mean[c] = static_cast<float>(mean);
+    tile.intensity_deviation[c] = static_cast<float>(std::sqrt(std::max(0.0, squares[c] / tile.own[c].count - mean * mean)));
+  }
+}
+
+}  // namespace
+
+void describe(CoverParams& params, ParameterVisitor& visitor) {
+  visitor.real({"cover.radius", "m", 0.05, 1.0, "a point joins the earliest seed within this distance"}, params.radius_m);
+  visitor.real({"cover.largest_reach", "m", 0.05, kLargestReach_m, "how far volumes of sparse cluxels may grow"},
+               params.largest_reach_m);
+  visitor.whole({"cover.wanted_points", "1", 1, 1000, "a volume grows until it holds this many points"},
+                params.wanted_points);
+}
+
+CoverParams paperCover() { return {.radius_m = 0.10, .largest_reach_m = 0.10, .wanted_points = 1}; }
+
+CluxelMembers membersOf(const CluxelTile& tile) {
+  CluxelMembers members;
+  members.offset.assign(tile.size() + 1, 0);
+  for (const auto c : tile.point_cluxel) ++members.offset[c + 1];
+  for (std::size_t c = 0; c < tile.size(); ++c) members.offset[c + 1] += members.offset[c];
+  auto next = members.offset;
+  members.point.resize(tile.point_cluxel.size());
+  for (std::uint32_t i = 0; i < members.point.size(); ++i) members.point[next[tile.point_cluxel[i]]++] = i;
+  return members;
+}
+
+CluxelTile coverTile(const Ring<TilePoints>& ring, const CoverParams& params) {
+  const TilePoints& points = *ring[kRingCentre];
+  const double largest_m = std::max(params.radius_m, params.largest_reach_m);
+  const PointGrid cells = gridOf(ring, params.radius_m, params.radius_m);
+  CluxelTile tile;
+  tile.key = points.key;
+  tile.point_cluxel.resize(points.size());
+  assignPoints(cells, static_cast<float>(params.radius_m), tile);
+  measureOwnPoints(points, tile);
+  measureIntensity(points, tile);
+  measureVolumes(cells, gridOf(ring, largest_m, largest_m), points, params, tile);
+  tile.columns = columnsOf(points);
+  return tile;
+}
+
+}  // namespace cluxel

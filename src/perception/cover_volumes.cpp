@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// Volumes cover ALL points within reach of the seed, so that volumes of neighbours overlap and the graph has edges.
+#include "perception/cover_volumes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "perception/moments.hpp"
+#include "perception/radix_order.hpp"
+
+namespace cluxel {
+namespace {
+
+/// Points near a seed, with their squared distances; the arrays are reused from seed to seed.
+struct NearPoints {
+  std::vector<std::uint32_t> point;
+  std::vector<float> squared;
+  std::size_t count = 0;
+
+  void collect(const PointGrid& grid, const NeighbourWalk& walk, const Eigen::Vector3f& seed, float reach_squared) {
+    count = 0;
+    for (std::size_t k = 0; k < 9; ++k) {
+      const std::uint32_t first = grid.cell_start[walk.first(k)], last = grid.cell_start[walk.last(k)];
+      if (count + (last - first) > point.size()) resize(2 * (count + last - first));
+      for (std::uint32_t i = first; i < last; ++i) {
+        const float dx = grid.x[i] - seed.x(), dy = grid.y[i] - seed.y(), dz = grid.z[i] - seed.z();
+        const float distance = dx * dx + dy * dy + dz * dz;
+        point[count] = i;
+        squared[count] = distance;
+        count += distance <= reach_squared ? 1U : 0U;
+      }
+    }
+  }
+
+ private:
+  void resize(std::size_t size) {
+    point.resize(size);
+    squared.resize(size);
+  }
+};
+
+/// Box and moments over the collected points that lie within the reach.
+void fillVolume(const PointGrid& grid, const NearPoints& near, float reach_squared, const Eigen::Vector3f& seed,
+                std::size_t cluxel, CluxelTile& tile) {
+  MomentSum sum;
+  Eigen::Vector3f low = seed, high = seed;
+  for (std::size_t n = 0; n < near.count; ++n) {
+    if (near.squared[n] > reach_squared) continue;
+    const std::uint32_t i = near.point[n];
+    const Eigen::Vector3f p(grid.x[i], grid.y[i], grid.z[i]);
+    sum.add(p.x() - seed.x(), p.y() - seed.y(), p.z() - seed.z());
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  tile.volume_min[cluxel] = low;
+  tile.volume_max[cluxel] = high;
+  tile.ball[cluxel] = sum.finish(seed);
+  tile.reach[cluxel] = std::sqrt(reach_squared);
+}
+
+/// The squared distance that holds the wanted number of points, between the two bounds.
+float grownReach(NearPoints& near, std::size_t wanted, float least, float largest, std::vector<float>& scratch) {
+  if (near.count <= wanted) return largest;
+  scratch.assign(near.squared.begin(), near.squared.begin() + static_cast<std::ptrdiff_t>(near.count));
+  const auto nth = scratch.begin() + static_cast<std::ptrdiff_t>(wanted - 1);
+  std::nth_element(scratch.begin(), nth, scratch.end());
+  return std::max(least, *nth);
+}
+
+struct Squares {
+  float radius, largest;
+};
+
+/// Volumes of radius around every seed; returns the cluxels that hold too few points.
+std::vector<std::uint32_t> measureFixed(const PointGrid& grid, const TilePoints& points, const CellKeys& key,
+                                        const Squares& squares, std::size_t wanted, CluxelTile& tile) {
+  std::vector<std::uint32_t> sparse;
+  NeighbourWalk walk(grid.cell_key);
+  NearPoints near;
+  std::uint64_t at = std::numeric_limits<std::uint64_t>::max();
+  for (std::uint32_t c = 0; c < tile.size(); ++c) {
+    const Eigen::Vector3f seed = points.at(tile.seed[c]);
+    const std::uint64_t cell = key(seed.x(), seed.y(), seed.z());
+    if (cell != at) walk.moveTo(cell);
+    at = cell;
+    near.collect(grid, walk, seed, squares.radius);
+    if (near.count < wanted && squares.largest > squares.radius)
+      sparse.push_back(c);
+    else
+      fillVolume(grid, near, squares.radius, seed, c, tile);
+  }
+  return sparse;
+}
+
+/// Volumes of sparse cluxels, in the order of the wide cells.
+void measureGrown(const PointGrid& grid, const TilePoints& points, const CellKeys& key, const Squares& squares,
+                  std::size_t wanted, const std::vector<std::uint32_t>& sparse, CluxelTile& tile) {
+  std::vector<KeyedItem> order;
+  for (const auto c : sparse) {
+    const Eigen::Vector3f seed = points.at(tile.seed[c]);
+    order.push_back({key(seed.x(), seed.y(), seed.z()), c});
+  }
+  if (order.empty()) return;
+  sortByKey(order);
+  NeighbourWalk walk(grid.cell_key);
+  NearPoints near;
+  std::vector<float> scratch;
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    if (n == 0 || order[n].key != order[n - 1].key) walk.moveTo(order[n].key);
+    const std::uint32_t c = order[n].item;
+    const Eigen::Vector3f seed = points.at(tile.seed[c]);
+    near.collect(grid, walk, seed, squares.largest);
+    fillVolume(grid, near, grownReach(near, wanted, squares.radius, squares.largest, scratch), seed, c, tile);
+  }
+}
+
+/// Height of the layer above a column's lowest point whose mean is its `low` [m].
+constexpr float kLowLayer_m = 0.1F;
+
+std::size_t columnOf(float x, float y) {
+  constexpr auto per_m = static_cast<float>(1.0 / kColumnSize_m);
+  return static_cast<std::size_t>(y * per_m) * kColumnsPerTile + static_cast<std::size_t>(x * per_m);
+}
+
+std::int32_t sliceOf(float z) { return static_cast<std::int32_t>(std::floor(z / kSliceHeight_m)); }
+
+}  // namespace
+
+void measureVolumes(const PointGrid& cells, const PointGrid& wide_cells, const TilePoints& points,
+                    const CoverParams& params, CluxelTile& tile) {
+  tile.volume_min.resize(tile.size());
+  tile.volume_max.resize(tile.size());
+  tile.ball.resize(tile.size());
+  tile.reach.resize(tile.size());
+  const double largest_m = std::max(params.radius_m, params.largest_reach_m);
+  const auto squareOf = [](double value_m) { return static_cast<float>(value_m) * static_cast<float>(value_m); };
+  const Squares squares{squareOf(params.radius_m), squareOf(largest_m)};
+  const auto wanted = static_cast<std::size_t>(params.wanted_points);
+  const auto sparse =
+      measureFixed(cells, points, CellKeys(params.radius_m, params.radius_m), squares, wanted, tile);
+  measureGrown(wide_cells, points, CellKeys(largest_m, largest_m), squares, wanted, sparse, tile);
+}
+
+std::vector<Column> columnsOf(const TilePoints& points) {
+  std::vector<Column> columns(static_cast<std::size_t>(kColumnsPerTile) * kColumnsPerTile);
+  std::vector<float> lowest(columns.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::size_t c = columnOf(points.x[i], points.y[i]);
+    Column& column = columns[c];
+    const float z = points.z[i];
+    lowest[c] = column.count == 0 ? z : std::min(lowest[c], z);
+    column.high = column.count == 0 ? z : std::max(column.high, z);
+    ++column.count;
+  }
+  std::vector<double> sum(columns.size());
+  std::vector<std::uint32_t> low_count(columns.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::size_t c = columnOf(points.x[i], points.y[i]);
+    const std::int32_t base = sliceOf(lowest[c]);
+    columns[c].base_slice = base;
+    columns[c].slices |= std::uint64_t{1} << static_cast<unsigned>(std::min(63, sliceOf(points.z[i]) - base));
+    if (points.z[i] > lowest[c] + kLowLayer_m) continue;
+    sum[c] += points.z[i];
+    ++low_count[c];
+  }
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    if (columns[c].count > 0) columns[c].low = static_cast<float>(sum[c] / low_count[c]);
+  return columns;
+}
+
+}  // namespace cluxel

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ground of a tile: sunken cells out, raised cells out by slope, twice (as seen, then against the trend), the rest filled.
+#include "cluxel/perception/ground_tile.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "perception/ground_window.hpp"
+#include "perception/tile_bytes.hpp"
+
+namespace cluxel {
+namespace {
+
+/// Half the width of the square whose mean is the trend of the terrain, in cells (2 x 3 m).
+constexpr int kTrendReach = 6;
+/// Against the trend, ground is less steep and less rough by this factor.
+constexpr double kTrendFactor = 0.4;
+
+HeightWindow windowOf(const Ring<CluxelTile>& ring) {
+  HeightWindow window(3 * kColumnsPerTile);
+  for (int r = 0; r < 9; ++r) {
+    const CluxelTile* tile = ring[static_cast<std::size_t>(r)];
+    if (tile == nullptr) continue;
+    for (int y = 0; y < kColumnsPerTile; ++y)
+      for (int x = 0; x < kColumnsPerTile; ++x) {
+        const Column& column = tile->columns[static_cast<std::size_t>(y * kColumnsPerTile + x)];
+        if (column.count == 0) continue;
+        const std::size_t cell = window.at(r % 3 * kColumnsPerTile + x, r / 3 * kColumnsPerTile + y);
+        window.height[cell] = column.low;
+        window.known[cell] = 1;
+      }
+  }
+  return window;
+}
+
+/// Keeps the cells that also pass when the trend of the terrain is taken away, which tells steps from slopes.
+void dropRaisedAgainstTrend(HeightWindow& window, const GroundParams& params) {
+  const auto trend = smoothed(filled(window), window.side, kTrendReach);
+  HeightWindow level = window;
+  for (std::size_t i = 0; i < level.size(); ++i) level.height[i] -= trend[i];
+  dropRaisedCells(level, kColumnSize_m, params.steepest * kTrendFactor, params.step_m * 0.75);
+  window.known = level.known;
+}
+
+/// Where a place lies between the centres of cells along one axis.
+struct Between {
+  int cell = 0;
+  double share = 0;   ///< of the next cell
+};
+
+Between between(double local_m) {
+  const double cells = local_m / kColumnSize_m - 0.5;
+  const double low = std::floor(cells);
+  return {static_cast<int>(low), cells - low};
+}
+
+}  // namespace
+
+void describe(GroundParams& params, ParameterVisitor& visitor) {
+  visitor.real({"ground.steepest", "1", 0.05, 5.0, "rise over run that natural ground may have"}, params.steepest);
+  visitor.real({"ground.step", "m", 0.02, 2.0, "height above the slope cone that still counts as ground"}, params.step_m);
+}
+
+GroundTile groundOf(const Ring<CluxelTile>& ring, const GroundParams& params) {
+  HeightWindow window = windowOf(ring);
+  dropSunkenCells(window, kColumnSize_m, params.steepest, params.step_m);
+  dropRaisedCells(window, kColumnSize_m, params.steepest, params.step_m);
+  dropRaisedAgainstTrend(window, params);
+  const auto height = filled(window);
+  GroundTile tile{ring[kRingCentre]->key, {}, {}};
+  for (int y = 0; y < kColumnsPerTile; ++y)
+    for (int x = 0; x < kColumnsPerTile; ++x) {
+      const std::size_t cell = window.at(kColumnsPerTile + x, kColumnsPerTile + y);
+      tile.height.push_back(height[cell]);
+      tile.source.push_back(window.known[cell] ? GroundSource::Measured : GroundSource::Filled);
+    }
+  return tile;
+}
+
+double groundHeightAt(const Ring<GroundTile>& ring, double x_local, double y_local) {
+  const auto cellAt = [&](int x, int y) -> double {
+    const int last = kColumnsPerTile - 1;
+    const int column = 1 + (x < 0 ? -1 : x > last ? 1 : 0), row = 1 + (y < 0 ? -1 : y > last ? 1 : 0);
+    const GroundTile* tile = ring[static_cast<std::size_t>(3 * row + column)];
+    if (tile == nullptr) {
+      tile = ring[kRingCentre];
+      x = std::clamp(x, 0, last);
+      y = std::clamp(y, 0, last);
+    }
+    const int u = (x + kColumnsPerTile) % kColumnsPerTile, v = (y + kColumnsPerTile) % kColumnsPerTile;
+    return tile->height[static_cast<std::size_t>(v * kColumnsPerTile + u)];
+  };
+  const double limit_m = 2.0 * kTileSize_m - kColumnSize_m;
+  const Between x = between(std::clamp(x_local, -kTileSize_m + kColumnSize_m, limit_m));
+  const Between y = between(std::clamp(y_local, -kTileSize_m + kColumnSize_m, limit_m));
+  const double low = cellAt(x.cell, y.cell) * (1 - x.share) + cellAt(x.cell + 1, y.cell) * x.share;
+  const double high = cellAt(x.cell, y.cell + 1) * (1 - x.share) + cellAt(x.cell + 1, y.cell + 1) * x.share;
+  return low * (1 - y.share) + high * y.share;
+}
+
+std::string toBytes(const GroundTile& tile) {
+  TileWriter writer("GRND", 1, tile.key);
+  writer.put(tile.height);
+  writer.put(tile.source);
+  return writer.take();
+}
+
+GroundTile groundTileFromBytes(std::string_view bytes) {
+  TileReader reader(bytes, "GRND", 1);
+  constexpr auto kCells = static_cast<std::size_t>(kColumnsPerTile) * kColumnsPerTile;
+  GroundTile tile{reader.key(), reader.getMany<float>(kCells), reader.getMany<GroundSource>(kCells)};
+  reader.require(allWithin(tile.height, 2 * kLargestHeight_m), "has a ground height that is not a number");
+  for (const auto source : tile.source) reader.require(source <= GroundSource::Filled, "has an unknown source of ground");
+  reader.finish();
+  return tile;
+}
+
+}  // namespace cluxel

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// Slope-limited lower envelope (a grey-value distance transform), and filling by a pyramid.
+#include "perception/ground_window.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace cluxel {
+namespace {
+
+/// Cells around that are looked at when a cell seems sunken.
+constexpr int kSunkenReach = 6;
+/// A sunken cell is believed when this many others around it lie as deep.
+constexpr int kSunkenSupport = 4;
+
+struct Surroundings {
+  int level = 0, above = 0;
+};
+
+/// How many known cells around lie on a level with the cell, or above its cone.
+Surroundings surroundingsOf(const HeightWindow& window, int x, int y, int reach, double rise, double step_m) {
+  Surroundings found;
+  const float here = window.height[window.at(x, y)];
+  for (int v = std::max(0, y - reach); v <= std::min(window.side - 1, y + reach); ++v)
+    for (int u = std::max(0, x - reach); u <= std::min(window.side - 1, x + reach); ++u) {
+      if (!window.known[window.at(u, v)] || (u == x && v == y)) continue;
+      const double allowed = step_m + rise * std::sqrt((u - x) * (u - x) + (v - y) * (v - y));
+      const double difference = window.height[window.at(u, v)] - here;
+      if (difference > allowed)
+        ++found.above;
+      else if (difference >= -allowed)
+        ++found.level;
+    }
+  return found;
+}
+
+/// One raster pass of the distance transform: lowers each cell to its four earlier neighbours plus the rise to them.
+void sweep(std::vector<float>& envelope, int side, bool forward, float rise) {
+  const float diagonal = rise * std::sqrt(2.0F);
+  const int step = forward ? 1 : -1;
+  const int first = forward ? 0 : side - 1;
+  const auto at = [&](int x, int y) -> float {
+    if (x < 0 || y < 0 || x >= side || y >= side) return std::numeric_limits<float>::infinity();
+    return envelope[static_cast<std::size_t>(y) * static_cast<std::size_t>(side) + static_cast<std::size_t>(x)];
+  };
+  for (int i = 0, y = first; i < side; ++i, y += step)
+    for (int j = 0, x = first; j < side; ++j, x += step) {
+      const float straight = std::min(at(x - step, y), at(x, y - step)) + rise;
+      const float oblique = std::min(at(x - step, y - step), at(x + step, y - step)) + diagonal;
+      float& here = envelope[static_cast<std::size_t>(y) * static_cast<std::size_t>(side) + static_cast<std::size_t>(x)];
+      here = std::min({here, straight, oblique});
+    }
+}
+
+struct Level {
+  int side = 0;
+  std::vector<double> sum, weight;
+  std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(std::clamp(y, 0, side - 1)) * static_cast<std::size_t>(side) +
+           static_cast<std::size_t>(std::clamp(x, 0, side - 1));
+  }
+};
+
+Level coarser(const Level& fine) {
+  Level level{(fine.side + 1) / 2, {}, {}};
+  const auto size = static_cast<std::size_t>(level.side) * static_cast<std::size_t>(level.side);
+  level.sum.assign(size, 0.0);
+  level.weight.assign(size, 0.0);
+  for (int y = 0; y < fine.side; ++y)
+    for (int x = 0; x < fine.side; ++x) {
+      const std::size_t from = fine.at(x, y), to = level.at(x / 2, y / 2);
+      if (fine.weight[from] <= 0) continue;
+      level.sum[to] += fine.sum[from] / fine.weight[from];
+      level.weight[to] += 1.0;
+    }
+  return level;
+}
+
+/// Gives cells without weight the value of the coarser level at their place.
+void fillFrom(const Level& coarse, Level& fine) {
+  for (int y = 0; y < fine.side; ++y)
+    for (int x = 0; x < fine.side; ++x) {
+      const std::size_t cell = fine.at(x, y);
+      if (fine.weight[cell] > 0) continue;
+      const int u = x / 2, v = y / 2, du = x % 2 == 0 ? -1 : 1, dv = y % 2 == 0 ? -1 : 1;
+      const auto value = [&](int a, int b) { return coarse.sum[coarse.at(a, b)] / coarse.weight[coarse.at(a, b)]; };
+      fine.sum[cell] = 0.5625 * value(u, v) + 0.1875 * (value(u + du, v) + value(u, v + dv)) + 0.0625 * value(u + du, v + dv);
+      fine.weight[cell] = 1.0;
+    }
+}
+
+}  // namespace
+
+void dropSunkenCells(HeightWindow& window, double cell_m, double steepest, double step_m) {
+  const double rise = steepest * cell_m;
+  std::vector<std::size_t> sunken;
+  for (int y = 0; y < window.side; ++y)
+    for (int x = 0; x < window.side; ++x) {
+      if (!window.known[window.at(x, y)] || surroundingsOf(window, x, y, 2, rise, step_m).above == 0) continue;
+      const auto around = surroundingsOf(window, x, y, kSunkenReach, rise, step_m);
+      if (around.level < kSunkenSupport && around.above >= 4 * (around.level + 1)) sunken.push_back(window.at(x, y));
+    }
+  for (const auto cell : sunken) window.known[cell] = 0;
+}
+
+void dropRaisedCells(HeightWindow& window, double cell_m, double steepest, double step_m) {
+  std::vector<float> envelope(window.size());
+  for (std::size_t i = 0; i < envelope.size(); ++i)
+    envelope[i] = window.known[i] ? window.height[i] : std::numeric_limits<float>::infinity();
+  const auto rise = static_cast<float>(steepest * cell_m);
+  sweep(envelope, window.side, true, rise);
+  sweep(envelope, window.side, false, rise);
+  for (std::size_t i = 0; i < envelope.size(); ++i)
+    if (window.known[i] && window.height[i] > envelope[i] + static_cast<float>(step_m)) window.known[i] = 0;
+}
+
+std::vector<float> filled(const HeightWindow& window) {
+  std::vector<Level> levels(1);
+  levels[0].side = window.side;
+  for (std::size_t i = 0; i < window.size(); ++i) {
+    levels[0].sum.push_back(window.known[i] ? window.height[i] : 0.0);
+    levels[0].weight.push_back(window.known[i] ? 1.0 : 0.0);
+  }
+  while (levels.back().side > 1) levels.push_back(coarser(levels.back()));
+  for (std::size_t i = levels.size() - 1; i-- > 0;) fillFrom(levels[i + 1], levels[i]);
+  std::vector<float> height(window.size());
+  for (std::size_t i = 0; i < height.size(); ++i) height[i] = static_cast<float>(levels[0].sum[i] / levels[0].weight[i]);
+  return height;
+}
+
+std::vector<float> smoothed(const std::vector<float>& height, int side, int reach) {
+  const auto pass = [&](const std::vector<float>& in, std::size_t along, std::size_t across) {
+    std::vector<float> out(in.size());
+    for (int line = 0; line < side; ++line) {
+      const std::size_t begin = static_cast<std::size_t>(line) * across;
+      double sum = 0;
+      for (int i = 0; i < std::min(reach, side); ++i) sum += in[begin + static_cast<std::size_t>(i) * along];
+      for (int i = 0; i < side; ++i) {
+        if (i + reach < side) sum += in[begin + static_cast<std::size_t>(i + reach) * along];
+        if (i - reach - 1 >= 0) sum -= in[begin + static_cast<std::size_t>(i - reach - 1) * along];
+        const int count = std::min(side - 1, i + reach) - std::max(0, i - reach) + 1;
+        out[begin + static_cast<std::size_t>(i) * along] = static_cast<float>(sum / count);
+      }
+    }
+    return out;
+  };
+  const auto width = static_cast<std::size_t>(side);
+  return pass(pass(height, 1, width), width, 1);
+}
+
+}  // namespace cluxel

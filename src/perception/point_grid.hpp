@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Points of a tile and of a margin around it, sorted by cubic cell, and the walk over each cell's neighbourhood.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "cluxel/perception/tile_points.hpp"
+
+namespace cluxel {
+
+/// Points with their cells, in the order (cell x, y, z; then tile of the ring; then number in the tile).
+struct PointGrid {
+  static constexpr std::uint32_t kForeign = 0xffffffffU;
+  std::vector<float> x, y, z;                ///< relative to the centre tile's corner
+  std::vector<std::uint32_t> own;            ///< number in the centre tile, or kForeign
+  std::vector<std::uint64_t> cell_key;       ///< per occupied cell, ascending
+  std::vector<std::uint32_t> cell_start;     ///< first point per occupied cell, and the end
+
+  std::size_t cells() const { return cell_key.size(); }
+};
+
+/// Cells of `cell_m`; of neighbouring tiles the points nearer than `margin_m` to the centre tile.
+PointGrid gridOf(const Ring<TilePoints>& ring, double cell_m, double margin_m);
+
+/// The key of the cell that holds a local point: neighbours in z differ by 1, in y by kCellStrideY, in x by kCellStrideX.
+inline constexpr std::uint64_t kCellStrideY = std::uint64_t{1} << 24U;
+inline constexpr std::uint64_t kCellStrideX = std::uint64_t{1} << 36U;
+class CellKeys {
+ public:
+  /// `margin_m` must be as large as coordinates may lie outside of the tile.
+  CellKeys(double cell_m, double margin_m);
+  std::uint64_t operator()(float x, float y, float z) const {
+    return cell(x, offset_) * kCellStrideX + cell(y, offset_) * kCellStrideY + cell(z, kHeightOffset_m);
+  }
+
+ private:
+  static constexpr double kHeightOffset_m = kLargestHeight_m + 4.0;
+  std::uint64_t cell(double value_m, double offset_m) const {
+    return static_cast<std::uint64_t>((value_m + offset_m) * per_m_);
+  }
+  double per_m_, offset_;
+};
+
+/// Walks cells in ascending order and keeps, for each of the 9 columns of cells around, where its 3 cells lie: columns
+/// in the order (-1,-1), (-1,0), (-1,1), (0,-1), (0,0), ... of (x, y).
+class NeighbourWalk {
+ public:
+  explicit NeighbourWalk(const std::vector<std::uint64_t>& cell_key) : cell_key_(cell_key) {}
+
+  /// Moves to the cell with key `key`, not before the last one. Occupied cells of column k: [first(k), last(k)).
+  void moveTo(std::uint64_t key) {
+    for (std::size_t k = 0; k < 9; ++k) {
+      const std::uint64_t column = key + (k / 3) * kCellStrideX + (k % 3) * kCellStrideY - kCellStrideX - kCellStrideY;
+      while (first_[k] < cell_key_.size() && cell_key_[first_[k]] + 1 < column) ++first_[k];
+      last_[k] = first_[k];
+      while (last_[k] < cell_key_.size() && cell_key_[last_[k]] <= column + 1) ++last_[k];
+    }
+  }
+  std::size_t first(std::size_t k) const { return first_[k]; }
+  std::size_t last(std::size_t k) const { return last_[k]; }
+
+ private:
+  const std::vector<std::uint64_t>& cell_key_;
+  std::array<std::size_t, 9> first_{}, last_{};
+};
+
+}  // namespace cluxel
