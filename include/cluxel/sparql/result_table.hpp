@@ -11,19 +11,11 @@
 #include <string_view>
 #include <vector>
 
+#include "cluxel/knowledge/quad_store.hpp"
 #include "cluxel/knowledge/term.hpp"
 #include "cluxel/sparql/ast.hpp"
 
 namespace cluxel {
-
-/// A term whose text lies elsewhere (in the dictionary's mapped file, or with the evaluator).
-struct TermView {
-  TermKind kind = TermKind::Iri;
-  std::string_view text, datatype, language;   ///< as in Term
-
-  Term toTerm() const { return {kind, std::string(text), std::string(datatype), std::string(language)}; }
-  static TermView of(const Term& term) { return {term.kind, term.text, term.datatype, term.language}; }
-};
 
 /// The number of a term within one answer: the same id is the same term. 0 is unbound. Store ids and the ids of
 /// computed terms share this number space as the evaluator chooses.
