@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// The labelling stage: features of a tile and its ring to labels and probabilities of the tile's cluxels.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cluxel/perception/crf_inference.hpp"
+#include "cluxel/perception/feature_tile.hpp"
+#include "cluxel/perception/label_model.hpp"
+#include "cluxel/perception/stage_params.hpp"
+
+namespace cluxel {
+
+struct LabellingParams {
+  int sweeps = 4;              ///< of message passing, each forth and back
+  double halo_m = 2.0;         ///< the ring's cluxels take part up to this distance from the tile
+};
+void describe(LabellingParams& params, ParameterVisitor& visitor);
+
+/// Labels the cluxels of the ring's centre tile. A pure function of the arguments. The centre must be there; the tiles
+/// must have been made with `model.perception`. Cost: about 2 us a cluxel and 0.1 us an edge, halo included.
+LabelTile labelTile(const Ring<FeatureTile>& ring, const LabelModel& model, const LabellingParams& params);
+
+std::string toBytes(const LabelTile& tile);
+/// Throws Error (StoreUnavailable) when the bytes are not such a tile.
+LabelTile labelTileFromBytes(std::string_view bytes);
+
+/// Probability and label from the marginals of one cluxel.
+struct CalibratedLabel {
+  std::uint8_t label = 0;
+  LabelValues probability{};
+};
+CalibratedLabel calibrate(const Calibration& calibration, const LabelValues& marginals);
+
+}  // namespace cluxel

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cuts the halo out of a ring and numbers what is left.
+#include "perception/ring_graph.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace cluxel {
+
+namespace {
+
+constexpr std::uint32_t kOutside = std::numeric_limits<std::uint32_t>::max();
+using NodeNumbers = std::array<std::vector<std::uint32_t>, 9>;
+
+bool inHalo(const Eigen::Vector3f& p_local, double halo_m) {
+  const auto low = static_cast<float>(-halo_m), high = static_cast<float>(kTileSize_m + halo_m);
+  return p_local.x() >= low && p_local.x() < high && p_local.y() >= low && p_local.y() < high;
+}
+
+NodeNumbers numberNodes(const Ring<FeatureTile>& ring, double halo_m, RingGraph& graph) {
+  NodeNumbers number;
+  for (std::uint32_t r = 0; r < ring.size(); ++r) {
+    if (r == kRingCentre) graph.own_begin = static_cast<std::uint32_t>(graph.nodes.size());
+    if (!ring[r]) continue;
+    number[r].assign(ring[r]->size(), kOutside);
+    for (std::uint32_t i = 0; i < ring[r]->size(); ++i) {
+      if (r != kRingCentre && !inHalo(ring[r]->center[i] + ringShift(static_cast<int>(r)), halo_m)) continue;
+      number[r][i] = static_cast<std::uint32_t>(graph.nodes.size());
+      graph.nodes.push_back({r, i});
+    }
+    if (r == kRingCentre) graph.own_end = static_cast<std::uint32_t>(graph.nodes.size());
+  }
+  return number;
+}
+
+/// The ring position, seen from the centre, of ring position `of_neighbour` of ring tile `r`.
+std::optional<std::uint32_t> composed(std::uint32_t r, std::uint32_t of_neighbour) {
+  const int x = static_cast<int>(r % 3 + of_neighbour % 3) - 1, y = static_cast<int>(r / 3 + of_neighbour / 3) - 1;
+  if (x < 0 || x > 2 || y < 0 || y > 2) return std::nullopt;
+  return static_cast<std::uint32_t>(3 * y + x);
+}
+
+std::uint32_t degreeOf(const FeatureTile& tile, std::uint32_t index) {
+  return tile.edge_offset[index + 1] - tile.edge_offset[index];
+}
+
+}  // namespace
+
+RingGraph ringGraph(const Ring<FeatureTile>& ring, double halo_m) {
+  RingGraph graph;
+  const NodeNumbers number = numberNodes(ring, halo_m, graph);
+  for (std::uint32_t i = 0; i < graph.nodes.size(); ++i) {
+    const auto [r, index] = graph.nodes[i];
+    const FeatureTile& tile = *ring[r];
+    for (std::uint32_t e = tile.edge_offset[index]; e < tile.edge_offset[index + 1]; ++e) {
+      const RingIndex target = tile.edge_target[e];
+      const auto at = composed(r, target.ring);
+      if (!at || target.index >= number[*at].size()) continue;
+      const std::uint32_t j = number[*at][target.index];
+      if (j == kOutside || j <= i) continue;
+      const std::uint32_t degrees = degreeOf(tile, index) + degreeOf(*ring[*at], target.index);
+      graph.edges.push_back({{i, j}, r, e, 2.0F / static_cast<float>(std::max(degrees, 2U))});
+    }
+  }
+  std::sort(graph.edges.begin(), graph.edges.end(),
+            [](const RingEdge& a, const RingEdge& b) { return a.ends < b.ends; });
+  return graph;
+}
+
+std::vector<float> nodeFeatures(const Ring<FeatureTile>& ring, const RingGraph& graph, std::size_t columns) {
+  std::vector<float> features;
+  features.reserve(graph.nodes.size() * columns);
+  for (const auto& [r, index] : graph.nodes) {
+    const auto row = ring[r]->features.begin() + static_cast<std::ptrdiff_t>(index * columns);
+    features.insert(features.end(), row, row + static_cast<std::ptrdiff_t>(columns));
+  }
+  return features;
+}
+
+CrfGraph crfGraph(const Ring<FeatureTile>& ring, const RingGraph& structure, const std::vector<LabelValues>& scores,
+                  const PairModel& pairs) {
+  CrfGraph graph;
+  for (const LabelValues& score : scores) {
+    LabelCosts costs = softmax(score);
+    for (float& cost : costs) cost = -pairs.unary_scale * std::log(std::max(cost, 1e-6F));
+    graph.unary.push_back(costs);
+  }
+  if (pairs.pair_scale == 0) return graph;
+  const std::size_t columns = pairs.knots.size();
+  for (const RingEdge& edge : structure.edges) {
+    const float* features = ring[edge.ring]->edge_features.data() + edge.number * columns;
+    graph.edges.push_back(edge.ends);
+    graph.pair_costs.push_back(pairCostsOf(pairs, {features, columns}, edge.share));
+  }
+  return graph;
+}
+
+}  // namespace cluxel

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// Training: unaries that leave a group out, the pairwise term and the calibration on what they say, then the final unary.
+#include "cluxel/perception/training.hpp"
+
+#include <algorithm>
+
+#include "cluxel/base/diagnostic.hpp"
+#include "perception/training_folds.hpp"
+
+namespace cluxel {
+
+namespace {
+
+/// Everything of a report but the final unary, from groups left out.
+class PairSearch {
+ public:
+  PairSearch(const std::vector<ScoredTile>& tiles, const FeatureLayout& layout, const TrainParams& params, unsigned threads)
+      : x_tiles(tiles), x_layout(layout), x_params(params), x_threads(threads) {}
+
+  void run(TrainingReport& report, ProgressSink& sink) {
+    tryPairs(noPairs(), report);
+    report.left_out_unary = report.left_out;
+    if (!x_params.pairwise) return;
+    const PairSamples samples = pairSamples(x_tiles, x_layout.edge_columns.size(), x_params);
+    PairShape shape = shapeOf(samples);
+    for (const float degree_power : x_params.overlap_correction ? std::vector{0.0F, 0.5F, 1.0F} : std::vector{0.0F}) {
+      shape.degree_power = degree_power;
+      PairModel pairs = fitPairs(samples, shape);
+      for (const float scale : {0.125F, 0.25F, 0.5F, 1.0F}) {
+        pairs.pair_scale = scale;
+        tryPairs(pairs, report);
+      }
+      sink.note("pairwise term, degree power " + std::to_string(degree_power) + ": best macro F1 so far " +
+                std::to_string(x_best));
+    }
+  }
+
+ private:
+  PairModel noPairs() const {
+    PairModel pairs;
+    pairs.knots.assign(x_layout.edge_columns.size(), HatKnots{-1, 0, 1});
+    pairs.weights.assign(1 + kHats * pairs.knots.size(), PairCosts{});
+    return pairs;
+  }
+
+  PairShape shapeOf(const PairSamples& samples) const {
+    PairShape shape;
+    shape.l2 = x_params.pair_l2;
+    for (std::size_t c = 0; c < samples.columns; ++c) {
+      std::vector<float> values;
+      for (std::size_t e = c; e < samples.features.size(); e += samples.columns) values.push_back(samples.features[e]);
+      shape.knots.push_back(knotsOf(std::move(values)));
+      const bool overlap = x_layout.edge_columns[c].starts_with("overlap");
+      shape.columns_used.push_back(x_params.overlap_correction || !overlap);
+    }
+    return shape;
+  }
+
+  void tryPairs(const PairModel& pairs, TrainingReport& report) {
+    const CalibrationRows rows = inferTiles(x_tiles, pairs, x_params.labelling, x_threads);
+    const Calibration calibration = fitCalibration(rows);
+    const LabelScores scores = scoresOf(rows, calibration);
+    if (scores.macroF1() <= x_best) return;
+    x_best = scores.macroF1();
+    report.model.pairs = pairs;
+    report.model.calibration = calibration;
+    report.left_out = scores;
+    report.calibration_error = calibrationErrorOf(rows, calibration);
+    report.calibration_error_before = calibrationErrorOf(rows, Calibration{});
+  }
+
+  const std::vector<ScoredTile>& x_tiles;
+  const FeatureLayout& x_layout;
+  const TrainParams& x_params;
+  unsigned x_threads;
+  double x_best = -1;
+};
+
+/// Tiles of every group, scored by a unary that was trained on the other groups.
+std::vector<ScoredTile> leaveOut(const PlaceRefs& places, const FeatureLayout& layout, const TrainParams& params,
+                                 unsigned threads, ProgressSink& sink) {
+  const std::set<int> groups = groupsOf(places);
+  if (groups.size() < 2)
+    throw InputError(SourceLocation{}, "training needs scans of two places at least, to measure on what it has not seen",
+                     "give more scans, or put them into groups that lie apart");
+  std::vector<ScoredTile> tiles;
+  std::size_t done = 0;
+  for (const int group : groups) {
+    sink.progress("unary terms that leave a group out", done++, groups.size());
+    const TreeEnsemble unary = trainUnary(placesWithout(places, group), layout, params, threads);
+    for (ScoredTile& tile : scoreTiles(scoredPlaces(places, group), unary, params.labelling, threads))
+      tiles.push_back(std::move(tile));
+  }
+  return tiles;
+}
+
+TrainingReport trainOn(const PlaceRefs& places, const PerceptionParams& perception, const TrainParams& params,
+                       unsigned threads, ProgressSink& sink) {
+  TrainingReport report;
+  report.model.perception = perception;
+  report.model.layout = featureLayout(perception.features);
+  const std::vector<ScoredTile> tiles = leaveOut(places, report.model.layout, params, threads, sink);
+  PairSearch(tiles, report.model.layout, params, threads).run(report, sink);
+  if (report.left_out.points() == 0)
+    throw InputError(SourceLocation{}, "the training scans have no point of known truth", "check the label map");
+  report.model.unary = trainUnary(places, report.model.layout, params, threads);
+  return report;
+}
+
+PlaceRefs refsOf(std::span<const TrainingPlace> places) {
+  PlaceRefs refs;
+  for (const TrainingPlace& place : places) refs.push_back(&place);
+  return refs;
+}
+
+Evaluation evaluateOn(const LabelModel& model, const PlaceRefs& places, const LabellingParams& params, unsigned threads) {
+  const std::vector<ScoredTile> tiles = scoreTiles(places, model.unary, params, threads);
+  const CalibrationRows rows = inferTiles(tiles, model.pairs, params, threads);
+  return {scoresOf(rows, model.calibration), calibrationErrorOf(rows, model.calibration)};
+}
+
+}  // namespace
+
+TrainingReport train(const std::string& name, std::span<const TrainingPlace> places, const PerceptionParams& perception,
+                     const TrainParams& params, unsigned threads, ProgressSink& sink) {
+  TrainingReport report = trainOn(refsOf(places), perception, params, threads, sink);
+  report.model.name = name;
+  return report;
+}
+
+Evaluation evaluate(const LabelModel& model, std::span<const TrainingPlace> places, const LabellingParams& params,
+                    unsigned threads) {
+  PlaceRefs refs = refsOf(places);
+  std::erase_if(refs, [](const TrainingPlace* place) { return place->only_for_training; });
+  return evaluateOn(model, refs, params, threads);
+}
+
+std::vector<FoldReport> crossValidate(std::span<const TrainingPlace> places, const PerceptionParams& perception,
+                                      const TrainParams& params, unsigned threads, ProgressSink& sink) {
+  const PlaceRefs refs = refsOf(places);
+  std::vector<FoldReport> folds;
+  for (const int group : groupsOf(refs)) {
+    const TrainingReport report = trainOn(placesWithout(refs, group), perception, params, threads, sink);
+    folds.push_back({group, evaluateOn(report.model, scoredPlaces(refs, group), params.labelling, threads)});
+    sink.progress("folds", folds.size(), groupsOf(refs).size());
+  }
+  return folds;
+}
+
+}  // namespace cluxel

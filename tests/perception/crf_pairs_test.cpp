@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pairwise term: its gradient by finite differences, and what pseudo-likelihood recovers.
+#include "cluxel/perception/crf_pairs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "perception/pair_training.hpp"
+
+namespace cluxel {
+namespace {
+
+/// Nodes on a chain; the one edge feature tells how likely both ends have one label.
+PairSamples chainSamples(std::uint32_t seed, std::uint32_t nodes) {
+  std::mt19937 random(seed);
+  const auto uniform = [&] { return static_cast<float>(random() % 10000U) / 10000.0F; };
+  PairSamples samples;
+  samples.columns = 2;
+  std::vector<std::uint8_t> label{0};
+  for (std::uint32_t i = 0; i + 1 < nodes; ++i) {
+    const float likeness = uniform();
+    samples.features.insert(samples.features.end(), {likeness, uniform()});
+    label.push_back(uniform() < likeness ? label.back() : static_cast<std::uint8_t>(random() % kPrimitiveLabelCount));
+  }
+  for (std::uint32_t i = 0; i < nodes; ++i) {
+    if (i > 0) samples.terms.push_back({i - 1, 0.5F, label[i - 1]});
+    if (i + 1 < nodes) samples.terms.push_back({i, 0.5F, label[i + 1]});
+    samples.offset.push_back(static_cast<std::uint32_t>(samples.terms.size()));
+    LabelCosts costs;
+    for (std::size_t k = 0; k < costs.size(); ++k) costs[k] = 2.0F * uniform() + (k == label[i] ? 0.0F : 0.5F);
+    samples.costs.push_back(costs);
+    samples.truth.push_back(label[i]);
+    samples.weight.push_back(0.5F + uniform());
+  }
+  return samples;
+}
+
+PairShape shapeOf() { return {.knots = {{0.0F, 0.5F, 1.0F}, {0.0F, 0.4F, 1.0F}}, .columns_used = {}, .degree_power = 0.5F}; }
+
+TEST(PairTraining, HasTheGradientThatFiniteDifferencesShow) {
+  const PairSamples samples = chainSamples(1, 60);
+  const PairShape shape = shapeOf();
+  const PseudoLikelihood objective(samples, shape);
+  std::mt19937 random(2);
+  std::vector<double> x(objective.parameters()), gradient(x.size()), unused(x.size());
+  for (double& value : x) value = static_cast<double>(random() % 2000U) / 1000.0 - 1.0;
+  objective(x, gradient);
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    constexpr double step = 1e-5;
+    std::vector<double> above = x, below = x;
+    above[k] += step;
+    below[k] -= step;
+    EXPECT_NEAR(gradient[k], (objective(above, unused) - objective(below, unused)) / (2 * step), 1e-8) << "parameter " << k;
+  }
+}
+
+TEST(PairTraining, IsConvexAlongRandomLines) {
+  const PairSamples samples = chainSamples(3, 50);
+  const PairShape shape = shapeOf();
+  const PseudoLikelihood objective(samples, shape);
+  std::mt19937 random(4);
+  std::vector<double> gradient(objective.parameters());
+  for (int trial = 0; trial < 20; ++trial) {
+    std::vector<double> a(gradient.size()), b(a.size()), middle(a.size());
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      a[k] = static_cast<double>(random() % 4000U) / 1000.0 - 2.0;
+      b[k] = static_cast<double>(random() % 4000U) / 1000.0 - 2.0;
+      middle[k] = 0.5 * (a[k] + b[k]);
+    }
+    EXPECT_LE(objective(middle, gradient), 0.5 * (objective(a, gradient) + objective(b, gradient)) + 1e-12);
+  }
+}
+
+TEST(PairTraining, LearnsThatLikeEndsDifferRarely) {
+  const PairModel model = fitPairs(chainSamples(5, 4000), shapeOf());
+  double alike = 0, unlike = 0;
+  for (std::size_t pair = 0; pair < kLabelPairCount; ++pair) {
+    alike += static_cast<double>(pairCostsOf(model, std::vector{0.95F, 0.5F}, 0.5F)[pair]);
+    unlike += static_cast<double>(pairCostsOf(model, std::vector{0.05F, 0.5F}, 0.5F)[pair]);
+  }
+  EXPECT_GT(alike, 3 * unlike);
+  EXPECT_GT(model.unary_scale, 0.2F);
+}
+
+TEST(PairTraining, GivesTheSameBitsTwice) {
+  const PairModel first = fitPairs(chainSamples(6, 500), shapeOf()), second = fitPairs(chainSamples(6, 500), shapeOf());
+  EXPECT_EQ(first.weights, second.weights);
+  EXPECT_EQ(first.unary_scale, second.unary_scale);
+}
+
+TEST(PairTraining, LeavesAColumnThatIsSwitchedOffWithoutWeight) {
+  PairShape shape = shapeOf();
+  shape.columns_used = {true, false};
+  const PairModel model = fitPairs(chainSamples(7, 500), shape);
+  for (std::size_t hat = 0; hat < kHats; ++hat) EXPECT_EQ(model.weights[1 + kHats + hat], PairCosts{});
+}
+
+TEST(CrfPairs, HatsSumToOneEverywhere) {
+  const HatKnots knots{-1, 0.25F, 2};
+  for (float value = -3; value < 4; value += 0.125F) {
+    const auto hats = hatsAt(knots, value);
+    EXPECT_NEAR(hats[0] + hats[1] + hats[2], 1.0F, 1e-6F);
+    for (const float hat : hats) EXPECT_GE(hat, 0.0F);
+  }
+  EXPECT_EQ(hatsAt(knots, std::numeric_limits<float>::quiet_NaN())[1], 1.0F);
+}
+
+TEST(CrfPairs, PullsKnotsOfConstantValuesApart) {
+  const HatKnots knots = knotsOf(std::vector<float>(10, 3.0F));
+  EXPECT_LT(knots[0], knots[1]);
+  EXPECT_LT(knots[1], knots[2]);
+}
+
+TEST(CrfPairs, NeverPaysForADifference) {
+  PairModel model{.pair_scale = 1, .knots = {}, .weights = {PairCosts{}}};
+  model.weights[0].fill(-2.0F);
+  EXPECT_EQ(pairCostsOf(model, {}, 1.0F), PairCosts{});
+}
+
+TEST(CrfPairs, CountsEdgesOfCrowdedNodesLess) {
+  PairModel model{.pair_scale = 2, .degree_power = 1, .knots = {}, .weights = {PairCosts{}}};
+  model.weights[0].fill(3.0F);
+  EXPECT_FLOAT_EQ(pairCostsOf(model, {}, 0.25F)[0], 1.5F);
+}
+
+}  // namespace
+}  // namespace cluxel
