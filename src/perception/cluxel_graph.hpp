@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// The cluxels that the features of one tile look at, and the graph of those whose volumes intersect.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cluxel/perception/cluxel_tile.hpp"
+
+namespace cluxel {
+
+/// A cluxel's bounding volume relative to the centre tile's corner [m].
+struct Volume {
+  Eigen::Vector3f low, high;
+};
+
+inline bool intersects(const Volume& a, const Volume& b) {
+  return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
+}
+
+/// Own cluxels, those whose volume may intersect an own one's ("near"), and those that may intersect a near one's; in
+/// the order of ring and number. Places are relative to the centre tile's corner.
+struct RingCluxels {
+  std::vector<RingIndex> name;
+  std::vector<Eigen::Vector3f> center;
+  std::vector<Volume> volume;
+  std::vector<std::uint8_t> near;        ///< own ones and near ones: their edges are complete
+  std::uint32_t own_begin = 0, own_end = 0;
+
+  std::size_t size() const { return name.size(); }
+};
+RingCluxels gatherCluxels(const Ring<CluxelTile>& ring);
+
+inline const CluxelTile& tileOfCluxel(const Ring<CluxelTile>& ring, RingIndex name) { return *ring[name.ring]; }
+
+/// Edges of own and near cluxels, in CSR form with ascending targets; the others have none.
+struct RingGraph {
+  std::vector<std::uint32_t> offset, target;
+  std::span<const std::uint32_t> neighbours(std::uint32_t cluxel) const {
+    return {target.data() + offset[cluxel], target.data() + offset[cluxel + 1]};
+  }
+};
+RingGraph intersectionGraph(const RingCluxels& cluxels);
+
+}  // namespace cluxel

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// The feature stage: gather, graph, then one group after the other.
+#include "cluxel/perception/feature_tile.hpp"
+
+#include "perception/feature_groups.hpp"
+#include "perception/tile_bytes.hpp"
+
+namespace cluxel {
+namespace {
+
+void append(std::vector<std::string>& names, const std::vector<std::string>& more) {
+  names.insert(names.end(), more.begin(), more.end());
+}
+
+/// Counts in features are seen in bits, and an intensity may be of any scale; forms of stored features change this number.
+constexpr std::uint32_t kFeatureVersion = 1;
+
+}  // namespace
+
+void describe(FeatureParams& params, ParameterVisitor& visitor) {
+  visitor.flag({"features.hor", "1", 0, 1, "histogram of oriented residuals of the 2-ring"}, params.hor);
+  visitor.flag({"features.shape", "1", 0, 1, "eigenvalue shape of ball, 1-ring and 2-ring"}, params.shape);
+  visitor.flag({"features.wide_shape", "1", 0, 1, "eigenvalue shape of wide cubes"}, params.wide_shape);
+  visitor.flag({"features.height", "1", 0, 1, "height above ground and profile of the map column"}, params.height);
+  visitor.flag({"features.extent", "1", 0, 1, "sizes of the supports"}, params.extent);
+  visitor.flag({"features.density", "1", 0, 1, "spacing of points and numbers of neighbours"}, params.density);
+  visitor.flag({"features.intensity", "1", 0, 1, "mean and spread of the intensity"}, params.intensity);
+}
+
+ContentHash FeatureLayout::hash() const {
+  ContentHasher hasher;
+  hasher.add(kFeatureVersion);
+  for (const auto* names : {&columns, &edge_columns}) {
+    hasher.add(static_cast<std::uint64_t>(names->size()));
+    for (const auto& name : *names) hasher.addText(name);
+  }
+  return hasher.finish();
+}
+
+FeatureLayout featureLayout(const FeatureParams& params) {
+  FeatureLayout layout{supportColumns(params), edgeColumns()};
+  if (params.wide_shape) append(layout.columns, wideColumns());
+  if (params.height) append(layout.columns, heightColumns());
+  if (params.intensity) append(layout.columns, intensityColumns());
+  return layout;
+}
+
+FeatureTile computeFeatures(const Ring<CluxelTile>& cluxels, const Ring<GroundTile>& ground, const FeatureParams& params) {
+  const CluxelTile& own = *cluxels[kRingCentre];
+  const RingCluxels gathered = gatherCluxels(cluxels);
+  const RingGraph graph = intersectionGraph(gathered);
+  const FeatureInput input{cluxels, ground, gathered, graph};
+  FeatureTile tile;
+  tile.key = own.key;
+  for (const auto& moments : own.own) {
+    tile.center.push_back(moments.mean);
+    tile.point_count.push_back(static_cast<std::uint32_t>(moments.count));
+  }
+  FeatureRows rows(own.size(), featureLayout(params).columns.size());
+  std::size_t column = 0;
+  fillSupportFeatures(input, params, column, rows);
+  column += supportColumns(params).size();
+  if (params.wide_shape) fillWideFeatures(input, column, rows);
+  column += params.wide_shape ? wideColumns().size() : 0;
+  if (params.height) fillHeightFeatures(input, column, rows);
+  column += params.height ? heightColumns().size() : 0;
+  if (params.intensity) fillIntensityFeatures(input, column, rows);
+  tile.features = rows.take();
+  fillEdges(input, tile);
+  return tile;
+}
+
+std::vector<std::string> intensityColumns() { return {"intensity.mean", "intensity.deviation", "intensity.known"}; }
+
+void fillIntensityFeatures(const FeatureInput& input, std::size_t column, FeatureRows& rows) {
+  const CluxelTile& own = input.own();
+  if (own.intensity_mean.empty()) return;
+  for (std::size_t c = 0; c < own.size(); ++c) {
+    auto out = rows.row(c, column, 3);
+    out[0] = own.intensity_mean[c];
+    out[1] = own.intensity_deviation[c];
+    out[2] = 1.0F;
+  }
+}
+
+std::string toBytes(const FeatureTile& tile) {
+  TileWriter writer("FEAT", 1, tile.key);
+  writer.put(tile.center);
+  writer.put(tile.point_count);
+  writer.put(tile.features);
+  writer.put(tile.edge_offset);
+  writer.put(tile.edge_target);
+  writer.put(tile.edge_features);
+  return writer.take();
+}
+
+FeatureTile featureTileFromBytes(std::string_view bytes) {
+  TileReader reader(bytes, "FEAT", 1);
+  FeatureTile tile;
+  tile.key = reader.key();
+  tile.center = reader.getMany<Eigen::Vector3f>();
+  const std::size_t size = tile.size();
+  tile.point_count = reader.getMany<std::uint32_t>(size);
+  tile.features = reader.getMany<float>();
+  tile.edge_offset = reader.getMany<std::uint32_t>(size + 1);
+  tile.edge_target = reader.getMany<RingIndex>();
+  tile.edge_features = reader.getMany<float>();
+  const std::size_t edges = tile.edge_target.size();
+  reader.require(isOffsets(tile.edge_offset, edges), "has edges that do not belong to a cluxel");
+  reader.require(size == 0 ? tile.features.empty() : tile.features.size() % size == 0, "has rows of different lengths");
+  reader.require(edges == 0 ? tile.edge_features.empty() : tile.edge_features.size() % edges == 0, "has edge rows of different lengths");
+  for (const auto& target : tile.edge_target)
+    reader.require(target.ring < 9 && (target.ring != kRingCentre || target.index < size), "has an edge that leads nowhere");
+  reader.require(allWithin(tile.center, kLargestHeight_m), "has a centre that is not a number");
+  reader.finish();
+  return tile;
+}
+
+}  // namespace cluxel

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Our reading of the histogram of oriented residuals (HOR, paper section 3.1): directions from a cluxel to its support.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "perception/eigen_shape.hpp"
+
+namespace cluxel {
+
+/// The 2-ring support of a cluxel: residuals to its centre, and their moments. Every member weighs the same, however many
+/// points it has: so the support measures the surface and not the scanner's density.
+struct Support {
+  std::vector<Eigen::Vector3f> residual;   ///< members' centres minus the cluxel's [m]; without the cluxel itself
+  MomentSum sum;                           ///< with the cluxel itself, relative to its centre
+  float height_low = 0, height_high = 0;   ///< vertical extent of the members' boxes, relative to the centre [m]
+};
+
+inline constexpr std::size_t kElevationNodes = 6;     ///< sin(elevation) -1, -0.6, ... 1; the poles have no azimuth
+inline constexpr std::size_t kAzimuthNodes = 3;       ///< 0, 45 and 90 degrees from the support's main direction
+inline constexpr std::size_t kHorBins = (kElevationNodes - 2) * kAzimuthNodes + 2;
+inline constexpr std::size_t kHorScalars = 6;
+inline constexpr std::size_t kHorColumns = kHorBins + kHorScalars;
+
+std::vector<std::string> horColumns();
+
+/// Memory reused from cluxel to cluxel.
+struct HorScratch {
+  std::vector<float> length, sorted;
+};
+
+/// Fills kHorColumns numbers; all are zero for a support without extent. `shape` is that of the support.
+void fillHor(const Support& support, const EigenShape& shape, HorScratch& scratch, std::span<float> out);
+
+}  // namespace cluxel

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Walks each cluxel's 1-ring and 2-ring once, and fills the groups that read these supports.
+#include <algorithm>
+#include <cmath>
+
+#include "perception/feature_groups.hpp"
+#include "perception/oriented_residuals.hpp"
+
+namespace cluxel {
+namespace {
+
+const std::vector<std::string> kShapeNames{"linearity", "planarity", "scattering", "normal_up", "axis_up"};
+
+void putShape(const EigenShape& shape, std::span<float> out) {
+  out[0] = static_cast<float>(shape.linearity());
+  out[1] = static_cast<float>(shape.planarity());
+  out[2] = static_cast<float>(shape.scattering());
+  out[3] = static_cast<float>(std::abs(shape.normal.z()));
+  out[4] = static_cast<float>(std::abs(shape.axis.z()));
+}
+
+/// Everything about one cluxel's surroundings in the graph.
+struct Surroundings {
+  MomentSum ring1;
+  Support ring2;
+  std::size_t neighbours = 0;
+};
+
+/// Visits supports without listing a member twice: each cluxel carries the mark of the last support it entered.
+class SupportWalk {
+ public:
+  explicit SupportWalk(const FeatureInput& input) : input_(input), mark_(input.cluxels.size(), 0xffffffffU) {}
+
+  const Surroundings& around(std::uint32_t center) {
+    auto& found = found_;
+    found.ring1 = {};
+    found.ring2.sum = {};
+    found.ring2.residual.clear();
+    found.ring2.height_low = found.ring2.height_high = 0;
+    const auto neighbours = input_.graph.neighbours(center);
+    found.neighbours = neighbours.size();
+    enter(center, center);
+    for (const auto first : neighbours) enter(first, center);
+    found.ring1 = found.ring2.sum;
+    for (const auto first : neighbours)
+      for (const auto second : input_.graph.neighbours(first))
+        if (mark_[second] != center) enter(second, center);
+    return found;
+  }
+
+ private:
+  void enter(std::uint32_t member, std::uint32_t center) {
+    mark_[member] = center;
+    const RingIndex name = input_.cluxels.name[member];
+    const CluxelTile& tile = tileOfCluxel(input_.ring, name);
+    const Moments& own = tile.own[name.index];
+    const Eigen::Vector3f d = input_.cluxels.center[member] - input_.cluxels.center[center];
+    auto& support = found_.ring2;
+    support.sum.addSet(1.0, d, own.scatter, 1.0 / own.count);
+    if (member != center) support.residual.push_back(d);
+    const float z = input_.cluxels.center[center].z();
+    support.height_low = std::min(support.height_low, tile.box_min[name.index].z() - z);
+    support.height_high = std::max(support.height_high, tile.box_max[name.index].z() - z);
+  }
+
+  const FeatureInput& input_;
+  std::vector<std::uint32_t> mark_;
+  Surroundings found_;
+};
+
+/// Writes one group after the other into a row.
+class RowWriter {
+ public:
+  explicit RowWriter(std::span<float> row) : rest_(row) {}
+  std::span<float> take(std::size_t count) {
+    const auto part = rest_.subspan(0, count);
+    rest_ = rest_.subspan(count);
+    return part;
+  }
+  void put(double value) { take(1)[0] = static_cast<float>(value); }
+
+ private:
+  std::span<float> rest_;
+};
+
+/// Largest extents of a support along and across its main horizontal direction follow from its eigenvalues.
+void putExtents(const CluxelTile& own, std::uint32_t c, const EigenShape& ball, const EigenShape& ring1,
+                const EigenShape& ring2, const Support& support, RowWriter& row) {
+  const Eigen::Vector3f box = own.box_max[c] - own.box_min[c];
+  row.put(std::hypot(box.x(), box.y()));
+  row.put(box.z());
+  row.put(ball.length(2));
+  row.put(ring1.length(2));
+  for (std::size_t i = 0; i < 3; ++i) row.put(ring2.length(i));
+  row.put(-support.height_low);
+  row.put(support.height_high);
+}
+
+void putDensities(const CluxelTile& own, std::uint32_t c, const Surroundings& around, RowWriter& row) {
+  row.put(own.reach[c]);
+  row.put(own.reach[c] / std::sqrt(own.ball[c].count));
+  row.put(std::log2(own.ball[c].count));
+  row.put(static_cast<double>(around.neighbours));
+  row.put(static_cast<double>(around.ring2.residual.size()));
+}
+
+void append(std::vector<std::string>& names, const std::string& prefix, const std::vector<std::string>& more) {
+  for (const auto& name : more) names.push_back(prefix + name);
+}
+
+}  // namespace
+
+std::vector<std::string> supportColumns(const FeatureParams& params) {
+  std::vector<std::string> names;
+  if (params.hor) append(names, "", horColumns());
+  if (params.shape)
+    for (const char* support : {"shape.ball_", "shape.ring1_", "shape.ring2_"}) append(names, support, kShapeNames);
+  if (params.extent)
+    append(names, "metric.extent_", {"box_width", "box_height", "ball_rough", "ring1_rough", "ring2_length",
+                                     "ring2_width", "ring2_rough", "ring2_below", "ring2_above"});
+  if (params.density)
+    append(names, "metric.density_", {"reach", "spacing", "log_points", "neighbours", "ring2_members"});
+  return names;
+}
+
+void fillSupportFeatures(const FeatureInput& input, const FeatureParams& params, std::size_t column, FeatureRows& rows) {
+  const CluxelTile& own = input.own();
+  const std::size_t count = supportColumns(params).size();
+  SupportWalk walk(input);
+  HorScratch scratch;
+  for (std::uint32_t c = 0; c < own.size(); ++c) {
+    const Surroundings& around = walk.around(input.cluxels.own_begin + c);
+    const EigenShape ball = shapeOf(own.ball[c]), ring1 = shapeOf(around.ring1), ring2 = shapeOf(around.ring2.sum);
+    RowWriter row(rows.row(c, column, count));
+    if (params.hor) fillHor(around.ring2, ring2, scratch, row.take(kHorColumns));
+    if (params.shape)
+      for (const auto* shape : {&ball, &ring1, &ring2}) putShape(*shape, row.take(kShapeNames.size()));
+    if (params.extent) putExtents(own, c, ball, ring1, ring2, around.ring2, row);
+    if (params.density) putDensities(own, c, around, row);
+  }
+}
+
+}  // namespace cluxel

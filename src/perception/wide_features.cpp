@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shapes of cubes of 1.5 m and 3 m: merged moments of 27 grid cells, worked out once per cell and shared by its cluxels.
+#include <array>
+#include <cmath>
+
+#include "perception/feature_groups.hpp"
+#include "perception/point_grid.hpp"
+#include "perception/radix_order.hpp"
+
+namespace cluxel {
+namespace {
+
+constexpr std::array<double, 2> kCells_m{0.5, 1.0};
+constexpr std::size_t kColumnsPerScale = 8;
+
+/// Cluxels of the ring near the tile, summed per grid cell relative to one place per cell.
+struct CellSums {
+  std::vector<std::uint64_t> key;
+  std::vector<Eigen::Vector3f> place;    ///< the first member's centre
+  std::vector<MomentSum> sum;
+  std::vector<std::uint32_t> cell_of_own;
+};
+
+struct Item {
+  Eigen::Vector3f center;
+  const Moments* own;
+  std::uint32_t number;                  ///< in the centre tile, or PointGrid::kForeign
+};
+
+std::vector<Item> itemsNear(const Ring<CluxelTile>& ring, float margin_m) {
+  std::vector<Item> items;
+  const float low = -margin_m, high = static_cast<float>(kTileSize_m) + margin_m;
+  for (int r = 0; r < 9; ++r) {
+    const CluxelTile* tile = ring[static_cast<std::size_t>(r)];
+    if (tile == nullptr) continue;
+    const Eigen::Vector3f shift = ringShift(r);
+    for (std::uint32_t i = 0; i < tile->size(); ++i) {
+      const Eigen::Vector3f center = tile->own[i].mean + shift;
+      if (center.x() < low || center.x() > high || center.y() < low || center.y() > high) continue;
+      items.push_back({center, &tile->own[i], r == kRingCentre ? i : PointGrid::kForeign});
+    }
+  }
+  return items;
+}
+
+CellSums sumCells(const Ring<CluxelTile>& ring, double cell_m) {
+  const auto items = itemsNear(ring, static_cast<float>(cell_m));
+  const CellKeys key(cell_m, cell_m);
+  std::vector<KeyedItem> order(items.size());
+  for (std::uint32_t i = 0; i < items.size(); ++i)
+    order[i] = {key(items[i].center.x(), items[i].center.y(), items[i].center.z()), i};
+  if (!order.empty()) sortByKey(order);
+  CellSums cells;
+  cells.cell_of_own.resize(ring[kRingCentre]->size());
+  for (const auto& entry : order) {
+    const Item& item = items[entry.item];
+    if (cells.key.empty() || cells.key.back() != entry.key) {
+      cells.key.push_back(entry.key);
+      cells.place.push_back(item.center);
+      cells.sum.emplace_back();
+    }
+    cells.sum.back().addSet(1.0, item.center - cells.place.back(), item.own->scatter, 1.0 / item.own->count);
+    if (item.number != PointGrid::kForeign) cells.cell_of_own[item.number] = static_cast<std::uint32_t>(cells.key.size() - 1);
+  }
+  return cells;
+}
+
+/// Adds a cell's sum, moved to another origin.
+void addMoved(MomentSum& to, const MomentSum& from, const Eigen::Vector3f& move) {
+  const double x = move.x(), y = move.y(), z = move.z();
+  to.n += from.n;
+  to.x += from.x + from.n * x;
+  to.y += from.y + from.n * y;
+  to.z += from.z + from.n * z;
+  to.xx += from.xx + 2 * x * from.x + from.n * x * x;
+  to.yy += from.yy + 2 * y * from.y + from.n * y * y;
+  to.zz += from.zz + 2 * z * from.z + from.n * z * z;
+  to.xy += from.xy + x * from.y + y * from.x + from.n * x * y;
+  to.xz += from.xz + x * from.z + z * from.x + from.n * x * z;
+  to.yz += from.yz + y * from.z + z * from.y + from.n * y * z;
+}
+
+std::array<float, kColumnsPerScale> describeCube(const MomentSum& sum, double cell_m) {
+  const EigenShape shape = shapeOf(sum);
+  const double mean_z = sum.z / sum.n;
+  const auto as = [](double value) { return static_cast<float>(value); };
+  return {as(shape.linearity()), as(shape.planarity()), as(shape.scattering()), as(std::abs(shape.normal.z())),
+          as(std::abs(shape.axis.z())), as(shape.length(2)),
+          as(std::sqrt(std::max(0.0, sum.zz / sum.n - mean_z * mean_z))), as(std::log2(sum.n) - 2 * std::log2(cell_m))};
+}
+
+void fillScale(const FeatureInput& input, double cell_m, std::size_t column, FeatureRows& rows) {
+  const CellSums cells = sumCells(input.ring, cell_m);
+  std::vector<std::array<float, kColumnsPerScale>> cube(cells.key.size());
+  NeighbourWalk walk(cells.key);
+  for (std::size_t cell = 0; cell < cells.key.size(); ++cell) {
+    walk.moveTo(cells.key[cell]);
+    MomentSum sum;
+    for (std::size_t k = 0; k < 9; ++k)
+      for (std::size_t other = walk.first(k); other < walk.last(k); ++other)
+        addMoved(sum, cells.sum[other], cells.place[other] - cells.place[cell]);
+    cube[cell] = describeCube(sum, cell_m);
+  }
+  for (std::size_t c = 0; c < cells.cell_of_own.size(); ++c) {
+    const auto& values = cube[cells.cell_of_own[c]];
+    std::copy(values.begin(), values.end(), rows.row(c, column, kColumnsPerScale).begin());
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> wideColumns() {
+  std::vector<std::string> names;
+  for (const char* cube : {"1m5_", "3m_"})
+    for (const char* name : {"shape.wide_linearity", "shape.wide_planarity", "shape.wide_scattering", "shape.wide_normal_up",
+                             "shape.wide_axis_up", "metric.wide_rough", "metric.wide_rise", "metric.wide_members"}) {
+      const std::string text(name);
+      const auto dot = text.find("wide_");
+      names.push_back(text.substr(0, dot) + "wide" + cube + text.substr(dot + 5));
+    }
+  return names;
+}
+
+void fillWideFeatures(const FeatureInput& input, std::size_t column, FeatureRows& rows) {
+  for (std::size_t scale = 0; scale < kCells_m.size(); ++scale)
+    fillScale(input, kCells_m[scale], column + scale * kColumnsPerScale, rows);
+}
+
+}  // namespace cluxel
