@@ -108,7 +108,7 @@ enum class QueryForm : std::uint8_t { Select, Construct, Describe, Ask };
 
 struct Query {
   QueryForm form = QueryForm::Select;
-  std::string text;                             ///< the request itself, for messages about it
+  std::string text;                             ///< the request with \\u code points decoded: what offsets count in
   std::string base_iri;                         ///< BASE or the caller's; IRI("…") resolves against it
   VariableTable variables;
   DatasetClause dataset;
@@ -138,8 +138,8 @@ struct Transfer {
   GraphTarget from, to;
 };
 
-/// INSERT DATA or DELETE DATA. Blank nodes (INSERT DATA only) are fresh ones, the same label the same one in the whole
-/// request; the default graph is a graph term with an empty IRI.
+/// INSERT DATA or DELETE DATA. Blank nodes (INSERT DATA only) are fresh ones, the same label the same one in the
+/// operation; the default graph is a graph term with an empty IRI.
 struct DataUpdate {
   bool insert = true;
   std::vector<Quad> quads;

@@ -75,10 +75,12 @@ struct Expression {
   enum class Kind : std::uint8_t {
     Variable,      ///< variable
     Constant,      ///< term: an IRI or a literal
-    Or, And, Not,
+    Or, And,       ///< two or more arguments
+    Not,
     Equal, NotEqual, Less, Greater, LessEqual, GreaterEqual,
     In, NotIn,     ///< arguments[0] IN (arguments[1…])
-    Add, Subtract, Multiply, Divide, Negate, Plus,
+    Add, Subtract, Multiply, Divide,   ///< two arguments
+    Negate, Plus,
     Call,          ///< builtin(arguments…)
     Function,      ///< term is the function's IRI: a cast, a GeoSPARQL or extension function; `distinct` may be set
     Aggregate,     ///< aggregate([distinct] arguments[0]); COUNT(*) has no argument
@@ -88,6 +90,7 @@ struct Expression {
   Builtin builtin = Builtin::Count_;
   AggregateFunction aggregate = AggregateFunction::Count;
   bool distinct = false;
+  std::uint32_t height = 1;                         ///< 1 + that of the highest argument; the parser bounds it
   VariableIndex variable = 0;
   SourceOffset at = 0;
   Term term;

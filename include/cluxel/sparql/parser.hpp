@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "cluxel/sparql/ast.hpp"
 
@@ -12,7 +14,8 @@ namespace cluxel {
 
 struct SparqlParseOptions {
   std::string file = "query";      ///< how messages name the text
-  std::string base_iri;            ///< for relative IRIs before any BASE; empty: relative IRIs are errors only when used
+  std::string base_iri;            ///< for relative IRIs before any BASE; empty: a relative IRI is an error
+  std::vector<std::pair<std::string, std::string>> prefixes;   ///< known without PREFIX: {"clx", "https://…#"}
   std::size_t max_bytes = 16u << 20;   ///< longer requests are refused
   std::size_t max_depth = 256;     ///< groups, sub-selects, parentheses and lists nested deeper are refused
 };

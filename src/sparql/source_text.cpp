@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Checks and decodes the text of a request before it is cut into tokens (SPARQL 1.1, section 19.2).
+#include "sparql/source_text.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+#include "sparql/character_class.hpp"
+
+namespace cluxel {
+
+namespace {
+
+/// The code point of \uXXXX or \UXXXXXXXX at `offset`; nothing when the digits are missing.
+std::optional<std::uint32_t> escapedCodePoint(std::string_view text, std::size_t offset) {
+  const std::size_t digits = text[offset + 1] == 'u' ? 4 : 8;
+  if (offset + 2 + digits > text.size()) return std::nullopt;
+  const char* begin = text.data() + offset + 2;
+  std::uint32_t value = 0;
+  if (!std::all_of(begin, begin + digits, character::isHexDigit)) return std::nullopt;
+  std::from_chars(begin, begin + digits, value, 16);
+  return value;
+}
+
+}  // namespace
+
+void appendCodePoint(std::string& text, std::uint32_t c) {
+  const auto byte = [&text](std::uint32_t value) { text += static_cast<char>(value); };
+  if (c < 0x80) return byte(c);
+  if (c < 0x800) {
+    byte(0xC0U | (c >> 6U));
+  } else if (c < 0x10000) {
+    byte(0xE0U | (c >> 12U));
+    byte(0x80U | ((c >> 6U) & 0x3FU));
+  } else {
+    byte(0xF0U | (c >> 18U));
+    byte(0x80U | ((c >> 12U) & 0x3FU));
+    byte(0x80U | ((c >> 6U) & 0x3FU));
+  }
+  byte(0x80U | (c & 0x3FU));
+}
+
+SourceText::SourceText(std::string_view original, std::string file, std::size_t max_bytes)
+    : original_(original), file_(std::move(file)) {
+  if (original.size() > max_bytes)
+    throw InputError({.file = file_}, "the request has " + std::to_string(original.size()) + " bytes; the limit is " +
+                                          std::to_string(max_bytes),
+                     "split it, or load data from a file instead of writing it into the request");
+  const std::size_t invalid = character::firstInvalidByte(original);
+  if (invalid != std::string_view::npos)
+    failAtOriginal(invalid, original[invalid] == '\0' ? "the request holds a zero byte" : "this byte is no UTF-8",
+                   "save the request as UTF-8 text");
+  if (original.find("\\u") != std::string_view::npos || original.find("\\U") != std::string_view::npos)
+    decodeCodePoints();
+}
+
+/// A backslash before a backslash hides it, so that "\\u0041" stays as written; escapes without enough digits are left
+/// for the lexer to refuse.
+void SourceText::decodeCodePoints() {
+  decoded_.reserve(original_.size());
+  for (std::size_t i = 0; i < original_.size();) {
+    const char next = i + 1 < original_.size() ? original_[i + 1] : '\0';
+    if (original_[i] != '\\' || (next != 'u' && next != 'U' && next != '\\')) {
+      decoded_ += original_[i++];
+      continue;
+    }
+    const std::optional<std::uint32_t> code_point = next == '\\' ? std::nullopt : escapedCodePoint(original_, i);
+    if (!code_point) {
+      decoded_.append(original_, i, 2);
+      i += 2;
+      continue;
+    }
+    if (*code_point == 0 || *code_point > 0x10FFFF || (*code_point >= 0xD800 && *code_point <= 0xDFFF))
+      failAtOriginal(i, "this is no code point that text may hold", "surrogates and zero cannot be written");
+    appendCodePoint(decoded_, *code_point);
+    i += next == 'u' ? 6 : 10;
+    jumps_.emplace_back(static_cast<std::uint32_t>(decoded_.size()), static_cast<std::uint32_t>(i));
+  }
+}
+
+std::uint32_t SourceText::originalOffset(std::uint32_t offset) const {
+  const auto after = std::upper_bound(jumps_.begin(), jumps_.end(), offset,
+                                      [](std::uint32_t place, const auto& jump) { return place < jump.first; });
+  if (after == jumps_.begin()) return offset;
+  const auto& [decoded, original] = *std::prev(after);
+  return original + (offset - decoded);
+}
+
+void SourceText::fail(std::uint32_t offset, std::string message, std::string hint) const {
+  failAtOriginal(originalOffset(offset), std::move(message), std::move(hint));
+}
+
+void SourceText::failAtOriginal(std::size_t offset, std::string message, std::string hint) const {
+  constexpr std::size_t widest = 240;
+  Diagnostic diagnostic;
+  diagnostic.location = locate(file_, original_, offset);
+  diagnostic.message = std::move(message);
+  diagnostic.hint = std::move(hint);
+  const std::string_view line = lineOf(original_, diagnostic.location.line);
+  const bool valid = character::firstInvalidByte(line) == std::string_view::npos;
+  std::size_t cut = std::min(widest, line.size());
+  while (cut < line.size() && (static_cast<unsigned char>(line[cut]) & 0xC0U) == 0x80U) --cut;
+  if (valid && diagnostic.location.column <= cut + 1) diagnostic.source_line = line.substr(0, cut);
+  throw InputError({std::move(diagnostic)});
+}
+
+}  // namespace cluxel
