@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// Opening maps: the process's table of open environments, the checks before LMDB maps a file, and formats.
+#include "cluxel/knowledge/environment.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <map>
+
+#include "cluxel/base/diagnostic.hpp"
+#include "knowledge/lmdb_environment.hpp"
+#include "knowledge/map_file_check.hpp"
+#include "knowledge/store_snapshot.hpp"
+#include "knowledge/value_cache.hpp"
+
+namespace cluxel {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr unsigned kMaxReaders = 510;
+constexpr std::size_t kSmallestMap = std::size_t{1} << 28U;
+#if defined(__SANITIZE_THREAD__)
+constexpr std::size_t kLargestMap = std::size_t{1} << 34U;  // ThreadSanitizer leaves little address space
+#else
+constexpr std::size_t kLargestMap = std::size_t{1} << 40U;
+#endif
+
+struct FileIdentity {
+  dev_t device = 0;
+  ino_t inode = 0;
+  auto operator<=>(const FileIdentity&) const = default;
+};
+
+/// The environments that this process has open: LMDB loses its locks when a process opens a file twice.
+struct OpenEnvironments {
+  std::recursive_mutex mutex;  ///< recursive: an environment that fails to open closes within the opening
+  std::condition_variable_any closed;
+  std::map<FileIdentity, std::weak_ptr<LmdbEnvironment>> entries;
+};
+
+OpenEnvironments& openEnvironments() {
+  static OpenEnvironments table;
+  return table;
+}
+
+/// A file descriptor that closes itself unless it is released.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  int get() const { return number_; }
+  int release() { return std::exchange(number_, -1); }
+
+ private:
+  int number_;
+};
+
+FileIdentity identityOf(int descriptor, const fs::path& file) {
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0) failStore(file, errno, "examine the file");
+  return {status.st_dev, status.st_ino};
+}
+
+int openFile(const fs::path& file, OpenMode mode, bool& can_write) {
+  const int creation = mode == OpenMode::Create ? O_CREAT | O_EXCL : 0;
+  can_write = true;
+  int descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC | creation, 0666);
+  if (descriptor < 0 && mode == OpenMode::ReadOnly && (errno == EACCES || errno == EROFS || errno == EPERM)) {
+    can_write = false;
+    descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  }
+  if (descriptor >= 0) return descriptor;
+  if (errno == EEXIST)
+    throw Error(ExitCode::StoreUnavailable,
+                file.string() + ": exists already; choose another name or remove it");
+  if (errno == EISDIR)
+    throw Error(ExitCode::StoreUnavailable, file.string() + ": is a folder, a map was expected");
+  failStore(file, errno, mode == OpenMode::Create ? "create the map" : "open the map");
+}
+
+/// Opens with as much address space as there is, so that a map never outgrows it.
+EnvHandle openLmdb(const fs::path& file, std::uint64_t file_size, unsigned flags) {
+  int code = 0;
+  for (std::size_t map_size = kLargestMap; map_size >= kSmallestMap && map_size > file_size; map_size /= 2) {
+    MDB_env* raw = nullptr;
+    checkLmdb(mdb_env_create(&raw), file, "open the map");
+    EnvHandle handle(raw);
+    mdb_env_set_maxreaders(raw, kMaxReaders);
+    mdb_env_set_maxdbs(raw, kTableCount);
+    mdb_env_set_mapsize(raw, map_size);
+    code = mdb_env_open(raw, file.c_str(), flags | MDB_NOSUBDIR | MDB_NOTLS, 0666);
+    if (code == MDB_SUCCESS) return handle;
+    if (code != ENOMEM) break;
+  }
+  failStore(file, code, "open the map");
+}
+
+EnvHandle openLmdbFor(const fs::path& file, std::uint64_t file_size, bool can_write, unsigned extra) {
+  if (can_write) return openLmdb(file, file_size, extra);
+  try {
+    return openLmdb(file, file_size, MDB_RDONLY);
+  } catch (const Error&) {
+    // The lock file cannot be made beside it; then nobody can write either.
+    return openLmdb(file, file_size, MDB_RDONLY | MDB_NOLOCK);
+  }
+}
+
+/// Checks the structure of the commit that a read transaction keeps from being overwritten.
+void checkUnderSnapshot(MDB_env* handle, int descriptor, const fs::path& file) {
+  MDB_txn* raw = nullptr;
+  checkLmdb(mdb_txn_begin(handle, nullptr, MDB_RDONLY, &raw), file, "read the map");
+  const TxnHandle transaction(raw);
+  checkMapStructure(descriptor, file, mdb_txn_id(raw));
+}
+
+std::shared_ptr<LmdbEnvironment> openNew(const fs::path& file, Descriptor& descriptor, bool can_write,
+                                         bool may_initialise, unsigned extra_flags) {
+  const MapFileHead head = readMapFileHead(descriptor.get(), file);
+  if (head.file_size == 0 && !may_initialise)
+    throw Error(ExitCode::StoreUnavailable, file.string() + ": is empty, a map was expected");
+  EnvHandle handle = openLmdbFor(file, head.file_size, can_write, extra_flags);
+  if (head.file_size != 0 && needsStructureCheck(head))
+    checkUnderSnapshot(handle.get(), descriptor.get(), file);
+  auto environment =
+      std::make_shared<LmdbEnvironment>(file, std::move(handle), descriptor.release(), can_write);
+  if (may_initialise) environment->allowWriting();
+  environment->openTables();
+  return environment;
+}
+
+std::shared_ptr<LmdbEnvironment> openOnce(const fs::path& file, OpenMode mode, unsigned extra_flags) {
+  bool can_write = false;
+  Descriptor descriptor(openFile(file, mode, can_write));
+  const FileIdentity identity = identityOf(descriptor.get(), file);
+  OpenEnvironments& table = openEnvironments();
+  std::unique_lock lock(table.mutex);
+  for (auto entry = table.entries.find(identity); entry != table.entries.end();
+       entry = table.entries.find(identity)) {
+    if (auto open = entry->second.lock()) {
+      if (mode != OpenMode::ReadOnly) open->allowWriting();
+      return open;
+    }
+    table.closed.wait(lock);  // its last owner is closing it
+  }
+  auto environment = openNew(file, descriptor, can_write, mode != OpenMode::ReadOnly, extra_flags);
+  table.entries[identity] = environment;
+  return environment;
+}
+
+}  // namespace
+
+std::shared_ptr<Environment> Environment::open(const fs::path& file, OpenMode mode) {
+  return openOnce(fs::absolute(file), mode, 0);
+}
+
+std::shared_ptr<Environment> Environment::temporary() {
+  std::string folder = (fs::temp_directory_path() / "cluxel-XXXXXX").string();
+  if (::mkdtemp(folder.data()) == nullptr) failStore(folder, errno, "make a temporary map");
+  const fs::path file = fs::path(folder) / "temporary.clx";
+  std::error_code ignored;
+  try {
+    auto environment = openOnce(file, OpenMode::Create, MDB_NOSYNC);
+    fs::remove_all(folder, ignored);  // the open handles keep the bytes until the environment ends
+    return environment;
+  } catch (...) {
+    fs::remove_all(folder, ignored);
+    throw;
+  }
+}
+
+LmdbEnvironment::LmdbEnvironment(fs::path file, EnvHandle handle, int data_lock, bool can_write)
+    : file_(std::move(file)),
+      handle_(std::move(handle)),
+      data_lock_(data_lock),
+      can_write_(can_write),
+      values_(std::make_unique<ValueCache>()) {}
+
+LmdbEnvironment::~LmdbEnvironment() {
+  struct stat status {};
+  const bool known = ::fstat(data_lock_, &status) == 0;
+  OpenEnvironments& table = openEnvironments();
+  // The table is held while LMDB closes the file, so that nobody opens it in between.
+  const std::lock_guard lock(table.mutex);
+  handle_.reset();
+  ::close(data_lock_);
+  if (!known) return;
+  const auto entry = table.entries.find({status.st_dev, status.st_ino});
+  if (entry != table.entries.end() && entry->second.expired()) table.entries.erase(entry);
+  table.closed.notify_all();
+}
+
+}  // namespace cluxel

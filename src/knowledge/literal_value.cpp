@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// Decoding of numbers and booleans; dates are in literal_date.cpp.
+#include "knowledge/literal_value.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "cluxel/knowledge/vocabulary.hpp"
+#include "knowledge/literal_date.hpp"
+
+namespace cluxel {
+
+namespace {
+
+using Type = DecodedValue::Type;
+
+bool isDigit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+std::string_view withoutPlus(std::string_view text) {
+  if (text.starts_with('+') && text.size() > 1 && text[1] != '-') text.remove_prefix(1);
+  return text;
+}
+
+std::optional<std::int64_t> parseInteger(std::string_view lexical) {
+  const std::string_view text = withoutPlus(lexical);
+  std::int64_t value = 0;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (end.ec != std::errc{} || end.ptr != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// A number whose size double cannot hold becomes infinity or zero, as its first digit's place says.
+double saturate(std::string_view text) {
+  const bool negative = text.starts_with('-');
+  const std::size_t e = text.find_first_of("eE");
+  const std::string_view mantissa = text.substr(0, e);
+  long exponent = 0;
+  if (e != std::string_view::npos) {
+    const std::string_view digits = withoutPlus(text.substr(e + 1));
+    const auto end = std::from_chars(digits.data(), digits.data() + digits.size(), exponent);
+    if (end.ec == std::errc::result_out_of_range)
+      exponent = digits.starts_with('-') ? -1'000'000'000 : 1'000'000'000;
+  }
+  const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
+  const std::size_t first = mantissa.find_first_of("123456789");
+  const bool large =
+      first != std::string_view::npos && static_cast<long>(point) - static_cast<long>(first) + exponent > 0;
+  const double magnitude = large ? std::numeric_limits<double>::infinity() : 0.0;
+  return negative ? -magnitude : magnitude;
+}
+
+/// Digits with at most one point, and an exponent if `exponent_allowed`.
+bool isNumber(std::string_view text, bool exponent_allowed) {
+  if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
+  std::size_t i = 0;
+  std::size_t digits = 0;
+  for (bool point = false; i < text.size() && (isDigit(text[i]) || (text[i] == '.' && !point)); ++i) {
+    point = point || text[i] == '.';
+    digits += isDigit(text[i]) ? 1 : 0;
+  }
+  if (digits == 0 || i == text.size()) return digits > 0;
+  if (!exponent_allowed || (text[i] != 'e' && text[i] != 'E')) return false;
+  if (++i < text.size() && (text[i] == '-' || text[i] == '+')) ++i;
+  if (i == text.size()) return false;
+  for (; i < text.size(); ++i)
+    if (!isDigit(text[i])) return false;
+  return true;
+}
+
+double parseNumber(std::string_view lexical) {
+  const std::string_view text = withoutPlus(lexical);
+  double value = 0;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+  return end.ec == std::errc::result_out_of_range ? saturate(text) : value;
+}
+
+std::optional<double> parseDouble(std::string_view lexical) {
+  if (lexical == "INF" || lexical == "+INF") return std::numeric_limits<double>::infinity();
+  if (lexical == "-INF") return -std::numeric_limits<double>::infinity();
+  if (lexical == "NaN") return std::numeric_limits<double>::quiet_NaN();
+  if (!isNumber(lexical, true)) return std::nullopt;
+  return parseNumber(lexical);
+}
+
+/// The nearest float of the decimal form itself: rounding to double first can be off by one.
+double parseFloat(std::string_view lexical, double as_double) {
+  const std::string_view text = withoutPlus(lexical);
+  float value = 0;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+  return end.ec == std::errc{} && std::isfinite(as_double) ? value : static_cast<float>(as_double);
+}
+
+struct IntegerType {
+  std::string_view name;
+  std::int64_t least, greatest;
+};
+
+constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
+constexpr std::int64_t kGreatest = std::numeric_limits<std::int64_t>::max();
+constexpr std::array<IntegerType, 13> kIntegerTypes = {{
+    {"integer", kLeast, kGreatest},
+    {"int", -2147483648LL, 2147483647LL},
+    {"long", kLeast, kGreatest},
+    {"short", -32768, 32767},
+    {"byte", -128, 127},
+    {"nonNegativeInteger", 0, kGreatest},
+    {"positiveInteger", 1, kGreatest},
+    {"nonPositiveInteger", kLeast, 0},
+    {"negativeInteger", kLeast, -1},
+    {"unsignedLong", 0, kGreatest},
+    {"unsignedInt", 0, 4294967295LL},
+    {"unsignedShort", 0, 65535},
+    {"unsignedByte", 0, 255},
+}};
+
+DecodedValue numberOf(Type type, std::optional<double> value) {
+  DecodedValue decoded;
+  decoded.kind = TermKind::Literal;
+  if (!value) return decoded;
+  decoded.type = type;
+  decoded.number = *value;
+  return decoded;
+}
+
+DecodedValue integerOf(Type type, std::optional<std::int64_t> value) {
+  DecodedValue decoded = numberOf(type, value ? std::optional(static_cast<double>(*value)) : std::nullopt);
+  if (value) decoded.integer = *value;
+  return decoded;
+}
+
+DecodedValue momentOf(Type type, std::optional<std::int64_t> microseconds) {
+  DecodedValue decoded = integerOf(type, microseconds);
+  decoded.number /= 1e6;
+  return decoded;
+}
+
+DecodedValue decodeInteger(std::string_view lexical, std::string_view name) {
+  for (const IntegerType& type : kIntegerTypes) {
+    if (type.name != name) continue;
+    const std::optional<std::int64_t> value = parseInteger(lexical);
+    if (value && (*value < type.least || *value > type.greatest)) break;
+    return integerOf(Type::Integer, value);
+  }
+  return numberOf(Type::None, std::nullopt);
+}
+
+std::optional<std::int64_t> parseBoolean(std::string_view lexical) {
+  if (lexical == "true" || lexical == "1") return 1;
+  if (lexical == "false" || lexical == "0") return 0;
+  return std::nullopt;
+}
+
+}  // namespace
+
+DecodedValue decodeLiteral(std::string_view lexical, std::string_view datatype) {
+  if (!datatype.starts_with(vocabulary::kXsd)) {
+    const bool tagged = datatype == vocabulary::rdf("langString");
+    return numberOf(tagged ? Type::LangString : Type::None, tagged ? std::optional(0.0) : std::nullopt);
+  }
+  const std::string_view name = datatype.substr(vocabulary::kXsd.size());
+  if (name == "string") return numberOf(Type::String, 0.0);
+  if (name == "double") return numberOf(Type::Double, parseDouble(lexical));
+  if (name == "decimal")
+    return numberOf(Type::Decimal,
+                    isNumber(lexical, false) ? std::optional(parseNumber(lexical)) : std::nullopt);
+  if (name == "float") {
+    const std::optional<double> value = parseDouble(lexical);
+    return numberOf(Type::Float, value ? std::optional(parseFloat(lexical, *value)) : std::nullopt);
+  }
+  if (name == "boolean") return integerOf(Type::Boolean, parseBoolean(lexical));
+  if (name == "dateTime") return momentOf(Type::DateTime, parseDateTime(lexical));
+  if (name == "date") return momentOf(Type::Date, parseDate(lexical));
+  return decodeInteger(lexical, name);
+}
+
+}  // namespace cluxel

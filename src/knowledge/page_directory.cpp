@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// Building page directories and searching in them.
+#include "knowledge/page_directory.hpp"
+
+#include <algorithm>
+
+#include "cluxel/base/diagnostic.hpp"
+
+namespace cluxel {
+
+namespace {
+
+using namespace lmdb_page;
+
+constexpr int kMaxDepth = 32;
+
+[[noreturn]] void damaged() {
+  throw Error(ExitCode::StoreUnavailable,
+              "the map is damaged: an index points outside the file; `cluxel doctor` tells where");
+}
+
+const QuadKey* keysAt(const std::uint8_t* bytes) {
+  return reinterpret_cast<const QuadKey*>(bytes);
+}
+
+/// The first of `count` keys not less than `key`; without branches that a processor could guess wrong.
+std::size_t lowerBoundIn(const QuadKey* keys, std::size_t count, Key128 key) {
+  const QuadKey* first = keys;
+  while (count > 1) {
+    const std::size_t half = count / 2;
+    first += toNumber(first[half - 1]) < key ? half : 0;
+    count -= half;
+  }
+  return static_cast<std::size_t>(first - keys) + (count == 1 && toNumber(*first) < key ? 1 : 0);
+}
+
+/// The last of `lower` not greater than `key`, or the first.
+std::size_t pageOf(const std::vector<Key128>& lower, Key128 key) {
+  const Key128* first = lower.data();
+  std::size_t count = lower.size();
+  while (count > 1) {
+    const std::size_t half = count / 2;
+    first += first[half] <= key ? half : 0;
+    count -= half;
+  }
+  return static_cast<std::size_t>(first - lower.data());
+}
+
+}  // namespace
+
+const std::uint8_t* PageMap::page(PageNumber number) const {
+  if (number >= page_count) damaged();
+  return base + number * page_size;
+}
+
+PageDirectory::PageDirectory(const PageMap& map, const Tree& table) {
+  if (table.root == kNoPage) return;
+  const std::uint8_t* root = map.page(table.root);
+  if ((header(root).flags & kLeaf) == 0 || lmdb_page::entryCount(root) != 1) damaged();
+  const Node node(root, 0);
+  if ((node.flags() & kDupData) == 0) {
+    single_ = true;
+    lower_.push_back(0);
+    pages_.push_back(keysAt(node.data()));
+  } else if ((node.flags() & kSubData) == 0) {
+    addPage(0, node.data());
+  } else {
+    const Tree tree = load<Tree>(node.data());
+    if (tree.leaf_pages > map.page_count) damaged();
+    lower_.reserve(tree.leaf_pages);
+    pages_.reserve(tree.leaf_pages);
+    collect(map, tree.root, 0, 0);
+  }
+}
+
+void PageDirectory::addPage(Key128 lower, const std::uint8_t* page) {
+  lower_.push_back(lower);
+  pages_.push_back(keysAt(page + kHeaderSize));
+}
+
+void PageDirectory::collect(const PageMap& map, PageNumber number, Key128 lower, int depth) {
+  if (depth > kMaxDepth) damaged();
+  const std::uint8_t* page = map.page(number);
+  const std::size_t count = lmdb_page::entryCount(page);
+  if (count > map.page_size / 2) damaged();
+  // The children of one branch are all leaves or all branches; only the first is looked at.
+  bool leaves = false;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t at = load<std::uint16_t>(page + kHeaderSize + 2 * i);
+    if (at + 8 + sizeof(QuadKey) > map.page_size && (i > 0 || at + 8 > map.page_size)) damaged();
+    const Node node(page + at);
+    const Key128 child_lower =
+        i == 0 || node.keySize() != sizeof(QuadKey) ? lower : toNumber(*keysAt(node.key()));
+    const std::uint8_t* child = map.page(node.child());
+    if (i == 0) leaves = (header(child).flags & kLeaf) != 0;
+    if (leaves)
+      addPage(child_lower, child);
+    else
+      collect(map, node.child(), child_lower, depth + 1);
+  }
+}
+
+PageDirectory::PageDirectory(MDB_cursor* cursor) {
+  MDB_val key;
+  MDB_val first;
+  if (mdb_cursor_get(cursor, &key, &first, MDB_FIRST) != MDB_SUCCESS) return;
+  std::size_t duplicates = 0;
+  mdb_cursor_count(cursor, &duplicates);
+  MDB_val block = first;
+  single_ = duplicates == 1;
+  int code = single_ ? MDB_SUCCESS : mdb_cursor_get(cursor, &key, &block, MDB_GET_MULTIPLE);
+  for (; code == MDB_SUCCESS; code = mdb_cursor_get(cursor, &key, &block, MDB_NEXT_MULTIPLE)) {
+    const QuadKey* keys = keysAt(static_cast<const std::uint8_t*>(block.mv_data));
+    lower_.push_back(lower_.empty() ? 0 : toNumber(*keys));
+    pages_.push_back(keys);
+    if (single_) return;
+  }
+}
+
+PageDirectory::Position PageDirectory::within(std::size_t i, Key128 key) const {
+  const std::span<const QuadKey> keys = page(i);
+  const std::size_t index = lowerBoundIn(keys.data(), keys.size(), key);
+  return index == keys.size() ? Position{i + 1, 0} : Position{i, index};
+}
+
+PageDirectory::Position PageDirectory::lowerBound(Key128 key) const {
+  if (pages_.empty()) return end();
+  return within(pageOf(lower_, key), key);
+}
+
+PageDirectory::Position PageDirectory::lowerBound(Key128 key, Position hint) const {
+  const std::size_t count = pages_.size();
+  if (hint.page >= count || key < lower_[hint.page]) return lowerBound(key);
+  if (hint.page + 1 >= count || key < lower_[hint.page + 1]) return within(hint.page, key);
+  if (hint.page + 2 >= count || key < lower_[hint.page + 2]) return within(hint.page + 1, key);
+  return lowerBound(key);
+}
+
+std::uint64_t PageDirectory::distance(Position from, Position to) const {
+  if (from.page == to.page) return to.index - from.index;
+  std::uint64_t count = page(from.page).size() - from.index + to.index;
+  for (std::size_t i = from.page + 1; i < to.page; ++i) count += page(i).size();
+  return count;
+}
+
+}  // namespace cluxel

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where each leaf page of an index of 16-byte keys begins: one binary search instead of a descent through the
+// tree.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "cluxel/knowledge/quad_store.hpp"
+#include "knowledge/lmdb_handles.hpp"
+#include "knowledge/lmdb_page.hpp"
+
+namespace cluxel {
+
+/// A key as a number, so that comparing is two machine instructions.
+__extension__ using Key128 = unsigned __int128;
+
+inline Key128 toNumber(const QuadKey& key) {
+  std::uint64_t high = 0;
+  std::uint64_t low = 0;
+  std::memcpy(&high, key.bytes.data(), 8);
+  std::memcpy(&low, key.bytes.data() + 8, 8);
+  return (static_cast<Key128>(__builtin_bswap64(high)) << 64U) | __builtin_bswap64(low);
+}
+
+inline QuadKey toKey(Key128 number) {
+  QuadKey key;
+  const std::uint64_t high = __builtin_bswap64(static_cast<std::uint64_t>(number >> 64U));
+  const std::uint64_t low = __builtin_bswap64(static_cast<std::uint64_t>(number));
+  std::memcpy(key.bytes.data(), &high, 8);
+  std::memcpy(key.bytes.data() + 8, &low, 8);
+  return key;
+}
+
+/// The mapped file of a snapshot: pages by number.
+struct PageMap {
+  const std::uint8_t* base = nullptr;
+  std::uint64_t page_size = 0, page_count = 0;
+
+  /// The page, or an exception when a damaged file points outside itself.
+  const std::uint8_t* page(lmdb_page::PageNumber number) const;
+};
+
+/// The leaf pages of one index, in order, within one commit or one state of a write transaction.
+class PageDirectory {
+ public:
+  struct Position {
+    std::size_t page = 0, index = 0;
+  };
+
+  PageDirectory() = default;
+  /// From the branch pages of a mapped commit. `table` is the record of the index's table. Cost: one step per
+  /// leaf page, without reading leaf pages.
+  PageDirectory(const PageMap& map, const lmdb_page::Tree& table);
+  /// Through an LMDB cursor, also for the unwritten pages of a write transaction. Cost: reads each leaf
+  /// page's first key.
+  explicit PageDirectory(MDB_cursor* cursor);
+
+  std::size_t pageCount() const { return pages_.size(); }
+  std::span<const QuadKey> page(std::size_t i) const {
+    const QuadKey* keys = pages_[i];
+    return {keys, single_ ? 1 : entryCount(keys)};
+  }
+  Position begin() const { return {}; }
+  Position end() const { return {pages_.size(), 0}; }
+  /// The first key not less than `key`.
+  Position lowerBound(Key128 key) const;
+  /// The same; fast when the answer is on the page of `hint` or the next.
+  Position lowerBound(Key128 key, Position hint) const;
+  /// The exact number of keys in [from, to). Cost: one step per page.
+  std::uint64_t distance(Position from, Position to) const;
+
+ private:
+  static std::size_t entryCount(const QuadKey* keys) {
+    const auto* page = reinterpret_cast<const std::uint8_t*>(keys) - lmdb_page::kHeaderSize;
+    return std::min<std::size_t>(lmdb_page::entryCount(page), kMostKeys);
+  }
+  void addPage(Key128 lower, const std::uint8_t* page);
+  void collect(const PageMap& map, lmdb_page::PageNumber number, Key128 lower, int depth);
+  Position within(std::size_t page, Key128 key) const;
+
+  static constexpr std::size_t kMostKeys = 65536 / sizeof(QuadKey);
+  std::vector<Key128> lower_;  ///< no key of the page is less, every key of the page before is
+  std::vector<const QuadKey*> pages_;
+  bool single_ = false;  ///< one key that stands in a node, without a page header
+};
+
+}  // namespace cluxel

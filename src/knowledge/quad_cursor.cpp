@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Running through a range of an index, page by page.
+#include "knowledge/quad_cursor.hpp"
+
+#include <algorithm>
+
+namespace cluxel {
+
+QuadCursor::Impl::Impl(const PageDirectory& from, const IndexPattern& laid_out, QuadOrder sorted_by)
+    : directory(from), pattern(laid_out), order(sorted_by), position(from.lowerBound(laid_out.range.first)) {
+  loadPage();
+}
+
+bool QuadCursor::Impl::loadPage() {
+  at = stop = nullptr;
+  if (position.page >= directory.pageCount()) return false;
+  const std::span<const QuadKey> keys = directory.page(position.page);
+  const QuadKey* first = keys.data() + std::min(position.index, keys.size());
+  const QuadKey* last = keys.data() + keys.size();
+  if (first == last || toNumber(*first) > pattern.range.last) return false;
+  if (toNumber(last[-1]) > pattern.range.last) {
+    const auto beyond = [&](const QuadKey& key) { return toNumber(key) <= pattern.range.last; };
+    last = std::partition_point(first, last, beyond);
+  }
+  at = first;
+  stop = last;
+  position = {position.page + 1, 0};
+  return true;
+}
+
+void QuadCursor::Impl::moveTo(Key128 key) {
+  if (key <= pattern.range.first && at != nullptr) return;
+  if (at != stop && toNumber(*at) >= key) return;
+  const PageDirectory::Position present{position.page == 0 ? 0 : position.page - 1, 0};
+  position = directory.lowerBound(key, present);
+  loadPage();
+}
+
+QuadCursor::QuadCursor() = default;
+QuadCursor::QuadCursor(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+QuadCursor::QuadCursor(QuadCursor&&) noexcept = default;
+QuadCursor& QuadCursor::operator=(QuadCursor&&) noexcept = default;
+QuadCursor::~QuadCursor() = default;
+
+bool QuadCursor::next(QuadIds& quad) {
+  if (!impl_) return false;
+  Impl& state = *impl_;
+  while (state.at != state.stop || state.loadPage()) {
+    const QuadKey& key = *state.at++;
+    if ((toNumber(key) & state.pattern.mask) != state.pattern.value) continue;
+    quad = toQuad(key, state.order);
+    return true;
+  }
+  return false;
+}
+
+void QuadCursor::seek(const QuadIds& quad) {
+  if (impl_) impl_->moveTo(toNumber(quad, impl_->order));
+}
+
+std::span<const QuadKey> QuadCursor::nextBlock() {
+  if (!impl_ || (impl_->at == impl_->stop && !impl_->loadPage())) return {};
+  const std::span<const QuadKey> block(impl_->at, impl_->stop);
+  impl_->at = impl_->stop;
+  return block;
+}
+
+bool QuadCursor::filtered() const {
+  return impl_ && impl_->pattern.filtered;
+}
+
+QuadOrder QuadCursor::order() const {
+  return impl_ ? impl_->order : QuadOrder::Spog;
+}
+
+/// The last position, so that ascending lookups start from it.
+struct PrefixLookup::Impl {
+  const PageDirectory& directory;
+  PageDirectory::Position position;
+  KeyRange range;
+
+  std::span<const QuadKey> take() {
+    if (position.page >= directory.pageCount()) return {};
+    const std::span<const QuadKey> keys = directory.page(position.page);
+    std::size_t stop = position.index;
+    while (stop < keys.size() && stop < position.index + kNearby && toNumber(keys[stop]) <= range.last)
+      ++stop;
+    if (stop == position.index + kNearby && stop < keys.size()) {
+      const auto within = [&](const QuadKey& key) { return toNumber(key) <= range.last; };
+      const auto rest = keys.subspan(stop);
+      stop += static_cast<std::size_t>(std::partition_point(rest.begin(), rest.end(), within) - rest.begin());
+    }
+    const auto found = keys.subspan(position.index, stop - position.index);
+    position = stop == keys.size() ? PageDirectory::Position{position.page + 1, 0}
+                                   : PageDirectory::Position{position.page, stop};
+    return found;
+  }
+
+  static constexpr std::size_t kNearby = 8;  // most lookups find a few entries
+};
+
+PrefixLookup::PrefixLookup() = default;
+PrefixLookup::PrefixLookup(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+PrefixLookup::PrefixLookup(PrefixLookup&&) noexcept = default;
+PrefixLookup& PrefixLookup::operator=(PrefixLookup&&) noexcept = default;
+PrefixLookup::~PrefixLookup() = default;
+
+std::span<const QuadKey> PrefixLookup::find(std::span<const TermId> prefix) {
+  if (!impl_) return {};
+  impl_->range = rangeOf(prefix);
+  impl_->position = impl_->directory.lowerBound(impl_->range.first, impl_->position);
+  return impl_->take();
+}
+
+std::span<const QuadKey> PrefixLookup::more() {
+  // Only a range that ran to the end of a page goes on.
+  if (!impl_ || impl_->position.index != 0) return {};
+  return impl_->take();
+}
+
+PrefixLookup QuadReader::lookup(QuadOrder order) const {
+  return PrefixLookup(
+      std::unique_ptr<PrefixLookup::Impl>(new PrefixLookup::Impl{impl_->directory(order), {}, {}}));
+}
+
+}  // namespace cluxel

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reading quads and terms at one commit.
+#include "cluxel/knowledge/quad_store.hpp"
+
+#include <algorithm>
+
+#include "cluxel/knowledge/vocabulary.hpp"
+#include "knowledge/quad_cursor.hpp"
+#include "knowledge/quad_reader_impl.hpp"
+#include "knowledge/term_record.hpp"
+#include "knowledge/value_cache.hpp"
+
+namespace cluxel {
+
+namespace {
+
+constexpr std::array<QuadOrder, 4> kOrders = {QuadOrder::Spog, QuadOrder::Posg, QuadOrder::Ospg,
+                                              QuadOrder::Gspo};
+
+/// The bound ids in s, p, o, g order; 0 in s, p or o means any.
+std::array<std::optional<TermId>, 4> boundIds(const QuadPattern& pattern) {
+  std::array<std::optional<TermId>, 4> ids = {pattern.s, pattern.p, pattern.o, pattern.g};
+  for (std::size_t i = 0; i < 3; ++i)
+    if (ids[i] == kNoTerm) ids[i].reset();
+  return ids;
+}
+
+const std::string kString = vocabulary::xsd("string");
+const std::string kLangString = vocabulary::rdf("langString");
+
+}  // namespace
+
+IndexPattern layOut(const QuadPattern& pattern, QuadOrder order) {
+  const auto bound = boundIds(pattern);
+  IndexPattern laid_out;
+  std::array<TermId, 4> prefix{};
+  bool in_prefix = true;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::optional<TermId>& id = bound[placesOf(order)[i]];
+    in_prefix = in_prefix && id.has_value();
+    if (in_prefix) prefix[laid_out.prefix_length++] = *id;
+    if (in_prefix || !id) continue;
+    const auto shift = static_cast<unsigned>(32 * (3 - i));
+    laid_out.mask |= Key128{0xFFFFFFFFU} << shift;
+    laid_out.value |= Key128{*id} << shift;
+    laid_out.filtered = true;
+  }
+  laid_out.range = rangeOf(std::span(prefix).first(laid_out.prefix_length));
+  return laid_out;
+}
+
+QuadReader::Impl::Impl(ReadTransaction from) : transaction(std::move(from)) {
+  committed_terms = state().writing ? state().committed_terms : snapshot().termCount();
+}
+
+QuadReader::QuadReader(ReadTransaction transaction) : impl_(std::make_unique<Impl>(std::move(transaction))) {}
+QuadReader::~QuadReader() = default;
+QuadReader::QuadReader(QuadReader&&) noexcept = default;
+QuadReader& QuadReader::operator=(QuadReader&&) noexcept = default;
+
+std::optional<TermId> QuadReader::idOf(const Term& term) const {
+  if (term.kind == TermKind::Iri && term.text.empty()) return kNoTerm;
+  TermId datatype = kNoTerm;
+  if (needsDatatypeId(term)) {
+    const std::optional<TermId> found = idOf(Term::iri(term.datatype));
+    if (!found) return std::nullopt;
+    datatype = *found;
+  }
+  std::string record;
+  encodeTerm(term, datatype, record);
+  const TermHash hash = hashOfRecord(record);
+  const PageDirectory& hashes = impl_->snapshot().directory(Table::TermHashes, impl_->state());
+  const Key128 first = (Key128{hash.high} << 64U) | (Key128{hash.low} << 32U);
+  auto position = hashes.lowerBound(first);
+  for (; position.page < hashes.pageCount(); ++position.index) {
+    const auto keys = hashes.page(position.page);
+    if (position.index == keys.size()) position = {position.page + 1, 0};
+    if (position.page == hashes.pageCount()) break;
+    const QuadKey& key = hashes.page(position.page)[position.index];
+    if ((toNumber(key) >> 32U) != (first >> 32U)) break;
+    if (impl_->record(key.at(3)) == record) return key.at(3);
+  }
+  return std::nullopt;
+}
+
+TermView QuadReader::viewOf(TermId id) const {
+  if (id == kNoTerm) return {};
+  const TermRecord record = decodeTerm(impl_->record(id));
+  TermView view{record.kind, record.text, {}, record.language};
+  if (record.kind != TermKind::Literal) return view;
+  if (!record.language.empty() || record.value.type == DecodedValue::Type::LangString)
+    view.datatype = kLangString;
+  else if (record.datatype == kNoTerm)
+    view.datatype = kString;
+  else
+    view.datatype = decodeTerm(impl_->record(record.datatype)).text;
+  return view;
+}
+
+Term QuadReader::termOf(TermId id) const {
+  const TermView view = viewOf(id);
+  return {view.kind, std::string(view.text), std::string(view.datatype), std::string(view.language)};
+}
+
+const DecodedValue& QuadReader::valueOf(TermId id) const {
+  static const DecodedValue none;
+  if (id == kNoTerm) return none;
+  const auto decode = [this](TermId wanted) { return decodeTerm(impl_->record(wanted)).value; };
+  if (id <= impl_->committed_terms) return impl_->state().environment->values().get(id, decode);
+  const auto found = impl_->own_values.find(id);
+  return found != impl_->own_values.end() ? found->second
+                                          : impl_->own_values.emplace(id, decode(id)).first->second;
+}
+
+QuadOrder QuadReader::bestOrder(const QuadPattern& pattern) {
+  return *std::max_element(kOrders.begin(), kOrders.end(), [&](QuadOrder a, QuadOrder b) {
+    return layOut(pattern, a).prefix_length < layOut(pattern, b).prefix_length;
+  });
+}
+
+QuadCursor QuadReader::scan(const QuadPattern& pattern, QuadOrder order) const {
+  return QuadCursor(
+      std::make_unique<QuadCursor::Impl>(impl_->directory(order), layOut(pattern, order), order));
+}
+
+QuadCursor QuadReader::scan(const QuadPattern& pattern) const {
+  return scan(pattern, bestOrder(pattern));
+}
+
+bool QuadReader::contains(const QuadIds& quad) const {
+  const PageDirectory& directory = impl_->directory(QuadOrder::Spog);
+  const Key128 key = toNumber(quad, QuadOrder::Spog);
+  const PageDirectory::Position position = directory.lowerBound(key);
+  return position.page < directory.pageCount() &&
+         toNumber(directory.page(position.page)[position.index]) == key;
+}
+
+std::uint64_t QuadReader::size() const {
+  return impl_->snapshot().size();
+}
+
+std::uint64_t QuadReader::termCount() const {
+  return impl_->snapshot().termCount();
+}
+
+}  // namespace cluxel

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// The state behind a quad reader, and prefixes as key ranges.
+#pragma once
+
+#include <unordered_map>
+
+#include "cluxel/knowledge/quad_store.hpp"
+#include "knowledge/page_directory.hpp"
+#include "knowledge/store_snapshot.hpp"
+
+namespace cluxel {
+
+constexpr Table tableOf(QuadOrder order) {
+  return static_cast<Table>(static_cast<std::size_t>(Table::Spog) + static_cast<std::size_t>(order));
+}
+
+/// All keys that begin with some ids.
+struct KeyRange {
+  Key128 first = 0, last = 0;  ///< both within
+};
+
+/// The range of the first `length` ids in index order.
+inline KeyRange rangeOf(std::span<const TermId> prefix) {
+  Key128 first = 0;
+  for (const TermId id : prefix) first = (first << 32U) | id;
+  const auto missing = static_cast<unsigned>(32 * (4 - prefix.size()));
+  if (missing == 128) return {0, ~Key128{0}};
+  first <<= missing;
+  return {first, first | ((Key128{1} << missing) - 1)};
+}
+
+inline Key128 toNumber(const QuadIds& quad, QuadOrder order) {
+  const std::array<TermId, 4> ids = {quad.s, quad.p, quad.o, quad.g};
+  Key128 key = 0;
+  for (const std::uint8_t place : placesOf(order)) key = (key << 32U) | ids[place];
+  return key;
+}
+
+/// A pattern laid out for an index: a range, and the ids to test at the other bound positions.
+struct IndexPattern {
+  KeyRange range;
+  Key128 mask = 0, value = 0;  ///< a key of the range matches when (key & mask) == value
+  std::size_t prefix_length = 0;
+  bool filtered = false;
+};
+IndexPattern layOut(const QuadPattern& pattern, QuadOrder order);
+
+struct QuadReader::Impl {
+  ReadTransaction transaction;
+  std::uint64_t committed_terms = 0;  ///< terms whose values the environment's cache may hold
+  std::unordered_map<TermId, DecodedValue> own_values;  ///< of terms that are not committed
+  explicit Impl(ReadTransaction from);
+
+  ReadTransaction::Impl& state() const { return transaction.impl(); }
+  StoreSnapshot& snapshot() const { return snapshotOf(state()); }
+  const PageDirectory& directory(QuadOrder order) const {
+    return snapshot().directory(tableOf(order), state());
+  }
+  std::string_view record(TermId id) const { return snapshot().record(id, state()); }
+};
+
+}  // namespace cluxel
