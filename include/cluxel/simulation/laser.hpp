@@ -27,6 +27,9 @@ struct SimulatedScan {
   PointTruth truth;
 };
 
+/// When the scan of a stop is taken: a minute after the one before [s since 1970].
+inline double stopTime_s(std::size_t stop) { return 1.7e9 + 60.0 * static_cast<double>(stop); }
+
 /// Casts rays at a campus, which must outlive it. All methods are thread-safe and give the same for any number of
 /// threads: the noise of a ray depends on the seed, the stop and the ray's number alone.
 class Laser {

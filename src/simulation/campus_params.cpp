@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// The table of parameters and their check.
+#include "cluxel/simulation/campus_params.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "cluxel/base/diagnostic.hpp"
+#include "simulation/site_plan.hpp"
+
+namespace cluxel {
+
+const std::array<CampusParamInfo, 8>& campusParamInfos() {
+  using P = CampusParams;
+  static const std::array<CampusParamInfo, 8> infos{{
+      {"stops", &P::stops, "1", 1, 1000, "scans along the route, one every 10 m"},
+      {"size", &P::size_m, "m", 45, 400, "edge of the square campus"},
+      {"points-per-stop", &P::points_per_stop, "1", 1000, 2e6, "returns per scan"},
+      {"range-sigma", &P::range_sigma_m, "m", 0, 0.2, "standard deviation of the range noise"},
+      {"max-range", &P::max_range_m, "m", 5, 300, "farthest return"},
+      {"miss-probability", &P::miss_probability, "1", 0, 0.5, "share of rays lost for no reason"},
+      {"mixed-pixel-probability", &P::mixed_pixel_probability, "1", 0, 1, "share of rays on depth edges that mix both ranges"},
+      {"beam-radius", &P::beam_radius_rad, "rad", 0, 0.02, "half the divergence of the beam"},
+  }};
+  return infos;
+}
+
+namespace {
+
+std::string shortNumber(double value) {
+  std::string text = std::to_string(value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.ends_with('.')) text.pop_back();
+  return text;
+}
+
+void checkRange(const CampusParams& params, const CampusParamInfo& info) {
+  const double value = params.*info.field;
+  if (value >= info.min && value <= info.max) return;
+  const std::string unit = info.unit == "1" ? "" : " " + std::string(info.unit);
+  throw Error(ExitCode::Usage, "the campus cannot have " + std::string(info.name) + " = " + shortNumber(value) + unit +
+                                   " (" + std::string(info.help) + "): choose " + shortNumber(info.min) + " to " +
+                                   shortNumber(info.max) + unit);
+}
+
+}  // namespace
+
+std::size_t maxStops(double size_m) {
+  return static_cast<std::size_t>(SitePlan(size_m).routeLength_m() / kStopDistance_m);
+}
+
+void check(const CampusParams& params) {
+  for (const CampusParamInfo& info : campusParamInfos()) checkRange(params, info);
+  if (params.stops != std::floor(params.stops))
+    throw Error(ExitCode::Usage, "the campus cannot have " + shortNumber(params.stops) + " stops: give a whole number");
+  const auto stops = static_cast<std::size_t>(params.stops);
+  if (stops <= maxStops(params.size_m)) return;
+  double roomy_m = std::ceil(params.size_m);
+  while (maxStops(roomy_m) < stops) roomy_m += 1;
+  throw Error(ExitCode::Usage, "a campus of " + shortNumber(params.size_m) + " m has a route of " +
+                                   std::to_string(maxStops(params.size_m)) + " stops, not " + std::to_string(stops) +
+                                   ": choose fewer stops or a size of " + shortNumber(roomy_m) + " m");
+}
+
+}  // namespace cluxel
