@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "perception/ring_graph.hpp"
+#include "perception/halo_graph.hpp"
 #include "perception/tile_bytes.hpp"
 
 namespace cluxel {
@@ -30,7 +30,7 @@ CalibratedLabel calibrate(const Calibration& calibration, const LabelValues& mar
 }
 
 LabelTile labelTile(const Ring<FeatureTile>& ring, const LabelModel& model, const LabellingParams& params) {
-  const RingGraph structure = ringGraph(ring, model.pairs.pair_scale == 0 ? 0.0 : params.halo_m);
+  const HaloGraph structure = haloGraph(ring, model.pairs.pair_scale == 0 ? 0.0 : params.halo_m);
   const auto scores = scoreRows(model.unary, nodeFeatures(ring, structure, model.layout.columns.size()));
   const CrfGraph graph = crfGraph(ring, structure, scores, model.pairs);
   const InferenceResult inferred = inferTrws(graph, {.sweeps = static_cast<unsigned>(params.sweeps)});

@@ -113,7 +113,7 @@ std::vector<ScoredTile> scoreTiles(const PlaceRefs& places, const TreeEnsemble& 
     }
   parallelFor(tiles.size(), threads, [&](std::size_t t) {
     ScoredTile& tile = tiles[t];
-    tile.structure = ringGraph(tile.ring, params.halo_m);
+    tile.structure = haloGraph(tile.ring, params.halo_m);
     tile.scores = scoreRows(unary, nodeFeatures(tile.ring, tile.structure, unary.columns));
   });
   return tiles;
@@ -156,7 +156,7 @@ class TileSampler {
     const TruthCounts& truth = truthAt(node);
     if (!isClear(truth)) return;
     for (const std::uint32_t e : x_edges[node]) {
-      const RingEdge& edge = x_tile.structure.edges[e];
+      const HaloEdge& edge = x_tile.structure.edges[e];
       const TruthCounts& other = truthAt(edge.ends.from == node ? edge.ends.to : edge.ends.from);
       if (isClear(other)) x_samples.terms.push_back({rowOf(e), edge.share, majority(other)});
     }
@@ -178,7 +178,7 @@ class TileSampler {
 
   std::uint32_t rowOf(std::uint32_t e) {
     if (x_row[e] == kNoRow) {
-      const RingEdge& edge = x_tile.structure.edges[e];
+      const HaloEdge& edge = x_tile.structure.edges[e];
       x_row[e] = x_columns == 0 ? 0 : static_cast<std::uint32_t>(x_samples.features.size() / x_columns);
       const auto begin = x_tile.ring[edge.ring]->edge_features.begin() + static_cast<std::ptrdiff_t>(edge.number * x_columns);
       x_samples.features.insert(x_samples.features.end(), begin, begin + static_cast<std::ptrdiff_t>(x_columns));

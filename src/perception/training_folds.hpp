@@ -9,7 +9,7 @@
 #include "cluxel/perception/training.hpp"
 #include "perception/calibration.hpp"
 #include "perception/pair_training.hpp"
-#include "perception/ring_graph.hpp"
+#include "perception/halo_graph.hpp"
 
 namespace cluxel {
 
@@ -28,7 +28,7 @@ TreeEnsemble trainUnary(const PlaceRefs& places, const FeatureLayout& layout, co
 struct ScoredTile {
   Ring<FeatureTile> ring{};
   Ring<std::vector<TruthCounts>> ring_truth{};
-  RingGraph structure;
+  HaloGraph structure;
   std::vector<LabelValues> scores;
 };
 std::vector<ScoredTile> scoreTiles(const PlaceRefs& places, const TreeEnsemble& unary, const LabellingParams& params,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cuts the halo out of a ring and numbers what is left.
-#include "perception/ring_graph.hpp"
+#include "perception/halo_graph.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,7 +20,7 @@ bool inHalo(const Eigen::Vector3f& p_local, double halo_m) {
   return p_local.x() >= low && p_local.x() < high && p_local.y() >= low && p_local.y() < high;
 }
 
-NodeNumbers numberNodes(const Ring<FeatureTile>& ring, double halo_m, RingGraph& graph) {
+NodeNumbers numberNodes(const Ring<FeatureTile>& ring, double halo_m, HaloGraph& graph) {
   NodeNumbers number;
   for (std::uint32_t r = 0; r < ring.size(); ++r) {
     if (r == kRingCentre) graph.own_begin = static_cast<std::uint32_t>(graph.nodes.size());
@@ -49,8 +49,8 @@ std::uint32_t degreeOf(const FeatureTile& tile, std::uint32_t index) {
 
 }  // namespace
 
-RingGraph ringGraph(const Ring<FeatureTile>& ring, double halo_m) {
-  RingGraph graph;
+HaloGraph haloGraph(const Ring<FeatureTile>& ring, double halo_m) {
+  HaloGraph graph;
   const NodeNumbers number = numberNodes(ring, halo_m, graph);
   for (std::uint32_t i = 0; i < graph.nodes.size(); ++i) {
     const auto [r, index] = graph.nodes[i];
@@ -66,11 +66,11 @@ RingGraph ringGraph(const Ring<FeatureTile>& ring, double halo_m) {
     }
   }
   std::sort(graph.edges.begin(), graph.edges.end(),
-            [](const RingEdge& a, const RingEdge& b) { return a.ends < b.ends; });
+            [](const HaloEdge& a, const HaloEdge& b) { return a.ends < b.ends; });
   return graph;
 }
 
-std::vector<float> nodeFeatures(const Ring<FeatureTile>& ring, const RingGraph& graph, std::size_t columns) {
+std::vector<float> nodeFeatures(const Ring<FeatureTile>& ring, const HaloGraph& graph, std::size_t columns) {
   std::vector<float> features;
   features.reserve(graph.nodes.size() * columns);
   for (const auto& [r, index] : graph.nodes) {
@@ -80,7 +80,7 @@ std::vector<float> nodeFeatures(const Ring<FeatureTile>& ring, const RingGraph& 
   return features;
 }
 
-CrfGraph crfGraph(const Ring<FeatureTile>& ring, const RingGraph& structure, const std::vector<LabelValues>& scores,
+CrfGraph crfGraph(const Ring<FeatureTile>& ring, const HaloGraph& structure, const std::vector<LabelValues>& scores,
                   const PairModel& pairs) {
   CrfGraph graph;
   for (const LabelValues& score : scores) {
@@ -90,7 +90,7 @@ CrfGraph crfGraph(const Ring<FeatureTile>& ring, const RingGraph& structure, con
   }
   if (pairs.pair_scale == 0) return graph;
   const std::size_t columns = pairs.knots.size();
-  for (const RingEdge& edge : structure.edges) {
+  for (const HaloEdge& edge : structure.edges) {
     const float* features = ring[edge.ring]->edge_features.data() + edge.number * columns;
     graph.edges.push_back(edge.ends);
     graph.pair_costs.push_back(pairCostsOf(pairs, {features, columns}, edge.share));

@@ -12,30 +12,30 @@
 namespace cluxel {
 
 /// A cluxel of the ring.
-struct RingNode {
+struct HaloNode {
   std::uint32_t ring = 0, index = 0;
 };
 
 /// One edge between nodes, with where its features stand.
-struct RingEdge {
+struct HaloEdge {
   CrfEdge ends;
   std::uint32_t ring = 0, number = 0;   ///< edge `number` of tile `ring`
   float share = 1;                      ///< 2 / (degree + degree), over all edges of both cluxels
 };
 
 /// Structure without costs. Nodes are ordered by ring tile and number; a tile's own cluxels are a range.
-struct RingGraph {
-  std::vector<RingNode> nodes;
-  std::vector<RingEdge> edges;          ///< ascending by ends
+struct HaloGraph {
+  std::vector<HaloNode> nodes;
+  std::vector<HaloEdge> edges;          ///< ascending by ends
   std::uint32_t own_begin = 0, own_end = 0;
 };
-RingGraph ringGraph(const Ring<FeatureTile>& ring, double halo_m);
+HaloGraph haloGraph(const Ring<FeatureTile>& ring, double halo_m);
 
 /// Features of the nodes, row by row.
-std::vector<float> nodeFeatures(const Ring<FeatureTile>& ring, const RingGraph& graph, std::size_t columns);
+std::vector<float> nodeFeatures(const Ring<FeatureTile>& ring, const HaloGraph& graph, std::size_t columns);
 
 /// Log-probabilities of the unary, as scores of any unary model, turned into the costs of a CRF.
-CrfGraph crfGraph(const Ring<FeatureTile>& ring, const RingGraph& structure, const std::vector<LabelValues>& scores,
+CrfGraph crfGraph(const Ring<FeatureTile>& ring, const HaloGraph& structure, const std::vector<LabelValues>& scores,
                   const PairModel& pairs);
 
 }  // namespace cluxel
