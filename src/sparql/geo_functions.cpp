@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// GeoSPARQL functions on WKT literals in the map's metric frame.
+#include <cmath>
+
+#include "cluxel/knowledge/vocabulary.hpp"
+#include "sparql/function_bodies.hpp"
+#include "sparql/geometry.hpp"
+
+namespace cluxel::sparql {
+namespace {
+
+using Type = Value::Type;
+
+const std::string& wktDatatype() {
+  static const std::string iri = std::string(vocabulary::kGeo) + "wktLiteral";
+  return iri;
+}
+
+/// Null for what is not a well-formed geo:wktLiteral.
+std::shared_ptr<const Geometry> geometryOf(const Value& value, FunctionContext& context) {
+  if (value.type != Type::Other || context.terms.view(value.id).datatype != wktDatatype()) return nullptr;
+  return context.geometries->find(context.terms.view(value.id).text);
+}
+
+template <typename Test>
+Value relate(Arguments arguments, FunctionContext& context, Test test) {
+  const auto a = geometryOf(arguments[0], context), b = geometryOf(arguments[1], context);
+  if (!a || !b) return {};
+  return Value::boolean(test(*a, *b));
+}
+
+}  // namespace
+
+Value geoDistanceFunction(Arguments arguments, FunctionContext& context) {
+  // The unit may be named; only metres are known.
+  if (arguments.size() == 3) {
+    const std::string unit = context.terms.textOf(arguments[2]);
+    if (!unit.ends_with("metre") && !unit.ends_with("meter")) return {};
+  }
+  const auto a = geometryOf(arguments[0], context), b = geometryOf(arguments[1], context);
+  if (!a || !b) return {};
+  const double distance_m = distanceBetween(*a, *b);
+  return std::isfinite(distance_m) ? Value::ofDouble(distance_m) : Value();
+}
+
+Value sfIntersectsFunction(Arguments arguments, FunctionContext& context) {
+  return relate(arguments, context, [](const Geometry& a, const Geometry& b) { return intersects(a, b); });
+}
+
+Value sfDisjointFunction(Arguments arguments, FunctionContext& context) {
+  return relate(arguments, context, [](const Geometry& a, const Geometry& b) { return !intersects(a, b); });
+}
+
+Value sfWithinFunction(Arguments arguments, FunctionContext& context) {
+  return relate(arguments, context, [](const Geometry& a, const Geometry& b) { return within(a, b); });
+}
+
+Value sfContainsFunction(Arguments arguments, FunctionContext& context) {
+  return relate(arguments, context, [](const Geometry& a, const Geometry& b) { return within(b, a); });
+}
+
+Value sfTouchesFunction(Arguments arguments, FunctionContext& context) {
+  return relate(arguments, context, [](const Geometry& a, const Geometry& b) { return touches(a, b); });
+}
+
+Value envelopeFunction(Arguments arguments, FunctionContext& context) {
+  const auto geometry = geometryOf(arguments[0], context);
+  if (!geometry) return {};
+  const Term term = Term::literal(envelopeWkt(*geometry), wktDatatype());
+  return context.terms.valueOf(context.terms.intern(term));
+}
+
+}  // namespace cluxel::sparql
