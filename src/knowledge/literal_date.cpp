@@ -56,7 +56,7 @@ class Reader {
   }
 
   bool zone(std::int64_t& offset_s) {
-    if (rest_.empty() || character('Z')) return rest_.empty();
+    if (character('Z')) return rest_.empty();
     const bool west = rest_.front() == '-';
     rest_.remove_prefix(1);
     int hours = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// xsd:dateTime and xsd:date as microseconds since 1970-01-01T00:00:00Z; a missing time zone counts as UTC.
+// xsd:dateTime and xsd:date as microseconds since 1970-01-01T00:00:00Z; none without a time zone.
 #pragma once
 
 #include <cstdint>

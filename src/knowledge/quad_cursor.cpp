@@ -6,6 +6,20 @@
 
 namespace cluxel {
 
+namespace {
+
+/// The first key not less than `key`, which the last one is not: doubling steps, so that near targets cost
+/// little.
+const QuadKey* gallop(const QuadKey* first, const QuadKey* last, Key128 key) {
+  std::ptrdiff_t step = 1;
+  while (step < last - first && toNumber(first[step]) < key) step *= 2;
+  const QuadKey* const bound = step < last - first ? first + step + 1 : last;
+  return std::partition_point(first + step / 2, bound,
+                              [&](const QuadKey& entry) { return toNumber(entry) < key; });
+}
+
+}  // namespace
+
 QuadCursor::Impl::Impl(const PageDirectory& from, const IndexPattern& laid_out, QuadOrder sorted_by)
     : directory(from), pattern(laid_out), order(sorted_by), position(from.lowerBound(laid_out.range.first)) {
   loadPage();
@@ -29,11 +43,31 @@ bool QuadCursor::Impl::loadPage() {
 }
 
 void QuadCursor::Impl::moveTo(Key128 key) {
-  if (key <= pattern.range.first && at != nullptr) return;
-  if (at != stop && toNumber(*at) >= key) return;
+  if (key <= pattern.range.first) return;
+  if (at != stop && toNumber(stop[-1]) >= key) {
+    at = gallop(at, stop, key);
+    return;
+  }
   const PageDirectory::Position present{position.page == 0 ? 0 : position.page - 1, 0};
-  position = directory.lowerBound(key, present);
+  const PageDirectory::Position found = directory.lowerBound(key, present);
+  if (found.page >= position.page) position = found;  // never back to a page that has been read
   loadPage();
+}
+
+template <QuadOrder kOrder>
+std::size_t QuadCursor::Impl::copy(std::span<QuadIds> out) {
+  std::size_t count = 0;
+  while (count < out.size() && (at != stop || loadPage())) {
+    const QuadKey* const until =
+        at + std::min<std::size_t>(out.size() - count, static_cast<std::size_t>(stop - at));
+    if (!pattern.filtered) {
+      for (; at != until; ++at) out[count++] = toQuad(*at, kOrder);
+      continue;
+    }
+    for (; at != until; ++at)
+      if ((toNumber(*at) & pattern.mask) == pattern.value) out[count++] = toQuad(*at, kOrder);
+  }
+  return count;
 }
 
 QuadCursor::QuadCursor() = default;
@@ -52,6 +86,21 @@ bool QuadCursor::next(QuadIds& quad) {
     return true;
   }
   return false;
+}
+
+std::size_t QuadCursor::next(std::span<QuadIds> out) {
+  if (!impl_) return 0;
+  switch (impl_->order) {
+    case QuadOrder::Spog:
+      return impl_->copy<QuadOrder::Spog>(out);
+    case QuadOrder::Posg:
+      return impl_->copy<QuadOrder::Posg>(out);
+    case QuadOrder::Ospg:
+      return impl_->copy<QuadOrder::Ospg>(out);
+    case QuadOrder::Gspo:
+      return impl_->copy<QuadOrder::Gspo>(out);
+  }
+  return 0;
 }
 
 void QuadCursor::seek(const QuadIds& quad) {

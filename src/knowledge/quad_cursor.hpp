@@ -18,6 +18,8 @@ struct QuadCursor::Impl {
 
   bool loadPage();  ///< false at the end
   void moveTo(Key128 key);
+  template <QuadOrder kOrder>
+  std::size_t copy(std::span<QuadIds> out);
 };
 
 }  // namespace cluxel

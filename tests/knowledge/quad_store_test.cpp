@@ -58,17 +58,80 @@ QuadPattern patternOf(const QuadIds& quad, unsigned bound) {
   return pattern;
 }
 
+std::vector<QuadIds> drainInBulk(QuadCursor cursor, std::size_t at_once) {
+  std::vector<QuadIds> found;
+  std::vector<QuadIds> buffer(at_once);
+  while (const std::size_t count = cursor.next(buffer))
+    found.insert(found.end(), buffer.begin(), buffer.begin() + count);
+  return found;
+}
+
+std::vector<QuadIds> drainBlocks(QuadCursor cursor, const QuadPattern& pattern) {
+  std::vector<QuadIds> found;
+  for (auto block = cursor.nextBlock(); !block.empty(); block = cursor.nextBlock())
+    for (const QuadKey& key : block) {
+      const QuadIds quad = toQuad(key, cursor.order());
+      EXPECT_TRUE(cursor.filtered() || matches(quad, pattern));
+      if (matches(quad, pattern)) found.push_back(quad);
+    }
+  return found;
+}
+
+/// Runs through `quads` with a cursor that seeks ahead now and then.
+void expectSeeksLikeASortedList(QuadCursor cursor, const std::vector<QuadIds>& quads, std::mt19937& random,
+                                TermId range) {
+  const QuadOrder order = cursor.order();
+  std::size_t at = 0;
+  for (QuadIds quad; true;) {
+    if (random() % 3 == 0) {
+      const QuadIds target = randomQuad(random, range);
+      cursor.seek(target);
+      while (at < quads.size() && inOrder(quads[at], order) < inOrder(target, order)) ++at;
+    }
+    const bool more = cursor.next(quad);
+    ASSERT_EQ(more, at < quads.size());
+    if (!more) return;
+    ASSERT_EQ(quad, quads[at++]);
+  }
+}
+
+void expectLookupsFindWhatScansFind(const QuadReader& reader, const std::set<QuadIds>& quads,
+                                    std::mt19937& random, TermId range) {
+  for (const QuadOrder order : kOrders) {
+    PrefixLookup lookup = reader.lookup(order);
+    for (int i = 0; i < 20; ++i) {
+      const std::array<TermId, 4> ids = inOrder(randomQuad(random, range), order);
+      const std::size_t length = 1 + random() % 4;
+      std::vector<QuadIds> found;
+      for (auto keys = lookup.find(std::span(ids).first(length)); !keys.empty(); keys = lookup.more())
+        for (const QuadKey& key : keys) found.push_back(toQuad(key, order));
+      std::vector<QuadIds> wanted = expected(quads, {}, order);
+      std::erase_if(wanted, [&](const QuadIds& quad) {
+        const auto other = inOrder(quad, order);
+        return !std::equal(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(length), other.begin());
+      });
+      ASSERT_EQ(found, wanted);
+    }
+  }
+}
+
 void expectSameAnswers(const QuadReader& reader, const std::set<QuadIds>& quads, std::mt19937& random,
                        TermId range) {
   ASSERT_EQ(reader.size(), quads.size());
   for (unsigned bound = 0; bound < 16; ++bound) {
     const QuadPattern pattern = patternOf(randomQuad(random, range), bound);
-    for (const QuadOrder order : kOrders)
-      ASSERT_EQ(drain(reader.scan(pattern, order)), expected(quads, pattern, order)) << bound;
+    for (const QuadOrder order : kOrders) {
+      const std::vector<QuadIds> wanted = expected(quads, pattern, order);
+      ASSERT_EQ(drain(reader.scan(pattern, order)), wanted) << bound;
+      ASSERT_EQ(drainInBulk(reader.scan(pattern, order), 1 + random() % 300), wanted) << bound;
+      ASSERT_EQ(drainBlocks(reader.scan(pattern, order), pattern), wanted) << bound;
+      expectSeeksLikeASortedList(reader.scan(pattern, order), wanted, random, range);
+    }
     ASSERT_EQ(reader.count(pattern), expected(quads, pattern, QuadOrder::Spog).size());
     const QuadIds probe = randomQuad(random, range);
     ASSERT_EQ(reader.contains(probe), quads.contains(probe));
   }
+  expectLookupsFindWhatScansFind(reader, quads, random, range);
 }
 
 TEST(QuadStore, AnswersEveryPatternAsAPlainSetDoes) {

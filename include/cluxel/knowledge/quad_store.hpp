@@ -81,7 +81,8 @@ struct TermView {
 /// A value decoded when its term entered the dictionary.
 struct DecodedValue {
   enum class Type : std::uint8_t {
-    None,        ///< not a literal, or of a datatype that is not decoded, or ill-formed, or an integer beyond 64 bits
+    None,        ///< not a literal, of a datatype that is not decoded, ill-formed, an integer beyond 64 bits, or a
+                 ///< DateTime or Date without a time zone (its order against others is not determined)
     Integer,     ///< xsd:integer and its derived types, when it fits 64 bits
     Decimal, Float, Double, Boolean, String, LangString, DateTime, Date
   };
@@ -104,6 +105,8 @@ class QuadCursor {
 
   /// The next quad in s,p,o,g form; false at the end.
   bool next(QuadIds& quad);
+  /// Fills `out` from the front and gives how many there were; fewer than out.size() only at the end.
+  std::size_t next(std::span<QuadIds> out);
   /// Moves forward to the first quad not before `quad` in the cursor's order, without reading what lies between.
   void seek(const QuadIds& quad);
   /// The rest of the current page's quads within the range, then page by page; empty at the end. At most 255 entries.
