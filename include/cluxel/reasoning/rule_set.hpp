@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// A rule set as plain values: per class, decision trees over the scene's primitives. docs/rules.md tells the language.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "cluxel/base/content_hash.hpp"
+#include "cluxel/reasoning/class_catalogue.hpp"
+#include "cluxel/reasoning/rule_condition.hpp"
+
+namespace cluxel {
+
+/// Primitives that are linked become one thing, as long as all limits hold for what they become.
+struct GroupSpec {
+  SourceLocation at;
+  std::vector<PrimitiveLabel> labels;
+  std::optional<double> near_m;                          ///< link when the gap is at most this
+  std::optional<double> horizontal_m, vertical_m;        ///< or when both gaps are
+  bool adjacent = false;                                 ///< or when a cluxel edge joins them
+  std::vector<Condition> limits;
+};
+
+/// Keeps only the cluxels between two heights above the local ground, each connected bunch for itself.
+struct SliceSpec {
+  double from_m = 0, to_m = 0;
+};
+
+struct SeedSpec {
+  std::string name = "seed";
+  std::vector<PrimitiveLabel> labels;
+  std::optional<SliceSpec> slice;
+  std::vector<Condition> where;        ///< each primitive must pass before it is grouped
+};
+
+enum class Choice : std::uint8_t { LargestVolume, MostPoints, Nearest, Highest, Lowest, MostAdjacent, All };
+
+using NodeIndex = std::size_t;
+
+struct BranchNode {
+  Condition condition;
+  NodeIndex yes = 0, no = 0;
+};
+
+/// Binds another primitive (or all that fit) to a name for the rest of the branch.
+struct FindNode {
+  std::string name;
+  std::vector<PrimitiveLabel> labels;
+  std::string object_class;            ///< when given: among the primitives of such objects, for reference only
+  std::vector<Condition> where;        ///< relations and measures to bound names; the subject is the candidate
+  Choice choose = Choice::LargestVolume;
+  std::string nearest_to;              ///< for Nearest, MostAdjacent: the first bound name in `where`
+  bool share = false;                  ///< may be bound by several things of this class; a `part_among` parts it
+  NodeIndex found = 0, missing = 0;
+};
+
+/// Confidence grows from `low` to `high` while an attribute goes from `at_low` to `at_high`.
+struct ConfidenceRamp {
+  std::string of;
+  Attribute attribute = Attribute::Probability;
+  double at_low = 0, at_high = 1;
+};
+struct Confidence {
+  double low = 1, high = 1;
+  std::vector<ConfidenceRamp> ramps;   ///< their mean counts; none: `high`
+};
+
+struct AbsorbSpec {
+  SourceLocation at;
+  std::vector<PrimitiveLabel> labels;
+  std::vector<Condition> when;
+  double max_fraction_of_points = 1;
+  std::string into;                    ///< bound name whose part they join
+  bool late = false;                   ///< after all classes had their turn, instead of after this class
+};
+
+/// Shared primitives are parted among the objects that claim them, along the cluxel graph.
+struct PartingSpec {
+  SourceLocation at;
+  std::string part, from;              ///< bound names: what is parted, and where the ways begin
+  double reach_m = 8;                  ///< largest plan distance from the foot of `from`
+  double jump_m = 0.5;                 ///< gaps up to this are bridged, at double length
+  double clearance_m = 0;              ///< cluxels lower above the ground than this are left alone
+};
+
+struct AcceptLeaf {
+  std::vector<std::pair<std::string, std::string>> parts;   ///< bound name -> part class IRI, in the order written
+  Confidence confidence;
+  std::vector<AbsorbSpec> absorb;
+  std::optional<PartingSpec> parting;
+  bool merge_into_related = false;     ///< joins the object that the last passed relation test met
+};
+
+struct RejectLeaf {
+  std::string reason;
+  std::string hint;                    ///< a rule that may fit instead
+  bool leave_unknown = false;          ///< no later rule may take the seed
+};
+
+struct TreeNode {
+  SourceLocation at;
+  std::variant<BranchNode, FindNode, AcceptLeaf, RejectLeaf> what;
+};
+
+struct Rule {
+  std::string id;
+  std::string class_iri;
+  std::string description;
+  SourceLocation at;
+  SeedSpec seed;
+  std::optional<GroupSpec> group;
+  std::vector<TreeNode> nodes;         ///< node 0 is the root
+};
+
+/// A file that went into a rule set, under the name by which it was included.
+struct RuleSource {
+  std::string name;
+  std::string text;
+};
+
+struct RuleSet {
+  std::string name, version, description;
+  std::map<std::string, std::string> prefixes;
+  std::vector<std::string> order;      ///< class IRIs: who gets a primitive first
+  std::vector<Rule> rules;             ///< in the order written
+  std::vector<RuleSource> sources;
+  ClassCatalogue catalogue;            ///< the classes it was checked against
+  /// Hash of the sources' texts.
+  ContentHash hash() const;
+  const Rule* find(std::string_view id) const;
+  /// "clx:Tree" for a class IRI, with the rule set's prefixes; the IRI itself when none fits.
+  std::string shorten(std::string_view iri) const;
+};
+
+}  // namespace cluxel

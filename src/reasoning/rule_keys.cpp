@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// The keys of the rule language, mapping by mapping.
+#include <algorithm>
+
+#include "cluxel/base/nearest_name.hpp"
+#include "reasoning/rule_reading.hpp"
+
+namespace cluxel {
+
+namespace {
+
+std::vector<std::string> conditionKeys() {
+  std::vector<std::string> keys{"of",       "attribute",       "op",           "value",
+                                "min",      "max",             "ratio",        "to",
+                                "relation", "with",            "within",       "label",
+                                "label_in", "class",           "ask",          "all",
+                                "any",      "not",             "gap_to",       "horizontal_gap_to",
+                                "vertical_gap_to", "axis_distance_to", "adjacent_fraction_to"};
+  for (const RelationInfo& relation : relationInfos()) keys.emplace_back(relation.name);
+  return keys;
+}
+
+}  // namespace
+
+const std::vector<RuleKeyTable>& ruleKeyTables() {
+  static const std::vector<RuleKeyTable> tables{
+      {"file", {"apiVersion", "ruleset", "include", "prefixes", "constants", "order", "rules", "override"}},
+      {"ruleset", {"name", "version", "description"}},
+      {"order", {"insert", "before", "after"}},
+      {"override", {"constants", "rules", "remove"}},
+      {"rule", {"id", "class", "description", "seed", "group", "tree"}},
+      {"seed", {"label", "label_in", "as", "slice", "where"}},
+      {"slice", {"from", "to"}},
+      {"group", {"label", "label_in", "near", "horizontal", "vertical", "adjacent", "limits"}},
+      {"node",
+       {"test", "all", "any", "not", "ask", "yes", "no", "find", "found", "missing", "accept", "reject", "hint",
+        "leave"}},
+      {"find", {"as", "label", "label_in", "object", "relations", "where", "choose", "share"}},
+      {"accept", {"part", "parts", "confidence", "absorb", "split", "merge_into"}},
+      {"confidence", {"from", "to", "over"}},
+      {"ramp", {"of", "attribute", "min", "max"}},
+      {"absorb", {"from", "when", "max_fraction_of_points", "into", "late"}},
+      {"absorb_from", {"label", "label_in"}},
+      {"split", {"shared", "from", "reach", "jump", "clearance"}},
+      {"condition", conditionKeys()},
+      {"ratio_to", {"of", "attribute"}},
+      {"target", {"label", "label_in", "object"}},
+  };
+  return tables;
+}
+
+namespace {
+
+const RuleKeyTable& tableOf(std::string_view context) {
+  const auto& tables = ruleKeyTables();
+  return *std::find_if(tables.begin(), tables.end(), [&](const RuleKeyTable& t) { return t.context == context; });
+}
+
+bool isKnown(const RuleKeyTable& table, const std::string& key) {
+  return std::find(table.keys.begin(), table.keys.end(), key) != table.keys.end();
+}
+
+}  // namespace
+
+bool checkKeys(const YamlNode& node, std::string_view context, FaultList& faults) {
+  const RuleKeyTable& table = tableOf(context);
+  if (!node.isMap()) {
+    faults.error(node.at, "'" + std::string(context) + "' must be a mapping, not " + std::string(describeKind(node)),
+                 "its keys are: " + table.keys.front() + ", ...");
+    return false;
+  }
+  for (const YamlNode& key : node.keys)
+    if (!isKnown(table, key.text))
+      faults.error(key.at, "unknown key '" + key.text + "' in '" + std::string(context) + "'",
+                   suggestion(key.text, table.keys));
+  return true;
+}
+
+const YamlNode* requireKey(const YamlNode& node, std::string_view key, std::string_view context, FaultList& faults) {
+  const YamlNode* value = node.find(key);
+  if (value != nullptr && !value->isNull()) return value;
+  if (value != nullptr) {
+    faults.error(node.keyNode(key)->at, "'" + std::string(key) + "' has no value");
+    return nullptr;
+  }
+  // A mistyped key is reported once, as unknown, and not again as missing.
+  const RuleKeyTable& table = tableOf(context);
+  for (const YamlNode& given : node.keys)
+    if (!isKnown(table, given.text) && nearestName(given.text, table.keys) == key) return nullptr;
+  faults.error(node.at, "'" + std::string(context) + "' needs the key '" + std::string(key) + "'");
+  return nullptr;
+}
+
+}  // namespace cluxel

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Things: what rules bind to names. One piece of a primitive or several together, measured as one.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cluxel/perception/scene.hpp"
+
+namespace cluxel {
+
+using PieceIndex = std::uint32_t;
+
+/// What is measured of a set of cluxels.
+struct Shape {
+  std::array<double, kAttributeCount> attributes{};
+  Eigen::Vector3d min = Eigen::Vector3d::Zero(), max = Eigen::Vector3d::Zero();   ///< [m, map]
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();                             ///< [m, map]
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  double points = 0;
+
+  double operator[](Attribute attribute) const { return attributes[static_cast<std::size_t>(attribute)]; }
+};
+
+struct Thing {
+  std::vector<PieceIndex> pieces;   ///< ascending
+  Shape shape;
+};
+
+/// The shape of a whole primitive, as perception measured it.
+Shape shapeOfPrimitive(const Primitive& primitive, const SceneCluxels& cluxels);
+
+/// The shape of any cluxels, from their means, boxes and numbers of points: moments are merged, a cluxel's own points
+/// taken as spread evenly over its box. `members` are the primitives they come from; they give what cluxels do not
+/// know (views, intensity, ground contact). Cost O(n log n).
+Shape shapeOfCluxels(const Scene& scene, std::span<const std::uint32_t> cluxels,
+                     std::span<const PrimitiveIndex> members);
+
+}  // namespace cluxel

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+// Measures sets of cluxels: moments, the smallest upright box, heights above ground, footprint.
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "reasoning/thing.hpp"
+
+namespace cluxel {
+
+namespace {
+
+constexpr double kFootprintCell_m = 0.25;
+using Point2 = Eigen::Vector2d;
+
+double cross(const Point2& o, const Point2& a, const Point2& b) {
+  return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
+}
+
+/// Andrew's monotone chain; counter-clockwise, without collinear points.
+std::vector<Point2> convexHull(std::vector<Point2> points) {
+  std::sort(points.begin(), points.end(),
+            [](const Point2& a, const Point2& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  if (points.size() < 3) return points;
+  std::vector<Point2> hull(2 * points.size());
+  std::size_t size = 0;
+  for (const Point2& p : points) {
+    while (size >= 2 && cross(hull[size - 2], hull[size - 1], p) <= 0) --size;
+    hull[size++] = p;
+  }
+  const std::size_t lower = size + 1;
+  for (auto p = points.rbegin() + 1; p != points.rend(); ++p) {
+    while (size >= lower && cross(hull[size - 2], hull[size - 1], *p) <= 0) --size;
+    hull[size++] = *p;
+  }
+  hull.resize(size - 1);
+  return hull;
+}
+
+/// Larger and smaller side of the smallest-area box with a side along an edge of the hull.
+std::pair<double, double> smallestBox(const std::vector<Point2>& hull) {
+  double best_area = std::numeric_limits<double>::infinity();
+  std::pair<double, double> best{0, 0};
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    Point2 along = hull[(i + 1) % hull.size()] - hull[i];
+    if (along.norm() == 0) continue;
+    along.normalize();
+    const Point2 across(-along.y(), along.x());
+    double low_u = 1e300, high_u = -1e300, low_v = 1e300, high_v = -1e300;
+    for (const Point2& p : hull) {
+      const double u = p.dot(along), v = p.dot(across);
+      low_u = std::min(low_u, u), high_u = std::max(high_u, u);
+      low_v = std::min(low_v, v), high_v = std::max(high_v, v);
+    }
+    const double a = high_u - low_u, b = high_v - low_v;
+    if (a * b >= best_area) continue;
+    best_area = a * b;
+    best = {std::max(a, b), std::min(a, b)};
+  }
+  return best;
+}
+
+std::vector<Point2> footprintCorners(const SceneCluxels& all, std::span<const std::uint32_t> cluxels) {
+  std::vector<Point2> corners;
+  corners.reserve(4 * cluxels.size());
+  for (std::uint32_t i : cluxels) {
+    const Point2 centre = all.center[i].head<2>();
+    const Point2 half = all.extent[i].head<2>().cast<double>() / 2;
+    for (double sx : {-1.0, 1.0})
+      for (double sy : {-1.0, 1.0}) corners.emplace_back(centre.x() + sx * half.x(), centre.y() + sy * half.y());
+  }
+  return corners;
+}
+
+double footprintArea(const SceneCluxels& all, std::span<const std::uint32_t> cluxels) {
+  std::vector<std::pair<std::int64_t, std::int64_t>> cells;
+  for (std::uint32_t i : cluxels) {
+    const Point2 half = all.extent[i].head<2>().cast<double>() / 2;
+    const Point2 low = (all.center[i].head<2>() - half) / kFootprintCell_m;
+    const Point2 high = (all.center[i].head<2>() + half) / kFootprintCell_m;
+    // A cluxel's box is not longer than its ball, so this loop is short; the bound guards against broken input.
+    const auto first_x = static_cast<std::int64_t>(std::floor(low.x()));
+    const auto first_y = static_cast<std::int64_t>(std::floor(low.y()));
+    const auto last_x = std::min(first_x + 40, static_cast<std::int64_t>(std::floor(high.x())));
+    const auto last_y = std::min(first_y + 40, static_cast<std::int64_t>(std::floor(high.y())));
+    for (std::int64_t x = first_x; x <= last_x; ++x)
+      for (std::int64_t y = first_y; y <= last_y; ++y) cells.emplace_back(x, y);
+  }
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return static_cast<double>(cells.size()) * kFootprintCell_m * kFootprintCell_m;
+}
+
+/// The value below which half of the weight lies.
+double weightedMedian(std::vector<std::pair<double, double>> values) {
+  std::sort(values.begin(), values.end());
+  double total = 0, sum = 0;
+  for (const auto& [value, weight] : values) total += weight;
+  for (const auto& [value, weight] : values)
+    if ((sum += weight) >= total / 2) return value;
+  return values.empty() ? 0 : values.back().first;
+}
+
+class Measuring {
+ public:
+  Measuring(const Scene& scene, std::span<const std::uint32_t> cluxels) : all_(scene.cluxels), cluxels_(cluxels) {}
+
+  Shape measure() {
+    if (cluxels_.empty()) return shape_;
+    boundsAndMean();
+    upright();
+    heights();
+    moments();
+    return shape_;
+  }
+
+ private:
+  double& at(Attribute attribute) { return shape_.attributes[static_cast<std::size_t>(attribute)]; }
+  double weight(std::uint32_t cluxel) const { return std::max<double>(1, all_.point_count[cluxel]); }
+
+  void boundsAndMean() {
+    shape_.min = Eigen::Vector3d::Constant(1e300);
+    shape_.max = -shape_.min;
+    for (std::uint32_t i : cluxels_) {
+      const Eigen::Vector3d half = all_.extent[i].cast<double>() / 2;
+      shape_.min = shape_.min.cwiseMin(all_.center[i] - half);
+      shape_.max = shape_.max.cwiseMax(all_.center[i] + half);
+      shape_.centroid += weight(i) * all_.center[i];
+      shape_.points += weight(i);
+      const auto label = static_cast<std::size_t>(all_.label[i]);
+      at(Attribute::Probability) += weight(i) * static_cast<double>(all_.probability[i][label]);
+    }
+    shape_.centroid /= shape_.points;
+    at(Attribute::Probability) /= shape_.points;
+    at(Attribute::PointCount) = shape_.points;
+    at(Attribute::CluxelCount) = static_cast<double>(cluxels_.size());
+  }
+
+  void upright() {
+    const auto [length, width] = smallestBox(convexHull(footprintCorners(all_, cluxels_)));
+    at(Attribute::HorizontalExtent) = at(Attribute::Length) = length;
+    at(Attribute::HorizontalThickness) = at(Attribute::Width) = width;
+    at(Attribute::Height) = shape_.max.z() - shape_.min.z();
+    at(Attribute::Volume) = length * width * at(Attribute::Height);
+    at(Attribute::FootprintArea) = footprintArea(all_, cluxels_);
+  }
+
+  void heights() {
+    double bottom = 1e300, top = -1e300;
+    std::vector<std::pair<double, double>> above;
+    for (std::uint32_t i : cluxels_) {
+      const double height = static_cast<double>(all_.height_above_ground[i]);
+      const double half = static_cast<double>(all_.extent[i].z()) / 2;
+      bottom = std::min(bottom, height - half);
+      top = std::max(top, height + half);
+      above.emplace_back(height, weight(i));
+    }
+    at(Attribute::Bottom) = bottom;
+    at(Attribute::Top) = top;
+    at(Attribute::ElevationSpan) = top - bottom;
+    at(Attribute::FreeHeightBelow) = weightedMedian(std::move(above));
+  }
+
+  void moments() {
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    for (std::uint32_t i : cluxels_) {
+      const Eigen::Vector3d d = all_.center[i] - shape_.centroid;
+      const Eigen::Vector3d spread = all_.extent[i].cast<double>().cwiseAbs2() / 12;
+      covariance += weight(i) * (d * d.transpose() + Eigen::Matrix3d(spread.asDiagonal()));
+    }
+    covariance /= shape_.points;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+    const Eigen::Vector3d l = solver.eigenvalues().cwiseMax(0);
+    const double l1 = l[2] > 0 ? l[2] : 1;
+    shape_.axis = upward(solver.eigenvectors().col(2));
+    const Eigen::Vector3d normal = upward(solver.eigenvectors().col(0));
+    at(Attribute::Linearity) = (l[2] - l[1]) / l1;
+    at(Attribute::Planarity) = (l[1] - l[0]) / l1;
+    at(Attribute::Scattering) = l[0] / l1;
+    at(Attribute::Roughness) = std::sqrt(l[0]);
+    at(Attribute::AxisTilt) = std::acos(std::clamp(shape_.axis.z(), 0.0, 1.0));
+    at(Attribute::NormalTilt) = std::acos(std::clamp(normal.z(), 0.0, 1.0));
+    std::vector<std::pair<double, double>> distances;
+    for (std::uint32_t i : cluxels_) {
+      const Eigen::Vector3d d = all_.center[i] - shape_.centroid;
+      distances.emplace_back((d - d.dot(shape_.axis) * shape_.axis).norm(), weight(i));
+    }
+    at(Attribute::Radius) = weightedMedian(std::move(distances));
+  }
+
+  static Eigen::Vector3d upward(const Eigen::Vector3d& v) { return v.z() < 0 ? Eigen::Vector3d(-v) : v; }
+
+  const SceneCluxels& all_;
+  std::span<const std::uint32_t> cluxels_;
+  Shape shape_;
+};
+
+/// What only perception knows of points, carried over from the primitives.
+void takeFromMembers(const Scene& scene, std::span<const PrimitiveIndex> members, Shape& shape) {
+  auto at = [&](Attribute attribute) -> double& { return shape.attributes[static_cast<std::size_t>(attribute)]; };
+  double points = 0;
+  const Primitive* lowest = nullptr;
+  for (PrimitiveIndex index : members) {
+    const Primitive& member = scene.primitives[index];
+    const double weight = std::max(1.0, member[Attribute::PointCount]);
+    points += weight;
+    at(Attribute::MeanIntensity) += weight * member[Attribute::MeanIntensity];
+    at(Attribute::ViewCount) = std::max(at(Attribute::ViewCount), member[Attribute::ViewCount]);
+    const bool lower = lowest == nullptr || member[Attribute::Bottom] < (*lowest)[Attribute::Bottom] ||
+                       (member[Attribute::Bottom] == (*lowest)[Attribute::Bottom] && member.id < lowest->id);
+    if (lower) lowest = &member;
+  }
+  if (lowest == nullptr) return;
+  at(Attribute::MeanIntensity) /= points;
+  at(Attribute::GroundContact) = (*lowest)[Attribute::GroundContact];
+}
+
+}  // namespace
+
+Shape shapeOfPrimitive(const Primitive& primitive, const SceneCluxels& cluxels) {
+  Shape shape;
+  shape.attributes = primitive.attributes;
+  shape.min = primitive.min;
+  shape.max = primitive.max;
+  shape.centroid = primitive.centroid;
+  shape.axis = primitive.axis;
+  for (std::uint32_t i : primitive.cluxels) shape.points += std::max<double>(1, cluxels.point_count[i]);
+  return shape;
+}
+
+Shape shapeOfCluxels(const Scene& scene, std::span<const std::uint32_t> cluxels,
+                     std::span<const PrimitiveIndex> members) {
+  Shape shape = Measuring(scene, cluxels).measure();
+  takeFromMembers(scene, members, shape);
+  return shape;
+}
+
+}  // namespace cluxel
