@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where buildings stand: a main hall in the north, halls in the west and east, a row of houses south of the street.
+#include <algorithm>
 #include <cmath>
 
 #include "simulation/makers.hpp"
@@ -15,6 +16,8 @@ class BuildingLayout {
 
   void build(const BuildingSpec& spec) {
     site_.reserve(spec.footprint);
+    const Vector2d door{spec.footprint.center().x(), spec.footprint.min().y()};
+    if (spec.portico) site_.reserve({door - Vector2d{5.4, 3.3}, door + Vector2d{5.4, 0}});
     makeBuilding(site_, spec, site_.stream(RandomUse::Building, built_++));
   }
 

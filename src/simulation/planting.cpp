@@ -66,7 +66,7 @@ class Planting {
   void lawnTree(int number) {
     TreeSpec spec = usualTree(static_cast<TreeShape>(number % 4), random_);
     for (int attempt = 0; attempt < 60; ++attempt) {
-      const Vector2d place = attempt < 30 ? onQuad() : anywhere();
+      const Vector2d place = number % 2 == 0 && attempt < 30 ? onQuad() : anywhere();
       if (!hasRoom(place, spec) || site_.touchesCrown(place, spec.crown_radius_m) || !tree(place, spec)) continue;
       if (number % 3 == 0) companion(place, spec);
       return;
@@ -130,7 +130,7 @@ void plantLawns(CampusSite& site) {
   for (const double side : {-1.0, 1.0})
     for (double x = 3; x + 5 < std::abs(plan.west()); x += planting.random().uniform(9, 12))
       planting.hedge({side * x, plan.north() + 3.6}, {side * (x + planting.random().uniform(3.5, 6)), plan.north() + 3.6});
-  for (int i = 0; i < static_cast<int>(area / 300); ++i) planting.lawnTree(i);
+  for (int i = 0; i < static_cast<int>(area / 330); ++i) planting.lawnTree(i);
   for (int i = 0; i < static_cast<int>(area / 220); ++i) planting.bush(i % 2 == 0);
 }
 

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Small campuses for tests.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "cluxel/simulation/laser.hpp"
+
+namespace cluxel::test {
+
+/// 50 m, few points: a second or less.
+CampusParams smallCampus(std::uint64_t seed);
+
+/// Without noise of any kind.
+CampusParams withoutNoise(CampusParams params);
+
+/// One stop at the origin inside a closed cube with walls at a distance of `half_m`.
+Campus room(const CampusParams& params, double half_m);
+
+std::vector<SimulatedScan> scanAll(const Campus& campus);
+
+}  // namespace cluxel::test

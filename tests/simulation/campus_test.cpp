@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// The generated campus: the same from the same seed, whole, plausible, and with truth that fits its shapes.
+#include "cluxel/simulation/campus.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "cluxel/base/diagnostic.hpp"
+#include "simulation/campus_fixture.hpp"
+
+namespace cluxel {
+namespace {
+
+using Eigen::Vector3d;
+using test::smallCampus;
+
+constexpr int kTree = 2, kLamp = 4, kSign = 5, kPole = 6, kVehicle = 7, kSmall = 8;
+
+bool operator==(const CampusMesh& a, const CampusMesh& b) {
+  return a.label == b.label && a.instance == b.instance && a.triangles == b.triangles && a.vertices == b.vertices;
+}
+
+TEST(Campus, IsTheSameForTheSameSeedAndAnotherForAnother) {
+  const Campus first = buildCampus(smallCampus(1)), again = buildCampus(smallCampus(1)), other = buildCampus(smallCampus(2));
+  ASSERT_EQ(first.meshes.size(), again.meshes.size());
+  for (std::size_t i = 0; i < first.meshes.size(); ++i) ASSERT_TRUE(first.meshes[i] == again.meshes[i]) << "mesh " << i;
+  EXPECT_EQ(describeCampus(first), describeCampus(again));
+  EXPECT_NE(describeCampus(first), describeCampus(other));
+}
+
+TEST(Campus, EveryMeshHasTrianglesWithinItsVerticesAndAnObjectOfItsClass) {
+  const Campus campus = buildCampus(smallCampus(4));
+  for (const CampusMesh& mesh : campus.meshes) {
+    ASSERT_FALSE(mesh.triangles.empty());
+    for (const auto& triangle : mesh.triangles)
+      for (const auto corner : triangle) ASSERT_LT(corner, mesh.vertices.size());
+    const SurfaceInfo& info = infoOf(mesh.label);
+    if (info.object_class.empty()) EXPECT_EQ(mesh.instance, -1);
+    else EXPECT_EQ(campus.objects.at(static_cast<std::size_t>(mesh.instance)).class_number, info.object_number);
+  }
+}
+
+/// How many objects of each class the scans saw with at least 20 points.
+std::map<int, int> seenObjects(const CampusParams& params) {
+  const Campus campus = buildCampus(params);
+  std::map<std::int32_t, int> points;
+  for (const SimulatedScan& scan : test::scanAll(campus))
+    for (const std::int32_t id : scan.truth.instance) ++points[id];
+  std::map<int, int> seen;
+  for (const auto& [id, count] : points)
+    if (id >= 0 && count >= 20) ++seen[campus.objects[static_cast<std::size_t>(id)].class_number];
+  return seen;
+}
+
+TEST(Campus, OfDefaultSizeShowsEveryClassForSeveralSeeds) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    CampusParams params;
+    params.seed = seed;
+    params.points_per_stop = 60'000;
+    const auto seen = seenObjects(params);
+    for (int class_number = 0; class_number < 9; ++class_number)
+      EXPECT_GE(seen.contains(class_number) ? seen.at(class_number) : 0, class_number == 0 ? 1 : 3)
+          << "class " << class_number << ", seed " << seed;
+  }
+}
+
+TEST(Campus, OfSmallSizeStillShowsEveryClass) {
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    const auto seen = seenObjects(smallCampus(seed));
+    for (int class_number = 0; class_number < 9; ++class_number)
+      EXPECT_TRUE(seen.contains(class_number)) << "class " << class_number << ", seed " << seed;
+  }
+}
+
+TEST(Campus, HasTheHardCasesOfThePaper) {
+  CampusParams params;
+  for (params.seed = 1; params.seed < 4; ++params.seed) {
+    const Campus campus = buildCampus(params);
+    const auto having = [&campus](int class_number, const std::string& trait) {
+      return std::count_if(campus.objects.begin(), campus.objects.end(), [&](const CampusObject& object) {
+        return object.class_number == class_number &&
+               std::any_of(object.traits.begin(), object.traits.end(),
+                           [&trait](const std::string& own) { return own.starts_with(trait); });
+      });
+    };
+    EXPECT_GE(having(kLamp, "under a crown"), 1) << "seed " << params.seed;
+    EXPECT_GE(having(kSign, "under a crown"), 2) << "seed " << params.seed;
+    EXPECT_GE(having(kSign, "leaves on top"), 1) << "seed " << params.seed;
+    EXPECT_GE(having(kSign, "two plates"), 1) << "seed " << params.seed;
+    EXPECT_GE(having(kTree, "crown touches"), 4) << "seed " << params.seed;
+  }
+}
+
+TEST(Campus, NothingStandsInABuildingOrACarAndThePolesKeepTheirDistance) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    CampusParams params;
+    params.seed = seed;
+    const Campus campus = buildCampus(params);
+    for (const CampusObject& object : campus.objects) {
+      if (object.class_number < kTree) continue;
+      for (const CampusObject& other : campus.objects) {
+        if (&object == &other) continue;
+        const bool inside = (other.class_number == 1 || other.class_number == kVehicle) &&
+                            other.box.min().x() < object.position.x() && object.position.x() < other.box.max().x() &&
+                            other.box.min().y() < object.position.y() && object.position.y() < other.box.max().y();
+        EXPECT_FALSE(inside) << object.kind << " in " << other.kind << ", seed " << seed;
+        const bool posts = object.class_number >= kLamp && object.class_number <= kPole &&
+                           other.class_number >= kLamp && other.class_number <= kPole;
+        if (posts) {
+          EXPECT_GT((object.position - other.position).head<2>().norm(), 0.35);
+        }
+      }
+    }
+  }
+}
+
+TEST(Campus, GroundRollsGentlyAndIsNotFlat) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Campus campus = buildCampus(smallCampus(seed));
+    EXPECT_LT(campus.terrain.steepest(), 0.20) << "seed " << seed;
+    double lowest = 1e9, highest = -1e9;
+    for (double x = -25; x <= 25; x += 5)
+      for (double y = -25; y <= 25; y += 5) {
+        lowest = std::min(lowest, campus.terrain.heightAt(x, y));
+        highest = std::max(highest, campus.terrain.heightAt(x, y));
+      }
+    EXPECT_GT(highest - lowest, 0.15) << "seed " << seed;
+  }
+}
+
+TEST(Campus, StopsAreTenMetresApartAndTheSensorIsWhereARobotCarriesIt) {
+  CampusParams params;
+  const Campus campus = buildCampus(params);
+  ASSERT_EQ(campus.stops.size(), 12U);
+  for (std::size_t i = 0; i < campus.stops.size(); ++i) {
+    const Vector3d p = campus.stops[i].translation();
+    EXPECT_NEAR(p.z() - campus.terrain.heightAt(p.x(), p.y()), 1.2, 0.1);
+    EXPECT_GT(campus.stops[i].linear()(2, 2), std::cos(0.12));
+    if (i > 0) {
+      EXPECT_LT((p - campus.stops[i - 1].translation()).norm(), 10.7);
+      EXPECT_GT((p - campus.stops[i - 1].translation()).norm(), 6.5);      // around a corner
+    }
+  }
+}
+
+TEST(Campus, PointsLieWithinTheBoxOfTheirObject) {
+  CampusParams params = smallCampus(6);
+  params.mixed_pixel_probability = 0;
+  const Campus campus = buildCampus(params);
+  for (const SimulatedScan& scan : test::scanAll(campus))
+    for (std::size_t i = 0; i < scan.truth.instance.size(); ++i) {
+      const std::int32_t id = scan.truth.instance[i];
+      if (id < 0) continue;
+      const CampusObject& object = campus.objects[static_cast<std::size_t>(id)];
+      const Vector3d p = toMap(scan.scan.T_map_sensor, {scan.scan.points.x[i], scan.scan.points.y[i], scan.scan.points.z[i]});
+      ASSERT_LT(object.box.exteriorDistance(p), 6 * params.range_sigma_m + 1e-3) << object.kind;
+    }
+}
+
+TEST(Campus, RefusesParametersOutOfRangeNamingTheRemedy) {
+  CampusParams params;
+  params.stops = 500;
+  try {
+    buildCampus(params);
+    FAIL() << "took 500 stops";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::Usage);
+    EXPECT_THAT(error.what(), testing::HasSubstr("choose fewer stops or a size of "));
+  }
+  params = {};
+  params.size_m = 10;
+  EXPECT_THROW(buildCampus(params), Error);
+  params = {};
+  params.stops = 2.5;
+  EXPECT_THROW(buildCampus(params), Error);
+}
+
+TEST(Campus, OffersEveryStopThatItCounts) {
+  CampusParams params;
+  params.stops = static_cast<double>(maxStops(params.size_m));
+  EXPECT_EQ(buildCampus(params).stops.size(), maxStops(params.size_m));
+  EXPECT_GE(maxStops(params.size_m), 15U);
+}
+
+}  // namespace
+}  // namespace cluxel
