@@ -29,7 +29,7 @@ class TermLookup {
   virtual TermView view(ResultId id) const = 0;
 };
 
-/// Receives one answer: beginSolutions rows* end, or boolean, or beginGraph triple* end.
+/// Receives one answer: beginSolutions rows* end, or boolean end, or beginGraph triple* end.
 class ResultSink {
  public:
   virtual ~ResultSink() = default;

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the result writers share: a buffer that goes out in pieces, and the texts of recently written terms.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cluxel/sparql/result_writer.hpp"
+
+namespace cluxel {
+
+/// Collects text and hands it on in pieces.
+class TextBuffer {
+ public:
+  explicit TextBuffer(TextSink out) : out_(std::move(out)) { text_.reserve(kPiece + kPiece / 4); }
+  std::string& text() { return text_; }
+  void flushWhenFull() {
+    if (text_.size() >= kPiece) flush();
+  }
+  void flush() {
+    if (!text_.empty()) out_(text_);
+    text_.clear();
+  }
+
+ private:
+  static constexpr std::size_t kPiece = 1 << 16;
+  TextSink out_;
+  std::string text_;
+};
+
+/// A writer whose cells do not depend on their place: it keeps the text of terms, because answers repeat them. A graph
+/// is written as a table of subject, predicate and object.
+class SolutionWriter : public ResultSink {
+ public:
+  using AppendTerm = void (*)(std::string& text, const TermView& term);
+  SolutionWriter(TextSink out, AppendTerm append_term);
+
+  void beginSolutions(std::span<const std::string> variables, const TermLookup& terms) override;
+  void rows(std::span<const ResultId> cells, std::size_t count) override;
+  void beginGraph() override;
+  void triple(const TermView& subject, const TermView& predicate, const TermView& object) override;
+  void end() override;
+
+ protected:
+  virtual void header() = 0;
+  /// Between the parts of a row; `bound` tells whether appendCell() or nothing follows.
+  virtual void beginRow() = 0;
+  virtual void beginCell(std::size_t column, bool bound) = 0;
+  virtual void endCell() {}
+  virtual void endRow() = 0;
+  virtual void footer() {}
+
+  TextBuffer buffer_;
+  std::vector<std::string> variables_;
+  bool solutions_ = false;
+
+ private:
+  void appendCell(ResultId id);
+
+  /// One way, addressed by the id's low bits.
+  struct Cached {
+    ResultId id = 0;
+    std::string text;
+  };
+  static constexpr std::size_t kCached = 4096;
+
+  AppendTerm append_term_;
+  const TermLookup* terms_ = nullptr;
+  std::vector<Cached> cache_;
+};
+
+std::unique_ptr<ResultSink> makeJsonWriter(TextSink out);
+std::unique_ptr<ResultSink> makeXmlWriter(TextSink out);
+std::unique_ptr<ResultSink> makeCsvWriter(TextSink out);
+std::unique_ptr<ResultSink> makeTsvWriter(TextSink out);
+std::unique_ptr<ResultSink> makeTableWriter(TextSink out, const WriterOptions& options);
+std::unique_ptr<ResultSink> makeNTriplesWriter(TextSink out);
+std::unique_ptr<ResultSink> makeTurtleWriter(TextSink out, const WriterOptions& options);
+
+/// The prefixes of Cluxel's vocabulary.
+std::vector<std::pair<std::string, std::string>> vocabularyPrefixes();
+
+}  // namespace cluxel
