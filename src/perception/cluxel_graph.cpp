@@ -36,6 +36,12 @@ void forEachTouching(const Ring<CluxelTile>& ring, const Volume& hull, const Vis
   }
 }
 
+Member memberOf(const CluxelTile& tile, std::uint32_t i) {
+  Member member{tile.own[i].scatter, tile.box_min[i].z(), tile.box_max[i].z()};
+  for (auto& value : member.spread) value /= tile.own[i].count;
+  return member;
+}
+
 using Cell = std::array<std::int32_t, 3>;
 
 /// The grid cells that volumes touch.
@@ -128,7 +134,10 @@ RingCluxels gatherCluxels(const Ring<CluxelTile>& ring) {
   forEachTouching(ring, near_hull, [&](int r, std::uint32_t i, const Volume& volume) {
     if (r == kRingCentre && i == 0) cluxels.own_begin = static_cast<std::uint32_t>(cluxels.size());
     cluxels.name.push_back({static_cast<std::uint32_t>(r), i});
-    cluxels.center.push_back(ring[static_cast<std::size_t>(r)]->own[i].mean + ringShift(r));
+    const CluxelTile& tile = *ring[static_cast<std::size_t>(r)];
+    cluxels.center.push_back(tile.own[i].mean + ringShift(r));
+    cluxels.member.push_back(memberOf(tile, i));
+    cluxels.reach.push_back(tile.reach[i]);
     cluxels.volume.push_back(volume);
     cluxels.near.push_back(intersects(volume, own_hull) ? 1 : 0);
   });

@@ -2,6 +2,7 @@
 // The cluxels that the features of one tile look at, and the graph of those whose volumes intersect.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -19,20 +20,26 @@ inline bool intersects(const Volume& a, const Volume& b) {
   return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
 }
 
+/// What supports read of a cluxel: how its own points lie, each point weighing 1 / count.
+struct Member {
+  std::array<float, 6> spread{};         ///< mean products of deviations xx xy xz yy yz zz [m2]
+  float low_z = 0, high_z = 0;           ///< of its box [m, map]
+};
+
 /// Own cluxels, those whose volume may intersect an own one's ("near"), and those that may intersect a near one's; in
 /// the order of ring and number. Places are relative to the centre tile's corner.
 struct RingCluxels {
   std::vector<RingIndex> name;
   std::vector<Eigen::Vector3f> center;
   std::vector<Volume> volume;
+  std::vector<Member> member;
+  std::vector<float> reach;
   std::vector<std::uint8_t> near;        ///< own ones and near ones: their edges are complete
   std::uint32_t own_begin = 0, own_end = 0;
 
   std::size_t size() const { return name.size(); }
 };
 RingCluxels gatherCluxels(const Ring<CluxelTile>& ring);
-
-inline const CluxelTile& tileOfCluxel(const Ring<CluxelTile>& ring, RingIndex name) { return *ring[name.ring]; }
 
 /// Edges of own and near cluxels, in CSR form with ascending targets; the others have none.
 struct RingGraph {

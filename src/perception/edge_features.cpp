@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Features of edges. Places of both ends are exact floats and every formula is symmetric, so both tiles of a border agree.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "perception/feature_groups.hpp"
@@ -10,17 +11,7 @@ namespace {
 
 /// Volumes are widened by this when their overlap is measured: flat and single-point volumes have none [m].
 constexpr float kLeastThickness_m = 0.02F;
-
-/// Shapes of the balls of own cluxels and of those that edges lead to.
-std::vector<EigenShape> ballShapes(const FeatureInput& input) {
-  std::vector<EigenShape> shapes(input.cluxels.size());
-  for (std::size_t c = 0; c < shapes.size(); ++c)
-    if (input.cluxels.near[c]) {
-      const RingIndex name = input.cluxels.name[c];
-      shapes[c] = shapeOf(tileOfCluxel(input.ring, name).ball[name.index]);
-    }
-  return shapes;
-}
+constexpr std::size_t kEdgeColumns = 10;
 
 /// Common volume over the smaller volume, in [0, 1].
 float volumeShare(const Volume& a, const Volume& b) {
@@ -48,26 +39,24 @@ double offPlane(const EigenShape& a, const EigenShape& b, const Eigen::Vector3d&
   return std::max(std::abs(a.normal.dot(d)), std::abs(b.normal.dot(d)));
 }
 
-void putEdge(const FeatureInput& input, const std::vector<EigenShape>& shapes, std::uint32_t a, std::uint32_t b,
-             std::vector<float>& out) {
+using EdgeRow = std::span<float, kEdgeColumns>;
+
+void fillEdge(const FeatureInput& input, std::uint32_t a, std::uint32_t b, EdgeRow out) {
   const auto& cluxels = input.cluxels;
   const Eigen::Vector3d d = (cluxels.center[b] - cluxels.center[a]).cast<double>();
-  const auto reachOf = [&](std::uint32_t c) {
-    return tileOfCluxel(input.ring, cluxels.name[c]).reach[cluxels.name[c].index];
-  };
-  const EigenShape &shape_a = shapes[a], &shape_b = shapes[b];
+  const EigenShape &shape_a = input.ball[a], &shape_b = input.ball[b];
   const double distance = d.norm();
-  const auto put = [&](double value) { out.push_back(static_cast<float>(value)); };
-  put(distance);
-  put(distance / (reachOf(a) + reachOf(b)));
-  put(std::abs(d.z()));
-  put(std::min(1.0, std::abs(shape_a.normal.dot(shape_b.normal))));
-  put(offPlane(shape_a, shape_b, d));
-  put(std::abs(shape_a.linearity() - shape_b.linearity()));
-  put(std::abs(shape_a.planarity() - shape_b.planarity()));
-  put(std::abs(shape_a.scattering() - shape_b.scattering()));
-  put(volumeShare(cluxels.volume[a], cluxels.volume[b]));
-  put(supportShare(input.graph, a, b));
+  const std::array<double, kEdgeColumns - 2> values{distance,
+                                                    distance / (cluxels.reach[a] + cluxels.reach[b]),
+                                                    std::abs(d.z()),
+                                                    std::min(1.0, std::abs(shape_a.normal.dot(shape_b.normal))),
+                                                    offPlane(shape_a, shape_b, d),
+                                                    std::abs(shape_a.linearity() - shape_b.linearity()),
+                                                    std::abs(shape_a.planarity() - shape_b.planarity()),
+                                                    std::abs(shape_a.scattering() - shape_b.scattering())};
+  for (std::size_t i = 0; i < values.size(); ++i) out[i] = static_cast<float>(values[i]);
+  out[kEdgeColumns - 2] = volumeShare(cluxels.volume[a], cluxels.volume[b]);
+  out[kEdgeColumns - 1] = supportShare(input.graph, a, b);
 }
 
 }  // namespace
@@ -78,16 +67,29 @@ std::vector<std::string> edgeColumns() {
 }
 
 void fillEdges(const FeatureInput& input, FeatureTile& tile) {
-  const auto shapes = ballShapes(input);
   const auto& cluxels = input.cluxels;
-  tile.edge_offset.push_back(0);
+  const auto& graph = input.graph;
+  const std::size_t first = graph.offset[cluxels.own_begin], count = graph.offset[cluxels.own_end] - first;
+  tile.edge_features.resize(count * kEdgeColumns);
+  tile.edge_target.reserve(count);
+  const auto rowOf = [&](std::size_t edge) { return EdgeRow(tile.edge_features.data() + (edge - first) * kEdgeColumns, kEdgeColumns); };
+  // Own cluxels come to a target in ascending order, as its own edges to them stand: `back` is the next of these.
+  std::vector<std::uint32_t> back(graph.offset.begin(), graph.offset.end());
   for (std::uint32_t c = cluxels.own_begin; c < cluxels.own_end; ++c) {
-    for (const auto other : input.graph.neighbours(c)) {
+    tile.edge_offset.push_back(static_cast<std::uint32_t>(graph.offset[c] - first));
+    for (std::uint32_t edge = graph.offset[c]; edge < graph.offset[c + 1]; ++edge) {
+      const std::uint32_t other = graph.target[edge];
       tile.edge_target.push_back(cluxels.name[other]);
-      putEdge(input, shapes, c, other, tile.edge_features);
+      const bool is_own = other >= cluxels.own_begin && other < cluxels.own_end;
+      if (is_own && other < c) continue;
+      fillEdge(input, c, other, rowOf(edge));
+      if (!is_own) continue;
+      while (graph.target[back[other]] < cluxels.own_begin) ++back[other];
+      const auto row = rowOf(edge);
+      std::copy(row.begin(), row.end(), rowOf(back[other]++).begin());
     }
-    tile.edge_offset.push_back(static_cast<std::uint32_t>(tile.edge_target.size()));
   }
+  tile.edge_offset.push_back(static_cast<std::uint32_t>(count));
 }
 
 }  // namespace cluxel

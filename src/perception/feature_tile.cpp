@@ -12,8 +12,16 @@ void append(std::vector<std::string>& names, const std::vector<std::string>& mor
   names.insert(names.end(), more.begin(), more.end());
 }
 
-/// Counts in features are seen in bits, and an intensity may be of any scale; forms of stored features change this number.
+/// Changes when a column's formula changes under its old name, so that models of the old one are refused.
 constexpr std::uint32_t kFeatureVersion = 1;
+
+/// Shapes of the balls of own cluxels and of those that edges lead to.
+std::vector<EigenShape> ballShapes(const Ring<CluxelTile>& ring, const RingCluxels& cluxels) {
+  std::vector<EigenShape> shapes(cluxels.size());
+  for (std::size_t c = 0; c < shapes.size(); ++c)
+    if (cluxels.near[c]) shapes[c] = shapeOf(ring[cluxels.name[c].ring]->ball[cluxels.name[c].index]);
+  return shapes;
+}
 
 }  // namespace
 
@@ -49,7 +57,8 @@ FeatureTile computeFeatures(const Ring<CluxelTile>& cluxels, const Ring<GroundTi
   const CluxelTile& own = *cluxels[kRingCentre];
   const RingCluxels gathered = gatherCluxels(cluxels);
   const RingGraph graph = intersectionGraph(gathered);
-  const FeatureInput input{cluxels, ground, gathered, graph};
+  const auto ball = ballShapes(cluxels, gathered);
+  const FeatureInput input{cluxels, ground, gathered, graph, ball};
   FeatureTile tile;
   tile.key = own.key;
   for (const auto& moments : own.own) {

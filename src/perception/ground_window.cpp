@@ -19,21 +19,43 @@ struct Surroundings {
   int level = 0, above = 0;
 };
 
+/// What a cell some cells away may differ in height: the step and the rise over the distance.
+class Allowance {
+ public:
+  Allowance(double rise, double step_m) {
+    for (int y = 0; y <= kSunkenReach; ++y)
+      for (int x = 0; x <= kSunkenReach; ++x) value_[index(x, y)] = static_cast<float>(step_m + rise * std::sqrt(x * x + y * y));
+  }
+  float operator()(int x, int y) const { return value_[index(std::abs(x), std::abs(y))]; }
+
+ private:
+  static std::size_t index(int x, int y) { return static_cast<std::size_t>(y * (kSunkenReach + 1) + x); }
+  std::array<float, (kSunkenReach + 1) * (kSunkenReach + 1)> value_{};
+};
+
 /// How many known cells around lie on a level with the cell, or above its cone.
-Surroundings surroundingsOf(const HeightWindow& window, int x, int y, int reach, double rise, double step_m) {
+Surroundings surroundingsOf(const HeightWindow& window, int x, int y, const Allowance& allowance) {
   Surroundings found;
   const float here = window.height[window.at(x, y)];
-  for (int v = std::max(0, y - reach); v <= std::min(window.side - 1, y + reach); ++v)
-    for (int u = std::max(0, x - reach); u <= std::min(window.side - 1, x + reach); ++u) {
+  for (int v = std::max(0, y - kSunkenReach); v <= std::min(window.side - 1, y + kSunkenReach); ++v)
+    for (int u = std::max(0, x - kSunkenReach); u <= std::min(window.side - 1, x + kSunkenReach); ++u) {
       if (!window.known[window.at(u, v)] || (u == x && v == y)) continue;
-      const double allowed = step_m + rise * std::sqrt((u - x) * (u - x) + (v - y) * (v - y));
-      const double difference = window.height[window.at(u, v)] - here;
+      const float allowed = allowance(u - x, v - y), difference = window.height[window.at(u, v)] - here;
       if (difference > allowed)
         ++found.above;
       else if (difference >= -allowed)
         ++found.level;
     }
   return found;
+}
+
+/// Whether a cell at most two cells away lies above the cell's cone: only then a closer look is worth its time.
+bool seemsSunken(const HeightWindow& window, int x, int y, const Allowance& allowance) {
+  const float here = window.height[window.at(x, y)];
+  for (int v = std::max(0, y - 2); v <= std::min(window.side - 1, y + 2); ++v)
+    for (int u = std::max(0, x - 2); u <= std::min(window.side - 1, x + 2); ++u)
+      if (window.known[window.at(u, v)] && window.height[window.at(u, v)] > here + allowance(u - x, v - y)) return true;
+  return false;
 }
 
 /// One raster pass of the distance transform: lowers each cell to its four earlier neighbours plus the rise to them.
@@ -94,12 +116,12 @@ void fillFrom(const Level& coarse, Level& fine) {
 }  // namespace
 
 void dropSunkenCells(HeightWindow& window, double cell_m, double steepest, double step_m) {
-  const double rise = steepest * cell_m;
+  const Allowance allowance(steepest * cell_m, step_m);
   std::vector<std::size_t> sunken;
   for (int y = 0; y < window.side; ++y)
     for (int x = 0; x < window.side; ++x) {
-      if (!window.known[window.at(x, y)] || surroundingsOf(window, x, y, 2, rise, step_m).above == 0) continue;
-      const auto around = surroundingsOf(window, x, y, kSunkenReach, rise, step_m);
+      if (!window.known[window.at(x, y)] || !seemsSunken(window, x, y, allowance)) continue;
+      const auto around = surroundingsOf(window, x, y, allowance);
       if (around.level < kSunkenSupport && around.above >= 4 * (around.level + 1)) sunken.push_back(window.at(x, y));
     }
   for (const auto cell : sunken) window.known[cell] = 0;

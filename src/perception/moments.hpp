@@ -33,19 +33,15 @@ struct MomentSum {
     zz += dz * dz;
   }
 
-  /// Adds `weight` times a set with this mean (relative to the origin) and this mean product of deviations.
-  void addSet(double weight, const Eigen::Vector3f& d, const std::array<float, 6>& scatter, double per_point) {
-    const double dx = d.x(), dy = d.y(), dz = d.z();
-    n += weight;
-    x += weight * dx;
-    y += weight * dy;
-    z += weight * dz;
-    xx += weight * (dx * dx + per_point * scatter[0]);
-    xy += weight * (dx * dy + per_point * scatter[1]);
-    xz += weight * (dx * dz + per_point * scatter[2]);
-    yy += weight * (dy * dy + per_point * scatter[3]);
-    yz += weight * (dy * dz + per_point * scatter[4]);
-    zz += weight * (dz * dz + per_point * scatter[5]);
+  /// Adds a set that weighs 1, with this mean (relative to the origin) and these mean products of deviations.
+  void addSet(const Eigen::Vector3f& mean, const std::array<float, 6>& spread) {
+    add(mean.x(), mean.y(), mean.z());
+    xx += spread[0];
+    xy += spread[1];
+    xz += spread[2];
+    yy += spread[3];
+    yz += spread[4];
+    zz += spread[5];
   }
 
   /// As stored: mean in the tile's coordinates, given the origin's place there.

@@ -25,62 +25,78 @@ MainDirection mainDirectionOf(const MomentSum& sum) {
   const double xx = sum.xx / sum.n - mx * mx, xy = sum.xy / sum.n - mx * my, yy = sum.yy / sum.n - my * my;
   const double spread = std::hypot(xx - yy, 2 * xy);
   if (!(xx + yy > kNoExtent_m2) || !(spread > 0)) return {};
-  const double angle = 0.5 * std::atan2(2 * xy, xx - yy);
-  return {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)),
+  const double twice = (xx - yy) / spread;   // cosine of twice the angle
+  const double side = xy < 0 ? -1.0 : 1.0;
+  return {static_cast<float>(std::sqrt(0.5 * (1 + twice))), static_cast<float>(side * std::sqrt(std::max(0.0, 0.5 * (1 - twice)))),
           static_cast<float>(std::min(1.0, spread / (xx + yy) / kClearDirection))};
 }
 
-/// A value between two nodes, and how much of it goes to the upper one.
-struct SoftBin {
-  std::size_t low;
-  float share;
-};
-
-SoftBin softBin(float unit, std::size_t nodes) {
-  const float place = std::clamp(unit, 0.0F, 1.0F) * static_cast<float>(nodes - 1);
-  const std::size_t low = std::min(static_cast<std::size_t>(place), nodes - 2);
-  return {low, place - static_cast<float>(low)};
-}
-
-/// Adds a weight at an elevation node, spread over azimuths.
-void vote(std::span<float> bins, std::size_t elevation, const std::array<float, kAzimuthNodes>& azimuth, float weight) {
-  if (elevation == 0) {
-    bins[0] += weight;
-  } else if (elevation == kElevationNodes - 1) {
-    bins[kHorBins - 1] += weight;
-  } else {
-    for (std::size_t a = 0; a < kAzimuthNodes; ++a) bins[1 + (elevation - 1) * kAzimuthNodes + a] += weight * azimuth[a];
+/// Where each residual lies between the nodes, and its weight; no branches, so that the compiler makes vectors of it.
+void placeVotes(const Residuals& residual, const MainDirection& main, float median, HorScratch& scratch) {
+  constexpr float kTiny = 1e-12F;
+  const std::size_t size = residual.size();
+  scratch.weight.resize(size);
+  scratch.elevation.resize(size);
+  scratch.azimuth.resize(size);
+  const float* x = residual.x.data();
+  const float* y = residual.y.data();
+  const float* z = residual.z.data();
+  for (std::size_t i = 0; i < size; ++i) {
+    const float length = scratch.length[i];
+    const float along = x[i] * main.x + y[i] * main.y;
+    const float across = x[i] * main.y - y[i] * main.x;
+    scratch.weight[i] = std::min(length / median, kLongestVote);
+    scratch.elevation[i] = (z[i] / (length + kTiny) + 1.0F) * (0.5F * (kElevationNodes - 1));
+    scratch.azimuth[i] = across * across / (along * along + across * across + kTiny) * (kAzimuthNodes - 1);
   }
 }
 
-std::array<float, kAzimuthNodes> azimuthShares(const Eigen::Vector3f& residual, const MainDirection& main) {
-  std::array<float, kAzimuthNodes> shares;
-  const float level = residual.x() * residual.x() + residual.y() * residual.y();
-  const float clear = level > 0 ? main.clearness : 0.0F;
-  shares.fill((1.0F - clear) / static_cast<float>(kAzimuthNodes));
-  if (clear <= 0) return shares;
-  const float along = residual.x() * main.x + residual.y() * main.y;
-  const SoftBin bin = softBin(1.0F - along * along / level, kAzimuthNodes);
-  shares[bin.low] += clear * (1.0F - bin.share);
-  shares[bin.low + 1] += clear * bin.share;
-  return shares;
+using Votes = std::array<std::array<float, kAzimuthNodes>, kElevationNodes>;
+
+/// Each residual's weight goes to the four nodes around it.
+Votes castVotes(const HorScratch& scratch) {
+  Votes votes{};
+  for (std::size_t i = 0; i < scratch.weight.size(); ++i) {
+    const auto e = std::min(static_cast<int>(scratch.elevation[i]), static_cast<int>(kElevationNodes) - 2);
+    const auto a = std::min(static_cast<int>(scratch.azimuth[i]), static_cast<int>(kAzimuthNodes) - 2);
+    const float up = scratch.elevation[i] - static_cast<float>(e), on = scratch.azimuth[i] - static_cast<float>(a);
+    const float high = scratch.weight[i] * up, low = scratch.weight[i] - high;
+    auto* row = votes[static_cast<std::size_t>(e)].data() + a;
+    auto* next = votes[static_cast<std::size_t>(e) + 1].data() + a;
+    row[0] += low * (1.0F - on);
+    row[1] += low * on;
+    next[0] += high * (1.0F - on);
+    next[1] += high * on;
+  }
+  return votes;
 }
 
-void fillBins(const Support& support, const std::vector<float>& lengths, float median, std::span<float> bins) {
-  const MainDirection main = mainDirectionOf(support.sum);
+/// Votes to bins: the poles lose their azimuth, and azimuths even out where there is no clear direction.
+void fillBins(const Votes& votes, float clearness, std::span<float> bins) {
   float total = 0;
-  for (std::size_t i = 0; i < lengths.size(); ++i) {
-    if (!(lengths[i] > 0)) continue;
-    const Eigen::Vector3f& residual = support.residual[i];
-    const float weight = std::min(lengths[i] / median, kLongestVote);
-    const auto azimuth = azimuthShares(residual, main);
-    const SoftBin elevation = softBin(0.5F * (residual.z() / lengths[i] + 1.0F), kElevationNodes);
-    vote(bins, elevation.low, azimuth, weight * (1.0F - elevation.share));
-    vote(bins, elevation.low + 1, azimuth, weight * elevation.share);
-    total += weight;
+  std::array<float, kElevationNodes> level{};
+  for (std::size_t e = 0; e < kElevationNodes; ++e) {
+    for (const float value : votes[e]) level[e] += value;
+    total += level[e];
   }
-  if (total > 0)
-    for (auto& bin : bins) bin /= total;
+  if (!(total > 0)) return;
+  bins[0] = level.front() / total;
+  bins[kHorBins - 1] = level.back() / total;
+  for (std::size_t e = 1; e + 1 < kElevationNodes; ++e)
+    for (std::size_t a = 0; a < kAzimuthNodes; ++a)
+      bins[1 + (e - 1) * kAzimuthNodes + a] =
+          (clearness * votes[e][a] + (1.0F - clearness) * level[e] / static_cast<float>(kAzimuthNodes)) / total;
+}
+
+/// The middle length; fills scratch.length.
+float medianLength(const Residuals& residual, HorScratch& scratch) {
+  scratch.length.resize(residual.size());
+  for (std::size_t i = 0; i < residual.size(); ++i)
+    scratch.length[i] = std::sqrt(residual.x[i] * residual.x[i] + residual.y[i] * residual.y[i] + residual.z[i] * residual.z[i]);
+  scratch.sorted = scratch.length;
+  const auto middle = scratch.sorted.begin() + static_cast<std::ptrdiff_t>(scratch.sorted.size() / 2);
+  std::nth_element(scratch.sorted.begin(), middle, scratch.sorted.end());
+  return *middle;
 }
 
 }  // namespace
@@ -97,14 +113,11 @@ std::vector<std::string> horColumns() {
 void fillHor(const Support& support, const EigenShape& shape, HorScratch& scratch, std::span<float> out) {
   std::fill(out.begin(), out.end(), 0.0F);
   if (support.residual.empty()) return;
-  scratch.length.clear();
-  for (const auto& residual : support.residual) scratch.length.push_back(residual.norm());
-  scratch.sorted = scratch.length;
-  const auto middle = scratch.sorted.begin() + static_cast<std::ptrdiff_t>(scratch.sorted.size() / 2);
-  std::nth_element(scratch.sorted.begin(), middle, scratch.sorted.end());
-  const float median = *middle;
+  const float median = medianLength(support.residual, scratch);
   if (!(median > kShortestMedian_m)) return;
-  fillBins(support, scratch.length, median, out.subspan(0, kHorBins));
+  const MainDirection main = mainDirectionOf(support.sum);
+  placeVotes(support.residual, main, median, scratch);
+  fillBins(castVotes(scratch), main.clearness, out.subspan(0, kHorBins));
   const MomentSum& sum = support.sum;
   const Eigen::Vector3d mean = Eigen::Vector3d(sum.x, sum.y, sum.z) / sum.n;
   const std::array<double, kHorScalars> scalars{

@@ -12,10 +12,27 @@
 
 namespace cluxel {
 
+/// Vectors as a structure of arrays.
+struct Residuals {
+  std::vector<float> x, y, z;
+  void add(const Eigen::Vector3f& d) {
+    x.push_back(d.x());
+    y.push_back(d.y());
+    z.push_back(d.z());
+  }
+  void clear() {
+    x.clear();
+    y.clear();
+    z.clear();
+  }
+  std::size_t size() const { return x.size(); }
+  bool empty() const { return x.empty(); }
+};
+
 /// The 2-ring support of a cluxel: residuals to its centre, and their moments. Every member weighs the same, however many
 /// points it has: so the support measures the surface and not the scanner's density.
 struct Support {
-  std::vector<Eigen::Vector3f> residual;   ///< members' centres minus the cluxel's [m]; without the cluxel itself
+  Residuals residual;                      ///< members' centres minus the cluxel's [m]; without the cluxel itself
   MomentSum sum;                           ///< with the cluxel itself, relative to its centre
   float height_low = 0, height_high = 0;   ///< vertical extent of the members' boxes, relative to the centre [m]
 };
@@ -30,7 +47,7 @@ std::vector<std::string> horColumns();
 
 /// Memory reused from cluxel to cluxel.
 struct HorScratch {
-  std::vector<float> length, sorted;
+  std::vector<float> length, sorted, weight, elevation, azimuth;
 };
 
 /// Fills kHorColumns numbers; all are zero for a support without extent. `shape` is that of the support.

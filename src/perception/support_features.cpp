@@ -51,16 +51,14 @@ class SupportWalk {
  private:
   void enter(std::uint32_t member, std::uint32_t center) {
     mark_[member] = center;
-    const RingIndex name = input_.cluxels.name[member];
-    const CluxelTile& tile = tileOfCluxel(input_.ring, name);
-    const Moments& own = tile.own[name.index];
     const Eigen::Vector3f d = input_.cluxels.center[member] - input_.cluxels.center[center];
+    const Member& points = input_.cluxels.member[member];
     auto& support = found_.ring2;
-    support.sum.addSet(1.0, d, own.scatter, 1.0 / own.count);
-    if (member != center) support.residual.push_back(d);
+    support.sum.addSet(d, points.spread);
+    if (member != center) support.residual.add(d);
     const float z = input_.cluxels.center[center].z();
-    support.height_low = std::min(support.height_low, tile.box_min[name.index].z() - z);
-    support.height_high = std::max(support.height_high, tile.box_max[name.index].z() - z);
+    support.height_low = std::min(support.height_low, points.low_z - z);
+    support.height_high = std::max(support.height_high, points.high_z - z);
   }
 
   const FeatureInput& input_;
@@ -83,7 +81,7 @@ class RowWriter {
   std::span<float> rest_;
 };
 
-/// Largest extents of a support along and across its main horizontal direction follow from its eigenvalues.
+/// Sizes of the cluxel and of its supports; lengths and widths are standard deviations.
 void putExtents(const CluxelTile& own, std::uint32_t c, const EigenShape& ball, const EigenShape& ring1,
                 const EigenShape& ring2, const Support& support, RowWriter& row) {
   const Eigen::Vector3f box = own.box_max[c] - own.box_min[c];
@@ -130,7 +128,8 @@ void fillSupportFeatures(const FeatureInput& input, const FeatureParams& params,
   HorScratch scratch;
   for (std::uint32_t c = 0; c < own.size(); ++c) {
     const Surroundings& around = walk.around(input.cluxels.own_begin + c);
-    const EigenShape ball = shapeOf(own.ball[c]), ring1 = shapeOf(around.ring1), ring2 = shapeOf(around.ring2.sum);
+    const EigenShape& ball = input.ball[input.cluxels.own_begin + c];
+    const EigenShape ring1 = shapeOf(around.ring1), ring2 = shapeOf(around.ring2.sum);
     RowWriter row(rows.row(c, column, count));
     if (params.hor) fillHor(around.ring2, ring2, scratch, row.take(kHorColumns));
     if (params.shape)

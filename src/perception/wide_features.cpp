@@ -59,7 +59,9 @@ CellSums sumCells(const Ring<CluxelTile>& ring, double cell_m) {
       cells.place.push_back(item.center);
       cells.sum.emplace_back();
     }
-    cells.sum.back().addSet(1.0, item.center - cells.place.back(), item.own->scatter, 1.0 / item.own->count);
+    std::array<float, 6> spread = item.own->scatter;
+    for (auto& value : spread) value /= item.own->count;
+    cells.sum.back().addSet(item.center - cells.place.back(), spread);
     if (item.number != PointGrid::kForeign) cells.cell_of_own[item.number] = static_cast<std::uint32_t>(cells.key.size() - 1);
   }
   return cells;
