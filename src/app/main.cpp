@@ -1,3 +1,70 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program `cluxel`.
-int main() { return 2; }
+// The program `cluxel`: parses the command line, runs one subcommand, turns errors into messages and exit codes.
+#include <csignal>
+#include <cstdio>
+#include <new>
+
+#include "app/command.hpp"
+#include "cluxel/base/diagnostic.hpp"
+
+namespace {
+
+using namespace cluxel;
+using namespace cluxel::app;
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 done; 1 negative finding (check failed, ASK false); 2 usage; 3 no rows; 4 unreadable input, faulty "
+    "query or rules; 5 store unavailable; 6 budget exceeded.";
+
+int fail(ExitCode code, const char* message) {
+  std::fprintf(stderr, "cluxel: %s\n", message);
+  return static_cast<int>(code);
+}
+
+void addCommands(CLI::App& app, Session& session) {
+  addInfo(app, session);
+  addSimulate(app, session);
+  addBuild(app, session);
+  addQuery(app, session);
+  addUpdate(app, session);
+  addTasks(app, session);
+  addExplain(app, session);
+  addRules(app, session);
+  addTrain(app, session);
+  addEvaluate(app, session);
+  addExport(app, session);
+  addUpkeep(app, session);
+}
+
+int runProgram(int argc, char** argv) {
+  Session session;
+  CLI::App app("Cluxel turns registered laser scans of outdoor places into semantic maps.");
+  app.footer(kExitCodes);
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "cluxel " CLUXEL_VERSION);
+  app.add_option("--home", session.home, "folder that holds ontology, rules, queries, models and labels");
+  app.add_option("--threads", session.threads, "threads to use; the result does not depend on it");
+  app.fallthrough();
+  addCommands(app, session);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& fault) {
+    return app.exit(fault) == 0 ? 0 : static_cast<int>(ExitCode::Usage);
+  }
+  return static_cast<int>(session.exit_code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);
+  try {
+    return runProgram(argc, argv);
+  } catch (const Error& error) {
+    return fail(error.code(), error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(ExitCode::BudgetExceeded, "the machine has not enough memory for this");
+  } catch (const std::exception& error) {
+    return fail(ExitCode::FaultyInput, error.what());
+  }
+}

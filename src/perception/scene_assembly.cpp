@@ -55,6 +55,7 @@ void appendCluxels(const SceneTiles& tiles, const TileKey& key, const TileNumber
     all.name.push_back({key, c});
     all.center.emplace_back(cornerOf(key) + center.cast<double>());
     all.extent.emplace_back(cluxels.box_max[c] - cluxels.box_min[c]);
+    all.low_corner.emplace_back(cornerOf(key) + cluxels.box_min[c].cast<double>());
     all.point_count.push_back(static_cast<std::uint32_t>(cluxels.own[c].count));
     all.label.push_back(static_cast<PrimitiveLabel>(labels.label[c]));
     all.probability.push_back(labels.probability[c]);

@@ -41,6 +41,7 @@ struct SceneCluxels {
   std::vector<CluxelName> name;
   std::vector<Eigen::Vector3d> center;            ///< mean of own points [m, map]
   std::vector<Eigen::Vector3f> extent;            ///< size of the box around own points [m]
+  std::vector<Eigen::Vector3d> low_corner;        ///< of that box [m, map]
   std::vector<std::uint32_t> point_count;
   std::vector<PrimitiveIndex> primitive;
   std::vector<PrimitiveLabel> label;

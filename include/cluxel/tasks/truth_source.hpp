@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where truth comes from: the scans' own labels through a label map, or a folder of truth files.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "cluxel/base/data_home.hpp"
+#include "cluxel/scan/scan.hpp"
+#include "cluxel/scan/truth.hpp"
+
+namespace cluxel {
+
+class TruthSource {
+ public:
+  /// `given` is a folder of truth files, or a label map by path or by name in labels/ ("oakland.yaml" or "oakland").
+  /// Throws InputError when it is neither.
+  static TruthSource open(const std::filesystem::path& given, const DataHome& home);
+
+  /// Truth of every point of the scan; its file is found by the scan's source. Throws InputError when there is no truth
+  /// file for it, or when it has no labels.
+  PointTruth truthOf(const Scan& scan) const;
+  /// Instances that count neither way, sorted.
+  const std::vector<std::int32_t>& ambiguous() const { return ambiguous_; }
+
+ private:
+  std::filesystem::path folder_;
+  std::optional<LabelMap> labels_;
+  std::vector<std::int32_t> ambiguous_;
+};
+
+}  // namespace cluxel

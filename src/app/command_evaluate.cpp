@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// `cluxel evaluate`: how right a map is, with bars below which the exit code says so.
+#include "app/command.hpp"
+#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/tasks/evaluation.hpp"
+
+namespace cluxel::app {
+
+namespace {
+
+struct EvaluateOptions {
+  fs::path map, truth;
+  double min_oa = 0, min_macro_f1 = 0;
+  std::vector<std::string> min_recall;    ///< CLASS=share
+};
+
+/// "Tree=0.7": recall by point of an object class or a primitive.
+double recallOf(const MapEvaluation& evaluation, const std::string& name) {
+  for (const ConfusionMatrix* matrix : {&evaluation.objects, &evaluation.primitives})
+    for (std::size_t i = 0; i < matrix->names.size(); ++i)
+      if (matrix->names[i] == name) return matrix->recall(i);
+  throw Error(ExitCode::Usage, "--min-recall: no class '" + name + "' in the truth's classes");
+}
+
+bool isAbove(const char* what, double value, double bar) {
+  if (value >= bar) return true;
+  std::fprintf(stderr, "cluxel: %s is %.4f, below %.4f\n", what, value, bar);
+  return false;
+}
+
+bool meetsBars(const MapEvaluation& evaluation, const EvaluateOptions& options) {
+  bool meets = isAbove("overall accuracy of objects by point", evaluation.objects.overallAccuracy(), options.min_oa);
+  meets &= isAbove("macro F1 of objects by point", evaluation.objects.macroF1(), options.min_macro_f1);
+  for (const std::string& bar : options.min_recall) {
+    const std::size_t cut = bar.find('=');
+    if (cut == std::string::npos) throw Error(ExitCode::Usage, "--min-recall: write CLASS=SHARE, not '" + bar + "'");
+    const std::string name = bar.substr(0, cut);
+    meets &= isAbove(("recall of " + name).c_str(), recallOf(evaluation, name), std::stod(bar.substr(cut + 1)));
+  }
+  return meets;
+}
+
+}  // namespace
+
+void addEvaluate(CLI::App& app, Session& session) {
+  auto options = std::make_shared<EvaluateOptions>();
+  CLI::App* command = app.add_subcommand("evaluate", "compare a map with the truth of its scans");
+  command->add_option("map", options->map, "a map")->required();
+  command->add_option("--truth", options->truth, "a folder of truth files, or a label map: oakland, semantickitti")
+      ->required();
+  command->add_option("--min-oa", options->min_oa, "exit 1 when the overall accuracy of objects by point is below");
+  command->add_option("--min-macro-f1", options->min_macro_f1, "exit 1 when the macro F1 of objects by point is below");
+  command->add_option("--min-recall", options->min_recall, "CLASS=SHARE: exit 1 when the recall by point is below");
+  onRun(*command, session, [options, &session] {
+    const MapReader map(options->map);
+    const MapEvaluation evaluation = evaluateMap(map, TruthSource::open(options->truth, session.dataHome()));
+    print(session.json ? toJson(evaluation) : toText(evaluation));
+    return meetsBars(evaluation, *options) ? ExitCode::Done : ExitCode::NegativeFinding;
+  });
+}
+
+}  // namespace cluxel::app

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// `cluxel info`: what was understood of scans or of a map.
+#include "app/command.hpp"
+#include "cluxel/mapping/map_reader.hpp"
+#include "cluxel/scan/scan_summary.hpp"
+
+namespace cluxel::app {
+
+namespace {
+
+struct InfoOptions {
+  std::vector<fs::path> inputs;
+  fs::path poses;
+};
+
+Json boxJson(const Eigen::AlignedBox3d& box) {
+  if (box.isEmpty()) return nullptr;
+  return {{"min", {box.min().x(), box.min().y(), box.min().z()}}, {"max", {box.max().x(), box.max().y(), box.max().z()}}};
+}
+
+Json labelsJson(const std::map<std::uint32_t, std::size_t>& labels) {
+  Json json = Json::object();
+  for (const auto& [label, count] : labels) json[std::to_string(label)] = count;
+  return json;
+}
+
+Json scanJson(const ScanSummary& scan) {
+  Json json{{"source", scan.source}, {"format", nameOf(scan.format)}, {"id", scan.id.hex()},
+            {"points", scan.point_count}, {"extent_map_m", boxJson(scan.extent_map_m)}, {"has_pose", scan.has_pose},
+            {"has_intensity", scan.has_intensity}, {"labels", labelsJson(scan.points_by_label)}};
+  json["frame"] = scan.has_pose ? "sensor, posed in map" : "map";
+  if (scan.time_s) json["time_s"] = *scan.time_s;
+  return json;
+}
+
+std::string sizeText(const Eigen::AlignedBox3d& box) {
+  if (box.isEmpty()) return "-";
+  char text[128];
+  std::snprintf(text, sizeof text, "%.1f x %.1f x %.1f m", box.sizes().x(), box.sizes().y(), box.sizes().z());
+  return text;
+}
+
+void printScans(const ScanSetSummary& summary) {
+  for (const ScanSummary& scan : summary.scans) {
+    std::printf("%s  %s  %zu points  %s  %s%s%s\n", scan.source.c_str(), nameOf(scan.format), scan.point_count,
+                sizeText(scan.extent_map_m).c_str(), scan.has_pose ? "posed" : "no pose: in the map frame",
+                scan.has_intensity ? "  intensity" : "", scan.points_by_label.empty() ? "" : "  labels");
+  }
+  std::printf("%zu scans, %zu points, extent %s\n", summary.scans.size(), summary.point_count,
+              sizeText(summary.extent_map_m).c_str());
+  if (summary.points_by_label.empty()) return;
+  std::printf("labels:");
+  for (const auto& [label, count] : summary.points_by_label) std::printf(" %u:%zu", label, count);
+  std::printf("\n");
+}
+
+ExitCode infoOfScans(const InfoOptions& options, Session& session) {
+  const ScanSet scans = ScanSet::open(options.inputs, {options.poses}, session.console);
+  const ScanSetSummary summary = summarize(scans, session.threadCount());
+  if (!session.json) {
+    printScans(summary);
+    return ExitCode::Done;
+  }
+  Json json{{"scans", Json::array()}, {"points", summary.point_count}, {"extent_map_m", boxJson(summary.extent_map_m)},
+            {"labels", labelsJson(summary.points_by_label)}};
+  for (const ScanSummary& scan : summary.scans) json["scans"].push_back(scanJson(scan));
+  print(json);
+  return ExitCode::Done;
+}
+
+ExitCode infoOfMap(const fs::path& file, const Session& session) {
+  const MapReader map(file);
+  const MapSummary summary = map.summary();
+  if (!session.json) {
+    std::printf("%s: %s map, %zu clouds, %llu points, %zu objects, %llu quads\n", file.c_str(),
+                summary.is_finished ? "finished" : "unfinished", summary.clouds,
+                static_cast<unsigned long long>(summary.points), summary.objects,
+                static_cast<unsigned long long>(summary.quads));
+    for (const auto& [name, count] : summary.objects_by_class) std::printf("  %-14s %zu\n", name.c_str(), count);
+    return ExitCode::Done;
+  }
+  Json json{{"file", file.string()}, {"finished", summary.is_finished}, {"inputs", summary.inputs_hash},
+            {"clouds", summary.clouds}, {"points", summary.points}, {"objects", summary.objects},
+            {"quads", summary.quads}, {"objects_by_class", summary.objects_by_class}};
+  print(json);
+  return ExitCode::Done;
+}
+
+}  // namespace
+
+void addInfo(CLI::App& app, Session& session) {
+  auto options = std::make_shared<InfoOptions>();
+  CLI::App* command = app.add_subcommand("info", "what was understood of scans, or what is in a map");
+  command->add_option("input", options->inputs, "a map, or files, folders and manifests of scans")->required();
+  command->add_option("--poses", options->poses, "poses of the scans: KITTI 3x4, TUM, or 4x4 text");
+  onRun(*command, session, [options, &session] {
+    const bool is_map = options->inputs.size() == 1 && options->inputs[0].extension() == ".clx";
+    return is_map ? infoOfMap(options->inputs[0], session) : infoOfScans(*options, session);
+  });
+}
+
+}  // namespace cluxel::app

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Facts about clouds, primitives and relations; those about objects follow from object_facts.
+#include "mapping/map_facts.hpp"
+
+#include <chrono>
+#include <cmath>
+
+#include "cluxel/knowledge/vocabulary.hpp"
+#include "mapping/object_facts.hpp"
+
+namespace cluxel {
+
+namespace {
+
+std::string mapIri(std::string_view kind, std::string_view name) {
+  return std::string(vocabulary::kMap).append(kind).append("/").append(name);
+}
+
+void addMap(const ObservedMap& map, FactSink& facts) {
+  const TermId root = facts.iri(mapIri("map", "root"));
+  facts.type(root, vocabulary::clx("Map"));
+  facts.text(root, "frame", "map");
+  if (!map.inputs.crs.empty()) facts.text(root, "crs", map.inputs.crs);
+  if (!map.inputs.map_origin.isZero()) {
+    facts.number(root, "originX", map.inputs.map_origin.x());
+    facts.number(root, "originY", map.inputs.map_origin.y());
+    facts.number(root, "originZ", map.inputs.map_origin.z());
+  }
+  for (const Cloud& cloud : map.clouds) facts.link(root, "hasCloud", facts.iri(iriOfCloud(cloud.id)));
+}
+
+void addCloud(const Cloud& cloud, FactSink& facts) {
+  const TermId subject = facts.iri(iriOfCloud(cloud.id));
+  facts.type(subject, vocabulary::clx("Cloud"));
+  facts.count(subject, "pointCount", cloud.point_count);
+  addBounds(subject, cloud.min, cloud.max, facts);
+  if (cloud.has_pose) addPosition(subject, cloud.T_map_sensor.translation(), facts);
+  if (cloud.time_s)
+    facts.literal(subject, std::string(vocabulary::kSosa) + "resultTime", dateTimeText(*cloud.time_s),
+                  vocabulary::xsd("dateTime"));
+}
+
+/// "horizontal_plane" → "HorizontalPlane".
+std::string className(PrimitiveLabel label) {
+  std::string name;
+  bool upper = true;
+  for (const char c : nameOf(label)) {
+    if (c != '_') name += upper ? static_cast<char>(c - 'a' + 'A') : c;
+    upper = c == '_';
+  }
+  return name;
+}
+
+void addPrimitive(const Primitive& primitive, FactSink& facts) {
+  const TermId subject = facts.iri(iriOfPrimitive(primitive.id));
+  facts.type(subject, vocabulary::clx(className(primitive.label)));
+  addPosition(subject, primitive.centroid, facts);
+  addBounds(subject, primitive.min, primitive.max, facts);
+  for (const AttributeInfo& info : attributeInfos()) {
+    const double value = primitive[info.attribute];
+    if (info.dimension == Dimension::Count)
+      facts.count(subject, info.property, static_cast<std::uint64_t>(value));
+    else
+      facts.number(subject, info.property, value);
+  }
+}
+
+/// Ground is a patch per tile, so that a new scan far away touches nothing here.
+TermId groundPatchUnder(const Primitive& primitive, FactSink& facts) {
+  const TileKey tile = tileOf(primitive.centroid);
+  const TermId patch = facts.iri(mapIri("ground", std::to_string(tile.x) + "_" + std::to_string(tile.y)));
+  facts.type(patch, vocabulary::clx("GroundPatch"));
+  return patch;
+}
+
+void addRelations(const Scene& scene, FactSink& facts) {
+  for (const Relation& relation : scene.relations) {
+    const TermId from = facts.iri(iriOfPrimitive(scene.primitives[relation.from].id));
+    const std::string_view property = relationInfos()[static_cast<std::size_t>(relation.kind)].property;
+    if (relation.kind != RelationKind::TouchesGround)
+      facts.link(from, property, facts.iri(iriOfPrimitive(scene.primitives[relation.to].id)));
+    else if (relation.measure <= kTouchesGround_m)
+      facts.link(from, property, groundPatchUnder(scene.primitives[relation.from], facts));
+  }
+}
+
+}  // namespace
+
+std::string iriOfCloud(const ScanId& id) { return mapIri("cloud", id.hex()); }
+std::string iriOfPrimitive(const ContentHash& id) { return mapIri("primitive", id.hex()); }
+std::string iriOfObject(const ContentHash& id) { return mapIri("object", id.hex()); }
+
+std::string dateTimeText(double time_s) {
+  using namespace std::chrono;
+  const auto total_us = static_cast<std::int64_t>(std::llround(time_s * 1e6));
+  const sys_time<microseconds> time{microseconds(total_us)};
+  const sys_days day = floor<days>(time);
+  const year_month_day date(day);
+  const hh_mm_ss<microseconds> clock(time - day);
+  char text[64];
+  std::snprintf(text, sizeof text, "%04d-%02u-%02uT%02d:%02d:%02d.%06dZ", static_cast<int>(date.year()),
+                static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                static_cast<int>(clock.hours().count()), static_cast<int>(clock.minutes().count()),
+                static_cast<int>(clock.seconds().count()), static_cast<int>(clock.subseconds().count()));
+  return text;
+}
+
+void addObservedFacts(const ObservedMap& map, FactSink& facts) {
+  addMap(map, facts);
+  for (const Cloud& cloud : map.clouds) addCloud(cloud, facts);
+  for (const Primitive& primitive : map.scene.primitives) addPrimitive(primitive, facts);
+  addRelations(map.scene, facts);
+  addObjectFacts(map, facts);
+}
+
+}  // namespace cluxel

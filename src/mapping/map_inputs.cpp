@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reading and hashing the inputs of a map.
+#include "cluxel/mapping/map_inputs.hpp"
+
+#include <algorithm>
+
+#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/base/file_bytes.hpp"
+#include "cluxel/reasoning/rule_loader.hpp"
+
+namespace cluxel {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<fs::path> filesIn(const fs::path& folder, std::string_view ending) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().string().ends_with(ending)) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<NamedText> readAll(const std::vector<fs::path>& files) {
+  std::vector<NamedText> texts;
+  for (const fs::path& file : files) texts.push_back({file.string(), readFile(file)});
+  return texts;
+}
+
+std::vector<fs::path> givenOr(const std::vector<fs::path>& given, const std::string& folder, std::string_view ending,
+                              const DataHome& home) {
+  if (given.empty()) return filesIn(home.locate(folder), ending);
+  std::vector<fs::path> files;
+  for (const fs::path& name : given) files.push_back(home.locate(folder, name));
+  return files;
+}
+
+void addTexts(ContentHasher& hasher, const std::vector<NamedText>& texts) {
+  hasher.add(static_cast<std::uint64_t>(texts.size()));
+  for (const NamedText& text : texts) hasher.addText(text.text);
+}
+
+}  // namespace
+
+void describe(MapParams& params, ParameterVisitor& visitor) {
+  describe(params.labelling, visitor);
+  describe(params.component, visitor);
+  describe(params.contact, visitor);
+  describe(params.relation, visitor);
+}
+
+ContentHash MapInputs::hash() const {
+  ContentHasher hasher;
+  addTexts(hasher, ontology);
+  addTexts(hasher, rules);
+  hasher.add(static_cast<std::uint64_t>(rule_roots));
+  addTexts(hasher, sparql_rules);
+  hasher.addText(model.text).add(hashOf(params)).addText(crs);
+  for (int axis = 0; axis < 3; ++axis) hasher.add(map_origin[axis]);
+  return hasher.finish();
+}
+
+MapInputs readMapInputs(const MapInputFiles& files, const DataHome& home) {
+  MapInputs inputs;
+  inputs.ontology = readAll(givenOr(files.ontology, "ontology", ".ttl", home));
+  std::vector<fs::path> rules;
+  for (const fs::path& name : files.rules.empty() ? std::vector<fs::path>{"outdoor.rules.yaml"} : files.rules)
+    rules.push_back(home.locate("rules", name));
+  inputs.rules = readAll(rules);
+  inputs.rule_roots = rules.size();
+  inputs.sparql_rules = readAll(givenOr(files.sparql_rules, "rules", ".rq", home));
+  fs::path model = home.locate("models", files.model.empty() ? fs::path("oakland") : files.model);
+  if (fs::is_directory(model)) model /= "model.json";
+  inputs.model = {model.string(), readFile(model)};
+  return inputs;
+}
+
+}  // namespace cluxel

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reading a map: everything from one snapshot.
+#include "cluxel/mapping/map_reader.hpp"
+
+#include <optional>
+
+#include "cluxel/base/diagnostic.hpp"
+#include "mapping/map_state.hpp"
+#include "mapping/object_geometry.hpp"
+#include "mapping/object_store.hpp"
+#include "mapping/scan_store.hpp"
+#include "mapping/tile_stages.hpp"
+
+namespace cluxel {
+
+struct MapReader::Impl {
+  std::shared_ptr<Environment> environment;
+  ReadTransaction transaction;
+  QuadReader quads;
+  MapState state;
+  std::optional<MapInputs> inputs;
+  std::optional<LabelModel> model;
+  std::optional<TileStages> stages;
+  std::optional<Scene> scene;
+  std::optional<std::vector<SemanticObject>> objects;
+  std::vector<std::uint32_t> object_of_cluxel;
+  std::map<TileKey, std::uint32_t> first_cluxel;
+
+  explicit Impl(std::shared_ptr<Environment> opened)
+      : environment(std::move(opened)), transaction(environment->read()), quads(environment->read()) {
+    const auto stored = storedState(transaction);
+    if (!stored)
+      throw Error(ExitCode::StoreUnavailable, environment->file().string() +
+                                                  ": holds no map (or its first build never committed); build it");
+    state = *stored;
+  }
+
+  const MapInputs& readInputs() {
+    if (!inputs) inputs = storedInputs(transaction);
+    return *inputs;
+  }
+
+  const std::vector<SemanticObject>& readObjects() {
+    if (!objects) objects = storedObjects(transaction);
+    return *objects;
+  }
+
+  const TileStages& readStages() {
+    if (stages) return *stages;
+    model = parseModel(readInputs().model.text, inputs->model.name);
+    stages.emplace(*model, inputs->params);
+    stages->loadAll(transaction);
+    std::uint32_t next = 0;
+    for (const auto& [key, tile] : stages->cluxels()) {
+      first_cluxel.emplace(key, next);
+      next += static_cast<std::uint32_t>(tile.size());
+    }
+    object_of_cluxel = objectOfCluxel({readObjects(), {}}, next);
+    return *stages;
+  }
+};
+
+MapReader::MapReader(const std::filesystem::path& file)
+    : impl_(std::make_unique<Impl>(Environment::open(file, OpenMode::ReadOnly))) {}
+MapReader::~MapReader() = default;
+MapReader::MapReader(MapReader&&) noexcept = default;
+
+std::string localName(std::string_view iri) {
+  const std::size_t cut = iri.find_last_of("#/");
+  return std::string(cut == std::string_view::npos ? iri : iri.substr(cut + 1));
+}
+
+MapSummary MapReader::summary() const {
+  MapSummary summary;
+  summary.is_finished = impl_->state.is_finished;
+  summary.inputs_hash = impl_->state.inputs_hash;
+  for (const Cloud& cloud : clouds()) {
+    ++summary.clouds;
+    summary.points += cloud.point_count;
+  }
+  for (const SemanticObject& object : objects()) ++summary.objects_by_class[localName(object.class_iri)];
+  summary.objects = objects().size();
+  summary.quads = impl_->quads.size();
+  return summary;
+}
+
+std::vector<Cloud> MapReader::clouds() const { return storedClouds(impl_->transaction); }
+ScanPoints MapReader::pointsOf(const ScanId& cloud) const { return storedPoints(impl_->transaction, cloud); }
+const std::vector<SemanticObject>& MapReader::objects() const { return impl_->readObjects(); }
+const QuadReader& MapReader::quads() const { return impl_->quads; }
+MapInputs MapReader::inputs() const { return impl_->readInputs(); }
+
+const Scene& MapReader::scene() const {
+  if (!impl_->scene) impl_->scene = impl_->readStages().scene();
+  return *impl_->scene;
+}
+
+PointAnswers MapReader::answersFor(const Cloud& cloud) const {
+  const TileStages& stages = impl_->readStages();
+  const Scene& all = scene();
+  const ThinParams& thin = impl_->model->perception.thin;
+  const ScanPoints points = pointsOf(cloud.id);
+  std::map<TileKey, RepresentativeFinder> finders;
+  PointAnswers answers;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d p_map = toMap(cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
+    const TileKey tile = tileOf(p_map);
+    const auto finder = finders.try_emplace(tile, stages.points().at(tile), thin).first;
+    const std::uint32_t kept = finder->second.find(localPoint(tile, p_map));
+    const std::uint32_t cluxel = impl_->first_cluxel.at(tile) + stages.cluxels().at(tile).point_cluxel.at(kept);
+    answers.cluxel.push_back(cluxel);
+    answers.label.push_back(static_cast<std::uint8_t>(all.cluxels.label[cluxel]));
+    answers.object.push_back(impl_->object_of_cluxel[cluxel]);
+  }
+  return answers;
+}
+
+}  // namespace cluxel

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// State and inputs as JSON and texts in blocks.
+#include "mapping/map_state.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "cluxel/base/diagnostic.hpp"
+#include "mapping/map_tables.hpp"
+
+namespace cluxel {
+
+namespace {
+
+using Json = nlohmann::json;
+constexpr std::string_view kStateKey = "state", kInputsKey = "inputs";
+
+/// Writes every field of a settings struct by name.
+class ParameterWriter : public ParameterVisitor {
+ public:
+  void real(const ParameterInfo& info, double& value) override { json[std::string(info.name)] = value; }
+  void whole(const ParameterInfo& info, int& value) override { json[std::string(info.name)] = value; }
+  void flag(const ParameterInfo& info, bool& value) override { json[std::string(info.name)] = value; }
+  Json json = Json::object();
+};
+
+class ParameterReader : public ParameterVisitor {
+ public:
+  explicit ParameterReader(const Json& json) : json_(json) {}
+  void real(const ParameterInfo& info, double& value) override { value = json_.at(std::string(info.name)); }
+  void whole(const ParameterInfo& info, int& value) override { value = json_.at(std::string(info.name)); }
+  void flag(const ParameterInfo& info, bool& value) override { value = json_.at(std::string(info.name)); }
+
+ private:
+  const Json& json_;
+};
+
+Json textsJson(const std::vector<NamedText>& texts) {
+  Json json = Json::array();
+  for (const NamedText& text : texts) json.push_back({{"name", text.name}, {"text", text.text}});
+  return json;
+}
+
+std::vector<NamedText> textsFrom(const Json& json) {
+  std::vector<NamedText> texts;
+  for (const Json& text : json) texts.push_back({text.at("name"), text.at("text")});
+  return texts;
+}
+
+void put(WriteTransaction& transaction, std::string_view key, const Json& json) {
+  const auto bytes = Json::to_cbor(json);
+  transaction.putBlock(tables::kMeta, key, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+[[noreturn]] void reportDamage(const char* what) {
+  throw Error(ExitCode::StoreUnavailable,
+              std::string("the map's description of itself is damaged (") + what + "); build the map anew");
+}
+
+}  // namespace
+
+void storeState(WriteTransaction& transaction, const MapState& state) {
+  put(transaction, kStateKey, {{"finished", state.is_finished}, {"inputs", state.inputs_hash}});
+}
+
+std::optional<MapState> storedState(const ReadTransaction& transaction) {
+  const auto bytes = transaction.block(tables::kMeta, kStateKey);
+  if (!bytes) return std::nullopt;
+  try {
+    const Json json = Json::from_cbor(*bytes);
+    return MapState{json.at("finished"), json.at("inputs")};
+  } catch (const Json::exception& fault) {
+    reportDamage(fault.what());
+  }
+}
+
+void storeInputs(WriteTransaction& transaction, const MapInputs& inputs) {
+  ParameterWriter params;
+  MapParams copy = inputs.params;
+  describe(copy, params);
+  const Eigen::Vector3d& origin = inputs.map_origin;
+  put(transaction, kInputsKey,
+      {{"ontology", textsJson(inputs.ontology)}, {"rules", textsJson(inputs.rules)}, {"rule_roots", inputs.rule_roots},
+       {"sparql_rules", textsJson(inputs.sparql_rules)}, {"model", textsJson({inputs.model})}, {"params", params.json},
+       {"map_origin", {origin.x(), origin.y(), origin.z()}}, {"crs", inputs.crs}});
+}
+
+MapInputs storedInputs(const ReadTransaction& transaction) {
+  const auto bytes = transaction.block(tables::kMeta, kInputsKey);
+  if (!bytes) reportDamage("no inputs");
+  try {
+    const Json json = Json::from_cbor(*bytes);
+    MapInputs inputs;
+    inputs.ontology = textsFrom(json.at("ontology"));
+    inputs.rules = textsFrom(json.at("rules"));
+    inputs.rule_roots = json.at("rule_roots");
+    inputs.sparql_rules = textsFrom(json.at("sparql_rules"));
+    inputs.model = textsFrom(json.at("model")).at(0);
+    const Json& params = json.at("params");
+    ParameterReader reader(params);
+    describe(inputs.params, reader);
+    for (int axis = 0; axis < 3; ++axis) inputs.map_origin[axis] = json.at("map_origin").at(static_cast<std::size_t>(axis));
+    inputs.crs = json.at("crs");
+    return inputs;
+  } catch (const std::exception& fault) {
+    reportDamage(fault.what());
+  }
+}
+
+}  // namespace cluxel

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// The block tables of a map file and their keys.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "cluxel/base/content_hash.hpp"
+#include "cluxel/perception/tile.hpp"
+
+namespace cluxel::tables {
+
+inline constexpr std::string_view kMeta = "meta";             ///< "state", "inputs", "objects": JSON and CBOR
+inline constexpr std::string_view kTexts = "texts";           ///< "ontology/0" ...: the inputs' texts
+inline constexpr std::string_view kScans = "scans";           ///< scan id → description
+inline constexpr std::string_view kScanPoints = "scan_points";   ///< scan id → points in the sensor frame
+inline constexpr std::string_view kSegments = "segments";     ///< tile, scan id → the scan's points in the tile
+inline constexpr std::string_view kPoints = "stage_points";   ///< tile → output of each stage
+inline constexpr std::string_view kCluxels = "stage_cluxels";
+inline constexpr std::string_view kGround = "stage_ground";
+inline constexpr std::string_view kFeatures = "stage_features";
+inline constexpr std::string_view kLabels = "stage_labels";
+inline constexpr std::string_view kComponents = "stage_components";
+inline constexpr std::string_view kContacts = "stage_contacts";
+
+/// Keys sort by tile: big-endian, with the sign bit turned.
+inline std::string keyOf(const TileKey& tile) {
+  std::string key;
+  for (const std::int32_t value : {tile.x, tile.y}) {
+    const std::uint32_t biased = static_cast<std::uint32_t>(value) ^ 0x80000000U;
+    for (int shift = 24; shift >= 0; shift -= 8) key += static_cast<char>(biased >> shift & 0xFFU);
+  }
+  return key;
+}
+
+inline TileKey tileOfKey(std::string_view key) {
+  std::array<std::int32_t, 2> values{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    std::uint32_t biased = 0;
+    for (std::size_t byte = 0; byte < 4; ++byte) biased = biased << 8U | static_cast<std::uint8_t>(key[4 * i + byte]);
+    values[i] = static_cast<std::int32_t>(biased ^ 0x80000000U);
+  }
+  return {values[0], values[1]};
+}
+
+inline std::string keyOf(const ContentHash& hash) {
+  return {reinterpret_cast<const char*>(hash.bytes.data()), hash.bytes.size()};
+}
+
+inline ContentHash hashOfKey(std::string_view key) {
+  ContentHash hash;
+  for (std::size_t i = 0; i < hash.bytes.size(); ++i) hash.bytes[i] = static_cast<std::uint8_t>(key[i]);
+  return hash;
+}
+
+}  // namespace cluxel::tables

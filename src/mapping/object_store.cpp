@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Objects as one CBOR block; lists of cluxels as binary strings of 32-bit numbers.
+#include "mapping/object_store.hpp"
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "cluxel/base/diagnostic.hpp"
+#include "mapping/map_tables.hpp"
+
+namespace cluxel {
+
+namespace {
+
+using Json = nlohmann::json;
+constexpr std::string_view kObjectsKey = "objects";
+
+Json numbersJson(const std::vector<std::uint32_t>& numbers) {
+  std::vector<std::uint8_t> bytes(numbers.size() * sizeof(std::uint32_t));
+  if (!bytes.empty()) std::memcpy(bytes.data(), numbers.data(), bytes.size());
+  return Json::binary(std::move(bytes));
+}
+
+std::vector<std::uint32_t> numbersFrom(const Json& json) {
+  const auto& bytes = json.get_binary();
+  std::vector<std::uint32_t> numbers(bytes.size() / sizeof(std::uint32_t));
+  if (!numbers.empty()) std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(std::uint32_t));
+  return numbers;
+}
+
+Json partJson(const ObjectPart& part) {
+  return {{"class", part.part_class}, {"primitives", numbersJson(part.primitives)}, {"cluxels", numbersJson(part.cluxels)}};
+}
+
+ObjectPart partFrom(const Json& json) {
+  return {json.at("class"), numbersFrom(json.at("primitives")), numbersFrom(json.at("cluxels"))};
+}
+
+Json objectJson(const SemanticObject& object) {
+  Json json{{"id", object.id.hex()}, {"class", object.class_iri}, {"confidence", object.confidence},
+            {"rule", object.rule_id}, {"decision", object.decision}, {"parts", Json::array()}};
+  for (const ObjectPart& part : object.parts) json["parts"].push_back(partJson(part));
+  return json;
+}
+
+SemanticObject objectFrom(const Json& json) {
+  SemanticObject object;
+  object.id = ContentHash::fromHex(json.at("id").get<std::string>());
+  object.class_iri = json.at("class");
+  object.confidence = json.at("confidence");
+  object.rule_id = json.at("rule");
+  object.decision = json.at("decision");
+  for (const Json& part : json.at("parts")) object.parts.push_back(partFrom(part));
+  return object;
+}
+
+}  // namespace
+
+void storeObjects(WriteTransaction& transaction, const std::vector<SemanticObject>& objects) {
+  Json json = Json::array();
+  for (const SemanticObject& object : objects) json.push_back(objectJson(object));
+  const auto bytes = Json::to_cbor(json);
+  transaction.putBlock(tables::kMeta, kObjectsKey, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+std::vector<SemanticObject> storedObjects(const ReadTransaction& transaction) {
+  std::vector<SemanticObject> objects;
+  const auto bytes = transaction.block(tables::kMeta, kObjectsKey);
+  if (!bytes) return objects;
+  try {
+    for (const Json& object : Json::from_cbor(*bytes)) objects.push_back(objectFrom(object));
+  } catch (const std::exception& fault) {
+    throw Error(ExitCode::StoreUnavailable,
+                std::string("the map's objects are damaged (") + fault.what() + "); build the map anew");
+  }
+  return objects;
+}
+
+}  // namespace cluxel

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scans in and out of the map file.
+#include "mapping/scan_store.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/perception/tile_points.hpp"
+#include "mapping/map_tables.hpp"
+
+namespace cluxel {
+
+namespace {
+
+constexpr std::string_view kTilesKey = "tiles";
+
+using Json = nlohmann::json;
+
+std::vector<double> numbersOf(const Eigen::Isometry3d& pose) {
+  return {pose.matrix().data(), pose.matrix().data() + 16};
+}
+
+Json vectorJson(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
+
+Eigen::Vector3d vectorFrom(const Json& json) {
+  return Eigen::Vector3d(json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>());
+}
+
+std::string toBytes(const Cloud& cloud) {
+  Json json{{"source", cloud.source}, {"pose", numbersOf(cloud.T_map_sensor)}, {"has_pose", cloud.has_pose},
+            {"points", cloud.point_count}, {"min", vectorJson(cloud.min)}, {"max", vectorJson(cloud.max)}};
+  if (cloud.time_s) json["time_s"] = *cloud.time_s;
+  const auto bytes = Json::to_cbor(json);
+  return {bytes.begin(), bytes.end()};
+}
+
+Cloud cloudFromBytes(const ScanId& id, std::string_view bytes) {
+  try {
+    const Json json = Json::from_cbor(bytes);
+    Cloud cloud;
+    cloud.id = id;
+    cloud.source = json.at("source");
+    const auto pose = json.at("pose").get<std::vector<double>>();
+    if (pose.size() != 16) throw std::invalid_argument("a pose has 16 numbers");
+    std::copy(pose.begin(), pose.end(), cloud.T_map_sensor.matrix().data());
+    cloud.has_pose = json.at("has_pose");
+    cloud.point_count = json.at("points");
+    cloud.min = vectorFrom(json.at("min"));
+    cloud.max = vectorFrom(json.at("max"));
+    if (json.contains("time_s")) cloud.time_s = json.at("time_s").get<double>();
+    return cloud;
+  } catch (const std::exception& fault) {
+    throw Error(ExitCode::StoreUnavailable,
+                "the description of cloud " + id.hex() + " is damaged (" + fault.what() + "); build the map anew");
+  }
+}
+
+template <typename T>
+void append(std::string& bytes, const std::vector<T>& values) {
+  const std::uint64_t count = values.size();
+  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
+  if (count > 0) bytes.append(reinterpret_cast<const char*>(values.data()), count * sizeof(T));
+}
+
+template <typename T>
+std::vector<T> takeArray(std::string_view& bytes) {
+  const auto damaged = [] { return Error(ExitCode::StoreUnavailable, "points of a cloud are damaged; build the map anew"); };
+  std::uint64_t count = 0;
+  if (bytes.size() < sizeof count) throw damaged();
+  std::memcpy(&count, bytes.data(), sizeof count);
+  bytes.remove_prefix(sizeof count);
+  if (count > bytes.size() / sizeof(T)) throw damaged();
+  std::vector<T> values(count);
+  if (count > 0) std::memcpy(static_cast<void*>(values.data()), bytes.data(), count * sizeof(T));
+  bytes.remove_prefix(count * sizeof(T));
+  return values;
+}
+
+std::string toBytes(const ScanPoints& points) {
+  std::string bytes;
+  append(bytes, points.x), append(bytes, points.y), append(bytes, points.z);
+  append(bytes, points.intensity), append(bytes, points.label), append(bytes, points.origin);
+  return bytes;
+}
+
+Cloud cloudOf(const Scan& scan) {
+  Cloud cloud{scan.id, scan.source, scan.time_s, scan.T_map_sensor, scan.has_pose, scan.points.size(), {}, {}};
+  cloud.min.setConstant(1e300), cloud.max.setConstant(-1e300);
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    const Eigen::Vector3d p = toMap(scan.T_map_sensor, {scan.points.x[i], scan.points.y[i], scan.points.z[i]});
+    cloud.min = cloud.min.cwiseMin(p);
+    cloud.max = cloud.max.cwiseMax(p);
+  }
+  return cloud;
+}
+
+void addTiles(WriteTransaction& transaction, const TileSet& fresh) {
+  std::string bytes;
+  for (const TileKey& tile : unionOf(storedTiles(transaction), fresh)) bytes += tables::keyOf(tile);
+  transaction.putBlock(tables::kMeta, kTilesKey, bytes);
+}
+
+}  // namespace
+
+TileSet storedTiles(const ReadTransaction& transaction) {
+  TileSet tiles;
+  const auto bytes = transaction.block(tables::kMeta, kTilesKey);
+  for (std::size_t at = 0; bytes && at + 8 <= bytes->size(); at += 8)
+    tiles.insert(tables::tileOfKey(bytes->substr(at, 8)));
+  return tiles;
+}
+
+TileSet storeScan(WriteTransaction& transaction, const Scan& scan) {
+  if (const auto there = storedCloud(transaction, scan.id)) {
+    if (numbersOf(there->T_map_sensor) == numbersOf(scan.T_map_sensor)) return {};
+    throw InputError({.file = scan.source}, "is the same scan as '" + there->source + "', with another pose",
+                     "give each scan once; to correct a pose, build anew with the right one");
+  }
+  TileSet tiles;
+  for (const auto& [tile, segment] : splitScan(scan)) {
+    transaction.putBlock(tables::kSegments, tables::keyOf(tile) + tables::keyOf(scan.id), toBytes(segment));
+    tiles.insert(tile);
+  }
+  transaction.putBlock(tables::kScanPoints, tables::keyOf(scan.id), toBytes(scan.points));
+  transaction.putBlock(tables::kScans, tables::keyOf(scan.id), toBytes(cloudOf(scan)));
+  addTiles(transaction, tiles);
+  return tiles;
+}
+
+std::vector<Cloud> storedClouds(const ReadTransaction& transaction) {
+  std::vector<Cloud> clouds;
+  transaction.forEachBlock(tables::kScans, "", [&](std::string_view key, std::string_view bytes) {
+    clouds.push_back(cloudFromBytes(tables::hashOfKey(key), bytes));
+  });
+  return clouds;
+}
+
+std::optional<Cloud> storedCloud(const ReadTransaction& transaction, const ScanId& id) {
+  const auto bytes = transaction.block(tables::kScans, tables::keyOf(id));
+  if (!bytes) return std::nullopt;
+  return cloudFromBytes(id, *bytes);
+}
+
+ScanPoints storedPoints(const ReadTransaction& transaction, const ScanId& id) {
+  const auto block = transaction.block(tables::kScanPoints, tables::keyOf(id));
+  if (!block) throw Error(ExitCode::StoreUnavailable, "cloud " + id.hex() + " has no points in the map; build it anew");
+  std::string_view bytes = *block;
+  ScanPoints points;
+  points.x = takeArray<float>(bytes), points.y = takeArray<float>(bytes), points.z = takeArray<float>(bytes);
+  points.intensity = takeArray<float>(bytes);
+  points.label = takeArray<std::uint32_t>(bytes);
+  points.origin = takeArray<Eigen::Vector3f>(bytes);
+  return points;
+}
+
+}  // namespace cluxel

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Walks over all points of all clouds with their truth.
+#include "cluxel/tasks/evaluation.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "cluxel/base/diagnostic.hpp"
+#include "tasks/object_matching.hpp"
+
+namespace cluxel {
+
+namespace {
+
+double ratio(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+double harmonic(double a, double b) { return a + b == 0 ? 0.0 : 2 * a * b / (a + b); }
+
+Scan scanOf(const MapReader& map, const Cloud& cloud) {
+  Scan scan;
+  scan.points = map.pointsOf(cloud.id);
+  scan.T_map_sensor = cloud.T_map_sensor;
+  scan.has_pose = cloud.has_pose;
+  scan.source = cloud.source;
+  scan.id = cloud.id;
+  return scan;
+}
+
+std::vector<std::string> primitiveNames() { return {kPrimitiveLabelNames.begin(), kPrimitiveLabelNames.end()}; }
+
+/// The number of every object's class among the truth's names; their count for a class that the truth does not know.
+std::vector<std::size_t> classNumbers(const std::vector<SemanticObject>& objects, const std::vector<std::string>& names) {
+  std::vector<std::size_t> numbers;
+  for (const SemanticObject& object : objects)
+    numbers.push_back(static_cast<std::size_t>(
+        std::find(names.begin(), names.end(), localName(object.class_iri)) - names.begin()));
+  return numbers;
+}
+
+}  // namespace
+
+ConfusionMatrix::ConfusionMatrix(std::vector<std::string> class_names)
+    : names(std::move(class_names)), counts(names.size() * (names.size() + 1), 0) {}
+
+std::uint64_t ConfusionMatrix::truthCount(std::size_t name) const {
+  std::uint64_t sum = 0;
+  for (std::size_t answer = 0; answer <= names.size(); ++answer) sum += at(name, answer);
+  return sum;
+}
+
+std::uint64_t ConfusionMatrix::answerCount(std::size_t name) const {
+  std::uint64_t sum = 0;
+  for (std::size_t truth = 0; truth < names.size(); ++truth) sum += at(truth, name);
+  return sum;
+}
+
+std::uint64_t ConfusionMatrix::total() const { return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}); }
+
+double ConfusionMatrix::precision(std::size_t name) const { return ratio(at(name, name), answerCount(name)); }
+double ConfusionMatrix::recall(std::size_t name) const { return ratio(at(name, name), truthCount(name)); }
+double ConfusionMatrix::f1(std::size_t name) const { return harmonic(precision(name), recall(name)); }
+double ConfusionMatrix::iou(std::size_t name) const {
+  return ratio(at(name, name), truthCount(name) + answerCount(name) - at(name, name));
+}
+
+double ConfusionMatrix::overallAccuracy() const {
+  std::uint64_t right = 0;
+  for (std::size_t name = 0; name < names.size(); ++name) right += at(name, name);
+  return ratio(right, total());
+}
+
+double ConfusionMatrix::macroF1() const {
+  double sum = 0, present = 0;
+  for (std::size_t name = 0; name < names.size(); ++name)
+    if (truthCount(name) > 0) sum += f1(name), ++present;
+  return present == 0 ? 0 : sum / present;
+}
+
+double ConfusionMatrix::macroIou() const {
+  double sum = 0, present = 0;
+  for (std::size_t name = 0; name < names.size(); ++name)
+    if (truthCount(name) > 0) sum += iou(name), ++present;
+  return present == 0 ? 0 : sum / present;
+}
+
+double ObjectScore::precision() const { return ratio(matched_answers, answers); }
+double ObjectScore::recall() const { return ratio(matched_truth, truth); }
+double ObjectScore::f1() const { return harmonic(precision(), recall()); }
+
+MapEvaluation evaluateMap(const MapReader& map, const TruthSource& source, const EvaluationParams& params) {
+  const std::vector<std::string>& names = truthClassNames();
+  MapEvaluation evaluation{ConfusionMatrix(primitiveNames()), ConfusionMatrix(names), false, {}, {}};
+  ObjectMatching matching(names, map.objects(), source.ambiguous());
+  const std::vector<std::size_t> class_of_object = classNumbers(map.objects(), names);
+  for (const Cloud& cloud : map.clouds()) {
+    const Scan scan = scanOf(map, cloud);
+    const PointTruth truth = source.truthOf(scan);
+    const PointAnswers answers = map.answersFor(cloud);
+    for (std::size_t i = 0; i < scan.points.size(); ++i) {
+      if (truth.primitive[i] >= 0)
+        evaluation.primitives.add(static_cast<std::size_t>(truth.primitive[i]), answers.label[i]);
+      if (truth.object_class[i] < 0) continue;
+      const auto truth_class = static_cast<std::size_t>(truth.object_class[i]);
+      const std::uint32_t object = answers.object[i];
+      evaluation.objects.add(truth_class, object == kNoObjectOfPoint ? names.size() : class_of_object[object]);
+      const Eigen::Vector3f p(scan.points.x[i], scan.points.y[i], scan.points.z[i]);
+      matching.add(toMap(scan.T_map_sensor, p), truth_class, truth.instance.empty() ? -1 : truth.instance[i], object);
+    }
+  }
+  if (evaluation.primitives.total() == 0)
+    throw Error(ExitCode::FaultyInput, "the truth says nothing about the points of this map; is it of other scans?");
+  evaluation.has_instances = matching.hasInstances();
+  evaluation.by_box = matching.scoreByBox(params);
+  evaluation.by_points = matching.scoreByPoints(params);
+  return evaluation;
+}
+
+}  // namespace cluxel

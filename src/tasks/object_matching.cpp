@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Greedy matching by falling IoU: with thresholds of a half or more a truth object has few rivals.
+#include "tasks/object_matching.hpp"
+
+#include <algorithm>
+#include <set>
+#include <tuple>
+
+namespace cluxel {
+
+namespace {
+
+double boxIou(Eigen::AlignedBox3d a, Eigen::AlignedBox3d b, double padding_m) {
+  for (Eigen::AlignedBox3d* box : {&a, &b}) {
+    box->min().array() -= padding_m;
+    box->max().array() += padding_m;
+  }
+  const Eigen::AlignedBox3d common = a.intersection(b);
+  const double shared = common.isEmpty() ? 0.0 : common.volume();
+  return shared / (a.volume() + b.volume() - shared);
+}
+
+}  // namespace
+
+ObjectMatching::ObjectMatching(const std::vector<std::string>& class_names, const std::vector<SemanticObject>& objects,
+                               const std::vector<std::int32_t>& ambiguous)
+    : names_(class_names), ambiguous_(ambiguous), found_(objects.size()) {
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const auto name = std::find(names_.begin(), names_.end(), localName(objects[i].class_iri));
+    found_[i].class_number = static_cast<std::size_t>(name - names_.begin());
+  }
+}
+
+void ObjectMatching::add(const Eigen::Vector3d& p_map, std::size_t truth_class, std::int32_t instance,
+                         std::uint32_t object) {
+  if (instance >= 0) {
+    PointSet& truth = truth_[instance];
+    if (truth.count == 0)
+      truth.counts = !std::binary_search(ambiguous_.begin(), ambiguous_.end(), instance), truth.class_number = truth_class;
+    ++truth.count;
+    truth.box.extend(p_map);
+  }
+  if (object == kNoObjectOfPoint) return;
+  PointSet& found = found_[object];
+  ++found.count;
+  found.box.extend(p_map);
+  if (instance >= 0)
+    ++shared_[{object, instance}];
+  else if (truth_class == found.class_number)
+    ++found.without_instance;
+}
+
+std::int32_t ObjectMatching::bestInstance(std::uint32_t object) const {
+  std::int32_t best = -1;
+  std::uint64_t most = 0;
+  for (auto it = shared_.lower_bound({object, -1}); it != shared_.end() && it->first.first == object; ++it)
+    if (it->second > most) most = it->second, best = it->first.second;
+  return best;
+}
+
+/// "A prediction whose best match is ambiguous or mostly instance -1 of its class counts neither way."
+bool ObjectMatching::countsAsAnswer(std::uint32_t object) const {
+  const PointSet& found = found_[object];
+  if (found.count == 0 || 2 * found.without_instance > found.count) return false;
+  const std::int32_t best = bestInstance(object);
+  return best < 0 || truth_.at(best).counts;
+}
+
+template <typename Iou>
+std::vector<ObjectScore> ObjectMatching::score(double least, const Iou& iou) const {
+  std::vector<Candidate> candidates;
+  for (const auto& [pair, count] : shared_) {
+    const auto& [object, instance] = pair;
+    if (truth_.at(instance).class_number != found_[object].class_number) continue;
+    const double value = iou(found_[object], truth_.at(instance), count);
+    if (value >= least) candidates.push_back({value, instance, object});
+  }
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return std::tie(b.iou, a.instance, a.object) < std::tie(a.iou, b.instance, b.object);
+  });
+  std::set<std::int32_t> matched_truth;
+  std::set<std::uint32_t> matched_objects;
+  for (const Candidate& candidate : candidates) {
+    if (matched_truth.contains(candidate.instance) || matched_objects.contains(candidate.object)) continue;
+    matched_truth.insert(candidate.instance);
+    matched_objects.insert(candidate.object);
+  }
+  std::vector<ObjectScore> scores(names_.size());
+  for (std::size_t i = 0; i < names_.size(); ++i) scores[i].name = names_[i];
+  for (const auto& [instance, truth] : truth_) {
+    if (!truth.counts) continue;
+    ++scores[truth.class_number].truth;
+    scores[truth.class_number].matched_truth += matched_truth.contains(instance) ? 1 : 0;
+  }
+  for (std::uint32_t object = 0; object < found_.size(); ++object) {
+    if (found_[object].class_number >= names_.size() || !countsAsAnswer(object)) continue;
+    ++scores[found_[object].class_number].answers;
+    scores[found_[object].class_number].matched_answers += matched_objects.contains(object) ? 1 : 0;
+  }
+  return scores;
+}
+
+std::vector<ObjectScore> ObjectMatching::scoreByBox(const EvaluationParams& params) const {
+  return score(params.box_iou, [&](const PointSet& found, const PointSet& truth, std::uint64_t) {
+    return boxIou(found.box, truth.box, params.box_padding_m);
+  });
+}
+
+std::vector<ObjectScore> ObjectMatching::scoreByPoints(const EvaluationParams& params) const {
+  return score(params.point_iou, [](const PointSet& found, const PointSet& truth, std::uint64_t shared) {
+    return static_cast<double>(shared) / static_cast<double>(found.count + truth.count - shared);
+  });
+}
+
+}  // namespace cluxel

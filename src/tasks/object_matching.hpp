@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// One-to-one matches between truth objects and the map's objects.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cluxel/tasks/evaluation.hpp"
+
+namespace cluxel {
+
+/// The points of one object, true or found.
+struct PointSet {
+  std::size_t class_number = 0;            ///< in the truth's class names; size() of them: another class
+  std::uint64_t count = 0;                 ///< points with truth
+  Eigen::AlignedBox3d box;                 ///< [m, map]
+  bool counts = true;                      ///< false: ambiguous
+  std::uint64_t without_instance = 0;      ///< points whose truth has this class but no instance
+};
+
+/// Collects points with truth and answer, then matches.
+class ObjectMatching {
+ public:
+  ObjectMatching(const std::vector<std::string>& class_names, const std::vector<SemanticObject>& objects,
+                 const std::vector<std::int32_t>& ambiguous);
+  /// A point with known truth class; `instance` -1 and `object` kNoObjectOfPoint mean none.
+  void add(const Eigen::Vector3d& p_map, std::size_t truth_class, std::int32_t instance, std::uint32_t object);
+  bool hasInstances() const { return !truth_.empty(); }
+  std::vector<ObjectScore> scoreByBox(const EvaluationParams& params) const;
+  std::vector<ObjectScore> scoreByPoints(const EvaluationParams& params) const;
+
+ private:
+  struct Candidate {
+    double iou = 0;
+    std::int32_t instance = 0;
+    std::uint32_t object = 0;
+  };
+  template <typename Iou>
+  std::vector<ObjectScore> score(double least, const Iou& iou) const;
+  /// The instance that shares most points with the object, of any class; -1 when none does.
+  std::int32_t bestInstance(std::uint32_t object) const;
+  bool countsAsAnswer(std::uint32_t object) const;
+
+  std::vector<std::string> names_;
+  std::vector<std::int32_t> ambiguous_;
+  std::map<std::int32_t, PointSet> truth_;
+  std::vector<PointSet> found_;
+  std::map<std::pair<std::uint32_t, std::int32_t>, std::uint64_t> shared_;   ///< (object, instance) → points
+};
+
+}  // namespace cluxel

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Chooses between label maps and truth folders.
+#include "cluxel/tasks/truth_source.hpp"
+
+#include "cluxel/base/diagnostic.hpp"
+
+namespace cluxel {
+
+namespace fs = std::filesystem;
+
+TruthSource TruthSource::open(const fs::path& given, const DataHome& home) {
+  TruthSource source;
+  if (fs::is_directory(given)) {
+    source.folder_ = given;
+    source.ambiguous_ = ambiguousInstances(given);
+    return source;
+  }
+  fs::path name = given;
+  if (name.extension() != ".yaml") name += ".yaml";
+  source.labels_ = LabelMap::load(home.locate("labels", name));
+  return source;
+}
+
+PointTruth TruthSource::truthOf(const Scan& scan) const {
+  if (!labels_) {
+    const auto file = truthFileOf(folder_, scan.source);
+    if (!file)
+      throw InputError({.file = scan.source}, "has no truth file in " + folder_.string(),
+                       "truth files are named like their scan, with .truth or .truth.gz at the end");
+    return truthFromFile(*file, scan.points.size());
+  }
+  if (scan.points.label.empty())
+    throw InputError({.file = scan.source}, "has no labels, so a label map gives no truth",
+                     "name a folder of truth files with --truth");
+  return truthFromLabels(scan, *labels_);
+}
+
+}  // namespace cluxel
