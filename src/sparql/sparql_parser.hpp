@@ -36,6 +36,8 @@ class SparqlParser {
   SparqlParser(std::string_view text, const SparqlParseOptions& options);
   ast::Query query();
   ast::Update update();
+  /// One IRI, literal or blank node (kept as a term) and nothing else.
+  Term singleTerm();
 
  private:
   using Kind = TokenKind;
