@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// LAS files made here byte by byte.
+#include "scan/las_format.hpp"
+
+#include <array>
+#include <limits>
+
+#include "scan/scan_fixture.hpp"
+
+namespace cluxel {
+namespace {
+
+using test::refusalOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr std::array<std::uint16_t, 11> kRecordBytes{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
+
+template <typename T>
+void put(std::string& bytes, std::size_t at, T value) {
+  std::memcpy(bytes.data() + at, &value, sizeof value);
+}
+
+struct LasPoint {
+  std::int32_t x, y, z;
+  std::uint16_t intensity;
+  std::uint8_t classification;
+};
+
+std::string lasFile(unsigned minor, unsigned format, const std::vector<LasPoint>& points) {
+  const std::size_t header = minor == 4 ? 375 : 227;
+  std::string bytes(header, '\0');
+  bytes.replace(0, 4, "LASF");
+  put<std::uint8_t>(bytes, 24, 1);
+  put<std::uint8_t>(bytes, 25, static_cast<std::uint8_t>(minor));
+  put<std::uint16_t>(bytes, 94, static_cast<std::uint16_t>(header));
+  put<std::uint32_t>(bytes, 96, static_cast<std::uint32_t>(header));
+  put<std::uint8_t>(bytes, 104, static_cast<std::uint8_t>(format));
+  put<std::uint16_t>(bytes, 105, kRecordBytes[format]);
+  const bool wide = minor == 4 && format >= 6;
+  put<std::uint32_t>(bytes, 107, wide ? 0 : static_cast<std::uint32_t>(points.size()));
+  if (minor == 4) put<std::uint64_t>(bytes, 247, points.size());
+  for (const int axis : {0, 1, 2}) put(bytes, 131 + 8 * static_cast<std::size_t>(axis), 0.001);
+  put(bytes, 155, 100.0);
+  for (const LasPoint& p : points) {
+    std::string record(kRecordBytes[format], '\0');
+    put(record, 0, p.x);
+    put(record, 4, p.y);
+    put(record, 8, p.z);
+    put(record, 12, p.intensity);
+    put(record, format >= 6 ? 16 : 15, p.classification);
+    bytes += record;
+  }
+  return bytes;
+}
+
+const std::vector<LasPoint> kPoints{{1000, 2000, 3000, 7, 2}, {-1000, 0, 500, 9, 5}};
+
+TEST(LasFormat, ReadsEveryPointFormatOfEveryVersion) {
+  for (unsigned minor = 2; minor <= 4; ++minor)
+    for (unsigned format = 0; format < kRecordBytes.size(); ++format) {
+      const ParsedScan scan = parseLas(lasFile(minor, format, kPoints), "a.las");
+      ASSERT_THAT(scan.points.x, ElementsAre(101.F, 99.F)) << minor << ' ' << format;
+      EXPECT_THAT(scan.points.z, ElementsAre(3.F, 0.5F));
+      EXPECT_THAT(scan.points.intensity, ElementsAre(7.F, 9.F));
+      EXPECT_THAT(scan.points.label, ElementsAre(2U, 5U));
+    }
+}
+
+TEST(LasFormat, LeavesOutIntensityAndLabelsThatWereNotRecorded) {
+  const ParsedScan scan = parseLas(lasFile(2, 0, {{1, 2, 3, 0, 0}}), "a.las");
+  EXPECT_TRUE(scan.points.intensity.empty());
+  EXPECT_TRUE(scan.points.label.empty());
+}
+
+TEST(LasFormat, KeepsMillimetresOfWorldCoordinates) {
+  std::string bytes = lasFile(2, 0, kPoints);
+  put(bytes, 155, 456000.0);
+  const ParsedScan scan = parseLas(bytes, "a.las");
+  EXPECT_EQ(scan.local_origin, Eigen::Vector3d(456000, 0, 0));
+  EXPECT_THAT(scan.points.x, ElementsAre(1.F, -1.F));
+}
+
+TEST(LasFormat, RefusesLazInPlainWords) {
+  std::string bytes = lasFile(2, 1, kPoints);
+  put<std::uint8_t>(bytes, 104, 128 + 1);
+  EXPECT_THAT(refusalOf([&] { parseLas(bytes, "a.laz"); }), HasSubstr("a.laz: byte 104: error: the points are compressed (LAZ)"));
+}
+
+TEST(LasFormat, RefusesATruncatedFileNamingTheByte) {
+  const std::string bytes = lasFile(2, 0, kPoints);
+  const std::string cut = bytes.substr(0, bytes.size() - 1);
+  EXPECT_THAT(refusalOf([&] { parseLas(cut, "a.las"); }), HasSubstr("byte 266: error: the file ends after 1 of 2 points"));
+  EXPECT_THAT(refusalOf([&] { parseLas(bytes.substr(0, 100), "a.las"); }), HasSubstr("byte 100: error: the LAS header is cut off"));
+}
+
+TEST(LasFormat, RefusesEveryPrefixOfAFile) {
+  const std::string bytes = lasFile(4, 6, kPoints);
+  for (std::size_t length = 0; length < bytes.size(); ++length)
+    EXPECT_THROW(parseLas(std::string_view(bytes).substr(0, length), "a.las"), InputError) << length;
+}
+
+TEST(LasFormat, RefusesWhatItDoesNotKnow) {
+  EXPECT_THAT(refusalOf([] { parseLas("PLY and so on", "a.las"); }), HasSubstr("does not begin with 'LASF'"));
+  std::string version = lasFile(2, 0, kPoints);
+  put<std::uint8_t>(version, 25, 5);
+  EXPECT_THAT(refusalOf([&] { parseLas(version, "a.las"); }), HasSubstr("LAS 1.5 is not supported"));
+  std::string format = lasFile(2, 0, kPoints);
+  put<std::uint8_t>(format, 104, 11);
+  EXPECT_THAT(refusalOf([&] { parseLas(format, "a.las"); }), HasSubstr("unknown point format 11"));
+  std::string record = lasFile(2, 0, kPoints);
+  put<std::uint16_t>(record, 105, 19);
+  EXPECT_THAT(refusalOf([&] { parseLas(record, "a.las"); }), HasSubstr("too short for format 0"));
+  EXPECT_THAT(refusalOf([&] { parseLas(lasFile(2, 0, {}), "a.las"); }), HasSubstr("holds no points"));
+}
+
+TEST(LasFormat, RefusesNumbersThatAreNotFinite) {
+  std::string scale = lasFile(2, 0, kPoints);
+  put(scale, 131, 0.0);
+  EXPECT_THAT(refusalOf([&] { parseLas(scale, "a.las"); }), HasSubstr("byte 131: error: the scale factors"));
+  std::string offset = lasFile(2, 0, kPoints);
+  put(offset, 163, std::numeric_limits<double>::infinity());
+  EXPECT_THAT(refusalOf([&] { parseLas(offset, "a.las"); }), HasSubstr("byte 155: error: the offsets are not finite"));
+  std::string huge = lasFile(2, 0, kPoints);
+  put(huge, 139, 1e300);
+  EXPECT_THAT(refusalOf([&] { parseLas(huge, "a.las"); }), HasSubstr("point 0 has a coordinate that is not finite"));
+}
+
+}  // namespace
+}  // namespace cluxel

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// Poses in their four text forms.
+#include "scan/pose_files.hpp"
+
+#include <numbers>
+
+#include "scan/scan_fixture.hpp"
+#include "scan/scan_layouts.hpp"
+
+namespace cluxel {
+namespace {
+
+using test::refusalOf;
+using testing::HasSubstr;
+
+/// A quarter turn to the left at (1, 2, 3).
+Eigen::Isometry3d quarterTurn() {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  pose.translation() = Eigen::Vector3d(1, 2, 3);
+  return pose;
+}
+
+TEST(PoseFiles, ReadTheSamePoseFromEveryForm) {
+  for (const char* text : {"0 -1 0 1 1 0 0 2 0 0 1 3\n", "0 -1 0 1 1 0 0 2 0 0 1 3 0 0 0 1\n",
+                           "# T\n0 -1 0 1\n1 0 0 2\n\n0 0 1 3\n0 0 0 1\n",
+                           "100.5 1 2 3 0 0 0.70710678118654752 0.70710678118654752\n"}) {
+    const PoseList list = parsePoses(text, "poses.txt");
+    ASSERT_EQ(list.poses.size(), 1U) << text;
+    EXPECT_TRUE(list.poses[0].isApprox(quarterTurn(), 1e-12)) << text;
+  }
+  EXPECT_EQ(parsePoses("100.5 1 2 3 0 0 0 1\n", "a.tum").time_s, std::vector<double>{100.5});
+}
+
+TEST(PoseFiles, RefuseWhatIsNoRigidMotion) {
+  EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 0 0 1 0 0 0 0 1\n", "p"); }), HasSubstr("p:1:1: error: 11 columns are no known form"));
+  EXPECT_THAT(refusalOf([] { parsePoses("2 0 0 0 0 1 0 0 0 0 1 0\n", "p"); }), HasSubstr("not of length 1 and at right angles"));
+  EXPECT_THAT(refusalOf([] { parsePoses("-1 0 0 0 0 1 0 0 0 0 1 0\n", "p"); }), HasSubstr("mirrors space"));
+  EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1\n", "p"); }), HasSubstr("last row that is not 0 0 0 1"));
+  EXPECT_THAT(refusalOf([] { parsePoses("0 0 0 0 0 0 0 2\n", "p"); }), HasSubstr("quaternion does not have length 1"));
+  EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 nan 0 1 0 0 0 0 1 0\n", "p"); }), HasSubstr("not finite"));
+  EXPECT_THAT(refusalOf([] { parsePoses("# none\n", "p"); }), HasSubstr("holds no poses"));
+  EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 0\n0 1 0 0\n", "p"); }), HasSubstr("ends inside a 4x4 matrix"));
+  EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n", "p"); }), HasSubstr("p:2:"));
+}
+
+TEST(PoseFiles, TakeTheSecondLineOfAFreiburgPose) {
+  const Eigen::Isometry3d pose = parseFreiburgPose("9 9 9 0 0 0\n1 2 3 0 0 1.5707963267948966\n", "p");
+  EXPECT_TRUE(pose.isApprox(quarterTurn(), 1e-12));
+  EXPECT_THAT(refusalOf([] { parseFreiburgPose("1 2 3 0 0 0\n", "p"); }), HasSubstr("fewer than two lines"));
+}
+
+TEST(PoseFiles, TurnYawAfterPitchAfterRoll) {
+  const double right = std::numbers::pi / 2;
+  const Eigen::Vector3d turned = rotationFromRpy(right, 0, right) * Eigen::Vector3d(0, 1, 0);
+  EXPECT_TRUE(turned.isApprox(Eigen::Vector3d(0, 0, 1), 1e-12));
+}
+
+TEST(PoseFiles, FindTheLaserToCameraMotionByItsName) {
+  const std::string text = "P0: 1 0 0 0 0 1 0 0 0 0 1 0\nTr: 0 -1 0 1 1 0 0 2 0 0 1 3\n";
+  EXPECT_TRUE(parseKittiCalibration(text, "calib.txt").isApprox(quarterTurn()));
+  EXPECT_THAT(refusalOf([] { parseKittiCalibration("P0: 1 2 3\n", "calib.txt"); }), HasSubstr("has no line 'Tr:'"));
+}
+
+TEST(PoseFiles, ChangeCameraPosesToThoseOfTheSensor) {
+  Eigen::Isometry3d forward = Eigen::Isometry3d::Identity();
+  forward.translation().z() = 2;
+  Eigen::Isometry3d T_camera_sensor = Eigen::Isometry3d::Identity();
+  T_camera_sensor.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  EXPECT_TRUE(sensorPoseFromCamera(forward, T_camera_sensor).translation().isApprox(Eigen::Vector3d(2, 0, 0)));
+}
+
+TEST(NaturalOrder, ComparesRunsOfDigitsAsNumbers) {
+  EXPECT_TRUE(naturalLess("scan_2.pcd", "scan_10.pcd"));
+  EXPECT_FALSE(naturalLess("scan_10.pcd", "scan_2.pcd"));
+  EXPECT_TRUE(naturalLess("a", "b"));
+  EXPECT_TRUE(naturalLess("scan", "scan_1"));
+  EXPECT_TRUE(naturalLess("a01", "a1") != naturalLess("a1", "a01"));
+  EXPECT_FALSE(naturalLess("a1", "a1"));
+}
+
+}  // namespace
+}  // namespace cluxel

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Folders, files and refusals for the tests of the scan wing.
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/base/progress.hpp"
+
+namespace cluxel::test {
+
+namespace fs = std::filesystem;
+
+/// A folder that is gone after the test.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (fs::temp_directory_path() / "cluxel_scan_XXXXXX").string();
+    path_ = mkdtemp(name.data());
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+
+  const fs::path& path() const { return path_; }
+  fs::path write(const fs::path& name, const std::string& bytes) const {
+    fs::create_directories((path_ / name).parent_path());
+    std::ofstream(path_ / name, std::ios::binary) << bytes;
+    return path_ / name;
+  }
+
+ private:
+  fs::path path_;
+};
+
+/// Keeps the notes it gets.
+class NoteKeeper : public ProgressSink {
+ public:
+  void note(std::string_view message) override { notes.emplace_back(message); }
+  std::vector<std::string> notes;
+};
+
+/// The text of the InputError that `act` throws; fails the test when there is none.
+template <typename Act>
+std::string refusalOf(const Act& act) {
+  try {
+    act();
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  ADD_FAILURE() << "nothing was refused";
+  return {};
+}
+
+/// Little-endian bytes of numbers.
+template <typename... Numbers>
+std::string bytesOfAll(Numbers... numbers) {
+  std::string bytes;
+  const auto append = [&](auto number) {
+    char raw[sizeof number];
+    std::memcpy(raw, &number, sizeof number);
+    bytes.append(raw, sizeof number);
+  };
+  (append(numbers), ...);
+  return bytes;
+}
+
+/// The folder of outside data; empty when it is absent.
+inline fs::path outsideData() {
+  const char* named = std::getenv("CLUXEL_DATA");
+  const fs::path folder = named ? fs::path(named) : fs::path(CLUXEL_SOURCE_DIR) / ".." / "shared" / "data";
+  return fs::is_directory(folder) ? folder : fs::path();
+}
+
+}  // namespace cluxel::test
