@@ -50,7 +50,7 @@ class PairSearch {
       std::vector<float> values;
       for (std::size_t e = c; e < samples.features.size(); e += samples.columns) values.push_back(samples.features[e]);
       shape.knots.push_back(knotsOf(std::move(values)));
-      const bool overlap = x_layout.edge_columns[c].starts_with("overlap");
+      const bool overlap = x_layout.edge_columns[c].find("overlap") != std::string::npos;
       shape.columns_used.push_back(x_params.overlap_correction || !overlap);
     }
     return shape;
