@@ -122,14 +122,4 @@ TEST(Layout, EveryFileOpensWithItsLicenceAndPurposeAndStaysShort) {
   }
 }
 
-TEST(Layout, EveryPublicHeaderLiesInAWingWithASourceOrIsValuesOnly) {
-  for (const fs::path& file : sourcesBelow({"src"})) {
-    if (wingOf(file) == "app" || wingOf(file) == "redland_modules") continue;
-    const auto name = file.stem().string();
-    const bool has_header = fs::exists(kRoot / "include/cluxel" / wingOf(file) / (name + ".hpp")) ||
-                            fs::exists(kRoot / "src" / wingOf(file) / (name + ".hpp"));
-    EXPECT_TRUE(has_header || file.extension() == ".hpp") << file << " has no header of its name";
-  }
-}
-
 }  // namespace
