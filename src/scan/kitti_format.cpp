@@ -25,9 +25,9 @@ ParsedScan parseKittiPoints(std::string_view bytes, const std::string& file) {
   scan.points.intensity.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t at = i * kRecordBytes;
-    const bool finite = points.add(numberAt<float>(bytes, at), numberAt<float>(bytes, at + 4), numberAt<float>(bytes, at + 8));
+    const bool usable = points.add(numberAt<float>(bytes, at), numberAt<float>(bytes, at + 4), numberAt<float>(bytes, at + 8));
     scan.points.intensity.push_back(numberAt<float>(bytes, at + 12));
-    if (!finite) refuseByte(file, at, "point " + std::to_string(i) + " has a coordinate that is not finite", kNotFiniteHint);
+    if (!usable) refuseByte(file, at, "point " + std::to_string(i) + ' ' + kUnusableCoordinate, kNotFiniteHint);
     if (!std::isfinite(scan.points.intensity.back()))
       refuseByte(file, at + 12, "point " + std::to_string(i) + " has an intensity that is not finite");
   }

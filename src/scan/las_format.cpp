@@ -109,7 +109,7 @@ ParsedScan parseLas(std::string_view bytes, const std::string& file) {
                               numberAt<std::int32_t>(bytes, at + 8));
     const Eigen::Vector3d p = raw.cwiseProduct(header.scale) + header.offset;
     if (!points.add(p.x(), p.y(), p.z()))
-      refuseByte(file, at, "point " + std::to_string(i) + " has a coordinate that is not finite", kNotFiniteHint);
+      refuseByte(file, at, "point " + std::to_string(i) + ' ' + kUnusableCoordinate, kNotFiniteHint);
     scan.points.intensity.push_back(numberAt<std::uint16_t>(bytes, at + 12));
     scan.points.label.push_back(classificationAt(bytes, at, header));
   }

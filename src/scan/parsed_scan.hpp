@@ -22,6 +22,10 @@ struct ParsedScan {
 /// Coordinates beyond this lose more than half a millimetre as floats; they are stored relative to a local origin.
 inline constexpr double kFloatReach_m = 4096;
 
+/// No place in any terrestrial frame has a coordinate beyond this; tiles of larger ones could not be counted.
+inline constexpr double kFarthest_m = 1e8;
+inline constexpr const char* kUnusableCoordinate = "has a coordinate that is not finite or beyond 100000 km";
+
 /// The origin for a file whose first point is `first`: zero within the reach of floats, else whole kilometres near it.
 inline Eigen::Vector3d localOriginFor(const Eigen::Vector3d& first) {
   if (first.cwiseAbs().maxCoeff() <= kFloatReach_m) return Eigen::Vector3d::Zero();
@@ -33,20 +37,16 @@ class PointCollector {
  public:
   explicit PointCollector(ParsedScan& scan) : scan_(&scan) {}
 
-  /// False when the point is not finite as a float.
+  /// False when a coordinate is not finite or beyond kFarthest_m.
   bool add(double x, double y, double z) {
-    if (scan_->points.empty()) {
-      if (!std::isfinite(x + y + z)) return false;
-      scan_->local_origin = localOriginFor({x, y, z});
-    }
+    const bool usable = std::abs(x) <= kFarthest_m && std::abs(y) <= kFarthest_m && std::abs(z) <= kFarthest_m;
+    if (!usable) return false;
+    if (scan_->points.empty()) scan_->local_origin = localOriginFor({x, y, z});
     const Eigen::Vector3d& origin = scan_->local_origin;
-    const auto fx = static_cast<float>(x - origin.x());
-    const auto fy = static_cast<float>(y - origin.y());
-    const auto fz = static_cast<float>(z - origin.z());
-    scan_->points.x.push_back(fx);
-    scan_->points.y.push_back(fy);
-    scan_->points.z.push_back(fz);
-    return std::isfinite(fx) && std::isfinite(fy) && std::isfinite(fz);
+    scan_->points.x.push_back(static_cast<float>(x - origin.x()));
+    scan_->points.y.push_back(static_cast<float>(y - origin.y()));
+    scan_->points.z.push_back(static_cast<float>(z - origin.z()));
+    return true;
   }
 
   void reserve(std::size_t count) {

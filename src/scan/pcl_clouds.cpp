@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <sstream>
 
@@ -54,6 +55,18 @@ std::string pcdHeader(const std::vector<PointField>& fields, std::size_t count, 
          << counts.str() << "\nWIDTH " << count << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << count << "\nDATA "
          << (compressed ? "binary_compressed" : "binary") << '\n';
   return header.str();
+}
+
+/// PCL writes six digits, which is decimetres for a place far from the origin.
+std::string viewpointLine(const Eigen::Isometry3d& T_map_sensor) {
+  const Eigen::Vector3d t = T_map_sensor.translation();
+  const Eigen::Quaterniond q(T_map_sensor.rotation());
+  std::string line = "VIEWPOINT";
+  for (const double value : {t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z()}) {
+    std::array<char, 32> digits{};
+    line += ' ' + std::string(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+  }
+  return line;
 }
 
 std::string plyHeader(const std::vector<PointField>& fields, std::size_t count, bool big_endian) {
@@ -161,11 +174,11 @@ std::string pcdFile(std::string_view records, const std::vector<PointField>& fie
   cloud.width = static_cast<pcl::uindex_t>(count);
   cloud.height = 1;
   cloud.row_step = cloud.point_step * cloud.width;
-  Eigen::Vector4f origin = Eigen::Vector4f::Zero();
-  origin.head<3>() = T_map_sensor.translation().cast<float>();
-  const Eigen::Quaternionf orientation(Eigen::Quaterniond(T_map_sensor.rotation()).cast<float>());
   pcl::PCDWriter writer;
-  return writer.generateHeaderBinary(cloud, origin, orientation) + "DATA binary\n" + std::string(records);
+  std::string file = writer.generateHeaderBinary(cloud, Eigen::Vector4f::Zero(), Eigen::Quaternionf::Identity());
+  const std::size_t line = file.find("VIEWPOINT");
+  file.replace(line, file.find('\n', line) - line, viewpointLine(T_map_sensor));
+  return file + "DATA binary\n" + std::string(records);
 }
 
 }  // namespace cluxel

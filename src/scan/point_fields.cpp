@@ -125,7 +125,7 @@ void RowCollector::reserve(std::size_t count) {
 
 std::optional<std::string> RowCollector::add(const PointRow& row) {
   if (!points_.add(at(row, FieldRole::X), at(row, FieldRole::Y), at(row, FieldRole::Z)))
-    return "has a coordinate that is not finite";
+    return kUnusableCoordinate;
   if (has(FieldRole::Intensity)) {
     const auto intensity = static_cast<float>(at(row, FieldRole::Intensity));
     if (!std::isfinite(intensity)) return "has an intensity that is not finite";

@@ -14,7 +14,7 @@ void addPoint(TextScanner& scanner, PointCollector& points) {
   const double x = scanner.number("x");
   const double y = scanner.number("y");
   const double z = scanner.number("z");
-  if (!points.add(x, y, z)) scanner.refuse("the coordinates are beyond the range of a float", kNotFiniteHint);
+  if (!points.add(x, y, z)) scanner.refuse(std::string("the point ") + kUnusableCoordinate);
 }
 
 float intensityOf(TextScanner& scanner) {

@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Refusal{"1 2 3\n4 x5 6\n", "a.xyz:2:3: error: y is not a number: 'x5'"},
                     Refusal{"1 2.5m 3\n", "a.xyz:1:3: error: y is not a number: '2.5m'"},
                     Refusal{"1 2 1e999\n", "z is out of range"},
-                    Refusal{"1e39 2 3\n", "a.xyz:1:9: error: the coordinates are beyond the range of a float"},
+                    Refusal{"1e39 2 3\n", "a.xyz:1:9: error: the point has a coordinate that is not finite or beyond 100000 km"},
                     Refusal{"1 2 3\n1 2 3 4\n", "a.xyz:2:7: error: unexpected '4'"},
                     Refusal{"1 2 3 4\n1 2 3\n", "a.xyz:2:6: error: the line ends where intensity was expected"},
                     Refusal{"1 2 3 4 5\n", "unexpected '5'"}));

@@ -10,10 +10,10 @@
 
 namespace cluxel {
 
-/// Writes one scan as binary PCD: x y z, then intensity, label and ray origins as far as the scan has them. VIEWPOINT
-/// holds the pose in metres to the nine digits of PCL's header, for viewers; a poses file beside the scans is the exact
-/// one. The time is not stored: it belongs into times.txt or a manifest. Throws InputError for an empty scan or arrays of different lengths, Error
-/// (StoreUnavailable) when the disk refuses; the file is whole or not there.
+/// Writes one scan as binary PCD: x y z, then intensity, label and ray origins (vp_x vp_y vp_z) as far as the scan has
+/// them. VIEWPOINT holds the pose, its rotation as a quaternion; a poses file beside the scans is exact to the last bit.
+/// The time is not stored: it belongs into times.txt or a manifest. Throws InputError for an empty scan or arrays of
+/// different lengths, Error (StoreUnavailable) when the disk refuses; the file is whole or not there.
 void writeScanFile(const Scan& scan, const std::filesystem::path& path);
 
 /// Writes one line of 16 numbers a pose (4x4, row by row), each with the digits that give back the same double.
