@@ -47,7 +47,7 @@ void onRun(CLI::App& command, Session& session, std::function<ExitCode()> run);
 
 /// Data to stdout, with a line end. A closed pipe is not an error.
 void print(std::string_view text);
-void print(const Json& json);
+void printJson(const Json& json);
 
 void addInfo(CLI::App& app, Session& session);
 void addSimulate(CLI::App& app, Session& session);

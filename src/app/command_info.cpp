@@ -64,7 +64,7 @@ ExitCode infoOfScans(const InfoOptions& options, Session& session) {
   Json json{{"scans", Json::array()}, {"points", summary.point_count}, {"extent_map_m", boxJson(summary.extent_map_m)},
             {"labels", labelsJson(summary.points_by_label)}};
   for (const ScanSummary& scan : summary.scans) json["scans"].push_back(scanJson(scan));
-  print(json);
+  printJson(json);
   return ExitCode::Done;
 }
 
@@ -82,7 +82,7 @@ ExitCode infoOfMap(const fs::path& file, const Session& session) {
   Json json{{"file", file.string()}, {"finished", summary.is_finished}, {"inputs", summary.inputs_hash},
             {"clouds", summary.clouds}, {"points", summary.points}, {"objects", summary.objects},
             {"quads", summary.quads}, {"objects_by_class", summary.objects_by_class}};
-  print(json);
+  printJson(json);
   return ExitCode::Done;
 }
 

@@ -21,7 +21,7 @@ ExitCode simulate(const SimulateOptions& options, Session& session) {
   for (std::size_t i = 0; i < summary.objects_of_class.size(); ++i)
     classes[truthClassNames()[i]] = summary.objects_of_class[i];
   if (session.json) {
-    print(Json{{"folder", options.folder.string()}, {"seed", options.params.seed}, {"scans", summary.scans},
+    printJson(Json{{"folder", options.folder.string()}, {"seed", options.params.seed}, {"scans", summary.scans},
                {"points", summary.points}, {"objects", summary.objects}, {"objects_by_class", classes}});
     return ExitCode::Done;
   }

@@ -44,6 +44,6 @@ void print(std::string_view text) {
   if (text.empty() || text.back() != '\n') std::fputc('\n', stdout);
 }
 
-void print(const Json& json) { print(json.dump(2, ' ', false, Json::error_handler_t::replace)); }
+void printJson(const Json& json) { print(json.dump(2, ' ', false, Json::error_handler_t::replace)); }
 
 }  // namespace cluxel::app

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// `cluxel build`: scans in, one map file out.
+#include "app/command.hpp"
+#include "cluxel/mapping/map_builder.hpp"
+
+namespace cluxel::app {
+
+namespace {
+
+struct BuildOptions {
+  std::vector<fs::path> inputs;
+  fs::path poses, output;
+  MapInputFiles files;
+  BuildParams params;
+};
+
+ExitCode build(const BuildOptions& options, Session& session) {
+  const ScanSet scans = ScanSet::open(options.inputs, {options.poses}, session.console);
+  const MapInputs inputs = readMapInputs(options.files, session.dataHome());
+  BuildParams params = options.params;
+  params.threads = session.threadCount();
+  const BuildReport report = buildMap(scans, inputs, options.output, params, session.console);
+  if (session.json) {
+    printJson(Json{{"map", options.output.string()}, {"scans", report.scans}, {"points", report.points},
+               {"tiles", report.tiles}, {"cluxels", report.cluxels}, {"primitives", report.primitives},
+               {"objects", report.objects}, {"quads", report.quads},
+               {"scans_already_there", report.scans_already_there}});
+    return ExitCode::Done;
+  }
+  std::printf("%s: %zu scans, %llu points in %zu tiles, %zu cluxels, %zu primitives, %zu objects, %llu quads\n",
+              options.output.c_str(), report.scans, static_cast<unsigned long long>(report.points), report.tiles,
+              report.cluxels, report.primitives, report.objects, static_cast<unsigned long long>(report.quads));
+  return ExitCode::Done;
+}
+
+}  // namespace
+
+void addBuild(CLI::App& app, Session& session) {
+  auto options = std::make_shared<BuildOptions>();
+  CLI::App* command = app.add_subcommand("build", "make a map from scans");
+  command->add_option("scans", options->inputs, "files, folders and manifests of scans")->required();
+  command->add_option("-o,--output", options->output, "the map file to make")->required();
+  command->add_option("--poses", options->poses, "poses of the scans: KITTI 3x4, TUM, or 4x4 text");
+  command->add_option("--model", options->files.model, "a trained model: a name in models/, a folder or a file");
+  command->add_option("--rules", options->files.rules, "rule files instead of rules/outdoor.rules.yaml");
+  command->add_option("--sparql-rules", options->files.sparql_rules, "CONSTRUCT rules instead of rules/*.rq");
+  command->add_option("--ontology", options->files.ontology, "ontology files instead of ontology/*.ttl");
+  command->add_option("--batch-points", options->params.batch_points, "commit when a batch of scans has this many points")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--force", options->params.force, "replace a finished map");
+  onRun(*command, session, [options, &session] { return build(*options, session); });
+}
+
+}  // namespace cluxel::app

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Opens what is asked, and reads the headers of shipped questions.
+#include "cluxel/tasks/query_source.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <regex>
+#include <sstream>
+
+#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/base/file_bytes.hpp"
+#include "cluxel/base/nearest_name.hpp"
+#include "cluxel/knowledge/rdf_io.hpp"
+#include "cluxel/knowledge/vocabulary.hpp"
+
+namespace cluxel {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::regex kColumn(R"(^column:\s*(\w+)\s*\[([^\]]*)\]\s*(.*)$)");
+const std::regex kParameter(R"(^parameter:\s*(\w+)\s*\[([^\]]*)\]\s*=\s*(\S+)\s*(.*)$)");
+
+void readHeaderLine(const std::string& line, const SourceLocation& at, Question& question) {
+  std::smatch match;
+  if (line.starts_with("title:"))
+    question.title = line.substr(line.find_first_not_of(' ', 6));
+  else if (std::regex_match(line, match, kColumn))
+    question.columns.push_back({match[1], match[2], match[3]});
+  else if (std::regex_match(line, match, kParameter))
+    question.parameters.push_back({match[1], match[2], match[3], match[4]});
+  else
+    throw InputError(at, "this header line cannot be read: '" + line + "'",
+                     "write '#! title: …', '#! column: name [unit] help' or '#! parameter: name [unit] = default help'");
+}
+
+bool isNumber(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+Term termOf(const std::string& text) {
+  if (text.size() > 1 && text.front() == '<' && text.back() == '>') return Term::iri(text.substr(1, text.size() - 2));
+  if (text.starts_with("clx:")) return Term::iri(vocabulary::clx(text.substr(4)));
+  if (isNumber(text)) return Term::literal(text, vocabulary::xsd("decimal"));
+  return Term::literal(text);
+}
+
+}  // namespace
+
+QuerySource openQuerySource(const fs::path& file) {
+  if (!rdfFormatOf(file)) return {Environment::open(file, OpenMode::ReadOnly)};
+  QuerySource source{Environment::temporary()};
+  WriteTransaction transaction = source.environment->write();
+  QuadWriter writer(transaction);
+  loadRdf(file, Term::iri(""), writer);
+  writer.flush();
+  transaction.commit();
+  return source;
+}
+
+Question readQuestion(const fs::path& file) {
+  Question question;
+  question.file = file;
+  question.text = readFile(file);
+  std::istringstream lines(question.text);
+  std::size_t number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    if (line.starts_with("#! "))
+      readHeaderLine(line.substr(3), {.file = file.string(), .line = number, .column = 1}, question);
+  }
+  return question;
+}
+
+std::vector<Question> shippedQuestions(const DataHome& home) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(home.locate("queries")))
+    if (entry.path().extension() == ".rq") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::vector<Question> questions;
+  for (const fs::path& file : files) questions.push_back(readQuestion(file));
+  return questions;
+}
+
+std::vector<Binding> bindingsFor(const Question& question, const std::vector<std::string>& given) {
+  std::vector<Binding> bindings;
+  std::vector<std::string> names;
+  for (const QueryParameter& parameter : question.parameters) {
+    bindings.emplace_back(parameter.name, termOf(parameter.default_value));
+    names.push_back(parameter.name);
+  }
+  for (const std::string& text : given) {
+    const std::size_t cut = text.find('=');
+    const std::string name = text.substr(0, cut);
+    const auto place = std::find(names.begin(), names.end(), name);
+    if (cut == std::string::npos || place == names.end())
+      throw Error(ExitCode::Usage, "--param " + text + ": the question has no such parameter; write NAME=VALUE; " +
+                                       suggestion(name, names));
+    bindings[static_cast<std::size_t>(place - names.begin())].second = termOf(text.substr(cut + 1));
+  }
+  return bindings;
+}
+
+}  // namespace cluxel
