@@ -50,17 +50,19 @@ void writeObserved(WriteTransaction& transaction, const ObservedMap& map) {
   writer.flush();
 }
 
+void replaceClosure(WriteTransaction& transaction) {
+  QuadWriter writer(transaction);
+  writer.clearGraph(writer.intern(Term::iri(vocabulary::kGraphInferred)));
+  writer.flush();
+  addClosure(transaction);
+}
+
 }  // namespace
 
 ClassCatalogue classCatalogueOf(const std::vector<NamedText>& ontology) {
-  const auto scratch = Environment::temporary();
-  WriteTransaction transaction = scratch->write();
-  MapInputs inputs;
-  inputs.ontology = ontology;
-  replaceOntology(transaction, inputs);
-  const OntologyView view = ontologyViewOf(QuadReader(static_cast<const ReadTransaction&>(transaction)));
   ClassCatalogue catalogue;
-  for (const auto& [iri, known] : view.classes) catalogue.classes.push_back({iri, known.superclasses, known.parts});
+  for (const OntologyClass& known : ontologyViewOf(ontologySources(ontology)).classes)
+    catalogue.classes.push_back({known.iri, known.superclasses, known.parts});
   return catalogue;
 }
 
@@ -85,14 +87,14 @@ SemanticCounts writeSemanticLayer(WriteTransaction& transaction, const ParsedInp
   MapOracle oracle(transaction, [&](std::span<const SemanticObject> objects) {
     const ReasoningResult so_far{{objects.begin(), objects.end()}, {}};
     writeObserved(transaction, {parsed.inputs, clouds, scene, so_far, none});
-    inferClosure(transaction);
+    replaceClosure(transaction);
   });
   const ReasoningResult result = reason(scene, parsed.rules, {&oracle});
   sink.progress("objects", result.objects.size(), result.objects.size());
   const auto sightings =
       sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(result, scene.cluxels.size()));
   writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings});
-  inferClosure(transaction);
+  replaceClosure(transaction);
   runSparqlRules(transaction, parsed.inputs.sparql_rules);
   storeObjects(transaction, result.objects);
   sink.progress("facts", 1, 1);

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// `cluxel export`: a map in other formats.
+#include "app/command.hpp"
+#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/base/file_bytes.hpp"
+#include "cluxel/tasks/map_export.hpp"
+
+namespace cluxel::app {
+
+namespace {
+
+struct ExportOptions {
+  fs::path map, output;
+  std::string format;
+  bool canonical = false;
+};
+
+ExportFormat formatOf(const ExportOptions& options) {
+  if (options.canonical) return ExportFormat::Canonical;
+  std::string name = options.format;
+  if (name.empty() && options.output.has_extension()) name = options.output.extension().string().substr(1);
+  if (const auto format = exportFormatOf(name)) return *format;
+  throw Error(ExitCode::Usage, "export: unknown format '" + name + "'; write --format turtle, nquads, canonical, ply or "
+                               "geojson, or an output file that ends in .ttl, .nq, .ply or .geojson");
+}
+
+}  // namespace
+
+void addExport(CLI::App& app, Session& session) {
+  auto options = std::make_shared<ExportOptions>();
+  CLI::App* command = app.add_subcommand("export", "write a map as RDF, coloured cloud or footprints");
+  command->add_option("map", options->map, "a map")->required();
+  command->add_option("-o,--output", options->output, "the file to write; else stdout");
+  command->add_option("--format", options->format, "turtle, nquads, canonical, ply, geojson; else by the file's ending");
+  command->add_flag("--canonical", options->canonical, "sorted N-Quads without history: equal bytes mean equal maps");
+  onRun(*command, session, [options] {
+    const ExportFormat format = formatOf(*options);
+    const MapReader map(options->map);
+    std::string bytes;
+    const bool to_stdout = options->output.empty();
+    exportMap(map, format, [&](std::string_view piece) {
+      if (to_stdout)
+        std::fwrite(piece.data(), 1, piece.size(), stdout);
+      else
+        bytes.append(piece);
+    });
+    if (!to_stdout) writeFile(options->output, bytes);
+    return ExitCode::Done;
+  });
+}
+
+}  // namespace cluxel::app

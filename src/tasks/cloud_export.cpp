@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Binary little-endian PLY, one vertex a point, cloud by cloud.
+#include "tasks/cloud_export.hpp"
+
+#include <array>
+#include <charconv>
+#include <cstring>
+#include <string>
+
+#include "cluxel/knowledge/ontology.hpp"
+
+namespace cluxel {
+
+namespace {
+
+using Colour = std::array<std::uint8_t, 3>;
+
+constexpr Colour kGrey{128, 128, 128};
+
+/// "#rrggbb", else grey.
+Colour colourOf(std::string_view text) {
+  Colour colour = kGrey;
+  if (text.size() != 7 || text[0] != '#') return colour;
+  for (std::size_t i = 0; i < 3; ++i)
+    std::from_chars(text.data() + 1 + 2 * i, text.data() + 3 + 2 * i, colour[i], 16);
+  return colour;
+}
+
+std::vector<Colour> coloursOf(const MapReader& map) {
+  const OntologyView ontology = ontologyViewOf(map.quads());
+  std::vector<Colour> colours;
+  for (const SemanticObject& object : map.objects()) {
+    const OntologyClass* known = ontology.find(object.class_iri);
+    colours.push_back(known == nullptr ? kGrey : colourOf(known->color));
+  }
+  return colours;
+}
+
+std::string headerFor(std::uint64_t points) {
+  return "ply\nformat binary_little_endian 1.0\ncomment Cluxel: map frame, metres\nelement vertex " +
+         std::to_string(points) +
+         "\nproperty double x\nproperty double y\nproperty double z\nproperty uchar red\nproperty uchar green\n"
+         "property uchar blue\nproperty uchar primitive\nproperty int object\nend_header\n";
+}
+
+template <typename T>
+void append(std::string& bytes, const T& value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+}  // namespace
+
+void writeColouredPly(const MapReader& map, const ByteSink& out) {
+  const std::vector<Colour> colours = coloursOf(map);
+  std::uint64_t total = 0;
+  for (const Cloud& cloud : map.clouds()) total += cloud.point_count;
+  out(headerFor(total));
+  for (const Cloud& cloud : map.clouds()) {
+    const ScanPoints points = map.pointsOf(cloud.id);
+    const PointAnswers answers = map.answersFor(cloud);
+    std::string bytes;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Eigen::Vector3d p = toMap(cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
+      append(bytes, p.x()), append(bytes, p.y()), append(bytes, p.z());
+      const bool has_object = answers.object[i] != kNoObjectOfPoint;
+      append(bytes, has_object ? colours[answers.object[i]] : kGrey);
+      append(bytes, answers.label[i]);
+      append(bytes, has_object ? static_cast<std::int32_t>(answers.object[i]) : -1);
+    }
+    out(bytes);
+  }
+}
+
+}  // namespace cluxel
