@@ -13,7 +13,7 @@ namespace {
 /// Cells around that are looked at when a cell seems sunken.
 constexpr int kSunkenReach = 6;
 /// A sunken cell is believed when this many others around it lie as deep.
-constexpr int kSunkenSupport = 4;
+constexpr int kSunkenSupport = 12;
 
 struct Surroundings {
   int level = 0, above = 0;

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// The cover against brute force, and its laws: order, borders, volumes, moments.
+#include "cluxel/perception/cluxel_tile.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "cloud_fixture.hpp"
+#include "cluxel/base/diagnostic.hpp"
+#include "perception/point_grid.hpp"
+
+namespace cluxel {
+namespace {
+
+using testing::splitAtRandom;
+using testing::streetPoints;
+using testing::tilesOf;
+
+std::map<TileKey, TilePoints> streetTiles(std::uint32_t seed) { return tilesOf(splitAtRandom(streetPoints(seed), 3, seed), {}); }
+
+/// Own points by cell of the radius, then as stored: the canonical order.
+std::vector<std::uint32_t> canonicalOrder(const TilePoints& tile, double radius_m) {
+  std::vector<std::uint32_t> order(tile.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const CellKeys key(radius_m, radius_m);
+  const auto keyOf = [&](std::uint32_t i) { return key(tile.x[i], tile.y[i], tile.z[i]); };
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return keyOf(a) < keyOf(b); });
+  return order;
+}
+
+/// "A point joins the earliest seed within r, or becomes a seed", said plainly.
+std::vector<std::uint32_t> bruteCover(const TilePoints& tile, double radius_m, std::vector<std::uint32_t>& seeds) {
+  std::vector<std::uint32_t> cluxel(tile.size());
+  const float squared = static_cast<float>(radius_m) * static_cast<float>(radius_m);
+  for (const auto i : canonicalOrder(tile, radius_m)) {
+    std::uint32_t found = 0;
+    const auto isNear = [&](std::uint32_t seed) {
+      const Eigen::Vector3f d = tile.at(seed) - tile.at(i);
+      return d.x() * d.x() + d.y() * d.y() + d.z() * d.z() <= squared;
+    };
+    while (found < seeds.size() && !isNear(seeds[found])) ++found;
+    if (found == seeds.size()) seeds.push_back(i);
+    cluxel[i] = found;
+  }
+  return cluxel;
+}
+
+/// All points of the ring within a distance of a place, relative to the ring's centre.
+std::vector<Eigen::Vector3f> pointsWithin(const Ring<TilePoints>& ring, const Eigen::Vector3f& place, float reach_m) {
+  std::vector<Eigen::Vector3f> found;
+  for (int r = 0; r < 9; ++r)
+    if (const auto* tile = ring[static_cast<std::size_t>(r)])
+      for (std::size_t i = 0; i < tile->size(); ++i)
+        if (const Eigen::Vector3f p = tile->at(i) + ringShift(r); (p - place).norm() <= reach_m) found.push_back(p);
+  return found;
+}
+
+TEST(CluxelTile, GridCoverEqualsBruteForceCover) {
+  for (const double radius_m : {0.1, 0.2, 0.37}) {
+    const auto tiles = streetTiles(11);
+    for (const auto& [key, points] : tiles) {
+      const CluxelTile cover = coverTile(ringIn(tiles, key), {.radius_m = radius_m});
+      std::vector<std::uint32_t> seeds;
+      EXPECT_EQ(cover.point_cluxel, bruteCover(points, radius_m, seeds));
+      EXPECT_EQ(cover.seed, seeds);
+    }
+  }
+}
+
+TEST(CluxelTile, VolumesHoldAllPointsWithinReachAlsoThoseOfNeighbouringTiles) {
+  const auto tiles = streetTiles(12);
+  bool crossed = false;
+  for (const auto& [key, points] : tiles) {
+    const auto ring = ringIn(tiles, key);
+    const CluxelTile cover = coverTile(ring, {});
+    for (std::size_t c = 0; c < cover.size(); c += 7) {
+      Eigen::Vector3f low = points.at(cover.seed[c]), high = low;
+      const auto near = pointsWithin(ring, points.at(cover.seed[c]), cover.reach[c] * 1.00001F);
+      for (const auto& p : near) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+      }
+      EXPECT_LT((low - cover.volume_min[c]).norm() + (high - cover.volume_max[c]).norm(), 1e-6);
+      EXPECT_FLOAT_EQ(cover.ball[c].count, static_cast<float>(near.size()));
+      crossed = crossed || low.x() < 0 || high.y() > 16;
+    }
+  }
+  EXPECT_TRUE(crossed);
+}
+
+TEST(CluxelTile, SparseVolumesGrowUntilTheyHoldEnoughPointsAndDenseOnesDoNot) {
+  const CoverParams params;
+  const auto tiles = streetTiles(13);
+  std::size_t grown = 0, fixed = 0;
+  for (const auto& [key, points] : tiles) {
+    const CluxelTile cover = coverTile(ringIn(tiles, key), params);
+    for (std::size_t c = 0; c < cover.size(); ++c) {
+      EXPECT_GE(cover.reach[c], static_cast<float>(params.radius_m) * 0.9999F);
+      EXPECT_LE(cover.reach[c], static_cast<float>(params.largest_reach_m) * 1.0001F);
+      const bool at_limit = cover.reach[c] > 0.999F * static_cast<float>(params.largest_reach_m);
+      EXPECT_TRUE(at_limit || cover.ball[c].count >= static_cast<float>(params.wanted_points));
+      ++(cover.reach[c] > 1.001F * static_cast<float>(params.radius_m) ? grown : fixed);
+    }
+  }
+  EXPECT_GT(grown, 100U);
+  EXPECT_GT(fixed, 100U);
+}
+
+TEST(CluxelTile, MomentsAreThoseOfTheCluxelsPoints) {
+  const auto tiles = streetTiles(14);
+  const auto& [key, points] = *tiles.begin();
+  const CluxelTile cover = coverTile(ringIn(tiles, key), {});
+  const CluxelMembers members = membersOf(cover);
+  for (std::size_t c = 0; c < cover.size(); ++c) {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    const std::uint32_t begin = members.offset[c], end = members.offset[c + 1];
+    for (auto i = begin; i < end; ++i) mean += points.at(members.point[i]).cast<double>() / (end - begin);
+    Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+    for (auto i = begin; i < end; ++i) {
+      const Eigen::Vector3d d = points.at(members.point[i]).cast<double>() - mean;
+      scatter += d * d.transpose();
+    }
+    ASSERT_FLOAT_EQ(cover.own[c].count, static_cast<float>(end - begin));
+    EXPECT_LT((cover.own[c].mean.cast<double>() - mean).norm(), 1e-5);
+    const auto& s = cover.own[c].scatter;
+    const std::array<double, 6> expected{scatter(0, 0), scatter(0, 1), scatter(0, 2), scatter(1, 1), scatter(1, 2), scatter(2, 2)};
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(s[i], expected[i], 1e-6 + 1e-5 * std::abs(expected[i]));
+  }
+}
+
+TEST(CluxelTile, APointNearABorderJoinsNoSeedBeyondIt) {
+  const auto tiles = streetTiles(15);
+  for (const auto& [key, points] : tiles) {
+    Ring<TilePoints> alone{};
+    alone[kRingCentre] = &points;
+    EXPECT_EQ(coverTile(ringIn(tiles, key), {}).point_cluxel, coverTile(alone, {}).point_cluxel);
+  }
+}
+
+TEST(CluxelTile, MovingEverythingByWholeTilesChangesNothing) {
+  const auto move = [](std::map<TileKey, TilePoints> tiles) {
+    std::map<TileKey, TilePoints> moved;
+    for (auto& [key, tile] : tiles) {
+      const TileKey to{key.x + 1000, key.y - 77};
+      tile.key = to;
+      moved[to] = tile;
+    }
+    return moved;
+  };
+  const auto tiles = streetTiles(16);
+  const auto moved = move(tiles);
+  for (const auto& [key, tile] : tiles) {
+    CluxelTile there = coverTile(ringIn(moved, {key.x + 1000, key.y - 77}), {});
+    there.key = key;
+    EXPECT_EQ(toBytes(there), toBytes(coverTile(ringIn(tiles, key), {})));
+  }
+}
+
+TEST(CluxelTile, ThePapersModeHasFixedVolumesOfATenthOfAMetre) {
+  const auto tiles = streetTiles(17);
+  const CluxelTile cover = coverTile(ringIn(tiles, tiles.begin()->first), paperCover());
+  for (const auto reach : cover.reach) EXPECT_NEAR(reach, 0.10, 1e-6);
+}
+
+TEST(CluxelTile, SettingsOutsideTheirRangeAreRefusedByName) {
+  try {
+    checkRanges(CoverParams{.radius_m = -1});
+    FAIL() << "took a negative radius";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::Usage);
+    EXPECT_NE(std::string(error.what()).find("cover.radius"), std::string::npos);
+  }
+  EXPECT_NE(hashOf(CoverParams{}), hashOf(paperCover()));
+}
+
+TEST(CluxelTile, BytesComeBackAndDamagedOnesAreRefused) {
+  const auto tiles = streetTiles(18);
+  const std::string bytes = toBytes(coverTile(ringIn(tiles, tiles.begin()->first), {}));
+  EXPECT_EQ(toBytes(cluxelTileFromBytes(bytes)), bytes);
+  for (std::size_t size = 0; size < bytes.size(); size += 1 + bytes.size() / 97)
+    EXPECT_THROW(cluxelTileFromBytes(bytes.substr(0, size)), Error);
+  std::string wrong = bytes;
+  wrong[16 + 8 + 3] = '\x7f';   // a seed far beyond the points
+  EXPECT_THROW(cluxelTileFromBytes(wrong), Error);
+}
+
+}  // namespace
+}  // namespace cluxel

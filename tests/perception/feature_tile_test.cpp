@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// The graph against brute force, and the laws of tiles for features: order, threads, borders, moves.
+#include "cluxel/perception/feature_tile.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "cloud_fixture.hpp"
+#include "cluxel/base/diagnostic.hpp"
+
+namespace cluxel {
+namespace {
+
+using testing::bytesOf;
+using testing::splitAtRandom;
+using testing::streetPoints;
+
+PerceivedTiles street(std::uint32_t seed, unsigned threads = 1) {
+  return perceive(splitAtRandom(streetPoints(seed), 3, seed), {}, threads);
+}
+
+TileKey ringKey(const TileKey& key, RingIndex name) { return ringOf(key)[name.ring]; }
+
+TEST(FeatureTile, JoinsExactlyTheCluxelsWhoseVolumesIntersect) {
+  const PerceivedTiles tiles = street(31);
+  for (const auto& [key, tile] : tiles.features) {
+    const auto ring = ringIn(tiles.cluxels, key);
+    const CluxelTile& own = *ring[kRingCentre];
+    for (std::size_t c = 0; c < tile.size(); c += 11) {
+      std::vector<std::pair<int, std::uint32_t>> expected, found;
+      for (int r = 0; r < 9; ++r)
+        for (std::uint32_t i = 0; ring[static_cast<std::size_t>(r)] && i < ring[static_cast<std::size_t>(r)]->size(); ++i) {
+          const CluxelTile& other = *ring[static_cast<std::size_t>(r)];
+          const Eigen::Array3f low = other.volume_min[i] + ringShift(r), high = other.volume_max[i] + ringShift(r);
+          const bool meets = (own.volume_min[c].array() <= high).all() && (low <= own.volume_max[c].array()).all();
+          if (meets && !(r == kRingCentre && i == c)) expected.emplace_back(r, i);
+        }
+      for (auto e = tile.edge_offset[c]; e < tile.edge_offset[c + 1]; ++e)
+        found.emplace_back(tile.edge_target[e].ring, tile.edge_target[e].index);
+      EXPECT_EQ(found, expected);
+    }
+  }
+}
+
+TEST(FeatureTile, AnEdgeIsThereFromBothEndsWithTheSameFeatures) {
+  const PerceivedTiles tiles = street(32);
+  std::size_t across = 0;
+  const std::size_t columns = featureLayout({}).edge_columns.size();
+  std::map<std::array<std::int64_t, 6>, std::vector<float>> edges;
+  for (const auto& [key, tile] : tiles.features)
+    for (std::uint32_t c = 0; c < tile.size(); ++c)
+      for (auto e = tile.edge_offset[c]; e < tile.edge_offset[c + 1]; ++e) {
+        const TileKey to = ringKey(key, tile.edge_target[e]);
+        const auto* row = tile.edge_features.data() + e * columns;
+        edges[{key.x, key.y, c, to.x, to.y, tile.edge_target[e].index}] = std::vector<float>(row, row + columns);
+        across += to != key;
+      }
+  EXPECT_GT(across, 50U);
+  for (const auto& [edge, row] : edges) {
+    const auto back = edges.find({edge[3], edge[4], edge[5], edge[0], edge[1], edge[2]});
+    ASSERT_NE(back, edges.end());
+    EXPECT_EQ(back->second, row);
+  }
+}
+
+TEST(FeatureTile, FillsEveryColumnWithFiniteNumbers) {
+  const PerceivedTiles tiles = street(33);
+  const FeatureLayout layout = featureLayout({});
+  EXPECT_EQ(std::set<std::string>(layout.columns.begin(), layout.columns.end()).size(), layout.columns.size());
+  for (const auto& [key, tile] : tiles.features) {
+    ASSERT_EQ(tile.features.size(), tile.size() * layout.columns.size());
+    ASSERT_EQ(tile.edge_features.size(), tile.edge_target.size() * layout.edge_columns.size());
+    for (const auto value : tile.features) ASSERT_TRUE(std::isfinite(value));
+    for (const auto value : tile.edge_features) ASSERT_TRUE(std::isfinite(value));
+  }
+}
+
+TEST(FeatureTile, EveryColumnTellsSomethingApart) {
+  const PerceivedTiles tiles = street(34);
+  const FeatureLayout layout = featureLayout({});
+  for (std::size_t column = 0; column < layout.columns.size(); ++column) {
+    std::set<float> values;
+    for (const auto& [key, tile] : tiles.features)
+      for (std::size_t c = 0; c < tile.size(); ++c) values.insert(tile.features[c * layout.columns.size() + column]);
+    EXPECT_GT(values.size(), 3U) << layout.columns[column];
+  }
+}
+
+TEST(FeatureTile, GroupsAreSwitchedWithoutChangingTheOthers) {
+  const auto scans = splitAtRandom(streetPoints(35), 2, 35);
+  const PerceivedTiles all = perceive(scans, {}, 1);
+  const FeatureLayout whole = featureLayout({});
+  for (int group = 0; group < 6; ++group) {
+    PerceptionParams params;
+    auto& f = params.features;
+    *std::array<bool*, 6>{&f.hor, &f.shape, &f.wide_shape, &f.height, &f.extent, &f.density}[static_cast<std::size_t>(group)] = false;
+    const FeatureLayout layout = featureLayout(f);
+    EXPECT_LT(layout.columns.size(), whole.columns.size());
+    EXPECT_NE(layout.hash(), whole.hash());
+    const PerceivedTiles part = perceive(scans, params, 1);
+    for (const auto& [key, tile] : part.features)
+      for (std::size_t column = 0; column < layout.columns.size(); ++column) {
+        const std::size_t there = testing::columnOf(whole, layout.columns[column]);
+        for (std::size_t c = 0; c < tile.size(); c += 13)
+          EXPECT_EQ(tile.features[c * layout.columns.size() + column],
+                    all.features.at(key).features[c * whole.columns.size() + there]);
+      }
+  }
+}
+
+TEST(FeatureTile, OrderOfScansAndNumberOfThreadsDoNotMatter) {
+  auto scans = splitAtRandom(streetPoints(36), 5, 36);
+  const std::string first = bytesOf(perceive(scans, {}, 1));
+  EXPECT_EQ(bytesOf(perceive(scans, {}, 2)), first);
+  std::reverse(scans.begin(), scans.end());
+  EXPECT_EQ(bytesOf(perceive(scans, {}, 2)), first);
+}
+
+TEST(FeatureTile, DependsOnItsRingOnly) {
+  const auto scans = splitAtRandom(streetPoints(37), 2, 37);
+  auto more = scans;
+  more.push_back(testing::scanOf(testing::CloudMaker(38).ball(500, {200, 200, 3}, 2).points()));
+  const PerceivedTiles before = perceive(scans, {}, 1), after = perceive(more, {}, 1);
+  EXPECT_GT(after.features.size(), before.features.size());
+  for (const auto& [key, tile] : before.features) EXPECT_EQ(toBytes(after.features.at(key)), toBytes(tile));
+}
+
+TEST(FeatureTile, IntensityIsZeroWhereAScanHasNone) {
+  auto scans = splitAtRandom(streetPoints(39), 1, 39);
+  PerceptionParams params;
+  params.features.intensity = true;
+  const std::size_t column = testing::columnOf(featureLayout(params.features), "intensity.mean");
+  const std::size_t columns = featureLayout(params.features).columns.size();
+  const auto values = [&] {
+    std::set<float> found;
+    const PerceivedTiles tiles = perceive(scans, params, 1);
+    for (const auto& [key, tile] : tiles.features)
+      for (std::size_t c = 0; c < tile.size(); ++c) found.insert(tile.features[c * columns + column]);
+    return found;
+  };
+  EXPECT_EQ(values(), std::set<float>{0.0F});
+  scans[0].points.intensity.assign(scans[0].points.size(), 0.25F);
+  EXPECT_EQ(values(), std::set<float>{0.25F});
+}
+
+TEST(FeatureTile, BytesComeBackAndDamagedOnesAreRefused) {
+  const PerceivedTiles tiles = street(40);
+  const std::string bytes = toBytes(tiles.features.begin()->second);
+  EXPECT_EQ(toBytes(featureTileFromBytes(bytes)), bytes);
+  for (std::size_t size = 0; size < bytes.size(); size += 1 + bytes.size() / 97)
+    EXPECT_THROW(featureTileFromBytes(bytes.substr(0, size)), Error);
+}
+
+}  // namespace
+}  // namespace cluxel

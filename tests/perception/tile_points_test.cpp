@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// Points of tiles: what stays does not depend on arrival, and every point keeps a representative.
+#include "cluxel/perception/tile_points.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "cloud_fixture.hpp"
+#include "cluxel/base/diagnostic.hpp"
+
+namespace cluxel {
+namespace {
+
+using testing::CloudMaker;
+using testing::scanOf;
+using testing::splitAtRandom;
+using testing::streetPoints;
+using testing::tilesOf;
+
+std::string bytesOf(const std::map<TileKey, TilePoints>& tiles) {
+  std::string bytes;
+  for (const auto& [key, tile] : tiles) bytes += toBytes(tile);
+  return bytes;
+}
+
+/// A crowded cloud, so that thinning has something to do.
+std::vector<Scan> crowdedScans(std::uint32_t seed) {
+  return splitAtRandom(CloudMaker(seed).plane(20000, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0.2}).points(), 5, seed);
+}
+
+TEST(TilePoints, EveryPointOfAScanLiesInExactlyOneSegmentAndNearItsMapPlace) {
+  Scan scan = scanOf(streetPoints(1));
+  scan.T_map_sensor.translate(Eigen::Vector3d(1000.3, -2000.7, 50));
+  scan.T_map_sensor.rotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d(0.1, 0.2, 1).normalized()));
+  std::vector<int> seen(scan.points.size());
+  for (const auto& [key, segment] : splitScan(scan))
+    for (std::size_t i = 0; i < segment.size(); ++i) {
+      const std::uint32_t point = segment.point[i];
+      ++seen[point];
+      const Eigen::Vector3d p_map = toMap(scan.T_map_sensor, {scan.points.x[point], scan.points.y[point], scan.points.z[point]});
+      const Eigen::Vector3d back = cornerOf(key) + Eigen::Vector3d(segment.x[i], segment.y[i], segment.z[i]);
+      EXPECT_LT((p_map - back).norm(), 1e-5);
+      EXPECT_TRUE(segment.x[i] >= 0 && segment.x[i] < 16 && segment.y[i] >= 0 && segment.y[i] < 16);
+    }
+  EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](int count) { return count == 1; }));
+}
+
+TEST(TilePoints, RefusesAPointThatIsNoNumberNamingIt) {
+  Scan scan = scanOf({{0, 0, 0}, {1, 2, 3}});
+  scan.points.y[1] = std::numeric_limits<float>::quiet_NaN();
+  try {
+    splitScan(scan);
+    FAIL() << "took a NaN";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("point 1"), std::string::npos) << error.what();
+  }
+}
+
+TEST(TilePoints, RefusesAPoseThatThrowsPointsOutOfTheMap) {
+  Scan scan = scanOf({{0, 0, 0}});
+  scan.T_map_sensor.translate(Eigen::Vector3d(1e9, 0, 0));
+  EXPECT_THROW(splitScan(scan), InputError);
+}
+
+TEST(TilePoints, OrderOfScansDoesNotMatter) {
+  auto scans = crowdedScans(2);
+  const std::string first = bytesOf(tilesOf(scans, {}));
+  std::mt19937 random(3);
+  for (int round = 0; round < 5; ++round) {
+    std::shuffle(scans.begin(), scans.end(), random);
+    EXPECT_EQ(bytesOf(tilesOf(scans, {})), first);
+  }
+}
+
+TEST(TilePoints, ThinningThinnedPartsEqualsThinningAllAtOnce) {
+  for (const int keep : {1, 2, 5}) {
+    const ThinParams params{.voxel_m = 0.05, .keep = keep};
+    const auto scans = crowdedScans(4);
+    const auto all = tilesOf(scans, params);
+    const auto part_a = tilesOf({scans[0], scans[3]}, params), part_b = tilesOf({scans[1], scans[2], scans[4]}, params);
+    for (const auto& [key, whole] : all) {
+      std::vector<const TilePoints*> parts;
+      if (part_a.contains(key)) parts.push_back(&part_a.at(key));
+      if (part_b.contains(key)) parts.push_back(&part_b.at(key));
+      EXPECT_EQ(toBytes(thin(key, parts, params)), toBytes(whole));
+      std::reverse(parts.begin(), parts.end());
+      EXPECT_EQ(toBytes(thin(key, parts, params)), toBytes(whole));
+    }
+  }
+}
+
+TEST(TilePoints, KeepsNoMoreThanAskedForPerVoxelAndEmptiesNone) {
+  const auto scans = crowdedScans(5);
+  const auto thinned = tilesOf(scans, {.voxel_m = 0.1, .keep = 3}), whole = tilesOf(scans, {.voxel_m = 0.1, .keep = 1000});
+  const auto voxelCounts = [](const TilePoints& tile) {
+    std::map<std::array<int, 3>, int> counts;
+    for (std::size_t i = 0; i < tile.size(); ++i)
+      ++counts[{static_cast<int>(std::floor(tile.x[i] / 0.1)), static_cast<int>(std::floor(tile.y[i] / 0.1)),
+                static_cast<int>(std::floor((tile.z[i] + kLargestHeight_m + 1) / 0.1))}];
+    return counts;
+  };
+  bool thinned_some = false;
+  for (const auto& [key, tile] : whole) {
+    const auto before = voxelCounts(tile), after = voxelCounts(thinned.at(key));
+    ASSERT_EQ(before.size(), after.size());
+    for (const auto& [voxel, count] : before) {
+      EXPECT_EQ(after.at(voxel), std::min(count, 3));
+      thinned_some = thinned_some || count > 3;
+    }
+  }
+  EXPECT_TRUE(thinned_some);
+}
+
+TEST(TilePoints, EveryPointFindsARepresentativeAndAKeptPointFindsItself) {
+  const auto scans = crowdedScans(6);
+  const ThinParams params{.voxel_m = 0.05, .keep = 1};
+  const auto tiles = tilesOf(scans, params);
+  for (const auto& scan : scans)
+    for (const auto& [key, segment] : splitScan(scan)) {
+      const TilePoints& tile = tiles.at(key);
+      const RepresentativeFinder finder(tile, params);
+      for (std::size_t i = 0; i < segment.size(); ++i) {
+        const Eigen::Vector3f p(segment.x[i], segment.y[i], segment.z[i]);
+        const std::uint32_t found = finder.find(p);
+        ASSERT_NE(found, RepresentativeFinder::kNone);
+        EXPECT_LT((tile.at(found) - p).norm(), 0.05 * std::sqrt(3.0));
+      }
+      for (std::uint32_t i = 0; i < tile.size(); ++i) EXPECT_EQ(tile.at(finder.find(tile.at(i))), tile.at(i));
+      EXPECT_EQ(finder.find({3, 3, 500}), RepresentativeFinder::kNone);
+    }
+}
+
+TEST(TilePoints, BytesComeBackAndDamagedOnesAreRefused) {
+  const auto tiles = tilesOf(crowdedScans(7), {});
+  const std::string bytes = toBytes(tiles.begin()->second);
+  EXPECT_EQ(toBytes(tilePointsFromBytes(bytes)), bytes);
+  for (std::size_t size = 0; size < bytes.size(); size += 1 + bytes.size() / 97)
+    EXPECT_THROW(tilePointsFromBytes(bytes.substr(0, size)), Error);
+  EXPECT_THROW(tilePointsFromBytes(bytes + "x"), Error);
+  EXPECT_THROW(scanSegmentFromBytes(bytes), Error);
+}
+
+}  // namespace
+}  // namespace cluxel
