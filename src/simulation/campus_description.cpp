@@ -53,7 +53,7 @@ Json objectsJson(const Campus& campus) {
 std::string describeCampus(const Campus& campus) {
   Json stops = Json::array();
   for (const auto& T_map_sensor : campus.stops) stops.push_back(vectorJson(T_map_sensor.translation()));
-  const Json json{{"generated", true}, {"parameters", parametersJson(campus.params)}, {"stops_m", stops},
+  const Json json{{"generated", true}, {"parameters", parametersJson(campus.params)}, {"heading_rad", campus.heading_rad}, {"stops_m", stops},
                   {"surfaces", surfacesJson()}, {"objects", objectsJson(campus)}};
   return json.dump(1) + "\n";
 }

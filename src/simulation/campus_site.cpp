@@ -102,13 +102,33 @@ void CampusSite::addTrait(std::int32_t instance, std::string trait) {
 
 void CampusSite::addSurface(CampusMesh surface) {
   if (surface.triangles.empty()) return;
-  if (surface.instance >= 0) {
-    Eigen::AlignedBox3d& box = campus_.objects.at(static_cast<std::size_t>(surface.instance)).box;
-    for (const auto& vertex : surface.vertices) box.extend(vertex.cast<double>());
-  }
   campus_.meshes.push_back(std::move(surface));
 }
 
-Campus CampusSite::finish() && { return std::move(campus_); }
+namespace {
+
+void turn(Campus& campus, const Eigen::Isometry3d& T_map_plan) {
+  const Eigen::Matrix2d turned = T_map_plan.linear().topLeftCorner<2, 2>();
+  campus.terrain.slope = turned * campus.terrain.slope;
+  for (Terrain::Wave& wave : campus.terrain.waves) wave.wave_number = turned * wave.wave_number;
+  for (Eigen::Isometry3d& stop : campus.stops) stop = T_map_plan * stop;
+  for (CampusObject& object : campus.objects) {
+    object.position = T_map_plan * object.position;
+    object.box.setEmpty();
+  }
+  for (CampusMesh& mesh : campus.meshes)
+    for (Eigen::Vector3f& vertex : mesh.vertices) {
+      vertex = (T_map_plan * vertex.cast<double>()).cast<float>();
+      if (mesh.instance >= 0) campus.objects[static_cast<std::size_t>(mesh.instance)].box.extend(vertex.cast<double>());
+    }
+}
+
+}  // namespace
+
+Campus CampusSite::finish() && {
+  campus_.heading_rad = stream(RandomUse::Placement, 0).uniform(-std::numbers::pi, std::numbers::pi);
+  turn(campus_, standing(Vector3d::Zero(), campus_.heading_rad));
+  return std::move(campus_);
+}
 
 }  // namespace cluxel

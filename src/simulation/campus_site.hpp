@@ -52,6 +52,7 @@ class CampusSite {
   void addSurface(CampusMesh surface);
   void addStop(const Eigen::Isometry3d& T_map_sensor) { campus_.stops.push_back(T_map_sensor); }
 
+  /// The campus, turned as a whole by a heading that the seed chooses, so that nothing lies along the map's axes.
   Campus finish() &&;
 
  private:

@@ -37,6 +37,7 @@ struct CampusObject {
 
 struct Campus {
   CampusParams params;
+  double heading_rad = 0;                    ///< of the street, from the map's x; the whole plan is turned by it
   Terrain terrain;
   std::vector<CampusObject> objects;
   std::vector<CampusMesh> meshes;
