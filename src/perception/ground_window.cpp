@@ -12,8 +12,9 @@ namespace {
 
 /// Cells around that are looked at when a cell seems sunken.
 constexpr int kSunkenReach = 6;
-/// A sunken cell is believed when this many others around it lie as deep.
+/// A sunken cell is believed when this many others close to it lie as deep: 3 m2 of a pit are one.
 constexpr int kSunkenSupport = 12;
+constexpr int kSupportReach = 3;
 
 struct Surroundings {
   int level = 0, above = 0;
@@ -33,7 +34,7 @@ class Allowance {
   std::array<float, (kSunkenReach + 1) * (kSunkenReach + 1)> value_{};
 };
 
-/// How many known cells around lie on a level with the cell, or above its cone.
+/// How many known cells close by lie on a level with the cell, and how many around lie above its cone.
 Surroundings surroundingsOf(const HeightWindow& window, int x, int y, const Allowance& allowance) {
   Surroundings found;
   const float here = window.height[window.at(x, y)];
@@ -43,7 +44,7 @@ Surroundings surroundingsOf(const HeightWindow& window, int x, int y, const Allo
       const float allowed = allowance(u - x, v - y), difference = window.height[window.at(u, v)] - here;
       if (difference > allowed)
         ++found.above;
-      else if (difference >= -allowed)
+      else if (difference >= -allowed && std::max(std::abs(u - x), std::abs(v - y)) <= kSupportReach)
         ++found.level;
     }
   return found;
