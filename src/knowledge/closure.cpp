@@ -206,7 +206,7 @@ class Round {
 
 }  // namespace
 
-std::vector<QuadIds> inferClosure(const QuadReader& reader, TermId target, std::span<const TermId> sources) {
+std::vector<QuadIds> closureOf(const QuadReader& reader, TermId target, std::span<const TermId> sources) {
   const Words words(reader);
   Facts facts(reader, sources);
   while (Round(facts, words).run()) {
@@ -216,23 +216,6 @@ std::vector<QuadIds> inferClosure(const QuadReader& reader, TermId target, std::
     for (const Pair& pair : pairs) inferred.push_back({pair.first, property, pair.second, target});
   std::sort(inferred.begin(), inferred.end());
   return inferred;
-}
-
-std::uint64_t addClosure(WriteTransaction& transaction, const ClosureGraphs& graphs) {
-  using namespace vocabulary;
-  std::vector<std::string> names = graphs.sources;
-  if (names.empty())
-    for (const std::string_view graph : {kGraphOntology, kGraphObserved, kGraphOperator, kGraphInferred})
-      names.emplace_back(graph);
-  QuadWriter writer(transaction);
-  const TermId target = writer.intern(Term::iri(graphs.target.empty() ? kGraphInferred : graphs.target));
-  std::vector<TermId> sources;
-  for (const std::string& name : names) sources.push_back(writer.intern(Term::iri(name)));
-  writer.flush();
-  const std::vector<QuadIds> inferred = inferClosure(QuadReader(transaction), target, sources);
-  for (const QuadIds& quad : inferred) writer.add(quad);
-  writer.flush();
-  return inferred.size();
 }
 
 }  // namespace cluxel

@@ -184,31 +184,39 @@ TEST(Closure, FindsWhatANaiveApplicationOfTheRulesFinds) {
         QuadIds{things[1], words.at("type"), classes[0], other_graph});  // outside the sources: no effect
     writer.flush();
     const std::vector<TermId> sources = {0};
-    const std::vector<QuadIds> inferred = inferClosure(QuadReader(transaction), 0, sources);
+    const std::vector<QuadIds> inferred = closureOf(QuadReader(transaction), 0, sources);
     std::set<QuadIds> all = stated;
     for (const QuadIds& quad : inferred) EXPECT_TRUE(all.insert(quad).second) << "was stated already";
     EXPECT_TRUE(all == naiveClosure(stated, words, literal)) << seed;
   }
 }
 
-TEST(Closure, AddsOnlyWhatIsNotThereAndIsDoneAfterOnce) {
+TEST(Closure, KeepsTheInferredGraphWhatFollowsFromTheOthers) {
   const auto environment = Environment::temporary();
   WriteTransaction transaction = environment->write();
-  {
-    QuadWriter writer(transaction);
-    loadOntology(shipped(), writer);
-    writer.add({Term::iri("http://x/tree"), Term::iri(rdf("type")), Term::iri(clx("Tree")),
-                Term::iri(kGraphObserved)});
-    writer.flush();
-  }
-  EXPECT_GT(addClosure(transaction), 0U);
-  EXPECT_EQ(addClosure(transaction), 0U);
-  const QuadReader reader(transaction);
-  const auto id = [&](const std::string& iri) { return *reader.idOf(Term::iri(iri)); };
-  EXPECT_TRUE(reader.contains(
-      {id("http://x/tree"), id(rdf("type")), id(clx("Plant")), id(std::string(kGraphInferred))}));
-  EXPECT_FALSE(reader.contains(
-      {id("http://x/tree"), id(rdf("type")), id(clx("Tree")), id(std::string(kGraphInferred))}));
+  const Quad stated{Term::iri("http://x/tree"), Term::iri(rdf("type")), Term::iri(clx("Tree")),
+                    Term::iri(kGraphObserved)};
+  QuadWriter writer(transaction);
+  loadOntology(shipped(), writer);
+  writer.flush();
+  EXPECT_GT(inferClosure(transaction).added, 0U);
+  writer.add(stated);
+  writer.flush();
+  EXPECT_EQ(inferClosure(transaction).added, 4U);  // Plant, Object, SpatialThing, geo:Feature
+  EXPECT_EQ(inferClosure(transaction).added, 0U);
+  const auto quad = [&](const char* name) {
+    const QuadReader reader(transaction);
+    const auto id = [&](const std::string& iri) { return reader.idOf(Term::iri(iri)).value_or(0); };
+    return QuadIds{id("http://x/tree"), id(rdf("type")), id(clx(name)), id(std::string(kGraphInferred))};
+  };
+  EXPECT_TRUE(QuadReader(transaction).contains(quad("Plant")));
+  EXPECT_FALSE(QuadReader(transaction).contains(quad("Tree")));
+  writer.add(quad("Vehicle"));  // as a rule would
+  writer.flush();
+  EXPECT_EQ(extendClosure(transaction).added, 0U) << "Object was inferred already";
+  EXPECT_TRUE(QuadReader(transaction).contains(quad("Vehicle")));
+  EXPECT_EQ(inferClosure(transaction).removed, 1U);
+  EXPECT_FALSE(QuadReader(transaction).contains(quad("Vehicle")));
 }
 
 }  // namespace

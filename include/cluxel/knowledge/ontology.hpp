@@ -69,21 +69,21 @@ OntologyView ontologyViewOf(std::span<const RdfSource> sources);
 /// After an error drop the transaction. Does not flush.
 void loadOntology(std::span<const RdfSource> sources, QuadWriter& writer);
 
-/// What a closure reads and where it writes; the defaults are those of a map.
-struct ClosureGraphs {
-  std::vector<std::string> sources;  ///< graph IRIs; empty: ontology, observed, operator and inferred
-  std::string target;                ///< empty: inferred
+/// What follows from the quads of the source graphs and does not stand in them, sorted: rdfs:subClassOf and
+/// rdfs:subPropertyOf with their transitivity, owl:inverseOf, owl:SymmetricProperty, owl:TransitiveProperty, and types of
+/// superclasses; to the fixpoint. Not from rdfs:domain and rdfs:range: a wrong use shall stay a visible fault and not
+/// become a type. The graph of the quads is `target`. Cost: in the quads of rdf:type and of properties that imply
+/// something.
+std::vector<QuadIds> closureOf(const QuadReader& reader, TermId target, std::span<const TermId> sources);
+
+struct ClosureChange {
+  std::uint64_t added = 0, removed = 0;   ///< quads
 };
-
-/// What follows from the sources and does not stand in them, sorted: rdfs:subClassOf and rdfs:subPropertyOf
-/// with their transitivity, owl:inverseOf, owl:SymmetricProperty, owl:TransitiveProperty, and types of
-/// superclasses; to the fixpoint. Not from rdfs:domain and rdfs:range: a wrong use shall stay a visible fault
-/// and not become a type. The quads' graph is the target. Cost: in the quads of rdf:type and of properties
-/// that imply something.
-std::vector<QuadIds> inferClosure(const QuadReader& reader, TermId target, std::span<const TermId> sources);
-
-/// Adds the closure to the target graph and gives the number of quads added. Flushes. To take back what no
-/// longer follows, clear the target first.
-std::uint64_t addClosure(WriteTransaction& transaction, const ClosureGraphs& graphs = {});
+/// Makes graph inferred the closure of ontology, observed and operator: what stood there and does not follow goes.
+/// Writes the differences only, and flushes.
+ClosureChange inferClosure(WriteTransaction& transaction);
+/// Adds to graph inferred what follows from ontology, observed, operator and inferred itself, which keeps the facts that
+/// rules have put there. Flushes.
+ClosureChange extendClosure(WriteTransaction& transaction);
 
 }  // namespace cluxel
