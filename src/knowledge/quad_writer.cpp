@@ -31,11 +31,10 @@ struct QuadWriter::Impl {
   PendingTerms terms;
   std::vector<QuadChange> changes;  ///< in the order they were asked for
   std::unordered_map<std::string, TermId> datatypes;
-  TermId next_id;
+  TermId next_id = kNoTerm;  ///< kNoTerm while no new term is pending: another writer may have its turn
   std::string record;
 
-  explicit Impl(WriteTransaction& from)
-      : transaction(from), reader(from), next_id(static_cast<TermId>(reader.termCount() + 1)) {}
+  explicit Impl(WriteTransaction& from) : transaction(from), reader(from) {}
 
   ReadTransaction::Impl& state() const { return transaction.impl(); }
   TermId internRecord(const Term& term);
@@ -52,6 +51,7 @@ TermId QuadWriter::Impl::internRecord(const Term& term) {
       return *stored;
     }
   }
+  if (next_id == kNoTerm) next_id = static_cast<TermId>(reader.termCount() + 1);
   if (next_id == std::numeric_limits<TermId>::max())
     throw Error(ExitCode::StoreUnavailable, "the map is full: it holds 2^32 different terms");
   terms.insert(hash, record, next_id, true);
@@ -73,6 +73,7 @@ void QuadWriter::Impl::flushTerms() {
   std::sort(hashes.added.begin(), hashes.added.end());
   applyTo(state(), Table::TermHashes, hashes);
   terms.clear();
+  next_id = kNoTerm;
 }
 
 void QuadWriter::Impl::flushQuads() {
