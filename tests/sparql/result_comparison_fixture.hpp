@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Are two answers the same, up to the names of blank nodes?
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cluxel/sparql/result_table.hpp"
+
+namespace cluxel::test {
+
+/// A row, triple or quad.
+using Tuple = std::vector<std::optional<Term>>;
+
+/// Whether a bijection of blank nodes turns the one multiset of tuples into the other. Numbers of one datatype are
+/// compared by value.
+bool isomorphic(const std::vector<Tuple>& a, const std::vector<Tuple>& b);
+/// The same with the order of tuples kept.
+bool isomorphicInOrder(const std::vector<Tuple>& a, const std::vector<Tuple>& b);
+
+enum class RowOrder { Any, AsWritten };
+enum class Cardinality { Exact, Reduced };   ///< Reduced: `actual` may hold fewer copies of a row, but at least one
+
+/// Empty when the same, else what differs, for people.
+std::string difference(const QueryResult& actual, const QueryResult& expected, RowOrder order = RowOrder::Any,
+                       Cardinality cardinality = Cardinality::Exact);
+std::string graphDifference(const std::vector<Quad>& actual, const std::vector<Quad>& expected);
+
+}  // namespace cluxel::test

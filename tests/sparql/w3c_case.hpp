@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs one test of the W3C suites.
+#pragma once
+
+#include <string>
+
+#include "sparql/w3c_manifest.hpp"
+
+namespace cluxel::test {
+
+/// Empty when the test passes, else why not.
+std::string runCase(const W3cFolder& folder, const W3cCase& test);
+
+}  // namespace cluxel::test
