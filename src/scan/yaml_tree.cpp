@@ -10,6 +10,7 @@
 #include <charconv>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "cluxel/base/nearest_name.hpp"
 
@@ -78,7 +79,7 @@ class TreeBuilder : public YAML::EventHandler {
     mapping.items.clear();
     for (std::size_t i = 0; i + 1 < parts.size(); i += 2) {
       if (parts[i].kind != YamlValue::Kind::Scalar) faults_->add(parts[i], "a key must be a single word");
-      mapping.entries.emplace_back(std::move(parts[i]), std::move(parts[i + 1]));
+      mapping.entries.push_back({std::move(parts[i]), std::move(parts[i + 1])});
     }
     faultDuplicates(mapping);
   }

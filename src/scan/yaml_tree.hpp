@@ -6,12 +6,13 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "cluxel/base/diagnostic.hpp"
 
 namespace cluxel {
+
+struct YamlEntry;
 
 struct YamlValue {
   enum class Kind { Null, Scalar, Sequence, Mapping };
@@ -19,9 +20,13 @@ struct YamlValue {
   std::string scalar;
   std::size_t line = 0, column = 0;                       ///< from 1
   std::vector<YamlValue> items;                           ///< of a sequence
-  std::vector<std::pair<YamlValue, YamlValue>> entries;   ///< of a mapping, in the order written; keys are scalars
+  std::vector<YamlEntry> entries;                         ///< of a mapping, in the order written; keys are scalars
 
   const YamlValue* find(std::string_view key) const;
+};
+
+struct YamlEntry {
+  YamlValue key, value;
 };
 
 /// The faults found so far in one authored file.
