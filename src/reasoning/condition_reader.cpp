@@ -328,16 +328,9 @@ std::vector<Condition> readConditions(const YamlNode& node, const NameScope& sco
   return conditions;
 }
 
-bool tiesToNeighbours(const std::vector<Condition>& conditions) {
-  return std::any_of(conditions.begin(), conditions.end(), [](const Condition& c) {
-    if (!c.target || c.target->kind != Target::Kind::Name) return false;
-    if (c.kind == Condition::Kind::Relation) return c.relation != RelationKind::TouchesGround;
-    const bool lower = c.comparison == Comparison::Greater || c.comparison == Comparison::GreaterEqual;
-    if (c.kind == Condition::Kind::Pair && c.measure == PairMeasure::AdjacentFraction) return lower;
-    const bool upper = c.comparison == Comparison::Less || c.comparison == Comparison::LessEqual ||
-                       c.comparison == Comparison::Between;
-    return c.kind == Condition::Kind::Pair && upper && c.measure != PairMeasure::VerticalGap;
-  });
+bool tiesToNeighbours(const std::vector<Condition>& conditions, const std::string& subject) {
+  return std::any_of(conditions.begin(), conditions.end(),
+                     [&](const Condition& condition) { return looksNearby(condition, subject); });
 }
 
 }  // namespace cluxel

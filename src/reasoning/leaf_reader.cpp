@@ -133,7 +133,7 @@ class AcceptReader {
       scope.subject = "it";
       const std::size_t faults_before = faults_.errorCount();
       absorb.when = readConditions(*when, scope, reading_);
-      if (faults_.errorCount() == faults_before && !tiesToNeighbours(absorb.when))
+      if (faults_.errorCount() == faults_before && !tiesToNeighbours(absorb.when, "it"))
         faults_.error(when->at, "'absorb' needs evidence that ties it to a bound name",
                       "{ adjacent_fraction_to: top, op: \">=\", value: 0.5 }");
     }
@@ -150,7 +150,7 @@ class AcceptReader {
       absorb.into = readBoundName(*into, scope_, faults_).value_or("");
     } else {
       for (const Condition& condition : absorb.when)
-        if (absorb.into.empty() && condition.target && condition.target->kind == Target::Kind::Name)
+        if (absorb.into.empty() && looksNearby(condition, "it"))
           absorb.into = condition.target->name;
     }
     if (absorb.into.empty() || isPart(absorb.into)) return;

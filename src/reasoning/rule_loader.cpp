@@ -19,7 +19,7 @@ void readNames(const GatheredRules& gathered, RuleReading& reading) {
     if (const auto iri = readText(value, "an IRI", reading.faults)) reading.prefixes[key.text] = *iri;
   for (const auto& [key, value] : gathered.constants) {
     const auto quantity = parseQuantity(value, reading.faults);
-    reading.constants[key.text] = {quantity.value_or(Quantity{}), key.at, !quantity.has_value()};
+    reading.constants[key.text] = {quantity.value_or(Quantity{}), key.at, false, !quantity.has_value()};
   }
 }
 

@@ -16,6 +16,7 @@ struct RuleConstant {
   Quantity quantity;
   SourceLocation at;
   bool used = false;
+  bool faulty = false;      ///< already reported where it stands
 };
 
 struct RuleReading {
@@ -59,8 +60,8 @@ std::optional<std::string> readNewName(const YamlNode& node, const NameScope& sc
 std::optional<Condition> readCondition(const YamlNode& node, const NameScope& scope, RuleReading& reading);
 /// A list of conditions.
 std::vector<Condition> readConditions(const YamlNode& node, const NameScope& scope, RuleReading& reading);
-/// True when one of the conditions ties its subject to something nearby, so that candidates can be looked up.
-bool tiesToNeighbours(const std::vector<Condition>& conditions);
+/// True when one of the conditions ties `subject` to something nearby, so that candidates can be looked up.
+bool tiesToNeighbours(const std::vector<Condition>& conditions, const std::string& subject);
 
 /// The tree below `tree:`; nodes are appended to the rule, the root first.
 void readTree(const YamlNode& node, Rule& rule, RuleReading& reading);

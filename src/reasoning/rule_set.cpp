@@ -49,6 +49,16 @@ std::string describeAll(const Condition& condition) {
 
 }  // namespace
 
+bool looksNearby(const Condition& c, std::string_view subject) {
+  if (c.of != subject || !c.target || c.target->kind != Target::Kind::Name) return false;
+  if (c.kind == Condition::Kind::Relation) return c.relation != RelationKind::TouchesGround;
+  if (c.kind != Condition::Kind::Pair || c.measure == PairMeasure::VerticalGap) return false;
+  if (c.measure == PairMeasure::AdjacentFraction)
+    return c.comparison == Comparison::Greater || c.comparison == Comparison::GreaterEqual;
+  return c.comparison == Comparison::Less || c.comparison == Comparison::LessEqual ||
+         c.comparison == Comparison::Between;
+}
+
 std::string_view symbolOf(Comparison comparison) {
   switch (comparison) {
     case Comparison::Less: return "<";

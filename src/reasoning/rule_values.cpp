@@ -133,6 +133,7 @@ std::optional<Quantity> readQuantity(const YamlNode& node, Dimension expected, R
       return std::nullopt;
     }
     constant->second.used = true;
+    if (constant->second.faulty) return std::nullopt;
     quantity = constant->second.quantity;
   } else {
     quantity = parseQuantity(node, reading.faults);

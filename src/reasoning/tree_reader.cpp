@@ -111,7 +111,7 @@ class TreeReader {
     for (std::string_view key : {"relations", "where"})
       if (const YamlNode* list = spec.find(key))
         for (Condition& condition : readConditions(*list, inside, reading_)) find.where.push_back(std::move(condition));
-    if (faults_.errorCount() == faults_before && !tiesToNeighbours(find.where))
+    if (faults_.errorCount() == faults_before && !tiesToNeighbours(find.where, find.name))
       faults_.error(spec.at, "'find' does not say where to look",
                     "give a relation to a bound name, or a measure with an upper bound: { gap_to: pole, op: \"<=\", "
                     "value: 0.5 m }");
@@ -123,7 +123,7 @@ class TreeReader {
 
   void readChoice(const YamlNode& spec, FindNode& find) {
     for (const Condition& condition : find.where)
-      if (find.nearest_to.empty() && condition.target && condition.target->kind == Target::Kind::Name)
+      if (find.nearest_to.empty() && looksNearby(condition, find.name))
         find.nearest_to = condition.target->name;
     const YamlNode* choose = spec.find("choose");
     if (choose == nullptr) return;

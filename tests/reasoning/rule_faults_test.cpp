@@ -71,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(
         FaultCase{"UnknownKeyOfTheFile", "ruleset:", "rulesset:", 2, 1, "unknown key 'rulesset'", "'ruleset'"},
         FaultCase{"UnknownKeyOfARule", "    class: clx:Ground\n", "    class: clx:Ground\n    sed: x\n", 10, 5,
                   "unknown key 'sed' in 'rule'", "'seed'"},
-        FaultCase{"UnknownKeyOfACondition", "value: 20 m2", "valu: 20 m2", 12, 63, "unknown key 'valu'", "'value'"},
+        FaultCase{"UnknownKeyOfACondition", "value: 20 m2", "valu: 20 m2", 12, 52, "unknown key 'valu'", "'value'"},
         FaultCase{"OtherVersion", "rules/v1", "rules/v7", 1, 13, "version 'cluxel.rules/v7'", "cluxel.rules/v1"},
         FaultCase{"RepeatedKey", "      no: { reject: too small }\n",
                   "      no: { reject: too small }\n      no: { reject: a roof }\n", 15, 7, "'no' stands here twice", "line 14"},
@@ -92,11 +92,13 @@ INSTANTIATE_TEST_SUITE_P(
         FaultCase{"ConstantOfAnotherDimension", "20 m2", "$ground_gap", 12, 59, "is a length where an area", ""},
         FaultCase{"UnknownConstant", "within: $ground_gap", "within: $ground_gab", 19, 49, "unknown constant", ""},
         FaultCase{"NotAQuantity", "0.30 m", "wide", 5, 15, "'wide' is not a quantity", "2.5 m"},
-        FaultCase{"UnboundName", "{ above: trunk }", "{ above: trunc }", 21, 66, "nothing is bound to 'trunc'", "trunk"},
+        FaultCase{"UnboundName", "{ above: trunk }", "{ above: trunc }", 21, 64, "nothing is bound to 'trunc'", "trunk"},
         FaultCase{"NameUsedWhereItIsMissing", "missing: { reject: no crown, hint: ground/main }",
                   "missing: { accept: { parts: { top: clx:TreeTop }, confidence: 0.5 } }", 23, 39,
                   "nothing is bound to 'top'", ""},
-        FaultCase{"NameBoundTwice", "as: top,", "as: trunk,", 21, 21, "already bound", ""},
+        FaultCase{"NameBoundTwice", "missing: { reject: no crown, hint: ground/main }",
+                  "missing: { find: { as: trunk, label: column, relations: [ { near: trunk } ] }, found: { reject: a }, "
+                  "missing: { reject: b } }", 23, 32, "already bound", ""},
         FaultCase{"UnknownHint", "hint: ground/main", "hint: ground/mian", 23, 18, "no rule: 'ground/mian'",
                   "ground/main"},
         FaultCase{"RuleIdTwice", "id: tree/trunk", "id: ground/main", 15, 9, "already used", ""},
@@ -119,9 +121,9 @@ INSTANTIATE_TEST_SUITE_P(
         FaultCase{"AlwaysPassingTest", "value: 20 m2", "value: -1 m2", 14, 11, "nothing can get here", "line 12"},
         FaultCase{"MergeWithoutARelation", "confidence: 0.98", "merge_into: related, confidence: 0.98", 13, 12,
                   "no relation to an object", ""},
-        FaultCase{"AbsorbIntoWhatIsNoPart", "confidence: 0.9 }",
+        FaultCase{"AbsorbWithoutEvidence", "confidence: 0.9 }",
                   "confidence: 0.9, absorb: { from: { label: scatter }, into: trunk, when: [ { gap_to: top, op: \">\", value: 1 m } ] } }",
-                  22, 100, "needs evidence", ""}),
+                  22, 151, "needs evidence", ""}),
     [](const auto& info) { return info.param.name; });
 
 TEST(RuleFaults, AreAbsentFromAGoodFile) {

@@ -65,6 +65,9 @@ struct Condition {
 
 /// "height of pole >= 6 m", as people read it in explanations.
 std::string describe(const Condition& condition);
+/// True when the condition ties `subject` to a bound name closely enough that candidates can be looked up by it: a
+/// relation, a share of adjacency, or a distance with an upper bound.
+bool looksNearby(const Condition& condition, std::string_view subject);
 std::string_view symbolOf(Comparison comparison);
 std::string_view nameOf(PairMeasure measure);
 /// "m", "m2", "m3", "deg", or empty.

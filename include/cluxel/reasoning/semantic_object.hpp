@@ -30,13 +30,24 @@ struct DecisionStep {
   bool passed = false;
 };
 
+/// What would have come out, had one test on the way come out otherwise; the rest of the tree is walked for real.
+struct DecisionFlip {
+  std::size_t step = 0;                   ///< the first of the branch's tests in Decision::path
+  std::size_t step_count = 0;             ///< how many tests of the path the branch has
+  bool accepted = false;
+  std::string outcome;                    ///< the other leaf's words
+};
+
 /// Why a rule accepted or rejected a seed primitive.
 struct Decision {
   std::string rule_id;
-  PrimitiveIndex seed = 0;
+  PrimitiveIndex seed = 0;                ///< the one with most points, when several were grouped
+  std::vector<PrimitiveIndex> seeds;      ///< all of them, ascending
   bool accepted = false;
   std::string reason;                     ///< the leaf's own words, or what was accepted
   std::vector<DecisionStep> path;
+  std::string hint;                       ///< a rule that may fit instead
+  std::vector<DecisionFlip> flips;        ///< only for a probed primitive
 };
 
 struct SemanticObject {
