@@ -38,7 +38,7 @@ void addWalls(Building& building, const Eigen::AlignedBox2d& footprint) {
     place.along = Vector3d{along.x(), along.y(), 0}.normalized();
     place.outward = place.along.cross(Vector3d::UnitZ());
     place.length_m = along.norm();
-    place.door = side == 0 || side == 2;      // the long sides face street and paths
+    place.door = side == 0 || side == 2;  // the long sides face street and paths
     addFacade(building.surfaces, building.style, place);
   }
 }
@@ -46,8 +46,8 @@ void addWalls(Building& building, const Eigen::AlignedBox2d& footprint) {
 void addFlatRoof(Building& building, const Eigen::AlignedBox2d& footprint) {
   const double z = building.eaves_m;
   const Vector2d a = footprint.min(), b = footprint.max();
-  addQuad(building.surfaces.flat_roof, {Vector3d{a.x(), a.y(), z}, Vector3d{b.x(), a.y(), z}, Vector3d{b.x(), b.y(), z},
-                                        Vector3d{a.x(), b.y(), z}});
+  addQuad(building.surfaces.flat_roof, {Vector3d{a.x(), a.y(), z}, Vector3d{b.x(), a.y(), z},
+                                        Vector3d{b.x(), b.y(), z}, Vector3d{a.x(), b.y(), z}});
 }
 
 void addGabledRoof(Building& building, const Eigen::AlignedBox2d& footprint, double pitch_rad) {
@@ -68,19 +68,24 @@ void addGabledRoof(Building& building, const Eigen::AlignedBox2d& footprint, dou
                at(half_ridge + overhang, 0, building.eaves_m + rise + lift),
                at(-half_ridge - overhang, 0, building.eaves_m + rise + lift)});
     const double gable = side * half_ridge;
-    addTriangle(building.surfaces.facade, at(gable, -half_span, building.eaves_m), at(gable, half_span, building.eaves_m),
-                at(gable, 0, building.eaves_m + rise));
+    addTriangle(building.surfaces.facade, at(gable, -half_span, building.eaves_m),
+                at(gable, half_span, building.eaves_m), at(gable, 0, building.eaves_m + rise));
   }
 }
 
 void addPortico(Building& building, const CampusSite& site, const Eigen::AlignedBox2d& footprint) {
-  const double front = footprint.min().y() - 2.6, middle = footprint.center().x(), top = building.ground_m + 3.4;
+  const double front = footprint.min().y() - 2.6, middle = footprint.center().x(),
+               top = building.ground_m + 3.4;
   for (const double x : {-4.5, -1.9, 1.9, 4.5}) {
     const Vector3d foot = site.onGround({middle + x, front});
-    addTube(building.surfaces.column, {.from = foot - Vector3d{0, 0, 0.3}, .to = {foot.x(), foot.y(), top},
-                                       .radius_from = 0.24, .radius_to = 0.2, .sides = 14});
+    addTube(building.surfaces.column, {.from = foot - Vector3d{0, 0, 0.3},
+                                       .to = {foot.x(), foot.y(), top},
+                                       .radius_from = 0.24,
+                                       .radius_to = 0.2,
+                                       .sides = 14});
   }
-  addBox(building.surfaces.flat_roof, standing({middle, 0.5 * (front - 0.5 + footprint.min().y()), top + 0.15}, 0),
+  addBox(building.surfaces.flat_roof,
+         standing({middle, 0.5 * (front - 0.5 + footprint.min().y()), top + 0.15}, 0),
          {10.4, footprint.min().y() - front + 0.5, 0.3});
 }
 
@@ -100,8 +105,9 @@ FacadeStyle styleOf(const BuildingSpec& spec, CampusRandom& random) {
 
 std::int32_t makeBuilding(CampusSite& site, const BuildingSpec& spec, CampusRandom random) {
   const Vector2d middle = spec.footprint.center();
-  const std::int32_t id = site.addObject(ObjectClass::Building, spec.gabled ? "gabled building" : "flat-roofed building",
-                                         site.onGround(middle), 0.5 * spec.footprint.diagonal().norm());
+  const std::int32_t id =
+      site.addObject(ObjectClass::Building, spec.gabled ? "gabled building" : "flat-roofed building",
+                     site.onGround(middle), 0.5 * spec.footprint.diagonal().norm());
   Building building{.surfaces = BuildingSurfaces(id, static_cast<float>(random.uniform(0.3, 0.7))),
                     .style = styleOf(spec, random)};
   building.ground_m = lowestGround(site, spec.footprint) + 0.35;

@@ -18,13 +18,16 @@ void placeStops(CampusSite& site) {
   for (std::size_t stop = 0; stop < count; ++stop) {
     CampusRandom random = site.stream(RandomUse::Stop, stop);
     const auto route = site.plan().routeAt(kStopDistance_m * static_cast<double>(stop));
-    const Eigen::Vector2d place = route.position + Eigen::Vector2d{random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2)};
+    const Eigen::Vector2d place =
+        route.position + Eigen::Vector2d{random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2)};
     Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
     T_map_sensor.translation() = site.onGround(place) + Vector3d{0, 0, kSensorHeight_m};
     const double yaw = route.heading_rad + 8 * kDegree * random.normal();
     const double pitch = kDegree * random.normal(), roll = kDegree * random.normal();
-    T_map_sensor.linear() = (Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch, Vector3d::UnitY()) *
-                             Eigen::AngleAxisd(roll, Vector3d::UnitX())).toRotationMatrix();
+    T_map_sensor.linear() =
+        (Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch, Vector3d::UnitY()) *
+         Eigen::AngleAxisd(roll, Vector3d::UnitX()))
+            .toRotationMatrix();
     site.addStop(T_map_sensor);
   }
 }
@@ -33,7 +36,8 @@ void noteCrownsAbove(CampusSite& site) {
   const std::vector<CampusObject> objects = site.campus().objects;
   for (std::size_t low = 0; low < objects.size(); ++low) {
     const int class_number = objects[low].class_number;
-    if (class_number != static_cast<int>(ObjectClass::StreetLamp) && class_number != static_cast<int>(ObjectClass::StreetSign))
+    if (class_number != static_cast<int>(ObjectClass::StreetLamp) &&
+        class_number != static_cast<int>(ObjectClass::StreetSign))
       continue;
     for (const CampusObject& tree : objects) {
       const double distance = (tree.position - objects[low].position).head<2>().norm();

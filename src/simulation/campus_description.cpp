@@ -12,7 +12,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json vectorJson(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
+Json vectorJson(const Eigen::Vector3d& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
 
 Json parametersJson(const CampusParams& params) {
   Json json{{"seed", params.seed}};
@@ -34,13 +36,17 @@ Json surfacesJson() {
 
 Json objectsJson(const Campus& campus) {
   std::map<std::int32_t, std::set<std::string>> surfaces_of;
-  for (const CampusMesh& mesh : campus.meshes) surfaces_of[mesh.instance].insert(std::string(infoOf(mesh.label).name));
+  for (const CampusMesh& mesh : campus.meshes)
+    surfaces_of[mesh.instance].insert(std::string(infoOf(mesh.label).name));
   Json objects = Json::array();
   for (std::size_t i = 0; i < campus.objects.size(); ++i) {
     const CampusObject& object = campus.objects[i];
-    Json json{{"instance", i}, {"class", truthClassNames()[static_cast<std::size_t>(object.class_number)]},
-              {"kind", object.kind}, {"position_m", vectorJson(object.position)},
-              {"box_min_m", vectorJson(object.box.min())}, {"box_max_m", vectorJson(object.box.max())},
+    Json json{{"instance", i},
+              {"class", truthClassNames()[static_cast<std::size_t>(object.class_number)]},
+              {"kind", object.kind},
+              {"position_m", vectorJson(object.position)},
+              {"box_min_m", vectorJson(object.box.min())},
+              {"box_max_m", vectorJson(object.box.max())},
               {"surfaces", surfaces_of[static_cast<std::int32_t>(i)]}};
     if (!object.traits.empty()) json["traits"] = object.traits;
     objects.push_back(std::move(json));
@@ -53,8 +59,12 @@ Json objectsJson(const Campus& campus) {
 std::string describeCampus(const Campus& campus) {
   Json stops = Json::array();
   for (const auto& T_map_sensor : campus.stops) stops.push_back(vectorJson(T_map_sensor.translation()));
-  const Json json{{"generated", true}, {"parameters", parametersJson(campus.params)}, {"heading_rad", campus.heading_rad}, {"stops_m", stops},
-                  {"surfaces", surfacesJson()}, {"objects", objectsJson(campus)}};
+  const Json json{{"generated", true},
+                  {"parameters", parametersJson(campus.params)},
+                  {"heading_rad", campus.heading_rad},
+                  {"stops_m", stops},
+                  {"surfaces", surfacesJson()},
+                  {"objects", objectsJson(campus)}};
   return json.dump(1) + "\n";
 }
 

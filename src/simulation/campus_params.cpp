@@ -19,7 +19,8 @@ const std::array<CampusParamInfo, 8>& campusParamInfos() {
       {"range-sigma", &P::range_sigma_m, "m", 0, 0.2, "standard deviation of the range noise"},
       {"max-range", &P::max_range_m, "m", 5, 300, "farthest return"},
       {"miss-probability", &P::miss_probability, "1", 0, 0.5, "share of rays lost for no reason"},
-      {"mixed-pixel-probability", &P::mixed_pixel_probability, "1", 0, 1, "share of rays on depth edges that mix both ranges"},
+      {"mixed-pixel-probability", &P::mixed_pixel_probability, "1", 0, 1,
+       "share of rays on depth edges that mix both ranges"},
       {"beam-radius", &P::beam_radius_rad, "rad", 0, 0.02, "half the divergence of the beam"},
   }};
   return infos;
@@ -38,9 +39,9 @@ void checkRange(const CampusParams& params, const CampusParamInfo& info) {
   const double value = params.*info.field;
   if (value >= info.min && value <= info.max) return;
   const std::string unit = info.unit == "1" ? "" : " " + std::string(info.unit);
-  throw Error(ExitCode::Usage, "the campus cannot have " + std::string(info.name) + " = " + shortNumber(value) + unit +
-                                   " (" + std::string(info.help) + "): choose " + shortNumber(info.min) + " to " +
-                                   shortNumber(info.max) + unit);
+  throw Error(ExitCode::Usage, "the campus cannot have " + std::string(info.name) + " = " +
+                                   shortNumber(value) + unit + " (" + std::string(info.help) + "): choose " +
+                                   shortNumber(info.min) + " to " + shortNumber(info.max) + unit);
 }
 
 }  // namespace
@@ -52,14 +53,16 @@ std::size_t maxStops(double size_m) {
 void check(const CampusParams& params) {
   for (const CampusParamInfo& info : campusParamInfos()) checkRange(params, info);
   if (params.stops != std::floor(params.stops))
-    throw Error(ExitCode::Usage, "the campus cannot have " + shortNumber(params.stops) + " stops: give a whole number");
+    throw Error(ExitCode::Usage,
+                "the campus cannot have " + shortNumber(params.stops) + " stops: give a whole number");
   const auto stops = static_cast<std::size_t>(params.stops);
   if (stops <= maxStops(params.size_m)) return;
   double roomy_m = std::ceil(params.size_m);
   while (maxStops(roomy_m) < stops) roomy_m += 1;
   throw Error(ExitCode::Usage, "a campus of " + shortNumber(params.size_m) + " m has a route of " +
-                                   std::to_string(maxStops(params.size_m)) + " stops, not " + std::to_string(stops) +
-                                   ": choose fewer stops or a size of " + shortNumber(roomy_m) + " m");
+                                   std::to_string(maxStops(params.size_m)) + " stops, not " +
+                                   std::to_string(stops) + ": choose fewer stops or a size of " +
+                                   shortNumber(roomy_m) + " m");
 }
 
 }  // namespace cluxel

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random numbers of the campus: splitmix64 streams keyed by what they are for, the same on every standard library.
+// Random numbers of the campus: splitmix64 streams keyed by what they are for, the same on every standard
+// library.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,8 @@ class CampusRandom {
  public:
   /// Streams with different keys are unrelated; the same keys give the same stream.
   CampusRandom(std::initializer_list<std::uint64_t> keys) {
-    for (const std::uint64_t key : keys) state_ = scramble(state_ + 0x9e3779b97f4a7c15ULL + scramble(key + 1));
+    for (const std::uint64_t key : keys)
+      state_ = scramble(state_ + 0x9e3779b97f4a7c15ULL + scramble(key + 1));
   }
   std::uint64_t next() { return scramble(state_ += 0x9e3779b97f4a7c15ULL); }
   /// In [0, 1).
@@ -40,7 +42,19 @@ class CampusRandom {
 };
 
 /// What a stream is for: the first key after the seed.
-enum class RandomUse : std::uint64_t { Terrain, Ground, Building, Tree, Shrub, Furniture, Car, SmallObject, Placement, Stop, Ray };
+enum class RandomUse : std::uint64_t {
+  Terrain,
+  Ground,
+  Building,
+  Tree,
+  Shrub,
+  Furniture,
+  Car,
+  SmallObject,
+  Placement,
+  Stop,
+  Ray
+};
 
 inline CampusRandom streamOf(std::uint64_t seed, RandomUse use, std::uint64_t number = 0) {
   return CampusRandom{seed, static_cast<std::uint64_t>(use), number};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scans are simulated and written one by one on each thread; tables are put together in the order of the stops.
+// Scans are simulated and written one by one on each thread; tables are put together in the order of the
+// stops.
 #include "cluxel/simulation/campus_writer.hpp"
 
 #include <zlib.h>
@@ -66,10 +67,12 @@ std::string stemOf(std::size_t stop) {
 void prepare(const fs::path& folder) {
   std::error_code failure;
   if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
-    throw Error(ExitCode::Usage, folder.string() + " is not an empty folder: name a new one, or remove it first");
+    throw Error(ExitCode::Usage,
+                folder.string() + " is not an empty folder: name a new one, or remove it first");
   fs::create_directories(folder / "truth", failure);
   if (failure)
-    throw Error(ExitCode::StoreUnavailable, "cannot make the folder " + folder.string() + ": " + failure.message());
+    throw Error(ExitCode::StoreUnavailable,
+                "cannot make the folder " + folder.string() + ": " + failure.message());
 }
 
 /// What each scan leaves behind for the tables.
@@ -106,13 +109,15 @@ CampusSummary summaryOf(const Campus& campus, const Written& written) {
   }
   summary.objects = seen.size();
   for (const std::int32_t id : seen)
-    ++summary.objects_of_class[static_cast<std::size_t>(campus.objects[static_cast<std::size_t>(id)].class_number)];
+    ++summary.objects_of_class[static_cast<std::size_t>(
+        campus.objects[static_cast<std::size_t>(id)].class_number)];
   return summary;
 }
 
 }  // namespace
 
-CampusSummary writeCampus(const Campus& campus, const fs::path& folder, unsigned threads, ProgressSink& sink) {
+CampusSummary writeCampus(const Campus& campus, const fs::path& folder, unsigned threads,
+                          ProgressSink& sink) {
   prepare(folder);
   const Written written = writeScans(campus, folder, threads, sink);
   std::vector<std::string> stems;

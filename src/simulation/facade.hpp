@@ -21,12 +21,12 @@ struct FacadeStyle {
   double floor_height_m = 3.2, bay_m = 3;
   double window_width_m = 1.2, window_height_m = 1.5, sill_m = 0.95;
   double recess_m = 0.15;
-  double course_depth_m = 0.1;       ///< how far the ledge between floors stands out; 0: none
+  double course_depth_m = 0.1;  ///< how far the ledge between floors stands out; 0: none
 };
 
 struct FacadePlace {
-  Eigen::Vector3d origin;            ///< left lower corner at the level of the ground floor, seen from outside [m, map]
-  Eigen::Vector3d along, outward;    ///< unit vectors
+  Eigen::Vector3d origin;  ///< left lower corner at the level of the ground floor, seen from outside [m, map]
+  Eigen::Vector3d along, outward;  ///< unit vectors
   double length_m = 10;
   bool door = false;
 };

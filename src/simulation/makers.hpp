@@ -15,7 +15,7 @@ struct BuildingSpec {
   Eigen::AlignedBox2d footprint;
   int floors = 2;
   bool gabled = false;
-  bool portico = false;          ///< columns and a canopy before the middle of the south side
+  bool portico = false;  ///< columns and a canopy before the middle of the south side
 };
 std::int32_t makeBuilding(CampusSite& site, const BuildingSpec& spec, CampusRandom random);
 
@@ -23,26 +23,29 @@ enum class TreeShape { Round, Conical, Columnar, Spreading };
 struct TreeSpec {
   TreeShape shape = TreeShape::Round;
   double crown_radius_m = 3;
-  double clear_trunk_m = 2.2;    ///< height of the lowest leaves
+  double clear_trunk_m = 2.2;  ///< height of the lowest leaves
   double height_m = 8;
 };
 /// Usual dimensions of a shape.
 TreeSpec usualTree(TreeShape shape, CampusRandom& random);
-std::int32_t makeTree(CampusSite& site, const Eigen::Vector2d& place, const TreeSpec& spec, CampusRandom random);
+std::int32_t makeTree(CampusSite& site, const Eigen::Vector2d& place, const TreeSpec& spec,
+                      CampusRandom random);
 
 std::int32_t makeBush(CampusSite& site, const Eigen::Vector2d& place, double radius, CampusRandom random);
-std::int32_t makeHedge(CampusSite& site, const Eigen::Vector2d& from, const Eigen::Vector2d& to, CampusRandom random);
+std::int32_t makeHedge(CampusSite& site, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+                       CampusRandom random);
 
 /// `yaw_rad` is where the arm points.
 std::int32_t makeStraightLamp(CampusSite& site, const Eigen::Vector2d& place, CampusRandom random);
 std::int32_t makeArmLamp(CampusSite& site, const Eigen::Vector2d& place, double yaw_rad, CampusRandom random);
 
 struct SignSpec {
-  double yaw_rad = 0;            ///< where the face looks
+  double yaw_rad = 0;  ///< where the face looks
   int plates = 1;
-  bool leaves = false;           ///< a clutter of leaves on top
+  bool leaves = false;  ///< a clutter of leaves on top
 };
-std::int32_t makeSign(CampusSite& site, const Eigen::Vector2d& place, const SignSpec& spec, CampusRandom random);
+std::int32_t makeSign(CampusSite& site, const Eigen::Vector2d& place, const SignSpec& spec,
+                      CampusRandom random);
 
 /// A row of poles along x with wires between them.
 void makeUtilityLine(CampusSite& site, const std::vector<Eigen::Vector2d>& places, CampusRandom random);
@@ -53,7 +56,8 @@ std::int32_t makeCar(CampusSite& site, const Eigen::Vector2d& place, double yaw_
 std::int32_t makeBin(CampusSite& site, const Eigen::Vector2d& place, CampusRandom random);
 std::int32_t makeBench(CampusSite& site, const Eigen::Vector2d& place, double yaw_rad, CampusRandom random);
 std::int32_t makeBollard(CampusSite& site, const Eigen::Vector2d& place, CampusRandom random);
-std::int32_t makeFence(CampusSite& site, const Eigen::Vector2d& from, const Eigen::Vector2d& to, CampusRandom random);
+std::int32_t makeFence(CampusSite& site, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+                       CampusRandom random);
 std::int32_t makeHydrant(CampusSite& site, const Eigen::Vector2d& place, CampusRandom random);
 std::int32_t makePerson(CampusSite& site, const Eigen::Vector2d& place, CampusRandom random);
 
@@ -66,6 +70,6 @@ void plantLawns(CampusSite& site);
 
 /// Places of the trees on each side of the avenue along the west path: their y.
 std::vector<double> avenueRows(const SitePlan& plan);
-inline constexpr double kAvenueAside_m = 2.9;      ///< from the middle of the path to the trunks
+inline constexpr double kAvenueAside_m = 2.9;  ///< from the middle of the path to the trunks
 
 }  // namespace cluxel

@@ -25,7 +25,8 @@ void addQuad(CampusMesh& mesh, const Corners& corners) {
 
 void addBox(CampusMesh& mesh, const Isometry3d& T_map_box, const Vector3d& size) {
   const Vector2d half = size.head<2>() / 2;
-  addPlate(mesh, T_map_box, {{-half.x(), -half.y()}, {half.x(), -half.y()}, {half.x(), half.y()}, {-half.x(), half.y()}},
+  addPlate(mesh, T_map_box,
+           {{-half.x(), -half.y()}, {half.x(), -half.y()}, {half.x(), half.y()}, {-half.x(), half.y()}},
            size.z());
 }
 
@@ -41,7 +42,8 @@ void addTube(CampusMesh& mesh, const Tube& tube) {
                    rim(tube.to, tube.radius_to, i + 1), rim(tube.to, tube.radius_to, i)});
     if (!tube.capped) continue;
     addTriangle(mesh, tube.to, rim(tube.to, tube.radius_to, i), rim(tube.to, tube.radius_to, i + 1));
-    addTriangle(mesh, tube.from, rim(tube.from, tube.radius_from, i + 1), rim(tube.from, tube.radius_from, i));
+    addTriangle(mesh, tube.from, rim(tube.from, tube.radius_from, i + 1),
+                rim(tube.from, tube.radius_from, i));
   }
 }
 
@@ -49,7 +51,8 @@ void addEllipsoid(CampusMesh& mesh, const Vector3d& center, const Vector3d& radi
   constexpr int kRings = 8, kSides = 12;
   const auto at = [&](int ring, int side) -> Vector3d {
     const double polar = std::numbers::pi * ring / kRings, around = kTurn * (side % kSides) / kSides;
-    const Vector3d unit{std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around), std::cos(polar)};
+    const Vector3d unit{std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around),
+                        std::cos(polar)};
     return center + radii.cwiseProduct(unit);
   };
   for (int ring = 0; ring < kRings; ++ring)
@@ -81,7 +84,8 @@ std::vector<Vector2d> regularOutline(int corners, double radius, double phase_ra
 }
 
 std::vector<Vector2d> rectangleOutline(double width, double height) {
-  return {{-width / 2, -height / 2}, {width / 2, -height / 2}, {width / 2, height / 2}, {-width / 2, height / 2}};
+  return {
+      {-width / 2, -height / 2}, {width / 2, -height / 2}, {width / 2, height / 2}, {-width / 2, height / 2}};
 }
 
 Vector3d randomDirection(CampusRandom& random) {
@@ -92,7 +96,8 @@ Vector3d randomDirection(CampusRandom& random) {
 void addLeaf(CampusMesh& mesh, CampusRandom& random, const Vector3d& center, double size) {
   const Vector3d u = randomDirection(random), v = u.unitOrthogonal();
   const double reach = size / std::sqrt(3.0);
-  addTriangle(mesh, center + reach * u, center + reach * (-0.5 * u + 0.866 * v), center + reach * (-0.5 * u - 0.866 * v));
+  addTriangle(mesh, center + reach * u, center + reach * (-0.5 * u + 0.866 * v),
+              center + reach * (-0.5 * u - 0.866 * v));
 }
 
 void addFramedGlass(CampusMesh& frame, CampusMesh& glass, const Corners& corners, double margin) {
@@ -110,6 +115,8 @@ Isometry3d standing(const Vector3d& position, double yaw_rad) {
   return Eigen::Translation3d(position) * Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ());
 }
 
-Isometry3d movedBy(const Isometry3d& T, const Vector3d& offset) { return T * Eigen::Translation3d(offset); }
+Isometry3d movedBy(const Isometry3d& T, const Vector3d& offset) {
+  return T * Eigen::Translation3d(offset);
+}
 
 }  // namespace cluxel

@@ -13,7 +13,8 @@ namespace cluxel {
 
 using Corners = std::array<Eigen::Vector3d, 4>;
 
-void addTriangle(CampusMesh& mesh, const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
+void addTriangle(CampusMesh& mesh, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                 const Eigen::Vector3d& c);
 /// Corners in order around the quad.
 void addQuad(CampusMesh& mesh, const Corners& corners);
 
@@ -31,8 +32,8 @@ void addTube(CampusMesh& mesh, const Tube& tube);
 void addEllipsoid(CampusMesh& mesh, const Eigen::Vector3d& center, const Eigen::Vector3d& radii);
 
 /// A convex outline in the x-y plane of T_map_plate, thickened to both sides along z.
-void addPlate(CampusMesh& mesh, const Eigen::Isometry3d& T_map_plate, const std::vector<Eigen::Vector2d>& outline,
-              double thickness);
+void addPlate(CampusMesh& mesh, const Eigen::Isometry3d& T_map_plate,
+              const std::vector<Eigen::Vector2d>& outline, double thickness);
 /// A regular outline for addPlate; the first corner at `phase_rad`.
 std::vector<Eigen::Vector2d> regularOutline(int corners, double radius, double phase_rad);
 /// An upright rectangle for addPlate.
@@ -44,7 +45,8 @@ void addLeaf(CampusMesh& mesh, CampusRandom& random, const Eigen::Vector3d& cent
 /// A random direction, evenly over the sphere.
 Eigen::Vector3d randomDirection(CampusRandom& random);
 
-/// Glass in a frame: the inner quad goes to `glass`, four strips around it to `frame`; `margin` in shares of the edges.
+/// Glass in a frame: the inner quad goes to `glass`, four strips around it to `frame`; `margin` in shares of
+/// the edges.
 void addFramedGlass(CampusMesh& frame, CampusMesh& glass, const Corners& corners, double margin);
 
 /// Standing at `position`, turned by `yaw_rad` about the vertical.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands along the paths: post lamps, some of them between the trees of the avenue, benches with bins, signs.
+// What stands along the paths: post lamps, some of them between the trees of the avenue, benches with bins,
+// signs.
 #include <cmath>
 #include <numbers>
 
@@ -18,7 +19,7 @@ class PathLayout {
 
   void lamps() {
     const auto rows = avenueRows(plan_);
-    for (std::size_t i = 0; i + 1 < rows.size(); i += 2)      // under the crowns
+    for (std::size_t i = 0; i + 1 < rows.size(); i += 2)  // under the crowns
       lamp({plan_.west() + (i % 4 == 0 ? 1 : -1) * (kAvenueAside_m - 0.5), 0.5 * (rows[i] + rows[i + 1])});
     for (double y = plan_.south() + 6; y < plan_.north() - 3; y += 13) lamp({plan_.east() - 2.3, y});
     for (double x = plan_.west() + 7; x < plan_.east() - 4; x += 15) lamp({x, plan_.north() - 2.3});
@@ -33,9 +34,9 @@ class PathLayout {
 
   void signs() {
     const auto rows = avenueRows(plan_);
-    for (std::size_t i = 0; i < rows.size(); i += 2)          // under the crowns, one in two overgrown
-      sign({plan_.west() + 2.1, rows[i] + 1.1}, {.yaw_rad = -pi / 2, .plates = 1 + static_cast<int>(i / 2 % 2),
-                                                 .leaves = i % 4 == 0});
+    for (std::size_t i = 0; i < rows.size(); i += 2)  // under the crowns, one in two overgrown
+      sign({plan_.west() + 2.1, rows[i] + 1.1},
+           {.yaw_rad = -pi / 2, .plates = 1 + static_cast<int>(i / 2 % 2), .leaves = i % 4 == 0});
     for (const double x : {plan_.west() + 2.4, plan_.east() - 2.4})
       sign({x, plan_.north() - 3.4}, {.yaw_rad = random_.uniform(-pi, pi), .plates = 2});
     sign({plan_.east() - 2.3, plan_.south() + 3.5}, {.yaw_rad = -pi / 2});
@@ -49,7 +50,8 @@ class PathLayout {
 
   void people() {
     for (double x = plan_.west() + 9; x < plan_.east() - 4; x += random_.uniform(12, 20))
-      if (const Vector2d place{x, plan_.windingY(x)}; site_.claim(place, 0.45)) makePerson(site_, place, small());
+      if (const Vector2d place{x, plan_.windingY(x)}; site_.claim(place, 0.45))
+        makePerson(site_, place, small());
   }
 
  private:

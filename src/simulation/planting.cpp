@@ -29,9 +29,11 @@ class Planting {
     for (const double side : {-1.0, 1.0})
       for (const double y : avenueRows(plan)) {
         TreeSpec spec = usualTree(TreeShape::Round, random_);
-        spec.crown_radius_m = random_.uniform(3.0, 3.5);      // wider than half their distance: crowns touch
+        spec.crown_radius_m = random_.uniform(3.0, 3.5);  // wider than half their distance: crowns touch
         spec.clear_trunk_m = random_.uniform(2.3, 2.8);
-        tree({plan.west() + side * kAvenueAside_m + random_.uniform(-0.15, 0.15), y + random_.uniform(-0.3, 0.3)}, spec);
+        tree({plan.west() + side * kAvenueAside_m + random_.uniform(-0.15, 0.15),
+              y + random_.uniform(-0.3, 0.3)},
+             spec);
       }
   }
 
@@ -57,7 +59,7 @@ class Planting {
   }
 
   bool hasRoom(const Vector2d& place, const TreeSpec& spec) const {
-    const bool low = spec.clear_trunk_m < 1.8;               // leaves in the way of people
+    const bool low = spec.clear_trunk_m < 1.8;  // leaves in the way of people
     return site_.plan().onLawn(place, low ? spec.crown_radius_m + 0.3 : 0.8) &&
            site_.distanceToBuildings(place) > spec.crown_radius_m + 0.3;
   }
@@ -67,7 +69,8 @@ class Planting {
     TreeSpec spec = usualTree(static_cast<TreeShape>(number % 4), random_);
     for (int attempt = 0; attempt < 60; ++attempt) {
       const Vector2d place = number % 2 == 0 && attempt < 30 ? onQuad() : anywhere();
-      if (!hasRoom(place, spec) || site_.touchesCrown(place, spec.crown_radius_m) || !tree(place, spec)) continue;
+      if (!hasRoom(place, spec) || site_.touchesCrown(place, spec.crown_radius_m) || !tree(place, spec))
+        continue;
       if (number % 3 == 0) companion(place, spec);
       return;
     }
@@ -97,7 +100,8 @@ class Planting {
   void companion(const Vector2d& place, const TreeSpec& first) {
     for (int attempt = 0; attempt < 30; ++attempt) {
       const TreeSpec spec = usualTree(static_cast<TreeShape>(random_.below(4)), random_);
-      const double angle = random_.uniform(0, 6.283), distance = 0.85 * (first.crown_radius_m + spec.crown_radius_m);
+      const double angle = random_.uniform(0, 6.283),
+                   distance = 0.85 * (first.crown_radius_m + spec.crown_radius_m);
       const Vector2d beside = place + distance * Vector2d{std::cos(angle), std::sin(angle)};
       if (hasRoom(beside, spec) && tree(beside, spec)) return;
     }
@@ -129,7 +133,8 @@ void plantLawns(CampusSite& site) {
   const double area = 4 * plan.half_m() * plan.half_m();
   for (const double side : {-1.0, 1.0})
     for (double x = 3; x + 5 < std::abs(plan.west()); x += planting.random().uniform(9, 12))
-      planting.hedge({side * x, plan.north() + 3.6}, {side * (x + planting.random().uniform(3.5, 6)), plan.north() + 3.6});
+      planting.hedge({side * x, plan.north() + 3.6},
+                     {side * (x + planting.random().uniform(3.5, 6)), plan.north() + 3.6});
   for (int i = 0; i < static_cast<int>(area / 330); ++i) planting.lawnTree(i);
   for (int i = 0; i < static_cast<int>(area / 220); ++i) planting.bush(i % 2 == 0);
 }

@@ -10,8 +10,8 @@
 
 namespace cluxel {
 
-/// Thread-safe for casting. Embree picks the triangle; range and incidence are computed here in double, so they do not
-/// depend on Embree's choice of vector instructions.
+/// Thread-safe for casting. Embree picks the triangle; range and incidence are computed here in double, so
+/// they do not depend on Embree's choice of vector instructions.
 class RayCaster {
  public:
   explicit RayCaster(const Campus& campus);

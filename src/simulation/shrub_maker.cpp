@@ -22,7 +22,8 @@ std::int32_t makeBush(CampusSite& site, const Vector2d& place, double radius, Ca
     const Vector3d radii{0.55 * radius, 0.55 * radius, 0.38 * height};
     const int count = static_cast<int>(480 * radius * radius + 60);
     for (int i = 0; i < count; ++i) {
-      const Vector3d leaf = middle + (0.5 + 0.5 * std::sqrt(random.uniform())) * radii.cwiseProduct(randomDirection(random));
+      const Vector3d leaf =
+          middle + (0.5 + 0.5 * std::sqrt(random.uniform())) * radii.cwiseProduct(randomDirection(random));
       addLeaf(leaves, random, leaf, random.uniform(0.05, 0.11));
     }
   }
@@ -31,16 +32,20 @@ std::int32_t makeBush(CampusSite& site, const Vector2d& place, double radius, Ca
 }
 
 std::int32_t makeHedge(CampusSite& site, const Vector2d& from, const Vector2d& to, CampusRandom random) {
-  const double length = (to - from).norm(), height = random.uniform(0.8, 1.4), half = random.uniform(0.3, 0.45);
+  const double length = (to - from).norm(), height = random.uniform(0.8, 1.4),
+               half = random.uniform(0.3, 0.45);
   const Vector2d along = (to - from) / length, across{-along.y(), along.x()};
-  const std::int32_t id = site.addObject(ObjectClass::Bush, "hedge", site.onGround(0.5 * (from + to)), length / 2);
+  const std::int32_t id =
+      site.addObject(ObjectClass::Bush, "hedge", site.onGround(0.5 * (from + to)), length / 2);
   CampusMesh leaves = surfaceOf(SurfaceLabel::HedgeTop, id, {.reflectivity = 0.5F});
   const int count = static_cast<int>(length * (2 * height + 2 * half) * 260);
   for (int i = 0; i < count; ++i) {
     const double s = random.uniform(0, length), depth = 0.2 * random.uniform() * random.uniform();
     double side = random.uniform(-half, half), up = random.uniform(0.05, height);
-    if (random.uniform() < half / (half + height)) up = height - depth;
-    else side = (side < 0 ? -1 : 1) * (half - depth);
+    if (random.uniform() < half / (half + height))
+      up = height - depth;
+    else
+      side = (side < 0 ? -1 : 1) * (half - depth);
     const Vector2d foot = from + s * along + side * across;
     addLeaf(leaves, random, site.onGround(foot) + Vector3d{0, 0, up}, random.uniform(0.05, 0.1));
   }

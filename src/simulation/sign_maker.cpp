@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Street signs: a thin pole with one or two plates, round, rectangular or triangular; leaves may have grown over it.
+// Street signs: a thin pole with one or two plates, round, rectangular or triangular; leaves may have grown
+// over it.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,17 +13,21 @@ namespace {
 using Eigen::Vector2d, Eigen::Vector3d;
 
 struct PlateOutline {
-  std::vector<Vector2d> corners;      ///< x to the side, y up
+  std::vector<Vector2d> corners;  ///< x to the side, y up
   double half_height_m = 0.3;
 };
 
 PlateOutline randomPlate(CampusRandom& random) {
   using std::numbers::pi;
   switch (random.below(4)) {
-    case 0: return {regularOutline(20, 0.3, 0), 0.3};
-    case 1: return {regularOutline(3, 0.48, (random.chance(0.8) ? 0.5 : -0.5) * pi), 0.42};
-    case 2: return {regularOutline(8, 0.36, pi / 8), 0.34};
-    default: break;
+    case 0:
+      return {regularOutline(20, 0.3, 0), 0.3};
+    case 1:
+      return {regularOutline(3, 0.48, (random.chance(0.8) ? 0.5 : -0.5) * pi), 0.42};
+    case 2:
+      return {regularOutline(8, 0.36, pi / 8), 0.34};
+    default:
+      break;
   }
   const double width = random.uniform(0.45, 0.9), height = random.uniform(0.4, 0.75);
   return {rectangleOutline(width, height), height / 2};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where streets, walks and paths run on a campus of a given size, and the route of the robot. No chance is involved.
+// Where streets, walks and paths run on a campus of a given size, and the route of the robot. No chance is
+// involved.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,18 +13,19 @@ namespace cluxel {
 
 inline constexpr double kStopDistance_m = 10;
 
-/// A street runs along x in the south, with walks on both sides; north of it a rectangle of paths encloses a lawn.
+/// A street runs along x in the south, with walks on both sides; north of it a rectangle of paths encloses a
+/// lawn.
 class SitePlan {
  public:
   explicit SitePlan(double size_m);
 
-  static constexpr double kStreetHalf_m = 4;        ///< from the middle of the street to the kerb
-  static constexpr double kWalkOuter_m = 6.5;       ///< from the middle of the street to the far edge of the walk
+  static constexpr double kStreetHalf_m = 4;   ///< from the middle of the street to the kerb
+  static constexpr double kWalkOuter_m = 6.5;  ///< from the middle of the street to the far edge of the walk
   static constexpr double kKerbWidth_m = 0.15;
   static constexpr double kKerbHeight_m = 0.12;
   static constexpr double kPathHalf_m = 1.3;
   static constexpr double kCrossingHalf_m = 2;
-  static constexpr double kMargin_m = 15;           ///< of ground around the campus
+  static constexpr double kMargin_m = 15;  ///< of ground around the campus
 
   double half_m() const { return half_; }
   double streetY() const { return street_y_; }

@@ -11,8 +11,11 @@ using Eigen::Isometry3d, Eigen::Vector2d, Eigen::Vector3d;
 namespace {
 
 Tube upright(const Vector3d& foot, double low, double high, double radius) {
-  return {.from = foot + Vector3d{0, 0, low}, .to = foot + Vector3d{0, 0, high}, .radius_from = radius,
-          .radius_to = radius, .sides = 12};
+  return {.from = foot + Vector3d{0, 0, low},
+          .to = foot + Vector3d{0, 0, high},
+          .radius_from = radius,
+          .radius_to = radius,
+          .sides = 12};
 }
 
 std::int32_t enter(CampusSite& site, const char* kind, const Vector3d& position, double reach_m) {
@@ -39,7 +42,7 @@ std::int32_t makeBench(CampusSite& site, const Vector2d& place, double yaw_rad, 
   const Vector3d foot = site.onGround(place);
   const std::int32_t id = enter(site, "bench", foot, 0.9);
   CampusMesh bench = surfaceOf(SurfaceLabel::Bench, id, {.reflectivity = 0.4F});
-  const Isometry3d T = standing(foot, yaw_rad);      // x: where one looks when sitting
+  const Isometry3d T = standing(foot, yaw_rad);  // x: where one looks when sitting
   const double width = random.uniform(1.5, 1.9);
   for (const double x : {-0.16, 0.0, 0.16}) addBox(bench, movedBy(T, {x, 0, 0.45}), {0.13, width, 0.04});
   for (const double z : {0.62, 0.78}) addBox(bench, movedBy(T, {-0.28 - 0.1 * z, 0, z}), {0.04, width, 0.12});
@@ -61,7 +64,8 @@ std::int32_t makeBollard(CampusSite& site, const Vector2d& place, CampusRandom r
 }
 
 std::int32_t makeFence(CampusSite& site, const Vector2d& from, const Vector2d& to, CampusRandom random) {
-  const double length = (to - from).norm(), height = random.uniform(1.0, 1.5), yaw = std::atan2(to.y() - from.y(), to.x() - from.x());
+  const double length = (to - from).norm(), height = random.uniform(1.0, 1.5),
+               yaw = std::atan2(to.y() - from.y(), to.x() - from.x());
   const std::int32_t id = enter(site, "fence", site.onGround(0.5 * (from + to)), length / 2);
   CampusMesh fence = surfaceOf(SurfaceLabel::Fence, id, {.reflectivity = 0.5F});
   constexpr double kSlat_m = 0.1, kPitch_m = 0.15, kPost_m = 2.0;
@@ -75,8 +79,11 @@ std::int32_t makeFence(CampusSite& site, const Vector2d& from, const Vector2d& t
     const double next = std::min(s + kPost_m, length);
     const Vector3d end = site.onGround(from + (to - from) * (next / length));
     for (const double up : {0.25, height - 0.2})
-      addTube(fence, {.from = foot + Vector3d{0, 0, up}, .to = end + Vector3d{0, 0, up}, .radius_from = 0.03,
-                      .radius_to = 0.03, .sides = 4});
+      addTube(fence, {.from = foot + Vector3d{0, 0, up},
+                      .to = end + Vector3d{0, 0, up},
+                      .radius_from = 0.03,
+                      .radius_to = 0.03,
+                      .sides = 4});
   }
   site.addSurface(std::move(fence));
   return id;
@@ -99,14 +106,19 @@ std::int32_t makeHydrant(CampusSite& site, const Vector2d& place, CampusRandom r
 std::int32_t makePerson(CampusSite& site, const Vector2d& place, CampusRandom random) {
   const Vector3d foot = site.onGround(place);
   const std::int32_t id = enter(site, "person", foot, 0.3);
-  CampusMesh person = surfaceOf(SurfaceLabel::Person, id, {.reflectivity = static_cast<float>(random.uniform(0.2, 0.6))});
+  CampusMesh person =
+      surfaceOf(SurfaceLabel::Person, id, {.reflectivity = static_cast<float>(random.uniform(0.2, 0.6))});
   const double tall = random.uniform(1.55, 1.9), yaw = random.uniform(0, 6.3);
   const Vector3d side{0.11 * std::cos(yaw), 0.11 * std::sin(yaw), 0};
   for (const double sign : {-1.0, 1.0}) {
     addTube(person, {.from = foot + sign * side,
-                     .to = foot + 0.8 * sign * side + Vector3d{0, 0, 0.48 * tall}, .radius_from = 0.06, .radius_to = 0.09});
+                     .to = foot + 0.8 * sign * side + Vector3d{0, 0, 0.48 * tall},
+                     .radius_from = 0.06,
+                     .radius_to = 0.09});
     addTube(person, {.from = foot + 2.0 * sign * side + Vector3d{0, 0, 0.8 * tall},
-                     .to = foot + 2.4 * sign * side + Vector3d{0, 0, 0.45 * tall}, .radius_from = 0.05, .radius_to = 0.04});
+                     .to = foot + 2.4 * sign * side + Vector3d{0, 0, 0.45 * tall},
+                     .radius_from = 0.05,
+                     .radius_to = 0.04});
   }
   addEllipsoid(person, foot + Vector3d{0, 0, 0.66 * tall}, {0.2, 0.2, 0.2 * tall});
   addEllipsoid(person, foot + Vector3d{0, 0, 0.93 * tall}, {0.1, 0.1, 0.12});

@@ -12,8 +12,8 @@ namespace {
 using Eigen::Vector2d;
 using std::numbers::pi;
 
-constexpr double kKerbLine_m = 4.55;       ///< from the middle of the street: poles stand here, beside the kerb
-constexpr double kWalkBack_m = 6.25;       ///< the far edge of the walk
+constexpr double kKerbLine_m = 4.55;  ///< from the middle of the street: poles stand here, beside the kerb
+constexpr double kWalkBack_m = 6.25;  ///< the far edge of the walk
 
 class StreetLayout {
  public:
@@ -32,7 +32,8 @@ class StreetLayout {
   void crossings() {
     for (const double middle : plan_.crossingsX())
       for (const double side : {-1.0, 1.0})
-        sign(at(middle + 2.7 * side, kKerbLine_m * side), {.yaw_rad = side < 0 ? pi : 0, .plates = 1 + random_.below(2)});
+        sign(at(middle + 2.7 * side, kKerbLine_m * side),
+             {.yaw_rad = side < 0 ? pi : 0, .plates = 1 + random_.below(2)});
   }
 
   void lamps() {
@@ -47,12 +48,15 @@ class StreetLayout {
     for (const CampusObject& object : std::vector(site_.campus().objects)) {
       const bool garden_tree = object.class_number == static_cast<int>(ObjectClass::Tree) &&
                                std::abs(object.position.y() - (plan_.streetY() - 8.2)) < 0.5;
-      if (garden_tree && random_.chance(0.6))      // under its crown
+      if (garden_tree && random_.chance(0.6))  // under its crown
         sign(at(object.position.x() + random_.uniform(-0.8, 0.8), -kWalkBack_m),
-             {.yaw_rad = random_.chance(0.5) ? 0 : pi, .plates = 1 + random_.below(2), .leaves = random_.chance(0.4)});
+             {.yaw_rad = random_.chance(0.5) ? 0 : pi,
+              .plates = 1 + random_.below(2),
+              .leaves = random_.chance(0.4)});
     }
     for (double x = -plan_.half_m() + 11; x < plan_.half_m(); x += random_.uniform(14, 22))
-      sign(at(x, (random_.chance(0.5) ? 1 : -1) * kKerbLine_m), {.yaw_rad = random_.chance(0.5) ? 0.1 : pi - 0.1});
+      sign(at(x, (random_.chance(0.5) ? 1 : -1) * kKerbLine_m),
+           {.yaw_rad = random_.chance(0.5) ? 0.1 : pi - 0.1});
   }
 
   void cars() {
@@ -63,7 +67,8 @@ class StreetLayout {
                                                [x](double middle) { return std::abs(x - middle) < 6; });
         if (near_crossing || !random_.chance(0.55)) continue;
         const double yaw = (side > 0 ? pi : 0) + random_.uniform(-0.03, 0.03);
-        makeCar(site_, at(x + random_.uniform(-0.5, 0.5), side * 2.8), yaw, site_.stream(RandomUse::Car, number));
+        makeCar(site_, at(x + random_.uniform(-0.5, 0.5), side * 2.8), yaw,
+                site_.stream(RandomUse::Car, number));
       }
   }
 
@@ -73,7 +78,8 @@ class StreetLayout {
       const double end = x + random_.uniform(5, 9);
       const Vector2d from = at(x, -7.1), to = at(end, -7.1);
       if (piece % 3 == 0 && site_.claimStrip(from, to, 0.3)) makeFence(site_, from, to, small());
-      if (piece % 3 == 1 && site_.claimStrip(from, to, 0.35)) makeHedge(site_, from, to, site_.stream(RandomUse::Shrub, 500 + next_++));
+      if (piece % 3 == 1 && site_.claimStrip(from, to, 0.35))
+        makeHedge(site_, from, to, site_.stream(RandomUse::Shrub, 500 + next_++));
       x = end + random_.uniform(0.8, 1.6);
     }
   }
@@ -82,12 +88,14 @@ class StreetLayout {
     for (double x = -plan_.half_m() + 8; x < plan_.half_m(); x += random_.uniform(28, 40))
       if (const Vector2d place = at(x, -4.7); site_.claim(place, 0.3)) makeHydrant(site_, place, small());
     for (double x = -plan_.half_m() + 5; x < plan_.half_m(); x += random_.uniform(14, 26))
-      if (const Vector2d place = at(x, -random_.uniform(5, 5.8)); site_.claim(place, 0.45)) makePerson(site_, place, small());
+      if (const Vector2d place = at(x, -random_.uniform(5, 5.8)); site_.claim(place, 0.45))
+        makePerson(site_, place, small());
     for (double x = -plan_.half_m() + 14; x < plan_.half_m(); x += random_.uniform(18, 30))
       if (const Vector2d place = at(x, -kWalkBack_m); site_.claim(place, 0.4)) makeBin(site_, place, small());
     for (const double middle : plan_.crossingsX())
       for (const double aside : {-1.95, 1.95})
-        if (const Vector2d place{middle + aside, plan_.streetY() + 7.3}; site_.claim(place, 0.15)) makeBollard(site_, place, small());
+        if (const Vector2d place{middle + aside, plan_.streetY() + 7.3}; site_.claim(place, 0.15))
+          makeBollard(site_, place, small());
   }
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trees: a trunk that bends a little, branches, and leaves as small triangles in clumps, so that scans show scatter.
+// Trees: a trunk that bends a little, branches, and leaves as small triangles in clumps, so that scans show
+// scatter.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -15,7 +16,7 @@ constexpr double kTurn = 2 * std::numbers::pi;
 /// The surfaces of one tree and where its trunk runs.
 struct Tree {
   CampusMesh trunk, branches, leaves;
-  Vector3d foot, lean;          ///< lean: how far the axis moves per metre of height
+  Vector3d foot, lean;  ///< lean: how far the axis moves per metre of height
   double trunk_radius = 0.15;
 
   Vector3d axisAt(double height) const { return foot + Vector3d{0, 0, height} + height * lean; }
@@ -23,15 +24,23 @@ struct Tree {
 
 void addTrunk(Tree& tree, double height) {
   const double r = tree.trunk_radius;
-  addTube(tree.trunk, {.from = tree.axisAt(-0.3), .to = tree.axisAt(0.25), .radius_from = 1.5 * r, .radius_to = 1.05 * r});
-  addTube(tree.trunk, {.from = tree.axisAt(0.25), .to = tree.axisAt(height), .radius_from = 1.05 * r, .radius_to = 0.75 * r});
+  addTube(
+      tree.trunk,
+      {.from = tree.axisAt(-0.3), .to = tree.axisAt(0.25), .radius_from = 1.5 * r, .radius_to = 1.05 * r});
+  addTube(
+      tree.trunk,
+      {.from = tree.axisAt(0.25), .to = tree.axisAt(height), .radius_from = 1.05 * r, .radius_to = 0.75 * r});
 }
 
 void addBranch(Tree& tree, double height, const Vector3d& tip) {
-  const Vector3d root = tree.axisAt(height), knee = root + 0.5 * (tip - root) - Vector3d{0, 0, 0.06 * (tip - root).norm()};
+  const Vector3d root = tree.axisAt(height),
+                 knee = root + 0.5 * (tip - root) - Vector3d{0, 0, 0.06 * (tip - root).norm()};
   const double r = 0.32 * tree.trunk_radius;
-  addTube(tree.branches, {.from = root, .to = knee, .radius_from = r, .radius_to = 0.7 * r, .sides = 6, .capped = false});
-  addTube(tree.branches, {.from = knee, .to = tip, .radius_from = 0.7 * r, .radius_to = 0.2 * r, .sides = 6, .capped = false});
+  addTube(tree.branches,
+          {.from = root, .to = knee, .radius_from = r, .radius_to = 0.7 * r, .sides = 6, .capped = false});
+  addTube(
+      tree.branches,
+      {.from = knee, .to = tip, .radius_from = 0.7 * r, .radius_to = 0.2 * r, .sides = 6, .capped = false});
 }
 
 /// Leaves around a point, dense in its middle.
@@ -69,11 +78,14 @@ void addConicalCrown(Tree& tree, CampusRandom& random, const TreeSpec& spec) {
     const double reach = spec.crown_radius_m * (1 - up / crown) + 0.12;
     const int twigs = 5 + static_cast<int>(6 * reach);
     for (int i = 0; i < twigs; ++i) {
-      const double around = kTurn * (i + random.uniform()) / twigs, length = reach * random.uniform(0.75, 1.05);
+      const double around = kTurn * (i + random.uniform()) / twigs,
+                   length = reach * random.uniform(0.75, 1.05);
       const Vector3d root = tree.axisAt(spec.clear_trunk_m + up);
-      const Vector3d tip = root + Vector3d{length * std::cos(around), length * std::sin(around), -0.35 * length};
+      const Vector3d tip =
+          root + Vector3d{length * std::cos(around), length * std::sin(around), -0.35 * length};
       for (int leaf = 0, leaves = 6 + static_cast<int>(22 * length); leaf < leaves; ++leaf) {
-        const Vector3d place = root + std::sqrt(random.uniform()) * (tip - root) + 0.14 * randomDirection(random);
+        const Vector3d place =
+            root + std::sqrt(random.uniform()) * (tip - root) + 0.14 * randomDirection(random);
         addLeaf(tree.leaves, random, place, random.uniform(0.07, 0.13));
       }
       if (i % 3 == 0 && length > 0.6) addBranch(tree, spec.clear_trunk_m + up, root + 0.8 * (tip - root));
@@ -84,10 +96,14 @@ void addConicalCrown(Tree& tree, CampusRandom& random, const TreeSpec& spec) {
 
 const char* nameOf(TreeShape shape) {
   switch (shape) {
-    case TreeShape::Round: return "round tree";
-    case TreeShape::Conical: return "spruce";
-    case TreeShape::Columnar: return "columnar tree";
-    case TreeShape::Spreading: return "spreading tree";
+    case TreeShape::Round:
+      return "round tree";
+    case TreeShape::Conical:
+      return "spruce";
+    case TreeShape::Columnar:
+      return "columnar tree";
+    case TreeShape::Spreading:
+      return "spreading tree";
   }
   return "tree";
 }
@@ -99,7 +115,8 @@ void noteTouchingCrowns(CampusSite& site, std::int32_t id) {
     const CampusObject& neighbour = objects[static_cast<std::size_t>(other)];
     if (neighbour.class_number != static_cast<int>(ObjectClass::Tree)) continue;
     const double distance = (neighbour.position - tree.position).head<2>().norm();
-    if (distance < tree.reach_m + neighbour.reach_m) site.addTrait(id, "crown touches " + std::to_string(other));
+    if (distance < tree.reach_m + neighbour.reach_m)
+      site.addTrait(id, "crown touches " + std::to_string(other));
   }
 }
 
@@ -108,10 +125,14 @@ void noteTouchingCrowns(CampusSite& site, std::int32_t id) {
 TreeSpec usualTree(TreeShape shape, CampusRandom& random) {
   const double vigour = random.uniform();
   switch (shape) {
-    case TreeShape::Conical: return {shape, 1.6 + 0.9 * vigour, random.uniform(0.5, 1.1), 7 + 4 * vigour};
-    case TreeShape::Columnar: return {shape, 0.9 + 0.5 * vigour, random.uniform(1.1, 1.7), 8 + 4 * vigour};
-    case TreeShape::Spreading: return {shape, 4 + 1.2 * vigour, random.uniform(2.6, 3.2), 7 + 2 * vigour};
-    case TreeShape::Round: break;
+    case TreeShape::Conical:
+      return {shape, 1.6 + 0.9 * vigour, random.uniform(0.5, 1.1), 7 + 4 * vigour};
+    case TreeShape::Columnar:
+      return {shape, 0.9 + 0.5 * vigour, random.uniform(1.1, 1.7), 8 + 4 * vigour};
+    case TreeShape::Spreading:
+      return {shape, 4 + 1.2 * vigour, random.uniform(2.6, 3.2), 7 + 2 * vigour};
+    case TreeShape::Round:
+      break;
   }
   return {shape, 2.3 + 1.3 * vigour, random.uniform(2.0, 2.7), 6.5 + 2.5 * vigour};
 }
@@ -130,7 +151,8 @@ std::int32_t makeTree(CampusSite& site, const Vector2d& place, const TreeSpec& s
     addConicalCrown(tree, random, spec);
   else
     addEllipsoidCrown(tree, random, spec, spec.shape == TreeShape::Spreading ? 0.75 : 0.25);
-  for (CampusMesh* surface : {&tree.trunk, &tree.branches, &tree.leaves}) site.addSurface(std::move(*surface));
+  for (CampusMesh* surface : {&tree.trunk, &tree.branches, &tree.leaves})
+    site.addSurface(std::move(*surface));
   noteTouchingCrowns(site, id);
   return id;
 }

@@ -16,14 +16,16 @@ CampusParams smallCampus(std::uint64_t seed) {
 }
 
 CampusParams withoutNoise(CampusParams params) {
-  params.range_sigma_m = params.miss_probability = params.mixed_pixel_probability = params.beam_radius_rad = 0;
+  params.range_sigma_m = params.miss_probability = params.mixed_pixel_probability = params.beam_radius_rad =
+      0;
   return params;
 }
 
 Campus room(const CampusParams& params, double half_m) {
   Campus campus;
   campus.params = params;
-  campus.objects.push_back({.class_number = 1, .kind = "room", .position = {}, .box = {}, .reach_m = half_m, .traits = {}});
+  campus.objects.push_back(
+      {.class_number = 1, .kind = "room", .position = {}, .box = {}, .reach_m = half_m, .traits = {}});
   CampusMesh walls;
   walls.label = SurfaceLabel::Facade;
   walls.instance = 0;

@@ -20,13 +20,16 @@ using test::smallCampus;
 constexpr int kTree = 2, kLamp = 4, kSign = 5, kPole = 6;
 
 bool operator==(const CampusMesh& a, const CampusMesh& b) {
-  return a.label == b.label && a.instance == b.instance && a.triangles == b.triangles && a.vertices == b.vertices;
+  return a.label == b.label && a.instance == b.instance && a.triangles == b.triangles &&
+         a.vertices == b.vertices;
 }
 
 TEST(Campus, IsTheSameForTheSameSeedAndAnotherForAnother) {
-  const Campus first = buildCampus(smallCampus(1)), again = buildCampus(smallCampus(1)), other = buildCampus(smallCampus(2));
+  const Campus first = buildCampus(smallCampus(1)), again = buildCampus(smallCampus(1)),
+               other = buildCampus(smallCampus(2));
   ASSERT_EQ(first.meshes.size(), again.meshes.size());
-  for (std::size_t i = 0; i < first.meshes.size(); ++i) ASSERT_TRUE(first.meshes[i] == again.meshes[i]) << "mesh " << i;
+  for (std::size_t i = 0; i < first.meshes.size(); ++i)
+    ASSERT_TRUE(first.meshes[i] == again.meshes[i]) << "mesh " << i;
   EXPECT_EQ(describeCampus(first), describeCampus(again));
   EXPECT_NE(describeCampus(first), describeCampus(other));
 }
@@ -38,8 +41,10 @@ TEST(Campus, EveryMeshHasTrianglesWithinItsVerticesAndAnObjectOfItsClass) {
     for (const auto& triangle : mesh.triangles)
       for (const auto corner : triangle) ASSERT_LT(corner, mesh.vertices.size());
     const SurfaceInfo& info = infoOf(mesh.label);
-    if (info.object_class.empty()) EXPECT_EQ(mesh.instance, -1);
-    else EXPECT_EQ(campus.objects.at(static_cast<std::size_t>(mesh.instance)).class_number, info.object_number);
+    if (info.object_class.empty())
+      EXPECT_EQ(mesh.instance, -1);
+    else
+      EXPECT_EQ(campus.objects.at(static_cast<std::size_t>(mesh.instance)).class_number, info.object_number);
   }
 }
 
@@ -104,11 +109,14 @@ std::map<std::int32_t, Eigen::AlignedBox2d> solidPlans(const Campus& campus) {
   std::map<std::int32_t, Eigen::AlignedBox2d> plans;
   for (const CampusMesh& mesh : campus.meshes)
     if (mesh.label == SurfaceLabel::Facade || mesh.label == SurfaceLabel::CarBody)
-      for (const auto& vertex : mesh.vertices) plans[mesh.instance].extend(inPlan(campus, vertex.cast<double>()));
+      for (const auto& vertex : mesh.vertices)
+        plans[mesh.instance].extend(inPlan(campus, vertex.cast<double>()));
   return plans;
 }
 
-bool isPost(const CampusObject& object) { return object.class_number >= kLamp && object.class_number <= kPole; }
+bool isPost(const CampusObject& object) {
+  return object.class_number >= kLamp && object.class_number <= kPole;
+}
 
 TEST(Campus, NothingStandsInABuildingOrACar) {
   for (const std::uint64_t seed : {1, 2, 3}) {
@@ -121,7 +129,8 @@ TEST(Campus, NothingStandsInABuildingOrACar) {
       for (const auto& [id, plan] : plans) {
         const CampusObject& object = campus.objects[i];
         EXPECT_FALSE(id != static_cast<std::int32_t>(i) && plan.contains(inPlan(campus, object.position)))
-            << object.kind << " " << i << " in " << campus.objects[static_cast<std::size_t>(id)].kind << ", seed " << seed;
+            << object.kind << " " << i << " in " << campus.objects[static_cast<std::size_t>(id)].kind
+            << ", seed " << seed;
       }
   }
 }
@@ -163,7 +172,7 @@ TEST(Campus, StopsAreTenMetresApartAndTheSensorIsWhereARobotCarriesIt) {
     EXPECT_GT(campus.stops[i].linear()(2, 2), std::cos(0.12));
     if (i > 0) {
       EXPECT_LT((p - campus.stops[i - 1].translation()).norm(), 10.7);
-      EXPECT_GT((p - campus.stops[i - 1].translation()).norm(), 6.5);      // around a corner
+      EXPECT_GT((p - campus.stops[i - 1].translation()).norm(), 6.5);  // around a corner
     }
   }
 }
@@ -177,7 +186,8 @@ TEST(Campus, PointsLieWithinTheBoxOfTheirObject) {
       const std::int32_t id = scan.truth.instance[i];
       if (id < 0) continue;
       const CampusObject& object = campus.objects[static_cast<std::size_t>(id)];
-      const Vector3d p = toMap(scan.scan.T_map_sensor, {scan.scan.points.x[i], scan.scan.points.y[i], scan.scan.points.z[i]});
+      const Vector3d p = toMap(scan.scan.T_map_sensor,
+                               {scan.scan.points.x[i], scan.scan.points.y[i], scan.scan.points.z[i]});
       ASSERT_LT(object.box.exteriorDistance(p), 6 * params.range_sigma_m + 1e-3) << object.kind;
     }
 }

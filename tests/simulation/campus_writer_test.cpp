@@ -25,8 +25,8 @@ namespace fs = std::filesystem;
 class CampusWriter : public testing::Test {
  protected:
   CampusWriter()
-      : folder_(fs::temp_directory_path() /
-                (std::string("cluxel_campus_") + testing::UnitTest::GetInstance()->current_test_info()->name())) {
+      : folder_(fs::temp_directory_path() / (std::string("cluxel_campus_") +
+                                             testing::UnitTest::GetInstance()->current_test_info()->name())) {
     fs::remove_all(folder_);
   }
   ~CampusWriter() override { fs::remove_all(folder_); }
@@ -42,7 +42,8 @@ class CampusWriter : public testing::Test {
   std::map<std::string, std::string> bytesOf(const std::string& name) const {
     std::map<std::string, std::string> bytes;
     for (const auto& entry : fs::recursive_directory_iterator(folder_ / name))
-      if (entry.is_regular_file()) bytes[fs::relative(entry.path(), folder_ / name).string()] = readFile(entry.path());
+      if (entry.is_regular_file())
+        bytes[fs::relative(entry.path(), folder_ / name).string()] = readFile(entry.path());
     return bytes;
   }
 
@@ -102,7 +103,8 @@ TEST_F(CampusWriter, TruthFilesFitTheScansAndTheLabelMap) {
     const PointTruth by_labels = truthFromLabels(scan, map);
     EXPECT_EQ(truth.primitive, by_labels.primitive);
     EXPECT_EQ(truth.object_class, by_labels.object_class);
-    for (std::size_t i = 0; i < truth.instance.size(); ++i) ASSERT_EQ(truth.instance[i] < 0, truth.object_class[i] < 0);
+    for (std::size_t i = 0; i < truth.instance.size(); ++i)
+      ASSERT_EQ(truth.instance[i] < 0, truth.object_class[i] < 0);
   }
 }
 
@@ -118,8 +120,10 @@ TEST_F(CampusWriter, TheInstanceTableCountsThePointsOfTheTruthFiles) {
   std::istringstream table(readFile(folder_ / "out" / "truth" / "instances.csv"));
   std::string line;
   std::getline(table, line);
-  EXPECT_EQ(line, "id,object,n,cx,cy,cz,xmin,ymin,zmin,xmax,ymax,zmax,height,extent_long,extent_short,chunks,fine_labels,"
-                  "ambiguous,flags");
+  EXPECT_EQ(
+      line,
+      "id,object,n,cx,cy,cz,xmin,ymin,zmin,xmax,ymax,zmax,height,extent_long,extent_short,chunks,fine_labels,"
+      "ambiguous,flags");
   std::map<int, std::size_t> listed;
   while (std::getline(table, line)) {
     std::istringstream row(line);

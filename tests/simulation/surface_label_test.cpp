@@ -30,8 +30,10 @@ TEST(SurfaceLabel, IdsAscendAndClassesHaveTheirNumberInTruthFiles) {
   EXPECT_TRUE(std::is_sorted(surfaces.begin(), surfaces.end(),
                              [](const auto& a, const auto& b) { return a.label < b.label; }));
   for (const SurfaceInfo& info : surfaces) {
-    if (info.object_class.empty()) EXPECT_EQ(info.object_number, -1);
-    else EXPECT_EQ(truthClassNames().at(static_cast<std::size_t>(info.object_number)), info.object_class);
+    if (info.object_class.empty())
+      EXPECT_EQ(info.object_number, -1);
+    else
+      EXPECT_EQ(truthClassNames().at(static_cast<std::size_t>(info.object_number)), info.object_class);
   }
 }
 

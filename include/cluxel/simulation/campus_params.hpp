@@ -11,20 +11,20 @@ namespace cluxel {
 /// Everything in the campus and in its scans follows from these.
 struct CampusParams {
   std::uint64_t seed = 1;
-  double stops = 12;                      ///< scans along the route, one every 10 m
-  double size_m = 100;                    ///< edge of the square campus; the ground goes on for 15 m around it
-  double points_per_stop = 175'000;       ///< returns per scan, kept within about 5 %
-  double range_sigma_m = 0.012;           ///< standard deviation of the range noise
+  double stops = 12;                 ///< scans along the route, one every 10 m
+  double size_m = 100;               ///< edge of the square campus; the ground goes on for 15 m around it
+  double points_per_stop = 175'000;  ///< returns per scan, kept within about 5 %
+  double range_sigma_m = 0.012;      ///< standard deviation of the range noise
   double max_range_m = 60;
-  double miss_probability = 0.005;        ///< share of rays lost for no reason
-  double mixed_pixel_probability = 0.6;   ///< of a ray that is cut by a depth edge
-  double beam_radius_rad = 0.003;         ///< half the divergence of the beam
+  double miss_probability = 0.005;       ///< share of rays lost for no reason
+  double mixed_pixel_probability = 0.6;  ///< of a ray that is cut by a depth edge
+  double beam_radius_rad = 0.003;        ///< half the divergence of the beam
 };
 
 /// A field of CampusParams as command lines and documents show it.
 struct CampusParamInfo {
-  std::string_view name;                  ///< as options write it: "points-per-stop"
-  double CampusParams::* field;
+  std::string_view name;  ///< as options write it: "points-per-stop"
+  double CampusParams::*field;
   std::string_view unit;
   double min, max;
   std::string_view help;
@@ -36,7 +36,8 @@ const std::array<CampusParamInfo, 8>& campusParamInfos();
 /// How many stops, 10 m apart, the route of a campus of this size offers.
 std::size_t maxStops(double size_m);
 
-/// Throws Error (Usage) naming the parameter, its range, and for too many stops the size that has room for them.
+/// Throws Error (Usage) naming the parameter, its range, and for too many stops the size that has room for
+/// them.
 void check(const CampusParams& params);
 
 }  // namespace cluxel

@@ -17,21 +17,23 @@ namespace cluxel {
 /// Where a ray first meets a surface, without noise.
 struct RayHit {
   double range_m = 0;
-  double cos_incidence = 1;        ///< between ray and surface normal, in [0, 1]
-  std::uint32_t mesh = 0;          ///< number in Campus::meshes
+  double cos_incidence = 1;  ///< between ray and surface normal, in [0, 1]
+  std::uint32_t mesh = 0;    ///< number in Campus::meshes
   std::uint32_t triangle = 0;
 };
 
 struct SimulatedScan {
-  Scan scan;                       ///< with labels (SurfaceLabel), intensity, time, pose and id
+  Scan scan;  ///< with labels (SurfaceLabel), intensity, time, pose and id
   PointTruth truth;
 };
 
 /// When the scan of a stop is taken: a minute after the one before [s since 1970].
-inline double stopTime_s(std::size_t stop) { return 1.7e9 + 60.0 * static_cast<double>(stop); }
+inline double stopTime_s(std::size_t stop) {
+  return 1.7e9 + 60.0 * static_cast<double>(stop);
+}
 
-/// Casts rays at a campus, which must outlive it. All methods are thread-safe and give the same for any number of
-/// threads: the noise of a ray depends on the seed, the stop and the ray's number alone.
+/// Casts rays at a campus, which must outlive it. All methods are thread-safe and give the same for any
+/// number of threads: the noise of a ray depends on the seed, the stop and the ray's number alone.
 class Laser {
  public:
   explicit Laser(const Campus& campus);
@@ -41,8 +43,8 @@ class Laser {
   /// `direction_map` has length 1. Absent: nothing within max_range_m.
   std::optional<RayHit> cast(const Eigen::Vector3d& origin_map, const Eigen::Vector3d& direction_map) const;
 
-  /// One full turn at a stop: elevations from -50 to 55 degrees, with equal angular steps in pan and tilt, chosen from a
-  /// coarse preview turn so that about points_per_stop rays return.
+  /// One full turn at a stop: elevations from -50 to 55 degrees, with equal angular steps in pan and tilt,
+  /// chosen from a coarse preview turn so that about points_per_stop rays return.
   SimulatedScan scanAt(std::size_t stop) const;
 
  private:
