@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// Random queries from a grammar, over the vocabulary of the generated map. A variable's letter tells what it stands
+// for, so that patterns join and functions get arguments that suit them more often than not.
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace cluxel::test {
+
+enum class MadeForm : std::uint8_t { Select, Ask, Construct };
+
+struct MadeQuery {
+  MadeForm form = MadeForm::Select;
+  std::string text;
+  /// With LIMIT or OFFSET, the same query without: any rows of its answer will do, as many as LIMIT allows.
+  std::string unlimited;
+  /// The column of numbers that the rows are ordered by; empty: the order says nothing.
+  std::string ordered_by;
+  bool descending = false;
+};
+
+/// The letters of variables for numbers and strings.
+inline constexpr const char* kNumbers = "nmhij";
+inline constexpr const char* kStrings = "stuv";
+
+class QueryGenerator {
+ public:
+  explicit QueryGenerator(std::uint32_t seed) : random_(seed) {}
+  MadeQuery next();
+
+ private:
+  // query_generator_fixture.cpp: forms and patterns
+  std::string group(int depth);
+  std::string groupElement(int depth);
+  std::string triples();
+  std::string triple();
+  std::string pathTriple();
+  std::string path(int depth);
+  std::string optional(int depth);
+  std::string unions(int depth);
+  std::string minus(int depth);
+  std::string graph(int depth);
+  std::string bind();
+  std::string values();
+  std::string subSelect(int depth);
+  std::string aggregateSelect(int depth);
+  std::string aggregate();
+  MadeQuery select();
+  MadeQuery construct();
+  void addModifiers(MadeQuery& query, const std::vector<std::string>& columns);
+
+  // query_expressions_fixture.cpp
+  std::string condition(int depth);
+  std::string comparison(int depth);
+  std::string test(int depth);
+  std::string number(int depth);
+  std::string string(int depth);
+  std::string anything(int depth);
+  std::string exists();
+
+  // choices
+  std::uint32_t upTo(std::uint32_t limit) { return random_() % limit; }
+  bool chance(std::uint32_t percent) { return upTo(100) < percent; }
+  std::string one(const std::vector<std::string>& choices) { return choices[upTo(static_cast<std::uint32_t>(choices.size()))]; }
+  /// A variable from `letters`; most often one that the query has already.
+  std::string variable(const std::string& letters) { return variable(letters, 80); }
+  std::string variable(const std::string& letters, std::uint32_t percent_known);
+  /// For the object of a triple: numbers and strings are seldom the same ones twice.
+  std::string value(const std::string& letters) { return variable(letters, 20); }
+  std::string anyVariable();
+  std::string fresh() { return used("?r" + std::to_string(++fresh_)); }
+  std::string used(const std::string& name);
+
+  std::mt19937 random_;
+  int fresh_ = 0;
+  int patterns_left_ = 0;
+  std::vector<std::string> used_;
+};
+
+}  // namespace cluxel::test

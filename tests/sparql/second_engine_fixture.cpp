@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Hands data and queries to oxigraph_answers.mjs and reads its answers.
+#include "sparql/second_engine_fixture.hpp"
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "cluxel/base/file_bytes.hpp"
+#include "cluxel/knowledge/rdf_io.hpp"
+#include "cluxel/sparql/results_reader.hpp"
+
+namespace cluxel::test {
+
+namespace {
+
+using nlohmann::json;
+
+/// A folder of its own that vanishes.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "cluxel-second-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    path_ = name;
+  }
+  ~ScratchFolder() { std::filesystem::remove_all(path_); }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  std::filesystem::path file(const char* name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string requestsAsJson(const std::vector<EngineRequest>& requests) {
+  json list = json::array();
+  for (const EngineRequest& request : requests) {
+    json entry{{"query", request.query}};
+    if (!request.default_graphs.empty()) entry["default_graphs"] = request.default_graphs;
+    if (!request.named_graphs.empty()) entry["named_graphs"] = request.named_graphs;
+    list.push_back(std::move(entry));
+  }
+  return list.dump();
+}
+
+QueryResult graphOf(const std::string& text) {
+  QueryResult result;
+  result.kind = QueryResult::Kind::Graph;
+  parseRdf({.text = text, .name = "answer", .format = RdfFormat::NTriples, .base_iri = {}, .graph = Term::iri("")},
+           [&result](const Quad& quad) { result.graph.push_back(quad); });
+  return result;
+}
+
+EngineAnswer answerOf(const json& entry) {
+  const std::string kind = entry.at("kind"), text = entry.at("text");
+  if (kind == "ERROR") return {std::nullopt, text};
+  if (kind == "CONSTRUCT") return {graphOf(text), {}};
+  return {readResults(text, ResultFormat::Json), {}};
+}
+
+}  // namespace
+
+std::optional<std::filesystem::path> secondEngineFolder() {
+  if (std::system("node --version >/dev/null 2>&1") != 0) return std::nullopt;
+  std::vector<std::filesystem::path> places{std::filesystem::path(CLUXEL_SOURCE_DIR) / "build/npm",
+                                            std::filesystem::path(CLUXEL_BINARY_DIR) / "npm"};
+  if (const char* told = std::getenv("CLUXEL_OXIGRAPH")) places.insert(places.begin(), told);
+  for (const std::filesystem::path& place : places)
+    if (std::filesystem::exists(place / "node_modules/oxigraph")) return place;
+  return std::nullopt;
+}
+
+std::vector<EngineAnswer> askSecondEngine(const std::filesystem::path& folder, const std::vector<Quad>& data,
+                                          const std::vector<EngineRequest>& requests) {
+  const ScratchFolder scratch;
+  std::string quads;
+  for (const Quad& quad : data) quads += toNQuads(quad);
+  writeFile(scratch.file("data.nq"), quads);
+  writeFile(scratch.file("requests.json"), requestsAsJson(requests));
+  const std::string script = std::string(CLUXEL_SOURCE_DIR) + "/tests/sparql/oxigraph_answers.mjs";
+  const std::string command = "node '" + script + "' '" + folder.string() + "' '" + scratch.file("data.nq").string() + "' '" +
+                              scratch.file("requests.json").string() + "' '" + scratch.file("answers.json").string() + "'";
+  if (std::system(command.c_str()) != 0) throw std::runtime_error("node failed: " + command);
+  const json document = json::parse(readFile(scratch.file("answers.json")));
+  std::vector<EngineAnswer> answers;
+  for (const json& entry : document.at("answers")) answers.push_back(answerOf(entry));
+  return answers;
+}
+
+}  // namespace cluxel::test

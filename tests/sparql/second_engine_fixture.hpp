@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Oxigraph as a second opinion: a whole batch of queries in one node process.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cluxel/sparql/result_table.hpp"
+
+namespace cluxel::test {
+
+struct EngineRequest {
+  std::string query;
+  std::vector<std::string> default_graphs = {}, named_graphs = {};   ///< both empty: as the store has them
+};
+
+struct EngineAnswer {
+  std::optional<QueryResult> result;   ///< absent: refused
+  std::string error;
+};
+
+/// The folder with node_modules/oxigraph (CLUXEL_OXIGRAPH, or build/npm); nothing when it or node is absent.
+std::optional<std::filesystem::path> secondEngineFolder();
+
+/// Throws std::runtime_error when node fails as a whole.
+std::vector<EngineAnswer> askSecondEngine(const std::filesystem::path& folder, const std::vector<Quad>& data,
+                                          const std::vector<EngineRequest>& requests);
+
+}  // namespace cluxel::test
