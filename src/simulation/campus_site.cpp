@@ -3,6 +3,7 @@
 #include "simulation/campus_site.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <utility>
 

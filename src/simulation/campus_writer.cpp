@@ -5,7 +5,6 @@
 
 #include <zlib.h>
 
-#include <atomic>
 #include <charconv>
 #include <cstdio>
 #include <mutex>

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "cluxel/base/diagnostic.hpp"
 #include "simulation/campus_random.hpp"
@@ -139,12 +140,15 @@ void append(SimulatedScan& result, const Return& echo, const CampusMesh& mesh) {
 
 SimulatedScan Laser::scanAt(std::size_t stop) const {
   const Campus& campus = impl_->campus;
+  if (stop >= campus.stops.size())
+    throw Error(ExitCode::Usage, "the campus has " + std::to_string(campus.stops.size()) +
+                                     " stops, numbered from 0: there is no stop " + std::to_string(stop));
   SimulatedScan result;
   result.truth.class_names = truthClassNames();
   const RayGrid grid = impl_->gridFor(stop);
   for (std::size_t ray = 0; ray < grid.size(); ++ray)
     if (const auto echo = impl_->shoot(stop, ray, grid)) append(result, *echo, campus.meshes[echo->mesh]);
-  result.scan.T_map_sensor = campus.stops.at(stop);
+  result.scan.T_map_sensor = campus.stops[stop];
   result.scan.has_pose = true;
   result.scan.time_s = stopTime_s(stop);
   result.scan.source = "generated stop " + std::to_string(stop);

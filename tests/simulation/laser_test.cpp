@@ -10,6 +10,7 @@
 #include <map>
 #include <numeric>
 
+#include "cluxel/base/diagnostic.hpp"
 #include "simulation/campus_fixture.hpp"
 #include "simulation/mesh_shapes.hpp"
 
@@ -62,6 +63,11 @@ TEST(Laser, SeesTheNearestOfSeveralSurfaces) {
   EXPECT_EQ(hit->mesh, 1U);
   EXPECT_NEAR(hit->range_m, 3, 1e-6);
   EXPECT_FALSE(Laser(campus).cast(Vector3d::Zero(), -Vector3d::UnitX()));
+}
+
+TEST(Laser, RefusesAStopThatIsNotThere) {
+  const Campus campus = room(smallCampus(1), 6);
+  EXPECT_THROW(Laser(campus).scanAt(1), Error);
 }
 
 TEST(Laser, WithoutNoiseEveryPointLiesOnTheWallsOfARoom) {

@@ -44,7 +44,8 @@ class Laser {
   std::optional<RayHit> cast(const Eigen::Vector3d& origin_map, const Eigen::Vector3d& direction_map) const;
 
   /// One full turn at a stop: elevations from -50 to 55 degrees, with equal angular steps in pan and tilt,
-  /// chosen from a coarse preview turn so that about points_per_stop rays return.
+  /// chosen from a coarse preview turn so that about points_per_stop rays return. Throws Error (Usage) for a
+  /// stop that is not there.
   SimulatedScan scanAt(std::size_t stop) const;
 
  private:
