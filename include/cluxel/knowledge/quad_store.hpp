@@ -183,8 +183,9 @@ class QuadReader {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Write access within a transaction; of several writers only one may hold unflushed changes. Cheap to construct; holds a write-back cache that flush()
-/// empties: what was not flushed is lost with the writer. Commit through the transaction after flush().
+/// Write access within a transaction; of several writers only one may hold unflushed changes. Cheap to construct; holds
+/// a write-back cache that flush() empties: what was not flushed is lost with the writer. Commit through the transaction
+/// after flush().
 class QuadWriter {
  public:
   struct Impl;
