@@ -3,6 +3,7 @@
 #include "sparql/comparison.hpp"
 
 #include <cmath>
+#include <tuple>
 
 #include "sparql/datatype.hpp"
 
@@ -152,6 +153,8 @@ std::optional<bool> effectiveBoolean(const Value& value, const QueryTerms& terms
   }
 }
 
+std::uint32_t orderRankOf(const Value& value) { return static_cast<std::uint32_t>(rankOf(value)); }
+
 std::strong_ordering valueOrderOf(const Value& a, const Value& b, const QueryTerms& terms) {
   const int rank = rankOf(a);
   if (const auto order = rank <=> rankOf(b); order != 0) return order;
@@ -166,7 +169,9 @@ std::strong_ordering valueOrderOf(const Value& a, const Value& b, const QueryTer
 std::strong_ordering termOrderOf(const Value& a, const Value& b, const QueryTerms& terms) {
   if (a.isError() || b.isError()) return b.isError() <=> a.isError();
   if (a.id != kUnbound && a.id == b.id) return std::strong_ordering::equal;
-  return terms.termOf(a) <=> terms.termOf(b);
+  if (a.id == kUnbound || b.id == kUnbound) return terms.termOf(a) <=> terms.termOf(b);
+  const TermView x = terms.view(a.id), y = terms.view(b.id);
+  return std::tie(x.kind, x.text, x.datatype, x.language) <=> std::tie(y.kind, y.text, y.datatype, y.language);
 }
 
 std::strong_ordering orderOf(const Value& a, const Value& b, const QueryTerms& terms) {

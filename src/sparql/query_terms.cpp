@@ -130,11 +130,15 @@ Term QueryTerms::termOf(const Value& value) const {
   return value.id != kUnbound ? termOf(value.id) : termOfComputed(value);
 }
 
-void QueryTerms::clear() {
-  computed_.clear();
+void QueryTerms::rewind(std::size_t mark) {
+  if (computed_.size() == mark) return;
+  const ValueId first = kFirstComputed + static_cast<ValueId>(mark);
+  while (computed_.size() > mark) {
+    id_of_.erase(computed_.back());
+    computed_.pop_back();
+  }
   computed_bytes_ = 0;
-  id_of_.clear();
-  std::erase_if(decoded_, [](const auto& entry) { return entry.first >= kFirstComputed; });
+  std::erase_if(decoded_, [first](const auto& entry) { return entry.first >= first; });
 }
 
 }  // namespace cluxel::sparql

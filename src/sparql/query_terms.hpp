@@ -40,8 +40,9 @@ class QueryTerms : public TermLookup {
 
   const QuadReader& reader() const { return reader_; }
   std::size_t computedBytes() const { return computed_bytes_; }
-  /// Forgets the computed terms; their ids are no longer valid.
-  void clear();
+  /// The number of computed terms, to rewind() to: what a query's text names stays, what a run computed goes.
+  std::size_t mark() const { return computed_.size(); }
+  void rewind(std::size_t mark);
 
  private:
   struct TermHash {

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// COUNT, SUM, AVG, MIN, MAX, SAMPLE, GROUP_CONCAT.
+#include "sparql/aggregate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sparql/comparison.hpp"
+
+namespace cluxel::sparql {
+
+using Function = ast::AggregateFunction;
+
+bool ExactSum::add(const Value& value, const QueryTerms& terms) {
+  if (!value.isNumeric()) return false;
+  type_ = std::max(type_, value.type);
+  if (value.type == Value::Type::Float || value.type == Value::Type::Double) {
+    addReal(value.number);
+    return true;
+  }
+  if (value.type == Value::Type::Integer && !value.payload) {
+    const std::int64_t before = small_;
+    if (!__builtin_add_overflow(before, value.integer, &small_)) return true;
+    exact_ = Decimal::add(exact_, Decimal(before)).value_or(exact_);
+    small_ = value.integer;
+    return true;
+  }
+  const auto sum = Decimal::add(exact_, terms.exactOf(value));
+  if (sum) exact_ = *sum;
+  return sum.has_value();
+}
+
+void ExactSum::addReal(double value) {
+  if (!std::isfinite(value)) {
+    special_ += value;
+    is_special_ = true;
+    return;
+  }
+  std::size_t kept = 0;
+  for (double partial : partials_) {
+    if (std::abs(value) < std::abs(partial)) std::swap(value, partial);
+    const double high = value + partial;
+    const double low = partial - (high - value);
+    if (low != 0) partials_[kept++] = low;
+    value = high;
+  }
+  partials_.resize(kept);
+  partials_.push_back(value);
+  if (!std::isfinite(value)) {
+    special_ += value;
+    is_special_ = true;
+    partials_.clear();
+  }
+}
+
+double ExactSum::realTotal() const {
+  if (is_special_) return special_;
+  double high = 0, low = 0;
+  std::size_t i = partials_.size();
+  while (i > 0) {
+    const double before = high;
+    const double next = partials_[--i];
+    high = before + next;
+    low = next - (high - before);
+    if (low != 0) break;
+  }
+  // A half way case is rounded by what lies below it.
+  if (i > 0 && ((low < 0 && partials_[i - 1] < 0) || (low > 0 && partials_[i - 1] > 0))) {
+    const double twice = low * 2, shifted = high + twice;
+    if (twice == shifted - high) high = shifted;
+  }
+  return high;
+}
+
+Value ExactSum::total() const {
+  const Decimal exact = Decimal::add(exact_, Decimal(small_)).value_or(exact_);
+  switch (type_) {
+    case Value::Type::Integer: return Value::ofInteger(exact);
+    case Value::Type::Decimal: return Value::ofDecimal(exact);
+    case Value::Type::Float: return Value::ofFloat(static_cast<float>(realTotal() + exact.toDouble()));
+    default: return Value::ofDouble(exact.isZero() ? realTotal() : realTotal() + exact.toDouble());
+  }
+}
+
+bool Accumulator::isRepeated(const AggregateSpec& spec, ValueId id, Runtime& runtime) {
+  if (!spec.distinct) return false;
+  if (!seen_) seen_ = std::make_unique<IdSet>();
+  const std::size_t before = seen_->bytes();
+  const bool is_new = seen_->insert(id);
+  if (seen_->bytes() != before) runtime.guard.charge(seen_->bytes() - before);
+  return !is_new;
+}
+
+void Accumulator::addId(const AggregateSpec& spec, ValueId id, Runtime& runtime) {
+  if (spec.function == Function::Count) {
+    if (id != kUnbound && !isRepeated(spec, id, runtime)) ++count_;
+    return;
+  }
+  if (id != kUnbound && isRepeated(spec, id, runtime)) return;
+  take(spec, runtime.terms.valueOf(id), runtime);
+}
+
+void Accumulator::add(const AggregateSpec& spec, const Value& value, Runtime& runtime) {
+  if (value && spec.distinct && isRepeated(spec, runtime.terms.intern(value), runtime)) return;
+  take(spec, value, runtime);
+}
+
+void Accumulator::countDistinctRow(std::span<const ValueId> row) {
+  if (!seen_rows_) seen_rows_ = std::make_unique<RowSet>(row.size());
+  if (seen_rows_->insert(row.data()).second) ++count_;
+}
+
+void Accumulator::take(const AggregateSpec& spec, const Value& value, Runtime& runtime) {
+  switch (spec.function) {
+    case Function::Count:
+      if (value) ++count_;
+      return;
+    case Function::Sum:
+    case Function::Avg:
+      if (!sum_) sum_ = std::make_unique<ExactSum>();
+      ++count_;
+      error_ = error_ || !sum_->add(value, runtime.terms);
+      return;
+    case Function::Min:
+    case Function::Sample:
+      if (value && (!best_ || orderOf(value, best_, runtime.terms) < 0)) best_ = value;
+      return;
+    case Function::Max:
+      if (value && (!best_ || orderOf(value, best_, runtime.terms) > 0)) best_ = value;
+      return;
+    case Function::GroupConcat:
+      if (!value || value.type == Value::Type::Blank) return;
+      if (!texts_) texts_ = std::make_unique<std::vector<Value>>();
+      texts_->push_back(value);
+      runtime.guard.charge(sizeof(Value));
+      return;
+  }
+}
+
+ValueId Accumulator::result(const AggregateSpec& spec, Runtime& runtime) {
+  QueryTerms& terms = runtime.terms;
+  switch (spec.function) {
+    case Function::Count: return terms.intern(Value::ofInteger(static_cast<std::int64_t>(count_)));
+    case Function::Sum:
+      if (error_) return kUnbound;
+      return terms.intern(sum_ ? sum_->total() : Value::ofInteger(0));
+    case Function::Avg:
+      if (error_) return kUnbound;
+      if (!sum_) return terms.intern(Value::ofInteger(0));
+      return terms.intern(divideValues(sum_->total(), Value::ofInteger(static_cast<std::int64_t>(count_)), terms));
+    case Function::Min:
+    case Function::Max:
+    case Function::Sample: return terms.intern(best_);
+    case Function::GroupConcat: break;
+  }
+  std::string text;
+  if (texts_) {
+    std::stable_sort(texts_->begin(), texts_->end(),
+                     [&terms](const Value& a, const Value& b) { return orderOf(a, b, terms) < 0; });
+    for (std::size_t i = 0; i < texts_->size(); ++i) {
+      if (i > 0) text += spec.separator;
+      text += terms.textOf((*texts_)[i]);
+    }
+  }
+  return terms.intern(Value::string(std::move(text)));
+}
+
+}  // namespace cluxel::sparql

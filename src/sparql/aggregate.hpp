@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The set functions of SPARQL 1.1 section 18.5.1. None depends on the order in which values come.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "sparql/row_set.hpp"
+#include "sparql/runtime.hpp"
+
+namespace cluxel::sparql {
+
+/// A sum that is right whatever the order: integers and decimals exactly, floating-point numbers rounded once.
+class ExactSum {
+ public:
+  /// False for a value that is not a number.
+  bool add(const Value& value, const QueryTerms& terms);
+  Value total() const;
+
+ private:
+  void addReal(double value);
+  double realTotal() const;
+
+  Value::Type type_ = Value::Type::Integer;
+  std::int64_t small_ = 0;
+  Decimal exact_;
+  std::vector<double> partials_;   ///< a sum without error, as numbers that do not overlap (Shewchuk)
+  double special_ = 0;             ///< infinities and NaN
+  bool is_special_ = false;
+};
+
+/// What one aggregate has seen of one group.
+class Accumulator {
+ public:
+  void add(const AggregateSpec& spec, const Value& value, Runtime& runtime);
+  void countRow() { ++count_; }
+  /// COUNT(DISTINCT *)
+  void countDistinctRow(std::span<const ValueId> row);
+  /// The value of a bound id for COUNT: no decoding.
+  void addId(const AggregateSpec& spec, ValueId id, Runtime& runtime);
+  ValueId result(const AggregateSpec& spec, Runtime& runtime);
+
+ private:
+  bool isRepeated(const AggregateSpec& spec, ValueId id, Runtime& runtime);
+  void take(const AggregateSpec& spec, const Value& value, Runtime& runtime);
+
+  std::uint64_t count_ = 0;
+  bool error_ = false;
+  Value best_;
+  std::unique_ptr<ExactSum> sum_;
+  std::unique_ptr<IdSet> seen_;
+  std::unique_ptr<RowSet> seen_rows_;
+  std::unique_ptr<std::vector<Value>> texts_;
+};
+
+}  // namespace cluxel::sparql

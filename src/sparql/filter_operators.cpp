@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// FILTER and BIND.
+#include <algorithm>
+
+#include "sparql/operators.hpp"
+
+namespace cluxel::sparql {
+namespace {
+
+class FilterOperator : public UnaryOperator {
+ public:
+  FilterOperator(OperatorPtr child, std::vector<Expr> conditions, std::vector<ExistsPlan> exists)
+      : UnaryOperator(std::move(child)), conditions_(std::move(conditions)), exists_(std::move(exists)) {}
+  std::string label(const PlanNames& names) const override {
+    std::string text = "filter";
+    for (const Expr& condition : conditions_) {
+      text += (text == "filter" ? "  " : " && ") + describe(condition, names.query, names.terms);
+    }
+    return text;
+  }
+
+ protected:
+  void reopen(bool fresh) override {
+    UnaryOperator::reopen(fresh);
+    fresh_ = fresh;
+    in_.columns.resize(runtime().slot_count);
+  }
+  void listInputs(std::vector<const Operator*>& inputs) const override {
+    UnaryOperator::listInputs(inputs);
+    for (const ExistsPlan& plan : exists_) inputs.push_back(plan.pipeline.top.get());
+  }
+  bool produce(Batch& out) override {
+    Evaluator evaluator(runtime());
+    while (child_->next(in_)) {
+      if (!exists_.empty()) {
+        answerExists(exists_, in_, runtime(), fresh_);
+        fresh_ = false;
+      }
+      kept_.clear();
+      for (std::uint32_t row = 0; row < in_.rows; ++row) {
+        if (passes(evaluator, row)) kept_.push_back(row);
+      }
+      if (kept_.empty()) continue;
+      if (kept_.size() == in_.rows) {
+        std::swap(in_, out);
+        return true;
+      }
+      appendRows(in_, kept_, slots_, 0, out);
+      out.rows = kept_.size();
+      return true;
+    }
+    return false;
+  }
+
+ private:
+  bool passes(Evaluator& evaluator, std::size_t row) {
+    return std::all_of(conditions_.begin(), conditions_.end(), [&](const Expr& condition) {
+      return evaluator.truth(condition, in_, row).value_or(false);
+    });
+  }
+
+  std::vector<Expr> conditions_;
+  std::vector<ExistsPlan> exists_;
+  Batch in_;
+  std::vector<std::uint32_t> kept_;
+  bool fresh_ = true;
+};
+
+class ExtendOperator : public UnaryOperator {
+ public:
+  ExtendOperator(OperatorPtr child, std::vector<std::pair<Slot, Expr>> columns, std::vector<ExistsPlan> exists)
+      : UnaryOperator(std::move(child)), columns_(std::move(columns)), exists_(std::move(exists)) {
+    for (const auto& [slot, expression] : columns_) slots_ = mergedSlots(slots_, {slot});
+  }
+  std::string label(const PlanNames& names) const override {
+    std::string text = "bind";
+    for (const auto& [slot, expression] : columns_) {
+      text += "  ?" + names.query.slot_names[slot] + " := " + describe(expression, names.query, names.terms);
+    }
+    return text;
+  }
+
+ protected:
+  void reopen(bool fresh) override {
+    UnaryOperator::reopen(fresh);
+    fresh_ = fresh;
+    in_.columns.resize(runtime().slot_count);
+  }
+  void listInputs(std::vector<const Operator*>& inputs) const override {
+    UnaryOperator::listInputs(inputs);
+    for (const ExistsPlan& plan : exists_) inputs.push_back(plan.pipeline.top.get());
+  }
+  bool produce(Batch& out) override {
+    while (child_->next(in_)) {
+      if (!exists_.empty()) {
+        answerExists(exists_, in_, runtime(), fresh_);
+        fresh_ = false;
+      }
+      compute(out);
+      if (out.rows > 0) return true;
+      out.reset();
+    }
+    return false;
+  }
+
+ private:
+  void compute(Batch& out) {
+    Evaluator evaluator(runtime());
+    kept_.clear();
+    for (const auto& [slot, expression] : columns_) in_.columns[slot].resize(in_.rows, kUnbound);
+    for (std::uint32_t row = 0; row < in_.rows; ++row) {
+      ++runtime().functions.solution;
+      bool agrees = true;
+      for (const auto& [slot, expression] : columns_) {
+        const ValueId id = runtime().terms.intern(evaluator.value(expression, in_, row));
+        ValueId& cell = in_.columns[slot][row];
+        // A variable that the solution brings along from outside must agree.
+        agrees = agrees && (cell == kUnbound || id == kUnbound || cell == id);
+        if (id != kUnbound) cell = id;
+      }
+      if (agrees) kept_.push_back(row);
+    }
+    chargeForTerms();
+    if (kept_.size() == in_.rows) {
+      std::swap(in_, out);
+      return;
+    }
+    appendRows(in_, kept_, slots_, 0, out);
+    out.rows = kept_.size();
+  }
+  void chargeForTerms() {
+    const std::size_t bytes = runtime().terms.computedBytes();
+    if (bytes > charged_) runtime().guard.charge(bytes - charged_);
+    charged_ = bytes;
+  }
+
+  std::vector<std::pair<Slot, Expr>> columns_;
+  std::vector<ExistsPlan> exists_;
+  Batch in_;
+  std::vector<std::uint32_t> kept_;
+  std::size_t charged_ = 0;
+  bool fresh_ = true;
+};
+
+}  // namespace
+
+OperatorPtr makeFilter(OperatorPtr child, std::vector<Expr> conditions, std::vector<ExistsPlan> exists) {
+  return std::make_unique<FilterOperator>(std::move(child), std::move(conditions), std::move(exists));
+}
+OperatorPtr makeExtend(OperatorPtr child, std::vector<std::pair<Slot, Expr>> columns, std::vector<ExistsPlan> exists) {
+  return std::make_unique<ExtendOperator>(std::move(child), std::move(columns), std::move(exists));
+}
+
+}  // namespace cluxel::sparql

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+// Plans of groups: taking them apart, choosing the next part, placing filters.
+#include "sparql/planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cluxel::sparql {
+namespace {
+
+void collectExists(const Expr& expression, std::vector<const Expr*>& found) {
+  if (expression.kind == Expr::Kind::Exists || expression.kind == Expr::Kind::NotExists) found.push_back(&expression);
+  for (const Expr& argument : expression.arguments) collectExists(argument, found);
+}
+
+/// `rest` may bind nothing that `used` looks at, unless `inner` has bound it for sure.
+bool isUntouched(const SlotSet& rest, const SlotSet& used, const SlotSet& certain) {
+  return certain.contains(rest & used);
+}
+
+}  // namespace
+
+Planner::State Planner::unit() {
+  State state;
+  state.top = std::make_unique<UnitOperator>(parameters_);
+  for (const Slot slot : parameters_) {
+    state.certain.add(slot);
+    state.possible.add(slot);
+  }
+  state.is_unit = parameters_.empty();
+  setRows(state, 1);
+  return state;
+}
+
+void Planner::setRows(State& state, double rows) {
+  state.rows = std::max(rows, 0.0);
+  state.top->estimated_rows = state.rows;
+}
+
+Slot Planner::freshSlot(const char* name) {
+  query_.slot_names.emplace_back(name);
+  return static_cast<Slot>(query_.slot_names.size() - 1);
+}
+
+OperatorPtr Planner::plan() { return alone(*query_.root).top; }
+OperatorPtr Planner::planAlone(const Node& node) { return alone(node).top; }
+
+/// Nested joins, filters, optionals and binds become one flat group where that changes nothing: `rest` is what the
+/// surrounding group may bind besides.
+void Planner::takeApart(const Node& node, const SlotSet& rest, Parts& parts) {
+  switch (node.kind) {
+    case Node::Kind::Unit: return;
+    case Node::Kind::Join:
+      for (std::size_t i = 0; i < node.children.size(); ++i) {
+        SlotSet others = rest;
+        for (std::size_t k = 0; k < node.children.size(); ++k) {
+          if (k != i) others.add(node.children[k]->possible);
+        }
+        takeApart(*node.children[i], others, parts);
+      }
+      return;
+    case Node::Kind::Filter: return takeFilters(node, rest, parts);
+    case Node::Kind::LeftJoin: {
+      SlotSet used = node.children[1]->mentioned();
+      for (const Expr& condition : node.conditions) used.add(condition.slots());
+      if (!isUntouched(rest, used, node.children[0]->certain)) break;
+      takeApart(*node.children[0], rest, parts);
+      parts.postponed.push_back({Postponed::Kind::LeftJoin, &node});
+      return;
+    }
+    case Node::Kind::Minus:
+      if (!isUntouched(rest, node.children[1]->possible, node.children[0]->certain)) break;
+      takeApart(*node.children[0], rest, parts);
+      parts.postponed.push_back({Postponed::Kind::Minus, &node});
+      return;
+    case Node::Kind::Extend: {
+      SlotSet used = node.expression->slots();
+      if (rest.has(node.slot) || !isUntouched(rest, used, node.children[0]->certain)) break;
+      takeApart(*node.children[0], rest, parts);
+      parts.postponed.push_back({Postponed::Kind::Extend, &node});
+      return;
+    }
+    default: break;
+  }
+  parts.joined.push_back(&node);
+}
+
+void Planner::takeFilters(const Node& node, const SlotSet& rest, Parts& parts) {
+  const Node& child = *node.children[0];
+  for (const Expr& condition : node.conditions) {
+    if (isUntouched(rest, condition.slots(), child.certain)) continue;
+    parts.joined.push_back(&node);
+    return;
+  }
+  takeApart(child, rest, parts);
+  for (const Expr& condition : node.conditions) {
+    if (!bindsByFilter(condition, child, parts)) parts.filters.push_back(condition);
+  }
+}
+
+/// FILTER(?x = <iri>) and FILTER(?x IN (<a>, <b>)) say which terms ?x can be: like VALUES.
+bool Planner::bindsByFilter(const Expr& condition, const Node& child, Parts& parts) {
+  const bool equal = condition.kind == Expr::Kind::Equal, in = condition.kind == Expr::Kind::In;
+  if (!equal && !in) return false;
+  std::size_t variable = 0;
+  if (equal && condition.arguments[0].kind == Expr::Kind::Constant) variable = 1;
+  const Expr& slot = condition.arguments[variable];
+  if (slot.kind != Expr::Kind::Slot || !child.certain.has(slot.slot)) return false;
+  NodePtr values = makeNode(Node::Kind::Values, condition.at);
+  values->slots = {slot.slot};
+  for (std::size_t i = 0; i < condition.arguments.size(); ++i) {
+    if (i == variable) continue;
+    const Expr& constant = condition.arguments[i];
+    if (constant.kind != Expr::Kind::Constant || constant.constant.type != Value::Type::Iri) return false;
+    const std::vector<ValueId> row = {constant.constant.id};
+    if (std::find(values->rows.begin(), values->rows.end(), row) == values->rows.end()) values->rows.push_back(row);
+  }
+  if (values->rows.empty()) return false;
+  values->annotate();
+  parts.joined.push_back(values.get());
+  parts.made.push_back(std::move(values));
+  return true;
+}
+
+Planner::State Planner::joinNode(State state, const Node& node, const std::vector<Expr>& extra_filters) {
+  Parts parts;
+  // What holds everywhere, as parameters do, may be seen from anywhere.
+  SlotSet rest = state.substituted ? SlotSet() : state.possible;
+  for (const Slot slot : parameters_) rest.remove(slot);
+  takeApart(node, rest, parts);
+  parts.filters.insert(parts.filters.end(), extra_filters.begin(), extra_filters.end());
+  return joinParts(std::move(state), parts);
+}
+
+Planner::State Planner::joinParts(State state, Parts& parts) {
+  std::vector<const Node*> waiting = parts.joined;
+  std::vector<bool> used(parts.filters.size(), false);
+  while (true) {
+    SlotSet to_come;
+    for (const Node* part : waiting) to_come.add(part->possible);
+    for (const Postponed& step : parts.postponed) to_come.add(step.node->possible);
+    state = applyFilters(std::move(state), parts, to_come, used);
+    if (waiting.empty()) break;
+    const std::size_t next = choosePart(state, waiting);
+    const Node* part = waiting[next];
+    waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(next));
+    state = joinPart(std::move(state), *part);
+  }
+  return applyPostponed(std::move(state), parts, used);
+}
+
+Planner::State Planner::applyPostponed(State state, Parts& parts, std::vector<bool>& used) {
+  for (std::size_t i = 0; i < parts.postponed.size(); ++i) {
+    const Postponed& step = parts.postponed[i];
+    if (step.kind == Postponed::Kind::LeftJoin) state = leftJoin(std::move(state), *step.node);
+    if (step.kind == Postponed::Kind::Minus) state = minus(std::move(state), *step.node);
+    if (step.kind == Postponed::Kind::Extend) {
+      // Neighbouring binds share one operator, so that BNODE("x") means one node within a solution.
+      std::vector<const Node*> nodes = {step.node};
+      while (i + 1 < parts.postponed.size() && parts.postponed[i + 1].kind == Postponed::Kind::Extend) {
+        nodes.push_back(parts.postponed[++i].node);
+      }
+      state = extend(std::move(state), nodes);
+    }
+    SlotSet to_come;
+    for (std::size_t k = i + 1; k < parts.postponed.size(); ++k) {
+      const Node& later = *parts.postponed[k].node;
+      to_come.add(later.kind == Node::Kind::Minus ? SlotSet() : later.possible);
+    }
+    state = applyFilters(std::move(state), parts, to_come, used);
+  }
+  return applyFilters(std::move(state), parts, {}, used);
+}
+
+/// Filters whose variables are bound, or will not be bound by anything to come.
+Planner::State Planner::applyFilters(State state, Parts& parts, const SlotSet& still_to_come, std::vector<bool>& used) {
+  std::vector<Expr> ready;
+  for (std::size_t i = 0; i < parts.filters.size(); ++i) {
+    if (used[i]) continue;
+    const SlotSet needed = parts.filters[i].slots();
+    if (!state.certain.contains(needed & still_to_come)) continue;
+    used[i] = true;
+    ready.push_back(parts.filters[i]);
+  }
+  if (ready.empty()) return state;
+  return filter(std::move(state), std::move(ready));
+}
+
+Planner::State Planner::filter(State state, std::vector<Expr> conditions) {
+  // Cheap tests first: EXISTS last.
+  std::stable_partition(conditions.begin(), conditions.end(), [](const Expr& condition) {
+    std::vector<const Expr*> found;
+    collectExists(condition, found);
+    return found.empty();
+  });
+  std::vector<Expr> cheap, costly;
+  for (Expr& condition : conditions) {
+    std::vector<const Expr*> found;
+    collectExists(condition, found);
+    (found.empty() ? cheap : costly).push_back(std::move(condition));
+  }
+  for (auto* group : {&cheap, &costly}) {
+    if (group->empty()) continue;
+    const double rows = state.rows * std::pow(0.33, static_cast<double>(group->size()));
+    std::vector<const Expr*> expressions;
+    for (const Expr& condition : *group) expressions.push_back(&condition);
+    auto exists = planExists(state, expressions);
+    for (const Expr& condition : *group) {
+      if (condition.kind == Expr::Kind::Bound) state.certain.add(condition.slot);
+    }
+    const ast::SourceOffset at = group->front().at;
+    state.top = makeFilter(std::move(state.top), std::move(*group), std::move(exists));
+    state.top->at = at;
+    state.is_unit = false;
+    setRows(state, rows);
+  }
+  return state;
+}
+
+std::vector<ExistsPlan> Planner::planExists(const State& state, const std::vector<const Expr*>& expressions) {
+  std::vector<const Expr*> found;
+  for (const Expr* expression : expressions) collectExists(*expression, found);
+  std::vector<ExistsPlan> plans;
+  for (const Expr* expression : found) {
+    const Node& pattern = *expression->pattern;
+    plans.push_back({expression->exists, pipeline(state, true, [&](State inner) {
+                       return joinNode(std::move(inner), pattern, {});
+                     })});
+  }
+  return plans;
+}
+
+Pipeline Planner::pipeline(const State& state, bool substituted, const std::function<State(State)>& body) {
+  Pipeline result;
+  result.origin = freshSlot(".row");
+  auto input = std::make_unique<InputOperator>(state.top->slots(), result.origin);
+  result.input = input.get();
+  State inner;
+  inner.top = std::move(input);
+  inner.certain = state.certain;
+  inner.possible = state.possible;
+  inner.sorted_by = state.sorted_by;
+  inner.is_unit = false;
+  inner.is_input = true;
+  inner.substituted = substituted || state.substituted;
+  setRows(inner, state.rows);
+  result.top = body(std::move(inner)).top;
+  return result;
+}
+
+double Planner::rowsAfter(const State& state, const Node& part) {
+  if (part.kind == Node::Kind::Triple) return state.rows * cardinality_.fanOut(part.triple, state.certain);
+  const double own = cardinality_.rows(part);
+  if (state.is_unit || !state.possible.intersects(part.possible)) return state.rows * own;
+  if (part.kind == Node::Kind::Values) return state.rows * std::min(own * 0.05, 1.0);
+  return std::max(state.rows, own);
+}
+
+std::size_t Planner::choosePart(const State& state, const std::vector<const Node*>& parts) {
+  std::size_t best = 0;
+  bool best_connected = false;
+  double best_rows = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const double rows = rowsAfter(state, *parts[i]);
+    const bool connected = state.is_unit || state.possible.intersects(parts[i]->possible) || rows <= state.rows;
+    const bool better = i == 0 || (connected && !best_connected) || (connected == best_connected && rows < best_rows);
+    if (!better) continue;
+    best = i;
+    best_connected = connected;
+    best_rows = rows;
+  }
+  return best;
+}
+
+}  // namespace cluxel::sparql

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// Prepares and runs queries.
+#include "sparql/prepared_query.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <random>
+
+#include "sparql/graph_results.hpp"
+#include "sparql/planner.hpp"
+
+namespace cluxel {
+namespace {
+
+using sparql::Slot;
+
+ast::Query parsed(std::string_view text, const QueryOptions& options) {
+  SparqlParseOptions parse_options;
+  parse_options.file = options.source_name;
+  parse_options.base_iri = options.base_iri;
+  return parseQuery(text, parse_options);
+}
+
+std::int64_t clockMicroseconds() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+PreparedQuery::Impl::Impl(const QuadReader& quad_reader, std::string_view text, const QueryOptions& query_options,
+                          const std::vector<std::string>& parameters)
+    : reader(quad_reader), options(query_options), terms(quad_reader), query(parsed(text, query_options)),
+      dataset(sparql::datasetOf(query.dataset, options, reader)), functions(terms) {
+  sparql::AlgebraOptions algebra_options;
+  algebra_options.parameters = parameters;
+  algebra_options.refuse_volatile = options.refuse_volatile;
+  algebra_options.source_name = options.source_name;
+  algebra = sparql::buildAlgebra(query, terms, algebra_options);
+  plan = sparql::Planner(algebra, reader, dataset).plan();
+  for (const ast::Projection& column : query.select.projection) variables.push_back(query.variables[column.variable].name);
+  for (ast::VariableIndex i = 0; i < query.variables.size(); ++i) {
+    const Slot slot = algebra.slot_of_variable[i];
+    const auto& bound = algebra.parameters;
+    if (std::find(bound.begin(), bound.end(), slot) != bound.end()) parameter_slots.emplace_back(query.variables[i].name, slot);
+  }
+  runtime = std::make_unique<sparql::Runtime>(reader, terms, functions, dataset, algebra.slot_names.size(), algebra.exists_count);
+  functions.base_iri = query.base_iri;
+  mark = terms.mark();
+}
+
+void PreparedQuery::Impl::begin(const std::vector<Binding>& bindings) {
+  terms.rewind(mark);
+  runtime->guard.start(options.budget);
+  for (const auto& [name, slot] : parameter_slots) {
+    const auto binding = std::find_if(bindings.begin(), bindings.end(), [&](const Binding& b) { return b.first == name; });
+    if (binding == bindings.end()) throw Error(ExitCode::Usage, options.source_name + ": the parameter ?" + name + " has no value");
+    runtime->parameters[slot] = terms.intern(binding->second);
+  }
+  if (algebra.is_volatile || !query.construct_template.empty()) {
+    functions.random.seed(options.seed ? *options.seed : std::random_device{}());
+    functions.label_prefix = std::to_string(functions.random() % 1'000'000'000'000) + "x";
+    functions.fresh_labels = 0;
+    functions.now_us = options.now_us ? *options.now_us : clockMicroseconds();
+  }
+  plan->open(*runtime, true);
+  has_run = true;
+}
+
+bool PreparedQuery::Impl::hasSolution() {
+  sparql::Batch batch(runtime->slot_count);
+  return plan->next(batch);
+}
+
+void PreparedQuery::Impl::runSelect(ResultSink& sink) {
+  std::vector<ResultId> cells;
+  std::size_t rows = 0;
+  sparql::Batch batch(runtime->slot_count);
+  const auto& columns = algebra.projection;
+  while (plan->next(batch)) {
+    runtime->guard.answerRows(rows + batch.rows);
+    runtime->guard.charge(batch.rows * columns.size() * sizeof(ResultId));
+    cells.resize((rows + batch.rows) * columns.size());
+    for (std::size_t column = 0; column < columns.size(); ++column) {
+      const auto& source = batch.columns[columns[column]];
+      ResultId* out = cells.data() + rows * columns.size() + column;
+      for (std::size_t row = 0; row < batch.rows; ++row, out += columns.size()) {
+        *out = source.empty() ? sparql::kUnbound : source[row];
+      }
+    }
+    rows += batch.rows;
+  }
+  sink.beginSolutions(variables, terms);
+  if (rows > 0) sink.rows(cells, rows);
+  sink.end();
+}
+
+void PreparedQuery::Impl::runGraph(ResultSink& sink) {
+  sparql::GraphResult graph(*runtime, query, algebra);
+  sparql::Batch batch(runtime->slot_count);
+  while (plan->next(batch)) {
+    if (query.form == ast::QueryForm::Construct) {
+      graph.construct(batch);
+    } else {
+      graph.describe(batch);
+    }
+  }
+  graph.finish();
+  sink.beginGraph();
+  graph.write(sink);
+  sink.end();
+}
+
+PreparedQuery::PreparedQuery(const QuadReader& reader, std::string_view text, const QueryOptions& options,
+                             const std::vector<std::string>& parameters)
+    : impl_(std::make_unique<Impl>(reader, text, options, parameters)) {}
+PreparedQuery::PreparedQuery(PreparedQuery&&) noexcept = default;
+PreparedQuery& PreparedQuery::operator=(PreparedQuery&&) noexcept = default;
+PreparedQuery::~PreparedQuery() = default;
+
+ast::QueryForm PreparedQuery::form() const { return impl_->query.form; }
+const std::vector<std::string>& PreparedQuery::variables() const { return impl_->variables; }
+
+void PreparedQuery::run(ResultSink& sink, const std::vector<Binding>& bindings) {
+  impl_->begin(bindings);
+  switch (impl_->query.form) {
+    case ast::QueryForm::Select: return impl_->runSelect(sink);
+    case ast::QueryForm::Construct:
+    case ast::QueryForm::Describe: return impl_->runGraph(sink);
+    case ast::QueryForm::Ask: break;
+  }
+  sink.boolean(impl_->hasSolution());
+}
+
+QueryResult PreparedQuery::evaluate(const std::vector<Binding>& bindings) {
+  ResultCollector collector;
+  run(collector, bindings);
+  return collector.take();
+}
+
+bool PreparedQuery::ask(const std::vector<Binding>& bindings) {
+  impl_->begin(bindings);
+  return impl_->hasSolution();
+}
+
+void runQuery(const QuadReader& reader, std::string_view text, const QueryOptions& options, ResultSink& sink) {
+  PreparedQuery(reader, text, options).run(sink);
+}
+
+QueryResult evaluateQuery(const QuadReader& reader, std::string_view text, const QueryOptions& options) {
+  return PreparedQuery(reader, text, options).evaluate();
+}
+
+}  // namespace cluxel

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// The index nested loop: for each solution the quads that fit it, by a lookup in the index that has its ids in front.
+#include <map>
+
+#include "sparql/operators.hpp"
+#include "sparql/pattern_access.hpp"
+
+namespace cluxel::sparql {
+namespace {
+
+class QuadJoinOperator : public UnaryOperator {
+ public:
+  QuadJoinOperator(OperatorPtr child, const TripleNode& pattern, bool first_only)
+      : UnaryOperator(std::move(child)), pattern_(pattern), places_(placesOfPattern(pattern)), first_only_(first_only) {
+    std::vector<Slot> own;
+    for (const PatternPlace& place : places_) {
+      if (place.isSlot()) own.push_back(place.slot);
+    }
+    for (const Slot slot : child_->slots()) {
+      if (std::find(own.begin(), own.end(), slot) == own.end()) carried_.push_back(slot);
+    }
+    slots_ = mergedSlots(slots_, own);
+  }
+
+  std::string label(const PlanNames& names) const override {
+    return (first_only_ ? "lookup of one  " : "lookup  ") + describe(pattern_, names.query, names.terms);
+  }
+
+ protected:
+  void reopen(bool fresh) override {
+    UnaryOperator::reopen(fresh);
+    if (fresh || access_.empty()) {
+      access_.clear();
+      access_.resize(16);
+      filter_ = graphFilterOf(pattern_, runtime().dataset);
+    }
+    in_.columns.resize(runtime().slot_count);
+    in_.rows = 0;
+    row_ = 0;
+    active_ = nullptr;
+  }
+
+  bool produce(Batch& out) override {
+    while (out.rows < target()) {
+      if (active_ == nullptr && !nextRow(out)) break;
+      if (active_ != nullptr) emit(out);
+    }
+    finishSegment(out);
+    return out.rows > 0;
+  }
+
+ private:
+  /// How one set of bound positions is answered.
+  struct Access {
+    OrderChoice choice;
+    EntryReader reader;
+    PrefixLookup lookup;
+    QuadCursor cursor;   ///< where nothing is bound
+    std::array<std::uint8_t, 4> order_places{};
+  };
+
+  /// Moves to the next row of the child with a lookup under way in active_; false at the end.
+  bool nextRow(Batch& out) {
+    while (true) {
+      if (row_ >= in_.rows) {
+        finishSegment(out);
+        if (!child_->next(in_)) return false;
+        row_ = 0;
+      }
+      current_ = row_++;
+      if (begin(current_)) return true;
+      if (out.rows >= target()) return true;
+    }
+  }
+
+  /// Starts the lookup of a row; false when it cannot match.
+  bool begin(std::size_t row) {
+    BoundMask mask = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const PatternPlace& place = places_[i];
+      ValueId id = place.constant;
+      if (place.isSlot()) id = in_.at(place.slot, row);
+      bound_[i] = id;
+      if (id == kUnbound) continue;
+      if (id >= kFirstComputed) return false;
+      mask |= 1u << i;
+    }
+    if (pattern_.graph.kind == GraphPlace::Kind::Default) {
+      if (filter_.kind == GraphFilter::Kind::One) {
+        bound_[3] = filter_.graph;
+        mask |= 8;
+      }
+    } else if ((mask & 8) != 0 && !filter_.admits(bound_[3])) {
+      return false;
+    }
+    Access& access = accessFor(mask);
+    access.reader.restart();
+    if (access.choice.prefix == 0) {
+      access.cursor = runtime().reader.scan(QuadPattern{}, QuadOrder::Spog);
+      block_ = access.cursor.nextBlock();
+    } else {
+      std::array<TermId, 4> prefix{};
+      for (std::size_t i = 0; i < access.choice.prefix; ++i) prefix[i] = bound_[access.order_places[i]];
+      block_ = access.lookup.find({prefix.data(), access.choice.prefix});
+    }
+    if (block_.empty()) {
+      runtime().guard.work(1);
+      return false;
+    }
+    active_ = &access;
+    return true;
+  }
+
+  Access& accessFor(BoundMask mask) {
+    std::unique_ptr<Access>& access = access_[mask];
+    if (!access) {
+      access = std::make_unique<Access>();
+      access->choice = chooseOrder(mask);
+      access->order_places = placesOf(access->choice.order);
+      access->reader = EntryReader(pattern_, filter_, access->choice.order, mask);
+      if (access->choice.prefix > 0) access->lookup = runtime().reader.lookup(access->choice.order);
+    }
+    return *access;
+  }
+
+  void emit(Batch& out) {
+    Access& access = *active_;
+    std::size_t used = 0;
+    const std::size_t most = target() - out.rows;
+    std::size_t taken = 0;
+    for (; used < block_.size() && taken < most; ++used) {
+      if (!access.reader.admits(block_[used], bound_)) continue;
+      ++taken;
+      for (const auto& output : access.reader.outputs()) {
+        padded(out.columns[output.slot], out.rows).push_back(block_[used].at(output.position));
+      }
+      for (std::size_t i = 0; i < 4; ++i) {
+        if (places_[i].isSlot() && bound_[i] != kUnbound) writeBound(out, places_[i].slot, bound_[i]);
+      }
+      ++out.rows;
+      from_.push_back(static_cast<std::uint32_t>(current_));
+      if (first_only_) {
+        active_ = nullptr;
+        return;
+      }
+    }
+    block_ = block_.subspan(used);
+    runtime().guard.work(used - taken);
+    if (!block_.empty()) return;
+    block_ = access.choice.prefix == 0 ? access.cursor.nextBlock() : access.lookup.more();
+    if (block_.empty()) active_ = nullptr;
+  }
+
+  static std::vector<ValueId>& padded(std::vector<ValueId>& column, std::size_t rows) {
+    if (column.size() != rows) column.resize(rows, kUnbound);
+    return column;
+  }
+
+  /// A slot may stand in two places of the pattern.
+  static void writeBound(Batch& out, Slot slot, ValueId id) {
+    auto& column = out.columns[slot];
+    if (column.size() == out.rows + 1) {
+      column.back() = id;
+    } else {
+      padded(column, out.rows).push_back(id);
+    }
+  }
+
+  /// Copies the columns that only pass through, for the rows made from the batch at hand.
+  void finishSegment(Batch& out) {
+    if (from_.empty()) return;
+    appendRows(in_, from_, carried_, out.rows - from_.size(), out);
+    from_.clear();
+  }
+
+  TripleNode pattern_;
+  QuadPlaces places_;
+  bool first_only_;
+  std::vector<Slot> carried_;
+  GraphFilter filter_;
+  std::vector<std::unique_ptr<Access>> access_;
+  Batch in_;
+  std::size_t row_ = 0, current_ = 0;
+  std::array<ValueId, 4> bound_{};
+  std::span<const QuadKey> block_;
+  Access* active_ = nullptr;
+  std::vector<std::uint32_t> from_;
+};
+
+}  // namespace
+
+OperatorPtr makeQuadJoin(OperatorPtr child, const TripleNode& pattern, bool first_only) {
+  return std::make_unique<QuadJoinOperator>(std::move(child), pattern, first_only);
+}
+
+}  // namespace cluxel::sparql

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows kept whole, and hash tables over some of their columns.
+#pragma once
+
+#include <cstring>
+#include <vector>
+
+#include "sparql/runtime.hpp"
+
+namespace cluxel::sparql {
+
+inline std::uint64_t mixHash(std::uint64_t hash, ValueId id) {
+  hash = (hash ^ id) * 0x9E3779B97F4A7C15ull;
+  return hash ^ (hash >> 29);
+}
+
+/// Rows of a fixed list of slots, row by row.
+class RowTable {
+ public:
+  RowTable() = default;
+  explicit RowTable(std::vector<Slot> slots) : slots_(std::move(slots)) {}
+
+  const std::vector<Slot>& slots() const { return slots_; }
+  std::size_t rows() const { return rows_; }
+  const ValueId* row(std::size_t index) const { return cells_.data() + index * slots_.size(); }
+  std::size_t bytes() const { return cells_.capacity() * sizeof(ValueId); }
+
+  /// Charges the guard for what it grows by.
+  void append(const Batch& batch, Guard& guard) {
+    const std::size_t before = cells_.size();
+    cells_.resize(before + batch.rows * slots_.size());
+    guard.charge((cells_.size() - before) * sizeof(ValueId));
+    for (std::size_t column = 0; column < slots_.size(); ++column) {
+      const auto& source = batch.columns[slots_[column]];
+      ValueId* target = cells_.data() + before + column;
+      for (std::size_t row = 0; row < batch.rows; ++row, target += slots_.size()) {
+        *target = source.empty() ? kUnbound : source[row];
+      }
+    }
+    rows_ += batch.rows;
+  }
+  void clear(Guard& guard) {
+    guard.release(cells_.size() * sizeof(ValueId));
+    cells_.clear();
+    rows_ = 0;
+  }
+  std::vector<ValueId>& cells() { return cells_; }
+  void setRows(std::size_t rows) { rows_ = rows; }
+
+ private:
+  std::vector<Slot> slots_;
+  std::vector<ValueId> cells_;
+  std::size_t rows_ = 0;
+};
+
+/// Chains of row numbers by the hash of key columns.
+class RowIndex {
+ public:
+  static constexpr std::uint32_t kEnd = 0xFFFF'FFFFu;
+
+  /// `columns`: positions within the table's slots.
+  void build(const RowTable& table, std::vector<std::size_t> columns, Guard& guard) {
+    columns_ = std::move(columns);
+    std::size_t buckets = 16;
+    while (buckets < table.rows() * 2) buckets *= 2;
+    guard.charge((buckets + table.rows()) * sizeof(std::uint32_t));
+    heads_.assign(buckets, kEnd);
+    next_.resize(table.rows());
+    for (std::size_t i = table.rows(); i-- > 0;) {
+      std::uint32_t& head = heads_[bucketOf(hashOf(table.row(i)))];
+      next_[i] = head;
+      head = static_cast<std::uint32_t>(i);
+    }
+  }
+  std::uint32_t first(std::uint64_t hash) const { return heads_[bucketOf(hash)]; }
+  std::uint32_t next(std::uint32_t row) const { return next_[row]; }
+  std::uint64_t hashOf(const ValueId* row) const {
+    std::uint64_t hash = 0;
+    for (const std::size_t column : columns_) hash = mixHash(hash, row[column]);
+    return hash;
+  }
+
+ private:
+  std::size_t bucketOf(std::uint64_t hash) const { return (hash >> 16) & (heads_.size() - 1); }
+
+  std::vector<std::size_t> columns_;
+  std::vector<std::uint32_t> heads_, next_;
+};
+
+}  // namespace cluxel::sparql

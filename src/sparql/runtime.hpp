@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the operators of one run share: the store, the dataset, budgets, parameters.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "cluxel/sparql/query_engine.hpp"
+#include "sparql/batch.hpp"
+#include "sparql/functions.hpp"
+
+namespace cluxel::sparql {
+
+/// Which graphs a pattern may take its quads from.
+struct GraphFilter {
+  enum class Kind : std::uint8_t { Any, AllBut, One, AnyOf } kind = Kind::Any;
+  TermId graph = kNoTerm;            ///< of AllBut and One
+  std::vector<TermId> graphs;        ///< of AnyOf, ascending
+  bool may_repeat = true;            ///< one triple may come from several graphs
+
+  bool admits(TermId candidate) const {
+    switch (kind) {
+      case Kind::Any: return true;
+      case Kind::AllBut: return candidate != graph;
+      case Kind::One: return candidate == graph;
+      case Kind::AnyOf: return std::binary_search(graphs.begin(), graphs.end(), candidate);
+    }
+    return false;
+  }
+};
+
+/// The RDF dataset of a query.
+struct Dataset {
+  GraphFilter default_graph;
+  std::vector<TermId> named;         ///< ascending
+};
+
+/// The dataset by the query's FROM clauses, else by the options.
+Dataset datasetOf(const ast::DatasetClause& clause, const QueryOptions& options, const QuadReader& reader);
+
+/// Throws Error (BudgetExceeded) as soon as something is used up.
+class Guard {
+ public:
+  void start(const QueryBudget& budget);
+  /// `rows` rows were made or looked at.
+  void work(std::uint64_t rows) {
+    work_rows_ += rows;
+    if (work_rows_ >= next_check_) check();
+  }
+  void charge(std::size_t bytes) {
+    bytes_ += bytes;
+    if (bytes_ > most_bytes_) refuse("memory");
+  }
+  void release(std::size_t bytes) { bytes_ -= std::min(bytes, bytes_); }
+  void answerRows(std::uint64_t rows) {
+    if (rows > most_answer_rows_) refuse("rows of the answer");
+  }
+
+ private:
+  void check();
+  [[noreturn]] void refuse(const char* what) const;
+
+  QueryBudget budget_;
+  std::chrono::steady_clock::time_point deadline_;
+  std::uint64_t work_rows_ = 0, next_check_ = 0, most_work_rows_ = 0, most_answer_rows_ = 0;
+  std::size_t bytes_ = 0, most_bytes_ = 0;
+};
+
+struct Runtime {
+  Runtime(const QuadReader& quad_reader, QueryTerms& query_terms, FunctionContext& function_context,
+          const Dataset& query_dataset, std::size_t slots, std::size_t exists_count)
+      : reader(quad_reader), terms(query_terms), functions(function_context), dataset(query_dataset), slot_count(slots),
+        parameters(slots, kUnbound), exists_results(exists_count) {}
+
+  const QuadReader& reader;
+  QueryTerms& terms;
+  FunctionContext& functions;
+  const Dataset& dataset;
+  Guard guard;
+  std::size_t slot_count;
+  std::vector<ValueId> parameters;   ///< by slot: what every solution starts with
+  /// For each Exists of the query its answers for the rows of the batch at hand.
+  std::vector<std::vector<std::uint8_t>> exists_results;
+};
+
+/// Computes expressions for rows of a batch.
+class Evaluator {
+ public:
+  explicit Evaluator(Runtime& runtime) : runtime_(runtime) {}
+  Value value(const Expr& expression, const Batch& batch, std::size_t row);
+  /// The effective boolean value; nothing for an error.
+  std::optional<bool> truth(const Expr& expression, const Batch& batch, std::size_t row);
+
+ private:
+  Value compared(const Expr& expression, const Batch& batch, std::size_t row);
+  Value membership(const Expr& expression, const Batch& batch, std::size_t row);
+  Value arithmetic(const Expr& expression, const Batch& batch, std::size_t row);
+  Value called(const Expr& expression, const Batch& batch, std::size_t row);
+
+  Runtime& runtime_;
+};
+
+}  // namespace cluxel::sparql
