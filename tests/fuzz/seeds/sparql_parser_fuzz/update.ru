@@ -1,0 +1,1 @@
+3INSERT DATA { :a :p 1 GRAPH :g { _:b :p _:b } } ; DELETE WHERE { ?s :p ?o GRAPH ?g { } } ; WITH :g DELETE { ?s :p ?o } INSERT { _:n :q ?o } USING NAMED :v WHERE { ?s :p ?o } ; COPY SILENT :a TO DEFAULT ; LOAD <x> INTO GRAPH :g ; CLEAR NAMED
