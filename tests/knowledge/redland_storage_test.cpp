@@ -187,7 +187,9 @@ TEST_F(RedlandStorage, RollsBackAndCommitsTransactions) {
 }
 
 TEST_F(RedlandStorage, StreamsAreSnapshotsThatChangesDoNotDisturb) {
+  librdf_model_transaction_start(model_.get());
   for (int i = 0; i < 600; ++i) add(a_, b_, Term::integer(i));
+  librdf_model_transaction_commit(model_.get());
   for (const bool within_transaction : {false, true}) {
     if (within_transaction) librdf_model_transaction_start(model_.get());
     const auto pattern = statement(a_, b_, std::nullopt);
