@@ -50,13 +50,6 @@ void writeObserved(WriteTransaction& transaction, const ObservedMap& map) {
   writer.flush();
 }
 
-void replaceClosure(WriteTransaction& transaction) {
-  QuadWriter writer(transaction);
-  writer.clearGraph(writer.intern(Term::iri(vocabulary::kGraphInferred)));
-  writer.flush();
-  addClosure(transaction);
-}
-
 }  // namespace
 
 ClassCatalogue classCatalogueOf(const std::vector<NamedText>& ontology) {
@@ -87,14 +80,14 @@ SemanticCounts writeSemanticLayer(WriteTransaction& transaction, const ParsedInp
   MapOracle oracle(transaction, [&](std::span<const SemanticObject> objects) {
     const ReasoningResult so_far{{objects.begin(), objects.end()}, {}};
     writeObserved(transaction, {parsed.inputs, clouds, scene, so_far, none});
-    replaceClosure(transaction);
+    inferClosure(transaction);
   });
   const ReasoningResult result = reason(scene, parsed.rules, {&oracle});
   sink.progress("objects", result.objects.size(), result.objects.size());
   const auto sightings =
       sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(result, scene.cluxels.size()));
   writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings});
-  replaceClosure(transaction);
+  inferClosure(transaction);
   runSparqlRules(transaction, parsed.inputs.sparql_rules);
   storeObjects(transaction, result.objects);
   sink.progress("facts", 1, 1);

@@ -88,7 +88,7 @@ void runSparqlRules(WriteTransaction& transaction, const std::vector<NamedText>&
   for (const NamedText& rule : rules) {
     int round = 0;
     while (deriveOnce(transaction, rule)) {
-      addClosure(transaction);
+      extendClosure(transaction);
       if (++round == kMostRounds)
         throw InputError({.file = rule.name}, "derives new facts without end",
                          "a rule may not make new objects out of objects that it made itself");
