@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPARQL 1.1 Update: operation after operation, each seeing what those before it wrote.
+#include "cluxel/sparql/update_engine.hpp"
+
+#include <algorithm>
+#include <map>
+#include <random>
+
+#include "cluxel/sparql/parser.hpp"
+#include "sparql/planner.hpp"
+#include "sparql/row_set.hpp"
+
+namespace cluxel {
+namespace {
+
+using sparql::kFirstComputed;
+using sparql::kUnbound;
+using sparql::ValueId;
+
+class UpdateRun {
+ public:
+  UpdateRun(WriteTransaction& transaction, const ast::Update& update, const UpdateOptions& options)
+      : transaction_(transaction), update_(update), options_(options), writer_(transaction),
+        random_(options.query.seed ? *options.query.seed : std::random_device{}()) {
+    label_prefix_ = "u" + std::to_string(random_() % 1'000'000'000'000) + "x";
+  }
+
+  UpdateReport run() {
+    for (const ast::UpdateOperation& operation : update_.operations) {
+      operation_ = &operation;
+      std::visit([this](const auto& part) { perform(part); }, operation.value);
+      writer_.flush();
+    }
+    return report_;
+  }
+
+ private:
+  void perform(const ast::Load& load);
+  void perform(const ast::Clear& clear) { clearTarget(clear.target); }
+  void perform(const ast::Drop& drop) { clearTarget(drop.target); }
+  void perform(const ast::Create& create);
+  void perform(const ast::Transfer& transfer);
+  void perform(const ast::DataUpdate& data);
+  void perform(const ast::Modify& modify);
+
+  [[noreturn]] void fail(const std::string& message, const std::string& hint = {}) const {
+    throw InputError(locate(options_.query.source_name, update_.text, operation_->at), message, hint);
+  }
+
+  /// The graph that text without a graph writes.
+  Term defaultGraph() const {
+    if (options_.any_graph_writable || options_.writable_graphs.empty()) return Term::iri("");
+    return Term::iri(options_.writable_graphs.front());
+  }
+  void checkWritable(const Term& graph) const {
+    const auto& open = options_.writable_graphs;
+    if (options_.any_graph_writable || std::find(open.begin(), open.end(), graph.text) != open.end()) return;
+    std::string list;
+    for (const std::string& name : open) list += (list.empty() ? "<" : ", <") + name + ">";
+    fail("the graph <" + graph.text + "> may not be written", "open for writing: " + (list.empty() ? "none" : list));
+  }
+  Term targetGraph(const ast::GraphTarget& target) const {
+    return target.kind == ast::GraphTarget::Kind::Default ? defaultGraph() : target.graph;
+  }
+  void add(const Quad& quad) {
+    writer_.add(quad);
+    ++report_.inserted;
+  }
+  void clearTarget(const ast::GraphTarget& target);
+  std::vector<Quad> quadsOf(const Term& graph) const;
+  std::string freshLabel() { return label_prefix_ + std::to_string(++fresh_labels_); }
+
+  WriteTransaction& transaction_;
+  const ast::Update& update_;
+  const UpdateOptions& options_;
+  QuadWriter writer_;
+  std::mt19937_64 random_;
+  std::string label_prefix_;
+  std::uint64_t fresh_labels_ = 0;
+  std::map<std::string, std::string> request_labels_;
+  const ast::UpdateOperation* operation_ = nullptr;
+  UpdateReport report_;
+};
+
+void UpdateRun::perform(const ast::Load& load) {
+  const Term graph = load.into.value_or(defaultGraph());
+  checkWritable(graph);
+  if (!options_.load) {
+    if (load.silent) return;
+    fail("LOAD is refused", "load the file by the command line, or allow it by name");
+  }
+  try {
+    for (Quad& quad : options_.load(load.source.text)) {
+      quad.graph = graph;
+      add(quad);
+    }
+  } catch (const Error&) {
+    if (!load.silent) throw;
+  }
+}
+
+std::vector<Quad> UpdateRun::quadsOf(const Term& graph) const {
+  std::vector<Quad> quads;
+  const QuadReader reader(transaction_);
+  const auto id = graph.text.empty() ? std::optional<TermId>(kNoTerm) : reader.idOf(graph);
+  if (!id) return quads;
+  QuadPattern pattern;
+  pattern.g = *id;
+  QuadCursor cursor = reader.scan(pattern);
+  for (QuadIds quad; cursor.next(quad);) {
+    quads.push_back({reader.termOf(quad.s), reader.termOf(quad.p), reader.termOf(quad.o), graph});
+  }
+  return quads;
+}
+
+void UpdateRun::clearTarget(const ast::GraphTarget& target) {
+  using Kind = ast::GraphTarget::Kind;
+  const QuadReader reader(transaction_);
+  const auto clear = [&](const Term& graph) {
+    checkWritable(graph);
+    const auto id = graph.text.empty() ? std::optional<TermId>(kNoTerm) : reader.idOf(graph);
+    if (!id) return;
+    QuadPattern pattern;
+    pattern.g = *id;
+    report_.deleted += reader.count(pattern);
+    writer_.clearGraph(*id);
+  };
+  if (target.kind == Kind::Graph || target.kind == Kind::Default) return clear(targetGraph(target));
+  std::vector<Term> graphs;
+  for (const TermId graph : reader.graphs()) {
+    if (graph != kNoTerm || target.kind == Kind::All) graphs.push_back(reader.termOf(graph));
+  }
+  for (const Term& graph : graphs) clear(graph);
+}
+
+void UpdateRun::perform(const ast::Create& create) {
+  checkWritable(create.graph);
+  // A graph without quads is not stored, so that creating one changes nothing.
+  if (!create.silent && !quadsOf(create.graph).empty()) fail("the graph <" + create.graph.text + "> is there already");
+}
+
+void UpdateRun::perform(const ast::Transfer& transfer) {
+  const Term from = targetGraph(transfer.from), to = targetGraph(transfer.to);
+  checkWritable(to);
+  if (transfer.kind == ast::Transfer::Kind::Move) checkWritable(from);
+  if (from == to) return;
+  std::vector<Quad> quads = quadsOf(from);
+  if (quads.empty() && transfer.from.kind == ast::GraphTarget::Kind::Graph) {
+    if (transfer.silent) return;
+    fail("the graph <" + from.text + "> is not there");
+  }
+  if (transfer.kind != ast::Transfer::Kind::Add) {
+    clearTarget(transfer.to);
+    writer_.flush();
+  }
+  for (Quad& quad : quads) {
+    quad.graph = to;
+    add(quad);
+  }
+  if (transfer.kind == ast::Transfer::Kind::Move) clearTarget(transfer.from);
+}
+
+void UpdateRun::perform(const ast::DataUpdate& data) {
+  const QuadReader reader(transaction_);
+  const auto fresh = [this](Term& term) {
+    if (term.kind != TermKind::BlankNode) return;
+    std::string& label = request_labels_[term.text];
+    if (label.empty()) label = freshLabel();
+    term.text = label;
+  };
+  for (Quad quad : data.quads) {
+    if (quad.graph.text.empty()) quad.graph = defaultGraph();
+    checkWritable(quad.graph);
+    if (data.insert) {
+      fresh(quad.subject);
+      fresh(quad.object);
+      add(quad);
+      continue;
+    }
+    ++report_.deleted;
+    const auto s = reader.idOf(quad.subject), p = reader.idOf(quad.predicate), o = reader.idOf(quad.object);
+    const auto g = quad.graph.text.empty() ? std::optional<TermId>(kNoTerm) : reader.idOf(quad.graph);
+    if (s && p && o && g) writer_.remove({*s, *p, *o, *g});
+  }
+}
+
+/// Template places filled in for one solution.
+struct Instance {
+  std::optional<Term> subject, predicate, object, graph;
+};
+
+void UpdateRun::perform(const ast::Modify& modify) {
+  const QuadReader reader(transaction_);
+  sparql::QueryTerms terms(reader);
+  ast::DatasetClause clause = modify.using_clause;
+  QueryOptions query_options = options_.query;
+  sparql::Dataset dataset = sparql::datasetOf(clause, query_options, reader);
+  if (modify.with && clause.empty()) {
+    const auto id = reader.idOf(*modify.with);
+    dataset.default_graph = {};
+    dataset.default_graph.kind = id ? sparql::GraphFilter::Kind::One : sparql::GraphFilter::Kind::AnyOf;
+    dataset.default_graph.graph = id.value_or(kNoTerm);
+    dataset.default_graph.may_repeat = false;
+  }
+  sparql::AlgebraOptions algebra_options;
+  algebra_options.source_name = query_options.source_name;
+  algebra_options.refuse_volatile = query_options.refuse_volatile;
+  sparql::AlgebraQuery algebra =
+      sparql::buildAlgebra(modify.where, operation_->variables, update_.text, terms, algebra_options);
+  const sparql::OperatorPtr plan = sparql::Planner(algebra, reader, dataset).plan();
+  sparql::FunctionContext functions(terms);
+  functions.base_iri = operation_->base_iri;
+  functions.random.seed(random_());
+  functions.label_prefix = label_prefix_ + "w";
+  functions.now_us = query_options.now_us.value_or(std::chrono::duration_cast<std::chrono::microseconds>(
+      std::chrono::system_clock::now().time_since_epoch()).count());
+  sparql::Runtime runtime(reader, terms, functions, dataset, algebra.slot_names.size(), algebra.exists_count);
+  runtime.guard.start(query_options.budget);
+  plan->open(runtime, true);
+
+  const Term graph_without_name = modify.with.value_or(defaultGraph());
+  std::vector<Quad> removed, inserted;
+  sparql::Batch batch(runtime.slot_count);
+  while (plan->next(batch)) {
+    for (std::size_t row = 0; row < batch.rows; ++row) {
+      std::map<std::string, Term> blanks;
+      const auto fill = [&](const ast::PatternTerm& place) -> std::optional<Term> {
+        if (place.isVariable()) {
+          const ValueId id = batch.at(algebra.slot_of_variable[place.variable()], row);
+          return id == kUnbound ? std::nullopt : std::optional<Term>(terms.termOf(id));
+        }
+        if (place.term().kind != TermKind::BlankNode) return place.term();
+        Term& blank = blanks[place.term().text];
+        if (blank.text.empty()) blank = Term::blank(freshLabel());
+        return blank;
+      };
+      const auto instantiate = [&](const std::vector<ast::QuadTemplate>& templates, std::vector<Quad>& out) {
+        for (const ast::QuadTemplate& quad : templates) {
+          const auto s = fill(quad.subject), p = fill(quad.predicate), o = fill(quad.object);
+          const auto g = quad.graph ? fill(*quad.graph) : std::optional<Term>(graph_without_name);
+          if (!s || !p || !o || !g || s->kind == TermKind::Literal || p->kind != TermKind::Iri || g->kind != TermKind::Iri) continue;
+          out.push_back({*s, *p, *o, *g});
+          runtime.guard.charge(sizeof(Quad) + s->text.size() + o->text.size());
+        }
+      };
+      instantiate(modify.remove, removed);
+      instantiate(modify.insert, inserted);
+    }
+  }
+  for (const Quad& quad : removed) {
+    checkWritable(quad.graph);
+    ++report_.deleted;
+    const auto s = reader.idOf(quad.subject), p = reader.idOf(quad.predicate), o = reader.idOf(quad.object);
+    const auto g = quad.graph.text.empty() ? std::optional<TermId>(kNoTerm) : reader.idOf(quad.graph);
+    if (s && p && o && g) writer_.remove({*s, *p, *o, *g});
+  }
+  for (const Quad& quad : inserted) {
+    checkWritable(quad.graph);
+    add(quad);
+  }
+}
+
+}  // namespace
+
+UpdateReport runUpdate(WriteTransaction& transaction, std::string_view text, const UpdateOptions& options) {
+  SparqlParseOptions parse_options;
+  parse_options.file = options.query.source_name;
+  parse_options.base_iri = options.query.base_iri;
+  const ast::Update update = parseUpdate(text, parse_options);
+  return UpdateRun(transaction, update, options).run();
+}
+
+}  // namespace cluxel
