@@ -8,8 +8,8 @@
 
 namespace cluxel {
 
-/// The text itself, or what it unpacks to when it begins as gzip does. Throws InputError naming the byte when the data
-/// are damaged or cut off, and when they unpack to more than `most_bytes`.
+/// The text itself, or what it unpacks to when it begins as gzip does. Throws InputError naming the byte when
+/// the data are damaged or cut off, and when they unpack to more than `most_bytes`.
 std::string unpackedText(std::string_view bytes, const std::string& file, std::size_t most_bytes);
 
 }  // namespace cluxel

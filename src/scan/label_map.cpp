@@ -20,8 +20,9 @@ const std::vector<std::string> kNearKeys{"label", "within", "object"};
 bool isLocalName(std::string_view name) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
-  return !name.empty() && letter(name.front()) &&
-         std::all_of(name.begin(), name.end(), [&](char c) { return letter(c) || digit(c) || c == '_' || c == '-'; });
+  return !name.empty() && letter(name.front()) && std::all_of(name.begin(), name.end(), [&](char c) {
+    return letter(c) || digit(c) || c == '_' || c == '-';
+  });
 }
 
 class LabelMapReader {
@@ -39,7 +40,8 @@ class LabelMapReader {
     for (const auto& [key, value] : labels->entries) {
       const auto id = idOf(key);
       LabelMeaning meaning = readMeaning(value);
-      if (id && !entries.emplace(*id, std::move(meaning)).second) faults_->add(key, "the id " + std::to_string(*id) + " stands twice");
+      if (id && !entries.emplace(*id, std::move(meaning)).second)
+        faults_->add(key, "the id " + std::to_string(*id) + " stands twice");
     }
     checkNearIds(*labels, entries);
     return entries;
@@ -58,12 +60,15 @@ class LabelMapReader {
   LabelMeaning readMeaning(const YamlValue& value) {
     LabelMeaning meaning;
     if (!checkMapping(value, kLabelKeys, *faults_)) return meaning;
-    if (const YamlValue* name = value.find("name")) meaning.name = textOf(*name, "name", *faults_).value_or("");
-    else faults_->add(value, "a label needs a 'name'");
+    if (const YamlValue* name = value.find("name"))
+      meaning.name = textOf(*name, "name", *faults_).value_or("");
+    else
+      faults_->add(value, "a label needs a 'name'");
     if (const YamlValue* primitive = value.find("primitive")) meaning.primitive = readPrimitive(*primitive);
     meaning.object_class = localNameAt(value, "object");
     meaning.part = localNameAt(value, "part");
-    if (meaning.part && !value.find("object")) faults_->add(value, "a 'part' needs an 'object' that it is part of");
+    if (meaning.part && !value.find("object"))
+      faults_->add(value, "a 'part' needs an 'object' that it is part of");
     if (const YamlValue* near = value.find("near")) meaning.near = readNear(*near);
     return meaning;
   }
@@ -104,7 +109,8 @@ class LabelMapReader {
     const std::string_view unit(stop, static_cast<std::size_t>(text.data() + text.size() - stop));
     const bool good = error == std::errc() && (unit == " m" || unit == "m") && metres > 0 && metres <= 100;
     if (good) return metres;
-    faults_->add(value, "within must be a distance with its unit, above 0 and at most 100 m", "write it as '0.6 m'");
+    faults_->add(value, "within must be a distance with its unit, above 0 and at most 100 m",
+                 "write it as '0.6 m'");
     return std::nullopt;
   }
 

@@ -44,7 +44,8 @@ class NearPoints {
   }
 
   Point2 pointAt(const Scan& scan, std::size_t i) const {
-    const Eigen::Vector3d p = toMap(scan.T_map_sensor, {scan.points.x[i], scan.points.y[i], scan.points.z[i]});
+    const Eigen::Vector3d p =
+        toMap(scan.T_map_sensor, {scan.points.x[i], scan.points.y[i], scan.points.z[i]});
     return {cellOf(p.x()), cellOf(p.y()), p.x(), p.y()};
   }
 
@@ -70,11 +71,13 @@ std::int8_t classIndex(std::vector<std::string>& names, const std::optional<std:
   const auto known = std::find(names.begin(), names.end(), *name);
   const auto index = static_cast<std::size_t>(known - names.begin());
   if (known == names.end()) names.push_back(*name);
-  if (names.size() > kMostClasses) throw Error(ExitCode::FaultyInput, "a label map names more than 127 object classes");
+  if (names.size() > kMostClasses)
+    throw Error(ExitCode::FaultyInput, "a label map names more than 127 object classes");
   return static_cast<std::int8_t>(index);
 }
 
-std::map<std::uint32_t, LabelCode> codesOf(const Scan& scan, const LabelMap& map, std::vector<std::string>& class_names) {
+std::map<std::uint32_t, LabelCode> codesOf(const Scan& scan, const LabelMap& map,
+                                           std::vector<std::string>& class_names) {
   std::map<std::uint32_t, LabelCode> codes;
   for (const auto& [id, meaning] : map.entries()) {
     LabelCode& code = codes[id];
@@ -90,15 +93,17 @@ std::map<std::uint32_t, LabelCode> codesOf(const Scan& scan, const LabelMap& map
 }  // namespace
 
 const std::vector<std::string>& truthClassNames() {
-  static const std::vector<std::string> names{"Ground",     "Building",    "Tree",    "Bush",       "StreetLamp",
-                                              "StreetSign", "UtilityPole", "Vehicle", "SmallObject"};
+  static const std::vector<std::string> names{"Ground",      "Building",   "Tree",
+                                              "Bush",        "StreetLamp", "StreetSign",
+                                              "UtilityPole", "Vehicle",    "SmallObject"};
   return names;
 }
 
 PointTruth truthFromLabels(const Scan& scan, const LabelMap& map) {
   const std::size_t count = scan.points.size();
   if (scan.points.label.size() != count)
-    throw InputError({.file = scan.source}, "the scan has no labels", "give a folder of truth files with --truth");
+    throw InputError({.file = scan.source}, "the scan has no labels",
+                     "give a folder of truth files with --truth");
   PointTruth truth;
   truth.class_names = truthClassNames();
   const auto codes = codesOf(scan, map, truth.class_names);

@@ -9,8 +9,8 @@
 
 namespace cluxel {
 
-/// Coordinates with scale and offset applied in double; intensity and classification (as label) when any is not 0.
-/// Throws InputError naming the byte; compressed files (LAZ) are refused in plain words.
+/// Coordinates with scale and offset applied in double; intensity and classification (as label) when any is
+/// not 0. Throws InputError naming the byte; compressed files (LAZ) are refused in plain words.
 ParsedScan parseLas(std::string_view bytes, const std::string& file);
 
 }  // namespace cluxel

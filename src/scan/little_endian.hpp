@@ -10,12 +10,12 @@
 
 namespace cluxel {
 
-static_assert(std::endian::native == std::endian::little, "binary scans are read in place as little-endian numbers");
+static_assert(std::endian::native == std::endian::little,
+              "binary scans are read in place as little-endian numbers");
 
 /// The number at byte `offset`, which the caller has checked to lie inside `bytes`.
 template <typename T>
-  requires std::is_arithmetic_v<T>
-T numberAt(std::string_view bytes, std::size_t offset) {
+requires std::is_arithmetic_v<T> T numberAt(std::string_view bytes, std::size_t offset) {
   T value;
   std::memcpy(&value, bytes.data() + offset, sizeof value);
   return value;

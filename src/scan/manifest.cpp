@@ -27,7 +27,8 @@ class ManifestReader {
     Manifest manifest;
     if (!checkMapping(root, kManifestKeys, *faults_)) return manifest;
     if (const YamlValue* origin = root.find("map_origin"))
-      if (const auto v = numbersOf(*origin, 3, "map_origin", *faults_)) manifest.map_origin = Eigen::Vector3d(v->data());
+      if (const auto v = numbersOf(*origin, 3, "map_origin", *faults_))
+        manifest.map_origin = Eigen::Vector3d(v->data());
     if (const YamlValue* crs = root.find("crs")) manifest.crs = textOf(*crs, "crs", *faults_).value_or("");
     if (const YamlValue* frame = root.find("frame")) manifest.poses_in_outer = isOuter(*frame);
     manifest.poses = pathAt(root, "poses");
@@ -37,7 +38,8 @@ class ManifestReader {
 
  private:
   bool isOuter(const YamlValue& frame) {
-    if (frame.scalar != "map" && frame.scalar != "outer") faults_->add(frame, "frame must be 'map' or 'outer'");
+    if (frame.scalar != "map" && frame.scalar != "outer")
+      faults_->add(frame, "frame must be 'map' or 'outer'");
     return frame.scalar == "outer";
   }
 
@@ -65,14 +67,18 @@ class ManifestReader {
       return entry;
     }
     if (!checkMapping(value, kScanKeys, *faults_)) return entry;
-    if (const auto path = pathAt(value, "path")) entry.path = *path;
-    else if (!value.find("path")) faults_->add(value, "a scan needs a 'path'");
+    if (const auto path = pathAt(value, "path"))
+      entry.path = *path;
+    else if (!value.find("path"))
+      faults_->add(value, "a scan needs a 'path'");
     entry.labels = pathAt(value, "labels");
     if (const YamlValue* time = value.find("time_s")) entry.time_s = numberOf(*time, "time_s", *faults_);
     if (const YamlValue* format = value.find("format")) entry.format = readFormat(*format);
     if (const YamlValue* pose = value.find("pose")) {
       entry.pose = readPose(*pose);
-      if (manifest.poses) faults_->add(*pose, "the scan has a pose of its own, and 'poses' names a file for all scans", "keep one of them");
+      if (manifest.poses)
+        faults_->add(*pose, "the scan has a pose of its own, and 'poses' names a file for all scans",
+                     "keep one of them");
     }
     return entry;
   }
@@ -91,7 +97,8 @@ class ManifestReader {
     if (value.kind == YamlValue::Kind::Sequence) return checked(value, readMatrix(value));
     if (!checkMapping(value, kPoseKeys, *faults_)) return std::nullopt;
     if (const YamlValue* matrix = value.find("matrix")) {
-      if (value.entries.size() > 1) faults_->add(value, "'matrix' is a whole pose: nothing may stand beside it");
+      if (value.entries.size() > 1)
+        faults_->add(value, "'matrix' is a whole pose: nothing may stand beside it");
       return checked(*matrix, readMatrix(*matrix));
     }
     const YamlValue* xyz = value.find("xyz");
@@ -136,7 +143,8 @@ class ManifestReader {
     return std::nullopt;
   }
 
-  std::optional<Eigen::Isometry3d> checked(const YamlValue& place, const std::optional<Eigen::Isometry3d>& pose) {
+  std::optional<Eigen::Isometry3d> checked(const YamlValue& place,
+                                           const std::optional<Eigen::Isometry3d>& pose) {
     if (!pose) return std::nullopt;
     if (const auto fault = faultOfPose(*pose)) faults_->add(place, "the pose " + *fault);
     return pose;

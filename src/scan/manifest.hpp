@@ -14,8 +14,8 @@
 namespace cluxel {
 
 struct ManifestEntry {
-  std::filesystem::path path;                         ///< a scan file or a folder; relative paths are made absolute to the manifest
-  std::optional<Eigen::Isometry3d> pose;              ///< in the frame that `poses_in_outer` says
+  std::filesystem::path path;  ///< a scan file or a folder; relative paths are made absolute to the manifest
+  std::optional<Eigen::Isometry3d> pose;  ///< in the frame that `poses_in_outer` says
   std::optional<double> time_s;
   std::optional<std::filesystem::path> labels;
   std::optional<ScanFormat> format;
@@ -23,10 +23,10 @@ struct ManifestEntry {
 
 struct Manifest {
   std::vector<ManifestEntry> scans;
-  std::optional<std::filesystem::path> poses;         ///< one poses file for all scans
-  std::optional<Eigen::Vector3d> map_origin;          ///< [m] in the outer frame
+  std::optional<std::filesystem::path> poses;  ///< one poses file for all scans
+  std::optional<Eigen::Vector3d> map_origin;   ///< [m] in the outer frame
   std::string crs;
-  bool poses_in_outer = false;                        ///< poses (and scans without one) are in the outer frame
+  bool poses_in_outer = false;  ///< poses (and scans without one) are in the outer frame
 };
 
 /// Throws InputError with every fault of the file. `folder` is where relative paths start.

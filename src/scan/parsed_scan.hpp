@@ -19,14 +19,16 @@ struct ParsedScan {
   std::optional<Eigen::Isometry3d> viewpoint;              ///< the sensor's pose, when the file holds one
 };
 
-/// Coordinates beyond this lose more than half a millimetre as floats; they are stored relative to a local origin.
+/// Coordinates beyond this lose more than half a millimetre as floats; they are stored relative to a local
+/// origin.
 inline constexpr double kFloatReach_m = 4096;
 
 /// No place in any terrestrial frame has a coordinate beyond this; tiles of larger ones could not be counted.
 inline constexpr double kFarthest_m = 1e8;
 inline constexpr const char* kUnusableCoordinate = "has a coordinate that is not finite or beyond 100000 km";
 
-/// The origin for a file whose first point is `first`: zero within the reach of floats, else whole kilometres near it.
+/// The origin for a file whose first point is `first`: zero within the reach of floats, else whole kilometres
+/// near it.
 inline Eigen::Vector3d localOriginFor(const Eigen::Vector3d& first) {
   if (first.cwiseAbs().maxCoeff() <= kFloatReach_m) return Eigen::Vector3d::Zero();
   return (first / 1000.0).array().round().matrix() * 1000.0;
@@ -39,7 +41,8 @@ class PointCollector {
 
   /// False when a coordinate is not finite or beyond kFarthest_m.
   bool add(double x, double y, double z) {
-    const bool usable = std::abs(x) <= kFarthest_m && std::abs(y) <= kFarthest_m && std::abs(z) <= kFarthest_m;
+    const bool usable =
+        std::abs(x) <= kFarthest_m && std::abs(y) <= kFarthest_m && std::abs(z) <= kFarthest_m;
     if (!usable) return false;
     if (scan_->points.empty()) scan_->local_origin = localOriginFor({x, y, z});
     const Eigen::Vector3d& origin = scan_->local_origin;
@@ -63,7 +66,8 @@ class PointCollector {
   throw InputError({.file = file}, std::move(message), std::move(hint));
 }
 
-[[noreturn]] inline void refuseByte(const std::string& file, std::uint64_t byte, std::string message, std::string hint = {}) {
+[[noreturn]] inline void refuseByte(const std::string& file, std::uint64_t byte, std::string message,
+                                    std::string hint = {}) {
   throw InputError({.file = file, .byte_offset = byte}, std::move(message), std::move(hint));
 }
 

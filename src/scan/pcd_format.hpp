@@ -11,8 +11,8 @@
 
 namespace cluxel {
 
-/// Header and lengths are checked here; binary bodies are decoded by PCL, text by this wing (three times as fast).
-/// Throws InputError naming line or byte.
+/// Header and lengths are checked here; binary bodies are decoded by PCL, text by this wing (three times as
+/// fast). Throws InputError naming line or byte.
 ParsedScan parsePcd(std::string_view bytes, const std::string& file);
 
 /// The VIEWPOINT of a header when it is not the identity; `head` may end anywhere after the header.

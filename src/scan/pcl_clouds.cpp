@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// PCL's readers and writer. Headers are written anew with neutral field names, because PCL treats some names specially
-// and some malformed headers carelessly.
+// PCL's readers and writer. Headers are written anew with neutral field names, because PCL treats some names
+// specially and some malformed headers carelessly.
 #include "scan/pcl_clouds.hpp"
 
 #include <pcl/PCLPointCloud2.h>
@@ -20,7 +20,8 @@ namespace cluxel {
 
 namespace {
 
-/// PCL reports to the console by itself; the library must not. Once for the process, before PCL is first used.
+/// PCL reports to the console by itself; the library must not. Once for the process, before PCL is first
+/// used.
 void silencePcl() {
   static const bool silenced = [] {
     pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
@@ -31,7 +32,8 @@ void silencePcl() {
 
 char pcdTypeOf(FieldType type) {
   if (type == FieldType::F32 || type == FieldType::F64) return 'F';
-  const bool is_signed = type == FieldType::I8 || type == FieldType::I16 || type == FieldType::I32 || type == FieldType::I64;
+  const bool is_signed =
+      type == FieldType::I8 || type == FieldType::I16 || type == FieldType::I32 || type == FieldType::I64;
   return is_signed ? 'I' : 'U';
 }
 
@@ -51,9 +53,9 @@ std::string pcdHeader(const std::vector<PointField>& fields, std::size_t count, 
     counts << ' ' << fields[i].count;
   }
   std::ostringstream header;
-  header << "VERSION .7\nFIELDS" << names.str() << "\nSIZE" << sizes.str() << "\nTYPE" << types.str() << "\nCOUNT"
-         << counts.str() << "\nWIDTH " << count << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << count << "\nDATA "
-         << (compressed ? "binary_compressed" : "binary") << '\n';
+  header << "VERSION .7\nFIELDS" << names.str() << "\nSIZE" << sizes.str() << "\nTYPE" << types.str()
+         << "\nCOUNT" << counts.str() << "\nWIDTH " << count << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS "
+         << count << "\nDATA " << (compressed ? "binary_compressed" : "binary") << '\n';
   return header.str();
 }
 
@@ -64,22 +66,26 @@ std::string viewpointLine(const Eigen::Isometry3d& T_map_sensor) {
   std::string line = "VIEWPOINT";
   for (const double value : {t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z()}) {
     std::array<char, 32> digits{};
-    line += ' ' + std::string(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+    line += ' ' + std::string(digits.data(),
+                              std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
   }
   return line;
 }
 
 std::string plyHeader(const std::vector<PointField>& fields, std::size_t count, bool big_endian) {
-  constexpr std::array names{"int8", "uint8", "int16", "uint16", "int32", "uint32", "", "", "float32", "float64"};
+  constexpr std::array names{"int8",   "uint8", "int16", "uint16",  "int32",
+                             "uint32", "",      "",      "float32", "float64"};
   std::ostringstream header;
-  header << "ply\nformat binary_" << (big_endian ? "big" : "little") << "_endian 1.0\nelement vertex " << count << '\n';
+  header << "ply\nformat binary_" << (big_endian ? "big" : "little") << "_endian 1.0\nelement vertex "
+         << count << '\n';
   for (std::size_t i = 0; i < fields.size(); ++i)
     header << "property " << names[static_cast<std::size_t>(fields[i].type)] << " f" << i << '\n';
   header << "end_header\n";
   return header.str();
 }
 
-std::string recordsOf(const pcl::PCLPointCloud2& cloud, std::size_t stride, std::size_t count, const std::string& file) {
+std::string recordsOf(const pcl::PCLPointCloud2& cloud, std::size_t stride, std::size_t count,
+                      const std::string& file) {
   if (cloud.point_step != stride || cloud.data.size() != stride * count)
     refuseFile(file, "PCL decoded another number of points than the header declares");
   return {reinterpret_cast<const char*>(cloud.data.data()), cloud.data.size()};
@@ -88,7 +94,8 @@ std::string recordsOf(const pcl::PCLPointCloud2& cloud, std::size_t stride, std:
 /// A file in memory for readers that only take a path.
 class MemoryFile {
  public:
-  MemoryFile(std::string_view head, std::string_view body) : descriptor_(memfd_create("cluxel", MFD_CLOEXEC)) {
+  MemoryFile(std::string_view head, std::string_view body)
+      : descriptor_(memfd_create("cluxel", MFD_CLOEXEC)) {
     if (descriptor_ < 0 || !append(head) || !append(body)) {
       const std::string reason = std::strerror(errno);
       if (descriptor_ >= 0) close(descriptor_);
@@ -129,8 +136,8 @@ void readThroughPcl(const std::string& file, const Read& read) {
 
 }  // namespace
 
-std::string pcdRecords(std::string_view body, const std::vector<PointField>& fields, std::size_t count, bool compressed,
-                       const std::string& file) {
+std::string pcdRecords(std::string_view body, const std::vector<PointField>& fields, std::size_t count,
+                       bool compressed, const std::string& file) {
   pcl::PCLPointCloud2 cloud;
   readThroughPcl(file, [&] {
     pcl::PCDReader reader;
@@ -140,15 +147,18 @@ std::string pcdRecords(std::string_view body, const std::vector<PointField>& fie
     int version = 0;
     int data_type = 0;
     unsigned body_offset = 0;
-    if (const int failed = reader.readHeader(header, cloud, origin, orientation, version, data_type, body_offset); failed < 0)
+    if (const int failed =
+            reader.readHeader(header, cloud, origin, orientation, version, data_type, body_offset);
+        failed < 0)
       return failed;
-    return reader.readBodyBinary(reinterpret_cast<const unsigned char*>(body.data()), cloud, version, compressed, 0);
+    return reader.readBodyBinary(reinterpret_cast<const unsigned char*>(body.data()), cloud, version,
+                                 compressed, 0);
   });
   return recordsOf(cloud, recordBytes(fields), count, file);
 }
 
-std::string plyRecords(std::string_view body, const std::vector<PointField>& fields, std::size_t count, bool big_endian,
-                       const std::string& file) {
+std::string plyRecords(std::string_view body, const std::vector<PointField>& fields, std::size_t count,
+                       bool big_endian, const std::string& file) {
   pcl::PCLPointCloud2 cloud;
   const MemoryFile memory(plyHeader(fields, count, big_endian), body);
   readThroughPcl(file, [&] {
@@ -175,7 +185,8 @@ std::string pcdFile(std::string_view records, const std::vector<PointField>& fie
   cloud.height = 1;
   cloud.row_step = cloud.point_step * cloud.width;
   pcl::PCDWriter writer;
-  std::string file = writer.generateHeaderBinary(cloud, Eigen::Vector4f::Zero(), Eigen::Quaternionf::Identity());
+  std::string file =
+      writer.generateHeaderBinary(cloud, Eigen::Vector4f::Zero(), Eigen::Quaternionf::Identity());
   const std::size_t line = file.find("VIEWPOINT");
   file.replace(line, file.find('\n', line) - line, viewpointLine(T_map_sensor));
   return file + "DATA binary\n" + std::string(records);

@@ -22,27 +22,44 @@ struct PlyElement {
 enum class PlyData { Ascii, LittleEndian, BigEndian };
 
 constexpr std::size_t kMostProperties = 256;
-constexpr std::array<std::pair<std::string_view, FieldType>, 16> kTypeNames{
-    {{"char", FieldType::I8},     {"int8", FieldType::I8},     {"uchar", FieldType::U8},   {"uint8", FieldType::U8},
-     {"short", FieldType::I16},   {"int16", FieldType::I16},   {"ushort", FieldType::U16}, {"uint16", FieldType::U16},
-     {"int", FieldType::I32},     {"int32", FieldType::I32},   {"uint", FieldType::U32},   {"uint32", FieldType::U32},
-     {"float", FieldType::F32},   {"float32", FieldType::F32}, {"double", FieldType::F64}, {"float64", FieldType::F64}}};
+constexpr std::array<std::pair<std::string_view, FieldType>, 16> kTypeNames{{{"char", FieldType::I8},
+                                                                             {"int8", FieldType::I8},
+                                                                             {"uchar", FieldType::U8},
+                                                                             {"uint8", FieldType::U8},
+                                                                             {"short", FieldType::I16},
+                                                                             {"int16", FieldType::I16},
+                                                                             {"ushort", FieldType::U16},
+                                                                             {"uint16", FieldType::U16},
+                                                                             {"int", FieldType::I32},
+                                                                             {"int32", FieldType::I32},
+                                                                             {"uint", FieldType::U32},
+                                                                             {"uint32", FieldType::U32},
+                                                                             {"float", FieldType::F32},
+                                                                             {"float32", FieldType::F32},
+                                                                             {"double", FieldType::F64},
+                                                                             {"float64", FieldType::F64}}};
 
-/// A header word by word. PLY has no '#' comments, but no legal header line holds a '#' outside comment lines either.
+/// A header word by word. PLY has no '#' comments, but no legal header line holds a '#' outside comment lines
+/// either.
 class PlyHeaderParser {
  public:
   PlyHeaderParser(std::string_view bytes, const std::string& file) : scanner_(bytes, file), bytes_(bytes) {}
 
   void parse() {
-    if (!scanner_.nextLine() || scanner_.currentLine() != "ply") refuseFile(scanner_.file(), "is not a PLY file: its first line is not 'ply'");
+    if (!scanner_.nextLine() || scanner_.currentLine() != "ply")
+      refuseFile(scanner_.file(), "is not a PLY file: its first line is not 'ply'");
     while (scanner_.nextLine()) {
       const std::string_view keyword = scanner_.word("a keyword");
       if (keyword == "end_header") return finish();
       if (keyword == "comment" || keyword == "obj_info") continue;
-      if (keyword == "format") readFormat();
-      else if (keyword == "element") readElement();
-      else if (keyword == "property") readProperty();
-      else scanner_.refuse("'" + std::string(keyword.substr(0, 40)) + "' is not a keyword of a PLY header");
+      if (keyword == "format")
+        readFormat();
+      else if (keyword == "element")
+        readElement();
+      else if (keyword == "property")
+        readProperty();
+      else
+        scanner_.refuse("'" + std::string(keyword.substr(0, 40)) + "' is not a keyword of a PLY header");
       scanner_.endLine("one keyword and its values");
     }
     scanner_.refuseEnd("the PLY header ends without a line end_header");
@@ -57,10 +74,14 @@ class PlyHeaderParser {
  private:
   void readFormat() {
     const std::string_view name = scanner_.word("the format");
-    if (name == "ascii") data_ = PlyData::Ascii;
-    else if (name == "binary_little_endian") data_ = PlyData::LittleEndian;
-    else if (name == "binary_big_endian") data_ = PlyData::BigEndian;
-    else scanner_.refuse("unknown format", "known are ascii, binary_little_endian and binary_big_endian");
+    if (name == "ascii")
+      data_ = PlyData::Ascii;
+    else if (name == "binary_little_endian")
+      data_ = PlyData::LittleEndian;
+    else if (name == "binary_big_endian")
+      data_ = PlyData::BigEndian;
+    else
+      scanner_.refuse("unknown format", "known are ascii, binary_little_endian and binary_big_endian");
     if (scanner_.word("the version") != "1.0") scanner_.refuse("unknown version of PLY", "known is 1.0");
   }
 
@@ -113,9 +134,11 @@ class PlyHeaderParser {
 std::size_t vertexElement(const PlyHeaderParser& header, const std::string& file) {
   for (std::size_t i = 0; i < header.elements().size(); ++i) {
     const PlyElement& element = header.elements()[i];
-    if (element.has_lists) refuseFile(file, "the element '" + element.name + "' has lists and is not behind the vertices");
+    if (element.has_lists)
+      refuseFile(file, "the element '" + element.name + "' has lists and is not behind the vertices");
     if (element.name != "vertex") continue;
-    if (element.count == 0) refuseFile(file, "holds no points", "an empty scan cannot be mapped: leave it out");
+    if (element.count == 0)
+      refuseFile(file, "holds no points", "an empty scan cannot be mapped: leave it out");
     return i;
   }
   refuseFile(file, "has no element 'vertex'");
@@ -133,16 +156,20 @@ ParsedScan fromText(PlyHeaderParser& header, std::size_t vertex) {
   return scan;
 }
 
-ParsedScan fromBinary(const PlyHeaderParser& header, std::size_t vertex, std::string_view bytes, const std::string& file) {
+ParsedScan fromBinary(const PlyHeaderParser& header, std::size_t vertex, std::string_view bytes,
+                      const std::string& file) {
   std::uint64_t begin = header.bodyOffset();
-  for (std::size_t i = 0; i < vertex; ++i) begin += header.elements()[i].count * recordBytes(header.elements()[i].fields);
+  for (std::size_t i = 0; i < vertex; ++i)
+    begin += header.elements()[i].count * recordBytes(header.elements()[i].fields);
   const PlyElement& vertices = header.elements()[vertex];
   rolesOf(vertices.fields, file);
   const std::uint64_t length = vertices.count * recordBytes(vertices.fields);
   const std::uint64_t there = begin < bytes.size() ? bytes.size() - begin : 0;
   if (there < length)
-    refuseByte(file, bytes.size(), "the vertices take " + std::to_string(there) + " bytes where the header declares " +
-                                       std::to_string(length), "the file is cut off");
+    refuseByte(file, bytes.size(),
+               "the vertices take " + std::to_string(there) + " bytes where the header declares " +
+                   std::to_string(length),
+               "the file is cut off");
   if (vertex + 1 == header.elements().size() && there != length)
     refuseByte(file, begin + length, std::to_string(there - length) + " bytes follow the last vertex",
                "the header and the data are not of the same cloud");

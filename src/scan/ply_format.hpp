@@ -9,8 +9,8 @@
 
 namespace cluxel {
 
-/// Header and lengths are checked here; binary vertices are decoded by PCL, text by this wing. Elements after the
-/// vertices (faces) are left alone. Throws InputError naming line or byte.
+/// Header and lengths are checked here; binary vertices are decoded by PCL, text by this wing. Elements after
+/// the vertices (faces) are left alone. Throws InputError naming line or byte.
 ParsedScan parsePly(std::string_view bytes, const std::string& file);
 
 }  // namespace cluxel

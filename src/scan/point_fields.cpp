@@ -46,21 +46,33 @@ FieldRole roleOf(std::string_view name) {
 
 double valueAt(std::string_view bytes, std::size_t at, FieldType type) {
   switch (type) {
-    case FieldType::I8: return numberAt<std::int8_t>(bytes, at);
-    case FieldType::U8: return numberAt<std::uint8_t>(bytes, at);
-    case FieldType::I16: return numberAt<std::int16_t>(bytes, at);
-    case FieldType::U16: return numberAt<std::uint16_t>(bytes, at);
-    case FieldType::I32: return numberAt<std::int32_t>(bytes, at);
-    case FieldType::U32: return numberAt<std::uint32_t>(bytes, at);
-    case FieldType::I64: return static_cast<double>(numberAt<std::int64_t>(bytes, at));
-    case FieldType::U64: return static_cast<double>(numberAt<std::uint64_t>(bytes, at));
-    case FieldType::F32: return numberAt<float>(bytes, at);
-    case FieldType::F64: return numberAt<double>(bytes, at);
+    case FieldType::I8:
+      return numberAt<std::int8_t>(bytes, at);
+    case FieldType::U8:
+      return numberAt<std::uint8_t>(bytes, at);
+    case FieldType::I16:
+      return numberAt<std::int16_t>(bytes, at);
+    case FieldType::U16:
+      return numberAt<std::uint16_t>(bytes, at);
+    case FieldType::I32:
+      return numberAt<std::int32_t>(bytes, at);
+    case FieldType::U32:
+      return numberAt<std::uint32_t>(bytes, at);
+    case FieldType::I64:
+      return static_cast<double>(numberAt<std::int64_t>(bytes, at));
+    case FieldType::U64:
+      return static_cast<double>(numberAt<std::uint64_t>(bytes, at));
+    case FieldType::F32:
+      return numberAt<float>(bytes, at);
+    case FieldType::F64:
+      return numberAt<double>(bytes, at);
   }
   return 0;
 }
 
-double at(const PointRow& row, FieldRole role) { return row[static_cast<std::size_t>(role)]; }
+double at(const PointRow& row, FieldRole role) {
+  return row[static_cast<std::size_t>(role)];
+}
 
 /// A field with a role, and where it lies in the record.
 struct Column {
@@ -98,12 +110,16 @@ std::vector<FieldRole> rolesOf(const std::vector<PointField>& fields, const std:
     FieldRole role = roleOf(field.name);
     const bool twice = std::find(roles.begin(), roles.end(), role) != roles.end();
     if (role != FieldRole::None && (twice || field.count != 1))
-      refuseFile(file, "field '" + field.name + "' " + (twice ? "has the meaning of an earlier field" : "holds several numbers"));
+      refuseFile(file, "field '" + field.name + "' " +
+                           (twice ? "has the meaning of an earlier field" : "holds several numbers"));
     roles.push_back(role);
   }
-  const auto missing = [&](FieldRole role) { return std::find(roles.begin(), roles.end(), role) == roles.end(); };
+  const auto missing = [&](FieldRole role) {
+    return std::find(roles.begin(), roles.end(), role) == roles.end();
+  };
   for (const auto& [name, role] : {kNamedRoles[0], kNamedRoles[1], kNamedRoles[2]})
-    if (missing(role)) refuseFile(file, "has no field '" + std::string(name) + "'", "a scan needs x, y and z");
+    if (missing(role))
+      refuseFile(file, "has no field '" + std::string(name) + "'", "a scan needs x, y and z");
   const auto origins = {FieldRole::OriginX, FieldRole::OriginY, FieldRole::OriginZ};
   if (std::any_of(origins.begin(), origins.end(), missing))
     for (FieldRole& role : roles)
@@ -111,7 +127,8 @@ std::vector<FieldRole> rolesOf(const std::vector<PointField>& fields, const std:
   return roles;
 }
 
-RowCollector::RowCollector(const std::vector<FieldRole>& roles, ParsedScan& scan) : scan_(&scan), points_(scan) {
+RowCollector::RowCollector(const std::vector<FieldRole>& roles, ParsedScan& scan)
+    : scan_(&scan), points_(scan) {
   for (const FieldRole role : roles)
     if (role != FieldRole::None) has_[static_cast<std::size_t>(role)] = true;
 }
@@ -138,7 +155,8 @@ std::optional<std::string> RowCollector::add(const PointRow& row) {
     scan_->points.label.push_back(label < 0 ? 0xFFFFFFFFU : static_cast<std::uint32_t>(label));
   }
   if (has(FieldRole::OriginX)) {
-    const Eigen::Vector3d origin(at(row, FieldRole::OriginX), at(row, FieldRole::OriginY), at(row, FieldRole::OriginZ));
+    const Eigen::Vector3d origin(at(row, FieldRole::OriginX), at(row, FieldRole::OriginY),
+                                 at(row, FieldRole::OriginZ));
     scan_->points.origin.push_back(origin.cast<float>());
     if (!scan_->points.origin.back().allFinite()) return "has an origin that is not finite";
   }

@@ -28,8 +28,9 @@ std::size_t recordBytes(const std::vector<PointField>& fields);
 enum class FieldRole : std::uint8_t { X, Y, Z, Intensity, Label, OriginX, OriginY, OriginZ, None };
 inline constexpr std::size_t kFieldRoleCount = 8;
 
-/// The role of each field, by its name in the conventions of PCL, CloudCompare, the KITTI tools and LAS converters.
-/// Throws InputError when x, y or z is missing, or a field with a role occurs twice or holds several numbers.
+/// The role of each field, by its name in the conventions of PCL, CloudCompare, the KITTI tools and LAS
+/// converters. Throws InputError when x, y or z is missing, or a field with a role occurs twice or holds
+/// several numbers.
 std::vector<FieldRole> rolesOf(const std::vector<PointField>& fields, const std::string& file);
 
 /// One record's numbers by role.
@@ -51,7 +52,8 @@ class RowCollector {
   PointCollector points_;
 };
 
-/// A scan from `count` packed little-endian records; `body_offset` is where the first one lies in the file, for messages.
+/// A scan from `count` packed little-endian records; `body_offset` is where the first one lies in the file,
+/// for messages.
 ParsedScan scanFromRecords(std::string_view records, const std::vector<PointField>& fields, std::size_t count,
                            const std::string& file, std::uint64_t body_offset);
 

@@ -16,8 +16,9 @@ struct PoseList {
   std::vector<double> time_s;  ///< empty, or one for each pose
 };
 
-/// KITTI (12 numbers a line: 3x4 by rows), 4x4 (16 numbers a line, or four lines of 4), or TUM (time x y z qx qy qz qw);
-/// told by the number of columns. Throws InputError naming the line when a pose is no rigid motion (1e-3).
+/// KITTI (12 numbers a line: 3x4 by rows), 4x4 (16 numbers a line, or four lines of 4), or TUM (time x y z qx
+/// qy qz qw); told by the number of columns. Throws InputError naming the line when a pose is no rigid motion
+/// (1e-3).
 PoseList parsePoses(std::string_view bytes, const std::string& file);
 
 /// `Tr` (velodyne to left camera) of KITTI's calib.txt.

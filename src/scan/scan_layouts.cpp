@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kKnownFormats =
-    "known are .pcd, .ply, .las, .bin (KITTI), .xyz, .asc, .txt (x y z [intensity], or x y z label confidence), "
+    "known are .pcd, .ply, .las, .bin (KITTI), .xyz, .asc, .txt (x y z [intensity], or x y z label "
+    "confidence), "
     ".xyz_label_conf, and the folders of KITTI odometry and Freiburg/Behley";
 
 std::string lowerExtension(const fs::path& path) {
@@ -34,7 +35,8 @@ std::vector<fs::path> filesOf(const fs::path& folder) {
   std::error_code error;
   std::vector<fs::path> files;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
-    if (it->is_regular_file() && !it->path().filename().string().starts_with('.')) files.push_back(it->path());
+    if (it->is_regular_file() && !it->path().filename().string().starts_with('.'))
+      files.push_back(it->path());
   if (error) throw InputError({.file = folder.string()}, "the folder cannot be read: " + error.message());
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
     return naturalLess(a.filename().string(), b.filename().string());
@@ -62,7 +64,8 @@ ScanFormat textFormatOf(const fs::path& path) {
   const std::size_t columns = columnsOfFirstLine(head);
   if (columns == 5) return ScanFormat::LabelledText;
   if (columns == 3 || columns == 4 || columns == 0) return ScanFormat::Xyz;
-  throw InputError({.file = path.string(), .line = 1}, std::to_string(columns) + " columns are no known form of a scan",
+  throw InputError({.file = path.string(), .line = 1},
+                   std::to_string(columns) + " columns are no known form of a scan",
                    "known are x y z, x y z intensity, and x y z label confidence");
 }
 
@@ -75,7 +78,8 @@ bool isScanOfPlainFolder(const fs::path& path) {
 bool isKnownSideFile(const fs::path& path) {
   constexpr std::array known{"poses.txt", "times.txt", "calib.txt"};
   const std::string name = path.filename().string();
-  return std::any_of(known.begin(), known.end(), [&](const char* n) { return name == n; }) || name.starts_with("README");
+  return std::any_of(known.begin(), known.end(), [&](const char* n) { return name == n; }) ||
+         name.starts_with("README");
 }
 
 FolderLayout kittiLayout(const fs::path& folder) {
@@ -90,7 +94,8 @@ FolderLayout kittiLayout(const fs::path& folder) {
     const std::string stem = path.stem().string();
     const auto [end, error] = std::from_chars(stem.data(), stem.data() + stem.size(), scan.frame);
     if (error != std::errc() || end != stem.data() + stem.size())
-      throw InputError({.file = path.string()}, "the name of a KITTI scan must be its frame number, such as 000042.bin");
+      throw InputError({.file = path.string()},
+                       "the name of a KITTI scan must be its frame number, such as 000042.bin");
     layout.scans.push_back(scan);
   }
   layout.poses_file = existing(folder / "poses.txt");
@@ -111,12 +116,17 @@ std::optional<std::string> freiburgStem(const fs::path& path) {
 
 /// Poses lie in a file for each scan; when one has a pose, all must.
 void attachFreiburgPoses(const fs::path& folder, std::vector<LayoutScan>& scans) {
-  const auto poseFile = [&](const LayoutScan& scan) { return folder / (*freiburgStem(scan.file.path) + "_robotPoses.dat"); };
-  if (std::none_of(scans.begin(), scans.end(), [&](const LayoutScan& scan) { return fs::exists(poseFile(scan)); })) return;
+  const auto poseFile = [&](const LayoutScan& scan) {
+    return folder / (*freiburgStem(scan.file.path) + "_robotPoses.dat");
+  };
+  if (std::none_of(scans.begin(), scans.end(),
+                   [&](const LayoutScan& scan) { return fs::exists(poseFile(scan)); }))
+    return;
   for (LayoutScan& scan : scans) {
     const fs::path file = poseFile(scan);
     if (!fs::exists(file))
-      throw InputError({.file = file.string()}, "the pose of " + scan.file.path.filename().string() + " is missing",
+      throw InputError({.file = file.string()},
+                       "the pose of " + scan.file.path.filename().string() + " is missing",
                        "other scans of the folder have a pose: add it, or move the scan elsewhere");
     scan.file.T_map_sensor = parseFreiburgPose(readFile(file), file.string());
     scan.file.has_pose = true;
@@ -144,8 +154,9 @@ std::optional<fs::path> posesFileOf(const fs::path& folder, const std::vector<fs
   for (const fs::path& path : files)
     if (path.filename() == "poses.txt" || lowerExtension(path) == ".tum") found.push_back(path);
   if (found.size() > 1)
-    throw InputError({.file = folder.string()}, "the folder has several files of poses: " + found[0].filename().string() +
-                                                    " and " + found[1].filename().string(),
+    throw InputError({.file = folder.string()},
+                     "the folder has several files of poses: " + found[0].filename().string() + " and " +
+                         found[1].filename().string(),
                      "keep one, or name it with --poses");
   if (found.empty()) return std::nullopt;
   return found.front();
@@ -155,8 +166,10 @@ FolderLayout plainLayout(const fs::path& folder, const std::vector<fs::path>& fi
   FolderLayout layout;
   std::vector<fs::path> scans, texts;
   for (const fs::path& path : files) {
-    if (isScanOfPlainFolder(path)) scans.push_back(path);
-    else if (lowerExtension(path) == ".txt" && !isKnownSideFile(path)) texts.push_back(path);
+    if (isScanOfPlainFolder(path))
+      scans.push_back(path);
+    else if (lowerExtension(path) == ".txt" && !isKnownSideFile(path))
+      texts.push_back(path);
   }
   for (const fs::path& path : scans.empty() ? texts : scans) {
     LayoutScan scan;
@@ -175,10 +188,14 @@ FolderLayout plainLayout(const fs::path& folder, const std::vector<fs::path>& fi
 FolderLayout layoutOfFolder(const fs::path& folder) {
   FolderLayout layout;
   const std::vector<fs::path> files = filesOf(folder);
-  if (fs::is_directory(folder / "velodyne")) layout = kittiLayout(folder);
-  else if (std::any_of(files.begin(), files.end(), freiburgStem)) layout = freiburgLayout(folder, files);
-  else layout = plainLayout(folder, files);
-  if (layout.scans.empty()) throw InputError({.file = folder.string()}, "the folder holds no scans", kKnownFormats);
+  if (fs::is_directory(folder / "velodyne"))
+    layout = kittiLayout(folder);
+  else if (std::any_of(files.begin(), files.end(), freiburgStem))
+    layout = freiburgLayout(folder, files);
+  else
+    layout = plainLayout(folder, files);
+  if (layout.scans.empty())
+    throw InputError({.file = folder.string()}, "the folder holds no scans", kKnownFormats);
   return layout;
 }
 

@@ -21,12 +21,12 @@ struct LayoutScan {
 };
 
 struct FolderLayout {
-  std::vector<LayoutScan> scans;                        ///< by name, in natural order; poses not yet attached
+  std::vector<LayoutScan> scans;  ///< by name, in natural order; poses not yet attached
   std::optional<std::filesystem::path> poses_file;
   std::optional<std::filesystem::path> times_file;
-  bool frames_are_numbers = false;                      ///< `frame` comes from the file's name (KITTI), not its rank
-  bool poses_in_camera = false;                         ///< poses are of the camera (KITTI)
-  std::optional<Eigen::Isometry3d> T_camera_sensor;     ///< KITTI's Tr
+  bool frames_are_numbers = false;  ///< `frame` comes from the file's name (KITTI), not its rank
+  bool poses_in_camera = false;     ///< poses are of the camera (KITTI)
+  std::optional<Eigen::Isometry3d> T_camera_sensor;  ///< KITTI's Tr
 };
 
 /// The layout of a folder; InputError when there are no scans in it.
@@ -38,15 +38,18 @@ std::optional<std::filesystem::path> layoutFolderOf(const std::filesystem::path&
 /// The format of a scan file, by its name and for texts by its first line; InputError for unknown ones.
 ScanFormat formatOf(const std::filesystem::path& scan);
 
-/// Gives each scan its time and its pose from the folder's files; InputError when a scan has no line in one of them.
+/// Gives each scan its time and its pose from the folder's files; InputError when a scan has no line in one
+/// of them.
 void attachTimes(FolderLayout& layout);
 void attachPoses(FolderLayout& layout, ProgressSink& sink);
 
 /// Gives `scans` the poses of a list: by time when both have times (10 ms), else by frame.
-void assignPoses(std::vector<LayoutScan*> scans, const PoseList& list, const std::string& poses_file, bool frames_are_numbers);
+void assignPoses(std::vector<LayoutScan*> scans, const PoseList& list, const std::string& poses_file,
+                 bool frames_are_numbers);
 
 /// `T_map_sensor = Tr⁻¹ · P · Tr` for a pose P of KITTI's camera.
-Eigen::Isometry3d sensorPoseFromCamera(const Eigen::Isometry3d& camera_pose, const Eigen::Isometry3d& T_camera_sensor);
+Eigen::Isometry3d sensorPoseFromCamera(const Eigen::Isometry3d& camera_pose,
+                                       const Eigen::Isometry3d& T_camera_sensor);
 
 /// "scan_2" before "scan_10": runs of digits compare as numbers.
 bool naturalLess(const std::string& a, const std::string& b);

@@ -25,9 +25,11 @@ std::vector<std::uint32_t> readLabels(const ScanFile& file, std::size_t point_co
 Eigen::Isometry3d poseOf(const ScanFile& file, const ParsedScan& parsed) {
   if (parsed.local_origin.isZero(0)) return file.T_map_sensor;
   if (file.has_pose)
-    refuseFile(file.path.string(), "the first point lies more than " + std::to_string(static_cast<int>(kFloatReach_m)) +
-                                       " m from the sensor, but the scan has a pose",
-               "points of a scan with a pose are in the sensor frame; for points in the map frame leave the pose out");
+    refuseFile(file.path.string(),
+               "the first point lies more than " + std::to_string(static_cast<int>(kFloatReach_m)) +
+                   " m from the sensor, but the scan has a pose",
+               "points of a scan with a pose are in the sensor frame; for points in the map frame leave the "
+               "pose out");
   return file.T_map_sensor * Eigen::Translation3d(parsed.local_origin);
 }
 
@@ -35,13 +37,20 @@ Eigen::Isometry3d poseOf(const ScanFile& file, const ParsedScan& parsed) {
 
 ParsedScan parseScan(std::string_view bytes, ScanFormat format, const std::string& file) {
   switch (format) {
-    case ScanFormat::Pcd: return parsePcd(bytes, file);
-    case ScanFormat::Ply: return parsePly(bytes, file);
-    case ScanFormat::Kitti: return parseKittiPoints(bytes, file);
-    case ScanFormat::Freiburg: return parseFreiburgPoints(bytes, file);
-    case ScanFormat::LabelledText: return parseLabelledText(bytes, file);
-    case ScanFormat::Xyz: return parseXyzText(bytes, file);
-    case ScanFormat::Las: return parseLas(bytes, file);
+    case ScanFormat::Pcd:
+      return parsePcd(bytes, file);
+    case ScanFormat::Ply:
+      return parsePly(bytes, file);
+    case ScanFormat::Kitti:
+      return parseKittiPoints(bytes, file);
+    case ScanFormat::Freiburg:
+      return parseFreiburgPoints(bytes, file);
+    case ScanFormat::LabelledText:
+      return parseLabelledText(bytes, file);
+    case ScanFormat::Xyz:
+      return parseXyzText(bytes, file);
+    case ScanFormat::Las:
+      return parseLas(bytes, file);
   }
   refuseFile(file, "has an unknown format");
 }

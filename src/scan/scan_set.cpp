@@ -21,7 +21,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-bool isManifest(const fs::path& path) { return path.extension() == ".yaml" || path.extension() == ".yml"; }
+bool isManifest(const fs::path& path) {
+  return path.extension() == ".yaml" || path.extension() == ".yml";
+}
 
 std::optional<fs::path> manifestIn(const fs::path& folder) {
   for (const char* name : {"manifest.yaml", "manifest.yml"})
@@ -45,9 +47,12 @@ class ScanGatherer {
 
   void add(const fs::path& input) {
     if (!fs::exists(input)) throw InputError({.file = input.string()}, "there is no such file or folder");
-    if (fs::is_directory(input)) addFolder(input);
-    else if (isManifest(input)) addManifest(input);
-    else scans_.push_back(loneScan(input));
+    if (fs::is_directory(input))
+      addFolder(input);
+    else if (isManifest(input))
+      addManifest(input);
+    else
+      scans_.push_back(loneScan(input));
   }
 
   /// Poses given by hand, then those of PCD files themselves; says which scans are left without.
@@ -102,7 +107,8 @@ class ScanGatherer {
       found.file.path = path;
       return found;
     }
-    throw InputError({.file = path.string()}, "is not among the scans of its folder, which have poses or times there",
+    throw InputError({.file = path.string()},
+                     "is not among the scans of its folder, which have poses or times there",
                      "move it to another folder, or list it in a manifest");
   }
 
@@ -136,17 +142,25 @@ class ScanGatherer {
   }
 
   void addEntry(const ManifestEntry& entry, const fs::path& manifest) {
-    if (!fs::exists(entry.path)) throw InputError({.file = entry.path.string()}, "there is no such file or folder; " + manifest.string() + " lists it");
+    if (!fs::exists(entry.path))
+      throw InputError({.file = entry.path.string()},
+                       "there is no such file or folder; " + manifest.string() + " lists it");
     if (fs::is_directory(entry.path)) {
       if (entry.pose || entry.time_s || entry.labels || entry.format)
-        throw InputError({.file = manifest.string()}, entry.path.string() + " is a folder: only a file takes pose, time_s, labels or format");
+        throw InputError(
+            {.file = manifest.string()},
+            entry.path.string() + " is a folder: only a file takes pose, time_s, labels or format");
       return addFolder(entry.path);
     }
-    if (isManifest(entry.path)) throw InputError({.file = manifest.string()}, "a manifest cannot list the manifest " + entry.path.string());
+    if (isManifest(entry.path))
+      throw InputError({.file = manifest.string()},
+                       "a manifest cannot list the manifest " + entry.path.string());
     LayoutScan scan;
     scan.file.path = entry.path;
-    if (entry.pose || entry.format) scan.file.format = entry.format ? *entry.format : formatOf(entry.path);
-    else scan = loneScan(entry.path);
+    if (entry.pose || entry.format)
+      scan.file.format = entry.format ? *entry.format : formatOf(entry.path);
+    else
+      scan = loneScan(entry.path);
     if (entry.pose) scan.file.T_map_sensor = *entry.pose;
     if (entry.pose) scan.file.has_pose = true;
     if (entry.time_s) scan.file.time_s = entry.time_s;
@@ -164,9 +178,11 @@ class ScanGatherer {
     assignPoses(scans, parsePoses(readFile(poses), poses.string()), poses.string(), false);
   }
 
-  /// Poses given by hand for one KITTI sequence are those of the whole sequence, by frame number, and of its camera.
+  /// Poses given by hand for one KITTI sequence are those of the whole sequence, by frame number, and of its
+  /// camera.
   void assignGivenPoses() {
-    if (layouts_.size() != 1 || !layouts_.begin()->second.frames_are_numbers) return assignPosesFrom(params_->poses, 0);
+    if (layouts_.size() != 1 || !layouts_.begin()->second.frames_are_numbers)
+      return assignPosesFrom(params_->poses, 0);
     FolderLayout sequence = layouts_.begin()->second;
     sequence.poses_file = params_->poses;
     sequence.scans = scans_;
@@ -179,8 +195,9 @@ class ScanGatherer {
     const auto first = std::find_if_not(files.begin(), files.end(), posed);
     if (first == files.end()) return;
     const auto lone = std::count_if(files.begin(), files.end(), std::not_fn(posed));
-    sink_->note(std::to_string(lone) + " of " + std::to_string(files.size()) + " scans have no pose and are taken as given in the map frame (" +
-                first->path.string() + (lone > 1 ? ", ..." : "") +
+    sink_->note(std::to_string(lone) + " of " + std::to_string(files.size()) +
+                " scans have no pose and are taken as given in the map frame (" + first->path.string() +
+                (lone > 1 ? ", ..." : "") +
                 "): where the sensor stood is not known, so questions of visibility answer \"not observed\"");
   }
 
@@ -209,6 +226,8 @@ ScanSet ScanSet::open(const std::vector<fs::path>& inputs, const ScanSetParams& 
   return set;
 }
 
-Scan ScanSet::load(std::size_t index) const { return loadScan(files_.at(index)); }
+Scan ScanSet::load(std::size_t index) const {
+  return loadScan(files_.at(index));
+}
 
 }  // namespace cluxel

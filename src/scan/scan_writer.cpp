@@ -30,8 +30,8 @@ void checkLengths(const ScanPoints& points, const fs::path& path) {
   const bool whole = points.y.size() == count && points.z.size() == count && fits(points.intensity.size()) &&
                      fits(points.label.size()) && fits(points.origin.size());
   if (count == 0 || !whole)
-    throw InputError({.file = path.string()}, count == 0 ? "an empty scan cannot be written"
-                                                         : "the scan's arrays differ in length");
+    throw InputError({.file = path.string()},
+                     count == 0 ? "an empty scan cannot be written" : "the scan's arrays differ in length");
 }
 
 template <typename T>
@@ -67,7 +67,8 @@ void appendNumber(std::string& text, double number, char end) {
 void writeScanFile(const Scan& scan, const fs::path& path) {
   checkLengths(scan.points, path);
   const std::vector<PointField> fields = fieldsOf(scan.points);
-  writeFile(path, pcdFile(recordsOf(scan.points, recordBytes(fields)), fields, scan.points.size(), scan.T_map_sensor));
+  writeFile(path, pcdFile(recordsOf(scan.points, recordBytes(fields)), fields, scan.points.size(),
+                          scan.T_map_sensor));
 }
 
 void writePoses(const std::vector<Eigen::Isometry3d>& T_map_sensor, const fs::path& path) {

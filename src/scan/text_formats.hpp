@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scans as lines of numbers. All parsers throw InputError naming line and column, and never return an empty scan.
+// Scans as lines of numbers. All parsers throw InputError naming line and column, and never return an empty
+// scan.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +22,8 @@ ParsedScan parseLabelledText(std::string_view bytes, const std::string& file);
 ParsedScan parseFreiburgPoints(std::string_view bytes, const std::string& file);
 
 /// One label id a line.
-std::vector<std::uint32_t> parseLabelLines(std::string_view bytes, const std::string& file, std::size_t point_count);
+std::vector<std::uint32_t> parseLabelLines(std::string_view bytes, const std::string& file,
+                                           std::size_t point_count);
 
 /// The number of columns of the first line with content; 0 when there is none.
 std::size_t columnsOfFirstLine(std::string_view bytes);

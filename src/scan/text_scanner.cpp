@@ -13,7 +13,9 @@ namespace {
 
 constexpr std::size_t kLongestShownLine = 200;
 
-bool isBlank(char c) { return c == ' ' || c == '\t' || c == ','; }
+bool isBlank(char c) {
+  return c == ' ' || c == '\t' || c == ',';
+}
 
 }  // namespace
 
@@ -41,7 +43,8 @@ double TextScanner::number(const char* what) {
   const char* from = *at_ == '+' ? at_ + 1 : at_;
   double value = 0;
   const auto [end, error] = std::from_chars(from, stop_, value);
-  if (error == std::errc::result_out_of_range) refuse(std::string(what) + " is out of range: '" + wordAt() + "'");
+  if (error == std::errc::result_out_of_range)
+    refuse(std::string(what) + " is out of range: '" + wordAt() + "'");
   if (error != std::errc()) refuse(std::string(what) + " is not a number: '" + wordAt() + "'");
   if (!std::isfinite(value))
     refuse(std::string(what) + " is not finite: '" + wordAt() + "'", "leave out points without a return");

@@ -41,7 +41,8 @@ std::vector<std::string_view> cellsOf(std::string_view line) {
   }
 }
 
-std::size_t columnOf(const std::vector<std::string_view>& header, std::string_view name, const std::string& file) {
+std::size_t columnOf(const std::vector<std::string_view>& header, std::string_view name,
+                     const std::string& file) {
   const auto found = std::find(header.begin(), header.end(), name);
   if (found == header.end())
     throw InputError({.file = file, .line = 1}, "has no column '" + std::string(name) + "'");
@@ -59,14 +60,15 @@ PointTruth parseTruth(std::string_view bytes, const std::string& file, std::size
   while (scanner.nextLine()) {
     if (truth.primitive.size() == point_count)
       scanner.refuse("more lines than the scan's " + std::to_string(point_count) + " points");
-    truth.primitive.push_back(static_cast<std::int8_t>(codeOf(scanner, "primitive", kPrimitiveLabelCount - 1)));
+    truth.primitive.push_back(
+        static_cast<std::int8_t>(codeOf(scanner, "primitive", kPrimitiveLabelCount - 1)));
     truth.object_class.push_back(static_cast<std::int8_t>(codeOf(scanner, "object", last_class)));
     truth.instance.push_back(codeOf(scanner, "instance", std::numeric_limits<std::int32_t>::max()));
     scanner.endLine("primitive object instance");
   }
   if (truth.primitive.size() != point_count)
-    scanner.refuseEnd("ends after " + std::to_string(truth.primitive.size()) + " lines for " + std::to_string(point_count) +
-                      " points");
+    scanner.refuseEnd("ends after " + std::to_string(truth.primitive.size()) + " lines for " +
+                      std::to_string(point_count) + " points");
   return truth;
 }
 
@@ -104,7 +106,8 @@ std::vector<std::int32_t> parseAmbiguousInstances(std::string_view text, const s
     std::int32_t number = 0;
     const auto [stop, error] = std::from_chars(id.data(), id.data() + id.size(), number);
     if (error != std::errc() || stop != id.data() + id.size() || number < 0)
-      throw InputError({.file = file, .line = line}, "the id is not a whole number: '" + std::string(id.substr(0, 40)) + "'");
+      throw InputError({.file = file, .line = line},
+                       "the id is not a whole number: '" + std::string(id.substr(0, 40)) + "'");
     if (ambiguous != "0" && ambiguous != "1")
       throw InputError({.file = file, .line = line}, "the column 'ambiguous' must be 0 or 1");
     if (ambiguous == "1") ids.push_back(number);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only user of yaml-cpp in this wing. It listens to the parser's events: yaml-cpp's own tree hides duplicate keys and
-// follows aliases, which can make a small file endless.
+// The only user of yaml-cpp in this wing. It listens to the parser's events: yaml-cpp's own tree hides
+// duplicate keys and follows aliases, which can make a small file endless.
 #include "scan/yaml_tree.hpp"
 
 #include <yaml-cpp/eventhandler.h>
@@ -32,17 +32,20 @@ class TreeBuilder : public YAML::EventHandler {
     add(valueAt(mark, YamlValue::Kind::Null));
   }
 
-  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t, const std::string& text) override {
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                const std::string& text) override {
     YamlValue value = valueAt(mark, YamlValue::Kind::Scalar);
     value.scalar = text;
     add(std::move(value));
   }
 
-  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
     open_.push_back(valueAt(mark, YamlValue::Kind::Sequence));
   }
   void OnSequenceEnd() override { close(); }
-  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
     open_.push_back(valueAt(mark, YamlValue::Kind::Mapping));
   }
   void OnMapEnd() override {
@@ -50,7 +53,9 @@ class TreeBuilder : public YAML::EventHandler {
     close();
   }
 
-  YamlValue root() { return open_.front().items.empty() ? YamlValue{} : std::move(open_.front().items.front()); }
+  YamlValue root() {
+    return open_.front().items.empty() ? YamlValue{} : std::move(open_.front().items.front());
+  }
 
  private:
   static YamlValue valueAt(const YAML::Mark& mark, YamlValue::Kind kind) {
@@ -62,7 +67,8 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void refuseAnchor(const YAML::Mark& mark) {
-    faults_->add(valueAt(mark, YamlValue::Kind::Null), "anchors and aliases are not supported", "write the value out");
+    faults_->add(valueAt(mark, YamlValue::Kind::Null), "anchors and aliases are not supported",
+                 "write the value out");
   }
 
   void add(YamlValue value) { open_.back().items.push_back(std::move(value)); }
@@ -90,14 +96,16 @@ class TreeBuilder : public YAML::EventHandler {
     std::stable_sort(keys.begin(), keys.end(), [](auto* a, auto* b) { return a->scalar < b->scalar; });
     for (std::size_t i = 1; i < keys.size(); ++i)
       if (keys[i]->scalar == keys[i - 1]->scalar && keys[i]->kind == YamlValue::Kind::Scalar)
-        faults_->add(*keys[i], "'" + keys[i]->scalar + "' was given in line " + std::to_string(keys[i - 1]->line) + " already");
+        faults_->add(*keys[i], "'" + keys[i]->scalar + "' was given in line " +
+                                   std::to_string(keys[i - 1]->line) + " already");
   }
 
   YamlFaults* faults_;
   std::vector<YamlValue> open_;  ///< the values being built, outermost first
 };
 
-void appendNumbers(const YamlValue& value, const char* what, YamlFaults& faults, std::vector<double>& numbers, bool& whole) {
+void appendNumbers(const YamlValue& value, const char* what, YamlFaults& faults, std::vector<double>& numbers,
+                   bool& whole) {
   for (const YamlValue& item : value.items) {
     if (item.kind == YamlValue::Kind::Sequence) {
       appendNumbers(item, what, faults, numbers, whole);
@@ -158,7 +166,8 @@ bool checkMapping(const YamlValue& value, const std::vector<std::string>& known,
     return false;
   }
   for (const auto& [key, ignored] : value.entries)
-    if (key.kind == YamlValue::Kind::Scalar && std::find(known.begin(), known.end(), key.scalar) == known.end())
+    if (key.kind == YamlValue::Kind::Scalar &&
+        std::find(known.begin(), known.end(), key.scalar) == known.end())
       faults.add(key, "unknown key '" + key.scalar + "'", suggestion(key.scalar, known));
   return true;
 }
@@ -168,7 +177,8 @@ std::optional<double> numberOf(const YamlValue& value, const char* what, YamlFau
   const char* begin = value.scalar.data();
   const char* end = begin + value.scalar.size();
   const auto [stop, error] = std::from_chars(begin != end && *begin == '+' ? begin + 1 : begin, end, number);
-  const bool good = value.kind == YamlValue::Kind::Scalar && error == std::errc() && stop == end && std::isfinite(number);
+  const bool good =
+      value.kind == YamlValue::Kind::Scalar && error == std::errc() && stop == end && std::isfinite(number);
   if (good) return number;
   faults.add(value, std::string(what) + " must be a finite number");
   return std::nullopt;

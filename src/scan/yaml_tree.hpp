@@ -18,9 +18,9 @@ struct YamlValue {
   enum class Kind { Null, Scalar, Sequence, Mapping };
   Kind kind = Kind::Null;
   std::string scalar;
-  std::size_t line = 0, column = 0;                       ///< from 1
-  std::vector<YamlValue> items;                           ///< of a sequence
-  std::vector<YamlEntry> entries;                         ///< of a mapping, in the order written; keys are scalars
+  std::size_t line = 0, column = 0;  ///< from 1
+  std::vector<YamlValue> items;      ///< of a sequence
+  std::vector<YamlEntry> entries;    ///< of a mapping, in the order written; keys are scalars
 
   const YamlValue* find(std::string_view key) const;
 };
@@ -44,7 +44,8 @@ class YamlFaults {
   std::vector<Diagnostic> diagnostics_;
 };
 
-/// The tree of the first document. Duplicate keys, anchors and aliases are faults; text that is no YAML throws at once.
+/// The tree of the first document. Duplicate keys, anchors and aliases are faults; text that is no YAML
+/// throws at once.
 YamlValue parseYaml(std::string_view text, const std::string& file, YamlFaults& faults);
 
 /// Faults keys that are not in `known`, with "did you mean"; also a value that is no mapping.
@@ -53,7 +54,8 @@ bool checkMapping(const YamlValue& value, const std::vector<std::string>& known,
 /// A finite number; a fault that calls it `what` when it is none.
 std::optional<double> numberOf(const YamlValue& value, const char* what, YamlFaults& faults);
 /// Exactly `count` numbers; those of rows (sequences of sequences) are joined.
-std::optional<std::vector<double>> numbersOf(const YamlValue& value, std::size_t count, const char* what, YamlFaults& faults);
+std::optional<std::vector<double>> numbersOf(const YamlValue& value, std::size_t count, const char* what,
+                                             YamlFaults& faults);
 /// A text that is not empty.
 std::optional<std::string> textOf(const YamlValue& value, const char* what, YamlFaults& faults);
 

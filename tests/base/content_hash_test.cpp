@@ -38,7 +38,8 @@ TEST(ContentHash, OrdersByBytes) {
 }
 
 TEST(ContentHasher, TellsTheSplitOfTextsApart) {
-  EXPECT_NE(ContentHasher().addText("ab").addText("c").finish(), ContentHasher().addText("a").addText("bc").finish());
+  EXPECT_NE(ContentHasher().addText("ab").addText("c").finish(),
+            ContentHasher().addText("a").addText("bc").finish());
 }
 
 TEST(ContentHasher, TellsTheSplitOfSpansApart) {
@@ -53,7 +54,8 @@ TEST(ContentHasher, TakesTheSameBytesInAnyPieces) {
   const std::string text(1000, 'x');
   const ContentHash whole = ContentHasher().addBytes(text.data(), text.size()).finish();
   ContentHasher pieces;
-  for (std::size_t at = 0; at < text.size(); at += 7) pieces.addBytes(text.data() + at, std::min<std::size_t>(7, text.size() - at));
+  for (std::size_t at = 0; at < text.size(); at += 7)
+    pieces.addBytes(text.data() + at, std::min<std::size_t>(7, text.size() - at));
   EXPECT_EQ(pieces.finish(), whole);
 }
 

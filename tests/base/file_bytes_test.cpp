@@ -47,7 +47,8 @@ TEST_F(FileBytes, RefuseFoldersAndAbsentFilesByName) {
     return std::string("nothing was refused");
   };
   EXPECT_EQ(refusal(folder_), folder_.string() + ": error: is a folder, a file was expected");
-  EXPECT_EQ(refusal(folder_ / "absent"), (folder_ / "absent").string() + ": error: cannot be opened: No such file or directory");
+  EXPECT_EQ(refusal(folder_ / "absent"),
+            (folder_ / "absent").string() + ": error: cannot be opened: No such file or directory");
 }
 
 TEST_F(FileBytes, LeaveTheOldFileWhenTheDiskIsFull) {
@@ -65,7 +66,8 @@ TEST_F(FileBytes, NameTheFileThatCannotBeWritten) {
     FAIL() << "nothing was refused";
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ExitCode::StoreUnavailable);
-    EXPECT_NE(std::string(e.what()).find((folder_ / "absent" / "a").string() + ": cannot be written"), std::string::npos);
+    EXPECT_NE(std::string(e.what()).find((folder_ / "absent" / "a").string() + ": cannot be written"),
+              std::string::npos);
   }
 }
 

@@ -22,7 +22,8 @@ TEST(KittiFormat, ReadsRecordsOfFourFloats) {
 
 TEST(KittiFormat, RefusesACutOffPointNamingTheByte) {
   const std::string bytes = bytesOfAll(1.F, 2.F, 3.F, 0.5F, 4.F);
-  EXPECT_THAT(refusalOf([&] { parseKittiPoints(bytes, "a.bin"); }), HasSubstr("a.bin: byte 16: error: the last point is cut off: 4 bytes"));
+  EXPECT_THAT(refusalOf([&] { parseKittiPoints(bytes, "a.bin"); }),
+              HasSubstr("a.bin: byte 16: error: the last point is cut off: 4 bytes"));
 }
 
 TEST(KittiFormat, RefusesAnEmptyFile) {
@@ -33,21 +34,27 @@ TEST(KittiFormat, RefusesNumbersThatAreNotFiniteNamingTheByte) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float inf = std::numeric_limits<float>::infinity();
   const std::string late = bytesOfAll(1.F, 2.F, 3.F, 0.F, 1.F, nan, 3.F, 0.F);
-  EXPECT_THAT(refusalOf([&] { parseKittiPoints(late, "a.bin"); }), HasSubstr("byte 16: error: point 1 has a coordinate"));
+  EXPECT_THAT(refusalOf([&] { parseKittiPoints(late, "a.bin"); }),
+              HasSubstr("byte 16: error: point 1 has a coordinate"));
   const std::string first = bytesOfAll(inf, 2.F, 3.F, 0.F);
-  EXPECT_THAT(refusalOf([&] { parseKittiPoints(first, "a.bin"); }), HasSubstr("byte 0: error: point 0 has a coordinate"));
+  EXPECT_THAT(refusalOf([&] { parseKittiPoints(first, "a.bin"); }),
+              HasSubstr("byte 0: error: point 0 has a coordinate"));
   const std::string dark = bytesOfAll(1.F, 2.F, 3.F, nan);
-  EXPECT_THAT(refusalOf([&] { parseKittiPoints(dark, "a.bin"); }), HasSubstr("byte 12: error: point 0 has an intensity"));
+  EXPECT_THAT(refusalOf([&] { parseKittiPoints(dark, "a.bin"); }),
+              HasSubstr("byte 12: error: point 0 has an intensity"));
 }
 
 TEST(KittiFormat, TakesTheClassFromTheLowHalfOfALabel) {
-  EXPECT_THAT(parseKittiLabels(bytesOfAll(std::uint32_t{0x00070051}, std::uint32_t{40}), "a.label", 2), ElementsAre(81U, 40U));
+  EXPECT_THAT(parseKittiLabels(bytesOfAll(std::uint32_t{0x00070051}, std::uint32_t{40}), "a.label", 2),
+              ElementsAre(81U, 40U));
 }
 
 TEST(KittiFormat, RefusesLabelsOfAnotherNumberOfPoints) {
   const std::string labels = bytesOfAll(1U, 2U, 3U);
-  EXPECT_THAT(refusalOf([&] { parseKittiLabels(labels, "a.label", 2); }), HasSubstr("a.label: byte 8: error: the file has 12 bytes where 8"));
-  EXPECT_THAT(refusalOf([&] { parseKittiLabels(labels, "a.label", 4); }), HasSubstr("a.label: byte 12: error: the file has 12 bytes where 16"));
+  EXPECT_THAT(refusalOf([&] { parseKittiLabels(labels, "a.label", 2); }),
+              HasSubstr("a.label: byte 8: error: the file has 12 bytes where 8"));
+  EXPECT_THAT(refusalOf([&] { parseKittiLabels(labels, "a.label", 4); }),
+              HasSubstr("a.label: byte 12: error: the file has 12 bytes where 16"));
 }
 
 }  // namespace

@@ -84,14 +84,17 @@ TEST(LasFormat, KeepsMillimetresOfWorldCoordinates) {
 TEST(LasFormat, RefusesLazInPlainWords) {
   std::string bytes = lasFile(2, 1, kPoints);
   put<std::uint8_t>(bytes, 104, 128 + 1);
-  EXPECT_THAT(refusalOf([&] { parseLas(bytes, "a.laz"); }), HasSubstr("a.laz: byte 104: error: the points are compressed (LAZ)"));
+  EXPECT_THAT(refusalOf([&] { parseLas(bytes, "a.laz"); }),
+              HasSubstr("a.laz: byte 104: error: the points are compressed (LAZ)"));
 }
 
 TEST(LasFormat, RefusesATruncatedFileNamingTheByte) {
   const std::string bytes = lasFile(2, 0, kPoints);
   const std::string cut = bytes.substr(0, bytes.size() - 1);
-  EXPECT_THAT(refusalOf([&] { parseLas(cut, "a.las"); }), HasSubstr("byte 266: error: the file ends after 1 of 2 points"));
-  EXPECT_THAT(refusalOf([&] { parseLas(bytes.substr(0, 100), "a.las"); }), HasSubstr("byte 100: error: the LAS header is cut off"));
+  EXPECT_THAT(refusalOf([&] { parseLas(cut, "a.las"); }),
+              HasSubstr("byte 266: error: the file ends after 1 of 2 points"));
+  EXPECT_THAT(refusalOf([&] { parseLas(bytes.substr(0, 100), "a.las"); }),
+              HasSubstr("byte 100: error: the LAS header is cut off"));
 }
 
 TEST(LasFormat, RefusesEveryPrefixOfAFile) {
@@ -120,10 +123,12 @@ TEST(LasFormat, RefusesNumbersThatAreNotFinite) {
   EXPECT_THAT(refusalOf([&] { parseLas(scale, "a.las"); }), HasSubstr("byte 131: error: the scale factors"));
   std::string offset = lasFile(2, 0, kPoints);
   put(offset, 163, std::numeric_limits<double>::infinity());
-  EXPECT_THAT(refusalOf([&] { parseLas(offset, "a.las"); }), HasSubstr("byte 155: error: the offsets are not finite"));
+  EXPECT_THAT(refusalOf([&] { parseLas(offset, "a.las"); }),
+              HasSubstr("byte 155: error: the offsets are not finite"));
   std::string huge = lasFile(2, 0, kPoints);
   put(huge, 139, 1e300);
-  EXPECT_THAT(refusalOf([&] { parseLas(huge, "a.las"); }), HasSubstr("point 0 has a coordinate that is not finite"));
+  EXPECT_THAT(refusalOf([&] { parseLas(huge, "a.las"); }),
+              HasSubstr("point 0 has a coordinate that is not finite"));
 }
 
 }  // namespace

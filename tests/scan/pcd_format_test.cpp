@@ -18,8 +18,9 @@ using testing::HasSubstr;
 std::string header(const std::string& fields, const std::string& size, const std::string& type, int points,
                    const std::string& data, const std::string& viewpoint = "0 0 0 1 0 0 0") {
   const std::string n = std::to_string(points);
-  return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS " + fields + "\nSIZE " + size + "\nTYPE " + type +
-         "\nWIDTH " + n + "\nHEIGHT 1\nVIEWPOINT " + viewpoint + "\nPOINTS " + n + "\nDATA " + data + "\n";
+  return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS " + fields + "\nSIZE " + size +
+         "\nTYPE " + type + "\nWIDTH " + n + "\nHEIGHT 1\nVIEWPOINT " + viewpoint + "\nPOINTS " + n +
+         "\nDATA " + data + "\n";
 }
 
 /// Literal runs only: every LZF decoder must take them.
@@ -33,13 +34,15 @@ std::string storedAsLzf(const std::string& bytes) {
 }
 
 TEST(PcdFormat, ReadsTextBinaryAndCompressedAlike) {
-  const std::string text = header("x y z intensity label", "4 4 4 4 4", "F F F F U", 2, "ascii") + "1 2 3 0.5 7\n4 5 6 0.25 8\n";
+  const std::string text =
+      header("x y z intensity label", "4 4 4 4 4", "F F F F U", 2, "ascii") + "1 2 3 0.5 7\n4 5 6 0.25 8\n";
   const std::string packed = bytesOfAll(1.F, 2.F, 3.F, 0.5F, 7U, 4.F, 5.F, 6.F, 0.25F, 8U);
   const std::string binary = header("x y z intensity label", "4 4 4 4 4", "F F F F U", 2, "binary") + packed;
   const std::string columns = bytesOfAll(1.F, 4.F, 2.F, 5.F, 3.F, 6.F, 0.5F, 0.25F, 7U, 8U);
   const std::string lzf = storedAsLzf(columns);
-  const std::string compressed = header("x y z intensity label", "4 4 4 4 4", "F F F F U", 2, "binary_compressed") +
-                                 bytesOfAll(static_cast<std::uint32_t>(lzf.size()), 40U) + lzf;
+  const std::string compressed =
+      header("x y z intensity label", "4 4 4 4 4", "F F F F U", 2, "binary_compressed") +
+      bytesOfAll(static_cast<std::uint32_t>(lzf.size()), 40U) + lzf;
   for (const std::string& bytes : {text, binary, compressed}) {
     const ParsedScan scan = parsePcd(bytes, "a.pcd");
     EXPECT_THAT(scan.points.x, ElementsAre(1.F, 4.F));
@@ -51,8 +54,9 @@ TEST(PcdFormat, ReadsTextBinaryAndCompressedAlike) {
 }
 
 TEST(PcdFormat, TakesFieldsOfAnyTypeOrderAndConvention) {
-  const std::string bytes = header("rgb Reflectivity classification _ z y x", "4 1 2 1 8 8 8", "U U I U F F F", 1, "binary") +
-                            bytesOfAll(1U, std::uint8_t{200}, std::int16_t{6}, std::uint8_t{0}, 3.0, 2.0, 1.0);
+  const std::string bytes =
+      header("rgb Reflectivity classification _ z y x", "4 1 2 1 8 8 8", "U U I U F F F", 1, "binary") +
+      bytesOfAll(1U, std::uint8_t{200}, std::int16_t{6}, std::uint8_t{0}, 3.0, 2.0, 1.0);
   const ParsedScan scan = parsePcd(bytes, "a.pcd");
   EXPECT_THAT(scan.points.x, ElementsAre(1.F));
   EXPECT_THAT(scan.points.intensity, ElementsAre(200.F));
@@ -60,9 +64,12 @@ TEST(PcdFormat, TakesFieldsOfAnyTypeOrderAndConvention) {
 }
 
 TEST(PcdFormat, SkipsFieldsOfSeveralNumbers) {
-  const std::string head = "VERSION .7\nFIELDS histogram x y z\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 3 1 1 1\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ";
+  const std::string head =
+      "VERSION .7\nFIELDS histogram x y z\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 3 1 1 1\nWIDTH 1\nHEIGHT "
+      "1\nPOINTS 1\nDATA ";
   EXPECT_THAT(parsePcd(head + "ascii\n9 nan 9 1 2 3\n", "a").points.z, ElementsAre(3.F));
-  EXPECT_THAT(parsePcd(head + "binary\n" + bytesOfAll(9.F, 9.F, 9.F, 1.F, 2.F, 3.F), "a").points.z, ElementsAre(3.F));
+  EXPECT_THAT(parsePcd(head + "binary\n" + bytesOfAll(9.F, 9.F, 9.F, 1.F, 2.F, 3.F), "a").points.z,
+              ElementsAre(3.F));
 }
 
 TEST(PcdFormat, TakesMinusOneAsALabelForNone) {
@@ -78,7 +85,8 @@ TEST(PcdFormat, GivesTheViewpointWhenItIsNotTheIdentity) {
 }
 
 TEST(PcdFormat, RefusesEveryPrefixOfABinaryFile) {
-  const std::string bytes = header("x y z", "4 4 4", "F F F", 2, "binary") + bytesOfAll(1.F, 2.F, 3.F, 4.F, 5.F, 6.F);
+  const std::string bytes =
+      header("x y z", "4 4 4", "F F F", 2, "binary") + bytesOfAll(1.F, 2.F, 3.F, 4.F, 5.F, 6.F);
   for (std::size_t length = 0; length < bytes.size(); ++length)
     EXPECT_THROW(parsePcd(std::string_view(bytes).substr(0, length), "a.pcd"), InputError) << length;
 }
@@ -86,7 +94,8 @@ TEST(PcdFormat, RefusesEveryPrefixOfABinaryFile) {
 TEST(PcdFormat, RefusesATruncatedBodyNamingTheByte) {
   const std::string bytes = header("x y z", "4 4 4", "F F F", 2, "binary") + bytesOfAll(1.F, 2.F, 3.F, 4.F);
   EXPECT_THAT(refusalOf([&] { parsePcd(bytes, "a.pcd"); }),
-              HasSubstr("a.pcd: byte " + std::to_string(bytes.size()) + ": error: the points take 16 bytes where the header declares 24"));
+              HasSubstr("a.pcd: byte " + std::to_string(bytes.size()) +
+                        ": error: the points take 16 bytes where the header declares 24"));
 }
 
 TEST(PcdFormat, RefusesCompressedDataThatLie) {
@@ -94,13 +103,18 @@ TEST(PcdFormat, RefusesCompressedDataThatLie) {
   const std::string lzf = storedAsLzf(bytesOfAll(1.F, 2.F, 3.F));
   const auto size = static_cast<std::uint32_t>(lzf.size());
   EXPECT_THAT(parsePcd(head + bytesOfAll(size, 12U) + lzf, "a").points.y, ElementsAre(2.F));
-  EXPECT_THAT(refusalOf([&] { parsePcd(head + bytesOfAll(size, 13U) + lzf, "a"); }), HasSubstr("the size of the unpacked data, 13,"));
-  EXPECT_THAT(refusalOf([&] { parsePcd(head + bytesOfAll(size + 1, 12U) + lzf, "a"); }), HasSubstr("bytes where the header declares"));
+  EXPECT_THAT(refusalOf([&] { parsePcd(head + bytesOfAll(size, 13U) + lzf, "a"); }),
+              HasSubstr("the size of the unpacked data, 13,"));
+  EXPECT_THAT(refusalOf([&] { parsePcd(head + bytesOfAll(size + 1, 12U) + lzf, "a"); }),
+              HasSubstr("bytes where the header declares"));
   std::string damaged = lzf;
   damaged[0] = static_cast<char>(0xFF);
-  EXPECT_THAT(refusalOf([&] { parsePcd(head + bytesOfAll(size, 12U) + damaged, "a"); }), HasSubstr("PCL cannot decode it"));
-  const std::string bomb = header("x y z", "4 4 4", "F F F", 300'000'000, "binary_compressed") + bytesOfAll(4U, 3'600'000'000U) + "abcd";
-  EXPECT_THAT(refusalOf([&] { parsePcd(bomb, "a"); }), HasSubstr("does not fit the header or the compressed data"));
+  EXPECT_THAT(refusalOf([&] { parsePcd(head + bytesOfAll(size, 12U) + damaged, "a"); }),
+              HasSubstr("PCL cannot decode it"));
+  const std::string bomb = header("x y z", "4 4 4", "F F F", 300'000'000, "binary_compressed") +
+                           bytesOfAll(4U, 3'600'000'000U) + "abcd";
+  EXPECT_THAT(refusalOf([&] { parsePcd(bomb, "a"); }),
+              HasSubstr("does not fit the header or the compressed data"));
 }
 
 struct Refusal {
@@ -118,27 +132,37 @@ const std::string kBody = "1 2 3\n";
 
 INSTANTIATE_TEST_SUITE_P(
     AllFaults, RefusedPcd,
-    testing::Values(Refusal{"", "ends without a DATA line"}, Refusal{"PK\x03\x04zip", "a.pcd:1"},
-                    Refusal{header("x y", "4 4", "F F", 1, "ascii") + kBody, "has no field 'z'"},
-                    Refusal{header("x y z x", "4 4 4 4", "F F F F", 1, "ascii") + kBody, "field 'x' has the meaning of an earlier field"},
-                    Refusal{header("x y z", "4 4", "F F F", 1, "ascii") + kBody, "a.pcd:4:9: error: the line ends where SIZE"},
-                    Refusal{header("x y z", "4 4 3", "F F F", 1, "ascii") + kBody, "no field has TYPE F and SIZE 3"},
-                    Refusal{header("x y z", "4 4 4", "F F Q", 1, "ascii") + kBody, "unknown TYPE"},
-                    Refusal{header("x y z", "4 4 4", "F F F", 0, "ascii"), "holds no points"},
-                    Refusal{header("x y z", "4 4 4", "F F F", 2, "ascii") + kBody, "ends after 1 of 2 points"},
-                    Refusal{header("x y z", "4 4 4", "F F F", 1, "ascii") + kBody + kBody, "a.pcd:12:1: error: more points than the header's 1"},
-                    Refusal{header("x y z", "4 4 4", "F F F", 1, "ascii") + "1 nan 3\n", "a.pcd:11:3: error: y is not finite"},
-                    Refusal{header("x y z", "4 4 4", "F F F", 1, "zipped") + kBody, "unknown DATA"},
-                    Refusal{header("x y z", "4 4 4", "F F F", 1, "ascii", "0 0 0 2 0 0 0") + kBody, "VIEWPOINT does not have length 1"},
-                    Refusal{header("x y z label", "4 4 4 4", "F F F F", 1, "ascii") + "1 2 3 1.5\n", "has a label that is no whole number"},
-                    Refusal{"FIELDS x y z\nFIELDS x y z\n", "a.pcd:2:7: error: FIELDS stands twice"},
-                    Refusal{header("x y z", "4 4 4", "F F F", 1, "binary") + std::string(13, 'a'), "take 13 bytes where the header declares 12"}));
+    testing::Values(
+        Refusal{"", "ends without a DATA line"}, Refusal{"PK\x03\x04zip", "a.pcd:1"},
+        Refusal{header("x y", "4 4", "F F", 1, "ascii") + kBody, "has no field 'z'"},
+        Refusal{header("x y z x", "4 4 4 4", "F F F F", 1, "ascii") + kBody,
+                "field 'x' has the meaning of an earlier field"},
+        Refusal{header("x y z", "4 4", "F F F", 1, "ascii") + kBody,
+                "a.pcd:4:9: error: the line ends where SIZE"},
+        Refusal{header("x y z", "4 4 3", "F F F", 1, "ascii") + kBody, "no field has TYPE F and SIZE 3"},
+        Refusal{header("x y z", "4 4 4", "F F Q", 1, "ascii") + kBody, "unknown TYPE"},
+        Refusal{header("x y z", "4 4 4", "F F F", 0, "ascii"), "holds no points"},
+        Refusal{header("x y z", "4 4 4", "F F F", 2, "ascii") + kBody, "ends after 1 of 2 points"},
+        Refusal{header("x y z", "4 4 4", "F F F", 1, "ascii") + kBody + kBody,
+                "a.pcd:12:1: error: more points than the header's 1"},
+        Refusal{header("x y z", "4 4 4", "F F F", 1, "ascii") + "1 nan 3\n",
+                "a.pcd:11:3: error: y is not finite"},
+        Refusal{header("x y z", "4 4 4", "F F F", 1, "zipped") + kBody, "unknown DATA"},
+        Refusal{header("x y z", "4 4 4", "F F F", 1, "ascii", "0 0 0 2 0 0 0") + kBody,
+                "VIEWPOINT does not have length 1"},
+        Refusal{header("x y z label", "4 4 4 4", "F F F F", 1, "ascii") + "1 2 3 1.5\n",
+                "has a label that is no whole number"},
+        Refusal{"FIELDS x y z\nFIELDS x y z\n", "a.pcd:2:7: error: FIELDS stands twice"},
+        Refusal{header("x y z", "4 4 4", "F F F", 1, "binary") + std::string(13, 'a'),
+                "take 13 bytes where the header declares 12"}));
 
 TEST(PcdFormat, RefusesBinaryNumbersThatAreNotFiniteNamingTheByte) {
   const std::string head = header("x y z", "4 4 4", "F F F", 2, "binary");
-  const std::string bytes = head + bytesOfAll(1.F, 2.F, 3.F, 4.F, std::numeric_limits<float>::quiet_NaN(), 6.F);
+  const std::string bytes =
+      head + bytesOfAll(1.F, 2.F, 3.F, 4.F, std::numeric_limits<float>::quiet_NaN(), 6.F);
   EXPECT_THAT(refusalOf([&] { parsePcd(bytes, "a.pcd"); }),
-              HasSubstr("byte " + std::to_string(head.size() + 12) + ": error: point 1 has a coordinate that is not finite"));
+              HasSubstr("byte " + std::to_string(head.size() + 12) +
+                        ": error: point 1 has a coordinate that is not finite"));
 }
 
 TEST(PcdFormat, PrintsNothing) {

@@ -33,15 +33,22 @@ TEST(PoseFiles, ReadTheSamePoseFromEveryForm) {
 }
 
 TEST(PoseFiles, RefuseWhatIsNoRigidMotion) {
-  EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 0 0 1 0 0 0 0 1\n", "p"); }), HasSubstr("p:1:1: error: 11 columns are no known form"));
-  EXPECT_THAT(refusalOf([] { parsePoses("2 0 0 0 0 1 0 0 0 0 1 0\n", "p"); }), HasSubstr("not of length 1 and at right angles"));
+  EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 0 0 1 0 0 0 0 1\n", "p"); }),
+              HasSubstr("p:1:1: error: 11 columns are no known form"));
+  EXPECT_THAT(refusalOf([] { parsePoses("2 0 0 0 0 1 0 0 0 0 1 0\n", "p"); }),
+              HasSubstr("not of length 1 and at right angles"));
   EXPECT_THAT(refusalOf([] { parsePoses("-1 0 0 0 0 1 0 0 0 0 1 0\n", "p"); }), HasSubstr("mirrors space"));
-  EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1\n", "p"); }), HasSubstr("last row that is not 0 0 0 1"));
-  EXPECT_THAT(refusalOf([] { parsePoses("0 0 0 0 0 0 0 2\n", "p"); }), HasSubstr("quaternion does not have length 1"));
+  EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1\n", "p"); }),
+              HasSubstr("last row that is not 0 0 0 1"));
+  EXPECT_THAT(refusalOf([] { parsePoses("0 0 0 0 0 0 0 2\n", "p"); }),
+              HasSubstr("quaternion does not have length 1"));
   EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 nan 0 1 0 0 0 0 1 0\n", "p"); }), HasSubstr("not finite"));
   EXPECT_THAT(refusalOf([] { parsePoses("# none\n", "p"); }), HasSubstr("holds no poses"));
-  EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 0\n0 1 0 0\n", "p"); }), HasSubstr("ends inside a 4x4 matrix"));
-  EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n", "p"); }), HasSubstr("p:2:"));
+  EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 0\n0 1 0 0\n", "p"); }),
+              HasSubstr("ends inside a 4x4 matrix"));
+  EXPECT_THAT(
+      refusalOf([] { parsePoses("1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n", "p"); }),
+      HasSubstr("p:2:"));
 }
 
 TEST(PoseFiles, TakeTheSecondLineOfAFreiburgPose) {
@@ -59,7 +66,8 @@ TEST(PoseFiles, TurnYawAfterPitchAfterRoll) {
 TEST(PoseFiles, FindTheLaserToCameraMotionByItsName) {
   const std::string text = "P0: 1 0 0 0 0 1 0 0 0 0 1 0\nTr: 0 -1 0 1 1 0 0 2 0 0 1 3\n";
   EXPECT_TRUE(parseKittiCalibration(text, "calib.txt").isApprox(quarterTurn()));
-  EXPECT_THAT(refusalOf([] { parseKittiCalibration("P0: 1 2 3\n", "calib.txt"); }), HasSubstr("has no line 'Tr:'"));
+  EXPECT_THAT(refusalOf([] { parseKittiCalibration("P0: 1 2 3\n", "calib.txt"); }),
+              HasSubstr("has no line 'Tr:'"));
 }
 
 TEST(PoseFiles, ChangeCameraPosesToThoseOfTheSensor) {
@@ -67,7 +75,8 @@ TEST(PoseFiles, ChangeCameraPosesToThoseOfTheSensor) {
   forward.translation().z() = 2;
   Eigen::Isometry3d T_camera_sensor = Eigen::Isometry3d::Identity();
   T_camera_sensor.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
-  EXPECT_TRUE(sensorPoseFromCamera(forward, T_camera_sensor).translation().isApprox(Eigen::Vector3d(2, 0, 0)));
+  EXPECT_TRUE(
+      sensorPoseFromCamera(forward, T_camera_sensor).translation().isApprox(Eigen::Vector3d(2, 0, 0)));
 }
 
 TEST(NaturalOrder, ComparesRunsOfDigitsAsNumbers) {

@@ -18,8 +18,8 @@ fs::path dataFolder(const char* name) {
   return data.empty() || !fs::exists(data / name) ? fs::path() : data / name;
 }
 
-#define CLUXEL_REQUIRE_DATA(variable, name)                                  \
-  const fs::path variable = dataFolder(name);                                \
+#define CLUXEL_REQUIRE_DATA(variable, name)   \
+  const fs::path variable = dataFolder(name); \
   if (variable.empty()) GTEST_SKIP() << "outside data absent: " << (name)
 
 ScanSet opened(const fs::path& input) {
@@ -58,13 +58,15 @@ TEST(RealScans, OaklandTruthFilesFollowFromTheLabelsThroughTheLabelMap) {
     for (std::size_t k = 0; k < scan.points.size(); ++k) {
       primitives_differ += given.primitive[k] != derived.primitive[k] ? 1 : 0;
       if (given.object_class[k] == derived.object_class[k]) continue;
-      const bool post_of_a_tiny_sign = scan.points.label[k] == kPost && given.object_class[k] == 8 && derived.object_class[k] == 5;
+      const bool post_of_a_tiny_sign =
+          scan.points.label[k] == kPost && given.object_class[k] == 8 && derived.object_class[k] == 5;
       ++(post_of_a_tiny_sign ? posts_differ : others_differ);
     }
   }
   EXPECT_EQ(primitives_differ, 0U);
   EXPECT_EQ(others_differ, 0U);
-  EXPECT_EQ(posts_differ, 111U) << "the truth files give a post to a sign only when the sign has 20 points or more";
+  EXPECT_EQ(posts_differ, 111U)
+      << "the truth files give a post to a sign only when the sign has 20 points or more";
 }
 
 TEST(RealScans, OaklandNamesInstancesThatDoNotCount) {
@@ -78,11 +80,13 @@ TEST(RealScans, OaklandNamesInstancesThatDoNotCount) {
 double groundHeight(const Scan& scan, const Eigen::Vector2d& place) {
   std::vector<double> heights;
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
-    const Eigen::Vector3d p = toMap(scan.T_map_sensor, {scan.points.x[i], scan.points.y[i], scan.points.z[i]});
+    const Eigen::Vector3d p =
+        toMap(scan.T_map_sensor, {scan.points.x[i], scan.points.y[i], scan.points.z[i]});
     if (scan.points.label[i] == 40 && (p.head<2>() - place).norm() < 10) heights.push_back(p.z());
   }
   if (heights.size() < 100) return NAN;
-  std::nth_element(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2), heights.end());
+  std::nth_element(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2),
+                   heights.end());
   return heights[heights.size() / 2];
 }
 
@@ -107,7 +111,8 @@ TEST(RealScans, SmallGicpCloudsOverlapUnderTheirTransform) {
   CLUXEL_REQUIRE_DATA(folder, "small_gicp");
   ProgressSink silent;
   const ScanSet target = opened(folder / "target.ply");
-  const ScanSet source = ScanSet::open({folder / "source.ply"}, {.poses = folder / "T_target_source.txt"}, silent);
+  const ScanSet source =
+      ScanSet::open({folder / "source.ply"}, {.poses = folder / "T_target_source.txt"}, silent);
   const Scan a = target.load(0);
   const Scan b = source.load(0);
   EXPECT_EQ(b.points.size(), 69792U);

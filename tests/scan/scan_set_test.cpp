@@ -31,7 +31,9 @@ std::vector<std::string> namesOf(const ScanSet& set) {
   return names;
 }
 
-double xOf(const ScanSet& set, std::size_t i) { return set.file(i).T_map_sensor.translation().x(); }
+double xOf(const ScanSet& set, std::size_t i) {
+  return set.file(i).T_map_sensor.translation().x();
+}
 
 TEST(ScanSet, ListsAFolderInNaturalOrderWithItsPoses) {
   const ScratchFolder folder;
@@ -47,7 +49,8 @@ TEST(ScanSet, ListsAFolderInNaturalOrderWithItsPoses) {
   EXPECT_EQ(set.file(1).time_s, 1.5);
   const Scan scan = set.load(1);
   EXPECT_TRUE(scan.has_pose);
-  EXPECT_EQ(toMap(scan.T_map_sensor, {scan.points.x[0], scan.points.y[0], scan.points.z[0]}), Eigen::Vector3d(10, 2, 3));
+  EXPECT_EQ(toMap(scan.T_map_sensor, {scan.points.x[0], scan.points.y[0], scan.points.z[0]}),
+            Eigen::Vector3d(10, 2, 3));
 }
 
 TEST(ScanSet, GivesAFileNamedAloneThePoseOfItsFolder) {
@@ -135,7 +138,8 @@ TEST(ScanSet, RefusesAKittiScanBehindTheEndOfThePoses) {
   const ScratchFolder folder;
   folder.write("velodyne/000004.bin", bytesOfAll(1.F, 2.F, 3.F, 0.5F));
   folder.write("poses.txt", kAt0);
-  EXPECT_THAT(refusalOf([&] { opened({folder.path()}); }), HasSubstr("has 1 lines and the scan is number 4 (from 0)"));
+  EXPECT_THAT(refusalOf([&] { opened({folder.path()}); }),
+              HasSubstr("has 1 lines and the scan is number 4 (from 0)"));
 }
 
 TEST(ScanSet, ReadsTheLayoutOfFreiburg) {
@@ -151,12 +155,15 @@ TEST(ScanSet, ReadsTheLayoutOfFreiburg) {
   EXPECT_THAT(set.load(0).points.label, ElementsAre(4U));
   EXPECT_EQ(set.load(0).points.origin[0], Eigen::Vector3f(0, 0, 1));
   folder.write("scan_11_points.dat", "0 0 1 1 2 3\n");
-  EXPECT_THAT(refusalOf([&] { opened({folder.path()}); }), HasSubstr("the pose of scan_11_points.dat is missing"));
+  EXPECT_THAT(refusalOf([&] { opened({folder.path()}); }),
+              HasSubstr("the pose of scan_11_points.dat is missing"));
 }
 
 TEST(ScanSet, TakesTheViewpointOfAPcdOnlyWhereNoPosesAreGiven) {
   const ScratchFolder folder;
-  const std::string pcd = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nVIEWPOINT 6 0 0 1 0 0 0\nPOINTS 1\nDATA ascii\n1 2 3\n";
+  const std::string pcd =
+      "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nVIEWPOINT 6 0 0 1 0 0 0\nPOINTS 1\nDATA "
+      "ascii\n1 2 3\n";
   folder.write("a.pcd", pcd);
   EXPECT_EQ(xOf(opened({folder.path()}), 0), 6);
   EXPECT_TRUE(opened({folder.path()}).load(0).has_pose);
@@ -178,7 +185,8 @@ TEST(ScanSet, PutsWorldCoordinatesIntoAPlaceOfTheirOwn) {
   const ScratchFolder folder;
   const auto file = folder.write("utm.xyz", "456123.125 5412345.25 230\n");
   const Scan scan = opened({file}).load(0);
-  EXPECT_EQ(toMap(scan.T_map_sensor, {scan.points.x[0], scan.points.y[0], scan.points.z[0]}), Eigen::Vector3d(456123.125, 5412345.25, 230));
+  EXPECT_EQ(toMap(scan.T_map_sensor, {scan.points.x[0], scan.points.y[0], scan.points.z[0]}),
+            Eigen::Vector3d(456123.125, 5412345.25, 230));
   EXPECT_FALSE(scan.has_pose);
   folder.write("poses.txt", kAt5);
   EXPECT_THAT(refusalOf([&] { opened({folder.path()}).load(0); }), HasSubstr("but the scan has a pose"));
@@ -186,10 +194,13 @@ TEST(ScanSet, PutsWorldCoordinatesIntoAPlaceOfTheirOwn) {
 
 TEST(ScanSet, RefusesWhatItCannotUnderstand) {
   const ScratchFolder folder;
-  EXPECT_THAT(refusalOf([&] { opened({folder.path() / "absent"}); }), HasSubstr("there is no such file or folder"));
+  EXPECT_THAT(refusalOf([&] { opened({folder.path() / "absent"}); }),
+              HasSubstr("there is no such file or folder"));
   EXPECT_THAT(refusalOf([&] { opened({folder.path()}); }), HasSubstr("the folder holds no scans"));
-  EXPECT_THAT(refusalOf([&] { opened({folder.write("a.jpg", "x")}); }), HasSubstr("the format of this file is not known"));
-  EXPECT_THAT(refusalOf([&] { opened({folder.write("seven.txt", "1 2 3 4 5 6 7\n")}); }), HasSubstr("7 columns are no known form of a scan"));
+  EXPECT_THAT(refusalOf([&] { opened({folder.write("a.jpg", "x")}); }),
+              HasSubstr("the format of this file is not known"));
+  EXPECT_THAT(refusalOf([&] { opened({folder.write("seven.txt", "1 2 3 4 5 6 7\n")}); }),
+              HasSubstr("7 columns are no known form of a scan"));
   const auto empty = folder.write("empty.xyz", "");
   EXPECT_THAT(refusalOf([&] { opened({empty}).load(0); }), HasSubstr("holds no points"));
 }
@@ -204,9 +215,10 @@ TEST(ContentId, IsIndependentOfPathFormatPoseAndLabels) {
   const ScratchFolder folder;
   const auto text = folder.write("t/a.xyz", "1.5 2 3 0.5\n");
   const auto kitti = folder.write("k/b.bin", bytesOfAll(1.5F, 2.F, 3.F, 0.5F));
-  const auto ply = folder.write("p/c.ply",
-                                "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty float y\nproperty float z\n"
-                                "property float intensity\nproperty int label\nend_header\n1.5 2 3 0.5 7\n");
+  const auto ply = folder.write(
+      "p/c.ply",
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty float y\nproperty float z\n"
+      "property float intensity\nproperty int label\nend_header\n1.5 2 3 0.5 7\n");
   folder.write("p/poses.txt", kAt5);
   const ScanSet set = opened({text, kitti, ply});
   EXPECT_EQ(set.load(0).id, set.load(1).id);

@@ -37,7 +37,8 @@ const std::string kMap =
     "dataset: test\nlabels:\n"
     "  1: {name: grass, primitive: horizontal_plane, object: Ground}\n"
     "  2: {name: sign, primitive: small_structure, object: StreetSign, part: SignPlate}\n"
-    "  3: {name: post, primitive: column, object: SmallObject, near: {label: 2, within: 0.6 m, object: StreetSign}}\n"
+    "  3: {name: post, primitive: column, object: SmallObject, near: {label: 2, within: 0.6 m, object: "
+    "StreetSign}}\n"
     "  4: {name: bench, primitive: small_structure, object: Bench}\n"
     "  5: {name: wire}\n";
 
@@ -70,23 +71,32 @@ TEST(LabelMap, GivesTheMeaningOfEachId) {
 
 TEST(LabelMap, ReportsAllFaultsAtOnceWithPlaceAndSuggestion) {
   const std::string text = refusalOf([] {
-    parseLabelMap("datset: x\nlabels:\n  1: {name: a, primitive: colum}\n  1: {name: b}\n  -3: {name: c}\n  4: {object: Tree}\n"
-                  "  5: {name: d, object: a tree}\n  6: {name: e, near: {label: 77, within: 0.6, object: Tree}}\n  7: {name: f, part: Top}\n", "l.yaml");
+    parseLabelMap(
+        "datset: x\nlabels:\n  1: {name: a, primitive: colum}\n  1: {name: b}\n  -3: {name: c}\n  4: "
+        "{object: Tree}\n"
+        "  5: {name: d, object: a tree}\n  6: {name: e, near: {label: 77, within: 0.6, object: Tree}}\n  7: "
+        "{name: f, part: Top}\n",
+        "l.yaml");
   });
-  EXPECT_THAT(text, AllOf(HasSubstr("l.yaml:1:1: error: unknown key 'datset'"), HasSubstr("did you mean 'dataset'?")));
-  EXPECT_THAT(text, AllOf(HasSubstr("l.yaml:3:27: error: unknown primitive 'colum'"), HasSubstr("did you mean 'column'?")));
+  EXPECT_THAT(text, AllOf(HasSubstr("l.yaml:1:1: error: unknown key 'datset'"),
+                          HasSubstr("did you mean 'dataset'?")));
+  EXPECT_THAT(text, AllOf(HasSubstr("l.yaml:3:27: error: unknown primitive 'colum'"),
+                          HasSubstr("did you mean 'column'?")));
   EXPECT_THAT(text, HasSubstr("l.yaml:4:3: error: '1' was given in line 3 already"));
   EXPECT_THAT(text, AllOf(HasSubstr("a label id is a whole number"), HasSubstr("a label needs a 'name'")));
   EXPECT_THAT(text, AllOf(HasSubstr("object must be a local name"), HasSubstr("write it as '0.6 m'")));
-  EXPECT_THAT(text, AllOf(HasSubstr("the label 77 is not in this map"), HasSubstr("a 'part' needs an 'object'")));
+  EXPECT_THAT(text,
+              AllOf(HasSubstr("the label 77 is not in this map"), HasSubstr("a 'part' needs an 'object'")));
 }
 
 TEST(LabelMap, TakesTheSameIdInTwoSpellingsForADuplicate) {
-  EXPECT_THAT(refusalOf([] { parseLabelMap("labels:\n  7: {name: a}\n  07: {name: b}\n", "l"); }), HasSubstr("the id 7 stands twice"));
+  EXPECT_THAT(refusalOf([] { parseLabelMap("labels:\n  7: {name: a}\n  07: {name: b}\n", "l"); }),
+              HasSubstr("the id 7 stands twice"));
 }
 
 TEST(TruthFromLabels, LooksUpEachPointAndAddsClassesItDoesNotKnow) {
-  const PointTruth truth = truthFromLabels(labelled({{0, 0}, {9, 9}, {5, 5}, {6, 6}, {7, 7}}, {1, 4, 5, 42, 3}), mapOf(kMap));
+  const PointTruth truth =
+      truthFromLabels(labelled({{0, 0}, {9, 9}, {5, 5}, {6, 6}, {7, 7}}, {1, 4, 5, 42, 3}), mapOf(kMap));
   EXPECT_THAT(truth.primitive, ElementsAre(0, 3, -1, -1, 2));
   EXPECT_THAT(truth.object_class, ElementsAre(0, 9, -1, -1, 8));
   EXPECT_EQ(truth.class_names.at(9), "Bench");
@@ -109,8 +119,9 @@ TEST(TruthFromLabels, AgreesWithBruteForceOnPostsNearSigns) {
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     bool near = scan.points.label[i] == 2;
     for (std::size_t k = 0; k < scan.points.size() && !near; ++k)
-      near = scan.points.label[k] == 2 && std::hypot(double(scan.points.x[i]) - double(scan.points.x[k]),
-                                                     double(scan.points.y[i]) - double(scan.points.y[k])) < 0.6;
+      near =
+          scan.points.label[k] == 2 && std::hypot(double(scan.points.x[i]) - double(scan.points.x[k]),
+                                                  double(scan.points.y[i]) - double(scan.points.y[k])) < 0.6;
     near_posts += near ? 1 : 0;
     EXPECT_EQ(truth.object_class[i], near ? 5 : 8) << i;
   }
@@ -119,7 +130,10 @@ TEST(TruthFromLabels, AgreesWithBruteForceOnPostsNearSigns) {
 }
 
 TEST(TruthFromLabels, RefusesAScanWithoutLabels) {
-  EXPECT_THAT(refusalOf([] { truthFromLabels(labelled({{0, 0}}, {}), mapOf(kMap)); }), HasSubstr("the scan has no labels"));
+  EXPECT_THAT(refusalOf([] {
+                truthFromLabels(labelled({{0, 0}}, {}), mapOf(kMap));
+              }),
+              HasSubstr("the scan has no labels"));
 }
 
 TEST(TruthFiles, ReadPlainAndGzipAlike) {
@@ -133,21 +147,27 @@ TEST(TruthFiles, ReadPlainAndGzipAlike) {
 }
 
 TEST(TruthFiles, AreRefusedWithFileAndLine) {
-  EXPECT_THAT(refusalOf([] { parseTruth("1 2 3\n5 2 3\n", "a", 2); }), HasSubstr("a:2:2: error: primitive must be a whole number from -1 to 4"));
-  EXPECT_THAT(refusalOf([] { parseTruth("1 9 3\n", "a", 1); }), HasSubstr("object must be a whole number from -1 to 8"));
+  EXPECT_THAT(refusalOf([] { parseTruth("1 2 3\n5 2 3\n", "a", 2); }),
+              HasSubstr("a:2:2: error: primitive must be a whole number from -1 to 4"));
+  EXPECT_THAT(refusalOf([] { parseTruth("1 9 3\n", "a", 1); }),
+              HasSubstr("object must be a whole number from -1 to 8"));
   EXPECT_THAT(refusalOf([] { parseTruth("1 2 -2\n", "a", 1); }), HasSubstr("instance must be"));
   EXPECT_THAT(refusalOf([] { parseTruth("1 2 3\n", "a", 2); }), HasSubstr("ends after 1 lines for 2 points"));
-  EXPECT_THAT(refusalOf([] { parseTruth("1 2 3\n1 2 3\n", "a", 1); }), HasSubstr("a:2:1: error: more lines than the scan's 1 points"));
-  EXPECT_THAT(refusalOf([] { parseTruth("1 2\n", "a", 1); }), HasSubstr("the line ends where instance was expected"));
+  EXPECT_THAT(refusalOf([] { parseTruth("1 2 3\n1 2 3\n", "a", 1); }),
+              HasSubstr("a:2:1: error: more lines than the scan's 1 points"));
+  EXPECT_THAT(refusalOf([] { parseTruth("1 2\n", "a", 1); }),
+              HasSubstr("the line ends where instance was expected"));
 }
 
 TEST(TruthFiles, ThatAreDamagedOrEndlessAreRefused) {
   const std::string packed = gzipped(std::string(100, '1'));
-  EXPECT_THAT(refusalOf([&] { parseTruth(packed.substr(0, packed.size() - 9), "a", 1); }), HasSubstr("the gzip data are cut off"));
+  EXPECT_THAT(refusalOf([&] { parseTruth(packed.substr(0, packed.size() - 9), "a", 1); }),
+              HasSubstr("the gzip data are cut off"));
   std::string damaged = packed;
   damaged[packed.size() - 8] ^= 1;
   EXPECT_THAT(refusalOf([&] { parseTruth(damaged, "a", 1); }), HasSubstr("the gzip data are damaged"));
-  EXPECT_THAT(refusalOf([] { parseTruth(gzipped(std::string(10'000'000, ' ')), "a", 1); }), HasSubstr("unpacks to more than"));
+  EXPECT_THAT(refusalOf([] { parseTruth(gzipped(std::string(10'000'000, ' ')), "a", 1); }),
+              HasSubstr("unpacks to more than"));
 }
 
 TEST(TruthFiles, AreFoundByTheStemOfTheScan) {
@@ -158,11 +178,17 @@ TEST(TruthFiles, AreFoundByTheStemOfTheScan) {
 }
 
 TEST(AmbiguousInstances, AreThoseMarkedInTheTable) {
-  EXPECT_THAT(parseAmbiguousInstances("id,object,ambiguous,flags\n9,tree,1,x;\n2,tree,0,\n4,sign,1,\r\n", "i.csv"), ElementsAre(4, 9));
-  EXPECT_THAT(refusalOf([] { parseAmbiguousInstances("id,object\n", "i.csv"); }), HasSubstr("i.csv:1: error: has no column 'ambiguous'"));
-  EXPECT_THAT(refusalOf([] { parseAmbiguousInstances("id,ambiguous\n1,1\nx,1\n", "i.csv"); }), HasSubstr("i.csv:3: error: the id is not a whole number"));
-  EXPECT_THAT(refusalOf([] { parseAmbiguousInstances("id,ambiguous\n1,yes\n", "i.csv"); }), HasSubstr("must be 0 or 1"));
-  EXPECT_THAT(refusalOf([] { parseAmbiguousInstances("id,ambiguous\n1\n", "i.csv"); }), HasSubstr("too few columns"));
+  EXPECT_THAT(
+      parseAmbiguousInstances("id,object,ambiguous,flags\n9,tree,1,x;\n2,tree,0,\n4,sign,1,\r\n", "i.csv"),
+      ElementsAre(4, 9));
+  EXPECT_THAT(refusalOf([] { parseAmbiguousInstances("id,object\n", "i.csv"); }),
+              HasSubstr("i.csv:1: error: has no column 'ambiguous'"));
+  EXPECT_THAT(refusalOf([] { parseAmbiguousInstances("id,ambiguous\n1,1\nx,1\n", "i.csv"); }),
+              HasSubstr("i.csv:3: error: the id is not a whole number"));
+  EXPECT_THAT(refusalOf([] { parseAmbiguousInstances("id,ambiguous\n1,yes\n", "i.csv"); }),
+              HasSubstr("must be 0 or 1"));
+  EXPECT_THAT(refusalOf([] { parseAmbiguousInstances("id,ambiguous\n1\n", "i.csv"); }),
+              HasSubstr("too few columns"));
   const ScratchFolder folder;
   EXPECT_TRUE(ambiguousInstances(folder.path()).empty());
 }
