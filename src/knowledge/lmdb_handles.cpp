@@ -31,11 +31,13 @@ std::string explain(int code, std::string_view doing) {
       return attempt + "no address space is left; raise the limit (ulimit -v)";
     case MDB_READERS_FULL:
       return attempt + "too many readers are at work; wait for some to end";
+    case EIO:  // LMDB's word for a write that the system cut short
     case ENOSPC:
     case EFBIG:
     case EDQUOT:
       return attempt +
-             "no space is left on the disk; the map keeps its last commit: free some space and run again";
+             "no space is left on the disk, or the disk fails; the map keeps its last commit: free some "
+             "space and run again";
     case EACCES:
     case EPERM:
     case EROFS:

@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: Apache-2.0
+// The store on a generated map of a million triples: load, open, size, lookups, scans, estimates; librdf's
+// own storages beside it.
+#include <benchmark/benchmark.h>
+#include <librdf.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <random>
+#include <string>
+
+#include "cluxel/knowledge/environment.hpp"
+#include "cluxel/knowledge/quad_store.hpp"
+#include "cluxel/knowledge/rdf_io.hpp"
+
+namespace {
+
+using namespace cluxel;
+namespace fs = std::filesystem;
+
+/// Objects with a class, a position, a height, a label and two neighbours: 8 triples each.
+std::string generatedNTriples(std::size_t triples) {
+  std::mt19937 random(1);
+  std::string text;
+  const std::string clx = "https://w3id.org/cluxel/ontology#";
+  const std::string map = "https://w3id.org/cluxel/map/object/";
+  const char* classes[] = {"Tree", "Bush", "StreetLamp", "StreetSign", "Vehicle", "Building"};
+  const auto name = [&](std::size_t i) {
+    return "<" + map + std::to_string(i * 2654435761U % 4294967291U) + ">";
+  };
+  const std::size_t objects = triples / 8;
+  const auto number = [&](unsigned range) {
+    return "\"" + std::to_string(random() % range) + "." + std::to_string(random() % 1000) +
+           "\"^^<http://www.w3.org/2001/XMLSchema#decimal>";
+  };
+  for (std::size_t i = 0; i < objects; ++i) {
+    const std::string s = name(i);
+    text +=
+        s + " <http://www.w3.org/1999/02/22-rdf-syntax-ns#type> <" + clx + classes[random() % 6] + "> .\n";
+    for (const char* property : {"x", "y", "z", "height"})
+      text += s + " <" + clx + property + "> " + number(property[0] == 'h' ? 30 : 2000) + " .\n";
+    text += s + " <" + clx + "rule> \"rule " + std::to_string(random() % 9) + "\" .\n";
+    for (int j = 0; j < 2; ++j) text += s + " <" + clx + "near> " + name(random() % objects) + " .\n";
+  }
+  return text;
+}
+
+constexpr std::size_t kTriples = 1'000'000;
+
+const RdfSource& source() {
+  static const RdfSource text{generatedNTriples(kTriples), "generated.nt", RdfFormat::NTriples, "",
+                              Term::iri("")};
+  return text;
+}
+
+fs::path scratch() {
+  static const fs::path folder = [] {
+    std::string name = (fs::temp_directory_path() / "cluxel-bench-XXXXXX").string();
+    return fs::path(::mkdtemp(name.data()));
+  }();
+  return folder;
+}
+
+void load(const fs::path& file) {
+  fs::remove(file);
+  const auto environment = Environment::open(file, OpenMode::Create);
+  WriteTransaction transaction = environment->write();
+  QuadWriter writer(transaction);
+  loadRdf(source(), writer);
+  writer.flush();
+  transaction.commit();
+}
+
+/// A compact map of the generated triples, made once.
+const fs::path& compactMap() {
+  static const fs::path file = [] {
+    const fs::path loaded = scratch() / "loaded.clx";
+    load(loaded);
+    const fs::path compact = scratch() / "compact.clx";
+    Environment::open(loaded, OpenMode::ReadOnly)->compactTo(compact);
+    return compact;
+  }();
+  return file;
+}
+
+TermId idOf(const QuadReader& reader, const std::string& local) {
+  return reader.idOf(Term::iri("https://w3id.org/cluxel/ontology#" + local)).value();
+}
+
+std::vector<TermId> subjects(const QuadReader& reader) {
+  std::vector<TermId> ids;
+  QuadCursor cursor = reader.scan({.s = {}, .p = idOf(reader, "height"), .o = {}, .g = {}});
+  for (QuadIds quad; cursor.next(quad);) ids.push_back(quad.s);
+  return ids;
+}
+
+void parseOnly(benchmark::State& state) {
+  source();
+  for (auto _ : state) {
+    std::size_t count = 0;
+    parseRdf(source(), [&](const Quad&) { ++count; });
+    benchmark::DoNotOptimize(count);
+  }
+}
+BENCHMARK(parseOnly)->Unit(benchmark::kMillisecond)->Iterations(1);
+
+void loadAMillion(benchmark::State& state) {
+  source();
+  for (auto _ : state) load(scratch() / "load.clx");
+  state.counters["bytes/triple"] = static_cast<double>(fs::file_size(scratch() / "load.clx")) / kTriples;
+}
+BENCHMARK(loadAMillion)->Unit(benchmark::kMillisecond)->Iterations(2);
+
+void openAndAskOne(benchmark::State& state) {
+  compactMap();
+  for (auto _ : state) {
+    const auto environment = Environment::open(compactMap(), OpenMode::ReadOnly);
+    const QuadReader reader(environment->read());
+    benchmark::DoNotOptimize(reader.estimate({.s = {}, .p = idOf(reader, "near"), .o = {}, .g = {}}));
+  }
+  state.counters["bytes/triple"] = static_cast<double>(fs::file_size(compactMap())) / kTriples;
+}
+BENCHMARK(openAndAskOne)->Unit(benchmark::kMillisecond);
+
+void newSnapshot(benchmark::State& state) {
+  const auto environment = Environment::open(compactMap(), OpenMode::ReadOnly);
+  for (auto _ : state) {
+    const QuadReader reader(environment->read());
+    benchmark::DoNotOptimize(reader.size());
+  }
+}
+BENCHMARK(newSnapshot);
+
+/// 0: ascending subjects, 1: random ones.
+void lookup(benchmark::State& state) {
+  const auto environment = Environment::open(compactMap(), OpenMode::ReadOnly);
+  const QuadReader reader(environment->read());
+  std::vector<TermId> ids = subjects(reader);
+  std::sort(ids.begin(), ids.end());
+  if (state.range(0) == 1) std::shuffle(ids.begin(), ids.end(), std::mt19937(5));
+  const TermId near = idOf(reader, "near");
+  PrefixLookup lookup = reader.lookup(QuadOrder::Spog);
+  std::size_t i = 0;
+  std::size_t found = 0;
+  for (auto _ : state) {
+    found += lookup.find(std::array{ids[i], near}).size();
+    if (++i == ids.size()) i = 0;
+  }
+  benchmark::DoNotOptimize(found);
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(lookup)->Arg(0)->Arg(1);
+
+void contains(benchmark::State& state) {
+  const auto environment = Environment::open(compactMap(), OpenMode::ReadOnly);
+  const QuadReader reader(environment->read());
+  std::vector<TermId> ids = subjects(reader);
+  std::shuffle(ids.begin(), ids.end(), std::mt19937(5));
+  const TermId near = idOf(reader, "near");
+  std::size_t i = 0;
+  std::size_t found = 0;
+  for (auto _ : state) {
+    found += reader.contains({ids[i], near, ids[ids.size() - 1 - i], 0}) ? 1 : 0;
+    if (++i == ids.size()) i = 0;
+  }
+  benchmark::DoNotOptimize(found);
+}
+BENCHMARK(contains);
+
+void scanCursor(benchmark::State& state) {
+  const auto environment = Environment::open(compactMap(), OpenMode::ReadOnly);
+  const QuadReader reader(environment->read());
+  const QuadPattern pattern{.s = {}, .p = idOf(reader, "near"), .o = {}, .g = {}};
+  std::size_t count = 0;
+  for (auto _ : state) {
+    QuadCursor cursor = reader.scan(pattern);
+    for (QuadIds quad; cursor.next(quad);) count += quad.o;
+  }
+  benchmark::DoNotOptimize(count);
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(reader.count(pattern)));
+}
+BENCHMARK(scanCursor)->Unit(benchmark::kMillisecond);
+
+void scanInBulk(benchmark::State& state) {
+  const auto environment = Environment::open(compactMap(), OpenMode::ReadOnly);
+  const QuadReader reader(environment->read());
+  const QuadPattern pattern{.s = {}, .p = idOf(reader, "near"), .o = {}, .g = {}};
+  std::vector<QuadIds> buffer(1024);
+  std::size_t sum = 0;
+  for (auto _ : state) {
+    QuadCursor cursor = reader.scan(pattern);
+    while (const std::size_t count = cursor.next(buffer))
+      for (std::size_t i = 0; i < count; ++i) sum += buffer[i].o;
+  }
+  benchmark::DoNotOptimize(sum);
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(reader.count(pattern)));
+}
+BENCHMARK(scanInBulk)->Unit(benchmark::kMillisecond);
+
+void countExactly(benchmark::State& state) {
+  const auto environment = Environment::open(compactMap(), OpenMode::ReadOnly);
+  const QuadReader reader(environment->read());
+  const QuadPattern pattern{.s = {}, .p = idOf(reader, "near"), .o = {}, .g = {}};
+  for (auto _ : state) benchmark::DoNotOptimize(reader.count(pattern));
+}
+BENCHMARK(countExactly);
+
+void estimate(benchmark::State& state) {
+  const auto environment = Environment::open(compactMap(), OpenMode::ReadOnly);
+  const QuadReader reader(environment->read());
+  const QuadPattern pattern{.s = {}, .p = idOf(reader, "near"), .o = {}, .g = {}};
+  for (auto _ : state) benchmark::DoNotOptimize(reader.estimate(pattern));
+}
+BENCHMARK(estimate);
+
+void valuesWarm(benchmark::State& state) {
+  const auto environment = Environment::open(compactMap(), OpenMode::ReadOnly);
+  const QuadReader reader(environment->read());
+  const auto terms = static_cast<TermId>(reader.termCount());
+  for (TermId id = 1; id <= terms; ++id) benchmark::DoNotOptimize(reader.valueOf(id));
+  std::mt19937 random(3);
+  std::vector<TermId> ids(100'000);
+  for (TermId& id : ids) id = 1 + static_cast<TermId>(random() % terms);
+  double sum = 0;
+  for (auto _ : state)
+    for (const TermId id : ids) sum += reader.valueOf(id).number;
+  benchmark::DoNotOptimize(sum);
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(ids.size()));
+}
+BENCHMARK(valuesWarm)->Unit(benchmark::kMicrosecond);
+
+void termTexts(benchmark::State& state) {
+  const auto environment = Environment::open(compactMap(), OpenMode::ReadOnly);
+  const QuadReader reader(environment->read());
+  const auto terms = static_cast<TermId>(reader.termCount());
+  std::mt19937 random(3);
+  std::vector<TermId> ids(100'000);
+  for (TermId& id : ids) id = 1 + static_cast<TermId>(random() % terms);
+  std::size_t sum = 0;
+  for (auto _ : state)
+    for (const TermId id : ids) sum += reader.viewOf(id).text.size();
+  benchmark::DoNotOptimize(sum);
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(ids.size()));
+}
+BENCHMARK(termTexts)->Unit(benchmark::kMicrosecond);
+
+/// One new triple a commit, with the disk's word for it.
+void commitOne(benchmark::State& state) {
+  const fs::path file = scratch() / "commit.clx";
+  load(file);
+  const auto environment = Environment::open(file, OpenMode::ReadWrite);
+  TermId n = 1;
+  for (auto _ : state) {
+    WriteTransaction transaction = environment->write();
+    QuadWriter writer(transaction);
+    writer.add(QuadIds{n, 1, ++n, 0});
+    writer.flush();
+    transaction.commit();
+  }
+}
+BENCHMARK(commitOne)->Unit(benchmark::kMillisecond)->Iterations(20);
+
+/// Ten thousand quads among a million, in one commit.
+void addTenThousand(benchmark::State& state) {
+  const fs::path file = scratch() / "batch.clx";
+  load(file);
+  const auto environment = Environment::open(file, OpenMode::ReadWrite);
+  std::mt19937 random(9);
+  for (auto _ : state) {
+    WriteTransaction transaction = environment->write();
+    QuadWriter writer(transaction);
+    for (int i = 0; i < 10'000; ++i)
+      writer.add(QuadIds{1 + static_cast<TermId>(random() % 200'000), 2,
+                         1 + static_cast<TermId>(random() % 200'000), 0});
+    writer.flush();
+    transaction.commit();
+  }
+}
+BENCHMARK(addTenThousand)->Unit(benchmark::kMillisecond)->Iterations(5);
+
+/// Loading into librdf's own storages: 0 hashes in memory, 1 trees. 100k triples.
+void loadLibrdf(benchmark::State& state) {
+  const std::string text = generatedNTriples(100'000);
+  for (auto _ : state) {
+    librdf_world* world = librdf_new_world();
+    librdf_world_open(world);
+    librdf_storage* storage = state.range(0) == 0
+                                  ? librdf_new_storage(world, "hashes", "b", "hash-type='memory',new='yes'")
+                                  : librdf_new_storage(world, "trees", "b", nullptr);
+    librdf_model* model = librdf_new_model(world, storage, nullptr);
+    librdf_parser* parser = librdf_new_parser(world, "ntriples", nullptr, nullptr);
+    librdf_uri* base = librdf_new_uri(world, reinterpret_cast<const unsigned char*>("http://x/"));
+    librdf_parser_parse_string_into_model(parser, reinterpret_cast<const unsigned char*>(text.c_str()), base,
+                                          model);
+    librdf_free_uri(base);
+    librdf_free_parser(parser);
+    librdf_free_model(model);
+    librdf_free_storage(storage);
+    librdf_free_world(world);
+  }
+}
+BENCHMARK(loadLibrdf)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->Iterations(1);
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+  std::filesystem::remove_all(scratch());
+}
