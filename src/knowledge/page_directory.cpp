@@ -34,6 +34,42 @@ std::size_t lowerBoundIn(const QuadKey* keys, std::size_t count, Key128 key) {
   return static_cast<std::size_t>(first - keys) + (count == 1 && toNumber(*first) < key ? 1 : 0);
 }
 
+/// Where a key would stand among `count` keys spread evenly from `low` to `high`.
+std::size_t guess(Key128 low, Key128 high, Key128 key, std::size_t count) {
+  // The upper halves are subject and predicate, say; when they are all one, the lower halves tell the keys
+  // apart.
+  const auto upper = [](Key128 number) { return static_cast<std::uint64_t>(number >> 64U); };
+  const bool by_upper = upper(low) != upper(high);
+  const auto part = [&](Key128 number) {
+    return by_upper ? upper(number) : static_cast<std::uint64_t>(number);
+  };
+  const double span = static_cast<double>(part(high) - part(low));
+  const double share = static_cast<double>(part(key) - part(low)) / span;
+  return share < 1 ? static_cast<std::size_t>(share * static_cast<double>(count)) : count - 1;
+}
+
+/// The first key not less than `key`, searched outwards from `start`: the fewer cache lines the better the
+/// guess was.
+std::size_t lowerBoundNear(std::span<const QuadKey> keys, std::size_t start, Key128 key) {
+  std::size_t step = 1;
+  if (toNumber(keys[start]) < key) {
+    std::size_t low = start;
+    while (start + step < keys.size() && toNumber(keys[start + step]) < key) {
+      low = start + step;
+      step *= 2;
+    }
+    const std::size_t high = std::min(start + step, keys.size());
+    return low + 1 + lowerBoundIn(keys.data() + low + 1, high - low - 1, key);
+  }
+  std::size_t high = start;
+  while (step <= start && toNumber(keys[start - step]) >= key) {
+    high = start - step;
+    step *= 2;
+  }
+  const std::size_t low = step <= start ? start - step + 1 : 0;
+  return low + lowerBoundIn(keys.data() + low, high - low, key);
+}
+
 /// The last of `lower` not greater than `key`, or the first.
 std::size_t pageOf(const std::vector<Key128>& lower, Key128 key) {
   const Key128* first = lower.data();
@@ -119,7 +155,10 @@ PageDirectory::PageDirectory(MDB_cursor* cursor) {
 
 PageDirectory::Position PageDirectory::within(std::size_t i, Key128 key) const {
   const std::span<const QuadKey> keys = page(i);
-  const std::size_t index = lowerBoundIn(keys.data(), keys.size(), key);
+  if (keys.empty()) return {i + 1, 0};  // only a damaged page is
+  const std::size_t index = i + 1 < pages_.size()
+                                ? lowerBoundNear(keys, guess(lower_[i], lower_[i + 1], key, keys.size()), key)
+                                : lowerBoundIn(keys.data(), keys.size(), key);
   return index == keys.size() ? Position{i + 1, 0} : Position{i, index};
 }
 

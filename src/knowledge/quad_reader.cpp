@@ -53,6 +53,13 @@ QuadReader::Impl::Impl(ReadTransaction from) : transaction(std::move(from)) {
   committed_terms = state().writing ? state().committed_terms : snapshot().termCount();
 }
 
+std::string_view QuadReader::Impl::datatypeText(TermId id) {
+  if (id == last_datatype && !state().writing) return last_datatype_text;
+  last_datatype = id;
+  last_datatype_text = decodeTerm(record(id)).text;
+  return last_datatype_text;
+}
+
 QuadReader::QuadReader(ReadTransaction transaction) : impl_(std::make_unique<Impl>(std::move(transaction))) {}
 QuadReader::~QuadReader() = default;
 QuadReader::QuadReader(QuadReader&&) noexcept = default;
@@ -93,7 +100,7 @@ TermView QuadReader::viewOf(TermId id) const {
   else if (record.datatype == kNoTerm)
     view.datatype = kString;
   else
-    view.datatype = decodeTerm(impl_->record(record.datatype)).text;
+    view.datatype = impl_->datatypeText(record.datatype);
   return view;
 }
 

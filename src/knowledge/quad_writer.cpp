@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writing quads: a cache of changes, sorted into the indexes when it is flushed.
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <unordered_map>
@@ -23,6 +25,25 @@ struct QuadChange {
   bool added = false;
 };
 
+/// IRIs seen lately with their ids: predicates, graphs and the subject of a run of statements come again and
+/// again.
+class RecentIris {
+ public:
+  struct Entry {
+    std::string iri;
+    TermId id = kNoTerm;
+  };
+  Entry& slotOf(std::string_view iri) {
+    std::uint64_t tail = iri.size();
+    std::memcpy(&tail, iri.data() + (iri.size() < 8 ? 0 : iri.size() - 8),
+                std::min<std::size_t>(8, iri.size()));
+    return slots_[(tail * 0x9E3779B97F4A7C15U) >> 56U];
+  }
+
+ private:
+  std::array<Entry, 256> slots_;
+};
+
 }  // namespace
 
 struct QuadWriter::Impl {
@@ -31,12 +52,14 @@ struct QuadWriter::Impl {
   PendingTerms terms;
   std::vector<QuadChange> changes;  ///< in the order they were asked for
   std::unordered_map<std::string, TermId> datatypes;
+  RecentIris recent;
   TermId next_id = kNoTerm;  ///< kNoTerm while no new term is pending: another writer may have its turn
   std::string record;
 
   explicit Impl(WriteTransaction& from) : transaction(from), reader(from) {}
 
   ReadTransaction::Impl& state() const { return transaction.impl(); }
+  TermId internIri(const Term& term);
   TermId internRecord(const Term& term);
   void flushTerms();
   void flushQuads();
@@ -56,6 +79,16 @@ TermId QuadWriter::Impl::internRecord(const Term& term) {
     throw Error(ExitCode::StoreUnavailable, "the map is full: it holds 2^32 different terms");
   terms.insert(hash, record, next_id, true);
   return next_id++;
+}
+
+TermId QuadWriter::Impl::internIri(const Term& term) {
+  if (term.text.empty()) return kNoTerm;
+  RecentIris::Entry& slot = recent.slotOf(term.text);
+  if (slot.id != kNoTerm && slot.iri == term.text) return slot.id;
+  encodeTerm(term, kNoTerm, record);
+  slot.id = internRecord(term);
+  slot.iri = term.text;
+  return slot.id;
 }
 
 void QuadWriter::Impl::flushTerms() {
@@ -99,7 +132,7 @@ QuadWriter::QuadWriter(WriteTransaction& transaction) : impl_(std::make_unique<I
 QuadWriter::~QuadWriter() = default;
 
 TermId QuadWriter::intern(const Term& term) {
-  if (term.kind == TermKind::Iri && term.text.empty()) return kNoTerm;
+  if (term.kind == TermKind::Iri) return impl_->internIri(term);
   TermId datatype = kNoTerm;
   if (needsDatatypeId(term)) {
     const auto known = impl_->datatypes.find(term.datatype);

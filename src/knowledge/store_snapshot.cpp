@@ -14,6 +14,7 @@ namespace {
 using namespace lmdb_page;
 
 constexpr int kMaxDepth = 32;
+constexpr std::uint64_t kNoMoreIds = 0xFFFFFFFF;
 
 [[noreturn]] void damaged() {
   throw Error(ExitCode::StoreUnavailable,
@@ -50,6 +51,19 @@ TermDirectory::TermDirectory(const PageMap& map, const Tree& table) : map_(map) 
   first_.reserve(table.leaf_pages);
   pages_.reserve(table.leaf_pages);
   if (table.root != kNoPage) collect(table.root, 1, 0);
+  if (table.entries >= kNoMoreIds) damaged();
+  first_.push_back(static_cast<TermId>(table.entries) + 1);
+  indexIds();
+}
+
+void TermDirectory::indexIds() {
+  const TermId end = first_.back();
+  page_of_.reserve((end >> kStrideBits) + 1);
+  std::uint32_t page = 0;
+  for (std::uint64_t id = 0; id < end; id += std::uint64_t{1} << kStrideBits) {
+    while (page + 1 < pages_.size() && first_[page + 1] <= id) ++page;
+    page_of_.push_back(page);
+  }
 }
 
 void TermDirectory::collect(PageNumber number, TermId first, int depth) {
@@ -79,9 +93,9 @@ void TermDirectory::collect(PageNumber number, TermId first, int depth) {
 }
 
 std::string_view TermDirectory::record(TermId id) const {
-  const auto after = std::upper_bound(first_.begin(), first_.end(), id);
-  if (after == first_.begin()) return {};
-  const auto number = static_cast<std::size_t>(after - first_.begin()) - 1;
+  if (id == kNoTerm || id >= first_.back() || pages_.empty()) return {};
+  std::size_t number = page_of_[id >> kStrideBits];
+  while (number + 1 < pages_.size() && first_[number + 1] <= id) ++number;
   const std::uint8_t* page = pages_[number];
   const std::size_t i = id - first_[number];
   if (i >= lmdb_page::entryCount(page)) return {};

@@ -18,15 +18,18 @@ namespace cluxel {
 /// page's first.
 class TermDirectory {
  public:
-  TermDirectory(const PageMap& map, const lmdb_page::Tree& table);
+  TermDirectory(const PageMap& map, const lmdb_page::Tree& table);  ///< cost: one step per leaf page
   /// The record of `id`; empty when there is none.
   std::string_view record(TermId id) const;
 
  private:
   void collect(lmdb_page::PageNumber number, TermId first, int depth);
   PageMap map_;
-  std::vector<TermId> first_;
+  void indexIds();
+  static constexpr unsigned kStrideBits = 6;
+  std::vector<TermId> first_;  ///< of each page; one more entry ends the last
   std::vector<const std::uint8_t*> pages_;
+  std::vector<std::uint32_t> page_of_;  ///< the page of every 64th id
 };
 
 class StoreSnapshot {
