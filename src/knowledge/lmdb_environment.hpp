@@ -22,6 +22,17 @@ inline constexpr std::size_t kTableCount = 7;
 inline constexpr std::array<const char*, kTableCount> kTableNames = {"blocks", "terms", "hashes", "spog",
                                                                      "posg",   "ospg",  "gspo"};
 
+constexpr unsigned tableFlags(Table table) {
+  switch (table) {
+    case Table::Blocks:
+      return 0;
+    case Table::Terms:
+      return MDB_INTEGERKEY;
+    default:
+      return MDB_DUPSORT | MDB_DUPFIXED;
+  }
+}
+
 class LmdbEnvironment final : public Environment {
  public:
   /// `data_lock` is the file descriptor that carries the writer's lock; the environment takes it over.

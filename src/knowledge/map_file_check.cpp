@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cluxel/base/diagnostic.hpp"
+#include "knowledge/lmdb_environment.hpp"
 #include "knowledge/lmdb_page.hpp"
 
 namespace cluxel {
@@ -24,6 +25,8 @@ using namespace lmdb_page;
 constexpr std::uint64_t kSmallFile = 8U << 20U;
 constexpr std::size_t kProbe = 4096;
 constexpr int kMaxDepth = 32;
+constexpr std::uint64_t kIndexKeySize = 16;
+constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 46U;
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what) {
   throw Error(ExitCode::StoreUnavailable, file.string() + ": " + what);
@@ -97,8 +100,18 @@ class StructureWalk {
     }
     if (entry.dataSize() != sizeof(Tree)) refuse(number, "has a malformed tree record");
     const Tree sub = load<Tree>(entry.data());
-    if (!holds_trees && (entry.flags() & kDupData) == 0) refuse(number, "has a tree where a value belongs");
+    if (holds_trees == ((entry.flags() & kDupData) != 0)) refuse(number, "has a tree where a value belongs");
+    if (holds_trees) checkTable(number, entry, sub);
+    if (!holds_trees && sub.pad != kIndexKeySize) refuse(number, "has keys of a wrong size");
     tree(sub.root, depth + 1, sub.pad, false);
+  }
+
+  /// LMDB takes a table's kind from its record, whatever it was asked for.
+  void checkTable(PageNumber number, const Node& entry, const Tree& sub) const {
+    const std::string_view name(reinterpret_cast<const char*>(entry.key()), entry.keySize());
+    for (std::size_t i = 0; i < kTableCount; ++i)
+      if (name == kTableNames[i] && sub.flags != tableFlags(static_cast<Table>(i)))
+        refuse(number, "has a table of the wrong kind");
   }
 
   void subPage(PageNumber number, const Node& entry) {
@@ -183,6 +196,7 @@ MapFileHead readMapFileHead(int descriptor, const std::filesystem::path& file) {
   head.page_size = newest.free_pages.pad;
   head.last_page = newest.last_page;
   head.transaction = newest.transaction;
+  if (newest.last_page > kMostBytes / head.page_size) refuse(file, "is a map with a damaged head");
   for (const PageNumber root : {newest.main.root, newest.free_pages.root})
     if (root != kNoPage && (root > newest.last_page || (root + 1) * head.page_size > head.file_size))
       refuse(file, "the map is damaged: it is cut short; take a copy or build it again");

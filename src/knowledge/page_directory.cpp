@@ -91,18 +91,25 @@ const std::uint8_t* PageMap::page(PageNumber number) const {
 
 PageDirectory::PageDirectory(const PageMap& map, const Tree& table) {
   if (table.root == kNoPage) return;
+  most_keys_ = (map.page_size - kHeaderSize) / sizeof(QuadKey);
   const std::uint8_t* root = map.page(table.root);
   if ((header(root).flags & kLeaf) == 0 || lmdb_page::entryCount(root) != 1) damaged();
   const Node node(root, 0);
+  const std::size_t room = static_cast<std::size_t>(root + map.page_size - node.data());
+  if (node.data() > root + map.page_size || node.dataSize() > room) damaged();
   if ((node.flags() & kDupData) == 0) {
+    if (node.dataSize() != sizeof(QuadKey)) damaged();
     single_ = true;
     lower_.push_back(0);
     pages_.push_back(keysAt(node.data()));
   } else if ((node.flags() & kSubData) == 0) {
+    if (node.dataSize() < kHeaderSize || header(node.data()).pad != sizeof(QuadKey)) damaged();
+    most_keys_ = (node.dataSize() - kHeaderSize) / sizeof(QuadKey);
     addPage(0, node.data());
   } else {
     const Tree tree = load<Tree>(node.data());
-    if (tree.leaf_pages > map.page_count) damaged();
+    if (node.dataSize() != sizeof(Tree) || tree.leaf_pages > map.page_count || tree.pad != sizeof(QuadKey))
+      damaged();
     lower_.reserve(tree.leaf_pages);
     pages_.reserve(tree.leaf_pages);
     collect(map, tree.root, 0, 0);
@@ -110,6 +117,7 @@ PageDirectory::PageDirectory(const PageMap& map, const Tree& table) {
 }
 
 void PageDirectory::addPage(Key128 lower, const std::uint8_t* page) {
+  if (!lower_.empty() && lower <= lower_.back()) damaged();
   lower_.push_back(lower);
   pages_.push_back(keysAt(page + kHeaderSize));
 }
@@ -117,6 +125,7 @@ void PageDirectory::addPage(Key128 lower, const std::uint8_t* page) {
 void PageDirectory::collect(const PageMap& map, PageNumber number, Key128 lower, int depth) {
   if (depth > kMaxDepth) damaged();
   const std::uint8_t* page = map.page(number);
+  if ((header(page).flags & kLeaf) != 0) return addPage(lower, page);
   const std::size_t count = lmdb_page::entryCount(page);
   if (count > map.page_size / 2) damaged();
   // The children of one branch are all leaves or all branches; only the first is looked at.

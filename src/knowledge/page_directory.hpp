@@ -73,15 +73,15 @@ class PageDirectory {
   std::uint64_t distance(Position from, Position to) const;
 
  private:
-  static std::size_t entryCount(const QuadKey* keys) {
+  std::size_t entryCount(const QuadKey* keys) const {
     const auto* page = reinterpret_cast<const std::uint8_t*>(keys) - lmdb_page::kHeaderSize;
-    return std::min<std::size_t>(lmdb_page::entryCount(page), kMostKeys);
+    return std::min<std::size_t>(lmdb_page::entryCount(page), most_keys_);
   }
   void addPage(Key128 lower, const std::uint8_t* page);
   void collect(const PageMap& map, lmdb_page::PageNumber number, Key128 lower, int depth);
   Position within(std::size_t page, Key128 key) const;
 
-  static constexpr std::size_t kMostKeys = 65536 / sizeof(QuadKey);
+  std::size_t most_keys_ = 65536 / sizeof(QuadKey);  ///< what a page holds, whatever a damaged one says
   std::vector<Key128> lower_;  ///< no key of the page is less, every key of the page before is
   std::vector<const QuadKey*> pages_;
   bool single_ = false;  ///< one key that stands in a node, without a page header

@@ -41,8 +41,10 @@ librdf_node* literalNode(librdf_world* world, const TermView& term) {
   // librdf reads the text as if it ended in a zero byte.
   const std::string text(term.text);
   librdf_node* node = librdf_new_node_from_typed_counted_literal(
-      world, bytes(text), text.size(), language.empty() ? nullptr : language.c_str(), language.size(), nullptr);
-  // Set afterwards: made with the datatype xsd:boolean, raptor turns "1" into "true" and "maybe" into "false".
+      world, bytes(text), text.size(), language.empty() ? nullptr : language.c_str(), language.size(),
+      nullptr);
+  // Set afterwards: made with the datatype xsd:boolean, raptor turns "1" into "true" and "maybe" into
+  // "false".
   if (node != nullptr && !plain && language.empty())
     node->value.literal.datatype = librdf_new_uri2(world, bytes(term.datatype), term.datatype.size());
   return node;

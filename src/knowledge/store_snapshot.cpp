@@ -2,6 +2,8 @@
 // Finding the mapped pages of a commit through LMDB's interface, and the directories over them.
 #include "knowledge/store_snapshot.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <string>
 
@@ -35,6 +37,8 @@ PageMap mapAround(const void* inside, const ReadTransaction::Impl& transaction) 
       mdb_env_stat(transaction.environment->handle(), &stat) != 0)
     return {};
   const std::uintptr_t page_size = stat.ms_psize;
+  // The map begins at a page of the system, which may be smaller than a page of a map from another machine.
+  if (page_size > static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE))) return {};
   const auto* page =
       static_cast<const std::uint8_t*>(inside) - reinterpret_cast<std::uintptr_t>(inside) % page_size;
   const PageNumber number = header(page).number;

@@ -23,17 +23,6 @@ constexpr int kFormat = 1;
 constexpr auto kLockPatience = std::chrono::milliseconds(1500);
 constexpr auto kLockPause = std::chrono::milliseconds(10);
 
-unsigned tableFlags(std::size_t table) {
-  switch (static_cast<Table>(table)) {
-    case Table::Blocks:
-      return 0;
-    case Table::Terms:
-      return MDB_INTEGERKEY;
-    default:
-      return MDB_DUPSORT | MDB_DUPFIXED;
-  }
-}
-
 void checkFormat(const std::string& text, const std::filesystem::path& file) {
   int format = 0;
   std::from_chars(text.data(), text.data() + text.size(), format);
@@ -49,7 +38,8 @@ void checkFormat(const std::string& text, const std::filesystem::path& file) {
 
 void LmdbEnvironment::createTables(MDB_txn* transaction) {
   for (std::size_t i = 0; i < kTableCount; ++i)
-    check(mdb_dbi_open(transaction, kTableNames[i], tableFlags(i) | MDB_CREATE, &tables_[i]),
+    check(mdb_dbi_open(transaction, kTableNames[i], tableFlags(static_cast<Table>(i)) | MDB_CREATE,
+                       &tables_[i]),
           "make the map's tables");
   MDB_dbi main = 0;
   check(mdb_dbi_open(transaction, nullptr, 0, &main), "make the map's tables");
@@ -71,7 +61,8 @@ void LmdbEnvironment::openTables() {
   if (found == MDB_SUCCESS) {
     checkFormat(std::string(toView(value)), file_);
     for (std::size_t i = 0; i < kTableCount; ++i)
-      check(mdb_dbi_open(raw, kTableNames[i], tableFlags(i), &tables_[i]), "read the map's tables");
+      check(mdb_dbi_open(raw, kTableNames[i], tableFlags(static_cast<Table>(i)), &tables_[i]),
+            "read the map's tables");
     check(mdb_txn_commit(transaction.release()), "read the map's tables");
     return;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writing Turtle. Not with raptor, whose serialiser (2.0.15) writes "INF"^^xsd:double as a bare INF, keeps one of two
-// literals of equal number, and refuses ill-formed ones: its output did not read back.
+// Writing Turtle. Not with raptor, whose serialiser (2.0.15) writes "INF"^^xsd:double as a bare INF, keeps
+// one of two literals of equal number, and refuses ill-formed ones: its output did not read back.
 #include "knowledge/turtle_writer.hpp"
 
 #include <algorithm>

@@ -17,6 +17,7 @@
 
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/base/file_bytes.hpp"
+#include "cluxel/knowledge/map_check.hpp"
 #include "cluxel/knowledge/quad_store.hpp"
 #include "knowledge/scratch_folder.hpp"
 
@@ -365,6 +366,39 @@ TEST_F(MapFile, FindsAChangedByteInABlock) {
   std::ofstream(file_, std::ios::binary) << bytes;
   const auto environment = open(OpenMode::ReadOnly);
   EXPECT_THROW(environment->read().block("t", "a"), Error);
+}
+
+TEST_F(MapFile, IsFoundSoundOrDamagedAsAWhole) {
+  {
+    const auto environment = create();
+    WriteTransaction transaction = environment->write();
+    QuadWriter writer(transaction);
+    for (int i = 1; i < 3'000; ++i)
+      writer.add({Term::iri("s" + std::to_string(i % 700)), Term::iri("p"), Term::integer(i), Term::iri("")});
+    writer.flush();
+    transaction.putBlock("t", "a", std::string(10'000, 'x'));
+    transaction.commit();
+  }
+  const MapCheck sound = checkMap(file_);
+  EXPECT_THAT(sound.faults, ElementsAre());
+  EXPECT_EQ(sound.quads, 2'999U);
+  EXPECT_EQ(sound.blocks, 1U);
+  EXPECT_EQ(sound.terms, 700U + 2'999 + 2);  // subjects, numbers, the predicate and xsd:integer
+  const std::string bytes = readFile(file_);
+  std::mt19937 random(11);
+  int found = 0;
+  for (int i = 0; i < 300; ++i) {
+    std::string damaged = bytes;
+    const std::size_t at = 8192 + random() % (bytes.size() - 8192);
+    damaged[at] = static_cast<char>(damaged[at] ^ (1U << (random() % 8)));
+    std::ofstream(file_, std::ios::binary) << damaged;
+    try {
+      found += checkMap(file_).sound() ? 0 : 1;
+    } catch (const Error&) {
+      ++found;
+    }
+  }
+  EXPECT_GT(found, 150) << "most bytes of the file are in use";
 }
 
 TEST_F(MapFile, CompactsIntoASmallerMapWithTheSameContents) {
