@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cluxel/base/diagnostic.hpp"
+#include "sparql/mentions.hpp"
 
 namespace cluxel::sparql {
 namespace {
@@ -24,25 +25,6 @@ bool readsGraph(const Node& node) {
     case Node::Kind::Extend: return readsGraph(*node.children[0]);
     default: return false;
   }
-}
-
-bool hasSubSelect(const ast::GroupPattern& pattern);
-
-bool hasSubSelect(const ast::PatternElement& element) {
-  if (std::holds_alternative<ast::SubSelect>(element.value)) return true;
-  if (const auto* group = std::get_if<ast::GroupPattern>(&element.value)) return hasSubSelect(*group);
-  if (const auto* optional = std::get_if<ast::OptionalPattern>(&element.value)) return hasSubSelect(optional->group);
-  if (const auto* minus = std::get_if<ast::MinusPattern>(&element.value)) return hasSubSelect(minus->group);
-  if (const auto* both = std::get_if<ast::UnionPattern>(&element.value)) {
-    return std::any_of(both->branches.begin(), both->branches.end(),
-                       [](const ast::GroupPattern& branch) { return hasSubSelect(branch); });
-  }
-  return false;
-}
-
-bool hasSubSelect(const ast::GroupPattern& pattern) {
-  return std::any_of(pattern.elements.begin(), pattern.elements.end(),
-                     [](const ast::PatternElement& element) { return hasSubSelect(element); });
 }
 
 /// The conjuncts of a condition, each a filter of its own: an error in one makes all an error or false.
@@ -225,7 +207,9 @@ NodePtr AlgebraBuilder::element(const ast::PatternElement& part, Scope& scope) {
 NodePtr AlgebraBuilder::graphPattern(const ast::GraphPattern& pattern, Scope& scope) {
   const GraphPlace outer = scope.graph;
   const PatternPlace name = place(pattern.graph, scope);
-  scope.graph = name.isSlot() ? GraphPlace{GraphPlace::Kind::Slot, name.slot, kUnbound}
+  // The graph's variable is not in scope within; where its name is used there too, the two are joined afterwards.
+  const bool hidden = name.isSlot() && mentions(pattern.group, pattern.graph.variable());
+  scope.graph = name.isSlot() ? GraphPlace{GraphPlace::Kind::Slot, hidden ? freshSlot(".graph") : name.slot, kUnbound}
                               : GraphPlace{GraphPlace::Kind::Constant, kNoSlot, name.constant};
   NodePtr node = group(pattern.group, scope);
   if (name.isSlot() && hasSubSelect(pattern.group)) {
@@ -234,6 +218,12 @@ NodePtr AlgebraBuilder::graphPattern(const ast::GraphPattern& pattern, Scope& sc
     loop->graph = scope.graph;
     loop->annotate();
     node = loop;
+  }
+  if (hidden) {
+    Expr graph;
+    graph.kind = Expr::Kind::Slot;
+    graph.slot = scope.graph.slot;
+    node = extend(node, name.slot, std::move(graph), pattern.graph.at);
   }
   scope.graph = outer;
   return node;

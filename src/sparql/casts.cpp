@@ -41,7 +41,7 @@ Value toString(const Value& value, FunctionContext& context) {
 }
 
 Value toBoolean(const Value& value) {
-  if (value.type == Type::Boolean) return value;
+  if (value.type == Type::Boolean) return Value::boolean(value.integer != 0);
   if (value.isNumeric()) return Value::boolean(value.number != 0 && !std::isnan(value.number));
   return {};
 }

@@ -105,6 +105,8 @@ std::optional<bool> equals(const Value& a, const Value& b, const QueryTerms& ter
   }
   if (sameTerm(a, b, terms)) return true;
   if (!a.isLiteral() || !b.isLiteral()) return false;
+  // A language tag tells a literal from all literals without it, whatever their datatype.
+  if (a.type == Type::LangString || b.type == Type::LangString) return false;
   if (!isKnown(a) || !isKnown(b)) return std::nullopt;
   return false;
 }

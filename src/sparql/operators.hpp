@@ -93,16 +93,18 @@ class UnitOperator : public Operator {
   bool done_ = false;
 };
 
-/// A pattern that names what the store does not have.
-class NothingOperator : public Operator {
+/// A pattern that names what the store does not have: nothing, whatever the rows below (which are not asked for).
+class NothingOperator : public UnaryOperator {
  public:
-  NothingOperator(TripleNode pattern, std::vector<Slot> slots) : pattern_(std::move(pattern)) { slots_ = std::move(slots); }
+  NothingOperator(OperatorPtr child, TripleNode pattern, const std::vector<Slot>& slots)
+      : UnaryOperator(std::move(child)), pattern_(std::move(pattern)) {
+    slots_ = slots;
+  }
   std::string label(const PlanNames& names) const override {
     return "nothing in the store fits  " + describe(pattern_, names.query, names.terms);
   }
 
  protected:
-  void reopen(bool) override {}
   bool produce(Batch&) override { return false; }
 
  private:

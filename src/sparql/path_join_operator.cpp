@@ -42,7 +42,7 @@ class PathJoinOperator : public UnaryOperator {
       if (next_found_ == found_.size()) {
         found_.clear();
         next_found_ = 0;
-        if (row_ == in_.rows) {
+        if (row_ >= in_.rows) {
           finishSegment(out);
           if (!child_->next(in_)) break;
           row_ = 0;

@@ -76,7 +76,7 @@ Planner::State Planner::joinTriple(State state, const Node& part) {
   };
   if (isImpossible(pattern, dataset_)) {
     const auto slots = mergedSlots(state.top->slots(), part.possible.list());
-    return finish(std::make_unique<NothingOperator>(pattern, slots));
+    return finish(std::make_unique<NothingOperator>(std::move(state.top), pattern, slots));
   }
   if (pattern.path) {
     state.sorted_by = kNoSlot;
