@@ -10,8 +10,8 @@ namespace cluxel {
 /// True when `iri` begins with a scheme ("http:"), and so needs no base.
 bool isAbsoluteIri(std::string_view iri);
 
-/// `reference` against `base`, which must be absolute. An absolute reference is kept as it is, without normalisation
-/// of its path, as Turtle parsers keep it; then names in queries and in data are the same.
+/// `reference` against `base`, which must be absolute unless the reference is. Dot segments are removed from absolute
+/// references too, but nothing else is normalised: raptor reads data so, and names must be the same in both.
 std::string resolveIri(std::string_view reference, std::string_view base);
 
 }  // namespace cluxel

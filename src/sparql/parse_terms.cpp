@@ -54,7 +54,7 @@ bool SparqlParser::isTermStart() const {
 
 std::string SparqlParser::resolved(const Token& iri_ref) const {
   const std::string_view written = source_.text().substr(iri_ref.begin + 1, iri_ref.end - iri_ref.begin - 2);
-  if (isAbsoluteIri(written)) return std::string(written);
+  if (isAbsoluteIri(written)) return resolveIri(written, {});
   if (base_iri_.empty())
     fail(iri_ref.begin, "the relative IRI <" + std::string(written) + "> has no base",
          "write the whole IRI, or BASE <…> at the beginning");

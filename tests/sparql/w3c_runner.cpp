@@ -60,6 +60,7 @@ void printTable(const std::map<std::string, Tally>& groups) {
 }
 
 int runAll(const Options& options) {
+  std::cout << std::unitbuf;   // a crash must not swallow what was found before
   const W3cFolder folder(std::filesystem::canonical(options.folder));
   const std::map<std::string, std::string> known = knownFailures();
   std::map<std::string, Tally> groups;
