@@ -49,6 +49,10 @@ void fillWideFeatures(const FeatureInput& input, std::size_t column, FeatureRows
 std::vector<std::string> heightColumns();
 void fillHeightFeatures(const FeatureInput& input, std::size_t column, FeatureRows& rows);
 
+/// Occupied cells beside, above and below a cluxel.
+std::vector<std::string> pillarColumns();
+void fillPillarFeatures(const FeatureInput& input, std::size_t column, FeatureRows& rows);
+
 std::vector<std::string> intensityColumns();
 void fillIntensityFeatures(const FeatureInput& input, std::size_t column, FeatureRows& rows);
 

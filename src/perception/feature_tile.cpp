@@ -15,6 +15,17 @@ void append(std::vector<std::string>& names, const std::vector<std::string>& mor
 /// Changes when a column's formula changes under its old name, so that models of the old one are refused.
 constexpr std::uint32_t kFeatureVersion = 1;
 
+/// The groups after those of the supports, in the order of their columns.
+struct FurtherGroup {
+  bool FeatureParams::* wanted;
+  std::vector<std::string> (*columns)();
+  void (*fill)(const FeatureInput&, std::size_t column, FeatureRows&);
+};
+constexpr std::array<FurtherGroup, 4> kFurtherGroups{{{&FeatureParams::wide_shape, wideColumns, fillWideFeatures},
+                                                      {&FeatureParams::height, heightColumns, fillHeightFeatures},
+                                                      {&FeatureParams::pillar, pillarColumns, fillPillarFeatures},
+                                                      {&FeatureParams::intensity, intensityColumns, fillIntensityFeatures}}};
+
 /// Shapes of the balls of own cluxels and of those that edges lead to.
 std::vector<EigenShape> ballShapes(const Ring<CluxelTile>& ring, const RingCluxels& cluxels) {
   std::vector<EigenShape> shapes(cluxels.size());
@@ -30,6 +41,7 @@ void describe(FeatureParams& params, ParameterVisitor& visitor) {
   visitor.flag({"features.shape", "1", 0, 1, "eigenvalue shape of ball, 1-ring and 2-ring"}, params.shape);
   visitor.flag({"features.wide_shape", "1", 0, 1, "eigenvalue shape of wide cubes"}, params.wide_shape);
   visitor.flag({"features.height", "1", 0, 1, "height above ground and profile of the map column"}, params.height);
+  visitor.flag({"features.pillar", "1", 0, 1, "occupied cells beside, above and below"}, params.pillar);
   visitor.flag({"features.extent", "1", 0, 1, "sizes of the supports"}, params.extent);
   visitor.flag({"features.density", "1", 0, 1, "spacing of points and numbers of neighbours"}, params.density);
   visitor.flag({"features.intensity", "1", 0, 1, "mean and spread of the intensity"}, params.intensity);
@@ -47,9 +59,8 @@ ContentHash FeatureLayout::hash() const {
 
 FeatureLayout featureLayout(const FeatureParams& params) {
   FeatureLayout layout{supportColumns(params), edgeColumns()};
-  if (params.wide_shape) append(layout.columns, wideColumns());
-  if (params.height) append(layout.columns, heightColumns());
-  if (params.intensity) append(layout.columns, intensityColumns());
+  for (const auto& group : kFurtherGroups)
+    if (params.*group.wanted) append(layout.columns, group.columns());
   return layout;
 }
 
@@ -66,14 +77,13 @@ FeatureTile computeFeatures(const Ring<CluxelTile>& cluxels, const Ring<GroundTi
     tile.point_count.push_back(static_cast<std::uint32_t>(moments.count));
   }
   FeatureRows rows(own.size(), featureLayout(params).columns.size());
-  std::size_t column = 0;
-  fillSupportFeatures(input, params, column, rows);
-  column += supportColumns(params).size();
-  if (params.wide_shape) fillWideFeatures(input, column, rows);
-  column += params.wide_shape ? wideColumns().size() : 0;
-  if (params.height) fillHeightFeatures(input, column, rows);
-  column += params.height ? heightColumns().size() : 0;
-  if (params.intensity) fillIntensityFeatures(input, column, rows);
+  std::size_t column = supportColumns(params).size();
+  fillSupportFeatures(input, params, 0, rows);
+  for (const auto& group : kFurtherGroups) {
+    if (!(params.*group.wanted)) continue;
+    group.fill(input, column, rows);
+    column += group.columns().size();
+  }
   tile.features = rows.take();
   fillEdges(input, tile);
   return tile;

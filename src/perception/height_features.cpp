@@ -125,7 +125,7 @@ void fillHeightFeatures(const FeatureInput& input, std::size_t column, FeatureRo
     auto rest = out.subspan(1 + 2 * kProfileColumns);
     rest[0] = static_cast<float>(wide[cell].high - ground);
     rest[1] = static_cast<float>(wide[cell].low - ground);
-    rest[2] = static_cast<float>(wide[cell].columns);
+    rest[2] = static_cast<float>(wide[cell].columns) / 49.0F;
   }
 }
 

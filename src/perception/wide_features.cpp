@@ -82,13 +82,13 @@ void addMoved(MomentSum& to, const MomentSum& from, const Eigen::Vector3f& move)
   to.yz += from.yz + y * from.z + z * from.y + from.n * y * z;
 }
 
-std::array<float, kColumnsPerScale> describeCube(const MomentSum& sum, double cell_m) {
+std::array<float, kColumnsPerScale> describeCube(const MomentSum& sum, int occupied) {
   const EigenShape shape = shapeOf(sum);
   const double mean_z = sum.z / sum.n;
   const auto as = [](double value) { return static_cast<float>(value); };
   return {as(shape.linearity()), as(shape.planarity()), as(shape.scattering()), as(std::abs(shape.normal.z())),
           as(std::abs(shape.axis.z())), as(shape.length(2)),
-          as(std::sqrt(std::max(0.0, sum.zz / sum.n - mean_z * mean_z))), as(std::log2(sum.n) - 2 * std::log2(cell_m))};
+          as(std::sqrt(std::max(0.0, sum.zz / sum.n - mean_z * mean_z))), static_cast<float>(occupied) / 27.0F};
 }
 
 void fillScale(const FeatureInput& input, double cell_m, std::size_t column, FeatureRows& rows) {
@@ -98,10 +98,11 @@ void fillScale(const FeatureInput& input, double cell_m, std::size_t column, Fea
   for (std::size_t cell = 0; cell < cells.key.size(); ++cell) {
     walk.moveTo(cells.key[cell]);
     MomentSum sum;
+    int occupied = 0;
     for (std::size_t k = 0; k < 9; ++k)
-      for (std::size_t other = walk.first(k); other < walk.last(k); ++other)
+      for (std::size_t other = walk.first(k); other < walk.last(k); ++other, ++occupied)
         addMoved(sum, cells.sum[other], cells.place[other] - cells.place[cell]);
-    cube[cell] = describeCube(sum, cell_m);
+    cube[cell] = describeCube(sum, occupied);
   }
   for (std::size_t c = 0; c < cells.cell_of_own.size(); ++c) {
     const auto& values = cube[cells.cell_of_own[c]];
@@ -115,7 +116,7 @@ std::vector<std::string> wideColumns() {
   std::vector<std::string> names;
   for (const char* cube : {"1m5_", "3m_"})
     for (const char* name : {"shape.wide_linearity", "shape.wide_planarity", "shape.wide_scattering", "shape.wide_normal_up",
-                             "shape.wide_axis_up", "metric.wide_rough", "metric.wide_rise", "metric.wide_members"}) {
+                             "shape.wide_axis_up", "metric.wide_rough", "metric.wide_rise", "metric.wide_occupied"}) {
       const std::string text(name);
       const auto dot = text.find("wide_");
       names.push_back(text.substr(0, dot) + "wide" + cube + text.substr(dot + 5));

@@ -93,10 +93,10 @@ TEST(FeatureTile, GroupsAreSwitchedWithoutChangingTheOthers) {
   const auto scans = splitAtRandom(streetPoints(35), 2, 35);
   const PerceivedTiles all = perceive(scans, {}, 1);
   const FeatureLayout whole = featureLayout({});
-  for (int group = 0; group < 6; ++group) {
+  for (int group = 0; group < 7; ++group) {
     PerceptionParams params;
     auto& f = params.features;
-    *std::array<bool*, 6>{&f.hor, &f.shape, &f.wide_shape, &f.height, &f.extent, &f.density}[static_cast<std::size_t>(group)] = false;
+    *std::array<bool*, 7>{&f.hor, &f.shape, &f.wide_shape, &f.height, &f.pillar, &f.extent, &f.density}[static_cast<std::size_t>(group)] = false;
     const FeatureLayout layout = featureLayout(f);
     EXPECT_LT(layout.columns.size(), whole.columns.size());
     EXPECT_NE(layout.hash(), whole.hash());

@@ -23,6 +23,7 @@ struct FeatureParams {
   bool shape = true;           ///< eigenvalue shape and directions of ball, 1-ring, 2-ring (scale-free)
   bool wide_shape = true;      ///< the same in wide cubes, and their lengths (metric)
   bool height = true;          ///< height above the local ground and profile of the map column around it (metric)
+  bool pillar = true;          ///< what is occupied beside, above and below it within 1 m (metric)
   bool extent = true;          ///< sizes of the supports (metric)
   bool density = true;         ///< spacing of points and numbers of neighbours (metric)
   bool intensity = false;      ///< mean and spread of the intensity, 0 where a scan has none
