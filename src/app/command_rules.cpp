@@ -5,7 +5,11 @@
 #include "cluxel/base/file_bytes.hpp"
 #include "cluxel/mapping/class_catalogue_of.hpp"
 #include "cluxel/mapping/map_inputs.hpp"
+#include "cluxel/mapping/map_reader.hpp"
+#include "cluxel/perception/scene_pipeline.hpp"
 #include "cluxel/reasoning/rule_loader.hpp"
+#include "cluxel/reasoning/rule_test.hpp"
+#include "cluxel/scan/scan_set.hpp"
 
 namespace cluxel::app {
 
@@ -13,6 +17,8 @@ namespace {
 
 struct RulesOptions {
   std::vector<fs::path> files;
+  fs::path junit;
+  std::string only;
   MapInputFiles inputs;
 };
 
@@ -43,6 +49,41 @@ ExitCode check(const RulesOptions& options, const Session& session) {
   return hasErrors(faults) ? ExitCode::FaultyInput : ExitCode::Done;
 }
 
+/// Runs the pipeline on a cloud with the model, or takes the scene out of a map.
+Scene sceneFor(const SceneRequest& request, const RulesOptions& options, Session& session) {
+  if (request.kind == SceneRequest::Kind::Map) return MapReader(request.path).scene();
+  const NamedText model = readMapInputs(options.inputs, session.dataHome()).model;
+  const ScanSet scans = ScanSet::open({request.path}, {}, session.console);
+  std::vector<Scan> loaded;
+  for (std::size_t i = 0; i < scans.size(); ++i) loaded.push_back(scans.load(i));
+  return sceneOf(loaded, parseModel(model.text, model.name), {}, session.threadCount());
+}
+
+std::vector<fs::path> testFiles(const RulesOptions& options, const DataHome& home) {
+  std::vector<fs::path> files;
+  for (const fs::path& file : options.files) files.push_back(home.locate("rules", file));
+  if (files.empty()) files.push_back(home.locate("rules/outdoor.rules-test.yaml"));
+  return files;
+}
+
+ExitCode runTests(const RulesOptions& options, Session& session) {
+  const DataHome home = session.dataHome();
+  const ClassCatalogue catalogue = classCatalogueOf(readMapInputs(options.inputs, home).ontology);
+  RuleTestOptions test_options;
+  test_options.scenes = [&](const SceneRequest& request) { return sceneFor(request, options, session); };
+  if (!options.only.empty()) test_options.only = options.only;
+  bool passed = true;
+  std::string junit;
+  for (const fs::path& file : testFiles(options, home)) {
+    const RuleTestReport report = runRuleTests(file, catalogue, test_options);
+    print(session.json ? jsonOf(report) : textOf(report));
+    junit += junitOf(report, file.filename().string());
+    passed = passed && report.passed();
+  }
+  if (!options.junit.empty()) writeFile(options.junit, junit);
+  return passed ? ExitCode::Done : ExitCode::NegativeFinding;
+}
+
 }  // namespace
 
 void addRules(CLI::App& app, Session& session) {
@@ -52,6 +93,13 @@ void addRules(CLI::App& app, Session& session) {
   CLI::App* checking = rules->add_subcommand("check", "report every fault with file, line and column");
   checking->add_option("files", options->files, "rule files; else rules/outdoor.rules.yaml");
   checking->add_option("--ontology", options->inputs.ontology, "ontology files instead of ontology/*.ttl");
+  CLI::App* testing = rules->add_subcommand("test", "run rule tests; exit 1 when one fails");
+  testing->add_option("files", options->files, "test files; else rules/outdoor.rules-test.yaml");
+  testing->add_option("--junit", options->junit, "write a JUnit report to this file");
+  testing->add_option("--only", options->only, "only tests whose name holds this text");
+  testing->add_option("--model", options->inputs.model, "the model for tests on clouds");
+  testing->add_option("--ontology", options->inputs.ontology, "ontology files instead of ontology/*.ttl");
+  onRun(*testing, session, [options, &session] { return runTests(*options, session); });
   onRun(*checking, session, [options, &session] { return check(*options, session); });
 }
 

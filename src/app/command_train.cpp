@@ -3,33 +3,57 @@
 #include "app/command.hpp"
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/base/file_bytes.hpp"
-#include "cluxel/tasks/model_training.hpp"
+#include "cluxel/perception/training_files.hpp"
+#include "cluxel/tasks/model_card.hpp"
 
 namespace cluxel::app {
 
 namespace {
 
 struct TrainOptions {
-  std::vector<fs::path> inputs;
-  fs::path poses, truth, output;
-  std::string data = "Not described.";
-  ModelTrainingParams params;
+  std::vector<fs::path> inputs, helpers;
+  fs::path truth, helper_truth, output;
+  std::string name, data = "Not described.";
+  int group_size = 2;
+  bool no_copies = false;
 };
 
-ExitCode train(TrainOptions& options, Session& session) {
-  if (options.params.name.empty()) options.params.name = options.output.filename().string();
-  const ScanSet scans = ScanSet::open(options.inputs, {options.poses}, session.console);
-  const TruthSource truth = TruthSource::open(options.truth, session.dataHome());
-  const unsigned threads = session.threadCount();
-  const auto places = trainingPlaces(scans, truth, options.params, threads, session.console);
-  const TrainingReport report = cluxel::train(options.params.name, places, options.params.perception,
-                                              options.params.train, threads, session.console);
-  fs::create_directories(options.output);
-  saveModel(report.model, options.output / "model.json");
+/// A folder of truth files as it is; a label map by path or by name in labels/.
+fs::path truthPath(const fs::path& given, const DataHome& home) {
+  if (fs::exists(given)) return given;
+  fs::path name = given;
+  if (name.extension() != ".yaml") name += ".yaml";
+  return home.locate("labels", name);
+}
+
+/// The command in a form that holds on any machine: names without their folders.
+std::string commandText(const TrainOptions& options) {
   std::string command = "cluxel train";
   for (const fs::path& input : options.inputs) command += " " + input.filename().string();
-  command += " --truth " + options.truth.filename().string() + " -o " + options.output.filename().string();
-  writeFile(options.output / "README.md", modelCard(report, options.params, command, options.data));
+  command += " --truth " + options.truth.filename().string();
+  for (const fs::path& input : options.helpers) command += " --helper " + input.filename().string();
+  if (!options.helpers.empty()) command += " --helper-truth " + options.helper_truth.filename().string();
+  if (options.no_copies) command += " --no-copies";
+  return command + " --group-size " + std::to_string(options.group_size) + " -o " + options.output.filename().string();
+}
+
+ExitCode trainModel(const TrainOptions& options, Session& session) {
+  if (!options.helpers.empty() && options.helper_truth.empty())
+    throw Error(ExitCode::Usage, "--helper needs --helper-truth");
+  const DataHome home = session.dataHome();
+  std::vector<TrainingSource> sources{{options.inputs, truthPath(options.truth, home), false}};
+  for (const fs::path& helper : options.helpers)
+    sources.push_back({{helper}, truthPath(options.helper_truth, home), true});
+  CopyParams copies;
+  if (options.no_copies) copies.sensors.clear();
+  const PerceptionParams perception;
+  const unsigned threads = session.threadCount();
+  const auto places = readPlaces(sources, perception, copies, options.group_size, threads, session.console);
+  const std::string name = options.name.empty() ? options.output.filename().string() : options.name;
+  const TrainingReport report = train(name, places, perception, {}, threads, session.console);
+  fs::create_directories(options.output);
+  saveModel(report.model, options.output / "model.json");
+  writeFile(options.output / "README.md", modelCard(report, {name, commandText(options), options.data}));
   if (session.json)
     printJson(Json{{"model", (options.output / "model.json").string()}, {"accuracy", report.left_out.accuracy()},
                    {"macro_f1", report.left_out.macroF1()}, {"calibration_error", report.calibration_error}});
@@ -47,13 +71,14 @@ void addTrain(CLI::App& app, Session& session) {
   command->add_option("--truth", options->truth, "a folder of truth files, or a label map: oakland, semantickitti, campus")
       ->required();
   command->add_option("-o,--output", options->output, "the model's folder: model.json and README.md")->required();
-  command->add_option("--poses", options->poses, "poses of the scans");
-  command->add_option("--name", options->params.name, "the model's name; else the folder's");
+  command->add_option("--helper", options->helpers, "scans that help to train, but are never left out and measured on");
+  command->add_option("--helper-truth", options->helper_truth, "truth of the helpers, as --truth");
+  command->add_option("--name", options->name, "the model's name; else the folder's");
   command->add_option("--data", options->data, "what the data are, for the model's card");
-  command->add_option("--scans-per-group", options->params.scans_per_group, "consecutive scans left out together")
+  command->add_option("--group-size", options->group_size, "consecutive places that are left out together")
       ->capture_default_str();
-  command->add_flag("--together", options->params.together, "scans of a group overlap: perceive them together");
-  onRun(*command, session, [options, &session] { return train(*options, session); });
+  command->add_flag("--no-copies", options->no_copies, "do not also train on copies as other sensors would see them");
+  onRun(*command, session, [options, &session] { return trainModel(*options, session); });
 }
 
 }  // namespace cluxel::app

@@ -3,6 +3,7 @@
 #include "app/command.hpp"
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/knowledge/environment.hpp"
+#include "cluxel/knowledge/map_check.hpp"
 
 namespace cluxel::app {
 
@@ -28,6 +29,19 @@ ExitCode compact(const UpkeepOptions& options, const Session& session) {
   return ExitCode::Done;
 }
 
+ExitCode doctor(const UpkeepOptions& options, const Session& session) {
+  const MapCheck check = checkMap(options.map);
+  if (session.json) {
+    printJson(Json{{"blocks", check.blocks}, {"terms", check.terms}, {"quads", check.quads}, {"faults", check.faults}});
+  } else {
+    for (const std::string& fault : check.faults) std::printf("%s\n", fault.c_str());
+    std::printf("%llu blocks, %llu terms, %llu quads, %zu faults\n", static_cast<unsigned long long>(check.blocks),
+                static_cast<unsigned long long>(check.terms), static_cast<unsigned long long>(check.quads),
+                check.faults.size());
+  }
+  return check.faults.empty() ? ExitCode::Done : ExitCode::NegativeFinding;
+}
+
 }  // namespace
 
 void addUpkeep(CLI::App& app, Session& session) {
@@ -36,6 +50,9 @@ void addUpkeep(CLI::App& app, Session& session) {
   command->add_option("map", options->map, "a map")->required()->check(CLI::ExistingFile);
   command->add_option("-o,--output", options->output, "the file to write; else the map itself is replaced");
   onRun(*command, session, [options, &session] { return compact(*options, session); });
+  CLI::App* checking = app.add_subcommand("doctor", "verify the checksums and indexes of a map");
+  checking->add_option("map", options->map, "a map")->required()->check(CLI::ExistingFile);
+  onRun(*checking, session, [options, &session] { return doctor(*options, session); });
 }
 
 }  // namespace cluxel::app

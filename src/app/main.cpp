@@ -28,6 +28,7 @@ void addCommands(CLI::App& app, Session& session) {
   addQuery(app, session);
   addUpdate(app, session);
   addTasks(app, session);
+  addExplain(app, session);
   addRules(app, session);
   addTrain(app, session);
   addEvaluate(app, session);

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finds what a name means in a map and hands it to the rules.
+#include "cluxel/tasks/explanation.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/mapping/class_catalogue_of.hpp"
+#include "cluxel/reasoning/explain.hpp"
+#include "cluxel/reasoning/rule_loader.hpp"
+#include "cluxel/sparql/query_engine.hpp"
+
+namespace cluxel {
+
+namespace {
+
+/// Answers `ask:` from the finished map.
+class FinishedMapOracle : public AskOracle {
+ public:
+  explicit FinishedMapOracle(const QuadReader& quads) : quads_(quads) {}
+  bool ask(const std::string& query, const std::map<std::string, std::string>& bindings) override {
+    std::vector<std::string> names;
+    std::vector<Binding> values;
+    for (const auto& [name, iri] : bindings) names.push_back(name), values.emplace_back(name, Term::iri(iri));
+    return PreparedQuery(quads_, query, {}, names).ask(values);
+  }
+
+ private:
+  const QuadReader& quads_;
+};
+
+RuleSet rulesOf(const MapInputs& inputs) {
+  std::vector<RuleSource> sources;
+  for (const NamedText& text : inputs.rules) sources.push_back({text.name, text.text});
+  return loadRuleTexts(sources, inputs.rule_roots, classCatalogueOf(inputs.ontology)).require();
+}
+
+bool isNamed(const std::string& kind, const ContentHash& id, const std::string& name) {
+  const std::string hex = id.hex(), path = kind + "/" + hex;
+  return path.starts_with(name) || hex.starts_with(name) || name.ends_with("/map/" + path);
+}
+
+/// The one thing of the list that has the name; none when there is none.
+template <typename Things>
+std::optional<std::size_t> findOne(const Things& things, const std::string& kind, const std::string& name) {
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < things.size(); ++i) {
+    if (!isNamed(kind, things[i].id, name)) continue;
+    if (found) throw Error(ExitCode::NoRows, "'" + name + "' names more than one " + kind + "; write more digits");
+    found = i;
+  }
+  return found;
+}
+
+}  // namespace
+
+std::string explainThing(const MapReader& map, const std::string& name, bool as_json) {
+  const RuleSet rules = rulesOf(map.inputs());
+  const Scene& scene = map.scene();
+  FinishedMapOracle oracle(map.quads());
+  const ReasoningContext context{.oracle = &oracle};
+  Explanation explanation;
+  if (name.size() < 4) throw Error(ExitCode::Usage, "write at least four digits of the name");
+  if (findOne(map.objects(), "object", name)) {
+    const ReasoningResult result = reason(scene, rules, context);
+    const auto object = findOne(result.objects, "object", name);
+    if (!object) throw Error(ExitCode::NoRows, "the map's rules make no object '" + name + "' any more");
+    const SemanticObject& found = result.objects[*object];
+    explanation = explain(scene, rules, context, found, result.decisions.at(found.decision));
+  } else if (const auto primitive = findOne(scene.primitives, "primitive", name)) {
+    explanation = explain(scene, rules, context, static_cast<PrimitiveIndex>(*primitive));
+  } else {
+    throw Error(ExitCode::NoRows, "nothing in the map is named '" + name + "'; `cluxel query MAP objects.rq` lists objects");
+  }
+  return as_json ? jsonOf(explanation, rules, scene) : textOf(explanation, rules, scene);
+}
+
+}  // namespace cluxel
