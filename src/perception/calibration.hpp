@@ -16,7 +16,7 @@ struct CalibrationRows {
 };
 
 /// Slope and offsets that make the truth most likely, point by point; favours that make the macro F1 largest.
-Calibration fitCalibration(const CalibrationRows& rows);
+Calibration fitCalibration(const CalibrationRows& all_rows);
 
 LabelScores scoresOf(const CalibrationRows& rows, const Calibration& calibration);
 double calibrationErrorOf(const CalibrationRows& rows, const Calibration& calibration);

@@ -23,10 +23,10 @@ class PairSearch {
     if (!x_params.pairwise) return;
     const PairSamples samples = pairSamples(x_tiles, x_layout.edge_columns.size(), x_params);
     PairShape shape = shapeOf(samples);
-    for (const float degree_power : x_params.overlap_correction ? std::vector{0.0F, 0.5F, 1.0F} : std::vector{0.0F}) {
+    for (const float degree_power : x_params.overlap_correction ? std::vector{0.5F, 1.0F} : std::vector{0.0F}) {
       shape.degree_power = degree_power;
       PairModel pairs = fitPairs(samples, shape);
-      for (const float scale : {0.125F, 0.25F, 0.5F, 1.0F}) {
+      for (const float scale : {0.25F, 0.5F, 1.0F}) {
         pairs.pair_scale = scale;
         tryPairs(pairs, report);
       }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cluxel/base/parallel.hpp"
+#include "perception/hashed_share.hpp"
 
 namespace cluxel {
 
@@ -13,7 +14,7 @@ namespace {
 
 constexpr std::size_t kLabels = kPrimitiveLabelCount;
 /// The pairwise term has few parameters: this many nodes are plenty.
-constexpr std::size_t kMostPairNodes = 60000;
+constexpr std::size_t kMostPairNodes = 25000;
 
 double pointsOf(const TruthCounts& truth) {
   double points = 0;
@@ -76,20 +77,42 @@ std::set<int> groupsOf(const PlaceRefs& places) {
   return groups;
 }
 
+namespace {
+
+/// Share of the cluxels of each majority label that is kept, so that every label gets an even part of the budget.
+std::array<double, kLabels> keptShares(const PlaceRefs& places, std::size_t most_rows) {
+  std::array<double, kLabels> rows{}, share;
+  for (const TrainingPlace* place : places)
+    for (const auto& [key, counts] : place->truth)
+      for (const TruthCounts& truth : counts)
+        if (pointsOf(truth) > 0) ++rows[majority(truth)];
+  const double part = static_cast<double>(most_rows) / static_cast<double>(kLabels);
+  for (std::size_t k = 0; k < kLabels; ++k) share[k] = rows[k] > part ? part / rows[k] : 1.0;
+  return share;
+}
+
+LabelValues targetOf(const TruthCounts& truth, const LabelValues& weights, double point_power, double kept_share) {
+  LabelValues target;
+  const double factor = std::pow(pointsOf(truth), point_power - 1.0) / kept_share;
+  for (std::size_t k = 0; k < kLabels; ++k) target[k] = weights[k] * static_cast<float>(factor * truth[k]);
+  return target;
+}
+
+}  // namespace
+
 UnaryRows unaryRows(const PlaceRefs& places, const FeatureLayout& layout, const TrainParams& params) {
   const LabelValues weights = classWeights(places, params.class_balance);
+  const auto kept = keptShares(places, static_cast<std::size_t>(params.most_rows));
   UnaryRows rows;
   rows.columns = static_cast<std::uint32_t>(layout.columns.size());
+  std::uint64_t number = 0;
   for (const TrainingPlace* place : places)
     for (const auto& [key, tile] : place->features)
       for (std::size_t i = 0; i < tile.size(); ++i) {
         const TruthCounts& truth = place->truth.at(key)[i];
-        const double points = pointsOf(truth);
-        if (points == 0) continue;
-        LabelValues target;
-        const double factor = std::pow(points, params.point_power) / points;
-        for (std::size_t k = 0; k < kLabels; ++k) target[k] = weights[k] * static_cast<float>(factor * truth[k]);
-        rows.targets.push_back(target);
+        const double share = kept[majority(truth)];
+        if (pointsOf(truth) == 0 || hashedShare(params.boosting.seed, 0, ++number) >= share) continue;
+        rows.targets.push_back(targetOf(truth, weights, params.point_power, share));
         const auto row = tile.features.begin() + static_cast<std::ptrdiff_t>(i * rows.columns);
         rows.features.insert(rows.features.end(), row, row + rows.columns);
       }

@@ -23,22 +23,6 @@ void countTruth(const PerceivedTiles& tiles, const Scan& scan, const PointTruth&
   }
 }
 
-/// A number in [0, 1) from a seed and a point's number (splitmix64).
-double hashedShare(std::uint64_t seed, std::uint64_t point) {
-  std::uint64_t x = seed * 0x9E3779B97F4A7C15ULL + point * 0xD1B54A32D192ED03ULL + 0x632BE59BD9B4E019ULL;
-  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBULL;
-  return static_cast<double>((x ^ (x >> 31U)) >> 11U) * 0x1.0p-53;
-}
-
-template <typename T>
-std::vector<T> chosen(const std::vector<T>& values, const std::vector<std::size_t>& keep) {
-  std::vector<T> rest;
-  if (values.empty()) return rest;
-  for (const std::size_t i : keep) rest.push_back(values[i]);
-  return rest;
-}
-
 }  // namespace
 
 TrainingPlace makePlace(std::span<const Scan> scans, std::span<const PointTruth> truth, const PerceptionParams& params,
@@ -55,27 +39,6 @@ TrainingPlace makePlace(std::span<const Scan> scans, std::span<const PointTruth>
   }
   place.features = std::move(tiles.features);
   return place;
-}
-
-LabelledScans thinned(std::span<const Scan> scans, std::span<const PointTruth> truth, double share, std::uint64_t seed) {
-  LabelledScans rest;
-  for (std::size_t s = 0; s < scans.size(); ++s) {
-    std::vector<std::size_t> keep;
-    for (std::size_t i = 0; i < scans[s].points.size(); ++i)
-      if (hashedShare(seed, i) < share) keep.push_back(i);
-    const ScanPoints& points = scans[s].points;
-    Scan scan;
-    scan.points = {chosen(points.x, keep), chosen(points.y, keep), chosen(points.z, keep), chosen(points.intensity, keep),
-                   chosen(points.label, keep), chosen(points.origin, keep)};
-    scan.time_s = scans[s].time_s;
-    scan.T_map_sensor = scans[s].T_map_sensor;
-    scan.has_pose = scans[s].has_pose;
-    scan.source = scans[s].source;
-    scan.id = contentIdOf(scan);
-    rest.scans.push_back(std::move(scan));
-    rest.truth.push_back({chosen(truth[s].primitive, keep), {}, {}, {}});
-  }
-  return rest;
 }
 
 }  // namespace cluxel

@@ -8,6 +8,7 @@
 
 #include "cluxel/base/parallel.hpp"
 #include "perception/feature_bins.hpp"
+#include "perception/hashed_share.hpp"
 
 namespace cluxel {
 
@@ -15,6 +16,7 @@ namespace {
 
 constexpr std::size_t kLabels = kPrimitiveLabelCount;
 constexpr float kSmallestCurvature = 1e-6F;
+constexpr std::size_t kRowsPerPiece = 8192;
 
 /// First and second derivatives of the loss by each label's score; padded to whole vector registers.
 struct alignas(16) Derivatives {
@@ -24,24 +26,23 @@ struct alignas(16) Derivatives {
   }
 };
 
-/// A number in [0, 1) that depends on its arguments alone (splitmix64).
-double hashedShare(std::uint64_t seed, std::uint64_t round, std::uint64_t item) {
-  std::uint64_t x = seed * 0x9E3779B97F4A7C15ULL + round * 0xD1B54A32D192ED03ULL + item * 0x8CB92BA72F3D8DD7ULL;
-  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBULL;
-  return static_cast<double>((x ^ (x >> 31U)) >> 11U) * 0x1.0p-53;
-}
-
-Derivatives derivativesAt(const LabelValues& scores, const LabelValues& targets) {
+Derivatives derivativesAt(const LabelValues& scores, const LabelValues& targets, float scale) {
   const LabelValues shares = softmax(scores);
   float weight = 0;
-  for (const float target : targets) weight += target;
+  for (const float target : targets) weight += scale * target;
   Derivatives at;
   for (std::size_t k = 0; k < kLabels; ++k) {
-    at.value[k] = weight * shares[k] - targets[k];
+    at.value[k] = weight * shares[k] - scale * targets[k];
     at.value[kLabels + k] = std::max(weight * shares[k] * (1.0F - shares[k]), kSmallestCurvature * weight);
   }
   return at;
+}
+
+/// How far a row is from its label, times its weight.
+float slopeOf(const Derivatives& at) {
+  float sum = 0;
+  for (std::size_t k = 0; k < kLabels; ++k) sum += std::abs(at.value[k]);
+  return sum;
 }
 
 /// How much the loss falls when these rows get their best leaf, up to a factor of 2.
@@ -130,14 +131,26 @@ class Booster {
     return scores;
   }
 
+  /// Rows drawn for one round: those that are still labelled badly nearly always, the others now and then and heavier.
   RoundRows sample(int round) const {
+    std::vector<Derivatives> all(x_rows.size());
+    std::vector<float> size(x_rows.size());
+    parallelFor(x_rows.size() / kRowsPerPiece + 1, x_threads, [&](std::size_t piece) {
+      const std::size_t end = std::min(x_rows.size(), (piece + 1) * kRowsPerPiece);
+      for (std::size_t r = piece * kRowsPerPiece; r < end; ++r) {
+        all[r] = derivativesAt(x_scores[r], x_rows.targets[r], x_scale);
+        size[r] = slopeOf(all[r]);
+      }
+    });
+    double mean = 1e-12;
+    for (const float value : size) mean += static_cast<double>(value) / static_cast<double>(size.size());
     RoundRows rows;
     for (std::uint32_t r = 0; r < x_rows.size(); ++r) {
-      if (hashedShare(x_params.seed, static_cast<std::uint64_t>(2 * round), r) >= x_params.row_share) continue;
-      LabelValues targets = x_rows.targets[r];
-      for (float& target : targets) target *= x_scale;
+      const double share = std::min(1.0, x_params.row_share * (0.2 + 0.8 * static_cast<double>(size[r]) / mean));
+      if (hashedShare(x_params.seed, static_cast<std::uint64_t>(2 * round), r) >= share) continue;
+      for (float& value : all[r].value) value *= static_cast<float>(1.0 / share);
       rows.row.push_back(r);
-      rows.derivatives.push_back(derivativesAt(x_scores[r], targets));
+      rows.derivatives.push_back(all[r]);
     }
     rows.leaf.assign(rows.row.size(), 0);
     return rows;
@@ -190,14 +203,15 @@ class Booster {
     for (const SplitChoice& split : splits)
       tree.splits.push_back({static_cast<std::uint32_t>(split.column), x_bins.cuts(split.column)[split.cut]});
     tree.leaves = leavesOf(rows, std::size_t{1} << splits.size());
-    std::vector<std::uint8_t> leaf(x_rows.size(), 0);
-    for (std::size_t level = 0; level < splits.size(); ++level) {
-      const std::uint8_t* bin = x_bins.bins(splits[level].column);
-      for (std::size_t r = 0; r < leaf.size(); ++r)
-        leaf[r] = static_cast<std::uint8_t>(leaf[r] | (bin[r] > splits[level].cut ? 1U << level : 0U));
-    }
-    for (std::size_t r = 0; r < leaf.size(); ++r)
-      for (std::size_t k = 0; k < kLabels; ++k) x_scores[r][k] += tree.leaves[leaf[r]][k];
+    parallelFor(x_rows.size() / kRowsPerPiece + 1, x_threads, [&](std::size_t piece) {
+      const std::size_t end = std::min(x_rows.size(), (piece + 1) * kRowsPerPiece);
+      for (std::size_t r = piece * kRowsPerPiece; r < end; ++r) {
+        std::size_t leaf = 0;
+        for (std::size_t level = 0; level < splits.size(); ++level)
+          leaf |= static_cast<std::size_t>(x_bins.bins(splits[level].column)[r] > splits[level].cut) << level;
+        for (std::size_t k = 0; k < kLabels; ++k) x_scores[r][k] += tree.leaves[leaf][k];
+      }
+    });
     x_ensemble.trees.push_back(std::move(tree));
   }
 

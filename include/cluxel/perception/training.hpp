@@ -31,17 +31,11 @@ struct TrainingPlace {
 TrainingPlace makePlace(std::span<const Scan> scans, std::span<const PointTruth> truth, const PerceptionParams& params,
                         unsigned threads);
 
-/// A copy of scans and truth with a share of the points, chosen by hash: the same place, scanned more thinly.
-struct LabelledScans {
-  std::vector<Scan> scans;
-  std::vector<PointTruth> truth;
-};
-LabelledScans thinned(std::span<const Scan> scans, std::span<const PointTruth> truth, double share, std::uint64_t seed);
-
 struct TrainParams {
   BoostingParams boosting;
   double class_balance = 0.5;          ///< classes weigh as 1 / frequency^this: 0 as they come, 1 all alike
   double point_power = 0.5;            ///< a cluxel weighs as its points to this power
+  int most_rows = 300000;              ///< cluxels for the unary: common labels are thinned, and weigh more for it
   bool pairwise = true;
   bool overlap_correction = true;      ///< let overlap of supports and degree weaken edges
   double pair_l2 = 3.0;

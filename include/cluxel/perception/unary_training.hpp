@@ -23,8 +23,8 @@ struct BoostingParams {
   int depth = 6;                       ///< splits per tree, up to kLargestTreeDepth
   double learning_rate = 0.12;
   double l2 = 10.0;                    ///< added to a leaf's second derivative; rows have a mean weight of 1
-  double row_share = 0.5;              ///< rows that one tree sees
-  double column_share = 0.5;           ///< columns that one tree may ask about
+  double row_share = 0.25;             ///< rows that one tree sees at most; rows labelled badly come first
+  double column_share = 0.3;           ///< columns that one tree may ask about
   int bins = 64;                       ///< distinct values of a column, up to 256
   std::uint64_t seed = 1;
   std::vector<bool> columns_used = {}; ///< columns that may be asked about; empty: all
