@@ -208,31 +208,41 @@ class Builder {
   }
 
   void relate() {
+    const auto gaps = smallestGaps();
     for (PrimitiveIndex a = 0; a < scene().primitives.size(); ++a) {
       const double bottom = scene().primitives[a][Attribute::Bottom];
       if (bottom <= kNear_m) scene().relations.push_back({RelationKind::TouchesGround, a, a, bottom});
-      for (PrimitiveIndex b = 0; b < scene().primitives.size(); ++b)
-        if (a != b) relatePair(a, b);
     }
+    for (const auto& [pair, gap] : gaps) relatePair(pair.first, pair.second, gap);
     indexRelations(scene());
   }
 
-  void relatePair(PrimitiveIndex i, PrimitiveIndex j) {
+  /// Of all pairs of primitives that are near.
+  std::map<std::pair<PrimitiveIndex, PrimitiveIndex>, double> smallestGaps() {
+    const SceneCluxels& cluxels = scene().cluxels;
+    std::map<std::pair<PrimitiveIndex, PrimitiveIndex>, double> gaps;
+    const CluxelGrid grid(cluxels);
+    for (std::uint32_t a = 0; a < cluxels.size(); ++a)
+      grid.near(a, kNear_m, [&](std::uint32_t b) {
+        if (cluxels.primitive[a] == cluxels.primitive[b]) return;
+        const double gap = gapBetween(cluxels, a, b).gap();
+        if (gap > kNear_m) return;
+        const auto [entry, fresh] = gaps.try_emplace({cluxels.primitive[a], cluxels.primitive[b]}, gap);
+        if (!fresh) entry->second = std::min(entry->second, gap);
+      });
+    return gaps;
+  }
+
+  void relatePair(PrimitiveIndex i, PrimitiveIndex j, double gap) {
     const Primitive& a = scene().primitives[i];
     const Primitive& b = scene().primitives[j];
-    if ((a.min - b.max).cwiseMax(b.min - a.max).maxCoeff() > kNear_m) return;
-    double gap = std::numeric_limits<double>::infinity();
-    bool edge = false;
-    for (std::uint32_t mine : a.cluxels) {
-      for (std::uint32_t theirs : b.cluxels)
-        gap = std::min(gap, gapBetween(scene().cluxels, mine, theirs).gap());
-      edge = edge || std::any_of(edges_[mine].begin(), edges_[mine].end(),
-                                 [&](std::uint32_t other) { return scene().cluxels.primitive[other] == j; });
-    }
+    const bool edge = std::any_of(a.cluxels.begin(), a.cluxels.end(), [&](std::uint32_t mine) {
+      return std::any_of(edges_[mine].begin(), edges_[mine].end(),
+                         [&](std::uint32_t other) { return scene().cluxels.primitive[other] == j; });
+    });
     auto add = [&](RelationKind kind, double measure) { scene().relations.push_back({kind, i, j, measure}); };
     if (edge) add(RelationKind::Intersects, gap);
     if (gap <= kTouches_m) add(RelationKind::Touches, gap);
-    if (gap > kNear_m) return;
     add(RelationKind::Near, gap);
     if (insideShare(a, b) >= kInside) add(RelationKind::Inside, insideShare(a, b));
     relateHeights(a, b, gap, add);

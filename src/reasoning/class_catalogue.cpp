@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <set>
 
+#include "cluxel/knowledge/ontology.hpp"
+
 namespace cluxel {
 
 namespace {
@@ -40,6 +42,13 @@ std::vector<std::string> ClassCatalogue::partsOf(std::string_view iri) const {
   for (const std::string& name : lineage(*this, iri))
     if (const ClassEntry* entry = find(name)) parts.insert(entry->parts.begin(), entry->parts.end());
   return {parts.begin(), parts.end()};
+}
+
+ClassCatalogue catalogueOf(const OntologyView& ontology) {
+  ClassCatalogue catalogue;
+  for (const OntologyClass& known : ontology.classes)
+    catalogue.classes.push_back({known.iri, known.superclasses, known.parts});
+  return catalogue;
 }
 
 }  // namespace cluxel

@@ -8,6 +8,8 @@
 #include <queue>
 #include <tuple>
 
+#include "reasoning/cluxel_grid.hpp"
+
 namespace cluxel {
 
 namespace {
@@ -15,11 +17,11 @@ namespace {
 constexpr double kJumpPenalty = 2.0;
 constexpr double kTop_m = 0.5;
 
-/// Crown cluxels in cells as wide as the longest jump, for gaps that no edge of the graph bridges.
+/// Crown cluxels in cells as wide as the longest jump between centres, for gaps that no edge of the graph bridges.
 class JumpGrid {
  public:
-  JumpGrid(const SceneCluxels& all, std::span<const std::uint32_t> crown, double jump_m)
-      : all_(all), cell_m_(std::max(jump_m, 0.05)) {
+  JumpGrid(const SceneCluxels& all, std::span<const std::uint32_t> crown, double centres_m)
+      : cell_m_(std::max(centres_m, 0.05)) {
     for (std::size_t i = 0; i < crown.size(); ++i) entries_.push_back({cellOf(all.center[crown[i]]), i});
     std::sort(entries_.begin(), entries_.end());
   }
@@ -43,7 +45,6 @@ class JumpGrid {
     return {static_cast<std::int64_t>(std::floor(p.x() / cell_m_)), static_cast<std::int64_t>(std::floor(p.y() / cell_m_)),
             static_cast<std::int64_t>(std::floor(p.z() / cell_m_))};
   }
-  const SceneCluxels& all_;
   double cell_m_;
   std::vector<std::pair<Cell, std::size_t>> entries_;
 };
@@ -51,7 +52,7 @@ class JumpGrid {
 class Parting {
  public:
   Parting(const SceneCluxels& all, std::span<const std::uint32_t> crown, std::span<const CrownSource> sources)
-      : all_(all), crown_(crown), sources_(sources), grid_(all, crown, longestJump(sources)),
+      : all_(all), crown_(crown), sources_(sources), grid_(all, crown, longestJump(all, crown, sources)),
         taken_(crown.size(), kNoSource) {
     for (const CrownSource& source : sources) tops_.push_back(topOf(all, source.trunk));
   }
@@ -71,10 +72,17 @@ class Parting {
  private:
   using Way = std::tuple<double, std::uint32_t, std::size_t>;   // length, source, place in the crown
 
-  static double longestJump(std::span<const CrownSource> sources) {
-    double longest = 0;
-    for (const CrownSource& source : sources) longest = std::max(longest, source.jump_m);
-    return longest;
+  /// Between centres: a jump is a gap between boxes.
+  static double longestJump(const SceneCluxels& all, std::span<const std::uint32_t> crown,
+                            std::span<const CrownSource> sources) {
+    double longest = 0, widest = 0;
+    for (std::uint32_t cluxel : crown) widest = std::max(widest, static_cast<double>(all.extent[cluxel].norm()));
+    for (const CrownSource& source : sources) {
+      longest = std::max(longest, source.jump_m);
+      for (std::uint32_t cluxel : source.trunk)
+        widest = std::max(widest, static_cast<double>(all.extent[cluxel].norm()));
+    }
+    return longest + widest;
   }
 
   /// Ways begin at the trunk's cluxels above the clearance; if there is none, at its highest ones.
@@ -101,8 +109,8 @@ class Parting {
     }
     const double jump = sources_[s].jump_m;
     grid_.near(from, [&](std::size_t at) {
-      const double distance = (all_.center[crown_[at]] - from).norm();
-      if (distance <= jump) relax(at, length + kJumpPenalty * distance, s);
+      if (taken_[at] != kNoSource || gapBetween(all_, cluxel, crown_[at]).gap() > jump) return;
+      relax(at, length + kJumpPenalty * (all_.center[crown_[at]] - from).norm(), s);
     });
   }
 

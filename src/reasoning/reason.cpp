@@ -64,6 +64,7 @@ class RuleRun {
     Decision decision = describeSeed(seed);
     if (isProbed(decision)) decision.flips = flipsOf(seed, walk);
     decision.path = std::move(walk.path);
+    decision.leaf = walk.leaf;
     const TreeNode& leaf = rule_.nodes[walk.leaf];
     if (const auto* reject = std::get_if<RejectLeaf>(&leaf.what)) {
       decision.reason = reject->reason;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The keys of the rule language, mapping by mapping.
 #include <algorithm>
+#include <stdexcept>
 
 #include "cluxel/base/nearest_name.hpp"
+#include "cluxel/reasoning/rule_test.hpp"
 #include "reasoning/rule_reading.hpp"
 
 namespace cluxel {
@@ -49,11 +51,28 @@ const std::vector<RuleKeyTable>& ruleKeyTables() {
   return tables;
 }
 
+const std::vector<RuleKeyTable>& ruleTestKeyTables() {
+  static const std::vector<RuleKeyTable> tables{
+      {"test file", {"apiVersion", "rules", "defaults", "tests"}},
+      {"defaults", {"ground"}},
+      {"ground", {"z"}},
+      {"test", {"name", "todo", "primitives", "adjacency", "cloud", "map", "expect"}},
+      {"primitive", {"label", "box", "attributes"}},
+      {"box", {"center", "size", "yaw"}},
+      {"expect", {"objects", "exactly", "not", "count", "reasons", "golden", "iou", "min_precision", "min_recall"}},
+      {"expected object", {"class", "primitives", "confidence", "rule"}},
+      {"expected reason", {"primitive", "rule", "reason"}},
+  };
+  return tables;
+}
+
 namespace {
 
 const RuleKeyTable& tableOf(std::string_view context) {
-  const auto& tables = ruleKeyTables();
-  return *std::find_if(tables.begin(), tables.end(), [&](const RuleKeyTable& t) { return t.context == context; });
+  for (const auto* tables : {&ruleKeyTables(), &ruleTestKeyTables()})
+    for (const RuleKeyTable& table : *tables)
+      if (table.context == context) return table;
+  throw std::logic_error("no key table named " + std::string(context));
 }
 
 bool isKnown(const RuleKeyTable& table, const std::string& key) {

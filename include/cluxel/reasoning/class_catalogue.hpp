@@ -8,6 +8,8 @@
 
 namespace cluxel {
 
+struct OntologyView;
+
 /// One class of the ontology. All names are IRIs.
 struct ClassEntry {
   std::string iri;
@@ -25,5 +27,8 @@ struct ClassCatalogue {
   /// The part classes of `iri` and of its superclasses, sorted.
   std::vector<std::string> partsOf(std::string_view iri) const;
 };
+
+/// The classes of an ontology as rules see them.
+ClassCatalogue catalogueOf(const OntologyView& ontology);
 
 }  // namespace cluxel

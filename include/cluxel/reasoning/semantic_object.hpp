@@ -44,6 +44,7 @@ struct Decision {
   PrimitiveIndex seed = 0;                ///< the one with most points, when several were grouped
   std::vector<PrimitiveIndex> seeds;      ///< all of them, ascending
   bool accepted = false;
+  std::size_t leaf = 0;                   ///< its number in Rule::nodes
   std::string reason;                     ///< the leaf's own words, or what was accepted
   std::vector<DecisionStep> path;
   std::string hint;                       ///< a rule that may fit instead

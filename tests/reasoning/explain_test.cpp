@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Explanations: the way, why nothing else, and a least change that is true when tried.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cluxel/reasoning/explain.hpp"
+#include "reasoning/box_world.hpp"
+
+namespace cluxel::testing {
+namespace {
+
+RuleSet poleRules() {
+  return rulesOf("[clx:UtilityPole, clx:SmallObject]", R"(
+  - id: pole/tall
+    class: clx:UtilityPole
+    seed: { label: column, as: pole }
+    tree:
+      all:
+        - { attribute: height, op: ">=", value: 6 m }
+        - { attribute: bottom, op: "<=", value: 0.5 m }
+      yes: { accept: { part: clx:PoleMast, confidence: 0.8 } }
+      no: { reject: not tall, hint: small/rest }
+  - id: small/rest
+    class: clx:SmallObject
+    seed: { label: column }
+    tree:
+      test: { attribute: volume, op: "<=", value: 4 m3 }
+      yes: { accept: { confidence: 0.6 } }
+      no: { reject: too big }
+)");
+}
+
+BuiltBoxScene poleOf(double height) {
+  BoxScene scene;
+  scene.boxes = {box("pole", kColumn, {0, 0, height / 2}, {0.3, 0.3, height})};
+  return sceneOfBoxes(scene);
+}
+
+TEST(Explaining, GivesTheWayWithMeasuresThresholdsAndMargins) {
+  const BuiltBoxScene built = poleOf(5);
+  const RuleSet rules = poleRules();
+  const Explanation explanation = explain(built.scene, rules, {}, 0);
+  ASSERT_EQ(explanation.decisions.size(), 2U);
+  ASSERT_TRUE(explanation.object.has_value());
+  EXPECT_EQ(explanation.object->class_iri, clx("SmallObject"));
+  const Decision& no_pole = explanation.decisions[0].decision;
+  ASSERT_EQ(no_pole.path.size(), 2U);
+  EXPECT_FALSE(no_pole.path[0].passed);
+  EXPECT_NEAR(*no_pole.path[0].measured, 5.0, 1e-6);
+  EXPECT_DOUBLE_EQ(*no_pole.path[0].threshold, 6.0);
+  EXPECT_EQ(no_pole.path[0].test, "height of pole >= 6 m");
+  EXPECT_TRUE(no_pole.path[1].passed);
+}
+
+TEST(Explaining, NamesALeastChangeThatTurnsTheVerdictWhenTried) {
+  const RuleSet rules = poleRules();
+  const Explanation before = explain(poleOf(5).scene, rules, {}, 0);
+  ASSERT_TRUE(before.decisions[0].least_change.has_value());
+  const TurningPoint& change = *before.decisions[0].least_change;
+  EXPECT_TRUE(change.accepted);
+  ASSERT_EQ(change.changes.size(), 1U);
+  EXPECT_NEAR(change.changes[0].margin, 1.0, 1e-6);
+  const ReasoningResult after = reason(poleOf(change.changes[0].threshold).scene, rules);
+  ASSERT_EQ(after.objects.size(), 1U);
+  EXPECT_EQ(after.objects[0].class_iri, clx("UtilityPole"));
+}
+
+TEST(Explaining, SaysHowAnAcceptedThingWouldBeLost) {
+  const Explanation explanation = explain(poleOf(6.1).scene, poleRules(), {}, 0);
+  ASSERT_EQ(explanation.decisions.size(), 1U);
+  ASSERT_TRUE(explanation.decisions[0].least_change.has_value());
+  EXPECT_FALSE(explanation.decisions[0].least_change->accepted);
+  EXPECT_NEAR(explanation.decisions[0].least_change->changes[0].margin, 0.1, 1e-6);
+}
+
+TEST(Explaining, ReadsAsText) {
+  const BuiltBoxScene built = poleOf(5);
+  const RuleSet rules = poleRules();
+  const std::string text = textOf(explain(built.scene, rules, {}, 0), rules, built.scene);
+  EXPECT_THAT(text, ::testing::HasSubstr("belongs to clx:SmallObject"));
+  EXPECT_THAT(text, ::testing::HasSubstr("no   height of pole >= 6 m (measured 5 m, margin 1 m)"));
+  EXPECT_THAT(text, ::testing::HasSubstr("least change: height of pole >= 6 m turns at 6 m (now 5 m); then: clx:UtilityPole"));
+  EXPECT_THAT(text, ::testing::HasSubstr("see also rule small/rest"));
+}
+
+TEST(Explaining, IsJsonToo) {
+  const BuiltBoxScene built = poleOf(5);
+  const RuleSet rules = poleRules();
+  const auto json = nlohmann::json::parse(jsonOf(explain(built.scene, rules, {}, 0), rules, built.scene));
+  EXPECT_EQ(json.at("object").at("class"), "clx:SmallObject");
+  EXPECT_EQ(json.at("decisions").at(0).at("path").at(0).at("threshold"), 6.0);
+}
+
+TEST(Explaining, TellsHowAFoundPrimitiveGotToItsObject) {
+  const BuiltBoxScene built = sceneOfBoxes(streetOfBoxes());
+  const RuleSet rules = outdoorRules();
+  const auto plate = static_cast<PrimitiveIndex>(std::find(built.names.begin(), built.names.end(), "sign_plate") - built.names.begin());
+  const Explanation explanation = explain(built.scene, rules, {}, plate);
+  ASSERT_TRUE(explanation.object.has_value());
+  EXPECT_EQ(explanation.object->class_iri, clx("StreetSign"));
+  EXPECT_FALSE(explanation.note.empty());
+}
+
+}  // namespace
+}  // namespace cluxel::testing
