@@ -11,7 +11,7 @@
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/knowledge/rdf_io.hpp"
 #include "knowledge/rdf_faults.hpp"
-#include "knowledge/utf8.hpp"
+#include "knowledge/rdf_guards.hpp"
 
 namespace cluxel {
 
@@ -175,18 +175,10 @@ void Reading::run() {
   faults_.throwIfAny();
 }
 
-void refuseBytes(const RdfSource& source) {
-  if (source.format == RdfFormat::RdfXml) return;  // it declares its encoding
-  if (const auto offset = firstInvalidUtf8(source.text))
-    throw InputError(locate(source.name, source.text, *offset), "is not UTF-8", "save the file in UTF-8");
-  if (const std::size_t zero = source.text.find('\0'); zero != std::string::npos)
-    throw InputError(locate(source.name, source.text, zero), "holds a zero byte, which no RDF text has");
-}
-
 }  // namespace
 
 void parseRdf(const RdfSource& source, const std::function<void(const Quad&)>& take) {
-  refuseBytes(source);
+  refuseHostileText(source);
   Reading(source, take).run();
 }
 

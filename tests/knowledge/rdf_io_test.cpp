@@ -109,6 +109,22 @@ TEST(RdfReader, RefusesBytesThatAreNotUtf8NamingThePlace) {
   EXPECT_EQ(toString(faults[0].location), "test.ttl:2:5");
 }
 
+TEST(RdfReader, RefusesLanguageTagsThatRaptorWouldReadBeyond) {
+  const auto faults = faultsOf(turtle("<a> <b>\n  \"x\"@en-" + std::string(300, 'a') + " ."));
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_EQ(toString(faults[0].location), "test.ttl:2:6");
+  EXPECT_EQ(parse(turtle("<a> <b> \"x\"@en-" + std::string(250, 'a') + " .")).size(), 1U);
+  const std::string xml =
+      "<rdf:RDF xmlns:rdf='http://www.w3.org/1999/02/22-rdf-syntax-ns#' xmlns:e='http://e/'>"
+      "<rdf:Description rdf:about='http://a'><e:p xml:lang='";
+  const auto rdfxml = [&](const std::string& tag) {
+    return RdfSource{xml + tag + "'>x</e:p></rdf:Description></rdf:RDF>", "x.rdf", RdfFormat::RdfXml,
+                     "http://b/", Term::iri("")};
+  };
+  EXPECT_EQ(faultsOf(rdfxml(std::string(300, 'a'))).size(), 1U);
+  EXPECT_EQ(parse(rdfxml("de")).front().object, Term::langLiteral("x", "de"));
+}
+
 TEST(RdfReader, PassesOnTheCallersException) {
   EXPECT_THROW(parseRdf(turtle("<a> <b> <c>, <d> ."), [](const Quad&) { throw std::domain_error("mine"); }),
                std::domain_error);
