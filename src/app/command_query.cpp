@@ -68,7 +68,11 @@ Question questionOf(const QueryArguments& arguments, const Session& session) {
     throw Error(ExitCode::Usage, "give a query file or -e TEXT, not both");
   if (arguments.file.empty() && arguments.text.empty())
     throw Error(ExitCode::Usage, "give a query file, or a query with -e TEXT");
-  if (!arguments.file.empty()) return readQuestion(session.dataHome().locate("queries", arguments.file));
+  if (!arguments.file.empty()) {
+    fs::path file = arguments.file;
+    if (!file.has_extension()) file += ".rq";
+    return readQuestion(session.dataHome().locate("queries", file));
+  }
   Question question;
   question.file = "-e";
   question.text = arguments.text;

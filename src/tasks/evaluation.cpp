@@ -94,6 +94,8 @@ MapEvaluation evaluateMap(const MapReader& map, const TruthSource& source, const
   MapEvaluation evaluation{ConfusionMatrix(primitiveNames()), ConfusionMatrix(names), false, {}, {}};
   ObjectMatching matching(names, map.objects(), source.ambiguous());
   const std::vector<std::size_t> class_of_object = classNumbers(map.objects(), names);
+  // Ground has no ends that two people would agree on: it counts by point only.
+  const auto ground = static_cast<std::size_t>(std::find(names.begin(), names.end(), "Ground") - names.begin());
   for (const Cloud& cloud : map.clouds()) {
     const Scan scan = scanOf(map, cloud);
     const PointTruth truth = source.truthOf(scan);
@@ -106,7 +108,8 @@ MapEvaluation evaluateMap(const MapReader& map, const TruthSource& source, const
       const std::uint32_t object = answers.object[i];
       evaluation.objects.add(truth_class, object == kNoObjectOfPoint ? names.size() : class_of_object[object]);
       const Eigen::Vector3f p(scan.points.x[i], scan.points.y[i], scan.points.z[i]);
-      matching.add(toMap(scan.T_map_sensor, p), truth_class, truth.instance.empty() ? -1 : truth.instance[i], object);
+      const bool has_instance = !truth.instance.empty() && truth_class != ground;
+      matching.add(toMap(scan.T_map_sensor, p), truth_class, has_instance ? truth.instance[i] : -1, object);
     }
   }
   if (evaluation.primitives.total() == 0)
