@@ -21,18 +21,29 @@ float volumeShare(const Volume& a, const Volume& b) {
   return common.prod() / std::min(size_a.prod(), size_b.prod());
 }
 
-/// Shared members over all members of the two 1-rings, each with its centre: how much the features of both rest on the same.
-float supportShare(const RingGraph& graph, std::uint32_t a, std::uint32_t b) {
-  const auto of_a = graph.neighbours(a), of_b = graph.neighbours(b);
-  std::size_t shared = 2;   // a and b are each other's neighbours
-  for (std::size_t i = 0, j = 0; i < of_a.size() && j < of_b.size();) {
-    if (of_a[i] == of_b[j]) ++shared;
-    const bool next_a = of_a[i] <= of_b[j], next_b = of_b[j] <= of_a[i];
-    i += next_a ? 1 : 0;
-    j += next_b ? 1 : 0;
+/// Members of one cluxel's 1-ring carry its mark, so that others' shared members are counted in one run over theirs.
+class SharedSupport {
+ public:
+  explicit SharedSupport(const RingGraph& graph, std::size_t cluxels) : graph_(graph), mark_(cluxels, kNobody) {}
+  void moveTo(std::uint32_t cluxel) {
+    cluxel_ = cluxel;
+    for (const auto member : graph_.neighbours(cluxel)) mark_[member] = cluxel;
   }
-  return static_cast<float>(shared) / static_cast<float>(of_a.size() + of_b.size() + 2 - shared);
-}
+  /// Shared members over all members of the two 1-rings, each with its centre: how much the features of both ends rest on
+  /// the same. `other` is a neighbour.
+  float shareWith(std::uint32_t other) const {
+    const auto others = graph_.neighbours(other);
+    std::size_t shared = 2;   // the two are in each other's rings
+    for (const auto member : others) shared += mark_[member] == cluxel_ ? 1U : 0U;
+    return static_cast<float>(shared) / static_cast<float>(graph_.neighbours(cluxel_).size() + others.size() + 2 - shared);
+  }
+
+ private:
+  static constexpr std::uint32_t kNobody = 0xffffffffU;
+  const RingGraph& graph_;
+  std::vector<std::uint32_t> mark_;
+  std::uint32_t cluxel_ = kNobody;
+};
 
 /// How far each centre lies off the other's plane [m]; the larger one. 0 when neither has a plane.
 double offPlane(const EigenShape& a, const EigenShape& b, const Eigen::Vector3d& d) {
@@ -41,7 +52,7 @@ double offPlane(const EigenShape& a, const EigenShape& b, const Eigen::Vector3d&
 
 using EdgeRow = std::span<float, kEdgeColumns>;
 
-void fillEdge(const FeatureInput& input, std::uint32_t a, std::uint32_t b, EdgeRow out) {
+void fillEdge(const FeatureInput& input, std::uint32_t a, std::uint32_t b, const SharedSupport& shared, EdgeRow out) {
   const auto& cluxels = input.cluxels;
   const Eigen::Vector3d d = (cluxels.center[b] - cluxels.center[a]).cast<double>();
   const EigenShape &shape_a = input.ball[a], &shape_b = input.ball[b];
@@ -56,7 +67,7 @@ void fillEdge(const FeatureInput& input, std::uint32_t a, std::uint32_t b, EdgeR
                                                     std::abs(shape_a.scattering() - shape_b.scattering())};
   for (std::size_t i = 0; i < values.size(); ++i) out[i] = static_cast<float>(values[i]);
   out[kEdgeColumns - 2] = volumeShare(cluxels.volume[a], cluxels.volume[b]);
-  out[kEdgeColumns - 1] = supportShare(input.graph, a, b);
+  out[kEdgeColumns - 1] = shared.shareWith(b);
 }
 
 }  // namespace
@@ -75,14 +86,16 @@ void fillEdges(const FeatureInput& input, FeatureTile& tile) {
   const auto rowOf = [&](std::size_t edge) { return EdgeRow(tile.edge_features.data() + (edge - first) * kEdgeColumns, kEdgeColumns); };
   // Own cluxels come to a target in ascending order, as its own edges to them stand: `back` is the next of these.
   std::vector<std::uint32_t> back(graph.offset.begin(), graph.offset.end());
+  SharedSupport shared(graph, cluxels.size());
   for (std::uint32_t c = cluxels.own_begin; c < cluxels.own_end; ++c) {
+    shared.moveTo(c);
     tile.edge_offset.push_back(static_cast<std::uint32_t>(graph.offset[c] - first));
     for (std::uint32_t edge = graph.offset[c]; edge < graph.offset[c + 1]; ++edge) {
       const std::uint32_t other = graph.target[edge];
       tile.edge_target.push_back(cluxels.name[other]);
       const bool is_own = other >= cluxels.own_begin && other < cluxels.own_end;
       if (is_own && other < c) continue;
-      fillEdge(input, c, other, rowOf(edge));
+      fillEdge(input, c, other, shared, rowOf(edge));
       if (!is_own) continue;
       while (graph.target[back[other]] < cluxels.own_begin) ++back[other];
       const auto row = rowOf(edge);

@@ -31,14 +31,16 @@ inline constexpr double kOnALine = 1e-4;
 inline EigenShape shapeOf(double xx, double xy, double xz, double yy, double yz, double zz) {
   EigenShape shape;
   if (!(xx + yy + zz > kNoExtent_m2)) return shape;
-  Eigen::Matrix3d covariance;
-  covariance << xx, xy, xz, xy, yy, yz, xz, yz, zz;
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  Eigen::Matrix3f covariance;   // float: twice as fast, and far finer than the points are
+  covariance.col(0) = Eigen::Vector3d(xx, xy, xz).cast<float>();
+  covariance.col(1) = Eigen::Vector3d(xy, yy, yz).cast<float>();
+  covariance.col(2) = Eigen::Vector3d(xz, yz, zz).cast<float>();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
   solver.computeDirect(covariance);
   const auto& values = solver.eigenvalues();
-  shape.value = {std::max(0.0, values[2]), std::max(0.0, values[1]), std::max(0.0, values[0])};
-  shape.axis = solver.eigenvectors().col(2);
-  if (shape.value[1] > kOnALine * shape.value[0]) shape.normal = solver.eigenvectors().col(0);
+  shape.value = {std::max(0.0F, values[2]), std::max(0.0F, values[1]), std::max(0.0F, values[0])};
+  shape.axis = solver.eigenvectors().col(2).cast<double>();
+  if (shape.value[1] > kOnALine * shape.value[0]) shape.normal = solver.eigenvectors().col(0).cast<double>();
   return shape;
 }
 

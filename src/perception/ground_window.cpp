@@ -16,10 +16,6 @@ constexpr int kSunkenReach = 6;
 constexpr int kSunkenSupport = 12;
 constexpr int kSupportReach = 3;
 
-struct Surroundings {
-  int level = 0, above = 0;
-};
-
 /// What a cell some cells away may differ in height: the step and the rise over the distance.
 class Allowance {
  public:
@@ -34,29 +30,35 @@ class Allowance {
   std::array<float, (kSunkenReach + 1) * (kSunkenReach + 1)> value_{};
 };
 
-/// How many known cells close by lie on a level with the cell, and how many around lie above its cone.
-Surroundings surroundingsOf(const HeightWindow& window, int x, int y, const Allowance& allowance) {
-  Surroundings found;
+/// Whether few known cells close by lie on a level with the cell while many around lie above its cone.
+bool isSunken(const HeightWindow& window, int x, int y, const Allowance& allowance) {
   const float here = window.height[window.at(x, y)];
-  for (int v = std::max(0, y - kSunkenReach); v <= std::min(window.side - 1, y + kSunkenReach); ++v)
-    for (int u = std::max(0, x - kSunkenReach); u <= std::min(window.side - 1, x + kSunkenReach); ++u) {
-      if (!window.known[window.at(u, v)] || (u == x && v == y)) continue;
-      const float allowed = allowance(u - x, v - y), difference = window.height[window.at(u, v)] - here;
-      if (difference > allowed)
-        ++found.above;
-      else if (difference >= -allowed && std::max(std::abs(u - x), std::abs(v - y)) <= kSupportReach)
-        ++found.level;
-    }
-  return found;
+  int level = 0, above = 0;
+  const auto visit = [&](int reach, const auto& look) {
+    for (int v = std::max(0, y - reach); v <= std::min(window.side - 1, y + reach); ++v)
+      for (int u = std::max(0, x - reach); u <= std::min(window.side - 1, x + reach); ++u)
+        if (window.known[window.at(u, v)]) look(window.height[window.at(u, v)] - here, allowance(u - x, v - y));
+  };
+  visit(kSupportReach, [&](float difference, float allowed) { level += std::abs(difference) <= allowed ? 1 : 0; });
+  if (level > kSunkenSupport) return false;   // the cell itself was counted, too
+  visit(kSunkenReach, [&](float difference, float allowed) { above += difference > allowed ? 1 : 0; });
+  return above >= 4 * level;
 }
 
-/// Whether a cell at most two cells away lies above the cell's cone: only then a closer look is worth its time.
-bool seemsSunken(const HeightWindow& window, int x, int y, const Allowance& allowance) {
-  const float here = window.height[window.at(x, y)];
-  for (int v = std::max(0, y - 2); v <= std::min(window.side - 1, y + 2); ++v)
-    for (int u = std::max(0, x - 2); u <= std::min(window.side - 1, x + 2); ++u)
-      if (window.known[window.at(u, v)] && window.height[window.at(u, v)] > here + allowance(u - x, v - y)) return true;
-  return false;
+/// The highest known cell at most `reach` cells away along each axis; lower than all where there is none.
+std::vector<float> highestAround(const HeightWindow& window, int reach) {
+  constexpr float kNone = -std::numeric_limits<float>::infinity();
+  std::vector<float> height(window.size()), rows(window.size(), kNone), both(window.size(), kNone);
+  for (std::size_t i = 0; i < height.size(); ++i) height[i] = window.known[i] ? window.height[i] : kNone;
+  const int side = window.side;
+  for (int y = 0; y < side; ++y)
+    for (int shift = -reach; shift <= reach; ++shift)
+      for (int x = std::max(0, -shift); x < std::min(side, side - shift); ++x)
+        rows[window.at(x, y)] = std::max(rows[window.at(x, y)], height[window.at(x + shift, y)]);
+  for (int y = 0; y < side; ++y)
+    for (int v = std::max(0, y - reach); v <= std::min(side - 1, y + reach); ++v)
+      for (int x = 0; x < side; ++x) both[window.at(x, y)] = std::max(both[window.at(x, y)], rows[window.at(x, v)]);
+  return both;
 }
 
 /// One raster pass of the distance transform: lowers each cell to its four earlier neighbours plus the rise to them.
@@ -118,12 +120,13 @@ void fillFrom(const Level& coarse, Level& fine) {
 
 void dropSunkenCells(HeightWindow& window, double cell_m, double steepest, double step_m) {
   const Allowance allowance(steepest * cell_m, step_m);
+  const auto highest = highestAround(window, 2);
   std::vector<std::size_t> sunken;
   for (int y = 0; y < window.side; ++y)
     for (int x = 0; x < window.side; ++x) {
-      if (!window.known[window.at(x, y)] || !seemsSunken(window, x, y, allowance)) continue;
-      const auto around = surroundingsOf(window, x, y, allowance);
-      if (around.level < kSunkenSupport && around.above >= 4 * (around.level + 1)) sunken.push_back(window.at(x, y));
+      const std::size_t cell = window.at(x, y);
+      if (!window.known[cell] || highest[cell] <= window.height[cell] + allowance(1, 0)) continue;
+      if (isSunken(window, x, y, allowance)) sunken.push_back(cell);
     }
   for (const auto cell : sunken) window.known[cell] = 0;
 }

@@ -53,14 +53,15 @@ void placeVotes(const Residuals& residual, const MainDirection& main, float medi
 
 using Votes = std::array<std::array<float, kAzimuthNodes>, kElevationNodes>;
 
-/// Each residual's weight goes to the four nodes around it.
+/// Each residual's weight goes to the four nodes around it. Two sets of nodes take turns: a node is seldom waited for.
 Votes castVotes(const HorScratch& scratch) {
-  Votes votes{};
+  std::array<Votes, 2> sets{};
   for (std::size_t i = 0; i < scratch.weight.size(); ++i) {
     const auto e = std::min(static_cast<int>(scratch.elevation[i]), static_cast<int>(kElevationNodes) - 2);
     const auto a = std::min(static_cast<int>(scratch.azimuth[i]), static_cast<int>(kAzimuthNodes) - 2);
     const float up = scratch.elevation[i] - static_cast<float>(e), on = scratch.azimuth[i] - static_cast<float>(a);
     const float high = scratch.weight[i] * up, low = scratch.weight[i] - high;
+    Votes& votes = sets[i % 2];
     auto* row = votes[static_cast<std::size_t>(e)].data() + a;
     auto* next = votes[static_cast<std::size_t>(e) + 1].data() + a;
     row[0] += low * (1.0F - on);
@@ -68,7 +69,9 @@ Votes castVotes(const HorScratch& scratch) {
     next[0] += high * (1.0F - on);
     next[1] += high * on;
   }
-  return votes;
+  for (std::size_t e = 0; e < kElevationNodes; ++e)
+    for (std::size_t a = 0; a < kAzimuthNodes; ++a) sets[0][e][a] += sets[1][e][a];
+  return sets[0];
 }
 
 /// Votes to bins: the poles lose their azimuth, and azimuths even out where there is no clear direction.
@@ -88,15 +91,32 @@ void fillBins(const Votes& votes, float clearness, std::span<float> bins) {
           (clearness * votes[e][a] + (1.0F - clearness) * level[e] / static_cast<float>(kAzimuthNodes)) / total;
 }
 
-/// The middle length; fills scratch.length.
+/// The value that would stand in the middle of the sorted values: found in its bucket, so that few are sorted.
+float middleOf(const std::vector<float>& values, std::vector<float>& scratch) {
+  constexpr std::size_t kBuckets = 32;
+  const float largest = *std::max_element(values.begin(), values.end());
+  if (!(largest > kShortestMedian_m)) return 0;
+  const float scale = (static_cast<float>(kBuckets) - 0.5F) / largest;
+  const auto bucketOf = [scale](float value) { return static_cast<std::size_t>(static_cast<int>(value * scale)); };
+  std::array<std::uint32_t, kBuckets> count{};
+  for (const float value : values) ++count[bucketOf(value)];
+  std::size_t before = 0, bucket = 0;
+  const std::size_t middle = values.size() / 2;
+  while (before + count[bucket] <= middle) before += count[bucket++];
+  scratch.clear();
+  for (const float value : values)
+    if (bucketOf(value) == bucket) scratch.push_back(value);
+  const auto place = scratch.begin() + static_cast<std::ptrdiff_t>(middle - before);
+  std::nth_element(scratch.begin(), place, scratch.end());
+  return *place;
+}
+
+/// Fills scratch.length; returns the median.
 float medianLength(const Residuals& residual, HorScratch& scratch) {
   scratch.length.resize(residual.size());
   for (std::size_t i = 0; i < residual.size(); ++i)
     scratch.length[i] = std::sqrt(residual.x[i] * residual.x[i] + residual.y[i] * residual.y[i] + residual.z[i] * residual.z[i]);
-  scratch.sorted = scratch.length;
-  const auto middle = scratch.sorted.begin() + static_cast<std::ptrdiff_t>(scratch.sorted.size() / 2);
-  std::nth_element(scratch.sorted.begin(), middle, scratch.sorted.end());
-  return *middle;
+  return middleOf(scratch.length, scratch.bucket);
 }
 
 }  // namespace

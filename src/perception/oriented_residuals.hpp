@@ -47,7 +47,7 @@ std::vector<std::string> horColumns();
 
 /// Memory reused from cluxel to cluxel.
 struct HorScratch {
-  std::vector<float> length, sorted, weight, elevation, azimuth;
+  std::vector<float> length, bucket, weight, elevation, azimuth;
 };
 
 /// Fills kHorColumns numbers; all are zero for a support without extent. `shape` is that of the support.

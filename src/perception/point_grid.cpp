@@ -11,6 +11,9 @@ namespace {
 PointGrid gather(const Ring<TilePoints>& ring, float margin_m) {
   PointGrid points;
   const float low = -margin_m, high = static_cast<float>(kTileSize_m) + margin_m;
+  const std::size_t expected = ring[kRingCentre] == nullptr ? 0 : ring[kRingCentre]->size() * 5 / 4;
+  for (auto* values : {&points.x, &points.y, &points.z}) values->reserve(expected);
+  points.own.reserve(expected);
   for (int r = 0; r < 9; ++r) {
     const TilePoints* tile = ring[static_cast<std::size_t>(r)];
     if (tile == nullptr) continue;
