@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+// A map is a function of its scans and inputs: not of order, threads, batches, or of a build that was killed.
+#include "cluxel/mapping/map_builder.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <random>
+
+#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/base/file_bytes.hpp"
+#include "mapping/small_campus.hpp"
+
+namespace cluxel {
+namespace {
+
+namespace fs = std::filesystem;
+using Files = std::vector<fs::path>;
+
+class MapBuilder : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    campus = new SmallCampus({.seed = 3, .stops = 3, .size_m = 50, .points_per_stop = 3000});
+    inputs = new MapInputs(shippedInputs());
+    expected = new std::string(builtText(campus->files(), *inputs));
+  }
+  static void TearDownTestSuite() {
+    delete campus;
+    delete inputs;
+    delete expected;
+  }
+  fs::path map() const { return folder.path() / "map.clx"; }
+  BuildReport build(const Files& files, const BuildParams& params = {}) const {
+    return buildMap(scansOf(files), *inputs, map(), params, silence());
+  }
+  /// The error of a build with these inputs, or an absent one; the map's file must not be there afterwards.
+  ExitCode refusal(const MapInputs& changed) const {
+    try {
+      buildMap(scansOf(campus->files()), changed, map(), {}, silence());
+    } catch (const Error& error) {
+      EXPECT_FALSE(fs::exists(map())) << error.what();
+      return error.code();
+    }
+    return ExitCode::Done;
+  }
+
+  ScratchFolder folder;
+  static inline SmallCampus* campus = nullptr;
+  static inline MapInputs* inputs = nullptr;
+  static inline std::string* expected = nullptr;
+};
+
+TEST_F(MapBuilder, FindsObjectsOnTheSmallCampus) {
+  const BuildReport report = build(campus->files());
+  EXPECT_EQ(report.scans, 3U);
+  EXPECT_GT(report.objects, 1U);
+  EXPECT_GT(report.primitives, report.objects);
+  EXPECT_GT(report.cluxels, report.primitives);
+  EXPECT_TRUE(MapReader(map()).summary().is_finished);
+}
+
+TEST_F(MapBuilder, TwentyOrdersAndBatchingsOfTheScansGiveTheSameMap) {
+  std::mt19937 random(7);
+  Files files = campus->files();
+  for (int round = 0; round < 20; ++round) {
+    std::shuffle(files.begin(), files.end(), random);
+    const BuildParams params{.threads = 1U + round % 2U, .batch_points = random() % 3 == 0 ? 1U : 20'000'000U};
+    ASSERT_EQ(builtText(files, *inputs, params), *expected)
+        << "round " << round << ", first " << files[0] << ", " << params.threads << " threads, batch "
+        << params.batch_points;
+  }
+}
+
+TEST_F(MapBuilder, ThreadsDoNotChangeTheMap) {
+  EXPECT_EQ(builtText(campus->files(), *inputs, {.threads = 2}), *expected);
+  EXPECT_EQ(builtText(campus->files(), *inputs, {.threads = 5}), *expected);
+}
+
+TEST_F(MapBuilder, AScanThatIsGivenTwiceCountsOnce) {
+  Files files = campus->files();
+  files.push_back(folder.path() / "copy.pcd");
+  fs::copy_file(files[0], files.back());
+  EXPECT_EQ(builtText(files, *inputs), *expected);
+}
+
+TEST_F(MapBuilder, FewerScansGiveAnotherMap) {
+  EXPECT_NE(builtText({campus->files()[0], campus->files()[1]}, *inputs), *expected);
+}
+
+TEST_F(MapBuilder, DoesNotOverwriteAFinishedMapWithoutForce) {
+  build({campus->files()[0]});
+  const std::string before = canonicalText(map());
+  try {
+    build(campus->files());
+    FAIL() << "the finished map was taken as unfinished";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::Usage);
+    EXPECT_NE(std::string(error.what()).find("--force"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(canonicalText(map()), before);
+  build(campus->files(), {.force = true});
+  EXPECT_EQ(canonicalText(map()), *expected);
+}
+
+TEST_F(MapBuilder, WithForceTheOldMapSurvivesABuildThatFails) {
+  build(campus->files());
+  const fs::path broken = folder.path() / "broken.pcd";
+  const std::string bytes = readFile(campus->files()[0]);
+  writeFile(broken, bytes.substr(0, bytes.size() / 2));
+  for (const std::uint64_t batch : {std::uint64_t{1}, std::uint64_t{20'000'000}}) {
+    EXPECT_THROW(build({campus->files()[1], broken}, {.batch_points = batch, .force = true}), InputError);
+    EXPECT_EQ(canonicalText(map()), *expected);
+    EXPECT_TRUE(MapReader(map()).summary().is_finished);
+  }
+  build(campus->files(), {.force = true});
+  EXPECT_EQ(canonicalText(map()), *expected);
+}
+
+TEST_F(MapBuilder, ABrokenScanInTheFirstBatchLeavesNoFile) {
+  const fs::path broken = folder.path() / "broken.pcd";
+  const std::string bytes = readFile(campus->files()[0]);
+  writeFile(broken, bytes.substr(0, bytes.size() - 100));
+  EXPECT_THROW(build({campus->files()[1], broken}), InputError);
+  EXPECT_FALSE(fs::exists(map()));
+}
+
+/// Dies without a farewell when the second scan begins.
+class SuddenDeath : public ProgressSink {
+ public:
+  explicit SuddenDeath(std::size_t at) : at_(at) {}
+  void progress(std::string_view stage, std::size_t done, std::size_t) override {
+    if (stage == "scans" && done == at_) ::kill(::getpid(), SIGKILL);
+  }
+
+ private:
+  std::size_t at_;
+};
+
+/// Builds in a process of its own that is killed while scan `at` (from 1) is being added, one batch a scan.
+void buildAndBeKilled(const Files& files, const MapInputs& inputs, const fs::path& map, std::size_t at) {
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    SuddenDeath sink(at);
+    buildMap(scansOf(files), inputs, map, {.batch_points = 1}, sink);
+    ::_exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status)) << "the build was not killed";
+}
+
+TEST_F(MapBuilder, AKilledBuildLeavesTheExactMapOfTheScansSoFarAndGoesOn) {
+  buildAndBeKilled(campus->files(), *inputs, map(), 3);
+  {
+    const MapReader reader(map());
+    EXPECT_FALSE(reader.summary().is_finished);
+    EXPECT_EQ(reader.clouds().size(), 2U);
+    EXPECT_EQ(canonicalText(reader), builtText({campus->files()[0], campus->files()[1]}, *inputs));
+  }
+  const BuildReport report = build(campus->files(), {.batch_points = 1});
+  EXPECT_EQ(report.scans_already_there, 2U);
+  EXPECT_EQ(report.scans, 3U);
+  EXPECT_EQ(canonicalText(map()), *expected);
+  EXPECT_TRUE(MapReader(map()).summary().is_finished);
+}
+
+TEST_F(MapBuilder, ABuildThatWasKilledBeforeItsFirstCommitStartsAnew) {
+  buildAndBeKilled(campus->files(), *inputs, map(), 1);
+  build(campus->files());
+  EXPECT_EQ(canonicalText(map()), *expected);
+}
+
+TEST_F(MapBuilder, OtherInputsOnAnUnfinishedMapAreAnError) {
+  buildAndBeKilled(campus->files(), *inputs, map(), 2);
+  MapInputs others = *inputs;
+  others.rules[0].text += "\n# another text\n";
+  try {
+    buildMap(scansOf(campus->files()), others, map(), {}, silence());
+    FAIL() << "two sets of rules went into one map";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::Usage);
+    EXPECT_NE(std::string(error.what()).find("unfinished"), std::string::npos) << error.what();
+  }
+  build(campus->files());
+  EXPECT_EQ(canonicalText(map()), *expected);
+}
+
+TEST_F(MapBuilder, TheSameScanWithAnotherPoseIsAnErrorThatNamesBothFiles) {
+  Scan moved = campus->scans()[0].scan;
+  moved.T_map_sensor.translation().x() += 0.5;
+  const fs::path copy = folder.path() / "moved.pcd";
+  writeScanFile(moved, copy);
+  try {
+    build({campus->files()[0], copy});
+    FAIL() << "one scan lies in the map at two places";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("stop0.pcd"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("moved.pcd"), std::string::npos) << error.what();
+  }
+  EXPECT_FALSE(fs::exists(map()));
+}
+
+TEST_F(MapBuilder, FaultyInputsWriteNothing) {
+  const auto with = [&](auto change) {
+    MapInputs changed = *inputs;
+    change(changed);
+    return refusal(changed);
+  };
+  EXPECT_EQ(with([](MapInputs& i) { i.rules[0].text = "rules: [\n"; }), ExitCode::FaultyInput);
+  EXPECT_EQ(with([](MapInputs& i) { i.ontology[0].text += "\nclx:Tree a owl:Class"; }), ExitCode::FaultyInput);
+  EXPECT_EQ(with([](MapInputs& i) { i.model.text.resize(i.model.text.size() / 2); }), ExitCode::FaultyInput);
+  EXPECT_EQ(with([](MapInputs& i) { i.sparql_rules = {{"x.rq", "SELECT ?s WHERE { ?s ?p ?o }"}}; }), ExitCode::FaultyInput);
+  EXPECT_EQ(with([](MapInputs& i) { i.sparql_rules = {{"x.rq", "CONSTRUCT { ?s ?p } WHERE {}"}}; }), ExitCode::FaultyInput);
+}
+
+TEST_F(MapBuilder, NoScansAreAnErrorOfUsage) {
+  EXPECT_THROW(buildMap(ScanSet(), *inputs, map(), {}, silence()), Error);
+  EXPECT_FALSE(fs::exists(map()));
+}
+
+fs::path kittiFolder() {
+  const char* data = std::getenv("CLUXEL_DATA");
+  return (data != nullptr ? fs::path(data) : fs::path(CLUXEL_SOURCE_DIR) / "../shared/data") / "kitti00";
+}
+
+/// The first frames of KITTI, each in a folder of its own with its pose, so that they can come in any order.
+Files kittiFrames(const fs::path& folder, std::size_t count) {
+  const ScanSet all = ScanSet::open({kittiFolder()}, {}, silence());
+  Files files;
+  for (std::size_t i = 0; i < std::min(count, all.size()); ++i) {
+    files.push_back(folder / ("frame" + std::to_string(i) + ".pcd"));
+    writeScanFile(all.load(i), files.back());
+  }
+  return files;
+}
+
+TEST_F(MapBuilder, KittiFramesInAnyOrderGiveTheSameMap) {
+  if (!fs::exists(kittiFolder())) GTEST_SKIP() << "outside data absent: " << kittiFolder();
+  const bool is_long = std::getenv("CLUXEL_LONG_TESTS") != nullptr;
+  Files files = kittiFrames(folder.path(), is_long ? 16 : 2);
+  const std::string first = builtText(files, *inputs, {.threads = 2});
+  std::reverse(files.begin(), files.end());
+  EXPECT_EQ(builtText(files, *inputs, {.threads = 1, .batch_points = 1}), first);
+}
+
+}  // namespace
+}  // namespace cluxel
