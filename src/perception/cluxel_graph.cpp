@@ -36,10 +36,14 @@ void forEachTouching(const Ring<CluxelTile>& ring, const Volume& hull, const Vis
   }
 }
 
-Member memberOf(const CluxelTile& tile, std::uint32_t i) {
-  Member member{tile.own[i].scatter, tile.box_min[i].z(), tile.box_max[i].z()};
-  for (auto& value : member.spread) value /= tile.own[i].count;
-  return member;
+Member memberOf(const CluxelTile& tile, std::uint32_t i, const Eigen::Vector3f& center) {
+  const auto& spread = tile.own[i].scatter;
+  const float n = tile.own[i].count;
+  return {{center.x(), center.y(), center.z(), 0},
+          {spread[0] / n, spread[1] / n, spread[2] / n, 0},
+          {spread[3] / n, spread[4] / n, spread[5] / n, 0},
+          tile.box_min[i].z(),
+          tile.box_max[i].z()};
 }
 
 using Cell = std::array<std::int32_t, 3>;
@@ -136,7 +140,7 @@ RingCluxels gatherCluxels(const Ring<CluxelTile>& ring) {
     cluxels.name.push_back({static_cast<std::uint32_t>(r), i});
     const CluxelTile& tile = *ring[static_cast<std::size_t>(r)];
     cluxels.center.push_back(tile.own[i].mean + ringShift(r));
-    cluxels.member.push_back(memberOf(tile, i));
+    cluxels.member.push_back(memberOf(tile, i, cluxels.center.back()));
     cluxels.reach.push_back(tile.reach[i]);
     cluxels.volume.push_back(volume);
     cluxels.near.push_back(intersects(volume, own_hull) ? 1 : 0);

@@ -20,9 +20,11 @@ inline bool intersects(const Volume& a, const Volume& b) {
   return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
 }
 
-/// What supports read of a cluxel: how its own points lie, each point weighing 1 / count.
+/// What supports read of a cluxel, in one cache line: where it is, and how its own points lie, each weighing 1 / count.
 struct Member {
-  std::array<float, 6> spread{};         ///< mean products of deviations xx xy xz yy yz zz [m2]
+  Eigen::Array4f place;                  ///< its centre, and 0 [m]
+  Eigen::Array4f spread_x;               ///< mean products of deviations xx xy xz, and 0 [m2]
+  Eigen::Array4f spread_yz;              ///< yy yz zz, and 0 [m2]
   float low_z = 0, high_z = 0;           ///< of its box [m, map]
 };
 

@@ -15,15 +15,15 @@ namespace cluxel {
 /// Vectors as a structure of arrays.
 struct Residuals {
   std::vector<float> x, y, z;
-  void add(const Eigen::Vector3f& d) {
-    x.push_back(d.x());
-    y.push_back(d.y());
-    z.push_back(d.z());
+  void resize(std::size_t size) {
+    x.resize(size);
+    y.resize(size);
+    z.resize(size);
   }
-  void clear() {
-    x.clear();
-    y.clear();
-    z.clear();
+  void set(std::size_t i, float dx, float dy, float dz) {
+    x[i] = dx;
+    y[i] = dy;
+    z[i] = dz;
   }
   std::size_t size() const { return x.size(); }
   bool empty() const { return x.empty(); }

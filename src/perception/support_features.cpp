@@ -26,43 +26,74 @@ struct Surroundings {
   std::size_t neighbours = 0;
 };
 
-/// Visits supports without listing a member twice: each cluxel carries the mark of the last support it entered.
-class SupportWalk {
+/// Sums over members of a support relative to the cluxel's centre, four at a time.
+class SupportSum {
  public:
-  explicit SupportWalk(const FeatureInput& input) : input_(input), mark_(input.cluxels.size(), 0xffffffffU) {}
-
-  const Surroundings& around(std::uint32_t center) {
-    auto& found = found_;
-    found.ring1 = {};
-    found.ring2.sum = {};
-    found.ring2.residual.clear();
-    found.ring2.height_low = found.ring2.height_high = 0;
-    const auto neighbours = input_.graph.neighbours(center);
-    found.neighbours = neighbours.size();
-    enter(center, center);
-    for (const auto first : neighbours) enter(first, center);
-    found.ring1 = found.ring2.sum;
-    for (const auto first : neighbours)
-      for (const auto second : input_.graph.neighbours(first))
-        if (mark_[second] != center) enter(second, center);
-    return found;
+  void add(const Eigen::Array4f& d, const Member& member) {
+    ++count_;
+    sum_ += d;
+    products_x_ += d * d[0] + member.spread_x;
+    products_yz_ += Eigen::Array4f(d[1], d[1], d[2], 0) * Eigen::Array4f(d[1], d[2], d[2], 0) + member.spread_yz;
+  }
+  MomentSum total() const {
+    return {static_cast<double>(count_), sum_[0], sum_[1], sum_[2], products_x_[0], products_x_[1], products_x_[2],
+            products_yz_[0], products_yz_[1], products_yz_[2]};
   }
 
  private:
-  void enter(std::uint32_t member, std::uint32_t center) {
-    mark_[member] = center;
-    const Eigen::Vector3f d = input_.cluxels.center[member] - input_.cluxels.center[center];
-    const Member& points = input_.cluxels.member[member];
-    auto& support = found_.ring2;
-    support.sum.addSet(d, points.spread);
-    if (member != center) support.residual.add(d);
-    const float z = input_.cluxels.center[center].z();
-    support.height_low = std::min(support.height_low, points.low_z - z);
-    support.height_high = std::max(support.height_high, points.high_z - z);
+  std::size_t count_ = 0;
+  Eigen::Array4f sum_ = Eigen::Array4f::Zero(), products_x_ = Eigen::Array4f::Zero(), products_yz_ = Eigen::Array4f::Zero();
+};
+
+/// Visits supports without listing a member twice: each cluxel carries the mark of the last support it entered.
+class SupportWalk {
+ public:
+  explicit SupportWalk(const FeatureInput& input)
+      : input_(input), mark_(input.cluxels.size(), 0xffffffffU), members_(input.cluxels.size()) {}
+
+  const Surroundings& around(std::uint32_t center) {
+    const auto neighbours = input_.graph.neighbours(center);
+    found_.neighbours = neighbours.size();
+    measure(center, listMembers(center, neighbours));
+    return found_;
+  }
+
+ private:
+  /// Lists the cluxel, its neighbours and then theirs; returns their number.
+  std::size_t listMembers(std::uint32_t center, std::span<const std::uint32_t> neighbours) {
+    std::size_t count = 0;
+    const auto enter = [&](std::uint32_t member) {
+      mark_[member] = center;
+      members_[count++] = member;
+    };
+    enter(center);
+    for (const auto first : neighbours) enter(first);
+    for (const auto first : neighbours)
+      for (const auto second : input_.graph.neighbours(first))
+        if (mark_[second] != center) enter(second);
+    return count;
+  }
+
+  void measure(std::uint32_t center, std::size_t count) {
+    const Eigen::Array4f place = input_.cluxels.member[center].place;
+    Support& support = found_.ring2;
+    support.residual.resize(count - 1);
+    support.height_low = support.height_high = 0;
+    SupportSum sum;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Member& member = input_.cluxels.member[members_[i]];
+      const Eigen::Array4f d = member.place - place;
+      sum.add(d, member);
+      if (i > 0) support.residual.set(i - 1, d[0], d[1], d[2]);
+      if (i == found_.neighbours) found_.ring1 = sum.total();
+      support.height_low = std::min(support.height_low, member.low_z - place[2]);
+      support.height_high = std::max(support.height_high, member.high_z - place[2]);
+    }
+    support.sum = sum.total();
   }
 
   const FeatureInput& input_;
-  std::vector<std::uint32_t> mark_;
+  std::vector<std::uint32_t> mark_, members_;
   Surroundings found_;
 };
 

@@ -26,9 +26,10 @@ std::vector<Eigen::Vector3f> unevenResiduals() {
 std::vector<float> horOf(const std::vector<Eigen::Vector3f>& residuals) {
   Support support;
   support.sum.addSet(Eigen::Vector3f::Zero(), {});
-  for (const auto& d : residuals) {
-    support.residual.add(d);
-    support.sum.addSet(d, {});
+  support.residual.resize(residuals.size());
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    support.residual.set(i, residuals[i].x(), residuals[i].y(), residuals[i].z());
+    support.sum.addSet(residuals[i], {});
   }
   HorScratch scratch;
   std::vector<float> hor(kHorColumns);
