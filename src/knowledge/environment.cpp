@@ -26,7 +26,14 @@ namespace {
 
 constexpr unsigned kMaxReaders = 510;
 constexpr std::size_t kSmallestMap = std::size_t{1} << 28U;
-#if defined(__SANITIZE_THREAD__)
+#if defined(__has_feature)
+#define CLUXEL_THREAD_SANITIZER __has_feature(thread_sanitizer)
+#elif defined(__SANITIZE_THREAD__)
+#define CLUXEL_THREAD_SANITIZER 1
+#else
+#define CLUXEL_THREAD_SANITIZER 0
+#endif
+#if CLUXEL_THREAD_SANITIZER
 constexpr std::size_t kLargestMap = std::size_t{1} << 34U;  // ThreadSanitizer leaves little address space
 #else
 constexpr std::size_t kLargestMap = std::size_t{1} << 40U;

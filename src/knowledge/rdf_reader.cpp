@@ -154,10 +154,7 @@ void Reading::fill(Term& term, const raptor_term& from) {
 
 void Reading::run() {
   const Raptor<raptor_world> world(raptor_new_world());
-  if (!world) throw std::bad_alloc();
-  // Interning costs a search in a tree of strings for every IRI.
-  raptor_world_set_flag(world.get(), RAPTOR_WORLD_FLAG_URI_INTERNING, 0);
-  if (raptor_world_open(world.get()) != 0) throw std::bad_alloc();
+  if (!world || raptor_world_open(world.get()) != 0) throw std::bad_alloc();
   raptor_world_set_log_handler(world.get(), this, &Reading::onMessage);
   raptor_world_set_generate_bnodeid_parameters(world.get(), const_cast<char*>(kGeneratedPrefix), 1);
   parser_.reset(raptor_new_parser(world.get(), parserName(source_.format)));

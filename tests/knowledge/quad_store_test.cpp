@@ -8,7 +8,9 @@
 #include <random>
 #include <set>
 
+#include "cluxel/base/parallel.hpp"
 #include "cluxel/knowledge/environment.hpp"
+#include "cluxel/knowledge/vocabulary.hpp"
 
 namespace cluxel {
 namespace {
@@ -168,6 +170,138 @@ TEST(QuadStore, AnswersEveryPatternAsAPlainSetDoes) {
       if (testing::Test::HasFatalFailure()) return;
     }
   }
+}
+
+/// A store with terms of every kind and value.
+std::vector<Term> variedTerms() {
+  using vocabulary::xsd;
+  std::vector<Term> terms = {Term::iri("http://a"),
+                             Term::blank("b"),
+                             Term::literal(""),
+                             Term::literal("x"),
+                             Term::langLiteral("x", "en"),
+                             Term::langLiteral("x", "de"),
+                             Term::literal("x", "http://t"),
+                             Term::literal(std::string(200'000, 'l')),
+                             Term::literal(std::string("a\0b", 3)),
+                             Term::literal("1", xsd("integer")),
+                             Term::literal("01", xsd("integer")),
+                             Term::literal("1", xsd("int")),
+                             Term::literal("1", xsd("decimal"))};
+  for (int i = 0; i < 3000; ++i) terms.push_back(Term::integer(i * 7919));
+  return terms;
+}
+
+TEST(QuadStore, GivesBackEveryTermAndFindsItsIdAgain) {
+  const std::vector<Term> terms = variedTerms();
+  auto environment = Environment::temporary();
+  std::vector<TermId> ids;
+  for (std::size_t part = 0; part < 2; ++part) {  // the second time they are all there
+    WriteTransaction transaction = environment->write();
+    QuadWriter writer(transaction);
+    std::vector<TermId> given;
+    for (const Term& term : terms) given.push_back(writer.intern(term));
+    writer.flush();
+    for (std::size_t i = 0; i < terms.size(); ++i)
+      ASSERT_EQ(QuadReader(transaction).termOf(given[i]), terms[i]);
+    if (part == 0) ids = given;
+    EXPECT_EQ(given, ids);
+    transaction.commit();
+  }
+  const QuadReader reader(environment->read());
+  EXPECT_EQ(std::set<TermId>(ids.begin(), ids.end()).size(), terms.size());
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    ASSERT_EQ(reader.idOf(terms[i]), ids[i]);
+    ASSERT_EQ(reader.termOf(ids[i]), terms[i]);
+    ASSERT_EQ(reader.viewOf(ids[i]).toTerm(), terms[i]);
+  }
+  EXPECT_EQ(reader.idOf(Term::literal("absent")), std::nullopt);
+  EXPECT_EQ(reader.idOf(Term::literal("1", "http://absent")), std::nullopt);
+  EXPECT_EQ(reader.idOf(Term::iri("")), kNoTerm) << "the unnamed graph";
+}
+
+TEST(QuadStore, ForgetsTermsOfATransactionThatWasNotCommitted) {
+  auto environment = Environment::temporary();
+  const auto intern = [&](const Term& term, bool commit) {
+    WriteTransaction transaction = environment->write();
+    QuadWriter writer(transaction);
+    const TermId id = writer.intern(term);
+    writer.flush();
+    EXPECT_EQ(QuadReader(transaction).valueOf(id).integer, std::stoi(term.text));
+    if (commit) transaction.commit();
+    return id;
+  };
+  intern(Term::integer(1), true);
+  const TermId dropped = intern(Term::integer(2), false);
+  EXPECT_EQ(intern(Term::integer(3), true), dropped) << "the number is given again";
+  EXPECT_EQ(QuadReader(environment->read()).valueOf(dropped).integer, 3);
+}
+
+TEST(QuadStore, SharesOneCommitAmongReadersOfManyThreads) {
+  auto environment = Environment::temporary();
+  {
+    WriteTransaction transaction = environment->write();
+    QuadWriter writer(transaction);
+    for (const Term& term : variedTerms()) {
+      const TermId id = writer.intern(term);
+      writer.add(QuadIds{id, 1 + id % 5, id, id % 3});
+    }
+    writer.flush();
+    transaction.commit();
+  }
+  std::array<std::uint64_t, 4> sums{};
+  parallelFor(sums.size(), 4, [&](std::size_t i) {
+    const QuadReader reader(environment->read());
+    PrefixLookup lookup = reader.lookup(QuadOrder::Ospg);
+    for (TermId id = 1; id <= reader.termCount(); ++id) {
+      sums[i] += static_cast<std::uint64_t>(reader.valueOf(id).integer) + reader.viewOf(id).text.size();
+      sums[i] += lookup.find(std::array{id}).size();
+    }
+    sums[i] += reader.statistics(2).subjects + reader.graphs().size();
+  });
+  EXPECT_EQ(std::set<std::uint64_t>(sums.begin(), sums.end()).size(), 1U);
+}
+
+TEST(QuadStore, EstimatesWithinAFactorOfTwoAndExactlyWhenFew) {
+  auto environment = Environment::temporary();
+  std::set<QuadIds> quads;
+  std::mt19937 random(4);
+  WriteTransaction transaction = environment->write();
+  QuadWriter writer(transaction);
+  for (int i = 0; i < 120'000; ++i) {
+    // Predicates of very different size, subjects that have a few or hundreds of quads.
+    const auto p = 1 + static_cast<TermId>(random() % 10 < 8 ? 1 : random() % 40);
+    const auto s = 1 + static_cast<TermId>(random() % 2 == 0 ? random() % 50 : random() % 40'000);
+    const QuadIds quad{s, p, 1 + static_cast<TermId>(random() % 3'000), 1 + static_cast<TermId>(i % 2)};
+    quads.insert(quad);
+    writer.add(quad);
+  }
+  writer.flush();
+  transaction.commit();
+  const QuadReader reader(environment->read());
+  for (const TermId p : {1U, 2U, 17U}) {
+    for (const auto& pattern :
+         {QuadPattern{{}, p, {}, {}}, QuadPattern{{}, p, {}, 1}, QuadPattern{7, p, {}, {}},
+          QuadPattern{{}, p, 5, {}}, QuadPattern{{}, {}, {}, 2}, QuadPattern{{}, {}, 9, {}}}) {
+      const auto exact = static_cast<double>(expected(quads, pattern, QuadOrder::Spog).size());
+      const auto estimate = static_cast<double>(reader.estimate(pattern));
+      EXPECT_TRUE(exact >= 4'000 || estimate == exact) << estimate << " for " << exact;
+      EXPECT_TRUE(estimate >= exact / 2 && estimate <= exact * 2) << estimate << " for " << exact;
+    }
+    std::set<TermId> subjects;
+    std::set<TermId> objects;
+    std::size_t count = 0;
+    for (const QuadIds& quad : quads)
+      if (quad.p == p) subjects.insert(quad.s), objects.insert(quad.o), ++count;
+    const auto statistics = reader.statistics(p);
+    EXPECT_EQ(statistics.quads, count);
+    EXPECT_NEAR(static_cast<double>(statistics.subjects), subjects.size(), 0.35 * subjects.size());
+    EXPECT_NEAR(static_cast<double>(statistics.objects), objects.size(), 0.35 * objects.size());
+  }
+  std::set<TermId> predicates;
+  for (const QuadIds& quad : quads) predicates.insert(quad.p);
+  EXPECT_EQ(reader.predicates(), std::vector<TermId>(predicates.begin(), predicates.end()));
+  EXPECT_EQ(reader.graphs(), (std::vector<TermId>{1, 2}));
 }
 
 }  // namespace
