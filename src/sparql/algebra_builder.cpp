@@ -10,19 +10,22 @@
 namespace cluxel::sparql {
 namespace {
 
-/// Every solution of the node comes from a quad of the graph at hand, so that the graph surely exists.
-bool readsGraph(const Node& node) {
+bool isSameGraph(const GraphPlace& a, const GraphPlace& b) {
+  return a.kind == b.kind && a.slot == b.slot && a.constant == b.constant;
+}
+
+/// Every solution of the node comes from a quad of that graph, so that the graph surely exists.
+bool readsGraph(const Node& node, const GraphPlace& graph) {
+  const auto reads = [&graph](const NodePtr& child) { return readsGraph(*child, graph); };
   switch (node.kind) {
-    case Node::Kind::Triple: return !node.triple.path;
-    case Node::Kind::GraphNames: return true;
-    case Node::Kind::Join:
-      return std::any_of(node.children.begin(), node.children.end(), [](const NodePtr& c) { return readsGraph(*c); });
-    case Node::Kind::Union:
-      return std::all_of(node.children.begin(), node.children.end(), [](const NodePtr& c) { return readsGraph(*c); });
+    case Node::Kind::Triple: return !node.triple.path && isSameGraph(node.triple.graph, graph);
+    case Node::Kind::GraphNames: return isSameGraph(node.graph, graph);
+    case Node::Kind::Join: return std::any_of(node.children.begin(), node.children.end(), reads);
+    case Node::Kind::Union: return std::all_of(node.children.begin(), node.children.end(), reads);
     case Node::Kind::LeftJoin:
     case Node::Kind::Filter:
     case Node::Kind::Minus:
-    case Node::Kind::Extend: return readsGraph(*node.children[0]);
+    case Node::Kind::Extend: return reads(node.children[0]);
     default: return false;
   }
 }
@@ -103,8 +106,8 @@ NodePtr AlgebraBuilder::unit(const Scope& scope) {
 NodePtr AlgebraBuilder::join(NodePtr a, NodePtr b, const Scope&) {
   if (a->kind == Node::Kind::Unit) return b;
   if (b->kind == Node::Kind::Unit) return a;
-  if (a->kind == Node::Kind::GraphNames && readsGraph(*b)) return b;
-  if (b->kind == Node::Kind::GraphNames && readsGraph(*a)) return a;
+  if (a->kind == Node::Kind::GraphNames && readsGraph(*b, a->graph)) return b;
+  if (b->kind == Node::Kind::GraphNames && readsGraph(*a, b->graph)) return a;
   NodePtr node = makeNode(Node::Kind::Join, a->at);
   for (const NodePtr& side : {a, b}) {
     if (side->kind == Node::Kind::Join) {

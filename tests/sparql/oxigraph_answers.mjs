@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Asks oxigraph a batch of queries: node oxigraph_answers.mjs MODULE_FOLDER DATA.nq REQUESTS.json ANSWERS.json
-// REQUESTS: [{query, default_graphs?, named_graphs?}]; ANSWERS: [{kind, text, rows?}] in the same order.
+// REQUESTS: [query]; ANSWERS: {milliseconds, answers: [{kind, text}]} in the same order.
 import { readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 
@@ -9,26 +9,16 @@ const oxigraph = createRequire(folder + "/package.json")("oxigraph");
 const store = new oxigraph.Store();
 store.load(readFileSync(dataFile, "utf8"), { format: "application/n-quads" });
 
-const graphOf = (iri) => (iri === "" ? oxigraph.defaultGraph() : oxigraph.namedNode(iri));
-
-function optionsOf(request) {
-  const options = {};
-  if (request.default_graphs) options.default_graph = request.default_graphs.map(graphOf);
-  if (request.named_graphs) options.named_graphs = request.named_graphs.map(graphOf);
-  return options;
-}
-
-function answer(request) {
-  const text = request.query;
-  const form = /\b(SELECT|ASK|CONSTRUCT)\b/.exec(text)[1];
+function answer(query) {
+  const form = /\b(SELECT|ASK|CONSTRUCT)\b/.exec(query)[1];
   const format = form === "CONSTRUCT" ? "application/n-triples" : "application/sparql-results+json";
-  return { kind: form, text: store.query(text, { ...optionsOf(request), results_format: format }) };
+  return { kind: form, text: store.query(query, { results_format: format }) };
 }
 
 const started = performance.now();
-const answers = JSON.parse(readFileSync(requestsFile, "utf8")).map((request) => {
+const answers = JSON.parse(readFileSync(requestsFile, "utf8")).map((query) => {
   try {
-    return answer(request);
+    return answer(query);
   } catch (error) {
     return { kind: "ERROR", text: String(error.message ?? error) };
   }

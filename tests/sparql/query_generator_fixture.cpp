@@ -24,6 +24,17 @@ std::string joined(const std::vector<std::string>& parts, const std::string& bet
 
 }  // namespace
 
+std::string textFor(char engine, const std::string& marked) {
+  std::string text;
+  char part = 0;
+  for (const char c : marked) {
+    if (c == kOurs || c == kTheirs) part = c;
+    else if (c == kEnd) part = 0;
+    else if (part == 0 || part == engine) text += c;
+  }
+  return text;
+}
+
 std::string QueryGenerator::used(const std::string& name) {
   if (std::find(used_.begin(), used_.end(), name) == used_.end()) used_.push_back(name);
   return name;
@@ -57,34 +68,50 @@ std::string QueryGenerator::triple() {
   }
 }
 
+/// Within a closure an alternative is a set; elsewhere it is a union, which keeps duplicates: see alternative().
 std::string QueryGenerator::path(int depth) {
+  const auto set = [&] {
+    return chance(30) ? "(" + path(depth - 1) + "|" + path(depth - 1) + ")" : "(" + path(depth - 1) + ")";
+  };
   if (depth <= 0 || chance(30)) return one({"clx:near", "clx:hasPart", "clx:height", "rdfs:subClassOf", "a", "clx:pointCount"});
-  switch (upTo(8)) {
+  switch (upTo(7)) {
     case 0: return path(depth - 1) + "/" + path(depth - 1);
-    case 1: return "(" + path(depth - 1) + "|" + path(depth - 1) + ")";
-    case 2: return "(" + path(depth - 1) + ")*";
-    case 3: return "(" + path(depth - 1) + ")+";
-    case 4: return "(" + path(depth - 1) + ")?";
-    case 5: return "^(" + path(depth - 1) + ")";
-    case 6: return one({"!clx:near", "!(clx:near|a)", "!(^clx:near|clx:hasPart)", "!^a"});
+    case 1: return set() + "*";
+    case 2: return set() + "+";
+    case 3: return set() + "?";
+    case 4: return "^(" + path(depth - 1) + ")";
+    case 5: return one({"!clx:near", "!(clx:near|a)", "!^a", "!(^a|^clx:near)"});
     default: return "a/rdfs:subClassOf*";
   }
+}
+
+/// The second engine drops duplicates of alternatives, so it gets what the specification defines them as.
+std::string QueryGenerator::alternative(const std::string& subject, const std::string& object) {
+  if (chance(20))
+    return kOurs + subject + " !(^clx:near|clx:hasPart) " + object + " ." + kTheirs + "{ " + subject + " !clx:hasPart " + object +
+           " } UNION { " + subject + " !^clx:near " + object + " }" + kEnd;
+  const std::string left = path(1), right = path(1);
+  return kOurs + subject + " " + left + "|" + right + " " + object + " ." + kTheirs + "{ " + subject + " " + left + " " + object +
+         " } UNION { " + subject + " " + right + " " + object + " }" + kEnd;
 }
 
 std::string QueryGenerator::pathTriple() {
   const std::string subject = chance(75) ? variable("ab") : one({"o:1", "o:3", "clx:Tree"});
   const std::string object = chance(80) ? value(subject == "?a" ? "bcx" : "acx") : one({"o:2", "clx:Static", "clx:Plant"});
-  return subject + " " + path(2) + " " + object;
+  if (chance(30)) return alternative(subject, object);
+  return subject + " " + path(2) + " " + object + " .";
 }
 
 std::string QueryGenerator::triples() {
   std::string text;
   for (std::uint32_t n = 1 + upTo(3); n > 0 && patterns_left_ > 0; --n) {
     --patterns_left_;
-    text += (chance(12) ? pathTriple() : triple()) + " . ";
+    text += (chance(12) ? pathTriple() : triple() + " .") + " ";
   }
   return text;
 }
+
+std::string QueryGenerator::filter() { return no_filters_ ? "" : "FILTER(" + condition(2) + ") "; }
 
 std::string QueryGenerator::optional(int depth) { return "OPTIONAL { " + group(depth - 1) + "} "; }
 
@@ -99,7 +126,10 @@ std::string QueryGenerator::minus(int depth) { return "MINUS { " + group(depth -
 std::string QueryGenerator::graph(int depth) {
   const std::vector<std::string> graphs = madeGraphs();
   const std::string name = chance(60) ? variable("g") : "<" + graphs[1 + upTo(static_cast<std::uint32_t>(graphs.size()) - 1)] + ">";
-  return "GRAPH " + name + " { " + group(depth - 1) + "} ";
+  const bool around = std::exchange(in_graph_, true);
+  const std::string text = "GRAPH " + name + " { " + group(depth - 1) + "} ";
+  in_graph_ = around;
+  return text;
 }
 
 std::string QueryGenerator::bind() {
@@ -108,6 +138,7 @@ std::string QueryGenerator::bind() {
 }
 
 std::string QueryGenerator::values() {
+  if (in_graph_) return {};
   if (chance(50)) return "VALUES " + variable("ab") + " { o:1 o:2 o:3 o:3 } ";
   return "VALUES (" + variable("k") + " " + variable("n") + ") { (clx:Tree UNDEF) (clx:Car 3) (UNDEF 2.5) } ";
 }
@@ -146,18 +177,22 @@ std::string QueryGenerator::aggregate() {
     case 1: return "COUNT(" + distinct + anyVariable() + ")";
     case 2: return "SUM(" + distinct + variable(kNumbers) + ")";
     case 3: return "AVG(" + distinct + variable(kNumbers) + ")";
-    case 4: return "MIN(" + variable(kNumbers) + ")";
-    case 5: return "MAX(" + variable(kNumbers) + ")";
-    default: return "STRLEN(GROUP_CONCAT(" + distinct + "STR(" + variable(kStrings) + "); SEPARATOR=\"|\"))";
+    case 4: return "MIN(COALESCE(" + variable(kNumbers) + ", 99))";
+    case 5: return "MAX(COALESCE(" + variable(kNumbers) + ", -99))";
+    default: return "STRLEN(GROUP_CONCAT(" + distinct + "COALESCE(STR(" + variable(kStrings) + "), \"-\"); SEPARATOR=\"|\"))";
   }
 }
 
 /// Leaves the columns in used_.
 std::string QueryGenerator::aggregateSelect(int depth) {
-  const std::string pattern = group(depth);
+  const bool one_group = chance(30);
+  const bool around = std::exchange(no_filters_, no_filters_ || one_group);
+  const std::string pattern = triples() + group(depth);
+  no_filters_ = around;
   std::vector<std::string> keys, columns;
   for (const std::string& name : used_)
-    if (keys.size() < 2 && chance(35)) keys.push_back(name);
+    if (!one_group && keys.size() < 2 && chance(35)) keys.push_back(name);
+  if (keys.empty() && !one_group) keys.push_back(anyVariable());
   std::string items;
   for (std::uint32_t n = 1 + upTo(2); n > 0; --n) {
     const std::string made = aggregate();
@@ -173,16 +208,16 @@ std::string QueryGenerator::aggregateSelect(int depth) {
 }
 
 std::string QueryGenerator::groupElement(int depth) {
-  if (depth <= 0) return chance(50) ? triples() : "FILTER(" + condition(2) + ") ";
+  if (depth <= 0) return chance(50) ? triples() : filter();
   switch (upTo(14)) {
     case 0: case 1: case 2: return optional(depth);
     case 3: case 4: return unions(depth);
-    case 5: return minus(depth);
+    case 5: return in_graph_ ? optional(depth) : minus(depth);
     case 6: case 7: return graph(depth);
     case 8: return bind();
     case 9: return values();
-    case 10: return subSelect(depth);
-    default: return "FILTER(" + condition(2) + ") ";
+    case 10: return in_graph_ ? unions(depth) : subSelect(depth);
+    default: return filter();
   }
 }
 
@@ -240,6 +275,7 @@ MadeQuery QueryGenerator::construct() {
 MadeQuery QueryGenerator::next() {
   used_.clear();
   fresh_ = 0;
+  in_graph_ = no_filters_ = false;
   patterns_left_ = 6;
   const std::uint32_t kind = upTo(20);
   if (kind == 0) return construct();

@@ -12,9 +12,13 @@ namespace cluxel::test {
 
 enum class MadeForm : std::uint8_t { Select, Ask, Construct };
 
+/// Where the second engine departs from the specification, it is given another form of the same meaning: between these
+/// marks stand Cluxel's form and the second engine's.
+inline constexpr char kOurs = '\x01', kTheirs = '\x02', kEnd = '\x03';
+
 struct MadeQuery {
   MadeForm form = MadeForm::Select;
-  std::string text;
+  std::string text;          ///< with the marks, as all texts here
   /// With LIMIT or OFFSET, the same query without: any rows of its answer will do, as many as LIMIT allows.
   std::string unlimited;
   /// The column of numbers that the rows are ordered by; empty: the order says nothing.
@@ -25,6 +29,9 @@ struct MadeQuery {
 /// The letters of variables for numbers and strings.
 inline constexpr const char* kNumbers = "nmhij";
 inline constexpr const char* kStrings = "stuv";
+
+/// The text for one of the engines.
+std::string textFor(char engine, const std::string& marked);
 
 class QueryGenerator {
  public:
@@ -39,6 +46,7 @@ class QueryGenerator {
   std::string triple();
   std::string pathTriple();
   std::string path(int depth);
+  std::string alternative(const std::string& subject, const std::string& object);
   std::string optional(int depth);
   std::string unions(int depth);
   std::string minus(int depth);
@@ -47,6 +55,7 @@ class QueryGenerator {
   std::string values();
   std::string subSelect(int depth);
   std::string aggregateSelect(int depth);
+  std::string filter();
   std::string aggregate();
   MadeQuery select();
   MadeQuery construct();
@@ -77,6 +86,8 @@ class QueryGenerator {
   std::mt19937 random_;
   int fresh_ = 0;
   int patterns_left_ = 0;
+  bool in_graph_ = false;      ///< no VALUES, MINUS, sub-selects there: the second engine does not take them graph by graph
+  bool no_filters_ = false;    ///< the second engine gives no row at all for a group that it knows to be empty
   std::vector<std::string> used_;
 };
 

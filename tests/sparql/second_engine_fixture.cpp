@@ -35,12 +35,7 @@ class ScratchFolder {
 
 std::string requestsAsJson(const std::vector<EngineRequest>& requests) {
   json list = json::array();
-  for (const EngineRequest& request : requests) {
-    json entry{{"query", request.query}};
-    if (!request.default_graphs.empty()) entry["default_graphs"] = request.default_graphs;
-    if (!request.named_graphs.empty()) entry["named_graphs"] = request.named_graphs;
-    list.push_back(std::move(entry));
-  }
+  for (const EngineRequest& request : requests) list.push_back(request.query);
   return list.dump();
 }
 

@@ -13,7 +13,6 @@ namespace cluxel::test {
 
 struct EngineRequest {
   std::string query;
-  std::vector<std::string> default_graphs = {}, named_graphs = {};   ///< both empty: as the store has them
 };
 
 struct EngineAnswer {

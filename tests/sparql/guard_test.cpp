@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// Budgets, refusals, and what is said about queries: plans, emptiness, unknown names.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cluxel/base/diagnostic.hpp"
+#include "sparql/store_fixture.hpp"
+
+namespace cluxel::test {
+namespace {
+
+using testing::HasSubstr;
+
+SmallStore chain(int length) {
+  SmallStore store;
+  std::vector<Quad> quads;
+  for (int i = 0; i < length; ++i) {
+    quads.push_back({Term::iri("http://example.org/n" + std::to_string(i)), Term::iri("http://example.org/next"),
+                     Term::iri("http://example.org/n" + std::to_string(i + 1)), Term::iri("")});
+  }
+  store.load(quads);
+  return store;
+}
+
+/// Sees whether anything was handed out.
+class WatchingSink : public ResultSink {
+ public:
+  bool touched = false;
+  void beginSolutions(std::span<const std::string>, const TermLookup&) override { touched = true; }
+  void rows(std::span<const ResultId>, std::size_t) override { touched = true; }
+  void boolean(bool) override { touched = true; }
+  void beginGraph() override { touched = true; }
+  void triple(const TermView&, const TermView&, const TermView&) override { touched = true; }
+  void end() override { touched = true; }
+};
+
+void expectRefused(const SmallStore& store, const std::string& query, const QueryOptions& options) {
+  WatchingSink sink;
+  const QuadReader reader = store.reader();
+  try {
+    runQuery(reader, kPrefixes + query, options, sink);
+    FAIL() << "no error for " << query;
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::BudgetExceeded) << error.what();
+  }
+  EXPECT_FALSE(sink.touched) << "a partial answer was given";
+}
+
+TEST(Guard, EndsAnExplodingJoinByItsRows) {
+  const SmallStore store = chain(300);
+  QueryOptions options;
+  options.budget.max_work_rows = 100'000;
+  expectRefused(store, "SELECT (COUNT(*) AS ?n) { ?a :next ?b . ?c :next ?d . ?e :next ?f . ?g :next ?h }", options);
+}
+
+TEST(Guard, EndsByItsDeadline) {
+  const SmallStore store = chain(300);
+  QueryOptions options;
+  options.budget.deadline = std::chrono::milliseconds(30);
+  expectRefused(store, "SELECT (COUNT(*) AS ?n) { ?a :next ?b . ?c :next ?d . ?e :next ?f . ?g :next ?h . ?i :next ?j }", options);
+  expectRefused(store, "SELECT (COUNT(*) AS ?n) { ?a ((:next|^:next)/(:next|^:next))* ?b . ?c (:next|^:next)* ?d . ?e :next* ?f }", options);
+}
+
+TEST(Guard, EndsByMemoryInJoinsSortsGroupsAndAnswers) {
+  const SmallStore store = chain(3000);
+  QueryOptions options;
+  options.budget.max_memory_bytes = 20'000;
+  expectRefused(store, "SELECT * { ?a :next ?b }", options);
+  expectRefused(store, "SELECT (COUNT(*) AS ?n) { { SELECT * { ?a :next ?b } ORDER BY ?b LIMIT 100000 } }", options);
+  expectRefused(store, "SELECT (COUNT(*) AS ?n) { { SELECT ?a (COUNT(*) AS ?k) { ?a :next ?b } GROUP BY ?a } }", options);
+  expectRefused(store, "SELECT (COUNT(*) AS ?n) { { SELECT DISTINCT ?a ?b { ?a :next ?b } } }", options);
+  expectRefused(store, "CONSTRUCT WHERE { ?a :next ?b }", options);
+}
+
+TEST(Guard, EndsByRowsOfTheAnswerAndLetsSmallerOnesPass) {
+  const SmallStore store = chain(100);
+  QueryOptions options;
+  options.budget.max_rows = 50;
+  expectRefused(store, "SELECT * { ?a :next ?b }", options);
+  EXPECT_EQ(store.rows("SELECT * { ?a :next ?b } LIMIT 50", options).size(), 50u);
+}
+
+TEST(Guard, EndsCostlyRegularExpressions) {
+  const SmallStore store(":a :p \"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaab\" .");
+  expectRefused(store, "SELECT * { ?s :p ?v FILTER(REGEX(?v, \"^(a+)+$\")) }", {});
+}
+
+TEST(Guard, EndsNumbersThatGrowWithoutEnd) {
+  const SmallStore store;
+  std::string product = "10";
+  for (int i = 0; i < 12; ++i) product = "(" + product + " * " + product + ")";
+  EXPECT_EQ(store.value("STRLEN(STR(" + product + "))"), "-") << "an overflow is a type error";
+}
+
+TEST(Guard, RefusesDeepNesting) {
+  const SmallStore store;
+  std::string deep = "1";
+  for (int i = 0; i < 5000; ++i) deep = "(" + deep + ")";
+  EXPECT_THROW(store.value(deep), InputError);
+  std::string groups = "?s ?p ?o";
+  for (int i = 0; i < 5000; ++i) groups = "{" + groups + "}";
+  EXPECT_THROW(store.ask("SELECT * {" + groups + "}"), InputError);
+}
+
+TEST(Explain, ShowsEstimatedAndActualRows) {
+  const SmallStore store = chain(10);
+  const QuadReader reader = store.reader();
+  const std::string plan = explainQuery(reader, kPrefixes + "SELECT ?a { ?a :next ?b . ?b :next ?c FILTER(?a != ?c) } ORDER BY ?a LIMIT 3");
+  EXPECT_THAT(plan, HasSubstr("first 3 by ?a"));
+  EXPECT_THAT(plan, HasSubstr("<http://example.org/next>"));
+  EXPECT_THAT(plan, HasSubstr("estimated 10, actual 10"));
+  EXPECT_THAT(plan, HasSubstr("actual 9"));
+}
+
+TEST(WhyEmpty, NamesThePatternThatHasNoMatch) {
+  const SmallStore store(":a a :Tree ; :height 3 . :b a :Sign .");
+  const QuadReader reader = store.reader();
+  const auto why = [&](const std::string& text) { return whyEmpty(reader, kPrefixes + text); };
+  EXPECT_EQ(why("SELECT * { ?x a :Tree }"), "");
+  EXPECT_THAT(why("SELECT * { ?x a :Tree . ?x :hieght ?h }"), HasSubstr("hieght"));
+  EXPECT_THAT(why("SELECT * { ?x a :Sign . ?x :height ?h }"), HasSubstr("none is left when"));
+  EXPECT_THAT(why("SELECT * { ?x a :Tree ; :height ?h FILTER(?h > 5) }"), HasSubstr("FILTER  (?h > 5)"));
+  EXPECT_THAT(why("SELECT * { ?x a :Tree MINUS { ?x :height ?h } }"), HasSubstr("MINUS"));
+}
+
+TEST(CheckQuery, SuggestsNamesThatTheStoreKnows) {
+  const SmallStore store(":a a :StreetSign ; :height 3 .");
+  const QuadReader reader = store.reader();
+  const auto found = checkQuery(reader, kPrefixes + "SELECT * {\n ?x a :StretSign ;\n :hieght ?h }");
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_THAT(found[0].message, HasSubstr("class <http://example.org/StretSign>"));
+  EXPECT_THAT(found[0].hint, HasSubstr("StreetSign"));
+  EXPECT_THAT(found[1].message, HasSubstr("property"));
+  EXPECT_THAT(found[1].hint, HasSubstr("height"));
+  EXPECT_EQ(found[1].severity, Severity::Warning);
+  EXPECT_TRUE(checkQuery(reader, kPrefixes + "SELECT * { ?x a :StreetSign ; :height ?h }").empty());
+}
+
+}  // namespace
+}  // namespace cluxel::test

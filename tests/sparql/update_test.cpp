@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Updates of a map: what may be written, all or nothing, and the order of operations.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/sparql/update_engine.hpp"
+#include "sparql/store_fixture.hpp"
+
+namespace cluxel::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class Updates : public testing::Test {
+ protected:
+  Updates() { store_.load(":a :p 1 . :b :p 2 .", std::string(vocabulary::kGraphObserved)); }
+
+  UpdateReport change(const std::string& text, const UpdateOptions& options = {}) {
+    WriteTransaction transaction = store_.environment()->write();
+    const UpdateReport report = runUpdate(transaction, kPrefixes + text, options);
+    transaction.commit();
+    return report;
+  }
+  std::vector<std::string> in(const std::string_view graph) {
+    return store_.rows("SELECT ?s ?p ?o { GRAPH <" + std::string(graph) + "> { ?s ?p ?o } }");
+  }
+  SmallStore store_;
+};
+
+TEST_F(Updates, WriteTheOperatorGraphWhenNoneIsNamed) {
+  change("INSERT DATA { :a :note \"checked\" }");
+  EXPECT_THAT(in(vocabulary::kGraphOperator), ElementsAre(":a :note \"checked\""));
+  change("DELETE DATA { :a :note \"checked\" }");
+  EXPECT_THAT(in(vocabulary::kGraphOperator), IsEmpty());
+}
+
+TEST_F(Updates, OfOtherGraphsAreRefusedWithTheListOfOpenOnes) {
+  try {
+    change("INSERT DATA { GRAPH <https://w3id.org/cluxel/graph/observed> { :a :p 7 } }");
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("may not be written"));
+    EXPECT_THAT(error.what(), HasSubstr("graph/operator"));
+  }
+  EXPECT_THROW(change("DELETE WHERE { GRAPH <https://w3id.org/cluxel/graph/observed> { ?s ?p ?o } }"), InputError);
+  EXPECT_THROW(change("CLEAR ALL"), InputError);
+  EXPECT_EQ(in(vocabulary::kGraphObserved).size(), 2u);
+}
+
+TEST_F(Updates, MayOpenMoreGraphs) {
+  UpdateOptions options;
+  options.writable_graphs = {"http://example.org/g"};
+  change("INSERT { ?s :double ?d } WHERE { ?s :p ?v BIND(?v * 2 AS ?d) }", options);
+  EXPECT_THAT(in("http://example.org/g"), ElementsAre(":a :double \"2\"^^integer", ":b :double \"4\"^^integer"));
+}
+
+TEST_F(Updates, ChangeNothingWhenALaterOperationFails) {
+  EXPECT_THROW(change("INSERT DATA { :a :note 1 } ; INSERT DATA { GRAPH :closed { :a :p 7 } }"), InputError);
+  EXPECT_THAT(in(vocabulary::kGraphOperator), IsEmpty());
+}
+
+TEST_F(Updates, SeeWhatEarlierOperationsWrote) {
+  UpdateOptions all;
+  all.any_graph_writable = true;
+  change("INSERT DATA { GRAPH :g { :x :n 1 } } ; WITH :g DELETE { ?s :n ?v } INSERT { ?s :n ?w } WHERE { ?s :n ?v BIND(?v + 1 AS ?w) } ;"
+         "INSERT { GRAPH :h { ?s :seen ?v } } WHERE { GRAPH :g { ?s :n ?v } }", all);
+  EXPECT_THAT(in("http://example.org/g"), ElementsAre(":x :n \"2\"^^integer"));
+  EXPECT_THAT(in("http://example.org/h"), ElementsAre(":x :seen \"2\"^^integer"));
+  change("MOVE :h TO :g ; COPY :g TO :k ; DROP GRAPH :nothing ; ADD :k TO :g", all);
+  EXPECT_THAT(in("http://example.org/g"), ElementsAre(":x :seen \"2\"^^integer"));
+  EXPECT_THAT(in("http://example.org/h"), IsEmpty());
+  EXPECT_THAT(in("http://example.org/k"), ElementsAre(":x :seen \"2\"^^integer"));
+}
+
+TEST_F(Updates, MakeFreshBlankNodesPerSolutionAndPerRequest) {
+  change("INSERT { ?s :has [ :of ?v ] } WHERE { ?s :p ?v }");
+  EXPECT_THAT(store_.rows("SELECT (COUNT(DISTINCT ?b) AS ?n) { ?s :has ?b }"), ElementsAre("\"2\"^^integer"));
+  change("INSERT DATA { _:x :same 1 } ; INSERT DATA { _:y :same 2 }");
+  change("INSERT DATA { _:x :same 3 }");
+  EXPECT_THAT(store_.rows("SELECT (COUNT(DISTINCT ?b) AS ?n) { ?b :same ?v }"), ElementsAre("\"3\"^^integer"));
+}
+
+TEST_F(Updates, DeleteBeforeTheyInsert) {
+  UpdateOptions all;
+  all.any_graph_writable = true;
+  change("INSERT DATA { :x :v 1 }", all);
+  change("DELETE { :x :v ?v } INSERT { :x :v ?v } WHERE { :x :v ?v }", all);
+  EXPECT_THAT(store_.rows("SELECT ?v { :x :v ?v }"), ElementsAre("\"1\"^^integer"));
+}
+
+TEST_F(Updates, LoadOnlyThroughTheCallersDoor) {
+  EXPECT_THROW(change("LOAD <file:///etc/passwd>"), InputError);
+  EXPECT_NO_THROW(change("LOAD SILENT <http://elsewhere/>"));
+  UpdateOptions options;
+  options.load = [](const std::string& iri) { return std::vector<Quad>{{Term::iri(iri), Term::iri("http://example.org/p"), Term::integer(1), {}}}; };
+  change("LOAD <http://example.org/doc>", options);
+  EXPECT_THAT(in(vocabulary::kGraphOperator), ElementsAre(":doc :p \"1\"^^integer"));
+}
+
+}  // namespace
+}  // namespace cluxel::test
