@@ -121,15 +121,20 @@ void Accumulator::take(const AggregateSpec& spec, const Value& value, Runtime& r
       ++count_;
       error_ = error_ || !sum_->add(value, runtime.terms);
       return;
-    case Function::Min:
     case Function::Sample:
       if (value && (!best_ || orderOf(value, best_, runtime.terms) < 0)) best_ = value;
       return;
+    case Function::Min:
+      error_ = error_ || !value;
+      if (value && (!best_ || orderOf(value, best_, runtime.terms) < 0)) best_ = value;
+      return;
     case Function::Max:
+      error_ = error_ || !value;
       if (value && (!best_ || orderOf(value, best_, runtime.terms) > 0)) best_ = value;
       return;
     case Function::GroupConcat:
-      if (!value || value.type == Value::Type::Blank) return;
+      error_ = error_ || !value || value.type == Value::Type::Blank;
+      if (error_) return;
       if (!texts_) texts_ = std::make_unique<std::vector<Value>>();
       texts_->push_back(value);
       runtime.guard.charge(sizeof(Value));
@@ -148,10 +153,12 @@ ValueId Accumulator::result(const AggregateSpec& spec, Runtime& runtime) {
       if (error_) return kUnbound;
       if (!sum_) return terms.intern(Value::ofInteger(0));
       return terms.intern(divideValues(sum_->total(), Value::ofInteger(static_cast<std::int64_t>(count_)), terms));
-    case Function::Min:
-    case Function::Max:
     case Function::Sample: return terms.intern(best_);
-    case Function::GroupConcat: break;
+    case Function::Min:
+    case Function::Max: return error_ ? kUnbound : terms.intern(best_);
+    case Function::GroupConcat:
+      if (error_) return kUnbound;
+      break;
   }
   std::string text;
   if (texts_) {
