@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <unordered_set>
 
 #include "cluxel/knowledge/ontology.hpp"
 #include "cluxel/knowledge/vocabulary.hpp"
@@ -27,8 +28,9 @@ struct Words {
   }
 };
 
-using Pair = std::pair<TermId, TermId>;
-using Pairs = std::set<Pair>;
+struct Pair {
+  TermId subject = 0, object = 0;
+};
 
 /// A property that follows from another.
 struct Implied {
@@ -42,97 +44,96 @@ struct Implied {
 class Facts {
  public:
   Facts(const QuadReader& reader, std::span<const TermId> sources)
-      : reader_(reader), sources_(sources.begin(), sources.end()) {
+      : reader_(reader), sources_(sources.begin(), sources.end()), lookup_(reader.lookup(QuadOrder::Spog)) {
     std::sort(sources_.begin(), sources_.end());
   }
 
-  /// Calls visit(subject, object) for every fact of a property, stated or derived so far.
+  /// Calls visit(subject, object) for every fact of a property, stated or derived before the present round.
   template <typename Visit>
   void forEach(TermId property, const Visit& visit) const {
     if (property == kNoTerm) return;
     QuadCursor cursor = reader_.scan({.s = {}, .p = property, .o = {}, .g = {}}, QuadOrder::Posg);
     for (QuadIds quad; cursor.next(quad);)
       if (std::binary_search(sources_.begin(), sources_.end(), quad.g)) visit(quad.s, quad.o);
+    forEachDerived(property, 0, visit);
+  }
+
+  /// The same for facts that the round before has derived.
+  template <typename Visit>
+  void forEachNew(TermId property, const Visit& visit) const {
     const auto derived = derived_.find(property);
-    if (derived == derived_.end()) return;
-    const Pairs copy = derived->second;
-    for (const Pair& pair : copy) visit(pair.first, pair.second);
+    if (derived != derived_.end()) forEachDerived(property, derived->second.round_before, visit);
+  }
+
+  void beginRound() {
+    for (auto& [property, derived] : derived_) {
+      derived.round_before = derived.round_start;
+      derived.round_start = derived.pairs.size();
+    }
   }
 
   /// True when it is new.
   bool derive(TermId subject, TermId property, TermId object) {
-    if (isStated(subject, property, object)) return false;
-    return derived_[property].insert({subject, object}).second;
+    Derived& derived = derived_[property];
+    if (derived.known.contains(key(subject, object)) || isStated(subject, property, object)) return false;
+    derived.known.insert(key(subject, object));
+    derived.pairs.push_back({subject, object});
+    return true;
   }
 
-  const std::map<TermId, Pairs>& derived() const { return derived_; }
+  std::vector<QuadIds> derivedQuads(TermId graph) const {
+    std::vector<QuadIds> quads;
+    for (const auto& [property, derived] : derived_)
+      for (const Pair& pair : derived.pairs) quads.push_back({pair.subject, property, pair.object, graph});
+    std::sort(quads.begin(), quads.end());
+    return quads;
+  }
+
   bool isResource(TermId id) const { return reader_.valueOf(id).kind != TermKind::Literal; }
 
  private:
-  bool isStated(TermId subject, TermId property, TermId object) const {
-    if (!lookup_) lookup_.emplace(reader_.lookup(QuadOrder::Spog));
+  struct Derived {
+    std::vector<Pair> pairs;                  ///< in the order of derivation
+    std::unordered_set<std::uint64_t> known;  ///< asked only, never run through
+    std::size_t round_before = 0, round_start = 0;
+  };
+
+  static std::uint64_t key(TermId subject, TermId object) { return std::uint64_t{subject} << 32U | object; }
+
+  template <typename Visit>
+  void forEachDerived(TermId property, std::size_t from, const Visit& visit) const {
+    const auto derived = derived_.find(property);
+    if (derived == derived_.end()) return;
+    for (std::size_t i = from; i < derived->second.round_start; ++i) {
+      const Pair pair = derived->second.pairs[i];  // the list grows while it is visited
+      visit(pair.subject, pair.object);
+    }
+  }
+
+  bool isStated(TermId subject, TermId property, TermId object) {
     const std::array<TermId, 3> prefix = {subject, property, object};
-    for (auto keys = lookup_->find(prefix); !keys.empty(); keys = lookup_->more())
-      for (const QuadKey& key : keys)
-        if (std::binary_search(sources_.begin(), sources_.end(), key.at(3))) return true;
+    for (auto keys = lookup_.find(prefix); !keys.empty(); keys = lookup_.more())
+      for (const QuadKey& stored : keys)
+        if (std::binary_search(sources_.begin(), sources_.end(), stored.at(3))) return true;
     return false;
   }
 
   const QuadReader& reader_;
   std::vector<TermId> sources_;
-  mutable std::optional<PrefixLookup> lookup_;
-  std::map<TermId, Pairs> derived_;
+  PrefixLookup lookup_;
+  std::map<TermId, Derived> derived_;
 };
 
-/// What the ontology says about properties, taken from the facts known so far.
-class PropertyRules {
- public:
-  PropertyRules(const Facts& facts, const Words& words) {
-    facts.forEach(words.sub_property, [&](TermId sub, TermId super) {
-      direct_[sub].insert({super, false, false});
-    });
-    facts.forEach(words.inverse, [&](TermId one, TermId other) {
-      direct_[one].insert({other, true, true});
-      direct_[other].insert({one, true, true});
-    });
-    facts.forEach(words.type, [&](TermId property, TermId kind) {
-      if (kind == words.symmetric) direct_[property].insert({property, true, true});
-      if (kind == words.transitive) transitive_.insert(property);
-    });
-    for (const TermId property : {words.sub_class, words.sub_property})
-      if (property != kNoTerm) transitive_.insert(property);
-  }
+using Edges = std::map<TermId, std::set<TermId>>;
 
-  const std::set<TermId>& transitive() const { return transitive_; }
+Edges edgesOf(const Facts& facts, TermId property) {
+  Edges edges;
+  facts.forEach(property, [&](TermId subject, TermId object) { edges[subject].insert(object); });
+  return edges;
+}
 
-  /// Every property that implies something, with all it implies.
-  std::map<TermId, std::set<Implied>> implications() const {
-    std::map<TermId, std::set<Implied>> all;
-    for (const auto& [property, first] : direct_) {
-      std::set<Implied> reached;
-      std::vector<Implied> open(first.begin(), first.end());
-      while (!open.empty()) {
-        const Implied next = open.back();
-        open.pop_back();
-        if (!reached.insert(next).second) continue;
-        const auto further = direct_.find(next.property);
-        if (further == direct_.end()) continue;
-        for (const Implied& step : further->second)
-          open.push_back({step.property, step.turned != next.turned, step.by_turning || next.by_turning});
-      }
-      reached.erase({property, false, false});
-      all.emplace(property, std::move(reached));
-    }
-    return all;
-  }
-
- private:
-  std::map<TermId, std::set<Implied>> direct_;
-  std::set<TermId> transitive_;
-};
-
-/// Everything that one node reaches, by the edges of a transitive property.
-std::set<TermId> reachableFrom(TermId node, const std::map<TermId, std::set<TermId>>& edges) {
+/// Everything that one node reaches.
+std::set<TermId> reachableFrom(TermId node, const Edges& edges) {
   std::set<TermId> reached;
   std::vector<TermId> open = {node};
   while (!open.empty()) {
@@ -145,21 +146,90 @@ std::set<TermId> reachableFrom(TermId node, const std::map<TermId, std::set<Term
   return reached;
 }
 
-/// One round of each rule; true when something new was derived.
-class Round {
- public:
-  Round(Facts& facts, const Words& words) : facts_(facts), words_(words), rules_(facts, words) {}
+/// What the ontology says, taken from the facts known so far.
+struct OntologyRules {
+  std::map<TermId, std::set<Implied>>
+      implications;  ///< every property that implies something, with all it implies
+  std::set<TermId> transitive;
+  Edges ancestors;  ///< of each class
+  bool operator==(const OntologyRules&) const = default;
+};
 
-  bool run() {
-    for (const auto& [property, implied] : rules_.implications()) applyImplications(property, implied);
-    for (const TermId property : rules_.transitive()) applyTransitivity(property);
+std::set<Implied> allImplied(TermId property, const std::map<TermId, std::set<Implied>>& direct) {
+  std::set<Implied> reached;
+  std::vector<Implied> open(direct.at(property).begin(), direct.at(property).end());
+  while (!open.empty()) {
+    const Implied next = open.back();
+    open.pop_back();
+    if (!reached.insert(next).second) continue;
+    const auto further = direct.find(next.property);
+    if (further == direct.end()) continue;
+    for (const Implied& step : further->second)
+      open.push_back({step.property, step.turned != next.turned, step.by_turning || next.by_turning});
+  }
+  reached.erase({property, false, false});
+  return reached;
+}
+
+OntologyRules readRules(const Facts& facts, const Words& words) {
+  OntologyRules rules;
+  std::map<TermId, std::set<Implied>> direct;
+  facts.forEach(words.sub_property, [&](TermId sub, TermId super) {
+    direct[sub].insert({super, false, false});
+  });
+  facts.forEach(words.inverse, [&](TermId one, TermId other) {
+    direct[one].insert({other, true, true});
+    direct[other].insert({one, true, true});
+  });
+  facts.forEach(words.type, [&](TermId property, TermId kind) {
+    if (kind == words.symmetric) direct[property].insert({property, true, true});
+    if (kind == words.transitive) rules.transitive.insert(property);
+  });
+  for (const TermId property : {words.sub_class, words.sub_property})
+    if (property != kNoTerm) rules.transitive.insert(property);
+  for (const auto& [property, first] : direct)
+    rules.implications.emplace(property, allImplied(property, direct));
+  const Edges above = edgesOf(facts, words.sub_class);
+  for (const auto& [kind, direct_ones] : above) rules.ancestors.emplace(kind, reachableFrom(kind, above));
+  return rules;
+}
+
+/// Applies the rules in rounds. After the first round only new facts are looked at, unless the rules have
+/// changed.
+class Closure {
+ public:
+  Closure(Facts& facts, const Words& words) : facts_(facts), words_(words) {}
+
+  void run() {
+    rules_ = readRules(facts_, words_);
+    for (bool only_new = false; round(only_new);) {
+      facts_.beginRound();
+      OntologyRules rules = readRules(facts_, words_);
+      only_new = rules == rules_;
+      rules_ = std::move(rules);
+    }
+  }
+
+ private:
+  bool round(bool only_new) {
+    changed_ = false;
+    only_new_ = only_new;
+    for (const auto& [property, implied] : rules_.implications) applyImplications(property, implied);
+    for (const TermId property : rules_.transitive) applyTransitivity(property);
     applyTypes();
     return changed_;
   }
 
- private:
+  template <typename Visit>
+  void visit(TermId property, const Visit& visitor) const {
+    if (only_new_)
+      facts_.forEachNew(property, visitor);
+    else
+      facts_.forEach(property, visitor);
+  }
+
   void applyImplications(TermId property, const std::set<Implied>& implied) {
-    facts_.forEach(property, [&](TermId subject, TermId object) {
+    visit(property, [&](TermId subject, TermId object) {
       const bool may_turn = facts_.isResource(object);
       for (const Implied& next : implied) {
         if (next.by_turning && !may_turn) continue;
@@ -170,7 +240,10 @@ class Round {
   }
 
   void applyTransitivity(TermId property) {
-    const std::map<TermId, std::set<TermId>> edges = edgesOf(property);
+    bool any = false;
+    visit(property, [&](TermId, TermId) { any = true; });
+    if (!any) return;
+    const Edges edges = edgesOf(facts_, property);
     for (const auto& [node, targets] : edges)
       for (const TermId reached : reachableFrom(node, edges))
         // A class in a cycle of subclasses would become its own superclass, which tells nothing.
@@ -179,19 +252,11 @@ class Round {
   }
 
   void applyTypes() {
-    const std::map<TermId, std::set<TermId>> above = edgesOf(words_.sub_class);
-    std::map<TermId, std::set<TermId>> ancestors;
-    facts_.forEach(words_.type, [&](TermId subject, TermId kind) {
-      auto known = ancestors.find(kind);
-      if (known == ancestors.end()) known = ancestors.emplace(kind, reachableFrom(kind, above)).first;
-      for (const TermId ancestor : known->second) changed_ |= facts_.derive(subject, words_.type, ancestor);
+    visit(words_.type, [&](TermId subject, TermId kind) {
+      const auto above = rules_.ancestors.find(kind);
+      if (above == rules_.ancestors.end()) return;
+      for (const TermId ancestor : above->second) changed_ |= facts_.derive(subject, words_.type, ancestor);
     });
-  }
-
-  std::map<TermId, std::set<TermId>> edgesOf(TermId property) const {
-    std::map<TermId, std::set<TermId>> edges;
-    facts_.forEach(property, [&](TermId subject, TermId object) { edges[subject].insert(object); });
-    return edges;
   }
 
   bool isSchema(TermId property) const {
@@ -200,7 +265,8 @@ class Round {
 
   Facts& facts_;
   const Words& words_;
-  PropertyRules rules_;
+  OntologyRules rules_;
+  bool only_new_ = false;
   bool changed_ = false;
 };
 
@@ -209,13 +275,8 @@ class Round {
 std::vector<QuadIds> closureOf(const QuadReader& reader, TermId target, std::span<const TermId> sources) {
   const Words words(reader);
   Facts facts(reader, sources);
-  while (Round(facts, words).run()) {
-  }
-  std::vector<QuadIds> inferred;
-  for (const auto& [property, pairs] : facts.derived())
-    for (const Pair& pair : pairs) inferred.push_back({pair.first, property, pair.second, target});
-  std::sort(inferred.begin(), inferred.end());
-  return inferred;
+  Closure(facts, words).run();
+  return facts.derivedQuads(target);
 }
 
 }  // namespace cluxel
