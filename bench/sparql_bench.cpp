@@ -34,7 +34,7 @@ constexpr const char* kPrefixes =
     "PREFIX clx: <https://w3id.org/cluxel/ontology#> PREFIX rdfs: <http://www.w3.org/2000/01/rdf-schema#> "
     "PREFIX sosa: <http://www.w3.org/ns/sosa/> PREFIX geo: <http://www.opengis.net/ont/geosparql#> "
     "PREFIX geof: <http://www.opengis.net/def/function/geosparql/> ";
-constexpr double kMostSecondsPerQuery = 10;
+constexpr double kMostSecondsPerQuery = 5;
 
 struct Question {
   std::string name, text;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The questions of the comparison put to oxigraph's in-memory store: node sparql_oxigraph.mjs MODULE DATA.nt REQUESTS ANSWERS
-// Each answer: {name, seconds of the median run, rows as lines of TSV}; a question that takes longer than a minute
-// is given up and counted with that minute.
+// Each answer: {name, seconds of the median run, rows as lines of TSV}; a question that takes longer than half a minute
+// is given up and counted with that time.
 import { readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { isMainThread, parentPort, Worker, workerData } from "node:worker_threads";
 
-const mostSeconds = 10, givenUpAfterSeconds = 60;
+const mostSeconds = 5, givenUpAfterSeconds = 30;
 
 function loadedStore(oxigraph, dataFile) {
   const store = new oxigraph.Store();
