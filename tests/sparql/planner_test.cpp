@@ -67,6 +67,26 @@ TEST(Planner, HashesWhereBothSidesAreLarge) {
   EXPECT_THAT(explainQuery(reader, text), HasSubstr("hash join"));
 }
 
+TEST(Planner, MergesWhereBothSidesComeSorted) {
+  SmallStore store;
+  std::vector<Quad> quads;
+  const auto type = Term::iri("http://www.w3.org/1999/02/22-rdf-syntax-ns#type");
+  const auto iri = [](const std::string& name) { return Term::iri("http://example.org/" + name); };
+  for (int i = 0; i < 3000; ++i) {
+    const Term self = iri("o" + std::to_string(i * 2654435761u % 3001));
+    if (i % 2 == 0) quads.push_back({self, type, iri("A"), Term::iri("")});
+    if (i % 3 == 0) quads.push_back({self, type, iri("B"), Term::iri("http://example.org/g")});
+    quads.push_back({self, iri("near"), iri("o" + std::to_string((i * 7) % 3001)), Term::iri("")});
+  }
+  store.load(quads);
+  const std::string both = "SELECT ?x { ?x a :A . ?x a :B }", joined = "SELECT ?x ?y { ?y a :A . ?x :near ?y }";
+  EXPECT_THAT(explainQuery(store.reader(), kPrefixes + both), HasSubstr("merge join on ?x"));
+  EXPECT_THAT(explainQuery(store.reader(), kPrefixes + joined), HasSubstr("merge join on ?y"));
+  // Written so that nothing can be joined by order: the same rows.
+  EXPECT_EQ(store.rows(both), store.rows("SELECT ?x { { SELECT ?x { ?x a :A } ORDER BY DESC(?x) LIMIT 100000 } FILTER EXISTS { ?x a :B } }"));
+  EXPECT_EQ(store.rows(joined), store.rows("SELECT ?x ?y { ?x :near ?y FILTER EXISTS { ?y a :A } }"));
+}
+
 TEST(Planner, FiltersAsSoonAsTheirVariablesAreBound) {
   const QuadReader reader = wideStore().reader();
   const std::string plan = explainQuery(reader, kPrefixes + "SELECT * { ?a :near ?b . ?b :label ?l . ?a a :Rare . ?a :height ?h FILTER(?h > 200) }");

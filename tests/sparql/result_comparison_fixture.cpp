@@ -90,19 +90,22 @@ Colours refined(const std::vector<Tuple>& tuples, Colours colours) {
   return colours;
 }
 
-std::map<std::string, std::vector<std::string>> classesOf(const Colours& colours) {
-  std::map<std::string, std::vector<std::string>> classes;
+using Classes = std::map<std::string, std::vector<std::string>>;   // colour -> labels
+
+Classes classesOf(const Colours& colours) {
+  Classes classes;
   for (const auto& [label, colour] : colours) classes[colour].push_back(label);
   return classes;
 }
 
-/// When no tuple ties two blank nodes together, nodes of one colour may stand for each other.
-bool areUntied(const std::vector<Tuple>& tuples) {
-  return std::none_of(tuples.begin(), tuples.end(), [](const Tuple& tuple) {
-    std::set<std::string> labels;
+/// When no tuple ties two blank nodes together that share their colours with others, nodes of one colour may stand for
+/// each other.
+bool areUntied(const std::vector<Tuple>& tuples, const Colours& colours, const Classes& classes) {
+  return std::none_of(tuples.begin(), tuples.end(), [&](const Tuple& tuple) {
+    std::set<std::string> ambiguous;
     for (const auto& term : tuple)
-      if (term && term->kind == TermKind::BlankNode) labels.insert(term->text);
-    return labels.size() > 1;
+      if (term && term->kind == TermKind::BlankNode && classes.at(colours.at(term->text)).size() > 1) ambiguous.insert(term->text);
+    return ambiguous.size() > 1;
   });
 }
 
@@ -110,20 +113,21 @@ bool match(const std::vector<Tuple>& a, Colours colours_a, const std::vector<Tup
   colours_a = refined(a, std::move(colours_a));
   colours_b = refined(b, std::move(colours_b));
   if (keysOf(a, colours_a) != keysOf(b, colours_b)) return false;
-  if (areUntied(a) && areUntied(b)) return true;
-  const auto classes_a = classesOf(colours_a);
-  auto classes_b = classesOf(colours_b);
+  const Classes classes_a = classesOf(colours_a), classes_b = classesOf(colours_b);
+  const std::vector<std::string>* smallest = nullptr;
   for (const auto& [colour, labels] : classes_a) {
-    if (classes_b[colour].size() != labels.size()) return false;
-    if (labels.size() == 1) continue;
-    colours_a[labels[0]] = "chosen" + std::to_string(depth);
-    return std::any_of(classes_b[colour].begin(), classes_b[colour].end(), [&](const std::string& label) {
-      Colours chosen = colours_b;
-      chosen[label] = "chosen" + std::to_string(depth);
-      return match(a, colours_a, b, chosen, depth + 1);
-    });
+    if (!classes_b.contains(colour) || classes_b.at(colour).size() != labels.size()) return false;
+    if (labels.size() > 1 && (!smallest || labels.size() < smallest->size())) smallest = &labels;
   }
-  return true;
+  if (!smallest || areUntied(a, colours_a, classes_a)) return true;
+  const std::string colour = colours_a.at(smallest->front()), chosen = "chosen" + std::to_string(depth);
+  colours_a[smallest->front()] = chosen;
+  const std::vector<std::string>& candidates = classes_b.at(colour);
+  return std::any_of(candidates.begin(), candidates.end(), [&](const std::string& label) {
+    Colours colours = colours_b;
+    colours[label] = chosen;
+    return match(a, colours_a, b, std::move(colours), depth + 1);
+  });
 }
 
 std::vector<Tuple> withRowNumbers(const std::vector<Tuple>& tuples) {
