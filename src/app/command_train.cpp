@@ -46,7 +46,7 @@ ExitCode trainModel(const TrainOptions& options, Session& session) {
     sources.push_back({{helper}, truthPath(options.helper_truth, home), true});
   CopyParams copies;
   if (options.no_copies) copies.sensors.clear();
-  const PerceptionParams perception;
+  const PerceptionParams perception = portablePerception();
   const unsigned threads = session.threadCount();
   const auto places = readPlaces(sources, perception, copies, options.group_size, threads, session.console);
   const std::string name = options.name.empty() ? options.output.filename().string() : options.name;

@@ -22,11 +22,12 @@ PointTruth truthOf(const Scan& scan, const std::filesystem::path& file, const Tr
 std::vector<LabelledScans> placesOf(const TrainingSource& source, ProgressSink& sink) {
   const ScanSet set = ScanSet::open(source.inputs, {}, sink);
   std::vector<LabelledScans> places;
-  bool posed_before = false;
+  std::filesystem::path folder_before;   // of a scan with a pose
   for (std::size_t i = 0; i < set.size(); ++i) {
     Scan scan = set.load(i);
-    if (places.empty() || !scan.has_pose || !posed_before) places.emplace_back();
-    posed_before = scan.has_pose;
+    const std::filesystem::path folder = std::filesystem::absolute(set.file(i).path).parent_path();
+    if (places.empty() || !scan.has_pose || folder != folder_before) places.emplace_back();
+    folder_before = scan.has_pose ? folder : std::filesystem::path{};
     places.back().truth.push_back(truthOf(scan, set.file(i).path, source));
     places.back().scans.push_back(std::move(scan));
   }
@@ -69,6 +70,13 @@ class PlaceMaker {
 };
 
 }  // namespace
+
+PerceptionParams portablePerception() {
+  PerceptionParams params;
+  params.features.density = false;
+  params.features.extent = false;
+  return params;
+}
 
 std::vector<TrainingPlace> readPlaces(const std::vector<TrainingSource>& sources, const PerceptionParams& perception,
                                       const CopyParams& copies, int group_size, unsigned threads, ProgressSink& sink) {

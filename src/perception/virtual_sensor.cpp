@@ -115,7 +115,9 @@ LabelledScans thinned(std::span<const Scan> scans, std::span<const PointTruth> t
 }
 
 std::vector<VirtualSensor> spinningSensors() {
-  return {{.height_m = 1.7, .lowest_rad = -0.43, .highest_rad = 0.05, .lines = 64, .spacing_m = 15},
+  return {{.highest_rad = 0.06, .spacing_m = 60, .range_m = 45},
+          {.highest_rad = 0.03, .spacing_m = 40, .range_m = 45},
+          {.highest_rad = 0.05, .spacing_m = 4, .range_m = 30},
           {.height_m = 1.2, .lowest_rad = -0.26, .highest_rad = 0.26, .lines = 32, .spacing_m = 20}};
 }
 

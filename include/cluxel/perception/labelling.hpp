@@ -14,8 +14,8 @@
 namespace cluxel {
 
 struct LabellingParams {
-  int sweeps = 4;              ///< of message passing, each forth and back
-  double halo_m = 2.0;         ///< the ring's cluxels take part up to this distance from the tile
+  int sweeps = 3;              ///< of message passing, each forth and back
+  double halo_m = 1.0;         ///< the ring's cluxels take part up to this distance from the tile
 };
 void describe(LabellingParams& params, ParameterVisitor& visitor);
 

@@ -35,11 +35,14 @@ struct TrainParams {
   BoostingParams boosting;
   double class_balance = 0.5;          ///< classes weigh as 1 / frequency^this: 0 as they come, 1 all alike
   double point_power = 0.5;            ///< a cluxel weighs as its points to this power
-  int most_rows = 300000;              ///< cluxels for the unary: common labels are thinned, and weigh more for it
+  int most_rows = 400000;              ///< cluxels for the unary: common labels are thinned, and weigh more for it
   bool pairwise = true;
   bool overlap_correction = true;      ///< let overlap of supports and degree weaken edges
   double pair_l2 = 3.0;
-  std::vector<std::string> without_columns = {};   ///< beginnings of names of columns that must not be used
+  /// Beginnings of names of columns that must not be used. These depend on how high and how densely a sensor sees.
+  std::vector<std::string> without_columns = {"metric.density",         "metric.extent",        "metric.column_0m5_top",
+                                              "metric.column_1m5_top",  "metric.column_3m5",    "metric.wide1m5_members",
+                                              "metric.wide3m_members"};
   LabellingParams labelling;
 };
 

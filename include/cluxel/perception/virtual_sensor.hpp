@@ -30,7 +30,8 @@ struct VirtualSensor {
   double range_m = 60;
 };
 
-/// Two usual kinds: 64 lines that look down from a car's roof, and 32 lines around the horizon at a robot's height.
+/// Usual kinds: 64 lines that look down from a car's roof, at one place, at another, and along a drive; and 32 lines around
+/// the horizon at a robot's height.
 std::vector<VirtualSensor> spinningSensors();
 
 /// The points that the sensor keeps, of all scans together, from every place where it stands. Places are cells of the map
