@@ -69,7 +69,11 @@ bool ConditionEvaluator::holds(const Condition& condition, std::vector<DecisionS
 }
 
 bool ConditionEvaluator::allHold(const std::vector<Condition>& conditions) {
-  return std::all_of(conditions.begin(), conditions.end(), [this](const Condition& c) { return holds(c); });
+  // What is measured already is tested before what has to be measured; the outcome is the same.
+  const auto isCheap = [](const Condition& c) { return c.kind == Condition::Kind::Attribute; };
+  return std::all_of(conditions.begin(), conditions.end(),
+                     [&](const Condition& c) { return !isCheap(c) || holds(c); }) &&
+         std::all_of(conditions.begin(), conditions.end(), [&](const Condition& c) { return isCheap(c) || holds(c); });
 }
 
 bool ConditionEvaluator::holdsElementary(const Condition& condition, DecisionStep& step) {

@@ -98,6 +98,19 @@ class Parting {
       for (std::uint32_t cluxel : source.trunk)
         if (all_.center[cluxel].z() >= highest - kTop_m) from.push_back(cluxel);
     for (std::uint32_t cluxel : from) relaxFrom(cluxel, 0, s);
+    if (source.start_m > source.jump_m) leapFrom(from, s);
+  }
+
+  /// From the trunk to crown cluxels beyond a jump.
+  void leapFrom(const std::vector<std::uint32_t>& from, std::uint32_t s) {
+    for (std::size_t at = 0; at < crown_.size(); ++at) {
+      if ((all_.center[crown_[at]].head<2>() - tops_[s]).norm() > sources_[s].reach_m) continue;
+      double shortest = std::numeric_limits<double>::infinity();
+      for (std::uint32_t cluxel : from)
+        if (gapBetween(all_, cluxel, crown_[at]).gap() <= sources_[s].start_m)
+          shortest = std::min(shortest, (all_.center[crown_[at]] - all_.center[cluxel]).norm());
+      if (std::isfinite(shortest)) relax(at, kJumpPenalty * shortest, s);
+    }
   }
 
   void relaxFrom(std::uint32_t cluxel, double length, std::uint32_t s) {

@@ -175,9 +175,10 @@ class AcceptReader {
     if (!parting.part.empty() && parting.part == parting.from)
       faults_.error(node.at, "'shared' and 'from' are the same thing");
     for (const auto& [key, field] : {std::pair{"reach", &parting.reach_m}, std::pair{"jump", &parting.jump_m},
-                                     std::pair{"clearance", &parting.clearance_m}})
+                                     std::pair{"start", &parting.start_m}, std::pair{"clearance", &parting.clearance_m}})
       if (const YamlNode* value = node.find(key))
         if (const auto length = readQuantity(*value, Dimension::Length, reading_)) *field = length->value;
+    parting.start_m = std::max(parting.start_m, parting.jump_m);
     leaf_.parting = std::move(parting);
   }
 

@@ -43,7 +43,7 @@ const std::vector<RuleKeyTable>& ruleKeyTables() {
       {"ramp", {"of", "attribute", "min", "max"}},
       {"absorb", {"from", "when", "max_fraction_of_points", "into", "late"}},
       {"absorb_from", {"label", "label_in"}},
-      {"split", {"shared", "from", "reach", "jump", "clearance"}},
+      {"split", {"shared", "from", "reach", "jump", "start", "clearance"}},
       {"condition", conditionKeys()},
       {"ratio_to", {"of", "attribute"}},
       {"target", {"label", "label_in", "object"}},

@@ -60,6 +60,7 @@ class SharedParting {
       source.trunk = state_.pieces.cluxelsOf(trunk);
       source.reach_m = spec.reach_m;
       source.jump_m = spec.jump_m;
+      source.start_m = spec.start_m;
       source.clearance_m = spec.clearance_m;
       source.may_take = [this, owner](std::uint32_t cluxel) {
         const auto claim = state_.claims.find(state_.pieces.pieceOf(cluxel));

@@ -84,6 +84,7 @@ struct PartingSpec {
   std::string part, from;              ///< bound names: what is parted, and where the ways begin
   double reach_m = 8;                  ///< largest plan distance from the foot of `from`
   double jump_m = 0.5;                 ///< gaps up to this are bridged, at double length
+  double start_m = 0.5;                ///< the same between `from` and what is parted; at least jump_m
   double clearance_m = 0;              ///< cluxels lower above the ground than this are left alone
 };
 
