@@ -264,7 +264,6 @@ MadeQuery QueryGenerator::select() {
 MadeQuery QueryGenerator::construct() {
   MadeQuery query;
   query.form = MadeForm::Construct;
-  patterns_left_ = 3;   // fresh blank nodes by the thousand are costly to compare
   const std::string pattern = group(2);
   const std::string object = anyVariable();
   const std::string head = chance(70) ? variable("ab") + " clx:found " + object
