@@ -37,13 +37,12 @@ void forEachTouching(const Ring<CluxelTile>& ring, const Volume& hull, const Vis
 }
 
 Member memberOf(const CluxelTile& tile, std::uint32_t i, const Eigen::Vector3f& center) {
-  const auto& spread = tile.own[i].scatter;
+  const auto& s = tile.own[i].scatter;
   const float n = tile.own[i].count;
   return {{center.x(), center.y(), center.z(), 0},
-          {spread[0] / n, spread[1] / n, spread[2] / n, 0},
-          {spread[3] / n, spread[4] / n, spread[5] / n, 0},
-          tile.box_min[i].z(),
-          tile.box_max[i].z()};
+          {center.y(), center.z(), center.x(), 0},
+          {s[0] / n, s[3] / n, s[5] / n, tile.box_min[i].z()},
+          {s[1] / n, s[4] / n, s[2] / n, tile.box_max[i].z()}};
 }
 
 using Cell = std::array<std::int32_t, 3>;
@@ -64,7 +63,7 @@ class VolumeCells {
     }
     origin_ = hull.low;
     const auto mean = static_cast<float>(sum / static_cast<double>(cluxels.size()));
-    per_m_ = 1.0F / std::max({0.05F, mean, largest / 6.0F});
+    per_m_ = 1.0F / std::max({0.05F, 1.5F * mean, largest / 6.0F});
   }
   Cell cellOf(const Eigen::Vector3f& p) const {
     Cell cell;

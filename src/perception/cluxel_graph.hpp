@@ -22,10 +22,12 @@ inline bool intersects(const Volume& a, const Volume& b) {
 
 /// What supports read of a cluxel, in one cache line: where it is, and how its own points lie, each weighing 1 / count.
 struct Member {
-  Eigen::Array4f place;                  ///< its centre, and 0 [m]
-  Eigen::Array4f spread_x;               ///< mean products of deviations xx xy xz, and 0 [m2]
-  Eigen::Array4f spread_yz;              ///< yy yz zz, and 0 [m2]
-  float low_z = 0, high_z = 0;           ///< of its box [m, map]
+  Eigen::Array4f place;            ///< its centre: x y z, and 0 [m]
+  Eigen::Array4f turned;           ///< y z x, and 0
+  Eigen::Array4f spread;           ///< mean squares of deviations xx yy zz [m2], and the lowest z of its box [m, map]
+  Eigen::Array4f spread_turned;    ///< mean products xy yz zx [m2], and the highest z of its box [m, map]
+  float lowZ() const { return spread[3]; }
+  float highZ() const { return spread_turned[3]; }
 };
 
 /// Own cluxels, those whose volume may intersect an own one's ("near"), and those that may intersect a near one's; in

@@ -26,30 +26,30 @@ struct Surroundings {
   std::size_t neighbours = 0;
 };
 
-/// Sums over members of a support relative to the cluxel's centre, four at a time.
+/// Sums over members of a support relative to the cluxel's centre, four at a time; the fourth is of no use.
 class SupportSum {
  public:
-  void add(const Eigen::Array4f& d, const Member& member) {
+  void add(const Eigen::Array4f& d, const Eigen::Array4f& d_turned, const Member& member) {
     ++count_;
     sum_ += d;
-    products_x_ += d * d[0] + member.spread_x;
-    products_yz_ += Eigen::Array4f(d[1], d[1], d[2], 0) * Eigen::Array4f(d[1], d[2], d[2], 0) + member.spread_yz;
+    squares_ += d * d + member.spread;
+    products_ += d * d_turned + member.spread_turned;
   }
   MomentSum total() const {
-    return {static_cast<double>(count_), sum_[0], sum_[1], sum_[2], products_x_[0], products_x_[1], products_x_[2],
-            products_yz_[0], products_yz_[1], products_yz_[2]};
+    return {static_cast<double>(count_), sum_[0], sum_[1], sum_[2], squares_[0], products_[0], products_[2],
+            squares_[1], products_[1], squares_[2]};
   }
 
  private:
   std::size_t count_ = 0;
-  Eigen::Array4f sum_ = Eigen::Array4f::Zero(), products_x_ = Eigen::Array4f::Zero(), products_yz_ = Eigen::Array4f::Zero();
+  Eigen::Array4f sum_ = Eigen::Array4f::Zero(), squares_ = Eigen::Array4f::Zero(), products_ = Eigen::Array4f::Zero();
 };
 
 /// Visits supports without listing a member twice: each cluxel carries the mark of the last support it entered.
 class SupportWalk {
  public:
   explicit SupportWalk(const FeatureInput& input)
-      : input_(input), mark_(input.cluxels.size(), 0xffffffffU), members_(input.cluxels.size()) {}
+      : input_(input), mark_(input.cluxels.size(), 0xffffffffU), members_(input.cluxels.size() + 1) {}
 
   const Surroundings& around(std::uint32_t center) {
     const auto neighbours = input_.graph.neighbours(center);
@@ -62,33 +62,36 @@ class SupportWalk {
   /// Lists the cluxel, its neighbours and then theirs; returns their number.
   std::size_t listMembers(std::uint32_t center, std::span<const std::uint32_t> neighbours) {
     std::size_t count = 0;
+    // Written first, counted if new: a branch here would be guessed wrong half of the time.
     const auto enter = [&](std::uint32_t member) {
+      members_[count] = member;
+      count += mark_[member] != center ? 1U : 0U;
       mark_[member] = center;
-      members_[count++] = member;
     };
     enter(center);
     for (const auto first : neighbours) enter(first);
     for (const auto first : neighbours)
-      for (const auto second : input_.graph.neighbours(first))
-        if (mark_[second] != center) enter(second);
+      for (const auto second : input_.graph.neighbours(first)) enter(second);
     return count;
   }
 
   void measure(std::uint32_t center, std::size_t count) {
-    const Eigen::Array4f place = input_.cluxels.member[center].place;
+    const Member& own = input_.cluxels.member[center];
     Support& support = found_.ring2;
     support.residual.resize(count - 1);
-    support.height_low = support.height_high = 0;
+    float low = own.place[2], high = own.place[2];
     SupportSum sum;
     for (std::size_t i = 0; i < count; ++i) {
       const Member& member = input_.cluxels.member[members_[i]];
-      const Eigen::Array4f d = member.place - place;
-      sum.add(d, member);
+      const Eigen::Array4f d = member.place - own.place;
+      sum.add(d, member.turned - own.turned, member);
       if (i > 0) support.residual.set(i - 1, d[0], d[1], d[2]);
       if (i == found_.neighbours) found_.ring1 = sum.total();
-      support.height_low = std::min(support.height_low, member.low_z - place[2]);
-      support.height_high = std::max(support.height_high, member.high_z - place[2]);
+      low = std::min(low, member.lowZ());
+      high = std::max(high, member.highZ());
     }
+    support.height_low = low - own.place[2];
+    support.height_high = high - own.place[2];
     support.sum = sum.total();
   }
 
