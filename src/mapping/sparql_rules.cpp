@@ -8,6 +8,7 @@
 #include "cluxel/knowledge/ontology.hpp"
 #include "cluxel/knowledge/quad_store.hpp"
 #include "cluxel/knowledge/vocabulary.hpp"
+#include "cluxel/sparql/parser.hpp"
 #include "cluxel/sparql/query_engine.hpp"
 
 namespace cluxel {
@@ -24,6 +25,19 @@ QueryOptions ruleOptions(const NamedText& rule) {
 void requireConstruct(const PreparedQuery& query, const NamedText& rule) {
   if (query.form() != ast::QueryForm::Construct)
     throw InputError({.file = rule.name}, "a SPARQL rule is a CONSTRUCT query");
+}
+
+/// A blank node of a template is a new one in every run: the same map would never come out twice.
+void refuseBlankNodes(const NamedText& rule) {
+  SparqlParseOptions options;
+  options.file = rule.name;
+  const auto isBlank = [](const ast::PatternTerm& part) {
+    return !part.isVariable() && part.term().kind == TermKind::BlankNode;
+  };
+  for (const ast::TriplePattern& triple : parseQuery(rule.text, options).construct_template)
+    if (isBlank(triple.subject) || isBlank(triple.object))
+      throw InputError({.file = rule.name}, "the template of a SPARQL rule may not make a blank node",
+                       "name the new thing by clx:newObject(class, thing) in a BIND");
 }
 
 bool isKnown(const QuadReader& reader, const Quad& quad) {
@@ -80,7 +94,10 @@ bool deriveOnce(WriteTransaction& transaction, const NamedText& rule) {
 void checkSparqlRules(const std::vector<NamedText>& rules) {
   const auto scratch = Environment::temporary();
   const QuadReader reader(scratch->read());
-  for (const NamedText& rule : rules) requireConstruct(PreparedQuery(reader, rule.text, ruleOptions(rule)), rule);
+  for (const NamedText& rule : rules) {
+    requireConstruct(PreparedQuery(reader, rule.text, ruleOptions(rule)), rule);
+    refuseBlankNodes(rule);
+  }
 }
 
 void runSparqlRules(WriteTransaction& transaction, const std::vector<NamedText>& rules) {
