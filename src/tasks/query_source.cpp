@@ -19,13 +19,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
+const std::regex kTitle(R"(^title:\s*(\S.*)$)");
 const std::regex kColumn(R"(^column:\s*(\w+)\s*\[([^\]]*)\]\s*(.*)$)");
 const std::regex kParameter(R"(^parameter:\s*(\w+)\s*\[([^\]]*)\]\s*=\s*(\S+)\s*(.*)$)");
 
 void readHeaderLine(const std::string& line, const SourceLocation& at, Question& question) {
   std::smatch match;
-  if (line.starts_with("title:"))
-    question.title = line.substr(line.find_first_not_of(' ', 6));
+  if (std::regex_match(line, match, kTitle))
+    question.title = match[1];
   else if (std::regex_match(line, match, kColumn))
     question.columns.push_back({match[1], match[2], match[3]});
   else if (std::regex_match(line, match, kParameter))

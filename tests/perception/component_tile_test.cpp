@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// Components against a flood fill, contacts seen from both ends, and what must not change at a border of tiles.
+#include "cluxel/perception/component_tile.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+#include "cluxel/perception/scene_assembly.hpp"
+#include "perception/cloud_fixture.hpp"
+
+namespace cluxel::testing {
+namespace {
+
+using LabelOf = std::function<PrimitiveLabel(const Eigen::Vector3d& center_map)>;
+
+/// All outputs of a cloud whose labels are given by hand.
+struct HandLabelled {
+  PerceivedTiles tiles;
+  std::map<TileKey, LabelTile> labels;
+  std::map<TileKey, ComponentTile> components;
+  std::map<TileKey, ContactTile> contacts;
+  Scene scene;
+};
+
+HandLabelled labelled(const std::vector<Scan>& scans, const LabelOf& label_of) {
+  HandLabelled all;
+  all.tiles = perceive(scans, {}, 1);
+  for (const auto& [key, cluxels] : all.tiles.cluxels) {
+    LabelTile tile;
+    tile.key = key;
+    for (std::size_t c = 0; c < cluxels.size(); ++c) {
+      const auto label = label_of(cornerOf(key) + cluxels.own[c].mean.cast<double>());
+      tile.label.push_back(static_cast<std::uint8_t>(label));
+      tile.probability.push_back({});
+      tile.probability.back()[static_cast<std::size_t>(label)] = 1.0F;
+    }
+    all.labels.emplace(key, std::move(tile));
+  }
+  for (const auto& [key, points] : all.tiles.points)
+    all.components.emplace(key, componentsOf(points, all.tiles.cluxels.at(key), all.tiles.features.at(key),
+                                             all.labels.at(key), ringIn(all.tiles.ground, key), {}));
+  for (const auto& [key, graph] : all.tiles.features)
+    all.contacts.emplace(key,
+                         contactsOf(ringIn(all.components, key), ringIn(all.tiles.cluxels, key), graph, {}, {}));
+  all.scene = assembleScene({all.tiles.points, all.tiles.cluxels, all.tiles.features, all.tiles.ground, all.labels,
+                             all.components, all.contacts},
+                            {});
+  return all;
+}
+
+/// Labels in patches of a metre, drawn anew for each seed.
+LabelOf patches(std::uint32_t seed) {
+  return [seed](const Eigen::Vector3d& p) {
+    std::seed_seq place{static_cast<int>(seed), static_cast<int>(std::floor(p.x())), static_cast<int>(std::floor(p.y())),
+                        static_cast<int>(std::floor(p.z()))};
+    std::mt19937 random(place);
+    return static_cast<PrimitiveLabel>(random() % kPrimitiveLabelCount);
+  };
+}
+
+/// Component numbers by flood fill over the tile's edges, in the order of first cluxels.
+std::vector<std::uint32_t> flooded(const CluxelTile& cluxels, const FeatureTile& graph, const LabelTile& labels) {
+  constexpr std::uint32_t kNone = 0xffffffffU;
+  std::vector<std::uint32_t> number(cluxels.size(), kNone);
+  std::uint32_t next = 0;
+  for (std::uint32_t start = 0; start < cluxels.size(); ++start) {
+    if (number[start] != kNone) continue;
+    std::vector<std::uint32_t> open{start};
+    number[start] = next;
+    while (!open.empty()) {
+      const std::uint32_t a = open.back();
+      open.pop_back();
+      for (std::uint32_t e = graph.edge_offset[a]; e < graph.edge_offset[a + 1]; ++e) {
+        const std::uint32_t b = graph.edge_target[e].index;
+        if (graph.edge_target[e].ring != kRingCentre || number[b] != kNone || labels.label[a] != labels.label[b]) continue;
+        Eigen::Vector3f gap = (cluxels.box_min[a] - cluxels.box_max[b]).cwiseMax(cluxels.box_min[b] - cluxels.box_max[a]);
+        if (gap.cwiseMax(0.0F).norm() > 0.5F) continue;
+        number[b] = next;
+        open.push_back(b);
+      }
+    }
+    ++next;
+  }
+  return number;
+}
+
+TEST(ComponentTile, HasTheComponentsOfAFloodFill) {
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+    const HandLabelled all = labelled({scanOf(streetPoints(seed))}, patches(seed));
+    for (const auto& [key, tile] : all.components) {
+      EXPECT_EQ(tile.component_of, flooded(all.tiles.cluxels.at(key), all.tiles.features.at(key), all.labels.at(key)));
+      std::uint64_t points = 0;
+      for (const Component& component : tile.components) points += component.points;
+      EXPECT_EQ(points, all.tiles.points.at(key).size());
+      std::uint64_t in_cells = 0;
+      for (const FootprintCell& cell : tile.cells) in_cells += cell.count;
+      EXPECT_EQ(in_cells, points);
+    }
+  }
+}
+
+TEST(ContactTile, LooksTheSameFromBothEnds) {
+  const HandLabelled all = labelled({scanOf(streetPoints(2))}, patches(9));
+  std::size_t across = 0, heights = 0;
+  for (const auto& [key, tile] : all.contacts)
+    for (const Contact& contact : tile.contacts) {
+      const TileKey other = ringOf(key)[contact.to_ring];
+      const Contact* back = nullptr;
+      for (const Contact& candidate : all.contacts.at(other).contacts)
+        if (candidate.from == contact.to && candidate.to_ring == 8 - contact.to_ring && candidate.to == contact.from)
+          back = &candidate;
+      ASSERT_NE(back, nullptr) << "seen from one end only";
+      EXPECT_EQ(back->edges, contact.edges);
+      EXPECT_EQ(back->linked_edges, contact.linked_edges);
+      EXPECT_EQ(back->overlaps, contact.overlaps);
+      EXPECT_EQ(back->gap, contact.gap);
+      EXPECT_NEAR(back->height_difference, -contact.height_difference, 1e-6);
+      across += contact.to_ring != kRingCentre ? 1 : 0;
+      heights += contact.height_difference != 0 ? 1 : 0;
+    }
+  EXPECT_GT(across, 10U);
+  EXPECT_GT(heights, 10U);
+}
+
+/// A pole of label column over flat ground, with a crown of label scatter when wanted; the cloud is shifted by its pose.
+HandLabelled poleAt(double shift_x_m, bool has_crown) {
+  CloudMaker maker(21);
+  maker.plane(6000, {10, 2, 0}, {12, 0, 0}, {0, 12, 0}).pole(900, {16, 8, 0.3}, 2.7, 0.1);
+  if (has_crown) maker.ball(3000, {16, 8, 4.2}, 1.1);
+  Scan scan = scanOf(maker.points());
+  scan.has_pose = true;
+  scan.T_map_sensor.translation().x() += shift_x_m;
+  const double top = has_crown ? 3.05 : 100;
+  return labelled({scan}, [top](const Eigen::Vector3d& p) {
+    return p.z() < 0.2 ? PrimitiveLabel::HorizontalPlane : p.z() < top ? PrimitiveLabel::Column : PrimitiveLabel::Scatter;
+  });
+}
+
+/// The primitive of the label with most points.
+PrimitiveIndex largest(const Scene& scene, PrimitiveLabel label) {
+  PrimitiveIndex best = 0;
+  double most = 0;
+  for (PrimitiveIndex i = 0; i < scene.primitives.size(); ++i)
+    if (scene.primitives[i].label == label && scene.primitives[i][Attribute::PointCount] > most)
+      most = scene.primitives[i][Attribute::PointCount], best = i;
+  return best;
+}
+
+TEST(Scene, APoleOnABorderOfTilesIsOnePrimitiveLikeAnyOther) {
+  const HandLabelled split = poleAt(0, false), whole = poleAt(8, false);
+  const Primitive& a = split.scene.primitives[largest(split.scene, PrimitiveLabel::Column)];
+  const Primitive& b = whole.scene.primitives[largest(whole.scene, PrimitiveLabel::Column)];
+  std::set<TileKey> tiles_of_a, tiles_of_b;
+  for (const std::uint32_t c : a.cluxels) tiles_of_a.insert(split.scene.cluxels.name[c].tile);
+  for (const std::uint32_t c : b.cluxels) tiles_of_b.insert(whole.scene.cluxels.name[c].tile);
+  ASSERT_EQ(tiles_of_a.size(), 2U) << "the pole crosses the border";
+  ASSERT_EQ(tiles_of_b.size(), 1U);
+  for (const AttributeInfo& info : attributeInfos()) {
+    if (info.attribute == Attribute::CluxelCount) continue;   // seeds stay in their tile
+    EXPECT_NEAR(a[info.attribute], b[info.attribute], 1e-3) << info.name;
+  }
+  EXPECT_NEAR((b.centroid - a.centroid - Eigen::Vector3d(8, 0, 0)).norm(), 0, 1e-3);
+  EXPECT_NEAR((b.box.center - a.box.center - Eigen::Vector3d(8, 0, 0)).norm(), 0, 1e-3);
+}
+
+TEST(Scene, ACrownIsAboveItsTrunkAndTheTrunkBelowIt) {
+  for (const double shift : {0.0, 8.0}) {
+    const HandLabelled tree = poleAt(shift, true);
+    const PrimitiveIndex trunk = largest(tree.scene, PrimitiveLabel::Column);
+    const PrimitiveIndex crown = largest(tree.scene, PrimitiveLabel::Scatter);
+    const auto holds = [&](RelationKind kind, PrimitiveIndex from, PrimitiveIndex to) {
+      for (const Relation& relation : tree.scene.relationsOf(from))
+        if (relation.kind == kind && relation.to == to) return true;
+      return false;
+    };
+    EXPECT_TRUE(holds(RelationKind::Above, crown, trunk));
+    EXPECT_TRUE(holds(RelationKind::Below, trunk, crown));
+    EXPECT_FALSE(holds(RelationKind::Above, trunk, crown));
+    EXPECT_TRUE(holds(RelationKind::Near, trunk, crown));
+    EXPECT_TRUE(holds(RelationKind::Near, crown, trunk));
+    EXPECT_TRUE(holds(RelationKind::TouchesGround, trunk, trunk));
+    EXPECT_FALSE(holds(RelationKind::TouchesGround, crown, crown));
+  }
+}
+
+}  // namespace
+}  // namespace cluxel::testing

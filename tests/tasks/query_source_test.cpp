@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Headers of questions, their parameters, and what can be asked.
+#include "cluxel/tasks/query_source.hpp"
+
+#include <gtest/gtest.h>
+
+#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/base/file_bytes.hpp"
+#include "knowledge/scratch_folder.hpp"
+
+namespace cluxel {
+namespace {
+
+class Questions : public testing::Test {
+ protected:
+  Question read(const std::string& text) const {
+    writeFile(folder.path() / "question.rq", text);
+    return readQuestion(folder.path() / "question.rq");
+  }
+  std::string fault(const std::string& text) const {
+    try {
+      read(text);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no fault";
+  }
+  ScratchFolder folder;
+};
+
+TEST_F(Questions, AHeaderTellsTitleColumnsAndParameters) {
+  const Question question = read(
+      "#! title: What is near?\n#! column: thing [iri] the thing\n#! column: far [m] how far\n"
+      "#! parameter: within [m] = 5 the largest distance\nSELECT ?thing ?far WHERE { }\n");
+  EXPECT_EQ(question.title, "What is near?");
+  ASSERT_EQ(question.columns.size(), 2U);
+  EXPECT_EQ(question.columns[1].name, "far");
+  EXPECT_EQ(question.columns[1].unit, "m");
+  EXPECT_EQ(question.columns[1].help, "how far");
+  ASSERT_EQ(question.parameters.size(), 1U);
+  EXPECT_EQ(question.parameters[0].name, "within");
+  EXPECT_EQ(question.parameters[0].default_value, "5");
+}
+
+TEST_F(Questions, AFileWithoutHeaderIsAQuestionWithoutTitle) {
+  const Question question = read("# a comment\nASK { }\n");
+  EXPECT_EQ(question.title, "");
+  EXPECT_TRUE(question.columns.empty());
+}
+
+TEST_F(Questions, ABrokenHeaderLineIsNamedWithFileAndLine) {
+  EXPECT_NE(fault("#! title: x\n#! colum: a [m] b\n").find("question.rq:2"), std::string::npos);
+  EXPECT_NE(fault("#! column: a b c\n").find("question.rq:1"), std::string::npos);
+  EXPECT_NE(fault("#! parameter: a [m] 5\n").find("question.rq:1"), std::string::npos);
+  EXPECT_NE(fault("SELECT *\n#! title:\nWHERE {}").find("question.rq:2"), std::string::npos) << "an empty title";
+}
+
+TEST_F(Questions, ParametersTakeTheGivenValueOrTheDefault) {
+  const Question question = read("#! parameter: a [m] = 5 x\n#! parameter: c [class] = clx:Tree y\nASK { }\n");
+  const auto defaults = bindingsFor(question, {});
+  ASSERT_EQ(defaults.size(), 2U);
+  EXPECT_EQ(defaults[0].second.text, "5");
+  EXPECT_EQ(defaults[1].second, Term::iri("https://w3id.org/cluxel/ontology#Tree"));
+  const auto given = bindingsFor(question, {"a=2.5", "c=<https://example.org/x>"});
+  EXPECT_EQ(given[0].second, Term::literal("2.5", "http://www.w3.org/2001/XMLSchema#decimal"));
+  EXPECT_EQ(given[1].second, Term::iri("https://example.org/x"));
+  EXPECT_EQ(bindingsFor(question, {"a=hello"})[0].second, Term::literal("hello"));
+}
+
+TEST_F(Questions, AnUnknownParameterIsAnErrorOfUsage) {
+  const Question question = read("#! parameter: within [m] = 5 x\nASK { }\n");
+  for (const char* text : {"wihtin=3", "within", "=3"}) {
+    try {
+      bindingsFor(question, {text});
+      FAIL() << text;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::Usage);
+      EXPECT_NE(std::string(error.what()).find(text), std::string::npos);
+    }
+  }
+}
+
+TEST_F(Questions, ATurtleFileIsAskedLikeAMap) {
+  writeFile(folder.path() / "x.ttl", "<https://e.org/a> <https://e.org/p> 1, 2 .\n");
+  const QuerySource source = openQuerySource(folder.path() / "x.ttl");
+  const QuadReader reader = source.reader();
+  EXPECT_EQ(evaluateQuery(reader, "SELECT ?o WHERE { ?s ?p ?o }", {.default_graph = source.default_graph}).table.row_count, 2U);
+  EXPECT_THROW(openQuerySource(folder.path() / "absent.ttl"), Error);
+}
+
+TEST(ShippedQuestions, HaveATitleAndExactlyTheColumnsThatTheySelect) {
+  const auto questions = shippedQuestions(DataHome({CLUXEL_SOURCE_DIR}));
+  ASSERT_GE(questions.size(), 5U);
+  const auto environment = Environment::temporary();
+  const QuadReader reader(environment->read());
+  for (const Question& question : questions) {
+    EXPECT_NE(question.title, "") << question.file;
+    std::vector<std::string> parameters, columns;
+    for (const Binding& binding : bindingsFor(question, {})) parameters.push_back(binding.first);
+    for (const QueryColumn& column : question.columns) {
+      columns.push_back(column.name);
+      EXPECT_NE(column.unit, "") << question.file << " " << column.name;
+      EXPECT_NE(column.help, "") << question.file << " " << column.name;
+    }
+    PreparedQuery query(reader, question.text, {}, parameters);
+    EXPECT_EQ(query.variables(), columns) << question.file;
+    EXPECT_NO_THROW(query.evaluate(bindingsFor(question, {}))) << question.file;
+  }
+}
+
+}  // namespace
+}  // namespace cluxel
