@@ -144,8 +144,8 @@ struct Pipeline {
 OperatorPtr makeScan(const TripleNode& pattern, QuadOrder order);
 /// For each row of `child` the quads of a pattern: the index nested loop. `first_only`: at most one per row.
 OperatorPtr makeQuadJoin(OperatorPtr child, const TripleNode& pattern, bool first_only);
-/// `child` ascends in `slot`, as the quads of the pattern do behind its constants: both are read once.
-OperatorPtr makeMergeJoin(OperatorPtr child, const TripleNode& pattern, QuadOrder order, Slot slot);
+/// Both ascend in `slot`, which every row binds, and share only slots that every row binds; each is read once.
+OperatorPtr makeMergeJoin(OperatorPtr child, OperatorPtr other, Slot slot);
 OperatorPtr makePathJoin(OperatorPtr child, const TripleNode& pattern);
 /// All rows of `build` in a hash table over the slots bound on both sides in every row; other slots in common are
 /// compared row by row.

@@ -11,7 +11,8 @@ namespace {
 
 // Measured on this store, in nanoseconds: a lookup by ascending and by scattered ids, an entry read in a scan, a row
 // put into and looked up in a hash table.
-constexpr double kAscendingLookup = 120, kScatteredLookup = 350, kScannedEntry = 4, kHashBuild = 35, kHashProbe = 25;
+constexpr double kAscendingLookup = 120, kScatteredLookup = 350, kScannedEntry = 4, kHashBuild = 35, kHashProbe = 25,
+                 kMergedRow = 8;
 
 BoundMask constantsOf(const TripleNode& pattern, const Dataset& dataset) {
   BoundMask mask = 0;
@@ -92,8 +93,16 @@ Planner::State Planner::joinTriple(State state, const Node& part) {
   const bool ascending = state.sorted_by != kNoSlot && part.possible.has(state.sorted_by);
   const double lookup_cost = state.rows * (ascending ? kAscendingLookup : kScatteredLookup);
   const double hash_cost = own * (kScannedEntry + kHashBuild) + state.rows * kHashProbe;
+  const std::vector<Slot> shared = (part.possible & state.possible).list();
+  const double merge_cost = own * kScannedEntry + state.rows * kMergedRow;
+  const bool can_merge = ascending && sortedBy(pattern, scan) == state.sorted_by && shared == keys && !state.is_input;
+  if (can_merge && merge_cost < std::min(lookup_cost, hash_cost)) {
+    auto other = makeScan(pattern, scan.order);
+    other->estimated_rows = own;
+    const Slot slot = state.sorted_by;
+    return finish(makeMergeJoin(std::move(state.top), std::move(other), slot));
+  }
   if (!keys.empty() && !state.substituted && hash_cost < lookup_cost) {
-    const std::vector<Slot> shared = (part.possible & state.possible).list();
     std::vector<Slot> compared;
     std::set_difference(shared.begin(), shared.end(), keys.begin(), keys.end(), std::back_inserter(compared));
     auto build = makeScan(pattern, scan.order);
