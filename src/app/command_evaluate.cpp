@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel evaluate`: how right a map is, with bars below which the exit code says so.
+#include <charconv>
+
 #include "app/command.hpp"
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/tasks/evaluation.hpp"
@@ -28,14 +30,23 @@ bool isAbove(const char* what, double value, double bar) {
   return false;
 }
 
+/// "Tree=0.7" as name and share.
+std::pair<std::string, double> barOf(const std::string& text) {
+  const std::size_t cut = std::min(text.find('='), text.size());
+  double share = 0;
+  const char* first = text.data() + std::min(cut + 1, text.size());
+  const auto [end, fault] = std::from_chars(first, text.data() + text.size(), share);
+  if (fault != std::errc() || end != text.data() + text.size())
+    throw Error(ExitCode::Usage, "--min-recall: write CLASS=SHARE, for example Tree=0.7, not '" + text + "'");
+  return {text.substr(0, cut), share};
+}
+
 bool meetsBars(const MapEvaluation& evaluation, const EvaluateOptions& options) {
   bool meets = isAbove("overall accuracy of objects by point", evaluation.objects.overallAccuracy(), options.min_oa);
   meets &= isAbove("macro F1 of objects by point", evaluation.objects.macroF1(), options.min_macro_f1);
   for (const std::string& bar : options.min_recall) {
-    const std::size_t cut = bar.find('=');
-    if (cut == std::string::npos) throw Error(ExitCode::Usage, "--min-recall: write CLASS=SHARE, not '" + bar + "'");
-    const std::string name = bar.substr(0, cut);
-    meets &= isAbove(("recall of " + name).c_str(), recallOf(evaluation, name), std::stod(bar.substr(cut + 1)));
+    const auto [name, share] = barOf(bar);
+    meets &= isAbove(("recall of " + name).c_str(), recallOf(evaluation, name), share);
   }
   return meets;
 }
@@ -46,12 +57,13 @@ void addEvaluate(CLI::App& app, Session& session) {
   auto options = std::make_shared<EvaluateOptions>();
   CLI::App* command = app.add_subcommand("evaluate", "compare a map with the truth of its scans");
   command->add_option("map", options->map, "a map")->required();
-  command->add_option("--truth", options->truth, "a folder of truth files, or a label map: oakland, semantickitti")
+  command->add_option("--truth", options->truth, "a folder of truth files, or a label map: oakland, semantickitti, campus")
       ->required();
   command->add_option("--min-oa", options->min_oa, "exit 1 when the overall accuracy of objects by point is below");
   command->add_option("--min-macro-f1", options->min_macro_f1, "exit 1 when the macro F1 of objects by point is below");
   command->add_option("--min-recall", options->min_recall, "CLASS=SHARE: exit 1 when the recall by point is below");
   onRun(*command, session, [options, &session] {
+    for (const std::string& bar : options->min_recall) barOf(bar);
     const MapReader map(options->map);
     const MapEvaluation evaluation = evaluateMap(map, TruthSource::open(options->truth, session.dataHome()));
     print(session.json ? toJson(evaluation) : toText(evaluation));

@@ -9,23 +9,23 @@ namespace cluxel {
 const std::array<RelationInfo, kRelationKindCount>& relationInfos() {
   using R = RelationKind;
   static const std::array<RelationInfo, kRelationKindCount> infos{{
-      {R::Intersects, "intersects", "intersects", "an edge of the cluxel graph joins them; measure: gap, 0 m"},
-      {R::Touches, "touches", "touches", "the gap between their cluxels is at most 0.20 m; measure: gap"},
+      {R::Intersects, "intersects", "intersects", "an edge of the cluxel graph joins them; measure: gap"},
+      {R::Touches, "touches", "touches", "the gap between their points is at most 0.20 m; measure: gap"},
       {R::TouchesGround, "touches_ground", "touchesGround",
-       "its lowest point is at most 0.30 m above the local ground; measure: that height"},
+       "its lowest point is near the local ground (in RDF: at most 0.30 m above it); measure: that height"},
       {R::Above, "above", "above",
-       "its centroid is higher than the other's, and their plan views overlap when widened by 0.25 m; measure: "
-       "vertical gap"},
-      {R::Below, "below", "below", "the other is above it; measure: vertical gap"},
-      {R::Supports, "supports", "supports", "the other stands on it; measure: vertical gap"},
+       "where their footprints of 0.25 m cells meet, its points lie more than 0.25 m higher in the mean; measure: that "
+       "height difference"},
+      {R::Below, "below", "below", "the other is above it; measure: the height difference"},
+      {R::Supports, "supports", "supports", "the other stands on it; measure: gap"},
       {R::StandsOn, "stands_on", "standsOn",
-       "above, with its bottom at most 0.30 m from the other's top; measure: vertical gap"},
-      {R::Inside, "inside", "inside", "at least 0.9 of its upright box lies in the other's; measure: that share"},
-      {R::Near, "near", "near", "the gap between their cluxels is at most 1.0 m; measure: gap"},
+       "above, with a gap of at most 0.30 m, and its lowest point is higher than the other's centroid; measure: gap"},
+      {R::Inside, "inside", "inside", "at least 0.9 of its axis-parallel box lies in the other's; measure: that share"},
+      {R::Near, "near", "near", "the gap between their points is at most 1.0 m; measure: gap"},
       {R::ParallelTo, "parallel_to", "parallelTo",
        "both are walls or both are poles, near, with directions at most 10 deg apart; measure: angle"},
       {R::Alongside, "alongside", "alongside",
-       "near, and the plan views overlap along the longer one's length; measure: gap"},
+       "near, both at least 2 m long, and at least half of the shorter lies beside the longer; measure: gap"},
   }};
   return infos;
 }

@@ -33,7 +33,7 @@ enum class Attribute : std::uint8_t {
   NormalTilt,           ///< angle between the best plane's normal and the vertical [rad]
   AxisTilt,             ///< angle between the main axis and the vertical [rad]
   Linearity, Planarity, Scattering,      ///< (l1-l2)/l1, (l2-l3)/l1, l3/l1 of the covariance's eigenvalues l1>=l2>=l3
-  Radius,               ///< median distance of points to the main axis [m]
+  Radius,               ///< rms distance of points to the main axis [m]
   Roughness,            ///< rms distance to the best plane [m]
   PointCount, CluxelCount,
   Probability,          ///< mean probability of the label over its points
