@@ -93,7 +93,7 @@ TEST(Layout, PublicHeadersNameTheStandardLibraryAndEigenOnly) {
 
 TEST(Layout, HeavyPackagesStayInFewSources) {
   const std::map<std::string, std::size_t> most{
-      {"pcl/", 2}, {"yaml-cpp/", 3}, {"lmdb", 4}, {"librdf", 4}, {"boost/graph/", 3}, {"embree", 2}};
+      {"pcl/", 2}, {"yaml-cpp/", 3}, {"lmdb", 4}, {"librdf", 8}, {"boost/graph/", 3}, {"embree", 2}};
   for (const auto& [package, limit] : most) {
     std::set<fs::path> users;
     for (const fs::path& file : sourcesBelow({"src"}))
