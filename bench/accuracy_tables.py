@@ -49,6 +49,8 @@ def object_table(files, key):
     sums = {}
     for evaluation in files:
         for row in evaluation.get(key, []):
+            if row["class"] == "Ground":   # counts by point only
+                continue
             into = sums.setdefault(row["class"], [0, 0, 0, 0])
             for i, field in enumerate(("truth", "answers", "matched_truth", "matched_answers")):
                 into[i] += row[field]
