@@ -6,6 +6,7 @@
 
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/base/file_bytes.hpp"
+#include "cluxel/mapping/class_catalogue_of.hpp"
 #include "cluxel/reasoning/rule_loader.hpp"
 
 namespace cluxel {
@@ -34,6 +35,20 @@ std::vector<fs::path> givenOr(const std::vector<fs::path>& given, const std::str
   std::vector<fs::path> files;
   for (const fs::path& name : given) files.push_back(home.locate(folder, name));
   return files;
+}
+
+/// The given rule files, then all that they include. Faults are reported by whoever loads the texts.
+std::vector<NamedText> readRules(std::vector<fs::path> roots, const std::vector<NamedText>& ontology) {
+  // Includes are found by whole paths, so the roots are named by theirs.
+  for (fs::path& root : roots) root = fs::weakly_canonical(root);
+  std::vector<NamedText> texts = readAll(roots);
+  const LoadedRules loaded = loadRules(roots, classCatalogueOf(ontology));
+  if (!loaded.rules) return texts;
+  for (const RuleSource& source : loaded.rules->sources) {
+    const auto isSame = [&](const NamedText& text) { return text.name == source.name; };
+    if (std::none_of(texts.begin(), texts.end(), isSame)) texts.push_back({source.name, source.text});
+  }
+  return texts;
 }
 
 void addTexts(ContentHasher& hasher, const std::vector<NamedText>& texts) {
@@ -67,7 +82,7 @@ MapInputs readMapInputs(const MapInputFiles& files, const DataHome& home) {
   std::vector<fs::path> rules;
   for (const fs::path& name : files.rules.empty() ? std::vector<fs::path>{"outdoor.rules.yaml"} : files.rules)
     rules.push_back(home.locate("rules", name));
-  inputs.rules = readAll(rules);
+  inputs.rules = readRules(rules, inputs.ontology);
   inputs.rule_roots = rules.size();
   inputs.sparql_rules = readAll(givenOr(files.sparql_rules, "rules", ".rq", home));
   fs::path model = home.locate("models", files.model.empty() ? fs::path("oakland") : files.model);
