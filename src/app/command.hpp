@@ -45,6 +45,9 @@ struct Session {
 /// Adds a subcommand whose `run` is called when it was chosen; what it returns becomes the exit code.
 void onRun(CLI::App& command, Session& session, std::function<ExitCode()> run);
 
+/// For options that take a number above 0.
+CLI::Validator above0();
+
 /// Data to stdout, with a line end. A closed pipe is not an error.
 void print(std::string_view text);
 void printJson(const Json& json);

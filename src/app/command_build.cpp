@@ -46,7 +46,7 @@ void addBuild(CLI::App& app, Session& session) {
   command->add_option("--sparql-rules", options->files.sparql_rules, "CONSTRUCT rules instead of rules/*.rq");
   command->add_option("--ontology", options->files.ontology, "ontology files instead of ontology/*.ttl");
   command->add_option("--batch-points", options->params.batch_points, "commit when a batch of scans has this many points")
-      ->check(CLI::PositiveNumber);
+      ->check(above0());
   command->add_flag("--force", options->params.force, "replace a finished map");
   onRun(*command, session, [options, &session] { return build(*options, session); });
 }

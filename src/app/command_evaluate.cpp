@@ -36,7 +36,8 @@ std::pair<std::string, double> barOf(const std::string& text) {
   double share = 0;
   const char* first = text.data() + std::min(cut + 1, text.size());
   const auto [end, fault] = std::from_chars(first, text.data() + text.size(), share);
-  if (fault != std::errc() || end != text.data() + text.size())
+  const bool is_share = share >= 0 && share <= 1;
+  if (fault != std::errc() || end != text.data() + text.size() || cut == 0 || !is_share)
     throw Error(ExitCode::Usage, "--min-recall: write CLASS=SHARE, for example Tree=0.7, not '" + text + "'");
   return {text.substr(0, cut), share};
 }
@@ -59,15 +60,18 @@ void addEvaluate(CLI::App& app, Session& session) {
   command->add_option("map", options->map, "a map")->required();
   command->add_option("--truth", options->truth, "a folder of truth files, or a label map: oakland, semantickitti, campus")
       ->required();
-  command->add_option("--min-oa", options->min_oa, "exit 1 when the overall accuracy of objects by point is below");
-  command->add_option("--min-macro-f1", options->min_macro_f1, "exit 1 when the macro F1 of objects by point is below");
+  command->add_option("--min-oa", options->min_oa, "exit 1 when the overall accuracy of objects by point is below")
+      ->check(CLI::Range(0.0, 1.0));
+  command->add_option("--min-macro-f1", options->min_macro_f1, "exit 1 when the macro F1 of objects by point is below")
+      ->check(CLI::Range(0.0, 1.0));
   command->add_option("--min-recall", options->min_recall, "CLASS=SHARE: exit 1 when the recall by point is below");
   onRun(*command, session, [options, &session] {
     for (const std::string& bar : options->min_recall) barOf(bar);
     const MapReader map(options->map);
     const MapEvaluation evaluation = evaluateMap(map, TruthSource::open(options->truth, session.dataHome()));
+    const bool meets = meetsBars(evaluation, *options);   // first: a bar on an unknown class is an error of usage
     print(session.json ? toJson(evaluation) : toText(evaluation));
-    return meetsBars(evaluation, *options) ? ExitCode::Done : ExitCode::NegativeFinding;
+    return meets ? ExitCode::Done : ExitCode::NegativeFinding;
   });
 }
 

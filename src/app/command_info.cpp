@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel info`: what was understood of scans or of a map.
+#include <algorithm>
+
 #include "app/command.hpp"
+#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/knowledge/map_check.hpp"
 #include "cluxel/mapping/map_reader.hpp"
 #include "cluxel/scan/scan_summary.hpp"
 
@@ -68,6 +72,9 @@ ExitCode infoOfScans(const InfoOptions& options, Session& session) {
   return ExitCode::Done;
 }
 
+/// By its content, whatever its name; by its name even when it is damaged or not there.
+bool isMap(const fs::path& input) { return input.extension() == ".clx" || looksLikeMap(input); }
+
 ExitCode infoOfMap(const fs::path& file, const Session& session) {
   const MapReader map(file);
   const MapSummary summary = map.summary();
@@ -94,8 +101,10 @@ void addInfo(CLI::App& app, Session& session) {
   command->add_option("input", options->inputs, "a map, or files, folders and manifests of scans")->required();
   command->add_option("--poses", options->poses, "poses of the scans: KITTI 3x4, TUM, or 4x4 text");
   onRun(*command, session, [options, &session] {
-    const bool is_map = options->inputs.size() == 1 && options->inputs[0].extension() == ".clx";
-    return is_map ? infoOfMap(options->inputs[0], session) : infoOfScans(*options, session);
+    const auto map = std::find_if(options->inputs.begin(), options->inputs.end(), isMap);
+    if (map == options->inputs.end()) return infoOfScans(*options, session);
+    if (options->inputs.size() == 1) return infoOfMap(*map, session);
+    throw Error(ExitCode::Usage, map->string() + ": is a map; ask for it alone, scans and maps are told apart");
   });
 }
 

@@ -176,9 +176,12 @@ void addQuery(CLI::App& app, Session& session) {
   command->add_option("-e,--text", options->text, "the query itself");
   command->add_option("--param", options->params, "NAME=VALUE for a parameter of the question");
   command->add_option("--format", options->format, "table, json, xml, csv, tsv; for graphs turtle, ntriples");
-  command->add_option("--deadline", options->deadline_s, "seconds after which the query fails with exit code 6");
-  command->add_option("--max-rows", options->max_rows, "rows above which the query fails with exit code 6");
-  command->add_option("--max-memory", options->max_memory_mib, "MiB above which the query fails with exit code 6");
+  command->add_option("--deadline", options->deadline_s, "seconds after which the query fails with exit code 6")
+      ->check(above0());
+  command->add_option("--max-rows", options->max_rows, "rows above which the query fails with exit code 6")
+      ->check(above0());
+  command->add_option("--max-memory", options->max_memory_mib, "MiB above which the query fails with exit code 6")
+      ->check(above0());
   command->add_flag("--explain", options->explain, "print the plan with estimated and actual rows on stderr");
   command->add_flag("--why-empty", options->why_empty, "when there is no row, name the pattern that left none");
   command->add_flag("--strict", options->strict, "the default graph is the unnamed graph, not the union");

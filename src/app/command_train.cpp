@@ -40,6 +40,8 @@ std::string commandText(const TrainOptions& options) {
 ExitCode trainModel(const TrainOptions& options, Session& session) {
   if (!options.helpers.empty() && options.helper_truth.empty())
     throw Error(ExitCode::Usage, "--helper needs --helper-truth");
+  if (fs::exists(options.output) && !fs::is_directory(options.output))
+    throw Error(ExitCode::StoreUnavailable, options.output.string() + ": is a file; name a folder for the model");
   const DataHome home = session.dataHome();
   std::vector<TrainingSource> sources{{options.inputs, truthPath(options.truth, home), false}};
   for (const fs::path& helper : options.helpers)
@@ -76,6 +78,7 @@ void addTrain(CLI::App& app, Session& session) {
   command->add_option("--name", options->name, "the model's name; else the folder's");
   command->add_option("--data", options->data, "what the data are, for the model's card");
   command->add_option("--group-size", options->group_size, "consecutive places that are left out together")
+      ->check(above0())
       ->capture_default_str();
   command->add_flag("--no-copies", options->no_copies, "do not also train on copies as other sensors would see them");
   onRun(*command, session, [options, &session] { return trainModel(*options, session); });

@@ -13,13 +13,26 @@ struct UpkeepOptions {
   fs::path map, output;
 };
 
+/// Nobody else may write while the map's file is replaced: what they commit would be lost.
+void compactInPlace(const fs::path& map) {
+  const auto environment = Environment::open(map, OpenMode::ReadWrite);
+  const WriteTransaction no_other_writer = environment->write();
+  const fs::path file = fs::canonical(map), target = file.string() + ".compact";
+  std::error_code ignored;
+  fs::remove(target, ignored);   // of a run that was killed
+  environment->compactTo(target);
+  fs::remove(file.string() + "-lock", ignored);   // it counts the commits of the old file
+  fs::rename(target, file);
+}
+
 ExitCode compact(const UpkeepOptions& options, const Session& session) {
-  const auto before = fs::file_size(options.map);
-  fs::path target = options.output;
-  if (target.empty()) target = options.map.string() + ".compact";
-  Environment::open(options.map, OpenMode::ReadOnly)->compactTo(target);
-  const auto after = fs::file_size(target);
-  if (options.output.empty()) fs::rename(target, options.map);
+  std::error_code no_such_file;
+  const auto before = fs::file_size(options.map, no_such_file);
+  if (options.output.empty())
+    compactInPlace(options.map);
+  else
+    Environment::open(options.map, OpenMode::ReadOnly)->compactTo(options.output);
+  const auto after = fs::file_size(options.output.empty() ? options.map : options.output);
   const fs::path& written = options.output.empty() ? options.map : options.output;
   if (session.json)
     printJson(Json{{"file", written.string()}, {"bytes_before", before}, {"bytes_after", after}});
@@ -47,11 +60,11 @@ ExitCode doctor(const UpkeepOptions& options, const Session& session) {
 void addUpkeep(CLI::App& app, Session& session) {
   auto options = std::make_shared<UpkeepOptions>();
   CLI::App* command = app.add_subcommand("compact", "rewrite a map without free space");
-  command->add_option("map", options->map, "a map")->required()->check(CLI::ExistingFile);
+  command->add_option("map", options->map, "a map")->required();
   command->add_option("-o,--output", options->output, "the file to write; else the map itself is replaced");
   onRun(*command, session, [options, &session] { return compact(*options, session); });
   CLI::App* checking = app.add_subcommand("doctor", "verify the checksums and indexes of a map");
-  checking->add_option("map", options->map, "a map")->required()->check(CLI::ExistingFile);
+  checking->add_option("map", options->map, "a map")->required();
   onRun(*checking, session, [options, &session] { return doctor(*options, session); });
 }
 

@@ -39,6 +39,15 @@ void onRun(CLI::App& command, Session& session, std::function<ExitCode()> run) {
   command.callback([&session, run = std::move(run)] { session.exit_code = run(); });
 }
 
+CLI::Validator above0() {
+  const auto fault = [](std::string& text) {
+    double value = 0;
+    const bool is_number = CLI::detail::lexical_cast(text, value);
+    return is_number && value > 0 ? std::string() : "write a number above 0, not " + text;
+  };
+  return {fault, "ABOVE 0", "above0"};
+}
+
 void print(std::string_view text) {
   std::fwrite(text.data(), 1, text.size(), stdout);
   if (text.empty() || text.back() != '\n') std::fputc('\n', stdout);

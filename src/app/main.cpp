@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program `cluxel`: parses the command line, runs one subcommand, turns errors into messages and exit codes.
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdio>
 #include <new>
 
 #include "app/command.hpp"
+#include "app/usage_fault.hpp"
 #include "cluxel/base/diagnostic.hpp"
 
 namespace {
@@ -42,16 +46,27 @@ int runProgram(int argc, char** argv) {
   app.footer(kExitCodes);
   app.require_subcommand(1);
   app.set_version_flag("--version", "cluxel " CLUXEL_VERSION);
-  app.add_option("--home", session.home, "folder that holds ontology, rules, queries, models and labels");
-  app.add_option("--threads", session.threads, "threads to use; the result does not depend on it");
+  app.add_option("--home", session.home, "folder that holds ontology, rules, queries, models and labels")
+      ->check(CLI::ExistingDirectory);
+  app.add_option("--threads", session.threads, "threads to use, 0: all; the result does not depend on it")
+      ->check(CLI::Range(0, 1024));
   app.fallthrough();
   addCommands(app, session);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& fault) {
-    return app.exit(fault) == 0 ? 0 : static_cast<int>(ExitCode::Usage);
+    if (fault.get_exit_code() == 0) return app.exit(fault);
+    return fail(ExitCode::Usage, usageMessage(app, fault).c_str());
   }
   return static_cast<int>(session.exit_code);
+}
+
+/// Data that could not be written is an error, but nobody misses it when the reader of a pipe has gone.
+bool lostData() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return false;
+  struct stat status {};
+  const bool is_known = ::fstat(STDOUT_FILENO, &status) == 0;
+  return !is_known || !(S_ISFIFO(status.st_mode) || S_ISSOCK(status.st_mode));
 }
 
 }  // namespace
@@ -59,7 +74,9 @@ int runProgram(int argc, char** argv) {
 int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   try {
-    return runProgram(argc, argv);
+    const int code = runProgram(argc, argv);
+    if (lostData()) return fail(ExitCode::StoreUnavailable, "stdout could not be written whole: is the disk full?");
+    return code;
   } catch (const Error& error) {
     return fail(error.code(), error.what());
   } catch (const std::bad_alloc&) {

@@ -2,6 +2,7 @@
 // Structural check of a map file, by page reads within its bounds.
 #include "knowledge/map_file_check.hpp"
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "cluxel/base/diagnostic.hpp"
+#include "cluxel/knowledge/map_check.hpp"
 #include "knowledge/lmdb_environment.hpp"
 #include "knowledge/lmdb_page.hpp"
 
@@ -217,6 +219,15 @@ void checkMapStructure(int descriptor, const std::filesystem::path& file, std::u
     return;
   }
   refuse(file, "the map changed while it was checked; run again");
+}
+
+bool looksLikeMap(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) return false;
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  const bool has_head = readMeta(descriptor, 0).has_value();
+  ::close(descriptor);
+  return has_head;
 }
 
 }  // namespace cluxel

@@ -54,7 +54,9 @@ ComponentTile componentTileFromBytes(std::string_view bytes) {
   tile.cell_offset = reader.getMany<std::uint32_t>(tile.size() + 1);
   tile.cells = reader.getMany<FootprintCell>();
   tile.hull_offset = reader.getMany<std::uint32_t>(tile.size() + 1);
-  tile.hull = pairs(reader.getMany<float>());
+  const auto corners = reader.getMany<float>();
+  reader.require(corners.size() % 2 == 0, "has half a corner");
+  tile.hull = pairs(corners);
   tile.scan_offset = reader.getMany<std::uint32_t>(tile.size() + 1);
   tile.scans = reader.getMany<ScanId>();
   reader.require(allBelow(tile.component_of, tile.size()), "names a component that is not there");

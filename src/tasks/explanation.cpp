@@ -61,7 +61,7 @@ std::string explainThing(const MapReader& map, const std::string& name, bool as_
   FinishedMapOracle oracle(map.quads());
   const ReasoningContext context{.oracle = &oracle};
   Explanation explanation;
-  if (name.size() < 4) throw Error(ExitCode::Usage, "write at least four digits of the name");
+  if (name.size() < 4) throw Error(ExitCode::Usage, "'" + name + "' is too short: write at least four digits of the name");
   if (findOne(map.objects(), "object", name)) {
     const ReasoningResult result = reason(scene, rules, context);
     const auto object = findOne(result.objects, "object", name);

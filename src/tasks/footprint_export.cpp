@@ -15,12 +15,16 @@ using Json = nlohmann::ordered_json;
 
 double rounded(double value_m) { return std::round(value_m * 1000) / 1000; }
 
+/// So that an object of one point has a polygon too [m].
+constexpr double kMargin_m = 0.005;
+
 std::vector<Eigen::Vector2d> footprintOf(const SemanticObject& object, const SceneCluxels& cluxels) {
   std::vector<Eigen::Vector2d> corners;
   for (const ObjectPart& part : object.parts)
     for (const std::uint32_t c : part.cluxels) {
-      const Eigen::Vector3d low = cluxels.low_corner[c], high = low + cluxels.extent[c].cast<double>();
-      corners.insert(corners.end(), {low.head<2>(), {high.x(), low.y()}, {low.x(), high.y()}, high.head<2>()});
+      const Eigen::Vector2d corner = cluxels.low_corner[c].head<2>(), extent = cluxels.extent[c].head<2>().cast<double>();
+      const Eigen::Vector2d low = corner.array() - kMargin_m, high = (corner + extent).array() + kMargin_m;
+      corners.insert(corners.end(), {low, {high.x(), low.y()}, {low.x(), high.y()}, high});
     }
   return convexHull(std::move(corners));
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <regex>
 #include <sstream>
 
@@ -39,13 +40,13 @@ void readHeaderLine(const std::string& line, const SourceLocation& at, Question&
 bool isNumber(const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size();
+  return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
 }
 
 Term termOf(const std::string& text) {
   if (text.size() > 1 && text.front() == '<' && text.back() == '>') return Term::iri(text.substr(1, text.size() - 2));
   if (text.starts_with("clx:")) return Term::iri(vocabulary::clx(text.substr(4)));
-  if (isNumber(text)) return Term::literal(text, vocabulary::xsd("decimal"));
+  if (isNumber(text)) return Term::literal(text, vocabulary::xsd(text.find_first_of("eE") == text.npos ? "decimal" : "double"));
   return Term::literal(text);
 }
 
@@ -89,6 +90,9 @@ std::vector<Question> shippedQuestions(const DataHome& home) {
 std::vector<Binding> bindingsFor(const Question& question, const std::vector<std::string>& given) {
   std::vector<Binding> bindings;
   std::vector<std::string> names;
+  const auto refuse = [](const std::string& text, const std::string& why) {
+    throw Error(ExitCode::Usage, "--param " + text + ": " + why);
+  };
   for (const QueryParameter& parameter : question.parameters) {
     bindings.emplace_back(parameter.name, termOf(parameter.default_value));
     names.push_back(parameter.name);
@@ -97,10 +101,15 @@ std::vector<Binding> bindingsFor(const Question& question, const std::vector<std
     const std::size_t cut = text.find('=');
     const std::string name = text.substr(0, cut);
     const auto place = std::find(names.begin(), names.end(), name);
-    if (cut == std::string::npos || place == names.end())
-      throw Error(ExitCode::Usage, "--param " + text + ": the question has no such parameter; write NAME=VALUE; " +
-                                       suggestion(name, names));
-    bindings[static_cast<std::size_t>(place - names.begin())].second = termOf(text.substr(cut + 1));
+    if (names.empty()) refuse(text, "the question has no parameters");
+    if (cut == std::string::npos) refuse(text, "write NAME=VALUE; " + suggestion(name, names));
+    if (place == names.end()) refuse(text, "the question has no such parameter; " + suggestion(name, names));
+    const auto at = static_cast<std::size_t>(place - names.begin());
+    const QueryParameter& parameter = question.parameters[at];
+    const std::string value = text.substr(cut + 1);
+    if (isNumber(parameter.default_value) && !isNumber(value))
+      refuse(text, "a number is wanted [" + parameter.unit + "], with a point, for example " + parameter.default_value);
+    bindings[at].second = termOf(value);
   }
   return bindings;
 }

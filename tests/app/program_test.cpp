@@ -1,58 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program as its users meet it: exit codes, what goes to stdout, and what errors say.
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-
-#include <cstdio>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "cluxel/base/file_bytes.hpp"
-#include "knowledge/scratch_folder.hpp"
+#include "app/program_fixture.hpp"
 
 namespace cluxel {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::json;
-
-struct Outcome {
-  int code = -1;
-  std::string out, err;
-};
-
-class Program : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    folder = new ScratchFolder;
-    writeFile(path("three.ttl"), "@prefix e: <https://e.org/> .\ne:a e:p 1 . e:b e:p 2 . e:c e:p 3 .\n");
-    const Outcome campus = run("simulate " + path("campus").string() + " --stops 2 --size 50 --points-per-stop 3000 --json");
-    simulated = campus.out;
-    built = run("build " + path("campus").string() + " -o " + path("map.clx").string() + " --json");
-  }
-  static void TearDownTestSuite() { delete folder; }
-  static fs::path path(const std::string& name) { return folder->path() / name; }
-
-  static Outcome run(const std::string& arguments) {
-    const std::string err = (folder->path() / "stderr").string(), out = (folder->path() / "stdout").string();
-    const std::string command = std::string(CLUXEL_BINARY_DIR) + "/cluxel --home " + CLUXEL_SOURCE_DIR + " --threads 1 " +
-                                arguments + " > " + out + " 2> " + err;
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readFile(out), readFile(err)};
-  }
-  static Outcome query(const std::string& source, const std::string& text, const std::string& more = "") {
-    return run("query " + path(source).string() + " -e '" + text + "' " + more);
-  }
-  static inline ScratchFolder* folder = nullptr;
-  static inline std::string simulated;
-  static inline Outcome built;
-};
-
-void expectError(const Outcome& outcome, int code, const std::string& words) {
-  EXPECT_EQ(outcome.code, code) << outcome.err;
-  EXPECT_EQ(outcome.out, "") << "errors go to stderr";
-  EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
-}
 
 TEST_F(Program, BuildsAMapAndTellsSoInJson) {
   ASSERT_EQ(built.code, 0) << built.err;
@@ -147,6 +102,65 @@ TEST_F(Program, HelpsWithEverySubcommand) {
     EXPECT_NE(help.out.find("--help"), std::string::npos) << name;
   }
   EXPECT_EQ(run("--version").out.substr(0, 7), "cluxel ");
+}
+
+TEST_F(Program, InfoKnowsAMapByItsContentNotByItsName) {
+  fs::copy_file(path("map.clx"), path("renamed.backup"));
+  const Json info = Json::parse(run("info --json " + path("renamed.backup").string()).out);
+  EXPECT_EQ(info.at("clouds"), 2);
+  EXPECT_EQ(info.at("objects_by_class"), Json::parse(run("info --json " + path("map.clx").string()).out).at("objects_by_class"));
+}
+
+TEST_F(Program, InfoTellsOfScansWhatIsInThem) {
+  const Json info = Json::parse(run("info --json " + path("campus").string()).out);
+  EXPECT_EQ(info.at("points"), Json::parse(simulated).at("points"));
+  std::uint64_t points = 0, labelled = 0;
+  for (const Json& scan : info.at("scans")) {
+    points += scan.at("points").get<std::uint64_t>();
+    EXPECT_EQ(scan.at("has_pose"), true);
+    EXPECT_EQ(scan.at("id").get<std::string>().size(), 32U);
+    for (int axis = 0; axis < 3; ++axis) EXPECT_LT(scan.at("extent_map_m").at("min")[axis], scan.at("extent_map_m").at("max")[axis]);
+  }
+  for (const auto& [label, count] : info.at("labels").items()) labelled += count.get<std::uint64_t>();
+  EXPECT_EQ(points, info.at("points"));
+  EXPECT_EQ(labelled, info.at("points"));
+}
+
+TEST_F(Program, DoctorFindsAByteThatChangedAndNamesNothingInAWholeMap) {
+  const Json whole = Json::parse(run("doctor --json " + path("map.clx").string()).out);
+  EXPECT_GT(whole.at("blocks"), 10);
+  EXPECT_GT(whole.at("quads"), 1000);
+  std::string bytes = readFile(path("map.clx"));
+  std::size_t found = 0;
+  for (const std::size_t part : {3U, 5U, 7U, 9U}) {   // somewhere in the scans' points and tiles
+    std::string damaged = bytes;
+    for (std::size_t i = 0; i < 64; ++i) damaged[damaged.size() * part / 10 + i * 131] ^= 0x55;
+    writeFile(path("damaged.clx"), damaged);
+    const Outcome check = run("doctor --json " + path("damaged.clx").string());
+    ASSERT_TRUE(check.code == 0 || check.code == 1) << check.code << check.err;
+    EXPECT_EQ(check.code == 1, !Json::parse(check.out).at("faults").empty());
+    found += check.code == 1;
+  }
+  EXPECT_GE(found, 3U) << "of four damaged copies";
+}
+
+TEST_F(Program, CompactInPlaceKeepsTheMapAndLeavesNothingBeside) {
+  fs::create_directory(path("compact"));
+  const fs::path map = path("compact/map.clx");
+  fs::copy_file(path("map.clx"), map);
+  writeFile(path("compact/map.clx.compact"), "left by a run that was killed");
+  const std::string before = run("export --canonical " + map.string()).out;
+  const Outcome compacted = run("compact --json " + map.string());
+  ASSERT_EQ(compacted.code, 0) << compacted.err;
+  const Json report = Json::parse(compacted.out);
+  EXPECT_LE(report.at("bytes_after"), report.at("bytes_before"));
+  EXPECT_EQ(report.at("bytes_after"), fs::file_size(map));
+  EXPECT_EQ(run("export --canonical " + map.string()).out, before);
+  for (const auto& entry : fs::directory_iterator(path("compact"))) {
+    const std::string name = entry.path().filename().string();
+    EXPECT_TRUE(name == "map.clx" || name == "map.clx-lock") << name;
+  }
+  expectError(run("compact " + map.string() + " -o " + map.string()), 5, "exists already");
 }
 
 TEST_F(Program, DoctorAndExportAgreeThatTheMapIsWhole) {

@@ -64,7 +64,21 @@ TEST_F(Questions, ParametersTakeTheGivenValueOrTheDefault) {
   const auto given = bindingsFor(question, {"a=2.5", "c=<https://example.org/x>"});
   EXPECT_EQ(given[0].second, Term::literal("2.5", "http://www.w3.org/2001/XMLSchema#decimal"));
   EXPECT_EQ(given[1].second, Term::iri("https://example.org/x"));
-  EXPECT_EQ(bindingsFor(question, {"a=hello"})[0].second, Term::literal("hello"));
+}
+
+TEST_F(Questions, ANumberIsWantedWhereTheDefaultIsOne) {
+  const Question question = read("#! parameter: far [m] = 5 x\n#! parameter: name [text] = oak y\nASK { }\n");
+  EXPECT_EQ(bindingsFor(question, {"name=hello"})[1].second, Term::literal("hello"));
+  EXPECT_EQ(bindingsFor(question, {"far=-1e3"})[0].second, Term::literal("-1e3", "http://www.w3.org/2001/XMLSchema#double"));
+  for (const char* text : {"far=away", "far=inf", "far=nan", "far=1,5", "far=", "far=2 m"}) {
+    try {
+      bindingsFor(question, {text});
+      FAIL() << text;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::Usage);
+      EXPECT_NE(std::string(error.what()).find("a number is wanted [m]"), std::string::npos) << error.what();
+    }
+  }
 }
 
 TEST_F(Questions, AnUnknownParameterIsAnErrorOfUsage) {

@@ -20,4 +20,7 @@ struct MapCheck {
 /// (StoreUnavailable) when there is no map to look at. Cost: reads the file.
 MapCheck checkMap(const std::filesystem::path& file);
 
+/// Whether the file begins as LMDB's files do, whatever its name. Cost: one page read.
+bool looksLikeMap(const std::filesystem::path& file);
+
 }  // namespace cluxel

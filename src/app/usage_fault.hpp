@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is wrong with a command line, in words: the nearest known name, and where help is.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace cluxel::app {
+
+/// For a command line that `app` refused with `fault`.
+std::string usageMessage(const CLI::App& app, const CLI::ParseError& fault);
+
+}  // namespace cluxel::app

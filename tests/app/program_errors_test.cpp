@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// What goes wrong on the command line: one exit code for one kind of fault in every command, and words that say what,
+// where and what to do.
+#include <nlohmann/json.hpp>
+
+#include "app/program_fixture.hpp"
+
+namespace cluxel {
+namespace {
+
+std::string campus() { return Program::path("campus").string(); }
+std::string map() { return Program::path("map.clx").string(); }
+std::string fresh() { return Program::path("never.clx").string(); }
+
+TEST_F(Program, AMapThatIsNotThereIsExitCodeFiveInEveryCommand) {
+  const std::string absent = path("absent.clx").string();
+  for (const std::string& arguments : std::vector<std::string>
+       {"info " + absent, "query " + absent + " -e 'ASK {}'", "update " + absent + " -e 'CLEAR ALL'",
+        "explain " + absent + " 1234", "evaluate " + absent + " --truth " + campus() + "/truth",
+        "export " + absent + " --canonical", "compact " + absent, "compact " + absent + " -o " + fresh(), "doctor " + absent}) {
+    SCOPED_TRACE(arguments);
+    expectError(run(arguments), 5, "absent.clx");
+    EXPECT_FALSE(fs::exists(absent));
+    EXPECT_FALSE(fs::exists(fresh()));
+  }
+}
+
+TEST_F(Program, WhatIsNoMapIsExitCodeFiveInEveryCommandThatNeedsOne) {
+  const std::string text = path("no-map.clx").string();
+  writeFile(text, std::string(20'000, 'x'));
+  for (const std::string& arguments : std::vector<std::string>
+       {"info " + text, "query " + text + " -e 'ASK {}'", "update " + text + " -e 'CLEAR ALL'", "explain " + text + " 1234",
+        "evaluate " + text + " --truth " + campus() + "/truth", "export " + text + " --canonical", "compact " + text,
+        "query " + campus() + " -e 'ASK {}'", "compact " + campus(), "doctor " + campus()}) {
+    SCOPED_TRACE(arguments);
+    expectError(run(arguments), 5, "map");
+  }
+  EXPECT_EQ(run("doctor " + text).code, 1) << "doctor was asked whether the file is a sound map";
+}
+
+TEST_F(Program, AnyOtherInputThatIsNotThereIsExitCodeFourInEveryCommand) {
+  for (const std::string& arguments : std::vector<std::string>
+       {"info absent-input", "build absent-input -o " + fresh(), "build " + campus() + " -o " + fresh() + " --poses absent-input",
+        "build " + campus() + " -o " + fresh() + " --model absent-input", "build " + campus() + " -o " + fresh() + " --rules absent-input",
+        "build " + campus() + " -o " + fresh() + " --sparql-rules absent-input",
+        "build " + campus() + " -o " + fresh() + " --ontology absent-input", "query absent-input.ttl -e 'ASK {}'",
+        "query " + map() + " absent-input.rq", "update " + map() + " absent-input.ru", "evaluate " + map() + " --truth absent-input",
+        "rules check absent-input", "rules check --ontology absent-input", "rules test absent-input",
+        "train absent-input --truth campus -o " + fresh(), "train " + campus() + " --truth absent-input -o " + fresh()}) {
+    SCOPED_TRACE(arguments);
+    expectError(run(arguments), 4, "absent-input");
+    EXPECT_FALSE(fs::exists(fresh()));
+  }
+}
+
+TEST_F(Program, AnUnknownCommandIsNamedWithTheNearestAndTheList) {
+  expectError(run("qeury x"), 2, "there is no command 'qeury'; did you mean 'query'?");
+  expectError(run("qeury x"), 2, "info, simulate, build, query, update, tasks, explain, rules, train, evaluate, export, compact, doctor");
+  expectError(run("rules tset"), 2, "rules: there is no command 'tset'; did you mean 'test'?");
+  expectError(run("rules"), 2, "rules: a command is missing: check, test");
+  expectError(run(""), 2, "a command is missing: info");
+  expectError(run("frobnicate"), 2, "there is no command 'frobnicate'\n");
+}
+
+TEST_F(Program, AnUnknownOptionIsNamedWithTheNearest) {
+  expectError(run("query " + map() + " objects --fromat csv"), 2, "query: there is no option '--fromat'; did you mean '--format'?");
+  expectError(run("export --cannonical " + map()), 2, "did you mean '--canonical'?");
+  expectError(run("query --frmat=csv"), 2, "'--frmat'");
+  expectError(run("doctor " + map() + " --jsn"), 2, "did you mean '--json'?");
+  expectError(run("tasks --thread 2"), 2, "did you mean '--threads'?");
+  expectError(run("doctor " + map() + " another.clx"), 2, "doctor: 'another.clx' is one argument too many");
+}
+
+TEST_F(Program, WhatIsMissingOrOutOfRangeIsNamedAndHelpIsPointedTo) {
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"build " + campus(), "--output"},
+      {"build -o " + fresh(), "scans"},
+      {"query", "source"},
+      {"explain " + map(), "thing"},
+      {"evaluate " + map(), "--truth"},
+      {"train " + campus() + " -o " + fresh(), "--truth"},
+      {"query " + map() + " objects --deadline soon", "--deadline"},
+      {"query " + map() + " objects --deadline -1", "--deadline"},
+      {"query " + map() + " objects --max-rows -1", "--max-rows"},
+      {"query " + map() + " objects --max-memory 0", "--max-memory"},
+      {"simulate " + fresh() + " --size 10", "--size"},
+      {"simulate " + fresh() + " --seed many", "--seed"},
+      {"build " + campus() + " -o " + fresh() + " --batch-points 0", "--batch-points"},
+      {"evaluate " + map() + " --truth " + campus() + "/truth --min-oa 80", "--min-oa"},
+      {"evaluate " + map() + " --truth " + campus() + "/truth --min-recall Tree", "CLASS=SHARE"},
+      {"evaluate " + map() + " --truth " + campus() + "/truth --min-recall Tree=2", "CLASS=SHARE"},
+      {"tasks --threads -3", "--threads"},
+      {"tasks --home " + path("nowhere").string(), "--home"}};
+  for (const auto& [arguments, words] : cases) {
+    SCOPED_TRACE(arguments);
+    expectError(run(arguments), 2, words);
+    EXPECT_FALSE(fs::exists(fresh()));
+  }
+  EXPECT_NE(run("query").err.find("hint: 'cluxel query --help'"), std::string::npos);
+}
+
+TEST_F(Program, WrongChoicesOfOneCommandAreErrorsOfUsage) {
+  expectError(run("export " + map() + " --format docx"), 2, "docx");
+  expectError(run("export " + map() + " -o " + path("map.docx").string()), 2, "docx");
+  expectError(run("export " + map()), 2, "--format");
+  expectError(run("query " + map() + " objects -e 'ASK {}'"), 2, "not both");
+  expectError(run("query " + map() + " objects --param far=1"), 2, "has no parameters");
+  expectError(run("query " + map() + " near_point --param radius=far"), 2, "a number is wanted [m]");
+  expectError(run("query " + map() + " near_point --param raduis=3"), 2, "did you mean 'radius'?");
+  expectError(run("query " + map() + " objects --format turtle"), 2, "choose table");
+  expectError(run("explain " + map() + " 12"), 2, "four digits");
+  expectError(run("update " + map()), 2, "-e TEXT");
+  expectError(run("info " + map() + " " + campus()), 2, "map.clx");
+  expectError(run("evaluate " + map() + " --truth " + campus() + "/truth --min-recall Unicorn=0.5"), 2, "Unicorn");
+  expectError(run("train " + campus() + " --truth campus -o " + fresh() + " --helper " + campus()), 2, "--helper-truth");
+  expectError(run("simulate " + campus()), 2, "campus");
+}
+
+TEST_F(Program, AThingThatIsNotInTheMapIsExitCodeThree) {
+  expectError(run("explain " + map() + " ffffffffffffffff"), 3, "ffffffffffffffff");
+  expectError(run("explain " + map() + " https://w3id.org/cluxel/map/object/nothing"), 3, "nothing");
+}
+
+TEST_F(Program, OutputThatCannotBeWrittenIsExitCodeFive) {
+  const std::string nowhere = path("nowhere/out").string();
+  expectError(run("export " + map() + " --canonical -o " + nowhere), 5, "nowhere/out");
+  expectError(run("compact " + map() + " -o " + nowhere), 5, "nowhere/out");
+  expectError(run("build " + campus() + " -o " + nowhere + ".clx"), 5, "nowhere/out.clx");
+  expectError(run("build " + campus() + " -o " + campus()), 5, "is a folder");
+  expectError(run("train " + campus() + " --truth campus -o " + map()), 5, "is a file");
+  EXPECT_FALSE(fs::exists(path("nowhere")));
+}
+
+TEST_F(Program, AFullDiskIsNotTakenForSuccess) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  for (const std::string& arguments : std::vector<std::string>{"export --canonical " + map(), "query " + map() + " objects", "tasks --json"}) {
+    const Outcome outcome = run(arguments, "/dev/full");
+    EXPECT_EQ(outcome.code, 5) << arguments;
+    EXPECT_NE(outcome.err.find("stdout"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST_F(Program, AReaderThatGoesAwayIsNoError) {
+  const std::string command = std::string("bash -c 'set -o pipefail; ") + CLUXEL_BINARY_DIR + "/cluxel export --canonical " +
+                              map() + " | head -1 > /dev/null'";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+}
+
+TEST_F(Program, FaultsOfDamagedScansNameFileAndByte) {
+  fs::create_directory(path("cut"));
+  fs::path first;
+  for (const auto& entry : fs::recursive_directory_iterator(path("campus")))
+    if (entry.path().extension() == ".pcd") first = entry.path();
+  ASSERT_FALSE(first.empty());
+  const std::string bytes = readFile(first);
+  writeFile(path("cut/half.pcd"), bytes.substr(0, bytes.size() / 2));
+  expectError(run("info " + path("cut").string()), 4, "half.pcd");
+  expectError(run("build " + path("cut").string() + " -o " + fresh()), 4, "half.pcd");
+  EXPECT_FALSE(fs::exists(fresh()));
+}
+
+}  // namespace
+}  // namespace cluxel
