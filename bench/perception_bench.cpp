@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points to primitives, stage by stage, on one core: `perception_bench [--rounds N] [SCANS...]` prints points per second.
-// Without scans it takes Oakland part 2 from the outside data, and where that is absent a generated campus.
+// Points to primitives, stage by stage, on one core: `perception_bench [--rounds N] [--digest] [SCANS...]` prints points per
+// second. Without scans it takes Oakland part 2 from the outside data, and where that is absent a generated campus.
+// --digest also prints a hash of every stage's output, which tells whether a faster program still says the same.
 #include <ctime>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "cluxel/base/content_hash.hpp"
 #include "cluxel/perception/scene_pipeline.hpp"
 #include "cluxel/scan/scan_set.hpp"
 #include "cluxel/simulation/campus.hpp"
@@ -122,6 +125,36 @@ void print(const std::vector<StageTime>& best, const Outputs& out, std::size_t p
   row("points to primitives", total);
 }
 
+template <typename Tiles>
+ContentHash digestOf(const Tiles& tiles) {
+  ContentHasher hasher;
+  for (const auto& [key, tile] : tiles) hasher.addText(toBytes(tile));
+  return hasher.finish();
+}
+
+ContentHash digestOf(const Scene& scene) {
+  ContentHasher hasher;
+  for (const auto& primitive : scene.primitives) {
+    hasher.add(primitive.id).add(primitive.label).addSpan(std::span<const double>(primitive.attributes));
+    hasher.addSpan(std::span<const std::uint32_t>(primitive.cluxels));
+  }
+  for (const auto& relation : scene.relations) hasher.add(relation.kind).add(relation.from).add(relation.to).add(relation.measure);
+  return hasher.finish();
+}
+
+void printDigests(const Outputs& out) {
+  const auto row = [](const char* name, const ContentHash& hash) { std::printf("%-12s %s\n", name, hash.hex().c_str()); };
+  std::printf("\n");
+  row("points", digestOf(out.perceived.points));
+  row("cluxels", digestOf(out.perceived.cluxels));
+  row("ground", digestOf(out.perceived.ground));
+  row("features", digestOf(out.perceived.features));
+  row("labels", digestOf(out.labels));
+  row("components", digestOf(out.components));
+  row("contacts", digestOf(out.contacts));
+  row("scene", digestOf(out.scene));
+}
+
 std::vector<Scan> loadScans(const std::vector<std::filesystem::path>& inputs) {
   ProgressSink sink;
   const ScanSet set = ScanSet::open(inputs, {}, sink);
@@ -156,9 +189,12 @@ std::vector<Scan> scansFor(const std::vector<std::filesystem::path>& inputs) {
 int main(int argc, char** argv) {
   std::vector<std::filesystem::path> inputs;
   int rounds = 5;
+  bool digest = false;
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "--rounds") == 0 && i + 1 < argc)
       rounds = std::atoi(argv[++i]);
+    else if (std::strcmp(argv[i], "--digest") == 0)
+      digest = true;
     else
       inputs.emplace_back(argv[i]);
   }
@@ -174,5 +210,6 @@ int main(int argc, char** argv) {
     for (std::size_t i = 0; i < times.size(); ++i) best[i].seconds = std::min(best[i].seconds, times[i].seconds);
   }
   print(best, out, points);
+  if (digest) printDigests(out);
   return 0;
 }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "perception/vector_lanes.hpp"
+
 namespace cluxel {
 
 namespace {
@@ -36,32 +38,58 @@ Incidence incidenceOf(const CrfGraph& graph) {
   return at;
 }
 
-void add(LabelCosts& sum, const LabelCosts& term) {
-  for (std::size_t a = 0; a < kLabels; ++a) sum[a] += term[a];
-}
+/// Costs of the labels: the first four in a vector, the last one apart.
+struct Costs {
+  Floats most;
+  float last;
 
-float subtractMin(LabelCosts& costs) {
-  const float least = *std::min_element(costs.begin(), costs.end());
-  for (float& cost : costs) cost -= least;
-  return least;
+  void add(const LabelCosts& term) {
+    most += loadFloats(term.data());
+    last += term[kLanes];
+  }
+  float subtractMin() {
+    const float least = std::min(leastOf(most), last);
+    most -= least;
+    last -= least;
+    return least;
+  }
+  void store(LabelCosts& to) const {
+    storeFloats(most, to.data());
+    to[kLanes] = last;
+  }
+};
+static_assert(kLabels == kLanes + 1, "a vector holds all labels but one");
+
+Costs costsOf(const LabelCosts& costs) { return {loadFloats(costs.data()), costs[kLanes]}; }
+
+/// The costs of one edge as rows of a matrix: row a holds V(a, b) for b of 0 to 3; the last row is that of label 4.
+using PairRows = std::array<Floats, kLabels>;
+
+PairRows rowsOf(const PairCosts& pair) {
+  const auto [p01, p02, p03, p04, p12, p13, p14, p23, p24, p34] = pair;
+  return {Floats{0, p01, p02, p03}, Floats{p01, 0, p12, p13}, Floats{p02, p12, 0, p23}, Floats{p03, p13, p23, 0},
+          Floats{p04, p14, p24, p34}};
 }
 
 /// min over a of from[a] + V(a, b), for each b.
-LabelCosts minSum(const LabelCosts& from, const PairCosts& pair) {
-  LabelCosts best = from;
-  std::size_t slot = 0;
-  for (std::size_t a = 0; a < kLabels; ++a)
-    for (std::size_t b = a + 1; b < kLabels; ++b, ++slot) {
-      best[b] = std::min(best[b], from[a] + pair[slot]);
-      best[a] = std::min(best[a], from[b] + pair[slot]);
-    }
-  return best;
+[[gnu::always_inline]] inline Costs minSum(const Costs& from, const PairRows& pair) {
+  const Floats& most = from.most;
+  const Floats by_0 = __builtin_shufflevector(most, most, 0, 0, 0, 0) + pair[0];
+  const Floats by_1 = __builtin_shufflevector(most, most, 1, 1, 1, 1) + pair[1];
+  const Floats by_2 = __builtin_shufflevector(most, most, 2, 2, 2, 2) + pair[2];
+  const Floats by_3 = __builtin_shufflevector(most, most, 3, 3, 3, 3) + pair[3];
+  const Floats best = lesserOf(lesserOf(by_0, by_1), lesserOf(by_2, by_3));
+  return {lesserOf(best, from.last + pair[4]), std::min(from.last, leastOf(most + pair[4]))};
 }
 
 class Trws {
  public:
   explicit Trws(const CrfGraph& graph)
-      : x_graph(graph), x_at(incidenceOf(graph)), x_to_later(graph.edges.size()), x_to_earlier(graph.edges.size()) {}
+      : x_graph(graph), x_at(incidenceOf(graph)), x_to_later(graph.edges.size()), x_to_earlier(graph.edges.size()),
+        x_min_marginals(graph.size()) {
+    x_pairs.reserve(graph.edges.size());
+    for (const PairCosts& pair : graph.pair_costs) x_pairs.push_back(rowsOf(pair));
+  }
 
   void passForward() {
     for (std::uint32_t i = 0; i < x_graph.size(); ++i) sendForward(i, belief(i));
@@ -71,8 +99,9 @@ class Trws {
   double passBackward() {
     double bound = 0;
     for (std::uint32_t i = static_cast<std::uint32_t>(x_graph.size()); i-- > 0;) {
-      LabelCosts costs = belief(i);
-      bound += static_cast<double>(subtractMin(costs));
+      Costs costs = belief(i);
+      bound += static_cast<double>(costs.subtractMin());
+      costs.store(x_min_marginals[i]);   // no message to this node will change before the next pass
       bound += sendBackward(i, costs);
     }
     return bound;
@@ -85,25 +114,22 @@ class Trws {
       LabelCosts costs = x_graph.unary[i];
       for (std::uint32_t k = x_at.backward_begin[i]; k < x_at.backward_begin[i + 1]; ++k)
         addFixed(costs, x_at.backward[k], labels[x_graph.edges[x_at.backward[k]].from]);
-      for (std::uint32_t e = x_at.forward_begin[i]; e < x_at.forward_begin[i + 1]; ++e) add(costs, x_to_earlier[e]);
+      for (std::uint32_t e = x_at.forward_begin[i]; e < x_at.forward_begin[i + 1]; ++e)
+        for (std::size_t a = 0; a < kLabels; ++a) costs[a] += x_to_earlier[e][a];
       labels[i] = static_cast<std::uint8_t>(std::min_element(costs.begin(), costs.end()) - costs.begin());
     }
     return labels;
   }
 
-  /// The min-marginals of a node, summed over the trees through it, as the messages stand.
-  LabelCosts minMarginals(std::uint32_t i) const {
-    LabelCosts costs = belief(i);
-    subtractMin(costs);
-    return costs;
-  }
+  /// The min-marginals of each node, summed over the trees through it, as the last pass backward found them.
+  const std::vector<LabelCosts>& minMarginals() const { return x_min_marginals; }
 
  private:
-  LabelCosts belief(std::uint32_t i) const {
-    LabelCosts costs = x_graph.unary[i];
+  Costs belief(std::uint32_t i) const {
+    Costs costs = costsOf(x_graph.unary[i]);
     for (std::uint32_t k = x_at.backward_begin[i]; k < x_at.backward_begin[i + 1]; ++k)
-      add(costs, x_to_later[x_at.backward[k]]);
-    for (std::uint32_t e = x_at.forward_begin[i]; e < x_at.forward_begin[i + 1]; ++e) add(costs, x_to_earlier[e]);
+      costs.add(x_to_later[x_at.backward[k]]);
+    for (std::uint32_t e = x_at.forward_begin[i]; e < x_at.forward_begin[i + 1]; ++e) costs.add(x_to_earlier[e]);
     return costs;
   }
 
@@ -114,27 +140,28 @@ class Trws {
     return 1.0F / static_cast<float>(std::max({later, earlier, 1U}));
   }
 
-  static LabelCosts without(const LabelCosts& belief, float share, const LabelCosts& message) {
-    LabelCosts rest;
-    for (std::size_t a = 0; a < kLabels; ++a) rest[a] = share * belief[a] - message[a];
-    return rest;
+  /// What an edge carries on: the tree's share of the belief, without what came along the edge itself; its least is
+  /// taken off and returned.
+  [[gnu::always_inline]] static float send(const Costs& belief, float share, const LabelCosts& received, const PairRows& pair, LabelCosts& sent) {
+    const Costs back = costsOf(received);
+    Costs message = minSum({share * belief.most - back.most, share * belief.last - back.last}, pair);
+    const float least = message.subtractMin();
+    message.store(sent);
+    return least;
   }
 
-  void sendForward(std::uint32_t i, const LabelCosts& costs) {
+  void sendForward(std::uint32_t i, const Costs& costs) {
     const float share = treeShare(i);
-    for (std::uint32_t e = x_at.forward_begin[i]; e < x_at.forward_begin[i + 1]; ++e) {
-      x_to_later[e] = minSum(without(costs, share, x_to_earlier[e]), x_graph.pair_costs[e]);
-      subtractMin(x_to_later[e]);
-    }
+    for (std::uint32_t e = x_at.forward_begin[i]; e < x_at.forward_begin[i + 1]; ++e)
+      send(costs, share, x_to_earlier[e], x_pairs[e], x_to_later[e]);
   }
 
-  double sendBackward(std::uint32_t i, const LabelCosts& costs) {
+  double sendBackward(std::uint32_t i, const Costs& costs) {
     const float share = treeShare(i);
     double bound = 0;
     for (std::uint32_t k = x_at.backward_begin[i]; k < x_at.backward_begin[i + 1]; ++k) {
       const std::uint32_t e = x_at.backward[k];
-      x_to_earlier[e] = minSum(without(costs, share, x_to_later[e]), x_graph.pair_costs[e]);
-      bound += static_cast<double>(subtractMin(x_to_earlier[e]));
+      bound += static_cast<double>(send(costs, share, x_to_later[e], x_pairs[e], x_to_earlier[e]));
     }
     return bound;
   }
@@ -146,7 +173,9 @@ class Trws {
 
   const CrfGraph& x_graph;
   Incidence x_at;
+  std::vector<PairRows> x_pairs;
   std::vector<LabelCosts> x_to_later, x_to_earlier;
+  std::vector<LabelCosts> x_min_marginals;
 };
 
 std::array<float, kLabels> softmin(const LabelCosts& costs) {
@@ -166,9 +195,9 @@ InferenceResult inferTrws(const CrfGraph& graph, const InferenceParams& params) 
     solver.passForward();
     result.lower_bound = solver.passBackward();
   }
-  result.labels = solver.decode();
+  if (params.decode) result.labels = solver.decode();
   result.marginals.reserve(graph.size());
-  for (std::uint32_t i = 0; i < graph.size(); ++i) result.marginals.push_back(softmin(solver.minMarginals(i)));
+  for (const LabelCosts& costs : solver.minMarginals()) result.marginals.push_back(softmin(costs));
   return result;
 }
 

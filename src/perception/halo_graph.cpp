@@ -55,45 +55,44 @@ HaloGraph haloGraph(const Ring<FeatureTile>& ring, double halo_m) {
   for (std::uint32_t i = 0; i < graph.nodes.size(); ++i) {
     const auto [r, index] = graph.nodes[i];
     const FeatureTile& tile = *ring[r];
+    const std::size_t first = graph.edges.size();
     for (std::uint32_t e = tile.edge_offset[index]; e < tile.edge_offset[index + 1]; ++e) {
       const RingIndex target = tile.edge_target[e];
       const auto at = composed(r, target.ring);
       if (!at || target.index >= number[*at].size()) continue;
       const std::uint32_t j = number[*at][target.index];
       if (j == kOutside || j <= i) continue;
-      const std::uint32_t degrees = degreeOf(tile, index) + degreeOf(*ring[*at], target.index);
-      graph.edges.push_back({{i, j}, r, e, 2.0F / static_cast<float>(std::max(degrees, 2U))});
+      graph.edges.push_back({{i, j}, r, e, degreeOf(tile, index) + degreeOf(*ring[*at], target.index)});
     }
+    std::sort(graph.edges.begin() + static_cast<std::ptrdiff_t>(first), graph.edges.end(),
+              [](const HaloEdge& a, const HaloEdge& b) { return a.ends < b.ends; });
   }
-  std::sort(graph.edges.begin(), graph.edges.end(),
-            [](const HaloEdge& a, const HaloEdge& b) { return a.ends < b.ends; });
   return graph;
 }
 
-std::vector<float> nodeFeatures(const Ring<FeatureTile>& ring, const HaloGraph& graph, std::size_t columns) {
-  std::vector<float> features;
-  features.reserve(graph.nodes.size() * columns);
-  for (const auto& [r, index] : graph.nodes) {
-    const auto row = ring[r]->features.begin() + static_cast<std::ptrdiff_t>(index * columns);
-    features.insert(features.end(), row, row + static_cast<std::ptrdiff_t>(columns));
-  }
-  return features;
+std::vector<const float*> nodeFeatures(const Ring<FeatureTile>& ring, const HaloGraph& graph, std::size_t columns) {
+  std::vector<const float*> rows;
+  rows.reserve(graph.nodes.size());
+  for (const auto& [r, index] : graph.nodes) rows.push_back(ring[r]->features.data() + index * columns);
+  return rows;
 }
 
 CrfGraph crfGraph(const Ring<FeatureTile>& ring, const HaloGraph& structure, const std::vector<LabelValues>& scores,
                   const PairModel& pairs) {
   CrfGraph graph;
+  graph.unary.reserve(scores.size());
   for (const LabelValues& score : scores) {
     LabelCosts costs = softmax(score);
     for (float& cost : costs) cost = -pairs.unary_scale * std::log(std::max(cost, 1e-6F));
     graph.unary.push_back(costs);
   }
   if (pairs.pair_scale == 0) return graph;
-  const std::size_t columns = pairs.knots.size();
+  const PairCostTable table(pairs);
+  graph.edges.reserve(structure.edges.size());
+  graph.pair_costs.reserve(structure.edges.size());
   for (const HaloEdge& edge : structure.edges) {
-    const float* features = ring[edge.ring]->edge_features.data() + edge.number * columns;
     graph.edges.push_back(edge.ends);
-    graph.pair_costs.push_back(pairCostsOf(pairs, {features, columns}, edge.share));
+    graph.pair_costs.push_back(table.at(ring[edge.ring]->edge_features.data() + edge.number * table.columns(), edge.degrees));
   }
   return graph;
 }

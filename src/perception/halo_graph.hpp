@@ -8,6 +8,7 @@
 #include "cluxel/perception/crf_graph.hpp"
 #include "cluxel/perception/feature_tile.hpp"
 #include "cluxel/perception/label_model.hpp"
+#include "perception/pair_cost_table.hpp"
 
 namespace cluxel {
 
@@ -20,7 +21,8 @@ struct HaloNode {
 struct HaloEdge {
   CrfEdge ends;
   std::uint32_t ring = 0, number = 0;   ///< edge `number` of tile `ring`
-  float share = 1;                      ///< 2 / (degree + degree), over all edges of both cluxels
+  std::uint32_t degrees = 0;            ///< of both cluxels together, over all their edges
+  float share() const { return shareOf(degrees); }
 };
 
 /// Structure without costs. Nodes are ordered by ring tile and number; a tile's own cluxels are a range.
@@ -31,8 +33,8 @@ struct HaloGraph {
 };
 HaloGraph haloGraph(const Ring<FeatureTile>& ring, double halo_m);
 
-/// Features of the nodes, row by row.
-std::vector<float> nodeFeatures(const Ring<FeatureTile>& ring, const HaloGraph& graph, std::size_t columns);
+/// Where the features of each node stand.
+std::vector<const float*> nodeFeatures(const Ring<FeatureTile>& ring, const HaloGraph& graph, std::size_t columns);
 
 /// Log-probabilities of the unary, as scores of any unary model, turned into the costs of a CRF.
 CrfGraph crfGraph(const Ring<FeatureTile>& ring, const HaloGraph& structure, const std::vector<LabelValues>& scores,

@@ -33,9 +33,11 @@ LabelTile labelTile(const Ring<FeatureTile>& ring, const LabelModel& model, cons
   const HaloGraph structure = haloGraph(ring, model.pairs.pair_scale == 0 ? 0.0 : params.halo_m);
   const auto scores = scoreRows(model.unary, nodeFeatures(ring, structure, model.layout.columns.size()));
   const CrfGraph graph = crfGraph(ring, structure, scores, model.pairs);
-  const InferenceResult inferred = inferTrws(graph, {.sweeps = static_cast<unsigned>(params.sweeps)});
+  const InferenceResult inferred = inferTrws(graph, {.sweeps = static_cast<unsigned>(params.sweeps), .decode = false});
   LabelTile tile;
   tile.key = ring[kRingCentre]->key;
+  tile.label.reserve(ring[kRingCentre]->size());
+  tile.probability.reserve(ring[kRingCentre]->size());
   for (std::uint32_t i = structure.own_begin; i < structure.own_end; ++i) {
     const CalibratedLabel result = calibrate(model.calibration, inferred.marginals[i]);
     tile.label.push_back(result.label);

@@ -148,7 +148,7 @@ CalibrationRows inferTiles(std::span<const ScoredTile> tiles, const PairModel& p
   parallelFor(tiles.size(), threads, [&](std::size_t t) {
     const ScoredTile& tile = tiles[t];
     const CrfGraph graph = crfGraph(tile.ring, tile.structure, tile.scores, pairs);
-    const InferenceResult result = inferTrws(graph, {.sweeps = static_cast<unsigned>(params.sweeps)});
+    const InferenceResult result = inferTrws(graph, {.sweeps = static_cast<unsigned>(params.sweeps), .decode = false});
     marginals[t].assign(result.marginals.begin() + tile.structure.own_begin,
                         result.marginals.begin() + tile.structure.own_end);
   });
@@ -181,7 +181,7 @@ class TileSampler {
     for (const std::uint32_t e : x_edges[node]) {
       const HaloEdge& edge = x_tile.structure.edges[e];
       const TruthCounts& other = truthAt(edge.ends.from == node ? edge.ends.to : edge.ends.from);
-      if (isClear(other)) x_samples.terms.push_back({rowOf(e), edge.share, majority(other)});
+      if (isClear(other)) x_samples.terms.push_back({rowOf(e), edge.share(), majority(other)});
     }
     x_samples.offset.push_back(static_cast<std::uint32_t>(x_samples.terms.size()));
     LabelCosts costs = softmax(x_tile.scores[node]);

@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "perception/pair_cost_table.hpp"
 #include "perception/pair_training.hpp"
 
 namespace cluxel {
@@ -124,6 +125,37 @@ TEST(CrfPairs, CountsEdgesOfCrowdedNodesLess) {
   PairModel model{.pair_scale = 2, .degree_power = 1, .knots = {}, .weights = {PairCosts{}}};
   model.weights[0].fill(3.0F);
   EXPECT_FLOAT_EQ(pairCostsOf(model, {}, 0.25F)[0], 1.5F);
+}
+
+/// A model of random weights and knots.
+PairModel randomModel(std::mt19937& random, std::size_t columns, float degree_power) {
+  std::normal_distribution<float> normal;
+  PairModel model{.pair_scale = 1.5F, .degree_power = degree_power, .knots = {}, .weights = {}};
+  for (std::size_t c = 0; c < columns; ++c) {
+    const float low = normal(random), middle = low + 0.01F + std::abs(normal(random));
+    model.knots.push_back({low, middle, middle + 0.01F + std::abs(normal(random))});
+  }
+  model.weights.resize(1 + kHats * columns);
+  for (PairCosts& row : model.weights)
+    for (float& weight : row) weight = normal(random);
+  return model;
+}
+
+TEST(CrfPairs, GiveTheSameBitsByTableAndByFormula) {
+  std::mt19937 random(8);
+  std::normal_distribution<float> normal(0, 2);
+  for (const std::size_t columns : {0U, 1U, 3U, 4U, 6U, 10U, 12U, 32U, 33U})
+    for (const float degree_power : {0.0F, 0.5F, 1.0F}) {
+      const PairModel model = randomModel(random, columns, degree_power);
+      const PairCostTable table(model);
+      for (std::uint32_t degrees = 0; degrees < 300; ++degrees) {
+        std::vector<float> features(columns);
+        for (float& value : features) value = normal(random);
+        if (columns > 0 && degrees % 3 == 0) features[degrees % columns] = model.knots[degrees % columns][degrees % 2U];
+        if (columns > 0 && degrees % 7 == 0) features[degrees % columns] = std::numeric_limits<float>::quiet_NaN();
+        EXPECT_EQ(table.at(features.data(), degrees), pairCostsOf(model, features, shareOf(degrees)));
+      }
+    }
 }
 
 }  // namespace

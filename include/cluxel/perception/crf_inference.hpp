@@ -12,10 +12,11 @@ namespace cluxel {
 
 struct InferenceParams {
   unsigned sweeps = 5;        ///< forward and backward passes, at least 1
+  bool decode = true;         ///< false: marginals only, no labelling
 };
 
 struct InferenceResult {
-  std::vector<std::uint8_t> labels;                                       ///< the labelling found
+  std::vector<std::uint8_t> labels;                                       ///< the labelling found; empty unless decoded
   std::vector<std::array<float, kPrimitiveLabelCount>> marginals;         ///< scaled min-marginals, each sums to 1
   double lower_bound = 0;                                                 ///< no labelling has less energy
 };

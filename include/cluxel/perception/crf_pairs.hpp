@@ -33,7 +33,8 @@ std::array<float, kHats> hatsAt(const HatKnots& knots, float value);
 /// Knots at the 5th, 50th and 95th of a hundred of the values, pulled apart where these coincide.
 HatKnots knotsOf(std::vector<float> values);
 
-/// Costs of the pairs of labels at one edge. `features` has one value per knots entry.
+/// Costs of the pairs of labels at one edge. `features` has one value per knots entry. The formula as it stands;
+/// PairCostTable gives the same bits for many edges.
 PairCosts pairCostsOf(const PairModel& model, std::span<const float> features, float share);
 
 }  // namespace cluxel
