@@ -47,7 +47,7 @@ ExitCode trainModel(const TrainOptions& options, Session& session) {
   for (const fs::path& helper : options.helpers)
     sources.push_back({{helper}, truthPath(options.helper_truth, home), true});
   CopyParams copies;
-  if (options.no_copies) copies.sensors.clear();
+  if (options.no_copies) copies = {.sensors = {}, .drives = {}};
   const PerceptionParams perception = portablePerception();
   const unsigned threads = session.threadCount();
   const auto places = readPlaces(sources, perception, copies, options.group_size, threads, session.console);

@@ -45,6 +45,8 @@ class PlaceMaker {
     places.push_back(make(scans, name, group, only_for_training));
     for (std::size_t i = 0; i < x_copies.sensors.size(); ++i)
       addCopy(seenBy(scans.scans, scans.truth, x_copies.sensors[i]), name + ", seen again", group, places);
+    for (const VirtualDrive& drive : x_copies.drives)
+      addCopy(seenAlong(scans.scans, scans.truth, drive), name + ", driven past", group, places);
     if (x_copies.thin_share > 0)
       addCopy(thinned(scans.scans, scans.truth, x_copies.thin_share, kThinSeed), name + ", thinned", group, places);
   }

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "cluxel/base/diagnostic.hpp"
-#include "cluxel/perception/virtual_sensor.hpp"
 #include "perception/labelling_fixture.hpp"
 
 namespace cluxel {
@@ -76,50 +75,6 @@ TEST(Training, CrossValidationMeasuresEveryGroupOnce) {
   const auto folds = crossValidate(places, PerceptionParams{}, made_up::quickTraining(), 1, sink);
   ASSERT_EQ(folds.size(), 3U);
   for (const FoldReport& fold : folds) EXPECT_EQ(fold.evaluation.scores.points(), 2U * 16 * 16 * 10);
-}
-
-/// A wall of points 4 m away, in front of another 8 m away, over flat ground.
-Scan twoWalls() {
-  Scan scan;
-  const auto put = [&](float x, float y, float z) {
-    scan.points.x.push_back(x);
-    scan.points.y.push_back(y);
-    scan.points.z.push_back(z);
-  };
-  for (int i = 0; i < 40; ++i)
-    for (int j = 0; j < 40; ++j) put(0.1F * static_cast<float>(i), 0.1F * static_cast<float>(j), 0.0F);
-  for (const float x : {6.0F, 10.0F})
-    for (int i = 0; i < 60; ++i)
-      for (int j = 0; j < 60; ++j) put(x, -1.0F + 0.1F * static_cast<float>(i), 0.1F * static_cast<float>(j));
-  return scan;
-}
-
-TEST(VirtualSensor, SeesTheNearWallUpToItsHighestLineAndNotTheFarOne) {
-  const std::vector<Scan> scans{twoWalls()};
-  PointTruth truth;
-  truth.primitive.assign(1600, 0);
-  truth.primitive.resize(scans[0].points.size(), 1);
-  const std::vector<PointTruth> truths{truth};
-  const VirtualSensor sensor{.height_m = 1.5, .lowest_rad = -0.4, .highest_rad = 0.1, .lines = 10, .step_rad = 0.05, .spacing_m = 4};
-  const LabelledScans copy = seenBy(scans, truths, sensor);
-  ASSERT_EQ(copy.scans.size(), 1U);
-  std::size_t near = 0, far = 0;
-  for (std::size_t i = 0; i < copy.scans[0].points.size(); ++i) {
-    if (copy.truth[0].primitive[i] != 1) continue;
-    (copy.scans[0].points.x[i] < 8.0F ? near : far) += 1;
-    EXPECT_LE(copy.scans[0].points.z[i], 2.6F);
-  }
-  EXPECT_GT(near, 100U);
-  EXPECT_LT(far, near / 5);
-}
-
-TEST(VirtualSensor, ThinsToTheShareAskedFor) {
-  const std::vector<Scan> scans{twoWalls()};
-  PointTruth truth;
-  truth.primitive.assign(scans[0].points.size(), 0);
-  const LabelledScans copy = thinned(scans, std::vector<PointTruth>{truth}, 0.25, 3);
-  EXPECT_NEAR(static_cast<double>(copy.scans[0].points.size()), 0.25 * static_cast<double>(scans[0].points.size()), 150);
-  EXPECT_EQ(copy.truth[0].primitive.size(), copy.scans[0].points.size());
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cluxel/perception/training.hpp"
+#include "cluxel/perception/virtual_drive.hpp"
 #include "cluxel/perception/virtual_sensor.hpp"
 
 namespace cluxel {
@@ -24,6 +25,7 @@ PerceptionParams portablePerception();
 /// Copies of each place that other sensors would have seen; they only train.
 struct CopyParams {
   std::vector<VirtualSensor> sensors = spinningSensors();
+  std::vector<VirtualDrive> drives = usualDrives();
   double thin_share = 0;                       ///< above 0: also a copy with this share of the points
 };
 

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a sensor sees of a scanned place: the nearest point of each direction.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cluxel/perception/virtual_sensor.hpp"
+
+namespace cluxel {
+
+/// All points of all scans in the map frame [m], with the truth.
+struct PlaceCloud {
+  std::vector<Eigen::Vector3d> point;
+  std::vector<std::int8_t> primitive;
+};
+
+PlaceCloud placeCloud(std::span<const Scan> scans, std::span<const PointTruth> truth);
+
+/// Where the sensor stands: over the ground point nearest to the middle of each cell, when most of the cell is ground.
+std::vector<Eigen::Vector3d> standsOf(const PlaceCloud& cloud, const VirtualSensor& sensor);
+
+/// Indices of the nearest point of each direction, by direction.
+std::vector<std::size_t> nearestPoints(const PlaceCloud& cloud, const Eigen::Vector3d& stand, const VirtualSensor& sensor);
+
+}  // namespace cluxel
