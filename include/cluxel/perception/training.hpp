@@ -35,7 +35,7 @@ struct TrainParams {
   BoostingParams boosting;
   double class_balance = 0.5;          ///< classes weigh as 1 / frequency^this: 0 as they come, 1 all alike
   double point_power = 0.5;            ///< a cluxel weighs as its points to this power
-  int most_rows = 400000;              ///< cluxels for the unary: common labels are thinned, and weigh more for it
+  int most_rows = 1000000;             ///< cluxels for the unary: common labels are thinned, and weigh more for it
   bool pairwise = true;
   bool overlap_correction = true;      ///< let overlap of supports and degree weaken edges
   double pair_l2 = 3.0;

@@ -19,7 +19,7 @@ struct UnaryRows {
 };
 
 struct BoostingParams {
-  int trees = 150;
+  int trees = 200;
   int depth = 6;                       ///< splits per tree, up to kLargestTreeDepth
   double learning_rate = 0.12;
   double l2 = 10.0;                    ///< added to a leaf's second derivative; rows have a mean weight of 1
