@@ -32,13 +32,13 @@ rules:
       label_in: [horizontal_plane, vertical_plane, small_structure, scatter, column]
       where:
         - { attribute: length, op: "<=", value: 2.0 m }
-        - { attribute: top, op: between, min: 0.15 m, max: 0.70 m }
+        - { attribute: top, op: between, min: 0.15 m, max: 1.00 m }
     group: { near: 0.4 m, limits: [ { attribute: length, op: "<=", value: 2.2 m } ] }
     tree:
       all:
         - { attribute: length, op: between, min: 1.1 m, max: 2.2 m }
         - { attribute: width, op: "<=", value: 0.9 m }
-        - { attribute: top, op: between, min: 0.35 m, max: 0.65 m }
+        - { attribute: top, op: between, min: 0.35 m, max: 1.00 m }
       yes: { accept: { confidence: 0.9 } }
       no: { reject: not of a bench's size }
 )";
@@ -49,7 +49,7 @@ void addPoint(ScanPoints& points, double x, double y, double z) {
   points.z.push_back(static_cast<float>(z));
 }
 
-/// Flat ground with a box of 1.5 x 0.5 x 0.45 m at (5, 5).
+/// Flat ground with a seat of 1.5 x 0.5 x 0.45 m at (5, 5), and its back of 0.9 m.
 Scan parkWithBench() {
   std::mt19937 random(11);
   std::normal_distribution<double> noise(0, 0.005);
@@ -63,6 +63,8 @@ Scan parkWithBench() {
   for (double x = 4.25; x <= 5.75; x += 0.04)
     for (double z = 0.05; z < 0.45; z += 0.04)
       for (const double y : {4.75, 5.25}) addPoint(scan.points, x, y + noise(random), z);
+  for (double x = 4.25; x <= 5.75; x += 0.04)
+    for (double z = 0.45; z <= 0.9; z += 0.04) addPoint(scan.points, x, 5.25 + noise(random), z);
   return scan;
 }
 
