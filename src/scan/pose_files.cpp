@@ -106,7 +106,7 @@ Eigen::Isometry3d parseKittiCalibration(std::string_view bytes, const std::strin
   while (scanner.nextLine()) {
     const std::string_view name = scanner.word("a name");
     if (name != "Tr:" && name != "Tr" && name != "Tr_velo_to_cam:" && name != "Tr_velo_cam:") continue;
-    const Eigen::Isometry3d Tr = readThreeRows(scanner);
+    Eigen::Isometry3d Tr = readThreeRows(scanner);
     scanner.endLine("Tr: and 12 numbers");
     checkPose(scanner, Tr);
     return Tr;

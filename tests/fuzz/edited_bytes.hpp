@@ -10,6 +10,18 @@
 
 namespace cluxel::fuzz {
 
+/// Each edit: three bytes of place, one of length, and what is written over; the size stays.
+inline std::string overwritten(std::string text, std::string_view edits) {
+  const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<std::uint8_t>(edits[i])); };
+  while (edits.size() >= 5) {
+    const std::size_t place = (byte(0) | byte(1) << 8U | byte(2) << 16U) % text.size();
+    const std::size_t count = std::min({byte(3) % 16 + 1, edits.size() - 4, text.size() - place});
+    text.replace(place, count, edits.substr(4, count));
+    edits.remove_prefix(4 + count);
+  }
+  return text;
+}
+
 /// Each edit: three bytes of place, one of how much goes, one of how much comes, and what comes.
 inline std::string edited(std::string text, std::string_view edits) {
   const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<std::uint8_t>(edits[i])); };

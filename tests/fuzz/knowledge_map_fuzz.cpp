@@ -1,32 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a map file: an error or an answer, never a crash. Seeds: small maps made by the tests.
+// Any bytes as a map file, or bytes written over a small map: an error or an answer, never a crash.
 #include <unistd.h>
 
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <string>
 
 #include "cluxel/base/diagnostic.hpp"
+#include "cluxel/base/file_bytes.hpp"
 #include "cluxel/knowledge/map_check.hpp"
 #include "cluxel/knowledge/quad_store.hpp"
+#include "edited_bytes.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace cluxel;
+
+/// A map with terms of all kinds, some pages of quads and a block.
+std::string smallMap(const fs::path& file) {
+  fs::remove(file);
+  {
+    const auto environment = Environment::open(file, OpenMode::Create);
+    WriteTransaction transaction = environment->write();
+    QuadWriter writer(transaction);
+    for (int i = 0; i < 300; ++i) {
+      const std::string number = std::to_string(i);
+      writer.add({Term::iri("s" + std::to_string(i % 40)), Term::iri("p" + std::to_string(i % 5)), Term::integer(i), Term::iri("")});
+      writer.add({Term::iri("s" + number), Term::iri("p"), Term::literal(std::string(static_cast<std::size_t>(i), 'x')), Term::iri("g")});
+    }
+    writer.flush();
+    transaction.putBlock("t", "a", std::string(9000, 'b'));
+    transaction.commit();
+  }
+  return readFile(file);
+}
+
+void readAll(const fs::path& file) {
+  checkMap(file);
+  const auto environment = Environment::open(file, OpenMode::ReadOnly);
+  environment->read().block("t", "a");
+  const QuadReader reader(environment->read());
+  QuadCursor quads = reader.scan({}, QuadOrder::Gspo);
+  std::size_t length = 0;
+  for (QuadIds quad; quads.next(quad);) length += reader.termOf(quad.o).text.size();
+  reader.predicates();
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  namespace fs = std::filesystem;
-  const fs::path file = fs::temp_directory_path() / ("cluxel-fuzz-" + std::to_string(::getpid()) + ".clx");
-  if (std::FILE* out = std::fopen(file.c_str(), "wb")) {
-    if (size > 0) std::fwrite(data, 1, size, out);
-    std::fclose(out);
-  }
+  static const fs::path file = fs::temp_directory_path() / ("cluxel-fuzz-" + std::to_string(::getpid()) + ".clx");
+  static const std::string valid = smallMap(file);
+  if (size == 0) return 0;
+  const std::string_view rest(reinterpret_cast<const char*>(data) + 1, size - 1);
+  writeFile(file, data[0] % 8 == 0 ? std::string(rest) : fuzz::overwritten(valid, rest));
   try {
-    cluxel::checkMap(file);
-    const auto environment = cluxel::Environment::open(file, cluxel::OpenMode::ReadOnly);
-    const cluxel::QuadReader reader(environment->read());
-    cluxel::QuadCursor quads = reader.scan({}, cluxel::QuadOrder::Gspo);
-    std::size_t length = 0;
-    for (cluxel::QuadIds quad; quads.next(quad);) length += reader.termOf(quad.o).text.size();
-    reader.predicates();
-  } catch (const cluxel::Error&) {
+    readAll(file);
+  } catch (const Error&) {
   }
   return 0;
 }

@@ -86,6 +86,14 @@ TEST_F(MapBuilder, AScanThatIsGivenTwiceCountsOnce) {
   EXPECT_EQ(builtText(files, *inputs), *expected);
 }
 
+TEST_F(MapBuilder, WhereTheInputFilesLieDoesNotChangeTheMap) {
+  for (const char* name : {"ontology", "rules", "models/oakland"}) {
+    fs::create_directories((folder.path() / name).parent_path());
+    fs::copy(fs::path(CLUXEL_SOURCE_DIR) / name, folder.path() / name, fs::copy_options::recursive);
+  }
+  EXPECT_TRUE(builtText(campus->files(), readMapInputs({}, DataHome({folder.path()}))) == *expected);
+}
+
 TEST_F(MapBuilder, FewerScansGiveAnotherMap) {
   EXPECT_NE(builtText({campus->files()[0], campus->files()[1]}, *inputs), *expected);
 }
