@@ -7,6 +7,13 @@ cluxel=$1 data=$2 out=$3 what=${4:-all}
 folds=("ac ad" "ae ag" "ah ai" "aj ak" "al ao")
 mkdir -p "$out"
 
+# What the shipped model learns from beside the chunks (models/oakland/README.md).
+helpers=()
+for seed in 11 12 13 14; do
+  [ -d "$out/campus$seed" ] || "$cluxel" simulate "$out/campus$seed" --seed "$seed" --stops 4 --size 60 >/dev/null
+  helpers+=(--helper "$out/campus$seed")
+done
+
 chunks() { for name in "$@"; do printf '%s\n' "$data/oakland3d/oakland_part2_$name.xyz_label_conf"; done; }
 
 for i in "${!folds[@]}"; do
@@ -15,7 +22,8 @@ for i in "${!folds[@]}"; do
   for j in "${!folds[@]}"; do [ "$j" = "$i" ] || rest+=(${folds[$j]}); done
   # The fold's model has seen neither of the two chunks, nor have its calibration and pairwise term.
   if [ "$what" != measure ]; then
-    "$cluxel" train $(chunks "${rest[@]}") --truth "$data/oakland3d_truth" --no-copies -o "$out/fold$i" >"$out/fold$i.train.txt"
+    "$cluxel" train $(chunks "${rest[@]}") --truth "$data/oakland3d_truth" "${helpers[@]}" --helper-truth campus.yaml \
+      -o "$out/fold$i" >"$out/fold$i.train.txt"
   fi
   if [ "$what" != train ]; then
     "$cluxel" build $(chunks $held) -o "$out/fold$i.clx" --model "$out/fold$i" --force >"$out/fold$i.build.txt"
