@@ -1,245 +1,193 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cluxel's SPARQL engine beside oxigraph (npm, WASM) and rasqal over librdf's `trees`, in one run: text in, TSV out.
-//   sparql_bench [--triples N] [--others] [--only NAME] [--module FOLDER]
-#include <librdf.h>
-#include <signal.h>
-#include <sys/wait.h>
+// Cluxel's SPARQL engine beside rasqal over librdf's `trees` (10k triples) and oxigraph (npm, WASM; 100k and 1M), and
+// alone at 10M: text in, TSV out, all in one run.
+//   sparql_bench [--only NAME] [--module FOLDER] [--rasqal N] [--oxigraph N,N] [--alone N]     (0: leave out)
 #include <unistd.h>
 
-#include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
-#include <iostream>
-#include <map>
-#include <nlohmann/json.hpp>
+#include <iomanip>
 #include <sstream>
 
-#include "cluxel/knowledge/environment.hpp"
 #include "cluxel/knowledge/quad_store.hpp"
 #include "cluxel/sparql/query_engine.hpp"
-#include "cluxel/sparql/result_writer.hpp"
 #include "sparql_data.hpp"
+#include "sparql_peers.hpp"
 
 namespace {
 
 using namespace cluxel;
+using namespace cluxel::bench;
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
-constexpr const char* kPrefixes =
-    "PREFIX clx: <https://w3id.org/cluxel/ontology#> PREFIX rdfs: <http://www.w3.org/2000/01/rdf-schema#> "
-    "PREFIX sosa: <http://www.w3.org/ns/sosa/> PREFIX geo: <http://www.opengis.net/ont/geosparql#> "
-    "PREFIX geof: <http://www.opengis.net/def/function/geosparql/> ";
-constexpr double kMostSecondsPerQuery = 5;
-
-struct Question {
-  std::string name, text;
+struct Arguments {
+  std::string only;
+  fs::path module = fs::path(CLUXEL_SOURCE_DIR) / "build/npm";
+  std::uint64_t rasqal = 10'000, alone = 10'000'000;
+  std::vector<std::uint64_t> oxigraph = {100'000, 1'000'000};
 };
 
-/// Seconds of the median run, and the rows of the answer.
-struct Measure {
-  double seconds = -1;
-  std::size_t rows = 0;
-  bool given_up = false;   ///< the seconds are a lower bound
+Arguments argumentsOf(int argc, char** argv) {
+  Arguments arguments;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    const std::string option = argv[i], value = argv[i + 1];
+    if (option == "--only") arguments.only = value;
+    if (option == "--module") arguments.module = value;
+    if (option == "--rasqal") arguments.rasqal = std::stoull(value);
+    if (option == "--alone") arguments.alone = std::stoull(value);
+    if (option != "--oxigraph") continue;
+    arguments.oxigraph.clear();
+    std::istringstream sizes(value);
+    for (std::string size; std::getline(sizes, size, ',');)
+      if (size != "0") arguments.oxigraph.push_back(std::stoull(size));
+  }
+  return arguments;
+}
+
+/// A generated map in a store, and for the peers as a file of triples, all in one default graph: their best case.
+class Data {
+ public:
+  Data(std::uint64_t triples, bool with_file) : environment_(Environment::temporary()) {
+    const auto start = std::chrono::steady_clock::now();
+    std::ofstream out;
+    if (with_file) {
+      file_ = fs::temp_directory_path() / ("cluxel_sparql_bench_" + std::to_string(getpid()) + ".nt");
+      out.open(file_);
+    }
+    WriteTransaction transaction = environment_->write();
+    QuadWriter writer(transaction);
+    generateMap(triples, [&](const Quad& quad) {
+      writer.add(quad);
+      if (out.is_open()) out << toNTriples(quad.subject) << ' ' << toNTriples(quad.predicate) << ' ' << toNTriples(quad.object) << " .\n";
+    });
+    writer.flush();
+    transaction.commit();
+    std::printf("\n%llu triples, made and loaded in %.1f s\n\n",
+                static_cast<unsigned long long>(QuadReader(environment_->read()).size()), since(start));
+    std::fflush(stdout);
+  }
+  ~Data() {
+    if (!file_.empty()) fs::remove(file_);
+  }
+  Data(const Data&) = delete;
+  Data& operator=(const Data&) = delete;
+  const Environment& environment() const { return *environment_; }
+  const fs::path& file() const { return file_; }
+
+ private:
+  std::shared_ptr<Environment> environment_;
+  fs::path file_;
 };
 
-std::vector<Question> questions(const fs::path& file, const std::string& only) {
-  std::ifstream in(file);
-  std::vector<Question> result;
-  for (std::string line; std::getline(in, line);) {
-    if (line.starts_with("== ")) result.push_back({line.substr(3), kPrefixes});
-    else if (!line.empty() && line[0] != '#' && !result.empty()) result.back().text += line + "\n";
-  }
-  std::erase_if(result, [&](const Question& q) { return q.name.find(only) == std::string::npos; });
-  return result;
-}
-
-double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-/// Runs at least five times, or for half a second.
-template <typename Run>
-Measure measured(Run run) {
-  std::vector<double> seconds;
-  Measure measure;
-  const auto start = Clock::now();
-  while (seconds.size() < 5 || (seconds.size() < 200 && since(start) < 0.4)) {
-    const auto begin = Clock::now();
-    measure.rows = run();
-    seconds.push_back(since(begin));
-    if (since(start) > kMostSecondsPerQuery) break;
-  }
-  std::sort(seconds.begin(), seconds.end());
-  measure.seconds = seconds[seconds.size() / 2];
-  return measure;
-}
-
-std::size_t lines(std::string_view text) {
-  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
-}
-
-void load(Environment& environment, std::uint64_t triples, const fs::path& nt_file) {
-  std::ofstream out;
-  if (!nt_file.empty()) out.open(nt_file);
-  WriteTransaction transaction = environment.write();
-  QuadWriter writer(transaction);
-  bench::generateMap(triples, [&](const Quad& quad) {
-    writer.add(quad);
-    // The peers get all triples in one default graph: their best case.
-    if (out.is_open()) out << toNTriples(quad.subject) << ' ' << toNTriples(quad.predicate) << ' ' << toNTriples(quad.object) << " .\n";
-  });
-  writer.flush();
-  transaction.commit();
-}
-
-std::map<std::string, Measure> askCluxel(const Environment& environment, const std::vector<Question>& asked) {
-  std::map<std::string, Measure> measures;
-  for (const Question& question : asked) {
-    measures[question.name] = measured([&] {
-      const QuadReader reader(environment.read());
-      std::string text;
-      const auto writer = makeResultWriter(ResultFormat::Tsv, [&](std::string_view piece) { text += piece; });
-      runQuery(reader, question.text, {}, *writer);
-      return lines(text);
-    });
-  }
-  return measures;
-}
-
-std::map<std::string, Measure> askOxigraph(const fs::path& module, const fs::path& nt_file, const std::vector<Question>& asked) {
-  const fs::path requests = nt_file.string() + ".requests.json", answers = nt_file.string() + ".answers.json";
-  nlohmann::json list = nlohmann::json::array();
-  for (const Question& question : asked) list.push_back({{"name", question.name}, {"query", question.text}});
-  std::ofstream(requests) << list;
-  const std::string script = std::string(CLUXEL_SOURCE_DIR) + "/bench/sparql_oxigraph.mjs";
-  const std::string command = "node --max-old-space-size=8000 '" + script + "' '" + module.string() + "' '" + nt_file.string() +
-                              "' '" + requests.string() + "' '" + answers.string() + "'";
-  std::map<std::string, Measure> measures;
-  if (std::system(command.c_str()) != 0) return measures;
-  nlohmann::json read;
-  std::ifstream(answers) >> read;
-  for (const auto& answer : read) measures[answer["name"]] = {answer["seconds"], answer["rows"], answer.contains("given_up")};
-  return measures;
-}
-
-/// Rasqal through librdf, in a process of its own that a deadline ends.
-Measure askRasqal(librdf_world* world, librdf_model* model, const Question& question) {
-  int ends[2];
-  if (pipe(ends) != 0) return {};
-  const pid_t child = fork();
-  if (child == 0) {
-    alarm(static_cast<unsigned>(kMostSecondsPerQuery) * 2);
-    const Measure measure = measured([&]() -> std::size_t {
-      librdf_query* query = librdf_new_query(world, "sparql11-query", nullptr, reinterpret_cast<const unsigned char*>(question.text.c_str()), nullptr);
-      if (query == nullptr) _exit(1);
-      librdf_query_results* results = librdf_model_query_execute(model, query);
-      if (results == nullptr) _exit(1);
-      std::size_t size = 0;
-      unsigned char* text = librdf_query_results_to_counted_string2(results, "tsv", nullptr, nullptr, nullptr, &size);
-      if (text == nullptr) _exit(1);
-      const std::size_t rows = lines({reinterpret_cast<char*>(text), size});
-      librdf_free_memory(text);
-      librdf_free_query_results(results);
-      librdf_free_query(query);
-      return rows;
-    });
-    if (write(ends[1], &measure, sizeof measure) != sizeof measure) _exit(1);
-    _exit(0);
-  }
-  close(ends[1]);
-  Measure measure;
-  if (read(ends[0], &measure, sizeof measure) != sizeof measure) measure = {};
-  close(ends[0]);
-  waitpid(child, nullptr, 0);
-  return measure;
-}
-
-std::map<std::string, Measure> askRasqal(const fs::path& nt_file, const std::vector<Question>& asked) {
-  librdf_world* world = librdf_new_world();
-  librdf_world_open(world);
-  librdf_world_set_logger(world, nullptr, [](void*, librdf_log_message*) { return 1; });
-  librdf_storage* storage = librdf_new_storage(world, "trees", nullptr, nullptr);
-  librdf_model* model = librdf_new_model(world, storage, nullptr);
-  librdf_parser* parser = librdf_new_parser(world, "ntriples", nullptr, nullptr);
-  librdf_uri* uri = librdf_new_uri_from_filename(world, nt_file.c_str());
-  std::map<std::string, Measure> measures;
-  if (librdf_parser_parse_into_model(parser, uri, uri, model) == 0) {
-    for (const Question& question : asked) measures[question.name] = askRasqal(world, model, question);
-  }
-  return measures;
-}
-
-std::string cell(const std::map<std::string, Measure>& measures, const std::string& name) {
-  const auto found = measures.find(name);
-  if (found == measures.end() || found->second.seconds < 0) return "-";
+std::string milliseconds(const Measure& measure) {
+  if (measure.seconds < 0) return measure.failure.empty() ? "-" : measure.failure;
   std::ostringstream text;
   text.precision(3);
-  if (found->second.given_up) text << "> ";
-  text << found->second.seconds * 1000;
+  if (measure.given_up) text << "> ";
+  text << measure.seconds * 1000;
   return text.str();
 }
 
-void printTable(const std::vector<Question>& asked, const std::map<std::string, Measure>& ours,
-                const std::map<std::string, Measure>& oxigraph, const std::map<std::string, Measure>& rasqal) {
-  std::printf("| question | rows | cluxel [ms] | oxigraph [ms] | ratio | rasqal trees [ms] | ratio |\n|---|---|---|---|---|---|---|\n");
-  double logs = 0, least = HUGE_VAL;
-  std::string slowest;
-  int compared = 0;
-  const auto ratio = [&](const std::map<std::string, Measure>& others, const std::string& name) {
-    const auto found = others.find(name);
-    return found == others.end() || found->second.seconds < 0 ? -1 : found->second.seconds / ours.at(name).seconds;
-  };
+std::string nameOfLeast(const std::map<std::string, double>& ratios) {
+  return std::min_element(ratios.begin(), ratios.end(), [](const auto& a, const auto& b) { return a.second < b.second; })->first;
+}
+
+void printComparison(const std::string& peer, const std::vector<Question>& asked, const Measures& ours, const Measures& theirs) {
+  std::printf("| question | rows | cluxel [ms] | %s [ms] | ratio |\n|---|---|---|---|---|\n", peer.c_str());
+  double logs = 0;
+  std::map<std::string, double> ratios;
+  std::size_t wrong = 0, unanswered = 0;
   for (const Question& question : asked) {
-    const double to_oxigraph = ratio(oxigraph, question.name), to_rasqal = ratio(rasqal, question.name);
-    const auto other = oxigraph.find(question.name);
-    const bool same = other == oxigraph.end() || other->second.given_up || other->second.rows == ours.at(question.name).rows;
-    std::printf("| %s | %zu%s | %s | %s | %.1f | %s | %.1f |\n", question.name.c_str(), ours.at(question.name).rows,
-                same ? "" : (" (oxigraph " + std::to_string(other->second.rows) + ")").c_str(), cell(ours, question.name).c_str(),
-                cell(oxigraph, question.name).c_str(), to_oxigraph, cell(rasqal, question.name).c_str(), to_rasqal);
-    if (to_oxigraph <= 0) continue;
-    logs += std::log(to_oxigraph);
-    ++compared;
-    if (to_oxigraph < least) least = to_oxigraph, slowest = question.name;
+    const Measure& mine = ours.at(question.name);
+    const auto found = theirs.find(question.name);
+    const Measure other = found == theirs.end() ? Measure() : found->second;
+    const bool answered = other.seconds >= 0, same = !answered || other.given_up || other.rows == mine.rows;
+    const double ratio = other.seconds / mine.seconds;
+    std::printf("| %s | %zu%s | %s | %s | %s |\n", question.name.c_str(), mine.rows,
+                same ? "" : (" (" + peer + " " + std::to_string(other.rows) + ")").c_str(), milliseconds(mine).c_str(),
+                milliseconds(other).c_str(), answered ? (std::ostringstream() << std::fixed << std::setprecision(1) << ratio).str().c_str() : "");
+    wrong += same ? 0 : 1;
+    unanswered += answered ? 0 : 1;
+    if (!answered) continue;
+    logs += std::log(ratio);
+    ratios[question.name] = ratio;
   }
-  if (compared > 0) {
-    std::printf("\n%d questions: %.1f times oxigraph's speed in the geometric mean, least %.1f (%s)\n", compared,
-                std::exp(logs / compared), least, slowest.c_str());
+  if (ratios.empty()) return;
+  const std::string least = nameOfLeast(ratios);
+  std::printf("\n%zu questions answered by both: %.1f times the speed of %s in the geometric mean, least %.1f (%s); %zu with other rows, "
+              "%zu without an answer by %s\n",
+              ratios.size(), std::exp(logs / static_cast<double>(ratios.size())), peer.c_str(), ratios.at(least), least.c_str(), wrong,
+              unanswered, peer.c_str());
+  std::fflush(stdout);
+}
+
+/// The same question with its patterns in another order: names that differ by "_bad".
+void printOrders(const std::vector<Question>& asked, const Measures& ours) {
+  std::printf("\nPatterns in bad order against good order, time:");
+  for (const Question& question : asked) {
+    if (!question.name.ends_with("_bad")) continue;
+    const std::string stem = question.name.substr(0, question.name.size() - 4);
+    const auto good = ours.contains(stem) ? ours.find(stem) : ours.find(stem + "_good");
+    if (good != ours.end()) std::printf(" %s %.2f", stem.c_str(), ours.at(question.name).seconds / good->second.seconds);
   }
+  std::printf("\n");
+}
+
+/// Growth against the smaller data: time, rows of the answer, rows that the operators had to make.
+void printGrowth(const std::vector<Question>& asked, const Measures& small, const Measures& large) {
+  std::printf("| question | rows | cluxel [ms] | time grows | rows grow | work grows | bar |\n|---|---|---|---|---|---|---|\n");
+  std::size_t over = 0;
+  for (const Question& question : asked) {
+    const Measure &before = small.at(question.name), &now = large.at(question.name);
+    const double time = now.seconds / before.seconds;
+    const double rows = static_cast<double>(std::max<std::size_t>(now.rows, 1)) / static_cast<double>(std::max<std::size_t>(before.rows, 1));
+    const double work = now.work_rows / std::max(before.work_rows, 1.0);
+    // An aggregate, a filter or a LIMIT answers with few rows from many: what grows is what it has to read.
+    const double grown = std::max(rows, work), bar = grown <= 1 ? 3 : std::max(3.0, 1.5 * grown);
+    over += time > bar ? 1 : 0;
+    std::printf("| %s | %zu | %s | %.1f | %.1f | %.1f | %.1f%s |\n", question.name.c_str(), now.rows, milliseconds(now).c_str(), time,
+                rows, work, bar, time > bar ? " over" : "");
+  }
+  std::printf("\n%zu of %zu questions grow more than 1.5 times what their rows grow (3 times where those are equal)\n", over, asked.size());
+}
+
+/// Text to plan, without running it.
+void printPreparation(const Environment& environment, const std::vector<Question>& asked) {
+  const QuadReader reader(environment.read());
+  std::printf("\nParse and plan [ms]:");
+  for (const Question& question : asked) {
+    for (const char* name : {"class_lookup", "one_object", "star3_good", "chain3_bad", "range_height", "star5_bad"}) {
+      if (question.name != name) continue;
+      const Measure measure = measured([&] { return PreparedQuery(reader, question.text).variables().size(); });
+      std::printf(" %s %.4f", name, measure.seconds * 1000);
+    }
+  }
+  std::printf("\n");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::uint64_t triples = 100'000;
-  std::string only;
-  bool others = true, with_rasqal = true;
-  fs::path module = fs::path(CLUXEL_SOURCE_DIR) / "build/npm";
-  for (int i = 1; i < argc; ++i) {
-    const std::string option = argv[i];
-    if (option == "--triples" && i + 1 < argc) triples = std::stoull(argv[++i]);
-    if (option == "--only" && i + 1 < argc) only = argv[++i];
-    if (option == "--module" && i + 1 < argc) module = argv[++i];
-    if (option == "--alone") others = false;
-    if (option == "--no-rasqal") with_rasqal = false;
+  const Arguments arguments = argumentsOf(argc, argv);
+  const auto asked = readQuestions(fs::path(CLUXEL_SOURCE_DIR) / "bench/sparql_queries.txt", arguments.only);
+  if (arguments.rasqal > 0) {
+    const Data data(arguments.rasqal, true);
+    printComparison("rasqal", asked, askCluxel(data.environment(), asked), askRasqal(data.file(), asked));
   }
-  const auto asked = questions(fs::path(CLUXEL_SOURCE_DIR) / "bench/sparql_queries.txt", only);
-  const fs::path nt_file = others ? fs::temp_directory_path() / ("cluxel_sparql_bench_" + std::to_string(getpid()) + ".nt") : fs::path();
-  const auto environment = Environment::temporary();
-  auto start = Clock::now();
-  load(*environment, triples, nt_file);
-  std::printf("%llu triples, loaded and written in %.1f s\n\n",
-              static_cast<unsigned long long>(QuadReader(environment->read()).size()), since(start));
-  std::fflush(stdout);
-  const auto ours = askCluxel(*environment, asked);
-  std::map<std::string, Measure> oxigraph, rasqal;
-  if (others && fs::exists(module / "node_modules/oxigraph")) oxigraph = askOxigraph(module, nt_file, asked);
-  if (others && with_rasqal) rasqal = askRasqal(nt_file, asked);
-  printTable(asked, ours, oxigraph, rasqal);
-  for (const char* ending : {"", ".requests.json", ".answers.json"}) {
-    if (others) fs::remove(nt_file.string() + ending);
+  const bool has_oxigraph = fs::exists(arguments.module / "node_modules/oxigraph");
+  if (!has_oxigraph) std::printf("oxigraph is not in %s: npm install there\n", arguments.module.c_str());
+  Measures ours;
+  for (const std::uint64_t triples : arguments.oxigraph) {
+    const Data data(triples, has_oxigraph);
+    ours = askCluxel(data.environment(), asked);
+    printComparison("oxigraph", asked, ours, has_oxigraph ? askOxigraph(arguments.module, data.file(), asked) : Measures());
+    printOrders(asked, ours);
+    printPreparation(data.environment(), asked);
+  }
+  if (arguments.alone > 0 && !ours.empty()) {
+    const Data data(arguments.alone, false);
+    printGrowth(asked, ours, askCluxel(data.environment(), asked));
   }
   return 0;
 }

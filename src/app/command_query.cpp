@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// `cluxel query`, `cluxel update` and `cluxel tasks`: questions in SPARQL.
+// `cluxel query` and `cluxel tasks`: questions in SPARQL.
 #include "app/command.hpp"
+#include "app/named_sources.hpp"
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/sparql/result_writer.hpp"
-#include "cluxel/sparql/update_engine.hpp"
 #include "cluxel/tasks/query_source.hpp"
 
 namespace cluxel::app {
@@ -13,7 +13,7 @@ namespace {
 struct QueryArguments {
   fs::path source, file;
   std::string text, format;
-  std::vector<std::string> params;
+  std::vector<std::string> params, services;
   double deadline_s = 0;
   std::uint64_t max_rows = 0, max_memory_mib = 0;
   bool explain = false, why_empty = false, strict = false;
@@ -63,22 +63,6 @@ QueryOptions optionsOf(const QueryArguments& arguments, const QuerySource& sourc
   return options;
 }
 
-Question questionOf(const QueryArguments& arguments, const Session& session) {
-  if (!arguments.text.empty() && !arguments.file.empty())
-    throw Error(ExitCode::Usage, "give a query file or -e TEXT, not both");
-  if (arguments.file.empty() && arguments.text.empty())
-    throw Error(ExitCode::Usage, "give a query file, or a query with -e TEXT");
-  if (!arguments.file.empty()) {
-    fs::path file = arguments.file;
-    if (!file.has_extension()) file += ".rq";
-    return readQuestion(session.dataHome().locate("queries", file));
-  }
-  Question question;
-  question.file = "-e";
-  question.text = arguments.text;
-  return question;
-}
-
 ResultFormat formatOf(const QueryArguments& arguments, const Session& session, ast::QueryForm form) {
   const bool is_graph = form == ast::QueryForm::Construct || form == ast::QueryForm::Describe;
   if (arguments.format.empty()) {
@@ -93,10 +77,12 @@ ResultFormat formatOf(const QueryArguments& arguments, const Session& session, a
 }
 
 ExitCode query(const QueryArguments& arguments, const Session& session) {
-  const Question question = questionOf(arguments, session);
+  const Question question = questionFrom(arguments.file, arguments.text, session);
   const QuerySource source = openQuerySource(arguments.source);
   const QuadReader reader = source.reader();
-  const QueryOptions options = optionsOf(arguments, source, question.file.string());
+  QueryOptions options = optionsOf(arguments, source, question.file.string());
+  const NamedSources services("--service", arguments.services);
+  options.services = services.readers();
   const std::vector<Binding> bindings = bindingsFor(question, arguments.params);
   std::vector<std::string> names;
   for (const Binding& binding : bindings) names.push_back(binding.first);
@@ -111,32 +97,8 @@ ExitCode query(const QueryArguments& arguments, const Session& session) {
   std::fflush(stdout);
   if (arguments.explain) std::fprintf(stderr, "%s\n", prepared.explain().c_str());
   if (arguments.why_empty && counter.exitCode() == ExitCode::NoRows)
-    std::fprintf(stderr, "%s\n", whyEmpty(reader, question.text, options).c_str());
+    std::fprintf(stderr, "%s\n", whyEmpty(reader, question.text, options, bindings).c_str());
   return counter.exitCode();
-}
-
-struct UpdateArguments {
-  fs::path map, file;
-  std::string text;
-};
-
-ExitCode update(const UpdateArguments& arguments, const Session& session) {
-  QueryArguments as_query;
-  as_query.file = arguments.file;
-  as_query.text = arguments.text;
-  const Question question = questionOf(as_query, session);
-  const auto environment = Environment::open(arguments.map, OpenMode::ReadWrite);
-  WriteTransaction transaction = environment->write();
-  UpdateOptions options;
-  options.query.source_name = question.file.string();
-  const UpdateReport report = runUpdate(transaction, question.text, options);
-  transaction.commit();
-  if (session.json)
-    printJson(Json{{"inserted", report.inserted}, {"deleted", report.deleted}});
-  else
-    std::printf("%llu inserted, %llu deleted\n", static_cast<unsigned long long>(report.inserted),
-                static_cast<unsigned long long>(report.deleted));
-  return ExitCode::Done;
 }
 
 Json questionJson(const Question& question) {
@@ -175,6 +137,7 @@ void addQuery(CLI::App& app, Session& session) {
   command->add_option("query", options->file, "a query file, by path or by name in queries/");
   command->add_option("-e,--text", options->text, "the query itself");
   command->add_option("--param", options->params, "NAME=VALUE for a parameter of the question");
+  command->add_option("--service", options->services, "IRI=SOURCE: a map or RDF file that answers SERVICE <IRI>; others are refused");
   command->add_option("--format", options->format, "table, json, xml, csv, tsv; for graphs turtle, ntriples");
   command->add_option("--deadline", options->deadline_s, "seconds after which the query fails with exit code 6")
       ->check(above0());
@@ -186,15 +149,6 @@ void addQuery(CLI::App& app, Session& session) {
   command->add_flag("--why-empty", options->why_empty, "when there is no row, name the pattern that left none");
   command->add_flag("--strict", options->strict, "the default graph is the unnamed graph, not the union");
   onRun(*command, session, [options, &session] { return query(*options, session); });
-}
-
-void addUpdate(CLI::App& app, Session& session) {
-  auto options = std::make_shared<UpdateArguments>();
-  CLI::App* command = app.add_subcommand("update", "change the operator's statements in a map by SPARQL Update");
-  command->add_option("map", options->map, "a map")->required();
-  command->add_option("update", options->file, "a file with the update");
-  command->add_option("-e,--text", options->text, "the update itself");
-  onRun(*command, session, [options, &session] { return update(*options, session); });
 }
 
 void addTasks(CLI::App& app, Session& session) {

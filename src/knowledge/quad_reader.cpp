@@ -150,4 +150,12 @@ std::uint64_t QuadReader::termCount() const {
   return impl_->snapshot().termCount();
 }
 
+std::shared_ptr<const void> QuadReader::kept(const std::string& name) const {
+  return impl_->snapshot().kept(name);
+}
+
+void QuadReader::keep(const std::string& name, std::shared_ptr<const void> made) const {
+  impl_->snapshot().keep(name, std::move(made));
+}
+
 }  // namespace cluxel

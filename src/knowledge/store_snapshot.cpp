@@ -181,6 +181,17 @@ void StoreSnapshot::keepStatistics(TermId predicate, const QuadReader::Predicate
   statistics_.emplace(predicate, statistics);
 }
 
+std::shared_ptr<const void> StoreSnapshot::kept(const std::string& name) {
+  const std::scoped_lock lock(kept_mutex_);
+  const auto found = kept_.find(name);
+  return found == kept_.end() ? nullptr : found->second;
+}
+
+void StoreSnapshot::keep(const std::string& name, std::shared_ptr<const void> made) {
+  const std::scoped_lock lock(kept_mutex_);
+  kept_[name] = std::move(made);
+}
+
 StoreSnapshot& snapshotOf(ReadTransaction::Impl& transaction) {
   if (transaction.snapshot && transaction.snapshot_generation == transaction.generation)
     return *transaction.snapshot;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 
 #include "cluxel/knowledge/quad_store.hpp"
 #include "knowledge/lmdb_environment.hpp"
@@ -46,6 +47,8 @@ class StoreSnapshot {
 
   std::optional<QuadReader::PredicateStatistics> knownStatistics(TermId predicate);
   void keepStatistics(TermId predicate, const QuadReader::PredicateStatistics& statistics);
+  std::shared_ptr<const void> kept(const std::string& name);
+  void keep(const std::string& name, std::shared_ptr<const void> made);
 
  private:
   std::uint64_t size_ = 0, term_count_ = 0;
@@ -57,6 +60,8 @@ class StoreSnapshot {
   std::unique_ptr<TermDirectory> terms_;
   std::mutex statistics_mutex_;
   std::map<TermId, QuadReader::PredicateStatistics> statistics_;
+  std::mutex kept_mutex_;
+  std::map<std::string, std::shared_ptr<const void>> kept_;
 };
 
 /// The snapshot of a transaction: shared among the readers of one commit, remade when a write transaction has

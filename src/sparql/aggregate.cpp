@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sparql/comparison.hpp"
+#include "sparql/text_size.hpp"
 
 namespace cluxel::sparql {
 
@@ -110,6 +111,12 @@ void Accumulator::countDistinctRow(std::span<const ValueId> row) {
   if (seen_rows_->insert(row.data()).second) ++count_;
 }
 
+void Accumulator::countText(const Value& value, const AggregateSpec& spec, Runtime& runtime) {
+  std::string scratch;
+  text_bytes_ += runtime.terms.textOf(value, scratch).size() + spec.separator.size();
+  requireTextSize(text_bytes_);
+}
+
 void Accumulator::take(const AggregateSpec& spec, const Value& value, Runtime& runtime) {
   switch (spec.function) {
     case Function::Count:
@@ -138,6 +145,7 @@ void Accumulator::take(const AggregateSpec& spec, const Value& value, Runtime& r
       if (!texts_) texts_ = std::make_unique<std::vector<Value>>();
       texts_->push_back(value);
       runtime.guard.charge(sizeof(Value));
+      countText(value, spec, runtime);
       return;
   }
 }

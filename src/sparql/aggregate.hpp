@@ -44,8 +44,10 @@ class Accumulator {
  private:
   bool isRepeated(const AggregateSpec& spec, ValueId id, Runtime& runtime);
   void take(const AggregateSpec& spec, const Value& value, Runtime& runtime);
+  void countText(const Value& value, const AggregateSpec& spec, Runtime& runtime);
 
   std::uint64_t count_ = 0;
+  std::size_t text_bytes_ = 0;   ///< of GROUP_CONCAT
   bool error_ = false;
   Value best_;
   std::unique_ptr<ExactSum> sum_;

@@ -152,6 +152,28 @@ void annotateUnion(Node& node) {
   }
 }
 
+void annotateProject(Node& node) {
+  SlotSet kept;
+  for (const Slot column : node.slots) kept.add(column);
+  node.possible = node.possible & kept;
+  node.certain = node.certain & kept;
+}
+
+void annotateExtend(Node& node) {
+  const Expr& value = *node.expression;
+  node.possible.add(node.slot);
+  if (value.kind == Expr::Kind::Constant || (value.kind == Expr::Kind::Slot && node.certain.has(value.slot))) {
+    node.certain.add(node.slot);
+  }
+}
+
+void annotateJoin(Node& node) {
+  for (const NodePtr& child : node.children) {
+    node.possible.add(child->possible);
+    node.certain.add(child->certain);
+  }
+}
+
 }  // namespace
 
 void Node::annotate() {
@@ -168,34 +190,17 @@ void Node::annotate() {
       if (graph.kind == GraphPlace::Kind::Slot) possible.add(graph.slot);
       certain = possible;
       return;
-    case Kind::Join:
-      for (const NodePtr& child : children) {
-        possible.add(child->possible);
-        certain.add(child->certain);
-      }
-      return;
+    case Kind::Join: return annotateJoin(*this);
     case Kind::LeftJoin: possible.add(children[1]->possible); return;
     case Kind::Filter:
       for (const Expr& condition : conditions) addRequired(condition, certain);
       certain = certain & possible;
       return;
     case Kind::Union: return annotateUnion(*this);
-    case Kind::Extend:
-      possible.add(slot);
-      if (expression->kind == Expr::Kind::Constant ||
-          (expression->kind == Expr::Kind::Slot && certain.has(expression->slot))) {
-        certain.add(slot);
-      }
-      return;
+    case Kind::Extend: return annotateExtend(*this);
     case Kind::Values: return annotateValues(*this);
     case Kind::Group: possible = certain = {}; return annotateGroup(*this);
-    case Kind::Project: {
-      SlotSet kept;
-      for (const Slot column : slots) kept.add(column);
-      possible = possible & kept;
-      certain = certain & kept;
-      return;
-    }
+    case Kind::Project: return annotateProject(*this);
     case Kind::GraphLoop:
       possible.add(graph.slot);
       certain.add(graph.slot);

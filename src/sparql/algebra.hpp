@@ -4,12 +4,14 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cluxel/sparql/ast.hpp"
+#include "cluxel/sparql/query_engine.hpp"
 #include "sparql/functions.hpp"
 
 namespace cluxel::sparql {
@@ -133,6 +135,7 @@ struct Node {
   std::optional<Expr> expression;
   std::vector<Slot> slots;
   std::vector<std::vector<ValueId>> rows;
+  std::string note;                  ///< Values: where the rows come from, for plans; empty: the query's text
   std::vector<AggregateSpec> aggregates;
   bool grouped_by_keys = false;      ///< GROUP BY was written: no group from nothing
   std::vector<SortKey> sort_keys;
@@ -156,6 +159,7 @@ struct AlgebraQuery {
   std::vector<Slot> projection;           ///< columns of the answer
   std::vector<Slot> parameters;           ///< slots bound from the start of a run
   std::uint32_t exists_count = 0;
+  bool wants_one = false;                 ///< ASK: the first solution decides
   bool is_volatile = false;               ///< uses the clock, chance or fresh blank nodes
 };
 
@@ -163,9 +167,11 @@ struct AlgebraOptions {
   std::vector<std::string> parameters = {};
   bool refuse_volatile = false;
   std::string source_name = "query";
+  std::map<std::string, const QuadReader*> services = {};   ///< as in QueryOptions
+  QueryBudget budget = {};                                  ///< of each SERVICE
 };
 
-/// Throws InputError for unknown functions, wrong argument counts, SERVICE, refused volatile functions.
+/// Throws InputError for unknown functions, wrong argument counts, refused SERVICE and volatile functions.
 AlgebraQuery buildAlgebra(const ast::Query& query, QueryTerms& terms, const AlgebraOptions& options);
 /// The same for the WHERE of an update.
 AlgebraQuery buildAlgebra(const ast::GroupPattern& where, const ast::VariableTable& variables, const std::string& text,

@@ -192,19 +192,20 @@ NodePtr AlgebraBuilder::element(const ast::PatternElement& part, Scope& scope) {
     node->annotate();
     return node;
   }
-  if (const auto* sub = std::get_if<ast::SubSelect>(&part.value)) {
-    Scope inner = scope;
-    inner.slot_of.assign(variables_.size(), kNoSlot);
-    for (const ast::Projection& column : sub->select->projection) {
-      inner.slot_of[column.variable] = slotOf(column.variable, scope);
-    }
-    for (ast::VariableIndex i = 0; i < variables_.size(); ++i) {
-      if (scope.slot_of[i] != kNoSlot && isParameter(scope.slot_of[i])) inner.slot_of[i] = scope.slot_of[i];
-    }
-    return select(*sub->select, inner, false);
+  if (const auto* sub = std::get_if<ast::SubSelect>(&part.value)) return subSelect(*sub, scope);
+  return service(std::get<ast::ServicePattern>(part.value), part.at, scope);
+}
+
+NodePtr AlgebraBuilder::subSelect(const ast::SubSelect& sub, Scope& scope) {
+  Scope inner = scope;
+  inner.slot_of.assign(variables_.size(), kNoSlot);
+  for (const ast::Projection& column : sub.select->projection) {
+    inner.slot_of[column.variable] = slotOf(column.variable, scope);
   }
-  fail(part.at, "SERVICE is refused: this engine asks no other servers",
-       "load the data beside the map, or ask the other server separately");
+  for (ast::VariableIndex i = 0; i < variables_.size(); ++i) {
+    if (scope.slot_of[i] != kNoSlot && isParameter(scope.slot_of[i])) inner.slot_of[i] = scope.slot_of[i];
+  }
+  return select(*sub.select, inner, false);
 }
 
 NodePtr AlgebraBuilder::graphPattern(const ast::GraphPattern& pattern, Scope& scope) {

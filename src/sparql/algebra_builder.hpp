@@ -31,6 +31,7 @@ class AlgebraBuilder {
 
  private:
   struct GroupParts;
+  struct SelectParts;
   /// Aggregates met while building the expressions of one grouped SELECT.
   struct Aggregation {
     std::vector<AggregateSpec>* found = nullptr;
@@ -49,6 +50,13 @@ class AlgebraBuilder {
   CompiledPath compile(const ast::Path& path);
   NodePtr graphPattern(const ast::GraphPattern& pattern, Scope& scope);
   NodePtr values(const ast::InlineData& data, Scope& scope);
+  NodePtr subSelect(const ast::SubSelect& sub, Scope& scope);
+  NodePtr service(const ast::ServicePattern& service, ast::SourceOffset at, Scope& scope);
+  NodePtr answered(const ast::ServicePattern& service, const QuadReader& reader, ast::SourceOffset at, Scope& scope);
+  void addGroupKeys(const ast::Select& select, Scope& scope, SlotSet& visible, SlotSet& inner_visible);
+  SelectParts selectParts(const ast::Select& select, Scope& scope, const SlotSet& bound);
+  NodePtr modified(NodePtr node, const ast::Select& select, std::vector<SortKey> sort_keys, Scope& scope, bool outermost);
+  static NodePtr above(Node::Kind kind, NodePtr child, ast::SourceOffset at);
   NodePtr grouped(NodePtr node, const ast::Select& select, Scope& scope, std::vector<AggregateSpec>& aggregates);
   NodePtr unit(const Scope& scope);
   NodePtr join(NodePtr a, NodePtr b, const Scope& scope);
@@ -70,7 +78,7 @@ class AlgebraBuilder {
   std::vector<std::string> slot_names_;
   SlotSet parameters_;
   std::vector<Slot> parameter_list_;
-  std::uint32_t exists_count_ = 0;
+  std::uint32_t exists_count_ = 0, service_count_ = 0;
   bool is_volatile_ = false;
   Aggregation aggregation_;
 };

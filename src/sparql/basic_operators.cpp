@@ -51,11 +51,16 @@ namespace {
 
 class ValuesOperator : public Operator {
  public:
-  ValuesOperator(std::vector<Slot> slots, std::vector<std::vector<ValueId>> rows)
-      : columns_(std::move(slots)), rows_(std::move(rows)) {
+  ValuesOperator(std::vector<Slot> slots, std::vector<std::vector<ValueId>> rows, std::string note)
+      : columns_(std::move(slots)), rows_(std::move(rows)), note_(std::move(note)) {
     slots_ = mergedSlots(columns_, {});
   }
-  std::string label(const PlanNames&) const override { return "VALUES, " + std::to_string(rows_.size()) + " rows"; }
+  std::string label(const PlanNames& names) const override {
+    if (note_.empty()) return "VALUES, " + std::to_string(rows_.size()) + " rows";
+    std::string text = note_;
+    for (const Slot slot : columns_) text += " ?" + names.query.slot_names[slot];
+    return text;
+  }
 
  protected:
   void reopen(bool) override { next_ = 0; }
@@ -72,6 +77,7 @@ class ValuesOperator : public Operator {
  private:
   std::vector<Slot> columns_;
   std::vector<std::vector<ValueId>> rows_;
+  std::string note_;
   std::size_t next_ = 0;
 };
 
@@ -171,8 +177,8 @@ class GraphNamesOperator : public UnaryOperator {
 
 }  // namespace
 
-OperatorPtr makeValues(std::vector<Slot> slots, std::vector<std::vector<ValueId>> rows) {
-  return std::make_unique<ValuesOperator>(std::move(slots), std::move(rows));
+OperatorPtr makeValues(std::vector<Slot> slots, std::vector<std::vector<ValueId>> rows, std::string note) {
+  return std::make_unique<ValuesOperator>(std::move(slots), std::move(rows), std::move(note));
 }
 OperatorPtr makeProject(OperatorPtr child, const std::vector<Slot>& slots) {
   return std::make_unique<ProjectOperator>(std::move(child), slots);

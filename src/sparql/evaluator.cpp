@@ -4,6 +4,7 @@
 
 #include "sparql/comparison.hpp"
 #include "sparql/runtime.hpp"
+#include "sparql/text_size.hpp"
 
 namespace cluxel::sparql {
 namespace {
@@ -142,7 +143,9 @@ Value Evaluator::called(const Expr& expression, const Batch& batch, std::size_t 
     arguments[i] = value(expression.arguments[i], batch, row);
     if (!arguments[i]) return {};
   }
-  return expression.function->body({arguments, count}, runtime_.functions);
+  Value result = expression.function->body({arguments, count}, runtime_.functions);
+  if (result.isStringLike() && result.payload) requireTextSize(std::get<TextPayload>(*result.payload).text.size());
+  return result;
 }
 
 }  // namespace cluxel::sparql

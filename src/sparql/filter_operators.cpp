@@ -115,6 +115,7 @@ class ExtendOperator : public UnaryOperator {
         const ValueId id = runtime().terms.intern(evaluator.value(expression, in_, row));
         ValueId& cell = in_.columns[slot][row];
         // A variable that the solution brings along from outside must agree.
+        if (runtime().terms.computedBytes() > charged_ + kUncharged) chargeForTerms();
         agrees = agrees && (cell == kUnbound || id == kUnbound || cell == id);
         if (id != kUnbound) cell = id;
       }
@@ -138,6 +139,7 @@ class ExtendOperator : public UnaryOperator {
   std::vector<ExistsPlan> exists_;
   Batch in_;
   std::vector<std::uint32_t> kept_;
+  static constexpr std::size_t kUncharged = 1 << 20;
   std::size_t charged_ = 0;
   bool fresh_ = true;
 };

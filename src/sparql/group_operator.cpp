@@ -43,7 +43,9 @@ class GroupOperator : public UnaryOperator {
     if (!done_) collect();
     out.rows = std::min(groups_.size() - given_, std::size_t{kLastTarget});
     for (std::size_t i = 0; i < out.rows; ++i) write(out, given_ + i);
-    for (const Slot slot : parameters_) out.columns[slot].assign(out.rows, runtime().parameters[slot]);
+    for (const Slot slot : parameters_) {
+      if (runtime().parameters[slot] != kUnbound) out.columns[slot].assign(out.rows, runtime().parameters[slot]);
+    }
     given_ += out.rows;
     return out.rows > 0;
   }

@@ -155,6 +155,11 @@ OperatorPtr makeLeftJoin(OperatorPtr child, Pipeline optional);
 OperatorPtr makeUnion(OperatorPtr child, std::vector<Pipeline> branches);
 /// Removes the rows that agree with a row of `removed` and share a bound slot other than `ignored` with it.
 OperatorPtr makeMinus(OperatorPtr child, OperatorPtr removed, std::vector<Slot> keys, std::vector<Slot> compared, Slot ignored);
+/// `body` once for every combination of values that the child's rows have in `outer`, as parameters; its rows joined
+/// to those of the child, or (minus) removing them.
+OperatorPtr makeCorrelatedJoin(OperatorPtr child, OperatorPtr body, const std::vector<Slot>& outer);
+OperatorPtr makeCorrelatedMinus(OperatorPtr child, OperatorPtr body, const std::vector<Slot>& outer,
+                                const std::vector<Slot>& shared, Slot ignored);
 /// The rows of one after the other.
 OperatorPtr makeConcat(std::vector<OperatorPtr> branches);
 struct ExistsPlan {
@@ -163,7 +168,8 @@ struct ExistsPlan {
 };
 OperatorPtr makeFilter(OperatorPtr child, std::vector<Expr> conditions, std::vector<ExistsPlan> exists);
 OperatorPtr makeExtend(OperatorPtr child, std::vector<std::pair<Slot, Expr>> columns, std::vector<ExistsPlan> exists);
-OperatorPtr makeValues(std::vector<Slot> slots, std::vector<std::vector<ValueId>> rows);
+/// `note`: where the rows come from, when not from a VALUES of the query.
+OperatorPtr makeValues(std::vector<Slot> slots, std::vector<std::vector<ValueId>> rows, std::string note = {});
 OperatorPtr makeGraphNames(OperatorPtr child, const GraphPlace& graph);
 /// Runs `body` once per named graph, with the graph as a parameter in `slot`.
 OperatorPtr makeGraphLoop(OperatorPtr body, Slot slot);

@@ -109,6 +109,7 @@ ast::PatternElement SparqlParser::subSelect(VariableSet& visible) {
 /// FROM [NAMED] or USING [NAMED].
 ast::DatasetClause SparqlParser::datasetClause(Keyword keyword) {
   ast::DatasetClause clause;
+  clause.at = here();
   while (take(keyword)) {
     std::vector<Term>& graphs = take(Keyword::Named) ? clause.named_graphs : clause.default_graphs;
     graphs.push_back(iri("a graph's IRI"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plans of single steps: which join for which pattern, optionals, minus, binds, and the modifiers of SELECT.
+// Plans of single steps: which join for which pattern, optionals, minus, binds.
 #include <algorithm>
 #include <cmath>
 
@@ -13,6 +13,8 @@ namespace {
 // put into and looked up in a hash table.
 constexpr double kAscendingLookup = 120, kScatteredLookup = 350, kScannedEntry = 4, kHashBuild = 35, kHashProbe = 25,
                  kMergedRow = 8;
+/// Rows that may have to be looked at for one that a LIMIT wants.
+constexpr double kRowsPerWanted = 64;
 
 BoundMask constantsOf(const TripleNode& pattern, const Dataset& dataset) {
   BoundMask mask = 0;
@@ -45,9 +47,9 @@ bool isImpossible(const TripleNode& pattern, const Dataset& dataset) {
 
 }  // namespace
 
-Planner::State Planner::joinPart(State state, const Node& part) {
+Planner::State Planner::joinPart(State state, const Node& part, double wanted_rows) {
   switch (part.kind) {
-    case Node::Kind::Triple: return joinTriple(std::move(state), part);
+    case Node::Kind::Triple: return joinTriple(std::move(state), part, wanted_rows);
     case Node::Kind::Union: return joinUnion(std::move(state), part);
     case Node::Kind::GraphNames: {
       const double rows = rowsAfter(state, part);
@@ -62,10 +64,9 @@ Planner::State Planner::joinPart(State state, const Node& part) {
   }
 }
 
-Planner::State Planner::joinTriple(State state, const Node& part) {
+Planner::State Planner::joinTriple(State state, const Node& part, double wanted_rows) {
   const TripleNode& pattern = part.triple;
   const double rows = rowsAfter(state, part);
-  const SlotSet certain_before = state.certain;
   const auto finish = [&](OperatorPtr top) {
     state.top = std::move(top);
     state.top->at = part.at;
@@ -88,35 +89,44 @@ Planner::State Planner::joinTriple(State state, const Node& part) {
     state.sorted_by = sortedBy(pattern, scan);
     return finish(makeScan(pattern, scan.order));
   }
-  const std::vector<Slot> keys = (part.possible & certain_before).list();
+  return finish(joinOperator(state, part, scan, wanted_rows));
+}
+
+/// Merge, hash table or lookups, whichever should cost least.
+OperatorPtr Planner::joinOperator(State& state, const Node& part, const OrderChoice& scan, double wanted_rows) {
+  const TripleNode& pattern = part.triple;
+  const std::vector<Slot> keys = (part.possible & state.certain).list();
   const double own = cardinality_.matches(pattern);
   const bool ascending = state.sorted_by != kNoSlot && part.possible.has(state.sorted_by);
-  const double lookup_cost = state.rows * (ascending ? kAscendingLookup : kScatteredLookup);
-  const double hash_cost = own * (kScannedEntry + kHashBuild) + state.rows * kHashProbe;
+  // Where a LIMIT asks for few rows the lookups end early, while a table is built whole. Not every row finds a partner.
+  const double looked_up = std::min(state.rows, wanted_rows * kRowsPerWanted);
+  const double lookup_cost = looked_up * (ascending ? kAscendingLookup : kScatteredLookup);
+  const double hash_cost = own * (kScannedEntry + kHashBuild) + looked_up * kHashProbe;
   const std::vector<Slot> shared = (part.possible & state.possible).list();
-  const double merge_cost = own * kScannedEntry + state.rows * kMergedRow;
+  const double share = state.rows > 0 ? looked_up / state.rows : 1;
+  const double merge_cost = share * (own * kScannedEntry + state.rows * kMergedRow);
   const bool can_merge = ascending && sortedBy(pattern, scan) == state.sorted_by && shared == keys && !state.is_input;
   if (can_merge && merge_cost < std::min(lookup_cost, hash_cost)) {
     auto other = makeScan(pattern, scan.order);
     other->estimated_rows = own;
     const Slot slot = state.sorted_by;
-    return finish(makeMergeJoin(std::move(state.top), std::move(other), slot));
+    return makeMergeJoin(std::move(state.top), std::move(other), slot);
   }
-  if (!keys.empty() && !state.substituted && hash_cost < lookup_cost) {
+  if (!keys.empty() && state.outer.empty() && hash_cost < lookup_cost) {
     std::vector<Slot> compared;
     std::set_difference(shared.begin(), shared.end(), keys.begin(), keys.end(), std::back_inserter(compared));
     auto build = makeScan(pattern, scan.order);
     build->estimated_rows = own;
-    return finish(makeHashJoin(std::move(state.top), std::move(build), keys, compared));
+    return makeHashJoin(std::move(state.top), std::move(build), keys, compared);
   }
-  return finish(makeQuadJoin(std::move(state.top), pattern, false));
+  return makeQuadJoin(std::move(state.top), pattern, false);
 }
 
 Planner::State Planner::joinUnion(State state, const Node& part) {
   const double own = cardinality_.rows(part);
   const bool connected = state.certain.intersects(part.certain);
   // Where the branches are small beside the rows so far, they are computed once.
-  if (!state.is_unit && !state.substituted && connected && own * (kScannedEntry + kHashBuild) < state.rows * kAscendingLookup) {
+  if (!state.is_unit && state.outer.empty() && connected && own * (kScannedEntry + kHashBuild) < state.rows * kAscendingLookup) {
     return joinAlone(std::move(state), part);
   }
   const double rows = rowsAfter(state, part);
@@ -133,7 +143,7 @@ Planner::State Planner::joinUnion(State state, const Node& part) {
   }
   std::vector<Pipeline> branches;
   for (const NodePtr& branch : part.children) {
-    branches.push_back(pipeline(state, false, [&](State inner) {
+    branches.push_back(pipeline(state, state.outer, [&](State inner) {
       return joinNode(std::move(inner), *branch, {});
     }));
   }
@@ -148,6 +158,8 @@ Planner::State Planner::joinUnion(State state, const Node& part) {
 }
 
 Planner::State Planner::joinAlone(State state, const Node& part) {
+  const SlotSet seen = seenFromOutside(state, part);
+  if (!seen.empty()) return joinCorrelated(std::move(state), part, seen);
   State other = alone(part);
   if (state.is_unit) return other;
   return hashJoin(std::move(state), std::move(other));
@@ -171,7 +183,7 @@ Planner::State Planner::hashJoin(State state, State other) {
 Planner::State Planner::leftJoin(State state, const Node& node) {
   const Node& optional = *node.children[1];
   const double rows = state.rows * 1.2;
-  Pipeline inner = pipeline(state, false, [&](State from) { return joinNode(std::move(from), optional, node.conditions); });
+  Pipeline inner = pipeline(state, state.outer, [&](State from) { return joinNode(std::move(from), optional, node.conditions); });
   state.top = makeLeftJoin(std::move(state.top), std::move(inner));
   state.top->at = node.at;
   state.possible.add(optional.possible);
@@ -188,6 +200,8 @@ Planner::State Planner::minus(State state, const Node& node) {
   SlotSet counted = shared;
   if (ignored != kNoSlot) counted.remove(ignored);
   if (counted.empty()) return state;
+  const SlotSet seen = seenFromOutside(state, removed);
+  if (!seen.empty()) return minusCorrelated(std::move(state), node, seen, shared.list());
   State other = alone(removed);
   // Keys bind on both sides in every row; the graph's own variable may be a key but does not count as shared.
   SlotSet keys = shared & node.children[0]->certain & other.certain;
@@ -213,104 +227,6 @@ Planner::State Planner::extend(State state, const std::vector<const Node*>& node
   state.is_unit = false;
   setRows(state, rows);
   return state;
-}
-
-Planner::State Planner::alone(const Node& node) {
-  switch (node.kind) {
-    case Node::Kind::Group:
-    case Node::Kind::OrderBy:
-    case Node::Kind::Project:
-    case Node::Kind::Distinct:
-    case Node::Kind::Slice: return select(node, std::nullopt, {});
-    case Node::Kind::Values: {
-      State state;
-      state.top = makeValues(node.slots, node.rows);
-      state.certain = node.certain;
-      state.possible = node.possible;
-      state.is_unit = false;
-      setRows(state, static_cast<double>(node.rows.size()));
-      if (parameters_.empty()) return state;
-      return hashJoin(unit(), std::move(state));
-    }
-    case Node::Kind::GraphLoop: {
-      parameters_.push_back(node.graph.slot);
-      State state = alone(*node.children[0]);
-      parameters_.pop_back();
-      state.top = makeGraphLoop(std::move(state.top), node.graph.slot);
-      state.certain.add(node.graph.slot);
-      state.possible.add(node.graph.slot);
-      state.sorted_by = kNoSlot;
-      return state;
-    }
-    default: return joinNode(unit(), node, {});
-  }
-}
-
-Planner::State Planner::select(const Node& node, std::optional<std::uint64_t> most_rows, const std::vector<Slot>& columns) {
-  const Node& child = *node.children[0];
-  const auto below = [&](std::optional<std::uint64_t> rows, const std::vector<Slot>& slots) {
-    const bool modifier = child.kind == Node::Kind::OrderBy || child.kind == Node::Kind::Project ||
-                          child.kind == Node::Kind::Distinct || child.kind == Node::Kind::Slice;
-    return modifier ? select(child, rows, slots) : alone(child);
-  };
-  if (node.kind == Node::Kind::Slice) {
-    std::optional<std::uint64_t> wanted;
-    if (node.limit && child.kind != Node::Kind::Distinct) wanted = node.offset + *node.limit;
-    State state = below(wanted, columns);
-    const double rows = node.limit ? std::min(state.rows, static_cast<double>(*node.limit)) : state.rows;
-    state.top = makeSlice(std::move(state.top), node.offset, node.limit);
-    setRows(state, rows);
-    return state;
-  }
-  if (node.kind == Node::Kind::Distinct) {
-    State state = below(std::nullopt, node.slots);
-    std::vector<Slot> slots = node.slots;
-    for (const Slot slot : parameters_) slots.push_back(slot);
-    state.top = makeDistinct(std::move(state.top), mergedSlots(slots, {}));
-    setRows(state, state.rows);
-    return state;
-  }
-  if (node.kind == Node::Kind::Project) {
-    State state = below(most_rows, node.slots);
-    std::vector<Slot> slots = node.slots;
-    for (const Slot slot : parameters_) slots.push_back(slot);
-    SlotSet kept;
-    for (const Slot slot : slots) kept.add(slot);
-    state.top = makeProject(std::move(state.top), slots);
-    state.certain = state.certain & kept;
-    state.possible = state.possible & kept;
-    setRows(state, state.rows);
-    return state;
-  }
-  if (node.kind == Node::Kind::OrderBy) {
-    State state = alone(child);
-    std::vector<const Expr*> expressions;
-    for (const SortKey& key : node.sort_keys) expressions.push_back(&key.expression);
-    auto exists = planExists(state, expressions);
-    const double rows = most_rows ? std::min(state.rows, static_cast<double>(*most_rows)) : state.rows;
-    state.top = makeOrder(std::move(state.top), node.sort_keys, columns, most_rows, std::move(exists));
-    setRows(state, rows);
-    return state;
-  }
-  // Group.
-  State state = alone(child);
-  std::vector<const Expr*> expressions;
-  for (const AggregateSpec& aggregate : node.aggregates) {
-    if (aggregate.argument) expressions.push_back(&*aggregate.argument);
-  }
-  auto exists = planExists(state, expressions);
-  State grouped;
-  std::vector<Slot> keys = mergedSlots(node.slots, {});
-  grouped.top = makeGroup(std::move(state.top), keys, node.aggregates, node.grouped_by_keys, parameters_, std::move(exists));
-  grouped.certain = node.certain;
-  grouped.possible = node.possible;
-  for (const Slot slot : parameters_) {
-    grouped.certain.add(slot);
-    grouped.possible.add(slot);
-  }
-  grouped.is_unit = false;
-  setRows(grouped, node.grouped_by_keys ? std::max(1.0, std::sqrt(state.rows) * 4) : 1);
-  return grouped;
 }
 
 }  // namespace cluxel::sparql

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cluxel::sparql {
 namespace {
@@ -13,7 +14,7 @@ void collectExists(const Expr& expression, std::vector<const Expr*>& found) {
   for (const Expr& argument : expression.arguments) collectExists(argument, found);
 }
 
-/// `rest` may bind nothing that `used` looks at, unless `inner` has bound it for sure.
+/// `rest` may bind nothing that `used` looks at, unless it is bound within for sure.
 bool isUntouched(const SlotSet& rest, const SlotSet& used, const SlotSet& certain) {
   return certain.contains(rest & used);
 }
@@ -24,7 +25,7 @@ Planner::State Planner::unit() {
   State state;
   state.top = std::make_unique<UnitOperator>(parameters_);
   for (const Slot slot : parameters_) {
-    state.certain.add(slot);
+    if (!unsure_parameters_.has(slot)) state.certain.add(slot);
     state.possible.add(slot);
   }
   state.is_unit = parameters_.empty();
@@ -41,9 +42,6 @@ Slot Planner::freshSlot(const char* name) {
   query_.slot_names.emplace_back(name);
   return static_cast<Slot>(query_.slot_names.size() - 1);
 }
-
-OperatorPtr Planner::plan() { return alone(*query_.root).top; }
-OperatorPtr Planner::planAlone(const Node& node) { return alone(node).top; }
 
 /// Nested joins, filters, optionals and binds become one flat group where that changes nothing: `rest` is what the
 /// surrounding group may bind besides.
@@ -63,18 +61,18 @@ void Planner::takeApart(const Node& node, const SlotSet& rest, Parts& parts) {
     case Node::Kind::LeftJoin: {
       SlotSet used = node.children[1]->mentioned();
       for (const Expr& condition : node.conditions) used.add(condition.slots());
-      if (!isUntouched(rest, used, node.children[0]->certain)) break;
+      if (!isUntouched(rest, used - parts.constant, node.children[0]->certain)) break;
       takeApart(*node.children[0], rest, parts);
       parts.postponed.push_back({Postponed::Kind::LeftJoin, &node});
       return;
     }
     case Node::Kind::Minus:
-      if (!isUntouched(rest, node.children[1]->possible, node.children[0]->certain)) break;
+      if (!isUntouched(rest, node.children[1]->possible - parts.constant, node.children[0]->certain)) break;
       takeApart(*node.children[0], rest, parts);
       parts.postponed.push_back({Postponed::Kind::Minus, &node});
       return;
     case Node::Kind::Extend: {
-      SlotSet used = node.expression->slots();
+      const SlotSet used = node.expression->slots() - parts.constant;
       if (rest.has(node.slot) || !isUntouched(rest, used, node.children[0]->certain)) break;
       takeApart(*node.children[0], rest, parts);
       parts.postponed.push_back({Postponed::Kind::Extend, &node});
@@ -88,13 +86,15 @@ void Planner::takeApart(const Node& node, const SlotSet& rest, Parts& parts) {
 void Planner::takeFilters(const Node& node, const SlotSet& rest, Parts& parts) {
   const Node& child = *node.children[0];
   for (const Expr& condition : node.conditions) {
-    if (isUntouched(rest, condition.slots(), child.certain)) continue;
+    if (isUntouched(rest, condition.slots() - parts.constant, child.certain)) continue;
     parts.joined.push_back(&node);
     return;
   }
   takeApart(child, rest, parts);
   for (const Expr& condition : node.conditions) {
-    if (!bindsByFilter(condition, child, parts)) parts.filters.push_back(condition);
+    if (bindsByFilter(condition, child, parts)) continue;
+    searchBySpace(condition, child, parts);
+    parts.filters.push_back(condition);
   }
 }
 
@@ -124,11 +124,21 @@ bool Planner::bindsByFilter(const Expr& condition, const Node& child, Parts& par
 
 Planner::State Planner::joinNode(State state, const Node& node, const std::vector<Expr>& extra_filters) {
   Parts parts;
+  const double wanted_rows = std::exchange(wanted_rows_, kAllRows);
   // What holds everywhere, as parameters do, may be seen from anywhere.
-  SlotSet rest = state.substituted ? SlotSet() : state.possible;
-  for (const Slot slot : parameters_) rest.remove(slot);
+  SlotSet rest = state.possible - state.outer;
+  parts.constant = state.outer & state.certain;
+  for (const Slot slot : parameters_) {
+    rest.remove(slot);
+    if (!unsure_parameters_.has(slot)) parts.constant.add(slot);
+  }
   takeApart(node, rest, parts);
   parts.filters.insert(parts.filters.end(), extra_filters.begin(), extra_filters.end());
+  const auto is_triple = [](const Node* part) { return part->kind == Node::Kind::Triple; };
+  const bool keeps_rows = parts.filters.empty() && std::all_of(parts.joined.begin(), parts.joined.end(), is_triple) &&
+                          std::none_of(parts.postponed.begin(), parts.postponed.end(),
+                                       [](const Postponed& step) { return step.kind == Postponed::Kind::Minus; });
+  if (keeps_rows) parts.wanted_rows = wanted_rows;
   return joinParts(std::move(state), parts);
 }
 
@@ -144,7 +154,7 @@ Planner::State Planner::joinParts(State state, Parts& parts) {
     const std::size_t next = choosePart(state, waiting);
     const Node* part = waiting[next];
     waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(next));
-    state = joinPart(std::move(state), *part);
+    state = joinPart(std::move(state), *part, parts.wanted_rows);
   }
   return applyPostponed(std::move(state), parts, used);
 }
@@ -223,14 +233,14 @@ std::vector<ExistsPlan> Planner::planExists(const State& state, const std::vecto
   std::vector<ExistsPlan> plans;
   for (const Expr* expression : found) {
     const Node& pattern = *expression->pattern;
-    plans.push_back({expression->exists, pipeline(state, true, [&](State inner) {
+    plans.push_back({expression->exists, pipeline(state, state.possible, [&](State inner) {
                        return joinNode(std::move(inner), pattern, {});
                      })});
   }
   return plans;
 }
 
-Pipeline Planner::pipeline(const State& state, bool substituted, const std::function<State(State)>& body) {
+Pipeline Planner::pipeline(const State& state, const SlotSet& outer, const std::function<State(State)>& body) {
   Pipeline result;
   result.origin = freshSlot(".row");
   auto input = std::make_unique<InputOperator>(state.top->slots(), result.origin);
@@ -242,7 +252,7 @@ Pipeline Planner::pipeline(const State& state, bool substituted, const std::func
   inner.sorted_by = state.sorted_by;
   inner.is_unit = false;
   inner.is_input = true;
-  inner.substituted = substituted || state.substituted;
+  inner.outer = outer;
   setRows(inner, state.rows);
   result.top = body(std::move(inner)).top;
   return result;

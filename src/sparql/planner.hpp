@@ -7,13 +7,15 @@
 
 #include "sparql/cardinality.hpp"
 #include "sparql/operators.hpp"
+#include "sparql/pattern_access.hpp"
 
 namespace cluxel::sparql {
 
 class Planner {
  public:
-  Planner(AlgebraQuery& query, const QuadReader& reader, const Dataset& dataset)
-      : query_(query), reader_(reader), dataset_(dataset), cardinality_(reader, dataset), parameters_(query.parameters) {}
+  Planner(AlgebraQuery& query, const QueryTerms& terms, const Dataset& dataset)
+      : query_(query), terms_(terms), reader_(terms.reader()), dataset_(dataset), cardinality_(terms.reader(), dataset),
+        parameters_(query.parameters) {}
 
   /// The whole query's plan.
   OperatorPtr plan();
@@ -29,29 +31,37 @@ class Planner {
     Slot sorted_by = kNoSlot;
     bool is_unit = true;        ///< one solution without bindings: joining it changes nothing
     bool is_input = false;      ///< rows come from outside, batch by batch
-    bool substituted = false;   ///< within EXISTS: bindings from outside hold everywhere
+    SlotSet outer;              ///< within EXISTS: slots of the solution from outside, which hold everywhere
   };
   /// A step that must wait until all parts are joined.
   struct Postponed {
     enum class Kind { LeftJoin, Minus, Extend } kind;
     const Node* node;
   };
+  static constexpr double kAllRows = 1e300;
   /// What a group consists of once nested joins, filters and optionals are taken apart.
   struct Parts {
     std::vector<const Node*> joined;
     std::vector<Postponed> postponed;
     std::vector<Expr> filters;
     std::vector<NodePtr> made;   ///< keeps nodes that planning made
+    SlotSet constant;            ///< have one value in all parts of a solution
+    double wanted_rows = kAllRows;   ///< of the first rows of the first part, how many will be asked for
   };
 
   State unit();
   State joinNode(State state, const Node& node, const std::vector<Expr>& extra_filters);
   State joinParts(State state, Parts& parts);
-  State joinPart(State state, const Node& part);
-  State joinTriple(State state, const Node& part);
+  State joinPart(State state, const Node& part, double wanted_rows);
+  State joinTriple(State state, const Node& part, double wanted_rows);
+  OperatorPtr joinOperator(State& state, const Node& part, const OrderChoice& scan, double wanted_rows);
   State joinUnion(State state, const Node& part);
   State joinAlone(State state, const Node& part);
   State hashJoin(State state, State other);
+  State joinCorrelated(State state, const Node& part, const SlotSet& seen);
+  State minusCorrelated(State state, const Node& node, const SlotSet& seen, const std::vector<Slot>& shared);
+  OperatorPtr correlatedBody(const State& state, const Node& part, const SlotSet& seen);
+  SlotSet seenFromOutside(const State& state, const Node& part) const;
   State applyPostponed(State state, Parts& parts, std::vector<bool>& used);
   State leftJoin(State state, const Node& node);
   State minus(State state, const Node& node);
@@ -60,22 +70,34 @@ class Planner {
   State filter(State state, std::vector<Expr> conditions);
   State alone(const Node& node);
   State select(const Node& node, std::optional<std::uint64_t> most_rows, const std::vector<Slot>& columns);
+  State belowModifier(const Node& child, std::optional<std::uint64_t> most_rows, const std::vector<Slot>& columns);
+  State slice(const Node& node, const std::vector<Slot>& columns);
+  State distinct(const Node& node);
+  State project(const Node& node, std::optional<std::uint64_t> most_rows);
+  State order(const Node& node, std::optional<std::uint64_t> most_rows, const std::vector<Slot>& columns);
+  State group(const Node& node);
+  State graphLoop(const Node& node);
+  State values(const Node& node);
 
   void takeApart(const Node& node, const SlotSet& rest, Parts& parts);
   void takeFilters(const Node& filter, const SlotSet& rest, Parts& parts);
   bool bindsByFilter(const Expr& condition, const Node& child, Parts& parts);
+  void searchBySpace(const Expr& condition, const Node& child, Parts& parts);
   std::size_t choosePart(const State& state, const std::vector<const Node*>& parts);
   double rowsAfter(const State& state, const Node& part);
-  Pipeline pipeline(const State& state, bool substituted, const std::function<State(State)>& body);
+  Pipeline pipeline(const State& state, const SlotSet& outer, const std::function<State(State)>& body);
   std::vector<ExistsPlan> planExists(const State& state, const std::vector<const Expr*>& expressions);
   Slot freshSlot(const char* name);
   void setRows(State& state, double rows);
 
   AlgebraQuery& query_;
+  const QueryTerms& terms_;
   const QuadReader& reader_;
   const Dataset& dataset_;
   Cardinality cardinality_;
   std::vector<Slot> parameters_;
+  double wanted_rows_ = kAllRows;   ///< by a LIMIT around the next group
+  SlotSet unsure_parameters_;   ///< those that may be unbound
 };
 
 }  // namespace cluxel::sparql

@@ -35,8 +35,10 @@ PreparedQuery::Impl::Impl(const QuadReader& quad_reader, std::string_view text, 
   algebra_options.parameters = parameters;
   algebra_options.refuse_volatile = options.refuse_volatile;
   algebra_options.source_name = options.source_name;
+  algebra_options.services = options.services;
+  algebra_options.budget = options.budget;
   algebra = sparql::buildAlgebra(query, terms, algebra_options);
-  plan = sparql::Planner(algebra, reader, dataset).plan();
+  plan = sparql::Planner(algebra, terms, dataset).plan();
   for (const ast::Projection& column : query.select.projection) variables.push_back(query.variables[column.variable].name);
   for (ast::VariableIndex i = 0; i < query.variables.size(); ++i) {
     const Slot slot = algebra.slot_of_variable[i];
@@ -48,14 +50,18 @@ PreparedQuery::Impl::Impl(const QuadReader& quad_reader, std::string_view text, 
   mark = terms.mark();
 }
 
-void PreparedQuery::Impl::begin(const std::vector<Binding>& bindings) {
-  terms.rewind(mark);
-  runtime->guard.start(options.budget);
+void PreparedQuery::Impl::setParameters(const std::vector<Binding>& bindings) {
   for (const auto& [name, slot] : parameter_slots) {
     const auto binding = std::find_if(bindings.begin(), bindings.end(), [&](const Binding& b) { return b.first == name; });
     if (binding == bindings.end()) throw Error(ExitCode::Usage, options.source_name + ": the parameter ?" + name + " has no value");
     runtime->parameters[slot] = terms.intern(binding->second);
   }
+}
+
+void PreparedQuery::Impl::begin(const std::vector<Binding>& bindings) {
+  terms.rewind(mark);
+  runtime->guard.start(options.budget);
+  setParameters(bindings);
   if (algebra.is_volatile || !query.construct_template.empty()) {
     functions.random.seed(options.seed ? *options.seed : std::random_device{}());
     functions.label_prefix = std::to_string(functions.random() % 1'000'000'000'000) + "x";

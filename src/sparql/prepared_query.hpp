@@ -12,6 +12,7 @@ struct PreparedQuery::Impl {
   Impl(const QuadReader& quad_reader, std::string_view text, const QueryOptions& query_options,
        const std::vector<std::string>& parameters);
 
+  void setParameters(const std::vector<Binding>& bindings);
   /// Sets parameters, clock and budgets for a run, and opens the plan.
   void begin(const std::vector<Binding>& bindings);
   void runSelect(ResultSink& sink);

@@ -118,8 +118,7 @@ std::string QueryTerms::datatypeOf(const Value& value) const {
 }
 
 Decimal QueryTerms::exactOf(const Value& value) const {
-  if (value.payload) return std::get<Decimal>(*value.payload);
-  if (value.type == Value::Type::Integer) return Decimal(value.integer);
+  if (value.payload || value.type == Value::Type::Integer || value.id == kUnbound) return value.exact();
   return Decimal::parse(trimmed(view(value.id).text)).value_or(Decimal());
 }
 

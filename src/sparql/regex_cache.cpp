@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "cluxel/base/diagnostic.hpp"
+#include "sparql/text_size.hpp"
 
 namespace cluxel::sparql {
 namespace {
@@ -127,6 +127,7 @@ std::optional<std::string> regexReplace(const CompiledRegex& regex, std::string_
   const std::size_t group_count = pcre2_get_ovector_count(regex.data.get());
   while (from <= text.size() && regex.match(text, from) > 0) {
     const std::size_t* groups = pcre2_get_ovector_pointer(regex.data.get());
+    requireTextSize(out.size());
     const std::size_t begin = groups[0], end = groups[1];
     if (end == begin) break;
     out += text.substr(from, begin - from);

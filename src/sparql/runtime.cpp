@@ -55,7 +55,8 @@ std::vector<Term> irisOf(const std::vector<std::string>& texts) {
 Dataset datasetOf(const ast::DatasetClause& clause, const QueryOptions& options, const QuadReader& reader) {
   ast::DatasetClause wanted = clause;
   if (!options.default_graphs.empty() || !options.named_graphs.empty()) {
-    wanted = {irisOf(options.default_graphs), irisOf(options.named_graphs)};
+    wanted.default_graphs = irisOf(options.default_graphs);
+    wanted.named_graphs = irisOf(options.named_graphs);
   }
   std::vector<TermId> stored = reader.graphs();
   std::sort(stored.begin(), stored.end());

@@ -24,87 +24,106 @@ NodePtr AlgebraBuilder::grouped(NodePtr node, const ast::Select& select, Scope& 
   return group;
 }
 
-NodePtr AlgebraBuilder::select(const ast::Select& select, Scope& scope, bool outermost) {
-  NodePtr node = group(select.where, scope);
-  const ast::SolutionModifiers& modifiers = select.modifiers;
-
+struct AlgebraBuilder::SelectParts {
   std::vector<AggregateSpec> aggregates;
   std::vector<Expr> having;
   std::vector<std::pair<const ast::Projection*, Expr>> columns;
   std::vector<SortKey> sort_keys;
-  const Aggregation outer = aggregation_;
-  aggregation_ = {};
-  SlotSet inner_visible = node->possible;
-  SlotSet visible = node->possible;
-  if (select.grouped) {
-    aggregation_ = {&aggregates, &inner_visible, &scope};
-    visible = {};
-    for (const ast::GroupCondition& condition : modifiers.group_by) {
-      if (condition.as) {
-        visible.add(slotOf(*condition.as, scope));
-        inner_visible.add(slotOf(*condition.as, scope));
-      }
-      if (condition.expression.kind == ast::Expression::Kind::Variable) {
-        visible.add(slotOf(condition.expression.variable, scope));
-      }
+};
+
+/// Adds the variables that GROUP BY hands on to `visible`; those it makes can be used within aggregates too.
+void AlgebraBuilder::addGroupKeys(const ast::Select& select, Scope& scope, SlotSet& visible, SlotSet& inner_visible) {
+  for (const ast::GroupCondition& condition : select.modifiers.group_by) {
+    if (condition.as) {
+      visible.add(slotOf(*condition.as, scope));
+      inner_visible.add(slotOf(*condition.as, scope));
+    }
+    if (condition.expression.kind == ast::Expression::Kind::Variable) {
+      visible.add(slotOf(condition.expression.variable, scope));
     }
   }
-  for (const ast::Expression& condition : modifiers.having) having.push_back(expression(condition, scope, visible));
+}
+
+/// The expressions of HAVING, SELECT and ORDER BY, with the aggregates taken out of them.
+AlgebraBuilder::SelectParts AlgebraBuilder::selectParts(const ast::Select& select, Scope& scope, const SlotSet& bound) {
+  SelectParts parts;
+  SlotSet inner_visible = bound, visible = bound;
+  const Aggregation outer = aggregation_;
+  aggregation_ = {};
+  if (select.grouped) {
+    aggregation_ = {&parts.aggregates, &inner_visible, &scope};
+    visible = {};
+    addGroupKeys(select, scope, visible, inner_visible);
+  }
+  for (const ast::Expression& condition : select.modifiers.having) {
+    parts.having.push_back(expression(condition, scope, visible));
+  }
   if (select.values) {
     for (const ast::VariableIndex variable : select.values->variables) visible.add(slotOf(variable, scope));
   }
   for (const ast::Projection& column : select.projection) {
     if (!column.expression) continue;
-    columns.emplace_back(&column, expression(*column.expression, scope, visible));
+    parts.columns.emplace_back(&column, expression(*column.expression, scope, visible));
     visible.add(slotOf(column.variable, scope));
   }
-  for (const ast::OrderCondition& condition : modifiers.order_by) {
-    sort_keys.push_back({expression(condition.expression, scope, visible), condition.descending});
+  for (const ast::OrderCondition& condition : select.modifiers.order_by) {
+    parts.sort_keys.push_back({expression(condition.expression, scope, visible), condition.descending});
   }
   aggregation_ = outer;
+  return parts;
+}
 
-  if (select.grouped) node = grouped(node, select, scope, aggregates);
-  if (!having.empty()) {
-    NodePtr filter = makeNode(Node::Kind::Filter, modifiers.having.front().at);
-    filter->children = {node};
-    filter->conditions = std::move(having);
+NodePtr AlgebraBuilder::select(const ast::Select& select, Scope& scope, bool outermost) {
+  NodePtr node = group(select.where, scope);
+  SelectParts parts = selectParts(select, scope, node->possible);
+  if (select.grouped) node = grouped(node, select, scope, parts.aggregates);
+  if (!parts.having.empty()) {
+    NodePtr filter = above(Node::Kind::Filter, node, select.modifiers.having.front().at);
+    filter->conditions = std::move(parts.having);
     filter->annotate();
     node = filter;
   }
   if (select.values) node = join(node, values(*select.values, scope), scope);
-  for (auto& [column, value] : columns) {
+  for (auto& [column, value] : parts.columns) {
     node = extend(node, slotOf(column->variable, scope), std::move(value), column->at);
   }
+  return modified(std::move(node), select, std::move(parts.sort_keys), scope, outermost);
+}
+
+/// ORDER BY, projection, DISTINCT, OFFSET and LIMIT. The order of a sub-select counts only where it is cut.
+NodePtr AlgebraBuilder::modified(NodePtr node, const ast::Select& select, std::vector<SortKey> sort_keys, Scope& scope,
+                                 bool outermost) {
+  const ast::SolutionModifiers& modifiers = select.modifiers;
   const bool sliced = modifiers.limit || modifiers.offset;
   if (!sort_keys.empty() && (outermost || sliced)) {
-    NodePtr order = makeNode(Node::Kind::OrderBy, select.where.at);
-    order->children = {node};
-    order->sort_keys = std::move(sort_keys);
-    order->annotate();
-    node = order;
+    node = above(Node::Kind::OrderBy, std::move(node), select.where.at);
+    node->sort_keys = std::move(sort_keys);
+    node->annotate();
   }
-  NodePtr project = makeNode(Node::Kind::Project, select.where.at);
-  for (const ast::Projection& column : select.projection) project->slots.push_back(slotOf(column.variable, scope));
-  if (!select.projection.empty() || !outermost) {
-    project->children = {node};
-    project->annotate();
-    node = project;
+  std::vector<Slot> columns;
+  for (const ast::Projection& column : select.projection) columns.push_back(slotOf(column.variable, scope));
+  if (!columns.empty() || !outermost) {
+    node = above(Node::Kind::Project, std::move(node), select.where.at);
+    node->slots = columns;
+    node->annotate();
   }
   if (select.duplicates == ast::Duplicates::Distinct) {
-    NodePtr distinct = makeNode(Node::Kind::Distinct, select.where.at);
-    distinct->children = {node};
-    distinct->slots = project->slots;
-    distinct->annotate();
-    node = distinct;
+    node = above(Node::Kind::Distinct, std::move(node), select.where.at);
+    node->slots = columns;
+    node->annotate();
   }
   if (sliced) {
-    NodePtr slice = makeNode(Node::Kind::Slice, select.where.at);
-    slice->children = {node};
-    slice->offset = modifiers.offset.value_or(0);
-    slice->limit = modifiers.limit;
-    slice->annotate();
-    node = slice;
+    node = above(Node::Kind::Slice, std::move(node), select.where.at);
+    node->offset = modifiers.offset.value_or(0);
+    node->limit = modifiers.limit;
+    node->annotate();
   }
+  return node;
+}
+
+NodePtr AlgebraBuilder::above(Node::Kind kind, NodePtr child, ast::SourceOffset at) {
+  NodePtr node = makeNode(kind, at);
+  node->children = {std::move(child)};
   return node;
 }
 
@@ -120,6 +139,7 @@ AlgebraQuery buildAlgebra(const ast::Query& query, QueryTerms& terms, const Alge
   for (ast::VariableIndex i = 0; i < query.variables.size(); ++i) builder.slotOf(i, scope);
   AlgebraQuery result = builder.finish(std::move(root), scope);
   result.projection = std::move(projection);
+  result.wants_one = query.form == ast::QueryForm::Ask;
   return result;
 }
 

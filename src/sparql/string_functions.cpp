@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sparql/function_bodies.hpp"
+#include "sparql/text_size.hpp"
 
 namespace cluxel::sparql {
 namespace {
@@ -63,6 +64,7 @@ Value concatFunction(Arguments arguments, FunctionContext& context) {
   for (const Value& value : arguments) {
     if (!value.isStringLike()) return {};
     text += context.terms.textOf(value);
+    requireTextSize(text.size());
     same_language = same_language && value.type == Type::LangString &&
                     context.terms.languageOf(value) == context.terms.languageOf(arguments[0]);
   }

@@ -7,15 +7,10 @@
 #include <random>
 
 #include "cluxel/sparql/parser.hpp"
-#include "sparql/planner.hpp"
-#include "sparql/row_set.hpp"
+#include "sparql/update_modify.hpp"
 
 namespace cluxel {
 namespace {
-
-using sparql::kFirstComputed;
-using sparql::kUnbound;
-using sparql::ValueId;
 
 class UpdateRun {
  public:
@@ -66,6 +61,7 @@ class UpdateRun {
     writer_.add(quad);
     ++report_.inserted;
   }
+  void removeStored(const QuadReader& reader, const Quad& quad);
   void clearTarget(const ast::GraphTarget& target);
   std::vector<Quad> quadsOf(const Term& graph) const;
   std::string freshLabel() { return label_prefix_ + std::to_string(++fresh_labels_); }
@@ -87,7 +83,7 @@ void UpdateRun::perform(const ast::Load& load) {
   checkWritable(graph);
   if (!options_.load) {
     if (load.silent) return;
-    fail("LOAD is refused", "load the file by the command line, or allow it by name");
+    fail("LOAD is refused", "name the file that it reads: cluxel update --load IRI=FILE");
   }
   try {
     for (Quad& quad : options_.load(load.source.text)) {
@@ -178,83 +174,30 @@ void UpdateRun::perform(const ast::DataUpdate& data) {
       continue;
     }
     ++report_.deleted;
-    const auto s = reader.idOf(quad.subject), p = reader.idOf(quad.predicate), o = reader.idOf(quad.object);
-    const auto g = quad.graph.text.empty() ? std::optional<TermId>(kNoTerm) : reader.idOf(quad.graph);
-    if (s && p && o && g) writer_.remove({*s, *p, *o, *g});
+    removeStored(reader, quad);
   }
 }
 
-/// Template places filled in for one solution.
-struct Instance {
-  std::optional<Term> subject, predicate, object, graph;
-};
+void UpdateRun::removeStored(const QuadReader& reader, const Quad& quad) {
+  const auto s = reader.idOf(quad.subject), p = reader.idOf(quad.predicate), o = reader.idOf(quad.object);
+  const auto g = quad.graph.text.empty() ? std::optional<TermId>(kNoTerm) : reader.idOf(quad.graph);
+  if (s && p && o && g) writer_.remove({*s, *p, *o, *g});
+}
 
 void UpdateRun::perform(const ast::Modify& modify) {
   const QuadReader reader(transaction_);
-  sparql::QueryTerms terms(reader);
-  ast::DatasetClause clause = modify.using_clause;
-  QueryOptions query_options = options_.query;
-  sparql::Dataset dataset = sparql::datasetOf(clause, query_options, reader);
-  if (modify.with && clause.empty()) {
-    const auto id = reader.idOf(*modify.with);
-    dataset.default_graph = {};
-    dataset.default_graph.kind = id ? sparql::GraphFilter::Kind::One : sparql::GraphFilter::Kind::AnyOf;
-    dataset.default_graph.graph = id.value_or(kNoTerm);
-    dataset.default_graph.may_repeat = false;
-  }
-  sparql::AlgebraOptions algebra_options;
-  algebra_options.source_name = query_options.source_name;
-  algebra_options.refuse_volatile = query_options.refuse_volatile;
-  sparql::AlgebraQuery algebra =
-      sparql::buildAlgebra(modify.where, operation_->variables, update_.text, terms, algebra_options);
-  const sparql::OperatorPtr plan = sparql::Planner(algebra, reader, dataset).plan();
-  sparql::FunctionContext functions(terms);
-  functions.base_iri = operation_->base_iri;
-  functions.random.seed(random_());
-  functions.label_prefix = label_prefix_ + "w";
-  functions.now_us = query_options.now_us.value_or(std::chrono::duration_cast<std::chrono::microseconds>(
-      std::chrono::system_clock::now().time_since_epoch()).count());
-  sparql::Runtime runtime(reader, terms, functions, dataset, algebra.slot_names.size(), algebra.exists_count);
-  runtime.guard.start(query_options.budget);
-  plan->open(runtime, true);
-
-  const Term graph_without_name = modify.with.value_or(defaultGraph());
-  std::vector<Quad> removed, inserted;
-  sparql::Batch batch(runtime.slot_count);
-  while (plan->next(batch)) {
-    for (std::size_t row = 0; row < batch.rows; ++row) {
-      std::map<std::string, Term> blanks;
-      const auto fill = [&](const ast::PatternTerm& place) -> std::optional<Term> {
-        if (place.isVariable()) {
-          const ValueId id = batch.at(algebra.slot_of_variable[place.variable()], row);
-          return id == kUnbound ? std::nullopt : std::optional<Term>(terms.termOf(id));
-        }
-        if (place.term().kind != TermKind::BlankNode) return place.term();
-        Term& blank = blanks[place.term().text];
-        if (blank.text.empty()) blank = Term::blank(freshLabel());
-        return blank;
-      };
-      const auto instantiate = [&](const std::vector<ast::QuadTemplate>& templates, std::vector<Quad>& out) {
-        for (const ast::QuadTemplate& quad : templates) {
-          const auto s = fill(quad.subject), p = fill(quad.predicate), o = fill(quad.object);
-          const auto g = quad.graph ? fill(*quad.graph) : std::optional<Term>(graph_without_name);
-          if (!s || !p || !o || !g || s->kind == TermKind::Literal || p->kind != TermKind::Iri || g->kind != TermKind::Iri) continue;
-          out.push_back({*s, *p, *o, *g});
-          runtime.guard.charge(sizeof(Quad) + s->text.size() + o->text.size());
-        }
-      };
-      instantiate(modify.remove, removed);
-      instantiate(modify.insert, inserted);
-    }
-  }
-  for (const Quad& quad : removed) {
+  sparql::ModifyRun run(reader, update_, *operation_, modify, options_);
+  run.label_prefix = label_prefix_ + "w";
+  run.seed = random_();
+  run.default_graph = modify.with.value_or(defaultGraph());
+  run.fresh_label = [this] { return freshLabel(); };
+  const sparql::Changes changes = run.changes();
+  for (const Quad& quad : changes.removed) {
     checkWritable(quad.graph);
     ++report_.deleted;
-    const auto s = reader.idOf(quad.subject), p = reader.idOf(quad.predicate), o = reader.idOf(quad.object);
-    const auto g = quad.graph.text.empty() ? std::optional<TermId>(kNoTerm) : reader.idOf(quad.graph);
-    if (s && p && o && g) writer_.remove({*s, *p, *o, *g});
+    removeStored(reader, quad);
   }
-  for (const Quad& quad : inserted) {
+  for (const Quad& quad : changes.inserted) {
     checkWritable(quad.graph);
     add(quad);
   }

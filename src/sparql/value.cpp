@@ -132,8 +132,18 @@ Value Value::ofInteger(const sparql::Decimal& whole) {
 Value Value::ofDecimal(sparql::Decimal value) {
   Value result = ofType(Type::Decimal);
   result.number = value.toDouble();
-  result.payload = share(std::move(value));
+  if (value.isSmall() && value.scale() <= UINT8_MAX) {
+    result.integer = value.unscaled();
+    result.scale = static_cast<std::uint8_t>(value.scale());
+  } else {
+    result.payload = share(std::move(value));
+  }
   return result;
+}
+
+Decimal Value::exact() const {
+  if (payload) return std::get<sparql::Decimal>(*payload);
+  return {integer, scale};
 }
 
 Value Value::ofFloat(float value) {
@@ -209,9 +219,7 @@ Term termOfComputed(const Value& value) {
     case Type::LangString: return Term::langLiteral(text().text, text().language);
     case Type::Boolean: return Term::literal(value.integer != 0 ? "true" : "false", datatype);
     case Type::Integer:
-      return Term::literal(value.payload ? std::get<Decimal>(*value.payload).text() : std::to_string(value.integer),
-                           datatype);
-    case Type::Decimal: return Term::literal(std::get<Decimal>(*value.payload).text(), datatype);
+    case Type::Decimal: return Term::literal(value.exact().text(), datatype);
     case Type::Float: return Term::literal(canonicalText(static_cast<float>(value.number)), datatype);
     case Type::Double: return Term::literal(canonicalText(value.number), datatype);
     case Type::DateTime:

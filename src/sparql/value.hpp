@@ -38,8 +38,9 @@ struct Value {
 
   Type type = Type::None;
   CalendarKind calendar = CalendarKind::DateTime;
+  std::uint8_t scale = 0;     ///< of a computed Decimal without payload: integer * 10^-scale
   ValueId id = kUnbound;
-  std::int64_t integer = 0;   ///< Boolean, Integer without payload
+  std::int64_t integer = 0;   ///< Boolean, Integer without payload; the digits of a computed Decimal without payload
   double number = 0;          ///< the value of Float and Double; near the value of Integer and Decimal
   std::shared_ptr<const Payload> payload;   ///< of computed texts, of calendar values, of exact and great numbers
 
@@ -50,6 +51,9 @@ struct Value {
   bool isStringLike() const { return type == Type::String || type == Type::LangString; }
   bool isCalendar() const { return type >= Type::DateTime && type <= Type::Calendar; }
   bool isDuration() const { return type >= Type::Duration && type <= Type::YearMonthDuration; }
+
+  /// The number of an Integer, or of a Decimal that was computed (without id, or with a payload).
+  sparql::Decimal exact() const;
 
   static Value boolean(bool value);
   static Value ofInteger(std::int64_t value);

@@ -71,8 +71,10 @@ Question readQuestion(const fs::path& file) {
   std::size_t number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
-    if (line.starts_with("#! "))
-      readHeaderLine(line.substr(3), {.file = file.string(), .line = number, .column = 1}, question);
+    if (!line.starts_with("#!")) continue;
+    const std::size_t begin = line.find_first_not_of(" \t", 2);
+    if (begin != std::string::npos)
+      readHeaderLine(line.substr(begin), {.file = file.string(), .line = number, .column = 1}, question);
   }
   return question;
 }
@@ -102,8 +104,9 @@ std::vector<Binding> bindingsFor(const Question& question, const std::vector<std
     const std::string name = text.substr(0, cut);
     const auto place = std::find(names.begin(), names.end(), name);
     if (names.empty()) refuse(text, "the question has no parameters");
-    if (cut == std::string::npos) refuse(text, "write NAME=VALUE; " + suggestion(name, names));
-    if (place == names.end()) refuse(text, "the question has no such parameter; " + suggestion(name, names));
+    if (cut == std::string::npos) refuse(text, "write NAME=VALUE");
+    const std::string hint = suggestion(name, names);
+    if (place == names.end()) refuse(text, "the question has no such parameter" + (hint.empty() ? "" : "; " + hint));
     const auto at = static_cast<std::size_t>(place - names.begin());
     const QueryParameter& parameter = question.parameters[at];
     const std::string value = text.substr(cut + 1);

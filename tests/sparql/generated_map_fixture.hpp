@@ -17,5 +17,7 @@ std::vector<std::string> madeGraphs();
 
 /// About 14 quads per object, the same for the same seed.
 std::vector<Quad> madeMap(std::uint32_t seed, int objects);
+/// A map as building one gives it: objects with measures, parts, neighbours and observations, in the graph "observed".
+std::vector<Quad> surveyedMap(std::uint32_t seed, int objects);
 
 }  // namespace cluxel::test

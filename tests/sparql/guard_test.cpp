@@ -123,6 +123,36 @@ TEST(WhyEmpty, NamesThePatternThatHasNoMatch) {
   EXPECT_THAT(why("SELECT * { ?x a :Tree MINUS { ?x :height ?h } }"), HasSubstr("MINUS"));
 }
 
+TEST(WhyEmpty, KnowsTheParameters) {
+  const SmallStore store(":a :height 3 . :b :height 4 .");
+  const QuadReader reader = store.reader();
+  const std::string text = kPrefixes + "SELECT * { ?x :height ?h FILTER(?h > ?limit) }";
+  EXPECT_EQ(whyEmpty(reader, text, {}, {{"limit", Term::integer(3)}}), "");
+  EXPECT_THAT(whyEmpty(reader, text, {}, {{"limit", Term::integer(9)}}), HasSubstr("FILTER  (?h > ?limit)"));
+}
+
+TEST(CheckQuery, NamesWholeIrisWhereTheNamespaceIsWrong) {
+  const SmallStore store(":a a :StreetSign ; :height 3 .");
+  const QuadReader reader = store.reader();
+  const auto hint = [&](const std::string& text) {
+    const auto found = checkQuery(reader, kPrefixes + text);
+    return found.empty() ? "no warning" : found[0].hint;
+  };
+  EXPECT_EQ(hint("SELECT * { ?x <http://elsewhere.net/height> ?h }"), "did you mean <http://example.org/height>?");
+  EXPECT_EQ(hint("SELECT * { ?x <https://example.org/height> ?h }"), "did you mean <http://example.org/height>?");
+  EXPECT_EQ(hint("SELECT * { ?x <urn:nothing:alike> ?h }"), "");
+  EXPECT_EQ(hint("SELECT * { ?x :zzzzzz ?h }"), "known: height");
+}
+
+TEST(CheckQuery, TellsThatFromReadsGraphsOfTheStoreOnly) {
+  SmallStore store(":a :height 3 .");
+  store.load(":a :height 4 .", "http://example.org/g");
+  const auto found = checkQuery(store.reader(), kPrefixes + "SELECT *\nFROM <http://example.org/gg> { ?s ?p ?o }");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_THAT(found[0].message, HasSubstr("graph <http://example.org/gg>"));
+  EXPECT_EQ(found[0].hint, "did you mean 'g'?");
+}
+
 TEST(CheckQuery, SuggestsNamesThatTheStoreKnows) {
   const SmallStore store(":a a :StreetSign ; :height 3 .");
   const QuadReader reader = store.reader();

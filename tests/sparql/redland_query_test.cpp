@@ -144,6 +144,16 @@ TEST_F(RedlandQueries, AskModelsOfOtherStoragesToo) {
   librdf_free_storage(memory);
 }
 
+TEST_F(RedlandQueries, AreAskedByAProgramThatKnowsOnlyLibrdf) {
+  const fs::path program = fs::path(CLUXEL_BINARY_DIR) / "tests/sparql/librdf_only";
+  const fs::path output = folder_ / "answer";
+  const std::string command = "REDLAND_MODULE_PATH='" + (fs::path(CLUXEL_BINARY_DIR) / "redland").string() + "' '" + program.string() +
+                              "' '" + (folder_ / "map.clx").string() + "' '" + kNotExists + "' > '" + output.string() + "' 2>&1";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  std::ifstream in(output);
+  EXPECT_EQ(std::string((std::istreambuf_iterator<char>(in)), {}), "http://e/lamp\n");
+}
+
 TEST_F(RedlandQueries, AreAskedByStockRdfproc) {
   const fs::path modules = fs::path(CLUXEL_BINARY_DIR) / "redland";
   ASSERT_TRUE(fs::exists(modules / "librdf_storage_cluxel.so")) << "the module was not built";

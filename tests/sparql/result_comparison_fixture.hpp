@@ -2,21 +2,15 @@
 // Are two answers the same, up to the names of blank nodes?
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "cluxel/sparql/result_table.hpp"
+#include "sparql/isomorphism_fixture.hpp"
 
 namespace cluxel::test {
 
-/// A row, triple or quad.
-using Tuple = std::vector<std::optional<Term>>;
-
-/// Whether a bijection of blank nodes turns the one multiset of tuples into the other. Numbers of one datatype are
-/// compared by value.
-bool isomorphic(const std::vector<Tuple>& a, const std::vector<Tuple>& b);
-/// The same with the order of tuples kept.
+/// isomorphic() with the order of tuples kept.
 bool isomorphicInOrder(const std::vector<Tuple>& a, const std::vector<Tuple>& b);
 
 enum class RowOrder { Any, AsWritten };

@@ -33,6 +33,35 @@ TEST(Arithmetic, OfDecimalsIsExactForRandomOperands) {
   }
 }
 
+TEST(Arithmetic, DecimalsAroundTheEndOfMachineWordsStayExact) {
+  const std::string texts[] = {"9223372036854775807",  "-9223372036854775808", "9223372036854775808", "-9223372036854775809",
+                               "922337203685477580.7", "-0.9223372036854775808", "1000000000000000000", "0.000000000000000001",
+                               "-1", "10", "0", "0.1"};
+  for (const std::string& a : texts) {
+    const Decimal x = *Decimal::parse(a);
+    EXPECT_EQ(test::rationalOf(x.text()), test::rationalOf(a)) << a;
+    EXPECT_EQ(test::rationalOf((-x).text()), -test::rationalOf(a)) << a;
+    EXPECT_EQ(x.toDouble(), std::strtod(a.c_str(), nullptr)) << a;
+    for (const std::string& b : texts) {
+      const Decimal y = *Decimal::parse(b);
+      const cpp_rational p = test::rationalOf(a), q = test::rationalOf(b);
+      EXPECT_EQ(test::rationalOf(Decimal::add(x, y)->text()), p + q) << a << " + " << b;
+      EXPECT_EQ(test::rationalOf(Decimal::subtract(x, y)->text()), p - q) << a << " - " << b;
+      EXPECT_EQ(test::rationalOf(Decimal::multiply(x, y)->text()), p * q) << a << " * " << b;
+      EXPECT_EQ(x < y, p < q) << a << " < " << b;
+      EXPECT_EQ(x == y, p == q) << a << " = " << b;
+    }
+  }
+}
+
+TEST(Arithmetic, NearestDoublesOfDecimalsAreThoseOfTheirText) {
+  std::mt19937_64 random(14);
+  for (int i = 0; i < 3000; ++i) {
+    const std::string text = test::randomDecimalText(random);
+    EXPECT_EQ(Decimal::parse(text)->toDouble(), std::strtod(text.c_str(), nullptr)) << text;
+  }
+}
+
 TEST(Arithmetic, QuotientsOfDecimalsAreCutBehindEighteenDigits) {
   std::mt19937_64 random(12);
   const cpp_rational unit(1, boost::multiprecision::cpp_int("1000000000000000000"));

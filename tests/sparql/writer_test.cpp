@@ -207,6 +207,29 @@ TEST(ResultComparison, TellsGraphsApartThatColoursDoNot) {
   EXPECT_TRUE(test::isomorphic(hexagon, turned));
 }
 
+TEST(ResultComparison, TakesThousandsOfAlikeBlankNodesInItsStride) {
+  const auto parts = [](int count, const std::string& last) {
+    std::vector<test::Tuple> tuples;
+    for (int i = 0; i < count; ++i) {
+      const Term a = Term::blank("a" + std::to_string(i)), b = Term::blank("b" + std::to_string((i * 7) % count));
+      tuples.push_back({a, Term::iri("p"), b});
+      tuples.push_back({b, Term::iri("q"), Term::literal(i == count - 1 ? last : "same")});
+    }
+    return tuples;
+  };
+  EXPECT_TRUE(test::isomorphic(parts(5000, "same"), parts(5000, "same")));
+  EXPECT_FALSE(test::isomorphic(parts(5000, "same"), parts(5000, "other")));
+  std::vector<test::Tuple> rings, other_rings;
+  for (int i = 0; i < 3000; ++i) {
+    const auto node = [&](int k) { return Term::blank(std::to_string(i / 3) + "n" + std::to_string(k % 3)); };
+    rings.push_back({node(i), node(i + 1)});
+    const auto six = [&](int k) { return Term::blank(std::to_string(i / 6) + "m" + std::to_string(k % 6)); };
+    other_rings.push_back({six(i), six(i + 1)});
+  }
+  EXPECT_TRUE(test::isomorphic(rings, rings));
+  EXPECT_FALSE(test::isomorphic(rings, other_rings));
+}
+
 TEST(ResultComparison, ComparesNumbersByValueAndOtherLiteralsByText) {
   const auto row = [](const std::string& text, const std::string& type) {
     return std::vector<test::Tuple>{{Term::literal(text, vocabulary::xsd(type))}};

@@ -42,6 +42,13 @@ TEST_F(Questions, AHeaderTellsTitleColumnsAndParameters) {
   EXPECT_EQ(question.parameters[0].default_value, "5");
 }
 
+TEST_F(Questions, AHeaderLineMayStandWithoutABlank) {
+  const Question question = read("#!title: What is near?\n#!\tcolumn: thing [iri] the thing\n#!\nASK { }\n");
+  EXPECT_EQ(question.title, "What is near?");
+  ASSERT_EQ(question.columns.size(), 1U);
+  EXPECT_EQ(question.columns[0].help, "the thing");
+}
+
 TEST_F(Questions, AFileWithoutHeaderIsAQuestionWithoutTitle) {
   const Question question = read("# a comment\nASK { }\n");
   EXPECT_EQ(question.title, "");

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -178,6 +179,10 @@ class QuadReader {
   /// of up to some thousands of quads, sampled above.
   struct PredicateStatistics { std::uint64_t quads = 0, subjects = 0, objects = 0; };
   PredicateStatistics statistics(TermId predicate) const;
+  /// What a layer above has made from this commit and keeps for its other readers, by a name of its own; null when
+  /// there is none. Thread-safe among the readers of a commit.
+  std::shared_ptr<const void> kept(const std::string& name) const;
+  void keep(const std::string& name, std::shared_ptr<const void> made) const;
 
  private:
   std::unique_ptr<Impl> impl_;

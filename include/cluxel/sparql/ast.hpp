@@ -100,7 +100,8 @@ struct Select {
 
 /// FROM and FROM NAMED, or USING and USING NAMED. Both empty: the store's own dataset.
 struct DatasetClause {
-  std::vector<Term> default_graphs, named_graphs;
+  std::vector<Term> default_graphs = {}, named_graphs = {};
+  SourceOffset at = 0;
   bool empty() const { return default_graphs.empty() && named_graphs.empty(); }
 };
 

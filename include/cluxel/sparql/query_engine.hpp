@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,6 +45,9 @@ struct QueryOptions {
   std::optional<std::uint64_t> seed = std::nullopt;
   /// The time NOW() gives, microseconds since 1970 UTC; absent: the clock at the start of run.
   std::optional<std::int64_t> now_us = std::nullopt;
+  /// SERVICE is refused but for these: the endpoint's IRI, and the store on this machine that answers for it. The readers
+  /// must outlive the query. Nothing is ever asked over a network.
+  std::map<std::string, const QuadReader*> services = {};
   bool refuse_volatile = false;   ///< BNODE, RAND, NOW, UUID, STRUUID are errors (SPARQL rules)
 };
 
@@ -81,7 +85,8 @@ QueryResult evaluateQuery(const QuadReader& reader, std::string_view text, const
 /// Runs the query and gives its plan with estimated and actual rows.
 std::string explainQuery(const QuadReader& reader, std::string_view text, const QueryOptions& options = {});
 /// For a query without answers: the pattern that left nothing, in words; empty when there are answers.
-std::string whyEmpty(const QuadReader& reader, std::string_view text, const QueryOptions& options = {});
+std::string whyEmpty(const QuadReader& reader, std::string_view text, const QueryOptions& options = {},
+                     const std::vector<Binding>& bindings = {});
 /// Warnings: classes, properties and graphs that the store does not know, with "did you mean".
 std::vector<Diagnostic> checkQuery(const QuadReader& reader, std::string_view text, const QueryOptions& options = {});
 

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// The questions of the comparison, how one is timed, and the engines that they are put to.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cluxel/knowledge/environment.hpp"
+
+namespace cluxel::bench {
+
+struct Question {
+  std::string name, text;
+};
+
+/// Seconds of the median run, and the rows of the answer.
+struct Measure {
+  double seconds = -1;         ///< below 0: no answer
+  std::size_t rows = 0;        ///< lines of the TSV
+  double work_rows = 0;        ///< rows that all operators of our plan made together
+  bool given_up = false;       ///< the seconds are a lower bound
+  std::string failure = {};    ///< why there is no answer
+};
+using Measures = std::map<std::string, Measure>;
+
+inline constexpr double kMostSecondsPerQuery = 5;
+
+inline double since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Runs at least five times, or for almost half a second; `run` gives the number of rows.
+template <typename Run>
+Measure measured(Run run) {
+  using Clock = std::chrono::steady_clock;
+  std::vector<double> seconds;
+  Measure measure;
+  const auto start = Clock::now();
+  while (seconds.size() < 5 || (seconds.size() < 200 && since(start) < 0.4)) {
+    const auto begin = Clock::now();
+    measure.rows = run();
+    seconds.push_back(since(begin));
+    if (since(start) > kMostSecondsPerQuery) break;
+  }
+  std::sort(seconds.begin(), seconds.end());
+  measure.seconds = seconds[seconds.size() / 2];
+  return measure;
+}
+
+inline std::size_t lines(std::string_view text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+/// The questions whose names contain `only`, with the prefixes in front.
+std::vector<Question> readQuestions(const std::filesystem::path& file, const std::string& only);
+
+/// This library: a reader, the text parsed and planned, the answer as TSV, anew in every run.
+Measures askCluxel(const Environment& environment, const std::vector<Question>& asked);
+/// Oxigraph in node, its store in memory. `module` holds node_modules.
+Measures askOxigraph(const std::filesystem::path& module, const std::filesystem::path& nt_file, const std::vector<Question>& asked);
+/// Rasqal over librdf's "trees", each question in a process of its own that a deadline ends.
+Measures askRasqal(const std::filesystem::path& nt_file, const std::vector<Question>& asked);
+
+}  // namespace cluxel::bench

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// `cluxel update`: changes to the operator's statements by SPARQL Update.
+#include "app/command.hpp"
+#include "app/named_sources.hpp"
+#include "cluxel/base/file_bytes.hpp"
+#include "cluxel/knowledge/rdf_io.hpp"
+#include "cluxel/sparql/update_engine.hpp"
+
+namespace cluxel::app {
+
+namespace {
+
+/// What LOAD <iri> reads: the file that the caller named for it, nothing else.
+std::vector<Quad> triplesOf(const std::map<std::string, fs::path>& files, const std::string& iri) {
+  const auto file = files.find(iri);
+  if (file == files.end())
+    throw Error(ExitCode::FaultyInput, "LOAD <" + iri + "> is refused: no file is named for it, and nothing is fetched; name it: --load '" + iri + "=FILE'");
+  const auto format = rdfFormatOf(file->second);
+  if (!format) throw Error(ExitCode::Usage, "--load: " + file->second.string() + " is no RDF file (.ttl .nt .nq .trig .rdf)");
+  std::vector<Quad> quads;
+  const std::string text = readFile(file->second);
+  parseRdf({.text = text, .name = file->second.string(), .format = *format, .base_iri = iri, .graph = Term::iri("")},
+           [&quads](const Quad& quad) { quads.push_back(quad); });
+  return quads;
+}
+
+struct UpdateArguments {
+  fs::path map, file;
+  std::string text;
+  std::vector<std::string> loads;
+};
+
+ExitCode update(const UpdateArguments& arguments, const Session& session) {
+  const Question question = questionFrom(arguments.file, arguments.text, session);
+  const std::map<std::string, fs::path> loads = namedFiles("--load", arguments.loads);
+  const auto environment = Environment::open(arguments.map, OpenMode::ReadWrite);
+  WriteTransaction transaction = environment->write();
+  UpdateOptions options;
+  options.query.source_name = question.file.string();
+  if (!loads.empty()) options.load = [&loads](const std::string& iri) { return triplesOf(loads, iri); };
+  const UpdateReport report = runUpdate(transaction, question.text, options);
+  transaction.commit();
+  if (session.json)
+    printJson(Json{{"inserted", report.inserted}, {"deleted", report.deleted}});
+  else
+    std::printf("%llu inserted, %llu deleted\n", static_cast<unsigned long long>(report.inserted),
+                static_cast<unsigned long long>(report.deleted));
+  return ExitCode::Done;
+}
+
+}  // namespace
+
+void addUpdate(CLI::App& app, Session& session) {
+  auto options = std::make_shared<UpdateArguments>();
+  CLI::App* command = app.add_subcommand("update", "change the operator's statements in a map by SPARQL Update");
+  command->add_option("map", options->map, "a map")->required();
+  command->add_option("update", options->file, "a file with the update");
+  command->add_option("-e,--text", options->text, "the update itself");
+  command->add_option("--load", options->loads, "IRI=FILE: the RDF file that LOAD <IRI> reads; others are refused");
+  onRun(*command, session, [options, &session] { return update(*options, session); });
+}
+
+}  // namespace cluxel::app

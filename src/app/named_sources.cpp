@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Opens what a command line names.
+#include "app/named_sources.hpp"
+
+#include "cluxel/base/diagnostic.hpp"
+
+namespace cluxel::app {
+
+Question questionFrom(const fs::path& file, const std::string& text, const Session& session) {
+  if (!text.empty() && !file.empty()) throw Error(ExitCode::Usage, "give a query file or -e TEXT, not both");
+  if (file.empty() && text.empty()) throw Error(ExitCode::Usage, "give a query file, or a query with -e TEXT");
+  if (!file.empty()) {
+    fs::path name = file;
+    if (!name.has_extension()) name += ".rq";
+    return readQuestion(session.dataHome().locate("queries", name));
+  }
+  Question question;
+  question.file = "-e";
+  question.text = text;
+  return question;
+}
+
+std::map<std::string, fs::path> namedFiles(const std::string& option, const std::vector<std::string>& texts) {
+  std::map<std::string, fs::path> files;
+  for (const std::string& text : texts) {
+    // IRIs may hold '=' in their queries, files seldom do.
+    const std::size_t cut = text.rfind('=');
+    if (cut == std::string::npos || cut == 0 || cut + 1 == text.size())
+      throw Error(ExitCode::Usage, option + " " + text + ": write IRI=FILE");
+    files[text.substr(0, cut)] = text.substr(cut + 1);
+  }
+  return files;
+}
+
+NamedSources::NamedSources(const std::string& option, const std::vector<std::string>& texts) {
+  for (const auto& [iri, file] : namedFiles(option, texts)) {
+    sources_.push_back(openQuerySource(file));
+    readers_.emplace(iri, sources_.back().reader());
+  }
+}
+
+std::map<std::string, const QuadReader*> NamedSources::readers() const {
+  std::map<std::string, const QuadReader*> readers;
+  for (const auto& [iri, reader] : readers_) readers.emplace(iri, &reader);
+  return readers;
+}
+
+}  // namespace cluxel::app

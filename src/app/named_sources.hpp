@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Questions and files that a command line names for SPARQL commands.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "app/command.hpp"
+#include "cluxel/tasks/query_source.hpp"
+
+namespace cluxel::app {
+
+/// The question in a file (by path, or by name in queries/) or in a text; Error (Usage) for none or both.
+Question questionFrom(const fs::path& file, const std::string& text, const Session& session);
+
+/// `IRI=FILE` texts of an option; Error (Usage) for a text of another form.
+std::map<std::string, fs::path> namedFiles(const std::string& option, const std::vector<std::string>& texts);
+
+/// The same, each opened: a map, or an RDF file in a store of its own.
+class NamedSources {
+ public:
+  NamedSources(const std::string& option, const std::vector<std::string>& texts);
+  /// Valid while this lives.
+  std::map<std::string, const QuadReader*> readers() const;
+
+ private:
+  std::vector<QuerySource> sources_;
+  std::map<std::string, QuadReader> readers_;
+};
+
+}  // namespace cluxel::app

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Plans within EXISTS: what the solution from outside binds holds in every part of the pattern, by the substitution of
+// SPARQL 1.1 section 18.6. Patterns see it as rows that come in; parts with a life of their own as parameters.
+#include <algorithm>
+
+#include "sparql/planner.hpp"
+
+namespace cluxel::sparql {
+namespace {
+
+/// Computed by itself and joined, it gives what it would give with outer variables in place.
+bool isPlain(const Node& node) {
+  switch (node.kind) {
+    case Node::Kind::Unit:
+    case Node::Kind::Nothing:
+    case Node::Kind::Triple:
+    case Node::Kind::GraphNames:
+    case Node::Kind::Values: return true;
+    case Node::Kind::Join:
+    case Node::Kind::Union:
+      return std::all_of(node.children.begin(), node.children.end(), [](const NodePtr& child) { return isPlain(*child); });
+    default: return false;
+  }
+}
+
+}  // namespace
+
+SlotSet Planner::seenFromOutside(const State& state, const Node& part) const {
+  if (state.outer.empty() || isPlain(part)) return {};
+  SlotSet seen = part.mentioned() & state.outer;
+  for (const Slot slot : parameters_) seen.remove(slot);
+  return seen;
+}
+
+OperatorPtr Planner::correlatedBody(const State& state, const Node& part, const SlotSet& seen) {
+  const std::vector<Slot> parameters = parameters_;
+  const SlotSet unsure = unsure_parameters_;
+  for (const Slot slot : seen.list()) {
+    parameters_.push_back(slot);
+    if (!state.certain.has(slot)) unsure_parameters_.add(slot);
+  }
+  OperatorPtr body = alone(part).top;
+  parameters_ = parameters;
+  unsure_parameters_ = unsure;
+  return body;
+}
+
+Planner::State Planner::joinCorrelated(State state, const Node& part, const SlotSet& seen) {
+  const double rows = rowsAfter(state, part);
+  OperatorPtr body = correlatedBody(state, part, seen);
+  state.top = makeCorrelatedJoin(std::move(state.top), std::move(body), seen.list());
+  state.top->at = part.at;
+  state.certain.add(part.certain);
+  state.possible.add(part.possible);
+  state.sorted_by = kNoSlot;
+  state.is_unit = false;
+  setRows(state, rows);
+  return state;
+}
+
+Planner::State Planner::minusCorrelated(State state, const Node& node, const SlotSet& seen, const std::vector<Slot>& shared) {
+  OperatorPtr body = correlatedBody(state, *node.children[1], seen);
+  state.top = makeCorrelatedMinus(std::move(state.top), std::move(body), seen.list(), shared, node.minus_ignores);
+  state.top->at = node.at;
+  setRows(state, state.rows);
+  return state;
+}
+
+}  // namespace cluxel::sparql

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// SERVICE: answered by a store on this machine that the caller has named for the endpoint, else refused.
+#include "cluxel/base/diagnostic.hpp"
+#include "sparql/algebra_builder.hpp"
+#include "sparql/planner.hpp"
+
+namespace cluxel::sparql {
+namespace {
+
+/// Blank nodes of another store are none of ours, whatever their labels.
+Term foreign(Term term, std::uint32_t service) {
+  if (term.kind == TermKind::BlankNode) term.text = "service" + std::to_string(service) + "x" + term.text;
+  return term;
+}
+
+}  // namespace
+
+NodePtr AlgebraBuilder::service(const ast::ServicePattern& service, ast::SourceOffset at, Scope& scope) {
+  if (service.endpoint.isVariable()) {
+    fail(at, "SERVICE with a variable is refused", "name the endpoint by its IRI");
+  }
+  const std::string& iri = service.endpoint.term().text;
+  const auto allowed = options_.services.find(iri);
+  if (allowed == options_.services.end()) {
+    fail(at, "SERVICE <" + iri + "> is refused: no store is named for it, and nothing is asked over the network",
+         "name a map or an RDF file that answers for it (cluxel query --service '" + iri + "=FILE')");
+  }
+  return answered(service, *allowed->second, at, scope);
+}
+
+/// The solutions of the group over the other store, as VALUES.
+NodePtr AlgebraBuilder::answered(const ast::ServicePattern& service, const QuadReader& reader, ast::SourceOffset at,
+                                 Scope& scope) {
+  QueryTerms terms(reader);
+  AlgebraQuery algebra = buildAlgebra(service.group, variables_, std::string(text_), terms, options_);
+  if (algebra.is_volatile) fail(at, "RAND, NOW, UUID and BNODE do not work within SERVICE", "use them outside of it");
+  const Dataset dataset = datasetOf({}, {}, reader);
+  const OperatorPtr plan = Planner(algebra, terms, dataset).plan();
+  FunctionContext functions(terms);
+  Runtime runtime(reader, terms, functions, dataset, algebra.slot_names.size(), algebra.exists_count);
+  runtime.guard.start(options_.budget);
+  NodePtr node = makeNode(Node::Kind::Values, at);
+  node->note = "SERVICE <" + service.endpoint.term().text + "> ";
+  std::vector<Slot> theirs;
+  for (ast::VariableIndex i = 0; i < variables_.size(); ++i) {
+    const Slot slot = algebra.slot_of_variable[i];
+    if (variables_[i].hidden || !algebra.root->possible.has(slot)) continue;
+    theirs.push_back(slot);
+    node->slots.push_back(slotOf(i, scope));
+  }
+  const std::uint32_t number = service_count_++;
+  Batch batch(runtime.slot_count);
+  for (plan->open(runtime, true); plan->next(batch);) {
+    runtime.guard.charge(batch.rows * (sizeof(node->rows[0]) + theirs.size() * sizeof(ValueId)));
+    for (std::size_t row = 0; row < batch.rows; ++row) {
+      std::vector<ValueId>& ids = node->rows.emplace_back();
+      for (const Slot slot : theirs) {
+        const ValueId id = batch.at(slot, row);
+        ids.push_back(id == kUnbound ? kUnbound : terms_.intern(foreign(terms.termOf(id), number)));
+      }
+    }
+  }
+  node->annotate();
+  return node;
+}
+
+}  // namespace cluxel::sparql

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// The R-tree behind geo filters: it may only leave out what the filter would leave out.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "cluxel/sparql/update_engine.hpp"
+#include "sparql/store_fixture.hpp"
+
+namespace cluxel::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+const std::string kWktDatatype = "http://www.opengis.net/ont/geosparql#wktLiteral";
+
+class GeometryMaker {
+ public:
+  explicit GeometryMaker(std::uint32_t seed) : random_(seed) {}
+
+  int upTo(int limit) { return static_cast<int>(random_() % static_cast<std::uint32_t>(limit)); }
+  std::string pair(int x, int y) { return std::to_string(x) + " " + std::to_string(y); }
+  /// Mostly small geometries on a grid, so that many only touch; some empty ones, faults, and one that spans all.
+  std::string wkt() {
+    const int x = upTo(200), y = upTo(200), w = 1 + upTo(12), h = 1 + upTo(12);
+    switch (upTo(12)) {
+      case 0: return "LINESTRING(" + pair(x, y) + ", " + pair(x + w, y + h) + ")";
+      case 1: case 2: case 3: return box(x, y, x + w, y + h);
+      case 4: return "MULTIPOINT((" + pair(x, y) + "), (" + pair(x + w, y) + "))";
+      case 5: return upTo(4) == 0 ? "POINT EMPTY" : "POINT(" + pair(x, y) + ")";
+      case 6: return upTo(4) == 0 ? "POINT(1" : "POINT(" + std::to_string(x) + ".25 " + pair(y, y).substr(0, 1) + ")";
+      case 7: return upTo(8) == 0 ? "LINESTRING(0 0, 220 220)" : box(x, y, x + w, y + h);
+      default: return "POINT(" + pair(x, y) + ")";
+    }
+  }
+  std::string condition() {
+    const std::string literal = "\"" + wkt() + "\"^^geo:wktLiteral";
+    const bool first = upTo(2) == 0;
+    const std::string arguments = first ? "(?g, " + literal + ")" : "(" + literal + ", ?g)";
+    const std::string limit = std::to_string(upTo(20)) + (upTo(2) == 0 ? ".5" : "");
+    switch (upTo(7)) {
+      case 0: return "geof:sfIntersects" + arguments;
+      case 1: return "geof:sfWithin" + arguments;
+      case 2: return "geof:sfContains" + arguments;
+      case 3: return "geof:sfTouches" + arguments;
+      case 4: return "geof:distance" + arguments + " <= " + limit;
+      case 5: return limit + " > geof:distance" + arguments;
+      default: return "geof:distance" + arguments + " < " + (upTo(6) == 0 ? "-1" : limit);
+    }
+  }
+
+ private:
+  std::string box(int x, int y, int right, int top) {
+    return "POLYGON((" + pair(x, y) + ", " + pair(right, y) + ", " + pair(right, top) + ", " + pair(x, top) + ", " + pair(x, y) + "))";
+  }
+  std::mt19937 random_;
+};
+
+SmallStore placed(GeometryMaker& maker, int count) {
+  SmallStore store;
+  std::vector<Quad> quads;
+  for (int i = 0; i < count; ++i) {
+    const Term self = Term::iri("http://example.org/o" + std::to_string(i));
+    const std::string datatype = maker.upTo(30) == 0 ? "http://www.w3.org/2001/XMLSchema#string" : kWktDatatype;
+    quads.push_back({self, Term::iri("http://www.opengis.net/ont/geosparql#asWKT"), Term::literal(maker.wkt(), datatype), Term::iri("")});
+    quads.push_back({self, Term::iri("http://example.org/kind"), Term::integer(maker.upTo(5)), Term::iri("")});
+    if (maker.upTo(3) == 0)
+      quads.push_back({self, Term::iri("http://example.org/also"), Term::literal(maker.wkt(), kWktDatatype), Term::iri("")});
+  }
+  store.load(quads);
+  return store;
+}
+
+TEST(SpatialIndex, GivesTheAnswersOfTheFilterAlone) {
+  int used = 0, found = 0;
+  for (const std::uint32_t seed : {1U, 2U, 3U}) {
+    GeometryMaker maker(seed);
+    const SmallStore store = placed(maker, 400);
+    for (int i = 0; i < 120; ++i) {
+      const std::string condition = maker.condition();
+      const std::string patterns[] = {"?o geo:asWKT ?g ", "?o :kind 3 . ?o geo:asWKT ?g ", "?o :kind ?k ; geo:asWKT ?g OPTIONAL { ?o :also ?h } "};
+      const std::string& pattern = patterns[maker.upTo(3)];
+      const std::string indexed = "SELECT * { " + pattern + "FILTER(" + condition + ") }";
+      // The planner does not look into IF.
+      const std::string alone = "SELECT * { " + pattern + "FILTER(IF(" + condition + ", true, false)) }";
+      const auto expected = store.rows(alone);
+      EXPECT_EQ(store.rows(indexed), expected) << indexed;
+      const QuadReader reader = store.reader();
+      EXPECT_THAT(explainQuery(reader, kPrefixes + alone), Not(HasSubstr("R-tree")));
+      used += explainQuery(reader, kPrefixes + indexed).find("R-tree") != std::string::npos ? 1 : 0;
+      found += expected.empty() ? 0 : 1;
+    }
+  }
+  EXPECT_GT(used, 200) << "the index is hardly used";
+  EXPECT_GT(found, 100) << "hardly any filter lets something pass";
+}
+
+TEST(SpatialIndex, AlsoAnswersFiltersOnABoundDistance) {
+  GeometryMaker maker(9);
+  const SmallStore store = placed(maker, 400);
+  const std::string distance = "geof:distance(?g, \"POINT(100 100)\"^^geo:wktLiteral)";
+  const auto rows = store.rows("SELECT ?o ?d { ?o geo:asWKT ?g BIND(" + distance + " AS ?d) FILTER(?d < 15) }");
+  EXPECT_FALSE(rows.empty());
+  EXPECT_EQ(store.rows("SELECT ?o ?d { ?o geo:asWKT ?g BIND(" + distance + " AS ?d) FILTER(IF(?d < 15, true, false)) }"), rows);
+  EXPECT_THAT(explainQuery(store.reader(), kPrefixes + "SELECT ?o { ?o geo:asWKT ?g BIND(" + distance + " AS ?d) FILTER(?d < 15) }"),
+              HasSubstr("R-tree"));
+}
+
+TEST(SpatialIndex, IsOfOneCommit) {
+  SmallStore store;
+  const std::string near = "SELECT ?o { ?o geo:asWKT ?g FILTER(geof:distance(?g, \"POINT(5 5)\"^^geo:wktLiteral) < 1) }";
+  std::vector<Quad> far;
+  for (int i = 0; i < 20; ++i)
+    far.push_back({Term::iri("http://example.org/f" + std::to_string(i)), Term::iri("http://www.opengis.net/ont/geosparql#asWKT"),
+                   Term::literal("POINT(" + std::to_string(100 + i) + " 0)", kWktDatatype), Term::iri("")});
+  store.load(far);
+  const QuadReader before = store.reader();
+  EXPECT_THAT(explainQuery(before, kPrefixes + near), HasSubstr("R-tree, 0 of 20"));
+  store.load(":new geo:asWKT \"POINT(5 5.5)\"^^geo:wktLiteral .", "");
+  EXPECT_THAT(store.rows(near), testing::ElementsAre(":new"));
+  EXPECT_EQ(evaluateQuery(before, kPrefixes + near).table.row_count, 0U) << "an older reader sees its own commit";
+}
+
+TEST(SpatialIndex, SeesWhatAnUpdateHasWrittenBefore) {
+  std::string turtle = ":a geo:asWKT \"POINT(0 0)\"^^geo:wktLiteral .";
+  for (int i = 0; i < 20; ++i) turtle += " :f" + std::to_string(i) + " geo:asWKT \"POINT(9 " + std::to_string(100 + i) + ")\"^^geo:wktLiteral .";
+  SmallStore store(turtle);
+  WriteTransaction transaction = store.environment()->write();
+  UpdateOptions options;
+  options.any_graph_writable = true;
+  options.query.default_graph = DefaultGraph::Unnamed;
+  const std::string move = "DELETE { ?o geo:asWKT ?g } INSERT { ?o geo:asWKT \"POINT(50 50)\"^^geo:wktLiteral } "
+                           "WHERE { ?o geo:asWKT ?g FILTER(geof:distance(?g, \"POINT(AT)\"^^geo:wktLiteral) < 1) }";
+  const auto at = [&](const std::string& place) { return std::string(move).replace(move.find("AT"), 2, place); };
+  const UpdateReport report = runUpdate(transaction, kPrefixes + at("0 0") + " ; " + at("50 50"), options);
+  EXPECT_EQ(report.inserted, 2U) << "the second operation finds the geometry where the first has put it";
+}
+
+}  // namespace
+}  // namespace cluxel::test
