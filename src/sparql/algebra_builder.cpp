@@ -78,6 +78,15 @@ void AlgebraBuilder::fail(ast::SourceOffset at, std::string message, std::string
   throw InputError(locate(options_.source_name, text_, at), std::move(message), std::move(hint));
 }
 
+/// Planning compares parts with parts, and the algebra is as deep as a group is long.
+void AlgebraBuilder::countPart(ast::SourceOffset at) {
+  constexpr std::size_t kMostParts = 2000;
+  if (++parts_ > kMostParts) {
+    fail(at, "the query has more than " + std::to_string(kMostParts) + " patterns, filters and binds",
+         "ask it in parts; a long list of terms goes into VALUES or IN");
+  }
+}
+
 Slot AlgebraBuilder::freshSlot(std::string name) {
   slot_names_.push_back(std::move(name));
   return static_cast<Slot>(slot_names_.size() - 1);
@@ -129,6 +138,7 @@ AlgebraBuilder::GroupParts AlgebraBuilder::groupParts(const ast::GroupPattern& p
   GroupParts parts;
   parts.pattern = unit(scope);
   for (const ast::PatternElement& part : pattern.elements) {
+    countPart(part.at);
     if (const auto* filter = std::get_if<ast::Filter>(&part.value)) {
       parts.filters.push_back(&filter->condition);
     } else if (const auto* optional = std::get_if<ast::OptionalPattern>(&part.value)) {
@@ -167,12 +177,14 @@ NodePtr AlgebraBuilder::filtered(NodePtr node, const std::vector<const ast::Expr
   for (const ast::Expression* condition : filters) {
     splitConjuncts(expression(*condition, scope, node->possible), filter->conditions);
   }
+  for (const Expr& condition : filter->conditions) countPart(condition.at);
   filter->children = {std::move(node)};
   filter->annotate();
   return filter;
 }
 
 NodePtr AlgebraBuilder::extend(NodePtr node, Slot slot, Expr value, ast::SourceOffset at) {
+  countPart(at);
   NodePtr extended = makeNode(Node::Kind::Extend, at);
   extended->children = {std::move(node)};
   extended->slot = slot;

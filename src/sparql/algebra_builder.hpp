@@ -69,6 +69,7 @@ class AlgebraBuilder {
   PatternPlace place(const ast::PatternTerm& term, Scope& scope);
   Slot freshSlot(std::string name);
   bool isParameter(Slot slot) const { return parameters_.has(slot); }
+  void countPart(ast::SourceOffset at);
   [[noreturn]] void fail(ast::SourceOffset at, std::string message, std::string hint = {}) const;
 
   const ast::VariableTable& variables_;
@@ -78,6 +79,7 @@ class AlgebraBuilder {
   std::vector<std::string> slot_names_;
   SlotSet parameters_;
   std::vector<Slot> parameter_list_;
+  std::size_t parts_ = 0;
   std::uint32_t exists_count_ = 0, service_count_ = 0;
   bool is_volatile_ = false;
   Aggregation aggregation_;

@@ -18,6 +18,7 @@ NodePtr AlgebraBuilder::triples(const ast::TriplesBlock& block, Scope& scope) {
 
 NodePtr AlgebraBuilder::triple(const PatternPlace& subject, const PatternPlace& predicate, const PatternPlace& object,
                                Scope& scope, ast::SourceOffset at) {
+  countPart(at);
   NodePtr node = makeNode(Node::Kind::Triple, at);
   node->triple.subject = subject;
   node->triple.predicate = predicate;

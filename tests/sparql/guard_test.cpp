@@ -102,6 +102,41 @@ TEST(Guard, RefusesDeepNesting) {
   EXPECT_THROW(store.ask("SELECT * {" + groups + "}"), InputError);
 }
 
+TEST(Guard, RefusesQueriesOfThousandsOfPartsAndPlansThoseBelowInTime) {
+  const SmallStore store = chain(10);
+  const auto repeated = [](const std::string& part, int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i) {
+      for (const char c : part) text += c == '#' ? std::to_string(i) : std::string(1, c);
+    }
+    return text;
+  };
+  for (const char* part : {"?s# :next ?s#x . ", "OPTIONAL { ?s :next ?o# } ", "BIND(# AS ?b#) ", "FILTER(?s != #) ", "MINUS { ?s :x # } ",
+                           "{ ?s :next ?o# } UNION ", "VALUES ?v# { # } ", "{ SELECT ?s { ?s :next ?o } } ", "GRAPH ?g# { } "}) {
+    const std::string end = std::string(part).ends_with("UNION ") ? "{ } }" : "}";
+    EXPECT_THROW(store.ask("ASK { " + repeated(part, 50'000) + end), InputError) << part;
+    const auto start = std::chrono::steady_clock::now();
+    QueryOptions options;
+    options.budget.deadline = std::chrono::milliseconds(200);
+    try {
+      store.ask("ASK { ?s :next ?o . " + repeated(part, 900) + end, options);
+    } catch (const Error&) {   // the budget, or too many parts
+    }
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5)) << part;
+  }
+}
+
+TEST(Guard, EndsTextsThatGrowWithoutEnd) {
+  const SmallStore store;
+  std::string doubled = "BIND(\"abcdefgh\" AS ?t0) ";
+  for (int i = 0; i < 60; ++i)
+    doubled += "BIND(CONCAT(?t" + std::to_string(i) + ", ?t" + std::to_string(i) + ") AS ?t" + std::to_string(i + 1) + ") ";
+  EXPECT_THROW(store.ask("SELECT (STRLEN(?t60) AS ?n) { " + doubled + "}"), Error);
+  std::string many(1000, 'a'), replaced = "\"" + many + "\"";
+  for (int i = 0; i < 8; ++i) replaced = "REPLACE(" + replaced + ", \"a\", \"" + many + "\")";
+  EXPECT_THROW(store.ask("SELECT (STRLEN(" + replaced + ") AS ?n) { }"), Error);
+}
+
 TEST(Explain, ShowsEstimatedAndActualRows) {
   const SmallStore store = chain(10);
   const QuadReader reader = store.reader();

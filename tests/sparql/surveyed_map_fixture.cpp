@@ -49,7 +49,8 @@ class SurveyMaker {
     const char* type = classes[upTo(7)];
     const Term self = object(number);
     add(self, vocabulary::rdf("type"), Term::iri(clx(type)));
-    for (const char* name : {"x", "y", "z", "heading"}) add(self, clx(name), tenths(upTo(400) - 200));
+    // Never 0: oxigraph 0.5.11 takes 0.0 * 0.0 for an error.
+    for (const char* name : {"x", "y", "z", "heading"}) add(self, clx(name), tenths(2 * upTo(200) - 199));
     for (const char* name : {"height", "top", "length", "width"}) add(self, clx(name), tenths(1 + upTo(120)));
     add(self, clx("confidence"), tenths(1 + upTo(9)));
     if (chance(90)) add(self, clx("rule"), Term::literal(std::string("rules/") + type));
