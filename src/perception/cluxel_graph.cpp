@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "perception/radix_order.hpp"
+#include "perception/vector_lanes.hpp"
 
 namespace cluxel {
 namespace {
@@ -89,6 +90,7 @@ struct Entries {
 Entries enterVolumes(const RingCluxels& cluxels) {
   const VolumeCells cells(cluxels);
   Entries entries;
+  entries.entry.reserve(6 * cluxels.size());
   entries.first_cell.resize(cluxels.size());
   for (std::uint32_t c = 0; c < cluxels.size(); ++c) {
     const Cell low = cells.cellOf(cluxels.volume[c].low), high = cells.cellOf(cluxels.volume[c].high);
@@ -110,19 +112,44 @@ struct Pair {
   std::uint32_t a, b;
 };
 
+/// A volume in vectors; the last lanes let a pair through only when one of the two is near.
+struct Box {
+  Floats low, high;
+};
+
+std::vector<Box> boxesOf(const RingCluxels& cluxels) {
+  std::vector<Box> boxes;
+  boxes.reserve(cluxels.size());
+  for (std::size_t c = 0; c < cluxels.size(); ++c) {
+    const auto &low = cluxels.volume[c].low, &high = cluxels.volume[c].high;
+    const float near = cluxels.near[c] ? 1.0F : 0.0F;
+    boxes.push_back({Floats{low.x(), low.y(), low.z(), 1.0F - near}, Floats{high.x(), high.y(), high.z(), near}});
+  }
+  return boxes;
+}
+
+bool meet(const Box& a, const Box& b) { return allHold((a.low <= b.high) & (b.low <= a.high)); }
+
 std::vector<Pair> intersectingPairs(const RingCluxels& cluxels, const Entries& entries) {
   std::vector<Pair> pairs;
+  pairs.reserve(8 * cluxels.size());
+  const auto boxes = boxesOf(cluxels);
   const auto& entry = entries.entry;
   for (std::size_t begin = 0, end = 0; begin < entry.size(); begin = end) {
     for (end = begin + 1; end < entry.size() && entry[end].key == entry[begin].key;) ++end;
     for (std::size_t i = begin; i < end; ++i)
       for (std::size_t j = i + 1; j < end; ++j) {
         const std::uint32_t a = entry[i].item, b = entry[j].item;
-        if (!intersects(cluxels.volume[a], cluxels.volume[b]) || !(cluxels.near[a] | cluxels.near[b])) continue;
+        if (!meet(boxes[a], boxes[b])) continue;
         if (beginsHere(entries.first_cell[a], entries.first_cell[b], entry[begin].key)) pairs.push_back({a, b});
       }
   }
   return pairs;
+}
+
+void reserve(RingCluxels& cluxels, std::size_t count) {
+  cluxels.name.reserve(count), cluxels.center.reserve(count), cluxels.volume.reserve(count);
+  cluxels.member.reserve(count), cluxels.reach.reserve(count), cluxels.near.reserve(count);
 }
 
 }  // namespace
@@ -134,6 +161,7 @@ RingCluxels gatherCluxels(const Ring<CluxelTile>& ring) {
   Volume near_hull = own_hull;
   forEachTouching(ring, own_hull, [&](int, std::uint32_t, const Volume& volume) { extend(near_hull, volume); });
   RingCluxels cluxels;
+  reserve(cluxels, 2 * own.size());
   forEachTouching(ring, near_hull, [&](int r, std::uint32_t i, const Volume& volume) {
     if (r == kRingCentre && i == 0) cluxels.own_begin = static_cast<std::uint32_t>(cluxels.size());
     cluxels.name.push_back({static_cast<std::uint32_t>(r), i});

@@ -9,7 +9,9 @@
 #include <numeric>
 
 #include "cluxel/perception/footprint_hull.hpp"
+#include "perception/box_gap.hpp"
 #include "perception/disjoint_sets.hpp"
+#include "perception/vector_lanes.hpp"
 
 namespace cluxel {
 
@@ -27,7 +29,7 @@ std::vector<std::uint32_t> connect(const CluxelTile& cluxels, const FeatureTile&
       const RingIndex target = graph.edge_target[e];
       const std::uint32_t b = target.index;
       if (target.ring != kRingCentre || b < a || labels.label[a] != labels.label[b]) continue;
-      if (boxGap(cluxels.box_min[a], cluxels.box_max[a], cluxels.box_min[b], cluxels.box_max[b]) <= largest_gap)
+      if (gapBetween(cluxels.box_min[a], cluxels.box_max[a], cluxels.box_min[b], cluxels.box_max[b]) <= largest_gap)
         sets.join(a, b);
     }
   return sets.numbers();
@@ -128,22 +130,58 @@ class CellCollector {
   std::vector<std::uint32_t> slot_;
 };
 
+/// 16 directions all around, four to a vector.
+struct Directions {
+  std::array<Floats, 4> x, y;
+  Directions() {
+    for (std::size_t k = 0; k < 4 * kLanes; ++k) {
+      const double angle = 2 * std::numbers::pi * static_cast<double>(k) / (4 * kLanes);
+      x[k / kLanes][k % kLanes] = static_cast<float>(std::cos(angle));
+      y[k / kLanes][k % kLanes] = static_cast<float>(std::sin(angle));
+    }
+  }
+};
+
 /// The convex polygon of the outmost points in 16 directions.
 std::vector<Eigen::Vector2d> outmostPolygon(const TilePoints& points, std::span<const std::uint32_t> members) {
-  constexpr std::size_t kDirections = 16;
-  std::vector<Eigen::Vector2d> polygon;
-  for (std::size_t k = 0; k < kDirections; ++k) {
-    const double angle = 2 * std::numbers::pi * static_cast<double>(k) / kDirections;
-    const auto along_x = static_cast<float>(std::cos(angle)), along_y = static_cast<float>(std::sin(angle));
-    std::uint32_t outmost = members.front();
-    float best = -kInfinity;
-    for (const std::uint32_t i : members) {
-      const float reach = points.x[i] * along_x + points.y[i] * along_y;
-      if (reach > best) best = reach, outmost = i;
+  static const Directions along;
+  std::array<Floats, 4> best;
+  best.fill(Floats{} - kInfinity);
+  std::array<Numbers, 4> outmost{};
+  for (const std::uint32_t i : members)
+    for (std::size_t v = 0; v < best.size(); ++v) {
+      const Floats reach = points.x[i] * along.x[v] + points.y[i] * along.y[v];
+      const Numbers is_farther = reach > best[v];
+      best[v] = is_farther ? reach : best[v];
+      outmost[v] = is_farther ? Numbers{} + static_cast<std::int32_t>(i) : outmost[v];
     }
-    polygon.emplace_back(points.x[outmost], points.y[outmost]);
+  std::vector<Eigen::Vector2d> polygon;
+  for (std::size_t k = 0; k < 4 * kLanes; ++k) {
+    const auto i = static_cast<std::size_t>(outmost[k / kLanes][k % kLanes]);
+    polygon.emplace_back(points.x[i], points.y[i]);
   }
   return convexHull(std::move(polygon));
+}
+
+/// A circle inside of a convex polygon, a little away from its sides; of radius 0 where there is none.
+struct InnerCircle {
+  Eigen::Vector2d center = Eigen::Vector2d::Zero();
+  double squared_radius = 0;
+  bool holds(const Eigen::Vector2d& p) const { return (p - center).squaredNorm() < squared_radius; }
+};
+
+InnerCircle innerCircleOf(const std::vector<Eigen::Vector2d>& polygon) {
+  InnerCircle circle;
+  if (polygon.size() < 3) return circle;
+  for (const auto& corner : polygon) circle.center += corner / static_cast<double>(polygon.size());
+  double radius = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Eigen::Vector2d side = polygon[(k + 1) % polygon.size()] - polygon[k], to = circle.center - polygon[k];
+    radius = std::min(radius, (side.x() * to.y() - side.y() * to.x()) / side.norm());
+  }
+  constexpr double kAway = 0.99;
+  if (radius > 0) circle.squared_radius = kAway * radius * radius;
+  return circle;
 }
 
 bool isStrictlyInside(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& p) {
@@ -161,9 +199,10 @@ std::vector<Eigen::Vector2d> hullOf(const TilePoints& points, std::span<const st
   std::vector<Eigen::Vector2d> candidates;
   if (members.size() > kFew) candidates = outmostPolygon(points, members);
   const std::vector<Eigen::Vector2d> polygon = candidates;
+  const InnerCircle circle = innerCircleOf(polygon);   // most points lie there, which is quickly seen
   for (const std::uint32_t i : members) {
     const Eigen::Vector2d p(points.x[i], points.y[i]);
-    if (!isStrictlyInside(polygon, p)) candidates.push_back(p);
+    if (!circle.holds(p) && !isStrictlyInside(polygon, p)) candidates.push_back(p);
   }
   return convexHull(std::move(candidates));
 }
@@ -207,7 +246,7 @@ void describe(ComponentParams& params, ParameterVisitor& visitor) {
 
 float boxGap(const Eigen::Vector3f& min_a, const Eigen::Vector3f& max_a, const Eigen::Vector3f& min_b,
              const Eigen::Vector3f& max_b) {
-  return (min_a - max_b).cwiseMax(min_b - max_a).cwiseMax(0.0F).norm();
+  return gapBetween(min_a, max_a, min_b, max_b);
 }
 
 ComponentTile componentsOf(const TilePoints& points, const CluxelTile& cluxels, const FeatureTile& graph,

@@ -8,6 +8,8 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "perception/box_gap.hpp"
+
 namespace cluxel {
 
 namespace {
@@ -17,6 +19,7 @@ class ContactCollector {
  public:
   Contact& at(std::uint32_t from, std::uint32_t to_ring, std::uint32_t to) {
     const std::uint64_t key = std::uint64_t{from} << 36U | std::uint64_t{to_ring} << 32U | to;
+    if (key == last_key_) return contacts_[last_];   // neighbouring edges often join the same two
     const auto [place, is_new] = number_.try_emplace(key, static_cast<std::uint32_t>(contacts_.size()));
     if (is_new) {
       Contact contact;
@@ -24,7 +27,8 @@ class ContactCollector {
       contact.gap = std::numeric_limits<double>::infinity();
       contacts_.push_back(contact);
     }
-    return contacts_[place->second];
+    last_key_ = key, last_ = place->second;
+    return contacts_[last_];
   }
 
   std::vector<Contact> finish() {
@@ -37,6 +41,8 @@ class ContactCollector {
  private:
   std::unordered_map<std::uint64_t, std::uint32_t> number_;
   std::vector<Contact> contacts_;
+  std::uint64_t last_key_ = ~std::uint64_t{0};
+  std::uint32_t last_ = 0;
 };
 
 void addEdges(const Ring<ComponentTile>& components, const Ring<CluxelTile>& cluxels, const FeatureTile& graph,
@@ -51,7 +57,7 @@ void addEdges(const Ring<ComponentTile>& components, const Ring<CluxelTile>& clu
       const std::uint32_t from = own_components.component_of[a], to = components[ring]->component_of[b];
       if (ring == kRingCentre && from == to) continue;
       const Eigen::Vector3f shift = ringShift(static_cast<int>(ring));
-      const float gap = boxGap(own.box_min[a], own.box_max[a], other.box_min[b] + shift, other.box_max[b] + shift);
+      const float gap = gapBetween(own.box_min[a], own.box_max[a], other.box_min[b] + shift, other.box_max[b] + shift);
       const bool same_label = own_components.components[from].label == components[ring]->components[to].label;
       Contact& contact = contacts.at(from, static_cast<std::uint32_t>(ring), to);
       ++contact.edges;
@@ -86,9 +92,9 @@ class CellGrid {
   }
 
   int reach() const { return reach_; }
-  std::span<const CellEntry> at(int x, int y) const {
-    const std::size_t cell = slot(x, y);
-    return {entries_.data() + offset_[cell], entries_.data() + offset_[cell + 1]};
+  /// The entries of the cells from x to last_x of one row.
+  std::span<const CellEntry> at(int x, int last_x, int y) const {
+    return {entries_.data() + offset_[slot(x, y)], entries_.data() + offset_[slot(last_x, y) + 1]};
   }
 
  private:
@@ -121,7 +127,7 @@ class CellGrid {
 void addNear(const CellEntry& own, const CellEntry& other, float near, ContactCollector& contacts) {
   if (other.ring == kRingCentre && other.component == own.component) return;
   const bool touches = std::abs(own.x - other.x) <= 1 && std::abs(own.y - other.y) <= 1;
-  const float gap = boxGap(own.min, own.max, other.min, other.max);
+  const float gap = gapBetween(own.min, own.max, other.min, other.max);
   if (!touches && gap > near) return;
   Contact& contact = contacts.at(own.component, other.ring, other.component);
   contact.gap = std::min<double>(contact.gap, gap);
@@ -134,11 +140,10 @@ void addCells(const CellGrid& grid, const ContactParams& params, ContactCollecto
   const auto near = static_cast<float>(params.near_m);
   for (int y = 0; y < kFootprintCellsPerTile; ++y)
     for (int x = 0; x < kFootprintCellsPerTile; ++x)
-      for (const CellEntry& own : grid.at(x, y)) {
+      for (const CellEntry& own : grid.at(x, x, y)) {
         if (own.ring != kRingCentre) continue;
         for (int other_y = y - grid.reach(); other_y <= y + grid.reach(); ++other_y)
-          for (int other_x = x - grid.reach(); other_x <= x + grid.reach(); ++other_x)
-            for (const CellEntry& other : grid.at(other_x, other_y)) addNear(own, other, near, contacts);
+          for (const CellEntry& other : grid.at(x - grid.reach(), x + grid.reach(), other_y)) addNear(own, other, near, contacts);
       }
 }
 

@@ -3,6 +3,7 @@
 #include "perception/cover_volumes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -59,12 +60,25 @@ void fillVolume(const PointGrid& grid, const NearPoints& near, float reach_squar
   tile.reach[cluxel] = std::sqrt(reach_squared);
 }
 
-/// The squared distance that holds the wanted number of points, between the two bounds.
-float grownReach(NearPoints& near, std::size_t wanted, float least, float largest, std::vector<float>& scratch) {
+/// The squared distance that holds the wanted number of points, between the two bounds; found in its bucket of distances,
+/// so that few are sorted.
+float grownReach(const NearPoints& near, std::size_t wanted, float least, float largest, std::vector<float>& scratch) {
   if (near.count <= wanted) return largest;
-  scratch.assign(near.squared.begin(), near.squared.begin() + static_cast<std::ptrdiff_t>(near.count));
-  const auto nth = scratch.begin() + static_cast<std::ptrdiff_t>(wanted - 1);
-  std::nth_element(scratch.begin(), nth, scratch.end());
+  constexpr std::size_t kBuckets = 32;
+  const float scale = (static_cast<float>(kBuckets) - 0.5F) / largest;
+  const auto bucketOf = [scale](float squared) { return static_cast<std::size_t>(static_cast<int>(squared * scale)); };
+  std::array<std::uint32_t, kBuckets> count{};
+  for (std::size_t n = 0; n < near.count; ++n) ++count[bucketOf(near.squared[n])];
+  std::size_t before = 0, bucket = 0;
+  while (before + count[bucket] < wanted) before += count[bucket++];
+  if (scratch.size() < near.count) scratch.resize(2 * near.count);
+  std::size_t found = 0;
+  for (std::size_t n = 0; n < near.count; ++n) {   // written first, counted if it is one
+    scratch[found] = near.squared[n];
+    found += bucketOf(near.squared[n]) == bucket ? 1U : 0U;
+  }
+  const auto nth = scratch.begin() + static_cast<std::ptrdiff_t>(wanted - 1 - before);
+  std::nth_element(scratch.begin(), nth, scratch.begin() + static_cast<std::ptrdiff_t>(found));
   return std::max(least, *nth);
 }
 

@@ -52,19 +52,33 @@ double offPlane(const EigenShape& a, const EigenShape& b, const Eigen::Vector3d&
 
 using EdgeRow = std::span<float, kEdgeColumns>;
 
-void fillEdge(const FeatureInput& input, std::uint32_t a, std::uint32_t b, const SharedSupport& shared, EdgeRow out) {
+/// What is the same for all edges of a cluxel.
+struct BallForm {
+  double linearity, planarity, scattering;
+};
+
+std::vector<BallForm> formsOf(const std::vector<EigenShape>& shapes) {
+  std::vector<BallForm> forms;
+  forms.reserve(shapes.size());
+  for (const auto& shape : shapes) forms.push_back({shape.linearity(), shape.planarity(), shape.scattering()});
+  return forms;
+}
+
+void fillEdge(const FeatureInput& input, const std::vector<BallForm>& forms, std::uint32_t a, std::uint32_t b,
+              const SharedSupport& shared, EdgeRow out) {
   const auto& cluxels = input.cluxels;
   const Eigen::Vector3d d = (cluxels.center[b] - cluxels.center[a]).cast<double>();
   const EigenShape &shape_a = input.ball[a], &shape_b = input.ball[b];
+  const BallForm &form_a = forms[a], &form_b = forms[b];
   const double distance = d.norm();
   const std::array<double, kEdgeColumns - 2> values{distance,
                                                     distance / (cluxels.reach[a] + cluxels.reach[b]),
                                                     std::abs(d.z()),
                                                     std::min(1.0, std::abs(shape_a.normal.dot(shape_b.normal))),
                                                     offPlane(shape_a, shape_b, d),
-                                                    std::abs(shape_a.linearity() - shape_b.linearity()),
-                                                    std::abs(shape_a.planarity() - shape_b.planarity()),
-                                                    std::abs(shape_a.scattering() - shape_b.scattering())};
+                                                    std::abs(form_a.linearity - form_b.linearity),
+                                                    std::abs(form_a.planarity - form_b.planarity),
+                                                    std::abs(form_a.scattering - form_b.scattering)};
   for (std::size_t i = 0; i < values.size(); ++i) out[i] = static_cast<float>(values[i]);
   out[kEdgeColumns - 2] = volumeShare(cluxels.volume[a], cluxels.volume[b]);
   out[kEdgeColumns - 1] = shared.shareWith(b);
@@ -87,6 +101,7 @@ void fillEdges(const FeatureInput& input, FeatureTile& tile) {
   // Own cluxels come to a target in ascending order, as its own edges to them stand: `back` is the next of these.
   std::vector<std::uint32_t> back(graph.offset.begin(), graph.offset.end());
   SharedSupport shared(graph, cluxels.size());
+  const auto forms = formsOf(input.ball);
   for (std::uint32_t c = cluxels.own_begin; c < cluxels.own_end; ++c) {
     shared.moveTo(c);
     tile.edge_offset.push_back(static_cast<std::uint32_t>(graph.offset[c] - first));
@@ -95,7 +110,7 @@ void fillEdges(const FeatureInput& input, FeatureTile& tile) {
       tile.edge_target.push_back(cluxels.name[other]);
       const bool is_own = other >= cluxels.own_begin && other < cluxels.own_end;
       if (is_own && other < c) continue;
-      fillEdge(input, c, other, shared, rowOf(edge));
+      fillEdge(input, forms, c, other, shared, rowOf(edge));
       if (!is_own) continue;
       while (graph.target[back[other]] < cluxels.own_begin) ++back[other];
       const auto row = rowOf(edge);

@@ -78,6 +78,14 @@ GroundTile groundOf(const Ring<CluxelTile>& ring, const GroundParams& params) {
 }
 
 double groundHeightAt(const Ring<GroundTile>& ring, double x_local, double y_local) {
+  const auto mixed = [](double low, double high, double share) { return low * (1 - share) + high * share; };
+  const double cells_x = x_local / kColumnSize_m - 0.5, cells_y = y_local / kColumnSize_m - 0.5;
+  if (cells_x >= 0 && cells_y >= 0 && cells_x < kColumnsPerTile - 1 && cells_y < kColumnsPerTile - 1) {
+    const auto x = static_cast<int>(cells_x), y = static_cast<int>(cells_y);   // most places: all four cells are the tile's own
+    const float* here = ring[kRingCentre]->height.data() + y * kColumnsPerTile + x;
+    const double share_x = cells_x - x;
+    return mixed(mixed(here[0], here[1], share_x), mixed(here[kColumnsPerTile], here[kColumnsPerTile + 1], share_x), cells_y - y);
+  }
   const auto cellAt = [&](int x, int y) -> double {
     const int last = kColumnsPerTile - 1;
     const int column = 1 + (x < 0 ? -1 : x > last ? 1 : 0), row = 1 + (y < 0 ? -1 : y > last ? 1 : 0);
@@ -93,9 +101,9 @@ double groundHeightAt(const Ring<GroundTile>& ring, double x_local, double y_loc
   const double limit_m = 2.0 * kTileSize_m - kColumnSize_m;
   const Between x = between(std::clamp(x_local, -kTileSize_m + kColumnSize_m, limit_m));
   const Between y = between(std::clamp(y_local, -kTileSize_m + kColumnSize_m, limit_m));
-  const double low = cellAt(x.cell, y.cell) * (1 - x.share) + cellAt(x.cell + 1, y.cell) * x.share;
-  const double high = cellAt(x.cell, y.cell + 1) * (1 - x.share) + cellAt(x.cell + 1, y.cell + 1) * x.share;
-  return low * (1 - y.share) + high * y.share;
+  const double low = mixed(cellAt(x.cell, y.cell), cellAt(x.cell + 1, y.cell), x.share);
+  const double high = mixed(cellAt(x.cell, y.cell + 1), cellAt(x.cell + 1, y.cell + 1), x.share);
+  return mixed(low, high, y.share);
 }
 
 std::string toBytes(const GroundTile& tile) {

@@ -63,20 +63,22 @@ std::vector<float> highestAround(const HeightWindow& window, int reach) {
 
 /// One raster pass of the distance transform: lowers each cell to its four earlier neighbours plus the rise to them.
 void sweep(std::vector<float>& envelope, int side, bool forward, float rise) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const float diagonal = rise * std::sqrt(2.0F);
-  const int step = forward ? 1 : -1;
-  const int first = forward ? 0 : side - 1;
-  const auto at = [&](int x, int y) -> float {
-    if (x < 0 || y < 0 || x >= side || y >= side) return std::numeric_limits<float>::infinity();
-    return envelope[static_cast<std::size_t>(y) * static_cast<std::size_t>(side) + static_cast<std::size_t>(x)];
-  };
-  for (int i = 0, y = first; i < side; ++i, y += step)
-    for (int j = 0, x = first; j < side; ++j, x += step) {
-      const float straight = std::min(at(x - step, y), at(x, y - step)) + rise;
-      const float oblique = std::min(at(x - step, y - step), at(x + step, y - step)) + diagonal;
-      float& here = envelope[static_cast<std::size_t>(y) * static_cast<std::size_t>(side) + static_cast<std::size_t>(x)];
-      here = std::min({here, straight, oblique});
+  const auto width = static_cast<std::size_t>(side);
+  std::vector<float> before(width + 2, kInfinity);   // the row before, with a cell to spare on both sides
+  for (std::size_t i = 0; i < width; ++i) {
+    float* row = envelope.data() + (forward ? i : width - 1 - i) * width;
+    for (std::size_t x = 0; x < width; ++x) {
+      const float oblique = std::min(before[x], before[x + 2]) + diagonal, straight = before[x + 1] + rise;
+      row[x] = std::min(row[x], std::min(straight, oblique));
     }
+    if (forward)
+      for (std::size_t x = 1; x < width; ++x) row[x] = std::min(row[x], row[x - 1] + rise);
+    else
+      for (std::size_t x = width - 1; x-- > 0;) row[x] = std::min(row[x], row[x + 1] + rise);
+    std::copy_n(row, width, before.begin() + 1);
+  }
 }
 
 struct Level {
@@ -93,11 +95,12 @@ Level coarser(const Level& fine) {
   const auto size = static_cast<std::size_t>(level.side) * static_cast<std::size_t>(level.side);
   level.sum.assign(size, 0.0);
   level.weight.assign(size, 0.0);
-  for (int y = 0; y < fine.side; ++y)
-    for (int x = 0; x < fine.side; ++x) {
-      const std::size_t from = fine.at(x, y), to = level.at(x / 2, y / 2);
+  const auto width = static_cast<std::size_t>(fine.side);
+  for (std::size_t y = 0, from = 0; y < width; ++y)
+    for (std::size_t x = 0; x < width; ++x, ++from) {
       if (fine.weight[from] <= 0) continue;
-      level.sum[to] += fine.sum[from] / fine.weight[from];
+      const std::size_t to = y / 2 * static_cast<std::size_t>(level.side) + x / 2;
+      level.sum[to] += fine.weight[from] == 1.0 ? fine.sum[from] : fine.sum[from] / fine.weight[from];
       level.weight[to] += 1.0;
     }
   return level;
@@ -105,9 +108,9 @@ Level coarser(const Level& fine) {
 
 /// Gives cells without weight the value of the coarser level at their place.
 void fillFrom(const Level& coarse, Level& fine) {
+  std::size_t cell = 0;
   for (int y = 0; y < fine.side; ++y)
-    for (int x = 0; x < fine.side; ++x) {
-      const std::size_t cell = fine.at(x, y);
+    for (int x = 0; x < fine.side; ++x, ++cell) {
       if (fine.weight[cell] > 0) continue;
       const int u = x / 2, v = y / 2, du = x % 2 == 0 ? -1 : 1, dv = y % 2 == 0 ? -1 : 1;
       const auto value = [&](int a, int b) { return coarse.sum[coarse.at(a, b)] / coarse.weight[coarse.at(a, b)]; };
@@ -145,9 +148,11 @@ void dropRaisedCells(HeightWindow& window, double cell_m, double steepest, doubl
 std::vector<float> filled(const HeightWindow& window) {
   std::vector<Level> levels(1);
   levels[0].side = window.side;
+  levels[0].sum.resize(window.size());
+  levels[0].weight.resize(window.size());
   for (std::size_t i = 0; i < window.size(); ++i) {
-    levels[0].sum.push_back(window.known[i] ? window.height[i] : 0.0);
-    levels[0].weight.push_back(window.known[i] ? 1.0 : 0.0);
+    levels[0].sum[i] = window.known[i] ? window.height[i] : 0.0;
+    levels[0].weight[i] = window.known[i] ? 1.0 : 0.0;
   }
   while (levels.back().side > 1) levels.push_back(coarser(levels.back()));
   for (std::size_t i = levels.size() - 1; i-- > 0;) fillFrom(levels[i + 1], levels[i]);

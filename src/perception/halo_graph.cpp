@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 namespace cluxel {
 
@@ -36,12 +35,20 @@ NodeNumbers numberNodes(const Ring<FeatureTile>& ring, double halo_m, HaloGraph&
   return number;
 }
 
-/// The ring position, seen from the centre, of ring position `of_neighbour` of ring tile `r`.
-std::optional<std::uint32_t> composed(std::uint32_t r, std::uint32_t of_neighbour) {
-  const int x = static_cast<int>(r % 3 + of_neighbour % 3) - 1, y = static_cast<int>(r / 3 + of_neighbour / 3) - 1;
-  if (x < 0 || x > 2 || y < 0 || y > 2) return std::nullopt;
-  return static_cast<std::uint32_t>(3 * y + x);
-}
+constexpr std::uint8_t kNoPlace = 9;
+
+/// The ring position, seen from the centre, of ring position `second` of ring tile `first`; kNoPlace outside of the ring.
+struct Composed {
+  std::array<std::array<std::uint8_t, 9>, 9> place;
+  constexpr Composed() : place() {
+    for (std::uint32_t first = 0; first < 9; ++first)
+      for (std::uint32_t second = 0; second < 9; ++second) {
+        const int x = static_cast<int>(first % 3 + second % 3) - 1, y = static_cast<int>(first / 3 + second / 3) - 1;
+        place[first][second] = x < 0 || x > 2 || y < 0 || y > 2 ? kNoPlace : static_cast<std::uint8_t>(3 * y + x);
+      }
+  }
+};
+constexpr Composed kComposed;
 
 std::uint32_t degreeOf(const FeatureTile& tile, std::uint32_t index) {
   return tile.edge_offset[index + 1] - tile.edge_offset[index];
@@ -52,17 +59,20 @@ std::uint32_t degreeOf(const FeatureTile& tile, std::uint32_t index) {
 HaloGraph haloGraph(const Ring<FeatureTile>& ring, double halo_m) {
   HaloGraph graph;
   const NodeNumbers number = numberNodes(ring, halo_m, graph);
+  std::size_t edges = 0;
+  for (const auto& [r, index] : graph.nodes) edges += degreeOf(*ring[r], index);
+  graph.edges.reserve(edges / 2);
   for (std::uint32_t i = 0; i < graph.nodes.size(); ++i) {
     const auto [r, index] = graph.nodes[i];
     const FeatureTile& tile = *ring[r];
     const std::size_t first = graph.edges.size();
     for (std::uint32_t e = tile.edge_offset[index]; e < tile.edge_offset[index + 1]; ++e) {
       const RingIndex target = tile.edge_target[e];
-      const auto at = composed(r, target.ring);
-      if (!at || target.index >= number[*at].size()) continue;
-      const std::uint32_t j = number[*at][target.index];
+      const std::size_t at = kComposed.place[r][target.ring];
+      if (at == kNoPlace || target.index >= number[at].size()) continue;
+      const std::uint32_t j = number[at][target.index];
       if (j == kOutside || j <= i) continue;
-      graph.edges.push_back({{i, j}, r, e, degreeOf(tile, index) + degreeOf(*ring[*at], target.index)});
+      graph.edges.push_back({{i, j}, r, e, degreeOf(tile, index) + degreeOf(*ring[at], target.index)});
     }
     std::sort(graph.edges.begin() + static_cast<std::ptrdiff_t>(first), graph.edges.end(),
               [](const HaloEdge& a, const HaloEdge& b) { return a.ends < b.ends; });

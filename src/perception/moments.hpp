@@ -44,6 +44,20 @@ struct MomentSum {
     zz += spread[5];
   }
 
+  /// Adds a sum relative to the same origin.
+  void addSum(const MomentSum& other) {
+    n += other.n;
+    x += other.x;
+    y += other.y;
+    z += other.z;
+    xx += other.xx;
+    xy += other.xy;
+    xz += other.xz;
+    yy += other.yy;
+    yz += other.yz;
+    zz += other.zz;
+  }
+
   /// As stored: mean in the tile's coordinates, given the origin's place there.
   Moments finish(const Eigen::Vector3f& origin) const {
     const double mx = x / n, my = y / n, mz = z / n;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace cluxel {
 namespace {
@@ -31,43 +32,52 @@ MainDirection mainDirectionOf(const MomentSum& sum) {
           static_cast<float>(std::min(1.0, spread / (xx + yy) / kClearDirection))};
 }
 
-/// Where each residual lies between the nodes, and its weight; no branches, so that the compiler makes vectors of it.
-void placeVotes(const Residuals& residual, const MainDirection& main, float median, HorScratch& scratch) {
-  constexpr float kTiny = 1e-12F;
-  const std::size_t size = residual.size();
-  scratch.weight.resize(size);
-  scratch.elevation.resize(size);
-  scratch.azimuth.resize(size);
-  const float* x = residual.x.data();
-  const float* y = residual.y.data();
-  const float* z = residual.z.data();
-  for (std::size_t i = 0; i < size; ++i) {
-    const float length = scratch.length[i];
-    const float along = x[i] * main.x + y[i] * main.y;
-    const float across = x[i] * main.y - y[i] * main.x;
-    scratch.weight[i] = std::min(length / median, kLongestVote);
-    scratch.elevation[i] = (z[i] / (length + kTiny) + 1.0F) * (0.5F * (kElevationNodes - 1));
-    scratch.azimuth[i] = across * across / (along * along + across * across + kTiny) * (kAzimuthNodes - 1);
-  }
-}
-
 using Votes = std::array<std::array<float, kAzimuthNodes>, kElevationNodes>;
 
+/// Four residuals' weights at the four nodes around each, and the lower of the nodes.
+struct FourVotes {
+  std::array<std::int32_t, kLanes> elevation, azimuth;
+  std::array<std::array<float, kLanes>, 4> weight;   ///< low, low and next azimuth, high, high and next azimuth
+};
+
+/// The whole part of values in [0, most + 1].
+Numbers wholeOf(const Floats& values, std::int32_t most) {
+  const Numbers whole = __builtin_convertvector(values, Numbers), last = Numbers{} + most;
+  return whole < last ? whole : last;
+}
+
+FourVotes votesOf(const Floats& x, const Floats& y, const Floats& z, const Floats& length, const MainDirection& main, float median) {
+  constexpr float kTiny = 1e-12F;
+  const Floats along = x * main.x + y * main.y, across = x * main.y - y * main.x;
+  const Floats weight = lesserOf(length / median, Floats{} + kLongestVote);
+  const Floats elevation = (z / (length + kTiny) + 1.0F) * (0.5F * (kElevationNodes - 1));
+  const Floats azimuth = across * across / (along * along + across * across + kTiny) * static_cast<float>(kAzimuthNodes - 1);
+  const Numbers e = wholeOf(elevation, kElevationNodes - 2), a = wholeOf(azimuth, kAzimuthNodes - 2);
+  const Floats up = elevation - __builtin_convertvector(e, Floats), on = azimuth - __builtin_convertvector(a, Floats);
+  const Floats high = weight * up, low = weight - high;
+  FourVotes votes;
+  std::memcpy(votes.elevation.data(), &e, sizeof e);
+  std::memcpy(votes.azimuth.data(), &a, sizeof a);
+  storeFloats(low * (1.0F - on), votes.weight[0].data());
+  storeFloats(low * on, votes.weight[1].data());
+  storeFloats(high * (1.0F - on), votes.weight[2].data());
+  storeFloats(high * on, votes.weight[3].data());
+  return votes;
+}
+
 /// Each residual's weight goes to the four nodes around it. Two sets of nodes take turns: a node is seldom waited for.
-Votes castVotes(const HorScratch& scratch) {
+Votes castVotes(const Residuals& residual, const MainDirection& main, float median, const HorScratch& scratch) {
   std::array<Votes, 2> sets{};
-  for (std::size_t i = 0; i < scratch.weight.size(); ++i) {
-    const auto e = std::min(static_cast<int>(scratch.elevation[i]), static_cast<int>(kElevationNodes) - 2);
-    const auto a = std::min(static_cast<int>(scratch.azimuth[i]), static_cast<int>(kAzimuthNodes) - 2);
-    const float up = scratch.elevation[i] - static_cast<float>(e), on = scratch.azimuth[i] - static_cast<float>(a);
-    const float high = scratch.weight[i] * up, low = scratch.weight[i] - high;
-    Votes& votes = sets[i % 2];
-    auto* row = votes[static_cast<std::size_t>(e)].data() + a;
-    auto* next = votes[static_cast<std::size_t>(e) + 1].data() + a;
-    row[0] += low * (1.0F - on);
-    row[1] += low * on;
-    next[0] += high * (1.0F - on);
-    next[1] += high * on;
+  for (std::size_t first = 0; first < residual.size(); first += kLanes) {
+    const auto at = [first](const std::vector<float>& values) { return loadFloats(values.data() + first); };
+    const FourVotes four = votesOf(at(residual.x), at(residual.y), at(residual.z), at(scratch.length), main, median);
+    for (std::size_t i = 0; i < std::min(kLanes, residual.size() - first); ++i) {
+      float* row = &sets[i % 2][static_cast<std::size_t>(four.elevation[i])][static_cast<std::size_t>(four.azimuth[i])];
+      row[0] += four.weight[0][i];
+      row[1] += four.weight[1][i];
+      row[kAzimuthNodes] += four.weight[2][i];
+      row[kAzimuthNodes + 1] += four.weight[3][i];
+    }
   }
   for (std::size_t e = 0; e < kElevationNodes; ++e)
     for (std::size_t a = 0; a < kAzimuthNodes; ++a) sets[0][e][a] += sets[1][e][a];
@@ -91,32 +101,44 @@ void fillBins(const Votes& votes, float clearness, std::span<float> bins) {
           (clearness * votes[e][a] + (1.0F - clearness) * level[e] / static_cast<float>(kAzimuthNodes)) / total;
 }
 
-/// The value that would stand in the middle of the sorted values: found in its bucket, so that few are sorted.
-float middleOf(const std::vector<float>& values, std::vector<float>& scratch) {
-  constexpr std::size_t kBuckets = 32;
-  const float largest = *std::max_element(values.begin(), values.end());
-  if (!(largest > kShortestMedian_m)) return 0;
-  const float scale = (static_cast<float>(kBuckets) - 0.5F) / largest;
-  const auto bucketOf = [scale](float value) { return static_cast<std::size_t>(static_cast<int>(value * scale)); };
-  std::array<std::uint32_t, kBuckets> count{};
-  for (const float value : values) ++count[bucketOf(value)];
-  std::size_t before = 0, bucket = 0;
-  const std::size_t middle = values.size() / 2;
-  while (before + count[bucket] <= middle) before += count[bucket++];
-  scratch.clear();
-  for (const float value : values)
-    if (bucketOf(value) == bucket) scratch.push_back(value);
-  const auto place = scratch.begin() + static_cast<std::ptrdiff_t>(middle - before);
-  std::nth_element(scratch.begin(), place, scratch.end());
-  return *place;
+/// Fills scratch.length; returns the largest.
+float fillLengths(const Residuals& residual, HorScratch& scratch) {
+  if (scratch.length.size() < residual.x.size()) scratch.length.resize(residual.x.size());
+  Floats longest{};
+  for (std::size_t i = 0; i < residual.size(); i += kLanes) {
+    const Floats x = loadFloats(residual.x.data() + i), y = loadFloats(residual.y.data() + i), z = loadFloats(residual.z.data() + i);
+    const Floats length = squareRoots(x * x + y * y + z * z);
+    storeFloats(length, scratch.length.data() + i);
+    longest = longest < length ? length : longest;
+  }
+  return std::max(std::max(longest[0], longest[1]), std::max(longest[2], longest[3]));
 }
 
-/// Fills scratch.length; returns the median.
-float medianLength(const Residuals& residual, HorScratch& scratch) {
-  scratch.length.resize(residual.size());
-  for (std::size_t i = 0; i < residual.size(); ++i)
-    scratch.length[i] = std::sqrt(residual.x[i] * residual.x[i] + residual.y[i] * residual.y[i] + residual.z[i] * residual.z[i]);
-  return middleOf(scratch.length, scratch.bucket);
+/// The length that would stand in the middle of the sorted ones: found in its bucket, so that few are sorted.
+float medianOf(std::size_t size, float longest, HorScratch& scratch) {
+  constexpr std::size_t kBuckets = 32;
+  const float scale = (static_cast<float>(kBuckets) - 0.5F) / longest;
+  if (scratch.bucket.size() < scratch.length.size()) {
+    scratch.bucket.resize(scratch.length.size());
+    scratch.middle.resize(scratch.length.size());
+  }
+  for (std::size_t i = 0; i < size; i += kLanes) {
+    const Numbers four = __builtin_convertvector(loadFloats(scratch.length.data() + i) * scale, Numbers);
+    std::memcpy(scratch.bucket.data() + i, &four, sizeof four);
+  }
+  std::array<std::uint32_t, kBuckets> count{};
+  for (std::size_t i = 0; i < size; ++i) ++count[static_cast<std::size_t>(scratch.bucket[i])];
+  std::size_t before = 0, bucket = 0;
+  const std::size_t middle = size / 2;
+  while (before + count[bucket] <= middle) before += count[bucket++];
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < size; ++i) {   // written first, counted if it is one
+    scratch.middle[found] = scratch.length[i];
+    found += static_cast<std::size_t>(scratch.bucket[i]) == bucket ? 1U : 0U;
+  }
+  const auto place = scratch.middle.begin() + static_cast<std::ptrdiff_t>(middle - before);
+  std::nth_element(scratch.middle.begin(), place, scratch.middle.begin() + static_cast<std::ptrdiff_t>(found));
+  return *place;
 }
 
 }  // namespace
@@ -133,11 +155,12 @@ std::vector<std::string> horColumns() {
 void fillHor(const Support& support, const EigenShape& shape, HorScratch& scratch, std::span<float> out) {
   std::fill(out.begin(), out.end(), 0.0F);
   if (support.residual.empty()) return;
-  const float median = medianLength(support.residual, scratch);
+  const float longest = fillLengths(support.residual, scratch);
+  if (!(longest > kShortestMedian_m)) return;
+  const float median = medianOf(support.residual.size(), longest, scratch);
   if (!(median > kShortestMedian_m)) return;
   const MainDirection main = mainDirectionOf(support.sum);
-  placeVotes(support.residual, main, median, scratch);
-  fillBins(castVotes(scratch), main.clearness, out.subspan(0, kHorBins));
+  fillBins(castVotes(support.residual, main, median, scratch), main.clearness, out.subspan(0, kHorBins));
   const MomentSum& sum = support.sum;
   const Eigen::Vector3d mean = Eigen::Vector3d(sum.x, sum.y, sum.z) / sum.n;
   const std::array<double, kHorScalars> scalars{

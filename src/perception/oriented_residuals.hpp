@@ -2,6 +2,7 @@
 // Our reading of the histogram of oriented residuals (HOR, paper section 3.1): directions from a cluxel to its support.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -9,24 +10,31 @@
 #include <vector>
 
 #include "perception/eigen_shape.hpp"
+#include "perception/vector_lanes.hpp"
 
 namespace cluxel {
 
-/// Vectors as a structure of arrays.
+/// Vectors as a structure of arrays, filled up with zeros to whole groups of four.
 struct Residuals {
   std::vector<float> x, y, z;
   void resize(std::size_t size) {
-    x.resize(size);
-    y.resize(size);
-    z.resize(size);
+    count_ = size;
+    const std::size_t whole = (size + kLanes - 1) / kLanes * kLanes;
+    for (auto* values : {&x, &y, &z}) {
+      if (values->size() < whole) values->resize(2 * whole);
+      std::fill(values->begin() + static_cast<std::ptrdiff_t>(size), values->begin() + static_cast<std::ptrdiff_t>(whole), 0.0F);
+    }
   }
   void set(std::size_t i, float dx, float dy, float dz) {
     x[i] = dx;
     y[i] = dy;
     z[i] = dz;
   }
-  std::size_t size() const { return x.size(); }
-  bool empty() const { return x.empty(); }
+  std::size_t size() const { return count_; }
+  bool empty() const { return count_ == 0; }
+
+ private:
+  std::size_t count_ = 0;
 };
 
 /// The 2-ring support of a cluxel: residuals to its centre, and their moments. Every member weighs the same, however many
@@ -47,7 +55,8 @@ std::vector<std::string> horColumns();
 
 /// Memory reused from cluxel to cluxel.
 struct HorScratch {
-  std::vector<float> length, bucket, weight, elevation, azimuth;
+  std::vector<float> length, middle;
+  std::vector<std::int32_t> bucket;
 };
 
 /// Fills kHorColumns numbers; all are zero for a support without extent. `shape` is that of the support.

@@ -49,7 +49,9 @@ void appendCluxels(const SceneTiles& tiles, const TileKey& key, const TileNumber
   const FeatureTile& graph = tiles.features.at(key);
   const LabelTile& labels = tiles.labels.at(key);
   const auto ground = ringIn(tiles.ground, key);
+  std::array<std::uint32_t, 9> base{};
   const auto ring = ringOf(key);
+  for (std::size_t r = 0; r < base.size(); ++r) base[r] = tiles.cluxels.contains(ring[r]) ? numbering.of(ring[r]) : 0;
   for (std::uint32_t c = 0; c < cluxels.size(); ++c) {
     const Eigen::Vector3f& center = cluxels.own[c].mean;
     all.name.push_back({key, c});
@@ -62,15 +64,25 @@ void appendCluxels(const SceneTiles& tiles, const TileKey& key, const TileNumber
     all.height_above_ground.push_back(static_cast<float>(center.z() - groundHeightAt(ground, center.x(), center.y())));
     const std::size_t first = all.edge_target.size();
     for (std::uint32_t e = graph.edge_offset[c]; e < graph.edge_offset[c + 1]; ++e)
-      all.edge_target.push_back(numbering.of(ring[graph.edge_target[e].ring]) + graph.edge_target[e].index);
+      all.edge_target.push_back(base[graph.edge_target[e].ring] + graph.edge_target[e].index);
     std::sort(all.edge_target.begin() + static_cast<std::ptrdiff_t>(first), all.edge_target.end());
     all.edge_offset.push_back(static_cast<std::uint32_t>(all.edge_target.size()));
   }
 }
 
+void reserve(SceneCluxels& all, std::size_t cluxels, std::size_t edges) {
+  all.name.reserve(cluxels), all.center.reserve(cluxels), all.extent.reserve(cluxels), all.low_corner.reserve(cluxels);
+  all.point_count.reserve(cluxels), all.label.reserve(cluxels), all.probability.reserve(cluxels);
+  all.height_above_ground.reserve(cluxels), all.edge_offset.reserve(cluxels + 1);
+  all.edge_target.reserve(edges);
+}
+
 SceneCluxels gatherCluxels(const SceneTiles& tiles) {
   const TileNumbering numbering(tiles.cluxels);
   SceneCluxels all;
+  std::size_t edges = 0;
+  for (const auto& [key, tile] : tiles.features) edges += tile.edge_target.size();
+  reserve(all, numbering.total(), edges);
   all.edge_offset.push_back(0);
   for (const auto& [key, tile] : tiles.cluxels) appendCluxels(tiles, key, numbering, all);
   return all;

@@ -163,7 +163,8 @@ void fillSupportFeatures(const FeatureInput& input, const FeatureParams& params,
   for (std::uint32_t c = 0; c < own.size(); ++c) {
     const Surroundings& around = walk.around(input.cluxels.own_begin + c);
     const EigenShape& ball = input.ball[input.cluxels.own_begin + c];
-    const EigenShape ring1 = shapeOf(around.ring1), ring2 = shapeOf(around.ring2.sum);
+    const auto shapes = shapesOf(std::array{covarianceOf(around.ring1), covarianceOf(around.ring2.sum)});
+    const EigenShape &ring1 = shapes[0], &ring2 = shapes[1];
     RowWriter row(rows.row(c, column, count));
     if (params.hor) fillHor(around.ring2, ring2, scratch, row.take(kHorColumns));
     if (params.shape)

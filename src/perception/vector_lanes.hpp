@@ -2,9 +2,13 @@
 // Four numbers at once, by the vector types that GCC and Clang map to any machine: the same bits as one after the other.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
 
 namespace cluxel {
 
@@ -20,6 +24,24 @@ inline Floats loadFloats(const float* from) {
 }
 
 inline void storeFloats(const Floats& four, float* to) { std::memcpy(to, &four, sizeof four); }
+
+/// Correctly rounded, as std::sqrt is.
+inline Floats squareRoots(const Floats& four) {
+#ifdef __SSE2__
+  return static_cast<Floats>(_mm_sqrt_ps(static_cast<__m128>(four)));
+#else
+  return {std::sqrt(four[0]), std::sqrt(four[1]), std::sqrt(four[2]), std::sqrt(four[3])};
+#endif
+}
+
+/// Whether a comparison holds in all lanes.
+inline bool allHold(const Numbers& held) {
+#ifdef __SSE2__
+  return _mm_movemask_epi8(reinterpret_cast<__m128i>(held)) == 0xffff;
+#else
+  return (held[0] & held[1] & held[2] & held[3]) != 0;
+#endif
+}
 
 inline Floats lesserOf(const Floats& a, const Floats& b) { return a < b ? a : b; }
 

@@ -13,10 +13,9 @@ namespace {
 constexpr std::array<double, 2> kCells_m{0.5, 1.0};
 constexpr std::size_t kColumnsPerScale = 8;
 
-/// Cluxels of the ring near the tile, summed per grid cell relative to one place per cell.
+/// Cluxels of the ring near the tile, summed per grid cell relative to one place.
 struct CellSums {
   std::vector<std::uint64_t> key;
-  std::vector<Eigen::Vector3f> place;    ///< the first member's centre
   std::vector<MomentSum> sum;
   std::vector<std::uint32_t> cell_of_own;
 };
@@ -29,6 +28,7 @@ struct Item {
 
 std::vector<Item> itemsNear(const Ring<CluxelTile>& ring, float margin_m) {
   std::vector<Item> items;
+  items.reserve(2 * ring[kRingCentre]->size());
   const float low = -margin_m, high = static_cast<float>(kTileSize_m) + margin_m;
   for (int r = 0; r < 9; ++r) {
     const CluxelTile* tile = ring[static_cast<std::size_t>(r)];
@@ -51,39 +51,24 @@ CellSums sumCells(const Ring<CluxelTile>& ring, double cell_m) {
     order[i] = {key(items[i].center.x(), items[i].center.y(), items[i].center.z()), i};
   if (!order.empty()) sortByKey(order);
   CellSums cells;
+  const Eigen::Vector3f origin = items.empty() ? Eigen::Vector3f(0, 0, 0) : items.front().center;
   cells.cell_of_own.resize(ring[kRingCentre]->size());
   for (const auto& entry : order) {
     const Item& item = items[entry.item];
     if (cells.key.empty() || cells.key.back() != entry.key) {
       cells.key.push_back(entry.key);
-      cells.place.push_back(item.center);
       cells.sum.emplace_back();
     }
     std::array<float, 6> spread = item.own->scatter;
     for (auto& value : spread) value /= item.own->count;
-    cells.sum.back().addSet(item.center - cells.place.back(), spread);
+    cells.sum.back().addSet(item.center - origin, spread);
     if (item.number != PointGrid::kForeign) cells.cell_of_own[item.number] = static_cast<std::uint32_t>(cells.key.size() - 1);
   }
   return cells;
 }
 
-/// Adds a cell's sum, moved to another origin.
-void addMoved(MomentSum& to, const MomentSum& from, const Eigen::Vector3f& move) {
-  const double x = move.x(), y = move.y(), z = move.z();
-  to.n += from.n;
-  to.x += from.x + from.n * x;
-  to.y += from.y + from.n * y;
-  to.z += from.z + from.n * z;
-  to.xx += from.xx + 2 * x * from.x + from.n * x * x;
-  to.yy += from.yy + 2 * y * from.y + from.n * y * y;
-  to.zz += from.zz + 2 * z * from.z + from.n * z * z;
-  to.xy += from.xy + x * from.y + y * from.x + from.n * x * y;
-  to.xz += from.xz + x * from.z + z * from.x + from.n * x * z;
-  to.yz += from.yz + y * from.z + z * from.y + from.n * y * z;
-}
-
 std::array<float, kColumnsPerScale> describeCube(const MomentSum& sum, int occupied) {
-  const EigenShape shape = shapeOf(sum);
+  const EigenShape shape = shapeOf(covarianceOf(sum));
   const double mean_z = sum.z / sum.n;
   const auto as = [](double value) { return static_cast<float>(value); };
   return {as(shape.linearity()), as(shape.planarity()), as(shape.scattering()), as(std::abs(shape.normal.z())),
@@ -101,7 +86,7 @@ void fillScale(const FeatureInput& input, double cell_m, std::size_t column, Fea
     int occupied = 0;
     for (std::size_t k = 0; k < 9; ++k)
       for (std::size_t other = walk.first(k); other < walk.last(k); ++other, ++occupied)
-        addMoved(sum, cells.sum[other], cells.place[other] - cells.place[cell]);
+        sum.addSum(cells.sum[other]);
     cube[cell] = describeCube(sum, occupied);
   }
   for (std::size_t c = 0; c < cells.cell_of_own.size(); ++c) {

@@ -33,7 +33,7 @@ std::vector<float> horOf(const std::vector<Eigen::Vector3f>& residuals) {
   }
   HorScratch scratch;
   std::vector<float> hor(kHorColumns);
-  fillHor(support, shapeOf(support.sum), scratch, hor);
+  fillHor(support, shapeOf(covarianceOf(support.sum)), scratch, hor);
   return hor;
 }
 
