@@ -77,6 +77,17 @@ TEST_F(MapFile, RefusesAFileThatIsCutShort) {
   }
 }
 
+TEST_F(MapFile, IsKnownByItsContentWhateverItsName) {
+  EXPECT_FALSE(looksLikeMap(file_)) << "not there";
+  EXPECT_FALSE(looksLikeMap(folder_.path())) << "a folder";
+  create().reset();
+  EXPECT_TRUE(looksLikeMap(file_));
+  fs::rename(file_, folder_.path() / "scan.pcd");
+  EXPECT_TRUE(looksLikeMap(folder_.path() / "scan.pcd"));
+  std::ofstream(file_) << "VERSION .7\nFIELDS x y z\n";
+  EXPECT_FALSE(looksLikeMap(file_));
+}
+
 TEST_F(MapFile, FindsAChangedByteInABlock) {
   put(*create(), "a", std::string(10'000, 'x'));
   std::string bytes = readFile(file_);

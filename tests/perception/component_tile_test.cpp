@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "cluxel/base/diagnostic.hpp"
+
 #include <random>
 #include <set>
 
@@ -183,6 +185,26 @@ TEST(Scene, ACrownIsAboveItsTrunkAndTheTrunkBelowIt) {
     EXPECT_TRUE(holds(RelationKind::TouchesGround, trunk, trunk));
     EXPECT_FALSE(holds(RelationKind::TouchesGround, crown, crown));
   }
+}
+
+/// Half a corner at the end of a hull was dropped in silence (found by reading for the fuzzer).
+TEST(ComponentBytes, AreReadBackOrRefused) {
+  ComponentTile tile;
+  tile.components.resize(1);
+  tile.components[0].points = tile.components[0].cluxels = 1;
+  tile.component_of = {0};
+  tile.cell_offset = {0, 0}, tile.hull_offset = {0, 1}, tile.scan_offset = {0, 0};
+  tile.hull = {{1.5F, 2.5F}};
+  const std::string bytes = toBytes(tile);
+  EXPECT_EQ(toBytes(componentTileFromBytes(bytes)), bytes);
+  for (std::size_t size = 0; size < bytes.size(); ++size) EXPECT_THROW(componentTileFromBytes(bytes.substr(0, size)), Error);
+  EXPECT_THROW(componentTileFromBytes(bytes + "x"), Error);
+  std::string odd = bytes;
+  const std::size_t corner = odd.find(std::string(reinterpret_cast<const char*>(tile.hull.data()), sizeof(float) * 2));
+  ASSERT_NE(corner, std::string::npos);
+  odd[corner - 8] = 3;                            // the count of numbers
+  odd.insert(corner, sizeof(float), '\0');
+  EXPECT_THROW(componentTileFromBytes(odd), Error);
 }
 
 }  // namespace
