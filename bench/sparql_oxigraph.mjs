@@ -2,9 +2,12 @@
 // The questions of the comparison put to oxigraph's in-memory store: node sparql_oxigraph.mjs MODULE DATA.nt REQUESTS ANSWERS
 // Each answer: {name, seconds of the median run, rows as lines of TSV}; a question that takes longer than half a minute
 // is given up and counted with that time.
+import { webcrypto } from "node:crypto";
 import { readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { isMainThread, parentPort, Worker, workerData } from "node:worker_threads";
+
+globalThis.crypto ??= webcrypto;   // Node 18, which Debian 12 has, does not say it to modules
 
 const mostSeconds = 5, givenUpAfterSeconds = 30;
 

@@ -42,8 +42,7 @@ void readAll(const fs::path& file) {
   environment->read().block("t", "a");
   const QuadReader reader(environment->read());
   QuadCursor quads = reader.scan({}, QuadOrder::Gspo);
-  std::size_t length = 0;
-  for (QuadIds quad; quads.next(quad);) length += reader.termOf(quad.o).text.size();
+  for (QuadIds quad; quads.next(quad);) reader.termOf(quad.o);
   reader.predicates();
 }
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Asks oxigraph a batch of queries: node oxigraph_answers.mjs MODULE_FOLDER DATA.nq REQUESTS.json ANSWERS.json
 // REQUESTS: [query]; ANSWERS: {milliseconds, answers: [{kind, text}]} in the same order.
+import { webcrypto } from "node:crypto";
 import { readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
+
+globalThis.crypto ??= webcrypto;   // Node 18, which Debian 12 has, does not say it to modules
 
 const [folder, dataFile, requestsFile, answersFile] = process.argv.slice(2);
 const oxigraph = createRequire(folder + "/package.json")("oxigraph");
