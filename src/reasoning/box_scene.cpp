@@ -187,7 +187,7 @@ class Builder {
   void measure(PrimitiveIndex i) {
     Primitive& primitive = scene().primitives[i];
     const BoxPrimitive& box = boxOf(i);
-    const Shape shape = shapeOfCluxels(scene(), primitive.cluxels, {});
+    const Shape shape = shapeOfCluxels(scene(), primitive.cluxels, {}, {});
     primitive.attributes = shape.attributes;
     auto set = [&](Attribute attribute, double value) { primitive.attributes[static_cast<std::size_t>(attribute)] = value; };
     const auto [width, length] = std::minmax(box.size.x(), box.size.y());
@@ -204,6 +204,7 @@ class Builder {
     primitive.max = shape.max;
     primitive.centroid = shape.centroid;
     primitive.axis = shape.axis;
+    primitive.normal = shape.normal;
     primitive.ground_z = boxes_.ground_z_m;
   }
 

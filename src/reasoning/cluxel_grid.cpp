@@ -15,12 +15,12 @@ std::int32_t cellOf(double coordinate_m) { return static_cast<std::int32_t>(std:
 
 }  // namespace
 
-double CluxelGap::gap() const { return std::hypot(horizontal, vertical); }
+double CluxelGap::gap() const { return std::sqrt(horizontal * horizontal + vertical * vertical); }
 
 CluxelGap gapBetween(const SceneCluxels& all, std::uint32_t a, std::uint32_t b) {
   const Eigen::Vector3d half = (all.extent[a] + all.extent[b]).cast<double>() / 2;
   const Eigen::Vector3d apart = ((all.center[a] - all.center[b]).cwiseAbs() - half).cwiseMax(0);
-  return {std::hypot(apart.x(), apart.y()), apart.z()};
+  return {std::sqrt(apart.x() * apart.x() + apart.y() * apart.y()), apart.z()};
 }
 
 CluxelGrid::CluxelGrid(const SceneCluxels& all) : all_(all) {

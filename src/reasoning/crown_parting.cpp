@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kJumpPenalty = 2.0;
 constexpr double kTop_m = 0.5;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Crown cluxels in cells as wide as the longest jump between centres, for gaps that no edge of the graph bridges.
 class JumpGrid {
@@ -53,7 +54,7 @@ class Parting {
  public:
   Parting(const SceneCluxels& all, std::span<const std::uint32_t> crown, std::span<const CrownSource> sources)
       : all_(all), crown_(crown), sources_(sources), grid_(all, crown, longestJump(all, crown, sources)),
-        taken_(crown.size(), kNoSource) {
+        taken_(crown.size(), kNoSource), best_(crown.size(), {kInfinity, kNoSource}) {
     for (const CrownSource& source : sources) tops_.push_back(topOf(all, source.trunk));
   }
 
@@ -89,7 +90,7 @@ class Parting {
   void start(std::uint32_t s) {
     const CrownSource& source = sources_[s];
     std::vector<std::uint32_t> from;
-    double highest = -std::numeric_limits<double>::infinity();
+    double highest = -kInfinity;
     for (std::uint32_t cluxel : source.trunk) {
       highest = std::max(highest, all_.center[cluxel].z());
       if (static_cast<double>(all_.height_above_ground[cluxel]) >= source.clearance_m) from.push_back(cluxel);
@@ -133,7 +134,9 @@ class Parting {
     const std::uint32_t cluxel = crown_[at];
     if (static_cast<double>(all_.height_above_ground[cluxel]) < source.clearance_m) return;
     if ((all_.center[cluxel].head<2>() - tops_[s]).norm() > source.reach_m) return;
-    if (source.may_take && !source.may_take(cluxel)) return;
+    const std::pair<double, std::uint32_t> way{length, s};
+    if (way >= best_[at] || (source.may_take && !source.may_take(cluxel))) return;
+    best_[at] = way;
     open_.emplace(length, s, at);
   }
 
@@ -143,6 +146,7 @@ class Parting {
   JumpGrid grid_;
   std::vector<Eigen::Vector2d> tops_;
   std::vector<std::uint32_t> taken_;
+  std::vector<std::pair<double, std::uint32_t>> best_;   ///< the shortest way in `open_`, and whose
   std::priority_queue<Way, std::vector<Way>, std::greater<>> open_;
 };
 

@@ -179,7 +179,20 @@ class AcceptReader {
       if (const YamlNode* value = node.find(key))
         if (const auto length = readQuantity(*value, Dimension::Length, reading_)) *field = length->value;
     parting.start_m = std::max(parting.start_m, parting.jump_m);
+    if (const YamlNode* gather = node.find("gather")) parting.gather = readGather(*gather);
     leaf_.parting = std::move(parting);
+  }
+
+  std::optional<GatherSpec> readGather(const YamlNode& node) {
+    if (!checkKeys(node, "gather", faults_)) return std::nullopt;
+    GatherSpec gather;
+    if (const YamlNode* within = requireKey(node, "within", "gather", faults_)) {
+      gather.within_m = readQuantity(*within, Dimension::Length, reading_).value_or(Quantity{}).value;
+      if (gather.within_m < 0) faults_.error(within->at, "must not be negative");
+    }
+    if (const YamlNode* above = requireKey(node, "above", "gather", faults_))
+      gather.above_m = readQuantity(*above, Dimension::Length, reading_).value_or(Quantity{}).value;
+    return gather;
   }
 
   const YamlNode& node_;

@@ -35,7 +35,7 @@ void PieceTable::measure(PieceIndex index) {
   const bool whole = piece.cluxels.size() == primitive.cluxels.size();
   const std::array<PrimitiveIndex, 1> members{piece.primitive};
   shapes_[index] =
-      whole ? shapeOfPrimitive(primitive, scene_.cluxels) : shapeOfCluxels(scene_, piece.cluxels, members);
+      whole ? shapeOfPrimitive(primitive, scene_.cluxels) : shapeOfCluxels(scene_, piece.cluxels, members, {});
 }
 
 std::vector<PieceIndex> PieceTable::cut(PieceIndex index, std::vector<std::vector<std::uint32_t>> parts) {
@@ -86,11 +86,13 @@ Thing PieceTable::thingOf(std::vector<PieceIndex> pieces) const {
   }
   std::vector<PieceIndex> ordered = thing.pieces;
   std::sort(ordered.begin(), ordered.end(), [this](PieceIndex a, PieceIndex b) { return before(a, b); });
-  std::vector<PrimitiveIndex> members;
-  for (PieceIndex piece : ordered)
-    if (std::find(members.begin(), members.end(), pieces_[piece].primitive) == members.end())
-      members.push_back(pieces_[piece].primitive);
-  thing.shape = shapeOfCluxels(scene_, cluxelsOf(thing), members);
+  std::vector<PrimitiveIndex> members, whole;
+  for (PieceIndex piece : ordered) {
+    const PrimitiveIndex primitive = pieces_[piece].primitive;
+    if (std::find(members.begin(), members.end(), primitive) == members.end()) members.push_back(primitive);
+    if (pieces_[piece].cluxels.size() == scene_.primitives[primitive].cluxels.size()) whole.push_back(primitive);
+  }
+  thing.shape = shapeOfCluxels(scene_, cluxelsOf(thing), members, whole);
   return thing;
 }
 

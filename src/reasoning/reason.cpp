@@ -7,6 +7,7 @@
 
 #include "cluxel/knowledge/vocabulary.hpp"
 #include "reasoning/absorbing.hpp"
+#include "reasoning/crown_gathering.hpp"
 #include "reasoning/seed_groups.hpp"
 #include "reasoning/shared_parting.hpp"
 #include "reasoning/tree_walk.hpp"
@@ -178,6 +179,13 @@ bool shares(const Rule& rule) {
   });
 }
 
+/// Parts what the objects of a class share, and then what hangs beside it.
+void partAll(ReasoningState& state, const std::string& class_iri) {
+  if (state.claims.empty()) return;
+  partShared(state);
+  gatherFragments(state, class_iri);
+}
+
 std::vector<ObjectPart> finishedParts(const ReasoningState& state, const ObjectInMaking& object) {
   std::vector<ObjectPart> parts;
   for (const PartInMaking& making : object.parts) {
@@ -245,10 +253,10 @@ ReasoningResult reason(const Scene& scene, const RuleSet& rules, const Reasoning
     for (const Rule& rule : rules.rules) {
       if (rule.class_iri != class_iri) continue;
       // What is left of shared primitives is free for the rules that do not share.
-      if (!shares(rule)) partShared(state);
+      if (!shares(rule)) partAll(state, class_iri);
       RuleRun(state, rule).run();
     }
-    partShared(state);
+    partAll(state, class_iri);
     absorbMisfits(state, first, false);
     if (context.oracle != nullptr) context.oracle->objectsSoFar(finishedObjects(state));
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "reasoning/thing.hpp"
 
@@ -103,9 +104,33 @@ double weightedMedian(std::vector<std::pair<double, double>> values) {
   return values.empty() ? 0 : values.back().first;
 }
 
+/// Points as their number, mean and covariance.
+struct Moments {
+  double weight = 0;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+
+/// The covariance of a primitive's points, back from what perception measured of it; none when it has no extent in some
+/// direction, so that its eigenvalues cannot be told from their ratios.
+std::optional<Eigen::Matrix3d> covarianceOf(const Primitive& primitive) {
+  const double l0 = primitive[Attribute::Roughness] * primitive[Attribute::Roughness];
+  const double l1 = primitive[Attribute::Radius] * primitive[Attribute::Radius] - l0;
+  const double rest = 1 - primitive[Attribute::Linearity];
+  if (l1 <= 0 || rest <= 1e-6) return std::nullopt;
+  const Eigen::Vector3d& axis = primitive.axis;
+  const Eigen::Vector3d& normal = primitive.normal;
+  const Eigen::Vector3d across = axis.cross(normal);
+  if (std::abs(axis.dot(normal)) > 1e-3) return std::nullopt;
+  return Eigen::Matrix3d(l1 / rest * axis * axis.transpose() + l1 * across * across.transpose() +
+                         l0 * normal * normal.transpose());
+}
+
 class Measuring {
  public:
-  Measuring(const Scene& scene, std::span<const std::uint32_t> cluxels) : all_(scene.cluxels), cluxels_(cluxels) {}
+  /// `whole` are the primitives all of whose cluxels are among `cluxels`.
+  Measuring(const Scene& scene, std::span<const std::uint32_t> cluxels, std::span<const PrimitiveIndex> whole)
+      : scene_(scene), all_(scene.cluxels), cluxels_(cluxels), whole_(whole) {}
 
   Shape measure() {
     if (cluxels_.empty()) return shape_;
@@ -163,37 +188,57 @@ class Measuring {
     at(Attribute::FreeHeightBelow) = weightedMedian(std::move(above));
   }
 
-  void moments() {
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    for (std::uint32_t i : cluxels_) {
-      const Eigen::Vector3d d = all_.center[i] - shape_.centroid;
-      const Eigen::Vector3d spread = all_.extent[i].cast<double>().cwiseAbs2() / 12;
-      covariance += weight(i) * (d * d.transpose() + Eigen::Matrix3d(spread.asDiagonal()));
+  /// Whole primitives by their own moments, all other cluxels as points spread evenly over their boxes.
+  std::vector<Moments> blocks() const {
+    std::vector<Moments> blocks;
+    std::vector<PrimitiveIndex> done;
+    for (PrimitiveIndex index : whole_) {
+      const Primitive& primitive = scene_.primitives[index];
+      const auto covariance = covarianceOf(primitive);
+      if (!covariance) continue;
+      Moments block{0, primitive.centroid, *covariance};
+      for (std::uint32_t i : primitive.cluxels) block.weight += weight(i);
+      blocks.push_back(block);
+      done.push_back(index);
     }
-    covariance /= shape_.points;
+    std::sort(done.begin(), done.end());
+    for (std::uint32_t i : cluxels_) {
+      if (std::binary_search(done.begin(), done.end(), all_.primitive[i])) continue;
+      const Eigen::Vector3d spread = all_.extent[i].cast<double>().cwiseAbs2() / 12;
+      blocks.push_back({weight(i), all_.center[i], spread.asDiagonal()});
+    }
+    return blocks;
+  }
+
+  void moments() {
+    const std::vector<Moments> parts = blocks();
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const Moments& part : parts) mean += part.weight / shape_.points * part.mean;
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    for (const Moments& part : parts) {
+      const Eigen::Vector3d d = part.mean - mean;
+      covariance += part.weight / shape_.points * (d * d.transpose() + part.covariance);
+    }
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
     const Eigen::Vector3d l = solver.eigenvalues().cwiseMax(0);
     const double l1 = l[2] > 0 ? l[2] : 1;
     shape_.axis = upward(solver.eigenvectors().col(2));
-    const Eigen::Vector3d normal = upward(solver.eigenvectors().col(0));
+    shape_.normal = upward(solver.eigenvectors().col(0));
     at(Attribute::Linearity) = (l[2] - l[1]) / l1;
     at(Attribute::Planarity) = (l[1] - l[0]) / l1;
     at(Attribute::Scattering) = l[0] / l1;
     at(Attribute::Roughness) = std::sqrt(l[0]);
+    at(Attribute::Radius) = std::sqrt(l[0] + l[1]);
     at(Attribute::AxisTilt) = std::acos(std::clamp(shape_.axis.z(), 0.0, 1.0));
-    at(Attribute::NormalTilt) = std::acos(std::clamp(normal.z(), 0.0, 1.0));
-    std::vector<std::pair<double, double>> distances;
-    for (std::uint32_t i : cluxels_) {
-      const Eigen::Vector3d d = all_.center[i] - shape_.centroid;
-      distances.emplace_back((d - d.dot(shape_.axis) * shape_.axis).norm(), weight(i));
-    }
-    at(Attribute::Radius) = weightedMedian(std::move(distances));
+    at(Attribute::NormalTilt) = std::acos(std::clamp(shape_.normal.z(), 0.0, 1.0));
   }
 
   static Eigen::Vector3d upward(const Eigen::Vector3d& v) { return v.z() < 0 ? Eigen::Vector3d(-v) : v; }
 
+  const Scene& scene_;
   const SceneCluxels& all_;
   std::span<const std::uint32_t> cluxels_;
+  std::span<const PrimitiveIndex> whole_;
   Shape shape_;
 };
 
@@ -226,13 +271,14 @@ Shape shapeOfPrimitive(const Primitive& primitive, const SceneCluxels& cluxels) 
   shape.max = primitive.max;
   shape.centroid = primitive.centroid;
   shape.axis = primitive.axis;
+  shape.normal = primitive.normal;
   for (std::uint32_t i : primitive.cluxels) shape.points += std::max<double>(1, cluxels.point_count[i]);
   return shape;
 }
 
 Shape shapeOfCluxels(const Scene& scene, std::span<const std::uint32_t> cluxels,
-                     std::span<const PrimitiveIndex> members) {
-  Shape shape = Measuring(scene, cluxels).measure();
+                     std::span<const PrimitiveIndex> members, std::span<const PrimitiveIndex> whole) {
+  Shape shape = Measuring(scene, cluxels, whole).measure();
   takeFromMembers(scene, members, shape);
   return shape;
 }

@@ -123,7 +123,13 @@ INSTANTIATE_TEST_SUITE_P(
                   "no relation to an object", ""},
         FaultCase{"AbsorbWithoutEvidence", "confidence: 0.9 }",
                   "confidence: 0.9, absorb: { from: { label: scatter }, into: trunk, when: [ { gap_to: top, op: \">\", value: 1 m } ] } }",
-                  22, 151, "needs evidence", ""}),
+                  22, 151, "needs evidence", ""},
+        FaultCase{"GatherWithoutAHeight", "confidence: 0.9 }",
+                  "confidence: 0.9, split: { shared: top, from: trunk, gather: { within: 1 m } } }", 22, 139,
+                  "needs the key 'above'", ""},
+        FaultCase{"GatherInTheWrongUnit", "confidence: 0.9 }",
+                  "confidence: 0.9, split: { shared: top, from: trunk, gather: { within: 1 m2, above: 1 m } } }", 22, 149,
+                  "m2", ""}),
     [](const auto& info) { return info.param.name; });
 
 TEST(RuleFaults, AreAbsentFromAGoodFile) {

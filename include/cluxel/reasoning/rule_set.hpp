@@ -78,6 +78,12 @@ struct AbsorbSpec {
   bool late = false;                   ///< after all classes had their turn, instead of after this class
 };
 
+/// What hangs beside a parted thing without touching it, and belongs to it all the same.
+struct GatherSpec {
+  double within_m = 0;                 ///< largest gap to the object
+  double above_m = 0;                  ///< height above ground from which a primitive hangs
+};
+
 /// Shared primitives are parted among the objects that claim them, along the cluxel graph.
 struct PartingSpec {
   SourceLocation at;
@@ -86,6 +92,7 @@ struct PartingSpec {
   double jump_m = 0.5;                 ///< gaps up to this are bridged, at double length
   double start_m = 0.5;                ///< the same between `from` and what is parted; at least jump_m
   double clearance_m = 0;              ///< cluxels lower above the ground than this are left alone
+  std::optional<GatherSpec> gather;    ///< free primitives of the same labels that are parted after it
 };
 
 struct AcceptLeaf {
