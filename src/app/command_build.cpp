@@ -47,7 +47,10 @@ void addBuild(CLI::App& app, Session& session) {
   command->add_option("--ontology", options->files.ontology, "ontology files instead of ontology/*.ttl");
   command->add_option("--batch-points", options->params.batch_points, "commit when a batch of scans has this many points")
       ->check(above0());
-  command->add_flag("--force", options->params.force, "replace a finished map");
+  CLI::Option* force =
+      command->add_flag("--force", options->params.force, "replace a finished map; the operator's statements stay");
+  command->add_flag("--drop-statements", options->params.drop_statements, "with --force: drop the operator's statements too")
+      ->needs(force);
   onRun(*command, session, [options, &session] { return build(*options, session); });
 }
 

@@ -4,7 +4,7 @@
 #include "app/named_sources.hpp"
 #include "cluxel/base/file_bytes.hpp"
 #include "cluxel/knowledge/rdf_io.hpp"
-#include "cluxel/sparql/update_engine.hpp"
+#include "cluxel/mapping/map_update.hpp"
 
 namespace cluxel::app {
 
@@ -30,16 +30,13 @@ struct UpdateArguments {
   std::vector<std::string> loads;
 };
 
-ExitCode update(const UpdateArguments& arguments, const Session& session) {
+ExitCode update(const UpdateArguments& arguments, Session& session) {
   const Question question = questionFrom(arguments.file, arguments.text, session);
   const std::map<std::string, fs::path> loads = namedFiles("--load", arguments.loads);
-  const auto environment = Environment::open(arguments.map, OpenMode::ReadWrite);
-  WriteTransaction transaction = environment->write();
   UpdateOptions options;
   options.query.source_name = question.file.string();
   if (!loads.empty()) options.load = [&loads](const std::string& iri) { return triplesOf(loads, iri); };
-  const UpdateReport report = runUpdate(transaction, question.text, options);
-  transaction.commit();
+  const UpdateReport report = updateMap(arguments.map, question.text, options, session.console);
   if (session.json)
     printJson(Json{{"inserted", report.inserted}, {"deleted", report.deleted}});
   else

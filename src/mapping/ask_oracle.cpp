@@ -5,7 +5,7 @@
 namespace cluxel {
 
 void MapOracle::objectsSoFar(std::span<const SemanticObject> objects) {
-  objects_ = objects;
+  objects_.assign(objects.begin(), objects.end());
   prepared_.clear();
   reader_.reset();
 }

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cluxel/knowledge/quad_store.hpp"
 #include "cluxel/reasoning/reason.hpp"
@@ -28,7 +29,7 @@ class MapOracle : public AskOracle {
 
   WriteTransaction& transaction_;
   Publish publish_;
-  std::span<const SemanticObject> objects_;
+  std::vector<SemanticObject> objects_;                 ///< copies: the stage's own list ends with its call
   std::optional<QuadReader> reader_;                    ///< absent: the facts are not written yet
   std::map<std::string, PreparedQuery> prepared_;
 };

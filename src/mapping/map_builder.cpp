@@ -8,6 +8,7 @@
 #include "cluxel/knowledge/quad_store.hpp"
 #include "mapping/map_history.hpp"
 #include "mapping/map_state.hpp"
+#include "mapping/operator_statements.hpp"
 #include "mapping/scan_store.hpp"
 #include "mapping/semantic_layer.hpp"
 
@@ -68,6 +69,16 @@ WorkFile openWorkFile(const fs::path& target, const std::string& inputs_hash, bo
   work.is_fresh = !fs::exists(work.path);
   work.environment = Environment::open(work.path, work.is_fresh ? OpenMode::Create : OpenMode::ReadWrite);
   return work;
+}
+
+/// Takes the operator's statements of the map that is replaced over into its successor.
+void keepStatements(const WorkFile& work, ProgressSink& sink) {
+  const auto replaced = Environment::open(work.target, OpenMode::ReadOnly);
+  WriteTransaction transaction = work.environment->write();
+  const std::uint64_t count = copyOperatorStatements(QuadReader(replaced->read()), transaction);
+  transaction.commit();
+  if (count > 0)
+    sink.note(std::to_string(count) + " operator statements of the old map are kept; --drop-statements leaves them out");
 }
 
 class MapBuild {
@@ -139,6 +150,7 @@ BuildReport buildMap(const ScanSet& scans, const MapInputs& inputs, const fs::pa
   const ParsedInputs parsed = parseInputs(complete);
   WorkFile work = openWorkFile(file, complete.hash().hex(), params.force);
   try {
+    if (work.path != work.target && !params.drop_statements) keepStatements(work, sink);
     const BuildReport report = MapBuild(scans, parsed, *work.environment, params, sink).run();
     work.finish();
     return report;

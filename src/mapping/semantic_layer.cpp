@@ -27,13 +27,6 @@ std::vector<RdfSource> ontologySources(const std::vector<NamedText>& texts) {
   return sources;
 }
 
-void replaceOntology(WriteTransaction& transaction, const MapInputs& inputs) {
-  QuadWriter writer(transaction);
-  writer.clearGraph(writer.intern(Term::iri(vocabulary::kGraphOntology)));
-  loadOntology(ontologySources(inputs.ontology), writer);
-  writer.flush();
-}
-
 std::vector<RuleSource> ruleSources(const std::vector<NamedText>& texts) {
   std::vector<RuleSource> sources;
   for (const NamedText& text : texts) sources.push_back({text.name, text.text});
@@ -51,6 +44,21 @@ void writeObserved(WriteTransaction& transaction, const ObservedMap& map) {
 }
 
 }  // namespace
+
+void writeOntology(WriteTransaction& transaction, const MapInputs& inputs) {
+  QuadWriter writer(transaction);
+  writer.clearGraph(writer.intern(Term::iri(vocabulary::kGraphOntology)));
+  loadOntology(ontologySources(inputs.ontology), writer);
+  writer.flush();
+}
+
+void writeObjectsSoFar(WriteTransaction& transaction, const MapInputs& inputs, const std::vector<Cloud>& clouds,
+                       const Scene& scene, std::span<const SemanticObject> objects) {
+  const std::map<std::pair<std::uint32_t, ScanId>, Sighting> none;
+  const ReasoningResult so_far{{objects.begin(), objects.end()}, {}};
+  writeObserved(transaction, {inputs, clouds, scene, so_far, none});
+  inferClosure(transaction);
+}
 
 ClassCatalogue classCatalogueOf(const std::vector<NamedText>& ontology) {
   ClassCatalogue catalogue;
@@ -72,15 +80,12 @@ ParsedInputs parseInputs(const MapInputs& inputs) {
 
 SemanticCounts writeSemanticLayer(WriteTransaction& transaction, const ParsedInputs& parsed, const TileStages& stages,
                                   ProgressSink& sink) {
-  replaceOntology(transaction, parsed.inputs);
+  writeOntology(transaction, parsed.inputs);
   const Scene scene = stages.scene();
   sink.progress("scene", scene.primitives.size(), scene.primitives.size());
   const std::vector<Cloud> clouds = storedClouds(transaction);
-  const std::map<std::pair<std::uint32_t, ScanId>, Sighting> none;
   MapOracle oracle(transaction, [&](std::span<const SemanticObject> objects) {
-    const ReasoningResult so_far{{objects.begin(), objects.end()}, {}};
-    writeObserved(transaction, {parsed.inputs, clouds, scene, so_far, none});
-    inferClosure(transaction);
+    writeObjectsSoFar(transaction, parsed.inputs, clouds, scene, objects);
   });
   const ReasoningResult result = reason(scene, parsed.rules, {&oracle});
   sink.progress("objects", result.objects.size(), result.objects.size());

@@ -2,13 +2,16 @@
 // From the scene to the map's knowledge: ontology, objects by rules, facts, closure.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "cluxel/base/progress.hpp"
 #include "cluxel/knowledge/environment.hpp"
+#include "cluxel/mapping/cloud.hpp"
 #include "cluxel/mapping/map_inputs.hpp"
 #include "cluxel/perception/scene.hpp"
 #include "cluxel/reasoning/rule_set.hpp"
+#include "cluxel/reasoning/semantic_object.hpp"
 #include "mapping/tile_stages.hpp"
 
 namespace cluxel {
@@ -21,6 +24,13 @@ struct ParsedInputs {
 };
 /// Throws InputError with all faults of ontology, rules or model.
 ParsedInputs parseInputs(const MapInputs& inputs);
+
+/// Makes graph ontology hold the inputs' ontology.
+void writeOntology(WriteTransaction& transaction, const MapInputs& inputs);
+/// Makes the graphs observed and inferred hold what a query of the reasoning stage may see: the scene, and the objects
+/// of the classes that have had their turn.
+void writeObjectsSoFar(WriteTransaction& transaction, const MapInputs& inputs, const std::vector<Cloud>& clouds,
+                       const Scene& scene, std::span<const SemanticObject> objects);
 
 struct SemanticCounts {
   std::size_t cluxels = 0, primitives = 0, objects = 0;

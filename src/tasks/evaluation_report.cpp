@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // An evaluation as tables for people and as JSON.
+#include <array>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
 
 #include "cluxel/tasks/evaluation.hpp"
 
@@ -16,22 +19,43 @@ std::string padded(std::string text, std::size_t width) {
   return text;
 }
 
-std::string row(const std::string& name, std::initializer_list<double> shares, std::uint64_t count) {
+/// A share, or nothing where it would be one of no things at all.
+using Share = std::optional<double>;
+
+Share shareOf(double value, std::uint64_t whole) { return whole == 0 ? Share() : Share(value); }
+
+std::string row(const std::string& name, std::span<const Share> shares, std::uint64_t count) {
   std::string text = padded(name, 18);
-  for (const double share : shares) {
+  for (const Share& share : shares) {
     char cell[32];
-    std::snprintf(cell, sizeof cell, "%9.3f", share);
+    if (share)
+      std::snprintf(cell, sizeof cell, "%9.3f", *share);
+    else
+      std::snprintf(cell, sizeof cell, "%9s", "-");
     text += cell;
   }
   return text + padded("", 3) + std::to_string(count) + '\n';
 }
 
+/// Precision, recall, F1, IoU. Without truth there is nothing to find: only the false answers can be counted.
+std::array<Share, 4> sharesOf(const ConfusionMatrix& matrix, std::size_t i) {
+  const std::uint64_t truth = matrix.truthCount(i);
+  return {shareOf(matrix.precision(i), matrix.answerCount(i)), shareOf(matrix.recall(i), truth),
+          shareOf(matrix.f1(i), truth), shareOf(matrix.iou(i), truth)};
+}
+
+std::array<Share, 3> sharesOf(const ObjectScore& score) {
+  return {shareOf(score.precision(), score.answers), shareOf(score.recall(), score.truth),
+          shareOf(score.f1(), score.truth)};
+}
+
+Json jsonOf(const Share& share) { return share ? Json(*share) : Json(); }
+
 std::string pointTable(const char* title, const ConfusionMatrix& matrix) {
   std::string text = std::string(title) + "\n" + padded("class", 18) + "precision   recall       F1      IoU   points\n";
   for (std::size_t i = 0; i < matrix.names.size(); ++i)
     if (matrix.truthCount(i) + matrix.answerCount(i) > 0)
-      text += row(matrix.names[i], {matrix.precision(i), matrix.recall(i), matrix.f1(i), matrix.iou(i)},
-                  matrix.truthCount(i));
+      text += row(matrix.names[i], sharesOf(matrix, i), matrix.truthCount(i));
   char total[160];
   std::snprintf(total, sizeof total, "overall accuracy %.4f   macro F1 %.4f   macro IoU %.4f   %llu points\n",
                 matrix.overallAccuracy(), matrix.macroF1(), matrix.macroIou(),
@@ -59,10 +83,10 @@ std::string objectTable(const char* title, const std::vector<ObjectScore>& score
     truth += score.truth, answers += score.answers;
     matched_truth += score.matched_truth, matched_answers += score.matched_answers;
     if (score.truth + score.answers > 0)
-      text += row(score.name, {score.precision(), score.recall(), score.f1()}, score.truth);
+      text += row(score.name, sharesOf(score), score.truth);
   }
   const ObjectScore all{"all", truth, answers, matched_truth, matched_answers};
-  return text + row("all", {all.precision(), all.recall(), all.f1()}, truth);
+  return text + row("all", sharesOf(all), truth);
 }
 
 Json pointJson(const ConfusionMatrix& matrix) {
@@ -72,8 +96,9 @@ Json pointJson(const ConfusionMatrix& matrix) {
     Json counts = Json::object();
     for (std::size_t answer = 0; answer <= matrix.names.size(); ++answer)
       counts[answer < matrix.names.size() ? matrix.names[answer] : "none"] = matrix.at(i, answer);
-    json["classes"].push_back({{"class", matrix.names[i]}, {"precision", matrix.precision(i)},
-                               {"recall", matrix.recall(i)}, {"f1", matrix.f1(i)}, {"iou", matrix.iou(i)},
+    const auto [precision, recall, f1, iou] = sharesOf(matrix, i);
+    json["classes"].push_back({{"class", matrix.names[i]}, {"precision", jsonOf(precision)},
+                               {"recall", jsonOf(recall)}, {"f1", jsonOf(f1)}, {"iou", jsonOf(iou)},
                                {"points", matrix.truthCount(i)}, {"answers", counts}});
   }
   return json;
@@ -81,10 +106,12 @@ Json pointJson(const ConfusionMatrix& matrix) {
 
 Json objectJson(const std::vector<ObjectScore>& scores) {
   Json json = Json::array();
-  for (const ObjectScore& score : scores)
+  for (const ObjectScore& score : scores) {
+    const auto [precision, recall, f1] = sharesOf(score);
     json.push_back({{"class", score.name}, {"truth", score.truth}, {"answers", score.answers},
                     {"matched_truth", score.matched_truth}, {"matched_answers", score.matched_answers},
-                    {"precision", score.precision()}, {"recall", score.recall()}, {"f1", score.f1()}});
+                    {"precision", jsonOf(precision)}, {"recall", jsonOf(recall)}, {"f1", jsonOf(f1)}});
+  }
   return json;
 }
 

@@ -3,32 +3,16 @@
 #include "cluxel/tasks/explanation.hpp"
 
 #include <algorithm>
-#include <map>
 
 #include "cluxel/base/diagnostic.hpp"
+#include "cluxel/mapping/ask_replay.hpp"
 #include "cluxel/mapping/class_catalogue_of.hpp"
 #include "cluxel/reasoning/explain.hpp"
 #include "cluxel/reasoning/rule_loader.hpp"
-#include "cluxel/sparql/query_engine.hpp"
 
 namespace cluxel {
 
 namespace {
-
-/// Answers `ask:` from the finished map.
-class FinishedMapOracle : public AskOracle {
- public:
-  explicit FinishedMapOracle(const QuadReader& quads) : quads_(quads) {}
-  bool ask(const std::string& query, const std::map<std::string, std::string>& bindings) override {
-    std::vector<std::string> names;
-    std::vector<Binding> values;
-    for (const auto& [name, iri] : bindings) names.push_back(name), values.emplace_back(name, Term::iri(iri));
-    return PreparedQuery(quads_, query, {}, names).ask(values);
-  }
-
- private:
-  const QuadReader& quads_;
-};
 
 RuleSet rulesOf(const MapInputs& inputs) {
   std::vector<RuleSource> sources;
@@ -58,7 +42,7 @@ std::optional<std::size_t> findOne(const Things& things, const std::string& kind
 std::string explainThing(const MapReader& map, const std::string& name, bool as_json) {
   const RuleSet rules = rulesOf(map.inputs());
   const Scene& scene = map.scene();
-  FinishedMapOracle oracle(map.quads());
+  AskReplay oracle(map);
   const ReasoningContext context{.oracle = &oracle};
   Explanation explanation;
   if (name.size() < 4) throw Error(ExitCode::Usage, "'" + name + "' is too short: write at least four digits of the name");

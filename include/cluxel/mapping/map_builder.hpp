@@ -16,6 +16,7 @@ struct BuildParams {
   unsigned threads = 1;
   std::uint64_t batch_points = 20'000'000;   ///< a batch of scans is committed when it holds this many points
   bool force = false;                        ///< replaces a finished map
+  bool drop_statements = false;              ///< with `force`: the operator's statements of the old map go with it
 };
 
 struct BuildReport {
@@ -25,7 +26,8 @@ struct BuildReport {
 };
 
 /// Builds `file` from `scans`. A finished map is an Error (Usage) unless `force`; an unfinished one of the same inputs goes
-/// on where it stopped. Throws InputError for faulty scans, rules, ontology or model: nothing is written then.
+/// on where it stopped. The operator's statements are nobody's to compute again: the new map takes them over from the one
+/// it replaces, unless they are to be dropped. Throws InputError for faulty scans, rules, ontology or model: nothing is written then.
 BuildReport buildMap(const ScanSet& scans, const MapInputs& inputs, const std::filesystem::path& file,
                      const BuildParams& params, ProgressSink& sink);
 
