@@ -2,22 +2,12 @@
 // A class that the program does not know, from an ontology text and a rule text alone, all the way into a map.
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/sparql/query_engine.hpp"
-#include "mapping/small_campus.hpp"
+#include "mapping/asking_rules.hpp"
 
 namespace cluxel {
 namespace {
-
-constexpr const char* kBenchOntology = R"(@prefix clx: <https://w3id.org/cluxel/ontology#> .
-@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .
-@prefix owl: <http://www.w3.org/2002/07/owl#> .
-@prefix skos: <http://www.w3.org/2004/02/skos/core#> .
-clx:Bench a owl:Class ; rdfs:subClassOf clx:StreetFurniture ;
-    skos:prefLabel "bench"@en, "Bank"@de ; rdfs:comment "To sit on."@en ; clx:color "#aa7744" .
-)";
 
 /// Size alone decides, so that the test does not hang on the label that a trained model gives.
 constexpr const char* kBenchRules = R"(apiVersion: cluxel.rules/v1
@@ -42,31 +32,6 @@ rules:
       yes: { accept: { confidence: 0.9 } }
       no: { reject: not of a bench's size }
 )";
-
-void addPoint(ScanPoints& points, double x, double y, double z) {
-  points.x.push_back(static_cast<float>(x));
-  points.y.push_back(static_cast<float>(y));
-  points.z.push_back(static_cast<float>(z));
-}
-
-/// Flat ground with a seat of 1.5 x 0.5 x 0.45 m at (5, 5), and its back of 0.9 m.
-Scan parkWithBench() {
-  std::mt19937 random(11);
-  std::normal_distribution<double> noise(0, 0.005);
-  Scan scan;
-  const auto isUnderBench = [](double x, double y) { return x > 4.25 && x < 5.75 && y > 4.75 && y < 5.25; };
-  for (double x = 0; x < 10; x += 0.08)
-    for (double y = 0; y < 10; y += 0.08)
-      if (!isUnderBench(x, y)) addPoint(scan.points, x, y, noise(random));
-  for (double x = 4.25; x <= 5.75; x += 0.04)
-    for (double y = 4.75; y <= 5.25; y += 0.04) addPoint(scan.points, x, y, 0.45 + noise(random));
-  for (double x = 4.25; x <= 5.75; x += 0.04)
-    for (double z = 0.05; z < 0.45; z += 0.04)
-      for (const double y : {4.75, 5.25}) addPoint(scan.points, x, y + noise(random), z);
-  for (double x = 4.25; x <= 5.75; x += 0.04)
-    for (double z = 0.45; z <= 0.9; z += 0.04) addPoint(scan.points, x, 5.25 + noise(random), z);
-  return scan;
-}
 
 TEST(BenchClass, AppearsInAMapFromAnOntologyAndARuleTextAlone) {
   const ScratchFolder folder;

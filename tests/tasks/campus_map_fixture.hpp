@@ -25,6 +25,7 @@ class CampusMap {
 
   CampusMap();
   const MapReader& map() const { return map_; }
+  const SmallCampus& campus() const { return campus_; }
   const std::filesystem::path& file() const { return file_; }
   const std::vector<TruthObject>& truth() const { return truth_; }
   std::vector<TruthObject> truthOf(const std::string& class_name, std::size_t least_points) const;

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// People's statements are inputs of a map: what follows from them stands in the map at once, and a build keeps them.
+#include <gtest/gtest.h>
+
+#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/mapping/map_update.hpp"
+#include "cluxel/sparql/query_engine.hpp"
+#include "mapping/asking_rules.hpp"
+
+namespace cluxel {
+namespace {
+
+const std::string kPrefixes = "PREFIX clx: <https://w3id.org/cluxel/ontology#> PREFIX ex: <https://example.org/> ";
+const std::string kState = kPrefixes + "INSERT DATA { ex:oak a clx:Tree }";
+const std::string kTakeBack = kPrefixes + "DELETE DATA { GRAPH <https://w3id.org/cluxel/graph/operator> { ex:oak a clx:Tree } }";
+
+bool holds(const std::filesystem::path& map, const std::string& pattern) {
+  const MapReader reader(map);
+  return PreparedQuery(reader.quads(), kPrefixes + "ASK { " + pattern + " }").ask();
+}
+
+/// A map by the rules of the bench alone, which ask nothing.
+std::filesystem::path buildPark(const std::filesystem::path& folder, const BuildParams& params = {}) {
+  writeScanFile(parkWithBench(), folder / "park.pcd");
+  buildMap(scansOf({folder / "park.pcd"}), shippedInputs(), folder / "map.clx", params, silence());
+  return folder / "map.clx";
+}
+
+TEST(OperatorStatements, AreInferredFromAtOnceAndTakenBackWithoutATrace) {
+  const ScratchFolder folder;
+  const auto map = buildPark(folder.path());
+  const std::string before = canonicalText(map);
+  EXPECT_EQ(updateMap(map, kState, {}, silence()).inserted, 1U);
+  EXPECT_TRUE(holds(map, "GRAPH <https://w3id.org/cluxel/graph/inferred> { ex:oak a clx:Plant }") ||
+              holds(map, "GRAPH <https://w3id.org/cluxel/graph/inferred> { ex:oak a ?ancestor }"));
+  updateMap(map, kTakeBack, {}, silence());
+  EXPECT_EQ(canonicalText(map), before);
+}
+
+TEST(OperatorStatements, StayWhenAMapIsBuiltAnewUnlessTheyAreDropped) {
+  const ScratchFolder folder;
+  const auto map = buildPark(folder.path());
+  const std::string without = canonicalText(map);
+  updateMap(map, kState, {}, silence());
+  const std::string with = canonicalText(map);
+  EXPECT_NE(with, without);
+  buildPark(folder.path(), {.force = true});
+  EXPECT_EQ(canonicalText(map), with) << "the same scans, rules and statements make the same map";
+  buildPark(folder.path(), {.force = true, .drop_statements = true});
+  EXPECT_EQ(canonicalText(map), without);
+}
+
+TEST(OperatorStatements, ChangeObjectsWhereRulesAskForThem) {
+  const ScratchFolder folder;
+  const auto map = buildAskingMap(folder.path());
+  ASSERT_EQ(MapReader(map).summary().objects_by_class.count("Bench"), 1U);
+  const std::string before = canonicalText(map);
+  updateMap(map, kState, {}, silence());
+  const MapSummary stated = MapReader(map).summary();
+  EXPECT_EQ(stated.objects_by_class.count("Bench"), 0U) << "its rule turns benches down where there is a tree";
+  EXPECT_EQ(stated.objects_by_class.count("SmallObject"), 0U) << "which waits for a bench";
+  updateMap(map, kTakeBack, {}, silence());
+  EXPECT_EQ(canonicalText(map), before);
+}
+
+TEST(OperatorStatements, OfAFaultyUpdateLeaveTheMapAsItWas) {
+  const ScratchFolder folder;
+  const auto map = buildPark(folder.path());
+  const std::string before = canonicalText(map);
+  EXPECT_THROW(updateMap(map, "INSERT { ", {}, silence()), InputError);
+  EXPECT_EQ(canonicalText(map), before);
+}
+
+}  // namespace
+}  // namespace cluxel

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// A build with a rule file that includes another: the map holds both texts and needs the files no more.
+#include <gtest/gtest.h>
+
+#include "cluxel/base/file_bytes.hpp"
+#include "mapping/asking_rules.hpp"
+
+namespace cluxel {
+namespace {
+
+constexpr const char* kBase = R"(apiVersion: cluxel.rules/v1
+ruleset: { name: base, version: 1.0.0 }
+prefixes: { clx: "https://w3id.org/cluxel/ontology#" }
+order: [clx:Ground, clx:SmallObject]
+rules:
+  - id: ground/all
+    class: clx:Ground
+    description: All that is flat.
+    seed: { label: horizontal_plane, where: [ { attribute: length, op: ">=", value: 5 m } ] }
+    tree: { test: { attribute: normal_tilt, op: "<=", value: 30 deg }, yes: { accept: { confidence: 0.9 } }, no: { reject: steep } }
+)";
+constexpr const char* kOver = R"(apiVersion: cluxel.rules/v1
+include: [ ../base.rules.yaml ]
+rules:
+  - id: small/raised
+    class: clx:SmallObject
+    description: What is raised a little.
+    seed: { label_in: [horizontal_plane, vertical_plane, small_structure, scatter, column] }
+    group: { near: 0.4 m }
+    tree: { test: { attribute: top, op: between, min: 0.35 m, max: 1.2 m }, yes: { accept: { confidence: 0.7 } }, no: { reject: of another height } }
+)";
+
+TEST(RuleInclude, GoesIntoTheMapWithAllItsTexts) {
+  const ScratchFolder folder;
+  std::filesystem::create_directories(folder.path() / "mine");
+  writeFile(folder.path() / "base.rules.yaml", kBase);
+  writeFile(folder.path() / "mine/over.rules.yaml", kOver);
+  writeScanFile(parkWithBench(), folder.path() / "park.pcd");
+  MapInputFiles files;
+  files.rules = {folder.path() / "mine/over.rules.yaml"};
+  const MapInputs inputs = readMapInputs(files, DataHome({CLUXEL_SOURCE_DIR}));
+  EXPECT_EQ(inputs.rule_roots, 1U);
+  EXPECT_EQ(inputs.rules.size(), 2U);
+  std::filesystem::remove(folder.path() / "base.rules.yaml");
+  std::filesystem::remove(folder.path() / "mine/over.rules.yaml");
+  buildMap(scansOf({folder.path() / "park.pcd"}), inputs, folder.path() / "map.clx", {}, silence());
+  const MapReader map(folder.path() / "map.clx");
+  const MapSummary summary = map.summary();
+  EXPECT_EQ(summary.objects_by_class.count("Ground"), 1U) << "by the included file";
+  EXPECT_EQ(summary.objects_by_class.count("SmallObject"), 1U) << "by the including one";
+  EXPECT_EQ(map.inputs().rules.size(), 2U);
+  EXPECT_EQ(map.inputs().hash(), inputs.hash());
+}
+
+TEST(RuleInclude, CountsInTheInputsOfTheMap) {
+  const ScratchFolder folder;
+  std::filesystem::create_directories(folder.path() / "mine");
+  writeFile(folder.path() / "base.rules.yaml", kBase);
+  writeFile(folder.path() / "mine/over.rules.yaml", kOver);
+  MapInputFiles files;
+  files.rules = {folder.path() / "mine/over.rules.yaml"};
+  const DataHome home({CLUXEL_SOURCE_DIR});
+  const ContentHash before = readMapInputs(files, home).hash();
+  writeFile(folder.path() / "base.rules.yaml", std::string(kBase) + "# changed\n");
+  EXPECT_NE(readMapInputs(files, home).hash(), before);
+}
+
+}  // namespace
+}  // namespace cluxel

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// A whole evaluation of a generated map: against a plain count over the points, and against answers that are the truth.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "cluxel/tasks/evaluation.hpp"
+#include "tasks/campus_map_fixture.hpp"
+
+namespace cluxel {
+namespace {
+
+/// A truth folder as `--truth` takes it, out of the campus's own truth.
+class TruthFolder {
+ public:
+  TruthFolder() {
+    const SmallCampus& campus = CampusMap::shared().campus();
+    for (std::size_t i = 0; i < campus.scans().size(); ++i) {
+      const PointTruth& truth = campus.scans()[i].truth;
+      std::ofstream out(folder_.path() / (campus.files()[i].stem().string() + ".truth"));
+      for (std::size_t p = 0; p < truth.primitive.size(); ++p)
+        out << static_cast<int>(truth.primitive[p]) << ' ' << static_cast<int>(truth.object_class[p]) << ' '
+            << truth.instance[p] << '\n';
+    }
+  }
+  TruthSource source() const { return TruthSource::open(folder_.path(), DataHome({CLUXEL_SOURCE_DIR})); }
+
+ private:
+  ScratchFolder folder_;
+};
+
+const PointTruth& truthOf(const Cloud& cloud) {
+  const SmallCampus& campus = CampusMap::shared().campus();
+  const auto stem = std::filesystem::path(cloud.source).stem();
+  for (std::size_t i = 0; i < campus.files().size(); ++i)
+    if (campus.files()[i].stem() == stem) return campus.scans()[i].truth;
+  throw std::out_of_range("no stop of the campus is named " + stem.string());
+}
+
+const MapEvaluation& evaluation() {
+  static const MapEvaluation made = evaluateMap(CampusMap::shared().map(), TruthFolder().source());
+  return made;
+}
+
+TEST(MapEvaluation, CountsEveryPointThatHasTruthOnce) {
+  const MapReader& map = CampusMap::shared().map();
+  std::map<std::pair<int, int>, std::uint64_t> primitives;
+  std::uint64_t with_class = 0;
+  for (const Cloud& cloud : map.clouds()) {
+    const PointAnswers answers = map.answersFor(cloud);
+    const PointTruth& truth = truthOf(cloud);
+    ASSERT_EQ(truth.primitive.size(), answers.label.size()) << cloud.source;
+    for (std::size_t i = 0; i < answers.label.size(); ++i) {
+      if (truth.primitive[i] >= 0) ++primitives[{truth.primitive[i], answers.label[i]}];
+      with_class += truth.object_class[i] >= 0 ? 1 : 0;
+    }
+  }
+  ASSERT_FALSE(primitives.empty());
+  for (const auto& [pair, count] : primitives)
+    EXPECT_EQ(evaluation().primitives.at(static_cast<std::size_t>(pair.first), static_cast<std::size_t>(pair.second)), count)
+        << pair.first << " taken for " << pair.second;
+  EXPECT_EQ(evaluation().objects.total(), with_class);
+}
+
+TEST(MapEvaluation, FindsMostOfAGeneratedCampus) {
+  const MapEvaluation& made = evaluation();
+  EXPECT_TRUE(made.has_instances);
+  EXPECT_GT(made.primitives.overallAccuracy(), 0.95);
+  EXPECT_GT(made.objects.overallAccuracy(), 0.9);
+  const auto tree = std::find_if(made.by_points.begin(), made.by_points.end(), [](const auto& s) { return s.name == "Tree"; });
+  ASSERT_NE(tree, made.by_points.end());
+  EXPECT_GT(tree->truth, 0U);
+  EXPECT_GT(tree->recall(), 0.5);
+  for (const auto* scores : {&made.by_points, &made.by_box})
+    for (const ObjectScore& score : *scores) {
+      EXPECT_LE(score.matched_truth, score.truth) << score.name;
+      EXPECT_LE(score.matched_answers, score.answers) << score.name;
+    }
+}
+
+TEST(MapEvaluation, DoesNotScoreGroundByObject) {
+  for (const ObjectScore& score : evaluation().by_points)
+    if (score.name == "Ground") EXPECT_EQ(score.truth, 0U);
+}
+
+TEST(MapEvaluation, ShowsADashWhereThereIsNoTruthAndNullInJson) {
+  MapEvaluation made{ConfusionMatrix({"scatter"}), ConfusionMatrix({"Tree", "Bush", "Vehicle"}), true, {}, {}};
+  made.primitives.add(0, 0);
+  made.objects.add(0, 0);
+  made.objects.add(0, 1);                              // a bush where there is none
+  made.by_points = {{"Tree", 1, 1, 1, 1}, {"Bush", 0, 1, 0, 0}, {"Vehicle", 0, 0, 0, 0}};
+  made.by_box = made.by_points;
+  const std::string text = toText(made);
+  EXPECT_NE(text.find("Bush                  0.000        -        -        -   0"), std::string::npos) << text;
+  EXPECT_NE(text.find("Bush                  0.000        -        -   0"), std::string::npos) << text;
+  const auto json = nlohmann::json::parse(toJson(made));
+  EXPECT_TRUE(json.at("objects_by_point").at("classes")[1].at("recall").is_null());
+  EXPECT_DOUBLE_EQ(json.at("objects_by_point").at("classes")[0].at("recall").get<double>(), 0.5);
+  EXPECT_TRUE(json.at("objects_by_point_set")[2].at("precision").is_null());
+}
+
+}  // namespace
+}  // namespace cluxel
