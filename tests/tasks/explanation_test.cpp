@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cluxel/base/diagnostic.hpp"
+#include "cluxel/reasoning/reason.hpp"
 #include "mapping/asking_rules.hpp"
 #include "tasks/campus_map_fixture.hpp"
 

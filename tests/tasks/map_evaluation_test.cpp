@@ -82,8 +82,10 @@ TEST(MapEvaluation, FindsMostOfAGeneratedCampus) {
 }
 
 TEST(MapEvaluation, DoesNotScoreGroundByObject) {
-  for (const ObjectScore& score : evaluation().by_points)
-    if (score.name == "Ground") EXPECT_EQ(score.truth, 0U);
+  for (const ObjectScore& score : evaluation().by_points) {
+    if (score.name != "Ground") continue;
+    EXPECT_EQ(score.truth, 0U);
+  }
 }
 
 TEST(MapEvaluation, ShowsADashWhereThereIsNoTruthAndNullInJson) {
