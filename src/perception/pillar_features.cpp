@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 #include "perception/feature_groups.hpp"
@@ -53,63 +54,100 @@ class Occupancy {
   std::vector<std::uint64_t> slices_;
 };
 
-/// Slices from `low` to `high`, as far as there are.
-std::uint64_t windowOf(int low, int high) {
-  if (high < 0 || low > 63) return 0;
-  const auto first = static_cast<unsigned>(std::max(low, 0)), last = static_cast<unsigned>(std::min(high, 63));
-  return (~std::uint64_t{0} >> (63U - last)) & (~std::uint64_t{0} << first);
-}
-
 /// Which of 8 directions a cell lies in, seen from the centre cell.
 int octantOf(int x, int y) {
   return static_cast<int>(std::lround(std::atan2(y, x) / (std::numbers::pi / 4) + 8)) % 8;
 }
 
-struct RingCell {
-  int x, y;
-  std::uint8_t octant;
+/// Eight cells at once; a comparison gives -1 where it holds.
+using Cells = std::int16_t __attribute__((vector_size(16)));
+constexpr int kWidth = 2 * kReach + 1;
+constexpr std::size_t kVectors = (kWidth * kWidth + 7) / 8;
+using Square = std::array<std::int16_t, 8 * kVectors>;   // row by row, filled up with zeros
+
+/// What belongs to the cells of the square around a cluxel: whether they lie around the core, and in which directions.
+struct SquareCells {
+  Square ring{}, octant{};
+  float count = 0;
+  SquareCells() {
+    for (int y = -kReach, i = 0; y <= kReach; ++y)
+      for (int x = -kReach; x <= kReach; ++x, ++i) {
+        if (std::max(std::abs(x), std::abs(y)) <= kCore) continue;
+        ring[static_cast<std::size_t>(i)] = -1;
+        octant[static_cast<std::size_t>(i)] = static_cast<std::int16_t>(1U << static_cast<unsigned>(octantOf(x, y)));
+        ++count;
+      }
+  }
 };
 
-/// The cells around the core.
-std::vector<RingCell> ringCells() {
-  std::vector<RingCell> cells;
-  for (int y = -kReach; y <= kReach; ++y)
-    for (int x = -kReach; x <= kReach; ++x)
-      if (std::max(std::abs(x), std::abs(y)) > kCore)
-        cells.push_back({x, y, static_cast<std::uint8_t>(1U << static_cast<unsigned>(octantOf(x, y)))});
-  return cells;
+/// Slices of a window around a cluxel's own: bit kFarHeight is its own slice.
+constexpr std::int16_t kLevel = 0x1f0, kAbove = 0x1e00, kBelow = 0x00f;
+static_assert(kLevel >> kFarHeight == 0b111 && kOwnHeight == 2 && (kLevel | kAbove | kBelow) == (1 << (2 * kFarHeight + 1)) - 1);
+
+/// The windows of the square around a place, cell by cell.
+Square windowsAround(const Occupancy& occupancy, int x, int y, int slice) {
+  Square windows{};
+  const int up = slice - kFarHeight;
+  std::size_t i = 0;
+  for (int v = y - kReach; v <= y + kReach; ++v)
+    for (int u = x - kReach; u <= x + kReach; ++u, ++i) {
+      const std::uint64_t slices = occupancy.at(u, v);
+      windows[i] = static_cast<std::int16_t>((up >= 0 ? slices >> static_cast<unsigned>(up) : slices << static_cast<unsigned>(-up)) &
+                                              (kLevel | kAbove | kBelow));
+    }
+  return windows;
+}
+
+Cells cellsAt(const Square& square, std::size_t vector) {
+  Cells eight;
+  std::memcpy(&eight, square.data() + 8 * vector, sizeof eight);
+  return eight;
+}
+
+/// Sums over the cells around the core.
+struct Around {
+  int level = 0, above = 0, below = 0;
+  unsigned octants = 0;
+};
+
+Around countAround(const Square& windows, const SquareCells& square) {
+  Cells level{}, above{}, below{}, octants{};
+  for (std::size_t v = 0; v < kVectors; ++v) {
+    const Cells cells = cellsAt(windows, v) & cellsAt(square.ring, v), none{};
+    const auto on_level = (cells & kLevel) != none, on_above = (cells & kAbove) != none, on_below = (cells & kBelow) != none;
+    level -= on_level;
+    above -= on_above;
+    below -= on_below;
+    octants |= on_level & cellsAt(square.octant, v);
+  }
+  Around sums;
+  for (std::size_t i = 0; i < 8; ++i) {
+    sums.level += level[i], sums.above += above[i], sums.below += below[i];
+    sums.octants |= static_cast<unsigned>(octants[i]);
+  }
+  return sums;
 }
 
 /// Counts of the surroundings at the height of one cluxel.
-void fillOne(const Occupancy& occupancy, const std::vector<RingCell>& around, const Eigen::Vector3f& center, std::span<float> out) {
-  const int x = Occupancy::cellOf(center.x()), y = Occupancy::cellOf(center.y()), z = occupancy.sliceOf(center.z());
-  const std::uint64_t level = windowOf(z - kOwnHeight, z + kOwnHeight), above = windowOf(z + kOwnHeight + 1, z + kFarHeight),
-                      below = windowOf(z - kFarHeight, z - kOwnHeight - 1), far = level | above | below;
-  std::uint64_t core = 0;
+void fillOne(const Occupancy& occupancy, const SquareCells& square, const Eigen::Vector3f& center, std::span<float> out) {
+  const int x = Occupancy::cellOf(center.x()), y = Occupancy::cellOf(center.y());
+  const Square windows = windowsAround(occupancy, x, y, occupancy.sliceOf(center.z()));
+  unsigned core = 0;
   int core_cells = 0;
-  for (int v = y - kCore; v <= y + kCore; ++v)
-    for (int u = x - kCore; u <= x + kCore; ++u) {
-      core |= occupancy.at(u, v);
-      core_cells += (occupancy.at(u, v) & level) != 0 ? 1 : 0;
+  for (int v = kReach - kCore; v <= kReach + kCore; ++v)
+    for (int u = kReach - kCore; u <= kReach + kCore; ++u) {
+      const auto window = static_cast<unsigned>(windows[static_cast<std::size_t>(v * kWidth + u)]);
+      core |= window;
+      core_cells += (window & kLevel) != 0 ? 1 : 0;
     }
-  int on_level = 0, on_above = 0, on_below = 0;
-  std::uint8_t octants = 0;
-  for (const auto& cell : around) {
-    const std::uint64_t slices = occupancy.at(x + cell.x, y + cell.y);
-    on_level += (slices & level) != 0 ? 1 : 0;
-    on_above += (slices & above) != 0 ? 1 : 0;
-    on_below += (slices & below) != 0 ? 1 : 0;
-    octants |= (slices & level) != 0 ? cell.octant : std::uint8_t{0};
-  }
-  const auto share = [&](int count) { return static_cast<float>(count) / static_cast<float>(around.size()); };
-  out[0] = static_cast<float>(std::popcount(core & far)) / static_cast<float>(2 * kFarHeight + 1);
+  const Around around = countAround(windows, square);
+  out[0] = static_cast<float>(std::popcount(core)) / static_cast<float>(2 * kFarHeight + 1);
   out[1] = static_cast<float>(core_cells);
-  out[2] = share(on_level);
-  out[3] = share(on_above);
-  out[4] = share(on_below);
-  out[5] = static_cast<float>(std::popcount(octants));
-  const auto opposite = static_cast<std::uint8_t>(octants & (octants >> 4U) & 0x0fU);
-  out[6] = static_cast<float>(std::popcount(opposite));
+  out[2] = static_cast<float>(around.level) / square.count;
+  out[3] = static_cast<float>(around.above) / square.count;
+  out[4] = static_cast<float>(around.below) / square.count;
+  out[5] = static_cast<float>(std::popcount(around.octants));
+  out[6] = static_cast<float>(std::popcount(around.octants & (around.octants >> 4U) & 0x0fU));
 }
 
 }  // namespace
@@ -122,9 +160,9 @@ std::vector<std::string> pillarColumns() {
 void fillPillarFeatures(const FeatureInput& input, std::size_t column, FeatureRows& rows) {
   const CluxelTile& own = input.own();
   const Occupancy occupancy(input.ring, *input.ground[kRingCentre]);
-  const auto around = ringCells();
+  const SquareCells square;
   for (std::size_t c = 0; c < own.size(); ++c)
-    fillOne(occupancy, around, own.own[c].mean, rows.row(c, column, kPillarColumns));
+    fillOne(occupancy, square, own.own[c].mean, rows.row(c, column, kPillarColumns));
 }
 
 }  // namespace cluxel
