@@ -156,11 +156,23 @@ class Trws {
       send(costs, share, x_to_earlier[e], x_pairs[e], x_to_later[e]);
   }
 
+  /// Edges to earlier nodes lie here and there: those that come next on the way back are called into the cache.
+  void prefetchBackward(std::uint32_t k) const {
+    constexpr std::uint32_t kAhead = 12;
+    if (k < kAhead) return;
+    const std::uint32_t e = x_at.backward[k - kAhead];
+    __builtin_prefetch(&x_pairs[e]);
+    __builtin_prefetch(&x_pairs[e].back());
+    __builtin_prefetch(&x_to_later[e]);
+    __builtin_prefetch(&x_to_earlier[e]);
+  }
+
   double sendBackward(std::uint32_t i, const Costs& costs) {
     const float share = treeShare(i);
     double bound = 0;
     for (std::uint32_t k = x_at.backward_begin[i]; k < x_at.backward_begin[i + 1]; ++k) {
       const std::uint32_t e = x_at.backward[k];
+      prefetchBackward(k);
       bound += static_cast<double>(send(costs, share, x_to_later[e], x_pairs[e], x_to_earlier[e]));
     }
     return bound;

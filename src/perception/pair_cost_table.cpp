@@ -38,7 +38,7 @@ float PairCostTable::factorOf(std::uint32_t degrees) const {
   return degrees < kCommonDegrees ? x_factor[degrees] : factorFor(x_model, shareOf(degrees));
 }
 
-void PairCostTable::placeFour(const float* features, std::size_t column, Places& places) const {
+inline void PairCostTable::placeFour(const float* features, std::size_t column, Places& places) const {
   const Floats value = loadFloats(features + column), middle = loadFloats(x_middle.data() + column);
   // A value that is not a number lies below nothing, and rises nowhere: it counts as the middle.
   const Numbers below = value < middle;

@@ -32,7 +32,7 @@ class PairCostTable {
     std::array<float, kMostColumns> rise;
   };
 
-  void placeFour(const float* features, std::size_t column, Places& places) const;
+  [[gnu::always_inline]] inline void placeFour(const float* features, std::size_t column, Places& places) const;
   float factorOf(std::uint32_t degrees) const;
 
   PairModel x_model;
