@@ -63,6 +63,12 @@ std::size_t rowsOfRasqal(librdf_world* world, librdf_model* model, const Questio
   librdf_query_results* results = librdf_model_query_execute(model, query);
   if (results == nullptr) _exit(1);
   std::size_t size = 0;
+  if (librdf_query_results_is_boolean(results)) {   // TSV has no form for it
+    librdf_query_results_get_boolean(results);
+    librdf_free_query_results(results);
+    librdf_free_query(query);
+    return 1;
+  }
   unsigned char* written = librdf_query_results_to_counted_string2(results, "tsv", nullptr, nullptr, nullptr, &size);
   if (written == nullptr) _exit(1);
   const std::size_t rows = lines({reinterpret_cast<char*>(written), size});

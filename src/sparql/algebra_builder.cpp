@@ -6,6 +6,7 @@
 
 #include "cluxel/base/diagnostic.hpp"
 #include "sparql/mentions.hpp"
+#include "sparql/source_text.hpp"
 
 namespace cluxel::sparql {
 namespace {
@@ -75,7 +76,7 @@ AlgebraQuery AlgebraBuilder::finish(NodePtr root, const Scope& scope) {
 }
 
 void AlgebraBuilder::fail(ast::SourceOffset at, std::string message, std::string hint) const {
-  throw InputError(locate(options_.source_name, text_, at), std::move(message), std::move(hint));
+  failAt(options_.source_name, text_, at, std::move(message), std::move(hint));
 }
 
 /// Planning compares parts with parts, and the algebra is as deep as a group is long.

@@ -116,7 +116,7 @@ void Planner::searchBySpace(const Expr& condition, const Node& child, Parts& par
   NodePtr values = makeNode(Node::Kind::Values, condition.at);
   values->slots = {search->slot};
   for (const TermId id : found) values->rows.push_back({id});
-  values->note = "R-tree, " + std::to_string(found.size()) + " of " + std::to_string(index->size()) + " boxes meet the filter's: ";
+  values->note = "R-tree, " + std::to_string(found.size()) + " of " + std::to_string(index->size()) + " boxes meet the filter's:";
   values->annotate();
   // Without any row the annotation would say that the variable is never bound.
   values->possible.add(search->slot);

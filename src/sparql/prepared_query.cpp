@@ -51,10 +51,11 @@ PreparedQuery::Impl::Impl(const QuadReader& quad_reader, std::string_view text, 
 }
 
 void PreparedQuery::Impl::setParameters(const std::vector<Binding>& bindings) {
-  for (const auto& [name, slot] : parameter_slots) {
-    const auto binding = std::find_if(bindings.begin(), bindings.end(), [&wanted = name](const Binding& b) { return b.first == wanted; });
-    if (binding == bindings.end()) throw Error(ExitCode::Usage, options.source_name + ": the parameter ?" + name + " has no value");
-    runtime->parameters[slot] = terms.intern(binding->second);
+  for (const auto& parameter : parameter_slots) {
+    const auto binding = std::find_if(bindings.begin(), bindings.end(), [&](const Binding& b) { return b.first == parameter.first; });
+    if (binding == bindings.end())
+      throw Error(ExitCode::Usage, options.source_name + ": the parameter ?" + parameter.first + " has no value");
+    runtime->parameters[parameter.second] = terms.intern(binding->second);
   }
 }
 

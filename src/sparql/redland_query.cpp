@@ -231,8 +231,7 @@ bool registerRedlandQueries(librdf_world_s* world) {
     return false;
   }
   const auto add = [world](const char* name, const char* uri) {
-    ::librdf_query_register_factory(world, name, reinterpret_cast<const unsigned char*>(uri),
-                                    reinterpret_cast<void (*)(librdf_query_factory*)>(fill));
+    registerQueryFactory(world, name, reinterpret_cast<const unsigned char*>(uri), fill);
   };
   add("cluxel", "https://w3id.org/cluxel/sparql11-query");
   add("sparql11", nullptr);

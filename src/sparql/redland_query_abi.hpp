@@ -70,6 +70,9 @@ struct Factory {
 static_assert(sizeof(void*) != 8 || sizeof(Factory) == 0xF8);
 
 extern "C" {
+/// librdf_query_register_factory with the factory's layout; one C function may not be declared with two types.
+void registerQueryFactory(librdf_world* world, const char* name, const unsigned char* uri,
+                          void (*fill)(Factory*)) asm("librdf_query_register_factory");
 void librdf_log_simple(librdf_world* world, int code, librdf_log_level level, librdf_log_facility facility, void* locator,
                        const char* message);
 Factory* librdf_get_query_factory(librdf_world* world, const char* name, librdf_uri* uri);

@@ -40,7 +40,7 @@ NodePtr AlgebraBuilder::answered(const ast::ServicePattern& service, const QuadR
   Runtime runtime(reader, terms, functions, dataset, algebra.slot_names.size(), algebra.exists_count);
   runtime.guard.start(options_.budget);
   NodePtr node = makeNode(Node::Kind::Values, at);
-  node->note = "SERVICE <" + service.endpoint.term().text + "> ";
+  node->note = "SERVICE <" + service.endpoint.term().text + ">";
   std::vector<Slot> theirs;
   for (ast::VariableIndex i = 0; i < variables_.size(); ++i) {
     const Slot slot = algebra.slot_of_variable[i];

@@ -92,12 +92,16 @@ void SourceText::fail(std::uint32_t offset, std::string message, std::string hin
 }
 
 void SourceText::failAtOriginal(std::size_t offset, std::string message, std::string hint) const {
+  failAt(file_, original_, offset, std::move(message), std::move(hint));
+}
+
+void failAt(const std::string& file, std::string_view text, std::size_t offset, std::string message, std::string hint) {
   constexpr std::size_t widest = 240;
   Diagnostic diagnostic;
-  diagnostic.location = locate(file_, original_, offset);
+  diagnostic.location = locate(file, text, offset);
   diagnostic.message = std::move(message);
   diagnostic.hint = std::move(hint);
-  const std::string_view line = lineOf(original_, diagnostic.location.line);
+  const std::string_view line = lineOf(text, diagnostic.location.line);
   const bool valid = character::firstInvalidByte(line) == std::string_view::npos;
   std::size_t cut = std::min(widest, line.size());
   while (cut < line.size() && (static_cast<unsigned char>(line[cut]) & 0xC0U) == 0x80U) --cut;

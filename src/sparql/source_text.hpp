@@ -34,6 +34,10 @@ class SourceText {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> jumps_;   ///< from here in decoded_ on: this in original_
 };
 
+/// Throws InputError with the place of a byte of `text` and its line, as far as it can be shown.
+[[noreturn]] void failAt(const std::string& file, std::string_view text, std::size_t offset, std::string message,
+                         std::string hint);
+
 /// Appends UTF-8.
 void appendCodePoint(std::string& text, std::uint32_t code_point);
 

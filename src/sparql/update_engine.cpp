@@ -7,6 +7,7 @@
 #include <random>
 
 #include "cluxel/sparql/parser.hpp"
+#include "sparql/source_text.hpp"
 #include "sparql/update_modify.hpp"
 
 namespace cluxel {
@@ -39,7 +40,7 @@ class UpdateRun {
   void perform(const ast::Modify& modify);
 
   [[noreturn]] void fail(const std::string& message, const std::string& hint = {}) const {
-    throw InputError(locate(options_.query.source_name, update_.text, operation_->at), message, hint);
+    failAt(options_.query.source_name, update_.text, operation_->at, message, hint);
   }
 
   /// The graph that text without a graph writes.

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <ctime>
+
 #include "cluxel/base/diagnostic.hpp"
 #include "sparql/store_fixture.hpp"
 
@@ -115,14 +117,14 @@ TEST(Guard, RefusesQueriesOfThousandsOfPartsAndPlansThoseBelowInTime) {
                            "{ ?s :next ?o# } UNION ", "VALUES ?v# { # } ", "{ SELECT ?s { ?s :next ?o } } ", "GRAPH ?g# { } "}) {
     const std::string end = std::string(part).ends_with("UNION ") ? "{ } }" : "}";
     EXPECT_THROW(store.ask("ASK { " + repeated(part, 50'000) + end), InputError) << part;
-    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t start = std::clock();   // the processor's time: machines are busy
     QueryOptions options;
     options.budget.deadline = std::chrono::milliseconds(200);
     try {
       store.ask("ASK { ?s :next ?o . " + repeated(part, 900) + end, options);
     } catch (const Error&) {   // the budget, or too many parts
     }
-    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5)) << part;
+    EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 5) << part;
   }
 }
 
