@@ -154,7 +154,10 @@ class XmlResults {
  private:
   void open(const Tag& tag) {
     open_ = tag;
-    if (tag.name == "variable") result_.table.variables.push_back(attribute(tag, "name"));
+    if (tag.name == "variable") {
+      if (result_.table.row_count > 0) walk_.fail("a variable announced behind a result");
+      result_.table.variables.push_back(attribute(tag, "name"));
+    }
     if (tag.name == "result") builder_.beginRow();
     if (tag.name == "binding") binding(attribute(tag, "name"));
   }

@@ -116,12 +116,12 @@ TEST(Guard, RefusesQueriesOfThousandsOfPartsAndPlansThoseBelowInTime) {
   for (const char* part : {"?s# :next ?s#x . ", "OPTIONAL { ?s :next ?o# } ", "BIND(# AS ?b#) ", "FILTER(?s != #) ", "MINUS { ?s :x # } ",
                            "{ ?s :next ?o# } UNION ", "VALUES ?v# { # } ", "{ SELECT ?s { ?s :next ?o } } ", "GRAPH ?g# { } "}) {
     const std::string end = std::string(part).ends_with("UNION ") ? "{ } }" : "}";
-    EXPECT_THROW(store.ask("ASK { " + repeated(part, 50'000) + end), InputError) << part;
+    EXPECT_THROW(store.ask("ASK { " + repeated(part, 10'000) + end), InputError) << part;
     const std::clock_t start = std::clock();   // the processor's time: machines are busy
     QueryOptions options;
     options.budget.deadline = std::chrono::milliseconds(200);
     try {
-      store.ask("ASK { ?s :next ?o . " + repeated(part, 900) + end, options);
+      store.ask("ASK { ?s :next ?o . " + repeated(part, 400) + end, options);
     } catch (const Error&) {   // the budget, or too many parts
     }
     EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 5) << part;

@@ -184,6 +184,12 @@ TEST(ResultsReader, RefusesDamagedAnswersWithoutCrashing) {
   }
 }
 
+TEST(ResultsReader, RefusesVariablesBehindTheFirstResult) {
+  const std::string text = "<sparql><head><variable name=\"x\"/></head><results><result/>"
+                           "<variable name=\"y\"/><variable name=\"z\"/><binding name=\"x\"><uri>u</uri></binding></results></sparql>";
+  EXPECT_THROW(readResults(text, ResultFormat::Xml), InputError);
+}
+
 TEST(ResultComparison, SeesThroughTheNamesOfBlankNodes) {
   const auto b = [](const std::string& label) { return std::optional<Term>(Term::blank(label)); };
   EXPECT_TRUE(test::isomorphic({{b("x"), b("y")}, {b("y"), b("z")}}, {{b("2"), b("3")}, {b("1"), b("2")}}));
