@@ -50,6 +50,8 @@ struct CompiledRegex {
 
   /// The number of groups that took part (0: no match).
   int match(std::string_view text, std::size_t from, std::uint32_t options = 0) const {
+    // The match at 0 has looked at all of the text; looking again for each replacement would be quadratic.
+    if (from > 0) options |= PCRE2_NO_UTF_CHECK;
     const int found = pcre2_match(code.get(), reinterpret_cast<PCRE2_SPTR>(text.data()), text.size(), from, options,
                                   data.get(), context.get());
     if (found == PCRE2_ERROR_MATCHLIMIT || found == PCRE2_ERROR_DEPTHLIMIT || found == PCRE2_ERROR_HEAPLIMIT ||
