@@ -57,8 +57,8 @@ class Reader {
 
   bool zone(std::int64_t& offset_s) {
     if (character('Z')) return rest_.empty();
-    const bool west = rest_.front() == '-';
-    rest_.remove_prefix(1);
+    const bool west = character('-');
+    if (!west && !character('+')) return false;
     int hours = 0;
     int minutes = 0;
     if (!twoDigits(hours) || !character(':') || !twoDigits(minutes) || !rest_.empty()) return false;
