@@ -12,7 +12,7 @@ namespace cluxel {
 /// Straight drives over true ground. What several scans see is in the copy several times, each time moved by the error of
 /// that scan's pose: a registration that is a little wrong makes slabs of walls and streaks of poles.
 struct VirtualDrive {
-  VirtualSensor sensor{.spacing_m = 60, .range_m = 45};   ///< drives start at most once per square of `spacing_m`
+  VirtualSensor sensor{.spacing_m = 60, .range_m = 45};   ///< a drive is half-way at most once per square of `spacing_m`
   int scans = 12;                      ///< of one drive
   double step_m = 0.9;                 ///< between scans
   double drift_forward_m = 0.0;        ///< of the pose per scan, along the drive
