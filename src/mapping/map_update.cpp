@@ -2,8 +2,6 @@
 // The update, then closure and SPARQL rules; the whole semantic layer only when rules ask the map.
 #include "cluxel/mapping/map_update.hpp"
 
-#include <algorithm>
-
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/knowledge/ontology.hpp"
 #include "mapping/map_state.hpp"
@@ -11,33 +9,11 @@
 #include "mapping/sparql_rules.hpp"
 
 namespace cluxel {
-
 namespace {
-
-bool asks(const Condition& condition) {
-  return condition.kind == Condition::Kind::Ask ||
-         std::any_of(condition.operands.begin(), condition.operands.end(), asks);
-}
-
-bool anyAsks(const std::vector<Condition>& conditions) { return std::any_of(conditions.begin(), conditions.end(), asks); }
-
-bool asks(const TreeNode& node) {
-  if (const auto* branch = std::get_if<BranchNode>(&node.what)) return asks(branch->condition);
-  if (const auto* find = std::get_if<FindNode>(&node.what)) return anyAsks(find->where);
-  const auto* accept = std::get_if<AcceptLeaf>(&node.what);
-  return accept != nullptr && std::any_of(accept->absorb.begin(), accept->absorb.end(),
-                                          [](const AbsorbSpec& absorb) { return anyAsks(absorb.when); });
-}
-
-bool asks(const Rule& rule) {
-  return anyAsks(rule.seed.where) || (rule.group && anyAsks(rule.group->limits)) ||
-         std::any_of(rule.nodes.begin(), rule.nodes.end(), [](const TreeNode& node) { return asks(node); });
-}
 
 void inferAnew(WriteTransaction& transaction, ProgressSink& sink) {
   const ParsedInputs parsed = parseInputs(storedInputs(transaction));
-  const auto& rules = parsed.rules.rules;
-  if (std::any_of(rules.begin(), rules.end(), [](const Rule& rule) { return asks(rule); })) {
+  if (parsed.rules.asks_map) {
     TileStages stages(parsed.model, parsed.inputs.params);
     stages.loadAll(transaction);
     writeSemanticLayer(transaction, parsed, stages, sink);

@@ -276,6 +276,7 @@ class ConditionReader {
   void readAsk(const YamlNode& value) {
     onlyWith({});
     condition_.kind = Condition::Kind::Ask;
+    reading_.asks_map = true;
     const auto text = readText(value, "a SPARQL ASK query", faults_);
     if (!text) return;
     for (const auto& [prefix, base] : reading_.prefixes) condition_.query += "PREFIX " + prefix + ": <" + base + ">\n";

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dijkstra from all trunks at once over the crown's cluxels.
+// Dijkstra by Boost.Graph from all trunks at once over the crown's cluxels.
 #include "reasoning/crown_parting.hpp"
 
 #include <algorithm>
+#include <boost/graph/dijkstra_shortest_paths_no_color_map.hpp>
+#include <boost/property_map/function_property_map.hpp>
 #include <cmath>
+#include <compare>
 #include <limits>
-#include <queue>
-#include <tuple>
 
 #include "reasoning/cluxel_grid.hpp"
 
@@ -50,29 +51,56 @@ class JumpGrid {
   std::vector<std::pair<Cell, std::size_t>> entries_;
 };
 
-class Parting {
+/// How far a cluxel is, and from which trunk: the nearer first, of equal ways that of the earlier source.
+struct Way {
+  double length = 0;
+  std::uint32_t source = 0;
+  auto operator<=>(const Way&) const = default;
+};
+constexpr Way kNoWay{kInfinity, kNoSource};
+
+Way onward(const Way& so_far, const Way& step) { return {so_far.length + step.length, step.source}; }
+
+/// The crown as an incidence graph for Boost.Graph: its places, and one vertex before them all from which the trunks' ways
+/// begin. Edges are made where the search stands, because their ends depend on the source of the way there: each trunk has
+/// its own clearance, reach and jumps.
+class CrownGraph {
  public:
-  Parting(const SceneCluxels& all, std::span<const std::uint32_t> crown, std::span<const CrownSource> sources)
+  struct Edge {
+    std::size_t from = 0, to = 0;
+    Way step;
+  };
+  using vertex_descriptor = std::size_t;
+  using edge_descriptor = Edge;
+  using out_edge_iterator = std::vector<Edge>::const_iterator;
+  using degree_size_type = std::size_t;
+  using directed_category = boost::directed_tag;
+  using edge_parallel_category = boost::allow_parallel_edge_tag;
+  using traversal_category = boost::incidence_graph_tag;
+
+  CrownGraph(const SceneCluxels& all, std::span<const std::uint32_t> crown, std::span<const CrownSource> sources)
       : all_(all), crown_(crown), sources_(sources), grid_(all, crown, longestJump(all, crown, sources)),
-        taken_(crown.size(), kNoSource), best_(crown.size(), {kInfinity, kNoSource}) {
+        best_(crown.size() + 1, kNoWay) {
     for (const CrownSource& source : sources) tops_.push_back(topOf(all, source.trunk));
+    best_[start()] = {};
   }
 
-  std::vector<std::uint32_t> run() {
-    for (std::uint32_t s = 0; s < sources_.size(); ++s) start(s);
-    while (!open_.empty()) {
-      const auto [length, source, at] = open_.top();
-      open_.pop();
-      if (taken_[at] != kNoSource) continue;
-      taken_[at] = source;
-      relaxFrom(crown_[at], length, source);
-    }
-    return taken_;
+  std::size_t start() const { return crown_.size(); }
+  /// Shortest way to each vertex so far, kept by the search.
+  std::vector<Way>& best() { return best_; }
+
+  /// Valid until the next call.
+  const std::vector<Edge>& edgesFrom(std::size_t at) const {
+    edges_.clear();
+    from_ = at;
+    if (at != start())
+      stepFrom(crown_[at], best_[at]);
+    else
+      for (std::uint32_t s = 0; s < sources_.size(); ++s) leave(s);
+    return edges_;
   }
 
  private:
-  using Way = std::tuple<double, std::uint32_t, std::size_t>;   // length, source, place in the crown
-
   /// Between centres: a jump is a gap between boxes.
   static double longestJump(const SceneCluxels& all, std::span<const std::uint32_t> crown,
                             std::span<const CrownSource> sources) {
@@ -87,7 +115,7 @@ class Parting {
   }
 
   /// Ways begin at the trunk's cluxels above the clearance; if there is none, at its highest ones.
-  void start(std::uint32_t s) {
+  void leave(std::uint32_t s) const {
     const CrownSource& source = sources_[s];
     std::vector<std::uint32_t> from;
     double highest = -kInfinity;
@@ -98,46 +126,47 @@ class Parting {
     if (from.empty())
       for (std::uint32_t cluxel : source.trunk)
         if (all_.center[cluxel].z() >= highest - kTop_m) from.push_back(cluxel);
-    for (std::uint32_t cluxel : from) relaxFrom(cluxel, 0, s);
+    for (std::uint32_t cluxel : from) stepFrom(cluxel, {0, s});
     if (source.start_m > source.jump_m) leapFrom(from, s);
   }
 
   /// From the trunk to crown cluxels beyond a jump.
-  void leapFrom(const std::vector<std::uint32_t>& from, std::uint32_t s) {
-    for (std::size_t at = 0; at < crown_.size(); ++at) {
-      if ((all_.center[crown_[at]].head<2>() - tops_[s]).norm() > sources_[s].reach_m) continue;
-      double shortest = std::numeric_limits<double>::infinity();
+  void leapFrom(const std::vector<std::uint32_t>& from, std::uint32_t s) const {
+    for (std::size_t to = 0; to < crown_.size(); ++to) {
+      if (isBeyond(to, s)) continue;
+      double shortest = kInfinity;
       for (std::uint32_t cluxel : from)
-        if (gapBetween(all_, cluxel, crown_[at]).gap() <= sources_[s].start_m)
-          shortest = std::min(shortest, (all_.center[crown_[at]] - all_.center[cluxel]).norm());
-      if (std::isfinite(shortest)) relax(at, kJumpPenalty * shortest, s);
+        if (gapBetween(all_, cluxel, crown_[to]).gap() <= sources_[s].start_m)
+          shortest = std::min(shortest, (all_.center[crown_[to]] - all_.center[cluxel]).norm());
+      if (std::isfinite(shortest)) addEdge(to, {kJumpPenalty * shortest, s});
     }
   }
 
-  void relaxFrom(std::uint32_t cluxel, double length, std::uint32_t s) {
+  /// Along the cluxel graph, and over gaps; not back to where the search has been.
+  void stepFrom(std::uint32_t cluxel, const Way& so_far) const {
     const Eigen::Vector3d& from = all_.center[cluxel];
     for (std::uint32_t neighbour : all_.neighbours(cluxel)) {
       const auto place = std::lower_bound(crown_.begin(), crown_.end(), neighbour);
       if (place == crown_.end() || *place != neighbour) continue;
-      relax(static_cast<std::size_t>(place - crown_.begin()), length + (all_.center[neighbour] - from).norm(), s);
+      const auto to = static_cast<std::size_t>(place - crown_.begin());
+      if (best_[to] > so_far) addEdge(to, {(all_.center[neighbour] - from).norm(), so_far.source});
     }
-    const double jump = sources_[s].jump_m;
-    grid_.near(from, [&](std::size_t at) {
-      if (taken_[at] != kNoSource || gapBetween(all_, cluxel, crown_[at]).gap() > jump) return;
-      relax(at, length + kJumpPenalty * (all_.center[crown_[at]] - from).norm(), s);
+    const double jump = sources_[so_far.source].jump_m;
+    grid_.near(from, [&](std::size_t to) {
+      if (best_[to] > so_far && gapBetween(all_, cluxel, crown_[to]).gap() <= jump)
+        addEdge(to, {kJumpPenalty * (all_.center[crown_[to]] - from).norm(), so_far.source});
     });
   }
 
-  void relax(std::size_t at, double length, std::uint32_t s) {
-    if (taken_[at] != kNoSource) return;
-    const CrownSource& source = sources_[s];
-    const std::uint32_t cluxel = crown_[at];
-    if (static_cast<double>(all_.height_above_ground[cluxel]) < source.clearance_m) return;
-    if ((all_.center[cluxel].head<2>() - tops_[s]).norm() > source.reach_m) return;
-    const std::pair<double, std::uint32_t> way{length, s};
-    if (way >= best_[at] || (source.may_take && !source.may_take(cluxel))) return;
-    best_[at] = way;
-    open_.emplace(length, s, at);
+  void addEdge(std::size_t to, const Way& step) const {
+    const CrownSource& source = sources_[step.source];
+    if (static_cast<double>(all_.height_above_ground[crown_[to]]) < source.clearance_m || isBeyond(to, step.source)) return;
+    if (source.may_take && !source.may_take(crown_[to])) return;
+    edges_.push_back({from_, to, step});
+  }
+
+  bool isBeyond(std::size_t to, std::uint32_t s) const {
+    return (all_.center[crown_[to]].head<2>() - tops_[s]).norm() > sources_[s].reach_m;
   }
 
   const SceneCluxels& all_;
@@ -145,10 +174,18 @@ class Parting {
   std::span<const CrownSource> sources_;
   JumpGrid grid_;
   std::vector<Eigen::Vector2d> tops_;
-  std::vector<std::uint32_t> taken_;
-  std::vector<std::pair<double, std::uint32_t>> best_;   ///< the shortest way in `open_`, and whose
-  std::priority_queue<Way, std::vector<Way>, std::greater<>> open_;
+  std::vector<Way> best_;
+  mutable std::vector<Edge> edges_;   ///< of the vertex from_
+  mutable std::size_t from_ = 0;
 };
+
+// What Boost.Graph asks of an incidence graph; found by argument-dependent look-up.
+std::size_t source(const CrownGraph::Edge& edge, const CrownGraph&) { return edge.from; }
+std::size_t target(const CrownGraph::Edge& edge, const CrownGraph&) { return edge.to; }
+std::pair<CrownGraph::out_edge_iterator, CrownGraph::out_edge_iterator> out_edges(std::size_t at, const CrownGraph& graph) {
+  const auto& edges = graph.edgesFrom(at);
+  return {edges.begin(), edges.end()};
+}
 
 }  // namespace
 
@@ -167,7 +204,15 @@ Eigen::Vector2d topOf(const SceneCluxels& all, std::span<const std::uint32_t> tr
 
 std::vector<std::uint32_t> partCrown(const SceneCluxels& all, std::span<const std::uint32_t> crown,
                                      std::span<const CrownSource> sources) {
-  return Parting(all, crown, sources).run();
+  CrownGraph graph(all, crown, sources);
+  const auto places = boost::typed_identity_property_map<std::size_t>();
+  boost::dijkstra_shortest_paths_no_color_map_no_init(
+      graph, graph.start(), boost::dummy_property_map(), boost::make_iterator_property_map(graph.best().begin(), places),
+      boost::make_function_property_map<CrownGraph::Edge, Way>([](const CrownGraph::Edge& edge) { return edge.step; }),
+      places, std::less<>(), onward, kNoWay, Way(), boost::dijkstra_visitor<>());
+  std::vector<std::uint32_t> taken;
+  for (std::size_t at = 0; at < crown.size(); ++at) taken.push_back(graph.best()[at].source);
+  return taken;
 }
 
 }  // namespace cluxel

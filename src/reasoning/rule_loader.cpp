@@ -140,6 +140,7 @@ LoadedRules load(const std::vector<std::string>& roots, const FindSource& findSo
     at.file = roots.empty() ? "" : roots.front();
     faults.error(at, "there are no rules in it");
   }
+  rules.asks_map = reading.asks_map;
   checkTogether(gathered, reading, rules, faults);
   rules.sources = std::move(gathered.sources);
   LoadedRules loaded;

@@ -25,6 +25,7 @@ struct RuleReading {
   FaultList& faults;
   std::map<std::string, std::string> prefixes = {};
   std::map<std::string, RuleConstant> constants = {};
+  bool asks_map = false;    ///< an `ask:` was read
 };
 
 /// The names that a condition may use, and the one it means when it gives none.

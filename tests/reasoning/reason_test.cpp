@@ -247,5 +247,28 @@ TEST(Asking, DecidesByTheOracleAndBindsThePrimitivesIri) {
   EXPECT_THROW(reason(built.scene, rules), Error);
 }
 
+TEST(Asking, IsKnownOfTheRulesWhereverItStands) {
+  const std::string ask = R"({ ask: "ASK { ?thing clx:near ?other }" })", gap = "{ gap_to: thing, op: \"<=\", value: 1 m }";
+  const auto asksMap = [](const std::string& test, const std::string& find, const std::string& absorb) {
+    return rulesOf("[clx:SmallObject]", R"(
+  - id: small_object/asked
+    class: clx:SmallObject
+    seed: { label: small_structure, as: thing }
+    tree:
+      not: )" + test + R"(
+      yes:
+        find: { as: other, label: scatter, where: [ )" + find + R"( ] }
+        found: { accept: { confidence: 0.5, absorb: { from: { label: scatter }, when: [ )" + absorb + R"( ], max_fraction_of_points: 0.5 } } }
+        missing: { reject: nothing beside it }
+      no: { reject: the map says so }
+)").asks_map;
+  };
+  const std::string tall = "{ attribute: height, op: \">=\", value: 1 m }";
+  EXPECT_FALSE(asksMap(tall, gap, gap));
+  EXPECT_TRUE(asksMap(ask, gap, gap));
+  EXPECT_TRUE(asksMap(tall, gap + ", " + ask, gap));
+  EXPECT_TRUE(asksMap(tall, gap, gap + ", " + ask));
+}
+
 }  // namespace
 }  // namespace cluxel::testing

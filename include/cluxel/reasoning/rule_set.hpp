@@ -135,6 +135,7 @@ struct RuleSet {
   std::map<std::string, std::string> prefixes;
   std::vector<std::string> order;      ///< class IRIs: who gets a primitive first
   std::vector<Rule> rules;             ///< in the order written
+  bool asks_map = false;               ///< a condition somewhere in it is an `ask:`
   std::vector<RuleSource> sources;
   ClassCatalogue catalogue;            ///< the classes it was checked against
   /// Hash of the sources' texts.
