@@ -52,7 +52,8 @@ ExitCode trainModel(const TrainOptions& options, Session& session) {
   const unsigned threads = session.threadCount();
   const auto places = readPlaces(sources, perception, copies, options.group_size, threads, session.console);
   const std::string name = options.name.empty() ? options.output.filename().string() : options.name;
-  const TrainingReport report = train(name, places, perception, {}, threads, session.console);
+  TrainingReport report = train(name, places, perception, {}, threads, session.console);
+  report.model.provenance.insert({{"command", commandText(options)}, {"data", options.data}, {"program", "cluxel " CLUXEL_VERSION}});
   fs::create_directories(options.output);
   saveModel(report.model, options.output / "model.json");
   writeFile(options.output / "README.md", modelCard(report, {name, commandText(options), options.data}));

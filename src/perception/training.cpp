@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "cluxel/base/content_hash.hpp"
 #include "cluxel/base/diagnostic.hpp"
 #include "perception/training_folds.hpp"
 
@@ -107,6 +108,26 @@ TrainingReport trainOn(const PlaceRefs& places, const PerceptionParams& percepti
   return report;
 }
 
+/// What the model is made of: the hash tells whether another training had the same features and truth.
+std::map<std::string, std::string> provenanceOf(std::span<const TrainingPlace> places) {
+  std::size_t measured = 0, cluxels = 0;
+  ContentHasher hasher;
+  for (const TrainingPlace& place : places) {
+    measured += place.only_for_training ? 0 : 1;
+    hasher.addText(place.name).add(place.group);
+    for (const auto& [key, tile] : place.features) {
+      cluxels += tile.size();
+      hasher.addText(toBytes(tile));
+    }
+    for (const auto& [key, counts] : place.truth)
+      for (const TruthCounts& of_labels : counts) hasher.addSpan(std::span<const TruthCounts::value_type>(of_labels));
+  }
+  return {{"places measured on when left out", std::to_string(measured)},
+          {"places that only help", std::to_string(places.size() - measured)},
+          {"cluxels", std::to_string(cluxels)},
+          {"features and truth", hasher.finish().hex()}};
+}
+
 PlaceRefs refsOf(std::span<const TrainingPlace> places) {
   PlaceRefs refs;
   for (const TrainingPlace& place : places) refs.push_back(&place);
@@ -125,6 +146,7 @@ TrainingReport train(const std::string& name, std::span<const TrainingPlace> pla
                      const TrainParams& params, unsigned threads, ProgressSink& sink) {
   TrainingReport report = trainOn(refsOf(places), perception, params, threads, sink);
   report.model.name = name;
+  report.model.provenance = provenanceOf(places);
   return report;
 }
 

@@ -37,6 +37,17 @@ TEST(Training, MakesTheSameModelWithOneAndTwoThreads) {
   EXPECT_EQ(modelText(one.model), modelText(two.model));
 }
 
+TEST(Training, SaysWhatTheModelWasMadeOf) {
+  const TrainParams params = made_up::quickTraining();
+  auto places = threePlaces();
+  const auto first = trained(places, params).model.provenance, again = trained(places, params).model.provenance;
+  EXPECT_EQ(first, again);
+  EXPECT_EQ(first.at("places measured on when left out"), "3");
+  EXPECT_EQ(first.at("places that only help"), "0");
+  std::swap(places[1].truth.begin()->second.front()[0], places[1].truth.begin()->second.front()[1]);
+  EXPECT_NE(trained(places, params).model.provenance.at("features and truth"), first.at("features and truth"));
+}
+
 TEST(Training, LeavesThePairwiseTermOutWhenToldTo) {
   TrainParams params = made_up::quickTraining();
   params.pairwise = false;
