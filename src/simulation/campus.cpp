@@ -59,6 +59,7 @@ Campus buildCampus(const CampusParams& params) {
   furnishStreet(site);
   furnishPaths(site);
   plantLawns(site);
+  layOutBorders(site);
   noteCrownsAbove(site);
   placeStops(site);
   return std::move(site).finish();

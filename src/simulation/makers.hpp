@@ -34,6 +34,16 @@ std::int32_t makeTree(CampusSite& site, const Eigen::Vector2d& place, const Tree
 std::int32_t makeBush(CampusSite& site, const Eigen::Vector2d& place, double radius, CampusRandom random);
 std::int32_t makeHedge(CampusSite& site, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                        CampusRandom random);
+/// Higher growth is neither bush nor tree: where one begins no two people agree.
+inline constexpr double kBushTop_m = 1.6;
+struct ThicketSpec {
+  double height_m = 2;
+  double half_depth_m = 0.8;
+};
+/// Shrubs that have grown into one another, deep and rough: a bush up to kBushTop_m, else leaves of no
+/// object.
+void makeThicket(CampusSite& site, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+                 const ThicketSpec& spec, CampusRandom random);
 
 /// `yaw_rad` is where the arm points.
 std::int32_t makeStraightLamp(CampusSite& site, const Eigen::Vector2d& place, CampusRandom random);
@@ -56,7 +66,12 @@ std::int32_t makeCar(CampusSite& site, const Eigen::Vector2d& place, double yaw_
 std::int32_t makeBin(CampusSite& site, const Eigen::Vector2d& place, CampusRandom random);
 std::int32_t makeBench(CampusSite& site, const Eigen::Vector2d& place, double yaw_rad, CampusRandom random);
 std::int32_t makeBollard(CampusSite& site, const Eigen::Vector2d& place, CampusRandom random);
+enum class FenceKind { Pickets, Bars, WireMesh, Boards, LowWall };
 std::int32_t makeFence(CampusSite& site, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+                       FenceKind kind, CampusRandom random);
+enum class CycleKind { Bicycle, Motorcycle };
+/// `yaw_rad` is where it looks.
+std::int32_t makeCycle(CampusSite& site, const Eigen::Vector2d& place, double yaw_rad, CycleKind kind,
                        CampusRandom random);
 std::int32_t makeHydrant(CampusSite& site, const Eigen::Vector2d& place, CampusRandom random);
 std::int32_t makePerson(CampusSite& site, const Eigen::Vector2d& place, CampusRandom random);
@@ -67,6 +82,7 @@ void plantAvenues(CampusSite& site);
 void furnishStreet(CampusSite& site);
 void furnishPaths(CampusSite& site);
 void plantLawns(CampusSite& site);
+void layOutBorders(CampusSite& site);
 
 /// Places of the trees on each side of the avenue along the west path: their y.
 std::vector<double> avenueRows(const SitePlan& plan);

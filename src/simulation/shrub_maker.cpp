@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bushes and hedges: leaves close to the skin of a low body that rests on the ground.
+// Bushes, hedges and thickets: leaves close to the skin of a body that rests on the ground.
 #include <algorithm>
 #include <cmath>
 
@@ -51,6 +51,39 @@ std::int32_t makeHedge(CampusSite& site, const Vector2d& from, const Vector2d& t
   }
   site.addSurface(std::move(leaves));
   return id;
+}
+
+namespace {
+
+/// Leaves in the outer half of an ellipsoid.
+void addLobe(CampusMesh& leaves, const Vector3d& middle, const Vector3d& radii, CampusRandom& random) {
+  const int count = static_cast<int>(420 * radii.squaredNorm() / 3 + 50);
+  for (int i = 0; i < count; ++i)
+    addLeaf(leaves, random,
+            middle + (0.5 + 0.5 * std::sqrt(random.uniform())) * radii.cwiseProduct(randomDirection(random)),
+            random.uniform(0.05, 0.12));
+}
+
+}  // namespace
+
+void makeThicket(CampusSite& site, const Vector2d& from, const Vector2d& to, const ThicketSpec& spec,
+                 CampusRandom random) {
+  const double length = (to - from).norm();
+  const Vector2d along = (to - from) / length, across{-along.y(), along.x()};
+  const bool bush = spec.height_m <= kBushTop_m;
+  const std::int32_t id =
+      bush ? site.addObject(ObjectClass::Bush, "thicket", site.onGround(0.5 * (from + to)), length / 2) : -1;
+  CampusMesh leaves =
+      surfaceOf(bush ? SurfaceLabel::HedgeTop : SurfaceLabel::Thicket, id, {.reflectivity = 0.5F});
+  const int lobes = 4 + static_cast<int>(1.5 * length * 2 * spec.half_depth_m * spec.height_m);
+  for (int lobe = 0; lobe < lobes; ++lobe) {
+    const Vector3d radii{random.uniform(0.3, 0.6), random.uniform(0.3, 0.6), random.uniform(0.25, 0.5)};
+    const double room = std::max(0.0, spec.half_depth_m - radii.y());
+    const Vector2d place = from + random.uniform(0, length) * along + random.uniform(-room, room) * across;
+    const double up = random.uniform(0.25, std::max(0.3, spec.height_m - radii.z()));
+    addLobe(leaves, site.onGround(place) + Vector3d{0, 0, up}, radii, random);
+  }
+  site.addSurface(std::move(leaves));
 }
 
 }  // namespace cluxel

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bins, benches, bollards, fences, hydrants and people.
+// Bins, benches, bollards, hydrants and people.
 #include <cmath>
 
 #include "simulation/makers.hpp"
@@ -60,32 +60,6 @@ std::int32_t makeBollard(CampusSite& site, const Vector2d& place, CampusRandom r
   CampusMesh bollard = surfaceOf(SurfaceLabel::Bollard, id, {.reflectivity = 0.6F});
   addTube(bollard, upright(foot, -0.1, random.uniform(0.85, 1.05), random.uniform(0.06, 0.1)));
   site.addSurface(std::move(bollard));
-  return id;
-}
-
-std::int32_t makeFence(CampusSite& site, const Vector2d& from, const Vector2d& to, CampusRandom random) {
-  const double length = (to - from).norm(), height = random.uniform(1.0, 1.5),
-               yaw = std::atan2(to.y() - from.y(), to.x() - from.x());
-  const std::int32_t id = enter(site, "fence", site.onGround(0.5 * (from + to)), length / 2);
-  CampusMesh fence = surfaceOf(SurfaceLabel::Fence, id, {.reflectivity = 0.5F});
-  constexpr double kSlat_m = 0.1, kPitch_m = 0.15, kPost_m = 2.0;
-  for (double s = kPitch_m / 2; s < length; s += kPitch_m) {
-    const Vector3d foot = site.onGround(from + (to - from) * (s / length));
-    addBox(fence, movedBy(standing(foot, yaw), {0, 0, 0.5 * height + 0.05}), {kSlat_m, 0.02, height - 0.1});
-  }
-  for (double s = 0; s <= length; s += kPost_m) {
-    const Vector3d foot = site.onGround(from + (to - from) * (s / length));
-    addBox(fence, movedBy(standing(foot, yaw), {0, -0.06, 0.5 * height}), {0.09, 0.09, height + 0.2});
-    const double next = std::min(s + kPost_m, length);
-    const Vector3d end = site.onGround(from + (to - from) * (next / length));
-    for (const double up : {0.25, height - 0.2})
-      addTube(fence, {.from = foot + Vector3d{0, 0, up},
-                      .to = end + Vector3d{0, 0, up},
-                      .radius_from = 0.03,
-                      .radius_to = 0.03,
-                      .sides = 4});
-  }
-  site.addSurface(std::move(fence));
   return id;
 }
 

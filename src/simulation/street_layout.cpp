@@ -77,7 +77,8 @@ class StreetLayout {
     for (int piece = random_.below(3); x < plan_.half_m(); ++piece) {
       const double end = x + random_.uniform(5, 9);
       const Vector2d from = at(x, -7.1), to = at(end, -7.1);
-      if (piece % 3 == 0 && site_.claimStrip(from, to, 0.3)) makeFence(site_, from, to, small());
+      if (piece % 3 == 0 && site_.claimStrip(from, to, 0.3))
+        makeFence(site_, from, to, FenceKind::Pickets, small());
       if (piece % 3 == 1 && site_.claimStrip(from, to, 0.35))
         makeHedge(site_, from, to, site_.stream(RandomUse::Shrub, 500 + next_++));
       x = end + random_.uniform(0.8, 1.6);

@@ -51,8 +51,11 @@ constexpr std::array kSurfaces{
     SurfaceInfo{L::Fence, "fence", VerticalPlane, "SmallObject", ""},
     SurfaceInfo{L::Hydrant, "hydrant", SmallStructure, "SmallObject", ""},
     SurfaceInfo{L::Person, "person", SmallStructure, "SmallObject", ""},
+    SurfaceInfo{L::Bicycle, "bicycle", SmallStructure, "SmallObject", ""},
+    SurfaceInfo{L::Motorcycle, "motorcycle", SmallStructure, "SmallObject", ""},
     SurfaceInfo{L::Wire, "wire", kNone, "", ""},
     SurfaceInfo{L::LeafClutter, "leaf_clutter", Scatter, "", ""},
+    SurfaceInfo{L::Thicket, "thicket", Scatter, "", ""},
 };
 
 std::array<SurfaceInfo, kSurfaces.size()> numbered() {

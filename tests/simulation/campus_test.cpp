@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "cluxel/base/diagnostic.hpp"
@@ -97,6 +99,72 @@ TEST(Campus, HasTheHardCasesOfThePaper) {
     EXPECT_GE(having(kSign, "two plates"), 1) << "seed " << params.seed;
     EXPECT_GE(having(kTree, "crown touches"), 4) << "seed " << params.seed;
   }
+}
+
+/// How often each kind of thing stands on the campus; fences by their trait.
+std::map<std::string, int> kindsOf(const Campus& campus) {
+  std::map<std::string, int> kinds;
+  for (const CampusObject& object : campus.objects)
+    ++kinds[object.kind == "fence" ? object.traits.at(0) : object.kind];
+  return kinds;
+}
+
+TEST(Campus, HasFencesOfEveryKindAndCyclesWherePeopleLeaveThem) {
+  CampusParams params;
+  std::map<std::string, int> of_all;
+  for (params.seed = 1; params.seed < 4; ++params.seed) {
+    auto kinds = kindsOf(buildCampus(params));
+    EXPECT_GE(kinds["bicycle"], 8) << "seed " << params.seed;
+    EXPECT_GE(kinds["motorcycle"], 1) << "seed " << params.seed;
+    for (const auto& [kind, count] : kinds) of_all[kind] += count;
+  }
+  for (const char* kind : {"pickets", "bars", "wire mesh", "boards", "low wall"})
+    EXPECT_GE(of_all[kind], 4) << kind;
+}
+
+TEST(Campus, FencesAreLowAndThinAndStandOnTheGround) {
+  const Campus campus = buildCampus(smallCampus(2));
+  int fences = 0;
+  for (const CampusMesh& mesh : campus.meshes) {
+    if (mesh.label != SurfaceLabel::Fence) continue;
+    double low = 1e9, high = -1e9;
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
+    for (const auto& vertex : mesh.vertices) {
+      const Vector3d p = vertex.cast<double>();
+      const double above = p.z() - campus.terrain.heightAt(p.x(), p.y());
+      low = std::min(low, above), high = std::max(high, above);
+      const Eigen::Vector2d plan = p.head<2>() - mesh.vertices[0].cast<double>().head<2>();
+      sum += plan, products += plan * plan.transpose();
+    }
+    const auto n = static_cast<double>(mesh.vertices.size());
+    const Eigen::Matrix2d spread = products / n - sum * sum.transpose() / (n * n);
+    const double thin = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread).eigenvalues()(0);
+    EXPECT_LT(low, 0.15);
+    EXPECT_GT(high, 0.5);
+    EXPECT_LT(high, 2.2);
+    EXPECT_LT(std::sqrt(std::max(0.0, thin)), 0.25) << "standard deviation across the fence [m]";
+    ++fences;
+  }
+  EXPECT_GE(fences, 5);
+}
+
+TEST(Campus, ThicketsAreLeavesOfNoObjectAndNoHigherThanTheyAreSaidToBe) {
+  int thickets = 0;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const Campus campus = buildCampus(smallCampus(seed));
+    for (const CampusMesh& mesh : campus.meshes) {
+      if (mesh.label != SurfaceLabel::Thicket) continue;
+      EXPECT_EQ(mesh.instance, -1);
+      double high = 0;
+      for (const auto& vertex : mesh.vertices)
+        high = std::max(high, vertex.z() - campus.terrain.heightAt(vertex.x(), vertex.y()));
+      EXPECT_GT(high, 1.2);
+      EXPECT_LT(high, 3.5);
+      ++thickets;
+    }
+  }
+  EXPECT_GE(thickets, 3);
 }
 
 /// A place as seen along the street, to which walls and cars are parallel.

@@ -49,8 +49,11 @@ enum class SurfaceLabel : std::uint32_t {
   Fence,
   Hydrant,
   Person,
+  Bicycle,
+  Motorcycle,
   Wire = 90,
   LeafClutter,
+  Thicket,
 };
 
 /// What a surface is in truth; what is absent is left out of training and scoring.
