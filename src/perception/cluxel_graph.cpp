@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <span>
 
 #include "perception/radix_order.hpp"
 #include "perception/vector_lanes.hpp"
@@ -76,6 +78,10 @@ class VolumeCells {
     return static_cast<std::uint64_t>(cell[0]) << 40U | static_cast<std::uint64_t>(cell[1]) << 20U |
            static_cast<std::uint64_t>(cell[2]);
   }
+  static Cell cellOf(std::uint64_t key) {
+    constexpr std::uint64_t kPart = (std::uint64_t{1} << 20U) - 1;
+    return {static_cast<std::int32_t>(key >> 40U), static_cast<std::int32_t>(key >> 20U & kPart), static_cast<std::int32_t>(key & kPart)};
+  }
 
  private:
   Eigen::Vector3f origin_;
@@ -103,46 +109,89 @@ Entries enterVolumes(const RingCluxels& cluxels) {
   return entries;
 }
 
-/// Whether the intersection of two volumes begins in this cell: their low corners' cells, axis by axis the later one.
-bool beginsHere(const Cell& a, const Cell& b, std::uint64_t key) {
-  return VolumeCells::keyOf({std::max(a[0], b[0]), std::max(a[1], b[1]), std::max(a[2], b[2])}) == key;
-}
-
 struct Pair {
   std::uint32_t a, b;
 };
 
-/// A volume in vectors; the last lanes let a pair through only when one of the two is near.
-struct Box {
-  Floats low, high;
+/// Pairs with room behind the last one.
+struct PairBuffer {
+  std::vector<Pair> pair;
+  std::size_t count = 0;
+  void makeRoom(std::size_t more) {
+    if (pair.size() < count + more) pair.resize(2 * (count + more));
+  }
+  std::span<const Pair> all() const { return {pair.data(), count}; }
 };
 
-std::vector<Box> boxesOf(const RingCluxels& cluxels) {
-  std::vector<Box> boxes;
-  boxes.reserve(cluxels.size());
-  for (std::size_t c = 0; c < cluxels.size(); ++c) {
-    const auto &low = cluxels.volume[c].low, &high = cluxels.volume[c].high;
-    const float near = cluxels.near[c] ? 1.0F : 0.0F;
-    boxes.push_back({Floats{low.x(), low.y(), low.z(), 1.0F - near}, Floats{high.x(), high.y(), high.z(), near}});
+/// The volumes entered into one cell, four to a vector, with marks: bits 0 to 2 say that a volume begins in this cell along
+/// x, y, z, bit 3 that its cluxel is near. The intersection of two volumes begins where, along each axis, one of them does;
+/// so a pair counts in this cell when together they have all marks.
+class CellVolumes {
+ public:
+  void fill(const RingCluxels& cluxels, const std::vector<Cell>& first_cell, std::span<const KeyedItem> entries) {
+    size_ = entries.size();
+    const std::size_t whole = (size_ + kLanes - 1) / kLanes * kLanes;
+    if (item_.size() < whole) resize(2 * whole);
+    const Cell here = VolumeCells::cellOf(entries.front().key);
+    for (std::size_t i = 0; i < size_; ++i) {
+      const std::uint32_t c = item_[i] = entries[i].item;
+      std::int32_t mark = cluxels.near[c] ? 8 : 0;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        low_[axis][i] = cluxels.volume[c].low[static_cast<int>(axis)];
+        high_[axis][i] = cluxels.volume[c].high[static_cast<int>(axis)];
+        mark |= first_cell[c][axis] == here[axis] ? 1 << axis : 0;
+      }
+      mark_[i] = mark;
+    }
+    for (std::size_t i = size_; i < whole; ++i) low_[0][i] = std::numeric_limits<float>::infinity();   // meets nothing
   }
-  return boxes;
-}
 
-bool meet(const Box& a, const Box& b) { return allHold((a.low <= b.high) & (b.low <= a.high)); }
+  void appendPairs(PairBuffer& pairs) const {
+    pairs.makeRoom(size_ * size_ / 2 + kLanes);
+    for (std::size_t i = 0; i + 1 < size_; ++i)
+      for (std::size_t j = (i + 1) / kLanes * kLanes; j < size_; j += kLanes) {
+        const unsigned later = j > i ? 0xfU : 0xfU << (i + 1 - j) & 0xfU;
+        const unsigned meets = lanesThatHold(meetFour(i, j)) & later;
+        for (unsigned lane = 0; lane < kLanes; ++lane) {   // written first, counted if they meet
+          pairs.pair[pairs.count] = {item_[i], item_[j + lane]};
+          pairs.count += meets >> lane & 1U;
+        }
+      }
+  }
 
-std::vector<Pair> intersectingPairs(const RingCluxels& cluxels, const Entries& entries) {
-  std::vector<Pair> pairs;
-  pairs.reserve(8 * cluxels.size());
-  const auto boxes = boxesOf(cluxels);
+ private:
+  Numbers meetFour(std::size_t i, std::size_t j) const {
+    constexpr std::int32_t kAllMarks = 15;
+    Numbers marks;
+    std::memcpy(&marks, mark_.data() + j, sizeof marks);
+    Numbers holds = (marks | mark_[i]) == kAllMarks;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      holds &= (loadFloats(low_[axis].data() + j) <= high_[axis][i]) & (loadFloats(high_[axis].data() + j) >= low_[axis][i]);
+    return holds;
+  }
+  void resize(std::size_t size) {
+    item_.resize(size);
+    mark_.resize(size);
+    for (auto* values : {&low_, &high_})
+      for (auto& along : *values) along.resize(size);
+  }
+
+  std::size_t size_ = 0;
+  std::vector<std::uint32_t> item_;
+  std::vector<std::int32_t> mark_;
+  std::array<std::vector<float>, 3> low_, high_;
+};
+
+PairBuffer intersectingPairs(const RingCluxels& cluxels, const Entries& entries) {
+  PairBuffer pairs;
+  pairs.makeRoom(5 * cluxels.size());
+  CellVolumes cell;
   const auto& entry = entries.entry;
   for (std::size_t begin = 0, end = 0; begin < entry.size(); begin = end) {
     for (end = begin + 1; end < entry.size() && entry[end].key == entry[begin].key;) ++end;
-    for (std::size_t i = begin; i < end; ++i)
-      for (std::size_t j = i + 1; j < end; ++j) {
-        const std::uint32_t a = entry[i].item, b = entry[j].item;
-        if (!meet(boxes[a], boxes[b])) continue;
-        if (beginsHere(entries.first_cell[a], entries.first_cell[b], entry[begin].key)) pairs.push_back({a, b});
-      }
+    if (end == begin + 1) continue;
+    cell.fill(cluxels, entries.first_cell, {entry.data() + begin, end - begin});
+    cell.appendPairs(pairs);
   }
   return pairs;
 }
@@ -176,24 +225,41 @@ RingCluxels gatherCluxels(const Ring<CluxelTile>& ring) {
   return cluxels;
 }
 
-RingGraph intersectionGraph(const RingCluxels& cluxels) {
+namespace {
+
+/// Both directions of all pairs in CSR form: `offset` and, in no order, `target`.
+RingGraph bothWays(std::span<const Pair> pairs, std::size_t cluxels) {
   RingGraph graph;
-  graph.offset.assign(cluxels.size() + 1, 0);
-  if (cluxels.size() == 0) return graph;
-  const auto pairs = intersectingPairs(cluxels, enterVolumes(cluxels));
+  graph.offset.assign(cluxels + 1, 0);
   for (const auto& [a, b] : pairs) {
-    graph.offset[a + 1] += cluxels.near[a];
-    graph.offset[b + 1] += cluxels.near[b];
+    ++graph.offset[a + 1];
+    ++graph.offset[b + 1];
   }
-  for (std::size_t c = 0; c < cluxels.size(); ++c) graph.offset[c + 1] += graph.offset[c];
+  for (std::size_t c = 0; c < cluxels; ++c) graph.offset[c + 1] += graph.offset[c];
   graph.target.resize(graph.offset.back());
   auto next = graph.offset;
   for (const auto& [a, b] : pairs) {
-    if (cluxels.near[a]) graph.target[next[a]++] = b;
-    if (cluxels.near[b]) graph.target[next[b]++] = a;
+    graph.target[next[a]++] = b;
+    graph.target[next[b]++] = a;
   }
-  for (std::size_t c = 0; c < cluxels.size(); ++c)
-    std::sort(graph.target.begin() + graph.offset[c], graph.target.begin() + graph.offset[c + 1]);
+  return graph;
+}
+
+}  // namespace
+
+RingGraph intersectionGraph(const RingCluxels& cluxels) {
+  const auto size = static_cast<std::uint32_t>(cluxels.size());
+  if (size == 0) return {{0}, {}};
+  const RingGraph any_order = bothWays(intersectingPairs(cluxels, enterVolumes(cluxels)).all(), size);
+  RingGraph graph;
+  graph.offset.assign(size + 1, 0);
+  for (std::uint32_t c = 0; c < size; ++c)
+    graph.offset[c + 1] = graph.offset[c] + (cluxels.near[c] ? static_cast<std::uint32_t>(any_order.neighbours(c).size()) : 0);
+  graph.target.resize(graph.offset.back());
+  auto next = graph.offset;
+  for (std::uint32_t target = 0; target < size; ++target)   // ascending, so each cluxel's targets come in order
+    for (const std::uint32_t c : any_order.neighbours(target))
+      if (cluxels.near[c]) graph.target[next[c]++] = target;
   return graph;
 }
 

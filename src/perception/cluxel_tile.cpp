@@ -40,7 +40,7 @@ void assignPoints(const PointGrid& grid, float radius_m, CluxelTile& tile) {
   std::array<std::pair<std::size_t, std::size_t>, 5> runs;
   for (std::size_t cell = 0; cell < grid.cells(); ++cell) {
     seeds.before[cell] = static_cast<std::uint32_t>(seeds.x.size());
-    walk.moveTo(grid.cell_key[cell]);
+    walk.moveTo<NeighbourWalk::kEarlier>(grid.cell_key[cell]);
     for (std::size_t k = 0; k < runs.size(); ++k)
       runs[k] = {seeds.before[std::min(walk.first(k), cell)], seeds.before[std::min(walk.last(k), cell)]};
     for (std::uint32_t i = grid.cell_start[cell]; i < grid.cell_start[cell + 1]; ++i) {

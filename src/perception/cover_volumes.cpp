@@ -9,6 +9,7 @@
 
 #include "perception/moments.hpp"
 #include "perception/radix_order.hpp"
+#include "perception/vector_lanes.hpp"
 
 namespace cluxel {
 namespace {
@@ -23,31 +24,50 @@ struct NearPoints {
     count = 0;
     for (std::size_t k = 0; k < 9; ++k) {
       const std::uint32_t first = grid.cell_start[walk.first(k)], last = grid.cell_start[walk.last(k)];
-      if (count + (last - first) > point.size()) resize(2 * (count + last - first));
-      for (std::uint32_t i = first; i < last; ++i) {
-        const float dx = grid.x[i] - seed.x(), dy = grid.y[i] - seed.y(), dz = grid.z[i] - seed.z();
-        const float distance = dx * dx + dy * dy + dz * dz;
-        point[count] = i;
-        squared[count] = distance;
-        count += distance <= reach_squared ? 1U : 0U;
-      }
+      if (count + (last - first) + kLanes > point.size()) resize(2 * (count + last - first + kLanes));
+      for (std::uint32_t i = first; i < last; i += kLanes) addFour(grid, i, last - i, seed, reach_squared);
     }
   }
 
+  /// Drops the points beyond a shorter reach.
+  void keepWithin(float reach_squared) {
+    std::size_t kept = 0;
+    for (std::size_t n = 0; n < count; ++n) {
+      point[kept] = point[n];
+      squared[kept] = squared[n];
+      kept += squared[n] <= reach_squared ? 1U : 0U;
+    }
+    count = kept;
+  }
+
  private:
+  /// Takes those of the points i to i + 3 that are near and among the first `left`: written first, counted if so.
+  [[gnu::always_inline]] void addFour(const PointGrid& grid, std::uint32_t i, std::uint32_t left, const Eigen::Vector3f& seed,
+                                      float reach_squared) {
+    const Floats dx = loadFloats(grid.x.data() + i) - seed.x(), dy = loadFloats(grid.y.data() + i) - seed.y(),
+                 dz = loadFloats(grid.z.data() + i) - seed.z();
+    const Floats distance = dx * dx + dy * dy + dz * dz;
+    const unsigned near = lanesThatHold(distance <= reach_squared) & (left < kLanes ? (1U << left) - 1U : ~0U);
+    if (near == 0) return;
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+      point[count] = i + lane;
+      squared[count] = distance[lane];
+      count += near >> lane & 1U;
+    }
+  }
+
   void resize(std::size_t size) {
     point.resize(size);
     squared.resize(size);
   }
 };
 
-/// Box and moments over the collected points that lie within the reach.
+/// Box and moments over the collected points.
 void fillVolume(const PointGrid& grid, const NearPoints& near, float reach_squared, const Eigen::Vector3f& seed,
                 std::size_t cluxel, CluxelTile& tile) {
   MomentSum sum;
   Eigen::Vector3f low = seed, high = seed;
   for (std::size_t n = 0; n < near.count; ++n) {
-    if (near.squared[n] > reach_squared) continue;
     const std::uint32_t i = near.point[n];
     const Eigen::Vector3f p(grid.x[i], grid.y[i], grid.z[i]);
     sum.add(p.x() - seed.x(), p.y() - seed.y(), p.z() - seed.z());
@@ -125,7 +145,9 @@ void measureGrown(const PointGrid& grid, const TilePoints& points, const CellKey
     const std::uint32_t c = order[n].item;
     const Eigen::Vector3f seed = points.at(tile.seed[c]);
     near.collect(grid, walk, seed, squares.largest);
-    fillVolume(grid, near, grownReach(near, wanted, squares.radius, squares.largest, scratch), seed, c, tile);
+    const float reach_squared = grownReach(near, wanted, squares.radius, squares.largest, scratch);
+    near.keepWithin(reach_squared);
+    fillVolume(grid, near, reach_squared, seed, c, tile);
   }
 }
 

@@ -42,4 +42,27 @@ Covariance covarianceOf(const MomentSum& sum);
 std::array<EigenShape, 4> shapesOf(std::span<const Covariance> covariances);
 inline EigenShape shapeOf(const Covariance& covariance) { return shapesOf({&covariance, 1})[0]; }
 
+/// Collects sets until four can be solved together; `keep(number, shape)` receives them in the order they came.
+class FourShapes {
+ public:
+  template <typename Keep>
+  void add(std::size_t number, const Covariance& covariance, const Keep& keep) {
+    covariance_[count_] = covariance;
+    number_[count_++] = number;
+    if (count_ == covariance_.size()) finish(keep);
+  }
+  /// Solves what is left.
+  template <typename Keep>
+  void finish(const Keep& keep) {
+    const auto shapes = shapesOf({covariance_.data(), count_});
+    for (std::size_t i = 0; i < count_; ++i) keep(number_[i], shapes[i]);
+    count_ = 0;
+  }
+
+ private:
+  std::array<Covariance, 4> covariance_{};
+  std::array<std::size_t, 4> number_{};
+  std::size_t count_ = 0;
+};
+
 }  // namespace cluxel

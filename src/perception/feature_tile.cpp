@@ -29,21 +29,11 @@ constexpr std::array<FurtherGroup, 4> kFurtherGroups{{{&FeatureParams::wide_shap
 /// Shapes of the balls of own cluxels and of those that edges lead to.
 std::vector<EigenShape> ballShapes(const Ring<CluxelTile>& ring, const RingCluxels& cluxels) {
   std::vector<EigenShape> shapes(cluxels.size());
-  std::array<Covariance, 4> some;
-  std::array<std::size_t, 4> whose{};
-  std::size_t count = 0;
-  const auto solve = [&] {
-    const auto found = shapesOf({some.data(), count});
-    for (std::size_t i = 0; i < count; ++i) shapes[whose[i]] = found[i];
-    count = 0;
-  };
-  for (std::size_t c = 0; c < shapes.size(); ++c) {
-    if (!cluxels.near[c]) continue;
-    some[count] = covarianceOf(ring[cluxels.name[c].ring]->ball[cluxels.name[c].index]);
-    whose[count++] = c;
-    if (count == some.size()) solve();
-  }
-  solve();
+  const auto keep = [&](std::size_t c, const EigenShape& shape) { shapes[c] = shape; };
+  FourShapes four;
+  for (std::size_t c = 0; c < shapes.size(); ++c)
+    if (cluxels.near[c]) four.add(c, covarianceOf(ring[cluxels.name[c].ring]->ball[cluxels.name[c].index]), keep);
+  four.finish(keep);
   return shapes;
 }
 

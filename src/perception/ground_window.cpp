@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "perception/vector_lanes.hpp"
+
 namespace cluxel {
 namespace {
 
@@ -16,34 +18,77 @@ constexpr int kSunkenReach = 6;
 constexpr int kSunkenSupport = 12;
 constexpr int kSupportReach = 3;
 
-/// What a cell some cells away may differ in height: the step and the rise over the distance.
-class Allowance {
+/// Heights with a margin, not a number where unknown, so that no comparison holds there: rows can be read whole.
+class PaddedHeights {
  public:
-  Allowance(double rise, double step_m) {
-    for (int y = 0; y <= kSunkenReach; ++y)
-      for (int x = 0; x <= kSunkenReach; ++x) value_[index(x, y)] = static_cast<float>(step_m + rise * std::sqrt(x * x + y * y));
+  explicit PaddedHeights(const HeightWindow& window)
+      : width_(static_cast<std::size_t>(window.side) + 2 * kSunkenReach + kLanes),
+        height_(width_ * (static_cast<std::size_t>(window.side) + 2 * kSunkenReach), std::numeric_limits<float>::quiet_NaN()) {
+    for (int y = 0; y < window.side; ++y)
+      for (int x = 0; x < window.side; ++x)
+        if (const std::size_t cell = window.at(x, y); window.known[cell]) height_[place(x, y)] = window.height[cell];
   }
-  float operator()(int x, int y) const { return value_[index(std::abs(x), std::abs(y))]; }
+  /// From the cell `reach` to the left.
+  const float* row(int x, int y, int reach) const { return height_.data() + place(x - reach, y); }
 
  private:
-  static std::size_t index(int x, int y) { return static_cast<std::size_t>(y * (kSunkenReach + 1) + x); }
-  std::array<float, (kSunkenReach + 1) * (kSunkenReach + 1)> value_{};
+  std::size_t place(int x, int y) const {
+    return static_cast<std::size_t>(y + kSunkenReach) * width_ + static_cast<std::size_t>(x + kSunkenReach);
+  }
+  std::size_t width_;
+  std::vector<float> height_;
 };
 
-/// Whether few known cells close by lie on a level with the cell while many around lie above its cone.
-bool isSunken(const HeightWindow& window, int x, int y, const Allowance& allowance) {
-  const float here = window.height[window.at(x, y)];
-  int level = 0, above = 0;
-  const auto visit = [&](int reach, const auto& look) {
-    for (int v = std::max(0, y - reach); v <= std::min(window.side - 1, y + reach); ++v)
-      for (int u = std::max(0, x - reach); u <= std::min(window.side - 1, x + reach); ++u)
-        if (window.known[window.at(u, v)]) look(window.height[window.at(u, v)] - here, allowance(u - x, v - y));
-  };
-  visit(kSupportReach, [&](float difference, float allowed) { level += std::abs(difference) <= allowed ? 1 : 0; });
-  if (level > kSunkenSupport) return false;   // the cell itself was counted, too
-  visit(kSunkenReach, [&](float difference, float allowed) { above += difference > allowed ? 1 : 0; });
-  return above >= 4 * level;
-}
+/// What cells at most `reach` away may differ in height from one: the step and the rise over the distance. Rows are filled
+/// up to whole vectors.
+template <int reach>
+class Allowance {
+ public:
+  static constexpr std::size_t kVectors = (2 * reach + kLanes) / kLanes;
+
+  Allowance(double rise, double step_m, float beyond) {
+    for (auto& row : value_) row.fill(beyond);
+    for (int y = -reach; y <= reach; ++y)
+      for (int x = -reach; x <= reach; ++x)
+        value_[static_cast<std::size_t>(y + reach)][static_cast<std::size_t>(x + reach)] =
+            static_cast<float>(step_m + rise * std::sqrt(x * x + y * y));
+  }
+  /// In how many cells around a known one `holds(difference, allowed)`.
+  template <typename Holds>
+  int count(const PaddedHeights& heights, int x, int y, float here, const Holds& holds) const {
+    Numbers sum{};
+    for (int v = -reach; v <= reach; ++v) {
+      const float* row = heights.row(x, y + v, reach);
+      const float* allowed = value_[static_cast<std::size_t>(v + reach)].data();
+      for (std::size_t i = 0; i < kVectors; ++i) sum -= holds(loadFloats(row + i * kLanes) - here, loadFloats(allowed + i * kLanes));
+    }
+    return sum[0] + sum[1] + sum[2] + sum[3];
+  }
+
+ private:
+  std::array<std::array<float, kVectors * kLanes>, 2 * reach + 1> value_;
+};
+
+/// Finds cells with few known ones close by on a level with them while many around lie above their cone.
+class SunkenTest {
+ public:
+  SunkenTest(const HeightWindow& window, double rise, double step_m)
+      : heights_(window), close_(rise, step_m, -1.0F), around_(rise, step_m, std::numeric_limits<float>::infinity()) {}
+  bool operator()(int x, int y, float here) const {
+    const int level = close_.count(heights_, x, y, here, [](const Floats& difference, const Floats& allowed) {
+      return (difference <= allowed) & (-difference <= allowed);
+    });
+    if (level > kSunkenSupport) return false;   // the cell itself was counted, too
+    const int above = around_.count(heights_, x, y, here,
+                                    [](const Floats& difference, const Floats& allowed) { return difference > allowed; });
+    return above >= 4 * level;
+  }
+
+ private:
+  PaddedHeights heights_;
+  Allowance<kSupportReach> close_;
+  Allowance<kSunkenReach> around_;
+};
 
 /// The highest known cell at most `reach` cells away along each axis; lower than all where there is none.
 std::vector<float> highestAround(const HeightWindow& window, int reach) {
@@ -108,12 +153,14 @@ Level coarser(const Level& fine) {
 
 /// Gives cells without weight the value of the coarser level at their place.
 void fillFrom(const Level& coarse, Level& fine) {
+  std::vector<double> mean(coarse.sum.size());
+  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = coarse.sum[i] / coarse.weight[i];
   std::size_t cell = 0;
   for (int y = 0; y < fine.side; ++y)
     for (int x = 0; x < fine.side; ++x, ++cell) {
       if (fine.weight[cell] > 0) continue;
       const int u = x / 2, v = y / 2, du = x % 2 == 0 ? -1 : 1, dv = y % 2 == 0 ? -1 : 1;
-      const auto value = [&](int a, int b) { return coarse.sum[coarse.at(a, b)] / coarse.weight[coarse.at(a, b)]; };
+      const auto value = [&](int a, int b) { return mean[coarse.at(a, b)]; };
       fine.sum[cell] = 0.5625 * value(u, v) + 0.1875 * (value(u + du, v) + value(u, v + dv)) + 0.0625 * value(u + du, v + dv);
       fine.weight[cell] = 1.0;
     }
@@ -122,16 +169,16 @@ void fillFrom(const Level& coarse, Level& fine) {
 }  // namespace
 
 void dropSunkenCells(HeightWindow& window, double cell_m, double steepest, double step_m) {
-  const Allowance allowance(steepest * cell_m, step_m);
+  const double rise = steepest * cell_m;
+  const auto next_allowed = static_cast<float>(step_m + rise);
+  const SunkenTest is_sunken(window, rise, step_m);
   const auto highest = highestAround(window, 2);
-  std::vector<std::size_t> sunken;
   for (int y = 0; y < window.side; ++y)
     for (int x = 0; x < window.side; ++x) {
       const std::size_t cell = window.at(x, y);
-      if (!window.known[cell] || highest[cell] <= window.height[cell] + allowance(1, 0)) continue;
-      if (isSunken(window, x, y, allowance)) sunken.push_back(cell);
+      if (!window.known[cell] || highest[cell] <= window.height[cell] + next_allowed) continue;
+      if (is_sunken(x, y, window.height[cell])) window.known[cell] = 0;
     }
-  for (const auto cell : sunken) window.known[cell] = 0;
 }
 
 void dropRaisedCells(HeightWindow& window, double cell_m, double steepest, double step_m) {
@@ -157,7 +204,7 @@ std::vector<float> filled(const HeightWindow& window) {
   while (levels.back().side > 1) levels.push_back(coarser(levels.back()));
   for (std::size_t i = levels.size() - 1; i-- > 0;) fillFrom(levels[i + 1], levels[i]);
   std::vector<float> height(window.size());
-  for (std::size_t i = 0; i < height.size(); ++i) height[i] = static_cast<float>(levels[0].sum[i] / levels[0].weight[i]);
+  for (std::size_t i = 0; i < height.size(); ++i) height[i] = static_cast<float>(levels[0].sum[i]);   // of weight 1, all
   return height;
 }
 

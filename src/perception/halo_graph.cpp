@@ -74,8 +74,10 @@ HaloGraph haloGraph(const Ring<FeatureTile>& ring, double halo_m) {
       if (j == kOutside || j <= i) continue;
       graph.edges.push_back({{i, j}, r, e, degreeOf(tile, index) + degreeOf(*ring[at], target.index)});
     }
-    std::sort(graph.edges.begin() + static_cast<std::ptrdiff_t>(first), graph.edges.end(),
-              [](const HaloEdge& a, const HaloEdge& b) { return a.ends < b.ends; });
+    // Targets come sorted by ring place and number, and so do the nodes: seen from the centre the ring keeps its order.
+    const auto begin = graph.edges.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto by_ends = [](const HaloEdge& a, const HaloEdge& b) { return a.ends < b.ends; };
+    if (!std::is_sorted(begin, graph.edges.end(), by_ends)) std::sort(begin, graph.edges.end(), by_ends);
   }
   return graph;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "perception/feature_groups.hpp"
 
@@ -11,21 +12,12 @@ namespace {
 
 /// Several columns taken together: occupied slices above a common base.
 struct Profile {
-  float low = 0, high = 0;
-  std::int32_t base = 0;
-  std::uint64_t slices = 0;
+  static constexpr std::int32_t kNoBase = std::int32_t{1} << 30;
+  float low = std::numeric_limits<float>::infinity(), high = -std::numeric_limits<float>::infinity();
+  std::int32_t base = kNoBase;
   std::uint32_t columns = 0;       ///< occupied ones
+  std::uint64_t slices = 0;
 };
-
-/// The column at a place relative to the centre tile, which may lie in the ring; null where nothing is.
-const Column* columnAt(const Ring<CluxelTile>& ring, int x, int y) {
-  const int column = 1 + (x < 0 ? -1 : x >= kColumnsPerTile ? 1 : 0), row = 1 + (y < 0 ? -1 : y >= kColumnsPerTile ? 1 : 0);
-  const CluxelTile* tile = ring[static_cast<std::size_t>(3 * row + column)];
-  if (tile == nullptr) return nullptr;
-  const int u = (x + kColumnsPerTile) % kColumnsPerTile, v = (y + kColumnsPerTile) % kColumnsPerTile;
-  const Column& found = tile->columns[static_cast<std::size_t>(v * kColumnsPerTile + u)];
-  return found.count > 0 ? &found : nullptr;
-}
 
 /// Slices moved to another base; what rises past the last one stays in it.
 std::uint64_t moved(std::uint64_t slices, std::int32_t up) {
@@ -36,40 +28,77 @@ std::uint64_t moved(std::uint64_t slices, std::int32_t up) {
   return slices << shift | (cut ? std::uint64_t{1} << 63U : 0);
 }
 
-Profile profileAround(const Ring<CluxelTile>& ring, int x, int y, int reach) {
-  Profile profile;
-  std::vector<const Column*> columns;
-  for (int v = y - reach; v <= y + reach; ++v)
-    for (int u = x - reach; u <= x + reach; ++u)
-      if (const Column* column = columnAt(ring, u, v)) columns.push_back(column);
-  for (const Column* column : columns) {
-    const bool first = profile.columns++ == 0;
-    profile.low = first ? column->low : std::min(profile.low, column->low);
-    profile.high = first ? column->high : std::max(profile.high, column->high);
-    profile.base = first ? column->base_slice : std::min(profile.base, column->base_slice);
-  }
-  for (const Column* column : columns) profile.slices |= moved(column->slices, column->base_slice - profile.base);
-  return profile;
+/// Of two sets of columns without a common one. In which order columns are joined does not matter.
+Profile joined(const Profile& a, const Profile& b) {
+  const std::int32_t base = std::min(a.base, b.base);
+  return {std::min(a.low, b.low), std::max(a.high, b.high), base, a.columns + b.columns,
+          moved(a.slices, a.base - base) | moved(b.slices, b.base - base)};
 }
 
-/// Occupied slices that hang together with slice `at` in one direction, over gaps of a single slice.
-int runFrom(std::uint64_t slices, int at, int step) {
-  int run = 0, gap = 0;
-  for (int i = at + step; i >= 0 && i < 64 && gap < 2; i += step) {
-    const bool occupied = (slices >> static_cast<unsigned>(i) & 1U) != 0;
-    gap = occupied ? 0 : gap + 1;
-    if (occupied) run = std::abs(i - at);
-  }
-  return run;
+Profile profileOf(const Column& column) {
+  if (column.count == 0) return {};
+  return {column.low, column.high, column.base_slice, 1, column.slices};
 }
+
+constexpr int kWideReach = 3;                                    ///< columns around a cluxel's own that are looked at
+constexpr int kPadded = kColumnsPerTile + 2 * kWideReach;
+
+std::size_t cellAt(int x, int y) { return static_cast<std::size_t>((y + kWideReach) * kPadded + x + kWideReach); }
+
+using Profiles = std::vector<Profile>;   // of the padded tile, by cellAt()
+
+Profiles columnsAround(const Ring<CluxelTile>& ring) {
+  Profiles profiles(static_cast<std::size_t>(kPadded) * kPadded);
+  for (int y = -kWideReach; y < kColumnsPerTile + kWideReach; ++y)
+    for (int x = -kWideReach; x < kColumnsPerTile + kWideReach; ++x) {
+      const int column = 1 + (x < 0 ? -1 : x >= kColumnsPerTile ? 1 : 0), row = 1 + (y < 0 ? -1 : y >= kColumnsPerTile ? 1 : 0);
+      const CluxelTile* tile = ring[static_cast<std::size_t>(3 * row + column)];
+      if (tile == nullptr) continue;
+      const int u = (x + kColumnsPerTile) % kColumnsPerTile, v = (y + kColumnsPerTile) % kColumnsPerTile;
+      profiles[cellAt(x, y)] = profileOf(tile->columns[static_cast<std::size_t>(v * kColumnsPerTile + u)]);
+    }
+  return profiles;
+}
+
+/// Profiles of squares of columns: joined along x for all, then along y where one is wanted.
+class ProfileSquares {
+ public:
+  explicit ProfileSquares(const Ring<CluxelTile>& ring)
+      : columns_(columnsAround(ring)), three_(columns_.size()), seven_(columns_.size()) {
+    for (std::size_t i = 1; i + 1 < columns_.size(); ++i) three_[i] = joined(joined(columns_[i - 1], columns_[i]), columns_[i + 1]);
+    for (std::size_t i = 2; i + 2 < columns_.size(); ++i) seven_[i] = joined(joined(three_[i - 2], columns_[i]), three_[i + 2]);
+  }
+  /// Of the column itself, of 3 x 3 and of 7 x 7 columns around it.
+  struct Nested {
+    Profile narrow, middle, wide;
+  };
+  Nested at(int x, int y) const {
+    const std::size_t cell = cellAt(x, y);
+    return {columns_[cell], stacked(three_, cell, 1), stacked(seven_, cell, kWideReach)};
+  }
+
+ private:
+  static Profile stacked(const Profiles& rows, std::size_t cell, std::size_t reach) {
+    Profile all = rows[cell];
+    for (std::size_t step = 1; step <= reach; ++step)
+      all = joined(joined(all, rows[cell - step * kPadded]), rows[cell + step * kPadded]);
+    return all;
+  }
+  Profiles columns_, three_, seven_;
+};
+
+/// Occupied slices that hang together above the lowest bit, over gaps of a single slice: up to the first two empty ones.
+int runUp(std::uint64_t slices) { return std::countr_zero(~slices & ~(slices >> 1U)); }
+int runDown(std::uint64_t slices) { return std::countl_zero(~slices & ~(slices << 1U)); }
 
 void putProfile(const Profile& profile, double z, double ground, std::span<float> out) {
   const int at = std::clamp(static_cast<int>(std::floor(z / kSliceHeight_m)) - profile.base, 0, 63);
   const std::uint64_t below = at == 0 ? 0 : profile.slices & ((std::uint64_t{1} << static_cast<unsigned>(at)) - 1);
   const std::uint64_t above = at == 63 ? 0 : profile.slices >> static_cast<unsigned>(at + 1);
+  const std::uint64_t under = at == 0 ? 0 : profile.slices << static_cast<unsigned>(64 - at);   // the next one is the highest bit
   const auto metres = [](int slices) { return static_cast<float>(slices * kSliceHeight_m); };
-  out[0] = metres(runFrom(profile.slices, at, -1));
-  out[1] = metres(runFrom(profile.slices, at, +1));
+  out[0] = metres(runDown(under));
+  out[1] = metres(runUp(above));
   out[2] = metres(std::popcount(below));
   out[3] = metres(std::popcount(above));
   out[4] = static_cast<float>(profile.high - ground);
@@ -83,15 +112,16 @@ std::size_t cellOf(const Eigen::Vector3f& center) {
          static_cast<std::size_t>(center.x() / kColumnSize_m);
 }
 
-/// Profiles of the columns in which a cluxel's centre lies, at one reach.
-std::vector<Profile> profilesOf(const FeatureInput& input, int reach) {
+/// Profiles around the columns in which a cluxel's centre lies.
+std::vector<ProfileSquares::Nested> profilesOf(const FeatureInput& input) {
   std::vector<std::uint8_t> wanted(static_cast<std::size_t>(kColumnsPerTile) * kColumnsPerTile);
   for (const auto& own : input.own().own) wanted[cellOf(own.mean)] = 1;
-  std::vector<Profile> profiles(wanted.size());
+  const ProfileSquares squares(input.ring);
+  std::vector<ProfileSquares::Nested> profiles(wanted.size());
   for (int y = 0; y < kColumnsPerTile; ++y)
     for (int x = 0; x < kColumnsPerTile; ++x) {
       const auto cell = static_cast<std::size_t>(y * kColumnsPerTile + x);
-      if (wanted[cell]) profiles[cell] = profileAround(input.ring, x, y, reach);
+      if (wanted[cell]) profiles[cell] = squares.at(x, y);
     }
   return profiles;
 }
@@ -112,20 +142,20 @@ std::vector<std::string> heightColumns() {
 
 void fillHeightFeatures(const FeatureInput& input, std::size_t column, FeatureRows& rows) {
   const CluxelTile& own = input.own();
-  const auto narrow = profilesOf(input, 0), middle = profilesOf(input, 1), wide = profilesOf(input, 3);
+  const auto profiles = profilesOf(input);
   for (std::size_t c = 0; c < own.size(); ++c) {
     const Eigen::Vector3f& center = own.own[c].mean;
-    const std::size_t cell = cellOf(center);
+    const auto& [narrow, middle, wide] = profiles[cellOf(center)];
     const double ground = groundHeightAt(input.ground, center.x(), center.y());
-    const Profile& around = occupied(middle[cell], wide[cell]);
+    const Profile& around = occupied(middle, wide);
     auto out = rows.row(c, column, 1 + 2 * kProfileColumns + 3);
     out[0] = static_cast<float>(center.z() - ground);
-    putProfile(occupied(narrow[cell], around), center.z(), ground, out.subspan(1));
+    putProfile(occupied(narrow, around), center.z(), ground, out.subspan(1));
     putProfile(around, center.z(), ground, out.subspan(1 + kProfileColumns));
     auto rest = out.subspan(1 + 2 * kProfileColumns);
-    rest[0] = static_cast<float>(wide[cell].high - ground);
-    rest[1] = static_cast<float>(wide[cell].low - ground);
-    rest[2] = static_cast<float>(wide[cell].columns) / 49.0F;
+    rest[0] = static_cast<float>(wide.high - ground);
+    rest[1] = static_cast<float>(wide.low - ground);
+    rest[2] = static_cast<float>(wide.columns) / 49.0F;
   }
 }
 

@@ -7,26 +7,32 @@
 namespace cluxel {
 namespace {
 
+void resize(PointGrid& points, std::size_t size) {
+  for (auto* values : {&points.x, &points.y, &points.z}) values->resize(size);
+  points.own.resize(size);
+}
+
 /// The points of the ring that lie in the margin, tile by tile.
 PointGrid gather(const Ring<TilePoints>& ring, float margin_m) {
   PointGrid points;
   const float low = -margin_m, high = static_cast<float>(kTileSize_m) + margin_m;
-  const std::size_t expected = ring[kRingCentre] == nullptr ? 0 : ring[kRingCentre]->size() * 5 / 4;
-  for (auto* values : {&points.x, &points.y, &points.z}) values->reserve(expected);
-  points.own.reserve(expected);
+  std::size_t count = 0, expected = 0;
+  for (const TilePoints* tile : ring) expected += tile == nullptr ? 0 : tile->size();
+  resize(points, expected);
   for (int r = 0; r < 9; ++r) {
     const TilePoints* tile = ring[static_cast<std::size_t>(r)];
     if (tile == nullptr) continue;
     const Eigen::Vector3f shift = ringShift(r);
-    for (std::uint32_t i = 0; i < tile->size(); ++i) {
+    for (std::uint32_t i = 0; i < tile->size(); ++i) {   // written first, counted if it lies there
       const float x = tile->x[i] + shift.x(), y = tile->y[i] + shift.y();
-      if (x < low || x > high || y < low || y > high) continue;
-      points.x.push_back(x);
-      points.y.push_back(y);
-      points.z.push_back(tile->z[i]);
-      points.own.push_back(r == kRingCentre ? i : PointGrid::kForeign);
+      points.x[count] = x;
+      points.y[count] = y;
+      points.z[count] = tile->z[i];
+      points.own[count] = r == kRingCentre ? i : PointGrid::kForeign;
+      count += (x >= low) & (x <= high) & (y >= low) & (y <= high) ? 1U : 0U;
     }
   }
+  resize(points, count);
   return points;
 }
 
@@ -40,6 +46,11 @@ CellKeys::CellKeys(double cell_m, double margin_m) {
   offset_ = (std::ceil(margin_m * per_m_) + 1.0) * wide_m;
 }
 
+void endKeys(std::vector<std::uint64_t>& cell_key) {
+  constexpr std::uint64_t kBeyondAll = ~std::uint64_t{0} - 1;   // one more is still a number
+  cell_key.insert(cell_key.end(), 3, kBeyondAll);
+}
+
 PointGrid gridOf(const Ring<TilePoints>& ring, double cell_m, double margin_m) {
   const PointGrid points = gather(ring, static_cast<float>(margin_m));
   const CellKeys key(cell_m, margin_m);
@@ -47,10 +58,7 @@ PointGrid gridOf(const Ring<TilePoints>& ring, double cell_m, double margin_m) {
   for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = {key(points.x[i], points.y[i], points.z[i]), i};
   if (!order.empty()) sortByKey(order);
   PointGrid grid;
-  grid.x.resize(order.size());
-  grid.y.resize(order.size());
-  grid.z.resize(order.size());
-  grid.own.resize(order.size());
+  resize(grid, order.size() + PointGrid::kSpare);
   for (std::uint32_t i = 0; i < order.size(); ++i) {
     const std::uint32_t from = order[i].item;
     grid.x[i] = points.x[from];
@@ -63,6 +71,7 @@ PointGrid gridOf(const Ring<TilePoints>& ring, double cell_m, double margin_m) {
     }
   }
   grid.cell_start.push_back(static_cast<std::uint32_t>(order.size()));
+  endKeys(grid.cell_key);
   return grid;
 }
 

@@ -13,12 +13,13 @@ namespace cluxel {
 /// Points with their cells, in the order (cell x, y, z; then tile of the ring; then number in the tile).
 struct PointGrid {
   static constexpr std::uint32_t kForeign = 0xffffffffU;
+  static constexpr std::size_t kSpare = 3;   ///< zeros behind the last point: whole vectors may be read from any one
   std::vector<float> x, y, z;                ///< relative to the centre tile's corner
   std::vector<std::uint32_t> own;            ///< number in the centre tile, or kForeign
-  std::vector<std::uint64_t> cell_key;       ///< per occupied cell, ascending
+  std::vector<std::uint64_t> cell_key;       ///< per occupied cell, ascending, and then as endKeys() leaves them
   std::vector<std::uint32_t> cell_start;     ///< first point per occupied cell, and the end
 
-  std::size_t cells() const { return cell_key.size(); }
+  std::size_t cells() const { return cell_start.size() - 1; }
 };
 
 /// Cells of `cell_m`; of neighbouring tiles the points nearer than `margin_m` to the centre tile.
@@ -43,19 +44,32 @@ class CellKeys {
   double per_m_, offset_;
 };
 
+/// Puts keys that no cell has behind those of all cells: the walk reads a few beyond the end.
+void endKeys(std::vector<std::uint64_t>& cell_key);
+
 /// Walks cells in ascending order and keeps, for each of the 9 columns of cells around, where its 3 cells lie: columns
 /// in the order (-1,-1), (-1,0), (-1,1), (0,-1), (0,0), ... of (x, y).
 class NeighbourWalk {
  public:
+  static constexpr std::size_t kAll = 9, kEarlier = 5;   ///< columns: all, and those that hold the earlier cells
+
+  /// `cell_key` must have been ended by endKeys().
   explicit NeighbourWalk(const std::vector<std::uint64_t>& cell_key) : cell_key_(cell_key) {}
 
   /// Moves to the cell with key `key`, not before the last one. Occupied cells of column k: [first(k), last(k)).
+  template <std::size_t kColumns = kAll>
   void moveTo(std::uint64_t key) {
-    for (std::size_t k = 0; k < 9; ++k) {
+    const std::uint64_t* keys = cell_key_.data();
+    for (std::size_t k = 0; k < kColumns; ++k) {
       const std::uint64_t column = key + (k / 3) * kCellStrideX + (k % 3) * kCellStrideY - kCellStrideX - kCellStrideY;
-      while (first_[k] < cell_key_.size() && cell_key_[first_[k]] + 1 < column) ++first_[k];
-      last_[k] = first_[k];
-      while (last_[k] < cell_key_.size() && cell_key_[last_[k]] <= column + 1) ++last_[k];
+      std::size_t first = first_[k];
+      // Mostly a cell or two on, without a branch that would be guessed wrong half of the time.
+      for (int step = 0; step < 2; ++step) first += keys[first] + 1 < column ? 1U : 0U;
+      while (keys[first] + 1 < column) ++first;
+      first_[k] = first;
+      std::size_t last = first;
+      for (std::size_t i = 0; i < 3; ++i) last += keys[first + i] <= column + 1 ? 1U : 0U;
+      last_[k] = last;
     }
   }
   std::size_t first(std::size_t k) const { return first_[k]; }
@@ -63,7 +77,7 @@ class NeighbourWalk {
 
  private:
   const std::vector<std::uint64_t>& cell_key_;
-  std::array<std::size_t, 9> first_{}, last_{};
+  std::array<std::size_t, kAll> first_{}, last_{};
 };
 
 }  // namespace cluxel

@@ -51,11 +51,11 @@ class SupportWalk {
   explicit SupportWalk(const FeatureInput& input)
       : input_(input), mark_(input.cluxels.size(), 0xffffffffU), members_(input.cluxels.size() + 1) {}
 
-  const Surroundings& around(std::uint32_t center) {
+  /// Fills `found` anew; its memory is reused.
+  void walkAround(std::uint32_t center, Surroundings& found) {
     const auto neighbours = input_.graph.neighbours(center);
-    found_.neighbours = neighbours.size();
-    measure(center, listMembers(center, neighbours));
-    return found_;
+    found.neighbours = neighbours.size();
+    measure(center, listMembers(center, neighbours), found);
   }
 
  private:
@@ -75,9 +75,9 @@ class SupportWalk {
     return count;
   }
 
-  void measure(std::uint32_t center, std::size_t count) {
+  void measure(std::uint32_t center, std::size_t count, Surroundings& found) {
     const Member& own = input_.cluxels.member[center];
-    Support& support = found_.ring2;
+    Support& support = found.ring2;
     support.residual.resize(count - 1);
     float low = own.place[2], high = own.place[2];
     SupportSum sum;
@@ -86,7 +86,7 @@ class SupportWalk {
       const Eigen::Array4f d = member.place - own.place;
       sum.add(d, member.turned - own.turned, member);
       if (i > 0) support.residual.set(i - 1, d[0], d[1], d[2]);
-      if (i == found_.neighbours) found_.ring1 = sum.total();
+      if (i == found.neighbours) found.ring1 = sum.total();
       low = std::min(low, member.lowZ());
       high = std::max(high, member.highZ());
     }
@@ -97,7 +97,6 @@ class SupportWalk {
 
   const FeatureInput& input_;
   std::vector<std::uint32_t> mark_, members_;
-  Surroundings found_;
 };
 
 /// Writes one group after the other into a row.
@@ -160,17 +159,26 @@ void fillSupportFeatures(const FeatureInput& input, const FeatureParams& params,
   const std::size_t count = supportColumns(params).size();
   SupportWalk walk(input);
   HorScratch scratch;
-  for (std::uint32_t c = 0; c < own.size(); ++c) {
-    const Surroundings& around = walk.around(input.cluxels.own_begin + c);
+  std::array<Surroundings, 2> pair;   // two at a time: their four shapes are found together
+  const auto fillRow = [&](std::uint32_t c, const Surroundings& around, const EigenShape& ring1, const EigenShape& ring2) {
     const EigenShape& ball = input.ball[input.cluxels.own_begin + c];
-    const auto shapes = shapesOf(std::array{covarianceOf(around.ring1), covarianceOf(around.ring2.sum)});
-    const EigenShape &ring1 = shapes[0], &ring2 = shapes[1];
     RowWriter row(rows.row(c, column, count));
     if (params.hor) fillHor(around.ring2, ring2, scratch, row.take(kHorColumns));
     if (params.shape)
       for (const auto* shape : {&ball, &ring1, &ring2}) putShape(*shape, row.take(kShapeNames.size()));
     if (params.extent) putExtents(own, c, ball, ring1, ring2, around.ring2, row);
     if (params.density) putDensities(own, c, around, row);
+  };
+  for (std::uint32_t c = 0; c < own.size(); c += 2) {
+    const std::uint32_t some = std::min<std::uint32_t>(2, static_cast<std::uint32_t>(own.size()) - c);
+    std::array<Covariance, 4> covariances{};
+    for (std::uint32_t i = 0; i < some; ++i) {
+      walk.walkAround(input.cluxels.own_begin + c + i, pair[i]);
+      covariances[2 * i] = covarianceOf(pair[i].ring1);
+      covariances[2 * i + 1] = covarianceOf(pair[i].ring2.sum);
+    }
+    const auto shapes = shapesOf({covariances.data(), 2 * some});
+    for (std::uint32_t i = 0; i < some; ++i) fillRow(c + i, pair[i], shapes[2 * i], shapes[2 * i + 1]);
   }
 }
 

@@ -3,83 +3,70 @@
 #include "cluxel/perception/unary_trees.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstring>
 
-#include "perception/vector_lanes.hpp"
+#include "perception/tree_kernel.hpp"
 
 namespace cluxel {
 
 namespace {
 
-/// Rows scored together: their columns fit into the nearest cache.
-constexpr std::size_t kBlock = 64;
-/// Trees whose leaves are added in one go, so that a row's sums stay in registers.
-constexpr std::size_t kTogether = 10;
+/// An ensemble one array behind the other, as the kernel reads it.
+class FlatTrees {
+ public:
+  explicit FlatTrees(const TreeEnsemble& ensemble) : x_split_begin{0} {
+    for (const ObliviousTree& tree : ensemble.trees) {
+      for (const TreeSplit& split : tree.splits) x_splits.push_back({split.column, split.threshold});
+      x_split_begin.push_back(static_cast<std::uint32_t>(x_splits.size()));
+      x_leaf_begin.push_back(static_cast<std::uint32_t>(x_leaves.size()));
+      for (const LabelValues& leaf : tree.leaves) x_leaves.insert(x_leaves.end(), leaf.begin(), leaf.end());
+    }
+    x_leaves.resize(x_leaves.size() + kLeafRead);   // the last leaf is read beyond its end
+  }
+  TreeTable table() const {
+    return {x_splits.data(), x_split_begin.data(), x_leaves.data(), x_leaf_begin.data(), x_leaf_begin.size()};
+  }
 
-using LeafNumbers = std::array<std::int32_t, kBlock>;
+ private:
+  std::vector<TreeTable::Split> x_splits;
+  std::vector<std::uint32_t> x_split_begin, x_leaf_begin;
+  std::vector<float> x_leaves;
+};
 
-/// Some rows with their features column by column.
+/// Some rows with their features column by column, and their sums.
 class RowBlock {
  public:
-  explicit RowBlock(std::size_t columns) : x_columns(columns), x_values(columns * kBlock, 0.0F) {}
+  explicit RowBlock(std::size_t columns) : x_columns(columns), x_values(columns * kTreeRows, 0.0F) {}
 
   void fill(std::span<const float* const> rows) {
     for (std::size_t r = 0; r < rows.size(); ++r)
-      for (std::size_t c = 0; c < x_columns; ++c) x_values[c * kBlock + r] = rows[r][c];
+      for (std::size_t c = 0; c < x_columns; ++c) x_values[c * kTreeRows + r] = rows[r][c];
   }
-
-  /// The leaf of each row, its bits from the last split to the first.
-  LeafNumbers leavesOf(const ObliviousTree& tree) const {
-    LeafNumbers leaves;
-    for (std::size_t r = 0; r < kBlock; r += 4 * kLanes) {
-      std::array<Numbers, 4> leaf{};
-      for (std::size_t d = tree.splits.size(); d-- > 0;) {
-        const float* values = x_values.data() + tree.splits[d].column * kBlock + r;
-        const float threshold = tree.splits[d].threshold;
-        for (std::size_t i = 0; i < leaf.size(); ++i)
-          leaf[i] = leaf[i] + leaf[i] - (loadFloats(values + i * kLanes) > threshold);
-      }
-      std::memcpy(leaves.data() + r, leaf.data(), sizeof leaf);
-    }
-    return leaves;
+  void score(const LabelValues& bias, const TreeTable& table, TreeKernel* kernel, std::span<LabelValues> scores) {
+    x_sums.fill(0.0F);
+    for (std::size_t r = 0; r < kTreeRows; ++r) std::copy(bias.begin(), bias.end(), x_sums.begin() + r * kLeafRead);
+    kernel(table, x_values.data(), x_sums.data());
+    for (std::size_t r = 0; r < scores.size(); ++r) std::copy_n(x_sums.begin() + r * kLeafRead, scores[r].size(), scores[r].begin());
   }
 
  private:
   std::size_t x_columns;
   std::vector<float> x_values;
+  std::array<float, kTreeRows * kLeafRead> x_sums{};
 };
-
-/// Adds the leaves of up to kTogether trees to each row's scores, tree by tree.
-void addLeaves(std::span<const ObliviousTree> trees, const std::array<LeafNumbers, kTogether>& leaves,
-               std::span<LabelValues> scores) {
-  std::array<const LabelValues*, kTogether> tables{};
-  for (std::size_t t = 0; t < trees.size(); ++t) tables[t] = trees[t].leaves.data();
-  for (std::size_t r = 0; r < scores.size(); ++r) {
-    LabelValues sum = scores[r];
-    for (std::size_t t = 0; t < trees.size(); ++t) {
-      const LabelValues& leaf = tables[t][static_cast<std::size_t>(leaves[t][r])];
-      for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += leaf[k];
-    }
-    scores[r] = sum;
-  }
-}
 
 }  // namespace
 
 std::vector<LabelValues> scoreRows(const TreeEnsemble& ensemble, std::span<const float* const> rows) {
-  std::vector<LabelValues> scores(rows.size(), ensemble.bias);
+  std::vector<LabelValues> scores(rows.size());
   RowBlock block(ensemble.columns);
-  std::array<LeafNumbers, kTogether> leaves;
-  const std::span<const ObliviousTree> trees(ensemble.trees);
-  for (std::size_t begin = 0; begin < rows.size(); begin += kBlock) {
-    const std::size_t count = std::min(kBlock, rows.size() - begin);
+  const FlatTrees trees(ensemble);
+  TreeKernel* const kernel = fastestTreeKernel();
+  for (std::size_t begin = 0; begin < rows.size(); begin += kTreeRows) {
+    const std::size_t count = std::min(kTreeRows, rows.size() - begin);
     block.fill(rows.subspan(begin, count));
-    for (std::size_t first = 0; first < trees.size(); first += kTogether) {
-      const auto some = trees.subspan(first, std::min(kTogether, trees.size() - first));
-      for (std::size_t t = 0; t < some.size(); ++t) leaves[t] = block.leavesOf(some[t]);
-      addLeaves(some, leaves, std::span(scores).subspan(begin, count));
-    }
+    block.score(ensemble.bias, trees.table(), kernel, std::span(scores).subspan(begin, count));
   }
   return scores;
 }

@@ -34,14 +34,17 @@ inline Floats squareRoots(const Floats& four) {
 #endif
 }
 
-/// Whether a comparison holds in all lanes.
-inline bool allHold(const Numbers& held) {
+/// Bit i: whether a comparison holds in lane i.
+inline unsigned lanesThatHold(const Numbers& held) {
 #ifdef __SSE2__
-  return _mm_movemask_epi8(reinterpret_cast<__m128i>(held)) == 0xffff;
+  return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(held)));
 #else
-  return (held[0] & held[1] & held[2] & held[3]) != 0;
+  return (held[0] & 1U) | (held[1] & 2U) | (held[2] & 4U) | (held[3] & 8U);
 #endif
 }
+
+/// Whether a comparison holds in all lanes.
+inline bool allHold(const Numbers& held) { return lanesThatHold(held) == 0xfU; }
 
 inline Floats lesserOf(const Floats& a, const Floats& b) { return a < b ? a : b; }
 

@@ -17,6 +17,7 @@ constexpr std::size_t kColumnsPerScale = 8;
 struct CellSums {
   std::vector<std::uint64_t> key;
   std::vector<MomentSum> sum;
+  std::vector<std::uint8_t> has_own;
   std::vector<std::uint32_t> cell_of_own;
 };
 
@@ -58,37 +59,52 @@ CellSums sumCells(const Ring<CluxelTile>& ring, double cell_m) {
     if (cells.key.empty() || cells.key.back() != entry.key) {
       cells.key.push_back(entry.key);
       cells.sum.emplace_back();
+      cells.has_own.push_back(0);
     }
     std::array<float, 6> spread = item.own->scatter;
     for (auto& value : spread) value /= item.own->count;
     cells.sum.back().addSet(item.center - origin, spread);
-    if (item.number != PointGrid::kForeign) cells.cell_of_own[item.number] = static_cast<std::uint32_t>(cells.key.size() - 1);
+    if (item.number == PointGrid::kForeign) continue;
+    cells.cell_of_own[item.number] = static_cast<std::uint32_t>(cells.key.size() - 1);
+    cells.has_own.back() = 1;
   }
+  endKeys(cells.key);
   return cells;
 }
 
-std::array<float, kColumnsPerScale> describeCube(const MomentSum& sum, int occupied) {
-  const EigenShape shape = shapeOf(covarianceOf(sum));
+using CubeRow = std::array<float, kColumnsPerScale>;
+constexpr std::size_t kShapeColumns = 6;   // then rise and occupied
+
+void putShape(const EigenShape& shape, CubeRow& row) {
+  const std::array<double, kShapeColumns> values{shape.linearity(), shape.planarity(), shape.scattering(),
+                                                 std::abs(shape.normal.z()), std::abs(shape.axis.z()), shape.length(2)};
+  for (std::size_t i = 0; i < values.size(); ++i) row[i] = static_cast<float>(values[i]);
+}
+
+void putRise(const MomentSum& sum, int occupied, CubeRow& row) {
   const double mean_z = sum.z / sum.n;
-  const auto as = [](double value) { return static_cast<float>(value); };
-  return {as(shape.linearity()), as(shape.planarity()), as(shape.scattering()), as(std::abs(shape.normal.z())),
-          as(std::abs(shape.axis.z())), as(shape.length(2)),
-          as(std::sqrt(std::max(0.0, sum.zz / sum.n - mean_z * mean_z))), static_cast<float>(occupied) / 27.0F};
+  row[kShapeColumns] = static_cast<float>(std::sqrt(std::max(0.0, sum.zz / sum.n - mean_z * mean_z)));
+  row[kShapeColumns + 1] = static_cast<float>(occupied) / 27.0F;
 }
 
 void fillScale(const FeatureInput& input, double cell_m, std::size_t column, FeatureRows& rows) {
   const CellSums cells = sumCells(input.ring, cell_m);
-  std::vector<std::array<float, kColumnsPerScale>> cube(cells.key.size());
+  std::vector<CubeRow> cube(cells.sum.size());
+  const auto keep = [&](std::size_t cell, const EigenShape& shape) { putShape(shape, cube[cell]); };
+  FourShapes four;
   NeighbourWalk walk(cells.key);
-  for (std::size_t cell = 0; cell < cells.key.size(); ++cell) {
+  for (std::size_t cell = 0; cell < cells.sum.size(); ++cell) {
+    if (!cells.has_own[cell]) continue;
     walk.moveTo(cells.key[cell]);
     MomentSum sum;
     int occupied = 0;
     for (std::size_t k = 0; k < 9; ++k)
       for (std::size_t other = walk.first(k); other < walk.last(k); ++other, ++occupied)
         sum.addSum(cells.sum[other]);
-    cube[cell] = describeCube(sum, occupied);
+    four.add(cell, covarianceOf(sum), keep);
+    putRise(sum, occupied, cube[cell]);
   }
+  four.finish(keep);
   for (std::size_t c = 0; c < cells.cell_of_own.size(); ++c) {
     const auto& values = cube[cells.cell_of_own[c]];
     std::copy(values.begin(), values.end(), rows.row(c, column, kColumnsPerScale).begin());
