@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 #include "perception/feature_groups.hpp"
 
@@ -113,8 +114,7 @@ void fillEdges(const FeatureInput& input, FeatureTile& tile) {
       fillEdge(input, forms, c, other, shared, rowOf(edge));
       if (!is_own) continue;
       while (graph.target[back[other]] < cluxels.own_begin) ++back[other];
-      const auto row = rowOf(edge);
-      std::copy(row.begin(), row.end(), rowOf(back[other]++).begin());
+      std::memcpy(rowOf(back[other]++).data(), rowOf(edge).data(), kEdgeColumns * sizeof(float));
     }
   }
   tile.edge_offset.push_back(static_cast<std::uint32_t>(count));

@@ -101,11 +101,13 @@ CrfGraph crfGraph(const Ring<FeatureTile>& ring, const HaloGraph& structure, con
   if (pairs.pair_scale == 0) return graph;
   const PairCostTable table(pairs);
   graph.edges.reserve(structure.edges.size());
-  graph.pair_costs.reserve(structure.edges.size());
+  std::vector<PairCostTable::Edge> edges;
+  edges.reserve(structure.edges.size());
   for (const HaloEdge& edge : structure.edges) {
     graph.edges.push_back(edge.ends);
-    graph.pair_costs.push_back(table.at(ring[edge.ring]->edge_features.data() + edge.number * table.columns(), edge.degrees));
+    edges.push_back({ring[edge.ring]->edge_features.data() + edge.number * table.columns(), edge.degrees});
   }
+  graph.pair_costs = table.costsOf(edges);
   return graph;
 }
 

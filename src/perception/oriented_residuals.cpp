@@ -32,12 +32,16 @@ MainDirection mainDirectionOf(const MomentSum& sum) {
           static_cast<float>(std::min(1.0, spread / (xx + yy) / kClearDirection))};
 }
 
-using Votes = std::array<std::array<float, kAzimuthNodes>, kElevationNodes>;
+/// Votes at the nodes of one elevation: a lane for each azimuth, and one of no use.
+using Level = Floats;
+static_assert(kAzimuthNodes < kLanes);
+using Votes = std::array<Level, kElevationNodes>;
 
-/// Four residuals' weights at the four nodes around each, and the lower of the nodes.
+/// Four residuals: the lower of the two elevations around each, the weights there and above, and the shares of azimuths.
 struct FourVotes {
-  std::array<std::int32_t, kLanes> elevation, azimuth;
-  std::array<std::array<float, kLanes>, 4> weight;   ///< low, low and next azimuth, high, high and next azimuth
+  std::array<std::int32_t, kLanes> elevation;
+  std::array<float, kLanes> low, high;
+  std::array<Floats, kLanes> azimuth;
 };
 
 /// The whole part of values in [0, most + 1].
@@ -46,42 +50,52 @@ Numbers wholeOf(const Floats& values, std::int32_t most) {
   return whole < last ? whole : last;
 }
 
+/// From a vector for each azimuth to one for each residual.
+std::array<Floats, kLanes> turned(const Floats& a, const Floats& b, const Floats& c) {
+  const Floats zero{};
+  const Floats ab = __builtin_shufflevector(a, b, 0, 4, 1, 5), cd = __builtin_shufflevector(c, zero, 0, 4, 1, 5);
+  const Floats ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7), cd_high = __builtin_shufflevector(c, zero, 2, 6, 3, 7);
+  return {__builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(ab, cd, 2, 3, 6, 7),
+          __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5), __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7)};
+}
+
 FourVotes votesOf(const Floats& x, const Floats& y, const Floats& z, const Floats& length, const MainDirection& main, float median) {
+  static_assert(kAzimuthNodes == 3, "the lower of the two azimuths around a residual is the first or the second");
   constexpr float kTiny = 1e-12F;
-  const Floats along = x * main.x + y * main.y, across = x * main.y - y * main.x;
+  const Floats along = x * main.x + y * main.y, across = x * main.y - y * main.x, zero{};
   const Floats weight = lesserOf(length / median, Floats{} + kLongestVote);
   const Floats elevation = (z / (length + kTiny) + 1.0F) * (0.5F * (kElevationNodes - 1));
   const Floats azimuth = across * across / (along * along + across * across + kTiny) * static_cast<float>(kAzimuthNodes - 1);
   const Numbers e = wholeOf(elevation, kElevationNodes - 2), a = wholeOf(azimuth, kAzimuthNodes - 2);
   const Floats up = elevation - __builtin_convertvector(e, Floats), on = azimuth - __builtin_convertvector(a, Floats);
-  const Floats high = weight * up, low = weight - high;
+  const Floats rest = 1.0F - on, high = weight * up;
+  const Numbers is_first = a == 0;
   FourVotes votes;
   std::memcpy(votes.elevation.data(), &e, sizeof e);
-  std::memcpy(votes.azimuth.data(), &a, sizeof a);
-  storeFloats(low * (1.0F - on), votes.weight[0].data());
-  storeFloats(low * on, votes.weight[1].data());
-  storeFloats(high * (1.0F - on), votes.weight[2].data());
-  storeFloats(high * on, votes.weight[3].data());
+  storeFloats(weight - high, votes.low.data());
+  storeFloats(high, votes.high.data());
+  votes.azimuth = turned(is_first ? rest : zero, is_first ? on : rest, is_first ? zero : on);
   return votes;
 }
 
 /// Each residual's weight goes to the four nodes around it. Two sets of nodes take turns: a node is seldom waited for.
 Votes castVotes(const Residuals& residual, const MainDirection& main, float median, const HorScratch& scratch) {
-  std::array<Votes, 2> sets{};
+  Votes even, odd;
+  for (std::size_t e = 0; e < kElevationNodes; ++e) even[e] = odd[e] = Level{};
+  const auto add = [](const FourVotes& four, std::size_t i, Votes& votes) {
+    Level* level = votes.data() + four.elevation[i];
+    level[0] += four.low[i] * four.azimuth[i];
+    level[1] += four.high[i] * four.azimuth[i];
+  };
   for (std::size_t first = 0; first < residual.size(); first += kLanes) {
     const auto at = [first](const std::vector<float>& values) { return loadFloats(values.data() + first); };
     const FourVotes four = votesOf(at(residual.x), at(residual.y), at(residual.z), at(scratch.length), main, median);
-    for (std::size_t i = 0; i < std::min(kLanes, residual.size() - first); ++i) {
-      float* row = &sets[i % 2][static_cast<std::size_t>(four.elevation[i])][static_cast<std::size_t>(four.azimuth[i])];
-      row[0] += four.weight[0][i];
-      row[1] += four.weight[1][i];
-      row[kAzimuthNodes] += four.weight[2][i];
-      row[kAzimuthNodes + 1] += four.weight[3][i];
-    }
+    const std::size_t some = std::min(kLanes, residual.size() - first);
+    for (std::size_t i = 0; i < some; i += 2) add(four, i, even);
+    for (std::size_t i = 1; i < some; i += 2) add(four, i, odd);
   }
-  for (std::size_t e = 0; e < kElevationNodes; ++e)
-    for (std::size_t a = 0; a < kAzimuthNodes; ++a) sets[0][e][a] += sets[1][e][a];
-  return sets[0];
+  for (std::size_t e = 0; e < kElevationNodes; ++e) even[e] += odd[e];
+  return even;
 }
 
 /// Votes to bins: the poles lose their azimuth, and azimuths even out where there is no clear direction.
@@ -89,7 +103,7 @@ void fillBins(const Votes& votes, float clearness, std::span<float> bins) {
   float total = 0;
   std::array<float, kElevationNodes> level{};
   for (std::size_t e = 0; e < kElevationNodes; ++e) {
-    for (const float value : votes[e]) level[e] += value;
+    for (std::size_t a = 0; a < kAzimuthNodes; ++a) level[e] += votes[e][a];
     total += level[e];
   }
   if (!(total > 0)) return;

@@ -3,6 +3,7 @@
 #include "perception/pair_cost_table.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace cluxel {
@@ -16,20 +17,18 @@ float factorFor(const PairModel& model, float share) {
   return model.pair_scale * (model.degree_power == 0 ? 1.0F : std::pow(share, model.degree_power));
 }
 
+void appendToAll(std::vector<float>& values, float value) { values.insert(values.end(), kPairEdges, value); }
+
 }  // namespace
 
-PairCostTable::PairCostTable(const PairModel& model) : x_model(model), x_count(model.knots.size()), x_factor(kCommonDegrees) {
-  for (const HatKnots& knots : model.knots) {
-    x_low.push_back(knots[0]);
-    x_middle.push_back(knots[1]);
-    x_low_width.push_back(knots[1] - knots[0]);
-    x_high_width.push_back(knots[2] - knots[1]);
-  }
-  for (const PairCosts& row : model.weights) {
-    std::array<float, kVectors * kLanes> padded{};
-    std::copy(row.begin(), row.end(), padded.begin());
-    Costs& costs = x_weights.emplace_back();
-    for (std::size_t v = 0; v < kVectors; ++v) costs[v] = loadFloats(padded.data() + v * kLanes);
+PairCostTable::PairCostTable(const PairModel& model, const LaneKernels& kernels)
+    : x_model(model), x_kernels(kernels), x_columns(model.knots.size()), x_factor(kCommonDegrees) {
+  for (const float weight : model.weights.front()) appendToAll(x_bias, weight);
+  for (std::size_t column = 0; column < x_columns; ++column) {
+    const auto [low, middle, high] = model.knots[column];
+    for (const float value : {low, middle, middle - low, high - middle}) appendToAll(x_knots, value);
+    for (std::size_t pair = 0; pair < kLabelPairCount; ++pair)
+      for (std::size_t hat = 0; hat < kHats; ++hat) appendToAll(x_weights, model.weights[1 + kHats * column + hat][pair]);
   }
   for (std::uint32_t degrees = 0; degrees < kCommonDegrees; ++degrees) x_factor[degrees] = factorFor(model, shareOf(degrees));
 }
@@ -38,42 +37,24 @@ float PairCostTable::factorOf(std::uint32_t degrees) const {
   return degrees < kCommonDegrees ? x_factor[degrees] : factorFor(x_model, shareOf(degrees));
 }
 
-inline void PairCostTable::placeFour(const float* features, std::size_t column, Places& places) const {
-  const Floats value = loadFloats(features + column), middle = loadFloats(x_middle.data() + column);
-  // A value that is not a number lies below nothing, and rises nowhere: it counts as the middle.
-  const Numbers below = value < middle;
-  const Floats from = below ? loadFloats(x_low.data() + column) : middle;
-  const Floats width = below ? loadFloats(x_low_width.data() + column) : loadFloats(x_high_width.data() + column);
-  const Floats place = (value - from) / width, zero{}, one = zero + 1.0F;
-  const Floats raised = place > zero ? place : zero;
-  storeFloats(raised < one ? raised : one, places.rise.data() + column);
-  const Numbers above = ~below;
-  std::memcpy(places.right_half.data() + column, &above, sizeof above);
-}
-
-PairCosts PairCostTable::at(const float* features, std::uint32_t degrees) const {
-  if (x_count < kLanes || x_count > kMostColumns) return pairCostsOf(x_model, {features, x_count}, shareOf(degrees));
-  Places places;
-  for (std::size_t column = 0; column + kLanes <= x_count; column += kLanes) placeFour(features, column, places);
-  if (x_count % kLanes != 0) placeFour(features, x_count - kLanes, places);   // some of them once more
-  Costs sum = x_weights.front();
-  for (std::size_t column = 0; column < x_count; ++column) {
-    const Costs* left = x_weights.data() + 1 + kHats * column - places.right_half[column];
-    const float rise = places.rise[column], rest = 1.0F - rise;
-    for (std::size_t v = 0; v < kVectors; ++v) {
-      sum[v] += left[0][v] * rest;
-      sum[v] += left[1][v] * rise;
+std::vector<PairCosts> PairCostTable::costsOf(std::span<const Edge> edges) const {
+  const PairTable table{x_bias.data(), x_knots.data(), x_weights.data(), x_columns};
+  std::vector<PairCosts> costs(edges.size());
+  std::vector<float> columns(x_columns * kPairEdges);
+  std::array<float, kPairEdges> factors{};
+  std::array<std::array<float, kPairEdges>, kLabelPairCount> found;
+  for (std::size_t begin = 0; begin < edges.size(); begin += kPairEdges) {
+    const std::size_t some = std::min(kPairEdges, edges.size() - begin);
+    for (std::size_t lane = 0; lane < kPairEdges; ++lane) {
+      const Edge& edge = edges[begin + std::min(lane, some - 1)];   // the last one fills up
+      for (std::size_t column = 0; column < x_columns; ++column) columns[column * kPairEdges + lane] = edge.features[column];
+      factors[lane] = factorOf(edge.degrees);
     }
+    x_kernels.pair_costs(table, columns.data(), factors.data(), found.front().data());
+    for (std::size_t lane = 0; lane < some; ++lane)
+      for (std::size_t pair = 0; pair < kLabelPairCount; ++pair) costs[begin + lane][pair] = found[pair][lane];
   }
-  const float factor = factorOf(degrees);
-  std::array<float, kVectors * kLanes> costs;
-  for (std::size_t v = 0; v < kVectors; ++v) {
-    const Floats zero{};
-    storeFloats((sum[v] > zero ? sum[v] : zero) * factor, costs.data() + v * kLanes);
-  }
-  PairCosts result;
-  std::copy_n(costs.begin(), result.size(), result.begin());
-  return result;
+  return costs;
 }
 
 }  // namespace cluxel

@@ -17,7 +17,7 @@ constexpr double kCell_m = 0.25;
 constexpr int kReach = 3;                      ///< cells around the centre cell that are looked at
 constexpr int kCore = 1;                       ///< of these, the ones that belong to the thing itself
 constexpr int kTileCells = static_cast<int>(kTileSize_m / kCell_m);
-constexpr int kSide = kTileCells + 2 * kReach;
+constexpr int kSide = kTileCells + 2 * kReach + 1;   // one to spare: rows are read eight cells at a time
 constexpr double kBelowGround_m = 2.0;         ///< where the lowest slice lies under the tile's lowest ground
 constexpr int kOwnHeight = 2, kFarHeight = 6;  ///< half heights of the windows of slices: 0.5 m and 1.5 m
 constexpr std::size_t kPillarColumns = 7;
@@ -31,8 +31,9 @@ class Occupancy {
     for (int r = 0; r < 9; ++r)
       if (const CluxelTile* tile = ring[static_cast<std::size_t>(r)]) enter(*tile, ringShift(r));
   }
-  std::uint64_t at(int x, int y) const {
-    return slices_[static_cast<std::size_t>((y + kReach) * kSide + x + kReach)];
+  /// The cells from (x, y) on.
+  const std::uint64_t* from(int x, int y) const {
+    return slices_.data() + static_cast<std::size_t>((y + kReach) * kSide + x + kReach);
   }
   int sliceOf(double z) const { return static_cast<int>(std::clamp(std::floor((z - base_m_) / kCell_m), 0.0, 63.0)); }
   static int cellOf(float local_m) { return static_cast<int>(std::floor(local_m / static_cast<float>(kCell_m))); }
@@ -61,20 +62,22 @@ int octantOf(int x, int y) {
 
 /// Eight cells at once; a comparison gives -1 where it holds.
 using Cells = std::int16_t __attribute__((vector_size(16)));
-constexpr int kWidth = 2 * kReach + 1;
-constexpr std::size_t kVectors = (kWidth * kWidth + 7) / 8;
-using Square = std::array<std::int16_t, 8 * kVectors>;   // row by row, filled up with zeros
+constexpr int kWidth = 8;   ///< cells of a row, the last of which is of no use
+constexpr std::size_t kVectors = 2 * kReach + 1;
+static_assert(kWidth == 2 * kReach + 2);
+using Square = std::array<std::int16_t, kWidth * kVectors>;   // row by row
 
 /// What belongs to the cells of the square around a cluxel: whether they lie around the core, and in which directions.
 struct SquareCells {
   Square ring{}, octant{};
   float count = 0;
   SquareCells() {
-    for (int y = -kReach, i = 0; y <= kReach; ++y)
-      for (int x = -kReach; x <= kReach; ++x, ++i) {
+    for (int y = -kReach; y <= kReach; ++y)
+      for (int x = -kReach; x <= kReach; ++x) {
         if (std::max(std::abs(x), std::abs(y)) <= kCore) continue;
-        ring[static_cast<std::size_t>(i)] = -1;
-        octant[static_cast<std::size_t>(i)] = static_cast<std::int16_t>(1U << static_cast<unsigned>(octantOf(x, y)));
+        const auto i = static_cast<std::size_t>((y + kReach) * kWidth + x + kReach);
+        ring[i] = -1;
+        octant[i] = static_cast<std::int16_t>(1U << static_cast<unsigned>(octantOf(x, y)));
         ++count;
       }
   }
@@ -86,15 +89,14 @@ static_assert(kLevel >> kFarHeight == 0b111 && kOwnHeight == 2 && (kLevel | kAbo
 
 /// The windows of the square around a place, cell by cell.
 Square windowsAround(const Occupancy& occupancy, int x, int y, int slice) {
-  Square windows{};
-  const int up = slice - kFarHeight;
-  std::size_t i = 0;
-  for (int v = y - kReach; v <= y + kReach; ++v)
-    for (int u = x - kReach; u <= x + kReach; ++u, ++i) {
-      const std::uint64_t slices = occupancy.at(u, v);
-      windows[i] = static_cast<std::int16_t>((up >= 0 ? slices >> static_cast<unsigned>(up) : slices << static_cast<unsigned>(-up)) &
-                                              (kLevel | kAbove | kBelow));
-    }
+  Square windows;
+  const int lowest = slice - kFarHeight;
+  const auto up = static_cast<unsigned>(std::max(-lowest, 0)), down = static_cast<unsigned>(std::max(lowest, 0));
+  for (int row = 0; row < static_cast<int>(kVectors); ++row) {
+    const std::uint64_t* cells = occupancy.from(x - kReach, y - kReach + row);
+    std::int16_t* out = windows.data() + row * kWidth;
+    for (int i = 0; i < kWidth; ++i) out[i] = static_cast<std::int16_t>((cells[i] >> down << up) & (kLevel | kAbove | kBelow));
+  }
   return windows;
 }
 

@@ -3,36 +3,55 @@
 #include "perception/point_grid.hpp"
 
 #include "perception/radix_order.hpp"
+#include "perception/vector_lanes.hpp"
 
 namespace cluxel {
 namespace {
 
-void resize(PointGrid& points, std::size_t size) {
-  for (auto* values : {&points.x, &points.y, &points.z}) values->resize(size);
-  points.own.resize(size);
+void append(PointGrid& points, float x, float y, float z, std::uint32_t own) {
+  points.x.push_back(x);
+  points.y.push_back(y);
+  points.z.push_back(z);
+  points.own.push_back(own);
+}
+
+void appendOwn(const TilePoints& tile, PointGrid& points) {
+  points.x.insert(points.x.end(), tile.x.begin(), tile.x.end());
+  points.y.insert(points.y.end(), tile.y.begin(), tile.y.end());
+  points.z.insert(points.z.end(), tile.z.begin(), tile.z.end());
+  for (std::uint32_t i = 0; i < tile.size(); ++i) points.own.push_back(i);
+}
+
+/// Those of a neighbour's points that lie in the margin: few, so that four at a time are passed over.
+void appendNear(const TilePoints& tile, const Eigen::Vector3f& shift, float margin_m, PointGrid& points) {
+  const float low = -margin_m, high = static_cast<float>(kTileSize_m) + margin_m;
+  const auto appendOne = [&](std::size_t i) {
+    const float x = tile.x[i] + shift.x(), y = tile.y[i] + shift.y();
+    if (x >= low && x <= high && y >= low && y <= high) append(points, x, y, tile.z[i], PointGrid::kForeign);
+  };
+  std::size_t i = 0;
+  for (; i + kLanes <= tile.size(); i += kLanes) {
+    const Floats x = loadFloats(tile.x.data() + i) + shift.x(), y = loadFloats(tile.y.data() + i) + shift.y();
+    if (lanesThatHold((x >= low) & (x <= high) & (y >= low) & (y <= high)) == 0) continue;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) appendOne(i + lane);
+  }
+  for (; i < tile.size(); ++i) appendOne(i);
 }
 
 /// The points of the ring that lie in the margin, tile by tile.
 PointGrid gather(const Ring<TilePoints>& ring, float margin_m) {
   PointGrid points;
-  const float low = -margin_m, high = static_cast<float>(kTileSize_m) + margin_m;
-  std::size_t count = 0, expected = 0;
-  for (const TilePoints* tile : ring) expected += tile == nullptr ? 0 : tile->size();
-  resize(points, expected);
+  const std::size_t expected = ring[kRingCentre] == nullptr ? 0 : ring[kRingCentre]->size() * 5 / 4;
+  for (auto* values : {&points.x, &points.y, &points.z}) values->reserve(expected);
+  points.own.reserve(expected);
   for (int r = 0; r < 9; ++r) {
     const TilePoints* tile = ring[static_cast<std::size_t>(r)];
     if (tile == nullptr) continue;
-    const Eigen::Vector3f shift = ringShift(r);
-    for (std::uint32_t i = 0; i < tile->size(); ++i) {   // written first, counted if it lies there
-      const float x = tile->x[i] + shift.x(), y = tile->y[i] + shift.y();
-      points.x[count] = x;
-      points.y[count] = y;
-      points.z[count] = tile->z[i];
-      points.own[count] = r == kRingCentre ? i : PointGrid::kForeign;
-      count += (x >= low) & (x <= high) & (y >= low) & (y <= high) ? 1U : 0U;
-    }
+    if (r == kRingCentre)
+      appendOwn(*tile, points);
+    else
+      appendNear(*tile, ringShift(r), margin_m, points);
   }
-  resize(points, count);
   return points;
 }
 
@@ -58,7 +77,8 @@ PointGrid gridOf(const Ring<TilePoints>& ring, double cell_m, double margin_m) {
   for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = {key(points.x[i], points.y[i], points.z[i]), i};
   if (!order.empty()) sortByKey(order);
   PointGrid grid;
-  resize(grid, order.size() + PointGrid::kSpare);
+  for (auto* values : {&grid.x, &grid.y, &grid.z}) values->resize(order.size() + PointGrid::kSpare);
+  grid.own.resize(order.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) {
     const std::uint32_t from = order[i].item;
     grid.x[i] = points.x[from];

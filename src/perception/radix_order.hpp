@@ -64,22 +64,26 @@ inline void sortByLongKey(std::vector<KeyedItem>& items, const KeyBits& packed) 
   }
 }
 
-/// The same where a packed key and a place fit into one number, as they do in a tile: half as much is moved about.
+/// The same where a packed key and a place fit into one number, as they do in a tile: half as much is moved about. What
+/// each digit counts is counted in one run.
 inline void sortByShortKey(std::vector<KeyedItem>& items, const KeyBits& packed) {
-  constexpr int kMostDigitBits = 11;
+  constexpr int kMostDigitBits = 11, kMostPasses = 3;
+  constexpr std::size_t kMostBuckets = std::size_t{1} << kMostDigitBits;
   const int passes = (packed.bits() + kMostDigitBits - 1) / kMostDigitBits, digit_bits = (packed.bits() + passes - 1) / passes;
   const std::size_t buckets = std::size_t{1} << digit_bits;
+  const auto digit = [&](std::uint64_t entry, int pass) { return (entry >> (32 + pass * digit_bits)) & (buckets - 1); };
+  std::array<std::array<std::uint32_t, kMostBuckets>, kMostPasses> start;
+  for (int pass = 0; pass < passes; ++pass) std::fill_n(start[static_cast<std::size_t>(pass)].begin(), buckets, 0U);
   std::vector<std::uint64_t> order(items.size()), other(items.size());
-  for (std::size_t i = 0; i < items.size(); ++i) order[i] = packed(items[i].key) << 32U | i;
-  std::array<std::uint32_t, std::size_t{1} << kMostDigitBits> start;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    order[i] = packed(items[i].key) << 32U | i;
+    for (int pass = 0; pass < passes; ++pass) ++start[static_cast<std::size_t>(pass)][digit(order[i], pass)];
+  }
   for (int pass = 0; pass < passes; ++pass) {
-    const int shift = 32 + pass * digit_bits;
-    const auto digit = [&](std::uint64_t entry) { return (entry >> shift) & (buckets - 1); };
-    std::fill_n(start.begin(), buckets, 0U);
-    for (const auto entry : order) ++start[digit(entry)];
+    auto& place = start[static_cast<std::size_t>(pass)];
     std::uint32_t sum = 0;
-    for (std::size_t b = 0; b < buckets; ++b) sum += std::exchange(start[b], sum);
-    for (const auto entry : order) other[start[digit(entry)]++] = entry;
+    for (std::size_t b = 0; b < buckets; ++b) sum += std::exchange(place[b], sum);
+    for (const auto entry : order) other[place[digit(entry, pass)]++] = entry;
     order.swap(other);
   }
   std::vector<KeyedItem> sorted(items.size());

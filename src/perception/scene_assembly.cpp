@@ -65,7 +65,8 @@ void appendCluxels(const SceneTiles& tiles, const TileKey& key, const TileNumber
     const std::size_t first = all.edge_target.size();
     for (std::uint32_t e = graph.edge_offset[c]; e < graph.edge_offset[c + 1]; ++e)
       all.edge_target.push_back(base[graph.edge_target[e].ring] + graph.edge_target[e].index);
-    std::sort(all.edge_target.begin() + static_cast<std::ptrdiff_t>(first), all.edge_target.end());
+    const auto begin = all.edge_target.begin() + static_cast<std::ptrdiff_t>(first);
+    if (!std::is_sorted(begin, all.edge_target.end())) std::sort(begin, all.edge_target.end());   // inside of a tile they are
     all.edge_offset.push_back(static_cast<std::uint32_t>(all.edge_target.size()));
   }
 }

@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
-#include "perception/tree_kernel.hpp"
+#include "perception/tree_scoring.hpp"
 
 namespace cluxel {
 
@@ -20,7 +21,10 @@ class FlatTrees {
       for (const TreeSplit& split : tree.splits) x_splits.push_back({split.column, split.threshold});
       x_split_begin.push_back(static_cast<std::uint32_t>(x_splits.size()));
       x_leaf_begin.push_back(static_cast<std::uint32_t>(x_leaves.size()));
-      for (const LabelValues& leaf : tree.leaves) x_leaves.insert(x_leaves.end(), leaf.begin(), leaf.end());
+      const std::size_t size = tree.leaves.size() * kPrimitiveLabelCount;
+      static_assert(sizeof(LabelValues) == kPrimitiveLabelCount * sizeof(float));
+      x_leaves.resize(x_leaves.size() + size);
+      if (size > 0) std::memcpy(x_leaves.data() + x_leaf_begin.back(), tree.leaves.data(), size * sizeof(float));
     }
     x_leaves.resize(x_leaves.size() + kLeafRead);   // the last leaf is read beyond its end
   }
@@ -43,39 +47,48 @@ class RowBlock {
     for (std::size_t r = 0; r < rows.size(); ++r)
       for (std::size_t c = 0; c < x_columns; ++c) x_values[c * kTreeRows + r] = rows[r][c];
   }
-  void score(const LabelValues& bias, const TreeTable& table, TreeKernel* kernel, std::span<LabelValues> scores) {
-    x_sums.fill(0.0F);
-    for (std::size_t r = 0; r < kTreeRows; ++r) std::copy(bias.begin(), bias.end(), x_sums.begin() + r * kLeafRead);
-    kernel(table, x_values.data(), x_sums.data());
-    for (std::size_t r = 0; r < scores.size(); ++r) std::copy_n(x_sums.begin() + r * kLeafRead, scores[r].size(), scores[r].begin());
+  void score(const LabelValues& bias, const TreeTable& table, const LaneKernels& kernels, std::span<LabelValues> scores) {
+    x_sums.fill({});
+    for (auto& sums : x_sums)
+      for (std::size_t k = 0; k < bias.size(); ++k) sums[k] = bias[k];
+    kernels.add_trees(table, x_values.data(), x_sums.front().data());
+    for (std::size_t r = 0; r < scores.size(); ++r)
+      for (std::size_t k = 0; k < bias.size(); ++k) scores[r][k] = x_sums[r][k];
   }
 
  private:
   std::size_t x_columns;
   std::vector<float> x_values;
-  std::array<float, kTreeRows * kLeafRead> x_sums{};
+  std::array<std::array<float, kLeafRead>, kTreeRows> x_sums{};
 };
 
-}  // namespace
-
-std::vector<LabelValues> scoreRows(const TreeEnsemble& ensemble, std::span<const float* const> rows) {
+std::vector<LabelValues> scoreBlocks(const TreeEnsemble& ensemble, std::span<const float* const> rows, const LaneKernels& kernels) {
   std::vector<LabelValues> scores(rows.size());
   RowBlock block(ensemble.columns);
   const FlatTrees trees(ensemble);
-  TreeKernel* const kernel = fastestTreeKernel();
   for (std::size_t begin = 0; begin < rows.size(); begin += kTreeRows) {
     const std::size_t count = std::min(kTreeRows, rows.size() - begin);
     block.fill(rows.subspan(begin, count));
-    block.score(ensemble.bias, trees.table(), kernel, std::span(scores).subspan(begin, count));
+    block.score(ensemble.bias, trees.table(), kernels, std::span(scores).subspan(begin, count));
   }
   return scores;
 }
 
-std::vector<LabelValues> scoreRows(const TreeEnsemble& ensemble, std::span<const float> features) {
+}  // namespace
+
+std::vector<LabelValues> scoreRows(const TreeEnsemble& ensemble, std::span<const float* const> rows) {
+  return scoreBlocks(ensemble, rows, fastestKernels());
+}
+
+std::vector<LabelValues> scoreRows(const TreeEnsemble& ensemble, std::span<const float> features, const LaneKernels& kernels) {
   if (ensemble.columns == 0) return {};
   std::vector<const float*> rows(features.size() / ensemble.columns);
   for (std::size_t r = 0; r < rows.size(); ++r) rows[r] = features.data() + r * ensemble.columns;
-  return scoreRows(ensemble, rows);
+  return scoreBlocks(ensemble, rows, kernels);
+}
+
+std::vector<LabelValues> scoreRows(const TreeEnsemble& ensemble, std::span<const float> features) {
+  return scoreRows(ensemble, features, fastestKernels());
 }
 
 LabelValues softmax(const LabelValues& scores) {

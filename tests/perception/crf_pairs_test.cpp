@@ -141,20 +141,36 @@ PairModel randomModel(std::mt19937& random, std::size_t columns, float degree_po
   return model;
 }
 
-TEST(CrfPairs, GiveTheSameBitsByTableAndByFormula) {
-  std::mt19937 random(8);
+/// Edges under a model: some features lie on a knot, some are not a number.
+std::vector<std::vector<float>> randomEdges(std::mt19937& random, const PairModel& model, std::size_t count) {
   std::normal_distribution<float> normal(0, 2);
+  const std::size_t columns = model.knots.size();
+  std::vector<std::vector<float>> edges(count, std::vector<float>(columns));
+  for (std::size_t e = 0; e < count && columns > 0; ++e) {
+    for (float& value : edges[e]) value = normal(random);
+    if (e % 3 == 0) edges[e][e % columns] = model.knots[e % columns][e % kHats];
+    if (e % 7 == 0) edges[e][e % columns] = std::numeric_limits<float>::quiet_NaN();
+  }
+  return edges;
+}
+
+void expectTheFormulasBits(const PairModel& model, const std::vector<std::vector<float>>& edges, const LaneKernels& kernels) {
+  std::vector<PairCostTable::Edge> listed;
+  for (std::uint32_t degrees = 0; degrees < edges.size(); ++degrees) listed.push_back({edges[degrees].data(), degrees});
+  const auto costs = PairCostTable(model, kernels).costsOf(listed);
+  ASSERT_EQ(costs.size(), edges.size());
+  for (std::uint32_t degrees = 0; degrees < edges.size(); ++degrees)
+    EXPECT_EQ(costs[degrees], pairCostsOf(model, edges[degrees], shareOf(degrees))) << degrees;
+}
+
+TEST(CrfPairs, GiveTheSameBitsByTableOfAnyWidthAndByFormula) {
+  std::mt19937 random(8);
   for (const std::size_t columns : {0U, 1U, 3U, 4U, 6U, 10U, 12U, 32U, 33U})
     for (const float degree_power : {0.0F, 0.5F, 1.0F}) {
       const PairModel model = randomModel(random, columns, degree_power);
-      const PairCostTable table(model);
-      for (std::uint32_t degrees = 0; degrees < 300; ++degrees) {
-        std::vector<float> features(columns);
-        for (float& value : features) value = normal(random);
-        if (columns > 0 && degrees % 3 == 0) features[degrees % columns] = model.knots[degrees % columns][degrees % 2U];
-        if (columns > 0 && degrees % 7 == 0) features[degrees % columns] = std::numeric_limits<float>::quiet_NaN();
-        EXPECT_EQ(table.at(features.data(), degrees), pairCostsOf(model, features, shareOf(degrees)));
-      }
+      const auto edges = randomEdges(random, model, 299);   // not a multiple of a vector
+      expectTheFormulasBits(model, edges, laneKernels<4>());
+      if (hasEightLanes()) expectTheFormulasBits(model, edges, laneKernels<8>());
     }
 }
 

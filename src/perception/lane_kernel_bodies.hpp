@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The body of the tree kernel; included by the two sources that compile it.
+// The bodies of the lane kernels; included by the two sources that compile them. Nothing of a library may be called here:
+// the linker would be free to take its AVX2 version for the whole program.
 #pragma once
 
 #include "cluxel/scan/primitive_label.hpp"
-#include "perception/tree_kernel.hpp"
+#include "perception/lane_kernels.hpp"
 
 namespace cluxel {
 
@@ -65,7 +66,7 @@ struct TreeLanes {
 };
 
 template <std::size_t kWidth>
-void addTrees(const TreeTable& table, const float* columns, float* sums) {
+static void addTrees(const TreeTable& table, const float* columns, float* sums) {
   using Lanes = TreeLanes<kWidth>;
   typename Lanes::Places places;
   for (std::size_t first = 0; first < table.trees; first += Lanes::kTogether) {
@@ -76,6 +77,51 @@ void addTrees(const TreeTable& table, const float* columns, float* sums) {
     else
       Lanes::addLeaves(table, first, count, places, sums);
   }
+}
+
+template <std::size_t kWidth>
+struct PairLanes {
+  using Values = typename VectorTypes<kWidth>::Values;
+  static constexpr std::size_t kPairs = kPrimitiveLabelCount * (kPrimitiveLabelCount - 1) / 2;
+
+  [[gnu::always_inline]] static const Values& at(const float* values, std::size_t number) {
+    return *reinterpret_cast<const Values*>(values + number * kPairEdges);
+  }
+
+  /// Costs of kWidth edges; the tables' numbers stand at the lanes' places.
+  [[gnu::always_inline]] static void costsOf(const PairTable& table, const float* columns, const float* factors, float* costs) {
+    const Values zero{}, one = zero + 1.0F;
+    Values sum[kPairs];
+    for (std::size_t pair = 0; pair < kPairs; ++pair) sum[pair] = at(table.bias, pair);
+    for (std::size_t column = 0; column < table.columns; ++column) {
+      const float* knots = table.knots + 4 * column * kPairEdges;
+      const Values value = at(columns, column), middle = at(knots, 1);
+      // A value that is not a number lies below nothing, and rises nowhere: it counts as the middle.
+      const auto below = value < middle;
+      const Values place = (value - (below ? at(knots, 0) : middle)) / (below ? at(knots, 2) : at(knots, 3));
+      const Values raised = place > zero ? place : zero, rise = raised < one ? raised : one, rest = one - rise;
+      const float* weights = table.weights + 3 * kPairs * column * kPairEdges;
+      for (std::size_t pair = 0; pair < kPairs; ++pair, weights += 3 * kPairEdges) {
+        const Values in_middle = at(weights, 1);
+        sum[pair] += (below ? at(weights, 0) : in_middle) * rest;
+        sum[pair] += (below ? in_middle : at(weights, 2)) * rise;
+      }
+    }
+    for (std::size_t pair = 0; pair < kPairs; ++pair)
+      *reinterpret_cast<Values*>(costs + pair * kPairEdges) = (sum[pair] > zero ? sum[pair] : zero) * at(factors, 0);
+  }
+};
+
+template <std::size_t kWidth>
+static void pairCosts(const PairTable& table, const float* columns, const float* factors, float* costs) {
+  for (std::size_t lane = 0; lane < kPairEdges; lane += kWidth)
+    PairLanes<kWidth>::costsOf({table.bias + lane, table.knots + lane, table.weights + lane, table.columns}, columns + lane,
+                               factors + lane, costs + lane);
+}
+
+template <std::size_t kWidth>
+LaneKernels laneKernels() {
+  return {addTrees<kWidth>, pairCosts<kWidth>};
 }
 
 }  // namespace cluxel
