@@ -33,7 +33,7 @@ Arguments argumentsOf(int argc, char** argv) {
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string option = argv[i], value = argv[i + 1];
     if (option == "--only") arguments.only = value;
-    if (option == "--module") arguments.module = value;
+    if (option == "--module") arguments.module = fs::absolute(value);   // node would look beside its script
     if (option == "--rasqal") arguments.rasqal = std::stoull(value);
     if (option == "--alone") arguments.alone = std::stoull(value);
     if (option != "--oxigraph") continue;

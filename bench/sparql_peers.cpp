@@ -14,6 +14,7 @@
 #include "cluxel/knowledge/quad_store.hpp"
 #include "cluxel/sparql/query_engine.hpp"
 #include "cluxel/sparql/result_writer.hpp"
+#include "sparql/no_sink.hpp"
 
 namespace cluxel::bench {
 
@@ -25,17 +26,6 @@ constexpr const char* kPrefixes =
     "PREFIX clx: <https://w3id.org/cluxel/ontology#> PREFIX rdfs: <http://www.w3.org/2000/01/rdf-schema#> "
     "PREFIX sosa: <http://www.w3.org/ns/sosa/> PREFIX geo: <http://www.opengis.net/ont/geosparql#> "
     "PREFIX geof: <http://www.opengis.net/def/function/geosparql/> ";
-
-/// Takes an answer and forgets it.
-class NoSink : public ResultSink {
- public:
-  void beginSolutions(std::span<const std::string>, const TermLookup&) override {}
-  void rows(std::span<const ResultId>, std::size_t) override {}
-  void boolean(bool) override {}
-  void beginGraph() override {}
-  void triple(const TermView&, const TermView&, const TermView&) override {}
-  void end() override {}
-};
 
 /// The sum of the actual rows of all operators, as the plan's text tells them.
 double workRows(const QuadReader& reader, const Question& question) {

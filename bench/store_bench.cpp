@@ -279,65 +279,65 @@ void addTenThousand(benchmark::State& state) {
 }
 BENCHMARK(addTenThousand)->Unit(benchmark::kMillisecond)->Iterations(5);
 
+/// A model of librdf over one of its own storages (0 hashes in memory, 1 trees) with triples in it.
+class LibrdfModel {
+ public:
+  LibrdfModel(std::int64_t kind, const std::string& text) {
+    librdf_world_open(world_);
+    storage_ = kind == 0 ? librdf_new_storage(world_, "hashes", "b", "hash-type='memory',new='yes'")
+                         : librdf_new_storage(world_, "trees", "b", nullptr);
+    model_ = librdf_new_model(world_, storage_, nullptr);
+    librdf_parser* parser = librdf_new_parser(world_, "ntriples", nullptr, nullptr);
+    librdf_uri* base = librdf_new_uri(world_, bytes("http://x/"));
+    librdf_parser_parse_string_into_model(parser, bytes(text), base, model_);
+    librdf_free_uri(base);
+    librdf_free_parser(parser);
+  }
+  ~LibrdfModel() {
+    librdf_free_model(model_);
+    librdf_free_storage(storage_);
+    librdf_free_world(world_);
+  }
+  LibrdfModel(const LibrdfModel&) = delete;
+  LibrdfModel& operator=(const LibrdfModel&) = delete;
+
+  librdf_node* node(const std::string& iri) const { return librdf_new_node_from_uri_string(world_, bytes(iri)); }
+  librdf_model* get() const { return model_; }
+
+ private:
+  static const unsigned char* bytes(const std::string& text) {
+    return reinterpret_cast<const unsigned char*>(text.c_str());
+  }
+  librdf_world* world_ = librdf_new_world();
+  librdf_storage* storage_ = nullptr;
+  librdf_model* model_ = nullptr;
+};
+
 /// Loading into librdf's own storages: 0 hashes in memory, 1 trees. 100k triples.
 void loadLibrdf(benchmark::State& state) {
   const std::string text = generatedNTriples(100'000);
-  for (auto _ : state) {
-    librdf_world* world = librdf_new_world();
-    librdf_world_open(world);
-    librdf_storage* storage = state.range(0) == 0
-                                  ? librdf_new_storage(world, "hashes", "b", "hash-type='memory',new='yes'")
-                                  : librdf_new_storage(world, "trees", "b", nullptr);
-    librdf_model* model = librdf_new_model(world, storage, nullptr);
-    librdf_parser* parser = librdf_new_parser(world, "ntriples", nullptr, nullptr);
-    librdf_uri* base = librdf_new_uri(world, reinterpret_cast<const unsigned char*>("http://x/"));
-    librdf_parser_parse_string_into_model(parser, reinterpret_cast<const unsigned char*>(text.c_str()), base,
-                                          model);
-    librdf_free_uri(base);
-    librdf_free_parser(parser);
-    librdf_free_model(model);
-    librdf_free_storage(storage);
-    librdf_free_world(world);
-  }
+  for (auto _ : state) LibrdfModel(state.range(0), text);
 }
 BENCHMARK(loadLibrdf)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->Iterations(1);
 
 /// Targets of random subjects in librdf's own storages of 100k triples: 0 hashes in memory, 1 trees.
 void lookupLibrdf(benchmark::State& state) {
   const std::size_t objects = 100'000 / 8;
-  const std::string text = generatedNTriples(100'000);
-  librdf_world* world = librdf_new_world();
-  librdf_world_open(world);
-  librdf_storage* storage = state.range(0) == 0
-                                ? librdf_new_storage(world, "hashes", "b", "hash-type='memory',new='yes'")
-                                : librdf_new_storage(world, "trees", "b", nullptr);
-  librdf_model* model = librdf_new_model(world, storage, nullptr);
-  librdf_parser* parser = librdf_new_parser(world, "ntriples", nullptr, nullptr);
-  librdf_uri* base = librdf_new_uri(world, reinterpret_cast<const unsigned char*>("http://x/"));
-  librdf_parser_parse_string_into_model(parser, reinterpret_cast<const unsigned char*>(text.c_str()), base,
-                                        model);
-  const auto node = [&](const std::string& iri) {
-    return librdf_new_node_from_uri_string(world, reinterpret_cast<const unsigned char*>(iri.c_str()));
-  };
-  librdf_node* near = node("https://w3id.org/cluxel/ontology#near");
+  const LibrdfModel model(state.range(0), generatedNTriples(100'000));
+  librdf_node* near = model.node("https://w3id.org/cluxel/ontology#near");
   std::mt19937 random(8);
   std::size_t found = 0;
   for (auto _ : state) {
     const std::size_t i = random() % objects;
     librdf_node* subject =
-        node("https://w3id.org/cluxel/map/object/" + std::to_string(i * 2654435761U % 4294967291U));
-    librdf_iterator* targets = librdf_model_get_targets(model, subject, near);
+        model.node("https://w3id.org/cluxel/map/object/" + std::to_string(i * 2654435761U % 4294967291U));
+    librdf_iterator* targets = librdf_model_get_targets(model.get(), subject, near);
     for (; librdf_iterator_end(targets) == 0; librdf_iterator_next(targets)) ++found;
     librdf_free_iterator(targets);
     librdf_free_node(subject);
   }
   benchmark::DoNotOptimize(found);
   librdf_free_node(near);
-  librdf_free_uri(base);
-  librdf_free_parser(parser);
-  librdf_free_model(model);
-  librdf_free_storage(storage);
-  librdf_free_world(world);
 }
 BENCHMARK(lookupLibrdf)->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond)->Iterations(20);
 

@@ -13,4 +13,7 @@ namespace cluxel {
 /// Schema 1.1 part 2, without surrounding blanks (RDF 1.1 concepts, 5).
 DecodedValue decodeLiteral(std::string_view lexical, std::string_view datatype);
 
+/// Gives the value of an xsd:decimal its exact digits, where they are few enough.
+void addExactDigits(std::string_view lexical, DecodedValue& value);
+
 }  // namespace cluxel

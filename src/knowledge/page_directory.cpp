@@ -3,6 +3,7 @@
 #include "knowledge/page_directory.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "cluxel/base/diagnostic.hpp"
 
@@ -68,6 +69,11 @@ std::size_t lowerBoundNear(std::span<const QuadKey> keys, std::size_t start, Key
   }
   const std::size_t low = step <= start ? start - step + 1 : 0;
   return low + lowerBoundIn(keys.data() + low, high - low, key);
+}
+
+/// All bits or none: a choice that the compiler makes no branch of, as a wrong guess would wait for the memory.
+std::size_t maskOf(bool chosen) {
+  return std::size_t{0} - static_cast<std::size_t>(chosen);
 }
 
 /// The last of `lower` not greater than `key`, or the first.
@@ -182,6 +188,57 @@ PageDirectory::Position PageDirectory::lowerBound(Key128 key, Position hint) con
   if (hint.page + 1 >= count || key < lower_[hint.page + 1]) return within(hint.page, key);
   if (hint.page + 2 >= count || key < lower_[hint.page + 2]) return within(hint.page + 1, key);
   return lowerBound(key);
+}
+
+void PageDirectory::lowerBounds(std::span<const Key128> keys, std::span<Position> found) const {
+  for (std::size_t at = 0; at < keys.size(); at += kTogether) {
+    const std::size_t count = std::min(kTogether, keys.size() - at);
+    lowerBoundsOfGroup(keys.subspan(at, count), found.subspan(at, count));
+  }
+}
+
+void PageDirectory::lowerBoundsOfGroup(std::span<const Key128> keys, std::span<Position> found) const {
+  if (pages_.empty()) return std::fill(found.begin(), found.end(), end());
+  const auto [least, most] = std::minmax_element(keys.begin(), keys.end());
+  const std::size_t first = pageOf(lower_, *least), last = pageOf(lower_, *most);
+  for (Position& position : found) position.page = first;
+  for (std::size_t count = last - first + 1; count > 1; count -= count / 2) {
+    const std::size_t half = count / 2;
+    for (std::size_t k = 0; k < keys.size(); ++k) found[k].page += half & maskOf(lower_[found[k].page + half] <= keys[k]);
+  }
+  for (const Position& position : found) {
+    const auto* page = reinterpret_cast<const std::uint8_t*>(pages_[position.page]);
+    if (!single_) __builtin_prefetch(page - lmdb_page::kHeaderSize);
+    __builtin_prefetch(page + most_keys_ / 2 * sizeof(QuadKey));
+  }
+  searchPages(keys, found);
+}
+
+/// As lowerBoundIn(), on the page of each key.
+void PageDirectory::searchPages(std::span<const Key128> keys, std::span<Position> found) const {
+  std::array<const QuadKey*, kTogether> starts;
+  std::array<std::size_t, kTogether> counts;
+  std::size_t largest = 0;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const auto entries = page(found[k].page);
+    starts[k] = entries.data();
+    counts[k] = entries.size();
+    largest = std::max(largest, entries.size());
+  }
+  for (; largest > 1; largest -= largest / 2) {
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      const std::size_t half = counts[k] / 2;
+      const QuadKey& middle = starts[k][half - static_cast<std::size_t>(half > 0)];
+      starts[k] += half & maskOf(toNumber(middle) < keys[k]);
+      counts[k] -= half;
+    }
+  }
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const auto entries = page(found[k].page);
+    found[k].index = static_cast<std::size_t>(starts[k] - entries.data());
+    if (counts[k] == 1 && toNumber(*starts[k]) < keys[k]) ++found[k].index;
+    if (found[k].index == entries.size()) found[k] = {found[k].page + 1, 0};
+  }
 }
 
 std::uint64_t PageDirectory::distance(Position from, Position to) const {

@@ -69,6 +69,9 @@ class PageDirectory {
   Position lowerBound(Key128 key) const;
   /// The same; fast when the answer is on the page of `hint` or the next.
   Position lowerBound(Key128 key, Position hint) const;
+  /// The same for many keys, step by step for all of them: the reads of a step do not wait for each other, while in a
+  /// great map each read of a single search waits for the main memory.
+  void lowerBounds(std::span<const Key128> keys, std::span<Position> found) const;
   /// The exact number of keys in [from, to). Cost: one step per page.
   std::uint64_t distance(Position from, Position to) const;
 
@@ -80,7 +83,10 @@ class PageDirectory {
   void addPage(Key128 lower, const std::uint8_t* page);
   void collect(const PageMap& map, lmdb_page::PageNumber number, Key128 lower, int depth);
   Position within(std::size_t page, Key128 key) const;
+  void lowerBoundsOfGroup(std::span<const Key128> keys, std::span<Position> found) const;
+  void searchPages(std::span<const Key128> keys, std::span<Position> found) const;
 
+  static constexpr std::size_t kTogether = 64;
   std::size_t most_keys_ = 65536 / sizeof(QuadKey);  ///< what a page holds, whatever a damaged one says
   std::vector<Key128> lower_;  ///< no key of the page is less, every key of the page before is
   std::vector<const QuadKey*> pages_;

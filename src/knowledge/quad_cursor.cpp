@@ -122,11 +122,24 @@ QuadOrder QuadCursor::order() const {
   return impl_ ? impl_->order : QuadOrder::Spog;
 }
 
-/// The last position, so that ascending lookups start from it.
+/// The last position, so that ascending lookups start from it, and the places of those to come.
 struct PrefixLookup::Impl {
+  explicit Impl(const PageDirectory& from) : directory(from) {}
+
   const PageDirectory& directory;
   PageDirectory::Position position;
   KeyRange range;
+  std::vector<Key128> expected;         ///< where the ranges of lookups to come begin
+  std::vector<PageDirectory::Position> places;   ///< the lower bounds of those
+  std::size_t next_expected = 0;
+
+  void seek() {
+    if (next_expected < expected.size() && expected[next_expected] == range.first) {
+      position = places[next_expected++];
+    } else {
+      position = directory.lowerBound(range.first, position);
+    }
+  }
 
   std::span<const QuadKey> take() {
     if (position.page >= directory.pageCount()) return {};
@@ -154,10 +167,21 @@ PrefixLookup::PrefixLookup(PrefixLookup&&) noexcept = default;
 PrefixLookup& PrefixLookup::operator=(PrefixLookup&&) noexcept = default;
 PrefixLookup::~PrefixLookup() = default;
 
+void PrefixLookup::expect(std::span<const TermId> prefixes, std::size_t length) {
+  if (!impl_ || impl_->directory.pageCount() == 0) return;
+  impl_->expected.clear();
+  impl_->next_expected = 0;
+  for (std::size_t at = 0; at + length <= prefixes.size(); at += length) {
+    impl_->expected.push_back(rangeOf(prefixes.subspan(at, length)).first);
+  }
+  impl_->places.resize(impl_->expected.size());
+  impl_->directory.lowerBounds(impl_->expected, impl_->places);
+}
+
 std::span<const QuadKey> PrefixLookup::find(std::span<const TermId> prefix) {
   if (!impl_) return {};
   impl_->range = rangeOf(prefix);
-  impl_->position = impl_->directory.lowerBound(impl_->range.first, impl_->position);
+  impl_->seek();
   return impl_->take();
 }
 
@@ -168,8 +192,7 @@ std::span<const QuadKey> PrefixLookup::more() {
 }
 
 PrefixLookup QuadReader::lookup(QuadOrder order) const {
-  return PrefixLookup(
-      std::unique_ptr<PrefixLookup::Impl>(new PrefixLookup::Impl{impl_->directory(order), {}, {}}));
+  return PrefixLookup(std::make_unique<PrefixLookup::Impl>(impl_->directory(order)));
 }
 
 }  // namespace cluxel

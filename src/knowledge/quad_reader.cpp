@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cluxel/knowledge/vocabulary.hpp"
+#include "knowledge/literal_value.hpp"
 #include "knowledge/quad_cursor.hpp"
 #include "knowledge/quad_reader_impl.hpp"
 #include "knowledge/term_record.hpp"
@@ -112,11 +113,34 @@ Term QuadReader::termOf(TermId id) const {
 const DecodedValue& QuadReader::valueOf(TermId id) const {
   static const DecodedValue none;
   if (id == kNoTerm) return none;
-  const auto decode = [this](TermId wanted) { return decodeTerm(impl_->record(wanted)).value; };
+  const auto decode = [this](TermId wanted) {
+    TermRecord record = decodeTerm(impl_->record(wanted));
+    if (record.value.type == DecodedValue::Type::Decimal) addExactDigits(record.text, record.value);
+    return record.value;
+  };
   if (id <= impl_->committed_terms) return impl_->state().environment->values().get(id, decode);
   const auto found = impl_->own_values.find(id);
   return found != impl_->own_values.end() ? found->second
                                           : impl_->own_values.emplace(id, decode(id)).first->second;
+}
+
+void QuadReader::expectViews(std::span<const TermId> ids) const {
+  if (!impl_->state().writing) impl_->snapshot().expectRecords(ids);
+}
+
+void QuadReader::expectValues(std::span<const TermId> ids) const {
+  constexpr std::size_t together = 64;
+  std::array<TermId, together> undecoded;
+  const ValueCache& cache = impl_->state().environment->values();
+  for (; !ids.empty(); ids = ids.subspan(std::min(ids.size(), together))) {
+    const auto group = ids.first(std::min(ids.size(), together));
+    std::size_t count = 0;
+    for (const TermId id : group) cache.expect(id);
+    for (const TermId id : group) {
+      if (!cache.has(id)) undecoded[count++] = id;
+    }
+    if (count > 0) expectViews({undecoded.data(), count});
+  }
 }
 
 QuadOrder QuadReader::bestOrder(const QuadPattern& pattern) {

@@ -15,9 +15,6 @@ namespace {
 
 using namespace lmdb_page;
 
-constexpr int kMaxDepth = 32;
-constexpr std::uint64_t kNoMoreIds = 0xFFFFFFFF;
-
 [[noreturn]] void damaged() {
   throw Error(ExitCode::StoreUnavailable,
               "the map is damaged: its dictionary points outside the file; `cluxel doctor` tells where");
@@ -50,75 +47,6 @@ PageMap mapAround(const void* inside, const ReadTransaction::Impl& transaction) 
 
 }  // namespace
 
-TermDirectory::TermDirectory(const PageMap& map, const Tree& table) : map_(map) {
-  if (table.leaf_pages > map.page_count) damaged();
-  first_.reserve(table.leaf_pages);
-  pages_.reserve(table.leaf_pages);
-  if (table.root != kNoPage) collect(table.root, 1, 0);
-  if (table.entries >= kNoMoreIds) damaged();
-  first_.push_back(static_cast<TermId>(table.entries) + 1);
-  indexIds();
-}
-
-void TermDirectory::indexIds() {
-  const TermId end = first_.back();
-  page_of_.reserve((end >> kStrideBits) + 1);
-  std::uint32_t page = 0;
-  for (std::uint64_t id = 0; id < end; id += std::uint64_t{1} << kStrideBits) {
-    while (page + 1 < pages_.size() && first_[page + 1] <= id) ++page;
-    page_of_.push_back(page);
-  }
-}
-
-void TermDirectory::collect(PageNumber number, TermId first, int depth) {
-  const std::uint8_t* page = map_.page(number);
-  if (depth > kMaxDepth) damaged();
-  if ((header(page).flags & kLeaf) != 0) {
-    first_.push_back(first);
-    pages_.push_back(page);
-    return;
-  }
-  const std::size_t count = std::min<std::size_t>(lmdb_page::entryCount(page), map_.page_size / 2);
-  bool leaves = false;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t at = load<std::uint16_t>(page + kHeaderSize + 2 * i);
-    if (at + 8 + sizeof(TermId) > map_.page_size && (i > 0 || at + 8 > map_.page_size)) damaged();
-    const Node node(page + at);
-    const TermId child_first = i == 0 || node.keySize() != sizeof(TermId) ? first : load<TermId>(node.key());
-    const std::uint8_t* child = map_.page(node.child());
-    if (i == 0) leaves = (header(child).flags & kLeaf) != 0;
-    if (leaves) {
-      first_.push_back(child_first);
-      pages_.push_back(child);
-    } else {
-      collect(node.child(), child_first, depth + 1);
-    }
-  }
-}
-
-std::string_view TermDirectory::record(TermId id) const {
-  if (id == kNoTerm || id >= first_.back() || pages_.empty()) return {};
-  std::size_t number = page_of_[id >> kStrideBits];
-  while (number + 1 < pages_.size() && first_[number + 1] <= id) ++number;
-  const std::uint8_t* page = pages_[number];
-  const std::size_t i = id - first_[number];
-  if (i >= lmdb_page::entryCount(page)) return {};
-  const std::size_t at = load<std::uint16_t>(page + kHeaderSize + 2 * i);
-  if (at + 8 + sizeof(TermId) > map_.page_size) damaged();
-  const Node node(page + at);
-  if (node.keySize() != sizeof(TermId) || load<TermId>(node.key()) != id) damaged();
-  const std::uint8_t* data = node.data();
-  const std::size_t size = node.dataSize();
-  if ((node.flags() & kBigData) != 0) {
-    const PageNumber first_page = load<PageNumber>(data);
-    map_.page(first_page + (kHeaderSize + size - 1) / map_.page_size);
-    data = map_.page(first_page) + kHeaderSize;
-  } else if (data + size > page + map_.page_size) {
-    damaged();
-  }
-  return {reinterpret_cast<const char*>(data), size};
-}
-
 StoreSnapshot::StoreSnapshot(const ReadTransaction::Impl& transaction)
     : size_(entriesOf(transaction, Table::Spog)), term_count_(entriesOf(transaction, Table::Terms)) {
   if (transaction.writing) return;
@@ -149,13 +77,21 @@ const PageDirectory& StoreSnapshot::directory(Table index, const ReadTransaction
   return directories_[i];
 }
 
+const TermDirectory& StoreSnapshot::terms() {
+  std::call_once(terms_made_, [&] {
+    terms_ = std::make_unique<TermDirectory>(map_, trees_[static_cast<std::size_t>(Table::Terms)]);
+  });
+  return *terms_;
+}
+
+void StoreSnapshot::expectRecords(std::span<const TermId> ids) {
+  if (map_.base != nullptr) terms().expect(ids);
+}
+
 std::string_view StoreSnapshot::record(TermId id, const ReadTransaction::Impl& transaction) {
   std::string_view bytes;
   if (map_.base != nullptr) {
-    std::call_once(terms_made_, [&] {
-      terms_ = std::make_unique<TermDirectory>(map_, trees_[static_cast<std::size_t>(Table::Terms)]);
-    });
-    bytes = terms_->record(id);
+    bytes = terms().record(id);
   } else {
     MDB_val key{sizeof id, &id};
     MDB_val data{0, nullptr};

@@ -12,26 +12,9 @@
 #include "cluxel/knowledge/quad_store.hpp"
 #include "knowledge/lmdb_environment.hpp"
 #include "knowledge/page_directory.hpp"
+#include "knowledge/term_directory.hpp"
 
 namespace cluxel {
-
-/// The leaf pages of the term table of a mapped commit: ids are dense, so a term's place follows from its
-/// page's first.
-class TermDirectory {
- public:
-  TermDirectory(const PageMap& map, const lmdb_page::Tree& table);  ///< cost: one step per leaf page
-  /// The record of `id`; empty when there is none.
-  std::string_view record(TermId id) const;
-
- private:
-  void collect(lmdb_page::PageNumber number, TermId first, int depth);
-  PageMap map_;
-  void indexIds();
-  static constexpr unsigned kStrideBits = 6;
-  std::vector<TermId> first_;  ///< of each page; one more entry ends the last
-  std::vector<const std::uint8_t*> pages_;
-  std::vector<std::uint32_t> page_of_;  ///< the page of every 64th id
-};
 
 class StoreSnapshot {
  public:
@@ -44,6 +27,8 @@ class StoreSnapshot {
   const PageDirectory& directory(Table index, const ReadTransaction::Impl& transaction);
   /// The bytes of a term; an Error when there is no such id. Thread-safe.
   std::string_view record(TermId id, const ReadTransaction::Impl& transaction);
+  /// Asks the memory for the records of terms that are wanted soon. Thread-safe.
+  void expectRecords(std::span<const TermId> ids);
 
   std::optional<QuadReader::PredicateStatistics> knownStatistics(TermId predicate);
   void keepStatistics(TermId predicate, const QuadReader::PredicateStatistics& statistics);
@@ -56,6 +41,7 @@ class StoreSnapshot {
   std::array<lmdb_page::Tree, kTableCount> trees_{};
   std::array<std::once_flag, kTableCount> made_;
   std::array<PageDirectory, kTableCount> directories_;
+  const TermDirectory& terms();
   std::once_flag terms_made_;
   std::unique_ptr<TermDirectory> terms_;
   std::mutex statistics_mutex_;

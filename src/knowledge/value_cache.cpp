@@ -2,22 +2,28 @@
 // Filling of the value cache by several threads at once.
 #include "knowledge/value_cache.hpp"
 
-#include <cstdlib>
+#include <sys/mman.h>
+
 #include <new>
 #include <thread>
 
 namespace cluxel {
 
 ValueCache::~ValueCache() {
-  for (auto& chunk : chunks_) std::free(chunk.load());
+  for (auto& chunk : chunks_) {
+    if (Slot* slots = chunk.load()) ::munmap(slots, kChunkSize * sizeof(Slot));
+  }
 }
 
 ValueCache::Slot* ValueCache::makeChunk(std::size_t number) {
-  auto* made = static_cast<Slot*>(std::calloc(kChunkSize, sizeof(Slot)));
-  if (made == nullptr) throw std::bad_alloc();
+  // Zeroed, and at the start of a page: no slot lies across two cache lines.
+  void* const memory =
+      ::mmap(nullptr, kChunkSize * sizeof(Slot), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) throw std::bad_alloc();
+  auto* made = static_cast<Slot*>(memory);
   Slot* present = nullptr;
   if (chunks_[number].compare_exchange_strong(present, made, std::memory_order_acq_rel)) return made;
-  std::free(made);
+  ::munmap(memory, kChunkSize * sizeof(Slot));
   return present;
 }
 

@@ -29,14 +29,25 @@ class ValueCache {
     if (state.load(std::memory_order_acquire) != kReady) fill(slot, [&] { return decode(id); });
     return slot.value;
   }
+  /// Asks the memory for the slot of `id`.
+  void expect(TermId id) const {
+    const Slot* chunk = chunks_[id >> kChunkBits].load(std::memory_order_acquire);
+    if (chunk != nullptr) __builtin_prefetch(&chunk[id & (kChunkSize - 1)]);
+  }
+  /// True when get() need not decode.
+  bool has(TermId id) const {
+    Slot* chunk = chunks_[id >> kChunkBits].load(std::memory_order_acquire);
+    if (chunk == nullptr) return false;
+    return std::atomic_ref<std::uint8_t>(chunk[id & (kChunkSize - 1)].state).load(std::memory_order_relaxed) == kReady;
+  }
 
  private:
   static constexpr unsigned kChunkBits = 16;
   static constexpr std::size_t kChunkSize = std::size_t{1} << kChunkBits;
   static constexpr std::uint8_t kEmpty = 0, kFilling = 1, kReady = 2;
 
-  /// All zero bytes are an empty slot, so that fresh memory needs no visit.
-  struct Slot {
+  /// All zero bytes are an empty slot, so that fresh memory needs no visit. Two slots fill a cache line.
+  struct alignas(32) Slot {
     DecodedValue value;
     std::uint8_t state;
   };

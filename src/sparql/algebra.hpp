@@ -163,12 +163,14 @@ struct AlgebraQuery {
   bool is_volatile = false;               ///< uses the clock, chance or fresh blank nodes
 };
 
+class Guard;
+
 struct AlgebraOptions {
   std::vector<std::string> parameters = {};
   bool refuse_volatile = false;
   std::string source_name = "query";
   std::map<std::string, const QuadReader*> services = {};   ///< as in QueryOptions
-  QueryBudget budget = {};                                  ///< of each SERVICE
+  Guard* guard = nullptr;   ///< started: what SERVICE uses up counts here; not null where there are services
 };
 
 /// Throws InputError for unknown functions, wrong argument counts, refused SERVICE and volatile functions.

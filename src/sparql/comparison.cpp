@@ -172,7 +172,12 @@ std::strong_ordering termOrderOf(const Value& a, const Value& b, const QueryTerm
   if (a.isError() || b.isError()) return b.isError() <=> a.isError();
   if (a.id != kUnbound && a.id == b.id) return std::strong_ordering::equal;
   if (a.id == kUnbound || b.id == kUnbound) return terms.termOf(a) <=> terms.termOf(b);
-  const TermView x = terms.view(a.id), y = terms.view(b.id);
+  return termOrderOf(a.id, b.id, terms);
+}
+
+std::strong_ordering termOrderOf(ValueId a, ValueId b, const QueryTerms& terms) {
+  if (a == b || a == kUnbound || b == kUnbound) return (a != kUnbound) <=> (b != kUnbound);
+  const TermView x = terms.view(a), y = terms.view(b);
   return std::tie(x.kind, x.text, x.datatype, x.language) <=> std::tie(y.kind, y.text, y.datatype, y.language);
 }
 

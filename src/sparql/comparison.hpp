@@ -22,6 +22,7 @@ std::strong_ordering orderOf(const Value& a, const Value& b, const QueryTerms& t
 /// orderOf without the comparison of terms at the end.
 std::strong_ordering valueOrderOf(const Value& a, const Value& b, const QueryTerms& terms);
 std::strong_ordering termOrderOf(const Value& a, const Value& b, const QueryTerms& terms);
+std::strong_ordering termOrderOf(ValueId a, ValueId b, const QueryTerms& terms);
 /// The place of a value's type in that order.
 std::uint32_t orderRankOf(const Value& value);
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "sparql/operators.hpp"
+#include "sparql/row_filter.hpp"
 #include "sparql/row_table.hpp"
 
 namespace cluxel::sparql {
@@ -130,49 +130,36 @@ class CorrelatedJoinOperator : public UnaryOperator {
   std::size_t row_ = 0, next_ = 0;
 };
 
-class CorrelatedMinusOperator : public UnaryOperator {
+class CorrelatedMinusOperator : public RowFilter {
  public:
   CorrelatedMinusOperator(OperatorPtr child, OperatorPtr body, const std::vector<Slot>& outer,
                           const std::vector<Slot>& shared, Slot ignored)
-      : UnaryOperator(std::move(child)), outer_(outer), shared_(columnsOf(shared, body->slots())), ignored_(ignored),
+      : RowFilter(std::move(child)), outer_(outer), shared_(columnsOf(shared, body->slots())), ignored_(ignored),
         rows_(std::move(body), outer) {}
   std::string label(const PlanNames& names) const override { return "minus, for each" + outerText(outer_, names); }
 
  protected:
   void reopen(bool fresh) override {
-    UnaryOperator::reopen(fresh);
+    RowFilter::reopen(fresh);
     if (fresh) rows_.clear(runtime());
-    in_.columns.resize(runtime().slot_count);
   }
   void listInputs(std::vector<const Operator*>& inputs) const override {
-    UnaryOperator::listInputs(inputs);
+    RowFilter::listInputs(inputs);
     inputs.push_back(&rows_.body());
   }
-  bool produce(Batch& out) override {
-    while (out.rows == 0) {
-      if (!child_->next(in_)) return false;
-      kept_.clear();
-      for (std::uint32_t row = 0; row < in_.rows; ++row) {
-        if (!isRemoved(row)) kept_.push_back(row);
-      }
-      appendRows(in_, kept_, slots_, 0, out);
-      out.rows = kept_.size();
+  bool passes(const Batch& in, std::uint32_t row) override {
+    const RowTable& table = rows_.of(in, row, runtime());
+    runtime().guard.work(table.rows());
+    for (std::size_t i = 0; i < table.rows(); ++i) {
+      if (isCompatible(shared_, in, row, table.row(i)) && sharesBound(in, row, table.row(i))) return false;
     }
     return true;
   }
 
  private:
-  bool isRemoved(std::size_t row) {
-    const RowTable& table = rows_.of(in_, row, runtime());
-    runtime().guard.work(table.rows());
-    for (std::size_t i = 0; i < table.rows(); ++i) {
-      if (isCompatible(shared_, in_, row, table.row(i)) && sharesBound(row, table.row(i))) return true;
-    }
-    return false;
-  }
-  bool sharesBound(std::size_t row, const ValueId* other) const {
+  bool sharesBound(const Batch& in, std::size_t row, const ValueId* other) const {
     return std::any_of(shared_.begin(), shared_.end(), [&](const auto& column) {
-      return column.first != ignored_ && in_.at(column.first, row) != kUnbound && other[column.second] != kUnbound;
+      return column.first != ignored_ && in.at(column.first, row) != kUnbound && other[column.second] != kUnbound;
     });
   }
 
@@ -180,8 +167,6 @@ class CorrelatedMinusOperator : public UnaryOperator {
   SharedColumns shared_;
   Slot ignored_;
   CorrelatedRows rows_;
-  Batch in_;
-  std::vector<std::uint32_t> kept_;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sparql/no_sink.hpp"
 #include "sparql/prepared_query.hpp"
 
 namespace cluxel {
@@ -21,17 +22,6 @@ void printPlan(const Operator& plan, const sparql::PlanNames& names, bool has_ru
   out += line + "\n";
   for (const Operator* input : plan.inputs()) printPlan(*input, names, has_run, depth + 1, out);
 }
-
-/// Takes an answer and forgets it.
-class NoSink : public ResultSink {
- public:
-  void beginSolutions(std::span<const std::string>, const TermLookup&) override {}
-  void rows(std::span<const ResultId>, std::size_t) override {}
-  void boolean(bool) override {}
-  void beginGraph() override {}
-  void triple(const TermView&, const TermView&, const TermView&) override {}
-  void end() override {}
-};
 
 }  // namespace
 

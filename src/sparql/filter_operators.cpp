@@ -2,15 +2,18 @@
 // FILTER and BIND.
 #include <algorithm>
 
-#include "sparql/operators.hpp"
+#include "sparql/row_filter.hpp"
+#include "sparql/values_ahead.hpp"
 
 namespace cluxel::sparql {
 namespace {
 
-class FilterOperator : public UnaryOperator {
+class FilterOperator : public RowFilter {
  public:
   FilterOperator(OperatorPtr child, std::vector<Expr> conditions, std::vector<ExistsPlan> exists)
-      : UnaryOperator(std::move(child)), conditions_(std::move(conditions)), exists_(std::move(exists)) {}
+      : RowFilter(std::move(child)), conditions_(std::move(conditions)), exists_(std::move(exists)) {
+    for (const Expr& condition : conditions_) ahead_.add(condition);
+  }
   std::string label(const PlanNames& names) const override {
     std::string text = "filter";
     for (const Expr& condition : conditions_) {
@@ -21,48 +24,30 @@ class FilterOperator : public UnaryOperator {
 
  protected:
   void reopen(bool fresh) override {
-    UnaryOperator::reopen(fresh);
+    RowFilter::reopen(fresh);
     fresh_ = fresh;
-    in_.columns.resize(runtime().slot_count);
   }
   void listInputs(std::vector<const Operator*>& inputs) const override {
-    UnaryOperator::listInputs(inputs);
+    RowFilter::listInputs(inputs);
     for (const ExistsPlan& plan : exists_) inputs.push_back(plan.pipeline.top.get());
   }
-  bool produce(Batch& out) override {
-    Evaluator evaluator(runtime());
-    while (child_->next(in_)) {
-      if (!exists_.empty()) {
-        answerExists(exists_, in_, runtime(), fresh_);
-        fresh_ = false;
-      }
-      kept_.clear();
-      for (std::uint32_t row = 0; row < in_.rows; ++row) {
-        if (passes(evaluator, row)) kept_.push_back(row);
-      }
-      if (kept_.empty()) continue;
-      if (kept_.size() == in_.rows) {
-        std::swap(in_, out);
-        return true;
-      }
-      appendRows(in_, kept_, slots_, 0, out);
-      out.rows = kept_.size();
-      return true;
-    }
-    return false;
+  void beginBatch(const Batch& in) override {
+    if (exists_.empty()) return;
+    answerExists(exists_, in, runtime(), fresh_);
+    fresh_ = false;
   }
-
- private:
-  bool passes(Evaluator& evaluator, std::size_t row) {
+  bool passes(const Batch& in, std::uint32_t row) override {
+    ahead_.before(row, in, runtime().terms);
+    Evaluator evaluator(runtime());
     return std::all_of(conditions_.begin(), conditions_.end(), [&](const Expr& condition) {
-      return evaluator.truth(condition, in_, row).value_or(false);
+      return evaluator.truth(condition, in, row).value_or(false);
     });
   }
 
+ private:
   std::vector<Expr> conditions_;
   std::vector<ExistsPlan> exists_;
-  Batch in_;
-  std::vector<std::uint32_t> kept_;
+  ValuesAhead ahead_;
   bool fresh_ = true;
 };
 
@@ -70,7 +55,10 @@ class ExtendOperator : public UnaryOperator {
  public:
   ExtendOperator(OperatorPtr child, std::vector<std::pair<Slot, Expr>> columns, std::vector<ExistsPlan> exists)
       : UnaryOperator(std::move(child)), columns_(std::move(columns)), exists_(std::move(exists)) {
-    for (const auto& [slot, expression] : columns_) slots_ = mergedSlots(slots_, {slot});
+    for (const auto& [slot, expression] : columns_) {
+      slots_ = mergedSlots(slots_, {slot});
+      ahead_.add(expression);
+    }
   }
   std::string label(const PlanNames& names) const override {
     std::string text = "bind";
@@ -109,6 +97,7 @@ class ExtendOperator : public UnaryOperator {
     kept_.clear();
     for (const auto& [slot, expression] : columns_) in_.columns[slot].resize(in_.rows, kUnbound);
     for (std::uint32_t row = 0; row < in_.rows; ++row) {
+      ahead_.before(row, in_, runtime().terms);
       ++runtime().functions.solution;
       bool agrees = true;
       for (const auto& [slot, expression] : columns_) {
@@ -137,6 +126,7 @@ class ExtendOperator : public UnaryOperator {
 
   std::vector<std::pair<Slot, Expr>> columns_;
   std::vector<ExistsPlan> exists_;
+  ValuesAhead ahead_;
   Batch in_;
   std::vector<std::uint32_t> kept_;
   static constexpr std::size_t kUncharged = 1 << 20;

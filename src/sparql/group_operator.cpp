@@ -4,6 +4,7 @@
 
 #include "sparql/aggregate.hpp"
 #include "sparql/operators.hpp"
+#include "sparql/values_ahead.hpp"
 
 namespace cluxel::sparql {
 namespace {
@@ -16,7 +17,11 @@ class GroupOperator : public UnaryOperator {
         grouped_by_keys_(grouped_by_keys), parameters_(std::move(parameters)), exists_(std::move(exists)),
         groups_(keys_.size()), child_slots_(child_->slots()) {
     slots_ = mergedSlots(keys_, parameters_);
-    for (const AggregateSpec& aggregate : aggregates_) slots_ = mergedSlots(slots_, {aggregate.result});
+    for (const AggregateSpec& aggregate : aggregates_) {
+      slots_ = mergedSlots(slots_, {aggregate.result});
+      ValuesAhead& ahead = ahead_.emplace_back();
+      if (looksAtValues(aggregate)) ahead.add(*aggregate.argument);
+    }
   }
   std::string label(const PlanNames& names) const override {
     std::string text = grouped_by_keys_ ? "group by" : "one group";
@@ -88,12 +93,18 @@ class GroupOperator : public UnaryOperator {
       return accumulators_[group_of_row_[row] * aggregates_.size() + number];
     };
     if (!spec.argument) return feedRows(in, spec, number);
-    if (spec.argument->kind == Expr::Kind::Slot) {
-      for (std::size_t row = 0; row < in.rows; ++row) of(row).addId(spec, in.at(spec.argument->slot, row), runtime());
-      return;
-    }
     Evaluator evaluator(runtime());
-    for (std::size_t row = 0; row < in.rows; ++row) of(row).add(spec, evaluator.value(*spec.argument, in, row), runtime());
+    const bool is_slot = spec.argument->kind == Expr::Kind::Slot;
+    for (std::size_t row = 0; row < in.rows; ++row) {
+      ahead_[number].before(row, in, runtime().terms);
+      if (is_slot) of(row).addId(spec, in.at(spec.argument->slot, row), runtime());
+      else of(row).add(spec, evaluator.value(*spec.argument, in, row), runtime());
+    }
+  }
+
+  /// A count of a variable needs its ids alone.
+  static bool looksAtValues(const AggregateSpec& spec) {
+    return spec.argument && (spec.function != ast::AggregateFunction::Count || spec.argument->kind != Expr::Kind::Slot);
   }
 
   /// COUNT(*)
@@ -122,6 +133,7 @@ class GroupOperator : public UnaryOperator {
   static constexpr std::array<ValueId, 1> kNoKey{};
   std::vector<Slot> keys_;
   std::vector<AggregateSpec> aggregates_;
+  std::vector<ValuesAhead> ahead_;   ///< of each aggregate
   bool grouped_by_keys_;
   std::vector<Slot> parameters_;
   std::vector<ExistsPlan> exists_;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The hash join, and MINUS over the same table.
 #include <algorithm>
+#include <array>
 
-#include "sparql/operators.hpp"
+#include "sparql/row_filter.hpp"
 #include "sparql/row_table.hpp"
 
 namespace cluxel::sparql {
@@ -44,14 +45,22 @@ class BuildSide {
     }
     return candidate;
   }
-  std::uint32_t first(const Batch& probe, std::size_t row) const {
-    std::uint64_t hash = 0;
-    for (const Slot slot : keys_) hash = mixHash(hash, probe.at(slot, row));
-    return index_.first(hash);
+  std::uint32_t first(const Batch& probe, std::size_t row) const { return index_.first(hashOf(probe, row)); }
+  /// To be called before first() of each row of a batch in turn.
+  void expectFrom(const Batch& probe, std::size_t row) const {
+    if (row % kTogether != 0) return;
+    std::array<std::uint64_t, kTogether> hashes;
+    const std::size_t count = std::min(kTogether, probe.rows - row);
+    for (std::size_t k = 0; k < count; ++k) hashes[k] = hashOf(probe, row + k);
+    index_.expect({hashes.data(), count}, table_);
   }
   std::uint32_t next(std::uint32_t row) const { return index_.next(row); }
 
  private:
+  static constexpr std::size_t kTogether = 64;
+  std::uint64_t hashOf(const Batch& probe, std::size_t row) const {
+    return hashOfKey(keys_.size(), [&](std::size_t i) { return probe.at(keys_[i], row); });
+  }
   bool agrees(const Batch& probe, std::size_t row, const ValueId* built) const {
     for (std::size_t i = 0; i < keys_.size(); ++i) {
       if (probe.at(keys_[i], row) != built[key_columns_[i]]) return false;
@@ -122,6 +131,7 @@ class HashJoinOperator : public UnaryOperator {
           row_ = 0;
         }
         current_ = row_++;
+        build_.expectFrom(in_, current_);
         candidate_ = build_.match(in_, current_, build_.first(in_, current_));
         continue;
       }
@@ -163,10 +173,10 @@ class HashJoinOperator : public UnaryOperator {
 };
 
 /// Removes the rows that agree with a removed row and share a bound variable with it.
-class MinusOperator : public UnaryOperator {
+class MinusOperator : public RowFilter {
  public:
   MinusOperator(OperatorPtr child, OperatorPtr removed, std::vector<Slot> keys, std::vector<Slot> compared, Slot ignored)
-      : UnaryOperator(std::move(child)), build_(std::move(removed), keys, compared), keys_(std::move(keys)),
+      : RowFilter(std::move(child)), build_(std::move(removed), keys, compared), keys_(std::move(keys)),
         compared_(std::move(compared)), ignored_(ignored) {
     for (const Slot slot : compared_) compared_columns_.push_back(positionOf(build_.table().slots(), slot));
   }
@@ -174,43 +184,31 @@ class MinusOperator : public UnaryOperator {
 
  protected:
   void reopen(bool fresh) override {
-    UnaryOperator::reopen(fresh);
+    RowFilter::reopen(fresh);
     build_.reopen(runtime(), fresh);
-    in_.columns.resize(runtime().slot_count);
   }
   void listInputs(std::vector<const Operator*>& inputs) const override {
-    UnaryOperator::listInputs(inputs);
+    RowFilter::listInputs(inputs);
     inputs.push_back(build_.source());
   }
-  bool produce(Batch& out) override {
-    build_.build(runtime());
-    while (out.rows == 0) {
-      if (!child_->next(in_)) return false;
-      kept_.clear();
-      for (std::uint32_t row = 0; row < in_.rows; ++row) {
-        if (!isRemoved(row)) kept_.push_back(row);
-      }
-      appendRows(in_, kept_, slots_, 0, out);
-      out.rows = kept_.size();
+  void beginRun() override { build_.build(runtime()); }
+  bool passes(const Batch& in, std::uint32_t row) override {
+    build_.expectFrom(in, row);
+    std::uint64_t looked = 0;
+    for (std::uint32_t found = build_.match(in, row, build_.first(in, row)); found != RowIndex::kEnd;
+         found = build_.match(in, row, build_.next(found))) {
+      if (sharesBound(in, row, build_.table().row(found))) return false;
+      if (++looked % 1024 == 0) runtime().guard.work(1024);
     }
     return true;
   }
 
  private:
-  bool isRemoved(std::size_t row) {
-    std::uint64_t looked = 0;
-    for (std::uint32_t found = build_.match(in_, row, build_.first(in_, row)); found != RowIndex::kEnd;
-         found = build_.match(in_, row, build_.next(found))) {
-      if (sharesBound(row, build_.table().row(found))) return true;
-      if (++looked % 1024 == 0) runtime().guard.work(1024);
-    }
-    return false;
-  }
-  bool sharesBound(std::size_t row, const ValueId* removed) const {
+  bool sharesBound(const Batch& in, std::size_t row, const ValueId* removed) const {
     if (!keys_.empty()) return true;
     for (std::size_t i = 0; i < compared_.size(); ++i) {
       if (compared_[i] == ignored_) continue;
-      if (in_.at(compared_[i], row) != kUnbound && removed[compared_columns_[i]] != kUnbound) return true;
+      if (in.at(compared_[i], row) != kUnbound && removed[compared_columns_[i]] != kUnbound) return true;
     }
     return false;
   }
@@ -219,8 +217,6 @@ class MinusOperator : public UnaryOperator {
   std::vector<Slot> keys_, compared_;
   std::vector<std::size_t> compared_columns_;
   Slot ignored_;
-  Batch in_;
-  std::vector<std::uint32_t> kept_;
 };
 
 }  // namespace

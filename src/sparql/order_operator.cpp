@@ -1,47 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// ORDER BY, with LIMIT as a selection of the least rows; and DISTINCT.
+// ORDER BY, with LIMIT as a selection of the least rows.
 #include <algorithm>
-#include <bit>
-#include <cmath>
 
 #include "sparql/comparison.hpp"
 #include "sparql/operators.hpp"
-#include "sparql/row_set.hpp"
+#include "sparql/order_key.hpp"
+#include "sparql/row_table.hpp"
+#include "sparql/values_ahead.hpp"
 
 namespace cluxel::sparql {
 namespace {
-
-/// A sort key that mostly decides by two numbers; equal ones are decided by their values.
-struct FastKey {
-  std::uint32_t rank = 0;
-  ValueId id = kUnbound;
-  std::uint64_t bits = 0;
-};
-
-std::uint64_t sortable(double number) {
-  if (std::isnan(number)) return 0;
-  if (number == 0) number = 0;   // -0 and 0 are equal
-  const auto bits = std::bit_cast<std::uint64_t>(number);
-  return (bits >> 63) != 0 ? ~bits : bits | (1ull << 63);
-}
-
-std::uint64_t sortable(std::string_view text) {
-  std::uint64_t bits = 0;
-  for (std::size_t i = 0; i < 8; ++i) {
-    bits = bits << 8 | (i < text.size() ? static_cast<unsigned char>(text[i]) : 0u);
-  }
-  return bits;
-}
-
-FastKey fastKey(const Value& value, QueryTerms& terms) {
-  FastKey key;
-  key.id = terms.intern(value);
-  key.rank = orderRankOf(value);
-  if (value.isNumeric()) key.bits = sortable(value.number);
-  if (value.isStringLike() || value.type == Value::Type::Iri) key.bits = sortable(terms.view(key.id).text);
-  if (value.type == Value::Type::Boolean) key.bits = static_cast<std::uint64_t>(value.integer);
-  return key;
-}
 
 class OrderOperator : public UnaryOperator {
  public:
@@ -49,6 +17,7 @@ class OrderOperator : public UnaryOperator {
                 std::optional<std::uint64_t> most_rows, std::vector<ExistsPlan> exists)
       : UnaryOperator(std::move(child)), keys_(std::move(keys)), most_rows_(most_rows), exists_(std::move(exists)),
         table_(child_->slots()) {
+    for (const SortKey& key : keys_) ahead_.add(key.expression);
     for (const Slot slot : tie_slots) {
       const auto at = std::find(slots_.begin(), slots_.end(), slot);
       if (at != slots_.end()) tie_columns_.push_back(static_cast<std::size_t>(at - slots_.begin()));
@@ -70,6 +39,8 @@ class OrderOperator : public UnaryOperator {
     given_ = 0;
     table_.clear(runtime().guard);
     fast_.clear();
+    columns_.assign(keys_.size(), {});
+    is_full_ = false;
   }
   void listInputs(std::vector<const Operator*>& inputs) const override {
     UnaryOperator::listInputs(inputs);
@@ -96,14 +67,34 @@ class OrderOperator : public UnaryOperator {
         answerExists(exists_, in, runtime(), fresh_);
         fresh_ = false;
       }
-      table_.append(in, runtime().guard);
-      runtime().guard.charge(in.rows * keys_.size() * sizeof(FastKey));
-      for (std::size_t row = 0; row < in.rows; ++row) {
-        for (const SortKey& key : keys_) fast_.push_back(fastKey(evaluator.value(key.expression, in, row), runtime().terms));
-      }
-      if (most_rows_ && table_.rows() > 2 * *most_rows_ + 4096) keepLeast();
+      take(in, evaluator);
+      if (most_rows_ && table_.rows() > 2 * *most_rows_ + kSpareRows) keepLeast();
     }
     sortAll();
+  }
+
+  void take(const Batch& in, Evaluator& evaluator) {
+    picks_.clear();
+    for (std::uint32_t row = 0; row < in.rows; ++row) {
+      ahead_.before(row, in, runtime().terms);
+      const std::size_t before = fast_.size();
+      for (std::size_t i = 0; i < keys_.size(); ++i) addKey(i, evaluator.value(keys_[i].expression, in, row), row == 0);
+      if (is_full_ && !beatsLast(in, row, before)) {
+        fast_.resize(before);
+      } else {
+        picks_.push_back(row);
+      }
+    }
+    table_.append(in, picks_, runtime().guard);
+    runtime().guard.charge(picks_.size() * keys_.size() * sizeof(OrderKey));
+  }
+
+  void addKey(std::size_t column, const Value& value, bool is_first) {
+    const std::size_t width = keys_.size();
+    const std::span<OrderKey> made = std::span(fast_).first(fast_.size() / width * width);
+    const auto earlier = made.empty() ? made : made.subspan(column);
+    fast_.push_back(columns_[column].add(value, runtime().terms, earlier, width));
+    if (is_first && fast_.back().text != nullptr) ahead_.addTexts(keys_[column].expression);
   }
 
   void sortAll() {
@@ -118,93 +109,74 @@ class OrderOperator : public UnaryOperator {
     std::sort(order_.begin(), order_.end(), before);
   }
 
-  /// Drops all but the least rows.
+  /// Drops all but the least rows, in order: from then on the last of them is what others have to beat.
   void keepLeast() {
     sortAll();
     RowTable kept(slots_);
-    std::vector<FastKey> fast;
+    std::vector<OrderKey> fast;
     for (const std::uint32_t row : order_) {
       kept.cells().insert(kept.cells().end(), table_.row(row), table_.row(row) + slots_.size());
       fast.insert(fast.end(), fast_.begin() + static_cast<std::ptrdiff_t>(row * keys_.size()),
                   fast_.begin() + static_cast<std::ptrdiff_t>((row + 1) * keys_.size()));
     }
     kept.setRows(order_.size());
-    runtime().guard.release((table_.rows() - order_.size()) * (slots_.size() * sizeof(ValueId) + keys_.size() * sizeof(FastKey)));
+    runtime().guard.release((table_.rows() - order_.size()) *
+                            (slots_.size() * sizeof(ValueId) + keys_.size() * sizeof(OrderKey)));
     table_ = std::move(kept);
     fast_ = std::move(fast);
+    is_full_ = *most_rows_ > 0;
+  }
+
+  /// Less than 0: the row with the keys from `a` on comes before that with those from `b` on.
+  std::strong_ordering orderOfKeys(std::size_t a, std::size_t b) const {
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+      const auto order = compareKeys(fast_[a + i], fast_[b + i], runtime().terms);
+      if (order != 0) return keys_[i].descending ? 0 <=> order : order;
+    }
+    return std::strong_ordering::equal;
   }
 
   bool isBefore(std::uint32_t a, std::uint32_t b) const {
-    const QueryTerms& terms = runtime().terms;
-    for (std::size_t i = 0; i < keys_.size(); ++i) {
-      const FastKey& x = fast_[a * keys_.size() + i];
-      const FastKey& y = fast_[b * keys_.size() + i];
-      std::strong_ordering order = std::strong_ordering::equal;
-      if (x.rank != y.rank) {
-        order = x.rank <=> y.rank;
-      } else if (x.bits != y.bits) {
-        order = x.bits <=> y.bits;
-      } else if (x.id != y.id) {
-        order = valueOrderOf(terms.valueOf(x.id), terms.valueOf(y.id), terms);
-      }
-      if (order != 0) return keys_[i].descending ? order > 0 : order < 0;
-    }
+    const auto order = orderOfKeys(a * keys_.size(), b * keys_.size());
+    if (order != 0) return order < 0;
     const ValueId* left = table_.row(a);
     const ValueId* right = table_.row(b);
+    return isTieBefore([&](std::size_t column) { return left[column]; }, right);
+  }
+
+  /// Whether a row, whose keys begin at `keys`, comes before the last of those kept.
+  bool beatsLast(const Batch& in, std::size_t row, std::size_t keys) const {
+    const std::size_t last = *most_rows_ - 1;
+    const auto order = orderOfKeys(keys, last * keys_.size());
+    if (order != 0) return order < 0;
+    return isTieBefore([&](std::size_t column) { return in.at(slots_[column], row); }, table_.row(last));
+  }
+
+  /// Rows of equal keys are ordered by their terms, so that LIMIT cuts at the same place every time.
+  template <typename IdAt>
+  bool isTieBefore(const IdAt& left, const ValueId* right) const {
     for (const std::size_t column : tie_columns_) {
-      if (left[column] == right[column]) continue;
-      const auto order = termOrderOf(terms.valueOf(left[column]), terms.valueOf(right[column]), terms);
+      if (left(column) == right[column]) continue;
+      const auto order = termOrderOf(left(column), right[column], runtime().terms);
       if (order != 0) return order < 0;
     }
     return false;
   }
 
+  /// Rows kept beyond those wanted before they are cut.
+  static constexpr std::size_t kSpareRows = 256;
   std::vector<SortKey> keys_;
   std::vector<std::size_t> tie_columns_;
   std::optional<std::uint64_t> most_rows_;
   std::vector<ExistsPlan> exists_;
   RowTable table_;
-  std::vector<FastKey> fast_;
-  std::vector<std::uint32_t> order_;
+  std::vector<OrderKey> fast_;   ///< of each row of the table
+  std::vector<OrderColumn> columns_;
+  ValuesAhead ahead_;
+  std::vector<std::uint32_t> order_, picks_;
+  bool is_full_ = false;   ///< the first rows of the table are the least so far, in order
   bool done_ = false, fresh_ = true;
   std::size_t given_ = 0;
-};
-
-class DistinctOperator : public UnaryOperator {
- public:
-  DistinctOperator(OperatorPtr child, std::vector<Slot> slots)
-      : UnaryOperator(std::move(child)), columns_(std::move(slots)), seen_(columns_.size()) {}
-  std::string label(const PlanNames&) const override { return "distinct"; }
-
- protected:
-  void reopen(bool fresh) override {
-    UnaryOperator::reopen(fresh);
-    seen_.clear();
-    in_.columns.resize(runtime().slot_count);
-  }
-  bool produce(Batch& out) override {
-    std::vector<ValueId> row(std::max<std::size_t>(columns_.size(), 1));
-    while (child_->next(in_)) {
-      kept_.clear();
-      const std::size_t before = seen_.bytes();
-      for (std::uint32_t i = 0; i < in_.rows; ++i) {
-        for (std::size_t column = 0; column < columns_.size(); ++column) row[column] = in_.at(columns_[column], i);
-        if (seen_.insert(row.data()).second) kept_.push_back(i);
-      }
-      runtime().guard.charge(seen_.bytes() - before);
-      if (kept_.empty()) continue;
-      appendRows(in_, kept_, slots_, 0, out);
-      out.rows = kept_.size();
-      return true;
-    }
-    return false;
-  }
-
- private:
-  std::vector<Slot> columns_;
-  RowSet seen_;
-  Batch in_;
-  std::vector<std::uint32_t> kept_;
 };
 
 }  // namespace
@@ -213,9 +185,6 @@ OperatorPtr makeOrder(OperatorPtr child, std::vector<SortKey> keys, std::vector<
                       std::optional<std::uint64_t> most_rows, std::vector<ExistsPlan> exists) {
   return std::make_unique<OrderOperator>(std::move(child), std::move(keys), std::move(tie_slots), most_rows,
                                          std::move(exists));
-}
-OperatorPtr makeDistinct(OperatorPtr child, std::vector<Slot> slots) {
-  return std::make_unique<DistinctOperator>(std::move(child), std::move(slots));
 }
 
 }  // namespace cluxel::sparql

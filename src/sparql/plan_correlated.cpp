@@ -48,14 +48,9 @@ OperatorPtr Planner::correlatedBody(const State& state, const Node& part, const 
 Planner::State Planner::joinCorrelated(State state, const Node& part, const SlotSet& seen) {
   const double rows = rowsAfter(state, part);
   OperatorPtr body = correlatedBody(state, part, seen);
-  state.top = makeCorrelatedJoin(std::move(state.top), std::move(body), seen.list());
-  state.top->at = part.at;
-  state.certain.add(part.certain);
-  state.possible.add(part.possible);
   state.sorted_by = kNoSlot;
-  state.is_unit = false;
-  setRows(state, rows);
-  return state;
+  OperatorPtr top = makeCorrelatedJoin(std::move(state.top), std::move(body), seen.list());
+  return joined(std::move(state), std::move(top), part, rows);
 }
 
 Planner::State Planner::minusCorrelated(State state, const Node& node, const SlotSet& seen, const std::vector<Slot>& shared) {

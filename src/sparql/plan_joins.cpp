@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plans of single steps: which join for which pattern, optionals, minus, binds.
+// Plans of single steps: which join for which pattern, optionals, minus.
 #include <algorithm>
 #include <cmath>
 
@@ -53,29 +53,28 @@ Planner::State Planner::joinPart(State state, const Node& part, double wanted_ro
     case Node::Kind::Union: return joinUnion(std::move(state), part);
     case Node::Kind::GraphNames: {
       const double rows = rowsAfter(state, part);
-      state.top = makeGraphNames(std::move(state.top), part.graph);
-      state.certain.add(part.certain);
-      state.possible.add(part.possible);
-      state.is_unit = false;
-      setRows(state, rows);
-      return state;
+      OperatorPtr top = makeGraphNames(std::move(state.top), part.graph);
+      return joined(std::move(state), std::move(top), part, rows);
     }
     default: return joinAlone(std::move(state), part);
   }
 }
 
+/// What is known once `top` has joined `part` to the rows.
+Planner::State Planner::joined(State state, OperatorPtr top, const Node& part, double rows) {
+  state.top = std::move(top);
+  state.top->at = part.at;
+  state.certain.add(part.certain);
+  state.possible.add(part.possible);
+  state.is_unit = false;
+  setRows(state, rows);
+  return state;
+}
+
 Planner::State Planner::joinTriple(State state, const Node& part, double wanted_rows) {
   const TripleNode& pattern = part.triple;
   const double rows = rowsAfter(state, part);
-  const auto finish = [&](OperatorPtr top) {
-    state.top = std::move(top);
-    state.top->at = part.at;
-    state.certain.add(part.certain);
-    state.possible.add(part.possible);
-    state.is_unit = false;
-    setRows(state, rows);
-    return std::move(state);
-  };
+  const auto finish = [&](OperatorPtr top) { return joined(std::move(state), std::move(top), part, rows); };
   if (isImpossible(pattern, dataset_)) {
     const auto slots = mergedSlots(state.top->slots(), part.possible.list());
     return finish(std::make_unique<NothingOperator>(std::move(state.top), pattern, slots));
@@ -147,14 +146,9 @@ Planner::State Planner::joinUnion(State state, const Node& part) {
       return joinNode(std::move(inner), *branch, {});
     }));
   }
-  state.top = makeUnion(std::move(state.top), std::move(branches));
-  state.top->at = part.at;
-  state.certain.add(part.certain);
-  state.possible.add(part.possible);
   state.sorted_by = kNoSlot;
-  state.is_unit = false;
-  setRows(state, rows);
-  return state;
+  OperatorPtr top = makeUnion(std::move(state.top), std::move(branches));
+  return joined(std::move(state), std::move(top), part, rows);
 }
 
 Planner::State Planner::joinAlone(State state, const Node& part) {
@@ -209,23 +203,6 @@ Planner::State Planner::minus(State state, const Node& node) {
   state.top = makeMinus(std::move(state.top), std::move(other.top), keys.list(), (shared - keys).list(), ignored);
   state.top->at = node.at;
   setRows(state, state.rows);
-  return state;
-}
-
-Planner::State Planner::extend(State state, const std::vector<const Node*>& nodes) {
-  std::vector<std::pair<Slot, Expr>> columns;
-  std::vector<const Expr*> expressions;
-  for (const Node* node : nodes) columns.emplace_back(node->slot, *node->expression);
-  for (const auto& [slot, expression] : columns) expressions.push_back(&expression);
-  auto exists = planExists(state, expressions);
-  const double rows = state.rows;
-  state.top = makeExtend(std::move(state.top), std::move(columns), std::move(exists));
-  for (const Node* node : nodes) {
-    state.possible.add(node->slot);
-    if (node->certain.has(node->slot)) state.certain.add(node->slot);
-  }
-  state.is_unit = false;
-  setRows(state, rows);
   return state;
 }
 

@@ -164,18 +164,22 @@ Planner::State Planner::applyPostponed(State state, Parts& parts, std::vector<bo
     const Postponed& step = parts.postponed[i];
     if (step.kind == Postponed::Kind::LeftJoin) state = leftJoin(std::move(state), *step.node);
     if (step.kind == Postponed::Kind::Minus) state = minus(std::move(state), *step.node);
+    std::vector<const Node*> binds;
     if (step.kind == Postponed::Kind::Extend) {
       // Neighbouring binds share one operator, so that BNODE("x") means one node within a solution.
-      std::vector<const Node*> nodes = {step.node};
+      binds = {step.node};
       while (i + 1 < parts.postponed.size() && parts.postponed[i + 1].kind == Postponed::Kind::Extend) {
-        nodes.push_back(parts.postponed[++i].node);
+        binds.push_back(parts.postponed[++i].node);
       }
-      state = extend(std::move(state), nodes);
     }
     SlotSet to_come;
     for (std::size_t k = i + 1; k < parts.postponed.size(); ++k) {
       const Node& later = *parts.postponed[k].node;
       to_come.add(later.kind == Node::Kind::Minus ? SlotSet() : later.possible);
+    }
+    if (!binds.empty()) {
+      state = filterBeforeBinds(std::move(state), binds, parts, to_come, used);
+      state = extend(std::move(state), binds);
     }
     state = applyFilters(std::move(state), parts, to_come, used);
   }

@@ -55,6 +55,7 @@ class Planner {
   State joinPart(State state, const Node& part, double wanted_rows);
   State joinTriple(State state, const Node& part, double wanted_rows);
   OperatorPtr joinOperator(State& state, const Node& part, const OrderChoice& scan, double wanted_rows);
+  static State joined(State state, OperatorPtr top, const Node& part, double rows);
   State joinUnion(State state, const Node& part);
   State joinAlone(State state, const Node& part);
   State hashJoin(State state, State other);
@@ -68,6 +69,8 @@ class Planner {
   State extend(State state, const std::vector<const Node*>& nodes);
   State applyFilters(State state, Parts& parts, const SlotSet& still_to_come, std::vector<bool>& used);
   State filter(State state, std::vector<Expr> conditions);
+  State filterBeforeBinds(State state, const std::vector<const Node*>& binds, Parts& parts, const SlotSet& still_to_come,
+                          std::vector<bool>& used);
   State alone(const Node& node);
   State select(const Node& node, std::optional<std::uint64_t> most_rows, const std::vector<Slot>& columns);
   State belowModifier(const Node& child, std::optional<std::uint64_t> most_rows, const std::vector<Slot>& columns);
@@ -88,7 +91,7 @@ class Planner {
   Pipeline pipeline(const State& state, const SlotSet& outer, const std::function<State(State)>& body);
   std::vector<ExistsPlan> planExists(const State& state, const std::vector<const Expr*>& expressions);
   Slot freshSlot(const char* name);
-  void setRows(State& state, double rows);
+  static void setRows(State& state, double rows);
 
   AlgebraQuery& query_;
   const QueryTerms& terms_;

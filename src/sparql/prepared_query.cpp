@@ -36,8 +36,11 @@ PreparedQuery::Impl::Impl(const QuadReader& quad_reader, std::string_view text, 
   algebra_options.refuse_volatile = options.refuse_volatile;
   algebra_options.source_name = options.source_name;
   algebra_options.services = options.services;
-  algebra_options.budget = options.budget;
+  sparql::Guard service_guard;
+  if (!options.services.empty()) service_guard.start(options.budget);
+  algebra_options.guard = &service_guard;
   algebra = sparql::buildAlgebra(query, terms, algebra_options);
+  if (!options.services.empty()) used_by_services = service_guard.usage();
   plan = sparql::Planner(algebra, terms, dataset).plan();
   for (const ast::Projection& column : query.select.projection) variables.push_back(query.variables[column.variable].name);
   for (ast::VariableIndex i = 0; i < query.variables.size(); ++i) {
@@ -61,7 +64,7 @@ void PreparedQuery::Impl::setParameters(const std::vector<Binding>& bindings) {
 
 void PreparedQuery::Impl::begin(const std::vector<Binding>& bindings) {
   terms.rewind(mark);
-  runtime->guard.start(options.budget);
+  runtime->guard.start(options.budget, used_by_services);
   setParameters(bindings);
   if (algebra.is_volatile || !query.construct_template.empty()) {
     functions.random.seed(options.seed ? *options.seed : std::random_device{}());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The index nested loop: for each solution the quads that fit it, by a lookup in the index that has its ids in front.
-#include <map>
+#include <algorithm>
 
 #include "sparql/operators.hpp"
 #include "sparql/pattern_access.hpp"
@@ -36,7 +36,7 @@ class QuadJoinOperator : public UnaryOperator {
     }
     in_.columns.resize(runtime().slot_count);
     in_.rows = 0;
-    row_ = 0;
+    row_ = expected_until_ = 0;
     active_ = nullptr;
   }
 
@@ -57,6 +57,13 @@ class QuadJoinOperator : public UnaryOperator {
     PrefixLookup lookup;
     QuadCursor cursor;   ///< where nothing is bound
     std::array<std::uint8_t, 4> order_places{};
+    std::vector<TermId> expected;   ///< prefixes of the next rows
+
+    std::array<TermId, 4> prefixOf(const std::array<ValueId, 4>& bound) const {
+      std::array<TermId, 4> prefix{};
+      for (std::size_t i = 0; i < choice.prefix; ++i) prefix[i] = bound[order_places[i]];
+      return prefix;
+    }
   };
 
   /// Moves to the next row of the child with a lookup under way in active_; false at the end.
@@ -65,16 +72,17 @@ class QuadJoinOperator : public UnaryOperator {
       if (row_ >= in_.rows) {
         finishSegment(out);
         if (!child_->next(in_)) return false;
-        row_ = 0;
+        row_ = expected_until_ = 0;
       }
+      if (row_ >= expected_until_) expectRows();
       current_ = row_++;
       if (begin(current_)) return true;
       if (out.rows >= target()) return true;
     }
   }
 
-  /// Starts the lookup of a row; false when it cannot match.
-  bool begin(std::size_t row) {
+  /// Takes the ids that a row binds into bound_; nothing when it cannot match.
+  std::optional<BoundMask> bind(std::size_t row) {
     BoundMask mask = 0;
     for (std::size_t i = 0; i < 4; ++i) {
       const PatternPlace& place = places_[i];
@@ -82,7 +90,7 @@ class QuadJoinOperator : public UnaryOperator {
       if (place.isSlot()) id = in_.at(place.slot, row);
       bound_[i] = id;
       if (id == kUnbound) continue;
-      if (id >= kFirstComputed) return false;
+      if (id >= kFirstComputed) return std::nullopt;
       mask |= 1u << i;
     }
     if (pattern_.graph.kind == GraphPlace::Kind::Default) {
@@ -91,16 +99,40 @@ class QuadJoinOperator : public UnaryOperator {
         mask |= 8;
       }
     } else if ((mask & 8) != 0 && !filter_.admits(bound_[3])) {
-      return false;
+      return std::nullopt;
     }
-    Access& access = accessFor(mask);
+    return mask;
+  }
+
+  /// Lets the index find the places of the next rows' lookups together.
+  void expectRows() {
+    expected_until_ = std::min(row_ + kTogether, in_.rows);
+    if (expected_until_ - row_ < kFewRows) return;
+    for (std::size_t row = row_; row < expected_until_; ++row) {
+      const auto mask = bind(row);
+      if (!mask) continue;
+      Access& access = accessFor(*mask);
+      const auto prefix = access.prefixOf(bound_);
+      access.expected.insert(access.expected.end(), prefix.begin(), prefix.begin() + access.choice.prefix);
+    }
+    for (const auto& access : access_) {
+      if (!access || access->expected.empty()) continue;
+      access->lookup.expect(access->expected, access->choice.prefix);
+      access->expected.clear();
+    }
+  }
+
+  /// Starts the lookup of a row; false when it cannot match.
+  bool begin(std::size_t row) {
+    const auto mask = bind(row);
+    if (!mask) return false;
+    Access& access = accessFor(*mask);
     access.reader.restart();
     if (access.choice.prefix == 0) {
       access.cursor = runtime().reader.scan(QuadPattern{}, QuadOrder::Spog);
       block_ = access.cursor.nextBlock();
     } else {
-      std::array<TermId, 4> prefix{};
-      for (std::size_t i = 0; i < access.choice.prefix; ++i) prefix[i] = bound_[access.order_places[i]];
+      const auto prefix = access.prefixOf(bound_);
       block_ = access.lookup.find({prefix.data(), access.choice.prefix});
     }
     if (block_.empty()) {
@@ -180,7 +212,8 @@ class QuadJoinOperator : public UnaryOperator {
   GraphFilter filter_;
   std::vector<std::unique_ptr<Access>> access_;
   Batch in_;
-  std::size_t row_ = 0, current_ = 0;
+  static constexpr std::size_t kTogether = 64, kFewRows = 4;
+  std::size_t row_ = 0, current_ = 0, expected_until_ = 0;
   std::array<ValueId, 4> bound_{};
   std::span<const QuadKey> block_;
   Access* active_ = nullptr;

@@ -47,7 +47,9 @@ Value QueryTerms::valueOfStored(ValueId id) const {
         return value;
       case Type::Float: return value.type = Value::Type::Float, value;
       case Type::Double: return value.type = Value::Type::Double, value;
-      case Type::Decimal: return value.type = Value::Type::Decimal, value;
+      case Type::Decimal:
+        value.scale = decoded.scale;
+        return value.type = Value::Type::Decimal, value;
       case Type::Boolean: return value.type = Value::Type::Boolean, value;
       case Type::String: return value.type = Value::Type::String, value;
       case Type::LangString: return value.type = Value::Type::LangString, value;
@@ -118,7 +120,7 @@ std::string QueryTerms::datatypeOf(const Value& value) const {
 }
 
 Decimal QueryTerms::exactOf(const Value& value) const {
-  if (value.payload || value.type == Value::Type::Integer || value.id == kUnbound) return value.exact();
+  if (value.payload || value.scale != Value::kNoScale || value.id == kUnbound) return value.exact();
   return Decimal::parse(trimmed(view(value.id).text)).value_or(Decimal());
 }
 

@@ -21,6 +21,9 @@ class QueryTerms : public TermLookup {
 
   Value valueOf(ValueId id) const;
   TermView view(ResultId id) const override;
+  void expect(std::span<const ResultId> ids) const override { reader_.expectViews(ids); }
+  /// The same for valueOf().
+  void expectValues(std::span<const ValueId> ids) const { reader_.expectValues(ids); }
   Term termOf(ValueId id) const;
   ValueId intern(const Term& term);
   /// The id of a value; kUnbound for an error.

@@ -3,15 +3,24 @@
 #pragma once
 
 #include <cstring>
+#include <span>
 #include <vector>
 
 #include "sparql/runtime.hpp"
 
 namespace cluxel::sparql {
 
+inline constexpr unsigned kRowHashShift = 16;   ///< the bits of a hash from there on choose its bucket
+
 inline std::uint64_t mixHash(std::uint64_t hash, ValueId id) {
   hash = (hash ^ id) * 0x9E3779B97F4A7C15ull;
   return hash ^ (hash >> 29);
+}
+
+/// For the last id of a key: runs of 256 ids stay together, as ids that are near each other are often asked for one after
+/// another; the runs are strewn as evenly as single ids would be.
+inline std::uint64_t runHash(std::uint64_t hash, ValueId id) {
+  return mixHash(hash, id >> 8) + (std::uint64_t{id & 255} << kRowHashShift);
 }
 
 /// Rows of a fixed list of slots, row by row.
@@ -39,6 +48,14 @@ class RowTable {
     }
     rows_ += batch.rows;
   }
+  /// The rows `picks` of the batch only.
+  void append(const Batch& batch, const std::vector<std::uint32_t>& picks, Guard& guard) {
+    guard.charge(picks.size() * slots_.size() * sizeof(ValueId));
+    for (const std::uint32_t row : picks) {
+      for (const Slot slot : slots_) cells_.push_back(batch.at(slot, row));
+    }
+    rows_ += picks.size();
+  }
   void clear(Guard& guard) {
     guard.release(cells_.size() * sizeof(ValueId));
     cells_.clear();
@@ -52,6 +69,14 @@ class RowTable {
   std::vector<ValueId> cells_;
   std::size_t rows_ = 0;
 };
+
+/// The hash of a key of `size` ids.
+template <typename IdAt>
+std::uint64_t hashOfKey(std::size_t size, const IdAt& id_at) {
+  std::uint64_t hash = 0;
+  for (std::size_t i = 0; i + 1 < size; ++i) hash = mixHash(hash, id_at(i));
+  return size == 0 ? hash : runHash(hash, id_at(size - 1));
+}
 
 /// Chains of row numbers by the hash of key columns.
 class RowIndex {
@@ -74,14 +99,28 @@ class RowIndex {
   }
   std::uint32_t first(std::uint64_t hash) const { return heads_[bucketOf(hash)]; }
   std::uint32_t next(std::uint32_t row) const { return next_[row]; }
+  /// Asks the memory for what first() of these hashes leads to, where the table is too large for the nearest cache.
+  void expect(std::span<const std::uint64_t> hashes, const RowTable& table) const {
+    if (heads_.size() < kLarge) return;
+    for (const std::uint64_t hash : hashes) __builtin_prefetch(&heads_[bucketOf(hash)]);
+    for (const std::uint64_t hash : hashes) {
+      const std::uint32_t row = first(hash);
+      if (row == kEnd) continue;
+      __builtin_prefetch(table.row(row));
+      __builtin_prefetch(&next_[row]);
+    }
+    for (const std::uint64_t hash : hashes) {
+      const std::uint32_t row = first(hash);
+      if (row != kEnd && next_[row] != kEnd) __builtin_prefetch(table.row(next_[row]));
+    }
+  }
   std::uint64_t hashOf(const ValueId* row) const {
-    std::uint64_t hash = 0;
-    for (const std::size_t column : columns_) hash = mixHash(hash, row[column]);
-    return hash;
+    return hashOfKey(columns_.size(), [&](std::size_t i) { return row[columns_[i]]; });
   }
 
  private:
-  std::size_t bucketOf(std::uint64_t hash) const { return (hash >> 16) & (heads_.size() - 1); }
+  static constexpr std::size_t kLarge = 4096;
+  std::size_t bucketOf(std::uint64_t hash) const { return (hash >> kRowHashShift) & (heads_.size() - 1); }
 
   std::vector<std::size_t> columns_;
   std::vector<std::uint32_t> heads_, next_;

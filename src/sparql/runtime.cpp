@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Datasets and budgets.
+// Datasets.
 #include "sparql/runtime.hpp"
 
 #include "cluxel/knowledge/vocabulary.hpp"
 
 namespace cluxel::sparql {
 namespace {
-
-constexpr std::uint64_t kRowsBetweenChecks = 4096;
 
 std::vector<TermId> idsOf(const std::vector<Term>& graphs, const QuadReader& reader) {
   std::vector<TermId> ids;
@@ -73,30 +71,6 @@ Dataset datasetOf(const ast::DatasetClause& clause, const QueryOptions& options,
     if (graph != kNoTerm) dataset.named.push_back(graph);
   }
   return dataset;
-}
-
-void Guard::start(const QueryBudget& budget) {
-  budget_ = budget;
-  constexpr auto kNoLimit = ~std::uint64_t{0};
-  deadline_ = std::chrono::steady_clock::now() + budget.deadline.value_or(std::chrono::milliseconds(0));
-  work_rows_ = 0;
-  bytes_ = 0;
-  most_work_rows_ = budget.max_work_rows == 0 ? kNoLimit : budget.max_work_rows;
-  most_answer_rows_ = budget.max_rows == 0 ? kNoLimit : budget.max_rows;
-  most_bytes_ = budget.max_memory_bytes == 0 ? kNoLimit : budget.max_memory_bytes;
-  next_check_ = std::min(kRowsBetweenChecks, most_work_rows_);
-  if (budget.deadline && budget.deadline->count() <= 0) refuse("time");
-}
-
-void Guard::check() {
-  if (work_rows_ > most_work_rows_) refuse("rows");
-  if (budget_.deadline && std::chrono::steady_clock::now() > deadline_) refuse("time");
-  next_check_ = std::min(work_rows_ + kRowsBetweenChecks, most_work_rows_ + (most_work_rows_ == ~std::uint64_t{0} ? 0 : 1));
-}
-
-void Guard::refuse(const char* what) const {
-  throw Error(ExitCode::BudgetExceeded, std::string("query: its budget of ") + what +
-                                            " is used up; no answer is given. Narrow the query or raise the budget");
 }
 
 }  // namespace cluxel::sparql

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "cluxel/sparql/query_engine.hpp"
 #include "sparql/batch.hpp"
 #include "sparql/functions.hpp"
+#include "sparql/guard.hpp"
 
 namespace cluxel::sparql {
 
@@ -40,34 +40,6 @@ struct Dataset {
 
 /// The dataset by the query's FROM clauses, else by the options.
 Dataset datasetOf(const ast::DatasetClause& clause, const QueryOptions& options, const QuadReader& reader);
-
-/// Throws Error (BudgetExceeded) as soon as something is used up.
-class Guard {
- public:
-  void start(const QueryBudget& budget);
-  /// `rows` rows were made or looked at.
-  void work(std::uint64_t rows) {
-    work_rows_ += rows;
-    if (work_rows_ >= next_check_) check();
-  }
-  void charge(std::size_t bytes) {
-    bytes_ += bytes;
-    if (bytes_ > most_bytes_) refuse("memory");
-  }
-  void release(std::size_t bytes) { bytes_ -= std::min(bytes, bytes_); }
-  void answerRows(std::uint64_t rows) {
-    if (rows > most_answer_rows_) refuse("rows of the answer");
-  }
-
- private:
-  void check();
-  [[noreturn]] void refuse(const char* what) const;
-
-  QueryBudget budget_;
-  std::chrono::steady_clock::time_point deadline_;
-  std::uint64_t work_rows_ = 0, next_check_ = 0, most_work_rows_ = 0, most_answer_rows_ = 0;
-  std::size_t bytes_ = 0, most_bytes_ = 0;
-};
 
 struct Runtime {
   Runtime(const QuadReader& quad_reader, QueryTerms& query_terms, FunctionContext& function_context,

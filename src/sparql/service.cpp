@@ -38,7 +38,7 @@ NodePtr AlgebraBuilder::answered(const ast::ServicePattern& service, const QuadR
   const OperatorPtr plan = Planner(algebra, terms, dataset).plan();
   FunctionContext functions(terms);
   Runtime runtime(reader, terms, functions, dataset, algebra.slot_names.size(), algebra.exists_count);
-  runtime.guard.start(options_.budget);
+  runtime.guard = *options_.guard;
   NodePtr node = makeNode(Node::Kind::Values, at);
   node->note = "SERVICE <" + service.endpoint.term().text + ">";
   std::vector<Slot> theirs;
@@ -60,6 +60,7 @@ NodePtr AlgebraBuilder::answered(const ast::ServicePattern& service, const QuadR
       }
     }
   }
+  *options_.guard = runtime.guard;
   node->annotate();
   return node;
 }

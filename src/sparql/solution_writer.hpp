@@ -60,6 +60,7 @@ class SolutionWriter : public ResultSink {
 
  private:
   void appendCell(ResultId id);
+  void expect(std::span<const ResultId> cells);
 
   /// One way, addressed by the id's low bits.
   struct Cached {
@@ -67,6 +68,7 @@ class SolutionWriter : public ResultSink {
     std::string text;
   };
   static constexpr std::size_t kCached = 4096;
+  static constexpr std::size_t kExpected = 64;   ///< cells that are asked for together
 
   AppendTerm append_term_;
   const TermLookup* terms_ = nullptr;

@@ -24,12 +24,12 @@ Dataset ModifyRun::dataset() const {
   return dataset;
 }
 
-AlgebraQuery ModifyRun::algebra() {
+AlgebraQuery ModifyRun::algebra(Guard& guard) {
   AlgebraOptions algebra_options;
   algebra_options.source_name = options_.query.source_name;
   algebra_options.refuse_volatile = options_.query.refuse_volatile;
   algebra_options.services = options_.query.services;
-  algebra_options.budget = options_.query.budget;
+  algebra_options.guard = &guard;
   return buildAlgebra(modify_.where, operation_.variables, update_.text, terms_, algebra_options);
 }
 
@@ -44,13 +44,15 @@ void ModifyRun::prepare(FunctionContext& functions) const {
 
 Changes ModifyRun::changes() {
   const Dataset data = dataset();
-  AlgebraQuery query = algebra();
+  Guard guard;
+  guard.start(options_.query.budget);
+  AlgebraQuery query = algebra(guard);
   slot_of_variable_ = query.slot_of_variable;
   const OperatorPtr plan = Planner(query, terms_, data).plan();
   FunctionContext functions(terms_);
   prepare(functions);
   Runtime runtime(reader_, terms_, functions, data, query.slot_names.size(), query.exists_count);
-  runtime.guard.start(options_.query.budget);
+  runtime.guard = guard;
   Changes changes;
   Batch batch(runtime.slot_count);
   for (plan->open(runtime, true); plan->next(batch);) {

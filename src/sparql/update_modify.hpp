@@ -33,7 +33,7 @@ class ModifyRun {
  private:
   using Blanks = std::map<std::string, Term>;   ///< of one solution, by the template's label
   Dataset dataset() const;
-  AlgebraQuery algebra();
+  AlgebraQuery algebra(Guard& guard);
   void prepare(FunctionContext& functions) const;
   std::optional<Term> filled(const ast::PatternTerm& place, const Batch& batch, std::size_t row, Blanks& blanks);
   void instantiate(const std::vector<ast::QuadTemplate>& templates, const Batch& batch, std::size_t row, Blanks& blanks,

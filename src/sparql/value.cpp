@@ -132,7 +132,7 @@ Value Value::ofInteger(const sparql::Decimal& whole) {
 Value Value::ofDecimal(sparql::Decimal value) {
   Value result = ofType(Type::Decimal);
   result.number = value.toDouble();
-  if (value.isSmall() && value.scale() <= UINT8_MAX) {
+  if (value.isSmall() && value.scale() < kNoScale) {
     result.integer = value.unscaled();
     result.scale = static_cast<std::uint8_t>(value.scale());
   } else {

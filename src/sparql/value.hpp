@@ -38,9 +38,10 @@ struct Value {
 
   Type type = Type::None;
   CalendarKind calendar = CalendarKind::DateTime;
-  std::uint8_t scale = 0;     ///< of a computed Decimal without payload: integer * 10^-scale
+  static constexpr std::uint8_t kNoScale = DecodedValue::kNoScale;
+  std::uint8_t scale = 0;     ///< of a Decimal without payload: it is integer * 10^-scale; kNoScale: only its term tells
   ValueId id = kUnbound;
-  std::int64_t integer = 0;   ///< Boolean, Integer without payload; the digits of a computed Decimal without payload
+  std::int64_t integer = 0;   ///< Boolean, Integer without payload; the digits of a Decimal without payload
   double number = 0;          ///< the value of Float and Double; near the value of Integer and Decimal
   std::shared_ptr<const Payload> payload;   ///< of computed texts, of calendar values, of exact and great numbers
 
@@ -52,7 +53,7 @@ struct Value {
   bool isCalendar() const { return type >= Type::DateTime && type <= Type::Calendar; }
   bool isDuration() const { return type >= Type::Duration && type <= Type::YearMonthDuration; }
 
-  /// The number of an Integer, or of a Decimal that was computed (without id, or with a payload).
+  /// The number of an Integer or Decimal whose scale is known.
   sparql::Decimal exact() const;
 
   static Value boolean(bool value);

@@ -54,5 +54,31 @@ TEST_F(Services, WorkWithinTheBudget) {
   EXPECT_THAT(refusal("SELECT * { SERVICE <http://elsewhere/> { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i } }", options), testing::Not("no refusal"));
 }
 
+TEST_F(Services, ShareOneBudgetWithEachOtherAndTheQuery) {
+  // Four rows each, and four of the rows that join them.
+  const std::string one = "{ SERVICE <http://elsewhere/> { ?x :name ?n } }";
+  const auto worked = [&](const std::string& query, std::uint64_t rows) {
+    options.budget.max_work_rows = rows;
+    return refusal(query, options) == "no refusal";
+  };
+  std::uint64_t least = 1;
+  while (!worked("SELECT ?x " + one, least)) ++least;
+  ASSERT_GT(least, 4U);
+  EXPECT_FALSE(worked("SELECT ?x { " + one + " UNION " + one + " }", least));
+  EXPECT_TRUE(worked("SELECT ?x { " + one + " UNION " + one + " }", 4 * least));
+}
+
+TEST_F(Services, CountInEveryRunOfAPreparedQuery) {
+  options.budget.max_memory_bytes = 1;
+  EXPECT_THAT(refusal("SELECT ?x { SERVICE <http://elsewhere/> { ?x :name ?n } }", options), HasSubstr("memory"));
+  options.budget = {};
+  options.budget.max_work_rows = 1000;
+  const QuadReader mine = ours.reader();
+  PreparedQuery query(mine, "PREFIX : <http://example.org/> SELECT ?x { SERVICE <http://elsewhere/> { ?x :name ?n } }", options);
+  const std::size_t rows = query.evaluate().table.row_count;
+  EXPECT_EQ(rows, 4U);
+  EXPECT_EQ(query.evaluate().table.row_count, rows);
+}
+
 }  // namespace
 }  // namespace cluxel::test

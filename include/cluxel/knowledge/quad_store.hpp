@@ -87,10 +87,12 @@ struct DecodedValue {
     Integer,     ///< xsd:integer and its derived types, when it fits 64 bits
     Decimal, Float, Double, Boolean, String, LangString, DateTime, Date
   };
+  static constexpr std::uint8_t kNoScale = 255;
   Type type = Type::None;
   TermKind kind = TermKind::Iri;
+  std::uint8_t scale = kNoScale;   ///< of a Decimal that is exactly integer * 10^-scale; else kNoScale
   TermId datatype = kNoTerm;    ///< the datatype's own id; kNoTerm for no literal, xsd:string and rdf:langString
-  std::int64_t integer = 0;     ///< Integer, Boolean; DateTime and Date: microseconds since 1970-01-01T00:00:00Z
+  std::int64_t integer = 0;     ///< Integer, Boolean; Decimal: see scale; DateTime and Date: microseconds since 1970-01-01T00:00:00Z
   double number = 0;            ///< the value as a double (exact for Integer below 2^53, Float, Double)
 };
 
@@ -131,6 +133,9 @@ class PrefixLookup {
   PrefixLookup& operator=(PrefixLookup&&) noexcept;
   ~PrefixLookup();
 
+  /// Lookups that will be made next, in this order: their ids one after another, `length` for each. Searching for all
+  /// of them at once lets their waits for the memory overlap. Changes no answer; lookups may also differ or not come.
+  void expect(std::span<const TermId> prefixes, std::size_t length);
   /// The entries that begin with `prefix` (1 to 4 ids in the index's order) on the first page that has any; empty when
   /// there is none.
   std::span<const QuadKey> find(std::span<const TermId> prefix);
@@ -155,6 +160,10 @@ class QuadReader {
   Term termOf(TermId id) const;              ///< the unnamed default graph (0) is an IRI without text
   TermView viewOf(TermId id) const;
   const DecodedValue& valueOf(TermId id) const;   ///< O(1); the reference lives as long as the reader
+  /// Terms whose views, or values, will be asked for soon: reads them from the memory together. Changes no answer; ids
+  /// that the store does not have are passed over.
+  void expectViews(std::span<const TermId> ids) const;
+  void expectValues(std::span<const TermId> ids) const;
   /// The quads that match, in the order of the index `order`; bound positions that are a prefix of that order bound the
   /// range, the others are filtered.
   QuadCursor scan(const QuadPattern& pattern, QuadOrder order) const;

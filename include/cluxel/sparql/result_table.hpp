@@ -27,6 +27,8 @@ class TermLookup {
   virtual ~TermLookup() = default;
   /// `id` is not 0. The text is valid until the next call of view().
   virtual TermView view(ResultId id) const = 0;
+  /// Ids whose views will be asked for next, 0 among them: lets the store read them together. Changes no answer.
+  virtual void expect(std::span<const ResultId> /*ids*/) const {}
 };
 
 /// Receives one answer: beginSolutions rows* end, or boolean end, or beginGraph triple* end.

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// Plans of BIND, and of filters on what one gives: they are decided before it, so that no term is made for a row that
+// is thrown away.
+#include <algorithm>
+
+#include "sparql/planner.hpp"
+
+namespace cluxel::sparql {
+namespace {
+
+using Kind = Expr::Kind;
+
+/// Whether the value of `slot` may be computed in place, rather than read from the solution.
+bool looksOnlyAtValue(const Expr& condition, Slot slot) {
+  if (condition.kind == Kind::Bound && condition.slot == slot) return false;
+  if (condition.pattern) return false;
+  return std::all_of(condition.arguments.begin(), condition.arguments.end(),
+                     [slot](const Expr& argument) { return looksOnlyAtValue(argument, slot); });
+}
+
+bool hasExists(const Expr& expression) {
+  return expression.pattern || std::any_of(expression.arguments.begin(), expression.arguments.end(), hasExists);
+}
+
+Expr withExpression(const Expr& condition, Slot slot, const Expr& expression) {
+  if (condition.kind == Kind::Slot && condition.slot == slot) return expression;
+  Expr result = condition;
+  for (Expr& argument : result.arguments) argument = withExpression(argument, slot, expression);
+  return result;
+}
+
+/// The condition with the expressions of the binds in place of their variables; nothing where that is another question.
+std::optional<Expr> beforeBinds(const Expr& condition, const std::vector<const Node*>& binds, const SlotSet& bound) {
+  Expr result = condition;
+  SlotSet given;
+  for (const Node* bind : binds) given.add(bind->slot);
+  bool changed = false;
+  for (const Node* bind : binds) {
+    const Expr& expression = *bind->expression;
+    if (!condition.slots().has(bind->slot)) continue;
+    if (bound.has(bind->slot) || expression.isVolatile() || hasExists(expression)) return std::nullopt;
+    if (!looksOnlyAtValue(condition, bind->slot) || given.intersects(expression.slots())) return std::nullopt;
+    result = withExpression(result, bind->slot, expression);
+    changed = true;
+  }
+  return changed ? std::optional(result) : std::nullopt;
+}
+
+}  // namespace
+
+Planner::State Planner::extend(State state, const std::vector<const Node*>& nodes) {
+  std::vector<std::pair<Slot, Expr>> columns;
+  std::vector<const Expr*> expressions;
+  for (const Node* node : nodes) columns.emplace_back(node->slot, *node->expression);
+  for (const auto& [slot, expression] : columns) expressions.push_back(&expression);
+  auto exists = planExists(state, expressions);
+  const double rows = state.rows;
+  state.top = makeExtend(std::move(state.top), std::move(columns), std::move(exists));
+  for (const Node* node : nodes) {
+    state.possible.add(node->slot);
+    if (node->certain.has(node->slot)) state.certain.add(node->slot);
+  }
+  state.is_unit = false;
+  setRows(state, rows);
+  return state;
+}
+
+/// Takes the filters that wait for nothing but these binds.
+Planner::State Planner::filterBeforeBinds(State state, const std::vector<const Node*>& binds, Parts& parts,
+                                          const SlotSet& still_to_come, std::vector<bool>& used) {
+  std::vector<Expr> ready;
+  for (std::size_t i = 0; i < parts.filters.size(); ++i) {
+    if (used[i]) continue;
+    auto condition = beforeBinds(parts.filters[i], binds, state.possible);
+    if (!condition || !state.certain.contains(condition->slots() & still_to_come)) continue;
+    used[i] = true;
+    ready.push_back(std::move(*condition));
+  }
+  if (ready.empty()) return state;
+  return filter(std::move(state), std::move(ready));
+}
+
+}  // namespace cluxel::sparql

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows that are worked on together give what each gives alone, at the borders of what is done together too.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "cluxel/knowledge/vocabulary.hpp"
+#include "sparql/store_fixture.hpp"
+
+namespace cluxel::test {
+namespace {
+
+using testing::ElementsAreArray;
+
+constexpr std::array<std::size_t, 12> kCounts = {0, 1, 2, 3, 4, 5, 63, 64, 65, 127, 129, 300};
+
+Term iri(const std::string& local) { return Term::iri("http://example.org/" + local); }
+Term decimal(unsigned hundredths) {
+  const std::string rest = std::to_string(hundredths % 100);
+  return Term::literal(std::to_string(hundredths / 100) + "." + (rest.size() < 2 ? "0" : "") + rest, vocabulary::xsd("decimal"));
+}
+
+/// Things with heights, of which many are equal, a few names and neighbours, in two graphs.
+class Batching : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    store = new SmallStore();
+    std::mt19937 random(4);
+    std::vector<Quad> quads;
+    for (std::size_t i = 0; i < kThings; ++i) {
+      const Term self = iri("thing" + std::to_string(i));
+      quads.push_back({self, iri("height"), decimal(random() % 300), Term::iri("")});
+      if (i % 3 != 0) quads.push_back({self, iri("name"), Term::literal("name " + std::to_string(random() % 2000)), Term::iri("")});
+      for (unsigned k = 0; k < random() % 4; ++k) {
+        quads.push_back({self, iri("near"), iri("thing" + std::to_string(random() % kThings)), k % 2 == 0 ? Term::iri("") : iri("graph")});
+      }
+    }
+    store->load(quads);
+  }
+  static void TearDownTestSuite() { delete store; }
+
+  /// The first `count` things of a scattered order, as VALUES of ?o; some are not in the store.
+  static std::vector<std::string> things(std::size_t count) {
+    std::mt19937 random(static_cast<unsigned>(count) + 9);
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < count; ++i) names.push_back(":thing" + std::to_string(random() % (kThings + 40)));
+    return names;
+  }
+  static std::string valuesOf(const std::vector<std::string>& names) {
+    std::string text = "VALUES ?o {";
+    for (const std::string& name : names) text += " " + name;
+    return text + " }";
+  }
+
+  static constexpr std::size_t kThings = 6000;
+  static SmallStore* store;
+};
+SmallStore* Batching::store = nullptr;
+
+TEST_F(Batching, GivesWhatEachRowGivesAlone) {
+  const std::vector<std::string> patterns = {
+      "?o :height ?h",
+      "?o :near ?n . ?n :height ?h",
+      "?n :near ?o",
+      "?o ?p ?v",
+      "OPTIONAL { ?o :name ?t }",
+      "OPTIONAL { ?o :near ?n OPTIONAL { ?n :name ?t } }",
+      "?o :height ?h FILTER(?h > 1.5)",
+      "?o :name ?t FILTER(CONTAINS(?t, \"7\"))",
+      "?o :height ?h BIND(?h * 2 AS ?twice) FILTER(?twice < 3.0)",
+      "?o :height ?h BIND(STR(?h) AS ?text) FILTER(?text < \"1\" || BOUND(?text))",
+      "?o :near ?n BIND(IRI(CONCAT(STR(?n), \"0\")) AS ?other) OPTIONAL { ?other :height ?h }",
+      "FILTER NOT EXISTS { ?o :near ?n . ?n :name ?t }",
+      "?o :near ?n MINUS { ?n :height ?h FILTER(?h > 1) }",
+      "GRAPH ?g { ?o :near ?n } OPTIONAL { ?n :near ?o }",
+      "{ ?o :name ?v } UNION { ?o :height ?v }",
+  };
+  for (const std::string& pattern : patterns) {
+    for (const std::size_t count : kCounts) {
+      const std::vector<std::string> names = things(count);
+      std::vector<std::string> alone;
+      for (const std::string& name : names) {
+        const auto rows = store->rows("SELECT * { " + valuesOf({name}) + " " + pattern + " }");
+        alone.insert(alone.end(), rows.begin(), rows.end());
+      }
+      std::sort(alone.begin(), alone.end());
+      EXPECT_THAT(store->rows("SELECT * { " + valuesOf(names) + " " + pattern + " }"), ElementsAreArray(alone)) << pattern << count;
+    }
+  }
+}
+
+TEST_F(Batching, FirstRowsAreThoseOfTheWholeOrder) {
+  for (const char* order : {"?h ?o", "DESC(?h) ?o", "?h", "DESC(?h)", "?t DESC(?h)", "?o", "DESC(?o)", "DESC(?t)", "(?h + 1) STR(?o)"}) {
+    const std::string query = std::string("SELECT ?o ?h ?t { ?o :height ?h OPTIONAL { ?o :name ?t } } ORDER BY ") + order;
+    const auto whole = store->ordered(query);
+    ASSERT_EQ(whole.size(), kThings);
+    for (const std::size_t limit : {0U, 1U, 10U, 63U, 64U, 65U, 1000U, 2900U, 5999U, 6000U, 7000U}) {
+      const std::size_t count = std::min(limit, whole.size());
+      EXPECT_THAT(store->ordered(query + " LIMIT " + std::to_string(limit)),
+                  ElementsAreArray(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(count))) << order << limit;
+    }
+    const std::vector<std::string> later(whole.begin() + 20, whole.begin() + 27);
+    EXPECT_THAT(store->ordered(query + " LIMIT 7 OFFSET 20"), ElementsAreArray(later)) << order;
+  }
+}
+
+TEST_F(Batching, TextsAreOrderedByTheirBytes) {
+  for (const char* column : {"?o", "?t"}) {
+    auto rows = store->ordered(std::string("SELECT ") + column + " { ?o :name ?t } ORDER BY " + column);
+    EXPECT_TRUE(std::is_sorted(rows.begin(), rows.end())) << column;
+    EXPECT_EQ(rows.size(), kThings / 3 * 2);
+  }
+  const SmallStore texts(":a :p \"\", \"x\", \"x\\u0001\", \"xy\", \"xyzzyxyz\", \"xyzzyxyzA\", \"xyzzyxyz\\u00e4\", \"xyzzyxyB\" .");
+  EXPECT_THAT(texts.ordered("SELECT ?t { :a :p ?t } ORDER BY ?t"),
+              ElementsAreArray({"\"\"", "\"x\"", "\"x\x01\"", "\"xy\"", "\"xyzzyxyB\"", "\"xyzzyxyz\"", "\"xyzzyxyzA\"", "\"xyzzyxyz\u00e4\""}));
+}
+
+TEST_F(Batching, FiltersOnBindsAreDecidedBeforeThemOnlyWhereNothingChanges) {
+  const SmallStore small(":a :p 1 . :b :p \"no number\" . :c :p 7 .");
+  EXPECT_THAT(small.rows("SELECT ?s ?d { ?s :p ?v BIND(?v + 1 AS ?d) FILTER(?d > 2) }"), ElementsAreArray({":c \"8\"^^integer"}));
+  EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(?v + 1 AS ?d) FILTER(!BOUND(?d)) }"), ElementsAreArray({":b"}));
+  EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(?v + 1 AS ?d) FILTER(COALESCE(?d, 99) > 8) }"), ElementsAreArray({":b"}));
+  EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(?v + 1 AS ?d) BIND(?d * 2 AS ?e) FILTER(?e = 4) }"), ElementsAreArray({":a"}));
+  EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(?v AS ?d) FILTER EXISTS { ?x :p ?d FILTER(?d = 7) } }"), ElementsAreArray({":c"}));
+  EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(RAND() AS ?d) FILTER(?d = ?d && ISNUMERIC(?v)) }"), ElementsAreArray({":a", ":c"}));
+  EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(?v + 1 AS ?d) OPTIONAL { ?s :p ?w } FILTER(?d = ?w + 1) }"), ElementsAreArray({":a", ":c"}));
+}
+
+}  // namespace
+}  // namespace cluxel::test
