@@ -10,6 +10,15 @@ namespace {
 
 using Kind = Expr::Kind;
 
+/// An expression that stands in more places of a filter may cost more than the terms it spares.
+constexpr std::size_t kMostMentions = 2;
+
+std::size_t mentionsOf(const Expr& condition, Slot slot) {
+  std::size_t count = condition.kind == Kind::Slot && condition.slot == slot ? 1 : 0;
+  for (const Expr& argument : condition.arguments) count += mentionsOf(argument, slot);
+  return count;
+}
+
 /// Whether the value of `slot` may be computed in place, rather than read from the solution.
 bool looksOnlyAtValue(const Expr& condition, Slot slot) {
   if (condition.kind == Kind::Bound && condition.slot == slot) return false;
@@ -40,6 +49,7 @@ std::optional<Expr> beforeBinds(const Expr& condition, const std::vector<const N
     if (!condition.slots().has(bind->slot)) continue;
     if (bound.has(bind->slot) || expression.isVolatile() || hasExists(expression)) return std::nullopt;
     if (!looksOnlyAtValue(condition, bind->slot) || given.intersects(expression.slots())) return std::nullopt;
+    if (mentionsOf(condition, bind->slot) > kMostMentions) return std::nullopt;
     result = withExpression(result, bind->slot, expression);
     changed = true;
   }

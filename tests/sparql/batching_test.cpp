@@ -125,6 +125,14 @@ TEST_F(Batching, FiltersOnBindsAreDecidedBeforeThemOnlyWhereNothingChanges) {
   EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(?v + 1 AS ?d) BIND(?d * 2 AS ?e) FILTER(?e = 4) }"), ElementsAreArray({":a"}));
   EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(?v AS ?d) FILTER EXISTS { ?x :p ?d FILTER(?d = 7) } }"), ElementsAreArray({":c"}));
   EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(RAND() AS ?d) FILTER(?d = ?d && ISNUMERIC(?v)) }"), ElementsAreArray({":a", ":c"}));
+  const QuadReader reader = small.reader();
+  const auto filters_first = [&](const std::string& rest) {
+    const std::string plan = explainQuery(reader, kPrefixes + "SELECT ?s { ?s :p ?v BIND(?v + 1 AS ?d) " + rest + " }");
+    return plan.find("filter") > plan.find("bind");   // a plan is told from its top
+  };
+  EXPECT_TRUE(filters_first("FILTER(?d > 2)"));
+  EXPECT_FALSE(filters_first("FILTER(BOUND(?d))"));
+  EXPECT_FALSE(filters_first("FILTER(?d * ?d * ?d > 2)"));
   EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(?v + 1 AS ?d) OPTIONAL { ?s :p ?w } FILTER(?d = ?w + 1) }"), ElementsAreArray({":a", ":c"}));
 }
 
