@@ -12,6 +12,7 @@
 #include "perception/box_gap.hpp"
 #include "perception/disjoint_sets.hpp"
 #include "perception/vector_lanes.hpp"
+#include "perception/whole_below.hpp"
 
 namespace cluxel {
 
@@ -74,7 +75,7 @@ void addMoments(Component& component, const TilePoints& points, std::span<const 
 }
 
 std::uint16_t footprintCell(float local) {
-  const auto cell = static_cast<int>(std::floor(local / static_cast<float>(kFootprintCell_m)));
+  const auto cell = static_cast<int>(wholeBelow(static_cast<double>(local / static_cast<float>(kFootprintCell_m))));
   return static_cast<std::uint16_t>(std::clamp(cell, 0, kFootprintCellsPerTile - 1));
 }
 

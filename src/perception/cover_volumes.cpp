@@ -10,6 +10,7 @@
 #include "perception/moments.hpp"
 #include "perception/radix_order.hpp"
 #include "perception/vector_lanes.hpp"
+#include "perception/whole_below.hpp"
 
 namespace cluxel {
 namespace {
@@ -102,8 +103,11 @@ float grownReach(const NearPoints& near, std::size_t wanted, float least, float 
   return std::max(least, *nth);
 }
 
+/// Squared distances [m2].
 struct Squares {
   float radius, largest;
+  /// Mostly enough: half of the points within the largest reach on a surface.
+  float middle() const { return std::max(radius, 0.5F * largest); }
 };
 
 /// Volumes of radius around every seed; returns the cluxels that hold too few points.
@@ -144,7 +148,8 @@ void measureGrown(const PointGrid& grid, const TilePoints& points, const CellKey
     if (n == 0 || order[n].key != order[n - 1].key) walk.moveTo(order[n].key);
     const std::uint32_t c = order[n].item;
     const Eigen::Vector3f seed = points.at(tile.seed[c]);
-    near.collect(grid, walk, seed, squares.largest);
+    near.collect(grid, walk, seed, squares.middle());
+    if (near.count <= wanted) near.collect(grid, walk, seed, squares.largest);
     const float reach_squared = grownReach(near, wanted, squares.radius, squares.largest, scratch);
     near.keepWithin(reach_squared);
     fillVolume(grid, near, reach_squared, seed, c, tile);
@@ -159,7 +164,7 @@ std::size_t columnOf(float x, float y) {
   return static_cast<std::size_t>(y * per_m) * kColumnsPerTile + static_cast<std::size_t>(x * per_m);
 }
 
-std::int32_t sliceOf(float z) { return static_cast<std::int32_t>(std::floor(z / kSliceHeight_m)); }
+std::int32_t sliceOf(float z) { return static_cast<std::int32_t>(wholeBelow(z / kSliceHeight_m)); }
 
 }  // namespace
 

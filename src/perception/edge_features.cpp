@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 
 #include "perception/feature_groups.hpp"
 
@@ -22,27 +21,30 @@ float volumeShare(const Volume& a, const Volume& b) {
   return common.prod() / std::min(size_a.prod(), size_b.prod());
 }
 
-/// Members of one cluxel's 1-ring carry its mark, so that others' shared members are counted in one run over theirs.
+/// Members of one cluxel's 1-ring carry a mark, so that others' shared members are counted in one run over theirs.
 class SharedSupport {
  public:
-  explicit SharedSupport(const RingGraph& graph, std::size_t cluxels) : graph_(graph), mark_(cluxels, kNobody) {}
+  explicit SharedSupport(const RingGraph& graph, std::size_t cluxels) : graph_(graph), mark_(cluxels, 0) {}
   void moveTo(std::uint32_t cluxel) {
+    if (cluxel_ != kNobody)
+      for (const auto member : graph_.neighbours(cluxel_)) mark_[member] = 0;
     cluxel_ = cluxel;
-    for (const auto member : graph_.neighbours(cluxel)) mark_[member] = cluxel;
+    for (const auto member : graph_.neighbours(cluxel)) mark_[member] = 1;
   }
   /// Shared members over all members of the two 1-rings, each with its centre: how much the features of both ends rest on
   /// the same. `other` is a neighbour.
   float shareWith(std::uint32_t other) const {
     const auto others = graph_.neighbours(other);
-    std::size_t shared = 2;   // the two are in each other's rings
-    for (const auto member : others) shared += mark_[member] == cluxel_ ? 1U : 0U;
-    return static_cast<float>(shared) / static_cast<float>(graph_.neighbours(cluxel_).size() + others.size() + 2 - shared);
+    std::int32_t shared = 2;   // the two are in each other's rings
+    for (const auto member : others) shared += mark_[member];
+    const auto both = static_cast<std::int32_t>(graph_.neighbours(cluxel_).size() + others.size());
+    return static_cast<float>(shared) / static_cast<float>(both + 2 - shared);
   }
 
  private:
   static constexpr std::uint32_t kNobody = 0xffffffffU;
   const RingGraph& graph_;
-  std::vector<std::uint32_t> mark_;
+  std::vector<std::uint8_t> mark_;
   std::uint32_t cluxel_ = kNobody;
 };
 
@@ -66,7 +68,7 @@ std::vector<BallForm> formsOf(const std::vector<EigenShape>& shapes) {
 }
 
 void fillEdge(const FeatureInput& input, const std::vector<BallForm>& forms, std::uint32_t a, std::uint32_t b,
-              const SharedSupport& shared, EdgeRow out) {
+              const SharedSupport& shared, EdgeRow out, EdgeRow mirrored) {
   const auto& cluxels = input.cluxels;
   const Eigen::Vector3d d = (cluxels.center[b] - cluxels.center[a]).cast<double>();
   const EigenShape &shape_a = input.ball[a], &shape_b = input.ball[b];
@@ -80,9 +82,11 @@ void fillEdge(const FeatureInput& input, const std::vector<BallForm>& forms, std
                                                     std::abs(form_a.linearity - form_b.linearity),
                                                     std::abs(form_a.planarity - form_b.planarity),
                                                     std::abs(form_a.scattering - form_b.scattering)};
-  for (std::size_t i = 0; i < values.size(); ++i) out[i] = static_cast<float>(values[i]);
-  out[kEdgeColumns - 2] = volumeShare(cluxels.volume[a], cluxels.volume[b]);
-  out[kEdgeColumns - 1] = shared.shareWith(b);
+  // Written to both rows at once: to copy what was just written would wait for it.
+  const auto put = [&](std::size_t i, float value) { out[i] = mirrored[i] = value; };
+  for (std::size_t i = 0; i < values.size(); ++i) put(i, static_cast<float>(values[i]));
+  put(kEdgeColumns - 2, volumeShare(cluxels.volume[a], cluxels.volume[b]));
+  put(kEdgeColumns - 1, shared.shareWith(b));
 }
 
 }  // namespace
@@ -103,6 +107,7 @@ void fillEdges(const FeatureInput& input, FeatureTile& tile) {
   std::vector<std::uint32_t> back(graph.offset.begin(), graph.offset.end());
   SharedSupport shared(graph, cluxels.size());
   const auto forms = formsOf(input.ball);
+  std::array<float, kEdgeColumns> nobodys{};   // the row of ends in other tiles
   for (std::uint32_t c = cluxels.own_begin; c < cluxels.own_end; ++c) {
     shared.moveTo(c);
     tile.edge_offset.push_back(static_cast<std::uint32_t>(graph.offset[c] - first));
@@ -111,10 +116,9 @@ void fillEdges(const FeatureInput& input, FeatureTile& tile) {
       tile.edge_target.push_back(cluxels.name[other]);
       const bool is_own = other >= cluxels.own_begin && other < cluxels.own_end;
       if (is_own && other < c) continue;
-      fillEdge(input, forms, c, other, shared, rowOf(edge));
-      if (!is_own) continue;
-      while (graph.target[back[other]] < cluxels.own_begin) ++back[other];
-      std::memcpy(rowOf(back[other]++).data(), rowOf(edge).data(), kEdgeColumns * sizeof(float));
+      if (is_own)
+        while (graph.target[back[other]] < cluxels.own_begin) ++back[other];
+      fillEdge(input, forms, c, other, shared, rowOf(edge), is_own ? rowOf(back[other]++) : EdgeRow(nobodys));
     }
   }
   tile.edge_offset.push_back(static_cast<std::uint32_t>(count));

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "perception/feature_groups.hpp"
+#include "perception/whole_below.hpp"
 
 namespace cluxel {
 namespace {
@@ -92,7 +93,7 @@ int runUp(std::uint64_t slices) { return std::countr_zero(~slices & ~(slices >> 
 int runDown(std::uint64_t slices) { return std::countl_zero(~slices & ~(slices << 1U)); }
 
 void putProfile(const Profile& profile, double z, double ground, std::span<float> out) {
-  const int at = std::clamp(static_cast<int>(std::floor(z / kSliceHeight_m)) - profile.base, 0, 63);
+  const int at = std::clamp(static_cast<int>(wholeBelow(z / kSliceHeight_m)) - profile.base, 0, 63);
   const std::uint64_t below = at == 0 ? 0 : profile.slices & ((std::uint64_t{1} << static_cast<unsigned>(at)) - 1);
   const std::uint64_t above = at == 63 ? 0 : profile.slices >> static_cast<unsigned>(at + 1);
   const std::uint64_t under = at == 0 ? 0 : profile.slices << static_cast<unsigned>(64 - at);   // the next one is the highest bit

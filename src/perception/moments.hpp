@@ -7,12 +7,13 @@
 #include <cmath>
 
 #include "cluxel/perception/cluxel_tile.hpp"
+#include "perception/whole_below.hpp"
 
 namespace cluxel {
 
 /// Rounded down to the step of local coordinates, so that shifts to a neighbouring tile stay exact.
 inline float toLocalStep(double value_m) {
-  return static_cast<float>(std::floor(value_m / kLocalStep_m) * kLocalStep_m);
+  return static_cast<float>(static_cast<double>(wholeBelow(value_m / kLocalStep_m)) * kLocalStep_m);
 }
 
 /// Sums over points given relative to one origin.

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "perception/feature_groups.hpp"
+#include "perception/whole_below.hpp"
 
 namespace cluxel {
 namespace {
@@ -35,8 +36,8 @@ class Occupancy {
   const std::uint64_t* from(int x, int y) const {
     return slices_.data() + static_cast<std::size_t>((y + kReach) * kSide + x + kReach);
   }
-  int sliceOf(double z) const { return static_cast<int>(std::clamp(std::floor((z - base_m_) / kCell_m), 0.0, 63.0)); }
-  static int cellOf(float local_m) { return static_cast<int>(std::floor(local_m / static_cast<float>(kCell_m))); }
+  int sliceOf(double z) const { return static_cast<int>(std::clamp((z - base_m_) / kCell_m, 0.0, 63.0)); }
+  static int cellOf(float local_m) { return static_cast<int>(wholeBelow(static_cast<double>(local_m / static_cast<float>(kCell_m)))); }
 
  private:
   void enter(const CluxelTile& tile, const Eigen::Vector3f& shift) {

@@ -9,6 +9,7 @@
 
 #include "cluxel/base/diagnostic.hpp"
 #include "perception/radix_order.hpp"
+#include "perception/whole_below.hpp"
 
 namespace cluxel {
 namespace {
@@ -132,8 +133,10 @@ void describe(ThinParams& params, ParameterVisitor& visitor) {
 
 Eigen::Vector3f localPoint(const TileKey& key, const Eigen::Vector3d& p_map) {
   const Eigen::Vector3d p = p_map - cornerOf(key);
-  return {static_cast<float>(std::floor(p.x() / kLocalStep_m) * kLocalStep_m),
-          static_cast<float>(std::floor(p.y() / kLocalStep_m) * kLocalStep_m), static_cast<float>(p.z())};
+  const auto rounded = [](double value_m) {
+    return static_cast<float>(static_cast<double>(wholeBelow(value_m / kLocalStep_m)) * kLocalStep_m);
+  };
+  return {rounded(p.x()), rounded(p.y()), static_cast<float>(p.z())};
 }
 
 std::map<TileKey, ScanSegment> splitScan(const Scan& scan) {
