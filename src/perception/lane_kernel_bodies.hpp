@@ -8,19 +8,29 @@
 
 namespace cluxel {
 
-/// Vectors at any address. Written out for each width: a size that depends on a parameter is lost on GCC 12.
+/// Written out for each width: a size that depends on a parameter is lost on GCC 12.
 template <std::size_t kWidth>
 struct VectorTypes;
 template <>
 struct VectorTypes<4> {
-  using Values = float __attribute__((vector_size(16), aligned(4), may_alias));
-  using Marks = std::int32_t __attribute__((vector_size(16), aligned(4), may_alias));
+  using Values = float __attribute__((vector_size(16)));
+  using Marks = std::int32_t __attribute__((vector_size(16)));
 };
 template <>
 struct VectorTypes<8> {
-  using Values = float __attribute__((vector_size(32), aligned(4), may_alias));
-  using Marks = std::int32_t __attribute__((vector_size(32), aligned(4), may_alias));
+  using Values = float __attribute__((vector_size(32)));
+  using Marks = std::int32_t __attribute__((vector_size(32)));
 };
+
+/// From and to any address.
+template <typename Vector>
+[[gnu::always_inline]] static inline void load(const float* from, Vector& to) {
+  __builtin_memcpy(&to, from, sizeof to);
+}
+template <typename Vector, typename Number>
+[[gnu::always_inline]] static inline void store(const Vector& from, Number* to) {
+  __builtin_memcpy(to, &from, sizeof from);
+}
 
 template <std::size_t kWidth>
 struct TreeLanes {
@@ -40,11 +50,14 @@ struct TreeLanes {
       for (std::uint32_t split = end; split-- > begin;) {
         const float* values = columns + table.splits[split].column * kTreeRows + row;
         const Values threshold = Values{} + table.splits[split].threshold;
-        for (std::size_t v = 0; v < kVectors; ++v)
-          leaf[v] = leaf[v] + leaf[v] - (*reinterpret_cast<const Values*>(values + v * kWidth) > threshold);
+        for (std::size_t v = 0; v < kVectors; ++v) {
+          Values some;
+          load(values + v * kWidth, some);
+          leaf[v] = leaf[v] + leaf[v] - (some > threshold);
+        }
       }
       for (std::size_t v = 0; v < kVectors; ++v)
-        *reinterpret_cast<Marks*>(places + row + v * kWidth) = leaf[v] * static_cast<std::int32_t>(kPrimitiveLabelCount);
+        store(leaf[v] * static_cast<std::int32_t>(kPrimitiveLabelCount), places + row + v * kWidth);
     }
   }
 
@@ -53,14 +66,14 @@ struct TreeLanes {
     const float* leaves[kTogether];
     for (std::size_t t = 0; t < count; ++t) leaves[t] = table.leaves + table.leaf_begin[first + t];
     for (std::size_t row = 0; row < kTreeRows; ++row) {
-      auto* sum = reinterpret_cast<Values*>(sums + row * kLeafRead);
-      Values total[kSums];
-      for (std::size_t s = 0; s < kSums; ++s) total[s] = sum[s];
-      for (std::size_t t = 0; t < count; ++t) {
-        const auto* leaf = reinterpret_cast<const Values*>(leaves[t] + places[t][row]);
-        for (std::size_t s = 0; s < kSums; ++s) total[s] += leaf[s];
-      }
-      for (std::size_t s = 0; s < kSums; ++s) sum[s] = total[s];
+      Values total[kSums], leaf;
+      for (std::size_t s = 0; s < kSums; ++s) load(sums + row * kLeafRead + s * kWidth, total[s]);
+      for (std::size_t t = 0; t < count; ++t)
+        for (std::size_t s = 0; s < kSums; ++s) {
+          load(leaves[t] + places[t][row] + s * kWidth, leaf);
+          total[s] += leaf;
+        }
+      for (std::size_t s = 0; s < kSums; ++s) store(total[s], sums + row * kLeafRead + s * kWidth);
     }
   }
 };
@@ -84,8 +97,10 @@ struct PairLanes {
   using Values = typename VectorTypes<kWidth>::Values;
   static constexpr std::size_t kPairs = kPrimitiveLabelCount * (kPrimitiveLabelCount - 1) / 2;
 
-  [[gnu::always_inline]] static const Values& at(const float* values, std::size_t number) {
-    return *reinterpret_cast<const Values*>(values + number * kPairEdges);
+  [[gnu::always_inline]] static inline Values at(const float* values, std::size_t number) {
+    Values some;
+    load(values + number * kPairEdges, some);
+    return some;
   }
 
   /// Costs of kWidth edges; the tables' numbers stand at the lanes' places.
@@ -108,7 +123,7 @@ struct PairLanes {
       }
     }
     for (std::size_t pair = 0; pair < kPairs; ++pair)
-      *reinterpret_cast<Values*>(costs + pair * kPairEdges) = (sum[pair] > zero ? sum[pair] : zero) * at(factors, 0);
+      store((sum[pair] > zero ? sum[pair] : zero) * at(factors, 0), costs + pair * kPairEdges);
   }
 };
 
