@@ -167,6 +167,29 @@ TEST(Campus, ThicketsAreLeavesOfNoObjectAndNoHigherThanTheyAreSaidToBe) {
   EXPECT_GE(thickets, 3);
 }
 
+TEST(Campus, ThicketsThatOneLooksOverAreBushes) {
+  int bushes = 0;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    CampusParams params;
+    params.seed = seed;
+    const Campus campus = buildCampus(params);
+    for (const CampusMesh& mesh : campus.meshes) {
+      if (mesh.instance < 0) continue;
+      const CampusObject& object = campus.objects[static_cast<std::size_t>(mesh.instance)];
+      if (object.kind != "thicket") continue;
+      EXPECT_EQ(object.class_number, 3);
+      EXPECT_EQ(mesh.label, SurfaceLabel::HedgeTop);
+      double high = 0;
+      for (const auto& vertex : mesh.vertices)
+        high = std::max(high, vertex.z() - campus.terrain.heightAt(vertex.x(), vertex.y()));
+      EXPECT_GT(high, 0.4);
+      EXPECT_LT(high, 1.9);
+      ++bushes;
+    }
+  }
+  EXPECT_GE(bushes, 3);
+}
+
 /// A place as seen along the street, to which walls and cars are parallel.
 Eigen::Vector2d inPlan(const Campus& campus, const Vector3d& p_map) {
   return Eigen::Rotation2Dd(-campus.heading_rad) * p_map.head<2>();
