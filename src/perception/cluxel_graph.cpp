@@ -147,8 +147,8 @@ class CellVolumes {
   }
 
   void appendPairs(PairBuffer& pairs) const {
-    pairs.makeRoom(size_ * size_ / 2 + kLanes);
-    for (std::size_t i = 0; i + 1 < size_; ++i)
+    for (std::size_t i = 0; i + 1 < size_; ++i) {
+      pairs.makeRoom(size_ - i + kLanes);
       for (std::size_t j = (i + 1) / kLanes * kLanes; j < size_; j += kLanes) {
         const unsigned later = j > i ? 0xfU : 0xfU << (i + 1 - j) & 0xfU;
         const unsigned meets = lanesThatHold(meetFour(i, j)) & later;
@@ -157,6 +157,7 @@ class CellVolumes {
           pairs.count += meets >> lane & 1U;
         }
       }
+    }
   }
 
  private:

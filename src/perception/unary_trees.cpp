@@ -26,6 +26,7 @@ class FlatTrees {
       x_leaves.resize(x_leaves.size() + size);
       if (size > 0) std::memcpy(x_leaves.data() + x_leaf_begin.back(), tree.leaves.data(), size * sizeof(float));
     }
+    static_assert(kPrimitiveLabelCount <= kLeafRead);
     x_leaves.resize(x_leaves.size() + kLeafRead);   // the last leaf is read beyond its end
   }
   TreeTable table() const {
