@@ -184,14 +184,13 @@ void addExactDigits(std::string_view lexical, DecodedValue& value) {
   if (is_negative || lexical.starts_with('+')) lexical.remove_prefix(1);
   const std::size_t point = lexical.find('.');
   const std::size_t fraction = point == std::string_view::npos ? 0 : lexical.size() - point - 1;
-  if (lexical.size() > most_digits + 1 || fraction > most_digits) return;
+  if (lexical.size() - (point == std::string_view::npos ? 0 : 1) > most_digits) return;
   std::int64_t digits = 0;
   for (const char c : lexical) {
     if (c == '.') continue;
     if (c < '0' || c > '9') return;
     digits = digits * 10 + (c - '0');
   }
-  if (lexical.size() - (point == std::string_view::npos ? 0 : 1) > most_digits) return;
   value.integer = is_negative ? -digits : digits;
   value.scale = static_cast<std::uint8_t>(fraction);
 }

@@ -168,7 +168,7 @@ PrefixLookup& PrefixLookup::operator=(PrefixLookup&&) noexcept = default;
 PrefixLookup::~PrefixLookup() = default;
 
 void PrefixLookup::expect(std::span<const TermId> prefixes, std::size_t length) {
-  if (!impl_ || impl_->directory.pageCount() == 0) return;
+  if (!impl_ || length == 0 || length > 4 || impl_->directory.pageCount() == 0) return;
   impl_->expected.clear();
   impl_->next_expected = 0;
   for (std::size_t at = 0; at + length <= prefixes.size(); at += length) {

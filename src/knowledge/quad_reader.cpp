@@ -3,6 +3,7 @@
 #include "cluxel/knowledge/quad_store.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "cluxel/knowledge/vocabulary.hpp"
 #include "knowledge/literal_value.hpp"

@@ -2,6 +2,8 @@
 // Budgets.
 #include "sparql/guard.hpp"
 
+#include <string>
+
 #include "cluxel/base/diagnostic.hpp"
 
 namespace cluxel::sparql {

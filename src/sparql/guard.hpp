@@ -33,6 +33,8 @@ class Guard {
     if (bytes_ > most_bytes_) refuse("memory");
   }
   void release(std::size_t bytes) { bytes_ -= std::min(bytes, bytes_); }
+  /// What was charged is gone but for `bytes`.
+  void holdOnly(std::size_t bytes) { bytes_ = bytes; }
   void answerRows(std::uint64_t rows) {
     if (rows > most_answer_rows_) refuse("rows of the answer");
   }

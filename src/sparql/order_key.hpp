@@ -2,6 +2,7 @@
 // Sort keys of ORDER BY that are mostly told apart by two numbers, without a look at the terms.
 #pragma once
 
+#include <compare>
 #include <span>
 #include <string_view>
 

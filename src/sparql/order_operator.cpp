@@ -68,9 +68,14 @@ class OrderOperator : public UnaryOperator {
         fresh_ = false;
       }
       take(in, evaluator);
-      if (most_rows_ && table_.rows() > 2 * *most_rows_ + kSpareRows) keepLeast();
+      if (most_rows_ && isCrowded(*most_rows_)) keepLeast();
     }
     sortAll();
+  }
+
+  /// More than twice as many rows as are wanted, which may be more than can be counted.
+  bool isCrowded(std::uint64_t wanted) const {
+    return table_.rows() > kSpareRows && (table_.rows() - kSpareRows) / 2 > wanted;
   }
 
   void take(const Batch& in, Evaluator& evaluator) {
@@ -124,7 +129,7 @@ class OrderOperator : public UnaryOperator {
                             (slots_.size() * sizeof(ValueId) + keys_.size() * sizeof(OrderKey)));
     table_ = std::move(kept);
     fast_ = std::move(fast);
-    is_full_ = *most_rows_ > 0;
+    is_full_ = *most_rows_ > 0 && order_.size() == *most_rows_;
   }
 
   /// Less than 0: the row with the keys from `a` on comes before that with those from `b` on.

@@ -2,6 +2,7 @@
 // Plans of BIND, and of filters on what one gives: they are decided before it, so that no term is made for a row that
 // is thrown away.
 #include <algorithm>
+#include <span>
 
 #include "sparql/planner.hpp"
 
@@ -38,7 +39,8 @@ Expr withExpression(const Expr& condition, Slot slot, const Expr& expression) {
   return result;
 }
 
-/// The condition with the expressions of the binds in place of their variables; nothing where that is another question.
+/// The condition with the expressions of the binds in place of their variables; nothing where that is another question:
+/// where a bind gives nothing, what is `bound` before or after it may be what the variable stands for.
 std::optional<Expr> beforeBinds(const Expr& condition, const std::vector<const Node*>& binds, const SlotSet& bound) {
   Expr result = condition;
   SlotSet given;
@@ -77,11 +79,18 @@ Planner::State Planner::extend(State state, const std::vector<const Node*>& node
 
 /// Takes the filters that wait for nothing but these binds.
 Planner::State Planner::filterBeforeBinds(State state, const std::vector<const Node*>& binds, Parts& parts,
-                                          const SlotSet& still_to_come, std::vector<bool>& used) {
+                                          std::span<const Postponed> later, std::vector<bool>& used) {
+  SlotSet still_to_come;
+  for (const Postponed& step : later) {
+    if (step.kind == Postponed::Kind::LeftJoin) still_to_come.add(step.node->children[1]->possible);
+    if (step.kind == Postponed::Kind::Extend) still_to_come.add(step.node->slot);
+  }
+  SlotSet bound = state.possible;
+  bound.add(still_to_come);
   std::vector<Expr> ready;
   for (std::size_t i = 0; i < parts.filters.size(); ++i) {
     if (used[i]) continue;
-    auto condition = beforeBinds(parts.filters[i], binds, state.possible);
+    auto condition = beforeBinds(parts.filters[i], binds, bound);
     if (!condition || !state.certain.contains(condition->slots() & still_to_come)) continue;
     used[i] = true;
     ready.push_back(std::move(*condition));

@@ -2,6 +2,7 @@
 // Plans of parts by themselves: the modifiers of SELECT, VALUES, GRAPH around sub-selects.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sparql/planner.hpp"
 
@@ -11,6 +12,11 @@ namespace {
 bool isModifier(const Node& node) {
   return node.kind == Node::Kind::OrderBy || node.kind == Node::Kind::Project || node.kind == Node::Kind::Distinct ||
          node.kind == Node::Kind::Slice;
+}
+
+/// Or as many as can be counted.
+std::uint64_t plus(std::uint64_t a, std::uint64_t b) {
+  return b > std::numeric_limits<std::uint64_t>::max() - a ? std::numeric_limits<std::uint64_t>::max() : a + b;
 }
 
 }  // namespace
@@ -71,7 +77,7 @@ Planner::State Planner::belowModifier(const Node& child, std::optional<std::uint
 Planner::State Planner::slice(const Node& node, const std::vector<Slot>& columns) {
   const Node& child = *node.children[0];
   std::optional<std::uint64_t> wanted;
-  if (node.limit && child.kind != Node::Kind::Distinct) wanted = node.offset + *node.limit;
+  if (node.limit && child.kind != Node::Kind::Distinct) wanted = plus(node.offset, *node.limit);
   const bool cuts_group = child.kind == Node::Kind::Project && !isModifier(*child.children[0]);
   if (wanted && cuts_group) wanted_rows_ = static_cast<double>(*wanted);
   State state = belowModifier(child, wanted, columns);

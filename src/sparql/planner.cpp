@@ -44,8 +44,8 @@ Slot Planner::freshSlot(const char* name) {
 }
 
 /// Nested joins, filters, optionals and binds become one flat group where that changes nothing: `rest` is what the
-/// surrounding group may bind besides.
-void Planner::takeApart(const Node& node, const SlotSet& rest, Parts& parts) {
+/// surrounding group may bind besides, `after` what steps that come after this node may add, which no filter within sees.
+void Planner::takeApart(const Node& node, const SlotSet& rest, const SlotSet& after, Parts& parts) {
   switch (node.kind) {
     case Node::Kind::Unit: return;
     case Node::Kind::Join:
@@ -54,27 +54,29 @@ void Planner::takeApart(const Node& node, const SlotSet& rest, Parts& parts) {
         for (std::size_t k = 0; k < node.children.size(); ++k) {
           if (k != i) others.add(node.children[k]->possible);
         }
-        takeApart(*node.children[i], others, parts);
+        takeApart(*node.children[i], others, after, parts);
       }
       return;
-    case Node::Kind::Filter: return takeFilters(node, rest, parts);
+    case Node::Kind::Filter: return takeFilters(node, rest, after, parts);
     case Node::Kind::LeftJoin: {
       SlotSet used = node.children[1]->mentioned();
       for (const Expr& condition : node.conditions) used.add(condition.slots());
       if (!isUntouched(rest, used - parts.constant, node.children[0]->certain)) break;
-      takeApart(*node.children[0], rest, parts);
+      SlotSet added = after;
+      added.add(node.children[1]->possible);
+      takeApart(*node.children[0], rest, added, parts);
       parts.postponed.push_back({Postponed::Kind::LeftJoin, &node});
       return;
     }
     case Node::Kind::Minus:
       if (!isUntouched(rest, node.children[1]->possible - parts.constant, node.children[0]->certain)) break;
-      takeApart(*node.children[0], rest, parts);
+      takeApart(*node.children[0], rest, after, parts);
       parts.postponed.push_back({Postponed::Kind::Minus, &node});
       return;
     case Node::Kind::Extend: {
       const SlotSet used = node.expression->slots() - parts.constant;
       if (rest.has(node.slot) || !isUntouched(rest, used, node.children[0]->certain)) break;
-      takeApart(*node.children[0], rest, parts);
+      takeApart(*node.children[0], rest, after, parts);
       parts.postponed.push_back({Postponed::Kind::Extend, &node});
       return;
     }
@@ -83,14 +85,16 @@ void Planner::takeApart(const Node& node, const SlotSet& rest, Parts& parts) {
   parts.joined.push_back(&node);
 }
 
-void Planner::takeFilters(const Node& node, const SlotSet& rest, Parts& parts) {
+void Planner::takeFilters(const Node& node, const SlotSet& rest, const SlotSet& after, Parts& parts) {
   const Node& child = *node.children[0];
+  SlotSet others = rest;
+  others.add(after);
   for (const Expr& condition : node.conditions) {
-    if (isUntouched(rest, condition.slots() - parts.constant, child.certain)) continue;
+    if (isUntouched(others, condition.slots() - parts.constant, child.certain)) continue;
     parts.joined.push_back(&node);
     return;
   }
-  takeApart(child, rest, parts);
+  takeApart(child, rest, after, parts);
   for (const Expr& condition : node.conditions) {
     if (bindsByFilter(condition, child, parts)) continue;
     searchBySpace(condition, child, parts);
@@ -132,7 +136,7 @@ Planner::State Planner::joinNode(State state, const Node& node, const std::vecto
     rest.remove(slot);
     if (!unsure_parameters_.has(slot)) parts.constant.add(slot);
   }
-  takeApart(node, rest, parts);
+  takeApart(node, rest, {}, parts);
   parts.filters.insert(parts.filters.end(), extra_filters.begin(), extra_filters.end());
   const auto is_triple = [](const Node* part) { return part->kind == Node::Kind::Triple; };
   const bool keeps_rows = parts.filters.empty() && std::all_of(parts.joined.begin(), parts.joined.end(), is_triple) &&
@@ -178,7 +182,7 @@ Planner::State Planner::applyPostponed(State state, Parts& parts, std::vector<bo
       to_come.add(later.kind == Node::Kind::Minus ? SlotSet() : later.possible);
     }
     if (!binds.empty()) {
-      state = filterBeforeBinds(std::move(state), binds, parts, to_come, used);
+      state = filterBeforeBinds(std::move(state), binds, parts, std::span(parts.postponed).subspan(i + 1), used);
       state = extend(std::move(state), binds);
     }
     state = applyFilters(std::move(state), parts, to_come, used);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "sparql/cardinality.hpp"
@@ -69,8 +70,8 @@ class Planner {
   State extend(State state, const std::vector<const Node*>& nodes);
   State applyFilters(State state, Parts& parts, const SlotSet& still_to_come, std::vector<bool>& used);
   State filter(State state, std::vector<Expr> conditions);
-  State filterBeforeBinds(State state, const std::vector<const Node*>& binds, Parts& parts, const SlotSet& still_to_come,
-                          std::vector<bool>& used);
+  State filterBeforeBinds(State state, const std::vector<const Node*>& binds, Parts& parts,
+                          std::span<const Postponed> later, std::vector<bool>& used);
   State alone(const Node& node);
   State select(const Node& node, std::optional<std::uint64_t> most_rows, const std::vector<Slot>& columns);
   State belowModifier(const Node& child, std::optional<std::uint64_t> most_rows, const std::vector<Slot>& columns);
@@ -82,8 +83,8 @@ class Planner {
   State graphLoop(const Node& node);
   State values(const Node& node);
 
-  void takeApart(const Node& node, const SlotSet& rest, Parts& parts);
-  void takeFilters(const Node& filter, const SlotSet& rest, Parts& parts);
+  void takeApart(const Node& node, const SlotSet& rest, const SlotSet& after, Parts& parts);
+  void takeFilters(const Node& filter, const SlotSet& rest, const SlotSet& after, Parts& parts);
   bool bindsByFilter(const Expr& condition, const Node& child, Parts& parts);
   void searchBySpace(const Expr& condition, const Node& child, Parts& parts);
   std::size_t choosePart(const State& state, const std::vector<const Node*>& parts);

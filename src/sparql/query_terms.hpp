@@ -20,6 +20,7 @@ class QueryTerms : public TermLookup {
   QueryTerms& operator=(const QueryTerms&) = delete;
 
   Value valueOf(ValueId id) const;
+  /// The text stays in place while the reader lives, that of a computed term until rewind() drops it: sort keys point to it.
   TermView view(ResultId id) const override;
   void expect(std::span<const ResultId> ids) const override { reader_.expectViews(ids); }
   /// The same for valueOf().

@@ -11,8 +11,9 @@ class RowFilter : public UnaryOperator {
   using UnaryOperator::UnaryOperator;
 
  protected:
-  /// Before the first batch is asked for, and before the rows of each.
+  /// Before batches are asked for: whenever rows are wanted, so again and again in a run.
   virtual void beginRun() {}
+  /// Before the rows of each batch.
   virtual void beginBatch(const Batch& /*in*/) {}
   /// The rows of a batch come in turn.
   virtual bool passes(const Batch& in, std::uint32_t row) = 0;

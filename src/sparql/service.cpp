@@ -31,6 +31,7 @@ NodePtr AlgebraBuilder::service(const ast::ServicePattern& service, ast::SourceO
 /// The solutions of the group over the other store, as VALUES.
 NodePtr AlgebraBuilder::answered(const ast::ServicePattern& service, const QuadReader& reader, ast::SourceOffset at,
                                  Scope& scope) {
+  std::size_t held = options_.guard->usage().bytes;
   QueryTerms terms(reader);
   AlgebraQuery algebra = buildAlgebra(service.group, variables_, std::string(text_), terms, options_);
   if (algebra.is_volatile) fail(at, "RAND, NOW, UUID and BNODE do not work within SERVICE", "use them outside of it");
@@ -51,7 +52,9 @@ NodePtr AlgebraBuilder::answered(const ast::ServicePattern& service, const QuadR
   const std::uint32_t number = service_count_++;
   Batch batch(runtime.slot_count);
   for (plan->open(runtime, true); plan->next(batch);) {
-    runtime.guard.charge(batch.rows * (sizeof(node->rows[0]) + theirs.size() * sizeof(ValueId)));
+    const std::size_t kept = batch.rows * (sizeof(node->rows[0]) + theirs.size() * sizeof(ValueId));
+    runtime.guard.charge(kept);
+    held += kept;
     for (std::size_t row = 0; row < batch.rows; ++row) {
       std::vector<ValueId>& ids = node->rows.emplace_back();
       for (const Slot slot : theirs) {
@@ -60,7 +63,9 @@ NodePtr AlgebraBuilder::answered(const ast::ServicePattern& service, const QuadR
       }
     }
   }
+  // Its plan ends here, with all that it held: the rows stay.
   *options_.guard = runtime.guard;
+  options_.guard->holdOnly(held);
   node->annotate();
   return node;
 }

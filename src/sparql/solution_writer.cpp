@@ -3,6 +3,7 @@
 #include "sparql/solution_writer.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace cluxel {
 

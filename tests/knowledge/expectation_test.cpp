@@ -2,6 +2,8 @@
 // Telling the store what will be asked next changes how fast it answers, never what.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <random>
 #include <string>
 
@@ -127,6 +129,15 @@ TEST(Expectation, DecimalsKeepTheirDigitsWhere64BitsHoldThem) {
   }
   const TermId plus = writer.intern(Term::literal("+.50", vocabulary::xsd("decimal")));
   const TermId long_one = writer.intern(Term::literal("1234567890123456789", vocabulary::xsd("decimal")));
+  std::vector<TermId> too_long;
+  for (const char* text : {"9999999999999999999", "-9999999999999999999", "+9999999999999999999", "999999999999999999.9", "-0.9999999999999999999",
+                           "99999999999999999999"}) {
+    too_long.push_back(writer.intern(Term::literal(text, vocabulary::xsd("decimal"))));
+  }
+  make("999999999999999999");
+  make("-999999999999999999");
+  make("-0.99999999999999999");
+  make("99999999999999999.9");
   const TermId long_fraction = writer.intern(Term::literal("0.0000000000000000001", vocabulary::xsd("decimal")));
   const TermId ill_formed = writer.intern(Term::literal("1.2.3", vocabulary::xsd("decimal")));
   writer.flush();
@@ -140,6 +151,10 @@ TEST(Expectation, DecimalsKeepTheirDigitsWhere64BitsHoldThem) {
   EXPECT_EQ(reader.valueOf(plus).scale, 2);
   EXPECT_EQ(reader.valueOf(long_one).scale, DecodedValue::kNoScale);
   EXPECT_EQ(reader.valueOf(long_fraction).scale, DecodedValue::kNoScale);
+  for (const TermId id : too_long) {
+    EXPECT_EQ(reader.valueOf(id).type, DecodedValue::Type::Decimal);
+    EXPECT_EQ(reader.valueOf(id).scale, DecodedValue::kNoScale) << reader.termOf(id).text;
+  }
   EXPECT_EQ(reader.valueOf(ill_formed).type, DecodedValue::Type::None);
 }
 

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "cluxel/base/diagnostic.hpp"
 #include "sparql/store_fixture.hpp"
 
@@ -68,16 +70,73 @@ TEST_F(Services, ShareOneBudgetWithEachOtherAndTheQuery) {
   EXPECT_TRUE(worked("SELECT ?x { " + one + " UNION " + one + " }", 4 * least));
 }
 
+/// The least budget with which `works` answers true.
+template <typename Works>
+std::uint64_t leastBudget(const Works& works) {
+  std::uint64_t enough = 1, too_little = 0;
+  while (!works(enough)) too_little = std::exchange(enough, enough * 2);
+  while (enough - too_little > 1) {
+    const std::uint64_t middle = too_little + (enough - too_little) / 2;
+    (works(middle) ? enough : too_little) = middle;
+  }
+  return enough;
+}
+
 TEST_F(Services, CountInEveryRunOfAPreparedQuery) {
-  options.budget.max_memory_bytes = 1;
-  EXPECT_THAT(refusal("SELECT ?x { SERVICE <http://elsewhere/> { ?x :name ?n } }", options), HasSubstr("memory"));
-  options.budget = {};
-  options.budget.max_work_rows = 1000;
+  const std::string text = "PREFIX : <http://example.org/> SELECT ?x { SERVICE <http://elsewhere/> { ?x :name ?n } }";
   const QuadReader mine = ours.reader();
-  PreparedQuery query(mine, "PREFIX : <http://example.org/> SELECT ?x { SERVICE <http://elsewhere/> { ?x :name ?n } }", options);
-  const std::size_t rows = query.evaluate().table.row_count;
-  EXPECT_EQ(rows, 4U);
-  EXPECT_EQ(query.evaluate().table.row_count, rows);
+  for (std::uint64_t QueryBudget::*what : {&QueryBudget::max_work_rows, &QueryBudget::max_memory_bytes}) {
+    const auto with = [&](std::uint64_t amount) {
+      QueryOptions limited = options;
+      limited.budget.*what = amount;
+      return limited;
+    };
+    const std::uint64_t least = leastBudget([&](std::uint64_t amount) {
+      try {
+        return PreparedQuery(mine, text, with(amount)).evaluate().table.row_count == 4;
+      } catch (const Error&) {
+        return false;
+      }
+    });
+    ASSERT_GT(least, 4U);
+    PreparedQuery enough(mine, text, with(least));
+    // The service itself needs less than the run that counts it, so that preparing works.
+    PreparedQuery too_little(mine, text, with(least - 1));
+    for (int run = 0; run < 3; ++run) {
+      EXPECT_EQ(enough.evaluate().table.row_count, 4U) << run;
+      EXPECT_THROW(too_little.evaluate(), Error) << run;
+    }
+  }
+}
+
+TEST_F(Services, HoldNoMoreThanTheirRowsOnceTheyAreAnswered) {
+  SmallStore large;
+  std::vector<Quad> quads;
+  for (int i = 0; i < 3000; ++i) {
+    const auto iri = [&](const std::string& local) { return Term::iri("http://example.org/" + local); };
+    quads.push_back({iri("thing" + std::to_string(i)), iri("size"), Term::integer(i * 7 % 1000), Term::iri("")});
+  }
+  large.load(quads);
+  const QuadReader many = large.reader();
+  options.services["http://large/"] = &many;
+  const auto works = [&](const std::string& query) {
+    return [&, query](std::uint64_t bytes) {
+      options.budget.max_memory_bytes = bytes;
+      return refusal(query, options) == "no refusal";
+    };
+  };
+  const std::string sorts = "{ SERVICE <http://large/> { SELECT ?x { ?x :size ?w } ORDER BY ?w ?x OFFSET 2995 } }";
+  const std::string groups = "{ SERVICE <http://large/> { SELECT (COUNT(*) AS ?x) { { SELECT DISTINCT ?y ?w { ?y :size ?w } } } } }";
+  for (const std::string& one : {sorts, groups}) {
+    const std::uint64_t least = leastBudget(works("SELECT ?x " + one));
+    ASSERT_GT(least, 20'000U) << one;
+    const std::uint64_t both = leastBudget(works("SELECT ?x { " + one + " UNION " + one + " UNION " + one + " }"));
+    EXPECT_LT(both, least + 2'000) << one;
+    EXPECT_GE(both, least) << one;
+    // What a run needs beside the rows is not added to what the service's plan needed.
+    const std::uint64_t with_own = leastBudget(works("SELECT ?x { " + one + " { SELECT ?s { ?s :p ?o } ORDER BY ?o } }"));
+    EXPECT_LT(with_own, least + 2'000) << one;
+  }
 }
 
 }  // namespace

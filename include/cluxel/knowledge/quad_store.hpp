@@ -133,7 +133,7 @@ class PrefixLookup {
   PrefixLookup& operator=(PrefixLookup&&) noexcept;
   ~PrefixLookup();
 
-  /// Lookups that will be made next, in this order: their ids one after another, `length` for each. Searching for all
+  /// Lookups that will be made next, in this order: ids one after another, `length` (1 to 4) for each. Searching for all
   /// of them at once lets their waits for the memory overlap. Changes no answer; lookups may also differ or not come.
   void expect(std::span<const TermId> prefixes, std::size_t length);
   /// The entries that begin with `prefix` (1 to 4 ids in the index's order) on the first page that has any; empty when
