@@ -48,10 +48,13 @@ class Batching : public testing::Test {
     store = new SmallStore();
     std::mt19937 random(4);
     std::vector<Quad> quads;
+    // Terms are numbered as they come: the things in turn, so that later ones are met later.
+    for (std::size_t i = 0; i < kThings; ++i) {
+      quads.push_back({iri("thing" + std::to_string(i)), iri("is"), iri("thing"), Term::iri("")});
+    }
     for (std::size_t i = 0; i < kThings; ++i) {
       const Term self = iri("thing" + std::to_string(i));
       quads.push_back({self, iri("height"), decimal(random() % 300), Term::iri("")});
-      quads.push_back({self, iri("is"), iri("thing"), Term::iri("")});
       const std::size_t kind = i < 4 ? 0 : random();   // the first texts are strings here, and IRIs there
       if (const auto value = mixed(kind, i, kThings, random)) quads.push_back({self, iri("mixed"), *value, Term::iri("")});
       if (const auto value = mixed(kind + 1, i, kThings, random)) quads.push_back({self, iri("other"), *value, Term::iri("")});
@@ -138,6 +141,14 @@ TEST_F(Batching, FirstRowsAreThoseOfTheWholeOrderOfMixedKinds) {
   for (const char* property : {"mixed", "other"}) {
     expectFirstRows(*store, std::string("SELECT ?o ?m { ?o :is :thing OPTIONAL { ?o :") + property + " ?m } }",
                     {"?m", "DESC(?m)", "?m ?o", "DESC(?m) DESC(?o)", "DATATYPE(?m) ?m", "STR(?m)", "DESC(STR(?m)) ?m"});
+    std::vector<std::string> iris, strings;
+    for (const std::string& row : store->ordered(std::string("SELECT ?m { ?o :") + property + " ?m } ORDER BY ?m")) {
+      if (row.front() == ':') iris.push_back(row);
+      if (row.front() == '"' && row.back() == '"') strings.push_back(row);
+    }
+    EXPECT_TRUE(std::is_sorted(iris.begin(), iris.end())) << property;
+    EXPECT_TRUE(std::is_sorted(strings.begin(), strings.end())) << property;
+    EXPECT_GT(std::min(iris.size(), strings.size()), kThings / 10);
   }
 }
 
