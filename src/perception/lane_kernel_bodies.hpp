@@ -129,9 +129,11 @@ struct PairLanes {
 
 template <std::size_t kWidth>
 static void pairCosts(const PairTable& table, const float* columns, const float* factors, float* costs) {
-  for (std::size_t lane = 0; lane < kPairEdges; lane += kWidth)
-    PairLanes<kWidth>::costsOf({table.bias + lane, table.knots + lane, table.weights + lane, table.columns}, columns + lane,
+  for (std::size_t lane = 0; lane < kPairEdges; lane += kWidth) {
+    const auto from = [lane](const float* numbers) { return numbers == nullptr ? nullptr : numbers + lane; };   // without columns: none
+    PairLanes<kWidth>::costsOf({table.bias + lane, from(table.knots), from(table.weights), table.columns}, from(columns),
                                factors + lane, costs + lane);
+  }
 }
 
 template <std::size_t kWidth>
