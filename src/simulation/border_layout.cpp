@@ -50,7 +50,8 @@ class BorderLayout {
     for (double x = -plan_.half_m() + 3; x < plan_.half_m(); x += random_.uniform(8, 17)) {
       const Vector2d place{x, plan_.streetY() - random_.uniform(4.8, 6.0)};
       if (random_.chance(0.5)) {
-        cycle(place, random_.uniform(-0.2, 0.2) + (random_.chance(0.5) ? pi : 0), 0.5, CycleKind::Bicycle);
+        const double slant = random_.uniform(-0.2, 0.2), heading = random_.chance(0.5) ? pi : 0;
+        cycle(place, slant + heading, 0.5, CycleKind::Bicycle);
       } else {
         rack(place);
       }
@@ -114,9 +115,10 @@ class BorderLayout {
   void rack(const Vector2d& place) {
     const int count = 3 + random_.below(4);
     if (!site_.claimStrip(place, place + Vector2d{0.55 * (count - 1), 0}, 0.75)) return;
-    for (int i = 0; i < count; ++i)
-      makeCycle(site_, place + Vector2d{0.55 * i, random_.uniform(-0.08, 0.08)},
-                0.5 * pi + random_.uniform(-0.06, 0.06), CycleKind::Bicycle, stream());
+    for (int i = 0; i < count; ++i) {
+      const double slant = random_.uniform(-0.06, 0.06), aside = random_.uniform(-0.08, 0.08);
+      makeCycle(site_, place + Vector2d{0.55 * i, aside}, 0.5 * pi + slant, CycleKind::Bicycle, stream());
+    }
   }
   bool farFromCars(const Vector2d& place) const {
     return std::none_of(site_.campus().objects.begin(), site_.campus().objects.end(),

@@ -39,8 +39,10 @@ class Planting {
 
   void eastRow() {
     const SitePlan& plan = site_.plan();
-    for (double y = plan.south() + 4; y < plan.north(); y += 4.2)
-      tree({plan.east() + 3.2, y + random_.uniform(-0.3, 0.3)}, usualTree(TreeShape::Columnar, random_));
+    for (double y = plan.south() + 4; y < plan.north(); y += 4.2) {
+      const TreeSpec spec = usualTree(TreeShape::Columnar, random_);
+      tree({plan.east() + 3.2, y + random_.uniform(-0.3, 0.3)}, spec);
+    }
   }
 
   void gardens() {

@@ -9,6 +9,16 @@ namespace cluxel {
 
 using Eigen::Vector2d, Eigen::Vector3d;
 
+namespace {
+
+/// Where a leaf sits in an ellipsoid about the origin: at least half way out.
+Vector3d placeInOuterHalf(const Vector3d& radii, CampusRandom& random) {
+  const Vector3d direction = randomDirection(random);
+  return (0.5 + 0.5 * std::sqrt(random.uniform())) * radii.cwiseProduct(direction);
+}
+
+}  // namespace
+
 std::int32_t makeBush(CampusSite& site, const Vector2d& place, double radius, CampusRandom random) {
   const Vector3d foot = site.onGround(place);
   const std::int32_t id = site.addObject(ObjectClass::Bush, "bush", foot, radius);
@@ -22,8 +32,7 @@ std::int32_t makeBush(CampusSite& site, const Vector2d& place, double radius, Ca
     const Vector3d radii{0.55 * radius, 0.55 * radius, 0.38 * height};
     const int count = static_cast<int>(480 * radius * radius + 60);
     for (int i = 0; i < count; ++i) {
-      const Vector3d leaf =
-          middle + (0.5 + 0.5 * std::sqrt(random.uniform())) * radii.cwiseProduct(randomDirection(random));
+      const Vector3d leaf = middle + placeInOuterHalf(radii, random);
       addLeaf(leaves, random, leaf, random.uniform(0.05, 0.11));
     }
   }
@@ -40,7 +49,8 @@ std::int32_t makeHedge(CampusSite& site, const Vector2d& from, const Vector2d& t
   CampusMesh leaves = surfaceOf(SurfaceLabel::HedgeTop, id, {.reflectivity = 0.5F});
   const int count = static_cast<int>(length * (2 * height + 2 * half) * 260);
   for (int i = 0; i < count; ++i) {
-    const double s = random.uniform(0, length), depth = 0.2 * random.uniform() * random.uniform();
+    const double s = random.uniform(0, length), share = 0.2 * random.uniform(),
+                 depth = share * random.uniform();
     double side = random.uniform(-half, half), up = random.uniform(0.05, height);
     if (random.uniform() < half / (half + height))
       up = height - depth;
@@ -58,10 +68,10 @@ namespace {
 /// Leaves in the outer half of an ellipsoid.
 void addLobe(CampusMesh& leaves, const Vector3d& middle, const Vector3d& radii, CampusRandom& random) {
   const int count = static_cast<int>(420 * radii.squaredNorm() / 3 + 50);
-  for (int i = 0; i < count; ++i)
-    addLeaf(leaves, random,
-            middle + (0.5 + 0.5 * std::sqrt(random.uniform())) * radii.cwiseProduct(randomDirection(random)),
-            random.uniform(0.05, 0.12));
+  for (int i = 0; i < count; ++i) {
+    const double size = random.uniform(0.05, 0.12);
+    addLeaf(leaves, random, middle + placeInOuterHalf(radii, random), size);
+  }
 }
 
 }  // namespace
@@ -79,7 +89,8 @@ void makeThicket(CampusSite& site, const Vector2d& from, const Vector2d& to, con
   for (int lobe = 0; lobe < lobes; ++lobe) {
     const Vector3d radii{random.uniform(0.3, 0.6), random.uniform(0.3, 0.6), random.uniform(0.25, 0.5)};
     const double room = std::max(0.0, spec.half_depth_m - radii.y());
-    const Vector2d place = from + random.uniform(0, length) * along + random.uniform(-room, room) * across;
+    const double aside = random.uniform(-room, room), way = random.uniform(0, length);
+    const Vector2d place = from + way * along + aside * across;
     const double up = random.uniform(0.25, std::max(0.3, spec.height_m - radii.z()));
     addLobe(leaves, site.onGround(place) + Vector3d{0, 0, up}, radii, random);
   }

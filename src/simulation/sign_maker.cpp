@@ -47,8 +47,8 @@ void addLeaves(CampusSite& site, const Vector3d& top, CampusRandom& random) {
   CampusMesh leaves = surfaceOf(SurfaceLabel::LeafClutter, -1, {.reflectivity = 0.5F});
   for (int i = 0; i < 320; ++i) {
     const Vector3d spread = Vector3d{0.5, 0.5, 0.35} * std::cbrt(random.uniform());
-    addLeaf(leaves, random, top + Vector3d{0, 0, 0.15} + spread.cwiseProduct(randomDirection(random)),
-            random.uniform(0.05, 0.1));
+    const double size = random.uniform(0.05, 0.1);
+    addLeaf(leaves, random, top + Vector3d{0, 0, 0.15} + spread.cwiseProduct(randomDirection(random)), size);
   }
   site.addSurface(std::move(leaves));
 }

@@ -58,7 +58,8 @@ std::int32_t makeBollard(CampusSite& site, const Vector2d& place, CampusRandom r
   const Vector3d foot = site.onGround(place);
   const std::int32_t id = enter(site, "bollard", foot, 0.1);
   CampusMesh bollard = surfaceOf(SurfaceLabel::Bollard, id, {.reflectivity = 0.6F});
-  addTube(bollard, upright(foot, -0.1, random.uniform(0.85, 1.05), random.uniform(0.06, 0.1)));
+  const double radius = random.uniform(0.06, 0.1), height = random.uniform(0.85, 1.05);
+  addTube(bollard, upright(foot, -0.1, height, radius));
   site.addSurface(std::move(bollard));
   return id;
 }

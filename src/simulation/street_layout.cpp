@@ -48,15 +48,16 @@ class StreetLayout {
     for (const CampusObject& object : std::vector(site_.campus().objects)) {
       const bool garden_tree = object.class_number == static_cast<int>(ObjectClass::Tree) &&
                                std::abs(object.position.y() - (plan_.streetY() - 8.2)) < 0.5;
-      if (garden_tree && random_.chance(0.6))  // under its crown
-        sign(at(object.position.x() + random_.uniform(-0.8, 0.8), -kWalkBack_m),
-             {.yaw_rad = random_.chance(0.5) ? 0 : pi,
-              .plates = 1 + random_.below(2),
-              .leaves = random_.chance(0.4)});
+      if (!garden_tree || !random_.chance(0.6)) continue;
+      const SignSpec spec{.yaw_rad = random_.chance(0.5) ? 0 : pi,
+                          .plates = 1 + random_.below(2),
+                          .leaves = random_.chance(0.4)};
+      sign(at(object.position.x() + random_.uniform(-0.8, 0.8), -kWalkBack_m), spec);  // under its crown
     }
-    for (double x = -plan_.half_m() + 11; x < plan_.half_m(); x += random_.uniform(14, 22))
-      sign(at(x, (random_.chance(0.5) ? 1 : -1) * kKerbLine_m),
-           {.yaw_rad = random_.chance(0.5) ? 0.1 : pi - 0.1});
+    for (double x = -plan_.half_m() + 11; x < plan_.half_m(); x += random_.uniform(14, 22)) {
+      const SignSpec spec{.yaw_rad = random_.chance(0.5) ? 0.1 : pi - 0.1};
+      sign(at(x, (random_.chance(0.5) ? 1 : -1) * kKerbLine_m), spec);
+    }
   }
 
   void cars() {

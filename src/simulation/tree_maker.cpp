@@ -84,8 +84,8 @@ void addConicalCrown(Tree& tree, CampusRandom& random, const TreeSpec& spec) {
       const Vector3d tip =
           root + Vector3d{length * std::cos(around), length * std::sin(around), -0.35 * length};
       for (int leaf = 0, leaves = 6 + static_cast<int>(22 * length); leaf < leaves; ++leaf) {
-        const Vector3d place =
-            root + std::sqrt(random.uniform()) * (tip - root) + 0.14 * randomDirection(random);
+        const Vector3d aside = 0.14 * randomDirection(random);
+        const Vector3d place = root + std::sqrt(random.uniform()) * (tip - root) + aside;
         addLeaf(tree.leaves, random, place, random.uniform(0.07, 0.13));
       }
       if (i % 3 == 0 && length > 0.6) addBranch(tree, spec.clear_trunk_m + up, root + 0.8 * (tip - root));
