@@ -246,7 +246,7 @@ TEST_F(RedlandStorage, ShowsItsMapToAQueryModule) {
 }
 
 TEST_F(RedlandStorage, IsListedByStockRdfproc) {
-#if defined(__clang__) || defined(__SANITIZE_ADDRESS__)
+#ifdef CLUXEL_SANITIZED
   GTEST_SKIP() << "the stock program cannot load a module that wants a sanitizer's runtime";
 #endif
   const fs::path modules = fs::path(CLUXEL_BINARY_DIR) / "redland";
