@@ -56,7 +56,7 @@ class ObjectMatchingByHand : public testing::Test {
   }
   const std::vector<std::string> names{"Tree", "Bush"};
   const std::vector<SemanticObject> two_trees_and_a_bush{object("Tree"), object("Tree"), object("Bush")};
-  const EvaluationParams params;
+  const EvaluationParams params{};
 };
 
 TEST_F(ObjectMatchingByHand, APerfectAnswerScoresOne) {
