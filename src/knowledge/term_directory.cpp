@@ -80,9 +80,10 @@ std::string_view TermDirectory::record(TermId id) const {
   if (!has(id)) return {};
   const std::size_t leaf = leafOf(id);
   const std::uint8_t* page = pageAt(leaf);
-  const std::size_t i = id - leaves_[leaf].first;
-  if (i >= lmdb_page::entryCount(page)) return {};
-  const std::size_t at = load<std::uint16_t>(offsetOf(page, i));
+  const std::uint8_t* offset = offsetOf(page, id - leaves_[leaf].first);
+  // The page's count of entries is not asked for, which would often be one more cache line: the record names its id.
+  if (offset > lastOffset(page)) damaged();
+  const std::size_t at = load<std::uint16_t>(offset);
   if (at + 8 + sizeof(TermId) > map_.page_size) damaged();
   const Node node(page + at);
   if (node.keySize() != sizeof(TermId) || load<TermId>(node.key()) != id) damaged();
@@ -98,39 +99,31 @@ std::string_view TermDirectory::record(TermId id) const {
   return {reinterpret_cast<const char*>(data), size};
 }
 
+/// Each read is asked for long before the one that needs it, so that the waits of many terms overlap.
 void TermDirectory::expect(std::span<const TermId> ids) const {
-  while (!ids.empty()) {
-    const std::size_t now = std::min(ids.size(), kTogether);
-    expectGroup(ids.first(now));
-    ids = ids.subspan(now);
-  }
-}
-
-/// Read by read for all of them, so that the waits overlap.
-void TermDirectory::expectGroup(std::span<const TermId> ids) const {
-  std::array<TermId, kTogether> known;
-  std::array<const std::uint8_t*, kTogether> pages, offsets;
+  struct Place {
+    const std::uint8_t* page;
+    const std::uint8_t* offset;   ///< of the record within the page
+  };
+  std::array<Place, kTogether> places;
+  const auto fetchRecord = [](const Place& place) {
+    const std::uint8_t* node = place.page + load<std::uint16_t>(place.offset);
+    __builtin_prefetch(node);
+    __builtin_prefetch(node + 64);   // most records are shorter than a cache line, but do not begin with one
+  };
   std::size_t count = 0;
   for (const TermId id : ids) {
     if (!has(id)) continue;
-    known[count++] = id;
-    __builtin_prefetch(&leaf_of_[id >> kStrideBits]);
-  }
-  for (std::size_t k = 0; k < count; ++k) __builtin_prefetch(&leaves_[leaf_of_[known[k] >> kStrideBits]]);
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t leaf = leafOf(known[k]);
-    pages[k] = pageAt(leaf);
-    const std::uint8_t* offset = offsetOf(pages[k], known[k] - leaves_[leaf].first);
+    Place& place = places[count % kTogether];
+    if (count >= kTogether) fetchRecord(place);
+    ++count;
+    const std::size_t leaf = leafOf(id);
+    place.page = pageAt(leaf);
     // A damaged directory may mean an entry behind the page; record() finds out.
-    offsets[k] = std::min(offset, pages[k] + map_.page_size - sizeof(std::uint16_t));
-    __builtin_prefetch(pages[k]);
-    __builtin_prefetch(offsets[k]);
+    place.offset = std::min(offsetOf(place.page, id - leaves_[leaf].first), lastOffset(place.page));
+    __builtin_prefetch(place.offset);
   }
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::uint8_t* node = pages[k] + load<std::uint16_t>(offsets[k]);
-    __builtin_prefetch(node);
-    __builtin_prefetch(node + 64);   // most records are shorter than a cache line, but do not begin with one
-  }
+  for (std::size_t k = count - std::min(count, kTogether); k < count; ++k) fetchRecord(places[k % kTogether]);
 }
 
 }  // namespace cluxel

@@ -17,6 +17,8 @@ class Cardinality {
   double matches(const TripleNode& pattern);
   /// Rows per solution in which the slots of `bound` have values.
   double fanOut(const TripleNode& pattern, const SlotSet& bound);
+  /// Quads of a predicate.
+  std::uint64_t quadsOf(ValueId predicate) { return predicate < kFirstComputed ? statistics(predicate).quads : 0; }
   /// Rows of a node by itself.
   double rows(const Node& node);
 

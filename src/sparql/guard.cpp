@@ -20,6 +20,7 @@ void Guard::start(const QueryBudget& budget, const Usage& used) {
   deadline_ = start_ + budget.deadline.value_or(std::chrono::milliseconds(0));
   work_rows_ = used.work_rows;
   bytes_ = used.bytes;
+  shared_.clear();
   most_work_rows_ = budget.max_work_rows == 0 ? kNoLimit : budget.max_work_rows;
   most_answer_rows_ = budget.max_rows == 0 ? kNoLimit : budget.max_rows;
   most_bytes_ = budget.max_memory_bytes == 0 ? kNoLimit : budget.max_memory_bytes;

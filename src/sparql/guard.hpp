@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <vector>
 
 #include "cluxel/sparql/query_engine.hpp"
 
@@ -32,7 +33,19 @@ class Guard {
     bytes_ += bytes;
     if (bytes_ > most_bytes_) refuse("memory");
   }
+  /// Counts what the query uses together with others, or in several places, once in a run.
+  void chargeOnce(const void* thing, std::size_t bytes) {
+    if (std::find(shared_.begin(), shared_.end(), thing) != shared_.end()) return;
+    shared_.push_back(thing);
+    charge(bytes);
+  }
   void release(std::size_t bytes) { bytes_ -= std::min(bytes, bytes_); }
+  /// Whether so much may still be charged.
+  bool hasRoomFor(std::size_t bytes) const { return bytes_ <= most_bytes_ && bytes <= most_bytes_ - bytes_; }
+  /// For work that the query does once for others too: it counts no rows, but ends with the deadline.
+  void checkTime() const {
+    if (budget_.deadline && std::chrono::steady_clock::now() > deadline_) refuse("time");
+  }
   /// What was charged is gone but for `bytes`.
   void holdOnly(std::size_t bytes) { bytes_ = bytes; }
   void answerRows(std::uint64_t rows) {
@@ -47,6 +60,7 @@ class Guard {
   std::chrono::steady_clock::time_point start_, deadline_;
   std::uint64_t work_rows_ = 0, next_check_ = 0, most_work_rows_ = 0, most_answer_rows_ = 0;
   std::size_t bytes_ = 0, most_bytes_ = 0;
+  std::vector<const void*> shared_;   ///< what chargeOnce() has counted
 };
 
 }  // namespace cluxel::sparql

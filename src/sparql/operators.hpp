@@ -142,8 +142,9 @@ struct Pipeline {
 
 /// Reads the quads of one pattern in the order of an index.
 OperatorPtr makeScan(const TripleNode& pattern, QuadOrder order);
-/// For each row of `child` the quads of a pattern: the index nested loop. `first_only`: at most one per row.
-OperatorPtr makeQuadJoin(OperatorPtr child, const TripleNode& pattern, bool first_only);
+/// For each row of `child` the quads of a pattern: the index nested loop. `by_column`: there will be so many lookups that
+/// a column of the predicate (subject_column.hpp) is worth making.
+OperatorPtr makeQuadJoin(OperatorPtr child, const TripleNode& pattern, bool by_column);
 /// Both ascend in `slot`, which every row binds, and share only slots that every row binds; each is read once.
 OperatorPtr makeMergeJoin(OperatorPtr child, OperatorPtr other, Slot slot);
 OperatorPtr makePathJoin(OperatorPtr child, const TripleNode& pattern);

@@ -5,6 +5,7 @@
 
 #include "sparql/pattern_access.hpp"
 #include "sparql/planner.hpp"
+#include "sparql/subject_column.hpp"
 
 namespace cluxel::sparql {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 // Measured on this store, in nanoseconds: a lookup by ascending and by scattered ids, an entry read in a scan, a row
 // put into and looked up in a hash table.
 constexpr double kAscendingLookup = 120, kScatteredLookup = 350, kScannedEntry = 4, kHashBuild = 35, kHashProbe = 25,
-                 kMergedRow = 8;
+                 kMergedRow = 8, kColumnMade = 15, kColumnLookup = 25;   // a column: for each quad of the predicate
 /// Rows that may have to be looked at for one that a LIMIT wants.
 constexpr double kRowsPerWanted = 64;
 
@@ -46,6 +47,9 @@ bool isImpossible(const TripleNode& pattern, const Dataset& dataset) {
 }
 
 }  // namespace
+
+/// The slot by which a scan of the pattern ascends.
+Slot Planner::scannedBy(const TripleNode& pattern) const { return sortedBy(pattern, chooseOrder(constantsOf(pattern, dataset_))); }
 
 Planner::State Planner::joinPart(State state, const Node& part, double wanted_rows) {
   switch (part.kind) {
@@ -99,7 +103,9 @@ OperatorPtr Planner::joinOperator(State& state, const Node& part, const OrderCho
   const bool ascending = state.sorted_by != kNoSlot && part.possible.has(state.sorted_by);
   // Where a LIMIT asks for few rows the lookups end early, while a table is built whole. Not every row finds a partner.
   const double looked_up = std::min(state.rows, wanted_rows * kRowsPerWanted);
-  const double lookup_cost = looked_up * (ascending ? kAscendingLookup : kScatteredLookup);
+  const double index_cost = looked_up * (ascending ? kAscendingLookup : kScatteredLookup);
+  const double column_cost = columnCost(state, pattern, looked_up);
+  const double lookup_cost = std::min(index_cost, column_cost);
   const double hash_cost = own * (kScannedEntry + kHashBuild) + looked_up * kHashProbe;
   const std::vector<Slot> shared = (part.possible & state.possible).list();
   const double share = state.rows > 0 ? looked_up / state.rows : 1;
@@ -118,7 +124,16 @@ OperatorPtr Planner::joinOperator(State& state, const Node& part, const OrderCho
     build->estimated_rows = own;
     return makeHashJoin(std::move(state.top), std::move(build), keys, compared);
   }
-  return makeQuadJoin(std::move(state.top), pattern, false);
+  return makeQuadJoin(std::move(state.top), pattern, column_cost < index_cost);
+}
+
+/// Of lookups in a column, which is made first; kAllRows where there can be none. Whether it is there already does not
+/// count, so that a plan does not depend on what was asked before.
+double Planner::columnCost(const State& state, const TripleNode& pattern, double lookups) {
+  const bool fits = pattern.subject.isSlot() && state.certain.has(pattern.subject.slot) && !pattern.predicate.isSlot() &&
+                    pattern.graph.kind == GraphPlace::Kind::Default && hasColumns(dataset_.default_graph);
+  if (!fits) return kAllRows;
+  return static_cast<double>(cardinality_.quadsOf(pattern.predicate.constant)) * kColumnMade + lookups * kColumnLookup;
 }
 
 Planner::State Planner::joinUnion(State state, const Node& part) {

@@ -274,12 +274,24 @@ double Planner::rowsAfter(const State& state, const Node& part) {
   return std::max(state.rows, own);
 }
 
+/// How much more the rows of a first part cost that come in no order that the other parts can use: their lookups, and the
+/// reading of their terms, are scattered over the store.
+double Planner::disorder(const Node& part, const std::vector<const Node*>& parts) const {
+  constexpr double kScattered = 1.5;
+  if (parts.size() < 2 || part.kind != Node::Kind::Triple || part.triple.path) return 1;
+  const Slot slot = scannedBy(part.triple);
+  const bool used = slot != kNoSlot && std::any_of(parts.begin(), parts.end(), [&](const Node* other) {
+    return other != &part && other->possible.has(slot);
+  });
+  return used ? 1 : kScattered;
+}
+
 std::size_t Planner::choosePart(const State& state, const std::vector<const Node*>& parts) {
   std::size_t best = 0;
   bool best_connected = false;
   double best_rows = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const double rows = rowsAfter(state, *parts[i]);
+    const double rows = rowsAfter(state, *parts[i]) * (state.is_unit ? disorder(*parts[i], parts) : 1);
     const bool connected = state.is_unit || state.possible.intersects(parts[i]->possible) || rows <= state.rows;
     const bool better = i == 0 || (connected && !best_connected) || (connected == best_connected && rows < best_rows);
     if (!better) continue;

@@ -56,6 +56,7 @@ class Planner {
   State joinPart(State state, const Node& part, double wanted_rows);
   State joinTriple(State state, const Node& part, double wanted_rows);
   OperatorPtr joinOperator(State& state, const Node& part, const OrderChoice& scan, double wanted_rows);
+  double columnCost(const State& state, const TripleNode& pattern, double lookups);
   static State joined(State state, OperatorPtr top, const Node& part, double rows);
   State joinUnion(State state, const Node& part);
   State joinAlone(State state, const Node& part);
@@ -87,6 +88,8 @@ class Planner {
   void takeFilters(const Node& filter, const SlotSet& rest, const SlotSet& after, Parts& parts);
   bool bindsByFilter(const Expr& condition, const Node& child, Parts& parts);
   void searchBySpace(const Expr& condition, const Node& child, Parts& parts);
+  Slot scannedBy(const TripleNode& pattern) const;
+  double disorder(const Node& part, const std::vector<const Node*>& parts) const;
   std::size_t choosePart(const State& state, const std::vector<const Node*>& parts);
   double rowsAfter(const State& state, const Node& part);
   Pipeline pipeline(const State& state, const SlotSet& outer, const std::function<State(State)>& body);

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// The index nested loop: for each solution the quads that fit it, by a lookup in the index that has its ids in front.
+// The index nested loop: for each solution the quads that fit it, by a lookup in the index that has its ids in front, or
+// in a column of the predicate's objects by subject where there is one.
 #include <algorithm>
 
 #include "sparql/operators.hpp"
 #include "sparql/pattern_access.hpp"
+#include "sparql/subject_column.hpp"
 
 namespace cluxel::sparql {
 namespace {
 
 class QuadJoinOperator : public UnaryOperator {
  public:
-  QuadJoinOperator(OperatorPtr child, const TripleNode& pattern, bool first_only)
-      : UnaryOperator(std::move(child)), pattern_(pattern), places_(placesOfPattern(pattern)), first_only_(first_only) {
+  QuadJoinOperator(OperatorPtr child, const TripleNode& pattern, bool by_column)
+      : UnaryOperator(std::move(child)), pattern_(pattern), places_(placesOfPattern(pattern)), by_column_(by_column) {
     std::vector<Slot> own;
     for (const PatternPlace& place : places_) {
       if (place.isSlot()) own.push_back(place.slot);
@@ -23,7 +25,7 @@ class QuadJoinOperator : public UnaryOperator {
   }
 
   std::string label(const PlanNames& names) const override {
-    return (first_only_ ? "lookup of one  " : "lookup  ") + describe(pattern_, names.query, names.terms);
+    return (by_column_ ? "lookup by column  " : "lookup  ") + describe(pattern_, names.query, names.terms);
   }
 
  protected:
@@ -33,16 +35,22 @@ class QuadJoinOperator : public UnaryOperator {
       access_.clear();
       access_.resize(16);
       filter_ = graphFilterOf(pattern_, runtime().dataset);
+      may_have_column_ = places_[0].isSlot() && !places_[1].isSlot() && places_[1].constant < kFirstComputed &&
+                         pattern_.not_predicates.empty() && pattern_.graph.kind == GraphPlace::Kind::Default && hasColumns(filter_);
+      kept_.reset();
+      column_ = nullptr;
     }
     in_.columns.resize(runtime().slot_count);
     in_.rows = 0;
     row_ = expected_until_ = 0;
     active_ = nullptr;
+    run_ = {};
   }
 
   bool produce(Batch& out) override {
     while (out.rows < target()) {
-      if (active_ == nullptr && !nextRow(out)) break;
+      if (active_ == nullptr && run_.empty() && !nextRow(out)) break;
+      if (!run_.empty()) emitRun(out);
       if (active_ != nullptr) emit(out);
     }
     finishSegment(out);
@@ -76,7 +84,7 @@ class QuadJoinOperator : public UnaryOperator {
       }
       if (row_ >= expected_until_) expectRows();
       current_ = row_++;
-      if (begin(current_)) return true;
+      if (column_ != nullptr ? beginInColumn(current_) : begin(current_)) return true;
       if (out.rows >= target()) return true;
     }
   }
@@ -108,6 +116,7 @@ class QuadJoinOperator : public UnaryOperator {
   void expectRows() {
     expected_until_ = std::min(row_ + kTogether, in_.rows);
     if (expected_until_ - row_ < kFewRows) return;
+    if (may_have_column_ && expectInColumn()) return;
     for (std::size_t row = row_; row < expected_until_; ++row) {
       const auto mask = bind(row);
       if (!mask) continue;
@@ -120,6 +129,45 @@ class QuadJoinOperator : public UnaryOperator {
       access->lookup.expect(access->expected, access->choice.prefix);
       access->expected.clear();
     }
+  }
+
+  /// The same where there is a column; false where there is none, or not yet.
+  bool expectInColumn() {
+    const auto& subjects = in_.columns[places_[0].slot];
+    if (subjects.size() < expected_until_) return false;
+    if (column_ == nullptr) {
+      if (!kept_) kept_ = keptColumn(runtime().reader, places_[1].constant, filter_);
+      may_have_column_ = runtime().guard.hasRoomFor(2 * kept_->bytes());
+      if (!may_have_column_) return false;
+      column_ = kept_->after(expected_until_ - row_, by_column_, runtime().reader, filter_, runtime().guard);
+      if (column_ == nullptr) return false;
+      runtime().guard.chargeOnce(column_, column_->bytes());
+    }
+    column_->expect({subjects.data() + row_, expected_until_ - row_});
+    return true;
+  }
+
+  /// As begin(), in the column.
+  bool beginInColumn(std::size_t row) {
+    const ValueId subject = in_.at(places_[0].slot, row);
+    if (subject == kUnbound) return begin(row);
+    const ValueId object = places_[2].isSlot() ? in_.at(places_[2].slot, row) : places_[2].constant;
+    run_ = object == kUnbound ? column_->find(subject) : column_->find(subject, object);
+    if (run_.empty()) runtime().guard.work(1);
+    return !run_.empty();
+  }
+
+  void emitRun(Batch& out) {
+    const std::size_t taken = std::min(run_.size(), target() - out.rows);
+    auto& subjects = padded(out.columns[places_[0].slot], out.rows);
+    subjects.insert(subjects.end(), taken, run_.front().subject);
+    if (places_[2].isSlot() && places_[2].slot != places_[0].slot) {
+      auto& objects = padded(out.columns[places_[2].slot], out.rows);
+      for (const SubjectColumn::Row& row : run_.first(taken)) objects.push_back(row.object);
+    }
+    from_.insert(from_.end(), taken, static_cast<std::uint32_t>(current_));
+    out.rows += taken;
+    run_ = run_.subspan(taken);
   }
 
   /// Starts the lookup of a row; false when it cannot match.
@@ -171,10 +219,6 @@ class QuadJoinOperator : public UnaryOperator {
       }
       ++out.rows;
       from_.push_back(static_cast<std::uint32_t>(current_));
-      if (first_only_) {
-        active_ = nullptr;
-        return;
-      }
     }
     block_ = block_.subspan(used);
     runtime().guard.work(used - taken);
@@ -207,7 +251,11 @@ class QuadJoinOperator : public UnaryOperator {
 
   TripleNode pattern_;
   QuadPlaces places_;
-  bool first_only_;
+  bool by_column_;   ///< the plan counts on one
+  bool may_have_column_ = false;
+  std::shared_ptr<const KeptColumn> kept_;
+  const SubjectColumn* column_ = nullptr;
+  std::span<const SubjectColumn::Row> run_;   ///< what the column has for the row at hand
   std::vector<Slot> carried_;
   GraphFilter filter_;
   std::vector<std::unique_ptr<Access>> access_;
@@ -222,8 +270,8 @@ class QuadJoinOperator : public UnaryOperator {
 
 }  // namespace
 
-OperatorPtr makeQuadJoin(OperatorPtr child, const TripleNode& pattern, bool first_only) {
-  return std::make_unique<QuadJoinOperator>(std::move(child), pattern, first_only);
+OperatorPtr makeQuadJoin(OperatorPtr child, const TripleNode& pattern, bool by_column) {
+  return std::make_unique<QuadJoinOperator>(std::move(child), pattern, by_column);
 }
 
 }  // namespace cluxel::sparql

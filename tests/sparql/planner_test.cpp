@@ -12,8 +12,10 @@
 namespace cluxel::test {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 /// Many things of class Common, few of class Rare, with numbers and neighbours.
 SmallStore& wideStore() {
@@ -61,10 +63,30 @@ TEST(Planner, BeginsWithTheRarePatternWhereverItStands) {
   }
 }
 
-TEST(Planner, HashesWhereBothSidesAreLarge) {
+TEST(Planner, HashesWhereBothSidesAreLargeOrMakesAColumn) {
   const QuadReader reader = wideStore().reader();
-  const std::string text = kPrefixes + "SELECT * { ?a a :Common . ?b :near ?a . ?b :height ?h }";
-  EXPECT_THAT(explainQuery(reader, text), HasSubstr("hash join"));
+  const std::string query = "SELECT * { ?a a :Common . ?b :near ?a . ?b :height ?h }";
+  const std::string column = "lookup by column  ?b <http://example.org/height> ?h";
+  QueryOptions strict;   // one graph by itself has no columns
+  strict.default_graph = DefaultGraph::Unnamed;
+  EXPECT_THAT(explainQuery(reader, kPrefixes + query, strict), AllOf(HasSubstr("hash join"), Not(HasSubstr(column))));
+  EXPECT_THAT(explainQuery(reader, kPrefixes + query), HasSubstr(column));
+  EXPECT_EQ(wideStore().rows(query), wideStore().rows(query, strict));
+}
+
+TEST(Planner, BeginsWithRowsInAnOrderThatOthersCanUse) {
+  // One height fewer than things: by rows alone it would begin with the heights, which come by value.
+  SmallStore store;
+  std::vector<Quad> quads;
+  const auto iri = [](const std::string& name) { return Term::iri("http://example.org/" + name); };
+  for (int i = 0; i < 2000; ++i) {
+    const Term self = iri("o" + std::to_string(i));
+    quads.push_back({self, iri("is"), iri("thing"), Term::iri("")});
+    if (i > 0) quads.push_back({self, iri("height"), Term::integer(i * 7919 % 2003), Term::iri("")});
+  }
+  store.load(quads);
+  const std::string plan = explainQuery(store.reader(), kPrefixes + "SELECT * { ?o :height ?h . ?o :is :thing }");
+  EXPECT_THAT(plan, HasSubstr("scan posg  ?o <http://example.org/is> <http://example.org/thing>"));
 }
 
 TEST(Planner, MergesWhereBothSidesComeSorted) {

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// Making columns from the index "posg" by counting, and searching in them.
+#include "sparql/subject_column.hpp"
+
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <new>
+#include <utility>
+
+namespace cluxel::sparql {
+namespace {
+
+constexpr std::size_t kHugePage = std::size_t{2} << 20U;
+/// A column is made after one lookup in the index for so many quads: 250 ns against some 10 ns a quad.
+constexpr std::uint64_t kQuadsPerLookup = 16;
+/// Fewer lookups than this are left to the index, whatever the plan says: many queries end early.
+constexpr std::uint64_t kLeastLookups = 1024;
+constexpr std::uint64_t kMostQuads = 0xFFFFFFFF;
+/// Buckets of more rows are searched by halving.
+constexpr std::ptrdiff_t kFewRows = 16;
+
+/// Calls `take(subject, object)` for each triple of the predicate once, by ascending object and subject.
+template <typename Take>
+void forEachTriple(const QuadReader& reader, TermId predicate, const GraphFilter& graphs, Guard& guard, const Take& take) {
+  QuadPattern pattern;
+  pattern.p = predicate;
+  QuadCursor cursor = reader.scan(pattern, QuadOrder::Posg);
+  TermId last_subject = kNoTerm, last_object = kNoTerm;
+  std::size_t seen = 0;
+  for (auto block = cursor.nextBlock(); !block.empty(); block = cursor.nextBlock()) {
+    for (const QuadKey& key : block) {
+      const TermId object = key.at(1), subject = key.at(2);
+      if (subject == last_subject && object == last_object) continue;   // in one more graph
+      if (!graphs.admits(key.at(3))) continue;
+      last_subject = subject;
+      last_object = object;
+      take(subject, object);
+    }
+    if ((seen += block.size()) < 65536) continue;
+    seen = 0;
+    guard.checkTime();
+  }
+}
+
+}  // namespace
+
+/// Large ones on large pages, so that scattered reads need few entries of the processor's page tables.
+template <typename T>
+SubjectColumn::Array<T> SubjectColumn::allocate(std::size_t count) {
+  const std::size_t bytes = std::max<std::size_t>(count, 1) * sizeof(T);
+  const bool large = bytes >= kHugePage;
+  const std::size_t alignment = large ? kHugePage : 64;
+  void* const memory = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+  if (memory == nullptr) throw std::bad_alloc();
+  // The last piece stays on small pages: none is filled for nothing. A system without large pages ignores it.
+  if (large) ::madvise(memory, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
+  return Array<T>(static_cast<T*>(memory));
+}
+
+void SubjectColumn::layOut(TermId first, TermId last, std::size_t rows) {
+  first_ = first;
+  last_ = last;
+  row_count_ = rows;
+  const std::uint64_t ids = std::uint64_t{last} - first + 1;
+  while ((ids >> shift_) > std::max<std::size_t>(rows / 2, 1)) ++shift_;   // some two rows in each
+  start_count_ = static_cast<std::size_t>((ids - 1) >> shift_) + 2;
+  rows_ = allocate<Row>(rows);
+  starts_ = allocate<std::uint32_t>(start_count_);
+  std::fill_n(starts_.get(), start_count_, 0);
+}
+
+SubjectColumn::SubjectColumn(const QuadReader& reader, TermId predicate, const GraphFilter& graphs, Guard& guard) {
+  TermId first = ~TermId{0}, last = 0;
+  std::size_t rows = 0;
+  forEachTriple(reader, predicate, graphs, guard, [&](TermId subject, TermId) {
+    first = std::min(first, subject);
+    last = std::max(last, subject);
+    ++rows;
+  });
+  if (rows == 0) return;
+  layOut(first, last, rows);
+  // How many in each bucket, then where each begins, then the rows to their places: starts_[b] runs to the start of b + 1.
+  forEachTriple(reader, predicate, graphs, guard, [&](TermId subject, TermId) { ++starts_[bucketOf(subject)]; });
+  std::uint32_t before = 0;
+  for (std::size_t i = 0; i < start_count_; ++i) before += std::exchange(starts_[i], before);
+  forEachTriple(reader, predicate, graphs, guard, [&](TermId subject, TermId object) {
+    rows_[starts_[bucketOf(subject)]++] = {subject, object};
+  });
+  std::move_backward(starts_.get(), starts_.get() + start_count_ - 1, starts_.get() + start_count_);
+  starts_[0] = 0;
+  sortBuckets(guard);
+}
+
+void SubjectColumn::sortBuckets(Guard& guard) {
+  for (std::size_t bucket = 0; bucket + 1 < start_count_; ++bucket) {
+    if (starts_[bucket + 1] - starts_[bucket] > 1) std::sort(rows_.get() + starts_[bucket], rows_.get() + starts_[bucket + 1]);
+    if (bucket % 65536 == 0) guard.checkTime();
+  }
+}
+
+std::span<const SubjectColumn::Row> SubjectColumn::find(TermId subject) const {
+  if (!isWithin(subject)) return {};
+  const std::size_t bucket = bucketOf(subject);
+  const Row* at = rows_.get() + starts_[bucket];
+  const Row* const end = rows_.get() + starts_[bucket + 1];
+  if (end - at > kFewRows) at = std::partition_point(at, end, [&](const Row& row) { return row.subject < subject; });
+  while (at != end && at->subject < subject) ++at;
+  const Row* stop = at;
+  while (stop != end && stop->subject == subject) ++stop;
+  return {at, stop};
+}
+
+std::span<const SubjectColumn::Row> SubjectColumn::find(TermId subject, TermId object) const {
+  const auto all = find(subject);
+  const auto at = std::partition_point(all.begin(), all.end(), [&](const Row& row) { return row.object < object; });
+  return all.subspan(static_cast<std::size_t>(at - all.begin()), at != all.end() && at->object == object ? 1 : 0);
+}
+
+void SubjectColumn::expect(std::span<const TermId> subjects) const {
+  for (const TermId subject : subjects) {
+    if (isWithin(subject)) __builtin_prefetch(&starts_[bucketOf(subject)]);
+  }
+  for (const TermId subject : subjects) {
+    if (!isWithin(subject)) continue;
+    const std::uint32_t* const start = &starts_[bucketOf(subject)];
+    __builtin_prefetch(rows_.get() + start[0]);
+    __builtin_prefetch(rows_.get() + start[1]);   // often the next line
+  }
+}
+
+const SubjectColumn* KeptColumn::after(std::size_t lookups, bool wanted, const QuadReader& reader, const GraphFilter& graphs,
+                                       Guard& guard) const {
+  if (const SubjectColumn* column = column_.load(std::memory_order_acquire)) return column;
+  const std::uint64_t made = lookups_.fetch_add(lookups, std::memory_order_relaxed) + lookups;
+  const std::uint64_t worth = quads_ / kQuadsPerLookup;
+  if (made < kLeastLookups || quads_ >= kMostQuads || (!wanted && made < worth)) return nullptr;
+  const std::unique_lock lock(making_, std::try_to_lock);
+  if (!lock.owns_lock()) return nullptr;   // another reader is making it
+  if (!made_) {
+    made_ = std::make_unique<const SubjectColumn>(reader, predicate_, graphs, guard);
+    column_.store(made_.get(), std::memory_order_release);
+  }
+  return made_.get();
+}
+
+std::shared_ptr<const KeptColumn> keptColumn(const QuadReader& reader, TermId predicate, const GraphFilter& graphs) {
+  const bool without = graphs.kind == GraphFilter::Kind::AllBut;
+  const std::string name = "column of " + std::to_string(predicate) + (without ? " without " + std::to_string(graphs.graph) : "");
+  auto column = std::static_pointer_cast<const KeptColumn>(reader.kept(name));
+  if (column) return column;
+  QuadPattern pattern;
+  pattern.p = predicate;
+  column = std::make_shared<const KeptColumn>(predicate, reader.estimate(pattern));
+  reader.keep(name, column);
+  return column;
+}
+
+}  // namespace cluxel::sparql

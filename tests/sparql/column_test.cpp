@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// Columns of a predicate's objects by subject: what the index says, and queries answered from either.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+#include <set>
+
+#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/knowledge/vocabulary.hpp"
+#include "sparql/store_fixture.hpp"
+#include "sparql/subject_column.hpp"
+
+namespace cluxel::test {
+namespace {
+
+using namespace sparql;
+using testing::ElementsAreArray;
+using testing::HasSubstr;
+
+Term iri(const std::string& local) { return Term::iri("http://example.org/" + local); }
+Term graph(unsigned number) {
+  return Term::iri(number == 0 ? "" : number == 1 ? std::string(vocabulary::kGraphHistory) : "http://example.org/g" + std::to_string(number));
+}
+
+/// `things` subjects that begin after `before` others, with up to `most` values each, a few with very many.
+SmallStore strewn(std::uint32_t seed, unsigned before, unsigned things, unsigned most) {
+  std::mt19937 random(seed);
+  std::vector<Quad> quads;
+  for (unsigned i = 0; i < before; ++i) quads.push_back({iri("early" + std::to_string(i)), iri("is"), iri("early"), graph(0)});
+  for (unsigned i = 0; i < things; ++i) {
+    const Term self = iri("thing" + std::to_string(i));
+    quads.push_back({self, iri("is"), iri("thing"), graph(2)});
+    const unsigned values = random() % 97 == 0 ? 300 : random() % (most + 1);
+    for (unsigned k = 0; k < values; ++k) quads.push_back({self, iri("p"), iri("thing" + std::to_string(random() % things)), graph(random() % 4)});
+  }
+  quads.push_back({iri("early0"), iri("p"), iri("thing0"), graph(0)});   // far from the others
+  std::shuffle(quads.begin() + before, quads.end(), random);
+  SmallStore store;
+  store.load(quads);
+  return store;
+}
+
+/// The column beside all quads of the store, for every id there is and some that there are not.
+void compareWithStore(const SmallStore& store, const std::string& predicate, bool without_history) {
+  const QuadReader reader = store.reader();
+  const TermId p = reader.idOf(iri(predicate)).value_or(~TermId{0});
+  GraphFilter graphs;
+  const auto history = reader.idOf(graph(1));
+  if (without_history && history) graphs = {GraphFilter::Kind::AllBut, *history, {}, true};
+  std::map<TermId, std::set<TermId>> expected;
+  QuadCursor cursor = reader.scan({}, QuadOrder::Spog);
+  std::size_t triples = 0;
+  for (QuadIds quad; cursor.next(quad);) {
+    if (quad.p == p && graphs.admits(quad.g)) triples += expected[quad.s].insert(quad.o).second ? 1 : 0;
+  }
+  Guard guard;
+  guard.start({});
+  const SubjectColumn column(reader, p, graphs, guard);
+  EXPECT_EQ(column.rows(), triples);
+  EXPECT_LE(column.bytes(), triples * 10 + 64);
+  std::vector<TermId> all;
+  for (TermId id = 0; id < reader.termCount() + 5; ++id) all.push_back(id);
+  all.insert(all.end(), {kFirstComputed, kFirstComputed + 7, ~TermId{0}});
+  column.expect(all);
+  for (const TermId subject : all) {
+    std::vector<TermId> objects;
+    for (const auto& row : column.find(subject)) {
+      ASSERT_EQ(row.subject, subject);
+      objects.push_back(row.object);
+    }
+    const auto& wanted = expected[subject];
+    ASSERT_THAT(objects, ElementsAreArray(wanted.begin(), wanted.end())) << subject;
+    for (TermId object = subject % 7; object < all.size(); object += 13) {
+      ASSERT_EQ(column.find(subject, object).size(), wanted.count(object)) << subject << ' ' << object;
+    }
+  }
+}
+
+TEST(SubjectColumn, HoldsWhatTheStoreHoldsOfAPredicate) {
+  for (std::uint32_t seed = 0; seed < 12; ++seed) {
+    const SmallStore store = strewn(seed, seed % 3 * 400, 1 + seed * 70, 1 + seed % 5);
+    for (const char* predicate : {"p", "is", "nowhere"}) {
+      compareWithStore(store, predicate, false);
+      compareWithStore(store, predicate, true);
+    }
+  }
+}
+
+TEST(SubjectColumn, IsMadeWhenLookupsHaveCostAsMuch) {
+  const SmallStore store = strewn(3, 100, 9000, 7);   // some 60,000 quads
+  const QuadReader reader = store.reader();
+  const TermId p = *reader.idOf(iri("p"));
+  Guard guard;
+  guard.start({});
+  EXPECT_EQ(keptColumn(reader, p, {}), keptColumn(store.reader(), p, {})) << "readers of a commit share it";
+  const auto kept = keptColumn(reader, p, {});
+  EXPECT_EQ(kept->after(1000, true, reader, {}, guard), nullptr);
+  EXPECT_EQ(kept->after(500, false, reader, {}, guard), nullptr);
+  const SubjectColumn* const made = kept->after(1, true, reader, {}, guard);
+  ASSERT_NE(made, nullptr);
+  EXPECT_EQ(kept->after(1, false, store.reader(), {}, guard), made);
+  EXPECT_GE(kept->bytes() * 2, made->bytes());
+  const TermId is = *reader.idOf(iri("is"));
+  const auto unwanted = keptColumn(reader, is, {});
+  EXPECT_EQ(unwanted->after(1023, false, reader, {}, guard), nullptr);
+  EXPECT_NE(unwanted->after(5000, false, reader, {}, guard), nullptr);
+}
+
+/// The same graphs as without options, but one by one: then patterns are looked up in the index.
+QueryOptions graphByGraph() {
+  QueryOptions options;
+  for (const unsigned number : {0u, 2u, 3u}) options.default_graphs.push_back(graph(number).text);
+  for (const unsigned number : {1u, 2u, 3u}) options.named_graphs.push_back(graph(number).text);
+  return options;
+}
+
+void compareWithIndex(const SmallStore& store, const std::string& pattern, bool is_planned) {
+  const std::string text = "SELECT * { " + pattern + " }", column = "lookup by column";
+  const auto expected = store.rows(text, graphByGraph());
+  ASSERT_FALSE(expected.empty()) << pattern;
+  const auto first = store.ordered(text);
+  EXPECT_EQ(first, store.ordered(text)) << pattern << ": made within the run or before, the order is the same";
+  EXPECT_EQ(store.rows(text), expected) << pattern;
+  const QuadReader reader = store.reader();
+  const std::string plan = explainQuery(reader, kPrefixes + text);
+  EXPECT_EQ(plan.find(column) != std::string::npos, is_planned) << pattern << '\n' << plan;
+  EXPECT_EQ(explainQuery(reader, kPrefixes + text, graphByGraph()).find(column), std::string::npos) << pattern;
+}
+
+TEST(ByColumn, GivesWhatTheIndexGives) {
+  const SmallStore store = strewn(8, 0, 2500, 3);
+  compareWithIndex(store, "?o :is :thing . ?o :p ?v", true);
+  compareWithIndex(store, "?o :is :thing OPTIONAL { ?o :p ?v }", true);
+  compareWithIndex(store, "?o :is :thing OPTIONAL { ?o :p ?v . ?v :p ?o }", true);
+  compareWithIndex(store, "?o :is :thing FILTER EXISTS { ?o :p ?v . ?v :p ?w }", true);
+  compareWithIndex(store, "?o :is :thing FILTER NOT EXISTS { ?o :p ?v . ?v :is :thing . ?v :p :thing7 }", true);
+  compareWithIndex(store, "?o :is :thing OPTIONAL { ?o :p ?o BIND(1 AS ?itself) }", true);
+  compareWithIndex(store, "?o :is ?c OPTIONAL { ?o :p ?c }", true);
+  compareWithIndex(store, "?o :is :thing OPTIONAL { ?o :p ?v } OPTIONAL { ?v :is ?w }", true);
+  compareWithIndex(store, "?o :is :thing GRAPH ?g { ?o :p ?v }", false);
+}
+
+TEST(ByColumn, FollowsCommitsAndDatasets) {
+  SmallStore store = strewn(5, 0, 3000, 2);
+  const std::string text = "SELECT (COUNT(?v) AS ?n) { ?o :is :thing OPTIONAL { ?o :p ?v } }";
+  const auto count = [&](const QueryOptions& options) { return std::stoul(store.ask(text, options).table.at(0, 0)->text); };
+  const std::size_t before = count({});
+  store.load({{iri("thing1"), iri("p"), iri("new"), graph(0)}, {iri("thing2"), iri("p"), iri("new"), graph(1)}});
+  EXPECT_EQ(count({}), before + 1) << "history is not asked";
+  EXPECT_EQ(count({}), before + 1);
+  QueryOptions of_two;
+  of_two.default_graphs = {"http://example.org/g2", "http://example.org/g3"};
+  const std::string explicitly = "SELECT (COUNT(?v) AS ?n) { ?o :is :thing OPTIONAL { { SELECT DISTINCT ?o ?v { GRAPH ?g { ?o :p ?v } FILTER(?g IN (:g2, :g3)) } } } }";
+  EXPECT_EQ(count(of_two), std::stoul(store.ask(explicitly).table.at(0, 0)->text));
+}
+
+TEST(ByColumn, CountsInTheBudgetsOfMemoryAndTime) {
+  const SmallStore store = strewn(6, 0, 4000, 6);
+  const std::string text = "SELECT (COUNT(*) AS ?n) { ?o :is :thing FILTER EXISTS { ?o :p ?v } }";
+  QueryOptions narrow;
+  narrow.budget.max_memory_bytes = 40'000;   // the column takes some 100,000
+  EXPECT_EQ(store.ordered(text, narrow), store.ordered(text)) << "without a column where there is no room for it";
+  EXPECT_EQ(store.ordered(text, narrow), store.ordered(text));
+  const QuadReader reader = store.reader();
+  Guard late;
+  QueryBudget budget;
+  budget.deadline = std::chrono::milliseconds(1);
+  late.start(budget);
+  while (true) {
+    try {
+      late.checkTime();
+    } catch (const Error&) {
+      break;
+    }
+  }
+  EXPECT_THROW(SubjectColumn(reader, *reader.idOf(iri("p")), {}, late), Error);
+}
+
+}  // namespace
+}  // namespace cluxel::test
