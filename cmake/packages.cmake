@@ -28,8 +28,9 @@ foreach(pair "LBFGS;lbfgs" "LMDB;lmdb")
   endif()
 endforeach()
 
-# PCL for reading and writing clouds only: its headers are not passed on to other wings.
-find_package(PCL REQUIRED COMPONENTS common io)
+# PCL for reading, writing and registering clouds: its headers are not passed on to other wings.
+find_package(PCL REQUIRED COMPONENTS common io kdtree search registration)
 add_library(cluxel_pcl_io INTERFACE)
 target_include_directories(cluxel_pcl_io SYSTEM INTERFACE ${PCL_INCLUDE_DIRS})
-target_link_libraries(cluxel_pcl_io INTERFACE ${PCL_COMMON_LIBRARIES} ${PCL_IO_LIBRARIES})
+target_link_libraries(cluxel_pcl_io INTERFACE ${PCL_COMMON_LIBRARIES} ${PCL_IO_LIBRARIES} ${PCL_KDTREE_LIBRARIES}
+  ${PCL_SEARCH_LIBRARIES} ${PCL_REGISTRATION_LIBRARIES})

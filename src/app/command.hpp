@@ -54,6 +54,7 @@ void printJson(const Json& json);
 
 void addInfo(CLI::App& app, Session& session);
 void addSimulate(CLI::App& app, Session& session);
+void addRegister(CLI::App& app, Session& session);
 void addBuild(CLI::App& app, Session& session);
 void addTrain(CLI::App& app, Session& session);
 void addQuery(CLI::App& app, Session& session);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel simulate`: scans of a generated campus with truth and poses.
+#include <map>
+
 #include "app/command.hpp"
 #include "cluxel/scan/truth.hpp"
 #include "cluxel/simulation/campus_writer.hpp"
@@ -43,6 +45,9 @@ void addSimulate(CLI::App& app, Session& session) {
         ->check(CLI::Range(info.min, info.max))
         ->capture_default_str();
   }
+  const std::map<std::string, LaserKind> lasers{{"pan-tilt", LaserKind::PanTilt}, {"spinning", LaserKind::Spinning}};
+  command->add_option("--laser", options->params.laser, "pan-tilt, or spinning: 64 rings as on a vehicle")
+      ->transform(CLI::CheckedTransformer(lasers));
   onRun(*command, session, [options, &session] { return simulate(*options, session); });
 }
 

@@ -28,6 +28,7 @@ int fail(ExitCode code, const char* message) {
 void addCommands(CLI::App& app, Session& session) {
   addInfo(app, session);
   addSimulate(app, session);
+  addRegister(app, session);
   addBuild(app, session);
   addQuery(app, session);
   addUpdate(app, session);

@@ -2,6 +2,7 @@
 // A campus from its parameters: ground, buildings, what grows and what stands on it, and the robot's stops.
 #include "cluxel/simulation/campus.hpp"
 
+#include <algorithm>
 #include <numbers>
 
 #include "simulation/makers.hpp"
@@ -13,16 +14,18 @@ using Eigen::Vector3d;
 constexpr double kDegree = std::numbers::pi / 180;
 
 void placeStops(CampusSite& site) {
-  constexpr double kSensorHeight_m = 1.2;
-  const auto count = static_cast<std::size_t>(site.campus().params.stops);
+  const CampusParams& params = site.campus().params;
+  const double height_m = params.laser == LaserKind::Spinning ? 1.7 : 1.2;
+  const double distance_m = params.stop_distance_m, unrest = std::min(1.0, distance_m / 10);
+  const auto count = static_cast<std::size_t>(params.stops);
   for (std::size_t stop = 0; stop < count; ++stop) {
     CampusRandom random = site.stream(RandomUse::Stop, stop);
-    const auto route = site.plan().routeAt(kStopDistance_m * static_cast<double>(stop));
+    const auto route = site.plan().routeAt(distance_m * static_cast<double>(stop));
     const Eigen::Vector2d place =
-        route.position + Eigen::Vector2d{random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2)};
+        route.position + unrest * Eigen::Vector2d{random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2)};
     Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
-    T_map_sensor.translation() = site.onGround(place) + Vector3d{0, 0, kSensorHeight_m};
-    const double yaw = route.heading_rad + 8 * kDegree * random.normal();
+    T_map_sensor.translation() = site.onGround(place) + Vector3d{0, 0, height_m};
+    const double yaw = route.heading_rad + unrest * 8 * kDegree * random.normal();
     const double pitch = kDegree * random.normal(), roll = kDegree * random.normal();
     T_map_sensor.linear() =
         (Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch, Vector3d::UnitY()) *

@@ -16,9 +16,17 @@ Json vectorJson(const Eigen::Vector3d& v) {
   return Json::array({v.x(), v.y(), v.z()});
 }
 
+/// What was added later is said where it was chosen, so that other campuses keep their bytes.
+bool isAlwaysSaid(const CampusParamInfo& info) {
+  return info.field != &CampusParams::stop_distance_m && info.field != &CampusParams::drift_m;
+}
+
 Json parametersJson(const CampusParams& params) {
   Json json{{"seed", params.seed}};
-  for (const CampusParamInfo& info : campusParamInfos()) json[std::string(info.name)] = params.*info.field;
+  for (const CampusParamInfo& info : campusParamInfos())
+    if (isAlwaysSaid(info) || params.*info.field != CampusParams{}.*info.field)
+      json[std::string(info.name)] = params.*info.field;
+  if (params.laser == LaserKind::Spinning) json["laser"] = "spinning";
   return json;
 }
 

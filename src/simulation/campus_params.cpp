@@ -10,10 +10,10 @@
 
 namespace cluxel {
 
-const std::array<CampusParamInfo, 8>& campusParamInfos() {
+const std::array<CampusParamInfo, 10>& campusParamInfos() {
   using P = CampusParams;
-  static const std::array<CampusParamInfo, 8> infos{{
-      {"stops", &P::stops, "1", 1, 1000, "scans along the route, one every 10 m"},
+  static const std::array<CampusParamInfo, 10> infos{{
+      {"stops", &P::stops, "1", 1, 1000, "scans along the route"},
       {"size", &P::size_m, "m", 45, 400, "edge of the square campus"},
       {"points-per-stop", &P::points_per_stop, "1", 1000, 2e6, "returns per scan"},
       {"range-sigma", &P::range_sigma_m, "m", 0, 0.2, "standard deviation of the range noise"},
@@ -22,6 +22,8 @@ const std::array<CampusParamInfo, 8>& campusParamInfos() {
       {"mixed-pixel-probability", &P::mixed_pixel_probability, "1", 0, 1,
        "share of rays on depth edges that mix both ranges"},
       {"beam-radius", &P::beam_radius_rad, "rad", 0, 0.02, "half the divergence of the beam"},
+      {"stop-distance", &P::stop_distance_m, "m", 0.2, 50, "from stop to stop along the route"},
+      {"drift", &P::drift_m, "m", 0, 1, "error that the stated poses gain from scan to scan"},
   }};
   return infos;
 }
@@ -46,8 +48,8 @@ void checkRange(const CampusParams& params, const CampusParamInfo& info) {
 
 }  // namespace
 
-std::size_t maxStops(double size_m) {
-  return static_cast<std::size_t>(SitePlan(size_m).routeLength_m() / kStopDistance_m);
+std::size_t maxStops(double size_m, double stop_distance_m) {
+  return static_cast<std::size_t>(SitePlan(size_m).routeLength_m() / stop_distance_m);
 }
 
 void check(const CampusParams& params) {
@@ -56,11 +58,11 @@ void check(const CampusParams& params) {
     throw Error(ExitCode::Usage,
                 "the campus cannot have " + shortNumber(params.stops) + " stops: give a whole number");
   const auto stops = static_cast<std::size_t>(params.stops);
-  if (stops <= maxStops(params.size_m)) return;
+  if (stops <= maxStops(params.size_m, params.stop_distance_m)) return;
   double roomy_m = std::ceil(params.size_m);
-  while (maxStops(roomy_m) < stops) roomy_m += 1;
+  while (maxStops(roomy_m, params.stop_distance_m) < stops) roomy_m += 1;
   throw Error(ExitCode::Usage, "a campus of " + shortNumber(params.size_m) + " m has a route of " +
-                                   std::to_string(maxStops(params.size_m)) + " stops, not " +
+                                   std::to_string(maxStops(params.size_m, params.stop_distance_m)) + " stops, not " +
                                    std::to_string(stops) + ": choose fewer stops or a size of " +
                                    shortNumber(roomy_m) + " m");
 }

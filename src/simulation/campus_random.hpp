@@ -53,7 +53,8 @@ enum class RandomUse : std::uint64_t {
   SmallObject,
   Placement,
   Stop,
-  Ray
+  Ray,
+  Drift
 };
 
 inline CampusRandom streamOf(std::uint64_t seed, RandomUse use, std::uint64_t number = 0) {

@@ -17,6 +17,7 @@
 #include "cluxel/base/parallel.hpp"
 #include "cluxel/scan/scan_writer.hpp"
 #include "cluxel/simulation/laser.hpp"
+#include "simulation/campus_random.hpp"
 #include "simulation/instance_table.hpp"
 
 namespace cluxel {
@@ -63,6 +64,26 @@ std::string stemOf(std::size_t stop) {
   return text;
 }
 
+/// What the poses claim when their errors add up from scan to scan: too far or too short by `drift_m` times 0.5 to 1.5,
+/// and a little in all other directions. The first one is right.
+std::vector<Eigen::Isometry3d> statedPoses(const Campus& campus) {
+  const double drift_m = campus.params.drift_m;
+  if (drift_m == 0) return campus.stops;
+  constexpr double kTurn_radPerM = 0.02, kTilt_radPerM = 0.005;
+  std::vector<Eigen::Isometry3d> stated{campus.stops.front()};
+  for (std::size_t stop = 1; stop < campus.stops.size(); ++stop) {
+    CampusRandom random = streamOf(campus.params.seed, RandomUse::Drift, stop);
+    const double forward = random.uniform(0.5, 1.5), left = 0.25 * random.normal(), up = 0.1 * random.normal();
+    const double yaw = kTurn_radPerM * random.normal(), pitch = kTilt_radPerM * random.normal(),
+                 roll = kTilt_radPerM * random.normal();
+    const Eigen::Vector3d turn(drift_m * roll, drift_m * pitch, drift_m * yaw);
+    Eigen::Isometry3d error(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
+    error.translation() = drift_m * Eigen::Vector3d(forward, left, up);
+    stated.push_back(stated.back() * (campus.stops[stop - 1].inverse() * campus.stops[stop]) * error);
+  }
+  return stated;
+}
+
 void prepare(const fs::path& folder) {
   std::error_code failure;
   if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
@@ -80,18 +101,20 @@ struct Written {
   std::vector<std::size_t> points;
 };
 
-Written writeScans(const Campus& campus, const fs::path& folder, unsigned threads, ProgressSink& sink) {
+Written writeScans(const Campus& campus, const std::vector<Eigen::Isometry3d>& stated, const fs::path& folder,
+                   unsigned threads, ProgressSink& sink) {
   const Laser laser(campus);
   const std::size_t count = campus.stops.size();
   Written written{.sights = std::vector<InstanceSights>(count), .points = std::vector<std::size_t>(count)};
   std::mutex sink_mutex;
   std::size_t done = 0;
   parallelFor(count, threads, [&](std::size_t stop) {
-    const SimulatedScan simulated = laser.scanAt(stop);
-    writeScanFile(simulated.scan, folder / (stemOf(stop) + ".pcd"));
-    writeFile(folder / "truth" / (stemOf(stop) + ".truth.gz"), gzip(truthLines(simulated.truth)));
+    SimulatedScan simulated = laser.scanAt(stop);
     written.sights[stop] = sightsOf(simulated);
     written.points[stop] = simulated.scan.points.size();
+    simulated.scan.T_map_sensor = stated[stop];
+    writeScanFile(simulated.scan, folder / (stemOf(stop) + ".pcd"));
+    writeFile(folder / "truth" / (stemOf(stop) + ".truth.gz"), gzip(truthLines(simulated.truth)));
     const std::lock_guard lock(sink_mutex);
     sink.progress("scan", ++done, count);
   });
@@ -118,7 +141,8 @@ CampusSummary summaryOf(const Campus& campus, const Written& written) {
 CampusSummary writeCampus(const Campus& campus, const fs::path& folder, unsigned threads,
                           ProgressSink& sink) {
   prepare(folder);
-  const Written written = writeScans(campus, folder, threads, sink);
+  const std::vector<Eigen::Isometry3d> stated = statedPoses(campus);
+  const Written written = writeScans(campus, stated, folder, threads, sink);
   std::vector<std::string> stems;
   std::vector<double> times_s;
   for (std::size_t stop = 0; stop < campus.stops.size(); ++stop) {
@@ -128,7 +152,8 @@ CampusSummary writeCampus(const Campus& campus, const fs::path& folder, unsigned
   writeFile(folder / "truth" / "instances.csv", instanceTable(campus, written.sights, stems));
   writeFile(folder / "campus.json", describeCampus(campus));
   writeTimes(times_s, folder / "times.txt");
-  writePoses(campus.stops, folder / "poses.txt");
+  writePoses(stated, folder / "poses.txt");
+  if (campus.params.drift_m != 0) writePoses(campus.stops, folder / "true_poses.txt");
   return summaryOf(campus, written);
 }
 

@@ -18,12 +18,20 @@ using Eigen::Vector3d;
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kLowest_rad = -50 * kDegree, kHighest_rad = 55 * kDegree;
+constexpr double kLowestRing_rad = -24.8 * kDegree, kHighestRing_rad = 2 * kDegree;
+constexpr std::size_t kRings = 64;
 
-/// A full turn as columns (pan) of rays (tilt) with the same angular step both ways.
+/// A full turn as columns (pan) of rays (tilt): with the same angular step both ways, or in rings.
 struct RayGrid {
   std::size_t columns = 0, rows = 0;
+  LaserKind kind;
 
-  explicit RayGrid(double rays) {
+  RayGrid(double rays, LaserKind laser) : kind(laser) {
+    if (kind == LaserKind::Spinning) {
+      rows = kRings;
+      columns = static_cast<std::size_t>(std::lround(rays / kRings));
+      return;
+    }
     const double step = std::sqrt((kHighest_rad - kLowest_rad) * 2 * std::numbers::pi / rays);
     columns = static_cast<std::size_t>(std::lround(2 * std::numbers::pi / step));
     rows = static_cast<std::size_t>(std::lround((kHighest_rad - kLowest_rad) / step));
@@ -33,8 +41,12 @@ struct RayGrid {
     const double column = static_cast<double>(ray / rows) + random.uniform(-0.1, 0.1);
     const double row = static_cast<double>(ray % rows) + 0.5 + random.uniform(-0.1, 0.1);
     const double pan = 2 * std::numbers::pi * column / static_cast<double>(columns);
-    const double tilt = kLowest_rad + (kHighest_rad - kLowest_rad) * row / static_cast<double>(rows);
+    const double tilt = kind == LaserKind::Spinning ? ringTilt(ray % rows)
+                                                    : kLowest_rad + (kHighest_rad - kLowest_rad) * row / static_cast<double>(rows);
     return {std::cos(tilt) * std::cos(pan), std::cos(tilt) * std::sin(pan), std::sin(tilt)};
+  }
+  static double ringTilt(std::size_t ring) {
+    return kLowestRing_rad + (kHighestRing_rad - kLowestRing_rad) * static_cast<double>(ring) / (kRings - 1);
   }
 };
 
@@ -103,12 +115,12 @@ struct Laser::Impl {
 
   /// So many rays that about points_per_stop of them return, from a coarse turn. At most five times as many.
   RayGrid gridFor(std::size_t stop) const {
-    const RayGrid preview(6000);
+    const RayGrid preview(6000, campus.params.laser);
     std::size_t returns = 0;
     for (std::size_t ray = 0; ray < preview.size(); ++ray)
       returns += shoot(stop, ray, preview).has_value() ? 1 : 0;
     const double share = std::max(0.2, static_cast<double>(returns) / static_cast<double>(preview.size()));
-    return RayGrid(campus.params.points_per_stop / share);
+    return RayGrid(campus.params.points_per_stop / share, campus.params.laser);
   }
 };
 

@@ -11,8 +11,6 @@
 
 namespace cluxel {
 
-inline constexpr double kStopDistance_m = 10;
-
 /// A street runs along x in the south, with walks on both sides; north of it a rectangle of paths encloses a
 /// lawn.
 class SitePlan {

@@ -95,7 +95,7 @@ TEST_F(Program, ListsItsQuestions) {
 }
 
 TEST_F(Program, HelpsWithEverySubcommand) {
-  for (const char* name : {"", "info", "simulate", "build", "query", "update", "tasks", "explain", "rules", "rules check",
+  for (const char* name : {"", "info", "simulate", "register", "build", "query", "update", "tasks", "explain", "rules", "rules check",
                            "rules test", "train", "evaluate", "export", "compact", "doctor"}) {
     const Outcome help = run(std::string(name) + " --help");
     EXPECT_EQ(help.code, 0) << name;

@@ -8,6 +8,9 @@
 
 namespace cluxel {
 
+/// How a stop is scanned: a full turn with equal angular steps, or 64 rings (-24.8 to 2 degrees) as on a vehicle's roof.
+enum class LaserKind { PanTilt, Spinning };
+
 /// Everything in the campus and in its scans follows from these.
 struct CampusParams {
   std::uint64_t seed = 1;
@@ -19,6 +22,9 @@ struct CampusParams {
   double miss_probability = 0.005;       ///< share of rays lost for no reason
   double mixed_pixel_probability = 0.6;  ///< of a ray that is cut by a depth edge
   double beam_radius_rad = 0.003;        ///< half the divergence of the beam
+  double stop_distance_m = 10;           ///< along the route
+  double drift_m = 0;                    ///< error that the stated poses gain from scan to scan, mostly forwards
+  LaserKind laser = LaserKind::PanTilt;
 };
 
 /// A field of CampusParams as command lines and documents show it.
@@ -30,11 +36,11 @@ struct CampusParamInfo {
   std::string_view help;
 };
 
-/// One row per parameter but the seed, which is any unsigned number.
-const std::array<CampusParamInfo, 8>& campusParamInfos();
+/// One row per number but the seed, which is any unsigned one.
+const std::array<CampusParamInfo, 10>& campusParamInfos();
 
-/// How many stops, 10 m apart, the route of a campus of this size offers.
-std::size_t maxStops(double size_m);
+/// How many stops the route of a campus of this size offers.
+std::size_t maxStops(double size_m, double stop_distance_m = CampusParams{}.stop_distance_m);
 
 /// Throws Error (Usage) naming the parameter, its range, and for too many stops the size that has room for
 /// them.

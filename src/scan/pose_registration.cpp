@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+// First neighbours by generalised ICP, from far; then all pairs and poses together, from near.
+#include "cluxel/scan/pose_registration.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+
+#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/base/parallel.hpp"
+#include "scan/pair_evidence.hpp"
+#include "scan/pose_graph.hpp"
+#include "scan/registration_scans.hpp"
+#include "scan/scan_pairing.hpp"
+
+namespace cluxel {
+
+namespace {
+
+using Poses = std::vector<Eigen::Isometry3d>;
+
+/// Counts finished work for a sink, from any thread.
+class Progress {
+ public:
+  Progress(ProgressSink& sink, const char* stage, std::size_t total) : sink_(&sink), stage_(stage), total_(total) {}
+  void step() {
+    const std::lock_guard lock(mutex_);
+    sink_->progress(stage_, ++done_, total_);
+  }
+
+ private:
+  ProgressSink* sink_;
+  const char* stage_;
+  std::size_t done_ = 0, total_;
+  std::mutex mutex_;
+};
+
+Eigen::Isometry3d between(const Poses& poses, const ScanPair& pair) { return poses[pair.first].inverse() * poses[pair.second]; }
+
+class Registration {
+ public:
+  Registration(const RegistrationScans& scans, const RegistrationParams& params, unsigned threads, ProgressSink& sink)
+      : scans_(&scans), params_(&params), threads_(threads), sink_(&sink) {}
+
+  /// What the pairs say under `poses`, looking `reach_m` far.
+  std::vector<PairEvidence> evidence(const std::vector<ScanPair>& pairs, const Poses& poses, double reach_m) const {
+    std::vector<PairEvidence> all(pairs.size());
+    const EvidenceParams params{.reach_m = reach_m, .tolerance_m = reach_m / 5};
+    parallelFor(pairs.size(), threads_, [&](std::size_t k) {
+      all[k] = evidenceOf(cloud(pairs[k].first), cloud(pairs[k].second), between(poses, pairs[k]), params);
+    });
+    return all;
+  }
+
+  /// Generalised ICP of each pair; then poses that fit all pairs that came to a credible end.
+  Poses coarse(const std::vector<ScanPair>& pairs, const Poses& given) const {
+    std::vector<std::optional<PoseConstraint>> said(pairs.size());
+    Progress progress(*sink_, "register", pairs.size());
+    parallelFor(pairs.size(), threads_, [&](std::size_t k) {
+      said[k] = aligned(pairs[k], between(given, pairs[k]));
+      progress.step();
+    });
+    std::vector<PoseConstraint> constraints;
+    for (const auto& constraint : said)
+      if (constraint) constraints.push_back(*constraint);
+    return solveWithoutContradictions(given, given, constraints);
+  }
+
+  /// Gauss-Newton over all pairs, with points matched anew in each round. `outcomes`: of the last round.
+  Poses fine(const std::vector<ScanPair>& pairs, const Poses& given, Poses poses, std::vector<PairOutcome>& outcomes) const {
+    constexpr std::size_t kMostRounds = 8;
+    constexpr double kFirstReach_m = 0.5, kReach_m = 0.3, kSettled_m = 0.0005;
+    for (std::size_t round = 0; round < kMostRounds; ++round) {
+      sink_->progress("join", round + 1, kMostRounds);
+      const std::vector<PairEvidence> said = evidence(pairs, poses, round == 0 ? kFirstReach_m : kReach_m);
+      std::vector<PoseConstraint> constraints;
+      for (std::size_t k = 0; k < pairs.size(); ++k) {
+        outcomes[k] = credible(said[k]);
+        if (outcomes[k] == PairOutcome::Used) constraints.push_back(constraintOf(pairs[k], between(poses, pairs[k]), said[k]));
+      }
+      const Poses before = poses;
+      poses = solveWithoutContradictions(given, poses, constraints);
+      for (std::size_t k = 0; k < pairs.size(); ++k)
+        if (outcomes[k] == PairOutcome::Used && !isAmong(constraints, pairs[k])) outcomes[k] = PairOutcome::Contradicts;
+      if (farthestMove(before, poses) < kSettled_m) break;
+    }
+    return poses;
+  }
+
+ private:
+  const SurfaceCloud& cloud(std::size_t i) const { return scans_->clouds[i]; }
+
+  PairOutcome credible(const PairEvidence& evidence) const {
+    if (evidence.overlap < params_->least_overlap) return PairOutcome::LittleOverlap;
+    return evidence.residual_m > params_->most_residual_m ? PairOutcome::LargeResidual : PairOutcome::Used;
+  }
+
+  static PoseConstraint constraintOf(const ScanPair& pair, const Eigen::Isometry3d& T, const PairEvidence& said) {
+    return {pair.first, pair.second, T * motion(said.wish), said.information};
+  }
+
+  std::optional<PoseConstraint> aligned(const ScanPair& pair, const Eigen::Isometry3d& T_given) const {
+    const SurfaceCloud &target = cloud(pair.first), &source = cloud(pair.second);
+    const auto T = alignedByGicp(target, source, T_given, params_->reach_m);
+    if (!T || smallMotion(T_given.inverse() * *T).head<3>().norm() > 2 * params_->reach_m) return std::nullopt;
+    const PairEvidence said = evidenceOf(target, source, *T, {});
+    if (credible(said) != PairOutcome::Used) return std::nullopt;
+    return constraintOf(pair, *T, said);
+  }
+
+  static bool isAmong(const std::vector<PoseConstraint>& constraints, const ScanPair& pair) {
+    return std::any_of(constraints.begin(), constraints.end(),
+                       [&](const PoseConstraint& said) { return said.first == pair.first && said.second == pair.second; });
+  }
+
+  static double farthestMove(const Poses& before, const Poses& after) {
+    double farthest_m = 0;
+    for (std::size_t i = 0; i < before.size(); ++i)
+      farthest_m = std::max(farthest_m, (after[i].translation() - before[i].translation()).norm());
+    return farthest_m;
+  }
+
+  /// How far off the surfaces of a pair are from what it says [m].
+  static double contradiction(const PoseConstraint& said, const Poses& poses) {
+    const Vector6d off = smallMotion(said.T_first_second.inverse() * between(poses, {said.first, said.second}));
+    return std::sqrt(std::max(0.0, off.dot(said.information * off)));
+  }
+
+  /// Leaves out the pair that fits worst until all fit. Scans without a pair have their given pose.
+  Poses solveWithoutContradictions(const Poses& given, const Poses& start, std::vector<PoseConstraint>& constraints) const {
+    for (;;) {
+      const Poses poses = solvePoseGraph(given, keptWhereUnbound(given, start, constraints), constraints, {});
+      const auto worst = std::max_element(constraints.begin(), constraints.end(), [&](const auto& a, const auto& b) {
+        return contradiction(a, poses) < contradiction(b, poses);
+      });
+      if (worst == constraints.end() || contradiction(*worst, poses) <= params_->most_contradiction_m) return poses;
+      constraints.erase(worst);
+    }
+  }
+
+  static Poses keptWhereUnbound(const Poses& given, Poses poses, const std::vector<PoseConstraint>& constraints) {
+    std::vector<bool> is_bound(given.size(), false);
+    for (const PoseConstraint& said : constraints) is_bound[said.first] = is_bound[said.second] = true;
+    for (std::size_t i = 0; i < given.size(); ++i)
+      if (!is_bound[i]) poses[i] = given[i];
+    return poses;
+  }
+
+  const RegistrationScans* scans_;
+  const RegistrationParams* params_;
+  unsigned threads_;
+  ProgressSink* sink_;
+};
+
+double medianOf(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+std::vector<ScanPlace> placesOf(const RegistrationScans& scans, const Poses& poses) {
+  std::vector<ScanPlace> places;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    ScanPlace place{.position = poses[i].translation(), .box = {}};
+    for (std::size_t k = 0; k < scans.clouds[i].size(); ++k) place.box.extend(poses[i] * scans.clouds[i].point(k));
+    places.push_back(place);
+  }
+  return places;
+}
+
+/// The report, in the order of paths.
+PoseRegistration reported(const RegistrationScans& scans, const Poses& poses, const std::vector<ScanPair>& pairs,
+                          const std::vector<PairOutcome>& outcomes, const std::vector<PairEvidence>& before,
+                          const std::vector<PairEvidence>& after) {
+  PoseRegistration report;
+  std::vector<std::size_t> place(scans.clouds.size());
+  for (const std::size_t i : scans.byPath()) {
+    place[i] = report.scans.size();
+    const Vector6d moved = smallMotion(scans.given[i].inverse() * poses[i]);
+    report.scans.push_back({scans.index[i], poses[i], moved.head<3>().norm(), moved.tail<3>().norm(), 0});
+  }
+  std::vector<double> residuals_before, residuals_after;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const auto [first, second] = std::minmax(place[pairs[k].first], place[pairs[k].second]);
+    report.pairs.push_back({first, second, outcomes[k], after[k].overlap, before[k].residual_m, after[k].residual_m});
+    if (outcomes[k] != PairOutcome::Used) continue;
+    for (const std::size_t end : {first, second}) ++report.scans[end].pairs;
+    residuals_before.push_back(before[k].residual_m);
+    residuals_after.push_back(after[k].residual_m);
+  }
+  std::sort(report.pairs.begin(), report.pairs.end(),
+            [](const auto& a, const auto& b) { return std::tie(a.first, a.second) < std::tie(b.first, b.second); });
+  report.residual_before_m = medianOf(residuals_before);
+  report.residual_after_m = medianOf(residuals_after);
+  return report;
+}
+
+constexpr double kWidest_m = 40;   // between scans of a wider pair
+constexpr double kReportReach_m = 0.5;
+
+}  // namespace
+
+const char* nameOf(PairOutcome outcome) {
+  constexpr std::array names{"used", "too little overlap", "residual too large", "contradicts its neighbours"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+PoseRegistration registerPoses(const ScanSet& set, const RegistrationParams& params, unsigned threads, ProgressSink& sink) {
+  const RegistrationScans scans = loadForRegistration(set, params, threads, sink);
+  const Registration registration(scans, params, threads, sink);
+  const Poses coarse = registration.coarse(nearestPairs(placesOf(scans, scans.given)), scans.given);
+  const std::vector<ScanPair> pairs = widerPairs(placesOf(scans, coarse), kWidest_m);
+  std::vector<PairOutcome> outcomes(pairs.size(), PairOutcome::Used);
+  const Poses poses = registration.fine(pairs, scans.given, coarse, outcomes);
+  return reported(scans, poses, pairs, outcomes, registration.evidence(pairs, scans.given, kReportReach_m),
+                  registration.evidence(pairs, poses, kReportReach_m));
+}
+
+PoseRegistration measurePoses(const ScanSet& set, const RegistrationParams& params, unsigned threads, ProgressSink& sink) {
+  const RegistrationScans scans = loadForRegistration(set, params, threads, sink);
+  const Registration registration(scans, params, threads, sink);
+  const std::vector<ScanPair> pairs = nearestPairs(placesOf(scans, scans.given));
+  const std::vector<PairEvidence> said = registration.evidence(pairs, scans.given, kReportReach_m);
+  std::vector<PairOutcome> outcomes;
+  for (const PairEvidence& pair : said)
+    outcomes.push_back(pair.overlap < params.least_overlap ? PairOutcome::LittleOverlap : PairOutcome::Used);
+  return reported(scans, scans.given, pairs, outcomes, said, said);
+}
+
+}  // namespace cluxel

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Wrong poses mended on the command line, and what `register` refuses.
+#include <nlohmann/json.hpp>
+
+#include "app/program_fixture.hpp"
+
+namespace cluxel {
+namespace {
+
+using Json = nlohmann::json;
+
+class RegisterCommand : public Program {
+ protected:
+  static void SetUpTestSuite() {
+    folder = new ScratchFolder;
+    made = run("simulate " + path("drive").string() +
+               " --laser spinning --stops 3 --stop-distance 1 --size 50 --points-per-stop 20000 --drift 0.12 --seed 3");
+    mended = run("register " + path("drive").string() + " -o " + path("mended.yaml").string() + " --json");
+  }
+  static inline Outcome made, mended;
+};
+
+TEST_F(RegisterCommand, MendsPosesAndBuildTakesThem) {
+  ASSERT_EQ(made.code, 0) << made.err;
+  ASSERT_EQ(mended.code, 0) << mended.err;
+  const Json report = Json::parse(mended.out);
+  EXPECT_GT(report.at("residual_before_m"), 2 * report.at("residual_after_m").get<double>());
+  ASSERT_EQ(report.at("scans").size(), 3U);
+  double farthest_m = 0;
+  for (const Json& scan : report.at("scans")) farthest_m = std::max(farthest_m, scan.at("shift_m").get<double>());
+  EXPECT_NEAR(farthest_m, 0.12, 0.06) << "half of two drifts";
+  const Json info = Json::parse(run("info --json " + path("mended.yaml").string()).out);
+  EXPECT_EQ(info.at("points"), Json::parse(run("info --json " + path("drive").string()).out).at("points"));
+  const Outcome built = run("build " + path("mended.yaml").string() + " -o " + path("mended.clx").string() + " --json");
+  EXPECT_EQ(built.code, 0) << built.err;
+  EXPECT_EQ(Json::parse(built.out).at("scans"), 3);
+}
+
+TEST_F(RegisterCommand, CheckIsExitCodeOneForWrongPosesAndZeroForMendedOnes) {
+  const Outcome wrong = run("register --check --json " + path("drive").string());
+  EXPECT_EQ(wrong.code, 1) << wrong.err;
+  EXPECT_GT(Json::parse(wrong.out).at("worst_residual_m"), 0.05);
+  const Outcome right = run("register --check " + path("mended.yaml").string());
+  EXPECT_EQ(right.code, 0) << right.out;
+  EXPECT_NE(right.out.find("worst residual"), std::string::npos);
+  EXPECT_EQ(run("register --check --max-residual 5 " + path("drive").string()).code, 0);
+}
+
+TEST_F(RegisterCommand, TheBytesDoNotDependOnTheOrderOfScans) {
+  std::string scans;
+  for (const char* name : {"scan_002.pcd", "scan_000.pcd", "scan_001.pcd"}) scans += path("drive").string() + "/" + name + " ";
+  const std::string again = path("again.yaml").string();
+  ASSERT_EQ(run("register " + scans + " -o " + again).code, 0);
+  EXPECT_EQ(readFile(again), readFile(path("mended.yaml")));
+}
+
+TEST_F(RegisterCommand, RefusesWhatItCannotDoAndTouchesNothing) {
+  const std::string drive = path("drive").string(), out = path("mended.yaml").string(), before = readFile(out);
+  expectError(run("register " + drive), 2, "-o FILE.yaml");
+  expectError(run("register --check " + drive + " -o " + path("x.yaml").string()), 2, "leave out -o");
+  expectError(run("register " + drive + " -o " + path("poses.txt").string()), 2, "*.yaml");
+  expectError(run("register --check --max-residual 0 " + drive), 2, "above 0");
+  expectError(run("register " + drive + " -o " + out), 5, "--force");
+  EXPECT_EQ(readFile(out), before);
+  EXPECT_EQ(run("register " + drive + " -o " + out + " --force").code, 0);
+  EXPECT_EQ(readFile(out), before);
+  writeFile(path("lone.xyz"), "1 2 3\n4 5 6\n");
+  expectError(run("register " + path("lone.xyz").string() + " -o " + path("lone.yaml").string()), 4, "has no pose");
+  EXPECT_FALSE(fs::exists(path("lone.yaml")));
+  expectError(run("register " + path("absent").string() + " --check"), 4, "absent");
+}
+
+TEST_F(RegisterCommand, SimulatedDriftIsWrittenBesideTheTruth) {
+  EXPECT_TRUE(fs::exists(path("drive/true_poses.txt")));
+  EXPECT_NE(readFile(path("drive/true_poses.txt")), readFile(path("drive/poses.txt")));
+  ASSERT_EQ(run("simulate " + path("right").string() + " --stops 1 --size 50 --points-per-stop 2000").code, 0);
+  EXPECT_FALSE(fs::exists(path("right/true_poses.txt")));
+  expectError(run("simulate " + path("no").string() + " --laser radar"), 2, "");
+}
+
+}  // namespace
+}  // namespace cluxel

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scans of places made of rectangles, each scan with points of its own, and poses that are wrong by a known amount.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+
+#include "cluxel/scan/manifest_writer.hpp"
+#include "cluxel/scan/pose_registration.hpp"
+#include "cluxel/scan/scan_writer.hpp"
+#include "scan/scan_fixture.hpp"
+
+namespace cluxel::test {
+
+/// A rectangle: all `corner + a·along + b·across` with a and b in [0, 1] [m].
+struct Rectangle {
+  Eigen::Vector3d corner, along, across;
+};
+using Place = std::vector<Rectangle>;
+
+inline Place plainPlace() { return {{{-60, -60, 0}, {120, 0, 0}, {0, 120, 0}}}; }
+
+/// Walls 5 m to the left and right that end beyond what any scan sees.
+inline Place corridorPlace() {
+  Place place = plainPlace();
+  for (const double y : {-5.0, 5.0}) place.push_back({{-60, y, 0}, {120, 0, 0}, {0, 0, 4}});
+  return place;
+}
+
+/// Walls that face all ways, and crates.
+inline Place yardPlace() {
+  Place place = plainPlace();
+  place.push_back({{-20, 9, 0}, {40, 1, 0}, {0, 0, 5}});
+  place.push_back({{-18, -8, 0}, {26, -2, 0}, {0, 0, 3}});
+  place.push_back({{17, -10, 0}, {1, 14, 0}, {0, 0, 4}});
+  place.push_back({{-19, -4, 0}, {-1, 12, 0}, {0, 0, 4}});
+  for (const double x : {-9.0, -2.0, 6.0, 12.0}) {
+    place.push_back({{x, -5, 0}, {1.5, 0.3, 0}, {0, 0, 1.4}});
+    place.push_back({{x, -5, 0}, {-0.3, 1.5, 0}, {0, 0, 1.4}});
+  }
+  return place;
+}
+
+/// Points on the place within 25 m of the sensor, evenly by area, with 1 cm of noise; others for every `seed`.
+inline Scan scanOf(const Place& place, const Eigen::Isometry3d& T_map_sensor, unsigned seed) {
+  constexpr double kPerSquareMetre = 12, kRange_m = 25, kNoise_m = 0.01;
+  std::mt19937 bits(seed);
+  const auto share = [&] { return static_cast<double>(bits()) / 4294967296.0; };
+  Scan scan;
+  const Eigen::Isometry3d T_sensor_map = T_map_sensor.inverse();
+  for (const Rectangle& r : place) {
+    const auto count = static_cast<int>(kPerSquareMetre * r.along.cross(r.across).norm());
+    for (int i = 0; i < count; ++i) {
+      const double a = share(), b = share();
+      const Eigen::Vector3d noise = 2 * kNoise_m * Eigen::Vector3d(share() - 0.5, share() - 0.5, share() - 0.5);
+      const Eigen::Vector3d p = T_sensor_map * (r.corner + a * r.along + b * r.across + noise);
+      if (p.norm() > kRange_m) continue;
+      scan.points.x.push_back(static_cast<float>(p.x()));
+      scan.points.y.push_back(static_cast<float>(p.y()));
+      scan.points.z.push_back(static_cast<float>(p.z()));
+    }
+  }
+  return scan;
+}
+
+inline Eigen::Isometry3d poseAt(double x, double y, double yaw_deg) {
+  return Eigen::Translation3d(x, y, 1.5) * Eigen::AngleAxisd(yaw_deg * M_PI / 180, Eigen::Vector3d::UnitZ());
+}
+
+/// A move in the sensor's frame: metres, and degrees about its axes.
+inline Eigen::Isometry3d moveBy(const Eigen::Vector3d& by_m, const Eigen::Vector3d& turn_deg) {
+  const double angle_deg = turn_deg.norm();
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  if (angle_deg > 0) T.linear() = Eigen::AngleAxisd(angle_deg * M_PI / 180, turn_deg / angle_deg).toRotationMatrix();
+  T.translation() = by_m;
+  return T;
+}
+
+inline double angle_deg(const Eigen::Isometry3d& T) { return Eigen::AngleAxisd(T.linear()).angle() * 180 / M_PI; }
+
+/// Scan files whose poses are given in the files.
+struct Drive {
+  std::vector<Eigen::Isometry3d> truth, given;
+  std::vector<fs::path> files;
+};
+
+inline Drive writeDrive(const ScratchFolder& folder, const Place& place, const std::vector<Eigen::Isometry3d>& truth,
+                        const std::vector<Eigen::Isometry3d>& given) {
+  Drive drive{truth, given, {}};
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    Scan scan = scanOf(place, truth[i], static_cast<unsigned>(100 + i));
+    scan.T_map_sensor = given[i];
+    drive.files.push_back(folder.path() / ("drive_" + std::to_string(i) + ".pcd"));
+    writeScanFile(scan, drive.files.back());
+  }
+  return drive;
+}
+
+/// Mended poses by the order of the files in `drive`.
+inline std::vector<Eigen::Isometry3d> mendedPoses(const Drive& drive, PoseRegistration& report, unsigned threads = 1) {
+  NoteKeeper notes;
+  report = registerPoses(ScanSet::open(drive.files, {}, notes), {}, threads, notes);
+  std::vector<Eigen::Isometry3d> poses(drive.files.size());
+  for (const MendedScan& scan : report.scans) poses[scan.index] = scan.T_map_sensor;
+  return poses;
+}
+
+/// How wrong the pose of `b` is as seen from `a`.
+inline Eigen::Isometry3d errorBetween(const std::vector<Eigen::Isometry3d>& poses, const std::vector<Eigen::Isometry3d>& truth,
+                                      std::size_t a, std::size_t b) {
+  return (truth[a].inverse() * truth[b]).inverse() * (poses[a].inverse() * poses[b]);
+}
+
+}  // namespace cluxel::test
