@@ -11,6 +11,7 @@ namespace cluxel::lmdb_page {
 using PageNumber = std::uint64_t;
 inline constexpr PageNumber kNoPage = ~PageNumber{0};
 inline constexpr std::size_t kHeaderSize = 16;
+inline constexpr int kMaxDepth = 32;  ///< of a tree; only a damaged one is deeper
 inline constexpr std::uint32_t kMagic = 0xBEEFC0DE;
 inline constexpr std::uint32_t kDataVersion = 1;
 

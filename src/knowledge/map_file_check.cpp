@@ -26,7 +26,6 @@ using namespace lmdb_page;
 
 constexpr std::uint64_t kSmallFile = 8U << 20U;
 constexpr std::size_t kProbe = 4096;
-constexpr int kMaxDepth = 32;
 constexpr std::uint64_t kIndexKeySize = 16;
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 46U;
 

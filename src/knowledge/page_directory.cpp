@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
 
 #include "cluxel/base/diagnostic.hpp"
 
@@ -13,11 +14,8 @@ namespace {
 
 using namespace lmdb_page;
 
-constexpr int kMaxDepth = 32;
-
 [[noreturn]] void damaged() {
-  throw Error(ExitCode::StoreUnavailable,
-              "the map is damaged: an index points outside the file; `cluxel doctor` tells where");
+  failOutside("an index");
 }
 
 const QuadKey* keysAt(const std::uint8_t* bytes) {
@@ -89,6 +87,11 @@ std::size_t pageOf(const std::vector<Key128>& lower, Key128 key) {
 }
 
 }  // namespace
+
+void failOutside(const char* part) {
+  throw Error(ExitCode::StoreUnavailable, std::string("the map is damaged: ") + part +
+                                              " points outside the file; `cluxel doctor` tells where");
+}
 
 const std::uint8_t* PageMap::page(PageNumber number) const {
   if (number >= page_count) damaged();

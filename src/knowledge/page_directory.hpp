@@ -34,6 +34,9 @@ inline QuadKey toKey(Key128 number) {
   return key;
 }
 
+/// What is thrown where a part of the map, "an index" say, points outside the file.
+[[noreturn]] void failOutside(const char* part);
+
 /// The mapped file of a snapshot: pages by number.
 struct PageMap {
   const std::uint8_t* base = nullptr;

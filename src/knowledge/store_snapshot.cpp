@@ -15,11 +15,6 @@ namespace {
 
 using namespace lmdb_page;
 
-[[noreturn]] void damaged() {
-  throw Error(ExitCode::StoreUnavailable,
-              "the map is damaged: its dictionary points outside the file; `cluxel doctor` tells where");
-}
-
 std::uint64_t entriesOf(const ReadTransaction::Impl& transaction, Table table) {
   MDB_stat stat;
   transaction.check(mdb_stat(transaction.live(), transaction.table(table), &stat), "read the map");
@@ -56,7 +51,7 @@ StoreSnapshot::StoreSnapshot(const ReadTransaction::Impl& transaction)
     MDB_val key = toVal(kTableNames[i]);
     MDB_val record;
     transaction.check(mdb_get(transaction.live(), main, &key, &record), "read the map");
-    if (record.mv_size != sizeof(Tree)) damaged();
+    if (record.mv_size != sizeof(Tree)) failOutside("its dictionary");
     trees_[i] = load<Tree>(static_cast<const std::uint8_t*>(record.mv_data));
     if (i == 0) map_ = mapAround(record.mv_data, transaction);
   }

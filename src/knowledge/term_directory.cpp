@@ -5,20 +5,16 @@
 #include <algorithm>
 #include <limits>
 
-#include "cluxel/base/diagnostic.hpp"
-
 namespace cluxel {
 
 namespace {
 
 using namespace lmdb_page;
 
-constexpr int kMaxDepth = 32;
 constexpr std::uint64_t kNoMoreIds = 0xFFFFFFFF;
 
 [[noreturn]] void damaged() {
-  throw Error(ExitCode::StoreUnavailable,
-              "the map is damaged: its dictionary points outside the file; `cluxel doctor` tells where");
+  failOutside("its dictionary");
 }
 
 /// Where page `page` says its node `i` begins.

@@ -13,7 +13,7 @@ namespace {
 // Measured on this store, in nanoseconds: a lookup by ascending and by scattered ids, an entry read in a scan, a row
 // put into and looked up in a hash table.
 constexpr double kAscendingLookup = 120, kScatteredLookup = 350, kScannedEntry = 4, kHashBuild = 35, kHashProbe = 25,
-                 kMergedRow = 8, kColumnMade = 15, kColumnLookup = 25;   // a column: for each quad of the predicate
+                 kMergedRow = 8, kColumnMade = 25, kColumnLookup = 25;   // a column: for each quad of the predicate
 /// Rows that may have to be looked at for one that a LIMIT wants.
 constexpr double kRowsPerWanted = 64;
 
@@ -133,7 +133,8 @@ double Planner::columnCost(const State& state, const TripleNode& pattern, double
   const bool fits = pattern.subject.isSlot() && state.certain.has(pattern.subject.slot) && !pattern.predicate.isSlot() &&
                     pattern.graph.kind == GraphPlace::Kind::Default && hasColumns(dataset_.default_graph);
   if (!fits) return kAllRows;
-  return static_cast<double>(cardinality_.quadsOf(pattern.predicate.constant)) * kColumnMade + lookups * kColumnLookup;
+  const double quads = pattern.object.isSlot() ? cardinality_.quadsOf(pattern.predicate.constant) : cardinality_.matches(pattern);
+  return quads * kColumnMade + lookups * kColumnLookup;
 }
 
 Planner::State Planner::joinUnion(State state, const Node& part) {

@@ -82,25 +82,28 @@ bool PreparedQuery::Impl::hasSolution() {
 }
 
 void PreparedQuery::Impl::runSelect(ResultSink& sink) {
-  std::vector<ResultId> cells;
+  // In pieces of the size that they come in: one array for all would be copied and given fresh memory as it grows.
+  std::vector<std::vector<ResultId>> pieces;
+  std::vector<std::size_t> row_counts;   // a row may have no column
   std::size_t rows = 0;
   sparql::Batch batch(runtime->slot_count);
   const auto& columns = algebra.projection;
   while (plan->next(batch)) {
-    runtime->guard.answerRows(rows + batch.rows);
+    rows += batch.rows;
+    runtime->guard.answerRows(rows);
     runtime->guard.charge(batch.rows * columns.size() * sizeof(ResultId));
-    cells.resize((rows + batch.rows) * columns.size());
+    std::vector<ResultId>& cells = pieces.emplace_back(batch.rows * columns.size());
     for (std::size_t column = 0; column < columns.size(); ++column) {
       const auto& source = batch.columns[columns[column]];
-      ResultId* out = cells.data() + rows * columns.size() + column;
+      ResultId* out = cells.data() + column;
       for (std::size_t row = 0; row < batch.rows; ++row, out += columns.size()) {
         *out = source.empty() ? sparql::kUnbound : source[row];
       }
     }
-    rows += batch.rows;
+    row_counts.push_back(batch.rows);
   }
   sink.beginSolutions(variables, terms);
-  if (rows > 0) sink.rows(cells, rows);
+  for (std::size_t i = 0; i < pieces.size(); ++i) sink.rows(pieces[i], row_counts[i]);
   sink.end();
 }
 

@@ -36,7 +36,7 @@ class QuadJoinOperator : public UnaryOperator {
       access_.resize(16);
       filter_ = graphFilterOf(pattern_, runtime().dataset);
       may_have_column_ = places_[0].isSlot() && !places_[1].isSlot() && places_[1].constant < kFirstComputed &&
-                         pattern_.not_predicates.empty() && pattern_.graph.kind == GraphPlace::Kind::Default && hasColumns(filter_);
+                         places_[2].constant < kFirstComputed && pattern_.not_predicates.empty() && pattern_.graph.kind == GraphPlace::Kind::Default && hasColumns(filter_);
       kept_.reset();
       column_ = nullptr;
     }
@@ -136,7 +136,7 @@ class QuadJoinOperator : public UnaryOperator {
     const auto& subjects = in_.columns[places_[0].slot];
     if (subjects.size() < expected_until_) return false;
     if (column_ == nullptr) {
-      if (!kept_) kept_ = keptColumn(runtime().reader, places_[1].constant, filter_);
+      if (!kept_) kept_ = keptColumn(runtime().reader, {places_[1].constant, places_[2].constant}, filter_);
       may_have_column_ = runtime().guard.hasRoomFor(2 * kept_->bytes());
       if (!may_have_column_) return false;
       column_ = kept_->after(expected_until_ - row_, by_column_, runtime().reader, filter_, runtime().guard);
@@ -151,7 +151,7 @@ class QuadJoinOperator : public UnaryOperator {
   bool beginInColumn(std::size_t row) {
     const ValueId subject = in_.at(places_[0].slot, row);
     if (subject == kUnbound) return begin(row);
-    const ValueId object = places_[2].isSlot() ? in_.at(places_[2].slot, row) : places_[2].constant;
+    const ValueId object = places_[2].isSlot() ? in_.at(places_[2].slot, row) : kUnbound;   // a constant is in all rows
     run_ = object == kUnbound ? column_->find(subject) : column_->find(subject, object);
     if (run_.empty()) runtime().guard.work(1);
     return !run_.empty();

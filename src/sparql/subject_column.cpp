@@ -13,20 +13,25 @@ namespace cluxel::sparql {
 namespace {
 
 constexpr std::size_t kHugePage = std::size_t{2} << 20U;
-/// A column is made after one lookup in the index for so many quads: 250 ns against some 10 ns a quad.
-constexpr std::uint64_t kQuadsPerLookup = 16;
+/// A column is made after one lookup in the index for so many quads: 250 ns against some 25 ns a quad.
+constexpr std::uint64_t kQuadsPerLookup = 10;
 /// Fewer lookups than this are left to the index, whatever the plan says: many queries end early.
 constexpr std::uint64_t kLeastLookups = 1024;
 constexpr std::uint64_t kMostQuads = 0xFFFFFFFF;
 /// Buckets of more rows are searched by halving.
 constexpr std::ptrdiff_t kFewRows = 16;
 
-/// Calls `take(subject, object)` for each triple of the predicate once, by ascending object and subject.
+QuadPattern quadsOf(const ColumnPattern& pattern) {
+  QuadPattern quads;
+  quads.p = pattern.predicate;
+  if (pattern.object != kNoTerm) quads.o = pattern.object;
+  return quads;
+}
+
+/// Calls `take(subject, object)` for each triple of the pattern once, by ascending object and subject.
 template <typename Take>
-void forEachTriple(const QuadReader& reader, TermId predicate, const GraphFilter& graphs, Guard& guard, const Take& take) {
-  QuadPattern pattern;
-  pattern.p = predicate;
-  QuadCursor cursor = reader.scan(pattern, QuadOrder::Posg);
+void forEachTriple(const QuadReader& reader, const ColumnPattern& pattern, const GraphFilter& graphs, Guard& guard, const Take& take) {
+  QuadCursor cursor = reader.scan(quadsOf(pattern), QuadOrder::Posg);
   TermId last_subject = kNoTerm, last_object = kNoTerm;
   std::size_t seen = 0;
   for (auto block = cursor.nextBlock(); !block.empty(); block = cursor.nextBlock()) {
@@ -41,6 +46,18 @@ void forEachTriple(const QuadReader& reader, TermId predicate, const GraphFilter
     if ((seen += block.size()) < 65536) continue;
     seen = 0;
     guard.checkTime();
+  }
+}
+
+/// Most buckets have two or three rows.
+void sortRows(SubjectColumn::Row* first, SubjectColumn::Row* last) {
+  if (last - first > kFewRows) return std::sort(first, last);
+  const auto keyOf = [](const SubjectColumn::Row& row) { return std::uint64_t{row.subject} << 32U | row.object; };
+  for (auto* row = first + 1; row < last; ++row) {
+    const SubjectColumn::Row moved = *row;
+    auto* place = row;
+    for (; place != first && keyOf(place[-1]) > keyOf(moved); --place) *place = place[-1];
+    *place = moved;
   }
 }
 
@@ -71,10 +88,10 @@ void SubjectColumn::layOut(TermId first, TermId last, std::size_t rows) {
   std::fill_n(starts_.get(), start_count_, 0);
 }
 
-SubjectColumn::SubjectColumn(const QuadReader& reader, TermId predicate, const GraphFilter& graphs, Guard& guard) {
+SubjectColumn::SubjectColumn(const QuadReader& reader, const ColumnPattern& pattern, const GraphFilter& graphs, Guard& guard) {
   TermId first = ~TermId{0}, last = 0;
   std::size_t rows = 0;
-  forEachTriple(reader, predicate, graphs, guard, [&](TermId subject, TermId) {
+  forEachTriple(reader, pattern, graphs, guard, [&](TermId subject, TermId) {
     first = std::min(first, subject);
     last = std::max(last, subject);
     ++rows;
@@ -82,10 +99,10 @@ SubjectColumn::SubjectColumn(const QuadReader& reader, TermId predicate, const G
   if (rows == 0) return;
   layOut(first, last, rows);
   // How many in each bucket, then where each begins, then the rows to their places: starts_[b] runs to the start of b + 1.
-  forEachTriple(reader, predicate, graphs, guard, [&](TermId subject, TermId) { ++starts_[bucketOf(subject)]; });
+  forEachTriple(reader, pattern, graphs, guard, [&](TermId subject, TermId) { ++starts_[bucketOf(subject)]; });
   std::uint32_t before = 0;
   for (std::size_t i = 0; i < start_count_; ++i) before += std::exchange(starts_[i], before);
-  forEachTriple(reader, predicate, graphs, guard, [&](TermId subject, TermId object) {
+  forEachTriple(reader, pattern, graphs, guard, [&](TermId subject, TermId object) {
     rows_[starts_[bucketOf(subject)]++] = {subject, object};
   });
   std::move_backward(starts_.get(), starts_.get() + start_count_ - 1, starts_.get() + start_count_);
@@ -95,7 +112,7 @@ SubjectColumn::SubjectColumn(const QuadReader& reader, TermId predicate, const G
 
 void SubjectColumn::sortBuckets(Guard& guard) {
   for (std::size_t bucket = 0; bucket + 1 < start_count_; ++bucket) {
-    if (starts_[bucket + 1] - starts_[bucket] > 1) std::sort(rows_.get() + starts_[bucket], rows_.get() + starts_[bucket + 1]);
+    if (starts_[bucket + 1] - starts_[bucket] > 1) sortRows(rows_.get() + starts_[bucket], rows_.get() + starts_[bucket + 1]);
     if (bucket % 65536 == 0) guard.checkTime();
   }
 }
@@ -139,20 +156,19 @@ const SubjectColumn* KeptColumn::after(std::size_t lookups, bool wanted, const Q
   const std::unique_lock lock(making_, std::try_to_lock);
   if (!lock.owns_lock()) return nullptr;   // another reader is making it
   if (!made_) {
-    made_ = std::make_unique<const SubjectColumn>(reader, predicate_, graphs, guard);
+    made_ = std::make_unique<const SubjectColumn>(reader, pattern_, graphs, guard);
     column_.store(made_.get(), std::memory_order_release);
   }
   return made_.get();
 }
 
-std::shared_ptr<const KeptColumn> keptColumn(const QuadReader& reader, TermId predicate, const GraphFilter& graphs) {
+std::shared_ptr<const KeptColumn> keptColumn(const QuadReader& reader, const ColumnPattern& pattern, const GraphFilter& graphs) {
   const bool without = graphs.kind == GraphFilter::Kind::AllBut;
-  const std::string name = "column of " + std::to_string(predicate) + (without ? " without " + std::to_string(graphs.graph) : "");
+  const std::string name = "column of " + std::to_string(pattern.predicate) + " " + std::to_string(pattern.object) +
+                           (without ? " without " + std::to_string(graphs.graph) : "");
   auto column = std::static_pointer_cast<const KeptColumn>(reader.kept(name));
   if (column) return column;
-  QuadPattern pattern;
-  pattern.p = predicate;
-  column = std::make_shared<const KeptColumn>(predicate, reader.estimate(pattern));
+  column = std::make_shared<const KeptColumn>(pattern, reader.estimate(quadsOf(pattern)));
   reader.keep(name, column);
   return column;
 }
