@@ -80,7 +80,7 @@ class RuleRun {
     decision.reason = describeAccept(accept);
     state_.decisions.push_back(std::move(decision));
     if (accept.merge_into_related && walk.related)
-      grown = joinRelated(*walk.related, group) || grown;
+      grown = joinRelated(*walk.related, accept.parts.front(), group) || grown;
     else
       makeObject(accept, std::move(walk.bindings));
     return std::nullopt;
@@ -131,14 +131,19 @@ class RuleRun {
     return flips;
   }
 
-  bool joinRelated(OwnerIndex related, const std::vector<PieceIndex>& group) {
+  /// Into the object's part of the leaf's class; a part that it does not have yet is added.
+  bool joinRelated(OwnerIndex related, const std::pair<std::string, std::string>& as,
+                   const std::vector<PieceIndex>& group) {
     ObjectInMaking& object = state_.objects[related];
-    PartInMaking& part = object.parts.front();
+    auto part = std::find_if(object.parts.begin(), object.parts.end(),
+                             [&as](const PartInMaking& known) { return known.part_class == as.second; });
+    if (part == object.parts.end() && as.second == rule_.class_iri) part = object.parts.begin();
+    if (part == object.parts.end()) part = object.parts.insert(part, PartInMaking{as.first, as.second, {}});
     for (PieceIndex piece : group) {
       state_.pieces.setOwner(piece, related);
-      part.pieces.push_back(piece);
+      part->pieces.push_back(piece);
     }
-    if (Thing* thing = object.bindings.find(part.name)) *thing = state_.pieces.thingOf(part.pieces);
+    if (Thing* thing = object.bindings.find(part->name)) *thing = state_.pieces.thingOf(part->pieces);
     return true;
   }
 
