@@ -9,7 +9,7 @@ std::string clx(const std::string& name) { return "https://w3id.org/cluxel/ontol
 ClassCatalogue outdoorCatalogue() {
   const std::vector<std::pair<std::string, std::vector<std::string>>> concepts{
       {"Ground", {}},
-      {"Building", {"Facade"}},
+      {"Building", {"Facade", "Roof"}},
       {"Tree", {"TreeTrunk", "TreeTop"}},
       {"UtilityPole", {"PoleMast", "PoleCrossarm"}},
       {"StreetLamp", {"LampPole", "LampHead"}},
