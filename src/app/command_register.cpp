@@ -69,6 +69,7 @@ void printReport(const PoseRegistration& report, const ScanSet& set, bool check)
     std::printf("%s: moved by %.3f m and %.3f degrees, %zu pairs%s\n", set.file(scan.index).path.c_str(), scan.shift_m,
                 scan.turn_rad * kDegrees, scan.pairs, scan.pairs == 0 ? ": keeps its pose" : "");
   }
+  if (used == 0) std::printf("no two scans overlap enough to be laid on each other\n");
   std::printf("%zu scans, %zu of %zu pairs used, median residual %.3f m", report.scans.size(), used, report.pairs.size(),
               report.residual_before_m);
   std::printf(check ? "\n" : " before, %.3f m after\n", report.residual_after_m);

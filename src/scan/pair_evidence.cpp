@@ -31,9 +31,10 @@ Matches matchesOf(const SurfaceCloud& to, const SurfaceCloud& from, const Eigen:
   std::size_t near = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
     const Eigen::Vector3d p = T_to_from * from.point(i);
-    const auto j = to.nearest(p, reach_m);
+    const auto j = to.nearest(p, SurfaceCloud::kLongestReach_m);
     if (!j) continue;
     ++near;
+    if ((p - to.point(*j)).squaredNorm() > reach_m * reach_m) continue;
     const Eigen::Vector3d normal = T_to_from.linear().transpose() * to.normal(*j);
     if (std::abs(normal.dot(from.normal(i))) < kLeastFacing) continue;
     const double gap_m = to.normal(*j).dot(p - to.point(*j));

@@ -13,7 +13,7 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;  ///< motion of a sensor in its ow
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 struct EvidenceParams {
-  double reach_m = 0.5;        ///< points of the other scan further away do not count
+  double reach_m = 0.5;        ///< points of the other scan further away do not count; at most SurfaceCloud::kLongestReach_m
   double tolerance_m = 0.1;    ///< gaps much larger count for little
 };
 
@@ -23,7 +23,7 @@ struct EvidenceParams {
 struct PairEvidence {
   Matrix6d information = Matrix6d::Zero();
   Vector6d wish = Vector6d::Zero();   ///< the motion that this pair alone would make
-  double overlap = 0;       ///< share of the scan with less overlap that has a neighbour in the other, within reach
+  double overlap = 0;       ///< share of the scan with less overlap that has a neighbour in the other within kLongestReach_m
   double residual_m = 0;    ///< median distance of a point to the other's plane, of surfaces that face the worst direction
 };
 

@@ -19,12 +19,12 @@ struct Rectangle {
 };
 using Place = std::vector<Rectangle>;
 
-inline Place plainPlace() { return {{{-60, -60, 0}, {120, 0, 0}, {0, 120, 0}}}; }
+inline Place plainPlace() { return {{{-34, -34, 0}, {68, 0, 0}, {0, 68, 0}}}; }
 
 /// Walls 5 m to the left and right that end beyond what any scan sees.
 inline Place corridorPlace() {
   Place place = plainPlace();
-  for (const double y : {-5.0, 5.0}) place.push_back({{-60, y, 0}, {120, 0, 0}, {0, 0, 4}});
+  for (const double y : {-5.0, 5.0}) place.push_back({{-34, y, 0}, {68, 0, 0}, {0, 0, 4}});
   return place;
 }
 

@@ -5,8 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <map>
+#include <set>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -59,6 +61,51 @@ TEST_F(CampusWriter, WritesTheSameBytesWithOneAndTwoThreadsAndAgain) {
   EXPECT_EQ(bytesOf("one").size(), 4U * 2 + 4);
   EXPECT_EQ(bytesOf("one"), bytesOf("two"));
   EXPECT_EQ(bytesOf("two"), bytesOf("again"));
+}
+
+/// The longest move between two poses of one number [m].
+double farthest(const ScanSet& a, const ScanSet& b) {
+  double farthest_m = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    farthest_m = std::max(farthest_m, (a.file(i).T_map_sensor.translation() - b.file(i).T_map_sensor.translation()).norm());
+  return farthest_m;
+}
+
+TEST_F(CampusWriter, PosesThatDriftStandBesideTheTrueOnesAndThePointsAreTheSame) {
+  CampusParams drifting = params();
+  drifting.laser = LaserKind::Spinning;
+  drifting.stop_distance_m = 1;
+  CampusParams right = drifting;
+  drifting.drift_m = 0.1;
+  write("drifting", 1, drifting);
+  write("right", 1, right);
+  const ScanSet stated = ScanSet::open({folder_ / "drifting"}, {}, sink_), truth = ScanSet::open({folder_ / "right"}, {}, sink_);
+  const ScanSet beside = ScanSet::open({folder_ / "drifting"}, {.poses = folder_ / "drifting/true_poses.txt"}, sink_);
+  EXPECT_EQ(farthest(beside, truth), 0);
+  EXPECT_EQ(stated.file(0).T_map_sensor.matrix(), truth.file(0).T_map_sensor.matrix()) << "the first one is right";
+  EXPECT_GT(farthest(stated, truth), 0.5 * 3 * 0.1);
+  EXPECT_LT(farthest(stated, truth), 2 * 3 * 0.1);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(stated.load(i).id, truth.load(i).id);
+  EXPECT_EQ(bytesOf("drifting").at("truth/instances.csv"), bytesOf("right").at("truth/instances.csv"));
+  EXPECT_FALSE(fs::exists(folder_ / "right/true_poses.txt"));
+}
+
+TEST_F(CampusWriter, ASpinningLaserSeesInRings) {
+  CampusParams spinning = params();
+  spinning.laser = LaserKind::Spinning;
+  spinning.range_sigma_m = 0;
+  write("rings", 1, spinning);
+  const Scan scan = ScanSet::open({folder_ / "rings"}, {}, sink_).load(0);
+  std::set<long> rings;
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    const double across = std::hypot(scan.points.x[i], scan.points.y[i]);
+    const double ring = (std::atan2(scan.points.z[i], across) * 180 / M_PI + 24.8) / 26.8 * 63;
+    EXPECT_NEAR(ring, std::round(ring), 0.01);
+    rings.insert(std::lround(ring));
+  }
+  EXPECT_GE(rings.size(), 50U);
+  EXPECT_LE(*rings.rbegin(), 63);
+  EXPECT_GE(*rings.begin(), 0);
 }
 
 TEST_F(CampusWriter, AnotherSeedGivesOtherScans) {
