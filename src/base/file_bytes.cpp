@@ -2,10 +2,16 @@
 // Reading and atomic writing of whole files.
 #include "cluxel/base/file_bytes.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <utility>
 
 #include "cluxel/base/diagnostic.hpp"
 
@@ -21,7 +27,97 @@ using File = std::unique_ptr<std::FILE, decltype(&std::fclose)>;
   throw InputError({.file = path.string()}, what + ": " + std::strerror(errno));
 }
 
+[[noreturn]] void refuseToWrite(const fs::path& path, const std::string& what) {
+  throw Error(ExitCode::StoreUnavailable, path.string() + ": " + what + ": " + std::strerror(errno));
+}
+
+/// A file that is being written. Its name is taken away again unless it was moved into place.
+class WrittenFile {
+ public:
+  /// `meant`: the file that the user named, for messages.
+  explicit WrittenFile(const fs::path& meant) : meant_(meant) {}
+  WrittenFile(const WrittenFile&) = delete;
+  WrittenFile& operator=(const WrittenFile&) = delete;
+  ~WrittenFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (!partial_.empty()) ::unlink(partial_.c_str());
+  }
+
+  /// Opens what is there and cannot be replaced: a pipe, a device.
+  void openInPlace() {
+    descriptor_ = ::open(meant_.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor_ < 0) refuseToWrite(meant_, "cannot be written");
+  }
+
+  /// Makes a new file beside `target` under a name that nobody has.
+  void openBeside(const fs::path& target) {
+    static std::atomic<unsigned> count{0};
+    for (int attempt = 0; descriptor_ < 0 && attempt < 1000; ++attempt) {
+      const std::string name = target.string() + ".partial-" + std::to_string(::getpid()) + "-" + std::to_string(count++);
+      descriptor_ = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (descriptor_ >= 0) partial_ = name;
+      if (descriptor_ < 0 && errno != EEXIST) break;
+    }
+    if (descriptor_ < 0) refuseToWrite(meant_, "cannot be written");
+    struct stat old {};
+    if (::stat(target.c_str(), &old) == 0) (void)!::fchmod(descriptor_, old.st_mode & 07777U);
+  }
+
+  void write(std::string_view bytes) {
+    while (!bytes.empty()) {
+      const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0) refuseToWrite(meant_, "cannot be written whole");
+      bytes.remove_prefix(static_cast<std::size_t>(count));
+    }
+  }
+
+  /// What the disk refuses late shows here. Pipes and some file systems cannot be synchronised.
+  void close() {
+    if (!partial_.empty() && ::fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOSYS && errno != EOPNOTSUPP)
+      refuseToWrite(meant_, "cannot be written whole");
+    if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) refuseToWrite(meant_, "cannot be written whole");
+  }
+
+  void moveTo(const fs::path& target) {
+    if (std::rename(partial_.c_str(), target.c_str()) != 0) refuseToWrite(meant_, "cannot be moved into place");
+    partial_.clear();
+    syncFolderOf(target);
+  }
+
+ private:
+  const fs::path& meant_;
+  fs::path partial_;
+  int descriptor_ = -1;
+};
+
+/// Whether `path` leads to a pipe, a device or the like, which a file may not take the place of.
+bool isSpecial(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
 }  // namespace
+
+fs::path withoutLinks(fs::path path) {
+  constexpr int kMostLinks = 40;   // as many as the system follows
+  std::error_code error;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
+    const fs::path target = fs::read_symlink(path, error);
+    if (error) break;
+    path = path.parent_path() / target;   // an absolute target replaces all
+  }
+  return path;
+}
+
+void syncFolderOf(const fs::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
 
 std::string readFile(const fs::path& path) {
   std::error_code ignored;
@@ -39,24 +135,17 @@ std::string readFile(const fs::path& path) {
 }
 
 void writeFile(const fs::path& path, std::string_view bytes) {
-  fs::path partial = path;
-  partial += ".partial";
-  File file(std::fopen(partial.c_str(), "wb"), &std::fclose);
-  const auto fail = [&](const std::string& what) {
-    const std::string reason = std::strerror(errno);
-    std::remove(partial.c_str());
-    throw Error(ExitCode::StoreUnavailable, path.string() + ": " + what + ": " + reason);
-  };
-  if (!file) fail("cannot be written");
-  const bool whole = std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
-  if (!whole || std::fflush(file.get()) != 0) fail("cannot be written whole");
-  file.reset();
-  std::error_code error;
-  fs::rename(partial, path, error);
-  if (error) {
-    errno = error.value();
-    fail("cannot be moved into place");
+  WrittenFile file(path);
+  if (isSpecial(path)) {
+    file.openInPlace();
+    file.write(bytes);
+    return file.close();
   }
+  const fs::path target = withoutLinks(path);
+  file.openBeside(target);
+  file.write(bytes);
+  file.close();
+  file.moveTo(target);
 }
 
 }  // namespace cluxel

@@ -3,9 +3,15 @@
 #include "cluxel/base/file_bytes.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdlib>
+#include <fstream>
+#include <thread>
 
 #include "cluxel/base/diagnostic.hpp"
 
@@ -52,12 +58,72 @@ TEST_F(FileBytes, RefuseFoldersAndAbsentFilesByName) {
 }
 
 TEST_F(FileBytes, LeaveTheOldFileWhenTheDiskIsFull) {
-  if (!fs::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
   writeFile(folder_ / "a", "old");
-  fs::create_symlink("/dev/full", folder_ / "a.partial");
-  EXPECT_THROW(writeFile(folder_ / "a", std::string(100'000, 'x')), Error);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{1000, 1000};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      writeFile(folder_ / "a", std::string(100'000, 'x'));
+    } catch (const Error& error) {
+      ::_exit(error.code() == ExitCode::StoreUnavailable ? 0 : 1);
+    }
+    ::_exit(2);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
   EXPECT_EQ(readFile(folder_ / "a"), "old");
   EXPECT_EQ(filesThere(), 1U);
+}
+
+TEST_F(FileBytes, OfTheUserAreNotOverwrittenWhateverTheirNames) {
+  for (const char* name : {"a.partial", "a.tmp", "a~"}) std::ofstream(folder_ / name) << "mine";
+  writeFile(folder_ / "a", "new");
+  for (const char* name : {"a.partial", "a.tmp", "a~"}) EXPECT_EQ(readFile(folder_ / name), "mine") << name;
+  EXPECT_EQ(filesThere(), 4U);
+}
+
+TEST_F(FileBytes, GoThroughALinkWhichStays) {
+  fs::create_directory(folder_ / "far");
+  fs::create_symlink("far/b", folder_ / "a");
+  fs::create_symlink("a", folder_ / "z");
+  for (const char* text : {"first: the link leads to nothing", "second"}) {
+    writeFile(folder_ / "z", text);
+    EXPECT_EQ(readFile(folder_ / "far/b"), text);
+  }
+  EXPECT_TRUE(fs::is_symlink(folder_ / "a") && fs::is_symlink(folder_ / "z"));
+  EXPECT_EQ(withoutLinks(folder_ / "z"), folder_ / "far/b");
+  EXPECT_EQ(withoutLinks(folder_ / "far"), folder_ / "far");
+}
+
+TEST_F(FileBytes, AreWrittenIntoAPipeThatIsThere) {
+  const fs::path pipe = folder_ / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::string read;
+  std::thread reader([&] { read = readFile(pipe); });
+  writeFile(pipe, "through the pipe");
+  reader.join();
+  EXPECT_EQ(read, "through the pipe");
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  EXPECT_EQ(filesThere(), 1U);
+}
+
+TEST_F(FileBytes, AreWrittenToADeviceThatStaysOne) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
+  fs::create_symlink("/dev/null", folder_ / "nothing");
+  writeFile(folder_ / "nothing", "x");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "nothing") && fs::is_character_file("/dev/null"));
+  fs::create_symlink("/dev/full", folder_ / "full");
+  EXPECT_THROW(writeFile(folder_ / "full", "x"), Error);
+}
+
+TEST_F(FileBytes, KeepTheRightsOfTheFileThatTheyReplace) {
+  writeFile(folder_ / "a", "secret");
+  fs::permissions(folder_ / "a", fs::perms::owner_read | fs::perms::owner_write);
+  writeFile(folder_ / "a", "secret still");
+  EXPECT_EQ(fs::status(folder_ / "a").permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
 TEST_F(FileBytes, NameTheFileThatCannotBeWritten) {
