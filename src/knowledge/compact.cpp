@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writing a map anew: every table in key order, so that all pages are full and none is free.
 #include "cluxel/base/diagnostic.hpp"
+#include "knowledge/file_guards.hpp"
 #include "knowledge/lmdb_environment.hpp"
 
 namespace cluxel {
@@ -30,10 +31,6 @@ void copyAll(const ReadTransaction& from, Environment& to) {
   for (std::size_t i = 0; i < kTableCount; ++i)
     copyTable(from.impl(), transaction.impl(), static_cast<Table>(i));
   transaction.commit();
-}
-
-fs::path lockFileOf(fs::path map) {
-  return map += "-lock";
 }
 
 }  // namespace

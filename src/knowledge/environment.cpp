@@ -13,6 +13,9 @@
 #include <map>
 
 #include "cluxel/base/diagnostic.hpp"
+#include "cluxel/base/file_bytes.hpp"
+#include "cluxel/knowledge/map_replacement.hpp"
+#include "knowledge/file_guards.hpp"
 #include "knowledge/lmdb_environment.hpp"
 #include "knowledge/map_file_check.hpp"
 #include "knowledge/store_snapshot.hpp"
@@ -38,12 +41,6 @@ constexpr std::size_t kLargestMap = std::size_t{1} << 34U;  // ThreadSanitizer l
 #else
 constexpr std::size_t kLargestMap = std::size_t{1} << 40U;
 #endif
-
-struct FileIdentity {
-  dev_t device = 0;
-  ino_t inode = 0;
-  auto operator<=>(const FileIdentity&) const = default;
-};
 
 /// The environments that this process has open: LMDB loses its locks when a process opens a file twice.
 struct OpenEnvironments {
@@ -72,12 +69,6 @@ class Descriptor {
  private:
   int number_;
 };
-
-FileIdentity identityOf(int descriptor, const fs::path& file) {
-  struct stat status {};
-  if (::fstat(descriptor, &status) != 0) failStore(file, errno, "examine the file");
-  return {status.st_dev, status.st_ino};
-}
 
 int openFile(const fs::path& file, OpenMode mode, bool& can_write) {
   const int creation = mode == OpenMode::Create ? O_CREAT | O_EXCL : 0;
@@ -113,12 +104,20 @@ EnvHandle openLmdb(const fs::path& file, std::uint64_t file_size, unsigned flags
   failStore(file, code, "open the map");
 }
 
-EnvHandle openLmdbFor(const fs::path& file, std::uint64_t file_size, bool can_write, unsigned extra) {
-  if (can_write) return openLmdb(file, file_size, extra);
+bool isFullDisk(int code) { return code == ENOSPC || code == EDQUOT || code == EFBIG; }
+
+/// `can_write` becomes false where a map can be read only: its lock file cannot be made beside it, so nobody else writes.
+EnvHandle openLmdbFor(const fs::path& file, std::uint64_t file_size, OpenMode mode, bool& can_write, unsigned extra) {
+  if (can_write) {
+    const int no_room = reserveLockFile(file);
+    if (!isFullDisk(no_room)) return openLmdb(file, file_size, extra);
+    if (mode != OpenMode::ReadOnly) failStore(file, no_room, "make its lock file");
+    can_write = false;
+    return openLmdb(file, file_size, MDB_RDONLY | MDB_NOLOCK);
+  }
   try {
     return openLmdb(file, file_size, MDB_RDONLY);
   } catch (const Error&) {
-    // The lock file cannot be made beside it; then nobody can write either.
     return openLmdb(file, file_size, MDB_RDONLY | MDB_NOLOCK);
   }
 }
@@ -131,12 +130,19 @@ void checkUnderSnapshot(MDB_env* handle, int descriptor, const fs::path& file) {
   checkMapStructure(descriptor, file, mdb_txn_id(raw));
 }
 
-std::shared_ptr<LmdbEnvironment> openNew(const fs::path& file, Descriptor& descriptor, bool can_write,
-                                         bool may_initialise, unsigned extra_flags) {
+/// Absent when the file was replaced while it was being opened.
+std::shared_ptr<LmdbEnvironment> openNew(const fs::path& file, Descriptor& descriptor, bool can_write, OpenMode mode,
+                                         unsigned extra_flags) {
+  const bool may_initialise = mode != OpenMode::ReadOnly;
   const MapFileHead head = readMapFileHead(descriptor.get(), file);
   if (head.file_size == 0 && !may_initialise)
     throw Error(ExitCode::StoreUnavailable, file.string() + ": is empty, a map was expected");
-  EnvHandle handle = openLmdbFor(file, head.file_size, can_write, extra_flags);
+  EnvHandle handle;
+  {
+    const NameLock lock(descriptor.get(), NameLock::Kind::Opening);   // LMDB opens by name once more
+    if (!isNamed(identityOf(descriptor.get(), file), file)) return nullptr;
+    handle = openLmdbFor(file, head.file_size, mode, can_write, extra_flags);
+  }
   if (head.file_size != 0 && needsStructureCheck(head))
     checkUnderSnapshot(handle.get(), descriptor.get(), file);
   auto environment =
@@ -146,9 +152,9 @@ std::shared_ptr<LmdbEnvironment> openNew(const fs::path& file, Descriptor& descr
   return environment;
 }
 
-std::shared_ptr<LmdbEnvironment> openOnce(const fs::path& file, OpenMode mode, unsigned extra_flags) {
-  bool can_write = false;
-  Descriptor descriptor(openFile(file, mode, can_write));
+/// The environment that this process has open already, or a new one; absent when the file was replaced meanwhile.
+std::shared_ptr<LmdbEnvironment> openAs(const fs::path& file, OpenMode mode, bool can_write, Descriptor& descriptor,
+                                        unsigned extra_flags) {
   const FileIdentity identity = identityOf(descriptor.get(), file);
   OpenEnvironments& table = openEnvironments();
   std::unique_lock lock(table.mutex);
@@ -160,15 +166,34 @@ std::shared_ptr<LmdbEnvironment> openOnce(const fs::path& file, OpenMode mode, u
     }
     table.closed.wait(lock);  // its last owner is closing it
   }
-  auto environment = openNew(file, descriptor, can_write, mode != OpenMode::ReadOnly, extra_flags);
-  table.entries[identity] = environment;
+  auto environment = openNew(file, descriptor, can_write, mode, extra_flags);
+  if (environment) table.entries[identity] = environment;
   return environment;
+}
+
+std::shared_ptr<LmdbEnvironment> openOnce(const fs::path& file, OpenMode mode, unsigned extra_flags) {
+  const LowDescriptors low;
+  constexpr int kMostReplacements = 100;
+  for (int attempt = 0; attempt < kMostReplacements; ++attempt) {
+    bool can_write = false;
+    Descriptor descriptor(openFile(file, mode, can_write));
+    try {
+      if (auto environment = openAs(file, mode, can_write, descriptor, extra_flags)) return environment;
+    } catch (...) {
+      std::error_code ignored;
+      if (mode == OpenMode::Create)
+        for (const fs::path& made : {file, lockFileOf(file)}) fs::remove(made, ignored);
+      throw;
+    }
+  }
+  throw MapReplaced(file);
 }
 
 }  // namespace
 
 std::shared_ptr<Environment> Environment::open(const fs::path& file, OpenMode mode) {
-  return openOnce(fs::absolute(file), mode, 0);
+  // A link and the map itself must share one lock file.
+  return openOnce(withoutLinks(fs::absolute(file)), mode, 0);
 }
 
 std::shared_ptr<Environment> Environment::temporary() {
@@ -178,6 +203,7 @@ std::shared_ptr<Environment> Environment::temporary() {
   std::error_code ignored;
   try {
     auto environment = openOnce(file, OpenMode::Create, MDB_NOSYNC);
+    environment->loseName();
     fs::remove_all(folder, ignored);  // the open handles keep the bytes until the environment ends
     return environment;
   } catch (...) {

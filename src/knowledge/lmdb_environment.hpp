@@ -53,6 +53,8 @@ class LmdbEnvironment final : public Environment {
   std::shared_ptr<StoreSnapshot> snapshot(std::size_t transaction_id,
                                           const std::function<std::shared_ptr<StoreSnapshot>()>& make) const;
   void allowWriting();
+  /// From now on the file need not have its name.
+  void loseName() { has_name_ = false; }
   bool canWrite() const { return can_write_; }
   void check(int code, std::string_view doing) const { checkLmdb(code, file_, doing); }
   void enterWriting();
@@ -62,12 +64,13 @@ class LmdbEnvironment final : public Environment {
 
  private:
   void lockAgainstProcesses();
+  void requireName();
   void createTables(MDB_txn* transaction);
 
   std::filesystem::path file_;
   EnvHandle handle_;
   int data_lock_;
-  bool can_write_;
+  bool can_write_, has_name_ = true;
   std::atomic<bool> writing_allowed_{false};
   std::array<MDB_dbi, kTableCount> tables_{};
   std::unique_ptr<ValueCache> values_;

@@ -10,6 +10,8 @@
 #include <stdexcept>
 
 #include "cluxel/base/diagnostic.hpp"
+#include "cluxel/knowledge/map_replacement.hpp"
+#include "knowledge/file_guards.hpp"
 #include "knowledge/lmdb_environment.hpp"
 #include "knowledge/store_snapshot.hpp"
 #include "knowledge/value_cache.hpp"
@@ -90,12 +92,17 @@ void LmdbEnvironment::lockAgainstProcesses() {
   const auto deadline = std::chrono::steady_clock::now() + kLockPatience;
   while (::flock(data_lock_, LOCK_EX | LOCK_NB) != 0) {
     if (errno != EWOULDBLOCK && errno != EINTR) failStore(file_, errno, "lock the map");
-    if (std::chrono::steady_clock::now() > deadline)
-      throw Error(
-          ExitCode::StoreUnavailable,
-          file_.string() + ": another process is writing to the map; wait until it has ended and run again");
+    if (std::chrono::steady_clock::now() > deadline) throw MapBusy(file_);
     std::this_thread::sleep_for(kLockPause);
   }
+  requireName();
+}
+
+/// Whoever held the lock may have put another file in this one's place.
+void LmdbEnvironment::requireName() {
+  if (!has_name_ || isNamed(identityOf(data_lock_, file_), file_)) return;
+  ::flock(data_lock_, LOCK_UN);
+  throw MapReplaced(file_);
 }
 
 void LmdbEnvironment::enterWriting() {

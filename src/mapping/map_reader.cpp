@@ -27,7 +27,7 @@ struct MapReader::Impl {
   std::map<TileKey, std::uint32_t> first_cluxel;
 
   explicit Impl(std::shared_ptr<Environment> opened)
-      : environment(std::move(opened)), transaction(environment->read()), quads(environment->read()) {
+      : environment(std::move(opened)), transaction(environment->read()), quads(transaction) {
     const auto stored = storedState(transaction);
     if (!stored)
       throw Error(ExitCode::StoreUnavailable, environment->file().string() +

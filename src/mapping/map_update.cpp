@@ -3,6 +3,7 @@
 #include "cluxel/mapping/map_update.hpp"
 
 #include "cluxel/base/diagnostic.hpp"
+#include "cluxel/knowledge/map_replacement.hpp"
 #include "cluxel/knowledge/ontology.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/semantic_layer.hpp"
@@ -27,8 +28,7 @@ void inferAnew(WriteTransaction& transaction, ProgressSink& sink) {
 
 UpdateReport updateMap(const std::filesystem::path& file, const std::string& update, const UpdateOptions& options,
                        ProgressSink& sink) {
-  const auto environment = Environment::open(file, OpenMode::ReadWrite);
-  WriteTransaction transaction = environment->write();
+  WriteTransaction transaction = writeMap(file);
   const auto state = storedState(transaction);
   if (state && !state->is_finished)
     throw Error(ExitCode::Usage, file.string() + ": its build is unfinished; repeat the build command first");
