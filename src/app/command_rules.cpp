@@ -3,6 +3,7 @@
 #include "app/command.hpp"
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/base/file_bytes.hpp"
+#include "cluxel/mapping/ask_check.hpp"
 #include "cluxel/mapping/class_catalogue_of.hpp"
 #include "cluxel/mapping/map_inputs.hpp"
 #include "cluxel/mapping/map_reader.hpp"
@@ -38,7 +39,7 @@ std::vector<fs::path> ruleFiles(const RulesOptions& options, const DataHome& hom
 ExitCode check(const RulesOptions& options, const Session& session) {
   const DataHome home = session.dataHome();
   const ClassCatalogue catalogue = classCatalogueOf(readMapInputs(options.inputs, home).ontology);
-  const std::vector<Diagnostic> faults = checkRules(ruleFiles(options, home), catalogue);
+  const std::vector<Diagnostic> faults = checkRules(ruleFiles(options, home), catalogue, withCheckedQueries());
   if (session.json) {
     Json json = Json::array();
     for (const Diagnostic& fault : faults) json.push_back(diagnosticJson(fault));

@@ -6,6 +6,7 @@
 #include "cluxel/knowledge/ontology.hpp"
 #include "cluxel/knowledge/rdf_io.hpp"
 #include "cluxel/knowledge/vocabulary.hpp"
+#include "cluxel/mapping/ask_check.hpp"
 #include "cluxel/mapping/class_catalogue_of.hpp"
 #include "cluxel/reasoning/reason.hpp"
 #include "cluxel/reasoning/rule_loader.hpp"
@@ -73,7 +74,8 @@ ParsedInputs parseInputs(const MapInputs& inputs) {
   parsed.model = parseModel(inputs.model.text, inputs.model.name);
   checkRanges(inputs.params);
   parsed.rules =
-      loadRuleTexts(ruleSources(inputs.rules), inputs.rule_roots, classCatalogueOf(inputs.ontology)).require();
+      loadRuleTexts(ruleSources(inputs.rules), inputs.rule_roots, classCatalogueOf(inputs.ontology), withCheckedQueries())
+          .require();
   checkSparqlRules(inputs.sparql_rules);
   return parsed;
 }

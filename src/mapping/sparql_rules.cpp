@@ -2,8 +2,6 @@
 // Fixpoints over the store: a rule is asked again until its answer holds nothing new.
 #include "mapping/sparql_rules.hpp"
 
-#include <filesystem>
-
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/knowledge/ontology.hpp"
 #include "cluxel/knowledge/quad_store.hpp"
@@ -40,20 +38,23 @@ void refuseBlankNodes(const NamedText& rule) {
                        "name the new thing by clx:newObject(class, thing) in a BIND");
 }
 
+/// Whether a graph says so already. What the history of builds says is not part of the map.
 bool isKnown(const QuadReader& reader, const Quad& quad) {
   QuadPattern pattern;
   pattern.s = reader.idOf(quad.subject);
   pattern.p = reader.idOf(quad.predicate);
   pattern.o = reader.idOf(quad.object);
   if (!pattern.s || !pattern.p || !pattern.o) return false;
+  const auto history = reader.idOf(Term::iri(vocabulary::kGraphHistory));
   QuadCursor cursor = reader.scan(pattern);
-  QuadIds ids;
-  return cursor.next(ids);
+  for (QuadIds ids; cursor.next(ids);)
+    if (!history || ids.g != *history) return true;
+  return false;
 }
 
 /// The resource that says which rule a fact comes from.
 void addDerivation(QuadWriter& writer, const Quad& fact, const NamedText& rule) {
-  const std::string name = std::filesystem::path(rule.name).filename().string();
+  const std::string name = ruleFileName(rule);
   const ContentHash id = ContentHasher()
                              .addText(name)
                              .addText(toNTriples(fact.subject))

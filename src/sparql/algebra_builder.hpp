@@ -56,6 +56,7 @@ class AlgebraBuilder {
   void addGroupKeys(const ast::Select& select, Scope& scope, SlotSet& visible, SlotSet& inner_visible);
   SelectParts selectParts(const ast::Select& select, Scope& scope, const SlotSet& bound);
   NodePtr modified(NodePtr node, const ast::Select& select, std::vector<SortKey> sort_keys, Scope& scope, bool outermost);
+  void requireOneCut(const ast::Select& select, bool outermost) const;
   static NodePtr above(Node::Kind kind, NodePtr child, ast::SourceOffset at);
   NodePtr grouped(NodePtr node, const ast::Select& select, Scope& scope, std::vector<AggregateSpec>& aggregates);
   NodePtr unit(const Scope& scope);

@@ -42,15 +42,25 @@ GraphFilter storeDefault(const QueryOptions& options, const std::vector<TermId>&
   return filter;
 }
 
+/// Takes the history of builds away from queries whose answers must follow from what was built alone.
+void hideHistory(Dataset& dataset, const QuadReader& reader) {
+  const auto history = reader.idOf(Term::iri(vocabulary::kGraphHistory));
+  if (!history) return;
+  std::erase(dataset.named, *history);
+  GraphFilter& graphs = dataset.default_graph;
+  const bool names_it = graphs.kind == GraphFilter::Kind::AnyOf || graphs.kind == GraphFilter::Kind::One;
+  if (!names_it || !graphs.admits(*history)) return;
+  std::erase(graphs.graphs, *history);
+  graphs = anyOf(std::move(graphs.graphs));
+}
+
 std::vector<Term> irisOf(const std::vector<std::string>& texts) {
   std::vector<Term> terms;
   for (const std::string& text : texts) terms.push_back(Term::iri(text));
   return terms;
 }
 
-}  // namespace
-
-Dataset datasetOf(const ast::DatasetClause& clause, const QueryOptions& options, const QuadReader& reader) {
+Dataset wholeDatasetOf(const ast::DatasetClause& clause, const QueryOptions& options, const QuadReader& reader) {
   ast::DatasetClause wanted = clause;
   if (!options.default_graphs.empty() || !options.named_graphs.empty()) {
     wanted.default_graphs = irisOf(options.default_graphs);
@@ -70,6 +80,14 @@ Dataset datasetOf(const ast::DatasetClause& clause, const QueryOptions& options,
   for (const TermId graph : stored) {
     if (graph != kNoTerm) dataset.named.push_back(graph);
   }
+  return dataset;
+}
+
+}  // namespace
+
+Dataset datasetOf(const ast::DatasetClause& clause, const QueryOptions& options, const QuadReader& reader) {
+  Dataset dataset = wholeDatasetOf(clause, options, reader);
+  if (options.refuse_volatile) hideHistory(dataset, reader);
   return dataset;
 }
 

@@ -95,6 +95,7 @@ NodePtr AlgebraBuilder::modified(NodePtr node, const ast::Select& select, std::v
                                  bool outermost) {
   const ast::SolutionModifiers& modifiers = select.modifiers;
   const bool sliced = modifiers.limit || modifiers.offset;
+  if (sliced && options_.refuse_volatile) requireOneCut(select, outermost);
   if (!sort_keys.empty() && (outermost || sliced)) {
     node = above(Node::Kind::OrderBy, std::move(node), select.where.at);
     node->sort_keys = std::move(sort_keys);
@@ -119,6 +120,16 @@ NodePtr AlgebraBuilder::modified(NodePtr node, const ast::Select& select, std::v
     node->annotate();
   }
   return node;
+}
+
+/// ORDER BY breaks ties by the terms of the columns: there is one cut only. Without columns, or unsorted, rows come as they
+/// are stored, which is not part of what a map says.
+void AlgebraBuilder::requireOneCut(const ast::Select& select, bool outermost) const {
+  const bool has_columns = !outermost || !select.projection.empty();
+  if (has_columns && !select.modifiers.order_by.empty()) return;
+  fail(select.where.at, "LIMIT and OFFSET are refused here without the ORDER BY of a SELECT: which rows they keep would follow "
+                        "from how the map is stored, not from what it says",
+       "sort and cut in a sub-select: { SELECT ... WHERE { ... } ORDER BY ... LIMIT ... }");
 }
 
 NodePtr AlgebraBuilder::above(Node::Kind kind, NodePtr child, ast::SourceOffset at) {

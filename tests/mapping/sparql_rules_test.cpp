@@ -8,7 +8,10 @@
 #include "cluxel/base/file_bytes.hpp"
 #include "cluxel/knowledge/quad_store.hpp"
 #include "cluxel/knowledge/vocabulary.hpp"
+#include "cluxel/mapping/ask_check.hpp"
+#include "cluxel/mapping/class_catalogue_of.hpp"
 #include "cluxel/sparql/query_engine.hpp"
+#include "mapping/asking_rules.hpp"
 
 namespace cluxel {
 namespace {
@@ -141,6 +144,54 @@ TEST(SparqlRulesCheck, RefusesWhatDiffersFromRunToRun) {
   expectRefusal("CONSTRUCT { ?n a clx:Avenue } WHERE { ?t a clx:Tree BIND(BNODE() AS ?n) }", "BNODE");
   expectRefusal("CONSTRUCT { ?t clx:seen ?n } WHERE { ?t a clx:Tree BIND(NOW() AS ?n) }", "NOW");
   expectRefusal("CONSTRUCT { ?n a clx:Avenue } WHERE { ?t a clx:Tree BIND(UUID() AS ?n) }", "UUID");
+}
+
+TEST(SparqlRulesCheck, RefusesCutsThatFollowFromTheOrderOfStorage) {
+  expectRefusal("CONSTRUCT { ?t clx:first true } WHERE { ?t a clx:Tree } LIMIT 1", "LIMIT");
+  expectRefusal("CONSTRUCT { ?t clx:first true } WHERE { ?t a clx:Tree } ORDER BY ?t OFFSET 1", "LIMIT");
+  expectRefusal("CONSTRUCT { ?t clx:first true } WHERE { { SELECT ?t { ?t a clx:Tree } LIMIT 1 } }", "my-rule.rq:1:");
+  expectRefusal("CONSTRUCT { ?t clx:n true } WHERE { ?t a clx:Tree FILTER EXISTS { SELECT ?u { ?u clx:near ?t } OFFSET 2 } }", "ORDER BY");
+  EXPECT_NO_THROW(checkSparqlRules({{"sorted.rq", kPrefixes + "CONSTRUCT { ?t clx:first true } WHERE { { SELECT ?t { ?t a clx:Tree ; "
+                                                              "clx:top ?top } ORDER BY DESC(?top) LIMIT 1 } }"}}));
+}
+
+TEST(SparqlRulesCheck, RefusesTheSameInQueriesOfRuleTrees) {
+  std::string rules = kAskingRules;
+  const std::string asked = "{ ?thing a clx:SmallObject }";
+  rules.replace(rules.find(asked), asked.size(), "{ SELECT ?thing { ?thing a clx:SmallObject } LIMIT 1 }");
+  const std::vector<RuleSource> texts{{"asking.rules.yaml", rules}};
+  const std::vector<NamedText> ontology{{"bench.ttl", kBenchOntology},
+                                        {"rest.ttl", "@prefix clx: <https://w3id.org/cluxel/ontology#> . @prefix owl: <http://www.w3.org/2002/07/owl#> . "
+                                                     "clx:SmallObject a owl:Class . clx:StreetFurniture a owl:Class ."}};
+  const auto faults = loadRuleTexts(texts, 1, classCatalogueOf(ontology), withCheckedQueries()).diagnostics;
+  const auto isCut = [](const Diagnostic& fault) { return fault.message.find("LIMIT") != std::string::npos; };
+  const auto found = std::find_if(faults.begin(), faults.end(), isCut);
+  ASSERT_NE(found, faults.end()) << format(faults);
+  EXPECT_EQ(found->location.file, "asking.rules.yaml");
+  EXPECT_GT(found->location.line, 1U);
+  const std::vector<RuleSource> sound{{"asking.rules.yaml", kAskingRules}};
+  const auto none = loadRuleTexts(sound, 1, classCatalogueOf(ontology), withCheckedQueries()).diagnostics;
+  EXPECT_FALSE(hasErrors(none)) << format(none);
+}
+
+TEST_F(SparqlRules, SeeNothingOfTheHistoryOfBuilds) {
+  addTree(1);
+  QuadWriter writer(transaction);
+  writer.add(Quad{tree(1), Term::iri(vocabulary::clx("sourceFile")), Term::literal("a.pcd"), Term::iri(vocabulary::kGraphHistory)});
+  writer.add(Quad{tree(1), Term::iri(vocabulary::clx("seen")), tree(1), Term::iri(vocabulary::kGraphHistory)});
+  writer.flush();
+  const std::string history = "<" + std::string(vocabulary::kGraphHistory) + ">";
+  const std::string from = "CONSTRUCT { ?t clx:leak ?f } FROM " + history + " FROM <https://w3id.org/cluxel/graph/observed> FROM NAMED " + history;
+  runSparqlRules(transaction,
+                 {{"1.rq", kPrefixes + "CONSTRUCT { ?t clx:leak ?f } WHERE { GRAPH " + history + " { ?t clx:sourceFile ?f } }"},
+                  {"2.rq", kPrefixes + "CONSTRUCT { ?t clx:leak ?f } WHERE { GRAPH ?g { ?t clx:sourceFile ?f } }"},
+                  {"3.rq", kPrefixes + "CONSTRUCT { ?t clx:leak ?g } WHERE { ?t a clx:Tree . GRAPH ?g { } FILTER(?g = " + history + ") }"},
+                  {"4.rq", kPrefixes + from + " WHERE { ?t clx:sourceFile ?f }"},
+                  {"5.rq", kPrefixes + from + " WHERE { GRAPH ?g { ?t clx:sourceFile+ ?f } }"},
+                  {"6.rq", kPrefixes + "CONSTRUCT { ?t clx:seen ?t } WHERE { ?t a clx:Tree }"}});
+  EXPECT_FALSE(ask("?t clx:leak ?f"));
+  EXPECT_TRUE(ask("?d a clx:Derivation ; rdf:predicate clx:seen")) << "what the history says is not known to the map";
+  EXPECT_TRUE(ask("GRAPH " + history + " { ?t clx:sourceFile ?f }")) << "others may ask it";
 }
 
 TEST(SparqlRulesCheck, RefusesBlankNodesInTheTemplate) {

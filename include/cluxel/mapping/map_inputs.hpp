@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -17,12 +18,19 @@
 
 namespace cluxel {
 
+/// To be raised by every change of the program that gives other stage outputs or facts for the same inputs (perception,
+/// reasoning, facts, closure; not storage): an unfinished build of the program before it is then refused, not mixed with.
+inline constexpr std::uint32_t kStagesVersion = 1;
+
 /// An authored file as it went into a map.
 struct NamedText {
   std::string name;     ///< file name, for messages
   std::string text;
   auto operator<=>(const NamedText&) const = default;
 };
+
+/// How a SPARQL rule is named in the map: its file's name without the folder.
+std::string ruleFileName(const NamedText& rule);
 
 /// Settings of the stages behind the features; those before are part of the model.
 struct MapParams {
