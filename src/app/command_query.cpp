@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel query` and `cluxel tasks`: questions in SPARQL.
+#include <algorithm>
+#include <cmath>
+
 #include "app/command.hpp"
 #include "app/named_sources.hpp"
 #include "cluxel/base/diagnostic.hpp"
@@ -52,14 +55,18 @@ class CountingSink : public ResultSink {
   bool is_false_ = false;
 };
 
+/// Beyond these there is no limit in practice, and numbers overflow.
+constexpr double kLongest_s = 1e9;
+constexpr std::uint64_t kMost_mib = std::uint64_t{1} << 40U;
+
 QueryOptions optionsOf(const QueryArguments& arguments, const QuerySource& source, const std::string& name) {
   QueryOptions options;
   options.default_graph = arguments.strict ? DefaultGraph::Unnamed : source.default_graph;
   options.source_name = name;
   if (arguments.deadline_s > 0)
-    options.budget.deadline = std::chrono::milliseconds(static_cast<std::int64_t>(arguments.deadline_s * 1000));
+    options.budget.deadline = std::chrono::milliseconds(std::llround(std::min(arguments.deadline_s, kLongest_s) * 1000));
   options.budget.max_rows = arguments.max_rows;
-  if (arguments.max_memory_mib > 0) options.budget.max_memory_bytes = arguments.max_memory_mib << 20U;
+  if (arguments.max_memory_mib > 0) options.budget.max_memory_bytes = std::min(arguments.max_memory_mib, kMost_mib) << 20U;
   return options;
 }
 

@@ -2,8 +2,11 @@
 // `cluxel doctor` and `cluxel compact`: the health and size of a map file.
 #include "app/command.hpp"
 #include "cluxel/base/diagnostic.hpp"
+#include "cluxel/base/file_bytes.hpp"
 #include "cluxel/knowledge/environment.hpp"
 #include "cluxel/knowledge/map_check.hpp"
+#include "cluxel/knowledge/map_replacement.hpp"
+#include "cluxel/mapping/build_lock.hpp"
 
 namespace cluxel::app {
 
@@ -15,14 +18,19 @@ struct UpkeepOptions {
 
 /// Nobody else may write while the map's file is replaced: what they commit would be lost.
 void compactInPlace(const fs::path& map) {
-  const auto environment = Environment::open(map, OpenMode::ReadWrite);
+  const fs::path file = withoutLinks(map), target = file.string() + ".compact";
+  const BuildLock no_build(file);
+  const auto environment = Environment::open(file, OpenMode::ReadWrite);
   const WriteTransaction no_other_writer = environment->write();
-  const fs::path file = fs::canonical(map), target = file.string() + ".compact";
   std::error_code ignored;
   fs::remove(target, ignored);   // of a run that was killed
   environment->compactTo(target);
-  fs::remove(file.string() + "-lock", ignored);   // it counts the commits of the old file
-  fs::rename(target, file);
+  try {
+    replaceMapFile(target, file);
+  } catch (...) {
+    fs::remove(target, ignored);
+    throw;
+  }
 }
 
 ExitCode compact(const UpkeepOptions& options, const Session& session) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program `cluxel`: parses the command line, runs one subcommand, turns errors into messages and exit codes.
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -62,6 +63,13 @@ int runProgram(int argc, char** argv) {
   return static_cast<int>(session.exit_code);
 }
 
+/// A closed stdin, stdout or stderr would be given to the next file that is opened, and messages written into a map. They
+/// are opened the wrong way round, so that using them fails as if they were closed, and lostData() sees it.
+void occupyStandardStreams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0) ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
 /// Data that could not be written is an error, but nobody misses it when the reader of a pipe has gone.
 bool lostData() {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return false;
@@ -73,6 +81,7 @@ bool lostData() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  occupyStandardStreams();
   std::signal(SIGPIPE, SIG_IGN);
   try {
     const int code = runProgram(argc, argv);

@@ -3,14 +3,16 @@
 #include "cluxel/mapping/map_builder.hpp"
 
 #include <chrono>
+#include <optional>
+#include <set>
 
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/knowledge/quad_store.hpp"
 #include "mapping/map_history.hpp"
 #include "mapping/map_state.hpp"
-#include "mapping/operator_statements.hpp"
 #include "mapping/scan_store.hpp"
 #include "mapping/semantic_layer.hpp"
+#include "mapping/work_file.hpp"
 
 namespace cluxel {
 
@@ -22,82 +24,53 @@ double nowSeconds() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-void removeMap(const fs::path& file) {
-  std::error_code ignored;
-  fs::remove(file, ignored);
-  fs::remove(file.string() + "-lock", ignored);
-}
-
-/// The file to work in. A finished map that is replaced stays until the new one is finished.
-struct WorkFile {
-  fs::path path, target;
-  std::shared_ptr<Environment> environment;
-  bool is_fresh = false;
-
-  void finish() {
-    environment.reset();
-    if (path == target) return;
-    removeMap(target);
-    fs::rename(path, target);
-    removeMap(path);
+/// The clouds of an unfinished build must be among the scans: all that is in the map was asked for. Loads scans until each
+/// cloud is found, which are those in front when the same command goes on.
+void requireScansOf(const WorkFile& work, const ScanSet& scans, const std::vector<Cloud>& clouds) {
+  std::set<ScanId> given;
+  std::size_t loaded = 0;
+  for (const Cloud& cloud : clouds) {
+    while (!given.contains(cloud.id) && loaded < scans.size()) given.insert(scans.load(loaded++).id);
+    if (!given.contains(cloud.id))
+      throw Error(ExitCode::Usage, work.path().string() + ": holds an unfinished build of other scans ('" + cloud.source +
+                                       "' is not among those given); repeat that command to finish it, or remove the file");
   }
-};
-
-std::optional<MapState> stateOf(const fs::path& file) {
-  return storedState(Environment::open(file, OpenMode::ReadOnly)->read());
-}
-
-/// Whether `file` holds an unfinished build of the same inputs. An unfinished build of others is an error.
-bool isOwnUnfinished(const fs::path& file, const std::string& inputs_hash) {
-  const auto state = stateOf(file);
-  if (!state) return true;
-  if (state->is_finished) return false;
-  if (state->inputs_hash == inputs_hash) return true;
-  throw Error(ExitCode::Usage, file.string() + ": holds an unfinished build with another model, rules or ontology; " +
-                                   "repeat that command to finish it, or remove the file");
-}
-
-WorkFile openWorkFile(const fs::path& target, const std::string& inputs_hash, bool force) {
-  WorkFile work;
-  work.path = work.target = target;
-  if (fs::exists(target) && !isOwnUnfinished(target, inputs_hash)) {
-    if (!force)
-      throw Error(ExitCode::Usage, target.string() + ": is a finished map; --force replaces it");
-    work.path += ".building";
-    if (fs::exists(work.path) && !isOwnUnfinished(work.path, inputs_hash)) removeMap(work.path);
-  }
-  work.is_fresh = !fs::exists(work.path);
-  work.environment = Environment::open(work.path, work.is_fresh ? OpenMode::Create : OpenMode::ReadWrite);
-  return work;
-}
-
-/// Takes the operator's statements of the map that is replaced over into its successor.
-void keepStatements(const WorkFile& work, ProgressSink& sink) {
-  const auto replaced = Environment::open(work.target, OpenMode::ReadOnly);
-  WriteTransaction transaction = work.environment->write();
-  const std::uint64_t count = copyOperatorStatements(QuadReader(replaced->read()), transaction);
-  transaction.commit();
-  if (count > 0)
-    sink.note(std::to_string(count) + " operator statements of the old map are kept; --drop-statements leaves them out");
 }
 
 class MapBuild {
  public:
-  MapBuild(const ScanSet& scans, const ParsedInputs& parsed, Environment& environment, const BuildParams& params,
-           ProgressSink& sink)
-      : scans_(scans), parsed_(parsed), environment_(environment), params_(params), sink_(sink),
+  MapBuild(const ScanSet& scans, const ParsedInputs& parsed, WorkFile& work, const BuildParams& params, ProgressSink& sink)
+      : scans_(scans), parsed_(parsed), work_(work), params_(params), sink_(sink), state_(work.found()),
         stages_(parsed.model, parsed.inputs.params) {}
 
   BuildReport run() {
+    goOn();
     for (std::size_t next = 0; next < scans_.size();) next = addBatch(next);
     return report_;
   }
 
  private:
+  /// Checks that what is there belongs to this build.
+  void goOn() {
+    const std::vector<Cloud> there = storedClouds(work_.environment().read());
+    if (there.empty()) return;
+    requireScansOf(work_, scans_, there);
+    sink_.note("goes on with " + work_.path().string() + ": " + std::to_string(there.size()) + " of " +
+               std::to_string(scans_.size()) + " scans are there");
+  }
+
+  /// Between two commits nobody else may have built here, not even a program that knows no lock.
+  void requireOwn(const ReadTransaction& transaction) const {
+    if (storedState(transaction) != state_)
+      throw Error(ExitCode::StoreUnavailable,
+                  work_.path().string() + ": another build has written to it meanwhile; wait until it has ended and run again");
+  }
+
   /// Adds scans from `first` on until the batch is full, and commits; returns the first scan of the next batch.
   std::size_t addBatch(std::size_t first) {
     const double started_s = nowSeconds();
-    WriteTransaction transaction = environment_.write();
+    WriteTransaction transaction = work_.environment().write();
+    requireOwn(transaction);
     TileSet touched;
     std::uint64_t batch_points = 0;
     std::size_t next = first;
@@ -116,10 +89,12 @@ class MapBuild {
   void commitBatch(WriteTransaction& transaction, const TileSet& touched, bool is_last, double started_s) {
     stages_.update(transaction, touched, params_.threads, sink_);
     stages_.loadAll(transaction);
+    if (is_last) work_.takeOverStatements(transaction, params_.drop_statements, sink_);
     const SemanticCounts counts = writeSemanticLayer(transaction, parsed_, stages_, sink_);
     const std::vector<Cloud> clouds = storedClouds(transaction);
     storeInputs(transaction, parsed_.inputs);
-    storeState(transaction, {is_last, parsed_.inputs.hash().hex()});
+    state_ = MapState{is_last, parsed_.inputs.hash().hex()};
+    storeState(transaction, *state_);
     addBuildActivity(transaction, clouds, parsed_.inputs, started_s, nowSeconds());
     transaction.commit();
     report_.scans = clouds.size();
@@ -127,14 +102,15 @@ class MapBuild {
     for (const Cloud& cloud : clouds) report_.points += cloud.point_count;
     report_.tiles = stages_.points().size();
     report_.cluxels = counts.cluxels, report_.primitives = counts.primitives, report_.objects = counts.objects;
-    report_.quads = QuadReader(environment_.read()).size();
+    report_.quads = QuadReader(work_.environment().read()).size();
   }
 
   const ScanSet& scans_;
   const ParsedInputs& parsed_;
-  Environment& environment_;
+  WorkFile& work_;
   const BuildParams& params_;
   ProgressSink& sink_;
+  std::optional<MapState> state_;   ///< what the file says, as far as this build knows
   TileStages stages_;
   BuildReport report_;
 };
@@ -148,18 +124,10 @@ BuildReport buildMap(const ScanSet& scans, const MapInputs& inputs, const fs::pa
   complete.map_origin = scans.mapOrigin();
   complete.crs = scans.crs();
   const ParsedInputs parsed = parseInputs(complete);
-  WorkFile work = openWorkFile(file, complete.hash().hex(), params.force);
-  try {
-    if (work.path != work.target && !params.drop_statements) keepStatements(work, sink);
-    const BuildReport report = MapBuild(scans, parsed, *work.environment, params, sink).run();
-    work.finish();
-    return report;
-  } catch (...) {
-    const bool is_empty = !storedState(work.environment->read());
-    work.environment.reset();
-    if (work.is_fresh && is_empty) removeMap(work.path);
-    throw;
-  }
+  WorkFile work(file, complete.hash().hex(), params.force);
+  const BuildReport report = MapBuild(scans, parsed, work, params, sink).run();
+  work.finish();
+  return report;
 }
 
 }  // namespace cluxel

@@ -13,6 +13,7 @@ namespace cluxel {
 struct MapState {
   bool is_finished = false;
   std::string inputs_hash;     ///< hex of MapInputs::hash()
+  bool operator==(const MapState&) const = default;
 };
 
 void storeState(WriteTransaction& transaction, const MapState& state);

@@ -20,4 +20,10 @@ std::uint64_t copyOperatorStatements(const QuadReader& from, WriteTransaction& i
   return count;
 }
 
+void clearOperatorStatements(WriteTransaction& transaction) {
+  QuadWriter writer(transaction);
+  writer.clearGraph(writer.intern(Term::iri(vocabulary::kGraphOperator)));
+  writer.flush();
+}
+
 }  // namespace cluxel

@@ -11,5 +11,7 @@ namespace cluxel {
 
 /// Adds the quads of graph `operator` to `into`, flushes, and returns how many there are.
 std::uint64_t copyOperatorStatements(const QuadReader& from, WriteTransaction& into);
+/// Leaves graph `operator` empty.
+void clearOperatorStatements(WriteTransaction& transaction);
 
 }  // namespace cluxel

@@ -102,6 +102,14 @@ void addTiles(WriteTransaction& transaction, const TileSet& fresh) {
   transaction.putBlock(tables::kMeta, kTilesKey, bytes);
 }
 
+/// Years 1 to 9999: what xsd:dateTime writes with four digits.
+void requireTime(const Scan& scan) {
+  constexpr double kFirst_s = -62135596800.0, kEnd_s = 253402300799.0;
+  if (scan.time_s && !(*scan.time_s >= kFirst_s && *scan.time_s < kEnd_s))
+    throw InputError({.file = scan.source}, "its time of " + std::to_string(*scan.time_s) + " s lies outside the years 1 to 9999",
+                     "times are seconds since 1970-01-01 UTC: is it in milliseconds or nanoseconds?");
+}
+
 }  // namespace
 
 TileSet storedTiles(const ReadTransaction& transaction) {
@@ -113,6 +121,7 @@ TileSet storedTiles(const ReadTransaction& transaction) {
 }
 
 TileSet storeScan(WriteTransaction& transaction, const Scan& scan) {
+  requireTime(scan);
   if (const auto there = storedCloud(transaction, scan.id)) {
     if (numbersOf(there->T_map_sensor) == numbersOf(scan.T_map_sensor)) return {};
     throw InputError({.file = scan.source}, "is the same scan as '" + there->source + "', with another pose",

@@ -140,6 +140,30 @@ TEST_F(Program, AFullDiskIsNotTakenForSuccess) {
   }
 }
 
+TEST_F(Program, ClosedStreamsAreNotTakenForTheMap) {
+  const std::string closed = path("closed.clx").string();
+  fs::copy_file(map(), closed);
+  const auto runClosed = [](const std::string& arguments) {
+    const int status = std::system((std::string(CLUXEL_BINARY_DIR) + "/cluxel --home " + CLUXEL_SOURCE_DIR + " --threads 1 " + arguments).c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  };
+  const std::string update = "update " + closed + " -e 'INSERT DATA { <https://e.org/a> a <https://e.org/b> }'";
+  const std::string build = "build " + campus() + " -o " + closed + " --force";
+  EXPECT_EQ(runClosed(update + " >&- 2>&-"), 5) << "its report is lost, and that is said";
+  EXPECT_EQ(run("doctor " + closed).code, 0);
+  EXPECT_EQ(runClosed(update + " <&- 2>&- > /dev/null"), 0);
+  EXPECT_EQ(run("doctor " + closed).code, 0);
+  EXPECT_EQ(runClosed(build + " 2>&- > /dev/null"), 0);
+  EXPECT_EQ(runClosed(build + " >&- 2>&-"), 5);
+  EXPECT_EQ(run("doctor " + closed).code, 0);
+  EXPECT_EQ(run("info " + closed).code, 0);
+}
+
+TEST_F(Program, ABudgetBeyondAllNumbersIsNone) {
+  for (const char* option : {"--deadline 1e300", "--deadline 1e12", "--max-memory 18446744073709551615", "--max-rows 18446744073709551615"})
+    EXPECT_EQ(run("query " + path("three.ttl").string() + " -e 'ASK { ?s ?p 3 }' " + option).code, 0) << option;
+}
+
 TEST_F(Program, AReaderThatGoesAwayIsNoError) {
   const std::string command = std::string("bash -c 'set -o pipefail; ") + CLUXEL_BINARY_DIR + "/cluxel export --canonical " +
                               map() + " | head -1 > /dev/null'";

@@ -25,9 +25,11 @@ struct BuildReport {
   std::size_t scans_already_there = 0;       ///< of an unfinished build that went on
 };
 
-/// Builds `file` from `scans`. A finished map is an Error (Usage) unless `force`; an unfinished one of the same inputs goes
-/// on where it stopped. The operator's statements are nobody's to compute again: the new map takes them over from the one
-/// it replaces, unless they are to be dropped. Throws InputError for faulty scans, rules, ontology or model: nothing is written then.
+/// Builds `file` from `scans`, under a BuildLock. A finished map, or a store that no build has made, is an Error (Usage) unless
+/// `force`; an unfinished one of the same inputs goes on where it stopped, when all its scans are among those given. With
+/// `force` the new map is made in FILE.building and takes the old one's place by a rename: there is always one of them. The
+/// operator's statements are nobody's to compute again: the new map takes over those that the old one has at the end, unless
+/// they are to be dropped. Throws InputError for faulty scans, rules, ontology or model: nothing is written then.
 BuildReport buildMap(const ScanSet& scans, const MapInputs& inputs, const std::filesystem::path& file,
                      const BuildParams& params, ProgressSink& sink);
 

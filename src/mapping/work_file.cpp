@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which file a build may work in, and how that becomes the map.
+#include "mapping/work_file.hpp"
+
+#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/base/file_bytes.hpp"
+#include "cluxel/knowledge/map_replacement.hpp"
+#include "cluxel/knowledge/quad_store.hpp"
+#include "mapping/map_tables.hpp"
+#include "mapping/operator_statements.hpp"
+
+namespace cluxel {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// An update may be at work on the old map when the new one is finished.
+constexpr auto kPatience = std::chrono::minutes(10);
+
+struct Found {
+  enum class Kind { Nothing, Empty /* or killed before its first commit */, Build, OtherStore } kind = Kind::Nothing;
+  std::optional<MapState> state = std::nullopt;   ///< of Build
+
+  bool isNothing() const { return kind == Kind::Nothing || kind == Kind::Empty; }
+  bool isFinished() const { return state && state->is_finished; }
+};
+
+bool holdsNothing(const ReadTransaction& transaction) {
+  bool has_blocks = false;
+  for (const std::string_view table : {tables::kMeta, tables::kScans})
+    transaction.forEachBlock(table, "", [&](std::string_view, std::string_view) { has_blocks = true; });
+  const QuadReader quads(transaction);
+  return !has_blocks && quads.size() == 0 && quads.termCount() == 0;
+}
+
+Found lookAt(const fs::path& file) {
+  using enum Found::Kind;
+  if (!fs::exists(file)) return {};
+  if (fs::is_directory(file)) throw Error(ExitCode::StoreUnavailable, file.string() + ": is a folder, a map was expected");
+  if (fs::is_regular_file(file) && fs::file_size(file) == 0) return {Empty};
+  const ReadTransaction transaction = Environment::open(file, OpenMode::ReadOnly)->read();
+  if (const auto state = storedState(transaction)) return {Build, state};
+  return {holdsNothing(transaction) ? Empty : OtherStore};
+}
+
+/// A build goes on only with what it began itself.
+void requireSameInputs(const Found& found, const fs::path& file, const std::string& inputs_hash) {
+  if (found.kind == Found::Kind::OtherStore)
+    throw Error(ExitCode::Usage, file.string() + ": is a store that no build has made; move it away");
+  if (found.state && found.state->inputs_hash != inputs_hash)
+    throw Error(ExitCode::Usage, file.string() + ": holds " + (found.isFinished() ? "a" : "an unfinished") +
+                                     " build with another model, rules, ontology or version of Cluxel; repeat that command "
+                                     "to finish it, or remove the file");
+}
+
+void removeMap(const fs::path& file) {
+  std::error_code ignored;
+  fs::remove(file, ignored);
+  fs::remove(file.string() + "-lock", ignored);
+}
+
+}  // namespace
+
+WorkFile::WorkFile(const fs::path& map, const std::string& inputs_hash, bool force)
+    : target_(withoutLinks(map)), lock_(target_) {
+  chooseBetween(inputs_hash, force);
+  const Found found = lookAt(path_);
+  requireSameInputs(found, path_, inputs_hash);
+  const auto mode = found.kind == Found::Kind::Nothing ? OpenMode::Create : OpenMode::ReadWrite;
+  environment_ = Environment::open(path_, mode);
+  found_ = found.state;
+}
+
+void WorkFile::chooseBetween(const std::string& inputs_hash, bool force) {
+  const fs::path beside = target_.string() + ".building";
+  const Found there = lookAt(target_);
+  path_ = target_;
+  if (there.kind == Found::Kind::OtherStore || there.isFinished()) {
+    if (!force)
+      throw Error(ExitCode::Usage, target_.string() + (there.isFinished() ? ": is a finished map; --force replaces it"
+                                                                          : ": is a store that no build has made; --force replaces it"));
+    path_ = beside;
+    replaces_ = true;
+    return;
+  }
+  const Found stranded = lookAt(beside);
+  if (!there.isNothing() || stranded.isNothing()) return;
+  if (stranded.state && stranded.state->inputs_hash == inputs_hash)
+    path_ = beside;   // the map that it was to replace has gone: it becomes the map
+  else
+    throw Error(ExitCode::Usage, beside.string() + ": is left of another build, and the map that it was to replace has gone; "
+                                                   "rename or remove it first");
+}
+
+WorkFile::~WorkFile() {
+  bool is_unused = false;
+  try {
+    is_unused = environment_ && !found_ && holdsNothing(environment_->read());
+  } catch (const Error&) {
+    // A file that cannot be read stays for `cluxel doctor`.
+  }
+  environment_.reset();
+  if (is_unused) removeMap(path_);
+}
+
+void WorkFile::takeOverStatements(WriteTransaction& into, bool drop, ProgressSink& sink) {
+  if (replaces_) {
+    replaced_ = writeMap(target_, kPatience);
+  } else if (!drop || path_ == target_) {
+    return;
+  }
+  clearOperatorStatements(into);
+  if (drop) return;
+  const std::uint64_t count = copyOperatorStatements(QuadReader(static_cast<const ReadTransaction&>(*replaced_)), into);
+  if (count > 0)
+    sink.note(std::to_string(count) + " operator statements of the old map are kept; --drop-statements leaves them out");
+}
+
+void WorkFile::finish() {
+  environment_.reset();
+  if (path_ == target_) return;
+  if (!replaces_ && !lookAt(target_).isNothing())
+    throw Error(ExitCode::StoreUnavailable,
+                path_.string() + ": is finished, but meanwhile there is a map at " + target_.string() + "; move one of them away");
+  replaceMapFile(path_, target_);
+  replaced_.reset();
+}
+
+}  // namespace cluxel
