@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <map>
 #include <random>
 #include <set>
+#include <thread>
 
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/knowledge/vocabulary.hpp"
@@ -146,6 +148,19 @@ TEST(ByColumn, GivesWhatTheIndexGives) {
   EXPECT_TRUE(keptColumn(reader, {p}, graphs)->isMade());
   EXPECT_TRUE(keptColumn(reader, {is, thing}, graphs)->isMade());
   EXPECT_FALSE(keptColumn(reader, {is, thing}, {})->isMade()) << "not of these graphs";
+}
+
+TEST(ByColumn, IsMadeOnceForReadersInSeveralThreads) {
+  const SmallStore store = strewn(9, 0, 3000, 4);
+  const std::string text = "SELECT ?o ?v { ?o :is :thing . ?o :p ?v . ?v :is :thing }";
+  const auto expected = store.rows(text, graphByGraph());
+  std::array<std::vector<std::string>, 4> found;
+  std::vector<std::thread> threads;
+  for (auto& rows : found) threads.emplace_back([&] {
+    for (int i = 0; i < 3; ++i) rows = store.rows(text);
+  });
+  for (std::thread& thread : threads) thread.join();
+  for (const auto& rows : found) EXPECT_EQ(rows, expected);
 }
 
 TEST(ByColumn, FollowsCommitsAndDatasets) {
