@@ -47,10 +47,18 @@ Json reportJson(const PoseRegistration& report, const ScanSet& set) {
   json["scans"] = Json::array();
   for (const MendedScan& scan : report.scans)
     json["scans"].push_back(Json{{"source", set.file(scan.index).path.string()}, {"shift_m", scan.shift_m},
-                                 {"turn_deg", scan.turn_rad * kDegrees}, {"pairs", scan.pairs}});
+                                 {"turn_deg", scan.turn_rad * kDegrees}, {"pairs", scan.pairs}, {"group", scan.group}});
   json["pairs"] = Json::array();
   for (const RegisteredPair& pair : report.pairs) json["pairs"].push_back(pairJson(pair, report, set));
   return json;
+}
+
+/// Of two scans or more.
+std::size_t groupsIn(const PoseRegistration& report) {
+  std::size_t groups = 0;
+  for (std::size_t i = 0; i < report.scans.size(); ++i)
+    if (report.scans[i].pairs > 0 && report.scans[i].group == i) ++groups;
+  return groups;
 }
 
 /// Pairs left out, by name; then each scan with its correction.
@@ -69,6 +77,8 @@ void printReport(const PoseRegistration& report, const ScanSet& set, bool check)
     std::printf("%s: moved by %.3f m and %.3f degrees, %zu pairs%s\n", set.file(scan.index).path.c_str(), scan.shift_m,
                 scan.turn_rad * kDegrees, scan.pairs, scan.pairs == 0 ? ": keeps its pose" : "");
   }
+  if (groupsIn(report) > 1)
+    std::printf("%zu groups of scans that no pair joins: they lie to each other as the given poses say\n", groupsIn(report));
   if (used == 0) std::printf("no two scans overlap enough to be laid on each other\n");
   std::printf("%zu scans, %zu of %zu pairs used, median residual %.3f m", report.scans.size(), used, report.pairs.size(),
               report.residual_before_m);

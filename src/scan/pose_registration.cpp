@@ -169,6 +169,14 @@ std::vector<ScanPlace> placesOf(const RegistrationScans& scans, const Poses& pos
   return places;
 }
 
+/// Joins the groups of two scans; the smaller number names the group.
+void join(std::vector<MendedScan>& scans, std::size_t a, std::size_t b) {
+  const std::size_t kept = std::min(scans[a].group, scans[b].group), gone = std::max(scans[a].group, scans[b].group);
+  if (kept == gone) return;
+  for (MendedScan& scan : scans)
+    if (scan.group == gone) scan.group = kept;
+}
+
 /// The report, in the order of paths.
 PoseRegistration reported(const RegistrationScans& scans, const Poses& poses, const std::vector<ScanPair>& pairs,
                           const std::vector<PairOutcome>& outcomes, const std::vector<PairEvidence>& before,
@@ -178,14 +186,17 @@ PoseRegistration reported(const RegistrationScans& scans, const Poses& poses, co
   for (const std::size_t i : scans.byPath()) {
     place[i] = report.scans.size();
     const Vector6d moved = smallMotion(scans.given[i].inverse() * poses[i]);
-    report.scans.push_back({scans.index[i], poses[i], moved.head<3>().norm(), moved.tail<3>().norm(), 0});
+    report.scans.push_back({scans.index[i], poses[i], moved.head<3>().norm(), moved.tail<3>().norm(), 0,
+                            report.scans.size()});
   }
   std::vector<double> residuals_before, residuals_after;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const auto [first, second] = std::minmax(place[pairs[k].first], place[pairs[k].second]);
+    const std::size_t one = place[pairs[k].first], other = place[pairs[k].second];
+    const std::size_t first = std::min(one, other), second = std::max(one, other);
     report.pairs.push_back({first, second, outcomes[k], after[k].overlap, before[k].residual_m, after[k].residual_m});
     if (outcomes[k] != PairOutcome::Used) continue;
     for (const std::size_t end : {first, second}) ++report.scans[end].pairs;
+    join(report.scans, first, second);
     residuals_before.push_back(before[k].residual_m);
     residuals_after.push_back(after[k].residual_m);
   }

@@ -124,6 +124,21 @@ TEST(PoseRegistration, AScanFarFromAllOthersKeepsItsPoseToTheLastBit) {
   EXPECT_LT(errorBetween(poses, truth, 0, 2).translation().norm(), 0.01) << "the others are mended";
 }
 
+TEST(PoseRegistration, TellsGroupsThatNothingJoins) {
+  const ScratchFolder folder;
+  Poses truth = straightDrive(2), given = truth;
+  for (std::size_t i = 0; i < 2; ++i) {
+    truth.push_back(poseAt(static_cast<double>(i), 2, 20));
+    given.push_back(Eigen::Translation3d(500, 0, 0) * truth.back());
+  }
+  given[1] = given[1] * moveBy({0.1, 0, 0}, {0, 0, 0});
+  PoseRegistration report;
+  const Poses poses = mendedPoses(writeDrive(folder, yardPlace(), truth, given), report);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(report.scans[i].group, i < 2 ? 0U : 2U);
+  EXPECT_LT(errorBetween(poses, truth, 0, 1).translation().norm(), 0.01);
+  EXPECT_LT((poses[2].translation() - given[2].translation()).norm(), 0.01);
+}
+
 TEST(PoseRegistration, LeavesOutAScanThatIsNotWhereItsPoseSays) {
   const ScratchFolder folder;
   const Poses truth = straightDrive(4);

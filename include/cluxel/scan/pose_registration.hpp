@@ -37,6 +37,7 @@ struct MendedScan {
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
   double shift_m = 0, turn_rad = 0;  ///< from the given pose
   std::size_t pairs = 0;             ///< used ones; 0: the pose is the given one, to the last bit
+  std::size_t group = 0;             ///< the first scan that used pairs join it to; groups lie to each other as given
 };
 
 struct PoseRegistration {
