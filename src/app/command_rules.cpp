@@ -74,14 +74,24 @@ ExitCode runTests(const RulesOptions& options, Session& session) {
   test_options.scenes = [&](const SceneRequest& request) { return sceneFor(request, options, session); };
   if (!options.only.empty()) test_options.only = options.only;
   bool passed = true;
-  std::string junit;
-  for (const fs::path& file : testFiles(options, home)) {
+  std::size_t run = 0;
+  Json json = Json::array();
+  std::string junit = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
+  const std::vector<fs::path> files = testFiles(options, home);
+  for (const fs::path& file : files) {
     const RuleTestReport report = runRuleTests(file, catalogue, test_options);
-    print(session.json ? jsonOf(report) : textOf(report));
+    if (session.json)
+      json.push_back(Json::parse(jsonOf(report)));
+    else
+      print(textOf(report));
     junit += junitOf(report, file.filename().string());
     passed = passed && report.passed();
+    run += report.results.size();
   }
-  if (!options.junit.empty()) writeFile(options.junit, junit);
+  if (session.json) printJson(files.size() == 1 ? json.front() : json);
+  if (!options.junit.empty()) writeFile(options.junit, junit + "</testsuites>\n");
+  if (run == 0)
+    throw Error(ExitCode::Usage, options.only.empty() ? "the test files hold no test" : "no test's name holds '" + options.only + "'");
   return passed ? ExitCode::Done : ExitCode::NegativeFinding;
 }
 

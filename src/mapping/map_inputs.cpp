@@ -40,7 +40,7 @@ std::vector<fs::path> givenOr(const std::vector<fs::path>& given, const std::str
 /// The given rule files, then all that they include. Faults are reported by whoever loads the texts.
 std::vector<NamedText> readRules(std::vector<fs::path> roots, const std::vector<NamedText>& ontology) {
   // Includes are found by whole paths, so the roots are named by theirs.
-  for (fs::path& root : roots) root = fs::weakly_canonical(root);
+  for (fs::path& root : roots) root = fs::absolute(root).lexically_normal();
   std::vector<NamedText> texts = readAll(roots);
   const LoadedRules loaded = loadRules(roots, classCatalogueOf(ontology));
   if (!loaded.rules) return texts;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 #include <tuple>
 
 #include "perception/disjoint_sets.hpp"
@@ -48,13 +49,20 @@ void appendCluxels(const SceneTiles& tiles, const TileKey& key, const TileNumber
   const CluxelTile& cluxels = tiles.cluxels.at(key);
   const FeatureTile& graph = tiles.features.at(key);
   const LabelTile& labels = tiles.labels.at(key);
+  const TilePoints& points = tiles.points.at(key);
+  std::vector<std::uint32_t> scan_number;         // of the tile's scans in the scene's
+  for (const ContentHash& scan : points.scans)
+    scan_number.push_back(
+        static_cast<std::uint32_t>(std::lower_bound(all.scans.begin(), all.scans.end(), scan) - all.scans.begin()));
   const auto ground = ringIn(tiles.ground, key);
   std::array<std::uint32_t, 9> base{};
   const auto ring = ringOf(key);
   for (std::size_t r = 0; r < base.size(); ++r) base[r] = tiles.cluxels.contains(ring[r]) ? numbering.of(ring[r]) : 0;
   for (std::uint32_t c = 0; c < cluxels.size(); ++c) {
     const Eigen::Vector3f& center = cluxels.own[c].mean;
+    const std::uint32_t seed = cluxels.seed[c];
     all.name.push_back({key, c});
+    all.seed.push_back({scan_number[points.scan[seed]], points.point[seed]});
     all.center.emplace_back(cornerOf(key) + center.cast<double>());
     all.extent.emplace_back(cluxels.box_max[c] - cluxels.box_min[c]);
     all.low_corner.emplace_back(cornerOf(key) + cluxels.box_min[c].cast<double>());
@@ -71,7 +79,14 @@ void appendCluxels(const SceneTiles& tiles, const TileKey& key, const TileNumber
   }
 }
 
+std::vector<ContentHash> scansOf(const SceneTiles& tiles) {
+  std::set<ContentHash> scans;
+  for (const auto& [key, points] : tiles.points) scans.insert(points.scans.begin(), points.scans.end());
+  return {scans.begin(), scans.end()};
+}
+
 void reserve(SceneCluxels& all, std::size_t cluxels, std::size_t edges) {
+  all.seed.reserve(cluxels);
   all.name.reserve(cluxels), all.center.reserve(cluxels), all.extent.reserve(cluxels), all.low_corner.reserve(cluxels);
   all.point_count.reserve(cluxels), all.label.reserve(cluxels), all.probability.reserve(cluxels);
   all.height_above_ground.reserve(cluxels), all.edge_offset.reserve(cluxels + 1);
@@ -84,6 +99,7 @@ SceneCluxels gatherCluxels(const SceneTiles& tiles) {
   std::size_t edges = 0;
   for (const auto& [key, tile] : tiles.features) edges += tile.edge_target.size();
   reserve(all, numbering.total(), edges);
+  all.scans = scansOf(tiles);
   all.edge_offset.push_back(0);
   for (const auto& [key, tile] : tiles.cluxels) appendCluxels(tiles, key, numbering, all);
   return all;

@@ -107,11 +107,13 @@ class Builder {
     for (std::size_t box : by_name) fill(boxes_.boxes[box], box, next, seedlings);
     std::sort(seedlings.begin(), seedlings.end(), [](const Seedling& a, const Seedling& b) { return a.name < b.name; });
     SceneCluxels& cluxels = scene().cluxels;
+    cluxels.scans = {ContentHash{}};   // all boxes together count as one scan
     for (const Seedling& seedling : seedlings) {
       const PrimitiveIndex primitive = primitive_of_box_[seedling.box];
       const PrimitiveLabel label = scene().primitives[primitive].label;
       scene().primitives[primitive].cluxels.push_back(static_cast<std::uint32_t>(cluxels.size()));
       cluxels.name.push_back(seedling.name);
+      cluxels.seed.push_back({0, seedling.name.index});
       cluxels.center.push_back(seedling.center);
       cluxels.extent.push_back(seedling.extent);
       cluxels.point_count.push_back(10);

@@ -13,7 +13,6 @@ namespace cluxel {
 namespace {
 
 constexpr double kGroundTolerance_m = 0.30;    // touches_ground without `within`, as relationInfos() says
-constexpr double kFarthestTarget_m = 10.0;     // how far a measure looks for "any object of a class"
 
 std::string_view stepUnit(const Condition& condition) {
   if (condition.kind == Condition::Kind::Attribute) {
@@ -21,6 +20,12 @@ std::string_view stepUnit(const Condition& condition) {
     return dimension == Dimension::Angle ? "rad" : unitOf(dimension);
   }
   return condition.kind == Condition::Kind::Pair && condition.measure == PairMeasure::AdjacentFraction ? "" : "m";
+}
+
+/// Of an interval, the end that is nearer to the value is what a change would have to pass.
+double nearerThreshold(const Condition& condition, double value, double threshold) {
+  const bool upper = condition.upper && std::abs(value - condition.upper->value) < std::abs(value - threshold);
+  return upper ? condition.upper->value : threshold;
 }
 
 }  // namespace
@@ -104,9 +109,7 @@ bool ConditionEvaluator::holdsAttribute(const Condition& condition, DecisionStep
           : condition.value->value;
   const bool passed = compare(condition, value, threshold);
   step.measured = value;
-  // Of an interval, the end that is nearer to the value is what a change would have to pass.
-  const bool upper = condition.upper && std::abs(value - condition.upper->value) < std::abs(value - threshold);
-  step.threshold = upper ? condition.upper->value : threshold;
+  step.threshold = nearerThreshold(condition, value, threshold);
   step.unit = stepUnit(condition);
   return passed;
 }
@@ -148,16 +151,16 @@ bool ConditionEvaluator::holdsPair(const Condition& condition, DecisionStep& ste
   const double threshold = condition.value->value;
   const bool share = condition.measure == PairMeasure::AdjacentFraction;
   double measured = share ? 0 : std::numeric_limits<double>::infinity();
-  const double limit = share ? 0.5 : std::max(threshold, condition.upper ? condition.upper->value : 0) + 0.5;
+  const double limit = share ? 0.5 : std::max(threshold, condition.upper ? condition.upper->value : 0) + kMeasureMargin_m;
   if (condition.target->kind == Target::Kind::Name) {
     measured =
         measurePair(state_, condition.measure, bindings_.at(condition.of), bindings_.at(condition.target->name), limit);
-  } else if (const auto nearest = nearestTarget(condition, std::min(limit, kFarthestTarget_m))) {
+  } else if (const auto nearest = nearestTarget(condition, limit)) {
     measured = nearest->second;
     if (compare(condition, measured, threshold)) remember(nearest->first, *condition.target);
   }
   if (std::isfinite(measured)) step.measured = measured;
-  step.threshold = threshold;
+  step.threshold = nearerThreshold(condition, measured, threshold);
   step.unit = stepUnit(condition);
   return compare(condition, measured, threshold);
 }
@@ -206,7 +209,12 @@ bool ConditionEvaluator::holdsAsk(const Condition& condition) {
     });
     bindings[name] = iriOf(state_.scene.primitives[state_.pieces[*largest].primitive]);
   }
-  return state_.context.oracle->ask(condition.query, bindings);
+  try {
+    return state_.context.oracle->ask(condition.query, bindings);
+  } catch (const InputError& fault) {
+    throw InputError(condition.at, "the query of rule '" + rule_.id + "' is faulty: " + fault.diagnostics().front().message,
+                     fault.diagnostics().front().hint);
+  }
 }
 
 }  // namespace cluxel

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "cluxel/base/nearest_name.hpp"
+#include "reasoning/pair_measures.hpp"
 #include "reasoning/rule_reading.hpp"
 
 namespace cluxel {
@@ -163,6 +164,7 @@ class ConditionReader {
     condition_.measure = measure.measure;
     condition_.target = readTarget(value);
     readComparison(measure.dimension);
+    checkReach();
   }
 
   void readOperator() {
@@ -195,6 +197,16 @@ class ConditionReader {
     if (high != nullptr) condition_.upper = readQuantity(*high, dimension, reading_);
     if (condition_.value && condition_.upper && condition_.value->value >= condition_.upper->value)
       faults_.error(high->at, "max is not greater than min");
+  }
+
+  /// Rules see neighbours: a gap is measured only so far.
+  void checkReach() {
+    if (condition_.measure == PairMeasure::AdjacentFraction) return;
+    for (const auto& [key, bound] : {std::pair{node_.find("value"), &condition_.value}, std::pair{node_.find("min"), &condition_.value},
+                                     std::pair{node_.find("max"), &condition_.upper}})
+      if (key != nullptr && *bound && (*bound)->value > kFarthestMeasure_m - kMeasureMargin_m)
+        faults_.error(key->at, "nothing farther than 49.5 m is measured",
+                      "a rule sees the neighbours of what it binds; SPARQL rules see the whole map");
   }
 
   std::optional<Target> readTarget(const YamlNode& value) {

@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kTouch_m = 0.20, kNear_m = 1.0;     // as relationInfos() says
-constexpr double kFarthest_m = 50.0;                 // a larger gap is as good as none
 
 bool contains(const Thing& thing, PieceIndex piece) {
   return std::binary_search(thing.pieces.begin(), thing.pieces.end(), piece);
@@ -29,7 +28,7 @@ double smallestGap(const ReasoningState& state, const Thing& a, const Thing& b, 
   const Thing& few = swap ? b : a;
   const Thing& many = swap ? a : b;
   const std::vector<std::uint32_t> cluxels = state.pieces.cluxelsOf(few);
-  const double farthest = std::min(limit_m, kFarthest_m);
+  const double farthest = std::min(limit_m, kFarthestMeasure_m);
   for (double reach = std::min(1.0, farthest);; reach = std::min(reach * 4, farthest)) {
     double best = kInfinity;
     for (std::uint32_t cluxel : cluxels)

@@ -10,6 +10,9 @@
 
 namespace cluxel {
 
+/// Gaps are measured no farther than this, and looked for a little farther than a test asks.
+inline constexpr double kFarthestMeasure_m = 50.0, kMeasureMargin_m = 0.5;
+
 /// The measure from `a` to `b`. Gaps beyond `limit_m` may come out as infinity.
 double measurePair(const ReasoningState& state, PairMeasure measure, const Thing& a, const Thing& b,
                    double limit_m = std::numeric_limits<double>::infinity());

@@ -38,8 +38,9 @@ Interval naturalRange(Attribute attribute) {
       range = {{0, false, "an angle is never negative"}, {std::numbers::pi / 2, false, "a tilt is at most 90 deg"}};
       break;
     case Dimension::Ratio:
+      if (attribute == Attribute::MeanIntensity) break;   // whatever the sensor says
       range.low = {0, false, "a share is never negative"};
-      if (attribute != Attribute::MeanIntensity) range.high = {1, false, "a share is at most 1"};
+      range.high = {1, false, "a share is at most 1"};
       break;
   }
   return range;

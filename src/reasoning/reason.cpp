@@ -119,7 +119,7 @@ class RuleRun {
     std::vector<DecisionFlip> flips;
     for (const WalkedNode& walked : walk.walked) {
       const WalkResult other = walkTree(state_, rule_, seed, walked.node);
-      DecisionFlip flip{walked.first_step, walked.step_count, false, {}};
+      DecisionFlip flip{walked.first_step, walked.step_count, walked.node, false, {}};
       const auto& leaf = rule_.nodes[other.leaf].what;
       if (const auto* reject = std::get_if<RejectLeaf>(&leaf)) flip.outcome = reject->reason;
       if (const auto* accept = std::get_if<AcceptLeaf>(&leaf)) {
@@ -214,16 +214,16 @@ std::vector<ObjectPart> finishedParts(const ReasoningState& state, const ObjectI
   return parts;
 }
 
+/// The hash of the class and of the members' seeds: the same object has the same id whatever lies beside it.
 ContentHash idOf(const Scene& scene, const SemanticObject& object) {
-  std::vector<std::uint32_t> members;
-  for (const ObjectPart& part : object.parts) members.insert(members.end(), part.cluxels.begin(), part.cluxels.end());
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> members;
+  for (const ObjectPart& part : object.parts)
+    for (const std::uint32_t cluxel : part.cluxels)
+      members.emplace_back(scene.cluxels.seed[cluxel].scan, scene.cluxels.seed[cluxel].point);
   std::sort(members.begin(), members.end());
   ContentHasher hasher;
   hasher.addText(object.class_iri);
-  for (std::uint32_t cluxel : members) {
-    const CluxelName& name = scene.cluxels.name[cluxel];
-    hasher.add(name.tile.x).add(name.tile.y).add(name.index);
-  }
+  for (const auto& [scan, point] : members) hasher.add(scene.cluxels.scans[scan]).add(point);
   return hasher.finish();
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares what rules made with what a test expects.
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -19,7 +20,8 @@ class Checking {
       : rules_(rules), scene_(scene), names_(names), result_(result) {}
 
   std::vector<std::string> check(const Expectation& expect) {
-    for (const ExpectedObject& object : expect.objects) checkObject(object);
+    matchObjects(expect.objects);
+    for (std::size_t i = 0; i < expect.objects.size(); ++i) checkObject(expect.objects[i], i);
     if (expect.exactly) checkNoOther(expect.objects.size());
     for (const std::string& iri : expect.absent)
       if (countOf(iri) > 0) fail("a " + rules_.shorten(iri) + " came out, which must not: " + describeObjects(iri));
@@ -79,13 +81,33 @@ class Checking {
     return true;
   }
 
-  void checkObject(const ExpectedObject& expected) {
-    const auto object = std::find_if(result_.objects.begin(), result_.objects.end(),
-                                     [&](const SemanticObject& made) { return fits(made, expected); });
+  /// Gives every expected object one of its own, as many as can be, by augmenting ways.
+  void matchObjects(const std::vector<ExpectedObject>& expected) {
+    expected_of_.assign(result_.objects.size(), kNone);
+    object_of_.assign(expected.size(), kNone);
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      std::vector<bool> tried(result_.objects.size(), false);
+      findObject(expected, i, tried);
+    }
+  }
+  bool findObject(const std::vector<ExpectedObject>& expected, std::size_t number, std::vector<bool>& tried) {
+    for (std::size_t object = 0; object < tried.size(); ++object) {
+      if (tried[object] || !fits(result_.objects[object], expected[number])) continue;
+      tried[object] = true;
+      if (expected_of_[object] != kNone && !findObject(expected, expected_of_[object], tried)) continue;
+      expected_of_[object] = number;
+      object_of_[number] = object;
+      return true;
+    }
+    return false;
+  }
+
+  void checkObject(const ExpectedObject& expected, std::size_t number) {
     const std::string place = "line " + std::to_string(expected.at.line) + ": ";
-    if (object == result_.objects.end())
+    if (object_of_[number] == kNone)
       return fail(place + "expected " + describeExpected(expected) + "; there is " + describeObjects("") +
                   whyNot(expected));
+    const SemanticObject* object = &result_.objects[object_of_[number]];
     Condition bound;
     if (expected.confidence_is) {
       bound.comparison = *expected.confidence_is;
@@ -212,10 +234,13 @@ class Checking {
     return true;
   }
 
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
   const RuleSet& rules_;
   const Scene& scene_;
   const std::vector<std::string>& names_;
   const ReasoningResult& result_;
+  std::vector<std::size_t> expected_of_, object_of_;   ///< numbers of partners, kNone without
   std::vector<std::string> failures_;
 };
 

@@ -153,8 +153,8 @@ FoundSource findFile(const std::string& name, const std::string& from_key) {
   FoundSource found;
   std::filesystem::path path = name;
   if (path.is_relative() && !from_key.empty()) path = std::filesystem::path(from_key).parent_path() / path;
-  std::error_code ignored;
-  found.key = std::filesystem::weakly_canonical(path, ignored).string();
+  // Links are not followed: what a linked file includes is looked for beside the link, as a map's texts are.
+  found.key = std::filesystem::absolute(path).lexically_normal().string();
   found.shown = path.lexically_normal().string();
   try {
     found.text = readFile(path);

@@ -82,7 +82,7 @@ std::string jsonOf(const RuleTestReport& report) {
 std::string junitOf(const RuleTestReport& report, const std::string& suite) {
   const std::size_t failed = report.count(RuleTestOutcome::Failed) + report.count(RuleTestOutcome::UnexpectedPass);
   const std::size_t skipped = report.count(RuleTestOutcome::Skipped) + report.count(RuleTestOutcome::KnownFailure);
-  std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"" + xmlEscaped(suite) + "\" tests=\"" +
+  std::string xml = "<testsuite name=\"" + xmlEscaped(suite) + "\" tests=\"" +
                     std::to_string(report.results.size()) + "\" failures=\"" + std::to_string(failed) +
                     "\" skipped=\"" + std::to_string(skipped) + "\">\n";
   for (const RuleTestResult& result : report.results) {

@@ -139,6 +139,10 @@ std::optional<Quantity> readQuantity(const YamlNode& node, Dimension expected, R
     quantity = parseQuantity(node, reading.faults);
   }
   if (!quantity) return std::nullopt;
+  if (expected == Dimension::Count && quantity->text.ends_with('%')) {
+    reading.faults.error(node.at, "'" + node.text + "' is a share where a number of things is expected");
+    return std::nullopt;
+  }
   if (quantity->dimension == expected || (isPlain(quantity->dimension) && isPlain(expected))) return quantity;
   const bool bare = isPlain(quantity->dimension);
   reading.faults.error(

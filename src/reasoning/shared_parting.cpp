@@ -41,6 +41,8 @@ class SharedParting {
     for (const auto& [piece, owners] : state_.claims) claimants_.insert(claimants_.end(), owners.begin(), owners.end());
     std::sort(claimants_.begin(), claimants_.end());
     claimants_.erase(std::unique(claimants_.begin(), claimants_.end()), claimants_.end());
+    // What is bound for reference only, as the trunk of another object, is no part: nothing can begin there.
+    std::erase_if(claimants_, [this](OwnerIndex owner) { return partOf(owner, specOf(owner).from).pieces.empty(); });
     auto trunk = [this](OwnerIndex owner) {
       const auto& pieces = partOf(owner, specOf(owner).from).pieces;
       return *std::min_element(pieces.begin(), pieces.end(),

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "cluxel/base/shown_line.hpp"
+
 namespace cluxel {
 
 namespace {
@@ -155,13 +157,14 @@ void FaultList::warning(const SourceLocation& at, std::string message, std::stri
 }
 
 void FaultList::add(Severity severity, const SourceLocation& at, std::string message, std::string hint) {
+  if (faults_.size() >= kMostFaults) return;
   Diagnostic fault;
   fault.severity = severity;
   fault.location = at;
   fault.message = std::move(message);
   fault.hint = std::move(hint);
   for (const auto& [file, text] : files_)
-    if (file == at.file) fault.source_line = std::string(lineOf(text, at.line));
+    if (file == at.file) fault.source_line = shownLine(text, at.line);
   faults_.push_back(std::move(fault));
 }
 

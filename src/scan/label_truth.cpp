@@ -66,18 +66,13 @@ struct LabelCode {
   std::optional<NearPoints> others;
 };
 
-std::int8_t classIndex(std::vector<std::string>& names, const std::optional<std::string>& name) {
+std::int8_t classIndex(const std::vector<std::string>& names, const std::optional<std::string>& name) {
   if (!name) return -1;
-  const auto known = std::find(names.begin(), names.end(), *name);
-  const auto index = static_cast<std::size_t>(known - names.begin());
-  if (known == names.end()) names.push_back(*name);
-  if (names.size() > kMostClasses)
-    throw Error(ExitCode::FaultyInput, "a label map names more than 127 object classes");
-  return static_cast<std::int8_t>(index);
+  return static_cast<std::int8_t>(std::find(names.begin(), names.end(), *name) - names.begin());
 }
 
 std::map<std::uint32_t, LabelCode> codesOf(const Scan& scan, const LabelMap& map,
-                                           std::vector<std::string>& class_names) {
+                                           const std::vector<std::string>& class_names) {
   std::map<std::uint32_t, LabelCode> codes;
   for (const auto& [id, meaning] : map.entries()) {
     LabelCode& code = codes[id];
@@ -99,13 +94,27 @@ const std::vector<std::string>& truthClassNames() {
   return names;
 }
 
+std::vector<std::string> truthClassNames(const LabelMap& map) {
+  std::vector<std::string> names = truthClassNames();
+  const auto enter = [&](const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (const auto& [id, meaning] : map.entries()) {
+    if (meaning.object_class) enter(*meaning.object_class);
+    if (meaning.near) enter(meaning.near->object_class);
+  }
+  if (names.size() > kMostClasses)
+    throw Error(ExitCode::FaultyInput, "a label map names more than 127 object classes");
+  return names;
+}
+
 PointTruth truthFromLabels(const Scan& scan, const LabelMap& map) {
   const std::size_t count = scan.points.size();
   if (scan.points.label.size() != count)
     throw InputError({.file = scan.source}, "the scan has no labels",
                      "give a folder of truth files with --truth");
   PointTruth truth;
-  truth.class_names = truthClassNames();
+  truth.class_names = truthClassNames(map);
   const auto codes = codesOf(scan, map, truth.class_names);
   truth.primitive.assign(count, -1);
   truth.object_class.assign(count, -1);

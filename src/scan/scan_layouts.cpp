@@ -30,13 +30,28 @@ std::string lowerExtension(const fs::path& path) {
   return extension;
 }
 
+bool isScanOfPlainFolder(const fs::path& path) {
+  constexpr std::array known{".pcd", ".ply", ".las", ".laz", ".xyz", ".asc", ".xyz_label_conf"};
+  const std::string extension = lowerExtension(path);
+  return std::find(known.begin(), known.end(), extension) != known.end();
+}
+
+/// Whether a folder's entry is read. A scan's name that leads nowhere is an error: the others would take its pose.
+bool isShownFile(const fs::path& path) {
+  if (path.filename().string().starts_with('.')) return false;
+  std::error_code error;
+  if (fs::is_regular_file(path, error)) return true;
+  if (fs::is_symlink(path, error) && !fs::exists(path, error) && isScanOfPlainFolder(path))
+    throw InputError({.file = path.string()}, "the link leads nowhere", "mend or delete it");
+  return false;
+}
+
 /// The files of a folder by name; names that begin with a dot are hidden.
 std::vector<fs::path> filesOf(const fs::path& folder) {
   std::error_code error;
   std::vector<fs::path> files;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
-    if (it->is_regular_file() && !it->path().filename().string().starts_with('.'))
-      files.push_back(it->path());
+    if (isShownFile(it->path())) files.push_back(it->path());
   if (error) throw InputError({.file = folder.string()}, "the folder cannot be read: " + error.message());
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
     return naturalLess(a.filename().string(), b.filename().string());
@@ -45,7 +60,8 @@ std::vector<fs::path> filesOf(const fs::path& folder) {
 }
 
 std::optional<fs::path> existing(const fs::path& path) {
-  if (fs::is_regular_file(path)) return path;
+  std::error_code unreadable;
+  if (fs::is_regular_file(path, unreadable)) return path;
   return std::nullopt;
 }
 
@@ -67,12 +83,6 @@ ScanFormat textFormatOf(const fs::path& path) {
   throw InputError({.file = path.string(), .line = 1},
                    std::to_string(columns) + " columns are no known form of a scan",
                    "known are x y z, x y z intensity, and x y z label confidence");
-}
-
-bool isScanOfPlainFolder(const fs::path& path) {
-  constexpr std::array known{".pcd", ".ply", ".las", ".laz", ".xyz", ".asc", ".xyz_label_conf"};
-  const std::string extension = lowerExtension(path);
-  return std::find(known.begin(), known.end(), extension) != known.end();
 }
 
 bool isKnownSideFile(const fs::path& path) {

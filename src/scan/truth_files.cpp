@@ -77,10 +77,12 @@ PointTruth truthFromFile(const fs::path& file, std::size_t point_count) {
 }
 
 std::optional<fs::path> truthFileOf(const fs::path& folder, const fs::path& scan) {
-  for (const char* end : {".truth", ".truth.gz"}) {
-    const fs::path candidate = folder / (scan.stem().string() + end);
-    if (fs::is_regular_file(candidate)) return candidate;
-  }
+  for (const fs::path& place : {folder / scan.parent_path().filename(), folder})
+    for (const char* end : {".truth", ".truth.gz"}) {
+      fs::path candidate = place / (scan.stem().string() + end);
+      std::error_code unreadable;
+      if (fs::is_regular_file(candidate, unreadable)) return candidate;
+    }
   return std::nullopt;
 }
 

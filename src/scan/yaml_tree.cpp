@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "cluxel/base/nearest_name.hpp"
+#include "cluxel/base/shown_line.hpp"
 
 namespace cluxel {
 
@@ -126,11 +127,12 @@ const YamlValue* YamlValue::find(std::string_view key) const {
 }
 
 void YamlFaults::add(const YamlValue& place, std::string message, std::string hint) {
+  if (diagnostics_.size() >= kMostFaults) return;
   Diagnostic diagnostic;
   diagnostic.location = {.file = file_, .line = place.line, .column = place.column};
   diagnostic.message = std::move(message);
   diagnostic.hint = std::move(hint);
-  diagnostic.source_line = lineOf(text_, place.line);
+  diagnostic.source_line = shownLine(text_, place.line);
   diagnostics_.push_back(std::move(diagnostic));
 }
 

@@ -3,6 +3,8 @@
 #include "cluxel/tasks/evaluation.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <map>
 #include <numeric>
 
 #include "cluxel/base/diagnostic.hpp"
@@ -37,6 +39,21 @@ std::vector<std::size_t> classNumbers(const std::vector<SemanticObject>& objects
     numbers.push_back(static_cast<std::size_t>(
         std::find(names.begin(), names.end(), localName(object.class_iri)) - names.begin()));
   return numbers;
+}
+
+/// Two scans of one name have one truth file, which cannot be true of both.
+void refuseSharedTruth(const MapReader& map, const TruthSource& source) {
+  std::map<std::filesystem::path, std::string> scan_of;
+  for (const Cloud& cloud : map.clouds()) {
+    Scan scan;
+    scan.source = cloud.source;
+    const auto file = source.fileOf(scan);
+    if (!file) continue;
+    const auto [other, is_first] = scan_of.emplace(*file, cloud.source);
+    if (!is_first)
+      throw InputError({.file = cloud.source}, "has the truth file of " + other->second + ", " + file->string(),
+                       "put truth files into folders named like the folders of the scans");
+  }
 }
 
 }  // namespace
@@ -90,7 +107,8 @@ double ObjectScore::recall() const { return ratio(matched_truth, truth); }
 double ObjectScore::f1() const { return harmonic(precision(), recall()); }
 
 MapEvaluation evaluateMap(const MapReader& map, const TruthSource& source, const EvaluationParams& params) {
-  const std::vector<std::string>& names = truthClassNames();
+  const std::vector<std::string> names = source.classNames();
+  refuseSharedTruth(map, source);
   MapEvaluation evaluation{ConfusionMatrix(primitiveNames()), ConfusionMatrix(names), false, {}, {}};
   ObjectMatching matching(names, map.objects(), source.ambiguous());
   const std::vector<std::size_t> class_of_object = classNumbers(map.objects(), names);
@@ -112,7 +130,7 @@ MapEvaluation evaluateMap(const MapReader& map, const TruthSource& source, const
       matching.add(toMap(scan.T_map_sensor, p), truth_class, has_instance ? truth.instance[i] : -1, object);
     }
   }
-  if (evaluation.primitives.total() == 0)
+  if (evaluation.primitives.total() == 0 && evaluation.objects.total() == 0)
     throw Error(ExitCode::FaultyInput, "the truth says nothing about the points of this map; is it of other scans?");
   evaluation.has_instances = matching.hasInstances();
   evaluation.by_box = matching.scoreByBox(params);

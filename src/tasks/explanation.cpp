@@ -46,13 +46,18 @@ std::string explainThing(const MapReader& map, const std::string& name, bool as_
   const ReasoningContext context{.oracle = &oracle};
   Explanation explanation;
   if (name.size() < 4) throw Error(ExitCode::Usage, "'" + name + "' is too short: write at least four digits of the name");
-  if (findOne(map.objects(), "object", name)) {
+  const auto primitive = findOne(scene.primitives, "primitive", name);
+  const bool is_object = findOne(map.objects(), "object", name).has_value();
+  if (is_object && primitive)
+    throw Error(ExitCode::NoRows, "'" + name + "' names an object and a primitive; write more digits, or object/" + name +
+                                      " or primitive/" + name);
+  if (is_object) {
     const ReasoningResult result = reason(scene, rules, context);
     const auto object = findOne(result.objects, "object", name);
     if (!object) throw Error(ExitCode::NoRows, "the map's rules make no object '" + name + "' any more");
     const SemanticObject& found = result.objects[*object];
     explanation = explain(scene, rules, context, found, result.decisions.at(found.decision));
-  } else if (const auto primitive = findOne(scene.primitives, "primitive", name)) {
+  } else if (primitive) {
     explanation = explain(scene, rules, context, static_cast<PrimitiveIndex>(*primitive));
   } else {
     throw Error(ExitCode::NoRows, "nothing in the map is named '" + name + "'; `cluxel query MAP objects.rq` lists objects");

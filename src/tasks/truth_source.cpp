@@ -21,9 +21,17 @@ TruthSource TruthSource::open(const fs::path& given, const DataHome& home) {
   return source;
 }
 
+std::optional<fs::path> TruthSource::fileOf(const Scan& scan) const {
+  return labels_ ? std::nullopt : truthFileOf(folder_, scan.source);
+}
+
+std::vector<std::string> TruthSource::classNames() const {
+  return labels_ ? truthClassNames(*labels_) : truthClassNames();
+}
+
 PointTruth TruthSource::truthOf(const Scan& scan) const {
   if (!labels_) {
-    const auto file = truthFileOf(folder_, scan.source);
+    const auto file = fileOf(scan);
     if (!file)
       throw InputError({.file = scan.source}, "has no truth file in " + folder_.string(),
                        "truth files are named like their scan, with .truth or .truth.gz at the end");

@@ -75,6 +75,29 @@ TEST(Explaining, SaysHowAnAcceptedThingWouldBeLost) {
   EXPECT_NEAR(explanation.decisions[0].least_change->changes[0].margin, 0.1, 1e-6);
 }
 
+TEST(Explaining, MeasuresPairsFromTheNearerEndOfAnInterval) {
+  const RuleSet rules = rulesOf("[clx:Tree, clx:SmallObject]", R"(
+  - id: tree/t
+    class: clx:Tree
+    seed: { label: column, as: a }
+    tree:
+      find: { as: b, label: scatter, where: [ { gap_to: a, op: "<=", value: 3 m } ] }
+      found:
+        test: { of: b, gap_to: a, op: between, min: 0.1 m, max: 0.5 m }
+        yes: { accept: { confidence: 0.5 } }
+        no: { reject: not beside }
+      missing: { reject: alone }
+)");
+  BoxScene scene;
+  scene.boxes = {box("a", kColumn, {0, 0, 1}, {0.3, 0.3, 2}), box("b", kScatter, {1.5, 0, 1}, {1, 1, 2})};
+  const Explanation explanation = explain(sceneOfBoxes(scene).scene, rules, {}, sceneOfBoxes(scene).scene.primitives[0].label == kColumn ? 0 : 1);
+  ASSERT_FALSE(explanation.decisions.empty());
+  ASSERT_TRUE(explanation.decisions[0].least_change.has_value());
+  const NeededChange& change = explanation.decisions[0].least_change->changes.at(0);
+  EXPECT_DOUBLE_EQ(change.threshold, 0.5);
+  EXPECT_NEAR(change.margin, change.measured - 0.5, 1e-9);
+}
+
 TEST(Explaining, ReadsAsText) {
   const BuiltBoxScene built = poleOf(5);
   const RuleSet rules = poleRules();

@@ -226,6 +226,59 @@ class CountingOracle : public AskOracle {
   std::string yes_for_;
 };
 
+TEST(Reasoning, PartsNothingFromWhatIsBoundForReferenceOnly) {
+  const RuleSet rules = rulesOf("[clx:Building, clx:Tree]", R"(
+  - id: building/wall
+    class: clx:Building
+    seed: { label: vertical_plane }
+    tree:
+      test: { attribute: height, op: ">=", value: 1 m }
+      yes: { accept: { confidence: 0.9 } }
+      no: { reject: low }
+  - id: tree/ivy
+    class: clx:Tree
+    seed: { label: scatter, as: top }
+    tree:
+      find: { as: trunk, object: clx:Building, where: [ { gap_to: top, op: "<=", value: 20 m } ] }
+      found: { accept: { parts: { trunk: clx:TreeTrunk, top: clx:TreeTop }, confidence: 0.5, split: { shared: top, from: trunk, reach: 8 m } } }
+      missing: { reject: no wall }
+)");
+  BoxScene scene;
+  scene.boxes = {box("wall", kWall, {0, 0, 2}, {6, 0.2, 4}), box("a", kScatter, {0, 1, 1}, {1, 1, 1}),
+                 box("b", kScatter, {4, 1, 1}, {1, 1, 1})};
+  const ReasoningResult result = reason(sceneOfBoxes(scene).scene, rules);
+  ASSERT_EQ(result.objects.size(), 1U);
+  EXPECT_EQ(result.objects[0].class_iri, clx("Building"));
+}
+
+TEST(Reasoning, MeasuresToAnyObjectAsFarAsTheTestSays) {
+  const auto rulesWith = [](const std::string& test) {
+    return rulesOf("[clx:Building, clx:SmallObject]", R"(
+  - id: building/wall
+    class: clx:Building
+    seed: { label: vertical_plane }
+    tree:
+      test: { attribute: height, op: ">=", value: 1 m }
+      yes: { accept: { confidence: 0.9 } }
+      no: { reject: low }
+  - id: small_object/beside
+    class: clx:SmallObject
+    seed: { label: small_structure }
+    tree:
+      test: { gap_to: { object: clx:Building }, )" + test + R"( }
+      yes: { accept: { confidence: 0.5 } }
+      no: { reject: not there }
+)");
+  };
+  BoxScene scene;
+  scene.boxes = {box("wall", kWall, {0, 0, 2}, {6, 0.2, 4}), box("bin", kSmall, {0, 14, 0.5}, {1, 1, 1})};
+  const BuiltBoxScene built = sceneOfBoxes(scene);
+  EXPECT_EQ(reason(built.scene, rulesWith("op: \"<=\", value: 15 m")).objects.size(), 2U);
+  EXPECT_EQ(reason(built.scene, rulesWith("op: \"<=\", value: 12 m")).objects.size(), 1U);
+  EXPECT_EQ(reason(built.scene, rulesWith("op: \">\", value: 12 m")).objects.size(), 2U);
+  EXPECT_EQ(reason(built.scene, rulesWith("op: \">\", value: 15 m")).objects.size(), 1U);
+}
+
 TEST(Asking, DecidesByTheOracleAndBindsThePrimitivesIri) {
   const RuleSet rules = rulesOf("[clx:SmallObject]", R"(
   - id: small_object/asked

@@ -56,6 +56,19 @@ rules:
   std::filesystem::path folder_;
 };
 
+TEST_F(RuleTestFolder, WantsAnObjectOfItsOwnForEveryExpectation) {
+  const std::string two = "{ objects: [ { class: clx:SmallObject }, { class: clx:SmallObject } ] }";
+  EXPECT_FALSE(run(binTest(two)).passed()) << "one bin is not two";
+  const std::string mixed = "{ objects: [ { class: clx:SmallObject }, { class: clx:SmallObject, primitives: { clx:SmallObject: [b] } } ] }";
+  const std::string both =
+      "  - name: two bins\n    primitives:\n"
+      "      b: { label: small_structure, box: { center: [0, 0, 0.5], size: [1, 1, 0.9] } }\n"
+      "      c: { label: small_structure, box: { center: [9, 0, 0.5], size: [1, 1, 0.9] } }\n    expect: ";
+  EXPECT_TRUE(run(both + two + "\n").passed());
+  const RuleTestReport report = run(both + mixed + "\n");
+  EXPECT_TRUE(report.passed()) << textOf(report);
+}
+
 TEST_F(RuleTestFolder, PassesWhenAllExpectationsComeTrue) {
   const RuleTestReport report =
       run(binTest("{ objects: [ { class: clx:SmallObject, primitives: [b], confidence: \">= 0.7\", rule: bin/one } ], exactly: true }"));

@@ -74,6 +74,15 @@ TEST(ScanSet, RefusesAFolderWhoseScansLackAPose) {
   EXPECT_THAT(refusalOf([&] { opened({folder.path()}); }), HasSubstr("has 3 poses for 2 scans"));
 }
 
+TEST(ScanSet, RefusesScansThatAreLinksToNowhere) {
+  const ScratchFolder folder;
+  folder.write("b.xyz", "0 0 0\n1 0 0\n");
+  std::filesystem::create_symlink(folder.path() / "loop", folder.path() / "loop");   // no scan's name: nobody reads it
+  EXPECT_EQ(opened({folder.path()}).size(), 1U);
+  std::filesystem::create_symlink(folder.path() / "gone", folder.path() / "a.xyz");
+  EXPECT_THAT(refusalOf([&] { opened({folder.path()}); }), HasSubstr("the link leads nowhere"));
+}
+
 TEST(ScanSet, MatchesTumPosesToTimesWithinTenMilliseconds) {
   const ScratchFolder folder;
   folder.write("a.xyz", "1 2 3\n");

@@ -177,6 +177,24 @@ TEST(TruthFiles, AreFoundByTheStemOfTheScan) {
   EXPECT_EQ(truthFileOf(folder.path(), "chunk_ad.pcd"), std::nullopt);
 }
 
+TEST(TruthFiles, OfScansOfOneNameLieBelowTheNamesOfTheirFolders) {
+  const ScratchFolder folder;
+  const auto plain = folder.write("000000.truth", "");
+  std::filesystem::create_directory(folder.path() / "01");
+  const auto own = folder.write("01/000000.truth", "");
+  EXPECT_EQ(truthFileOf(folder.path(), "/elsewhere/01/000000.bin"), own);
+  EXPECT_EQ(truthFileOf(folder.path(), "/elsewhere/02/000000.bin"), plain);
+}
+
+TEST(TruthClassNames, OfALabelMapAreTheNineAndThenItsOwn) {
+  const ScratchFolder folder;
+  const LabelMap map = LabelMap::load(
+      folder.write("m.yaml", "dataset: d\nlabels:\n  7: {name: a, object: Tree}\n  8: {name: b, object: Bench}\n  9: {name: c, object: Bench}\n"));
+  std::vector<std::string> names = truthClassNames();
+  names.push_back("Bench");
+  EXPECT_EQ(truthClassNames(map), names);
+}
+
 TEST(AmbiguousInstances, AreThoseMarkedInTheTable) {
   EXPECT_THAT(
       parseAmbiguousInstances("id,object,ambiguous,flags\n9,tree,1,x;\n2,tree,0,\n4,sign,1,\r\n", "i.csv"),

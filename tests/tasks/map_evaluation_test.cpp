@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "cluxel/base/file_bytes.hpp"
 #include "cluxel/tasks/evaluation.hpp"
 #include "tasks/campus_map_fixture.hpp"
 
@@ -31,6 +32,11 @@ class TruthFolder {
  private:
   ScratchFolder folder_;
 };
+
+std::filesystem::path written(const ScratchFolder& folder, const std::string& name, const std::string& text) {
+  writeFile(folder.path() / name, text);
+  return folder.path() / name;
+}
 
 const PointTruth& truthOf(const Cloud& cloud) {
   const SmallCampus& campus = CampusMap::shared().campus();
@@ -79,6 +85,47 @@ TEST(MapEvaluation, FindsMostOfAGeneratedCampus) {
       EXPECT_LE(score.matched_truth, score.truth) << score.name;
       EXPECT_LE(score.matched_answers, score.answers) << score.name;
     }
+}
+
+TEST(MapEvaluation, CountsClassesThatOnlyALabelMapNames) {
+  const ScratchFolder folder;
+  const auto labels = written(folder, 
+      "m.yaml", "dataset: d\nlabels:\n  1: {name: lawn, object: Ground}\n  3: {name: street, object: Racetrack}\n");
+  const MapReader& map = CampusMap::shared().map();
+  std::uint64_t lawn = 0, street = 0;
+  for (const Cloud& cloud : map.clouds())
+    for (const std::uint32_t label : map.pointsOf(cloud.id).label) lawn += label == 1, street += label == 3;
+  ASSERT_GT(street, 0U);
+  const MapEvaluation made = evaluateMap(map, TruthSource::open(labels, DataHome({CLUXEL_SOURCE_DIR})));
+  const auto track = static_cast<std::size_t>(
+      std::find(made.objects.names.begin(), made.objects.names.end(), "Racetrack") - made.objects.names.begin());
+  ASSERT_LT(track, made.objects.names.size());
+  EXPECT_EQ(made.objects.total(), lawn + street);
+  EXPECT_EQ(made.objects.truthCount(track), street);
+  EXPECT_EQ(made.objects.at(track, track), 0U) << "no rule makes racetracks";
+  EXPECT_LE(made.objects.overallAccuracy(), static_cast<double>(lawn) / static_cast<double>(lawn + street));
+}
+
+TEST(MapEvaluation, RefusesOneTruthFileForTwoScans) {
+  const ScratchFolder folder;
+  for (const char* place : {"a", "b"}) {
+    std::filesystem::create_directory(folder.path() / place);
+    std::string points;
+    for (int i = 0; i < 50; ++i) points += std::to_string(0.1 * i) + " 0 " + (place[0] == 'a' ? "0" : "1") + "\n";
+    written(folder, std::string(place) + "/scan.xyz", points);
+  }
+  std::filesystem::create_directory(folder.path() / "truth");
+  std::string lines;
+  for (int i = 0; i < 50; ++i) lines += "0 0 -1\n";
+  written(folder, "truth/scan.truth", lines);
+  const auto file = folder.path() / "m.clx";
+  const DataHome home({CLUXEL_SOURCE_DIR});
+  buildMap(scansOf({folder.path() / "a/scan.xyz", folder.path() / "b/scan.xyz"}), readMapInputs({}, home), file, {}, silence());
+  const auto evaluated = [&] { return evaluateMap(MapReader(file), TruthSource::open(folder.path() / "truth", home)); };
+  EXPECT_THROW(evaluated(), InputError);
+  std::filesystem::create_directory(folder.path() / "truth/b");
+  written(folder, "truth/b/scan.truth", lines);
+  EXPECT_EQ(evaluated().objects.total(), 100U);
 }
 
 TEST(MapEvaluation, DoesNotScoreGroundByObject) {

@@ -36,9 +36,16 @@ struct Relation {
   auto operator<=>(const Relation&) const = default;
 };
 
+/// A cluxel's seed point: the number of its scan in SceneCluxels::scans, and the point's number in that scan.
+struct SeedName {
+  std::uint32_t scan = 0, point = 0;
+};
+
 /// Cluxels of the whole scene as a structure of arrays, sorted by tile and number, with their graph in CSR form.
 struct SceneCluxels {
   std::vector<CluxelName> name;
+  std::vector<SeedName> seed;                     ///< names a cluxel whatever else lies in its tile
+  std::vector<ContentHash> scans;                 ///< ids of the scans of `seed`, ascending
   std::vector<Eigen::Vector3d> center;            ///< mean of own points [m, map]
   std::vector<Eigen::Vector3f> extent;            ///< size of the box around own points [m]
   std::vector<Eigen::Vector3d> low_corner;        ///< of that box [m, map]

@@ -63,6 +63,7 @@ RuleTestReport runRuleTests(const std::filesystem::path& file, const ClassCatalo
 /// One line per test, then the leaves that no test reached, then the counts.
 std::string textOf(const RuleTestReport& report);
 std::string jsonOf(const RuleTestReport& report);
+/// One <testsuite> element.
 std::string junitOf(const RuleTestReport& report, const std::string& suite);
 
 /// The keys of the test language, for the schema.

@@ -34,6 +34,7 @@ struct DecisionStep {
 struct DecisionFlip {
   std::size_t step = 0;                   ///< the first of the branch's tests in Decision::path
   std::size_t step_count = 0;             ///< how many tests of the path the branch has
+  std::size_t node = 0;                   ///< the branch's number in Rule::nodes
   bool accepted = false;
   std::string outcome;                    ///< the other leaf's words
 };

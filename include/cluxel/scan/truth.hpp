@@ -54,15 +54,18 @@ struct PointTruth {
 /// UtilityPole, Vehicle, SmallObject.
 const std::vector<std::string>& truthClassNames();
 
-/// Truth from the scan's own labels through a label map (no instances).
+/// These, then what else the label map names, in the order of its ids. Throws Error for more than 127 of them.
+std::vector<std::string> truthClassNames(const LabelMap& map);
 
+/// Truth from the scan's own labels through a label map (no instances).
 PointTruth truthFromLabels(const Scan& scan, const LabelMap& map);
 
 /// Truth from a folder of files with one line `primitive object instance` per point, plain or gzip; the file of a scan
 /// has the scan file's stem followed by ".truth", ".truth.gz". Throws InputError naming file and line.
 PointTruth truthFromFile(const std::filesystem::path& file, std::size_t point_count);
 
-/// The truth file of a scan file in a truth folder; absent when there is none.
+/// The truth file of a scan file in a truth folder: below a folder of the name of the scan's own folder (for scans of
+/// one name in several folders), else in the folder itself; absent when there is none.
 std::optional<std::filesystem::path> truthFileOf(const std::filesystem::path& folder, const std::filesystem::path& scan);
 
 /// Ids of instances that count neither way (instances.csv, column `ambiguous`), sorted; empty without such a file.

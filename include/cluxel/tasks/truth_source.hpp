@@ -22,6 +22,10 @@ class TruthSource {
   /// Truth of every point of the scan; its file is found by the scan's source. Throws InputError when there is no truth
   /// file for it, or when it has no labels.
   PointTruth truthOf(const Scan& scan) const;
+  /// The file that truthOf() reads for the scan; absent with a label map, and where there is none.
+  std::optional<std::filesystem::path> fileOf(const Scan& scan) const;
+  /// The classes that truthOf() numbers, the same for every scan.
+  std::vector<std::string> classNames() const;
   /// Instances that count neither way, sorted.
   const std::vector<std::int32_t>& ambiguous() const { return ambiguous_; }
 
