@@ -2,7 +2,7 @@
 // Sets of ids and of rows, by open addressing: for DISTINCT and GROUP BY.
 #pragma once
 
-#include <cstring>
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -61,7 +61,7 @@ class RowSet {
     std::size_t at = (hash >> 20) & (places_.size() - 1);
     while (places_[at] != 0) {
       const std::uint32_t found = places_[at] - 1;
-      if (std::memcmp(cells_.data() + found * width_, row, width_ * sizeof(ValueId)) == 0) return {found, false};
+      if (std::equal(row, row + width_, cells_.data() + found * width_)) return {found, false};
       at = (at + 1) & (places_.size() - 1);
     }
     places_[at] = static_cast<std::uint32_t>(++rows_);
