@@ -31,7 +31,7 @@ struct AskReplay::Impl {
     writeOntology(*transaction, inputs);
     copyOperatorStatements(map.quads(), *transaction);
     oracle.emplace(*transaction, [this](std::span<const SemanticObject> so_far) {
-      writeObjectsSoFar(*transaction, inputs, clouds, map.scene(), so_far);
+      writeObjectsSoFar(*transaction, inputs, clouds, map.scene(), map.stages(), so_far);
     });
     oracle->objectsSoFar(objects);
     return *oracle;

@@ -95,6 +95,8 @@ const Scene& MapReader::scene() const {
   return *impl_->scene;
 }
 
+const TileStages& MapReader::stages() const { return impl_->readStages(); }
+
 PointAnswers MapReader::answersFor(const Cloud& cloud) const {
   const TileStages& stages = impl_->readStages();
   const Scene& all = scene();

@@ -54,10 +54,10 @@ void writeOntology(WriteTransaction& transaction, const MapInputs& inputs) {
 }
 
 void writeObjectsSoFar(WriteTransaction& transaction, const MapInputs& inputs, const std::vector<Cloud>& clouds,
-                       const Scene& scene, std::span<const SemanticObject> objects) {
-  const std::map<std::pair<std::uint32_t, ScanId>, Sighting> none;
+                       const Scene& scene, const TileStages& stages, std::span<const SemanticObject> objects) {
   const ReasoningResult so_far{{objects.begin(), objects.end()}, {}};
-  writeObserved(transaction, {inputs, clouds, scene, so_far, none});
+  const auto sightings = sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(so_far, scene.cluxels.size()));
+  writeObserved(transaction, {inputs, clouds, scene, so_far, sightings});
   inferClosure(transaction);
 }
 
@@ -87,7 +87,7 @@ SemanticCounts writeSemanticLayer(WriteTransaction& transaction, const ParsedInp
   sink.progress("scene", scene.primitives.size(), scene.primitives.size());
   const std::vector<Cloud> clouds = storedClouds(transaction);
   MapOracle oracle(transaction, [&](std::span<const SemanticObject> objects) {
-    writeObjectsSoFar(transaction, parsed.inputs, clouds, scene, objects);
+    writeObjectsSoFar(transaction, parsed.inputs, clouds, scene, stages, objects);
   });
   const ReasoningResult result = reason(scene, parsed.rules, {&oracle});
   sink.progress("objects", result.objects.size(), result.objects.size());

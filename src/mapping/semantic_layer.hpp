@@ -30,7 +30,7 @@ void writeOntology(WriteTransaction& transaction, const MapInputs& inputs);
 /// Makes the graphs observed and inferred hold what a query of the reasoning stage may see: the scene, and the objects
 /// of the classes that have had their turn.
 void writeObjectsSoFar(WriteTransaction& transaction, const MapInputs& inputs, const std::vector<Cloud>& clouds,
-                       const Scene& scene, std::span<const SemanticObject> objects);
+                       const Scene& scene, const TileStages& stages, std::span<const SemanticObject> objects);
 
 struct SemanticCounts {
   std::size_t cluxels = 0, primitives = 0, objects = 0;

@@ -69,11 +69,12 @@ rules:
 )";
 
 /// Writes the park's scan into the folder and builds `map.clx` beside it.
-inline std::filesystem::path buildAskingMap(const std::filesystem::path& folder, const BuildParams& params = {}) {
+inline std::filesystem::path buildAskingMap(const std::filesystem::path& folder, const BuildParams& params = {},
+                                            const std::string& rules = kAskingRules) {
   writeScanFile(parkWithBench(), folder / "park.pcd");
   MapInputs inputs = shippedInputs();
   inputs.ontology.push_back({"bench.ttl", kBenchOntology});
-  inputs.rules = {{"asking.rules.yaml", kAskingRules}};
+  inputs.rules = {{"asking.rules.yaml", rules}};
   inputs.rule_roots = 1;
   buildMap(scansOf({folder / "park.pcd"}), inputs, folder / "map.clx", params, silence());
   return folder / "map.clx";

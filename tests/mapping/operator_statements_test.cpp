@@ -63,6 +63,16 @@ TEST(OperatorStatements, ChangeObjectsWhereRulesAskForThem) {
   EXPECT_EQ(canonicalText(map), before);
 }
 
+TEST(AskingRules, SeeByHowManyCloudsAnObjectWasSeenAndItsObservations) {
+  const ScratchFolder folder;
+  std::string rules = kAskingRules;
+  const std::string asked = "?thing a clx:Bench }";
+  rules.replace(rules.find(asked), asked.size(),
+                "?thing a clx:Bench ; clx:viewCount 1 . ?seen <http://www.w3.org/ns/sosa/hasFeatureOfInterest> ?thing ; clx:pointCount ?n }");
+  const auto map = buildAskingMap(folder.path(), {}, rules);
+  EXPECT_EQ(MapReader(map).summary().objects_by_class.count("SmallObject"), 1U);
+}
+
 TEST(OperatorStatements, OfAFaultyUpdateLeaveTheMapAsItWas) {
   const ScratchFolder folder;
   const auto map = buildPark(folder.path());

@@ -17,6 +17,8 @@
 
 namespace cluxel {
 
+class TileStages;
+
 struct MapSummary {
   bool is_finished = false;
   std::string inputs_hash;
@@ -48,6 +50,8 @@ class MapReader {
   const std::vector<SemanticObject>& objects() const;
   /// The scene, assembled from the stored tiles at the first call.
   const Scene& scene() const;
+  /// The stored outputs of the stages, read at the first call.
+  const TileStages& stages() const;
   PointAnswers answersFor(const Cloud& cloud) const;
   const QuadReader& quads() const;
   MapInputs inputs() const;
