@@ -148,16 +148,14 @@ std::string_view describeKind(const YamlNode& node) {
 void FaultList::addFile(std::string file, std::string text) { files_.emplace_back(std::move(file), std::move(text)); }
 
 void FaultList::error(const SourceLocation& at, std::string message, std::string hint) {
-  ++errors_;
-  add(Severity::Error, at, std::move(message), std::move(hint));
+  if (++errors_ <= kMostFaults) add(Severity::Error, at, std::move(message), std::move(hint));
 }
 
 void FaultList::warning(const SourceLocation& at, std::string message, std::string hint) {
-  add(Severity::Warning, at, std::move(message), std::move(hint));
+  if (++warnings_ <= kMostFaults) add(Severity::Warning, at, std::move(message), std::move(hint));
 }
 
 void FaultList::add(Severity severity, const SourceLocation& at, std::string message, std::string hint) {
-  if (faults_.size() >= kMostFaults) return;
   Diagnostic fault;
   fault.severity = severity;
   fault.location = at;
@@ -184,6 +182,9 @@ std::vector<Diagnostic> FaultList::sorted() const {
     return place(a) == place(b) && a.message == b.message;
   });
   faults.erase(last, faults.end());
+  const std::string file = files_.empty() ? "" : files_.front().first;
+  if (errors_ > kMostFaults) faults.push_back(furtherFaults(Severity::Error, file, errors_ - kMostFaults));
+  if (warnings_ > kMostFaults) faults.push_back(furtherFaults(Severity::Warning, file, warnings_ - kMostFaults));
   return faults;
 }
 

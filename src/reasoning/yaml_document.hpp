@@ -46,7 +46,7 @@ class FaultList {
   void add(Severity severity, const SourceLocation& at, std::string message, std::string hint);
   std::vector<std::pair<std::string, std::string>> files_;
   std::vector<Diagnostic> faults_;
-  std::size_t errors_ = 0;
+  std::size_t errors_ = 0, warnings_ = 0;
 };
 
 /// Parses one document. Faults of form (syntax, repeated keys, aliases, depth) go to `faults`; what could be read is

@@ -127,7 +127,10 @@ const YamlValue* YamlValue::find(std::string_view key) const {
 }
 
 void YamlFaults::add(const YamlValue& place, std::string message, std::string hint) {
-  if (diagnostics_.size() >= kMostFaults) return;
+  if (diagnostics_.size() >= kMostFaults) {
+    ++further_;
+    return;
+  }
   Diagnostic diagnostic;
   diagnostic.location = {.file = file_, .line = place.line, .column = place.column};
   diagnostic.message = std::move(message);
@@ -142,6 +145,7 @@ void YamlFaults::throwIfAny() const {
   std::stable_sort(in_order.begin(), in_order.end(), [](const Diagnostic& a, const Diagnostic& b) {
     return std::pair(a.location.line, a.location.column) < std::pair(b.location.line, b.location.column);
   });
+  if (further_ > 0) in_order.push_back(furtherFaults(Severity::Error, file_, further_));
   throw InputError(std::move(in_order));
 }
 

@@ -2,6 +2,8 @@
 // Every fault of a rule file is found, at its place, with the remedy. One row per kind of fault.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "reasoning/reasoning_fixture.hpp"
 
 namespace cluxel::testing {
@@ -48,6 +50,24 @@ struct FaultCase {
   std::string message;           ///< part of the message
   std::string hint;              ///< part of the hint
 };
+
+TEST(RuleFaults, AreNotCrowdedOutByWarningsAndCountedWhereThereAreTooMany) {
+  std::string constants;
+  for (int i = 0; i < 300; ++i) constants += "  unused_" + std::to_string(i) + ": 1 m\n";
+  const LoadedRules warned = loadText(replaced(kGood, "  ground_gap: 0.30 m\n", "  ground_gap: 0.30 m\n" + constants));
+  EXPECT_TRUE(warned.rules.has_value());
+  ASSERT_EQ(warned.diagnostics.size(), 201U);
+  EXPECT_EQ(warned.diagnostics.back().message, "100 further warnings");
+  EXPECT_FALSE(hasErrors(warned.diagnostics));
+  std::string wrong;
+  for (int i = 0; i < 250; ++i) wrong += "  wrong_" + std::to_string(i) + ": 1 furlong\n";
+  const LoadedRules refused = loadText(replaced(kGood, "  ground_gap: 0.30 m\n", "  ground_gap: 0.30 m\n" + constants + wrong));
+  EXPECT_FALSE(refused.rules.has_value());
+  EXPECT_TRUE(hasErrors(refused.diagnostics));
+  const auto errors = std::count_if(refused.diagnostics.begin(), refused.diagnostics.end(),
+                                    [](const Diagnostic& fault) { return fault.severity == Severity::Error; });
+  EXPECT_EQ(errors, 201) << "200 and the word about the others";
+}
 
 class RuleFault : public ::testing::TestWithParam<FaultCase> {};
 

@@ -4,13 +4,24 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "cluxel/base/diagnostic.hpp"
 
 namespace cluxel {
 
-/// So many faults of one file are told; who mends them meets the others.
+/// So many errors, and so many warnings, are told one by one; of the others it is said how many there are.
 inline constexpr std::size_t kMostFaults = 200;
+
+/// The word about those.
+inline Diagnostic furtherFaults(Severity severity, std::string file, std::size_t count) {
+  Diagnostic further;
+  further.severity = severity;
+  further.location.file = std::move(file);
+  further.message = std::to_string(count) + (severity == Severity::Error ? " further errors" : " further warnings");
+  further.hint = "mend those above first";
+  return further;
+}
 
 /// Line `line` (from 1) of `text`; empty for one that is longer than anyone could read.
 inline std::string shownLine(std::string_view text, std::size_t line) {
