@@ -44,12 +44,6 @@ Matches matchesOf(const SurfaceCloud& to, const SurfaceCloud& from, const Eigen:
   return matches;
 }
 
-double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The worst of three medians, of surfaces that face the axes along which normals lie most, second and least: a street is
 /// mostly ground, which says nothing of being too far ahead.
 double worstMedianGap(const std::vector<Match>& matches) {
@@ -110,6 +104,13 @@ void dropPretence(const Normals& sums, PairEvidence& evidence) {
 }
 
 }  // namespace
+
+double medianOf(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 PairEvidence evidenceOf(const SurfaceCloud& target, const SurfaceCloud& source, const Eigen::Isometry3d& T_target_source,
                         const EvidenceParams& params) {

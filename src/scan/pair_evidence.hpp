@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <vector>
 
 #include "scan/pcl_registration.hpp"
 
@@ -26,6 +27,9 @@ struct PairEvidence {
   double overlap = 0;       ///< share of the scan with less overlap that has a neighbour in the other within kLongestReach_m
   double residual_m = 0;    ///< median distance of a point to the other's plane, of surfaces that face the worst direction
 };
+
+/// The upper one of an even number; 0 of none.
+double medianOf(std::vector<double> values);
 
 PairEvidence evidenceOf(const SurfaceCloud& target, const SurfaceCloud& source, const Eigen::Isometry3d& T_target_source,
                         const EvidenceParams& params);

@@ -20,16 +20,6 @@ namespace cluxel {
 
 namespace {
 
-/// PCL reports to the console by itself; the library must not. Once for the process, before PCL is first
-/// used.
-void silencePcl() {
-  static const bool silenced = [] {
-    pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
-    return true;
-  }();
-  (void)silenced;
-}
-
 char pcdTypeOf(FieldType type) {
   if (type == FieldType::F32 || type == FieldType::F64) return 'F';
   const bool is_signed =
@@ -135,6 +125,14 @@ void readThroughPcl(const std::string& file, const Read& read) {
 }
 
 }  // namespace
+
+void silencePcl() {
+  static const bool silenced = [] {   // once for the process
+    pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+    return true;
+  }();
+  (void)silenced;
+}
 
 std::string pcdRecords(std::string_view body, const std::vector<PointField>& fields, std::size_t count,
                        bool compressed, const std::string& file) {

@@ -11,6 +11,9 @@
 
 namespace cluxel {
 
+/// PCL reports to the console by itself; the library must not. Called before PCL is used.
+void silencePcl();
+
 /// Packed records of `fields` from the body of a binary PCD. `compressed`: PCL's LZF form. Throws InputError
 /// when PCL cannot decode it.
 std::string pcdRecords(std::string_view body, const std::vector<PointField>& fields, std::size_t count,

@@ -2,12 +2,13 @@
 // PCL's kd-tree and generalised ICP. Nothing of PCL leaves this file.
 #include "scan/pcl_registration.hpp"
 
-#include <pcl/console/print.h>
 #include <pcl/registration/gicp.h>
 #include <pcl/search/kdtree.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+
+#include "scan/pcl_clouds.hpp"
 
 namespace cluxel {
 
@@ -24,15 +25,6 @@ class Gicp : public pcl::GeneralizedIterativeClosestPoint<Point, Point> {
 
 constexpr int kNeighbours = 20;
 constexpr int kMostIterations = 50;
-
-/// PCL reports to the console by itself; the library must not.
-void silencePcl() {
-  static const bool silenced = [] {
-    pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
-    return true;
-  }();
-  (void)silenced;
-}
 
 struct Plane {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();

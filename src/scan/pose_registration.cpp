@@ -153,12 +153,6 @@ class Registration {
   ProgressSink* sink_;
 };
 
-double medianOf(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
 std::vector<ScanPlace> placesOf(const RegistrationScans& scans, const Poses& poses) {
   std::vector<ScanPlace> places;
   for (std::size_t i = 0; i < poses.size(); ++i) {

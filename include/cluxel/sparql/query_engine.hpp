@@ -48,7 +48,7 @@ struct QueryOptions {
   /// SERVICE is refused but for these: the endpoint's IRI, and the store on this machine that answers for it. The readers
   /// must outlive the query. Nothing is ever asked over a network.
   std::map<std::string, const QuadReader*> services = {};
-  bool refuse_volatile = false;   ///< BNODE, RAND, NOW, UUID, STRUUID are errors (SPARQL rules)
+  bool refuse_volatile = false;   ///< rules: BNODE, RAND, NOW, UUID, cuts of unsorted rows are errors, history is hidden
 };
 
 using Binding = std::pair<std::string, Term>;   ///< a variable's name without '?', and its value
