@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iomanip>
+#include <optional>
 #include <sstream>
 
 #include "cluxel/knowledge/quad_store.hpp"
@@ -134,7 +135,7 @@ void printOrders(const std::vector<Question>& asked, const Measures& ours) {
   std::printf("\n");
 }
 
-/// Growth against the smaller data: time, rows of the answer, rows that the operators had to make.
+/// Growth against the smaller data, measured in turn: time, rows of the answer, rows that the operators had to make.
 void printGrowth(const std::vector<Question>& asked, const Measures& small, const Measures& large) {
   std::printf("| question | rows | cluxel [ms] | time grows | rows grow | work grows | bar |\n|---|---|---|---|---|---|---|\n");
   std::size_t over = 0;
@@ -199,19 +200,20 @@ int main(int argc, char** argv) {
   }
   const bool has_oxigraph = fs::exists(arguments.module / "node_modules/oxigraph");
   if (!has_oxigraph) std::printf("oxigraph is not in %s: npm install there\n", arguments.module.c_str());
-  Measures ours;
+  std::optional<Data> data;   // the last stays for the growth
   for (const std::uint64_t triples : arguments.oxigraph) {
-    const Data data(triples, has_oxigraph);
-    ours = askCluxel(data.environment(), asked);
-    printComparison("oxigraph", asked, ours, has_oxigraph ? askOxigraph(arguments.module, data.file(), asked) : Measures());
+    data.emplace(triples, has_oxigraph);
+    const Measures ours = askCluxel(data->environment(), asked);
+    printComparison("oxigraph", asked, ours, has_oxigraph ? askOxigraph(arguments.module, data->file(), asked) : Measures());
     printOrders(asked, ours);
-    printPreparation(data.environment(), asked);
-    printGeometry(data.environment());
+    printPreparation(data->environment(), asked);
+    printGeometry(data->environment());
   }
-  if (arguments.alone > 0 && !ours.empty()) {
-    const Data data(arguments.alone, false);
-    printGrowth(asked, ours, askCluxel(data.environment(), asked));
-    printGeometry(data.environment());
+  if (arguments.alone > 0 && data) {
+    const Data large(arguments.alone, false);
+    const auto [small_measures, large_measures] = askCluxelInTurn(data->environment(), large.environment(), asked);
+    printGrowth(asked, small_measures, large_measures);
+    printGeometry(large.environment());
   }
   return 0;
 }

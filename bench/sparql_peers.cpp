@@ -28,7 +28,8 @@ constexpr const char* kPrefixes =
     "PREFIX geof: <http://www.opengis.net/def/function/geosparql/> ";
 
 /// The sum of the actual rows of all operators, as the plan's text tells them.
-double workRows(const QuadReader& reader, const Question& question) {
+double workRows(const Environment& environment, const Question& question) {
+  const QuadReader reader(environment.read());
   PreparedQuery query(reader, question.text);
   NoSink sink;
   query.run(sink);
@@ -38,6 +39,14 @@ double workRows(const QuadReader& reader, const Question& question) {
   for (std::size_t at = plan.find(kMark); at != std::string::npos; at = plan.find(kMark, at + 1))
     sum += std::strtod(plan.c_str() + at + kMark.size(), nullptr);
   return sum;
+}
+
+std::size_t linesOfAnswer(const Environment& environment, const Question& question) {
+  const QuadReader reader(environment.read());
+  std::string text;
+  const auto writer = makeResultWriter(ResultFormat::Tsv, [&](std::string_view piece) { text += piece; });
+  runQuery(reader, question.text, {}, *writer);
+  return lines(text);
 }
 
 /// What the process of one rasqal question hands back through its pipe.
@@ -114,14 +123,21 @@ Measures askCluxel(const Environment& environment, const std::vector<Question>& 
   Measures measures;
   for (const Question& question : asked) {
     Measure& measure = measures[question.name];
-    measure = measured([&] {
-      const QuadReader reader(environment.read());
-      std::string text;
-      const auto writer = makeResultWriter(ResultFormat::Tsv, [&](std::string_view piece) { text += piece; });
-      runQuery(reader, question.text, {}, *writer);
-      return lines(text);
-    });
-    measure.work_rows = workRows(QuadReader(environment.read()), question);
+    measure = measured([&] { return linesOfAnswer(environment, question); });
+    measure.work_rows = workRows(environment, question);
+  }
+  return measures;
+}
+
+std::pair<Measures, Measures> askCluxelInTurn(const Environment& small, const Environment& large, const std::vector<Question>& asked) {
+  std::pair<Measures, Measures> measures;
+  for (const Question& question : asked) {
+    const auto [of_small, of_large] =
+        measuredInTurn([&] { return linesOfAnswer(small, question); }, [&] { return linesOfAnswer(large, question); });
+    measures.first[question.name] = of_small;
+    measures.second[question.name] = of_large;
+    measures.first[question.name].work_rows = workRows(small, question);
+    measures.second[question.name].work_rows = workRows(large, question);
   }
   return measures;
 }

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cluxel/knowledge/environment.hpp"
@@ -34,22 +36,37 @@ inline double since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+inline double medianOf(std::vector<double> seconds) {
+  std::sort(seconds.begin(), seconds.end());
+  return seconds[seconds.size() / 2];
+}
+
+/// Each of `runs` once in every round, at least five rounds, or for almost half a second each: what disturbs the machine,
+/// and what lies in its caches, is then the same for all. Each run gives the number of rows.
+template <typename... Run>
+std::array<Measure, sizeof...(Run)> measuredInTurn(Run... runs) {
+  using Clock = std::chrono::steady_clock;
+  std::array<Measure, sizeof...(Run)> measures;
+  std::array<std::vector<double>, sizeof...(Run)> seconds;
+  const auto start = Clock::now();
+  const auto timed = [&](std::size_t i, const auto& run) {
+    const auto begin = Clock::now();
+    measures[i].rows = run();
+    seconds[i].push_back(since(begin));
+  };
+  while (seconds[0].size() < 5 || (seconds[0].size() < 200 && since(start) < 0.4 * sizeof...(Run))) {
+    std::size_t i = 0;
+    (timed(i++, runs), ...);
+    if (since(start) > kMostSecondsPerQuery * sizeof...(Run)) break;
+  }
+  for (std::size_t i = 0; i < measures.size(); ++i) measures[i].seconds = medianOf(seconds[i]);
+  return measures;
+}
+
 /// Runs at least five times, or for almost half a second; `run` gives the number of rows.
 template <typename Run>
 Measure measured(Run run) {
-  using Clock = std::chrono::steady_clock;
-  std::vector<double> seconds;
-  Measure measure;
-  const auto start = Clock::now();
-  while (seconds.size() < 5 || (seconds.size() < 200 && since(start) < 0.4)) {
-    const auto begin = Clock::now();
-    measure.rows = run();
-    seconds.push_back(since(begin));
-    if (since(start) > kMostSecondsPerQuery) break;
-  }
-  std::sort(seconds.begin(), seconds.end());
-  measure.seconds = seconds[seconds.size() / 2];
-  return measure;
+  return measuredInTurn(run).front();
 }
 
 inline std::size_t lines(std::string_view text) {
@@ -61,6 +78,8 @@ std::vector<Question> readQuestions(const std::filesystem::path& file, const std
 
 /// This library: a reader, the text parsed and planned, the answer as TSV, anew in every run.
 Measures askCluxel(const Environment& environment, const std::vector<Question>& asked);
+/// The same of two stores, every question in turn of the one and the other.
+std::pair<Measures, Measures> askCluxelInTurn(const Environment& small, const Environment& large, const std::vector<Question>& asked);
 /// Oxigraph in node, its store in memory. `module` holds node_modules.
 Measures askOxigraph(const std::filesystem::path& module, const std::filesystem::path& nt_file, const std::vector<Question>& asked);
 /// Rasqal over librdf's "trees", each question in a process of its own that a deadline ends.
