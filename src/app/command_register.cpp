@@ -108,9 +108,7 @@ ExitCode registerScans(const RegisterOptions& options, Session& session) {
   const ScanSet set = ScanSet::open(options.inputs, {options.poses}, session.console);
   if (options.check) return checkPoses(options, set, session);
   const PoseRegistration report = registerPoses(set, options.params, session.threadCount(), session.console);
-  std::vector<PosedScan> posed;
-  for (const MendedScan& scan : report.scans) posed.push_back({scan.index, scan.T_map_sensor});
-  writeFile(options.output, manifestText(set, posed, options.output, "poses mended by cluxel register"));
+  writeFile(options.output, manifestText(set, report.poses(), options.output, "poses mended by cluxel register"));
   if (session.json)
     printJson(reportJson(report, set));
   else

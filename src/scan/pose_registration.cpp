@@ -211,6 +211,12 @@ const char* nameOf(PairOutcome outcome) {
   return names[static_cast<std::size_t>(outcome)];
 }
 
+std::vector<PosedScan> PoseRegistration::poses() const {
+  std::vector<PosedScan> posed;
+  for (const MendedScan& scan : scans) posed.push_back({scan.index, scan.T_map_sensor});
+  return posed;
+}
+
 PoseRegistration registerPoses(const ScanSet& set, const RegistrationParams& params, unsigned threads, ProgressSink& sink) {
   const RegistrationScans scans = loadForRegistration(set, params, threads, sink);
   const Registration registration(scans, params, threads, sink);

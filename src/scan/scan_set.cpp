@@ -226,6 +226,18 @@ ScanSet ScanSet::open(const std::vector<fs::path>& inputs, const ScanSetParams& 
   return set;
 }
 
+ScanSet ScanSet::posed(const std::vector<PosedScan>& scans) const {
+  ScanSet set(*this);
+  set.files_.clear();
+  for (const PosedScan& scan : scans) {
+    ScanFile file = files_.at(scan.index);
+    file.T_map_sensor = scan.T_map_sensor;
+    file.has_pose = true;
+    set.files_.push_back(std::move(file));
+  }
+  return set;
+}
+
 Scan ScanSet::load(std::size_t index) const {
   return loadScan(files_.at(index));
 }

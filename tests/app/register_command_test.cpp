@@ -36,6 +36,18 @@ TEST_F(RegisterCommand, MendsPosesAndBuildTakesThem) {
   EXPECT_EQ(Json::parse(built.out).at("scans"), 3);
 }
 
+TEST_F(RegisterCommand, BuildMendsThemItselfIntoTheSameMap) {
+  const std::string one = path("by_manifest.clx").string(), other = path("by_build.clx").string();
+  ASSERT_EQ(run("build " + path("mended.yaml").string() + " -o " + one).code, 0);
+  const Outcome built = run("build --register " + path("drive").string() + " -o " + other);
+  ASSERT_EQ(built.code, 0) << built.err;
+  EXPECT_NE(built.err.find("pairs of scans used, median residual"), std::string::npos) << built.err;
+  EXPECT_NE(built.err.find("0 of 3 scans keep their pose"), std::string::npos) << built.err;
+  const std::string expected = run("export --canonical " + one).out;
+  EXPECT_GT(expected.size(), 1000U);
+  EXPECT_EQ(run("export --canonical " + other).out, expected);
+}
+
 TEST_F(RegisterCommand, CheckIsExitCodeOneForWrongPosesAndZeroForMendedOnes) {
   const Outcome wrong = run("register --check --json " + path("drive").string());
   EXPECT_EQ(wrong.code, 1) << wrong.err;

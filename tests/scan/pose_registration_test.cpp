@@ -71,9 +71,7 @@ TEST(PoseRegistration, GivesTheSameBytesForAnyOrderAndNumberOfThreads) {
   NoteKeeper notes;
   const auto manifestOf = [&](unsigned threads) {
     const ScanSet set = ScanSet::open(drive.files, {}, notes);
-    std::vector<PosedScan> posed;
-    for (const MendedScan& scan : registerPoses(set, {}, threads, notes).scans) posed.push_back({scan.index, scan.T_map_sensor});
-    return manifestText(set, posed, folder.path() / "mended.yaml", "test");
+    return manifestText(set, registerPoses(set, {}, threads, notes).poses(), folder.path() / "mended.yaml", "test");
   };
   const std::string once = manifestOf(1);
   EXPECT_EQ(manifestOf(2), once);

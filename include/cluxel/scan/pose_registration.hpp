@@ -45,6 +45,8 @@ struct PoseRegistration {
   std::vector<RegisteredPair> pairs;
   double residual_before_m = 0;      ///< median over the pairs used
   double residual_after_m = 0;
+
+  std::vector<PosedScan> poses() const;   ///< of the scans, in their order
 };
 
 /// Registers neighbouring scans by generalised ICP, then all poses together (docs/decisions/scan.md). Pure: the order of the

@@ -30,11 +30,20 @@ struct ScanFile {
   bool has_pose = false;
 };
 
+/// A scan of a set with another pose.
+struct PosedScan {
+  std::size_t index = 0;   ///< in the ScanSet
+  Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
+};
+
 class ScanSet {
  public:
   /// Finds the scans in files, folders and manifests, in the order given and by name inside a folder; reads poses but no
   /// points. Throws InputError (what, file, line or byte). Notes go to `sink`: lone files without a pose, for example.
   static ScanSet open(const std::vector<std::filesystem::path>& inputs, const ScanSetParams& params, ProgressSink& sink);
+
+  /// These scans alone, in this order, with the poses given here.
+  ScanSet posed(const std::vector<PosedScan>& scans) const;
 
   std::size_t size() const { return files_.size(); }
   const ScanFile& file(std::size_t index) const { return files_.at(index); }
