@@ -17,11 +17,7 @@ namespace {
 using Point = pcl::PointXYZ;
 using Cloud = pcl::PointCloud<Point>;
 
-/// PCL calls what has used up its iterations converged as well.
-class Gicp : public pcl::GeneralizedIterativeClosestPoint<Point, Point> {
- public:
-  bool settled() const { return hasConverged() && nr_iterations_ < max_iterations_; }
-};
+using Gicp = pcl::GeneralizedIterativeClosestPoint<Point, Point>;
 
 constexpr int kNeighbours = 20;
 constexpr int kMostIterations = 50;
@@ -104,7 +100,7 @@ std::optional<Eigen::Isometry3d> alignedByGicp(const SurfaceCloud& target, const
   gicp.setMaximumIterations(kMostIterations);
   Cloud moved;
   gicp.align(moved, T_target_source.matrix().cast<float>());
-  if (!gicp.settled() || !gicp.getFinalTransformation().allFinite()) return std::nullopt;
+  if (!gicp.hasConverged() || !gicp.getFinalTransformation().allFinite()) return std::nullopt;
   const Eigen::Matrix4d found = gicp.getFinalTransformation().cast<double>();
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = Eigen::Quaterniond(found.topLeftCorner<3, 3>()).normalized().toRotationMatrix();
