@@ -3,6 +3,7 @@
 #include <array>
 
 #include "app/command.hpp"
+#include "cluxel/base/diagnostic.hpp"
 #include "cluxel/mapping/map_builder.hpp"
 #include "cluxel/scan/pose_registration.hpp"
 
@@ -32,11 +33,32 @@ ScanSet withMendedPoses(const ScanSet& scans, Session& session) {
   return scans.posed(mended.poses());
 }
 
+/// Poses that do not fit each other spoil labels long before anybody sees it in the map. A look at six scans at most; whatever
+/// is wrong with the files themselves, the build says.
+void noteDoubtfulPoses(const ScanSet& scans, Session& session) {
+  const std::vector<PosedScan> sample = sampledNeighbours(scans);
+  if (sample.empty()) return;
+  double residual_m = 0;
+  try {
+    residual_m = measurePoses(scans.posed(sample), {}, session.threadCount(), session.console).residual_before_m;
+  } catch (const Error&) {
+    return;
+  }
+  if (residual_m <= kFittingResidual_m) return;
+  std::array<char, 256> text{};
+  std::snprintf(text.data(), text.size(),
+                "poses do not fit each other: surfaces of neighbouring scans lie %.2f m apart, in the median of those looked at; "
+                "--register mends them",
+                residual_m);
+  session.console.note(text.data());
+}
+
 ExitCode build(const BuildOptions& options, Session& session) {
   const ScanSet given = ScanSet::open(options.inputs, {options.poses}, session.console);
   const MapInputs inputs = readMapInputs(options.files, session.dataHome());
   BuildParams params = options.params;
   params.threads = session.threadCount();
+  if (!options.mend_poses) noteDoubtfulPoses(given, session);
   const ScanSet scans = options.mend_poses ? withMendedPoses(given, session) : given;
   const BuildReport report = buildMap(scans, inputs, options.output, params, session.console);
   if (session.json) {

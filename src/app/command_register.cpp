@@ -16,7 +16,7 @@ struct RegisterOptions {
   std::vector<fs::path> inputs;
   fs::path poses, output;
   RegistrationParams params;
-  double max_residual_m = 0.05;
+  double max_residual_m = kFittingResidual_m;
   bool check = false, force = false;
 };
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <mutex>
+#include <set>
 
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/base/parallel.hpp"
@@ -237,6 +238,26 @@ PoseRegistration measurePoses(const ScanSet& set, const RegistrationParams& para
   for (const PairEvidence& pair : said)
     outcomes.push_back(pair.overlap < params.least_overlap ? PairOutcome::LittleOverlap : PairOutcome::Used);
   return reported(scans, scans.given, pairs, outcomes, said, said);
+}
+
+std::vector<PosedScan> sampledNeighbours(const ScanSet& scans) {
+  constexpr std::size_t kPairs = 3;
+  const std::size_t count = scans.size();
+  std::set<std::size_t> chosen;
+  for (std::size_t k = 0; k < kPairs && count > 1; ++k) {
+    const std::size_t i = k * (count - 1) / (kPairs - 1);
+    const Eigen::Vector3d at = scans.file(i).T_map_sensor.translation();
+    std::size_t nearest = i == 0 ? 1 : 0;
+    for (std::size_t j = 0; j < count; ++j) {
+      if (!scans.file(j).has_pose) return {};
+      const auto distance_m = [&](std::size_t other) { return (scans.file(other).T_map_sensor.translation() - at).norm(); };
+      if (j != i && distance_m(j) < distance_m(nearest)) nearest = j;
+    }
+    chosen.insert({i, nearest});
+  }
+  std::vector<PosedScan> posed;
+  for (const std::size_t i : chosen) posed.push_back({i, scans.file(i).T_map_sensor});
+  return posed;
 }
 
 }  // namespace cluxel

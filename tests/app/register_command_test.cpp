@@ -43,9 +43,20 @@ TEST_F(RegisterCommand, BuildMendsThemItselfIntoTheSameMap) {
   ASSERT_EQ(built.code, 0) << built.err;
   EXPECT_NE(built.err.find("pairs of scans used, median residual"), std::string::npos) << built.err;
   EXPECT_NE(built.err.find("0 of 3 scans keep their pose"), std::string::npos) << built.err;
+  EXPECT_EQ(built.err.find("do not fit"), std::string::npos) << built.err;
   const std::string expected = run("export --canonical " + one).out;
   EXPECT_GT(expected.size(), 1000U);
   EXPECT_EQ(run("export --canonical " + other).out, expected);
+}
+
+TEST_F(RegisterCommand, BuildSaysThatPosesDoNotFitAndTakesThemAsGiven) {
+  const Outcome wrong = run("build " + path("drive").string() + " -o " + path("wrong.clx").string());
+  ASSERT_EQ(wrong.code, 0) << wrong.err;
+  EXPECT_NE(wrong.err.find("poses do not fit each other"), std::string::npos) << wrong.err;
+  EXPECT_NE(wrong.err.find("--register"), std::string::npos) << wrong.err;
+  const Outcome right = run("build --force " + path("mended.yaml").string() + " -o " + path("wrong.clx").string());
+  ASSERT_EQ(right.code, 0) << right.err;
+  EXPECT_EQ(right.err.find("do not fit"), std::string::npos) << right.err;
 }
 
 TEST_F(RegisterCommand, CheckIsExitCodeOneForWrongPosesAndZeroForMendedOnes) {

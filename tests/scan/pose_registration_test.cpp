@@ -53,6 +53,21 @@ TEST(PoseRegistration, ChangesAllPosesAsAWholeAsLittleAsItCan) {
   EXPECT_NEAR((poses[1].translation() - given[1].translation()).norm(), 0.10, 0.01) << "two thirds of what was wrong";
 }
 
+TEST(PoseRegistration, ASampleIsOfNearScansSpreadOverTheSet) {
+  const ScratchFolder folder;
+  NoteKeeper notes;
+  const Drive drive = writeDrive(folder, plainPlace(), straightDrive(9, 3.0), straightDrive(9, 3.0));
+  const ScanSet set = ScanSet::open(drive.files, {}, notes);
+  std::vector<std::size_t> chosen;
+  for (const PosedScan& scan : sampledNeighbours(set)) {
+    chosen.push_back(scan.index);
+    EXPECT_EQ(scan.T_map_sensor.matrix(), set.file(scan.index).T_map_sensor.matrix());
+  }
+  EXPECT_EQ(chosen, (std::vector<std::size_t>{0, 1, 3, 4, 7, 8})) << "first, middle and last, each with its nearest";
+  EXPECT_EQ(sampledNeighbours(ScanSet::open({drive.files[0], drive.files[1]}, {}, notes)).size(), 2U);
+  EXPECT_TRUE(sampledNeighbours(ScanSet::open({drive.files[0]}, {}, notes)).empty());
+}
+
 TEST(PoseRegistration, LeavesRightPosesRight) {
   const ScratchFolder folder;
   const Poses truth = straightDrive(3);

@@ -58,4 +58,11 @@ PoseRegistration registerPoses(const ScanSet& scans, const RegistrationParams& p
 /// Only measures: pairs with their residual under the given poses, which stay (`residual_after_m` equals `..before_m`).
 PoseRegistration measurePoses(const ScanSet& scans, const RegistrationParams& params, unsigned threads, ProgressSink& sink);
 
+/// Up to three pairs of near scans spread over the set, to be measured where all would take too long. Empty when a scan has no
+/// pose, or there is only one.
+std::vector<PosedScan> sampledNeighbours(const ScanSet& scans);
+
+/// Scans whose surfaces lie further apart have poses that do not fit each other.
+inline constexpr double kFittingResidual_m = 0.05;
+
 }  // namespace cluxel
