@@ -92,6 +92,7 @@ ExitCode query(const QueryArguments& arguments, const Session& session) {
   options.services = services.readers();
   const std::vector<Binding> bindings = bindingsFor(question, arguments.params);
   std::vector<std::string> names;
+  names.reserve(bindings.size());
   for (const Binding& binding : bindings) names.push_back(binding.first);
   PreparedQuery prepared(reader, question.text, options, names);
   for (const Diagnostic& warning : checkQuery(reader, question.text, options))

@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <mutex>
 #include <set>
 
-#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/base/counted_progress.hpp"
 #include "cluxel/base/parallel.hpp"
 #include "scan/pair_evidence.hpp"
 #include "scan/pose_graph.hpp"
@@ -20,22 +19,6 @@ namespace cluxel {
 namespace {
 
 using Poses = std::vector<Eigen::Isometry3d>;
-
-/// Counts finished work for a sink, from any thread.
-class Progress {
- public:
-  Progress(ProgressSink& sink, const char* stage, std::size_t total) : sink_(&sink), stage_(stage), total_(total) {}
-  void step() {
-    const std::lock_guard lock(mutex_);
-    sink_->progress(stage_, ++done_, total_);
-  }
-
- private:
-  ProgressSink* sink_;
-  const char* stage_;
-  std::size_t done_ = 0, total_;
-  std::mutex mutex_;
-};
 
 Eigen::Isometry3d between(const Poses& poses, const ScanPair& pair) { return poses[pair.first].inverse() * poses[pair.second]; }
 
@@ -57,7 +40,7 @@ class Registration {
   /// Generalised ICP of each pair; then poses that fit all pairs that came to a credible end.
   Poses coarse(const std::vector<ScanPair>& pairs, const Poses& given) const {
     std::vector<std::optional<PoseConstraint>> said(pairs.size());
-    Progress progress(*sink_, "register", pairs.size());
+    CountedProgress progress(*sink_, "register", pairs.size());
     parallelFor(pairs.size(), threads_, [&](std::size_t k) {
       said[k] = aligned(pairs[k], between(given, pairs[k]));
       progress.step();

@@ -3,10 +3,10 @@
 #include "scan/registration_scans.hpp"
 
 #include <algorithm>
-#include <mutex>
 #include <numeric>
 #include <optional>
 
+#include "cluxel/base/counted_progress.hpp"
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/base/parallel.hpp"
 #include "scan/scan_layouts.hpp"
@@ -59,14 +59,12 @@ RegistrationScans loadForRegistration(const ScanSet& set, const RegistrationPara
   refuseScansWithoutPose(set);
   std::vector<std::optional<SurfaceCloud>> clouds(set.size());
   std::vector<ScanId> ids(set.size());
-  std::mutex mutex;
-  std::size_t done = 0;
+  CountedProgress progress(sink, "read", set.size());
   parallelFor(set.size(), threads, [&](std::size_t i) {
     const Scan scan = set.load(i);
     ids[i] = scan.id;
     clouds[i].emplace(thinnedToVoxels(scan.points, {.voxel_m = params.voxel_m}));
-    const std::lock_guard lock(mutex);
-    sink.progress("read", ++done, set.size());
+    progress.step();
   });
   RegistrationScans scans;
   for (const std::size_t i : orderOf(set, ids)) {

@@ -7,11 +7,11 @@
 
 #include <charconv>
 #include <cstdio>
-#include <mutex>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "cluxel/base/counted_progress.hpp"
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/base/file_bytes.hpp"
 #include "cluxel/base/parallel.hpp"
@@ -106,8 +106,7 @@ Written writeScans(const Campus& campus, const std::vector<Eigen::Isometry3d>& s
   const Laser laser(campus);
   const std::size_t count = campus.stops.size();
   Written written{.sights = std::vector<InstanceSights>(count), .points = std::vector<std::size_t>(count)};
-  std::mutex sink_mutex;
-  std::size_t done = 0;
+  CountedProgress progress(sink, "scan", count);
   parallelFor(count, threads, [&](std::size_t stop) {
     SimulatedScan simulated = laser.scanAt(stop);
     written.sights[stop] = sightsOf(simulated);
@@ -115,8 +114,7 @@ Written writeScans(const Campus& campus, const std::vector<Eigen::Isometry3d>& s
     simulated.scan.T_map_sensor = stated[stop];
     writeScanFile(simulated.scan, folder / (stemOf(stop) + ".pcd"));
     writeFile(folder / "truth" / (stemOf(stop) + ".truth.gz"), gzip(truthLines(simulated.truth)));
-    const std::lock_guard lock(sink_mutex);
-    sink.progress("scan", ++done, count);
+    progress.step();
   });
   return written;
 }
