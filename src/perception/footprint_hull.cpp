@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "cluxel/base/steady_angle.hpp"
+
 namespace cluxel {
 
 namespace {
@@ -44,7 +46,7 @@ FootprintBox boxAlong(const std::vector<Eigen::Vector2d>& hull, const Eigen::Vec
   box.center = middle.x() * direction + middle.y() * across;
   box.length_m = size.x();
   box.width_m = size.y();
-  box.yaw_rad = std::atan2(direction.y(), direction.x());
+  box.yaw_rad = steady(std::atan2(direction.y(), direction.x()));
   return box;
 }
 

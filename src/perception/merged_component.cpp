@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cluxel/base/steady_angle.hpp"
 #include "cluxel/perception/footprint_hull.hpp"
 
 namespace cluxel {
@@ -20,8 +21,6 @@ Eigen::Vector3d vectorOf(const std::array<float, 3>& values) {
 }
 
 Eigen::Vector3d upward(const Eigen::Vector3d& axis) { return axis.z() < 0 ? Eigen::Vector3d(-axis) : axis; }
-
-double angleToVertical(const Eigen::Vector3d& axis) { return std::acos(std::clamp(std::abs(axis.z()), 0.0, 1.0)); }
 
 double& attributeIn(Primitive& primitive, Attribute attribute) {
   return primitive.attributes[static_cast<std::size_t>(attribute)];
@@ -111,8 +110,8 @@ void MergedComponent::describe(Primitive& primitive) const {
   set(Attribute::Volume, box.length_m * box.width_m * height);
   set(Attribute::Bottom, lowest_), set(Attribute::Top, highest_);
   set(Attribute::ElevationSpan, highest_ - lowest_);
-  set(Attribute::NormalTilt, angleToVertical(primitive.normal));
-  set(Attribute::AxisTilt, angleToVertical(primitive.axis));
+  set(Attribute::NormalTilt, steadyAcos(primitive.normal.z()));
+  set(Attribute::AxisTilt, steadyAcos(primitive.axis.z()));
   set(Attribute::PointCount, points_), set(Attribute::CluxelCount, cluxels_);
   set(Attribute::ViewCount, static_cast<double>(scans_.size()));
   set(Attribute::MeanIntensity, intensity_ / points_);

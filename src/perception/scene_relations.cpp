@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "cluxel/base/steady_angle.hpp"
+
 namespace cluxel {
 
 namespace {
@@ -23,7 +25,7 @@ double insideShare(const Primitive& a, const Primitive& b) {
 }
 
 double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::acos(std::clamp(std::abs(a.dot(b)), 0.0, 1.0));
+  return steadyAcos(a.dot(b));
 }
 
 /// The angle between the directions of two walls or two poles [rad]; pi/2 for other pairs.
@@ -41,8 +43,8 @@ bool isAlongside(const Primitive& a, const Primitive& b) {
   const UprightBox& shorter = a.box.size.x() >= b.box.size.x() ? b.box : a.box;
   if (shorter.size.x() < kShortest_m) return false;
   const double turn = shorter.yaw_rad - longer.yaw_rad;
-  const double half = 0.5 * (std::abs(std::cos(turn)) * shorter.size.x() + std::abs(std::sin(turn)) * shorter.size.y());
-  const Eigen::Vector2d along(std::cos(longer.yaw_rad), std::sin(longer.yaw_rad));
+  const double half = 0.5 * (std::abs(steady(std::cos(turn))) * shorter.size.x() + std::abs(steady(std::sin(turn))) * shorter.size.y());
+  const Eigen::Vector2d along(steady(std::cos(longer.yaw_rad)), steady(std::sin(longer.yaw_rad)));
   const double middle = (shorter.center - longer.center).head<2>().dot(along);
   const double low = std::max(middle - half, -longer.size.x() / 2), high = std::min(middle + half, longer.size.x() / 2);
   return high - low >= half;

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 
+#include "cluxel/base/steady_angle.hpp"
 #include "reasoning/thing.hpp"
 
 namespace cluxel {
@@ -229,8 +230,8 @@ class Measuring {
     at(Attribute::Scattering) = l[0] / l1;
     at(Attribute::Roughness) = std::sqrt(l[0]);
     at(Attribute::Radius) = std::sqrt(l[0] + l[1]);
-    at(Attribute::AxisTilt) = std::acos(std::clamp(shape_.axis.z(), 0.0, 1.0));
-    at(Attribute::NormalTilt) = std::acos(std::clamp(shape_.normal.z(), 0.0, 1.0));
+    at(Attribute::AxisTilt) = steadyAcos(shape_.axis.z());
+    at(Attribute::NormalTilt) = steadyAcos(shape_.normal.z());
   }
 
   static Eigen::Vector3d upward(const Eigen::Vector3d& v) { return v.z() < 0 ? Eigen::Vector3d(-v) : v; }

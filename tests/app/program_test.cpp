@@ -104,6 +104,18 @@ TEST_F(Program, HelpsWithEverySubcommand) {
   EXPECT_EQ(run("--version").out.substr(0, 7), "cluxel ");
 }
 
+/// The C library takes other code for exp, log and sine there. On a processor that has none it is the same code twice.
+TEST_F(Program, AProcessorWithoutFusedMultiplyAddMakesTheSameMap) {
+  const std::string other = path("without_fma.clx").string();
+  ASSERT_EQ(setenv("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX2_Usable,-FMA_Usable", 1), 0);
+  const Outcome built_there = run("build " + path("campus").string() + " -o " + other);
+  unsetenv("GLIBC_TUNABLES");
+  ASSERT_EQ(built_there.code, 0) << built_there.err;
+  const std::string expected = run("export --canonical " + path("map.clx").string()).out;
+  EXPECT_GT(expected.size(), 1000U);
+  EXPECT_EQ(run("export --canonical " + other).out, expected);
+}
+
 TEST_F(Program, InfoKnowsAMapByItsContentNotByItsName) {
   fs::copy_file(path("map.clx"), path("renamed.backup"));
   const Json info = Json::parse(run("info --json " + path("renamed.backup").string()).out);
