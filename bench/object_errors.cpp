@@ -21,6 +21,7 @@
 #include "cluxel/tasks/truth_source.hpp"
 #include "mapping/object_geometry.hpp"
 #include "tasks/object_matching.hpp"
+#include "tasks/truth_class.hpp"
 
 namespace {
 
@@ -87,11 +88,13 @@ class Errors {
       for (const char* name : {"core.ttl", "outdoor.ttl"})
         ontology.push_back({name, readFile(options_.ontology / name)});
     }
-    const RuleSet rules = loadRules(std::vector{options_.rules}, classCatalogueOf(ontology)).require();
+    const ClassCatalogue catalogue = classCatalogueOf(ontology);
+    const RuleSet rules = loadRules(std::vector{options_.rules}, catalogue).require();
     const auto begin = std::chrono::steady_clock::now();
     const ReasoningResult result = reason(map.scene(), rules);
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    ObjectMatching matching(names_, result.objects, truth_->ambiguous());
+    class_of_ = truthClassesOf(result.objects, names_, catalogue);
+    ObjectMatching matching(names_, class_of_, truth_->ambiguous());
     const Overlap overlap = overlapOf(map, result, matching);
     add(matching.scoreByPoints({}), by_points_);
     add(matching.scoreByBox({}), by_box_);
@@ -160,7 +163,7 @@ class Errors {
         matching.add(p, of_class, instance, object);
         const bool right = truth.primitive[i] == static_cast<int>(answers.label[i]);
         note(overlap, p, of_class, instance, object, right);
-        ++by_class_[{of_class, object == kNoObjectOfPoint ? names_.size() : classOf(result.objects[object])}];
+        ++by_class_[{of_class, object == kNoObjectOfPoint ? names_.size() : class_of_[object]}];
       }
     }
     return overlap;
@@ -190,7 +193,6 @@ class Errors {
   std::size_t classNumber(const std::string& name) const {
     return static_cast<std::size_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());
   }
-  std::size_t classOf(const SemanticObject& object) const { return classNumber(localName(object.class_iri)); }
 
   void sortTruths(const Overlap& overlap, const ReasoningResult& result) {
     for (const auto& [instance, truth] : overlap.truths) {
@@ -201,14 +203,14 @@ class Errors {
       const auto& takers = overlap.shared.at(instance);
       for (const auto& [object, count] : takers) {
         if (count > most) most = count, best = object;
-        if (object != kNoObjectOfPoint && classOf(result.objects[object]) == truth.class_number)
+        if (object != kNoObjectOfPoint && class_of_[object] == truth.class_number)
           of_own_class += count, ++pieces;
       }
       const std::string name = names_[truth.class_number];
       std::string cause;
       if (best == kNoObjectOfPoint) {
         cause = "nobody took it";
-      } else if (classOf(result.objects[best]) != truth.class_number) {
+      } else if (class_of_[best] != truth.class_number) {
         cause = "taken by " + result.objects[best].rule_id;
         if (2 * of_own_class >= truth.points) cause = "in pieces, most by " + result.objects[best].rule_id;
       } else {
@@ -267,7 +269,7 @@ class Errors {
   void sortFound(const Overlap& overlap, const ReasoningResult& result) {
     for (std::uint32_t i = 0; i < overlap.found.size(); ++i) {
       const Overlap::Found& found = overlap.found[i];
-      const std::size_t own = classOf(result.objects[i]);
+      const std::size_t own = class_of_[i];
       if (found.points == 0 || names_[own] == "Ground") continue;
       std::size_t most_class = 0;
       std::uint64_t most = 0;
@@ -302,6 +304,7 @@ class Errors {
   const Options& options_;
   std::optional<TruthSource> truth_;
   std::vector<std::string> names_;
+  std::vector<std::size_t> class_of_;       ///< of the objects of the map in hand
   std::vector<ObjectScore> by_points_, by_box_;
   std::map<std::pair<std::size_t, std::size_t>, double> by_class_;
   std::map<std::string, int> missed_, wrong_, sides_;

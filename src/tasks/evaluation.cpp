@@ -8,7 +8,9 @@
 #include <numeric>
 
 #include "cluxel/base/diagnostic.hpp"
+#include "cluxel/mapping/class_catalogue_of.hpp"
 #include "tasks/object_matching.hpp"
+#include "tasks/truth_class.hpp"
 
 namespace cluxel {
 
@@ -31,15 +33,6 @@ Scan scanOf(const MapReader& map, const Cloud& cloud) {
 }
 
 std::vector<std::string> primitiveNames() { return {kPrimitiveLabelNames.begin(), kPrimitiveLabelNames.end()}; }
-
-/// The number of every object's class among the truth's names; their count for a class that the truth does not know.
-std::vector<std::size_t> classNumbers(const std::vector<SemanticObject>& objects, const std::vector<std::string>& names) {
-  std::vector<std::size_t> numbers;
-  for (const SemanticObject& object : objects)
-    numbers.push_back(static_cast<std::size_t>(
-        std::find(names.begin(), names.end(), localName(object.class_iri)) - names.begin()));
-  return numbers;
-}
 
 /// Two scans of one name have one truth file, which cannot be true of both.
 void refuseSharedTruth(const MapReader& map, const TruthSource& source) {
@@ -110,8 +103,9 @@ MapEvaluation evaluateMap(const MapReader& map, const TruthSource& source, const
   const std::vector<std::string> names = source.classNames();
   refuseSharedTruth(map, source);
   MapEvaluation evaluation{ConfusionMatrix(primitiveNames()), ConfusionMatrix(names), false, {}, {}};
-  ObjectMatching matching(names, map.objects(), source.ambiguous());
-  const std::vector<std::size_t> class_of_object = classNumbers(map.objects(), names);
+  const std::vector<std::size_t> class_of_object =
+      truthClassesOf(map.objects(), names, classCatalogueOf(map.inputs().ontology));
+  ObjectMatching matching(names, class_of_object, source.ambiguous());
   // Ground has no ends that two people would agree on: it counts by point only.
   const auto ground = static_cast<std::size_t>(std::find(names.begin(), names.end(), "Ground") - names.begin());
   for (const Cloud& cloud : map.clouds()) {

@@ -22,13 +22,10 @@ double boxIou(Eigen::AlignedBox3d a, Eigen::AlignedBox3d b, double padding_m) {
 
 }  // namespace
 
-ObjectMatching::ObjectMatching(const std::vector<std::string>& class_names, const std::vector<SemanticObject>& objects,
-                               const std::vector<std::int32_t>& ambiguous)
-    : names_(class_names), ambiguous_(ambiguous), found_(objects.size()) {
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    const auto name = std::find(names_.begin(), names_.end(), localName(objects[i].class_iri));
-    found_[i].class_number = static_cast<std::size_t>(name - names_.begin());
-  }
+ObjectMatching::ObjectMatching(const std::vector<std::string>& class_names,
+                               const std::vector<std::size_t>& class_of_object, const std::vector<std::int32_t>& ambiguous)
+    : names_(class_names), ambiguous_(ambiguous), found_(class_of_object.size()) {
+  for (std::size_t i = 0; i < found_.size(); ++i) found_[i].class_number = class_of_object[i];
 }
 
 void ObjectMatching::add(const Eigen::Vector3d& p_map, std::size_t truth_class, std::int32_t instance,

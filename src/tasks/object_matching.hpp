@@ -25,7 +25,8 @@ struct PointSet {
 /// Collects points with truth and answer, then matches.
 class ObjectMatching {
  public:
-  ObjectMatching(const std::vector<std::string>& class_names, const std::vector<SemanticObject>& objects,
+  /// `class_of_object` as truthClassesOf() gives it.
+  ObjectMatching(const std::vector<std::string>& class_names, const std::vector<std::size_t>& class_of_object,
                  const std::vector<std::int32_t>& ambiguous);
   /// A point with known truth class; `instance` -1 and `object` kNoObjectOfPoint mean none.
   void add(const Eigen::Vector3d& p_map, std::size_t truth_class, std::int32_t instance, std::uint32_t object);

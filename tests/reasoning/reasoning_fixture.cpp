@@ -27,6 +27,7 @@ ClassCatalogue outdoorCatalogue() {
     }
     catalogue.classes.push_back(entry);
   }
+  catalogue.classes.push_back({clx("Barrier"), {clx("SmallObject")}, {}});
   return catalogue;
 }
 

@@ -6,6 +6,7 @@
 
 #include "cluxel/knowledge/vocabulary.hpp"
 #include "tasks/object_matching.hpp"
+#include "tasks/truth_class.hpp"
 
 namespace cluxel {
 namespace {
@@ -38,16 +39,30 @@ TEST(ConfusionMatrix, WithoutTruthIsZeroAndNotANumber) {
   EXPECT_EQ(matrix.macroF1(), 0);
 }
 
+TEST(TruthClasses, AreTheOwnOnesOrTheNearestAbove) {
+  using vocabulary::clx;
+  const ClassCatalogue catalogue{{{clx("Thing"), {}, {}},
+                                  {clx("Small"), {clx("Thing")}, {}},
+                                  {clx("Barrier"), {clx("Small")}, {}},
+                                  {clx("Fence"), {clx("Barrier"), clx("Plant")}, {}},
+                                  {clx("Plant"), {clx("Thing")}, {}},
+                                  {clx("Circle"), {clx("Round")}, {}},
+                                  {clx("Round"), {clx("Circle")}, {}}}};
+  std::vector<SemanticObject> objects;
+  for (const char* name : {"Small", "Barrier", "Fence", "Plant", "Thing", "Circle", "Stranger"})
+    objects.emplace_back().class_iri = clx(name);
+  using Numbers = std::vector<std::size_t>;
+  EXPECT_EQ(truthClassesOf(objects, {"Plant", "Small"}, catalogue), (Numbers{1, 1, 0, 0, 2, 2, 2}));
+  EXPECT_EQ(truthClassesOf(objects, {"Small", "Barrier"}, catalogue), (Numbers{0, 1, 1, 2, 2, 2, 2}));
+  EXPECT_EQ(truthClassesOf(objects, {"Barrier", "Plant", "Thing"}, catalogue), (Numbers{2, 0, 0, 1, 2, 3, 3}));
+  EXPECT_EQ(truthClassesOf(objects, {}, catalogue), Numbers(objects.size(), 0));
+}
+
 constexpr std::size_t kTree = 0, kBush = 1;
 
 /// Truth and answers as points on a line, one metre apart.
 class ObjectMatchingByHand : public testing::Test {
  protected:
-  static SemanticObject object(const char* name) {
-    SemanticObject object;
-    object.class_iri = vocabulary::clx(name);
-    return object;
-  }
   /// `count` points from `first_m` on.
   static void add(ObjectMatching& matching, double first_m, int count, std::size_t truth_class, std::int32_t instance,
                   std::uint32_t object) {
@@ -55,7 +70,7 @@ class ObjectMatchingByHand : public testing::Test {
       matching.add({first_m + i, 0, 0}, truth_class, instance, object);
   }
   const std::vector<std::string> names{"Tree", "Bush"};
-  const std::vector<SemanticObject> two_trees_and_a_bush{object("Tree"), object("Tree"), object("Bush")};
+  const std::vector<std::size_t> two_trees_and_a_bush{kTree, kTree, kBush};
   const EvaluationParams params{};
 };
 

@@ -191,6 +191,17 @@ TEST(QuestionsOfACampus, MovableObstaclesAreThoseWhoseClassIsMovable) {
   const ResultTable trees = campus().answer("trees");
   for (std::size_t i = 0; i < trees.row_count; ++i)
     EXPECT_FALSE(listed.contains(textAt(trees, i, "tree"))) << "a tree stays";
+  // A barrier is a small object, and small objects are movable; a barrier stays all the same.
+  const ResultTable objects = campus().answer("objects");
+  std::set<std::string> movable;
+  std::size_t barriers = 0;
+  for (std::size_t i = 0; i < objects.row_count; ++i) {
+    const std::string name = classAt(objects, i);
+    barriers += name == "Barrier";
+    if (name == "Vehicle" || name == "SmallObject") movable.insert(textAt(objects, i, "object"));
+  }
+  EXPECT_GT(barriers, 0U) << "the campus has fences";
+  EXPECT_EQ(listed, movable);
 }
 
 TEST(QuestionsOfACampus, WhatIsNearAPlaceIsWhatALoopFinds) {
