@@ -38,7 +38,7 @@ double likelihoodLoss(const CalibrationRows& rows, double total, std::span<const
     }
     for (std::size_t k = 0; k < kLabels; ++k) {
       const double excess = points * shares[k] / sum - rows.truth[i][k];
-      loss -= rows.truth[i][k] * std::log(shares[k] / sum) / total;
+      if (rows.truth[i][k] > 0) loss -= rows.truth[i][k] * std::log(shares[k] / sum) / total;   // 0 times minus infinity is none
       gradient[0] += excess * logs[k] / total;
       gradient[1 + k] += excess / total;
     }

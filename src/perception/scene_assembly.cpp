@@ -9,6 +9,7 @@
 
 #include "perception/disjoint_sets.hpp"
 #include "perception/merged_component.hpp"
+#include "perception/scene_check.hpp"
 #include "perception/scene_relations.hpp"
 
 namespace cluxel {
@@ -194,6 +195,7 @@ void describe(RelationParams& params, ParameterVisitor& visitor) {
 }
 
 Scene assembleScene(const SceneTiles& tiles, const RelationParams& params) {
+  checkFit(tiles);
   Scene scene;
   scene.cluxels = gatherCluxels(tiles);
   const TileNumbering components(tiles.components);

@@ -133,8 +133,10 @@ void describe(ThinParams& params, ParameterVisitor& visitor) {
 
 Eigen::Vector3f localPoint(const TileKey& key, const Eigen::Vector3d& p_map) {
   const Eigen::Vector3d p = p_map - cornerOf(key);
+  // Just below zero the sum with the corner is the tile's edge itself, which is the next tile's.
+  static constexpr auto kLastStep = static_cast<std::int64_t>(kTileSize_m / kLocalStep_m) - 1;
   const auto rounded = [](double value_m) {
-    return static_cast<float>(static_cast<double>(wholeBelow(value_m / kLocalStep_m)) * kLocalStep_m);
+    return static_cast<float>(static_cast<double>(std::min(wholeBelow(value_m / kLocalStep_m), kLastStep)) * kLocalStep_m);
   };
   return {rounded(p.x()), rounded(p.y()), static_cast<float>(p.z())};
 }

@@ -207,5 +207,27 @@ TEST(ComponentBytes, AreReadBackOrRefused) {
   EXPECT_THROW(componentTileFromBytes(odd), Error);
 }
 
+/// Each block is sound by itself: only together they are seen to be damaged.
+TEST(Scene, RefusesBlocksThatDoNotBelongTogether) {
+  const auto scans = std::vector{scanOf(streetPoints(3))};
+  const auto assembled = [&](const auto& damage) {
+    HandLabelled all = labelled(scans, patches(3));
+    damage(all);
+    return assembleScene({all.tiles.points, all.tiles.cluxels, all.tiles.features, all.tiles.ground, all.labels, all.components, all.contacts}, {});
+  };
+  EXPECT_NO_THROW(assembled([](HandLabelled&) {}));
+  EXPECT_THROW(assembled([](HandLabelled& all) { all.labels.begin()->second.label.pop_back(); }), Error);
+  EXPECT_THROW(assembled([](HandLabelled& all) { all.components.begin()->second.component_of.push_back(0); }), Error);
+  EXPECT_THROW(assembled([](HandLabelled& all) { all.tiles.features.begin()->second.edge_target.front().index = 1 << 27; }), Error);
+  for (auto Contact::* number : {&Contact::from, &Contact::to}) {
+    EXPECT_THROW(assembled([number](HandLabelled& all) {
+      for (auto& [key, tile] : all.contacts) {
+        if (!tile.contacts.empty()) tile.contacts.front().*number = 1U << 30U;
+      }
+    }), Error);
+  }
+  EXPECT_THROW(assembled([](HandLabelled& all) { all.contacts.erase(all.contacts.begin()); }), Error);
+}
+
 }  // namespace
 }  // namespace cluxel::testing

@@ -46,6 +46,21 @@ TEST(TilePoints, EveryPointOfAScanLiesInExactlyOneSegmentAndNearItsMapPlace) {
   EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](int count) { return count == 1; }));
 }
 
+/// Added to the corner at -16 m they are 0 m, though they belong to the tiles before it.
+TEST(TilePoints, PointsJustBelowZeroStayInTheirTile) {
+  Scan scan = scanOf({{-1e-20F, -1e-20F, 0.5F}, {-1e-20F, 3.0F, 0.5F}, {-4e-17F, -5.0F, 0.5F}, {0.0F, 0.0F, 0.5F}, {-1e-6F, -1e-6F, 0.5F}});
+  std::size_t points = 0;
+  for (const auto& [key, segment] : splitScan(scan)) {
+    points += segment.size();
+    EXPECT_EQ(toBytes(scanSegmentFromBytes(toBytes(segment))), toBytes(segment)) << key.x << ' ' << key.y;
+    for (std::size_t i = 0; i < segment.size(); ++i) {
+      EXPECT_LT(segment.x[i], static_cast<float>(kTileSize_m));
+      EXPECT_LT(segment.y[i], static_cast<float>(kTileSize_m));
+    }
+  }
+  EXPECT_EQ(points, scan.points.size());
+}
+
 TEST(TilePoints, RefusesAPointThatIsNoNumberNamingIt) {
   Scan scan = scanOf({{0, 0, 0}, {1, 2, 3}});
   scan.points.y[1] = std::numeric_limits<float>::quiet_NaN();
