@@ -10,11 +10,15 @@
 
 namespace cluxel {
 
+namespace {
+constexpr double kLargestSize_m = 400;
+}
+
 const std::array<CampusParamInfo, 10>& campusParamInfos() {
   using P = CampusParams;
   static const std::array<CampusParamInfo, 10> infos{{
       {"stops", &P::stops, "1", 1, 1000, "scans along the route"},
-      {"size", &P::size_m, "m", 45, 400, "edge of the square campus"},
+      {"size", &P::size_m, "m", 45, kLargestSize_m, "edge of the square campus"},
       {"points-per-stop", &P::points_per_stop, "1", 1000, 2e6, "returns per scan"},
       {"range-sigma", &P::range_sigma_m, "m", 0, 0.2, "standard deviation of the range noise"},
       {"max-range", &P::max_range_m, "m", 5, 300, "farthest return"},
@@ -60,11 +64,11 @@ void check(const CampusParams& params) {
   const auto stops = static_cast<std::size_t>(params.stops);
   if (stops <= maxStops(params.size_m, params.stop_distance_m)) return;
   double roomy_m = std::ceil(params.size_m);
-  while (maxStops(roomy_m, params.stop_distance_m) < stops) roomy_m += 1;
+  while (roomy_m <= kLargestSize_m && maxStops(roomy_m, params.stop_distance_m) < stops) roomy_m += 1;
   throw Error(ExitCode::Usage, "a campus of " + shortNumber(params.size_m) + " m has a route of " +
                                    std::to_string(maxStops(params.size_m, params.stop_distance_m)) + " stops, not " +
-                                   std::to_string(stops) + ": choose fewer stops or a size of " +
-                                   shortNumber(roomy_m) + " m");
+                                   std::to_string(stops) + ": choose fewer stops" +
+                                   (roomy_m <= kLargestSize_m ? " or a size of " + shortNumber(roomy_m) + " m" : ", nearer to each other"));
 }
 
 }  // namespace cluxel

@@ -108,7 +108,7 @@ struct Laser::Impl {
     const CampusMesh& mesh = campus.meshes[hit->mesh];
     if (isLost(*hit, mesh, campus.params.miss_probability, random)) return std::nullopt;
     const double range = hit->range_m + campus.params.range_sigma_m * random.normal();
-    if (range < 0.3 || range > campus.params.max_range_m) return std::nullopt;
+    if (!(range >= 0.3 && range <= campus.params.max_range_m)) return std::nullopt;   // along a triangle it is no number
     const double shine = mesh.reflectivity * (0.4 + 0.6 * hit->cos_incidence) * (1 + 0.06 * random.normal());
     return Return{range * direction, std::clamp(shine, 0.0, 1.0), hit->mesh};
   }

@@ -285,13 +285,15 @@ TEST(Campus, PointsLieWithinTheBoxOfTheirObject) {
 
 TEST(Campus, RefusesParametersOutOfRangeNamingTheRemedy) {
   CampusParams params;
-  params.stops = 500;
-  try {
-    buildCampus(params);
-    FAIL() << "took 500 stops";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::Usage);
-    EXPECT_THAT(error.what(), testing::HasSubstr("choose fewer stops or a size of "));
+  for (const auto& [stops, remedy] : {std::pair(50, "choose fewer stops or a size of "), std::pair(500, "choose fewer stops, nearer to each other")}) {
+    params.stops = stops;
+    try {
+      buildCampus(params);
+      FAIL() << "took " << stops << " stops";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::Usage);
+      EXPECT_THAT(error.what(), testing::HasSubstr(remedy)) << "no campus is larger than 400 m";
+    }
   }
   params = {};
   params.size_m = 10;
