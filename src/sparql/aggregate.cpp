@@ -106,9 +106,15 @@ void Accumulator::add(const AggregateSpec& spec, const Value& value, Runtime& ru
   take(spec, value, runtime);
 }
 
-void Accumulator::countDistinctRow(std::span<const ValueId> row) {
+void Accumulator::countDistinctRow(std::span<const ValueId> row, Runtime& runtime) {
   if (!seen_rows_) seen_rows_ = std::make_unique<RowSet>(row.size());
+  const std::size_t before = seen_rows_->bytes();
   if (seen_rows_->insert(row.data()).second) ++count_;
+  if (seen_rows_->bytes() != before) runtime.guard.charge(seen_rows_->bytes() - before);
+}
+
+std::size_t Accumulator::bytes() const {
+  return (seen_ ? seen_->bytes() : 0) + (seen_rows_ ? seen_rows_->bytes() : 0) + (texts_ ? texts_->size() * sizeof(Value) : 0);
 }
 
 void Accumulator::countText(const Value& value, const AggregateSpec& spec, Runtime& runtime) {

@@ -36,10 +36,12 @@ class Accumulator {
   void add(const AggregateSpec& spec, const Value& value, Runtime& runtime);
   void countRow() { ++count_; }
   /// COUNT(DISTINCT *)
-  void countDistinctRow(std::span<const ValueId> row);
+  void countDistinctRow(std::span<const ValueId> row, Runtime& runtime);
   /// The value of a bound id for COUNT: no decoding.
   void addId(const AggregateSpec& spec, ValueId id, Runtime& runtime);
   ValueId result(const AggregateSpec& spec, Runtime& runtime);
+  /// What it has charged the guard for.
+  std::size_t bytes() const;
 
  private:
   bool isRepeated(const AggregateSpec& spec, ValueId id, Runtime& runtime);

@@ -96,6 +96,7 @@ struct AggregateSpec {
   ast::AggregateFunction function = ast::AggregateFunction::Count;
   bool distinct = false;
   std::optional<Expr> argument;   ///< none: COUNT(*)
+  std::vector<Slot> row_slots;    ///< of COUNT(DISTINCT *): the variables that solutions have
   std::string separator;
   Slot result = kNoSlot;
 };

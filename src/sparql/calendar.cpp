@@ -70,7 +70,7 @@ class Scanner {
   bool year(std::int64_t& out) {
     const bool negative = take('-');
     const std::string_view found = digits();
-    if (found.size() < 4 || found.size() > 12 || (found.size() > 4 && found.front() == '0')) return false;
+    if (found.size() < 4 || found.size() > 11 || (found.size() > 4 && found.front() == '0')) return false;
     out = 0;
     for (const char c : found) out = out * 10 + (c - '0');
     if (negative) out = -out;
@@ -177,6 +177,19 @@ Decimal CalendarTime::timeline(int missing_zone_minutes) const {
   const std::int64_t whole = daysFromCivil(year, month, day) * kSecondsPerDay + hour * 3600 + minute * 60 -
                              std::int64_t{zone_minutes.value_or(missing_zone_minutes)} * 60;
   return *Decimal::add(Decimal(whole), second);
+}
+
+CalendarTime withoutAbsentParts(CalendarKind kind, CalendarTime time) {
+  using Kind = CalendarKind;
+  const CalendarTime absent;
+  const bool has_clock = kind == Kind::DateTime || kind == Kind::Time, is_day = kind == Kind::DateTime || kind == Kind::Date;
+  if (!has_clock) time.hour = absent.hour, time.minute = absent.minute, time.second = absent.second;
+  if (!is_day && kind != Kind::YearMonth && kind != Kind::Year) time.year = absent.year;
+  if (kind == Kind::Time || kind == Kind::Day) time.month = absent.month;
+  if (kind == Kind::Time) time.day = absent.day;
+  if (kind == Kind::Year) time.month = 1;
+  if (kind == Kind::Year || kind == Kind::YearMonth || kind == Kind::Month) time.day = 1;
+  return time;
 }
 
 std::optional<CalendarTime> parseCalendar(CalendarKind kind, std::string_view text) {

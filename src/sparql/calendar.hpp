@@ -27,7 +27,9 @@ struct CalendarTime {
 /// Kinds of xsd:dateTime-like literals, by the parts that are written.
 enum class CalendarKind : std::uint8_t { DateTime, Date, Time, YearMonth, Year, MonthDay, Day, Month };
 
-/// Nothing when the text is not in the lexical space.
+/// The parts that are not written at their defaults, where a cast or a sum has left something of them.
+CalendarTime withoutAbsentParts(CalendarKind kind, CalendarTime time);
+/// Nothing when the text is not in the lexical space, or its year has more than 11 digits: seconds fit 64 bits.
 std::optional<CalendarTime> parseCalendar(CalendarKind kind, std::string_view text);
 std::string formatCalendar(CalendarKind kind, const CalendarTime& value);
 

@@ -15,6 +15,7 @@ class DistinctOperator : public UnaryOperator {
  protected:
   void reopen(bool fresh) override {
     UnaryOperator::reopen(fresh);
+    runtime().guard.release(seen_.bytes());
     seen_.clear();
     in_.columns.resize(runtime().slot_count);
   }

@@ -122,7 +122,10 @@ Value Evaluator::arithmetic(const Expr& expression, const Batch& batch, std::siz
   const Value a = value(expression.arguments[0], batch, row);
   if (!a) return {};
   if (expression.kind == Kind::Negate) return negateValue(a, runtime_.terms);
-  if (expression.kind == Kind::Plus) return a.isNumeric() ? a : Value();
+  if (expression.kind == Kind::Plus) {
+    if (a.type == Value::Type::Integer) return Value::ofInteger(runtime_.terms.exactOf(a));   // no longer a derived type
+    return a.isNumeric() ? a : Value();
+  }
   const Value b = value(expression.arguments[1], batch, row);
   if (!b) return {};
   switch (expression.kind) {

@@ -104,24 +104,18 @@ class ExtendOperator : public UnaryOperator {
         const ValueId id = runtime().terms.intern(evaluator.value(expression, in_, row));
         ValueId& cell = in_.columns[slot][row];
         // A variable that the solution brings along from outside must agree.
-        if (runtime().terms.computedBytes() > charged_ + kUncharged) chargeForTerms();
+        if (runtime().terms.computedBytes() > runtime().charged_for_terms + kUncharged) runtime().chargeForTerms();
         agrees = agrees && (cell == kUnbound || id == kUnbound || cell == id);
         if (id != kUnbound) cell = id;
       }
       if (agrees) kept_.push_back(row);
     }
-    chargeForTerms();
     if (kept_.size() == in_.rows) {
       std::swap(in_, out);
       return;
     }
     appendRows(in_, kept_, slots_, 0, out);
     out.rows = kept_.size();
-  }
-  void chargeForTerms() {
-    const std::size_t bytes = runtime().terms.computedBytes();
-    if (bytes > charged_) runtime().guard.charge(bytes - charged_);
-    charged_ = bytes;
   }
 
   std::vector<std::pair<Slot, Expr>> columns_;
@@ -130,7 +124,6 @@ class ExtendOperator : public UnaryOperator {
   Batch in_;
   std::vector<std::uint32_t> kept_;
   static constexpr std::size_t kUncharged = 1 << 20;
-  std::size_t charged_ = 0;
   bool fresh_ = true;
 };
 

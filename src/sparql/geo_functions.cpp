@@ -25,7 +25,7 @@ std::shared_ptr<const Geometry> geometryOf(const Value& value, FunctionContext& 
 template <typename Test>
 Value relate(Arguments arguments, FunctionContext& context, Test test) {
   const auto a = geometryOf(arguments[0], context), b = geometryOf(arguments[1], context);
-  if (!a || !b) return {};
+  if (!a || !b || !mayMeasure(*a, *b)) return {};
   return Value::boolean(test(*a, *b));
 }
 
@@ -34,11 +34,12 @@ Value relate(Arguments arguments, FunctionContext& context, Test test) {
 Value geoDistanceFunction(Arguments arguments, FunctionContext& context) {
   // The unit may be named; only metres are known.
   if (arguments.size() == 3) {
-    const std::string unit = context.terms.textOf(arguments[2]);
-    if (!unit.ends_with("metre") && !unit.ends_with("meter")) return {};
+    const std::string iri = context.terms.textOf(arguments[2]);
+    const std::string_view unit = std::string_view(iri).substr(iri.find_last_of("/#:") + 1);
+    if (unit != "metre" && unit != "meter") return {};
   }
   const auto a = geometryOf(arguments[0], context), b = geometryOf(arguments[1], context);
-  if (!a || !b) return {};
+  if (!a || !b || !mayMeasure(*a, *b)) return {};
   const double distance_m = distanceBetween(*a, *b);
   return std::isfinite(distance_m) ? Value::ofDouble(distance_m) : Value();
 }
@@ -65,7 +66,7 @@ Value sfTouchesFunction(Arguments arguments, FunctionContext& context) {
 
 Value envelopeFunction(Arguments arguments, FunctionContext& context) {
   const auto geometry = geometryOf(arguments[0], context);
-  if (!geometry) return {};
+  if (!geometry || !std::isfinite(boundsOf(*geometry).min_x)) return {};
   const Term term = Term::literal(envelopeWkt(*geometry), wktDatatype());
   return context.terms.valueOf(context.terms.intern(term));
 }

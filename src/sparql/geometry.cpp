@@ -72,20 +72,34 @@ bool anyPair(const Geometry& a, const Geometry& b, Test test) {
          (!a.polygons.empty() && against(a.polygons));
 }
 
+/// Calls `test` with the parts of a geometry that there are, until it is true.
+template <typename Test>
+bool anyKind(const Geometry& geometry, Test test) {
+  return (!geometry.polygons.empty() && test(geometry.polygons)) || (!geometry.lines.empty() && test(geometry.lines)) ||
+         (!geometry.points.empty() && test(geometry.points));
+}
+
+/// A part against each kind of the outer geometry's parts that can hold it: lines no areas, points neither.
 struct Within {
   const Geometry& outer;
 
-  /// A point lies within the union of the parts when one part's interior has it.
-  bool of(const Point& point) const {
-    return (!outer.polygons.empty() && bg::within(point, outer.polygons)) ||
-           (!outer.lines.empty() && bg::within(point, outer.lines)) ||
-           (!outer.points.empty() && bg::within(point, outer.points));
+  /// Borders count as well.
+  bool covers(const Point& point) const {
+    return anyKind(outer, [&point](const auto& parts) { return bg::covered_by(point, parts); });
   }
-  bool of(const Line& line) const {
-    return (!outer.polygons.empty() && bg::within(line, outer.polygons)) ||
-           (!outer.lines.empty() && bg::within(line, outer.lines));
+  bool covers(const Line& line) const {
+    return (!outer.polygons.empty() && bg::covered_by(line, outer.polygons)) || (!outer.lines.empty() && bg::covered_by(line, outer.lines));
   }
-  bool of(const Polygon& polygon) const { return !outer.polygons.empty() && bg::within(polygon, outer.polygons); }
+  bool covers(const Polygon& polygon) const { return !outer.polygons.empty() && bg::covered_by(polygon, outer.polygons); }
+
+  /// The interior has something of the part.
+  bool holds(const Point& point) const {
+    return anyKind(outer, [&point](const auto& parts) { return bg::within(point, parts); });
+  }
+  bool holds(const Line& line) const {
+    return (!outer.polygons.empty() && bg::within(line, outer.polygons)) || (!outer.lines.empty() && bg::within(line, outer.lines));
+  }
+  bool holds(const Polygon& polygon) const { return covers(polygon); }
 };
 
 }  // namespace
@@ -132,6 +146,8 @@ Box2 boundsOf(const Geometry& geometry) {
   return box;
 }
 
+bool mayMeasure(const Geometry& a, const Geometry& b) { return a.crs.empty() || b.crs.empty() || a.crs == b.crs; }
+
 double distanceBetween(const Geometry& a, const Geometry& b) {
   double least = std::numeric_limits<double>::infinity();
   anyPair(a, b, [&least](const auto& part, const auto& other) {
@@ -145,12 +161,16 @@ bool intersects(const Geometry& a, const Geometry& b) {
   return anyPair(a, b, [](const auto& part, const auto& other) { return bg::intersects(part, other); });
 }
 
+/// Nothing of it is outside, and something is inside.
 bool within(const Geometry& a, const Geometry& b) {
   const Within test{b};
   const auto all = [&test](const auto& parts) {
-    return std::all_of(parts.begin(), parts.end(), [&test](const auto& part) { return test.of(part); });
+    return std::all_of(parts.begin(), parts.end(), [&test](const auto& part) { return test.covers(part); });
   };
-  return all(a.points) && all(a.lines) && all(a.polygons);
+  const auto any = [&test](const auto& parts) {
+    return std::any_of(parts.begin(), parts.end(), [&test](const auto& part) { return test.holds(part); });
+  };
+  return all(a.points) && all(a.lines) && all(a.polygons) && (any(a.points) || any(a.lines) || any(a.polygons));
 }
 
 bool touches(const Geometry& a, const Geometry& b) {

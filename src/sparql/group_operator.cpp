@@ -15,7 +15,7 @@ class GroupOperator : public UnaryOperator {
                 std::vector<Slot> parameters, std::vector<ExistsPlan> exists)
       : UnaryOperator(std::move(child)), keys_(std::move(keys)), aggregates_(std::move(aggregates)),
         grouped_by_keys_(grouped_by_keys), parameters_(std::move(parameters)), exists_(std::move(exists)),
-        groups_(keys_.size()), child_slots_(child_->slots()) {
+        groups_(keys_.size()) {
     slots_ = mergedSlots(keys_, parameters_);
     for (const AggregateSpec& aggregate : aggregates_) {
       slots_ = mergedSlots(slots_, {aggregate.result});
@@ -34,6 +34,8 @@ class GroupOperator : public UnaryOperator {
   void reopen(bool fresh) override {
     UnaryOperator::reopen(fresh);
     fresh_ = fresh;
+    for (const Accumulator& accumulator : accumulators_) runtime().guard.release(accumulator.bytes());
+    runtime().guard.release(groups_.size() * bytesOfGroup());
     groups_.clear();
     accumulators_.clear();
     done_ = false;
@@ -70,10 +72,12 @@ class GroupOperator : public UnaryOperator {
     if (groups_.size() == 0 && !grouped_by_keys_) newGroup(nullptr);
   }
 
+  std::size_t bytesOfGroup() const { return aggregates_.size() * sizeof(Accumulator) + keys_.size() * 8; }
+
   void newGroup(const ValueId* key) {
     if (key == nullptr) groups_.insert(kNoKey.data());
     accumulators_.resize(accumulators_.size() + aggregates_.size());
-    runtime().guard.charge(aggregates_.size() * sizeof(Accumulator) + keys_.size() * 8);
+    runtime().guard.charge(bytesOfGroup());
   }
 
   void assignGroups(const Batch& in) {
@@ -109,15 +113,15 @@ class GroupOperator : public UnaryOperator {
 
   /// COUNT(*)
   void feedRows(const Batch& in, const AggregateSpec& spec, std::size_t number) {
-    std::vector<ValueId> cells(child_slots_.size());
+    std::vector<ValueId> cells(spec.row_slots.size());
     for (std::size_t row = 0; row < in.rows; ++row) {
       Accumulator& accumulator = accumulators_[group_of_row_[row] * aggregates_.size() + number];
       if (!spec.distinct) {
         accumulator.countRow();
         continue;
       }
-      for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = in.at(child_slots_[i], row);
-      accumulator.countDistinctRow(cells);
+      for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = in.at(spec.row_slots[i], row);
+      accumulator.countDistinctRow(cells, runtime());
     }
   }
 
@@ -138,7 +142,6 @@ class GroupOperator : public UnaryOperator {
   std::vector<Slot> parameters_;
   std::vector<ExistsPlan> exists_;
   RowSet groups_;
-  std::vector<Slot> child_slots_;
   std::vector<Accumulator> accumulators_;
   std::vector<std::uint32_t> group_of_row_;
   bool done_ = false, fresh_ = true;

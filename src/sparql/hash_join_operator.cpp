@@ -25,6 +25,7 @@ class BuildSide {
   void reopen(Runtime& runtime, bool fresh) {
     if (!fresh && built_) return;
     table_.clear(runtime.guard);
+    index_.clear(runtime.guard);
     built_ = false;
     source_->open(runtime, fresh);
   }
@@ -39,9 +40,10 @@ class BuildSide {
   const Operator* source() const { return source_.get(); }
 
   /// The first row from `candidate` on in its chain that agrees with the probing row; kEnd when there is none.
-  std::uint32_t match(const Batch& probe, std::size_t row, std::uint32_t candidate) const {
-    for (; candidate != RowIndex::kEnd; candidate = index_.next(candidate)) {
+  std::uint32_t match(const Batch& probe, std::size_t row, std::uint32_t candidate, Guard& guard) const {
+    for (std::size_t passed = 0; candidate != RowIndex::kEnd; candidate = index_.next(candidate)) {
       if (agrees(probe, row, table_.row(candidate))) return candidate;
+      if (++passed % kCounted == 0) guard.work(kCounted);
     }
     return candidate;
   }
@@ -57,7 +59,7 @@ class BuildSide {
   std::uint32_t next(std::uint32_t row) const { return index_.next(row); }
 
  private:
-  static constexpr std::size_t kTogether = 64;
+  static constexpr std::size_t kTogether = 64, kCounted = 256;   // candidates passed over count as work too
   std::uint64_t hashOf(const Batch& probe, std::size_t row) const {
     return hashOfKey(keys_.size(), [&](std::size_t i) { return probe.at(keys_[i], row); });
   }
@@ -132,13 +134,13 @@ class HashJoinOperator : public UnaryOperator {
         }
         current_ = row_++;
         build_.expectFrom(in_, current_);
-        candidate_ = build_.match(in_, current_, build_.first(in_, current_));
+        candidate_ = build_.match(in_, current_, build_.first(in_, current_), runtime().guard);
         continue;
       }
       from_.push_back(static_cast<std::uint32_t>(current_));
       matched_.push_back(candidate_);
       ++out.rows;
-      candidate_ = build_.match(in_, current_, build_.next(candidate_));
+      candidate_ = build_.match(in_, current_, build_.next(candidate_), runtime().guard);
     }
     finishSegment(out);
     return out.rows > 0;
@@ -195,8 +197,8 @@ class MinusOperator : public RowFilter {
   bool passes(const Batch& in, std::uint32_t row) override {
     build_.expectFrom(in, row);
     std::uint64_t looked = 0;
-    for (std::uint32_t found = build_.match(in, row, build_.first(in, row)); found != RowIndex::kEnd;
-         found = build_.match(in, row, build_.next(found))) {
+    for (std::uint32_t found = build_.match(in, row, build_.first(in, row), runtime().guard); found != RowIndex::kEnd;
+         found = build_.match(in, row, build_.next(found), runtime().guard)) {
       if (sharesBound(in, row, build_.table().row(found))) return false;
       if (++looked % 1024 == 0) runtime().guard.work(1024);
     }

@@ -20,7 +20,7 @@ double roundHalfUp(double value) {
 template <typename Real, typename Exact>
 Value rounded(const Value& value, FunctionContext& context, Real real, Exact exact) {
   switch (value.type) {
-    case Type::Integer: return value;
+    case Type::Integer: return Value::ofInteger(context.terms.exactOf(value));   // of xsd:integer, whatever it was derived to
     case Type::Decimal: return Value::ofDecimal(exact(context.terms.exactOf(value)));
     case Type::Float: return Value::ofFloat(static_cast<float>(real(value.number)));
     case Type::Double: return Value::ofDouble(real(value.number));
@@ -35,7 +35,8 @@ Value absFunction(Arguments arguments, FunctionContext& context) {
   if (!value.isNumeric()) return {};
   if (value.type == Type::Float) return Value::ofFloat(std::abs(static_cast<float>(value.number)));
   if (value.type == Type::Double) return Value::ofDouble(std::abs(value.number));
-  return context.terms.exactOf(value).isNegative() ? negateValue(value, context.terms) : value;
+  const Decimal exact = context.terms.exactOf(value), size = exact.isNegative() ? -exact : exact;
+  return value.type == Type::Integer ? Value::ofInteger(size) : Value::ofDecimal(size);
 }
 
 Value ceilFunction(Arguments arguments, FunctionContext& context) {

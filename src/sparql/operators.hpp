@@ -38,6 +38,7 @@ class Operator {
     padColumns(out, slots_);
     actual_rows_ += out.rows;
     runtime_->guard.work(out.rows);
+    runtime_->chargeForTerms();
     if (target_ < kLastTarget) target_ *= 4;
     return true;
   }

@@ -38,6 +38,7 @@ class OrderOperator : public UnaryOperator {
     done_ = false;
     given_ = 0;
     table_.clear(runtime().guard);
+    runtime().guard.release(fast_.size() * sizeof(OrderKey));
     fast_.clear();
     columns_.assign(keys_.size(), {});
     is_full_ = false;

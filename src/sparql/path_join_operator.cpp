@@ -30,11 +30,15 @@ class PathJoinOperator : public UnaryOperator {
  protected:
   void reopen(bool fresh) override {
     UnaryOperator::reopen(fresh);
-    if (fresh) walkers_.clear();
+    if (fresh) {
+      for (const auto& [graph, walker] : walkers_) walker->forget();
+      walkers_.clear();
+    }
     in_.columns.resize(runtime().slot_count);
     in_.rows = row_ = 0;
     found_.clear();
     next_found_ = 0;
+    waiting_.clear();
   }
 
   bool produce(Batch& out) override {
@@ -42,6 +46,7 @@ class PathJoinOperator : public UnaryOperator {
       if (next_found_ == found_.size()) {
         found_.clear();
         next_found_ = 0;
+        if (searchNextStart()) continue;
         if (row_ >= in_.rows) {
           finishSegment(out);
           if (!child_->next(in_)) break;
@@ -65,6 +70,13 @@ class PathJoinOperator : public UnaryOperator {
  private:
   struct Match {
     ValueId subject, object, graph;
+  };
+  /// Nodes of a graph that paths of the row at hand may begin at.
+  struct Waiting {
+    PathWalker* walker;
+    TermId graph;
+    PathWalker::Nodes starts;
+    std::size_t next;
   };
 
   static void write(Batch& out, const PatternPlace& place, ValueId id) {
@@ -114,8 +126,18 @@ class PathJoinOperator : public UnaryOperator {
     } else if (object != kUnbound) {
       fromEnd(*walker, object, kUnbound, false, graph);
     } else {
-      for (const ValueId start : walker->starts(*pattern_.path)) fromEnd(*walker, start, kUnbound, true, graph);
+      waiting_.push_back({walker.get(), graph, walker->starts(*pattern_.path), 0});
     }
+  }
+
+  /// From one of the nodes at which the row's paths may begin, so that those who want few pairs do not wait for all; false
+  /// when none is left.
+  bool searchNextStart() {
+    while (!waiting_.empty() && waiting_.back().next == waiting_.back().starts.size()) waiting_.pop_back();
+    if (waiting_.empty()) return false;
+    Waiting& last = waiting_.back();
+    fromEnd(*last.walker, last.starts[last.next++], kUnbound, true, last.graph);
+    return true;
   }
 
   /// `end` is the known end; `other` the one it must lead to, or kUnbound.
@@ -142,6 +164,7 @@ class PathJoinOperator : public UnaryOperator {
   Batch in_;
   std::size_t row_ = 0, current_ = 0;
   std::vector<Match> found_;
+  std::vector<Waiting> waiting_;
   std::size_t next_found_ = 0;
   std::vector<std::uint32_t> from_;
 };

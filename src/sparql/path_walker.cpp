@@ -8,7 +8,7 @@ namespace cluxel::sparql {
 namespace {
 
 using Kind = ast::Path::Kind;
-constexpr std::size_t kMostKnownNodes = 4'000'000;
+constexpr std::size_t kMostKnownBytes = 64 << 20, kBytesOfEntry = 96;
 
 void makeUnique(PathWalker::Nodes& nodes) {
   std::sort(nodes.begin(), nodes.end());
@@ -44,14 +44,19 @@ const PathWalker::Nodes& PathWalker::reach(const CompiledPath& path, ValueId nod
   const Key key{&path, node, forward};
   const auto known = known_.find(key);
   if (known != known_.end()) return known->second;
-  if (known_nodes_ > kMostKnownNodes) {
-    known_.clear();
-    known_nodes_ = 0;
-  }
   Nodes nodes;
   step(path, node, forward, nodes);
-  known_nodes_ += nodes.size() + 1;
+  const std::size_t bytes = nodes.size() * sizeof(ValueId) + kBytesOfEntry;
+  if (known_bytes_ + bytes > kMostKnownBytes || !runtime_.guard.hasRoomFor(2 * bytes)) forget();
+  runtime_.guard.charge(bytes);
+  known_bytes_ += bytes;
   return known_.emplace(key, std::move(nodes)).first->second;
+}
+
+void PathWalker::forget() {
+  runtime_.guard.release(known_bytes_);
+  known_bytes_ = 0;
+  known_.clear();
 }
 
 void PathWalker::step(const CompiledPath& path, ValueId node, bool forward, Nodes& out) {

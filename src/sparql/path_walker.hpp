@@ -23,6 +23,8 @@ class PathWalker {
   Nodes starts(const CompiledPath& path);
   /// The node is a subject or object in the graph.
   bool isNode(ValueId node);
+  /// Drops what reach() has kept, and gives its memory back to the budget.
+  void forget();
 
  private:
   struct Key {
@@ -47,7 +49,7 @@ class PathWalker {
   GraphFilter graphs_;
   PrefixLookup by_subject_, by_predicate_, by_object_;
   std::unordered_map<Key, Nodes, KeyHash> known_;
-  std::size_t known_nodes_ = 0;
+  std::size_t known_bytes_ = 0;   ///< charged
 };
 
 }  // namespace cluxel::sparql

@@ -60,6 +60,21 @@ std::optional<Expr> beforeBinds(const Expr& condition, const std::vector<const N
 
 }  // namespace
 
+/// Those at the front share one operator, so that BNODE("x") means one node within a solution. An EXISTS is
+/// answered before its operator computes anything: it begins another one where it looks at what these bind.
+std::vector<const Node*> Planner::neighbouringBinds(std::span<const Postponed> steps) {
+  std::vector<const Node*> binds;
+  SlotSet given;
+  for (const Postponed& step : steps) {
+    if (step.kind != Postponed::Kind::Extend) break;
+    const Expr& expression = *step.node->expression;
+    if (hasExists(expression) && given.intersects(expression.slots())) break;
+    binds.push_back(step.node);
+    given.add(step.node->slot);
+  }
+  return binds;
+}
+
 Planner::State Planner::extend(State state, const std::vector<const Node*>& nodes) {
   std::vector<std::pair<Slot, Expr>> columns;
   std::vector<const Expr*> expressions;

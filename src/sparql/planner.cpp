@@ -170,11 +170,8 @@ Planner::State Planner::applyPostponed(State state, Parts& parts, std::vector<bo
     if (step.kind == Postponed::Kind::Minus) state = minus(std::move(state), *step.node);
     std::vector<const Node*> binds;
     if (step.kind == Postponed::Kind::Extend) {
-      // Neighbouring binds share one operator, so that BNODE("x") means one node within a solution.
-      binds = {step.node};
-      while (i + 1 < parts.postponed.size() && parts.postponed[i + 1].kind == Postponed::Kind::Extend) {
-        binds.push_back(parts.postponed[++i].node);
-      }
+      binds = neighbouringBinds(std::span(parts.postponed).subspan(i));
+      i += binds.size() - 1;
     }
     SlotSet to_come;
     for (std::size_t k = i + 1; k < parts.postponed.size(); ++k) {

@@ -68,6 +68,7 @@ class Planner {
   State applyPostponed(State state, Parts& parts, std::vector<bool>& used);
   State leftJoin(State state, const Node& node);
   State minus(State state, const Node& node);
+  static std::vector<const Node*> neighbouringBinds(std::span<const Postponed> steps);
   State extend(State state, const std::vector<const Node*>& nodes);
   State applyFilters(State state, Parts& parts, const SlotSet& still_to_come, std::vector<bool>& used);
   State filter(State state, std::vector<Expr> conditions);

@@ -64,7 +64,6 @@ void PreparedQuery::Impl::setParameters(const std::vector<Binding>& bindings) {
 
 void PreparedQuery::Impl::begin(const std::vector<Binding>& bindings) {
   terms.rewind(mark);
-  runtime->guard.start(options.budget, used_by_services);
   setParameters(bindings);
   if (algebra.is_volatile || !query.construct_template.empty()) {
     functions.random.seed(options.seed ? *options.seed : std::random_device{}());
@@ -72,7 +71,10 @@ void PreparedQuery::Impl::begin(const std::vector<Binding>& bindings) {
     functions.fresh_labels = 0;
     functions.now_us = options.now_us ? *options.now_us : clockMicroseconds();
   }
+  // Opened first: the operators give back what they hold of the last run.
   plan->open(*runtime, true);
+  runtime->guard.start(options.budget, used_by_services);
+  runtime->charged_for_terms = terms.computedBytes();
   has_run = true;
 }
 

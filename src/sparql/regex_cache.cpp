@@ -7,12 +7,13 @@
 
 #include <algorithm>
 
+#include "sparql/regex_pattern.hpp"
 #include "sparql/text_size.hpp"
 
 namespace cluxel::sparql {
 namespace {
 
-constexpr std::uint32_t kMostSteps = 10'000'000;
+constexpr std::uint32_t kMostSteps = 10'000'000, kMostHeapKib = 256 * 1024;
 constexpr std::size_t kMostCompiled = 1000;
 
 struct Deleter {
@@ -29,7 +30,7 @@ std::optional<std::uint32_t> optionsOf(const std::string& flags) {
       case 'i': options |= PCRE2_CASELESS; break;
       case 's': options |= PCRE2_DOTALL; break;
       case 'm': options |= PCRE2_MULTILINE; break;
-      case 'x': options |= PCRE2_EXTENDED; break;
+      case 'x': break;   // see pcrePattern()
       case 'q': options |= PCRE2_LITERAL; break;
       default: return std::nullopt;
     }
@@ -52,13 +53,19 @@ struct CompiledRegex {
   int match(std::string_view text, std::size_t from, std::uint32_t options = 0) const {
     // The match at 0 has looked at all of the text; looking again for each replacement would be quadratic.
     if (from > 0) options |= PCRE2_NO_UTF_CHECK;
-    const int found = pcre2_match(code.get(), reinterpret_cast<PCRE2_SPTR>(text.data()), text.size(), from, options,
-                                  data.get(), context.get());
+    int found = run(text, from, options);
+    // Long texts may need more than the small stack of compiled patterns; the interpreter takes what it needs.
+    if (found == PCRE2_ERROR_JIT_STACKLIMIT) found = run(text, from, options | PCRE2_NO_JIT);
     if (found == PCRE2_ERROR_MATCHLIMIT || found == PCRE2_ERROR_DEPTHLIMIT || found == PCRE2_ERROR_HEAPLIMIT ||
-        found == PCRE2_ERROR_JIT_STACKLIMIT) {
+        found == PCRE2_ERROR_NOMEMORY) {
       throw Error(ExitCode::BudgetExceeded, "query: a regular expression takes too many steps; make it simpler");
     }
     return std::max(found, 0);
+  }
+
+ private:
+  int run(std::string_view text, std::size_t from, std::uint32_t options) const {
+    return pcre2_match(code.get(), reinterpret_cast<PCRE2_SPTR>(text.data()), text.size(), from, options, data.get(), context.get());
   }
 };
 
@@ -73,9 +80,12 @@ const CompiledRegex* RegexCache::find(const std::string& pattern, const std::str
   std::unique_ptr<CompiledRegex>& entry = compiled_[key];
   const auto options = optionsOf(flags);
   if (!options) return nullptr;
+  const bool is_literal = (*options & PCRE2_LITERAL) != 0;
+  const auto translated = is_literal ? std::optional(pattern) : pcrePattern(pattern, flags.find('x') != std::string::npos);
+  if (!translated) return nullptr;
   int error = 0;
   std::size_t at = 0;
-  std::unique_ptr<pcre2_code, Deleter> code(pcre2_compile(reinterpret_cast<PCRE2_SPTR>(pattern.data()), pattern.size(),
+  std::unique_ptr<pcre2_code, Deleter> code(pcre2_compile(reinterpret_cast<PCRE2_SPTR>(translated->data()), translated->size(),
                                                           *options, &error, &at, nullptr));
   if (!code) return nullptr;
   pcre2_jit_compile(code.get(), PCRE2_JIT_COMPLETE);
@@ -84,7 +94,8 @@ const CompiledRegex* RegexCache::find(const std::string& pattern, const std::str
   entry->data.reset(pcre2_match_data_create_from_pattern(entry->code.get(), nullptr));
   entry->context.reset(pcre2_match_context_create(nullptr));
   pcre2_set_match_limit(entry->context.get(), kMostSteps);
-  entry->literal = flags.find('q') != std::string::npos;
+  pcre2_set_heap_limit(entry->context.get(), kMostHeapKib);
+  entry->literal = is_literal;
   return entry.get();
 }
 

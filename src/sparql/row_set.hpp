@@ -72,8 +72,8 @@ class RowSet {
   std::size_t size() const { return rows_; }
   std::size_t bytes() const { return cells_.capacity() * sizeof(ValueId) + places_.size() * sizeof(std::uint32_t); }
   void clear() {
-    cells_.clear();
-    places_.clear();
+    cells_ = {};
+    places_ = {};
     rows_ = 0;
   }
 

@@ -88,6 +88,7 @@ class RowIndex {
     columns_ = std::move(columns);
     std::size_t buckets = 16;
     while (buckets < table.rows() * 2) buckets *= 2;
+    clear(guard);
     guard.charge((buckets + table.rows()) * sizeof(std::uint32_t));
     heads_.assign(buckets, kEnd);
     next_.resize(table.rows());
@@ -96,6 +97,11 @@ class RowIndex {
       next_[i] = head;
       head = static_cast<std::uint32_t>(i);
     }
+  }
+  void clear(Guard& guard) {
+    guard.release((heads_.size() + next_.size()) * sizeof(std::uint32_t));
+    heads_.clear();
+    next_.clear();
   }
   std::uint32_t first(std::uint64_t hash) const { return heads_[bucketOf(hash)]; }
   std::uint32_t next(std::uint32_t row) const { return next_[row]; }

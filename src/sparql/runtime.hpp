@@ -52,10 +52,18 @@ struct Runtime {
   FunctionContext& functions;
   const Dataset& dataset;
   Guard guard;
+  std::size_t charged_for_terms = 0;
   std::size_t slot_count;
   std::vector<ValueId> parameters;   ///< by slot: what every solution starts with
   /// For each Exists of the query its answers for the rows of the batch at hand.
   std::vector<std::vector<std::uint8_t>> exists_results;
+
+  /// For the terms that were computed since.
+  void chargeForTerms() {
+    const std::size_t bytes = terms.computedBytes();
+    if (bytes > charged_for_terms) guard.charge(bytes - charged_for_terms);
+    charged_for_terms = bytes;
+  }
 };
 
 /// Computes expressions for rows of a batch.

@@ -18,6 +18,13 @@ NodePtr AlgebraBuilder::grouped(NodePtr node, const ast::Select& select, Scope& 
     node = extend(node, slot, std::move(key), condition.expression.at);
     group->slots.push_back(slot);
   }
+  for (AggregateSpec& aggregate : aggregates) {
+    if (aggregate.argument || !aggregate.distinct) continue;
+    // Blank nodes and the steps of paths are no variables.
+    for (const Slot slot : node->possible.list()) {
+      if (!slot_names_[slot].starts_with('.')) aggregate.row_slots.push_back(slot);
+    }
+  }
   group->children = {std::move(node)};
   group->aggregates = std::move(aggregates);
   group->annotate();

@@ -2,6 +2,7 @@
 // Values from terms and terms from values.
 #include "sparql/value.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -41,6 +42,20 @@ std::string canonicalReal(Real value) {
   return mantissa + "E" + std::to_string(exponent);
 }
 
+/// Of a number outside of the range: whether it is too near to zero, told by where its first digit stands.
+bool isTiny(std::string_view text) {
+  const std::size_t e = std::min(text.find_first_of("eE"), text.size());
+  const std::string_view mantissa = text.substr(0, e);
+  const std::size_t first = std::min(mantissa.find_first_of("123456789"), e), point = std::min(mantissa.find('.'), e);
+  const std::string_view exponent = e < text.size() ? text.substr(e + 1) : std::string_view();
+  const bool negative = exponent.starts_with('-');
+  long long power = 0;
+  for (const char c : exponent) {
+    if (c >= '0' && c <= '9') power = std::min(power * 10 + (c - '0'), 1'000'000'000'000LL);
+  }
+  return static_cast<long long>(point) - static_cast<long long>(first) + (negative ? -power : power) < 0;
+}
+
 template <typename Real>
 std::optional<Real> parseReal(std::string_view text) {
   if (text == "INF" || text == "+INF") return std::numeric_limits<Real>::infinity();
@@ -56,8 +71,7 @@ std::optional<Real> parseReal(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (end != text.data() + text.size() || text.empty()) return std::nullopt;
   if (error == std::errc::result_out_of_range) {
-    const bool tiny = text.find("e-") != std::string_view::npos || text.find("E-") != std::string_view::npos;
-    const Real size = tiny ? Real(0) : std::numeric_limits<Real>::infinity();
+    const Real size = isTiny(text) ? Real(0) : std::numeric_limits<Real>::infinity();
     return text.front() == '-' ? -size : size;
   }
   if (error != std::errc{}) return std::nullopt;
@@ -188,7 +202,7 @@ Value Value::ofCalendar(CalendarKind kind, CalendarTime time) {
                         : kind == CalendarKind::Time   ? Type::Time
                                                        : Type::Calendar);
   result.calendar = kind;
-  result.payload = share(std::move(time));
+  result.payload = share(withoutAbsentParts(kind, std::move(time)));
   return result;
 }
 

@@ -53,6 +53,23 @@ TEST(Filters, HoldForTheWholeGroupWhereverTheyStand) {
   EXPECT_THAT(store.rows("SELECT ?p { ?p :knows :c { ?p :age ?n FILTER(BOUND(?p)) } }"), ElementsAre(":a"));
 }
 
+/// An EXISTS sees what the BIND before it gives.
+TEST(Binds, AreSeenByExistsInTheNextOne) {
+  const SmallStore store(kPeople);
+  EXPECT_THAT(store.rows("SELECT ?e { BIND(:z AS ?x) BIND(EXISTS { ?p :knows ?x } AS ?e) }"), ElementsAre("\"false\"^^boolean"));
+  EXPECT_THAT(store.rows("SELECT (:z AS ?x) (EXISTS { ?p :knows ?x } AS ?e) { }"), ElementsAre(":z \"false\"^^boolean"));
+  EXPECT_THAT(store.rows("SELECT ?p ?e { ?p :age ?n BIND(?n - 10 AS ?m) BIND(EXISTS { ?q :age ?m } AS ?e) }"),
+              ElementsAre(":a \"true\"^^boolean", ":c \"false\"^^boolean"));
+}
+
+TEST(Aggregates, CountDistinctSolutionsByTheirVariablesAlone) {
+  const SmallStore store(kPeople);
+  EXPECT_THAT(store.rows("SELECT (COUNT(DISTINCT *) AS ?n) { ?p :knows [] }"), ElementsAre("\"3\"^^integer"));
+  EXPECT_THAT(store.rows("SELECT (COUNT(*) AS ?n) { ?p :knows [] }"), ElementsAre("\"4\"^^integer"));
+  EXPECT_THAT(store.rows("SELECT (COUNT(DISTINCT *) AS ?n) { ?p :knows/:knows ?q }"), ElementsAre("\"5\"^^integer"));
+  EXPECT_THAT(store.rows("SELECT (COUNT(DISTINCT *) AS ?n) { [] :knows [] }"), ElementsAre("\"1\"^^integer"));
+}
+
 TEST(Filters, OnAnIriBindItsVariable) {
   const SmallStore store(kPeople);
   EXPECT_THAT(store.rows("SELECT ?q { ?p :knows ?q FILTER(?p = :a) }"), ElementsAre(":b", ":c"));

@@ -41,6 +41,12 @@ INSTANTIATE_TEST_SUITE_P(Strings, Functions, testing::Values(
     Case{"MD5(\"abc\")", "\"900150983cd24fb0d6963f7d28e17f72\""}, Case{"SHA1(\"abc\")", "\"a9993e364706816aba3e25717850c26c9cd0d89d\""},
     Case{"SHA256(\"abc\")", "\"ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad\""}, Case{"SHA1(1)", "-"}));
 
+INSTANTIATE_TEST_SUITE_P(Regex, Functions, testing::Values(
+    Case{"REGEX(\"ax\", \"a#b\", \"x\")", kFalse}, Case{"REGEX(\"a#b\", \" a # b \", \"x\")", kTrue}, Case{"REGEX(\"a b\", \"a[ ]b\", \"x\")", kTrue},
+    Case{"REGEX(\"ab\", \"a[ ]b\", \"x\")", kFalse}, Case{"REGEX(\"a b\", \"a\\\\[ ?b\", \"x\")", kFalse}, Case{"REGEX(\"b\", \"^[a-z-[aeiou]]$\")", kTrue},
+    Case{"REGEX(\"e\", \"^[a-z-[aeiou]]$\")", kFalse}, Case{"REGEX(\"e\", \"^[a-z-[aeiou-[e]]]$\")", kTrue}, Case{"REGEX(\"-\", \"^[a-]$\")", kTrue},
+    Case{"REGEX(\"]\", \"^[\\\\]-]$\")", kTrue}, Case{"REPLACE(\"abcde\", \"[a-e-[c]]\", \"x\")", "\"xxcxx\""}, Case{"REGEX(\"K\", \"^\\\\c+$\")", "-"}));
+
 INSTANTIATE_TEST_SUITE_P(Terms, Functions, testing::Values(
     Case{"STR(<http://a/>)", "\"http://a/\""}, Case{"STR(1.50)", "\"1.50\""}, Case{"LANG(\"a\"@EN)", "\"en\""}, Case{"LANG(1)", "\"\""},
     Case{"LANGMATCHES(\"de-AT\", \"DE\")", kTrue}, Case{"LANGMATCHES(\"\", \"*\")", kFalse}, Case{"DATATYPE(\"a\"@en)", "<http://www.w3.org/1999/02/22-rdf-syntax-ns#langString>"},
@@ -53,6 +59,8 @@ INSTANTIATE_TEST_SUITE_P(Terms, Functions, testing::Values(
 INSTANTIATE_TEST_SUITE_P(Numbers, Functions, testing::Values(
     Case{"ROUND(2.5)", "\"3\"^^decimal"}, Case{"ROUND(-2.5)", "\"-2\"^^decimal"}, Case{"ROUND(0.49999999999999994e0)", "\"0.0E0\"^^double"},
     Case{"CEIL(-1.6)", "\"-1\"^^decimal"}, Case{"FLOOR(-1.6)", "\"-2\"^^decimal"}, Case{"ABS(-1.5e0)", "\"1.5E0\"^^double"}, Case{"ABS(-7)", "\"7\"^^integer"},
+    Case{"ABS(\"07\"^^xsd:byte)", "\"7\"^^integer"}, Case{"ROUND(\"7\"^^xsd:byte)", "\"7\"^^integer"}, Case{"+\"7\"^^xsd:byte", "\"7\"^^integer"}, Case{"ABS(1.50)", "\"1.5\"^^decimal"},
+    Case{"+?unbound", "-"}, Case{"+(1.50)", "\"1.50\"^^decimal"},
     Case{"CEIL(\"a\")", "-"}, Case{"\"NaN\"^^xsd:double = \"NaN\"^^xsd:double", kFalse}, Case{"\"NaN\"^^xsd:double != 1", kTrue},
     Case{"0.1 + 0.2 = 0.3", kTrue}, Case{"0.1e0 + 0.2e0 = 0.3e0", kFalse}, Case{"RAND() < 1", kTrue}));
 

@@ -48,6 +48,41 @@ TEST(GeoFunctions, GiveErrorsForWhatIsNoGeometry) {
   EXPECT_EQ(store.value("geof:distance(\"POINT(0 0)\", \"POINT(0 0)\")"), "-") << "a plain string";
 }
 
+TEST(GeoFunctions, TellEmptyGeometriesFromOthers) {
+  const SmallStore store;
+  EXPECT_EQ(store.value(call("sfWithin", "POINT EMPTY", kSquare)), kFalse);
+  EXPECT_EQ(store.value(call("sfContains", kSquare, "GEOMETRYCOLLECTION EMPTY")), kFalse);
+  EXPECT_EQ(store.value(call("sfDisjoint", kSquare, "POINT EMPTY")), kTrue);
+  EXPECT_EQ(store.value("geof:envelope(" + wkt("POLYGON EMPTY") + ")"), "-");
+}
+
+TEST(GeoFunctions, MeasureInNoOtherUnit) {
+  const SmallStore store;
+  const auto in = [&](const std::string& unit) {
+    return store.value("geof:distance(" + wkt("POINT(0 0)") + ", " + wkt("POINT(3 4)") + ", <http://www.opengis.net/def/uom/OGC/1.0/" + unit + ">)");
+  };
+  EXPECT_EQ(in("metre"), "\"5.0E0\"^^double");
+  EXPECT_EQ(in("kilometre"), "-") << "5 km would be wrong by a thousand";
+  EXPECT_EQ(in("degree"), "-");
+}
+
+/// Degrees of one literal are no metres of another.
+TEST(GeoFunctions, DoNotRelateDifferentReferenceSystems) {
+  const SmallStore store;
+  const std::string degrees = "<http://www.opengis.net/def/crs/EPSG/0/4326> POINT(1 2)", metres = "<http://www.opengis.net/def/crs/EPSG/0/25832> POINT(1 2)";
+  EXPECT_EQ(store.value(call("distance", degrees, metres)), "-");
+  EXPECT_EQ(store.value(call("sfIntersects", degrees, metres)), "-");
+  EXPECT_EQ(store.value(call("distance", metres, metres)), "\"0.0E0\"^^double");
+  EXPECT_EQ(store.value(call("distance", metres, "POINT(1 3)")), "\"1.0E0\"^^double") << "without a name: the map's own frame";
+}
+
+TEST(GeoFunctions, PartsOnTheBorderAreWithinWhereOthersAreInside) {
+  const SmallStore store;
+  EXPECT_EQ(store.value(call("sfWithin", "MULTIPOINT((0 0), (1 1))", kSquare)), kTrue);
+  EXPECT_EQ(store.value(call("sfWithin", "MULTIPOINT((0 0), (4 1))", kSquare)), kFalse) << "none is inside";
+  EXPECT_EQ(store.value(call("sfWithin", "MULTIPOINT((1 1), (5 1))", kSquare)), kFalse) << "one is outside";
+}
+
 /// Objects with points on a grid, asked by distance and by a window: the R-tree's answers against arithmetic.
 TEST(GeoFilters, FindTheSameObjectsAsComparisonsOfCoordinates) {
   SmallStore store;

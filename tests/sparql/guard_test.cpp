@@ -74,6 +74,49 @@ TEST(Guard, EndsByMemoryInJoinsSortsGroupsAndAnswers) {
   expectRefused(store, "CONSTRUCT WHERE { ?a :next ?b }", options);
 }
 
+TEST(Guard, CountsTermsThatAreComputedAnywhereAndRowsOfCountDistinct) {
+  const SmallStore store = chain(3000);
+  QueryOptions options;
+  options.budget.max_memory_bytes = 400'000;
+  const std::string longer = "CONCAT(STR(?a), \"" + std::string(200, 'x') + "\")";
+  expectRefused(store, "SELECT ?a { ?a :next ?b } ORDER BY " + longer + " LIMIT 1", options);
+  expectRefused(store, "SELECT (COUNT(*) AS ?n) { ?a :next ?b FILTER(STRDT(" + longer + ", :type) != 1) }", options);
+  options.budget.max_memory_bytes = 20'000;
+  expectRefused(store, "SELECT (COUNT(DISTINCT *) AS ?n) { ?a :next ?b }", options);
+}
+
+/// Each inner SELECT holds next to nothing, and gives it back.
+TEST(Guard, DoesNotCountWhatIsGivenBack) {
+  const SmallStore store = chain(3000);
+  QueryOptions options;
+  options.budget.max_memory_bytes = 200'000;
+  for (const char* inner : {"SELECT DISTINCT ?a { ?a :next ?c } LIMIT 1", "SELECT ?a (COUNT(DISTINCT ?c) AS ?n) { ?a :next ?c } GROUP BY ?a HAVING(COUNT(*) = 1)",
+                            "SELECT ?a { ?a :next ?c } ORDER BY ?c LIMIT 1", "SELECT ?a { ?a :next ?c OPTIONAL { ?a :none ?d } { ?a :next ?e OPTIONAL { ?e :none ?d } } }"}) {
+    EXPECT_EQ(store.rows(std::string("SELECT (COUNT(*) AS ?n) { ?a :next ?b FILTER EXISTS { ") + inner + " } }", options).front(), "\"3000\"^^integer") << inner;
+  }
+  const QuadReader reader = store.reader();
+  PreparedQuery again(reader, kPrefixes + "SELECT (COUNT(*) AS ?n) { { SELECT DISTINCT ?a ?b { ?a :next ?b } } }", options);
+  for (int run = 0; run < 5; ++run) EXPECT_EQ(again.evaluate().table.row_count, 1u) << run;
+}
+
+TEST(Guard, CountsCandidatesThatDoNotAgree) {
+  const SmallStore store = chain(3000);
+  QueryOptions options;
+  options.budget.max_work_rows = 1'000'000;
+  expectRefused(store, "SELECT (COUNT(*) AS ?n) { { ?a :next ?b BIND(STR(?a) AS ?k) } { ?c :next ?d BIND(CONCAT(STR(?c), \"x\") AS ?k) } }", options);
+}
+
+/// Not all pairs that a path joins are looked for before the first is given.
+TEST(Guard, PathsBetweenVariablesStopEarly) {
+  const SmallStore store = chain(1500);
+  QueryOptions options;
+  options.budget.max_work_rows = 50'000;
+  EXPECT_EQ(store.rows("SELECT * { ?a :next+ ?b } LIMIT 5", options).size(), 5u);
+  options.budget = {};
+  options.budget.max_memory_bytes = 1'000'000;
+  EXPECT_EQ(store.rows("SELECT (COUNT(*) AS ?n) { ?a :next+ ?b }", options).front(), "\"1125750\"^^integer");
+}
+
 TEST(Guard, EndsByRowsOfTheAnswerAndLetsSmallerOnesPass) {
   const SmallStore store = chain(100);
   QueryOptions options;
@@ -85,6 +128,14 @@ TEST(Guard, EndsByRowsOfTheAnswerAndLetsSmallerOnesPass) {
 TEST(Guard, EndsCostlyRegularExpressions) {
   const SmallStore store(":a :p \"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaab\" .");
   expectRefused(store, "SELECT * { ?s :p ?v FILTER(REGEX(?v, \"^(a+)+$\")) }", {});
+}
+
+/// A long text takes much room on the stack, but few steps.
+TEST(Guard, LetsPlainRegularExpressionsReadLongTexts) {
+  std::string text;
+  for (int i = 0; i < 50'000; ++i) text += "ab";
+  const SmallStore store(":a :p \"" + text + "\" .");
+  EXPECT_EQ(store.rows("SELECT (REGEX(?v, \"^(a|b)*$\") AS ?yes) { ?s :p ?v }").front(), "\"true\"^^boolean");
 }
 
 TEST(Guard, EndsNumbersThatGrowWithoutEnd) {
