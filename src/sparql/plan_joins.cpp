@@ -139,7 +139,10 @@ double Planner::columnCost(const State& state, const TripleNode& pattern, double
 
 Planner::State Planner::joinUnion(State state, const Node& part) {
   const double own = cardinality_.rows(part);
-  const bool connected = state.certain.intersects(part.certain);
+  // Parameters alone are what a part by itself begins with, too.
+  SlotSet joined_so_far = state.possible;
+  for (const Slot slot : parameters_) joined_so_far.remove(slot);
+  const bool connected = !joined_so_far.empty() && state.certain.intersects(part.certain);
   // Where the branches are small beside the rows so far, they are computed once.
   if (!state.is_unit && state.outer.empty() && connected && own * (kScannedEntry + kHashBuild) < state.rows * kAscendingLookup) {
     return joinAlone(std::move(state), part);

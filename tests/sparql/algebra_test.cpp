@@ -70,6 +70,18 @@ TEST(Aggregates, CountDistinctSolutionsByTheirVariablesAlone) {
   EXPECT_THAT(store.rows("SELECT (COUNT(DISTINCT *) AS ?n) { [] :knows [] }"), ElementsAre("\"1\"^^integer"));
 }
 
+/// Their plans once had no end.
+TEST(Unions, OfFewSolutionsMayShareAVariableWithAllAroundThem) {
+  SmallStore store(":a :r 1 .");
+  store.load(":a :p 1 . :b :q 2 .", "http://example.org/g");
+  EXPECT_THAT(store.rows("SELECT ?g ?s { GRAPH ?g { SELECT ?s { { ?s :p ?o } UNION { ?s :q ?o } } } }"), ElementsAre(":g :a", ":g :b"));
+  EXPECT_THAT(store.rows("SELECT ?s { ?s :r ?v FILTER EXISTS { SELECT ?s { { ?s :p ?o } UNION { ?s :q ?o } } } }"), ElementsAre(":a"));
+  const QuadReader reader = store.reader();
+  PreparedQuery query(reader, kPrefixes + "SELECT ?s { { ?s :p ?o } UNION { ?s :q ?o } }", {}, {"o"});
+  EXPECT_EQ(query.evaluate({{"o", Term::integer(2)}}).table.row_count, 1u);
+  EXPECT_EQ(query.evaluate({{"o", Term::integer(3)}}).table.row_count, 0u);
+}
+
 TEST(Filters, OnAnIriBindItsVariable) {
   const SmallStore store(kPeople);
   EXPECT_THAT(store.rows("SELECT ?q { ?p :knows ?q FILTER(?p = :a) }"), ElementsAre(":b", ":c"));
