@@ -75,7 +75,9 @@ bool ConditionEvaluator::holds(const Condition& condition, std::vector<DecisionS
 
 bool ConditionEvaluator::allHold(const std::vector<Condition>& conditions) {
   // What is measured already is tested before what has to be measured; the outcome is the same.
-  const auto isCheap = [](const Condition& c) { return c.kind == Condition::Kind::Attribute; };
+  const auto isCheap = [](const Condition& c) {
+    return c.kind == Condition::Kind::Attribute && !c.slice && !c.ratio_slice;
+  };
   return std::all_of(conditions.begin(), conditions.end(),
                      [&](const Condition& c) { return !isCheap(c) || holds(c); }) &&
          std::all_of(conditions.begin(), conditions.end(), [&](const Condition& c) { return isCheap(c) || holds(c); });
@@ -102,16 +104,25 @@ bool ConditionEvaluator::holdsElementary(const Condition& condition, DecisionSte
 }
 
 bool ConditionEvaluator::holdsAttribute(const Condition& condition, DecisionStep& step) {
-  const double value = bindings_.at(condition.of).shape[condition.attribute];
-  const double threshold =
-      condition.ratio_attribute
-          ? condition.ratio * bindings_.at(condition.ratio_of).shape[*condition.ratio_attribute]
-          : condition.value->value;
-  const bool passed = compare(condition, value, threshold);
+  const auto value = measured(condition.of, condition.slice, condition.attribute);
+  std::optional<double> threshold;
+  if (!condition.ratio_attribute)
+    threshold = condition.value->value;
+  else if (const auto other = measured(condition.ratio_of, condition.ratio_slice, *condition.ratio_attribute))
+    threshold = condition.ratio * *other;
   step.measured = value;
-  step.threshold = nearerThreshold(condition, value, threshold);
   step.unit = stepUnit(condition);
-  return passed;
+  if (!value || !threshold) return false;   // nothing is in the slice
+  step.threshold = nearerThreshold(condition, *value, *threshold);
+  return compare(condition, *value, *threshold);
+}
+
+std::optional<double> ConditionEvaluator::measured(const std::string& of, const std::optional<SliceSpec>& slice,
+                                                   Attribute attribute) const {
+  const Thing& thing = bindings_.at(of);
+  if (!slice) return thing.shape[attribute];
+  const std::optional<Shape> shape = state_.pieces.shapeOfSlice(thing, *slice);
+  return shape ? std::optional((*shape)[attribute]) : std::nullopt;
 }
 
 bool ConditionEvaluator::fits(PieceIndex piece, const Target& target) const {

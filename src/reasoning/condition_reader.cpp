@@ -97,7 +97,8 @@ class ConditionReader {
   }
 
   static bool isDetail(const std::string& key) {
-    constexpr std::array<std::string_view, 8> details{"op", "value", "min", "max", "ratio", "to", "with", "within"};
+    constexpr std::array<std::string_view, 9> details{"op", "value", "min",  "max",   "ratio",
+                                                      "to", "with",  "within", "slice"};
     return std::find(details.begin(), details.end(), key) != details.end();
   }
 
@@ -125,16 +126,26 @@ class ConditionReader {
   }
 
   void readAttribute(const YamlNode& value) {
-    onlyWith({"op", "value", "min", "max", "ratio", "to"});
+    onlyWith({"op", "value", "min", "max", "ratio", "to", "slice"});
     condition_.kind = Condition::Kind::Attribute;
     const auto attribute = readAttributeName(value);
     if (!attribute) return;
     condition_.attribute = *attribute;
+    condition_.slice = readSliceOf(node_, value, *attribute);
     const Dimension dimension = attributeInfos()[static_cast<std::size_t>(*attribute)].dimension;
     if (const YamlNode* to = node_.find("to"))
       readRatio(*to, dimension);
     else
       readComparison(dimension);
+  }
+
+  /// The `slice` beside an attribute's name.
+  std::optional<SliceSpec> readSliceOf(const YamlNode& map, const YamlNode& name, Attribute attribute) {
+    const YamlNode* slice = map.find("slice");
+    if (slice == nullptr) return std::nullopt;
+    if (attribute == Attribute::GroundContact || attribute == Attribute::ViewCount || attribute == Attribute::MeanIntensity)
+      faults_.error(name.at, "'" + name.text + "' is known of whole primitives only", "leave 'slice' out");
+    return readSlice(*slice, reading_);
   }
 
   void readRatio(const YamlNode& to, Dimension dimension) {
@@ -153,6 +164,7 @@ class ConditionReader {
     const YamlNode* name = requireKey(to, "attribute", "ratio_to", faults_);
     if (name == nullptr) return;
     condition_.ratio_attribute = readAttributeName(*name);
+    if (condition_.ratio_attribute) condition_.ratio_slice = readSliceOf(to, *name, *condition_.ratio_attribute);
     if (condition_.ratio_attribute &&
         attributeInfos()[static_cast<std::size_t>(*condition_.ratio_attribute)].dimension != dimension)
       faults_.error(name->at, "the two attributes have different dimensions");
@@ -288,33 +300,7 @@ class ConditionReader {
   void readAsk(const YamlNode& value) {
     onlyWith({});
     condition_.kind = Condition::Kind::Ask;
-    reading_.asks_map = true;
-    const auto text = readText(value, "a SPARQL ASK query", faults_);
-    if (!text) return;
-    for (const auto& [prefix, base] : reading_.prefixes) condition_.query += "PREFIX " + prefix + ": <" + base + ">\n";
-    const std::size_t prologue = condition_.query.size();
-    condition_.query += *text;
-    for (const std::string& name : scope_.names)
-      if (mentions(*text, name)) condition_.query_names.push_back(name);
-    if (condition_.query_names.empty())
-      faults_.error(value.at, "the query asks about nothing that is bound here",
-                    "use a bound name as a variable: ?" + condition_.of);
-    if (!reading_.options.check_query) return;
-    if (const auto fault = reading_.options.check_query(condition_.query))
-      faults_.error(value.at, "the query is faulty: " + fault->second,
-                    fault->first >= prologue ? "at '" + condition_.query.substr(fault->first, 20) + "'" : "");
-  }
-
-  static bool mentions(const std::string& query, const std::string& name) {
-    auto isWordCharacter = [](char c) {
-      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-    };
-    for (std::size_t at = query.find(name); at != std::string::npos; at = query.find(name, at + 1)) {
-      const bool variable = at > 0 && (query[at - 1] == '?' || query[at - 1] == '$');
-      const std::size_t end = at + name.size();
-      if (variable && (end == query.size() || !isWordCharacter(query[end]))) return true;
-    }
-    return false;
+    readQuery(value, scope_, reading_, condition_);
   }
 
   const YamlNode& node_;

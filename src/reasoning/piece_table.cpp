@@ -84,16 +84,33 @@ Thing PieceTable::thingOf(std::vector<PieceIndex> pieces) const {
     thing.shape = shapes_[thing.pieces.front()];
     return thing;
   }
+  thing.shape = shapeOf(thing, cluxelsOf(thing));
+  return thing;
+}
+
+/// The shape of `cluxels` (ascending), which are some or all of the thing's.
+Shape PieceTable::shapeOf(const Thing& thing, std::span<const std::uint32_t> cluxels) const {
   std::vector<PieceIndex> ordered = thing.pieces;
   std::sort(ordered.begin(), ordered.end(), [this](PieceIndex a, PieceIndex b) { return before(a, b); });
+  auto isHere = [&](std::uint32_t cluxel) { return std::binary_search(cluxels.begin(), cluxels.end(), cluxel); };
   std::vector<PrimitiveIndex> members, whole;
   for (PieceIndex piece : ordered) {
+    const std::vector<std::uint32_t>& own = pieces_[piece].cluxels;
+    if (std::none_of(own.begin(), own.end(), isHere)) continue;
     const PrimitiveIndex primitive = pieces_[piece].primitive;
     if (std::find(members.begin(), members.end(), primitive) == members.end()) members.push_back(primitive);
-    if (pieces_[piece].cluxels.size() == scene_.primitives[primitive].cluxels.size()) whole.push_back(primitive);
+    const bool is_whole = own.size() == scene_.primitives[primitive].cluxels.size();
+    if (is_whole && std::all_of(own.begin(), own.end(), isHere)) whole.push_back(primitive);
   }
-  thing.shape = shapeOfCluxels(scene_, cluxelsOf(thing), members, whole);
-  return thing;
+  return shapeOfCluxels(scene_, cluxels, members, whole);
+}
+
+std::optional<Shape> PieceTable::shapeOfSlice(const Thing& thing, const SliceSpec& slice) const {
+  std::vector<std::uint32_t> cluxels = cluxelsOf(thing);
+  const std::size_t all = cluxels.size();
+  std::erase_if(cluxels, [&](std::uint32_t cluxel) { return !isWithin(scene_.cluxels, cluxel, slice); });
+  if (cluxels.empty()) return std::nullopt;
+  return cluxels.size() == all ? thing.shape : shapeOf(thing, cluxels);
 }
 
 std::vector<std::uint32_t> PieceTable::cluxelsOf(const Thing& thing) const {
@@ -102,6 +119,11 @@ std::vector<std::uint32_t> PieceTable::cluxelsOf(const Thing& thing) const {
     cluxels.insert(cluxels.end(), pieces_[piece].cluxels.begin(), pieces_[piece].cluxels.end());
   std::sort(cluxels.begin(), cluxels.end());
   return cluxels;
+}
+
+bool isWithin(const SceneCluxels& all, std::uint32_t cluxel, const SliceSpec& slice) {
+  const double height = static_cast<double>(all.height_above_ground[cluxel]);
+  return height >= slice.from_m && height <= slice.to_m;
 }
 
 std::vector<std::vector<std::uint32_t>> connectedBunches(const SceneCluxels& all,

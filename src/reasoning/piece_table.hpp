@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "cluxel/reasoning/rule_condition.hpp"
 #include "reasoning/thing.hpp"
 
 namespace cluxel {
@@ -43,11 +45,14 @@ class PieceTable {
   bool before(PieceIndex a, PieceIndex b) const;
   /// The thing that some pieces make together.
   Thing thingOf(std::vector<PieceIndex> pieces) const;
+  /// What of a thing lies between two heights above the ground, measured as a thing of its own; absent when nothing does.
+  std::optional<Shape> shapeOfSlice(const Thing& thing, const SliceSpec& slice) const;
   /// All cluxels of a thing, ascending.
   std::vector<std::uint32_t> cluxelsOf(const Thing& thing) const;
   const Shape& shapeOf(PieceIndex piece) const { return shapes_[piece]; }
 
  private:
+  Shape shapeOf(const Thing& thing, std::span<const std::uint32_t> cluxels) const;
   PieceIndex add(Piece piece);
   void measure(PieceIndex piece);
 
@@ -57,6 +62,9 @@ class PieceTable {
   std::vector<std::vector<PieceIndex>> pieces_of_primitive_;
   std::vector<PieceIndex> piece_of_cluxel_;
 };
+
+/// True when the cluxel's height above the local ground is within the slice.
+bool isWithin(const SceneCluxels& all, std::uint32_t cluxel, const SliceSpec& slice);
 
 /// The connected bunches of `cluxels` (ascending) in the cluxel graph, each ascending, in the order of their first.
 std::vector<std::vector<std::uint32_t>> connectedBunches(const SceneCluxels& all,

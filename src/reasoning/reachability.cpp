@@ -3,6 +3,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <tuple>
 
 #include "reasoning/rule_reading.hpp"
 
@@ -123,8 +124,11 @@ class Knowledge {
 
   std::optional<std::string> learnAttribute(const Condition& condition, bool truth) {
     if (!condition.value || condition.ratio_attribute) return std::nullopt;
-    const auto key = std::pair(condition.of, canonical(condition.attribute));
-    Interval& known = intervals_.try_emplace(key, naturalRange(key.second)).first->second;
+    const SliceSpec slice = condition.slice.value_or(SliceSpec{-kInfinity, kInfinity});
+    const Key key{condition.of, slice.from_m, slice.to_m, canonical(condition.attribute)};
+    // A test of a slice that fails may have met an empty one; it tells something once another test has passed there.
+    if (condition.slice && !truth && !intervals_.contains(key)) return std::nullopt;
+    Interval& known = intervals_.try_emplace(key, naturalRange(condition.attribute)).first->second;
     const Comparison comparison = truth ? condition.comparison : negated(condition.comparison);
     const std::string words = (truth ? "'" : "not '") + describe(condition) + "'";
     const double value = condition.value->value;
@@ -157,7 +161,9 @@ class Knowledge {
     return words + " contradicts " + (other.empty() || other == words ? "what was tested before" : other);
   }
 
-  std::map<std::pair<std::string, Attribute>, Interval> intervals_;
+  /// A bound name, the slice of it, what is measured.
+  using Key = std::tuple<std::string, double, double, Attribute>;
+  std::map<Key, Interval> intervals_;
   std::map<std::string, unsigned> labels_;
 };
 

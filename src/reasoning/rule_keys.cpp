@@ -17,7 +17,8 @@ std::vector<std::string> conditionKeys() {
                                 "relation", "with",            "within",       "label",
                                 "label_in", "class",           "ask",          "all",
                                 "any",      "not",             "gap_to",       "horizontal_gap_to",
-                                "vertical_gap_to", "axis_distance_to", "adjacent_fraction_to"};
+                                "vertical_gap_to", "axis_distance_to", "adjacent_fraction_to",
+                                "slice"};
   for (const RelationInfo& relation : relationInfos()) keys.emplace_back(relation.name);
   return keys;
 }
@@ -46,7 +47,7 @@ const std::vector<RuleKeyTable>& ruleKeyTables() {
       {"split", {"shared", "from", "reach", "jump", "start", "clearance", "gather"}},
       {"gather", {"within", "above"}},
       {"condition", conditionKeys()},
-      {"ratio_to", {"of", "attribute"}},
+      {"ratio_to", {"of", "attribute", "slice"}},
       {"target", {"label", "label_in", "object"}},
   };
   return tables;

@@ -17,17 +17,6 @@ std::optional<double> readLength(const YamlNode& map, std::string_view key, Rule
   return length->value;
 }
 
-std::optional<SliceSpec> readSlice(const YamlNode& node, RuleReading& reading) {
-  if (!checkKeys(node, "slice", reading.faults)) return std::nullopt;
-  requireKey(node, "from", "slice", reading.faults);
-  requireKey(node, "to", "slice", reading.faults);
-  const auto from = readLength(node, "from", reading);
-  const auto to = readLength(node, "to", reading);
-  if (!from || !to) return std::nullopt;
-  if (*from >= *to) reading.faults.error(node.at, "'to' is not above 'from'");
-  return SliceSpec{*from, *to};
-}
-
 /// Seeds and groups are chosen before anything is bound: only what a thing measures by itself can be tested.
 void onlyOwnAttributes(const std::vector<Condition>& conditions, FaultList& faults) {
   for (const Condition& condition : conditions) {
@@ -75,6 +64,17 @@ std::optional<GroupSpec> readGroup(const YamlNode& node, const SeedSpec& seed, R
 }
 
 }  // namespace
+
+std::optional<SliceSpec> readSlice(const YamlNode& node, RuleReading& reading) {
+  if (!checkKeys(node, "slice", reading.faults)) return std::nullopt;
+  requireKey(node, "from", "slice", reading.faults);
+  requireKey(node, "to", "slice", reading.faults);
+  const auto from = readLength(node, "from", reading);
+  const auto to = readLength(node, "to", reading);
+  if (!from || !to) return std::nullopt;
+  if (*from >= *to) reading.faults.error(node.at, "'to' is not above 'from'");
+  return SliceSpec{*from, *to};
+}
 
 std::optional<Rule> readRule(const YamlNode& node, RuleReading& reading) {
   if (!checkKeys(node, "rule", reading.faults)) return std::nullopt;

@@ -49,6 +49,8 @@ std::optional<Quantity> parseQuantity(const YamlNode& node, FaultList& faults);
 std::optional<Quantity> readQuantity(const YamlNode& node, Dimension expected, RuleReading& reading);
 /// The labels of `label:` or `label_in:`; empty without either.
 std::vector<PrimitiveLabel> readLabels(const YamlNode& map, RuleReading& reading);
+/// `slice: { from: 0.5 m, to: 1.6 m }`.
+std::optional<SliceSpec> readSlice(const YamlNode& node, RuleReading& reading);
 /// A class of the catalogue by prefixed name or <IRI>.
 std::optional<std::string> readClass(const YamlNode& node, RuleReading& reading);
 /// The IRI of a prefixed name or <IRI>, without looking it up.
@@ -59,6 +61,8 @@ std::optional<std::string> readBoundName(const YamlNode& node, const NameScope& 
 std::optional<std::string> readNewName(const YamlNode& node, const NameScope& scope, FaultList& faults);
 
 std::optional<Condition> readCondition(const YamlNode& node, const NameScope& scope, RuleReading& reading);
+/// The query of an `ask:`, with the names it mentions, into the condition.
+void readQuery(const YamlNode& node, const NameScope& scope, RuleReading& reading, Condition& condition);
 /// A list of conditions.
 std::vector<Condition> readConditions(const YamlNode& node, const NameScope& scope, RuleReading& reading);
 /// True when one of the conditions ties `subject` to something nearby, so that candidates can be looked up.

@@ -25,14 +25,25 @@ std::string describeTarget(const Target& target) {
   return "a " + localName(target.object_class);
 }
 
+/// 2.5 of 2.500000.
+std::string shortNumber(double value) {
+  std::string text = std::to_string(value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+/// "height of pole", "height of pole from 0 to 1.2 m".
+std::string describeMeasured(Attribute attribute, const std::string& of, const std::optional<SliceSpec>& slice) {
+  std::string text = std::string(attributeInfos()[static_cast<std::size_t>(attribute)].name) + " of " + of;
+  if (slice) text += " from " + shortNumber(slice->from_m) + " to " + shortNumber(slice->to_m) + " m";
+  return text;
+}
+
 std::string describeThreshold(const Condition& condition) {
   if (condition.ratio_attribute) {
-    const std::string_view name = attributeInfos()[static_cast<std::size_t>(*condition.ratio_attribute)].name;
-    std::string factor = std::to_string(condition.ratio);
-    factor.erase(factor.find_last_not_of('0') + 1);
-    if (factor.back() == '.') factor.pop_back();
-    return std::string(symbolOf(condition.comparison)) + " " + factor + " x " + std::string(name) + " of " +
-           condition.ratio_of;
+    return std::string(symbolOf(condition.comparison)) + " " + shortNumber(condition.ratio) + " x " +
+           describeMeasured(*condition.ratio_attribute, condition.ratio_of, condition.ratio_slice);
   }
   if (!condition.value) return {};
   const std::string value = condition.value->text;
@@ -88,8 +99,7 @@ std::string describe(const Condition& condition) {
   using Kind = Condition::Kind;
   switch (condition.kind) {
     case Kind::Attribute:
-      return std::string(attributeInfos()[static_cast<std::size_t>(condition.attribute)].name) + " of " + condition.of +
-             " " + describeThreshold(condition);
+      return describeMeasured(condition.attribute, condition.of, condition.slice) + " " + describeThreshold(condition);
     case Kind::Pair:
       return std::string(nameOf(condition.measure)) + " of " + condition.of + " to " + describeTarget(*condition.target) +
              " " + describeThreshold(condition);

@@ -140,17 +140,14 @@ std::vector<PieceIndex> members(const ReasoningState& state, const Rule& rule, c
 
 SliceScope::SliceScope(ReasoningState& state, const Rule& rule) : state_(state) {
   if (!rule.seed.slice) return;
-  const auto [from, to] = *rule.seed.slice;
   const PieceIndex count = static_cast<PieceIndex>(state.pieces.size());
   for (PieceIndex piece = 0; piece < count; ++piece) {
     const Piece& whole = state.pieces[piece];
     if (!whole.alive || whole.owner != kFree || !isIn(rule.seed.labels, state.pieces.labelOf(piece))) continue;
     if (!passes(state, rule, rule.seed.where, state.pieces.thingOf({piece}))) continue;
     std::vector<std::uint32_t> inside, outside;
-    for (std::uint32_t cluxel : whole.cluxels) {
-      const double height = static_cast<double>(state.scene.cluxels.height_above_ground[cluxel]);
-      (height >= from && height <= to ? inside : outside).push_back(cluxel);
-    }
+    for (std::uint32_t cluxel : whole.cluxels)
+      (isWithin(state.scene.cluxels, cluxel, *rule.seed.slice) ? inside : outside).push_back(cluxel);
     if (inside.empty()) continue;
     auto parts = connectedBunches(state.scene.cluxels, inside);
     const bool has_rest = !outside.empty();

@@ -38,6 +38,11 @@ struct Target {
   std::string object_class;            ///< IRI; subclasses count
 };
 
+/// The cluxels between two heights above the local ground, both included.
+struct SliceSpec {
+  double from_m = 0, to_m = 0;
+};
+
 struct Condition {
   enum class Kind : std::uint8_t { Attribute, Pair, Relation, Label, Class, Ask, All, Any, Not };
   Kind kind = Kind::All;
@@ -45,6 +50,7 @@ struct Condition {
   std::string of;                      ///< bound name of the subject; never empty after loading
 
   Attribute attribute = Attribute::Height;
+  std::optional<SliceSpec> slice;      ///< of Attribute: measures these cluxels only; without any, no test holds
   PairMeasure measure = PairMeasure::Gap;
   RelationKind relation = RelationKind::Near;
   std::optional<Target> target;        ///< of Pair and Relation; TouchesGround has none
@@ -55,6 +61,7 @@ struct Condition {
   double ratio = 1;                    ///< threshold = ratio * (ratio_of's attribute), when ratio_of is given
   std::string ratio_of;
   std::optional<Attribute> ratio_attribute;
+  std::optional<SliceSpec> ratio_slice;
 
   std::vector<PrimitiveLabel> labels;  ///< of Label
   std::string class_iri;               ///< of Class: the subject belongs to an object of that class

@@ -25,15 +25,10 @@ struct GroupSpec {
   std::vector<Condition> limits;
 };
 
-/// Keeps only the cluxels between two heights above the local ground, each connected bunch for itself.
-struct SliceSpec {
-  double from_m = 0, to_m = 0;
-};
-
 struct SeedSpec {
   std::string name = "seed";
   std::vector<PrimitiveLabel> labels;
-  std::optional<SliceSpec> slice;
+  std::optional<SliceSpec> slice;      ///< each connected bunch of its cluxels is a seed
   std::vector<Condition> where;        ///< each primitive must pass before it is grouped
 };
 
