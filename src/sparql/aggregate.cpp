@@ -31,46 +31,60 @@ bool ExactSum::add(const Value& value, const QueryTerms& terms) {
   return sum.has_value();
 }
 
-void ExactSum::addReal(double value) {
-  if (!std::isfinite(value)) {
-    special_ += value;
-    is_special_ = true;
-    return;
-  }
+namespace {
+
+/// Numbers from this size on are summed apart, made smaller by kScale: so their sum is lost only when it is too great at the
+/// end, not when it is on the way, which would follow from the order of rows.
+constexpr double kGreat = 0x1p1000, kScale = 0x1p-100;
+
+void addTo(std::vector<double>& partials, double value) {
   std::size_t kept = 0;
-  for (double partial : partials_) {
+  for (double partial : partials) {
     if (std::abs(value) < std::abs(partial)) std::swap(value, partial);
     const double high = value + partial;
     const double low = partial - (high - value);
-    if (low != 0) partials_[kept++] = low;
+    if (low != 0) partials[kept++] = low;
     value = high;
   }
-  partials_.resize(kept);
-  partials_.push_back(value);
-  if (!std::isfinite(value)) {
-    special_ += value;
-    is_special_ = true;
-    partials_.clear();
-  }
+  partials.resize(kept);
+  partials.push_back(value);
 }
 
-double ExactSum::realTotal() const {
-  if (is_special_) return special_;
+double totalOf(const std::vector<double>& partials) {
   double high = 0, low = 0;
-  std::size_t i = partials_.size();
+  std::size_t i = partials.size();
   while (i > 0) {
     const double before = high;
-    const double next = partials_[--i];
+    const double next = partials[--i];
     high = before + next;
     low = next - (high - before);
     if (low != 0) break;
   }
   // A half way case is rounded by what lies below it.
-  if (i > 0 && ((low < 0 && partials_[i - 1] < 0) || (low > 0 && partials_[i - 1] > 0))) {
+  if (i > 0 && ((low < 0 && partials[i - 1] < 0) || (low > 0 && partials[i - 1] > 0))) {
     const double twice = low * 2, shifted = high + twice;
     if (twice == shifted - high) high = shifted;
   }
   return high;
+}
+
+}  // namespace
+
+void ExactSum::addReal(double value) {
+  if (!std::isfinite(value)) {
+    special_ += value;
+    is_special_ = true;
+  } else if (std::abs(value) >= kGreat) {
+    addTo(great_partials_, value * kScale);
+  } else {
+    addTo(partials_, value);
+  }
+}
+
+double ExactSum::realTotal() const {
+  if (is_special_) return special_;
+  const double great = totalOf(great_partials_), total = totalOf(partials_);
+  return great == 0 ? total : (great + total * kScale) / kScale;
 }
 
 Value ExactSum::total() const {

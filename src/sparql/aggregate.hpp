@@ -26,6 +26,7 @@ class ExactSum {
   std::int64_t small_ = 0;
   Decimal exact_;
   std::vector<double> partials_;   ///< a sum without error, as numbers that do not overlap (Shewchuk)
+  std::vector<double> great_partials_;   ///< of numbers near the end of the range, on a smaller scale
   double special_ = 0;             ///< infinities and NaN
   bool is_special_ = false;
 };

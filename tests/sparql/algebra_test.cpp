@@ -82,6 +82,16 @@ TEST(Unions, OfFewSolutionsMayShareAVariableWithAllAroundThem) {
   EXPECT_EQ(query.evaluate({{"o", Term::integer(3)}}).table.row_count, 0u);
 }
 
+TEST(Aggregates, SumsAreTooGreatAtTheEndOnlyWhateverTheOrder) {
+  const SmallStore store;
+  const auto sum = [&](const std::string& values) { return store.rows("SELECT (SUM(?v) AS ?s) { VALUES ?v { " + values + " } }").front(); };
+  EXPECT_EQ(sum("1e308 1e308 -1e308"), "\"1.0E308\"^^double");
+  EXPECT_EQ(sum("1e308 -1e308 1e308"), "\"1.0E308\"^^double");
+  EXPECT_EQ(sum("1e308 1e308 -1e308 -1e308 2.5"), "\"2.5E0\"^^double");
+  EXPECT_EQ(sum("1e308 1e308"), "\"INF\"^^double");
+  EXPECT_EQ(sum("-1e308 -1e308 1.0"), "\"-INF\"^^double");
+}
+
 TEST(Filters, OnAnIriBindItsVariable) {
   const SmallStore store(kPeople);
   EXPECT_THAT(store.rows("SELECT ?q { ?p :knows ?q FILTER(?p = :a) }"), ElementsAre(":b", ":c"));
