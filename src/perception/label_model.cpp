@@ -47,11 +47,18 @@ float finite(const Json& json) {
   return value;
 }
 
+/// Of what is multiplied and added to costs, which must stay numbers.
+float moderate(const Json& json) {
+  const float value = finite(json);
+  require(std::abs(value) < 1e12F, "a number is too great to compute with");
+  return value;
+}
+
 template <std::size_t n>
-std::array<float, n> finiteArray(const Json& json) {
+std::array<float, n> moderateArray(const Json& json) {
   require(json.is_array() && json.size() == n, "an array has a wrong length");
   std::array<float, n> values;
-  for (std::size_t i = 0; i < n; ++i) values[i] = finite(json[i]);
+  for (std::size_t i = 0; i < n; ++i) values[i] = moderate(json[i]);
   return values;
 }
 
@@ -79,7 +86,7 @@ ObliviousTree treeOf(const Json& json, std::size_t columns) {
 TreeEnsemble ensembleOf(const Json& json, std::size_t columns) {
   TreeEnsemble ensemble;
   ensemble.columns = static_cast<std::uint32_t>(columns);
-  ensemble.bias = finiteArray<kPrimitiveLabelCount>(json.at("bias"));
+  ensemble.bias = moderateArray<kPrimitiveLabelCount>(json.at("bias"));
   require(json.at("trees").is_array(), "the trees are not a list");
   for (const Json& tree : json.at("trees")) ensemble.trees.push_back(treeOf(tree, columns));
   return ensemble;
@@ -87,27 +94,28 @@ TreeEnsemble ensembleOf(const Json& json, std::size_t columns) {
 
 PairModel pairsOf(const Json& json, std::size_t columns) {
   PairModel pairs;
-  pairs.unary_scale = finite(json.at("unary_scale"));
-  pairs.pair_scale = finite(json.at("pair_scale"));
+  pairs.unary_scale = moderate(json.at("unary_scale"));
+  pairs.pair_scale = moderate(json.at("pair_scale"));
   pairs.degree_power = finite(json.at("degree_power"));
   require(pairs.pair_scale >= 0, "pair_scale is negative");
+  require(pairs.degree_power >= 0 && pairs.degree_power <= 4, "degree_power is not from 0 to 4");
   const Json &knots = json.at("knots"), &weights = json.at("weights");
   require(knots.is_array() && knots.size() == columns, "the pairwise term fits other edge columns");
   require(weights.is_array() && weights.size() == 1 + kHats * columns, "the pairwise term has a wrong number of weights");
   for (const Json& row : knots) {
-    pairs.knots.push_back(finiteArray<kHats>(row));
+    pairs.knots.push_back(moderateArray<kHats>(row));
     const HatKnots& knot = pairs.knots.back();
     require(knot[0] < knot[1] && knot[1] < knot[2], "knots are not ascending");
   }
-  for (const Json& row : weights) pairs.weights.push_back(finiteArray<kLabelPairCount>(row));
+  for (const Json& row : weights) pairs.weights.push_back(moderateArray<kLabelPairCount>(row));
   return pairs;
 }
 
 Calibration calibrationOf(const Json& json) {
   Calibration calibration;
-  calibration.slope = finite(json.at("slope"));
-  calibration.offset = finiteArray<kPrimitiveLabelCount>(json.at("offset"));
-  calibration.favour = finiteArray<kPrimitiveLabelCount>(json.at("favour"));
+  calibration.slope = moderate(json.at("slope"));
+  calibration.offset = moderateArray<kPrimitiveLabelCount>(json.at("offset"));
+  calibration.favour = moderateArray<kPrimitiveLabelCount>(json.at("favour"));
   for (const float favour : calibration.favour) require(favour > 0, "a label's favour is not above 0");
   return calibration;
 }

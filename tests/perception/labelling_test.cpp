@@ -113,7 +113,9 @@ TEST(LabelModel, RefusesFaultyTextNamingTheFile) {
       replaced(text, "cluxel label model", "something else"), replaced(text, "\"slope\":", "\"slop\":"),
       replaced(text, "\"columns\":[", "\"columns\":[\"x\","), replaced(text, "\"above\":[", "\"above\":[1e999,"),
       replaced(text, "\"leaves\":[", "\"leaves\":[1,"), replaced(text, "\"knots\":[[", "\"knots\":[[0,0,0],["),
-      replaced(text, "vertical_plane", "vertical"), replaced(text, "\"cover.radius\":", "\"cover.radius\":-")};
+      replaced(text, "vertical_plane", "vertical"), replaced(text, "\"cover.radius\":", "\"cover.radius\":-"),
+      replaced(text, "\"slope\":", "\"slope\":3e37,\"was\":"), replaced(text, "\"bias\":[", "\"bias\":[3e37,3e37,3e37,3e37,3e37],\"was\":["),
+      replaced(text, "\"degree_power\":", "\"degree_power\":-1e30,\"was\":"), replaced(text, "\"unary_scale\":", "\"unary_scale\":3e37,\"was\":")};
   for (const std::string& bad : faulty) {
     try {
       parseModel(bad, "bad.json");
