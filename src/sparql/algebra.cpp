@@ -82,6 +82,10 @@ SlotSet Node::mentioned() const {
   for (const NodePtr& child : children) result.add(child->mentioned());
   for (const Expr& condition : conditions) result.add(condition.slots());
   if (expression) result.add(expression->slots());
+  for (const AggregateSpec& aggregate : aggregates) {
+    if (aggregate.argument) result.add(aggregate.argument->slots());
+  }
+  for (const SortKey& key : sort_keys) result.add(key.expression.slots());
   for (const Slot key : slots) result.add(key);
   return result;
 }

@@ -35,6 +35,12 @@ NodePtr AlgebraBuilder::answered(const ast::ServicePattern& service, const QuadR
   QueryTerms terms(reader);
   AlgebraQuery algebra = buildAlgebra(service.group, variables_, std::string(text_), terms, options_);
   if (algebra.is_volatile) fail(at, "RAND, NOW, UUID and BNODE do not work within SERVICE", "use them outside of it");
+  const SlotSet used = algebra.root->mentioned();
+  for (const Slot slot : algebra.parameters) {
+    if (!used.has(slot)) continue;
+    fail(at, "the parameter ?" + algebra.slot_names[slot] + " does not work within SERVICE",
+         "what SERVICE gives is computed before parameters have values: join or filter outside of it");
+  }
   const Dataset dataset = datasetOf({}, {}, reader);
   const OperatorPtr plan = Planner(algebra, terms, dataset).plan();
   FunctionContext functions(terms);

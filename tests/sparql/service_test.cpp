@@ -47,6 +47,20 @@ TEST_F(Services, JoinWhatTheNamedStoreAnswers) {
   EXPECT_THAT(ours.rows("SELECT ?s { ?s :p ?o FILTER NOT EXISTS { SERVICE <http://elsewhere/> { ?o :name ?n } } }", options).size(), 1U);
 }
 
+/// It is computed when the query is prepared: without a refusal the parameter would be unbound within it, and the answer wrong.
+TEST_F(Services, RefuseParametersWithin) {
+  const auto prepare = [&](const std::string& service) {
+    PreparedQuery(ours.reader(), kPrefixes + "SELECT ?s { ?s :p ?o SERVICE <http://elsewhere/> { " + service + " } }", options, {"n"});
+  };
+  for (const char* service : {"?o :name ?n", "?o :name ?m FILTER(?m = ?n)", "?o :name ?m BIND(?n AS ?k)", "{ SELECT (MAX(CONCAT(?m, ?n)) AS ?k) { ?o :name ?m } }",
+                              "?o :name ?m FILTER EXISTS { ?x :name ?n }"}) {
+    EXPECT_THROW(prepare(service), InputError) << service;
+  }
+  const QuadReader reader_of_ours = ours.reader();
+  PreparedQuery outside(reader_of_ours, kPrefixes + "SELECT ?s { ?s :p ?o SERVICE <http://elsewhere/> { ?o :name ?m } FILTER(?m = ?n) }", options, {"n"});
+  EXPECT_EQ(outside.evaluate({{"n", Term::literal("C")}}).table.row_count, 1u);
+}
+
 TEST_F(Services, KeepTheirBlankNodesToThemselves) {
   EXPECT_TRUE(ours.rows("SELECT ?d { ?x :p ?d SERVICE <http://elsewhere/> { ?x :name \"N\" } }", options).empty());
 }
