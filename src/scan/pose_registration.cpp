@@ -86,11 +86,33 @@ class Registration {
 
   std::optional<PoseConstraint> aligned(const ScanPair& pair, const Eigen::Isometry3d& T_given) const {
     const SurfaceCloud &target = cloud(pair.first), &source = cloud(pair.second);
-    const auto T = alignedByGicp(target, source, T_given, params_->reach_m);
-    if (!T || smallMotion(T_given.inverse() * *T).head<3>().norm() > 2 * params_->reach_m) return std::nullopt;
-    const PairEvidence said = evidenceOf(target, source, *T, {});
+    if (const auto T = alignedByGicp(target, source, T_given, params_->reach_m))
+      if (const auto said = credibleConstraint(pair, T_given, *T)) return said;
+    return credibleConstraint(pair, T_given, laidOnPlanes(target, source, T_given));
+  }
+
+  /// What the pair says at `T`, when that is within reach and its surfaces lie on each other.
+  std::optional<PoseConstraint> credibleConstraint(const ScanPair& pair, const Eigen::Isometry3d& T_given, const Eigen::Isometry3d& T) const {
+    if (smallMotion(T_given.inverse() * T).head<3>().norm() > 2 * params_->reach_m) return std::nullopt;
+    const PairEvidence said = evidenceOf(cloud(pair.first), cloud(pair.second), T, {});
     if (credible(said) != PairOutcome::Used) return std::nullopt;
-    return constraintOf(pair, *T, said);
+    return constraintOf(pair, T, said);
+  }
+
+  /// Points to planes from a first guess, for where generalised ICP stalls: its line search now and then finds no step in the
+  /// noise of its floats. Wide tolerances first: the few surfaces that tell of a shift are those with large gaps.
+  Eigen::Isometry3d laidOnPlanes(const SurfaceCloud& target, const SurfaceCloud& source, Eigen::Isometry3d T) const {
+    constexpr int kMostRounds = 12;
+    constexpr double kSettled_m = 0.001;
+    const double reach_m = std::min(params_->reach_m, SurfaceCloud::kLongestReach_m);
+    for (const double tolerance_m : {reach_m, reach_m / 5}) {
+      for (int round = 0; round < kMostRounds; ++round) {
+        const Vector6d wish = evidenceOf(target, source, T, {.reach_m = reach_m, .tolerance_m = tolerance_m}).wish;
+        T = T * motion(wish);
+        if (wish.head<3>().norm() < kSettled_m) break;
+      }
+    }
+    return T;
   }
 
   static bool isAmong(const std::vector<PoseConstraint>& constraints, const ScanPair& pair) {

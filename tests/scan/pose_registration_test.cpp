@@ -47,6 +47,9 @@ TEST(PoseRegistration, ChangesAllPosesAsAWholeAsLittleAsItCan) {
   given[1] = given[1] * moveBy({0.15, 0, 0}, {0, 0, 0});
   PoseRegistration report;
   const Poses poses = mendedPoses(writeDrive(folder, yardPlace(), truth, given), report);
+  for (const RegisteredPair& pair : report.pairs)
+    EXPECT_EQ(pair.outcome, PairOutcome::Used) << pair.first << " - " << pair.second << ": " << nameOf(pair.outcome) << ", overlap "
+                                               << pair.overlap << ", residual " << pair.residual_before_m << " -> " << pair.residual_after_m;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < 3; ++i) sum += poses[i].translation() - given[i].translation();
   EXPECT_LT(sum.norm() / 3, 0.005) << "the mean stays where it was";

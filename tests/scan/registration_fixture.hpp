@@ -53,7 +53,8 @@ inline Scan scanOf(const Place& place, const Eigen::Isometry3d& T_map_sensor, un
     const auto count = static_cast<int>(kPerSquareMetre * r.along.cross(r.across).norm());
     for (int i = 0; i < count; ++i) {
       const double a = share(), b = share();
-      const Eigen::Vector3d noise = 2 * kNoise_m * Eigen::Vector3d(share() - 0.5, share() - 0.5, share() - 0.5);
+      Eigen::Vector3d noise;                            // drawn one after the other: compilers order arguments as they like
+      for (double& axis : noise) axis = 2 * kNoise_m * (share() - 0.5);
       const Eigen::Vector3d p = T_sensor_map * (r.corner + a * r.along + b * r.across + noise);
       if (p.norm() > kRange_m) continue;
       scan.points.x.push_back(static_cast<float>(p.x()));
