@@ -214,6 +214,7 @@ class ConditionReader {
   /// Rules see neighbours: a gap is measured only so far.
   void checkReach() {
     if (condition_.measure == PairMeasure::AdjacentFraction) return;
+    static_assert(kFarthestMeasure_m - kMeasureMargin_m == 49.5, "the message below says so");
     for (const auto& [key, bound] : {std::pair{node_.find("value"), &condition_.value}, std::pair{node_.find("min"), &condition_.value},
                                      std::pair{node_.find("max"), &condition_.upper}})
       if (key != nullptr && *bound && (*bound)->value > kFarthestMeasure_m - kMeasureMargin_m)

@@ -38,8 +38,9 @@ class SurfaceCloud {
   std::unique_ptr<Parts> parts_;
 };
 
-/// Where generalised ICP (Segal, Haehnel, Thrun 2009, as PCL has it) moves `source`, from a first guess; absent when it fails.
-/// It may end on its last iteration, a hair from rest: whether to believe it is for evidenceOf to say. Points further than `reach_m` from the other cloud do not count.
+/// Where generalised ICP (Segal, Haehnel, Thrun 2009, as PCL has it) moves `source`, from a first guess; absent when it
+/// fails. It may end on its last iteration, a hair from rest: whether to believe it is for evidenceOf to say. Points further
+/// than `reach_m` from the other cloud do not count.
 std::optional<Eigen::Isometry3d> alignedByGicp(const SurfaceCloud& target, const SurfaceCloud& source,
                                                const Eigen::Isometry3d& T_target_source, double reach_m);
 

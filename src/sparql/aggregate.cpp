@@ -83,8 +83,10 @@ void ExactSum::addReal(double value) {
 
 double ExactSum::realTotal() const {
   if (is_special_) return special_;
-  const double great = totalOf(great_partials_), total = totalOf(partials_);
-  return great == 0 ? total : (great + total * kScale) / kScale;
+  if (totalOf(great_partials_) == 0) return totalOf(partials_);
+  std::vector<double> all = great_partials_;   // joined before anything is rounded
+  for (const double partial : partials_) addTo(all, partial * kScale);
+  return totalOf(all) / kScale;
 }
 
 Value ExactSum::total() const {

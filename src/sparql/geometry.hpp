@@ -23,9 +23,9 @@ std::shared_ptr<const Geometry> parseWkt(std::string_view text);
 /// The box around it as a WKT polygon, in the same CRS.
 std::string envelopeWkt(const Geometry& geometry);
 Box2 boundsOf(const Geometry& geometry);
-/// The least distance of any two points, 0 when they meet [m].
 /// False where both name a reference system, and not the same: nothing is converted.
 bool mayMeasure(const Geometry& a, const Geometry& b);
+/// The least distance of any two points, 0 when they meet [m].
 double distanceBetween(const Geometry& a, const Geometry& b);
 bool intersects(const Geometry& a, const Geometry& b);
 bool within(const Geometry& a, const Geometry& b);
