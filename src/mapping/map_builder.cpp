@@ -8,6 +8,7 @@
 
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/knowledge/quad_store.hpp"
+#include "mapping/build_poses.hpp"
 #include "mapping/map_history.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/scan_store.hpp"
@@ -125,7 +126,9 @@ BuildReport buildMap(const ScanSet& scans, const MapInputs& inputs, const fs::pa
   complete.crs = scans.crs();
   const ParsedInputs parsed = parseInputs(complete);
   WorkFile work(file, complete.hash().hex(), params.force);
-  const BuildReport report = MapBuild(scans, parsed, work, params, sink).run();
+  if (!params.mend_poses) noteDoubtfulPoses(scans, params.threads, sink);
+  const ScanSet posed = params.mend_poses ? withMendedPoses(scans, params.threads, sink) : scans;
+  const BuildReport report = MapBuild(posed, parsed, work, params, sink).run();
   work.finish();
   return report;
 }

@@ -44,6 +44,9 @@ TEST_F(RegisterCommand, BuildMendsThemItselfIntoTheSameMap) {
   EXPECT_NE(built.err.find("pairs of scans used, median residual"), std::string::npos) << built.err;
   EXPECT_NE(built.err.find("0 of 3 scans keep their pose"), std::string::npos) << built.err;
   EXPECT_EQ(built.err.find("do not fit"), std::string::npos) << built.err;
+  const Outcome again = run("build --register " + path("drive").string() + " -o " + other);
+  EXPECT_EQ(again.code, 2) << "the finished map is refused ...";
+  EXPECT_EQ(again.err.find("poses mended"), std::string::npos) << "... before minutes go into poses: " << again.err;
   const std::string expected = run("export --canonical " + one).out;
   EXPECT_GT(expected.size(), 1000U);
   EXPECT_EQ(run("export --canonical " + other).out, expected);

@@ -16,6 +16,7 @@ struct BuildParams {
   unsigned threads = 1;
   std::uint64_t batch_points = 20'000'000;   ///< a batch of scans is committed when it holds this many points
   bool force = false;                        ///< replaces a finished map
+  bool mend_poses = false;                   ///< registers the scans first (registerPoses()); else poses that do not fit are noted
   bool drop_statements = false;              ///< with `force`: the operator's statements of the old map go with it
 };
 
