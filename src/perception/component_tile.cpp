@@ -30,6 +30,7 @@ std::vector<std::uint32_t> connect(const CluxelTile& cluxels, const FeatureTile&
       const RingIndex target = graph.edge_target[e];
       const std::uint32_t b = target.index;
       if (target.ring != kRingCentre || b < a || labels.label[a] != labels.label[b]) continue;
+      if (sets.find(a) == sets.find(b)) continue;   // most edges are between cluxels already joined: no gap is needed
       if (gapBetween(cluxels.box_min[a], cluxels.box_max[a], cluxels.box_min[b], cluxels.box_max[b]) <= largest_gap)
         sets.join(a, b);
     }

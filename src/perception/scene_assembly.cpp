@@ -46,9 +46,32 @@ std::vector<std::uint32_t> joinComponents(const SceneTiles& tiles, const TileNum
   return sets.numbers();
 }
 
+/// Appends what `of` says of each of `count` things: a field at a time, since taking turns with all of them is slower.
+template <typename Value, typename Of>
+void appendEach(std::vector<Value>& all, std::size_t count, const Of& of) {
+  const std::size_t first = all.size();
+  all.resize(first + count);
+  for (std::size_t i = 0; i < count; ++i) all[first + i] = of(static_cast<std::uint32_t>(i));
+}
+
+void appendEdges(const SceneTiles& tiles, const TileKey& key, const TileNumbering& numbering, SceneCluxels& all) {
+  const FeatureTile& graph = tiles.features.at(key);
+  const auto ring = ringOf(key);
+  std::array<std::uint32_t, 9> base{};
+  for (std::size_t r = 0; r < base.size(); ++r) base[r] = tiles.cluxels.contains(ring[r]) ? numbering.of(ring[r]) : 0;
+  const auto first = static_cast<std::uint32_t>(all.edge_target.size());
+  appendEach(all.edge_target, graph.edge_target.size(),
+             [&](auto e) { return base[graph.edge_target[e].ring] + graph.edge_target[e].index; });
+  appendEach(all.edge_offset, graph.size(), [&](auto c) { return first + graph.edge_offset[c + 1]; });
+  for (std::uint32_t c = 0; c < graph.size(); ++c) {
+    const auto begin = all.edge_target.begin() + first + graph.edge_offset[c];
+    const auto end = all.edge_target.begin() + first + graph.edge_offset[c + 1];
+    if (!std::is_sorted(begin, end)) std::sort(begin, end);   // inside of a tile they are
+  }
+}
+
 void appendCluxels(const SceneTiles& tiles, const TileKey& key, const TileNumbering& numbering, SceneCluxels& all) {
   const CluxelTile& cluxels = tiles.cluxels.at(key);
-  const FeatureTile& graph = tiles.features.at(key);
   const LabelTile& labels = tiles.labels.at(key);
   const TilePoints& points = tiles.points.at(key);
   std::vector<std::uint32_t> scan_number;         // of the tile's scans in the scene's
@@ -56,28 +79,24 @@ void appendCluxels(const SceneTiles& tiles, const TileKey& key, const TileNumber
     scan_number.push_back(
         static_cast<std::uint32_t>(std::lower_bound(all.scans.begin(), all.scans.end(), scan) - all.scans.begin()));
   const auto ground = ringIn(tiles.ground, key);
-  std::array<std::uint32_t, 9> base{};
-  const auto ring = ringOf(key);
-  for (std::size_t r = 0; r < base.size(); ++r) base[r] = tiles.cluxels.contains(ring[r]) ? numbering.of(ring[r]) : 0;
-  for (std::uint32_t c = 0; c < cluxels.size(); ++c) {
-    const Eigen::Vector3f& center = cluxels.own[c].mean;
+  const Eigen::Vector3d corner = cornerOf(key);
+  const std::size_t count = cluxels.size();
+  const auto centre = [&](auto c) -> const Eigen::Vector3f& { return cluxels.own[c].mean; };
+  appendEach(all.name, count, [&](auto c) { return CluxelName{key, c}; });
+  appendEach(all.seed, count, [&](auto c) {
     const std::uint32_t seed = cluxels.seed[c];
-    all.name.push_back({key, c});
-    all.seed.push_back({scan_number[points.scan[seed]], points.point[seed]});
-    all.center.emplace_back(cornerOf(key) + center.cast<double>());
-    all.extent.emplace_back(cluxels.box_max[c] - cluxels.box_min[c]);
-    all.low_corner.emplace_back(cornerOf(key) + cluxels.box_min[c].cast<double>());
-    all.point_count.push_back(static_cast<std::uint32_t>(cluxels.own[c].count));
-    all.label.push_back(static_cast<PrimitiveLabel>(labels.label[c]));
-    all.probability.push_back(labels.probability[c]);
-    all.height_above_ground.push_back(static_cast<float>(center.z() - groundHeightAt(ground, center.x(), center.y())));
-    const std::size_t first = all.edge_target.size();
-    for (std::uint32_t e = graph.edge_offset[c]; e < graph.edge_offset[c + 1]; ++e)
-      all.edge_target.push_back(base[graph.edge_target[e].ring] + graph.edge_target[e].index);
-    const auto begin = all.edge_target.begin() + static_cast<std::ptrdiff_t>(first);
-    if (!std::is_sorted(begin, all.edge_target.end())) std::sort(begin, all.edge_target.end());   // inside of a tile they are
-    all.edge_offset.push_back(static_cast<std::uint32_t>(all.edge_target.size()));
-  }
+    return SeedName{scan_number[points.scan[seed]], points.point[seed]};
+  });
+  appendEach(all.center, count, [&](auto c) -> Eigen::Vector3d { return corner + centre(c).template cast<double>(); });
+  appendEach(all.extent, count, [&](auto c) -> Eigen::Vector3f { return cluxels.box_max[c] - cluxels.box_min[c]; });
+  appendEach(all.low_corner, count, [&](auto c) -> Eigen::Vector3d { return corner + cluxels.box_min[c].template cast<double>(); });
+  appendEach(all.point_count, count, [&](auto c) { return static_cast<std::uint32_t>(cluxels.own[c].count); });
+  appendEach(all.label, count, [&](auto c) { return static_cast<PrimitiveLabel>(labels.label[c]); });
+  appendEach(all.probability, count, [&](auto c) { return labels.probability[c]; });
+  appendEach(all.height_above_ground, count, [&](auto c) {
+    return static_cast<float>(centre(c).z() - groundHeightAt(ground, centre(c).x(), centre(c).y()));
+  });
+  appendEdges(tiles, key, numbering, all);
 }
 
 std::vector<ContentHash> scansOf(const SceneTiles& tiles) {
@@ -106,17 +125,19 @@ SceneCluxels gatherCluxels(const SceneTiles& tiles) {
   return all;
 }
 
-/// The hash of the label and of the members' seeds, which name a cluxel independently of what else lies in its tile.
-ContentHash nameOf(const Primitive& primitive, const SceneTiles& tiles, const SceneCluxels& cluxels) {
-  ContentHasher hasher;
-  hasher.add(primitive.label);
-  for (const std::uint32_t member : primitive.cluxels) {
-    const CluxelName& name = cluxels.name[member];
-    const TilePoints& points = tiles.points.at(name.tile);
-    const std::uint32_t seed = tiles.cluxels.at(name.tile).seed[name.index];
-    hasher.add(points.scans[points.scan[seed]]).add(points.point[seed]);
-  }
-  return hasher.finish();
+/// The hash of the label and of the members' seeds, which name a cluxel independently of what else lies in its tile. All go
+/// into the hasher at once: a call of it for each costs as much as the hashing.
+ContentHash nameOf(const Primitive& primitive, const SceneCluxels& cluxels) {
+  struct Member {
+    ContentHash scan;
+    std::uint32_t point;
+  };
+  static_assert(std::has_unique_object_representations_v<Member>);
+  std::vector<Member> members;
+  members.reserve(primitive.cluxels.size());
+  for (const std::uint32_t member : primitive.cluxels)
+    members.push_back({cluxels.scans[cluxels.seed[member].scan], cluxels.seed[member].point});
+  return ContentHasher().add(primitive.label).addBytes(members.data(), members.size() * sizeof(Member)).finish();
 }
 
 /// Sorts the primitives by id and tells every old number's new one.
@@ -149,7 +170,7 @@ void fillPrimitives(const SceneTiles& tiles, const std::vector<std::uint32_t>& p
   }
   for (std::size_t i = 0; i < count; ++i) {
     merged[i].describe(scene.primitives[i]);
-    scene.primitives[i].id = nameOf(scene.primitives[i], tiles, scene.cluxels);
+    scene.primitives[i].id = nameOf(scene.primitives[i], scene.cluxels);
   }
 }
 
