@@ -24,10 +24,8 @@ HeightWindow windowOf(const Ring<CluxelTile>& ring) {
     for (int y = 0; y < kColumnsPerTile; ++y)
       for (int x = 0; x < kColumnsPerTile; ++x) {
         const Column& column = tile->columns[static_cast<std::size_t>(y * kColumnsPerTile + x)];
-        if (column.count == 0) continue;
         const std::size_t cell = window.at(r % 3 * kColumnsPerTile + x, r / 3 * kColumnsPerTile + y);
-        window.height[cell] = column.low;
-        window.known[cell] = 1;
+        window.height[cell] = column.count == 0 ? HeightWindow::kUnknown : column.low;
       }
   }
   return window;
@@ -39,7 +37,7 @@ void dropRaisedAgainstTrend(HeightWindow& window, const GroundParams& params) {
   HeightWindow level = window;
   for (std::size_t i = 0; i < level.size(); ++i) level.height[i] -= trend[i];
   dropRaisedCells(level, kColumnSize_m, params.steepest * kTrendFactor, params.step_m * 0.75);
-  window.known = level.known;
+  for (std::size_t i = 0; i < level.size(); ++i) window.height[i] = level.knows(i) ? window.height[i] : HeightWindow::kUnknown;
 }
 
 /// Where a place lies between the centres of cells along one axis.
@@ -72,7 +70,7 @@ GroundTile groundOf(const Ring<CluxelTile>& ring, const GroundParams& params) {
     for (int x = 0; x < kColumnsPerTile; ++x) {
       const std::size_t cell = window.at(kColumnsPerTile + x, kColumnsPerTile + y);
       tile.height.push_back(height[cell]);
-      tile.source.push_back(window.known[cell] ? GroundSource::Measured : GroundSource::Filled);
+      tile.source.push_back(window.knows(cell) ? GroundSource::Measured : GroundSource::Filled);
     }
   return tile;
 }

@@ -18,15 +18,13 @@ constexpr int kSunkenReach = 6;
 constexpr int kSunkenSupport = 12;
 constexpr int kSupportReach = 3;
 
-/// Heights with a margin, not a number where unknown, so that no comparison holds there: rows can be read whole.
+/// Heights with a margin of unknown ones: rows can be read whole.
 class PaddedHeights {
  public:
   explicit PaddedHeights(const HeightWindow& window)
       : width_(static_cast<std::size_t>(window.side) + 2 * kSunkenReach + kLanes),
-        height_(width_ * (static_cast<std::size_t>(window.side) + 2 * kSunkenReach), std::numeric_limits<float>::quiet_NaN()) {
-    for (int y = 0; y < window.side; ++y)
-      for (int x = 0; x < window.side; ++x)
-        if (const std::size_t cell = window.at(x, y); window.known[cell]) height_[place(x, y)] = window.height[cell];
+        height_(width_ * (static_cast<std::size_t>(window.side) + 2 * kSunkenReach), HeightWindow::kUnknown) {
+    for (int y = 0; y < window.side; ++y) std::copy_n(window.height.data() + window.at(0, y), window.side, height_.data() + place(0, y));
   }
   /// From the cell `reach` to the left.
   const float* row(int x, int y, int reach) const { return height_.data() + place(x - reach, y); }
@@ -90,19 +88,26 @@ class SunkenTest {
   Allowance<kSunkenReach> around_;
 };
 
+/// Raises each of `count` values to the other row's.
+void raiseTo(const float* row, std::size_t count, float* values) {
+  for (std::size_t i = 0; i < count; ++i) values[i] = std::max(values[i], row[i]);
+}
+
 /// The highest known cell at most `reach` cells away along each axis; lower than all where there is none.
 std::vector<float> highestAround(const HeightWindow& window, int reach) {
   constexpr float kNone = -std::numeric_limits<float>::infinity();
-  std::vector<float> height(window.size()), rows(window.size(), kNone), both(window.size(), kNone);
-  for (std::size_t i = 0; i < height.size(); ++i) height[i] = window.known[i] ? window.height[i] : kNone;
-  const int side = window.side;
-  for (int y = 0; y < side; ++y)
-    for (int shift = -reach; shift <= reach; ++shift)
-      for (int x = std::max(0, -shift); x < std::min(side, side - shift); ++x)
-        rows[window.at(x, y)] = std::max(rows[window.at(x, y)], height[window.at(x + shift, y)]);
-  for (int y = 0; y < side; ++y)
-    for (int v = std::max(0, y - reach); v <= std::min(side - 1, y + reach); ++v)
-      for (int x = 0; x < side; ++x) both[window.at(x, y)] = std::max(both[window.at(x, y)], rows[window.at(x, v)]);
+  const auto side = static_cast<std::size_t>(window.side), margin = static_cast<std::size_t>(reach);
+  std::vector<float> padded(side + 2 * margin, kNone), rows(window.size(), kNone), both(window.size(), kNone);
+  for (std::size_t y = 0; y < side; ++y) {
+    for (std::size_t x = 0; x < side; ++x) {
+      const float height = window.height[y * side + x];
+      padded[x + margin] = height > kNone ? height : kNone;
+    }
+    for (std::size_t shift = 0; shift <= 2 * margin; ++shift) raiseTo(padded.data() + shift, side, rows.data() + y * side);
+  }
+  for (std::size_t y = 0; y < side; ++y)
+    for (std::size_t v = y < margin ? 0 : y - margin; v <= std::min(side - 1, y + margin); ++v)
+      raiseTo(rows.data() + v * side, side, both.data() + y * side);
   return both;
 }
 
@@ -126,44 +131,59 @@ void sweep(std::vector<float>& envelope, int side, bool forward, float rise) {
   }
 }
 
+using Doubles = double __attribute__((vector_size(16)));
+
+/// Mean heights of square cells; not a number where nothing is known, as in the row and the column that make an odd side even.
 struct Level {
-  int side = 0;
-  std::vector<double> sum, weight;
-  std::size_t at(int x, int y) const {
-    return static_cast<std::size_t>(std::clamp(y, 0, side - 1)) * static_cast<std::size_t>(side) +
-           static_cast<std::size_t>(std::clamp(x, 0, side - 1));
-  }
+  std::size_t side, width;
+  std::vector<double> mean;
+
+  explicit Level(std::size_t cells_along_edge)
+      : side(cells_along_edge), width((side + 1) / 2 * 2), mean(width * width, std::numeric_limits<double>::quiet_NaN()) {}
+  double* row(std::size_t y) { return mean.data() + y * width; }
+  const double* row(std::size_t y) const { return mean.data() + y * width; }
 };
 
+/// Means over the known ones of two by two cells.
 Level coarser(const Level& fine) {
-  Level level{(fine.side + 1) / 2, {}, {}};
-  const auto size = static_cast<std::size_t>(level.side) * static_cast<std::size_t>(level.side);
-  level.sum.assign(size, 0.0);
-  level.weight.assign(size, 0.0);
-  const auto width = static_cast<std::size_t>(fine.side);
-  for (std::size_t y = 0, from = 0; y < width; ++y)
-    for (std::size_t x = 0; x < width; ++x, ++from) {
-      if (fine.weight[from] <= 0) continue;
-      const std::size_t to = y / 2 * static_cast<std::size_t>(level.side) + x / 2;
-      level.sum[to] += fine.weight[from] == 1.0 ? fine.sum[from] : fine.sum[from] / fine.weight[from];
-      level.weight[to] += 1.0;
+  Level level((fine.side + 1) / 2);
+  for (std::size_t v = 0; v < level.side; ++v) {
+    const double *upper = fine.row(2 * v), *lower = fine.row(2 * v + 1);
+    for (std::size_t u = 0; u < level.side; ++u) {
+      double sum = 0, known = 0;
+      for (const double mean : {upper[2 * u], upper[2 * u + 1], lower[2 * u], lower[2 * u + 1]}) {
+        sum += std::isnan(mean) ? 0.0 : mean;
+        known += std::isnan(mean) ? 0.0 : 1.0;
+      }
+      level.row(v)[u] = sum / known;   // 0 / 0 is not a number
     }
+  }
   return level;
 }
 
-/// Gives cells without weight the value of the coarser level at their place.
+/// A row of a level with the outmost cells once more on both sides.
+void copyPadded(const Level& level, std::size_t y, std::vector<double>& row) {
+  row.resize(level.side + 2);
+  std::copy_n(level.row(y), level.side, row.begin() + 1);
+  row.front() = row[1];
+  row.back() = row[level.side];
+}
+
+/// Gives unknown cells the value of the coarser level at their place: two cells of a row at a time lie in one of it.
 void fillFrom(const Level& coarse, Level& fine) {
-  std::vector<double> mean(coarse.sum.size());
-  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = coarse.sum[i] / coarse.weight[i];
-  std::size_t cell = 0;
-  for (int y = 0; y < fine.side; ++y)
-    for (int x = 0; x < fine.side; ++x, ++cell) {
-      if (fine.weight[cell] > 0) continue;
-      const int u = x / 2, v = y / 2, du = x % 2 == 0 ? -1 : 1, dv = y % 2 == 0 ? -1 : 1;
-      const auto value = [&](int a, int b) { return mean[coarse.at(a, b)]; };
-      fine.sum[cell] = 0.5625 * value(u, v) + 0.1875 * (value(u + du, v) + value(u, v + dv)) + 0.0625 * value(u + du, v + dv);
-      fine.weight[cell] = 1.0;
+  std::vector<double> near, far;
+  for (std::size_t y = 0; y < fine.side; ++y) {
+    const std::size_t v = y / 2;
+    copyPadded(coarse, v, near);
+    copyPadded(coarse, y % 2 == 0 ? (v == 0 ? 0 : v - 1) : std::min(v + 1, coarse.side - 1), far);
+    double* row = fine.row(y);
+    for (std::size_t u = 0; u < coarse.side; ++u) {
+      const Doubles here{near[u + 1], near[u + 1]}, beside{near[u], near[u + 2]}, beyond{far[u + 1], far[u + 1]},
+          oblique{far[u], far[u + 2]};
+      const Doubles value = 0.5625 * here + 0.1875 * (beside + beyond) + 0.0625 * oblique;
+      for (std::size_t i = 0; i < 2; ++i) row[2 * u + i] = std::isnan(row[2 * u + i]) ? value[i] : row[2 * u + i];
     }
+  }
 }
 
 }  // namespace
@@ -176,50 +196,50 @@ void dropSunkenCells(HeightWindow& window, double cell_m, double steepest, doubl
   for (int y = 0; y < window.side; ++y)
     for (int x = 0; x < window.side; ++x) {
       const std::size_t cell = window.at(x, y);
-      if (!window.known[cell] || highest[cell] <= window.height[cell] + next_allowed) continue;
-      if (is_sunken(x, y, window.height[cell])) window.known[cell] = 0;
+      if (!(highest[cell] > window.height[cell] + next_allowed)) continue;   // nor does it for an unknown one
+      if (is_sunken(x, y, window.height[cell])) window.height[cell] = HeightWindow::kUnknown;
     }
 }
 
 void dropRaisedCells(HeightWindow& window, double cell_m, double steepest, double step_m) {
   std::vector<float> envelope(window.size());
   for (std::size_t i = 0; i < envelope.size(); ++i)
-    envelope[i] = window.known[i] ? window.height[i] : std::numeric_limits<float>::infinity();
+    envelope[i] = window.knows(i) ? window.height[i] : std::numeric_limits<float>::infinity();
   const auto rise = static_cast<float>(steepest * cell_m);
   sweep(envelope, window.side, true, rise);
   sweep(envelope, window.side, false, rise);
   for (std::size_t i = 0; i < envelope.size(); ++i)
-    if (window.known[i] && window.height[i] > envelope[i] + static_cast<float>(step_m)) window.known[i] = 0;
+    window.height[i] = window.height[i] > envelope[i] + static_cast<float>(step_m) ? HeightWindow::kUnknown : window.height[i];
 }
 
 std::vector<float> filled(const HeightWindow& window) {
-  std::vector<Level> levels(1);
-  levels[0].side = window.side;
-  levels[0].sum.resize(window.size());
-  levels[0].weight.resize(window.size());
-  for (std::size_t i = 0; i < window.size(); ++i) {
-    levels[0].sum[i] = window.known[i] ? window.height[i] : 0.0;
-    levels[0].weight[i] = window.known[i] ? 1.0 : 0.0;
-  }
+  const auto side = static_cast<std::size_t>(window.side);
+  std::vector<Level> levels{Level(side)};
+  for (std::size_t y = 0; y < side; ++y) std::copy_n(window.height.data() + y * side, side, levels[0].row(y));
   while (levels.back().side > 1) levels.push_back(coarser(levels.back()));
   for (std::size_t i = levels.size() - 1; i-- > 0;) fillFrom(levels[i + 1], levels[i]);
   std::vector<float> height(window.size());
-  for (std::size_t i = 0; i < height.size(); ++i) height[i] = static_cast<float>(levels[0].sum[i]);   // of weight 1, all
+  for (std::size_t y = 0; y < side; ++y)
+    std::transform(levels[0].row(y), levels[0].row(y) + side, height.data() + y * side, [](double mean) { return static_cast<float>(mean); });
   return height;
 }
 
 std::vector<float> smoothed(const std::vector<float>& height, int side, int reach) {
   const auto pass = [&](const std::vector<float>& in, std::size_t along, std::size_t across) {
     std::vector<float> out(in.size());
-    for (int line = 0; line < side; ++line) {
-      const std::size_t begin = static_cast<std::size_t>(line) * across;
-      double sum = 0;
-      for (int i = 0; i < std::min(reach, side); ++i) sum += in[begin + static_cast<std::size_t>(i) * along];
+    for (int line = 0; line < side; line += 2) {   // two lines at a time: a quotient of one waits for none of the other
+      const std::size_t one = static_cast<std::size_t>(line) * across, other = static_cast<std::size_t>(std::min(line + 1, side - 1)) * across;
+      const auto both = [&](int i) {
+        return Doubles{in[one + static_cast<std::size_t>(i) * along], in[other + static_cast<std::size_t>(i) * along]};
+      };
+      Doubles sum{};
+      for (int i = 0; i < std::min(reach, side); ++i) sum += both(i);
       for (int i = 0; i < side; ++i) {
-        if (i + reach < side) sum += in[begin + static_cast<std::size_t>(i + reach) * along];
-        if (i - reach - 1 >= 0) sum -= in[begin + static_cast<std::size_t>(i - reach - 1) * along];
-        const int count = std::min(side - 1, i + reach) - std::max(0, i - reach) + 1;
-        out[begin + static_cast<std::size_t>(i) * along] = static_cast<float>(sum / count);
+        if (i + reach < side) sum += both(i + reach);
+        if (i - reach - 1 >= 0) sum -= both(i - reach - 1);
+        const Doubles mean = sum / static_cast<double>(std::min(side - 1, i + reach) - std::max(0, i - reach) + 1);
+        out[one + static_cast<std::size_t>(i) * along] = static_cast<float>(mean[0]);
+        out[other + static_cast<std::size_t>(i) * along] = static_cast<float>(mean[1]);
       }
     }
     return out;

@@ -2,22 +2,25 @@
 // The square of cells over which the ground of one tile is worked out: the tile's columns and its ring's.
 #pragma once
 
-#include <cstdint>
+#include <cmath>
+#include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace cluxel {
 
-/// Heights of the cells of a square window, some of them unknown.
+/// Heights of the cells of a square window, some of them unknown: those are not a number, so that no comparison holds
+/// there and whole rows are worked through without a branch.
 struct HeightWindow {
+  static constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
   int side = 0;                       ///< cells along an edge
-  std::vector<float> height;          ///< [m]; means nothing where unknown
-  std::vector<std::uint8_t> known;
+  std::vector<float> height;          ///< [m], or kUnknown
 
   explicit HeightWindow(int cells_along_edge = 0)
-      : side(cells_along_edge), height(size(), 0.0F), known(size(), 0) {}
-  std::size_t size() const { return static_cast<std::size_t>(side) * static_cast<std::size_t>(side); }
+      : side(cells_along_edge), height(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), kUnknown) {}
+  std::size_t size() const { return height.size(); }
   std::size_t at(int x, int y) const { return static_cast<std::size_t>(y) * static_cast<std::size_t>(side) + static_cast<std::size_t>(x); }
-  bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < side && y < side; }
+  bool knows(std::size_t cell) const { return !std::isnan(height[cell]); }
 };
 
 /// Forgets cells that lie alone and far below what is around them: reflections seem to come from under the ground.
