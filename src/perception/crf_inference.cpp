@@ -82,13 +82,19 @@ PairRows rowsOf(const PairCosts& pair) {
   return {lesserOf(best, from.last + pair[4]), std::min(from.last, leastOf(most + pair[4]))};
 }
 
+/// All that a message along an edge reads and writes, in two cache lines: edges are met in one order on the way forth and
+/// in another on the way back.
+struct alignas(64) EdgeState {
+  PairRows pair;
+  LabelCosts to_later{}, to_earlier{};   ///< messages
+};
+static_assert(sizeof(EdgeState) == 128);
+
 class Trws {
  public:
-  explicit Trws(const CrfGraph& graph)
-      : x_graph(graph), x_at(incidenceOf(graph)), x_to_later(graph.edges.size()), x_to_earlier(graph.edges.size()),
-        x_min_marginals(graph.size()) {
-    x_pairs.reserve(graph.edges.size());
-    for (const PairCosts& pair : graph.pair_costs) x_pairs.push_back(rowsOf(pair));
+  explicit Trws(const CrfGraph& graph) : x_graph(graph), x_at(incidenceOf(graph)), x_min_marginals(graph.size()) {
+    x_edges.reserve(graph.edges.size());
+    for (const PairCosts& pair : graph.pair_costs) x_edges.push_back({rowsOf(pair)});
   }
 
   void passForward() {
@@ -115,7 +121,7 @@ class Trws {
       for (std::uint32_t k = x_at.backward_begin[i]; k < x_at.backward_begin[i + 1]; ++k)
         addFixed(costs, x_at.backward[k], labels[x_graph.edges[x_at.backward[k]].from]);
       for (std::uint32_t e = x_at.forward_begin[i]; e < x_at.forward_begin[i + 1]; ++e)
-        for (std::size_t a = 0; a < kLabels; ++a) costs[a] += x_to_earlier[e][a];
+        for (std::size_t a = 0; a < kLabels; ++a) costs[a] += x_edges[e].to_earlier[a];
       labels[i] = static_cast<std::uint8_t>(std::min_element(costs.begin(), costs.end()) - costs.begin());
     }
     return labels;
@@ -128,8 +134,8 @@ class Trws {
   Costs belief(std::uint32_t i) const {
     Costs costs = costsOf(x_graph.unary[i]);
     for (std::uint32_t k = x_at.backward_begin[i]; k < x_at.backward_begin[i + 1]; ++k)
-      costs.add(x_to_later[x_at.backward[k]]);
-    for (std::uint32_t e = x_at.forward_begin[i]; e < x_at.forward_begin[i + 1]; ++e) costs.add(x_to_earlier[e]);
+      costs.add(x_edges[x_at.backward[k]].to_later);
+    for (std::uint32_t e = x_at.forward_begin[i]; e < x_at.forward_begin[i + 1]; ++e) costs.add(x_edges[e].to_earlier);
     return costs;
   }
 
@@ -153,7 +159,7 @@ class Trws {
   void sendForward(std::uint32_t i, const Costs& costs) {
     const float share = treeShare(i);
     for (std::uint32_t e = x_at.forward_begin[i]; e < x_at.forward_begin[i + 1]; ++e)
-      send(costs, share, x_to_earlier[e], x_pairs[e], x_to_later[e]);
+      send(costs, share, x_edges[e].to_earlier, x_edges[e].pair, x_edges[e].to_later);
   }
 
   /// Edges to earlier nodes lie here and there: those that come next on the way back are called into the cache.
@@ -161,19 +167,17 @@ class Trws {
     constexpr std::uint32_t kAhead = 12;
     if (k < kAhead) return;
     const std::uint32_t e = x_at.backward[k - kAhead];
-    __builtin_prefetch(&x_pairs[e]);
-    __builtin_prefetch(&x_pairs[e].back());
-    __builtin_prefetch(&x_to_later[e]);
-    __builtin_prefetch(&x_to_earlier[e]);
+    __builtin_prefetch(&x_edges[e]);
+    __builtin_prefetch(&x_edges[e].to_earlier);
   }
 
   double sendBackward(std::uint32_t i, const Costs& costs) {
     const float share = treeShare(i);
     double bound = 0;
     for (std::uint32_t k = x_at.backward_begin[i]; k < x_at.backward_begin[i + 1]; ++k) {
-      const std::uint32_t e = x_at.backward[k];
+      EdgeState& edge = x_edges[x_at.backward[k]];
       prefetchBackward(k);
-      bound += static_cast<double>(send(costs, share, x_to_later[e], x_pairs[e], x_to_earlier[e]));
+      bound += static_cast<double>(send(costs, share, edge.to_later, edge.pair, edge.to_earlier));
     }
     return bound;
   }
@@ -185,8 +189,7 @@ class Trws {
 
   const CrfGraph& x_graph;
   Incidence x_at;
-  std::vector<PairRows> x_pairs;
-  std::vector<LabelCosts> x_to_later, x_to_earlier;
+  std::vector<EdgeState> x_edges;
   std::vector<LabelCosts> x_min_marginals;
 };
 

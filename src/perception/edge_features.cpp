@@ -13,12 +13,29 @@ namespace {
 constexpr float kLeastThickness_m = 0.02F;
 constexpr std::size_t kEdgeColumns = 10;
 
+Eigen::Vector3f widened(const Eigen::Vector3f& size) { return size.array() + kLeastThickness_m; }
+
+/// What edges read of a cluxel, side by side: an edge's other end lies anywhere.
+struct EdgeEnd {
+  Eigen::Vector3f center;
+  float reach;
+  Volume volume;
+  float size;                ///< of the widened volume [m3]
+  Eigen::Vector3f normal;
+  double linearity, planarity, scattering;
+};
+
+EdgeEnd edgeEnd(const RingCluxels& cluxels, std::size_t c, const EigenShape& ball) {
+  const Volume& volume = cluxels.volume[c];
+  return {cluxels.center[c], cluxels.reach[c], volume, widened(volume.high - volume.low).prod(),
+          ball.normal.cast<float>(),   // it came from floats
+          ball.linearity(), ball.planarity(), ball.scattering()};
+}
+
 /// Common volume over the smaller volume, in [0, 1].
-float volumeShare(const Volume& a, const Volume& b) {
-  const auto widened = [](const Eigen::Vector3f& size) -> Eigen::Vector3f { return size.array() + kLeastThickness_m; };
-  const Eigen::Vector3f common = widened(a.high.cwiseMin(b.high) - a.low.cwiseMax(b.low));
-  const Eigen::Vector3f size_a = widened(a.high - a.low), size_b = widened(b.high - b.low);
-  return common.prod() / std::min(size_a.prod(), size_b.prod());
+float volumeShare(const EdgeEnd& a, const EdgeEnd& b) {
+  const Eigen::Vector3f common = widened(a.volume.high.cwiseMin(b.volume.high) - a.volume.low.cwiseMax(b.volume.low));
+  return common.prod() / std::min(a.size, b.size);
 }
 
 /// Members of one cluxel's 1-ring carry a mark, so that others' shared members are counted in one run over theirs.
@@ -48,45 +65,42 @@ class SharedSupport {
   std::uint32_t cluxel_ = kNobody;
 };
 
-/// How far each centre lies off the other's plane [m]; the larger one. 0 when neither has a plane.
-double offPlane(const EigenShape& a, const EigenShape& b, const Eigen::Vector3d& d) {
-  return std::max(std::abs(a.normal.dot(d)), std::abs(b.normal.dot(d)));
-}
+using EdgeRow = std::array<float, kEdgeColumns>;
 
-using EdgeRow = std::span<float, kEdgeColumns>;
-
-/// What is the same for all edges of a cluxel.
-struct BallForm {
-  double linearity, planarity, scattering;
-};
-
-std::vector<BallForm> formsOf(const std::vector<EigenShape>& shapes) {
-  std::vector<BallForm> forms;
-  forms.reserve(shapes.size());
-  for (const auto& shape : shapes) forms.push_back({shape.linearity(), shape.planarity(), shape.scattering()});
-  return forms;
-}
-
-void fillEdge(const FeatureInput& input, const std::vector<BallForm>& forms, std::uint32_t a, std::uint32_t b,
-              const SharedSupport& shared, EdgeRow out, EdgeRow mirrored) {
-  const auto& cluxels = input.cluxels;
-  const Eigen::Vector3d d = (cluxels.center[b] - cluxels.center[a]).cast<double>();
-  const EigenShape &shape_a = input.ball[a], &shape_b = input.ball[b];
-  const BallForm &form_a = forms[a], &form_b = forms[b];
+EdgeRow edgeRow(const EdgeEnd& a, const EdgeEnd& b, float shared) {
+  const Eigen::Vector3d d = (b.center - a.center).cast<double>();
+  const Eigen::Vector3d normal_a = a.normal.cast<double>(), normal_b = b.normal.cast<double>();
   const double distance = d.norm();
-  const std::array<double, kEdgeColumns - 2> values{distance,
-                                                    distance / (cluxels.reach[a] + cluxels.reach[b]),
-                                                    std::abs(d.z()),
-                                                    std::min(1.0, std::abs(shape_a.normal.dot(shape_b.normal))),
-                                                    offPlane(shape_a, shape_b, d),
-                                                    std::abs(form_a.linearity - form_b.linearity),
-                                                    std::abs(form_a.planarity - form_b.planarity),
-                                                    std::abs(form_a.scattering - form_b.scattering)};
-  // Written to both rows at once: to copy what was just written would wait for it.
-  const auto put = [&](std::size_t i, float value) { out[i] = mirrored[i] = value; };
-  for (std::size_t i = 0; i < values.size(); ++i) put(i, static_cast<float>(values[i]));
-  put(kEdgeColumns - 2, volumeShare(cluxels.volume[a], cluxels.volume[b]));
-  put(kEdgeColumns - 1, shared.shareWith(b));
+  return {static_cast<float>(distance),
+          static_cast<float>(distance / (a.reach + b.reach)),
+          static_cast<float>(std::abs(d.z())),
+          static_cast<float>(std::min(1.0, std::abs(normal_a.dot(normal_b)))),
+          // How far each centre lies off the other's plane [m]; the larger one. 0 when neither has a plane.
+          static_cast<float>(std::max(std::abs(normal_a.dot(d)), std::abs(normal_b.dot(d)))),
+          static_cast<float>(std::abs(a.linearity - b.linearity)),
+          static_cast<float>(std::abs(a.planarity - b.planarity)),
+          static_cast<float>(std::abs(a.scattering - b.scattering)),
+          volumeShare(a, b),
+          shared};
+}
+
+/// Whether the row of an own cluxel's edge stands with its other end.
+bool isEarlierOwn(const RingCluxels& cluxels, std::uint32_t other, std::uint32_t own) {
+  return other >= cluxels.own_begin && other < own;
+}
+
+std::size_t rowCount(const RingCluxels& cluxels, const RingGraph& graph) {
+  std::size_t count = 0;
+  for (std::uint32_t c = cluxels.own_begin; c < cluxels.own_end; ++c)
+    for (const std::uint32_t other : graph.neighbours(c)) count += isEarlierOwn(cluxels, other, c) ? 0U : 1U;
+  return count;
+}
+
+std::vector<EdgeEnd> edgeEnds(const FeatureInput& input) {
+  std::vector<EdgeEnd> ends;
+  ends.reserve(input.cluxels.size());
+  for (std::size_t c = 0; c < input.cluxels.size(); ++c) ends.push_back(edgeEnd(input.cluxels, c, input.ball[c]));
+  return ends;
 }
 
 }  // namespace
@@ -100,28 +114,26 @@ void fillEdges(const FeatureInput& input, FeatureTile& tile) {
   const auto& cluxels = input.cluxels;
   const auto& graph = input.graph;
   const std::size_t first = graph.offset[cluxels.own_begin], count = graph.offset[cluxels.own_end] - first;
-  tile.edge_features.resize(count * kEdgeColumns);
   tile.edge_target.reserve(count);
-  const auto rowOf = [&](std::size_t edge) { return EdgeRow(tile.edge_features.data() + (edge - first) * kEdgeColumns, kEdgeColumns); };
-  // Own cluxels come to a target in ascending order, as its own edges to them stand: `back` is the next of these.
-  std::vector<std::uint32_t> back(graph.offset.begin(), graph.offset.end());
+  tile.edge_offset.reserve(tile.size() + 1);
+  tile.edge_row_offset.reserve(tile.size() + 1);
+  const auto ends = edgeEnds(input);
   SharedSupport shared(graph, cluxels.size());
-  const auto forms = formsOf(input.ball);
-  std::array<float, kEdgeColumns> nobodys{};   // the row of ends in other tiles
+  tile.edge_features.reserve(rowCount(cluxels, graph) * kEdgeColumns);
+  std::vector<EdgeRow> rows;   // of one cluxel
   for (std::uint32_t c = cluxels.own_begin; c < cluxels.own_end; ++c) {
     shared.moveTo(c);
     tile.edge_offset.push_back(static_cast<std::uint32_t>(graph.offset[c] - first));
-    for (std::uint32_t edge = graph.offset[c]; edge < graph.offset[c + 1]; ++edge) {
-      const std::uint32_t other = graph.target[edge];
+    tile.edge_row_offset.push_back(static_cast<std::uint32_t>(tile.edge_features.size() / kEdgeColumns));
+    rows.clear();
+    for (const std::uint32_t other : graph.neighbours(c)) {
       tile.edge_target.push_back(cluxels.name[other]);
-      const bool is_own = other >= cluxels.own_begin && other < cluxels.own_end;
-      if (is_own && other < c) continue;
-      if (is_own)
-        while (graph.target[back[other]] < cluxels.own_begin) ++back[other];
-      fillEdge(input, forms, c, other, shared, rowOf(edge), is_own ? rowOf(back[other]++) : EdgeRow(nobodys));
+      if (!isEarlierOwn(cluxels, other, c)) rows.push_back(edgeRow(ends[c], ends[other], shared.shareWith(other)));
     }
+    for (const EdgeRow& row : rows) tile.edge_features.insert(tile.edge_features.end(), row.begin(), row.end());
   }
   tile.edge_offset.push_back(static_cast<std::uint32_t>(count));
+  tile.edge_row_offset.push_back(static_cast<std::uint32_t>(tile.edge_features.size() / kEdgeColumns));
 }
 
 }  // namespace cluxel

@@ -37,6 +37,19 @@ std::vector<EigenShape> ballShapes(const Ring<CluxelTile>& ring, const RingCluxe
   return shapes;
 }
 
+/// How many rows come before each cluxel's: not stored, as the targets tell it.
+std::vector<std::uint32_t> edgeRowOffsets(const FeatureTile& tile) {
+  std::vector<std::uint32_t> offsets{0};
+  offsets.reserve(tile.size() + 1);
+  for (std::uint32_t c = 0; c < tile.size(); ++c) {
+    std::uint32_t rows = offsets.back();
+    for (std::uint32_t e = tile.edge_offset[c]; e < tile.edge_offset[c + 1]; ++e)
+      rows += FeatureTile::hasRow(c, tile.edge_target[e]) ? 1U : 0U;
+    offsets.push_back(rows);
+  }
+  return offsets;
+}
+
 }  // namespace
 
 void describe(FeatureParams& params, ParameterVisitor& visitor) {
@@ -106,7 +119,7 @@ void fillIntensityFeatures(const FeatureInput& input, std::size_t column, Featur
 }
 
 std::string toBytes(const FeatureTile& tile) {
-  TileWriter writer("FEAT", 1, tile.key);
+  TileWriter writer("FEAT", 2, tile.key);
   writer.put(tile.center);
   writer.put(tile.point_count);
   writer.put(tile.features);
@@ -117,7 +130,7 @@ std::string toBytes(const FeatureTile& tile) {
 }
 
 FeatureTile featureTileFromBytes(std::string_view bytes) {
-  TileReader reader(bytes, "FEAT", 1);
+  TileReader reader(bytes, "FEAT", 2);
   FeatureTile tile;
   tile.key = reader.key();
   tile.center = reader.getMany<Eigen::Vector3f>();
@@ -130,9 +143,11 @@ FeatureTile featureTileFromBytes(std::string_view bytes) {
   const std::size_t edges = tile.edge_target.size();
   reader.require(isOffsets(tile.edge_offset, edges), "has edges that do not belong to a cluxel");
   reader.require(size == 0 ? tile.features.empty() : tile.features.size() % size == 0, "has rows of different lengths");
-  reader.require(edges == 0 ? tile.edge_features.empty() : tile.edge_features.size() % edges == 0, "has edge rows of different lengths");
   for (const auto& target : tile.edge_target)
     reader.require(target.ring < 9 && (target.ring != kRingCentre || target.index < size), "has an edge that leads nowhere");
+  tile.edge_row_offset = edgeRowOffsets(tile);
+  const std::size_t rows = tile.edge_row_offset.back();
+  reader.require(rows == 0 ? tile.edge_features.empty() : tile.edge_features.size() % rows == 0, "has edge rows of different lengths");
   reader.require(allWithin(tile.center, kLargestHeight_m), "has a centre that is not a number");
   reader.finish();
   return tile;

@@ -66,13 +66,16 @@ HaloGraph haloGraph(const Ring<FeatureTile>& ring, double halo_m) {
     const auto [r, index] = graph.nodes[i];
     const FeatureTile& tile = *ring[r];
     const std::size_t first = graph.edges.size();
+    std::uint32_t row = tile.edge_row_offset[index];
     for (std::uint32_t e = tile.edge_offset[index]; e < tile.edge_offset[index + 1]; ++e) {
       const RingIndex target = tile.edge_target[e];
+      if (!FeatureTile::hasRow(index, target)) continue;   // entered from the other end, which comes first
+      const std::uint32_t here = row++;
       const std::size_t at = kComposed.place[r][target.ring];
       if (at == kNoPlace || target.index >= number[at].size()) continue;
       const std::uint32_t j = number[at][target.index];
       if (j == kOutside || j <= i) continue;
-      graph.edges.push_back({{i, j}, r, e, degreeOf(tile, index) + degreeOf(*ring[at], target.index)});
+      graph.edges.push_back({{i, j}, r, here, degreeOf(tile, index) + degreeOf(*ring[at], target.index)});
     }
     // Targets come sorted by ring place and number, and so do the nodes: seen from the centre the ring keeps its order.
     const auto begin = graph.edges.begin() + static_cast<std::ptrdiff_t>(first);
@@ -105,7 +108,7 @@ CrfGraph crfGraph(const Ring<FeatureTile>& ring, const HaloGraph& structure, con
   edges.reserve(structure.edges.size());
   for (const HaloEdge& edge : structure.edges) {
     graph.edges.push_back(edge.ends);
-    edges.push_back({ring[edge.ring]->edge_features.data() + edge.number * table.columns(), edge.degrees});
+    edges.push_back({ring[edge.ring]->edge_features.data() + edge.row * table.columns(), edge.degrees});
   }
   graph.pair_costs = table.costsOf(edges);
   return graph;

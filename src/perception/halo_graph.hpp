@@ -20,7 +20,7 @@ struct HaloNode {
 /// One edge between nodes, with where its features stand.
 struct HaloEdge {
   CrfEdge ends;
-  std::uint32_t ring = 0, number = 0;   ///< edge `number` of tile `ring`
+  std::uint32_t ring = 0, row = 0;      ///< row `row` of the edge features of tile `ring`
   std::uint32_t degrees = 0;            ///< of both cluxels together, over all their edges
   float share() const { return shareOf(degrees); }
 };

@@ -203,7 +203,7 @@ class TileSampler {
     if (x_row[e] == kNoRow) {
       const HaloEdge& edge = x_tile.structure.edges[e];
       x_row[e] = x_columns == 0 ? 0 : static_cast<std::uint32_t>(x_samples.features.size() / x_columns);
-      const auto begin = x_tile.ring[edge.ring]->edge_features.begin() + static_cast<std::ptrdiff_t>(edge.number * x_columns);
+      const auto begin = x_tile.ring[edge.ring]->edge_features.begin() + static_cast<std::ptrdiff_t>(edge.row * x_columns);
       x_samples.features.insert(x_samples.features.end(), begin, begin + static_cast<std::ptrdiff_t>(x_columns));
     }
     return x_row[e];

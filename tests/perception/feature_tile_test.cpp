@@ -45,25 +45,39 @@ TEST(FeatureTile, JoinsExactlyTheCluxelsWhoseVolumesIntersect) {
   }
 }
 
-TEST(FeatureTile, AnEdgeIsThereFromBothEndsWithTheSameFeatures) {
+using EdgeName = std::array<std::int64_t, 6>;   ///< tile, number, and those of the other end
+
+TEST(FeatureTile, AnEdgeIsThereFromBothEndsAndHasTheSameFeaturesInTwoTiles) {
   const PerceivedTiles tiles = street(32);
-  std::size_t across = 0;
   const std::size_t columns = featureLayout({}).edge_columns.size();
-  std::map<std::array<std::int64_t, 6>, std::vector<float>> edges;
-  for (const auto& [key, tile] : tiles.features)
-    for (std::uint32_t c = 0; c < tile.size(); ++c)
+  std::set<EdgeName> edges;
+  std::map<EdgeName, std::vector<float>> rows;
+  for (const auto& [key, tile] : tiles.features) {
+    const float* row = tile.edge_features.data();
+    for (std::uint32_t c = 0; c < tile.size(); ++c) {
+      EXPECT_EQ(row, tile.edge_features.data() + tile.edge_row_offset[c] * columns);
       for (auto e = tile.edge_offset[c]; e < tile.edge_offset[c + 1]; ++e) {
         const TileKey to = ringKey(key, tile.edge_target[e]);
-        const auto* row = tile.edge_features.data() + e * columns;
-        edges[{key.x, key.y, c, to.x, to.y, tile.edge_target[e].index}] = std::vector<float>(row, row + columns);
-        across += to != key;
+        const EdgeName name{key.x, key.y, c, to.x, to.y, tile.edge_target[e].index};
+        edges.insert(name);
+        if (!FeatureTile::hasRow(c, tile.edge_target[e])) continue;
+        rows[name] = std::vector<float>(row, row + columns);
+        row += columns;
       }
-  EXPECT_GT(across, 50U);
-  for (const auto& [edge, row] : edges) {
-    const auto back = edges.find({edge[3], edge[4], edge[5], edge[0], edge[1], edge[2]});
-    ASSERT_NE(back, edges.end());
-    EXPECT_EQ(back->second, row);
+    }
+    EXPECT_EQ(row, tile.edge_features.data() + tile.edge_features.size());
   }
+  std::size_t across = 0;
+  for (const auto& edge : edges) {
+    const EdgeName back{edge[3], edge[4], edge[5], edge[0], edge[1], edge[2]};
+    ASSERT_TRUE(edges.contains(back));
+    const bool leaves_tile = edge[0] != edge[3] || edge[1] != edge[4];
+    across += leaves_tile ? 1U : 0U;
+    EXPECT_EQ(rows.contains(edge) + rows.contains(back), leaves_tile ? 2 : 1);
+    if (!leaves_tile) continue;
+    EXPECT_EQ(rows.at(edge), rows.at(back));
+  }
+  EXPECT_GT(across, 50U);
 }
 
 TEST(FeatureTile, FillsEveryColumnWithFiniteNumbers) {
@@ -72,7 +86,7 @@ TEST(FeatureTile, FillsEveryColumnWithFiniteNumbers) {
   EXPECT_EQ(std::set<std::string>(layout.columns.begin(), layout.columns.end()).size(), layout.columns.size());
   for (const auto& [key, tile] : tiles.features) {
     ASSERT_EQ(tile.features.size(), tile.size() * layout.columns.size());
-    ASSERT_EQ(tile.edge_features.size(), tile.edge_target.size() * layout.edge_columns.size());
+    ASSERT_EQ(tile.edge_features.size(), tile.edge_row_offset.back() * layout.edge_columns.size());
     for (const auto value : tile.features) ASSERT_TRUE(std::isfinite(value));
     for (const auto value : tile.edge_features) ASSERT_TRUE(std::isfinite(value));
   }

@@ -20,6 +20,7 @@ void addEdge(FeatureTile& tile, int from_x, int from_y, int x, int y, std::size_
   const int tile_x = x / kSide;
   const auto ring = static_cast<std::uint32_t>(kRingCentre + tile_x - tile.key.x);
   tile.edge_target.push_back({ring & 15U, static_cast<std::uint32_t>(y * kSide + x % kSide) & 0xfffffffU});
+  if (!FeatureTile::hasRow(static_cast<std::uint32_t>(from_y * kSide + from_x % kSide), tile.edge_target.back())) return;
   // The same from both ends: made from what both have in common.
   std::mt19937 random(static_cast<std::uint32_t>((from_x + x) * 1000 + from_y + y));
   const float likeness = labelAt(from_x, from_y) == labelAt(x, y) ? 0.4F : 0.0F;
@@ -37,6 +38,7 @@ void addCluxel(FeatureTile& tile, std::vector<TruthCounts>& truth, int x, int y,
   for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
     addEdge(tile, x, y, x + dx, y + dy, layout.edge_columns.size());
   tile.edge_offset.push_back(static_cast<std::uint32_t>(tile.edge_target.size()));
+  tile.edge_row_offset.push_back(static_cast<std::uint32_t>(tile.edge_features.size() / layout.edge_columns.size()));
 }
 
 }  // namespace
@@ -51,6 +53,7 @@ TrainingPlace place(std::uint32_t seed, int group) {
     FeatureTile& tile = place.features[{t, 0}];
     tile.key = {t, 0};
     tile.edge_offset.push_back(0);
+    tile.edge_row_offset.push_back(0);
     for (int y = 0; y < kSide; ++y)
       for (int x = 0; x < kSide; ++x) addCluxel(tile, place.truth[{t, 0}], t * kSide + x, y, random, layout);
   }

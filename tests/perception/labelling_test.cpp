@@ -65,7 +65,7 @@ TEST(Labelling, LabelsATileWithoutNeighboursAndAnEmptyOne) {
   place.features.erase({1, 0});
   EXPECT_EQ(labelled(place, {0, 0}).label.size(), 256U);
   FeatureTile empty;
-  empty.edge_offset = {0};
+  empty.edge_offset = empty.edge_row_offset = {0};
   Ring<FeatureTile> ring{};
   ring[kRingCentre] = &empty;
   EXPECT_TRUE(labelTile(ring, sharedModel(), {}).label.empty());

@@ -20,7 +20,7 @@ namespace cluxel {
 
 /// To be raised by every change of the program that gives other stage outputs or facts for the same inputs (perception,
 /// reasoning, facts, closure; not storage): an unfinished build of the program before it is then refused, not mixed with.
-inline constexpr std::uint32_t kStagesVersion = 2;
+inline constexpr std::uint32_t kStagesVersion = 3;
 
 /// An authored file as it went into a map.
 struct NamedText {

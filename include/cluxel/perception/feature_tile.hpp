@@ -46,9 +46,13 @@ struct FeatureTile {
   std::vector<float> features;                ///< size() x columns, row-major
   std::vector<std::uint32_t> edge_offset;     ///< size() + 1: where each cluxel's edges begin
   std::vector<RingIndex> edge_target;         ///< own and neighbouring tiles' cluxels whose volumes intersect
-  std::vector<float> edge_features;           ///< edges x edge columns, row-major; the same value seen from both ends
+  std::vector<std::uint32_t> edge_row_offset; ///< size() + 1: how many rows of edge features come before each cluxel's
+  std::vector<float> edge_features;           ///< a row of edge columns for each edge that hasRow(), in the order of edges
 
   std::size_t size() const { return center.size(); }
+  /// An edge's features are the same seen from both ends: edges between own cluxels have their row at the end that comes
+  /// first, those to other tiles in either tile.
+  static bool hasRow(std::uint32_t cluxel, RingIndex target) { return target.ring != kRingCentre || target.index > cluxel; }
 };
 
 /// The columns that computeFeatures() fills with these settings.
