@@ -205,6 +205,7 @@ int main(int argc, char** argv) {
   std::vector<StageTime> best;
   Outputs out;
   for (int round = 0; round < rounds; ++round) {
+    out = {};
     const auto times = runOnce(scans, model, out);
     if (best.empty()) best = times;
     for (std::size_t i = 0; i < times.size(); ++i) best[i].seconds = std::min(best[i].seconds, times[i].seconds);

@@ -82,30 +82,37 @@ PairRows rowsOf(const PairCosts& pair) {
   return {lesserOf(best, from.last + pair[4]), std::min(from.last, leastOf(most + pair[4]))};
 }
 
-/// All that a message along an edge reads and writes, in two cache lines: edges are met in one order on the way forth and
-/// in another on the way back.
-struct alignas(64) EdgeState {
+/// All that a message along an edge reads and writes, side by side: edges are met in one order on the way forth and in
+/// another on the way back.
+struct EdgeState {
   PairRows pair;
   LabelCosts to_later{}, to_earlier{};   ///< messages
 };
-static_assert(sizeof(EdgeState) == 128);
 
 class Trws {
  public:
-  explicit Trws(const CrfGraph& graph) : x_graph(graph), x_at(incidenceOf(graph)), x_min_marginals(graph.size()) {
+  explicit Trws(const CrfGraph& graph)
+      : x_graph(graph), x_at(incidenceOf(graph)), x_from_earlier(graph.size()), x_min_marginals(graph.size()) {
     x_edges.reserve(graph.edges.size());
     for (const PairCosts& pair : graph.pair_costs) x_edges.push_back({rowsOf(pair)});
   }
 
   void passForward() {
-    for (std::uint32_t i = 0; i < x_graph.size(); ++i) sendForward(i, belief(i));
+    for (std::uint32_t i = 0; i < x_graph.size(); ++i) {
+      Costs costs = costsOf(x_graph.unary[i]);
+      addFromEarlier(i, costs);
+      costs.store(x_from_earlier[i]);   // the same on the way back
+      addFromLater(i, costs);
+      sendForward(i, costs);
+    }
   }
 
   /// Returns the lower bound that the messages prove.
   double passBackward() {
     double bound = 0;
     for (std::uint32_t i = static_cast<std::uint32_t>(x_graph.size()); i-- > 0;) {
-      Costs costs = belief(i);
+      Costs costs = costsOf(x_from_earlier[i]);
+      addFromLater(i, costs);
       bound += static_cast<double>(costs.subtractMin());
       costs.store(x_min_marginals[i]);   // no message to this node will change before the next pass
       bound += sendBackward(i, costs);
@@ -131,12 +138,12 @@ class Trws {
   const std::vector<LabelCosts>& minMarginals() const { return x_min_marginals; }
 
  private:
-  Costs belief(std::uint32_t i) const {
-    Costs costs = costsOf(x_graph.unary[i]);
+  void addFromEarlier(std::uint32_t i, Costs& costs) const {
     for (std::uint32_t k = x_at.backward_begin[i]; k < x_at.backward_begin[i + 1]; ++k)
       costs.add(x_edges[x_at.backward[k]].to_later);
+  }
+  void addFromLater(std::uint32_t i, Costs& costs) const {
     for (std::uint32_t e = x_at.forward_begin[i]; e < x_at.forward_begin[i + 1]; ++e) costs.add(x_edges[e].to_earlier);
-    return costs;
   }
 
   /// One over the number of monotonic chains through a node.
@@ -190,6 +197,7 @@ class Trws {
   const CrfGraph& x_graph;
   Incidence x_at;
   std::vector<EdgeState> x_edges;
+  std::vector<LabelCosts> x_from_earlier;   ///< unary costs and what earlier nodes said on the last way forth
   std::vector<LabelCosts> x_min_marginals;
 };
 

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "perception/turned_rows.hpp"
+
 namespace cluxel {
 
 namespace {
@@ -48,14 +50,17 @@ std::vector<PairCosts> PairCostTable::costsOf(std::span<const Edge> edges) const
     constexpr std::size_t kAhead = 3 * kPairEdges;
     for (std::size_t i = begin + kAhead; i < std::min(begin + kAhead + kPairEdges, edges.size()); ++i)
       __builtin_prefetch(edges[i].features);
-    for (std::size_t lane = 0; lane < kPairEdges; ++lane) {
-      const Edge& edge = edges[begin + std::min(lane, some - 1)];   // the last one fills up
-      for (std::size_t column = 0; column < x_columns; ++column) columns[column * kPairEdges + lane] = edge.features[column];
-      factors[lane] = factorOf(edge.degrees);
-    }
+    const auto at = [&](std::size_t lane) { return edges[begin + std::min(lane, some - 1)]; };   // the last one fills up
+    for (std::size_t lane = 0; lane < kPairEdges; ++lane) factors[lane] = factorOf(at(lane).degrees);
+    for (std::size_t lane = 0; lane < kPairEdges; lane += kLanes)
+      turnRows({at(lane).features, at(lane + 1).features, at(lane + 2).features, at(lane + 3).features}, x_columns,
+               columns.data() + lane, kPairEdges);
     x_kernels.pair_costs(table, columns.data(), factors.data(), found.front().data());
-    for (std::size_t lane = 0; lane < some; ++lane)
-      for (std::size_t pair = 0; pair < kLabelPairCount; ++pair) costs[begin + lane][pair] = found[pair][lane];
+    for (std::size_t next = 0; next < kLabelPairCount; next += kLanes) {
+      const std::size_t pair = std::min(next, kLabelPairCount - kLanes);   // the last ones may be written twice
+      turnRows({found[pair].data(), found[pair + 1].data(), found[pair + 2].data(), found[pair + 3].data()}, some,
+               costs[begin].data() + pair, kLabelPairCount);
+    }
   }
   return costs;
 }

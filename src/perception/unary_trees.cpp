@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "perception/tree_scoring.hpp"
+#include "perception/turned_rows.hpp"
 
 namespace cluxel {
 
@@ -39,14 +40,17 @@ class FlatTrees {
   std::vector<float> x_leaves;
 };
 
+static_assert(kTreeRows % kLanes == 0);
+
 /// Some rows with their features column by column, and their sums.
 class RowBlock {
  public:
   explicit RowBlock(std::size_t columns) : x_columns(columns), x_values(columns * kTreeRows, 0.0F) {}
 
   void fill(std::span<const float* const> rows) {
-    for (std::size_t r = 0; r < rows.size(); ++r)
-      for (std::size_t c = 0; c < x_columns; ++c) x_values[c * kTreeRows + r] = rows[r][c];
+    const auto at = [&](std::size_t r) { return rows[std::min(r, rows.size() - 1)]; };   // the last one fills up
+    for (std::size_t r = 0; r < rows.size(); r += kLanes)
+      turnRows({at(r), at(r + 1), at(r + 2), at(r + 3)}, x_columns, x_values.data() + r, kTreeRows);
   }
   void score(const LabelValues& bias, const TreeTable& table, const LaneKernels& kernels, std::span<LabelValues> scores) {
     x_sums.fill({});

@@ -10,7 +10,7 @@
 namespace cluxel {
 namespace {
 
-constexpr std::array<double, 2> kCells_m{0.5, 1.0};
+constexpr std::array<double, 2> kCells_m{0.5, 1.0};   // ascending
 constexpr std::size_t kColumnsPerScale = 8;
 
 /// Cluxels of the ring near the tile, summed per grid cell relative to one place.
@@ -23,37 +23,45 @@ struct CellSums {
 
 struct Item {
   Eigen::Vector3f center;
-  const Moments* own;
+  std::array<float, 6> spread;           ///< mean products of its points' deviations [m2]
   std::uint32_t number;                  ///< in the centre tile, or PointGrid::kForeign
 };
 
-std::vector<Item> itemsNear(const Ring<CluxelTile>& ring, float margin_m) {
+bool isNear(const Eigen::Vector3f& center, double margin_m) {
+  const auto low = static_cast<float>(-margin_m), high = static_cast<float>(kTileSize_m) + static_cast<float>(margin_m);
+  return center.x() >= low && center.x() <= high && center.y() >= low && center.y() <= high;
+}
+
+std::vector<Item> itemsNear(const Ring<CluxelTile>& ring, double margin_m) {
   std::vector<Item> items;
   items.reserve(2 * ring[kRingCentre]->size());
-  const float low = -margin_m, high = static_cast<float>(kTileSize_m) + margin_m;
   for (int r = 0; r < 9; ++r) {
     const CluxelTile* tile = ring[static_cast<std::size_t>(r)];
     if (tile == nullptr) continue;
     const Eigen::Vector3f shift = ringShift(r);
     for (std::uint32_t i = 0; i < tile->size(); ++i) {
-      const Eigen::Vector3f center = tile->own[i].mean + shift;
-      if (center.x() < low || center.x() > high || center.y() < low || center.y() > high) continue;
-      items.push_back({center, &tile->own[i], r == kRingCentre ? i : PointGrid::kForeign});
+      const Moments& own = tile->own[i];
+      const Eigen::Vector3f center = own.mean + shift;
+      if (!isNear(center, margin_m)) continue;
+      items.push_back({center, own.scatter, r == kRingCentre ? i : PointGrid::kForeign});
+      for (auto& value : items.back().spread) value /= own.count;
     }
   }
   return items;
 }
 
-CellSums sumCells(const Ring<CluxelTile>& ring, double cell_m) {
-  const auto items = itemsNear(ring, static_cast<float>(cell_m));
+/// Sums of the items near the tile, in their order.
+CellSums sumCells(const std::vector<Item>& items, double cell_m, std::size_t own) {
   const CellKeys key(cell_m, cell_m);
-  std::vector<KeyedItem> order(items.size());
+  std::vector<KeyedItem> order;
+  order.reserve(items.size());
   for (std::uint32_t i = 0; i < items.size(); ++i)
-    order[i] = {key(items[i].center.x(), items[i].center.y(), items[i].center.z()), i};
-  if (!order.empty()) sortByKey(order);
+    if (const auto& center = items[i].center; isNear(center, cell_m)) order.push_back({key(center.x(), center.y(), center.z()), i});
   CellSums cells;
-  const Eigen::Vector3f origin = items.empty() ? Eigen::Vector3f(0, 0, 0) : items.front().center;
-  cells.cell_of_own.resize(ring[kRingCentre]->size());
+  cells.cell_of_own.resize(own);
+  if (order.empty()) return cells;
+  const Eigen::Vector3f origin = items[order.front().item].center;
+  sortByKey(order);
   for (const auto& entry : order) {
     const Item& item = items[entry.item];
     if (cells.key.empty() || cells.key.back() != entry.key) {
@@ -61,9 +69,7 @@ CellSums sumCells(const Ring<CluxelTile>& ring, double cell_m) {
       cells.sum.emplace_back();
       cells.has_own.push_back(0);
     }
-    std::array<float, 6> spread = item.own->scatter;
-    for (auto& value : spread) value /= item.own->count;
-    cells.sum.back().addSet(item.center - origin, spread);
+    cells.sum.back().addSet(item.center - origin, item.spread);
     if (item.number == PointGrid::kForeign) continue;
     cells.cell_of_own[item.number] = static_cast<std::uint32_t>(cells.key.size() - 1);
     cells.has_own.back() = 1;
@@ -87,8 +93,8 @@ void putRise(const MomentSum& sum, int occupied, CubeRow& row) {
   row[kShapeColumns + 1] = static_cast<float>(occupied) / 27.0F;
 }
 
-void fillScale(const FeatureInput& input, double cell_m, std::size_t column, FeatureRows& rows) {
-  const CellSums cells = sumCells(input.ring, cell_m);
+void fillScale(const std::vector<Item>& items, std::size_t own, double cell_m, std::size_t column, FeatureRows& rows) {
+  const CellSums cells = sumCells(items, cell_m, own);
   std::vector<CubeRow> cube(cells.sum.size());
   const auto keep = [&](std::size_t cell, const EigenShape& shape) { putShape(shape, cube[cell]); };
   FourShapes four;
@@ -126,8 +132,9 @@ std::vector<std::string> wideColumns() {
 }
 
 void fillWideFeatures(const FeatureInput& input, std::size_t column, FeatureRows& rows) {
+  const auto items = itemsNear(input.ring, kCells_m.back());
   for (std::size_t scale = 0; scale < kCells_m.size(); ++scale)
-    fillScale(input, kCells_m[scale], column + scale * kColumnsPerScale, rows);
+    fillScale(items, input.own().size(), kCells_m[scale], column + scale * kColumnsPerScale, rows);
 }
 
 }  // namespace cluxel
