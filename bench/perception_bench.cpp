@@ -88,8 +88,9 @@ std::vector<StageTime> runOnce(const std::vector<Scan>& scans, const LabelModel&
   watch.overTiles("graph and features", points, [&](const TileKey& key) {
     features[key] = computeFeatures(ringIn(cluxels, key), ringIn(ground, key), params.features);
   });
+  const TileLabeller labeller(model);
   watch.overTiles("labels (CRF)", points, [&](const TileKey& key) {
-    out.labels[key] = labelTile(ringIn(features, key), model, scene.labelling);
+    out.labels[key] = labeller.label(ringIn(features, key), scene.labelling);
   });
   watch.overTiles("components", points, [&](const TileKey& key) {
     out.components[key] = componentsOf(points.at(key), cluxels.at(key), features.at(key), out.labels.at(key),

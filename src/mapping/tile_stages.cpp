@@ -56,7 +56,7 @@ void TileStages::update(WriteTransaction& transaction, const TileSet& touched, u
         return computeFeatures(cluxels_.ring(key), ground_.ring(key), model_.perception.features);
       });
   const TileSet labels = labels_.recompute(transaction, around(features), threads, sink, [&](const TileKey& key) {
-    return labelTile(features_.ring(key), model_, params_.labelling);
+    return labeller_.label(features_.ring(key), params_.labelling);
   });
   const TileSet own = unionOf(unionOf(points, cluxels), unionOf(features, labels));
   const TileSet components =

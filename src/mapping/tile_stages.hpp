@@ -13,7 +13,7 @@ namespace cluxel {
 
 class TileStages {
  public:
-  TileStages(const LabelModel& model, const MapParams& params) : model_(model), params_(params) {}
+  TileStages(const LabelModel& model, const MapParams& params) : model_(model), params_(params), labeller_(model) {}
 
   /// Brings every stage up to date after segments of the tiles `touched` came in.
   void update(WriteTransaction& transaction, const TileSet& touched, unsigned threads, ProgressSink& sink);
@@ -31,6 +31,7 @@ class TileStages {
 
   const LabelModel& model_;
   const MapParams& params_;
+  TileLabeller labeller_;
   TileSet existing_;
   StageOutputs<TilePoints> points_{tables::kPoints, &tilePointsFromBytes};
   StageOutputs<CluxelTile> cluxels_{tables::kCluxels, &cluxelTileFromBytes};

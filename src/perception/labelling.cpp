@@ -6,6 +6,7 @@
 
 #include "perception/halo_graph.hpp"
 #include "perception/tile_bytes.hpp"
+#include "perception/tree_scoring.hpp"
 
 namespace cluxel {
 
@@ -29,9 +30,14 @@ CalibratedLabel calibrate(const Calibration& calibration, const LabelValues& mar
   return result;
 }
 
-LabelTile labelTile(const Ring<FeatureTile>& ring, const LabelModel& model, const LabellingParams& params) {
+TileLabeller::TileLabeller(const LabelModel& model) : x_model(model), x_trees(std::make_unique<TreeScorer>(model.unary)) {}
+
+TileLabeller::~TileLabeller() = default;
+
+LabelTile TileLabeller::label(const Ring<FeatureTile>& ring, const LabellingParams& params) const {
+  const LabelModel& model = x_model;
   const HaloGraph structure = haloGraph(ring, model.pairs.pair_scale == 0 ? 0.0 : params.halo_m);
-  const auto scores = scoreRows(model.unary, nodeFeatures(ring, structure, model.layout.columns.size()));
+  const auto scores = x_trees->score(nodeFeatures(ring, structure, model.layout.columns.size()));
   const CrfGraph graph = crfGraph(ring, structure, scores, model.pairs);
   const InferenceResult inferred = inferTrws(graph, {.sweeps = static_cast<unsigned>(params.sweeps), .decode = false});
   LabelTile tile;

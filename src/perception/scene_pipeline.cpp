@@ -26,8 +26,9 @@ std::map<TileKey, Tile> overTiles(const std::map<TileKey, FeatureTile>& tiles, u
 
 Scene sceneOf(std::span<const Scan> scans, const LabelModel& model, const SceneParams& params, unsigned threads) {
   const PerceivedTiles tiles = perceive(scans, model.perception, threads);
+  const TileLabeller labeller(model);
   const auto labels = overTiles<LabelTile>(tiles.features, threads, [&](const TileKey& key) {
-    return labelTile(ringIn(tiles.features, key), model, params.labelling);
+    return labeller.label(ringIn(tiles.features, key), params.labelling);
   });
   const auto components = overTiles<ComponentTile>(tiles.features, threads, [&](const TileKey& key) {
     return componentsOf(tiles.points.at(key), tiles.cluxels.at(key), tiles.features.at(key), labels.at(key),

@@ -14,32 +14,6 @@ namespace cluxel {
 
 namespace {
 
-/// An ensemble one array behind the other, as the kernel reads it.
-class FlatTrees {
- public:
-  explicit FlatTrees(const TreeEnsemble& ensemble) : x_split_begin{0} {
-    for (const ObliviousTree& tree : ensemble.trees) {
-      for (const TreeSplit& split : tree.splits) x_splits.push_back({split.column, split.threshold});
-      x_split_begin.push_back(static_cast<std::uint32_t>(x_splits.size()));
-      x_leaf_begin.push_back(static_cast<std::uint32_t>(x_leaves.size()));
-      const std::size_t size = tree.leaves.size() * kPrimitiveLabelCount;
-      static_assert(sizeof(LabelValues) == kPrimitiveLabelCount * sizeof(float));
-      x_leaves.resize(x_leaves.size() + size);
-      if (size > 0) std::memcpy(x_leaves.data() + x_leaf_begin.back(), tree.leaves.data(), size * sizeof(float));
-    }
-    static_assert(kPrimitiveLabelCount <= kLeafRead);
-    x_leaves.resize(x_leaves.size() + kLeafRead);   // the last leaf is read beyond its end
-  }
-  TreeTable table() const {
-    return {x_splits.data(), x_split_begin.data(), x_leaves.data(), x_leaf_begin.data(), x_leaf_begin.size()};
-  }
-
- private:
-  std::vector<TreeTable::Split> x_splits;
-  std::vector<std::uint32_t> x_split_begin, x_leaf_begin;
-  std::vector<float> x_leaves;
-};
-
 static_assert(kTreeRows % kLanes == 0);
 
 /// Some rows with their features column by column, and their sums.
@@ -67,33 +41,51 @@ class RowBlock {
   std::array<std::array<float, kLeafRead>, kTreeRows> x_sums{};
 };
 
-std::vector<LabelValues> scoreBlocks(const TreeEnsemble& ensemble, std::span<const float* const> rows, const LaneKernels& kernels) {
+}  // namespace
+
+TreeScorer::TreeScorer(const TreeEnsemble& ensemble, const LaneKernels& kernels)
+    : x_columns(ensemble.columns), x_bias(ensemble.bias), x_kernels(kernels) {
+  for (const ObliviousTree& tree : ensemble.trees) {
+    for (const TreeSplit& split : tree.splits) x_splits.push_back({split.column, split.threshold});
+    x_split_begin.push_back(static_cast<std::uint32_t>(x_splits.size()));
+    x_leaf_begin.push_back(static_cast<std::uint32_t>(x_leaves.size()));
+    const std::size_t size = tree.leaves.size() * kPrimitiveLabelCount;
+    static_assert(sizeof(LabelValues) == kPrimitiveLabelCount * sizeof(float));
+    x_leaves.resize(x_leaves.size() + size);
+    if (size > 0) std::memcpy(x_leaves.data() + x_leaf_begin.back(), tree.leaves.data(), size * sizeof(float));
+  }
+  static_assert(kPrimitiveLabelCount <= kLeafRead);
+  x_leaves.resize(x_leaves.size() + kLeafRead);   // the last leaf is read beyond its end
+}
+
+TreeTable TreeScorer::table() const {
+  return {x_splits.data(), x_split_begin.data(), x_leaves.data(), x_leaf_begin.data(), x_leaf_begin.size()};
+}
+
+std::vector<LabelValues> TreeScorer::score(std::span<const float* const> rows) const {
   std::vector<LabelValues> scores(rows.size());
-  RowBlock block(ensemble.columns);
-  const FlatTrees trees(ensemble);
+  RowBlock block(x_columns);
   for (std::size_t begin = 0; begin < rows.size(); begin += kTreeRows) {
     const std::size_t count = std::min(kTreeRows, rows.size() - begin);
     block.fill(rows.subspan(begin, count));
-    block.score(ensemble.bias, trees.table(), kernels, std::span(scores).subspan(begin, count));
+    block.score(x_bias, table(), x_kernels, std::span(scores).subspan(begin, count));
   }
   return scores;
 }
 
-}  // namespace
-
-std::vector<LabelValues> scoreRows(const TreeEnsemble& ensemble, std::span<const float* const> rows) {
-  return scoreBlocks(ensemble, rows, fastestKernels());
+std::vector<LabelValues> TreeScorer::score(std::span<const float> features) const {
+  if (x_columns == 0) return {};
+  std::vector<const float*> rows(features.size() / x_columns);
+  for (std::size_t r = 0; r < rows.size(); ++r) rows[r] = features.data() + r * x_columns;
+  return score(rows);
 }
 
-std::vector<LabelValues> scoreRows(const TreeEnsemble& ensemble, std::span<const float> features, const LaneKernels& kernels) {
-  if (ensemble.columns == 0) return {};
-  std::vector<const float*> rows(features.size() / ensemble.columns);
-  for (std::size_t r = 0; r < rows.size(); ++r) rows[r] = features.data() + r * ensemble.columns;
-  return scoreBlocks(ensemble, rows, kernels);
+std::vector<LabelValues> scoreRows(const TreeEnsemble& ensemble, std::span<const float* const> rows) {
+  return TreeScorer(ensemble).score(rows);
 }
 
 std::vector<LabelValues> scoreRows(const TreeEnsemble& ensemble, std::span<const float> features) {
-  return scoreRows(ensemble, features, fastestKernels());
+  return TreeScorer(ensemble).score(features);
 }
 
 LabelValues softmax(const LabelValues& scores) {

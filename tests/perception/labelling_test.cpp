@@ -18,7 +18,7 @@ const LabelModel& sharedModel() {
 }
 
 LabelTile labelled(const TrainingPlace& place, TileKey key, const LabellingParams& params = {}) {
-  return labelTile(ringIn(place.features, key), sharedModel(), params);
+  return TileLabeller(sharedModel()).label(ringIn(place.features, key), params);
 }
 
 TEST(Labelling, GivesEachCluxelALabelAndProbabilitiesThatSumToOne) {
@@ -68,7 +68,7 @@ TEST(Labelling, LabelsATileWithoutNeighboursAndAnEmptyOne) {
   empty.edge_offset = empty.edge_row_offset = {0};
   Ring<FeatureTile> ring{};
   ring[kRingCentre] = &empty;
-  EXPECT_TRUE(labelTile(ring, sharedModel(), {}).label.empty());
+  EXPECT_TRUE(TileLabeller(sharedModel()).label(ring, {}).label.empty());
 }
 
 TEST(Labelling, ReadsBackWhatItStored) {
@@ -97,7 +97,7 @@ TEST(LabelModel, ReadsBackWhatItWrote) {
 TEST(LabelModel, GivesTheSameLabelsAfterReadingBack) {
   const TrainingPlace place = made_up::place(11, 0);
   const LabelModel again = parseModel(modelText(sharedModel()), "model.json");
-  EXPECT_EQ(toBytes(labelTile(ringIn(place.features, {0, 0}), again, {})), toBytes(labelled(place, {0, 0})));
+  EXPECT_EQ(toBytes(TileLabeller(again).label(ringIn(place.features, {0, 0}), {})), toBytes(labelled(place, {0, 0})));
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {

@@ -57,7 +57,7 @@ void expectTheSameBits(const LaneKernels& kernels) {
     for (const std::size_t rows : {1U, 63U, 64U, 65U, 200U}) {
       const TreeEnsemble ensemble = randomEnsemble(random, trees);
       const auto features = randomRows(random, ensemble, rows);
-      const auto scores = scoreRows(ensemble, features, kernels);
+      const auto scores = TreeScorer(ensemble, kernels).score(features);
       ASSERT_EQ(scores.size(), rows);
       for (std::size_t r = 0; r < rows; ++r) EXPECT_EQ(scores[r], walkedOneByOne(ensemble, features.data() + r * kColumns)) << r;
     }

@@ -2,6 +2,7 @@
 // The labelling stage: features of a tile and its ring to labels and probabilities of the tile's cluxels.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,9 +20,24 @@ struct LabellingParams {
 };
 void describe(LabellingParams& params, ParameterVisitor& visitor);
 
-/// Labels the cluxels of the ring's centre tile. A pure function of the arguments. The centre must be there; the tiles
-/// must have been made with `model.perception`. Cost: about 2 us a cluxel and 0.1 us an edge, halo included.
-LabelTile labelTile(const Ring<FeatureTile>& ring, const LabelModel& model, const LabellingParams& params);
+class TreeScorer;
+
+/// A model made ready to label tiles, which it must outlive. May be used by many threads at once.
+class TileLabeller {
+ public:
+  explicit TileLabeller(const LabelModel& model);
+  ~TileLabeller();
+  TileLabeller(const TileLabeller&) = delete;
+  TileLabeller& operator=(const TileLabeller&) = delete;
+
+  /// Labels the cluxels of the ring's centre tile. A pure function of the model and the arguments. The centre must be
+  /// there; the tiles must have been made with `model.perception`. Cost: about 1 us a cluxel and 0.1 us an edge, halo included.
+  LabelTile label(const Ring<FeatureTile>& ring, const LabellingParams& params) const;
+
+ private:
+  const LabelModel& x_model;
+  std::unique_ptr<const TreeScorer> x_trees;
+};
 
 std::string toBytes(const LabelTile& tile);
 /// Throws Error (StoreUnavailable) when the bytes are not such a tile.
