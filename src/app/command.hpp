@@ -47,6 +47,12 @@ void onRun(CLI::App& command, Session& session, std::function<ExitCode()> run);
 
 /// For options that take a number above 0.
 CLI::Validator above0();
+/// For options that take a share: a number from 0 to 1.
+CLI::Validator share();
+/// For options that take a whole number of at most 64 bits, as it stands: neither cut off nor wrapped round.
+CLI::Validator whole();
+/// For names of what is written: the empty one is that of a variable that nobody has set.
+CLI::Validator named();
 
 /// Data to stdout, with a line end. A closed pipe is not an error.
 void print(std::string_view text);

@@ -39,7 +39,7 @@ void addBuild(CLI::App& app, Session& session) {
   auto options = std::make_shared<BuildOptions>();
   CLI::App* command = app.add_subcommand("build", "make a map from scans");
   command->add_option("scans", options->inputs, "files, folders and manifests of scans")->required();
-  command->add_option("-o,--output", options->output, "the map file to make")->required();
+  command->add_option("-o,--output", options->output, "the map file to make")->required()->check(named());
   command->add_option("--poses", options->poses, "poses of the scans: KITTI 3x4, TUM, or 4x4 text");
   command->add_flag("--register", options->params.mend_poses, "mend the poses first, as the command register does");
   command->add_option("--model", options->files.model, "a trained model: a name in models/, a folder or a file");

@@ -61,9 +61,9 @@ void addEvaluate(CLI::App& app, Session& session) {
   command->add_option("--truth", options->truth, "a folder of truth files, or a label map: oakland, semantickitti, campus")
       ->required();
   command->add_option("--min-oa", options->min_oa, "exit 1 when the overall accuracy of objects by point is below")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(share());
   command->add_option("--min-macro-f1", options->min_macro_f1, "exit 1 when the macro F1 of objects by point is below")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(share());
   command->add_option("--min-recall", options->min_recall, "CLASS=SHARE: exit 1 when the recall by point is below");
   onRun(*command, session, [options, &session] {
     for (const std::string& bar : options->min_recall) barOf(bar);

@@ -30,7 +30,7 @@ void addExport(CLI::App& app, Session& session) {
   auto options = std::make_shared<ExportOptions>();
   CLI::App* command = app.add_subcommand("export", "write a map as RDF, coloured cloud or footprints");
   command->add_option("map", options->map, "a map")->required();
-  command->add_option("-o,--output", options->output, "the file to write; else stdout");
+  command->add_option("-o,--output", options->output, "the file to write; else stdout")->check(named());
   command->add_option("--format", options->format, "turtle, nquads, canonical, ply, geojson; else by the file's ending");
   command->add_flag("--canonical", options->canonical, "sorted N-Quads without history: equal bytes mean equal maps");
   onRun(*command, session, [options] {

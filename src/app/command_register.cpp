@@ -122,7 +122,7 @@ void addRegister(CLI::App& app, Session& session) {
   auto options = std::make_shared<RegisterOptions>();
   CLI::App* command = app.add_subcommand("register", "mend the poses of scans by laying the scans on each other");
   command->add_option("scans", options->inputs, "files, folders and manifests of scans")->required();
-  command->add_option("-o,--output", options->output, "the manifest to write, *.yaml, which build takes");
+  command->add_option("-o,--output", options->output, "the manifest to write, *.yaml, which build takes")->check(named());
   command->add_option("--poses", options->poses, "poses of the scans: KITTI 3x4, TUM, or 4x4 text");
   command->add_flag("--check", options->check, "only measure, and exit with 1 when scans disagree");
   command->add_option("--max-residual", options->max_residual_m, "with --check: how far surfaces may lie apart [m]")

@@ -37,8 +37,8 @@ ExitCode simulate(const SimulateOptions& options, Session& session) {
 void addSimulate(CLI::App& app, Session& session) {
   auto options = std::make_shared<SimulateOptions>();
   CLI::App* command = app.add_subcommand("simulate", "write scans of a generated campus with truth and poses");
-  command->add_option("folder", options->folder, "new or empty folder for the scans")->required();
-  command->add_option("--seed", options->params.seed, "everything follows from it")->capture_default_str();
+  command->add_option("folder", options->folder, "new or empty folder for the scans")->required()->check(named());
+  command->add_option("--seed", options->params.seed, "everything follows from it")->check(whole())->capture_default_str();
   for (const CampusParamInfo& info : campusParamInfos()) {
     const std::string help = std::string(info.help) + " [" + std::string(info.unit) + "]";
     command->add_option("--" + std::string(info.name), options->params.*info.field, help)

@@ -73,7 +73,7 @@ void addTrain(CLI::App& app, Session& session) {
   command->add_option("scans", options->inputs, "files, folders and manifests of scans")->required();
   command->add_option("--truth", options->truth, "a folder of truth files, or a label map: oakland, semantickitti, campus")
       ->required();
-  command->add_option("-o,--output", options->output, "the model's folder: model.json and README.md")->required();
+  command->add_option("-o,--output", options->output, "the model's folder: model.json and README.md")->required()->check(named());
   command->add_option("--helper", options->helpers, "scans that help to train, but are never left out and measured on");
   command->add_option("--helper-truth", options->helper_truth, "truth of the helpers, as --truth");
   command->add_option("--name", options->name, "the model's name; else the folder's");

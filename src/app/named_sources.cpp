@@ -11,7 +11,9 @@ Question questionFrom(const fs::path& file, const std::string& text, const Sessi
   if (file.empty() && text.empty()) throw Error(ExitCode::Usage, "give a query file, or a query with -e TEXT");
   if (!file.empty()) {
     fs::path name = file;
-    if (!name.has_extension()) name += ".rq";
+    std::error_code ignored;
+    const bool is_file = fs::exists(name, ignored) && !fs::is_directory(name, ignored);   // a pipe too
+    if (!name.has_extension() && !is_file) name += ".rq";
     return readQuestion(session.dataHome().locate("queries", name));
   }
   Question question;

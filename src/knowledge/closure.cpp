@@ -89,6 +89,7 @@ class Facts {
     return quads;
   }
 
+  bool isIri(TermId id) const { return reader_.valueOf(id).kind == TermKind::Iri; }
   bool isResource(TermId id) const { return reader_.valueOf(id).kind != TermKind::Literal; }
 
  private:
@@ -187,8 +188,10 @@ OntologyRules readRules(const Facts& facts, const Words& words) {
   });
   for (const TermId property : {words.sub_class, words.sub_property})
     if (property != kNoTerm) rules.transitive.insert(property);
+  // What OWL says through a blank node ([ owl:inverseOf p ]) goes on from there, but no fact has such a predicate.
+  const auto is_no_predicate = [&](const Implied& implied) { return !facts.isIri(implied.property); };
   for (const auto& [property, first] : direct)
-    rules.implications.emplace(property, allImplied(property, direct));
+    std::erase_if(rules.implications.emplace(property, allImplied(property, direct)).first->second, is_no_predicate);
   const Edges above = edgesOf(facts, words.sub_class);
   for (const auto& [kind, direct_ones] : above) rules.ancestors.emplace(kind, reachableFrom(kind, above));
   return rules;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "cluxel/base/nearest_name.hpp"
+#include "cluxel/base/shown_line.hpp"
 #include "cluxel/knowledge/ontology.hpp"
 #include "cluxel/knowledge/vocabulary.hpp"
 
@@ -142,7 +143,7 @@ class OntologyCheck {
                                      : statement.quad.object.text;
       const std::size_t at = findName(source.text, object, subject);
       diagnostic.location = locate(source.name, source.text, at == std::string_view::npos ? subject : at);
-      diagnostic.source_line = lineOf(source.text, diagnostic.location.line);
+      diagnostic.source_line = shownLine(source.text, diagnostic.location.line);
     }
     faults_.push_back(std::move(diagnostic));
   }

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 
+#include "cluxel/base/shown_line.hpp"
+
 namespace cluxel {
 
 namespace {
 
-constexpr std::size_t kMostFaults = 50;
+constexpr std::size_t kMostShown = 50;   // raptor goes on after errors of lines
 
 /// What stands in quotes, as raptor quotes tokens: 'b' or "y:z".
 std::string_view quotedIn(std::string_view message) {
@@ -41,16 +43,16 @@ std::string printable(std::string_view message) {
 
 void RdfFaults::add(std::size_t line, std::size_t column, std::string_view raw_message) {
   const std::string message = printable(withoutRubbish(raw_message));
-  if (diagnostics_.size() >= kMostFaults) return;
+  if (diagnostics_.size() >= kMostShown) return;
   if (line == 0) {
     if (without_place_.empty()) without_place_ = message;
     return;
   }
   Diagnostic diagnostic;
   diagnostic.message = without_place_.empty() ? message : std::exchange(without_place_, {});
-  diagnostic.source_line = lineOf(source_.text, line);
+  diagnostic.source_line = shownLine(source_.text, line);
   diagnostic.location = {.file = source_.name, .line = line, .column = column};
-  if (column == 0) diagnostic.location.column = columnOf(diagnostic.source_line, diagnostic.message);
+  if (column == 0) diagnostic.location.column = columnOf(lineOf(source_.text, line), diagnostic.message);
   const bool follows = std::any_of(diagnostics_.begin(), diagnostics_.end(),
                                    [&](const Diagnostic& earlier) { return earlier.location.line == line; });
   if (!follows) diagnostics_.push_back(std::move(diagnostic));

@@ -166,7 +166,11 @@ void Reading::run() {
   const Raptor<raptor_uri> uri(raptor_new_uri(world.get(), bytes(base)));
   if (!uri) throw InputError({.file = source_.name}, "the base IRI '" + base + "' is malformed");
   raptor_parser_parse_start(parser_.get(), uri.get());
-  raptor_parser_parse_chunk(parser_.get(), bytes(source_.text), source_.text.size(), 1);
+  // Editors on Windows put a byte order mark before a text; XML parsers know it.
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  const bool skips = source_.format != RdfFormat::RdfXml && source_.text.starts_with(byte_order_mark);
+  const std::size_t from = skips ? byte_order_mark.size() : 0;
+  raptor_parser_parse_chunk(parser_.get(), bytes(source_.text) + from, source_.text.size() - from, 1);
   parser_.reset();
   if (failure_) std::rethrow_exception(failure_);
   faults_.throwIfAny();

@@ -11,13 +11,25 @@ namespace cluxel {
 
 RedlandMatches::RedlandMatches(QuadReader reader, const QuadPattern& pattern,
                                std::function<bool(QuadIds&)> accept, bool copy)
-    : reader_(std::move(reader)), cursor_(reader_.scan(pattern)), accept_(std::move(accept)) {
-  if (copy) {
-    std::vector<QuadIds> quads;
-    for (QuadIds quad; take(quad);) quads.push_back(quad);
-    copied_ = std::move(quads);
-  }
+    : reader_(std::move(reader)), cursor_(reader_->scan(pattern)), accept_(std::move(accept)) {
+  if (copy) copyAll();
   next();
+}
+
+void RedlandMatches::copyAll() {
+  std::vector<QuadIds> quads;
+  for (QuadIds quad; take(quad);) {
+    quads.push_back(quad);
+    for (const TermId id : {quad.s, quad.p, quad.o, quad.g})
+      if (const auto [term, is_new] = copied_terms_.try_emplace(id); is_new) term->second = reader_->termOf(id);
+  }
+  copied_ = std::move(quads);
+  cursor_ = QuadCursor();
+  reader_.reset();
+}
+
+TermView RedlandMatches::viewOf(TermId id) const {
+  return reader_ ? reader_->viewOf(id) : TermView::of(copied_terms_.at(id));
 }
 
 bool RedlandMatches::take(QuadIds& quad) {
@@ -134,7 +146,7 @@ void RedlandMap::remove(const Term& s, const Term& p, const Term& o) {
   change([&](QuadWriter& writer) {
     writer.flush();
     const auto found = match(&s, &p, &o, nullptr, true);
-    const TermId history = found->reader().idOf(Term::iri(vocabulary::kGraphHistory)).value_or(kNoTerm);
+    const TermId history = QuadReader(read()).idOf(Term::iri(vocabulary::kGraphHistory)).value_or(kNoTerm);
     std::vector<QuadIds> quads;
     for (; !found->atEnd(); found->next())
       if (history == kNoTerm || found->quad().g != history) quads.push_back(found->quad());

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "cluxel/knowledge/quad_store.hpp"
@@ -19,8 +20,8 @@ struct RedlandOptions {
   bool create = false, write = true, strict = false;
 };
 
-/// Quads that match a pattern, each given once; a snapshot of its own, or a list when a transaction may
-/// change them.
+/// Quads that match a pattern, each given once; a snapshot of its own, or a list with its terms when a transaction may
+/// change them or end before they are read.
 class RedlandMatches {
  public:
   RedlandMatches(QuadReader reader, const QuadPattern& pattern, std::function<bool(QuadIds&)> accept,
@@ -28,14 +29,17 @@ class RedlandMatches {
   bool atEnd() const { return at_end_; }
   void next();
   const QuadIds& quad() const { return quad_; }
-  const QuadReader& reader() const { return reader_; }
+  /// The term of an id in one of the quads.
+  TermView viewOf(TermId id) const;
 
  private:
   bool take(QuadIds& quad);
-  QuadReader reader_;
+  void copyAll();
+  std::optional<QuadReader> reader_;   ///< none behind a copy: it would keep the transaction
   QuadCursor cursor_;
   std::function<bool(QuadIds&)> accept_;
   std::optional<std::vector<QuadIds>> copied_;
+  std::unordered_map<TermId, Term> copied_terms_;
   std::size_t place_ = 0;
   QuadIds quad_;
   bool at_end_ = false;

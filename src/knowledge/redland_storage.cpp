@@ -6,9 +6,11 @@
 
 #include <rdf_storage_module.h>
 
+#include <algorithm>
 #include <charconv>
 
 #include "knowledge/redland_calls.hpp"
+#include "knowledge/utf8.hpp"
 
 namespace cluxel {
 
@@ -63,9 +65,34 @@ int close(librdf_storage* storage) {
   return run(storage, [](RedlandMap& map) { map.close(); });
 }
 
+bool isPlain(std::string_view text, std::string_view more) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [more](char c) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'), digit = c >= '0' && c <= '9';
+    return letter || digit || static_cast<unsigned char>(c) >= 0x80 || more.find(c) != std::string_view::npos;
+  });
+}
+
+/// librdf's programs may make terms that no RDF text can hold: a map with them could not be exported and read again.
+void requireWritable(const Term& term) {
+  const bool is_text = !firstInvalidUtf8(term.text) && term.text.find('\0') == std::string::npos;
+  const bool is_label = term.kind != TermKind::BlankNode || isPlain(term.text, "_-");
+  const bool is_tag = term.language.empty() || isPlain(term.language, "-");
+  if (is_text && is_label && is_tag) return;
+  throw Error(ExitCode::FaultyInput,
+              !is_text    ? "a term that is not UTF-8, or holds a zero byte, cannot be stored"
+              : !is_label ? "the blank node '" + term.text + "' cannot be stored: use letters, digits, _ and -"
+                          : "'" + term.language + "' is no language tag");
+}
+
+Quad addedQuad(librdf_statement* statement, librdf_node* context) {
+  Quad quad = quadOf(statement, context);
+  for (const Term* term : {&quad.subject, &quad.predicate, &quad.object, &quad.graph}) requireWritable(*term);
+  return quad;
+}
+
 int addTo(librdf_storage* storage, librdf_node* context, librdf_statement* statement) {
   return run(storage, [&](RedlandMap& map) {
-    const Quad quad = quadOf(statement, context);
+    const Quad quad = addedQuad(statement, context);
     map.change([&](QuadWriter& writer) { writer.add(quad); });
   });
 }
@@ -79,7 +106,7 @@ int addAllTo(librdf_storage* storage, librdf_node* context, librdf_stream* strea
     map.change([&](QuadWriter& writer) {
       for (; librdf_stream_end(stream) == 0; librdf_stream_next(stream))
         if (librdf_statement* statement = librdf_stream_get_object(stream))
-          writer.add(quadOf(statement, context != nullptr ? context : librdf_stream_get_context2(stream)));
+          writer.add(addedQuad(statement, context != nullptr ? context : librdf_stream_get_context2(stream)));
     });
   });
 }

@@ -42,17 +42,16 @@ struct StatementStream {
   librdf_statement* current() {
     if (statement) return statement.get();
     const QuadIds& quad = matches->quad();
-    const QuadReader& reader = matches->reader();
-    statement.reset(librdf_new_statement_from_nodes(world, nodeOf(world, reader.viewOf(quad.s)).release(),
-                                                    nodeOf(world, reader.viewOf(quad.p)).release(),
-                                                    nodeOf(world, reader.viewOf(quad.o)).release()));
+    statement.reset(librdf_new_statement_from_nodes(world, nodeOf(world, matches->viewOf(quad.s)).release(),
+                                                    nodeOf(world, matches->viewOf(quad.p)).release(),
+                                                    nodeOf(world, matches->viewOf(quad.o)).release()));
     return statement.get();
   }
 
   /// Null for the unnamed graph.
   librdf_node* currentContext() {
     if (!context && matches->quad().g != kNoTerm)
-      context = nodeOf(world, matches->reader().viewOf(matches->quad().g));
+      context = nodeOf(world, matches->viewOf(matches->quad().g));
     return context.get();
   }
 };

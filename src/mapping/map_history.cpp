@@ -2,6 +2,8 @@
 // Builds as PROV activities.
 #include "mapping/map_history.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include "cluxel/knowledge/quad_store.hpp"
 #include "cluxel/knowledge/vocabulary.hpp"
 #include "mapping/map_facts.hpp"
@@ -9,6 +11,12 @@
 namespace cluxel {
 
 namespace {
+
+/// A file's name may be no UTF-8, of which all text in a map is.
+Term nameText(const std::string& name) {
+  using Json = nlohmann::json;
+  return Term::literal(Json::parse(Json(name).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>());
+}
 
 std::string prov(std::string_view local) { return std::string(vocabulary::kProv).append(local); }
 
@@ -31,11 +39,11 @@ void addBuildActivity(WriteTransaction& transaction, const std::vector<Cloud>& c
   add(activity, prov("startedAtTime"), time(started_s));
   add(activity, prov("endedAtTime"), time(ended_s));
   add(activity, vocabulary::clx("inputsHash"), Term::literal(inputs.hash().hex()));
-  add(activity, vocabulary::clx("modelFile"), Term::literal(inputs.model.name));
+  add(activity, vocabulary::clx("modelFile"), nameText(inputs.model.name));
   for (const Cloud& cloud : clouds) {
     const Term subject = Term::iri(iriOfCloud(cloud.id));
     add(activity, prov("used"), subject);
-    add(subject, vocabulary::clx("sourceFile"), Term::literal(cloud.source));
+    add(subject, vocabulary::clx("sourceFile"), nameText(cloud.source));
   }
   writer.flush();
 }

@@ -83,13 +83,14 @@ std::string ruleFileName(const NamedText& rule) { return fs::path(rule.name).fil
 MapInputs readMapInputs(const MapInputFiles& files, const DataHome& home) {
   MapInputs inputs;
   inputs.ontology = readAll(givenOr(files.ontology, "ontology", ".ttl", home));
+  // A name that nobody gave is not looked for in the working directory, where a file of that name may mean anything.
   std::vector<fs::path> rules;
-  for (const fs::path& name : files.rules.empty() ? std::vector<fs::path>{"outdoor.rules.yaml"} : files.rules)
-    rules.push_back(home.locate("rules", name));
+  for (const fs::path& name : files.rules) rules.push_back(home.locate("rules", name));
+  if (rules.empty()) rules.push_back(home.locate("rules/outdoor.rules.yaml"));
   inputs.rules = readRules(rules, inputs.ontology);
   inputs.rule_roots = rules.size();
   inputs.sparql_rules = readAll(givenOr(files.sparql_rules, "rules", ".rq", home));
-  fs::path model = home.locate("models", files.model.empty() ? fs::path("oakland") : files.model);
+  fs::path model = files.model.empty() ? home.locate("models/oakland") : home.locate("models", files.model);
   if (fs::is_directory(model)) model /= "model.json";
   inputs.model = {model.string(), readFile(model)};
   return inputs;

@@ -123,8 +123,11 @@ TileSet storedTiles(const ReadTransaction& transaction) {
 TileSet storeScan(WriteTransaction& transaction, const Scan& scan) {
   requireTime(scan);
   if (const auto there = storedCloud(transaction, scan.id)) {
-    if (numbersOf(there->T_map_sensor) == numbersOf(scan.T_map_sensor)) return {};
-    throw InputError({.file = scan.source}, "is the same scan as '" + there->source + "', with another pose",
+    // The map says where the sensor stood only of scans with a pose: which of two was first must not decide.
+    const bool same = numbersOf(there->T_map_sensor) == numbersOf(scan.T_map_sensor) && there->has_pose == scan.has_pose;
+    if (same) return {};
+    const std::string how = there->has_pose == scan.has_pose ? "with another pose" : scan.has_pose ? "now with a pose" : "now without a pose";
+    throw InputError({.file = scan.source}, "is the same scan as '" + there->source + "', " + how,
                      "give each scan once; to correct a pose, build anew with the right one");
   }
   TileSet tiles;

@@ -13,7 +13,7 @@
 namespace cluxel {
 
 /// Stores a scan and its segments; the tiles that it touches are returned. Nothing happens when the same scan with the
-/// same pose is there already; with another pose it is an InputError.
+/// same pose is there already; with another pose, or with one where there was none, it is an InputError.
 TileSet storeScan(WriteTransaction& transaction, const Scan& scan);
 
 /// All tiles that hold points of some scan.

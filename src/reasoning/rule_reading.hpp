@@ -39,6 +39,9 @@ bool checkKeys(const YamlNode& node, std::string_view context, FaultList& faults
 /// The value of `key`; a fault when it is missing or empty.
 const YamlNode* requireKey(const YamlNode& node, std::string_view key, std::string_view context, FaultList& faults);
 
+/// What the list under `key` holds; a fault when anything else stands there, which would do nothing in silence.
+const std::vector<YamlNode>& listUnder(const YamlNode& map, std::string_view key, std::string_view of_what, FaultList& faults);
+
 std::optional<std::string> readText(const YamlNode& node, std::string_view what, FaultList& faults);
 std::optional<bool> readFlag(const YamlNode& node, FaultList& faults);
 /// A bare number without unit or constant.

@@ -149,16 +149,15 @@ class Gatherer {
   void readOverride(const YamlNode& overrides) {
     if (!checkKeys(overrides, "override", faults_)) return;
     if (const YamlNode* constants = overrides.find("constants")) overrideConstants(*constants);
-    if (const YamlNode* rules = overrides.find("rules"))
-      for (const YamlNode& rule : rules->items) overrideRule(rule);
-    if (const YamlNode* removed = overrides.find("remove"))
-      for (const YamlNode& id : removed->items) {
-        YamlNode* rule = knownRule(id, id.text);
-        if (rule != nullptr) result_.rules.erase(result_.rules.begin() + (rule - result_.rules.data()));
-      }
+    for (const YamlNode& rule : listUnder(overrides, "rules", "rules", faults_)) overrideRule(rule);
+    for (const YamlNode& id : listUnder(overrides, "remove", "ids of rules", faults_)) {
+      YamlNode* rule = knownRule(id, id.text);
+      if (rule != nullptr) result_.rules.erase(result_.rules.begin() + (rule - result_.rules.data()));
+    }
   }
 
   void overrideConstants(const YamlNode& constants) {
+    if (!constants.isMap() && !constants.isNull()) return faults_.error(constants.at, "'constants' must be a mapping");
     for (std::size_t i = 0; i < constants.items.size(); ++i) {
       const YamlNode& key = constants.keys[i];
       const auto earlier = std::find_if(result_.constants.begin(), result_.constants.end(),

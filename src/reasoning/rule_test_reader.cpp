@@ -147,20 +147,25 @@ class TestReader {
 
   void readExpect(const YamlNode& node, RuleTest& test) {
     if (!checkKeys(node, "expect", faults_)) return;
-    if (node.items.empty()) faults_.error(node.at, "a test that expects nothing cannot fail");
-    if (const YamlNode* objects = node.find("objects"))
-      for (const YamlNode& item : objects->items) readExpectedObject(item, test);
+    const std::size_t faults_before = faults_.errorCount();
+    for (const YamlNode& item : listUnder(node, "objects", "objects", faults_)) readExpectedObject(item, test);
     if (const YamlNode* exactly = node.find("exactly")) test.expect.exactly = readFlag(*exactly, faults_).value_or(false);
-    if (const YamlNode* absent = node.find("not"))
-      for (const YamlNode& item : absent->items)
-        if (const auto iri = readClass(item, reading_)) test.expect.absent.push_back(*iri);
+    for (const YamlNode& item : listUnder(node, "not", "classes", faults_))
+      if (const auto iri = readClass(item, reading_)) test.expect.absent.push_back(*iri);
     if (const YamlNode* count = node.find("count")) readCount(*count, test.expect);
-    if (const YamlNode* reasons = node.find("reasons"))
-      for (const YamlNode& item : reasons->items) readReason(item, test);
+    for (const YamlNode& item : listUnder(node, "reasons", "reasons", faults_)) readReason(item, test);
     if (const YamlNode* golden = node.find("golden")) readGolden(node, *golden, test.expect);
+    if (faults_.errorCount() == faults_before && expectsNothing(test.expect))
+      faults_.error(node.at, "a test that expects nothing cannot fail");
+  }
+
+  static bool expectsNothing(const Expectation& expect) {
+    return expect.objects.empty() && !expect.exactly && expect.absent.empty() && expect.count.empty() &&
+           expect.reasons.empty() && !expect.golden;
   }
 
   void readCount(const YamlNode& node, Expectation& expect) {
+    if (!node.isMap()) faults_.error(node.at, "'count' maps classes to numbers, as in { clx:Tree: 2 }");
     for (std::size_t i = 0; i < node.items.size() && node.isMap(); ++i) {
       const auto iri = readClass(node.keys[i], reading_);
       const auto number = readQuantity(node.items[i], Dimension::Count, reading_);

@@ -81,6 +81,16 @@ std::string_view unitOf(Dimension dimension) {
   }
 }
 
+const std::vector<YamlNode>& listUnder(const YamlNode& map, std::string_view key, std::string_view of_what, FaultList& faults) {
+  static const std::vector<YamlNode> none;
+  const YamlNode* list = map.find(key);
+  if (list == nullptr || list->isNull()) return none;
+  if (list->isSequence()) return list->items;
+  faults.error(list->at, "'" + std::string(key) + "' takes a list of " + std::string(of_what) + ", not " +
+                             std::string(describeKind(*list)));
+  return none;
+}
+
 std::optional<std::string> readText(const YamlNode& node, std::string_view what, FaultList& faults) {
   if (node.isScalar() && !node.text.empty()) return node.text;
   faults.error(node.at, std::string(what) + " is expected here, not " +

@@ -77,7 +77,8 @@ class ScanGatherer {
 
  private:
   void addFolder(const fs::path& folder) {
-    if (const auto manifest = manifestIn(folder)) return addManifest(*manifest);
+    // A manifest that lists its own folder means the scans there.
+    if (const auto manifest = manifestIn(folder); manifest && !isReading(*manifest)) return addManifest(*manifest);
     const fs::path root = isVelodyneFolder(folder) ? folder / ".." : folder;
     for (const LayoutScan& scan : layoutAt(root).scans) scans_.push_back(scan);
   }
@@ -89,12 +90,13 @@ class ScanGatherer {
 
   /// The layout of a folder with times and poses, kept for the next file of the same folder.
   const FolderLayout& layoutAt(const fs::path& folder) {
-    const auto known = layouts_.find(folder);
+    const fs::path name = fs::absolute(folder).lexically_normal();
+    const auto known = layouts_.find(name);
     if (known != layouts_.end()) return known->second;
     FolderLayout layout = layoutOfFolder(folder);
     attachTimes(layout);
     if (params_->poses.empty()) attachPoses(layout, *sink_);
-    return layouts_.emplace(folder, std::move(layout)).first->second;
+    return layouts_.emplace(name, std::move(layout)).first->second;
   }
 
   LayoutScan loneScan(const fs::path& path) {
@@ -112,14 +114,33 @@ class ScanGatherer {
                      "move it to another folder, or list it in a manifest");
   }
 
-  static LayoutScan plainScan(const fs::path& path) {
+  LayoutScan plainScan(const fs::path& path, std::optional<ScanFormat> format = {}) {
     LayoutScan scan;
     scan.file.path = path;
-    scan.file.format = formatOf(path);
+    scan.file.format = format ? *format : formatOf(path);
+    if (!without_layout_) without_layout_ = path;
     return scan;
   }
 
+  /// Whether the innermost manifest that is being read is this one; one further out would never end.
+  bool isReading(const fs::path& manifest) const {
+    for (std::size_t i = open_manifests_.size(); i-- > 0;) {
+      if (!fs::equivalent(manifest, open_manifests_[i])) continue;
+      if (i + 1 == open_manifests_.size()) return true;
+      throw InputError({.file = manifest.string()},
+                       "this manifest and " + open_manifests_.back().string() + " list each other's folders",
+                       "list the scan files in one of them");
+    }
+    return false;
+  }
+
   void addManifest(const fs::path& path) {
+    open_manifests_.push_back(path);
+    addScansOf(path);
+    open_manifests_.pop_back();
+  }
+
+  void addScansOf(const fs::path& path) {
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     const Manifest manifest = parseManifest(readFile(path), path.string(), folder);
     adoptFrame(manifest, path);
@@ -155,12 +176,7 @@ class ScanGatherer {
     if (isManifest(entry.path))
       throw InputError({.file = manifest.string()},
                        "a manifest cannot list the manifest " + entry.path.string());
-    LayoutScan scan;
-    scan.file.path = entry.path;
-    if (entry.pose || entry.format)
-      scan.file.format = entry.format ? *entry.format : formatOf(entry.path);
-    else
-      scan = loneScan(entry.path);
+    LayoutScan scan = entry.pose || entry.format ? plainScan(entry.path, entry.format) : loneScan(entry.path);
     if (entry.pose) scan.file.T_map_sensor = *entry.pose;
     if (entry.pose) scan.file.has_pose = true;
     if (entry.time_s) scan.file.time_s = entry.time_s;
@@ -183,6 +199,11 @@ class ScanGatherer {
   void assignGivenPoses() {
     if (layouts_.size() != 1 || !layouts_.begin()->second.frames_are_numbers)
       return assignPosesFrom(params_->poses, 0);
+    if (without_layout_)
+      throw InputError({.file = params_->poses.string()},
+                       "holds poses of a KITTI sequence, by the numbers of its frames; " + without_layout_->string() +
+                           " is not of that sequence",
+                       "list it with its pose in a manifest, beside the folder of the sequence");
     FolderLayout sequence = layouts_.begin()->second;
     sequence.poses_file = params_->poses;
     sequence.scans = scans_;
@@ -204,7 +225,9 @@ class ScanGatherer {
   const ScanSetParams* params_;
   ProgressSink* sink_;
   std::vector<LayoutScan> scans_;
-  std::map<fs::path, FolderLayout> layouts_;
+  std::map<fs::path, FolderLayout> layouts_;    ///< by whole paths
+  std::vector<fs::path> open_manifests_;         ///< those that are being read, outermost first
+  std::optional<fs::path> without_layout_;       ///< the first scan of no folder that explains it
   std::optional<Eigen::Vector3d> map_origin_;
   std::string crs_;
 };

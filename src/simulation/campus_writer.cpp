@@ -86,6 +86,7 @@ std::vector<Eigen::Isometry3d> statedPoses(const Campus& campus) {
 
 void prepare(const fs::path& folder) {
   std::error_code failure;
+  if (folder.empty()) throw Error(ExitCode::Usage, "the folder for the scans has no name");
   if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
     throw Error(ExitCode::Usage,
                 folder.string() + " is not an empty folder: name a new one, or remove it first");

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "cluxel/base/nearest_name.hpp"
+#include "cluxel/base/shown_line.hpp"
 #include "cluxel/knowledge/vocabulary.hpp"
 #include "sparql/prepared_query.hpp"
 
@@ -129,7 +130,7 @@ class NameCheck {
     diagnostic.location = locate(query_.options.source_name, query_.query.text, at);
     diagnostic.message = "the map has no " + what + " <" + name + ">";
     diagnostic.hint = hintFor(name, known);
-    diagnostic.source_line = std::string(lineOf(query_.query.text, diagnostic.location.line));
+    diagnostic.source_line = shownLine(query_.query.text, diagnostic.location.line);
     found_.push_back(std::move(diagnostic));
   }
 

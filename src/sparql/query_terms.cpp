@@ -13,6 +13,14 @@ const TextPayload* textPayload(const Value& value) {
   return value.payload ? std::get_if<TextPayload>(value.payload.get()) : nullptr;
 }
 
+/// Ids come from the store's indexes, too, and those may be damaged.
+const Term& termAt(const std::deque<Term>& computed, ValueId id) {
+  const std::size_t place = id - kFirstComputed;
+  if (place < computed.size()) return computed[place];
+  throw Error(ExitCode::StoreUnavailable, "the map is damaged: an index names term " + std::to_string(id) +
+                                              ", which cannot be; `cluxel doctor` tells where");
+}
+
 Value withId(Value value, ValueId id) {
   value.id = id;
   return value;
@@ -65,13 +73,10 @@ Value QueryTerms::valueOfStored(ValueId id) const {
 }
 
 TermView QueryTerms::view(ResultId id) const {
-  if (id >= kFirstComputed) return TermView::of(computed_[id - kFirstComputed]);
-  return reader_.viewOf(id);
+  return id >= kFirstComputed ? TermView::of(termAt(computed_, id)) : reader_.viewOf(id);
 }
 
-Term QueryTerms::termOf(ValueId id) const {
-  return id >= kFirstComputed ? computed_[id - kFirstComputed] : reader_.termOf(id);
-}
+Term QueryTerms::termOf(ValueId id) const { return id >= kFirstComputed ? termAt(computed_, id) : reader_.termOf(id); }
 
 ValueId QueryTerms::intern(const Term& term) {
   const auto known = id_of_.find(term);

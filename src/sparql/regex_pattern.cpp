@@ -3,12 +3,26 @@
 #include "sparql/regex_pattern.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace cluxel::sparql {
 namespace {
 
 constexpr std::string_view kSpace = " \t\r\n";
 constexpr std::size_t kMostNesting = 16;   // of classes within classes
+
+/// XML Schema's classes by their letters, outside and within brackets. PCRE2's \w knows the underscore, which is
+/// punctuation, and neither marks nor symbols; its \s knows all of Unicode's spaces.
+struct SharedEscape {
+  char letter;
+  std::string_view alone, in_class;
+};
+constexpr std::array<SharedEscape, 4> kSharedEscapes{{
+    {'w', "[\\p{L}\\p{M}\\p{N}\\p{S}]", "\\p{L}\\p{M}\\p{N}\\p{S}"},
+    {'W', "[\\p{P}\\p{Z}\\p{C}]", "\\p{P}\\p{Z}\\p{C}"},
+    {'s', "[ \\t\\n\\r]", " \\t\\n\\r"},
+    {'S', "[^ \\t\\n\\r]", "\\x{0}-\\x{8}\\x{B}\\x{C}\\x{E}-\\x{1F}\\x{21}-\\x{10FFFF}"},
+}};
 
 class PatternReader {
  public:
@@ -20,7 +34,7 @@ class PatternReader {
       const char c = text_[at_++];
       if (c == '\\') {
         if (ignores_space_) at_ = std::min(text_.find_first_not_of(kSpace, at_), text_.size());
-        if (!escape(out)) return std::nullopt;
+        if (!escape(out, false)) return std::nullopt;
       } else if (c == '[') {
         if (!characterClass(out, 0)) return std::nullopt;
       } else if (!ignores_space_ || kSpace.find(c) == std::string_view::npos) {
@@ -34,8 +48,15 @@ class PatternReader {
   char next() const { return at_ < text_.size() ? text_[at_] : '\0'; }
 
   /// What follows a backslash.
-  bool escape(std::string& out) {
+  bool escape(std::string& out, bool in_class) {
     if (std::string_view("iIcC").find(next()) != std::string_view::npos && at_ < text_.size()) return false;
+    const auto shared = std::find_if(kSharedEscapes.begin(), kSharedEscapes.end(),
+                                     [this](const SharedEscape& escape) { return at_ < text_.size() && escape.letter == next(); });
+    if (shared != kSharedEscapes.end()) {
+      out += in_class ? shared->in_class : shared->alone;
+      ++at_;
+      return true;
+    }
     out += '\\';
     if (at_ < text_.size()) out += text_[at_++];
     return true;
@@ -57,7 +78,9 @@ class PatternReader {
         ++at_;
         if (!characterClass(removed, depth + 1) || next() != ']') return false;
       } else if (c == '\\') {
-        if (!escape(kept)) return false;
+        if (!escape(kept, true)) return false;
+      } else if (c == '[') {
+        return false;   // [:alpha:] and its kin are no classes of XML Schema
       } else {
         kept += c;
       }

@@ -9,7 +9,8 @@
 namespace cluxel::sparql {
 
 /// White space of the flag x goes, but not from classes ('#' begins no comment); [a-z-[aeiou]] becomes an assertion and a
-/// class. Nothing for a pattern with \i or \c, which mean something else to PCRE2, or with a class that does not end.
+/// class; \w \W \s \S are XML Schema's. Nothing for a pattern with \i or \c, which mean something else to PCRE2, with a
+/// bracket within a class, or with a class that does not end.
 std::optional<std::string> pcrePattern(std::string_view xpath, bool ignores_space);
 
 }  // namespace cluxel::sparql

@@ -6,6 +6,7 @@
 #include <map>
 #include <random>
 
+#include "cluxel/base/content_hash.hpp"
 #include "cluxel/sparql/parser.hpp"
 #include "sparql/source_text.hpp"
 #include "sparql/update_modify.hpp"
@@ -13,13 +14,17 @@
 namespace cluxel {
 namespace {
 
+bool mentionsBnode(std::string_view text) {
+  constexpr std::string_view word = "bnode";
+  const auto same = [](char a, char b) { return (a | 0x20) == b; };
+  return std::search(text.begin(), text.end(), word.begin(), word.end(), same) != text.end();
+}
+
 class UpdateRun {
  public:
   UpdateRun(WriteTransaction& transaction, const ast::Update& update, const UpdateOptions& options)
       : transaction_(transaction), update_(update), options_(options), writer_(transaction),
-        random_(options.query.seed ? *options.query.seed : std::random_device{}()) {
-    label_prefix_ = "u" + std::to_string(random_() % 1'000'000'000'000) + "x";
-  }
+        random_(options.query.seed ? *options.query.seed : std::random_device{}()), label_prefix_(freshPrefix()) {}
 
   UpdateReport run() {
     for (const ast::UpdateOperation& operation : update_.operations) {
@@ -65,6 +70,8 @@ class UpdateRun {
   void removeStored(const QuadReader& reader, const Quad& quad);
   void clearTarget(const ast::GraphTarget& target);
   std::vector<Quad> quadsOf(const Term& graph) const;
+  std::string freshPrefix();
+  std::vector<std::string> blankLabels() const;
   std::string freshLabel() { return label_prefix_ + std::to_string(++fresh_labels_); }
 
   WriteTransaction& transaction_;
@@ -73,11 +80,45 @@ class UpdateRun {
   QuadWriter writer_;
   std::mt19937_64 random_;
   std::string label_prefix_;
-  std::uint64_t fresh_labels_ = 0;
+  std::uint64_t fresh_labels_ = 0, modify_runs_ = 0;
   std::map<std::string, std::string> request_labels_;
   const ast::UpdateOperation* operation_ = nullptr;
   UpdateReport report_;
 };
+
+/// The blank nodes of the graphs that may be written, sorted.
+std::vector<std::string> UpdateRun::blankLabels() const {
+  const QuadReader reader(transaction_);
+  std::vector<std::string> labels;
+  for (const std::string& graph : options_.writable_graphs) {
+    QuadPattern pattern;
+    pattern.g = reader.idOf(Term::iri(graph));
+    if (!pattern.g) continue;
+    QuadCursor cursor = reader.scan(pattern);
+    for (QuadIds quad; cursor.next(quad);)
+      for (const TermId id : {quad.s, quad.o})
+        if (reader.valueOf(id).kind == TermKind::BlankNode) labels.emplace_back(reader.viewOf(id).text);
+  }
+  std::sort(labels.begin(), labels.end());
+  return labels;
+}
+
+/// How the blank nodes of this request begin, unlike any that there is. In a map it follows from the request and from what
+/// is stated already, so that the same requests in the same order make the same map.
+std::string UpdateRun::freshPrefix() {
+  if (options_.any_graph_writable || options_.query.seed) return "u" + std::to_string(random_() % 1'000'000'000'000) + "x";
+  // Most requests make no blank nodes, and do not pay for looking at those that there are.
+  const bool may_make = update_.text.find_first_of("[_\\") != std::string::npos || mentionsBnode(update_.text);
+  const std::vector<std::string> labels = may_make ? blankLabels() : std::vector<std::string>();
+  const auto isUsed = [&labels](const std::string& prefix) {
+    const auto at = std::lower_bound(labels.begin(), labels.end(), prefix);
+    return at != labels.end() && at->starts_with(prefix);
+  };
+  for (std::uint64_t request = 0;; ++request) {
+    const std::string prefix = "u" + ContentHasher().addText(update_.text).add(request).finish().hex().substr(0, 16) + "x";
+    if (!isUsed(prefix) && !isUsed("q" + prefix)) return prefix;
+  }
+}
 
 void UpdateRun::perform(const ast::Load& load) {
   const Term graph = load.into.value_or(defaultGraph());
@@ -188,7 +229,7 @@ void UpdateRun::removeStored(const QuadReader& reader, const Quad& quad) {
 void UpdateRun::perform(const ast::Modify& modify) {
   const QuadReader reader(transaction_);
   sparql::ModifyRun run(reader, update_, *operation_, modify, options_);
-  run.label_prefix = label_prefix_ + "w";
+  run.label_prefix = label_prefix_ + "w" + std::to_string(++modify_runs_) + "x";
   run.seed = random_();
   run.default_graph = modify.with.value_or(defaultGraph());
   run.fresh_label = [this] { return freshLabel(); };

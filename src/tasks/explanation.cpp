@@ -20,6 +20,14 @@ RuleSet rulesOf(const MapInputs& inputs) {
   return loadRuleTexts(sources, inputs.rule_roots, classCatalogueOf(inputs.ontology)).require();
 }
 
+/// The name without what tables and other formats write around it: <IRI>, map:object/HEX.
+std::string plainName(const std::string& written) {
+  std::string_view name = written;
+  if (name.starts_with('<') && name.ends_with('>')) name = name.substr(1, name.size() - 2);
+  if (name.starts_with("map:")) name.remove_prefix(4);
+  return std::string(name);
+}
+
 bool isNamed(const std::string& kind, const ContentHash& id, const std::string& name) {
   const std::string hex = id.hex(), path = kind + "/" + hex;
   return path.starts_with(name) || hex.starts_with(name) || name.ends_with("/map/" + path);
@@ -39,7 +47,8 @@ std::optional<std::size_t> findOne(const Things& things, const std::string& kind
 
 }  // namespace
 
-std::string explainThing(const MapReader& map, const std::string& name, bool as_json) {
+std::string explainThing(const MapReader& map, const std::string& written, bool as_json) {
+  const std::string name = plainName(written);
   const RuleSet rules = rulesOf(map.inputs());
   const Scene& scene = map.scene();
   AskReplay oracle(map);

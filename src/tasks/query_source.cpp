@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <regex>
+#include <optional>
 #include <sstream>
+#include <string_view>
 
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/base/file_bytes.hpp"
@@ -20,21 +21,81 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::regex kTitle(R"(^title:\s*(\S.*)$)");
-const std::regex kColumn(R"(^column:\s*(\w+)\s*\[([^\]]*)\]\s*(.*)$)");
-const std::regex kParameter(R"(^parameter:\s*(\w+)\s*\[([^\]]*)\]\s*=\s*(\S+)\s*(.*)$)");
+/// Reads from the front of a header line; blanks behind what was read are skipped.
+class HeaderReader {
+ public:
+  explicit HeaderReader(std::string_view line) : rest_(line) {}
 
-void readHeaderLine(const std::string& line, const SourceLocation& at, Question& question) {
-  std::smatch match;
-  if (std::regex_match(line, match, kTitle))
-    question.title = match[1];
-  else if (std::regex_match(line, match, kColumn))
-    question.columns.push_back({match[1], match[2], match[3]});
-  else if (std::regex_match(line, match, kParameter))
-    question.parameters.push_back({match[1], match[2], match[3], match[4]});
-  else
-    throw InputError(at, "this header line cannot be read: '" + line + "'",
-                     "write '#! title: …', '#! column: name [unit] help' or '#! parameter: name [unit] = default help'");
+  bool mark(std::string_view text) {
+    if (!rest_.starts_with(text)) return false;
+    take(text.size());
+    return true;
+  }
+  /// Letters, digits and underscores; empty when there are none.
+  std::string name() {
+    return take(std::min(rest_.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_"), rest_.size()));
+  }
+  std::string word() { return take(std::min(rest_.find_first_of(kBlanks), rest_.size())); }
+  /// What stands in brackets.
+  std::optional<std::string> unit() {
+    const std::size_t close = rest_.find(']');
+    if (!rest_.starts_with('[') || close == std::string_view::npos) return std::nullopt;
+    const std::string taken = take(close + 1);
+    return taken.substr(1, close - 1);
+  }
+  std::string rest() { return take(rest_.size()); }
+
+ private:
+  static constexpr std::string_view kBlanks = " \t\v\f";
+
+  std::string take(std::size_t count) {
+    std::string taken(rest_.substr(0, count));
+    rest_.remove_prefix(count);
+    rest_.remove_prefix(std::min(rest_.find_first_not_of(kBlanks), rest_.size()));
+    return taken;
+  }
+
+  std::string_view rest_;
+};
+
+bool readColumn(HeaderReader& header, Question& question) {
+  QueryColumn column;
+  column.name = header.name();
+  const auto unit = header.unit();
+  if (column.name.empty() || !unit) return false;
+  column.unit = *unit;
+  column.help = header.rest();
+  question.columns.push_back(std::move(column));
+  return true;
+}
+
+bool readParameter(HeaderReader& header, Question& question) {
+  QueryParameter parameter;
+  parameter.name = header.name();
+  const auto unit = header.unit();
+  if (parameter.name.empty() || !unit || !header.mark("=")) return false;
+  parameter.unit = *unit;
+  parameter.default_value = header.word();
+  parameter.help = header.rest();
+  question.parameters.push_back(std::move(parameter));
+  return !question.parameters.back().default_value.empty();
+}
+
+bool readTitle(HeaderReader& header, Question& question) {
+  question.title = header.rest();
+  return !question.title.empty();
+}
+
+void readHeaderLine(std::string_view line, const SourceLocation& at, Question& question) {
+  HeaderReader header(line);
+  const bool is_read = header.mark("title:")       ? readTitle(header, question)
+                       : header.mark("column:")    ? readColumn(header, question)
+                       : header.mark("parameter:") ? readParameter(header, question)
+                                                   : false;
+  if (is_read) return;
+  constexpr std::size_t most_shown = 200;
+  throw InputError(at, "this header line cannot be read: '" + std::string(line.substr(0, most_shown)) + "'",
+                   "write '#! title: …', '#! column: name [unit] help' or '#! parameter: name [unit] = default help'");
 }
 
 bool isNumber(const std::string& text) {
@@ -72,9 +133,10 @@ Question readQuestion(const fs::path& file) {
   for (std::string line; std::getline(lines, line);) {
     ++number;
     if (!line.starts_with("#!")) continue;
+    if (line.ends_with('\r')) line.pop_back();
     const std::size_t begin = line.find_first_not_of(" \t", 2);
     if (begin != std::string::npos)
-      readHeaderLine(line.substr(begin), {.file = file.string(), .line = number, .column = 1}, question);
+      readHeaderLine(std::string_view(line).substr(begin), {.file = file.string(), .line = number, .column = 1}, question);
   }
   return question;
 }

@@ -89,6 +89,9 @@ TEST_F(Program, WhatIsMissingOrOutOfRangeIsNamedAndHelpIsPointedTo) {
       {"evaluate " + map() + " --truth " + campus() + "/truth --min-oa 80", "--min-oa"},
       {"evaluate " + map() + " --truth " + campus() + "/truth --min-recall Tree", "CLASS=SHARE"},
       {"evaluate " + map() + " --truth " + campus() + "/truth --min-recall Tree=2", "CLASS=SHARE"},
+      {"evaluate " + map() + " --truth " + campus() + "/truth --min-oa nan", "--min-oa"},
+      {"simulate " + fresh() + " --seed -1", "--seed"},
+      {"simulate " + fresh() + " --seed 18446744073709551616", "--seed"},
       {"tasks --threads -3", "--threads"},
       {"tasks --home " + path("nowhere").string(), "--home"}};
   for (const auto& [arguments, words] : cases) {
@@ -97,6 +100,23 @@ TEST_F(Program, WhatIsMissingOrOutOfRangeIsNamedAndHelpIsPointedTo) {
     EXPECT_FALSE(fs::exists(fresh()));
   }
   EXPECT_NE(run("query").err.find("hint: 'cluxel query --help'"), std::string::npos);
+}
+
+/// As `"$OUT"` is where nobody has set OUT: it is not the working directory, whose poses.txt would be written over.
+TEST_F(Program, AnEmptyNameOfWhatIsWrittenIsAnErrorOfUsage) {
+  for (const std::string& arguments : std::vector<std::string>
+       {"simulate '' --stops 1", "build " + campus() + " -o ''", "export " + map() + " --canonical -o ''",
+        "compact " + map() + " -o ''", "register " + campus() + " -o ''", "train " + campus() + " --truth campus -o ''"}) {
+    SCOPED_TRACE(arguments);
+    expectError(run(arguments), 2, "the name is empty");
+  }
+}
+
+TEST_F(Program, AQueryIsReadFromAFileOfAnyName) {
+  writeFile(path("three"), "ASK { ?s ?p 3 }");
+  EXPECT_EQ(run("query " + path("three.ttl").string() + " " + path("three").string()).out, "yes\n");
+  EXPECT_EQ(run("query " + path("three.ttl").string() + " /dev/stdin < " + path("three").string()).out, "yes\n");
+  expectError(run("query " + path("three.ttl").string() + " " + path("").string()), 4, "was not found");
 }
 
 TEST_F(Program, WrongChoicesOfOneCommandAreErrorsOfUsage) {

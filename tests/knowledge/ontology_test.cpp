@@ -191,6 +191,27 @@ TEST(Closure, FindsWhatANaiveApplicationOfTheRulesFinds) {
   }
 }
 
+TEST(Closure, MakesNoFactWhosePredicateIsNoIri) {
+  const auto environment = Environment::temporary();
+  WriteTransaction transaction = environment->write();
+  QuadWriter writer(transaction);
+  const Term p = Term::iri("http://x/p"), q = Term::iri("http://x/q"), blank = Term::blank("turned");
+  const Term sub_property = Term::iri(rdfs("subPropertyOf")), observed = Term::iri(kGraphObserved);
+  writer.add(Quad{p, sub_property, blank, observed});
+  writer.add(Quad{blank, Term::iri(std::string(kOwl) + "inverseOf"), q, observed});
+  writer.add(Quad{p, sub_property, Term::literal("nonsense"), observed});
+  writer.add(Quad{Term::iri("http://x/a"), p, Term::iri("http://x/b"), observed});
+  writer.add(Quad{Term::iri("http://x/c"), q, Term::iri("http://x/d"), observed});
+  writer.flush();
+  inferClosure(transaction);
+  const QuadReader reader(transaction);
+  std::set<std::string> inferred;
+  QuadCursor cursor = reader.scan({.s = {}, .p = {}, .o = {}, .g = reader.idOf(Term::iri(kGraphInferred))});
+  for (QuadIds quad; cursor.next(quad);)
+    inferred.insert(toNTriples(reader.termOf(quad.s)) + toNTriples(reader.termOf(quad.p)) + toNTriples(reader.termOf(quad.o)));
+  EXPECT_THAT(inferred, ElementsAre("<http://x/b><http://x/q><http://x/a>")) << "through the blank node";
+}
+
 TEST(Closure, KeepsTheInferredGraphWhatFollowsFromTheOthers) {
   const auto environment = Environment::temporary();
   WriteTransaction transaction = environment->write();

@@ -91,6 +91,19 @@ TEST(RdfReader, NamesFileLineAndColumnOfFaults) {
   EXPECT_EQ(faults[0].source_line, "  x:q y:z .");
 }
 
+TEST(RdfReader, PassesOverAByteOrderMark) {
+  EXPECT_THAT(parse(turtle("\xEF\xBB\xBF<a> <b> <c> .")), testing::SizeIs(1));
+  RdfSource lines{"\xEF\xBB\xBF<http://a> <http://b> \"x\" .\n", "x.nt", RdfFormat::NTriples, "", Term::iri("")};
+  EXPECT_THAT(parse(lines), testing::SizeIs(1));
+}
+
+TEST(RdfReader, DoesNotShowLinesThatNobodyCouldRead) {
+  const auto faults = faultsOf(turtle("<a> <b> \"" + std::string(100'000, 'x') + "\" <c> ."));
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_EQ(faults[0].location.line, 1U);
+  EXPECT_LT(format(faults[0]).size(), 1000U);
+}
+
 TEST(RdfReader, ShowsAllFaultyLinesOfAnNTriplesFile) {
   RdfSource source{
       "<http://a> <http://b> \"x\" .\n<http://a> <http://b> x .\n<http://a> <http://b> \"\\q\" .\n<a> <b> "

@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::SizeIs;
 using testing::UnorderedElementsAre;
 
 struct WorldDeleter {
@@ -202,6 +203,34 @@ TEST_F(RedlandStorage, StreamsAreSnapshotsThatChangesDoNotDisturb) {
     if (within_transaction) librdf_model_transaction_commit(model_.get());
   }
   EXPECT_EQ(librdf_model_size(model_.get()), 0);
+}
+
+TEST_F(RedlandStorage, AnOpenStreamOutlivesItsTransactionAndDoesNotKeepIt) {
+  add(a_, b_, a_);
+  for (const bool commits : {false, true}) {
+    ASSERT_EQ(librdf_model_transaction_start(model_.get()), 0);
+    add(a_, b_, b_);
+    const auto pattern = statement(a_, b_, std::nullopt);
+    Handle<librdf_stream> stream(librdf_model_find_statements(model_.get(), pattern.get()));
+    ASSERT_EQ(commits ? librdf_model_transaction_commit(model_.get()) : librdf_model_transaction_rollback(model_.get()), 0);
+    EXPECT_EQ(librdf_model_transaction_start(model_.get()), 0) << "the next transaction may begin";
+    EXPECT_EQ(librdf_model_transaction_rollback(model_.get()), 0);
+    EXPECT_THAT(drain(stream.release()), SizeIs(2)) << "what the transaction saw";
+    EXPECT_EQ(find(a_, b_, std::nullopt).size(), commits ? 2U : 1U);
+  }
+  EXPECT_THAT(messages_, IsEmpty());
+}
+
+TEST_F(RedlandStorage, StoresNoTermThatNoTextCanHold) {
+  const auto refused = [&](const Term& object) { return add(a_, b_, object) != 0; };
+  EXPECT_TRUE(refused(Term::literal("caf\xE9")));
+  EXPECT_TRUE(refused(Term::langLiteral("x", "not a tag")));
+  EXPECT_TRUE(refused(Term::blank("two words")));
+  EXPECT_THAT(messages_, SizeIs(3));
+  EXPECT_FALSE(refused(Term::literal("caf\xC3\xA9")));
+  EXPECT_FALSE(refused(Term::langLiteral("x", "de-CH")));
+  EXPECT_FALSE(refused(Term::blank("r1234_5-6")));
+  EXPECT_EQ(librdf_model_size(model_.get()), 3);
 }
 
 TEST_F(RedlandStorage, GivesEachSourceArcAndTargetOnce) {

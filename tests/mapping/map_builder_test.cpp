@@ -212,6 +212,20 @@ TEST_F(MapBuilder, TheSameScanWithAnotherPoseIsAnErrorThatNamesBothFiles) {
   EXPECT_FALSE(fs::exists(map()));
 }
 
+TEST_F(MapBuilder, TheSameScanWithAndWithoutAPoseIsAnErrorInEitherOrder) {
+  const fs::path lone = folder.path() / "lone.xyz", posed = folder.path() / "manifest.yaml";
+  writeFile(lone, "1 2 0\n1.1 2 0\n1.2 2 0\n");
+  writeFile(posed, "scans: [{path: lone.xyz, pose: {xyz: [0, 0, 0]}}]\n");
+  for (const auto& inputs_in_order : {std::vector{lone, posed}, std::vector{posed, lone}}) {
+    try {
+      build(inputs_in_order);
+      FAIL() << "which one was first decides whether the map knows where the sensor stood";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("is the same scan as"), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST_F(MapBuilder, FaultyInputsWriteNothing) {
   const auto with = [&](auto change) {
     MapInputs changed = *inputs;

@@ -13,6 +13,7 @@
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/base/file_bytes.hpp"
 #include "cluxel/mapping/map_update.hpp"
+#include "mapping/map_history.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/scan_store.hpp"
 #include "mapping/small_campus.hpp"
@@ -269,6 +270,32 @@ TEST(InputsHash, TellsRulesOfOtherFileNamesApartAndNotFolders) {
   renamed.sparql_rules[0].name += ".other.rq";
   EXPECT_EQ(moved.hash(), shipped.hash());
   EXPECT_NE(renamed.hash(), shipped.hash()) << "the name stands in the map";
+}
+
+TEST(DefaultInputs, AreNotTakenFromFilesOfThatNameInTheWorkingDirectory) {
+  const ScratchFolder folder;
+  fs::create_directory(folder.path() / "oakland");   // scans, say
+  writeFile(folder.path() / "outdoor.rules.yaml", "somebody's draft");
+  const MapInputs shipped = shippedInputs();
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.path());
+  MapInputs there;
+  EXPECT_NO_THROW(there = shippedInputs());
+  fs::current_path(before);
+  EXPECT_EQ(there.hash(), shipped.hash());
+}
+
+TEST(MapHistory, NamesFilesInUtf8WhateverTheirNames) {
+  const auto environment = Environment::temporary();
+  WriteTransaction transaction = environment->write();
+  Cloud cloud;
+  cloud.source = "caf\xE9.pcd";
+  MapInputs inputs;
+  inputs.model.name = "mod\xC3\xA8le";
+  addBuildActivity(transaction, {cloud}, inputs, 0, 1);
+  const QuadReader reader(transaction);
+  EXPECT_TRUE(reader.idOf(Term::literal("caf\xEF\xBF\xBD.pcd")));
+  EXPECT_TRUE(reader.idOf(Term::literal("mod\xC3\xA8le")));
 }
 
 TEST(ScanTimes, BeyondTheYearsOfDatesAreRefused) {

@@ -103,6 +103,16 @@ TEST(RuleIncluding, RefusesToChangeWhatIsNotThere) {
   EXPECT_THAT(loaded.diagnostics[1].hint, ::testing::HasSubstr("low"));
 }
 
+TEST(RuleIncluding, RefusesOverridesThatWouldDoNothing) {
+  for (const char* overrides : {"{ remove: small/rest }", "{ remove: { small/rest: true } }", "{ rules: small/rest }",
+                                "{ rules: { id: small/rest, class: clx:SmallObject } }", "{ constants: 5 }"}) {
+    const LoadedRules loaded = loadOver("include: [ base.yaml ]\noverride: " + std::string(overrides) + "\n");
+    ASSERT_FALSE(loaded.diagnostics.empty()) << overrides;
+    EXPECT_EQ(loaded.diagnostics[0].severity, Severity::Error) << overrides;
+    EXPECT_EQ(loaded.diagnostics[0].location.line, 3U) << overrides;
+  }
+}
+
 TEST(RuleIncluding, FindsFilesBesideTheIncludingOne) {
   const auto folder = std::filesystem::path(CLUXEL_BINARY_DIR) / "rule_include_folder";
   std::filesystem::create_directories(folder / "deep");

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "cluxel/base/diagnostic.hpp"
 #include "cluxel/base/file_bytes.hpp"
 #include "cluxel/reasoning/rule_test.hpp"
 #include "reasoning/reasoning_fixture.hpp"
@@ -105,6 +106,12 @@ TEST_F(RuleTestFolder, ReportsFaultsOfTheTestFileAllAtOnce) {
   } catch (const InputError& fault) {
     EXPECT_EQ(fault.diagnostics().size(), 3U) << fault.what();
   }
+}
+
+TEST_F(RuleTestFolder, RefusesExpectationsThatWouldDoNothing) {
+  for (const char* expect : {"{ not: clx:SmallObject }", "{ exactly: true, not: clx:SmallObject }", "{ count: 3 }", "{ reasons: b }",
+                             "{ objects: { class: clx:Tree } }", "{}", "{ objects: [] }", "{ exactly: false }", "{ not: }"})
+    EXPECT_THROW(run(binTest(expect)), InputError) << expect;
 }
 
 TEST_F(RuleTestFolder, TakesScenesFromTheProviderAndSkipsWithoutOne) {

@@ -143,6 +143,30 @@ TEST(ScanSet, TakesThePosesOfAKittiSequenceFromElsewhere) {
   EXPECT_TRUE(set.file(0).T_map_sensor.translation().isApprox(Eigen::Vector3d(4, 0, 0)));
 }
 
+TEST(ScanSet, GivesNoPoseOfAKittiSequenceToAScanThatIsNotOfIt) {
+  const ScratchFolder folder;
+  folder.write("seq/velodyne/000001.bin", bytesOfAll(1.F, 2.F, 3.F, 0.5F));
+  const auto extra = folder.write("extra.xyz", "1 2 3\n");
+  const auto poses = folder.write("00.txt", kAt5 + kAt9);
+  EXPECT_THAT(refusalOf([&] { opened({folder.path() / "seq", extra}, {.poses = poses}); }),
+              HasSubstr("extra.xyz is not of that sequence"));
+  const auto seq = folder.path() / "seq";
+  const ScanSet twice = opened({seq / "velodyne" / "000001.bin", seq / "." / "velodyne" / "000001.bin"}, {.poses = poses});
+  EXPECT_EQ(xOf(twice, 1), 9);
+}
+
+TEST(ScanSet, ReadsAManifestThatListsItsOwnFolderAndRefusesTwoThatListEachOther) {
+  const ScratchFolder folder;
+  folder.write("a/a.xyz", "1 2 3\n");
+  folder.write("a/manifest.yaml", "map_origin: [100, 0, 0]\nscans: [.]\n");
+  const ScanSet own = opened({folder.path() / "a"});
+  EXPECT_THAT(namesOf(own), ElementsAre("a.xyz"));
+  EXPECT_EQ(own.mapOrigin().x(), 100);
+  folder.write("b/manifest.yaml", "scans: [../c]\n");
+  folder.write("c/manifest.yaml", "scans: [../b]\n");
+  EXPECT_THAT(refusalOf([&] { opened({folder.path() / "b"}); }), HasSubstr("list each other's folders"));
+}
+
 TEST(ScanSet, RefusesAKittiScanBehindTheEndOfThePoses) {
   const ScratchFolder folder;
   folder.write("velodyne/000004.bin", bytesOfAll(1.F, 2.F, 3.F, 0.5F));

@@ -26,6 +26,12 @@ TEST(XyzText, SkipsCommentsEmptyLinesCarriageReturnsAndCommas) {
   EXPECT_THAT(scan.points.z, ElementsAre(3.0F, 6.0F));
 }
 
+TEST(XyzText, PassesOverAByteOrderMark) {
+  EXPECT_THAT(parseXyzText("\xEF\xBB\xBF" "1 2 3\n4 5 6\n", "a.xyz").points.x, ElementsAre(1.0F, 4.0F));
+  EXPECT_THAT(refusalOf([] { parseXyzText("\xEF\xBB\xBF", "a.xyz"); }), HasSubstr("holds no points"));
+  EXPECT_EQ(columnsOfFirstLine("\xEF\xBB\xBF# x y z\n1 2 3\n"), 3U);
+}
+
 TEST(XyzText, KeepsMillimetresOfWorldCoordinatesByALocalOrigin) {
   const ParsedScan scan =
       parseXyzText("456123.123 5412345.125 230.5\n456124.001 5412345.002 230.5\n", "utm.xyz");

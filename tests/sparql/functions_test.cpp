@@ -45,7 +45,12 @@ INSTANTIATE_TEST_SUITE_P(Regex, Functions, testing::Values(
     Case{"REGEX(\"ax\", \"a#b\", \"x\")", kFalse}, Case{"REGEX(\"a#b\", \" a # b \", \"x\")", kTrue}, Case{"REGEX(\"a b\", \"a[ ]b\", \"x\")", kTrue},
     Case{"REGEX(\"ab\", \"a[ ]b\", \"x\")", kFalse}, Case{"REGEX(\"a b\", \"a\\\\[ ?b\", \"x\")", kFalse}, Case{"REGEX(\"b\", \"^[a-z-[aeiou]]$\")", kTrue},
     Case{"REGEX(\"e\", \"^[a-z-[aeiou]]$\")", kFalse}, Case{"REGEX(\"e\", \"^[a-z-[aeiou-[e]]]$\")", kTrue}, Case{"REGEX(\"-\", \"^[a-]$\")", kTrue},
-    Case{"REGEX(\"]\", \"^[\\\\]-]$\")", kTrue}, Case{"REPLACE(\"abcde\", \"[a-e-[c]]\", \"x\")", "\"xxcxx\""}, Case{"REGEX(\"K\", \"^\\\\c+$\")", "-"}));
+    Case{"REGEX(\"]\", \"^[\\\\]-]$\")", kTrue}, Case{"REPLACE(\"abcde\", \"[a-e-[c]]\", \"x\")", "\"xxcxx\""}, Case{"REGEX(\"K\", \"^\\\\c+$\")", "-"},
+    // XML Schema: \w is neither punctuation, nor separator, nor other; \s is four characters; [:alpha:] is nothing
+    Case{"REGEX(\"_\", \"\\\\w\")", kFalse}, Case{"REGEX(\"+\", \"^\\\\w$\")", kTrue}, Case{"REGEX(\"\\u0301\", \"^[\\\\w]$\")", kTrue},
+    Case{"REGEX(\"_ab\", \"^\\\\W\\\\w[^\\\\W]$\")", kTrue}, Case{"REGEX(\"é9\", \"^\\\\w{2}$\")", kTrue},
+    Case{"REGEX(\"\\u00A0\", \"\\\\s\")", kFalse}, Case{"REGEX(\"\\t\", \"^[\\\\s]$\")", kTrue}, Case{"REGEX(\"\\u00A0\", \"^[\\\\S]\\\\s*$\")", kTrue},
+    Case{"REGEX(\" \", \"[\\\\S]\")", kFalse}, Case{"REGEX(\"x\", \"^[\\\\w-[x]]$\")", kFalse}, Case{"REGEX(\"a\", \"[[:alpha:]]\")", "-"}));
 
 INSTANTIATE_TEST_SUITE_P(Terms, Functions, testing::Values(
     Case{"STR(<http://a/>)", "\"http://a/\""}, Case{"STR(1.50)", "\"1.50\""}, Case{"LANG(\"a\"@EN)", "\"en\""}, Case{"LANG(1)", "\"\""},

@@ -48,6 +48,28 @@ void expectRefused(const SmallStore& store, const std::string& query, const Quer
   EXPECT_FALSE(sink.touched) << "a partial answer was given";
 }
 
+TEST(Guard, TellsOfIdsThatADamagedIndexMadeUp) {
+  const SmallStore store(":s :p 1 .");
+  {
+    WriteTransaction transaction = store.environment()->write();
+    QuadWriter writer(transaction);
+    const TermId s = writer.intern(Term::iri("http://example.org/s")), p = writer.intern(Term::iri("http://example.org/p"));
+    writer.add(QuadIds{s, p, 0x9000'0000U, kNoTerm});
+    writer.flush();
+    transaction.commit();
+  }
+  for (const char* query : {"SELECT ?o { ?s ?p ?o }", "SELECT ?l { ?s ?p ?o BIND(STRLEN(STR(?o)) + 1 AS ?l) FILTER(?l > 1) }",
+                            "SELECT ?o { ?s ?p ?o } ORDER BY ?o", "CONSTRUCT { ?s ?p ?o } WHERE { ?s ?p ?o }"}) {
+    try {
+      store.ask(query);
+      FAIL() << query;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::StoreUnavailable) << query;
+      EXPECT_THAT(error.what(), HasSubstr("damaged")) << query;
+    }
+  }
+}
+
 TEST(Guard, EndsAnExplodingJoinByItsRows) {
   const SmallStore store = chain(300);
   QueryOptions options;

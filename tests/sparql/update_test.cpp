@@ -83,6 +83,28 @@ TEST_F(Updates, MakeFreshBlankNodesPerSolutionAndPerRequest) {
   EXPECT_THAT(store_.rows("SELECT (COUNT(DISTINCT ?b) AS ?n) { ?b :same ?v }"), ElementsAre("\"3\"^^integer"));
 }
 
+TEST_F(Updates, MakeFreshBlankNodesInEveryOperationOfARequest) {
+  const std::string request = "INSERT { ?s :a ?b } WHERE { ?s :p 1 BIND(BNODE() AS ?b) } ; INSERT { ?s :c ?b } WHERE { ?s :p 1 BIND(bnode() AS ?b) }";
+  change(request);
+  EXPECT_THAT(store_.rows("SELECT ?b { :a :a ?b ; :c ?b }"), IsEmpty());
+  change(request);
+  EXPECT_THAT(store_.rows("SELECT (COUNT(DISTINCT ?b) AS ?n) { ?s :a|:c ?b }"), ElementsAre("\"4\"^^integer"));
+}
+
+TEST_F(Updates, InTheSameOrderMakeTheSameStatements) {
+  const std::vector<std::string> requests{"INSERT DATA { :a :has [ :of 1 ] }", "INSERT DATA { :a :has [ :of 1 ] }",
+                                          "DELETE WHERE { ?s :of ?v }", "INSERT { ?s :is ?b } WHERE { ?s :p ?v BIND(BNODE() AS ?b) }"};
+  std::vector<std::vector<std::string>> outcomes;
+  for (int run = 0; run < 2; ++run) {
+    if (run == 1) change("INSERT DATA { :z :has [] } ; DELETE WHERE { :z :has ?b }");   // leaves terms, but no statement
+    for (const std::string& request : requests) change(request);
+    outcomes.push_back(in(vocabulary::kGraphOperator));
+    change("CLEAR GRAPH <" + std::string(vocabulary::kGraphOperator) + ">");
+  }
+  EXPECT_EQ(outcomes[0].size(), 4U);
+  EXPECT_EQ(outcomes[0], outcomes[1]);
+}
+
 TEST_F(Updates, DeleteBeforeTheyInsert) {
   UpdateOptions all;
   all.any_graph_writable = true;

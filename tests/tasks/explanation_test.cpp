@@ -37,6 +37,14 @@ TEST(Explanation, TakesAPrimitiveByItsIri) {
   EXPECT_THAT(explainThing(map, iriOf(primitive), false), HasSubstr("primitive " + primitive.id.hex()));
 }
 
+TEST(Explanation, TakesNamesAsAnswersToQueriesWriteThem) {
+  const MapReader& map = CampusMap::shared().map();
+  const std::string hex = map.objects().front().id.hex();
+  const std::string told = explainThing(map, hex, false);
+  EXPECT_EQ(explainThing(map, "map:object/" + hex, false), told) << "as in a table";
+  EXPECT_EQ(explainThing(map, "<https://w3id.org/cluxel/map/object/" + hex + ">", false), told) << "as in TSV and Turtle";
+}
+
 TEST(Explanation, RefusesNamesOfNothingAndOfTooMuch) {
   const MapReader& map = CampusMap::shared().map();
   EXPECT_THROW(explainThing(map, "abc", false), Error);

@@ -49,6 +49,18 @@ TEST_F(Questions, AHeaderLineMayStandWithoutABlank) {
   EXPECT_EQ(question.columns[0].help, "the thing");
 }
 
+TEST_F(Questions, AHeaderMayHaveLongLinesAndLineEndsOfWindows) {
+  const std::string help(500'000, 'x');
+  const Question question = read("#! title: What is near?\r\n#! column: thing [iri] " + help +
+                                 "\r\n#! parameter: within [m] = 5\r\nASK { }\r\n");
+  EXPECT_EQ(question.title, "What is near?");
+  ASSERT_EQ(question.columns.size(), 1U);
+  EXPECT_EQ(question.columns[0].help, help);
+  ASSERT_EQ(question.parameters.size(), 1U);
+  EXPECT_EQ(question.parameters[0].default_value, "5");
+  EXPECT_LT(fault("#! " + help + "\nASK { }\n").size(), 1000U);
+}
+
 TEST_F(Questions, AFileWithoutHeaderIsAQuestionWithoutTitle) {
   const Question question = read("# a comment\nASK { }\n");
   EXPECT_EQ(question.title, "");
