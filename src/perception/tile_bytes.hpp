@@ -55,7 +55,7 @@ class TileReader {
   TileReader(std::string_view bytes, std::string_view kind, std::uint32_t version) : rest_(bytes), kind_(kind) {
     if (bytes.substr(0, 4) != kind) fail("is of another kind");
     rest_.remove_prefix(4);
-    if (get<std::uint32_t>() != version) fail("has another version of the form");
+    if (get<std::uint32_t>() != version) failOther();
     key_.x = get<std::int32_t>();
     key_.y = get<std::int32_t>();
   }
@@ -96,6 +96,11 @@ class TileReader {
   [[noreturn]] void fail(const char* what) const {
     throw Error(ExitCode::StoreUnavailable,
                 "stored block " + std::string(kind_) + " " + what + "; the map is damaged, build it anew");
+  }
+
+  [[noreturn]] void failOther() const {
+    throw Error(ExitCode::StoreUnavailable, "stored block " + std::string(kind_) +
+                                                " is of another version of cluxel, which writes it in another form; build the map anew");
   }
 
   std::string_view rest_, kind_;

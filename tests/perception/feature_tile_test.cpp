@@ -92,6 +92,21 @@ TEST(FeatureTile, FillsEveryColumnWithFiniteNumbers) {
   }
 }
 
+TEST(FeatureTile, BytesOfAnotherVersionAreNotCalledDamaged) {
+  FeatureTile tile;
+  tile.edge_offset = tile.edge_row_offset = {0};
+  std::string bytes = toBytes(tile);
+  EXPECT_NO_THROW(featureTileFromBytes(bytes));
+  ++bytes[4];
+  try {
+    featureTileFromBytes(bytes);
+    FAIL() << "read";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("FEAT is of another version"), std::string::npos) << error.what();
+    EXPECT_EQ(std::string(error.what()).find("damaged"), std::string::npos) << error.what();
+  }
+}
+
 TEST(FeatureTile, EveryColumnTellsSomethingApart) {
   const PerceivedTiles tiles = street(34);
   const FeatureLayout layout = featureLayout({});
