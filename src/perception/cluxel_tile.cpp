@@ -3,57 +3,76 @@
 #include "cluxel/perception/cluxel_tile.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
 #include "perception/cover_volumes.hpp"
 #include "perception/moments.hpp"
 #include "perception/point_grid.hpp"
+#include "perception/vector_lanes.hpp"
 
 namespace cluxel {
 namespace {
 
 /// Seeds found so far: numbers ascend with cells, so the seeds of a run of cells are a run of seeds.
 struct Seeds {
-  std::vector<float> x, y, z;
+  std::vector<float> x, y, z;          ///< with room for all and for whole vectors from any one
   std::vector<std::uint32_t> before;   ///< per cell: seeds in earlier cells
+  std::uint32_t count = 0;
 
-  bool isNear(std::size_t seed, float px, float py, float pz, float squared) const {
-    const float dx = x[seed] - px, dy = y[seed] - py, dz = z[seed] - pz;
-    return dx * dx + dy * dy + dz * dz <= squared;
+  Seeds(std::size_t most, std::size_t cells) : x(most + kLanes), y(most + kLanes), z(most + kLanes), before(cells + 1) {}
+  void add(float px, float py, float pz) {
+    x[count] = px;
+    y[count] = py;
+    z[count++] = pz;
   }
 };
 
-/// The first seed within the radius of the point among runs of seeds, or the number of seeds.
-std::uint32_t earliestSeed(const Seeds& seeds, const std::array<std::pair<std::size_t, std::size_t>, 5>& runs,
-                           float x, float y, float z, float squared) {
-  for (const auto& [first, last] : runs)
-    for (std::size_t seed = first; seed < last; ++seed)
-      if (seeds.isNear(seed, x, y, z, squared)) return static_cast<std::uint32_t>(seed);
-  return static_cast<std::uint32_t>(seeds.x.size());
+/// Runs of seeds in ascending order that lie in the cells before a cell and in itself.
+struct SeedRuns {
+  std::array<std::array<std::uint32_t, 2>, 5> run;
+  std::size_t count = 0;   ///< of the earlier ones that are not empty; the cell's own follows them
+
+  void moveTo(const Seeds& seeds, const NeighbourWalk& walk, std::size_t cell) {
+    count = 0;
+    for (std::size_t k = 0; k < run.size(); ++k) {
+      run[count] = {seeds.before[std::min(walk.first(k), cell)], seeds.before[std::min(walk.last(k), cell)]};
+      count += k + 1 < run.size() && run[count][0] < run[count][1] ? 1U : 0U;
+    }
+  }
+};
+
+/// The first seed within the radius of the point, four at a time, or the number of seeds.
+std::uint32_t earliestSeed(const Seeds& seeds, const SeedRuns& runs, float x, float y, float z, float squared) {
+  for (std::size_t r = 0; r <= runs.count; ++r) {
+    const std::uint32_t last = r < runs.count ? runs.run[r][1] : seeds.count;
+    for (std::uint32_t seed = runs.run[r][0]; seed < last; seed += kLanes) {
+      const Floats dx = loadFloats(&seeds.x[seed]) - x, dy = loadFloats(&seeds.y[seed]) - y, dz = loadFloats(&seeds.z[seed]) - z;
+      const unsigned near = lanesThatHold(dx * dx + dy * dy + dz * dz <= squared) & firstLanes(last - seed);
+      if (near != 0) return seed + static_cast<std::uint32_t>(std::countr_zero(near));
+    }
+  }
+  return seeds.count;
 }
 
 /// Gives each own point its cluxel; cells are visited in canonical order.
 void assignPoints(const PointGrid& grid, float radius_m, CluxelTile& tile) {
-  Seeds seeds;
-  seeds.before.resize(grid.cells() + 1);
+  Seeds seeds(tile.point_cluxel.size(), grid.cells());
   NeighbourWalk walk(grid.cell_key);
-  std::array<std::pair<std::size_t, std::size_t>, 5> runs;
+  SeedRuns runs;
   for (std::size_t cell = 0; cell < grid.cells(); ++cell) {
-    seeds.before[cell] = static_cast<std::uint32_t>(seeds.x.size());
+    seeds.before[cell] = seeds.count;
     walk.moveTo<NeighbourWalk::kEarlier>(grid.cell_key[cell]);
-    for (std::size_t k = 0; k < runs.size(); ++k)
-      runs[k] = {seeds.before[std::min(walk.first(k), cell)], seeds.before[std::min(walk.last(k), cell)]};
+    runs.moveTo(seeds, walk, cell);
     for (std::uint32_t i = grid.cell_start[cell]; i < grid.cell_start[cell + 1]; ++i) {
       if (grid.own[i] == PointGrid::kForeign) continue;
-      runs[4].second = seeds.x.size();
       const float x = grid.x[i], y = grid.y[i], z = grid.z[i];
       const std::uint32_t seed = earliestSeed(seeds, runs, x, y, z, radius_m * radius_m);
       tile.point_cluxel[grid.own[i]] = seed;
-      if (seed < seeds.x.size()) continue;
+      if (seed < seeds.count) continue;
       tile.seed.push_back(grid.own[i]);
-      seeds.x.push_back(x);
-      seeds.y.push_back(y);
-      seeds.z.push_back(z);
+      seeds.add(x, y, z);
     }
   }
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "perception/moments.hpp"
 #include "perception/radix_order.hpp"
@@ -15,19 +16,34 @@
 namespace cluxel {
 namespace {
 
+/// Squared gaps between a place and the 9 columns of cells around it, in the order of NeighbourWalk [m2].
+using ColumnGaps = std::array<float, 9>;
+
 /// Points near a seed, with their squared distances; the arrays are reused from seed to seed.
 struct NearPoints {
   std::vector<std::uint32_t> point;
   std::vector<float> squared;
   std::size_t count = 0;
 
-  void collect(const PointGrid& grid, const NeighbourWalk& walk, const Eigen::Vector3f& seed, float reach_squared) {
-    count = 0;
-    for (std::size_t k = 0; k < 9; ++k) {
-      const std::uint32_t first = grid.cell_start[walk.first(k)], last = grid.cell_start[walk.last(k)];
-      if (count + (last - first) + kLanes > point.size()) resize(2 * (count + last - first + kLanes));
-      for (std::uint32_t i = first; i < last; i += kLanes) addFour(grid, i, last - i, seed, reach_squared);
+  /// Takes the points within reach; columns of cells with a wider gap are not looked at.
+  void collect(const PointGrid& grid, const NeighbourWalk& walk, const ColumnGaps& gaps, const Eigen::Vector3f& seed, float reach_squared) {
+    std::array<std::array<std::uint32_t, 2>, 9> run;
+    std::size_t runs = 0, total = 0;
+    for (std::size_t k = 0; k < 9; ++k) {   // written first, counted if there is something in reach
+      run[runs] = {grid.cell_start[walk.first(k)], grid.cell_start[walk.last(k)]};
+      total += run[runs][1] - run[runs][0];
+      runs += static_cast<std::size_t>(run[runs][0] < run[runs][1]) & static_cast<std::size_t>(gaps[k] <= reach_squared);
     }
+    count = 0;
+    if (total + kLanes > point.size()) resize(2 * (total + kLanes));
+    for (std::size_t r = 0; r < runs; ++r)
+      for (std::uint32_t i = run[r][0]; i < run[r][1]; i += kLanes) addFour(grid, i, run[r][1] - i, seed, reach_squared);
+  }
+
+  std::size_t countWithin(float reach_squared) const {
+    std::size_t within = 0;
+    for (std::size_t n = 0; n < count; ++n) within += squared[n] <= reach_squared ? 1U : 0U;
+    return within;
   }
 
   /// Drops the points beyond a shorter reach.
@@ -48,7 +64,7 @@ struct NearPoints {
     const Floats dx = loadFloats(grid.x.data() + i) - seed.x(), dy = loadFloats(grid.y.data() + i) - seed.y(),
                  dz = loadFloats(grid.z.data() + i) - seed.z();
     const Floats distance = dx * dx + dy * dy + dz * dz;
-    const unsigned near = lanesThatHold(distance <= reach_squared) & (left < kLanes ? (1U << left) - 1U : ~0U);
+    const unsigned near = lanesThatHold(distance <= reach_squared) & firstLanes(left);
     if (near == 0) return;
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
       point[count] = i + lane;
@@ -62,6 +78,13 @@ struct NearPoints {
     squared.resize(size);
   }
 };
+
+/// Points in the cells around.
+std::size_t pointsAround(const PointGrid& grid, const NeighbourWalk& walk) {
+  std::size_t sum = 0;
+  for (std::size_t k = 0; k < 9; ++k) sum += grid.cell_start[walk.last(k)] - grid.cell_start[walk.first(k)];
+  return sum;
+}
 
 /// Box and moments over the collected points.
 void fillVolume(const PointGrid& grid, const NearPoints& near, float reach_squared, const Eigen::Vector3f& seed,
@@ -110,19 +133,19 @@ struct Squares {
   float middle() const { return std::max(radius, 0.5F * largest); }
 };
 
-/// Volumes of radius around every seed; returns the cluxels that hold too few points.
-std::vector<std::uint32_t> measureFixed(const PointGrid& grid, const TilePoints& points, const CellKeys& key,
-                                        const Squares& squares, std::size_t wanted, CluxelTile& tile) {
+/// Volumes of radius around the seeds of ascending `cluxels`; returns those that hold too few points.
+std::vector<std::uint32_t> measureFixed(const PointGrid& grid, const TilePoints& points, const CellKeys& key, const Squares& squares,
+                                        std::size_t wanted, const std::vector<std::uint32_t>& cluxels, CluxelTile& tile) {
   std::vector<std::uint32_t> sparse;
   NeighbourWalk walk(grid.cell_key);
   NearPoints near;
   std::uint64_t at = std::numeric_limits<std::uint64_t>::max();
-  for (std::uint32_t c = 0; c < tile.size(); ++c) {
+  for (const std::uint32_t c : cluxels) {
     const Eigen::Vector3f seed = points.at(tile.seed[c]);
     const std::uint64_t cell = key(seed.x(), seed.y(), seed.z());
     if (cell != at) walk.moveTo(cell);
     at = cell;
-    near.collect(grid, walk, seed, squares.radius);
+    near.collect(grid, walk, ColumnGaps{}, seed, squares.radius);
     if (near.count < wanted && squares.largest > squares.radius)
       sparse.push_back(c);
     else
@@ -131,29 +154,48 @@ std::vector<std::uint32_t> measureFixed(const PointGrid& grid, const TilePoints&
   return sparse;
 }
 
-/// Volumes of sparse cluxels, in the order of the wide cells.
-void measureGrown(const PointGrid& grid, const TilePoints& points, const CellKeys& key, const Squares& squares,
-                  std::size_t wanted, const std::vector<std::uint32_t>& sparse, CluxelTile& tile) {
+/// `cluxels` in the order of the cells of their seeds.
+std::vector<KeyedItem> byCell(const std::vector<std::uint32_t>& cluxels, const TilePoints& points, const CellKeys& key, const CluxelTile& tile) {
   std::vector<KeyedItem> order;
-  for (const auto c : sparse) {
+  order.reserve(cluxels.size());
+  for (const auto c : cluxels) {
     const Eigen::Vector3f seed = points.at(tile.seed[c]);
     order.push_back({key(seed.x(), seed.y(), seed.z()), c});
   }
-  if (order.empty()) return;
-  sortByKey(order);
+  if (!order.empty()) sortByKey(order);
+  return order;
+}
+
+/// Volumes of those of `cluxels` that are sparse, in the order of the wide cells; returns the others, ascending. Where more
+/// than `crowd` points lie in the cells around, a cluxel is taken for another without a look.
+std::vector<std::uint32_t> measureGrown(const PointGrid& grid, const TilePoints& points, const CellKeys& key, const Squares& squares,
+                                        std::size_t wanted, std::size_t crowd, const std::vector<std::uint32_t>& cluxels, CluxelTile& tile) {
+  std::vector<std::uint32_t> others;
   NeighbourWalk walk(grid.cell_key);
   NearPoints near;
   std::vector<float> scratch;
-  for (std::size_t n = 0; n < order.size(); ++n) {
-    if (n == 0 || order[n].key != order[n - 1].key) walk.moveTo(order[n].key);
-    const std::uint32_t c = order[n].item;
+  std::uint64_t at = std::numeric_limits<std::uint64_t>::max();
+  bool is_crowded = false;
+  for (const auto& [cell, c] : byCell(cluxels, points, key, tile)) {
+    if (cell != at) {
+      walk.moveTo(cell);
+      is_crowded = pointsAround(grid, walk) > crowd;
+      at = cell;
+    }
     const Eigen::Vector3f seed = points.at(tile.seed[c]);
-    near.collect(grid, walk, seed, squares.middle());
-    if (near.count <= wanted) near.collect(grid, walk, seed, squares.largest);
+    const ColumnGaps gaps = key.gapsAround(seed.x(), seed.y());
+    if (!is_crowded) near.collect(grid, walk, gaps, seed, squares.middle());
+    if (is_crowded || near.countWithin(squares.radius) >= wanted) {
+      others.push_back(c);
+      continue;
+    }
+    if (near.count <= wanted) near.collect(grid, walk, gaps, seed, squares.largest);
     const float reach_squared = grownReach(near, wanted, squares.radius, squares.largest, scratch);
     near.keepWithin(reach_squared);
     fillVolume(grid, near, reach_squared, seed, c, tile);
   }
+  std::sort(others.begin(), others.end());
+  return others;
 }
 
 /// Height of the layer above a column's lowest point whose mean is its `low` [m].
@@ -178,9 +220,15 @@ void measureVolumes(const PointGrid& cells, const PointGrid& wide_cells, const T
   const auto squareOf = [](double value_m) { return static_cast<float>(value_m) * static_cast<float>(value_m); };
   const Squares squares{squareOf(params.radius_m), squareOf(largest_m)};
   const auto wanted = static_cast<std::size_t>(params.wanted_points);
-  const auto sparse =
-      measureFixed(cells, points, CellKeys(params.radius_m, params.radius_m), squares, wanted, tile);
-  measureGrown(wide_cells, points, CellKeys(largest_m, largest_m), squares, wanted, sparse, tile);
+  const CellKeys key(params.radius_m, params.radius_m), wide_key(largest_m, largest_m);
+  std::vector<std::uint32_t> left(tile.size());
+  std::iota(left.begin(), left.end(), 0U);
+  // Most cluxels are sparse, which the wide cells show, too: only the others need the narrow ones. Of a surface's points in
+  // the wide cells around, one in 25 is within the usual radius: where so many lie there, to look at all would be in vain.
+  const std::size_t crowd = 32 * wanted;
+  if (squares.largest > squares.radius) left = measureGrown(wide_cells, points, wide_key, squares, wanted, crowd, left, tile);
+  left = measureFixed(cells, points, key, squares, wanted, left, tile);
+  measureGrown(wide_cells, points, wide_key, squares, wanted, std::numeric_limits<std::size_t>::max(), left, tile);
 }
 
 std::vector<Column> columnsOf(const TilePoints& points) {

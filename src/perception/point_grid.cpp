@@ -73,24 +73,30 @@ void endKeys(std::vector<std::uint64_t>& cell_key) {
 PointGrid gridOf(const Ring<TilePoints>& ring, double cell_m, double margin_m) {
   const PointGrid points = gather(ring, static_cast<float>(margin_m));
   const CellKeys key(cell_m, margin_m);
-  std::vector<KeyedItem> order(points.x.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = {key(points.x[i], points.y[i], points.z[i]), i};
-  if (!order.empty()) sortByKey(order);
+  const std::size_t count = points.x.size();
+  std::vector<std::uint64_t> keys(count);
+  for (std::size_t i = 0; i < count; ++i) keys[i] = key(points.x[i], points.y[i], points.z[i]);
+  const std::vector<std::uint32_t> order = orderOf(keys);
   PointGrid grid;
-  for (auto* values : {&grid.x, &grid.y, &grid.z}) values->resize(order.size() + PointGrid::kSpare);
-  grid.own.resize(order.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) {
-    const std::uint32_t from = order[i].item;
+  for (auto* values : {&grid.x, &grid.y, &grid.z}) values->resize(count + PointGrid::kSpare);
+  grid.own.resize(count);
+  grid.cell_key.resize(count + 1);
+  grid.cell_start.resize(count + 1);
+  std::size_t cells = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t from = order[i];
     grid.x[i] = points.x[from];
     grid.y[i] = points.y[from];
     grid.z[i] = points.z[from];
     grid.own[i] = points.own[from];
-    if (i == 0 || order[i].key != order[i - 1].key) {
-      grid.cell_key.push_back(order[i].key);
-      grid.cell_start.push_back(i);
-    }
+    // Without a branch: the cell ends behind this point as long as none of it follows.
+    cells += i == 0 || keys[from] != grid.cell_key[cells] ? 1U : 0U;
+    grid.cell_key[cells] = keys[from];
+    grid.cell_start[cells] = i + 1;
   }
-  grid.cell_start.push_back(static_cast<std::uint32_t>(order.size()));
+  grid.cell_key.erase(grid.cell_key.begin());
+  grid.cell_key.resize(cells);
+  grid.cell_start.resize(cells + 1);
   endKeys(grid.cell_key);
   return grid;
 }

@@ -2,6 +2,7 @@
 // Points of a tile and of a margin around it, sorted by cubic cell, and the walk over each cell's neighbourhood.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -34,6 +35,23 @@ class CellKeys {
   CellKeys(double cell_m, double margin_m);
   std::uint64_t operator()(float x, float y, float z) const {
     return cell(x, offset_) * kCellStrideX + cell(y, offset_) * kCellStrideY + cell(z, kHeightOffset_m);
+  }
+  /// Squared gaps between a place and the 9 columns of cells around it, in the order of NeighbourWalk [m2]; a little too
+  /// small, so that rounding never leaves out a column.
+  std::array<float, 9> gapsAround(float x, float y) const {
+    const auto squaresAlong = [&](double value_m) {
+      constexpr double kSpare_m = 1e-3;
+      const double cells = (value_m + offset_) * per_m_, share = cells - static_cast<double>(static_cast<std::uint64_t>(cells));
+      const auto squareOf = [&](double part) {
+        const auto gap_m = static_cast<float>(std::max(0.0, part / per_m_ - kSpare_m));
+        return gap_m * gap_m;
+      };
+      return std::array<float, 3>{squareOf(share), 0.0F, squareOf(1.0 - share)};
+    };
+    const auto along_x = squaresAlong(x), along_y = squaresAlong(y);
+    std::array<float, 9> gaps;
+    for (std::size_t k = 0; k < 9; ++k) gaps[k] = along_x[k / 3] + along_y[k % 3];
+    return gaps;
   }
 
  private:

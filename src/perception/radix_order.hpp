@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -20,9 +21,11 @@ struct KeyedItem {
 /// The bits in which keys differ, moved together: few passes then suffice, and the order stays the same.
 class KeyBits {
  public:
-  explicit KeyBits(const std::vector<KeyedItem>& items) {
+  /// Of `count` keys, of which `key` gives each by its place.
+  template <typename KeyAt>
+  KeyBits(std::size_t count, const KeyAt& key) {
     std::uint64_t varying = 0;
-    for (const auto& entry : items) varying |= entry.key ^ items.front().key;
+    for (std::size_t i = 1; i < count; ++i) varying |= key(i) ^ key(0);
     while (varying != 0) {
       const int first = std::countr_zero(varying), length = std::countr_one(varying >> first);
       const std::uint64_t mask = length == 64 ? ~std::uint64_t{0} : ((std::uint64_t{1} << length) - 1) << first;
@@ -64,9 +67,10 @@ inline void sortByLongKey(std::vector<KeyedItem>& items, const KeyBits& packed) 
   }
 }
 
-/// The same where a packed key and a place fit into one number, as they do in a tile: half as much is moved about. What
-/// each digit counts is counted in one run.
-inline void sortByShortKey(std::vector<KeyedItem>& items, const KeyBits& packed) {
+/// The places of keys in ascending order, equal ones as they stand, where a packed key and a place fit into one number, as
+/// they do in a tile: little is moved about. What each digit counts is counted in one run.
+template <typename KeyAt>
+std::vector<std::uint32_t> orderByShortKey(std::size_t count, const KeyAt& key, const KeyBits& packed) {
   constexpr int kMostDigitBits = 11, kMostPasses = 3;
   constexpr std::size_t kMostBuckets = std::size_t{1} << kMostDigitBits;
   const int passes = (packed.bits() + kMostDigitBits - 1) / kMostDigitBits, digit_bits = (packed.bits() + passes - 1) / passes;
@@ -74,31 +78,54 @@ inline void sortByShortKey(std::vector<KeyedItem>& items, const KeyBits& packed)
   const auto digit = [&](std::uint64_t entry, int pass) { return (entry >> (32 + pass * digit_bits)) & (buckets - 1); };
   std::array<std::array<std::uint32_t, kMostBuckets>, kMostPasses> start;
   for (int pass = 0; pass < passes; ++pass) std::fill_n(start[static_cast<std::size_t>(pass)].begin(), buckets, 0U);
-  std::vector<std::uint64_t> order(items.size()), other(items.size());
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    order[i] = packed(items[i].key) << 32U | i;
-    for (int pass = 0; pass < passes; ++pass) ++start[static_cast<std::size_t>(pass)][digit(order[i], pass)];
+  std::vector<std::uint64_t> entries(count), other(passes > 1 ? count : 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    entries[i] = packed(key(i)) << 32U | i;
+    for (int pass = 0; pass < passes; ++pass) ++start[static_cast<std::size_t>(pass)][digit(entries[i], pass)];
   }
+  std::vector<std::uint32_t> order(count);
   for (int pass = 0; pass < passes; ++pass) {
     auto& place = start[static_cast<std::size_t>(pass)];
     std::uint32_t sum = 0;
     for (std::size_t b = 0; b < buckets; ++b) sum += std::exchange(place[b], sum);
-    for (const auto entry : order) other[place[digit(entry, pass)]++] = entry;
-    order.swap(other);
+    if (pass + 1 < passes) {
+      for (const auto entry : entries) other[place[digit(entry, pass)]++] = entry;
+      entries.swap(other);
+    } else {
+      for (const auto entry : entries) order[place[digit(entry, pass)]++] = static_cast<std::uint32_t>(entry);
+    }
   }
-  std::vector<KeyedItem> sorted(items.size());
-  for (std::size_t i = 0; i < items.size(); ++i) sorted[i] = items[order[i] & 0xffffffffU];
-  items.swap(sorted);
+  return order;
 }
 
 /// Sorts by key; equal keys keep their order.
 inline void sortByKey(std::vector<KeyedItem>& items) {
-  const KeyBits packed(items);
+  const auto key = [&](std::size_t i) { return items[i].key; };
+  const KeyBits packed(items.size(), key);
   if (packed.bits() == 0) return;
-  if (packed.bits() <= 32)
-    sortByShortKey(items, packed);
-  else
+  if (packed.bits() > 32) return sortByLongKey(items, packed);
+  const auto order = orderByShortKey(items.size(), key, packed);
+  std::vector<KeyedItem> sorted(items.size());
+  for (std::size_t i = 0; i < items.size(); ++i) sorted[i] = items[order[i]];
+  items.swap(sorted);
+}
+
+/// The places of the keys in ascending order; equal ones as they stand.
+inline std::vector<std::uint32_t> orderOf(const std::vector<std::uint64_t>& keys) {
+  const auto key = [&](std::size_t i) { return keys[i]; };
+  const KeyBits packed(keys.size(), key);
+  std::vector<std::uint32_t> order(keys.size());
+  if (packed.bits() > 32) {
+    std::vector<KeyedItem> items(keys.size());
+    for (std::uint32_t i = 0; i < keys.size(); ++i) items[i] = {keys[i], i};
     sortByLongKey(items, packed);
+    for (std::size_t i = 0; i < keys.size(); ++i) order[i] = items[i].item;
+  } else if (packed.bits() > 0) {
+    order = orderByShortKey(keys.size(), key, packed);
+  } else {
+    std::iota(order.begin(), order.end(), 0U);
+  }
+  return order;
 }
 
 }  // namespace cluxel

@@ -60,19 +60,19 @@ void keepSome(std::vector<std::uint32_t>& items, const Pool& pool, const std::ve
 /// The kept items of the pool in canonical order.
 std::vector<std::uint32_t> keptOf(const Pool& pool, const std::vector<ScanId>& scans, const ThinParams& params) {
   const VoxelKeys voxel(params.voxel_m);
-  std::vector<KeyedItem> order(pool.x.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = {voxel(pool.x[i], pool.y[i], pool.z[i]), i};
-  if (!order.empty()) sortByKey(order);
+  std::vector<std::uint64_t> keys(pool.x.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = voxel(pool.x[i], pool.y[i], pool.z[i]);
+  const std::vector<std::uint32_t> order = orderOf(keys);
   std::vector<std::uint32_t> kept, items;
   kept.reserve(order.size());
   for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
-    for (end = begin + 1; end < order.size() && order[end].key == order[begin].key;) ++end;
+    const std::uint64_t key = keys[order[begin]];
+    for (end = begin + 1; end < order.size() && keys[order[end]] == key;) ++end;
     if (end == begin + 1) {
-      kept.push_back(order[begin].item);
+      kept.push_back(order[begin]);
       continue;
     }
-    items.clear();
-    for (std::size_t i = begin; i < end; ++i) items.push_back(order[i].item);
+    items.assign(order.begin() + static_cast<std::ptrdiff_t>(begin), order.begin() + static_cast<std::ptrdiff_t>(end));
     keepSome(items, pool, scans, static_cast<std::size_t>(params.keep));
     kept.insert(kept.end(), items.begin(), items.end());
   }

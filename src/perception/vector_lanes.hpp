@@ -43,6 +43,9 @@ inline unsigned lanesThatHold(const Numbers& held) {
 #endif
 }
 
+/// The bits of the first `count` lanes.
+inline unsigned firstLanes(std::uint32_t count) { return count < kLanes ? (1U << count) - 1U : 0xfU; }
+
 /// Whether a comparison holds in all lanes.
 inline bool allHold(const Numbers& held) { return lanesThatHold(held) == 0xfU; }
 
