@@ -3,6 +3,7 @@
 #include "app/command.hpp"
 #include "cluxel/base/diagnostic.hpp"
 #include "cluxel/base/file_bytes.hpp"
+#include "cluxel/knowledge/map_check.hpp"
 #include "cluxel/tasks/map_export.hpp"
 
 namespace cluxel::app {
@@ -24,6 +25,13 @@ ExportFormat formatOf(const ExportOptions& options) {
                                "geojson, or an output file that ends in .ttl, .nq, .ply or .geojson");
 }
 
+/// `-o MAP` is a slip of the hand, and a map may be days of work.
+void refuseToReplaceAMap(const fs::path& output) {
+  std::error_code ignored;
+  if (fs::is_regular_file(output, ignored) && looksLikeMap(output))
+    throw Error(ExitCode::StoreUnavailable, output.string() + ": is a map, which the export would replace; name another file");
+}
+
 }  // namespace
 
 void addExport(CLI::App& app, Session& session) {
@@ -35,6 +43,7 @@ void addExport(CLI::App& app, Session& session) {
   command->add_flag("--canonical", options->canonical, "sorted N-Quads without history: equal bytes mean equal maps");
   onRun(*command, session, [options] {
     const ExportFormat format = formatOf(*options);
+    refuseToReplaceAMap(options->output);
     const MapReader map(options->map);
     std::string bytes;
     const bool to_stdout = options->output.empty();

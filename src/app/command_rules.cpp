@@ -67,7 +67,14 @@ std::vector<fs::path> testFiles(const RulesOptions& options, const DataHome& hom
   return files;
 }
 
+/// `--junit` takes the word behind it, which may have been meant as the tests to run.
+void refuseToReplaceTests(const fs::path& junit) {
+  if (junit.extension() == ".yaml" || junit.extension() == ".yml")
+    throw Error(ExitCode::Usage, "--junit " + junit.string() + ": the report would replace what looks like rules or their tests; name it *.xml");
+}
+
 ExitCode runTests(const RulesOptions& options, Session& session) {
+  refuseToReplaceTests(options.junit);
   const DataHome home = session.dataHome();
   const ClassCatalogue catalogue = classCatalogueOf(readMapInputs(options.inputs, home).ontology);
   RuleTestOptions test_options;

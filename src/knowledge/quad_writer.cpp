@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <limits>
 #include <stdexcept>
 #include <unordered_map>
 
@@ -17,6 +16,8 @@ namespace cluxel {
 
 namespace {
 
+// Queries number the terms that they compute from here on.
+constexpr TermId kMostTerms = 0x8000'0000U;
 constexpr std::size_t kMostPendingQuads = 4'000'000;
 constexpr std::size_t kMostPendingTermBytes = std::size_t{512} << 20U;
 
@@ -75,8 +76,8 @@ TermId QuadWriter::Impl::internRecord(const Term& term) {
     }
   }
   if (next_id == kNoTerm) next_id = static_cast<TermId>(reader.termCount() + 1);
-  if (next_id == std::numeric_limits<TermId>::max())
-    throw Error(ExitCode::StoreUnavailable, "the map is full: it holds 2^32 different terms");
+  if (next_id == kMostTerms)
+    throw Error(ExitCode::StoreUnavailable, "the map is full: it holds 2^31 different terms");
   terms.insert(hash, record, next_id, true);
   return next_id++;
 }

@@ -199,6 +199,8 @@ TEST(AmbiguousInstances, AreThoseMarkedInTheTable) {
   EXPECT_THAT(
       parseAmbiguousInstances("id,object,ambiguous,flags\n9,tree,1,x;\n2,tree,0,\n4,sign,1,\r\n", "i.csv"),
       ElementsAre(4, 9));
+  EXPECT_THAT(parseAmbiguousInstances("\xEF\xBB\xBFid,ambiguous\n4,1\n", "i.csv"), ElementsAre(4));
+  EXPECT_THAT(refusalOf([] { parseAmbiguousInstances("", "i.csv"); }), HasSubstr("is empty"));
   EXPECT_THAT(refusalOf([] { parseAmbiguousInstances("id,object\n", "i.csv"); }),
               HasSubstr("i.csv:1: error: has no column 'ambiguous'"));
   EXPECT_THAT(refusalOf([] { parseAmbiguousInstances("id,ambiguous\n1,1\nx,1\n", "i.csv"); }),
