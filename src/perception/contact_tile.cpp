@@ -3,12 +3,16 @@
 #include "cluxel/perception/contact_tile.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <tuple>
 #include <unordered_map>
 
 #include "perception/box_gap.hpp"
+#include "perception/vector_lanes.hpp"
 
 namespace cluxel {
 
@@ -72,6 +76,9 @@ struct CellEntry {
   int x = 0, y = 0;                                   ///< cell, from the centre tile's corner
   Eigen::Vector3f min, max;
   float mean_z = 0;
+
+  /// Of the component, among all of the ring.
+  std::int32_t name() const { return static_cast<std::int32_t>(component * 9 + ring); }
 };
 
 /// Cells of the ring within reach of the centre tile, in CSR form over a padded grid.
@@ -88,18 +95,55 @@ class CellGrid {
     for (std::size_t i = 1; i < offset_.size(); ++i) offset_[i] += offset_[i - 1];
     std::vector<std::uint32_t> next(offset_.begin(), offset_.end() - 1);
     entries_.resize(entries.size());
-    for (const CellEntry& entry : entries) entries_[next[slot(entry.x, entry.y)]++] = entry;
+    for (auto* values : {&low_[0], &low_[1], &low_[2], &high_[0], &high_[1], &high_[2]}) values->resize(entries.size() + kLanes);
+    x_.resize(entries.size() + kLanes);
+    name_.resize(entries.size() + kLanes);
+    for (const CellEntry& entry : entries) put(entry, next[slot(entry.x, entry.y)]++);
   }
 
   int reach() const { return reach_; }
-  /// The entries of the cells from x to last_x of one row.
-  std::span<const CellEntry> at(int x, int last_x, int y) const {
-    return {entries_.data() + offset_[slot(x, y)], entries_.data() + offset_[slot(last_x, y) + 1]};
+  /// The numbers of the entries of the cells from x to last_x of one row: the first, and the one behind the last.
+  std::array<std::uint32_t, 2> range(int x, int last_x, int y) const { return {offset_[slot(x, y)], offset_[slot(last_x, y) + 1]}; }
+  const CellEntry& operator[](std::uint32_t entry) const { return entries_[entry]; }
+
+  /// What an entry is to four others.
+  struct Pairs {
+    Floats gap;           ///< [m]
+    Numbers touch;        ///< whether their columns of cells do; rows are not looked at
+    Numbers are_apart;    ///< whether the components differ
+  };
+  /// To the entries from `others` on; there may be fewer than four.
+  [[gnu::always_inline]] Pairs compare(const CellEntry& own, std::uint32_t others) const {
+    const auto along = [&](std::size_t axis) {
+      const Floats below = own.min[static_cast<int>(axis)] - loadFloats(&high_[axis][others]);
+      const Floats above = loadFloats(&low_[axis][others]) - own.max[static_cast<int>(axis)];
+      const Floats gap = below > above ? below : above;
+      return gap > 0.0F ? gap : Floats{};
+    };
+    const Floats dx = along(0), dy = along(1), dz = along(2);
+    const Numbers step = loadNumbers(&x_[others]) - own.x;
+    return {squareRoots(dx * dx + (dy * dy + dz * dz)), (step >= -1) & (step <= 1), loadNumbers(&name_[others]) != own.name()};
   }
 
  private:
+  static Numbers loadNumbers(const std::int32_t* from) {
+    Numbers four;
+    std::memcpy(&four, from, sizeof four);
+    return four;
+  }
+
   std::size_t slot(int x, int y) const {
     return static_cast<std::size_t>(y + reach_) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x + reach_);
+  }
+
+  void put(const CellEntry& entry, std::uint32_t place) {
+    entries_[place] = entry;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low_[axis][place] = entry.min[static_cast<int>(axis)];
+      high_[axis][place] = entry.max[static_cast<int>(axis)];
+    }
+    x_[place] = entry.x;
+    name_[place] = entry.name();
   }
 
   void collect(const ComponentTile& tile, std::size_t ring, const ContactParams& params,
@@ -122,29 +166,43 @@ class CellGrid {
   int reach_, width_;
   std::vector<std::uint32_t> offset_;
   std::vector<CellEntry> entries_;
+  std::array<std::vector<float>, 3> low_, high_;   ///< of the entries' boxes, with room for whole vectors from any one
+  std::vector<std::int32_t> x_, name_;             ///< of the entries, likewise
 };
 
-void addNear(const CellEntry& own, const CellEntry& other, float near, ContactCollector& contacts) {
-  if (other.ring == kRingCentre && other.component == own.component) return;
-  const bool touches = std::abs(own.x - other.x) <= 1 && std::abs(own.y - other.y) <= 1;
-  const float gap = gapBetween(own.min, own.max, other.min, other.max);
-  if (!touches && gap > near) return;
+void addPair(const CellEntry& own, const CellEntry& other, float gap, bool touch, ContactCollector& contacts) {
   Contact& contact = contacts.at(own.component, other.ring, other.component);
   contact.gap = std::min<double>(contact.gap, gap);
-  if (!touches) return;
+  if (!touch) return;
   ++contact.overlaps;
   contact.height_difference += static_cast<double>(own.mean_z) - static_cast<double>(other.mean_z);
+}
+
+/// An entry beside those of one row of cells: four are compared at a time, and few are near.
+void addRow(const CellGrid& grid, const CellEntry& own, int y, float near, ContactCollector& contacts) {
+  const auto [first, last] = grid.range(own.x - grid.reach(), own.x + grid.reach(), y);
+  const Numbers row_touches = Numbers{} - (std::abs(own.y - y) <= 1 ? 1 : 0);
+  for (std::uint32_t others = first; others < last; others += kLanes) {
+    const auto [gap, columns_touch, are_apart] = grid.compare(own, others);
+    const Numbers touch = columns_touch & row_touches;
+    unsigned found = lanesThatHold((touch | (gap <= near)) & are_apart) & firstLanes(last - others);
+    for (; found != 0; found &= found - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(found));
+      addPair(own, grid[others + lane], gap[lane], touch[lane] != 0, contacts);
+    }
+  }
 }
 
 void addCells(const CellGrid& grid, const ContactParams& params, ContactCollector& contacts) {
   const auto near = static_cast<float>(params.near_m);
   for (int y = 0; y < kFootprintCellsPerTile; ++y)
-    for (int x = 0; x < kFootprintCellsPerTile; ++x)
-      for (const CellEntry& own : grid.at(x, x, y)) {
-        if (own.ring != kRingCentre) continue;
-        for (int other_y = y - grid.reach(); other_y <= y + grid.reach(); ++other_y)
-          for (const CellEntry& other : grid.at(x - grid.reach(), x + grid.reach(), other_y)) addNear(own, other, near, contacts);
+    for (int x = 0; x < kFootprintCellsPerTile; ++x) {
+      const auto [first, last] = grid.range(x, x, y);
+      for (std::uint32_t own = first; own < last; ++own) {
+        if (grid[own].ring != kRingCentre) continue;
+        for (int other_y = y - grid.reach(); other_y <= y + grid.reach(); ++other_y) addRow(grid, grid[own], other_y, near, contacts);
       }
+    }
 }
 
 }  // namespace
