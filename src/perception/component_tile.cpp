@@ -165,34 +165,30 @@ std::vector<Eigen::Vector2d> outmostPolygon(const TilePoints& points, std::span<
   return convexHull(std::move(polygon));
 }
 
-/// A circle inside of a convex polygon, a little away from its sides; of radius 0 where there is none.
-struct InnerCircle {
-  Eigen::Vector2d center = Eigen::Vector2d::Zero();
-  double squared_radius = 0;
-  bool holds(const Eigen::Vector2d& p) const { return (p - center).squaredNorm() < squared_radius; }
+/// Tells places inside of a convex polygon and not on its edge, by all its sides at once.
+class InnerTest {
+ public:
+  explicit InnerTest(const std::vector<Eigen::Vector2d>& polygon) {
+    constexpr double kAway_m = 1e-4;   // more than rounding to floats moves a side
+    for (auto& offset : offset_) offset = Floats{} - kInfinity;   // inside of fewer than three corners is nothing
+    if (polygon.size() < 3) return;
+    for (std::size_t k = 0; k < 4 * kLanes; ++k) {   // some sides twice
+      const Eigen::Vector2d corner = polygon[k % polygon.size()], side = polygon[(k + 1) % polygon.size()] - corner;
+      const Eigen::Vector2d inward = Eigen::Vector2d(-side.y(), side.x()).normalized();
+      x_[k / kLanes][k % kLanes] = static_cast<float>(inward.x());
+      y_[k / kLanes][k % kLanes] = static_cast<float>(inward.y());
+      offset_[k / kLanes][k % kLanes] = static_cast<float>(-inward.dot(corner) - kAway_m);
+    }
+  }
+  bool holds(float x, float y) const {
+    Numbers held = x * x_[0] + y * y_[0] + offset_[0] > 0;
+    for (std::size_t v = 1; v < x_.size(); ++v) held &= x * x_[v] + y * y_[v] + offset_[v] > 0;
+    return allHold(held);
+  }
+
+ private:
+  std::array<Floats, 4> x_{}, y_{}, offset_{};
 };
-
-InnerCircle innerCircleOf(const std::vector<Eigen::Vector2d>& polygon) {
-  InnerCircle circle;
-  if (polygon.size() < 3) return circle;
-  for (const auto& corner : polygon) circle.center += corner / static_cast<double>(polygon.size());
-  double radius = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Eigen::Vector2d side = polygon[(k + 1) % polygon.size()] - polygon[k], to = circle.center - polygon[k];
-    radius = std::min(radius, (side.x() * to.y() - side.y() * to.x()) / side.norm());
-  }
-  constexpr double kAway = 0.99;
-  if (radius > 0) circle.squared_radius = kAway * radius * radius;
-  return circle;
-}
-
-bool isStrictlyInside(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& p) {
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Eigen::Vector2d a = polygon[k], b = polygon[(k + 1) % polygon.size()];
-    if ((b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x()) <= 0) return false;
-  }
-  return polygon.size() >= 3;
-}
 
 /// The hull of the component's points. What lies inside the polygon of the outmost ones cannot be on it: leaving that out
 /// saves sorting nearly all.
@@ -200,12 +196,9 @@ std::vector<Eigen::Vector2d> hullOf(const TilePoints& points, std::span<const st
   constexpr std::size_t kFew = 24;
   std::vector<Eigen::Vector2d> candidates;
   if (members.size() > kFew) candidates = outmostPolygon(points, members);
-  const std::vector<Eigen::Vector2d> polygon = candidates;
-  const InnerCircle circle = innerCircleOf(polygon);   // most points lie there, which is quickly seen
-  for (const std::uint32_t i : members) {
-    const Eigen::Vector2d p(points.x[i], points.y[i]);
-    if (!circle.holds(p) && !isStrictlyInside(polygon, p)) candidates.push_back(p);
-  }
+  const InnerTest inner(candidates);
+  for (const std::uint32_t i : members)
+    if (!inner.holds(points.x[i], points.y[i])) candidates.emplace_back(points.x[i], points.y[i]);
   return convexHull(std::move(candidates));
 }
 
