@@ -124,15 +124,9 @@ InputError unusablePoint(const Scan& scan, std::size_t point) {
                     "coordinates may reach 10000 km, heights 20 km; check the pose, or give the manifest a map origin");
 }
 
-}  // namespace
-
-void describe(ThinParams& params, ParameterVisitor& visitor) {
-  visitor.real({"thin.voxel", "m", 0.01, 0.5, "edge of the voxels in which points are thinned"}, params.voxel_m);
-  visitor.whole({"thin.keep", "1", 1, 1000, "points kept in each voxel"}, params.keep);
-}
-
-Eigen::Vector3f localPoint(const TileKey& key, const Eigen::Vector3d& p_map) {
-  const Eigen::Vector3d p = p_map - cornerOf(key);
+/// As floats of a tile with this corner.
+Eigen::Vector3f relativeTo(const Eigen::Vector3d& corner, const Eigen::Vector3d& p_map) {
+  const Eigen::Vector3d p = p_map - corner;
   // Just below zero the sum with the corner is the tile's edge itself, which is the next tile's.
   static constexpr auto kLastStep = static_cast<std::int64_t>(kTileSize_m / kLocalStep_m) - 1;
   const auto rounded = [](double value_m) {
@@ -141,20 +135,36 @@ Eigen::Vector3f localPoint(const TileKey& key, const Eigen::Vector3d& p_map) {
   return {rounded(p.x()), rounded(p.y()), static_cast<float>(p.z())};
 }
 
+/// Whether tileOf() gives the tile with this corner; corners and the edge of a tile are exact.
+bool liesAt(const Eigen::Vector3d& corner, const Eigen::Vector3d& p_map) {
+  return p_map.x() >= corner.x() && p_map.x() < corner.x() + kTileSize_m && p_map.y() >= corner.y() && p_map.y() < corner.y() + kTileSize_m;
+}
+
+}  // namespace
+
+void describe(ThinParams& params, ParameterVisitor& visitor) {
+  visitor.real({"thin.voxel", "m", 0.01, 0.5, "edge of the voxels in which points are thinned"}, params.voxel_m);
+  visitor.whole({"thin.keep", "1", 1, 1000, "points kept in each voxel"}, params.keep);
+}
+
+Eigen::Vector3f localPoint(const TileKey& key, const Eigen::Vector3d& p_map) { return relativeTo(cornerOf(key), p_map); }
+
 std::map<TileKey, ScanSegment> splitScan(const Scan& scan) {
   std::map<TileKey, ScanSegment> segments;
   ScanSegment* segment = nullptr;
+  Eigen::Vector3d corner = Eigen::Vector3d::Zero();   // of the segment's tile
   const auto& points = scan.points;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d p_map = toMap(scan.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
     if (!isUsable(p_map)) throw unusablePoint(scan, i);
-    const TileKey key = tileOf(p_map);
-    if (segment == nullptr || segment->key != key) {
+    if (segment == nullptr || !liesAt(corner, p_map)) {
+      const TileKey key = tileOf(p_map);
+      corner = cornerOf(key);
       segment = &segments[key];
       segment->key = key;
       segment->scan = scan.id;
     }
-    const Eigen::Vector3f p = localPoint(key, p_map);
+    const Eigen::Vector3f p = relativeTo(corner, p_map);
     segment->x.push_back(p.x());
     segment->y.push_back(p.y());
     segment->z.push_back(p.z());
