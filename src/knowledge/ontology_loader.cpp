@@ -130,7 +130,7 @@ class OntologyCheck {
     return std::from_chars(term.text.data(), end, value).ptr == end && value >= 0 && value <= 1;
   }
 
-  void fault(const Statement& statement, std::string message, std::string hint = {}) {
+  void fault(const Statement& statement, const std::string& message, std::string hint = {}) {
     const RdfSource& source = sources_[statement.source];
     Diagnostic diagnostic;
     diagnostic.location.file = source.name;

@@ -147,6 +147,7 @@ std::vector<OntologyProperty> readProperties(const GraphReader& graph) {
     for (std::string& iri : graph.subjects(rdf("type"), kind)) iris.push_back(std::move(iri));
   sortUnique(iris);
   std::vector<OntologyProperty> properties;
+  properties.reserve(iris.size());
   for (const std::string& iri : iris)
     properties.push_back({iri, graph.text(iri, rdfs("label"), "en"), graph.text(iri, rdfs("comment"), "en"),
                           graph.text(iri, clx("unit"), "en")});

@@ -71,6 +71,7 @@ librdf_iterator* nodesAt(librdf_storage* storage, librdf_node* s, librdf_node* p
     std::sort(ids.begin(), ids.end());
     ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
     std::vector<Term> nodes;
+    nodes.reserve(ids.size());
     for (const TermId id : ids) nodes.push_back(found->viewOf(id).toTerm());
     std::sort(nodes.begin(), nodes.end());
     return iteratorOf(map.world(), storage, std::move(nodes));

@@ -234,7 +234,7 @@ std::optional<RedlandView> viewRedlandStorage(librdf_storage_s* storage) {
   const Term address = termOf(node.get());
   std::uintptr_t value = 0;
   std::from_chars(address.text.data(), address.text.data() + address.text.size(), value);
-  auto& map = *reinterpret_cast<RedlandMap*>(value);
+  auto& map = *reinterpret_cast<RedlandMap*>(value);   // NOLINT(performance-no-int-to-ptr): Redland's features are texts
   return RedlandView{map.environment(), map.read(), map.options().strict};
 }
 

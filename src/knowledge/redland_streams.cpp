@@ -132,7 +132,7 @@ librdf_stream* streamOf(librdf_world* world, librdf_storage* storage,
   librdf_stream* stream =
       librdf_new_stream(world, context.get(), streamAtEnd, streamNext, streamGet, streamFinished);
   if (stream == nullptr) throw std::bad_alloc();
-  context.release();
+  static_cast<void>(context.release());   // the stream's now
   return stream;
 }
 
@@ -141,7 +141,7 @@ librdf_iterator* iteratorOf(librdf_world* world, librdf_storage* storage, std::v
   librdf_iterator* iterator =
       librdf_new_iterator(world, context.get(), iteratorAtEnd, iteratorNext, iteratorGet, iteratorFinished);
   if (iterator == nullptr) throw std::bad_alloc();
-  context.release();
+  static_cast<void>(context.release());   // the iterator's now
   return iterator;
 }
 
