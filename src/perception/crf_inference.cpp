@@ -82,19 +82,13 @@ PairRows rowsOf(const PairCosts& pair) {
   return {lesserOf(best, from.last + pair[4]), std::min(from.last, leastOf(most + pair[4]))};
 }
 
-/// All that a message along an edge reads and writes, side by side: edges are met in one order on the way forth and in
-/// another on the way back.
-struct EdgeState {
-  PairRows pair;
-  LabelCosts to_later{}, to_earlier{};   ///< messages
-};
-
 class Trws {
  public:
   explicit Trws(const CrfGraph& graph)
-      : x_graph(graph), x_at(incidenceOf(graph)), x_from_earlier(graph.size()), x_min_marginals(graph.size()) {
-    x_edges.reserve(graph.edges.size());
-    for (const PairCosts& pair : graph.pair_costs) x_edges.push_back({rowsOf(pair)});
+      : x_graph(graph), x_at(incidenceOf(graph)), x_to_later(graph.edges.size()), x_to_earlier(graph.edges.size()),
+        x_from_earlier(graph.size()), x_min_marginals(graph.size()) {
+    x_pairs.reserve(graph.edges.size());
+    for (const PairCosts& pair : graph.pair_costs) x_pairs.push_back(rowsOf(pair));
   }
 
   void passForward() {
@@ -128,7 +122,7 @@ class Trws {
       for (std::uint32_t k = x_at.backward_begin[i]; k < x_at.backward_begin[i + 1]; ++k)
         addFixed(costs, x_at.backward[k], labels[x_graph.edges[x_at.backward[k]].from]);
       for (std::uint32_t e = x_at.forward_begin[i]; e < x_at.forward_begin[i + 1]; ++e)
-        for (std::size_t a = 0; a < kLabels; ++a) costs[a] += x_edges[e].to_earlier[a];
+        for (std::size_t a = 0; a < kLabels; ++a) costs[a] += x_to_earlier[e][a];
       labels[i] = static_cast<std::uint8_t>(std::min_element(costs.begin(), costs.end()) - costs.begin());
     }
     return labels;
@@ -140,10 +134,10 @@ class Trws {
  private:
   void addFromEarlier(std::uint32_t i, Costs& costs) const {
     for (std::uint32_t k = x_at.backward_begin[i]; k < x_at.backward_begin[i + 1]; ++k)
-      costs.add(x_edges[x_at.backward[k]].to_later);
+      costs.add(x_to_later[x_at.backward[k]]);
   }
   void addFromLater(std::uint32_t i, Costs& costs) const {
-    for (std::uint32_t e = x_at.forward_begin[i]; e < x_at.forward_begin[i + 1]; ++e) costs.add(x_edges[e].to_earlier);
+    for (std::uint32_t e = x_at.forward_begin[i]; e < x_at.forward_begin[i + 1]; ++e) costs.add(x_to_earlier[e]);
   }
 
   /// One over the number of monotonic chains through a node.
@@ -166,7 +160,7 @@ class Trws {
   void sendForward(std::uint32_t i, const Costs& costs) {
     const float share = treeShare(i);
     for (std::uint32_t e = x_at.forward_begin[i]; e < x_at.forward_begin[i + 1]; ++e)
-      send(costs, share, x_edges[e].to_earlier, x_edges[e].pair, x_edges[e].to_later);
+      send(costs, share, x_to_earlier[e], x_pairs[e], x_to_later[e]);
   }
 
   /// Edges to earlier nodes lie here and there: those that come next on the way back are called into the cache.
@@ -174,17 +168,19 @@ class Trws {
     constexpr std::uint32_t kAhead = 12;
     if (k < kAhead) return;
     const std::uint32_t e = x_at.backward[k - kAhead];
-    __builtin_prefetch(&x_edges[e]);
-    __builtin_prefetch(&x_edges[e].to_earlier);
+    __builtin_prefetch(&x_pairs[e]);
+    __builtin_prefetch(&x_pairs[e].back());
+    __builtin_prefetch(&x_to_later[e]);
+    __builtin_prefetch(&x_to_earlier[e]);
   }
 
   double sendBackward(std::uint32_t i, const Costs& costs) {
     const float share = treeShare(i);
     double bound = 0;
     for (std::uint32_t k = x_at.backward_begin[i]; k < x_at.backward_begin[i + 1]; ++k) {
-      EdgeState& edge = x_edges[x_at.backward[k]];
+      const std::uint32_t e = x_at.backward[k];
       prefetchBackward(k);
-      bound += static_cast<double>(send(costs, share, edge.to_later, edge.pair, edge.to_earlier));
+      bound += static_cast<double>(send(costs, share, x_to_later[e], x_pairs[e], x_to_earlier[e]));
     }
     return bound;
   }
@@ -196,7 +192,8 @@ class Trws {
 
   const CrfGraph& x_graph;
   Incidence x_at;
-  std::vector<EdgeState> x_edges;
+  std::vector<PairRows> x_pairs;
+  std::vector<LabelCosts> x_to_later, x_to_earlier;
   std::vector<LabelCosts> x_from_earlier;   ///< unary costs and what earlier nodes said on the last way forth
   std::vector<LabelCosts> x_min_marginals;
 };
