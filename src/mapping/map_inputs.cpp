@@ -25,6 +25,7 @@ std::vector<fs::path> filesIn(const fs::path& folder, std::string_view ending) {
 
 std::vector<NamedText> readAll(const std::vector<fs::path>& files) {
   std::vector<NamedText> texts;
+  texts.reserve(files.size());
   for (const fs::path& file : files) texts.push_back({file.string(), readFile(file)});
   return texts;
 }
@@ -33,6 +34,7 @@ std::vector<fs::path> givenOr(const std::vector<fs::path>& given, const std::str
                               const DataHome& home) {
   if (given.empty()) return filesIn(home.locate(folder), ending);
   std::vector<fs::path> files;
+  files.reserve(given.size());
   for (const fs::path& name : given) files.push_back(home.locate(folder, name));
   return files;
 }

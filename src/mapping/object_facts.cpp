@@ -110,6 +110,7 @@ void addObservations(const ObservedMap& map, FactSink& facts) {
 void addNeighbours(const ObservedMap& map, FactSink& facts) {
   const auto& objects = map.reasoning.objects;
   std::vector<bool> is_ground;
+  is_ground.reserve(objects.size());
   for (const SemanticObject& object : objects) is_ground.push_back(object.class_iri == vocabulary::clx("Ground"));
   const auto object_of = objectOfCluxel(map.reasoning, map.scene.cluxels.size());
   for (const auto& [a, b] : nearObjects(map.scene.cluxels, object_of, is_ground, kNearObjects_m)) {

@@ -22,6 +22,7 @@ namespace {
 
 std::vector<RdfSource> ontologySources(const std::vector<NamedText>& texts) {
   std::vector<RdfSource> sources;
+  sources.reserve(texts.size());
   for (const NamedText& text : texts)
     sources.push_back({text.text, text.name, RdfFormat::Turtle, std::string(vocabulary::kClx),
                        Term::iri(vocabulary::kGraphOntology)});
@@ -30,6 +31,7 @@ std::vector<RdfSource> ontologySources(const std::vector<NamedText>& texts) {
 
 std::vector<RuleSource> ruleSources(const std::vector<NamedText>& texts) {
   std::vector<RuleSource> sources;
+  sources.reserve(texts.size());
   for (const NamedText& text : texts) sources.push_back({text.name, text.text});
   return sources;
 }

@@ -10,6 +10,7 @@ namespace {
 
 TilePoints thinnedPoints(const std::vector<ScanSegment>& segments, const TileKey& key, const ThinParams& params) {
   std::vector<const ScanSegment*> pointers;
+  pointers.reserve(segments.size());
   for (const ScanSegment& segment : segments) pointers.push_back(&segment);
   return thin(key, pointers, params);
 }

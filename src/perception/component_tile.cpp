@@ -173,7 +173,8 @@ class InnerTest {
     for (auto& offset : offset_) offset = Floats{} - kInfinity;   // inside of fewer than three corners is nothing
     if (polygon.size() < 3) return;
     for (std::size_t k = 0; k < 4 * kLanes; ++k) {   // some sides twice
-      const Eigen::Vector2d corner = polygon[k % polygon.size()], side = polygon[(k + 1) % polygon.size()] - corner;
+      const Eigen::Vector2d& corner = polygon[k % polygon.size()];
+      const Eigen::Vector2d side = polygon[(k + 1) % polygon.size()] - corner;
       const Eigen::Vector2d inward = Eigen::Vector2d(-side.y(), side.x()).normalized();
       x_[k / kLanes][k % kLanes] = static_cast<float>(inward.x());
       y_[k / kLanes][k % kLanes] = static_cast<float>(inward.y());
