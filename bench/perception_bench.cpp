@@ -189,7 +189,7 @@ std::vector<Scan> scansFor(const std::vector<std::filesystem::path>& inputs) {
 
 int main(int argc, char** argv) {
   std::vector<std::filesystem::path> inputs;
-  int rounds = 5;
+  int rounds = 10;
   bool digest = false;
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "--rounds") == 0 && i + 1 < argc)
