@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "perception/turned_rows.hpp"
+
 namespace cluxel {
 namespace {
 
@@ -50,15 +52,6 @@ Numbers wholeOf(const Floats& values, std::int32_t most) {
   return whole < last ? whole : last;
 }
 
-/// From a vector for each azimuth to one for each residual.
-std::array<Floats, kLanes> turned(const Floats& a, const Floats& b, const Floats& c) {
-  const Floats zero{};
-  const Floats ab = __builtin_shufflevector(a, b, 0, 4, 1, 5), cd = __builtin_shufflevector(c, zero, 0, 4, 1, 5);
-  const Floats ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7), cd_high = __builtin_shufflevector(c, zero, 2, 6, 3, 7);
-  return {__builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(ab, cd, 2, 3, 6, 7),
-          __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5), __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7)};
-}
-
 FourVotes votesOf(const Floats& x, const Floats& y, const Floats& z, const Floats& length, const MainDirection& main, float median) {
   static_assert(kAzimuthNodes == 3, "the lower of the two azimuths around a residual is the first or the second");
   constexpr float kTiny = 1e-12F;
@@ -74,7 +67,7 @@ FourVotes votesOf(const Floats& x, const Floats& y, const Floats& z, const Float
   std::memcpy(votes.elevation.data(), &e, sizeof e);
   storeFloats(weight - high, votes.low.data());
   storeFloats(high, votes.high.data());
-  votes.azimuth = turned(is_first ? rest : zero, is_first ? on : rest, is_first ? zero : on);
+  votes.azimuth = turned({is_first ? rest : zero, is_first ? on : rest, is_first ? zero : on, zero});   // a vector for each residual
   return votes;
 }
 
