@@ -65,11 +65,11 @@ struct Overlap {
     std::uint64_t points = 0;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     Eigen::AlignedBox3d box;
-    std::map<std::size_t, std::uint64_t> of_class;          ///< true classes of its points
+    std::map<std::size_t, std::uint64_t> of_class;  ///< true classes of its points
   };
   std::map<std::int32_t, Truth> truths;
   std::vector<Found> found;
-  std::map<std::int32_t, std::map<std::uint32_t, std::uint64_t>> shared;   ///< instance → object → points
+  std::map<std::int32_t, std::map<std::uint32_t, std::uint64_t>> shared;  ///< instance → object → points
   std::map<std::uint32_t, std::map<std::int32_t, std::uint64_t>> back;
 };
 
@@ -103,7 +103,8 @@ class Errors {
   }
 
   void print() const {
-    std::printf("%-14s %6s %6s | %5s %5s %5s | boxes %5s %5s %5s\n", "class", "truth", "found", "P", "R", "F1", "P", "R", "F1");
+    std::printf("%-14s %6s %6s | %5s %5s %5s | boxes %5s %5s %5s\n", "class", "truth", "found", "P", "R", "F1", "P",
+                "R", "F1");
     ObjectScore all{"all", 0, 0, 0, 0}, all_box = all;
     for (std::size_t i = 0; i < by_points_.size(); ++i) {
       if (by_points_[i].truth + by_points_[i].answers == 0) continue;
@@ -203,8 +204,7 @@ class Errors {
       const auto& takers = overlap.shared.at(instance);
       for (const auto& [object, count] : takers) {
         if (count > most) most = count, best = object;
-        if (object != kNoObjectOfPoint && class_of_[object] == truth.class_number)
-          of_own_class += count, ++pieces;
+        if (object != kNoObjectOfPoint && class_of_[object] == truth.class_number) of_own_class += count, ++pieces;
       }
       const std::string name = names_[truth.class_number];
       std::string cause;
@@ -217,7 +217,8 @@ class Errors {
         const std::uint64_t whole = overlap.found[best].points;
         if (2 * most >= truth.points + whole - most) {
           const std::string sides = sortSides(name, truth.box, overlap.found[best].box);
-          if (options_.each && !sides.empty()) printTakers(("B " + name + sides).c_str(), truth, takers, overlap, result);
+          if (options_.each && !sides.empty())
+            printTakers(("B " + name + sides).c_str(), truth, takers, overlap, result);
           continue;
         }
         if (2 * of_own_class < truth.points)
@@ -238,10 +239,12 @@ class Errors {
                           const ReasoningResult& result) {
     const Eigen::Vector3d at = truth.sum / static_cast<double>(truth.points);
     std::printf("%s n=%llu right=%.2f at %.1f %.1f %.1f:", what, static_cast<unsigned long long>(truth.points),
-                static_cast<double>(truth.rightly_labelled) / static_cast<double>(truth.points), at.x(), at.y(), at.z());
+                static_cast<double>(truth.rightly_labelled) / static_cast<double>(truth.points), at.x(), at.y(),
+                at.z());
     for (const auto& [object, count] : takers) {
       const bool is_free = object == kNoObjectOfPoint;
-      const std::string name = is_free ? "-" : result.objects[object].rule_id + "#" + result.objects[object].id.hex().substr(0, 6);
+      const std::string name =
+          is_free ? "-" : result.objects[object].rule_id + "#" + result.objects[object].id.hex().substr(0, 6);
       std::printf(" %s %llu/%llu", name.c_str(), static_cast<unsigned long long>(count),
                   static_cast<unsigned long long>(is_free ? 0 : overlap.found[object].points));
     }
@@ -304,7 +307,7 @@ class Errors {
   const Options& options_;
   std::optional<TruthSource> truth_;
   std::vector<std::string> names_;
-  std::vector<std::size_t> class_of_;       ///< of the objects of the map in hand
+  std::vector<std::size_t> class_of_;  ///< of the objects of the map in hand
   std::vector<ObjectScore> by_points_, by_box_;
   std::map<std::pair<std::size_t, std::size_t>, double> by_class_;
   std::map<std::string, int> missed_, wrong_, sides_;

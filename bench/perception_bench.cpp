@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points to primitives, stage by stage, on one core: `perception_bench [--rounds N] [--digest] [SCANS...]` prints points per
-// second. Without scans it takes Oakland part 2 from the outside data, and where that is absent a generated campus.
+// Points to primitives, stage by stage, on one core: `perception_bench [--rounds N] [--digest] [SCANS...]` prints
+// points per second. Without scans it takes Oakland part 2 from the outside data, and where that is absent a generated
+// campus.
 // --digest also prints a hash of every stage's output, which tells whether a faster program still says the same.
-#include <ctime>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <functional>
 #include <span>
 #include <string>
@@ -82,9 +83,12 @@ std::vector<StageTime> runOnce(const std::vector<Scan>& scans, const LabelModel&
   Stopwatch watch;
   Segments segments;
   watch.once("split into tiles", [&] { segments = splitAll(scans); });
-  watch.overTiles("thin", segments, [&](const TileKey& key) { points[key] = thinOne(key, segments.at(key), params.thin); });
-  watch.overTiles("cover", points, [&](const TileKey& key) { cluxels[key] = coverTile(ringIn(points, key), params.cover); });
-  watch.overTiles("ground", points, [&](const TileKey& key) { ground[key] = groundOf(ringIn(cluxels, key), params.ground); });
+  watch.overTiles("thin", segments,
+                  [&](const TileKey& key) { points[key] = thinOne(key, segments.at(key), params.thin); });
+  watch.overTiles("cover", points,
+                  [&](const TileKey& key) { cluxels[key] = coverTile(ringIn(points, key), params.cover); });
+  watch.overTiles("ground", points,
+                  [&](const TileKey& key) { ground[key] = groundOf(ringIn(cluxels, key), params.ground); });
   watch.overTiles("graph and features", points, [&](const TileKey& key) {
     features[key] = computeFeatures(ringIn(cluxels, key), ringIn(ground, key), params.features);
   });
@@ -97,11 +101,12 @@ std::vector<StageTime> runOnce(const std::vector<Scan>& scans, const LabelModel&
                                        ringIn(ground, key), scene.component);
   });
   watch.overTiles("contacts", points, [&](const TileKey& key) {
-    out.contacts[key] = contactsOf(ringIn(out.components, key), ringIn(cluxels, key), features.at(key), scene.component,
-                                   scene.contact);
+    out.contacts[key] =
+        contactsOf(ringIn(out.components, key), ringIn(cluxels, key), features.at(key), scene.component, scene.contact);
   });
   watch.once("primitives and relations", [&] {
-    out.scene = assembleScene({points, cluxels, features, ground, out.labels, out.components, out.contacts}, scene.relation);
+    out.scene =
+        assembleScene({points, cluxels, features, ground, out.labels, out.components, out.contacts}, scene.relation);
   });
   return watch.times();
 }
@@ -139,12 +144,15 @@ ContentHash digestOf(const Scene& scene) {
     hasher.add(primitive.id).add(primitive.label).addSpan(std::span<const double>(primitive.attributes));
     hasher.addSpan(std::span<const std::uint32_t>(primitive.cluxels));
   }
-  for (const auto& relation : scene.relations) hasher.add(relation.kind).add(relation.from).add(relation.to).add(relation.measure);
+  for (const auto& relation : scene.relations)
+    hasher.add(relation.kind).add(relation.from).add(relation.to).add(relation.measure);
   return hasher.finish();
 }
 
 void printDigests(const Outputs& out) {
-  const auto row = [](const char* name, const ContentHash& hash) { std::printf("%-12s %s\n", name, hash.hex().c_str()); };
+  const auto row = [](const char* name, const ContentHash& hash) {
+    std::printf("%-12s %s\n", name, hash.hex().c_str());
+  };
   std::printf("\n");
   row("points", digestOf(out.perceived.points));
   row("cluxels", digestOf(out.perceived.cluxels));

@@ -34,7 +34,7 @@ Arguments argumentsOf(int argc, char** argv) {
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string option = argv[i], value = argv[i + 1];
     if (option == "--only") arguments.only = value;
-    if (option == "--module") arguments.module = fs::absolute(value);   // node would look beside its script
+    if (option == "--module") arguments.module = fs::absolute(value);  // node would look beside its script
     if (option == "--rasqal") arguments.rasqal = std::stoull(value);
     if (option == "--alone") arguments.alone = std::stoull(value);
     if (option != "--oxigraph") continue;
@@ -60,7 +60,9 @@ class Data {
     QuadWriter writer(transaction);
     generateMap(triples, [&](const Quad& quad) {
       writer.add(quad);
-      if (out.is_open()) out << toNTriples(quad.subject) << ' ' << toNTriples(quad.predicate) << ' ' << toNTriples(quad.object) << " .\n";
+      if (out.is_open())
+        out << toNTriples(quad.subject) << ' ' << toNTriples(quad.predicate) << ' ' << toNTriples(quad.object)
+            << " .\n";
     });
     writer.flush();
     transaction.commit();
@@ -91,10 +93,13 @@ std::string milliseconds(const Measure& measure) {
 }
 
 std::string nameOfLeast(const std::map<std::string, double>& ratios) {
-  return std::min_element(ratios.begin(), ratios.end(), [](const auto& a, const auto& b) { return a.second < b.second; })->first;
+  return std::min_element(ratios.begin(), ratios.end(),
+                          [](const auto& a, const auto& b) { return a.second < b.second; })
+      ->first;
 }
 
-void printComparison(const std::string& peer, const std::vector<Question>& asked, const Measures& ours, const Measures& theirs) {
+void printComparison(const std::string& peer, const std::vector<Question>& asked, const Measures& ours,
+                     const Measures& theirs) {
   std::printf("| question | rows | cluxel [ms] | %s [ms] | ratio |\n|---|---|---|---|---|\n", peer.c_str());
   double logs = 0;
   std::map<std::string, double> ratios;
@@ -107,7 +112,8 @@ void printComparison(const std::string& peer, const std::vector<Question>& asked
     const double ratio = other.seconds / mine.seconds;
     std::printf("| %s | %zu%s | %s | %s | %s |\n", question.name.c_str(), mine.rows,
                 same ? "" : (" (" + peer + " " + std::to_string(other.rows) + ")").c_str(), milliseconds(mine).c_str(),
-                milliseconds(other).c_str(), answered ? (std::ostringstream() << std::fixed << std::setprecision(1) << ratio).str().c_str() : "");
+                milliseconds(other).c_str(),
+                answered ? (std::ostringstream() << std::fixed << std::setprecision(1) << ratio).str().c_str() : "");
     wrong += same ? 0 : 1;
     unanswered += answered ? 0 : 1;
     if (!answered) continue;
@@ -116,10 +122,12 @@ void printComparison(const std::string& peer, const std::vector<Question>& asked
   }
   if (ratios.empty()) return;
   const std::string least = nameOfLeast(ratios);
-  std::printf("\n%zu questions answered by both: %.1f times the speed of %s in the geometric mean, least %.1f (%s); %zu with other rows, "
-              "%zu without an answer by %s\n",
-              ratios.size(), std::exp(logs / static_cast<double>(ratios.size())), peer.c_str(), ratios.at(least), least.c_str(), wrong,
-              unanswered, peer.c_str());
+  std::printf(
+      "\n%zu questions answered by both: %.1f times the speed of %s in the geometric mean, least %.1f (%s); %zu with "
+      "other rows, "
+      "%zu without an answer by %s\n",
+      ratios.size(), std::exp(logs / static_cast<double>(ratios.size())), peer.c_str(), ratios.at(least), least.c_str(),
+      wrong, unanswered, peer.c_str());
   std::fflush(stdout);
 }
 
@@ -130,27 +138,31 @@ void printOrders(const std::vector<Question>& asked, const Measures& ours) {
     if (!question.name.ends_with("_bad")) continue;
     const std::string stem = question.name.substr(0, question.name.size() - 4);
     const auto good = ours.contains(stem) ? ours.find(stem) : ours.find(stem + "_good");
-    if (good != ours.end()) std::printf(" %s %.2f", stem.c_str(), ours.at(question.name).seconds / good->second.seconds);
+    if (good != ours.end())
+      std::printf(" %s %.2f", stem.c_str(), ours.at(question.name).seconds / good->second.seconds);
   }
   std::printf("\n");
 }
 
 /// Growth against the smaller data, measured in turn: time, rows of the answer, rows that the operators had to make.
 void printGrowth(const std::vector<Question>& asked, const Measures& small, const Measures& large) {
-  std::printf("| question | rows | cluxel [ms] | time grows | rows grow | work grows | bar |\n|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| question | rows | cluxel [ms] | time grows | rows grow | work grows | bar |\n|---|---|---|---|---|---|---|\n");
   std::size_t over = 0;
   for (const Question& question : asked) {
     const Measure &before = small.at(question.name), &now = large.at(question.name);
     const double time = now.seconds / before.seconds;
-    const double rows = static_cast<double>(std::max<std::size_t>(now.rows, 1)) / static_cast<double>(std::max<std::size_t>(before.rows, 1));
+    const double rows = static_cast<double>(std::max<std::size_t>(now.rows, 1)) /
+                        static_cast<double>(std::max<std::size_t>(before.rows, 1));
     const double work = now.work_rows / std::max(before.work_rows, 1.0);
     // An aggregate, a filter or a LIMIT answers with few rows from many: what grows is what it has to read.
     const double grown = std::max(rows, work), bar = grown <= 1 ? 3 : std::max(3.0, 1.5 * grown);
     over += time > bar ? 1 : 0;
-    std::printf("| %s | %zu | %s | %.1f | %.1f | %.1f | %.1f%s |\n", question.name.c_str(), now.rows, milliseconds(now).c_str(), time,
-                rows, work, bar, time > bar ? " over" : "");
+    std::printf("| %s | %zu | %s | %.1f | %.1f | %.1f | %.1f%s |\n", question.name.c_str(), now.rows,
+                milliseconds(now).c_str(), time, rows, work, bar, time > bar ? " over" : "");
   }
-  std::printf("\n%zu of %zu questions grow more than 1.5 times what their rows grow (3 times where those are equal)\n", over, asked.size());
+  std::printf("\n%zu of %zu questions grow more than 1.5 times what their rows grow (3 times where those are equal)\n",
+              over, asked.size());
 }
 
 /// Text to plan, without running it.
@@ -170,20 +182,23 @@ void printPreparation(const Environment& environment, const std::vector<Question
 /// A geo filter from the R-tree, and the same one where the planner does not see it; the first also makes the tree.
 void printGeometry(const Environment& environment) {
   const QuadReader reader(environment.read());
-  const std::string prefixes = "PREFIX geo: <http://www.opengis.net/ont/geosparql#> PREFIX geof: <http://www.opengis.net/def/function/geosparql/> ";
+  const std::string prefixes =
+      "PREFIX geo: <http://www.opengis.net/ont/geosparql#> PREFIX geof: "
+      "<http://www.opengis.net/def/function/geosparql/> ";
   std::printf("\nGeo filters [ms]:");
   for (const char* radius : {"10", "100"}) {
     const std::string filter = std::string("geof:distance(?w, \"POINT(200 200)\"^^geo:wktLiteral) < ") + radius;
     const auto ask = [&](const std::string& condition) {
-      return evaluateQuery(reader, prefixes + "SELECT ?g { ?g geo:asWKT ?w FILTER(" + condition + ") }").table.row_count;
+      return evaluateQuery(reader, prefixes + "SELECT ?g { ?g geo:asWKT ?w FILTER(" + condition + ") }")
+          .table.row_count;
     };
     const auto start = std::chrono::steady_clock::now();
     ask(filter);
     const double first = since(start);
     const Measure indexed = measured([&] { return ask(filter); });
     const Measure plain = measured([&] { return ask("IF(" + filter + ", true, false)"); });
-    std::printf(" %zu found within %s m: first %.3f, then %.4f, without the tree %.3f;", indexed.rows, radius, first * 1000,
-                indexed.seconds * 1000, plain.seconds * 1000);
+    std::printf(" %zu found within %s m: first %.3f, then %.4f, without the tree %.3f;", indexed.rows, radius,
+                first * 1000, indexed.seconds * 1000, plain.seconds * 1000);
   }
   std::printf("\n");
   std::fflush(stdout);
@@ -200,11 +215,12 @@ int main(int argc, char** argv) {
   }
   const bool has_oxigraph = fs::exists(arguments.module / "node_modules/oxigraph");
   if (!has_oxigraph) std::printf("oxigraph is not in %s: npm install there\n", arguments.module.c_str());
-  std::optional<Data> data;   // the last stays for the growth
+  std::optional<Data> data;  // the last stays for the growth
   for (const std::uint64_t triples : arguments.oxigraph) {
     data.emplace(triples, has_oxigraph);
     const Measures ours = askCluxel(data->environment(), asked);
-    printComparison("oxigraph", asked, ours, has_oxigraph ? askOxigraph(arguments.module, data->file(), asked) : Measures());
+    printComparison("oxigraph", asked, ours,
+                    has_oxigraph ? askOxigraph(arguments.module, data->file(), asked) : Measures());
     printOrders(asked, ours);
     printPreparation(data->environment(), asked);
     printGeometry(data->environment());

@@ -27,7 +27,7 @@ constexpr std::array<ClassShare, 8> kClasses = {{{"Tree", 330, 2.5, 18},
                                                  {"Building", 40, 3, 25},
                                                  {"StreetSign", 30, 1.8, 4},
                                                  {"UtilityPole", 20, 6, 12}}};
-constexpr unsigned kTriplesPerObject = 39;   // counted: what one object adds on average
+constexpr unsigned kTriplesPerObject = 39;  // counted: what one object adds on average
 
 class Generator {
  public:
@@ -97,7 +97,8 @@ class Generator {
     add(self, clx("z"), metres(static_cast<long>(upTo(300))));
     add(self, clx("height"), metres(height));
     add(self, clx("confidence"), Term::literal("0." + std::to_string(50 + upTo(50)), xsd("decimal")));
-    add(self, rdfs("label"), Term::literal(name == "StreetSign" ? "street sign " + std::to_string(i) : name + " " + std::to_string(i)));
+    add(self, rdfs("label"),
+        Term::literal(name == "StreetSign" ? "street sign " + std::to_string(i) : name + " " + std::to_string(i)));
     add(self, std::string(kGeo) + "hasGeometry", Term::iri(self.text + "/geometry"));
     add(Term::iri(self.text + "/geometry"), std::string(kGeo) + "asWKT",
         Term::literal("POINT(" + metres(x).text + " " + metres(y).text + ")", std::string(kGeo) + "wktLiteral"));
@@ -116,7 +117,8 @@ class Generator {
   }
 
   void primitives(std::uint64_t i, const Term& self, long x, long y) {
-    constexpr std::array<const char*, 5> kLabels = {"HorizontalPlane", "VerticalPlane", "Column", "SmallStructure", "Scatter"};
+    constexpr std::array<const char*, 5> kLabels = {"HorizontalPlane", "VerticalPlane", "Column", "SmallStructure",
+                                                    "Scatter"};
     for (unsigned k = 0; k < 2; ++k) {
       const Term primitive = Term::iri(std::string(kMap) + "primitive/" + std::to_string(2 * i + k));
       add(self, clx("hasPrimitive"), primitive);
@@ -147,6 +149,8 @@ class Generator {
 
 }  // namespace
 
-void generateMap(std::uint64_t triples, const std::function<void(const Quad&)>& take) { Generator(triples, take).run(); }
+void generateMap(std::uint64_t triples, const std::function<void(const Quad&)>& take) {
+  Generator(triples, take).run();
+}
 
 }  // namespace cluxel::bench

@@ -62,7 +62,7 @@ std::size_t rowsOfRasqal(librdf_world* world, librdf_model* model, const Questio
   librdf_query_results* results = librdf_model_query_execute(model, query);
   if (results == nullptr) _exit(1);
   std::size_t size = 0;
-  if (librdf_query_results_is_boolean(results)) {   // TSV has no form for it
+  if (librdf_query_results_is_boolean(results)) {  // TSV has no form for it
     librdf_query_results_get_boolean(results);
     librdf_free_query_results(results);
     librdf_free_query(query);
@@ -112,8 +112,10 @@ std::vector<Question> readQuestions(const fs::path& file, const std::string& onl
   std::ifstream in(file);
   std::vector<Question> result;
   for (std::string line; std::getline(in, line);) {
-    if (line.starts_with("== ")) result.push_back({line.substr(3), kPrefixes});
-    else if (!line.empty() && line[0] != '#' && !result.empty()) result.back().text += line + "\n";
+    if (line.starts_with("== "))
+      result.push_back({line.substr(3), kPrefixes});
+    else if (!line.empty() && line[0] != '#' && !result.empty())
+      result.back().text += line + "\n";
   }
   std::erase_if(result, [&](const Question& q) { return q.name.find(only) == std::string::npos; });
   return result;
@@ -129,7 +131,8 @@ Measures askCluxel(const Environment& environment, const std::vector<Question>& 
   return measures;
 }
 
-std::pair<Measures, Measures> askCluxelInTurn(const Environment& small, const Environment& large, const std::vector<Question>& asked) {
+std::pair<Measures, Measures> askCluxelInTurn(const Environment& small, const Environment& large,
+                                              const std::vector<Question>& asked) {
   std::pair<Measures, Measures> measures;
   for (const Question& question : asked) {
     const auto [of_small, of_large] =
@@ -148,8 +151,8 @@ Measures askOxigraph(const fs::path& module, const fs::path& nt_file, const std:
   for (const Question& question : asked) list.push_back({{"name", question.name}, {"query", question.text}});
   std::ofstream(requests) << list;
   const std::string script = std::string(CLUXEL_SOURCE_DIR) + "/bench/sparql_oxigraph.mjs";
-  const std::string command = "node --max-old-space-size=8000 '" + script + "' '" + module.string() + "' '" + nt_file.string() +
-                              "' '" + requests.string() + "' '" + answers.string() + "'";
+  const std::string command = "node --max-old-space-size=8000 '" + script + "' '" + module.string() + "' '" +
+                              nt_file.string() + "' '" + requests.string() + "' '" + answers.string() + "'";
   Measures measures;
   if (std::system(command.c_str()) == 0) {
     nlohmann::json read;

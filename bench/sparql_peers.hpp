@@ -22,11 +22,11 @@ struct Question {
 
 /// Seconds of the median run, and the rows of the answer.
 struct Measure {
-  double seconds = -1;         ///< below 0: no answer
-  std::size_t rows = 0;        ///< lines of the TSV
-  double work_rows = 0;        ///< rows that all operators of our plan made together
-  bool given_up = false;       ///< the seconds are a lower bound
-  std::string failure = {};    ///< why there is no answer
+  double seconds = -1;       ///< below 0: no answer
+  std::size_t rows = 0;      ///< lines of the TSV
+  double work_rows = 0;      ///< rows that all operators of our plan made together
+  bool given_up = false;     ///< the seconds are a lower bound
+  std::string failure = {};  ///< why there is no answer
 };
 using Measures = std::map<std::string, Measure>;
 
@@ -41,8 +41,8 @@ inline double medianOf(std::vector<double> seconds) {
   return seconds[seconds.size() / 2];
 }
 
-/// Each of `runs` once in every round, at least five rounds, or for almost half a second each: what disturbs the machine,
-/// and what lies in its caches, is then the same for all. Each run gives the number of rows.
+/// Each of `runs` once in every round, at least five rounds, or for almost half a second each: what disturbs the
+/// machine, and what lies in its caches, is then the same for all. Each run gives the number of rows.
 template <typename... Run>
 std::array<Measure, sizeof...(Run)> measuredInTurn(Run... runs) {
   using Clock = std::chrono::steady_clock;
@@ -79,9 +79,11 @@ std::vector<Question> readQuestions(const std::filesystem::path& file, const std
 /// This library: a reader, the text parsed and planned, the answer as TSV, anew in every run.
 Measures askCluxel(const Environment& environment, const std::vector<Question>& asked);
 /// The same of two stores, every question in turn of the one and the other.
-std::pair<Measures, Measures> askCluxelInTurn(const Environment& small, const Environment& large, const std::vector<Question>& asked);
+std::pair<Measures, Measures> askCluxelInTurn(const Environment& small, const Environment& large,
+                                              const std::vector<Question>& asked);
 /// Oxigraph in node, its store in memory. `module` holds node_modules.
-Measures askOxigraph(const std::filesystem::path& module, const std::filesystem::path& nt_file, const std::vector<Question>& asked);
+Measures askOxigraph(const std::filesystem::path& module, const std::filesystem::path& nt_file,
+                     const std::vector<Question>& asked);
 /// Rasqal over librdf's "trees", each question in a process of its own that a deadline ends.
 Measures askRasqal(const std::filesystem::path& nt_file, const std::vector<Question>& asked);
 

@@ -26,9 +26,7 @@ std::string generatedNTriples(std::size_t triples) {
   const std::string clx = "https://w3id.org/cluxel/ontology#";
   const std::string map = "https://w3id.org/cluxel/map/object/";
   const char* classes[] = {"Tree", "Bush", "StreetLamp", "StreetSign", "Vehicle", "Building"};
-  const auto name = [&](std::size_t i) {
-    return "<" + map + std::to_string(i * 2654435761U % 4294967291U) + ">";
-  };
+  const auto name = [&](std::size_t i) { return "<" + map + std::to_string(i * 2654435761U % 4294967291U) + ">"; };
   const std::size_t objects = triples / 8;
   const auto number = [&](unsigned range) {
     return "\"" + std::to_string(random() % range) + "." + std::to_string(random() % 1000) +
@@ -36,8 +34,7 @@ std::string generatedNTriples(std::size_t triples) {
   };
   for (std::size_t i = 0; i < objects; ++i) {
     const std::string s = name(i);
-    text +=
-        s + " <http://www.w3.org/1999/02/22-rdf-syntax-ns#type> <" + clx + classes[random() % 6] + "> .\n";
+    text += s + " <http://www.w3.org/1999/02/22-rdf-syntax-ns#type> <" + clx + classes[random() % 6] + "> .\n";
     for (const char* property : {"x", "y", "z", "height"})
       text += s + " <" + clx + property + "> " + number(property[0] == 'h' ? 30 : 2000) + " .\n";
     text += s + " <" + clx + "rule> \"rule " + std::to_string(random() % 9) + "\" .\n";
@@ -49,8 +46,7 @@ std::string generatedNTriples(std::size_t triples) {
 constexpr std::size_t kTriples = 1'000'000;
 
 const RdfSource& source() {
-  static const RdfSource text{generatedNTriples(kTriples), "generated.nt", RdfFormat::NTriples, "",
-                              Term::iri("")};
+  static const RdfSource text{generatedNTriples(kTriples), "generated.nt", RdfFormat::NTriples, "", Term::iri("")};
   return text;
 }
 
@@ -271,8 +267,8 @@ void addTenThousand(benchmark::State& state) {
     WriteTransaction transaction = environment->write();
     QuadWriter writer(transaction);
     for (int i = 0; i < 10'000; ++i)
-      writer.add(QuadIds{1 + static_cast<TermId>(random() % 200'000), 2,
-                         1 + static_cast<TermId>(random() % 200'000), 0});
+      writer.add(
+          QuadIds{1 + static_cast<TermId>(random() % 200'000), 2, 1 + static_cast<TermId>(random() % 200'000), 0});
     writer.flush();
     transaction.commit();
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the subcommands share: the options of the whole program, the console, and how a command hands back its exit code.
+// What the subcommands share: the options of the whole program, the console, and how a command hands back its exit
+// code.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -34,7 +35,7 @@ class Console : public ProgressSink {
 struct Session {
   std::string home;
   bool json = false;
-  unsigned threads = 0;              ///< 0: as many as the machine has
+  unsigned threads = 0;  ///< 0: as many as the machine has
   Console console;
   ExitCode exit_code = ExitCode::Done;
 
@@ -70,6 +71,6 @@ void addRules(CLI::App& app, Session& session);
 void addExplain(CLI::App& app, Session& session);
 void addExport(CLI::App& app, Session& session);
 void addEvaluate(CLI::App& app, Session& session);
-void addUpkeep(CLI::App& app, Session& session);   ///< doctor, compact
+void addUpkeep(CLI::App& app, Session& session);  ///< doctor, compact
 
 }  // namespace cluxel::app

@@ -21,10 +21,15 @@ ExitCode build(const BuildOptions& options, Session& session) {
   params.threads = session.threadCount();
   const BuildReport report = buildMap(scans, inputs, options.output, params, session.console);
   if (session.json) {
-    printJson(Json{{"map", options.output.string()}, {"scans", report.scans}, {"points", report.points},
-               {"tiles", report.tiles}, {"cluxels", report.cluxels}, {"primitives", report.primitives},
-               {"objects", report.objects}, {"quads", report.quads},
-               {"scans_already_there", report.scans_already_there}});
+    printJson(Json{{"map", options.output.string()},
+                   {"scans", report.scans},
+                   {"points", report.points},
+                   {"tiles", report.tiles},
+                   {"cluxels", report.cluxels},
+                   {"primitives", report.primitives},
+                   {"objects", report.objects},
+                   {"quads", report.quads},
+                   {"scans_already_there", report.scans_already_there}});
     return ExitCode::Done;
   }
   std::printf("%s: %zu scans, %llu points in %zu tiles, %zu cluxels, %zu primitives, %zu objects, %llu quads\n",
@@ -46,11 +51,14 @@ void addBuild(CLI::App& app, Session& session) {
   command->add_option("--rules", options->files.rules, "rule files instead of rules/outdoor.rules.yaml");
   command->add_option("--sparql-rules", options->files.sparql_rules, "CONSTRUCT rules instead of rules/*.rq");
   command->add_option("--ontology", options->files.ontology, "ontology files instead of ontology/*.ttl");
-  command->add_option("--batch-points", options->params.batch_points, "commit when a batch of scans has this many points")
+  command
+      ->add_option("--batch-points", options->params.batch_points, "commit when a batch of scans has this many points")
       ->check(above0());
   CLI::Option* force =
       command->add_flag("--force", options->params.force, "replace a finished map; the operator's statements stay");
-  command->add_flag("--drop-statements", options->params.drop_statements, "with --force: drop the operator's statements too")
+  command
+      ->add_flag("--drop-statements", options->params.drop_statements,
+                 "with --force: drop the operator's statements too")
       ->needs(force);
   onRun(*command, session, [options, &session] { return build(*options, session); });
 }

@@ -13,7 +13,7 @@ namespace {
 struct EvaluateOptions {
   fs::path map, truth;
   double min_oa = 0, min_macro_f1 = 0;
-  std::vector<std::string> min_recall;    ///< CLASS=share
+  std::vector<std::string> min_recall;  ///< CLASS=share
 };
 
 /// "Tree=0.7": recall by point of an object class or a primitive.
@@ -58,7 +58,8 @@ void addEvaluate(CLI::App& app, Session& session) {
   auto options = std::make_shared<EvaluateOptions>();
   CLI::App* command = app.add_subcommand("evaluate", "compare a map with the truth of its scans");
   command->add_option("map", options->map, "a map")->required();
-  command->add_option("--truth", options->truth, "a folder of truth files, or a label map: oakland, semantickitti, campus")
+  command
+      ->add_option("--truth", options->truth, "a folder of truth files, or a label map: oakland, semantickitti, campus")
       ->required();
   command->add_option("--min-oa", options->min_oa, "exit 1 when the overall accuracy of objects by point is below")
       ->check(share());
@@ -69,7 +70,7 @@ void addEvaluate(CLI::App& app, Session& session) {
     for (const std::string& bar : options->min_recall) barOf(bar);
     const MapReader map(options->map);
     const MapEvaluation evaluation = evaluateMap(map, TruthSource::open(options->truth, session.dataHome()));
-    const bool meets = meetsBars(evaluation, *options);   // first: a bar on an unknown class is an error of usage
+    const bool meets = meetsBars(evaluation, *options);  // first: a bar on an unknown class is an error of usage
     print(session.json ? toJson(evaluation) : toText(evaluation));
     return meets ? ExitCode::Done : ExitCode::NegativeFinding;
   });

@@ -18,7 +18,8 @@ void addExplain(CLI::App& app, Session& session) {
   auto options = std::make_shared<ExplainOptions>();
   CLI::App* command = app.add_subcommand("explain", "why an object or a primitive became what it is");
   command->add_option("map", options->map, "a map")->required();
-  command->add_option("thing", options->name, "an object or primitive: its IRI, or the first digits of its hash")->required();
+  command->add_option("thing", options->name, "an object or primitive: its IRI, or the first digits of its hash")
+      ->required();
   onRun(*command, session, [options, &session] {
     print(explainThing(MapReader(options->map), options->name, session.json));
     return ExitCode::Done;

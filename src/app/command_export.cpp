@@ -21,15 +21,17 @@ ExportFormat formatOf(const ExportOptions& options) {
   std::string name = options.format;
   if (name.empty() && options.output.has_extension()) name = options.output.extension().string().substr(1);
   if (const auto format = exportFormatOf(name)) return *format;
-  throw Error(ExitCode::Usage, "export: unknown format '" + name + "'; write --format turtle, nquads, canonical, ply or "
-                               "geojson, or an output file that ends in .ttl, .nq, .ply or .geojson");
+  throw Error(ExitCode::Usage, "export: unknown format '" + name +
+                                   "'; write --format turtle, nquads, canonical, ply or "
+                                   "geojson, or an output file that ends in .ttl, .nq, .ply or .geojson");
 }
 
 /// `-o MAP` is a slip of the hand, and a map may be days of work.
 void refuseToReplaceAMap(const fs::path& output) {
   std::error_code ignored;
   if (fs::is_regular_file(output, ignored) && looksLikeMap(output))
-    throw Error(ExitCode::StoreUnavailable, output.string() + ": is a map, which the export would replace; name another file");
+    throw Error(ExitCode::StoreUnavailable,
+                output.string() + ": is a map, which the export would replace; name another file");
 }
 
 }  // namespace
@@ -39,7 +41,8 @@ void addExport(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("export", "write a map as RDF, coloured cloud or footprints");
   command->add_option("map", options->map, "a map")->required();
   command->add_option("-o,--output", options->output, "the file to write; else stdout")->check(named());
-  command->add_option("--format", options->format, "turtle, nquads, canonical, ply, geojson; else by the file's ending");
+  command->add_option("--format", options->format,
+                      "turtle, nquads, canonical, ply, geojson; else by the file's ending");
   command->add_flag("--canonical", options->canonical, "sorted N-Quads without history: equal bytes mean equal maps");
   onRun(*command, session, [options] {
     const ExportFormat format = formatOf(*options);

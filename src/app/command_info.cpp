@@ -19,7 +19,8 @@ struct InfoOptions {
 
 Json boxJson(const Eigen::AlignedBox3d& box) {
   if (box.isEmpty()) return nullptr;
-  return {{"min", {box.min().x(), box.min().y(), box.min().z()}}, {"max", {box.max().x(), box.max().y(), box.max().z()}}};
+  return {{"min", {box.min().x(), box.min().y(), box.min().z()}},
+          {"max", {box.max().x(), box.max().y(), box.max().z()}}};
 }
 
 Json labelsJson(const std::map<std::uint32_t, std::size_t>& labels) {
@@ -29,9 +30,14 @@ Json labelsJson(const std::map<std::uint32_t, std::size_t>& labels) {
 }
 
 Json scanJson(const ScanSummary& scan) {
-  Json json{{"source", scan.source}, {"format", nameOf(scan.format)}, {"id", scan.id.hex()},
-            {"points", scan.point_count}, {"extent_map_m", boxJson(scan.extent_map_m)}, {"has_pose", scan.has_pose},
-            {"has_intensity", scan.has_intensity}, {"labels", labelsJson(scan.points_by_label)}};
+  Json json{{"source", scan.source},
+            {"format", nameOf(scan.format)},
+            {"id", scan.id.hex()},
+            {"points", scan.point_count},
+            {"extent_map_m", boxJson(scan.extent_map_m)},
+            {"has_pose", scan.has_pose},
+            {"has_intensity", scan.has_intensity},
+            {"labels", labelsJson(scan.points_by_label)}};
   json["frame"] = scan.has_pose ? "sensor, posed in map" : "map";
   if (scan.time_s) json["time_s"] = *scan.time_s;
   return json;
@@ -65,7 +71,9 @@ ExitCode infoOfScans(const InfoOptions& options, Session& session) {
     printScans(summary);
     return ExitCode::Done;
   }
-  Json json{{"scans", Json::array()}, {"points", summary.point_count}, {"extent_map_m", boxJson(summary.extent_map_m)},
+  Json json{{"scans", Json::array()},
+            {"points", summary.point_count},
+            {"extent_map_m", boxJson(summary.extent_map_m)},
             {"labels", labelsJson(summary.points_by_label)}};
   for (const ScanSummary& scan : summary.scans) json["scans"].push_back(scanJson(scan));
   printJson(json);
@@ -73,7 +81,9 @@ ExitCode infoOfScans(const InfoOptions& options, Session& session) {
 }
 
 /// By its content, whatever its name; by its name even when it is damaged or not there.
-bool isMap(const fs::path& input) { return input.extension() == ".clx" || looksLikeMap(input); }
+bool isMap(const fs::path& input) {
+  return input.extension() == ".clx" || looksLikeMap(input);
+}
 
 ExitCode infoOfMap(const fs::path& file, const Session& session) {
   const MapReader map(file);
@@ -86,9 +96,10 @@ ExitCode infoOfMap(const fs::path& file, const Session& session) {
     for (const auto& [name, count] : summary.objects_by_class) std::printf("  %-14s %zu\n", name.c_str(), count);
     return ExitCode::Done;
   }
-  Json json{{"file", file.string()}, {"finished", summary.is_finished}, {"inputs", summary.inputs_hash},
-            {"clouds", summary.clouds}, {"points", summary.points}, {"objects", summary.objects},
-            {"quads", summary.quads}, {"objects_by_class", summary.objects_by_class}};
+  Json json{{"file", file.string()},         {"finished", summary.is_finished},
+            {"inputs", summary.inputs_hash}, {"clouds", summary.clouds},
+            {"points", summary.points},      {"objects", summary.objects},
+            {"quads", summary.quads},        {"objects_by_class", summary.objects_by_class}};
   printJson(json);
   return ExitCode::Done;
 }

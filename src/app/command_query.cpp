@@ -64,9 +64,11 @@ QueryOptions optionsOf(const QueryArguments& arguments, const QuerySource& sourc
   options.default_graph = arguments.strict ? DefaultGraph::Unnamed : source.default_graph;
   options.source_name = name;
   if (arguments.deadline_s > 0)
-    options.budget.deadline = std::chrono::milliseconds(std::llround(std::min(arguments.deadline_s, kLongest_s) * 1000));
+    options.budget.deadline =
+        std::chrono::milliseconds(std::llround(std::min(arguments.deadline_s, kLongest_s) * 1000));
   options.budget.max_rows = arguments.max_rows;
-  if (arguments.max_memory_mib > 0) options.budget.max_memory_bytes = std::min(arguments.max_memory_mib, kMost_mib) << 20U;
+  if (arguments.max_memory_mib > 0)
+    options.budget.max_memory_bytes = std::min(arguments.max_memory_mib, kMost_mib) << 20U;
   return options;
 }
 
@@ -110,7 +112,9 @@ ExitCode query(const QueryArguments& arguments, const Session& session) {
 }
 
 Json questionJson(const Question& question) {
-  Json json{{"file", question.file.filename().string()}, {"title", question.title}, {"parameters", Json::array()},
+  Json json{{"file", question.file.filename().string()},
+            {"title", question.title},
+            {"parameters", Json::array()},
             {"columns", Json::array()}};
   for (const QueryParameter& p : question.parameters)
     json["parameters"].push_back({{"name", p.name}, {"unit", p.unit}, {"default", p.default_value}, {"help", p.help}});
@@ -128,7 +132,8 @@ ExitCode listTasks(const Session& session) {
     }
     std::printf("%s\n  %s\n", question.file.filename().c_str(), question.title.c_str());
     for (const QueryParameter& p : question.parameters)
-      std::printf("  --param %s=%s  [%s] %s\n", p.name.c_str(), p.default_value.c_str(), p.unit.c_str(), p.help.c_str());
+      std::printf("  --param %s=%s  [%s] %s\n", p.name.c_str(), p.default_value.c_str(), p.unit.c_str(),
+                  p.help.c_str());
     for (const QueryColumn& c : question.columns)
       std::printf("    ?%s [%s] %s\n", c.name.c_str(), c.unit.c_str(), c.help.c_str());
   }
@@ -145,7 +150,8 @@ void addQuery(CLI::App& app, Session& session) {
   command->add_option("query", options->file, "a query file, by path or by name in queries/");
   command->add_option("-e,--text", options->text, "the query itself");
   command->add_option("--param", options->params, "NAME=VALUE for a parameter of the question");
-  command->add_option("--service", options->services, "IRI=SOURCE: a map or RDF file that answers SERVICE <IRI>; others are refused");
+  command->add_option("--service", options->services,
+                      "IRI=SOURCE: a map or RDF file that answers SERVICE <IRI>; others are refused");
   command->add_option("--format", options->format, "table, json, xml, csv, tsv; for graphs turtle, ntriples");
   command->add_option("--deadline", options->deadline_s, "seconds after which the query fails with exit code 6")
       ->check(above0());

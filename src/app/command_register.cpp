@@ -37,8 +37,11 @@ void refuseWrongOutput(const RegisterOptions& options) {
 
 Json pairJson(const RegisteredPair& pair, const PoseRegistration& report, const ScanSet& set) {
   const auto source = [&](std::size_t i) { return set.file(report.scans[i].index).path.string(); };
-  return {{"first", source(pair.first)}, {"second", source(pair.second)}, {"outcome", nameOf(pair.outcome)},
-          {"overlap", pair.overlap}, {"residual_before_m", pair.residual_before_m},
+  return {{"first", source(pair.first)},
+          {"second", source(pair.second)},
+          {"outcome", nameOf(pair.outcome)},
+          {"overlap", pair.overlap},
+          {"residual_before_m", pair.residual_before_m},
           {"residual_after_m", pair.residual_after_m}};
 }
 
@@ -46,8 +49,11 @@ Json reportJson(const PoseRegistration& report, const ScanSet& set) {
   Json json{{"residual_before_m", report.residual_before_m}, {"residual_after_m", report.residual_after_m}};
   json["scans"] = Json::array();
   for (const MendedScan& scan : report.scans)
-    json["scans"].push_back(Json{{"source", set.file(scan.index).path.string()}, {"shift_m", scan.shift_m},
-                                 {"turn_deg", scan.turn_rad * kDegrees}, {"pairs", scan.pairs}, {"group", scan.group}});
+    json["scans"].push_back(Json{{"source", set.file(scan.index).path.string()},
+                                 {"shift_m", scan.shift_m},
+                                 {"turn_deg", scan.turn_rad * kDegrees},
+                                 {"pairs", scan.pairs},
+                                 {"group", scan.group}});
   json["pairs"] = Json::array();
   for (const RegisteredPair& pair : report.pairs) json["pairs"].push_back(pairJson(pair, report, set));
   return json;
@@ -68,8 +74,9 @@ void printReport(const PoseRegistration& report, const ScanSet& set, bool check)
   for (const RegisteredPair& pair : report.pairs) {
     if (pair.outcome == PairOutcome::Used) ++used;
     if (pair.outcome != PairOutcome::Used || check)
-      std::printf("%s%s - %s: %s (overlap %.2f, residual %.3f m)\n", check ? "" : "left out: ", source(pair.first).c_str(),
-                  source(pair.second).c_str(), check && pair.outcome == PairOutcome::Used ? "measured" : nameOf(pair.outcome), pair.overlap,
+      std::printf("%s%s - %s: %s (overlap %.2f, residual %.3f m)\n",
+                  check ? "" : "left out: ", source(pair.first).c_str(), source(pair.second).c_str(),
+                  check && pair.outcome == PairOutcome::Used ? "measured" : nameOf(pair.outcome), pair.overlap,
                   pair.residual_after_m);
   }
   for (const MendedScan& scan : report.scans) {
@@ -78,10 +85,11 @@ void printReport(const PoseRegistration& report, const ScanSet& set, bool check)
                 scan.turn_rad * kDegrees, scan.pairs, scan.pairs == 0 ? ": keeps its pose" : "");
   }
   if (groupsIn(report) > 1)
-    std::printf("%zu groups of scans that no pair joins: they lie to each other as the given poses say\n", groupsIn(report));
+    std::printf("%zu groups of scans that no pair joins: they lie to each other as the given poses say\n",
+                groupsIn(report));
   if (used == 0) std::printf("no two scans overlap enough to be laid on each other\n");
-  std::printf("%zu scans, %zu of %zu pairs used, median residual %.3f m", report.scans.size(), used, report.pairs.size(),
-              report.residual_before_m);
+  std::printf("%zu scans, %zu of %zu pairs used, median residual %.3f m", report.scans.size(), used,
+              report.pairs.size(), report.residual_before_m);
   std::printf(check ? "\n" : " before, %.3f m after\n", report.residual_after_m);
 }
 
@@ -98,7 +106,8 @@ ExitCode checkPoses(const RegisterOptions& options, const ScanSet& set, Session&
     printJson(json);
   } else {
     printReport(report, set, true);
-    std::printf("worst residual %.3f m: %s --max-residual %.3f m\n", worst_m, fits ? "within" : "above", options.max_residual_m);
+    std::printf("worst residual %.3f m: %s --max-residual %.3f m\n", worst_m, fits ? "within" : "above",
+                options.max_residual_m);
   }
   return fits ? ExitCode::Done : ExitCode::NegativeFinding;
 }
@@ -122,13 +131,17 @@ void addRegister(CLI::App& app, Session& session) {
   auto options = std::make_shared<RegisterOptions>();
   CLI::App* command = app.add_subcommand("register", "mend the poses of scans by laying the scans on each other");
   command->add_option("scans", options->inputs, "files, folders and manifests of scans")->required();
-  command->add_option("-o,--output", options->output, "the manifest to write, *.yaml, which build takes")->check(named());
+  command->add_option("-o,--output", options->output, "the manifest to write, *.yaml, which build takes")
+      ->check(named());
   command->add_option("--poses", options->poses, "poses of the scans: KITTI 3x4, TUM, or 4x4 text");
   command->add_flag("--check", options->check, "only measure, and exit with 1 when scans disagree");
   command->add_option("--max-residual", options->max_residual_m, "with --check: how far surfaces may lie apart [m]")
-      ->check(above0())->capture_default_str();
-  command->add_option("--reach", options->params.reach_m, "how wrong poses of neighbouring scans may be to each other [m]")
-      ->check(above0())->capture_default_str();
+      ->check(above0())
+      ->capture_default_str();
+  command
+      ->add_option("--reach", options->params.reach_m, "how wrong poses of neighbouring scans may be to each other [m]")
+      ->check(above0())
+      ->capture_default_str();
   command->add_flag("--force", options->force, "replace the manifest");
   onRun(*command, session, [options, &session] { return registerScans(*options, session); });
 }

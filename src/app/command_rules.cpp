@@ -25,8 +25,11 @@ struct RulesOptions {
 
 Json diagnosticJson(const Diagnostic& diagnostic) {
   return {{"severity", diagnostic.severity == Severity::Error ? "error" : "warning"},
-          {"file", diagnostic.location.file}, {"line", diagnostic.location.line},
-          {"column", diagnostic.location.column}, {"message", diagnostic.message}, {"hint", diagnostic.hint}};
+          {"file", diagnostic.location.file},
+          {"line", diagnostic.location.line},
+          {"column", diagnostic.location.column},
+          {"message", diagnostic.message},
+          {"hint", diagnostic.hint}};
 }
 
 std::vector<fs::path> ruleFiles(const RulesOptions& options, const DataHome& home) {
@@ -70,7 +73,8 @@ std::vector<fs::path> testFiles(const RulesOptions& options, const DataHome& hom
 /// `--junit` takes the word behind it, which may have been meant as the tests to run.
 void refuseToReplaceTests(const fs::path& junit) {
   if (junit.extension() == ".yaml" || junit.extension() == ".yml")
-    throw Error(ExitCode::Usage, "--junit " + junit.string() + ": the report would replace what looks like rules or their tests; name it *.xml");
+    throw Error(ExitCode::Usage, "--junit " + junit.string() +
+                                     ": the report would replace what looks like rules or their tests; name it *.xml");
 }
 
 ExitCode runTests(const RulesOptions& options, Session& session) {
@@ -98,7 +102,8 @@ ExitCode runTests(const RulesOptions& options, Session& session) {
   if (session.json) printJson(files.size() == 1 ? json.front() : json);
   if (!options.junit.empty()) writeFile(options.junit, junit + "</testsuites>\n");
   if (run == 0)
-    throw Error(ExitCode::Usage, options.only.empty() ? "the test files hold no test" : "no test's name holds '" + options.only + "'");
+    throw Error(ExitCode::Usage,
+                options.only.empty() ? "the test files hold no test" : "no test's name holds '" + options.only + "'");
   return passed ? ExitCode::Done : ExitCode::NegativeFinding;
 }
 

@@ -23,8 +23,12 @@ ExitCode simulate(const SimulateOptions& options, Session& session) {
   for (std::size_t i = 0; i < summary.objects_of_class.size(); ++i)
     classes[truthClassNames()[i]] = summary.objects_of_class[i];
   if (session.json) {
-    printJson(Json{{"folder", options.folder.string()}, {"seed", options.params.seed}, {"scans", summary.scans},
-               {"points", summary.points}, {"objects", summary.objects}, {"objects_by_class", classes}});
+    printJson(Json{{"folder", options.folder.string()},
+                   {"seed", options.params.seed},
+                   {"scans", summary.scans},
+                   {"points", summary.points},
+                   {"objects", summary.objects},
+                   {"objects_by_class", classes}});
     return ExitCode::Done;
   }
   std::printf("%s: %zu scans, %zu points, %zu objects (generated, seed %llu)\n", options.folder.c_str(), summary.scans,
@@ -38,7 +42,9 @@ void addSimulate(CLI::App& app, Session& session) {
   auto options = std::make_shared<SimulateOptions>();
   CLI::App* command = app.add_subcommand("simulate", "write scans of a generated campus with truth and poses");
   command->add_option("folder", options->folder, "new or empty folder for the scans")->required()->check(named());
-  command->add_option("--seed", options->params.seed, "everything follows from it")->check(whole())->capture_default_str();
+  command->add_option("--seed", options->params.seed, "everything follows from it")
+      ->check(whole())
+      ->capture_default_str();
   for (const CampusParamInfo& info : campusParamInfos()) {
     const std::string help = std::string(info.help) + " [" + std::string(info.unit) + "]";
     command->add_option("--" + std::string(info.name), options->params.*info.field, help)

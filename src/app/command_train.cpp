@@ -53,13 +53,16 @@ ExitCode trainModel(const TrainOptions& options, Session& session) {
   const auto places = readPlaces(sources, perception, copies, options.group_size, threads, session.console);
   const std::string name = options.name.empty() ? options.output.filename().string() : options.name;
   TrainingReport report = train(name, places, perception, {}, threads, session.console);
-  report.model.provenance.insert({{"command", commandText(options)}, {"data", options.data}, {"program", "cluxel " CLUXEL_VERSION}});
+  report.model.provenance.insert(
+      {{"command", commandText(options)}, {"data", options.data}, {"program", "cluxel " CLUXEL_VERSION}});
   fs::create_directories(options.output);
   saveModel(report.model, options.output / "model.json");
   writeFile(options.output / "README.md", modelCard(report, {name, commandText(options), options.data}));
   if (session.json)
-    printJson(Json{{"model", (options.output / "model.json").string()}, {"accuracy", report.left_out.accuracy()},
-                   {"macro_f1", report.left_out.macroF1()}, {"calibration_error", report.calibration_error}});
+    printJson(Json{{"model", (options.output / "model.json").string()},
+                   {"accuracy", report.left_out.accuracy()},
+                   {"macro_f1", report.left_out.macroF1()},
+                   {"calibration_error", report.calibration_error}});
   else
     print("On left-out groups, by point:\n" + toMarkdown(report.left_out));
   return ExitCode::Done;
@@ -71,9 +74,12 @@ void addTrain(CLI::App& app, Session& session) {
   auto options = std::make_shared<TrainOptions>();
   CLI::App* command = app.add_subcommand("train", "make a label model from labelled scans");
   command->add_option("scans", options->inputs, "files, folders and manifests of scans")->required();
-  command->add_option("--truth", options->truth, "a folder of truth files, or a label map: oakland, semantickitti, campus")
+  command
+      ->add_option("--truth", options->truth, "a folder of truth files, or a label map: oakland, semantickitti, campus")
       ->required();
-  command->add_option("-o,--output", options->output, "the model's folder: model.json and README.md")->required()->check(named());
+  command->add_option("-o,--output", options->output, "the model's folder: model.json and README.md")
+      ->required()
+      ->check(named());
   command->add_option("--helper", options->helpers, "scans that help to train, but are never left out and measured on");
   command->add_option("--helper-truth", options->helper_truth, "truth of the helpers, as --truth");
   command->add_option("--name", options->name, "the model's name; else the folder's");

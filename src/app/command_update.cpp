@@ -14,9 +14,12 @@ namespace {
 std::vector<Quad> triplesOf(const std::map<std::string, fs::path>& files, const std::string& iri) {
   const auto file = files.find(iri);
   if (file == files.end())
-    throw Error(ExitCode::FaultyInput, "LOAD <" + iri + "> is refused: no file is named for it, and nothing is fetched; name it: --load '" + iri + "=FILE'");
+    throw Error(ExitCode::FaultyInput,
+                "LOAD <" + iri + "> is refused: no file is named for it, and nothing is fetched; name it: --load '" +
+                    iri + "=FILE'");
   const auto format = rdfFormatOf(file->second);
-  if (!format) throw Error(ExitCode::Usage, "--load: " + file->second.string() + " is no RDF file (.ttl .nt .nq .trig .rdf)");
+  if (!format)
+    throw Error(ExitCode::Usage, "--load: " + file->second.string() + " is no RDF file (.ttl .nt .nq .trig .rdf)");
   std::vector<Quad> quads;
   const std::string text = readFile(file->second);
   parseRdf({.text = text, .name = file->second.string(), .format = *format, .base_iri = iri, .graph = Term::iri("")},

@@ -23,7 +23,7 @@ void compactInPlace(const fs::path& map) {
   const auto environment = Environment::open(file, OpenMode::ReadWrite);
   const WriteTransaction no_other_writer = environment->write();
   std::error_code ignored;
-  fs::remove(target, ignored);   // of a run that was killed
+  fs::remove(target, ignored);  // of a run that was killed
   environment->compactTo(target);
   try {
     replaceMapFile(target, file);
@@ -69,7 +69,8 @@ void addUpkeep(CLI::App& app, Session& session) {
   auto options = std::make_shared<UpkeepOptions>();
   CLI::App* command = app.add_subcommand("compact", "rewrite a map without free space");
   command->add_option("map", options->map, "a map")->required();
-  command->add_option("-o,--output", options->output, "the file to write; else the map itself is replaced")->check(named());
+  command->add_option("-o,--output", options->output, "the file to write; else the map itself is replaced")
+      ->check(named());
   onRun(*command, session, [options, &session] { return compact(*options, session); });
   CLI::App* checking = app.add_subcommand("doctor", "verify the checksums and indexes of a map");
   checking->add_option("map", options->map, "a map")->required();

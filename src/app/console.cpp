@@ -12,7 +12,9 @@
 namespace cluxel::app {
 
 Console::Console() : is_terminal_(isatty(STDERR_FILENO) == 1) {}
-Console::~Console() { clearLine(); }
+Console::~Console() {
+  clearLine();
+}
 
 void Console::clearLine() {
   if (line_is_open_) std::fputs("\r\033[K", stderr);
@@ -79,6 +81,8 @@ void print(std::string_view text) {
   if (text.empty() || text.back() != '\n') std::fputc('\n', stdout);
 }
 
-void printJson(const Json& json) { print(json.dump(2, ' ', false, Json::error_handler_t::replace)); }
+void printJson(const Json& json) {
+  print(json.dump(2, ' ', false, Json::error_handler_t::replace));
+}
 
 }  // namespace cluxel::app

@@ -63,8 +63,8 @@ int runProgram(int argc, char** argv) {
   return static_cast<int>(session.exit_code);
 }
 
-/// A closed stdin, stdout or stderr would be given to the next file that is opened, and messages written into a map. They
-/// are opened the wrong way round, so that using them fails as if they were closed, and lostData() sees it.
+/// A closed stdin, stdout or stderr would be given to the next file that is opened, and messages written into a map.
+/// They are opened the wrong way round, so that using them fails as if they were closed, and lostData() sees it.
 void occupyStandardStreams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0) ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);

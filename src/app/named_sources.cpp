@@ -12,7 +12,7 @@ Question questionFrom(const fs::path& file, const std::string& text, const Sessi
   if (!file.empty()) {
     fs::path name = file;
     std::error_code ignored;
-    const bool is_file = fs::exists(name, ignored) && !fs::is_directory(name, ignored);   // a pipe too
+    const bool is_file = fs::exists(name, ignored) && !fs::is_directory(name, ignored);  // a pipe too
     if (!name.has_extension() && !is_file) name += ".rq";
     return readQuestion(session.dataHome().locate("queries", name));
   }

@@ -42,8 +42,7 @@ std::string format(const Diagnostic& diagnostic) {
   text += diagnostic.message;
   if (!diagnostic.source_line.empty()) {
     text += "\n  " + diagnostic.source_line;
-    if (diagnostic.location.column > 0)
-      text += "\n  " + caretUnder(diagnostic.source_line, diagnostic.location.column);
+    if (diagnostic.location.column > 0) text += "\n  " + caretUnder(diagnostic.source_line, diagnostic.location.column);
   }
   if (!diagnostic.hint.empty()) text += "\n  hint: " + diagnostic.hint;
   return text;

@@ -53,7 +53,8 @@ class WrittenFile {
   void openBeside(const fs::path& target) {
     static std::atomic<unsigned> count{0};
     for (int attempt = 0; descriptor_ < 0 && attempt < 1000; ++attempt) {
-      const std::string name = target.string() + ".partial-" + std::to_string(::getpid()) + "-" + std::to_string(count++);
+      const std::string name =
+          target.string() + ".partial-" + std::to_string(::getpid()) + "-" + std::to_string(count++);
       descriptor_ = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
       if (descriptor_ >= 0) partial_ = name;
       if (descriptor_ < 0 && errno != EEXIST) break;
@@ -76,7 +77,8 @@ class WrittenFile {
   void close() {
     if (!partial_.empty() && ::fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOSYS && errno != EOPNOTSUPP)
       refuseToWrite(meant_, "cannot be written whole");
-    if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) refuseToWrite(meant_, "cannot be written whole");
+    if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR)
+      refuseToWrite(meant_, "cannot be written whole");
   }
 
   void moveTo(const fs::path& target) {
@@ -101,12 +103,12 @@ bool isSpecial(const fs::path& path) {
 }  // namespace
 
 fs::path withoutLinks(fs::path path) {
-  constexpr int kMostLinks = 40;   // as many as the system follows
+  constexpr int kMostLinks = 40;  // as many as the system follows
   std::error_code error;
   for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
     const fs::path target = fs::read_symlink(path, error);
     if (error) break;
-    path = path.parent_path() / target;   // an absolute target replaces all
+    path = path.parent_path() / target;  // an absolute target replaces all
   }
   return path;
 }
@@ -121,8 +123,7 @@ void syncFolderOf(const fs::path& file) {
 
 std::string readFile(const fs::path& path) {
   std::error_code ignored;
-  if (fs::is_directory(path, ignored))
-    throw InputError({.file = path.string()}, "is a folder, a file was expected");
+  if (fs::is_directory(path, ignored)) throw InputError({.file = path.string()}, "is a folder, a file was expected");
   const File file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) refuse(path, "cannot be opened");
   std::string bytes;

@@ -34,17 +34,14 @@ std::uint64_t checksumOf(std::string_view full_key, std::string_view bytes) {
   return XXH3_64bits_withSeed(bytes.data(), bytes.size(), XXH3_64bits(full_key.data(), full_key.size()));
 }
 
-std::string_view verified(std::string_view full_key, std::string_view stored,
-                          const std::filesystem::path& file) {
+std::string_view verified(std::string_view full_key, std::string_view stored, const std::filesystem::path& file) {
   BlockHead head{};
   if (stored.size() >= sizeof head) std::memcpy(&head, stored.data(), sizeof head);
   const std::string_view bytes = stored.substr(std::min(stored.size(), sizeof head));
-  if (stored.size() < sizeof head || head.size != bytes.size() ||
-      head.checksum != checksumOf(full_key, bytes)) {
+  if (stored.size() < sizeof head || head.size != bytes.size() || head.checksum != checksumOf(full_key, bytes)) {
     const std::size_t zero = full_key.find('\0');
-    throw Error(ExitCode::StoreUnavailable,
-                file.string() + ": a block of '" + std::string(full_key.substr(0, zero)) +
-                    "' has a wrong checksum; take a copy of the map or build it again");
+    throw Error(ExitCode::StoreUnavailable, file.string() + ": a block of '" + std::string(full_key.substr(0, zero)) +
+                                                "' has a wrong checksum; take a copy of the map or build it again");
   }
   return bytes;
 }
@@ -87,8 +84,7 @@ void WriteTransaction::putBlock(std::string_view table, std::string_view key, st
   const int code = mdb_put(impl_->live(), impl_->table(Table::Blocks), &stored_key, &stored, MDB_RESERVE);
   impl_->check(code, "write a block");
   std::memcpy(stored.mv_data, &head, sizeof head);
-  if (!bytes.empty())
-    std::memcpy(static_cast<char*>(stored.mv_data) + sizeof head, bytes.data(), bytes.size());
+  if (!bytes.empty()) std::memcpy(static_cast<char*>(stored.mv_data) + sizeof head, bytes.data(), bytes.size());
   ++impl_->generation;
 }
 

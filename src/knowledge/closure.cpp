@@ -149,8 +149,7 @@ std::set<TermId> reachableFrom(TermId node, const Edges& edges) {
 
 /// What the ontology says, taken from the facts known so far.
 struct OntologyRules {
-  std::map<TermId, std::set<Implied>>
-      implications;  ///< every property that implies something, with all it implies
+  std::map<TermId, std::set<Implied>> implications;  ///< every property that implies something, with all it implies
   std::set<TermId> transitive;
   Edges ancestors;  ///< of each class
   bool operator==(const OntologyRules&) const = default;
@@ -175,9 +174,7 @@ std::set<Implied> allImplied(TermId property, const std::map<TermId, std::set<Im
 OntologyRules readRules(const Facts& facts, const Words& words) {
   OntologyRules rules;
   std::map<TermId, std::set<Implied>> direct;
-  facts.forEach(words.sub_property, [&](TermId sub, TermId super) {
-    direct[sub].insert({super, false, false});
-  });
+  facts.forEach(words.sub_property, [&](TermId sub, TermId super) { direct[sub].insert({super, false, false}); });
   facts.forEach(words.inverse, [&](TermId one, TermId other) {
     direct[one].insert({other, true, true});
     direct[other].insert({one, true, true});
@@ -236,8 +233,8 @@ class Closure {
       const bool may_turn = facts_.isResource(object);
       for (const Implied& next : implied) {
         if (next.by_turning && !may_turn) continue;
-        changed_ |= next.turned ? facts_.derive(object, next.property, subject)
-                                : facts_.derive(subject, next.property, object);
+        changed_ |=
+            next.turned ? facts_.derive(object, next.property, subject) : facts_.derive(subject, next.property, object);
       }
     });
   }
@@ -262,9 +259,7 @@ class Closure {
     });
   }
 
-  bool isSchema(TermId property) const {
-    return property == words_.sub_class || property == words_.sub_property;
-  }
+  bool isSchema(TermId property) const { return property == words_.sub_class || property == words_.sub_property; }
 
   Facts& facts_;
   const Words& words_;

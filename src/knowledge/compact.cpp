@@ -21,15 +21,13 @@ void copyTable(const ReadTransaction::Impl& from, const ReadTransaction::Impl& t
   MDB_val value;
   int code = mdb_cursor_get(source.get(), &key, &value, MDB_FIRST);
   for (; code == MDB_SUCCESS; code = mdb_cursor_get(source.get(), &key, &value, MDB_NEXT))
-    to.check(mdb_cursor_put(target.get(), &key, &value, duplicates ? MDB_APPENDDUP : MDB_APPEND),
-             "write a table");
+    to.check(mdb_cursor_put(target.get(), &key, &value, duplicates ? MDB_APPENDDUP : MDB_APPEND), "write a table");
   if (code != MDB_NOTFOUND) from.check(code, "read a table");
 }
 
 void copyAll(const ReadTransaction& from, Environment& to) {
   WriteTransaction transaction = to.write();
-  for (std::size_t i = 0; i < kTableCount; ++i)
-    copyTable(from.impl(), transaction.impl(), static_cast<Table>(i));
+  for (std::size_t i = 0; i < kTableCount; ++i) copyTable(from.impl(), transaction.impl(), static_cast<Table>(i));
   transaction.commit();
 }
 

@@ -80,10 +80,8 @@ int openFile(const fs::path& file, OpenMode mode, bool& can_write) {
   }
   if (descriptor >= 0) return descriptor;
   if (errno == EEXIST)
-    throw Error(ExitCode::StoreUnavailable,
-                file.string() + ": exists already; choose another name or remove it");
-  if (errno == EISDIR)
-    throw Error(ExitCode::StoreUnavailable, file.string() + ": is a folder, a map was expected");
+    throw Error(ExitCode::StoreUnavailable, file.string() + ": exists already; choose another name or remove it");
+  if (errno == EISDIR) throw Error(ExitCode::StoreUnavailable, file.string() + ": is a folder, a map was expected");
   failStore(file, errno, mode == OpenMode::Create ? "create the map" : "open the map");
 }
 
@@ -104,9 +102,12 @@ EnvHandle openLmdb(const fs::path& file, std::uint64_t file_size, unsigned flags
   failStore(file, code, "open the map");
 }
 
-bool isFullDisk(int code) { return code == ENOSPC || code == EDQUOT || code == EFBIG; }
+bool isFullDisk(int code) {
+  return code == ENOSPC || code == EDQUOT || code == EFBIG;
+}
 
-/// `can_write` becomes false where a map can be read only: its lock file cannot be made beside it, so nobody else writes.
+/// `can_write` becomes false where a map can be read only: its lock file cannot be made beside it, so nobody else
+/// writes.
 EnvHandle openLmdbFor(const fs::path& file, std::uint64_t file_size, OpenMode mode, bool& can_write, unsigned extra) {
   if (can_write) {
     const int no_room = reserveLockFile(file);
@@ -139,14 +140,12 @@ std::shared_ptr<LmdbEnvironment> openNew(const fs::path& file, Descriptor& descr
     throw Error(ExitCode::StoreUnavailable, file.string() + ": is empty, a map was expected");
   EnvHandle handle;
   {
-    const NameLock lock(descriptor.get(), NameLock::Kind::Opening);   // LMDB opens by name once more
+    const NameLock lock(descriptor.get(), NameLock::Kind::Opening);  // LMDB opens by name once more
     if (!isNamed(identityOf(descriptor.get(), file), file)) return nullptr;
     handle = openLmdbFor(file, head.file_size, mode, can_write, extra_flags);
   }
-  if (head.file_size != 0 && needsStructureCheck(head))
-    checkUnderSnapshot(handle.get(), descriptor.get(), file);
-  auto environment =
-      std::make_shared<LmdbEnvironment>(file, std::move(handle), descriptor.release(), can_write);
+  if (head.file_size != 0 && needsStructureCheck(head)) checkUnderSnapshot(handle.get(), descriptor.get(), file);
+  auto environment = std::make_shared<LmdbEnvironment>(file, std::move(handle), descriptor.release(), can_write);
   if (may_initialise) environment->allowWriting();
   environment->openTables();
   return environment;
@@ -158,8 +157,7 @@ std::shared_ptr<LmdbEnvironment> openAs(const fs::path& file, OpenMode mode, boo
   const FileIdentity identity = identityOf(descriptor.get(), file);
   OpenEnvironments& table = openEnvironments();
   std::unique_lock lock(table.mutex);
-  for (auto entry = table.entries.find(identity); entry != table.entries.end();
-       entry = table.entries.find(identity)) {
+  for (auto entry = table.entries.find(identity); entry != table.entries.end(); entry = table.entries.find(identity)) {
     if (auto open = entry->second.lock()) {
       if (mode != OpenMode::ReadOnly) open->allowWriting();
       return open;

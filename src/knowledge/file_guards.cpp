@@ -63,9 +63,13 @@ NameLock::NameLock(int descriptor, Kind kind) : descriptor_(descriptor) {
   lockNameByte(descriptor_, kind == Kind::Opening ? F_RDLCK : F_WRLCK);
 }
 
-NameLock::~NameLock() { lockNameByte(descriptor_, F_UNLCK); }
+NameLock::~NameLock() {
+  lockNameByte(descriptor_, F_UNLCK);
+}
 
-fs::path lockFileOf(fs::path map) { return map += "-lock"; }
+fs::path lockFileOf(fs::path map) {
+  return map += "-lock";
+}
 
 int reserveLockFile(const fs::path& map) {
   const int descriptor = ::open(lockFileOf(map).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the system's files need before LMDB may have them: descriptors away from stdout, an identity, a lock file with room.
+// What the system's files need before LMDB may have them: descriptors away from stdout, an identity, a lock file with
+// room.
 #pragma once
 
 #include <sys/types.h>
@@ -19,7 +20,8 @@ FileIdentity identityOf(int descriptor, const std::filesystem::path& file);
 /// Whether the name `file` leads to that file.
 bool isNamed(const FileIdentity& identity, const std::filesystem::path& file);
 
-/// Occupies the descriptors 0 to 2 as far as they are free: a map that got one of them would have messages written over it.
+/// Occupies the descriptors 0 to 2 as far as they are free: a map that got one of them would have messages written over
+/// it.
 class LowDescriptors {
  public:
   LowDescriptors();
@@ -47,8 +49,8 @@ class NameLock {
 
 std::filesystem::path lockFileOf(std::filesystem::path map);
 
-/// Makes the lock file of `map` and gives it its room on the disk: LMDB leaves holes in it, and on a full disk touching one
-/// kills the process. Returns 0 or the system's error.
+/// Makes the lock file of `map` and gives it its room on the disk: LMDB leaves holes in it, and on a full disk touching
+/// one kills the process. Returns 0 or the system's error.
 int reserveLockFile(const std::filesystem::path& map);
 
 }  // namespace cluxel

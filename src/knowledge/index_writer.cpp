@@ -74,12 +74,10 @@ void writeAnew(ReadTransaction::Impl& transaction, Table index, const IndexChang
   const std::vector<Key128> old = allKeys(transaction, index);
   std::vector<Key128> kept;
   kept.reserve(old.size());
-  std::set_difference(old.begin(), old.end(), change.removed.begin(), change.removed.end(),
-                      std::back_inserter(kept));
+  std::set_difference(old.begin(), old.end(), change.removed.begin(), change.removed.end(), std::back_inserter(kept));
   std::vector<Key128> merged;
   merged.reserve(kept.size() + change.added.size());
-  std::set_union(kept.begin(), kept.end(), change.added.begin(), change.added.end(),
-                 std::back_inserter(merged));
+  std::set_union(kept.begin(), kept.end(), change.added.begin(), change.added.end(), std::back_inserter(merged));
   transaction.check(mdb_drop(transaction.live(), transaction.table(index), 0), "write an index");
   IndexCursor cursor(transaction, index);
   for (const Key128 key : merged) cursor.append(key);

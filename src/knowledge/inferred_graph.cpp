@@ -43,10 +43,8 @@ ClosureChange inferClosure(WriteTransaction& transaction) {
   const std::vector<QuadIds> present = quadsOf(reader, graphs.inferred);
   std::vector<QuadIds> added;
   std::vector<QuadIds> removed;
-  std::set_difference(wanted.begin(), wanted.end(), present.begin(), present.end(),
-                      std::back_inserter(added));
-  std::set_difference(present.begin(), present.end(), wanted.begin(), wanted.end(),
-                      std::back_inserter(removed));
+  std::set_difference(wanted.begin(), wanted.end(), present.begin(), present.end(), std::back_inserter(added));
+  std::set_difference(present.begin(), present.end(), wanted.begin(), wanted.end(), std::back_inserter(removed));
   for (const QuadIds& quad : added) writer.add(quad);
   for (const QuadIds& quad : removed) writer.remove(quad);
   writer.flush();

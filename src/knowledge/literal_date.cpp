@@ -67,9 +67,7 @@ class Reader {
     return true;
   }
 
-  bool atZone() const {
-    return rest_.empty() || rest_.front() == 'Z' || rest_.front() == '+' || rest_.front() == '-';
-  }
+  bool atZone() const { return rest_.empty() || rest_.front() == 'Z' || rest_.front() == '+' || rest_.front() == '-'; }
 
  private:
   std::string_view rest_;
@@ -86,8 +84,7 @@ std::int64_t dayNumber(int year, int month, int day) {
   const std::int64_t cycle = (y >= 0 ? y : y - 399) / 400;
   const std::int64_t year_of_cycle = y - cycle * 400;
   const std::int64_t day_of_year = (153 * (month + (month > 2 ? -3 : 9)) + 2) / 5 + day - 1;
-  return cycle * 146'097 + year_of_cycle * 365 + year_of_cycle / 4 - year_of_cycle / 100 + day_of_year -
-         719'468;
+  return cycle * 146'097 + year_of_cycle * 365 + year_of_cycle / 4 - year_of_cycle / 100 + day_of_year - 719'468;
 }
 
 std::optional<std::int64_t> readDay(Reader& reader) {
@@ -112,8 +109,8 @@ std::optional<std::int64_t> parseDateTime(std::string_view lexical) {
   std::int64_t micro = 0;
   std::int64_t offset_s = 0;
   if (!day || !reader.character('T') || !reader.twoDigits(hour) || !reader.character(':') ||
-      !reader.twoDigits(minute) || !reader.character(':') || !reader.twoDigits(second) ||
-      !reader.fraction(micro) || !reader.atZone() || !reader.zone(offset_s))
+      !reader.twoDigits(minute) || !reader.character(':') || !reader.twoDigits(second) || !reader.fraction(micro) ||
+      !reader.atZone() || !reader.zone(offset_s))
     return std::nullopt;
   const bool midnight = hour == 24 && minute == 0 && second == 0 && micro == 0;
   if ((hour > 23 && !midnight) || minute > 59 || second > 59) return std::nullopt;

@@ -43,8 +43,7 @@ double saturate(std::string_view text) {
   if (e != std::string_view::npos) {
     const std::string_view digits = withoutPlus(text.substr(e + 1));
     const auto end = std::from_chars(digits.data(), digits.data() + digits.size(), exponent);
-    if (end.ec == std::errc::result_out_of_range)
-      exponent = digits.starts_with('-') ? -1'000'000'000 : 1'000'000'000;
+    if (end.ec == std::errc::result_out_of_range) exponent = digits.starts_with('-') ? -1'000'000'000 : 1'000'000'000;
   }
   const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
   const std::size_t first = mantissa.find_first_of("123456789");
@@ -166,8 +165,7 @@ DecodedValue decodeLiteral(std::string_view lexical, std::string_view datatype) 
   if (name == "string") return numberOf(Type::String, 0.0);
   if (name == "double") return numberOf(Type::Double, parseDouble(lexical));
   if (name == "decimal")
-    return numberOf(Type::Decimal,
-                    isNumber(lexical, false) ? std::optional(parseNumber(lexical)) : std::nullopt);
+    return numberOf(Type::Decimal, isNumber(lexical, false) ? std::optional(parseNumber(lexical)) : std::nullopt);
   if (name == "float") {
     const std::optional<double> value = parseDouble(lexical);
     return numberOf(Type::Float, value ? std::optional(parseFloat(lexical, *value)) : std::nullopt);
@@ -179,7 +177,7 @@ DecodedValue decodeLiteral(std::string_view lexical, std::string_view datatype) 
 }
 
 void addExactDigits(std::string_view lexical, DecodedValue& value) {
-  constexpr std::size_t most_digits = 18;   // that 64 bits always hold
+  constexpr std::size_t most_digits = 18;  // that 64 bits always hold
   const bool is_negative = lexical.starts_with('-');
   if (is_negative || lexical.starts_with('+')) lexical.remove_prefix(1);
   const std::size_t point = lexical.find('.');

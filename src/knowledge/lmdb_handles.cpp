@@ -11,8 +11,7 @@ namespace cluxel {
 
 namespace {
 
-constexpr std::string_view kDamaged =
-    "the map is damaged; `cluxel doctor` tells where, take a copy or build it again";
+constexpr std::string_view kDamaged = "the map is damaged; `cluxel doctor` tells where, take a copy or build it again";
 
 std::string explain(int code, std::string_view doing) {
   const std::string attempt = "cannot " + std::string(doing) + ": ";

@@ -15,13 +15,7 @@ inline constexpr int kMaxDepth = 32;  ///< of a tree; only a damaged one is deep
 inline constexpr std::uint32_t kMagic = 0xBEEFC0DE;
 inline constexpr std::uint32_t kDataVersion = 1;
 
-enum PageFlag : std::uint16_t {
-  kBranch = 0x01,
-  kLeaf = 0x02,
-  kOverflow = 0x04,
-  kMeta = 0x08,
-  kFixedKeys = 0x20
-};
+enum PageFlag : std::uint16_t { kBranch = 0x01, kLeaf = 0x02, kOverflow = 0x04, kMeta = 0x08, kFixedKeys = 0x20 };
 enum NodeFlag : std::uint16_t { kBigData = 0x01, kSubData = 0x02, kDupData = 0x04 };
 
 /// The first 16 bytes of every page.
@@ -72,8 +66,7 @@ inline std::size_t entryCount(const std::uint8_t* page) {
 /// One entry of a leaf or branch page.
 class Node {
  public:
-  Node(const std::uint8_t* page, std::size_t i)
-      : bytes_(page + load<std::uint16_t>(page + kHeaderSize + 2 * i)) {}
+  Node(const std::uint8_t* page, std::size_t i) : bytes_(page + load<std::uint16_t>(page + kHeaderSize + 2 * i)) {}
   explicit Node(const std::uint8_t* bytes) : bytes_(bytes) {}
   std::uint16_t flags() const { return load<std::uint16_t>(bytes_ + 4); }
   std::uint16_t keySize() const { return load<std::uint16_t>(bytes_ + 6); }

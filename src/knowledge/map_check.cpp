@@ -92,8 +92,7 @@ class Check {
     const PageDirectory& hashes = snapshotOf(state()).directory(Table::TermHashes, state());
     const std::uint64_t hash_count = hashes.distance(hashes.begin(), hashes.end());
     if (hash_count != count)
-      fault("there are " + std::to_string(count) + " terms, but " + std::to_string(hash_count) +
-            " in their index");
+      fault("there are " + std::to_string(count) + " terms, but " + std::to_string(hash_count) + " in their index");
     for (std::uint64_t id = 1; id <= count; ++id, ++result_.terms)
       guarded([&] { checkTerm(static_cast<TermId>(id), hashes); });
   }

@@ -67,14 +67,12 @@ class StructureWalk {
     const Header head = header(page.data());
     const std::uint16_t kind = head.flags & (kBranch | kLeaf | kOverflow | kMeta);
     if (kind != kBranch && kind != kLeaf) refuse(root, "is of the wrong kind");
-    if (head.lower < kHeaderSize || head.lower > page_size_ || head.lower % 2 != 0)
-      refuse(root, "has a wrong count");
+    if (head.lower < kHeaderSize || head.lower > page_size_ || head.lower % 2 != 0) refuse(root, "has a wrong count");
     const std::size_t count = entryCount(page.data());
     if (count == 0) refuse(root, "is empty");
     if ((head.flags & kFixedKeys) != 0) return fixedKeys(root, head, count, fixed_key_size);
     if (head.lower > head.upper || head.upper > page_size_) refuse(root, "has wrong bounds");
-    for (std::size_t i = 0; i < count; ++i)
-      node(root, page, i, kind == kBranch, depth, fixed_key_size, holds_trees);
+    for (std::size_t i = 0; i < count; ++i) node(root, page, i, kind == kBranch, depth, fixed_key_size, holds_trees);
   }
 
  private:
@@ -118,8 +116,7 @@ class StructureWalk {
   void subPage(PageNumber number, const Node& entry) {
     if (entry.dataSize() < kHeaderSize) refuse(number, "has a malformed inner page");
     const Header head = header(entry.data());
-    if ((head.flags & kFixedKeys) == 0 || head.lower < kHeaderSize)
-      refuse(number, "has a malformed inner page");
+    if ((head.flags & kFixedKeys) == 0 || head.lower < kHeaderSize) refuse(number, "has a malformed inner page");
     if (kHeaderSize + entryCount(entry.data()) * head.pad > entry.dataSize())
       refuse(number, "has a malformed inner page");
   }
@@ -155,8 +152,8 @@ class StructureWalk {
   }
 
   [[noreturn]] void refuse(PageNumber number, const std::string& what) const {
-    cluxel::refuse(file_, "the map is damaged: page " + std::to_string(number) + " " + what +
-                              "; take a copy or build it again");
+    cluxel::refuse(
+        file_, "the map is damaged: page " + std::to_string(number) + " " + what + "; take a copy or build it again");
   }
 
   int descriptor_;

@@ -51,8 +51,9 @@ MapBusy::MapBusy(const fs::path& map)
             map.string() + ": another process is writing to the map; wait until it has ended and run again") {}
 
 MapReplaced::MapReplaced(const fs::path& map)
-    : Error(ExitCode::StoreUnavailable, map.string() + ": was replaced or removed since it was opened (by compact, or a "
-                                                       "build with --force); nothing was written: run again") {}
+    : Error(ExitCode::StoreUnavailable, map.string() +
+                                            ": was replaced or removed since it was opened (by compact, or a "
+                                            "build with --force); nothing was written: run again") {}
 
 WriteTransaction writeMap(const fs::path& map, std::chrono::milliseconds patience) {
   const auto deadline = std::chrono::steady_clock::now() + patience;
@@ -81,7 +82,7 @@ void replaceMapFile(const fs::path& fresh, const fs::path& map) {
     throw Error(ExitCode::StoreUnavailable,
                 fresh.string() + ": is whole, but cannot be moved to " + map.string() + ": " + std::strerror(reason));
   }
-  std::rename(lockFileOf(fresh).c_str(), lock.c_str());   // whoever reads the new map already is registered there
+  std::rename(lockFileOf(fresh).c_str(), lock.c_str());  // whoever reads the new map already is registered there
   ::unlink(old_lock.c_str());
   syncFolderOf(map);
 }

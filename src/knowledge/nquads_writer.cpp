@@ -7,8 +7,7 @@
 
 namespace cluxel {
 
-void writeSortedNQuads(const QuadReader& reader, const TextSink& out,
-                       const std::function<bool(const Quad&)>& keep) {
+void writeSortedNQuads(const QuadReader& reader, const TextSink& out, const std::function<bool(const Quad&)>& keep) {
   std::vector<std::string> lines;
   QuadCursor cursor = reader.scan({}, QuadOrder::Spog);
   for (QuadIds ids; cursor.next(ids);) {

@@ -81,8 +81,7 @@ class OntologyCheck {
     if (property == clx("color") && !isColor(object)) fault(statement, "a colour is written #rrggbb");
     if (property == clx("mobility") && object.text != clx("Static") && object.text != clx("Movable"))
       fault(statement, "a mobility is clx:Static or clx:Movable");
-    if (property == clx("probability") && !isProbability(object))
-      fault(statement, "a probability lies in 0 to 1");
+    if (property == clx("probability") && !isProbability(object)) fault(statement, "a probability lies in 0 to 1");
     if (property == clx("mayHavePart") || property == clx("nearClass") || property == clx("usualFor"))
       checkClass(statement);
   }
@@ -92,16 +91,15 @@ class OntologyCheck {
     if (statement.quad.object.kind == TermKind::Iri && classes_.contains(name)) return;
     const std::vector<std::string> known(classes_.begin(), classes_.end());
     const std::optional<std::string> near = nearestName(name, known);
-    fault(statement, "there is no class " + localName(name),
-          near ? "did you mean '" + localName(*near) + "'?" : "");
+    fault(statement, "there is no class " + localName(name), near ? "did you mean '" + localName(*near) + "'?" : "");
   }
 
   void checkCycles() {
     for (const Statement& statement : statements_) {
       if (statement.quad.predicate.text != rdfs("subClassOf")) continue;
       if (reaches(statement.quad.object.text, statement.quad.subject.text))
-        fault(statement, "the class stands above itself: " + localName(statement.quad.subject.text) +
-                             " is below " + localName(statement.quad.object.text) + " and above it");
+        fault(statement, "the class stands above itself: " + localName(statement.quad.subject.text) + " is below " +
+                             localName(statement.quad.object.text) + " and above it");
     }
   }
 
@@ -138,9 +136,8 @@ class OntologyCheck {
     diagnostic.hint = std::move(hint);
     const std::size_t subject = findName(source.text, localName(statement.quad.subject.text), 0);
     if (subject != std::string_view::npos) {
-      const std::string object = statement.quad.object.kind == TermKind::Iri
-                                     ? localName(statement.quad.object.text)
-                                     : statement.quad.object.text;
+      const std::string object = statement.quad.object.kind == TermKind::Iri ? localName(statement.quad.object.text)
+                                                                             : statement.quad.object.text;
       const std::size_t at = findName(source.text, object, subject);
       diagnostic.location = locate(source.name, source.text, at == std::string_view::npos ? subject : at);
       diagnostic.source_line = shownLine(source.text, diagnostic.location.line);

@@ -87,8 +87,7 @@ Mobility mobilityOf(const std::vector<std::string>& iris) {
 void readPlaces(const GraphReader& graph, OntologyClass& entry) {
   for (const std::string& place : graph.subjects(clx("usualFor"), entry.iri))
     for (const std::string& near : graph.iris(place, clx("nearClass")))
-      entry.places.push_back(
-          {near, graph.number(place, clx("within")), graph.number(place, clx("probability"))});
+      entry.places.push_back({near, graph.number(place, clx("within")), graph.number(place, clx("probability"))});
   std::sort(entry.places.begin(), entry.places.end(), [](const UsualPlace& a, const UsualPlace& b) {
     return a.probability != b.probability ? a.probability > b.probability : a < b;
   });

@@ -39,9 +39,7 @@ std::size_t guess(Key128 low, Key128 high, Key128 key, std::size_t count) {
   // apart.
   const auto upper = [](Key128 number) { return static_cast<std::uint64_t>(number >> 64U); };
   const bool by_upper = upper(low) != upper(high);
-  const auto part = [&](Key128 number) {
-    return by_upper ? upper(number) : static_cast<std::uint64_t>(number);
-  };
+  const auto part = [&](Key128 number) { return by_upper ? upper(number) : static_cast<std::uint64_t>(number); };
   const double span = static_cast<double>(part(high) - part(low));
   const double share = static_cast<double>(part(key) - part(low)) / span;
   return share < 1 ? static_cast<std::size_t>(share * static_cast<double>(count)) : count - 1;
@@ -89,8 +87,8 @@ std::size_t pageOf(const std::vector<Key128>& lower, Key128 key) {
 }  // namespace
 
 void failOutside(const char* part) {
-  throw Error(ExitCode::StoreUnavailable, std::string("the map is damaged: ") + part +
-                                              " points outside the file; `cluxel doctor` tells where");
+  throw Error(ExitCode::StoreUnavailable,
+              std::string("the map is damaged: ") + part + " points outside the file; `cluxel doctor` tells where");
 }
 
 const std::uint8_t* PageMap::page(PageNumber number) const {
@@ -117,8 +115,7 @@ PageDirectory::PageDirectory(const PageMap& map, const Tree& table) {
     addPage(0, node.data());
   } else {
     const Tree tree = load<Tree>(node.data());
-    if (node.dataSize() != sizeof(Tree) || tree.leaf_pages > map.page_count || tree.pad != sizeof(QuadKey))
-      damaged();
+    if (node.dataSize() != sizeof(Tree) || tree.leaf_pages > map.page_count || tree.pad != sizeof(QuadKey)) damaged();
     lower_.reserve(tree.leaf_pages);
     pages_.reserve(tree.leaf_pages);
     collect(map, tree.root, 0, 0);
@@ -143,8 +140,7 @@ void PageDirectory::collect(const PageMap& map, PageNumber number, Key128 lower,
     const std::size_t at = load<std::uint16_t>(page + kHeaderSize + 2 * i);
     if (at + 8 + sizeof(QuadKey) > map.page_size && (i > 0 || at + 8 > map.page_size)) damaged();
     const Node node(page + at);
-    const Key128 child_lower =
-        i == 0 || node.keySize() != sizeof(QuadKey) ? lower : toNumber(*keysAt(node.key()));
+    const Key128 child_lower = i == 0 || node.keySize() != sizeof(QuadKey) ? lower : toNumber(*keysAt(node.key()));
     const std::uint8_t* child = map.page(node.child());
     if (i == 0) leaves = (header(child).flags & kLeaf) != 0;
     if (leaves)
@@ -207,7 +203,8 @@ void PageDirectory::lowerBoundsOfGroup(std::span<const Key128> keys, std::span<P
   for (Position& position : found) position.page = first;
   for (std::size_t count = last - first + 1; count > 1; count -= count / 2) {
     const std::size_t half = count / 2;
-    for (std::size_t k = 0; k < keys.size(); ++k) found[k].page += half & maskOf(lower_[found[k].page + half] <= keys[k]);
+    for (std::size_t k = 0; k < keys.size(); ++k)
+      found[k].page += half & maskOf(lower_[found[k].page + half] <= keys[k]);
   }
   for (const Position& position : found) {
     const auto* page = reinterpret_cast<const std::uint8_t*>(pages_[position.page]);

@@ -91,7 +91,7 @@ class PageDirectory {
 
   static constexpr std::size_t kTogether = 64;
   std::size_t most_keys_ = 65536 / sizeof(QuadKey);  ///< what a page holds, whatever a damaged one says
-  std::vector<Key128> lower_;  ///< no key of the page is less, every key of the page before is
+  std::vector<Key128> lower_;                        ///< no key of the page is less, every key of the page before is
   std::vector<const QuadKey*> pages_;
   bool single_ = false;  ///< one key that stands in a node, without a page header
 };

@@ -14,8 +14,7 @@ const QuadKey* gallop(const QuadKey* first, const QuadKey* last, Key128 key) {
   std::ptrdiff_t step = 1;
   while (step < last - first && toNumber(first[step]) < key) step *= 2;
   const QuadKey* const bound = step < last - first ? first + step + 1 : last;
-  return std::partition_point(first + step / 2, bound,
-                              [&](const QuadKey& entry) { return toNumber(entry) < key; });
+  return std::partition_point(first + step / 2, bound, [&](const QuadKey& entry) { return toNumber(entry) < key; });
 }
 
 }  // namespace
@@ -58,8 +57,7 @@ template <QuadOrder kOrder>
 std::size_t QuadCursor::Impl::copy(std::span<QuadIds> out) {
   std::size_t count = 0;
   while (count < out.size() && (at != stop || loadPage())) {
-    const QuadKey* const until =
-        at + std::min<std::size_t>(out.size() - count, static_cast<std::size_t>(stop - at));
+    const QuadKey* const until = at + std::min<std::size_t>(out.size() - count, static_cast<std::size_t>(stop - at));
     if (!pattern.filtered) {
       for (; at != until; ++at) out[count++] = toQuad(*at, kOrder);
       continue;
@@ -129,8 +127,8 @@ struct PrefixLookup::Impl {
   const PageDirectory& directory;
   PageDirectory::Position position;
   KeyRange range;
-  std::vector<Key128> expected;         ///< where the ranges of lookups to come begin
-  std::vector<PageDirectory::Position> places;   ///< the lower bounds of those
+  std::vector<Key128> expected;                 ///< where the ranges of lookups to come begin
+  std::vector<PageDirectory::Position> places;  ///< the lower bounds of those
   std::size_t next_expected = 0;
 
   void seek() {
@@ -145,8 +143,7 @@ struct PrefixLookup::Impl {
     if (position.page >= directory.pageCount()) return {};
     const std::span<const QuadKey> keys = directory.page(position.page);
     std::size_t stop = position.index;
-    while (stop < keys.size() && stop < position.index + kNearby && toNumber(keys[stop]) <= range.last)
-      ++stop;
+    while (stop < keys.size() && stop < position.index + kNearby && toNumber(keys[stop]) <= range.last) ++stop;
     if (stop == position.index + kNearby && stop < keys.size()) {
       const auto within = [&](const QuadKey& key) { return toNumber(key) <= range.last; };
       const auto rest = keys.subspan(stop);

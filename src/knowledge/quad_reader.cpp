@@ -16,8 +16,7 @@ namespace cluxel {
 
 namespace {
 
-constexpr std::array<QuadOrder, 4> kOrders = {QuadOrder::Spog, QuadOrder::Posg, QuadOrder::Ospg,
-                                              QuadOrder::Gspo};
+constexpr std::array<QuadOrder, 4> kOrders = {QuadOrder::Spog, QuadOrder::Posg, QuadOrder::Ospg, QuadOrder::Gspo};
 
 /// The bound ids in s, p, o, g order; 0 in s, p or o means any.
 std::array<std::optional<TermId>, 4> boundIds(const QuadPattern& pattern) {
@@ -121,8 +120,7 @@ const DecodedValue& QuadReader::valueOf(TermId id) const {
   };
   if (id <= impl_->committed_terms) return impl_->state().environment->values().get(id, decode);
   const auto found = impl_->own_values.find(id);
-  return found != impl_->own_values.end() ? found->second
-                                          : impl_->own_values.emplace(id, decode(id)).first->second;
+  return found != impl_->own_values.end() ? found->second : impl_->own_values.emplace(id, decode(id)).first->second;
 }
 
 void QuadReader::expectViews(std::span<const TermId> ids) const {
@@ -151,8 +149,7 @@ QuadOrder QuadReader::bestOrder(const QuadPattern& pattern) {
 }
 
 QuadCursor QuadReader::scan(const QuadPattern& pattern, QuadOrder order) const {
-  return QuadCursor(
-      std::make_unique<QuadCursor::Impl>(impl_->directory(order), layOut(pattern, order), order));
+  return QuadCursor(std::make_unique<QuadCursor::Impl>(impl_->directory(order), layOut(pattern, order), order));
 }
 
 QuadCursor QuadReader::scan(const QuadPattern& pattern) const {
@@ -163,8 +160,7 @@ bool QuadReader::contains(const QuadIds& quad) const {
   const PageDirectory& directory = impl_->directory(QuadOrder::Spog);
   const Key128 key = toNumber(quad, QuadOrder::Spog);
   const PageDirectory::Position position = directory.lowerBound(key);
-  return position.page < directory.pageCount() &&
-         toNumber(directory.page(position.page)[position.index]) == key;
+  return position.page < directory.pageCount() && toNumber(directory.page(position.page)[position.index]) == key;
 }
 
 std::uint64_t QuadReader::size() const {

@@ -47,17 +47,15 @@ IndexPattern layOut(const QuadPattern& pattern, QuadOrder order);
 
 struct QuadReader::Impl {
   ReadTransaction transaction;
-  std::uint64_t committed_terms = 0;  ///< terms whose values the environment's cache may hold
+  std::uint64_t committed_terms = 0;                    ///< terms whose values the environment's cache may hold
   std::unordered_map<TermId, DecodedValue> own_values;  ///< of terms that are not committed
-  TermId last_datatype = kNoTerm;  ///< of a mapped commit: most literals share a few datatypes
+  TermId last_datatype = kNoTerm;                       ///< of a mapped commit: most literals share a few datatypes
   std::string_view last_datatype_text;
   explicit Impl(ReadTransaction from);
 
   ReadTransaction::Impl& state() const { return transaction.impl(); }
   StoreSnapshot& snapshot() const { return snapshotOf(state()); }
-  const PageDirectory& directory(QuadOrder order) const {
-    return snapshot().directory(tableOf(order), state());
-  }
+  const PageDirectory& directory(QuadOrder order) const { return snapshot().directory(tableOf(order), state()); }
   std::string_view datatypeText(TermId id);
   std::string_view record(TermId id) const { return snapshot().record(id, state()); }
 };

@@ -21,9 +21,8 @@ Position endOf(const PageDirectory& directory, const KeyRange& range) {
 }
 
 std::uint64_t matching(std::span<const QuadKey> keys, const IndexPattern& pattern) {
-  return static_cast<std::uint64_t>(std::count_if(keys.begin(), keys.end(), [&](const QuadKey& key) {
-    return (toNumber(key) & pattern.mask) == pattern.value;
-  }));
+  return static_cast<std::uint64_t>(std::count_if(
+      keys.begin(), keys.end(), [&](const QuadKey& key) { return (toNumber(key) & pattern.mask) == pattern.value; }));
 }
 
 std::span<const QuadKey> part(const PageDirectory& directory, std::size_t page, Position from, Position to) {
@@ -33,8 +32,7 @@ std::span<const QuadKey> part(const PageDirectory& directory, std::size_t page, 
   return keys.subspan(first, last - first);
 }
 
-std::uint64_t countFiltered(const PageDirectory& directory, const IndexPattern& pattern, Position from,
-                            Position to) {
+std::uint64_t countFiltered(const PageDirectory& directory, const IndexPattern& pattern, Position from, Position to) {
   std::uint64_t count = 0;
   for (std::size_t page = from.page; page < directory.pageCount() && page <= to.page; ++page)
     if (page < to.page || to.index > 0) count += matching(part(directory, page, from, to), pattern);
@@ -42,8 +40,7 @@ std::uint64_t countFiltered(const PageDirectory& directory, const IndexPattern& 
 }
 
 /// The first, the last and evenly spaced pages between stand for all.
-std::uint64_t estimateOver(const PageDirectory& directory, const IndexPattern& pattern, Position from,
-                           Position to) {
+std::uint64_t estimateOver(const PageDirectory& directory, const IndexPattern& pattern, Position from, Position to) {
   std::uint64_t seen = 0;
   std::uint64_t matched = 0;
   const std::size_t pages = to.page - from.page;
@@ -54,8 +51,7 @@ std::uint64_t estimateOver(const PageDirectory& directory, const IndexPattern& p
   }
   const double per_page = static_cast<double>(seen) / kSampledPages;
   const double all = per_page * static_cast<double>(pages);
-  const double share =
-      seen == 0 ? 1.0 : std::max(0.5, static_cast<double>(matched)) / static_cast<double>(seen);
+  const double share = seen == 0 ? 1.0 : std::max(0.5, static_cast<double>(matched)) / static_cast<double>(seen);
   return static_cast<std::uint64_t>(std::max(1.0, pattern.filtered ? all * share : all));
 }
 
@@ -124,8 +120,7 @@ QuadReader::PredicateStatistics QuadReader::statistics(TermId predicate) const {
     std::vector<TermId> subjects;
     for (const QuadIds& quad : sampleOf(directory, from, to, true)) subjects.push_back(quad.s);
     std::sort(subjects.begin(), subjects.end());
-    statistics.subjects =
-        static_cast<std::uint64_t>(std::unique(subjects.begin(), subjects.end()) - subjects.begin());
+    statistics.subjects = static_cast<std::uint64_t>(std::unique(subjects.begin(), subjects.end()) - subjects.begin());
   } else {
     // A quad stands for one n-th of its subject, n being that subject's quads of the predicate.
     double subjects = 0;
@@ -136,10 +131,8 @@ QuadReader::PredicateStatistics QuadReader::statistics(TermId predicate) const {
       objects += 1.0 / static_cast<double>(count({.s = {}, .p = predicate, .o = quad.o, .g = {}}));
     }
     const double scale = static_cast<double>(statistics.quads) / static_cast<double>(sample.size());
-    statistics.subjects =
-        std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(subjects * scale)));
-    statistics.objects =
-        std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(objects * scale)));
+    statistics.subjects = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(subjects * scale)));
+    statistics.objects = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(objects * scale)));
   }
   impl_->snapshot().keepStatistics(predicate, statistics);
   return statistics;

@@ -36,8 +36,7 @@ class RecentIris {
   };
   Entry& slotOf(std::string_view iri) {
     std::uint64_t tail = iri.size();
-    std::memcpy(&tail, iri.data() + (iri.size() < 8 ? 0 : iri.size() - 8),
-                std::min<std::size_t>(8, iri.size()));
+    std::memcpy(&tail, iri.data() + (iri.size() < 8 ? 0 : iri.size() - 8), std::min<std::size_t>(8, iri.size()));
     return slots_[(tail * 0x9E3779B97F4A7C15U) >> 56U];
   }
 
@@ -76,8 +75,7 @@ TermId QuadWriter::Impl::internRecord(const Term& term) {
     }
   }
   if (next_id == kNoTerm) next_id = static_cast<TermId>(reader.termCount() + 1);
-  if (next_id == kMostTerms)
-    throw Error(ExitCode::StoreUnavailable, "the map is full: it holds 2^31 different terms");
+  if (next_id == kMostTerms) throw Error(ExitCode::StoreUnavailable, "the map is full: it holds 2^31 different terms");
   terms.insert(hash, record, next_id, true);
   return next_id++;
 }
@@ -117,8 +115,7 @@ void QuadWriter::Impl::flushQuads() {
     IndexChange change;
     for (std::size_t i = 0; i < changes.size(); ++i) {
       const bool last_word = i + 1 == changes.size() || changes[i + 1].quad != changes[i].quad;
-      if (last_word)
-        (changes[i].added ? change.added : change.removed).push_back(toNumber(changes[i].quad, order));
+      if (last_word) (changes[i].added ? change.added : change.removed).push_back(toNumber(changes[i].quad, order));
     }
     if (order != QuadOrder::Spog) {
       std::sort(change.added.begin(), change.added.end());

@@ -10,7 +10,7 @@ namespace cluxel {
 
 namespace {
 
-constexpr std::size_t kMostShown = 50;   // raptor goes on after errors of lines
+constexpr std::size_t kMostShown = 50;  // raptor goes on after errors of lines
 
 /// What stands in quotes, as raptor quotes tokens: 'b' or "y:z".
 std::string_view quotedIn(std::string_view message) {

@@ -54,8 +54,7 @@ std::optional<RdfFormat> rdfFormatNamed(std::string_view name) {
   std::string lower(name);
   std::transform(lower.begin(), lower.end(), lower.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  const auto found =
-      std::find_if(kNames.begin(), kNames.end(), [&](const FormatName& f) { return f.name == lower; });
+  const auto found = std::find_if(kNames.begin(), kNames.end(), [&](const FormatName& f) { return f.name == lower; });
   return found == kNames.end() ? std::nullopt : std::optional(found->format);
 }
 
@@ -69,8 +68,7 @@ RdfSource readRdfSource(const std::filesystem::path& file, const Term& graph) {
   if (!format)
     throw InputError({.file = file.string()}, "is of no known RDF format",
                      "known endings: .ttl .nt .nq .trig .rdf .owl .xml");
-  const std::string base =
-      "file://" + percentEncoded(std::filesystem::absolute(file).lexically_normal().string());
+  const std::string base = "file://" + percentEncoded(std::filesystem::absolute(file).lexically_normal().string());
   return {readFile(file), file.string(), *format, base, graph};
 }
 

@@ -92,9 +92,7 @@ class Reading {
   static void onStatement(void* reading, raptor_statement* statement) {
     static_cast<Reading*>(reading)->take(*statement);
   }
-  static void onMessage(void* reading, raptor_log_message* message) {
-    static_cast<Reading*>(reading)->note(*message);
-  }
+  static void onMessage(void* reading, raptor_log_message* message) { static_cast<Reading*>(reading)->note(*message); }
 
   void take(const raptor_statement& statement) {
     if (failure_) return;

@@ -9,8 +9,8 @@
 
 namespace cluxel {
 
-RedlandMatches::RedlandMatches(QuadReader reader, const QuadPattern& pattern,
-                               std::function<bool(QuadIds&)> accept, bool copy)
+RedlandMatches::RedlandMatches(QuadReader reader, const QuadPattern& pattern, std::function<bool(QuadIds&)> accept,
+                               bool copy)
     : reader_(std::move(reader)), cursor_(reader_->scan(pattern)), accept_(std::move(accept)) {
   if (copy) copyAll();
   next();
@@ -69,8 +69,7 @@ ReadTransaction RedlandMap::read() {
 }
 
 void RedlandMap::begin(void* handle) {
-  if (transaction_)
-    throw Error(ExitCode::StoreUnavailable, options_.file + ": a transaction is open already");
+  if (transaction_) throw Error(ExitCode::StoreUnavailable, options_.file + ": a transaction is open already");
   if (!isOpen()) throw std::logic_error("the storage is not open");
   transaction_ = environment_->write();
   writer_ = std::make_unique<QuadWriter>(*transaction_);
@@ -102,8 +101,8 @@ void RedlandMap::change(const std::function<void(QuadWriter&)>& changes) {
   }
 }
 
-std::unique_ptr<RedlandMatches> RedlandMap::match(const Term* s, const Term* p, const Term* o,
-                                                  const Term* graph, bool whole) {
+std::unique_ptr<RedlandMatches> RedlandMap::match(const Term* s, const Term* p, const Term* o, const Term* graph,
+                                                  bool whole) {
   QuadReader reader(read());
   QuadPattern pattern;
   bool known = true;
@@ -125,16 +124,15 @@ std::unique_ptr<RedlandMatches> RedlandMap::match(const Term* s, const Term* p, 
     last = quad;
     return !repeated;
   };
-  return std::make_unique<RedlandMatches>(std::move(reader), known ? pattern : QuadPattern{1, 1, 1, 1},
-                                          accept, inTransaction());
+  return std::make_unique<RedlandMatches>(std::move(reader), known ? pattern : QuadPattern{1, 1, 1, 1}, accept,
+                                          inTransaction());
 }
 
 std::unique_ptr<RedlandMatches> RedlandMap::find(const Term* s, const Term* p, const Term* o) {
   return match(s, p, o, nullptr, false);
 }
 
-std::unique_ptr<RedlandMatches> RedlandMap::findIn(const Term& graph, const Term* s, const Term* p,
-                                                   const Term* o) {
+std::unique_ptr<RedlandMatches> RedlandMap::findIn(const Term& graph, const Term* s, const Term* p, const Term* o) {
   return match(s, p, o, &graph, false);
 }
 

@@ -24,8 +24,7 @@ struct RedlandOptions {
 /// change them or end before they are read.
 class RedlandMatches {
  public:
-  RedlandMatches(QuadReader reader, const QuadPattern& pattern, std::function<bool(QuadIds&)> accept,
-                 bool copy);
+  RedlandMatches(QuadReader reader, const QuadPattern& pattern, std::function<bool(QuadIds&)> accept, bool copy);
   bool atEnd() const { return at_end_; }
   void next();
   const QuadIds& quad() const { return quad_; }
@@ -35,7 +34,7 @@ class RedlandMatches {
  private:
   bool take(QuadIds& quad);
   void copyAll();
-  std::optional<QuadReader> reader_;   ///< none behind a copy: it would keep the transaction
+  std::optional<QuadReader> reader_;  ///< none behind a copy: it would keep the transaction
   QuadCursor cursor_;
   std::function<bool(QuadIds&)> accept_;
   std::optional<std::vector<QuadIds>> copied_;
@@ -76,8 +75,7 @@ class RedlandMap {
   void remove(const Term& s, const Term& p, const Term& o);
 
  private:
-  std::unique_ptr<RedlandMatches> match(const Term* s, const Term* p, const Term* o, const Term* graph,
-                                        bool whole);
+  std::unique_ptr<RedlandMatches> match(const Term* s, const Term* p, const Term* o, const Term* graph, bool whole);
 
   librdf_world* world_;
   RedlandOptions options_;

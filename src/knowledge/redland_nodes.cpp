@@ -28,8 +28,7 @@ Term literalOf(librdf_node* node) {
   std::size_t size = 0;
   const unsigned char* text = librdf_node_get_literal_value_as_counted_string(node, &size);
   const std::string_view lexical = viewOf(text, size);
-  if (const char* language = librdf_node_get_literal_value_language(node))
-    return Term::langLiteral(lexical, language);
+  if (const char* language = librdf_node_get_literal_value_language(node)) return Term::langLiteral(lexical, language);
   if (librdf_uri* datatype = librdf_node_get_literal_value_datatype_uri(node))
     return Term::literal(lexical, viewOf(datatype));
   return Term::literal(lexical);
@@ -41,8 +40,7 @@ librdf_node* literalNode(librdf_world* world, const TermView& term) {
   // librdf reads the text as if it ended in a zero byte.
   const std::string text(term.text);
   librdf_node* node = librdf_new_node_from_typed_counted_literal(
-      world, bytes(text), text.size(), language.empty() ? nullptr : language.c_str(), language.size(),
-      nullptr);
+      world, bytes(text), text.size(), language.empty() ? nullptr : language.c_str(), language.size(), nullptr);
   // Set afterwards: made with the datatype xsd:boolean, raptor turns "1" into "true" and "maybe" into
   // "false".
   if (node != nullptr && !plain && language.empty())

@@ -58,14 +58,11 @@ namespace {
 librdf_iterator* nodesAt(librdf_storage* storage, librdf_node* s, librdf_node* p, librdf_node* o,
                          TermId QuadIds::*place) {
   return on(storage, static_cast<librdf_iterator*>(nullptr), [&](RedlandMap& map) {
-    const auto term = [](librdf_node* node) {
-      return node != nullptr ? std::optional(termOf(node)) : std::nullopt;
-    };
+    const auto term = [](librdf_node* node) { return node != nullptr ? std::optional(termOf(node)) : std::nullopt; };
     const std::optional<Term> subject = term(s);
     const std::optional<Term> predicate = term(p);
     const std::optional<Term> object = term(o);
-    const auto found =
-        map.find(Pattern::pointer(subject), Pattern::pointer(predicate), Pattern::pointer(object));
+    const auto found = map.find(Pattern::pointer(subject), Pattern::pointer(predicate), Pattern::pointer(object));
     std::vector<TermId> ids;
     for (; !found->atEnd(); found->next()) ids.push_back(found->quad().*place);
     std::sort(ids.begin(), ids.end());

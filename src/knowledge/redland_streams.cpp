@@ -11,9 +11,7 @@ namespace {
 /// Keeps the storage alive as long as a stream over it.
 class StorageReference {
  public:
-  explicit StorageReference(librdf_storage* storage) : storage_(storage) {
-    librdf_storage_add_reference(storage);
-  }
+  explicit StorageReference(librdf_storage* storage) : storage_(storage) { librdf_storage_add_reference(storage); }
   StorageReference(const StorageReference&) = delete;
   StorageReference& operator=(const StorageReference&) = delete;
   ~StorageReference() { librdf_storage_remove_reference(storage_); }
@@ -50,8 +48,7 @@ struct StatementStream {
 
   /// Null for the unnamed graph.
   librdf_node* currentContext() {
-    if (!context && matches->quad().g != kNoTerm)
-      context = nodeOf(world, matches->viewOf(matches->quad().g));
+    if (!context && matches->quad().g != kNoTerm) context = nodeOf(world, matches->viewOf(matches->quad().g));
     return context.get();
   }
 };
@@ -110,8 +107,7 @@ void* iteratorGet(void* raw, int what) {
   auto* iterator = static_cast<NodeIterator*>(raw);
   return guarded(iterator->world, static_cast<void*>(nullptr), [&]() -> void* {
     if (what != LIBRDF_ITERATOR_GET_METHOD_GET_OBJECT || iteratorAtEnd(raw) != 0) return nullptr;
-    if (!iterator->node)
-      iterator->node = nodeOf(iterator->world, TermView::of(iterator->nodes[iterator->place]));
+    if (!iterator->node) iterator->node = nodeOf(iterator->world, TermView::of(iterator->nodes[iterator->place]));
     return iterator->node.get();
   });
 }
@@ -126,13 +122,11 @@ void logFailure(librdf_world* world, const std::exception& error) {
   librdf_log_simple(world, 0, LIBRDF_LOG_ERROR, LIBRDF_FROM_STORAGE, nullptr, error.what());
 }
 
-librdf_stream* streamOf(librdf_world* world, librdf_storage* storage,
-                        std::unique_ptr<RedlandMatches> matches) {
+librdf_stream* streamOf(librdf_world* world, librdf_storage* storage, std::unique_ptr<RedlandMatches> matches) {
   auto context = std::make_unique<StatementStream>(world, storage, std::move(matches));
-  librdf_stream* stream =
-      librdf_new_stream(world, context.get(), streamAtEnd, streamNext, streamGet, streamFinished);
+  librdf_stream* stream = librdf_new_stream(world, context.get(), streamAtEnd, streamNext, streamGet, streamFinished);
   if (stream == nullptr) throw std::bad_alloc();
-  static_cast<void>(context.release());   // the stream's now
+  static_cast<void>(context.release());  // the stream's now
   return stream;
 }
 
@@ -141,7 +135,7 @@ librdf_iterator* iteratorOf(librdf_world* world, librdf_storage* storage, std::v
   librdf_iterator* iterator =
       librdf_new_iterator(world, context.get(), iteratorAtEnd, iteratorNext, iteratorGet, iteratorFinished);
   if (iterator == nullptr) throw std::bad_alloc();
-  static_cast<void>(context.release());   // the iterator's now
+  static_cast<void>(context.release());  // the iterator's now
   return iterator;
 }
 

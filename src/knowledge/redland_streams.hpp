@@ -26,8 +26,7 @@ Result guarded(librdf_world* world, Result otherwise, const Work& work) {
   }
 }
 
-librdf_stream* streamOf(librdf_world* world, librdf_storage* storage,
-                        std::unique_ptr<RedlandMatches> matches);
+librdf_stream* streamOf(librdf_world* world, librdf_storage* storage, std::unique_ptr<RedlandMatches> matches);
 librdf_iterator* iteratorOf(librdf_world* world, librdf_storage* storage, std::vector<Term> nodes);
 
 }  // namespace cluxel

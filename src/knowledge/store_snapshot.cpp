@@ -31,8 +31,7 @@ PageMap mapAround(const void* inside, const ReadTransaction::Impl& transaction) 
   const std::uintptr_t page_size = stat.ms_psize;
   // The map begins at a page of the system, which may be smaller than a page of a map from another machine.
   if (page_size > static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE))) return {};
-  const auto* page =
-      static_cast<const std::uint8_t*>(inside) - reinterpret_cast<std::uintptr_t>(inside) % page_size;
+  const auto* page = static_cast<const std::uint8_t*>(inside) - reinterpret_cast<std::uintptr_t>(inside) % page_size;
   const PageNumber number = header(page).number;
   if (number > info.me_last_pgno) return {};
   const std::uint8_t* base = page - number * page_size;
@@ -96,8 +95,7 @@ std::string_view StoreSnapshot::record(TermId id, const ReadTransaction::Impl& t
   }
   if (bytes.empty())
     throw Error(ExitCode::StoreUnavailable, transaction.environment->file().string() +
-                                                ": the map is damaged: there is no term " +
-                                                std::to_string(id));
+                                                ": the map is damaged: there is no term " + std::to_string(id));
   return bytes;
 }
 
@@ -124,8 +122,7 @@ void StoreSnapshot::keep(const std::string& name, std::shared_ptr<const void> ma
 }
 
 StoreSnapshot& snapshotOf(ReadTransaction::Impl& transaction) {
-  if (transaction.snapshot && transaction.snapshot_generation == transaction.generation)
-    return *transaction.snapshot;
+  if (transaction.snapshot && transaction.snapshot_generation == transaction.generation) return *transaction.snapshot;
   const auto make = [&] { return std::make_shared<StoreSnapshot>(transaction); };
   transaction.snapshot =
       transaction.writing ? make() : transaction.environment->snapshot(mdb_txn_id(transaction.live()), make);

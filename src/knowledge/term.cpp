@@ -91,8 +91,7 @@ std::string canonicalDouble(double value) {
   if (std::isnan(value)) return "NaN";
   if (std::isinf(value)) return value > 0 ? "INF" : "-INF";
   std::array<char, 40> buffer{};
-  const auto end =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::scientific);
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::scientific);
   const std::string_view digits(buffer.data(), static_cast<std::size_t>(end.ptr - buffer.data()));
   const std::size_t e = digits.find('e');
   std::string text(digits.substr(0, e));

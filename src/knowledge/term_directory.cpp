@@ -99,13 +99,13 @@ std::string_view TermDirectory::record(TermId id) const {
 void TermDirectory::expect(std::span<const TermId> ids) const {
   struct Place {
     const std::uint8_t* page;
-    const std::uint8_t* offset;   ///< of the record within the page
+    const std::uint8_t* offset;  ///< of the record within the page
   };
   std::array<Place, kTogether> places;
   const auto fetchRecord = [](const Place& place) {
     const std::uint8_t* node = place.page + load<std::uint16_t>(place.offset);
     __builtin_prefetch(node);
-    __builtin_prefetch(node + 64);   // most records are shorter than a cache line, but do not begin with one
+    __builtin_prefetch(node + 64);  // most records are shorter than a cache line, but do not begin with one
   };
   std::size_t count = 0;
   for (const TermId id : ids) {

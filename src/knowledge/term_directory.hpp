@@ -26,21 +26,23 @@ class TermDirectory {
 
  private:
   struct Leaf {
-    TermId first;             ///< the first id of the page
-    std::uint32_t page;       ///< its number: 32 bits reach 16 TiB
+    TermId first;        ///< the first id of the page
+    std::uint32_t page;  ///< its number: 32 bits reach 16 TiB
   };
   void collect(lmdb_page::PageNumber number, TermId first, int depth);
   void addLeaf(TermId first, lmdb_page::PageNumber number);
   void indexIds();
   std::size_t leafOf(TermId id) const;
   bool has(TermId id) const { return id != kNoTerm && id < end_ && !leaves_.empty(); }
-  const std::uint8_t* lastOffset(const std::uint8_t* page) const { return page + map_.page_size - sizeof(std::uint16_t); }
+  const std::uint8_t* lastOffset(const std::uint8_t* page) const {
+    return page + map_.page_size - sizeof(std::uint16_t);
+  }
   const std::uint8_t* pageAt(std::size_t leaf) const { return map_.base + leaves_[leaf].page * map_.page_size; }
 
-  static constexpr std::size_t kTogether = 32;   ///< terms between the reads of two steps
+  static constexpr std::size_t kTogether = 32;  ///< terms between the reads of two steps
   static constexpr unsigned kStrideBits = 6;
   PageMap map_;
-  TermId end_ = 1;                      ///< behind the last id
+  TermId end_ = 1;  ///< behind the last id
   std::vector<Leaf> leaves_;
   std::vector<std::uint32_t> leaf_of_;  ///< the leaf of every 64th id
 };

@@ -37,8 +37,7 @@ bool storesNumber(Type type) {
 }
 
 [[noreturn]] void damaged() {
-  throw Error(ExitCode::StoreUnavailable,
-              "the map is damaged: a term is malformed; `cluxel doctor` tells where");
+  throw Error(ExitCode::StoreUnavailable, "the map is damaged: a term is malformed; `cluxel doctor` tells where");
 }
 
 template <typename T>
@@ -63,8 +62,8 @@ void takeValue(std::string_view& bytes, DecodedValue& value) {
 }  // namespace
 
 bool needsDatatypeId(const Term& term) {
-  return term.kind == TermKind::Literal && term.language.empty() &&
-         term.datatype != vocabulary::xsd("string") && term.datatype != vocabulary::rdf("langString");
+  return term.kind == TermKind::Literal && term.language.empty() && term.datatype != vocabulary::xsd("string") &&
+         term.datatype != vocabulary::rdf("langString");
 }
 
 void encodeTerm(const Term& term, TermId datatype, std::string& bytes) {

@@ -29,10 +29,9 @@ void checkFormat(const std::string& text, const std::filesystem::path& file) {
   int format = 0;
   std::from_chars(text.data(), text.data() + text.size(), format);
   if (format == kFormat) return;
-  const std::string what = format > kFormat
-                               ? "is a map of a newer format (" + text + "; this program reads " +
-                                     std::to_string(kFormat) + "); use a newer Cluxel"
-                               : "is a map of an unknown format; build it again";
+  const std::string what = format > kFormat ? "is a map of a newer format (" + text + "; this program reads " +
+                                                  std::to_string(kFormat) + "); use a newer Cluxel"
+                                            : "is a map of an unknown format; build it again";
   throw Error(ExitCode::StoreUnavailable, file.string() + ": " + what);
 }
 
@@ -40,8 +39,7 @@ void checkFormat(const std::string& text, const std::filesystem::path& file) {
 
 void LmdbEnvironment::createTables(MDB_txn* transaction) {
   for (std::size_t i = 0; i < kTableCount; ++i)
-    check(mdb_dbi_open(transaction, kTableNames[i], tableFlags(static_cast<Table>(i)) | MDB_CREATE,
-                       &tables_[i]),
+    check(mdb_dbi_open(transaction, kTableNames[i], tableFlags(static_cast<Table>(i)) | MDB_CREATE, &tables_[i]),
           "make the map's tables");
   MDB_dbi main = 0;
   check(mdb_dbi_open(transaction, nullptr, 0, &main), "make the map's tables");
@@ -63,8 +61,7 @@ void LmdbEnvironment::openTables() {
   if (found == MDB_SUCCESS) {
     checkFormat(std::string(toView(value)), file_);
     for (std::size_t i = 0; i < kTableCount; ++i)
-      check(mdb_dbi_open(raw, kTableNames[i], tableFlags(static_cast<Table>(i)), &tables_[i]),
-            "read the map's tables");
+      check(mdb_dbi_open(raw, kTableNames[i], tableFlags(static_cast<Table>(i)), &tables_[i]), "read the map's tables");
     check(mdb_txn_commit(transaction.release()), "read the map's tables");
     return;
   }
@@ -74,8 +71,7 @@ void LmdbEnvironment::openTables() {
   transaction.reset();
   if (main_stat.ms_entries != 0)
     throw Error(ExitCode::StoreUnavailable, file_.string() + ": is an LMDB file, but not a Cluxel map");
-  if (!writing_allowed_)
-    throw Error(ExitCode::StoreUnavailable, file_.string() + ": holds no map yet; build it first");
+  if (!writing_allowed_) throw Error(ExitCode::StoreUnavailable, file_.string() + ": holds no map yet; build it first");
   WriteTransaction first = write();
   createTables(first.impl().txn);
   first.commit();
@@ -129,8 +125,7 @@ void LmdbEnvironment::leaveWriting() {
 ReadTransaction LmdbEnvironment::read() const {
   auto impl = std::make_shared<ReadTransaction::Impl>();
   // Reading changes nothing that a caller sees; the shared state is guarded.
-  impl->environment =
-      std::static_pointer_cast<LmdbEnvironment>(const_cast<LmdbEnvironment*>(this)->shared_from_this());
+  impl->environment = std::static_pointer_cast<LmdbEnvironment>(const_cast<LmdbEnvironment*>(this)->shared_from_this());
   check(mdb_txn_begin(handle(), nullptr, MDB_RDONLY, &impl->txn), "read the map");
   return ReadTransaction(std::move(impl));
 }
@@ -144,8 +139,7 @@ WriteTransaction LmdbEnvironment::write() {
   if (code != MDB_SUCCESS) impl->end();
   check(code, "write the map");
   MDB_stat terms;
-  if (mdb_stat(impl->txn, table(Table::Terms), &terms) == MDB_SUCCESS)
-    impl->committed_terms = terms.ms_entries;
+  if (mdb_stat(impl->txn, table(Table::Terms), &terms) == MDB_SUCCESS) impl->committed_terms = terms.ms_entries;
   return WriteTransaction(std::move(impl));
 }
 

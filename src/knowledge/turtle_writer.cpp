@@ -37,8 +37,7 @@ bool isBare(const Term& term) {
   if (term.datatype == vocabulary::xsd("integer")) return all_digits(digits);
   if (term.datatype != vocabulary::xsd("decimal")) return false;
   const std::size_t point = digits.find('.');
-  return point != std::string_view::npos && all_digits(digits.substr(0, point)) &&
-         all_digits(digits.substr(point + 1));
+  return point != std::string_view::npos && all_digits(digits.substr(0, point)) && all_digits(digits.substr(point + 1));
 }
 
 struct Triple {
@@ -115,8 +114,7 @@ void writeTurtle(const QuadReader& reader, const std::optional<Term>& graph, con
     std::string text;
     if (!same_subject) text = (i > 0 ? " .\n\n" : "\n") + terms.text(triples[i].subject) + ' ';
     if (same_subject) text = same_predicate ? ", " : " ;\n    ";
-    if (!same_predicate)
-      text += (isType(triples[i].predicate) ? "a" : terms.text(triples[i].predicate)) + ' ';
+    if (!same_predicate) text += (isType(triples[i].predicate) ? "a" : terms.text(triples[i].predicate)) + ' ';
     out(text + terms.text(triples[i].object));
   }
   if (!triples.empty()) out(" .\n");

@@ -29,8 +29,8 @@ class MapOracle : public AskOracle {
 
   WriteTransaction& transaction_;
   Publish publish_;
-  std::vector<SemanticObject> objects_;                 ///< copies: the stage's own list ends with its call
-  std::optional<QuadReader> reader_;                    ///< absent: the facts are not written yet
+  std::vector<SemanticObject> objects_;  ///< copies: the stage's own list ends with its call
+  std::optional<QuadReader> reader_;     ///< absent: the facts are not written yet
   std::map<std::string, PreparedQuery> prepared_;
 };
 

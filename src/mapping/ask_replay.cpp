@@ -15,7 +15,7 @@ struct AskReplay::Impl {
   const MapReader& map;
   MapInputs inputs;
   std::vector<Cloud> clouds;
-  std::vector<SemanticObject> objects;                 ///< those so far
+  std::vector<SemanticObject> objects;  ///< those so far
   std::shared_ptr<Environment> scratch;
   std::optional<WriteTransaction> transaction;
   std::optional<MapOracle> oracle;

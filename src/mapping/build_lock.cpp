@@ -30,7 +30,8 @@ std::string holderOf(int descriptor) {
 }
 
 bool isNamed(int descriptor, const fs::path& file) {
-  struct stat mine {}, there {};
+  struct stat mine {
+  }, there{};
   return ::fstat(descriptor, &mine) == 0 && ::stat(file.c_str(), &there) == 0 && mine.st_dev == there.st_dev &&
          mine.st_ino == there.st_ino;
 }
@@ -50,7 +51,7 @@ BuildLock::BuildLock(const fs::path& map) : file_(map.string() + ".build-lock") 
       descriptor_ = descriptor;
       break;
     }
-    ::close(descriptor);   // of one who has just ended
+    ::close(descriptor);  // of one who has just ended
   }
   const std::string id = std::to_string(::getpid());
   if (::ftruncate(descriptor_, 0) == 0) (void)!::pwrite(descriptor_, id.data(), id.size(), 0);

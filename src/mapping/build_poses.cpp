@@ -17,8 +17,10 @@ ScanSet withMendedPoses(const ScanSet& scans, unsigned threads, ProgressSink& si
   for (const MendedScan& scan : mended.scans) kept += scan.pairs == 0 ? 1 : 0;
   std::array<char, 256> text{};
   std::snprintf(text.data(), text.size(),
-                "poses mended: %zu of %zu pairs of scans used, median residual %.3f m before, %.3f m after; %zu of %zu scans keep their pose",
-                used, mended.pairs.size(), mended.residual_before_m, mended.residual_after_m, kept, mended.scans.size());
+                "poses mended: %zu of %zu pairs of scans used, median residual %.3f m before, %.3f m after; %zu of %zu "
+                "scans keep their pose",
+                used, mended.pairs.size(), mended.residual_before_m, mended.residual_after_m, kept,
+                mended.scans.size());
   sink.note(text.data());
   return scans.posed(mended.poses());
 }
@@ -34,10 +36,11 @@ void noteDoubtfulPoses(const ScanSet& scans, unsigned threads, ProgressSink& sin
   }
   if (residual_m <= kFittingResidual_m) return;
   std::array<char, 256> text{};
-  std::snprintf(text.data(), text.size(),
-                "poses do not fit each other: surfaces of neighbouring scans lie %.2f m apart, in the median of those looked at; "
-                "--register mends them",
-                residual_m);
+  std::snprintf(
+      text.data(), text.size(),
+      "poses do not fit each other: surfaces of neighbouring scans lie %.2f m apart, in the median of those looked at; "
+      "--register mends them",
+      residual_m);
   sink.note(text.data());
 }
 

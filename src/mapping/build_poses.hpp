@@ -10,8 +10,8 @@ namespace cluxel {
 /// The same scans with poses that fit each other; what was done is a note. Throws as registerPoses() does.
 ScanSet withMendedPoses(const ScanSet& scans, unsigned threads, ProgressSink& sink);
 
-/// Notes poses that do not fit each other: they spoil labels long before anybody sees it in the map. A look at six scans at
-/// most; whatever is wrong with the files themselves is left for their reader to say.
+/// Notes poses that do not fit each other: they spoil labels long before anybody sees it in the map. A look at six
+/// scans at most; whatever is wrong with the files themselves is left for their reader to say.
 void noteDoubtfulPoses(const ScanSet& scans, unsigned threads, ProgressSink& sink);
 
 }  // namespace cluxel

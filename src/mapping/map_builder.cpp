@@ -25,23 +25,30 @@ double nowSeconds() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// The clouds of an unfinished build must be among the scans: all that is in the map was asked for. Loads scans until each
-/// cloud is found, which are those in front when the same command goes on.
+/// The clouds of an unfinished build must be among the scans: all that is in the map was asked for. Loads scans until
+/// each cloud is found, which are those in front when the same command goes on.
 void requireScansOf(const WorkFile& work, const ScanSet& scans, const std::vector<Cloud>& clouds) {
   std::set<ScanId> given;
   std::size_t loaded = 0;
   for (const Cloud& cloud : clouds) {
     while (!given.contains(cloud.id) && loaded < scans.size()) given.insert(scans.load(loaded++).id);
     if (!given.contains(cloud.id))
-      throw Error(ExitCode::Usage, work.path().string() + ": holds an unfinished build of other scans ('" + cloud.source +
-                                       "' is not among those given); repeat that command to finish it, or remove the file");
+      throw Error(ExitCode::Usage,
+                  work.path().string() + ": holds an unfinished build of other scans ('" + cloud.source +
+                      "' is not among those given); repeat that command to finish it, or remove the file");
   }
 }
 
 class MapBuild {
  public:
-  MapBuild(const ScanSet& scans, const ParsedInputs& parsed, WorkFile& work, const BuildParams& params, ProgressSink& sink)
-      : scans_(scans), parsed_(parsed), work_(work), params_(params), sink_(sink), state_(work.found()),
+  MapBuild(const ScanSet& scans, const ParsedInputs& parsed, WorkFile& work, const BuildParams& params,
+           ProgressSink& sink)
+      : scans_(scans),
+        parsed_(parsed),
+        work_(work),
+        params_(params),
+        sink_(sink),
+        state_(work.found()),
         stages_(parsed.model, parsed.inputs.params) {}
 
   BuildReport run() {
@@ -63,8 +70,9 @@ class MapBuild {
   /// Between two commits nobody else may have built here, not even a program that knows no lock.
   void requireOwn(const ReadTransaction& transaction) const {
     if (storedState(transaction) != state_)
-      throw Error(ExitCode::StoreUnavailable,
-                  work_.path().string() + ": another build has written to it meanwhile; wait until it has ended and run again");
+      throw Error(
+          ExitCode::StoreUnavailable,
+          work_.path().string() + ": another build has written to it meanwhile; wait until it has ended and run again");
   }
 
   /// Adds scans from `first` on until the batch is full, and commits; returns the first scan of the next batch.
@@ -111,7 +119,7 @@ class MapBuild {
   WorkFile& work_;
   const BuildParams& params_;
   ProgressSink& sink_;
-  std::optional<MapState> state_;   ///< what the file says, as far as this build knows
+  std::optional<MapState> state_;  ///< what the file says, as far as this build knows
   TileStages stages_;
   BuildReport report_;
 };

@@ -86,9 +86,15 @@ void addRelations(const Scene& scene, FactSink& facts) {
 
 }  // namespace
 
-std::string iriOfCloud(const ScanId& id) { return mapIri("cloud", id.hex()); }
-std::string iriOfPrimitive(const ContentHash& id) { return mapIri("primitive", id.hex()); }
-std::string iriOfObject(const ContentHash& id) { return mapIri("object", id.hex()); }
+std::string iriOfCloud(const ScanId& id) {
+  return mapIri("cloud", id.hex());
+}
+std::string iriOfPrimitive(const ContentHash& id) {
+  return mapIri("primitive", id.hex());
+}
+std::string iriOfObject(const ContentHash& id) {
+  return mapIri("object", id.hex());
+}
 
 std::string dateTimeText(double time_s) {
   using namespace std::chrono;

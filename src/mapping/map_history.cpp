@@ -18,7 +18,9 @@ Term nameText(const std::string& name) {
   return Term::literal(Json::parse(Json(name).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>());
 }
 
-std::string prov(std::string_view local) { return std::string(vocabulary::kProv).append(local); }
+std::string prov(std::string_view local) {
+  return std::string(vocabulary::kProv).append(local);
+}
 
 }  // namespace
 
@@ -32,9 +34,7 @@ void addBuildActivity(WriteTransaction& transaction, const std::vector<Cloud>& c
   const auto add = [&](const Term& subject, const std::string& property, const Term& object) {
     writer.add(Quad{subject, Term::iri(property), object, graph});
   };
-  const auto time = [](double seconds) {
-    return Term::literal(dateTimeText(seconds), vocabulary::xsd("dateTime"));
-  };
+  const auto time = [](double seconds) { return Term::literal(dateTimeText(seconds), vocabulary::xsd("dateTime")); };
   add(activity, vocabulary::rdf("type"), Term::iri(prov("Activity")));
   add(activity, prov("startedAtTime"), time(started_s));
   add(activity, prov("endedAtTime"), time(ended_s));

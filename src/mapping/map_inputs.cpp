@@ -73,14 +73,16 @@ ContentHash MapInputs::hash() const {
   addTexts(hasher, rules);
   hasher.add(static_cast<std::uint64_t>(rule_roots));
   addTexts(hasher, sparql_rules);
-  for (const NamedText& rule : sparql_rules) hasher.addText(ruleFileName(rule));   // which stand in the map
+  for (const NamedText& rule : sparql_rules) hasher.addText(ruleFileName(rule));  // which stand in the map
   hasher.add(kStagesVersion);
   hasher.addText(model.text).add(hashOf(params)).addText(crs);
   for (int axis = 0; axis < 3; ++axis) hasher.add(map_origin[axis]);
   return hasher.finish();
 }
 
-std::string ruleFileName(const NamedText& rule) { return fs::path(rule.name).filename().string(); }
+std::string ruleFileName(const NamedText& rule) {
+  return fs::path(rule.name).filename().string();
+}
 
 MapInputs readMapInputs(const MapInputFiles& files, const DataHome& home) {
   MapInputs inputs;

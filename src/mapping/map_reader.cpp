@@ -30,8 +30,8 @@ struct MapReader::Impl {
       : environment(std::move(opened)), transaction(environment->read()), quads(transaction) {
     const auto stored = storedState(transaction);
     if (!stored)
-      throw Error(ExitCode::StoreUnavailable, environment->file().string() +
-                                                  ": holds no map (or its first build never committed); build it");
+      throw Error(ExitCode::StoreUnavailable,
+                  environment->file().string() + ": holds no map (or its first build never committed); build it");
     state = *stored;
   }
 
@@ -84,18 +84,30 @@ MapSummary MapReader::summary() const {
   return summary;
 }
 
-std::vector<Cloud> MapReader::clouds() const { return storedClouds(impl_->transaction); }
-ScanPoints MapReader::pointsOf(const ScanId& cloud) const { return storedPoints(impl_->transaction, cloud); }
-const std::vector<SemanticObject>& MapReader::objects() const { return impl_->readObjects(); }
-const QuadReader& MapReader::quads() const { return impl_->quads; }
-MapInputs MapReader::inputs() const { return impl_->readInputs(); }
+std::vector<Cloud> MapReader::clouds() const {
+  return storedClouds(impl_->transaction);
+}
+ScanPoints MapReader::pointsOf(const ScanId& cloud) const {
+  return storedPoints(impl_->transaction, cloud);
+}
+const std::vector<SemanticObject>& MapReader::objects() const {
+  return impl_->readObjects();
+}
+const QuadReader& MapReader::quads() const {
+  return impl_->quads;
+}
+MapInputs MapReader::inputs() const {
+  return impl_->readInputs();
+}
 
 const Scene& MapReader::scene() const {
   if (!impl_->scene) impl_->scene = impl_->readStages().scene();
   return *impl_->scene;
 }
 
-const TileStages& MapReader::stages() const { return impl_->readStages(); }
+const TileStages& MapReader::stages() const {
+  return impl_->readStages();
+}
 
 PointAnswers MapReader::answersFor(const Cloud& cloud) const {
   const TileStages& stages = impl_->readStages();

@@ -79,9 +79,14 @@ void storeInputs(WriteTransaction& transaction, const MapInputs& inputs) {
   describe(copy, params);
   const Eigen::Vector3d& origin = inputs.map_origin;
   put(transaction, kInputsKey,
-      {{"ontology", textsJson(inputs.ontology)}, {"rules", textsJson(inputs.rules)}, {"rule_roots", inputs.rule_roots},
-       {"sparql_rules", textsJson(inputs.sparql_rules)}, {"model", textsJson({inputs.model})}, {"params", params.json},
-       {"map_origin", {origin.x(), origin.y(), origin.z()}}, {"crs", inputs.crs}});
+      {{"ontology", textsJson(inputs.ontology)},
+       {"rules", textsJson(inputs.rules)},
+       {"rule_roots", inputs.rule_roots},
+       {"sparql_rules", textsJson(inputs.sparql_rules)},
+       {"model", textsJson({inputs.model})},
+       {"params", params.json},
+       {"map_origin", {origin.x(), origin.y(), origin.z()}},
+       {"crs", inputs.crs}});
 }
 
 MapInputs storedInputs(const ReadTransaction& transaction) {
@@ -98,7 +103,8 @@ MapInputs storedInputs(const ReadTransaction& transaction) {
     const Json& params = json.at("params");
     ParameterReader reader(params);
     describe(inputs.params, reader);
-    for (int axis = 0; axis < 3; ++axis) inputs.map_origin[axis] = json.at("map_origin").at(static_cast<std::size_t>(axis));
+    for (int axis = 0; axis < 3; ++axis)
+      inputs.map_origin[axis] = json.at("map_origin").at(static_cast<std::size_t>(axis));
     inputs.crs = json.at("crs");
     return inputs;
   } catch (const std::exception& fault) {

@@ -12,7 +12,7 @@ namespace cluxel {
 
 struct MapState {
   bool is_finished = false;
-  std::string inputs_hash;     ///< hex of MapInputs::hash()
+  std::string inputs_hash;  ///< hex of MapInputs::hash()
   bool operator==(const MapState&) const = default;
 };
 

@@ -11,7 +11,9 @@ namespace cluxel {
 
 namespace {
 
-std::string pointText(const Eigen::Vector2d& p) { return decimalText(p.x(), 3) + " " + decimalText(p.y(), 3); }
+std::string pointText(const Eigen::Vector2d& p) {
+  return decimalText(p.x(), 3) + " " + decimalText(p.y(), 3);
+}
 
 std::string boxWkt(const UprightBox& box) {
   const Eigen::Vector2d along(std::cos(box.yaw_rad), std::sin(box.yaw_rad)), across(-along.y(), along.x());

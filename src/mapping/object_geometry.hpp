@@ -5,19 +5,19 @@
 #include <map>
 #include <vector>
 
+#include "cluxel/perception/cluxel_tile.hpp"
 #include "cluxel/perception/scene.hpp"
 #include "cluxel/perception/tile_points.hpp"
-#include "cluxel/perception/cluxel_tile.hpp"
 #include "cluxel/reasoning/semantic_object.hpp"
 
 namespace cluxel {
 
 struct ObjectGeometry {
   UprightBox box;
-  Eigen::Vector3d min = Eigen::Vector3d::Constant(1e300), max = Eigen::Vector3d::Constant(-1e300);   ///< [m, map]
-  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();   ///< mean of its points [m, map]
-  double bottom_m = 0, top_m = 0;                       ///< above the local ground
-  std::uint64_t point_count = 0;                        ///< kept points
+  Eigen::Vector3d min = Eigen::Vector3d::Constant(1e300), max = Eigen::Vector3d::Constant(-1e300);  ///< [m, map]
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< mean of its points [m, map]
+  double bottom_m = 0, top_m = 0;                      ///< above the local ground
+  std::uint64_t point_count = 0;                       ///< kept points
 };
 
 /// Geometry of a bunch of cluxels of the scene.
@@ -33,15 +33,15 @@ std::vector<std::uint32_t> objectOfCluxel(const ReasoningResult& result, std::si
 /// What one scan saw of one object.
 struct Sighting {
   std::uint64_t point_count = 0;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();        ///< of its points [m, map]
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  ///< of its points [m, map]
 };
 /// By (object, scan), from the points of all tiles in canonical order.
 std::map<std::pair<std::uint32_t, ScanId>, Sighting> sightingsOf(const std::map<TileKey, TilePoints>& points,
                                                                  const std::map<TileKey, CluxelTile>& cluxels,
                                                                  const std::vector<std::uint32_t>& object_of_cluxel);
 
-/// Pairs of objects (a < b) whose cluxels' boxes come nearer than `largest_m`, sorted; objects that `is_ground` are left
-/// out. Cost O(cluxels of objects).
+/// Pairs of objects (a < b) whose cluxels' boxes come nearer than `largest_m`, sorted; objects that `is_ground` are
+/// left out. Cost O(cluxels of objects).
 std::vector<std::pair<std::uint32_t, std::uint32_t>> nearObjects(const SceneCluxels& cluxels,
                                                                  const std::vector<std::uint32_t>& object_of_cluxel,
                                                                  const std::vector<bool>& is_ground, double largest_m);

@@ -29,7 +29,8 @@ std::vector<std::uint32_t> numbersFrom(const Json& json) {
 }
 
 Json partJson(const ObjectPart& part) {
-  return {{"class", part.part_class}, {"primitives", numbersJson(part.primitives)}, {"cluxels", numbersJson(part.cluxels)}};
+  return {
+      {"class", part.part_class}, {"primitives", numbersJson(part.primitives)}, {"cluxels", numbersJson(part.cluxels)}};
 }
 
 ObjectPart partFrom(const Json& json) {
@@ -37,7 +38,7 @@ ObjectPart partFrom(const Json& json) {
 }
 
 Json objectJson(const SemanticObject& object) {
-  Json json{{"id", object.id.hex()}, {"class", object.class_iri}, {"confidence", object.confidence},
+  Json json{{"id", object.id.hex()},  {"class", object.class_iri},   {"confidence", object.confidence},
             {"rule", object.rule_id}, {"decision", object.decision}, {"parts", Json::array()}};
   for (const ObjectPart& part : object.parts) json["parts"].push_back(partJson(part));
   return json;

@@ -15,7 +15,8 @@ std::uint64_t copyOperatorStatements(const QuadReader& from, WriteTransaction& i
   QuadCursor cursor = from.scan(pattern);
   std::uint64_t count = 0;
   for (QuadIds quad; cursor.next(quad); ++count)
-    writer.add(Quad{from.termOf(quad.s), from.termOf(quad.p), from.termOf(quad.o), Term::iri(vocabulary::kGraphOperator)});
+    writer.add(
+        Quad{from.termOf(quad.s), from.termOf(quad.p), from.termOf(quad.o), Term::iri(vocabulary::kGraphOperator)});
   writer.flush();
   return count;
 }

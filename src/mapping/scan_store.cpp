@@ -22,15 +22,17 @@ std::vector<double> numbersOf(const Eigen::Isometry3d& pose) {
   return {pose.matrix().data(), pose.matrix().data() + 16};
 }
 
-Json vectorJson(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
+Json vectorJson(const Eigen::Vector3d& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
 
 Eigen::Vector3d vectorFrom(const Json& json) {
   return Eigen::Vector3d(json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>());
 }
 
 std::string toBytes(const Cloud& cloud) {
-  Json json{{"source", cloud.source}, {"pose", numbersOf(cloud.T_map_sensor)}, {"has_pose", cloud.has_pose},
-            {"points", cloud.point_count}, {"min", vectorJson(cloud.min)}, {"max", vectorJson(cloud.max)}};
+  Json json{{"source", cloud.source},      {"pose", numbersOf(cloud.T_map_sensor)}, {"has_pose", cloud.has_pose},
+            {"points", cloud.point_count}, {"min", vectorJson(cloud.min)},          {"max", vectorJson(cloud.max)}};
   if (cloud.time_s) json["time_s"] = *cloud.time_s;
   const auto bytes = Json::to_cbor(json);
   return {bytes.begin(), bytes.end()};
@@ -66,7 +68,9 @@ void append(std::string& bytes, const std::vector<T>& values) {
 
 template <typename T>
 std::vector<T> takeArray(std::string_view& bytes) {
-  const auto damaged = [] { return Error(ExitCode::StoreUnavailable, "points of a cloud are damaged; build the map anew"); };
+  const auto damaged = [] {
+    return Error(ExitCode::StoreUnavailable, "points of a cloud are damaged; build the map anew");
+  };
   std::uint64_t count = 0;
   if (bytes.size() < sizeof count) throw damaged();
   std::memcpy(&count, bytes.data(), sizeof count);
@@ -106,7 +110,8 @@ void addTiles(WriteTransaction& transaction, const TileSet& fresh) {
 void requireTime(const Scan& scan) {
   constexpr double kFirst_s = -62135596800.0, kEnd_s = 253402300799.0;
   if (scan.time_s && !(*scan.time_s >= kFirst_s && *scan.time_s < kEnd_s))
-    throw InputError({.file = scan.source}, "its time of " + std::to_string(*scan.time_s) + " s lies outside the years 1 to 9999",
+    throw InputError({.file = scan.source},
+                     "its time of " + std::to_string(*scan.time_s) + " s lies outside the years 1 to 9999",
                      "times are seconds since 1970-01-01 UTC: is it in milliseconds or nanoseconds?");
 }
 
@@ -124,9 +129,12 @@ TileSet storeScan(WriteTransaction& transaction, const Scan& scan) {
   requireTime(scan);
   if (const auto there = storedCloud(transaction, scan.id)) {
     // The map says where the sensor stood only of scans with a pose: which of two was first must not decide.
-    const bool same = numbersOf(there->T_map_sensor) == numbersOf(scan.T_map_sensor) && there->has_pose == scan.has_pose;
+    const bool same =
+        numbersOf(there->T_map_sensor) == numbersOf(scan.T_map_sensor) && there->has_pose == scan.has_pose;
     if (same) return {};
-    const std::string how = there->has_pose == scan.has_pose ? "with another pose" : scan.has_pose ? "now with a pose" : "now without a pose";
+    const std::string how = there->has_pose == scan.has_pose ? "with another pose"
+                            : scan.has_pose                  ? "now with a pose"
+                                                             : "now without a pose";
     throw InputError({.file = scan.source}, "is the same scan as '" + there->source + "', " + how,
                      "give each scan once; to correct a pose, build anew with the right one");
   }

@@ -75,9 +75,9 @@ ParsedInputs parseInputs(const MapInputs& inputs) {
   parsed.inputs = inputs;
   parsed.model = parseModel(inputs.model.text, inputs.model.name);
   checkRanges(inputs.params);
-  parsed.rules =
-      loadRuleTexts(ruleSources(inputs.rules), inputs.rule_roots, classCatalogueOf(inputs.ontology), withCheckedQueries())
-          .require();
+  parsed.rules = loadRuleTexts(ruleSources(inputs.rules), inputs.rule_roots, classCatalogueOf(inputs.ontology),
+                               withCheckedQueries())
+                     .require();
   checkSparqlRules(inputs.sparql_rules);
   return parsed;
 }
@@ -93,8 +93,7 @@ SemanticCounts writeSemanticLayer(WriteTransaction& transaction, const ParsedInp
   });
   const ReasoningResult result = reason(scene, parsed.rules, {&oracle});
   sink.progress("objects", result.objects.size(), result.objects.size());
-  const auto sightings =
-      sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(result, scene.cluxels.size()));
+  const auto sightings = sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(result, scene.cluxels.size()));
   writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings});
   inferClosure(transaction);
   runSparqlRules(transaction, parsed.inputs.sparql_rules);

@@ -36,8 +36,8 @@ struct SemanticCounts {
   std::size_t cluxels = 0, primitives = 0, objects = 0;
 };
 
-/// Computes objects and facts of what `stages` holds and stores them. The graphs ontology, observed and inferred become a
-/// function of the stages' outputs and the inputs.
+/// Computes objects and facts of what `stages` holds and stores them. The graphs ontology, observed and inferred become
+/// a function of the stages' outputs and the inputs.
 SemanticCounts writeSemanticLayer(WriteTransaction& transaction, const ParsedInputs& parsed, const TileStages& stages,
                                   ProgressSink& sink);
 

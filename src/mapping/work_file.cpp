@@ -20,7 +20,7 @@ constexpr auto kPatience = std::chrono::minutes(10);
 
 struct Found {
   enum class Kind { Nothing, Empty /* or killed before its first commit */, Build, OtherStore } kind = Kind::Nothing;
-  std::optional<MapState> state = std::nullopt;   ///< of Build
+  std::optional<MapState> state = std::nullopt;  ///< of Build
 
   bool isNothing() const { return kind == Kind::Nothing || kind == Kind::Empty; }
   bool isFinished() const { return state && state->is_finished; }
@@ -37,7 +37,8 @@ bool holdsNothing(const ReadTransaction& transaction) {
 Found lookAt(const fs::path& file) {
   using enum Found::Kind;
   if (!fs::exists(file)) return {};
-  if (fs::is_directory(file)) throw Error(ExitCode::StoreUnavailable, file.string() + ": is a folder, a map was expected");
+  if (fs::is_directory(file))
+    throw Error(ExitCode::StoreUnavailable, file.string() + ": is a folder, a map was expected");
   if (fs::is_regular_file(file) && fs::file_size(file) == 0) return {Empty};
   const ReadTransaction transaction = Environment::open(file, OpenMode::ReadOnly)->read();
   if (const auto state = storedState(transaction)) return {Build, state};
@@ -49,9 +50,10 @@ void requireSameInputs(const Found& found, const fs::path& file, const std::stri
   if (found.kind == Found::Kind::OtherStore)
     throw Error(ExitCode::Usage, file.string() + ": is a store that no build has made; move it away");
   if (found.state && found.state->inputs_hash != inputs_hash)
-    throw Error(ExitCode::Usage, file.string() + ": holds " + (found.isFinished() ? "a" : "an unfinished") +
-                                     " build with another model, rules, ontology or version of Cluxel; repeat that command "
-                                     "to finish it, or remove the file");
+    throw Error(ExitCode::Usage,
+                file.string() + ": holds " + (found.isFinished() ? "a" : "an unfinished") +
+                    " build with another model, rules, ontology or version of Cluxel; repeat that command "
+                    "to finish it, or remove the file");
 }
 
 void removeMap(const fs::path& file) {
@@ -78,8 +80,9 @@ void WorkFile::chooseBetween(const std::string& inputs_hash, bool force) {
   path_ = target_;
   if (there.kind == Found::Kind::OtherStore || there.isFinished()) {
     if (!force)
-      throw Error(ExitCode::Usage, target_.string() + (there.isFinished() ? ": is a finished map; --force replaces it"
-                                                                          : ": is a store that no build has made; --force replaces it"));
+      throw Error(ExitCode::Usage,
+                  target_.string() + (there.isFinished() ? ": is a finished map; --force replaces it"
+                                                         : ": is a store that no build has made; --force replaces it"));
     path_ = beside;
     replaces_ = true;
     return;
@@ -87,10 +90,11 @@ void WorkFile::chooseBetween(const std::string& inputs_hash, bool force) {
   const Found stranded = lookAt(beside);
   if (!there.isNothing() || stranded.isNothing()) return;
   if (stranded.state && stranded.state->inputs_hash == inputs_hash)
-    path_ = beside;   // the map that it was to replace has gone: it becomes the map
+    path_ = beside;  // the map that it was to replace has gone: it becomes the map
   else
-    throw Error(ExitCode::Usage, beside.string() + ": is left of another build, and the map that it was to replace has gone; "
-                                                   "rename or remove it first");
+    throw Error(ExitCode::Usage, beside.string() +
+                                     ": is left of another build, and the map that it was to replace has gone; "
+                                     "rename or remove it first");
 }
 
 WorkFile::~WorkFile() {
@@ -114,15 +118,16 @@ void WorkFile::takeOverStatements(WriteTransaction& into, bool drop, ProgressSin
   if (drop) return;
   const std::uint64_t count = copyOperatorStatements(QuadReader(static_cast<const ReadTransaction&>(*replaced_)), into);
   if (count > 0)
-    sink.note(std::to_string(count) + " operator statements of the old map are kept; --drop-statements leaves them out");
+    sink.note(std::to_string(count) +
+              " operator statements of the old map are kept; --drop-statements leaves them out");
 }
 
 void WorkFile::finish() {
   environment_.reset();
   if (path_ == target_) return;
   if (!replaces_ && !lookAt(target_).isNothing())
-    throw Error(ExitCode::StoreUnavailable,
-                path_.string() + ": is finished, but meanwhile there is a map at " + target_.string() + "; move one of them away");
+    throw Error(ExitCode::StoreUnavailable, path_.string() + ": is finished, but meanwhile there is a map at " +
+                                                target_.string() + "; move one of them away");
   replaceMapFile(path_, target_);
   replaced_.reset();
 }

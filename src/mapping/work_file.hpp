@@ -16,9 +16,9 @@ namespace cluxel {
 
 class WorkFile {
  public:
-  /// Looks at what lies at `map` and at MAP.building, under the lock that is held as long as this lives, and opens the one to
-  /// work in. A finished map, or a store that no build has made, is an Error (Usage) unless `force`; what another build left
-  /// unfinished always is.
+  /// Looks at what lies at `map` and at MAP.building, under the lock that is held as long as this lives, and opens the
+  /// one to work in. A finished map, or a store that no build has made, is an Error (Usage) unless `force`; what
+  /// another build left unfinished always is.
   WorkFile(const std::filesystem::path& map, const std::string& inputs_hash, bool force);
   WorkFile(const WorkFile&) = delete;
   WorkFile& operator=(const WorkFile&) = delete;
@@ -30,8 +30,8 @@ class WorkFile {
   /// What the file said when it was opened; absent: nothing is in it.
   const std::optional<MapState>& found() const { return found_; }
 
-  /// For the last transaction of the build: the operator's statements of the map that is replaced, as they are now. That map
-  /// can be written by nobody else from here on until this file has taken its place.
+  /// For the last transaction of the build: the operator's statements of the map that is replaced, as they are now.
+  /// That map can be written by nobody else from here on until this file has taken its place.
   void takeOverStatements(WriteTransaction& into, bool drop, ProgressSink& sink);
   /// Makes the finished file the map.
   void finish();
@@ -43,7 +43,7 @@ class WorkFile {
   BuildLock lock_;
   std::shared_ptr<Environment> environment_;
   std::optional<MapState> found_;
-  std::optional<WriteTransaction> replaced_;   ///< nobody else writes to the old map
+  std::optional<WriteTransaction> replaced_;  ///< nobody else writes to the old map
   bool replaces_ = false;
 };
 

@@ -24,7 +24,8 @@ double pointsOf(const TruthCounts& truth) {
 }
 
 /// Mean negative log-likelihood of a point's truth; parameters: slope, then offsets.
-double likelihoodLoss(const CalibrationRows& rows, double total, std::span<const double> x, std::span<double> gradient) {
+double likelihoodLoss(const CalibrationRows& rows, double total, std::span<const double> x,
+                      std::span<double> gradient) {
   std::fill(gradient.begin(), gradient.end(), 0.0);
   double loss = 0;
   for (std::size_t i = 0; i < rows.truth.size(); ++i) {
@@ -38,7 +39,8 @@ double likelihoodLoss(const CalibrationRows& rows, double total, std::span<const
     }
     for (std::size_t k = 0; k < kLabels; ++k) {
       const double excess = points * shares[k] / sum - rows.truth[i][k];
-      if (rows.truth[i][k] > 0) loss -= rows.truth[i][k] * std::log(shares[k] / sum) / total;   // 0 times minus infinity is none
+      if (rows.truth[i][k] > 0)
+        loss -= rows.truth[i][k] * std::log(shares[k] / sum) / total;  // 0 times minus infinity is none
       gradient[0] += excess * logs[k] / total;
       gradient[1 + k] += excess / total;
     }
@@ -53,7 +55,8 @@ double likelihoodLoss(const CalibrationRows& rows, double total, std::span<const
 /// Tries factors on each label's favour in turn and keeps what raises the macro F1.
 void fitFavours(const CalibrationRows& rows, Calibration& calibration) {
   std::vector<LabelValues> probability;
-  for (const LabelValues& marginals : rows.marginals) probability.push_back(calibrate(calibration, marginals).probability);
+  for (const LabelValues& marginals : rows.marginals)
+    probability.push_back(calibrate(calibration, marginals).probability);
   const auto macroF1 = [&](const LabelValues& favour) {
     LabelScores scores;
     for (std::size_t i = 0; i < probability.size(); ++i) {
@@ -114,7 +117,8 @@ Calibration fitCalibration(const CalibrationRows& all_rows) {
 
 LabelScores scoresOf(const CalibrationRows& rows, const Calibration& calibration) {
   LabelScores scores;
-  for (std::size_t i = 0; i < rows.truth.size(); ++i) scores.add(rows.truth[i], calibrate(calibration, rows.marginals[i]).label);
+  for (std::size_t i = 0; i < rows.truth.size(); ++i)
+    scores.add(rows.truth[i], calibrate(calibration, rows.marginals[i]).label);
   return scores;
 }
 

@@ -80,7 +80,8 @@ class VolumeCells {
   }
   static Cell cellOf(std::uint64_t key) {
     constexpr std::uint64_t kPart = (std::uint64_t{1} << 20U) - 1;
-    return {static_cast<std::int32_t>(key >> 40U), static_cast<std::int32_t>(key >> 20U & kPart), static_cast<std::int32_t>(key & kPart)};
+    return {static_cast<std::int32_t>(key >> 40U), static_cast<std::int32_t>(key >> 20U & kPart),
+            static_cast<std::int32_t>(key & kPart)};
   }
 
  private:
@@ -89,8 +90,8 @@ class VolumeCells {
 };
 
 struct Entries {
-  std::vector<KeyedItem> entry;       ///< (cell, cluxel), sorted
-  std::vector<Cell> first_cell;       ///< per cluxel: the cell of its volume's low corner
+  std::vector<KeyedItem> entry;  ///< (cell, cluxel), sorted
+  std::vector<Cell> first_cell;  ///< per cluxel: the cell of its volume's low corner
 };
 
 Entries enterVolumes(const RingCluxels& cluxels) {
@@ -123,9 +124,9 @@ struct PairBuffer {
   std::span<const Pair> all() const { return {pair.data(), count}; }
 };
 
-/// The volumes entered into one cell, four to a vector, with marks: bits 0 to 2 say that a volume begins in this cell along
-/// x, y, z, bit 3 that its cluxel is near. The intersection of two volumes begins where, along each axis, one of them does;
-/// so a pair counts in this cell when together they have all marks.
+/// The volumes entered into one cell, four to a vector, with marks: bits 0 to 2 say that a volume begins in this cell
+/// along x, y, z, bit 3 that its cluxel is near. The intersection of two volumes begins where, along each axis, one of
+/// them does; so a pair counts in this cell when together they have all marks.
 class CellVolumes {
  public:
   void fill(const RingCluxels& cluxels, const std::vector<Cell>& first_cell, std::span<const KeyedItem> entries) {
@@ -143,7 +144,7 @@ class CellVolumes {
       }
       mark_[i] = mark;
     }
-    for (std::size_t i = size_; i < whole; ++i) low_[0][i] = std::numeric_limits<float>::infinity();   // meets nothing
+    for (std::size_t i = size_; i < whole; ++i) low_[0][i] = std::numeric_limits<float>::infinity();  // meets nothing
   }
 
   void appendPairs(PairBuffer& pairs) const {
@@ -152,7 +153,7 @@ class CellVolumes {
       for (std::size_t j = (i + 1) / kLanes * kLanes; j < size_; j += kLanes) {
         const unsigned later = j > i ? 0xfU : 0xfU << (i + 1 - j) & 0xfU;
         const unsigned meets = lanesThatHold(meetFour(i, j)) & later;
-        for (unsigned lane = 0; lane < kLanes; ++lane) {   // written first, counted if they meet
+        for (unsigned lane = 0; lane < kLanes; ++lane) {  // written first, counted if they meet
           pairs.pair[pairs.count] = {item_[i], item_[j + lane]};
           pairs.count += meets >> lane & 1U;
         }
@@ -167,7 +168,8 @@ class CellVolumes {
     std::memcpy(&marks, mark_.data() + j, sizeof marks);
     Numbers holds = (marks | mark_[i]) == kAllMarks;
     for (std::size_t axis = 0; axis < 3; ++axis)
-      holds &= (loadFloats(low_[axis].data() + j) <= high_[axis][i]) & (loadFloats(high_[axis].data() + j) >= low_[axis][i]);
+      holds &=
+          (loadFloats(low_[axis].data() + j) <= high_[axis][i]) & (loadFloats(high_[axis].data() + j) >= low_[axis][i]);
     return holds;
   }
   void resize(std::size_t size) {
@@ -255,10 +257,11 @@ RingGraph intersectionGraph(const RingCluxels& cluxels) {
   RingGraph graph;
   graph.offset.assign(size + 1, 0);
   for (std::uint32_t c = 0; c < size; ++c)
-    graph.offset[c + 1] = graph.offset[c] + (cluxels.near[c] ? static_cast<std::uint32_t>(any_order.neighbours(c).size()) : 0);
+    graph.offset[c + 1] =
+        graph.offset[c] + (cluxels.near[c] ? static_cast<std::uint32_t>(any_order.neighbours(c).size()) : 0);
   graph.target.resize(graph.offset.back());
   auto next = graph.offset;
-  for (std::uint32_t target = 0; target < size; ++target)   // ascending, so each cluxel's targets come in order
+  for (std::uint32_t target = 0; target < size; ++target)  // ascending, so each cluxel's targets come in order
     for (const std::uint32_t c : any_order.neighbours(target))
       if (cluxels.near[c]) graph.target[next[c]++] = target;
   return graph;

@@ -22,10 +22,10 @@ inline bool intersects(const Volume& a, const Volume& b) {
 
 /// What supports read of a cluxel, in one cache line: where it is, and how its own points lie, each weighing 1 / count.
 struct Member {
-  Eigen::Array4f place;            ///< its centre: x y z, and 0 [m]
-  Eigen::Array4f turned;           ///< y z x, and 0
-  Eigen::Array4f spread;           ///< mean squares of deviations xx yy zz [m2], and the lowest z of its box [m, map]
-  Eigen::Array4f spread_turned;    ///< mean products xy yz zx [m2], and the highest z of its box [m, map]
+  Eigen::Array4f place;          ///< its centre: x y z, and 0 [m]
+  Eigen::Array4f turned;         ///< y z x, and 0
+  Eigen::Array4f spread;         ///< mean squares of deviations xx yy zz [m2], and the lowest z of its box [m, map]
+  Eigen::Array4f spread_turned;  ///< mean products xy yz zx [m2], and the highest z of its box [m, map]
   float lowZ() const { return spread[3]; }
   float highZ() const { return spread_turned[3]; }
 };
@@ -38,7 +38,7 @@ struct RingCluxels {
   std::vector<Volume> volume;
   std::vector<Member> member;
   std::vector<float> reach;
-  std::vector<std::uint8_t> near;        ///< own ones and near ones: their edges are complete
+  std::vector<std::uint8_t> near;  ///< own ones and near ones: their edges are complete
   std::uint32_t own_begin = 0, own_end = 0;
 
   std::size_t size() const { return name.size(); }

@@ -17,11 +17,12 @@ namespace {
 
 /// Seeds found so far: numbers ascend with cells, so the seeds of a run of cells are a run of seeds.
 struct Seeds {
-  std::vector<float> x, y, z;          ///< with room for all and for whole vectors from any one
-  std::vector<std::uint32_t> before;   ///< per cell: seeds in earlier cells
+  std::vector<float> x, y, z;         ///< with room for all and for whole vectors from any one
+  std::vector<std::uint32_t> before;  ///< per cell: seeds in earlier cells
   std::uint32_t count = 0;
 
-  Seeds(std::size_t most, std::size_t cells) : x(most + kLanes), y(most + kLanes), z(most + kLanes), before(cells + 1) {}
+  Seeds(std::size_t most, std::size_t cells)
+      : x(most + kLanes), y(most + kLanes), z(most + kLanes), before(cells + 1) {}
   void add(float px, float py, float pz) {
     x[count] = px;
     y[count] = py;
@@ -32,7 +33,7 @@ struct Seeds {
 /// Runs of seeds in ascending order that lie in the cells before a cell and in itself.
 struct SeedRuns {
   std::array<std::array<std::uint32_t, 2>, 5> run;
-  std::size_t count = 0;   ///< of the earlier ones that are not empty; the cell's own follows them
+  std::size_t count = 0;  ///< of the earlier ones that are not empty; the cell's own follows them
 
   void moveTo(const Seeds& seeds, const NeighbourWalk& walk, std::size_t cell) {
     count = 0;
@@ -48,7 +49,8 @@ std::uint32_t earliestSeed(const Seeds& seeds, const SeedRuns& runs, float x, fl
   for (std::size_t r = 0; r <= runs.count; ++r) {
     const std::uint32_t last = r < runs.count ? runs.run[r][1] : seeds.count;
     for (std::uint32_t seed = runs.run[r][0]; seed < last; seed += kLanes) {
-      const Floats dx = loadFloats(&seeds.x[seed]) - x, dy = loadFloats(&seeds.y[seed]) - y, dz = loadFloats(&seeds.z[seed]) - z;
+      const Floats dx = loadFloats(&seeds.x[seed]) - x, dy = loadFloats(&seeds.y[seed]) - y,
+                   dz = loadFloats(&seeds.z[seed]) - z;
       const unsigned near = lanesThatHold(dx * dx + dy * dy + dz * dz <= squared) & firstLanes(last - seed);
       if (near != 0) return seed + static_cast<std::uint32_t>(std::countr_zero(near));
     }
@@ -107,21 +109,25 @@ void measureIntensity(const TilePoints& points, CluxelTile& tile) {
   for (std::size_t c = 0; c < tile.size(); ++c) {
     const double mean = sum[c] / tile.own[c].count;
     tile.intensity_mean[c] = static_cast<float>(mean);
-    tile.intensity_deviation[c] = static_cast<float>(std::sqrt(std::max(0.0, squares[c] / tile.own[c].count - mean * mean)));
+    tile.intensity_deviation[c] =
+        static_cast<float>(std::sqrt(std::max(0.0, squares[c] / tile.own[c].count - mean * mean)));
   }
 }
 
 }  // namespace
 
 void describe(CoverParams& params, ParameterVisitor& visitor) {
-  visitor.real({"cover.radius", "m", 0.05, 1.0, "a point joins the earliest seed within this distance"}, params.radius_m);
+  visitor.real({"cover.radius", "m", 0.05, 1.0, "a point joins the earliest seed within this distance"},
+               params.radius_m);
   visitor.real({"cover.largest_reach", "m", 0.05, kLargestReach_m, "how far volumes of sparse cluxels may grow"},
                params.largest_reach_m);
   visitor.whole({"cover.wanted_points", "1", 1, 1000, "a volume grows until it holds this many points"},
                 params.wanted_points);
 }
 
-CoverParams paperCover() { return {.radius_m = 0.10, .largest_reach_m = 0.10, .wanted_points = 1}; }
+CoverParams paperCover() {
+  return {.radius_m = 0.10, .largest_reach_m = 0.10, .wanted_points = 1};
+}
 
 CluxelMembers membersOf(const CluxelTile& tile) {
   CluxelMembers members;

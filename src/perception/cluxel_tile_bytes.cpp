@@ -12,7 +12,9 @@ static_assert(sizeof(Moments) == 40 && sizeof(Column) == 24, "stored structs hav
 namespace {
 
 /// Places may lie outside of the tile by a reach; heights are the map's.
-bool isPlace(const std::vector<Eigen::Vector3f>& places) { return allWithin(places, kLargestHeight_m); }
+bool isPlace(const std::vector<Eigen::Vector3f>& places) {
+  return allWithin(places, kLargestHeight_m);
+}
 
 bool isUsable(const std::vector<Moments>& moments, bool inside_tile) {
   for (const auto& m : moments) {
@@ -73,7 +75,8 @@ CluxelTile cluxelTileFromBytes(std::string_view bytes) {
   reader.require(isPlace(tile.box_min) && isPlace(tile.box_max) && isPlace(tile.volume_min) && isPlace(tile.volume_max),
                  "has a box that is not a number");
   reader.require(isUsable(tile.own, true) && isUsable(tile.ball, false), "has moments that are not numbers");
-  reader.require(isUsable(tile.columns) && allWithin(tile.reach, 2 * kLargestReach_m), "has columns or reaches that are not numbers");
+  reader.require(isUsable(tile.columns) && allWithin(tile.reach, 2 * kLargestReach_m),
+                 "has columns or reaches that are not numbers");
   reader.finish();
   return tile;
 }

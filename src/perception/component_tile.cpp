@@ -30,7 +30,7 @@ std::vector<std::uint32_t> connect(const CluxelTile& cluxels, const FeatureTile&
       const RingIndex target = graph.edge_target[e];
       const std::uint32_t b = target.index;
       if (target.ring != kRingCentre || b < a || labels.label[a] != labels.label[b]) continue;
-      if (sets.find(a) == sets.find(b)) continue;   // most edges are between cluxels already joined: no gap is needed
+      if (sets.find(a) == sets.find(b)) continue;  // most edges are between cluxels already joined: no gap is needed
       if (gapBetween(cluxels.box_min[a], cluxels.box_max[a], cluxels.box_min[b], cluxels.box_max[b]) <= largest_gap)
         sets.join(a, b);
     }
@@ -169,10 +169,10 @@ std::vector<Eigen::Vector2d> outmostPolygon(const TilePoints& points, std::span<
 class InnerTest {
  public:
   explicit InnerTest(const std::vector<Eigen::Vector2d>& polygon) {
-    constexpr double kAway_m = 1e-4;   // more than rounding to floats moves a side
-    for (auto& offset : offset_) offset = Floats{} - kInfinity;   // inside of fewer than three corners is nothing
+    constexpr double kAway_m = 1e-4;                             // more than rounding to floats moves a side
+    for (auto& offset : offset_) offset = Floats{} - kInfinity;  // inside of fewer than three corners is nothing
     if (polygon.size() < 3) return;
-    for (std::size_t k = 0; k < 4 * kLanes; ++k) {   // some sides twice
+    for (std::size_t k = 0; k < 4 * kLanes; ++k) {  // some sides twice
       const Eigen::Vector2d& corner = polygon[k % polygon.size()];
       const Eigen::Vector2d side = polygon[(k + 1) % polygon.size()] - corner;
       const Eigen::Vector2d inward = Eigen::Vector2d(-side.y(), side.x()).normalized();
@@ -191,8 +191,8 @@ class InnerTest {
   std::array<Floats, 4> x_{}, y_{}, offset_{};
 };
 
-/// The hull of the component's points. What lies inside the polygon of the outmost ones cannot be on it: leaving that out
-/// saves sorting nearly all.
+/// The hull of the component's points. What lies inside the polygon of the outmost ones cannot be on it: leaving that
+/// out saves sorting nearly all.
 std::vector<Eigen::Vector2d> hullOf(const TilePoints& points, std::span<const std::uint32_t> members) {
   constexpr std::size_t kFew = 24;
   std::vector<Eigen::Vector2d> candidates;

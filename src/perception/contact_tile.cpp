@@ -23,7 +23,7 @@ class ContactCollector {
  public:
   Contact& at(std::uint32_t from, std::uint32_t to_ring, std::uint32_t to) {
     const std::uint64_t key = std::uint64_t{from} << 36U | std::uint64_t{to_ring} << 32U | to;
-    if (key == last_key_) return contacts_[last_];   // neighbouring edges often join the same two
+    if (key == last_key_) return contacts_[last_];  // neighbouring edges often join the same two
     const auto [place, is_new] = number_.try_emplace(key, static_cast<std::uint32_t>(contacts_.size()));
     if (is_new) {
       Contact contact;
@@ -73,7 +73,7 @@ void addEdges(const Ring<ComponentTile>& components, const Ring<CluxelTile>& clu
 /// One component's part of a footprint cell, seen from the centre tile.
 struct CellEntry {
   std::uint32_t ring = 0, component = 0;
-  int x = 0, y = 0;                                   ///< cell, from the centre tile's corner
+  int x = 0, y = 0;  ///< cell, from the centre tile's corner
   Eigen::Vector3f min, max;
   float mean_z = 0;
 
@@ -95,7 +95,8 @@ class CellGrid {
     for (std::size_t i = 1; i < offset_.size(); ++i) offset_[i] += offset_[i - 1];
     std::vector<std::uint32_t> next(offset_.begin(), offset_.end() - 1);
     entries_.resize(entries.size());
-    for (auto* values : {&low_[0], &low_[1], &low_[2], &high_[0], &high_[1], &high_[2]}) values->resize(entries.size() + kLanes);
+    for (auto* values : {&low_[0], &low_[1], &low_[2], &high_[0], &high_[1], &high_[2]})
+      values->resize(entries.size() + kLanes);
     x_.resize(entries.size() + kLanes);
     name_.resize(entries.size() + kLanes);
     for (const CellEntry& entry : entries) put(entry, next[slot(entry.x, entry.y)]++);
@@ -103,14 +104,16 @@ class CellGrid {
 
   int reach() const { return reach_; }
   /// The numbers of the entries of the cells from x to last_x of one row: the first, and the one behind the last.
-  std::array<std::uint32_t, 2> range(int x, int last_x, int y) const { return {offset_[slot(x, y)], offset_[slot(last_x, y) + 1]}; }
+  std::array<std::uint32_t, 2> range(int x, int last_x, int y) const {
+    return {offset_[slot(x, y)], offset_[slot(last_x, y) + 1]};
+  }
   const CellEntry& operator[](std::uint32_t entry) const { return entries_[entry]; }
 
   /// What an entry is to four others.
   struct Pairs {
-    Floats gap;           ///< [m]
-    Numbers touch;        ///< whether their columns of cells do; rows are not looked at
-    Numbers are_apart;    ///< whether the components differ
+    Floats gap;         ///< [m]
+    Numbers touch;      ///< whether their columns of cells do; rows are not looked at
+    Numbers are_apart;  ///< whether the components differ
   };
   /// To the entries from `others` on; there may be fewer than four.
   [[gnu::always_inline]] Pairs compare(const CellEntry& own, std::uint32_t others) const {
@@ -122,7 +125,8 @@ class CellGrid {
     };
     const Floats dx = along(0), dy = along(1), dz = along(2);
     const Numbers step = loadNumbers(&x_[others]) - own.x;
-    return {squareRoots(dx * dx + (dy * dy + dz * dz)), (step >= -1) & (step <= 1), loadNumbers(&name_[others]) != own.name()};
+    return {squareRoots(dx * dx + (dy * dy + dz * dz)), (step >= -1) & (step <= 1),
+            loadNumbers(&name_[others]) != own.name()};
   }
 
  private:
@@ -133,7 +137,8 @@ class CellGrid {
   }
 
   std::size_t slot(int x, int y) const {
-    return static_cast<std::size_t>(y + reach_) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x + reach_);
+    return static_cast<std::size_t>(y + reach_) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(x + reach_);
   }
 
   void put(const CellEntry& entry, std::uint32_t place) {
@@ -166,8 +171,8 @@ class CellGrid {
   int reach_, width_;
   std::vector<std::uint32_t> offset_;
   std::vector<CellEntry> entries_;
-  std::array<std::vector<float>, 3> low_, high_;   ///< of the entries' boxes, with room for whole vectors from any one
-  std::vector<std::int32_t> x_, name_;             ///< of the entries, likewise
+  std::array<std::vector<float>, 3> low_, high_;  ///< of the entries' boxes, with room for whole vectors from any one
+  std::vector<std::int32_t> x_, name_;            ///< of the entries, likewise
 };
 
 void addPair(const CellEntry& own, const CellEntry& other, float gap, bool touch, ContactCollector& contacts) {
@@ -200,7 +205,8 @@ void addCells(const CellGrid& grid, const ContactParams& params, ContactCollecto
       const auto [first, last] = grid.range(x, x, y);
       for (std::uint32_t own = first; own < last; ++own) {
         if (grid[own].ring != kRingCentre) continue;
-        for (int other_y = y - grid.reach(); other_y <= y + grid.reach(); ++other_y) addRow(grid, grid[own], other_y, near, contacts);
+        for (int other_y = y - grid.reach(); other_y <= y + grid.reach(); ++other_y)
+          addRow(grid, grid[own], other_y, near, contacts);
       }
     }
 }

@@ -26,18 +26,21 @@ struct NearPoints {
   std::size_t count = 0;
 
   /// Takes the points within reach; columns of cells with a wider gap are not looked at.
-  void collect(const PointGrid& grid, const NeighbourWalk& walk, const ColumnGaps& gaps, const Eigen::Vector3f& seed, float reach_squared) {
+  void collect(const PointGrid& grid, const NeighbourWalk& walk, const ColumnGaps& gaps, const Eigen::Vector3f& seed,
+               float reach_squared) {
     std::array<std::array<std::uint32_t, 2>, 9> run;
     std::size_t runs = 0, total = 0;
-    for (std::size_t k = 0; k < 9; ++k) {   // written first, counted if there is something in reach
+    for (std::size_t k = 0; k < 9; ++k) {  // written first, counted if there is something in reach
       run[runs] = {grid.cell_start[walk.first(k)], grid.cell_start[walk.last(k)]};
       total += run[runs][1] - run[runs][0];
-      runs += static_cast<std::size_t>(run[runs][0] < run[runs][1]) & static_cast<std::size_t>(gaps[k] <= reach_squared);
+      runs +=
+          static_cast<std::size_t>(run[runs][0] < run[runs][1]) & static_cast<std::size_t>(gaps[k] <= reach_squared);
     }
     count = 0;
     if (total + kLanes > point.size()) resize(2 * (total + kLanes));
     for (std::size_t r = 0; r < runs; ++r)
-      for (std::uint32_t i = run[r][0]; i < run[r][1]; i += kLanes) addFour(grid, i, run[r][1] - i, seed, reach_squared);
+      for (std::uint32_t i = run[r][0]; i < run[r][1]; i += kLanes)
+        addFour(grid, i, run[r][1] - i, seed, reach_squared);
   }
 
   std::size_t countWithin(float reach_squared) const {
@@ -59,8 +62,8 @@ struct NearPoints {
 
  private:
   /// Takes those of the points i to i + 3 that are near and among the first `left`: written first, counted if so.
-  [[gnu::always_inline]] void addFour(const PointGrid& grid, std::uint32_t i, std::uint32_t left, const Eigen::Vector3f& seed,
-                                      float reach_squared) {
+  [[gnu::always_inline]] void addFour(const PointGrid& grid, std::uint32_t i, std::uint32_t left,
+                                      const Eigen::Vector3f& seed, float reach_squared) {
     const Floats dx = loadFloats(grid.x.data() + i) - seed.x(), dy = loadFloats(grid.y.data() + i) - seed.y(),
                  dz = loadFloats(grid.z.data() + i) - seed.z();
     const Floats distance = dx * dx + dy * dy + dz * dz;
@@ -104,8 +107,8 @@ void fillVolume(const PointGrid& grid, const NearPoints& near, float reach_squar
   tile.reach[cluxel] = std::sqrt(reach_squared);
 }
 
-/// The squared distance that holds the wanted number of points, between the two bounds; found in its bucket of distances,
-/// so that few are sorted.
+/// The squared distance that holds the wanted number of points, between the two bounds; found in its bucket of
+/// distances, so that few are sorted.
 float grownReach(const NearPoints& near, std::size_t wanted, float least, float largest, std::vector<float>& scratch) {
   if (near.count <= wanted) return largest;
   constexpr std::size_t kBuckets = 32;
@@ -117,7 +120,7 @@ float grownReach(const NearPoints& near, std::size_t wanted, float least, float 
   while (before + count[bucket] < wanted) before += count[bucket++];
   if (scratch.size() < near.count) scratch.resize(2 * near.count);
   std::size_t found = 0;
-  for (std::size_t n = 0; n < near.count; ++n) {   // written first, counted if it is one
+  for (std::size_t n = 0; n < near.count; ++n) {  // written first, counted if it is one
     scratch[found] = near.squared[n];
     found += bucketOf(near.squared[n]) == bucket ? 1U : 0U;
   }
@@ -134,8 +137,9 @@ struct Squares {
 };
 
 /// Volumes of radius around the seeds of ascending `cluxels`; returns those that hold too few points.
-std::vector<std::uint32_t> measureFixed(const PointGrid& grid, const TilePoints& points, const CellKeys& key, const Squares& squares,
-                                        std::size_t wanted, const std::vector<std::uint32_t>& cluxels, CluxelTile& tile) {
+std::vector<std::uint32_t> measureFixed(const PointGrid& grid, const TilePoints& points, const CellKeys& key,
+                                        const Squares& squares, std::size_t wanted,
+                                        const std::vector<std::uint32_t>& cluxels, CluxelTile& tile) {
   std::vector<std::uint32_t> sparse;
   NeighbourWalk walk(grid.cell_key);
   NearPoints near;
@@ -155,7 +159,8 @@ std::vector<std::uint32_t> measureFixed(const PointGrid& grid, const TilePoints&
 }
 
 /// `cluxels` in the order of the cells of their seeds.
-std::vector<KeyedItem> byCell(const std::vector<std::uint32_t>& cluxels, const TilePoints& points, const CellKeys& key, const CluxelTile& tile) {
+std::vector<KeyedItem> byCell(const std::vector<std::uint32_t>& cluxels, const TilePoints& points, const CellKeys& key,
+                              const CluxelTile& tile) {
   std::vector<KeyedItem> order;
   order.reserve(cluxels.size());
   for (const auto c : cluxels) {
@@ -166,10 +171,11 @@ std::vector<KeyedItem> byCell(const std::vector<std::uint32_t>& cluxels, const T
   return order;
 }
 
-/// Volumes of those of `cluxels` that are sparse, in the order of the wide cells; returns the others, ascending. Where more
-/// than `crowd` points lie in the cells around, a cluxel is taken for another without a look.
-std::vector<std::uint32_t> measureGrown(const PointGrid& grid, const TilePoints& points, const CellKeys& key, const Squares& squares,
-                                        std::size_t wanted, std::size_t crowd, const std::vector<std::uint32_t>& cluxels, CluxelTile& tile) {
+/// Volumes of those of `cluxels` that are sparse, in the order of the wide cells; returns the others, ascending. Where
+/// more than `crowd` points lie in the cells around, a cluxel is taken for another without a look.
+std::vector<std::uint32_t> measureGrown(const PointGrid& grid, const TilePoints& points, const CellKeys& key,
+                                        const Squares& squares, std::size_t wanted, std::size_t crowd,
+                                        const std::vector<std::uint32_t>& cluxels, CluxelTile& tile) {
   std::vector<std::uint32_t> others;
   NeighbourWalk walk(grid.cell_key);
   NearPoints near;
@@ -206,7 +212,9 @@ std::size_t columnOf(float x, float y) {
   return static_cast<std::size_t>(y * per_m) * kColumnsPerTile + static_cast<std::size_t>(x * per_m);
 }
 
-std::int32_t sliceOf(float z) { return static_cast<std::int32_t>(wholeBelow(z / kSliceHeight_m)); }
+std::int32_t sliceOf(float z) {
+  return static_cast<std::int32_t>(wholeBelow(z / kSliceHeight_m));
+}
 
 }  // namespace
 
@@ -223,10 +231,12 @@ void measureVolumes(const PointGrid& cells, const PointGrid& wide_cells, const T
   const CellKeys key(params.radius_m, params.radius_m), wide_key(largest_m, largest_m);
   std::vector<std::uint32_t> left(tile.size());
   std::iota(left.begin(), left.end(), 0U);
-  // Most cluxels are sparse, which the wide cells show, too: only the others need the narrow ones. Of a surface's points in
-  // the wide cells around, one in 25 is within the usual radius: where so many lie there, to look at all would be in vain.
+  // Most cluxels are sparse, which the wide cells show, too: only the others need the narrow ones. Of a surface's
+  // points in the wide cells around, one in 25 is within the usual radius: where so many lie there, to look at all
+  // would be in vain.
   const std::size_t crowd = 32 * wanted;
-  if (squares.largest > squares.radius) left = measureGrown(wide_cells, points, wide_key, squares, wanted, crowd, left, tile);
+  if (squares.largest > squares.radius)
+    left = measureGrown(wide_cells, points, wide_key, squares, wanted, crowd, left, tile);
   left = measureFixed(cells, points, key, squares, wanted, left, tile);
   measureGrown(wide_cells, points, wide_key, squares, wanted, std::numeric_limits<std::size_t>::max(), left, tile);
 }

@@ -15,9 +15,9 @@ constexpr std::size_t kLabels = kPrimitiveLabelCount;
 
 /// The edges at each node: those to later nodes are a range of the sorted edges, those to earlier ones are listed.
 struct Incidence {
-  std::vector<std::uint32_t> forward_begin;    // size + 1, into edges
-  std::vector<std::uint32_t> backward_begin;   // size + 1, into backward
-  std::vector<std::uint32_t> backward;         // edge numbers, ascending by `from`
+  std::vector<std::uint32_t> forward_begin;   // size + 1, into edges
+  std::vector<std::uint32_t> backward_begin;  // size + 1, into backward
+  std::vector<std::uint32_t> backward;        // edge numbers, ascending by `from`
 };
 
 Incidence incidenceOf(const CrfGraph& graph) {
@@ -60,7 +60,9 @@ struct Costs {
 };
 static_assert(kLabels == kLanes + 1, "a vector holds all labels but one");
 
-Costs costsOf(const LabelCosts& costs) { return {loadFloats(costs.data()), costs[kLanes]}; }
+Costs costsOf(const LabelCosts& costs) {
+  return {loadFloats(costs.data()), costs[kLanes]};
+}
 
 /// The costs of one edge as rows of a matrix: row a holds V(a, b) for b of 0 to 3; the last row is that of label 4.
 using PairRows = std::array<Floats, kLabels>;
@@ -85,8 +87,12 @@ PairRows rowsOf(const PairCosts& pair) {
 class Trws {
  public:
   explicit Trws(const CrfGraph& graph)
-      : x_graph(graph), x_at(incidenceOf(graph)), x_to_later(graph.edges.size()), x_to_earlier(graph.edges.size()),
-        x_from_earlier(graph.size()), x_min_marginals(graph.size()) {
+      : x_graph(graph),
+        x_at(incidenceOf(graph)),
+        x_to_later(graph.edges.size()),
+        x_to_earlier(graph.edges.size()),
+        x_from_earlier(graph.size()),
+        x_min_marginals(graph.size()) {
     x_pairs.reserve(graph.edges.size());
     for (const PairCosts& pair : graph.pair_costs) x_pairs.push_back(rowsOf(pair));
   }
@@ -95,7 +101,7 @@ class Trws {
     for (std::uint32_t i = 0; i < x_graph.size(); ++i) {
       Costs costs = costsOf(x_graph.unary[i]);
       addFromEarlier(i, costs);
-      costs.store(x_from_earlier[i]);   // the same on the way back
+      costs.store(x_from_earlier[i]);  // the same on the way back
       addFromLater(i, costs);
       sendForward(i, costs);
     }
@@ -108,7 +114,7 @@ class Trws {
       Costs costs = costsOf(x_from_earlier[i]);
       addFromLater(i, costs);
       bound += static_cast<double>(costs.subtractMin());
-      costs.store(x_min_marginals[i]);   // no message to this node will change before the next pass
+      costs.store(x_min_marginals[i]);  // no message to this node will change before the next pass
       bound += sendBackward(i, costs);
     }
     return bound;
@@ -149,7 +155,8 @@ class Trws {
 
   /// What an edge carries on: the tree's share of the belief, without what came along the edge itself; its least is
   /// taken off and returned.
-  [[gnu::always_inline]] static float send(const Costs& belief, float share, const LabelCosts& received, const PairRows& pair, LabelCosts& sent) {
+  [[gnu::always_inline]] static float send(const Costs& belief, float share, const LabelCosts& received,
+                                           const PairRows& pair, LabelCosts& sent) {
     const Costs back = costsOf(received);
     Costs message = minSum({share * belief.most - back.most, share * belief.last - back.last}, pair);
     const float least = message.subtractMin();
@@ -194,7 +201,7 @@ class Trws {
   Incidence x_at;
   std::vector<PairRows> x_pairs;
   std::vector<LabelCosts> x_to_later, x_to_earlier;
-  std::vector<LabelCosts> x_from_earlier;   ///< unary costs and what earlier nodes said on the last way forth
+  std::vector<LabelCosts> x_from_earlier;  ///< unary costs and what earlier nodes said on the last way forth
   std::vector<LabelCosts> x_min_marginals;
 };
 

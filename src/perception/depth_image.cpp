@@ -45,7 +45,8 @@ std::vector<Eigen::Vector3d> standsOf(const PlaceCloud& cloud, const VirtualSens
   return stands;
 }
 
-std::vector<std::size_t> nearestPoints(const PlaceCloud& cloud, const Eigen::Vector3d& stand, const VirtualSensor& sensor) {
+std::vector<std::size_t> nearestPoints(const PlaceCloud& cloud, const Eigen::Vector3d& stand,
+                                       const VirtualSensor& sensor) {
   const auto steps = static_cast<std::size_t>(std::ceil(2 * std::numbers::pi / sensor.step_rad));
   const double per_line = static_cast<double>(sensor.lines) / (sensor.highest_rad - sensor.lowest_rad);
   constexpr std::size_t nothing = std::numeric_limits<std::size_t>::max();

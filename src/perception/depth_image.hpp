@@ -24,6 +24,7 @@ PlaceCloud placeCloud(std::span<const Scan> scans, std::span<const PointTruth> t
 std::vector<Eigen::Vector3d> standsOf(const PlaceCloud& cloud, const VirtualSensor& sensor);
 
 /// Indices of the nearest point of each direction, by direction.
-std::vector<std::size_t> nearestPoints(const PlaceCloud& cloud, const Eigen::Vector3d& stand, const VirtualSensor& sensor);
+std::vector<std::size_t> nearestPoints(const PlaceCloud& cloud, const Eigen::Vector3d& stand,
+                                       const VirtualSensor& sensor);
 
 }  // namespace cluxel

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Features of edges. Places of both ends are exact floats and every formula is symmetric, so both tiles of a border agree.
+// Features of edges. Places of both ends are exact floats and every formula is symmetric, so both tiles of a border
+// agree.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,23 +14,25 @@ namespace {
 constexpr float kLeastThickness_m = 0.02F;
 constexpr std::size_t kEdgeColumns = 10;
 
-Eigen::Vector3f widened(const Eigen::Vector3f& size) { return size.array() + kLeastThickness_m; }
+Eigen::Vector3f widened(const Eigen::Vector3f& size) {
+  return size.array() + kLeastThickness_m;
+}
 
 /// What edges read of a cluxel, side by side: an edge's other end lies anywhere.
 struct EdgeEnd {
   Eigen::Vector3f center;
   float reach;
   Volume volume;
-  float size;                ///< of the widened volume [m3]
+  float size;  ///< of the widened volume [m3]
   Eigen::Vector3f normal;
   double linearity, planarity, scattering;
 };
 
 EdgeEnd edgeEnd(const RingCluxels& cluxels, std::size_t c, const EigenShape& ball) {
   const Volume& volume = cluxels.volume[c];
-  return {cluxels.center[c], cluxels.reach[c], volume, widened(volume.high - volume.low).prod(),
-          ball.normal.cast<float>(),   // it came from floats
-          ball.linearity(), ball.planarity(), ball.scattering()};
+  return {cluxels.center[c],         cluxels.reach[c], volume,           widened(volume.high - volume.low).prod(),
+          ball.normal.cast<float>(),  // it came from floats
+          ball.linearity(),          ball.planarity(), ball.scattering()};
 }
 
 /// Common volume over the smaller volume, in [0, 1].
@@ -48,11 +51,11 @@ class SharedSupport {
     cluxel_ = cluxel;
     for (const auto member : graph_.neighbours(cluxel)) mark_[member] = 1;
   }
-  /// Shared members over all members of the two 1-rings, each with its centre: how much the features of both ends rest on
-  /// the same. `other` is a neighbour.
+  /// Shared members over all members of the two 1-rings, each with its centre: how much the features of both ends rest
+  /// on the same. `other` is a neighbour.
   float shareWith(std::uint32_t other) const {
     const auto others = graph_.neighbours(other);
-    std::int32_t shared = 2;   // the two are in each other's rings
+    std::int32_t shared = 2;  // the two are in each other's rings
     for (const auto member : others) shared += mark_[member];
     const auto both = static_cast<std::int32_t>(graph_.neighbours(cluxel_).size() + others.size());
     return static_cast<float>(shared) / static_cast<float>(both + 2 - shared);
@@ -71,17 +74,13 @@ EdgeRow edgeRow(const EdgeEnd& a, const EdgeEnd& b, float shared) {
   const Eigen::Vector3d d = (b.center - a.center).cast<double>();
   const Eigen::Vector3d normal_a = a.normal.cast<double>(), normal_b = b.normal.cast<double>();
   const double distance = d.norm();
-  return {static_cast<float>(distance),
-          static_cast<float>(distance / (a.reach + b.reach)),
-          static_cast<float>(std::abs(d.z())),
-          static_cast<float>(std::min(1.0, std::abs(normal_a.dot(normal_b)))),
+  return {static_cast<float>(distance), static_cast<float>(distance / (a.reach + b.reach)),
+          static_cast<float>(std::abs(d.z())), static_cast<float>(std::min(1.0, std::abs(normal_a.dot(normal_b)))),
           // How far each centre lies off the other's plane [m]; the larger one. 0 when neither has a plane.
           static_cast<float>(std::max(std::abs(normal_a.dot(d)), std::abs(normal_b.dot(d)))),
           static_cast<float>(std::abs(a.linearity - b.linearity)),
           static_cast<float>(std::abs(a.planarity - b.planarity)),
-          static_cast<float>(std::abs(a.scattering - b.scattering)),
-          volumeShare(a, b),
-          shared};
+          static_cast<float>(std::abs(a.scattering - b.scattering)), volumeShare(a, b), shared};
 }
 
 /// Whether the row of an own cluxel's edge stands with its other end.
@@ -106,8 +105,9 @@ std::vector<EdgeEnd> edgeEnds(const FeatureInput& input) {
 }  // namespace
 
 std::vector<std::string> edgeColumns() {
-  return {"distance", "distance_by_reach", "height_difference", "normals_parallel", "off_plane", "linearity_difference",
-          "planarity_difference", "scattering_difference", "volume_overlap", "support_overlap"};
+  return {"distance",       "distance_by_reach",    "height_difference",    "normals_parallel",
+          "off_plane",      "linearity_difference", "planarity_difference", "scattering_difference",
+          "volume_overlap", "support_overlap"};
 }
 
 void fillEdges(const FeatureInput& input, FeatureTile& tile) {
@@ -120,7 +120,7 @@ void fillEdges(const FeatureInput& input, FeatureTile& tile) {
   const auto ends = edgeEnds(input);
   SharedSupport shared(graph, cluxels.size());
   tile.edge_features.reserve(rowCount(cluxels, graph) * kEdgeColumns);
-  std::vector<EdgeRow> rows;   // of one cluxel
+  std::vector<EdgeRow> rows;  // of one cluxel
   for (std::uint32_t c = cluxels.own_begin; c < cluxels.own_end; ++c) {
     shared.moveTo(c);
     tile.edge_offset.push_back(static_cast<std::uint32_t>(graph.offset[c] - first));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eigenvalues and eigenvectors of four symmetric 3 x 3 matrices at once: the eigenvalue that stands apart and its vector
-// first, then those of the 2 x 2 matrix across it (after Eberly, "A Robust Eigensolver for 3 x 3 Symmetric Matrices", 2014).
+// Eigenvalues and eigenvectors of four symmetric 3 x 3 matrices at once: the eigenvalue that stands apart and its
+// vector first, then those of the 2 x 2 matrix across it (after Eberly, "A Robust Eigensolver for 3 x 3 Symmetric
+// Matrices", 2014).
 #include "perception/eigen_shape.hpp"
 
 #include "perception/vector_lanes.hpp"
@@ -13,12 +14,18 @@ struct Vector {
   Floats x, y, z;
 };
 
-Floats dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Floats dot(const Vector& a, const Vector& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 Vector cross(const Vector& a, const Vector& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-Vector scaled(const Vector& a, const Floats& by) { return {a.x * by, a.y * by, a.z * by}; }
-Vector sum(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+Vector scaled(const Vector& a, const Floats& by) {
+  return {a.x * by, a.y * by, a.z * by};
+}
+Vector sum(const Vector& a, const Vector& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
 Vector choose(const Numbers& which, const Vector& a, const Vector& b) {
   return {which ? a.x : b.x, which ? a.y : b.y, which ? a.z : b.z};
 }
@@ -49,13 +56,15 @@ Apart eigenvectorApart(const Matrix& m) {
   const Floats a = m.xx - third, b = m.yy - third, c = m.zz - third;
   const Floats off = m.xy * m.xy + m.xz * m.xz + m.yz * m.yz;
   const Floats p = squareRoots((a * a + b * b + c * c + 2.0F * off) / 6.0F);
-  const Floats determinant = a * (b * c - m.yz * m.yz) - m.xy * (m.xy * c - m.yz * m.xz) + m.xz * (m.xy * m.yz - b * m.xz);
+  const Floats determinant =
+      a * (b * c - m.yz * m.yz) - m.xy * (m.xy * c - m.yz * m.xz) + m.xz * (m.xy * m.yz - b * m.xz);
   const Floats cube = 2.0F * p * p * p;
   const Floats r = determinant / (cube + tiny), size = r < zero ? -r : r;
   const Numbers is_largest = r >= zero;
   const Floats away = 2.0F * p * largestRoot(lesserOf(size, zero + 1.0F));
   const Floats value = is_largest ? away : -away;
-  // Rows of the matrix without the eigenvalue span the plane across the vector: the clearest of their products is taken.
+  // Rows of the matrix without the eigenvalue span the plane across the vector: the clearest of their products is
+  // taken.
   const Vector row_0{a - value, m.xy, m.xz}, row_1{m.xy, b - value, m.yz}, row_2{m.xz, m.yz, c - value};
   const Vector by_01 = cross(row_0, row_1), by_02 = cross(row_0, row_2), by_12 = cross(row_1, row_2);
   const Floats size_01 = dot(by_01, by_01), size_02 = dot(by_02, by_02), size_12 = dot(by_12, by_12);
@@ -66,9 +75,10 @@ Apart eigenvectorApart(const Matrix& m) {
   const Vector best = choose(is_last, by_12, better);
   const Floats best_size = is_last ? size_12 : better_size;
   const Floats length = squareRoots(best_size);
-  const Numbers found = length > tiny;   // else all three are alike, and any vector will do
+  const Numbers found = length > tiny;  // else all three are alike, and any vector will do
   const Floats per_length = 1.0F / (found ? length : zero + 1.0F);
-  return {{found ? best.x * per_length : zero + 1.0F, found ? best.y * per_length : zero, found ? best.z * per_length : zero},
+  return {{found ? best.x * per_length : zero + 1.0F, found ? best.y * per_length : zero,
+           found ? best.z * per_length : zero},
           is_largest};
 }
 
@@ -96,7 +106,7 @@ Eigen3 solve(const Matrix& m) {
   const Floats mean = half * (uu + ww), difference = half * (uu - ww);
   const Floats spread = squareRoots(difference * difference + uw * uw);
   const Numbers has_spread = spread > tiny;
-  const Floats cosine = has_spread ? difference / (has_spread ? spread : half) : zero + 1.0F;   // of twice the angle
+  const Floats cosine = has_spread ? difference / (has_spread ? spread : half) : zero + 1.0F;  // of twice the angle
   const Floats size = cosine < zero ? -cosine : cosine;
   const Floats longer = squareRoots(half * (1.0F + size));
   const Floats shorter = has_spread ? uw / (2.0F * longer * (has_spread ? spread : half)) : zero;

@@ -14,9 +14,9 @@ namespace cluxel {
 
 /// Zero everywhere for a set without extent; `normal` is zero for a set that lies on a line, which has none.
 struct EigenShape {
-  std::array<double, 3> value{};                          ///< l1 >= l2 >= l3 >= 0 [m2]
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();         ///< of l1
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();       ///< of l3
+  std::array<double, 3> value{};                     ///< l1 >= l2 >= l3 >= 0 [m2]
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();    ///< of l1
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of l3
 
   double linearity() const { return value[0] > 0 ? (value[0] - value[1]) / value[0] : 0; }
   double planarity() const { return value[0] > 0 ? (value[1] - value[2]) / value[0] : 0; }
@@ -37,10 +37,12 @@ Covariance covarianceOf(const Moments& moments);
 /// Of a sum that is not finished yet.
 Covariance covarianceOf(const MomentSum& sum);
 
-/// Shapes of up to four sets, found together: the shape of a set does not depend on its companions. In float, which is far
-/// finer than points are, and without functions of a library: the same bits on every machine.
+/// Shapes of up to four sets, found together: the shape of a set does not depend on its companions. In float, which is
+/// far finer than points are, and without functions of a library: the same bits on every machine.
 std::array<EigenShape, 4> shapesOf(std::span<const Covariance> covariances);
-inline EigenShape shapeOf(const Covariance& covariance) { return shapesOf({&covariance, 1})[0]; }
+inline EigenShape shapeOf(const Covariance& covariance) {
+  return shapesOf({&covariance, 1})[0];
+}
 
 /// Collects sets until four can be solved together; `keep(number, shape)` receives them in the order they came.
 class FourShapes {

@@ -22,7 +22,7 @@ class FeatureBins {
  private:
   std::size_t x_rows;
   std::vector<std::vector<float>> x_cuts;
-  std::vector<std::uint8_t> x_bins;    // column by column
+  std::vector<std::uint8_t> x_bins;  // column by column
 };
 
 }  // namespace cluxel

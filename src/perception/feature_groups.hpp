@@ -18,7 +18,7 @@ struct FeatureInput {
   const Ring<GroundTile>& ground;
   const RingCluxels& cluxels;
   const RingGraph& graph;
-  const std::vector<EigenShape>& ball;   ///< of own and near cluxels
+  const std::vector<EigenShape>& ball;  ///< of own and near cluxels
   const CluxelTile& own() const { return *ring[kRingCentre]; }
 };
 

@@ -17,14 +17,15 @@ constexpr std::uint32_t kFeatureVersion = 1;
 
 /// The groups after those of the supports, in the order of their columns.
 struct FurtherGroup {
-  bool FeatureParams::* wanted;
+  bool FeatureParams::*wanted;
   std::vector<std::string> (*columns)();
   void (*fill)(const FeatureInput&, std::size_t column, FeatureRows&);
 };
-constexpr std::array<FurtherGroup, 4> kFurtherGroups{{{&FeatureParams::wide_shape, wideColumns, fillWideFeatures},
-                                                      {&FeatureParams::height, heightColumns, fillHeightFeatures},
-                                                      {&FeatureParams::pillar, pillarColumns, fillPillarFeatures},
-                                                      {&FeatureParams::intensity, intensityColumns, fillIntensityFeatures}}};
+constexpr std::array<FurtherGroup, 4> kFurtherGroups{
+    {{&FeatureParams::wide_shape, wideColumns, fillWideFeatures},
+     {&FeatureParams::height, heightColumns, fillHeightFeatures},
+     {&FeatureParams::pillar, pillarColumns, fillPillarFeatures},
+     {&FeatureParams::intensity, intensityColumns, fillIntensityFeatures}}};
 
 /// Shapes of the balls of own cluxels and of those that edges lead to.
 std::vector<EigenShape> ballShapes(const Ring<CluxelTile>& ring, const RingCluxels& cluxels) {
@@ -80,7 +81,8 @@ FeatureLayout featureLayout(const FeatureParams& params) {
   return layout;
 }
 
-FeatureTile computeFeatures(const Ring<CluxelTile>& cluxels, const Ring<GroundTile>& ground, const FeatureParams& params) {
+FeatureTile computeFeatures(const Ring<CluxelTile>& cluxels, const Ring<GroundTile>& ground,
+                            const FeatureParams& params) {
   const CluxelTile& own = *cluxels[kRingCentre];
   const RingCluxels gathered = gatherCluxels(cluxels);
   const RingGraph graph = intersectionGraph(gathered);
@@ -105,7 +107,9 @@ FeatureTile computeFeatures(const Ring<CluxelTile>& cluxels, const Ring<GroundTi
   return tile;
 }
 
-std::vector<std::string> intensityColumns() { return {"intensity.mean", "intensity.deviation", "intensity.known"}; }
+std::vector<std::string> intensityColumns() {
+  return {"intensity.mean", "intensity.deviation", "intensity.known"};
+}
 
 void fillIntensityFeatures(const FeatureInput& input, std::size_t column, FeatureRows& rows) {
   const CluxelTile& own = input.own();
@@ -144,10 +148,12 @@ FeatureTile featureTileFromBytes(std::string_view bytes) {
   reader.require(isOffsets(tile.edge_offset, edges), "has edges that do not belong to a cluxel");
   reader.require(size == 0 ? tile.features.empty() : tile.features.size() % size == 0, "has rows of different lengths");
   for (const auto& target : tile.edge_target)
-    reader.require(target.ring < 9 && (target.ring != kRingCentre || target.index < size), "has an edge that leads nowhere");
+    reader.require(target.ring < 9 && (target.ring != kRingCentre || target.index < size),
+                   "has an edge that leads nowhere");
   tile.edge_row_offset = edgeRowOffsets(tile);
   const std::size_t rows = tile.edge_row_offset.back();
-  reader.require(rows == 0 ? tile.edge_features.empty() : tile.edge_features.size() % rows == 0, "has edge rows of different lengths");
+  reader.require(rows == 0 ? tile.edge_features.empty() : tile.edge_features.size() % rows == 0,
+                 "has edge rows of different lengths");
   reader.require(allWithin(tile.center, kLargestHeight_m), "has a centre that is not a number");
   reader.finish();
   return tile;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ground of a tile: sunken cells out, raised cells out by slope, twice (as seen, then against the trend), the rest filled.
+// Ground of a tile: sunken cells out, raised cells out by slope, twice (as seen, then against the trend), the rest
+// filled.
 #include "cluxel/perception/ground_tile.hpp"
 
 #include <algorithm>
@@ -37,13 +38,14 @@ void dropRaisedAgainstTrend(HeightWindow& window, const GroundParams& params) {
   HeightWindow level = window;
   for (std::size_t i = 0; i < level.size(); ++i) level.height[i] -= trend[i];
   dropRaisedCells(level, kColumnSize_m, params.steepest * kTrendFactor, params.step_m * 0.75);
-  for (std::size_t i = 0; i < level.size(); ++i) window.height[i] = level.knows(i) ? window.height[i] : HeightWindow::kUnknown;
+  for (std::size_t i = 0; i < level.size(); ++i)
+    window.height[i] = level.knows(i) ? window.height[i] : HeightWindow::kUnknown;
 }
 
 /// Where a place lies between the centres of cells along one axis.
 struct Between {
   int cell = 0;
-  double share = 0;   ///< of the next cell
+  double share = 0;  ///< of the next cell
 };
 
 Between between(double local_m) {
@@ -56,7 +58,8 @@ Between between(double local_m) {
 
 void describe(GroundParams& params, ParameterVisitor& visitor) {
   visitor.real({"ground.steepest", "1", 0.05, 5.0, "rise over run that natural ground may have"}, params.steepest);
-  visitor.real({"ground.step", "m", 0.02, 2.0, "height above the slope cone that still counts as ground"}, params.step_m);
+  visitor.real({"ground.step", "m", 0.02, 2.0, "height above the slope cone that still counts as ground"},
+               params.step_m);
 }
 
 GroundTile groundOf(const Ring<CluxelTile>& ring, const GroundParams& params) {
@@ -79,10 +82,12 @@ double groundHeightAt(const Ring<GroundTile>& ring, double x_local, double y_loc
   const auto mixed = [](double low, double high, double share) { return low * (1 - share) + high * share; };
   const double cells_x = x_local / kColumnSize_m - 0.5, cells_y = y_local / kColumnSize_m - 0.5;
   if (cells_x >= 0 && cells_y >= 0 && cells_x < kColumnsPerTile - 1 && cells_y < kColumnsPerTile - 1) {
-    const auto x = static_cast<int>(cells_x), y = static_cast<int>(cells_y);   // most places: all four cells are the tile's own
+    const auto x = static_cast<int>(cells_x),
+               y = static_cast<int>(cells_y);  // most places: all four cells are the tile's own
     const float* here = ring[kRingCentre]->height.data() + y * kColumnsPerTile + x;
     const double share_x = cells_x - x;
-    return mixed(mixed(here[0], here[1], share_x), mixed(here[kColumnsPerTile], here[kColumnsPerTile + 1], share_x), cells_y - y);
+    return mixed(mixed(here[0], here[1], share_x), mixed(here[kColumnsPerTile], here[kColumnsPerTile + 1], share_x),
+                 cells_y - y);
   }
   const auto cellAt = [&](int x, int y) -> double {
     const int last = kColumnsPerTile - 1;
@@ -116,7 +121,8 @@ GroundTile groundTileFromBytes(std::string_view bytes) {
   constexpr auto kCells = static_cast<std::size_t>(kColumnsPerTile) * kColumnsPerTile;
   GroundTile tile{reader.key(), reader.getMany<float>(kCells), reader.getMany<GroundSource>(kCells)};
   reader.require(allWithin(tile.height, 2 * kLargestHeight_m), "has a ground height that is not a number");
-  for (const auto source : tile.source) reader.require(source <= GroundSource::Filled, "has an unknown source of ground");
+  for (const auto source : tile.source)
+    reader.require(source <= GroundSource::Filled, "has an unknown source of ground");
   reader.finish();
   return tile;
 }

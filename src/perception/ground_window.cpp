@@ -24,7 +24,8 @@ class PaddedHeights {
   explicit PaddedHeights(const HeightWindow& window)
       : width_(static_cast<std::size_t>(window.side) + 2 * kSunkenReach + kLanes),
         height_(width_ * (static_cast<std::size_t>(window.side) + 2 * kSunkenReach), HeightWindow::kUnknown) {
-    for (int y = 0; y < window.side; ++y) std::copy_n(window.height.data() + window.at(0, y), window.side, height_.data() + place(0, y));
+    for (int y = 0; y < window.side; ++y)
+      std::copy_n(window.height.data() + window.at(0, y), window.side, height_.data() + place(0, y));
   }
   /// From the cell `reach` to the left.
   const float* row(int x, int y, int reach) const { return height_.data() + place(x - reach, y); }
@@ -37,8 +38,8 @@ class PaddedHeights {
   std::vector<float> height_;
 };
 
-/// What cells at most `reach` away may differ in height from one: the step and the rise over the distance. Rows are filled
-/// up to whole vectors.
+/// What cells at most `reach` away may differ in height from one: the step and the rise over the distance. Rows are
+/// filled up to whole vectors.
 template <int reach>
 class Allowance {
  public:
@@ -58,7 +59,8 @@ class Allowance {
     for (int v = -reach; v <= reach; ++v) {
       const float* row = heights.row(x, y + v, reach);
       const float* allowed = value_[static_cast<std::size_t>(v + reach)].data();
-      for (std::size_t i = 0; i < kVectors; ++i) sum -= holds(loadFloats(row + i * kLanes) - here, loadFloats(allowed + i * kLanes));
+      for (std::size_t i = 0; i < kVectors; ++i)
+        sum -= holds(loadFloats(row + i * kLanes) - here, loadFloats(allowed + i * kLanes));
     }
     return sum[0] + sum[1] + sum[2] + sum[3];
   }
@@ -76,9 +78,9 @@ class SunkenTest {
     const int level = close_.count(heights_, x, y, here, [](const Floats& difference, const Floats& allowed) {
       return (difference <= allowed) & (-difference <= allowed);
     });
-    if (level > kSunkenSupport) return false;   // the cell itself was counted, too
-    const int above = around_.count(heights_, x, y, here,
-                                    [](const Floats& difference, const Floats& allowed) { return difference > allowed; });
+    if (level > kSunkenSupport) return false;  // the cell itself was counted, too
+    const int above = around_.count(
+        heights_, x, y, here, [](const Floats& difference, const Floats& allowed) { return difference > allowed; });
     return above >= 4 * level;
   }
 
@@ -103,7 +105,8 @@ std::vector<float> highestAround(const HeightWindow& window, int reach) {
       const float height = window.height[y * side + x];
       padded[x + margin] = height > kNone ? height : kNone;
     }
-    for (std::size_t shift = 0; shift <= 2 * margin; ++shift) raiseTo(padded.data() + shift, side, rows.data() + y * side);
+    for (std::size_t shift = 0; shift <= 2 * margin; ++shift)
+      raiseTo(padded.data() + shift, side, rows.data() + y * side);
   }
   for (std::size_t y = 0; y < side; ++y)
     for (std::size_t v = y < margin ? 0 : y - margin; v <= std::min(side - 1, y + margin); ++v)
@@ -116,7 +119,7 @@ void sweep(std::vector<float>& envelope, int side, bool forward, float rise) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const float diagonal = rise * std::sqrt(2.0F);
   const auto width = static_cast<std::size_t>(side);
-  std::vector<float> before(width + 2, kInfinity);   // the row before, with a cell to spare on both sides
+  std::vector<float> before(width + 2, kInfinity);  // the row before, with a cell to spare on both sides
   for (std::size_t i = 0; i < width; ++i) {
     float* row = envelope.data() + (forward ? i : width - 1 - i) * width;
     for (std::size_t x = 0; x < width; ++x) {
@@ -133,13 +136,16 @@ void sweep(std::vector<float>& envelope, int side, bool forward, float rise) {
 
 using Doubles = double __attribute__((vector_size(16)));
 
-/// Mean heights of square cells; not a number where nothing is known, as in the row and the column that make an odd side even.
+/// Mean heights of square cells; not a number where nothing is known, as in the row and the column that make an odd
+/// side even.
 struct Level {
   std::size_t side, width;
   std::vector<double> mean;
 
   explicit Level(std::size_t cells_along_edge)
-      : side(cells_along_edge), width((side + 1) / 2 * 2), mean(width * width, std::numeric_limits<double>::quiet_NaN()) {}
+      : side(cells_along_edge),
+        width((side + 1) / 2 * 2),
+        mean(width * width, std::numeric_limits<double>::quiet_NaN()) {}
   double* row(std::size_t y) { return mean.data() + y * width; }
   const double* row(std::size_t y) const { return mean.data() + y * width; }
 };
@@ -155,7 +161,7 @@ Level coarser(const Level& fine) {
         sum += std::isnan(mean) ? 0.0 : mean;
         known += std::isnan(mean) ? 0.0 : 1.0;
       }
-      level.row(v)[u] = sum / known;   // 0 / 0 is not a number
+      level.row(v)[u] = sum / known;  // 0 / 0 is not a number
     }
   }
   return level;
@@ -196,7 +202,7 @@ void dropSunkenCells(HeightWindow& window, double cell_m, double steepest, doubl
   for (int y = 0; y < window.side; ++y)
     for (int x = 0; x < window.side; ++x) {
       const std::size_t cell = window.at(x, y);
-      if (!(highest[cell] > window.height[cell] + next_allowed)) continue;   // nor does it for an unknown one
+      if (!(highest[cell] > window.height[cell] + next_allowed)) continue;  // nor does it for an unknown one
       if (is_sunken(x, y, window.height[cell])) window.height[cell] = HeightWindow::kUnknown;
     }
 }
@@ -209,7 +215,8 @@ void dropRaisedCells(HeightWindow& window, double cell_m, double steepest, doubl
   sweep(envelope, window.side, true, rise);
   sweep(envelope, window.side, false, rise);
   for (std::size_t i = 0; i < envelope.size(); ++i)
-    window.height[i] = window.height[i] > envelope[i] + static_cast<float>(step_m) ? HeightWindow::kUnknown : window.height[i];
+    window.height[i] =
+        window.height[i] > envelope[i] + static_cast<float>(step_m) ? HeightWindow::kUnknown : window.height[i];
 }
 
 std::vector<float> filled(const HeightWindow& window) {
@@ -220,15 +227,17 @@ std::vector<float> filled(const HeightWindow& window) {
   for (std::size_t i = levels.size() - 1; i-- > 0;) fillFrom(levels[i + 1], levels[i]);
   std::vector<float> height(window.size());
   for (std::size_t y = 0; y < side; ++y)
-    std::transform(levels[0].row(y), levels[0].row(y) + side, height.data() + y * side, [](double mean) { return static_cast<float>(mean); });
+    std::transform(levels[0].row(y), levels[0].row(y) + side, height.data() + y * side,
+                   [](double mean) { return static_cast<float>(mean); });
   return height;
 }
 
 std::vector<float> smoothed(const std::vector<float>& height, int side, int reach) {
   const auto pass = [&](const std::vector<float>& in, std::size_t along, std::size_t across) {
     std::vector<float> out(in.size());
-    for (int line = 0; line < side; line += 2) {   // two lines at a time: a quotient of one waits for none of the other
-      const std::size_t one = static_cast<std::size_t>(line) * across, other = static_cast<std::size_t>(std::min(line + 1, side - 1)) * across;
+    for (int line = 0; line < side; line += 2) {  // two lines at a time: a quotient of one waits for none of the other
+      const std::size_t one = static_cast<std::size_t>(line) * across,
+                        other = static_cast<std::size_t>(std::min(line + 1, side - 1)) * across;
       const auto both = [&](int i) {
         return Doubles{in[one + static_cast<std::size_t>(i) * along], in[other + static_cast<std::size_t>(i) * along]};
       };

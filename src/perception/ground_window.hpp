@@ -13,13 +13,15 @@ namespace cluxel {
 /// there and whole rows are worked through without a branch.
 struct HeightWindow {
   static constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-  int side = 0;                       ///< cells along an edge
-  std::vector<float> height;          ///< [m], or kUnknown
+  int side = 0;               ///< cells along an edge
+  std::vector<float> height;  ///< [m], or kUnknown
 
   explicit HeightWindow(int cells_along_edge = 0)
       : side(cells_along_edge), height(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), kUnknown) {}
   std::size_t size() const { return height.size(); }
-  std::size_t at(int x, int y) const { return static_cast<std::size_t>(y) * static_cast<std::size_t>(side) + static_cast<std::size_t>(x); }
+  std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(side) + static_cast<std::size_t>(x);
+  }
   bool knows(std::size_t cell) const { return !std::isnan(height[cell]); }
 };
 

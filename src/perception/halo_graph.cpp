@@ -37,7 +37,8 @@ NodeNumbers numberNodes(const Ring<FeatureTile>& ring, double halo_m, HaloGraph&
 
 constexpr std::uint8_t kNoPlace = 9;
 
-/// The ring position, seen from the centre, of ring position `second` of ring tile `first`; kNoPlace outside of the ring.
+/// The ring position, seen from the centre, of ring position `second` of ring tile `first`; kNoPlace outside of the
+/// ring.
 struct Composed {
   std::array<std::array<std::uint8_t, 9>, 9> place;
   constexpr Composed() : place() {
@@ -69,7 +70,7 @@ HaloGraph haloGraph(const Ring<FeatureTile>& ring, double halo_m) {
     std::uint32_t row = tile.edge_row_offset[index];
     for (std::uint32_t e = tile.edge_offset[index]; e < tile.edge_offset[index + 1]; ++e) {
       const RingIndex target = tile.edge_target[e];
-      if (!FeatureTile::hasRow(index, target)) continue;   // entered from the other end, which comes first
+      if (!FeatureTile::hasRow(index, target)) continue;  // entered from the other end, which comes first
       const std::uint32_t here = row++;
       const std::size_t at = kComposed.place[r][target.ring];
       if (at == kNoPlace || target.index >= number[at].size()) continue;

@@ -20,15 +20,15 @@ struct HaloNode {
 /// One edge between nodes, with where its features stand.
 struct HaloEdge {
   CrfEdge ends;
-  std::uint32_t ring = 0, row = 0;      ///< row `row` of the edge features of tile `ring`
-  std::uint32_t degrees = 0;            ///< of both cluxels together, over all their edges
+  std::uint32_t ring = 0, row = 0;  ///< row `row` of the edge features of tile `ring`
+  std::uint32_t degrees = 0;        ///< of both cluxels together, over all their edges
   float share() const { return shareOf(degrees); }
 };
 
 /// Structure without costs. Nodes are ordered by ring tile and number; a tile's own cluxels are a range.
 struct HaloGraph {
   std::vector<HaloNode> nodes;
-  std::vector<HaloEdge> edges;          ///< ascending by ends
+  std::vector<HaloEdge> edges;  ///< ascending by ends
   std::uint32_t own_begin = 0, own_end = 0;
 };
 HaloGraph haloGraph(const Ring<FeatureTile>& ring, double halo_m);

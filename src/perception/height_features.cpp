@@ -16,7 +16,7 @@ struct Profile {
   static constexpr std::int32_t kNoBase = std::int32_t{1} << 30;
   float low = std::numeric_limits<float>::infinity(), high = -std::numeric_limits<float>::infinity();
   std::int32_t base = kNoBase;
-  std::uint32_t columns = 0;       ///< occupied ones
+  std::uint32_t columns = 0;  ///< occupied ones
   std::uint64_t slices = 0;
 };
 
@@ -41,18 +41,25 @@ Profile profileOf(const Column& column) {
   return {column.low, column.high, column.base_slice, 1, column.slices};
 }
 
-constexpr int kWideReach = 3;                                    ///< columns around a cluxel's own that are looked at
+constexpr int kWideReach = 3;  ///< columns around a cluxel's own that are looked at
 constexpr int kPadded = kColumnsPerTile + 2 * kWideReach;
 
-std::size_t cellAt(int x, int y) { return static_cast<std::size_t>((y + kWideReach) * kPadded + x + kWideReach); }
+std::size_t cellAt(int x, int y) {
+  return static_cast<std::size_t>((y + kWideReach) * kPadded + x + kWideReach);
+}
 
-using Profiles = std::vector<Profile>;   // of the padded tile, by cellAt()
+using Profiles = std::vector<Profile>;  // of the padded tile, by cellAt()
 
 Profiles columnsAround(const Ring<CluxelTile>& ring) {
   Profiles profiles(static_cast<std::size_t>(kPadded) * kPadded);
   for (int y = -kWideReach; y < kColumnsPerTile + kWideReach; ++y)
     for (int x = -kWideReach; x < kColumnsPerTile + kWideReach; ++x) {
-      const int column = 1 + (x < 0 ? -1 : x >= kColumnsPerTile ? 1 : 0), row = 1 + (y < 0 ? -1 : y >= kColumnsPerTile ? 1 : 0);
+      const int column = 1 + (x < 0                  ? -1
+                              : x >= kColumnsPerTile ? 1
+                                                     : 0),
+                row = 1 + (y < 0                  ? -1
+                           : y >= kColumnsPerTile ? 1
+                                                  : 0);
       const CluxelTile* tile = ring[static_cast<std::size_t>(3 * row + column)];
       if (tile == nullptr) continue;
       const int u = (x + kColumnsPerTile) % kColumnsPerTile, v = (y + kColumnsPerTile) % kColumnsPerTile;
@@ -66,8 +73,10 @@ class ProfileSquares {
  public:
   explicit ProfileSquares(const Ring<CluxelTile>& ring)
       : columns_(columnsAround(ring)), three_(columns_.size()), seven_(columns_.size()) {
-    for (std::size_t i = 1; i + 1 < columns_.size(); ++i) three_[i] = joined(joined(columns_[i - 1], columns_[i]), columns_[i + 1]);
-    for (std::size_t i = 2; i + 2 < columns_.size(); ++i) seven_[i] = joined(joined(three_[i - 2], columns_[i]), three_[i + 2]);
+    for (std::size_t i = 1; i + 1 < columns_.size(); ++i)
+      three_[i] = joined(joined(columns_[i - 1], columns_[i]), columns_[i + 1]);
+    for (std::size_t i = 2; i + 2 < columns_.size(); ++i)
+      seven_[i] = joined(joined(three_[i - 2], columns_[i]), three_[i + 2]);
   }
   /// Of the column itself, of 3 x 3 and of 7 x 7 columns around it.
   struct Nested {
@@ -88,15 +97,21 @@ class ProfileSquares {
   Profiles columns_, three_, seven_;
 };
 
-/// Occupied slices that hang together above the lowest bit, over gaps of a single slice: up to the first two empty ones.
-int runUp(std::uint64_t slices) { return std::countr_zero(~slices & ~(slices >> 1U)); }
-int runDown(std::uint64_t slices) { return std::countl_zero(~slices & ~(slices << 1U)); }
+/// Occupied slices that hang together above the lowest bit, over gaps of a single slice: up to the first two empty
+/// ones.
+int runUp(std::uint64_t slices) {
+  return std::countr_zero(~slices & ~(slices >> 1U));
+}
+int runDown(std::uint64_t slices) {
+  return std::countl_zero(~slices & ~(slices << 1U));
+}
 
 void putProfile(const Profile& profile, double z, double ground, std::span<float> out) {
   const int at = std::clamp(static_cast<int>(wholeBelow(z / kSliceHeight_m)) - profile.base, 0, 63);
   const std::uint64_t below = at == 0 ? 0 : profile.slices & ((std::uint64_t{1} << static_cast<unsigned>(at)) - 1);
   const std::uint64_t above = at == 63 ? 0 : profile.slices >> static_cast<unsigned>(at + 1);
-  const std::uint64_t under = at == 0 ? 0 : profile.slices << static_cast<unsigned>(64 - at);   // the next one is the highest bit
+  const std::uint64_t under =
+      at == 0 ? 0 : profile.slices << static_cast<unsigned>(64 - at);  // the next one is the highest bit
   const auto metres = [](int slices) { return static_cast<float>(slices * kSliceHeight_m); };
   out[0] = metres(runDown(under));
   out[1] = metres(runUp(above));
@@ -127,8 +142,11 @@ std::vector<ProfileSquares::Nested> profilesOf(const FeatureInput& input) {
   return profiles;
 }
 
-/// A centre may lie in a column without points, when the cluxel's points lie around it: then the wider profile stands in.
-const Profile& occupied(const Profile& narrow, const Profile& wider) { return narrow.columns > 0 ? narrow : wider; }
+/// A centre may lie in a column without points, when the cluxel's points lie around it: then the wider profile stands
+/// in.
+const Profile& occupied(const Profile& narrow, const Profile& wider) {
+  return narrow.columns > 0 ? narrow : wider;
+}
 
 }  // namespace
 

@@ -28,8 +28,11 @@ Json treeJson(const ObliviousTree& tree) {
 }
 
 Json pairsJson(const PairModel& pairs) {
-  return {{"unary_scale", pairs.unary_scale}, {"pair_scale", pairs.pair_scale},
-          {"degree_power", pairs.degree_power}, {"knots", pairs.knots}, {"weights", pairs.weights}};
+  return {{"unary_scale", pairs.unary_scale},
+          {"pair_scale", pairs.pair_scale},
+          {"degree_power", pairs.degree_power},
+          {"knots", pairs.knots},
+          {"weights", pairs.weights}};
 }
 
 [[noreturn]] void refuse(const std::string& file, const std::string& what) {
@@ -77,7 +80,8 @@ ObliviousTree treeOf(const Json& json, std::size_t columns) {
   }
   tree.leaves.resize(count);
   for (std::size_t i = 0; i < leaves.size(); ++i) {
-    require(leaves[i].is_number_integer() && std::abs(leaves[i].get<double>()) < 1e6, "a leaf is not a small whole number");
+    require(leaves[i].is_number_integer() && std::abs(leaves[i].get<double>()) < 1e6,
+            "a leaf is not a small whole number");
     tree.leaves[i / kPrimitiveLabelCount][i % kPrimitiveLabelCount] = leaves[i].get<float>() * kLeafStep;
   }
   return tree;
@@ -101,7 +105,8 @@ PairModel pairsOf(const Json& json, std::size_t columns) {
   require(pairs.degree_power >= 0 && pairs.degree_power <= 4, "degree_power is not from 0 to 4");
   const Json &knots = json.at("knots"), &weights = json.at("weights");
   require(knots.is_array() && knots.size() == columns, "the pairwise term fits other edge columns");
-  require(weights.is_array() && weights.size() == 1 + kHats * columns, "the pairwise term has a wrong number of weights");
+  require(weights.is_array() && weights.size() == 1 + kHats * columns,
+          "the pairwise term has a wrong number of weights");
   for (const Json& row : knots) {
     pairs.knots.push_back(moderateArray<kHats>(row));
     const HatKnots& knot = pairs.knots.back();
@@ -124,7 +129,8 @@ FeatureLayout layoutOf(const Json& json, const PerceptionParams& perception) {
   FeatureLayout layout{json.at("columns").get<std::vector<std::string>>(),
                        json.at("edge_columns").get<std::vector<std::string>>()};
   require(layout.hash().hex() == json.at("hash").get<std::string>(), "the features' hash does not fit their names");
-  require(layout.hash() == featureLayout(perception.features).hash(), "this program makes other features than the model reads");
+  require(layout.hash() == featureLayout(perception.features).hash(),
+          "this program makes other features than the model reads");
   return layout;
 }
 
@@ -148,13 +154,19 @@ std::string modelText(const LabelModel& model) {
   for (const ObliviousTree& tree : model.unary.trees) trees.push_back(treeJson(tree));
   const Calibration& calibration = model.calibration;
   const Json head{
-      {"format", "cluxel label model"}, {"version", kModelVersion}, {"name", model.name},
-      {"labels", kPrimitiveLabelNames}, {"provenance", model.provenance},
+      {"format", "cluxel label model"},
+      {"version", kModelVersion},
+      {"name", model.name},
+      {"labels", kPrimitiveLabelNames},
+      {"provenance", model.provenance},
       {"perception", perceptionSettings(model.perception)},
-      {"features", {{"hash", model.layout.hash().hex()}, {"columns", model.layout.columns},
-                    {"edge_columns", model.layout.edge_columns}}},
+      {"features",
+       {{"hash", model.layout.hash().hex()},
+        {"columns", model.layout.columns},
+        {"edge_columns", model.layout.edge_columns}}},
       {"calibration", {{"slope", calibration.slope}, {"offset", calibration.offset}, {"favour", calibration.favour}}},
-      {"pairs", pairsJson(model.pairs)}, {"unary", {{"bias", model.unary.bias}, {"trees", trees}}}};
+      {"pairs", pairsJson(model.pairs)},
+      {"unary", {{"bias", model.unary.bias}, {"trees", trees}}}};
   return head.dump() + "\n";
 }
 
@@ -180,6 +192,8 @@ LabelModel loadModel(const std::filesystem::path& path) {
   return parseModel(readFile(file), file.string());
 }
 
-void saveModel(const LabelModel& model, const std::filesystem::path& path) { writeFile(path, modelText(model)); }
+void saveModel(const LabelModel& model, const std::filesystem::path& path) {
+  writeFile(path, modelText(model));
+}
 
 }  // namespace cluxel

@@ -10,7 +10,9 @@ namespace cluxel {
 
 namespace {
 
-double ratio(double part, double whole) { return whole > 0 ? part / whole : 0.0; }
+double ratio(double part, double whole) {
+  return whole > 0 ? part / whole : 0.0;
+}
 
 }  // namespace
 
@@ -72,7 +74,8 @@ std::string toMarkdown(const LabelScores& scores) {
   for (std::size_t k = 0; k < kPrimitiveLabelCount; ++k) {
     text += "| " + std::string(kPrimitiveLabelNames[k]) + " | ";
     for (const std::uint64_t count : scores.confusion[k]) text += std::to_string(count) + " | ";
-    std::snprintf(cell.data(), cell.size(), "%.3f | %.3f | %.3f |\n", scores.precision(k), scores.recall(k), scores.f1(k));
+    std::snprintf(cell.data(), cell.size(), "%.3f | %.3f | %.3f |\n", scores.precision(k), scores.recall(k),
+                  scores.f1(k));
     text += cell.data();
   }
   std::snprintf(cell.data(), cell.size(), "\noverall accuracy %.4f, macro F1 %.4f, %llu points\n", scores.accuracy(),
@@ -84,7 +87,8 @@ void CalibrationError::add(const TruthCounts& truth, std::uint8_t label, float p
   double points = 0;
   for (const std::uint32_t count : truth) points += count;
   const auto last = static_cast<double>(bins_.size() - 1);
-  Bin& bin = bins_[static_cast<std::size_t>(std::clamp(std::floor(static_cast<double>(probability) * 20.0), 0.0, last))];
+  Bin& bin =
+      bins_[static_cast<std::size_t>(std::clamp(std::floor(static_cast<double>(probability) * 20.0), 0.0, last))];
   bin.points += points;
   bin.right += truth[label];
   bin.stated += points * static_cast<double>(probability);

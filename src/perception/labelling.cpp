@@ -30,7 +30,8 @@ CalibratedLabel calibrate(const Calibration& calibration, const LabelValues& mar
   return result;
 }
 
-TileLabeller::TileLabeller(const LabelModel& model) : x_model(model), x_trees(std::make_unique<TreeScorer>(model.unary)) {}
+TileLabeller::TileLabeller(const LabelModel& model)
+    : x_model(model), x_trees(std::make_unique<TreeScorer>(model.unary)) {}
 
 TileLabeller::~TileLabeller() = default;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bodies of the lane kernels; included by the two sources that compile them. Nothing of a library may be called here:
-// the linker would be free to take its AVX2 version for the whole program.
+// The bodies of the lane kernels; included by the two sources that compile them. Nothing of a library may be called
+// here: the linker would be free to take its AVX2 version for the whole program.
 #pragma once
 
 #include "cluxel/scan/primitive_label.hpp"
@@ -43,7 +43,8 @@ struct TreeLanes {
   using Places = std::int32_t[kTogether][kTreeRows];
 
   /// Where the leaf of each row begins, in floats: its number has the bits of the splits from the last to the first.
-  [[gnu::always_inline]] static void placesOf(const TreeTable& table, std::size_t tree, const float* columns, std::int32_t* places) {
+  [[gnu::always_inline]] static void placesOf(const TreeTable& table, std::size_t tree, const float* columns,
+                                              std::int32_t* places) {
     const std::uint32_t begin = table.split_begin[tree], end = table.split_begin[tree + 1];
     for (std::size_t row = 0; row < kTreeRows; row += kVectors * kWidth) {
       Marks leaf[kVectors] = {};
@@ -61,8 +62,8 @@ struct TreeLanes {
     }
   }
 
-  [[gnu::always_inline]] static void addLeaves(const TreeTable& table, std::size_t first, std::size_t count, const Places& places,
-                                               float* sums) {
+  [[gnu::always_inline]] static void addLeaves(const TreeTable& table, std::size_t first, std::size_t count,
+                                               const Places& places, float* sums) {
     const float* leaves[kTogether];
     for (std::size_t t = 0; t < count; ++t) leaves[t] = table.leaves + table.leaf_begin[first + t];
     for (std::size_t row = 0; row < kTreeRows; ++row) {
@@ -86,7 +87,7 @@ static void addTrees(const TreeTable& table, const float* columns, float* sums) 
     const std::size_t left = table.trees - first, count = left < Lanes::kTogether ? left : Lanes::kTogether;
     for (std::size_t t = 0; t < count; ++t) Lanes::placesOf(table, first + t, columns, places[t]);
     if (count == Lanes::kTogether)
-      Lanes::addLeaves(table, first, Lanes::kTogether, places, sums);   // a number that the compiler knows
+      Lanes::addLeaves(table, first, Lanes::kTogether, places, sums);  // a number that the compiler knows
     else
       Lanes::addLeaves(table, first, count, places, sums);
   }
@@ -104,7 +105,8 @@ struct PairLanes {
   }
 
   /// Costs of kWidth edges; the tables' numbers stand at the lanes' places.
-  [[gnu::always_inline]] static void costsOf(const PairTable& table, const float* columns, const float* factors, float* costs) {
+  [[gnu::always_inline]] static void costsOf(const PairTable& table, const float* columns, const float* factors,
+                                             float* costs) {
     const Values zero{}, one = zero + 1.0F;
     Values sum[kPairs];
     for (std::size_t pair = 0; pair < kPairs; ++pair) sum[pair] = at(table.bias, pair);
@@ -130,9 +132,11 @@ struct PairLanes {
 template <std::size_t kWidth>
 static void pairCosts(const PairTable& table, const float* columns, const float* factors, float* costs) {
   for (std::size_t lane = 0; lane < kPairEdges; lane += kWidth) {
-    const auto from = [lane](const float* numbers) { return numbers == nullptr ? nullptr : numbers + lane; };   // without columns: none
-    PairLanes<kWidth>::costsOf({table.bias + lane, from(table.knots), from(table.weights), table.columns}, from(columns),
-                               factors + lane, costs + lane);
+    const auto from = [lane](const float* numbers) {
+      return numbers == nullptr ? nullptr : numbers + lane;
+    };  // without columns: none
+    PairLanes<kWidth>::costsOf({table.bias + lane, from(table.knots), from(table.weights), table.columns},
+                               from(columns), factors + lane, costs + lane);
   }
 }
 

@@ -19,10 +19,10 @@ struct TreeTable {
     std::uint32_t column;
     float threshold;
   };
-  const Split* splits;                 ///< tree by tree
-  const std::uint32_t* split_begin;    ///< trees + 1
-  const float* leaves;                 ///< tree by tree, kPrimitiveLabelCount each
-  const std::uint32_t* leaf_begin;     ///< per tree, in floats
+  const Split* splits;               ///< tree by tree
+  const std::uint32_t* split_begin;  ///< trees + 1
+  const float* leaves;               ///< tree by tree, kPrimitiveLabelCount each
+  const std::uint32_t* leaf_begin;   ///< per tree, in floats
   std::size_t trees;
 };
 
@@ -31,9 +31,9 @@ inline constexpr std::size_t kPairEdges = 8;
 
 /// A pair model; each number stands kPairEdges times.
 struct PairTable {
-  const float* bias;       ///< per pair of labels
-  const float* knots;      ///< per column: low, middle, width below the middle, width above
-  const float* weights;    ///< per column and pair: of the hats at the low, the middle and the high knot
+  const float* bias;     ///< per pair of labels
+  const float* knots;    ///< per column: low, middle, width below the middle, width above
+  const float* weights;  ///< per column and pair: of the hats at the low, the middle and the high knot
   std::size_t columns;
 };
 
@@ -53,6 +53,8 @@ extern template LaneKernels laneKernels<8>();
 
 bool hasEightLanes();
 /// The fastest that this machine can run.
-inline LaneKernels fastestKernels() { return hasEightLanes() ? laneKernels<8>() : laneKernels<4>(); }
+inline LaneKernels fastestKernels() {
+  return hasEightLanes() ? laneKernels<8>() : laneKernels<4>();
+}
 
 }  // namespace cluxel

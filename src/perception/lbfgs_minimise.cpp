@@ -38,7 +38,8 @@ int stopOnFailure(void* instance, const lbfgsfloatval_t*, const lbfgsfloatval_t*
 
 }  // namespace
 
-std::vector<double> minimise(const SmoothObjective& objective, std::vector<double> start, const MinimiseParams& params) {
+std::vector<double> minimise(const SmoothObjective& objective, std::vector<double> start,
+                             const MinimiseParams& params) {
   if (start.empty()) return start;
   const int n = static_cast<int>(start.size());
   const std::unique_ptr<lbfgsfloatval_t, decltype(&lbfgs_free)> x(lbfgs_malloc(n), &lbfgs_free);

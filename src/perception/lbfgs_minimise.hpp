@@ -13,7 +13,7 @@ using SmoothObjective = std::function<double(std::span<const double> x, std::spa
 
 struct MinimiseParams {
   int iterations = 200;
-  double precision = 1e-5;     ///< stop when |gradient| < precision * max(1, |x|)
+  double precision = 1e-5;  ///< stop when |gradient| < precision * max(1, |x|)
 };
 
 /// The best point found from `start`. Deterministic; rethrows what the objective throws.

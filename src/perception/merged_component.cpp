@@ -20,7 +20,9 @@ Eigen::Vector3d vectorOf(const std::array<float, 3>& values) {
   return Eigen::Vector3d(values[0], values[1], values[2]);
 }
 
-Eigen::Vector3d upward(const Eigen::Vector3d& axis) { return axis.z() < 0 ? Eigen::Vector3d(-axis) : axis; }
+Eigen::Vector3d upward(const Eigen::Vector3d& axis) {
+  return axis.z() < 0 ? Eigen::Vector3d(-axis) : axis;
+}
 
 double& attributeIn(Primitive& primitive, Attribute attribute) {
   return primitive.attributes[static_cast<std::size_t>(attribute)];
@@ -66,7 +68,7 @@ void MergedComponent::describeShape(Primitive& primitive) const {
       scatter_[5];
   covariance /= std::max(points_, 1.0);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-  const Eigen::Vector3d l = solver.eigenvalues().cwiseMax(0.0);   // ascending
+  const Eigen::Vector3d l = solver.eigenvalues().cwiseMax(0.0);  // ascending
   constexpr double kPoint_m2 = 1e-10;
   if (l[2] < kPoint_m2) return;
   primitive.axis = upward(solver.eigenvectors().col(2));

@@ -65,8 +65,8 @@ struct MomentSum {
     const auto part = [](double value) { return static_cast<float>(value); };
     return {part(n),
             {toLocalStep(origin.x() + mx), toLocalStep(origin.y() + my), part(origin.z() + mz)},
-            {part(std::max(0.0, xx - x * mx)), part(xy - x * my), part(xz - x * mz),
-             part(std::max(0.0, yy - y * my)), part(yz - y * mz), part(std::max(0.0, zz - z * mz))}};
+            {part(std::max(0.0, xx - x * mx)), part(xy - x * my), part(xz - x * mz), part(std::max(0.0, yy - y * my)),
+             part(yz - y * mz), part(std::max(0.0, zz - z * mz))}};
   }
 };
 

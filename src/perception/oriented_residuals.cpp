@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Votes are linear between nodes in the sine of the elevation and in the squared cosine of the azimuth: no angle is computed.
+// Votes are linear between nodes in the sine of the elevation and in the squared cosine of the azimuth: no angle is
+// computed.
 #include "perception/oriented_residuals.hpp"
 
 #include <algorithm>
@@ -28,9 +29,10 @@ MainDirection mainDirectionOf(const MomentSum& sum) {
   const double xx = sum.xx / sum.n - mx * mx, xy = sum.xy / sum.n - mx * my, yy = sum.yy / sum.n - my * my;
   const double spread = std::hypot(xx - yy, 2 * xy);
   if (!(xx + yy > kNoExtent_m2) || !(spread > 0)) return {};
-  const double twice = (xx - yy) / spread;   // cosine of twice the angle
+  const double twice = (xx - yy) / spread;  // cosine of twice the angle
   const double side = xy < 0 ? -1.0 : 1.0;
-  return {static_cast<float>(std::sqrt(0.5 * (1 + twice))), static_cast<float>(side * std::sqrt(std::max(0.0, 0.5 * (1 - twice)))),
+  return {static_cast<float>(std::sqrt(0.5 * (1 + twice))),
+          static_cast<float>(side * std::sqrt(std::max(0.0, 0.5 * (1 - twice)))),
           static_cast<float>(std::min(1.0, spread / (xx + yy) / kClearDirection))};
 }
 
@@ -39,7 +41,8 @@ using Level = Floats;
 static_assert(kAzimuthNodes < kLanes);
 using Votes = std::array<Level, kElevationNodes>;
 
-/// Four residuals: the lower of the two elevations around each, the weights there and above, and the shares of azimuths.
+/// Four residuals: the lower of the two elevations around each, the weights there and above, and the shares of
+/// azimuths.
 struct FourVotes {
   std::array<std::int32_t, kLanes> elevation;
   std::array<float, kLanes> low, high;
@@ -52,13 +55,15 @@ Numbers wholeOf(const Floats& values, std::int32_t most) {
   return whole < last ? whole : last;
 }
 
-FourVotes votesOf(const Floats& x, const Floats& y, const Floats& z, const Floats& length, const MainDirection& main, float median) {
+FourVotes votesOf(const Floats& x, const Floats& y, const Floats& z, const Floats& length, const MainDirection& main,
+                  float median) {
   static_assert(kAzimuthNodes == 3, "the lower of the two azimuths around a residual is the first or the second");
   constexpr float kTiny = 1e-12F;
   const Floats along = x * main.x + y * main.y, across = x * main.y - y * main.x, zero{};
   const Floats weight = lesserOf(length / median, Floats{} + kLongestVote);
   const Floats elevation = (z / (length + kTiny) + 1.0F) * (0.5F * (kElevationNodes - 1));
-  const Floats azimuth = across * across / (along * along + across * across + kTiny) * static_cast<float>(kAzimuthNodes - 1);
+  const Floats azimuth =
+      across * across / (along * along + across * across + kTiny) * static_cast<float>(kAzimuthNodes - 1);
   const Numbers e = wholeOf(elevation, kElevationNodes - 2), a = wholeOf(azimuth, kAzimuthNodes - 2);
   const Floats up = elevation - __builtin_convertvector(e, Floats), on = azimuth - __builtin_convertvector(a, Floats);
   const Floats rest = 1.0F - on, high = weight * up;
@@ -67,7 +72,8 @@ FourVotes votesOf(const Floats& x, const Floats& y, const Floats& z, const Float
   std::memcpy(votes.elevation.data(), &e, sizeof e);
   storeFloats(weight - high, votes.low.data());
   storeFloats(high, votes.high.data());
-  votes.azimuth = turned({is_first ? rest : zero, is_first ? on : rest, is_first ? zero : on, zero});   // a vector for each residual
+  votes.azimuth =
+      turned({is_first ? rest : zero, is_first ? on : rest, is_first ? zero : on, zero});  // a vector for each residual
   return votes;
 }
 
@@ -113,7 +119,8 @@ float fillLengths(const Residuals& residual, HorScratch& scratch) {
   if (scratch.length.size() < residual.x.size()) scratch.length.resize(residual.x.size());
   Floats longest{};
   for (std::size_t i = 0; i < residual.size(); i += kLanes) {
-    const Floats x = loadFloats(residual.x.data() + i), y = loadFloats(residual.y.data() + i), z = loadFloats(residual.z.data() + i);
+    const Floats x = loadFloats(residual.x.data() + i), y = loadFloats(residual.y.data() + i),
+                 z = loadFloats(residual.z.data() + i);
     const Floats length = squareRoots(x * x + y * y + z * z);
     storeFloats(length, scratch.length.data() + i);
     longest = longest < length ? length : longest;
@@ -139,7 +146,7 @@ float medianOf(std::size_t size, float longest, HorScratch& scratch) {
   const std::size_t middle = size / 2;
   while (before + count[bucket] <= middle) before += count[bucket++];
   std::size_t found = 0;
-  for (std::size_t i = 0; i < size; ++i) {   // written first, counted if it is one
+  for (std::size_t i = 0; i < size; ++i) {  // written first, counted if it is one
     scratch.middle[found] = scratch.length[i];
     found += static_cast<std::size_t>(scratch.bucket[i]) == bucket ? 1U : 0U;
   }
@@ -155,7 +162,8 @@ std::vector<std::string> horColumns() {
   for (std::size_t e = 1; e + 1 < kElevationNodes; ++e)
     for (const char* azimuth : {"along", "oblique", "across"})
       names.push_back("hor.e" + std::to_string(e) + "_" + azimuth);
-  names.insert(names.end(), {"hor.up", "hor.to_plane", "hor.to_line", "hor.to_level", "hor.off_plane", "hor.mean_up", "hor.mean_side"});
+  names.insert(names.end(), {"hor.up", "hor.to_plane", "hor.to_line", "hor.to_level", "hor.off_plane", "hor.mean_up",
+                             "hor.mean_side"});
   return names;
 }
 
@@ -171,11 +179,12 @@ void fillHor(const Support& support, const EigenShape& shape, HorScratch& scratc
   const MomentSum& sum = support.sum;
   const Eigen::Vector3d mean = Eigen::Vector3d(sum.x, sum.y, sum.z) / sum.n;
   const std::array<double, kHorScalars> scalars{
-      shape.length(2),                                                            // rms residual to the best plane
-      std::sqrt(shape.value[1] + shape.value[2]),                                 // to the best line
-      std::sqrt(std::max(0.0, sum.zz / sum.n - mean.z() * mean.z())),             // to the best horizontal plane
-      std::abs(mean.dot(shape.normal)),                                           // the centre's own to the plane
-      mean.z(), std::hypot(mean.x(), mean.y())};                                  // where the support lies from the centre
+      shape.length(2),                                                 // rms residual to the best plane
+      std::sqrt(shape.value[1] + shape.value[2]),                      // to the best line
+      std::sqrt(std::max(0.0, sum.zz / sum.n - mean.z() * mean.z())),  // to the best horizontal plane
+      std::abs(mean.dot(shape.normal)),                                // the centre's own to the plane
+      mean.z(),
+      std::hypot(mean.x(), mean.y())};  // where the support lies from the centre
   for (std::size_t i = 0; i < kHorScalars; ++i) out[kHorBins + i] = static_cast<float>(scalars[i] / median);
 }
 

@@ -22,7 +22,8 @@ struct Residuals {
     const std::size_t whole = (size + kLanes - 1) / kLanes * kLanes;
     for (auto* values : {&x, &y, &z}) {
       if (values->size() < whole) values->resize(2 * whole);
-      std::fill(values->begin() + static_cast<std::ptrdiff_t>(size), values->begin() + static_cast<std::ptrdiff_t>(whole), 0.0F);
+      std::fill(values->begin() + static_cast<std::ptrdiff_t>(size),
+                values->begin() + static_cast<std::ptrdiff_t>(whole), 0.0F);
     }
   }
   void set(std::size_t i, float dx, float dy, float dz) {
@@ -37,16 +38,16 @@ struct Residuals {
   std::size_t count_ = 0;
 };
 
-/// The 2-ring support of a cluxel: residuals to its centre, and their moments. Every member weighs the same, however many
-/// points it has: so the support measures the surface and not the scanner's density.
+/// The 2-ring support of a cluxel: residuals to its centre, and their moments. Every member weighs the same, however
+/// many points it has: so the support measures the surface and not the scanner's density.
 struct Support {
-  Residuals residual;                      ///< members' centres minus the cluxel's [m]; without the cluxel itself
-  MomentSum sum;                           ///< with the cluxel itself, relative to its centre
-  float height_low = 0, height_high = 0;   ///< vertical extent of the members' boxes, relative to the centre [m]
+  Residuals residual;                     ///< members' centres minus the cluxel's [m]; without the cluxel itself
+  MomentSum sum;                          ///< with the cluxel itself, relative to its centre
+  float height_low = 0, height_high = 0;  ///< vertical extent of the members' boxes, relative to the centre [m]
 };
 
-inline constexpr std::size_t kElevationNodes = 6;     ///< sin(elevation) -1, -0.6, ... 1; the poles have no azimuth
-inline constexpr std::size_t kAzimuthNodes = 3;       ///< 0, 45 and 90 degrees from the support's main direction
+inline constexpr std::size_t kElevationNodes = 6;  ///< sin(elevation) -1, -0.6, ... 1; the poles have no azimuth
+inline constexpr std::size_t kAzimuthNodes = 3;    ///< 0, 45 and 90 degrees from the support's main direction
 inline constexpr std::size_t kHorBins = (kElevationNodes - 2) * kAzimuthNodes + 2;
 inline constexpr std::size_t kHorScalars = 6;
 inline constexpr std::size_t kHorColumns = kHorBins + kHorScalars;

@@ -17,8 +17,8 @@ class PairCostTable {
   explicit PairCostTable(const PairModel& model, const LaneKernels& kernels = fastestKernels());
 
   struct Edge {
-    const float* features;       ///< columns() values
-    std::uint32_t degrees;       ///< at both ends together: the edge's share is 2 over it
+    const float* features;  ///< columns() values
+    std::uint32_t degrees;  ///< at both ends together: the edge's share is 2 over it
   };
   std::size_t columns() const { return x_columns; }
   std::vector<PairCosts> costsOf(std::span<const Edge> edges) const;
@@ -29,11 +29,13 @@ class PairCostTable {
   PairModel x_model;
   LaneKernels x_kernels;
   std::size_t x_columns;
-  std::vector<float> x_bias, x_knots, x_weights;   ///< as PairTable has them
-  std::vector<float> x_factor;                     ///< by degrees
+  std::vector<float> x_bias, x_knots, x_weights;  ///< as PairTable has them
+  std::vector<float> x_factor;                    ///< by degrees
 };
 
 /// 2 over the degrees at both ends of an edge.
-inline float shareOf(std::uint32_t degrees) { return 2.0F / static_cast<float>(degrees < 2 ? 2 : degrees); }
+inline float shareOf(std::uint32_t degrees) {
+  return 2.0F / static_cast<float>(degrees < 2 ? 2 : degrees);
+}
 
 }  // namespace cluxel

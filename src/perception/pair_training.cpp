@@ -33,8 +33,10 @@ PseudoLikelihood::PseudoLikelihood(const PairSamples& samples, const PairShape& 
     x_hats.push_back({0, 1.0F});
     for (std::size_t c = 0; c < samples.columns; ++c) {
       const bool used = edges > 0 && (shape.columns_used.empty() || shape.columns_used[c]);
-      const auto hats = used ? hatsAt(shape.knots[c], samples.features[e * samples.columns + c]) : std::array<float, kHats>{};
-      for (std::size_t h = 0; h < kHats; ++h) x_hats.push_back({static_cast<std::uint32_t>(1 + kHats * c + h), hats[h]});
+      const auto hats =
+          used ? hatsAt(shape.knots[c], samples.features[e * samples.columns + c]) : std::array<float, kHats>{};
+      for (std::size_t h = 0; h < kHats; ++h)
+        x_hats.push_back({static_cast<std::uint32_t>(1 + kHats * c + h), hats[h]});
     }
   }
   for (const PairTerm& term : samples.terms) x_strength.push_back(std::pow(term.share, shape.degree_power));

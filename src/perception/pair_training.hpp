@@ -12,18 +12,18 @@ namespace cluxel {
 
 /// An edge as one of its ends sees it.
 struct PairTerm {
-  std::uint32_t features = 0;      ///< row of PairSamples::features
-  float share = 1;                 ///< 2 / sum of degrees
-  std::uint8_t neighbour = 0;      ///< the other end's true label
+  std::uint32_t features = 0;  ///< row of PairSamples::features
+  float share = 1;             ///< 2 / sum of degrees
+  std::uint8_t neighbour = 0;  ///< the other end's true label
 };
 
 /// Nodes whose own and neighbours' truth is known.
 struct PairSamples {
   std::size_t columns = 0;
-  std::vector<float> features;                 ///< rows of edge features
-  std::vector<PairTerm> terms;                 ///< those of node i: [offset[i], offset[i + 1])
+  std::vector<float> features;  ///< rows of edge features
+  std::vector<PairTerm> terms;  ///< those of node i: [offset[i], offset[i + 1])
   std::vector<std::uint32_t> offset{0};
-  std::vector<LabelCosts> costs;               ///< -log of the unary's probabilities, from a unary that did not see the node
+  std::vector<LabelCosts> costs;  ///< -log of the unary's probabilities, from a unary that did not see the node
   std::vector<std::uint8_t> truth;
   std::vector<float> weight;
 
@@ -33,13 +33,13 @@ struct PairSamples {
 /// Shape of the pairwise term before its weights are known.
 struct PairShape {
   std::vector<HatKnots> knots;
-  std::vector<bool> columns_used;              ///< empty: all
+  std::vector<bool> columns_used;  ///< empty: all
   float degree_power = 0;
   double l2 = 3.0;
 };
 
-/// The negative log pseudo-likelihood per unit of weight, with its gradient: convex. Parameters: the scale of the unary,
-/// then weights row by row as in PairModel. Costs may become negative here; the model cuts them at 0.
+/// The negative log pseudo-likelihood per unit of weight, with its gradient: convex. Parameters: the scale of the
+/// unary, then weights row by row as in PairModel. Costs may become negative here; the model cuts them at 0.
 class PseudoLikelihood {
  public:
   PseudoLikelihood(const PairSamples& samples, const PairShape& shape);
@@ -56,8 +56,8 @@ class PseudoLikelihood {
   const PairSamples& x_samples;
   const PairShape& x_shape;
   std::size_t x_hats_per_edge;
-  std::vector<Term> x_hats;                    // per row of features
-  std::vector<float> x_strength;               // per term: share^degree_power
+  std::vector<Term> x_hats;       // per row of features
+  std::vector<float> x_strength;  // per term: share^degree_power
   double x_total_weight = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a cluxel stands among what is around it at its own height: a pole fills its cells and has nothing beside it, a wall
-// goes on to two sides, leaves are everywhere. Cells are occupied or not, so density matters little.
+// How a cluxel stands among what is around it at its own height: a pole fills its cells and has nothing beside it, a
+// wall goes on to two sides, leaves are everywhere. Cells are occupied or not, so density matters little.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -15,12 +15,12 @@ namespace cluxel {
 namespace {
 
 constexpr double kCell_m = 0.25;
-constexpr int kReach = 3;                      ///< cells around the centre cell that are looked at
-constexpr int kCore = 1;                       ///< of these, the ones that belong to the thing itself
+constexpr int kReach = 3;  ///< cells around the centre cell that are looked at
+constexpr int kCore = 1;   ///< of these, the ones that belong to the thing itself
 constexpr int kTileCells = static_cast<int>(kTileSize_m / kCell_m);
-constexpr int kSide = kTileCells + 2 * kReach + 1;   // one to spare: rows are read eight cells at a time
-constexpr double kBelowGround_m = 2.0;         ///< where the lowest slice lies under the tile's lowest ground
-constexpr int kOwnHeight = 2, kFarHeight = 6;  ///< half heights of the windows of slices: 0.5 m and 1.5 m
+constexpr int kSide = kTileCells + 2 * kReach + 1;  // one to spare: rows are read eight cells at a time
+constexpr double kBelowGround_m = 2.0;              ///< where the lowest slice lies under the tile's lowest ground
+constexpr int kOwnHeight = 2, kFarHeight = 6;       ///< half heights of the windows of slices: 0.5 m and 1.5 m
 constexpr std::size_t kPillarColumns = 7;
 
 /// Slices of kCell_m height in each cell; the first and last one stand for all below and above.
@@ -37,14 +37,18 @@ class Occupancy {
     return slices_.data() + static_cast<std::size_t>((y + kReach) * kSide + x + kReach);
   }
   int sliceOf(double z) const { return static_cast<int>(std::clamp((z - base_m_) / kCell_m, 0.0, 63.0)); }
-  static int cellOf(float local_m) { return static_cast<int>(wholeBelow(static_cast<double>(local_m / static_cast<float>(kCell_m)))); }
+  static int cellOf(float local_m) {
+    return static_cast<int>(wholeBelow(static_cast<double>(local_m / static_cast<float>(kCell_m))));
+  }
 
  private:
   void enter(const CluxelTile& tile, const Eigen::Vector3f& shift) {
     for (std::size_t i = 0; i < tile.size(); ++i) {
-      const int x = cellOf(tile.own[i].mean.x() + shift.x()) + kReach, y = cellOf(tile.own[i].mean.y() + shift.y()) + kReach;
+      const int x = cellOf(tile.own[i].mean.x() + shift.x()) + kReach,
+                y = cellOf(tile.own[i].mean.y() + shift.y()) + kReach;
       if (x < 0 || y < 0 || x >= kSide || y >= kSide) continue;
-      slices_[static_cast<std::size_t>(y * kSide + x)] |= between(sliceOf(tile.box_min[i].z()), sliceOf(tile.box_max[i].z()));
+      slices_[static_cast<std::size_t>(y * kSide + x)] |=
+          between(sliceOf(tile.box_min[i].z()), sliceOf(tile.box_max[i].z()));
     }
   }
   static std::uint64_t between(int low, int high) {
@@ -63,10 +67,10 @@ int octantOf(int x, int y) {
 
 /// Eight cells at once; a comparison gives -1 where it holds.
 using Cells = std::int16_t __attribute__((vector_size(16)));
-constexpr int kWidth = 8;   ///< cells of a row, the last of which is of no use
+constexpr int kWidth = 8;  ///< cells of a row, the last of which is of no use
 constexpr std::size_t kVectors = 2 * kReach + 1;
 static_assert(kWidth == 2 * kReach + 2);
-using Square = std::array<std::int16_t, kWidth * kVectors>;   // row by row
+using Square = std::array<std::int16_t, kWidth * kVectors>;  // row by row
 
 /// What belongs to the cells of the square around a cluxel: whether they lie around the core, and in which directions.
 struct SquareCells {
@@ -86,7 +90,8 @@ struct SquareCells {
 
 /// Slices of a window around a cluxel's own: bit kFarHeight is its own slice.
 constexpr std::int16_t kLevel = 0x1f0, kAbove = 0x1e00, kBelow = 0x00f;
-static_assert(kLevel >> kFarHeight == 0b111 && kOwnHeight == 2 && (kLevel | kAbove | kBelow) == (1 << (2 * kFarHeight + 1)) - 1);
+static_assert(kLevel >> kFarHeight == 0b111 && kOwnHeight == 2 &&
+              (kLevel | kAbove | kBelow) == (1 << (2 * kFarHeight + 1)) - 1);
 
 /// The windows of the square around a place, cell by cell.
 Square windowsAround(const Occupancy& occupancy, int x, int y, int slice) {
@@ -96,7 +101,8 @@ Square windowsAround(const Occupancy& occupancy, int x, int y, int slice) {
   for (int row = 0; row < static_cast<int>(kVectors); ++row) {
     const std::uint64_t* cells = occupancy.from(x - kReach, y - kReach + row);
     std::int16_t* out = windows.data() + row * kWidth;
-    for (int i = 0; i < kWidth; ++i) out[i] = static_cast<std::int16_t>((cells[i] >> down << up) & (kLevel | kAbove | kBelow));
+    for (int i = 0; i < kWidth; ++i)
+      out[i] = static_cast<std::int16_t>((cells[i] >> down << up) & (kLevel | kAbove | kBelow));
   }
   return windows;
 }
@@ -117,7 +123,8 @@ Around countAround(const Square& windows, const SquareCells& square) {
   Cells level{}, above{}, below{}, octants{};
   for (std::size_t v = 0; v < kVectors; ++v) {
     const Cells cells = cellsAt(windows, v) & cellsAt(square.ring, v), none{};
-    const auto on_level = (cells & kLevel) != none, on_above = (cells & kAbove) != none, on_below = (cells & kBelow) != none;
+    const auto on_level = (cells & kLevel) != none, on_above = (cells & kAbove) != none,
+               on_below = (cells & kBelow) != none;
     level -= on_level;
     above -= on_above;
     below -= on_below;
@@ -132,7 +139,8 @@ Around countAround(const Square& windows, const SquareCells& square) {
 }
 
 /// Counts of the surroundings at the height of one cluxel.
-void fillOne(const Occupancy& occupancy, const SquareCells& square, const Eigen::Vector3f& center, std::span<float> out) {
+void fillOne(const Occupancy& occupancy, const SquareCells& square, const Eigen::Vector3f& center,
+             std::span<float> out) {
   const int x = Occupancy::cellOf(center.x()), y = Occupancy::cellOf(center.y());
   const Square windows = windowsAround(occupancy, x, y, occupancy.sliceOf(center.z()));
   unsigned core = 0;
@@ -156,8 +164,9 @@ void fillOne(const Occupancy& occupancy, const SquareCells& square, const Eigen:
 }  // namespace
 
 std::vector<std::string> pillarColumns() {
-  return {"metric.pillar_core_height", "metric.pillar_core_cells", "metric.pillar_beside", "metric.pillar_beside_above",
-          "metric.pillar_beside_below", "metric.pillar_sides", "metric.pillar_opposite_sides"};
+  return {"metric.pillar_core_height",   "metric.pillar_core_cells",   "metric.pillar_beside",
+          "metric.pillar_beside_above",  "metric.pillar_beside_below", "metric.pillar_sides",
+          "metric.pillar_opposite_sides"};
 }
 
 void fillPillarFeatures(const FeatureInput& input, std::size_t column, FeatureRows& rows) {

@@ -58,7 +58,8 @@ PointGrid gather(const Ring<TilePoints>& ring, float margin_m) {
 }  // namespace
 
 CellKeys::CellKeys(double cell_m, double margin_m) {
-  // A little wider than asked for, so that rounding never puts two points within cell_m into cells that are not neighbours.
+  // A little wider than asked for, so that rounding never puts two points within cell_m into cells that are not
+  // neighbours.
   const double wide_m = cell_m * 1.0001;
   per_m_ = 1.0 / wide_m;
   // A whole number of cells, so that cells of the tile begin at its corner; one more keeps neighbours positive.
@@ -66,7 +67,7 @@ CellKeys::CellKeys(double cell_m, double margin_m) {
 }
 
 void endKeys(std::vector<std::uint64_t>& cell_key) {
-  constexpr std::uint64_t kBeyondAll = ~std::uint64_t{0} - 1;   // one more is still a number
+  constexpr std::uint64_t kBeyondAll = ~std::uint64_t{0} - 1;  // one more is still a number
   cell_key.insert(cell_key.end(), 3, kBeyondAll);
 }
 

@@ -14,11 +14,11 @@ namespace cluxel {
 /// Points with their cells, in the order (cell x, y, z; then tile of the ring; then number in the tile).
 struct PointGrid {
   static constexpr std::uint32_t kForeign = 0xffffffffU;
-  static constexpr std::size_t kSpare = 3;   ///< zeros behind the last point: whole vectors may be read from any one
-  std::vector<float> x, y, z;                ///< relative to the centre tile's corner
-  std::vector<std::uint32_t> own;            ///< number in the centre tile, or kForeign
-  std::vector<std::uint64_t> cell_key;       ///< per occupied cell, ascending, and then as endKeys() leaves them
-  std::vector<std::uint32_t> cell_start;     ///< first point per occupied cell, and the end
+  static constexpr std::size_t kSpare = 3;  ///< zeros behind the last point: whole vectors may be read from any one
+  std::vector<float> x, y, z;               ///< relative to the centre tile's corner
+  std::vector<std::uint32_t> own;           ///< number in the centre tile, or kForeign
+  std::vector<std::uint64_t> cell_key;      ///< per occupied cell, ascending, and then as endKeys() leaves them
+  std::vector<std::uint32_t> cell_start;    ///< first point per occupied cell, and the end
 
   std::size_t cells() const { return cell_start.size() - 1; }
 };
@@ -26,7 +26,8 @@ struct PointGrid {
 /// Cells of `cell_m`; of neighbouring tiles the points nearer than `margin_m` to the centre tile.
 PointGrid gridOf(const Ring<TilePoints>& ring, double cell_m, double margin_m);
 
-/// The key of the cell that holds a local point: neighbours in z differ by 1, in y by kCellStrideY, in x by kCellStrideX.
+/// The key of the cell that holds a local point: neighbours in z differ by 1, in y by kCellStrideY, in x by
+/// kCellStrideX.
 inline constexpr std::uint64_t kCellStrideY = std::uint64_t{1} << 24U;
 inline constexpr std::uint64_t kCellStrideX = std::uint64_t{1} << 36U;
 class CellKeys {
@@ -36,12 +37,13 @@ class CellKeys {
   std::uint64_t operator()(float x, float y, float z) const {
     return cell(x, offset_) * kCellStrideX + cell(y, offset_) * kCellStrideY + cell(z, kHeightOffset_m);
   }
-  /// Squared gaps between a place and the 9 columns of cells around it, in the order of NeighbourWalk [m2]; a little too
-  /// small, so that rounding never leaves out a column.
+  /// Squared gaps between a place and the 9 columns of cells around it, in the order of NeighbourWalk [m2]; a little
+  /// too small, so that rounding never leaves out a column.
   std::array<float, 9> gapsAround(float x, float y) const {
     const auto squaresAlong = [&](double value_m) {
       constexpr double kSpare_m = 1e-3;
-      const double cells = (value_m + offset_) * per_m_, share = cells - static_cast<double>(static_cast<std::uint64_t>(cells));
+      const double cells = (value_m + offset_) * per_m_,
+                   share = cells - static_cast<double>(static_cast<std::uint64_t>(cells));
       const auto squareOf = [&](double part) {
         const auto gap_m = static_cast<float>(std::max(0.0, part / per_m_ - kSpare_m));
         return gap_m * gap_m;
@@ -69,7 +71,7 @@ void endKeys(std::vector<std::uint64_t>& cell_key);
 /// in the order (-1,-1), (-1,0), (-1,1), (0,-1), (0,0), ... of (x, y).
 class NeighbourWalk {
  public:
-  static constexpr std::size_t kAll = 9, kEarlier = 5;   ///< columns: all, and those that hold the earlier cells
+  static constexpr std::size_t kAll = 9, kEarlier = 5;  ///< columns: all, and those that hold the earlier cells
 
   /// `cell_key` must have been ended by endKeys().
   explicit NeighbourWalk(const std::vector<std::uint64_t>& cell_key) : cell_key_(cell_key) {}

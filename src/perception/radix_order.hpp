@@ -67,13 +67,14 @@ inline void sortByLongKey(std::vector<KeyedItem>& items, const KeyBits& packed) 
   }
 }
 
-/// The places of keys in ascending order, equal ones as they stand, where a packed key and a place fit into one number, as
-/// they do in a tile: little is moved about. What each digit counts is counted in one run.
+/// The places of keys in ascending order, equal ones as they stand, where a packed key and a place fit into one number,
+/// as they do in a tile: little is moved about. What each digit counts is counted in one run.
 template <typename KeyAt>
 std::vector<std::uint32_t> orderByShortKey(std::size_t count, const KeyAt& key, const KeyBits& packed) {
   constexpr int kMostDigitBits = 11, kMostPasses = 3;
   constexpr std::size_t kMostBuckets = std::size_t{1} << kMostDigitBits;
-  const int passes = (packed.bits() + kMostDigitBits - 1) / kMostDigitBits, digit_bits = (packed.bits() + passes - 1) / passes;
+  const int passes = (packed.bits() + kMostDigitBits - 1) / kMostDigitBits,
+            digit_bits = (packed.bits() + passes - 1) / passes;
   const std::size_t buckets = std::size_t{1} << digit_bits;
   const auto digit = [&](std::uint64_t entry, int pass) { return (entry >> (32 + pass * digit_bits)) & (buckets - 1); };
   std::array<std::array<std::uint32_t, kMostBuckets>, kMostPasses> start;

@@ -66,7 +66,7 @@ void appendEdges(const SceneTiles& tiles, const TileKey& key, const TileNumberin
   for (std::uint32_t c = 0; c < graph.size(); ++c) {
     const auto begin = all.edge_target.begin() + first + graph.edge_offset[c];
     const auto end = all.edge_target.begin() + first + graph.edge_offset[c + 1];
-    if (!std::is_sorted(begin, end)) std::sort(begin, end);   // inside of a tile they are
+    if (!std::is_sorted(begin, end)) std::sort(begin, end);  // inside of a tile they are
   }
 }
 
@@ -74,7 +74,7 @@ void appendCluxels(const SceneTiles& tiles, const TileKey& key, const TileNumber
   const CluxelTile& cluxels = tiles.cluxels.at(key);
   const LabelTile& labels = tiles.labels.at(key);
   const TilePoints& points = tiles.points.at(key);
-  std::vector<std::uint32_t> scan_number;         // of the tile's scans in the scene's
+  std::vector<std::uint32_t> scan_number;  // of the tile's scans in the scene's
   for (const ContentHash& scan : points.scans)
     scan_number.push_back(
         static_cast<std::uint32_t>(std::lower_bound(all.scans.begin(), all.scans.end(), scan) - all.scans.begin()));
@@ -89,7 +89,8 @@ void appendCluxels(const SceneTiles& tiles, const TileKey& key, const TileNumber
   });
   appendEach(all.center, count, [&](auto c) -> Eigen::Vector3d { return corner + centre(c).template cast<double>(); });
   appendEach(all.extent, count, [&](auto c) -> Eigen::Vector3f { return cluxels.box_max[c] - cluxels.box_min[c]; });
-  appendEach(all.low_corner, count, [&](auto c) -> Eigen::Vector3d { return corner + cluxels.box_min[c].template cast<double>(); });
+  appendEach(all.low_corner, count,
+             [&](auto c) -> Eigen::Vector3d { return corner + cluxels.box_min[c].template cast<double>(); });
   appendEach(all.point_count, count, [&](auto c) { return static_cast<std::uint32_t>(cluxels.own[c].count); });
   appendEach(all.label, count, [&](auto c) { return static_cast<PrimitiveLabel>(labels.label[c]); });
   appendEach(all.probability, count, [&](auto c) { return labels.probability[c]; });
@@ -125,8 +126,8 @@ SceneCluxels gatherCluxels(const SceneTiles& tiles) {
   return all;
 }
 
-/// The hash of the label and of the members' seeds, which name a cluxel independently of what else lies in its tile. All go
-/// into the hasher at once: a call of it for each costs as much as the hashing.
+/// The hash of the label and of the members' seeds, which name a cluxel independently of what else lies in its tile.
+/// All go into the hasher at once: a call of it for each costs as much as the hashing.
 ContentHash nameOf(const Primitive& primitive, const SceneCluxels& cluxels) {
   struct Member {
     ContentHash scan;

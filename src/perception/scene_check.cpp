@@ -12,8 +12,9 @@ namespace {
 
 void require(bool holds, const TileKey& key, const char* what) {
   if (holds) return;
-  throw Error(ExitCode::StoreUnavailable, "stored blocks of tile (" + std::to_string(key.x) + ", " + std::to_string(key.y) +
-                                              ") do not belong together: " + what + "; the map is damaged, build it anew");
+  throw Error(ExitCode::StoreUnavailable, "stored blocks of tile (" + std::to_string(key.x) + ", " +
+                                              std::to_string(key.y) + ") do not belong together: " + what +
+                                              "; the map is damaged, build it anew");
 }
 
 /// How many things each tile of the ring has; 0 where there is none.
@@ -42,15 +43,18 @@ void checkFit(const SceneTiles& tiles) {
     checkLengths(tiles, key, cluxels);
     const auto ring_cluxels = sizesAround(tiles.cluxels, key), ring_components = sizesAround(tiles.components, key);
     const auto& edges = tiles.features.at(key).edge_target;
-    require(std::all_of(edges.begin(), edges.end(), [&](const RingIndex& to) { return to.index < ring_cluxels[to.ring]; }), key,
-            "an edge leads to a cluxel that is not there");
+    require(
+        std::all_of(edges.begin(), edges.end(), [&](const RingIndex& to) { return to.index < ring_cluxels[to.ring]; }),
+        key, "an edge leads to a cluxel that is not there");
     const auto& contacts = tiles.contacts.at(key).contacts;
     const auto is_there = [&](const Contact& contact) {
       return contact.from < ring_components[kRingCentre] && contact.to < ring_components[contact.to_ring];
     };
-    require(std::all_of(contacts.begin(), contacts.end(), is_there), key, "a contact is with a component that is not there");
+    require(std::all_of(contacts.begin(), contacts.end(), is_there), key,
+            "a contact is with a component that is not there");
   }
-  require(tiles.components.size() == tiles.cluxels.size() && tiles.contacts.size() == tiles.cluxels.size(), {}, "a block has no tile");
+  require(tiles.components.size() == tiles.cluxels.size() && tiles.contacts.size() == tiles.cluxels.size(), {},
+          "a block has no tile");
 }
 
 }  // namespace cluxel

@@ -6,7 +6,8 @@
 
 namespace cluxel {
 
-/// Throws Error (StoreUnavailable) where blocks of a tile, or of neighbours, speak of things that the others do not have.
+/// Throws Error (StoreUnavailable) where blocks of a tile, or of neighbours, speak of things that the others do not
+/// have.
 void checkFit(const SceneTiles& tiles);
 
 }  // namespace cluxel

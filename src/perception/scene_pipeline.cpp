@@ -12,7 +12,8 @@ namespace {
 
 /// The output of one stage for every tile.
 template <typename Tile, typename Compute>
-std::map<TileKey, Tile> overTiles(const std::map<TileKey, FeatureTile>& tiles, unsigned threads, const Compute& compute) {
+std::map<TileKey, Tile> overTiles(const std::map<TileKey, FeatureTile>& tiles, unsigned threads,
+                                  const Compute& compute) {
   std::vector<TileKey> keys;
   for (const auto& [key, tile] : tiles) keys.push_back(key);
   std::vector<Tile> outputs(keys.size());

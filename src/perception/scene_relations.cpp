@@ -43,7 +43,8 @@ bool isAlongside(const Primitive& a, const Primitive& b) {
   const UprightBox& shorter = a.box.size.x() >= b.box.size.x() ? b.box : a.box;
   if (shorter.size.x() < kShortest_m) return false;
   const double turn = shorter.yaw_rad - longer.yaw_rad;
-  const double half = 0.5 * (std::abs(steady(std::cos(turn))) * shorter.size.x() + std::abs(steady(std::sin(turn))) * shorter.size.y());
+  const double half =
+      0.5 * (std::abs(steady(std::cos(turn))) * shorter.size.x() + std::abs(steady(std::sin(turn))) * shorter.size.y());
   const Eigen::Vector2d along(steady(std::cos(longer.yaw_rad)), steady(std::sin(longer.yaw_rad)));
   const double middle = (shorter.center - longer.center).head<2>().dot(along);
   const double low = std::max(middle - half, -longer.size.x() / 2), high = std::min(middle + half, longer.size.x() / 2);

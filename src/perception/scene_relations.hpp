@@ -15,8 +15,8 @@ namespace cluxel {
 struct PrimitiveContact {
   PrimitiveIndex from = 0, to = 0;
   std::uint64_t edges = 0, overlaps = 0;
-  double height_difference = 0;      ///< summed over overlaps [m]
-  double gap = 0;                    ///< [m]
+  double height_difference = 0;  ///< summed over overlaps [m]
+  double gap = 0;                ///< [m]
 };
 
 /// Appends the relations that follow from `contacts`, and touches_ground of every primitive.

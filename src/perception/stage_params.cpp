@@ -19,7 +19,11 @@ void requireRange(const ParameterInfo& info, double value) {
 
 }  // namespace
 
-void RangeCheck::real(const ParameterInfo& info, double& value) { requireRange(info, value); }
-void RangeCheck::whole(const ParameterInfo& info, int& value) { requireRange(info, value); }
+void RangeCheck::real(const ParameterInfo& info, double& value) {
+  requireRange(info, value);
+}
+void RangeCheck::whole(const ParameterInfo& info, int& value) {
+  requireRange(info, value);
+}
 
 }  // namespace cluxel

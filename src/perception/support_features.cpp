@@ -36,8 +36,16 @@ class SupportSum {
     products_ += d * d_turned + member.spread_turned;
   }
   MomentSum total() const {
-    return {static_cast<double>(count_), sum_[0], sum_[1], sum_[2], squares_[0], products_[0], products_[2],
-            squares_[1], products_[1], squares_[2]};
+    return {static_cast<double>(count_),
+            sum_[0],
+            sum_[1],
+            sum_[2],
+            squares_[0],
+            products_[0],
+            products_[2],
+            squares_[1],
+            products_[1],
+            squares_[2]};
   }
 
  private:
@@ -147,20 +155,23 @@ std::vector<std::string> supportColumns(const FeatureParams& params) {
   if (params.shape)
     for (const char* support : {"shape.ball_", "shape.ring1_", "shape.ring2_"}) append(names, support, kShapeNames);
   if (params.extent)
-    append(names, "metric.extent_", {"box_width", "box_height", "ball_rough", "ring1_rough", "ring2_length",
-                                     "ring2_width", "ring2_rough", "ring2_below", "ring2_above"});
+    append(names, "metric.extent_",
+           {"box_width", "box_height", "ball_rough", "ring1_rough", "ring2_length", "ring2_width", "ring2_rough",
+            "ring2_below", "ring2_above"});
   if (params.density)
     append(names, "metric.density_", {"reach", "spacing", "log_points", "neighbours", "ring2_members"});
   return names;
 }
 
-void fillSupportFeatures(const FeatureInput& input, const FeatureParams& params, std::size_t column, FeatureRows& rows) {
+void fillSupportFeatures(const FeatureInput& input, const FeatureParams& params, std::size_t column,
+                         FeatureRows& rows) {
   const CluxelTile& own = input.own();
   const std::size_t count = supportColumns(params).size();
   SupportWalk walk(input);
   HorScratch scratch;
-  std::array<Surroundings, 2> pair;   // two at a time: their four shapes are found together
-  const auto fillRow = [&](std::uint32_t c, const Surroundings& around, const EigenShape& ring1, const EigenShape& ring2) {
+  std::array<Surroundings, 2> pair;  // two at a time: their four shapes are found together
+  const auto fillRow = [&](std::uint32_t c, const Surroundings& around, const EigenShape& ring1,
+                           const EigenShape& ring2) {
     const EigenShape& ball = input.ball[input.cluxels.own_begin + c];
     RowWriter row(rows.row(c, column, count));
     if (params.hor) fillHor(around.ring2, ring2, scratch, row.take(kHorColumns));

@@ -99,8 +99,9 @@ class TileReader {
   }
 
   [[noreturn]] void failOther() const {
-    throw Error(ExitCode::StoreUnavailable, "stored block " + std::string(kind_) +
-                                                " is of another version of cluxel, which writes it in another form; build the map anew");
+    throw Error(ExitCode::StoreUnavailable,
+                "stored block " + std::string(kind_) +
+                    " is of another version of cluxel, which writes it in another form; build the map anew");
   }
 
   std::string_view rest_, kind_;

@@ -47,16 +47,13 @@ PerceivedTiles perceive(std::span<const Scan> scans, const PerceptionParams& par
     for (auto& [key, segment] : splitScan(scan)) segments[key].push_back(std::move(segment));
   const auto keys = keysOf(segments);
   PerceivedTiles tiles;
-  tiles.points = runStage<TilePoints>(keys, threads, [&](const TileKey& key) {
-    return thinTile(key, segments.at(key), params.thin);
-  });
+  tiles.points = runStage<TilePoints>(keys, threads,
+                                      [&](const TileKey& key) { return thinTile(key, segments.at(key), params.thin); });
   segments.clear();
-  tiles.cluxels = runStage<CluxelTile>(keys, threads, [&](const TileKey& key) {
-    return coverTile(ringIn(tiles.points, key), params.cover);
-  });
-  tiles.ground = runStage<GroundTile>(keys, threads, [&](const TileKey& key) {
-    return groundOf(ringIn(tiles.cluxels, key), params.ground);
-  });
+  tiles.cluxels = runStage<CluxelTile>(
+      keys, threads, [&](const TileKey& key) { return coverTile(ringIn(tiles.points, key), params.cover); });
+  tiles.ground = runStage<GroundTile>(
+      keys, threads, [&](const TileKey& key) { return groundOf(ringIn(tiles.cluxels, key), params.ground); });
   tiles.features = runStage<FeatureTile>(keys, threads, [&](const TileKey& key) {
     return computeFeatures(ringIn(tiles.cluxels, key), ringIn(tiles.ground, key), params.features);
   });

@@ -88,8 +88,14 @@ std::vector<T> pick(const std::vector<T>& values, const std::vector<std::uint32_
 
 TilePoints thinPool(const TileKey& key, std::vector<ScanId> scans, const Pool& pool, const ThinParams& params) {
   const auto kept = keptOf(pool, scans, params);
-  return {key, std::move(scans), pick(pool.x, kept), pick(pool.y, kept), pick(pool.z, kept),
-          pick(pool.intensity, kept), pick(pool.scan, kept), pick(pool.point, kept)};
+  return {key,
+          std::move(scans),
+          pick(pool.x, kept),
+          pick(pool.y, kept),
+          pick(pool.z, kept),
+          pick(pool.intensity, kept),
+          pick(pool.scan, kept),
+          pick(pool.point, kept)};
 }
 
 /// Appends a part's coordinates; intensity is filled with 0 where a part has none and another has.
@@ -120,7 +126,8 @@ bool isUsable(const Eigen::Vector3d& p_map) {
 }
 
 InputError unusablePoint(const Scan& scan, std::size_t point) {
-  return InputError({.file = scan.source}, "point " + std::to_string(point) + " lies outside the map's range or is not a number",
+  return InputError({.file = scan.source},
+                    "point " + std::to_string(point) + " lies outside the map's range or is not a number",
                     "coordinates may reach 10000 km, heights 20 km; check the pose, or give the manifest a map origin");
 }
 
@@ -130,14 +137,16 @@ Eigen::Vector3f relativeTo(const Eigen::Vector3d& corner, const Eigen::Vector3d&
   // Just below zero the sum with the corner is the tile's edge itself, which is the next tile's.
   static constexpr auto kLastStep = static_cast<std::int64_t>(kTileSize_m / kLocalStep_m) - 1;
   const auto rounded = [](double value_m) {
-    return static_cast<float>(static_cast<double>(std::min(wholeBelow(value_m / kLocalStep_m), kLastStep)) * kLocalStep_m);
+    return static_cast<float>(static_cast<double>(std::min(wholeBelow(value_m / kLocalStep_m), kLastStep)) *
+                              kLocalStep_m);
   };
   return {rounded(p.x()), rounded(p.y()), static_cast<float>(p.z())};
 }
 
 /// Whether tileOf() gives the tile with this corner; corners and the edge of a tile are exact.
 bool liesAt(const Eigen::Vector3d& corner, const Eigen::Vector3d& p_map) {
-  return p_map.x() >= corner.x() && p_map.x() < corner.x() + kTileSize_m && p_map.y() >= corner.y() && p_map.y() < corner.y() + kTileSize_m;
+  return p_map.x() >= corner.x() && p_map.x() < corner.x() + kTileSize_m && p_map.y() >= corner.y() &&
+         p_map.y() < corner.y() + kTileSize_m;
 }
 
 }  // namespace
@@ -147,12 +156,14 @@ void describe(ThinParams& params, ParameterVisitor& visitor) {
   visitor.whole({"thin.keep", "1", 1, 1000, "points kept in each voxel"}, params.keep);
 }
 
-Eigen::Vector3f localPoint(const TileKey& key, const Eigen::Vector3d& p_map) { return relativeTo(cornerOf(key), p_map); }
+Eigen::Vector3f localPoint(const TileKey& key, const Eigen::Vector3d& p_map) {
+  return relativeTo(cornerOf(key), p_map);
+}
 
 std::map<TileKey, ScanSegment> splitScan(const Scan& scan) {
   std::map<TileKey, ScanSegment> segments;
   ScanSegment* segment = nullptr;
-  Eigen::Vector3d corner = Eigen::Vector3d::Zero();   // of the segment's tile
+  Eigen::Vector3d corner = Eigen::Vector3d::Zero();  // of the segment's tile
   const auto& points = scan.points;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d p_map = toMap(scan.T_map_sensor, {points.x[i], points.y[i], points.z[i]});

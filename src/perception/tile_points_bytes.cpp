@@ -28,7 +28,8 @@ void getPoints(TileReader& reader, Part& part) {
   part.z = reader.getMany<float>(part.x.size());
   part.intensity = reader.getMany<float>(part.x.size(), true);
   part.point = reader.getMany<std::uint32_t>(part.x.size());
-  reader.require(isInTile(part.x) && isInTile(part.y) && allWithin(part.z, kLargestHeight_m), "has points outside its tile");
+  reader.require(isInTile(part.x) && isInTile(part.y) && allWithin(part.z, kLargestHeight_m),
+                 "has points outside its tile");
 }
 
 }  // namespace

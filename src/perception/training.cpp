@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Training: unaries that leave a group out, the pairwise term and the calibration on what they say, then the final unary.
+// Training: unaries that leave a group out, the pairwise term and the calibration on what they say, then the final
+// unary.
 #include "cluxel/perception/training.hpp"
 
 #include <algorithm>
@@ -15,7 +16,8 @@ namespace {
 /// Everything of a report but the final unary, from groups left out.
 class PairSearch {
  public:
-  PairSearch(const std::vector<ScoredTile>& tiles, const FeatureLayout& layout, const TrainParams& params, unsigned threads)
+  PairSearch(const std::vector<ScoredTile>& tiles, const FeatureLayout& layout, const TrainParams& params,
+             unsigned threads)
       : x_tiles(tiles), x_layout(layout), x_params(params), x_threads(threads) {}
 
   void run(TrainingReport& report, ProgressSink& sink) {
@@ -82,7 +84,8 @@ std::vector<ScoredTile> leaveOut(const PlaceRefs& places, const FeatureLayout& l
                                  unsigned threads, ProgressSink& sink) {
   const std::set<int> groups = groupsOf(places);
   if (groups.size() < 2)
-    throw InputError(SourceLocation{}, "training needs scans of two places at least, to measure on what it has not seen",
+    throw InputError(SourceLocation{},
+                     "training needs scans of two places at least, to measure on what it has not seen",
                      "give more scans, or put them into groups that lie apart");
   std::vector<ScoredTile> tiles;
   std::size_t done = 0;
@@ -134,7 +137,8 @@ PlaceRefs refsOf(std::span<const TrainingPlace> places) {
   return refs;
 }
 
-Evaluation evaluateOn(const LabelModel& model, const PlaceRefs& places, const LabellingParams& params, unsigned threads) {
+Evaluation evaluateOn(const LabelModel& model, const PlaceRefs& places, const LabellingParams& params,
+                      unsigned threads) {
   const std::vector<ScoredTile> tiles = scoreTiles(places, model.unary, params, threads);
   const CalibrationRows rows = inferTiles(tiles, model.pairs, params, threads);
   return {scoresOf(rows, model.calibration), calibrationErrorOf(rows, model.calibration)};

@@ -22,7 +22,7 @@ PointTruth truthOf(const Scan& scan, const std::filesystem::path& file, const Tr
 std::vector<LabelledScans> placesOf(const TrainingSource& source, ProgressSink& sink) {
   const ScanSet set = ScanSet::open(source.inputs, {}, sink);
   std::vector<LabelledScans> places;
-  std::filesystem::path folder_before;   // of a scan with a pose
+  std::filesystem::path folder_before;  // of a scan with a pose
   for (std::size_t i = 0; i < set.size(); ++i) {
     Scan scan = set.load(i);
     const std::filesystem::path folder = std::filesystem::absolute(set.file(i).path).parent_path();
@@ -62,7 +62,8 @@ class PlaceMaker {
     return place;
   }
 
-  void addCopy(const LabelledScans& copy, const std::string& name, int group, std::vector<TrainingPlace>& places) const {
+  void addCopy(const LabelledScans& copy, const std::string& name, int group,
+               std::vector<TrainingPlace>& places) const {
     if (!copy.scans.empty()) places.push_back(make(copy, name, group, true));
   }
 

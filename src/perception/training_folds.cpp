@@ -119,7 +119,8 @@ UnaryRows unaryRows(const PlaceRefs& places, const FeatureLayout& layout, const 
   return rows;
 }
 
-TreeEnsemble trainUnary(const PlaceRefs& places, const FeatureLayout& layout, const TrainParams& params, unsigned threads) {
+TreeEnsemble trainUnary(const PlaceRefs& places, const FeatureLayout& layout, const TrainParams& params,
+                        unsigned threads) {
   BoostingParams boosting = params.boosting;
   boosting.columns_used = columnsUsed(layout.columns, params.without_columns);
   return growTrees(unaryRows(places, layout, params), boosting, threads);
@@ -167,7 +168,10 @@ namespace {
 class TileSampler {
  public:
   TileSampler(const ScoredTile& tile, std::size_t columns, PairSamples& samples)
-      : x_tile(tile), x_columns(columns), x_samples(samples), x_row(tile.structure.edges.size(), kNoRow),
+      : x_tile(tile),
+        x_columns(columns),
+        x_samples(samples),
+        x_row(tile.structure.edges.size(), kNoRow),
         x_edges(tile.structure.nodes.size()) {
     for (std::uint32_t e = 0; e < tile.structure.edges.size(); ++e) {
       x_edges[tile.structure.edges[e].ends.from].push_back(e);
@@ -188,7 +192,8 @@ class TileSampler {
     for (float& cost : costs) cost = -std::log(std::max(cost, 1e-6F));
     x_samples.costs.push_back(costs);
     x_samples.truth.push_back(majority(truth));
-    x_samples.weight.push_back(class_weights[majority(truth)] * static_cast<float>(std::pow(pointsOf(truth), point_power)));
+    x_samples.weight.push_back(class_weights[majority(truth)] *
+                               static_cast<float>(std::pow(pointsOf(truth), point_power)));
   }
 
  private:
@@ -203,7 +208,8 @@ class TileSampler {
     if (x_row[e] == kNoRow) {
       const HaloEdge& edge = x_tile.structure.edges[e];
       x_row[e] = x_columns == 0 ? 0 : static_cast<std::uint32_t>(x_samples.features.size() / x_columns);
-      const auto begin = x_tile.ring[edge.ring]->edge_features.begin() + static_cast<std::ptrdiff_t>(edge.row * x_columns);
+      const auto begin =
+          x_tile.ring[edge.ring]->edge_features.begin() + static_cast<std::ptrdiff_t>(edge.row * x_columns);
       x_samples.features.insert(x_samples.features.end(), begin, begin + static_cast<std::ptrdiff_t>(x_columns));
     }
     return x_row[e];

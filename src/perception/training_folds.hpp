@@ -8,8 +8,8 @@
 
 #include "cluxel/perception/training.hpp"
 #include "perception/calibration.hpp"
-#include "perception/pair_training.hpp"
 #include "perception/halo_graph.hpp"
+#include "perception/pair_training.hpp"
 
 namespace cluxel {
 
@@ -22,7 +22,8 @@ std::set<int> groupsOf(const PlaceRefs& places);
 
 /// Rows for the unary: cluxels with truth, weighted by class and points.
 UnaryRows unaryRows(const PlaceRefs& places, const FeatureLayout& layout, const TrainParams& params);
-TreeEnsemble trainUnary(const PlaceRefs& places, const FeatureLayout& layout, const TrainParams& params, unsigned threads);
+TreeEnsemble trainUnary(const PlaceRefs& places, const FeatureLayout& layout, const TrainParams& params,
+                        unsigned threads);
 
 /// A tile that is labelled by a unary that did not see it: structure with halo and scores of all its nodes.
 struct ScoredTile {

@@ -32,9 +32,10 @@ TrainingPlace makePlace(std::span<const Scan> scans, std::span<const PointTruth>
   for (const auto& [key, cluxels] : tiles.cluxels) place.truth[key].resize(cluxels.size());
   for (std::size_t s = 0; s < scans.size(); ++s) {
     if (truth[s].primitive.size() != scans[s].points.size())
-      throw InputError(SourceLocation{.file = scans[s].source}, "truth for " +
-                       std::to_string(truth[s].primitive.size()) + " points, but the scan has " +
-                       std::to_string(scans[s].points.size()), "give the truth that belongs to this scan");
+      throw InputError(SourceLocation{.file = scans[s].source},
+                       "truth for " + std::to_string(truth[s].primitive.size()) + " points, but the scan has " +
+                           std::to_string(scans[s].points.size()),
+                       "give the truth that belongs to this scan");
     countTruth(tiles, scans[s], truth[s], params.thin, place.truth);
   }
   place.features = std::move(tiles.features);

@@ -26,8 +26,9 @@ inline void turnRows(const std::array<const float*, kLanes>& rows, std::size_t c
     return;
   }
   for (std::size_t next = 0; next < count; next += kLanes) {
-    const std::size_t c = std::min(next, count - kLanes);   // the last ones may be turned twice
-    const auto columns = turned({loadFloats(rows[0] + c), loadFloats(rows[1] + c), loadFloats(rows[2] + c), loadFloats(rows[3] + c)});
+    const std::size_t c = std::min(next, count - kLanes);  // the last ones may be turned twice
+    const auto columns =
+        turned({loadFloats(rows[0] + c), loadFloats(rows[1] + c), loadFloats(rows[2] + c), loadFloats(rows[3] + c)});
     for (std::size_t k = 0; k < kLanes; ++k) storeFloats(columns[k], to + (c + k) * stride);
   }
 }

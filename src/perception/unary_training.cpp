@@ -20,7 +20,7 @@ constexpr std::size_t kRowsPerPiece = 8192;
 
 /// First and second derivatives of the loss by each label's score; padded to whole vector registers.
 struct alignas(16) Derivatives {
-  std::array<float, 12> value{};   // 5 first, 5 second, 2 unused
+  std::array<float, 12> value{};  // 5 first, 5 second, 2 unused
   void add(const Derivatives& other) {
     for (std::size_t k = 0; k < value.size(); ++k) value[k] += other.value[k];
   }

@@ -22,11 +22,12 @@ class RowBlock {
   explicit RowBlock(std::size_t columns) : x_columns(columns), x_values(columns * kTreeRows, 0.0F) {}
 
   void fill(std::span<const float* const> rows) {
-    const auto at = [&](std::size_t r) { return rows[std::min(r, rows.size() - 1)]; };   // the last one fills up
+    const auto at = [&](std::size_t r) { return rows[std::min(r, rows.size() - 1)]; };  // the last one fills up
     for (std::size_t r = 0; r < rows.size(); r += kLanes)
       turnRows({at(r), at(r + 1), at(r + 2), at(r + 3)}, x_columns, x_values.data() + r, kTreeRows);
   }
-  void score(const LabelValues& bias, const TreeTable& table, const LaneKernels& kernels, std::span<LabelValues> scores) {
+  void score(const LabelValues& bias, const TreeTable& table, const LaneKernels& kernels,
+             std::span<LabelValues> scores) {
     x_sums.fill({});
     for (auto& sums : x_sums)
       for (std::size_t k = 0; k < bias.size(); ++k) sums[k] = bias[k];
@@ -55,7 +56,7 @@ TreeScorer::TreeScorer(const TreeEnsemble& ensemble, const LaneKernels& kernels)
     if (size > 0) std::memcpy(x_leaves.data() + x_leaf_begin.back(), tree.leaves.data(), size * sizeof(float));
   }
   static_assert(kPrimitiveLabelCount <= kLeafRead);
-  x_leaves.resize(x_leaves.size() + kLeafRead);   // the last leaf is read beyond its end
+  x_leaves.resize(x_leaves.size() + kLeafRead);  // the last leaf is read beyond its end
 }
 
 TreeTable TreeScorer::table() const {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Four numbers at once, by the vector types that GCC and Clang map to any machine: the same bits as one after the other.
+// Four numbers at once, by the vector types that GCC and Clang map to any machine: the same bits as one after the
+// other.
 #pragma once
 
 #include <cmath>
@@ -23,7 +24,9 @@ inline Floats loadFloats(const float* from) {
   return four;
 }
 
-inline void storeFloats(const Floats& four, float* to) { std::memcpy(to, &four, sizeof four); }
+inline void storeFloats(const Floats& four, float* to) {
+  std::memcpy(to, &four, sizeof four);
+}
 
 /// Correctly rounded, as std::sqrt is.
 inline Floats squareRoots(const Floats& four) {
@@ -44,12 +47,18 @@ inline unsigned lanesThatHold(const Numbers& held) {
 }
 
 /// The bits of the first `count` lanes.
-inline unsigned firstLanes(std::uint32_t count) { return count < kLanes ? (1U << count) - 1U : 0xfU; }
+inline unsigned firstLanes(std::uint32_t count) {
+  return count < kLanes ? (1U << count) - 1U : 0xfU;
+}
 
 /// Whether a comparison holds in all lanes.
-inline bool allHold(const Numbers& held) { return lanesThatHold(held) == 0xfU; }
+inline bool allHold(const Numbers& held) {
+  return lanesThatHold(held) == 0xfU;
+}
 
-inline Floats lesserOf(const Floats& a, const Floats& b) { return a < b ? a : b; }
+inline Floats lesserOf(const Floats& a, const Floats& b) {
+  return a < b ? a : b;
+}
 
 /// The least of the four.
 inline float leastOf(const Floats& four) {

@@ -95,8 +95,8 @@ double noiseOf(std::uint64_t stop, std::size_t point) {
   return sum * std::numbers::sqrt3;
 }
 
-void addScan(const PlaceCloud& cloud, const Eigen::Isometry3d& pose, const Eigen::Isometry3d& stated, std::uint64_t stop,
-             const VirtualDrive& drive, LabelledScans& copy) {
+void addScan(const PlaceCloud& cloud, const Eigen::Isometry3d& pose, const Eigen::Isometry3d& stated,
+             std::uint64_t stop, const VirtualDrive& drive, LabelledScans& copy) {
   Scan scan;
   PointTruth truth;
   for (const std::size_t i : nearestPoints(cloud, pose.translation(), drive.sensor)) {
@@ -121,7 +121,11 @@ void addScan(const PlaceCloud& cloud, const Eigen::Isometry3d& pose, const Eigen
 std::vector<VirtualDrive> usualDrives() {
   return {{.scans = 12, .step_m = 0.9},
           {.scans = 10, .step_m = 1.0, .drift_forward_m = -0.04, .drift_sideways_m = 0.01, .drift_yaw_rad = 0.001},
-          {.scans = 12, .step_m = 0.8, .drift_forward_m = 0.07, .drift_sideways_m = -0.02, .drift_yaw_rad = -0.002,
+          {.scans = 12,
+           .step_m = 0.8,
+           .drift_forward_m = 0.07,
+           .drift_sideways_m = -0.02,
+           .drift_yaw_rad = -0.002,
            .heading_rad = 0.3}};
 }
 

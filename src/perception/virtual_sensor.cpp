@@ -20,8 +20,8 @@ std::vector<T> chosen(const std::vector<T>& values, const std::vector<std::size_
 void keepOf(const Scan& scan, const PointTruth& truth, const std::vector<std::size_t>& keep, LabelledScans& rest) {
   const ScanPoints& points = scan.points;
   Scan copy;
-  copy.points = {chosen(points.x, keep), chosen(points.y, keep), chosen(points.z, keep), chosen(points.intensity, keep),
-                 chosen(points.label, keep), chosen(points.origin, keep)};
+  copy.points = {chosen(points.x, keep),         chosen(points.y, keep),     chosen(points.z, keep),
+                 chosen(points.intensity, keep), chosen(points.label, keep), chosen(points.origin, keep)};
   copy.time_s = scan.time_s;
   copy.T_map_sensor = scan.T_map_sensor;
   copy.has_pose = scan.has_pose;
@@ -33,7 +33,8 @@ void keepOf(const Scan& scan, const PointTruth& truth, const std::vector<std::si
 
 }  // namespace
 
-LabelledScans thinned(std::span<const Scan> scans, std::span<const PointTruth> truth, double share, std::uint64_t seed) {
+LabelledScans thinned(std::span<const Scan> scans, std::span<const PointTruth> truth, double share,
+                      std::uint64_t seed) {
   LabelledScans rest;
   for (std::size_t s = 0; s < scans.size(); ++s) {
     std::vector<std::size_t> keep;

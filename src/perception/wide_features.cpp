@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes of cubes of 1.5 m and 3 m: merged moments of 27 grid cells, worked out once per cell and shared by its cluxels.
+// Shapes of cubes of 1.5 m and 3 m: merged moments of 27 grid cells, worked out once per cell and shared by its
+// cluxels.
 #include <array>
 #include <cmath>
 
@@ -10,7 +11,7 @@
 namespace cluxel {
 namespace {
 
-constexpr std::array<double, 2> kCells_m{0.5, 1.0};   // ascending
+constexpr std::array<double, 2> kCells_m{0.5, 1.0};  // ascending
 constexpr std::size_t kColumnsPerScale = 8;
 
 /// Cluxels of the ring near the tile, summed per grid cell relative to one place.
@@ -23,8 +24,8 @@ struct CellSums {
 
 struct Item {
   Eigen::Vector3f center;
-  std::array<float, 6> spread;           ///< mean products of its points' deviations [m2]
-  std::uint32_t number;                  ///< in the centre tile, or PointGrid::kForeign
+  std::array<float, 6> spread;  ///< mean products of its points' deviations [m2]
+  std::uint32_t number;         ///< in the centre tile, or PointGrid::kForeign
 };
 
 bool isNear(const Eigen::Vector3f& center, double margin_m) {
@@ -56,7 +57,8 @@ CellSums sumCells(const std::vector<Item>& items, double cell_m, std::size_t own
   std::vector<KeyedItem> order;
   order.reserve(items.size());
   for (std::uint32_t i = 0; i < items.size(); ++i)
-    if (const auto& center = items[i].center; isNear(center, cell_m)) order.push_back({key(center.x(), center.y(), center.z()), i});
+    if (const auto& center = items[i].center; isNear(center, cell_m))
+      order.push_back({key(center.x(), center.y(), center.z()), i});
   CellSums cells;
   cells.cell_of_own.resize(own);
   if (order.empty()) return cells;
@@ -79,11 +81,12 @@ CellSums sumCells(const std::vector<Item>& items, double cell_m, std::size_t own
 }
 
 using CubeRow = std::array<float, kColumnsPerScale>;
-constexpr std::size_t kShapeColumns = 6;   // then rise and occupied
+constexpr std::size_t kShapeColumns = 6;  // then rise and occupied
 
 void putShape(const EigenShape& shape, CubeRow& row) {
-  const std::array<double, kShapeColumns> values{shape.linearity(), shape.planarity(), shape.scattering(),
-                                                 std::abs(shape.normal.z()), std::abs(shape.axis.z()), shape.length(2)};
+  const std::array<double, kShapeColumns> values{shape.linearity(),        shape.planarity(),
+                                                 shape.scattering(),       std::abs(shape.normal.z()),
+                                                 std::abs(shape.axis.z()), shape.length(2)};
   for (std::size_t i = 0; i < values.size(); ++i) row[i] = static_cast<float>(values[i]);
 }
 
@@ -105,8 +108,7 @@ void fillScale(const std::vector<Item>& items, std::size_t own, double cell_m, s
     MomentSum sum;
     int occupied = 0;
     for (std::size_t k = 0; k < 9; ++k)
-      for (std::size_t other = walk.first(k); other < walk.last(k); ++other, ++occupied)
-        sum.addSum(cells.sum[other]);
+      for (std::size_t other = walk.first(k); other < walk.last(k); ++other, ++occupied) sum.addSum(cells.sum[other]);
     four.add(cell, covarianceOf(sum), keep);
     putRise(sum, occupied, cube[cell]);
   }
@@ -122,8 +124,9 @@ void fillScale(const std::vector<Item>& items, std::size_t own, double cell_m, s
 std::vector<std::string> wideColumns() {
   std::vector<std::string> names;
   for (const char* cube : {"1m5_", "3m_"})
-    for (const char* name : {"shape.wide_linearity", "shape.wide_planarity", "shape.wide_scattering", "shape.wide_normal_up",
-                             "shape.wide_axis_up", "metric.wide_rough", "metric.wide_rise", "metric.wide_occupied"}) {
+    for (const char* name :
+         {"shape.wide_linearity", "shape.wide_planarity", "shape.wide_scattering", "shape.wide_normal_up",
+          "shape.wide_axis_up", "metric.wide_rough", "metric.wide_rise", "metric.wide_occupied"}) {
       const std::string text(name);
       const auto dot = text.find("wide_");
       names.push_back(text.substr(0, dot) + "wide" + cube + text.substr(dot + 5));

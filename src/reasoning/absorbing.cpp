@@ -11,7 +11,7 @@ namespace cluxel {
 
 namespace {
 
-constexpr int kRounds = 3;   // what an absorbed piece brings near may follow it, but not through the whole map
+constexpr int kRounds = 3;  // what an absorbed piece brings near may follow it, but not through the whole map
 
 struct Claim {
   PieceIndex piece = 0;
@@ -120,6 +120,8 @@ class Absorbing {
 
 }  // namespace
 
-void absorbMisfits(ReasoningState& state, std::size_t first, bool late) { Absorbing(state, first, late).run(); }
+void absorbMisfits(ReasoningState& state, std::size_t first, bool late) {
+  Absorbing(state, first, late).run();
+}
 
 }  // namespace cluxel

@@ -14,9 +14,9 @@ namespace cluxel {
 
 namespace {
 
-constexpr double kSpacing_m = 0.25;      // of cluxels; wider in large boxes
-constexpr int kMostCluxels = 2500;       // of one box
-constexpr double kMeet_m = 0.10;         // cluxels this close are joined by an edge
+constexpr double kSpacing_m = 0.25;  // of cluxels; wider in large boxes
+constexpr int kMostCluxels = 2500;   // of one box
+constexpr double kMeet_m = 0.10;     // cluxels this close are joined by an edge
 constexpr double kTouches_m = 0.20, kNear_m = 1.0, kAbove_m = 0.25, kInside = 0.9;
 
 /// One cluxel before it has its place in the scene.
@@ -107,7 +107,7 @@ class Builder {
     for (std::size_t box : by_name) fill(boxes_.boxes[box], box, next, seedlings);
     std::sort(seedlings.begin(), seedlings.end(), [](const Seedling& a, const Seedling& b) { return a.name < b.name; });
     SceneCluxels& cluxels = scene().cluxels;
-    cluxels.scans = {ContentHash{}};   // all boxes together count as one scan
+    cluxels.scans = {ContentHash{}};  // all boxes together count as one scan
     for (const Seedling& seedling : seedlings) {
       const PrimitiveIndex primitive = primitive_of_box_[seedling.box];
       const PrimitiveLabel label = scene().primitives[primitive].label;
@@ -191,7 +191,9 @@ class Builder {
     const BoxPrimitive& box = boxOf(i);
     const Shape shape = shapeOfCluxels(scene(), primitive.cluxels, {}, {});
     primitive.attributes = shape.attributes;
-    auto set = [&](Attribute attribute, double value) { primitive.attributes[static_cast<std::size_t>(attribute)] = value; };
+    auto set = [&](Attribute attribute, double value) {
+      primitive.attributes[static_cast<std::size_t>(attribute)] = value;
+    };
     const auto [width, length] = std::minmax(box.size.x(), box.size.y());
     set(Attribute::Length, length), set(Attribute::HorizontalExtent, length);
     set(Attribute::Width, width), set(Attribute::HorizontalThickness, width);
@@ -253,7 +255,8 @@ class Builder {
 
   static double insideShare(const Primitive& a, const Primitive& b) {
     const Eigen::Vector3d thin = Eigen::Vector3d::Constant(0.005);
-    const Eigen::Vector3d overlap = ((a.max + thin).cwiseMin(b.max + thin) - (a.min - thin).cwiseMax(b.min - thin)).cwiseMax(0);
+    const Eigen::Vector3d overlap =
+        ((a.max + thin).cwiseMin(b.max + thin) - (a.min - thin).cwiseMax(b.min - thin)).cwiseMax(0);
     return overlap.cwiseQuotient(a.max - a.min + 2 * thin).prod();
   }
 
@@ -281,6 +284,8 @@ class Builder {
 
 }  // namespace
 
-BuiltBoxScene sceneOfBoxes(const BoxScene& boxes) { return Builder(boxes).build(); }
+BuiltBoxScene sceneOfBoxes(const BoxScene& boxes) {
+  return Builder(boxes).build();
+}
 
 }  // namespace cluxel

@@ -14,11 +14,11 @@ namespace cluxel {
 struct BoxPrimitive {
   std::string name;
   PrimitiveLabel label = PrimitiveLabel::Scatter;
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();   ///< [m]
-  Eigen::Vector3d size = Eigen::Vector3d::Ones();     ///< length, width, height [m]
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Vector3d size = Eigen::Vector3d::Ones();    ///< length, width, height [m]
   double yaw_rad = 0;
-  std::map<Attribute, double> attributes;             ///< measured otherwise than the box is (SI)
-  std::map<std::string, double> adjacency;            ///< share of its outward edges that lead to another box
+  std::map<Attribute, double> attributes;   ///< measured otherwise than the box is (SI)
+  std::map<std::string, double> adjacency;  ///< share of its outward edges that lead to another box
 };
 
 struct BoxScene {
@@ -27,7 +27,8 @@ struct BoxScene {
 };
 
 /// Primitives stand in the order of their ids; `names[i]` is the box of primitive i. A cluxel's name depends on its
-/// box's name and place, not on the order of boxes. Relations follow relationInfos(). Cost: some microseconds per cluxel.
+/// box's name and place, not on the order of boxes. Relations follow relationInfos(). Cost: some microseconds per
+/// cluxel.
 struct BuiltBoxScene {
   Scene scene;
   std::vector<std::string> names;

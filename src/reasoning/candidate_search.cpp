@@ -48,7 +48,8 @@ std::vector<PieceIndex> candidatesFor(const ReasoningState& state, const std::ve
                                       const std::string& name, const Bindings& bindings,
                                       const std::function<bool(PieceIndex)>& wanted) {
   std::vector<PieceIndex> found;
-  const auto tie = std::find_if(conditions.begin(), conditions.end(), [&](const Condition& c) { return looksNearby(c, name); });
+  const auto tie =
+      std::find_if(conditions.begin(), conditions.end(), [&](const Condition& c) { return looksNearby(c, name); });
   if (tie == conditions.end()) return found;
   const Thing& anchor = bindings.at(tie->target->name);
   if (tie->kind == Condition::Kind::Relation)
@@ -83,9 +84,12 @@ std::vector<PieceIndex> choose(const ReasoningState& state, Choice choice, const
   auto value = [&](PieceIndex piece) {
     const Shape& shape = state.pieces.shapeOf(piece);
     switch (choice) {
-      case Choice::MostPoints: return shape.points;
-      case Choice::Highest: return shape[Attribute::Top];
-      case Choice::Lowest: return -shape[Attribute::Bottom];
+      case Choice::MostPoints:
+        return shape.points;
+      case Choice::Highest:
+        return shape[Attribute::Top];
+      case Choice::Lowest:
+        return -shape[Attribute::Bottom];
       case Choice::Nearest:
         return nearest_to == nullptr
                    ? 0.0
@@ -94,7 +98,8 @@ std::vector<PieceIndex> choose(const ReasoningState& state, Choice choice, const
         return nearest_to == nullptr
                    ? 0.0
                    : measurePair(state, PairMeasure::AdjacentFraction, state.pieces.thingOf({piece}), *nearest_to);
-      default: return shape[Attribute::Volume];
+      default:
+        return shape[Attribute::Volume];
     }
   };
   PieceIndex best = candidates.front();

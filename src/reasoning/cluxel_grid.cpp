@@ -11,11 +11,15 @@ namespace {
 
 constexpr double kCell_m = 1.0;
 
-std::int32_t cellOf(double coordinate_m) { return static_cast<std::int32_t>(std::floor(coordinate_m / kCell_m)); }
+std::int32_t cellOf(double coordinate_m) {
+  return static_cast<std::int32_t>(std::floor(coordinate_m / kCell_m));
+}
 
 }  // namespace
 
-double CluxelGap::gap() const { return std::sqrt(horizontal * horizontal + vertical * vertical); }
+double CluxelGap::gap() const {
+  return std::sqrt(horizontal * horizontal + vertical * vertical);
+}
 
 CluxelGap gapBetween(const SceneCluxels& all, std::uint32_t a, std::uint32_t b) {
   const Eigen::Vector3d half = (all.extent[a] + all.extent[b]).cast<double>() / 2;
@@ -32,8 +36,7 @@ CluxelGrid::CluxelGrid(const SceneCluxels& all) : all_(all) {
   std::sort(entries_.begin(), entries_.end());
 }
 
-void CluxelGrid::near(std::uint32_t cluxel, double distance_m,
-                      const std::function<void(std::uint32_t)>& visit) const {
+void CluxelGrid::near(std::uint32_t cluxel, double distance_m, const std::function<void(std::uint32_t)>& visit) const {
   const Eigen::Vector3d& centre = all_.center[cluxel];
   const double own = static_cast<double>(all_.extent[cluxel].head<2>().maxCoeff()) / 2;
   const double reach = distance_m + margin_m_ + own;

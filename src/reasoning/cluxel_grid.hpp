@@ -34,7 +34,7 @@ class CluxelGrid {
     auto operator<=>(const Entry&) const = default;
   };
   const SceneCluxels& all_;
-  double margin_m_ = 0;          ///< half of the largest cluxel box in plan view
+  double margin_m_ = 0;  ///< half of the largest cluxel box in plan view
   std::vector<Entry> entries_;
 };
 

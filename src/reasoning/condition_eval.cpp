@@ -12,7 +12,7 @@ namespace cluxel {
 
 namespace {
 
-constexpr double kGroundTolerance_m = 0.30;    // touches_ground without `within`, as relationInfos() says
+constexpr double kGroundTolerance_m = 0.30;  // touches_ground without `within`, as relationInfos() says
 
 std::string_view stepUnit(const Condition& condition) {
   if (condition.kind == Condition::Kind::Attribute) {
@@ -32,14 +32,22 @@ double nearerThreshold(const Condition& condition, double value, double threshol
 
 bool compare(const Condition& condition, double value, double threshold) {
   switch (condition.comparison) {
-    case Comparison::Less: return value < threshold;
-    case Comparison::LessEqual: return value <= threshold;
-    case Comparison::Greater: return value > threshold;
-    case Comparison::GreaterEqual: return value >= threshold;
-    case Comparison::Equal: return value == threshold;
-    case Comparison::NotEqual: return value != threshold;
-    case Comparison::Between: return value >= threshold && value <= condition.upper->value;
-    case Comparison::Outside: break;
+    case Comparison::Less:
+      return value < threshold;
+    case Comparison::LessEqual:
+      return value <= threshold;
+    case Comparison::Greater:
+      return value > threshold;
+    case Comparison::GreaterEqual:
+      return value >= threshold;
+    case Comparison::Equal:
+      return value == threshold;
+    case Comparison::NotEqual:
+      return value != threshold;
+    case Comparison::Between:
+      return value >= threshold && value <= condition.upper->value;
+    case Comparison::Outside:
+      break;
   }
   return value < threshold || value > condition.upper->value;
 }
@@ -87,10 +95,14 @@ bool ConditionEvaluator::holdsElementary(const Condition& condition, DecisionSte
   using Kind = Condition::Kind;
   const Thing& subject = bindings_.at(condition.of);
   switch (condition.kind) {
-    case Kind::Attribute: return holdsAttribute(condition, step);
-    case Kind::Pair: return holdsPair(condition, step);
-    case Kind::Relation: return holdsRelation(condition, step);
-    case Kind::Ask: return holdsAsk(condition);
+    case Kind::Attribute:
+      return holdsAttribute(condition, step);
+    case Kind::Pair:
+      return holdsPair(condition, step);
+    case Kind::Relation:
+      return holdsRelation(condition, step);
+    case Kind::Ask:
+      return holdsAsk(condition);
     case Kind::Label:
       return std::all_of(subject.pieces.begin(), subject.pieces.end(), [&](PieceIndex piece) {
         return std::find(condition.labels.begin(), condition.labels.end(), state_.pieces.labelOf(piece)) !=
@@ -99,7 +111,8 @@ bool ConditionEvaluator::holdsElementary(const Condition& condition, DecisionSte
     case Kind::Class:
       return std::any_of(subject.pieces.begin(), subject.pieces.end(),
                          [&](PieceIndex piece) { return state_.belongsTo(piece, condition.class_iri); });
-    default: return holds(condition);
+    default:
+      return holds(condition);
   }
 }
 
@@ -112,7 +125,7 @@ bool ConditionEvaluator::holdsAttribute(const Condition& condition, DecisionStep
     threshold = condition.ratio * *other;
   step.measured = value;
   step.unit = stepUnit(condition);
-  if (!value || !threshold) return false;   // nothing is in the slice
+  if (!value || !threshold) return false;  // nothing is in the slice
   step.threshold = nearerThreshold(condition, *value, *threshold);
   return compare(condition, *value, *threshold);
 }
@@ -140,16 +153,14 @@ void ConditionEvaluator::remember(PieceIndex piece, const Target& target) {
 }
 
 std::optional<std::pair<PieceIndex, double>> ConditionEvaluator::nearestTarget(const Condition& condition,
-                                                                              double limit_m) {
+                                                                               double limit_m) {
   const Thing& subject = bindings_.at(condition.of);
   std::optional<std::pair<PieceIndex, double>> best;
   for (PrimitiveIndex primitive : state_.grid.primitivesNear(state_.pieces.cluxelsOf(subject), limit_m))
     for (PieceIndex piece : state_.pieces.piecesOf(primitive)) {
-      if (!fits(piece, *condition.target) ||
-          std::binary_search(subject.pieces.begin(), subject.pieces.end(), piece))
+      if (!fits(piece, *condition.target) || std::binary_search(subject.pieces.begin(), subject.pieces.end(), piece))
         continue;
-      const double measure =
-          measurePair(state_, condition.measure, subject, state_.pieces.thingOf({piece}), limit_m);
+      const double measure = measurePair(state_, condition.measure, subject, state_.pieces.thingOf({piece}), limit_m);
       const bool share = condition.measure == PairMeasure::AdjacentFraction;
       const bool better = !best || (share ? measure > best->second : measure < best->second) ||
                           (measure == best->second && state_.pieces.before(piece, best->first));
@@ -162,7 +173,8 @@ bool ConditionEvaluator::holdsPair(const Condition& condition, DecisionStep& ste
   const double threshold = condition.value->value;
   const bool share = condition.measure == PairMeasure::AdjacentFraction;
   double measured = share ? 0 : std::numeric_limits<double>::infinity();
-  const double limit = share ? 0.5 : std::max(threshold, condition.upper ? condition.upper->value : 0) + kMeasureMargin_m;
+  const double limit =
+      share ? 0.5 : std::max(threshold, condition.upper ? condition.upper->value : 0) + kMeasureMargin_m;
   if (condition.target->kind == Target::Kind::Name) {
     measured =
         measurePair(state_, condition.measure, bindings_.at(condition.of), bindings_.at(condition.target->name), limit);
@@ -195,8 +207,8 @@ bool ConditionEvaluator::holdsRelation(const Condition& condition, DecisionStep&
   } else {
     for (const auto& [piece, measure] : relatedPieces(state_, condition.relation, subject)) {
       if (!fits(piece, *condition.target)) continue;
-      const bool better = !best || measure < best->second ||
-                          (measure == best->second && state_.pieces.before(piece, best->first));
+      const bool better =
+          !best || measure < best->second || (measure == best->second && state_.pieces.before(piece, best->first));
       if (better) best = {piece, measure};
     }
   }
@@ -223,7 +235,8 @@ bool ConditionEvaluator::holdsAsk(const Condition& condition) {
   try {
     return state_.context.oracle->ask(condition.query, bindings);
   } catch (const InputError& fault) {
-    throw InputError(condition.at, "the query of rule '" + rule_.id + "' is faulty: " + fault.diagnostics().front().message,
+    throw InputError(condition.at,
+                     "the query of rule '" + rule_.id + "' is faulty: " + fault.diagnostics().front().message,
                      fault.diagnostics().front().hint);
   }
 }

@@ -27,7 +27,8 @@ class ConditionEvaluator {
   bool holdsElementary(const Condition& condition, DecisionStep& step);
   bool holdsAttribute(const Condition& condition, DecisionStep& step);
   /// Absent when nothing of the thing is in the slice.
-  std::optional<double> measured(const std::string& of, const std::optional<SliceSpec>& slice, Attribute attribute) const;
+  std::optional<double> measured(const std::string& of, const std::optional<SliceSpec>& slice,
+                                 Attribute attribute) const;
   bool holdsPair(const Condition& condition, DecisionStep& step);
   bool holdsRelation(const Condition& condition, DecisionStep& step);
   bool holdsAsk(const Condition& condition);

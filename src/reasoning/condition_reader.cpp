@@ -33,8 +33,7 @@ constexpr std::array<Measure, 5> kMeasures{{{"gap_to", PairMeasure::Gap, Dimensi
                                             {"horizontal_gap_to", PairMeasure::HorizontalGap, Dimension::Length},
                                             {"vertical_gap_to", PairMeasure::VerticalGap, Dimension::Length},
                                             {"axis_distance_to", PairMeasure::AxisDistance, Dimension::Length},
-                                            {"adjacent_fraction_to", PairMeasure::AdjacentFraction,
-                                             Dimension::Ratio}}};
+                                            {"adjacent_fraction_to", PairMeasure::AdjacentFraction, Dimension::Ratio}}};
 
 /// Reads one condition; fields are filled as far as they are right.
 class ConditionReader {
@@ -71,7 +70,8 @@ class ConditionReader {
   static bool isKind(const std::string& key) {
     constexpr std::array<std::string_view, 9> kinds{"attribute", "relation", "label", "label_in", "class",
                                                     "ask",       "all",      "any",   "not"};
-    return std::find(kinds.begin(), kinds.end(), key) != kinds.end() || relationKindOf(key) || measureOf(key) != nullptr;
+    return std::find(kinds.begin(), kinds.end(), key) != kinds.end() || relationKindOf(key) ||
+           measureOf(key) != nullptr;
   }
   static const Measure* measureOf(const std::string& key) {
     const auto found = std::find_if(kMeasures.begin(), kMeasures.end(), [&](const Measure& m) { return m.key == key; });
@@ -97,7 +97,7 @@ class ConditionReader {
   }
 
   static bool isDetail(const std::string& key) {
-    constexpr std::array<std::string_view, 9> details{"op", "value", "min",  "max",   "ratio",
+    constexpr std::array<std::string_view, 9> details{"op", "value", "min",    "max",  "ratio",
                                                       "to", "with",  "within", "slice"};
     return std::find(details.begin(), details.end(), key) != details.end();
   }
@@ -143,7 +143,8 @@ class ConditionReader {
   std::optional<SliceSpec> readSliceOf(const YamlNode& map, const YamlNode& name, Attribute attribute) {
     const YamlNode* slice = map.find("slice");
     if (slice == nullptr) return std::nullopt;
-    if (attribute == Attribute::GroundContact || attribute == Attribute::ViewCount || attribute == Attribute::MeanIntensity)
+    if (attribute == Attribute::GroundContact || attribute == Attribute::ViewCount ||
+        attribute == Attribute::MeanIntensity)
       faults_.error(name.at, "'" + name.text + "' is known of whole primitives only", "leave 'slice' out");
     return readSlice(*slice, reading_);
   }
@@ -159,8 +160,7 @@ class ConditionReader {
       if (const auto factor = readQuantity(*ratio, Dimension::Ratio, reading_)) condition_.ratio = factor->value;
     if (!checkKeys(to, "ratio_to", faults_)) return;
     condition_.ratio_of = condition_.of;
-    if (const YamlNode* of = to.find("of"))
-      condition_.ratio_of = readBoundName(*of, scope_, faults_).value_or("");
+    if (const YamlNode* of = to.find("of")) condition_.ratio_of = readBoundName(*of, scope_, faults_).value_or("");
     const YamlNode* name = requireKey(to, "attribute", "ratio_to", faults_);
     if (name == nullptr) return;
     condition_.ratio_attribute = readAttributeName(*name);
@@ -193,10 +193,9 @@ class ConditionReader {
 
   void readComparison(Dimension dimension) {
     readOperator();
-    const bool interval =
-        condition_.comparison == Comparison::Between || condition_.comparison == Comparison::Outside;
-    for (std::string_view stray : interval ? std::vector<std::string_view>{"value"}
-                                           : std::vector<std::string_view>{"min", "max"})
+    const bool interval = condition_.comparison == Comparison::Between || condition_.comparison == Comparison::Outside;
+    for (std::string_view stray :
+         interval ? std::vector<std::string_view>{"value"} : std::vector<std::string_view>{"min", "max"})
       if (const YamlNode* key = node_.keyNode(stray))
         faults_.error(key->at, "'" + std::string(stray) + "' does not go with this operator",
                       interval ? "give min and max" : "give value");
@@ -215,8 +214,9 @@ class ConditionReader {
   void checkReach() {
     if (condition_.measure == PairMeasure::AdjacentFraction) return;
     static_assert(kFarthestMeasure_m - kMeasureMargin_m == 49.5, "the message below says so");
-    for (const auto& [key, bound] : {std::pair{node_.find("value"), &condition_.value}, std::pair{node_.find("min"), &condition_.value},
-                                     std::pair{node_.find("max"), &condition_.upper}})
+    for (const auto& [key, bound] :
+         {std::pair{node_.find("value"), &condition_.value}, std::pair{node_.find("min"), &condition_.value},
+          std::pair{node_.find("max"), &condition_.upper}})
       if (key != nullptr && *bound && (*bound)->value > kFarthestMeasure_m - kMeasureMargin_m)
         faults_.error(key->at, "nothing farther than 49.5 m is measured",
                       "a rule sees the neighbours of what it binds; SPARQL rules see the whole map");
@@ -238,7 +238,8 @@ class ConditionReader {
       target.kind = Target::Kind::Labels;
     }
     target.labels = readLabels(value, reading_);
-    if (value.items.empty()) faults_.error(value.at, "names no target", "a bound name, { label: ... } or { object: ... }");
+    if (value.items.empty())
+      faults_.error(value.at, "names no target", "a bound name, { label: ... } or { object: ... }");
     return target;
   }
 

@@ -40,14 +40,14 @@ class Gathering {
  private:
   struct Gatherer {
     OwnerIndex owner = 0;
-    PieceIndex first_piece = 0;               ///< the first of its `from` in canonical order
+    PieceIndex first_piece = 0;  ///< the first of its `from` in canonical order
     const PartingSpec* spec = nullptr;
     Eigen::Vector2d top = Eigen::Vector2d::Zero();
-    std::vector<PrimitiveLabel> labels;       ///< of what was parted
+    std::vector<PrimitiveLabel> labels;  ///< of what was parted
   };
   struct Fragment {
     PieceIndex piece = 0;
-    std::map<std::size_t, double> near;       ///< number in gatherers_ → gap to its object [m]
+    std::map<std::size_t, double> near;  ///< number in gatherers_ → gap to its object [m]
   };
 
   static const PartInMaking* partOf(const ObjectInMaking& object, const std::string& name) {
@@ -111,7 +111,7 @@ class Gathering {
 
   /// Cuts the fragment among those it is near to; false when it lies out of everybody's reach.
   bool hand(const Fragment& fragment) {
-    std::map<std::size_t, std::vector<std::uint32_t>> parts;   // by gatherer
+    std::map<std::size_t, std::vector<std::uint32_t>> parts;  // by gatherer
     std::vector<std::uint32_t> rest;
     for (std::uint32_t cluxel : state_.pieces[fragment.piece].cluxels) {
       const auto taker = nearestOf(fragment, cluxel);
@@ -184,6 +184,8 @@ class Gathering {
 
 }  // namespace
 
-void gatherFragments(ReasoningState& state, const std::string& class_iri) { Gathering(state, class_iri).run(); }
+void gatherFragments(ReasoningState& state, const std::string& class_iri) {
+  Gathering(state, class_iri).run();
+}
 
 }  // namespace cluxel

@@ -44,7 +44,8 @@ class JumpGrid {
  private:
   using Cell = std::array<std::int64_t, 3>;
   Cell cellOf(const Eigen::Vector3d& p) const {
-    return {static_cast<std::int64_t>(std::floor(p.x() / cell_m_)), static_cast<std::int64_t>(std::floor(p.y() / cell_m_)),
+    return {static_cast<std::int64_t>(std::floor(p.x() / cell_m_)),
+            static_cast<std::int64_t>(std::floor(p.y() / cell_m_)),
             static_cast<std::int64_t>(std::floor(p.z() / cell_m_))};
   }
   double cell_m_;
@@ -59,11 +60,13 @@ struct Way {
 };
 constexpr Way kNoWay{kInfinity, kNoSource};
 
-Way onward(const Way& so_far, const Way& step) { return {so_far.length + step.length, step.source}; }
+Way onward(const Way& so_far, const Way& step) {
+  return {so_far.length + step.length, step.source};
+}
 
-/// The crown as an incidence graph for Boost.Graph: its places, and one vertex before them all from which the trunks' ways
-/// begin. Edges are made where the search stands, because their ends depend on the source of the way there: each trunk has
-/// its own clearance, reach and jumps.
+/// The crown as an incidence graph for Boost.Graph: its places, and one vertex before them all from which the trunks'
+/// ways begin. Edges are made where the search stands, because their ends depend on the source of the way there: each
+/// trunk has its own clearance, reach and jumps.
 class CrownGraph {
  public:
   struct Edge {
@@ -79,7 +82,10 @@ class CrownGraph {
   using traversal_category = boost::incidence_graph_tag;
 
   CrownGraph(const SceneCluxels& all, std::span<const std::uint32_t> crown, std::span<const CrownSource> sources)
-      : all_(all), crown_(crown), sources_(sources), grid_(all, crown, longestJump(all, crown, sources)),
+      : all_(all),
+        crown_(crown),
+        sources_(sources),
+        grid_(all, crown, longestJump(all, crown, sources)),
         best_(crown.size() + 1, kNoWay) {
     for (const CrownSource& source : sources) tops_.push_back(topOf(all, source.trunk));
     best_[start()] = {};
@@ -160,7 +166,8 @@ class CrownGraph {
 
   void addEdge(std::size_t to, const Way& step) const {
     const CrownSource& source = sources_[step.source];
-    if (static_cast<double>(all_.height_above_ground[crown_[to]]) < source.clearance_m || isBeyond(to, step.source)) return;
+    if (static_cast<double>(all_.height_above_ground[crown_[to]]) < source.clearance_m || isBeyond(to, step.source))
+      return;
     if (source.may_take && !source.may_take(crown_[to])) return;
     edges_.push_back({from_, to, step});
   }
@@ -175,14 +182,19 @@ class CrownGraph {
   JumpGrid grid_;
   std::vector<Eigen::Vector2d> tops_;
   std::vector<Way> best_;
-  mutable std::vector<Edge> edges_;   ///< of the vertex from_
+  mutable std::vector<Edge> edges_;  ///< of the vertex from_
   mutable std::size_t from_ = 0;
 };
 
 // What Boost.Graph asks of an incidence graph; found by argument-dependent look-up.
-std::size_t source(const CrownGraph::Edge& edge, const CrownGraph&) { return edge.from; }
-std::size_t target(const CrownGraph::Edge& edge, const CrownGraph&) { return edge.to; }
-std::pair<CrownGraph::out_edge_iterator, CrownGraph::out_edge_iterator> out_edges(std::size_t at, const CrownGraph& graph) {
+std::size_t source(const CrownGraph::Edge& edge, const CrownGraph&) {
+  return edge.from;
+}
+std::size_t target(const CrownGraph::Edge& edge, const CrownGraph&) {
+  return edge.to;
+}
+std::pair<CrownGraph::out_edge_iterator, CrownGraph::out_edge_iterator> out_edges(std::size_t at,
+                                                                                  const CrownGraph& graph) {
   const auto& edges = graph.edgesFrom(at);
   return {edges.begin(), edges.end()};
 }
@@ -207,7 +219,8 @@ std::vector<std::uint32_t> partCrown(const SceneCluxels& all, std::span<const st
   CrownGraph graph(all, crown, sources);
   const auto places = boost::typed_identity_property_map<std::size_t>();
   boost::dijkstra_shortest_paths_no_color_map_no_init(
-      graph, graph.start(), boost::dummy_property_map(), boost::make_iterator_property_map(graph.best().begin(), places),
+      graph, graph.start(), boost::dummy_property_map(),
+      boost::make_iterator_property_map(graph.best().begin(), places),
       boost::make_function_property_map<CrownGraph::Edge, Way>([](const CrownGraph::Edge& edge) { return edge.step; }),
       places, std::less<>(), onward, kNoWay, Way(), boost::dijkstra_visitor<>());
   std::vector<std::uint32_t> taken;

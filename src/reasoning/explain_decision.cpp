@@ -15,7 +15,7 @@ std::optional<TurningPoint> leastChange(const Decision& decision, const Rule& ru
   for (const DecisionFlip& flip : decision.flips) {
     if (flip.accepted == decision.accepted) continue;
     const auto* branch = std::get_if<BranchNode>(&rule.nodes[flip.node].what);
-    if (branch == nullptr) continue;   // whether something is found cannot be changed by one measure
+    if (branch == nullptr) continue;  // whether something is found cannot be changed by one measure
     auto changes = changesThatTurn(branch->condition, decision.path, flip.step);
     if (!changes || (best && costOf(*changes) >= costOf(best->changes))) continue;
     best = TurningPoint{std::move(*changes), flip.accepted, flip.outcome};

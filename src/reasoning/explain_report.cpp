@@ -25,7 +25,9 @@ std::string number(double value) {
 double shown(const DecisionStep& step, double value) {
   return step.unit == "rad" ? value * 180.0 / std::numbers::pi : value;
 }
-std::string shownUnit(const std::string& unit) { return unit == "rad" ? "deg" : unit; }
+std::string shownUnit(const std::string& unit) {
+  return unit == "rad" ? "deg" : unit;
+}
 
 std::string measuredText(const DecisionStep& step) {
   if (!step.measured) return {};

@@ -150,8 +150,7 @@ class AcceptReader {
       absorb.into = readBoundName(*into, scope_, faults_).value_or("");
     } else {
       for (const Condition& condition : absorb.when)
-        if (absorb.into.empty() && looksNearby(condition, "it"))
-          absorb.into = condition.target->name;
+        if (absorb.into.empty() && looksNearby(condition, "it")) absorb.into = condition.target->name;
     }
     if (absorb.into.empty() || isPart(absorb.into)) return;
     faults_.error(node.at, "'" + absorb.into + "' is no part of the object, so nothing can join it",
@@ -174,8 +173,9 @@ class AcceptReader {
     }
     if (!parting.part.empty() && parting.part == parting.from)
       faults_.error(node.at, "'shared' and 'from' are the same thing");
-    for (const auto& [key, field] : {std::pair{"reach", &parting.reach_m}, std::pair{"jump", &parting.jump_m},
-                                     std::pair{"start", &parting.start_m}, std::pair{"clearance", &parting.clearance_m}})
+    for (const auto& [key, field] :
+         {std::pair{"reach", &parting.reach_m}, std::pair{"jump", &parting.jump_m},
+          std::pair{"start", &parting.start_m}, std::pair{"clearance", &parting.clearance_m}})
       if (const YamlNode* value = node.find(key))
         if (const auto length = readQuantity(*value, Dimension::Length, reading_)) *field = length->value;
     parting.start_m = std::max(parting.start_m, parting.jump_m);

@@ -10,7 +10,7 @@ namespace cluxel {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kTouch_m = 0.20, kNear_m = 1.0;     // as relationInfos() says
+constexpr double kTouch_m = 0.20, kNear_m = 1.0;  // as relationInfos() says
 
 bool contains(const Thing& thing, PieceIndex piece) {
   return std::binary_search(thing.pieces.begin(), thing.pieces.end(), piece);
@@ -64,8 +64,8 @@ double axisDistance(const Shape& subject, const Shape& pole) {
 
 bool plansOverlap(const Shape& a, const Shape& b) {
   constexpr double kWiden_m = 0.25;
-  return a.min.x() <= b.max.x() + kWiden_m && b.min.x() <= a.max.x() + kWiden_m &&
-         a.min.y() <= b.max.y() + kWiden_m && b.min.y() <= a.max.y() + kWiden_m;
+  return a.min.x() <= b.max.x() + kWiden_m && b.min.x() <= a.max.x() + kWiden_m && a.min.y() <= b.max.y() + kWiden_m &&
+         b.min.y() <= a.max.y() + kWiden_m;
 }
 
 std::optional<double> withinPrimitive(const ReasoningState& state, RelationKind kind, const Thing& a, const Thing& b) {
@@ -86,7 +86,8 @@ std::optional<double> withinPrimitive(const ReasoningState& state, RelationKind 
     case RelationKind::Below:
     case RelationKind::Supports:
       return !above && plansOverlap(a.shape, b.shape) ? std::optional(vertical) : std::nullopt;
-    default: return std::nullopt;
+    default:
+      return std::nullopt;
   }
 }
 
@@ -101,12 +102,15 @@ bool sharePrimitive(const ReasoningState& state, const Thing& a, const Thing& b)
 
 double measurePair(const ReasoningState& state, PairMeasure measure, const Thing& a, const Thing& b, double limit_m) {
   switch (measure) {
-    case PairMeasure::AdjacentFraction: return adjacentShare(state, a, b);
-    case PairMeasure::AxisDistance: return axisDistance(a.shape, b.shape);
+    case PairMeasure::AdjacentFraction:
+      return adjacentShare(state, a, b);
+    case PairMeasure::AxisDistance:
+      return axisDistance(a.shape, b.shape);
     case PairMeasure::VerticalGap:
       return std::max({0.0, a.shape.min.z() - b.shape.max.z(), b.shape.min.z() - a.shape.max.z()});
     case PairMeasure::Gap:
-    case PairMeasure::HorizontalGap: break;
+    case PairMeasure::HorizontalGap:
+      break;
   }
   const bool horizontal = measure == PairMeasure::HorizontalGap;
   // The bounds decide most pairs; a whole primitive's bounds may be a little tighter than its cluxels' boxes.

@@ -8,9 +8,7 @@
 namespace cluxel {
 
 PieceTable::PieceTable(const Scene& scene)
-    : scene_(scene),
-      pieces_of_primitive_(scene.primitives.size()),
-      piece_of_cluxel_(scene.cluxels.size(), kFree) {
+    : scene_(scene), pieces_of_primitive_(scene.primitives.size()), piece_of_cluxel_(scene.cluxels.size(), kFree) {
   for (PrimitiveIndex i = 0; i < scene.primitives.size(); ++i) {
     Piece piece;
     piece.primitive = i;

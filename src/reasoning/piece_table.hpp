@@ -14,14 +14,14 @@ namespace cluxel {
 
 using OwnerIndex = std::uint32_t;
 inline constexpr OwnerIndex kFree = 0xFFFFFFFFU;
-inline constexpr OwnerIndex kShared = 0xFFFFFFFEU;    ///< claimed by one or more objects, to be parted
-inline constexpr OwnerIndex kUnknown = 0xFFFFFFFDU;   ///< a rule said: leave it
+inline constexpr OwnerIndex kShared = 0xFFFFFFFEU;   ///< claimed by one or more objects, to be parted
+inline constexpr OwnerIndex kUnknown = 0xFFFFFFFDU;  ///< a rule said: leave it
 
 struct Piece {
   PrimitiveIndex primitive = 0;
-  std::vector<std::uint32_t> cluxels;   ///< ascending
+  std::vector<std::uint32_t> cluxels;  ///< ascending
   OwnerIndex owner = kFree;
-  bool alive = true;                    ///< false: it was cut, or joined to another one
+  bool alive = true;  ///< false: it was cut, or joined to another one
 };
 
 class PieceTable {
@@ -45,7 +45,8 @@ class PieceTable {
   bool before(PieceIndex a, PieceIndex b) const;
   /// The thing that some pieces make together.
   Thing thingOf(std::vector<PieceIndex> pieces) const;
-  /// What of a thing lies between two heights above the ground, measured as a thing of its own; absent when nothing does.
+  /// What of a thing lies between two heights above the ground, measured as a thing of its own; absent when nothing
+  /// does.
   std::optional<Shape> shapeOfSlice(const Thing& thing, const SliceSpec& slice) const;
   /// All cluxels of a thing, ascending.
   std::vector<std::uint32_t> cluxelsOf(const Thing& thing) const;

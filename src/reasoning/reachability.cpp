@@ -34,12 +34,14 @@ Interval naturalRange(Attribute attribute) {
       break;
     case Dimension::Area:
     case Dimension::Volume:
-    case Dimension::Count: range.low = {0, false, "it is never negative"}; break;
+    case Dimension::Count:
+      range.low = {0, false, "it is never negative"};
+      break;
     case Dimension::Angle:
       range = {{0, false, "an angle is never negative"}, {std::numbers::pi / 2, false, "a tilt is at most 90 deg"}};
       break;
     case Dimension::Ratio:
-      if (attribute == Attribute::MeanIntensity) break;   // whatever the sensor says
+      if (attribute == Attribute::MeanIntensity) break;  // whatever the sensor says
       range.low = {0, false, "a share is never negative"};
       range.high = {1, false, "a share is at most 1"};
       break;
@@ -56,14 +58,22 @@ Attribute canonical(Attribute attribute) {
 
 Comparison negated(Comparison comparison) {
   switch (comparison) {
-    case Comparison::Less: return Comparison::GreaterEqual;
-    case Comparison::LessEqual: return Comparison::Greater;
-    case Comparison::Greater: return Comparison::LessEqual;
-    case Comparison::GreaterEqual: return Comparison::Less;
-    case Comparison::Equal: return Comparison::NotEqual;
-    case Comparison::NotEqual: return Comparison::Equal;
-    case Comparison::Between: return Comparison::Outside;
-    case Comparison::Outside: break;
+    case Comparison::Less:
+      return Comparison::GreaterEqual;
+    case Comparison::LessEqual:
+      return Comparison::Greater;
+    case Comparison::Greater:
+      return Comparison::LessEqual;
+    case Comparison::GreaterEqual:
+      return Comparison::Less;
+    case Comparison::Equal:
+      return Comparison::NotEqual;
+    case Comparison::NotEqual:
+      return Comparison::Equal;
+    case Comparison::Between:
+      return Comparison::Outside;
+    case Comparison::Outside:
+      break;
   }
   return Comparison::Between;
 }
@@ -80,12 +90,18 @@ class Knowledge {
   /// Takes in that `condition` came out as `truth`; the reason why it cannot, if so.
   std::optional<std::string> learn(const Condition& condition, bool truth) {
     switch (condition.kind) {
-      case Condition::Kind::Attribute: return learnAttribute(condition, truth);
-      case Condition::Kind::Label: return learnLabel(condition, truth);
-      case Condition::Kind::Not: return learn(condition.operands.front(), !truth);
-      case Condition::Kind::All: return learnJoined(condition.operands, true, truth);
-      case Condition::Kind::Any: return learnJoined(condition.operands, false, !truth);
-      default: return std::nullopt;
+      case Condition::Kind::Attribute:
+        return learnAttribute(condition, truth);
+      case Condition::Kind::Label:
+        return learnLabel(condition, truth);
+      case Condition::Kind::Not:
+        return learn(condition.operands.front(), !truth);
+      case Condition::Kind::All:
+        return learnJoined(condition.operands, true, truth);
+      case Condition::Kind::Any:
+        return learnJoined(condition.operands, false, !truth);
+      default:
+        return std::nullopt;
     }
   }
 
@@ -137,17 +153,31 @@ class Knowledge {
       if (low > next.low.value || (low == next.low.value && open && !next.low.open)) next.low = {low, open, words};
     };
     auto lower = [&](double high, bool open) {
-      if (high < next.high.value || (high == next.high.value && open && !next.high.open)) next.high = {high, open, words};
+      if (high < next.high.value || (high == next.high.value && open && !next.high.open))
+        next.high = {high, open, words};
     };
     switch (comparison) {
-      case Comparison::Less: lower(value, true); break;
-      case Comparison::LessEqual: lower(value, false); break;
-      case Comparison::Greater: raise(value, true); break;
-      case Comparison::GreaterEqual: raise(value, false); break;
-      case Comparison::Equal: raise(value, false), lower(value, false); break;
-      case Comparison::Between: raise(value, false), lower(condition.upper->value, false); break;
+      case Comparison::Less:
+        lower(value, true);
+        break;
+      case Comparison::LessEqual:
+        lower(value, false);
+        break;
+      case Comparison::Greater:
+        raise(value, true);
+        break;
+      case Comparison::GreaterEqual:
+        raise(value, false);
+        break;
+      case Comparison::Equal:
+        raise(value, false), lower(value, false);
+        break;
+      case Comparison::Between:
+        raise(value, false), lower(condition.upper->value, false);
+        break;
       case Comparison::Outside:
-        if (known.low.value >= value && known.high.value <= condition.upper->value) next = {{1, false, ""}, {0, false, ""}};
+        if (known.low.value >= value && known.high.value <= condition.upper->value)
+          next = {{1, false, ""}, {0, false, ""}};
         break;
       case Comparison::NotEqual:
         if (known.low.value == value && known.high.value == value) next = {{1, false, ""}, {0, false, ""}};

@@ -111,7 +111,8 @@ class RuleRun {
   std::string describeAccept(const AcceptLeaf& accept) const {
     std::string text = state_.rules.shorten(rule_.class_iri);
     for (const auto& [name, part] : accept.parts)
-      if (part != rule_.class_iri) text += (&accept.parts.front().second == &part ? ": " : ", ") + name + " is " + state_.rules.shorten(part);
+      if (part != rule_.class_iri)
+        text += (&accept.parts.front().second == &part ? ": " : ", ") + name + " is " + state_.rules.shorten(part);
     return text;
   }
 

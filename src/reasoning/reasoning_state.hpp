@@ -25,8 +25,8 @@ struct Bindings {
 };
 
 struct PartInMaking {
-  std::string name;          ///< the bound name
-  std::string part_class;    ///< IRI
+  std::string name;        ///< the bound name
+  std::string part_class;  ///< IRI
   std::vector<PieceIndex> pieces;
 };
 
@@ -36,7 +36,7 @@ struct ObjectInMaking {
   double confidence = 0;
   std::size_t decision = 0;
   std::vector<PartInMaking> parts;
-  Bindings bindings;         ///< for absorbing and parting
+  Bindings bindings;  ///< for absorbing and parting
 };
 
 struct ReasoningState {
@@ -48,11 +48,11 @@ struct ReasoningState {
   CluxelGrid grid;
   PieceTable pieces;
   std::vector<ObjectInMaking> objects;
-  std::map<PieceIndex, std::vector<OwnerIndex>> claims;   ///< who wants a shared piece
+  std::map<PieceIndex, std::vector<OwnerIndex>> claims;  ///< who wants a shared piece
   std::vector<Decision> decisions;
   /// Per primitive, the relations that lead to it: numbers in scene.relations.
   std::vector<std::vector<std::uint32_t>> relations_to;
-  std::set<std::pair<std::string, std::string>> is_a;     ///< (class, ancestor) among the classes of the order
+  std::set<std::pair<std::string, std::string>> is_a;  ///< (class, ancestor) among the classes of the order
 
   bool belongsTo(PieceIndex piece, const std::string& class_iri) const;
   bool classIsA(const std::string& class_iri, const std::string& ancestor) const;

@@ -38,9 +38,9 @@ class Checking {
   void fail(std::string text) { failures_.push_back(std::move(text)); }
 
   std::size_t countOf(const std::string& iri) const {
-    return static_cast<std::size_t>(std::count_if(
-        result_.objects.begin(), result_.objects.end(),
-        [&](const SemanticObject& object) { return rules_.catalogue.isA(object.class_iri, iri); }));
+    return static_cast<std::size_t>(
+        std::count_if(result_.objects.begin(), result_.objects.end(),
+                      [&](const SemanticObject& object) { return rules_.catalogue.isA(object.class_iri, iri); }));
   }
 
   std::set<std::string> namesOf(const SemanticObject& object, const std::string& part_class) const {
@@ -150,16 +150,15 @@ class Checking {
     std::string seen;
     for (const Decision& decision : result_.decisions) {
       if (decision.rule_id != expected.rule_id) continue;
-      const bool about = std::any_of(decision.seeds.begin(), decision.seeds.end(), [&](PrimitiveIndex seed) {
-        return nameOfPrimitive(seed) == expected.primitive;
-      });
+      const bool about = std::any_of(decision.seeds.begin(), decision.seeds.end(),
+                                     [&](PrimitiveIndex seed) { return nameOfPrimitive(seed) == expected.primitive; });
       if (!about) continue;
       if (decision.reason == expected.reason && !decision.accepted) return;
       seen += (seen.empty() ? "" : "; ") + std::string(decision.accepted ? "accepted as " : "") + decision.reason;
     }
     fail("line " + std::to_string(expected.at.line) + ": expected " + expected.rule_id + " to reject " +
-         expected.primitive + " with '" + expected.reason + "', but it said: " +
-         (seen.empty() ? "nothing, it was not asked" : seen));
+         expected.primitive + " with '" + expected.reason +
+         "', but it said: " + (seen.empty() ? "nothing, it was not asked" : seen));
   }
 
   struct Bounds {
@@ -191,7 +190,8 @@ class Checking {
       wanted = nlohmann::json::parse(readFile(golden.file)).at("objects");
       for (const auto& object : wanted) readBounds(object);
     } catch (const nlohmann::json::exception& fault) {
-      throw InputError({golden.file.string(), 0, 0, std::nullopt}, std::string("not a file of golden objects: ") + fault.what(),
+      throw InputError({golden.file.string(), 0, 0, std::nullopt},
+                       std::string("not a file of golden objects: ") + fault.what(),
                        "{\"objects\": [{\"class\": \"clx:Tree\", \"min\": [x, y, z], \"max\": [x, y, z]}]}");
     }
     std::vector<bool> used(result_.objects.size(), false);
@@ -240,7 +240,7 @@ class Checking {
   const Scene& scene_;
   const std::vector<std::string>& names_;
   const ReasoningResult& result_;
-  std::vector<std::size_t> expected_of_, object_of_;   ///< numbers of partners, kNone without
+  std::vector<std::size_t> expected_of_, object_of_;  ///< numbers of partners, kNone without
   std::vector<std::string> failures_;
 };
 

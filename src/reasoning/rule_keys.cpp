@@ -12,12 +12,29 @@ namespace cluxel {
 namespace {
 
 std::vector<std::string> conditionKeys() {
-  std::vector<std::string> keys{"of",       "attribute",       "op",           "value",
-                                "min",      "max",             "ratio",        "to",
-                                "relation", "with",            "within",       "label",
-                                "label_in", "class",           "ask",          "all",
-                                "any",      "not",             "gap_to",       "horizontal_gap_to",
-                                "vertical_gap_to", "axis_distance_to", "adjacent_fraction_to",
+  std::vector<std::string> keys{"of",
+                                "attribute",
+                                "op",
+                                "value",
+                                "min",
+                                "max",
+                                "ratio",
+                                "to",
+                                "relation",
+                                "with",
+                                "within",
+                                "label",
+                                "label_in",
+                                "class",
+                                "ask",
+                                "all",
+                                "any",
+                                "not",
+                                "gap_to",
+                                "horizontal_gap_to",
+                                "vertical_gap_to",
+                                "axis_distance_to",
+                                "adjacent_fraction_to",
                                 "slice"};
   for (const RelationInfo& relation : relationInfos()) keys.emplace_back(relation.name);
   return keys;

@@ -37,13 +37,12 @@ void checkEarlier(const std::string& object_class, const SourceLocation& at, con
                   FaultList& faults) {
   if (object_class.empty() || rule.class_iri.empty()) return;
   const auto turn = std::find(rules.order.begin(), rules.order.end(), rule.class_iri);
-  const bool known = std::any_of(rules.order.begin(), turn == rules.order.end() ? turn : turn + 1, [&](const auto& iri) {
-    return rules.catalogue.isA(iri, object_class);
-  });
+  const bool known = std::any_of(rules.order.begin(), turn == rules.order.end() ? turn : turn + 1,
+                                 [&](const auto& iri) { return rules.catalogue.isA(iri, object_class); });
   if (!known)
-    faults.error(at, "no " + rules.shorten(object_class) + " exists yet when " + rules.shorten(rule.class_iri) +
-                         " has its turn",
-                 "classes that a rule looks at come earlier in 'order'");
+    faults.error(
+        at, "no " + rules.shorten(object_class) + " exists yet when " + rules.shorten(rule.class_iri) + " has its turn",
+        "classes that a rule looks at come earlier in 'order'");
 }
 
 void checkCondition(const Condition& condition, const Rule& rule, const RuleSet& rules, FaultList& faults) {
@@ -56,7 +55,8 @@ void checkNodes(const Rule& rule, const RuleSet& rules, FaultList& faults) {
   std::vector<std::string> ids;
   for (const Rule& other : rules.rules) ids.push_back(other.id);
   for (const TreeNode& node : rule.nodes) {
-    if (const auto* branch = std::get_if<BranchNode>(&node.what)) checkCondition(branch->condition, rule, rules, faults);
+    if (const auto* branch = std::get_if<BranchNode>(&node.what))
+      checkCondition(branch->condition, rule, rules, faults);
     if (const auto* find = std::get_if<FindNode>(&node.what)) {
       checkEarlier(find->object_class, node.at, rule, rules, faults);
       for (const Condition& condition : find->where) checkCondition(condition, rule, rules, faults);
@@ -75,12 +75,14 @@ void checkMerges(const Rule& rule, NodeIndex index, bool related, FaultList& fau
     return object || std::any_of(c.operands.begin(), c.operands.end(), [&](const auto& o) { return self(self, o); });
   };
   if (const auto* branch = std::get_if<BranchNode>(&node.what)) {
-    if (branch->yes != 0) checkMerges(rule, branch->yes, related || meetsObject(meetsObject, branch->condition), faults);
+    if (branch->yes != 0)
+      checkMerges(rule, branch->yes, related || meetsObject(meetsObject, branch->condition), faults);
     if (branch->no != 0) checkMerges(rule, branch->no, related, faults);
   } else if (const auto* find = std::get_if<FindNode>(&node.what)) {
     if (find->found != 0) checkMerges(rule, find->found, related, faults);
     if (find->missing != 0) checkMerges(rule, find->missing, related, faults);
-  } else if (const auto* accept = std::get_if<AcceptLeaf>(&node.what); accept != nullptr && accept->merge_into_related) {
+  } else if (const auto* accept = std::get_if<AcceptLeaf>(&node.what);
+             accept != nullptr && accept->merge_into_related) {
     if (!related)
       faults.error(node.at, "'merge_into: related', but no relation to an object was tested on the way",
                    "test: { relation: near, with: { object: clx:Building } }");
@@ -106,8 +108,9 @@ void checkTogether(const GatheredRules& gathered, const RuleReading& reading, co
     with_rules.insert(rule.class_iri);
     const bool ordered = std::find(rules.order.begin(), rules.order.end(), rule.class_iri) != rules.order.end();
     if (!ordered && !rule.class_iri.empty())
-      faults.error(rule.at, "the class " + rules.shorten(rule.class_iri) + " of rule '" + rule.id +
-                                "' does not stand in 'order', so the rule never runs",
+      faults.error(rule.at,
+                   "the class " + rules.shorten(rule.class_iri) + " of rule '" + rule.id +
+                       "' does not stand in 'order', so the rule never runs",
                    "add it to 'order'");
     checkNodes(rule, rules, faults);
     if (!rule.nodes.empty()) checkMerges(rule, 0, false, faults);

@@ -23,8 +23,7 @@ void onlyOwnAttributes(const std::vector<Condition>& conditions, FaultList& faul
     using Kind = Condition::Kind;
     const bool other = condition.kind == Kind::Pair || condition.kind == Kind::Ask || condition.kind == Kind::Class ||
                        (condition.kind == Kind::Relation && condition.target);
-    if (other)
-      faults.error(condition.at, "only attributes can be tested here", "put this test into the tree");
+    if (other) faults.error(condition.at, "only attributes can be tested here", "put this test into the tree");
     onlyOwnAttributes(condition.operands, faults);
   }
 }
@@ -32,7 +31,8 @@ void onlyOwnAttributes(const std::vector<Condition>& conditions, FaultList& faul
 void readSeed(const YamlNode& node, SeedSpec& seed, RuleReading& reading) {
   if (!checkKeys(node, "seed", reading.faults)) return;
   if (const YamlNode* as = node.find("as")) seed.name = readNewName(*as, {}, reading.faults).value_or("seed");
-  if (seed.name == "it") reading.faults.error(node.find("as")->at, "'it' is what may be absorbed", "choose another name");
+  if (seed.name == "it")
+    reading.faults.error(node.find("as")->at, "'it' is what may be absorbed", "choose another name");
   seed.labels = readLabels(node, reading);
   if (node.find("label") == nullptr && node.find("label_in") == nullptr)
     reading.faults.error(node.at, "'seed' needs 'label' or 'label_in'");
@@ -56,7 +56,8 @@ std::optional<GroupSpec> readGroup(const YamlNode& node, const SeedSpec& seed, R
   if (group.horizontal_m.has_value() != group.vertical_m.has_value())
     reading.faults.error(node.at, "'horizontal' and 'vertical' belong together");
   if (!group.near_m && !group.horizontal_m && !group.adjacent)
-    reading.faults.error(node.at, "'group' does not say what is linked", "give near, adjacent, or horizontal and vertical");
+    reading.faults.error(node.at, "'group' does not say what is linked",
+                         "give near, adjacent, or horizontal and vertical");
   if (const YamlNode* limits = node.find("limits"))
     group.limits = readConditions(*limits, {{seed.name}, seed.name}, reading);
   onlyOwnAttributes(group.limits, reading.faults);

@@ -16,7 +16,7 @@ struct RuleConstant {
   Quantity quantity;
   SourceLocation at;
   bool used = false;
-  bool faulty = false;      ///< already reported where it stands
+  bool faulty = false;  ///< already reported where it stands
 };
 
 struct RuleReading {
@@ -25,7 +25,7 @@ struct RuleReading {
   FaultList& faults;
   std::map<std::string, std::string> prefixes = {};
   std::map<std::string, RuleConstant> constants = {};
-  bool asks_map = false;    ///< an `ask:` was read
+  bool asks_map = false;  ///< an `ask:` was read
 };
 
 /// The names that a condition may use, and the one it means when it gives none.
@@ -40,7 +40,8 @@ bool checkKeys(const YamlNode& node, std::string_view context, FaultList& faults
 const YamlNode* requireKey(const YamlNode& node, std::string_view key, std::string_view context, FaultList& faults);
 
 /// What the list under `key` holds; a fault when anything else stands there, which would do nothing in silence.
-const std::vector<YamlNode>& listUnder(const YamlNode& map, std::string_view key, std::string_view of_what, FaultList& faults);
+const std::vector<YamlNode>& listUnder(const YamlNode& map, std::string_view key, std::string_view of_what,
+                                       FaultList& faults);
 
 std::optional<std::string> readText(const YamlNode& node, std::string_view what, FaultList& faults);
 std::optional<bool> readFlag(const YamlNode& node, FaultList& faults);

@@ -47,7 +47,8 @@ std::string describeThreshold(const Condition& condition) {
   }
   if (!condition.value) return {};
   const std::string value = condition.value->text;
-  if (condition.upper) return std::string(symbolOf(condition.comparison)) + " " + value + " and " + condition.upper->text;
+  if (condition.upper)
+    return std::string(symbolOf(condition.comparison)) + " " + value + " and " + condition.upper->text;
   return std::string(symbolOf(condition.comparison)) + " " + value;
 }
 
@@ -72,25 +73,38 @@ bool looksNearby(const Condition& c, std::string_view subject) {
 
 std::string_view symbolOf(Comparison comparison) {
   switch (comparison) {
-    case Comparison::Less: return "<";
-    case Comparison::LessEqual: return "<=";
-    case Comparison::Greater: return ">";
-    case Comparison::GreaterEqual: return ">=";
-    case Comparison::Equal: return "=";
-    case Comparison::NotEqual: return "!=";
-    case Comparison::Between: return "between";
-    case Comparison::Outside: break;
+    case Comparison::Less:
+      return "<";
+    case Comparison::LessEqual:
+      return "<=";
+    case Comparison::Greater:
+      return ">";
+    case Comparison::GreaterEqual:
+      return ">=";
+    case Comparison::Equal:
+      return "=";
+    case Comparison::NotEqual:
+      return "!=";
+    case Comparison::Between:
+      return "between";
+    case Comparison::Outside:
+      break;
   }
   return "outside";
 }
 
 std::string_view nameOf(PairMeasure measure) {
   switch (measure) {
-    case PairMeasure::Gap: return "gap";
-    case PairMeasure::HorizontalGap: return "horizontal_gap";
-    case PairMeasure::VerticalGap: return "vertical_gap";
-    case PairMeasure::AxisDistance: return "axis_distance";
-    case PairMeasure::AdjacentFraction: break;
+    case PairMeasure::Gap:
+      return "gap";
+    case PairMeasure::HorizontalGap:
+      return "horizontal_gap";
+    case PairMeasure::VerticalGap:
+      return "vertical_gap";
+    case PairMeasure::AxisDistance:
+      return "axis_distance";
+    case PairMeasure::AdjacentFraction:
+      break;
   }
   return "adjacent_fraction";
 }
@@ -101,22 +115,26 @@ std::string describe(const Condition& condition) {
     case Kind::Attribute:
       return describeMeasured(condition.attribute, condition.of, condition.slice) + " " + describeThreshold(condition);
     case Kind::Pair:
-      return std::string(nameOf(condition.measure)) + " of " + condition.of + " to " + describeTarget(*condition.target) +
-             " " + describeThreshold(condition);
+      return std::string(nameOf(condition.measure)) + " of " + condition.of + " to " +
+             describeTarget(*condition.target) + " " + describeThreshold(condition);
     case Kind::Relation:
       return condition.of + " " + std::string(relationInfos()[static_cast<std::size_t>(condition.relation)].name) +
              (condition.target ? " " + describeTarget(*condition.target) : "") +
              (condition.value ? " within " + condition.value->text : "");
-    case Kind::Label: return condition.of + " is labelled " + labelList(condition.labels);
-    case Kind::Class: return condition.of + " belongs to a " + localName(condition.class_iri);
+    case Kind::Label:
+      return condition.of + " is labelled " + labelList(condition.labels);
+    case Kind::Class:
+      return condition.of + " belongs to a " + localName(condition.class_iri);
     case Kind::Ask: {
       const std::size_t body = condition.query.rfind("PREFIX ");
       const std::size_t start = body == std::string::npos ? 0 : condition.query.find('\n', body) + 1;
       return condition.query.substr(start);
     }
     case Kind::All:
-    case Kind::Any: return describeAll(condition);
-    case Kind::Not: return "not " + describe(condition.operands.front());
+    case Kind::Any:
+      return describeAll(condition);
+    case Kind::Not:
+      return "not " + describe(condition.operands.front());
   }
   return {};
 }

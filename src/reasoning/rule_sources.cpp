@@ -102,8 +102,7 @@ class Gatherer {
     const YamlNode* insert = requireKey(order, "insert", "order", faults_);
     const YamlNode* before = order.find("before");
     const YamlNode* after = order.find("after");
-    if ((before == nullptr) == (after == nullptr))
-      faults_.error(order.at, "'order' needs either 'before' or 'after'");
+    if ((before == nullptr) == (after == nullptr)) faults_.error(order.at, "'order' needs either 'before' or 'after'");
     if (insert == nullptr) return;
     std::size_t at = result_.order.size();
     for (const YamlNode* anchor : {before, after})

@@ -14,7 +14,8 @@ std::vector<LeafCoverage> leavesOf(const RuleSet& rules) {
   std::vector<LeafCoverage> leaves;
   for (const Rule& rule : rules.rules)
     for (const TreeNode& node : rule.nodes) {
-      if (const auto* reject = std::get_if<RejectLeaf>(&node.what)) leaves.push_back({rule.id, node.at, reject->reason});
+      if (const auto* reject = std::get_if<RejectLeaf>(&node.what))
+        leaves.push_back({rule.id, node.at, reject->reason});
       if (std::holds_alternative<AcceptLeaf>(node.what)) leaves.push_back({rule.id, node.at, "accept"});
     }
   return leaves;
@@ -29,7 +30,8 @@ class TestRun {
 
   RuleTestReport run() {
     for (const RuleTest& test : file_.tests)
-      if (!options_.only || test.name.find(*options_.only) != std::string::npos) report_.results.push_back(runOne(test));
+      if (!options_.only || test.name.find(*options_.only) != std::string::npos)
+        report_.results.push_back(runOne(test));
     return std::move(report_);
   }
 
@@ -85,8 +87,8 @@ class TestRun {
 }  // namespace
 
 std::size_t RuleTestReport::count(RuleTestOutcome outcome) const {
-  return static_cast<std::size_t>(std::count_if(results.begin(), results.end(),
-                                                [&](const RuleTestResult& result) { return result.outcome == outcome; }));
+  return static_cast<std::size_t>(std::count_if(
+      results.begin(), results.end(), [&](const RuleTestResult& result) { return result.outcome == outcome; }));
 }
 
 bool RuleTestReport::passed() const {

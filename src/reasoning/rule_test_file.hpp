@@ -15,7 +15,7 @@ namespace cluxel {
 struct ExpectedObject {
   SourceLocation at;
   std::string class_iri;
-  std::map<std::string, std::vector<std::string>> parts;   ///< part class IRI (or "" for any) -> names of primitives
+  std::map<std::string, std::vector<std::string>> parts;  ///< part class IRI (or "" for any) -> names of primitives
   std::optional<Comparison> confidence_is;
   double confidence = 0;
   std::string rule_id;
@@ -35,8 +35,8 @@ struct GoldenObjects {
 struct Expectation {
   std::vector<ExpectedObject> objects;
   bool exactly = false;
-  std::vector<std::string> absent;                         ///< class IRIs
-  std::map<std::string, std::size_t> count;                ///< class IRI -> number of objects
+  std::vector<std::string> absent;           ///< class IRIs
+  std::map<std::string, std::size_t> count;  ///< class IRI -> number of objects
   std::vector<ExpectedReason> reasons;
   std::optional<GoldenObjects> golden;
 };

@@ -96,7 +96,8 @@ class TestReader {
       return faults_.error(key.at, "unknown attribute '" + key.text + "'", suggestion(key.text, known));
     }
     const Dimension dimension = attributeInfos()[static_cast<std::size_t>(*attribute)].dimension;
-    if (const auto quantity = readQuantity(value, dimension, reading_)) primitive.attributes[*attribute] = quantity->value;
+    if (const auto quantity = readQuantity(value, dimension, reading_))
+      primitive.attributes[*attribute] = quantity->value;
   }
 
   /// Three numbers in metres.
@@ -149,7 +150,8 @@ class TestReader {
     if (!checkKeys(node, "expect", faults_)) return;
     const std::size_t faults_before = faults_.errorCount();
     for (const YamlNode& item : listUnder(node, "objects", "objects", faults_)) readExpectedObject(item, test);
-    if (const YamlNode* exactly = node.find("exactly")) test.expect.exactly = readFlag(*exactly, faults_).value_or(false);
+    if (const YamlNode* exactly = node.find("exactly"))
+      test.expect.exactly = readFlag(*exactly, faults_).value_or(false);
     for (const YamlNode& item : listUnder(node, "not", "classes", faults_))
       if (const auto iri = readClass(item, reading_)) test.expect.absent.push_back(*iri);
     if (const YamlNode* count = node.find("count")) readCount(*count, test.expect);
@@ -169,7 +171,8 @@ class TestReader {
     for (std::size_t i = 0; i < node.items.size() && node.isMap(); ++i) {
       const auto iri = readClass(node.keys[i], reading_);
       const auto number = readQuantity(node.items[i], Dimension::Count, reading_);
-      if (number && (number->value < 0 || number->value != static_cast<double>(static_cast<std::size_t>(number->value))))
+      if (number &&
+          (number->value < 0 || number->value != static_cast<double>(static_cast<std::size_t>(number->value))))
         faults_.error(node.items[i].at, "a whole number is expected here");
       else if (iri && number)
         expect.count[*iri] = static_cast<std::size_t>(number->value);
@@ -203,8 +206,10 @@ class TestReader {
 
   void readConfidence(const YamlNode& node, ExpectedObject& object) {
     const std::size_t end = node.text.find_first_not_of("<>=");
-    const auto number = end == std::string::npos ? std::nullopt
-                                                 : parseNumber(node.text.substr(std::min(node.text.size(), node.text.find_first_not_of(' ', end))));
+    const auto number =
+        end == std::string::npos
+            ? std::nullopt
+            : parseNumber(node.text.substr(std::min(node.text.size(), node.text.find_first_not_of(' ', end))));
     const std::string op = node.text.substr(0, end);
     const std::map<std::string, Comparison> known{{">=", Comparison::GreaterEqual}, {">", Comparison::Greater},
                                                   {"<=", Comparison::LessEqual},    {"<", Comparison::Less},
@@ -240,8 +245,8 @@ class TestReader {
   void readGolden(const YamlNode& expect, const YamlNode& node, Expectation& expectation) {
     GoldenObjects golden;
     if (const auto text = readText(node, "a file", faults_)) golden.file = folder_ / *text;
-    for (const auto& [key, field] : {std::pair{"iou", &golden.iou}, {"min_precision", &golden.min_precision},
-                                     {"min_recall", &golden.min_recall}})
+    for (const auto& [key, field] :
+         {std::pair{"iou", &golden.iou}, {"min_precision", &golden.min_precision}, {"min_recall", &golden.min_recall}})
       if (const YamlNode* value = expect.find(key)) {
         std::string text = value->text;
         if (text.starts_with(">=")) text = text.substr(std::min(text.size(), text.find_first_not_of(" ", 2)));
@@ -263,7 +268,8 @@ class TestReader {
   double ground_z_m_ = 0;
 };
 
-std::vector<std::filesystem::path> rulePaths(const YamlNode& root, const std::filesystem::path& folder, FaultList& faults) {
+std::vector<std::filesystem::path> rulePaths(const YamlNode& root, const std::filesystem::path& folder,
+                                             FaultList& faults) {
   std::vector<std::filesystem::path> paths;
   const YamlNode* list = requireKey(root, "rules", "test file", faults);
   if (list == nullptr) return paths;

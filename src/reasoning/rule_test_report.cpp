@@ -10,11 +10,16 @@ namespace {
 
 std::string_view nameOf(RuleTestOutcome outcome) {
   switch (outcome) {
-    case RuleTestOutcome::Passed: return "passed";
-    case RuleTestOutcome::Failed: return "failed";
-    case RuleTestOutcome::KnownFailure: return "known failure";
-    case RuleTestOutcome::UnexpectedPass: return "passes, though marked todo";
-    case RuleTestOutcome::Skipped: break;
+    case RuleTestOutcome::Passed:
+      return "passed";
+    case RuleTestOutcome::Failed:
+      return "failed";
+    case RuleTestOutcome::KnownFailure:
+      return "known failure";
+    case RuleTestOutcome::UnexpectedPass:
+      return "passes, though marked todo";
+    case RuleTestOutcome::Skipped:
+      break;
   }
   return "skipped";
 }
@@ -22,11 +27,16 @@ std::string_view nameOf(RuleTestOutcome outcome) {
 std::string xmlEscaped(std::string_view text) {
   std::string escaped;
   for (char c : text) {
-    if (c == '&') escaped += "&amp;";
-    else if (c == '<') escaped += "&lt;";
-    else if (c == '>') escaped += "&gt;";
-    else if (c == '"') escaped += "&quot;";
-    else if (static_cast<unsigned char>(c) >= 0x20 || c == '\n' || c == '\t') escaped += c;
+    if (c == '&')
+      escaped += "&amp;";
+    else if (c == '<')
+      escaped += "&lt;";
+    else if (c == '>')
+      escaped += "&gt;";
+    else if (c == '"')
+      escaped += "&quot;";
+    else if (static_cast<unsigned char>(c) >= 0x20 || c == '\n' || c == '\t')
+      escaped += c;
   }
   return escaped;
 }
@@ -82,9 +92,8 @@ std::string jsonOf(const RuleTestReport& report) {
 std::string junitOf(const RuleTestReport& report, const std::string& suite) {
   const std::size_t failed = report.count(RuleTestOutcome::Failed) + report.count(RuleTestOutcome::UnexpectedPass);
   const std::size_t skipped = report.count(RuleTestOutcome::Skipped) + report.count(RuleTestOutcome::KnownFailure);
-  std::string xml = "<testsuite name=\"" + xmlEscaped(suite) + "\" tests=\"" +
-                    std::to_string(report.results.size()) + "\" failures=\"" + std::to_string(failed) +
-                    "\" skipped=\"" + std::to_string(skipped) + "\">\n";
+  std::string xml = "<testsuite name=\"" + xmlEscaped(suite) + "\" tests=\"" + std::to_string(report.results.size()) +
+                    "\" failures=\"" + std::to_string(failed) + "\" skipped=\"" + std::to_string(skipped) + "\">\n";
   for (const RuleTestResult& result : report.results) {
     xml += "  <testcase classname=\"" + xmlEscaped(suite) + "\" name=\"" + xmlEscaped(result.name) + "\">";
     const std::string words = xmlEscaped(joined(result.failures));

@@ -33,19 +33,29 @@ constexpr std::array<Unit, 12> kUnits{{{"m", Dimension::Length, 1.0},
 
 std::string_view nounOf(Dimension dimension) {
   switch (dimension) {
-    case Dimension::Length: return "a length";
-    case Dimension::Area: return "an area";
-    case Dimension::Volume: return "a volume";
-    case Dimension::Angle: return "an angle";
-    case Dimension::Ratio: return "a plain number";
-    case Dimension::Count: return "a count";
+    case Dimension::Length:
+      return "a length";
+    case Dimension::Area:
+      return "an area";
+    case Dimension::Volume:
+      return "a volume";
+    case Dimension::Angle:
+      return "an angle";
+    case Dimension::Ratio:
+      return "a plain number";
+    case Dimension::Count:
+      return "a count";
   }
   return "";
 }
 
-bool isPlain(Dimension dimension) { return dimension == Dimension::Ratio || dimension == Dimension::Count; }
+bool isPlain(Dimension dimension) {
+  return dimension == Dimension::Ratio || dimension == Dimension::Count;
+}
 
-std::vector<std::string> labelNames() { return {kPrimitiveLabelNames.begin(), kPrimitiveLabelNames.end()}; }
+std::vector<std::string> labelNames() {
+  return {kPrimitiveLabelNames.begin(), kPrimitiveLabelNames.end()};
+}
 
 void readLabel(const YamlNode& node, std::vector<PrimitiveLabel>& labels, FaultList& faults) {
   const auto text = readText(node, "a label", faults);
@@ -58,9 +68,8 @@ void readLabel(const YamlNode& node, std::vector<PrimitiveLabel>& labels, FaultL
 
 bool isWord(const std::string& text) {
   auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  return !text.empty() && text.size() <= 64 && letter(text[0]) && std::all_of(text.begin(), text.end(), [&](char c) {
-    return letter(c) || (c >= '0' && c <= '9') || c == '_';
-  });
+  return !text.empty() && text.size() <= 64 && letter(text[0]) &&
+         std::all_of(text.begin(), text.end(), [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
 std::string shortName(const std::string& iri, const RuleReading& reading) {
@@ -73,15 +82,21 @@ std::string shortName(const std::string& iri, const RuleReading& reading) {
 
 std::string_view unitOf(Dimension dimension) {
   switch (dimension) {
-    case Dimension::Length: return "m";
-    case Dimension::Area: return "m2";
-    case Dimension::Volume: return "m3";
-    case Dimension::Angle: return "deg";
-    default: return "";
+    case Dimension::Length:
+      return "m";
+    case Dimension::Area:
+      return "m2";
+    case Dimension::Volume:
+      return "m3";
+    case Dimension::Angle:
+      return "deg";
+    default:
+      return "";
   }
 }
 
-const std::vector<YamlNode>& listUnder(const YamlNode& map, std::string_view key, std::string_view of_what, FaultList& faults) {
+const std::vector<YamlNode>& listUnder(const YamlNode& map, std::string_view key, std::string_view of_what,
+                                       FaultList& faults) {
   static const std::vector<YamlNode> none;
   const YamlNode* list = map.find(key);
   if (list == nullptr || list->isNull()) return none;
@@ -155,12 +170,11 @@ std::optional<Quantity> readQuantity(const YamlNode& node, Dimension expected, R
   }
   if (quantity->dimension == expected || (isPlain(quantity->dimension) && isPlain(expected))) return quantity;
   const bool bare = isPlain(quantity->dimension);
-  reading.faults.error(
-      node.at,
-      bare ? "a bare number where " + std::string(nounOf(expected)) + " is expected"
-           : "'" + node.text + "' is " + std::string(nounOf(quantity->dimension)) + " where " +
-                 std::string(nounOf(expected)) + " is expected",
-      bare ? "write '" + quantity->text + " " + std::string(unitOf(expected)) + "'" : "");
+  reading.faults.error(node.at,
+                       bare ? "a bare number where " + std::string(nounOf(expected)) + " is expected"
+                            : "'" + node.text + "' is " + std::string(nounOf(quantity->dimension)) + " where " +
+                                  std::string(nounOf(expected)) + " is expected",
+                       bare ? "write '" + quantity->text + " " + std::string(unitOf(expected)) + "'" : "");
   return std::nullopt;
 }
 
@@ -187,7 +201,8 @@ std::optional<std::string> expandName(const YamlNode& node, RuleReading& reading
   if (text->front() == '<' && text->back() == '>') return text->substr(1, text->size() - 2);
   const std::size_t colon = text->find(':');
   if (colon == std::string::npos) {
-    reading.faults.error(node.at, "'" + *text + "' is not a class name", "write a prefix before it: 'clx:" + *text + "'");
+    reading.faults.error(node.at, "'" + *text + "' is not a class name",
+                         "write a prefix before it: 'clx:" + *text + "'");
     return std::nullopt;
   }
   const auto prefix = reading.prefixes.find(text->substr(0, colon));

@@ -25,7 +25,7 @@ bool passes(const ReasoningState& state, const Rule& rule, const std::vector<Con
 
 struct Link {
   double gap = 0;
-  std::size_t a = 0, b = 0;   ///< positions among the members, a < b
+  std::size_t a = 0, b = 0;  ///< positions among the members, a < b
 };
 
 /// Pairs of members that the group's tolerances link, closest first.
@@ -73,7 +73,7 @@ class Linking {
   const GroupSpec& group_;
   const std::vector<PieceIndex>& members_;
   static constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> place_;   // per piece
+  std::vector<std::size_t> place_;  // per piece
   std::map<std::pair<std::size_t, std::size_t>, double> best_;
 };
 

@@ -20,7 +20,7 @@ class SliceScope {
 
  private:
   struct Cut {
-    std::optional<PieceIndex> rest;   ///< what is not in any slice
+    std::optional<PieceIndex> rest;  ///< what is not in any slice
     std::vector<PieceIndex> slices;
   };
   ReasoningState& state_;

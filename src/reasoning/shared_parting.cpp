@@ -114,6 +114,8 @@ class SharedParting {
 
 }  // namespace
 
-void partShared(ReasoningState& state) { SharedParting(state).run(); }
+void partShared(ReasoningState& state) {
+  SharedParting(state).run();
+}
 
 }  // namespace cluxel

@@ -43,7 +43,8 @@ class TreeReader {
     if (given.size() != 1) {
       const bool none = given.empty();
       const SourceLocation at = none ? node.at : node.keyNode(given[1])->at;
-      return faults_.error(at, none ? "a node that does nothing" : "'" + given[0] + "' and '" + given[1] + "' in one node",
+      return faults_.error(at,
+                           none ? "a node that does nothing" : "'" + given[0] + "' and '" + given[1] + "' in one node",
                            "a node has exactly one of: test, all, any, not, ask, find, accept, reject");
     }
     const std::string& kind = given.front();
@@ -123,8 +124,7 @@ class TreeReader {
 
   void readChoice(const YamlNode& spec, FindNode& find) {
     for (const Condition& condition : find.where)
-      if (find.nearest_to.empty() && looksNearby(condition, find.name))
-        find.nearest_to = condition.target->name;
+      if (find.nearest_to.empty() && looksNearby(condition, find.name)) find.nearest_to = condition.target->name;
     const YamlNode* choose = spec.find("choose");
     if (choose == nullptr) return;
     const auto found = std::find_if(kChoices.begin(), kChoices.end(),

@@ -61,7 +61,8 @@ class Walk {
       return false;
     }
     const PrimitiveLabel label = state_.pieces.labelOf(piece);
-    const bool labelled = find.labels.empty() || std::find(find.labels.begin(), find.labels.end(), label) != find.labels.end();
+    const bool labelled =
+        find.labels.empty() || std::find(find.labels.begin(), find.labels.end(), label) != find.labels.end();
     return labelled && !result_.bindings.holds(piece);
   }
 

@@ -17,10 +17,10 @@ struct WalkedNode {
 
 struct WalkResult {
   NodeIndex leaf = 0;
-  Bindings bindings;                       ///< the seed and what was found
+  Bindings bindings;  ///< the seed and what was found
   std::vector<DecisionStep> path;
   std::vector<WalkedNode> walked;
-  std::optional<OwnerIndex> related;       ///< for merge_into: related
+  std::optional<OwnerIndex> related;  ///< for merge_into: related
 };
 
 /// Walks `seed` through the tree. The branch `flipped`, if any, takes its other way (a find: its missing one).

@@ -57,7 +57,7 @@ class TreeBuilder : public YAML::EventHandler {
  private:
   struct Open {
     YamlNode node;
-    bool key_waits = false;     ///< the last key has no value yet
+    bool key_waits = false;  ///< the last key has no value yet
     bool key_repeated = false;
   };
 
@@ -137,15 +137,21 @@ const YamlNode* YamlNode::keyNode(std::string_view key) const {
 
 std::string_view describeKind(const YamlNode& node) {
   switch (node.kind) {
-    case YamlNode::Kind::Map: return "a mapping";
-    case YamlNode::Kind::Sequence: return "a list";
-    case YamlNode::Kind::Scalar: return "a single value";
-    case YamlNode::Kind::Null: break;
+    case YamlNode::Kind::Map:
+      return "a mapping";
+    case YamlNode::Kind::Sequence:
+      return "a list";
+    case YamlNode::Kind::Scalar:
+      return "a single value";
+    case YamlNode::Kind::Null:
+      break;
   }
   return "nothing";
 }
 
-void FaultList::addFile(std::string file, std::string text) { files_.emplace_back(std::move(file), std::move(text)); }
+void FaultList::addFile(std::string file, std::string text) {
+  files_.emplace_back(std::move(file), std::move(text));
+}
 
 void FaultList::error(const SourceLocation& at, std::string message, std::string hint) {
   if (++errors_ <= kMostFaults) add(Severity::Error, at, std::move(message), std::move(hint));
@@ -168,8 +174,8 @@ void FaultList::add(Severity severity, const SourceLocation& at, std::string mes
 
 std::vector<Diagnostic> FaultList::sorted() const {
   auto fileNumber = [this](const Diagnostic& fault) {
-    const auto found = std::find_if(files_.begin(), files_.end(),
-                                    [&](const auto& file) { return file.first == fault.location.file; });
+    const auto found =
+        std::find_if(files_.begin(), files_.end(), [&](const auto& file) { return file.first == fault.location.file; });
     return found - files_.begin();
   };
   auto place = [&](const Diagnostic& fault) {

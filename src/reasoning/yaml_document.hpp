@@ -13,10 +13,10 @@ namespace cluxel {
 struct YamlNode {
   enum class Kind { Null, Scalar, Sequence, Map } kind = Kind::Null;
   SourceLocation at;
-  std::string text;                 ///< of a scalar
+  std::string text;  ///< of a scalar
   bool quoted = false;
-  std::vector<YamlNode> keys;       ///< of a map, in the order written, each key once
-  std::vector<YamlNode> items;      ///< of a sequence; of a map, the value of each key
+  std::vector<YamlNode> keys;   ///< of a map, in the order written, each key once
+  std::vector<YamlNode> items;  ///< of a sequence; of a map, the value of each key
 
   bool isMap() const { return kind == Kind::Map; }
   bool isSequence() const { return kind == Kind::Sequence; }

@@ -21,8 +21,8 @@ struct InflateEnd {
 };
 
 /// Unpacks one gzip member from the front of `bytes` onto `text`; returns how many bytes it took.
-std::size_t unpackMember(std::string_view bytes, const std::string& file, std::uint64_t offset,
-                         std::size_t most_bytes, std::string& text) {
+std::size_t unpackMember(std::string_view bytes, const std::string& file, std::uint64_t offset, std::size_t most_bytes,
+                         std::string& text) {
   z_stream stream{};
   if (inflateInit2(&stream, kGzipOnly) != Z_OK)
     throw Error(ExitCode::BudgetExceeded, "no memory left to unpack " + file);
@@ -43,9 +43,8 @@ std::size_t unpackMember(std::string_view bytes, const std::string& file, std::u
     text.append(buffer.data(), made);
     if (result == Z_BUF_ERROR) refuseByte(file, offset + taken, "the gzip data are cut off");
     if (result != Z_OK && result != Z_STREAM_END)
-      refuseByte(
-          file, offset + taken,
-          std::string("the gzip data are damaged: ") + (stream.msg ? stream.msg : "zlib refuses them"));
+      refuseByte(file, offset + taken,
+                 std::string("the gzip data are damaged: ") + (stream.msg ? stream.msg : "zlib refuses them"));
   }
   return taken;
 }
@@ -55,8 +54,7 @@ std::size_t unpackMember(std::string_view bytes, const std::string& file, std::u
 std::string unpackedText(std::string_view bytes, const std::string& file, std::size_t most_bytes) {
   if (!bytes.starts_with("\x1f\x8b")) return std::string(bytes);
   std::string text;
-  for (std::size_t at = 0; at < bytes.size();)
-    at += unpackMember(bytes.substr(at), file, at, most_bytes, text);
+  for (std::size_t at = 0; at < bytes.size();) at += unpackMember(bytes.substr(at), file, at, most_bytes, text);
   return text;
 }
 

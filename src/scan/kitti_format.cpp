@@ -26,19 +26,17 @@ ParsedScan parseKittiPoints(std::string_view bytes, const std::string& file) {
   scan.points.intensity.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t at = i * kRecordBytes;
-    const bool usable = points.add(numberAt<float>(bytes, at), numberAt<float>(bytes, at + 4),
-                                   numberAt<float>(bytes, at + 8));
+    const bool usable =
+        points.add(numberAt<float>(bytes, at), numberAt<float>(bytes, at + 4), numberAt<float>(bytes, at + 8));
     scan.points.intensity.push_back(numberAt<float>(bytes, at + 12));
-    if (!usable)
-      refuseByte(file, at, "point " + std::to_string(i) + ' ' + kUnusableCoordinate, kNotFiniteHint);
+    if (!usable) refuseByte(file, at, "point " + std::to_string(i) + ' ' + kUnusableCoordinate, kNotFiniteHint);
     if (!std::isfinite(scan.points.intensity.back()))
       refuseByte(file, at + 12, "point " + std::to_string(i) + " has an intensity that is not finite");
   }
   return scan;
 }
 
-std::vector<std::uint32_t> parseKittiLabels(std::string_view bytes, const std::string& file,
-                                            std::size_t point_count) {
+std::vector<std::uint32_t> parseKittiLabels(std::string_view bytes, const std::string& file, std::size_t point_count) {
   const std::size_t expected = point_count * sizeof(std::uint32_t);
   if (bytes.size() != expected)
     refuseByte(file, std::min(bytes.size(), expected),
@@ -46,8 +44,7 @@ std::vector<std::uint32_t> parseKittiLabels(std::string_view bytes, const std::s
                    " (4 for each of " + std::to_string(point_count) + " points) were expected",
                "labels and scan must come from the same frame");
   std::vector<std::uint32_t> labels(point_count);
-  for (std::size_t i = 0; i < point_count; ++i)
-    labels[i] = numberAt<std::uint32_t>(bytes, 4 * i) & kClassMask;
+  for (std::size_t i = 0; i < point_count; ++i) labels[i] = numberAt<std::uint32_t>(bytes, 4 * i) & kClassMask;
   return labels;
 }
 

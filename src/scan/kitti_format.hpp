@@ -17,7 +17,6 @@ ParsedScan parseKittiPoints(std::string_view bytes, const std::string& file);
 
 /// One little-endian 32-bit number a point: the class id in the low 16 bits, which is what is returned, and
 /// an instance in the high ones. Throws InputError naming the byte.
-std::vector<std::uint32_t> parseKittiLabels(std::string_view bytes, const std::string& file,
-                                            std::size_t point_count);
+std::vector<std::uint32_t> parseKittiLabels(std::string_view bytes, const std::string& file, std::size_t point_count);
 
 }  // namespace cluxel

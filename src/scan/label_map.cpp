@@ -20,9 +20,8 @@ const std::vector<std::string> kNearKeys{"label", "within", "object"};
 bool isLocalName(std::string_view name) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
-  return !name.empty() && letter(name.front()) && std::all_of(name.begin(), name.end(), [&](char c) {
-    return letter(c) || digit(c) || c == '_' || c == '-';
-  });
+  return !name.empty() && letter(name.front()) &&
+         std::all_of(name.begin(), name.end(), [&](char c) { return letter(c) || digit(c) || c == '_' || c == '-'; });
 }
 
 class LabelMapReader {
@@ -67,8 +66,7 @@ class LabelMapReader {
     if (const YamlValue* primitive = value.find("primitive")) meaning.primitive = readPrimitive(*primitive);
     meaning.object_class = localNameAt(value, "object");
     meaning.part = localNameAt(value, "part");
-    if (meaning.part && !value.find("object"))
-      faults_->add(value, "a 'part' needs an 'object' that it is part of");
+    if (meaning.part && !value.find("object")) faults_->add(value, "a 'part' needs an 'object' that it is part of");
     if (const YamlValue* near = value.find("near")) meaning.near = readNear(*near);
     return meaning;
   }
@@ -109,8 +107,7 @@ class LabelMapReader {
     const std::string_view unit(stop, static_cast<std::size_t>(text.data() + text.size() - stop));
     const bool good = error == std::errc() && (unit == " m" || unit == "m") && metres > 0 && metres <= 100;
     if (good) return metres;
-    faults_->add(value, "within must be a distance with its unit, above 0 and at most 100 m",
-                 "write it as '0.6 m'");
+    faults_->add(value, "within must be a distance with its unit, above 0 and at most 100 m", "write it as '0.6 m'");
     return std::nullopt;
   }
 

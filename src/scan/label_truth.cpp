@@ -44,8 +44,7 @@ class NearPoints {
   }
 
   Point2 pointAt(const Scan& scan, std::size_t i) const {
-    const Eigen::Vector3d p =
-        toMap(scan.T_map_sensor, {scan.points.x[i], scan.points.y[i], scan.points.z[i]});
+    const Eigen::Vector3d p = toMap(scan.T_map_sensor, {scan.points.x[i], scan.points.y[i], scan.points.z[i]});
     return {cellOf(p.x()), cellOf(p.y()), p.x(), p.y()};
   }
 
@@ -88,9 +87,8 @@ std::map<std::uint32_t, LabelCode> codesOf(const Scan& scan, const LabelMap& map
 }  // namespace
 
 const std::vector<std::string>& truthClassNames() {
-  static const std::vector<std::string> names{"Ground",      "Building",   "Tree",
-                                              "Bush",        "StreetLamp", "StreetSign",
-                                              "UtilityPole", "Vehicle",    "SmallObject"};
+  static const std::vector<std::string> names{"Ground",     "Building",    "Tree",    "Bush",       "StreetLamp",
+                                              "StreetSign", "UtilityPole", "Vehicle", "SmallObject"};
   return names;
 }
 
@@ -103,16 +101,14 @@ std::vector<std::string> truthClassNames(const LabelMap& map) {
     if (meaning.object_class) enter(*meaning.object_class);
     if (meaning.near) enter(meaning.near->object_class);
   }
-  if (names.size() > kMostClasses)
-    throw Error(ExitCode::FaultyInput, "a label map names more than 127 object classes");
+  if (names.size() > kMostClasses) throw Error(ExitCode::FaultyInput, "a label map names more than 127 object classes");
   return names;
 }
 
 PointTruth truthFromLabels(const Scan& scan, const LabelMap& map) {
   const std::size_t count = scan.points.size();
   if (scan.points.label.size() != count)
-    throw InputError({.file = scan.source}, "the scan has no labels",
-                     "give a folder of truth files with --truth");
+    throw InputError({.file = scan.source}, "the scan has no labels", "give a folder of truth files with --truth");
   PointTruth truth;
   truth.class_names = truthClassNames(map);
   const auto codes = codesOf(scan, map, truth.class_names);

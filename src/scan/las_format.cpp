@@ -42,39 +42,36 @@ unsigned checkVersion(std::string_view bytes, const std::string& file) {
   const std::size_t least = minor == 4 ? kHeaderBytes_1_4 : kHeaderBytes_1_2;
   if (header_bytes < least || header_bytes > bytes.size())
     refuseByte(file, 94,
-               "the header size " + std::to_string(header_bytes) + " does not fit LAS 1." +
-                   std::to_string(minor) + " or the file");
+               "the header size " + std::to_string(header_bytes) + " does not fit LAS 1." + std::to_string(minor) +
+                   " or the file");
   return minor;
 }
 
 void checkPointFormat(LasHeader& header, std::string_view bytes, const std::string& file) {
   const std::uint8_t format = numberAt<std::uint8_t>(bytes, 104);
   if ((format & 0xC0U) != 0)
-    refuseByte(file, 104, "the points are compressed (LAZ), which is not supported",
-               "uncompress it to LAS first");
+    refuseByte(file, 104, "the points are compressed (LAZ), which is not supported", "uncompress it to LAS first");
   if (format >= kRecordBytes.size()) refuseByte(file, 104, "unknown point format " + std::to_string(format));
   header.point_format = format;
   header.record_bytes = numberAt<std::uint16_t>(bytes, 105);
   if (header.record_bytes < kRecordBytes[format])
     refuseByte(file, 105,
-               "a point record of " + std::to_string(header.record_bytes) +
-                   " bytes is too short for format " + std::to_string(format) + ", which has " +
-                   std::to_string(kRecordBytes[format]));
+               "a point record of " + std::to_string(header.record_bytes) + " bytes is too short for format " +
+                   std::to_string(format) + ", which has " + std::to_string(kRecordBytes[format]));
 }
 
 void checkLength(const LasHeader& header, std::string_view bytes, const std::string& file) {
-  if (header.point_count == 0)
-    refuseByte(file, 107, "holds no points", "an empty scan cannot be mapped: leave it out");
+  if (header.point_count == 0) refuseByte(file, 107, "holds no points", "an empty scan cannot be mapped: leave it out");
   const std::uint64_t header_bytes = numberAt<std::uint16_t>(bytes, 94);
   if (header.data_offset < header_bytes || header.data_offset > bytes.size())
-    refuseByte(file, 96,
-               "the points are said to begin at byte " + std::to_string(header.data_offset) +
-                   ", outside the file's data");
+    refuseByte(
+        file, 96,
+        "the points are said to begin at byte " + std::to_string(header.data_offset) + ", outside the file's data");
   const std::uint64_t there = (bytes.size() - header.data_offset) / header.record_bytes;
   if (there < header.point_count)
-    refuseByte(file, bytes.size(),
-               "the file ends after " + std::to_string(there) + " of " + std::to_string(header.point_count) +
-                   " points");
+    refuseByte(
+        file, bytes.size(),
+        "the file ends after " + std::to_string(there) + " of " + std::to_string(header.point_count) + " points");
 }
 
 LasHeader headerOf(std::string_view bytes, const std::string& file) {
@@ -83,8 +80,7 @@ LasHeader headerOf(std::string_view bytes, const std::string& file) {
   checkPointFormat(header, bytes, file);
   header.data_offset = numberAt<std::uint32_t>(bytes, 96);
   header.point_count = numberAt<std::uint32_t>(bytes, 107);
-  if (minor == 4 && numberAt<std::uint64_t>(bytes, 247) != 0)
-    header.point_count = numberAt<std::uint64_t>(bytes, 247);
+  if (minor == 4 && numberAt<std::uint64_t>(bytes, 247) != 0) header.point_count = numberAt<std::uint64_t>(bytes, 247);
   checkLength(header, bytes, file);
   header.scale = vectorAt(bytes, 131);
   header.offset = vectorAt(bytes, 155);

@@ -10,8 +10,7 @@
 
 namespace cluxel {
 
-static_assert(std::endian::native == std::endian::little,
-              "binary scans are read in place as little-endian numbers");
+static_assert(std::endian::native == std::endian::little, "binary scans are read in place as little-endian numbers");
 
 /// The number at byte `offset`, which the caller has checked to lie inside `bytes`.
 template <typename T>

@@ -38,8 +38,7 @@ class ManifestReader {
 
  private:
   bool isOuter(const YamlValue& frame) {
-    if (frame.scalar != "map" && frame.scalar != "outer")
-      faults_->add(frame, "frame must be 'map' or 'outer'");
+    if (frame.scalar != "map" && frame.scalar != "outer") faults_->add(frame, "frame must be 'map' or 'outer'");
     return frame.scalar == "outer";
   }
 
@@ -97,8 +96,7 @@ class ManifestReader {
     if (value.kind == YamlValue::Kind::Sequence) return checked(value, readMatrix(value));
     if (!checkMapping(value, kPoseKeys, *faults_)) return std::nullopt;
     if (const YamlValue* matrix = value.find("matrix")) {
-      if (value.entries.size() > 1)
-        faults_->add(value, "'matrix' is a whole pose: nothing may stand beside it");
+      if (value.entries.size() > 1) faults_->add(value, "'matrix' is a whole pose: nothing may stand beside it");
       return checked(*matrix, readMatrix(*matrix));
     }
     const YamlValue* xyz = value.find("xyz");
@@ -143,8 +141,7 @@ class ManifestReader {
     return std::nullopt;
   }
 
-  std::optional<Eigen::Isometry3d> checked(const YamlValue& place,
-                                           const std::optional<Eigen::Isometry3d>& pose) {
+  std::optional<Eigen::Isometry3d> checked(const YamlValue& place, const std::optional<Eigen::Isometry3d>& pose) {
     if (!pose) return std::nullopt;
     if (const auto fault = faultOfPose(*pose)) faults_->add(place, "the pose " + *fault);
     return pose;

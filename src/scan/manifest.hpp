@@ -14,7 +14,7 @@
 namespace cluxel {
 
 struct ManifestEntry {
-  std::filesystem::path path;  ///< a scan file or a folder; relative paths are made absolute to the manifest
+  std::filesystem::path path;             ///< a scan file or a folder; relative paths are made absolute to the manifest
   std::optional<Eigen::Isometry3d> pose;  ///< in the frame that `poses_in_outer` says
   std::optional<double> time_s;
   std::optional<std::filesystem::path> labels;

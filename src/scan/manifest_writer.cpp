@@ -60,7 +60,8 @@ std::string manifestText(const ScanSet& set, const std::vector<PosedScan>& scans
   std::string text = "# " + comment + '\n';
   const Eigen::Vector3d& origin = set.mapOrigin();
   if (!origin.isZero(0))
-    text += "map_origin: [" + numberText(origin.x()) + ", " + numberText(origin.y()) + ", " + numberText(origin.z()) + "]\n";
+    text += "map_origin: [" + numberText(origin.x()) + ", " + numberText(origin.y()) + ", " + numberText(origin.z()) +
+            "]\n";
   if (!set.crs().empty()) text += "crs: " + quoted(set.crs()) + '\n';
   text += "scans:\n";
   for (const PosedScan& scan : scans) text += entryText(set.file(scan.index), scan.T_map_sensor, file);

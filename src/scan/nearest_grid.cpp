@@ -8,7 +8,8 @@
 
 namespace cluxel {
 
-NearestGrid::NearestGrid(const std::vector<Eigen::Vector3f>& points, double longest_reach_m) : cell_m_(longest_reach_m) {
+NearestGrid::NearestGrid(const std::vector<Eigen::Vector3f>& points, double longest_reach_m)
+    : cell_m_(longest_reach_m) {
   if (points.empty()) return;
   Eigen::Vector2d high = points.front().head<2>().cast<double>();
   low_ = high;
@@ -32,7 +33,8 @@ NearestGrid::NearestGrid(const std::vector<Eigen::Vector3f>& points, double long
   entries_.resize(points.size());
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
   for (std::size_t i = 0; i < points.size(); ++i)
-    entries_[next[columnOf(points[i])]++] = {points[i].z(), points[i].x(), points[i].y(), static_cast<std::uint32_t>(i)};
+    entries_[next[columnOf(points[i])]++] = {points[i].z(), points[i].x(), points[i].y(),
+                                             static_cast<std::uint32_t>(i)};
   for (std::size_t c = 0; c + 1 < first_.size(); ++c)
     std::stable_sort(entries_.begin() + first_[c], entries_.begin() + first_[c + 1],
                      [](const Entry& a, const Entry& b) { return a.z < b.z; });
@@ -40,7 +42,9 @@ NearestGrid::NearestGrid(const std::vector<Eigen::Vector3f>& points, double long
 
 std::optional<std::size_t> NearestGrid::nearest(const Eigen::Vector3d& p, double reach_m) const {
   if (entries_.empty()) return std::nullopt;
-  const auto column = [&](double value, double low) { return static_cast<std::int64_t>(std::floor((value - low) / cell_m_)); };
+  const auto column = [&](double value, double low) {
+    return static_cast<std::int64_t>(std::floor((value - low) / cell_m_));
+  };
   const std::int64_t x = column(p.x(), low_.x()), y = column(p.y(), low_.y());
   const auto lowest_z = static_cast<float>(p.z() - reach_m), highest_z = static_cast<float>(p.z() + reach_m);
   double best_m2 = reach_m * reach_m;
@@ -49,7 +53,8 @@ std::optional<std::size_t> NearestGrid::nearest(const Eigen::Vector3d& p, double
     for (std::int64_t cx = std::max<std::int64_t>(x - 1, 0); cx <= std::min(x + 1, columns_x_ - 1); ++cx) {
       const auto c = static_cast<std::size_t>(cy * columns_x_ + cx);
       const auto end = entries_.begin() + first_[c + 1];
-      auto at = std::lower_bound(entries_.begin() + first_[c], end, lowest_z, [](const Entry& e, float z) { return e.z < z; });
+      auto at = std::lower_bound(entries_.begin() + first_[c], end, lowest_z,
+                                 [](const Entry& e, float z) { return e.z < z; });
       for (; at != end && at->z <= highest_z; ++at) {
         const double m2 = (Eigen::Vector3d(at->x, at->y, at->z) - p).squaredNorm();
         if (m2 < best_m2 || (m2 == best_m2 && at->index < best)) {

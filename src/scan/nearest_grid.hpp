@@ -16,7 +16,8 @@ class NearestGrid {
   /// `longest_reach_m` bounds the reach of all searches.
   NearestGrid(const std::vector<Eigen::Vector3f>& points, double longest_reach_m);
 
-  /// The number of the point nearest to `p`, when one is within `reach_m`; of equally near ones the one that comes first.
+  /// The number of the point nearest to `p`, when one is within `reach_m`; of equally near ones the one that comes
+  /// first.
   std::optional<std::size_t> nearest(const Eigen::Vector3d& p, double reach_m) const;
 
  private:
@@ -27,7 +28,7 @@ class NearestGrid {
   Eigen::Vector2d low_ = Eigen::Vector2d::Zero();
   double cell_m_ = 1;
   std::int64_t columns_x_ = 0, columns_y_ = 0;
-  std::vector<std::uint32_t> first_;   ///< per column, and one more
+  std::vector<std::uint32_t> first_;  ///< per column, and one more
   std::vector<Entry> entries_;
 };
 

@@ -14,7 +14,7 @@ namespace {
 /// A point of the source and the plane of the target it belongs to, in the frame of the source.
 struct Match {
   Eigen::Vector3d p, normal;
-  double gap_m = 0;   ///< along the normal
+  double gap_m = 0;  ///< along the normal
   double flatness = 0;
 };
 
@@ -23,10 +23,11 @@ struct Matches {
   double overlap = 0;
 };
 
-constexpr double kLeastFacing = 0.7;   // of two normals: further apart they are of different surfaces
+constexpr double kLeastFacing = 0.7;  // of two normals: further apart they are of different surfaces
 
 /// Matches of the points of `from` with planes of `to`; `normal` and `gap_m` in the frame of `from`.
-Matches matchesOf(const SurfaceCloud& to, const SurfaceCloud& from, const Eigen::Isometry3d& T_to_from, double reach_m) {
+Matches matchesOf(const SurfaceCloud& to, const SurfaceCloud& from, const Eigen::Isometry3d& T_to_from,
+                  double reach_m) {
   Matches matches;
   std::size_t near = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -44,8 +45,8 @@ Matches matchesOf(const SurfaceCloud& to, const SurfaceCloud& from, const Eigen:
   return matches;
 }
 
-/// The worst of three medians, of surfaces that face the axes along which normals lie most, second and least: a street is
-/// mostly ground, which says nothing of being too far ahead.
+/// The worst of three medians, of surfaces that face the axes along which normals lie most, second and least: a street
+/// is mostly ground, which says nothing of being too far ahead.
 double worstMedianGap(const std::vector<Match>& matches) {
   constexpr double kFlat = 0.3;
   constexpr std::size_t kFew = 50;
@@ -89,7 +90,7 @@ double weightOf(const Match& match, double tolerance_m) {
 
 /// Takes from the information what normals that are some degrees off pretend in every direction.
 void dropPretence(const Normals& sums, PairEvidence& evidence) {
-  constexpr double kPretence = 0.01;   // mean square of a normal's part along a direction that no surface faces
+  constexpr double kPretence = 0.01;  // mean square of a normal's part along a direction that no surface faces
   const double reach_m = std::sqrt(sums.squared_reach_m2 / sums.weight);
   Vector6d scale;
   scale << 1, 1, 1, 1 / reach_m, 1 / reach_m, 1 / reach_m;
@@ -112,19 +113,21 @@ double medianOf(std::vector<double> values) {
   return *middle;
 }
 
-PairEvidence evidenceOf(const SurfaceCloud& target, const SurfaceCloud& source, const Eigen::Isometry3d& T_target_source,
-                        const EvidenceParams& params) {
+PairEvidence evidenceOf(const SurfaceCloud& target, const SurfaceCloud& source,
+                        const Eigen::Isometry3d& T_target_source, const EvidenceParams& params) {
   Matches forth = matchesOf(target, source, T_target_source, params.reach_m);
   const Eigen::Isometry3d T_source_target = T_target_source.inverse();
   const Matches back = matchesOf(source, target, T_source_target, params.reach_m);
   // A point of the target against a plane of the source: the plane moves, so the gap changes the other way round.
   for (const Match& match : back.all)
-    forth.all.push_back({T_source_target * match.p, -(T_source_target.linear() * match.normal), match.gap_m, match.flatness});
+    forth.all.push_back(
+        {T_source_target * match.p, -(T_source_target.linear() * match.normal), match.gap_m, match.flatness});
   PairEvidence evidence;
   evidence.overlap = std::min(forth.overlap, back.overlap);
   evidence.residual_m = worstMedianGap(forth.all);
   Normals sums;
-  for (const Match& match : forth.all) sums.add(match.p, match.normal, match.gap_m, weightOf(match, params.tolerance_m));
+  for (const Match& match : forth.all)
+    sums.add(match.p, match.normal, match.gap_m, weightOf(match, params.tolerance_m));
   if (sums.weight > 0 && sums.squared_reach_m2 > 0) dropPretence(sums, evidence);
   return evidence;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What two overlapping scans say about their poses: how far apart their surfaces are, and which motion would close the gap.
+// What two overlapping scans say about their poses: how far apart their surfaces are, and which motion would close the
+// gap.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,24 +15,25 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;  ///< motion of a sensor in its ow
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 struct EvidenceParams {
-  double reach_m = 0.5;        ///< points of the other scan further away do not count; at most SurfaceCloud::kLongestReach_m
-  double tolerance_m = 0.1;    ///< gaps much larger count for little
+  double reach_m = 0.5;  ///< points of the other scan further away do not count; at most SurfaceCloud::kLongestReach_m
+  double tolerance_m = 0.1;  ///< gaps much larger count for little
 };
 
-/// Around a relative pose `T`, a motion xi of the source to T·exp(xi) costs (xi - wish)'·information·(xi - wish): the mean
-/// square [m²] of what it adds to the distances between the points of one scan and the planes of the other. Directions that
-/// the surfaces do not determine have no information and no wish.
+/// Around a relative pose `T`, a motion xi of the source to T·exp(xi) costs (xi - wish)'·information·(xi - wish): the
+/// mean square [m²] of what it adds to the distances between the points of one scan and the planes of the other.
+/// Directions that the surfaces do not determine have no information and no wish.
 struct PairEvidence {
   Matrix6d information = Matrix6d::Zero();
-  Vector6d wish = Vector6d::Zero();   ///< the motion that this pair alone would make
-  double overlap = 0;       ///< share of the scan with less overlap that has a neighbour in the other within kLongestReach_m
-  double residual_m = 0;    ///< median distance of a point to the other's plane, of surfaces that face the worst direction
+  Vector6d wish = Vector6d::Zero();  ///< the motion that this pair alone would make
+  double overlap = 0;  ///< share of the scan with less overlap that has a neighbour in the other within kLongestReach_m
+  double residual_m =
+      0;  ///< median distance of a point to the other's plane, of surfaces that face the worst direction
 };
 
 /// The upper one of an even number; 0 of none.
 double medianOf(std::vector<double> values);
 
-PairEvidence evidenceOf(const SurfaceCloud& target, const SurfaceCloud& source, const Eigen::Isometry3d& T_target_source,
-                        const EvidenceParams& params);
+PairEvidence evidenceOf(const SurfaceCloud& target, const SurfaceCloud& source,
+                        const Eigen::Isometry3d& T_target_source, const EvidenceParams& params);
 
 }  // namespace cluxel

@@ -41,8 +41,7 @@ class PointCollector {
 
   /// False when a coordinate is not finite or beyond kFarthest_m.
   bool add(double x, double y, double z) {
-    const bool usable =
-        std::abs(x) <= kFarthest_m && std::abs(y) <= kFarthest_m && std::abs(z) <= kFarthest_m;
+    const bool usable = std::abs(x) <= kFarthest_m && std::abs(y) <= kFarthest_m && std::abs(z) <= kFarthest_m;
     if (!usable) return false;
     if (scan_->points.empty()) scan_->local_origin = localOriginFor({x, y, z});
     const Eigen::Vector3d& origin = scan_->local_origin;

@@ -101,8 +101,7 @@ class PcdHeaderParser {
   FieldType typeOf(char type, std::uint32_t size) const {
     const bool is_float = type == 'F';
     const bool known = size == 4 || size == 8 || (!is_float && (size == 1 || size == 2));
-    if (!known)
-      scanner_.refuse(std::string("no field has TYPE ") + type + " and SIZE " + std::to_string(size));
+    if (!known) scanner_.refuse(std::string("no field has TYPE ") + type + " and SIZE " + std::to_string(size));
     if (is_float) return size == 4 ? FieldType::F32 : FieldType::F64;
     const int first = size == 1 ? 0 : size == 2 ? 2 : size == 4 ? 4 : 6;
     return static_cast<FieldType>(first + (type == 'U' ? 1 : 0));
@@ -111,8 +110,7 @@ class PcdHeaderParser {
   PcdHeader finish() {
     for (const char* needed : {"FIELDS", "SIZE", "TYPE", "WIDTH"})
       if (seen_[needed] == 0) scanner_.refuse(std::string("the header has no line ") + needed);
-    for (std::size_t i = 0; i < header_.fields.size(); ++i)
-      header_.fields[i].type = typeOf(types_[i], sizes_[i]);
+    for (std::size_t i = 0; i < header_.fields.size(); ++i) header_.fields[i].type = typeOf(types_[i], sizes_[i]);
     const std::string_view data = scanner_.word("DATA");
     if (data == "ascii")
       header_.data = PcdData::Ascii;
@@ -122,8 +120,8 @@ class PcdHeaderParser {
       header_.data = PcdData::Compressed;
     else
       scanner_.refuse("unknown DATA", "known are ascii, binary and binary_compressed");
-    const auto line_end = static_cast<std::size_t>(scanner_.currentLine().data() - bytes_.data()) +
-                          scanner_.currentLine().size();
+    const auto line_end =
+        static_cast<std::size_t>(scanner_.currentLine().data() - bytes_.data()) + scanner_.currentLine().size();
     const std::size_t newline = bytes_.find('\n', line_end);
     header_.body_offset = newline == std::string_view::npos ? bytes_.size() : newline + 1;
     checkCount();
@@ -150,8 +148,7 @@ class PcdHeaderParser {
 std::optional<Eigen::Isometry3d> viewpointOf(const PcdHeader& header, const std::string& file) {
   const std::array<double, 7>& v = header.viewpoint;
   const Eigen::Quaterniond rotation(v[3], v[4], v[5], v[6]);
-  if (std::abs(rotation.norm() - 1) > 1e-3)
-    refuseFile(file, "the quaternion of VIEWPOINT does not have length 1");
+  if (std::abs(rotation.norm() - 1) > 1e-3) refuseFile(file, "the quaternion of VIEWPOINT does not have length 1");
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
   T_map_sensor.linear() = rotation.normalized().toRotationMatrix();
   T_map_sensor.translation() = Eigen::Vector3d(v[0], v[1], v[2]);
@@ -159,25 +156,22 @@ std::optional<Eigen::Isometry3d> viewpointOf(const PcdHeader& header, const std:
   return T_map_sensor;
 }
 
-void checkLength(std::uint64_t there, std::uint64_t expected, const std::string& file,
-                 std::uint64_t file_end) {
+void checkLength(std::uint64_t there, std::uint64_t expected, const std::string& file, std::uint64_t file_end) {
   if (there == expected) return;
-  refuseByte(file, file_end,
-             "the points take " + std::to_string(there) + " bytes where the header declares " +
-                 std::to_string(expected),
-             there < expected ? "the file is cut off" : "the header and the data are not of the same cloud");
+  refuseByte(
+      file, file_end,
+      "the points take " + std::to_string(there) + " bytes where the header declares " + std::to_string(expected),
+      there < expected ? "the file is cut off" : "the header and the data are not of the same cloud");
 }
 
-ParsedScan fromBinary(const PcdHeader& header, std::string_view body, std::size_t count,
-                      const std::string& file) {
+ParsedScan fromBinary(const PcdHeader& header, std::string_view body, std::size_t count, const std::string& file) {
   const std::size_t stride = recordBytes(header.fields);
   checkLength(body.size(), count * stride, file, header.body_offset + body.size());
   return scanFromRecords(pcdRecords(body, header.fields, count, false, file), header.fields, count, file,
                          header.body_offset);
 }
 
-ParsedScan fromCompressed(const PcdHeader& header, std::string_view body, std::size_t count,
-                          const std::string& file) {
+ParsedScan fromCompressed(const PcdHeader& header, std::string_view body, std::size_t count, const std::string& file) {
   std::vector<PointField> stored;
   for (const PointField& field : header.fields)
     if (field.name != "_") stored.push_back(field);
@@ -187,13 +181,11 @@ ParsedScan fromCompressed(const PcdHeader& header, std::string_view body, std::s
   const std::uint64_t unpacked = numberAt<std::uint32_t>(body, 4);
   checkLength(body.size() - 8, packed, file, body_end);
   const std::size_t stride = recordBytes(stored);
-  if (stored.empty() || count > unpacked / stride || unpacked != count * stride ||
-      unpacked > packed * kLargestLzfRatio)
+  if (stored.empty() || count > unpacked / stride || unpacked != count * stride || unpacked > packed * kLargestLzfRatio)
     refuseByte(file, header.body_offset + 4,
                "the size of the unpacked data, " + std::to_string(unpacked) +
                    ", does not fit the header or the compressed data");
-  return scanFromRecords(pcdRecords(body, stored, count, true, file), stored, count, file,
-                         header.body_offset);
+  return scanFromRecords(pcdRecords(body, stored, count, true, file), stored, count, file, header.body_offset);
 }
 
 }  // namespace

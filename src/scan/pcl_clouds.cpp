@@ -43,9 +43,9 @@ std::string pcdHeader(const std::vector<PointField>& fields, std::size_t count, 
     counts << ' ' << fields[i].count;
   }
   std::ostringstream header;
-  header << "VERSION .7\nFIELDS" << names.str() << "\nSIZE" << sizes.str() << "\nTYPE" << types.str()
-         << "\nCOUNT" << counts.str() << "\nWIDTH " << count << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS "
-         << count << "\nDATA " << (compressed ? "binary_compressed" : "binary") << '\n';
+  header << "VERSION .7\nFIELDS" << names.str() << "\nSIZE" << sizes.str() << "\nTYPE" << types.str() << "\nCOUNT"
+         << counts.str() << "\nWIDTH " << count << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << count << "\nDATA "
+         << (compressed ? "binary_compressed" : "binary") << '\n';
   return header.str();
 }
 
@@ -56,18 +56,15 @@ std::string viewpointLine(const Eigen::Isometry3d& T_map_sensor) {
   std::string line = "VIEWPOINT";
   for (const double value : {t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z()}) {
     std::array<char, 32> digits{};
-    line += ' ' + std::string(digits.data(),
-                              std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+    line += ' ' + std::string(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
   }
   return line;
 }
 
 std::string plyHeader(const std::vector<PointField>& fields, std::size_t count, bool big_endian) {
-  constexpr std::array names{"int8",   "uint8", "int16", "uint16",  "int32",
-                             "uint32", "",      "",      "float32", "float64"};
+  constexpr std::array names{"int8", "uint8", "int16", "uint16", "int32", "uint32", "", "", "float32", "float64"};
   std::ostringstream header;
-  header << "ply\nformat binary_" << (big_endian ? "big" : "little") << "_endian 1.0\nelement vertex "
-         << count << '\n';
+  header << "ply\nformat binary_" << (big_endian ? "big" : "little") << "_endian 1.0\nelement vertex " << count << '\n';
   for (std::size_t i = 0; i < fields.size(); ++i)
     header << "property " << names[static_cast<std::size_t>(fields[i].type)] << " f" << i << '\n';
   header << "end_header\n";
@@ -84,8 +81,7 @@ std::string recordsOf(const pcl::PCLPointCloud2& cloud, std::size_t stride, std:
 /// A file in memory for readers that only take a path.
 class MemoryFile {
  public:
-  MemoryFile(std::string_view head, std::string_view body)
-      : descriptor_(memfd_create("cluxel", MFD_CLOEXEC)) {
+  MemoryFile(std::string_view head, std::string_view body) : descriptor_(memfd_create("cluxel", MFD_CLOEXEC)) {
     if (descriptor_ < 0 || !append(head) || !append(body)) {
       const std::string reason = std::strerror(errno);
       if (descriptor_ >= 0) close(descriptor_);
@@ -127,15 +123,15 @@ void readThroughPcl(const std::string& file, const Read& read) {
 }  // namespace
 
 void silencePcl() {
-  static const bool silenced = [] {   // once for the process
+  static const bool silenced = [] {  // once for the process
     pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
     return true;
   }();
   (void)silenced;
 }
 
-std::string pcdRecords(std::string_view body, const std::vector<PointField>& fields, std::size_t count,
-                       bool compressed, const std::string& file) {
+std::string pcdRecords(std::string_view body, const std::vector<PointField>& fields, std::size_t count, bool compressed,
+                       const std::string& file) {
   pcl::PCLPointCloud2 cloud;
   readThroughPcl(file, [&] {
     pcl::PCDReader reader;
@@ -145,18 +141,16 @@ std::string pcdRecords(std::string_view body, const std::vector<PointField>& fie
     int version = 0;
     int data_type = 0;
     unsigned body_offset = 0;
-    if (const int failed =
-            reader.readHeader(header, cloud, origin, orientation, version, data_type, body_offset);
+    if (const int failed = reader.readHeader(header, cloud, origin, orientation, version, data_type, body_offset);
         failed < 0)
       return failed;
-    return reader.readBodyBinary(reinterpret_cast<const unsigned char*>(body.data()), cloud, version,
-                                 compressed, 0);
+    return reader.readBodyBinary(reinterpret_cast<const unsigned char*>(body.data()), cloud, version, compressed, 0);
   });
   return recordsOf(cloud, recordBytes(fields), count, file);
 }
 
-std::string plyRecords(std::string_view body, const std::vector<PointField>& fields, std::size_t count,
-                       bool big_endian, const std::string& file) {
+std::string plyRecords(std::string_view body, const std::vector<PointField>& fields, std::size_t count, bool big_endian,
+                       const std::string& file) {
   pcl::PCLPointCloud2 cloud;
   const MemoryFile memory(plyHeader(fields, count, big_endian), body);
   readThroughPcl(file, [&] {
@@ -183,8 +177,7 @@ std::string pcdFile(std::string_view records, const std::vector<PointField>& fie
   cloud.height = 1;
   cloud.row_step = cloud.point_step * cloud.width;
   pcl::PCDWriter writer;
-  std::string file =
-      writer.generateHeaderBinary(cloud, Eigen::Vector4f::Zero(), Eigen::Quaternionf::Identity());
+  std::string file = writer.generateHeaderBinary(cloud, Eigen::Vector4f::Zero(), Eigen::Quaternionf::Identity());
   const std::size_t line = file.find("VIEWPOINT");
   file.replace(line, file.find('\n', line) - line, viewpointLine(T_map_sensor));
   return file + "DATA binary\n" + std::string(records);

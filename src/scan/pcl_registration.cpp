@@ -27,7 +27,9 @@ struct Plane {
   double flatness = 0;
 };
 
-Eigen::Vector3d positionOf(const Point& point) { return {point.x, point.y, point.z}; }
+Eigen::Vector3d positionOf(const Point& point) {
+  return {point.x, point.y, point.z};
+}
 
 Plane planeThrough(const Cloud& cloud, const pcl::Indices& indices) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -81,10 +83,18 @@ SurfaceCloud::~SurfaceCloud() = default;
 SurfaceCloud::SurfaceCloud(SurfaceCloud&&) noexcept = default;
 SurfaceCloud& SurfaceCloud::operator=(SurfaceCloud&&) noexcept = default;
 
-std::size_t SurfaceCloud::size() const { return parts_->cloud->size(); }
-Eigen::Vector3d SurfaceCloud::point(std::size_t i) const { return positionOf((*parts_->cloud)[i]); }
-Eigen::Vector3d SurfaceCloud::normal(std::size_t i) const { return parts_->planes[i].normal; }
-double SurfaceCloud::flatness(std::size_t i) const { return parts_->planes[i].flatness; }
+std::size_t SurfaceCloud::size() const {
+  return parts_->cloud->size();
+}
+Eigen::Vector3d SurfaceCloud::point(std::size_t i) const {
+  return positionOf((*parts_->cloud)[i]);
+}
+Eigen::Vector3d SurfaceCloud::normal(std::size_t i) const {
+  return parts_->planes[i].normal;
+}
+double SurfaceCloud::flatness(std::size_t i) const {
+  return parts_->planes[i].flatness;
+}
 
 std::optional<Eigen::Isometry3d> alignedByGicp(const SurfaceCloud& target, const SurfaceCloud& source,
                                                const Eigen::Isometry3d& T_target_source, double reach_m) {

@@ -27,7 +27,9 @@ class SurfaceCloud {
   /// In [0, 1]: 1 for neighbours that fill a disc, 0 for a line or a ball.
   double flatness(std::size_t i) const;
   /// The point nearest to `p`, when there is one within `reach_m`, which is at most kLongestReach_m.
-  std::optional<std::size_t> nearest(const Eigen::Vector3d& p, double reach_m) const { return grid_.nearest(p, reach_m); }
+  std::optional<std::size_t> nearest(const Eigen::Vector3d& p, double reach_m) const {
+    return grid_.nearest(p, reach_m);
+  }
   static constexpr double kLongestReach_m = 0.5;
 
   struct Parts;
@@ -39,8 +41,8 @@ class SurfaceCloud {
 };
 
 /// Where generalised ICP (Segal, Haehnel, Thrun 2009, as PCL has it) moves `source`, from a first guess; absent when it
-/// fails. It may end on its last iteration, a hair from rest: whether to believe it is for evidenceOf to say. Points further
-/// than `reach_m` from the other cloud do not count.
+/// fails. It may end on its last iteration, a hair from rest: whether to believe it is for evidenceOf to say. Points
+/// further than `reach_m` from the other cloud do not count.
 std::optional<Eigen::Isometry3d> alignedByGicp(const SurfaceCloud& target, const SurfaceCloud& source,
                                                const Eigen::Isometry3d& T_target_source, double reach_m);
 

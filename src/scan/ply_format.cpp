@@ -137,8 +137,7 @@ std::size_t vertexElement(const PlyHeaderParser& header, const std::string& file
     if (element.has_lists)
       refuseFile(file, "the element '" + element.name + "' has lists and is not behind the vertices");
     if (element.name != "vertex") continue;
-    if (element.count == 0)
-      refuseFile(file, "holds no points", "an empty scan cannot be mapped: leave it out");
+    if (element.count == 0) refuseFile(file, "holds no points", "an empty scan cannot be mapped: leave it out");
     return i;
   }
   refuseFile(file, "has no element 'vertex'");
@@ -166,10 +165,10 @@ ParsedScan fromBinary(const PlyHeaderParser& header, std::size_t vertex, std::st
   const std::uint64_t length = vertices.count * recordBytes(vertices.fields);
   const std::uint64_t there = begin < bytes.size() ? bytes.size() - begin : 0;
   if (there < length)
-    refuseByte(file, bytes.size(),
-               "the vertices take " + std::to_string(there) + " bytes where the header declares " +
-                   std::to_string(length),
-               "the file is cut off");
+    refuseByte(
+        file, bytes.size(),
+        "the vertices take " + std::to_string(there) + " bytes where the header declares " + std::to_string(length),
+        "the file is cut off");
   if (vertex + 1 == header.elements().size() && there != length)
     refuseByte(file, begin + length, std::to_string(there - length) + " bytes follow the last vertex",
                "the header and the data are not of the same cloud");

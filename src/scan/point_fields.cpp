@@ -114,12 +114,9 @@ std::vector<FieldRole> rolesOf(const std::vector<PointField>& fields, const std:
                            (twice ? "has the meaning of an earlier field" : "holds several numbers"));
     roles.push_back(role);
   }
-  const auto missing = [&](FieldRole role) {
-    return std::find(roles.begin(), roles.end(), role) == roles.end();
-  };
+  const auto missing = [&](FieldRole role) { return std::find(roles.begin(), roles.end(), role) == roles.end(); };
   for (const auto& [name, role] : {kNamedRoles[0], kNamedRoles[1], kNamedRoles[2]})
-    if (missing(role))
-      refuseFile(file, "has no field '" + std::string(name) + "'", "a scan needs x, y and z");
+    if (missing(role)) refuseFile(file, "has no field '" + std::string(name) + "'", "a scan needs x, y and z");
   const auto origins = {FieldRole::OriginX, FieldRole::OriginY, FieldRole::OriginZ};
   if (std::any_of(origins.begin(), origins.end(), missing))
     for (FieldRole& role : roles)
@@ -127,8 +124,7 @@ std::vector<FieldRole> rolesOf(const std::vector<PointField>& fields, const std:
   return roles;
 }
 
-RowCollector::RowCollector(const std::vector<FieldRole>& roles, ParsedScan& scan)
-    : scan_(&scan), points_(scan) {
+RowCollector::RowCollector(const std::vector<FieldRole>& roles, ParsedScan& scan) : scan_(&scan), points_(scan) {
   for (const FieldRole role : roles)
     if (role != FieldRole::None) has_[static_cast<std::size_t>(role)] = true;
 }
@@ -141,8 +137,7 @@ void RowCollector::reserve(std::size_t count) {
 }
 
 std::optional<std::string> RowCollector::add(const PointRow& row) {
-  if (!points_.add(at(row, FieldRole::X), at(row, FieldRole::Y), at(row, FieldRole::Z)))
-    return kUnusableCoordinate;
+  if (!points_.add(at(row, FieldRole::X), at(row, FieldRole::Y), at(row, FieldRole::Z))) return kUnusableCoordinate;
   if (has(FieldRole::Intensity)) {
     const auto intensity = static_cast<float>(at(row, FieldRole::Intensity));
     if (!std::isfinite(intensity)) return "has an intensity that is not finite";
@@ -155,8 +150,7 @@ std::optional<std::string> RowCollector::add(const PointRow& row) {
     scan_->points.label.push_back(label < 0 ? 0xFFFFFFFFU : static_cast<std::uint32_t>(label));
   }
   if (has(FieldRole::OriginX)) {
-    const Eigen::Vector3d origin(at(row, FieldRole::OriginX), at(row, FieldRole::OriginY),
-                                 at(row, FieldRole::OriginZ));
+    const Eigen::Vector3d origin(at(row, FieldRole::OriginX), at(row, FieldRole::OriginY), at(row, FieldRole::OriginZ));
     scan_->points.origin.push_back(origin.cast<float>());
     if (!scan_->points.origin.back().allFinite()) return "has an origin that is not finite";
   }

@@ -42,8 +42,7 @@ Eigen::Isometry3d readTum(TextScanner& scanner) {
   std::array<double, 7> v{};
   for (double& value : v) value = scanner.number("a number of the pose");
   const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
-  if (std::abs(rotation.norm() - 1) > kRotationTolerance)
-    scanner.refuse("the quaternion does not have length 1");
+  if (std::abs(rotation.norm() - 1) > kRotationTolerance) scanner.refuse("the quaternion does not have length 1");
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = rotation.normalized().toRotationMatrix();
   pose.translation() = Eigen::Vector3d(v[0], v[1], v[2]);
@@ -78,8 +77,7 @@ std::optional<std::string> faultOfPose(const Eigen::Isometry3d& pose) {
   if (!pose.matrix().allFinite()) return "has numbers that are not finite";
   const Eigen::Matrix3d rotation = pose.linear();
   const double off = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(off <= kRotationTolerance))
-    return "has a rotation part whose rows are not of length 1 and at right angles";
+  if (!(off <= kRotationTolerance)) return "has a rotation part whose rows are not of length 1 and at right angles";
   if (rotation.determinant() < 0) return "mirrors space: its rotation part has determinant -1";
   if (pose.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1)) return "has a last row that is not 0 0 0 1";
   return std::nullopt;
@@ -92,9 +90,8 @@ PoseList parsePoses(std::string_view bytes, const std::string& file) {
   while (scanner.nextLine()) {
     if (columns == 0) columns = columnsOf(scanner);
     if (columns != 4 && columns != 8 && columns != 12 && columns != 16)
-      scanner.refuse(
-          std::to_string(columns) + " columns are no known form of a pose",
-          "known are 12 (KITTI 3x4), 16 or four lines of 4 (4x4), and 8 (TUM: time x y z qx qy qz qw)");
+      scanner.refuse(std::to_string(columns) + " columns are no known form of a pose",
+                     "known are 12 (KITTI 3x4), 16 or four lines of 4 (4x4), and 8 (TUM: time x y z qx qy qz qw)");
     readPose(scanner, columns, list);
   }
   if (list.poses.empty()) scanner.refuseEnd("holds no poses");
@@ -111,8 +108,7 @@ Eigen::Isometry3d parseKittiCalibration(std::string_view bytes, const std::strin
     checkPose(scanner, Tr);
     return Tr;
   }
-  scanner.refuseEnd("has no line 'Tr:'",
-                    "KITTI's calib.txt holds the motion from the laser to the camera as Tr");
+  scanner.refuseEnd("has no line 'Tr:'", "KITTI's calib.txt holds the motion from the laser to the camera as Tr");
 }
 
 Eigen::Isometry3d parseFreiburgPose(std::string_view bytes, const std::string& file) {

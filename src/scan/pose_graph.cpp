@@ -46,8 +46,8 @@ class NormalEquations {
   Eigen::VectorXd right_;
 };
 
-void addPrior(NormalEquations& equations, std::size_t scan, const Eigen::Isometry3d& given, const Eigen::Isometry3d& now,
-              const PoseGraphParams& params) {
+void addPrior(NormalEquations& equations, std::size_t scan, const Eigen::Isometry3d& given,
+              const Eigen::Isometry3d& now, const PoseGraphParams& params) {
   Vector6d trust;
   trust << Eigen::Vector3d::Constant(1 / (params.trust_m * params.trust_m)),
       Eigen::Vector3d::Constant(1 / (params.trust_rad * params.trust_rad));

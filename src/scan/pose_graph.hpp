@@ -10,8 +10,8 @@
 
 namespace cluxel {
 
-/// What is said about the pose of scan `second` in the frame of scan `first`: to be off by xi in T_first_second·exp(xi) costs
-/// xi'·information·xi [m²].
+/// What is said about the pose of scan `second` in the frame of scan `first`: to be off by xi in T_first_second·exp(xi)
+/// costs xi'·information·xi [m²].
 struct PoseConstraint {
   std::size_t first = 0, second = 0;
   Eigen::Isometry3d T_first_second = Eigen::Isometry3d::Identity();
@@ -19,16 +19,17 @@ struct PoseConstraint {
 };
 
 struct PoseGraphParams {
-  double trust_m = 1.0;          ///< standard deviation of a given position: next to nothing beside a pair
+  double trust_m = 1.0;  ///< standard deviation of a given position: next to nothing beside a pair
   double trust_rad = 0.1;
-  double surface_m = 0.001;      ///< standard deviation of what a pair says
+  double surface_m = 0.001;  ///< standard deviation of what a pair says
 };
 
-/// Gauss-Newton from `start` on the sum of all costs, ten steps at most. A scan in no constraint keeps the bits of its start.
-/// Cost: a sparse factorisation a step, about linear in the number of constraints for drives.
+/// Gauss-Newton from `start` on the sum of all costs, ten steps at most. A scan in no constraint keeps the bits of its
+/// start. Cost: a sparse factorisation a step, about linear in the number of constraints for drives.
 std::vector<Eigen::Isometry3d> solvePoseGraph(const std::vector<Eigen::Isometry3d>& given,
                                               const std::vector<Eigen::Isometry3d>& start,
-                                              const std::vector<PoseConstraint>& constraints, const PoseGraphParams& params);
+                                              const std::vector<PoseConstraint>& constraints,
+                                              const PoseGraphParams& params);
 
 /// How a small motion makes a pose: T·exp(xi) is `T * motion(xi)`; and back.
 Eigen::Isometry3d motion(const Vector6d& xi);

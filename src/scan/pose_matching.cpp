@@ -15,9 +15,8 @@ namespace {
 constexpr double kTimeTolerance_s = 0.010;
 
 std::size_t nearestTime(const std::vector<double>& times, double time_s) {
-  const auto nearest = std::min_element(times.begin(), times.end(), [&](double a, double b) {
-    return std::abs(a - time_s) < std::abs(b - time_s);
-  });
+  const auto nearest = std::min_element(
+      times.begin(), times.end(), [&](double a, double b) { return std::abs(a - time_s) < std::abs(b - time_s); });
   return static_cast<std::size_t>(nearest - times.begin());
 }
 
@@ -26,15 +25,14 @@ void setPose(LayoutScan& scan, const Eigen::Isometry3d& pose) {
   scan.file.has_pose = true;
 }
 
-void assignByTime(const std::vector<LayoutScan*>& scans, const PoseList& list,
-                  const std::string& poses_file) {
+void assignByTime(const std::vector<LayoutScan*>& scans, const PoseList& list, const std::string& poses_file) {
   for (LayoutScan* scan : scans) {
     const std::size_t i = nearestTime(list.time_s, *scan->file.time_s);
     const double off_s = std::abs(list.time_s[i] - *scan->file.time_s);
     if (off_s > kTimeTolerance_s)
       throw InputError({.file = poses_file},
-                       "has no pose for " + scan->file.path.string() + ": the nearest is " +
-                           std::to_string(off_s) + " s away from its time",
+                       "has no pose for " + scan->file.path.string() + ": the nearest is " + std::to_string(off_s) +
+                           " s away from its time",
                        "a pose within 0.01 s of every scan is needed");
     setPose(*scan, list.poses[i]);
   }
@@ -42,19 +40,17 @@ void assignByTime(const std::vector<LayoutScan*>& scans, const PoseList& list,
 
 /// `what` lines of `file` must fit the scans: one for each, or, when names are frame numbers, at least so
 /// many.
-void checkCounts(const std::vector<LayoutScan*>& scans, std::size_t lines, const char* what,
-                 const std::string& file, bool frames_are_numbers) {
+void checkCounts(const std::vector<LayoutScan*>& scans, std::size_t lines, const char* what, const std::string& file,
+                 bool frames_are_numbers) {
   for (const LayoutScan* scan : scans)
     if (scan->frame >= lines)
       throw InputError({.file = file}, "has no " + std::string(what) + " for " + scan->file.path.string() +
-                                           ": it has " + std::to_string(lines) +
-                                           " lines and the scan is number " + std::to_string(scan->frame) +
-                                           " (from 0)");
+                                           ": it has " + std::to_string(lines) + " lines and the scan is number " +
+                                           std::to_string(scan->frame) + " (from 0)");
   if (!frames_are_numbers && lines != scans.size())
-    throw InputError(
-        {.file = file},
-        "has " + std::to_string(lines) + ' ' + what + "s for " + std::to_string(scans.size()) + " scans",
-        "one line for each scan is needed, in the natural order of their names");
+    throw InputError({.file = file},
+                     "has " + std::to_string(lines) + ' ' + what + "s for " + std::to_string(scans.size()) + " scans",
+                     "one line for each scan is needed, in the natural order of their names");
 }
 
 }  // namespace
@@ -89,17 +85,15 @@ void attachPoses(FolderLayout& layout, ProgressSink& sink) {
   assignPoses(scans, parsePoses(readFile(*layout.poses_file), file), file, layout.frames_are_numbers);
   if (!layout.poses_in_camera) return;
   if (!layout.T_camera_sensor) {
-    sink.note(
-        file +
-        ": no calib.txt stands beside it, so the poses are taken as those of the laser, not of the camera");
+    sink.note(file +
+              ": no calib.txt stands beside it, so the poses are taken as those of the laser, not of the camera");
     return;
   }
   for (LayoutScan* scan : scans)
     scan->file.T_map_sensor = sensorPoseFromCamera(scan->file.T_map_sensor, *layout.T_camera_sensor);
 }
 
-Eigen::Isometry3d sensorPoseFromCamera(const Eigen::Isometry3d& camera_pose,
-                                       const Eigen::Isometry3d& T_camera_sensor) {
+Eigen::Isometry3d sensorPoseFromCamera(const Eigen::Isometry3d& camera_pose, const Eigen::Isometry3d& T_camera_sensor) {
   return T_camera_sensor.inverse() * camera_pose * T_camera_sensor;
 }
 

@@ -20,7 +20,9 @@ namespace {
 
 using Poses = std::vector<Eigen::Isometry3d>;
 
-Eigen::Isometry3d between(const Poses& poses, const ScanPair& pair) { return poses[pair.first].inverse() * poses[pair.second]; }
+Eigen::Isometry3d between(const Poses& poses, const ScanPair& pair) {
+  return poses[pair.first].inverse() * poses[pair.second];
+}
 
 class Registration {
  public:
@@ -52,7 +54,8 @@ class Registration {
   }
 
   /// Gauss-Newton over all pairs, with points matched anew in each round. `outcomes`: of the last round.
-  Poses fine(const std::vector<ScanPair>& pairs, const Poses& given, Poses poses, std::vector<PairOutcome>& outcomes) const {
+  Poses fine(const std::vector<ScanPair>& pairs, const Poses& given, Poses poses,
+             std::vector<PairOutcome>& outcomes) const {
     constexpr std::size_t kMostRounds = 8;
     constexpr double kFirstReach_m = 0.5, kReach_m = 0.3, kSettled_m = 0.0005;
     for (std::size_t round = 0; round < kMostRounds; ++round) {
@@ -61,7 +64,8 @@ class Registration {
       std::vector<PoseConstraint> constraints;
       for (std::size_t k = 0; k < pairs.size(); ++k) {
         outcomes[k] = credible(said[k]);
-        if (outcomes[k] == PairOutcome::Used) constraints.push_back(constraintOf(pairs[k], between(poses, pairs[k]), said[k]));
+        if (outcomes[k] == PairOutcome::Used)
+          constraints.push_back(constraintOf(pairs[k], between(poses, pairs[k]), said[k]));
       }
       const Poses before = poses;
       poses = solveWithoutContradictions(given, poses, constraints);
@@ -92,15 +96,17 @@ class Registration {
   }
 
   /// What the pair says at `T`, when that is within reach and its surfaces lie on each other.
-  std::optional<PoseConstraint> credibleConstraint(const ScanPair& pair, const Eigen::Isometry3d& T_given, const Eigen::Isometry3d& T) const {
+  std::optional<PoseConstraint> credibleConstraint(const ScanPair& pair, const Eigen::Isometry3d& T_given,
+                                                   const Eigen::Isometry3d& T) const {
     if (smallMotion(T_given.inverse() * T).head<3>().norm() > 2 * params_->reach_m) return std::nullopt;
     const PairEvidence said = evidenceOf(cloud(pair.first), cloud(pair.second), T, {});
     if (credible(said) != PairOutcome::Used) return std::nullopt;
     return constraintOf(pair, T, said);
   }
 
-  /// Points to planes from a first guess, for where generalised ICP stalls: its line search now and then finds no step in the
-  /// noise of its floats. Wide tolerances first: the few surfaces that tell of a shift are those with large gaps.
+  /// Points to planes from a first guess, for where generalised ICP stalls: its line search now and then finds no step
+  /// in the noise of its floats. Wide tolerances first: the few surfaces that tell of a shift are those with large
+  /// gaps.
   Eigen::Isometry3d laidOnPlanes(const SurfaceCloud& target, const SurfaceCloud& source, Eigen::Isometry3d T) const {
     constexpr int kMostRounds = 12;
     constexpr double kSettled_m = 0.001;
@@ -116,8 +122,9 @@ class Registration {
   }
 
   static bool isAmong(const std::vector<PoseConstraint>& constraints, const ScanPair& pair) {
-    return std::any_of(constraints.begin(), constraints.end(),
-                       [&](const PoseConstraint& said) { return said.first == pair.first && said.second == pair.second; });
+    return std::any_of(constraints.begin(), constraints.end(), [&](const PoseConstraint& said) {
+      return said.first == pair.first && said.second == pair.second;
+    });
   }
 
   static double farthestMove(const Poses& before, const Poses& after) {
@@ -134,7 +141,8 @@ class Registration {
   }
 
   /// Leaves out the pair that fits worst until all fit. Scans without a pair have their given pose.
-  Poses solveWithoutContradictions(const Poses& given, const Poses& start, std::vector<PoseConstraint>& constraints) const {
+  Poses solveWithoutContradictions(const Poses& given, const Poses& start,
+                                   std::vector<PoseConstraint>& constraints) const {
     for (;;) {
       const Poses poses = solvePoseGraph(given, keptWhereUnbound(given, start, constraints), constraints, {});
       const auto worst = std::max_element(constraints.begin(), constraints.end(), [&](const auto& a, const auto& b) {
@@ -186,8 +194,8 @@ PoseRegistration reported(const RegistrationScans& scans, const Poses& poses, co
   for (const std::size_t i : scans.byPath()) {
     place[i] = report.scans.size();
     const Vector6d moved = smallMotion(scans.given[i].inverse() * poses[i]);
-    report.scans.push_back({scans.index[i], poses[i], moved.head<3>().norm(), moved.tail<3>().norm(), 0,
-                            report.scans.size()});
+    report.scans.push_back(
+        {scans.index[i], poses[i], moved.head<3>().norm(), moved.tail<3>().norm(), 0, report.scans.size()});
   }
   std::vector<double> residuals_before, residuals_after;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -207,7 +215,7 @@ PoseRegistration reported(const RegistrationScans& scans, const Poses& poses, co
   return report;
 }
 
-constexpr double kWidest_m = 40;   // between scans of a wider pair
+constexpr double kWidest_m = 40;  // between scans of a wider pair
 constexpr double kReportReach_m = 0.5;
 
 }  // namespace
@@ -223,7 +231,8 @@ std::vector<PosedScan> PoseRegistration::poses() const {
   return posed;
 }
 
-PoseRegistration registerPoses(const ScanSet& set, const RegistrationParams& params, unsigned threads, ProgressSink& sink) {
+PoseRegistration registerPoses(const ScanSet& set, const RegistrationParams& params, unsigned threads,
+                               ProgressSink& sink) {
   const RegistrationScans scans = loadForRegistration(set, params, threads, sink);
   const Registration registration(scans, params, threads, sink);
   const Poses coarse = registration.coarse(nearestPairs(placesOf(scans, scans.given)), scans.given);
@@ -234,7 +243,8 @@ PoseRegistration registerPoses(const ScanSet& set, const RegistrationParams& par
                   registration.evidence(pairs, poses, kReportReach_m));
 }
 
-PoseRegistration measurePoses(const ScanSet& set, const RegistrationParams& params, unsigned threads, ProgressSink& sink) {
+PoseRegistration measurePoses(const ScanSet& set, const RegistrationParams& params, unsigned threads,
+                              ProgressSink& sink) {
   const RegistrationScans scans = loadForRegistration(set, params, threads, sink);
   const Registration registration(scans, params, threads, sink);
   const std::vector<ScanPair> pairs = nearestPairs(placesOf(scans, scans.given));
@@ -255,7 +265,9 @@ std::vector<PosedScan> sampledNeighbours(const ScanSet& scans) {
     std::size_t nearest = i == 0 ? 1 : 0;
     for (std::size_t j = 0; j < count; ++j) {
       if (!scans.file(j).has_pose) return {};
-      const auto distance_m = [&](std::size_t other) { return (scans.file(other).T_map_sensor.translation() - at).norm(); };
+      const auto distance_m = [&](std::size_t other) {
+        return (scans.file(other).T_map_sensor.translation() - at).norm();
+      };
       if (j != i && distance_m(j) < distance_m(nearest)) nearest = j;
     }
     chosen.insert({i, nearest});

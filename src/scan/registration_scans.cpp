@@ -50,7 +50,8 @@ std::vector<std::size_t> orderOf(const ScanSet& set, const std::vector<ScanId>& 
 std::vector<std::size_t> RegistrationScans::byPath() const {
   std::vector<std::size_t> order(path.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return naturalLess(path[a], path[b]); });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return naturalLess(path[a], path[b]); });
   return order;
 }
 

@@ -23,8 +23,8 @@ struct RegistrationScans {
   std::vector<std::size_t> byPath() const;
 };
 
-/// Loads and thins up to `threads` scans at a time. Throws InputError for a scan that cannot be read, has no pose, or is
-/// given with two poses.
+/// Loads and thins up to `threads` scans at a time. Throws InputError for a scan that cannot be read, has no pose, or
+/// is given with two poses.
 RegistrationScans loadForRegistration(const ScanSet& set, const RegistrationParams& params, unsigned threads,
                                       ProgressSink& sink);
 

@@ -80,8 +80,7 @@ ScanFormat textFormatOf(const fs::path& path) {
   const std::size_t columns = columnsOfFirstLine(head);
   if (columns == 5) return ScanFormat::LabelledText;
   if (columns == 3 || columns == 4 || columns == 0) return ScanFormat::Xyz;
-  throw InputError({.file = path.string(), .line = 1},
-                   std::to_string(columns) + " columns are no known form of a scan",
+  throw InputError({.file = path.string(), .line = 1}, std::to_string(columns) + " columns are no known form of a scan",
                    "known are x y z, x y z intensity, and x y z label confidence");
 }
 
@@ -129,14 +128,12 @@ void attachFreiburgPoses(const fs::path& folder, std::vector<LayoutScan>& scans)
   const auto poseFile = [&](const LayoutScan& scan) {
     return folder / (*freiburgStem(scan.file.path) + "_robotPoses.dat");
   };
-  if (std::none_of(scans.begin(), scans.end(),
-                   [&](const LayoutScan& scan) { return fs::exists(poseFile(scan)); }))
+  if (std::none_of(scans.begin(), scans.end(), [&](const LayoutScan& scan) { return fs::exists(poseFile(scan)); }))
     return;
   for (LayoutScan& scan : scans) {
     const fs::path file = poseFile(scan);
     if (!fs::exists(file))
-      throw InputError({.file = file.string()},
-                       "the pose of " + scan.file.path.filename().string() + " is missing",
+      throw InputError({.file = file.string()}, "the pose of " + scan.file.path.filename().string() + " is missing",
                        "other scans of the folder have a pose: add it, or move the scan elsewhere");
     scan.file.T_map_sensor = parseFreiburgPose(readFile(file), file.string());
     scan.file.has_pose = true;
@@ -204,8 +201,7 @@ FolderLayout layoutOfFolder(const fs::path& folder) {
     layout = freiburgLayout(folder, files);
   else
     layout = plainLayout(folder, files);
-  if (layout.scans.empty())
-    throw InputError({.file = folder.string()}, "the folder holds no scans", kKnownFormats);
+  if (layout.scans.empty()) throw InputError({.file = folder.string()}, "the folder holds no scans", kKnownFormats);
   return layout;
 }
 

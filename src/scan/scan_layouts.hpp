@@ -24,8 +24,8 @@ struct FolderLayout {
   std::vector<LayoutScan> scans;  ///< by name, in natural order; poses not yet attached
   std::optional<std::filesystem::path> poses_file;
   std::optional<std::filesystem::path> times_file;
-  bool frames_are_numbers = false;  ///< `frame` comes from the file's name (KITTI), not its rank
-  bool poses_in_camera = false;     ///< poses are of the camera (KITTI)
+  bool frames_are_numbers = false;                   ///< `frame` comes from the file's name (KITTI), not its rank
+  bool poses_in_camera = false;                      ///< poses are of the camera (KITTI)
   std::optional<Eigen::Isometry3d> T_camera_sensor;  ///< KITTI's Tr
 };
 
@@ -48,8 +48,7 @@ void assignPoses(std::vector<LayoutScan*> scans, const PoseList& list, const std
                  bool frames_are_numbers);
 
 /// `T_map_sensor = Tr⁻¹ · P · Tr` for a pose P of KITTI's camera.
-Eigen::Isometry3d sensorPoseFromCamera(const Eigen::Isometry3d& camera_pose,
-                                       const Eigen::Isometry3d& T_camera_sensor);
+Eigen::Isometry3d sensorPoseFromCamera(const Eigen::Isometry3d& camera_pose, const Eigen::Isometry3d& T_camera_sensor);
 
 /// "scan_2" before "scan_10": runs of digits compare as numbers.
 bool naturalLess(const std::string& a, const std::string& b);

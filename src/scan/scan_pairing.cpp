@@ -15,7 +15,9 @@ namespace {
 struct Neighbour {
   double distance_m = 0;
   std::size_t scan = 0;
-  bool operator<(const Neighbour& other) const { return std::tie(distance_m, scan) < std::tie(other.distance_m, other.scan); }
+  bool operator<(const Neighbour& other) const {
+    return std::tie(distance_m, scan) < std::tie(other.distance_m, other.scan);
+  }
 };
 
 /// Scans whose boxes overlap that of scan `i`, nearest first; equal distances by number.
@@ -28,7 +30,9 @@ std::vector<Neighbour> neighboursOf(std::size_t i, const std::vector<ScanPlace>&
   return found;
 }
 
-ScanPair pairOf(std::size_t a, std::size_t b) { return {std::min(a, b), std::max(a, b)}; }
+ScanPair pairOf(std::size_t a, std::size_t b) {
+  return {std::min(a, b), std::max(a, b)};
+}
 
 /// Prim's algorithm, from the smallest number not yet reached: ties go to smaller numbers.
 void addSpanningForest(const std::vector<ScanPlace>& places, std::set<ScanPair>& pairs) {
@@ -73,7 +77,8 @@ std::vector<ScanPair> widerPairs(const std::vector<ScanPlace>& places, double re
     int left = 0;
     for (const Neighbour& near : neighboursOf(i, places)) {
       if (near.distance_m > reach_m) break;
-      for (; near.distance_m >= bound_m; left = kPerDoubling) bound_m = std::max(2 * bound_m, 2 * std::max(near.distance_m, kLeastStep_m));
+      for (; near.distance_m >= bound_m; left = kPerDoubling)
+        bound_m = std::max(2 * bound_m, 2 * std::max(near.distance_m, kLeastStep_m));
       if (left-- > 0) pairs.insert(pairOf(i, near.scan));
     }
   }

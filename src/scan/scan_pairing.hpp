@@ -20,8 +20,8 @@ struct ScanPlace {
 /// Each scan with its two nearest, and what joins all whose boxes overlap by the shortest ways; sorted.
 std::vector<ScanPair> nearestPairs(const std::vector<ScanPlace>& places);
 
-/// Besides those, each scan with two others in each doubling of the distance to its nearest one: so that small errors do not
-/// add up along a drive. `reach_m` bounds the distance.
+/// Besides those, each scan with two others in each doubling of the distance to its nearest one: so that small errors
+/// do not add up along a drive. `reach_m` bounds the distance.
 std::vector<ScanPair> widerPairs(const std::vector<ScanPlace>& places, double reach_m);
 
 }  // namespace cluxel

@@ -109,8 +109,7 @@ class ScanGatherer {
       found.file.path = path;
       return found;
     }
-    throw InputError({.file = path.string()},
-                     "is not among the scans of its folder, which have poses or times there",
+    throw InputError({.file = path.string()}, "is not among the scans of its folder, which have poses or times there",
                      "move it to another folder, or list it in a manifest");
   }
 
@@ -168,14 +167,12 @@ class ScanGatherer {
                        "there is no such file or folder; " + manifest.string() + " lists it");
     if (fs::is_directory(entry.path)) {
       if (entry.pose || entry.time_s || entry.labels || entry.format)
-        throw InputError(
-            {.file = manifest.string()},
-            entry.path.string() + " is a folder: only a file takes pose, time_s, labels or format");
+        throw InputError({.file = manifest.string()},
+                         entry.path.string() + " is a folder: only a file takes pose, time_s, labels or format");
       return addFolder(entry.path);
     }
     if (isManifest(entry.path))
-      throw InputError({.file = manifest.string()},
-                       "a manifest cannot list the manifest " + entry.path.string());
+      throw InputError({.file = manifest.string()}, "a manifest cannot list the manifest " + entry.path.string());
     LayoutScan scan = entry.pose || entry.format ? plainScan(entry.path, entry.format) : loneScan(entry.path);
     if (entry.pose) scan.file.T_map_sensor = *entry.pose;
     if (entry.pose) scan.file.has_pose = true;
@@ -197,8 +194,7 @@ class ScanGatherer {
   /// Poses given by hand for one KITTI sequence are those of the whole sequence, by frame number, and of its
   /// camera.
   void assignGivenPoses() {
-    if (layouts_.size() != 1 || !layouts_.begin()->second.frames_are_numbers)
-      return assignPosesFrom(params_->poses, 0);
+    if (layouts_.size() != 1 || !layouts_.begin()->second.frames_are_numbers) return assignPosesFrom(params_->poses, 0);
     if (without_layout_)
       throw InputError({.file = params_->poses.string()},
                        "holds poses of a KITTI sequence, by the numbers of its frames; " + without_layout_->string() +
@@ -225,9 +221,9 @@ class ScanGatherer {
   const ScanSetParams* params_;
   ProgressSink* sink_;
   std::vector<LayoutScan> scans_;
-  std::map<fs::path, FolderLayout> layouts_;    ///< by whole paths
-  std::vector<fs::path> open_manifests_;         ///< those that are being read, outermost first
-  std::optional<fs::path> without_layout_;       ///< the first scan of no folder that explains it
+  std::map<fs::path, FolderLayout> layouts_;  ///< by whole paths
+  std::vector<fs::path> open_manifests_;      ///< those that are being read, outermost first
+  std::optional<fs::path> without_layout_;    ///< the first scan of no folder that explains it
   std::optional<Eigen::Vector3d> map_origin_;
   std::string crs_;
 };

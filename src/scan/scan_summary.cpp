@@ -18,8 +18,7 @@ ScanSummary summarize(const Scan& scan, ScanFormat format) {
   summary.has_intensity = !scan.points.intensity.empty();
   summary.has_origins = !scan.points.origin.empty();
   for (std::size_t i = 0; i < scan.points.size(); ++i)
-    summary.extent_map_m.extend(
-        toMap(scan.T_map_sensor, {scan.points.x[i], scan.points.y[i], scan.points.z[i]}));
+    summary.extent_map_m.extend(toMap(scan.T_map_sensor, {scan.points.x[i], scan.points.y[i], scan.points.z[i]}));
   for (const std::uint32_t label : scan.points.label) ++summary.points_by_label[label];
   return summary;
 }

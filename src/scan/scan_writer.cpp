@@ -67,8 +67,7 @@ void appendNumber(std::string& text, double number, char end) {
 void writeScanFile(const Scan& scan, const fs::path& path) {
   checkLengths(scan.points, path);
   const std::vector<PointField> fields = fieldsOf(scan.points);
-  writeFile(path, pcdFile(recordsOf(scan.points, recordBytes(fields)), fields, scan.points.size(),
-                          scan.T_map_sensor));
+  writeFile(path, pcdFile(recordsOf(scan.points, recordBytes(fields)), fields, scan.points.size(), scan.T_map_sensor));
 }
 
 void writePoses(const std::vector<Eigen::Isometry3d>& T_map_sensor, const fs::path& path) {

@@ -24,8 +24,7 @@ float intensityOf(TextScanner& scanner) {
 }
 
 void refuseIfEmpty(const TextScanner& scanner, const ParsedScan& scan) {
-  if (scan.points.empty())
-    scanner.refuseEnd("holds no points", "an empty scan cannot be mapped: leave it out");
+  if (scan.points.empty()) scanner.refuseEnd("holds no points", "an empty scan cannot be mapped: leave it out");
 }
 
 }  // namespace
@@ -77,8 +76,7 @@ ParsedScan parseFreiburgPoints(std::string_view bytes, const std::string& file) 
   return scan;
 }
 
-std::vector<std::uint32_t> parseLabelLines(std::string_view bytes, const std::string& file,
-                                           std::size_t point_count) {
+std::vector<std::uint32_t> parseLabelLines(std::string_view bytes, const std::string& file, std::size_t point_count) {
   TextScanner scanner(bytes, file);
   std::vector<std::uint32_t> labels;
   labels.reserve(point_count);
@@ -89,8 +87,8 @@ std::vector<std::uint32_t> parseLabelLines(std::string_view bytes, const std::st
     scanner.endLine("one label id");
   }
   if (labels.size() != point_count)
-    scanner.refuseEnd("ends after " + std::to_string(labels.size()) + " labels for " +
-                      std::to_string(point_count) + " points");
+    scanner.refuseEnd("ends after " + std::to_string(labels.size()) + " labels for " + std::to_string(point_count) +
+                      " points");
   return labels;
 }
 

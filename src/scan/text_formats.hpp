@@ -22,8 +22,7 @@ ParsedScan parseLabelledText(std::string_view bytes, const std::string& file);
 ParsedScan parseFreiburgPoints(std::string_view bytes, const std::string& file);
 
 /// One label id a line.
-std::vector<std::uint32_t> parseLabelLines(std::string_view bytes, const std::string& file,
-                                           std::size_t point_count);
+std::vector<std::uint32_t> parseLabelLines(std::string_view bytes, const std::string& file, std::size_t point_count);
 
 /// The number of columns of the first line with content; 0 when there is none.
 std::size_t columnsOfFirstLine(std::string_view bytes);

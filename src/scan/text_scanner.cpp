@@ -43,8 +43,7 @@ double TextScanner::number(const char* what) {
   const char* from = *at_ == '+' ? at_ + 1 : at_;
   double value = 0;
   const auto [end, error] = std::from_chars(from, stop_, value);
-  if (error == std::errc::result_out_of_range)
-    refuse(std::string(what) + " is out of range: '" + wordAt() + "'");
+  if (error == std::errc::result_out_of_range) refuse(std::string(what) + " is out of range: '" + wordAt() + "'");
   if (error != std::errc()) refuse(std::string(what) + " is not a number: '" + wordAt() + "'");
   if (!std::isfinite(value))
     refuse(std::string(what) + " is not finite: '" + wordAt() + "'", "leave out points without a return");
@@ -63,8 +62,7 @@ std::uint32_t TextScanner::count(const char* what) {
 }
 
 void TextScanner::endNumber(const char* end, const char* what) {
-  if (end != stop_ && !isBlank(*end) && *end != '#')
-    refuse(std::string(what) + " is not a number: '" + wordAt() + "'");
+  if (end != stop_ && !isBlank(*end) && *end != '#') refuse(std::string(what) + " is not a number: '" + wordAt() + "'");
   at_ = end;
 }
 

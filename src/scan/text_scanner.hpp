@@ -14,7 +14,9 @@ class TextScanner {
   /// `text` must outlive the scanner; `file` is for messages.
   /// A byte order mark before the text, as editors on Windows write it, is passed over.
   TextScanner(std::string_view text, std::string file)
-      : next_(text.data() + (text.starts_with("\xEF\xBB\xBF") ? 3 : 0)), end_(text.data() + text.size()), text_(text),
+      : next_(text.data() + (text.starts_with("\xEF\xBB\xBF") ? 3 : 0)),
+        end_(text.data() + text.size()),
+        text_(text),
         file_(std::move(file)) {}
 
   /// Goes to the next line with content; false at the end of the text.

@@ -41,11 +41,9 @@ std::vector<std::string_view> cellsOf(std::string_view line) {
   }
 }
 
-std::size_t columnOf(const std::vector<std::string_view>& header, std::string_view name,
-                     const std::string& file) {
+std::size_t columnOf(const std::vector<std::string_view>& header, std::string_view name, const std::string& file) {
   const auto found = std::find(header.begin(), header.end(), name);
-  if (found == header.end())
-    throw InputError({.file = file, .line = 1}, "has no column '" + std::string(name) + "'");
+  if (found == header.end()) throw InputError({.file = file, .line = 1}, "has no column '" + std::string(name) + "'");
   return static_cast<std::size_t>(found - header.begin());
 }
 
@@ -60,8 +58,7 @@ PointTruth parseTruth(std::string_view bytes, const std::string& file, std::size
   while (scanner.nextLine()) {
     if (truth.primitive.size() == point_count)
       scanner.refuse("more lines than the scan's " + std::to_string(point_count) + " points");
-    truth.primitive.push_back(
-        static_cast<std::int8_t>(codeOf(scanner, "primitive", kPrimitiveLabelCount - 1)));
+    truth.primitive.push_back(static_cast<std::int8_t>(codeOf(scanner, "primitive", kPrimitiveLabelCount - 1)));
     truth.object_class.push_back(static_cast<std::int8_t>(codeOf(scanner, "object", last_class)));
     truth.instance.push_back(codeOf(scanner, "instance", std::numeric_limits<std::int32_t>::max()));
     scanner.endLine("primitive object instance");
@@ -89,7 +86,7 @@ std::optional<fs::path> truthFileOf(const fs::path& folder, const fs::path& scan
 std::vector<std::int32_t> parseAmbiguousInstances(std::string_view text, const std::string& file) {
   // A table that was cut off to nothing would make hidden instances count.
   if (text.empty()) throw InputError({.file = file}, "is empty where a row of column names was expected");
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);   // a byte order mark, as spreadsheets write it
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // a byte order mark, as spreadsheets write it
   std::vector<std::int32_t> ids;
   std::size_t id_column = 0, ambiguous_column = 0;
   for (std::size_t line = 1; !text.empty(); ++line) {

@@ -18,7 +18,9 @@ struct KeyedPoint {
 };
 
 std::vector<KeyedPoint> keyed(const ScanPoints& points, double voxel_m) {
-  const auto cubeOf = [&](float value) { return static_cast<std::int32_t>(std::floor(static_cast<double>(value) / voxel_m)); };
+  const auto cubeOf = [&](float value) {
+    return static_cast<std::int32_t>(std::floor(static_cast<double>(value) / voxel_m));
+  };
   std::vector<KeyedPoint> keys;
   keys.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)

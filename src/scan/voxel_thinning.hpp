@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One point for each small cube of space: near and far surfaces then count alike, and a registration costs the same for every scan.
+// One point for each small cube of space: near and far surfaces then count alike, and a registration costs the same for
+// every scan.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +12,7 @@
 namespace cluxel {
 
 struct ThinningParams {
-  double voxel_m = 0.3;              ///< edge of a cube; grows by a quarter until no more than `most_points` are left
+  double voxel_m = 0.3;  ///< edge of a cube; grows by a quarter until no more than `most_points` are left
   std::size_t most_points = 25'000;
 };
 

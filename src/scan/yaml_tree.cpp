@@ -33,20 +33,17 @@ class TreeBuilder : public YAML::EventHandler {
     add(valueAt(mark, YamlValue::Kind::Null));
   }
 
-  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
-                const std::string& text) override {
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t, const std::string& text) override {
     YamlValue value = valueAt(mark, YamlValue::Kind::Scalar);
     value.scalar = text;
     add(std::move(value));
   }
 
-  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
-                       YAML::EmitterStyle::value) override {
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
     open_.push_back(valueAt(mark, YamlValue::Kind::Sequence));
   }
   void OnSequenceEnd() override { close(); }
-  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
-                  YAML::EmitterStyle::value) override {
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
     open_.push_back(valueAt(mark, YamlValue::Kind::Mapping));
   }
   void OnMapEnd() override {
@@ -54,9 +51,7 @@ class TreeBuilder : public YAML::EventHandler {
     close();
   }
 
-  YamlValue root() {
-    return open_.front().items.empty() ? YamlValue{} : std::move(open_.front().items.front());
-  }
+  YamlValue root() { return open_.front().items.empty() ? YamlValue{} : std::move(open_.front().items.front()); }
 
  private:
   static YamlValue valueAt(const YAML::Mark& mark, YamlValue::Kind kind) {
@@ -68,8 +63,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void refuseAnchor(const YAML::Mark& mark) {
-    faults_->add(valueAt(mark, YamlValue::Kind::Null), "anchors and aliases are not supported",
-                 "write the value out");
+    faults_->add(valueAt(mark, YamlValue::Kind::Null), "anchors and aliases are not supported", "write the value out");
   }
 
   void add(YamlValue value) { open_.back().items.push_back(std::move(value)); }
@@ -97,8 +91,8 @@ class TreeBuilder : public YAML::EventHandler {
     std::stable_sort(keys.begin(), keys.end(), [](auto* a, auto* b) { return a->scalar < b->scalar; });
     for (std::size_t i = 1; i < keys.size(); ++i)
       if (keys[i]->scalar == keys[i - 1]->scalar && keys[i]->kind == YamlValue::Kind::Scalar)
-        faults_->add(*keys[i], "'" + keys[i]->scalar + "' was given in line " +
-                                   std::to_string(keys[i - 1]->line) + " already");
+        faults_->add(*keys[i],
+                     "'" + keys[i]->scalar + "' was given in line " + std::to_string(keys[i - 1]->line) + " already");
   }
 
   YamlFaults* faults_;
@@ -172,8 +166,7 @@ bool checkMapping(const YamlValue& value, const std::vector<std::string>& known,
     return false;
   }
   for (const auto& [key, ignored] : value.entries)
-    if (key.kind == YamlValue::Kind::Scalar &&
-        std::find(known.begin(), known.end(), key.scalar) == known.end())
+    if (key.kind == YamlValue::Kind::Scalar && std::find(known.begin(), known.end(), key.scalar) == known.end())
       faults.add(key, "unknown key '" + key.scalar + "'", suggestion(key.scalar, known));
   return true;
 }

@@ -42,7 +42,7 @@ class YamlFaults {
   std::string file_;
   std::string_view text_;
   std::vector<Diagnostic> diagnostics_;
-  std::size_t further_ = 0;   ///< faults that are only counted
+  std::size_t further_ = 0;  ///< faults that are only counted
 };
 
 /// The tree of the first document. Duplicate keys, anchors and aliases are faults; text that is no YAML

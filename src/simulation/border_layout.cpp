@@ -33,8 +33,7 @@ class BorderLayout {
     const double area = (plan_.east() - plan_.west()) * (plan_.north() - plan_.south());
     for (int i = 0; i < 2 + static_cast<int>(area / 200); ++i)
       for (int attempt = 0; attempt < 25; ++attempt) {
-        const Vector2d from{random_.uniform(plan_.west(), plan_.east()),
-                            random_.uniform(plan_.south(), plan_.north())};
+        const Vector2d from{random_.uniform(plan_.west(), plan_.east()), random_.uniform(plan_.south(), plan_.north())};
         const double heading = random_.below(4) * pi / 4, length = random_.uniform(4, 9);
         if (border(from, from + length * Vector2d{std::cos(heading), std::sin(heading)}, 0.4)) break;
       }
@@ -121,11 +120,10 @@ class BorderLayout {
     }
   }
   bool farFromCars(const Vector2d& place) const {
-    return std::none_of(site_.campus().objects.begin(), site_.campus().objects.end(),
-                        [&](const CampusObject& object) {
-                          return object.class_number == static_cast<int>(ObjectClass::Vehicle) &&
-                                 (object.position.head<2>() - place).norm() < 3.4;
-                        });
+    return std::none_of(site_.campus().objects.begin(), site_.campus().objects.end(), [&](const CampusObject& object) {
+      return object.class_number == static_cast<int>(ObjectClass::Vehicle) &&
+             (object.position.head<2>() - place).norm() < 3.4;
+    });
   }
 
   CampusSite& site_;

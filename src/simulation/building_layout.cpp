@@ -30,8 +30,7 @@ class BuildingLayout {
            .gabled = false,
            .portico = true});
     for (const double side : {-1.0, 1.0}) {
-      const double near = side * (half_width + random_.uniform(5, 7)),
-                   far = near + side * random_.uniform(10, 14);
+      const double near = side * (half_width + random_.uniform(5, 7)), far = near + side * random_.uniform(10, 14);
       const double set_back = random_.uniform(0, 3);
       build({.footprint = {Vector2d{std::min(near, far), front + set_back},
                            Vector2d{std::max(near, far), front + set_back + 9}},
@@ -44,12 +43,8 @@ class BuildingLayout {
     const SitePlan& plan = site_.plan();
     const double low = plan.south() + 7, high = plan.north() - random_.uniform(0, 2);
     const double west = plan.west() - 9.5, east = plan.east() + 8.5;
-    build({.footprint = {Vector2d{west - 10, low}, Vector2d{west, high}},
-           .floors = 3,
-           .gabled = random_.chance(0.5)});
-    build({.footprint = {Vector2d{east, low}, Vector2d{east + 10, high}},
-           .floors = 2,
-           .gabled = random_.chance(0.5)});
+    build({.footprint = {Vector2d{west - 10, low}, Vector2d{west, high}}, .floors = 3, .gabled = random_.chance(0.5)});
+    build({.footprint = {Vector2d{east, low}, Vector2d{east + 10, high}}, .floors = 2, .gabled = random_.chance(0.5)});
   }
 
   void southRow() {

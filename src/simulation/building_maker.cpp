@@ -46,8 +46,8 @@ void addWalls(Building& building, const Eigen::AlignedBox2d& footprint) {
 void addFlatRoof(Building& building, const Eigen::AlignedBox2d& footprint) {
   const double z = building.eaves_m;
   const Vector2d a = footprint.min(), b = footprint.max();
-  addQuad(building.surfaces.flat_roof, {Vector3d{a.x(), a.y(), z}, Vector3d{b.x(), a.y(), z},
-                                        Vector3d{b.x(), b.y(), z}, Vector3d{a.x(), b.y(), z}});
+  addQuad(building.surfaces.flat_roof,
+          {Vector3d{a.x(), a.y(), z}, Vector3d{b.x(), a.y(), z}, Vector3d{b.x(), b.y(), z}, Vector3d{a.x(), b.y(), z}});
 }
 
 void addGabledRoof(Building& building, const Eigen::AlignedBox2d& footprint, double pitch_rad) {
@@ -74,8 +74,7 @@ void addGabledRoof(Building& building, const Eigen::AlignedBox2d& footprint, dou
 }
 
 void addPortico(Building& building, const CampusSite& site, const Eigen::AlignedBox2d& footprint) {
-  const double front = footprint.min().y() - 2.6, middle = footprint.center().x(),
-               top = building.ground_m + 3.4;
+  const double front = footprint.min().y() - 2.6, middle = footprint.center().x(), top = building.ground_m + 3.4;
   for (const double x : {-4.5, -1.9, 1.9, 4.5}) {
     const Vector3d foot = site.onGround({middle + x, front});
     addTube(building.surfaces.column, {.from = foot - Vector3d{0, 0, 0.3},
@@ -84,8 +83,7 @@ void addPortico(Building& building, const CampusSite& site, const Eigen::Aligned
                                        .radius_to = 0.2,
                                        .sides = 14});
   }
-  addBox(building.surfaces.flat_roof,
-         standing({middle, 0.5 * (front - 0.5 + footprint.min().y()), top + 0.15}, 0),
+  addBox(building.surfaces.flat_roof, standing({middle, 0.5 * (front - 0.5 + footprint.min().y()), top + 0.15}, 0),
          {10.4, footprint.min().y() - front + 0.5, 0.3});
 }
 

@@ -27,10 +27,9 @@ void placeStops(CampusSite& site) {
     T_map_sensor.translation() = site.onGround(place) + Vector3d{0, 0, height_m};
     const double yaw = route.heading_rad + unrest * 8 * kDegree * random.normal();
     const double pitch = kDegree * random.normal(), roll = kDegree * random.normal();
-    T_map_sensor.linear() =
-        (Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch, Vector3d::UnitY()) *
-         Eigen::AngleAxisd(roll, Vector3d::UnitX()))
-            .toRotationMatrix();
+    T_map_sensor.linear() = (Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch, Vector3d::UnitY()) *
+                             Eigen::AngleAxisd(roll, Vector3d::UnitX()))
+                                .toRotationMatrix();
     site.addStop(T_map_sensor);
   }
 }

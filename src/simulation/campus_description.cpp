@@ -44,8 +44,7 @@ Json surfacesJson() {
 
 Json objectsJson(const Campus& campus) {
   std::map<std::int32_t, std::set<std::string>> surfaces_of;
-  for (const CampusMesh& mesh : campus.meshes)
-    surfaces_of[mesh.instance].insert(std::string(infoOf(mesh.label).name));
+  for (const CampusMesh& mesh : campus.meshes) surfaces_of[mesh.instance].insert(std::string(infoOf(mesh.label).name));
   Json objects = Json::array();
   for (std::size_t i = 0; i < campus.objects.size(); ++i) {
     const CampusObject& object = campus.objects[i];

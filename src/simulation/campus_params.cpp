@@ -45,9 +45,9 @@ void checkRange(const CampusParams& params, const CampusParamInfo& info) {
   const double value = params.*info.field;
   if (value >= info.min && value <= info.max) return;
   const std::string unit = info.unit == "1" ? "" : " " + std::string(info.unit);
-  throw Error(ExitCode::Usage, "the campus cannot have " + std::string(info.name) + " = " +
-                                   shortNumber(value) + unit + " (" + std::string(info.help) + "): choose " +
-                                   shortNumber(info.min) + " to " + shortNumber(info.max) + unit);
+  throw Error(ExitCode::Usage, "the campus cannot have " + std::string(info.name) + " = " + shortNumber(value) + unit +
+                                   " (" + std::string(info.help) + "): choose " + shortNumber(info.min) + " to " +
+                                   shortNumber(info.max) + unit);
 }
 
 }  // namespace
@@ -59,8 +59,7 @@ std::size_t maxStops(double size_m, double stop_distance_m) {
 void check(const CampusParams& params) {
   for (const CampusParamInfo& info : campusParamInfos()) checkRange(params, info);
   if (params.stops != std::floor(params.stops))
-    throw Error(ExitCode::Usage,
-                "the campus cannot have " + shortNumber(params.stops) + " stops: give a whole number");
+    throw Error(ExitCode::Usage, "the campus cannot have " + shortNumber(params.stops) + " stops: give a whole number");
   const auto stops = static_cast<std::size_t>(params.stops);
   if (stops <= maxStops(params.size_m, params.stop_distance_m)) return;
   double roomy_m = std::ceil(params.size_m);
@@ -68,7 +67,8 @@ void check(const CampusParams& params) {
   throw Error(ExitCode::Usage, "a campus of " + shortNumber(params.size_m) + " m has a route of " +
                                    std::to_string(maxStops(params.size_m, params.stop_distance_m)) + " stops, not " +
                                    std::to_string(stops) + ": choose fewer stops" +
-                                   (roomy_m <= kLargestSize_m ? " or a size of " + shortNumber(roomy_m) + " m" : ", nearer to each other"));
+                                   (roomy_m <= kLargestSize_m ? " or a size of " + shortNumber(roomy_m) + " m"
+                                                              : ", nearer to each other"));
 }
 
 }  // namespace cluxel

@@ -20,8 +20,7 @@ class CampusRandom {
  public:
   /// Streams with different keys are unrelated; the same keys give the same stream.
   CampusRandom(std::initializer_list<std::uint64_t> keys) {
-    for (const std::uint64_t key : keys)
-      state_ = scramble(state_ + 0x9e3779b97f4a7c15ULL + scramble(key + 1));
+    for (const std::uint64_t key : keys) state_ = scramble(state_ + 0x9e3779b97f4a7c15ULL + scramble(key + 1));
   }
   std::uint64_t next() { return scramble(state_ += 0x9e3779b97f4a7c15ULL); }
   /// In [0, 1).

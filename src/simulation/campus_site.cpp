@@ -43,8 +43,7 @@ CampusSite::CampusSite(const CampusParams& params) : plan_(params.size_m) {
 }
 
 Vector3d CampusSite::onGround(const Vector2d& place) const {
-  return {place.x(), place.y(),
-          campus_.terrain.heightAt(place.x(), place.y()) + plan_.offsetAt(place.x(), place.y())};
+  return {place.x(), place.y(), campus_.terrain.heightAt(place.x(), place.y()) + plan_.offsetAt(place.x(), place.y())};
 }
 
 bool CampusSite::isFree(const Disc& disc) const {
@@ -65,10 +64,8 @@ bool CampusSite::claim(const Vector2d& center, double radius) {
 bool CampusSite::claimStrip(const Vector2d& from, const Vector2d& to, double half_width) {
   std::vector<Disc> strip;
   const int pieces = 1 + static_cast<int>((to - from).norm() / half_width);
-  for (int piece = 0; piece <= pieces; ++piece)
-    strip.push_back({from + (to - from) * piece / pieces, half_width});
-  if (!std::all_of(strip.begin(), strip.end(), [this](const Disc& disc) { return isFree(disc); }))
-    return false;
+  for (int piece = 0; piece <= pieces; ++piece) strip.push_back({from + (to - from) * piece / pieces, half_width});
+  if (!std::all_of(strip.begin(), strip.end(), [this](const Disc& disc) { return isFree(disc); })) return false;
   taken_.insert(taken_.end(), strip.begin(), strip.end());
   return true;
 }
@@ -124,8 +121,7 @@ void turn(Campus& campus, const Eigen::Isometry3d& T_map_plan) {
   for (CampusMesh& mesh : campus.meshes)
     for (Eigen::Vector3f& vertex : mesh.vertices) {
       vertex = (T_map_plan * vertex.cast<double>()).cast<float>();
-      if (mesh.instance >= 0)
-        campus.objects[static_cast<std::size_t>(mesh.instance)].box.extend(vertex.cast<double>());
+      if (mesh.instance >= 0) campus.objects[static_cast<std::size_t>(mesh.instance)].box.extend(vertex.cast<double>());
     }
 }
 

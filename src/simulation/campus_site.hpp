@@ -41,9 +41,7 @@ class CampusSite {
 
   const SitePlan& plan() const { return plan_; }
   const Campus& campus() const { return campus_; }
-  CampusRandom stream(RandomUse use, std::uint64_t number) const {
-    return streamOf(campus_.params.seed, use, number);
-  }
+  CampusRandom stream(RandomUse use, std::uint64_t number) const { return streamOf(campus_.params.seed, use, number); }
   /// The ground at a place, kerbs and all [m, map].
   Eigen::Vector3d onGround(const Eigen::Vector2d& place) const;
 
@@ -59,8 +57,7 @@ class CampusSite {
   bool touchesCrown(const Eigen::Vector2d& center, double radius) const;
 
   /// Enters an object; its number is the instance id of its surfaces.
-  std::int32_t addObject(ObjectClass object_class, std::string kind, const Eigen::Vector3d& position,
-                         double reach_m);
+  std::int32_t addObject(ObjectClass object_class, std::string kind, const Eigen::Vector3d& position, double reach_m);
   void addTrait(std::int32_t instance, std::string trait);
   void addSurface(CampusMesh surface);
   void addStop(const Eigen::Isometry3d& T_map_sensor) { campus_.stops.push_back(T_map_sensor); }

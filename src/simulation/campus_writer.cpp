@@ -88,12 +88,10 @@ void prepare(const fs::path& folder) {
   std::error_code failure;
   if (folder.empty()) throw Error(ExitCode::Usage, "the folder for the scans has no name");
   if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
-    throw Error(ExitCode::Usage,
-                folder.string() + " is not an empty folder: name a new one, or remove it first");
+    throw Error(ExitCode::Usage, folder.string() + " is not an empty folder: name a new one, or remove it first");
   fs::create_directories(folder / "truth", failure);
   if (failure)
-    throw Error(ExitCode::StoreUnavailable,
-                "cannot make the folder " + folder.string() + ": " + failure.message());
+    throw Error(ExitCode::StoreUnavailable, "cannot make the folder " + folder.string() + ": " + failure.message());
 }
 
 /// What each scan leaves behind for the tables.
@@ -130,15 +128,13 @@ CampusSummary summaryOf(const Campus& campus, const Written& written) {
   }
   summary.objects = seen.size();
   for (const std::int32_t id : seen)
-    ++summary.objects_of_class[static_cast<std::size_t>(
-        campus.objects[static_cast<std::size_t>(id)].class_number)];
+    ++summary.objects_of_class[static_cast<std::size_t>(campus.objects[static_cast<std::size_t>(id)].class_number)];
   return summary;
 }
 
 }  // namespace
 
-CampusSummary writeCampus(const Campus& campus, const fs::path& folder, unsigned threads,
-                          ProgressSink& sink) {
+CampusSummary writeCampus(const Campus& campus, const fs::path& folder, unsigned threads, ProgressSink& sink) {
   prepare(folder);
   const std::vector<Eigen::Isometry3d> stated = statedPoses(campus);
   const Written written = writeScans(campus, stated, folder, threads, sink);

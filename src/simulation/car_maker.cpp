@@ -50,17 +50,15 @@ void addCabin(CampusMesh& body, CampusMesh& glass, const Isometry3d& T_map_car, 
   const auto top = [&](double x, double side) { return at(x, side * narrow, shape.height); };
   const double rear_foot = std::max(shape.rear_foot_x, -shape.length / 2 + 0.06);
   for (const double side : {-1.0, 1.0})
-    addFramedGlass(body, glass,
-                   {foot(rear_foot, side), foot(shape.hood_x, side), top(shape.windscreen_x, side),
-                    top(shape.rear_top_x, side)},
-                   0.12);
-  addFramedGlass(body, glass,
-                 {foot(shape.hood_x, -1), foot(shape.hood_x, 1), top(shape.windscreen_x, 1),
-                  top(shape.windscreen_x, -1)},
-                 0.07);
+    addFramedGlass(
+        body, glass,
+        {foot(rear_foot, side), foot(shape.hood_x, side), top(shape.windscreen_x, side), top(shape.rear_top_x, side)},
+        0.12);
   addFramedGlass(
       body, glass,
-      {foot(rear_foot, -1), foot(rear_foot, 1), top(shape.rear_top_x, 1), top(shape.rear_top_x, -1)}, 0.1);
+      {foot(shape.hood_x, -1), foot(shape.hood_x, 1), top(shape.windscreen_x, 1), top(shape.windscreen_x, -1)}, 0.07);
+  addFramedGlass(body, glass,
+                 {foot(rear_foot, -1), foot(rear_foot, 1), top(shape.rear_top_x, 1), top(shape.rear_top_x, -1)}, 0.1);
   addQuad(body, {top(shape.rear_top_x, -1), top(shape.windscreen_x, -1), top(shape.windscreen_x, 1),
                  top(shape.rear_top_x, 1)});
 }
@@ -95,8 +93,7 @@ Isometry3d carPose(const CampusSite& site, const Vector2d& place, double yaw_rad
 
 std::int32_t makeCar(CampusSite& site, const Vector2d& place, double yaw_rad, CampusRandom random) {
   const CarShape shape = randomShape(random);
-  const std::int32_t id =
-      site.addObject(ObjectClass::Vehicle, shape.kind, site.onGround(place), shape.length / 2);
+  const std::int32_t id = site.addObject(ObjectClass::Vehicle, shape.kind, site.onGround(place), shape.length / 2);
   CampusMesh body =
       surfaceOf(SurfaceLabel::CarBody, id, {.reflectivity = static_cast<float>(random.uniform(0.1, 0.8))});
   CampusMesh glass = surfaceOf(SurfaceLabel::CarWindow, id, {.reflectivity = 0.08F, .transparency = 0.75F});

@@ -17,8 +17,7 @@ class CycleBody {
   CycleBody(CampusMesh& mesh, const Isometry3d& T_map_cycle) : mesh_(mesh), T_(T_map_cycle) {}
 
   void bar(const Vector3d& from, const Vector3d& to, double radius) {
-    addTube(mesh_,
-            {.from = T_ * from, .to = T_ * to, .radius_from = radius, .radius_to = radius, .sides = 6});
+    addTube(mesh_, {.from = T_ * from, .to = T_ * to, .radius_from = radius, .radius_to = radius, .sides = 6});
   }
   void body(const Vector3d& middle, const Vector3d& radii) {
     const std::size_t first = mesh_.vertices.size();
@@ -33,10 +32,8 @@ class CycleBody {
       return Vector3d{x + r * std::cos(angle), 0, radius + r * std::sin(angle)};
     };
     for (int i = 0; i < kPieces; ++i)
-      bar(rim(static_cast<double>(i) / kPieces, radius - tyre), rim((i + 1.0) / kPieces, radius - tyre),
-          tyre);
-    for (int i = 0; i < spokes; ++i)
-      bar({x, 0, radius}, rim(static_cast<double>(i) / spokes, radius - tyre), 0.004);
+      bar(rim(static_cast<double>(i) / kPieces, radius - tyre), rim((i + 1.0) / kPieces, radius - tyre), tyre);
+    for (int i = 0; i < spokes; ++i) bar({x, 0, radius}, rim(static_cast<double>(i) / spokes, radius - tyre), 0.004);
   }
 
  private:
@@ -45,8 +42,7 @@ class CycleBody {
 };
 
 void addBicycle(CycleBody& cycle, CampusRandom& random) {
-  const double wheel = random.uniform(0.31, 0.35), base = random.uniform(0.5, 0.55),
-               saddle = random.uniform(0.82, 1.0);
+  const double wheel = random.uniform(0.31, 0.35), base = random.uniform(0.5, 0.55), saddle = random.uniform(0.82, 1.0);
   cycle.wheel(base, wheel, 0.02, 14);
   cycle.wheel(-base, wheel, 0.02, 14);
   const Vector3d crank{-0.08, 0, 0.28}, head{0.36, 0, 0.82}, seat{-0.24, 0, saddle}, hub{-base, 0, wheel},
@@ -78,14 +74,11 @@ void addMotorcycle(CycleBody& cycle, CampusRandom& random) {
 
 }  // namespace
 
-std::int32_t makeCycle(CampusSite& site, const Vector2d& place, double yaw_rad, CycleKind kind,
-                       CampusRandom random) {
+std::int32_t makeCycle(CampusSite& site, const Vector2d& place, double yaw_rad, CycleKind kind, CampusRandom random) {
   const bool motor = kind == CycleKind::Motorcycle;
   const Vector3d foot = site.onGround(place);
-  const std::int32_t id =
-      site.addObject(ObjectClass::SmallObject, motor ? "motorcycle" : "bicycle", foot, 1.0);
-  CampusMesh mesh =
-      surfaceOf(motor ? SurfaceLabel::Motorcycle : SurfaceLabel::Bicycle, id, {.reflectivity = 0.35F});
+  const std::int32_t id = site.addObject(ObjectClass::SmallObject, motor ? "motorcycle" : "bicycle", foot, 1.0);
+  CampusMesh mesh = surfaceOf(motor ? SurfaceLabel::Motorcycle : SurfaceLabel::Bicycle, id, {.reflectivity = 0.35F});
   const double lean = random.uniform(0.06, 0.16);  // on its stand
   CycleBody cycle(mesh, standing(foot, yaw_rad) * Eigen::AngleAxisd(lean, Vector3d::UnitX()));
   if (motor)

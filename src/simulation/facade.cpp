@@ -37,15 +37,13 @@ class FacadeMaker {
   }
 
   void addFloor(int floor) {
-    const double below = floor == 0 ? -1.5 : floor * style_.floor_height_m,
-                 level = floor * style_.floor_height_m;
+    const double below = floor == 0 ? -1.5 : floor * style_.floor_height_m, level = floor * style_.floor_height_m;
     const double sill = level + style_.sill_m, head = sill + style_.window_height_m;
     const double above = level + style_.floor_height_m;
     const int door_bay = place_.door && floor == 0 ? bays_ / 2 : -1;
     wall(0, place_.length_m, head, above);
     for (int bay = 0; bay < bays_; ++bay) {
-      const double s0 = bay * bay_m_, s1 = s0 + bay_m_, left = 0.5 * (s0 + s1 - opening_m_),
-                   right = left + opening_m_;
+      const double s0 = bay * bay_m_, s1 = s0 + bay_m_, left = 0.5 * (s0 + s1 - opening_m_), right = left + opening_m_;
       wall(s0, left, sill, head);
       wall(right, s1, sill, head);
       const bool door = bay == door_bay;
@@ -60,9 +58,7 @@ class FacadeMaker {
     if (style_.course_depth_m > 0) course(above - 0.1, style_.course_depth_m, 0.2);
   }
 
-  void addCornice() {
-    course(style_.floors * style_.floor_height_m, std::max(0.2, style_.course_depth_m + 0.1), 0.3);
-  }
+  void addCornice() { course(style_.floors * style_.floor_height_m, std::max(0.2, style_.course_depth_m + 0.1), 0.3); }
 
  private:
   struct Opening {
@@ -77,8 +73,7 @@ class FacadeMaker {
   }
   void opening(CampusMesh& pane, const Opening& o) {
     const double d = -style_.recess_m;
-    addQuad(pane,
-            {at(o.left, o.bottom, d), at(o.right, o.bottom, d), at(o.right, o.top, d), at(o.left, o.top, d)});
+    addQuad(pane, {at(o.left, o.bottom, d), at(o.right, o.bottom, d), at(o.right, o.top, d), at(o.left, o.top, d)});
     const std::array<std::pair<double, double>, 5> corners{
         {{o.left, o.bottom}, {o.right, o.bottom}, {o.right, o.top}, {o.left, o.top}, {o.left, o.bottom}}};
     for (std::size_t i = 0; i < 4; ++i) {

@@ -25,7 +25,7 @@ struct FacadeStyle {
 };
 
 struct FacadePlace {
-  Eigen::Vector3d origin;  ///< left lower corner at the level of the ground floor, seen from outside [m, map]
+  Eigen::Vector3d origin;          ///< left lower corner at the level of the ground floor, seen from outside [m, map]
   Eigen::Vector3d along, outward;  ///< unit vectors
   double length_m = 10;
   bool door = false;

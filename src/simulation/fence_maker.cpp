@@ -23,25 +23,20 @@ class FenceLine {
         yaw_rad_(std::atan2(to.y() - from.y(), to.x() - from.x())) {}
 
   double length() const { return length_; }
-  Vector3d foot(double s) const {
-    return site_.onGround(from_ + (to_ - from_) * (std::min(s, length_) / length_));
-  }
+  Vector3d foot(double s) const { return site_.onGround(from_ + (to_ - from_) * (std::min(s, length_) / length_)); }
   /// Upright at `s`, x along the line.
   Isometry3d at(double s) const { return standing(foot(s), yaw_rad_); }
 
   /// A rail between two places, at a height above the ground.
   void rail(CampusMesh& mesh, double s, double next, double up, double radius) const {
     const Vector3d above{0, 0, up};
-    addTube(mesh, {.from = foot(s) + above,
-                   .to = foot(next) + above,
-                   .radius_from = radius,
-                   .radius_to = radius,
-                   .sides = 4});
+    addTube(
+        mesh,
+        {.from = foot(s) + above, .to = foot(next) + above, .radius_from = radius, .radius_to = radius, .sides = 4});
   }
   /// Posts every `distance`, and what `between` puts from each to the next.
   template <typename Between>
-  void posts(CampusMesh& mesh, double distance, const Vector3d& size, double aside,
-             const Between& between) const {
+  void posts(CampusMesh& mesh, double distance, const Vector3d& size, double aside, const Between& between) const {
     for (double s = 0; s <= length_; s += distance) {
       addBox(mesh, movedBy(at(s), {0, aside, 0.5 * size.z() - 0.1}), size);
       if (s < length_) between(s, std::min(s + distance, length_));

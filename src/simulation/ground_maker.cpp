@@ -56,8 +56,7 @@ void makeGround(CampusSite& site) {
   std::map<SurfaceLabel, CampusMesh> surfaces;
   for (std::size_t j = 0; j < grid.rows(); ++j)
     for (std::size_t i = 0; i < grid.columns(); ++i) {
-      const Corners corners{grid.corner(i, j), grid.corner(i + 1, j), grid.corner(i + 1, j + 1),
-                            grid.corner(i, j + 1)};
+      const Corners corners{grid.corner(i, j), grid.corner(i + 1, j), grid.corner(i + 1, j + 1), grid.corner(i, j + 1)};
       const Vector3d middle = 0.5 * (corners[0] + corners[2]);
       const SurfaceLabel kind = site.plan().kindAt(middle.x(), middle.y());
       addQuad(surfaces.try_emplace(kind, surfaceOf(kind, ground, lookOf(kind))).first->second, corners);

@@ -18,16 +18,14 @@ double cross(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
 
 /// Andrew's monotone chain.
 std::vector<Vector2d> convexHull(std::vector<Vector2d> points) {
-  std::sort(points.begin(), points.end(), [](const Vector2d& a, const Vector2d& b) {
-    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-  });
+  std::sort(points.begin(), points.end(),
+            [](const Vector2d& a, const Vector2d& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
   if (points.size() < 3) return points;
   std::vector<Vector2d> hull;
   for (int pass = 0; pass < 2; ++pass) {
     const std::size_t start = hull.size();
     for (const Vector2d& point : points) {
-      while (hull.size() >= start + 2 && cross(hull[hull.size() - 2], hull.back(), point) <= 0)
-        hull.pop_back();
+      while (hull.size() >= start + 2 && cross(hull[hull.size() - 2], hull.back(), point) <= 0) hull.pop_back();
       hull.push_back(point);
     }
     hull.pop_back();
@@ -150,17 +148,15 @@ std::string instanceTable(const Campus& campus, const std::vector<InstanceSights
     const CampusObject& object = campus.objects[static_cast<std::size_t>(id)];
     const Vector2d extents = extentsOf(sight.outline);
     const std::string reasons = reasonsAgainst(object, sight, extents);
-    table += std::to_string(id) + "," +
-             snakeCase(truthClassNames()[static_cast<std::size_t>(object.class_number)]) + "," +
-             std::to_string(sight.points);
+    table += std::to_string(id) + "," + snakeCase(truthClassNames()[static_cast<std::size_t>(object.class_number)]) +
+             "," + std::to_string(sight.points);
     for (const Vector3d& corner :
          {Vector3d(sight.sum / static_cast<double>(sight.points)), sight.box.min(), sight.box.max()})
       for (int axis = 0; axis < 3; ++axis) table += "," + number(corner[axis]);
-    table +=
-        "," + number(sight.box.sizes().z()) + "," + number(extents.x()) + "," + number(extents.y()) + "," +
-        joinCounts(points_in_scan[id], "+", [&scans](std::size_t scan) { return scans[scan]; }) + "," +
-        joinCounts(sight.points_of_label, "+", [](std::uint32_t label) { return std::to_string(label); }) +
-        "," + (reasons.empty() ? "0" : "1") + "," + reasons + "\n";
+    table += "," + number(sight.box.sizes().z()) + "," + number(extents.x()) + "," + number(extents.y()) + "," +
+             joinCounts(points_in_scan[id], "+", [&scans](std::size_t scan) { return scans[scan]; }) + "," +
+             joinCounts(sight.points_of_label, "+", [](std::uint32_t label) { return std::to_string(label); }) + "," +
+             (reasons.empty() ? "0" : "1") + "," + reasons + "\n";
   }
   return table;
 }

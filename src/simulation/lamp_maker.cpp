@@ -52,20 +52,13 @@ std::int32_t makeStraightLamp(CampusSite& site, const Vector2d& place, CampusRan
       addEllipsoid(lamp.head, top + 0.2 * up, {0.24, 0.24, 0.24});
       break;
     case 1:
-      addTube(lamp.head, {.from = top - 0.05 * up,
-                          .to = top + 0.45 * up,
-                          .radius_from = 0.12,
-                          .radius_to = 0.24,
-                          .sides = 12});
-      addTube(lamp.head, {.from = top + 0.45 * up,
-                          .to = top + 0.62 * up,
-                          .radius_from = 0.3,
-                          .radius_to = 0.05,
-                          .sides = 12});
+      addTube(lamp.head,
+              {.from = top - 0.05 * up, .to = top + 0.45 * up, .radius_from = 0.12, .radius_to = 0.24, .sides = 12});
+      addTube(lamp.head,
+              {.from = top + 0.45 * up, .to = top + 0.62 * up, .radius_from = 0.3, .radius_to = 0.05, .sides = 12});
       break;
     default:
-      addTube(lamp.head,
-              {.from = top, .to = top + 0.14 * up, .radius_from = 0.36, .radius_to = 0.28, .sides = 14});
+      addTube(lamp.head, {.from = top, .to = top + 0.14 * up, .radius_from = 0.36, .radius_to = 0.28, .sides = 14});
   }
   return lamp.addTo(site);
 }
@@ -76,8 +69,7 @@ std::int32_t makeArmLamp(CampusSite& site, const Vector2d& place, double yaw_rad
   const double height = random.uniform(6.2, 7.8), reach = random.uniform(1.1, 1.9);
   addPole(lamp.pole, foot, height, random.uniform(0.07, 0.09));
   const Vector3d ahead{std::cos(yaw_rad), std::sin(yaw_rad), 0};
-  const Vector3d top = foot + Vector3d{0, 0, height - 0.05},
-                 tip = top + reach * ahead + Vector3d{0, 0, 0.18 * reach};
+  const Vector3d top = foot + Vector3d{0, 0, height - 0.05}, tip = top + reach * ahead + Vector3d{0, 0, 0.18 * reach};
   addTube(lamp.arm, {.from = top, .to = tip, .radius_from = 0.045, .radius_to = 0.035, .sides = 8});
   addBox(lamp.head, standing(tip + 0.25 * ahead, yaw_rad), {0.75, 0.3, 0.14});
   return lamp.addTo(site);

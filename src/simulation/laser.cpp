@@ -41,8 +41,9 @@ struct RayGrid {
     const double column = static_cast<double>(ray / rows) + random.uniform(-0.1, 0.1);
     const double row = static_cast<double>(ray % rows) + 0.5 + random.uniform(-0.1, 0.1);
     const double pan = 2 * std::numbers::pi * column / static_cast<double>(columns);
-    const double tilt = kind == LaserKind::Spinning ? ringTilt(ray % rows)
-                                                    : kLowest_rad + (kHighest_rad - kLowest_rad) * row / static_cast<double>(rows);
+    const double tilt = kind == LaserKind::Spinning
+                            ? ringTilt(ray % rows)
+                            : kLowest_rad + (kHighest_rad - kLowest_rad) * row / static_cast<double>(rows);
     return {std::cos(tilt) * std::cos(pan), std::cos(tilt) * std::sin(pan), std::sin(tilt)};
   }
   static double ringTilt(std::size_t ring) {
@@ -59,8 +60,7 @@ struct Return {
 /// A direction within the beam, evenly over its disc.
 Vector3d withinBeam(const Vector3d& direction, double radius_rad, CampusRandom& random) {
   const Vector3d u = direction.unitOrthogonal(), v = direction.cross(u);
-  const double around = 2 * std::numbers::pi * random.uniform(),
-               reach = radius_rad * std::sqrt(random.uniform());
+  const double around = 2 * std::numbers::pi * random.uniform(), reach = radius_rad * std::sqrt(random.uniform());
   return (direction + reach * (std::cos(around) * u + std::sin(around) * v)).normalized();
 }
 
@@ -81,13 +81,11 @@ struct Laser::Impl {
   RayCaster caster;
 
   /// The range that a beam of some width reports, and the nearer of the surfaces that it meets.
-  std::optional<RayHit> measure(const Vector3d& origin, const Vector3d& direction,
-                                CampusRandom& random) const {
+  std::optional<RayHit> measure(const Vector3d& origin, const Vector3d& direction, CampusRandom& random) const {
     constexpr double kEdge_m = 0.08, kPulse_m = 1.2;  // echoes closer than the pulse is long run together
     const CampusParams& params = campus.params;
     const auto middle = caster.cast(origin, direction, params.max_range_m);
-    const auto side =
-        caster.cast(origin, withinBeam(direction, params.beam_radius_rad, random), params.max_range_m);
+    const auto side = caster.cast(origin, withinBeam(direction, params.beam_radius_rad, random), params.max_range_m);
     const double share = random.uniform(0.15, 0.85);
     const bool mixes = random.chance(params.mixed_pixel_probability);
     if (!middle || !side) return mixes ? (middle ? middle : side) : middle;
@@ -108,7 +106,7 @@ struct Laser::Impl {
     const CampusMesh& mesh = campus.meshes[hit->mesh];
     if (isLost(*hit, mesh, campus.params.miss_probability, random)) return std::nullopt;
     const double range = hit->range_m + campus.params.range_sigma_m * random.normal();
-    if (!(range >= 0.3 && range <= campus.params.max_range_m)) return std::nullopt;   // along a triangle it is no number
+    if (!(range >= 0.3 && range <= campus.params.max_range_m)) return std::nullopt;  // along a triangle it is no number
     const double shine = mesh.reflectivity * (0.4 + 0.6 * hit->cos_incidence) * (1 + 0.06 * random.normal());
     return Return{range * direction, std::clamp(shine, 0.0, 1.0), hit->mesh};
   }
@@ -117,8 +115,7 @@ struct Laser::Impl {
   RayGrid gridFor(std::size_t stop) const {
     const RayGrid preview(6000, campus.params.laser);
     std::size_t returns = 0;
-    for (std::size_t ray = 0; ray < preview.size(); ++ray)
-      returns += shoot(stop, ray, preview).has_value() ? 1 : 0;
+    for (std::size_t ray = 0; ray < preview.size(); ++ray) returns += shoot(stop, ray, preview).has_value() ? 1 : 0;
     const double share = std::max(0.2, static_cast<double>(returns) / static_cast<double>(preview.size()));
     return RayGrid(campus.params.points_per_stop / share, campus.params.laser);
   }
@@ -142,8 +139,7 @@ void append(SimulatedScan& result, const Return& echo, const CampusMesh& mesh) {
   points.intensity.push_back(static_cast<float>(echo.intensity));
   points.label.push_back(static_cast<std::uint32_t>(mesh.label));
   const SurfaceInfo& surface = infoOf(mesh.label);
-  result.truth.primitive.push_back(surface.primitive ? static_cast<std::int8_t>(*surface.primitive)
-                                                     : std::int8_t{-1});
+  result.truth.primitive.push_back(surface.primitive ? static_cast<std::int8_t>(*surface.primitive) : std::int8_t{-1});
   result.truth.object_class.push_back(static_cast<std::int8_t>(surface.object_number));
   result.truth.instance.push_back(mesh.instance);
 }

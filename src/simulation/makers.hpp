@@ -28,12 +28,10 @@ struct TreeSpec {
 };
 /// Usual dimensions of a shape.
 TreeSpec usualTree(TreeShape shape, CampusRandom& random);
-std::int32_t makeTree(CampusSite& site, const Eigen::Vector2d& place, const TreeSpec& spec,
-                      CampusRandom random);
+std::int32_t makeTree(CampusSite& site, const Eigen::Vector2d& place, const TreeSpec& spec, CampusRandom random);
 
 std::int32_t makeBush(CampusSite& site, const Eigen::Vector2d& place, double radius, CampusRandom random);
-std::int32_t makeHedge(CampusSite& site, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
-                       CampusRandom random);
+std::int32_t makeHedge(CampusSite& site, const Eigen::Vector2d& from, const Eigen::Vector2d& to, CampusRandom random);
 /// Higher growth is neither bush nor tree: where one begins no two people agree.
 inline constexpr double kBushTop_m = 1.6;
 struct ThicketSpec {
@@ -42,8 +40,8 @@ struct ThicketSpec {
 };
 /// Shrubs that have grown into one another, deep and rough: a bush up to kBushTop_m, else leaves of no
 /// object.
-void makeThicket(CampusSite& site, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
-                 const ThicketSpec& spec, CampusRandom random);
+void makeThicket(CampusSite& site, const Eigen::Vector2d& from, const Eigen::Vector2d& to, const ThicketSpec& spec,
+                 CampusRandom random);
 
 /// `yaw_rad` is where the arm points.
 std::int32_t makeStraightLamp(CampusSite& site, const Eigen::Vector2d& place, CampusRandom random);
@@ -54,8 +52,7 @@ struct SignSpec {
   int plates = 1;
   bool leaves = false;  ///< a clutter of leaves on top
 };
-std::int32_t makeSign(CampusSite& site, const Eigen::Vector2d& place, const SignSpec& spec,
-                      CampusRandom random);
+std::int32_t makeSign(CampusSite& site, const Eigen::Vector2d& place, const SignSpec& spec, CampusRandom random);
 
 /// A row of poles along x with wires between them.
 void makeUtilityLine(CampusSite& site, const std::vector<Eigen::Vector2d>& places, CampusRandom random);
@@ -67,8 +64,8 @@ std::int32_t makeBin(CampusSite& site, const Eigen::Vector2d& place, CampusRando
 std::int32_t makeBench(CampusSite& site, const Eigen::Vector2d& place, double yaw_rad, CampusRandom random);
 std::int32_t makeBollard(CampusSite& site, const Eigen::Vector2d& place, CampusRandom random);
 enum class FenceKind { Pickets, Bars, WireMesh, Boards, LowWall };
-std::int32_t makeFence(CampusSite& site, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
-                       FenceKind kind, CampusRandom random);
+std::int32_t makeFence(CampusSite& site, const Eigen::Vector2d& from, const Eigen::Vector2d& to, FenceKind kind,
+                       CampusRandom random);
 enum class CycleKind { Bicycle, Motorcycle };
 /// `yaw_rad` is where it looks.
 std::int32_t makeCycle(CampusSite& site, const Eigen::Vector2d& place, double yaw_rad, CycleKind kind,

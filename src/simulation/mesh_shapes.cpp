@@ -26,8 +26,7 @@ void addQuad(CampusMesh& mesh, const Corners& corners) {
 void addBox(CampusMesh& mesh, const Isometry3d& T_map_box, const Vector3d& size) {
   const Vector2d half = size.head<2>() / 2;
   addPlate(mesh, T_map_box,
-           {{-half.x(), -half.y()}, {half.x(), -half.y()}, {half.x(), half.y()}, {-half.x(), half.y()}},
-           size.z());
+           {{-half.x(), -half.y()}, {half.x(), -half.y()}, {half.x(), half.y()}, {-half.x(), half.y()}}, size.z());
 }
 
 void addTube(CampusMesh& mesh, const Tube& tube) {
@@ -42,8 +41,7 @@ void addTube(CampusMesh& mesh, const Tube& tube) {
                    rim(tube.to, tube.radius_to, i + 1), rim(tube.to, tube.radius_to, i)});
     if (!tube.capped) continue;
     addTriangle(mesh, tube.to, rim(tube.to, tube.radius_to, i), rim(tube.to, tube.radius_to, i + 1));
-    addTriangle(mesh, tube.from, rim(tube.from, tube.radius_from, i + 1),
-                rim(tube.from, tube.radius_from, i));
+    addTriangle(mesh, tube.from, rim(tube.from, tube.radius_from, i + 1), rim(tube.from, tube.radius_from, i));
   }
 }
 
@@ -51,8 +49,7 @@ void addEllipsoid(CampusMesh& mesh, const Vector3d& center, const Vector3d& radi
   constexpr int kRings = 8, kSides = 12;
   const auto at = [&](int ring, int side) -> Vector3d {
     const double polar = std::numbers::pi * ring / kRings, around = kTurn * (side % kSides) / kSides;
-    const Vector3d unit{std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around),
-                        std::cos(polar)};
+    const Vector3d unit{std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around), std::cos(polar)};
     return center + radii.cwiseProduct(unit);
   };
   for (int ring = 0; ring < kRings; ++ring)
@@ -60,8 +57,7 @@ void addEllipsoid(CampusMesh& mesh, const Vector3d& center, const Vector3d& radi
       addQuad(mesh, {at(ring, side), at(ring, side + 1), at(ring + 1, side + 1), at(ring + 1, side)});
 }
 
-void addPlate(CampusMesh& mesh, const Isometry3d& T_map_plate, const std::vector<Vector2d>& outline,
-              double thickness) {
+void addPlate(CampusMesh& mesh, const Isometry3d& T_map_plate, const std::vector<Vector2d>& outline, double thickness) {
   const auto at = [&](std::size_t corner, double side) -> Vector3d {
     const Vector2d& p = outline[corner % outline.size()];
     return T_map_plate * Vector3d{p.x(), p.y(), side * thickness / 2};
@@ -84,8 +80,7 @@ std::vector<Vector2d> regularOutline(int corners, double radius, double phase_ra
 }
 
 std::vector<Vector2d> rectangleOutline(double width, double height) {
-  return {
-      {-width / 2, -height / 2}, {width / 2, -height / 2}, {width / 2, height / 2}, {-width / 2, height / 2}};
+  return {{-width / 2, -height / 2}, {width / 2, -height / 2}, {width / 2, height / 2}, {-width / 2, height / 2}};
 }
 
 Vector3d randomDirection(CampusRandom& random) {
@@ -107,8 +102,7 @@ void addFramedGlass(CampusMesh& frame, CampusMesh& glass, const Corners& corners
   const double far = 1 - margin;
   const Corners inner{at(margin, margin), at(far, margin), at(far, far), at(margin, far)};
   addQuad(glass, inner);
-  for (std::size_t i = 0; i < 4; ++i)
-    addQuad(frame, {corners[i], corners[(i + 1) % 4], inner[(i + 1) % 4], inner[i]});
+  for (std::size_t i = 0; i < 4; ++i) addQuad(frame, {corners[i], corners[(i + 1) % 4], inner[(i + 1) % 4], inner[i]});
 }
 
 Isometry3d standing(const Vector3d& position, double yaw_rad) {

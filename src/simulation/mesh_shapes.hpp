@@ -13,8 +13,7 @@ namespace cluxel {
 
 using Corners = std::array<Eigen::Vector3d, 4>;
 
-void addTriangle(CampusMesh& mesh, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                 const Eigen::Vector3d& c);
+void addTriangle(CampusMesh& mesh, const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
 /// Corners in order around the quad.
 void addQuad(CampusMesh& mesh, const Corners& corners);
 
@@ -32,8 +31,8 @@ void addTube(CampusMesh& mesh, const Tube& tube);
 void addEllipsoid(CampusMesh& mesh, const Eigen::Vector3d& center, const Eigen::Vector3d& radii);
 
 /// A convex outline in the x-y plane of T_map_plate, thickened to both sides along z.
-void addPlate(CampusMesh& mesh, const Eigen::Isometry3d& T_map_plate,
-              const std::vector<Eigen::Vector2d>& outline, double thickness);
+void addPlate(CampusMesh& mesh, const Eigen::Isometry3d& T_map_plate, const std::vector<Eigen::Vector2d>& outline,
+              double thickness);
 /// A regular outline for addPlate; the first corner at `phase_rad`.
 std::vector<Eigen::Vector2d> regularOutline(int corners, double radius, double phase_rad);
 /// An upright rectangle for addPlate.

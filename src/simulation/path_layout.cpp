@@ -50,8 +50,7 @@ class PathLayout {
 
   void people() {
     for (double x = plan_.west() + 9; x < plan_.east() - 4; x += random_.uniform(12, 20))
-      if (const Vector2d place{x, plan_.windingY(x)}; site_.claim(place, 0.45))
-        makePerson(site_, place, small());
+      if (const Vector2d place{x, plan_.windingY(x)}; site_.claim(place, 0.45)) makePerson(site_, place, small());
   }
 
  private:

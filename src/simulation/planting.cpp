@@ -31,8 +31,7 @@ class Planting {
         TreeSpec spec = usualTree(TreeShape::Round, random_);
         spec.crown_radius_m = random_.uniform(3.0, 3.5);  // wider than half their distance: crowns touch
         spec.clear_trunk_m = random_.uniform(2.3, 2.8);
-        tree({plan.west() + side * kAvenueAside_m + random_.uniform(-0.15, 0.15),
-              y + random_.uniform(-0.3, 0.3)},
+        tree({plan.west() + side * kAvenueAside_m + random_.uniform(-0.15, 0.15), y + random_.uniform(-0.3, 0.3)},
              spec);
       }
   }
@@ -71,8 +70,7 @@ class Planting {
     TreeSpec spec = usualTree(static_cast<TreeShape>(number % 4), random_);
     for (int attempt = 0; attempt < 60; ++attempt) {
       const Vector2d place = number % 2 == 0 && attempt < 30 ? onQuad() : anywhere();
-      if (!hasRoom(place, spec) || site_.touchesCrown(place, spec.crown_radius_m) || !tree(place, spec))
-        continue;
+      if (!hasRoom(place, spec) || site_.touchesCrown(place, spec.crown_radius_m) || !tree(place, spec)) continue;
       if (number % 3 == 0) companion(place, spec);
       return;
     }
@@ -102,8 +100,7 @@ class Planting {
   void companion(const Vector2d& place, const TreeSpec& first) {
     for (int attempt = 0; attempt < 30; ++attempt) {
       const TreeSpec spec = usualTree(static_cast<TreeShape>(random_.below(4)), random_);
-      const double angle = random_.uniform(0, 6.283),
-                   distance = 0.85 * (first.crown_radius_m + spec.crown_radius_m);
+      const double angle = random_.uniform(0, 6.283), distance = 0.85 * (first.crown_radius_m + spec.crown_radius_m);
       const Vector2d beside = place + distance * Vector2d{std::cos(angle), std::sin(angle)};
       if (hasRoom(beside, spec) && tree(beside, spec)) return;
     }

@@ -32,10 +32,10 @@ constexpr const char* kDeviceConfig = "threads=1,isa=sse4.2";
 void attach(RTCDevice device, RTCScene scene, const CampusMesh& mesh, unsigned number) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   // Embree reads 16 bytes from each vertex, so the last one cannot be shared: copies are the simple way.
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.vertices.size()));
-  auto* triangles = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), mesh.triangles.size()));
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                               3 * sizeof(float), mesh.vertices.size()));
+  auto* triangles = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                   3 * sizeof(unsigned), mesh.triangles.size()));
   for (const auto& vertex : mesh.vertices)
     for (int axis = 0; axis < 3; ++axis) *vertices++ = vertex[axis];
   for (const auto& triangle : mesh.triangles)
@@ -65,9 +65,8 @@ RayHit exactHit(const Campus& campus, const RTCHit& hit, const Vector3d& origin,
   const CampusMesh& mesh = campus.meshes[hit.geomID];
   const auto& corners = mesh.triangles[hit.primID];
   const Vector3d a = mesh.vertices[corners[0]].cast<double>();
-  const Vector3d normal = (mesh.vertices[corners[1]].cast<double>() - a)
-                              .cross(mesh.vertices[corners[2]].cast<double>() - a)
-                              .normalized();
+  const Vector3d normal =
+      (mesh.vertices[corners[1]].cast<double>() - a).cross(mesh.vertices[corners[2]].cast<double>() - a).normalized();
   const double along = normal.dot(direction);
   return {.range_m = normal.dot(a - origin) / along,
           .cos_incidence = std::abs(along),
@@ -85,9 +84,9 @@ struct RayCaster::Embree {
 RayCaster::RayCaster(const Campus& campus) : embree_(std::make_unique<Embree>()), campus_(campus) {
   embree_->device.reset(rtcNewDevice(kDeviceConfig));
   if (!embree_->device)
-    throw Error(ExitCode::StoreUnavailable,
-                "Embree, which casts the laser's rays, does not start (its error code is " +
-                    std::to_string(rtcGetDeviceError(nullptr)) + "): it needs a processor with SSE 4.2");
+    throw Error(ExitCode::StoreUnavailable, "Embree, which casts the laser's rays, does not start (its error code is " +
+                                                std::to_string(rtcGetDeviceError(nullptr)) +
+                                                "): it needs a processor with SSE 4.2");
   RTCDevice device = embree_->device.get();
   embree_->scene.reset(rtcNewScene(device));
   rtcSetSceneFlags(embree_->scene.get(), RTC_SCENE_FLAG_ROBUST);

@@ -41,16 +41,13 @@ std::int32_t makeBush(CampusSite& site, const Vector2d& place, double radius, Ca
 }
 
 std::int32_t makeHedge(CampusSite& site, const Vector2d& from, const Vector2d& to, CampusRandom random) {
-  const double length = (to - from).norm(), height = random.uniform(0.8, 1.4),
-               half = random.uniform(0.3, 0.45);
+  const double length = (to - from).norm(), height = random.uniform(0.8, 1.4), half = random.uniform(0.3, 0.45);
   const Vector2d along = (to - from) / length, across{-along.y(), along.x()};
-  const std::int32_t id =
-      site.addObject(ObjectClass::Bush, "hedge", site.onGround(0.5 * (from + to)), length / 2);
+  const std::int32_t id = site.addObject(ObjectClass::Bush, "hedge", site.onGround(0.5 * (from + to)), length / 2);
   CampusMesh leaves = surfaceOf(SurfaceLabel::HedgeTop, id, {.reflectivity = 0.5F});
   const int count = static_cast<int>(length * (2 * height + 2 * half) * 260);
   for (int i = 0; i < count; ++i) {
-    const double s = random.uniform(0, length), share = 0.2 * random.uniform(),
-                 depth = share * random.uniform();
+    const double s = random.uniform(0, length), share = 0.2 * random.uniform(), depth = share * random.uniform();
     double side = random.uniform(-half, half), up = random.uniform(0.05, height);
     if (random.uniform() < half / (half + height))
       up = height - depth;
@@ -83,8 +80,7 @@ void makeThicket(CampusSite& site, const Vector2d& from, const Vector2d& to, con
   const bool bush = spec.height_m <= kBushTop_m;
   const std::int32_t id =
       bush ? site.addObject(ObjectClass::Bush, "thicket", site.onGround(0.5 * (from + to)), length / 2) : -1;
-  CampusMesh leaves =
-      surfaceOf(bush ? SurfaceLabel::HedgeTop : SurfaceLabel::Thicket, id, {.reflectivity = 0.5F});
+  CampusMesh leaves = surfaceOf(bush ? SurfaceLabel::HedgeTop : SurfaceLabel::Thicket, id, {.reflectivity = 0.5F});
   const int lobes = 4 + static_cast<int>(1.5 * length * 2 * spec.half_depth_m * spec.height_m);
   for (int lobe = 0; lobe < lobes; ++lobe) {
     const Vector3d radii{random.uniform(0.3, 0.6), random.uniform(0.3, 0.6), random.uniform(0.25, 0.5)};

@@ -65,15 +65,13 @@ bool SitePlan::onLawn(const Vector2d& center, double radius) const {
 
 SitePlan::RoutePoint SitePlan::routeAt(double distance_m) const {
   using std::numbers::pi;
-  const std::array<Vector2d, 6> corners{Vector2d{0, south_},     Vector2d{west_, south_},
-                                        Vector2d{west_, north_}, Vector2d{east_, north_},
-                                        Vector2d{east_, south_}, Vector2d{0, south_}};
+  const std::array<Vector2d, 6> corners{Vector2d{0, south_},     Vector2d{west_, south_}, Vector2d{west_, north_},
+                                        Vector2d{east_, north_}, Vector2d{east_, south_}, Vector2d{0, south_}};
   constexpr std::array kHeadings{pi, pi / 2, 0.0, -pi / 2, pi};
   double left = std::fmod(distance_m, routeLength_m());
   for (std::size_t leg = 0; leg < kHeadings.size(); ++leg) {
     const double length = (corners[leg + 1] - corners[leg]).norm();
-    if (left <= length)
-      return {corners[leg] + (corners[leg + 1] - corners[leg]) * (left / length), kHeadings[leg]};
+    if (left <= length) return {corners[leg] + (corners[leg + 1] - corners[leg]) * (left / length), kHeadings[leg]};
     left -= length;
   }
   return {corners.back(), kHeadings.back()};
@@ -92,8 +90,7 @@ std::vector<double> gridOver(double reach, std::vector<double> lines) {
   for (double line = -reach; line <= reach + 1e-9; line += 0.5) lines.push_back(line);
   std::sort(lines.begin(), lines.end());
   constexpr double kSame_m = 0.004;
-  lines.erase(std::unique(lines.begin(), lines.end(), [](double a, double b) { return b - a < kSame_m; }),
-              lines.end());
+  lines.erase(std::unique(lines.begin(), lines.end(), [](double a, double b) { return b - a < kSame_m; }), lines.end());
   return lines;
 }
 
@@ -110,8 +107,7 @@ std::vector<double> SitePlan::gridX() const {
 std::vector<double> SitePlan::gridY() const {
   std::vector<double> lines{north_ - kPathHalf_m, north_ + kPathHalf_m};
   for (const double side : {-1.0, 1.0}) {
-    for (const double across :
-         {kStreetHalf_m - 0.01, kStreetHalf_m, kStreetHalf_m + kKerbWidth_m, kWalkOuter_m})
+    for (const double across : {kStreetHalf_m - 0.01, kStreetHalf_m, kStreetHalf_m + kKerbWidth_m, kWalkOuter_m})
       lines.push_back(street_y_ + side * across);
     for (int stripe = 0; stripe < 8; ++stripe) lines.push_back(street_y_ + side * 0.5 * stripe);
   }

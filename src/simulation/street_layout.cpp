@@ -49,9 +49,8 @@ class StreetLayout {
       const bool garden_tree = object.class_number == static_cast<int>(ObjectClass::Tree) &&
                                std::abs(object.position.y() - (plan_.streetY() - 8.2)) < 0.5;
       if (!garden_tree || !random_.chance(0.6)) continue;
-      const SignSpec spec{.yaw_rad = random_.chance(0.5) ? 0 : pi,
-                          .plates = 1 + random_.below(2),
-                          .leaves = random_.chance(0.4)};
+      const SignSpec spec{
+          .yaw_rad = random_.chance(0.5) ? 0 : pi, .plates = 1 + random_.below(2), .leaves = random_.chance(0.4)};
       sign(at(object.position.x() + random_.uniform(-0.8, 0.8), -kWalkBack_m), spec);  // under its crown
     }
     for (double x = -plan_.half_m() + 11; x < plan_.half_m(); x += random_.uniform(14, 22)) {
@@ -68,8 +67,7 @@ class StreetLayout {
                                                [x](double middle) { return std::abs(x - middle) < 6; });
         if (near_crossing || !random_.chance(0.55)) continue;
         const double yaw = (side > 0 ? pi : 0) + random_.uniform(-0.03, 0.03);
-        makeCar(site_, at(x + random_.uniform(-0.5, 0.5), side * 2.8), yaw,
-                site_.stream(RandomUse::Car, number));
+        makeCar(site_, at(x + random_.uniform(-0.5, 0.5), side * 2.8), yaw, site_.stream(RandomUse::Car, number));
       }
   }
 
@@ -78,8 +76,7 @@ class StreetLayout {
     for (int piece = random_.below(3); x < plan_.half_m(); ++piece) {
       const double end = x + random_.uniform(5, 9);
       const Vector2d from = at(x, -7.1), to = at(end, -7.1);
-      if (piece % 3 == 0 && site_.claimStrip(from, to, 0.3))
-        makeFence(site_, from, to, FenceKind::Pickets, small());
+      if (piece % 3 == 0 && site_.claimStrip(from, to, 0.3)) makeFence(site_, from, to, FenceKind::Pickets, small());
       if (piece % 3 == 1 && site_.claimStrip(from, to, 0.35))
         makeHedge(site_, from, to, site_.stream(RandomUse::Shrub, 500 + next_++));
       x = end + random_.uniform(0.8, 1.6);

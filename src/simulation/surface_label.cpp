@@ -77,8 +77,8 @@ std::span<const SurfaceInfo> surfaceInfos() {
 
 const SurfaceInfo& infoOf(SurfaceLabel label) {
   const auto surfaces = surfaceInfos();
-  const auto found = std::find_if(surfaces.begin(), surfaces.end(),
-                                  [label](const SurfaceInfo& info) { return info.label == label; });
+  const auto found =
+      std::find_if(surfaces.begin(), surfaces.end(), [label](const SurfaceInfo& info) { return info.label == label; });
   assert(found != surfaces.end());
   return *found;
 }

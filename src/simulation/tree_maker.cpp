@@ -24,12 +24,10 @@ struct Tree {
 
 void addTrunk(Tree& tree, double height) {
   const double r = tree.trunk_radius;
-  addTube(
-      tree.trunk,
-      {.from = tree.axisAt(-0.3), .to = tree.axisAt(0.25), .radius_from = 1.5 * r, .radius_to = 1.05 * r});
-  addTube(
-      tree.trunk,
-      {.from = tree.axisAt(0.25), .to = tree.axisAt(height), .radius_from = 1.05 * r, .radius_to = 0.75 * r});
+  addTube(tree.trunk,
+          {.from = tree.axisAt(-0.3), .to = tree.axisAt(0.25), .radius_from = 1.5 * r, .radius_to = 1.05 * r});
+  addTube(tree.trunk,
+          {.from = tree.axisAt(0.25), .to = tree.axisAt(height), .radius_from = 1.05 * r, .radius_to = 0.75 * r});
 }
 
 void addBranch(Tree& tree, double height, const Vector3d& tip) {
@@ -38,9 +36,8 @@ void addBranch(Tree& tree, double height, const Vector3d& tip) {
   const double r = 0.32 * tree.trunk_radius;
   addTube(tree.branches,
           {.from = root, .to = knee, .radius_from = r, .radius_to = 0.7 * r, .sides = 6, .capped = false});
-  addTube(
-      tree.branches,
-      {.from = knee, .to = tip, .radius_from = 0.7 * r, .radius_to = 0.2 * r, .sides = 6, .capped = false});
+  addTube(tree.branches,
+          {.from = knee, .to = tip, .radius_from = 0.7 * r, .radius_to = 0.2 * r, .sides = 6, .capped = false});
 }
 
 /// Leaves around a point, dense in its middle.
@@ -78,11 +75,9 @@ void addConicalCrown(Tree& tree, CampusRandom& random, const TreeSpec& spec) {
     const double reach = spec.crown_radius_m * (1 - up / crown) + 0.12;
     const int twigs = 5 + static_cast<int>(6 * reach);
     for (int i = 0; i < twigs; ++i) {
-      const double around = kTurn * (i + random.uniform()) / twigs,
-                   length = reach * random.uniform(0.75, 1.05);
+      const double around = kTurn * (i + random.uniform()) / twigs, length = reach * random.uniform(0.75, 1.05);
       const Vector3d root = tree.axisAt(spec.clear_trunk_m + up);
-      const Vector3d tip =
-          root + Vector3d{length * std::cos(around), length * std::sin(around), -0.35 * length};
+      const Vector3d tip = root + Vector3d{length * std::cos(around), length * std::sin(around), -0.35 * length};
       for (int leaf = 0, leaves = 6 + static_cast<int>(22 * length); leaf < leaves; ++leaf) {
         const Vector3d aside = 0.14 * randomDirection(random);
         const Vector3d place = root + std::sqrt(random.uniform()) * (tip - root) + aside;
@@ -115,8 +110,7 @@ void noteTouchingCrowns(CampusSite& site, std::int32_t id) {
     const CampusObject& neighbour = objects[static_cast<std::size_t>(other)];
     if (neighbour.class_number != static_cast<int>(ObjectClass::Tree)) continue;
     const double distance = (neighbour.position - tree.position).head<2>().norm();
-    if (distance < tree.reach_m + neighbour.reach_m)
-      site.addTrait(id, "crown touches " + std::to_string(other));
+    if (distance < tree.reach_m + neighbour.reach_m) site.addTrait(id, "crown touches " + std::to_string(other));
   }
 }
 
@@ -151,8 +145,7 @@ std::int32_t makeTree(CampusSite& site, const Vector2d& place, const TreeSpec& s
     addConicalCrown(tree, random, spec);
   else
     addEllipsoidCrown(tree, random, spec, spec.shape == TreeShape::Spreading ? 0.75 : 0.25);
-  for (CampusMesh* surface : {&tree.trunk, &tree.branches, &tree.leaves})
-    site.addSurface(std::move(*surface));
+  for (CampusMesh* surface : {&tree.trunk, &tree.branches, &tree.leaves}) site.addSurface(std::move(*surface));
   noteTouchingCrowns(site, id);
   return id;
 }

@@ -17,11 +17,9 @@ Vector3d makePole(CampusSite& site, const Vector2d& place, CampusRandom& random)
   CampusMesh arms = surfaceOf(SurfaceLabel::Crossarm, id, {.reflectivity = 0.3F});
   const double height = random.uniform(8.2, 9.4), radius = random.uniform(0.12, 0.16);
   const Vector3d top = foot + Vector3d{random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), height};
-  addTube(pole, {.from = foot - Vector3d{0, 0, 0.3},
-                 .to = top,
-                 .radius_from = radius,
-                 .radius_to = 0.75 * radius,
-                 .sides = 12});
+  addTube(
+      pole,
+      {.from = foot - Vector3d{0, 0, 0.3}, .to = top, .radius_from = radius, .radius_to = 0.75 * radius, .sides = 12});
   const int count = 1 + random.below(2);
   for (int i = 0; i < count; ++i) {
     const Vector3d middle = top - Vector3d{0, 0, 0.4 + 0.8 * i};
@@ -62,8 +60,7 @@ void makeUtilityLine(CampusSite& site, const std::vector<Vector2d>& places, Camp
   CampusMesh wires = surfaceOf(SurfaceLabel::Wire, -1, {.reflectivity = 0.3F});
   for (std::size_t i = 0; i + 1 < tops.size(); ++i)
     for (const double side : {-0.9, 0.9})
-      addWire(wires, tops[i] + Vector3d{0, side, 0}, tops[i + 1] + Vector3d{0, side, 0},
-              random.uniform(0.3, 0.6));
+      addWire(wires, tops[i] + Vector3d{0, side, 0}, tops[i + 1] + Vector3d{0, side, 0}, random.uniform(0.3, 0.6));
   site.addSurface(std::move(wires));
 }
 

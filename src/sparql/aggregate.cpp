@@ -33,8 +33,8 @@ bool ExactSum::add(const Value& value, const QueryTerms& terms) {
 
 namespace {
 
-/// Numbers from this size on are summed apart, made smaller by kScale: so their sum is lost only when it is too great at the
-/// end, not when it is on the way, which would follow from the order of rows.
+/// Numbers from this size on are summed apart, made smaller by kScale: so their sum is lost only when it is too great
+/// at the end, not when it is on the way, which would follow from the order of rows.
 constexpr double kGreat = 0x1p1000, kScale = 0x1p-100;
 
 void addTo(std::vector<double>& partials, double value) {
@@ -84,7 +84,7 @@ void ExactSum::addReal(double value) {
 double ExactSum::realTotal() const {
   if (is_special_) return special_;
   if (totalOf(great_partials_) == 0) return totalOf(partials_);
-  std::vector<double> all = great_partials_;   // joined before anything is rounded
+  std::vector<double> all = great_partials_;  // joined before anything is rounded
   for (const double partial : partials_) addTo(all, partial * kScale);
   return totalOf(all) / kScale;
 }
@@ -92,10 +92,14 @@ double ExactSum::realTotal() const {
 Value ExactSum::total() const {
   const Decimal exact = Decimal::add(exact_, Decimal(small_)).value_or(exact_);
   switch (type_) {
-    case Value::Type::Integer: return Value::ofInteger(exact);
-    case Value::Type::Decimal: return Value::ofDecimal(exact);
-    case Value::Type::Float: return Value::ofFloat(static_cast<float>(realTotal() + exact.toDouble()));
-    default: return Value::ofDouble(exact.isZero() ? realTotal() : realTotal() + exact.toDouble());
+    case Value::Type::Integer:
+      return Value::ofInteger(exact);
+    case Value::Type::Decimal:
+      return Value::ofDecimal(exact);
+    case Value::Type::Float:
+      return Value::ofFloat(static_cast<float>(realTotal() + exact.toDouble()));
+    default:
+      return Value::ofDouble(exact.isZero() ? realTotal() : realTotal() + exact.toDouble());
   }
 }
 
@@ -130,7 +134,8 @@ void Accumulator::countDistinctRow(std::span<const ValueId> row, Runtime& runtim
 }
 
 std::size_t Accumulator::bytes() const {
-  return (seen_ ? seen_->bytes() : 0) + (seen_rows_ ? seen_rows_->bytes() : 0) + (texts_ ? texts_->size() * sizeof(Value) : 0);
+  return (seen_ ? seen_->bytes() : 0) + (seen_rows_ ? seen_rows_->bytes() : 0) +
+         (texts_ ? texts_->size() * sizeof(Value) : 0);
 }
 
 void Accumulator::countText(const Value& value, const AggregateSpec& spec, Runtime& runtime) {
@@ -175,7 +180,8 @@ void Accumulator::take(const AggregateSpec& spec, const Value& value, Runtime& r
 ValueId Accumulator::result(const AggregateSpec& spec, Runtime& runtime) {
   QueryTerms& terms = runtime.terms;
   switch (spec.function) {
-    case Function::Count: return terms.intern(Value::ofInteger(static_cast<std::int64_t>(count_)));
+    case Function::Count:
+      return terms.intern(Value::ofInteger(static_cast<std::int64_t>(count_)));
     case Function::Sum:
       if (error_) return kUnbound;
       return terms.intern(sum_ ? sum_->total() : Value::ofInteger(0));
@@ -183,9 +189,11 @@ ValueId Accumulator::result(const AggregateSpec& spec, Runtime& runtime) {
       if (error_) return kUnbound;
       if (!sum_) return terms.intern(Value::ofInteger(0));
       return terms.intern(divideValues(sum_->total(), Value::ofInteger(static_cast<std::int64_t>(count_)), terms));
-    case Function::Sample: return terms.intern(best_);
+    case Function::Sample:
+      return terms.intern(best_);
     case Function::Min:
-    case Function::Max: return error_ ? kUnbound : terms.intern(best_);
+    case Function::Max:
+      return error_ ? kUnbound : terms.intern(best_);
     case Function::GroupConcat:
       if (error_) return kUnbound;
       break;

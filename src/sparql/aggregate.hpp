@@ -25,9 +25,9 @@ class ExactSum {
   Value::Type type_ = Value::Type::Integer;
   std::int64_t small_ = 0;
   Decimal exact_;
-  std::vector<double> partials_;   ///< a sum without error, as numbers that do not overlap (Shewchuk)
-  std::vector<double> great_partials_;   ///< of numbers near the end of the range, on a smaller scale
-  double special_ = 0;             ///< infinities and NaN
+  std::vector<double> partials_;        ///< a sum without error, as numbers that do not overlap (Shewchuk)
+  std::vector<double> great_partials_;  ///< of numbers near the end of the range, on a smaller scale
+  double special_ = 0;                  ///< infinities and NaN
   bool is_special_ = false;
 };
 
@@ -50,7 +50,7 @@ class Accumulator {
   void countText(const Value& value, const AggregateSpec& spec, Runtime& runtime);
 
   std::uint64_t count_ = 0;
-  std::size_t text_bytes_ = 0;   ///< of GROUP_CONCAT
+  std::size_t text_bytes_ = 0;  ///< of GROUP_CONCAT
   bool error_ = false;
   Value best_;
   std::unique_ptr<ExactSum> sum_;

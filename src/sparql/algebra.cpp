@@ -28,7 +28,9 @@ bool SlotSet::intersects(const SlotSet& other) const {
   return false;
 }
 
-bool SlotSet::contains(const SlotSet& other) const { return (other - *this).empty(); }
+bool SlotSet::contains(const SlotSet& other) const {
+  return (other - *this).empty();
+}
 
 bool SlotSet::empty() const {
   return std::all_of(words_.begin(), words_.end(), [](std::uint64_t word) { return word == 0; });
@@ -188,23 +190,34 @@ void Node::annotate() {
   }
   switch (kind) {
     case Kind::Unit:
-    case Kind::Nothing: return;
-    case Kind::Triple: return annotateTriple(*this);
+    case Kind::Nothing:
+      return;
+    case Kind::Triple:
+      return annotateTriple(*this);
     case Kind::GraphNames:
       if (graph.kind == GraphPlace::Kind::Slot) possible.add(graph.slot);
       certain = possible;
       return;
-    case Kind::Join: return annotateJoin(*this);
-    case Kind::LeftJoin: possible.add(children[1]->possible); return;
+    case Kind::Join:
+      return annotateJoin(*this);
+    case Kind::LeftJoin:
+      possible.add(children[1]->possible);
+      return;
     case Kind::Filter:
       for (const Expr& condition : conditions) addRequired(condition, certain);
       certain = certain & possible;
       return;
-    case Kind::Union: return annotateUnion(*this);
-    case Kind::Extend: return annotateExtend(*this);
-    case Kind::Values: return annotateValues(*this);
-    case Kind::Group: possible = certain = {}; return annotateGroup(*this);
-    case Kind::Project: return annotateProject(*this);
+    case Kind::Union:
+      return annotateUnion(*this);
+    case Kind::Extend:
+      return annotateExtend(*this);
+    case Kind::Values:
+      return annotateValues(*this);
+    case Kind::Group:
+      possible = certain = {};
+      return annotateGroup(*this);
+    case Kind::Project:
+      return annotateProject(*this);
     case Kind::GraphLoop:
       possible.add(graph.slot);
       certain.add(graph.slot);
@@ -212,7 +225,8 @@ void Node::annotate() {
     case Kind::Minus:
     case Kind::OrderBy:
     case Kind::Distinct:
-    case Kind::Slice: return;
+    case Kind::Slice:
+      return;
   }
 }
 

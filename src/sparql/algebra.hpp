@@ -32,7 +32,7 @@ class SlotSet {
   bool empty() const;
   SlotSet operator&(const SlotSet& other) const;
   SlotSet operator-(const SlotSet& other) const;
-  std::vector<Slot> list() const;   ///< ascending
+  std::vector<Slot> list() const;  ///< ascending
 
  private:
   std::vector<std::uint64_t> words_;
@@ -44,8 +44,31 @@ using NodePtr = std::shared_ptr<Node>;
 /// An expression over slots.
 struct Expr {
   enum class Kind : std::uint8_t {
-    Slot, Constant, Unbound /* a variable that cannot be bound here */, Or, And, Not, Equal, NotEqual, Less, Greater,
-    LessEqual, GreaterEqual, In, NotIn, Add, Subtract, Multiply, Divide, Negate, Plus, Bound, Coalesce, If, Call, Exists,
+    Slot,
+    Constant,
+    Unbound /* a variable that cannot be bound here */,
+    Or,
+    And,
+    Not,
+    Equal,
+    NotEqual,
+    Less,
+    Greater,
+    LessEqual,
+    GreaterEqual,
+    In,
+    NotIn,
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Negate,
+    Plus,
+    Bound,
+    Coalesce,
+    If,
+    Call,
+    Exists,
     NotExists
   };
   Kind kind = Kind::Constant;
@@ -54,16 +77,16 @@ struct Expr {
   Value constant;
   const FunctionEntry* function = nullptr;
   std::vector<Expr> arguments;
-  NodePtr pattern;             ///< of Exists
-  std::uint32_t exists = 0;    ///< the number of the Exists in its query
+  NodePtr pattern;           ///< of Exists
+  std::uint32_t exists = 0;  ///< the number of the Exists in its query
 
-  SlotSet slots() const;       ///< all that are mentioned, those within Exists patterns too
+  SlotSet slots() const;  ///< all that are mentioned, those within Exists patterns too
   bool isVolatile() const;
 };
 
 /// A position of a pattern.
 struct PatternPlace {
-  Slot slot = kNoSlot;         ///< kNoSlot: constant
+  Slot slot = kNoSlot;  ///< kNoSlot: constant
   ValueId constant = kUnbound;
   bool isSlot() const { return slot != kNoSlot; }
 };
@@ -80,23 +103,23 @@ struct CompiledPath {
   ast::Path::Kind kind = ast::Path::Kind::Link;
   ValueId iri = kUnbound;
   std::vector<CompiledPath> parts;
-  std::vector<ValueId> forward, backward;   ///< of a negated set
+  std::vector<ValueId> forward, backward;  ///< of a negated set
   bool has_backward = false, has_forward = false;
 };
 
 struct TripleNode {
   PatternPlace subject, predicate, object;
   GraphPlace graph;
-  std::shared_ptr<const CompiledPath> path;   ///< else predicate holds
-  std::vector<ValueId> not_predicates;        ///< the predicate is none of these (negated property sets)
+  std::shared_ptr<const CompiledPath> path;  ///< else predicate holds
+  std::vector<ValueId> not_predicates;       ///< the predicate is none of these (negated property sets)
   ast::SourceOffset at = 0;
 };
 
 struct AggregateSpec {
   ast::AggregateFunction function = ast::AggregateFunction::Count;
   bool distinct = false;
-  std::optional<Expr> argument;   ///< none: COUNT(*)
-  std::vector<Slot> row_slots;    ///< of COUNT(DISTINCT *): the variables that solutions have
+  std::optional<Expr> argument;  ///< none: COUNT(*)
+  std::vector<Slot> row_slots;   ///< of COUNT(DISTINCT *): the variables that solutions have
   std::string separator;
   Slot result = kNoSlot;
 };
@@ -108,60 +131,60 @@ struct SortKey {
 
 struct Node {
   enum class Kind : std::uint8_t {
-    Unit,          ///< one empty solution
-    Nothing,       ///< no solution
-    Triple,        ///< one triple or path pattern
-    GraphNames,    ///< binds graph.slot to each named graph (or tests graph.constant)
-    Join,          ///< children
-    LeftJoin,      ///< children[0], children[1], condition
-    Filter,        ///< children[0], conditions
-    Union,         ///< children
-    Minus,         ///< children[0], children[1]
-    Extend,        ///< children[0], slot, expression
-    Values,        ///< slots, rows
-    Group,         ///< children[0], keys (slots), aggregates
-    OrderBy,       ///< children[0], sort_keys
-    Project,       ///< children[0], slots
-    Distinct,      ///< children[0] (after Project)
-    Slice,         ///< children[0], offset, limit
-    GraphLoop      ///< children[0] once per named graph, with triple.graph.slot bound to it
+    Unit,        ///< one empty solution
+    Nothing,     ///< no solution
+    Triple,      ///< one triple or path pattern
+    GraphNames,  ///< binds graph.slot to each named graph (or tests graph.constant)
+    Join,        ///< children
+    LeftJoin,    ///< children[0], children[1], condition
+    Filter,      ///< children[0], conditions
+    Union,       ///< children
+    Minus,       ///< children[0], children[1]
+    Extend,      ///< children[0], slot, expression
+    Values,      ///< slots, rows
+    Group,       ///< children[0], keys (slots), aggregates
+    OrderBy,     ///< children[0], sort_keys
+    Project,     ///< children[0], slots
+    Distinct,    ///< children[0] (after Project)
+    Slice,       ///< children[0], offset, limit
+    GraphLoop    ///< children[0] once per named graph, with triple.graph.slot bound to it
   };
   Kind kind = Kind::Unit;
   ast::SourceOffset at = 0;
   std::vector<NodePtr> children;
   TripleNode triple;
   GraphPlace graph;
-  std::vector<Expr> conditions;      ///< Filter: all must hold; LeftJoin: the condition's conjuncts
+  std::vector<Expr> conditions;  ///< Filter: all must hold; LeftJoin: the condition's conjuncts
   Slot slot = kNoSlot;
   std::optional<Expr> expression;
   std::vector<Slot> slots;
   std::vector<std::vector<ValueId>> rows;
-  std::string note;                  ///< Values: where the rows come from, for plans; empty: the query's text
+  std::string note;  ///< Values: where the rows come from, for plans; empty: the query's text
   std::vector<AggregateSpec> aggregates;
-  bool grouped_by_keys = false;      ///< GROUP BY was written: no group from nothing
+  bool grouped_by_keys = false;  ///< GROUP BY was written: no group from nothing
   std::vector<SortKey> sort_keys;
   std::uint64_t offset = 0;
   std::optional<std::uint64_t> limit;
-  Slot minus_ignores = kNoSlot;      ///< the graph variable around a Minus is not one of its variables
+  Slot minus_ignores = kNoSlot;  ///< the graph variable around a Minus is not one of its variables
 
   // Filled by annotate().
-  SlotSet possible, certain;         ///< bound in some, in every solution
+  SlotSet possible, certain;  ///< bound in some, in every solution
 
-  void annotate();                   ///< after the children are
-  SlotSet mentioned() const;         ///< in patterns and expressions, to any depth
+  void annotate();            ///< after the children are
+  SlotSet mentioned() const;  ///< in patterns and expressions, to any depth
 };
 
 NodePtr makeNode(Node::Kind kind, ast::SourceOffset at = 0);
 
 struct AlgebraQuery {
   NodePtr root;
-  std::vector<std::string> slot_names;    ///< by slot; internal ones begin with a dot
-  std::vector<Slot> slot_of_variable;     ///< of the outermost scope, by VariableIndex
-  std::vector<Slot> projection;           ///< columns of the answer
-  std::vector<Slot> parameters;           ///< slots bound from the start of a run
+  std::vector<std::string> slot_names;  ///< by slot; internal ones begin with a dot
+  std::vector<Slot> slot_of_variable;   ///< of the outermost scope, by VariableIndex
+  std::vector<Slot> projection;         ///< columns of the answer
+  std::vector<Slot> parameters;         ///< slots bound from the start of a run
   std::uint32_t exists_count = 0;
-  bool wants_one = false;                 ///< ASK: the first solution decides
-  bool is_volatile = false;               ///< uses the clock, chance or fresh blank nodes
+  bool wants_one = false;    ///< ASK: the first solution decides
+  bool is_volatile = false;  ///< uses the clock, chance or fresh blank nodes
 };
 
 class Guard;
@@ -170,8 +193,8 @@ struct AlgebraOptions {
   std::vector<std::string> parameters = {};
   bool refuse_volatile = false;
   std::string source_name = "query";
-  std::map<std::string, const QuadReader*> services = {};   ///< as in QueryOptions
-  Guard* guard = nullptr;   ///< started: what SERVICE uses up counts here; not null where there are services
+  std::map<std::string, const QuadReader*> services = {};  ///< as in QueryOptions
+  Guard* guard = nullptr;  ///< started: what SERVICE uses up counts here; not null where there are services
 };
 
 /// Throws InputError for unknown functions, wrong argument counts, refused SERVICE and volatile functions.

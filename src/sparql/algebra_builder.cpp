@@ -19,15 +19,21 @@ bool isSameGraph(const GraphPlace& a, const GraphPlace& b) {
 bool readsGraph(const Node& node, const GraphPlace& graph) {
   const auto reads = [&graph](const NodePtr& child) { return readsGraph(*child, graph); };
   switch (node.kind) {
-    case Node::Kind::Triple: return !node.triple.path && isSameGraph(node.triple.graph, graph);
-    case Node::Kind::GraphNames: return isSameGraph(node.graph, graph);
-    case Node::Kind::Join: return std::any_of(node.children.begin(), node.children.end(), reads);
-    case Node::Kind::Union: return std::all_of(node.children.begin(), node.children.end(), reads);
+    case Node::Kind::Triple:
+      return !node.triple.path && isSameGraph(node.triple.graph, graph);
+    case Node::Kind::GraphNames:
+      return isSameGraph(node.graph, graph);
+    case Node::Kind::Join:
+      return std::any_of(node.children.begin(), node.children.end(), reads);
+    case Node::Kind::Union:
+      return std::all_of(node.children.begin(), node.children.end(), reads);
     case Node::Kind::LeftJoin:
     case Node::Kind::Filter:
     case Node::Kind::Minus:
-    case Node::Kind::Extend: return reads(node.children[0]);
-    default: return false;
+    case Node::Kind::Extend:
+      return reads(node.children[0]);
+    default:
+      return false;
   }
 }
 

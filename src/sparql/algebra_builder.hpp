@@ -11,10 +11,10 @@ namespace cluxel::sparql {
 
 /// Which slot a variable has at some place of the query, and what is around it.
 struct Scope {
-  std::vector<Slot> slot_of;     ///< by VariableIndex; kNoSlot: not met yet
-  SlotSet substituted;           ///< given from outside an EXISTS: visible in every filter within
+  std::vector<Slot> slot_of;  ///< by VariableIndex; kNoSlot: not met yet
+  SlotSet substituted;        ///< given from outside an EXISTS: visible in every filter within
   GraphPlace graph;
-  bool fresh_slots = false;      ///< a sub-select: variables it has not met get slots of their own
+  bool fresh_slots = false;  ///< a sub-select: variables it has not met get slots of their own
 };
 
 class AlgebraBuilder {
@@ -55,7 +55,8 @@ class AlgebraBuilder {
   NodePtr answered(const ast::ServicePattern& service, const QuadReader& reader, ast::SourceOffset at, Scope& scope);
   void addGroupKeys(const ast::Select& select, Scope& scope, SlotSet& visible, SlotSet& inner_visible);
   SelectParts selectParts(const ast::Select& select, Scope& scope, const SlotSet& bound);
-  NodePtr modified(NodePtr node, const ast::Select& select, std::vector<SortKey> sort_keys, Scope& scope, bool outermost);
+  NodePtr modified(NodePtr node, const ast::Select& select, std::vector<SortKey> sort_keys, Scope& scope,
+                   bool outermost);
   void requireOneCut(const ast::Select& select, bool outermost) const;
   static NodePtr above(Node::Kind kind, NodePtr child, ast::SourceOffset at);
   NodePtr grouped(NodePtr node, const ast::Select& select, Scope& scope, std::vector<AggregateSpec>& aggregates);

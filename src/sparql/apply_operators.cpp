@@ -14,7 +14,8 @@ std::vector<Slot> without(std::vector<Slot> slots, Slot slot) {
 
 class LeftJoinOperator : public UnaryOperator {
  public:
-  LeftJoinOperator(OperatorPtr child, Pipeline optional) : UnaryOperator(std::move(child)), optional_(std::move(optional)) {
+  LeftJoinOperator(OperatorPtr child, Pipeline optional)
+      : UnaryOperator(std::move(child)), optional_(std::move(optional)) {
     slots_ = mergedSlots(slots_, without(optional_.top->slots(), optional_.origin));
   }
   std::string label(const PlanNames&) const override { return "optional"; }

@@ -11,7 +11,7 @@ using Type = Value::Type;
 
 /// How one operator works in each of the number types.
 struct Operator {
-  bool (*small)(std::int64_t, std::int64_t, std::int64_t*);   ///< true on overflow
+  bool (*small)(std::int64_t, std::int64_t, std::int64_t*);  ///< true on overflow
   std::optional<Decimal> (*exact)(const Decimal&, const Decimal&);
   double (*real)(double, double);
   float (*single)(float, float);
@@ -32,9 +32,9 @@ Value apply(const Operator& op, const Value& a, const Value& b, const QueryTerms
   return type == Type::Integer ? Value::ofInteger(*result) : Value::ofDecimal(*result);
 }
 
-constexpr Operator kAdd = {[](std::int64_t a, std::int64_t b, std::int64_t* out) { return __builtin_add_overflow(a, b, out); },
-                           Decimal::add, [](double a, double b) { return a + b; },
-                           [](float a, float b) { return a + b; }};
+constexpr Operator kAdd = {
+    [](std::int64_t a, std::int64_t b, std::int64_t* out) { return __builtin_add_overflow(a, b, out); }, Decimal::add,
+    [](double a, double b) { return a + b; }, [](float a, float b) { return a + b; }};
 constexpr Operator kSubtract = {
     [](std::int64_t a, std::int64_t b, std::int64_t* out) { return __builtin_sub_overflow(a, b, out); },
     Decimal::subtract, [](double a, double b) { return a - b; }, [](float a, float b) { return a - b; }};
@@ -47,7 +47,8 @@ Value addDurations(const Value& a, const Value& b, bool subtract, const QueryTer
   Duration sum;
   const std::int64_t months = subtract ? -right.months : right.months;
   if (__builtin_add_overflow(left.months, months, &sum.months)) return {};
-  const auto seconds = subtract ? Decimal::subtract(left.seconds, right.seconds) : Decimal::add(left.seconds, right.seconds);
+  const auto seconds =
+      subtract ? Decimal::subtract(left.seconds, right.seconds) : Decimal::add(left.seconds, right.seconds);
   if (!seconds || (sum.months != 0 && !seconds->isZero() && (sum.months < 0) != seconds->isNegative())) return {};
   sum.seconds = *seconds;
   const Type type = a.type == b.type ? a.type : Type::Duration;
@@ -57,7 +58,9 @@ Value addDurations(const Value& a, const Value& b, bool subtract, const QueryTer
                            sum);
 }
 
-bool isDay(const Value& value) { return value.type == Type::DateTime || value.type == Type::Date; }
+bool isDay(const Value& value) {
+  return value.type == Type::DateTime || value.type == Type::Date;
+}
 
 Value moveTime(const Value& time, const Value& duration, bool subtract, const QueryTerms& terms) {
   if (!isDay(time)) return {};
@@ -106,11 +109,16 @@ Value divideValues(const Value& a, const Value& b, const QueryTerms& terms) {
 
 Value negateValue(const Value& value, const QueryTerms& terms) {
   switch (value.type) {
-    case Type::Integer: return Value::ofInteger(-terms.exactOf(value));
-    case Type::Decimal: return Value::ofDecimal(-terms.exactOf(value));
-    case Type::Float: return Value::ofFloat(-static_cast<float>(value.number));
-    case Type::Double: return Value::ofDouble(-value.number);
-    default: return {};
+    case Type::Integer:
+      return Value::ofInteger(-terms.exactOf(value));
+    case Type::Decimal:
+      return Value::ofDecimal(-terms.exactOf(value));
+    case Type::Float:
+      return Value::ofFloat(-static_cast<float>(value.number));
+    case Type::Double:
+      return Value::ofDouble(-value.number);
+    default:
+      return {};
   }
 }
 

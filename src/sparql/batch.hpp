@@ -11,7 +11,7 @@ namespace cluxel::sparql {
 
 struct Batch {
   std::size_t rows = 0;
-  std::vector<std::vector<ValueId>> columns;   ///< by slot; empty: unbound in all rows
+  std::vector<std::vector<ValueId>> columns;  ///< by slot; empty: unbound in all rows
 
   explicit Batch(std::size_t slot_count = 0) : columns(slot_count) {}
   ValueId at(Slot slot, std::size_t row) const {

@@ -27,8 +27,7 @@ void civilFromDays(std::int64_t days, CalendarTime& out) {
   days += 719468;
   const std::int64_t era = (days >= 0 ? days : days - 146096) / 146097;
   const std::int64_t day_of_era = days - era * 146097;
-  const std::int64_t year_of_era =
-      (day_of_era - day_of_era / 1460 + day_of_era / 36524 - day_of_era / 146096) / 365;
+  const std::int64_t year_of_era = (day_of_era - day_of_era / 1460 + day_of_era / 36524 - day_of_era / 146096) / 365;
   const std::int64_t day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
   const std::int64_t shifted_month = (5 * day_of_year + 2) / 153;
   out.day = static_cast<int>(day_of_year - (153 * shifted_month + 2) / 5 + 1);
@@ -117,24 +116,33 @@ bool readParts(CalendarKind kind, Scanner& in, CalendarTime& out, bool& midnight
   switch (kind) {
     case CalendarKind::DateTime:
       return in.year(out.year) && in.take('-') && in.two(out.month, 1, 12) && in.take('-') &&
-             in.two(out.day, 1, daysInMonth(out.year, out.month)) && in.take('T') &&
-             readClock(in, out, midnight_24);
+             in.two(out.day, 1, daysInMonth(out.year, out.month)) && in.take('T') && readClock(in, out, midnight_24);
     case CalendarKind::Date:
       return in.year(out.year) && in.take('-') && in.two(out.month, 1, 12) && in.take('-') &&
              in.two(out.day, 1, daysInMonth(out.year, out.month));
-    case CalendarKind::Time: return readClock(in, out, midnight_24);
-    case CalendarKind::YearMonth: out.day = 1; return in.year(out.year) && in.take('-') && in.two(out.month, 1, 12);
-    case CalendarKind::Year: out.month = out.day = 1; return in.year(out.year);
+    case CalendarKind::Time:
+      return readClock(in, out, midnight_24);
+    case CalendarKind::YearMonth:
+      out.day = 1;
+      return in.year(out.year) && in.take('-') && in.two(out.month, 1, 12);
+    case CalendarKind::Year:
+      out.month = out.day = 1;
+      return in.year(out.year);
     case CalendarKind::MonthDay:
       return in.take('-') && in.take('-') && in.two(out.month, 1, 12) && in.take('-') &&
              in.two(out.day, 1, daysInMonth(1972, out.month));
-    case CalendarKind::Day: return in.take('-') && in.take('-') && in.take('-') && in.two(out.day, 1, 31);
-    case CalendarKind::Month: out.day = 1; return in.take('-') && in.take('-') && in.two(out.month, 1, 12);
+    case CalendarKind::Day:
+      return in.take('-') && in.take('-') && in.take('-') && in.two(out.day, 1, 31);
+    case CalendarKind::Month:
+      out.day = 1;
+      return in.take('-') && in.take('-') && in.two(out.month, 1, 12);
   }
   return false;
 }
 
-std::string two(int value) { return {static_cast<char>('0' + value / 10), static_cast<char>('0' + value % 10)}; }
+std::string two(int value) {
+  return {static_cast<char>('0' + value / 10), static_cast<char>('0' + value % 10)};
+}
 
 std::string yearText(std::int64_t year) {
   std::array<char, 32> buffer{};
@@ -182,7 +190,8 @@ Decimal CalendarTime::timeline(int missing_zone_minutes) const {
 CalendarTime withoutAbsentParts(CalendarKind kind, CalendarTime time) {
   using Kind = CalendarKind;
   const CalendarTime absent;
-  const bool has_clock = kind == Kind::DateTime || kind == Kind::Time, is_day = kind == Kind::DateTime || kind == Kind::Date;
+  const bool has_clock = kind == Kind::DateTime || kind == Kind::Time,
+             is_day = kind == Kind::DateTime || kind == Kind::Date;
   if (!has_clock) time.hour = absent.hour, time.minute = absent.minute, time.second = absent.second;
   if (!is_day && kind != Kind::YearMonth && kind != Kind::Year) time.year = absent.year;
   if (kind == Kind::Time || kind == Kind::Day) time.month = absent.month;
@@ -207,14 +216,22 @@ std::optional<CalendarTime> parseCalendar(CalendarKind kind, std::string_view te
 std::string formatCalendar(CalendarKind kind, const CalendarTime& value) {
   const std::string date = yearText(value.year) + "-" + two(value.month) + "-" + two(value.day);
   switch (kind) {
-    case CalendarKind::DateTime: return date + "T" + clockText(value) + zoneText(value.zone_minutes);
-    case CalendarKind::Date: return date + zoneText(value.zone_minutes);
-    case CalendarKind::Time: return clockText(value) + zoneText(value.zone_minutes);
-    case CalendarKind::YearMonth: return yearText(value.year) + "-" + two(value.month) + zoneText(value.zone_minutes);
-    case CalendarKind::Year: return yearText(value.year) + zoneText(value.zone_minutes);
-    case CalendarKind::MonthDay: return "--" + two(value.month) + "-" + two(value.day) + zoneText(value.zone_minutes);
-    case CalendarKind::Day: return "---" + two(value.day) + zoneText(value.zone_minutes);
-    case CalendarKind::Month: return "--" + two(value.month) + zoneText(value.zone_minutes);
+    case CalendarKind::DateTime:
+      return date + "T" + clockText(value) + zoneText(value.zone_minutes);
+    case CalendarKind::Date:
+      return date + zoneText(value.zone_minutes);
+    case CalendarKind::Time:
+      return clockText(value) + zoneText(value.zone_minutes);
+    case CalendarKind::YearMonth:
+      return yearText(value.year) + "-" + two(value.month) + zoneText(value.zone_minutes);
+    case CalendarKind::Year:
+      return yearText(value.year) + zoneText(value.zone_minutes);
+    case CalendarKind::MonthDay:
+      return "--" + two(value.month) + "-" + two(value.day) + zoneText(value.zone_minutes);
+    case CalendarKind::Day:
+      return "---" + two(value.day) + zoneText(value.zone_minutes);
+    case CalendarKind::Month:
+      return "--" + two(value.month) + zoneText(value.zone_minutes);
   }
   return {};
 }

@@ -18,7 +18,7 @@ struct CalendarTime {
   std::int64_t year = 1972;
   int month = 12, day = 31, hour = 0, minute = 0;
   Decimal second;
-  std::optional<int> zone_minutes;   ///< east of UTC
+  std::optional<int> zone_minutes;  ///< east of UTC
 
   /// Seconds since 1970-01-01T00:00:00, at the zone given when the value has none.
   Decimal timeline(int missing_zone_minutes = 0) const;

@@ -8,7 +8,9 @@
 namespace cluxel::sparql {
 namespace {
 
-bool isBound(const PatternPlace& place, const SlotSet& bound) { return place.isSlot() && bound.has(place.slot); }
+bool isBound(const PatternPlace& place, const SlotSet& bound) {
+  return place.isSlot() && bound.has(place.slot);
+}
 
 /// A guess for what one subject or object has, where nothing is known.
 constexpr double kQuadsPerNode = 8;
@@ -36,7 +38,8 @@ double Cardinality::matches(const TripleNode& pattern) {
   if (!pattern.path) bind(pattern.predicate, wanted.p);
   bind(pattern.object, wanted.o);
   if (pattern.graph.kind == GraphPlace::Kind::Constant) wanted.g = pattern.graph.constant;
-  const double count = possible && wanted.g.value_or(0) < kFirstComputed ? static_cast<double>(reader_.estimate(wanted)) : 0;
+  const double count =
+      possible && wanted.g.value_or(0) < kFirstComputed ? static_cast<double>(reader_.estimate(wanted)) : 0;
   known_.emplace(&pattern, count);
   return count;
 }
@@ -90,14 +93,22 @@ double Cardinality::joinRows(const Node& node) {
 
 double Cardinality::rows(const Node& node) {
   switch (node.kind) {
-    case Node::Kind::Unit: return 1;
-    case Node::Kind::Nothing: return 0;
-    case Node::Kind::Triple: return fanOut(node.triple, {});
-    case Node::Kind::GraphNames: return static_cast<double>(std::max<std::size_t>(dataset_.named.size(), 1));
-    case Node::Kind::Join: return joinRows(node);
-    case Node::Kind::LeftJoin: return rows(*node.children[0]) * 1.2;
-    case Node::Kind::Filter: return rows(*node.children[0]) * std::pow(kFilterKeeps, static_cast<double>(node.conditions.size()));
-    case Node::Kind::Values: return static_cast<double>(node.rows.size());
+    case Node::Kind::Unit:
+      return 1;
+    case Node::Kind::Nothing:
+      return 0;
+    case Node::Kind::Triple:
+      return fanOut(node.triple, {});
+    case Node::Kind::GraphNames:
+      return static_cast<double>(std::max<std::size_t>(dataset_.named.size(), 1));
+    case Node::Kind::Join:
+      return joinRows(node);
+    case Node::Kind::LeftJoin:
+      return rows(*node.children[0]) * 1.2;
+    case Node::Kind::Filter:
+      return rows(*node.children[0]) * std::pow(kFilterKeeps, static_cast<double>(node.conditions.size()));
+    case Node::Kind::Values:
+      return static_cast<double>(node.rows.size());
     case Node::Kind::Group:
       return node.grouped_by_keys ? std::max(1.0, std::sqrt(rows(*node.children[0])) * 4) : 1;
     case Node::Kind::Slice: {
@@ -109,12 +120,14 @@ double Cardinality::rows(const Node& node) {
       for (const NodePtr& child : node.children) sum += rows(*child);
       return sum;
     }
-    case Node::Kind::GraphLoop: return rows(*node.children[0]) * static_cast<double>(dataset_.named.size() + 1);
+    case Node::Kind::GraphLoop:
+      return rows(*node.children[0]) * static_cast<double>(dataset_.named.size() + 1);
     case Node::Kind::Minus:
     case Node::Kind::Extend:
     case Node::Kind::OrderBy:
     case Node::Kind::Project:
-    case Node::Kind::Distinct: return rows(*node.children[0]);
+    case Node::Kind::Distinct:
+      return rows(*node.children[0]);
   }
   return 1;
 }

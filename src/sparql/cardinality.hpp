@@ -18,7 +18,9 @@ class Cardinality {
   /// Rows per solution in which the slots of `bound` have values.
   double fanOut(const TripleNode& pattern, const SlotSet& bound);
   /// Quads of a predicate.
-  double quadsOf(ValueId predicate) { return predicate < kFirstComputed ? static_cast<double>(statistics(predicate).quads) : 0; }
+  double quadsOf(ValueId predicate) {
+    return predicate < kFirstComputed ? static_cast<double>(statistics(predicate).quads) : 0;
+  }
   /// Rows of a node by itself.
   double rows(const Node& node);
 

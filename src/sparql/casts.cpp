@@ -22,21 +22,29 @@ std::string realText(Real value) {
   const auto mantissa = Decimal::parse(scientific.substr(0, e));
   const int exponent = std::stoi(scientific.substr(e + 1));
   const Decimal power(boost::multiprecision::pow(Decimal::Integer(10), static_cast<unsigned>(std::abs(exponent))));
-  const auto plain = exponent < 0 ? Decimal::multiply(*mantissa, Decimal(Decimal::Integer(1), static_cast<unsigned>(-exponent)))
-                                  : Decimal::multiply(*mantissa, power);
+  const auto plain = exponent < 0
+                         ? Decimal::multiply(*mantissa, Decimal(Decimal::Integer(1), static_cast<unsigned>(-exponent)))
+                         : Decimal::multiply(*mantissa, power);
   return plain->text();
 }
 
 Value toString(const Value& value, FunctionContext& context) {
   switch (value.type) {
-    case Type::String: return value;
-    case Type::Blank: return {};
-    case Type::Boolean: return Value::string(value.integer != 0 ? "true" : "false");
+    case Type::String:
+      return value;
+    case Type::Blank:
+      return {};
+    case Type::Boolean:
+      return Value::string(value.integer != 0 ? "true" : "false");
     case Type::Integer:
-    case Type::Decimal: return Value::string(context.terms.exactOf(value).text());
-    case Type::Float: return Value::string(realText(static_cast<float>(value.number)));
-    case Type::Double: return Value::string(realText(value.number));
-    default: return Value::string(context.terms.textOf(value));
+    case Type::Decimal:
+      return Value::string(context.terms.exactOf(value).text());
+    case Type::Float:
+      return Value::string(realText(static_cast<float>(value.number)));
+    case Type::Double:
+      return Value::string(realText(value.number));
+    default:
+      return Value::string(context.terms.textOf(value));
   }
 }
 
@@ -48,12 +56,16 @@ Value toBoolean(const Value& value) {
 
 std::optional<Decimal> exactNumber(const Value& value, FunctionContext& context) {
   switch (value.type) {
-    case Type::Boolean: return Decimal(value.integer);
+    case Type::Boolean:
+      return Decimal(value.integer);
     case Type::Integer:
-    case Type::Decimal: return context.terms.exactOf(value);
+    case Type::Decimal:
+      return context.terms.exactOf(value);
     case Type::Float:
-    case Type::Double: return Decimal::fromDouble(value.number);
-    default: return std::nullopt;
+    case Type::Double:
+      return Decimal::fromDouble(value.number);
+    default:
+      return std::nullopt;
   }
 }
 
@@ -67,8 +79,8 @@ Value toDecimal(const Value& value, FunctionContext& context) {
   if (value.type == Type::Float || value.type == Type::Double) {
     // The shortest decimal that reads back as the number, as XPath implementations print it.
     if (!std::isfinite(value.number)) return {};
-    const std::string text = value.type == Type::Float ? canonicalText(static_cast<float>(value.number))
-                                                       : canonicalText(value.number);
+    const std::string text =
+        value.type == Type::Float ? canonicalText(static_cast<float>(value.number)) : canonicalText(value.number);
     const std::size_t e = text.find('E');
     const int exponent = std::stoi(text.substr(e + 1));
     const Decimal mantissa = *Decimal::parse(text.substr(0, e));
@@ -123,9 +135,12 @@ Value castValue(std::string_view xsd_local, const Value& value, FunctionContext&
   if (info->type == Type::String) return toString(value, context);
   if (value.type == Type::String) return fromText(*info, value, context);
   switch (info->type) {
-    case Type::Boolean: return toBoolean(value);
-    case Type::Integer: return toInteger(value, *info, context);
-    case Type::Decimal: return toDecimal(value, context);
+    case Type::Boolean:
+      return toBoolean(value);
+    case Type::Integer:
+      return toInteger(value, *info, context);
+    case Type::Decimal:
+      return toDecimal(value, context);
     case Type::Float: {
       const auto number = realNumber(value);
       return number ? Value::ofFloat(static_cast<float>(*number)) : Value();
@@ -137,12 +152,14 @@ Value castValue(std::string_view xsd_local, const Value& value, FunctionContext&
     case Type::DateTime:
     case Type::Date:
     case Type::Time:
-    case Type::Calendar: return toCalendar(value, info->calendar, context);
+    case Type::Calendar:
+      return toCalendar(value, info->calendar, context);
     case Type::Duration:
     case Type::DayTimeDuration:
     case Type::YearMonthDuration:
       return value.isDuration() && value.type == info->type ? value : Value();
-    default: return {};
+    default:
+      return {};
   }
 }
 

@@ -12,9 +12,9 @@ namespace cluxel::character {
 enum Class : std::uint8_t {
   kSpace = 1,
   kDigit = 2,
-  kLetter = 4,        ///< of PN_CHARS_BASE, below 128
-  kNotInIri = 8,      ///< may not stand between < and >
-  kHigh = 16          ///< part of a longer code point
+  kLetter = 4,    ///< of PN_CHARS_BASE, below 128
+  kNotInIri = 8,  ///< may not stand between < and >
+  kHigh = 16      ///< part of a longer code point
 };
 
 constexpr std::array<std::uint8_t, 256> makeClasses() {
@@ -24,20 +24,23 @@ constexpr std::array<std::uint8_t, 256> makeClasses() {
   for (std::size_t c = '0'; c <= '9'; ++c) classes[c] = kDigit;
   for (std::size_t c = 'a'; c <= 'z'; ++c) classes[c] = kLetter;
   for (std::size_t c = 'A'; c <= 'Z'; ++c) classes[c] = kLetter;
-  for (const char c : {'<', '>', '"', '{', '}', '|', '^', '`', '\\'}) classes[static_cast<unsigned char>(c)] |= kNotInIri;
+  for (const char c : {'<', '>', '"', '{', '}', '|', '^', '`', '\\'})
+    classes[static_cast<unsigned char>(c)] |= kNotInIri;
   for (std::size_t c = 128; c < 256; ++c) classes[c] = kHigh;
   return classes;
 }
 inline constexpr std::array<std::uint8_t, 256> kClasses = makeClasses();
 
-constexpr bool is(char c, std::uint8_t classes) { return (kClasses[static_cast<unsigned char>(c)] & classes) != 0; }
+constexpr bool is(char c, std::uint8_t classes) {
+  return (kClasses[static_cast<unsigned char>(c)] & classes) != 0;
+}
 constexpr bool isHexDigit(char c) {
   return is(c, kDigit) || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
 }
 
 struct CodePoint {
   std::uint32_t value = 0;
-  std::uint32_t bytes = 0;   ///< 0: the bytes there are no UTF-8
+  std::uint32_t bytes = 0;  ///< 0: the bytes there are no UTF-8
 };
 
 /// The code point at `offset`; refuses overlong forms, surrogates and what lies beyond U+10FFFF.

@@ -25,7 +25,9 @@ std::partial_ordering compareNumbers(const Value& a, const Value& b, const Query
 }
 
 /// Types whose values are known, so that two of different types are known to be unequal.
-bool isKnown(const Value& value) { return value.type != Type::Other; }
+bool isKnown(const Value& value) {
+  return value.type != Type::Other;
+}
 
 bool comparableCalendars(const Value& a, const Value& b) {
   return a.isCalendar() && a.type == b.type && a.calendar == b.calendar;
@@ -34,24 +36,37 @@ bool comparableCalendars(const Value& a, const Value& b) {
 /// Order among types of literals in ORDER BY.
 int rankOf(const Value& value) {
   switch (value.type) {
-    case Type::None: return 0;
-    case Type::Blank: return 1;
-    case Type::Iri: return 2;
+    case Type::None:
+      return 0;
+    case Type::Blank:
+      return 1;
+    case Type::Iri:
+      return 2;
     case Type::Integer:
     case Type::Decimal:
     case Type::Float:
-    case Type::Double: return 3;
-    case Type::String: return 4;
-    case Type::LangString: return 5;
-    case Type::Boolean: return 6;
-    case Type::DateTime: return 7;
-    case Type::Date: return 8;
-    case Type::Time: return 9;
-    case Type::Calendar: return 10 + static_cast<int>(value.calendar);
+    case Type::Double:
+      return 3;
+    case Type::String:
+      return 4;
+    case Type::LangString:
+      return 5;
+    case Type::Boolean:
+      return 6;
+    case Type::DateTime:
+      return 7;
+    case Type::Date:
+      return 8;
+    case Type::Time:
+      return 9;
+    case Type::Calendar:
+      return 10 + static_cast<int>(value.calendar);
     case Type::Duration:
     case Type::DayTimeDuration:
-    case Type::YearMonthDuration: return 20;
-    case Type::Other: return 21;
+    case Type::YearMonthDuration:
+      return 20;
+    case Type::Other:
+      return 21;
   }
   return 22;
 }
@@ -85,7 +100,9 @@ std::strong_ordering orderDurations(const Duration& a, const Duration& b) {
   return order != 0 ? order : a.months <=> b.months;
 }
 
-std::strong_ordering orderTexts(const std::string& a, const std::string& b) { return a.compare(b) <=> 0; }
+std::strong_ordering orderTexts(const std::string& a, const std::string& b) {
+  return a.compare(b) <=> 0;
+}
 
 }  // namespace
 
@@ -135,15 +152,20 @@ bool sameTerm(const Value& a, const Value& b, const QueryTerms& terms) {
 
 std::optional<bool> effectiveBoolean(const Value& value, const QueryTerms& terms) {
   switch (value.type) {
-    case Type::Boolean: return value.integer != 0;
+    case Type::Boolean:
+      return value.integer != 0;
     case Type::Integer:
       if (!value.payload) return value.integer != 0;
       return true;
-    case Type::Decimal: return value.number != 0;
+    case Type::Decimal:
+      return value.number != 0;
     case Type::Float:
-    case Type::Double: return value.number != 0 && !std::isnan(value.number);
-    case Type::String: return !terms.textOf(value).empty();
-    case Type::LangString: return !terms.textOf(value).empty();
+    case Type::Double:
+      return value.number != 0 && !std::isnan(value.number);
+    case Type::String:
+      return !terms.textOf(value).empty();
+    case Type::LangString:
+      return !terms.textOf(value).empty();
     case Type::Other: {
       // An ill-typed number or boolean is false.
       const std::string datatype = terms.datatypeOf(value);
@@ -151,11 +173,14 @@ std::optional<bool> effectiveBoolean(const Value& value, const QueryTerms& terms
       if (type == Type::Boolean || (type >= Type::Integer && type <= Type::Double)) return false;
       return std::nullopt;
     }
-    default: return std::nullopt;
+    default:
+      return std::nullopt;
   }
 }
 
-std::uint32_t orderRankOf(const Value& value) { return static_cast<std::uint32_t>(rankOf(value)); }
+std::uint32_t orderRankOf(const Value& value) {
+  return static_cast<std::uint32_t>(rankOf(value));
+}
 
 std::strong_ordering valueOrderOf(const Value& a, const Value& b, const QueryTerms& terms) {
   const int rank = rankOf(a);

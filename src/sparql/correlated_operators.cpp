@@ -35,7 +35,8 @@ class CorrelatedRows {
 
   RowTable computed(Runtime& runtime) {
     std::vector<ValueId> before;
-    for (std::size_t i = 0; i < outer_.size(); ++i) before.push_back(std::exchange(runtime.parameters[outer_[i]], key_[i]));
+    for (std::size_t i = 0; i < outer_.size(); ++i)
+      before.push_back(std::exchange(runtime.parameters[outer_[i]], key_[i]));
     RowTable table(body_->slots());
     Batch made(runtime.slot_count);
     body_->open(runtime, true);
@@ -79,8 +80,11 @@ std::string outerText(const std::vector<Slot>& outer, const PlanNames& names) {
 class CorrelatedJoinOperator : public UnaryOperator {
  public:
   CorrelatedJoinOperator(OperatorPtr child, OperatorPtr body, const std::vector<Slot>& outer)
-      : UnaryOperator(std::move(child)), outer_(outer), shared_(columnsOf(child_->slots(), body->slots())),
-        body_slots_(body->slots()), rows_(std::move(body), outer) {
+      : UnaryOperator(std::move(child)),
+        outer_(outer),
+        shared_(columnsOf(child_->slots(), body->slots())),
+        body_slots_(body->slots()),
+        rows_(std::move(body), outer) {
     slots_ = mergedSlots(child_->slots(), body_slots_);
   }
   std::string label(const PlanNames& names) const override { return "for each" + outerText(outer_, names); }
@@ -115,7 +119,8 @@ class CorrelatedJoinOperator : public UnaryOperator {
  private:
   void join(const ValueId* other, Batch& out) {
     if (!isCompatible(shared_, in_, row_, other)) return;
-    for (const Slot slot : slots_) out.columns[slot].push_back(in_.columns[slot].empty() ? kUnbound : in_.at(slot, row_));
+    for (const Slot slot : slots_)
+      out.columns[slot].push_back(in_.columns[slot].empty() ? kUnbound : in_.at(slot, row_));
     for (std::size_t i = 0; i < body_slots_.size(); ++i) {
       if (other[i] != kUnbound) out.columns[body_slots_[i]].back() = other[i];
     }
@@ -134,7 +139,10 @@ class CorrelatedMinusOperator : public RowFilter {
  public:
   CorrelatedMinusOperator(OperatorPtr child, OperatorPtr body, const std::vector<Slot>& outer,
                           const std::vector<Slot>& shared, Slot ignored)
-      : RowFilter(std::move(child)), outer_(outer), shared_(columnsOf(shared, body->slots())), ignored_(ignored),
+      : RowFilter(std::move(child)),
+        outer_(outer),
+        shared_(columnsOf(shared, body->slots())),
+        ignored_(ignored),
         rows_(std::move(body), outer) {}
   std::string label(const PlanNames& names) const override { return "minus, for each" + outerText(outer_, names); }
 

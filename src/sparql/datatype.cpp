@@ -51,14 +51,22 @@ constexpr std::string_view kXsdString = "http://www.w3.org/2001/XMLSchema#string
 
 std::string_view calendarIri(CalendarKind kind) {
   switch (kind) {
-    case CalendarKind::DateTime: return "http://www.w3.org/2001/XMLSchema#dateTime";
-    case CalendarKind::Date: return "http://www.w3.org/2001/XMLSchema#date";
-    case CalendarKind::Time: return "http://www.w3.org/2001/XMLSchema#time";
-    case CalendarKind::YearMonth: return "http://www.w3.org/2001/XMLSchema#gYearMonth";
-    case CalendarKind::Year: return "http://www.w3.org/2001/XMLSchema#gYear";
-    case CalendarKind::MonthDay: return "http://www.w3.org/2001/XMLSchema#gMonthDay";
-    case CalendarKind::Day: return "http://www.w3.org/2001/XMLSchema#gDay";
-    case CalendarKind::Month: return "http://www.w3.org/2001/XMLSchema#gMonth";
+    case CalendarKind::DateTime:
+      return "http://www.w3.org/2001/XMLSchema#dateTime";
+    case CalendarKind::Date:
+      return "http://www.w3.org/2001/XMLSchema#date";
+    case CalendarKind::Time:
+      return "http://www.w3.org/2001/XMLSchema#time";
+    case CalendarKind::YearMonth:
+      return "http://www.w3.org/2001/XMLSchema#gYearMonth";
+    case CalendarKind::Year:
+      return "http://www.w3.org/2001/XMLSchema#gYear";
+    case CalendarKind::MonthDay:
+      return "http://www.w3.org/2001/XMLSchema#gMonthDay";
+    case CalendarKind::Day:
+      return "http://www.w3.org/2001/XMLSchema#gDay";
+    case CalendarKind::Month:
+      return "http://www.w3.org/2001/XMLSchema#gMonth";
   }
   return {};
 }
@@ -80,21 +88,33 @@ const DatatypeInfo* findDatatype(std::string_view iri) {
 
 std::string_view datatypeIri(const Value& value) {
   switch (value.type) {
-    case Type::Boolean: return "http://www.w3.org/2001/XMLSchema#boolean";
-    case Type::Integer: return "http://www.w3.org/2001/XMLSchema#integer";
-    case Type::Decimal: return "http://www.w3.org/2001/XMLSchema#decimal";
-    case Type::Float: return "http://www.w3.org/2001/XMLSchema#float";
-    case Type::Double: return "http://www.w3.org/2001/XMLSchema#double";
-    case Type::String: return kXsdString;
-    case Type::LangString: return "http://www.w3.org/1999/02/22-rdf-syntax-ns#langString";
+    case Type::Boolean:
+      return "http://www.w3.org/2001/XMLSchema#boolean";
+    case Type::Integer:
+      return "http://www.w3.org/2001/XMLSchema#integer";
+    case Type::Decimal:
+      return "http://www.w3.org/2001/XMLSchema#decimal";
+    case Type::Float:
+      return "http://www.w3.org/2001/XMLSchema#float";
+    case Type::Double:
+      return "http://www.w3.org/2001/XMLSchema#double";
+    case Type::String:
+      return kXsdString;
+    case Type::LangString:
+      return "http://www.w3.org/1999/02/22-rdf-syntax-ns#langString";
     case Type::DateTime:
     case Type::Date:
     case Type::Time:
-    case Type::Calendar: return calendarIri(value.calendar);
-    case Type::Duration: return "http://www.w3.org/2001/XMLSchema#duration";
-    case Type::DayTimeDuration: return "http://www.w3.org/2001/XMLSchema#dayTimeDuration";
-    case Type::YearMonthDuration: return "http://www.w3.org/2001/XMLSchema#yearMonthDuration";
-    default: return {};
+    case Type::Calendar:
+      return calendarIri(value.calendar);
+    case Type::Duration:
+      return "http://www.w3.org/2001/XMLSchema#duration";
+    case Type::DayTimeDuration:
+      return "http://www.w3.org/2001/XMLSchema#dayTimeDuration";
+    case Type::YearMonthDuration:
+      return "http://www.w3.org/2001/XMLSchema#yearMonthDuration";
+    default:
+      return {};
   }
 }
 

@@ -9,10 +9,10 @@
 namespace cluxel::sparql {
 
 struct DatatypeInfo {
-  std::string_view local;   ///< after the xsd namespace
+  std::string_view local;  ///< after the xsd namespace
   Value::Type type = Value::Type::Other;
   CalendarKind calendar = CalendarKind::DateTime;
-  std::string_view least = {}, greatest = {};   ///< of the integer types; empty: no bound
+  std::string_view least = {}, greatest = {};  ///< of the integer types; empty: no bound
 
   bool inRange(const Decimal& value) const;
 };

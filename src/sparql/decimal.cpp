@@ -12,7 +12,7 @@ namespace {
 
 using Integer = Decimal::Integer;
 
-constexpr std::size_t kSmallDigits = 18;   // that 64 bits always hold
+constexpr std::size_t kSmallDigits = 18;  // that 64 bits always hold
 
 /// Powers of ten that 64 bits hold.
 constexpr auto kTens = [] {
@@ -22,7 +22,9 @@ constexpr auto kTens = [] {
   return tens;
 }();
 
-Integer powerOfTen(unsigned exponent) { return boost::multiprecision::pow(Integer(10), exponent); }
+Integer powerOfTen(unsigned exponent) {
+  return boost::multiprecision::pow(Integer(10), exponent);
+}
 
 bool isTooLong(const Integer& value) {
   // 3.33 bits make a digit.
@@ -119,9 +121,13 @@ double Decimal::toDouble() const {
   }
   return std::strtod(text().c_str(), nullptr);
 }
-float Decimal::toFloat() const { return std::strtof(text().c_str(), nullptr); }
+float Decimal::toFloat() const {
+  return std::strtof(text().c_str(), nullptr);
+}
 
-Integer Decimal::truncated() const { return scale_ == 0 ? whole() : Integer(whole() / powerOfTen(scale_)); }
+Integer Decimal::truncated() const {
+  return scale_ == 0 ? whole() : Integer(whole() / powerOfTen(scale_));
+}
 
 std::string Decimal::text(bool point) const {
   // The absolute value of the least integer fits only without a sign.
@@ -138,8 +144,12 @@ Decimal Decimal::operator-() const {
   return Decimal(-small_, scale_);
 }
 
-Decimal Decimal::floor() const { return Decimal(floorDivide(whole(), powerOfTen(scale_))); }
-Decimal Decimal::ceiling() const { return -(-*this).floor(); }
+Decimal Decimal::floor() const {
+  return Decimal(floorDivide(whole(), powerOfTen(scale_)));
+}
+Decimal Decimal::ceiling() const {
+  return -(-*this).floor();
+}
 
 Decimal Decimal::round() const {
   if (scale_ == 0) return *this;
@@ -152,7 +162,9 @@ bool Decimal::smallAt(unsigned scale, std::int64_t& out) const {
   return !great_ && shift < kTens.size() && !__builtin_mul_overflow(small_, kTens[shift], &out);
 }
 
-Integer Decimal::scaledTo(unsigned scale) const { return whole() * powerOfTen(scale - scale_); }
+Integer Decimal::scaledTo(unsigned scale) const {
+  return whole() * powerOfTen(scale - scale_);
+}
 
 std::optional<Decimal> Decimal::add(const Decimal& a, const Decimal& b) {
   const unsigned scale = std::max(a.scale_, b.scale_);
@@ -164,7 +176,9 @@ std::optional<Decimal> Decimal::add(const Decimal& a, const Decimal& b) {
   return checked(Decimal(sum, scale), sum);
 }
 
-std::optional<Decimal> Decimal::subtract(const Decimal& a, const Decimal& b) { return add(a, -b); }
+std::optional<Decimal> Decimal::subtract(const Decimal& a, const Decimal& b) {
+  return add(a, -b);
+}
 
 std::optional<Decimal> Decimal::multiply(const Decimal& a, const Decimal& b) {
   const unsigned scale = a.scale_ + b.scale_;
@@ -197,8 +211,9 @@ std::strong_ordering Decimal::operator<=>(const Decimal& other) const {
   std::int64_t left = 0, right = 0;
   if (smallAt(scale, left) && other.smallAt(scale, right)) return left <=> right;
   const int order = scaledTo(scale).compare(other.scaledTo(scale));
-  return order < 0 ? std::strong_ordering::less
-                   : order > 0 ? std::strong_ordering::greater : std::strong_ordering::equal;
+  return order < 0   ? std::strong_ordering::less
+         : order > 0 ? std::strong_ordering::greater
+                     : std::strong_ordering::equal;
 }
 
 }  // namespace cluxel::sparql

@@ -19,7 +19,7 @@ class Decimal {
  public:
   using Integer = boost::multiprecision::cpp_int;
   static constexpr unsigned kMaxDigits = 2000;
-  static constexpr unsigned kDivisionDigits = 18;   ///< fraction digits of a quotient that does not end
+  static constexpr unsigned kDivisionDigits = 18;  ///< fraction digits of a quotient that does not end
 
   Decimal() = default;
   explicit Decimal(std::int64_t value) : small_(value) {}
@@ -39,8 +39,8 @@ class Decimal {
   bool isSmall() const { return !great_; }
   std::int64_t unscaled() const { return small_; }
   unsigned scale() const { return scale_; }
-  std::optional<std::int64_t> toInt64() const;   ///< nothing for fractions and greater numbers
-  double toDouble() const;                       ///< the nearest double
+  std::optional<std::int64_t> toInt64() const;  ///< nothing for fractions and greater numbers
+  double toDouble() const;                      ///< the nearest double
   float toFloat() const;
   Integer truncated() const;
   std::string integerText() const { return truncated().str(); }
@@ -50,7 +50,7 @@ class Decimal {
   Decimal operator-() const;
   Decimal floor() const;
   Decimal ceiling() const;
-  Decimal round() const;   ///< halves go up, as fn:round says
+  Decimal round() const;  ///< halves go up, as fn:round says
 
   static std::optional<Decimal> add(const Decimal& a, const Decimal& b);
   static std::optional<Decimal> subtract(const Decimal& a, const Decimal& b);
@@ -63,14 +63,14 @@ class Decimal {
   bool operator==(const Decimal& other) const { return (*this <=> other) == 0; }
 
  private:
-  Integer whole() const { return great_ ? *great_ : Integer(small_); }   ///< the unscaled number
+  Integer whole() const { return great_ ? *great_ : Integer(small_); }  ///< the unscaled number
   /// The unscaled number at a greater scale, where 64 bits hold it.
   bool smallAt(unsigned scale, std::int64_t& out) const;
   Integer scaledTo(unsigned scale) const;
 
   std::int64_t small_ = 0;
   unsigned scale_ = 0;
-  std::shared_ptr<const Integer> great_;   ///< in place of small_ where 64 bits do not hold it
+  std::shared_ptr<const Integer> great_;  ///< in place of small_ where 64 bits do not hold it
 };
 
 }  // namespace cluxel::sparql

@@ -10,8 +10,8 @@ namespace {
 
 struct Field {
   char letter;
-  bool time;             ///< stands after the T
-  std::int64_t months;   ///< in one unit
+  bool time;            ///< stands after the T
+  std::int64_t months;  ///< in one unit
   std::int64_t seconds;
 };
 
@@ -64,15 +64,14 @@ std::optional<Duration> parseDuration(DurationKind kind, std::string_view text) 
   while (!text.empty()) {
     if (text.front() == 'T' && !time) {
       time = true;
-      any = false;   // something must follow the T
+      any = false;  // something must follow the T
       text.remove_prefix(1);
       continue;
     }
     std::string_view number;
     char letter = 0;
     if (!readNumber(text, number, letter)) return std::nullopt;
-    while (next_field < kFields.size() &&
-           (kFields[next_field].letter != letter || kFields[next_field].time != time)) {
+    while (next_field < kFields.size() && (kFields[next_field].letter != letter || kFields[next_field].time != time)) {
       ++next_field;
     }
     if (next_field == kFields.size() || !allowed(kind, kFields[next_field])) return std::nullopt;

@@ -11,15 +11,21 @@ namespace {
 
 using Kind = Expr::Kind;
 
-Value ofTruth(std::optional<bool> truth) { return truth ? Value::boolean(*truth) : Value(); }
+Value ofTruth(std::optional<bool> truth) {
+  return truth ? Value::boolean(*truth) : Value();
+}
 
 std::optional<bool> decide(Kind kind, std::optional<std::partial_ordering> order) {
   if (!order) return std::nullopt;
   switch (kind) {
-    case Kind::Less: return *order < 0;
-    case Kind::Greater: return *order > 0;
-    case Kind::LessEqual: return *order <= 0;
-    default: return *order >= 0;
+    case Kind::Less:
+      return *order < 0;
+    case Kind::Greater:
+      return *order > 0;
+    case Kind::LessEqual:
+      return *order <= 0;
+    default:
+      return *order >= 0;
   }
 }
 
@@ -45,38 +51,49 @@ std::optional<bool> Evaluator::truth(const Expr& expression, const Batch& batch,
       if (error) return std::nullopt;
       return !decisive;
     }
-    case Kind::Bound: return batch.at(expression.slot, row) != kUnbound;
-    case Kind::Exists: return runtime_.exists_results[expression.exists][row] != 0;
-    case Kind::NotExists: return runtime_.exists_results[expression.exists][row] == 0;
-    default: return effectiveBoolean(value(expression, batch, row), runtime_.terms);
+    case Kind::Bound:
+      return batch.at(expression.slot, row) != kUnbound;
+    case Kind::Exists:
+      return runtime_.exists_results[expression.exists][row] != 0;
+    case Kind::NotExists:
+      return runtime_.exists_results[expression.exists][row] == 0;
+    default:
+      return effectiveBoolean(value(expression, batch, row), runtime_.terms);
   }
 }
 
 Value Evaluator::value(const Expr& expression, const Batch& batch, std::size_t row) {
   switch (expression.kind) {
-    case Kind::Slot: return runtime_.terms.valueOf(batch.at(expression.slot, row));
-    case Kind::Constant: return expression.constant;
-    case Kind::Unbound: return {};
+    case Kind::Slot:
+      return runtime_.terms.valueOf(batch.at(expression.slot, row));
+    case Kind::Constant:
+      return expression.constant;
+    case Kind::Unbound:
+      return {};
     case Kind::Or:
     case Kind::And:
     case Kind::Not:
     case Kind::Bound:
     case Kind::Exists:
-    case Kind::NotExists: return ofTruth(truth(expression, batch, row));
+    case Kind::NotExists:
+      return ofTruth(truth(expression, batch, row));
     case Kind::Equal:
     case Kind::NotEqual:
     case Kind::Less:
     case Kind::Greater:
     case Kind::LessEqual:
-    case Kind::GreaterEqual: return compared(expression, batch, row);
+    case Kind::GreaterEqual:
+      return compared(expression, batch, row);
     case Kind::In:
-    case Kind::NotIn: return membership(expression, batch, row);
+    case Kind::NotIn:
+      return membership(expression, batch, row);
     case Kind::Add:
     case Kind::Subtract:
     case Kind::Multiply:
     case Kind::Divide:
     case Kind::Negate:
-    case Kind::Plus: return arithmetic(expression, batch, row);
+    case Kind::Plus:
+      return arithmetic(expression, batch, row);
     case Kind::Coalesce:
       for (const Expr& argument : expression.arguments) {
         if (Value found = value(argument, batch, row)) return found;
@@ -87,7 +104,8 @@ Value Evaluator::value(const Expr& expression, const Batch& batch, std::size_t r
       if (!condition) return {};
       return value(expression.arguments[*condition ? 1 : 2], batch, row);
     }
-    case Kind::Call: return called(expression, batch, row);
+    case Kind::Call:
+      return called(expression, batch, row);
   }
   return {};
 }
@@ -123,16 +141,20 @@ Value Evaluator::arithmetic(const Expr& expression, const Batch& batch, std::siz
   if (!a) return {};
   if (expression.kind == Kind::Negate) return negateValue(a, runtime_.terms);
   if (expression.kind == Kind::Plus) {
-    if (a.type == Value::Type::Integer) return Value::ofInteger(runtime_.terms.exactOf(a));   // no longer a derived type
+    if (a.type == Value::Type::Integer) return Value::ofInteger(runtime_.terms.exactOf(a));  // no longer a derived type
     return a.isNumeric() ? a : Value();
   }
   const Value b = value(expression.arguments[1], batch, row);
   if (!b) return {};
   switch (expression.kind) {
-    case Kind::Add: return addValues(a, b, runtime_.terms);
-    case Kind::Subtract: return subtractValues(a, b, runtime_.terms);
-    case Kind::Multiply: return multiplyValues(a, b, runtime_.terms);
-    default: return divideValues(a, b, runtime_.terms);
+    case Kind::Add:
+      return addValues(a, b, runtime_.terms);
+    case Kind::Subtract:
+      return subtractValues(a, b, runtime_.terms);
+    case Kind::Multiply:
+      return multiplyValues(a, b, runtime_.terms);
+    default:
+      return divideValues(a, b, runtime_.terms);
   }
 }
 

@@ -11,9 +11,12 @@ namespace {
 
 using sparql::Operator;
 
-std::string rounded(double rows) { return std::to_string(static_cast<long long>(std::llround(std::min(rows, 1e18)))); }
+std::string rounded(double rows) {
+  return std::to_string(static_cast<long long>(std::llround(std::min(rows, 1e18))));
+}
 
-void printPlan(const Operator& plan, const sparql::PlanNames& names, bool has_run, std::size_t depth, std::string& out) {
+void printPlan(const Operator& plan, const sparql::PlanNames& names, bool has_run, std::size_t depth,
+               std::string& out) {
   std::string line = std::string(depth * 2, ' ') + plan.label(names);
   constexpr std::size_t kColumn = 72;
   line += std::string(line.size() + 2 < kColumn ? kColumn - line.size() : 2, ' ');

@@ -11,24 +11,42 @@ using Written = ast::Expression::Kind;
 
 std::optional<Expr::Kind> operatorKind(Written kind) {
   switch (kind) {
-    case Written::Or: return Expr::Kind::Or;
-    case Written::And: return Expr::Kind::And;
-    case Written::Not: return Expr::Kind::Not;
-    case Written::Equal: return Expr::Kind::Equal;
-    case Written::NotEqual: return Expr::Kind::NotEqual;
-    case Written::Less: return Expr::Kind::Less;
-    case Written::Greater: return Expr::Kind::Greater;
-    case Written::LessEqual: return Expr::Kind::LessEqual;
-    case Written::GreaterEqual: return Expr::Kind::GreaterEqual;
-    case Written::In: return Expr::Kind::In;
-    case Written::NotIn: return Expr::Kind::NotIn;
-    case Written::Add: return Expr::Kind::Add;
-    case Written::Subtract: return Expr::Kind::Subtract;
-    case Written::Multiply: return Expr::Kind::Multiply;
-    case Written::Divide: return Expr::Kind::Divide;
-    case Written::Negate: return Expr::Kind::Negate;
-    case Written::Plus: return Expr::Kind::Plus;
-    default: return std::nullopt;
+    case Written::Or:
+      return Expr::Kind::Or;
+    case Written::And:
+      return Expr::Kind::And;
+    case Written::Not:
+      return Expr::Kind::Not;
+    case Written::Equal:
+      return Expr::Kind::Equal;
+    case Written::NotEqual:
+      return Expr::Kind::NotEqual;
+    case Written::Less:
+      return Expr::Kind::Less;
+    case Written::Greater:
+      return Expr::Kind::Greater;
+    case Written::LessEqual:
+      return Expr::Kind::LessEqual;
+    case Written::GreaterEqual:
+      return Expr::Kind::GreaterEqual;
+    case Written::In:
+      return Expr::Kind::In;
+    case Written::NotIn:
+      return Expr::Kind::NotIn;
+    case Written::Add:
+      return Expr::Kind::Add;
+    case Written::Subtract:
+      return Expr::Kind::Subtract;
+    case Written::Multiply:
+      return Expr::Kind::Multiply;
+    case Written::Divide:
+      return Expr::Kind::Divide;
+    case Written::Negate:
+      return Expr::Kind::Negate;
+    case Written::Plus:
+      return Expr::Kind::Plus;
+    default:
+      return std::nullopt;
   }
 }
 
@@ -56,11 +74,15 @@ Expr AlgebraBuilder::expression(const ast::Expression& written, Scope& scope, co
       return result;
     }
     case Written::Exists:
-    case Written::NotExists: return exists(written, scope, visible);
-    case Written::Aggregate: return aggregate(written);
+    case Written::NotExists:
+      return exists(written, scope, visible);
+    case Written::Aggregate:
+      return aggregate(written);
     case Written::Call:
-    case Written::Function: return call(written, scope, visible);
-    default: break;
+    case Written::Function:
+      return call(written, scope, visible);
+    default:
+      break;
   }
   Expr result = ofKind(*operatorKind(written.kind), written.at);
   for (const ast::Expression& argument : written.arguments) {
@@ -102,8 +124,8 @@ void AlgebraBuilder::checkCall(const ast::Expression& written, const FunctionEnt
     const std::string wanted = function.least_arguments == function.most_arguments
                                    ? std::to_string(function.least_arguments)
                                    : "at least " + std::to_string(function.least_arguments);
-    fail(written.at, std::string(function.name) + " takes " + wanted + " argument" +
-                         (wanted == "1" ? "" : "s") + ", not " + std::to_string(count));
+    fail(written.at, std::string(function.name) + " takes " + wanted + " argument" + (wanted == "1" ? "" : "s") +
+                         ", not " + std::to_string(count));
   }
   is_volatile_ = is_volatile_ || function.is_volatile;
   if (function.is_volatile && options_.refuse_volatile) {
@@ -133,7 +155,7 @@ Expr AlgebraBuilder::aggregate(const ast::Expression& written) {
   spec.separator = written.separator;
   if (!written.arguments.empty()) {
     const Aggregation outer = aggregation_;
-    aggregation_ = {};   // no aggregates within aggregates
+    aggregation_ = {};  // no aggregates within aggregates
     spec.argument = expression(written.arguments[0], *outer.scope, *outer.inner_visible);
     aggregation_ = outer;
   }

@@ -39,9 +39,8 @@ class FilterOperator : public RowFilter {
   bool passes(const Batch& in, std::uint32_t row) override {
     ahead_.before(row, in, runtime().terms);
     Evaluator evaluator(runtime());
-    return std::all_of(conditions_.begin(), conditions_.end(), [&](const Expr& condition) {
-      return evaluator.truth(condition, in, row).value_or(false);
-    });
+    return std::all_of(conditions_.begin(), conditions_.end(),
+                       [&](const Expr& condition) { return evaluator.truth(condition, in, row).value_or(false); });
   }
 
  private:

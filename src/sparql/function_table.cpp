@@ -78,13 +78,16 @@ constexpr auto kNamedFunctions = std::to_array<FunctionEntry>({
     {"http://www.opengis.net/def/function/geosparql/envelope", 1, 1, envelopeFunction},
 });
 
-#define CLUXEL_CASTS(X)                                                                                         \
-  X(string) X(boolean) X(integer) X(decimal) X(float) X(double) X(dateTime) X(date) X(time) X(duration)         \
-  X(dayTimeDuration) X(yearMonthDuration) X(gYear) X(gYearMonth) X(gMonthDay) X(gDay) X(gMonth) X(int) X(long)  \
-  X(short) X(byte) X(nonNegativeInteger) X(positiveInteger) X(nonPositiveInteger) X(negativeInteger)            \
-  X(unsignedLong) X(unsignedInt) X(unsignedShort) X(unsignedByte)
-#define CLUXEL_CAST_BODY(name) \
-  Value cast_##name(Arguments arguments, FunctionContext& context) { return castValue(#name, arguments[0], context); }
+#define CLUXEL_CASTS(X)                                                                                          \
+  X(string)                                                                                                      \
+  X(boolean) X(integer) X(decimal) X(float) X(double) X(dateTime) X(date) X(time) X(duration) X(dayTimeDuration) \
+      X(yearMonthDuration) X(gYear) X(gYearMonth) X(gMonthDay) X(gDay) X(gMonth) X(int) X(long) X(short) X(byte) \
+          X(nonNegativeInteger) X(positiveInteger) X(nonPositiveInteger) X(negativeInteger) X(unsignedLong)      \
+              X(unsignedInt) X(unsignedShort) X(unsignedByte)
+#define CLUXEL_CAST_BODY(name)                                       \
+  Value cast_##name(Arguments arguments, FunctionContext& context) { \
+    return castValue(#name, arguments[0], context);                  \
+  }
 #define CLUXEL_CAST_ENTRY(name) {"http://www.w3.org/2001/XMLSchema#" #name, 1, 1, cast_##name},
 
 CLUXEL_CASTS(CLUXEL_CAST_BODY)
@@ -93,9 +96,7 @@ constexpr auto kCasts = std::to_array<FunctionEntry>({CLUXEL_CASTS(CLUXEL_CAST_E
 }  // namespace
 
 FunctionContext::FunctionContext(QueryTerms& query_terms)
-    : terms(query_terms),
-      regexes(std::make_unique<RegexCache>()),
-      geometries(std::make_unique<GeometryCache>()) {}
+    : terms(query_terms), regexes(std::make_unique<RegexCache>()), geometries(std::make_unique<GeometryCache>()) {}
 FunctionContext::~FunctionContext() = default;
 
 const FunctionEntry* findBuiltin(ast::Builtin builtin) {

@@ -34,7 +34,7 @@ struct FunctionContext {
   std::map<std::string, std::string> solution_labels;
   std::uint64_t labels_of_solution = 0;
   std::uint64_t fresh_labels = 0;
-  std::string label_prefix = {};   ///< makes fresh blank nodes differ from stored ones
+  std::string label_prefix = {};  ///< makes fresh blank nodes differ from stored ones
   std::unique_ptr<RegexCache> regexes;
   std::unique_ptr<GeometryCache> geometries;
 
@@ -45,10 +45,10 @@ using Arguments = std::span<const Value>;
 using FunctionBody = Value (*)(Arguments arguments, FunctionContext& context);
 
 struct FunctionEntry {
-  std::string_view name;   ///< keyword of a built-in, or IRI
+  std::string_view name;  ///< keyword of a built-in, or IRI
   std::size_t least_arguments = 1, most_arguments = 1;
   FunctionBody body = nullptr;
-  bool is_volatile = false;   ///< not a function of its arguments alone
+  bool is_volatile = false;  ///< not a function of its arguments alone
 };
 
 inline constexpr std::size_t kAnyNumber = static_cast<std::size_t>(-1);
@@ -60,7 +60,8 @@ const FunctionEntry* findFunction(std::string_view iri);
 /// The IRIs of all functions, for suggestions.
 std::vector<std::string> functionIris();
 
-// Arithmetic of the operators: the type promotion of XPath; an error for what is not a number (or a time and a duration).
+// Arithmetic of the operators: the type promotion of XPath; an error for what is not a number (or a time and a
+// duration).
 Value addValues(const Value& a, const Value& b, const QueryTerms& terms);
 Value subtractValues(const Value& a, const Value& b, const QueryTerms& terms);
 Value multiplyValues(const Value& a, const Value& b, const QueryTerms& terms);

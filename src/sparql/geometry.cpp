@@ -6,13 +6,13 @@
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
+#include <algorithm>
+#include <array>
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/multi_linestring.hpp>
 #include <boost/geometry/geometries/multi_point.hpp>
 #include <boost/geometry/geometries/multi_polygon.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
-#include <algorithm>
-#include <array>
 #include <charconv>
 #include <limits>
 
@@ -31,7 +31,7 @@ constexpr std::size_t kMostCached = 200'000;
 }  // namespace
 
 struct Geometry {
-  std::string crs;   ///< with its angle brackets, or empty
+  std::string crs;  ///< with its angle brackets, or empty
   bg::model::multi_point<Point> points;
   bg::model::multi_linestring<Line> lines;
   bg::model::multi_polygon<Polygon> polygons;
@@ -88,16 +88,20 @@ struct Within {
     return anyKind(outer, [&point](const auto& parts) { return bg::covered_by(point, parts); });
   }
   bool covers(const Line& line) const {
-    return (!outer.polygons.empty() && bg::covered_by(line, outer.polygons)) || (!outer.lines.empty() && bg::covered_by(line, outer.lines));
+    return (!outer.polygons.empty() && bg::covered_by(line, outer.polygons)) ||
+           (!outer.lines.empty() && bg::covered_by(line, outer.lines));
   }
-  bool covers(const Polygon& polygon) const { return !outer.polygons.empty() && bg::covered_by(polygon, outer.polygons); }
+  bool covers(const Polygon& polygon) const {
+    return !outer.polygons.empty() && bg::covered_by(polygon, outer.polygons);
+  }
 
   /// The interior has something of the part.
   bool holds(const Point& point) const {
     return anyKind(outer, [&point](const auto& parts) { return bg::within(point, parts); });
   }
   bool holds(const Line& line) const {
-    return (!outer.polygons.empty() && bg::within(line, outer.polygons)) || (!outer.lines.empty() && bg::within(line, outer.lines));
+    return (!outer.polygons.empty() && bg::within(line, outer.polygons)) ||
+           (!outer.lines.empty() && bg::within(line, outer.lines));
   }
   bool holds(const Polygon& polygon) const { return covers(polygon); }
 };
@@ -146,7 +150,9 @@ Box2 boundsOf(const Geometry& geometry) {
   return box;
 }
 
-bool mayMeasure(const Geometry& a, const Geometry& b) { return a.crs.empty() || b.crs.empty() || a.crs == b.crs; }
+bool mayMeasure(const Geometry& a, const Geometry& b) {
+  return a.crs.empty() || b.crs.empty() || a.crs == b.crs;
+}
 
 double distanceBetween(const Geometry& a, const Geometry& b) {
   double least = std::numeric_limits<double>::infinity();

@@ -6,11 +6,11 @@
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
+#include <algorithm>
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
 #include <boost/geometry/index/rtree.hpp>
-#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -23,13 +23,17 @@ using Corner = boost::geometry::model::d2::point_xy<double>;
 using TreeBox = boost::geometry::model::box<Corner>;
 using Entry = std::pair<TreeBox, TermId>;
 
-TreeBox treeBox(const Box2& box) { return {Corner(box.min_x, box.min_y), Corner(box.max_x, box.max_y)}; }
+TreeBox treeBox(const Box2& box) {
+  return {Corner(box.min_x, box.min_y), Corner(box.max_x, box.max_y)};
+}
 
 bool isProper(const Box2& box) {
   return std::isfinite(box.min_x) && std::isfinite(box.min_y) && std::isfinite(box.max_x) && std::isfinite(box.max_y);
 }
 
-std::string nameOf(TermId predicate) { return "boxes of " + std::to_string(predicate); }
+std::string nameOf(TermId predicate) {
+  return "boxes of " + std::to_string(predicate);
+}
 
 }  // namespace
 
@@ -53,8 +57,10 @@ GeometryIndex::GeometryIndex(const QuadReader& reader, TermId predicate) : tree_
     const auto geometry = parseWkt(literal.text);
     if (!geometry) continue;
     const Box2 box = boundsOf(*geometry);
-    if (isProper(box)) entries.emplace_back(treeBox(box), quad.o);
-    else tree_->without_box.push_back(quad.o);
+    if (isProper(box))
+      entries.emplace_back(treeBox(box), quad.o);
+    else
+      tree_->without_box.push_back(quad.o);
   }
   tree_->boxes = {entries.begin(), entries.end()};
 }
@@ -69,7 +75,9 @@ std::vector<TermId> GeometryIndex::meeting(const Box2& box) const {
   return found;
 }
 
-std::size_t GeometryIndex::size() const { return tree_->boxes.size() + tree_->without_box.size(); }
+std::size_t GeometryIndex::size() const {
+  return tree_->boxes.size() + tree_->without_box.size();
+}
 
 std::shared_ptr<const GeometryIndex> knownGeometryIndex(const QuadReader& reader, TermId predicate) {
   return std::static_pointer_cast<const GeometryIndex>(reader.kept(nameOf(predicate)));

@@ -63,7 +63,8 @@ void GraphResult::describeNode(ValueId node) {
       if (!runtime_.dataset.default_graph.admits(key.at(3))) continue;
       add(key.at(0), key.at(1), key.at(2));
       const ValueId object = key.at(2);
-      if (runtime_.reader.valueOf(object).kind == TermKind::BlankNode && noted_.insert(object)) resources_.push_back(object);
+      if (runtime_.reader.valueOf(object).kind == TermKind::BlankNode && noted_.insert(object))
+        resources_.push_back(object);
     }
   }
 }

@@ -21,7 +21,8 @@ class GraphResult {
   void write(ResultSink& sink) const;
 
  private:
-  ValueId idOf(const ast::PatternTerm& place, const Batch& batch, std::size_t row, std::map<std::string, ValueId>& blanks);
+  ValueId idOf(const ast::PatternTerm& place, const Batch& batch, std::size_t row,
+               std::map<std::string, ValueId>& blanks);
   void add(ValueId subject, ValueId predicate, ValueId object);
   void describeNode(ValueId node);
 

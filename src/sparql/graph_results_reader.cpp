@@ -56,14 +56,16 @@ class GraphResults {
   }
   const Term& one(const Term& subject, const std::string& property) const {
     const std::vector<Term>& objects = all(subject, property);
-    if (objects.size() != 1) throw InputError({.file = file_}, "expected one <" + property + ">, not " + std::to_string(objects.size()));
+    if (objects.size() != 1)
+      throw InputError({.file = file_}, "expected one <" + property + ">, not " + std::to_string(objects.size()));
     return objects[0];
   }
   std::vector<Term> inOrder(std::vector<Term> solutions) const {
     const auto index = [this](const Term& solution) {
       const std::vector<Term>& written = all(solution, rs("index"));
       long value = 0;
-      if (!written.empty()) std::from_chars(written[0].text.data(), written[0].text.data() + written[0].text.size(), value);
+      if (!written.empty())
+        std::from_chars(written[0].text.data(), written[0].text.data() + written[0].text.size(), value);
       return value;
     };
     std::stable_sort(solutions.begin(), solutions.end(),
@@ -74,7 +76,8 @@ class GraphResults {
     builder.beginRow();
     for (const Term& binding : all(solution, rs("binding"))) {
       const std::size_t column = builder.columnOf(one(binding, rs("variable")).text);
-      if (column == std::string::npos) throw InputError({.file = file_}, "a binding of a variable that is not announced");
+      if (column == std::string::npos)
+        throw InputError({.file = file_}, "a binding of a variable that is not announced");
       builder.set(column, one(binding, rs("value")));
     }
   }

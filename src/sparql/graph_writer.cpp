@@ -59,8 +59,10 @@ class TurtleWriter : public GraphWriter {
       subject_ = term;
     }
     open_ = true;
-    if (predicate.text == kRdfType) text += 'a';
-    else appendTurtle(text, predicate, prefixes_);
+    if (predicate.text == kRdfType)
+      text += 'a';
+    else
+      appendTurtle(text, predicate, prefixes_);
     appendTurtle(text += ' ', object, prefixes_);
     buffer_.flushWhenFull();
   }
@@ -77,7 +79,9 @@ class TurtleWriter : public GraphWriter {
 
 }  // namespace
 
-std::unique_ptr<ResultSink> makeNTriplesWriter(TextSink out) { return std::make_unique<GraphWriter>(std::move(out)); }
+std::unique_ptr<ResultSink> makeNTriplesWriter(TextSink out) {
+  return std::make_unique<GraphWriter>(std::move(out));
+}
 
 std::unique_ptr<ResultSink> makeTurtleWriter(TextSink out, const WriterOptions& options) {
   return std::make_unique<TurtleWriter>(std::move(out), options.prefixes);

@@ -13,8 +13,12 @@ class GroupOperator : public UnaryOperator {
  public:
   GroupOperator(OperatorPtr child, std::vector<Slot> keys, std::vector<AggregateSpec> aggregates, bool grouped_by_keys,
                 std::vector<Slot> parameters, std::vector<ExistsPlan> exists)
-      : UnaryOperator(std::move(child)), keys_(std::move(keys)), aggregates_(std::move(aggregates)),
-        grouped_by_keys_(grouped_by_keys), parameters_(std::move(parameters)), exists_(std::move(exists)),
+      : UnaryOperator(std::move(child)),
+        keys_(std::move(keys)),
+        aggregates_(std::move(aggregates)),
+        grouped_by_keys_(grouped_by_keys),
+        parameters_(std::move(parameters)),
+        exists_(std::move(exists)),
         groups_(keys_.size()) {
     slots_ = mergedSlots(keys_, parameters_);
     for (const AggregateSpec& aggregate : aggregates_) {
@@ -101,8 +105,10 @@ class GroupOperator : public UnaryOperator {
     const bool is_slot = spec.argument->kind == Expr::Kind::Slot;
     for (std::size_t row = 0; row < in.rows; ++row) {
       ahead_[number].before(row, in, runtime().terms);
-      if (is_slot) of(row).addId(spec, in.at(spec.argument->slot, row), runtime());
-      else of(row).add(spec, evaluator.value(*spec.argument, in, row), runtime());
+      if (is_slot)
+        of(row).addId(spec, in.at(spec.argument->slot, row), runtime());
+      else
+        of(row).add(spec, evaluator.value(*spec.argument, in, row), runtime());
     }
   }
 
@@ -137,7 +143,7 @@ class GroupOperator : public UnaryOperator {
   static constexpr std::array<ValueId, 1> kNoKey{};
   std::vector<Slot> keys_;
   std::vector<AggregateSpec> aggregates_;
-  std::vector<ValuesAhead> ahead_;   ///< of each aggregate
+  std::vector<ValuesAhead> ahead_;  ///< of each aggregate
   bool grouped_by_keys_;
   std::vector<Slot> parameters_;
   std::vector<ExistsPlan> exists_;

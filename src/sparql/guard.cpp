@@ -32,7 +32,8 @@ void Guard::start(const QueryBudget& budget, const Usage& used) {
 void Guard::check() {
   if (work_rows_ > most_work_rows_) refuse("rows");
   if (budget_.deadline && std::chrono::steady_clock::now() > deadline_) refuse("time");
-  next_check_ = std::min(work_rows_ + kRowsBetweenChecks, most_work_rows_ + (most_work_rows_ == ~std::uint64_t{0} ? 0 : 1));
+  next_check_ =
+      std::min(work_rows_ + kRowsBetweenChecks, most_work_rows_ + (most_work_rows_ == ~std::uint64_t{0} ? 0 : 1));
 }
 
 void Guard::refuse(const char* what) const {

@@ -60,7 +60,7 @@ class Guard {
   std::chrono::steady_clock::time_point start_, deadline_;
   std::uint64_t work_rows_ = 0, next_check_ = 0, most_work_rows_ = 0, most_answer_rows_ = 0;
   std::size_t bytes_ = 0, most_bytes_ = 0;
-  std::vector<const void*> shared_;   ///< what chargeOnce() has counted
+  std::vector<const void*> shared_;  ///< what chargeOnce() has counted
 };
 
 }  // namespace cluxel::sparql

@@ -23,10 +23,20 @@ Value digest(const EVP_MD* algorithm, Arguments arguments, FunctionContext& cont
 
 }  // namespace
 
-Value md5Function(Arguments arguments, FunctionContext& context) { return digest(EVP_md5(), arguments, context); }
-Value sha1Function(Arguments arguments, FunctionContext& context) { return digest(EVP_sha1(), arguments, context); }
-Value sha256Function(Arguments arguments, FunctionContext& context) { return digest(EVP_sha256(), arguments, context); }
-Value sha384Function(Arguments arguments, FunctionContext& context) { return digest(EVP_sha384(), arguments, context); }
-Value sha512Function(Arguments arguments, FunctionContext& context) { return digest(EVP_sha512(), arguments, context); }
+Value md5Function(Arguments arguments, FunctionContext& context) {
+  return digest(EVP_md5(), arguments, context);
+}
+Value sha1Function(Arguments arguments, FunctionContext& context) {
+  return digest(EVP_sha1(), arguments, context);
+}
+Value sha256Function(Arguments arguments, FunctionContext& context) {
+  return digest(EVP_sha256(), arguments, context);
+}
+Value sha384Function(Arguments arguments, FunctionContext& context) {
+  return digest(EVP_sha384(), arguments, context);
+}
+Value sha512Function(Arguments arguments, FunctionContext& context) {
+  return digest(EVP_sha512(), arguments, context);
+}
 
 }  // namespace cluxel::sparql

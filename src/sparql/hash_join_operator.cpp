@@ -59,7 +59,7 @@ class BuildSide {
   std::uint32_t next(std::uint32_t row) const { return index_.next(row); }
 
  private:
-  static constexpr std::size_t kTogether = 64, kCounted = 256;   // candidates passed over count as work too
+  static constexpr std::size_t kTogether = 64, kCounted = 256;  // candidates passed over count as work too
   std::uint64_t hashOf(const Batch& probe, std::size_t row) const {
     return hashOfKey(keys_.size(), [&](std::size_t i) { return probe.at(keys_[i], row); });
   }
@@ -177,12 +177,18 @@ class HashJoinOperator : public UnaryOperator {
 /// Removes the rows that agree with a removed row and share a bound variable with it.
 class MinusOperator : public RowFilter {
  public:
-  MinusOperator(OperatorPtr child, OperatorPtr removed, std::vector<Slot> keys, std::vector<Slot> compared, Slot ignored)
-      : RowFilter(std::move(child)), build_(std::move(removed), keys, compared), keys_(std::move(keys)),
-        compared_(std::move(compared)), ignored_(ignored) {
+  MinusOperator(OperatorPtr child, OperatorPtr removed, std::vector<Slot> keys, std::vector<Slot> compared,
+                Slot ignored)
+      : RowFilter(std::move(child)),
+        build_(std::move(removed), keys, compared),
+        keys_(std::move(keys)),
+        compared_(std::move(compared)),
+        ignored_(ignored) {
     for (const Slot slot : compared_) compared_columns_.push_back(positionOf(build_.table().slots(), slot));
   }
-  std::string label(const PlanNames& names) const override { return "minus" + keyText(mergedSlots(keys_, compared_), names); }
+  std::string label(const PlanNames& names) const override {
+    return "minus" + keyText(mergedSlots(keys_, compared_), names);
+  }
 
  protected:
   void reopen(bool fresh) override {
@@ -226,8 +232,10 @@ class MinusOperator : public RowFilter {
 OperatorPtr makeHashJoin(OperatorPtr child, OperatorPtr build, std::vector<Slot> keys, std::vector<Slot> compared) {
   return std::make_unique<HashJoinOperator>(std::move(child), std::move(build), std::move(keys), std::move(compared));
 }
-OperatorPtr makeMinus(OperatorPtr child, OperatorPtr removed, std::vector<Slot> keys, std::vector<Slot> compared, Slot ignored) {
-  return std::make_unique<MinusOperator>(std::move(child), std::move(removed), std::move(keys), std::move(compared), ignored);
+OperatorPtr makeMinus(OperatorPtr child, OperatorPtr removed, std::vector<Slot> keys, std::vector<Slot> compared,
+                      Slot ignored) {
+  return std::make_unique<MinusOperator>(std::move(child), std::move(removed), std::move(keys), std::move(compared),
+                                         ignored);
 }
 
 }  // namespace cluxel::sparql

@@ -11,11 +11,11 @@ namespace cluxel {
 namespace {
 
 struct IriParts {
-  std::string_view scheme;                     ///< without ':'
-  std::optional<std::string_view> authority;   ///< without "//"
+  std::string_view scheme;                    ///< without ':'
+  std::optional<std::string_view> authority;  ///< without "//"
   std::string_view path;
-  std::optional<std::string_view> query;       ///< without '?'
-  std::optional<std::string_view> fragment;    ///< without '#'
+  std::optional<std::string_view> query;     ///< without '?'
+  std::optional<std::string_view> fragment;  ///< without '#'
 };
 
 std::size_t schemeLength(std::string_view iri) {
@@ -108,7 +108,9 @@ std::string recompose(const IriParts& parts, std::string_view path) {
 
 }  // namespace
 
-bool isAbsoluteIri(std::string_view iri) { return schemeLength(iri) > 0; }
+bool isAbsoluteIri(std::string_view iri) {
+  return schemeLength(iri) > 0;
+}
 
 std::string resolveIri(std::string_view reference, std::string_view base_iri) {
   if (isAbsoluteIri(reference)) {

@@ -52,6 +52,8 @@ class JsonWriter : public SolutionWriter {
 
 }  // namespace
 
-std::unique_ptr<ResultSink> makeJsonWriter(TextSink out) { return std::make_unique<JsonWriter>(std::move(out)); }
+std::unique_ptr<ResultSink> makeJsonWriter(TextSink out) {
+  return std::make_unique<JsonWriter>(std::move(out));
+}
 
 }  // namespace cluxel

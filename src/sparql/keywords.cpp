@@ -9,22 +9,21 @@ namespace cluxel {
 namespace {
 
 constexpr std::array<std::string_view, static_cast<std::size_t>(Keyword::FirstBuiltin)> kStructureNames{
-    "",         "A",      "ADD",      "ALL",    "AS",     "ASC",       "ASK",     "BASE",   "BIND",
-    "BY",       "CLEAR",  "CONSTRUCT", "COPY",  "CREATE", "DATA",      "DEFAULT", "DELETE", "DESC",
-    "DESCRIBE", "DISTINCT", "DROP",   "EXISTS", "FALSE",  "FILTER",    "FROM",    "GRAPH",  "GROUP",
-    "HAVING",   "IN",     "INSERT",   "INTO",   "LIMIT",  "LOAD",      "MINUS",   "MOVE",   "NAMED",
-    "NOT",      "OFFSET", "OPTIONAL", "ORDER",  "PREFIX", "REDUCED",   "SELECT",  "SEPARATOR", "SERVICE",
-    "SILENT",   "TO",     "TRUE",     "UNDEF",  "UNION",  "USING",     "VALUES",  "WHERE",
-    "WITH"};
+    "",         "A",        "ADD",       "ALL",    "AS",     "ASC",     "ASK",     "BASE",      "BIND",
+    "BY",       "CLEAR",    "CONSTRUCT", "COPY",   "CREATE", "DATA",    "DEFAULT", "DELETE",    "DESC",
+    "DESCRIBE", "DISTINCT", "DROP",      "EXISTS", "FALSE",  "FILTER",  "FROM",    "GRAPH",     "GROUP",
+    "HAVING",   "IN",       "INSERT",    "INTO",   "LIMIT",  "LOAD",    "MINUS",   "MOVE",      "NAMED",
+    "NOT",      "OFFSET",   "OPTIONAL",  "ORDER",  "PREFIX", "REDUCED", "SELECT",  "SEPARATOR", "SERVICE",
+    "SILENT",   "TO",       "TRUE",      "UNDEF",  "UNION",  "USING",   "VALUES",  "WHERE",     "WITH"};
 static_assert(kStructureNames.back() == "WITH");
 
 constexpr std::array<std::string_view, static_cast<std::size_t>(ast::Builtin::Count_)> kBuiltinNames{
-    "STR",       "LANG",    "LANGMATCHES", "DATATYPE", "BOUND",   "IRI",      "BNODE",     "RAND",     "ABS",
-    "CEIL",      "FLOOR",   "ROUND",       "CONCAT",   "STRLEN",  "UCASE",    "LCASE",     "ENCODE_FOR_URI",
-    "CONTAINS",  "STRSTARTS", "STRENDS",   "STRBEFORE", "STRAFTER", "YEAR",   "MONTH",     "DAY",      "HOURS",
-    "MINUTES",   "SECONDS", "TIMEZONE",    "TZ",       "NOW",     "UUID",     "STRUUID",   "MD5",      "SHA1",
-    "SHA256",    "SHA384",  "SHA512",      "COALESCE", "IF",      "STRLANG",  "STRDT",     "SAMETERM", "ISIRI",
-    "ISBLANK",   "ISLITERAL", "ISNUMERIC", "REGEX",    "SUBSTR",  "REPLACE"};
+    "STR",       "LANG",      "LANGMATCHES", "DATATYPE", "BOUND",   "IRI",     "BNODE",    "RAND",           "ABS",
+    "CEIL",      "FLOOR",     "ROUND",       "CONCAT",   "STRLEN",  "UCASE",   "LCASE",    "ENCODE_FOR_URI", "CONTAINS",
+    "STRSTARTS", "STRENDS",   "STRBEFORE",   "STRAFTER", "YEAR",    "MONTH",   "DAY",      "HOURS",          "MINUTES",
+    "SECONDS",   "TIMEZONE",  "TZ",          "NOW",      "UUID",    "STRUUID", "MD5",      "SHA1",           "SHA256",
+    "SHA384",    "SHA512",    "COALESCE",    "IF",       "STRLANG", "STRDT",   "SAMETERM", "ISIRI",          "ISBLANK",
+    "ISLITERAL", "ISNUMERIC", "REGEX",       "SUBSTR",   "REPLACE"};
 constexpr std::array<std::string_view, 7> kAggregateNames{"COUNT", "SUM",    "MIN",         "MAX",
                                                           "AVG",   "SAMPLE", "GROUP_CONCAT"};
 
@@ -38,7 +37,9 @@ constexpr std::string_view nameOfNumber(std::size_t number) {
 
 constexpr std::size_t kTableSize = 512;
 
-constexpr char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
+constexpr char upper(char c) {
+  return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+}
 
 constexpr std::size_t hashOf(std::string_view word) {
   std::uint32_t hash = 2166136261U;
@@ -89,7 +90,9 @@ Keyword keywordOf(std::string_view word) {
   return Keyword::None;
 }
 
-std::string_view nameOf(Keyword keyword) { return nameOfNumber(static_cast<std::size_t>(keyword)); }
+std::string_view nameOf(Keyword keyword) {
+  return nameOfNumber(static_cast<std::size_t>(keyword));
+}
 
 std::optional<ast::Builtin> builtinOf(Keyword keyword) {
   if (keyword < Keyword::FirstBuiltin || keyword > Keyword::LastBuiltin) return std::nullopt;
@@ -101,7 +104,9 @@ std::optional<ast::AggregateFunction> aggregateOf(Keyword keyword) {
   return static_cast<ast::AggregateFunction>(static_cast<int>(keyword) - static_cast<int>(Keyword::FirstAggregate));
 }
 
-std::string_view ast::nameOf(Builtin builtin) { return kBuiltinNames[static_cast<std::size_t>(builtin)]; }
+std::string_view ast::nameOf(Builtin builtin) {
+  return kBuiltinNames[static_cast<std::size_t>(builtin)];
+}
 std::string_view ast::nameOf(AggregateFunction aggregate) {
   return kAggregateNames[static_cast<std::size_t>(aggregate)];
 }

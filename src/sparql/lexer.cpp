@@ -49,15 +49,26 @@ Token Lexer::tokenAt(std::uint32_t offset) const {
   if (is(c, kLetter | kHigh)) return wordOrName(begin);
   if (is(c, kDigit) || (c == '.' && is(at(begin + 1), kDigit))) return number(begin);
   switch (c) {
-    case '?': case '$': return variable(begin);
-    case '<': return lessOrIri(begin);
-    case '"': case '\'': return string(begin);
-    case '@': return languageTag(begin);
-    case '_': return blankLabel(begin);
-    case ':': return localName(begin, begin);
-    case '(': return pair(TokenKind::Nil, TokenKind::LeftParen, ')', begin);
-    case '[': return pair(TokenKind::Anon, TokenKind::LeftBracket, ']', begin);
-    default: return punctuation(begin);
+    case '?':
+    case '$':
+      return variable(begin);
+    case '<':
+      return lessOrIri(begin);
+    case '"':
+    case '\'':
+      return string(begin);
+    case '@':
+      return languageTag(begin);
+    case '_':
+      return blankLabel(begin);
+    case ':':
+      return localName(begin, begin);
+    case '(':
+      return pair(TokenKind::Nil, TokenKind::LeftParen, ')', begin);
+    case '[':
+      return pair(TokenKind::Anon, TokenKind::LeftBracket, ']', begin);
+    default:
+      return punctuation(begin);
   }
 }
 
@@ -66,28 +77,46 @@ Token Lexer::punctuation(std::size_t begin) const {
   const auto one = [begin](TokenKind kind) { return tokenOf(kind, begin, begin + 1); };
   const auto two = [begin](TokenKind kind) { return tokenOf(kind, begin, begin + 2); };
   switch (text_[begin]) {
-    case '{': return one(TokenKind::LeftBrace);
-    case '}': return one(TokenKind::RightBrace);
-    case ')': return one(TokenKind::RightParen);
-    case ']': return one(TokenKind::RightBracket);
-    case '.': return one(TokenKind::Dot);
-    case ';': return one(TokenKind::Semicolon);
-    case ',': return one(TokenKind::Comma);
-    case '*': return one(TokenKind::Star);
-    case '/': return one(TokenKind::Slash);
-    case '=': return one(TokenKind::Equal);
-    case '!': return next == '=' ? two(TokenKind::NotEqual) : one(TokenKind::Bang);
-    case '>': return next == '=' ? two(TokenKind::GreaterEqual) : one(TokenKind::Greater);
-    case '|': return next == '|' ? two(TokenKind::OrOr) : one(TokenKind::Bar);
-    case '^': return next == '^' ? two(TokenKind::CaretCaret) : one(TokenKind::Caret);
-    case '&': return next == '&' ? two(TokenKind::AndAnd) : invalid(begin, "a single '&' means nothing; and is '&&'");
-    case '+': case '-': {
+    case '{':
+      return one(TokenKind::LeftBrace);
+    case '}':
+      return one(TokenKind::RightBrace);
+    case ')':
+      return one(TokenKind::RightParen);
+    case ']':
+      return one(TokenKind::RightBracket);
+    case '.':
+      return one(TokenKind::Dot);
+    case ';':
+      return one(TokenKind::Semicolon);
+    case ',':
+      return one(TokenKind::Comma);
+    case '*':
+      return one(TokenKind::Star);
+    case '/':
+      return one(TokenKind::Slash);
+    case '=':
+      return one(TokenKind::Equal);
+    case '!':
+      return next == '=' ? two(TokenKind::NotEqual) : one(TokenKind::Bang);
+    case '>':
+      return next == '=' ? two(TokenKind::GreaterEqual) : one(TokenKind::Greater);
+    case '|':
+      return next == '|' ? two(TokenKind::OrOr) : one(TokenKind::Bar);
+    case '^':
+      return next == '^' ? two(TokenKind::CaretCaret) : one(TokenKind::Caret);
+    case '&':
+      return next == '&' ? two(TokenKind::AndAnd) : invalid(begin, "a single '&' means nothing; and is '&&'");
+    case '+':
+    case '-': {
       Token token = one(text_[begin] == '+' ? TokenKind::Plus : TokenKind::Minus);
       token.number_follows = is(next, kDigit) || (next == '.' && is(at(begin + 2), kDigit));
       return token;
     }
-    case '\\': return invalid(begin, "a backslash may stand only within strings and local names");
-    default: return invalid(begin, "this character has no meaning here");
+    case '\\':
+      return invalid(begin, "a backslash may stand only within strings and local names");
+    default:
+      return invalid(begin, "this character has no meaning here");
   }
 }
 
@@ -107,7 +136,9 @@ Token Lexer::pair(TokenKind empty, TokenKind open, char close, std::size_t begin
 
 Token Lexer::number(std::size_t begin) const {
   std::size_t end = begin;
-  const auto digits = [&] { while (is(at(end), kDigit)) ++end; };
+  const auto digits = [&] {
+    while (is(at(end), kDigit)) ++end;
+  };
   TokenKind kind = TokenKind::Integer;
   digits();
   std::size_t after_mantissa = end;

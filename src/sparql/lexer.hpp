@@ -10,30 +10,57 @@
 namespace cluxel {
 
 enum class TokenKind : std::uint8_t {
-  End, Invalid,
-  IriRef,          ///< <…>
-  PrefixedName,    ///< prefix:local; a bare "prefix:" has an empty local part
-  BlankLabel,      ///< _:label
-  Var,             ///< ?name or $name
-  Integer, Decimal, Double,    ///< without sign
-  String,          ///< '…' or "…"
-  LongString,      ///< '''…''' or """…"""
-  LangTag,         ///< @tag
-  Word,            ///< a keyword, or a word that is none
-  Nil, Anon,       ///< ( ) and [ ] with nothing but white space between
-  LeftBrace, RightBrace, LeftParen, RightParen, LeftBracket, RightBracket, Dot, Semicolon, Comma, Equal, NotEqual,
-  Less, Greater, LessEqual, GreaterEqual, AndAnd, OrOr, Bar, Bang, Slash, Star, Plus, Minus, Caret, CaretCaret,
+  End,
+  Invalid,
+  IriRef,        ///< <…>
+  PrefixedName,  ///< prefix:local; a bare "prefix:" has an empty local part
+  BlankLabel,    ///< _:label
+  Var,           ///< ?name or $name
+  Integer,
+  Decimal,
+  Double,      ///< without sign
+  String,      ///< '…' or "…"
+  LongString,  ///< '''…''' or """…"""
+  LangTag,     ///< @tag
+  Word,        ///< a keyword, or a word that is none
+  Nil,
+  Anon,  ///< ( ) and [ ] with nothing but white space between
+  LeftBrace,
+  RightBrace,
+  LeftParen,
+  RightParen,
+  LeftBracket,
+  RightBracket,
+  Dot,
+  Semicolon,
+  Comma,
+  Equal,
+  NotEqual,
+  Less,
+  Greater,
+  LessEqual,
+  GreaterEqual,
+  AndAnd,
+  OrOr,
+  Bar,
+  Bang,
+  Slash,
+  Star,
+  Plus,
+  Minus,
+  Caret,
+  CaretCaret,
   Question
 };
 
 struct Token {
   TokenKind kind = TokenKind::End;
-  Keyword keyword = Keyword::None;   ///< of a Word
-  bool escaped = false;              ///< there is a backslash to decode
-  bool number_follows = false;       ///< of Plus and Minus: a number stands right behind it
+  Keyword keyword = Keyword::None;  ///< of a Word
+  bool escaped = false;             ///< there is a backslash to decode
+  bool number_follows = false;      ///< of Plus and Minus: a number stands right behind it
   std::uint32_t begin = 0, end = 0;
-  std::uint32_t colon = 0;           ///< of a PrefixedName
-  const char* problem = nullptr;     ///< of an Invalid token: what is wrong with it, for people
+  std::uint32_t colon = 0;        ///< of a PrefixedName
+  const char* problem = nullptr;  ///< of an Invalid token: what is wrong with it, for people
 };
 
 /// The text must be valid UTF-8 without zero bytes, shorter than 4 GiB, and outlive the lexer.

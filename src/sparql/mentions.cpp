@@ -68,7 +68,9 @@ bool isOrHasSubSelect(const ast::PatternElement& element) {
 
 }  // namespace
 
-bool mentions(const ast::GroupPattern& group, ast::VariableIndex variable) { return Search(variable).in(group); }
+bool mentions(const ast::GroupPattern& group, ast::VariableIndex variable) {
+  return Search(variable).in(group);
+}
 
 bool hasSubSelect(const ast::GroupPattern& group) {
   return std::any_of(group.elements.begin(), group.elements.end(), isOrHasSubSelect);

@@ -53,13 +53,14 @@ std::size_t localPart(std::string_view iri) {
   return end == std::string_view::npos ? 0 : end + 1;
 }
 
-/// Names differ at their end mostly: within the namespace the local parts are compared. Else the namespace is wrong: the
-/// same local part in another, or the nearest whole name.
+/// Names differ at their end mostly: within the namespace the local parts are compared. Else the namespace is wrong:
+/// the same local part in another, or the nearest whole name.
 std::string hintFor(const std::string& name, const std::vector<std::string>& known) {
   const std::size_t cut = localPart(name);
   std::vector<std::string> locals, elsewhere;
   for (const std::string& iri : known) {
-    if (localPart(iri) == cut && iri.starts_with(std::string_view(name).substr(0, cut))) locals.push_back(iri.substr(cut));
+    if (localPart(iri) == cut && iri.starts_with(std::string_view(name).substr(0, cut)))
+      locals.push_back(iri.substr(cut));
     if (iri.substr(localPart(iri)) == name.substr(cut)) elsewhere.push_back(iri);
   }
   if (!locals.empty()) return suggestion(std::string_view(name).substr(cut), locals);
@@ -112,8 +113,8 @@ class NameCheck {
     if (triple.graph.kind == sparql::GraphPlace::Kind::Constant && triple.graph.constant >= sparql::kFirstComputed) {
       warn("graph", triple.graph.constant, triple.at, storedGraphs());
     }
-    const bool is_type = !triple.path && !triple.predicate.isSlot() &&
-                         textOf(triple.predicate.constant) == vocabulary::rdf("type");
+    const bool is_type =
+        !triple.path && !triple.predicate.isSlot() && textOf(triple.predicate.constant) == vocabulary::rdf("type");
     if (is_type && !triple.object.isSlot() && triple.object.constant >= sparql::kFirstComputed) {
       warn("class", triple.object.constant, triple.at, knownClasses(query_.reader));
     }

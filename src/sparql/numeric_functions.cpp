@@ -20,11 +20,16 @@ double roundHalfUp(double value) {
 template <typename Real, typename Exact>
 Value rounded(const Value& value, FunctionContext& context, Real real, Exact exact) {
   switch (value.type) {
-    case Type::Integer: return Value::ofInteger(context.terms.exactOf(value));   // of xsd:integer, whatever it was derived to
-    case Type::Decimal: return Value::ofDecimal(exact(context.terms.exactOf(value)));
-    case Type::Float: return Value::ofFloat(static_cast<float>(real(value.number)));
-    case Type::Double: return Value::ofDouble(real(value.number));
-    default: return {};
+    case Type::Integer:
+      return Value::ofInteger(context.terms.exactOf(value));  // of xsd:integer, whatever it was derived to
+    case Type::Decimal:
+      return Value::ofDecimal(exact(context.terms.exactOf(value)));
+    case Type::Float:
+      return Value::ofFloat(static_cast<float>(real(value.number)));
+    case Type::Double:
+      return Value::ofDouble(real(value.number));
+    default:
+      return {};
   }
 }
 
@@ -40,13 +45,13 @@ Value absFunction(Arguments arguments, FunctionContext& context) {
 }
 
 Value ceilFunction(Arguments arguments, FunctionContext& context) {
-  return rounded(arguments[0], context, [](double x) { return std::ceil(x); },
-                 [](const Decimal& x) { return x.ceiling(); });
+  return rounded(
+      arguments[0], context, [](double x) { return std::ceil(x); }, [](const Decimal& x) { return x.ceiling(); });
 }
 
 Value floorFunction(Arguments arguments, FunctionContext& context) {
-  return rounded(arguments[0], context, [](double x) { return std::floor(x); },
-                 [](const Decimal& x) { return x.floor(); });
+  return rounded(
+      arguments[0], context, [](double x) { return std::floor(x); }, [](const Decimal& x) { return x.floor(); });
 }
 
 Value roundFunction(Arguments arguments, FunctionContext& context) {

@@ -143,8 +143,8 @@ struct Pipeline {
 
 /// Reads the quads of one pattern in the order of an index.
 OperatorPtr makeScan(const TripleNode& pattern, QuadOrder order);
-/// For each row of `child` the quads of a pattern: the index nested loop. `by_column`: there will be so many lookups that
-/// a column of the predicate (subject_column.hpp) is worth making.
+/// For each row of `child` the quads of a pattern: the index nested loop. `by_column`: there will be so many lookups
+/// that a column of the predicate (subject_column.hpp) is worth making.
 OperatorPtr makeQuadJoin(OperatorPtr child, const TripleNode& pattern, bool by_column);
 /// Both ascend in `slot`, which every row binds, and share only slots that every row binds; each is read once.
 OperatorPtr makeMergeJoin(OperatorPtr child, OperatorPtr other, Slot slot);
@@ -156,7 +156,8 @@ OperatorPtr makeLeftJoin(OperatorPtr child, Pipeline optional);
 /// The rows of all branches for each row of the child.
 OperatorPtr makeUnion(OperatorPtr child, std::vector<Pipeline> branches);
 /// Removes the rows that agree with a row of `removed` and share a bound slot other than `ignored` with it.
-OperatorPtr makeMinus(OperatorPtr child, OperatorPtr removed, std::vector<Slot> keys, std::vector<Slot> compared, Slot ignored);
+OperatorPtr makeMinus(OperatorPtr child, OperatorPtr removed, std::vector<Slot> keys, std::vector<Slot> compared,
+                      Slot ignored);
 /// `body` once for every combination of values that the child's rows have in `outer`, as parameters; its rows joined
 /// to those of the child, or (minus) removing them.
 OperatorPtr makeCorrelatedJoin(OperatorPtr child, OperatorPtr body, const std::vector<Slot>& outer);

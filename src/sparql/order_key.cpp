@@ -13,7 +13,7 @@ namespace {
 
 std::uint64_t sortable(double number) {
   if (std::isnan(number)) return 0;
-  if (number == 0) number = 0;   // -0 and 0 are equal
+  if (number == 0) number = 0;  // -0 and 0 are equal
   const auto bits = std::bit_cast<std::uint64_t>(number);
   return (bits >> 63) != 0 ? ~bits : bits | (1ull << 63);
 }
@@ -56,7 +56,8 @@ OrderKey OrderColumn::add(const Value& value, QueryTerms& terms, std::span<Order
     return key;
   }
   const auto compared = std::min(common_, text.size());
-  const auto common = static_cast<std::size_t>(std::mismatch(text.begin(), text.begin() + compared, first_.begin()).first - text.begin());
+  const auto common = static_cast<std::size_t>(
+      std::mismatch(text.begin(), text.begin() + compared, first_.begin()).first - text.begin());
   if (common < common_) shorten(common, earlier, stride);
   key.bits = sortable(text.substr(common_));
   return key;

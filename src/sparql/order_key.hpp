@@ -11,7 +11,7 @@
 namespace cluxel::sparql {
 
 struct OrderKey {
-  std::uint32_t rank = 0;      ///< of the kind of value
+  std::uint32_t rank = 0;  ///< of the kind of value
   ValueId id = kUnbound;
   std::uint64_t bits = 0;      ///< of values of one rank: less bits, less value; equal ones say nothing
   const char* text = nullptr;  ///< where texts decide: they stay in place while the query runs
@@ -33,9 +33,9 @@ class OrderColumn {
  private:
   void shorten(std::size_t common, std::span<OrderKey> earlier, std::size_t stride);
 
-  std::uint32_t rank_ = 0;     ///< of the texts whose beginning is left out; 0: none yet
-  std::string_view first_;     ///< one of them
-  std::size_t common_ = 0;     ///< how many bytes they share
+  std::uint32_t rank_ = 0;  ///< of the texts whose beginning is left out; 0: none yet
+  std::string_view first_;  ///< one of them
+  std::size_t common_ = 0;  ///< how many bytes they share
 };
 
 }  // namespace cluxel::sparql

@@ -15,7 +15,10 @@ class OrderOperator : public UnaryOperator {
  public:
   OrderOperator(OperatorPtr child, std::vector<SortKey> keys, std::vector<Slot> tie_slots,
                 std::optional<std::uint64_t> most_rows, std::vector<ExistsPlan> exists)
-      : UnaryOperator(std::move(child)), keys_(std::move(keys)), most_rows_(most_rows), exists_(std::move(exists)),
+      : UnaryOperator(std::move(child)),
+        keys_(std::move(keys)),
+        most_rows_(most_rows),
+        exists_(std::move(exists)),
         table_(child_->slots()) {
     for (const SortKey& key : keys_) ahead_.add(key.expression);
     for (const Slot slot : tie_slots) {
@@ -176,11 +179,11 @@ class OrderOperator : public UnaryOperator {
   std::optional<std::uint64_t> most_rows_;
   std::vector<ExistsPlan> exists_;
   RowTable table_;
-  std::vector<OrderKey> fast_;   ///< of each row of the table
+  std::vector<OrderKey> fast_;  ///< of each row of the table
   std::vector<OrderColumn> columns_;
   ValuesAhead ahead_;
   std::vector<std::uint32_t> order_, picks_;
-  bool is_full_ = false;   ///< the first rows of the table are the least so far, in order
+  bool is_full_ = false;  ///< the first rows of the table are the least so far, in order
   bool done_ = false, fresh_ = true;
   std::size_t given_ = 0;
 };

@@ -22,23 +22,36 @@ struct Operator {
 /// The operator that a token is after an operand.
 Operator operatorOf(const Token& token) {
   switch (token.kind) {
-    case TokenKind::OrOr: return {kOrRank, ExpressionKind::Or};
-    case TokenKind::AndAnd: return {kAndRank, ExpressionKind::And};
-    case TokenKind::Equal: return {kCompareRank, ExpressionKind::Equal};
-    case TokenKind::NotEqual: return {kCompareRank, ExpressionKind::NotEqual};
-    case TokenKind::Less: return {kCompareRank, ExpressionKind::Less};
-    case TokenKind::Greater: return {kCompareRank, ExpressionKind::Greater};
-    case TokenKind::LessEqual: return {kCompareRank, ExpressionKind::LessEqual};
-    case TokenKind::GreaterEqual: return {kCompareRank, ExpressionKind::GreaterEqual};
-    case TokenKind::Plus: return {kAddRank, ExpressionKind::Add};
-    case TokenKind::Minus: return {kAddRank, ExpressionKind::Subtract};
-    case TokenKind::Star: return {kMultiplyRank, ExpressionKind::Multiply};
-    case TokenKind::Slash: return {kMultiplyRank, ExpressionKind::Divide};
+    case TokenKind::OrOr:
+      return {kOrRank, ExpressionKind::Or};
+    case TokenKind::AndAnd:
+      return {kAndRank, ExpressionKind::And};
+    case TokenKind::Equal:
+      return {kCompareRank, ExpressionKind::Equal};
+    case TokenKind::NotEqual:
+      return {kCompareRank, ExpressionKind::NotEqual};
+    case TokenKind::Less:
+      return {kCompareRank, ExpressionKind::Less};
+    case TokenKind::Greater:
+      return {kCompareRank, ExpressionKind::Greater};
+    case TokenKind::LessEqual:
+      return {kCompareRank, ExpressionKind::LessEqual};
+    case TokenKind::GreaterEqual:
+      return {kCompareRank, ExpressionKind::GreaterEqual};
+    case TokenKind::Plus:
+      return {kAddRank, ExpressionKind::Add};
+    case TokenKind::Minus:
+      return {kAddRank, ExpressionKind::Subtract};
+    case TokenKind::Star:
+      return {kMultiplyRank, ExpressionKind::Multiply};
+    case TokenKind::Slash:
+      return {kMultiplyRank, ExpressionKind::Divide};
     case TokenKind::Word:
       if (token.keyword == Keyword::In) return {kCompareRank, ExpressionKind::In};
       if (token.keyword == Keyword::Not) return {kCompareRank, ExpressionKind::NotIn};
       return {};
-    default: return {};
+    default:
+      return {};
   }
 }
 
@@ -51,20 +64,42 @@ constexpr std::uint8_t kAnyNumber = 255;
 Arity arityOf(ast::Builtin builtin) {
   using B = ast::Builtin;
   switch (builtin) {
-    case B::Rand: case B::Now: case B::Uuid: case B::StrUuid: return {0, 0};
-    case B::Bnode: return {0, 1};
-    case B::Concat: case B::Coalesce: return {0, kAnyNumber};
-    case B::LangMatches: case B::Contains: case B::StrStarts: case B::StrEnds: case B::StrBefore: case B::StrAfter:
-    case B::StrLang: case B::StrDt: case B::SameTerm: return {2, 2};
-    case B::Regex: case B::Substr: return {2, 3};
-    case B::If: return {3, 3};
-    case B::Replace: return {3, 4};
-    default: return {1, 1};
+    case B::Rand:
+    case B::Now:
+    case B::Uuid:
+    case B::StrUuid:
+      return {0, 0};
+    case B::Bnode:
+      return {0, 1};
+    case B::Concat:
+    case B::Coalesce:
+      return {0, kAnyNumber};
+    case B::LangMatches:
+    case B::Contains:
+    case B::StrStarts:
+    case B::StrEnds:
+    case B::StrBefore:
+    case B::StrAfter:
+    case B::StrLang:
+    case B::StrDt:
+    case B::SameTerm:
+      return {2, 2};
+    case B::Regex:
+    case B::Substr:
+      return {2, 3};
+    case B::If:
+      return {3, 3};
+    case B::Replace:
+      return {3, 4};
+    default:
+      return {1, 1};
   }
 }
 
 std::string arityText(Arity arity) {
-  const auto counted = [](int n) { return n == 0 ? "no argument" : std::to_string(n) + (n == 1 ? " argument" : " arguments"); };
+  const auto counted = [](int n) {
+    return n == 0 ? "no argument" : std::to_string(n) + (n == 1 ? " argument" : " arguments");
+  };
   if (arity.least == arity.most) return counted(arity.least);
   return std::to_string(arity.least) + " or " + counted(arity.most);
 }
@@ -98,8 +133,8 @@ Expression SparqlParser::joined(ExpressionKind kind, Expression left, Expression
 
 Expression SparqlParser::binary(int least_rank) {
   Expression left = unary();
-  int most_rank = kMultiplyRank;     // a comparison is no operand of a comparison
-  int run_rank = kNoOperator;        // the rank of the || or && that this loop has made `left` of
+  int most_rank = kMultiplyRank;  // a comparison is no operand of a comparison
+  int run_rank = kNoOperator;     // the rank of the || or && that this loop has made `left` of
   for (;;) {
     const Operator found = operatorOf(token_);
     if (found.rank < least_rank || found.rank > most_rank || found.rank == kNoOperator) return left;
@@ -153,10 +188,14 @@ Expression SparqlParser::primary() {
     leaf.variable = variable();
     return leaf;
   }
-  if (is(Kind::String) || is(Kind::LongString)) leaf.term = literal();
-  else if (isNumberStart()) leaf.term = number();
-  else if (is(Keyword::True) || is(Keyword::False)) leaf.term = boolean();
-  else unexpected("an expression", {Keyword::FirstBuiltin, Keyword::Exists, Keyword::Not, Keyword::True, Keyword::False});
+  if (is(Kind::String) || is(Kind::LongString))
+    leaf.term = literal();
+  else if (isNumberStart())
+    leaf.term = number();
+  else if (is(Keyword::True) || is(Keyword::False))
+    leaf.term = boolean();
+  else
+    unexpected("an expression", {Keyword::FirstBuiltin, Keyword::Exists, Keyword::Not, Keyword::True, Keyword::False});
   return leaf;
 }
 
@@ -172,7 +211,9 @@ bool SparqlParser::isCallStart() const {
          (token_.keyword >= Keyword::FirstBuiltin || is(Keyword::Exists) || is(Keyword::Not));
 }
 
-bool SparqlParser::isConstraintStart() const { return is(Kind::LeftParen) || isCallStart() || isIri(); }
+bool SparqlParser::isConstraintStart() const {
+  return is(Kind::LeftParen) || isCallStart() || isIri();
+}
 
 Expression SparqlParser::constraint(std::string_view expected) {
   if (is(Kind::LeftParen)) return bracketted();
@@ -204,14 +245,16 @@ Expression SparqlParser::builtinCall(ast::Builtin builtin) {
   const Arity arity = arityOf(builtin);
   const std::size_t count = result.arguments.size();
   if (count < arity.least || (count > arity.most && arity.most != kAnyNumber))
-    fail(arguments_at, std::string(ast::nameOf(builtin)) + " takes " + arityText(arity) + ", not " + std::to_string(count));
+    fail(arguments_at,
+         std::string(ast::nameOf(builtin)) + " takes " + arityText(arity) + ", not " + std::to_string(count));
   if (builtin == ast::Builtin::Bound && result.arguments[0].kind != ExpressionKind::Variable)
     fail(arguments_at, "BOUND takes a variable, not an expression");
   return result;
 }
 
 void SparqlParser::requireAggregateAllowed(ast::SourceOffset at) const {
-  if (aggregate_use_ == AggregateUse::Inside) fail(at, "an aggregate cannot stand inside an aggregate", "compute the inner one in a sub-select");
+  if (aggregate_use_ == AggregateUse::Inside)
+    fail(at, "an aggregate cannot stand inside an aggregate", "compute the inner one in a sub-select");
   if (aggregate_use_ == AggregateUse::Refused)
     fail(at, "an aggregate can stand only in SELECT, HAVING and ORDER BY", "compute it in a sub-select");
 }

@@ -23,8 +23,10 @@ ast::GroupPattern SparqlParser::group(VariableSet& visible) {
   mode_ = NodeMode::Pattern;
   block_ = ++last_block_;
   VariableSet own;
-  if (is(Keyword::Select)) result.elements.push_back(subSelect(own));
-  else groupElements(result, own);
+  if (is(Keyword::Select))
+    result.elements.push_back(subSelect(own));
+  else
+    groupElements(result, own);
   if (!is(Kind::RightBrace)) unexpected("'}' after the sub-select");
   block_ = block_around;
   mode_ = mode_around;
@@ -35,7 +37,7 @@ ast::GroupPattern SparqlParser::group(VariableSet& visible) {
 
 void SparqlParser::groupElements(ast::GroupPattern& group, VariableSet& visible) {
   constexpr std::size_t none = SIZE_MAX;
-  std::size_t triples_at = none;   // the block that further triples belong to
+  std::size_t triples_at = none;  // the block that further triples belong to
   while (!is(Kind::RightBrace)) {
     if (isNodeStart()) {
       if (triples_at == none) {
@@ -147,12 +149,16 @@ ast::PatternElement SparqlParser::bind(VariableSet& visible) {
 ast::InlineData SparqlParser::inlineData() {
   ast::InlineData data;
   const bool several = !is(Kind::Var);
-  if (several) data.variables = inlineVariables();
-  else data.variables.push_back(variable());
+  if (several)
+    data.variables = inlineVariables();
+  else
+    data.variables.push_back(variable());
   expect(Kind::LeftBrace, "'{' and the values");
   while (!is(Kind::RightBrace)) {
-    if (several) data.rows.push_back(inlineRow(data.variables.size()));
-    else data.rows.push_back({inlineValue()});
+    if (several)
+      data.rows.push_back(inlineRow(data.variables.size()));
+    else
+      data.rows.push_back({inlineValue()});
   }
   advance();
   return data;
@@ -166,7 +172,8 @@ std::vector<ast::VariableIndex> SparqlParser::inlineVariables() {
   while (!is(Kind::RightParen)) {
     const ast::SourceOffset at = here();
     variables.push_back(variable("a variable or ')'"));
-    if (seen.contains(variables.back())) fail(at, "?" + variables_[variables.back()].name + " stands twice in this VALUES");
+    if (seen.contains(variables.back()))
+      fail(at, "?" + variables_[variables.back()].name + " stands twice in this VALUES");
     seen.add(variables.back());
   }
   advance();

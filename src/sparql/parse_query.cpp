@@ -7,15 +7,19 @@ namespace cluxel {
 ast::Query SparqlParser::query() {
   ast::Query query;
   prologue();
-  if (is(Keyword::Select)) selectQuery(query);
-  else if (take(Keyword::Construct)) constructQuery(query);
-  else if (take(Keyword::Describe)) describeQuery(query);
-  else if (take(Keyword::Ask)) askQuery(query);
+  if (is(Keyword::Select))
+    selectQuery(query);
+  else if (take(Keyword::Construct))
+    constructQuery(query);
+  else if (take(Keyword::Describe))
+    describeQuery(query);
+  else if (take(Keyword::Ask))
+    askQuery(query);
   else if (is(Keyword::Insert) || is(Keyword::Delete) || is(Keyword::Load) || is(Keyword::Clear) || is(Keyword::Drop))
     fail(here(), "this is an update, not a query", "give it to the update command");
   else
-    unexpected("SELECT, CONSTRUCT, DESCRIBE or ASK", {Keyword::Select, Keyword::Construct, Keyword::Describe,
-                                                      Keyword::Ask, Keyword::Prefix, Keyword::Base});
+    unexpected("SELECT, CONSTRUCT, DESCRIBE or ASK",
+               {Keyword::Select, Keyword::Construct, Keyword::Describe, Keyword::Ask, Keyword::Prefix, Keyword::Base});
   if (!is(Kind::End))
     unexpected("the end of the query",
                {Keyword::Group, Keyword::Having, Keyword::Order, Keyword::Limit, Keyword::Offset, Keyword::Values});
@@ -47,7 +51,7 @@ void SparqlParser::constructQuery(ast::Query& query) {
     if (!take(Keyword::Where)) unexpected("'{' and a template, or WHERE", {Keyword::Where, Keyword::From});
     const Token begin = token_;
     query.construct_template = constructTemplate();
-    token_ = begin;      // the template is the pattern too: read again, blank nodes are variables this time
+    token_ = begin;  // the template is the pattern too: read again, blank nodes are variables this time
     query.select.where = group(visible);
   }
   solutionModifiers(query.select, visible);

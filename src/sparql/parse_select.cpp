@@ -8,8 +8,10 @@ namespace cluxel {
 
 void SparqlParser::selectClause(ast::Select& select) {
   expect(Keyword::Select);
-  if (take(Keyword::Distinct)) select.duplicates = ast::Duplicates::Distinct;
-  else if (take(Keyword::Reduced)) select.duplicates = ast::Duplicates::Reduced;
+  if (take(Keyword::Distinct))
+    select.duplicates = ast::Duplicates::Distinct;
+  else if (take(Keyword::Reduced))
+    select.duplicates = ast::Duplicates::Reduced;
   select.all = take(Kind::Star);
   if (select.all) return;
   const AggregateUse use = std::exchange(aggregate_use_, AggregateUse::Allowed);
@@ -101,9 +103,12 @@ ast::OrderCondition SparqlParser::orderCondition() {
 
 void SparqlParser::limitOffset(ast::SolutionModifiers& modifiers) {
   for (;;) {
-    if (!modifiers.limit && take(Keyword::Limit)) modifiers.limit = count("a whole number after LIMIT");
-    else if (!modifiers.offset && take(Keyword::Offset)) modifiers.offset = count("a whole number after OFFSET");
-    else return;
+    if (!modifiers.limit && take(Keyword::Limit))
+      modifiers.limit = count("a whole number after LIMIT");
+    else if (!modifiers.offset && take(Keyword::Offset))
+      modifiers.offset = count("a whole number after OFFSET");
+    else
+      return;
   }
 }
 
@@ -148,8 +153,10 @@ void SparqlParser::checkProjection(const ast::Select& select, const VariableSet&
 void SparqlParser::checkGrouping(const ast::Select& select) const {
   VariableSet known;
   for (const ast::GroupCondition& condition : select.modifiers.group_by) {
-    if (condition.as) known.add(*condition.as);
-    else if (condition.expression.kind == ast::Expression::Kind::Variable) known.add(condition.expression.variable);
+    if (condition.as)
+      known.add(*condition.as);
+    else if (condition.expression.kind == ast::Expression::Kind::Variable)
+      known.add(condition.expression.variable);
   }
   if (select.values) addVisible(*select.values, known);
   for (const ast::Projection& item : select.projection) {

@@ -12,18 +12,27 @@ namespace {
 struct KnownPrefix {
   std::string_view prefix, iri;
 };
-constexpr std::array<KnownPrefix, 10> kKnownPrefixes{{{"clx", vocabulary::kClx}, {"rdf", vocabulary::kRdf},
-    {"rdfs", vocabulary::kRdfs}, {"owl", vocabulary::kOwl}, {"xsd", vocabulary::kXsd}, {"geo", vocabulary::kGeo},
-    {"geof", vocabulary::kGeof}, {"sosa", vocabulary::kSosa}, {"prov", vocabulary::kProv},
-    {"skos", vocabulary::kSkos}}};
+constexpr std::array<KnownPrefix, 10> kKnownPrefixes{{{"clx", vocabulary::kClx},
+                                                      {"rdf", vocabulary::kRdf},
+                                                      {"rdfs", vocabulary::kRdfs},
+                                                      {"owl", vocabulary::kOwl},
+                                                      {"xsd", vocabulary::kXsd},
+                                                      {"geo", vocabulary::kGeo},
+                                                      {"geof", vocabulary::kGeof},
+                                                      {"sosa", vocabulary::kSosa},
+                                                      {"prov", vocabulary::kProv},
+                                                      {"skos", vocabulary::kSkos}}};
 
 }  // namespace
 
 void SparqlParser::prologue() {
   for (;;) {
-    if (take(Keyword::Base)) baseDeclaration();
-    else if (take(Keyword::Prefix)) prefixDeclaration();
-    else return;
+    if (take(Keyword::Base))
+      baseDeclaration();
+    else if (take(Keyword::Prefix))
+      prefixDeclaration();
+    else
+      return;
   }
 }
 
@@ -115,7 +124,8 @@ Term SparqlParser::number() {
   const std::uint32_t begin = token_.begin;
   if (is(Kind::Plus) || is(Kind::Minus)) advance();
   const std::string_view type = is(Kind::Integer) ? "integer" : is(Kind::Decimal) ? "decimal" : "double";
-  Term term{TermKind::Literal, std::string(source_.text().substr(begin, token_.end - begin)), vocabulary::xsd(type), {}};
+  Term term{
+      TermKind::Literal, std::string(source_.text().substr(begin, token_.end - begin)), vocabulary::xsd(type), {}};
   advance();
   return term;
 }
@@ -163,8 +173,7 @@ ast::VariableIndex SparqlParser::variable(std::string_view expected) {
 }
 
 ast::VariableIndex SparqlParser::variableNamed(std::string_view name) {
-  const auto [place, is_new] =
-      variable_of_name_.try_emplace(name, static_cast<ast::VariableIndex>(variables_.size()));
+  const auto [place, is_new] = variable_of_name_.try_emplace(name, static_cast<ast::VariableIndex>(variables_.size()));
   if (is_new) variables_.push_back({std::string(name), false});
   return place->second;
 }
@@ -177,7 +186,8 @@ ast::VariableIndex SparqlParser::hiddenVariable(std::string name) {
 void SparqlParser::requireBlankNodesAllowed(std::uint32_t at) const {
   const bool deletes =
       mode_ == NodeMode::DeleteTemplate || mode_ == NodeMode::DeleteData || mode_ == NodeMode::DeleteWhere;
-  if (deletes) fail(at, "a blank node cannot be deleted by its label", "use a variable and a WHERE pattern that finds it");
+  if (deletes)
+    fail(at, "a blank node cannot be deleted by its label", "use a variable and a WHERE pattern that finds it");
 }
 
 /// A labelled blank node: in patterns a hidden variable that must stay in one basic graph pattern.
@@ -205,7 +215,7 @@ ast::PatternTerm SparqlParser::blankNode(const Token& token) {
 
 ast::PatternTerm SparqlParser::freshBlankNode(std::uint32_t at) {
   requireBlankNodesAllowed(at);
-  const std::string name = "[]" + std::to_string(++fresh_count_);   // no written label looks like this
+  const std::string name = "[]" + std::to_string(++fresh_count_);  // no written label looks like this
   if (mode_ == NodeMode::Pattern) return {hiddenVariable("_:" + name), at};
   return {Term::blank(name), at};
 }

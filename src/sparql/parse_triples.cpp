@@ -5,7 +5,9 @@
 
 namespace cluxel {
 
-bool SparqlParser::isNodeStart() const { return isTermStart() || is(Kind::LeftParen) || is(Kind::LeftBracket); }
+bool SparqlParser::isNodeStart() const {
+  return isTermStart() || is(Kind::LeftParen) || is(Kind::LeftBracket);
+}
 
 bool SparqlParser::isVerb() const {
   if (is(Kind::Var) || isIri() || is(Keyword::A)) return true;
@@ -21,8 +23,10 @@ void SparqlParser::triples(Triples& out) {
 void SparqlParser::triplesSameSubject(Triples& out) {
   const bool node_is_enough = is(Kind::LeftParen) || is(Kind::LeftBracket);
   const ast::PatternTerm subject = graphNode(out, "the subject of a triple");
-  if (isVerb()) propertyList(out, subject);
-  else if (!node_is_enough) unexpected("a property, a path or a variable", {Keyword::A});
+  if (isVerb())
+    propertyList(out, subject);
+  else if (!node_is_enough)
+    unexpected("a property, a path or a variable", {Keyword::A});
 }
 
 void SparqlParser::propertyList(Triples& out, const ast::PatternTerm& subject) {
@@ -51,12 +55,16 @@ void SparqlParser::verb(ast::TriplePattern& triple) {
   }
   if (mode_ == NodeMode::Pattern) {
     ast::Path read = path();
-    if (read.kind == ast::Path::Kind::Link) triple.predicate = {std::move(read.iri), at};
-    else triple.path = std::make_shared<const ast::Path>(std::move(read));
+    if (read.kind == ast::Path::Kind::Link)
+      triple.predicate = {std::move(read.iri), at};
+    else
+      triple.path = std::make_shared<const ast::Path>(std::move(read));
     return;
   }
-  if (take(Keyword::A)) triple.predicate = {Term::iri(vocabulary::rdf("type")), at};
-  else triple.predicate = {iri("a property"), at};
+  if (take(Keyword::A))
+    triple.predicate = {Term::iri(vocabulary::rdf("type")), at};
+  else
+    triple.predicate = {iri("a property"), at};
   const bool modifier = is(Kind::Star) || is(Kind::Question) || (is(Kind::Plus) && !token_.number_follows);
   if (modifier || is(Kind::Slash) || is(Kind::Bar))
     fail(here(), "a property path cannot stand here", "templates and DATA hold plain triples");
@@ -157,8 +165,10 @@ ast::Path SparqlParser::pathPrimary() {
   if (take(Kind::Bang)) return negatedSet();
   ast::Path link;
   link.at = at;
-  if (take(Keyword::A)) link.iri = Term::iri(vocabulary::rdf("type"));
-  else link.iri = iri("a property or a path");
+  if (take(Keyword::A))
+    link.iri = Term::iri(vocabulary::rdf("type"));
+  else
+    link.iri = iri("a property or a path");
   return link;
 }
 
@@ -179,8 +189,10 @@ ast::Path SparqlParser::negatedSet() {
 
 void SparqlParser::negatedSetMember(ast::Path& set) {
   std::vector<Term>& side = take(Kind::Caret) ? set.backward : set.forward;
-  if (take(Keyword::A)) side.push_back(Term::iri(vocabulary::rdf("type")));
-  else side.push_back(iri("a property, or ^ and a property"));
+  if (take(Keyword::A))
+    side.push_back(Term::iri(vocabulary::rdf("type")));
+  else
+    side.push_back(iri("a property, or ^ and a property"));
 }
 
 }  // namespace cluxel

@@ -27,17 +27,29 @@ ast::UpdateOperation SparqlParser::updateOperation() {
   operation.at = here();
   const Keyword second = peek().keyword;
   const bool modifies = is(Keyword::Insert) || is(Keyword::Delete);
-  if (is(Keyword::With) || (modifies && second != Keyword::Data && second != Keyword::Where)) operation.value = modify();
-  else if (is(Keyword::Delete) && second == Keyword::Where) operation.value = deleteWhere();
-  else if (is(Keyword::Insert) && second == Keyword::Where) { advance(); unexpected("DATA or '{'"); }
-  else if (modifies) operation.value = dataUpdate(is(Keyword::Insert));
-  else if (take(Keyword::Load)) operation.value = load();
-  else if (take(Keyword::Clear)) operation.value = ast::Clear{take(Keyword::Silent), graphRefAll()};
-  else if (take(Keyword::Drop)) operation.value = ast::Drop{take(Keyword::Silent), graphRefAll()};
-  else if (take(Keyword::Create)) operation.value = ast::Create{take(Keyword::Silent), graphRef()};
-  else if (take(Keyword::Add)) operation.value = transfer(ast::Transfer::Kind::Add);
-  else if (take(Keyword::Move)) operation.value = transfer(ast::Transfer::Kind::Move);
-  else if (take(Keyword::Copy)) operation.value = transfer(ast::Transfer::Kind::Copy);
+  if (is(Keyword::With) || (modifies && second != Keyword::Data && second != Keyword::Where))
+    operation.value = modify();
+  else if (is(Keyword::Delete) && second == Keyword::Where)
+    operation.value = deleteWhere();
+  else if (is(Keyword::Insert) && second == Keyword::Where) {
+    advance();
+    unexpected("DATA or '{'");
+  } else if (modifies)
+    operation.value = dataUpdate(is(Keyword::Insert));
+  else if (take(Keyword::Load))
+    operation.value = load();
+  else if (take(Keyword::Clear))
+    operation.value = ast::Clear{take(Keyword::Silent), graphRefAll()};
+  else if (take(Keyword::Drop))
+    operation.value = ast::Drop{take(Keyword::Silent), graphRefAll()};
+  else if (take(Keyword::Create))
+    operation.value = ast::Create{take(Keyword::Silent), graphRef()};
+  else if (take(Keyword::Add))
+    operation.value = transfer(ast::Transfer::Kind::Add);
+  else if (take(Keyword::Move))
+    operation.value = transfer(ast::Transfer::Kind::Move);
+  else if (take(Keyword::Copy))
+    operation.value = transfer(ast::Transfer::Kind::Copy);
   else if (is(Keyword::Select) || is(Keyword::Construct) || is(Keyword::Describe) || is(Keyword::Ask))
     fail(here(), "this is a query, not an update", "give it to the query command");
   else
@@ -65,7 +77,8 @@ ast::GraphTarget SparqlParser::graphRefAll() {
   if (take(Keyword::Named)) return {ast::GraphTarget::Kind::Named, {}};
   if (take(Keyword::All)) return {ast::GraphTarget::Kind::All, {}};
   if (!is(Keyword::Graph))
-    unexpected("GRAPH and an IRI, DEFAULT, NAMED or ALL", {Keyword::Graph, Keyword::Default, Keyword::Named, Keyword::All});
+    unexpected("GRAPH and an IRI, DEFAULT, NAMED or ALL",
+               {Keyword::Graph, Keyword::Default, Keyword::Named, Keyword::All});
   return {ast::GraphTarget::Kind::Graph, graphRef()};
 }
 
@@ -110,7 +123,7 @@ ast::Modify SparqlParser::deleteWhere() {
   ast::Modify modify;
   const Token begin = token_;
   modify.remove = quadBlock(NodeMode::DeleteWhere);
-  token_ = begin;      // the template is the pattern too
+  token_ = begin;  // the template is the pattern too
   VariableSet visible;
   modify.where = group(visible);
   return modify;
@@ -121,8 +134,10 @@ ast::Modify SparqlParser::modify() {
   if (take(Keyword::With)) modify.with = iri("a graph's IRI");
   const bool removes = take(Keyword::Delete);
   if (removes) modify.remove = quadBlock(NodeMode::DeleteTemplate);
-  if (take(Keyword::Insert)) modify.insert = quadBlock(NodeMode::Template);
-  else if (!removes) unexpected("DELETE or INSERT", {Keyword::Delete, Keyword::Insert});
+  if (take(Keyword::Insert))
+    modify.insert = quadBlock(NodeMode::Template);
+  else if (!removes)
+    unexpected("DELETE or INSERT", {Keyword::Delete, Keyword::Insert});
   modify.using_clause = datasetClause(Keyword::Using);
   if (!take(Keyword::Where)) unexpected("WHERE", {Keyword::Where, Keyword::Using, Keyword::Insert});
   VariableSet visible;

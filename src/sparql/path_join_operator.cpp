@@ -82,7 +82,7 @@ class PathJoinOperator : public UnaryOperator {
   static void write(Batch& out, const PatternPlace& place, ValueId id) {
     if (!place.isSlot()) return;
     auto& column = out.columns[place.slot];
-    if (column.size() == out.rows + 1) return;   // the same variable at both ends
+    if (column.size() == out.rows + 1) return;  // the same variable at both ends
     column.push_back(id);
   }
 
@@ -99,9 +99,12 @@ class PathJoinOperator : public UnaryOperator {
   void search(std::size_t row) {
     const std::vector<TermId>& named = runtime().dataset.named;
     switch (pattern_.graph.kind) {
-      case GraphPlace::Kind::Default: return searchIn(row, kNoTerm, runtime().dataset.default_graph);
-      case GraphPlace::Kind::Constant: return searchIn(row, pattern_.graph.constant, oneGraph(pattern_.graph.constant));
-      case GraphPlace::Kind::Slot: break;
+      case GraphPlace::Kind::Default:
+        return searchIn(row, kNoTerm, runtime().dataset.default_graph);
+      case GraphPlace::Kind::Constant:
+        return searchIn(row, pattern_.graph.constant, oneGraph(pattern_.graph.constant));
+      case GraphPlace::Kind::Slot:
+        break;
     }
     const ValueId bound = in_.at(pattern_.graph.slot, row);
     for (const TermId graph : named) {
@@ -130,8 +133,8 @@ class PathJoinOperator : public UnaryOperator {
     }
   }
 
-  /// From one of the nodes at which the row's paths may begin, so that those who want few pairs do not wait for all; false
-  /// when none is left.
+  /// From one of the nodes at which the row's paths may begin, so that those who want few pairs do not wait for all;
+  /// false when none is left.
   bool searchNextStart() {
     while (!waiting_.empty() && waiting_.back().next == waiting_.back().starts.size()) waiting_.pop_back();
     if (waiting_.empty()) return false;
@@ -142,8 +145,8 @@ class PathJoinOperator : public UnaryOperator {
 
   /// `end` is the known end; `other` the one it must lead to, or kUnbound.
   void fromEnd(PathWalker& walker, ValueId end, ValueId other, bool forward, ValueId graph) {
-    const bool same_variable = pattern_.subject.isSlot() && pattern_.object.isSlot() &&
-                               pattern_.subject.slot == pattern_.object.slot;
+    const bool same_variable =
+        pattern_.subject.isSlot() && pattern_.object.isSlot() && pattern_.subject.slot == pattern_.object.slot;
     if (same_variable) other = end;
     const auto& reached = walker.reach(*pattern_.path, end, forward);
     const auto take = [&](ValueId node) {

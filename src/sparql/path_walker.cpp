@@ -31,7 +31,7 @@ PathWalker::PathWalker(Runtime& runtime, const GraphFilter& graphs)
 template <typename Take>
 void PathWalker::entries(QuadOrder order, std::span<const TermId> prefix, Take take) {
   PrefixLookup& lookup = order == QuadOrder::Spog ? by_subject_ : order == QuadOrder::Posg ? by_predicate_ : by_object_;
-  const std::size_t graph_position = 3;   // last in all three
+  const std::size_t graph_position = 3;  // last in all three
   for (auto block = lookup.find(prefix); !block.empty(); block = lookup.more()) {
     runtime_.guard.work(block.size());
     for (const QuadKey& key : block) {
@@ -61,11 +61,16 @@ void PathWalker::forget() {
 
 void PathWalker::step(const CompiledPath& path, ValueId node, bool forward, Nodes& out) {
   switch (path.kind) {
-    case Kind::Link: return link(path.iri, node, forward, out);
-    case Kind::Inverse: return step(path.parts[0], node, !forward, out);
-    case Kind::NegatedSet: return negated(path, node, forward, out);
-    case Kind::ZeroOrMore: return closure(path.parts[0], node, forward, true, out);
-    case Kind::OneOrMore: return closure(path.parts[0], node, forward, false, out);
+    case Kind::Link:
+      return link(path.iri, node, forward, out);
+    case Kind::Inverse:
+      return step(path.parts[0], node, !forward, out);
+    case Kind::NegatedSet:
+      return negated(path, node, forward, out);
+    case Kind::ZeroOrMore:
+      return closure(path.parts[0], node, forward, true, out);
+    case Kind::OneOrMore:
+      return closure(path.parts[0], node, forward, false, out);
     case Kind::Alternative:
       for (const CompiledPath& part : path.parts) step(part, node, forward, out);
       return makeUnique(out);
@@ -90,8 +95,8 @@ void PathWalker::step(const CompiledPath& path, ValueId node, bool forward, Node
 
 void PathWalker::link(ValueId predicate, ValueId node, bool forward, Nodes& out) {
   if (predicate >= kFirstComputed || node >= kFirstComputed) return;
-  const std::array<TermId, 2> prefix = forward ? std::array<TermId, 2>{node, predicate}
-                                               : std::array<TermId, 2>{predicate, node};
+  const std::array<TermId, 2> prefix =
+      forward ? std::array<TermId, 2>{node, predicate} : std::array<TermId, 2>{predicate, node};
   const std::size_t first = out.size();
   // Both orders have the other end third; repetitions from several graphs are neighbours.
   entries(forward ? QuadOrder::Spog : QuadOrder::Posg, prefix, [&](const QuadKey& key) {

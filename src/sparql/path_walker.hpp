@@ -49,7 +49,7 @@ class PathWalker {
   GraphFilter graphs_;
   PrefixLookup by_subject_, by_predicate_, by_object_;
   std::unordered_map<Key, Nodes, KeyHash> known_;
-  std::size_t known_bytes_ = 0;   ///< charged
+  std::size_t known_bytes_ = 0;  ///< charged
 };
 
 }  // namespace cluxel::sparql

@@ -71,7 +71,7 @@ class EntryReader {
 
   std::array<Check, 4> checks_{};
   std::size_t check_count_ = 0;
-  std::array<Check, 4> same_{};   ///< pairs of positions with the same slot
+  std::array<Check, 4> same_{};  ///< pairs of positions with the same slot
   std::size_t same_count_ = 0;
   std::array<Output, 4> outputs_{};
   std::size_t output_count_ = 0;

@@ -9,8 +9,9 @@ NodePtr AlgebraBuilder::triples(const ast::TriplesBlock& block, Scope& scope) {
   NodePtr node = unit(scope);
   for (const ast::TriplePattern& pattern : block.triples) {
     const PatternPlace subject = place(pattern.subject, scope), object = place(pattern.object, scope);
-    NodePtr next = pattern.isPath() ? path(subject, *pattern.path, object, scope)
-                                    : triple(subject, place(pattern.predicate, scope), object, scope, pattern.subject.at);
+    NodePtr next = pattern.isPath()
+                       ? path(subject, *pattern.path, object, scope)
+                       : triple(subject, place(pattern.predicate, scope), object, scope, pattern.subject.at);
     node = join(node, next, scope);
   }
   return node;
@@ -33,8 +34,10 @@ NodePtr AlgebraBuilder::path(const PatternPlace& subject, const ast::Path& path,
                              Scope& scope) {
   using Kind = ast::Path::Kind;
   switch (path.kind) {
-    case Kind::Link: return triple(subject, {kNoSlot, terms_.intern(path.iri)}, object, scope, path.at);
-    case Kind::Inverse: return this->path(object, path.parts[0], subject, scope);
+    case Kind::Link:
+      return triple(subject, {kNoSlot, terms_.intern(path.iri)}, object, scope, path.at);
+    case Kind::Inverse:
+      return this->path(object, path.parts[0], subject, scope);
     case Kind::Sequence: {
       NodePtr node = unit(scope);
       PatternPlace from = subject;
@@ -52,10 +55,12 @@ NodePtr AlgebraBuilder::path(const PatternPlace& subject, const ast::Path& path,
       node->annotate();
       return node;
     }
-    case Kind::NegatedSet: return negatedSet(subject, path, object, scope);
+    case Kind::NegatedSet:
+      return negatedSet(subject, path, object, scope);
     case Kind::ZeroOrMore:
     case Kind::OneOrMore:
-    case Kind::ZeroOrOne: break;
+    case Kind::ZeroOrOne:
+      break;
   }
   NodePtr node = triple(subject, {}, object, scope, path.at);
   node->triple.path = std::make_shared<const CompiledPath>(compile(path));

@@ -15,11 +15,14 @@ bool isPlain(const Node& node) {
     case Node::Kind::Nothing:
     case Node::Kind::Triple:
     case Node::Kind::GraphNames:
-    case Node::Kind::Values: return true;
+    case Node::Kind::Values:
+      return true;
     case Node::Kind::Join:
     case Node::Kind::Union:
-      return std::all_of(node.children.begin(), node.children.end(), [](const NodePtr& child) { return isPlain(*child); });
-    default: return false;
+      return std::all_of(node.children.begin(), node.children.end(),
+                         [](const NodePtr& child) { return isPlain(*child); });
+    default:
+      return false;
   }
 }
 
@@ -53,7 +56,8 @@ Planner::State Planner::joinCorrelated(State state, const Node& part, const Slot
   return joined(std::move(state), std::move(top), part, rows);
 }
 
-Planner::State Planner::minusCorrelated(State state, const Node& node, const SlotSet& seen, const std::vector<Slot>& shared) {
+Planner::State Planner::minusCorrelated(State state, const Node& node, const SlotSet& seen,
+                                        const std::vector<Slot>& shared) {
   OperatorPtr body = correlatedBody(state, *node.children[1], seen);
   state.top = makeCorrelatedMinus(std::move(state.top), std::move(body), seen.list(), shared, node.minus_ignores);
   state.top->at = node.at;

@@ -13,7 +13,7 @@ namespace {
 // Measured on this store, in nanoseconds: a lookup by ascending and by scattered ids, an entry read in a scan, a row
 // put into and looked up in a hash table.
 constexpr double kAscendingLookup = 120, kScatteredLookup = 350, kScannedEntry = 4, kHashBuild = 35, kHashProbe = 25,
-                 kMergedRow = 8, kColumnMade = 25, kColumnLookup = 25;   // a column: for each quad of the predicate
+                 kMergedRow = 8, kColumnMade = 25, kColumnLookup = 25;  // a column: for each quad of the predicate
 /// Rows that may have to be looked at for one that a LIMIT wants.
 constexpr double kRowsPerWanted = 64;
 
@@ -22,8 +22,8 @@ BoundMask constantsOf(const TripleNode& pattern, const Dataset& dataset) {
   if (!pattern.subject.isSlot()) mask |= 1;
   if (!pattern.predicate.isSlot()) mask |= 2;
   if (!pattern.object.isSlot()) mask |= 4;
-  const bool one_default = pattern.graph.kind == GraphPlace::Kind::Default &&
-                           dataset.default_graph.kind == GraphFilter::Kind::One;
+  const bool one_default =
+      pattern.graph.kind == GraphPlace::Kind::Default && dataset.default_graph.kind == GraphFilter::Kind::One;
   if (pattern.graph.kind == GraphPlace::Kind::Constant || one_default) mask |= 8;
   return mask;
 }
@@ -49,18 +49,23 @@ bool isImpossible(const TripleNode& pattern, const Dataset& dataset) {
 }  // namespace
 
 /// The slot by which a scan of the pattern ascends.
-Slot Planner::scannedBy(const TripleNode& pattern) const { return sortedBy(pattern, chooseOrder(constantsOf(pattern, dataset_))); }
+Slot Planner::scannedBy(const TripleNode& pattern) const {
+  return sortedBy(pattern, chooseOrder(constantsOf(pattern, dataset_)));
+}
 
 Planner::State Planner::joinPart(State state, const Node& part, double wanted_rows) {
   switch (part.kind) {
-    case Node::Kind::Triple: return joinTriple(std::move(state), part, wanted_rows);
-    case Node::Kind::Union: return joinUnion(std::move(state), part);
+    case Node::Kind::Triple:
+      return joinTriple(std::move(state), part, wanted_rows);
+    case Node::Kind::Union:
+      return joinUnion(std::move(state), part);
     case Node::Kind::GraphNames: {
       const double rows = rowsAfter(state, part);
       OperatorPtr top = makeGraphNames(std::move(state.top), part.graph);
       return joined(std::move(state), std::move(top), part, rows);
     }
-    default: return joinAlone(std::move(state), part);
+    default:
+      return joinAlone(std::move(state), part);
   }
 }
 
@@ -130,10 +135,12 @@ OperatorPtr Planner::joinOperator(State& state, const Node& part, const OrderCho
 /// Of lookups in a column, which is made first; kAllRows where there can be none. Whether it is there already does not
 /// count, so that a plan does not depend on what was asked before.
 double Planner::columnCost(const State& state, const TripleNode& pattern, double lookups) {
-  const bool fits = pattern.subject.isSlot() && state.certain.has(pattern.subject.slot) && !pattern.predicate.isSlot() &&
-                    pattern.graph.kind == GraphPlace::Kind::Default && hasColumns(dataset_.default_graph);
+  const bool fits = pattern.subject.isSlot() && state.certain.has(pattern.subject.slot) &&
+                    !pattern.predicate.isSlot() && pattern.graph.kind == GraphPlace::Kind::Default &&
+                    hasColumns(dataset_.default_graph);
   if (!fits) return kAllRows;
-  const double quads = pattern.object.isSlot() ? cardinality_.quadsOf(pattern.predicate.constant) : cardinality_.matches(pattern);
+  const double quads =
+      pattern.object.isSlot() ? cardinality_.quadsOf(pattern.predicate.constant) : cardinality_.matches(pattern);
   return quads * kColumnMade + lookups * kColumnLookup;
 }
 
@@ -144,7 +151,8 @@ Planner::State Planner::joinUnion(State state, const Node& part) {
   for (const Slot slot : parameters_) joined_so_far.remove(slot);
   const bool connected = !joined_so_far.empty() && state.certain.intersects(part.certain);
   // Where the branches are small beside the rows so far, they are computed once.
-  if (!state.is_unit && state.outer.empty() && connected && own * (kScannedEntry + kHashBuild) < state.rows * kAscendingLookup) {
+  if (!state.is_unit && state.outer.empty() && connected &&
+      own * (kScannedEntry + kHashBuild) < state.rows * kAscendingLookup) {
     return joinAlone(std::move(state), part);
   }
   const double rows = rowsAfter(state, part);
@@ -161,9 +169,8 @@ Planner::State Planner::joinUnion(State state, const Node& part) {
   }
   std::vector<Pipeline> branches;
   for (const NodePtr& branch : part.children) {
-    branches.push_back(pipeline(state, state.outer, [&](State inner) {
-      return joinNode(std::move(inner), *branch, {});
-    }));
+    branches.push_back(
+        pipeline(state, state.outer, [&](State inner) { return joinNode(std::move(inner), *branch, {}); }));
   }
   state.sorted_by = kNoSlot;
   OperatorPtr top = makeUnion(std::move(state.top), std::move(branches));
@@ -196,7 +203,8 @@ Planner::State Planner::hashJoin(State state, State other) {
 Planner::State Planner::leftJoin(State state, const Node& node) {
   const Node& optional = *node.children[1];
   const double rows = state.rows * 1.2;
-  Pipeline inner = pipeline(state, state.outer, [&](State from) { return joinNode(std::move(from), optional, node.conditions); });
+  Pipeline inner =
+      pipeline(state, state.outer, [&](State from) { return joinNode(std::move(from), optional, node.conditions); });
   state.top = makeLeftJoin(std::move(state.top), std::move(inner));
   state.top->at = node.at;
   state.possible.add(optional.possible);

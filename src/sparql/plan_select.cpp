@@ -26,7 +26,9 @@ OperatorPtr Planner::plan() {
   if (query_.wants_one && !isModifier(root) && root.kind != Node::Kind::Group) wanted_rows_ = 1;
   return alone(root).top;
 }
-OperatorPtr Planner::planAlone(const Node& node) { return alone(node).top; }
+OperatorPtr Planner::planAlone(const Node& node) {
+  return alone(node).top;
+}
 
 Planner::State Planner::alone(const Node& node) {
   if (isModifier(node) || node.kind == Node::Kind::Group) return select(node, std::nullopt, {});
@@ -58,13 +60,19 @@ Planner::State Planner::graphLoop(const Node& node) {
   return state;
 }
 
-Planner::State Planner::select(const Node& node, std::optional<std::uint64_t> most_rows, const std::vector<Slot>& columns) {
+Planner::State Planner::select(const Node& node, std::optional<std::uint64_t> most_rows,
+                               const std::vector<Slot>& columns) {
   switch (node.kind) {
-    case Node::Kind::Slice: return slice(node, columns);
-    case Node::Kind::Distinct: return distinct(node);
-    case Node::Kind::Project: return project(node, most_rows);
-    case Node::Kind::OrderBy: return order(node, most_rows, columns);
-    default: return group(node);
+    case Node::Kind::Slice:
+      return slice(node, columns);
+    case Node::Kind::Distinct:
+      return distinct(node);
+    case Node::Kind::Project:
+      return project(node, most_rows);
+    case Node::Kind::OrderBy:
+      return order(node, most_rows, columns);
+    default:
+      return group(node);
   }
 }
 
@@ -110,7 +118,8 @@ Planner::State Planner::project(const Node& node, std::optional<std::uint64_t> m
   return state;
 }
 
-Planner::State Planner::order(const Node& node, std::optional<std::uint64_t> most_rows, const std::vector<Slot>& columns) {
+Planner::State Planner::order(const Node& node, std::optional<std::uint64_t> most_rows,
+                              const std::vector<Slot>& columns) {
   State state = alone(*node.children[0]);
   std::vector<const Expr*> expressions;
   for (const SortKey& key : node.sort_keys) expressions.push_back(&key.expression);
@@ -130,7 +139,8 @@ Planner::State Planner::group(const Node& node) {
   auto exists = planExists(state, expressions);
   State grouped;
   const std::vector<Slot> keys = mergedSlots(node.slots, {});
-  grouped.top = makeGroup(std::move(state.top), keys, node.aggregates, node.grouped_by_keys, parameters_, std::move(exists));
+  grouped.top =
+      makeGroup(std::move(state.top), keys, node.aggregates, node.grouped_by_keys, parameters_, std::move(exists));
   grouped.certain = node.certain;
   grouped.possible = node.possible;
   for (const Slot slot : parameters_) {

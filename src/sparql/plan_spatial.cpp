@@ -6,8 +6,8 @@
 #include "cluxel/knowledge/vocabulary.hpp"
 #include "sparql/function_bodies.hpp"
 #include "sparql/geometry.hpp"
-#include "sparql/planner.hpp"
 #include "sparql/geometry_index.hpp"
+#include "sparql/planner.hpp"
 
 namespace cluxel::sparql {
 namespace {
@@ -36,7 +36,8 @@ std::optional<Search> searchBy(const Expr& call, double by_m, const QueryTerms& 
   const bool first = call.arguments[0].kind == Kind::Slot;
   const Expr& variable = call.arguments[first ? 0 : 1];
   const Expr& constant = call.arguments[first ? 1 : 0];
-  if (variable.kind != Kind::Slot || constant.kind != Kind::Constant || constant.constant.id == kUnbound) return std::nullopt;
+  if (variable.kind != Kind::Slot || constant.kind != Kind::Constant || constant.constant.id == kUnbound)
+    return std::nullopt;
   const TermView literal = terms.view(constant.constant.id);
   if (literal.datatype != std::string(vocabulary::kGeo) + "wktLiteral") return std::nullopt;
   const auto geometry = parseWkt(literal.text);
@@ -56,7 +57,8 @@ const Expr& resolved(const Expr& expression, const Node& group) {
   for (const Node* node = &group; !node->children.empty(); node = node->children[0].get()) {
     if (node->kind == Node::Kind::Extend && node->slot == expression.slot) return *node->expression;
     // An OPTIONAL above could give the variable another value where the BIND failed.
-    const bool passes = node->kind == Node::Kind::Extend || node->kind == Node::Kind::Filter || node->kind == Node::Kind::Minus;
+    const bool passes =
+        node->kind == Node::Kind::Extend || node->kind == Node::Kind::Filter || node->kind == Node::Kind::Minus;
     if (!passes) break;
   }
   return expression;
@@ -71,7 +73,8 @@ std::optional<Search> searchOf(const Expr& condition, const Node& group, const Q
   if (!less && !greater) return std::nullopt;
   const Expr& distance = resolved(condition.arguments[less ? 0 : 1], group);
   const Expr& limit = condition.arguments[less ? 1 : 0];
-  if (!isCallOf(distance, geoDistanceFunction) || limit.kind != Kind::Constant || !limit.constant.isNumeric()) return std::nullopt;
+  if (!isCallOf(distance, geoDistanceFunction) || limit.kind != Kind::Constant || !limit.constant.isNumeric())
+    return std::nullopt;
   return searchBy(distance, limit.constant.number, terms);
 }
 
@@ -91,8 +94,10 @@ ValueId predicateOf(const Node& node, Slot slot) {
     case Node::Kind::Filter:
     case Node::Kind::Extend:
     case Node::Kind::LeftJoin:
-    case Node::Kind::Minus: return predicateOf(*node.children[0], slot);
-    default: return kUnbound;
+    case Node::Kind::Minus:
+      return predicateOf(*node.children[0], slot);
+    default:
+      return kUnbound;
   }
 }
 
@@ -116,7 +121,8 @@ void Planner::searchBySpace(const Expr& condition, const Node& child, Parts& par
   NodePtr values = makeNode(Node::Kind::Values, condition.at);
   values->slots = {search->slot};
   for (const TermId id : found) values->rows.push_back({id});
-  values->note = "R-tree, " + std::to_string(found.size()) + " of " + std::to_string(index->size()) + " boxes meet the filter's:";
+  values->note =
+      "R-tree, " + std::to_string(found.size()) + " of " + std::to_string(index->size()) + " boxes meet the filter's:";
   values->annotate();
   // Without any row the annotation would say that the variable is never bound.
   values->possible.add(search->slot);

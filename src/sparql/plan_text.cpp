@@ -9,8 +9,8 @@ namespace {
 std::string shortIri(std::string_view iri) {
   using namespace vocabulary;
   constexpr std::pair<std::string_view, std::string_view> kPrefixes[] = {
-      {"clx:", kClx}, {"rdf:", kRdf}, {"rdfs:", kRdfs}, {"owl:", kOwl}, {"xsd:", kXsd}, {"geo:", kGeo},
-      {"geof:", kGeof}, {"sosa:", kSosa}, {"prov:", kProv}, {"skos:", kSkos}};
+      {"clx:", kClx}, {"rdf:", kRdf},   {"rdfs:", kRdfs}, {"owl:", kOwl},   {"xsd:", kXsd},
+      {"geo:", kGeo}, {"geof:", kGeof}, {"sosa:", kSosa}, {"prov:", kProv}, {"skos:", kSkos}};
   for (const auto& [prefix, space] : kPrefixes) {
     if (iri.starts_with(space)) return std::string(prefix) + std::string(iri.substr(space.size()));
   }
@@ -40,14 +40,22 @@ std::string textOf(const CompiledPath& path, const QueryTerms& terms) {
     return text + ")";
   };
   switch (path.kind) {
-    case Kind::Link: return textOf(path.iri, terms);
-    case Kind::Inverse: return "^" + textOf(path.parts[0], terms);
-    case Kind::Sequence: return list("/");
-    case Kind::Alternative: return list("|");
-    case Kind::ZeroOrMore: return textOf(path.parts[0], terms) + "*";
-    case Kind::OneOrMore: return textOf(path.parts[0], terms) + "+";
-    case Kind::ZeroOrOne: return textOf(path.parts[0], terms) + "?";
-    case Kind::NegatedSet: break;
+    case Kind::Link:
+      return textOf(path.iri, terms);
+    case Kind::Inverse:
+      return "^" + textOf(path.parts[0], terms);
+    case Kind::Sequence:
+      return list("/");
+    case Kind::Alternative:
+      return list("|");
+    case Kind::ZeroOrMore:
+      return textOf(path.parts[0], terms) + "*";
+    case Kind::OneOrMore:
+      return textOf(path.parts[0], terms) + "+";
+    case Kind::ZeroOrOne:
+      return textOf(path.parts[0], terms) + "?";
+    case Kind::NegatedSet:
+      break;
   }
   std::string text = "!(";
   for (const ValueId iri : path.forward) text += textOf(iri, terms) + " ";
@@ -57,19 +65,32 @@ std::string textOf(const CompiledPath& path, const QueryTerms& terms) {
 
 std::string_view operatorText(Expr::Kind kind) {
   switch (kind) {
-    case Expr::Kind::Or: return " || ";
-    case Expr::Kind::And: return " && ";
-    case Expr::Kind::Equal: return " = ";
-    case Expr::Kind::NotEqual: return " != ";
-    case Expr::Kind::Less: return " < ";
-    case Expr::Kind::Greater: return " > ";
-    case Expr::Kind::LessEqual: return " <= ";
-    case Expr::Kind::GreaterEqual: return " >= ";
-    case Expr::Kind::Add: return " + ";
-    case Expr::Kind::Subtract: return " - ";
-    case Expr::Kind::Multiply: return " * ";
-    case Expr::Kind::Divide: return " / ";
-    default: return {};
+    case Expr::Kind::Or:
+      return " || ";
+    case Expr::Kind::And:
+      return " && ";
+    case Expr::Kind::Equal:
+      return " = ";
+    case Expr::Kind::NotEqual:
+      return " != ";
+    case Expr::Kind::Less:
+      return " < ";
+    case Expr::Kind::Greater:
+      return " > ";
+    case Expr::Kind::LessEqual:
+      return " <= ";
+    case Expr::Kind::GreaterEqual:
+      return " >= ";
+    case Expr::Kind::Add:
+      return " + ";
+    case Expr::Kind::Subtract:
+      return " - ";
+    case Expr::Kind::Multiply:
+      return " * ";
+    case Expr::Kind::Divide:
+      return " / ";
+    default:
+      return {};
   }
 }
 
@@ -85,27 +106,40 @@ std::string describe(const Expr& expression, const AlgebraQuery& query, const Qu
     return text;
   };
   switch (expression.kind) {
-    case Kind::Slot: return "?" + query.slot_names[expression.slot];
+    case Kind::Slot:
+      return "?" + query.slot_names[expression.slot];
     case Kind::Constant:
       return expression.constant.id != kUnbound ? textOf(expression.constant.id, terms)
                                                 : toNTriples(termOfComputed(expression.constant));
-    case Kind::Unbound: return "(unbound)";
-    case Kind::Bound: return "BOUND(?" + query.slot_names[expression.slot] + ")";
-    case Kind::Not: return "!(" + arguments("", 0) + ")";
-    case Kind::Negate: return "-(" + arguments("", 0) + ")";
-    case Kind::Plus: return "+(" + arguments("", 0) + ")";
-    case Kind::In: return describe(expression.arguments[0], query, terms) + " IN (" + arguments(", ", 1) + ")";
-    case Kind::NotIn: return describe(expression.arguments[0], query, terms) + " NOT IN (" + arguments(", ", 1) + ")";
-    case Kind::Coalesce: return "COALESCE(" + arguments(", ", 0) + ")";
-    case Kind::If: return "IF(" + arguments(", ", 0) + ")";
+    case Kind::Unbound:
+      return "(unbound)";
+    case Kind::Bound:
+      return "BOUND(?" + query.slot_names[expression.slot] + ")";
+    case Kind::Not:
+      return "!(" + arguments("", 0) + ")";
+    case Kind::Negate:
+      return "-(" + arguments("", 0) + ")";
+    case Kind::Plus:
+      return "+(" + arguments("", 0) + ")";
+    case Kind::In:
+      return describe(expression.arguments[0], query, terms) + " IN (" + arguments(", ", 1) + ")";
+    case Kind::NotIn:
+      return describe(expression.arguments[0], query, terms) + " NOT IN (" + arguments(", ", 1) + ")";
+    case Kind::Coalesce:
+      return "COALESCE(" + arguments(", ", 0) + ")";
+    case Kind::If:
+      return "IF(" + arguments(", ", 0) + ")";
     case Kind::Call: {
       const std::string_view name = expression.function->name;
       const std::string shown = name.find(':') == std::string_view::npos ? std::string(name) : shortIri(name);
       return shown + "(" + arguments(", ", 0) + ")";
     }
-    case Kind::Exists: return "EXISTS {…}";
-    case Kind::NotExists: return "NOT EXISTS {…}";
-    default: return "(" + arguments(operatorText(expression.kind), 0) + ")";
+    case Kind::Exists:
+      return "EXISTS {…}";
+    case Kind::NotExists:
+      return "NOT EXISTS {…}";
+    default:
+      return "(" + arguments(operatorText(expression.kind), 0) + ")";
   }
 }
 

@@ -44,10 +44,12 @@ Slot Planner::freshSlot(const char* name) {
 }
 
 /// Nested joins, filters, optionals and binds become one flat group where that changes nothing: `rest` is what the
-/// surrounding group may bind besides, `after` what steps that come after this node may add, which no filter within sees.
+/// surrounding group may bind besides, `after` what steps that come after this node may add, which no filter within
+/// sees.
 void Planner::takeApart(const Node& node, const SlotSet& rest, const SlotSet& after, Parts& parts) {
   switch (node.kind) {
-    case Node::Kind::Unit: return;
+    case Node::Kind::Unit:
+      return;
     case Node::Kind::Join:
       for (std::size_t i = 0; i < node.children.size(); ++i) {
         SlotSet others = rest;
@@ -57,7 +59,8 @@ void Planner::takeApart(const Node& node, const SlotSet& rest, const SlotSet& af
         takeApart(*node.children[i], others, after, parts);
       }
       return;
-    case Node::Kind::Filter: return takeFilters(node, rest, after, parts);
+    case Node::Kind::Filter:
+      return takeFilters(node, rest, after, parts);
     case Node::Kind::LeftJoin: {
       SlotSet used = node.children[1]->mentioned();
       for (const Expr& condition : node.conditions) used.add(condition.slots());
@@ -80,7 +83,8 @@ void Planner::takeApart(const Node& node, const SlotSet& rest, const SlotSet& af
       parts.postponed.push_back({Postponed::Kind::Extend, &node});
       return;
     }
-    default: break;
+    default:
+      break;
   }
   parts.joined.push_back(&node);
 }
@@ -271,15 +275,15 @@ double Planner::rowsAfter(const State& state, const Node& part) {
   return std::max(state.rows, own);
 }
 
-/// How much more the rows of a first part cost that come in no order that the other parts can use: their lookups, and the
-/// reading of their terms, are scattered over the store.
+/// How much more the rows of a first part cost that come in no order that the other parts can use: their lookups, and
+/// the reading of their terms, are scattered over the store.
 double Planner::disorder(const Node& part, const std::vector<const Node*>& parts) const {
   constexpr double kScattered = 1.5;
   if (parts.size() < 2 || part.kind != Node::Kind::Triple || part.triple.path) return 1;
   const Slot slot = scannedBy(part.triple);
   const bool used = slot != kNoSlot && std::any_of(parts.begin(), parts.end(), [&](const Node* other) {
-    return other != &part && other->possible.has(slot);
-  });
+                      return other != &part && other->possible.has(slot);
+                    });
   return used ? 1 : kScattered;
 }
 

@@ -15,7 +15,11 @@ namespace cluxel::sparql {
 class Planner {
  public:
   Planner(AlgebraQuery& query, const QueryTerms& terms, const Dataset& dataset)
-      : query_(query), terms_(terms), reader_(terms.reader()), dataset_(dataset), cardinality_(terms.reader(), dataset),
+      : query_(query),
+        terms_(terms),
+        reader_(terms.reader()),
+        dataset_(dataset),
+        cardinality_(terms.reader(), dataset),
         parameters_(query.parameters) {}
 
   /// The whole query's plan.
@@ -30,9 +34,9 @@ class Planner {
     SlotSet certain, possible;
     double rows = 1;
     Slot sorted_by = kNoSlot;
-    bool is_unit = true;        ///< one solution without bindings: joining it changes nothing
-    bool is_input = false;      ///< rows come from outside, batch by batch
-    SlotSet outer;              ///< within EXISTS: slots of the solution from outside, which hold everywhere
+    bool is_unit = true;    ///< one solution without bindings: joining it changes nothing
+    bool is_input = false;  ///< rows come from outside, batch by batch
+    SlotSet outer;          ///< within EXISTS: slots of the solution from outside, which hold everywhere
   };
   /// A step that must wait until all parts are joined.
   struct Postponed {
@@ -45,9 +49,9 @@ class Planner {
     std::vector<const Node*> joined;
     std::vector<Postponed> postponed;
     std::vector<Expr> filters;
-    std::vector<NodePtr> made;   ///< keeps nodes that planning made
-    SlotSet constant;            ///< have one value in all parts of a solution
-    double wanted_rows = kAllRows;   ///< of the first rows of the first part, how many will be asked for
+    std::vector<NodePtr> made;      ///< keeps nodes that planning made
+    SlotSet constant;               ///< have one value in all parts of a solution
+    double wanted_rows = kAllRows;  ///< of the first rows of the first part, how many will be asked for
   };
 
   State unit();
@@ -104,8 +108,8 @@ class Planner {
   const Dataset& dataset_;
   Cardinality cardinality_;
   std::vector<Slot> parameters_;
-  double wanted_rows_ = kAllRows;   ///< by a LIMIT around the next group
-  SlotSet unsure_parameters_;   ///< those that may be unbound
+  double wanted_rows_ = kAllRows;  ///< by a LIMIT around the next group
+  SlotSet unsure_parameters_;      ///< those that may be unbound
 };
 
 }  // namespace cluxel::sparql

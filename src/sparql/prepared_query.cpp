@@ -22,15 +22,20 @@ ast::Query parsed(std::string_view text, const QueryOptions& options) {
 }
 
 std::int64_t clockMicroseconds() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
 }  // namespace
 
 PreparedQuery::Impl::Impl(const QuadReader& quad_reader, std::string_view text, const QueryOptions& query_options,
                           const std::vector<std::string>& parameters)
-    : reader(quad_reader), options(query_options), terms(quad_reader), query(parsed(text, query_options)),
-      dataset(sparql::datasetOf(query.dataset, options, reader)), functions(terms) {
+    : reader(quad_reader),
+      options(query_options),
+      terms(quad_reader),
+      query(parsed(text, query_options)),
+      dataset(sparql::datasetOf(query.dataset, options, reader)),
+      functions(terms) {
   sparql::AlgebraOptions algebra_options;
   algebra_options.parameters = parameters;
   algebra_options.refuse_volatile = options.refuse_volatile;
@@ -42,20 +47,24 @@ PreparedQuery::Impl::Impl(const QuadReader& quad_reader, std::string_view text, 
   algebra = sparql::buildAlgebra(query, terms, algebra_options);
   if (!options.services.empty()) used_by_services = service_guard.usage();
   plan = sparql::Planner(algebra, terms, dataset).plan();
-  for (const ast::Projection& column : query.select.projection) variables.push_back(query.variables[column.variable].name);
+  for (const ast::Projection& column : query.select.projection)
+    variables.push_back(query.variables[column.variable].name);
   for (ast::VariableIndex i = 0; i < query.variables.size(); ++i) {
     const Slot slot = algebra.slot_of_variable[i];
     const auto& bound = algebra.parameters;
-    if (std::find(bound.begin(), bound.end(), slot) != bound.end()) parameter_slots.emplace_back(query.variables[i].name, slot);
+    if (std::find(bound.begin(), bound.end(), slot) != bound.end())
+      parameter_slots.emplace_back(query.variables[i].name, slot);
   }
-  runtime = std::make_unique<sparql::Runtime>(reader, terms, functions, dataset, algebra.slot_names.size(), algebra.exists_count);
+  runtime = std::make_unique<sparql::Runtime>(reader, terms, functions, dataset, algebra.slot_names.size(),
+                                              algebra.exists_count);
   functions.base_iri = query.base_iri;
   mark = terms.mark();
 }
 
 void PreparedQuery::Impl::setParameters(const std::vector<Binding>& bindings) {
   for (const auto& parameter : parameter_slots) {
-    const auto binding = std::find_if(bindings.begin(), bindings.end(), [&](const Binding& b) { return b.first == parameter.first; });
+    const auto binding =
+        std::find_if(bindings.begin(), bindings.end(), [&](const Binding& b) { return b.first == parameter.first; });
     if (binding == bindings.end())
       throw Error(ExitCode::Usage, options.source_name + ": the parameter ?" + parameter.first + " has no value");
     runtime->parameters[parameter.second] = terms.intern(binding->second);
@@ -86,7 +95,7 @@ bool PreparedQuery::Impl::hasSolution() {
 void PreparedQuery::Impl::runSelect(ResultSink& sink) {
   // In pieces of the size that they come in: one array for all would be copied and given fresh memory as it grows.
   std::vector<std::vector<ResultId>> pieces;
-  std::vector<std::size_t> row_counts;   // a row may have no column
+  std::vector<std::size_t> row_counts;  // a row may have no column
   std::size_t rows = 0;
   sparql::Batch batch(runtime->slot_count);
   const auto& columns = algebra.projection;
@@ -132,16 +141,23 @@ PreparedQuery::PreparedQuery(PreparedQuery&&) noexcept = default;
 PreparedQuery& PreparedQuery::operator=(PreparedQuery&&) noexcept = default;
 PreparedQuery::~PreparedQuery() = default;
 
-ast::QueryForm PreparedQuery::form() const { return impl_->query.form; }
-const std::vector<std::string>& PreparedQuery::variables() const { return impl_->variables; }
+ast::QueryForm PreparedQuery::form() const {
+  return impl_->query.form;
+}
+const std::vector<std::string>& PreparedQuery::variables() const {
+  return impl_->variables;
+}
 
 void PreparedQuery::run(ResultSink& sink, const std::vector<Binding>& bindings) {
   impl_->begin(bindings);
   switch (impl_->query.form) {
-    case ast::QueryForm::Select: return impl_->runSelect(sink);
+    case ast::QueryForm::Select:
+      return impl_->runSelect(sink);
     case ast::QueryForm::Construct:
-    case ast::QueryForm::Describe: return impl_->runGraph(sink);
-    case ast::QueryForm::Ask: break;
+    case ast::QueryForm::Describe:
+      return impl_->runGraph(sink);
+    case ast::QueryForm::Ask:
+      break;
   }
   sink.boolean(impl_->hasSolution());
 }

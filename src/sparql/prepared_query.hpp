@@ -30,7 +30,7 @@ struct PreparedQuery::Impl {
   std::vector<std::pair<std::string, sparql::Slot>> parameter_slots;
   sparql::FunctionContext functions;
   std::unique_ptr<sparql::Runtime> runtime;
-  sparql::Guard::Usage used_by_services;   ///< SERVICE is answered once, and counts in every run
+  sparql::Guard::Usage used_by_services;  ///< SERVICE is answered once, and counts in every run
   std::size_t mark = 0;
   bool has_run = false;
 };

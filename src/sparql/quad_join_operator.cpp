@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The index nested loop: for each solution the quads that fit it, by a lookup in the index that has its ids in front, or
-// in a column of the predicate's objects by subject where there is one.
+// The index nested loop: for each solution the quads that fit it, by a lookup in the index that has its ids in front,
+// or in a column of the predicate's objects by subject where there is one.
 #include <algorithm>
 
 #include "sparql/operators.hpp"
@@ -36,7 +36,8 @@ class QuadJoinOperator : public UnaryOperator {
       access_.resize(16);
       filter_ = graphFilterOf(pattern_, runtime().dataset);
       may_have_column_ = places_[0].isSlot() && !places_[1].isSlot() && places_[1].constant < kFirstComputed &&
-                         places_[2].constant < kFirstComputed && pattern_.not_predicates.empty() && pattern_.graph.kind == GraphPlace::Kind::Default && hasColumns(filter_);
+                         places_[2].constant < kFirstComputed && pattern_.not_predicates.empty() &&
+                         pattern_.graph.kind == GraphPlace::Kind::Default && hasColumns(filter_);
       kept_.reset();
       column_ = nullptr;
     }
@@ -63,9 +64,9 @@ class QuadJoinOperator : public UnaryOperator {
     OrderChoice choice;
     EntryReader reader;
     PrefixLookup lookup;
-    QuadCursor cursor;   ///< where nothing is bound
+    QuadCursor cursor;  ///< where nothing is bound
     std::array<std::uint8_t, 4> order_places{};
-    std::vector<TermId> expected;   ///< prefixes of the next rows
+    std::vector<TermId> expected;  ///< prefixes of the next rows
 
     std::array<TermId, 4> prefixOf(const std::array<ValueId, 4>& bound) const {
       std::array<TermId, 4> prefix{};
@@ -151,7 +152,7 @@ class QuadJoinOperator : public UnaryOperator {
   bool beginInColumn(std::size_t row) {
     const ValueId subject = in_.at(places_[0].slot, row);
     if (subject == kUnbound) return begin(row);
-    const ValueId object = places_[2].isSlot() ? in_.at(places_[2].slot, row) : kUnbound;   // a constant is in all rows
+    const ValueId object = places_[2].isSlot() ? in_.at(places_[2].slot, row) : kUnbound;  // a constant is in all rows
     run_ = object == kUnbound ? column_->find(subject) : column_->find(subject, object);
     if (run_.empty()) runtime().guard.work(1);
     return !run_.empty();
@@ -251,11 +252,11 @@ class QuadJoinOperator : public UnaryOperator {
 
   TripleNode pattern_;
   QuadPlaces places_;
-  bool by_column_;   ///< the plan counts on one
+  bool by_column_;  ///< the plan counts on one
   bool may_have_column_ = false;
   std::shared_ptr<const KeptColumn> kept_;
   const SubjectColumn* column_ = nullptr;
-  std::span<const SubjectColumn::Row> run_;   ///< what the column has for the row at hand
+  std::span<const SubjectColumn::Row> run_;  ///< what the column has for the row at hand
   std::vector<Slot> carried_;
   GraphFilter filter_;
   std::vector<std::unique_ptr<Access>> access_;

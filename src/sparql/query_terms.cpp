@@ -53,15 +53,21 @@ Value QueryTerms::valueOfStored(ValueId id) const {
         value.type = Value::Type::Integer;
         value.number = static_cast<double>(decoded.integer);
         return value;
-      case Type::Float: return value.type = Value::Type::Float, value;
-      case Type::Double: return value.type = Value::Type::Double, value;
+      case Type::Float:
+        return value.type = Value::Type::Float, value;
+      case Type::Double:
+        return value.type = Value::Type::Double, value;
       case Type::Decimal:
         value.scale = decoded.scale;
         return value.type = Value::Type::Decimal, value;
-      case Type::Boolean: return value.type = Value::Type::Boolean, value;
-      case Type::String: return value.type = Value::Type::String, value;
-      case Type::LangString: return value.type = Value::Type::LangString, value;
-      default: break;
+      case Type::Boolean:
+        return value.type = Value::Type::Boolean, value;
+      case Type::String:
+        return value.type = Value::Type::String, value;
+      case Type::LangString:
+        return value.type = Value::Type::LangString, value;
+      default:
+        break;
     }
   }
   const auto known = decoded_.find(id);
@@ -76,7 +82,9 @@ TermView QueryTerms::view(ResultId id) const {
   return id >= kFirstComputed ? TermView::of(termAt(computed_, id)) : reader_.viewOf(id);
 }
 
-Term QueryTerms::termOf(ValueId id) const { return id >= kFirstComputed ? termAt(computed_, id) : reader_.termOf(id); }
+Term QueryTerms::termOf(ValueId id) const {
+  return id >= kFirstComputed ? termAt(computed_, id) : reader_.termOf(id);
+}
 
 ValueId QueryTerms::intern(const Term& term) {
   const auto known = id_of_.find(term);
@@ -129,8 +137,12 @@ Decimal QueryTerms::exactOf(const Value& value) const {
   return Decimal::parse(trimmed(view(value.id).text)).value_or(Decimal());
 }
 
-CalendarTime QueryTerms::calendarOf(const Value& value) const { return std::get<CalendarTime>(*value.payload); }
-Duration QueryTerms::durationOf(const Value& value) const { return std::get<Duration>(*value.payload); }
+CalendarTime QueryTerms::calendarOf(const Value& value) const {
+  return std::get<CalendarTime>(*value.payload);
+}
+Duration QueryTerms::durationOf(const Value& value) const {
+  return std::get<Duration>(*value.payload);
+}
 
 Term QueryTerms::termOf(const Value& value) const {
   return value.id != kUnbound ? termOf(value.id) : termOfComputed(value);

@@ -20,7 +20,8 @@ class QueryTerms : public TermLookup {
   QueryTerms& operator=(const QueryTerms&) = delete;
 
   Value valueOf(ValueId id) const;
-  /// The text stays in place while the reader lives, that of a computed term until rewind() drops it: sort keys point to it.
+  /// The text stays in place while the reader lives, that of a computed term until rewind() drops it: sort keys point
+  /// to it.
   TermView view(ResultId id) const override;
   void expect(std::span<const ResultId> ids) const override { reader_.expectViews(ids); }
   /// The same for valueOf().
@@ -56,7 +57,7 @@ class QueryTerms : public TermLookup {
 
   const QuadReader& reader_;
   std::deque<Term> computed_;
-  mutable std::unordered_map<ValueId, Value> decoded_;   ///< values that need their text read
+  mutable std::unordered_map<ValueId, Value> decoded_;  ///< values that need their text read
   std::unordered_map<Term, ValueId, TermHash> id_of_;
   std::size_t computed_bytes_ = 0;
 };

@@ -9,8 +9,12 @@
 namespace cluxel {
 namespace {
 
-const unsigned char* bytes(const std::string& text) { return reinterpret_cast<const unsigned char*>(text.c_str()); }
-std::string textOf(const unsigned char* text) { return text == nullptr ? "" : reinterpret_cast<const char*>(text); }
+const unsigned char* bytes(const std::string& text) {
+  return reinterpret_cast<const unsigned char*>(text.c_str());
+}
+std::string textOf(const unsigned char* text) {
+  return text == nullptr ? "" : reinterpret_cast<const char*>(text);
+}
 
 struct StreamPlace {
   RedlandAnswer* answer;
@@ -23,7 +27,9 @@ struct StreamPlace {
   }
 };
 
-StreamPlace& placeOf(void* context) { return *static_cast<StreamPlace*>(context); }
+StreamPlace& placeOf(void* context) {
+  return *static_cast<StreamPlace*>(context);
+}
 
 int streamIsEnd(void* context) {
   const StreamPlace& place = placeOf(context);
@@ -55,7 +61,8 @@ librdf_node* newRedlandNode(librdf_world* world, const Term& term) {
   if (term.kind == TermKind::Iri) return librdf_new_node_from_uri_string(world, bytes(term.text));
   if (term.kind == TermKind::BlankNode) return librdf_new_node_from_blank_identifier(world, bytes(term.text));
   if (!term.language.empty()) return librdf_new_node_from_literal(world, bytes(term.text), term.language.c_str(), 0);
-  if (term.datatype == vocabulary::xsd("string")) return librdf_new_node_from_literal(world, bytes(term.text), nullptr, 0);
+  if (term.datatype == vocabulary::xsd("string"))
+    return librdf_new_node_from_literal(world, bytes(term.text), nullptr, 0);
   librdf_uri* datatype = librdf_new_uri(world, bytes(term.datatype));
   librdf_node* node = librdf_new_node_from_typed_literal(world, bytes(term.text), nullptr, datatype);
   librdf_free_uri(datatype);
@@ -91,8 +98,8 @@ librdf_node* RedlandAnswer::value(const char* name) const {
 
 librdf_statement* RedlandAnswer::statement(std::size_t number) const {
   const Quad& quad = result_.graph[number];
-  return librdf_new_statement_from_nodes(world_, newRedlandNode(world_, quad.subject), newRedlandNode(world_, quad.predicate),
-                                         newRedlandNode(world_, quad.object));
+  return librdf_new_statement_from_nodes(world_, newRedlandNode(world_, quad.subject),
+                                         newRedlandNode(world_, quad.predicate), newRedlandNode(world_, quad.object));
 }
 
 librdf_stream* RedlandAnswer::stream() {

@@ -31,8 +31,12 @@ struct OurResults {
   RedlandAnswer* answer;
 };
 
-Request*& requestOf(Query* query) { return *static_cast<Request**>(query->context); }
-RedlandAnswer& answerOf(Results* results) { return *reinterpret_cast<OurResults*>(results)->answer; }
+Request*& requestOf(Query* query) {
+  return *static_cast<Request**>(query->context);
+}
+RedlandAnswer& answerOf(Results* results) {
+  return *reinterpret_cast<OurResults*>(results)->answer;
+}
 
 template <typename Result, typename Work>
 Result guarded(librdf_world* world, Result otherwise, const Work& work) {
@@ -71,8 +75,9 @@ QueryResult cut(QueryResult result, const Request& request) {
   ResultTable& table = result.table;
   const std::size_t width = table.variables.size();
   const std::size_t from = std::min(table.row_count, static_cast<std::size_t>(std::max(request.offset, 0)));
-  const std::size_t kept = request.limit < 0 ? table.row_count - from
-                                             : std::min(table.row_count - from, static_cast<std::size_t>(request.limit));
+  const std::size_t kept = request.limit < 0
+                               ? table.row_count - from
+                               : std::min(table.row_count - from, static_cast<std::size_t>(request.limit));
   table.cells.erase(table.cells.begin(), table.cells.begin() + static_cast<std::ptrdiff_t>(from * width));
   table.cells.resize(kept * width);
   table.row_count = kept;
@@ -88,8 +93,9 @@ std::shared_ptr<Environment> copied(librdf_model* model) {
   for (; stream != nullptr && librdf_stream_end(stream) == 0; librdf_stream_next(stream)) {
     librdf_statement* statement = librdf_stream_get_object(stream);
     librdf_node* graph = librdf_stream_get_context2(stream);
-    writer.add(Quad{redlandTerm(librdf_statement_get_subject(statement)), redlandTerm(librdf_statement_get_predicate(statement)),
-                    redlandTerm(librdf_statement_get_object(statement)), graph == nullptr ? Term::iri("") : redlandTerm(graph)});
+    writer.add(Quad{
+        redlandTerm(librdf_statement_get_subject(statement)), redlandTerm(librdf_statement_get_predicate(statement)),
+        redlandTerm(librdf_statement_get_object(statement)), graph == nullptr ? Term::iri("") : redlandTerm(graph)});
   }
   if (stream != nullptr) librdf_free_stream(stream);
   writer.flush();
@@ -131,7 +137,8 @@ QueryResult change(const Request& request, librdf_model* model) {
 Results* execute(Query* query, librdf_model* model) {
   return guarded(query->world, static_cast<Results*>(nullptr), [&] {
     const Request& request = *requestOf(query);
-    auto answer = std::make_unique<RedlandAnswer>(query->world, request.is_update ? change(request, model) : ask(request, model));
+    auto answer =
+        std::make_unique<RedlandAnswer>(query->world, request.is_update ? change(request, model) : ask(request, model));
     // librdf frees the results object itself.
     auto* results = static_cast<OurResults*>(std::calloc(1, sizeof(OurResults)));
     if (results == nullptr) throw std::bad_alloc();
@@ -141,7 +148,9 @@ Results* execute(Query* query, librdf_model* model) {
   });
 }
 
-bool isKind(Results* results, QueryResult::Kind kind) { return answerOf(results).result().kind == kind; }
+bool isKind(Results* results, QueryResult::Kind kind) {
+  return answerOf(results).result().kind == kind;
+}
 
 ResultFormat formatOf(const char* name, const char* mime_type, librdf_uri* uri) {
   for (const char* wanted : {name, mime_type}) {
@@ -177,7 +186,8 @@ int writeFormatted(raptor_iostream* out, Formatter* formatter, Results* results,
 int getBindings(Results* results, const char*** names, librdf_node** values) {
   RedlandAnswer& answer = answerOf(results);
   if (names != nullptr) *names = answer.names();
-  for (std::size_t column = 0; values != nullptr && column < answer.columns(); ++column) values[column] = answer.value(column);
+  for (std::size_t column = 0; values != nullptr && column < answer.columns(); ++column)
+    values[column] = answer.value(column);
   return 0;
 }
 
@@ -190,7 +200,9 @@ void fillResults(Factory& factory) {
   };
   factory.results_finished = [](Results* r) { return answerOf(r).finished() ? 1 : 0; };
   factory.results_get_bindings = getBindings;
-  factory.results_get_binding_value = [](Results* r, int column) { return answerOf(r).value(static_cast<std::size_t>(column)); };
+  factory.results_get_binding_value = [](Results* r, int column) {
+    return answerOf(r).value(static_cast<std::size_t>(column));
+  };
   factory.results_get_binding_name = [](Results* r, int column) -> const char* {
     const auto at = static_cast<std::size_t>(column);
     return at < answerOf(r).columns() ? answerOf(r).names()[at] : nullptr;
@@ -227,7 +239,8 @@ bool registerRedlandQueries(librdf_world_s* world) {
   if (librdf_version_decimal != kKnownRelease || sizeof(void*) != 8) return false;
   // The library's own factory, where it is there already, must look as expected before one of ours is made.
   const Factory* known = librdf_get_query_factory(world, "sparql", nullptr);
-  if (known != nullptr && (known->name == nullptr || std::strcmp(known->name, "sparql") != 0 || known->execute == nullptr)) {
+  if (known != nullptr &&
+      (known->name == nullptr || std::strcmp(known->name, "sparql") != 0 || known->execute == nullptr)) {
     return false;
   }
   const auto add = [world](const char* name, const char* uri) {

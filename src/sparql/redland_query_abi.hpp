@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The binary layout of librdf 1.0.17's query objects. librdf exports librdf_query_register_factory, but the structure that
-// the registered function fills in stands in no installed header. The members below say what lies where, as the
-// functions of the library use it; they were compared with the machine code of Debian's library (docs/decisions/sparql.md).
-// registerRedlandQueries() uses them with that release only, and checks them against a factory of the library's own.
+// The binary layout of librdf 1.0.17's query objects. librdf exports librdf_query_register_factory, but the structure
+// that the registered function fills in stands in no installed header. The members below say what lies where, as the
+// functions of the library use it; they were compared with the machine code of Debian's library
+// (docs/decisions/sparql.md). registerRedlandQueries() uses them with that release only, and checks them against a
+// factory of the library's own.
 #pragma once
 
 #include <librdf.h>
@@ -18,7 +19,7 @@ struct Factory;
 struct Query {
   librdf_world* world;
   int usage;
-  void* context;   ///< Factory::context_length bytes of zeros at first
+  void* context;  ///< Factory::context_length bytes of zeros at first
   Factory* factory;
   librdf_query_results* results;
 };
@@ -73,8 +74,8 @@ extern "C" {
 /// librdf_query_register_factory with the factory's layout; one C function may not be declared with two types.
 void registerQueryFactory(librdf_world* world, const char* name, const unsigned char* uri,
                           void (*fill)(Factory*)) asm("librdf_query_register_factory");
-void librdf_log_simple(librdf_world* world, int code, librdf_log_level level, librdf_log_facility facility, void* locator,
-                       const char* message);
+void librdf_log_simple(librdf_world* world, int code, librdf_log_level level, librdf_log_facility facility,
+                       void* locator, const char* message);
 Factory* librdf_get_query_factory(librdf_world* world, const char* name, librdf_uri* uri);
 }
 

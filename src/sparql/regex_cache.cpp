@@ -27,12 +27,22 @@ std::optional<std::uint32_t> optionsOf(const std::string& flags) {
   std::uint32_t options = PCRE2_UTF | PCRE2_UCP | PCRE2_DOLLAR_ENDONLY | PCRE2_NEVER_BACKSLASH_C;
   for (const char flag : flags) {
     switch (flag) {
-      case 'i': options |= PCRE2_CASELESS; break;
-      case 's': options |= PCRE2_DOTALL; break;
-      case 'm': options |= PCRE2_MULTILINE; break;
-      case 'x': break;   // see pcrePattern()
-      case 'q': options |= PCRE2_LITERAL; break;
-      default: return std::nullopt;
+      case 'i':
+        options |= PCRE2_CASELESS;
+        break;
+      case 's':
+        options |= PCRE2_DOTALL;
+        break;
+      case 'm':
+        options |= PCRE2_MULTILINE;
+        break;
+      case 'x':
+        break;  // see pcrePattern()
+      case 'q':
+        options |= PCRE2_LITERAL;
+        break;
+      default:
+        return std::nullopt;
     }
   }
   if ((options & PCRE2_LITERAL) != 0) {
@@ -65,7 +75,8 @@ struct CompiledRegex {
 
  private:
   int run(std::string_view text, std::size_t from, std::uint32_t options) const {
-    return pcre2_match(code.get(), reinterpret_cast<PCRE2_SPTR>(text.data()), text.size(), from, options, data.get(), context.get());
+    return pcre2_match(code.get(), reinterpret_cast<PCRE2_SPTR>(text.data()), text.size(), from, options, data.get(),
+                       context.get());
   }
 };
 
@@ -81,12 +92,13 @@ const CompiledRegex* RegexCache::find(const std::string& pattern, const std::str
   const auto options = optionsOf(flags);
   if (!options) return nullptr;
   const bool is_literal = (*options & PCRE2_LITERAL) != 0;
-  const auto translated = is_literal ? std::optional(pattern) : pcrePattern(pattern, flags.find('x') != std::string::npos);
+  const auto translated =
+      is_literal ? std::optional(pattern) : pcrePattern(pattern, flags.find('x') != std::string::npos);
   if (!translated) return nullptr;
   int error = 0;
   std::size_t at = 0;
-  std::unique_ptr<pcre2_code, Deleter> code(pcre2_compile(reinterpret_cast<PCRE2_SPTR>(translated->data()), translated->size(),
-                                                          *options, &error, &at, nullptr));
+  std::unique_ptr<pcre2_code, Deleter> code(pcre2_compile(reinterpret_cast<PCRE2_SPTR>(translated->data()),
+                                                          translated->size(), *options, &error, &at, nullptr));
   if (!code) return nullptr;
   pcre2_jit_compile(code.get(), PCRE2_JIT_COMPLETE);
   entry = std::make_unique<CompiledRegex>();
@@ -99,7 +111,9 @@ const CompiledRegex* RegexCache::find(const std::string& pattern, const std::str
   return entry.get();
 }
 
-bool regexMatches(const CompiledRegex& regex, std::string_view text) { return regex.match(text, 0) > 0; }
+bool regexMatches(const CompiledRegex& regex, std::string_view text) {
+  return regex.match(text, 0) > 0;
+}
 
 namespace {
 
@@ -133,7 +147,8 @@ bool appendReplacement(std::string& out, std::string_view replacement, std::stri
 
 }  // namespace
 
-std::optional<std::string> regexReplace(const CompiledRegex& regex, std::string_view text, std::string_view replacement) {
+std::optional<std::string> regexReplace(const CompiledRegex& regex, std::string_view text,
+                                        std::string_view replacement) {
   if (regex.match("", 0) > 0) return std::nullopt;
   std::string out;
   std::size_t from = 0;

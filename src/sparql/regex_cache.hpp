@@ -26,6 +26,7 @@ class RegexCache {
 /// Throws Error (BudgetExceeded) when matching takes too many steps.
 bool regexMatches(const CompiledRegex& regex, std::string_view text);
 /// fn:replace; nothing when the pattern matches the empty text or the replacement is faulty.
-std::optional<std::string> regexReplace(const CompiledRegex& regex, std::string_view text, std::string_view replacement);
+std::optional<std::string> regexReplace(const CompiledRegex& regex, std::string_view text,
+                                        std::string_view replacement);
 
 }  // namespace cluxel::sparql

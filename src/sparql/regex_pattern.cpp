@@ -9,7 +9,7 @@ namespace cluxel::sparql {
 namespace {
 
 constexpr std::string_view kSpace = " \t\r\n";
-constexpr std::size_t kMostNesting = 16;   // of classes within classes
+constexpr std::size_t kMostNesting = 16;  // of classes within classes
 
 /// XML Schema's classes by their letters, outside and within brackets. PCRE2's \w knows the underscore, which is
 /// punctuation, and neither marks nor symbols; its \s knows all of Unicode's spaces.
@@ -50,8 +50,9 @@ class PatternReader {
   /// What follows a backslash.
   bool escape(std::string& out, bool in_class) {
     if (std::string_view("iIcC").find(next()) != std::string_view::npos && at_ < text_.size()) return false;
-    const auto shared = std::find_if(kSharedEscapes.begin(), kSharedEscapes.end(),
-                                     [this](const SharedEscape& escape) { return at_ < text_.size() && escape.letter == next(); });
+    const auto shared = std::find_if(kSharedEscapes.begin(), kSharedEscapes.end(), [this](const SharedEscape& escape) {
+      return at_ < text_.size() && escape.letter == next();
+    });
     if (shared != kSharedEscapes.end()) {
       out += in_class ? shared->in_class : shared->alone;
       ++at_;
@@ -80,7 +81,7 @@ class PatternReader {
       } else if (c == '\\') {
         if (!escape(kept, true)) return false;
       } else if (c == '[') {
-        return false;   // [:alpha:] and its kin are no classes of XML Schema
+        return false;  // [:alpha:] and its kin are no classes of XML Schema
       } else {
         kept += c;
       }

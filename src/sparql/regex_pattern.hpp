@@ -8,9 +8,9 @@
 
 namespace cluxel::sparql {
 
-/// White space of the flag x goes, but not from classes ('#' begins no comment); [a-z-[aeiou]] becomes an assertion and a
-/// class; \w \W \s \S are XML Schema's. Nothing for a pattern with \i or \c, which mean something else to PCRE2, with a
-/// bracket within a class, or with a class that does not end.
+/// White space of the flag x goes, but not from classes ('#' begins no comment); [a-z-[aeiou]] becomes an assertion and
+/// a class; \w \W \s \S are XML Schema's. Nothing for a pattern with \i or \c, which mean something else to PCRE2, with
+/// a bracket within a class, or with a class that does not end.
 std::optional<std::string> pcrePattern(std::string_view xpath, bool ignores_space);
 
 }  // namespace cluxel::sparql

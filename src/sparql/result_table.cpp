@@ -44,7 +44,9 @@ void ResultCollector::boolean(bool value) {
   result_.boolean = value;
 }
 
-void ResultCollector::beginGraph() { result_.kind = QueryResult::Kind::Graph; }
+void ResultCollector::beginGraph() {
+  result_.kind = QueryResult::Kind::Graph;
+}
 
 void ResultCollector::triple(const TermView& subject, const TermView& predicate, const TermView& object) {
   result_.graph.push_back({subject.toTerm(), predicate.toTerm(), object.toTerm(), {}});

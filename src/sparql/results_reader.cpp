@@ -9,11 +9,16 @@ namespace cluxel {
 
 QueryResult readResults(std::string_view text, ResultFormat format, const std::string& file) {
   switch (format) {
-    case ResultFormat::Json: return readJsonResults(text, file);
-    case ResultFormat::Xml: return readXmlResults(text, file);
-    case ResultFormat::Csv: return readCsvResults(text, file);
-    case ResultFormat::Tsv: return readTsvResults(text, file);
-    default: throw Error(ExitCode::Usage, file + ": answers are read from json, xml, csv and tsv only");
+    case ResultFormat::Json:
+      return readJsonResults(text, file);
+    case ResultFormat::Xml:
+      return readXmlResults(text, file);
+    case ResultFormat::Csv:
+      return readCsvResults(text, file);
+    case ResultFormat::Tsv:
+      return readTsvResults(text, file);
+    default:
+      throw Error(ExitCode::Usage, file + ": answers are read from json, xml, csv and tsv only");
   }
 }
 

@@ -10,15 +10,15 @@
 
 namespace cluxel::sparql {
 
-inline constexpr unsigned kRowHashShift = 16;   ///< the bits of a hash from there on choose its bucket
+inline constexpr unsigned kRowHashShift = 16;  ///< the bits of a hash from there on choose its bucket
 
 inline std::uint64_t mixHash(std::uint64_t hash, ValueId id) {
   hash = (hash ^ id) * 0x9E3779B97F4A7C15ull;
   return hash ^ (hash >> 29);
 }
 
-/// For the last id of a key: runs of 256 ids stay together, as ids that are near each other are often asked for one after
-/// another; the runs are strewn as evenly as single ids would be.
+/// For the last id of a key: runs of 256 ids stay together, as ids that are near each other are often asked for one
+/// after another; the runs are strewn as evenly as single ids would be.
 inline std::uint64_t runHash(std::uint64_t hash, ValueId id) {
   return mixHash(hash, id >> 8) + (std::uint64_t{id & 255} << kRowHashShift);
 }

@@ -17,16 +17,20 @@ namespace cluxel::sparql {
 /// Which graphs a pattern may take its quads from.
 struct GraphFilter {
   enum class Kind : std::uint8_t { Any, AllBut, One, AnyOf } kind = Kind::Any;
-  TermId graph = kNoTerm;            ///< of AllBut and One
-  std::vector<TermId> graphs;        ///< of AnyOf, ascending
-  bool may_repeat = true;            ///< one triple may come from several graphs
+  TermId graph = kNoTerm;      ///< of AllBut and One
+  std::vector<TermId> graphs;  ///< of AnyOf, ascending
+  bool may_repeat = true;      ///< one triple may come from several graphs
 
   bool admits(TermId candidate) const {
     switch (kind) {
-      case Kind::Any: return true;
-      case Kind::AllBut: return candidate != graph;
-      case Kind::One: return candidate == graph;
-      case Kind::AnyOf: return std::binary_search(graphs.begin(), graphs.end(), candidate);
+      case Kind::Any:
+        return true;
+      case Kind::AllBut:
+        return candidate != graph;
+      case Kind::One:
+        return candidate == graph;
+      case Kind::AnyOf:
+        return std::binary_search(graphs.begin(), graphs.end(), candidate);
     }
     return false;
   }
@@ -35,7 +39,7 @@ struct GraphFilter {
 /// The RDF dataset of a query.
 struct Dataset {
   GraphFilter default_graph;
-  std::vector<TermId> named;         ///< ascending
+  std::vector<TermId> named;  ///< ascending
 };
 
 /// The dataset by the query's FROM clauses, else by the options.
@@ -44,8 +48,13 @@ Dataset datasetOf(const ast::DatasetClause& clause, const QueryOptions& options,
 struct Runtime {
   Runtime(const QuadReader& quad_reader, QueryTerms& query_terms, FunctionContext& function_context,
           const Dataset& query_dataset, std::size_t slots, std::size_t exists_count)
-      : reader(quad_reader), terms(query_terms), functions(function_context), dataset(query_dataset), slot_count(slots),
-        parameters(slots, kUnbound), exists_results(exists_count) {}
+      : reader(quad_reader),
+        terms(query_terms),
+        functions(function_context),
+        dataset(query_dataset),
+        slot_count(slots),
+        parameters(slots, kUnbound),
+        exists_results(exists_count) {}
 
   const QuadReader& reader;
   QueryTerms& terms;
@@ -54,7 +63,7 @@ struct Runtime {
   Guard guard;
   std::size_t charged_for_terms = 0;
   std::size_t slot_count;
-  std::vector<ValueId> parameters;   ///< by slot: what every solution starts with
+  std::vector<ValueId> parameters;  ///< by slot: what every solution starts with
   /// For each Exists of the query its answers for the rows of the batch at hand.
   std::vector<std::vector<std::uint8_t>> exists_results;
 

@@ -8,10 +8,14 @@ namespace {
 
 const char* nameOf(QuadOrder order) {
   switch (order) {
-    case QuadOrder::Spog: return "spog";
-    case QuadOrder::Posg: return "posg";
-    case QuadOrder::Ospg: return "ospg";
-    case QuadOrder::Gspo: return "gspo";
+    case QuadOrder::Spog:
+      return "spog";
+    case QuadOrder::Posg:
+      return "posg";
+    case QuadOrder::Ospg:
+      return "ospg";
+    case QuadOrder::Gspo:
+      return "gspo";
   }
   return "";
 }

@@ -129,13 +129,14 @@ NodePtr AlgebraBuilder::modified(NodePtr node, const ast::Select& select, std::v
   return node;
 }
 
-/// ORDER BY breaks ties by the terms of the columns: there is one cut only. Without columns, or unsorted, rows come as they
-/// are stored, which is not part of what a map says.
+/// ORDER BY breaks ties by the terms of the columns: there is one cut only. Without columns, or unsorted, rows come as
+/// they are stored, which is not part of what a map says.
 void AlgebraBuilder::requireOneCut(const ast::Select& select, bool outermost) const {
   const bool has_columns = !outermost || !select.projection.empty();
   if (has_columns && !select.modifiers.order_by.empty()) return;
-  fail(select.where.at, "LIMIT and OFFSET are refused here without the ORDER BY of a SELECT: which rows they keep would follow "
-                        "from how the map is stored, not from what it says",
+  fail(select.where.at,
+       "LIMIT and OFFSET are refused here without the ORDER BY of a SELECT: which rows they keep would follow "
+       "from how the map is stored, not from what it says",
        "sort and cut in a sub-select: { SELECT ... WHERE { ... } ORDER BY ... LIMIT ... }");
 }
 

@@ -18,10 +18,14 @@ std::vector<std::vector<std::string>> recordsOf(std::string_view text, char sepa
     for (; i < text.size() && (quoted || text[i] != '\n'); ++i) {
       const char c = text[i];
       const bool doubled = quoted && c == '"' && i + 1 < text.size() && text[i + 1] == '"';
-      if (doubled) record.back() += text[++i];
-      else if (quoting && c == '"') quoted = !quoted;
-      else if (c == separator && !quoted) record.emplace_back();
-      else if (c != '\r' || quoted) record.back() += c;
+      if (doubled)
+        record.back() += text[++i];
+      else if (quoting && c == '"')
+        quoted = !quoted;
+      else if (c == separator && !quoted)
+        record.emplace_back();
+      else if (c != '\r' || quoted)
+        record.back() += c;
     }
     ++i;
   }
@@ -33,14 +37,16 @@ using CellReader = Term (*)(const std::string& cell, const std::string& file);
 QueryResult resultOf(const std::vector<std::vector<std::string>>& records, const std::string& file, CellReader read) {
   if (records.empty()) throw InputError({.file = file}, "there is no line with the variables' names");
   QueryResult result;
-  const bool boolean = records.size() == 1 && records[0].size() == 1 && (records[0][0] == "true" || records[0][0] == "false");
+  const bool boolean =
+      records.size() == 1 && records[0].size() == 1 && (records[0][0] == "true" || records[0][0] == "false");
   if (boolean) {
     result.kind = QueryResult::Kind::Boolean;
     result.boolean = records[0][0] == "true";
     return result;
   }
   if (records[0].size() > 1 || !records[0][0].empty())
-    for (const std::string& name : records[0]) result.table.variables.push_back(name.starts_with('?') ? name.substr(1) : name);
+    for (const std::string& name : records[0])
+      result.table.variables.push_back(name.starts_with('?') ? name.substr(1) : name);
   ResultTableBuilder builder(result.table);
   const std::size_t width = std::max<std::size_t>(result.table.variables.size(), 1);
   for (std::size_t row = 1; row < records.size(); ++row) {

@@ -12,7 +12,9 @@ class SeparatedWriter : public SolutionWriter {
   SeparatedWriter(TextSink out, AppendTerm append_term, char separator, std::string_view variable_mark,
                   std::string_view line_end)
       : SolutionWriter(std::move(out), append_term),
-        separator_(separator), variable_mark_(variable_mark), line_end_(line_end) {}
+        separator_(separator),
+        variable_mark_(variable_mark),
+        line_end_(line_end) {}
 
   void boolean(bool value) override {
     buffer_.text().append(value ? "true" : "false").append(line_end_);

@@ -68,7 +68,7 @@ class SolutionWriter : public ResultSink {
     std::string text;
   };
   static constexpr std::size_t kCached = 4096;
-  static constexpr std::size_t kExpected = 256;   ///< cells that are asked for together
+  static constexpr std::size_t kExpected = 256;  ///< cells that are asked for together
 
   AppendTerm append_term_;
   const TermLookup* terms_ = nullptr;

@@ -44,9 +44,10 @@ void appendCodePoint(std::string& text, std::uint32_t c) {
 SourceText::SourceText(std::string_view original, std::string file, std::size_t max_bytes)
     : original_(original), file_(std::move(file)) {
   if (original.size() > max_bytes)
-    throw InputError({.file = file_}, "the request has " + std::to_string(original.size()) + " bytes; the limit is " +
-                                          std::to_string(max_bytes),
-                     "split it, or load data from a file instead of writing it into the request");
+    throw InputError(
+        {.file = file_},
+        "the request has " + std::to_string(original.size()) + " bytes; the limit is " + std::to_string(max_bytes),
+        "split it, or load data from a file instead of writing it into the request");
   const std::size_t invalid = character::firstInvalidByte(original);
   if (invalid != std::string_view::npos)
     failAtOriginal(invalid, original[invalid] == '\0' ? "the request holds a zero byte" : "this byte is no UTF-8",

@@ -30,8 +30,8 @@ class SourceText {
 
   std::string_view original_;
   std::string file_;
-  std::string decoded_;                                          ///< empty when there was nothing to decode
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> jumps_;   ///< from here in decoded_ on: this in original_
+  std::string decoded_;                                         ///< empty when there was nothing to decode
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> jumps_;  ///< from here in decoded_ on: this in original_
 };
 
 /// Throws InputError with the place of a byte of `text` and its line, as far as it can be shown.

@@ -12,13 +12,20 @@ constexpr std::size_t kIndexFrom = 16;
 
 std::string_view describe(TokenKind kind) {
   switch (kind) {
-    case TokenKind::LeftBrace: return "'{'";
-    case TokenKind::RightBrace: return "'}'";
-    case TokenKind::LeftParen: return "'('";
-    case TokenKind::RightParen: return "')'";
-    case TokenKind::LeftBracket: return "'['";
-    case TokenKind::RightBracket: return "']'";
-    default: return "a token";
+    case TokenKind::LeftBrace:
+      return "'{'";
+    case TokenKind::RightBrace:
+      return "'}'";
+    case TokenKind::LeftParen:
+      return "'('";
+    case TokenKind::RightParen:
+      return "')'";
+    case TokenKind::LeftBracket:
+      return "'['";
+    case TokenKind::RightBracket:
+      return "']'";
+    default:
+      return "a token";
   }
 }
 
@@ -55,8 +62,8 @@ SparqlParser::SparqlParser(std::string_view text, const SparqlParseOptions& opti
 
 SparqlParser::Nested::Nested(SparqlParser& parser) : parser_(parser) {
   if (parser_.depth_ >= parser_.options_.max_depth)
-    parser_.fail(parser_.here(), "the request is nested deeper than " + std::to_string(parser_.options_.max_depth) +
-                                     " levels",
+    parser_.fail(parser_.here(),
+                 "the request is nested deeper than " + std::to_string(parser_.options_.max_depth) + " levels",
                  "write it with fewer nested groups, parentheses or operators");
   ++parser_.depth_;
 }
@@ -116,7 +123,8 @@ std::string SparqlParser::hintFor(std::initializer_list<Keyword> keywords) const
   }
   const std::optional<std::string> nearest = nearestName(slice(token_), known);
   if (nearest) return "did you mean " + *nearest + "?";
-  if (token_.keyword == Keyword::None && known.empty()) return "a variable is written ?name, a prefixed name prefix:name";
+  if (token_.keyword == Keyword::None && known.empty())
+    return "a variable is written ?name, a prefixed name prefix:name";
   return {};
 }
 

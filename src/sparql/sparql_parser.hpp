@@ -28,7 +28,7 @@ class VariableSet {
 
  private:
   std::vector<ast::VariableIndex> items_;
-  std::unordered_set<ast::VariableIndex> index_;   ///< filled when there are many
+  std::unordered_set<ast::VariableIndex> index_;  ///< filled when there are many
 };
 
 class SparqlParser {
@@ -68,7 +68,9 @@ class SparqlParser {
   bool take(Keyword keyword);
   void expect(Kind kind, std::string_view what);
   void expect(Keyword keyword);
-  std::string_view slice(const Token& token) const { return source_.text().substr(token.begin, token.end - token.begin); }
+  std::string_view slice(const Token& token) const {
+    return source_.text().substr(token.begin, token.end - token.begin);
+  }
   ast::SourceOffset here() const { return token_.begin; }
   [[noreturn]] void fail(std::uint32_t offset, std::string message, std::string hint = {}) const;
   [[noreturn]] void unexpected(std::string_view expected, std::initializer_list<Keyword> keywords = {}) const;
@@ -215,10 +217,10 @@ class SparqlParser {
   std::unordered_map<std::string_view, ast::VariableIndex> variable_of_name_;
 
   NodeMode mode_ = NodeMode::Pattern;
-  std::unordered_map<std::string_view, BlankNodeUse> blank_nodes_;   ///< of patterns, by label
-  std::unordered_set<std::string_view> data_labels_;                 ///< of earlier INSERT DATA of the request
-  std::unordered_set<std::string_view> operation_labels_;            ///< of this INSERT DATA
-  std::uint32_t block_ = 0;              ///< the basic graph pattern that triples are read into
+  std::unordered_map<std::string_view, BlankNodeUse> blank_nodes_;  ///< of patterns, by label
+  std::unordered_set<std::string_view> data_labels_;                ///< of earlier INSERT DATA of the request
+  std::unordered_set<std::string_view> operation_labels_;           ///< of this INSERT DATA
+  std::uint32_t block_ = 0;  ///< the basic graph pattern that triples are read into
   std::uint32_t last_block_ = 0;
   std::uint32_t fresh_count_ = 0;
   AggregateUse aggregate_use_ = AggregateUse::Refused;

@@ -13,7 +13,9 @@ namespace {
 
 using Type = Value::Type;
 
-bool isContinuation(char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; }
+bool isContinuation(char c) {
+  return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u;
+}
 
 std::int64_t codePoints(std::string_view text) {
   std::int64_t count = 0;
@@ -53,7 +55,8 @@ template <typename Test>
 Value testTexts(Arguments arguments, FunctionContext& context, Test test) {
   if (!compatible(arguments[0], arguments[1], context)) return {};
   std::string scratch_a, scratch_b;
-  return Value::boolean(test(context.terms.textOf(arguments[0], scratch_a), context.terms.textOf(arguments[1], scratch_b)));
+  return Value::boolean(
+      test(context.terms.textOf(arguments[0], scratch_a), context.terms.textOf(arguments[1], scratch_b)));
 }
 
 }  // namespace

@@ -30,14 +30,15 @@ QuadPattern quadsOf(const ColumnPattern& pattern) {
 
 /// Calls `take(subject, object)` for each triple of the pattern once, by ascending object and subject.
 template <typename Take>
-void forEachTriple(const QuadReader& reader, const ColumnPattern& pattern, const GraphFilter& graphs, Guard& guard, const Take& take) {
+void forEachTriple(const QuadReader& reader, const ColumnPattern& pattern, const GraphFilter& graphs, Guard& guard,
+                   const Take& take) {
   QuadCursor cursor = reader.scan(quadsOf(pattern), QuadOrder::Posg);
   TermId last_subject = kNoTerm, last_object = kNoTerm;
   std::size_t seen = 0;
   for (auto block = cursor.nextBlock(); !block.empty(); block = cursor.nextBlock()) {
     for (const QuadKey& key : block) {
       const TermId object = key.at(1), subject = key.at(2);
-      if (subject == last_subject && object == last_object) continue;   // in one more graph
+      if (subject == last_subject && object == last_object) continue;  // in one more graph
       if (!graphs.admits(key.at(3))) continue;
       last_subject = subject;
       last_object = object;
@@ -81,14 +82,15 @@ void SubjectColumn::layOut(TermId first, TermId last, std::size_t rows) {
   last_ = last;
   row_count_ = rows;
   const std::uint64_t ids = std::uint64_t{last} - first + 1;
-  while ((ids >> shift_) > std::max<std::size_t>(rows / 2, 1)) ++shift_;   // some two rows in each
+  while ((ids >> shift_) > std::max<std::size_t>(rows / 2, 1)) ++shift_;  // some two rows in each
   start_count_ = static_cast<std::size_t>((ids - 1) >> shift_) + 2;
   rows_ = allocate<Row>(rows);
   starts_ = allocate<std::uint32_t>(start_count_);
   std::fill_n(starts_.get(), start_count_, 0);
 }
 
-SubjectColumn::SubjectColumn(const QuadReader& reader, const ColumnPattern& pattern, const GraphFilter& graphs, Guard& guard) {
+SubjectColumn::SubjectColumn(const QuadReader& reader, const ColumnPattern& pattern, const GraphFilter& graphs,
+                             Guard& guard) {
   TermId first = ~TermId{0}, last = 0;
   std::size_t rows = 0;
   forEachTriple(reader, pattern, graphs, guard, [&](TermId subject, TermId) {
@@ -98,7 +100,8 @@ SubjectColumn::SubjectColumn(const QuadReader& reader, const ColumnPattern& patt
   });
   if (rows == 0) return;
   layOut(first, last, rows);
-  // How many in each bucket, then where each begins, then the rows to their places: starts_[b] runs to the start of b + 1.
+  // How many in each bucket, then where each begins, then the rows to their places: starts_[b] runs to the start of b
+  // + 1.
   forEachTriple(reader, pattern, graphs, guard, [&](TermId subject, TermId) { ++starts_[bucketOf(subject)]; });
   std::uint32_t before = 0;
   for (std::size_t i = 0; i < start_count_; ++i) before += std::exchange(starts_[i], before);
@@ -112,7 +115,8 @@ SubjectColumn::SubjectColumn(const QuadReader& reader, const ColumnPattern& patt
 
 void SubjectColumn::sortBuckets(Guard& guard) {
   for (std::size_t bucket = 0; bucket + 1 < start_count_; ++bucket) {
-    if (starts_[bucket + 1] - starts_[bucket] > 1) sortRows(rows_.get() + starts_[bucket], rows_.get() + starts_[bucket + 1]);
+    if (starts_[bucket + 1] - starts_[bucket] > 1)
+      sortRows(rows_.get() + starts_[bucket], rows_.get() + starts_[bucket + 1]);
     if (bucket % 65536 == 0) guard.checkTime();
   }
 }
@@ -143,18 +147,18 @@ void SubjectColumn::expect(std::span<const TermId> subjects) const {
     if (!isWithin(subject)) continue;
     const std::uint32_t* const start = &starts_[bucketOf(subject)];
     __builtin_prefetch(rows_.get() + start[0]);
-    __builtin_prefetch(rows_.get() + start[1]);   // often the next line
+    __builtin_prefetch(rows_.get() + start[1]);  // often the next line
   }
 }
 
-const SubjectColumn* KeptColumn::after(std::size_t lookups, bool wanted, const QuadReader& reader, const GraphFilter& graphs,
-                                       Guard& guard) const {
+const SubjectColumn* KeptColumn::after(std::size_t lookups, bool wanted, const QuadReader& reader,
+                                       const GraphFilter& graphs, Guard& guard) const {
   if (const SubjectColumn* column = column_.load(std::memory_order_acquire)) return column;
   const std::uint64_t made = lookups_.fetch_add(lookups, std::memory_order_relaxed) + lookups;
   const std::uint64_t worth = quads_ / kQuadsPerLookup;
   if (made < kLeastLookups || quads_ >= kMostQuads || (!wanted && made < worth)) return nullptr;
   const std::unique_lock lock(making_, std::try_to_lock);
-  if (!lock.owns_lock()) return nullptr;   // another reader is making it
+  if (!lock.owns_lock()) return nullptr;  // another reader is making it
   if (!made_) {
     made_ = std::make_unique<const SubjectColumn>(reader, pattern_, graphs, guard);
     column_.store(made_.get(), std::memory_order_release);
@@ -162,7 +166,8 @@ const SubjectColumn* KeptColumn::after(std::size_t lookups, bool wanted, const Q
   return made_.get();
 }
 
-std::shared_ptr<const KeptColumn> keptColumn(const QuadReader& reader, const ColumnPattern& pattern, const GraphFilter& graphs) {
+std::shared_ptr<const KeptColumn> keptColumn(const QuadReader& reader, const ColumnPattern& pattern,
+                                             const GraphFilter& graphs) {
   const bool without = graphs.kind == GraphFilter::Kind::AllBut;
   const std::string name = "column of " + std::to_string(pattern.predicate) + " " + std::to_string(pattern.object) +
                            (without ? " without " + std::to_string(graphs.graph) : "");

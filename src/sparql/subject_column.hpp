@@ -12,10 +12,11 @@
 
 namespace cluxel::sparql {
 
-/// What a column holds: the triples of a predicate, or those of them that have one object, such as the things of a class.
+/// What a column holds: the triples of a predicate, or those of them that have one object, such as the things of a
+/// class.
 struct ColumnPattern {
   TermId predicate = kNoTerm;
-  TermId object = kNoTerm;   ///< kNoTerm: any
+  TermId object = kNoTerm;  ///< kNoTerm: any
 };
 
 /// Such triples at one commit. A lookup reads two or three cache lines that it shares with its
@@ -54,21 +55,22 @@ class SubjectColumn {
   void layOut(TermId first, TermId last, std::size_t rows);
   void sortBuckets(Guard& guard);
 
-  TermId first_ = 1, last_ = 0;            ///< the least and the greatest subject
-  unsigned shift_ = 0;                     ///< a bucket holds the rows of 2^shift_ ids
+  TermId first_ = 1, last_ = 0;  ///< the least and the greatest subject
+  unsigned shift_ = 0;           ///< a bucket holds the rows of 2^shift_ ids
   std::size_t row_count_ = 0, start_count_ = 0;
-  Array<Row> rows_;                        ///< ascending
-  Array<std::uint32_t> starts_;            ///< where each bucket begins in rows_, and the end
+  Array<Row> rows_;              ///< ascending
+  Array<std::uint32_t> starts_;  ///< where each bucket begins in rows_, and the end
 };
 
-/// A column that is made once lookups have cost about as much as making it does: never more than about twice the cost of
-/// the better choice. Shared by the readers of a commit; thread-safe.
+/// A column that is made once lookups have cost about as much as making it does: never more than about twice the cost
+/// of the better choice. Shared by the readers of a commit; thread-safe.
 class KeptColumn {
  public:
   KeptColumn(const ColumnPattern& pattern, std::uint64_t quads) : pattern_(pattern), quads_(quads) {}
 
   /// The column if it is there or worth making now, after `lookups` more; else null. `wanted`: the plan counts on it.
-  const SubjectColumn* after(std::size_t lookups, bool wanted, const QuadReader& reader, const GraphFilter& graphs, Guard& guard) const;
+  const SubjectColumn* after(std::size_t lookups, bool wanted, const QuadReader& reader, const GraphFilter& graphs,
+                             Guard& guard) const;
   bool isMade() const { return column_.load(std::memory_order_acquire) != nullptr; }
   /// About the bytes that it takes, there or not.
   std::size_t bytes() const { return quads_ * (sizeof(SubjectColumn::Row) + sizeof(std::uint32_t) / 2); }
@@ -88,6 +90,7 @@ inline bool hasColumns(const GraphFilter& graphs) {
 }
 
 /// The column, made or not, of a pattern; the same for all readers of the commit. `graphs`: see hasColumns().
-std::shared_ptr<const KeptColumn> keptColumn(const QuadReader& reader, const ColumnPattern& pattern, const GraphFilter& graphs);
+std::shared_ptr<const KeptColumn> keptColumn(const QuadReader& reader, const ColumnPattern& pattern,
+                                             const GraphFilter& graphs);
 
 }  // namespace cluxel::sparql

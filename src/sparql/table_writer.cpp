@@ -26,8 +26,10 @@ class TableWriter : public ResultSink {
   void rows(std::span<const ResultId> cells, std::size_t count) override {
     row_count_ += count;
     for (const ResultId id : cells) {
-      if (id == 0) addCell({}, false);
-      else add(terms_->view(id));
+      if (id == 0)
+        addCell({}, false);
+      else
+        add(terms_->view(id));
     }
   }
   void boolean(bool value) override {
@@ -50,7 +52,8 @@ class TableWriter : public ResultSink {
   void add(const TermView& term) {
     std::string text;
     appendPlain(text, term, prefixes_);
-    const bool number = term.kind == TermKind::Literal && !text.empty() && text.find_first_not_of("+-.0123456789eE") == std::string::npos;
+    const bool number = term.kind == TermKind::Literal && !text.empty() &&
+                        text.find_first_not_of("+-.0123456789eE") == std::string::npos;
     addCell(std::move(text), number);
   }
   void addCell(std::string text, bool number) {

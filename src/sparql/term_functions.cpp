@@ -26,9 +26,10 @@ std::string randomUuid(FunctionContext& context) {
   const std::uint64_t high = (context.random() & ~0xF000ull) | 0x4000ull;
   const std::uint64_t low = (context.random() & ~(3ull << 62)) | (2ull << 62);
   std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%08llx-%04llx-%04llx-%04llx-%012llx", static_cast<unsigned long long>(high >> 32),
-                static_cast<unsigned long long>(high >> 16 & 0xFFFF), static_cast<unsigned long long>(high & 0xFFFF),
-                static_cast<unsigned long long>(low >> 48), static_cast<unsigned long long>(low & 0xFFFF'FFFF'FFFFull));
+  std::snprintf(text.data(), text.size(), "%08llx-%04llx-%04llx-%04llx-%012llx",
+                static_cast<unsigned long long>(high >> 32), static_cast<unsigned long long>(high >> 16 & 0xFFFF),
+                static_cast<unsigned long long>(high & 0xFFFF), static_cast<unsigned long long>(low >> 48),
+                static_cast<unsigned long long>(low & 0xFFFF'FFFF'FFFFull));
   return text.data();
 }
 
@@ -52,7 +53,9 @@ bool isLanguageTag(std::string_view tag) {
 
 }  // namespace
 
-std::string FunctionContext::freshLabel() { return "q" + label_prefix + std::to_string(++fresh_labels); }
+std::string FunctionContext::freshLabel() {
+  return "q" + label_prefix + std::to_string(++fresh_labels);
+}
 
 Value strFunction(Arguments arguments, FunctionContext& context) {
   const Value& value = arguments[0];
@@ -100,8 +103,12 @@ Value bnodeFunction(Arguments arguments, FunctionContext& context) {
   return Value::blank(label);
 }
 
-Value uuidFunction(Arguments, FunctionContext& context) { return Value::iri("urn:uuid:" + randomUuid(context)); }
-Value strUuidFunction(Arguments, FunctionContext& context) { return Value::string(randomUuid(context)); }
+Value uuidFunction(Arguments, FunctionContext& context) {
+  return Value::iri("urn:uuid:" + randomUuid(context));
+}
+Value strUuidFunction(Arguments, FunctionContext& context) {
+  return Value::string(randomUuid(context));
+}
 
 Value strLangFunction(Arguments arguments, FunctionContext& context) {
   if (arguments[0].type != Type::String || arguments[1].type != Type::String) return {};
@@ -122,10 +129,18 @@ Value sameTermFunction(Arguments arguments, FunctionContext& context) {
   return Value::boolean(sameTerm(arguments[0], arguments[1], context.terms));
 }
 
-Value isIriFunction(Arguments arguments, FunctionContext&) { return Value::boolean(arguments[0].type == Type::Iri); }
-Value isBlankFunction(Arguments arguments, FunctionContext&) { return Value::boolean(arguments[0].type == Type::Blank); }
-Value isLiteralFunction(Arguments arguments, FunctionContext&) { return Value::boolean(arguments[0].isLiteral()); }
-Value isNumericFunction(Arguments arguments, FunctionContext&) { return Value::boolean(arguments[0].isNumeric()); }
+Value isIriFunction(Arguments arguments, FunctionContext&) {
+  return Value::boolean(arguments[0].type == Type::Iri);
+}
+Value isBlankFunction(Arguments arguments, FunctionContext&) {
+  return Value::boolean(arguments[0].type == Type::Blank);
+}
+Value isLiteralFunction(Arguments arguments, FunctionContext&) {
+  return Value::boolean(arguments[0].isLiteral());
+}
+Value isNumericFunction(Arguments arguments, FunctionContext&) {
+  return Value::boolean(arguments[0].isNumeric());
+}
 
 Value newObjectFunction(Arguments arguments, FunctionContext& context) {
   std::vector<std::string> members;

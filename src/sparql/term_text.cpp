@@ -29,7 +29,7 @@ constexpr std::array<std::uint8_t, 256> makeEscapes() {
   mark(" <>{}|^`", kIriEscape);
   mark("\",\r\n", kCsvQuote);
   mark("<>&\"", kXmlEscape);
-  mark("\xEF", kXmlEscape);   // U+FFFE and U+FFFF begin with it
+  mark("\xEF", kXmlEscape);  // U+FFFE and U+FFFF begin with it
   return table;
 }
 constexpr std::array<std::uint8_t, 256> kEscapes = makeEscapes();
@@ -53,15 +53,19 @@ void appendEscapedString(std::string& text, std::string_view value, std::uint8_t
       continue;
     }
     const std::size_t place = special.find(c);
-    if (place == std::string_view::npos) appendHexEscape(text, static_cast<unsigned char>(c));
-    else (text += '\\') += letters[place];
+    if (place == std::string_view::npos)
+      appendHexEscape(text, static_cast<unsigned char>(c));
+    else
+      (text += '\\') += letters[place];
   }
 }
 
 void appendQuoted(std::string& text, std::string_view value, std::uint8_t flag) {
   text += '"';
-  if (needs(value, flag)) appendEscapedString(text, value, flag);
-  else text.append(value);
+  if (needs(value, flag))
+    appendEscapedString(text, value, flag);
+  else
+    text.append(value);
   text += '"';
 }
 
@@ -71,8 +75,10 @@ void appendIri(std::string& text, std::string_view iri) {
     text.append(iri);
   } else {
     for (const char c : iri) {
-      if ((kEscapes[static_cast<unsigned char>(c)] & kIriEscape) != 0) appendHexEscape(text, static_cast<unsigned char>(c));
-      else text += c;
+      if ((kEscapes[static_cast<unsigned char>(c)] & kIriEscape) != 0)
+        appendHexEscape(text, static_cast<unsigned char>(c));
+      else
+        text += c;
     }
   }
   text += '>';
@@ -133,7 +139,8 @@ bool isBareLiteral(const TermView& term) {
 bool appendShortIri(std::string& text, std::string_view iri, const PrefixList& prefixes, bool for_people) {
   const std::pair<std::string, std::string>* best = nullptr;
   for (const auto& candidate : prefixes)
-    if (iri.starts_with(candidate.second) && (!best || candidate.second.size() > best->second.size())) best = &candidate;
+    if (iri.starts_with(candidate.second) && (!best || candidate.second.size() > best->second.size()))
+      best = &candidate;
   if (!best) return false;
   const std::string_view local = iri.substr(best->second.size());
   const bool plain = std::all_of(local.begin(), local.end(), [for_people](char c) {
@@ -146,23 +153,30 @@ bool appendShortIri(std::string& text, std::string_view iri, const PrefixList& p
 
 void appendLiteral(std::string& text, const TermView& term) {
   appendQuoted(text, term.text, kTurtleEscape);
-  if (!term.language.empty()) text.append("@").append(term.language);
-  else if (!isXsd(term, "string")) appendIri(text.append("^^"), term.datatype);
+  if (!term.language.empty())
+    text.append("@").append(term.language);
+  else if (!isXsd(term, "string"))
+    appendIri(text.append("^^"), term.datatype);
 }
 
 }  // namespace
 
 void appendNTriples(std::string& text, const TermView& term) {
   switch (term.kind) {
-    case TermKind::Iri: return appendIri(text, term.text);
-    case TermKind::BlankNode: return appendBlank(text, term.text);
-    case TermKind::Literal: return appendLiteral(text, term);
+    case TermKind::Iri:
+      return appendIri(text, term.text);
+    case TermKind::BlankNode:
+      return appendBlank(text, term.text);
+    case TermKind::Literal:
+      return appendLiteral(text, term);
   }
 }
 
 void appendTurtle(std::string& text, const TermView& term) {
-  if (term.kind == TermKind::Literal && isBareLiteral(term)) text.append(term.text);
-  else appendNTriples(text, term);
+  if (term.kind == TermKind::Literal && isBareLiteral(term))
+    text.append(term.text);
+  else
+    appendNTriples(text, term);
 }
 
 void appendTurtle(std::string& text, const TermView& term, const PrefixList& prefixes) {
@@ -189,7 +203,9 @@ void appendCsv(std::string& text, const TermView& term) {
   text += '"';
 }
 
-void appendJsonString(std::string& text, std::string_view value) { appendQuoted(text, value, kJsonEscape); }
+void appendJsonString(std::string& text, std::string_view value) {
+  appendQuoted(text, value, kJsonEscape);
+}
 
 void appendJson(std::string& text, const TermView& term) {
   constexpr std::array<std::string_view, 3> types{"uri", "bnode", "literal"};
@@ -221,13 +237,20 @@ void appendXmlText(std::string& text, std::string_view value) {
     if (rest == "\xEF\xBF\xBE" || rest == "\xEF\xBF\xBF") {
       text.append(replacement);
       i += 2;
-    } else if (c == '<') text.append("&lt;");
-    else if (c == '>') text.append("&gt;");
-    else if (c == '&') text.append("&amp;");
-    else if (c == '"') text.append("&quot;");
-    else if (c == '\t' || c == '\n' || c == '\r') text.append("&#").append(std::to_string(c)).append(";");
-    else if (static_cast<unsigned char>(c) < 0x20) text.append(replacement);
-    else text += c;
+    } else if (c == '<')
+      text.append("&lt;");
+    else if (c == '>')
+      text.append("&gt;");
+    else if (c == '&')
+      text.append("&amp;");
+    else if (c == '"')
+      text.append("&quot;");
+    else if (c == '\t' || c == '\n' || c == '\r')
+      text.append("&#").append(std::to_string(c)).append(";");
+    else if (static_cast<unsigned char>(c) < 0x20)
+      text.append(replacement);
+    else
+      text += c;
   }
 }
 
@@ -241,7 +264,8 @@ void appendXml(std::string& text, const TermView& term) {
     text.append("<bnode>").append(label, 2).append("</bnode>");
   } else {
     text.append("<literal");
-    if (!term.language.empty()) text.append(" xml:lang=\"").append(term.language).append("\"");
+    if (!term.language.empty())
+      text.append(" xml:lang=\"").append(term.language).append("\"");
     else if (!isXsd(term, "string")) {
       appendXmlText(text.append(" datatype=\""), term.datatype);
       text += '"';

@@ -23,8 +23,12 @@ bool mentionsBnode(std::string_view text) {
 class UpdateRun {
  public:
   UpdateRun(WriteTransaction& transaction, const ast::Update& update, const UpdateOptions& options)
-      : transaction_(transaction), update_(update), options_(options), writer_(transaction),
-        random_(options.query.seed ? *options.query.seed : std::random_device{}()), label_prefix_(freshPrefix()) {}
+      : transaction_(transaction),
+        update_(update),
+        options_(options),
+        writer_(transaction),
+        random_(options.query.seed ? *options.query.seed : std::random_device{}()),
+        label_prefix_(freshPrefix()) {}
 
   UpdateReport run() {
     for (const ast::UpdateOperation& operation : update_.operations) {
@@ -103,10 +107,11 @@ std::vector<std::string> UpdateRun::blankLabels() const {
   return labels;
 }
 
-/// How the blank nodes of this request begin, unlike any that there is. In a map it follows from the request and from what
-/// is stated already, so that the same requests in the same order make the same map.
+/// How the blank nodes of this request begin, unlike any that there is. In a map it follows from the request and from
+/// what is stated already, so that the same requests in the same order make the same map.
 std::string UpdateRun::freshPrefix() {
-  if (options_.any_graph_writable || options_.query.seed) return "u" + std::to_string(random_() % 1'000'000'000'000) + "x";
+  if (options_.any_graph_writable || options_.query.seed)
+    return "u" + std::to_string(random_() % 1'000'000'000'000) + "x";
   // Most requests make no blank nodes, and do not pay for looking at those that there are.
   const bool may_make = update_.text.find_first_of("[_\\") != std::string::npos || mentionsBnode(update_.text);
   const std::vector<std::string> labels = may_make ? blankLabels() : std::vector<std::string>();
@@ -115,7 +120,8 @@ std::string UpdateRun::freshPrefix() {
     return at != labels.end() && at->starts_with(prefix);
   };
   for (std::uint64_t request = 0;; ++request) {
-    const std::string prefix = "u" + ContentHasher().addText(update_.text).add(request).finish().hex().substr(0, 16) + "x";
+    const std::string prefix =
+        "u" + ContentHasher().addText(update_.text).add(request).finish().hex().substr(0, 16) + "x";
     if (!isUsed(prefix) && !isUsed("q" + prefix)) return prefix;
   }
 }

@@ -38,8 +38,9 @@ void ModifyRun::prepare(FunctionContext& functions) const {
   functions.base_iri = operation_.base_iri;
   functions.random.seed(seed);
   functions.label_prefix = label_prefix;
-  functions.now_us = options_.query.now_us ? *options_.query.now_us
-                                           : duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
+  functions.now_us = options_.query.now_us
+                         ? *options_.query.now_us
+                         : duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
 }
 
 Changes ModifyRun::changes() {
@@ -65,7 +66,8 @@ Changes ModifyRun::changes() {
   return changes;
 }
 
-std::optional<Term> ModifyRun::filled(const ast::PatternTerm& place, const Batch& batch, std::size_t row, Blanks& blanks) {
+std::optional<Term> ModifyRun::filled(const ast::PatternTerm& place, const Batch& batch, std::size_t row,
+                                      Blanks& blanks) {
   if (place.isVariable()) {
     const ValueId id = batch.at(slot_of_variable_[place.variable()], row);
     return id == kUnbound ? std::nullopt : std::optional<Term>(terms_.termOf(id));
@@ -83,7 +85,8 @@ void ModifyRun::instantiate(const std::vector<ast::QuadTemplate>& templates, con
     const auto s = filled(quad.subject, batch, row, blanks), p = filled(quad.predicate, batch, row, blanks);
     const auto o = filled(quad.object, batch, row, blanks);
     const auto g = quad.graph ? filled(*quad.graph, batch, row, blanks) : std::optional<Term>(default_graph);
-    if (!s || !p || !o || !g || s->kind == TermKind::Literal || p->kind != TermKind::Iri || g->kind != TermKind::Iri) continue;
+    if (!s || !p || !o || !g || s->kind == TermKind::Literal || p->kind != TermKind::Iri || g->kind != TermKind::Iri)
+      continue;
     out.push_back({*s, *p, *o, *g});
     guard.charge(sizeof(Quad) + s->text.size() + o->text.size());
   }

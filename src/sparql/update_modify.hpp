@@ -22,16 +22,16 @@ class ModifyRun {
   ModifyRun(const QuadReader& reader, const ast::Update& update, const ast::UpdateOperation& operation,
             const ast::Modify& modify, const UpdateOptions& options);
 
-  std::string label_prefix;                    ///< of blank nodes that functions make
+  std::string label_prefix;  ///< of blank nodes that functions make
   std::uint64_t seed = 0;
-  Term default_graph;                          ///< of templates that name none
-  std::function<std::string()> fresh_label;    ///< for the blank nodes of templates
+  Term default_graph;                        ///< of templates that name none
+  std::function<std::string()> fresh_label;  ///< for the blank nodes of templates
 
   /// What all solutions together remove and insert; the store is not touched.
   Changes changes();
 
  private:
-  using Blanks = std::map<std::string, Term>;   ///< of one solution, by the template's label
+  using Blanks = std::map<std::string, Term>;  ///< of one solution, by the template's label
   Dataset dataset() const;
   AlgebraQuery algebra(Guard& guard);
   void prepare(FunctionContext& functions) const;

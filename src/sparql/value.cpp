@@ -30,7 +30,8 @@ std::string canonicalReal(Real value) {
   if (std::isnan(value)) return "NaN";
   if (std::isinf(value)) return value < 0 ? "-INF" : "INF";
   std::array<char, 64> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::scientific).ptr;
+  const auto end =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::scientific).ptr;
   const std::string_view text(buffer.data(), static_cast<std::size_t>(end - buffer.data()));
   const std::size_t e = text.find('e');
   std::string mantissa(text.substr(0, e));
@@ -91,7 +92,8 @@ Value literalValue(std::string_view text, const DatatypeInfo& info) {
     case Value::Type::Boolean:
       if (const auto value = parseBoolean(bare)) return Value::boolean(*value);
       break;
-    case Value::Type::Integer: return integerOf(bare, info);
+    case Value::Type::Integer:
+      return integerOf(bare, info);
     case Value::Type::Decimal:
       if (auto value = Decimal::parse(bare)) return Value::ofDecimal(std::move(*value));
       break;
@@ -101,7 +103,8 @@ Value literalValue(std::string_view text, const DatatypeInfo& info) {
     case Value::Type::Double:
       if (const auto value = parseDouble(bare)) return Value::ofDouble(*value);
       break;
-    case Value::Type::String: return Value::string(std::string(text));
+    case Value::Type::String:
+      return Value::string(std::string(text));
     case Value::Type::DateTime:
     case Value::Type::Date:
     case Value::Type::Time:
@@ -115,7 +118,8 @@ Value literalValue(std::string_view text, const DatatypeInfo& info) {
         return Value::ofDuration(durationKind(info.type), std::move(*value));
       }
       break;
-    default: break;
+    default:
+      break;
   }
   return ofType(Value::Type::Other);
 }
@@ -227,15 +231,23 @@ Term termOfComputed(const Value& value) {
   const auto text = [&]() -> const TextPayload& { return std::get<TextPayload>(*value.payload); };
   const std::string_view datatype = datatypeIri(value);
   switch (value.type) {
-    case Type::Iri: return Term::iri(text().text);
-    case Type::Blank: return Term::blank(text().text);
-    case Type::String: return Term::literal(text().text);
-    case Type::LangString: return Term::langLiteral(text().text, text().language);
-    case Type::Boolean: return Term::literal(value.integer != 0 ? "true" : "false", datatype);
+    case Type::Iri:
+      return Term::iri(text().text);
+    case Type::Blank:
+      return Term::blank(text().text);
+    case Type::String:
+      return Term::literal(text().text);
+    case Type::LangString:
+      return Term::langLiteral(text().text, text().language);
+    case Type::Boolean:
+      return Term::literal(value.integer != 0 ? "true" : "false", datatype);
     case Type::Integer:
-    case Type::Decimal: return Term::literal(value.exact().text(), datatype);
-    case Type::Float: return Term::literal(canonicalText(static_cast<float>(value.number)), datatype);
-    case Type::Double: return Term::literal(canonicalText(value.number), datatype);
+    case Type::Decimal:
+      return Term::literal(value.exact().text(), datatype);
+    case Type::Float:
+      return Term::literal(canonicalText(static_cast<float>(value.number)), datatype);
+    case Type::Double:
+      return Term::literal(canonicalText(value.number), datatype);
     case Type::DateTime:
     case Type::Date:
     case Type::Time:
@@ -246,15 +258,24 @@ Term termOfComputed(const Value& value) {
     case Type::YearMonthDuration:
       return Term::literal(formatDuration(durationKind(value.type), std::get<Duration>(*value.payload)), datatype);
     case Type::None:
-    case Type::Other: break;
+    case Type::Other:
+      break;
   }
   return {};
 }
 
-std::string canonicalText(double value) { return canonicalReal(value); }
-std::string canonicalText(float value) { return canonicalReal(value); }
-std::optional<double> parseDouble(std::string_view text) { return parseReal<double>(text); }
-std::optional<float> parseFloat(std::string_view text) { return parseReal<float>(text); }
+std::string canonicalText(double value) {
+  return canonicalReal(value);
+}
+std::string canonicalText(float value) {
+  return canonicalReal(value);
+}
+std::optional<double> parseDouble(std::string_view text) {
+  return parseReal<double>(text);
+}
+std::optional<float> parseFloat(std::string_view text) {
+  return parseReal<float>(text);
+}
 
 std::optional<bool> parseBoolean(std::string_view text) {
   if (text == "true" || text == "1") return true;

@@ -29,21 +29,35 @@ struct TextPayload {
 /// computed one has no id and the canonical lexical form.
 struct Value {
   enum class Type : std::uint8_t {
-    None,   ///< unbound, or the outcome of an error
-    Iri, Blank, Boolean, Integer, Decimal, Float, Double, String, LangString,
-    DateTime, Date, Time, Calendar /* gYear … */, Duration, DayTimeDuration, YearMonthDuration,
-    Other   ///< a literal of an unknown datatype, or an ill-typed one
+    None,  ///< unbound, or the outcome of an error
+    Iri,
+    Blank,
+    Boolean,
+    Integer,
+    Decimal,
+    Float,
+    Double,
+    String,
+    LangString,
+    DateTime,
+    Date,
+    Time,
+    Calendar /* gYear … */,
+    Duration,
+    DayTimeDuration,
+    YearMonthDuration,
+    Other  ///< a literal of an unknown datatype, or an ill-typed one
   };
   using Payload = std::variant<TextPayload, sparql::Decimal, CalendarTime, sparql::Duration>;
 
   Type type = Type::None;
   CalendarKind calendar = CalendarKind::DateTime;
   static constexpr std::uint8_t kNoScale = DecodedValue::kNoScale;
-  std::uint8_t scale = 0;     ///< of a Decimal without payload: it is integer * 10^-scale; kNoScale: only its term tells
+  std::uint8_t scale = 0;  ///< of a Decimal without payload: it is integer * 10^-scale; kNoScale: only its term tells
   ValueId id = kUnbound;
-  std::int64_t integer = 0;   ///< Boolean, Integer without payload; the digits of a Decimal without payload
-  double number = 0;          ///< the value of Float and Double; near the value of Integer and Decimal
-  std::shared_ptr<const Payload> payload;   ///< of computed texts, of calendar values, of exact and great numbers
+  std::int64_t integer = 0;  ///< Boolean, Integer without payload; the digits of a Decimal without payload
+  double number = 0;         ///< the value of Float and Double; near the value of Integer and Decimal
+  std::shared_ptr<const Payload> payload;  ///< of computed texts, of calendar values, of exact and great numbers
 
   bool isError() const { return type == Type::None; }
   explicit operator bool() const { return type != Type::None; }

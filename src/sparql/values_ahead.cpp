@@ -9,7 +9,9 @@ namespace {
 
 using Kind = Expr::Kind;
 
-bool isText(const Expr& expression) { return expression.kind == Kind::Constant && expression.constant.isStringLike(); }
+bool isText(const Expr& expression) {
+  return expression.kind == Kind::Constant && expression.constant.isStringLike();
+}
 
 void addOnce(std::vector<Slot>& slots, Slot slot) {
   if (std::find(slots.begin(), slots.end(), slot) == slots.end()) slots.push_back(slot);

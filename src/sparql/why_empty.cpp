@@ -25,8 +25,8 @@ class EmptinessSearch {
  private:
   bool isEmpty(const Node& node) {
     const auto plan = sparql::Planner(query_.algebra, query_.terms, query_.dataset).planAlone(node);
-    sparql::Runtime runtime(query_.reader, query_.terms, query_.functions, query_.dataset, query_.algebra.slot_names.size(),
-                            query_.algebra.exists_count);
+    sparql::Runtime runtime(query_.reader, query_.terms, query_.functions, query_.dataset,
+                            query_.algebra.slot_names.size(), query_.algebra.exists_count);
     runtime.guard.start(query_.options.budget);
     std::copy(query_.runtime->parameters.begin(), query_.runtime->parameters.end(), runtime.parameters.begin());
     plan->open(runtime, true);
@@ -45,20 +45,27 @@ class EmptinessSearch {
       case Node::Kind::Triple:
         return "nothing in the map fits the pattern  " + sparql::describe(node->triple, query_.algebra, query_.terms) +
                place(node->triple.at) + unknownNames(*node);
-      case Node::Kind::Filter: return blameFilter(node);
-      case Node::Kind::Join: return blameJoin(node);
+      case Node::Kind::Filter:
+        return blameFilter(node);
+      case Node::Kind::Join:
+        return blameJoin(node);
       case Node::Kind::Minus:
         if (isEmpty(*node->children[0])) return blame(node->children[0]);
         return "MINUS removes every solution" + place(node->children[1]->at);
-      case Node::Kind::Union: return "no branch of the UNION has a solution; the first: " + blame(node->children[0]);
-      case Node::Kind::GraphNames: return "no such named graph";
-      case Node::Kind::Values: return "VALUES has no row";
+      case Node::Kind::Union:
+        return "no branch of the UNION has a solution; the first: " + blame(node->children[0]);
+      case Node::Kind::GraphNames:
+        return "no such named graph";
+      case Node::Kind::Values:
+        return "VALUES has no row";
       case Node::Kind::Slice:
         if (!isEmpty(*node->children[0])) return "OFFSET or LIMIT leaves nothing";
         return blame(node->children[0]);
       case Node::Kind::Unit:
-      case Node::Kind::Nothing: return "the pattern has no solution";
-      default: break;
+      case Node::Kind::Nothing:
+        return "the pattern has no solution";
+      default:
+        break;
     }
     return node->children.empty() ? "the pattern has no solution" : blame(node->children[0]);
   }
@@ -70,7 +77,8 @@ class EmptinessSearch {
     for (const sparql::Expr& condition : node->conditions) {
       part.conditions.push_back(condition);
       if (isEmpty(part)) {
-        return "no solution passes FILTER  " + sparql::describe(condition, query_.algebra, query_.terms) + place(condition.at);
+        return "no solution passes FILTER  " + sparql::describe(condition, query_.algebra, query_.terms) +
+               place(condition.at);
       }
     }
     return "no solution passes the FILTERs together";
@@ -87,9 +95,10 @@ class EmptinessSearch {
       part.children.push_back(child);
       part.annotate();
       if (part.children.size() > 1 && isEmpty(part)) {
-        const std::string what = child->kind == Node::Kind::Triple
-                                     ? sparql::describe(child->triple, query_.algebra, query_.terms) + place(child->triple.at)
-                                     : "the part" + place(child->at);
+        const std::string what =
+            child->kind == Node::Kind::Triple
+                ? sparql::describe(child->triple, query_.algebra, query_.terms) + place(child->triple.at)
+                : "the part" + place(child->at);
         return "each pattern has matches, but none is left when the patterns before are joined with  " + what;
       }
     }

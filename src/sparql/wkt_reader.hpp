@@ -15,10 +15,11 @@ using WktPath = std::vector<std::pair<double, double>>;
 struct WktShape {
   WktPath points;
   std::vector<WktPath> lines;
-  std::vector<std::vector<WktPath>> polygons;   ///< outer ring, then the holes
+  std::vector<std::vector<WktPath>> polygons;  ///< outer ring, then the holes
 };
 
-/// POINT, LINESTRING, POLYGON, MULTI…, GEOMETRYCOLLECTION, with Z, M, ZM (dropped) and EMPTY; nothing for anything else.
+/// POINT, LINESTRING, POLYGON, MULTI…, GEOMETRYCOLLECTION, with Z, M, ZM (dropped) and EMPTY; nothing for anything
+/// else.
 std::optional<WktShape> readWkt(std::string_view text);
 
 }  // namespace cluxel::sparql

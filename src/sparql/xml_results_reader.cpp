@@ -14,9 +14,9 @@ namespace cluxel {
 namespace {
 
 struct Tag {
-  std::string name;                        ///< without namespace prefix
+  std::string name;  ///< without namespace prefix
   std::map<std::string, std::string> attributes;
-  bool opens = true, closes = false;       ///< both for <name/>
+  bool opens = true, closes = false;  ///< both for <name/>
 };
 
 /// Tags and the text before each.
@@ -179,7 +179,8 @@ class XmlResults {
     return Term::literal(text);
   }
   void set(const Term& term) {
-    if (result_.table.row_count == 0 || column_ >= result_.table.variables.size()) walk_.fail("a term outside a binding");
+    if (result_.table.row_count == 0 || column_ >= result_.table.variables.size())
+      walk_.fail("a term outside a binding");
     builder_.set(column_, term);
   }
   std::string attribute(const Tag& tag, const std::string& name) const {
@@ -197,6 +198,8 @@ class XmlResults {
 
 }  // namespace
 
-QueryResult readXmlResults(std::string_view text, const std::string& file) { return XmlResults(text, file).read(); }
+QueryResult readXmlResults(std::string_view text, const std::string& file) {
+  return XmlResults(text, file).read();
+}
 
 }  // namespace cluxel

@@ -47,6 +47,8 @@ class XmlWriter : public SolutionWriter {
 
 }  // namespace
 
-std::unique_ptr<ResultSink> makeXmlWriter(TextSink out) { return std::make_unique<XmlWriter>(std::move(out)); }
+std::unique_ptr<ResultSink> makeXmlWriter(TextSink out) {
+  return std::make_unique<XmlWriter>(std::move(out));
+}
 
 }  // namespace cluxel

@@ -21,8 +21,7 @@ constexpr Colour kGrey{128, 128, 128};
 Colour colourOf(std::string_view text) {
   Colour colour = kGrey;
   if (text.size() != 7 || text[0] != '#') return colour;
-  for (std::size_t i = 0; i < 3; ++i)
-    std::from_chars(text.data() + 1 + 2 * i, text.data() + 3 + 2 * i, colour[i], 16);
+  for (std::size_t i = 0; i < 3; ++i) std::from_chars(text.data() + 1 + 2 * i, text.data() + 3 + 2 * i, colour[i], 16);
   return colour;
 }
 

@@ -20,7 +20,9 @@ double ratio(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-double harmonic(double a, double b) { return a + b == 0 ? 0.0 : 2 * a * b / (a + b); }
+double harmonic(double a, double b) {
+  return a + b == 0 ? 0.0 : 2 * a * b / (a + b);
+}
 
 Scan scanOf(const MapReader& map, const Cloud& cloud) {
   Scan scan;
@@ -32,7 +34,9 @@ Scan scanOf(const MapReader& map, const Cloud& cloud) {
   return scan;
 }
 
-std::vector<std::string> primitiveNames() { return {kPrimitiveLabelNames.begin(), kPrimitiveLabelNames.end()}; }
+std::vector<std::string> primitiveNames() {
+  return {kPrimitiveLabelNames.begin(), kPrimitiveLabelNames.end()};
+}
 
 /// Two scans of one name have one truth file, which cannot be true of both.
 void refuseSharedTruth(const MapReader& map, const TruthSource& source) {
@@ -66,11 +70,19 @@ std::uint64_t ConfusionMatrix::answerCount(std::size_t name) const {
   return sum;
 }
 
-std::uint64_t ConfusionMatrix::total() const { return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}); }
+std::uint64_t ConfusionMatrix::total() const {
+  return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+}
 
-double ConfusionMatrix::precision(std::size_t name) const { return ratio(at(name, name), answerCount(name)); }
-double ConfusionMatrix::recall(std::size_t name) const { return ratio(at(name, name), truthCount(name)); }
-double ConfusionMatrix::f1(std::size_t name) const { return harmonic(precision(name), recall(name)); }
+double ConfusionMatrix::precision(std::size_t name) const {
+  return ratio(at(name, name), answerCount(name));
+}
+double ConfusionMatrix::recall(std::size_t name) const {
+  return ratio(at(name, name), truthCount(name));
+}
+double ConfusionMatrix::f1(std::size_t name) const {
+  return harmonic(precision(name), recall(name));
+}
 double ConfusionMatrix::iou(std::size_t name) const {
   return ratio(at(name, name), truthCount(name) + answerCount(name) - at(name, name));
 }
@@ -95,9 +107,15 @@ double ConfusionMatrix::macroIou() const {
   return present == 0 ? 0 : sum / present;
 }
 
-double ObjectScore::precision() const { return ratio(matched_answers, answers); }
-double ObjectScore::recall() const { return ratio(matched_truth, truth); }
-double ObjectScore::f1() const { return harmonic(precision(), recall()); }
+double ObjectScore::precision() const {
+  return ratio(matched_answers, answers);
+}
+double ObjectScore::recall() const {
+  return ratio(matched_truth, truth);
+}
+double ObjectScore::f1() const {
+  return harmonic(precision(), recall());
+}
 
 MapEvaluation evaluateMap(const MapReader& map, const TruthSource& source, const EvaluationParams& params) {
   const std::vector<std::string> names = source.classNames();

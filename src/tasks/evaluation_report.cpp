@@ -22,7 +22,9 @@ std::string padded(std::string text, std::size_t width) {
 /// A share, or nothing where it would be one of no things at all.
 using Share = std::optional<double>;
 
-Share shareOf(double value, std::uint64_t whole) { return whole == 0 ? Share() : Share(value); }
+Share shareOf(double value, std::uint64_t whole) {
+  return whole == 0 ? Share() : Share(value);
+}
 
 std::string row(const std::string& name, std::span<const Share> shares, std::uint64_t count) {
   std::string text = padded(name, 18);
@@ -49,10 +51,13 @@ std::array<Share, 3> sharesOf(const ObjectScore& score) {
           shareOf(score.f1(), score.truth)};
 }
 
-Json jsonOf(const Share& share) { return share ? Json(*share) : Json(); }
+Json jsonOf(const Share& share) {
+  return share ? Json(*share) : Json();
+}
 
 std::string pointTable(const char* title, const ConfusionMatrix& matrix) {
-  std::string text = std::string(title) + "\n" + padded("class", 18) + "precision   recall       F1      IoU   points\n";
+  std::string text =
+      std::string(title) + "\n" + padded("class", 18) + "precision   recall       F1      IoU   points\n";
   for (std::size_t i = 0; i < matrix.names.size(); ++i)
     if (matrix.truthCount(i) + matrix.answerCount(i) > 0)
       text += row(matrix.names[i], sharesOf(matrix, i), matrix.truthCount(i));
@@ -82,24 +87,30 @@ std::string objectTable(const char* title, const std::vector<ObjectScore>& score
   for (const ObjectScore& score : scores) {
     truth += score.truth, answers += score.answers;
     matched_truth += score.matched_truth, matched_answers += score.matched_answers;
-    if (score.truth + score.answers > 0)
-      text += row(score.name, sharesOf(score), score.truth);
+    if (score.truth + score.answers > 0) text += row(score.name, sharesOf(score), score.truth);
   }
   const ObjectScore all{"all", truth, answers, matched_truth, matched_answers};
   return text + row("all", sharesOf(all), truth);
 }
 
 Json pointJson(const ConfusionMatrix& matrix) {
-  Json json{{"overall_accuracy", matrix.overallAccuracy()}, {"macro_f1", matrix.macroF1()},
-            {"macro_iou", matrix.macroIou()}, {"points", matrix.total()}, {"classes", Json::array()}};
+  Json json{{"overall_accuracy", matrix.overallAccuracy()},
+            {"macro_f1", matrix.macroF1()},
+            {"macro_iou", matrix.macroIou()},
+            {"points", matrix.total()},
+            {"classes", Json::array()}};
   for (std::size_t i = 0; i < matrix.names.size(); ++i) {
     Json counts = Json::object();
     for (std::size_t answer = 0; answer <= matrix.names.size(); ++answer)
       counts[answer < matrix.names.size() ? matrix.names[answer] : "none"] = matrix.at(i, answer);
     const auto [precision, recall, f1, iou] = sharesOf(matrix, i);
-    json["classes"].push_back({{"class", matrix.names[i]}, {"precision", jsonOf(precision)},
-                               {"recall", jsonOf(recall)}, {"f1", jsonOf(f1)}, {"iou", jsonOf(iou)},
-                               {"points", matrix.truthCount(i)}, {"answers", counts}});
+    json["classes"].push_back({{"class", matrix.names[i]},
+                               {"precision", jsonOf(precision)},
+                               {"recall", jsonOf(recall)},
+                               {"f1", jsonOf(f1)},
+                               {"iou", jsonOf(iou)},
+                               {"points", matrix.truthCount(i)},
+                               {"answers", counts}});
   }
   return json;
 }
@@ -108,9 +119,14 @@ Json objectJson(const std::vector<ObjectScore>& scores) {
   Json json = Json::array();
   for (const ObjectScore& score : scores) {
     const auto [precision, recall, f1] = sharesOf(score);
-    json.push_back({{"class", score.name}, {"truth", score.truth}, {"answers", score.answers},
-                    {"matched_truth", score.matched_truth}, {"matched_answers", score.matched_answers},
-                    {"precision", jsonOf(precision)}, {"recall", jsonOf(recall)}, {"f1", jsonOf(f1)}});
+    json.push_back({{"class", score.name},
+                    {"truth", score.truth},
+                    {"answers", score.answers},
+                    {"matched_truth", score.matched_truth},
+                    {"matched_answers", score.matched_answers},
+                    {"precision", jsonOf(precision)},
+                    {"recall", jsonOf(recall)},
+                    {"f1", jsonOf(f1)}});
   }
   return json;
 }
@@ -119,15 +135,16 @@ Json objectJson(const std::vector<ObjectScore>& scores) {
 
 std::string toText(const MapEvaluation& evaluation) {
   std::string text = pointTable("Primitives by point", evaluation.primitives) + '\n' +
-                     confusionTable(evaluation.primitives) + '\n' +
-                     pointTable("Objects by point", evaluation.objects) + '\n' + confusionTable(evaluation.objects) + '\n';
+                     confusionTable(evaluation.primitives) + '\n' + pointTable("Objects by point", evaluation.objects) +
+                     '\n' + confusionTable(evaluation.objects) + '\n';
   if (!evaluation.has_instances) return text + "Objects by object: the truth has no instances.\n";
   return text + objectTable("Objects by object, point sets with IoU of 0.5", evaluation.by_points) + '\n' +
          objectTable("Objects by object, boxes with IoU of 0.8", evaluation.by_box);
 }
 
 std::string toJson(const MapEvaluation& evaluation) {
-  Json json{{"primitives_by_point", pointJson(evaluation.primitives)}, {"objects_by_point", pointJson(evaluation.objects)}};
+  Json json{{"primitives_by_point", pointJson(evaluation.primitives)},
+            {"objects_by_point", pointJson(evaluation.objects)}};
   if (evaluation.has_instances) {
     json["objects_by_point_set"] = objectJson(evaluation.by_points);
     json["objects_by_box"] = objectJson(evaluation.by_box);

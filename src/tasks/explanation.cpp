@@ -54,12 +54,13 @@ std::string explainThing(const MapReader& map, const std::string& written, bool 
   AskReplay oracle(map);
   const ReasoningContext context{.oracle = &oracle};
   Explanation explanation;
-  if (name.size() < 4) throw Error(ExitCode::Usage, "'" + name + "' is too short: write at least four digits of the name");
+  if (name.size() < 4)
+    throw Error(ExitCode::Usage, "'" + name + "' is too short: write at least four digits of the name");
   const auto primitive = findOne(scene.primitives, "primitive", name);
   const bool is_object = findOne(map.objects(), "object", name).has_value();
   if (is_object && primitive)
-    throw Error(ExitCode::NoRows, "'" + name + "' names an object and a primitive; write more digits, or object/" + name +
-                                      " or primitive/" + name);
+    throw Error(ExitCode::NoRows, "'" + name + "' names an object and a primitive; write more digits, or object/" +
+                                      name + " or primitive/" + name);
   if (is_object) {
     const ReasoningResult result = reason(scene, rules, context);
     const auto object = findOne(result.objects, "object", name);
@@ -69,7 +70,8 @@ std::string explainThing(const MapReader& map, const std::string& written, bool 
   } else if (primitive) {
     explanation = explain(scene, rules, context, static_cast<PrimitiveIndex>(*primitive));
   } else {
-    throw Error(ExitCode::NoRows, "nothing in the map is named '" + name + "'; `cluxel query MAP objects.rq` lists objects");
+    throw Error(ExitCode::NoRows,
+                "nothing in the map is named '" + name + "'; `cluxel query MAP objects.rq` lists objects");
   }
   return as_json ? jsonOf(explanation, rules, scene) : textOf(explanation, rules, scene);
 }

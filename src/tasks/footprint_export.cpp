@@ -13,7 +13,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double rounded(double value_m) { return std::round(value_m * 1000) / 1000; }
+double rounded(double value_m) {
+  return std::round(value_m * 1000) / 1000;
+}
 
 /// So that an object of one point has a polygon too [m].
 constexpr double kMargin_m = 0.005;
@@ -22,7 +24,8 @@ std::vector<Eigen::Vector2d> footprintOf(const SemanticObject& object, const Sce
   std::vector<Eigen::Vector2d> corners;
   for (const ObjectPart& part : object.parts)
     for (const std::uint32_t c : part.cluxels) {
-      const Eigen::Vector2d corner = cluxels.low_corner[c].head<2>(), extent = cluxels.extent[c].head<2>().cast<double>();
+      const Eigen::Vector2d corner = cluxels.low_corner[c].head<2>(),
+                            extent = cluxels.extent[c].head<2>().cast<double>();
       const Eigen::Vector2d low = corner.array() - kMargin_m, high = (corner + extent).array() + kMargin_m;
       corners.insert(corners.end(), {low, {high.x(), low.y()}, {low.x(), high.y()}, high});
     }
@@ -37,11 +40,12 @@ Json polygonJson(const std::vector<Eigen::Vector2d>& hull) {
 }
 
 Json featureJson(const SemanticObject& object, const SceneCluxels& cluxels) {
-  return {{"type", "Feature"},
-          {"id", object.id.hex()},
-          {"geometry", polygonJson(footprintOf(object, cluxels))},
-          {"properties",
-           {{"class", localName(object.class_iri)}, {"confidence", rounded(object.confidence)}, {"rule", object.rule_id}}}};
+  return {
+      {"type", "Feature"},
+      {"id", object.id.hex()},
+      {"geometry", polygonJson(footprintOf(object, cluxels))},
+      {"properties",
+       {{"class", localName(object.class_iri)}, {"confidence", rounded(object.confidence)}, {"rule", object.rule_id}}}};
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ double boxIou(Eigen::AlignedBox3d a, Eigen::AlignedBox3d b, double padding_m) {
 }  // namespace
 
 ObjectMatching::ObjectMatching(const std::vector<std::string>& class_names,
-                               const std::vector<std::size_t>& class_of_object, const std::vector<std::int32_t>& ambiguous)
+                               const std::vector<std::size_t>& class_of_object,
+                               const std::vector<std::int32_t>& ambiguous)
     : names_(class_names), ambiguous_(ambiguous), found_(class_of_object.size()) {
   for (std::size_t i = 0; i < found_.size(); ++i) found_[i].class_number = class_of_object[i];
 }
@@ -33,7 +34,8 @@ void ObjectMatching::add(const Eigen::Vector3d& p_map, std::size_t truth_class, 
   if (instance >= 0) {
     PointSet& truth = truth_[instance];
     if (truth.count == 0)
-      truth.counts = !std::binary_search(ambiguous_.begin(), ambiguous_.end(), instance), truth.class_number = truth_class;
+      truth.counts = !std::binary_search(ambiguous_.begin(), ambiguous_.end(), instance),
+      truth.class_number = truth_class;
     ++truth.count;
     truth.box.extend(p_map);
   }

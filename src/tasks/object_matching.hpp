@@ -15,11 +15,11 @@ namespace cluxel {
 
 /// The points of one object, true or found.
 struct PointSet {
-  std::size_t class_number = 0;            ///< in the truth's class names; size() of them: another class
-  std::uint64_t count = 0;                 ///< points with truth
-  Eigen::AlignedBox3d box;                 ///< [m, map]
-  bool counts = true;                      ///< false: ambiguous
-  std::uint64_t without_instance = 0;      ///< points whose truth has this class but no instance
+  std::size_t class_number = 0;        ///< in the truth's class names; size() of them: another class
+  std::uint64_t count = 0;             ///< points with truth
+  Eigen::AlignedBox3d box;             ///< [m, map]
+  bool counts = true;                  ///< false: ambiguous
+  std::uint64_t without_instance = 0;  ///< points whose truth has this class but no instance
 };
 
 /// Collects points with truth and answer, then matches.
@@ -50,7 +50,7 @@ class ObjectMatching {
   std::vector<std::int32_t> ambiguous_;
   std::map<std::int32_t, PointSet> truth_;
   std::vector<PointSet> found_;
-  std::map<std::pair<std::uint32_t, std::int32_t>, std::uint64_t> shared_;   ///< (object, instance) → points
+  std::map<std::pair<std::uint32_t, std::int32_t>, std::uint64_t> shared_;  ///< (object, instance) → points
 };
 
 }  // namespace cluxel

@@ -33,7 +33,8 @@ class HeaderReader {
   }
   /// Letters, digits and underscores; empty when there are none.
   std::string name() {
-    return take(std::min(rest_.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_"), rest_.size()));
+    return take(std::min(rest_.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_"),
+                         rest_.size()));
   }
   std::string word() { return take(std::min(rest_.find_first_of(kBlanks), rest_.size())); }
   /// What stands in brackets.
@@ -107,7 +108,8 @@ bool isNumber(const std::string& text) {
 Term termOf(const std::string& text) {
   if (text.size() > 1 && text.front() == '<' && text.back() == '>') return Term::iri(text.substr(1, text.size() - 2));
   if (text.starts_with("clx:")) return Term::iri(vocabulary::clx(text.substr(4)));
-  if (isNumber(text)) return Term::literal(text, vocabulary::xsd(text.find_first_of("eE") == text.npos ? "decimal" : "double"));
+  if (isNumber(text))
+    return Term::literal(text, vocabulary::xsd(text.find_first_of("eE") == text.npos ? "decimal" : "double"));
   return Term::literal(text);
 }
 
@@ -136,7 +138,8 @@ Question readQuestion(const fs::path& file) {
     if (line.ends_with('\r')) line.pop_back();
     const std::size_t begin = line.find_first_not_of(" \t", 2);
     if (begin != std::string::npos)
-      readHeaderLine(std::string_view(line).substr(begin), {.file = file.string(), .line = number, .column = 1}, question);
+      readHeaderLine(std::string_view(line).substr(begin), {.file = file.string(), .line = number, .column = 1},
+                     question);
   }
   return question;
 }

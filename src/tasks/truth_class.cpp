@@ -16,7 +16,8 @@ std::size_t numberOf(const std::string& iri, const std::vector<std::string>& nam
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), localName(iri)) - names.begin());
 }
 
-std::size_t nearestNumber(const std::string& iri, const std::vector<std::string>& names, const ClassCatalogue& catalogue) {
+std::size_t nearestNumber(const std::string& iri, const std::vector<std::string>& names,
+                          const ClassCatalogue& catalogue) {
   std::set<std::string> seen{iri};
   std::vector<std::string> level{iri};
   while (!level.empty()) {
@@ -37,8 +38,8 @@ std::size_t nearestNumber(const std::string& iri, const std::vector<std::string>
 
 }  // namespace
 
-std::vector<std::size_t> truthClassesOf(const std::vector<SemanticObject>& objects, const std::vector<std::string>& names,
-                                        const ClassCatalogue& catalogue) {
+std::vector<std::size_t> truthClassesOf(const std::vector<SemanticObject>& objects,
+                                        const std::vector<std::string>& names, const ClassCatalogue& catalogue) {
   std::map<std::string, std::size_t> known;
   std::vector<std::size_t> numbers;
   numbers.reserve(objects.size());

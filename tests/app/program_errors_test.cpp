@@ -8,16 +8,23 @@
 namespace cluxel {
 namespace {
 
-std::string campus() { return Program::path("campus").string(); }
-std::string map() { return Program::path("map.clx").string(); }
-std::string fresh() { return Program::path("never.clx").string(); }
+std::string campus() {
+  return Program::path("campus").string();
+}
+std::string map() {
+  return Program::path("map.clx").string();
+}
+std::string fresh() {
+  return Program::path("never.clx").string();
+}
 
 TEST_F(Program, AMapThatIsNotThereIsExitCodeFiveInEveryCommand) {
   const std::string absent = path("absent.clx").string();
-  for (const std::string& arguments : std::vector<std::string>
-       {"info " + absent, "query " + absent + " -e 'ASK {}'", "update " + absent + " -e 'CLEAR ALL'",
-        "explain " + absent + " 1234", "evaluate " + absent + " --truth " + campus() + "/truth",
-        "export " + absent + " --canonical", "compact " + absent, "compact " + absent + " -o " + fresh(), "doctor " + absent}) {
+  for (const std::string& arguments : std::vector<std::string>{
+           "info " + absent, "query " + absent + " -e 'ASK {}'", "update " + absent + " -e 'CLEAR ALL'",
+           "explain " + absent + " 1234", "evaluate " + absent + " --truth " + campus() + "/truth",
+           "export " + absent + " --canonical", "compact " + absent, "compact " + absent + " -o " + fresh(),
+           "doctor " + absent}) {
     SCOPED_TRACE(arguments);
     expectError(run(arguments), 5, "absent.clx");
     EXPECT_FALSE(fs::exists(absent));
@@ -28,10 +35,11 @@ TEST_F(Program, AMapThatIsNotThereIsExitCodeFiveInEveryCommand) {
 TEST_F(Program, WhatIsNoMapIsExitCodeFiveInEveryCommandThatNeedsOne) {
   const std::string text = path("no-map.clx").string();
   writeFile(text, std::string(20'000, 'x'));
-  for (const std::string& arguments : std::vector<std::string>
-       {"info " + text, "query " + text + " -e 'ASK {}'", "update " + text + " -e 'CLEAR ALL'", "explain " + text + " 1234",
-        "evaluate " + text + " --truth " + campus() + "/truth", "export " + text + " --canonical", "compact " + text,
-        "query " + campus() + " -e 'ASK {}'", "compact " + campus(), "doctor " + campus()}) {
+  for (const std::string& arguments :
+       std::vector<std::string>{"info " + text, "query " + text + " -e 'ASK {}'", "update " + text + " -e 'CLEAR ALL'",
+                                "explain " + text + " 1234", "evaluate " + text + " --truth " + campus() + "/truth",
+                                "export " + text + " --canonical", "compact " + text,
+                                "query " + campus() + " -e 'ASK {}'", "compact " + campus(), "doctor " + campus()}) {
     SCOPED_TRACE(arguments);
     expectError(run(arguments), 5, "map");
   }
@@ -39,14 +47,18 @@ TEST_F(Program, WhatIsNoMapIsExitCodeFiveInEveryCommandThatNeedsOne) {
 }
 
 TEST_F(Program, AnyOtherInputThatIsNotThereIsExitCodeFourInEveryCommand) {
-  for (const std::string& arguments : std::vector<std::string>
-       {"info absent-input", "build absent-input -o " + fresh(), "build " + campus() + " -o " + fresh() + " --poses absent-input",
-        "build " + campus() + " -o " + fresh() + " --model absent-input", "build " + campus() + " -o " + fresh() + " --rules absent-input",
-        "build " + campus() + " -o " + fresh() + " --sparql-rules absent-input",
-        "build " + campus() + " -o " + fresh() + " --ontology absent-input", "query absent-input.ttl -e 'ASK {}'",
-        "query " + map() + " absent-input.rq", "update " + map() + " absent-input.ru", "evaluate " + map() + " --truth absent-input",
-        "rules check absent-input", "rules check --ontology absent-input", "rules test absent-input",
-        "train absent-input --truth campus -o " + fresh(), "train " + campus() + " --truth absent-input -o " + fresh()}) {
+  for (const std::string& arguments :
+       std::vector<std::string>{"info absent-input", "build absent-input -o " + fresh(),
+                                "build " + campus() + " -o " + fresh() + " --poses absent-input",
+                                "build " + campus() + " -o " + fresh() + " --model absent-input",
+                                "build " + campus() + " -o " + fresh() + " --rules absent-input",
+                                "build " + campus() + " -o " + fresh() + " --sparql-rules absent-input",
+                                "build " + campus() + " -o " + fresh() + " --ontology absent-input",
+                                "query absent-input.ttl -e 'ASK {}'", "query " + map() + " absent-input.rq",
+                                "update " + map() + " absent-input.ru", "evaluate " + map() + " --truth absent-input",
+                                "rules check absent-input", "rules check --ontology absent-input",
+                                "rules test absent-input", "train absent-input --truth campus -o " + fresh(),
+                                "train " + campus() + " --truth absent-input -o " + fresh()}) {
     SCOPED_TRACE(arguments);
     expectError(run(arguments), 4, "absent-input");
     EXPECT_FALSE(fs::exists(fresh()));
@@ -55,7 +67,9 @@ TEST_F(Program, AnyOtherInputThatIsNotThereIsExitCodeFourInEveryCommand) {
 
 TEST_F(Program, AnUnknownCommandIsNamedWithTheNearestAndTheList) {
   expectError(run("qeury x"), 2, "there is no command 'qeury'; did you mean 'query'?");
-  expectError(run("qeury x"), 2, "info, simulate, register, build, query, update, tasks, explain, rules, train, evaluate, export, compact, doctor");
+  expectError(run("qeury x"), 2,
+              "info, simulate, register, build, query, update, tasks, explain, rules, train, evaluate, export, "
+              "compact, doctor");
   expectError(run("rules tset"), 2, "rules: there is no command 'tset'; did you mean 'test'?");
   expectError(run("rules"), 2, "rules: a command is missing: check, test");
   expectError(run(""), 2, "a command is missing: info");
@@ -63,7 +77,8 @@ TEST_F(Program, AnUnknownCommandIsNamedWithTheNearestAndTheList) {
 }
 
 TEST_F(Program, AnUnknownOptionIsNamedWithTheNearest) {
-  expectError(run("query " + map() + " objects --fromat csv"), 2, "query: there is no option '--fromat'; did you mean '--format'?");
+  expectError(run("query " + map() + " objects --fromat csv"), 2,
+              "query: there is no option '--fromat'; did you mean '--format'?");
   expectError(run("export --cannonical " + map()), 2, "did you mean '--canonical'?");
   expectError(run("query --frmat=csv"), 2, "'--frmat'");
   expectError(run("doctor " + map() + " --jsn"), 2, "did you mean '--json'?");
@@ -104,9 +119,10 @@ TEST_F(Program, WhatIsMissingOrOutOfRangeIsNamedAndHelpIsPointedTo) {
 
 /// As `"$OUT"` is where nobody has set OUT: it is not the working directory, whose poses.txt would be written over.
 TEST_F(Program, AnEmptyNameOfWhatIsWrittenIsAnErrorOfUsage) {
-  for (const std::string& arguments : std::vector<std::string>
-       {"simulate '' --stops 1", "build " + campus() + " -o ''", "export " + map() + " --canonical -o ''",
-        "compact " + map() + " -o ''", "register " + campus() + " -o ''", "train " + campus() + " --truth campus -o ''"}) {
+  for (const std::string& arguments :
+       std::vector<std::string>{"simulate '' --stops 1", "build " + campus() + " -o ''",
+                                "export " + map() + " --canonical -o ''", "compact " + map() + " -o ''",
+                                "register " + campus() + " -o ''", "train " + campus() + " --truth campus -o ''"}) {
     SCOPED_TRACE(arguments);
     expectError(run(arguments), 2, "the name is empty");
   }
@@ -132,7 +148,8 @@ TEST_F(Program, WrongChoicesOfOneCommandAreErrorsOfUsage) {
   expectError(run("update " + map()), 2, "-e TEXT");
   expectError(run("info " + map() + " " + campus()), 2, "map.clx");
   expectError(run("evaluate " + map() + " --truth " + campus() + "/truth --min-recall Unicorn=0.5"), 2, "Unicorn");
-  expectError(run("train " + campus() + " --truth campus -o " + fresh() + " --helper " + campus()), 2, "--helper-truth");
+  expectError(run("train " + campus() + " --truth campus -o " + fresh() + " --helper " + campus()), 2,
+              "--helper-truth");
   expectError(run("simulate " + campus()), 2, "campus");
 }
 
@@ -169,7 +186,8 @@ TEST_F(Program, AReportDoesNotReplaceTheTestsThatItStandsBefore) {
 
 TEST_F(Program, AFullDiskIsNotTakenForSuccess) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
-  for (const std::string& arguments : std::vector<std::string>{"export --canonical " + map(), "query " + map() + " objects", "tasks --json"}) {
+  for (const std::string& arguments :
+       std::vector<std::string>{"export --canonical " + map(), "query " + map() + " objects", "tasks --json"}) {
     const Outcome outcome = run(arguments, "/dev/full");
     EXPECT_EQ(outcome.code, 5) << arguments;
     EXPECT_NE(outcome.err.find("stdout"), std::string::npos) << outcome.err;
@@ -180,7 +198,8 @@ TEST_F(Program, ClosedStreamsAreNotTakenForTheMap) {
   const std::string closed = path("closed.clx").string();
   fs::copy_file(map(), closed);
   const auto runClosed = [](const std::string& arguments) {
-    const int status = std::system((std::string(CLUXEL_BINARY_DIR) + "/cluxel --home " + CLUXEL_SOURCE_DIR + " --threads 1 " + arguments).c_str());
+    const int status = std::system(
+        (std::string(CLUXEL_BINARY_DIR) + "/cluxel --home " + CLUXEL_SOURCE_DIR + " --threads 1 " + arguments).c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   };
   const std::string update = "update " + closed + " -e 'INSERT DATA { <https://e.org/a> a <https://e.org/b> }'";
@@ -196,13 +215,14 @@ TEST_F(Program, ClosedStreamsAreNotTakenForTheMap) {
 }
 
 TEST_F(Program, ABudgetBeyondAllNumbersIsNone) {
-  for (const char* option : {"--deadline 1e300", "--deadline 1e12", "--max-memory 18446744073709551615", "--max-rows 18446744073709551615"})
+  for (const char* option :
+       {"--deadline 1e300", "--deadline 1e12", "--max-memory 18446744073709551615", "--max-rows 18446744073709551615"})
     EXPECT_EQ(run("query " + path("three.ttl").string() + " -e 'ASK { ?s ?p 3 }' " + option).code, 0) << option;
 }
 
 TEST_F(Program, AReaderThatGoesAwayIsNoError) {
-  const std::string command = std::string("bash -c 'set -o pipefail; ") + CLUXEL_BINARY_DIR + "/cluxel export --canonical " +
-                              map() + " | head -1 > /dev/null'";
+  const std::string command = std::string("bash -c 'set -o pipefail; ") + CLUXEL_BINARY_DIR +
+                              "/cluxel export --canonical " + map() + " | head -1 > /dev/null'";
   EXPECT_EQ(std::system(command.c_str()), 0);
 }
 

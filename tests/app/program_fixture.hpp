@@ -27,7 +27,8 @@ class Program : public testing::Test {
   static void SetUpTestSuite() {
     folder = new ScratchFolder;
     writeFile(path("three.ttl"), "@prefix e: <https://e.org/> .\ne:a e:p 1 . e:b e:p 2 . e:c e:p 3 .\n");
-    const Outcome campus = run("simulate " + path("campus").string() + " --stops 2 --size 50 --points-per-stop 3000 --json");
+    const Outcome campus =
+        run("simulate " + path("campus").string() + " --stops 2 --size 50 --points-per-stop 3000 --json");
     simulated = campus.out;
     built = run("build " + path("campus").string() + " -o " + path("map.clx").string() + " --json");
   }
@@ -36,8 +37,8 @@ class Program : public testing::Test {
   /// `to`: where stdout goes, when not into the outcome.
   static Outcome run(const std::string& arguments, const std::string& to = "") {
     const std::string err = path("stderr").string(), out = to.empty() ? path("stdout").string() : to;
-    const std::string command = std::string(CLUXEL_BINARY_DIR) + "/cluxel --home " + CLUXEL_SOURCE_DIR + " --threads 1 " +
-                                arguments + " > " + out + " 2> " + err;
+    const std::string command = std::string(CLUXEL_BINARY_DIR) + "/cluxel --home " + CLUXEL_SOURCE_DIR +
+                                " --threads 1 " + arguments + " > " + out + " 2> " + err;
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, to.empty() ? readFile(out) : "", readFile(err)};
   }

@@ -45,7 +45,9 @@ TEST_F(Program, AWrongCommandLineIsExitCodeTwo) {
   expectError(run("build " + path("campus").string() + " -o " + path("map.clx").string()), 2, "--force");
 }
 
-TEST_F(Program, NoRowsAreExitCodeThree) { EXPECT_EQ(query("three.ttl", "SELECT * WHERE { ?s ?p 4 }").code, 3); }
+TEST_F(Program, NoRowsAreExitCodeThree) {
+  EXPECT_EQ(query("three.ttl", "SELECT * WHERE { ?s ?p 4 }").code, 3);
+}
 
 TEST_F(Program, FaultyInputIsExitCodeFourAndNamesFileAndLine) {
   writeFile(path("broken.rq"), "SELECT *\nWHERE { ?s ?p }\n");
@@ -85,7 +87,8 @@ TEST_F(Program, WhatIsNoMapIsExitCodeFive) {
 
 TEST_F(Program, ASpentBudgetIsExitCodeSixWithoutHalfAnAnswer) {
   expectError(query("three.ttl", "SELECT * WHERE { ?s ?p ?o }", "--max-rows 2"), 6, "");
-  expectError(query("map.clx", "SELECT (COUNT(*) AS ?n) WHERE { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i }", "--deadline 0.05"), 6, "");
+  expectError(query("map.clx", "SELECT (COUNT(*) AS ?n) WHERE { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i }", "--deadline 0.05"),
+              6, "");
 }
 
 TEST_F(Program, ListsItsQuestions) {
@@ -95,8 +98,8 @@ TEST_F(Program, ListsItsQuestions) {
 }
 
 TEST_F(Program, HelpsWithEverySubcommand) {
-  for (const char* name : {"", "info", "simulate", "register", "build", "query", "update", "tasks", "explain", "rules", "rules check",
-                           "rules test", "train", "evaluate", "export", "compact", "doctor"}) {
+  for (const char* name : {"", "info", "simulate", "register", "build", "query", "update", "tasks", "explain", "rules",
+                           "rules check", "rules test", "train", "evaluate", "export", "compact", "doctor"}) {
     const Outcome help = run(std::string(name) + " --help");
     EXPECT_EQ(help.code, 0) << name;
     EXPECT_NE(help.out.find("--help"), std::string::npos) << name;
@@ -120,7 +123,8 @@ TEST_F(Program, InfoKnowsAMapByItsContentNotByItsName) {
   fs::copy_file(path("map.clx"), path("renamed.backup"));
   const Json info = Json::parse(run("info --json " + path("renamed.backup").string()).out);
   EXPECT_EQ(info.at("clouds"), 2);
-  EXPECT_EQ(info.at("objects_by_class"), Json::parse(run("info --json " + path("map.clx").string()).out).at("objects_by_class"));
+  EXPECT_EQ(info.at("objects_by_class"),
+            Json::parse(run("info --json " + path("map.clx").string()).out).at("objects_by_class"));
 }
 
 TEST_F(Program, InfoTellsOfScansWhatIsInThem) {
@@ -131,7 +135,8 @@ TEST_F(Program, InfoTellsOfScansWhatIsInThem) {
     points += scan.at("points").get<std::uint64_t>();
     EXPECT_EQ(scan.at("has_pose"), true);
     EXPECT_EQ(scan.at("id").get<std::string>().size(), 32U);
-    for (int axis = 0; axis < 3; ++axis) EXPECT_LT(scan.at("extent_map_m").at("min")[axis], scan.at("extent_map_m").at("max")[axis]);
+    for (int axis = 0; axis < 3; ++axis)
+      EXPECT_LT(scan.at("extent_map_m").at("min")[axis], scan.at("extent_map_m").at("max")[axis]);
   }
   for (const auto& [label, count] : info.at("labels").items()) labelled += count.get<std::uint64_t>();
   EXPECT_EQ(points, info.at("points"));
@@ -144,7 +149,7 @@ TEST_F(Program, DoctorFindsAByteThatChangedAndNamesNothingInAWholeMap) {
   EXPECT_GT(whole.at("quads"), 1000);
   std::string bytes = readFile(path("map.clx"));
   std::size_t found = 0;
-  for (const std::size_t part : {3U, 5U, 7U, 9U}) {   // somewhere in the scans' points and tiles
+  for (const std::size_t part : {3U, 5U, 7U, 9U}) {  // somewhere in the scans' points and tiles
     std::string damaged = bytes;
     for (std::size_t i = 0; i < 64; ++i) damaged[damaged.size() * part / 10 + i * 131] ^= 0x55;
     writeFile(path("damaged.clx"), damaged);

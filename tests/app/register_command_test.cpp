@@ -74,7 +74,8 @@ TEST_F(RegisterCommand, CheckIsExitCodeOneForWrongPosesAndZeroForMendedOnes) {
 
 TEST_F(RegisterCommand, TheBytesDoNotDependOnTheOrderOfScans) {
   std::string scans;
-  for (const char* name : {"scan_002.pcd", "scan_000.pcd", "scan_001.pcd"}) scans += path("drive").string() + "/" + name + " ";
+  for (const char* name : {"scan_002.pcd", "scan_000.pcd", "scan_001.pcd"})
+    scans += path("drive").string() + "/" + name + " ";
   const std::string again = path("again.yaml").string();
   ASSERT_EQ(run("register " + scans + " -o " + again).code, 0);
   EXPECT_EQ(readFile(again), readFile(path("mended.yaml")));

@@ -38,8 +38,7 @@ TEST(ContentHash, OrdersByBytes) {
 }
 
 TEST(ContentHasher, TellsTheSplitOfTextsApart) {
-  EXPECT_NE(ContentHasher().addText("ab").addText("c").finish(),
-            ContentHasher().addText("a").addText("bc").finish());
+  EXPECT_NE(ContentHasher().addText("ab").addText("c").finish(), ContentHasher().addText("a").addText("bc").finish());
 }
 
 TEST(ContentHasher, TellsTheSplitOfSpansApart) {

@@ -26,8 +26,10 @@ std::string smallMap(const fs::path& file) {
     QuadWriter writer(transaction);
     for (int i = 0; i < 300; ++i) {
       const std::string number = std::to_string(i);
-      writer.add({Term::iri("s" + std::to_string(i % 40)), Term::iri("p" + std::to_string(i % 5)), Term::integer(i), Term::iri("")});
-      writer.add({Term::iri("s" + number), Term::iri("p"), Term::literal(std::string(static_cast<std::size_t>(i), 'x')), Term::iri("g")});
+      writer.add({Term::iri("s" + std::to_string(i % 40)), Term::iri("p" + std::to_string(i % 5)), Term::integer(i),
+                  Term::iri("")});
+      writer.add({Term::iri("s" + number), Term::iri("p"), Term::literal(std::string(static_cast<std::size_t>(i), 'x')),
+                  Term::iri("g")});
     }
     writer.flush();
     transaction.putBlock("t", "a", std::string(9000, 'b'));

@@ -27,7 +27,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     parseRdf({lines, "again", RdfFormat::NQuads, "", Term::iri("")}, [&](const Quad&) { ++again; });
   } catch (const InputError&) {
-    return 0;   // raptor's Turtle parser lets through IRIs that its N-Quads parser refuses
+    return 0;  // raptor's Turtle parser lets through IRIs that its N-Quads parser refuses
   }
   if (again != count) std::abort();
   return 0;

@@ -41,21 +41,34 @@ Blocks validBlocks() {
   labels.key = key;
   labels.label.assign(cluxels, 0);
   labels.probability.assign(cluxels, LabelValues{1, 0, 0, 0, 0});
-  return {toBytes(splitScan(scans[0]).begin()->second), toBytes(tiles.points.at(key)),   toBytes(tiles.cluxels.at(key)),
-          toBytes(tiles.ground.at(key)),                toBytes(tiles.features.at(key)), toBytes(labels),
-          toBytes(ComponentTile{}),                     toBytes(ContactTile{})};
+  return {toBytes(splitScan(scans[0]).begin()->second),
+          toBytes(tiles.points.at(key)),
+          toBytes(tiles.cluxels.at(key)),
+          toBytes(tiles.ground.at(key)),
+          toBytes(tiles.features.at(key)),
+          toBytes(labels),
+          toBytes(ComponentTile{}),
+          toBytes(ContactTile{})};
 }
 
 std::string roundTrip(std::size_t kind, std::string_view bytes) {
   switch (kind) {
-    case 0: return toBytes(scanSegmentFromBytes(bytes));
-    case 1: return toBytes(tilePointsFromBytes(bytes));
-    case 2: return toBytes(cluxelTileFromBytes(bytes));
-    case 3: return toBytes(groundTileFromBytes(bytes));
-    case 4: return toBytes(featureTileFromBytes(bytes));
-    case 5: return toBytes(labelTileFromBytes(bytes));
-    case 6: return toBytes(componentTileFromBytes(bytes));
-    default: return toBytes(contactTileFromBytes(bytes));
+    case 0:
+      return toBytes(scanSegmentFromBytes(bytes));
+    case 1:
+      return toBytes(tilePointsFromBytes(bytes));
+    case 2:
+      return toBytes(cluxelTileFromBytes(bytes));
+    case 3:
+      return toBytes(groundTileFromBytes(bytes));
+    case 4:
+      return toBytes(featureTileFromBytes(bytes));
+    case 5:
+      return toBytes(labelTileFromBytes(bytes));
+    case 6:
+      return toBytes(componentTileFromBytes(bytes));
+    default:
+      return toBytes(contactTileFromBytes(bytes));
   }
 }
 

@@ -8,8 +8,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view bytes = fuzz::textOf(data, size);
   fuzz::feed([&] {
     const PointTruth truth = parseTruth(bytes, "a.truth", 2);
-    fuzz::require(truth.primitive.size() == 2 && truth.object_class.size() == 2 &&
-                  truth.instance.size() == 2);
+    fuzz::require(truth.primitive.size() == 2 && truth.object_class.size() == 2 && truth.instance.size() == 2);
   });
   fuzz::feed([&] { parseAmbiguousInstances(bytes, "instances.csv"); });
   return 0;

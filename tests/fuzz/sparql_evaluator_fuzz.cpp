@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a query over a small store with all kinds of terms: an answer or an Error within its budget, no crash; and
-// the same bytes as an update that is dropped afterwards.
+// Any bytes as a query over a small store with all kinds of terms: an answer or an Error within its budget, no crash;
+// and the same bytes as an update that is dropped afterwards.
 #include <cstdint>
 #include <string_view>
 
@@ -20,10 +20,19 @@ std::shared_ptr<Environment> smallStore() {
   QuadWriter writer(transaction);
   const auto iri = [](const char* name) { return Term::iri(std::string("http://e/") + name); };
   const std::string xsd = "http://www.w3.org/2001/XMLSchema#";
-  const Term values[] = {Term::integer(1), Term::integer(-7), Term::literal("2.50", xsd + "decimal"), Term::real(1e300),
-                         Term::literal("a"), Term::langLiteral("ä", "de"), Term::boolean(true), Term::literal("x", xsd + "integer"),
-                         Term::literal("2024-02-29T12:00:00Z", xsd + "dateTime"), Term::literal("P1M", xsd + "duration"),
-                         Term::literal("POINT(1 2)", "http://www.opengis.net/ont/geosparql#wktLiteral"), Term::blank("b"), iri("a")};
+  const Term values[] = {Term::integer(1),
+                         Term::integer(-7),
+                         Term::literal("2.50", xsd + "decimal"),
+                         Term::real(1e300),
+                         Term::literal("a"),
+                         Term::langLiteral("ä", "de"),
+                         Term::boolean(true),
+                         Term::literal("x", xsd + "integer"),
+                         Term::literal("2024-02-29T12:00:00Z", xsd + "dateTime"),
+                         Term::literal("P1M", xsd + "duration"),
+                         Term::literal("POINT(1 2)", "http://www.opengis.net/ont/geosparql#wktLiteral"),
+                         Term::blank("b"),
+                         iri("a")};
   int number = 0;
   for (const Term& value : values) {
     const Term self = iri(number % 2 == 0 ? "a" : "b");
@@ -63,7 +72,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     UpdateOptions update;
     update.query = options;
-    update.query.services.clear();   // the reader above is gone
+    update.query.services.clear();  // the reader above is gone
     update.any_graph_writable = true;
     WriteTransaction transaction = environment->write();
     runUpdate(transaction, text, update);

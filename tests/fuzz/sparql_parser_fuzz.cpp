@@ -28,10 +28,21 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.base_iri = "http://example.org/base/";
   options.prefixes = {{"", "http://example.org/"}};
   switch (data[0] % 8) {
-    case 0: case 1: case 2: tryTo([&] { cluxel::parseQuery(text, options); }); break;
-    case 3: case 4: tryTo([&] { cluxel::parseUpdate(text, options); }); break;
-    case 5: tryTo([&] { cluxel::readResults(text, cluxel::ResultFormat::Xml); }); break;
-    case 6: tryTo([&] { cluxel::readResults(text, cluxel::ResultFormat::Json); }); break;
+    case 0:
+    case 1:
+    case 2:
+      tryTo([&] { cluxel::parseQuery(text, options); });
+      break;
+    case 3:
+    case 4:
+      tryTo([&] { cluxel::parseUpdate(text, options); });
+      break;
+    case 5:
+      tryTo([&] { cluxel::readResults(text, cluxel::ResultFormat::Xml); });
+      break;
+    case 6:
+      tryTo([&] { cluxel::readResults(text, cluxel::ResultFormat::Json); });
+      break;
     default:
       tryTo([&] { cluxel::readResults(text, cluxel::ResultFormat::Tsv); });
       tryTo([&] { cluxel::readResults(text, cluxel::ResultFormat::Csv); });

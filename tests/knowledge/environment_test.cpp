@@ -34,8 +34,7 @@ TEST_F(MapFile, KeepsBlocksOfAnySizeByTableAndKey) {
   const auto environment = open(OpenMode::ReadOnly);
   const ReadTransaction transaction = environment->read();
   std::map<std::string, std::string> found;
-  transaction.forEachBlock("t", "",
-                           [&](std::string_view key, std::string_view bytes) { found.emplace(key, bytes); });
+  transaction.forEachBlock("t", "", [&](std::string_view key, std::string_view bytes) { found.emplace(key, bytes); });
   EXPECT_TRUE(found == blocks);
   EXPECT_EQ(transaction.block("s", "a"), "other table");
   EXPECT_EQ(transaction.block("s", "b"), std::nullopt);
@@ -129,8 +128,8 @@ TEST_F(MapFile, CompactsIntoASmallerMapWithTheSameContents) {
     WriteTransaction transaction = environment->write();
     QuadWriter writer(transaction);
     for (int j = 0; j < 300; ++j)
-      writer.add({Term::iri("s" + std::to_string(random() % 500)), Term::iri("p"),
-                  Term::integer(random() % 900), Term::iri("")});
+      writer.add({Term::iri("s" + std::to_string(random() % 500)), Term::iri("p"), Term::integer(random() % 900),
+                  Term::iri("")});
     writer.flush();
     transaction.putBlock("t", "a", std::string(100'000, static_cast<char>('a' + i)));
     transaction.commit();
@@ -146,8 +145,7 @@ TEST_F(MapFile, CompactsIntoASmallerMapWithTheSameContents) {
   const QuadReader old_reader(before);
   const QuadReader new_reader(after);
   ASSERT_EQ(new_reader.size(), old_reader.size());
-  for (TermId id = 1; id <= old_reader.termCount(); ++id)
-    ASSERT_EQ(new_reader.termOf(id), old_reader.termOf(id));
+  for (TermId id = 1; id <= old_reader.termCount(); ++id) ASSERT_EQ(new_reader.termOf(id), old_reader.termOf(id));
   QuadCursor old_quads = old_reader.scan({}, QuadOrder::Posg);
   QuadCursor new_quads = new_reader.scan({}, QuadOrder::Posg);
   for (QuadIds one, other; old_quads.next(one);) {

@@ -35,7 +35,8 @@ bool same(const std::vector<QuadKey>& a, const std::vector<QuadKey>& b) {
 }
 
 /// Random prefixes, in ascending order or not, of which the lookup is told all, some, or others.
-void expectSameLookups(const QuadReader& reader, QuadOrder order, std::size_t length, std::size_t count, std::mt19937& random) {
+void expectSameLookups(const QuadReader& reader, QuadOrder order, std::size_t length, std::size_t count,
+                       std::mt19937& random) {
   std::vector<std::array<TermId, 4>> wanted(count);
   for (auto& prefix : wanted) {
     const QuadIds quad = randomQuad(random);
@@ -50,7 +51,7 @@ void expectSameLookups(const QuadReader& reader, QuadOrder order, std::size_t le
   }
   PrefixLookup plain = reader.lookup(order), informed = reader.lookup(order);
   informed.expect(told, length);
-  if (random() % 4 == 0) {   // no lengths that a lookup has: nothing is expected
+  if (random() % 4 == 0) {  // no lengths that a lookup has: nothing is expected
     informed.expect(told, 0);
     informed.expect(told, 5);
   }
@@ -86,7 +87,8 @@ TEST(Expectation, TermsAndValuesAreTheSameAfterBeingExpected) {
   QuadWriter writer(transaction);
   for (int i = 0; i < 5000; ++i) {
     writer.intern(Term::integer(i));
-    writer.intern(Term::iri("http://example.org/" + std::string(static_cast<std::size_t>(i) % 3000, 'x') + std::to_string(i)));
+    writer.intern(
+        Term::iri("http://example.org/" + std::string(static_cast<std::size_t>(i) % 3000, 'x') + std::to_string(i)));
   }
   writer.flush();
   transaction.commit();
@@ -96,7 +98,7 @@ TEST(Expectation, TermsAndValuesAreTheSameAfterBeingExpected) {
   for (const std::size_t count : kCounts) {
     std::vector<TermId> ids;
     for (std::size_t i = 0; i < count; ++i) ids.push_back(static_cast<TermId>(random() % (terms + 1)));
-    if (count > 2) ids[0] = terms + 1, ids[1] = 0xFFFF'FFFF;   // neither is there
+    if (count > 2) ids[0] = terms + 1, ids[1] = 0xFFFF'FFFF;  // neither is there
     reader.expectViews(ids);
     reader.expectValues(ids);
     for (const TermId id : ids) {
@@ -128,14 +130,15 @@ TEST(Expectation, DecimalsKeepTheirDigitsWhere64BitsHoldThem) {
     made.emplace_back(writer.intern(Term::literal(text, vocabulary::xsd("decimal"))), text);
   };
   for (int i = 0; i < 500; ++i) {
-    const std::string whole = std::to_string(random() % 1'000'000'000), fraction = std::to_string(random() % 1'000'000'000);
+    const std::string whole = std::to_string(random() % 1'000'000'000),
+                      fraction = std::to_string(random() % 1'000'000'000);
     make((i % 3 == 0 ? "-" : "") + whole + (i % 4 == 0 ? "" : "." + fraction));
   }
   const TermId plus = writer.intern(Term::literal("+.50", vocabulary::xsd("decimal")));
   const TermId long_one = writer.intern(Term::literal("1234567890123456789", vocabulary::xsd("decimal")));
   std::vector<TermId> too_long;
-  for (const char* text : {"9999999999999999999", "-9999999999999999999", "+9999999999999999999", "999999999999999999.9", "-0.9999999999999999999",
-                           "99999999999999999999"}) {
+  for (const char* text : {"9999999999999999999", "-9999999999999999999", "+9999999999999999999",
+                           "999999999999999999.9", "-0.9999999999999999999", "99999999999999999999"}) {
     too_long.push_back(writer.intern(Term::literal(text, vocabulary::xsd("decimal"))));
   }
   make("999999999999999999");

@@ -56,8 +56,7 @@ TEST_F(MapFile, RefusesANewerFormatAndForeignLmdbFiles) {
   EXPECT_THAT(refusal(), HasSubstr("not a Cluxel map"));
   fs::remove(file_);
   create().reset();
-  withLmdb(file_,
-           [](MDB_txn* transaction, MDB_dbi main) { putText(transaction, main, "cluxel-format", "2"); });
+  withLmdb(file_, [](MDB_txn* transaction, MDB_dbi main) { putText(transaction, main, "cluxel-format", "2"); });
   EXPECT_THAT(refusal(), HasSubstr("newer format (2; this program reads 1)"));
 }
 

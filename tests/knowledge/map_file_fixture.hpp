@@ -18,9 +18,7 @@ namespace cluxel {
 class MapFile : public testing::Test {
  protected:
   std::shared_ptr<Environment> create() { return Environment::open(file_, OpenMode::Create); }
-  std::shared_ptr<Environment> open(OpenMode mode = OpenMode::ReadWrite) {
-    return Environment::open(file_, mode);
-  }
+  std::shared_ptr<Environment> open(OpenMode mode = OpenMode::ReadWrite) { return Environment::open(file_, mode); }
 
   static void put(Environment& environment, std::string_view key, std::string_view bytes) {
     WriteTransaction transaction = environment.write();

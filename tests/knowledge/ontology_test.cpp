@@ -41,8 +41,8 @@ std::vector<Diagnostic> faultsOf(const std::string& addition) {
 
 TEST(Ontology, KnowsTheClassesThatRulesName) {
   const OntologyView view = ontologyViewOf(shipped());
-  for (const char* name : {"Ground", "Building", "Tree", "Bush", "StreetLamp", "StreetSign", "UtilityPole",
-                           "Vehicle", "SmallObject"}) {
+  for (const char* name :
+       {"Ground", "Building", "Tree", "Bush", "StreetLamp", "StreetSign", "UtilityPole", "Vehicle", "SmallObject"}) {
     const OntologyClass* entry = view.find(clx(name));
     ASSERT_NE(entry, nullptr) << name;
     EXPECT_TRUE(view.isA(clx(name), clx("Object")));
@@ -80,8 +80,7 @@ TEST(Ontology, GivesAttributesAUnitAndAnEnglishText) {
   const OntologyView view = ontologyViewOf(shipped());
   std::map<std::string, OntologyProperty> properties;
   for (const OntologyProperty& property : view.properties) properties[property.iri] = property;
-  for (const char* name :
-       {"height", "horizontalExtent", "normalTilt", "pointCount", "minX", "z", "meanIntensity"}) {
+  for (const char* name : {"height", "horizontalExtent", "normalTilt", "pointCount", "minX", "z", "meanIntensity"}) {
     EXPECT_FALSE(properties[clx(name)].unit.empty()) << name;
     EXPECT_FALSE(properties[clx(name)].label.empty()) << name;
     EXPECT_FALSE(properties[clx(name)].comment.empty()) << name;
@@ -111,16 +110,14 @@ TEST(Ontology, ShowsAllFaultsAtTheirPlaces) {
   for (const Diagnostic& fault : faults)
     texts.push_back(toString(fault.location) + ' ' + fault.message + ' ' + fault.hint);
   EXPECT_THAT(texts, IsSupersetOf({std::string("bench.ttl:6:14 Bench: a colour is written #rrggbb ")}));
-  EXPECT_THAT(
-      texts,
-      Contains(HasSubstr("bench.ttl:7:23 Bench: there is no class TreeTronk did you mean 'TreeTrunk'?")));
+  EXPECT_THAT(texts,
+              Contains(HasSubstr("bench.ttl:7:23 Bench: there is no class TreeTronk did you mean 'TreeTrunk'?")));
   EXPECT_THAT(texts, Contains(HasSubstr("stands above itself")));
   EXPECT_THAT(texts, Contains(HasSubstr("a mobility is clx:Static or clx:Movable")));
 }
 
 /// The rules as they are written in the specifications, applied to all pairs until nothing changes.
-std::set<QuadIds> naiveClosure(std::set<QuadIds> all, const std::map<std::string, TermId>& w,
-                               TermId literal) {
+std::set<QuadIds> naiveClosure(std::set<QuadIds> all, const std::map<std::string, TermId>& w, TermId literal) {
   const auto has = [&](TermId s, TermId p, TermId o) { return all.contains({s, p, o, 0}); };
   for (std::size_t before = 0; before != all.size();) {
     before = all.size();
@@ -180,8 +177,7 @@ TEST(Closure, FindsWhatANaiveApplicationOfTheRulesFinds) {
     for (const QuadIds& quad : stated) writer.add(quad);
     writer.flush();
     const TermId other_graph = things.front();
-    writer.add(
-        QuadIds{things[1], words.at("type"), classes[0], other_graph});  // outside the sources: no effect
+    writer.add(QuadIds{things[1], words.at("type"), classes[0], other_graph});  // outside the sources: no effect
     writer.flush();
     const std::vector<TermId> sources = {0};
     const std::vector<QuadIds> inferred = closureOf(QuadReader(transaction), 0, sources);
@@ -208,7 +204,8 @@ TEST(Closure, MakesNoFactWhosePredicateIsNoIri) {
   std::set<std::string> inferred;
   QuadCursor cursor = reader.scan({.s = {}, .p = {}, .o = {}, .g = reader.idOf(Term::iri(kGraphInferred))});
   for (QuadIds quad; cursor.next(quad);)
-    inferred.insert(toNTriples(reader.termOf(quad.s)) + toNTriples(reader.termOf(quad.p)) + toNTriples(reader.termOf(quad.o)));
+    inferred.insert(toNTriples(reader.termOf(quad.s)) + toNTriples(reader.termOf(quad.p)) +
+                    toNTriples(reader.termOf(quad.o)));
   EXPECT_THAT(inferred, ElementsAre("<http://x/b><http://x/q><http://x/a>")) << "through the blank node";
 }
 

@@ -15,8 +15,7 @@
 namespace cluxel {
 namespace {
 
-constexpr std::array<QuadOrder, 4> kOrders = {QuadOrder::Spog, QuadOrder::Posg, QuadOrder::Ospg,
-                                              QuadOrder::Gspo};
+constexpr std::array<QuadOrder, 4> kOrders = {QuadOrder::Spog, QuadOrder::Posg, QuadOrder::Ospg, QuadOrder::Gspo};
 
 std::array<TermId, 4> inOrder(const QuadIds& quad, QuadOrder order) {
   const std::array<TermId, 4> ids = {quad.s, quad.p, quad.o, quad.g};
@@ -97,8 +96,8 @@ void expectSeeksLikeASortedList(QuadCursor cursor, const std::vector<QuadIds>& q
   }
 }
 
-void expectLookupsFindWhatScansFind(const QuadReader& reader, const std::set<QuadIds>& quads,
-                                    std::mt19937& random, TermId range) {
+void expectLookupsFindWhatScansFind(const QuadReader& reader, const std::set<QuadIds>& quads, std::mt19937& random,
+                                    TermId range) {
   for (const QuadOrder order : kOrders) {
     PrefixLookup lookup = reader.lookup(order);
     const std::vector<QuadIds> all = expected(quads, {}, order);
@@ -118,8 +117,7 @@ void expectLookupsFindWhatScansFind(const QuadReader& reader, const std::set<Qua
   }
 }
 
-void expectSameAnswers(const QuadReader& reader, const std::set<QuadIds>& quads, std::mt19937& random,
-                       TermId range) {
+void expectSameAnswers(const QuadReader& reader, const std::set<QuadIds>& quads, std::mt19937& random, TermId range) {
   ASSERT_EQ(reader.size(), quads.size());
   for (unsigned bound = 0; bound < 16; ++bound) {
     const QuadPattern pattern = patternOf(randomQuad(random, range), bound);
@@ -202,8 +200,7 @@ TEST(QuadStore, GivesBackEveryTermAndFindsItsIdAgain) {
     std::vector<TermId> given;
     for (const Term& term : terms) given.push_back(writer.intern(term));
     writer.flush();
-    for (std::size_t i = 0; i < terms.size(); ++i)
-      ASSERT_EQ(QuadReader(transaction).termOf(given[i]), terms[i]);
+    for (std::size_t i = 0; i < terms.size(); ++i) ASSERT_EQ(QuadReader(transaction).termOf(given[i]), terms[i]);
     if (part == 0) ids = given;
     EXPECT_EQ(given, ids);
     transaction.commit();
@@ -280,9 +277,8 @@ TEST(QuadStore, EstimatesWithinAFactorOfTwoAndExactlyWhenFew) {
   transaction.commit();
   const QuadReader reader(environment->read());
   for (const TermId p : {1U, 2U, 17U}) {
-    for (const auto& pattern :
-         {QuadPattern{{}, p, {}, {}}, QuadPattern{{}, p, {}, 1}, QuadPattern{7, p, {}, {}},
-          QuadPattern{{}, p, 5, {}}, QuadPattern{{}, {}, {}, 2}, QuadPattern{{}, {}, 9, {}}}) {
+    for (const auto& pattern : {QuadPattern{{}, p, {}, {}}, QuadPattern{{}, p, {}, 1}, QuadPattern{7, p, {}, {}},
+                                QuadPattern{{}, p, 5, {}}, QuadPattern{{}, {}, {}, 2}, QuadPattern{{}, {}, 9, {}}}) {
       const auto exact = static_cast<double>(expected(quads, pattern, QuadOrder::Spog).size());
       const auto estimate = static_cast<double>(reader.estimate(pattern));
       EXPECT_TRUE(exact >= 4'000 || estimate == exact) << estimate << " for " << exact;

@@ -50,8 +50,7 @@ std::string written(const std::vector<Quad>& quads, const Write& write) {
 }
 
 std::string sortedNQuads(const std::vector<Quad>& quads) {
-  return written(quads,
-                 [](const QuadReader& reader, const TextSink& out) { writeSortedNQuads(reader, out); });
+  return written(quads, [](const QuadReader& reader, const TextSink& out) { writeSortedNQuads(reader, out); });
 }
 
 TEST(RdfReader, GivesPlainLiteralsTheTypeStringAndLowersLanguageTags) {
@@ -75,8 +74,8 @@ TEST(RdfReader, KeepsBlankNodesOfSourcesApartAndOfOneSourceTheSame) {
 }
 
 TEST(RdfReader, PutsStatementsWithoutAGraphIntoTheGivenOne) {
-  RdfSource source{"<http://a> <http://b> <http://c> .\n<http://a> <http://b> <http://c> <http://g> .\n",
-                   "x.nq", RdfFormat::NQuads, "", Term::iri("http://default")};
+  RdfSource source{"<http://a> <http://b> <http://c> .\n<http://a> <http://b> <http://c> <http://g> .\n", "x.nq",
+                   RdfFormat::NQuads, "", Term::iri("http://default")};
   const std::vector<Quad> quads = parse(source);
   ASSERT_EQ(quads.size(), 2U);
   EXPECT_EQ(quads[0].graph, Term::iri("http://default"));
@@ -131,8 +130,8 @@ TEST(RdfReader, RefusesLanguageTagsThatRaptorWouldReadBeyond) {
       "<rdf:RDF xmlns:rdf='http://www.w3.org/1999/02/22-rdf-syntax-ns#' xmlns:e='http://e/'>"
       "<rdf:Description rdf:about='http://a'><e:p xml:lang='";
   const auto rdfxml = [&](const std::string& tag) {
-    return RdfSource{xml + tag + "'>x</e:p></rdf:Description></rdf:RDF>", "x.rdf", RdfFormat::RdfXml,
-                     "http://b/", Term::iri("")};
+    return RdfSource{xml + tag + "'>x</e:p></rdf:Description></rdf:RDF>", "x.rdf", RdfFormat::RdfXml, "http://b/",
+                     Term::iri("")};
   };
   EXPECT_EQ(faultsOf(rdfxml(std::string(300, 'a'))).size(), 1U);
   EXPECT_EQ(parse(rdfxml("de")).front().object, Term::langLiteral("x", "de"));
@@ -159,8 +158,7 @@ Term randomTerm(std::mt19937& random, bool literal) {
   const std::string& text = texts[random() % texts.size()];
   switch (random() % (literal ? 4 : 2)) {
     case 0:
-      return Term::iri("http://example.org/" + std::to_string(random() % 9) +
-                       (random() % 2 == 0 ? "é/%20,b" : ""));
+      return Term::iri("http://example.org/" + std::to_string(random() % 9) + (random() % 2 == 0 ? "é/%20,b" : ""));
     case 1:
       return Term::blank("n" + std::to_string(random() % 5));
     case 2:
@@ -191,8 +189,8 @@ TEST(RdfWriter, WritesTextsThatReadBackAsTheSameQuads) {
   const std::vector<Quad> list(quads.begin(), quads.end());
   const RdfSource nquads{sortedNQuads(list), "x.nq", RdfFormat::NQuads, "", Term::iri("")};
   EXPECT_EQ(shapes(parse(nquads)), shapes(list));
-  const std::string text = written(
-      list, [](const QuadReader& reader, const TextSink& out) { writeTurtle(reader, Term::iri(""), out); });
+  const std::string text =
+      written(list, [](const QuadReader& reader, const TextSink& out) { writeTurtle(reader, Term::iri(""), out); });
   EXPECT_EQ(shapes(parse(turtle(text))), shapes(list));
 }
 

@@ -67,8 +67,7 @@ class RedlandStorage : public testing::Test {
   Redland<librdf_statement> statement(const std::optional<Term>& s, const std::optional<Term>& p,
                                       const std::optional<Term>& o) {
     const auto made = [&](const std::optional<Term>& term) { return term ? node(*term).release() : nullptr; };
-    return Redland<librdf_statement>(
-        librdf_new_statement_from_nodes(world_.get(), made(s), made(p), made(o)));
+    return Redland<librdf_statement>(librdf_new_statement_from_nodes(world_.get(), made(s), made(p), made(o)));
   }
 
   int add(const Term& s, const Term& p, const Term& o, const char* graph = nullptr) {
@@ -85,9 +84,8 @@ class RedlandStorage : public testing::Test {
       librdf_statement* found = librdf_stream_get_object(stream.get());
       librdf_node* context = librdf_stream_get_context2(stream.get());
       lines.push_back(
-          toNQuads({termOf(librdf_statement_get_subject(found)),
-                    termOf(librdf_statement_get_predicate(found)), termOf(librdf_statement_get_object(found)),
-                    context != nullptr ? termOf(context) : Term::iri("")}));
+          toNQuads({termOf(librdf_statement_get_subject(found)), termOf(librdf_statement_get_predicate(found)),
+                    termOf(librdf_statement_get_object(found)), context != nullptr ? termOf(context) : Term::iri("")}));
     }
     return lines;
   }
@@ -102,8 +100,7 @@ class RedlandStorage : public testing::Test {
     const Handle<librdf_iterator> iterator(raw);
     std::vector<std::string> nodes;
     for (; iterator && librdf_iterator_end(iterator.get()) == 0; librdf_iterator_next(iterator.get()))
-      nodes.push_back(
-          toNTriples(termOf(static_cast<librdf_node*>(librdf_iterator_get_object(iterator.get())))));
+      nodes.push_back(toNTriples(termOf(static_cast<librdf_node*>(librdf_iterator_get_object(iterator.get())))));
     return nodes;
   }
 
@@ -135,8 +132,7 @@ TEST_F(RedlandStorage, KeepsEveryKindOfTermAsItWas) {
   openWith("");
   EXPECT_EQ(librdf_model_size(model_.get()), static_cast<int>(objects.size()));
   EXPECT_THAT(find(a_, b_, std::nullopt), testing::UnorderedElementsAreArray(expected));
-  for (const Term& object : objects)
-    EXPECT_EQ(find(std::nullopt, std::nullopt, object).size(), 1U) << object.text;
+  for (const Term& object : objects) EXPECT_EQ(find(std::nullopt, std::nullopt, object).size(), 1U) << object.text;
 }
 
 TEST_F(RedlandStorage, FindsTheUnionOfGraphsOnceAndWithoutHistory) {
@@ -150,12 +146,10 @@ TEST_F(RedlandStorage, FindsTheUnionOfGraphsOnceAndWithoutHistory) {
   const auto context = node(Term::iri("http://g2"));
   EXPECT_THAT(drain(librdf_model_context_as_stream(model_.get(), context.get())),
               ElementsAre("<http://a> <http://b> <http://c> <http://g2> .\n"));
-  EXPECT_THAT(
-      drain(librdf_model_get_contexts(model_.get())),
-      UnorderedElementsAre("<http://g1>", "<http://g2>", "<" + std::string(vocabulary::kGraphHistory) + ">"));
+  EXPECT_THAT(drain(librdf_model_get_contexts(model_.get())),
+              UnorderedElementsAre("<http://g1>", "<http://g2>", "<" + std::string(vocabulary::kGraphHistory) + ">"));
   openWith("strict='yes'");
-  EXPECT_THAT(find(std::nullopt, std::nullopt, std::nullopt),
-              ElementsAre("<http://c> <http://b> <http://c> .\n"));
+  EXPECT_THAT(find(std::nullopt, std::nullopt, std::nullopt), ElementsAre("<http://c> <http://b> <http://c> .\n"));
   EXPECT_EQ(librdf_model_size(model_.get()), 1);
 }
 
@@ -212,7 +206,8 @@ TEST_F(RedlandStorage, AnOpenStreamOutlivesItsTransactionAndDoesNotKeepIt) {
     add(a_, b_, b_);
     const auto pattern = statement(a_, b_, std::nullopt);
     Handle<librdf_stream> stream(librdf_model_find_statements(model_.get(), pattern.get()));
-    ASSERT_EQ(commits ? librdf_model_transaction_commit(model_.get()) : librdf_model_transaction_rollback(model_.get()), 0);
+    ASSERT_EQ(commits ? librdf_model_transaction_commit(model_.get()) : librdf_model_transaction_rollback(model_.get()),
+              0);
     EXPECT_EQ(librdf_model_transaction_start(model_.get()), 0) << "the next transaction may begin";
     EXPECT_EQ(librdf_model_transaction_rollback(model_.get()), 0);
     EXPECT_THAT(drain(stream.release()), SizeIs(2)) << "what the transaction saw";
@@ -241,13 +236,10 @@ TEST_F(RedlandStorage, GivesEachSourceArcAndTargetOnce) {
   const auto a = node(a_);
   const auto b = node(b_);
   const auto c = node(c_);
-  EXPECT_THAT(drain(librdf_model_get_targets(model_.get(), a.get(), b.get())),
-              ElementsAre("<http://a>", "<http://c>"));
+  EXPECT_THAT(drain(librdf_model_get_targets(model_.get(), a.get(), b.get())), ElementsAre("<http://a>", "<http://c>"));
   EXPECT_THAT(drain(librdf_model_get_sources(model_.get(), b.get(), c.get())), ElementsAre("<http://a>"));
-  EXPECT_THAT(drain(librdf_model_get_arcs(model_.get(), a.get(), c.get())),
-              ElementsAre("<http://b>", "<http://c>"));
-  EXPECT_THAT(drain(librdf_model_get_arcs_out(model_.get(), a.get())),
-              ElementsAre("<http://b>", "<http://c>"));
+  EXPECT_THAT(drain(librdf_model_get_arcs(model_.get(), a.get(), c.get())), ElementsAre("<http://b>", "<http://c>"));
+  EXPECT_THAT(drain(librdf_model_get_arcs_out(model_.get(), a.get())), ElementsAre("<http://b>", "<http://c>"));
   EXPECT_THAT(drain(librdf_model_get_arcs_in(model_.get(), a.get())), ElementsAre("<http://b>"));
   EXPECT_NE(librdf_model_has_arc_in(model_.get(), c.get(), b.get()), 0);
   EXPECT_EQ(librdf_model_has_arc_out(model_.get(), c.get(), b.get()), 0);
@@ -280,13 +272,12 @@ TEST_F(RedlandStorage, IsListedByStockRdfproc) {
 #endif
   const fs::path modules = fs::path(CLUXEL_BINARY_DIR) / "redland";
   ASSERT_TRUE(fs::exists(modules / "librdf_storage_cluxel.so")) << "the module was not built";
-  if (std::system("command -v rdfproc >/dev/null") != 0)
-    GTEST_SKIP() << "rdfproc (redland-utils) is not installed";
+  if (std::system("command -v rdfproc >/dev/null") != 0) GTEST_SKIP() << "rdfproc (redland-utils) is not installed";
   add(a_, b_, Term::langLiteral("grün", "de"), "http://g");
   close();
   const std::string output = (folder_.path() / "listing").string();
-  const std::string command = "REDLAND_MODULE_PATH='" + modules.string() + "' rdfproc -q -s cluxel '" +
-                              file_ + "' print > '" + output + "'";
+  const std::string command =
+      "REDLAND_MODULE_PATH='" + modules.string() + "' rdfproc -q -s cluxel '" + file_ + "' print > '" + output + "'";
   ASSERT_EQ(std::system(command.c_str()), 0);
   EXPECT_THAT(readFile(output), HasSubstr("<http://a> <http://b> \"gr\\u00FCn\"@de"));
 }

@@ -27,10 +27,8 @@ TEST(Term, WritesCanonicalNTriples) {
   EXPECT_EQ(toNTriples(Term::literal("a\"\\\n\r\té")), "\"a\\\"\\\\\\n\\r\té\"");
   EXPECT_EQ(toNTriples(Term::langLiteral("x", "EN-gb")), "\"x\"@en-gb");
   EXPECT_EQ(toNTriples(Term::integer(-5)), "\"-5\"^^<http://www.w3.org/2001/XMLSchema#integer>");
-  EXPECT_EQ(toNQuads({Term::iri("a"), Term::iri("b"), Term::literal("c"), Term::iri("")}),
-            "<a> <b> \"c\" .\n");
-  EXPECT_EQ(toNQuads({Term::iri("a"), Term::iri("b"), Term::literal("c"), Term::iri("g")}),
-            "<a> <b> \"c\" <g> .\n");
+  EXPECT_EQ(toNQuads({Term::iri("a"), Term::iri("b"), Term::literal("c"), Term::iri("")}), "<a> <b> \"c\" .\n");
+  EXPECT_EQ(toNQuads({Term::iri("a"), Term::iri("b"), Term::literal("c"), Term::iri("g")}), "<a> <b> \"c\" <g> .\n");
 }
 
 TEST(Term, WritesDoublesThatReadBackTheSame) {
@@ -97,9 +95,8 @@ TEST(LiteralValue, DecodesBooleansAndMoments) {
   EXPECT_EQ(decode("2000-02-29T12:30:00.25+02:00", "dateTime").integer, 951'820'200'250'000);
   EXPECT_EQ(decode("-0001-01-01T00:00:00Z", "dateTime").integer, -62'198'755'200'000'000);
   EXPECT_EQ(decode("2004-04-12-05:00", "date").integer, 1'081'746'000'000'000);
-  for (const char* bad :
-       {"2001-02-29T00:00:00Z", "2001-1-1T00:00:00Z", "2001-01-01T25:00:00Z", "2001-01-01T00:00:00",
-        "2001-01-01T00:00:00.Z", "2001-01-01T00:00:00+15:00", "2001-01-01", "01-01-01T00:00:00Z"})
+  for (const char* bad : {"2001-02-29T00:00:00Z", "2001-1-1T00:00:00Z", "2001-01-01T25:00:00Z", "2001-01-01T00:00:00",
+                          "2001-01-01T00:00:00.Z", "2001-01-01T00:00:00+15:00", "2001-01-01", "01-01-01T00:00:00Z"})
     EXPECT_EQ(decode(bad, "dateTime").type, Type::None) << bad;
 }
 

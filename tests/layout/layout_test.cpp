@@ -54,7 +54,9 @@ std::vector<std::string> linesOf(const fs::path& path) {
 }
 
 /// "scan" for src/scan/x.cpp and include/cluxel/scan/x.hpp.
-std::string wingOf(const fs::path& path) { return path.parent_path().filename().string(); }
+std::string wingOf(const fs::path& path) {
+  return path.parent_path().filename().string();
+}
 
 std::vector<std::string> includesOf(const fs::path& path) {
   static const std::regex include(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
@@ -92,17 +94,18 @@ TEST(Layout, PublicHeadersNameTheStandardLibraryAndEigenOnly) {
     }
 }
 
-/// What a heavy package is walled in by: files whose names begin so, and no more of them than these. Redland's C tables of
-/// callbacks fill two modules (docs/decisions.md).
+/// What a heavy package is walled in by: files whose names begin so, and no more of them than these. Redland's C tables
+/// of callbacks fill two modules (docs/decisions.md).
 struct Wall {
   std::string name;
   std::size_t most;
 };
 
 TEST(Layout, HeavyPackagesStayInFewFilesThatAreNamedForThem) {
-  const std::map<std::string, Wall> walls{{"pcl/", {"pcl_", 2}},      {"yaml-cpp/", {"yaml_", 2}}, {"lmdb", {"lmdb_", 1}},
-                                          {"librdf", {"redland_", 7}}, {"raptor", {"rdf_", 1}},     {"rasqal", {"", 0}},
-                                          {"embree", {"ray_", 2}},     {"boost/graph/", {"", 3}},   {"boost/geometry", {"geometry", 2}}};
+  const std::map<std::string, Wall> walls{
+      {"pcl/", {"pcl_", 2}},       {"yaml-cpp/", {"yaml_", 2}}, {"lmdb", {"lmdb_", 1}},
+      {"librdf", {"redland_", 7}}, {"raptor", {"rdf_", 1}},     {"rasqal", {"", 0}},
+      {"embree", {"ray_", 2}},     {"boost/graph/", {"", 3}},   {"boost/geometry", {"geometry", 2}}};
   for (const auto& [package, wall] : walls) {
     std::set<fs::path> users;
     for (const fs::path& file : sourcesBelow({"src"}))
@@ -122,9 +125,8 @@ TEST(Layout, EverySourceHasAHeaderInItsWing) {
     if (file.extension() != ".cpp" || wing == "redland_modules" || name == "main.hpp") continue;
     const bool has_own = fs::exists(kRoot / "include/cluxel" / wing / name) || fs::exists(kRoot / "src" / wing / name);
     const auto includes = includesOf(file);
-    const bool joins_a_unit = std::any_of(includes.begin(), includes.end(), [&](const std::string& include) {
-      return wingOfInclude(include) == wing;
-    });
+    const bool joins_a_unit = std::any_of(includes.begin(), includes.end(),
+                                          [&](const std::string& include) { return wingOfInclude(include) == wing; });
     EXPECT_TRUE(has_own || joins_a_unit) << file << " defines what no header of its wing declares";
   }
 }
@@ -132,7 +134,8 @@ TEST(Layout, EverySourceHasAHeaderInItsWing) {
 TEST(Layout, EveryHeaderOfAWingIsIncludedBySomeSource) {
   std::set<std::string> included;
   for (const fs::path& file : sourcesBelow({"include/cluxel", "src"}))
-    for (const std::string& name : includesOf(file)) included.insert(name.starts_with("cluxel/") ? name.substr(7) : name);
+    for (const std::string& name : includesOf(file))
+      included.insert(name.starts_with("cluxel/") ? name.substr(7) : name);
   for (const fs::path& file : sourcesBelow({"include/cluxel", "src"}))
     if (file.extension() == ".hpp") {
       EXPECT_TRUE(included.contains(wingOf(file) + "/" + file.filename().string())) << file << " is included by nobody";

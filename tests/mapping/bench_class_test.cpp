@@ -59,7 +59,8 @@ TEST(BenchClass, IsUnknownToAMapWithoutItsOntology) {
   MapInputs inputs = shippedInputs();
   inputs.rules = {{"bench.rules.yaml", kBenchRules}};
   inputs.rule_roots = 1;
-  EXPECT_THROW(buildMap(scansOf({folder.path() / "park.pcd"}), inputs, folder.path() / "map.clx", {}, silence()), InputError);
+  EXPECT_THROW(buildMap(scansOf({folder.path() / "park.pcd"}), inputs, folder.path() / "map.clx", {}, silence()),
+               InputError);
 }
 
 }  // namespace

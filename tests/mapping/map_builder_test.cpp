@@ -235,8 +235,14 @@ TEST_F(MapBuilder, FaultyInputsWriteNothing) {
   EXPECT_EQ(with([](MapInputs& i) { i.rules[0].text = "rules: [\n"; }), ExitCode::FaultyInput);
   EXPECT_EQ(with([](MapInputs& i) { i.ontology[0].text += "\nclx:Tree a owl:Class"; }), ExitCode::FaultyInput);
   EXPECT_EQ(with([](MapInputs& i) { i.model.text.resize(i.model.text.size() / 2); }), ExitCode::FaultyInput);
-  EXPECT_EQ(with([](MapInputs& i) { i.sparql_rules = {{"x.rq", "SELECT ?s WHERE { ?s ?p ?o }"}}; }), ExitCode::FaultyInput);
-  EXPECT_EQ(with([](MapInputs& i) { i.sparql_rules = {{"x.rq", "CONSTRUCT { ?s ?p } WHERE {}"}}; }), ExitCode::FaultyInput);
+  EXPECT_EQ(with([](MapInputs& i) {
+              i.sparql_rules = {{"x.rq", "SELECT ?s WHERE { ?s ?p ?o }"}};
+            }),
+            ExitCode::FaultyInput);
+  EXPECT_EQ(with([](MapInputs& i) {
+              i.sparql_rules = {{"x.rq", "CONSTRUCT { ?s ?p } WHERE {}"}};
+            }),
+            ExitCode::FaultyInput);
 }
 
 TEST_F(MapBuilder, NoScansAreAnErrorOfUsage) {
@@ -266,7 +272,8 @@ TEST_F(MapBuilder, KittiFramesInAnyOrderGiveTheSameMap) {
   Files files = kittiFrames(folder.path(), is_long ? 16 : 3);
   const std::string first = builtText(files, *inputs, {.threads = 2});
   std::reverse(files.begin(), files.end());
-  EXPECT_TRUE(builtText(files, *inputs, {.threads = 1, .batch_points = is_long ? 500'000U : 1U}) == first) << "last frame first";
+  EXPECT_TRUE(builtText(files, *inputs, {.threads = 1, .batch_points = is_long ? 500'000U : 1U}) == first)
+      << "last frame first";
   std::mt19937 random(16);
   for (int round = 0; round < (is_long ? 2 : 0); ++round) {
     std::shuffle(files.begin(), files.end(), random);

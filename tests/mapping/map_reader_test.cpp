@@ -32,8 +32,11 @@ class MapReading : public testing::Test {
     delete campus;
   }
   static std::size_t count(const std::string& pattern) {
-    return evaluateQuery(map->quads(), "PREFIX clx: <https://w3id.org/cluxel/ontology#> PREFIX sosa: "
-                                       "<http://www.w3.org/ns/sosa/> SELECT DISTINCT * WHERE { " + pattern + " }").table.row_count;
+    return evaluateQuery(map->quads(),
+                         "PREFIX clx: <https://w3id.org/cluxel/ontology#> PREFIX sosa: "
+                         "<http://www.w3.org/ns/sosa/> SELECT DISTINCT * WHERE { " +
+                             pattern + " }")
+        .table.row_count;
   }
   static inline SmallCampus* campus = nullptr;
   static inline ScratchFolder* folder = nullptr;
@@ -113,7 +116,8 @@ TEST_F(MapReading, TheSummaryCountsWhatIsThere) {
   for (const auto& [name, objects] : summary.objects_by_class) {
     by_class += objects;
     // In the observed graph: a barrier is inferred to be a small object too.
-    EXPECT_EQ(count("GRAPH <" + std::string(vocabulary::kGraphObserved) + "> { ?o a clx:" + name + " ; clx:rule ?r }"), objects)
+    EXPECT_EQ(count("GRAPH <" + std::string(vocabulary::kGraphObserved) + "> { ?o a clx:" + name + " ; clx:rule ?r }"),
+              objects)
         << name;
   }
   EXPECT_EQ(by_class, summary.objects);
@@ -139,7 +143,8 @@ TEST_F(MapReading, EveryObjectHasPositionSizeConfidenceRuleAndGeometry) {
   for (const char* property : {"x", "y", "z", "confidence", "height", "length", "width", "minX", "maxZ", "pointCount"})
     EXPECT_EQ(count("?o clx:rule ?r ; clx:" + std::string(property) + " ?v"), objects) << property;
   EXPECT_EQ(count("?o clx:rule ?r ; <http://www.opengis.net/ont/geosparql#hasBoundingBox> ?g . ?g "
-                  "<http://www.opengis.net/ont/geosparql#asWKT> ?w"), objects);
+                  "<http://www.opengis.net/ont/geosparql#asWKT> ?w"),
+            objects);
   EXPECT_EQ(count("?o clx:rule ?r ; clx:confidence ?c FILTER(?c < 0 || ?c > 1)"), 0U);
   EXPECT_EQ(count("?o clx:rule ?r ; clx:minX ?a ; clx:x ?b ; clx:maxX ?c FILTER(?a > ?b || ?b > ?c)"), 0U);
   EXPECT_EQ(count("?o clx:rule ?r ; clx:length ?l ; clx:width ?w FILTER(?l < ?w)"), 0U);
@@ -162,8 +167,10 @@ TEST_F(MapReading, EverySightingOfAnObjectInACloudIsOneObservation) {
   // Points that were thinned away may have been the only ones of a cloud on an object.
   EXPECT_LE(observations, sightings.size());
   EXPECT_GE(observations, sightings.size() * 95 / 100);
-  EXPECT_EQ(count("?o clx:viewCount ?n ; clx:rule ?r { SELECT ?o (COUNT(?s) AS ?seen) WHERE { ?s sosa:hasFeatureOfInterest ?o } "
-                  "GROUP BY ?o } FILTER(?n != ?seen)"), 0U);
+  EXPECT_EQ(count("?o clx:viewCount ?n ; clx:rule ?r { SELECT ?o (COUNT(?s) AS ?seen) WHERE { ?s "
+                  "sosa:hasFeatureOfInterest ?o } "
+                  "GROUP BY ?o } FILTER(?n != ?seen)"),
+            0U);
 }
 
 TEST_F(MapReading, NearIsSymmetricAndNeverOfItself) {

@@ -12,7 +12,8 @@ namespace {
 
 const std::string kPrefixes = "PREFIX clx: <https://w3id.org/cluxel/ontology#> PREFIX ex: <https://example.org/> ";
 const std::string kState = kPrefixes + "INSERT DATA { ex:oak a clx:Tree }";
-const std::string kTakeBack = kPrefixes + "DELETE DATA { GRAPH <https://w3id.org/cluxel/graph/operator> { ex:oak a clx:Tree } }";
+const std::string kTakeBack =
+    kPrefixes + "DELETE DATA { GRAPH <https://w3id.org/cluxel/graph/operator> { ex:oak a clx:Tree } }";
 
 bool holds(const std::filesystem::path& map, const std::string& pattern) {
   const MapReader reader(map);
@@ -68,7 +69,8 @@ TEST(AskingRules, SeeByHowManyCloudsAnObjectWasSeenAndItsObservations) {
   std::string rules = kAskingRules;
   const std::string asked = "?thing a clx:Bench }";
   rules.replace(rules.find(asked), asked.size(),
-                "?thing a clx:Bench ; clx:viewCount 1 . ?seen <http://www.w3.org/ns/sosa/hasFeatureOfInterest> ?thing ; clx:pointCount ?n }");
+                "?thing a clx:Bench ; clx:viewCount 1 . ?seen <http://www.w3.org/ns/sosa/hasFeatureOfInterest> ?thing "
+                "; clx:pointCount ?n }");
   const auto map = buildAskingMap(folder.path(), {}, rules);
   EXPECT_EQ(MapReader(map).summary().objects_by_class.count("SmallObject"), 1U);
 }

@@ -22,9 +22,13 @@ inline ProgressSink& silence() {
   return sink;
 }
 
-inline ScanSet scansOf(const std::vector<std::filesystem::path>& files) { return ScanSet::open(files, {}, silence()); }
+inline ScanSet scansOf(const std::vector<std::filesystem::path>& files) {
+  return ScanSet::open(files, {}, silence());
+}
 
-inline MapInputs shippedInputs() { return readMapInputs({}, DataHome({CLUXEL_SOURCE_DIR})); }
+inline MapInputs shippedInputs() {
+  return readMapInputs({}, DataHome({CLUXEL_SOURCE_DIR}));
+}
 
 /// Scan files of a small generated campus, posed by their VIEWPOINT.
 class SmallCampus {
@@ -50,12 +54,15 @@ class SmallCampus {
 /// Equal texts mean equal maps: sorted N-Quads without the history graph.
 inline std::string canonicalText(const MapReader& map) {
   std::string text;
-  writeSortedNQuads(map.quads(), [&](std::string_view piece) { text.append(piece); },
-                    [](const Quad& quad) { return quad.graph.text != vocabulary::kGraphHistory; });
+  writeSortedNQuads(
+      map.quads(), [&](std::string_view piece) { text.append(piece); },
+      [](const Quad& quad) { return quad.graph.text != vocabulary::kGraphHistory; });
   return text;
 }
 
-inline std::string canonicalText(const std::filesystem::path& file) { return canonicalText(MapReader(file)); }
+inline std::string canonicalText(const std::filesystem::path& file) {
+  return canonicalText(MapReader(file));
+}
 
 /// Builds a map of `files`, in that order, into a fresh file and gives its canonical text.
 inline std::string builtText(const std::vector<std::filesystem::path>& files, const MapInputs& inputs,

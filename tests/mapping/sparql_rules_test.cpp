@@ -24,9 +24,13 @@ NamedText shippedRule(const std::string& name) {
   return {file, readFile(file)};
 }
 
-std::vector<NamedText> shippedRules() { return {shippedRule("10_tree_rows.rq"), shippedRule("20_avenues.rq")}; }
+std::vector<NamedText> shippedRules() {
+  return {shippedRule("10_tree_rows.rq"), shippedRule("20_avenues.rq")};
+}
 
-Term tree(int number) { return Term::iri("https://example.org/tree/" + std::to_string(number)); }
+Term tree(int number) {
+  return Term::iri("https://example.org/tree/" + std::to_string(number));
+}
 
 /// A store of trees and what is near what, over which rules run.
 class SparqlRules : public testing::Test {
@@ -124,8 +128,9 @@ TEST_F(SparqlRules, AKnownFactIsNotDerivedAgain) {
 
 TEST_F(SparqlRules, ARecursiveRuleRunsToItsFixpoint) {
   addRow(1, 9);
-  runSparqlRules(transaction, {{"reach.rq", kPrefixes + "CONSTRUCT { ?a clx:reaches ?c } WHERE { { ?a clx:near ?c } UNION "
-                                                        "{ ?a clx:reaches ?b . ?b clx:near ?c } FILTER(?a != ?c) }"}});
+  runSparqlRules(transaction,
+                 {{"reach.rq", kPrefixes + "CONSTRUCT { ?a clx:reaches ?c } WHERE { { ?a clx:near ?c } UNION "
+                                           "{ ?a clx:reaches ?b . ?b clx:near ?c } FILTER(?a != ?c) }"}});
   EXPECT_EQ(countOf("?a clx:reaches ?b"), 72U);
 }
 
@@ -150,9 +155,12 @@ TEST(SparqlRulesCheck, RefusesCutsThatFollowFromTheOrderOfStorage) {
   expectRefusal("CONSTRUCT { ?t clx:first true } WHERE { ?t a clx:Tree } LIMIT 1", "LIMIT");
   expectRefusal("CONSTRUCT { ?t clx:first true } WHERE { ?t a clx:Tree } ORDER BY ?t OFFSET 1", "LIMIT");
   expectRefusal("CONSTRUCT { ?t clx:first true } WHERE { { SELECT ?t { ?t a clx:Tree } LIMIT 1 } }", "my-rule.rq:1:");
-  expectRefusal("CONSTRUCT { ?t clx:n true } WHERE { ?t a clx:Tree FILTER EXISTS { SELECT ?u { ?u clx:near ?t } OFFSET 2 } }", "ORDER BY");
-  EXPECT_NO_THROW(checkSparqlRules({{"sorted.rq", kPrefixes + "CONSTRUCT { ?t clx:first true } WHERE { { SELECT ?t { ?t a clx:Tree ; "
-                                                              "clx:top ?top } ORDER BY DESC(?top) LIMIT 1 } }"}}));
+  expectRefusal(
+      "CONSTRUCT { ?t clx:n true } WHERE { ?t a clx:Tree FILTER EXISTS { SELECT ?u { ?u clx:near ?t } OFFSET 2 } }",
+      "ORDER BY");
+  EXPECT_NO_THROW(checkSparqlRules(
+      {{"sorted.rq", kPrefixes + "CONSTRUCT { ?t clx:first true } WHERE { { SELECT ?t { ?t a clx:Tree ; "
+                                 "clx:top ?top } ORDER BY DESC(?top) LIMIT 1 } }"}}));
 }
 
 TEST(SparqlRulesCheck, RefusesTheSameInQueriesOfRuleTrees) {
@@ -160,9 +168,11 @@ TEST(SparqlRulesCheck, RefusesTheSameInQueriesOfRuleTrees) {
   const std::string asked = "{ ?thing a clx:SmallObject }";
   rules.replace(rules.find(asked), asked.size(), "{ SELECT ?thing { ?thing a clx:SmallObject } LIMIT 1 }");
   const std::vector<RuleSource> texts{{"asking.rules.yaml", rules}};
-  const std::vector<NamedText> ontology{{"bench.ttl", kBenchOntology},
-                                        {"rest.ttl", "@prefix clx: <https://w3id.org/cluxel/ontology#> . @prefix owl: <http://www.w3.org/2002/07/owl#> . "
-                                                     "clx:SmallObject a owl:Class . clx:StreetFurniture a owl:Class ."}};
+  const std::vector<NamedText> ontology{
+      {"bench.ttl", kBenchOntology},
+      {"rest.ttl",
+       "@prefix clx: <https://w3id.org/cluxel/ontology#> . @prefix owl: <http://www.w3.org/2002/07/owl#> . "
+       "clx:SmallObject a owl:Class . clx:StreetFurniture a owl:Class ."}};
   const auto faults = loadRuleTexts(texts, 1, classCatalogueOf(ontology), withCheckedQueries()).diagnostics;
   const auto isCut = [](const Diagnostic& fault) { return fault.message.find("LIMIT") != std::string::npos; };
   const auto found = std::find_if(faults.begin(), faults.end(), isCut);
@@ -177,18 +187,22 @@ TEST(SparqlRulesCheck, RefusesTheSameInQueriesOfRuleTrees) {
 TEST_F(SparqlRules, SeeNothingOfTheHistoryOfBuilds) {
   addTree(1);
   QuadWriter writer(transaction);
-  writer.add(Quad{tree(1), Term::iri(vocabulary::clx("sourceFile")), Term::literal("a.pcd"), Term::iri(vocabulary::kGraphHistory)});
+  writer.add(Quad{tree(1), Term::iri(vocabulary::clx("sourceFile")), Term::literal("a.pcd"),
+                  Term::iri(vocabulary::kGraphHistory)});
   writer.add(Quad{tree(1), Term::iri(vocabulary::clx("seen")), tree(1), Term::iri(vocabulary::kGraphHistory)});
   writer.flush();
   const std::string history = "<" + std::string(vocabulary::kGraphHistory) + ">";
-  const std::string from = "CONSTRUCT { ?t clx:leak ?f } FROM " + history + " FROM <https://w3id.org/cluxel/graph/observed> FROM NAMED " + history;
-  runSparqlRules(transaction,
-                 {{"1.rq", kPrefixes + "CONSTRUCT { ?t clx:leak ?f } WHERE { GRAPH " + history + " { ?t clx:sourceFile ?f } }"},
-                  {"2.rq", kPrefixes + "CONSTRUCT { ?t clx:leak ?f } WHERE { GRAPH ?g { ?t clx:sourceFile ?f } }"},
-                  {"3.rq", kPrefixes + "CONSTRUCT { ?t clx:leak ?g } WHERE { ?t a clx:Tree . GRAPH ?g { } FILTER(?g = " + history + ") }"},
-                  {"4.rq", kPrefixes + from + " WHERE { ?t clx:sourceFile ?f }"},
-                  {"5.rq", kPrefixes + from + " WHERE { GRAPH ?g { ?t clx:sourceFile+ ?f } }"},
-                  {"6.rq", kPrefixes + "CONSTRUCT { ?t clx:seen ?t } WHERE { ?t a clx:Tree }"}});
+  const std::string from = "CONSTRUCT { ?t clx:leak ?f } FROM " + history +
+                           " FROM <https://w3id.org/cluxel/graph/observed> FROM NAMED " + history;
+  runSparqlRules(
+      transaction,
+      {{"1.rq", kPrefixes + "CONSTRUCT { ?t clx:leak ?f } WHERE { GRAPH " + history + " { ?t clx:sourceFile ?f } }"},
+       {"2.rq", kPrefixes + "CONSTRUCT { ?t clx:leak ?f } WHERE { GRAPH ?g { ?t clx:sourceFile ?f } }"},
+       {"3.rq",
+        kPrefixes + "CONSTRUCT { ?t clx:leak ?g } WHERE { ?t a clx:Tree . GRAPH ?g { } FILTER(?g = " + history + ") }"},
+       {"4.rq", kPrefixes + from + " WHERE { ?t clx:sourceFile ?f }"},
+       {"5.rq", kPrefixes + from + " WHERE { GRAPH ?g { ?t clx:sourceFile+ ?f } }"},
+       {"6.rq", kPrefixes + "CONSTRUCT { ?t clx:seen ?t } WHERE { ?t a clx:Tree }"}});
   EXPECT_FALSE(ask("?t clx:leak ?f"));
   EXPECT_TRUE(ask("?d a clx:Derivation ; rdf:predicate clx:seen")) << "what the history says is not known to the map";
   EXPECT_TRUE(ask("GRAPH " + history + " { ?t clx:sourceFile ?f }")) << "others may ask it";
@@ -208,14 +222,18 @@ TEST(SparqlRulesCheck, AFaultyRuleIsNamedWithItsLine) {
   expectRefusal("\nCONSTRUCT { ?s ?p }\nWHERE { }", "my-rule.rq:2");
 }
 
-TEST(SparqlRulesCheck, TheShippedRulesPass) { EXPECT_NO_THROW(checkSparqlRules(shippedRules())); }
+TEST(SparqlRulesCheck, TheShippedRulesPass) {
+  EXPECT_NO_THROW(checkSparqlRules(shippedRules()));
+}
 
 TEST_F(SparqlRules, ARuleWithoutEndIsAnError) {
   addTree(1);
   try {
-    runSparqlRules(transaction, {{"endless.rq", kPrefixes + "CONSTRUCT { ?next a clx:Sprout . ?t clx:grows ?next } WHERE { ?t a ?c "
-                                                            "FILTER(?c IN (clx:Tree, clx:Sprout)) FILTER NOT EXISTS { ?t clx:grows ?x } "
-                                                            "BIND(clx:newObject(clx:Sprout, ?t) AS ?next) }"}});
+    runSparqlRules(
+        transaction,
+        {{"endless.rq", kPrefixes + "CONSTRUCT { ?next a clx:Sprout . ?t clx:grows ?next } WHERE { ?t a ?c "
+                                    "FILTER(?c IN (clx:Tree, clx:Sprout)) FILTER NOT EXISTS { ?t clx:grows ?x } "
+                                    "BIND(clx:newObject(clx:Sprout, ?t) AS ?next) }"}});
     FAIL() << "the rule came to an end";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("endless.rq"), std::string::npos) << error.what();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds that meet other builds, updates, what killed builds left, and what people put in their place: nothing is lost or mixed.
+// Builds that meet other builds, updates, what killed builds left, and what people put in their place: nothing is lost
+// or mixed.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -76,7 +77,8 @@ class UnfinishedBuild : public testing::Test {
     updateMap(file, "INSERT DATA { " + statement(name) + " }", {}, silence());
   }
   void takeBack(const std::string& name) const {
-    updateMap(map(), "DELETE DATA { GRAPH <https://w3id.org/cluxel/graph/operator> { " + statement(name) + " } }", {}, silence());
+    updateMap(map(), "DELETE DATA { GRAPH <https://w3id.org/cluxel/graph/operator> { " + statement(name) + " } }", {},
+              silence());
   }
   bool isStated(const std::string& name) const {
     return canonicalText(map()).find("<https://example.org/" + name + ">") != std::string::npos;
@@ -225,7 +227,8 @@ TEST_F(UnfinishedBuild, AStoreThatNoBuildMadeIsNotBuiltInto) {
     const auto store = Environment::open(map(), OpenMode::Create);
     WriteTransaction transaction = store->write();
     QuadWriter writer(transaction);
-    writer.add(Quad{Term::iri("https://example.org/mine"), Term::iri("https://example.org/p"), Term::literal("x"), Term::iri("")});
+    writer.add(Quad{Term::iri("https://example.org/mine"), Term::iri("https://example.org/p"), Term::literal("x"),
+                    Term::iri("")});
     writer.flush();
     transaction.commit();
   }
@@ -274,7 +277,7 @@ TEST(InputsHash, TellsRulesOfOtherFileNamesApartAndNotFolders) {
 
 TEST(DefaultInputs, AreNotTakenFromFilesOfThatNameInTheWorkingDirectory) {
   const ScratchFolder folder;
-  fs::create_directory(folder.path() / "oakland");   // scans, say
+  fs::create_directory(folder.path() / "oakland");  // scans, say
   writeFile(folder.path() / "outdoor.rules.yaml", "somebody's draft");
   const MapInputs shipped = shippedInputs();
   const fs::path before = fs::current_path();
@@ -304,7 +307,8 @@ TEST(ScanTimes, BeyondTheYearsOfDatesAreRefused) {
   Scan scan;
   scan.source = "late.pcd";
   scan.points.x = scan.points.y = scan.points.z = {1.0F};
-  for (const double time_s : {1.7e18, 2.54e11, -7e10, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+  for (const double time_s :
+       {1.7e18, 2.54e11, -7e10, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
     scan.time_s = time_s;
     EXPECT_THROW(storeScan(transaction, scan), InputError) << time_s;
   }

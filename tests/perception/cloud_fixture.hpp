@@ -18,7 +18,8 @@ class CloudMaker {
   explicit CloudMaker(std::uint32_t seed, double noise_m = 0.01) : random_(seed), noise_m_(noise_m) {}
 
   /// `count` points of the parallelogram corner + [0,1] a + [0,1] b.
-  CloudMaker& plane(std::size_t count, const Eigen::Vector3d& corner, const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+  CloudMaker& plane(std::size_t count, const Eigen::Vector3d& corner, const Eigen::Vector3d& a,
+                    const Eigen::Vector3d& b);
   /// An upright cylinder's mantle.
   CloudMaker& pole(std::size_t count, const Eigen::Vector3d& foot, double height_m, double radius_m);
   /// A solid ball, as leaves fill a crown.

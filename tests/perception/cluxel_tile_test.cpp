@@ -19,7 +19,9 @@ using testing::splitAtRandom;
 using testing::streetPoints;
 using testing::tilesOf;
 
-std::map<TileKey, TilePoints> streetTiles(std::uint32_t seed) { return tilesOf(splitAtRandom(streetPoints(seed), 3, seed), {}); }
+std::map<TileKey, TilePoints> streetTiles(std::uint32_t seed) {
+  return tilesOf(splitAtRandom(streetPoints(seed), 3, seed), {});
+}
 
 /// Own points by cell of the radius, then as stored: the canonical order.
 std::vector<std::uint32_t> canonicalOrder(const TilePoints& tile, double radius_m) {
@@ -126,7 +128,8 @@ TEST(CluxelTile, MomentsAreThoseOfTheCluxelsPoints) {
     ASSERT_FLOAT_EQ(cover.own[c].count, static_cast<float>(end - begin));
     EXPECT_LT((cover.own[c].mean.cast<double>() - mean).norm(), 1e-5);
     const auto& s = cover.own[c].scatter;
-    const std::array<double, 6> expected{scatter(0, 0), scatter(0, 1), scatter(0, 2), scatter(1, 1), scatter(1, 2), scatter(2, 2)};
+    const std::array<double, 6> expected{scatter(0, 0), scatter(0, 1), scatter(0, 2),
+                                         scatter(1, 1), scatter(1, 2), scatter(2, 2)};
     for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(s[i], expected[i], 1e-6 + 1e-5 * std::abs(expected[i]));
   }
 }
@@ -183,7 +186,7 @@ TEST(CluxelTile, BytesComeBackAndDamagedOnesAreRefused) {
   for (std::size_t size = 0; size < bytes.size(); size += 1 + bytes.size() / 97)
     EXPECT_THROW(cluxelTileFromBytes(bytes.substr(0, size)), Error);
   std::string wrong = bytes;
-  wrong[16 + 8 + 3] = '\x7f';   // a seed far beyond the points
+  wrong[16 + 8 + 3] = '\x7f';  // a seed far beyond the points
   EXPECT_THROW(cluxelTileFromBytes(wrong), Error);
 }
 

@@ -44,8 +44,7 @@ HandLabelled labelled(const std::vector<Scan>& scans, const LabelOf& label_of) {
     all.components.emplace(key, componentsOf(points, all.tiles.cluxels.at(key), all.tiles.features.at(key),
                                              all.labels.at(key), ringIn(all.tiles.ground, key), {}));
   for (const auto& [key, graph] : all.tiles.features)
-    all.contacts.emplace(key,
-                         contactsOf(ringIn(all.components, key), ringIn(all.tiles.cluxels, key), graph, {}, {}));
+    all.contacts.emplace(key, contactsOf(ringIn(all.components, key), ringIn(all.tiles.cluxels, key), graph, {}, {}));
   all.scene = assembleScene({all.tiles.points, all.tiles.cluxels, all.tiles.features, all.tiles.ground, all.labels,
                              all.components, all.contacts},
                             {});
@@ -55,8 +54,8 @@ HandLabelled labelled(const std::vector<Scan>& scans, const LabelOf& label_of) {
 /// Labels in patches of a metre, drawn anew for each seed.
 LabelOf patches(std::uint32_t seed) {
   return [seed](const Eigen::Vector3d& p) {
-    std::seed_seq place{static_cast<int>(seed), static_cast<int>(std::floor(p.x())), static_cast<int>(std::floor(p.y())),
-                        static_cast<int>(std::floor(p.z()))};
+    std::seed_seq place{static_cast<int>(seed), static_cast<int>(std::floor(p.x())),
+                        static_cast<int>(std::floor(p.y())), static_cast<int>(std::floor(p.z()))};
     std::mt19937 random(place);
     return static_cast<PrimitiveLabel>(random() % kPrimitiveLabelCount);
   };
@@ -76,8 +75,10 @@ std::vector<std::uint32_t> flooded(const CluxelTile& cluxels, const FeatureTile&
       open.pop_back();
       for (std::uint32_t e = graph.edge_offset[a]; e < graph.edge_offset[a + 1]; ++e) {
         const std::uint32_t b = graph.edge_target[e].index;
-        if (graph.edge_target[e].ring != kRingCentre || number[b] != kNone || labels.label[a] != labels.label[b]) continue;
-        Eigen::Vector3f gap = (cluxels.box_min[a] - cluxels.box_max[b]).cwiseMax(cluxels.box_min[b] - cluxels.box_max[a]);
+        if (graph.edge_target[e].ring != kRingCentre || number[b] != kNone || labels.label[a] != labels.label[b])
+          continue;
+        Eigen::Vector3f gap =
+            (cluxels.box_min[a] - cluxels.box_max[b]).cwiseMax(cluxels.box_min[b] - cluxels.box_max[a]);
         if (gap.cwiseMax(0.0F).norm() > 0.5F) continue;
         number[b] = next;
         open.push_back(b);
@@ -126,7 +127,8 @@ TEST(ContactTile, LooksTheSameFromBothEnds) {
   EXPECT_GT(heights, 10U);
 }
 
-/// A pole of label column over flat ground, with a crown of label scatter when wanted; the cloud is shifted by its pose.
+/// A pole of label column over flat ground, with a crown of label scatter when wanted; the cloud is shifted by its
+/// pose.
 HandLabelled poleAt(double shift_x_m, bool has_crown) {
   CloudMaker maker(21);
   maker.plane(6000, {10, 2, 0}, {12, 0, 0}, {0, 12, 0}).pole(900, {16, 8, 0.3}, 2.7, 0.1);
@@ -136,7 +138,9 @@ HandLabelled poleAt(double shift_x_m, bool has_crown) {
   scan.T_map_sensor.translation().x() += shift_x_m;
   const double top = has_crown ? 3.05 : 100;
   return labelled({scan}, [top](const Eigen::Vector3d& p) {
-    return p.z() < 0.2 ? PrimitiveLabel::HorizontalPlane : p.z() < top ? PrimitiveLabel::Column : PrimitiveLabel::Scatter;
+    return p.z() < 0.2   ? PrimitiveLabel::HorizontalPlane
+           : p.z() < top ? PrimitiveLabel::Column
+                         : PrimitiveLabel::Scatter;
   });
 }
 
@@ -160,7 +164,7 @@ TEST(Scene, APoleOnABorderOfTilesIsOnePrimitiveLikeAnyOther) {
   ASSERT_EQ(tiles_of_a.size(), 2U) << "the pole crosses the border";
   ASSERT_EQ(tiles_of_b.size(), 1U);
   for (const AttributeInfo& info : attributeInfos()) {
-    if (info.attribute == Attribute::CluxelCount) continue;   // seeds stay in their tile
+    if (info.attribute == Attribute::CluxelCount) continue;  // seeds stay in their tile
     EXPECT_NEAR(a[info.attribute], b[info.attribute], 1e-3) << info.name;
   }
   EXPECT_NEAR((b.centroid - a.centroid - Eigen::Vector3d(8, 0, 0)).norm(), 0, 1e-3);
@@ -197,12 +201,13 @@ TEST(ComponentBytes, AreReadBackOrRefused) {
   tile.hull = {{1.5F, 2.5F}};
   const std::string bytes = toBytes(tile);
   EXPECT_EQ(toBytes(componentTileFromBytes(bytes)), bytes);
-  for (std::size_t size = 0; size < bytes.size(); ++size) EXPECT_THROW(componentTileFromBytes(bytes.substr(0, size)), Error);
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    EXPECT_THROW(componentTileFromBytes(bytes.substr(0, size)), Error);
   EXPECT_THROW(componentTileFromBytes(bytes + "x"), Error);
   std::string odd = bytes;
   const std::size_t corner = odd.find(std::string(reinterpret_cast<const char*>(tile.hull.data()), sizeof(float) * 2));
   ASSERT_NE(corner, std::string::npos);
-  odd[corner - 8] = 3;                            // the count of numbers
+  odd[corner - 8] = 3;  // the count of numbers
   odd.insert(corner, sizeof(float), '\0');
   EXPECT_THROW(componentTileFromBytes(odd), Error);
 }
@@ -213,18 +218,23 @@ TEST(Scene, RefusesBlocksThatDoNotBelongTogether) {
   const auto assembled = [&](const auto& damage) {
     HandLabelled all = labelled(scans, patches(3));
     damage(all);
-    return assembleScene({all.tiles.points, all.tiles.cluxels, all.tiles.features, all.tiles.ground, all.labels, all.components, all.contacts}, {});
+    return assembleScene({all.tiles.points, all.tiles.cluxels, all.tiles.features, all.tiles.ground, all.labels,
+                          all.components, all.contacts},
+                         {});
   };
   EXPECT_NO_THROW(assembled([](HandLabelled&) {}));
   EXPECT_THROW(assembled([](HandLabelled& all) { all.labels.begin()->second.label.pop_back(); }), Error);
   EXPECT_THROW(assembled([](HandLabelled& all) { all.components.begin()->second.component_of.push_back(0); }), Error);
-  EXPECT_THROW(assembled([](HandLabelled& all) { all.tiles.features.begin()->second.edge_target.front().index = 1 << 27; }), Error);
-  for (auto Contact::* number : {&Contact::from, &Contact::to}) {
+  EXPECT_THROW(
+      assembled([](HandLabelled& all) { all.tiles.features.begin()->second.edge_target.front().index = 1 << 27; }),
+      Error);
+  for (auto Contact::*number : {&Contact::from, &Contact::to}) {
     EXPECT_THROW(assembled([number](HandLabelled& all) {
-      for (auto& [key, tile] : all.contacts) {
-        if (!tile.contacts.empty()) tile.contacts.front().*number = 1U << 30U;
-      }
-    }), Error);
+                   for (auto& [key, tile] : all.contacts) {
+                     if (!tile.contacts.empty()) tile.contacts.front().*number = 1U << 30U;
+                   }
+                 }),
+                 Error);
   }
   EXPECT_THROW(assembled([](HandLabelled& all) { all.contacts.erase(all.contacts.begin()); }), Error);
 }

@@ -41,13 +41,14 @@ PairCosts randomPairCosts(std::mt19937& random, float strength, bool potts) {
 using Traits = boost::adjacency_list_traits<boost::vecS, boost::vecS, boost::directedS>;
 using FlowGraph = boost::adjacency_list<
     boost::vecS, boost::vecS, boost::directedS,
-    boost::property<boost::vertex_index_t, long,
+    boost::property<
+        boost::vertex_index_t, long,
         boost::property<boost::vertex_color_t, boost::default_color_type,
-            boost::property<boost::vertex_distance_t, long,
-                boost::property<boost::vertex_predecessor_t, Traits::edge_descriptor>>>>,
+                        boost::property<boost::vertex_distance_t, long,
+                                        boost::property<boost::vertex_predecessor_t, Traits::edge_descriptor>>>>,
     boost::property<boost::edge_capacity_t, double,
-        boost::property<boost::edge_residual_capacity_t, double,
-            boost::property<boost::edge_reverse_t, Traits::edge_descriptor>>>>;
+                    boost::property<boost::edge_residual_capacity_t, double,
+                                    boost::property<boost::edge_reverse_t, Traits::edge_descriptor>>>>;
 
 void connect(FlowGraph& flow, std::size_t from, std::size_t to, double there, double back) {
   const auto forth = boost::add_edge(from, to, flow).first;

@@ -28,8 +28,8 @@ Labelling expandAlpha(const CrfGraph& graph);
 struct RandomGraph {
   std::size_t nodes = 8;
   double edge_probability = 0.4;
-  float pair_strength = 1.0F;   ///< the largest pair cost
-  bool potts = true;            ///< the same cost for all pairs of labels of an edge
+  float pair_strength = 1.0F;  ///< the largest pair cost
+  bool potts = true;           ///< the same cost for all pairs of labels of an edge
 };
 CrfGraph randomGraph(std::mt19937& random, const RandomGraph& kind);
 

@@ -39,7 +39,9 @@ PairSamples chainSamples(std::uint32_t seed, std::uint32_t nodes) {
   return samples;
 }
 
-PairShape shapeOf() { return {.knots = {{0.0F, 0.5F, 1.0F}, {0.0F, 0.4F, 1.0F}}, .columns_used = {}, .degree_power = 0.5F}; }
+PairShape shapeOf() {
+  return {.knots = {{0.0F, 0.5F, 1.0F}, {0.0F, 0.4F, 1.0F}}, .columns_used = {}, .degree_power = 0.5F};
+}
 
 TEST(PairTraining, HasTheGradientThatFiniteDifferencesShow) {
   const PairSamples samples = chainSamples(1, 60);
@@ -54,7 +56,8 @@ TEST(PairTraining, HasTheGradientThatFiniteDifferencesShow) {
     std::vector<double> above = x, below = x;
     above[k] += step;
     below[k] -= step;
-    EXPECT_NEAR(gradient[k], (objective(above, unused) - objective(below, unused)) / (2 * step), 1e-8) << "parameter " << k;
+    EXPECT_NEAR(gradient[k], (objective(above, unused) - objective(below, unused)) / (2 * step), 1e-8)
+        << "parameter " << k;
   }
 }
 
@@ -154,7 +157,8 @@ std::vector<std::vector<float>> randomEdges(std::mt19937& random, const PairMode
   return edges;
 }
 
-void expectTheFormulasBits(const PairModel& model, const std::vector<std::vector<float>>& edges, const LaneKernels& kernels) {
+void expectTheFormulasBits(const PairModel& model, const std::vector<std::vector<float>>& edges,
+                           const LaneKernels& kernels) {
   std::vector<PairCostTable::Edge> listed;
   for (std::uint32_t degrees = 0; degrees < edges.size(); ++degrees) listed.push_back({edges[degrees].data(), degrees});
   const auto costs = PairCostTable(model, kernels).costsOf(listed);
@@ -168,7 +172,7 @@ TEST(CrfPairs, GiveTheSameBitsByTableOfAnyWidthAndByFormula) {
   for (const std::size_t columns : {0U, 1U, 3U, 4U, 6U, 10U, 12U, 32U, 33U})
     for (const float degree_power : {0.0F, 0.5F, 1.0F}) {
       const PairModel model = randomModel(random, columns, degree_power);
-      const auto edges = randomEdges(random, model, 299);   // not a multiple of a vector
+      const auto edges = randomEdges(random, model, 299);  // not a multiple of a vector
       expectTheFormulasBits(model, edges, laneKernels<4>());
       if (hasEightLanes()) expectTheFormulasBits(model, edges, laneKernels<8>());
     }

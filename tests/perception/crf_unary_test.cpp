@@ -51,11 +51,13 @@ bool same(const TreeEnsemble& a, const TreeEnsemble& b) {
   return true;
 }
 
-BoostingParams small() { return {.trees = 40, .depth = 4, .l2 = 1.0, .column_share = 0.9}; }
+BoostingParams small() {
+  return {.trees = 40, .depth = 4, .l2 = 1.0, .column_share = 0.9};
+}
 
 TEST(UnaryTraining, LearnsWhatTwoColumnsDecideTogether) {
   const TreeEnsemble ensemble = growTrees(checkerboard(1, 4000), small(), 1);
-  EXPECT_GT(accuracyOn(ensemble, checkerboard(2, 4000)), 0.89);   // 92 % is the most that the noise allows
+  EXPECT_GT(accuracyOn(ensemble, checkerboard(2, 4000)), 0.89);  // 92 % is the most that the noise allows
 }
 
 TEST(UnaryTraining, GivesTheSameTreesWithOneAndTwoThreads) {

@@ -11,23 +11,29 @@
 namespace cluxel {
 namespace {
 
-Covariance entriesOf(const Eigen::Matrix3d& m) { return {m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2)}; }
+Covariance entriesOf(const Eigen::Matrix3d& m) {
+  return {m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2)};
+}
 
 /// A covariance with these eigenvalues, turned at random.
 Eigen::Matrix3d turned(std::mt19937& random, const Eigen::Vector3d& values) {
   std::normal_distribution<double> normal;
-  const Eigen::Matrix3d turn = Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random)).normalized().toRotationMatrix();
+  const Eigen::Matrix3d turn = Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random))
+                                   .normalized()
+                                   .toRotationMatrix();
   return turn * values.asDiagonal() * turn.transpose();
 }
 
 void expectSolved(const Eigen::Matrix3d& m, const EigenShape& shape) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> exact(m);
   const double trace = m.trace();
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(shape.value[i], exact.eigenvalues()[2 - static_cast<int>(i)], 1e-6 * trace);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(shape.value[i], exact.eigenvalues()[2 - static_cast<int>(i)], 1e-6 * trace);
   EXPECT_GE(shape.value[0], shape.value[1]);
   EXPECT_GE(shape.value[1], shape.value[2]);
   EXPECT_NEAR(shape.axis.norm(), 1.0, 1e-5);
-  // What a vector's own equation misses, which is small also where two eigenvalues are alike and vectors are not unique.
+  // What a vector's own equation misses, which is small also where two eigenvalues are alike and vectors are not
+  // unique.
   EXPECT_LE((m * shape.axis - shape.value[0] * shape.axis).norm(), 2e-6 * trace);
   if (shape.normal.isZero()) {
     EXPECT_LE(shape.value[1], kOnALine * shape.value[0]);
@@ -49,8 +55,9 @@ TEST(EigenShape, SolvesSetsOfAllForms) {
 
 TEST(EigenShape, SolvesFlatThinAndRoundSets) {
   std::mt19937 random(2);
-  const std::vector<Eigen::Vector3d> forms{{1, 1, 1}, {1, 1, 0},       {1, 0, 0},    {1, 1, 0.5},  {1, 0.5, 0.5}, {1, 1e-4, 1e-5},
-                                           {1, 1, 1e-7}, {1, 0.9999, 0.5}, {1, 0.5, 0.4999}, {1, 1e-3, 0}, {1, 0.75, 0.5}};
+  const std::vector<Eigen::Vector3d> forms{{1, 1, 1},        {1, 1, 0},       {1, 0, 0},     {1, 1, 0.5},
+                                           {1, 0.5, 0.5},    {1, 1e-4, 1e-5}, {1, 1, 1e-7},  {1, 0.9999, 0.5},
+                                           {1, 0.5, 0.4999}, {1, 1e-3, 0},    {1, 0.75, 0.5}};
   for (const auto& form : forms) {
     expectSolved(form.asDiagonal(), shapeOf(entriesOf(form.asDiagonal())));
     for (int trial = 0; trial < 200; ++trial) {

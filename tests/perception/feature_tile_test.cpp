@@ -22,7 +22,9 @@ PerceivedTiles street(std::uint32_t seed, unsigned threads = 1) {
   return perceive(splitAtRandom(streetPoints(seed), 3, seed), {}, threads);
 }
 
-TileKey ringKey(const TileKey& key, RingIndex name) { return ringOf(key)[name.ring]; }
+TileKey ringKey(const TileKey& key, RingIndex name) {
+  return ringOf(key)[name.ring];
+}
 
 TEST(FeatureTile, JoinsExactlyTheCluxelsWhoseVolumesIntersect) {
   const PerceivedTiles tiles = street(31);
@@ -32,7 +34,8 @@ TEST(FeatureTile, JoinsExactlyTheCluxelsWhoseVolumesIntersect) {
     for (std::size_t c = 0; c < tile.size(); c += 11) {
       std::vector<std::pair<int, std::uint32_t>> expected, found;
       for (int r = 0; r < 9; ++r)
-        for (std::uint32_t i = 0; ring[static_cast<std::size_t>(r)] && i < ring[static_cast<std::size_t>(r)]->size(); ++i) {
+        for (std::uint32_t i = 0; ring[static_cast<std::size_t>(r)] && i < ring[static_cast<std::size_t>(r)]->size();
+             ++i) {
           const CluxelTile& other = *ring[static_cast<std::size_t>(r)];
           const Eigen::Array3f low = other.volume_min[i] + ringShift(r), high = other.volume_max[i] + ringShift(r);
           const bool meets = (own.volume_min[c].array() <= high).all() && (low <= own.volume_max[c].array()).all();
@@ -45,7 +48,7 @@ TEST(FeatureTile, JoinsExactlyTheCluxelsWhoseVolumesIntersect) {
   }
 }
 
-using EdgeName = std::array<std::int64_t, 6>;   ///< tile, number, and those of the other end
+using EdgeName = std::array<std::int64_t, 6>;  ///< tile, number, and those of the other end
 
 TEST(FeatureTile, AnEdgeIsThereFromBothEndsAndHasTheSameFeaturesInTwoTiles) {
   const PerceivedTiles tiles = street(32);
@@ -125,7 +128,9 @@ TEST(FeatureTile, GroupsAreSwitchedWithoutChangingTheOthers) {
   for (int group = 0; group < 7; ++group) {
     PerceptionParams params;
     auto& f = params.features;
-    *std::array<bool*, 7>{&f.hor, &f.shape, &f.wide_shape, &f.height, &f.pillar, &f.extent, &f.density}[static_cast<std::size_t>(group)] = false;
+    *std::array<bool*, 7>{
+        &f.hor, &f.shape, &f.wide_shape, &f.height, &f.pillar, &f.extent, &f.density}[static_cast<std::size_t>(group)] =
+        false;
     const FeatureLayout layout = featureLayout(f);
     EXPECT_LT(layout.columns.size(), whole.columns.size());
     EXPECT_NE(layout.hash(), whole.hash());

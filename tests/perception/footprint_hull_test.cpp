@@ -29,8 +29,8 @@ Points randomPoints(std::mt19937& random, std::size_t count, bool on_grid) {
   return points;
 }
 
-/// A point is a corner when no segment or triangle of other points holds it: here, when some edge of the brute-force hull
-/// ends in it. An edge is a pair with all points on its left, and none farther out on its line.
+/// A point is a corner when no segment or triangle of other points holds it: here, when some edge of the brute-force
+/// hull ends in it. An edge is a pair with all points on its left, and none farther out on its line.
 bool isEdge(const Points& points, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   if (a == b) return false;
   for (const Eigen::Vector2d& p : points) {

@@ -50,7 +50,9 @@ double largestError(const Ground& ground, const Terrain& height) {
   return largest;
 }
 
-double slope(double x, double y) { return 0.25 * x + 0.1 * y + 0.4 * std::sin(0.3 * y); }
+double slope(double x, double y) {
+  return 0.25 * x + 0.1 * y + 0.4 * std::sin(0.3 * y);
+}
 
 TEST(GroundTile, FollowsASlopeUnderCarsHousesAndCrowns) {
   CloudMaker maker = terrainCloud(slope, 80000);
@@ -73,7 +75,7 @@ TEST(GroundTile, BridgesWhatAHouseHides) {
   std::vector<Eigen::Vector3d> points;
   for (const auto& p : open.points())
     if (!hidden(p.x(), p.y())) points.push_back(p);
-  maker.plane(8000, {1, -12, slope(6, -8) + 6}, {10, 0, 0}, {0, 8, 0});   // its flat roof
+  maker.plane(8000, {1, -12, slope(6, -8) + 6}, {10, 0, 0}, {0, 8, 0});  // its flat roof
   points.insert(points.end(), maker.points().begin(), maker.points().end());
   EXPECT_LT(largestError(Ground({scanOf(points)}), slope), 0.6);
 }
@@ -108,7 +110,8 @@ TEST(GroundTile, BytesComeBackAndDamagedOnesAreRefused) {
   const Ground ground({scanOf(terrainCloud(slope, 5000).points())});
   const std::string bytes = toBytes(ground.tiles.ground.begin()->second);
   EXPECT_EQ(toBytes(groundTileFromBytes(bytes)), bytes);
-  for (std::size_t size = 0; size < bytes.size(); size += 61) EXPECT_THROW(groundTileFromBytes(bytes.substr(0, size)), Error);
+  for (std::size_t size = 0; size < bytes.size(); size += 61)
+    EXPECT_THROW(groundTileFromBytes(bytes.substr(0, size)), Error);
 }
 
 std::filesystem::path dataFolder() {
@@ -142,7 +145,9 @@ void expectGroundIsNear(const std::filesystem::path& scans_path, const std::stri
   for (std::size_t i = 0; i < std::min(scan_count, set.size()); ++i) scans.push_back(set.load(i));
   const auto errors = errorsOnGroundPoints(scans, std::filesystem::path(CLUXEL_SOURCE_DIR) / labels);
   ASSERT_GT(errors.size(), 1000U);
-  const auto share = [&](double part) { return errors[static_cast<std::size_t>(part * static_cast<double>(errors.size() - 1))]; };
+  const auto share = [&](double part) {
+    return errors[static_cast<std::size_t>(part * static_cast<double>(errors.size() - 1))];
+  };
   ::testing::Test::RecordProperty("median_m", std::to_string(share(0.5)));
   ::testing::Test::RecordProperty("p95_m", std::to_string(share(0.95)));
   EXPECT_LT(share(0.5), median_m) << "90 %: " << share(0.9) << ", 95 %: " << share(0.95) << ", 99 %: " << share(0.99);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the features promise: invariance to place, yaw and (the scale-free ones) size; surfaces told apart; density forgiven.
+// What the features promise: invariance to place, yaw and (the scale-free ones) size; surfaces told apart; density
+// forgiven.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -81,9 +82,9 @@ TEST(Hor, DegenerateSupportsAreDefined) {
   EXPECT_EQ(horOf({}), std::vector<float>(kHorColumns, 0.0F));
   EXPECT_EQ(horOf({{0, 0, 0}, {0, 0, 0}}), std::vector<float>(kHorColumns, 0.0F));
   const std::vector<std::vector<Eigen::Vector3f>> supports{
-      {{0, 0, 1}},                                     // one member, straight above
-      {{0.1F, 0, 0}, {0.2F, 0, 0}, {-0.3F, 0, 0}},     // collinear
-      {{0.1F, 0, 0}, {0, 0.1F, 0}, {-0.1F, 0, 0}, {0, -0.1F, 0}}};   // coplanar, without a main direction
+      {{0, 0, 1}},                                                  // one member, straight above
+      {{0.1F, 0, 0}, {0.2F, 0, 0}, {-0.3F, 0, 0}},                  // collinear
+      {{0.1F, 0, 0}, {0, 0.1F, 0}, {-0.1F, 0, 0}, {0, -0.1F, 0}}};  // coplanar, without a main direction
   for (const auto& residuals : supports)
     for (const float value : horOf(residuals)) EXPECT_TRUE(std::isfinite(value));
   EXPECT_FLOAT_EQ(horOf(supports[0])[kHorBins - 1], 1.0F);
@@ -96,13 +97,15 @@ struct Thing {
   Eigen::Vector3d centre;
 };
 
-constexpr double kAway = 5;   ///< well inside a tile
+constexpr double kAway = 5;  ///< well inside a tile
 
 std::vector<Thing> thingsOf(std::size_t density) {
   std::vector<Thing> things;
   const Eigen::Vector3d c(kAway, kAway, 1.5);
-  things.push_back({"plane", CloudMaker(61).plane(2000 * density, c - Eigen::Vector3d(2, 2, 0), {4, 0, 0}, {0, 4, 0}).points(), c});
-  things.push_back({"wall", CloudMaker(62).plane(1500 * density, c - Eigen::Vector3d(2, 0, 1.5), {4, 0, 0}, {0, 0, 3}).points(), c});
+  things.push_back(
+      {"plane", CloudMaker(61).plane(2000 * density, c - Eigen::Vector3d(2, 2, 0), {4, 0, 0}, {0, 4, 0}).points(), c});
+  things.push_back(
+      {"wall", CloudMaker(62).plane(1500 * density, c - Eigen::Vector3d(2, 0, 1.5), {4, 0, 0}, {0, 0, 3}).points(), c});
   things.push_back({"pole", CloudMaker(63).pole(400 * density, c - Eigen::Vector3d(0, 0, 2), 4, 0.1).points(), c});
   things.push_back({"ball", CloudMaker(64).ball(3000 * density, c, 1).points(), c});
   return things;

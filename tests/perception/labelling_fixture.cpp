@@ -10,9 +10,13 @@ namespace {
 
 constexpr int kSide = 16;
 
-std::size_t labelAt(int x, int y) { return static_cast<std::size_t>((x / 4 + 2 * (y / 4)) % 5); }
+std::size_t labelAt(int x, int y) {
+  return static_cast<std::size_t>((x / 4 + 2 * (y / 4)) % 5);
+}
 
-float uniform(std::mt19937& random) { return static_cast<float>(random() % 10000U) / 10000.0F; }
+float uniform(std::mt19937& random) {
+  return static_cast<float>(random() % 10000U) / 10000.0F;
+}
 
 /// An edge to the cluxel at (x, y) of the row of two tiles; its first features are small where labels change.
 void addEdge(FeatureTile& tile, int from_x, int from_y, int x, int y, std::size_t columns) {
@@ -20,18 +24,22 @@ void addEdge(FeatureTile& tile, int from_x, int from_y, int x, int y, std::size_
   const int tile_x = x / kSide;
   const auto ring = static_cast<std::uint32_t>(kRingCentre + tile_x - tile.key.x);
   tile.edge_target.push_back({ring & 15U, static_cast<std::uint32_t>(y * kSide + x % kSide) & 0xfffffffU});
-  if (!FeatureTile::hasRow(static_cast<std::uint32_t>(from_y * kSide + from_x % kSide), tile.edge_target.back())) return;
+  if (!FeatureTile::hasRow(static_cast<std::uint32_t>(from_y * kSide + from_x % kSide), tile.edge_target.back()))
+    return;
   // The same from both ends: made from what both have in common.
   std::mt19937 random(static_cast<std::uint32_t>((from_x + x) * 1000 + from_y + y));
   const float likeness = labelAt(from_x, from_y) == labelAt(x, y) ? 0.4F : 0.0F;
-  for (std::size_t c = 0; c < columns; ++c) tile.edge_features.push_back(0.6F * uniform(random) + (c < 2 ? likeness : 0.0F));
+  for (std::size_t c = 0; c < columns; ++c)
+    tile.edge_features.push_back(0.6F * uniform(random) + (c < 2 ? likeness : 0.0F));
 }
 
-void addCluxel(FeatureTile& tile, std::vector<TruthCounts>& truth, int x, int y, std::mt19937& random, const FeatureLayout& layout) {
+void addCluxel(FeatureTile& tile, std::vector<TruthCounts>& truth, int x, int y, std::mt19937& random,
+               const FeatureLayout& layout) {
   tile.center.emplace_back(static_cast<float>(x % kSide) + 0.5F, static_cast<float>(y) + 0.5F, 0.0F);
   tile.point_count.push_back(10);
   for (std::size_t c = 0; c < layout.columns.size(); ++c)
-    tile.features.push_back(c == 3 ? static_cast<float>(labelAt(x, y)) + 2.0F * (uniform(random) - 0.5F) : uniform(random));
+    tile.features.push_back(c == 3 ? static_cast<float>(labelAt(x, y)) + 2.0F * (uniform(random) - 0.5F)
+                                   : uniform(random));
   TruthCounts counts{};
   counts[labelAt(x, y)] = 10;
   truth.push_back(counts);

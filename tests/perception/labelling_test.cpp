@@ -47,16 +47,21 @@ TEST(Labelling, LooksNoFartherIntoTheRingThanTheHalo) {
   FeatureTile& neighbour = changed.features.at({1, 0});
   const std::size_t columns = neighbour.features.size() / neighbour.size();
   for (std::size_t i = 0; i < neighbour.size(); ++i)
-    if (neighbour.center[i].x() > 3.0F) std::fill_n(neighbour.features.begin() + static_cast<std::ptrdiff_t>(i * columns), columns, 9.0F);
-  EXPECT_EQ(toBytes(labelled(place, {0, 0}, {.sweeps = 3, .halo_m = 2.0})), toBytes(labelled(changed, {0, 0}, {.sweeps = 3, .halo_m = 2.0})));
-  EXPECT_NE(toBytes(labelled(place, {0, 0}, {.sweeps = 3, .halo_m = 8.0})), toBytes(labelled(changed, {0, 0}, {.sweeps = 3, .halo_m = 8.0})));
+    if (neighbour.center[i].x() > 3.0F)
+      std::fill_n(neighbour.features.begin() + static_cast<std::ptrdiff_t>(i * columns), columns, 9.0F);
+  EXPECT_EQ(toBytes(labelled(place, {0, 0}, {.sweeps = 3, .halo_m = 2.0})),
+            toBytes(labelled(changed, {0, 0}, {.sweeps = 3, .halo_m = 2.0})));
+  EXPECT_NE(toBytes(labelled(place, {0, 0}, {.sweeps = 3, .halo_m = 8.0})),
+            toBytes(labelled(changed, {0, 0}, {.sweeps = 3, .halo_m = 8.0})));
 }
 
 TEST(Labelling, LabelsAlikeWithANarrowAndAWideHalo) {
   const TrainingPlace place = made_up::place(8, 0);
-  const LabelTile narrow = labelled(place, {0, 0}, {.sweeps = 3, .halo_m = 2.0}), wide = labelled(place, {0, 0}, {.sweeps = 3, .halo_m = 16.0});
+  const LabelTile narrow = labelled(place, {0, 0}, {.sweeps = 3, .halo_m = 2.0}),
+                  wide = labelled(place, {0, 0}, {.sweeps = 3, .halo_m = 16.0});
   std::size_t different = 0;
-  for (std::size_t i = 0; i < narrow.label.size(); ++i) different += static_cast<std::size_t>(narrow.label[i] != wide.label[i]);
+  for (std::size_t i = 0; i < narrow.label.size(); ++i)
+    different += static_cast<std::size_t>(narrow.label[i] != wide.label[i]);
   EXPECT_LE(different, narrow.label.size() / 50);
 }
 
@@ -108,14 +113,23 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 TEST(LabelModel, RefusesFaultyTextNamingTheFile) {
   const std::string text = modelText(sharedModel());
-  const std::vector<std::string> faulty{
-      "", "[]", "{}", text.substr(0, text.size() / 2), replaced(text, "\"version\":1", "\"version\":99"),
-      replaced(text, "cluxel label model", "something else"), replaced(text, "\"slope\":", "\"slop\":"),
-      replaced(text, "\"columns\":[", "\"columns\":[\"x\","), replaced(text, "\"above\":[", "\"above\":[1e999,"),
-      replaced(text, "\"leaves\":[", "\"leaves\":[1,"), replaced(text, "\"knots\":[[", "\"knots\":[[0,0,0],["),
-      replaced(text, "vertical_plane", "vertical"), replaced(text, "\"cover.radius\":", "\"cover.radius\":-"),
-      replaced(text, "\"slope\":", "\"slope\":3e37,\"was\":"), replaced(text, "\"bias\":[", "\"bias\":[3e37,3e37,3e37,3e37,3e37],\"was\":["),
-      replaced(text, "\"degree_power\":", "\"degree_power\":-1e30,\"was\":"), replaced(text, "\"unary_scale\":", "\"unary_scale\":3e37,\"was\":")};
+  const std::vector<std::string> faulty{"",
+                                        "[]",
+                                        "{}",
+                                        text.substr(0, text.size() / 2),
+                                        replaced(text, "\"version\":1", "\"version\":99"),
+                                        replaced(text, "cluxel label model", "something else"),
+                                        replaced(text, "\"slope\":", "\"slop\":"),
+                                        replaced(text, "\"columns\":[", "\"columns\":[\"x\","),
+                                        replaced(text, "\"above\":[", "\"above\":[1e999,"),
+                                        replaced(text, "\"leaves\":[", "\"leaves\":[1,"),
+                                        replaced(text, "\"knots\":[[", "\"knots\":[[0,0,0],["),
+                                        replaced(text, "vertical_plane", "vertical"),
+                                        replaced(text, "\"cover.radius\":", "\"cover.radius\":-"),
+                                        replaced(text, "\"slope\":", "\"slope\":3e37,\"was\":"),
+                                        replaced(text, "\"bias\":[", "\"bias\":[3e37,3e37,3e37,3e37,3e37],\"was\":["),
+                                        replaced(text, "\"degree_power\":", "\"degree_power\":-1e30,\"was\":"),
+                                        replaced(text, "\"unary_scale\":", "\"unary_scale\":3e37,\"was\":")};
   for (const std::string& bad : faulty) {
     try {
       parseModel(bad, "bad.json");

@@ -35,7 +35,7 @@ std::vector<float> randomRows(std::mt19937& random, const TreeEnsemble& ensemble
   std::vector<float> values(rows * kColumns);
   for (float& value : values) value = normal(random);
   for (std::size_t i = 0; i < values.size(); i += 5) values[i] = std::numeric_limits<float>::quiet_NaN();
-  for (const ObliviousTree& tree : ensemble.trees)   // on a threshold, which is not above it
+  for (const ObliviousTree& tree : ensemble.trees)  // on a threshold, which is not above it
     for (const TreeSplit& split : tree.splits) values[random() % rows * kColumns + split.column] = split.threshold;
   return values;
 }
@@ -59,11 +59,14 @@ void expectTheSameBits(const LaneKernels& kernels) {
       const auto features = randomRows(random, ensemble, rows);
       const auto scores = TreeScorer(ensemble, kernels).score(features);
       ASSERT_EQ(scores.size(), rows);
-      for (std::size_t r = 0; r < rows; ++r) EXPECT_EQ(scores[r], walkedOneByOne(ensemble, features.data() + r * kColumns)) << r;
+      for (std::size_t r = 0; r < rows; ++r)
+        EXPECT_EQ(scores[r], walkedOneByOne(ensemble, features.data() + r * kColumns)) << r;
     }
 }
 
-TEST(LaneKernels, ScoreRowsWithFourLanesAsOneByOne) { expectTheSameBits(laneKernels<4>()); }
+TEST(LaneKernels, ScoreRowsWithFourLanesAsOneByOne) {
+  expectTheSameBits(laneKernels<4>());
+}
 
 TEST(LaneKernels, ScoreRowsWithEightLanesAsOneByOne) {
   if (!hasEightLanes()) GTEST_SKIP() << "this machine has no AVX2";

@@ -38,7 +38,8 @@ TEST(TilePoints, EveryPointOfAScanLiesInExactlyOneSegmentAndNearItsMapPlace) {
     for (std::size_t i = 0; i < segment.size(); ++i) {
       const std::uint32_t point = segment.point[i];
       ++seen[point];
-      const Eigen::Vector3d p_map = toMap(scan.T_map_sensor, {scan.points.x[point], scan.points.y[point], scan.points.z[point]});
+      const Eigen::Vector3d p_map =
+          toMap(scan.T_map_sensor, {scan.points.x[point], scan.points.y[point], scan.points.z[point]});
       const Eigen::Vector3d back = cornerOf(key) + Eigen::Vector3d(segment.x[i], segment.y[i], segment.z[i]);
       EXPECT_LT((p_map - back).norm(), 1e-5);
       EXPECT_TRUE(segment.x[i] >= 0 && segment.x[i] < 16 && segment.y[i] >= 0 && segment.y[i] < 16);
@@ -48,7 +49,11 @@ TEST(TilePoints, EveryPointOfAScanLiesInExactlyOneSegmentAndNearItsMapPlace) {
 
 /// Added to the corner at -16 m they are 0 m, though they belong to the tiles before it.
 TEST(TilePoints, PointsJustBelowZeroStayInTheirTile) {
-  Scan scan = scanOf({{-1e-20F, -1e-20F, 0.5F}, {-1e-20F, 3.0F, 0.5F}, {-4e-17F, -5.0F, 0.5F}, {0.0F, 0.0F, 0.5F}, {-1e-6F, -1e-6F, 0.5F}});
+  Scan scan = scanOf({{-1e-20F, -1e-20F, 0.5F},
+                      {-1e-20F, 3.0F, 0.5F},
+                      {-4e-17F, -5.0F, 0.5F},
+                      {0.0F, 0.0F, 0.5F},
+                      {-1e-6F, -1e-6F, 0.5F}});
   std::size_t points = 0;
   for (const auto& [key, segment] : splitScan(scan)) {
     points += segment.size();
@@ -107,7 +112,8 @@ TEST(TilePoints, ThinningThinnedPartsEqualsThinningAllAtOnce) {
 
 TEST(TilePoints, KeepsNoMoreThanAskedForPerVoxelAndEmptiesNone) {
   const auto scans = crowdedScans(5);
-  const auto thinned = tilesOf(scans, {.voxel_m = 0.1, .keep = 3}), whole = tilesOf(scans, {.voxel_m = 0.1, .keep = 1000});
+  const auto thinned = tilesOf(scans, {.voxel_m = 0.1, .keep = 3}),
+             whole = tilesOf(scans, {.voxel_m = 0.1, .keep = 1000});
   const auto voxelCounts = [](const TilePoints& tile) {
     std::map<std::array<int, 3>, int> counts;
     for (std::size_t i = 0; i < tile.size(); ++i)

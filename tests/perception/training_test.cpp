@@ -10,7 +10,9 @@
 namespace cluxel {
 namespace {
 
-std::vector<TrainingPlace> threePlaces() { return {made_up::place(1, 0), made_up::place(2, 1), made_up::place(3, 2)}; }
+std::vector<TrainingPlace> threePlaces() {
+  return {made_up::place(1, 0), made_up::place(2, 1), made_up::place(3, 2)};
+}
 
 TrainingReport trained(const std::vector<TrainingPlace>& places, const TrainParams& params, unsigned threads = 1) {
   ProgressSink sink;
@@ -33,7 +35,8 @@ TEST(Training, StatesProbabilitiesThatHoldOnAPlaceItNeverSaw) {
 }
 
 TEST(Training, MakesTheSameModelWithOneAndTwoThreads) {
-  const auto one = trained(threePlaces(), made_up::quickTraining(), 1), two = trained(threePlaces(), made_up::quickTraining(), 2);
+  const auto one = trained(threePlaces(), made_up::quickTraining(), 1),
+             two = trained(threePlaces(), made_up::quickTraining(), 2);
   EXPECT_EQ(modelText(one.model), modelText(two.model));
 }
 

@@ -37,7 +37,8 @@ std::vector<PointTruth> truthOfTwoWalls(const Scan& scan) {
 TEST(VirtualSensor, SeesTheNearWallUpToItsHighestLineAndNotTheFarOne) {
   const std::vector<Scan> scans{twoWalls()};
   const std::vector<PointTruth> truths = truthOfTwoWalls(scans[0]);
-  const VirtualSensor sensor{.height_m = 1.5, .lowest_rad = -0.4, .highest_rad = 0.1, .lines = 10, .step_rad = 0.05, .spacing_m = 4};
+  const VirtualSensor sensor{
+      .height_m = 1.5, .lowest_rad = -0.4, .highest_rad = 0.1, .lines = 10, .step_rad = 0.05, .spacing_m = 4};
   const LabelledScans copy = seenBy(scans, truths, sensor);
   ASSERT_EQ(copy.scans.size(), 1U);
   std::size_t near = 0, far = 0;
@@ -55,14 +56,18 @@ TEST(VirtualSensor, ThinsToTheShareAskedFor) {
   PointTruth truth;
   truth.primitive.assign(scans[0].points.size(), 0);
   const LabelledScans copy = thinned(scans, std::vector<PointTruth>{truth}, 0.25, 3);
-  EXPECT_NEAR(static_cast<double>(copy.scans[0].points.size()), 0.25 * static_cast<double>(scans[0].points.size()), 150);
+  EXPECT_NEAR(static_cast<double>(copy.scans[0].points.size()), 0.25 * static_cast<double>(scans[0].points.size()),
+              150);
   EXPECT_EQ(copy.truth[0].primitive.size(), copy.scans[0].points.size());
 }
 
 /// Four scans half a metre apart, over the two walls.
 VirtualDrive shortDrive() {
-  return {.sensor = {.height_m = 1.5, .lowest_rad = -0.6, .highest_rad = 0.3, .lines = 20, .step_rad = 0.05, .spacing_m = 4},
-          .scans = 4, .step_m = 0.5, .range_noise_m = 0};
+  return {.sensor =
+              {.height_m = 1.5, .lowest_rad = -0.6, .highest_rad = 0.3, .lines = 20, .step_rad = 0.05, .spacing_m = 4},
+          .scans = 4,
+          .step_m = 0.5,
+          .range_noise_m = 0};
 }
 
 /// Distance of a point from the nearest of the place [m].

@@ -37,7 +37,8 @@ std::vector<std::string> inWords(const BuiltBoxScene& built, const ReasoningResu
     for (const ObjectPart& part : object.parts) {
       std::set<std::string> names;
       for (PrimitiveIndex primitive : part.primitives) names.insert(built.names[primitive]);
-      text += (&part == &object.parts.front() ? "" : "; ") + part.part_class.substr(part.part_class.find('#') + 1) + ":";
+      text +=
+          (&part == &object.parts.front() ? "" : "; ") + part.part_class.substr(part.part_class.find('#') + 1) + ":";
       for (const std::string& name : names) text += " " + name;
     }
     words.push_back(text + "}");

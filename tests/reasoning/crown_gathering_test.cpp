@@ -22,7 +22,8 @@ RuleSet gatheringRules(const std::string& gather) {
         accept:
           parts: { trunk: clx:TreeTrunk, top: clx:TreeTop }
           confidence: 0.9
-          split: { shared: top, from: trunk, reach: 6 m, jump: 0.5 m)" + gather + R"( }
+          split: { shared: top, from: trunk, reach: 6 m, jump: 0.5 m)" +
+                                   gather + R"( }
       missing: { reject: no crown }
 )");
 }
@@ -32,15 +33,19 @@ const std::string kGather = ", gather: { within: 1.2 m, above: 1.5 m }";
 /// too far away for anybody.
 BoxScene twoTrees() {
   BoxScene scene;
-  scene.boxes = {box("trunk_a", kColumn, {-4, 0, 1.5}, {0.4, 0.4, 3}), box("trunk_b", kColumn, {4, 0, 1.5}, {0.4, 0.4, 3}),
-                 box("crown_a", kScatter, {-4, 0, 4.5}, {3, 3, 3}),    box("crown_b", kScatter, {4, 0, 4.5}, {3, 3, 3}),
-                 box("beam", kScatter, {0, 0, 5}, {3.4, 0.6, 0.6}),    box("low", kScatter, {-4, 2.2, 0.7}, {1, 1, 1.4}),
+  scene.boxes = {box("trunk_a", kColumn, {-4, 0, 1.5}, {0.4, 0.4, 3}),
+                 box("trunk_b", kColumn, {4, 0, 1.5}, {0.4, 0.4, 3}),
+                 box("crown_a", kScatter, {-4, 0, 4.5}, {3, 3, 3}),
+                 box("crown_b", kScatter, {4, 0, 4.5}, {3, 3, 3}),
+                 box("beam", kScatter, {0, 0, 5}, {3.4, 0.6, 0.6}),
+                 box("low", kScatter, {-4, 2.2, 0.7}, {1, 1, 1.4}),
                  box("far", kScatter, {0, 9, 5}, {1, 1, 1})};
   return scene;
 }
 
 std::vector<double> plansOf(const BuiltBoxScene& built, const SemanticObject& object, const std::string& name) {
-  const auto index = static_cast<PrimitiveIndex>(std::find(built.names.begin(), built.names.end(), name) - built.names.begin());
+  const auto index =
+      static_cast<PrimitiveIndex>(std::find(built.names.begin(), built.names.end(), name) - built.names.begin());
   std::vector<double> plans;
   for (const ObjectPart& part : object.parts)
     for (std::uint32_t cluxel : part.cluxels)
@@ -74,7 +79,7 @@ TEST(CrownGathering, FollowsFromFragmentToFragmentWithinTheReach) {
   scene.boxes.resize(4);
   scene.boxes.push_back(box("first", kScatter, {-7, 0, 5}, {1, 1, 1}));
   scene.boxes.push_back(box("second", kScatter, {-9, 0, 5}, {1, 1, 1}));
-  scene.boxes.push_back(box("third", kScatter, {-11, 0, 5}, {1, 1, 1}));   // beyond 6 m from the trunk
+  scene.boxes.push_back(box("third", kScatter, {-11, 0, 5}, {1, 1, 1}));  // beyond 6 m from the trunk
   const BuiltBoxScene built = sceneOfBoxes(scene);
   EXPECT_THAT(inWords(built, reason(built.scene, gatheringRules(kGather))),
               ::testing::UnorderedElementsAre("Tree{TreeTop: crown_a first second; TreeTrunk: trunk_a}",
@@ -97,7 +102,8 @@ TEST(CrownGathering, DoesNotDependOnTheOrderOfBoxes) {
 TEST(CrownGathering, IsToldByExplain) {
   const BuiltBoxScene built = sceneOfBoxes(twoTrees());
   const RuleSet rules = gatheringRules(kGather);
-  const auto beam = static_cast<PrimitiveIndex>(std::find(built.names.begin(), built.names.end(), "beam") - built.names.begin());
+  const auto beam =
+      static_cast<PrimitiveIndex>(std::find(built.names.begin(), built.names.end(), "beam") - built.names.begin());
   const std::string text = textOf(explain(built.scene, rules, {}, beam), rules, built.scene);
   EXPECT_THAT(text, ::testing::HasSubstr("gathered into top of the clx:Tree whose trunk is nearest in plan view"));
   EXPECT_THAT(text, ::testing::HasSubstr("gap to the object <= gather's `within` (measured"));

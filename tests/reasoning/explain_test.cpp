@@ -90,7 +90,8 @@ TEST(Explaining, MeasuresPairsFromTheNearerEndOfAnInterval) {
 )");
   BoxScene scene;
   scene.boxes = {box("a", kColumn, {0, 0, 1}, {0.3, 0.3, 2}), box("b", kScatter, {1.5, 0, 1}, {1, 1, 2})};
-  const Explanation explanation = explain(sceneOfBoxes(scene).scene, rules, {}, sceneOfBoxes(scene).scene.primitives[0].label == kColumn ? 0 : 1);
+  const Explanation explanation =
+      explain(sceneOfBoxes(scene).scene, rules, {}, sceneOfBoxes(scene).scene.primitives[0].label == kColumn ? 0 : 1);
   ASSERT_FALSE(explanation.decisions.empty());
   ASSERT_TRUE(explanation.decisions[0].least_change.has_value());
   const NeededChange& change = explanation.decisions[0].least_change->changes.at(0);
@@ -104,7 +105,8 @@ TEST(Explaining, ReadsAsText) {
   const std::string text = textOf(explain(built.scene, rules, {}, 0), rules, built.scene);
   EXPECT_THAT(text, ::testing::HasSubstr("belongs to clx:SmallObject"));
   EXPECT_THAT(text, ::testing::HasSubstr("no   height of pole >= 6 m (measured 5 m, margin 1 m)"));
-  EXPECT_THAT(text, ::testing::HasSubstr("least change: height of pole >= 6 m turns at 6 m (now 5 m); then: clx:UtilityPole"));
+  EXPECT_THAT(
+      text, ::testing::HasSubstr("least change: height of pole >= 6 m turns at 6 m (now 5 m); then: clx:UtilityPole"));
   EXPECT_THAT(text, ::testing::HasSubstr("see also rule small/rest"));
 }
 
@@ -119,7 +121,8 @@ TEST(Explaining, IsJsonToo) {
 TEST(Explaining, TellsHowAFoundPrimitiveGotToItsObject) {
   const BuiltBoxScene built = sceneOfBoxes(streetOfBoxes());
   const RuleSet rules = outdoorRules();
-  const auto plate = static_cast<PrimitiveIndex>(std::find(built.names.begin(), built.names.end(), "sign_plate") - built.names.begin());
+  const auto plate = static_cast<PrimitiveIndex>(std::find(built.names.begin(), built.names.end(), "sign_plate") -
+                                                 built.names.begin());
   const Explanation explanation = explain(built.scene, rules, {}, plate);
   ASSERT_TRUE(explanation.object.has_value());
   EXPECT_EQ(explanation.object->class_iri, clx("StreetSign"));

@@ -17,17 +17,15 @@ RdfSource turtle(const std::string& name, const std::string& text) {
 }
 
 TEST(NewClass, ComesFromARuleFileAndAnOntologyFileAlone) {
-  const std::vector<RdfSource> ontologies{
-      turtle("core.ttl", readFile(sourceFolder() / "ontology/core.ttl")),
-      turtle("outdoor.ttl", readFile(sourceFolder() / "ontology/outdoor.ttl")),
-      turtle("bench.ttl", R"(@prefix clx: <https://w3id.org/cluxel/ontology#> .
+  const std::vector<RdfSource> ontologies{turtle("core.ttl", readFile(sourceFolder() / "ontology/core.ttl")),
+                                          turtle("outdoor.ttl", readFile(sourceFolder() / "ontology/outdoor.ttl")),
+                                          turtle("bench.ttl", R"(@prefix clx: <https://w3id.org/cluxel/ontology#> .
 @prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .
 @prefix owl: <http://www.w3.org/2002/07/owl#> .
 clx:Bench a owl:Class ; rdfs:subClassOf clx:StreetFurniture ; clx:mayHavePart clx:BenchSeat .
 clx:BenchSeat a owl:Class ; rdfs:subClassOf clx:Part .
 )")};
-  const std::vector<RuleSource> texts{
-      {"bench.rules.yaml", R"(apiVersion: cluxel.rules/v1
+  const std::vector<RuleSource> texts{{"bench.rules.yaml", R"(apiVersion: cluxel.rules/v1
 include: [ outdoor.rules.yaml ]
 order: { insert: [ clx:Bench ], before: clx:SmallObject }
 rules:
@@ -43,7 +41,7 @@ rules:
       yes: { accept: { part: clx:BenchSeat, confidence: 0.8 } }
       no: { reject: not a seat }
 )"},
-      {"outdoor.rules.yaml", readFile(sourceFolder() / "rules/outdoor.rules.yaml")}};
+                                      {"outdoor.rules.yaml", readFile(sourceFolder() / "rules/outdoor.rules.yaml")}};
   const LoadedRules loaded = loadRuleTexts(texts, 1, catalogueOf(ontologyViewOf(ontologies)));
   ASSERT_TRUE(loaded.rules.has_value()) << format(loaded.diagnostics);
   BoxScene park;

@@ -144,7 +144,8 @@ TEST(Absorbing, GrowsWithTheEvidence) {
   bool absorbed = false;
   for (double share : {0.1, 0.3, 0.49, 0.5, 0.7, 0.9}) {
     const auto words = withMisfit(share);
-    const bool now = std::find(words.begin(), words.end(), "Tree{TreeTop: crown misfit; TreeTrunk: trunk}") != words.end();
+    const bool now =
+        std::find(words.begin(), words.end(), "Tree{TreeTop: crown misfit; TreeTrunk: trunk}") != words.end();
     EXPECT_TRUE(now || !absorbed) << "more evidence took the misfit away at " << share;
     EXPECT_EQ(now, share >= 0.5) << share;
     absorbed = now;
@@ -153,13 +154,11 @@ TEST(Absorbing, GrowsWithTheEvidence) {
 
 TEST(Absorbing, DoesNotSwallowALampThatTheCrownsBoxEncloses) {
   BoxScene scene;
-  scene.boxes = {box("ground", kGroundLabel, {0, 0, 0}, {20, 20, 0.1}),
-                 box("trunk", kColumn, {0, 0, 1.2}, {0.4, 0.4, 2.4}),
-                 box("crown", kScatter, {0, 0, 4}, {4, 4, 3.2}),
-                 box("bough", kScatter, {3.4, 0, 5.2}, {2.9, 0.6, 0.5}),
-                 // Inside the box around crown and bough, but touching neither.
-                 box("pole", kColumn, {4.2, 0, 1.9}, {0.14, 0.14, 3.8}),
-                 box("head", kSmall, {4.2, 0, 4.0}, {0.5, 0.5, 0.3})};
+  scene.boxes = {
+      box("ground", kGroundLabel, {0, 0, 0}, {20, 20, 0.1}), box("trunk", kColumn, {0, 0, 1.2}, {0.4, 0.4, 2.4}),
+      box("crown", kScatter, {0, 0, 4}, {4, 4, 3.2}), box("bough", kScatter, {3.4, 0, 5.2}, {2.9, 0.6, 0.5}),
+      // Inside the box around crown and bough, but touching neither.
+      box("pole", kColumn, {4.2, 0, 1.9}, {0.14, 0.14, 3.8}), box("head", kSmall, {4.2, 0, 4.0}, {0.5, 0.5, 0.3})};
   const BuiltBoxScene built = sceneOfBoxes(scene);
   const auto words = inWords(built, reason(built.scene, outdoorRules()));
   EXPECT_THAT(words, ::testing::Contains("StreetLamp{LampHead: head; LampPole: pole}"));
@@ -169,8 +168,8 @@ TEST(Absorbing, DoesNotSwallowALampThatTheCrownsBoxEncloses) {
 TEST(Grouping, JoinsATrunkThatLeavesCutInTwo) {
   BoxScene scene;
   scene.boxes = {box("ground", kGroundLabel, {0, 0, 0}, {20, 20, 0.1}),
-                 box("foot", kColumn, {0, 0, 0.5}, {0.4, 0.4, 1.0}), box("upper", kColumn, {0, 0, 2.2}, {0.35, 0.35, 1.0}),
-                 box("crown", kScatter, {0, 0, 4.2}, {4, 4, 3})};
+                 box("foot", kColumn, {0, 0, 0.5}, {0.4, 0.4, 1.0}),
+                 box("upper", kColumn, {0, 0, 2.2}, {0.35, 0.35, 1.0}), box("crown", kScatter, {0, 0, 4.2}, {4, 4, 3})};
   const BuiltBoxScene built = sceneOfBoxes(scene);
   EXPECT_THAT(inWords(built, reason(built.scene, outdoorRules())),
               ::testing::Contains("Tree{TreeTop: crown; TreeTrunk: foot upper}"));
@@ -179,7 +178,8 @@ TEST(Grouping, JoinsATrunkThatLeavesCutInTwo) {
 TEST(Grouping, DoesNotJoinTwoParkedCars) {
   BoxScene scene;
   scene.boxes = {box("ground", kGroundLabel, {0, 0, 0}, {20, 20, 0.1}),
-                 box("first", kSmall, {0, 0, 0.7}, {4.2, 1.7, 1.3}), box("second", kSmall, {4.6, 0, 0.7}, {4.2, 1.7, 1.3})};
+                 box("first", kSmall, {0, 0, 0.7}, {4.2, 1.7, 1.3}),
+                 box("second", kSmall, {4.6, 0, 0.7}, {4.2, 1.7, 1.3})};
   const BuiltBoxScene built = sceneOfBoxes(scene);
   EXPECT_THAT(inWords(built, reason(built.scene, outdoorRules())),
               ::testing::IsSupersetOf({"Vehicle{Vehicle: first}", "Vehicle{Vehicle: second}"}));
@@ -265,7 +265,8 @@ TEST(Reasoning, MeasuresToAnyObjectAsFarAsTheTestSays) {
     class: clx:SmallObject
     seed: { label: small_structure }
     tree:
-      test: { gap_to: { object: clx:Building }, )" + test + R"( }
+      test: { gap_to: { object: clx:Building }, )" + test +
+                                                          R"( }
       yes: { accept: { confidence: 0.5 } }
       no: { reject: not there }
 )");
@@ -301,7 +302,8 @@ TEST(Asking, DecidesByTheOracleAndBindsThePrimitivesIri) {
 }
 
 TEST(Asking, IsKnownOfTheRulesWhereverItStands) {
-  const std::string ask = R"({ ask: "ASK { ?thing clx:near ?other }" })", gap = "{ gap_to: thing, op: \"<=\", value: 1 m }";
+  const std::string ask = R"({ ask: "ASK { ?thing clx:near ?other }" })",
+                    gap = "{ gap_to: thing, op: \"<=\", value: 1 m }";
   const auto asksMap = [](const std::string& test, const std::string& find, const std::string& absorb) {
     return rulesOf("[clx:SmallObject]", R"(
   - id: small_object/asked
@@ -310,11 +312,14 @@ TEST(Asking, IsKnownOfTheRulesWhereverItStands) {
     tree:
       not: )" + test + R"(
       yes:
-        find: { as: other, label: scatter, where: [ )" + find + R"( ] }
-        found: { accept: { confidence: 0.5, absorb: { from: { label: scatter }, when: [ )" + absorb + R"( ], max_fraction_of_points: 0.5 } } }
+        find: { as: other, label: scatter, where: [ )" +
+                                            find + R"( ] }
+        found: { accept: { confidence: 0.5, absorb: { from: { label: scatter }, when: [ )" +
+                                            absorb + R"( ], max_fraction_of_points: 0.5 } } }
         missing: { reject: nothing beside it }
       no: { reject: the map says so }
-)").asks_map;
+)")
+        .asks_map;
   };
   const std::string tall = "{ attribute: height, op: \">=\", value: 1 m }";
   EXPECT_FALSE(asksMap(tall, gap, gap));

@@ -4,7 +4,9 @@
 
 namespace cluxel::testing {
 
-std::string clx(const std::string& name) { return "https://w3id.org/cluxel/ontology#" + name; }
+std::string clx(const std::string& name) {
+  return "https://w3id.org/cluxel/ontology#" + name;
+}
 
 ClassCatalogue outdoorCatalogue() {
   const std::vector<std::pair<std::string, std::vector<std::string>>> concepts{
@@ -40,11 +42,14 @@ RuleSet rulesOf(const std::string& order, const std::string& body) {
   LoadedRules loaded = loadText(
       "apiVersion: cluxel.rules/v1\n"
       "prefixes: { clx: \"https://w3id.org/cluxel/ontology#\" }\n"
-      "order: " + order + "\nrules:\n" + body);
+      "order: " +
+      order + "\nrules:\n" + body);
   EXPECT_TRUE(loaded.rules.has_value()) << format(loaded.diagnostics);
   return loaded.rules.value_or(RuleSet{});
 }
 
-std::filesystem::path sourceFolder() { return CLUXEL_SOURCE_DIR; }
+std::filesystem::path sourceFolder() {
+  return CLUXEL_SOURCE_DIR;
+}
 
 }  // namespace cluxel::testing

@@ -45,10 +45,10 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 struct FaultCase {
   friend void PrintTo(const FaultCase& fault, std::ostream* out) { *out << fault.name; }
   std::string name;
-  std::string what, by;          ///< what of the good file is replaced
+  std::string what, by;  ///< what of the good file is replaced
   std::size_t line, column;
-  std::string message;           ///< part of the message
-  std::string hint;              ///< part of the hint
+  std::string message;  ///< part of the message
+  std::string hint;     ///< part of the hint
 };
 
 TEST(RuleFaults, AreNotCrowdedOutByWarningsAndCountedWhereThereAreTooMany) {
@@ -61,7 +61,8 @@ TEST(RuleFaults, AreNotCrowdedOutByWarningsAndCountedWhereThereAreTooMany) {
   EXPECT_FALSE(hasErrors(warned.diagnostics));
   std::string wrong;
   for (int i = 0; i < 250; ++i) wrong += "  wrong_" + std::to_string(i) + ": 1 furlong\n";
-  const LoadedRules refused = loadText(replaced(kGood, "  ground_gap: 0.30 m\n", "  ground_gap: 0.30 m\n" + constants + wrong));
+  const LoadedRules refused =
+      loadText(replaced(kGood, "  ground_gap: 0.30 m\n", "  ground_gap: 0.30 m\n" + constants + wrong));
   EXPECT_FALSE(refused.rules.has_value());
   EXPECT_TRUE(hasErrors(refused.diagnostics));
   const auto errors = std::count_if(refused.diagnostics.begin(), refused.diagnostics.end(),
@@ -94,7 +95,8 @@ INSTANTIATE_TEST_SUITE_P(
         FaultCase{"UnknownKeyOfACondition", "value: 20 m2", "valu: 20 m2", 12, 52, "unknown key 'valu'", "'value'"},
         FaultCase{"OtherVersion", "rules/v1", "rules/v7", 1, 13, "version 'cluxel.rules/v7'", "cluxel.rules/v1"},
         FaultCase{"RepeatedKey", "      no: { reject: too small }\n",
-                  "      no: { reject: too small }\n      no: { reject: a roof }\n", 15, 7, "'no' stands here twice", "line 14"},
+                  "      no: { reject: too small }\n      no: { reject: a roof }\n", 15, 7, "'no' stands here twice",
+                  "line 14"},
         FaultCase{"UnknownClass", "class: clx:Tree\n", "class: clx:Tre\n", 16, 12, "no class 'clx:Tre'", "clx:Tree"},
         FaultCase{"UnknownPrefix", "class: clx:Tree\n", "class: cl:Tree\n", 16, 12, "unknown prefix 'cl:'", "clx"},
         FaultCase{"PartOfAnotherClass", "top: clx:TreeTop", "top: clx:LampHead", 22, 64, "no part 'clx:LampHead'",
@@ -106,9 +108,11 @@ INSTANTIATE_TEST_SUITE_P(
         FaultCase{"UnknownLabel", "label: scatter", "label: scater", 21, 33, "unknown label 'scater'", "scatter"},
         FaultCase{"UnknownOperator", "\">=\"", "\"=>\"", 12, 46, "unknown operator '=>'", "<="},
         FaultCase{"UnknownChoice", "choose: all", "choose: al", 21, 83, "unknown choice 'al'", "'all'"},
-        FaultCase{"FartherThanIsMeasured", "relations: [ { above: trunk } ]", "where: [ { gap_to: trunk, op: \"<=\", value: 60 m } ]", 21, 85,
+        FaultCase{"FartherThanIsMeasured", "relations: [ { above: trunk } ]",
+                  "where: [ { gap_to: trunk, op: \"<=\", value: 60 m } ]", 21, 85,
                   "nothing farther than 49.5 m is measured", "neighbours"},
-        FaultCase{"AShareOfACount", "attribute: footprint_area, op: \">=\", value: 20 m2", "attribute: point_count, op: \">=\", value: 50 %", 12, 56,
+        FaultCase{"AShareOfACount", "attribute: footprint_area, op: \">=\", value: 20 m2",
+                  "attribute: point_count, op: \">=\", value: 50 %", 12, 56,
                   "is a share where a number of things is expected", ""},
         FaultCase{"UnknownUnit", "20 m2", "20 sqm", 12, 59, "unknown unit 'sqm'", "m2"},
         FaultCase{"BareNumber", "20 m2", "20", 12, 59, "a bare number where an area", "20 m2"},
@@ -116,13 +120,16 @@ INSTANTIATE_TEST_SUITE_P(
         FaultCase{"ConstantOfAnotherDimension", "20 m2", "$ground_gap", 12, 59, "is a length where an area", ""},
         FaultCase{"UnknownConstant", "within: $ground_gap", "within: $ground_gab", 19, 49, "unknown constant", ""},
         FaultCase{"NotAQuantity", "0.30 m", "wide", 5, 15, "'wide' is not a quantity", "2.5 m"},
-        FaultCase{"UnboundName", "{ above: trunk }", "{ above: trunc }", 21, 64, "nothing is bound to 'trunc'", "trunk"},
+        FaultCase{"UnboundName", "{ above: trunk }", "{ above: trunc }", 21, 64, "nothing is bound to 'trunc'",
+                  "trunk"},
         FaultCase{"NameUsedWhereItIsMissing", "missing: { reject: no crown, hint: ground/main }",
                   "missing: { accept: { parts: { top: clx:TreeTop }, confidence: 0.5 } }", 23, 39,
                   "nothing is bound to 'top'", ""},
-        FaultCase{"NameBoundTwice", "missing: { reject: no crown, hint: ground/main }",
-                  "missing: { find: { as: trunk, label: column, relations: [ { near: trunk } ] }, found: { reject: a }, "
-                  "missing: { reject: b } }", 23, 32, "already bound", ""},
+        FaultCase{
+            "NameBoundTwice", "missing: { reject: no crown, hint: ground/main }",
+            "missing: { find: { as: trunk, label: column, relations: [ { near: trunk } ] }, found: { reject: a }, "
+            "missing: { reject: b } }",
+            23, 32, "already bound", ""},
         FaultCase{"UnknownHint", "hint: ground/main", "hint: ground/mian", 23, 18, "no rule: 'ground/mian'",
                   "ground/main"},
         FaultCase{"RuleIdTwice", "id: tree/trunk", "id: ground/main", 15, 9, "already used", ""},
@@ -130,20 +137,22 @@ INSTANTIATE_TEST_SUITE_P(
         FaultCase{"MissingBranch", "      no: { reject: in the air }\n", "", 19, 7, "needs the key 'no'", ""},
         FaultCase{"ClassOutsideTheOrder", "order: [clx:Ground, clx:Tree]", "order: [clx:Ground]", 15, 5,
                   "does not stand in 'order'", ""},
-        FaultCase{"FindWithoutAPlace", "relations: [ { above: trunk } ], ", "", 21, 15, "does not say where to look", ""},
+        FaultCase{"FindWithoutAPlace", "relations: [ { above: trunk } ], ", "", 21, 15, "does not say where to look",
+                  ""},
         FaultCase{"LaterClassLookedAt", "test: { relation: touches_ground, within: $ground_gap }",
                   "test: { relation: near, within: $ground_gap, with: { object: clx:StreetLamp } }", 19, 13,
                   "no clx:StreetLamp exists yet", "earlier"},
         FaultCase{"TwoNodesInOne", "yes: { accept: { confidence: 0.98 } }",
                   "yes: { accept: { confidence: 0.98 }, reject: no }", 13, 44, "'accept' and 'reject' in one node", ""},
-        FaultCase{"SliceUpsideDown", "{ attribute: footprint_area", "{ slice: { from: 2 m, to: 1 m }, attribute: footprint_area", 12, 22,
-                  "'to' is not above 'from'", ""},
-        FaultCase{"SliceWithoutAnEnd", "{ attribute: footprint_area", "{ slice: { from: 2 m }, attribute: footprint_area", 12, 22,
-                  "'slice' needs the key 'to'", ""},
-        FaultCase{"SliceOfAnotherDimension", "{ attribute: footprint_area", "{ slice: { from: 0 m, to: 1 m2 }, attribute: footprint_area", 12, 39,
+        FaultCase{"SliceUpsideDown", "{ attribute: footprint_area",
+                  "{ slice: { from: 2 m, to: 1 m }, attribute: footprint_area", 12, 22, "'to' is not above 'from'", ""},
+        FaultCase{"SliceWithoutAnEnd", "{ attribute: footprint_area",
+                  "{ slice: { from: 2 m }, attribute: footprint_area", 12, 22, "'slice' needs the key 'to'", ""},
+        FaultCase{"SliceOfAnotherDimension", "{ attribute: footprint_area",
+                  "{ slice: { from: 0 m, to: 1 m2 }, attribute: footprint_area", 12, 39,
                   "'1 m2' is an area where a length", ""},
-        FaultCase{"SliceOfARelation", "within: $ground_gap", "within: $ground_gap, slice: { from: 0 m, to: 1 m }", 19, 62,
-                  "'slice' has no meaning in this condition", ""},
+        FaultCase{"SliceOfARelation", "within: $ground_gap", "within: $ground_gap, slice: { from: 0 m, to: 1 m }", 19,
+                  62, "'slice' has no meaning in this condition", ""},
         FaultCase{"SliceOfWhatOnlyPrimitivesKnow", "attribute: footprint_area, op: \">=\", value: 20 m2",
                   "slice: { from: 0 m, to: 1 m }, attribute: view_count, op: \">=\", value: 2", 12, 57,
                   "'view_count' is known of whole primitives only", "leave 'slice' out"},
@@ -151,20 +160,22 @@ INSTANTIATE_TEST_SUITE_P(
                   "'attribute' and 'label' in one condition", "all"},
         FaultCase{"Anchor", "value: 20 m2", "value: &area 20 m2", 12, 59, "anchors are not part", "$name"},
         FaultCase{"UnreachableBranch", "yes: { accept: { confidence: 0.98 } }",
-                  "yes: { test: { attribute: footprint_area, op: \"<\", value: 10 m2 }, yes: { reject: a }, no: { reject: b } }",
+                  "yes: { test: { attribute: footprint_area, op: \"<\", value: 10 m2 }, yes: { reject: a }, no: { "
+                  "reject: b } }",
                   13, 79, "nothing can get here", "line 13"},
         FaultCase{"AlwaysPassingTest", "value: 20 m2", "value: -1 m2", 14, 11, "nothing can get here", "line 12"},
         FaultCase{"MergeWithoutARelation", "confidence: 0.98", "merge_into: related, confidence: 0.98", 13, 12,
                   "no relation to an object", ""},
         FaultCase{"AbsorbWithoutEvidence", "confidence: 0.9 }",
-                  "confidence: 0.9, absorb: { from: { label: scatter }, into: trunk, when: [ { gap_to: top, op: \">\", value: 1 m } ] } }",
+                  "confidence: 0.9, absorb: { from: { label: scatter }, into: trunk, when: [ { gap_to: top, op: \">\", "
+                  "value: 1 m } ] } }",
                   22, 151, "needs evidence", ""},
         FaultCase{"GatherWithoutAHeight", "confidence: 0.9 }",
                   "confidence: 0.9, split: { shared: top, from: trunk, gather: { within: 1 m } } }", 22, 139,
                   "needs the key 'above'", ""},
         FaultCase{"GatherInTheWrongUnit", "confidence: 0.9 }",
-                  "confidence: 0.9, split: { shared: top, from: trunk, gather: { within: 1 m2, above: 1 m } } }", 22, 149,
-                  "m2", ""}),
+                  "confidence: 0.9, split: { shared: top, from: trunk, gather: { within: 1 m2, above: 1 m } } }", 22,
+                  149, "m2", ""}),
     [](const auto& info) { return info.param.name; });
 
 TEST(RuleFaults, AreAbsentFromAGoodFile) {

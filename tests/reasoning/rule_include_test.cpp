@@ -59,13 +59,15 @@ override:
 }
 
 TEST(RuleIncluding, LetsRulesBeRemoved) {
-  const LoadedRules loaded = loadOver("include: [ base.yaml ]\norder: [clx:Ground]\noverride: { remove: [ small/rest ] }\n");
+  const LoadedRules loaded =
+      loadOver("include: [ base.yaml ]\norder: [clx:Ground]\noverride: { remove: [ small/rest ] }\n");
   ASSERT_TRUE(loaded.rules.has_value()) << format(loaded.diagnostics);
   EXPECT_EQ(loaded.rules->rules.size(), 1U);
 }
 
 TEST(RuleIncluding, InsertsIntoTheOrder) {
-  const LoadedRules loaded = loadOver("include: [ base.yaml ]\norder: { insert: [clx:Bush], before: clx:SmallObject }\n");
+  const LoadedRules loaded =
+      loadOver("include: [ base.yaml ]\norder: { insert: [clx:Bush], before: clx:SmallObject }\n");
   ASSERT_TRUE(loaded.rules.has_value()) << format(loaded.diagnostics);
   EXPECT_EQ(loaded.rules->order, (std::vector<std::string>{clx("Ground"), clx("Bush"), clx("SmallObject")}));
 }
@@ -81,10 +83,9 @@ TEST(RuleIncluding, FindsCycles) {
 }
 
 TEST(RuleIncluding, ReadsAFileOnceThoughTwoFilesIncludeIt) {
-  const std::vector<RuleSource> sources{
-      {"a.yaml", "apiVersion: cluxel.rules/v1\ninclude: [ b.yaml, base.yaml ]\n"},
-      {"b.yaml", "apiVersion: cluxel.rules/v1\ninclude: [ base.yaml ]\n"},
-      {"base.yaml", kBase}};
+  const std::vector<RuleSource> sources{{"a.yaml", "apiVersion: cluxel.rules/v1\ninclude: [ b.yaml, base.yaml ]\n"},
+                                        {"b.yaml", "apiVersion: cluxel.rules/v1\ninclude: [ base.yaml ]\n"},
+                                        {"base.yaml", kBase}};
   const LoadedRules loaded = loadRuleTexts(sources, 1, outdoorCatalogue());
   EXPECT_TRUE(loaded.rules.has_value()) << format(loaded.diagnostics);
 }
@@ -97,7 +98,8 @@ TEST(RuleIncluding, ReportsAMissingFileWhereItIsNamed) {
 }
 
 TEST(RuleIncluding, RefusesToChangeWhatIsNotThere) {
-  const LoadedRules loaded = loadOver("include: [ base.yaml ]\noverride: { rules: [ { id: ground/mian } ], constants: { lo: 1 m } }\n");
+  const LoadedRules loaded =
+      loadOver("include: [ base.yaml ]\noverride: { rules: [ { id: ground/mian } ], constants: { lo: 1 m } }\n");
   ASSERT_EQ(loaded.diagnostics.size(), 2U) << format(loaded.diagnostics);
   EXPECT_THAT(loaded.diagnostics[0].hint, ::testing::HasSubstr("ground/main"));
   EXPECT_THAT(loaded.diagnostics[1].hint, ::testing::HasSubstr("low"));

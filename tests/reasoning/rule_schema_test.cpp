@@ -34,7 +34,9 @@ void expectSameKeys(const nlohmann::json& schema, const std::vector<RuleKeyTable
   }
 }
 
-TEST(RuleSchema, HasTheKeysOfTheLoader) { expectSameKeys(schemaOf("rules.schema.json"), ruleKeyTables(), "file"); }
+TEST(RuleSchema, HasTheKeysOfTheLoader) {
+  expectSameKeys(schemaOf("rules.schema.json"), ruleKeyTables(), "file");
+}
 
 TEST(RuleSchema, OfTestsHasTheKeysOfTheTestReader) {
   expectSameKeys(schemaOf("rules-test.schema.json"), ruleTestKeyTables(), "test file");

@@ -16,8 +16,8 @@ namespace {
 TEST(ShippedRuleTests, PassAndReachMostLeaves) {
   const RuleTestReport report = runRuleTests(sourceFolder() / "rules/outdoor.rules-test.yaml", outdoorCatalogue());
   EXPECT_TRUE(report.passed()) << textOf(report);
-  const auto reached = std::count_if(report.leaves.begin(), report.leaves.end(),
-                                     [](const LeafCoverage& leaf) { return leaf.hits > 0; });
+  const auto reached =
+      std::count_if(report.leaves.begin(), report.leaves.end(), [](const LeafCoverage& leaf) { return leaf.hits > 0; });
   EXPECT_GE(static_cast<double>(reached), 0.9 * static_cast<double>(report.leaves.size())) << textOf(report);
 }
 
@@ -51,7 +51,8 @@ rules:
   static std::string binTest(const std::string& expect, const std::string& more = "") {
     return "  - name: a bin\n" + more +
            "    primitives: { b: { label: small_structure, box: { center: [0, 0, 0.5], size: [1, 1, 0.9] } } }\n"
-           "    expect: " + expect + "\n";
+           "    expect: " +
+           expect + "\n";
   }
 
   std::filesystem::path folder_;
@@ -60,7 +61,8 @@ rules:
 TEST_F(RuleTestFolder, WantsAnObjectOfItsOwnForEveryExpectation) {
   const std::string two = "{ objects: [ { class: clx:SmallObject }, { class: clx:SmallObject } ] }";
   EXPECT_FALSE(run(binTest(two)).passed()) << "one bin is not two";
-  const std::string mixed = "{ objects: [ { class: clx:SmallObject }, { class: clx:SmallObject, primitives: { clx:SmallObject: [b] } } ] }";
+  const std::string mixed =
+      "{ objects: [ { class: clx:SmallObject }, { class: clx:SmallObject, primitives: { clx:SmallObject: [b] } } ] }";
   const std::string both =
       "  - name: two bins\n    primitives:\n"
       "      b: { label: small_structure, box: { center: [0, 0, 0.5], size: [1, 1, 0.9] } }\n"
@@ -72,7 +74,8 @@ TEST_F(RuleTestFolder, WantsAnObjectOfItsOwnForEveryExpectation) {
 
 TEST_F(RuleTestFolder, PassesWhenAllExpectationsComeTrue) {
   const RuleTestReport report =
-      run(binTest("{ objects: [ { class: clx:SmallObject, primitives: [b], confidence: \">= 0.7\", rule: bin/one } ], exactly: true }"));
+      run(binTest("{ objects: [ { class: clx:SmallObject, primitives: [b], confidence: \">= 0.7\", rule: bin/one } ], "
+                  "exactly: true }"));
   EXPECT_TRUE(report.passed()) << textOf(report);
   EXPECT_EQ(report.leaves.size(), 2U);
   EXPECT_EQ(report.leaves[0].hits, 1U);
@@ -82,8 +85,9 @@ TEST_F(RuleTestFolder, PassesWhenAllExpectationsComeTrue) {
 
 TEST_F(RuleTestFolder, FailsForEachWrongExpectation) {
   for (const std::string expect :
-       {"{ objects: [ { class: clx:Bush, primitives: [b] } ] }", "{ objects: [ { class: clx:SmallObject, confidence: \"> 0.7\" } ] }",
-        "{ not: [ clx:SmallObject ] }", "{ not: [ clx:Object ] }", "{ count: { clx:SmallObject: 2 } }", "{ exactly: true }",
+       {"{ objects: [ { class: clx:Bush, primitives: [b] } ] }",
+        "{ objects: [ { class: clx:SmallObject, confidence: \"> 0.7\" } ] }", "{ not: [ clx:SmallObject ] }",
+        "{ not: [ clx:Object ] }", "{ count: { clx:SmallObject: 2 } }", "{ exactly: true }",
         "{ reasons: [ { primitive: b, rule: bin/one, reason: too high } ] }"}) {
     const RuleTestReport report = run(binTest(expect));
     EXPECT_FALSE(report.passed()) << expect;
@@ -109,8 +113,9 @@ TEST_F(RuleTestFolder, ReportsFaultsOfTheTestFileAllAtOnce) {
 }
 
 TEST_F(RuleTestFolder, RefusesExpectationsThatWouldDoNothing) {
-  for (const char* expect : {"{ not: clx:SmallObject }", "{ exactly: true, not: clx:SmallObject }", "{ count: 3 }", "{ reasons: b }",
-                             "{ objects: { class: clx:Tree } }", "{}", "{ objects: [] }", "{ exactly: false }", "{ not: }"})
+  for (const char* expect :
+       {"{ not: clx:SmallObject }", "{ exactly: true, not: clx:SmallObject }", "{ count: 3 }", "{ reasons: b }",
+        "{ objects: { class: clx:Tree } }", "{}", "{ objects: [] }", "{ exactly: false }", "{ not: }"})
     EXPECT_THROW(run(binTest(expect)), InputError) << expect;
 }
 
@@ -131,9 +136,11 @@ TEST_F(RuleTestFolder, TakesScenesFromTheProviderAndSkipsWithoutOne) {
 }
 
 TEST_F(RuleTestFolder, ComparesWithGoldenObjects) {
-  writeFile(folder_ / "golden.json", R"({"objects": [{"class": "clx:SmallObject", "min": [-0.5, -0.5, 0.05], "max": [0.5, 0.5, 0.95]}]})");
+  writeFile(folder_ / "golden.json",
+            R"({"objects": [{"class": "clx:SmallObject", "min": [-0.5, -0.5, 0.05], "max": [0.5, 0.5, 0.95]}]})");
   EXPECT_TRUE(run(binTest("{ golden: golden.json, min_precision: 1, min_recall: 1 }")).passed());
-  writeFile(folder_ / "golden.json", R"({"objects": [{"class": "clx:SmallObject", "min": [3, 3, 0], "max": [4, 4, 1]}]})");
+  writeFile(folder_ / "golden.json",
+            R"({"objects": [{"class": "clx:SmallObject", "min": [3, 3, 0], "max": [4, 4, 1]}]})");
   EXPECT_FALSE(run(binTest("{ golden: golden.json, min_precision: 0.5 }")).passed());
 }
 

@@ -16,10 +16,11 @@ namespace {
 
 /// One rule that makes every column an object when `test` holds.
 RuleSet rulesWith(const std::string& test, const std::string& group = "") {
-  return rulesOf("[clx:UtilityPole]", "  - id: pole/tested\n    class: clx:UtilityPole\n    seed: { label: column, as: pole }\n" +
-                                          group + "    tree:\n      test: " + test +
-                                          "\n      yes: { accept: { part: clx:PoleMast, confidence: 0.8 } }\n"
-                                          "      no: { reject: no }\n");
+  return rulesOf("[clx:UtilityPole]",
+                 "  - id: pole/tested\n    class: clx:UtilityPole\n    seed: { label: column, as: pole }\n" + group +
+                     "    tree:\n      test: " + test +
+                     "\n      yes: { accept: { part: clx:PoleMast, confidence: 0.8 } }\n"
+                     "      no: { reject: no }\n");
 }
 
 std::string metres(double value) {
@@ -38,7 +39,7 @@ std::vector<std::uint32_t> cluxelsBetween(const Scene& scene, PrimitiveIndex pri
 }
 
 struct ByHand {
-  double bottom = 1e9, top = -1e9, points = 0, area = 1e9;   ///< the area of the smallest upright box [m2]
+  double bottom = 1e9, top = -1e9, points = 0, area = 1e9;  ///< the area of the smallest upright box [m2]
 };
 
 ByHand measuredByHand(const SceneCluxels& all, const std::vector<std::uint32_t>& cluxels) {
@@ -66,23 +67,29 @@ ByHand measuredByHand(const SceneCluxels& all, const std::vector<std::uint32_t>&
   return hand;
 }
 
-const DecisionStep& firstStep(const ReasoningResult& result) { return result.decisions.at(0).path.at(0); }
+const DecisionStep& firstStep(const ReasoningResult& result) {
+  return result.decisions.at(0).path.at(0);
+}
 
 TEST(SliceTests, MeasureWhatAPlainCountOverTheCluxelsDoes) {
   std::mt19937 random(20261121);
-  auto between = [&](double low, double high) { return low + (high - low) * static_cast<double>(random() % 10000) / 9999; };
+  auto between = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random() % 10000) / 9999;
+  };
   int empty = 0, whole = 0, part = 0;
   for (int round = 0; round < 60; ++round) {
     BoxScene world;
     const double height = between(0.4, 5), bottom = between(0, 1.5);
-    world.boxes = {box("p", kColumn, {between(-3, 3), between(-3, 3), bottom + height / 2}, {between(0.1, 0.9), between(0.1, 0.5), height})};
+    world.boxes = {box("p", kColumn, {between(-3, 3), between(-3, 3), bottom + height / 2},
+                       {between(0.1, 0.9), between(0.1, 0.5), height})};
     world.boxes[0].yaw_rad = between(0, 3);
     const BuiltBoxScene built = sceneOfBoxes(world);
     const double from = between(0, 4), to = from + between(0.05, 5);
     const std::string slice = "{ slice: { from: " + metres(from) + ", to: " + metres(to) + " }, attribute: ";
     const auto inside = cluxelsBetween(built.scene, 0, std::stod(metres(from)), std::stod(metres(to)));
     auto measured = [&](const std::string& attribute, const std::string& least) {
-      const ReasoningResult result = reason(built.scene, rulesWith(slice + attribute + ", op: \">=\", value: " + least + " }"));
+      const ReasoningResult result =
+          reason(built.scene, rulesWith(slice + attribute + ", op: \">=\", value: " + least + " }"));
       const DecisionStep step = firstStep(result);
       EXPECT_EQ(step.passed, step.measured && *step.measured >= *step.threshold);
       EXPECT_EQ(result.objects.size(), step.passed ? 1U : 0U);
@@ -94,7 +101,7 @@ TEST(SliceTests, MeasureWhatAPlainCountOverTheCluxelsDoes) {
       continue;
     }
     const Primitive& primitive = built.scene.primitives[0];
-    if (inside.size() == primitive.cluxels.size()) {   // measured as perception did, to the point and not to the cluxel
+    if (inside.size() == primitive.cluxels.size()) {  // measured as perception did, to the point and not to the cluxel
       ++whole;
       EXPECT_EQ(measured("volume", "0.2 m3"), primitive[Attribute::Volume]);
       EXPECT_EQ(measured("roughness", "0.1 m"), primitive[Attribute::Roughness]);
@@ -116,12 +123,14 @@ TEST(SliceTests, MeasureWhatAPlainCountOverTheCluxelsDoes) {
 /// A plate on a pole that got one label, in two boxes.
 BuiltBoxScene sign(double plate_width_m) {
   BoxScene world;
-  world.boxes = {box("pole", kColumn, {0, 0, 0.7}, {0.1, 0.1, 1.4}), box("plate", kColumn, {0, 0, 1.9}, {plate_width_m, 0.1, 1.0})};
+  world.boxes = {box("pole", kColumn, {0, 0, 0.7}, {0.1, 0.1, 1.4}),
+                 box("plate", kColumn, {0, 0, 1.9}, {plate_width_m, 0.1, 1.0})};
   return sceneOfBoxes(world);
 }
 
 constexpr const char* kWiderAbove =
-    "{ slice: { from: 1.5 m, to: 3 m }, attribute: horizontal_extent, op: \">=\", ratio: 2, to: { slice: { from: 0 m, to: 1.2 m }, "
+    "{ slice: { from: 1.5 m, to: 3 m }, attribute: horizontal_extent, op: \">=\", ratio: 2, to: { slice: { from: 0 m, "
+    "to: 1.2 m }, "
     "attribute: horizontal_extent } }";
 
 TEST(SliceTests, CompareTheUpperPartOfAGroupWithItsFoot) {
@@ -141,22 +150,29 @@ TEST(SliceTests, CompareTheUpperPartOfAGroupWithItsFoot) {
 TEST(SliceTests, OfNothingNoTestHoldsAndItsDenialDoes) {
   const BuiltBoxScene built = sign(0.6);
   for (const char* op : {"<=", ">", "!="}) {
-    const std::string test = std::string("{ slice: { from: 5 m, to: 6 m }, attribute: height, op: \"") + op + "\", value: 1 m }";
+    const std::string test =
+        std::string("{ slice: { from: 5 m, to: 6 m }, attribute: height, op: \"") + op + "\", value: 1 m }";
     EXPECT_TRUE(reason(built.scene, rulesWith(test)).objects.empty()) << op;
     EXPECT_EQ(reason(built.scene, rulesWith("{ not: " + test + " }")).objects.size(), 2U) << op;
   }
-  const std::string ratio = "{ attribute: height, op: \">\", ratio: 0, to: { slice: { from: 5 m, to: 6 m }, attribute: height } }";
+  const std::string ratio =
+      "{ attribute: height, op: \">\", ratio: 0, to: { slice: { from: 5 m, to: 6 m }, attribute: height } }";
   EXPECT_TRUE(reason(built.scene, rulesWith(ratio)).objects.empty());
 }
 
 TEST(SliceTests, TellNothingAboutOtherSlicesNorByFailingAtFirst) {
   const auto nested = [](const std::string& inner_slice, const std::string& first_branch, const std::string& op) {
     const std::string tree =
-        "    tree:\n      test: { slice: { from: 0 m, to: 1 m }, attribute: width, op: \">=\", value: 1 m }\n      " + first_branch +
-        ":\n        test: { " + inner_slice + "attribute: width, op: \"" + op + "\", value: 0.5 m }\n        yes: { reject: a }\n"
-        "        no: { reject: b }\n      " + (first_branch == "yes" ? "no" : "yes") + ": { accept: { part: clx:PoleMast, confidence: 0.8 } }\n";
-    return loadText("apiVersion: cluxel.rules/v1\nprefixes: { clx: \"https://w3id.org/cluxel/ontology#\" }\norder: [clx:UtilityPole]\nrules:\n"
-                    "  - id: pole/tested\n    class: clx:UtilityPole\n    seed: { label: column, as: pole }\n" + tree);
+        "    tree:\n      test: { slice: { from: 0 m, to: 1 m }, attribute: width, op: \">=\", value: 1 m }\n      " +
+        first_branch + ":\n        test: { " + inner_slice + "attribute: width, op: \"" + op +
+        "\", value: 0.5 m }\n        yes: { reject: a }\n"
+        "        no: { reject: b }\n      " +
+        (first_branch == "yes" ? "no" : "yes") + ": { accept: { part: clx:PoleMast, confidence: 0.8 } }\n";
+    return loadText(
+        "apiVersion: cluxel.rules/v1\nprefixes: { clx: \"https://w3id.org/cluxel/ontology#\" }\norder: "
+        "[clx:UtilityPole]\nrules:\n"
+        "  - id: pole/tested\n    class: clx:UtilityPole\n    seed: { label: column, as: pole }\n" +
+        tree);
   };
   const std::string same = "slice: { from: 0 m, to: 1 m }, ", other = "slice: { from: 0 m, to: 2 m }, ";
   EXPECT_FALSE(nested(same, "yes", "<").rules.has_value()) << "wider than 1 m, then narrower than 0.5 m";

@@ -30,7 +30,7 @@ class RandomCondition {
       DecisionStep step;
       step.test = "t" + std::to_string(path.size());
       step.passed = below(2) == 0;
-      if (below(8) != 0) {   // else a label: nothing to change
+      if (below(8) != 0) {  // else a label: nothing to change
         step.threshold = 1 + below(5);
         step.measured = *step.threshold + 0.25 * (1 + below(8));
       }

@@ -123,12 +123,10 @@ TEST(LasFormat, RefusesNumbersThatAreNotFinite) {
   EXPECT_THAT(refusalOf([&] { parseLas(scale, "a.las"); }), HasSubstr("byte 131: error: the scale factors"));
   std::string offset = lasFile(2, 0, kPoints);
   put(offset, 163, std::numeric_limits<double>::infinity());
-  EXPECT_THAT(refusalOf([&] { parseLas(offset, "a.las"); }),
-              HasSubstr("byte 155: error: the offsets are not finite"));
+  EXPECT_THAT(refusalOf([&] { parseLas(offset, "a.las"); }), HasSubstr("byte 155: error: the offsets are not finite"));
   std::string huge = lasFile(2, 0, kPoints);
   put(huge, 139, 1e300);
-  EXPECT_THAT(refusalOf([&] { parseLas(huge, "a.las"); }),
-              HasSubstr("point 0 has a coordinate that is not finite"));
+  EXPECT_THAT(refusalOf([&] { parseLas(huge, "a.las"); }), HasSubstr("point 0 has a coordinate that is not finite"));
 }
 
 }  // namespace

@@ -34,8 +34,7 @@ TEST(Manifest, ReadsEveryFormOfAPose) {
   EXPECT_EQ(manifest.scans[2].path, "/c.txt");
   EXPECT_EQ(manifest.scans[2].labels, "/data/c.label");
   EXPECT_EQ(manifest.scans[2].format, ScanFormat::Xyz);
-  for (std::size_t i = 2; i < 5; ++i)
-    EXPECT_TRUE(manifest.scans[i].pose->isApprox(*manifest.scans[1].pose, 1e-9)) << i;
+  for (std::size_t i = 2; i < 5; ++i) EXPECT_TRUE(manifest.scans[i].pose->isApprox(*manifest.scans[1].pose, 1e-9)) << i;
 }
 
 TEST(Manifest, ReportsAllFaultsAtOnceWithPlaceAndSuggestion) {
@@ -44,10 +43,9 @@ TEST(Manifest, ReportsAllFaultsAtOnceWithPlaceAndSuggestion) {
         "crss: EPSG:25832\nscans:\n  - {path: a.pcd, time: 3, pose: {xyz: [1, 2]}}\n  - {pose: {xyz: [1, 2, "
         "3]}, format: pdc}\n");
   });
+  EXPECT_THAT(text, AllOf(HasSubstr("m.yaml:1:1: error: unknown key 'crss'"), HasSubstr("did you mean 'crs'?")));
   EXPECT_THAT(text,
-              AllOf(HasSubstr("m.yaml:1:1: error: unknown key 'crss'"), HasSubstr("did you mean 'crs'?")));
-  EXPECT_THAT(text, AllOf(HasSubstr("m.yaml:3:19: error: unknown key 'time'"),
-                          HasSubstr("xyz must be a list of 3 numbers")));
+              AllOf(HasSubstr("m.yaml:3:19: error: unknown key 'time'"), HasSubstr("xyz must be a list of 3 numbers")));
   EXPECT_THAT(text, AllOf(HasSubstr("a scan needs a 'path'"), HasSubstr("unknown format 'pdc'"),
                           HasSubstr("did you mean 'pcd'?")));
   EXPECT_THAT(text, HasSubstr("5 errors, 0 warnings"));
@@ -58,8 +56,7 @@ TEST(Manifest, RefusesDuplicateKeysAndAliases) {
               HasSubstr("m.yaml:3:1: error: 'crs' was given in line 1 already"));
   EXPECT_THAT(refusalOf([] { parsed("crs: &x a\nscans: [*x]\n"); }),
               HasSubstr("anchors and aliases are not supported"));
-  EXPECT_THAT(refusalOf([] { parsed("scans: &a [*a]\n"); }),
-              HasSubstr("anchors and aliases are not supported"));
+  EXPECT_THAT(refusalOf([] { parsed("scans: &a [*a]\n"); }), HasSubstr("anchors and aliases are not supported"));
 }
 
 TEST(Manifest, RefusesWhatIsNoManifest) {
@@ -70,12 +67,9 @@ TEST(Manifest, RefusesWhatIsNoManifest) {
               HasSubstr("names a file for all scans"));
   EXPECT_THAT(refusalOf([] { parsed("scans: [{path: a, pose: {xyz: [0, 0, .nan]}}]\n"); }),
               HasSubstr("xyz must be a finite number"));
-  EXPECT_THAT(refusalOf([] {
-                parsed("scans: [{path: a, pose: {xyz: [0, 0, 0], quaternion_xyzw: [1, 1, 0, 0]}}]\n");
-              }),
+  EXPECT_THAT(refusalOf([] { parsed("scans: [{path: a, pose: {xyz: [0, 0, 0], quaternion_xyzw: [1, 1, 0, 0]}}]\n"); }),
               HasSubstr("does not have length 1"));
-  EXPECT_THAT(refusalOf([] { parsed("frame: world\nscans: [a]\n"); }),
-              HasSubstr("frame must be 'map' or 'outer'"));
+  EXPECT_THAT(refusalOf([] { parsed("frame: world\nscans: [a]\n"); }), HasSubstr("frame must be 'map' or 'outer'"));
 }
 
 TEST(Manifest, MixesFilesFoldersPosesAndFrames) {
@@ -84,8 +78,7 @@ TEST(Manifest, MixesFilesFoldersPosesAndFrames) {
   folder.write("near/poses.txt", "1 0 0 105 0 1 0 0 0 0 1 0\n");
   folder.write("b.xyz", "7 7 7\n");
   const auto manifest = folder.write(
-      "site.yaml",
-      "map_origin: [100, 0, 0]\nframe: outer\ncrs: EPSG:25832\nscans: [near, {path: b.xyz, time_s: 4}]\n");
+      "site.yaml", "map_origin: [100, 0, 0]\nframe: outer\ncrs: EPSG:25832\nscans: [near, {path: b.xyz, time_s: 4}]\n");
   ProgressSink silent;
   const ScanSet set = ScanSet::open({manifest}, {}, silent);
   ASSERT_EQ(set.size(), 2U);

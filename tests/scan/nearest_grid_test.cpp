@@ -12,11 +12,13 @@ namespace {
 std::vector<Eigen::Vector3f> randomPoints(std::mt19937& bits, std::size_t count, float spread_m) {
   std::vector<Eigen::Vector3f> points;
   const auto share = [&] { return static_cast<float>(bits() % 4096) / 4096.0F - 0.5F; };
-  for (std::size_t i = 0; i < count; ++i) points.emplace_back(spread_m * share(), spread_m * share(), 0.2F * spread_m * share());
+  for (std::size_t i = 0; i < count; ++i)
+    points.emplace_back(spread_m * share(), spread_m * share(), 0.2F * spread_m * share());
   return points;
 }
 
-std::optional<std::size_t> tryingAll(const std::vector<Eigen::Vector3f>& points, const Eigen::Vector3d& p, double reach_m) {
+std::optional<std::size_t> tryingAll(const std::vector<Eigen::Vector3f>& points, const Eigen::Vector3d& p,
+                                     double reach_m) {
   std::optional<std::size_t> best;
   double best_m2 = reach_m * reach_m;
   for (std::size_t i = 0; i < points.size(); ++i) {

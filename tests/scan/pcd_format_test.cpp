@@ -18,9 +18,8 @@ using testing::HasSubstr;
 std::string header(const std::string& fields, const std::string& size, const std::string& type, int points,
                    const std::string& data, const std::string& viewpoint = "0 0 0 1 0 0 0") {
   const std::string n = std::to_string(points);
-  return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS " + fields + "\nSIZE " + size +
-         "\nTYPE " + type + "\nWIDTH " + n + "\nHEIGHT 1\nVIEWPOINT " + viewpoint + "\nPOINTS " + n +
-         "\nDATA " + data + "\n";
+  return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS " + fields + "\nSIZE " + size + "\nTYPE " +
+         type + "\nWIDTH " + n + "\nHEIGHT 1\nVIEWPOINT " + viewpoint + "\nPOINTS " + n + "\nDATA " + data + "\n";
 }
 
 /// Literal runs only: every LZF decoder must take them.
@@ -40,9 +39,8 @@ TEST(PcdFormat, ReadsTextBinaryAndCompressedAlike) {
   const std::string binary = header("x y z intensity label", "4 4 4 4 4", "F F F F U", 2, "binary") + packed;
   const std::string columns = bytesOfAll(1.F, 4.F, 2.F, 5.F, 3.F, 6.F, 0.5F, 0.25F, 7U, 8U);
   const std::string lzf = storedAsLzf(columns);
-  const std::string compressed =
-      header("x y z intensity label", "4 4 4 4 4", "F F F F U", 2, "binary_compressed") +
-      bytesOfAll(static_cast<std::uint32_t>(lzf.size()), 40U) + lzf;
+  const std::string compressed = header("x y z intensity label", "4 4 4 4 4", "F F F F U", 2, "binary_compressed") +
+                                 bytesOfAll(static_cast<std::uint32_t>(lzf.size()), 40U) + lzf;
   for (const std::string& bytes : {text, binary, compressed}) {
     const ParsedScan scan = parsePcd(bytes, "a.pcd");
     EXPECT_THAT(scan.points.x, ElementsAre(1.F, 4.F));
@@ -68,8 +66,7 @@ TEST(PcdFormat, SkipsFieldsOfSeveralNumbers) {
       "VERSION .7\nFIELDS histogram x y z\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 3 1 1 1\nWIDTH 1\nHEIGHT "
       "1\nPOINTS 1\nDATA ";
   EXPECT_THAT(parsePcd(head + "ascii\n9 nan 9 1 2 3\n", "a").points.z, ElementsAre(3.F));
-  EXPECT_THAT(parsePcd(head + "binary\n" + bytesOfAll(9.F, 9.F, 9.F, 1.F, 2.F, 3.F), "a").points.z,
-              ElementsAre(3.F));
+  EXPECT_THAT(parsePcd(head + "binary\n" + bytesOfAll(9.F, 9.F, 9.F, 1.F, 2.F, 3.F), "a").points.z, ElementsAre(3.F));
 }
 
 TEST(PcdFormat, TakesMinusOneAsALabelForNone) {
@@ -85,8 +82,7 @@ TEST(PcdFormat, GivesTheViewpointWhenItIsNotTheIdentity) {
 }
 
 TEST(PcdFormat, RefusesEveryPrefixOfABinaryFile) {
-  const std::string bytes =
-      header("x y z", "4 4 4", "F F F", 2, "binary") + bytesOfAll(1.F, 2.F, 3.F, 4.F, 5.F, 6.F);
+  const std::string bytes = header("x y z", "4 4 4", "F F F", 2, "binary") + bytesOfAll(1.F, 2.F, 3.F, 4.F, 5.F, 6.F);
   for (std::size_t length = 0; length < bytes.size(); ++length)
     EXPECT_THROW(parsePcd(std::string_view(bytes).substr(0, length), "a.pcd"), InputError) << length;
 }
@@ -111,10 +107,9 @@ TEST(PcdFormat, RefusesCompressedDataThatLie) {
   damaged[0] = static_cast<char>(0xFF);
   EXPECT_THAT(refusalOf([&] { parsePcd(head + bytesOfAll(size, 12U) + damaged, "a"); }),
               HasSubstr("PCL cannot decode it"));
-  const std::string bomb = header("x y z", "4 4 4", "F F F", 300'000'000, "binary_compressed") +
-                           bytesOfAll(4U, 3'600'000'000U) + "abcd";
-  EXPECT_THAT(refusalOf([&] { parsePcd(bomb, "a"); }),
-              HasSubstr("does not fit the header or the compressed data"));
+  const std::string bomb =
+      header("x y z", "4 4 4", "F F F", 300'000'000, "binary_compressed") + bytesOfAll(4U, 3'600'000'000U) + "abcd";
+  EXPECT_THAT(refusalOf([&] { parsePcd(bomb, "a"); }), HasSubstr("does not fit the header or the compressed data"));
 }
 
 struct Refusal {
@@ -137,16 +132,14 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{header("x y", "4 4", "F F", 1, "ascii") + kBody, "has no field 'z'"},
         Refusal{header("x y z x", "4 4 4 4", "F F F F", 1, "ascii") + kBody,
                 "field 'x' has the meaning of an earlier field"},
-        Refusal{header("x y z", "4 4", "F F F", 1, "ascii") + kBody,
-                "a.pcd:4:9: error: the line ends where SIZE"},
+        Refusal{header("x y z", "4 4", "F F F", 1, "ascii") + kBody, "a.pcd:4:9: error: the line ends where SIZE"},
         Refusal{header("x y z", "4 4 3", "F F F", 1, "ascii") + kBody, "no field has TYPE F and SIZE 3"},
         Refusal{header("x y z", "4 4 4", "F F Q", 1, "ascii") + kBody, "unknown TYPE"},
         Refusal{header("x y z", "4 4 4", "F F F", 0, "ascii"), "holds no points"},
         Refusal{header("x y z", "4 4 4", "F F F", 2, "ascii") + kBody, "ends after 1 of 2 points"},
         Refusal{header("x y z", "4 4 4", "F F F", 1, "ascii") + kBody + kBody,
                 "a.pcd:12:1: error: more points than the header's 1"},
-        Refusal{header("x y z", "4 4 4", "F F F", 1, "ascii") + "1 nan 3\n",
-                "a.pcd:11:3: error: y is not finite"},
+        Refusal{header("x y z", "4 4 4", "F F F", 1, "ascii") + "1 nan 3\n", "a.pcd:11:3: error: y is not finite"},
         Refusal{header("x y z", "4 4 4", "F F F", 1, "zipped") + kBody, "unknown DATA"},
         Refusal{header("x y z", "4 4 4", "F F F", 1, "ascii", "0 0 0 2 0 0 0") + kBody,
                 "VIEWPOINT does not have length 1"},
@@ -158,11 +151,10 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(PcdFormat, RefusesBinaryNumbersThatAreNotFiniteNamingTheByte) {
   const std::string head = header("x y z", "4 4 4", "F F F", 2, "binary");
-  const std::string bytes =
-      head + bytesOfAll(1.F, 2.F, 3.F, 4.F, std::numeric_limits<float>::quiet_NaN(), 6.F);
-  EXPECT_THAT(refusalOf([&] { parsePcd(bytes, "a.pcd"); }),
-              HasSubstr("byte " + std::to_string(head.size() + 12) +
-                        ": error: point 1 has a coordinate that is not finite"));
+  const std::string bytes = head + bytesOfAll(1.F, 2.F, 3.F, 4.F, std::numeric_limits<float>::quiet_NaN(), 6.F);
+  EXPECT_THAT(
+      refusalOf([&] { parsePcd(bytes, "a.pcd"); }),
+      HasSubstr("byte " + std::to_string(head.size() + 12) + ": error: point 1 has a coordinate that is not finite"));
 }
 
 TEST(PcdFormat, PrintsNothing) {

@@ -17,8 +17,7 @@ using testing::HasSubstr;
 
 std::string header(const std::string& format, int vertices, const std::string& properties,
                    const std::string& rest = "") {
-  return "ply\nformat " + format +
-         " 1.0\ncomment made here # with a hash\nobj_info nothing\nelement vertex " +
+  return "ply\nformat " + format + " 1.0\ncomment made here # with a hash\nobj_info nothing\nelement vertex " +
          std::to_string(vertices) + "\n" + properties + rest + "end_header\n";
 }
 
@@ -71,31 +70,28 @@ TEST(PlyFormat, PassesOverOtherElements) {
   const std::string camera = "element camera 1\nproperty float f\n";
   const std::string body = bytesOfAll(1.F, 2.F, 3.F);
   EXPECT_THAT(
-      parsePly(header("binary_little_endian", 1, kXyz, faces) + body + bytesOfAll(std::uint8_t{1}, 0), "a")
-          .points.y,
+      parsePly(header("binary_little_endian", 1, kXyz, faces) + body + bytesOfAll(std::uint8_t{1}, 0), "a").points.y,
       ElementsAre(2.F));
   const std::string head =
       "ply\nformat binary_little_endian 1.0\n" + camera + "element vertex 1\n" + kXyz + "end_header\n";
   EXPECT_THAT(parsePly(head + bytesOfAll(9.F) + body, "a").points.y, ElementsAre(2.F));
-  const std::string text = "ply\nformat ascii 1.0\n" + camera + "element vertex 1\n" + kXyz + faces +
-                           "end_header\n9\n1 2 3\n3 0 0 0\n";
+  const std::string text =
+      "ply\nformat ascii 1.0\n" + camera + "element vertex 1\n" + kXyz + faces + "end_header\n9\n1 2 3\n3 0 0 0\n";
   EXPECT_THAT(parsePly(text, "a").points.y, ElementsAre(2.F));
 }
 
 TEST(PlyFormat, RefusesEveryPrefixOfABinaryFile) {
-  const std::string bytes =
-      header("binary_little_endian", 2, kXyz) + bytesOfAll(1.F, 2.F, 3.F, 4.F, 5.F, 6.F);
+  const std::string bytes = header("binary_little_endian", 2, kXyz) + bytesOfAll(1.F, 2.F, 3.F, 4.F, 5.F, 6.F);
   for (std::size_t length = 0; length < bytes.size(); ++length)
     EXPECT_THROW(parsePly(std::string_view(bytes).substr(0, length), "a.ply"), InputError) << length;
 }
 
 TEST(PlyFormat, RefusesBinaryNumbersThatAreNotFiniteNamingTheByte) {
   const std::string head = header("binary_little_endian", 2, kXyz);
-  const std::string bytes =
-      head + bytesOfAll(1.F, 2.F, 3.F, 4.F, 5.F, std::numeric_limits<float>::infinity());
-  EXPECT_THAT(refusalOf([&] { parsePly(bytes, "a.ply"); }),
-              HasSubstr("byte " + std::to_string(head.size() + 12) +
-                        ": error: point 1 has a coordinate that is not finite"));
+  const std::string bytes = head + bytesOfAll(1.F, 2.F, 3.F, 4.F, 5.F, std::numeric_limits<float>::infinity());
+  EXPECT_THAT(
+      refusalOf([&] { parsePly(bytes, "a.ply"); }),
+      HasSubstr("byte " + std::to_string(head.size() + 12) + ": error: point 1 has a coordinate that is not finite"));
 }
 
 struct Refusal {
@@ -117,8 +113,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{header("ascii", 2, kXyz) + "1 2 3\n", "ends after 1 of 2 points"},
         Refusal{header("ascii", 1, kXyz) + "1 2 3\n4 5 6\n", "more points than the header's 1"},
         Refusal{header("ascii", 1, kXyz) + "1 2 inf\n", "a.ply:10:5: error: z is not finite"},
-        Refusal{header("binary_little_endian", 1, kXyz) + std::string(14, 'a'),
-                "2 bytes follow the last vertex"},
+        Refusal{header("binary_little_endian", 1, kXyz) + std::string(14, 'a'), "2 bytes follow the last vertex"},
         Refusal{header("binary_little_endian", 2'000'000'000, kXyz) + "abc",
                 "the vertices take 3 bytes where the header declares 24000000000"},
         Refusal{header("ascii", 1, "property float x\nproperty float y\n") + "1 2\n", "has no field 'z'"},
@@ -126,8 +121,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{header("ascii", 1, "property half x\n") + "1 2\n", "'half' is not a type of PLY"},
         Refusal{header("binary_middle_endian", 1, kXyz), "unknown format"},
         Refusal{"ply\nformat ascii 1.0\nproperty float x\nend_header\n", "stands before the first element"},
-        Refusal{"ply\nformat ascii 1.0\nelement face 1\nproperty float x\nend_header\n1\n",
-                "has no element 'vertex'"},
+        Refusal{"ply\nformat ascii 1.0\nelement face 1\nproperty float x\nend_header\n1\n", "has no element 'vertex'"},
         Refusal{"ply\nelement vertex 1\n" + kXyz + "end_header\n1 2 3\n", "the header has no line format"}));
 
 }  // namespace

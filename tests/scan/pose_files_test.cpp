@@ -22,9 +22,9 @@ Eigen::Isometry3d quarterTurn() {
 }
 
 TEST(PoseFiles, ReadTheSamePoseFromEveryForm) {
-  for (const char* text : {"0 -1 0 1 1 0 0 2 0 0 1 3\n", "0 -1 0 1 1 0 0 2 0 0 1 3 0 0 0 1\n",
-                           "# T\n0 -1 0 1\n1 0 0 2\n\n0 0 1 3\n0 0 0 1\n",
-                           "100.5 1 2 3 0 0 0.70710678118654752 0.70710678118654752\n"}) {
+  for (const char* text :
+       {"0 -1 0 1 1 0 0 2 0 0 1 3\n", "0 -1 0 1 1 0 0 2 0 0 1 3 0 0 0 1\n",
+        "# T\n0 -1 0 1\n1 0 0 2\n\n0 0 1 3\n0 0 0 1\n", "100.5 1 2 3 0 0 0.70710678118654752 0.70710678118654752\n"}) {
     const PoseList list = parsePoses(text, "poses.txt");
     ASSERT_EQ(list.poses.size(), 1U) << text;
     EXPECT_TRUE(list.poses[0].isApprox(quarterTurn(), 1e-12)) << text;
@@ -40,15 +40,12 @@ TEST(PoseFiles, RefuseWhatIsNoRigidMotion) {
   EXPECT_THAT(refusalOf([] { parsePoses("-1 0 0 0 0 1 0 0 0 0 1 0\n", "p"); }), HasSubstr("mirrors space"));
   EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1\n", "p"); }),
               HasSubstr("last row that is not 0 0 0 1"));
-  EXPECT_THAT(refusalOf([] { parsePoses("0 0 0 0 0 0 0 2\n", "p"); }),
-              HasSubstr("quaternion does not have length 1"));
+  EXPECT_THAT(refusalOf([] { parsePoses("0 0 0 0 0 0 0 2\n", "p"); }), HasSubstr("quaternion does not have length 1"));
   EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 nan 0 1 0 0 0 0 1 0\n", "p"); }), HasSubstr("not finite"));
   EXPECT_THAT(refusalOf([] { parsePoses("# none\n", "p"); }), HasSubstr("holds no poses"));
-  EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 0\n0 1 0 0\n", "p"); }),
-              HasSubstr("ends inside a 4x4 matrix"));
-  EXPECT_THAT(
-      refusalOf([] { parsePoses("1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n", "p"); }),
-      HasSubstr("p:2:"));
+  EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 0\n0 1 0 0\n", "p"); }), HasSubstr("ends inside a 4x4 matrix"));
+  EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n", "p"); }),
+              HasSubstr("p:2:"));
 }
 
 TEST(PoseFiles, TakeTheSecondLineOfAFreiburgPose) {
@@ -66,8 +63,7 @@ TEST(PoseFiles, TurnYawAfterPitchAfterRoll) {
 TEST(PoseFiles, FindTheLaserToCameraMotionByItsName) {
   const std::string text = "P0: 1 0 0 0 0 1 0 0 0 0 1 0\nTr: 0 -1 0 1 1 0 0 2 0 0 1 3\n";
   EXPECT_TRUE(parseKittiCalibration(text, "calib.txt").isApprox(quarterTurn()));
-  EXPECT_THAT(refusalOf([] { parseKittiCalibration("P0: 1 2 3\n", "calib.txt"); }),
-              HasSubstr("has no line 'Tr:'"));
+  EXPECT_THAT(refusalOf([] { parseKittiCalibration("P0: 1 2 3\n", "calib.txt"); }), HasSubstr("has no line 'Tr:'"));
 }
 
 TEST(PoseFiles, ChangeCameraPosesToThoseOfTheSensor) {
@@ -75,8 +71,7 @@ TEST(PoseFiles, ChangeCameraPosesToThoseOfTheSensor) {
   forward.translation().z() = 2;
   Eigen::Isometry3d T_camera_sensor = Eigen::Isometry3d::Identity();
   T_camera_sensor.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
-  EXPECT_TRUE(
-      sensorPoseFromCamera(forward, T_camera_sensor).translation().isApprox(Eigen::Vector3d(2, 0, 0)));
+  EXPECT_TRUE(sensorPoseFromCamera(forward, T_camera_sensor).translation().isApprox(Eigen::Vector3d(2, 0, 0)));
 }
 
 TEST(NaturalOrder, ComparesRunsOfDigitsAsNumbers) {

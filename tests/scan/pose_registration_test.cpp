@@ -13,21 +13,25 @@ using Poses = std::vector<Eigen::Isometry3d>;
 
 Poses straightDrive(std::size_t scans, double step_m = 1.5) {
   Poses poses;
-  for (std::size_t i = 0; i < scans; ++i) poses.push_back(poseAt(-3 + step_m * static_cast<double>(i), 0.1 * static_cast<double>(i % 2), 2.0 * static_cast<double>(i)));
+  for (std::size_t i = 0; i < scans; ++i)
+    poses.push_back(
+        poseAt(-3 + step_m * static_cast<double>(i), 0.1 * static_cast<double>(i % 2), 2.0 * static_cast<double>(i)));
   return poses;
 }
 
 /// Errors that add up from pose to pose.
 Poses drifting(const Poses& truth, const Eigen::Isometry3d& error) {
   Poses given{truth.front()};
-  for (std::size_t i = 1; i < truth.size(); ++i) given.push_back(given.back() * (truth[i - 1].inverse() * truth[i]) * error);
+  for (std::size_t i = 1; i < truth.size(); ++i)
+    given.push_back(given.back() * (truth[i - 1].inverse() * truth[i]) * error);
   return given;
 }
 
 TEST(PoseRegistration, MendsPosesThatDrift) {
   const ScratchFolder folder;
   const Poses truth = straightDrive(4);
-  const Drive drive = writeDrive(folder, yardPlace(), truth, drifting(truth, moveBy({0.10, 0.03, 0.02}, {0.1, 0.1, 0.4})));
+  const Drive drive =
+      writeDrive(folder, yardPlace(), truth, drifting(truth, moveBy({0.10, 0.03, 0.02}, {0.1, 0.1, 0.4})));
   PoseRegistration report;
   const Poses poses = mendedPoses(drive, report);
   for (std::size_t i = 1; i < truth.size(); ++i) {
@@ -48,8 +52,9 @@ TEST(PoseRegistration, ChangesAllPosesAsAWholeAsLittleAsItCan) {
   PoseRegistration report;
   const Poses poses = mendedPoses(writeDrive(folder, yardPlace(), truth, given), report);
   for (const RegisteredPair& pair : report.pairs)
-    EXPECT_EQ(pair.outcome, PairOutcome::Used) << pair.first << " - " << pair.second << ": " << nameOf(pair.outcome) << ", overlap "
-                                               << pair.overlap << ", residual " << pair.residual_before_m << " -> " << pair.residual_after_m;
+    EXPECT_EQ(pair.outcome, PairOutcome::Used)
+        << pair.first << " - " << pair.second << ": " << nameOf(pair.outcome) << ", overlap " << pair.overlap
+        << ", residual " << pair.residual_before_m << " -> " << pair.residual_after_m;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < 3; ++i) sum += poses[i].translation() - given[i].translation();
   EXPECT_LT(sum.norm() / 3, 0.005) << "the mean stays where it was";
@@ -135,7 +140,9 @@ TEST(PoseRegistration, AScanFarFromAllOthersKeepsItsPoseToTheLastBit) {
   given.push_back(poseAt(3000, 0, 7));
   PoseRegistration report;
   const Poses poses = mendedPoses(writeDrive(folder, yardPlace(), truth, given), report);
-  EXPECT_EQ(poses[3].matrix(), ScanSet::open({folder.path() / "drive_3.pcd"}, {}, *std::make_unique<NoteKeeper>()).file(0).T_map_sensor.matrix());
+  EXPECT_EQ(poses[3].matrix(), ScanSet::open({folder.path() / "drive_3.pcd"}, {}, *std::make_unique<NoteKeeper>())
+                                   .file(0)
+                                   .T_map_sensor.matrix());
   EXPECT_EQ(report.scans[3].pairs, 0U);
   EXPECT_LT(errorBetween(poses, truth, 0, 2).translation().norm(), 0.01) << "the others are mended";
 }
@@ -212,7 +219,9 @@ TEST(PoseRegistration, RefusesScansWithoutPosesAndScansWithTwo) {
   const Drive drive = writeDrive(folder, yardPlace(), {poseAt(0, 0, 0)}, {poseAt(0, 0, 0)});
   const ScanSet same = ScanSet::open({drive.files[0], drive.files[0]}, {}, notes);
   EXPECT_EQ(registerPoses(same, {}, 1, notes).scans.size(), 1U) << "once";
-  folder.write("two.yaml", "scans:\n  - {path: drive_0.pcd, pose: {xyz: [0, 0, 0]}}\n  - {path: drive_0.pcd, pose: {xyz: [1, 0, 0]}}\n");
+  folder.write(
+      "two.yaml",
+      "scans:\n  - {path: drive_0.pcd, pose: {xyz: [0, 0, 0]}}\n  - {path: drive_0.pcd, pose: {xyz: [1, 0, 0]}}\n");
   const ScanSet two = ScanSet::open({folder.path() / "two.yaml"}, {}, notes);
   EXPECT_NE(refusalOf([&] { registerPoses(two, {}, 1, notes); }).find("another pose"), std::string::npos);
 }
@@ -220,7 +229,8 @@ TEST(PoseRegistration, RefusesScansWithoutPosesAndScansWithTwo) {
 TEST(PoseRegistration, ScansOfFewPointsAreLeftAlone) {
   const ScratchFolder folder;
   NoteKeeper notes;
-  folder.write("few.yaml", "scans:\n  - {path: a.xyz, pose: {xyz: [0, 0, 0]}}\n  - {path: b.xyz, pose: {xyz: [1, 0, 0]}}\n");
+  folder.write("few.yaml",
+               "scans:\n  - {path: a.xyz, pose: {xyz: [0, 0, 0]}}\n  - {path: b.xyz, pose: {xyz: [1, 0, 0]}}\n");
   folder.write("a.xyz", "1 2 3\n2 3 4\n");
   folder.write("b.xyz", "1 2 3\n2 3 5\n");
   const PoseRegistration report = registerPoses(ScanSet::open({folder.path() / "few.yaml"}, {}, notes), {}, 1, notes);

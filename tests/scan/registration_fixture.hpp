@@ -19,7 +19,9 @@ struct Rectangle {
 };
 using Place = std::vector<Rectangle>;
 
-inline Place plainPlace() { return {{{-34, -34, 0}, {68, 0, 0}, {0, 68, 0}}}; }
+inline Place plainPlace() {
+  return {{{-34, -34, 0}, {68, 0, 0}, {0, 68, 0}}};
+}
 
 /// Walls 5 m to the left and right that end beyond what any scan sees.
 inline Place corridorPlace() {
@@ -53,7 +55,7 @@ inline Scan scanOf(const Place& place, const Eigen::Isometry3d& T_map_sensor, un
     const auto count = static_cast<int>(kPerSquareMetre * r.along.cross(r.across).norm());
     for (int i = 0; i < count; ++i) {
       const double a = share(), b = share();
-      Eigen::Vector3d noise;                            // drawn one after the other: compilers order arguments as they like
+      Eigen::Vector3d noise;  // drawn one after the other: compilers order arguments as they like
       for (double& axis : noise) axis = 2 * kNoise_m * (share() - 0.5);
       const Eigen::Vector3d p = T_sensor_map * (r.corner + a * r.along + b * r.across + noise);
       if (p.norm() > kRange_m) continue;
@@ -78,7 +80,9 @@ inline Eigen::Isometry3d moveBy(const Eigen::Vector3d& by_m, const Eigen::Vector
   return T;
 }
 
-inline double angle_deg(const Eigen::Isometry3d& T) { return Eigen::AngleAxisd(T.linear()).angle() * 180 / M_PI; }
+inline double angle_deg(const Eigen::Isometry3d& T) {
+  return Eigen::AngleAxisd(T.linear()).angle() * 180 / M_PI;
+}
 
 /// Scan files whose poses are given in the files.
 struct Drive {
@@ -108,8 +112,8 @@ inline std::vector<Eigen::Isometry3d> mendedPoses(const Drive& drive, PoseRegist
 }
 
 /// How wrong the pose of `b` is as seen from `a`.
-inline Eigen::Isometry3d errorBetween(const std::vector<Eigen::Isometry3d>& poses, const std::vector<Eigen::Isometry3d>& truth,
-                                      std::size_t a, std::size_t b) {
+inline Eigen::Isometry3d errorBetween(const std::vector<Eigen::Isometry3d>& poses,
+                                      const std::vector<Eigen::Isometry3d>& truth, std::size_t a, std::size_t b) {
   return (truth[a].inverse() * truth[b]).inverse() * (poses[a].inverse() * poses[b]);
 }
 

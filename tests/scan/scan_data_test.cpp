@@ -65,8 +65,7 @@ TEST(RealScans, OaklandTruthFilesFollowFromTheLabelsThroughTheLabelMap) {
   }
   EXPECT_EQ(primitives_differ, 0U);
   EXPECT_EQ(others_differ, 0U);
-  EXPECT_EQ(posts_differ, 111U)
-      << "the truth files give a post to a sign only when the sign has 20 points or more";
+  EXPECT_EQ(posts_differ, 111U) << "the truth files give a post to a sign only when the sign has 20 points or more";
 }
 
 TEST(RealScans, OaklandNamesInstancesThatDoNotCount) {
@@ -80,13 +79,11 @@ TEST(RealScans, OaklandNamesInstancesThatDoNotCount) {
 double groundHeight(const Scan& scan, const Eigen::Vector2d& place) {
   std::vector<double> heights;
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
-    const Eigen::Vector3d p =
-        toMap(scan.T_map_sensor, {scan.points.x[i], scan.points.y[i], scan.points.z[i]});
+    const Eigen::Vector3d p = toMap(scan.T_map_sensor, {scan.points.x[i], scan.points.y[i], scan.points.z[i]});
     if (scan.points.label[i] == 40 && (p.head<2>() - place).norm() < 10) heights.push_back(p.z());
   }
   if (heights.size() < 100) return NAN;
-  std::nth_element(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2),
-                   heights.end());
+  std::nth_element(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2), heights.end());
   return heights[heights.size() / 2];
 }
 
@@ -111,8 +108,7 @@ TEST(RealScans, SmallGicpCloudsOverlapUnderTheirTransform) {
   CLUXEL_REQUIRE_DATA(folder, "small_gicp");
   ProgressSink silent;
   const ScanSet target = opened(folder / "target.ply");
-  const ScanSet source =
-      ScanSet::open({folder / "source.ply"}, {.poses = folder / "T_target_source.txt"}, silent);
+  const ScanSet source = ScanSet::open({folder / "source.ply"}, {.poses = folder / "T_target_source.txt"}, silent);
   const Scan a = target.load(0);
   const Scan b = source.load(0);
   EXPECT_EQ(b.points.size(), 69792U);

@@ -77,7 +77,7 @@ TEST(ScanSet, RefusesAFolderWhoseScansLackAPose) {
 TEST(ScanSet, RefusesScansThatAreLinksToNowhere) {
   const ScratchFolder folder;
   folder.write("b.xyz", "0 0 0\n1 0 0\n");
-  std::filesystem::create_symlink(folder.path() / "loop", folder.path() / "loop");   // no scan's name: nobody reads it
+  std::filesystem::create_symlink(folder.path() / "loop", folder.path() / "loop");  // no scan's name: nobody reads it
   EXPECT_EQ(opened({folder.path()}).size(), 1U);
   std::filesystem::create_symlink(folder.path() / "gone", folder.path() / "a.xyz");
   EXPECT_THAT(refusalOf([&] { opened({folder.path()}); }), HasSubstr("the link leads nowhere"));
@@ -148,10 +148,13 @@ TEST(ScanSet, GivesNoPoseOfAKittiSequenceToAScanThatIsNotOfIt) {
   folder.write("seq/velodyne/000001.bin", bytesOfAll(1.F, 2.F, 3.F, 0.5F));
   const auto extra = folder.write("extra.xyz", "1 2 3\n");
   const auto poses = folder.write("00.txt", kAt5 + kAt9);
-  EXPECT_THAT(refusalOf([&] { opened({folder.path() / "seq", extra}, {.poses = poses}); }),
+  EXPECT_THAT(refusalOf([&] {
+                opened({folder.path() / "seq", extra}, {.poses = poses});
+              }),
               HasSubstr("extra.xyz is not of that sequence"));
   const auto seq = folder.path() / "seq";
-  const ScanSet twice = opened({seq / "velodyne" / "000001.bin", seq / "." / "velodyne" / "000001.bin"}, {.poses = poses});
+  const ScanSet twice =
+      opened({seq / "velodyne" / "000001.bin", seq / "." / "velodyne" / "000001.bin"}, {.poses = poses});
   EXPECT_EQ(xOf(twice, 1), 9);
 }
 
@@ -171,8 +174,7 @@ TEST(ScanSet, RefusesAKittiScanBehindTheEndOfThePoses) {
   const ScratchFolder folder;
   folder.write("velodyne/000004.bin", bytesOfAll(1.F, 2.F, 3.F, 0.5F));
   folder.write("poses.txt", kAt0);
-  EXPECT_THAT(refusalOf([&] { opened({folder.path()}); }),
-              HasSubstr("has 1 lines and the scan is number 4 (from 0)"));
+  EXPECT_THAT(refusalOf([&] { opened({folder.path()}); }), HasSubstr("has 1 lines and the scan is number 4 (from 0)"));
 }
 
 TEST(ScanSet, ReadsTheLayoutOfFreiburg) {
@@ -188,8 +190,7 @@ TEST(ScanSet, ReadsTheLayoutOfFreiburg) {
   EXPECT_THAT(set.load(0).points.label, ElementsAre(4U));
   EXPECT_EQ(set.load(0).points.origin[0], Eigen::Vector3f(0, 0, 1));
   folder.write("scan_11_points.dat", "0 0 1 1 2 3\n");
-  EXPECT_THAT(refusalOf([&] { opened({folder.path()}); }),
-              HasSubstr("the pose of scan_11_points.dat is missing"));
+  EXPECT_THAT(refusalOf([&] { opened({folder.path()}); }), HasSubstr("the pose of scan_11_points.dat is missing"));
 }
 
 TEST(ScanSet, TakesTheViewpointOfAPcdOnlyWhereNoPosesAreGiven) {
@@ -227,8 +228,7 @@ TEST(ScanSet, PutsWorldCoordinatesIntoAPlaceOfTheirOwn) {
 
 TEST(ScanSet, RefusesWhatItCannotUnderstand) {
   const ScratchFolder folder;
-  EXPECT_THAT(refusalOf([&] { opened({folder.path() / "absent"}); }),
-              HasSubstr("there is no such file or folder"));
+  EXPECT_THAT(refusalOf([&] { opened({folder.path() / "absent"}); }), HasSubstr("there is no such file or folder"));
   EXPECT_THAT(refusalOf([&] { opened({folder.path()}); }), HasSubstr("the folder holds no scans"));
   EXPECT_THAT(refusalOf([&] { opened({folder.write("a.jpg", "x")}); }),
               HasSubstr("the format of this file is not known"));
@@ -248,10 +248,10 @@ TEST(ContentId, IsIndependentOfPathFormatPoseAndLabels) {
   const ScratchFolder folder;
   const auto text = folder.write("t/a.xyz", "1.5 2 3 0.5\n");
   const auto kitti = folder.write("k/b.bin", bytesOfAll(1.5F, 2.F, 3.F, 0.5F));
-  const auto ply = folder.write(
-      "p/c.ply",
-      "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty float y\nproperty float z\n"
-      "property float intensity\nproperty int label\nend_header\n1.5 2 3 0.5 7\n");
+  const auto ply =
+      folder.write("p/c.ply",
+                   "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty float y\nproperty float z\n"
+                   "property float intensity\nproperty int label\nend_header\n1.5 2 3 0.5 7\n");
   folder.write("p/poses.txt", kAt5);
   const ScanSet set = opened({text, kitti, ply});
   EXPECT_EQ(set.load(0).id, set.load(1).id);

@@ -98,8 +98,7 @@ TEST(ScanWriter, RefusesScansThatCannotBeReadBack) {
               HasSubstr("an empty scan cannot be written"));
   Scan scan = randomScan(1, false);
   scan.points.z.pop_back();
-  EXPECT_THAT(refusalOf([&] { writeScanFile(scan, folder.path() / "a.pcd"); }),
-              HasSubstr("differ in length"));
+  EXPECT_THAT(refusalOf([&] { writeScanFile(scan, folder.path() / "a.pcd"); }), HasSubstr("differ in length"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "a.pcd"));
   EXPECT_THROW(writeScanFile(randomScan(1, false), folder.path() / "absent" / "a.pcd"), Error);
 }

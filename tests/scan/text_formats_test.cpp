@@ -27,14 +27,17 @@ TEST(XyzText, SkipsCommentsEmptyLinesCarriageReturnsAndCommas) {
 }
 
 TEST(XyzText, PassesOverAByteOrderMark) {
-  EXPECT_THAT(parseXyzText("\xEF\xBB\xBF" "1 2 3\n4 5 6\n", "a.xyz").points.x, ElementsAre(1.0F, 4.0F));
+  EXPECT_THAT(parseXyzText("\xEF\xBB\xBF"
+                           "1 2 3\n4 5 6\n",
+                           "a.xyz")
+                  .points.x,
+              ElementsAre(1.0F, 4.0F));
   EXPECT_THAT(refusalOf([] { parseXyzText("\xEF\xBB\xBF", "a.xyz"); }), HasSubstr("holds no points"));
   EXPECT_EQ(columnsOfFirstLine("\xEF\xBB\xBF# x y z\n1 2 3\n"), 3U);
 }
 
 TEST(XyzText, KeepsMillimetresOfWorldCoordinatesByALocalOrigin) {
-  const ParsedScan scan =
-      parseXyzText("456123.123 5412345.125 230.5\n456124.001 5412345.002 230.5\n", "utm.xyz");
+  const ParsedScan scan = parseXyzText("456123.123 5412345.125 230.5\n456124.001 5412345.002 230.5\n", "utm.xyz");
   EXPECT_EQ(scan.local_origin, Eigen::Vector3d(456000, 5412000, 0));
   EXPECT_NEAR(scan.local_origin.x() + scan.points.x[1], 456124.001, 1e-4);
   EXPECT_NEAR(scan.local_origin.y() + scan.points.y[1], 5412345.002, 1e-4);
@@ -57,23 +60,22 @@ TEST_P(RefusedXyz, NamesThePlaceAndTheFault) {
 
 INSTANTIATE_TEST_SUITE_P(
     AllFaults, RefusedXyz,
-    testing::Values(
-        Refusal{"", "a.xyz:1:1: error: holds no points"}, Refusal{"# only\n", "holds no points"},
-        Refusal{"1 2 3\n1 2\n", "a.xyz:2:4: error: the line ends where z was expected"},
-        Refusal{"1 2 nan\n", "a.xyz:1:5: error: z is not finite: 'nan'"},
-        Refusal{"1 -inf 3\n", "a.xyz:1:3: error: y is not finite: '-inf'"},
-        Refusal{"1 2 3\n4 x5 6\n", "a.xyz:2:3: error: y is not a number: 'x5'"},
-        Refusal{"1 2.5m 3\n", "a.xyz:1:3: error: y is not a number: '2.5m'"},
-        Refusal{"1 2 1e999\n", "z is out of range"},
-        Refusal{"1e39 2 3\n",
-                "a.xyz:1:9: error: the point has a coordinate that is not finite or beyond 100000 km"},
-        Refusal{"1 2 3\n1 2 3 4\n", "a.xyz:2:7: error: unexpected '4'"},
-        Refusal{"1 2 3 4\n1 2 3\n", "a.xyz:2:6: error: the line ends where intensity was expected"},
-        Refusal{"1 2 3 4 5\n", "unexpected '5'"}));
+    testing::Values(Refusal{"", "a.xyz:1:1: error: holds no points"}, Refusal{"# only\n", "holds no points"},
+                    Refusal{"1 2 3\n1 2\n", "a.xyz:2:4: error: the line ends where z was expected"},
+                    Refusal{"1 2 nan\n", "a.xyz:1:5: error: z is not finite: 'nan'"},
+                    Refusal{"1 -inf 3\n", "a.xyz:1:3: error: y is not finite: '-inf'"},
+                    Refusal{"1 2 3\n4 x5 6\n", "a.xyz:2:3: error: y is not a number: 'x5'"},
+                    Refusal{"1 2.5m 3\n", "a.xyz:1:3: error: y is not a number: '2.5m'"},
+                    Refusal{"1 2 1e999\n", "z is out of range"},
+                    Refusal{"1e39 2 3\n",
+                            "a.xyz:1:9: error: the point has a coordinate that is not finite or beyond 100000 km"},
+                    Refusal{"1 2 3\n1 2 3 4\n", "a.xyz:2:7: error: unexpected '4'"},
+                    Refusal{"1 2 3 4\n1 2 3\n", "a.xyz:2:6: error: the line ends where intensity was expected"},
+                    Refusal{"1 2 3 4 5\n", "unexpected '5'"}));
 
 TEST(LabelledText, ReadsTheLayoutOfOakland) {
-  const ParsedScan scan = parseLabelledText(
-      "#File format: x y z label_id confidence \n-23.09 -9.4 0.69 1111 2\n1 2 3 0 1\n", "a");
+  const ParsedScan scan =
+      parseLabelledText("#File format: x y z label_id confidence \n-23.09 -9.4 0.69 1111 2\n1 2 3 0 1\n", "a");
   EXPECT_THAT(scan.points.label, ElementsAre(1111U, 0U));
   EXPECT_FLOAT_EQ(scan.points.x[0], -23.09F);
 }
@@ -81,8 +83,7 @@ TEST(LabelledText, ReadsTheLayoutOfOakland) {
 TEST(LabelledText, RefusesLabelsThatAreNoWholeNumbers) {
   EXPECT_THAT(refusalOf([] { parseLabelledText("1 2 3 1.5 2\n", "a"); }),
               HasSubstr("a:1:7: error: label is not a number: '1.5'"));
-  EXPECT_THAT(refusalOf([] { parseLabelledText("1 2 3 -1 2\n", "a"); }),
-              HasSubstr("label is not a whole number"));
+  EXPECT_THAT(refusalOf([] { parseLabelledText("1 2 3 -1 2\n", "a"); }), HasSubstr("label is not a whole number"));
   EXPECT_THAT(refusalOf([] { parseLabelledText("1 2 3 4294967296 2\n", "a"); }),
               HasSubstr("label is not a whole number"));
   EXPECT_THAT(refusalOf([] { parseLabelledText("1 2 3 7\n", "a"); }), HasSubstr("confidence"));
@@ -102,8 +103,7 @@ TEST(FreiburgText, RefusesALineOfFiveNumbers) {
 
 TEST(LabelLines, MustBeAsManyAsThePoints) {
   EXPECT_THAT(parseLabelLines("1\n2\n", "l", 2), ElementsAre(1U, 2U));
-  EXPECT_THAT(refusalOf([] { parseLabelLines("1\n2\n", "l", 3); }),
-              HasSubstr("ends after 2 labels for 3 points"));
+  EXPECT_THAT(refusalOf([] { parseLabelLines("1\n2\n", "l", 3); }), HasSubstr("ends after 2 labels for 3 points"));
   EXPECT_THAT(refusalOf([] { parseLabelLines("1\n2\n", "l", 1); }),
               HasSubstr("l:2:1: error: more labels than the scan's 1 points"));
 }

@@ -78,15 +78,13 @@ TEST(LabelMap, ReportsAllFaultsAtOnceWithPlaceAndSuggestion) {
         "{name: f, part: Top}\n",
         "l.yaml");
   });
-  EXPECT_THAT(text, AllOf(HasSubstr("l.yaml:1:1: error: unknown key 'datset'"),
-                          HasSubstr("did you mean 'dataset'?")));
-  EXPECT_THAT(text, AllOf(HasSubstr("l.yaml:3:27: error: unknown primitive 'colum'"),
-                          HasSubstr("did you mean 'column'?")));
+  EXPECT_THAT(text, AllOf(HasSubstr("l.yaml:1:1: error: unknown key 'datset'"), HasSubstr("did you mean 'dataset'?")));
+  EXPECT_THAT(text,
+              AllOf(HasSubstr("l.yaml:3:27: error: unknown primitive 'colum'"), HasSubstr("did you mean 'column'?")));
   EXPECT_THAT(text, HasSubstr("l.yaml:4:3: error: '1' was given in line 3 already"));
   EXPECT_THAT(text, AllOf(HasSubstr("a label id is a whole number"), HasSubstr("a label needs a 'name'")));
   EXPECT_THAT(text, AllOf(HasSubstr("object must be a local name"), HasSubstr("write it as '0.6 m'")));
-  EXPECT_THAT(text,
-              AllOf(HasSubstr("the label 77 is not in this map"), HasSubstr("a 'part' needs an 'object'")));
+  EXPECT_THAT(text, AllOf(HasSubstr("the label 77 is not in this map"), HasSubstr("a 'part' needs an 'object'")));
 }
 
 TEST(LabelMap, TakesTheSameIdInTwoSpellingsForADuplicate) {
@@ -119,9 +117,8 @@ TEST(TruthFromLabels, AgreesWithBruteForceOnPostsNearSigns) {
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     bool near = scan.points.label[i] == 2;
     for (std::size_t k = 0; k < scan.points.size() && !near; ++k)
-      near =
-          scan.points.label[k] == 2 && std::hypot(double(scan.points.x[i]) - double(scan.points.x[k]),
-                                                  double(scan.points.y[i]) - double(scan.points.y[k])) < 0.6;
+      near = scan.points.label[k] == 2 && std::hypot(double(scan.points.x[i]) - double(scan.points.x[k]),
+                                                     double(scan.points.y[i]) - double(scan.points.y[k])) < 0.6;
     near_posts += near ? 1 : 0;
     EXPECT_EQ(truth.object_class[i], near ? 5 : 8) << i;
   }
@@ -155,8 +152,7 @@ TEST(TruthFiles, AreRefusedWithFileAndLine) {
   EXPECT_THAT(refusalOf([] { parseTruth("1 2 3\n", "a", 2); }), HasSubstr("ends after 1 lines for 2 points"));
   EXPECT_THAT(refusalOf([] { parseTruth("1 2 3\n1 2 3\n", "a", 1); }),
               HasSubstr("a:2:1: error: more lines than the scan's 1 points"));
-  EXPECT_THAT(refusalOf([] { parseTruth("1 2\n", "a", 1); }),
-              HasSubstr("the line ends where instance was expected"));
+  EXPECT_THAT(refusalOf([] { parseTruth("1 2\n", "a", 1); }), HasSubstr("the line ends where instance was expected"));
 }
 
 TEST(TruthFiles, ThatAreDamagedOrEndlessAreRefused) {
@@ -188,17 +184,17 @@ TEST(TruthFiles, OfScansOfOneNameLieBelowTheNamesOfTheirFolders) {
 
 TEST(TruthClassNames, OfALabelMapAreTheNineAndThenItsOwn) {
   const ScratchFolder folder;
-  const LabelMap map = LabelMap::load(
-      folder.write("m.yaml", "dataset: d\nlabels:\n  7: {name: a, object: Tree}\n  8: {name: b, object: Bench}\n  9: {name: c, object: Bench}\n"));
+  const LabelMap map = LabelMap::load(folder.write("m.yaml",
+                                                   "dataset: d\nlabels:\n  7: {name: a, object: Tree}\n  8: {name: b, "
+                                                   "object: Bench}\n  9: {name: c, object: Bench}\n"));
   std::vector<std::string> names = truthClassNames();
   names.push_back("Bench");
   EXPECT_EQ(truthClassNames(map), names);
 }
 
 TEST(AmbiguousInstances, AreThoseMarkedInTheTable) {
-  EXPECT_THAT(
-      parseAmbiguousInstances("id,object,ambiguous,flags\n9,tree,1,x;\n2,tree,0,\n4,sign,1,\r\n", "i.csv"),
-      ElementsAre(4, 9));
+  EXPECT_THAT(parseAmbiguousInstances("id,object,ambiguous,flags\n9,tree,1,x;\n2,tree,0,\n4,sign,1,\r\n", "i.csv"),
+              ElementsAre(4, 9));
   EXPECT_THAT(parseAmbiguousInstances("\xEF\xBB\xBFid,ambiguous\n4,1\n", "i.csv"), ElementsAre(4));
   EXPECT_THAT(refusalOf([] { parseAmbiguousInstances("", "i.csv"); }), HasSubstr("is empty"));
   EXPECT_THAT(refusalOf([] { parseAmbiguousInstances("id,object\n", "i.csv"); }),
@@ -207,8 +203,7 @@ TEST(AmbiguousInstances, AreThoseMarkedInTheTable) {
               HasSubstr("i.csv:3: error: the id is not a whole number"));
   EXPECT_THAT(refusalOf([] { parseAmbiguousInstances("id,ambiguous\n1,yes\n", "i.csv"); }),
               HasSubstr("must be 0 or 1"));
-  EXPECT_THAT(refusalOf([] { parseAmbiguousInstances("id,ambiguous\n1\n", "i.csv"); }),
-              HasSubstr("too few columns"));
+  EXPECT_THAT(refusalOf([] { parseAmbiguousInstances("id,ambiguous\n1\n", "i.csv"); }), HasSubstr("too few columns"));
   const ScratchFolder folder;
   EXPECT_TRUE(ambiguousInstances(folder.path()).empty());
 }

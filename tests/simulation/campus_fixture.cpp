@@ -16,8 +16,7 @@ CampusParams smallCampus(std::uint64_t seed) {
 }
 
 CampusParams withoutNoise(CampusParams params) {
-  params.range_sigma_m = params.miss_probability = params.mixed_pixel_probability = params.beam_radius_rad =
-      0;
+  params.range_sigma_m = params.miss_probability = params.mixed_pixel_probability = params.beam_radius_rad = 0;
   return params;
 }
 

@@ -22,16 +22,14 @@ using test::smallCampus;
 constexpr int kTree = 2, kLamp = 4, kSign = 5, kPole = 6;
 
 bool operator==(const CampusMesh& a, const CampusMesh& b) {
-  return a.label == b.label && a.instance == b.instance && a.triangles == b.triangles &&
-         a.vertices == b.vertices;
+  return a.label == b.label && a.instance == b.instance && a.triangles == b.triangles && a.vertices == b.vertices;
 }
 
 TEST(Campus, IsTheSameForTheSameSeedAndAnotherForAnother) {
   const Campus first = buildCampus(smallCampus(1)), again = buildCampus(smallCampus(1)),
                other = buildCampus(smallCampus(2));
   ASSERT_EQ(first.meshes.size(), again.meshes.size());
-  for (std::size_t i = 0; i < first.meshes.size(); ++i)
-    ASSERT_TRUE(first.meshes[i] == again.meshes[i]) << "mesh " << i;
+  for (std::size_t i = 0; i < first.meshes.size(); ++i) ASSERT_TRUE(first.meshes[i] == again.meshes[i]) << "mesh " << i;
   EXPECT_EQ(describeCampus(first), describeCampus(again));
   EXPECT_NE(describeCampus(first), describeCampus(other));
 }
@@ -104,8 +102,7 @@ TEST(Campus, HasTheHardCasesOfThePaper) {
 /// How often each kind of thing stands on the campus; fences by their trait.
 std::map<std::string, int> kindsOf(const Campus& campus) {
   std::map<std::string, int> kinds;
-  for (const CampusObject& object : campus.objects)
-    ++kinds[object.kind == "fence" ? object.traits.at(0) : object.kind];
+  for (const CampusObject& object : campus.objects) ++kinds[object.kind == "fence" ? object.traits.at(0) : object.kind];
   return kinds;
 }
 
@@ -118,8 +115,7 @@ TEST(Campus, HasFencesOfEveryKindAndCyclesWherePeopleLeaveThem) {
     EXPECT_GE(kinds["motorcycle"], 1) << "seed " << params.seed;
     for (const auto& [kind, count] : kinds) of_all[kind] += count;
   }
-  for (const char* kind : {"pickets", "bars", "wire mesh", "boards", "low wall"})
-    EXPECT_GE(of_all[kind], 4) << kind;
+  for (const char* kind : {"pickets", "bars", "wire mesh", "boards", "low wall"}) EXPECT_GE(of_all[kind], 4) << kind;
 }
 
 TEST(Campus, FencesAreLowAndThinAndStandOnTheGround) {
@@ -200,8 +196,7 @@ std::map<std::int32_t, Eigen::AlignedBox2d> solidPlans(const Campus& campus) {
   std::map<std::int32_t, Eigen::AlignedBox2d> plans;
   for (const CampusMesh& mesh : campus.meshes)
     if (mesh.label == SurfaceLabel::Facade || mesh.label == SurfaceLabel::CarBody)
-      for (const auto& vertex : mesh.vertices)
-        plans[mesh.instance].extend(inPlan(campus, vertex.cast<double>()));
+      for (const auto& vertex : mesh.vertices) plans[mesh.instance].extend(inPlan(campus, vertex.cast<double>()));
   return plans;
 }
 
@@ -220,8 +215,8 @@ TEST(Campus, NothingStandsInABuildingOrACar) {
       for (const auto& [id, plan] : plans) {
         const CampusObject& object = campus.objects[i];
         EXPECT_FALSE(id != static_cast<std::int32_t>(i) && plan.contains(inPlan(campus, object.position)))
-            << object.kind << " " << i << " in " << campus.objects[static_cast<std::size_t>(id)].kind
-            << ", seed " << seed;
+            << object.kind << " " << i << " in " << campus.objects[static_cast<std::size_t>(id)].kind << ", seed "
+            << seed;
       }
   }
 }
@@ -277,15 +272,16 @@ TEST(Campus, PointsLieWithinTheBoxOfTheirObject) {
       const std::int32_t id = scan.truth.instance[i];
       if (id < 0) continue;
       const CampusObject& object = campus.objects[static_cast<std::size_t>(id)];
-      const Vector3d p = toMap(scan.scan.T_map_sensor,
-                               {scan.scan.points.x[i], scan.scan.points.y[i], scan.scan.points.z[i]});
+      const Vector3d p =
+          toMap(scan.scan.T_map_sensor, {scan.scan.points.x[i], scan.scan.points.y[i], scan.scan.points.z[i]});
       ASSERT_LT(object.box.exteriorDistance(p), 6 * params.range_sigma_m + 1e-3) << object.kind;
     }
 }
 
 TEST(Campus, RefusesParametersOutOfRangeNamingTheRemedy) {
   CampusParams params;
-  for (const auto& [stops, remedy] : {std::pair(50, "choose fewer stops or a size of "), std::pair(500, "choose fewer stops, nearer to each other")}) {
+  for (const auto& [stops, remedy] : {std::pair(50, "choose fewer stops or a size of "),
+                                      std::pair(500, "choose fewer stops, nearer to each other")}) {
     params.stops = stops;
     try {
       buildCampus(params);

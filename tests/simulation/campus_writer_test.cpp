@@ -8,8 +8,8 @@
 #include <cmath>
 #include <fstream>
 #include <map>
-#include <set>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "cluxel/base/diagnostic.hpp"
@@ -27,8 +27,8 @@ namespace fs = std::filesystem;
 class CampusWriter : public testing::Test {
  protected:
   CampusWriter()
-      : folder_(fs::temp_directory_path() / (std::string("cluxel_campus_") +
-                                             testing::UnitTest::GetInstance()->current_test_info()->name())) {
+      : folder_(fs::temp_directory_path() /
+                (std::string("cluxel_campus_") + testing::UnitTest::GetInstance()->current_test_info()->name())) {
     fs::remove_all(folder_);
   }
   ~CampusWriter() override { fs::remove_all(folder_); }
@@ -44,8 +44,7 @@ class CampusWriter : public testing::Test {
   std::map<std::string, std::string> bytesOf(const std::string& name) const {
     std::map<std::string, std::string> bytes;
     for (const auto& entry : fs::recursive_directory_iterator(folder_ / name))
-      if (entry.is_regular_file())
-        bytes[fs::relative(entry.path(), folder_ / name).string()] = readFile(entry.path());
+      if (entry.is_regular_file()) bytes[fs::relative(entry.path(), folder_ / name).string()] = readFile(entry.path());
     return bytes;
   }
 
@@ -67,7 +66,8 @@ TEST_F(CampusWriter, WritesTheSameBytesWithOneAndTwoThreadsAndAgain) {
 double farthest(const ScanSet& a, const ScanSet& b) {
   double farthest_m = 0;
   for (std::size_t i = 0; i < a.size(); ++i)
-    farthest_m = std::max(farthest_m, (a.file(i).T_map_sensor.translation() - b.file(i).T_map_sensor.translation()).norm());
+    farthest_m =
+        std::max(farthest_m, (a.file(i).T_map_sensor.translation() - b.file(i).T_map_sensor.translation()).norm());
   return farthest_m;
 }
 
@@ -79,7 +79,8 @@ TEST_F(CampusWriter, PosesThatDriftStandBesideTheTrueOnesAndThePointsAreTheSame)
   drifting.drift_m = 0.1;
   write("drifting", 1, drifting);
   write("right", 1, right);
-  const ScanSet stated = ScanSet::open({folder_ / "drifting"}, {}, sink_), truth = ScanSet::open({folder_ / "right"}, {}, sink_);
+  const ScanSet stated = ScanSet::open({folder_ / "drifting"}, {}, sink_),
+                truth = ScanSet::open({folder_ / "right"}, {}, sink_);
   const ScanSet beside = ScanSet::open({folder_ / "drifting"}, {.poses = folder_ / "drifting/true_poses.txt"}, sink_);
   EXPECT_EQ(farthest(beside, truth), 0);
   EXPECT_EQ(stated.file(0).T_map_sensor.matrix(), truth.file(0).T_map_sensor.matrix()) << "the first one is right";
@@ -150,8 +151,7 @@ TEST_F(CampusWriter, TruthFilesFitTheScansAndTheLabelMap) {
     const PointTruth by_labels = truthFromLabels(scan, map);
     EXPECT_EQ(truth.primitive, by_labels.primitive);
     EXPECT_EQ(truth.object_class, by_labels.object_class);
-    for (std::size_t i = 0; i < truth.instance.size(); ++i)
-      ASSERT_EQ(truth.instance[i] < 0, truth.object_class[i] < 0);
+    for (std::size_t i = 0; i < truth.instance.size(); ++i) ASSERT_EQ(truth.instance[i] < 0, truth.object_class[i] < 0);
   }
 }
 
@@ -167,10 +167,9 @@ TEST_F(CampusWriter, TheInstanceTableCountsThePointsOfTheTruthFiles) {
   std::istringstream table(readFile(folder_ / "out" / "truth" / "instances.csv"));
   std::string line;
   std::getline(table, line);
-  EXPECT_EQ(
-      line,
-      "id,object,n,cx,cy,cz,xmin,ymin,zmin,xmax,ymax,zmax,height,extent_long,extent_short,chunks,fine_labels,"
-      "ambiguous,flags");
+  EXPECT_EQ(line,
+            "id,object,n,cx,cy,cz,xmin,ymin,zmin,xmax,ymax,zmax,height,extent_long,extent_short,chunks,fine_labels,"
+            "ambiguous,flags");
   std::map<int, std::size_t> listed;
   while (std::getline(table, line)) {
     std::istringstream row(line);

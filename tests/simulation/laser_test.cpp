@@ -29,8 +29,8 @@ TEST(Laser, MeetsAPlaneWhereTheFormulaSaysForAnyDirection) {
   CampusMesh plane;
   const Vector3d normal = Vector3d{1, -2, 0.5}.normalized(), u = normal.unitOrthogonal(), v = normal.cross(u);
   const Vector3d middle = 7.25 * normal;
-  addQuad(plane, {middle - 90 * u - 90 * v, middle + 90 * u - 90 * v, middle + 90 * u + 90 * v,
-                  middle - 90 * u + 90 * v});
+  addQuad(plane,
+          {middle - 90 * u - 90 * v, middle + 90 * u - 90 * v, middle + 90 * u + 90 * v, middle - 90 * u + 90 * v});
   campus.meshes.push_back(plane);
   const Laser laser(campus);
   CampusRandom random{42};
@@ -138,8 +138,7 @@ TEST(Laser, LosesRaysThatGrazeTheGround) {
   Campus campus;
   campus.params = withoutNoise(smallCampus(3));
   CampusMesh ground;
-  addQuad(ground, {Vector3d{-80, -80, -1.2}, Vector3d{80, -80, -1.2}, Vector3d{80, 80, -1.2},
-                   Vector3d{-80, 80, -1.2}});
+  addQuad(ground, {Vector3d{-80, -80, -1.2}, Vector3d{80, -80, -1.2}, Vector3d{80, 80, -1.2}, Vector3d{-80, 80, -1.2}});
   campus.meshes.push_back(ground);
   campus.objects.emplace_back();
   campus.stops.push_back(Eigen::Isometry3d::Identity());
@@ -201,8 +200,7 @@ std::map<Cell, double> cellMeans(const SimulatedScan& scan, SurfaceLabel label, 
   return means;
 }
 
-void expectAgreement(const std::map<Cell, double>& first, const std::map<Cell, double>& second,
-                     int least_cells) {
+void expectAgreement(const std::map<Cell, double>& first, const std::map<Cell, double>& second, int least_cells) {
   int compared = 0;
   double largest = 0;
   for (const auto& [cell, mean] : first)

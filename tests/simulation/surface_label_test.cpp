@@ -27,8 +27,8 @@ TEST(SurfaceLabel, TheLabelMapSaysTheSameAsTheTable) {
 
 TEST(SurfaceLabel, IdsAscendAndClassesHaveTheirNumberInTruthFiles) {
   const auto surfaces = surfaceInfos();
-  EXPECT_TRUE(std::is_sorted(surfaces.begin(), surfaces.end(),
-                             [](const auto& a, const auto& b) { return a.label < b.label; }));
+  EXPECT_TRUE(
+      std::is_sorted(surfaces.begin(), surfaces.end(), [](const auto& a, const auto& b) { return a.label < b.label; }));
   for (const SurfaceInfo& info : surfaces) {
     if (info.object_class.empty())
       EXPECT_EQ(info.object_number, -1);

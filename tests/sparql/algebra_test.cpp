@@ -20,17 +20,20 @@ const char* const kPeople = R"(
 
 TEST(Optionals, KeepSolutionsWithoutMatch) {
   const SmallStore store(kPeople);
-  EXPECT_THAT(store.rows("SELECT ?p ?n { ?p :knows :c OPTIONAL { ?p :age ?n } }"), ElementsAre(":a \"30\"^^integer", ":b -"));
+  EXPECT_THAT(store.rows("SELECT ?p ?n { ?p :knows :c OPTIONAL { ?p :age ?n } }"),
+              ElementsAre(":a \"30\"^^integer", ":b -"));
 }
 
 TEST(Optionals, SeeTheOuterVariablesInTheirOwnFilter) {
   const SmallStore store(kPeople);
-  EXPECT_THAT(store.rows("SELECT ?p ?q { ?p :age ?x OPTIONAL { ?q :age ?y FILTER(?y > ?x) } }"), ElementsAre(":a -", ":c :a"));
+  EXPECT_THAT(store.rows("SELECT ?p ?q { ?p :age ?x OPTIONAL { ?q :age ?y FILTER(?y > ?x) } }"),
+              ElementsAre(":a -", ":c :a"));
 }
 
 TEST(Optionals, DoNotShowOuterVariablesToFiltersOfNestedGroups) {
   const SmallStore store(kPeople);
-  EXPECT_THAT(store.rows("SELECT ?p ?q { ?p :age ?x OPTIONAL { { ?q :age ?y FILTER(?y > ?x) } } }"), ElementsAre(":a -", ":c -"));
+  EXPECT_THAT(store.rows("SELECT ?p ?q { ?p :age ?x OPTIONAL { { ?q :age ?y FILTER(?y > ?x) } } }"),
+              ElementsAre(":a -", ":c -"));
 }
 
 TEST(Optionals, ThatAreNotWellDesignedAreComputedBottomUp) {
@@ -43,7 +46,8 @@ TEST(Optionals, WithSharedUnboundVariablesJoinLikeTheSpecification) {
   const SmallStore store(":a :p :x . :b :p :y . :a :q 1 . :b :r 5 . :a :r 6 .");
   EXPECT_THAT(store.rows("SELECT ?s ?v { ?s :p ?o OPTIONAL { ?s :q ?v } OPTIONAL { ?s :r ?v } }"),
               ElementsAre(":a \"1\"^^integer", ":b \"5\"^^integer"));
-  EXPECT_THAT(store.rows("SELECT ?s ?v { { ?s :p ?o OPTIONAL { ?s :q ?v } } { ?s :r ?v } }"), ElementsAre(":b \"5\"^^integer"));
+  EXPECT_THAT(store.rows("SELECT ?s ?v { { ?s :p ?o OPTIONAL { ?s :q ?v } } { ?s :r ?v } }"),
+              ElementsAre(":b \"5\"^^integer"));
 }
 
 TEST(Filters, HoldForTheWholeGroupWhereverTheyStand) {
@@ -56,8 +60,10 @@ TEST(Filters, HoldForTheWholeGroupWhereverTheyStand) {
 /// An EXISTS sees what the BIND before it gives.
 TEST(Binds, AreSeenByExistsInTheNextOne) {
   const SmallStore store(kPeople);
-  EXPECT_THAT(store.rows("SELECT ?e { BIND(:z AS ?x) BIND(EXISTS { ?p :knows ?x } AS ?e) }"), ElementsAre("\"false\"^^boolean"));
-  EXPECT_THAT(store.rows("SELECT (:z AS ?x) (EXISTS { ?p :knows ?x } AS ?e) { }"), ElementsAre(":z \"false\"^^boolean"));
+  EXPECT_THAT(store.rows("SELECT ?e { BIND(:z AS ?x) BIND(EXISTS { ?p :knows ?x } AS ?e) }"),
+              ElementsAre("\"false\"^^boolean"));
+  EXPECT_THAT(store.rows("SELECT (:z AS ?x) (EXISTS { ?p :knows ?x } AS ?e) { }"),
+              ElementsAre(":z \"false\"^^boolean"));
   EXPECT_THAT(store.rows("SELECT ?p ?e { ?p :age ?n BIND(?n - 10 AS ?m) BIND(EXISTS { ?q :age ?m } AS ?e) }"),
               ElementsAre(":a \"true\"^^boolean", ":c \"false\"^^boolean"));
 }
@@ -74,8 +80,10 @@ TEST(Aggregates, CountDistinctSolutionsByTheirVariablesAlone) {
 TEST(Unions, OfFewSolutionsMayShareAVariableWithAllAroundThem) {
   SmallStore store(":a :r 1 .");
   store.load(":a :p 1 . :b :q 2 .", "http://example.org/g");
-  EXPECT_THAT(store.rows("SELECT ?g ?s { GRAPH ?g { SELECT ?s { { ?s :p ?o } UNION { ?s :q ?o } } } }"), ElementsAre(":g :a", ":g :b"));
-  EXPECT_THAT(store.rows("SELECT ?s { ?s :r ?v FILTER EXISTS { SELECT ?s { { ?s :p ?o } UNION { ?s :q ?o } } } }"), ElementsAre(":a"));
+  EXPECT_THAT(store.rows("SELECT ?g ?s { GRAPH ?g { SELECT ?s { { ?s :p ?o } UNION { ?s :q ?o } } } }"),
+              ElementsAre(":g :a", ":g :b"));
+  EXPECT_THAT(store.rows("SELECT ?s { ?s :r ?v FILTER EXISTS { SELECT ?s { { ?s :p ?o } UNION { ?s :q ?o } } } }"),
+              ElementsAre(":a"));
   const QuadReader reader = store.reader();
   PreparedQuery query(reader, kPrefixes + "SELECT ?s { { ?s :p ?o } UNION { ?s :q ?o } }", {}, {"o"});
   EXPECT_EQ(query.evaluate({{"o", Term::integer(2)}}).table.row_count, 1u);
@@ -84,7 +92,9 @@ TEST(Unions, OfFewSolutionsMayShareAVariableWithAllAroundThem) {
 
 TEST(Aggregates, SumsAreTooGreatAtTheEndOnlyWhateverTheOrder) {
   const SmallStore store;
-  const auto sum = [&](const std::string& values) { return store.rows("SELECT (SUM(?v) AS ?s) { VALUES ?v { " + values + " } }").front(); };
+  const auto sum = [&](const std::string& values) {
+    return store.rows("SELECT (SUM(?v) AS ?s) { VALUES ?v { " + values + " } }").front();
+  };
   EXPECT_EQ(sum("1e308 1e308 -1e308"), "\"1.0E308\"^^double");
   EXPECT_EQ(sum("1e308 -1e308 1e308"), "\"1.0E308\"^^double");
   EXPECT_EQ(sum("1e308 1e308 -1e308 -1e308 2.5"), "\"2.5E0\"^^double");
@@ -103,8 +113,10 @@ TEST(Negation, NotExistsSeesTheSolutionAndMinusDoesNot) {
   const SmallStore store(kPeople);
   EXPECT_THAT(store.rows("SELECT ?p { ?p :knows :c FILTER NOT EXISTS { ?p :age ?n } }"), ElementsAre(":b"));
   EXPECT_THAT(store.rows("SELECT ?p { ?p :knows :c MINUS { ?p :age ?n } }"), ElementsAre(":b"));
-  EXPECT_THAT(store.rows("SELECT ?p { ?p :age ?n FILTER NOT EXISTS { ?q :age ?m FILTER(?m > ?n) } }"), ElementsAre(":a"));
-  EXPECT_THAT(store.rows("SELECT ?p { ?p :age ?n MINUS { ?q :age ?m FILTER(?m > ?n) } }"), ElementsAre(":a", ":c")) << "?n is unbound there";
+  EXPECT_THAT(store.rows("SELECT ?p { ?p :age ?n FILTER NOT EXISTS { ?q :age ?m FILTER(?m > ?n) } }"),
+              ElementsAre(":a"));
+  EXPECT_THAT(store.rows("SELECT ?p { ?p :age ?n MINUS { ?q :age ?m FILTER(?m > ?n) } }"), ElementsAre(":a", ":c"))
+      << "?n is unbound there";
 }
 
 TEST(Negation, MinusWithoutSharedVariablesRemovesNothing) {
@@ -129,28 +141,38 @@ TEST(Negation, ExistsWithinExistsAndInsideExpressions) {
 TEST(Negation, SubSelectsAndMinusWithinExistsSeeTheSolution) {
   const SmallStore store(":a :v 3 ; :n :x , :y . :b :v 1 ; :n :x . :x :w 2 . :y :w 5 .");
   // The sub-select hands ?v on, so that its filter sees it; LIMIT counts within one solution.
-  EXPECT_THAT(store.rows("SELECT ?s { ?s :v ?v FILTER EXISTS { { SELECT ?s ?v { ?s :n ?x . ?x :w ?w FILTER(?w > ?v + 1) } } } }"),
-              ElementsAre(":a"));
+  EXPECT_THAT(
+      store.rows(
+          "SELECT ?s { ?s :v ?v FILTER EXISTS { { SELECT ?s ?v { ?s :n ?x . ?x :w ?w FILTER(?w > ?v + 1) } } } }"),
+      ElementsAre(":a"));
   EXPECT_THAT(store.rows("SELECT ?s { ?s :v ?v FILTER EXISTS { { SELECT ?s ?x { ?s :n ?x } ORDER BY ?x LIMIT 1 } } }"),
               ElementsAre(":a", ":b"));
   // What a sub-select does not hand on is another variable.
-  EXPECT_THAT(store.rows("SELECT ?s { ?s :v ?v FILTER EXISTS { { SELECT ?s { ?s :n ?x . ?x :w ?w FILTER(?w > ?v) } } } }"), ElementsAre());
-  EXPECT_THAT(store.rows("SELECT ?s { ?s :v ?v FILTER EXISTS { ?s :n ?x MINUS { ?x :w ?w FILTER(?w > ?v) } } }"), ElementsAre(":a"));
-  EXPECT_THAT(store.rows("SELECT ?s { ?s :v ?v FILTER NOT EXISTS { ?s :n ?x MINUS { ?x :w ?w FILTER(?w > ?v) } } }"), ElementsAre(":b"));
+  EXPECT_THAT(
+      store.rows("SELECT ?s { ?s :v ?v FILTER EXISTS { { SELECT ?s { ?s :n ?x . ?x :w ?w FILTER(?w > ?v) } } } }"),
+      ElementsAre());
+  EXPECT_THAT(store.rows("SELECT ?s { ?s :v ?v FILTER EXISTS { ?s :n ?x MINUS { ?x :w ?w FILTER(?w > ?v) } } }"),
+              ElementsAre(":a"));
+  EXPECT_THAT(store.rows("SELECT ?s { ?s :v ?v FILTER NOT EXISTS { ?s :n ?x MINUS { ?x :w ?w FILTER(?w > ?v) } } }"),
+              ElementsAre(":b"));
 }
 
 TEST(Negation, PartsOfAnExistsThatStandAloneSeeTheSolutionButNotEachOther) {
   const SmallStore store(":a :v 3 ; :n :x . :b :v 1 ; :n :x . :x :w 2 .");
-  EXPECT_THAT(store.rows("SELECT ?s { ?s :v ?v FILTER EXISTS { ?s :n ?x { ?x :w ?w FILTER(?w < ?v) } } }"), ElementsAre(":a"));
+  EXPECT_THAT(store.rows("SELECT ?s { ?s :v ?v FILTER EXISTS { ?s :n ?x { ?x :w ?w FILTER(?w < ?v) } } }"),
+              ElementsAre(":a"));
   // ?x of the group around is not bound within the nested group, so that its filter is an error there.
-  EXPECT_THAT(store.rows("SELECT ?s { ?s :v ?v FILTER EXISTS { ?s :n ?x { ?y :w ?w FILTER(?x = ?y) } } }"), ElementsAre());
-  EXPECT_THAT(store.rows("SELECT ?s { ?s :v ?v FILTER EXISTS { ?s :n ?x OPTIONAL { ?s :n ?z { ?z :w ?w FILTER(?v > 2) } } FILTER(?w = 2) } }"),
+  EXPECT_THAT(store.rows("SELECT ?s { ?s :v ?v FILTER EXISTS { ?s :n ?x { ?y :w ?w FILTER(?x = ?y) } } }"),
+              ElementsAre());
+  EXPECT_THAT(store.rows("SELECT ?s { ?s :v ?v FILTER EXISTS { ?s :n ?x OPTIONAL { ?s :n ?z { ?z :w ?w FILTER(?v > 2) "
+                         "} } FILTER(?w = 2) } }"),
               ElementsAre(":a"));
 }
 
 TEST(Binds, JoinWithTheirValueAndAreUnboundOnErrors) {
   const SmallStore store(kPeople);
-  EXPECT_THAT(store.rows("SELECT ?p ?x { ?p :age ?n BIND(1 / (?n - 20) AS ?x) }"), ElementsAre(":a \"0.1\"^^decimal", ":c -"));
+  EXPECT_THAT(store.rows("SELECT ?p ?x { ?p :age ?n BIND(1 / (?n - 20) AS ?x) }"),
+              ElementsAre(":a \"0.1\"^^decimal", ":c -"));
   EXPECT_THAT(store.rows("SELECT ?q { BIND(:a AS ?p) ?p :knows ?q }"), ElementsAre(":b", ":c"));
   EXPECT_THAT(store.rows("SELECT ?p { ?p :age ?n BIND(?n + 10 AS ?m) { ?q :age ?m } }"), ElementsAre(":c"));
 }
@@ -171,15 +193,18 @@ TEST(Values, JoinWithUndefAsAnything) {
 
 TEST(SubSelects, HideWhatTheyDoNotProject) {
   const SmallStore store(kPeople);
-  EXPECT_THAT(store.rows("SELECT ?p ?n { { SELECT ?p { ?p :age ?n } } OPTIONAL { ?p :name ?n } }"), ElementsAre(":a \"Anna\"", ":c -"));
+  EXPECT_THAT(store.rows("SELECT ?p ?n { { SELECT ?p { ?p :age ?n } } OPTIONAL { ?p :name ?n } }"),
+              ElementsAre(":a \"Anna\"", ":c -"));
   EXPECT_THAT(store.rows("SELECT ?p ?oldest { { SELECT (MAX(?n) AS ?oldest) { ?x :age ?n } } ?p :age ?oldest }"),
               ElementsAre(":a \"30\"^^integer"));
-  EXPECT_THAT(store.rows("SELECT ?p ?q { ?p :name ?n { SELECT ?q { ?q :age ?a } ORDER BY ?a LIMIT 1 } }"), ElementsAre(":a :c", ":b :c"));
+  EXPECT_THAT(store.rows("SELECT ?p ?q { ?p :name ?n { SELECT ?q { ?q :age ?a } ORDER BY ?a LIMIT 1 } }"),
+              ElementsAre(":a :c", ":b :c"));
 }
 
 TEST(Groups, OfNothingAreOneWithoutGroupByAndNoneWithIt) {
   const SmallStore store;
-  EXPECT_THAT(store.rows("SELECT (COUNT(*) AS ?c) (SUM(?x) AS ?s) (AVG(?x) AS ?a) (MIN(?x) AS ?m) (GROUP_CONCAT(?x) AS ?g) (SAMPLE(?x) AS ?p) { ?x :p ?y }"),
+  EXPECT_THAT(store.rows("SELECT (COUNT(*) AS ?c) (SUM(?x) AS ?s) (AVG(?x) AS ?a) (MIN(?x) AS ?m) (GROUP_CONCAT(?x) AS "
+                         "?g) (SAMPLE(?x) AS ?p) { ?x :p ?y }"),
               ElementsAre("\"0\"^^integer \"0\"^^integer \"0\"^^integer - \"\" -"));
   EXPECT_THAT(store.rows("SELECT ?x (COUNT(*) AS ?c) { ?x :p ?y } GROUP BY ?x"), IsEmpty());
 }
@@ -194,30 +219,34 @@ TEST(Groups, TreatErrorsAsTheSpecificationSays) {
 
 TEST(Groups, WithAnUnboundValueHaveNoMinimumMaximumOrConcatenationButACountAndASample) {
   const SmallStore store(":a :p 1 . :b :p 2 . :b :q 7 .");
-  EXPECT_THAT(store.rows("SELECT (MIN(?w) AS ?l) (MAX(?w) AS ?m) (GROUP_CONCAT(?w) AS ?g) (COUNT(?w) AS ?n) (SAMPLE(?w) AS ?x) "
-                         "{ ?s :p ?v OPTIONAL { ?s :q ?w } }"),
-              ElementsAre("- - - \"1\"^^integer \"7\"^^integer"));
+  EXPECT_THAT(
+      store.rows("SELECT (MIN(?w) AS ?l) (MAX(?w) AS ?m) (GROUP_CONCAT(?w) AS ?g) (COUNT(?w) AS ?n) (SAMPLE(?w) AS ?x) "
+                 "{ ?s :p ?v OPTIONAL { ?s :q ?w } }"),
+      ElementsAre("- - - \"1\"^^integer \"7\"^^integer"));
 }
 
 TEST(Groups, ByExpressionsWithHavingAndDistinct) {
   const SmallStore store(":a :p 1 . :b :p 1 . :c :p 2 . :d :q 9 .");
   EXPECT_THAT(store.rows("SELECT ?k (COUNT(*) AS ?n) { ?s :p ?v } GROUP BY (?v * 10 AS ?k) HAVING(COUNT(*) > 1)"),
               ElementsAre("\"10\"^^integer \"2\"^^integer"));
-  EXPECT_THAT(store.rows("SELECT (COUNT(DISTINCT ?v) AS ?n) (SUM(DISTINCT ?v) AS ?t) (COUNT(DISTINCT *) AS ?r) { ?s :p ?v }"),
-              ElementsAre("\"2\"^^integer \"3\"^^integer \"3\"^^integer"));
+  EXPECT_THAT(
+      store.rows("SELECT (COUNT(DISTINCT ?v) AS ?n) (SUM(DISTINCT ?v) AS ?t) (COUNT(DISTINCT *) AS ?r) { ?s :p ?v }"),
+      ElementsAre("\"2\"^^integer \"3\"^^integer \"3\"^^integer"));
   EXPECT_THAT(store.rows("SELECT (GROUP_CONCAT(?v; SEPARATOR=\",\") AS ?all) { ?s :p ?v }"), ElementsAre("\"1,1,2\""));
 }
 
 TEST(Groups, OrderByAggregatesThatAreNotShown) {
   const SmallStore store(":a :p 1 . :b :p 5 , 6 . :c :p 2 , 3 , 4 .");
-  EXPECT_THAT(store.ordered("SELECT ?s { ?s :p ?v } GROUP BY ?s ORDER BY DESC(COUNT(?v))"), ElementsAre(":c", ":b", ":a"));
+  EXPECT_THAT(store.ordered("SELECT ?s { ?s :p ?v } GROUP BY ?s ORDER BY DESC(COUNT(?v))"),
+              ElementsAre(":c", ":b", ":a"));
 }
 
 TEST(Order, IsTotalOverAllKindsOfTerms) {
-  const SmallStore store(":s :p 2 , 1.5 , \"b\" , \"a\"@en , \"a\" , :iri , [] , true , \"2024-01-01T00:00:00Z\"^^xsd:dateTime , 1e0 .");
+  const SmallStore store(
+      ":s :p 2 , 1.5 , \"b\" , \"a\"@en , \"a\" , :iri , [] , true , \"2024-01-01T00:00:00Z\"^^xsd:dateTime , 1e0 .");
   EXPECT_THAT(store.ordered("SELECT ?v { { ?s :p ?v FILTER(!ISBLANK(?v)) } UNION { BIND(1/0 AS ?v) } } ORDER BY ?v"),
-              ElementsAre("-", ":iri", "\"1e0\"^^double", "\"1.5\"^^decimal", "\"2\"^^integer", "\"a\"", "\"b\"", "\"a\"@en",
-                          "\"true\"^^boolean", "\"2024-01-01T00:00:00Z\"^^dateTime"));
+              ElementsAre("-", ":iri", "\"1e0\"^^double", "\"1.5\"^^decimal", "\"2\"^^integer", "\"a\"", "\"b\"",
+                          "\"a\"@en", "\"true\"^^boolean", "\"2024-01-01T00:00:00Z\"^^dateTime"));
 }
 
 TEST(Order, WithLimitIsTheHeadOfTheWholeOrder) {

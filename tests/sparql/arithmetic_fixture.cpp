@@ -61,7 +61,8 @@ std::string doubleText(double value) {
   if (std::isnan(value)) return "NaN";
   if (std::isinf(value)) return value < 0 ? "-INF" : "INF";
   std::array<char, 64> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::scientific).ptr;
+  const auto end =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::scientific).ptr;
   std::string text(buffer.data(), end);
   const std::size_t e = text.find('e');
   std::string mantissa = text.substr(0, e);
@@ -82,7 +83,9 @@ RandomSum randomSum(std::mt19937_64& random) {
   if (random() % 2 == 0) {
     const std::string b = randomDecimalText(random);
     const bool integers = a.find('.') == std::string::npos && b.find('.') == std::string::npos;
-    const auto type = [](const std::string& text) { return text.find('.') == std::string::npos ? "integer" : "decimal"; };
+    const auto type = [](const std::string& text) {
+      return text.find('.') == std::string::npos ? "integer" : "decimal";
+    };
     const cpp_rational result = combine(rationalOf(a), rationalOf(b));
     return {typed(a, type(a)) + " " + op + " " + typed(b, type(b)),
             "\"" + decimalText(result) + "\"^^" + (integers ? "integer" : "decimal")};

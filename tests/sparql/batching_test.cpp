@@ -19,25 +19,37 @@ using testing::ElementsAreArray;
 
 constexpr std::array<std::size_t, 12> kCounts = {0, 1, 2, 3, 4, 5, 63, 64, 65, 127, 129, 300};
 
-Term iri(const std::string& local) { return Term::iri("http://example.org/" + local); }
+Term iri(const std::string& local) {
+  return Term::iri("http://example.org/" + local);
+}
 Term decimal(unsigned hundredths) {
   const std::string rest = std::to_string(hundredths % 100);
-  return Term::literal(std::to_string(hundredths / 100) + "." + (rest.size() < 2 ? "0" : "") + rest, vocabulary::xsd("decimal"));
+  return Term::literal(std::to_string(hundredths / 100) + "." + (rest.size() < 2 ? "0" : "") + rest,
+                       vocabulary::xsd("decimal"));
 }
 
 /// A value of one kind or another, of which nothing is one. Texts begin with fewer common letters the later they come.
 std::optional<Term> mixed(std::size_t kind, std::size_t number, std::size_t of, std::mt19937& random) {
-  const std::string text = std::string(40 - number * 40 / of, 'm') + static_cast<char>('a' + random() % 26) + std::to_string(random() % 50);
+  const std::string text =
+      std::string(40 - number * 40 / of, 'm') + static_cast<char>('a' + random() % 26) + std::to_string(random() % 50);
   const std::string day = std::to_string(10 + random() % 19);
   switch (kind % 8) {
-    case 0: return Term::literal(text);
-    case 1: return iri(text);
-    case 2: return Term::langLiteral(text, random() % 2 == 0 ? "de" : "en");
-    case 3: return Term::literal(random() % 2 == 0 ? "true" : "false", vocabulary::xsd("boolean"));
-    case 4: return Term::literal("2026-11-" + day, vocabulary::xsd("date"));
-    case 5: return decimal(random() % 300);
-    case 6: return Term::literal(std::to_string(random() % 20), vocabulary::xsd("integer"));
-    default: return std::nullopt;
+    case 0:
+      return Term::literal(text);
+    case 1:
+      return iri(text);
+    case 2:
+      return Term::langLiteral(text, random() % 2 == 0 ? "de" : "en");
+    case 3:
+      return Term::literal(random() % 2 == 0 ? "true" : "false", vocabulary::xsd("boolean"));
+    case 4:
+      return Term::literal("2026-11-" + day, vocabulary::xsd("date"));
+    case 5:
+      return decimal(random() % 300);
+    case 6:
+      return Term::literal(std::to_string(random() % 20), vocabulary::xsd("integer"));
+    default:
+      return std::nullopt;
   }
 }
 
@@ -55,12 +67,16 @@ class Batching : public testing::Test {
     for (std::size_t i = 0; i < kThings; ++i) {
       const Term self = iri("thing" + std::to_string(i));
       quads.push_back({self, iri("height"), decimal(random() % 300), Term::iri("")});
-      const std::size_t kind = i < 4 ? 0 : random();   // the first texts are strings here, and IRIs there
-      if (const auto value = mixed(kind, i, kThings, random)) quads.push_back({self, iri("mixed"), *value, Term::iri("")});
-      if (const auto value = mixed(kind + 1, i, kThings, random)) quads.push_back({self, iri("other"), *value, Term::iri("")});
-      if (i % 3 != 0) quads.push_back({self, iri("name"), Term::literal("name " + std::to_string(random() % 2000)), Term::iri("")});
+      const std::size_t kind = i < 4 ? 0 : random();  // the first texts are strings here, and IRIs there
+      if (const auto value = mixed(kind, i, kThings, random))
+        quads.push_back({self, iri("mixed"), *value, Term::iri("")});
+      if (const auto value = mixed(kind + 1, i, kThings, random))
+        quads.push_back({self, iri("other"), *value, Term::iri("")});
+      if (i % 3 != 0)
+        quads.push_back({self, iri("name"), Term::literal("name " + std::to_string(random() % 2000)), Term::iri("")});
       for (unsigned k = 0; k < random() % 4; ++k) {
-        quads.push_back({self, iri("near"), iri("thing" + std::to_string(random() % kThings)), k % 2 == 0 ? Term::iri("") : iri("graph")});
+        quads.push_back({self, iri("near"), iri("thing" + std::to_string(random() % kThings)),
+                         k % 2 == 0 ? Term::iri("") : iri("graph")});
       }
     }
     store->load(quads);
@@ -112,7 +128,8 @@ TEST_F(Batching, GivesWhatEachRowGivesAlone) {
         alone.insert(alone.end(), rows.begin(), rows.end());
       }
       std::sort(alone.begin(), alone.end());
-      EXPECT_THAT(store->rows("SELECT * { " + valuesOf(names) + " " + pattern + " }"), ElementsAreArray(alone)) << pattern << count;
+      EXPECT_THAT(store->rows("SELECT * { " + valuesOf(names) + " " + pattern + " }"), ElementsAreArray(alone))
+          << pattern << count;
     }
   }
 }
@@ -125,7 +142,8 @@ void expectFirstRows(const SmallStore& store, const std::string& unordered, cons
     for (const std::size_t limit : {0U, 1U, 10U, 63U, 64U, 65U, 1000U, 2900U, 5999U, 6000U, 7000U}) {
       const std::size_t count = std::min(limit, whole.size());
       EXPECT_THAT(store.ordered(query + " LIMIT " + std::to_string(limit)),
-                  ElementsAreArray(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(count))) << order << limit;
+                  ElementsAreArray(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(count)))
+          << order << limit;
     }
     const std::vector<std::string> later(whole.begin() + 20, whole.begin() + 27);
     EXPECT_THAT(store.ordered(query + " LIMIT 7 OFFSET 20"), ElementsAreArray(later)) << order;
@@ -133,8 +151,9 @@ void expectFirstRows(const SmallStore& store, const std::string& unordered, cons
 }
 
 TEST_F(Batching, FirstRowsAreThoseOfTheWholeOrder) {
-  expectFirstRows(*store, "SELECT ?o ?h ?t { ?o :height ?h OPTIONAL { ?o :name ?t } }",
-                  {"?h ?o", "DESC(?h) ?o", "?h", "DESC(?h)", "?t DESC(?h)", "?o", "DESC(?o)", "DESC(?t)", "(?h + 1) STR(?o)"});
+  expectFirstRows(
+      *store, "SELECT ?o ?h ?t { ?o :height ?h OPTIONAL { ?o :name ?t } }",
+      {"?h ?o", "DESC(?h) ?o", "?h", "DESC(?h)", "?t DESC(?h)", "?o", "DESC(?o)", "DESC(?t)", "(?h + 1) STR(?o)"});
 }
 
 TEST_F(Batching, FirstRowsAreThoseOfTheWholeOrderOfMixedKinds) {
@@ -159,7 +178,8 @@ TEST_F(Batching, LimitsMayBeLargerThanWhatCanBeCounted) {
   const auto expectFrom = [&](const std::string& cut, std::ptrdiff_t first) {
     EXPECT_THAT(store->ordered(query + cut), ElementsAreArray(whole.begin() + first, whole.end())) << cut;
   };
-  for (const char* limit : {"9223372036854775679", "9223372036854775680", "9223372036854775807", "9223372036854775808", "18446744073709551615"}) {
+  for (const char* limit : {"9223372036854775679", "9223372036854775680", "9223372036854775807", "9223372036854775808",
+                            "18446744073709551615"}) {
     expectFrom(std::string(" LIMIT ") + limit, 0);
     expectFrom(std::string(" LIMIT ") + limit + " OFFSET 2", 2);
     expectFrom(std::string(" LIMIT ") + limit + " OFFSET 10", 10);
@@ -173,30 +193,38 @@ TEST_F(Batching, TextsAreOrderedByTheirBytes) {
     EXPECT_TRUE(std::is_sorted(rows.begin(), rows.end())) << column;
     EXPECT_EQ(rows.size(), kThings / 3 * 2);
   }
-  const SmallStore texts(":a :p \"\", \"x\", \"x\\u0001\", \"xy\", \"xyzzyxyz\", \"xyzzyxyzA\", \"xyzzyxyz\\u00e4\", \"xyzzyxyB\" .");
+  const SmallStore texts(
+      ":a :p \"\", \"x\", \"x\\u0001\", \"xy\", \"xyzzyxyz\", \"xyzzyxyzA\", \"xyzzyxyz\\u00e4\", \"xyzzyxyB\" .");
   EXPECT_THAT(texts.ordered("SELECT ?t { :a :p ?t } ORDER BY ?t"),
-              ElementsAreArray({"\"\"", "\"x\"", "\"x\x01\"", "\"xy\"", "\"xyzzyxyB\"", "\"xyzzyxyz\"", "\"xyzzyxyzA\"", "\"xyzzyxyz\u00e4\""}));
+              ElementsAreArray({"\"\"", "\"x\"", "\"x\x01\"", "\"xy\"", "\"xyzzyxyB\"", "\"xyzzyxyz\"", "\"xyzzyxyzA\"",
+                                "\"xyzzyxyz\u00e4\""}));
 }
 
 TEST_F(Batching, FiltersOnBindsAreDecidedBeforeThemOnlyWhereNothingChanges) {
   const SmallStore small(":a :p 1 . :b :p \"no number\" . :c :p 7 .");
-  EXPECT_THAT(small.rows("SELECT ?s ?d { ?s :p ?v BIND(?v + 1 AS ?d) FILTER(?d > 2) }"), ElementsAreArray({":c \"8\"^^integer"}));
+  EXPECT_THAT(small.rows("SELECT ?s ?d { ?s :p ?v BIND(?v + 1 AS ?d) FILTER(?d > 2) }"),
+              ElementsAreArray({":c \"8\"^^integer"}));
   EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(?v + 1 AS ?d) FILTER(!BOUND(?d)) }"), ElementsAreArray({":b"}));
-  EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(?v + 1 AS ?d) FILTER(COALESCE(?d, 99) > 8) }"), ElementsAreArray({":b"}));
-  EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(?v + 1 AS ?d) BIND(?d * 2 AS ?e) FILTER(?e = 4) }"), ElementsAreArray({":a"}));
-  EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(?v AS ?d) FILTER EXISTS { ?x :p ?d FILTER(?d = 7) } }"), ElementsAreArray({":c"}));
-  EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(RAND() AS ?d) FILTER(?d = ?d && ISNUMERIC(?v)) }"), ElementsAreArray({":a", ":c"}));
+  EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(?v + 1 AS ?d) FILTER(COALESCE(?d, 99) > 8) }"),
+              ElementsAreArray({":b"}));
+  EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(?v + 1 AS ?d) BIND(?d * 2 AS ?e) FILTER(?e = 4) }"),
+              ElementsAreArray({":a"}));
+  EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(?v AS ?d) FILTER EXISTS { ?x :p ?d FILTER(?d = 7) } }"),
+              ElementsAreArray({":c"}));
+  EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(RAND() AS ?d) FILTER(?d = ?d && ISNUMERIC(?v)) }"),
+              ElementsAreArray({":a", ":c"}));
   const QuadReader reader = small.reader();
   const auto filters_first = [&](const std::string& rest) {
     const std::string plan = explainQuery(reader, kPrefixes + "SELECT ?s { ?s :p ?v BIND(?v + 1 AS ?d) " + rest + " }");
-    return plan.find("filter") > plan.find("bind");   // a plan is told from its top
+    return plan.find("filter") > plan.find("bind");  // a plan is told from its top
   };
   EXPECT_TRUE(filters_first("FILTER(?d > 2)"));
   EXPECT_FALSE(filters_first("FILTER(BOUND(?d))"));
   EXPECT_FALSE(filters_first("FILTER(?d * ?d * ?d > 2)"));
   EXPECT_TRUE(filters_first("OPTIONAL { ?s :p ?w } FILTER(?d > 2)"));
   EXPECT_FALSE(filters_first("OPTIONAL { ?s :p ?d } FILTER(?d > 2)"));
-  EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(?v + 1 AS ?d) OPTIONAL { ?s :p ?w } FILTER(?d = ?w + 1) }"), ElementsAreArray({":a", ":c"}));
+  EXPECT_THAT(small.rows("SELECT ?s { ?s :p ?v BIND(?v + 1 AS ?d) OPTIONAL { ?s :p ?w } FILTER(?d = ?w + 1) }"),
+              ElementsAreArray({":a", ":c"}));
 }
 
 TEST_F(Batching, WhatABindLeavesUnboundMayBeBoundAfterIt) {
@@ -212,8 +240,9 @@ TEST_F(Batching, WhatABindLeavesUnboundMayBeBoundAfterIt) {
   EXPECT_THAT(small.rows(start + "VALUES ?d { 6 7 } FILTER(?d > 3) }"), ElementsAre(":a \"6\"^^integer", a, c));
   EXPECT_THAT(small.rows(start + "{ ?s :q ?d } UNION { ?s :p 5 } FILTER(?d > 3) }"), ElementsAre(a, c));
   EXPECT_TRUE(small.ask("ASK { ?s :p ?v BIND(?v + 1 AS ?d) OPTIONAL { ?s :q ?d } FILTER(?d = 7) }").boolean);
-  EXPECT_THAT(small.rows("SELECT ?s ?d { ?s :p|:q ?v BIND(IF(?v > 6, ?v, 1/0) AS ?d) OPTIONAL { ?s :p ?d } FILTER(?d >= 1) }"),
-              ElementsAre(a, ":c \"5\"^^integer"));
+  EXPECT_THAT(
+      small.rows("SELECT ?s ?d { ?s :p|:q ?v BIND(IF(?v > 6, ?v, 1/0) AS ?d) OPTIONAL { ?s :p ?d } FILTER(?d >= 1) }"),
+      ElementsAre(a, ":c \"5\"^^integer"));
 }
 
 TEST_F(Batching, FiltersOfAnInnerGroupDoNotSeeWhatIsBoundAroundIt) {
@@ -221,10 +250,17 @@ TEST_F(Batching, FiltersOfAnInnerGroupDoNotSeeWhatIsBoundAroundIt) {
   const std::string inner = "?s :p ?v BIND(?v + 1 AS ?d)";
   const std::string a = ":a \"7\"^^integer", c = ":c \"6\"^^integer";
   EXPECT_THAT(small.rows("SELECT ?s ?d { { " + inner + " FILTER(?d > 3) } OPTIONAL { ?s :q ?d } }"), ElementsAre(c));
-  EXPECT_THAT(small.rows("SELECT ?s ?d { { " + inner + " FILTER(!BOUND(?d)) } OPTIONAL { ?s :q ?d } }"), ElementsAre(a));
-  EXPECT_THAT(small.rows("SELECT ?s ?d { { ?s :p ?v OPTIONAL { ?s :r ?d } FILTER(!BOUND(?d)) } OPTIONAL { ?s :q ?d } }"), ElementsAre(a, ":c -"));
-  EXPECT_THAT(small.rows("SELECT ?s ?d { { " + inner + " FILTER(!BOUND(?d)) } OPTIONAL { ?s :r ?e } OPTIONAL { ?s :q ?d } }"), ElementsAre(a));
-  EXPECT_THAT(small.rows("SELECT ?s ?d { ?s :p ?w OPTIONAL { { " + inner + " FILTER(?d > 3) } OPTIONAL { ?s :q ?d } } }"), ElementsAre(":a -", c));
+  EXPECT_THAT(small.rows("SELECT ?s ?d { { " + inner + " FILTER(!BOUND(?d)) } OPTIONAL { ?s :q ?d } }"),
+              ElementsAre(a));
+  EXPECT_THAT(
+      small.rows("SELECT ?s ?d { { ?s :p ?v OPTIONAL { ?s :r ?d } FILTER(!BOUND(?d)) } OPTIONAL { ?s :q ?d } }"),
+      ElementsAre(a, ":c -"));
+  EXPECT_THAT(
+      small.rows("SELECT ?s ?d { { " + inner + " FILTER(!BOUND(?d)) } OPTIONAL { ?s :r ?e } OPTIONAL { ?s :q ?d } }"),
+      ElementsAre(a));
+  EXPECT_THAT(
+      small.rows("SELECT ?s ?d { ?s :p ?w OPTIONAL { { " + inner + " FILTER(?d > 3) } OPTIONAL { ?s :q ?d } } }"),
+      ElementsAre(":a -", c));
 }
 
 }  // namespace

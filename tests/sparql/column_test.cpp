@@ -21,23 +21,29 @@ using namespace sparql;
 using testing::ElementsAreArray;
 using testing::HasSubstr;
 
-Term iri(const std::string& local) { return Term::iri("http://example.org/" + local); }
+Term iri(const std::string& local) {
+  return Term::iri("http://example.org/" + local);
+}
 Term graph(unsigned number) {
-  return Term::iri(number == 0 ? "" : number == 1 ? std::string(vocabulary::kGraphHistory) : "http://example.org/g" + std::to_string(number));
+  return Term::iri(number == 0   ? ""
+                   : number == 1 ? std::string(vocabulary::kGraphHistory)
+                                 : "http://example.org/g" + std::to_string(number));
 }
 
 /// `things` subjects that begin after `before` others, with up to `most` values each, a few with very many.
 SmallStore strewn(std::uint32_t seed, unsigned before, unsigned things, unsigned most) {
   std::mt19937 random(seed);
   std::vector<Quad> quads;
-  for (unsigned i = 0; i < before; ++i) quads.push_back({iri("early" + std::to_string(i)), iri("is"), iri("early"), graph(0)});
+  for (unsigned i = 0; i < before; ++i)
+    quads.push_back({iri("early" + std::to_string(i)), iri("is"), iri("early"), graph(0)});
   for (unsigned i = 0; i < things; ++i) {
     const Term self = iri("thing" + std::to_string(i));
     quads.push_back({self, iri("is"), iri("thing"), graph(2)});
     const unsigned values = random() % 97 == 0 ? 300 : random() % (most + 1);
-    for (unsigned k = 0; k < values; ++k) quads.push_back({self, iri("p"), iri("thing" + std::to_string(random() % things)), graph(random() % 4)});
+    for (unsigned k = 0; k < values; ++k)
+      quads.push_back({self, iri("p"), iri("thing" + std::to_string(random() % things)), graph(random() % 4)});
   }
-  quads.push_back({iri("early0"), iri("p"), iri("thing0"), graph(0)});   // far from the others
+  quads.push_back({iri("early0"), iri("p"), iri("thing0"), graph(0)});  // far from the others
   std::shuffle(quads.begin() + before, quads.end(), random);
   SmallStore store;
   store.load(quads);
@@ -45,7 +51,8 @@ SmallStore strewn(std::uint32_t seed, unsigned before, unsigned things, unsigned
 }
 
 /// The column beside all quads of the store, for every id there is and some that there are not; "": of any object.
-void compareWithStore(const SmallStore& store, const std::string& predicate, const std::string& object, bool without_history) {
+void compareWithStore(const SmallStore& store, const std::string& predicate, const std::string& object,
+                      bool without_history) {
   const QuadReader reader = store.reader();
   const TermId p = reader.idOf(iri(predicate)).value_or(~TermId{0});
   const TermId o = object.empty() ? kNoTerm : reader.idOf(iri(object)).value_or(~TermId{0});
@@ -56,7 +63,8 @@ void compareWithStore(const SmallStore& store, const std::string& predicate, con
   QuadCursor cursor = reader.scan({}, QuadOrder::Spog);
   std::size_t triples = 0;
   for (QuadIds quad; cursor.next(quad);) {
-    if (quad.p == p && (o == kNoTerm || quad.o == o) && graphs.admits(quad.g)) triples += expected[quad.s].insert(quad.o).second ? 1 : 0;
+    if (quad.p == p && (o == kNoTerm || quad.o == o) && graphs.admits(quad.g))
+      triples += expected[quad.s].insert(quad.o).second ? 1 : 0;
   }
   Guard guard;
   guard.start({});
@@ -94,7 +102,7 @@ TEST(SubjectColumn, HoldsWhatTheStoreHoldsOfAPredicate) {
 }
 
 TEST(SubjectColumn, IsMadeWhenLookupsHaveCostAsMuch) {
-  const SmallStore store = strewn(3, 100, 9000, 7);   // some 60,000 quads
+  const SmallStore store = strewn(3, 100, 9000, 7);  // some 60,000 quads
   const QuadReader reader = store.reader();
   const TermId p = *reader.idOf(iri("p"));
   Guard guard;
@@ -133,12 +141,15 @@ void compareWithIndex(const SmallStore& store, const std::string& pattern) {
 
 TEST(ByColumn, GivesWhatTheIndexGives) {
   SmallStore store = strewn(8, 0, 2500, 3);
-  store.load({{iri("thing5"), iri("rare"), iri("thing6"), graph(0)}, {iri("thing2000"), iri("rare"), iri("thing6"), graph(0)}});
+  store.load({{iri("thing5"), iri("rare"), iri("thing6"), graph(0)},
+              {iri("thing2000"), iri("rare"), iri("thing6"), graph(0)}});
   for (const char* pattern :
-       {"?o :is :thing . ?o :p ?v", "?o :is :thing OPTIONAL { ?o :p ?v }", "?o :is :thing OPTIONAL { ?o :p ?v . ?v :p ?o }",
-        "?o :is :thing FILTER EXISTS { ?o :p ?v . ?v :p ?w }", "?o :is :thing FILTER NOT EXISTS { ?o :p ?v . ?v :is :thing . ?v :p :thing7 }",
+       {"?o :is :thing . ?o :p ?v", "?o :is :thing OPTIONAL { ?o :p ?v }",
+        "?o :is :thing OPTIONAL { ?o :p ?v . ?v :p ?o }", "?o :is :thing FILTER EXISTS { ?o :p ?v . ?v :p ?w }",
+        "?o :is :thing FILTER NOT EXISTS { ?o :p ?v . ?v :is :thing . ?v :p :thing7 }",
         "?o :is :thing OPTIONAL { ?o :p ?o BIND(1 AS ?itself) }", "?o :is ?c OPTIONAL { ?o :p ?c }",
-        "?o :is :thing OPTIONAL { ?o :p ?v } OPTIONAL { ?v :rare ?w }", "?o :is :thing OPTIONAL { ?o :p ?v OPTIONAL { ?v :p :nothing . ?v :is ?c } }",
+        "?o :is :thing OPTIONAL { ?o :p ?v } OPTIONAL { ?v :rare ?w }",
+        "?o :is :thing OPTIONAL { ?o :p ?v OPTIONAL { ?v :p :nothing . ?v :is ?c } }",
         "?o :is :thing FILTER EXISTS { ?o :p ?v . ?v :is :thing }", "?o :is :thing GRAPH ?g { ?o :p ?v }"}) {
     compareWithIndex(store, pattern);
   }
@@ -156,9 +167,10 @@ TEST(ByColumn, IsMadeOnceForReadersInSeveralThreads) {
   const auto expected = store.rows(text, graphByGraph());
   std::array<std::vector<std::string>, 4> found;
   std::vector<std::thread> threads;
-  for (auto& rows : found) threads.emplace_back([&] {
-    for (int i = 0; i < 3; ++i) rows = store.rows(text);
-  });
+  for (auto& rows : found)
+    threads.emplace_back([&] {
+      for (int i = 0; i < 3; ++i) rows = store.rows(text);
+    });
   for (std::thread& thread : threads) thread.join();
   for (const auto& rows : found) EXPECT_EQ(rows, expected);
 }
@@ -166,14 +178,18 @@ TEST(ByColumn, IsMadeOnceForReadersInSeveralThreads) {
 TEST(ByColumn, FollowsCommitsAndDatasets) {
   SmallStore store = strewn(5, 0, 3000, 2);
   const std::string text = "SELECT (COUNT(?v) AS ?n) { ?o :is :thing OPTIONAL { ?o :p ?v } }";
-  const auto count = [&](const QueryOptions& options) { return std::stoul(store.ask(text, options).table.at(0, 0)->text); };
+  const auto count = [&](const QueryOptions& options) {
+    return std::stoul(store.ask(text, options).table.at(0, 0)->text);
+  };
   const std::size_t before = count({});
   store.load({{iri("thing1"), iri("p"), iri("new"), graph(0)}, {iri("thing2"), iri("p"), iri("new"), graph(1)}});
   EXPECT_EQ(count({}), before + 1) << "history is not asked";
   EXPECT_EQ(count({}), before + 1);
   QueryOptions of_two;
   of_two.default_graphs = {"http://example.org/g2", "http://example.org/g3"};
-  const std::string explicitly = "SELECT (COUNT(?v) AS ?n) { ?o :is :thing OPTIONAL { { SELECT DISTINCT ?o ?v { GRAPH ?g { ?o :p ?v } FILTER(?g IN (:g2, :g3)) } } } }";
+  const std::string explicitly =
+      "SELECT (COUNT(?v) AS ?n) { ?o :is :thing OPTIONAL { { SELECT DISTINCT ?o ?v { GRAPH ?g { ?o :p ?v } FILTER(?g "
+      "IN (:g2, :g3)) } } } }";
   EXPECT_EQ(count(of_two), std::stoul(store.ask(explicitly).table.at(0, 0)->text));
 }
 
@@ -181,7 +197,7 @@ TEST(ByColumn, CountsInTheBudgetsOfMemoryAndTime) {
   const SmallStore store = strewn(6, 0, 4000, 6);
   const std::string text = "SELECT (COUNT(*) AS ?n) { ?o :is :thing FILTER EXISTS { ?o :p ?v } }";
   QueryOptions narrow;
-  narrow.budget.max_memory_bytes = 40'000;   // the column takes some 100,000
+  narrow.budget.max_memory_bytes = 40'000;  // the column takes some 100,000
   EXPECT_EQ(store.ordered(text, narrow), store.ordered(text)) << "without a column where there is no room for it";
   EXPECT_EQ(store.ordered(text, narrow), store.ordered(text));
   const QuadReader reader = store.reader();

@@ -27,7 +27,8 @@ TEST_F(Datasets, TheDefaultGraphIsTheUnionOfAllButHistoryWithoutRepetitions) {
   EXPECT_THAT(store_.rows("SELECT ?s { ?s :p ?v }"), ElementsAre(":a", ":b", ":c", ":d"));
   EXPECT_THAT(store_.rows("SELECT ?s { ?s ?p ?v }"), ElementsAre(":a", ":b", ":c", ":d"));
   EXPECT_THAT(store_.rows("SELECT (COUNT(*) AS ?n) { :a :p 1 }"), ElementsAre("\"1\"^^integer"));
-  EXPECT_THAT(store_.rows("SELECT ?v { VALUES ?s { :a :b :h } ?s :p ?v }"), ElementsAre("\"1\"^^integer", "\"2\"^^integer"));
+  EXPECT_THAT(store_.rows("SELECT ?v { VALUES ?s { :a :b :h } ?s :p ?v }"),
+              ElementsAre("\"1\"^^integer", "\"2\"^^integer"));
 }
 
 TEST_F(Datasets, AStrictDefaultGraphIsTheUnnamedOne) {
@@ -40,23 +41,28 @@ TEST_F(Datasets, GraphRunsOverTheNamedGraphs) {
   EXPECT_THAT(store_.rows("SELECT ?g { GRAPH ?g { :a :p 1 } }"), ElementsAre(":g1", ":g2"));
   EXPECT_THAT(store_.rows("SELECT ?g ?s { ?s :p 1 GRAPH ?g { ?s :p ?v } }"), ElementsAre(":g1 :a", ":g2 :a"));
   EXPECT_THAT(store_.rows("SELECT (COUNT(*) AS ?n) { GRAPH ?g {} }"), ElementsAre("\"3\"^^integer"));
-  EXPECT_THAT(store_.rows("SELECT (COUNT(DISTINCT ?g) AS ?n) { ?s :p 1 OPTIONAL { ?s :q ?w } GRAPH ?g {} }"), ElementsAre("\"3\"^^integer"));
+  EXPECT_THAT(store_.rows("SELECT (COUNT(DISTINCT ?g) AS ?n) { ?s :p 1 OPTIONAL { ?s :q ?w } GRAPH ?g {} }"),
+              ElementsAre("\"3\"^^integer"));
   EXPECT_THAT(store_.rows("SELECT ?x { GRAPH :g1 { BIND(1 AS ?x) } }"), ElementsAre("\"1\"^^integer"));
   EXPECT_THAT(store_.rows("SELECT ?x { GRAPH :nowhere { BIND(1 AS ?x) } }"), IsEmpty());
 }
 
 TEST_F(Datasets, PatternsWithinAGraphStayInThatGraph) {
-  EXPECT_THAT(store_.rows("SELECT ?g ?s ?t { GRAPH ?g { ?s :p 1 . ?t :p ?v FILTER(?v > 1) } }"), ElementsAre(":g1 :a :b", ":g2 :a :c"));
-  EXPECT_THAT(store_.rows("SELECT ?g ?n { GRAPH ?g { { SELECT (COUNT(*) AS ?n) { ?s :p ?v } } } FILTER(?g IN (:g1, :g2)) }"),
-              ElementsAre(":g1 \"2\"^^integer", ":g2 \"2\"^^integer"));
-  EXPECT_THAT(store_.rows("SELECT ?g ?s { GRAPH ?g { ?s :p ?v FILTER NOT EXISTS { ?t :p 2 } } FILTER(STRSTARTS(STR(?g), \"http://example\")) }"),
+  EXPECT_THAT(store_.rows("SELECT ?g ?s ?t { GRAPH ?g { ?s :p 1 . ?t :p ?v FILTER(?v > 1) } }"),
+              ElementsAre(":g1 :a :b", ":g2 :a :c"));
+  EXPECT_THAT(
+      store_.rows("SELECT ?g ?n { GRAPH ?g { { SELECT (COUNT(*) AS ?n) { ?s :p ?v } } } FILTER(?g IN (:g1, :g2)) }"),
+      ElementsAre(":g1 \"2\"^^integer", ":g2 \"2\"^^integer"));
+  EXPECT_THAT(store_.rows("SELECT ?g ?s { GRAPH ?g { ?s :p ?v FILTER NOT EXISTS { ?t :p 2 } } "
+                          "FILTER(STRSTARTS(STR(?g), \"http://example\")) }"),
               ElementsAre(":g2 :a", ":g2 :c"));
 }
 
 TEST_F(Datasets, FromBuildsTheDatasetFromTheStore) {
   EXPECT_THAT(store_.rows("SELECT ?s FROM :g1 FROM :g2 { ?s :p ?v }"), ElementsAre(":a", ":b", ":c"));
   EXPECT_THAT(store_.rows("SELECT ?s FROM NAMED :g2 { ?s :p ?v }"), IsEmpty());
-  EXPECT_THAT(store_.rows("SELECT ?g ?s FROM :g1 FROM NAMED :g2 { GRAPH ?g { ?s :p 3 } ?t :p 2 }"), ElementsAre(":g2 :c"));
+  EXPECT_THAT(store_.rows("SELECT ?g ?s FROM :g1 FROM NAMED :g2 { GRAPH ?g { ?s :p 3 } ?t :p 2 }"),
+              ElementsAre(":g2 :c"));
   EXPECT_THAT(store_.rows("SELECT ?s FROM <http://elsewhere/x.ttl> { ?s :p ?v }"), IsEmpty()) << "nothing is fetched";
 }
 

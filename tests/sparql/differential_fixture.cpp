@@ -45,7 +45,8 @@ std::shared_ptr<Environment> storeOf(const std::vector<Quad>& quads) {
   return environment;
 }
 
-EngineAnswer askCluxel(const QuadReader& reader, const std::string& text, bool union_graph, const std::vector<Binding>& bindings) {
+EngineAnswer askCluxel(const QuadReader& reader, const std::string& text, bool union_graph,
+                       const std::vector<Binding>& bindings) {
   QueryOptions options;
   options.default_graph = union_graph ? DefaultGraph::UnionButHistory : DefaultGraph::Unnamed;
   options.budget.deadline = std::chrono::seconds(20);
@@ -61,7 +62,8 @@ EngineAnswer askCluxel(const QuadReader& reader, const std::string& text, bool u
 std::vector<Quad> withUnionAsDefault(const std::vector<Quad>& quads) {
   std::set<Quad> merged;
   for (const Quad& quad : quads) {
-    if (quad.graph.text != vocabulary::kGraphHistory) merged.insert({quad.subject, quad.predicate, quad.object, Term::iri("")});
+    if (quad.graph.text != vocabulary::kGraphHistory)
+      merged.insert({quad.subject, quad.predicate, quad.object, Term::iri("")});
     if (!quad.graph.text.empty()) merged.insert(quad);
   }
   return {merged.begin(), merged.end()};

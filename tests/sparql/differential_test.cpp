@@ -23,7 +23,7 @@ constexpr int kObjects = 24;
 
 struct Asked {
   MadeQuery query;
-  std::string text;         ///< what is asked now: with or without its LIMIT
+  std::string text;  ///< what is asked now: with or without its LIMIT
   bool union_graph = false;
 };
 
@@ -51,7 +51,7 @@ double numberOf(const Term* term) {
 bool isOrdered(const ResultTable& table, const MadeQuery& query) {
   const auto column = static_cast<std::size_t>(
       std::find(table.variables.begin(), table.variables.end(), query.ordered_by) - table.variables.begin());
-  if (column == table.variables.size()) return true;   // SELECT * did not see it
+  if (column == table.variables.size()) return true;  // SELECT * did not see it
   for (std::size_t row = 1; row < table.row_count; ++row) {
     const Term* before = table.at(query.descending ? row : row - 1, column);
     const Term* after = table.at(query.descending ? row - 1 : row, column);
@@ -64,7 +64,8 @@ std::map<std::string, int> rowCounts(const ResultTable& table) {
   std::map<std::string, int> counts;
   for (std::size_t row = 0; row < table.row_count; ++row) {
     std::string key;
-    for (std::size_t i = 0; i < table.variables.size(); ++i) key += (table.at(row, i) ? toNTriples(*table.at(row, i)) : "") + '\t';
+    for (std::size_t i = 0; i < table.variables.size(); ++i)
+      key += (table.at(row, i) ? toNTriples(*table.at(row, i)) : "") + '\t';
     ++counts[key];
   }
   return counts;
@@ -98,7 +99,9 @@ void compare(const QuadReader& reader, const Asked& asked, const EngineAnswer& t
   const std::string difference = test::differenceOf(ours, theirs);
   ++tally.asked;
   tally.same += difference.empty() && ours.result ? 1 : 0;
-  if (!difference.empty()) ADD_FAILURE() << difference << (asked.union_graph ? "over the union:\n" : "over the unnamed graph:\n") << test::textFor(test::kOurs, asked.text);
+  if (!difference.empty())
+    ADD_FAILURE() << difference << (asked.union_graph ? "over the union:\n" : "over the unnamed graph:\n")
+                  << test::textFor(test::kOurs, asked.text);
   if (!ours.result || ours.result->kind != QueryResult::Kind::Solutions) return;
   if (!asked.query.ordered_by.empty()) {
     EXPECT_TRUE(isOrdered(ours.result->table, asked.query)) << asked.text;

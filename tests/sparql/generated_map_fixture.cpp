@@ -14,8 +14,12 @@ namespace {
 using vocabulary::clx;
 using vocabulary::xsd;
 
-Term graph(std::string_view iri) { return Term::iri(iri); }
-Term object(int number) { return Term::iri(kMadeObject + std::to_string(number)); }
+Term graph(std::string_view iri) {
+  return Term::iri(iri);
+}
+Term object(int number) {
+  return Term::iri(kMadeObject + std::to_string(number));
+}
 
 class MapMaker {
  public:
@@ -79,14 +83,21 @@ void MapMaker::addObject(int number) {
     add(part, clx("height"), Term::integer(upTo(9)), vocabulary::kGraphObserved);
   }
   if (chance(50)) addCentroid(subject, number);
-  if (chance(30)) add(subject, clx("builtAt"), Term::literal("2024-05-0" + std::to_string(1 + upTo(9)) + "T12:30:00Z", xsd("dateTime")), vocabulary::kGraphHistory);
+  if (chance(30))
+    add(subject, clx("builtAt"),
+        Term::literal("2024-05-0" + std::to_string(1 + upTo(9)) + "T12:30:00Z", xsd("dateTime")),
+        vocabulary::kGraphHistory);
 }
 
 void MapMaker::addMeasures(const Term& subject) {
   static const std::vector<std::string> doubles{"1.0E0", "2.5E0", "1.25E1", "-5.0E-1", "0.0E0", "7.0E0"};
   static const std::vector<std::string> decimals{"0.5", "2.5", "-1.25", "3.75", "10.125"};
-  if (chance(80)) add(subject, clx("height"), Term::literal(doubles[static_cast<std::size_t>(upTo(6))], xsd("double")), vocabulary::kGraphObserved);
-  if (chance(60)) add(subject, clx("width"), Term::literal(decimals[static_cast<std::size_t>(upTo(5))], xsd("decimal")), vocabulary::kGraphObserved);
+  if (chance(80))
+    add(subject, clx("height"), Term::literal(doubles[static_cast<std::size_t>(upTo(6))], xsd("double")),
+        vocabulary::kGraphObserved);
+  if (chance(60))
+    add(subject, clx("width"), Term::literal(decimals[static_cast<std::size_t>(upTo(5))], xsd("decimal")),
+        vocabulary::kGraphObserved);
   if (chance(80)) add(subject, clx("pointCount"), Term::integer(upTo(12) - 2), vocabulary::kGraphObserved);
   if (chance(30)) add(subject, clx("pointCount"), Term::integer(upTo(12)), "");
   if (chance(30)) add(subject, clx("seen"), Term::boolean(chance(50)), vocabulary::kGraphObserved);
@@ -96,8 +107,10 @@ void MapMaker::addNames(const Term& subject, int number) {
   static const std::vector<std::string> words{"oak", "Eiche", "lamp post", "caf\u00e9", "", "a.b", "Tree", "\u6728"};
   const std::string& word = words[static_cast<std::size_t>(upTo(8))];
   if (chance(50)) add(subject, clx("label"), Term::literal(word), vocabulary::kGraphObserved);
-  if (chance(40)) add(subject, clx("label"), Term::langLiteral(word, chance(50) ? "de" : "en-gb"), vocabulary::kGraphObserved);
-  if (chance(30)) add(subject, clx("note"), Term::literal(word + " " + std::to_string(number % 5)), vocabulary::kGraphOperator);
+  if (chance(40))
+    add(subject, clx("label"), Term::langLiteral(word, chance(50) ? "de" : "en-gb"), vocabulary::kGraphObserved);
+  if (chance(30))
+    add(subject, clx("note"), Term::literal(word + " " + std::to_string(number % 5)), vocabulary::kGraphOperator);
   if (chance(10)) add(subject, clx("note"), Term::literal("42", clx("serial")), vocabulary::kGraphOperator);
 }
 
@@ -111,11 +124,16 @@ void MapMaker::addCentroid(const Term& subject, int number) {
 }  // namespace
 
 std::vector<std::string> madeGraphs() {
-  return {"", std::string(vocabulary::kGraphOntology), std::string(vocabulary::kGraphObserved),
-          std::string(vocabulary::kGraphInferred), std::string(vocabulary::kGraphOperator),
+  return {"",
+          std::string(vocabulary::kGraphOntology),
+          std::string(vocabulary::kGraphObserved),
+          std::string(vocabulary::kGraphInferred),
+          std::string(vocabulary::kGraphOperator),
           std::string(vocabulary::kGraphHistory)};
 }
 
-std::vector<Quad> madeMap(std::uint32_t seed, int objects) { return MapMaker(seed, objects).make(); }
+std::vector<Quad> madeMap(std::uint32_t seed, int objects) {
+  return MapMaker(seed, objects).make();
+}
 
 }  // namespace cluxel::test

@@ -12,7 +12,9 @@
 namespace cluxel::test {
 namespace {
 
-std::string wkt(const std::string& text) { return "\"" + text + "\"^^geo:wktLiteral"; }
+std::string wkt(const std::string& text) {
+  return "\"" + text + "\"^^geo:wktLiteral";
+}
 std::string call(const std::string& function, const std::string& a, const std::string& b) {
   return "geof:" + function + "(" + wkt(a) + ", " + wkt(b) + ")";
 }
@@ -42,7 +44,8 @@ TEST(GeoFunctions, RelateGeometries) {
 
 TEST(GeoFunctions, GiveErrorsForWhatIsNoGeometry) {
   const SmallStore store;
-  for (const char* text : {"", "POINT", "POINT(1)", "POINT(1 2", "POLYGON((0 0, 1 1, 0 0))", "POINT(nan 1)", "CIRCLE(0 0 1)", "POINT(1 2) x"}) {
+  for (const char* text : {"", "POINT", "POINT(1)", "POINT(1 2", "POLYGON((0 0, 1 1, 0 0))", "POINT(nan 1)",
+                           "CIRCLE(0 0 1)", "POINT(1 2) x"}) {
     EXPECT_EQ(store.value(call("distance", text, "POINT(0 0)")), "-") << text;
   }
   EXPECT_EQ(store.value("geof:distance(\"POINT(0 0)\", \"POINT(0 0)\")"), "-") << "a plain string";
@@ -59,7 +62,8 @@ TEST(GeoFunctions, TellEmptyGeometriesFromOthers) {
 TEST(GeoFunctions, MeasureInNoOtherUnit) {
   const SmallStore store;
   const auto in = [&](const std::string& unit) {
-    return store.value("geof:distance(" + wkt("POINT(0 0)") + ", " + wkt("POINT(3 4)") + ", <http://www.opengis.net/def/uom/OGC/1.0/" + unit + ">)");
+    return store.value("geof:distance(" + wkt("POINT(0 0)") + ", " + wkt("POINT(3 4)") +
+                       ", <http://www.opengis.net/def/uom/OGC/1.0/" + unit + ">)");
   };
   EXPECT_EQ(in("metre"), "\"5.0E0\"^^double");
   EXPECT_EQ(in("kilometre"), "-") << "5 km would be wrong by a thousand";
@@ -69,11 +73,13 @@ TEST(GeoFunctions, MeasureInNoOtherUnit) {
 /// Degrees of one literal are no metres of another.
 TEST(GeoFunctions, DoNotRelateDifferentReferenceSystems) {
   const SmallStore store;
-  const std::string degrees = "<http://www.opengis.net/def/crs/EPSG/0/4326> POINT(1 2)", metres = "<http://www.opengis.net/def/crs/EPSG/0/25832> POINT(1 2)";
+  const std::string degrees = "<http://www.opengis.net/def/crs/EPSG/0/4326> POINT(1 2)",
+                    metres = "<http://www.opengis.net/def/crs/EPSG/0/25832> POINT(1 2)";
   EXPECT_EQ(store.value(call("distance", degrees, metres)), "-");
   EXPECT_EQ(store.value(call("sfIntersects", degrees, metres)), "-");
   EXPECT_EQ(store.value(call("distance", metres, metres)), "\"0.0E0\"^^double");
-  EXPECT_EQ(store.value(call("distance", metres, "POINT(1 3)")), "\"1.0E0\"^^double") << "without a name: the map's own frame";
+  EXPECT_EQ(store.value(call("distance", metres, "POINT(1 3)")), "\"1.0E0\"^^double")
+      << "without a name: the map's own frame";
 }
 
 TEST(GeoFunctions, PartsOnTheBorderAreWithinWhereOthersAreInside) {
@@ -94,15 +100,21 @@ TEST(GeoFilters, FindTheSameObjectsAsComparisonsOfCoordinates) {
     quads.push_back({self, Term::iri("http://example.org/x"), Term::integer(std::stoi(x)), Term::iri("")});
     quads.push_back({self, Term::iri("http://example.org/y"), Term::integer(std::stoi(y)), Term::iri("")});
     quads.push_back({self, Term::iri("http://www.opengis.net/ont/geosparql#asWKT"),
-                     Term::literal("POINT(" + x + " " + y + ")", "http://www.opengis.net/ont/geosparql#wktLiteral"), Term::iri("")});
+                     Term::literal("POINT(" + x + " " + y + ")", "http://www.opengis.net/ont/geosparql#wktLiteral"),
+                     Term::iri("")});
   }
   store.load(quads);
-  const auto by_numbers = store.rows("SELECT ?o { ?o :x ?x ; :y ?y FILTER((?x - 500) * (?x - 500) + (?y - 400) * (?y - 400) < 10000) }");
+  const auto by_numbers =
+      store.rows("SELECT ?o { ?o :x ?x ; :y ?y FILTER((?x - 500) * (?x - 500) + (?y - 400) * (?y - 400) < 10000) }");
   EXPECT_GT(by_numbers.size(), 20u);
-  EXPECT_EQ(store.rows("SELECT ?o { ?o geo:asWKT ?g FILTER(geof:distance(?g, " + wkt("POINT(500 400)") + ") < 100) }"), by_numbers);
-  EXPECT_EQ(store.rows("SELECT ?o { ?o geo:asWKT ?g FILTER(100 > geof:distance(" + wkt("POINT(500 400)") + ", ?g)) }"), by_numbers);
+  EXPECT_EQ(store.rows("SELECT ?o { ?o geo:asWKT ?g FILTER(geof:distance(?g, " + wkt("POINT(500 400)") + ") < 100) }"),
+            by_numbers);
+  EXPECT_EQ(store.rows("SELECT ?o { ?o geo:asWKT ?g FILTER(100 > geof:distance(" + wkt("POINT(500 400)") + ", ?g)) }"),
+            by_numbers);
   const auto window = store.rows("SELECT ?o { ?o :x ?x ; :y ?y FILTER(?x > 100 && ?x < 300 && ?y > 200 && ?y < 250) }");
-  EXPECT_EQ(store.rows("SELECT ?o { ?o geo:asWKT ?g FILTER(geof:sfWithin(?g, " + wkt("POLYGON((100 200, 300 200, 300 250, 100 250, 100 200))") + ")) }"), window);
+  EXPECT_EQ(store.rows("SELECT ?o { ?o geo:asWKT ?g FILTER(geof:sfWithin(?g, " +
+                       wkt("POLYGON((100 200, 300 200, 300 250, 100 250, 100 200))") + ")) }"),
+            window);
 }
 
 }  // namespace

@@ -53,13 +53,15 @@ TEST(Guard, TellsOfIdsThatADamagedIndexMadeUp) {
   {
     WriteTransaction transaction = store.environment()->write();
     QuadWriter writer(transaction);
-    const TermId s = writer.intern(Term::iri("http://example.org/s")), p = writer.intern(Term::iri("http://example.org/p"));
+    const TermId s = writer.intern(Term::iri("http://example.org/s")),
+                 p = writer.intern(Term::iri("http://example.org/p"));
     writer.add(QuadIds{s, p, 0x9000'0000U, kNoTerm});
     writer.flush();
     transaction.commit();
   }
-  for (const char* query : {"SELECT ?o { ?s ?p ?o }", "SELECT ?l { ?s ?p ?o BIND(STRLEN(STR(?o)) + 1 AS ?l) FILTER(?l > 1) }",
-                            "SELECT ?o { ?s ?p ?o } ORDER BY ?o", "CONSTRUCT { ?s ?p ?o } WHERE { ?s ?p ?o }"}) {
+  for (const char* query :
+       {"SELECT ?o { ?s ?p ?o }", "SELECT ?l { ?s ?p ?o BIND(STRLEN(STR(?o)) + 1 AS ?l) FILTER(?l > 1) }",
+        "SELECT ?o { ?s ?p ?o } ORDER BY ?o", "CONSTRUCT { ?s ?p ?o } WHERE { ?s ?p ?o }"}) {
     try {
       store.ask(query);
       FAIL() << query;
@@ -81,8 +83,13 @@ TEST(Guard, EndsByItsDeadline) {
   const SmallStore store = chain(300);
   QueryOptions options;
   options.budget.deadline = std::chrono::milliseconds(30);
-  expectRefused(store, "SELECT (COUNT(*) AS ?n) { ?a :next ?b . ?c :next ?d . ?e :next ?f . ?g :next ?h . ?i :next ?j }", options);
-  expectRefused(store, "SELECT (COUNT(*) AS ?n) { ?a ((:next|^:next)/(:next|^:next))* ?b . ?c (:next|^:next)* ?d . ?e :next* ?f }", options);
+  expectRefused(store,
+                "SELECT (COUNT(*) AS ?n) { ?a :next ?b . ?c :next ?d . ?e :next ?f . ?g :next ?h . ?i :next ?j }",
+                options);
+  expectRefused(
+      store,
+      "SELECT (COUNT(*) AS ?n) { ?a ((:next|^:next)/(:next|^:next))* ?b . ?c (:next|^:next)* ?d . ?e :next* ?f }",
+      options);
 }
 
 TEST(Guard, EndsByMemoryInJoinsSortsGroupsAndAnswers) {
@@ -91,7 +98,8 @@ TEST(Guard, EndsByMemoryInJoinsSortsGroupsAndAnswers) {
   options.budget.max_memory_bytes = 20'000;
   expectRefused(store, "SELECT * { ?a :next ?b }", options);
   expectRefused(store, "SELECT (COUNT(*) AS ?n) { { SELECT * { ?a :next ?b } ORDER BY ?b LIMIT 100000 } }", options);
-  expectRefused(store, "SELECT (COUNT(*) AS ?n) { { SELECT ?a (COUNT(*) AS ?k) { ?a :next ?b } GROUP BY ?a } }", options);
+  expectRefused(store, "SELECT (COUNT(*) AS ?n) { { SELECT ?a (COUNT(*) AS ?k) { ?a :next ?b } GROUP BY ?a } }",
+                options);
   expectRefused(store, "SELECT (COUNT(*) AS ?n) { { SELECT DISTINCT ?a ?b { ?a :next ?b } } }", options);
   expectRefused(store, "CONSTRUCT WHERE { ?a :next ?b }", options);
 }
@@ -112,12 +120,20 @@ TEST(Guard, DoesNotCountWhatIsGivenBack) {
   const SmallStore store = chain(3000);
   QueryOptions options;
   options.budget.max_memory_bytes = 200'000;
-  for (const char* inner : {"SELECT DISTINCT ?a { ?a :next ?c } LIMIT 1", "SELECT ?a (COUNT(DISTINCT ?c) AS ?n) { ?a :next ?c } GROUP BY ?a HAVING(COUNT(*) = 1)",
-                            "SELECT ?a { ?a :next ?c } ORDER BY ?c LIMIT 1", "SELECT ?a { ?a :next ?c OPTIONAL { ?a :none ?d } { ?a :next ?e OPTIONAL { ?e :none ?d } } }"}) {
-    EXPECT_EQ(store.rows(std::string("SELECT (COUNT(*) AS ?n) { ?a :next ?b FILTER EXISTS { ") + inner + " } }", options).front(), "\"3000\"^^integer") << inner;
+  for (const char* inner :
+       {"SELECT DISTINCT ?a { ?a :next ?c } LIMIT 1",
+        "SELECT ?a (COUNT(DISTINCT ?c) AS ?n) { ?a :next ?c } GROUP BY ?a HAVING(COUNT(*) = 1)",
+        "SELECT ?a { ?a :next ?c } ORDER BY ?c LIMIT 1",
+        "SELECT ?a { ?a :next ?c OPTIONAL { ?a :none ?d } { ?a :next ?e OPTIONAL { ?e :none ?d } } }"}) {
+    EXPECT_EQ(
+        store.rows(std::string("SELECT (COUNT(*) AS ?n) { ?a :next ?b FILTER EXISTS { ") + inner + " } }", options)
+            .front(),
+        "\"3000\"^^integer")
+        << inner;
   }
   const QuadReader reader = store.reader();
-  PreparedQuery again(reader, kPrefixes + "SELECT (COUNT(*) AS ?n) { { SELECT DISTINCT ?a ?b { ?a :next ?b } } }", options);
+  PreparedQuery again(reader, kPrefixes + "SELECT (COUNT(*) AS ?n) { { SELECT DISTINCT ?a ?b { ?a :next ?b } } }",
+                      options);
   for (int run = 0; run < 5; ++run) EXPECT_EQ(again.evaluate().table.row_count, 1u) << run;
 }
 
@@ -125,7 +141,10 @@ TEST(Guard, CountsCandidatesThatDoNotAgree) {
   const SmallStore store = chain(3000);
   QueryOptions options;
   options.budget.max_work_rows = 1'000'000;
-  expectRefused(store, "SELECT (COUNT(*) AS ?n) { { ?a :next ?b BIND(STR(?a) AS ?k) } { ?c :next ?d BIND(CONCAT(STR(?c), \"x\") AS ?k) } }", options);
+  expectRefused(store,
+                "SELECT (COUNT(*) AS ?n) { { ?a :next ?b BIND(STR(?a) AS ?k) } { ?c :next ?d BIND(CONCAT(STR(?c), "
+                "\"x\") AS ?k) } }",
+                options);
 }
 
 /// Not all pairs that a path joins are looked for before the first is given.
@@ -187,8 +206,9 @@ TEST(Guard, RefusesQueriesOfThousandsOfPartsAndPlansThoseBelow) {
     }
     return text;
   };
-  for (const char* part : {"?s# :next ?s#x . ", "OPTIONAL { ?s :next ?o# } ", "BIND(# AS ?b#) ", "FILTER(?s != #) ", "MINUS { ?s :x # } ",
-                           "{ ?s :next ?o# } UNION ", "VALUES ?v# { # } ", "{ SELECT ?s { ?s :next ?o } } ", "GRAPH ?g# { } "}) {
+  for (const char* part :
+       {"?s# :next ?s#x . ", "OPTIONAL { ?s :next ?o# } ", "BIND(# AS ?b#) ", "FILTER(?s != #) ", "MINUS { ?s :x # } ",
+        "{ ?s :next ?o# } UNION ", "VALUES ?v# { # } ", "{ SELECT ?s { ?s :next ?o } } ", "GRAPH ?g# { } "}) {
     const std::string end = std::string(part).ends_with("UNION ") ? "{ } }" : "}";
     EXPECT_THROW(store.ask("ASK { " + repeated(part, 10'000) + end), InputError) << part;
     QueryOptions options;
@@ -205,7 +225,8 @@ TEST(Guard, EndsTextsThatGrowWithoutEnd) {
   const SmallStore store;
   std::string doubled = "BIND(\"abcdefgh\" AS ?t0) ";
   for (int i = 0; i < 60; ++i)
-    doubled += "BIND(CONCAT(?t" + std::to_string(i) + ", ?t" + std::to_string(i) + ") AS ?t" + std::to_string(i + 1) + ") ";
+    doubled +=
+        "BIND(CONCAT(?t" + std::to_string(i) + ", ?t" + std::to_string(i) + ") AS ?t" + std::to_string(i + 1) + ") ";
   EXPECT_THROW(store.ask("SELECT (STRLEN(?t60) AS ?n) { " + doubled + "}"), Error);
   std::string many(1000, 'a'), replaced = "\"" + many + "\"";
   for (int i = 0; i < 8; ++i) replaced = "REPLACE(" + replaced + ", \"a\", \"" + many + "\")";
@@ -215,7 +236,8 @@ TEST(Guard, EndsTextsThatGrowWithoutEnd) {
 TEST(Explain, ShowsEstimatedAndActualRows) {
   const SmallStore store = chain(10);
   const QuadReader reader = store.reader();
-  const std::string plan = explainQuery(reader, kPrefixes + "SELECT ?a { ?a :next ?b . ?b :next ?c FILTER(?a != ?c) } ORDER BY ?a LIMIT 3");
+  const std::string plan =
+      explainQuery(reader, kPrefixes + "SELECT ?a { ?a :next ?b . ?b :next ?c FILTER(?a != ?c) } ORDER BY ?a LIMIT 3");
   EXPECT_THAT(plan, HasSubstr("first 3 by ?a"));
   EXPECT_THAT(plan, HasSubstr("<http://example.org/next>"));
   EXPECT_THAT(plan, HasSubstr("estimated 10, actual 10"));

@@ -25,7 +25,7 @@ struct Cell {
   Key key = 0;
 };
 using Row = std::vector<Cell>;
-using Colours = std::vector<Key>;   // by the number of the blank node
+using Colours = std::vector<Key>;  // by the number of the blank node
 
 struct Coded {
   std::vector<Row> rows;
@@ -47,7 +47,7 @@ std::string literalKey(const Term& term) {
   const char* begin = term.text.data() + (term.text.starts_with('+') ? 1 : 0);
   const char* end = term.text.data() + term.text.size();
   if (std::from_chars(begin, end, value).ptr != end || begin == end) return toNTriples(term);
-  if (value == 0) value = 0;   // -0
+  if (value == 0) value = 0;  // -0
   return std::to_string(value) + "/" + toNTriples(Term::real(value)) + "^^" + term.datatype;
 }
 
@@ -61,7 +61,9 @@ Coded coded(const std::vector<Tuple>& tuples) {
         row.push_back({true, numbers.emplace(term->text, numbers.size()).first->second, 0});
         continue;
       }
-      const std::string text = !term ? "UNDEF" : term->kind == TermKind::Literal ? literalKey(*term) : toNTriples(*term);
+      const std::string text = !term                             ? "UNDEF"
+                               : term->kind == TermKind::Literal ? literalKey(*term)
+                                                                 : toNTriples(*term);
       row.push_back({false, 0, std::hash<std::string>()(text)});
     }
     result.rows.push_back(std::move(row));
@@ -83,7 +85,9 @@ std::vector<Key> keysOf(const std::vector<Row>& rows, const Colours& colours) {
   return keys;
 }
 
-std::size_t countOf(const Colours& colours) { return std::set<Key>(colours.begin(), colours.end()).size(); }
+std::size_t countOf(const Colours& colours) {
+  return std::set<Key>(colours.begin(), colours.end()).size();
+}
 
 /// One round: a node's new colour is its old one and where it stands in which rows.
 Colours refinedOnce(const std::vector<Row>& rows, const Colours& colours) {
@@ -133,8 +137,10 @@ std::vector<Part> partsOf(const Coded& coded, const Colours& colours) {
     std::size_t first = kNone;
     for (const Cell& cell : row) {
       if (!cell.is_blank) continue;
-      if (first == kNone) first = cell.node;
-      else parent[rootOf(parent, cell.node)] = rootOf(parent, first);
+      if (first == kNone)
+        first = cell.node;
+      else
+        parent[rootOf(parent, cell.node)] = rootOf(parent, first);
     }
     node_of_row.push_back(first);
   }
@@ -159,7 +165,7 @@ std::vector<Part> partsOf(const Coded& coded, const Colours& colours) {
   return list;
 }
 
-using Classes = std::map<Key, std::vector<std::size_t>>;   // colour -> nodes
+using Classes = std::map<Key, std::vector<std::size_t>>;  // colour -> nodes
 
 Classes classesOf(const Colours& colours) {
   Classes classes;
@@ -167,7 +173,8 @@ Classes classesOf(const Colours& colours) {
   return classes;
 }
 
-/// When no row ties two nodes together that share their colours with others, nodes of one colour may stand for each other.
+/// When no row ties two nodes together that share their colours with others, nodes of one colour may stand for each
+/// other.
 bool areUntied(const std::vector<Row>& rows, const Colours& colours, const Classes& classes) {
   return std::none_of(rows.begin(), rows.end(), [&](const Row& row) {
     std::set<std::size_t> ambiguous;
@@ -207,9 +214,12 @@ bool isSame(const Part& a, const Part& b) {
 bool balanced(const std::vector<const Part*>& a, const std::vector<const Part*>& b) {
   std::vector<std::pair<const Part*, long>> kinds;
   const auto count = [&kinds](const Part& part, long by) {
-    const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const auto& known) { return isSame(*known.first, part); });
-    if (kind != kinds.end()) kind->second += by;
-    else kinds.emplace_back(&part, by);
+    const auto kind =
+        std::find_if(kinds.begin(), kinds.end(), [&](const auto& known) { return isSame(*known.first, part); });
+    if (kind != kinds.end())
+      kind->second += by;
+    else
+      kinds.emplace_back(&part, by);
   };
   for (const Part* part : a) count(*part, 1);
   for (const Part* part : b) count(*part, -1);
@@ -230,7 +240,8 @@ bool isomorphic(const std::vector<Tuple>& a, const std::vector<Tuple>& b) {
   if (a.size() != b.size()) return false;
   const Coded coded_a = coded(a), coded_b = coded(b);
   if (coded_a.nodes != coded_b.nodes) return false;
-  const Colours colours_a = refined(coded_a.rows, Colours(coded_a.nodes, 7)), colours_b = refined(coded_b.rows, Colours(coded_b.nodes, 7));
+  const Colours colours_a = refined(coded_a.rows, Colours(coded_a.nodes, 7)),
+                colours_b = refined(coded_b.rows, Colours(coded_b.nodes, 7));
   // The rows without blank nodes are compared here, and most differences found.
   if (keysOf(coded_a.rows, colours_a) != keysOf(coded_b.rows, colours_b)) return false;
   const std::vector<Part> parts_a = partsOf(coded_a, colours_a), parts_b = partsOf(coded_b, colours_b);

@@ -50,10 +50,11 @@ TEST(SparqlParserErrors, NamePlaceExpectationAndKeyword) {
             "  SELECT * { FILTER(STRLENG(?x) > 3) }\n"
             "                    ^\n"
             "  hint: did you mean STRLEN?");
-  EXPECT_EQ(queryError("ASK { ?s ?p ?o"),
-            "query:1:15: error: expected a triple, a keyword such as OPTIONAL or FILTER, or '}', but the request ends here\n"
-            "  ASK { ?s ?p ?o\n"
-            "                ^");
+  EXPECT_EQ(
+      queryError("ASK { ?s ?p ?o"),
+      "query:1:15: error: expected a triple, a keyword such as OPTIONAL or FILTER, or '}', but the request ends here\n"
+      "  ASK { ?s ?p ?o\n"
+      "                ^");
 }
 
 TEST(SparqlParserErrors, OfferPrefixes) {
@@ -117,7 +118,8 @@ TEST(SparqlParserErrors, CoverTheNotesOfTheQueryGrammar) {
       {"ASK { ?s ?p \xFF }", "this byte is no UTF-8"},
       {std::string("ASK { \0 }", 9), "the request holds a zero byte"}};
   for (const Fault& fault : faults)
-    EXPECT_NE(queryError(fault.text).find(fault.message), std::string::npos) << fault.text << "\n" << queryError(fault.text);
+    EXPECT_NE(queryError(fault.text).find(fault.message), std::string::npos) << fault.text << "\n"
+                                                                             << queryError(fault.text);
 }
 
 TEST(SparqlParserErrors, CoverTheNotesOfTheUpdateGrammar) {
@@ -138,7 +140,8 @@ TEST(SparqlParserErrors, CoverTheNotesOfTheUpdateGrammar) {
       {"INSRT DATA { }", "did you mean INSERT?"},
       {"CLEAR ALL CLEAR ALL", "expected ';' and another operation"}};
   for (const Fault& fault : faults)
-    EXPECT_NE(updateError(fault.text).find(fault.message), std::string::npos) << fault.text << "\n" << updateError(fault.text);
+    EXPECT_NE(updateError(fault.text).find(fault.message), std::string::npos) << fault.text << "\n"
+                                                                              << updateError(fault.text);
 }
 
 std::string repeated(const std::string& part, std::size_t count) {
@@ -151,12 +154,14 @@ TEST(SparqlParserErrors, RefuseDeepNestingInPlainWords) {
   constexpr std::size_t deep = 100000;
   for (const std::string& text :
        {"ASK " + repeated("{", deep), "ASK { FILTER" + repeated("(", deep), "ASK { FILTER(" + repeated("!(", deep),
-        "ASK { ?s " + repeated("(", deep), "ASK { ?s ?p " + repeated("(", deep), "ASK { ?s ?p " + repeated("[ :p ", deep),
-        "ASK { FILTER(" + repeated("STR(", deep), "ASK { FILTER(" + repeated("NOT EXISTS { FILTER(", deep),
-        "SELECT * " + repeated("{ SELECT * ", deep), "ASK { ?s !" + repeated("(", deep),
-        "ASK { FILTER(" + repeated("1 + ", deep) + "1) }", "ASK { FILTER(1" + repeated(" IN (1) = 2 || 1", 10) + repeated(" * 1", deep) + ") }"}) {
+        "ASK { ?s " + repeated("(", deep), "ASK { ?s ?p " + repeated("(", deep),
+        "ASK { ?s ?p " + repeated("[ :p ", deep), "ASK { FILTER(" + repeated("STR(", deep),
+        "ASK { FILTER(" + repeated("NOT EXISTS { FILTER(", deep), "SELECT * " + repeated("{ SELECT * ", deep),
+        "ASK { ?s !" + repeated("(", deep), "ASK { FILTER(" + repeated("1 + ", deep) + "1) }",
+        "ASK { FILTER(1" + repeated(" IN (1) = 2 || 1", 10) + repeated(" * 1", deep) + ") }"}) {
     const std::string error = queryError(text);
-    const bool plain = error.find("nested deeper than 256") != std::string::npos || error.find("expected") != std::string::npos;
+    const bool plain =
+        error.find("nested deeper than 256") != std::string::npos || error.find("expected") != std::string::npos;
     EXPECT_TRUE(plain) << text.substr(0, 40) << ": " << error.substr(0, 200);
   }
 }
@@ -180,7 +185,8 @@ TEST(SparqlParserErrors, SurviveDamagedRequests) {
   const std::string whole =
       "PREFIX a: <http://a/> SELECT DISTINCT ?x (GROUP_CONCAT(?y ; SEPARATOR = ', ') AS ?z) FROM <http://g> WHERE { ?x "
       "a:p/^a:q*|!(a|^a:r) [ a:s (1 2.5 -3e4 'x'@en) ] . OPTIONAL { GRAPH ?g { ?x ?p \"\"\"\\u00e9\"\"\" } FILTER NOT "
-      "EXISTS { ?x a:t _:b } } MINUS { VALUES (?x ?y) { (UNDEF true) } } BIND(IF(?x > 3, STR(?y), COALESCE(?p)) AS ?w) { "
+      "EXISTS { ?x a:t _:b } } MINUS { VALUES (?x ?y) { (UNDEF true) } } BIND(IF(?x > 3, STR(?y), COALESCE(?p)) AS ?w) "
+      "{ "
       "SELECT ?q { ?q ?r ?s } LIMIT 3 } } GROUP BY ?x HAVING (COUNT(*) > 1) ORDER BY DESC(?z) OFFSET 2";
   ASSERT_NO_THROW(parseQuery(whole));
   std::mt19937 random(7);

@@ -17,26 +17,53 @@ SparqlParseOptions withBase() {
   return options;
 }
 
-Query read(const std::string& text) { return parseQuery(text, withBase()); }
-Update readUpdate(const std::string& text) { return parseUpdate(text, withBase()); }
+Query read(const std::string& text) {
+  return parseQuery(text, withBase());
+}
+Update readUpdate(const std::string& text) {
+  return parseUpdate(text, withBase());
+}
 
-const TriplesBlock& firstBlock(const Query& query) { return std::get<TriplesBlock>(query.select.where.elements.at(0).value); }
-const Expression& firstFilter(const Query& query) { return std::get<Filter>(query.select.where.elements.at(0).value).condition; }
+const TriplesBlock& firstBlock(const Query& query) {
+  return std::get<TriplesBlock>(query.select.where.elements.at(0).value);
+}
+const Expression& firstFilter(const Query& query) {
+  return std::get<Filter>(query.select.where.elements.at(0).value).condition;
+}
 
 /// An expression as nested calls, so that its shape can be read.
 std::string shape(const Expression& expression, const Query& query) {
   using K = Expression::Kind;
-  static const std::map<K, std::string> signs{{K::Or, "||"}, {K::And, "&&"}, {K::Not, "!"}, {K::Equal, "="},
-      {K::NotEqual, "!="}, {K::Less, "<"}, {K::Greater, ">"}, {K::LessEqual, "<="}, {K::GreaterEqual, ">="},
-      {K::In, "in"}, {K::NotIn, "notin"}, {K::Add, "+"}, {K::Subtract, "-"}, {K::Multiply, "*"}, {K::Divide, "/"},
-      {K::Negate, "neg"}, {K::Plus, "pos"}, {K::Exists, "exists"}, {K::NotExists, "notexists"}};
+  static const std::map<K, std::string> signs{{K::Or, "||"},
+                                              {K::And, "&&"},
+                                              {K::Not, "!"},
+                                              {K::Equal, "="},
+                                              {K::NotEqual, "!="},
+                                              {K::Less, "<"},
+                                              {K::Greater, ">"},
+                                              {K::LessEqual, "<="},
+                                              {K::GreaterEqual, ">="},
+                                              {K::In, "in"},
+                                              {K::NotIn, "notin"},
+                                              {K::Add, "+"},
+                                              {K::Subtract, "-"},
+                                              {K::Multiply, "*"},
+                                              {K::Divide, "/"},
+                                              {K::Negate, "neg"},
+                                              {K::Plus, "pos"},
+                                              {K::Exists, "exists"},
+                                              {K::NotExists, "notexists"}};
   if (expression.kind == K::Variable) return query.variables[expression.variable].name;
   if (expression.kind == K::Constant) return expression.term.text;
   std::string text = "(";
-  if (expression.kind == K::Call) text += nameOf(expression.builtin);
-  else if (expression.kind == K::Aggregate) text += nameOf(expression.aggregate);
-  else if (expression.kind == K::Function) text += expression.term.text;
-  else text += signs.at(expression.kind);
+  if (expression.kind == K::Call)
+    text += nameOf(expression.builtin);
+  else if (expression.kind == K::Aggregate)
+    text += nameOf(expression.aggregate);
+  else if (expression.kind == K::Function)
+    text += expression.term.text;
+  else
+    text += signs.at(expression.kind);
   for (const Expression& argument : expression.arguments) text += " " + shape(argument, query);
   return text + ")";
 }
@@ -64,7 +91,8 @@ TEST(SparqlParser, TellsSignedNumbersFromOperators) {
   EXPECT_EQ(filterShape("-1 < +2"), "(< -1 +2)");
   EXPECT_EQ(filterShape("- ?a = ?b-1"), "(= (neg a) (- b 1))");
   const Query query = read("ASK { ?s :p -5, +1.5, -2e3 }");
-  EXPECT_EQ(firstBlock(query).triples[0].object.term(), Term::literal("-5", "http://www.w3.org/2001/XMLSchema#integer"));
+  EXPECT_EQ(firstBlock(query).triples[0].object.term(),
+            Term::literal("-5", "http://www.w3.org/2001/XMLSchema#integer"));
   EXPECT_EQ(firstBlock(query).triples[1].object.term().text, "+1.5");
   EXPECT_EQ(firstBlock(query).triples[2].object.term().datatype, "http://www.w3.org/2001/XMLSchema#double");
 }
@@ -88,23 +116,48 @@ TEST(SparqlParser, ResolvesIrisAsRfc3986Says) {
     const Query query = parseQuery("DESCRIBE <" + reference + ">", options);
     return query.describe[0].term().text;
   };
-  const std::vector<std::pair<std::string, std::string>> examples{   // RFC 3986, 5.4
-      {"g:h", "g:h"}, {"g", "http://a/b/c/g"}, {"./g", "http://a/b/c/g"}, {"g/", "http://a/b/c/g/"},
-      {"/g", "http://a/g"}, {"//g", "http://g"}, {"?y", "http://a/b/c/d;p?y"}, {"g?y", "http://a/b/c/g?y"},
-      {"#s", "http://a/b/c/d;p?q#s"}, {"g#s", "http://a/b/c/g#s"}, {"g?y#s", "http://a/b/c/g?y#s"},
-      {";x", "http://a/b/c/;x"}, {"g;x=1", "http://a/b/c/g;x=1"}, {"", "http://a/b/c/d;p?q"}, {".", "http://a/b/c/"},
-      {"./", "http://a/b/c/"}, {"..", "http://a/b/"}, {"../", "http://a/b/"}, {"../g", "http://a/b/g"},
-      {"../..", "http://a/"}, {"../../g", "http://a/g"}, {"../../../g", "http://a/g"}, {"/./g", "http://a/g"},
-      {"/../g", "http://a/g"}, {"g.", "http://a/b/c/g."}, {"..g", "http://a/b/c/..g"}, {"./../g", "http://a/b/g"},
-      {"./g/.", "http://a/b/c/g/"}, {"g/./h", "http://a/b/c/g/h"}, {"g/../h", "http://a/b/c/h"},
-      {"g;x=1/./y", "http://a/b/c/g;x=1/y"}, {"g;x=1/../y", "http://a/b/c/y"}, {"g?y/./x", "http://a/b/c/g?y/./x"},
-      {"g#s/../x", "http://a/b/c/g#s/../x"}};
+  const std::vector<std::pair<std::string, std::string>> examples{// RFC 3986, 5.4
+                                                                  {"g:h", "g:h"},
+                                                                  {"g", "http://a/b/c/g"},
+                                                                  {"./g", "http://a/b/c/g"},
+                                                                  {"g/", "http://a/b/c/g/"},
+                                                                  {"/g", "http://a/g"},
+                                                                  {"//g", "http://g"},
+                                                                  {"?y", "http://a/b/c/d;p?y"},
+                                                                  {"g?y", "http://a/b/c/g?y"},
+                                                                  {"#s", "http://a/b/c/d;p?q#s"},
+                                                                  {"g#s", "http://a/b/c/g#s"},
+                                                                  {"g?y#s", "http://a/b/c/g?y#s"},
+                                                                  {";x", "http://a/b/c/;x"},
+                                                                  {"g;x=1", "http://a/b/c/g;x=1"},
+                                                                  {"", "http://a/b/c/d;p?q"},
+                                                                  {".", "http://a/b/c/"},
+                                                                  {"./", "http://a/b/c/"},
+                                                                  {"..", "http://a/b/"},
+                                                                  {"../", "http://a/b/"},
+                                                                  {"../g", "http://a/b/g"},
+                                                                  {"../..", "http://a/"},
+                                                                  {"../../g", "http://a/g"},
+                                                                  {"../../../g", "http://a/g"},
+                                                                  {"/./g", "http://a/g"},
+                                                                  {"/../g", "http://a/g"},
+                                                                  {"g.", "http://a/b/c/g."},
+                                                                  {"..g", "http://a/b/c/..g"},
+                                                                  {"./../g", "http://a/b/g"},
+                                                                  {"./g/.", "http://a/b/c/g/"},
+                                                                  {"g/./h", "http://a/b/c/g/h"},
+                                                                  {"g/../h", "http://a/b/c/h"},
+                                                                  {"g;x=1/./y", "http://a/b/c/g;x=1/y"},
+                                                                  {"g;x=1/../y", "http://a/b/c/y"},
+                                                                  {"g?y/./x", "http://a/b/c/g?y/./x"},
+                                                                  {"g#s/../x", "http://a/b/c/g#s/../x"}};
   for (const auto& [reference, expected] : examples) EXPECT_EQ(resolved(reference), expected) << reference;
 }
 
 TEST(SparqlParser, DecodesEscapesOfStringsNamesAndCodePoints) {
-  const Query query = read("ASK { ?s :p 'a\\t\\n\\\\\\'\\u00e4\\U0001F333', '''x''y\n\"z''', \"\\\\u0041\" ; "
-                           ":a\\,b%20c.d :\\u006f . ?\\u0078 :q 1 }");
+  const Query query = read(
+      "ASK { ?s :p 'a\\t\\n\\\\\\'\\u00e4\\U0001F333', '''x''y\n\"z''', \"\\\\u0041\" ; "
+      ":a\\,b%20c.d :\\u006f . ?\\u0078 :q 1 }");
   const auto& triples = firstBlock(query).triples;
   EXPECT_EQ(triples[0].object.term().text, "a\t\n\\'\u00e4\U0001F333");
   EXPECT_EQ(triples[1].object.term().text, "x''y\n\"z");
@@ -141,14 +194,22 @@ std::string pathShape(const Path& path) {
     return "(" + text + ")";
   };
   switch (path.kind) {
-    case K::Link: return local(path.iri);
-    case K::Inverse: return "^" + pathShape(path.parts[0]);
-    case K::Sequence: return parts("/");
-    case K::Alternative: return parts("|");
-    case K::ZeroOrMore: return pathShape(path.parts[0]) + "*";
-    case K::OneOrMore: return pathShape(path.parts[0]) + "+";
-    case K::ZeroOrOne: return pathShape(path.parts[0]) + "?";
-    case K::NegatedSet: break;
+    case K::Link:
+      return local(path.iri);
+    case K::Inverse:
+      return "^" + pathShape(path.parts[0]);
+    case K::Sequence:
+      return parts("/");
+    case K::Alternative:
+      return parts("|");
+    case K::ZeroOrMore:
+      return pathShape(path.parts[0]) + "*";
+    case K::OneOrMore:
+      return pathShape(path.parts[0]) + "+";
+    case K::ZeroOrOne:
+      return pathShape(path.parts[0]) + "?";
+    case K::NegatedSet:
+      break;
   }
   for (const Term& iri : path.forward) text += "!" + local(iri);
   for (const Term& iri : path.backward) text += "!^" + local(iri);
@@ -180,8 +241,9 @@ TEST(SparqlParser, KeepsTriplesAroundFiltersInOneBlock) {
 }
 
 TEST(SparqlParser, ListsTheVisibleVariablesOfSelectAll) {
-  const Query query = read("SELECT * { ?a :p [] . { SELECT (COUNT(?z) AS ?n) { ?z :q ?y } } MINUS { ?m :p ?a } "
-                           "FILTER EXISTS { ?e :p ?a } BIND(1 AS ?b) GRAPH ?g { } VALUES (?v) { (1) } } VALUES ?w { 2 }");
+  const Query query = read(
+      "SELECT * { ?a :p [] . { SELECT (COUNT(?z) AS ?n) { ?z :q ?y } } MINUS { ?m :p ?a } "
+      "FILTER EXISTS { ?e :p ?a } BIND(1 AS ?b) GRAPH ?g { } VALUES (?v) { (1) } } VALUES ?w { 2 }");
   std::vector<std::string> names;
   for (const Projection& column : query.select.projection) names.push_back(query.variables[column.variable].name);
   EXPECT_EQ(names, (std::vector<std::string>{"a", "n", "b", "g", "v", "w"}));
@@ -195,8 +257,9 @@ TEST(SparqlParser, MakesTemplatesWithBlankNodesAndPatternsWithHiddenVariables) {
 }
 
 TEST(SparqlParser, ReadsSolutionModifiers) {
-  const Query query = read("SELECT ?a (SUM(DISTINCT ?b) AS ?n) (?n * 2 AS ?m) { ?a :p ?b } GROUP BY ?a (?a + 1 AS ?c) "
-                           "HAVING (?n > 1) ORDER BY DESC(?n) ?a LIMIT 5 OFFSET 7");
+  const Query query = read(
+      "SELECT ?a (SUM(DISTINCT ?b) AS ?n) (?n * 2 AS ?m) { ?a :p ?b } GROUP BY ?a (?a + 1 AS ?c) "
+      "HAVING (?n > 1) ORDER BY DESC(?n) ?a LIMIT 5 OFFSET 7");
   EXPECT_TRUE(query.select.grouped);
   EXPECT_EQ(query.select.modifiers.group_by.size(), 2U);
   EXPECT_EQ(query.select.modifiers.having.size(), 1U);
@@ -208,9 +271,11 @@ TEST(SparqlParser, ReadsSolutionModifiers) {
 
 TEST(SparqlParser, ReadsEveryUpdateOperation) {
   const Update update = readUpdate(
-      "LOAD SILENT :f INTO GRAPH :g ; CLEAR NAMED ; DROP SILENT ALL ; CREATE GRAPH :g ; ADD DEFAULT TO :g ; MOVE :g TO :h ;"
+      "LOAD SILENT :f INTO GRAPH :g ; CLEAR NAMED ; DROP SILENT ALL ; CREATE GRAPH :g ; ADD DEFAULT TO :g ; MOVE :g TO "
+      ":h ;"
       "COPY SILENT GRAPH :h TO DEFAULT ; INSERT DATA { :a :p 1 GRAPH :g { _:b :p _:b } } ; DELETE DATA { :a :p 1 } ;"
-      "DELETE WHERE { ?s :p ?o GRAPH ?g { } } ; WITH :g DELETE { ?s :p ?o } INSERT { _:n :q ?o } USING :u USING NAMED :v "
+      "DELETE WHERE { ?s :p ?o GRAPH ?g { } } ; WITH :g DELETE { ?s :p ?o } INSERT { _:n :q ?o } USING :u USING NAMED "
+      ":v "
       "WHERE { ?s :p ?o } ;");
   ASSERT_EQ(update.operations.size(), 11U);
   EXPECT_EQ(std::get<Load>(update.operations[0].value).into->text, "http://example.org/g");
@@ -227,7 +292,9 @@ TEST(SparqlParser, ReadsEveryUpdateOperation) {
   EXPECT_EQ(modify.using_clause.named_graphs.at(0).text, "http://example.org/v");
 }
 
-TEST(SparqlParser, ReadsAnEmptyUpdate) { EXPECT_TRUE(readUpdate("PREFIX x: <http://x/> # nothing").operations.empty()); }
+TEST(SparqlParser, ReadsAnEmptyUpdate) {
+  EXPECT_TRUE(readUpdate("PREFIX x: <http://x/> # nothing").operations.empty());
+}
 
 TEST(SparqlParser, CountsOffsetsInTheDecodedText) {
   const Query query = read("SELECT ?\\u0061 { ?a :p ?b }");

@@ -27,7 +27,8 @@ struct RandomGraph {
   std::vector<Quad> quads() const {
     std::vector<Quad> result;
     const auto add = [&](const Pairs& pairs, const char* name) {
-      for (const auto& [a, b] : pairs) result.push_back({node(a), Term::iri(std::string("http://example.org/") + name), node(b), Term::iri("")});
+      for (const auto& [a, b] : pairs)
+        result.push_back({node(a), Term::iri(std::string("http://example.org/") + name), node(b), Term::iri("")});
     };
     add(p, "p");
     add(q, "q");

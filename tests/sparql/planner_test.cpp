@@ -39,7 +39,8 @@ SmallStore& wideStore() {
 }
 
 TEST(Planner, AnswersTheSameInEveryOrderOfPatterns) {
-  std::vector<std::string> patterns = {"?a a :Rare .", "?a :near ?b .", "?b :height ?h .", "?b :label ?l .", "?a :height ?g ."};
+  std::vector<std::string> patterns = {"?a a :Rare .", "?a :near ?b .", "?b :height ?h .", "?b :label ?l .",
+                                       "?a :height ?g ."};
   std::sort(patterns.begin(), patterns.end());
   std::optional<std::vector<std::string>> first;
   do {
@@ -67,7 +68,7 @@ TEST(Planner, HashesWhereBothSidesAreLargeOrMakesAColumn) {
   const QuadReader reader = wideStore().reader();
   const std::string query = "SELECT * { ?a a :Common . ?b :near ?a . ?b :height ?h }";
   const std::string column = "lookup by column  ?b <http://example.org/height> ?h";
-  QueryOptions strict;   // one graph by itself has no columns
+  QueryOptions strict;  // one graph by itself has no columns
   strict.default_graph = DefaultGraph::Unnamed;
   EXPECT_THAT(explainQuery(reader, kPrefixes + query, strict), AllOf(HasSubstr("hash join"), Not(HasSubstr(column))));
   EXPECT_THAT(explainQuery(reader, kPrefixes + query), HasSubstr(column));
@@ -105,13 +106,16 @@ TEST(Planner, MergesWhereBothSidesComeSorted) {
   EXPECT_THAT(explainQuery(store.reader(), kPrefixes + both), HasSubstr("merge join on ?x"));
   EXPECT_THAT(explainQuery(store.reader(), kPrefixes + joined), HasSubstr("merge join on ?y"));
   // Written so that nothing can be joined by order: the same rows.
-  EXPECT_EQ(store.rows(both), store.rows("SELECT ?x { { SELECT ?x { ?x a :A } ORDER BY DESC(?x) LIMIT 100000 } FILTER EXISTS { ?x a :B } }"));
+  EXPECT_EQ(
+      store.rows(both),
+      store.rows("SELECT ?x { { SELECT ?x { ?x a :A } ORDER BY DESC(?x) LIMIT 100000 } FILTER EXISTS { ?x a :B } }"));
   EXPECT_EQ(store.rows(joined), store.rows("SELECT ?x ?y { ?x :near ?y FILTER EXISTS { ?y a :A } }"));
 }
 
 TEST(Planner, FiltersAsSoonAsTheirVariablesAreBound) {
   const QuadReader reader = wideStore().reader();
-  const std::string plan = explainQuery(reader, kPrefixes + "SELECT * { ?a :near ?b . ?b :label ?l . ?a a :Rare . ?a :height ?h FILTER(?h > 200) }");
+  const std::string plan = explainQuery(
+      reader, kPrefixes + "SELECT * { ?a :near ?b . ?b :label ?l . ?a a :Rare . ?a :height ?h FILTER(?h > 200) }");
   EXPECT_THAT(plan, HasSubstr("actual 0"));
   EXPECT_LT(plan.rfind("filter"), plan.size());
 }
@@ -142,9 +146,13 @@ TEST(PreparedQueries, SeeTheirParametersEverywhere) {
   };
   const std::string expected = wideStore().rows("SELECT (STR(COUNT(*)) AS ?n) { ?x :height ?h FILTER(?h < 50) }").at(0);
   EXPECT_EQ("\"" + count("SELECT (COUNT(*) AS ?n) { ?x :height ?h FILTER(?h < ?limit) }") + "\"", expected);
-  EXPECT_EQ("\"" + count("SELECT (COUNT(*) AS ?n) { { ?x :height ?h FILTER(?h < ?limit) } UNION { ?x :none ?h } }") + "\"", expected);
-  EXPECT_EQ("\"" + count("SELECT ?n { { SELECT (COUNT(*) AS ?n) { ?x :height ?h FILTER(?h < ?limit) } } }") + "\"", expected);
-  EXPECT_EQ("\"" + count("SELECT (COUNT(*) AS ?n) { ?x :height ?h BIND(?h < ?limit AS ?b) FILTER(?b) }") + "\"", expected);
+  EXPECT_EQ(
+      "\"" + count("SELECT (COUNT(*) AS ?n) { { ?x :height ?h FILTER(?h < ?limit) } UNION { ?x :none ?h } }") + "\"",
+      expected);
+  EXPECT_EQ("\"" + count("SELECT ?n { { SELECT (COUNT(*) AS ?n) { ?x :height ?h FILTER(?h < ?limit) } } }") + "\"",
+            expected);
+  EXPECT_EQ("\"" + count("SELECT (COUNT(*) AS ?n) { ?x :height ?h BIND(?h < ?limit AS ?b) FILTER(?b) }") + "\"",
+            expected);
 }
 
 TEST(PreparedQueries, AskStopsAtTheFirstSolution) {

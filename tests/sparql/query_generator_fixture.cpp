@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Query forms and graph patterns of the generator. Letters: a b c objects, k l classes, n m h i j numbers, s t u v strings,
-// e blank nodes, f booleans, p q predicates, g graphs, x y z anything, r what BIND and aggregates make.
+// Query forms and graph patterns of the generator. Letters: a b c objects, k l classes, n m h i j numbers, s t u v
+// strings, e blank nodes, f booleans, p q predicates, g graphs, x y z anything, r what BIND and aggregates make.
 #include "sparql/query_generator_fixture.hpp"
 
 #include <algorithm>
@@ -28,9 +28,12 @@ std::string textFor(char engine, const std::string& marked) {
   std::string text;
   char part = 0;
   for (const char c : marked) {
-    if (c == kOurs || c == kTheirs) part = c;
-    else if (c == kEnd) part = 0;
-    else if (part == 0 || part == engine) text += c;
+    if (c == kOurs || c == kTheirs)
+      part = c;
+    else if (c == kEnd)
+      part = 0;
+    else if (part == 0 || part == engine)
+      text += c;
   }
   return text;
 }
@@ -48,23 +51,40 @@ std::string QueryGenerator::variable(const std::string& letters, std::uint32_t p
   return used(std::string("?") + letters[upTo(static_cast<std::uint32_t>(letters.size()))]);
 }
 
-std::string QueryGenerator::anyVariable() { return used_.empty() || chance(5) ? variable("ax") : one(used_); }
+std::string QueryGenerator::anyVariable() {
+  return used_.empty() || chance(5) ? variable("ax") : one(used_);
+}
 
 std::string QueryGenerator::triple() {
   const std::string subject = chance(88) ? variable("ab") : "o:" + std::to_string(upTo(8));
   switch (upTo(13)) {
-    case 0: case 1: return subject + " a " + (chance(50) ? variable("kl", 50) : one({"clx:Tree", "clx:Static", "clx:Car", "clx:Lamp"}));
-    case 2: return subject + " clx:height " + value(kNumbers);
-    case 3: return subject + " clx:width " + (chance(85) ? value(kNumbers) : "2.5");
-    case 4: return subject + " clx:pointCount " + (chance(85) ? value(kNumbers) : "3");
-    case 5: return subject + " clx:label " + (chance(80) ? value(kStrings) : one({"\"oak\"", "\"Eiche\"@de", "\"Tree\"@en-gb"}));
-    case 6: return subject + " clx:note " + value(kStrings);
-    case 7: return subject + " clx:near " + value(subject == "?a" ? "bc" : "ac");
-    case 8: return subject + " clx:hasPart " + (chance(70) ? value("c") : "[ clx:height " + value(kNumbers) + " ]");
-    case 9: return subject + " clx:centroid " + used("?e") + " . ?e clx:x " + value(kNumbers);
-    case 10: return subject + " clx:seen " + value("f");
-    case 11: return variable("kl", 50) + " rdfs:subClassOf " + variable("kl", 50);
-    default: return subject + " " + value("pq") + " " + value("xyz");
+    case 0:
+    case 1:
+      return subject + " a " +
+             (chance(50) ? variable("kl", 50) : one({"clx:Tree", "clx:Static", "clx:Car", "clx:Lamp"}));
+    case 2:
+      return subject + " clx:height " + value(kNumbers);
+    case 3:
+      return subject + " clx:width " + (chance(85) ? value(kNumbers) : "2.5");
+    case 4:
+      return subject + " clx:pointCount " + (chance(85) ? value(kNumbers) : "3");
+    case 5:
+      return subject + " clx:label " +
+             (chance(80) ? value(kStrings) : one({"\"oak\"", "\"Eiche\"@de", "\"Tree\"@en-gb"}));
+    case 6:
+      return subject + " clx:note " + value(kStrings);
+    case 7:
+      return subject + " clx:near " + value(subject == "?a" ? "bc" : "ac");
+    case 8:
+      return subject + " clx:hasPart " + (chance(70) ? value("c") : "[ clx:height " + value(kNumbers) + " ]");
+    case 9:
+      return subject + " clx:centroid " + used("?e") + " . ?e clx:x " + value(kNumbers);
+    case 10:
+      return subject + " clx:seen " + value("f");
+    case 11:
+      return variable("kl", 50) + " rdfs:subClassOf " + variable("kl", 50);
+    default:
+      return subject + " " + value("pq") + " " + value("xyz");
   }
 }
 
@@ -73,31 +93,40 @@ std::string QueryGenerator::path(int depth) {
   const auto set = [&] {
     return chance(30) ? "(" + path(depth - 1) + "|" + path(depth - 1) + ")" : "(" + path(depth - 1) + ")";
   };
-  if (depth <= 0 || chance(30)) return one({"clx:near", "clx:hasPart", "clx:height", "rdfs:subClassOf", "a", "clx:pointCount"});
+  if (depth <= 0 || chance(30))
+    return one({"clx:near", "clx:hasPart", "clx:height", "rdfs:subClassOf", "a", "clx:pointCount"});
   switch (upTo(7)) {
-    case 0: return path(depth - 1) + "/" + path(depth - 1);
-    case 1: return set() + "*";
-    case 2: return set() + "+";
-    case 3: return set() + "?";
-    case 4: return "^(" + path(depth - 1) + ")";
-    case 5: return one({"!clx:near", "!(clx:near|a)", "!^a", "!(^a|^clx:near)"});
-    default: return "a/rdfs:subClassOf*";
+    case 0:
+      return path(depth - 1) + "/" + path(depth - 1);
+    case 1:
+      return set() + "*";
+    case 2:
+      return set() + "+";
+    case 3:
+      return set() + "?";
+    case 4:
+      return "^(" + path(depth - 1) + ")";
+    case 5:
+      return one({"!clx:near", "!(clx:near|a)", "!^a", "!(^a|^clx:near)"});
+    default:
+      return "a/rdfs:subClassOf*";
   }
 }
 
 /// The second engine drops duplicates of alternatives, so it gets what the specification defines them as.
 std::string QueryGenerator::alternative(const std::string& subject, const std::string& object) {
   if (chance(20))
-    return kOurs + subject + " !(^clx:near|clx:hasPart) " + object + " ." + kTheirs + "{ " + subject + " !clx:hasPart " + object +
-           " } UNION { " + subject + " !^clx:near " + object + " }" + kEnd;
+    return kOurs + subject + " !(^clx:near|clx:hasPart) " + object + " ." + kTheirs + "{ " + subject +
+           " !clx:hasPart " + object + " } UNION { " + subject + " !^clx:near " + object + " }" + kEnd;
   const std::string left = path(1), right = path(1);
-  return kOurs + subject + " " + left + "|" + right + " " + object + " ." + kTheirs + "{ " + subject + " " + left + " " + object +
-         " } UNION { " + subject + " " + right + " " + object + " }" + kEnd;
+  return kOurs + subject + " " + left + "|" + right + " " + object + " ." + kTheirs + "{ " + subject + " " + left +
+         " " + object + " } UNION { " + subject + " " + right + " " + object + " }" + kEnd;
 }
 
 std::string QueryGenerator::pathTriple() {
   const std::string subject = chance(75) ? variable("ab") : one({"o:1", "o:3", "clx:Tree"});
-  const std::string object = chance(80) ? value(subject == "?a" ? "bcx" : "acx") : one({"o:2", "clx:Static", "clx:Plant"});
+  const std::string object =
+      chance(80) ? value(subject == "?a" ? "bcx" : "acx") : one({"o:2", "clx:Static", "clx:Plant"});
   if (chance(30)) return alternative(subject, object);
   return subject + " " + path(2) + " " + object + " .";
 }
@@ -111,9 +140,13 @@ std::string QueryGenerator::triples() {
   return text;
 }
 
-std::string QueryGenerator::filter() { return no_filters_ ? "" : "FILTER(" + condition(2) + ") "; }
+std::string QueryGenerator::filter() {
+  return no_filters_ ? "" : "FILTER(" + condition(2) + ") ";
+}
 
-std::string QueryGenerator::optional(int depth) { return "OPTIONAL { " + group(depth - 1) + "} "; }
+std::string QueryGenerator::optional(int depth) {
+  return "OPTIONAL { " + group(depth - 1) + "} ";
+}
 
 std::string QueryGenerator::unions(int depth) {
   std::string text = "{ " + group(depth - 1) + "}";
@@ -121,11 +154,14 @@ std::string QueryGenerator::unions(int depth) {
   return text + " ";
 }
 
-std::string QueryGenerator::minus(int depth) { return "MINUS { " + group(depth - 1) + "} "; }
+std::string QueryGenerator::minus(int depth) {
+  return "MINUS { " + group(depth - 1) + "} ";
+}
 
 std::string QueryGenerator::graph(int depth) {
   const std::vector<std::string> graphs = madeGraphs();
-  const std::string name = chance(60) ? variable("g") : "<" + graphs[1 + upTo(static_cast<std::uint32_t>(graphs.size()) - 1)] + ">";
+  const std::string name =
+      chance(60) ? variable("g") : "<" + graphs[1 + upTo(static_cast<std::uint32_t>(graphs.size()) - 1)] + ">";
   const bool around = std::exchange(in_graph_, true);
   const std::string text = "GRAPH " + name + " { " + group(depth - 1) + "} ";
   in_graph_ = around;
@@ -160,7 +196,8 @@ std::string QueryGenerator::subSelect(int depth) {
     const std::string pattern = group(depth - 1);
     columns = used_;
     if (columns.size() > 2) columns.resize(2);
-    text = std::string("SELECT ") + (chance(40) ? "DISTINCT " : "") + (columns.empty() ? "*" : joined(columns, " ")) + " { " + pattern + "}";
+    text = std::string("SELECT ") + (chance(40) ? "DISTINCT " : "") + (columns.empty() ? "*" : joined(columns, " ")) +
+           " { " + pattern + "}";
   } else {
     columns = used_;
     text = body;
@@ -173,13 +210,20 @@ std::string QueryGenerator::subSelect(int depth) {
 std::string QueryGenerator::aggregate() {
   const std::string distinct = chance(30) ? "DISTINCT " : "";
   switch (upTo(7)) {
-    case 0: return "COUNT(*)";
-    case 1: return "COUNT(" + distinct + anyVariable() + ")";
-    case 2: return "SUM(" + distinct + variable(kNumbers) + ")";
-    case 3: return "AVG(" + distinct + variable(kNumbers) + ")";
-    case 4: return "MIN(COALESCE(" + variable(kNumbers) + ", 99))";
-    case 5: return "MAX(COALESCE(" + variable(kNumbers) + ", -99))";
-    default: return "STRLEN(GROUP_CONCAT(" + distinct + "COALESCE(STR(" + variable(kStrings) + "), \"-\"); SEPARATOR=\"|\"))";
+    case 0:
+      return "COUNT(*)";
+    case 1:
+      return "COUNT(" + distinct + anyVariable() + ")";
+    case 2:
+      return "SUM(" + distinct + variable(kNumbers) + ")";
+    case 3:
+      return "AVG(" + distinct + variable(kNumbers) + ")";
+    case 4:
+      return "MIN(COALESCE(" + variable(kNumbers) + ", 99))";
+    case 5:
+      return "MAX(COALESCE(" + variable(kNumbers) + ", -99))";
+    default:
+      return "STRLEN(GROUP_CONCAT(" + distinct + "COALESCE(STR(" + variable(kStrings) + "), \"-\"); SEPARATOR=\"|\"))";
   }
 }
 
@@ -201,7 +245,8 @@ std::string QueryGenerator::aggregateSelect(int depth) {
   }
   std::string text = "SELECT " + joined(keys, " ") + items + " { " + pattern + "}";
   if (!keys.empty()) text += " GROUP BY " + joined(keys, " ");
-  if (chance(25)) text += " HAVING (" + one({"COUNT(*)", "COUNT(" + anyVariable() + ")"}) + " > " + std::to_string(upTo(4)) + ")";
+  if (chance(25))
+    text += " HAVING (" + one({"COUNT(*)", "COUNT(" + anyVariable() + ")"}) + " > " + std::to_string(upTo(4)) + ")";
   columns.insert(columns.begin(), keys.begin(), keys.end());
   used_ = columns;
   return text;
@@ -210,14 +255,26 @@ std::string QueryGenerator::aggregateSelect(int depth) {
 std::string QueryGenerator::groupElement(int depth) {
   if (depth <= 0) return chance(50) ? triples() : filter();
   switch (upTo(14)) {
-    case 0: case 1: case 2: return optional(depth);
-    case 3: case 4: return unions(depth);
-    case 5: return in_graph_ ? optional(depth) : minus(depth);
-    case 6: case 7: return graph(depth);
-    case 8: return bind();
-    case 9: return values();
-    case 10: return in_graph_ ? unions(depth) : subSelect(depth);
-    default: return filter();
+    case 0:
+    case 1:
+    case 2:
+      return optional(depth);
+    case 3:
+    case 4:
+      return unions(depth);
+    case 5:
+      return in_graph_ ? optional(depth) : minus(depth);
+    case 6:
+    case 7:
+      return graph(depth);
+    case 8:
+      return bind();
+    case 9:
+      return values();
+    case 10:
+      return in_graph_ ? unions(depth) : subSelect(depth);
+    default:
+      return filter();
   }
 }
 
@@ -266,8 +323,8 @@ MadeQuery QueryGenerator::construct() {
   query.form = MadeForm::Construct;
   const std::string pattern = group(2);
   const std::string object = anyVariable();
-  const std::string head = chance(70) ? variable("ab") + " clx:found " + object
-                                      : "[] clx:found " + object + " ; clx:of " + variable("ab");
+  const std::string head =
+      chance(70) ? variable("ab") + " clx:found " + object : "[] clx:found " + object + " ; clx:of " + variable("ab");
   query.text = kPrologue + "CONSTRUCT { " + head + " } { " + pattern + "}";
   return query;
 }

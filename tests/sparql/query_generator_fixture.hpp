@@ -18,7 +18,7 @@ inline constexpr char kOurs = '\x01', kTheirs = '\x02', kEnd = '\x03';
 
 struct MadeQuery {
   MadeForm form = MadeForm::Select;
-  std::string text;          ///< with the marks, as all texts here
+  std::string text;  ///< with the marks, as all texts here
   /// With LIMIT or OFFSET, the same query without: any rows of its answer will do, as many as LIMIT allows.
   std::string unlimited;
   /// The column of numbers that the rows are ordered by; empty: the order says nothing.
@@ -73,7 +73,9 @@ class QueryGenerator {
   // choices
   std::uint32_t upTo(std::uint32_t limit) { return random_() % limit; }
   bool chance(std::uint32_t percent) { return upTo(100) < percent; }
-  std::string one(const std::vector<std::string>& choices) { return choices[upTo(static_cast<std::uint32_t>(choices.size()))]; }
+  std::string one(const std::vector<std::string>& choices) {
+    return choices[upTo(static_cast<std::uint32_t>(choices.size()))];
+  }
   /// A variable from `letters`; most often one that the query has already.
   std::string variable(const std::string& letters) { return variable(letters, 80); }
   std::string variable(const std::string& letters, std::uint32_t percent_known);
@@ -86,8 +88,8 @@ class QueryGenerator {
   std::mt19937 random_;
   int fresh_ = 0;
   int patterns_left_ = 0;
-  bool in_graph_ = false;      ///< no VALUES, MINUS, sub-selects there: the second engine does not take them graph by graph
-  bool no_filters_ = false;    ///< the second engine gives no row at all for a group that it knows to be empty
+  bool in_graph_ = false;  ///< no VALUES, MINUS, sub-selects there: the second engine does not take them graph by graph
+  bool no_filters_ = false;  ///< the second engine gives no row at all for a group that it knows to be empty
   std::vector<std::string> used_;
 };
 

@@ -17,7 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const unsigned char* bytes(const char* text) { return reinterpret_cast<const unsigned char*>(text); }
+const unsigned char* bytes(const char* text) {
+  return reinterpret_cast<const unsigned char*>(text);
+}
 
 class RedlandQueries : public testing::Test {
  protected:
@@ -45,7 +47,9 @@ class RedlandQueries : public testing::Test {
     librdf_free_world(world_);
     fs::remove_all(folder_);
   }
-  librdf_node* node(const char* name) { return librdf_new_node_from_uri_string(world_, bytes((std::string("http://e/") + name).c_str())); }
+  librdf_node* node(const char* name) {
+    return librdf_new_node_from_uri_string(world_, bytes((std::string("http://e/") + name).c_str()));
+  }
   void add(const char* s, const char* p, const char* o) { librdf_model_add(model_, node(s), node(p), node(o)); }
   librdf_query_results* ask(const char* language, const char* text) {
     query_ = librdf_new_query(world_, language, nullptr, bytes(text), nullptr);
@@ -65,7 +69,8 @@ class RedlandQueries : public testing::Test {
   librdf_query* query_ = nullptr;
 };
 
-const char* const kNotExists = "PREFIX : <http://e/> SELECT ?x WHERE { ?x :near ?y FILTER NOT EXISTS { ?y :isA :Sign } }";
+const char* const kNotExists =
+    "PREFIX : <http://e/> SELECT ?x WHERE { ?x :near ?y FILTER NOT EXISTS { ?y :isA :Sign } }";
 
 TEST_F(RedlandQueries, AnswerANotExistsQuestion) {
   librdf_query_results* results = ask("cluxel", kNotExists);
@@ -117,7 +122,8 @@ TEST_F(RedlandQueries, UpdateTheOperatorGraphOfTheMap) {
   ASSERT_NE(results, nullptr);
   EXPECT_EQ(librdf_query_results_get_boolean(results), 1);
   done(results);
-  librdf_query_results* seen = ask("cluxel", "ASK { GRAPH <https://w3id.org/cluxel/graph/operator> { <http://e/lamp> <http://e/note> \"dark\" } }");
+  librdf_query_results* seen = ask(
+      "cluxel", "ASK { GRAPH <https://w3id.org/cluxel/graph/operator> { <http://e/lamp> <http://e/note> \"dark\" } }");
   ASSERT_NE(seen, nullptr);
   EXPECT_EQ(librdf_query_results_get_boolean(seen), 1);
   done(seen);
@@ -134,7 +140,8 @@ TEST_F(RedlandQueries, AskModelsOfOtherStoragesToo) {
   librdf_storage* memory = librdf_new_storage(world_, "memory", nullptr, nullptr);
   librdf_model* model = librdf_new_model(world_, memory, nullptr);
   librdf_model_add(model, node("a"), node("b"), node("c"));
-  librdf_query* query = librdf_new_query(world_, "cluxel", nullptr, bytes("ASK { <http://e/a> !<http://e/x> <http://e/c> }"), nullptr);
+  librdf_query* query =
+      librdf_new_query(world_, "cluxel", nullptr, bytes("ASK { <http://e/a> !<http://e/x> <http://e/c> }"), nullptr);
   librdf_query_results* results = librdf_model_query_execute(model, query);
   ASSERT_NE(results, nullptr);
   EXPECT_EQ(librdf_query_results_get_boolean(results), 1);
@@ -150,8 +157,9 @@ TEST_F(RedlandQueries, AreAskedByAProgramThatKnowsOnlyLibrdf) {
 #endif
   const fs::path program = fs::path(CLUXEL_BINARY_DIR) / "tests/sparql/librdf_only";
   const fs::path output = folder_ / "answer";
-  const std::string command = "REDLAND_MODULE_PATH='" + (fs::path(CLUXEL_BINARY_DIR) / "redland").string() + "' '" + program.string() +
-                              "' '" + (folder_ / "map.clx").string() + "' '" + kNotExists + "' > '" + output.string() + "' 2>&1";
+  const std::string command = "REDLAND_MODULE_PATH='" + (fs::path(CLUXEL_BINARY_DIR) / "redland").string() + "' '" +
+                              program.string() + "' '" + (folder_ / "map.clx").string() + "' '" + kNotExists + "' > '" +
+                              output.string() + "' 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0);
   std::ifstream in(output);
   EXPECT_EQ(std::string((std::istreambuf_iterator<char>(in)), {}), "http://e/lamp\n");
@@ -166,7 +174,8 @@ TEST_F(RedlandQueries, AreAskedByStockRdfproc) {
   if (std::system("command -v rdfproc >/dev/null") != 0) GTEST_SKIP() << "rdfproc (redland-utils) is not installed";
   const std::string output = (folder_ / "answer").string();
   const std::string command = "REDLAND_MODULE_PATH='" + modules.string() + "' rdfproc -q -s cluxel '" +
-                              (folder_ / "map.clx").string() + "' query cluxel - '" + kNotExists + "' > '" + output + "' 2>&1";
+                              (folder_ / "map.clx").string() + "' query cluxel - '" + kNotExists + "' > '" + output +
+                              "' 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0);
   std::ifstream in(output);
   const std::string text((std::istreambuf_iterator<char>(in)), {});

@@ -55,7 +55,8 @@ std::string shown(const std::vector<Tuple>& actual, const std::vector<Tuple>& ex
   const auto count = [&surplus](const std::vector<Tuple>& tuples, int by) {
     for (const Tuple& tuple : tuples) {
       std::string row;
-      for (const auto& term : tuple) row += " " + (!term ? "UNDEF" : term->kind == TermKind::BlankNode ? "[]" : toNTriples(*term));
+      for (const auto& term : tuple)
+        row += " " + (!term ? "UNDEF" : term->kind == TermKind::BlankNode ? "[]" : toNTriples(*term));
       surplus[row] += by;
     }
   };
@@ -64,7 +65,8 @@ std::string shown(const std::vector<Tuple>& actual, const std::vector<Tuple>& ex
   std::string text = std::to_string(actual.size()) + " rows, expected " + std::to_string(expected.size()) + "\n";
   int shown_rows = 0;
   for (const auto& [row, by] : surplus)
-    if (by != 0 && ++shown_rows <= 20) text += (by > 0 ? "only got (" : "only expected (") + std::to_string(std::abs(by)) + "x):" + row + "\n";
+    if (by != 0 && ++shown_rows <= 20)
+      text += (by > 0 ? "only got (" : "only expected (") + std::to_string(std::abs(by)) + "x):" + row + "\n";
   return text;
 }
 
@@ -80,7 +82,8 @@ bool isomorphicInOrder(const std::vector<Tuple>& a, const std::vector<Tuple>& b)
   return isomorphic(withRowNumbers(a), withRowNumbers(b));
 }
 
-std::string difference(const QueryResult& actual, const QueryResult& expected, RowOrder order, Cardinality cardinality) {
+std::string difference(const QueryResult& actual, const QueryResult& expected, RowOrder order,
+                       Cardinality cardinality) {
   if (actual.kind != expected.kind) return "another kind of answer";
   if (actual.kind == QueryResult::Kind::Boolean)
     return actual.boolean == expected.boolean ? "" : actual.boolean ? "got true" : "got false";

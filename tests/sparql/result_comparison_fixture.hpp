@@ -14,7 +14,7 @@ namespace cluxel::test {
 bool isomorphicInOrder(const std::vector<Tuple>& a, const std::vector<Tuple>& b);
 
 enum class RowOrder { Any, AsWritten };
-enum class Cardinality { Exact, Reduced };   ///< Reduced: `actual` may hold fewer copies of a row, but at least one
+enum class Cardinality { Exact, Reduced };  ///< Reduced: `actual` may hold fewer copies of a row, but at least one
 
 /// Empty when the same, else what differs, for people.
 std::string difference(const QueryResult& actual, const QueryResult& expected, RowOrder order = RowOrder::Any,

@@ -74,8 +74,9 @@ std::vector<EngineAnswer> askSecondEngine(const std::filesystem::path& folder, c
   writeFile(scratch.file("data.nq"), quads);
   writeFile(scratch.file("requests.json"), requestsAsJson(requests));
   const std::string script = std::string(CLUXEL_SOURCE_DIR) + "/tests/sparql/oxigraph_answers.mjs";
-  const std::string command = "node '" + script + "' '" + folder.string() + "' '" + scratch.file("data.nq").string() + "' '" +
-                              scratch.file("requests.json").string() + "' '" + scratch.file("answers.json").string() + "'";
+  const std::string command = "node '" + script + "' '" + folder.string() + "' '" + scratch.file("data.nq").string() +
+                              "' '" + scratch.file("requests.json").string() + "' '" +
+                              scratch.file("answers.json").string() + "'";
   if (std::system(command.c_str()) != 0) throw std::runtime_error("node failed: " + command);
   const json document = json::parse(readFile(scratch.file("answers.json")));
   std::vector<EngineAnswer> answers;

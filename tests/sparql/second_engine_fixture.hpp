@@ -16,7 +16,7 @@ struct EngineRequest {
 };
 
 struct EngineAnswer {
-  std::optional<QueryResult> result;   ///< absent: refused
+  std::optional<QueryResult> result;  ///< absent: refused
   std::string error;
 };
 

@@ -66,15 +66,17 @@ std::vector<std::string> existsQueries() {
   return queries;
 }
 
-void compareAll(const std::vector<Quad>& quads, const std::vector<std::string>& ours, const std::vector<std::string>& theirs,
-                bool union_graph, const std::vector<std::vector<Binding>>& bindings, const fs::path& folder) {
+void compareAll(const std::vector<Quad>& quads, const std::vector<std::string>& ours,
+                const std::vector<std::string>& theirs, bool union_graph,
+                const std::vector<std::vector<Binding>>& bindings, const fs::path& folder) {
   const auto environment = test::storeOf(quads);
   const QuadReader reader(environment->read());
   std::vector<EngineRequest> foreign;
   for (const std::string& text : theirs) foreign.push_back({text});
   const auto answers = test::askSecondEngine(folder, union_graph ? test::withUnionAsDefault(quads) : quads, foreign);
   for (std::size_t i = 0; i < ours.size(); ++i) {
-    const EngineAnswer mine = test::askCluxel(reader, ours[i], union_graph, bindings.empty() ? std::vector<Binding>() : bindings[i]);
+    const EngineAnswer mine =
+        test::askCluxel(reader, ours[i], union_graph, bindings.empty() ? std::vector<Binding>() : bindings[i]);
     EXPECT_TRUE(mine.result) << mine.error << "\n" << ours[i];
     EXPECT_EQ(test::differenceOf(mine, answers[i]), "") << ours[i];
   }

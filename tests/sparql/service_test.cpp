@@ -42,22 +42,31 @@ TEST_F(Services, AreRefusedUnlessNamed) {
 TEST_F(Services, JoinWhatTheNamedStoreAnswers) {
   EXPECT_THAT(ours.rows("SELECT ?s ?n { ?s :p ?o SERVICE <http://elsewhere/> { ?o :name ?n } }", options),
               ElementsAre(":a \"B\"", ":b \"C\""));
-  EXPECT_THAT(ours.rows("SELECT ?x { SERVICE <http://elsewhere/> { ?x :name ?n FILTER(STRSTARTS(?n, \"only\")) } }", options),
-              ElementsAre(":new"));
-  EXPECT_THAT(ours.rows("SELECT ?s { ?s :p ?o FILTER NOT EXISTS { SERVICE <http://elsewhere/> { ?o :name ?n } } }", options).size(), 1U);
+  EXPECT_THAT(
+      ours.rows("SELECT ?x { SERVICE <http://elsewhere/> { ?x :name ?n FILTER(STRSTARTS(?n, \"only\")) } }", options),
+      ElementsAre(":new"));
+  EXPECT_THAT(
+      ours.rows("SELECT ?s { ?s :p ?o FILTER NOT EXISTS { SERVICE <http://elsewhere/> { ?o :name ?n } } }", options)
+          .size(),
+      1U);
 }
 
-/// It is computed when the query is prepared: without a refusal the parameter would be unbound within it, and the answer wrong.
+/// It is computed when the query is prepared: without a refusal the parameter would be unbound within it, and the
+/// answer wrong.
 TEST_F(Services, RefuseParametersWithin) {
   const auto prepare = [&](const std::string& service) {
-    PreparedQuery(ours.reader(), kPrefixes + "SELECT ?s { ?s :p ?o SERVICE <http://elsewhere/> { " + service + " } }", options, {"n"});
+    PreparedQuery(ours.reader(), kPrefixes + "SELECT ?s { ?s :p ?o SERVICE <http://elsewhere/> { " + service + " } }",
+                  options, {"n"});
   };
-  for (const char* service : {"?o :name ?n", "?o :name ?m FILTER(?m = ?n)", "?o :name ?m BIND(?n AS ?k)", "{ SELECT (MAX(CONCAT(?m, ?n)) AS ?k) { ?o :name ?m } }",
-                              "?o :name ?m FILTER EXISTS { ?x :name ?n }"}) {
+  for (const char* service :
+       {"?o :name ?n", "?o :name ?m FILTER(?m = ?n)", "?o :name ?m BIND(?n AS ?k)",
+        "{ SELECT (MAX(CONCAT(?m, ?n)) AS ?k) { ?o :name ?m } }", "?o :name ?m FILTER EXISTS { ?x :name ?n }"}) {
     EXPECT_THROW(prepare(service), InputError) << service;
   }
   const QuadReader reader_of_ours = ours.reader();
-  PreparedQuery outside(reader_of_ours, kPrefixes + "SELECT ?s { ?s :p ?o SERVICE <http://elsewhere/> { ?o :name ?m } FILTER(?m = ?n) }", options, {"n"});
+  PreparedQuery outside(
+      reader_of_ours, kPrefixes + "SELECT ?s { ?s :p ?o SERVICE <http://elsewhere/> { ?o :name ?m } FILTER(?m = ?n) }",
+      options, {"n"});
   EXPECT_EQ(outside.evaluate({{"n", Term::literal("C")}}).table.row_count, 1u);
 }
 
@@ -67,7 +76,8 @@ TEST_F(Services, KeepTheirBlankNodesToThemselves) {
 
 TEST_F(Services, WorkWithinTheBudget) {
   options.budget.max_work_rows = 3;
-  EXPECT_THAT(refusal("SELECT * { SERVICE <http://elsewhere/> { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i } }", options), testing::Not("no refusal"));
+  EXPECT_THAT(refusal("SELECT * { SERVICE <http://elsewhere/> { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i } }", options),
+              testing::Not("no refusal"));
 }
 
 TEST_F(Services, ShareOneBudgetWithEachOtherAndTheQuery) {
@@ -140,7 +150,8 @@ TEST_F(Services, HoldNoMoreThanTheirRowsOnceTheyAreAnswered) {
     };
   };
   const std::string sorts = "{ SERVICE <http://large/> { SELECT ?x { ?x :size ?w } ORDER BY ?w ?x OFFSET 2995 } }";
-  const std::string groups = "{ SERVICE <http://large/> { SELECT (COUNT(*) AS ?x) { { SELECT DISTINCT ?y ?w { ?y :size ?w } } } } }";
+  const std::string groups =
+      "{ SERVICE <http://large/> { SELECT (COUNT(*) AS ?x) { { SELECT DISTINCT ?y ?w { ?y :size ?w } } } } }";
   for (const std::string& one : {sorts, groups}) {
     const std::uint64_t least = leastBudget(works("SELECT ?x " + one));
     ASSERT_GT(least, 20'000U) << one;
@@ -148,7 +159,8 @@ TEST_F(Services, HoldNoMoreThanTheirRowsOnceTheyAreAnswered) {
     EXPECT_LT(both, least + 2'000) << one;
     EXPECT_GE(both, least) << one;
     // What a run needs beside the rows is not added to what the service's plan needed.
-    const std::uint64_t with_own = leastBudget(works("SELECT ?x { " + one + " { SELECT ?s { ?s :p ?o } ORDER BY ?o } }"));
+    const std::uint64_t with_own =
+        leastBudget(works("SELECT ?x { " + one + " { SELECT ?s { ?s :p ?o } ORDER BY ?o } }"));
     EXPECT_LT(with_own, least + 2'000) << one;
   }
 }

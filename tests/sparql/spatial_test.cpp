@@ -26,13 +26,22 @@ class GeometryMaker {
   std::string wkt() {
     const int x = upTo(200), y = upTo(200), w = 1 + upTo(12), h = 1 + upTo(12);
     switch (upTo(12)) {
-      case 0: return "LINESTRING(" + pair(x, y) + ", " + pair(x + w, y + h) + ")";
-      case 1: case 2: case 3: return box(x, y, x + w, y + h);
-      case 4: return "MULTIPOINT((" + pair(x, y) + "), (" + pair(x + w, y) + "))";
-      case 5: return upTo(4) == 0 ? "POINT EMPTY" : "POINT(" + pair(x, y) + ")";
-      case 6: return upTo(4) == 0 ? "POINT(1" : "POINT(" + std::to_string(x) + ".25 " + pair(y, y).substr(0, 1) + ")";
-      case 7: return upTo(8) == 0 ? "LINESTRING(0 0, 220 220)" : box(x, y, x + w, y + h);
-      default: return "POINT(" + pair(x, y) + ")";
+      case 0:
+        return "LINESTRING(" + pair(x, y) + ", " + pair(x + w, y + h) + ")";
+      case 1:
+      case 2:
+      case 3:
+        return box(x, y, x + w, y + h);
+      case 4:
+        return "MULTIPOINT((" + pair(x, y) + "), (" + pair(x + w, y) + "))";
+      case 5:
+        return upTo(4) == 0 ? "POINT EMPTY" : "POINT(" + pair(x, y) + ")";
+      case 6:
+        return upTo(4) == 0 ? "POINT(1" : "POINT(" + std::to_string(x) + ".25 " + pair(y, y).substr(0, 1) + ")";
+      case 7:
+        return upTo(8) == 0 ? "LINESTRING(0 0, 220 220)" : box(x, y, x + w, y + h);
+      default:
+        return "POINT(" + pair(x, y) + ")";
     }
   }
   std::string condition() {
@@ -41,19 +50,27 @@ class GeometryMaker {
     const std::string arguments = first ? "(?g, " + literal + ")" : "(" + literal + ", ?g)";
     const std::string limit = std::to_string(upTo(20)) + (upTo(2) == 0 ? ".5" : "");
     switch (upTo(7)) {
-      case 0: return "geof:sfIntersects" + arguments;
-      case 1: return "geof:sfWithin" + arguments;
-      case 2: return "geof:sfContains" + arguments;
-      case 3: return "geof:sfTouches" + arguments;
-      case 4: return "geof:distance" + arguments + " <= " + limit;
-      case 5: return limit + " > geof:distance" + arguments;
-      default: return "geof:distance" + arguments + " < " + (upTo(6) == 0 ? "-1" : limit);
+      case 0:
+        return "geof:sfIntersects" + arguments;
+      case 1:
+        return "geof:sfWithin" + arguments;
+      case 2:
+        return "geof:sfContains" + arguments;
+      case 3:
+        return "geof:sfTouches" + arguments;
+      case 4:
+        return "geof:distance" + arguments + " <= " + limit;
+      case 5:
+        return limit + " > geof:distance" + arguments;
+      default:
+        return "geof:distance" + arguments + " < " + (upTo(6) == 0 ? "-1" : limit);
     }
   }
 
  private:
   std::string box(int x, int y, int right, int top) {
-    return "POLYGON((" + pair(x, y) + ", " + pair(right, y) + ", " + pair(right, top) + ", " + pair(x, top) + ", " + pair(x, y) + "))";
+    return "POLYGON((" + pair(x, y) + ", " + pair(right, y) + ", " + pair(right, top) + ", " + pair(x, top) + ", " +
+           pair(x, y) + "))";
   }
   std::mt19937 random_;
 };
@@ -64,10 +81,12 @@ SmallStore placed(GeometryMaker& maker, int count) {
   for (int i = 0; i < count; ++i) {
     const Term self = Term::iri("http://example.org/o" + std::to_string(i));
     const std::string datatype = maker.upTo(30) == 0 ? "http://www.w3.org/2001/XMLSchema#string" : kWktDatatype;
-    quads.push_back({self, Term::iri("http://www.opengis.net/ont/geosparql#asWKT"), Term::literal(maker.wkt(), datatype), Term::iri("")});
+    quads.push_back({self, Term::iri("http://www.opengis.net/ont/geosparql#asWKT"),
+                     Term::literal(maker.wkt(), datatype), Term::iri("")});
     quads.push_back({self, Term::iri("http://example.org/kind"), Term::integer(maker.upTo(5)), Term::iri("")});
     if (maker.upTo(3) == 0)
-      quads.push_back({self, Term::iri("http://example.org/also"), Term::literal(maker.wkt(), kWktDatatype), Term::iri("")});
+      quads.push_back(
+          {self, Term::iri("http://example.org/also"), Term::literal(maker.wkt(), kWktDatatype), Term::iri("")});
   }
   store.load(quads);
   return store;
@@ -80,7 +99,8 @@ TEST(SpatialIndex, GivesTheAnswersOfTheFilterAlone) {
     const SmallStore store = placed(maker, 400);
     for (int i = 0; i < 120; ++i) {
       const std::string condition = maker.condition();
-      const std::string patterns[] = {"?o geo:asWKT ?g ", "?o :kind 3 . ?o geo:asWKT ?g ", "?o :kind ?k ; geo:asWKT ?g OPTIONAL { ?o :also ?h } "};
+      const std::string patterns[] = {"?o geo:asWKT ?g ", "?o :kind 3 . ?o geo:asWKT ?g ",
+                                      "?o :kind ?k ; geo:asWKT ?g OPTIONAL { ?o :also ?h } "};
       const std::string& pattern = patterns[maker.upTo(3)];
       const std::string indexed = "SELECT * { " + pattern + "FILTER(" + condition + ") }";
       // The planner does not look into IF.
@@ -103,17 +123,22 @@ TEST(SpatialIndex, AlsoAnswersFiltersOnABoundDistance) {
   const std::string distance = "geof:distance(?g, \"POINT(100 100)\"^^geo:wktLiteral)";
   const auto rows = store.rows("SELECT ?o ?d { ?o geo:asWKT ?g BIND(" + distance + " AS ?d) FILTER(?d < 15) }");
   EXPECT_FALSE(rows.empty());
-  EXPECT_EQ(store.rows("SELECT ?o ?d { ?o geo:asWKT ?g BIND(" + distance + " AS ?d) FILTER(IF(?d < 15, true, false)) }"), rows);
-  EXPECT_THAT(explainQuery(store.reader(), kPrefixes + "SELECT ?o { ?o geo:asWKT ?g BIND(" + distance + " AS ?d) FILTER(?d < 15) }"),
+  EXPECT_EQ(
+      store.rows("SELECT ?o ?d { ?o geo:asWKT ?g BIND(" + distance + " AS ?d) FILTER(IF(?d < 15, true, false)) }"),
+      rows);
+  EXPECT_THAT(explainQuery(store.reader(),
+                           kPrefixes + "SELECT ?o { ?o geo:asWKT ?g BIND(" + distance + " AS ?d) FILTER(?d < 15) }"),
               HasSubstr("R-tree"));
 }
 
 TEST(SpatialIndex, IsOfOneCommit) {
   SmallStore store;
-  const std::string near = "SELECT ?o { ?o geo:asWKT ?g FILTER(geof:distance(?g, \"POINT(5 5)\"^^geo:wktLiteral) < 1) }";
+  const std::string near =
+      "SELECT ?o { ?o geo:asWKT ?g FILTER(geof:distance(?g, \"POINT(5 5)\"^^geo:wktLiteral) < 1) }";
   std::vector<Quad> far;
   for (int i = 0; i < 20; ++i)
-    far.push_back({Term::iri("http://example.org/f" + std::to_string(i)), Term::iri("http://www.opengis.net/ont/geosparql#asWKT"),
+    far.push_back({Term::iri("http://example.org/f" + std::to_string(i)),
+                   Term::iri("http://www.opengis.net/ont/geosparql#asWKT"),
                    Term::literal("POINT(" + std::to_string(100 + i) + " 0)", kWktDatatype), Term::iri("")});
   store.load(far);
   const QuadReader before = store.reader();
@@ -125,14 +150,16 @@ TEST(SpatialIndex, IsOfOneCommit) {
 
 TEST(SpatialIndex, SeesWhatAnUpdateHasWrittenBefore) {
   std::string turtle = ":a geo:asWKT \"POINT(0 0)\"^^geo:wktLiteral .";
-  for (int i = 0; i < 20; ++i) turtle += " :f" + std::to_string(i) + " geo:asWKT \"POINT(9 " + std::to_string(100 + i) + ")\"^^geo:wktLiteral .";
+  for (int i = 0; i < 20; ++i)
+    turtle += " :f" + std::to_string(i) + " geo:asWKT \"POINT(9 " + std::to_string(100 + i) + ")\"^^geo:wktLiteral .";
   SmallStore store(turtle);
   WriteTransaction transaction = store.environment()->write();
   UpdateOptions options;
   options.any_graph_writable = true;
   options.query.default_graph = DefaultGraph::Unnamed;
-  const std::string move = "DELETE { ?o geo:asWKT ?g } INSERT { ?o geo:asWKT \"POINT(50 50)\"^^geo:wktLiteral } "
-                           "WHERE { ?o geo:asWKT ?g FILTER(geof:distance(?g, \"POINT(AT)\"^^geo:wktLiteral) < 1) }";
+  const std::string move =
+      "DELETE { ?o geo:asWKT ?g } INSERT { ?o geo:asWKT \"POINT(50 50)\"^^geo:wktLiteral } "
+      "WHERE { ?o geo:asWKT ?g FILTER(geof:distance(?g, \"POINT(AT)\"^^geo:wktLiteral) < 1) }";
   const auto at = [&](const std::string& place) { return std::string(move).replace(move.find("AT"), 2, place); };
   const UpdateReport report = runUpdate(transaction, kPrefixes + at("0 0") + " ; " + at("50 50"), options);
   EXPECT_EQ(report.inserted, 2U) << "the second operation finds the geometry where the first has put it";

@@ -23,7 +23,8 @@ std::string shown(const Term* term) {
   std::string text = toNTriples(*term);
   const std::string datatype = "^^<http://www.w3.org/2001/XMLSchema#";
   const std::size_t at = text.find(datatype);
-  if (at != std::string::npos) text = text.substr(0, at) + "^^" + text.substr(at + datatype.size(), text.size() - at - datatype.size() - 1);
+  if (at != std::string::npos)
+    text = text.substr(0, at) + "^^" + text.substr(at + datatype.size(), text.size() - at - datatype.size() - 1);
   return text;
 }
 

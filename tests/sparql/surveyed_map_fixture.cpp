@@ -17,7 +17,8 @@ class SurveyMaker {
 
   std::vector<Quad> make() {
     for (const char* name : {"Vehicle", "SmallObject"}) {
-      quads_.push_back({Term::iri(clx(name)), Term::iri(clx("mobility")), Term::iri(clx("Movable")), Term::iri(vocabulary::kGraphOntology)});
+      quads_.push_back({Term::iri(clx(name)), Term::iri(clx("mobility")), Term::iri(clx("Movable")),
+                        Term::iri(vocabulary::kGraphOntology)});
     }
     for (int i = 0; i < objects_; ++i) addObject(i);
     return std::move(quads_);
@@ -45,7 +46,8 @@ class SurveyMaker {
     add(part, clx("width"), tenths(1 + upTo(8)));
   }
   void addObject(int number) {
-    static const char* const classes[] = {"Tree", "Tree", "StreetSign", "StreetLamp", "Vehicle", "SmallObject", "Building"};
+    static const char* const classes[] = {"Tree",    "Tree",        "StreetSign", "StreetLamp",
+                                          "Vehicle", "SmallObject", "Building"};
     const char* type = classes[upTo(7)];
     const Term self = object(number);
     add(self, vocabulary::rdf("type"), Term::iri(clx(type)));
@@ -70,6 +72,8 @@ class SurveyMaker {
 
 }  // namespace
 
-std::vector<Quad> surveyedMap(std::uint32_t seed, int objects) { return SurveyMaker(seed, objects).make(); }
+std::vector<Quad> surveyedMap(std::uint32_t seed, int objects) {
+  return SurveyMaker(seed, objects).make();
+}
 
 }  // namespace cluxel::test

@@ -65,8 +65,11 @@ TEST_F(Updates, ChangeNothingWhenALaterOperationFails) {
 TEST_F(Updates, SeeWhatEarlierOperationsWrote) {
   UpdateOptions all;
   all.any_graph_writable = true;
-  change("INSERT DATA { GRAPH :g { :x :n 1 } } ; WITH :g DELETE { ?s :n ?v } INSERT { ?s :n ?w } WHERE { ?s :n ?v BIND(?v + 1 AS ?w) } ;"
-         "INSERT { GRAPH :h { ?s :seen ?v } } WHERE { GRAPH :g { ?s :n ?v } }", all);
+  change(
+      "INSERT DATA { GRAPH :g { :x :n 1 } } ; WITH :g DELETE { ?s :n ?v } INSERT { ?s :n ?w } WHERE { ?s :n ?v BIND(?v "
+      "+ 1 AS ?w) } ;"
+      "INSERT { GRAPH :h { ?s :seen ?v } } WHERE { GRAPH :g { ?s :n ?v } }",
+      all);
   EXPECT_THAT(in("http://example.org/g"), ElementsAre(":x :n \"2\"^^integer"));
   EXPECT_THAT(in("http://example.org/h"), ElementsAre(":x :seen \"2\"^^integer"));
   change("MOVE :h TO :g ; COPY :g TO :k ; DROP GRAPH :nothing ; ADD :k TO :g", all);
@@ -84,7 +87,9 @@ TEST_F(Updates, MakeFreshBlankNodesPerSolutionAndPerRequest) {
 }
 
 TEST_F(Updates, MakeFreshBlankNodesInEveryOperationOfARequest) {
-  const std::string request = "INSERT { ?s :a ?b } WHERE { ?s :p 1 BIND(BNODE() AS ?b) } ; INSERT { ?s :c ?b } WHERE { ?s :p 1 BIND(bnode() AS ?b) }";
+  const std::string request =
+      "INSERT { ?s :a ?b } WHERE { ?s :p 1 BIND(BNODE() AS ?b) } ; INSERT { ?s :c ?b } WHERE { ?s :p 1 BIND(bnode() AS "
+      "?b) }";
   change(request);
   EXPECT_THAT(store_.rows("SELECT ?b { :a :a ?b ; :c ?b }"), IsEmpty());
   change(request);
@@ -93,10 +98,11 @@ TEST_F(Updates, MakeFreshBlankNodesInEveryOperationOfARequest) {
 
 TEST_F(Updates, InTheSameOrderMakeTheSameStatements) {
   const std::vector<std::string> requests{"INSERT DATA { :a :has [ :of 1 ] }", "INSERT DATA { :a :has [ :of 1 ] }",
-                                          "DELETE WHERE { ?s :of ?v }", "INSERT { ?s :is ?b } WHERE { ?s :p ?v BIND(BNODE() AS ?b) }"};
+                                          "DELETE WHERE { ?s :of ?v }",
+                                          "INSERT { ?s :is ?b } WHERE { ?s :p ?v BIND(BNODE() AS ?b) }"};
   std::vector<std::vector<std::string>> outcomes;
   for (int run = 0; run < 2; ++run) {
-    if (run == 1) change("INSERT DATA { :z :has [] } ; DELETE WHERE { :z :has ?b }");   // leaves terms, but no statement
+    if (run == 1) change("INSERT DATA { :z :has [] } ; DELETE WHERE { :z :has ?b }");  // leaves terms, but no statement
     for (const std::string& request : requests) change(request);
     outcomes.push_back(in(vocabulary::kGraphOperator));
     change("CLEAR GRAPH <" + std::string(vocabulary::kGraphOperator) + ">");
@@ -117,7 +123,9 @@ TEST_F(Updates, LoadOnlyThroughTheCallersDoor) {
   EXPECT_THROW(change("LOAD <file:///etc/passwd>"), InputError);
   EXPECT_NO_THROW(change("LOAD SILENT <http://elsewhere/>"));
   UpdateOptions options;
-  options.load = [](const std::string& iri) { return std::vector<Quad>{{Term::iri(iri), Term::iri("http://example.org/p"), Term::integer(1), {}}}; };
+  options.load = [](const std::string& iri) {
+    return std::vector<Quad>{{Term::iri(iri), Term::iri("http://example.org/p"), Term::integer(1), {}}};
+  };
   change("LOAD <http://example.org/doc>", options);
   EXPECT_THAT(in(vocabulary::kGraphOperator), ElementsAre(":doc :p \"1\"^^integer"));
 }

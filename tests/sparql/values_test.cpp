@@ -34,9 +34,18 @@ TEST(Arithmetic, OfDecimalsIsExactForRandomOperands) {
 }
 
 TEST(Arithmetic, DecimalsAroundTheEndOfMachineWordsStayExact) {
-  const std::string texts[] = {"9223372036854775807",  "-9223372036854775808", "9223372036854775808", "-9223372036854775809",
-                               "922337203685477580.7", "-0.9223372036854775808", "1000000000000000000", "0.000000000000000001",
-                               "-1", "10", "0", "0.1"};
+  const std::string texts[] = {"9223372036854775807",
+                               "-9223372036854775808",
+                               "9223372036854775808",
+                               "-9223372036854775809",
+                               "922337203685477580.7",
+                               "-0.9223372036854775808",
+                               "1000000000000000000",
+                               "0.000000000000000001",
+                               "-1",
+                               "10",
+                               "0",
+                               "0.1"};
   for (const std::string& a : texts) {
     const Decimal x = *Decimal::parse(a);
     EXPECT_EQ(test::rationalOf(x.text()), test::rationalOf(a)) << a;
@@ -90,7 +99,8 @@ TEST(Arithmetic, OfIntegersGoesBeyondSixtyFourBits) {
   const test::SmallStore store("");
   EXPECT_EQ(store.value("9223372036854775807 + 1"), "\"9223372036854775808\"^^integer");
   EXPECT_EQ(store.value("-9223372036854775807 - 3"), "\"-9223372036854775810\"^^integer");
-  EXPECT_EQ(store.value("9223372036854775807 * 9223372036854775807"), "\"85070591730234615847396907784232501249\"^^integer");
+  EXPECT_EQ(store.value("9223372036854775807 * 9223372036854775807"),
+            "\"85070591730234615847396907784232501249\"^^integer");
   EXPECT_EQ(store.value("-(-9223372036854775807 - 1)"), "\"9223372036854775808\"^^integer");
   EXPECT_EQ(store.value("9223372036854775808 > 9223372036854775807"), "\"true\"^^boolean");
 }
@@ -142,7 +152,8 @@ TEST(Numbers, BeyondTheRangeOfDoublesBecomeZeroOrInfinity) {
 }
 
 TEST(Numbers, OfWrongFormHaveNoValue) {
-  for (const char* text : {"", "nan", "inf", "1e", "0x10", "1 2", "+-1", "--1"}) EXPECT_FALSE(parseDouble(text).has_value()) << text;
+  for (const char* text : {"", "nan", "inf", "1e", "0x10", "1 2", "+-1", "--1"})
+    EXPECT_FALSE(parseDouble(text).has_value()) << text;
 }
 
 TEST(Times, CompareAcrossZones) {
@@ -159,7 +170,8 @@ TEST(Times, CompareAcrossZones) {
 
 TEST(Times, MoveByDurations) {
   const test::SmallStore store("");
-  EXPECT_EQ(store.value("\"2024-01-31T00:00:00Z\"^^xsd:dateTime + \"P1M\"^^xsd:yearMonthDuration"), "\"2024-02-29T00:00:00Z\"^^dateTime");
+  EXPECT_EQ(store.value("\"2024-01-31T00:00:00Z\"^^xsd:dateTime + \"P1M\"^^xsd:yearMonthDuration"),
+            "\"2024-02-29T00:00:00Z\"^^dateTime");
   EXPECT_EQ(store.value("\"2024-03-01T00:00:00Z\"^^xsd:dateTime - \"2024-02-28T12:00:00Z\"^^xsd:dateTime"),
             "\"P1DT12H\"^^dayTimeDuration");
   EXPECT_EQ(store.value("\"P1Y\"^^xsd:duration = \"P12M\"^^xsd:duration"), "\"true\"^^boolean");
@@ -168,15 +180,16 @@ TEST(Times, MoveByDurations) {
 /// What a cast or a sum drops must not take part in comparisons.
 TEST(Times, ComputedOnesEqualThoseThatAreWritten) {
   const test::SmallStore store;
-  for (const char* expression :
-       {R"(xsd:date("2020-01-01T12:00:00Z"^^xsd:dateTime) = "2020-01-01Z"^^xsd:date)",
-        R"(xsd:time("2020-01-01T12:00:00Z"^^xsd:dateTime) = "12:00:00Z"^^xsd:time)",
-        R"(xsd:gYear("2020-03-01T12:00:00"^^xsd:dateTime) = "2020"^^xsd:gYear)",
-        R"(xsd:gMonthDay("2020-03-01T12:00:00"^^xsd:dateTime) = "--03-01"^^xsd:gMonthDay)",
-        R"(xsd:gMonth("2020-03-05T12:00:00"^^xsd:dateTime) = "--03"^^xsd:gMonth)",
-        R"("2020-01-01"^^xsd:date + "PT12H"^^xsd:dayTimeDuration = "2020-01-01"^^xsd:date)",
-        R"("2020-01-01"^^xsd:date + "PT36H"^^xsd:dayTimeDuration = "2020-01-02"^^xsd:date)",
-        R"("2020-01-02"^^xsd:date - ("2020-01-01"^^xsd:date + "PT12H"^^xsd:dayTimeDuration) = "P1D"^^xsd:dayTimeDuration)"}) {
+  for (
+      const char* expression :
+      {R"(xsd:date("2020-01-01T12:00:00Z"^^xsd:dateTime) = "2020-01-01Z"^^xsd:date)",
+       R"(xsd:time("2020-01-01T12:00:00Z"^^xsd:dateTime) = "12:00:00Z"^^xsd:time)",
+       R"(xsd:gYear("2020-03-01T12:00:00"^^xsd:dateTime) = "2020"^^xsd:gYear)",
+       R"(xsd:gMonthDay("2020-03-01T12:00:00"^^xsd:dateTime) = "--03-01"^^xsd:gMonthDay)",
+       R"(xsd:gMonth("2020-03-05T12:00:00"^^xsd:dateTime) = "--03"^^xsd:gMonth)",
+       R"("2020-01-01"^^xsd:date + "PT12H"^^xsd:dayTimeDuration = "2020-01-01"^^xsd:date)",
+       R"("2020-01-01"^^xsd:date + "PT36H"^^xsd:dayTimeDuration = "2020-01-02"^^xsd:date)",
+       R"("2020-01-02"^^xsd:date - ("2020-01-01"^^xsd:date + "PT12H"^^xsd:dayTimeDuration) = "P1D"^^xsd:dayTimeDuration)"}) {
     EXPECT_EQ(store.value(expression), "\"true\"^^boolean") << expression;
   }
 }
@@ -185,7 +198,8 @@ TEST(Times, OfFarYearsAreOrdered) {
   const test::SmallStore store;
   EXPECT_EQ(store.value(R"("99999999999-01-01"^^xsd:date > "2020-01-01"^^xsd:date)"), "\"true\"^^boolean");
   EXPECT_EQ(store.value(R"("-99999999999-01-01"^^xsd:date < "2020-01-01"^^xsd:date)"), "\"true\"^^boolean");
-  EXPECT_EQ(store.value(R"("999999999999-01-01"^^xsd:date < "2020-01-01"^^xsd:date)"), "-") << "more than can be counted in seconds";
+  EXPECT_EQ(store.value(R"("999999999999-01-01"^^xsd:date < "2020-01-01"^^xsd:date)"), "-")
+      << "more than can be counted in seconds";
 }
 
 TEST(Times, RoundTripThroughTheTimeline) {
@@ -200,8 +214,8 @@ TEST(Times, RoundTripThroughTheTimeline) {
 }
 
 TEST(Times, OfWrongFormHaveNoValue) {
-  for (const char* text : {"2024-13-01T00:00:00", "2023-02-29T00:00:00", "2024-01-01T25:00:00", "2024-01-01", "24-01-01T00:00:00",
-                           "2024-01-01T00:00:00+15:00", "2024-01-01T24:00:01"}) {
+  for (const char* text : {"2024-13-01T00:00:00", "2023-02-29T00:00:00", "2024-01-01T25:00:00", "2024-01-01",
+                           "24-01-01T00:00:00", "2024-01-01T00:00:00+15:00", "2024-01-01T24:00:01"}) {
     EXPECT_FALSE(parseCalendar(CalendarKind::DateTime, text).has_value()) << text;
   }
 }

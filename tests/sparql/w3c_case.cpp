@@ -50,7 +50,7 @@ void loadDataset(QuadWriter& writer, const W3cFolder& folder, const W3cCase& tes
 struct Expected {
   QueryResult result;
   RowOrder order = RowOrder::Any;
-  std::optional<ResultFormat> format;   ///< absent: an RDF graph
+  std::optional<ResultFormat> format;  ///< absent: an RDF graph
 };
 
 Expected expectedOf(const W3cFolder& folder, const W3cCase& test, const ast::Query& query) {
@@ -58,7 +58,8 @@ Expected expectedOf(const W3cFolder& folder, const W3cCase& test, const ast::Que
   const bool sorted = !query.select.modifiers.order_by.empty();
   const std::string suffix = test.result->extension().string().substr(1);
   expected.format = resultFormatOf(suffix);
-  const bool graph_file = !expected.format || *expected.format == ResultFormat::Turtle || *expected.format == ResultFormat::NTriples;
+  const bool graph_file =
+      !expected.format || *expected.format == ResultFormat::Turtle || *expected.format == ResultFormat::NTriples;
   if (!graph_file) {
     expected.result = readResults(readFile(*test.result), *expected.format, test.result->filename().string());
     if (sorted) expected.order = RowOrder::AsWritten;
@@ -150,8 +151,10 @@ std::string checkSyntax(const W3cFolder& folder, const W3cCase& test) {
   const bool update = test.kind == W3cKind::PositiveUpdate || test.kind == W3cKind::NegativeUpdate;
   const bool positive = test.kind == W3cKind::PositiveQuery || test.kind == W3cKind::PositiveUpdate;
   try {
-    if (update) parseUpdate(readFile(test.request), options);
-    else parseQuery(readFile(test.request), options);
+    if (update)
+      parseUpdate(readFile(test.request), options);
+    else
+      parseQuery(readFile(test.request), options);
   } catch (const InputError& error) {
     return positive ? error.what() : "";
   }
@@ -162,7 +165,8 @@ std::string checkSyntax(const W3cFolder& folder, const W3cCase& test) {
 
 std::string runCase(const W3cFolder& folder, const W3cCase& test) {
   try {
-    if (test.kind == W3cKind::QueryEvaluation || test.kind == W3cKind::CsvResults) return evaluateQueryCase(folder, test);
+    if (test.kind == W3cKind::QueryEvaluation || test.kind == W3cKind::CsvResults)
+      return evaluateQueryCase(folder, test);
     if (test.kind == W3cKind::UpdateEvaluation) return evaluateUpdateCase(folder, test);
     return checkSyntax(folder, test);
   } catch (const std::exception& error) {

@@ -26,12 +26,15 @@ std::string ut(std::string_view local) {
 }
 
 const std::map<std::string, W3cKind>& kinds() {
-  static const std::map<std::string, W3cKind> known{
-      {mf("QueryEvaluationTest"), W3cKind::QueryEvaluation},   {mf("CSVResultFormatTest"), W3cKind::CsvResults},
-      {mf("UpdateEvaluationTest"), W3cKind::UpdateEvaluation}, {mf("PositiveSyntaxTest"), W3cKind::PositiveQuery},
-      {mf("PositiveSyntaxTest11"), W3cKind::PositiveQuery},    {mf("NegativeSyntaxTest"), W3cKind::NegativeQuery},
-      {mf("NegativeSyntaxTest11"), W3cKind::NegativeQuery},    {mf("PositiveUpdateSyntaxTest11"), W3cKind::PositiveUpdate},
-      {mf("NegativeUpdateSyntaxTest11"), W3cKind::NegativeUpdate}};
+  static const std::map<std::string, W3cKind> known{{mf("QueryEvaluationTest"), W3cKind::QueryEvaluation},
+                                                    {mf("CSVResultFormatTest"), W3cKind::CsvResults},
+                                                    {mf("UpdateEvaluationTest"), W3cKind::UpdateEvaluation},
+                                                    {mf("PositiveSyntaxTest"), W3cKind::PositiveQuery},
+                                                    {mf("PositiveSyntaxTest11"), W3cKind::PositiveQuery},
+                                                    {mf("NegativeSyntaxTest"), W3cKind::NegativeQuery},
+                                                    {mf("NegativeSyntaxTest11"), W3cKind::NegativeQuery},
+                                                    {mf("PositiveUpdateSyntaxTest11"), W3cKind::PositiveUpdate},
+                                                    {mf("NegativeUpdateSyntaxTest11"), W3cKind::NegativeUpdate}};
   return known;
 }
 

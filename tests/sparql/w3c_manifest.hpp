@@ -9,22 +9,29 @@
 
 namespace cluxel::test {
 
-enum class W3cKind { QueryEvaluation, CsvResults, UpdateEvaluation, PositiveQuery, NegativeQuery, PositiveUpdate,
-                     NegativeUpdate };
+enum class W3cKind {
+  QueryEvaluation,
+  CsvResults,
+  UpdateEvaluation,
+  PositiveQuery,
+  NegativeQuery,
+  PositiveUpdate,
+  NegativeUpdate
+};
 
 struct W3cGraph {
-  std::string iri;                    ///< of the named graph; empty: the default graph
+  std::string iri;  ///< of the named graph; empty: the default graph
   std::filesystem::path file;
 };
 
 struct W3cCase {
   W3cKind kind = W3cKind::PositiveQuery;
-  std::string id;                     ///< "sparql11/aggregates#agg01"
-  std::string group;                  ///< "sparql11/aggregates"
-  std::filesystem::path request;      ///< the query or update
+  std::string id;                 ///< "sparql11/aggregates#agg01"
+  std::string group;              ///< "sparql11/aggregates"
+  std::filesystem::path request;  ///< the query or update
   std::vector<W3cGraph> data;
-  std::optional<std::filesystem::path> result;   ///< of a query
-  std::vector<W3cGraph> graphs_after;            ///< of an update
+  std::optional<std::filesystem::path> result;  ///< of a query
+  std::vector<W3cGraph> graphs_after;           ///< of an update
   bool lax_cardinality = false;
 };
 

@@ -15,15 +15,17 @@ using namespace cluxel::test;
 
 struct Options {
   std::filesystem::path folder = std::filesystem::path(CLUXEL_SOURCE_DIR) / "../shared/w3c/sparql";
-  std::string only;                    ///< run the tests whose id contains it
+  std::string only;  ///< run the tests whose id contains it
 };
 
 Options optionsOf(int argc, char** argv) {
   Options options;
   if (const char* folder = std::getenv("CLUXEL_W3C")) options.folder = folder;
   for (int i = 1; i < argc; ++i) {
-    if (std::string(argv[i]) == "--only" && i + 1 < argc) options.only = argv[++i];
-    else options.folder = argv[i];
+    if (std::string(argv[i]) == "--only" && i + 1 < argc)
+      options.only = argv[++i];
+    else
+      options.folder = argv[i];
   }
   return options;
 }
@@ -54,13 +56,17 @@ struct Tally {
 };
 
 void printTable(const std::map<std::string, Tally>& groups) {
-  std::cout << "\n" << std::left << std::setw(36) << "group" << std::right << std::setw(8) << "passed" << std::setw(8) << "failed" << "\n";
+  std::cout << "\n"
+            << std::left << std::setw(36) << "group" << std::right << std::setw(8) << "passed" << std::setw(8)
+            << "failed"
+            << "\n";
   for (const auto& [group, tally] : groups)
-    std::cout << std::left << std::setw(36) << group << std::right << std::setw(8) << tally.passed << std::setw(8) << tally.failed << "\n";
+    std::cout << std::left << std::setw(36) << group << std::right << std::setw(8) << tally.passed << std::setw(8)
+              << tally.failed << "\n";
 }
 
 int runAll(const Options& options) {
-  std::cout << std::unitbuf;   // a crash must not swallow what was found before
+  std::cout << std::unitbuf;  // a crash must not swallow what was found before
   const W3cFolder folder(std::filesystem::canonical(options.folder));
   const std::map<std::string, std::string> known = knownFailures();
   std::map<std::string, Tally> groups;
@@ -74,8 +80,10 @@ int runAll(const Options& options) {
     surprises += as_known ? 0 : 1;
     ++(fault.empty() ? groups[test.group].passed : groups[test.group].failed);
     ++(fault.empty() ? total.passed : total.failed);
-    if (!fault.empty()) std::cout << "FAILED " << test.id << (as_known ? " (known: " + listed->second + ")" : "\n" + fault) << "\n";
-    else if (!as_known) std::cout << "PASSED " << test.id << ", though w3c_known.txt lists it\n";
+    if (!fault.empty())
+      std::cout << "FAILED " << test.id << (as_known ? " (known: " + listed->second + ")" : "\n" + fault) << "\n";
+    else if (!as_known)
+      std::cout << "PASSED " << test.id << ", though w3c_known.txt lists it\n";
   }
   printTable(groups);
   std::cout << total.passed << " passed, " << total.failed << " failed\n";

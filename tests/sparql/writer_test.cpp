@@ -34,16 +34,17 @@ QueryResult sample() {
 }
 
 TEST(ResultWriter, WritesJson) {
-  EXPECT_EQ(writtenResult(sample(), ResultFormat::Json),
-            "{\"head\":{\"vars\":[\"x\",\"y\"]},\"results\":{\"bindings\":[\n"
-            "{\"x\":{\"type\":\"uri\",\"value\":\"http://e/a\"},\"y\":{\"type\":\"literal\",\"value\":\"say "
-            "\\\"hi\\\",\\n\\tme & <you>\"}},\n"
-            "{\"x\":{\"type\":\"bnode\",\"value\":\"b0\"}},\n"
-            "{\"x\":{\"type\":\"literal\",\"value\":\"-5\",\"datatype\":\"http://www.w3.org/2001/XMLSchema#integer\"},"
-            "\"y\":{\"type\":\"literal\",\"value\":\"Baum\",\"xml:lang\":\"de\"}},\n"
-            "{\"x\":{\"type\":\"literal\",\"value\":\"1.50\",\"datatype\":\"http://www.w3.org/2001/XMLSchema#decimal\"},"
-            "\"y\":{\"type\":\"literal\",\"value\":\"x\",\"datatype\":\"http://e/t\"}}\n"
-            "]}}\n");
+  EXPECT_EQ(
+      writtenResult(sample(), ResultFormat::Json),
+      "{\"head\":{\"vars\":[\"x\",\"y\"]},\"results\":{\"bindings\":[\n"
+      "{\"x\":{\"type\":\"uri\",\"value\":\"http://e/a\"},\"y\":{\"type\":\"literal\",\"value\":\"say "
+      "\\\"hi\\\",\\n\\tme & <you>\"}},\n"
+      "{\"x\":{\"type\":\"bnode\",\"value\":\"b0\"}},\n"
+      "{\"x\":{\"type\":\"literal\",\"value\":\"-5\",\"datatype\":\"http://www.w3.org/2001/XMLSchema#integer\"},"
+      "\"y\":{\"type\":\"literal\",\"value\":\"Baum\",\"xml:lang\":\"de\"}},\n"
+      "{\"x\":{\"type\":\"literal\",\"value\":\"1.50\",\"datatype\":\"http://www.w3.org/2001/XMLSchema#decimal\"},"
+      "\"y\":{\"type\":\"literal\",\"value\":\"x\",\"datatype\":\"http://e/t\"}}\n"
+      "]}}\n");
 }
 
 TEST(ResultWriter, WritesXml) {
@@ -67,7 +68,8 @@ TEST(ResultWriter, WritesCsvAndTsv) {
   EXPECT_EQ(writtenResult(sample(), ResultFormat::Csv),
             "x,y\r\nhttp://e/a,\"say \"\"hi\"\",\n\tme & <you>\"\r\n_:b0,\r\n-5,Baum\r\n1.50,x\r\n");
   EXPECT_EQ(writtenResult(sample(), ResultFormat::Tsv),
-            "?x\t?y\n<http://e/a>\t\"say \\\"hi\\\",\\n\\tme & <you>\"\n_:b0\t\n-5\t\"Baum\"@de\n1.50\t\"x\"^^<http://e/t>\n");
+            "?x\t?y\n<http://e/a>\t\"say \\\"hi\\\",\\n\\tme & "
+            "<you>\"\n_:b0\t\n-5\t\"Baum\"@de\n1.50\t\"x\"^^<http://e/t>\n");
 }
 
 TEST(ResultWriter, WritesATableForPeople) {
@@ -105,10 +107,11 @@ TEST(ResultWriter, WritesGraphs) {
             "@prefix clx: <https://w3id.org/cluxel/ontology#> .\n"
             "\n<http://e/t1> a clx:Tree ;\n  clx:height 3.0E0 .\n"
             "\n_:b clx:height \"a\\\"b\" .\n");
-  EXPECT_EQ(writtenResult(result, ResultFormat::NTriples),
-            "<http://e/t1> <http://www.w3.org/1999/02/22-rdf-syntax-ns#type> <https://w3id.org/cluxel/ontology#Tree> .\n"
-            "<http://e/t1> <https://w3id.org/cluxel/ontology#height> \"3.0E0\"^^<http://www.w3.org/2001/XMLSchema#double> .\n"
-            "_:b <https://w3id.org/cluxel/ontology#height> \"a\\\"b\" .\n");
+  EXPECT_EQ(
+      writtenResult(result, ResultFormat::NTriples),
+      "<http://e/t1> <http://www.w3.org/1999/02/22-rdf-syntax-ns#type> <https://w3id.org/cluxel/ontology#Tree> .\n"
+      "<http://e/t1> <https://w3id.org/cluxel/ontology#height> \"3.0E0\"^^<http://www.w3.org/2001/XMLSchema#double> .\n"
+      "_:b <https://w3id.org/cluxel/ontology#height> \"a\\\"b\" .\n");
   EXPECT_EQ(writtenResult(result, ResultFormat::Csv).substr(0, 26), "subject,predicate,object\r\n");
 }
 
@@ -123,21 +126,30 @@ TEST(ResultWriter, KnowsFormatsByNameSuffixAndMediaType) {
 
 Term randomTerm(std::mt19937& random) {
   const auto text = [&random] {
-    static const std::vector<std::string> pieces{"a", "Z", " ", "\"", "'", "\\", "\n", "\r", "\t", "<", ">", "&", ",", ";",
-                                                 "\u00e9", "\U0001F333", "\x01", "#", "?", "{", "1"};
+    static const std::vector<std::string> pieces{"a",      "Z",          " ",    "\"", "'", "\\", "\n",
+                                                 "\r",     "\t",         "<",    ">",  "&", ",",  ";",
+                                                 "\u00e9", "\U0001F333", "\x01", "#",  "?", "{",  "1"};
     std::string made;
     for (std::size_t n = random() % 6; n > 0; --n) made += pieces[random() % pieces.size()];
     return made;
   };
   switch (random() % 8) {
-    case 0: return Term::iri("http://e/" + std::to_string(random() % 50));
-    case 1: return Term::blank("b" + std::to_string(random() % 20));
-    case 2: return Term::langLiteral(text(), "en-gb");
-    case 3: return Term::integer(static_cast<std::int64_t>(random()) - 2000000000);
-    case 4: return Term::real(static_cast<double>(random()) / 7);
-    case 5: return Term::literal(text(), vocabulary::xsd(random() % 2 == 0 ? "decimal" : "double"));
-    case 6: return Term::literal(text(), "http://e/type");
-    default: return Term::literal("x" + text());
+    case 0:
+      return Term::iri("http://e/" + std::to_string(random() % 50));
+    case 1:
+      return Term::blank("b" + std::to_string(random() % 20));
+    case 2:
+      return Term::langLiteral(text(), "en-gb");
+    case 3:
+      return Term::integer(static_cast<std::int64_t>(random()) - 2000000000);
+    case 4:
+      return Term::real(static_cast<double>(random()) / 7);
+    case 5:
+      return Term::literal(text(), vocabulary::xsd(random() % 2 == 0 ? "decimal" : "double"));
+    case 6:
+      return Term::literal(text(), "http://e/type");
+    default:
+      return Term::literal("x" + text());
   }
 }
 
@@ -162,7 +174,7 @@ TEST(ResultWriter, WritesRandomAnswersThatReadBackTheSame) {
   for (int i = 0; i < 300; ++i) {
     const QueryResult result = randomTable(random);
     for (const ResultFormat format : {ResultFormat::Json, ResultFormat::Xml, ResultFormat::Tsv}) {
-      if (format == ResultFormat::Xml && holdsControl(result)) continue;   // XML 1.0 cannot hold U+0001
+      if (format == ResultFormat::Xml && holdsControl(result)) continue;  // XML 1.0 cannot hold U+0001
       const QueryResult again = readResults(writtenResult(result, format), format);
       EXPECT_EQ(test::difference(again, result, test::RowOrder::AsWritten), "") << mediaTypeOf(format);
     }
@@ -172,7 +184,8 @@ TEST(ResultWriter, WritesRandomAnswersThatReadBackTheSame) {
 TEST(ResultsReader, RefusesDamagedAnswersWithoutCrashing) {
   std::mt19937 random(5);
   for (int i = 0; i < 3000; ++i) {
-    const ResultFormat format = std::array{ResultFormat::Json, ResultFormat::Xml, ResultFormat::Tsv, ResultFormat::Csv}[random() % 4];
+    const ResultFormat format =
+        std::array{ResultFormat::Json, ResultFormat::Xml, ResultFormat::Tsv, ResultFormat::Csv}[random() % 4];
     std::string text = writtenResult(sample(), format);
     for (int changes = 1 + static_cast<int>(random() % 3); changes > 0; --changes)
       text[random() % text.size()] = static_cast<char>(random() % 256);
@@ -185,8 +198,9 @@ TEST(ResultsReader, RefusesDamagedAnswersWithoutCrashing) {
 }
 
 TEST(ResultsReader, RefusesVariablesBehindTheFirstResult) {
-  const std::string text = "<sparql><head><variable name=\"x\"/></head><results><result/>"
-                           "<variable name=\"y\"/><variable name=\"z\"/><binding name=\"x\"><uri>u</uri></binding></results></sparql>";
+  const std::string text =
+      "<sparql><head><variable name=\"x\"/></head><results><result/>"
+      "<variable name=\"y\"/><variable name=\"z\"/><binding name=\"x\"><uri>u</uri></binding></results></sparql>";
   EXPECT_THROW(readResults(text, ResultFormat::Xml), InputError);
 }
 

@@ -15,7 +15,8 @@ namespace {
 std::filesystem::path builtMap(const SmallCampus& campus, const std::filesystem::path& file) {
   MapInputFiles files;
   files.model = "campus";
-  buildMap(scansOf(campus.files()), readMapInputs(files, DataHome({CLUXEL_SOURCE_DIR})), file, {.threads = 2}, silence());
+  buildMap(scansOf(campus.files()), readMapInputs(files, DataHome({CLUXEL_SOURCE_DIR})), file, {.threads = 2},
+           silence());
   return file;
 }
 

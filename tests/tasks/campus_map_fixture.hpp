@@ -13,10 +13,10 @@ namespace cluxel {
 
 /// One object of the truth as the scans saw it.
 struct TruthObject {
-  std::string class_name;          ///< "Tree"
+  std::string class_name;  ///< "Tree"
   std::size_t points = 0;
   Eigen::AlignedBox3d box_map_m;
-  Eigen::Vector3d center_map_m = Eigen::Vector3d::Zero();   ///< mean of its points
+  Eigen::Vector3d center_map_m = Eigen::Vector3d::Zero();  ///< mean of its points
 };
 
 class CampusMap {

@@ -15,7 +15,7 @@ TEST(ConfusionMatrix, GivesTheFiguresThatAHandCounts) {
   ConfusionMatrix matrix({"Tree", "Bush", "Ground"});
   for (int i = 0; i < 6; ++i) matrix.add(0, 0);
   for (int i = 0; i < 2; ++i) matrix.add(0, 1);
-  matrix.add(0, 3);                                   // no answer
+  matrix.add(0, 3);  // no answer
   for (int i = 0; i < 3; ++i) matrix.add(1, 1);
   matrix.add(1, 0);
   EXPECT_EQ(matrix.total(), 13U);
@@ -66,8 +66,7 @@ class ObjectMatchingByHand : public testing::Test {
   /// `count` points from `first_m` on.
   static void add(ObjectMatching& matching, double first_m, int count, std::size_t truth_class, std::int32_t instance,
                   std::uint32_t object) {
-    for (int i = 0; i < count; ++i)
-      matching.add({first_m + i, 0, 0}, truth_class, instance, object);
+    for (int i = 0; i < count; ++i) matching.add({first_m + i, 0, 0}, truth_class, instance, object);
   }
   const std::vector<std::string> names{"Tree", "Bush"};
   const std::vector<std::size_t> two_trees_and_a_bush{kTree, kTree, kBush};
@@ -89,8 +88,8 @@ TEST_F(ObjectMatchingByHand, APerfectAnswerScoresOne) {
 
 TEST_F(ObjectMatchingByHand, ATreeInTwoHalvesIsOneMatchAtMost) {
   ObjectMatching matching(names, two_trees_and_a_bush, {});
-  add(matching, 0, 6, kTree, 7, 0);       // IoU 6/10
-  add(matching, 6, 4, kTree, 7, 1);       // IoU 4/10
+  add(matching, 0, 6, kTree, 7, 0);  // IoU 6/10
+  add(matching, 6, 4, kTree, 7, 1);  // IoU 4/10
   const ObjectScore trees = matching.scoreByPoints(params)[kTree];
   EXPECT_EQ(trees.truth, 1U);
   EXPECT_EQ(trees.answers, 2U);
@@ -112,8 +111,8 @@ TEST_F(ObjectMatchingByHand, OtherClassesAreNoPartners) {
 
 TEST_F(ObjectMatchingByHand, AmbiguousInstancesCountNeitherWay) {
   ObjectMatching matching(names, two_trees_and_a_bush, {7});
-  add(matching, 0, 10, kTree, 7, 0);                    // found: its answer does not count either
-  add(matching, 100, 10, kTree, 8, kNoObjectOfPoint);   // missed
+  add(matching, 0, 10, kTree, 7, 0);                   // found: its answer does not count either
+  add(matching, 100, 10, kTree, 8, kNoObjectOfPoint);  // missed
   const ObjectScore trees = matching.scoreByPoints(params)[kTree];
   EXPECT_EQ(trees.truth, 1U);
   EXPECT_EQ(trees.answers, 0U);
@@ -124,7 +123,7 @@ TEST_F(ObjectMatchingByHand, AnAnswerOnPointsOfItsClassWithoutInstanceCountsNeit
   ObjectMatching matching(names, two_trees_and_a_bush, {});
   add(matching, 0, 6, kTree, -1, 0);
   add(matching, 10, 4, kTree, 3, 0);
-  add(matching, 50, 6, kTree, -1, 2);                   // a bush where truth says tree: it does count
+  add(matching, 50, 6, kTree, -1, 2);  // a bush where truth says tree: it does count
   const auto scores = matching.scoreByPoints(params);
   EXPECT_EQ(scores[kTree].answers, 0U);
   EXPECT_EQ(scores[kBush].answers, 1U);

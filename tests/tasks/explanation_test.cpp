@@ -42,7 +42,8 @@ TEST(Explanation, TakesNamesAsAnswersToQueriesWriteThem) {
   const std::string hex = map.objects().front().id.hex();
   const std::string told = explainThing(map, hex, false);
   EXPECT_EQ(explainThing(map, "map:object/" + hex, false), told) << "as in a table";
-  EXPECT_EQ(explainThing(map, "<https://w3id.org/cluxel/map/object/" + hex + ">", false), told) << "as in TSV and Turtle";
+  EXPECT_EQ(explainThing(map, "<https://w3id.org/cluxel/map/object/" + hex + ">", false), told)
+      << "as in TSV and Turtle";
 }
 
 TEST(Explanation, RefusesNamesOfNothingAndOfTooMuch) {

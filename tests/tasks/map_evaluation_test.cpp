@@ -66,7 +66,8 @@ TEST(MapEvaluation, CountsEveryPointThatHasTruthOnce) {
   }
   ASSERT_FALSE(primitives.empty());
   for (const auto& [pair, count] : primitives)
-    EXPECT_EQ(evaluation().primitives.at(static_cast<std::size_t>(pair.first), static_cast<std::size_t>(pair.second)), count)
+    EXPECT_EQ(evaluation().primitives.at(static_cast<std::size_t>(pair.first), static_cast<std::size_t>(pair.second)),
+              count)
         << pair.first << " taken for " << pair.second;
   EXPECT_EQ(evaluation().objects.total(), with_class);
 }
@@ -76,7 +77,8 @@ TEST(MapEvaluation, FindsMostOfAGeneratedCampus) {
   EXPECT_TRUE(made.has_instances);
   EXPECT_GT(made.primitives.overallAccuracy(), 0.95);
   EXPECT_GT(made.objects.overallAccuracy(), 0.9);
-  const auto tree = std::find_if(made.by_points.begin(), made.by_points.end(), [](const auto& s) { return s.name == "Tree"; });
+  const auto tree =
+      std::find_if(made.by_points.begin(), made.by_points.end(), [](const auto& s) { return s.name == "Tree"; });
   ASSERT_NE(tree, made.by_points.end());
   EXPECT_GT(tree->truth, 0U);
   EXPECT_GT(tree->recall(), 0.5);
@@ -89,8 +91,9 @@ TEST(MapEvaluation, FindsMostOfAGeneratedCampus) {
 
 TEST(MapEvaluation, CountsClassesThatOnlyALabelMapNames) {
   const ScratchFolder folder;
-  const auto labels = written(folder, 
-      "m.yaml", "dataset: d\nlabels:\n  1: {name: lawn, object: Ground}\n  3: {name: street, object: Racetrack}\n");
+  const auto labels =
+      written(folder, "m.yaml",
+              "dataset: d\nlabels:\n  1: {name: lawn, object: Ground}\n  3: {name: street, object: Racetrack}\n");
   const MapReader& map = CampusMap::shared().map();
   std::uint64_t lawn = 0, street = 0;
   for (const Cloud& cloud : map.clouds())
@@ -120,7 +123,8 @@ TEST(MapEvaluation, RefusesOneTruthFileForTwoScans) {
   written(folder, "truth/scan.truth", lines);
   const auto file = folder.path() / "m.clx";
   const DataHome home({CLUXEL_SOURCE_DIR});
-  buildMap(scansOf({folder.path() / "a/scan.xyz", folder.path() / "b/scan.xyz"}), readMapInputs({}, home), file, {}, silence());
+  buildMap(scansOf({folder.path() / "a/scan.xyz", folder.path() / "b/scan.xyz"}), readMapInputs({}, home), file, {},
+           silence());
   const auto evaluated = [&] { return evaluateMap(MapReader(file), TruthSource::open(folder.path() / "truth", home)); };
   EXPECT_THROW(evaluated(), InputError);
   std::filesystem::create_directory(folder.path() / "truth/b");
@@ -139,7 +143,7 @@ TEST(MapEvaluation, ShowsADashWhereThereIsNoTruthAndNullInJson) {
   MapEvaluation made{ConfusionMatrix({"scatter"}), ConfusionMatrix({"Tree", "Bush", "Vehicle"}), true, {}, {}};
   made.primitives.add(0, 0);
   made.objects.add(0, 0);
-  made.objects.add(0, 1);                              // a bush where there is none
+  made.objects.add(0, 1);  // a bush where there is none
   made.by_points = {{"Tree", 1, 1, 1, 1}, {"Bush", 0, 1, 0, 0}, {"Vehicle", 0, 0, 0, 0}};
   made.by_box = made.by_points;
   const std::string text = toText(made);

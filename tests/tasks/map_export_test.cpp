@@ -25,7 +25,9 @@ std::string exported(ExportFormat format) {
   return text;
 }
 
-bool isHistory(const Quad& quad) { return quad.graph.text == vocabulary::kGraphHistory; }
+bool isHistory(const Quad& quad) {
+  return quad.graph.text == vocabulary::kGraphHistory;
+}
 
 template <typename Visit>
 void forEachQuad(const Visit& visit) {
@@ -69,7 +71,8 @@ TEST(Export, CanonicalIsSortedNQuadsWithoutHistory) {
   EXPECT_EQ(readBack(text, RdfFormat::NQuads), expected);
   std::istringstream stream(text);
   std::string last;
-  for (std::string line; std::getline(stream, line); last = line) ASSERT_LT(last, line) << "lines are sorted, each is there once";
+  for (std::string line; std::getline(stream, line); last = line)
+    ASSERT_LT(last, line) << "lines are sorted, each is there once";
   EXPECT_EQ(text, exported(ExportFormat::Canonical));
 }
 
@@ -179,7 +182,8 @@ TEST(Export, PlyHoldsEveryPointWhereItLiesWithTheColourOfItsClass) {
 
 /// The boxes that the RDF says the objects have: another way from the points to the file.
 std::map<std::string, Eigen::AlignedBox3d> boxesInRdf() {
-  const QueryResult rows = evaluateQuery(CampusMap::shared().map().quads(),
+  const QueryResult rows = evaluateQuery(
+      CampusMap::shared().map().quads(),
       "PREFIX clx: <https://w3id.org/cluxel/ontology#> SELECT ?o ?ax ?ay ?az ?bx ?by ?bz { ?o clx:confidence ?c ; "
       "clx:minX ?ax ; clx:minY ?ay ; clx:minZ ?az ; clx:maxX ?bx ; clx:maxY ?by ; clx:maxZ ?bz }");
   std::map<std::string, Eigen::AlignedBox3d> boxes;
@@ -195,7 +199,7 @@ std::map<std::string, Eigen::AlignedBox3d> boxesInRdf() {
 }
 
 TEST(Export, PlyPutsTheObjectsWhereTheRdfSaysTheyAre) {
-  constexpr double kTolerance_m = 0.25;   // a point may lie a cluxel's radius beside what was measured after thinning
+  constexpr double kTolerance_m = 0.25;  // a point may lie a cluxel's radius beside what was measured after thinning
   const auto& objects = CampusMap::shared().map().objects();
   const auto boxes = boxesInRdf();
   ASSERT_EQ(boxes.size(), objects.size());
@@ -220,7 +224,8 @@ TEST(Export, PlyIsReadBackByThePlyReaderOfScans) {
 double areaOf(const Json& ring) {
   double twice = 0;
   for (std::size_t i = 0; i + 1 < ring.size(); ++i)
-    twice += ring[i][0].get<double>() * ring[i + 1][1].get<double>() - ring[i + 1][0].get<double>() * ring[i][1].get<double>();
+    twice += ring[i][0].get<double>() * ring[i + 1][1].get<double>() -
+             ring[i + 1][0].get<double>() * ring[i][1].get<double>();
   return twice / 2;
 }
 

@@ -88,7 +88,8 @@ TEST_F(Questions, ParametersTakeTheGivenValueOrTheDefault) {
 TEST_F(Questions, ANumberIsWantedWhereTheDefaultIsOne) {
   const Question question = read("#! parameter: far [m] = 5 x\n#! parameter: name [text] = oak y\nASK { }\n");
   EXPECT_EQ(bindingsFor(question, {"name=hello"})[1].second, Term::literal("hello"));
-  EXPECT_EQ(bindingsFor(question, {"far=-1e3"})[0].second, Term::literal("-1e3", "http://www.w3.org/2001/XMLSchema#double"));
+  EXPECT_EQ(bindingsFor(question, {"far=-1e3"})[0].second,
+            Term::literal("-1e3", "http://www.w3.org/2001/XMLSchema#double"));
   for (const char* text : {"far=away", "far=inf", "far=nan", "far=1,5", "far=", "far=2 m"}) {
     try {
       bindingsFor(question, {text});
@@ -117,7 +118,9 @@ TEST_F(Questions, ATurtleFileIsAskedLikeAMap) {
   writeFile(folder.path() / "x.ttl", "<https://e.org/a> <https://e.org/p> 1, 2 .\n");
   const QuerySource source = openQuerySource(folder.path() / "x.ttl");
   const QuadReader reader = source.reader();
-  EXPECT_EQ(evaluateQuery(reader, "SELECT ?o WHERE { ?s ?p ?o }", {.default_graph = source.default_graph}).table.row_count, 2U);
+  EXPECT_EQ(
+      evaluateQuery(reader, "SELECT ?o WHERE { ?s ?p ?o }", {.default_graph = source.default_graph}).table.row_count,
+      2U);
   EXPECT_THROW(openQuerySource(folder.path() / "absent.ttl"), Error);
 }
 

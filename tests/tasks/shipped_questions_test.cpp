@@ -12,13 +12,17 @@
 namespace cluxel {
 namespace {
 
-const CampusMap& campus() { return CampusMap::shared(); }
+const CampusMap& campus() {
+  return CampusMap::shared();
+}
 
 Eigen::Vector2d placeAt(const ResultTable& table, std::size_t row) {
   return {numberAt(table, row, "x"), numberAt(table, row, "y")};
 }
 
-std::string classAt(const ResultTable& table, std::size_t row) { return localName(textAt(table, row, "class")); }
+std::string classAt(const ResultTable& table, std::size_t row) {
+  return localName(textAt(table, row, "class"));
+}
 
 /// How many rows lie within `within_m` of one of these objects, seen from above.
 std::size_t rowsNear(const ResultTable& rows, const std::vector<TruthObject>& objects, double within_m) {
@@ -86,7 +90,7 @@ TEST(QuestionsOfACampus, TheListOfObjectsIsTheMapsList) {
 
 TEST(QuestionsOfACampus, CountsByClassAreThoseOfTheList) {
   const ResultTable counts = campus().answer("count_by_class"), objects = campus().answer("objects");
-  std::map<std::string, std::pair<double, double>> expected;   // number, sum of heights
+  std::map<std::string, std::pair<double, double>> expected;  // number, sum of heights
   for (std::size_t i = 0; i < objects.row_count; ++i) {
     auto& [number, heights] = expected[classAt(objects, i)];
     ++number, heights += numberAt(objects, i, "height");
@@ -146,7 +150,8 @@ TEST(QuestionsOfACampus, SignsStandWhereSignsAre) {
 
 TEST(QuestionsOfACampus, FreeSignsAreTheSignsWithoutANeighbouringTree) {
   const ResultTable all = campus().answer("street_signs"), free = campus().answer("signs_without_tree");
-  const QueryResult near = evaluateQuery(campus().map().quads(),
+  const QueryResult near = evaluateQuery(
+      campus().map().quads(),
       "PREFIX clx: <https://w3id.org/cluxel/ontology#> SELECT DISTINCT ?sign { ?sign a clx:StreetSign ; clx:near ?t . "
       "?t a clx:Tree }");
   EXPECT_EQ(all.row_count, free.row_count + near.table.row_count);
@@ -208,7 +213,8 @@ TEST(QuestionsOfACampus, WhatIsNearAPlaceIsWhatALoopFinds) {
   const ResultTable objects = campus().answer("objects");
   ASSERT_GT(objects.row_count, 0U);
   const Eigen::Vector2d place = placeAt(objects, objects.row_count / 2);
-  const auto parameters = std::vector<std::string>{"x=" + std::to_string(place.x()), "y=" + std::to_string(place.y()), "radius=12"};
+  const auto parameters =
+      std::vector<std::string>{"x=" + std::to_string(place.x()), "y=" + std::to_string(place.y()), "radius=12"};
   const ResultTable rows = campus().answer("near_point", parameters);
   expectAscending(rows, "squaredDistance");
   std::map<std::string, double> expected;
@@ -228,13 +234,14 @@ TEST(QuestionsOfACampus, ObservationsAddUpToTheCloudsThatSawAnObject) {
   EXPECT_EQ(rows.row_count, campus().answer("objects").row_count) << "every object was seen";
   expectAscending(rows, "clouds", -1);
   expectWithin(rows, "clouds", 1, static_cast<double>(campus().map().summary().clouds));
-  std::map<std::string, std::set<std::string>> clouds_of;   // counted from the points themselves
+  std::map<std::string, std::set<std::string>> clouds_of;  // counted from the points themselves
   for (const Cloud& cloud : campus().map().clouds())
     for (const std::uint32_t object : campus().map().answersFor(cloud).object)
       if (object != kNoObjectOfPoint) clouds_of[campus().map().objects()[object].id.hex()].insert(cloud.id.hex());
   for (std::size_t i = 0; i < rows.row_count; ++i) {
     const std::string iri = textAt(rows, i, "object");
-    EXPECT_EQ(numberAt(rows, i, "clouds"), static_cast<double>(clouds_of.at(iri.substr(iri.rfind('/') + 1)).size())) << iri;
+    EXPECT_EQ(numberAt(rows, i, "clouds"), static_cast<double>(clouds_of.at(iri.substr(iri.rfind('/') + 1)).size()))
+        << iri;
   }
 }
 

@@ -40,15 +40,14 @@ class ContentHasher {
   ContentHasher& add(const ContentHash& hash) { return addBytes(hash.bytes.data(), hash.bytes.size()); }
 
   template <typename T>
-    requires(std::is_arithmetic_v<T> || std::is_enum_v<T>)
-  ContentHasher& add(T value) {
+  requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) ContentHasher& add(T value) {
     return addBytes(&value, sizeof value);
   }
 
   /// The number of elements goes in first.
   template <typename T>
-    requires std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>
-  ContentHasher& addSpan(std::span<const T> values) {
+  requires std::has_unique_object_representations_v<T> || std::is_floating_point_v<T> ContentHasher& addSpan(
+      std::span<const T> values) {
     return add(static_cast<std::uint64_t>(values.size())).addBytes(values.data(), values.size_bytes());
   }
 

@@ -12,7 +12,8 @@ namespace cluxel {
 /// Counts finished units for a sink, from any thread.
 class CountedProgress {
  public:
-  CountedProgress(ProgressSink& sink, const char* stage, std::size_t total) : sink_(&sink), stage_(stage), total_(total) {}
+  CountedProgress(ProgressSink& sink, const char* stage, std::size_t total)
+      : sink_(&sink), stage_(stage), total_(total) {}
   void step() {
     const std::lock_guard lock(mutex_);
     sink_->progress(stage_, ++done_, total_);

@@ -11,8 +11,8 @@ namespace cluxel {
 /// The bytes of a file; InputError naming the file when it cannot be read or is a folder.
 std::string readFile(const std::filesystem::path& path);
 
-/// Writes all of `bytes` or leaves the old file as it was; Error (StoreUnavailable) when the disk refuses. A link stays a
-/// link: the file that it leads to is replaced. What is no file (a pipe, a device) is written to in place.
+/// Writes all of `bytes` or leaves the old file as it was; Error (StoreUnavailable) when the disk refuses. A link stays
+/// a link: the file that it leads to is replaced. What is no file (a pipe, a device) is written to in place.
 void writeFile(const std::filesystem::path& path, std::string_view bytes);
 
 /// Where a symbolic link, or a chain of them, leads to, be there something or not; `path` itself when it is no link.

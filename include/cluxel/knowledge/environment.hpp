@@ -12,7 +12,7 @@
 
 namespace cluxel {
 
-enum class OpenMode { ReadOnly, ReadWrite, Create };   ///< Create: the file must not exist yet
+enum class OpenMode { ReadOnly, ReadWrite, Create };  ///< Create: the file must not exist yet
 
 class ReadTransaction;
 class WriteTransaction;
@@ -41,7 +41,8 @@ class ReadTransaction {
   struct Impl;
   explicit ReadTransaction(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
   /// The bytes stored under `key` in the block table `table`, with their checksum verified; valid while the transaction
-  /// lives and, in a write transaction, until the next write. Throws Error (StoreUnavailable) when the checksum is wrong.
+  /// lives and, in a write transaction, until the next write. Throws Error (StoreUnavailable) when the checksum is
+  /// wrong.
   std::optional<std::string_view> block(std::string_view table, std::string_view key) const;
   /// Visits the blocks whose key begins with `prefix`, in byte order of keys.
   void forEachBlock(std::string_view table, std::string_view prefix,
@@ -57,7 +58,7 @@ class WriteTransaction : public ReadTransaction {
  public:
   using ReadTransaction::ReadTransaction;
   void putBlock(std::string_view table, std::string_view key, std::string_view bytes);
-  bool eraseBlock(std::string_view table, std::string_view key);   ///< false when there was none
+  bool eraseBlock(std::string_view table, std::string_view key);  ///< false when there was none
   void commit();
 };
 

@@ -10,8 +10,8 @@
 namespace cluxel {
 
 struct MapCheck {
-  std::uint64_t blocks = 0, terms = 0, quads = 0;   ///< how many were looked at
-  std::vector<std::string> faults;                  ///< in words for a person; at most some dozens
+  std::uint64_t blocks = 0, terms = 0, quads = 0;  ///< how many were looked at
+  std::vector<std::string> faults;                 ///< in words for a person; at most some dozens
   bool sound() const { return faults.empty(); }
 };
 

@@ -32,12 +32,12 @@ struct OntologyClass {
   std::string iri;
   std::map<std::string, std::string> labels;  ///< by language tag; "" for none
   std::string comment;                        ///< English
-  std::string color;  ///< "#rrggbb"; a class without one has its nearest superclass's, or ""
-  Mobility mobility = Mobility::Unknown;  ///< inherited like the colour
-  std::vector<std::string> superclasses;  ///< direct ones
-  std::vector<std::string> ancestors;     ///< all classes above it, itself not among them
-  std::vector<std::string> parts;         ///< classes its parts may have, its own and its ancestors'
-  std::vector<UsualPlace> places;         ///< its own; most probable first
+  std::string color;                          ///< "#rrggbb"; a class without one has its nearest superclass's, or ""
+  Mobility mobility = Mobility::Unknown;      ///< inherited like the colour
+  std::vector<std::string> superclasses;      ///< direct ones
+  std::vector<std::string> ancestors;         ///< all classes above it, itself not among them
+  std::vector<std::string> parts;             ///< classes its parts may have, its own and its ancestors'
+  std::vector<UsualPlace> places;             ///< its own; most probable first
 
   /// The label in a language, else the English one, else the IRI's last part.
   std::string label(std::string_view language = "en") const;
@@ -70,20 +70,20 @@ OntologyView ontologyViewOf(std::span<const RdfSource> sources);
 void loadOntology(std::span<const RdfSource> sources, QuadWriter& writer);
 
 /// What follows from the quads of the source graphs and does not stand in them, sorted: rdfs:subClassOf and
-/// rdfs:subPropertyOf with their transitivity, owl:inverseOf, owl:SymmetricProperty, owl:TransitiveProperty, and types of
-/// superclasses; to the fixpoint. Not from rdfs:domain and rdfs:range: a wrong use shall stay a visible fault and not
-/// become a type. The graph of the quads is `target`. Cost: in the quads of rdf:type and of properties that imply
+/// rdfs:subPropertyOf with their transitivity, owl:inverseOf, owl:SymmetricProperty, owl:TransitiveProperty, and types
+/// of superclasses; to the fixpoint. Not from rdfs:domain and rdfs:range: a wrong use shall stay a visible fault and
+/// not become a type. The graph of the quads is `target`. Cost: in the quads of rdf:type and of properties that imply
 /// something.
 std::vector<QuadIds> closureOf(const QuadReader& reader, TermId target, std::span<const TermId> sources);
 
 struct ClosureChange {
-  std::uint64_t added = 0, removed = 0;   ///< quads
+  std::uint64_t added = 0, removed = 0;  ///< quads
 };
 /// Makes graph inferred the closure of ontology, observed and operator: what stood there and does not follow goes.
 /// Writes the differences only, and flushes.
 ClosureChange inferClosure(WriteTransaction& transaction);
-/// Adds to graph inferred what follows from ontology, observed, operator and inferred itself, which keeps the facts that
-/// rules have put there. Flushes.
+/// Adds to graph inferred what follows from ontology, observed, operator and inferred itself, which keeps the facts
+/// that rules have put there. Flushes.
 ClosureChange extendClosure(WriteTransaction& transaction);
 
 }  // namespace cluxel

@@ -52,10 +52,14 @@ static_assert(sizeof(QuadKey) == 16 && alignof(QuadKey) == 1);
 /// For each position of the order, the place of that id in s, p, o, g: Posg gives 1, 2, 0, 3.
 constexpr std::array<std::uint8_t, 4> placesOf(QuadOrder order) {
   switch (order) {
-    case QuadOrder::Posg: return {1, 2, 0, 3};
-    case QuadOrder::Ospg: return {2, 0, 1, 3};
-    case QuadOrder::Gspo: return {3, 0, 1, 2};
-    case QuadOrder::Spog: break;
+    case QuadOrder::Posg:
+      return {1, 2, 0, 3};
+    case QuadOrder::Ospg:
+      return {2, 0, 1, 3};
+    case QuadOrder::Gspo:
+      return {3, 0, 1, 2};
+    case QuadOrder::Spog:
+      break;
   }
   return {0, 1, 2, 3};
 }
@@ -71,9 +75,9 @@ inline QuadIds toQuad(const QuadKey& key, QuadOrder order) {
 /// until the next flush.
 struct TermView {
   TermKind kind = TermKind::Iri;
-  std::string_view text;       ///< as in Term
-  std::string_view datatype;   ///< as in Term
-  std::string_view language;   ///< as in Term
+  std::string_view text;      ///< as in Term
+  std::string_view datatype;  ///< as in Term
+  std::string_view language;  ///< as in Term
 
   Term toTerm() const { return {kind, std::string(text), std::string(datatype), std::string(language)}; }
   static TermView of(const Term& term) { return {term.kind, term.text, term.datatype, term.language}; }
@@ -82,18 +86,26 @@ struct TermView {
 /// A value decoded when its term entered the dictionary.
 struct DecodedValue {
   enum class Type : std::uint8_t {
-    None,        ///< not a literal, of a datatype that is not decoded, ill-formed, an integer beyond 64 bits, or a
-                 ///< DateTime or Date without a time zone (its order against others is not determined)
-    Integer,     ///< xsd:integer and its derived types, when it fits 64 bits
-    Decimal, Float, Double, Boolean, String, LangString, DateTime, Date
+    None,     ///< not a literal, of a datatype that is not decoded, ill-formed, an integer beyond 64 bits, or a
+              ///< DateTime or Date without a time zone (its order against others is not determined)
+    Integer,  ///< xsd:integer and its derived types, when it fits 64 bits
+    Decimal,
+    Float,
+    Double,
+    Boolean,
+    String,
+    LangString,
+    DateTime,
+    Date
   };
   static constexpr std::uint8_t kNoScale = 255;
   Type type = Type::None;
   TermKind kind = TermKind::Iri;
-  std::uint8_t scale = kNoScale;   ///< of a Decimal that is exactly integer * 10^-scale; else kNoScale
-  TermId datatype = kNoTerm;    ///< the datatype's own id; kNoTerm for no literal, xsd:string and rdf:langString
-  std::int64_t integer = 0;     ///< Integer, Boolean; Decimal: see scale; DateTime and Date: microseconds since 1970-01-01T00:00:00Z
-  double number = 0;            ///< the value as a double (exact for Integer below 2^53, Float, Double)
+  std::uint8_t scale = kNoScale;  ///< of a Decimal that is exactly integer * 10^-scale; else kNoScale
+  TermId datatype = kNoTerm;      ///< the datatype's own id; kNoTerm for no literal, xsd:string and rdf:langString
+  std::int64_t integer =
+      0;  ///< Integer, Boolean; Decimal: see scale; DateTime and Date: microseconds since 1970-01-01T00:00:00Z
+  double number = 0;  ///< the value as a double (exact for Integer below 2^53, Float, Double)
 };
 
 /// Sorted quads of one index within a range. Blocks point into the mapped file: no copies.
@@ -115,7 +127,7 @@ class QuadCursor {
   /// The rest of the current page's quads within the range, then page by page; empty at the end. At most 255 entries.
   /// Only the pattern's leading bound positions hold for them: where filtered() is true, the caller tests the rest.
   std::span<const QuadKey> nextBlock();
-  bool filtered() const;      ///< some bound position is not in the prefix of the order
+  bool filtered() const;  ///< some bound position is not in the prefix of the order
   QuadOrder order() const;
 
  private:
@@ -133,8 +145,9 @@ class PrefixLookup {
   PrefixLookup& operator=(PrefixLookup&&) noexcept;
   ~PrefixLookup();
 
-  /// Lookups that will be made next, in this order: ids one after another, `length` (1 to 4) for each. Searching for all
-  /// of them at once lets their waits for the memory overlap. Changes no answer; lookups may also differ or not come.
+  /// Lookups that will be made next, in this order: ids one after another, `length` (1 to 4) for each. Searching for
+  /// all of them at once lets their waits for the memory overlap. Changes no answer; lookups may also differ or not
+  /// come.
   void expect(std::span<const TermId> prefixes, std::size_t length);
   /// The entries that begin with `prefix` (1 to 4 ids in the index's order) on the first page that has any; empty when
   /// there is none.
@@ -157,9 +170,9 @@ class QuadReader {
   QuadReader& operator=(QuadReader&&) noexcept;
 
   std::optional<TermId> idOf(const Term& term) const;
-  Term termOf(TermId id) const;              ///< the unnamed default graph (0) is an IRI without text
+  Term termOf(TermId id) const;  ///< the unnamed default graph (0) is an IRI without text
   TermView viewOf(TermId id) const;
-  const DecodedValue& valueOf(TermId id) const;   ///< O(1); the reference lives as long as the reader
+  const DecodedValue& valueOf(TermId id) const;  ///< O(1); the reference lives as long as the reader
   /// Terms whose views, or values, will be asked for soon: reads them from the memory together. Changes no answer; ids
   /// that the store does not have are passed over.
   void expectViews(std::span<const TermId> ids) const;
@@ -178,7 +191,7 @@ class QuadReader {
   /// How many quads match, exactly. Cost: one step per page of 255 when the bound positions are a prefix of an index,
   /// else one per quad of the best prefix.
   std::uint64_t count(const QuadPattern& pattern) const;
-  std::uint64_t size() const;        ///< the number of quads, exact
+  std::uint64_t size() const;  ///< the number of quads, exact
   std::uint64_t termCount() const;
   /// The graphs that hold quads, 0 among them when the unnamed default graph does; ascending ids. Cost: a seek each.
   std::vector<TermId> graphs() const;
@@ -186,7 +199,9 @@ class QuadReader {
   std::vector<TermId> predicates() const;
   /// How many different subjects/objects a predicate has, for join estimates; cached per snapshot. Exact for predicates
   /// of up to some thousands of quads, sampled above.
-  struct PredicateStatistics { std::uint64_t quads = 0, subjects = 0, objects = 0; };
+  struct PredicateStatistics {
+    std::uint64_t quads = 0, subjects = 0, objects = 0;
+  };
   PredicateStatistics statistics(TermId predicate) const;
   /// What a layer above has made from this commit and keeps for its other readers, by a name of its own; null when
   /// there is none. Thread-safe among the readers of a commit.
@@ -198,8 +213,8 @@ class QuadReader {
 };
 
 /// Write access within a transaction; of several writers only one may hold unflushed changes. Cheap to construct; holds
-/// a write-back cache that flush() empties: what was not flushed is lost with the writer. Commit through the transaction
-/// after flush().
+/// a write-back cache that flush() empties: what was not flushed is lost with the writer. Commit through the
+/// transaction after flush().
 class QuadWriter {
  public:
   struct Impl;
@@ -209,9 +224,9 @@ class QuadWriter {
   QuadWriter& operator=(const QuadWriter&) = delete;
 
   TermId intern(const Term& term);
-  void add(const QuadIds& quad);             ///< no effect when it is there
+  void add(const QuadIds& quad);  ///< no effect when it is there
   void add(const Quad& quad);
-  void remove(const QuadIds& quad);          ///< no effect when it is not there
+  void remove(const QuadIds& quad);  ///< no effect when it is not there
   void clearGraph(TermId graph);
   void flush();
 

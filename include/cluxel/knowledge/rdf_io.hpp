@@ -25,10 +25,10 @@ std::optional<RdfFormat> rdfFormatNamed(std::string_view name);
 /// An RDF text and what is needed to read it.
 struct RdfSource {
   std::string text;
-  std::string name;                      ///< the file's name, for messages
+  std::string name;  ///< the file's name, for messages
   RdfFormat format = RdfFormat::Turtle;
-  std::string base_iri;                  ///< relative IRIs are resolved against it; empty: they are errors
-  Term graph = Term::iri("");            ///< where statements go that name no graph
+  std::string base_iri;        ///< relative IRIs are resolved against it; empty: they are errors
+  Term graph = Term::iri("");  ///< where statements go that name no graph
 };
 
 /// Reads a file as a source; its base IRI is its file: IRI. InputError when the format cannot be told from the name.
@@ -51,7 +51,8 @@ using RdfPrefixes = std::map<std::string, std::string, std::less<>>;
 /// clx, rdf, rdfs, owl, xsd, geo, sosa, prov, skos.
 const RdfPrefixes& commonPrefixes();
 
-/// Canonical N-Quads, each line once, sorted by bytes. All graphs, or the given one; a line per quad that `keep` accepts.
+/// Canonical N-Quads, each line once, sorted by bytes. All graphs, or the given one; a line per quad that `keep`
+/// accepts.
 void writeSortedNQuads(const QuadReader& reader, const TextSink& out,
                        const std::function<bool(const Quad&)>& keep = {});
 /// Turtle of one graph, or of the union of all but history when `graph` is absent: subjects sorted by term, rdf:type

@@ -18,8 +18,8 @@ namespace cluxel {
 /// One world per thread. Each change outside a transaction is one commit; add in streams or within transactions.
 void registerRedlandStorage(librdf_world_s* world);
 
-/// What an open storage "cluxel" sees: its transaction when it has one, else the latest commit. Nothing for a storage of
-/// another kind.
+/// What an open storage "cluxel" sees: its transaction when it has one, else the latest commit. Nothing for a storage
+/// of another kind.
 struct RedlandView {
   std::shared_ptr<Environment> environment;
   ReadTransaction transaction;

@@ -16,19 +16,19 @@ enum class TermKind : std::uint8_t { Iri, BlankNode, Literal };
 /// rdf:langString; language tags are kept in lower case.
 struct Term {
   TermKind kind = TermKind::Iri;
-  std::string text;       ///< the IRI, the blank node's label, or the lexical form
-  std::string datatype;   ///< the datatype IRI of a literal, else empty
-  std::string language;   ///< the language tag of a literal, else empty
+  std::string text;      ///< the IRI, the blank node's label, or the lexical form
+  std::string datatype;  ///< the datatype IRI of a literal, else empty
+  std::string language;  ///< the language tag of a literal, else empty
 
   auto operator<=>(const Term&) const = default;
 
   static Term iri(std::string_view value) { return {TermKind::Iri, std::string(value), {}, {}}; }
   static Term blank(std::string_view label) { return {TermKind::BlankNode, std::string(label), {}, {}}; }
-  static Term literal(std::string_view lexical);                                       ///< xsd:string
+  static Term literal(std::string_view lexical);  ///< xsd:string
   static Term literal(std::string_view lexical, std::string_view datatype);
   static Term langLiteral(std::string_view lexical, std::string_view language);
   static Term integer(std::int64_t value);
-  static Term real(double value);          ///< xsd:double, shortest canonical form that reads back the same
+  static Term real(double value);  ///< xsd:double, shortest canonical form that reads back the same
   static Term boolean(bool value);
 };
 

@@ -27,9 +27,17 @@ inline constexpr std::string_view kGraphInferred = "https://w3id.org/cluxel/grap
 inline constexpr std::string_view kGraphOperator = "https://w3id.org/cluxel/graph/operator";
 inline constexpr std::string_view kGraphHistory = "https://w3id.org/cluxel/graph/history";
 
-inline std::string clx(std::string_view local) { return std::string(kClx).append(local); }
-inline std::string rdf(std::string_view local) { return std::string(kRdf).append(local); }
-inline std::string rdfs(std::string_view local) { return std::string(kRdfs).append(local); }
-inline std::string xsd(std::string_view local) { return std::string(kXsd).append(local); }
+inline std::string clx(std::string_view local) {
+  return std::string(kClx).append(local);
+}
+inline std::string rdf(std::string_view local) {
+  return std::string(kRdf).append(local);
+}
+inline std::string rdfs(std::string_view local) {
+  return std::string(kRdfs).append(local);
+}
+inline std::string xsd(std::string_view local) {
+  return std::string(kXsd).append(local);
+}
 
 }  // namespace cluxel::vocabulary

@@ -6,8 +6,8 @@
 
 namespace cluxel {
 
-/// Held for a whole build, and while a map is compacted in place. A file `MAP.build-lock` carries it and goes with it; that
-/// of a killed process locks nobody out. Readers, and updates of a finished map, are not kept off.
+/// Held for a whole build, and while a map is compacted in place. A file `MAP.build-lock` carries it and goes with it;
+/// that of a killed process locks nobody out. Readers, and updates of a finished map, are not kept off.
 class BuildLock {
  public:
   /// Throws Error (StoreUnavailable), at once, that names the process which holds the lock.

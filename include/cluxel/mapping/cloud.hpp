@@ -14,12 +14,12 @@ namespace cluxel {
 
 struct Cloud {
   ScanId id;
-  std::string source;                    ///< the file it came from; history, not part of the map function
+  std::string source;  ///< the file it came from; history, not part of the map function
   std::optional<double> time_s;
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
   bool has_pose = false;
   std::uint64_t point_count = 0;
-  Eigen::Vector3d min = Eigen::Vector3d::Zero(), max = Eigen::Vector3d::Zero();   ///< bounds of its points [m, map]
+  Eigen::Vector3d min = Eigen::Vector3d::Zero(), max = Eigen::Vector3d::Zero();  ///< bounds of its points [m, map]
 };
 
 }  // namespace cluxel

@@ -24,14 +24,14 @@ struct MapSummary {
   std::string inputs_hash;
   std::size_t clouds = 0, objects = 0;
   std::uint64_t points = 0, quads = 0;
-  std::map<std::string, std::size_t> objects_by_class;   ///< by local name of the class
+  std::map<std::string, std::size_t> objects_by_class;  ///< by local name of the class
 };
 
 /// Which cluxel each point of a cloud belongs to, and what became of it. Arrays follow the cloud's points.
 struct PointAnswers {
-  std::vector<std::uint32_t> cluxel;          ///< number in the scene's cluxels
-  std::vector<std::uint8_t> label;            ///< PrimitiveLabel
-  std::vector<std::uint32_t> object;          ///< number in objects(), or kNoObjectOfPoint
+  std::vector<std::uint32_t> cluxel;  ///< number in the scene's cluxels
+  std::vector<std::uint8_t> label;    ///< PrimitiveLabel
+  std::vector<std::uint32_t> object;  ///< number in objects(), or kNoObjectOfPoint
 };
 inline constexpr std::uint32_t kNoObjectOfPoint = 0xffffffffU;
 

@@ -17,9 +17,9 @@ namespace cluxel {
 inline constexpr double kLargestReach_m = 2.0;
 
 struct CoverParams {
-  double radius_m = 0.20;      ///< a point joins the earliest seed of its tile within this distance
-  double largest_reach_m = 0.60;   ///< volumes of sparse cluxels grow up to this; equal to radius_m: they do not grow
-  int wanted_points = 8;       ///< a volume grows until it holds this many points
+  double radius_m = 0.20;         ///< a point joins the earliest seed of its tile within this distance
+  double largest_reach_m = 0.60;  ///< volumes of sparse cluxels grow up to this; equal to radius_m: they do not grow
+  int wanted_points = 8;          ///< a volume grows until it holds this many points
 };
 void describe(CoverParams& params, ParameterVisitor& visitor);
 /// The paper's setting: radius 0.10 m, volumes that do not grow.
@@ -29,17 +29,17 @@ CoverParams paperCover();
 /// run in double and in a fixed order, so that equal inputs give equal bytes.
 struct Moments {
   float count = 0;
-  Eigen::Vector3f mean = Eigen::Vector3f::Zero();     ///< relative to the tile's corner, z of the map [m]
-  std::array<float, 6> scatter{};                     ///< sums of products of deviations xx xy xz yy yz zz [m2]
+  Eigen::Vector3f mean = Eigen::Vector3f::Zero();  ///< relative to the tile's corner, z of the map [m]
+  std::array<float, 6> scatter{};                  ///< sums of products of deviations xx xy xz yy yz zz [m2]
 };
 
 /// A map column of kColumnSize_m edge in a tile: what stands in it, in slices of kSliceHeight_m.
 struct Column {
-  float low = 0;                   ///< mean of the points within 0.1 m of the lowest [m, map]
-  float high = 0;                  ///< highest point [m, map]
-  std::uint32_t count = 0;         ///< points; 0: low and high mean nothing
-  std::int32_t base_slice = 0;     ///< floor(lowest z / kSliceHeight_m)
-  std::uint64_t slices = 0;        ///< bit i: a point lies in slice base_slice + i; the last bit stands for all above
+  float low = 0;                ///< mean of the points within 0.1 m of the lowest [m, map]
+  float high = 0;               ///< highest point [m, map]
+  std::uint32_t count = 0;      ///< points; 0: low and high mean nothing
+  std::int32_t base_slice = 0;  ///< floor(lowest z / kSliceHeight_m)
+  std::uint64_t slices = 0;     ///< bit i: a point lies in slice base_slice + i; the last bit stands for all above
 };
 inline constexpr double kColumnSize_m = 0.5;
 inline constexpr int kColumnsPerTile = 32;
@@ -48,15 +48,15 @@ inline constexpr double kSliceHeight_m = 0.25;
 /// Cluxels of one tile as a structure of arrays, numbered in the order of their seeds in the canonical order.
 struct CluxelTile {
   TileKey key;
-  std::vector<std::uint32_t> seed;                    ///< index into the tile's points
-  std::vector<Moments> own;                           ///< of the cluxel's own points
-  std::vector<Eigen::Vector3f> box_min, box_max;      ///< of the own points, relative to the tile's corner [m]
-  std::vector<Eigen::Vector3f> volume_min, volume_max;   ///< of all points within reach of the seed, neighbours' too [m]
-  std::vector<Moments> ball;                          ///< of all points within reach of the seed
-  std::vector<float> reach;                           ///< [m]
-  std::vector<float> intensity_mean, intensity_deviation;   ///< of own points; empty without intensity
-  std::vector<std::uint32_t> point_cluxel;            ///< per point of the tile: its cluxel
-  std::vector<Column> columns;                        ///< kColumnsPerTile squared, row by row in y
+  std::vector<std::uint32_t> seed;                      ///< index into the tile's points
+  std::vector<Moments> own;                             ///< of the cluxel's own points
+  std::vector<Eigen::Vector3f> box_min, box_max;        ///< of the own points, relative to the tile's corner [m]
+  std::vector<Eigen::Vector3f> volume_min, volume_max;  ///< of all points within reach of the seed, neighbours' too [m]
+  std::vector<Moments> ball;                            ///< of all points within reach of the seed
+  std::vector<float> reach;                             ///< [m]
+  std::vector<float> intensity_mean, intensity_deviation;  ///< of own points; empty without intensity
+  std::vector<std::uint32_t> point_cluxel;                 ///< per point of the tile: its cluxel
+  std::vector<Column> columns;                             ///< kColumnsPerTile squared, row by row in y
 
   std::size_t size() const { return seed.size(); }
 };
@@ -67,9 +67,9 @@ struct CluxelMembers {
 };
 CluxelMembers membersOf(const CluxelTile& tile);
 
-/// "A point joins the earliest seed within the radius, or becomes a seed", in canonical order (cell of radius_m, then the
-/// order of the points), with seeds of the own tile only. The ring's other points widen volumes and balls.
-/// Cost: some 200 ns a point.
+/// "A point joins the earliest seed within the radius, or becomes a seed", in canonical order (cell of radius_m, then
+/// the order of the points), with seeds of the own tile only. The ring's other points widen volumes and balls. Cost:
+/// some 200 ns a point.
 CluxelTile coverTile(const Ring<TilePoints>& ring, const CoverParams& params);
 
 std::string toBytes(const CluxelTile& tile);

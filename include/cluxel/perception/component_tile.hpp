@@ -20,7 +20,7 @@
 namespace cluxel {
 
 struct ComponentParams {
-  double largest_gap_m = 0.50;   ///< intersecting cluxels of one label join when the boxes of their points are this near
+  double largest_gap_m = 0.50;  ///< intersecting cluxels of one label join when the boxes of their points are this near
 };
 void describe(ComponentParams& params, ParameterVisitor& visitor);
 
@@ -30,37 +30,37 @@ inline constexpr int kFootprintCellsPerTile = 64;
 
 /// The points of one component in one footprint cell.
 struct FootprintCell {
-  std::uint16_t x = 0, y = 0;                 ///< cell within the tile
-  std::uint32_t count = 0;                    ///< points
-  std::array<float, 3> min{}, max{};          ///< their box, relative to the tile's corner [m]
-  float mean_z = 0;                           ///< [m, map]
-  float lowest = 0, highest = 0;              ///< above the local ground [m]
+  std::uint16_t x = 0, y = 0;         ///< cell within the tile
+  std::uint32_t count = 0;            ///< points
+  std::array<float, 3> min{}, max{};  ///< their box, relative to the tile's corner [m]
+  float mean_z = 0;                   ///< [m, map]
+  float lowest = 0, highest = 0;      ///< above the local ground [m]
 };
 
 /// One component: sums and extremes that merge over tiles. Lengths are relative to the tile's corner [m].
 struct Component {
-  std::uint32_t label = 0;                    ///< PrimitiveLabel
+  std::uint32_t label = 0;  ///< PrimitiveLabel
   std::uint32_t points = 0, cluxels = 0;
-  std::uint32_t first_cluxel = 0;             ///< its smallest cluxel number
+  std::uint32_t first_cluxel = 0;  ///< its smallest cluxel number
   std::array<double, 3> mean{};
-  std::array<double, 6> scatter{};            ///< sums of products of deviations xx xy xz yy yz zz [m2]
-  std::array<double, kPrimitiveLabelCount> probability{};   ///< summed over points
-  double intensity = 0;                       ///< summed over points; 0 without intensity
+  std::array<double, 6> scatter{};                         ///< sums of products of deviations xx xy xz yy yz zz [m2]
+  std::array<double, kPrimitiveLabelCount> probability{};  ///< summed over points
+  double intensity = 0;                                    ///< summed over points; 0 without intensity
   std::array<float, 3> min{}, max{};
-  float lowest = 0, highest = 0;              ///< above the local ground [m]
+  float lowest = 0, highest = 0;  ///< above the local ground [m]
 };
 
 /// The components of one tile; CSR lists hang on their numbers.
 struct ComponentTile {
   TileKey key;
-  std::vector<std::uint32_t> component_of;    ///< per cluxel of the tile
-  std::vector<Component> components;          ///< in the order of their first cluxels
-  std::vector<std::uint32_t> cell_offset;     ///< size() + 1
-  std::vector<FootprintCell> cells;           ///< row by row in y
-  std::vector<std::uint32_t> hull_offset;     ///< size() + 1
-  std::vector<Eigen::Vector2f> hull;          ///< convex hull seen from above, counter-clockwise
-  std::vector<std::uint32_t> scan_offset;     ///< size() + 1
-  std::vector<ScanId> scans;                  ///< that saw it, ascending
+  std::vector<std::uint32_t> component_of;  ///< per cluxel of the tile
+  std::vector<Component> components;        ///< in the order of their first cluxels
+  std::vector<std::uint32_t> cell_offset;   ///< size() + 1
+  std::vector<FootprintCell> cells;         ///< row by row in y
+  std::vector<std::uint32_t> hull_offset;   ///< size() + 1
+  std::vector<Eigen::Vector2f> hull;        ///< convex hull seen from above, counter-clockwise
+  std::vector<std::uint32_t> scan_offset;   ///< size() + 1
+  std::vector<ScanId> scans;                ///< that saw it, ascending
 
   std::size_t size() const { return components.size(); }
   std::span<const FootprintCell> cellsOf(std::size_t component) const {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Seventh stage: how the components of a tile meet those of its ring: links that join them, and what relations are made of.
+// Seventh stage: how the components of a tile meet those of its ring: links that join them, and what relations are made
+// of.
 #pragma once
 
 #include <cstdint>
@@ -13,21 +14,21 @@ namespace cluxel {
 
 /// What is looked at between components.
 struct ContactParams {
-  double near_m = 1.0;           ///< pairs farther apart are not recorded
-  double ground_layer_m = 0.5;   ///< horizontal planes lower than this above the ground count as ground: not recorded
+  double near_m = 1.0;          ///< pairs farther apart are not recorded
+  double ground_layer_m = 0.5;  ///< horizontal planes lower than this above the ground count as ground: not recorded
 };
 void describe(ContactParams& params, ParameterVisitor& visitor);
 
 /// One component of the tile beside one of the ring. Recorded from both ends.
 struct Contact {
-  std::uint32_t from = 0;            ///< component of the tile
-  std::uint32_t to_ring = 0;         ///< which tile of the ring
-  std::uint32_t to = 0;              ///< component of that tile
-  std::uint32_t linked_edges = 0;    ///< same label and near enough: the two are parts of one primitive
-  std::uint32_t edges = 0;           ///< edges of the cluxel graph between them
-  std::uint32_t overlaps = 0;        ///< pairs of a footprint cell of `from` and one of `to` that are the same or touch
-  double height_difference = 0;      ///< mean height of `from` minus that of `to`, summed over those pairs [m]
-  double gap = 0;                    ///< smallest gap between boxes of cluxels or cells [m]
+  std::uint32_t from = 0;          ///< component of the tile
+  std::uint32_t to_ring = 0;       ///< which tile of the ring
+  std::uint32_t to = 0;            ///< component of that tile
+  std::uint32_t linked_edges = 0;  ///< same label and near enough: the two are parts of one primitive
+  std::uint32_t edges = 0;         ///< edges of the cluxel graph between them
+  std::uint32_t overlaps = 0;      ///< pairs of a footprint cell of `from` and one of `to` that are the same or touch
+  double height_difference = 0;    ///< mean height of `from` minus that of `to`, summed over those pairs [m]
+  double gap = 0;                  ///< smallest gap between boxes of cluxels or cells [m]
 };
 
 /// Contacts of one tile, sorted by (from, to_ring, to).

@@ -28,15 +28,15 @@ constexpr std::size_t labelPair(std::size_t a, std::size_t b) {
 }
 
 struct CrfEdge {
-  std::uint32_t from = 0, to = 0;   ///< from < to
+  std::uint32_t from = 0, to = 0;  ///< from < to
   auto operator<=>(const CrfEdge&) const = default;
 };
 
 /// E(y) = sum of unary[i][y_i] over nodes + sum of pair_costs[e][y_from, y_to] over edges.
 struct CrfGraph {
   std::vector<LabelCosts> unary;
-  std::vector<CrfEdge> edges;          ///< ascending, each once
-  std::vector<PairCosts> pair_costs;   ///< one per edge
+  std::vector<CrfEdge> edges;         ///< ascending, each once
+  std::vector<PairCosts> pair_costs;  ///< one per edge
 
   std::size_t size() const { return unary.size(); }
 };

@@ -11,14 +11,14 @@
 namespace cluxel {
 
 struct InferenceParams {
-  unsigned sweeps = 5;        ///< forward and backward passes, at least 1
-  bool decode = true;         ///< false: marginals only, no labelling
+  unsigned sweeps = 5;  ///< forward and backward passes, at least 1
+  bool decode = true;   ///< false: marginals only, no labelling
 };
 
 struct InferenceResult {
-  std::vector<std::uint8_t> labels;                                       ///< the labelling found; empty unless decoded
-  std::vector<std::array<float, kPrimitiveLabelCount>> marginals;         ///< scaled min-marginals, each sums to 1
-  double lower_bound = 0;                                                 ///< no labelling has less energy
+  std::vector<std::uint8_t> labels;                                ///< the labelling found; empty unless decoded
+  std::vector<std::array<float, kPrimitiveLabelCount>> marginals;  ///< scaled min-marginals, each sums to 1
+  double lower_bound = 0;                                          ///< no labelling has less energy
 };
 
 /// Sequential tree-reweighted message passing (Kolmogorov 2006): nodes are visited by number, forth and back, `sweeps`

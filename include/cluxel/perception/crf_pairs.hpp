@@ -11,20 +11,20 @@
 
 namespace cluxel {
 
-/// Each edge feature is seen through three hats (piecewise linear bumps that sum to 1) at low, middle and high values, so
-/// that a cost may rise, fall or peak along it.
+/// Each edge feature is seen through three hats (piecewise linear bumps that sum to 1) at low, middle and high values,
+/// so that a cost may rise, fall or peak along it.
 inline constexpr std::size_t kHats = 3;
-using HatKnots = std::array<float, kHats>;   ///< ascending, not all equal
+using HatKnots = std::array<float, kHats>;  ///< ascending, not all equal
 
 /// V(a, b) = pair_scale * share^degree_power * max(0, weights[0][ab] + sum of weights[1 + 3 column + hat][ab] * hat).
-/// `share` is 2 over the sum of the degrees at both ends: where many supports overlap, the neighbours repeat one another's
-/// evidence, and each counts less.
+/// `share` is 2 over the sum of the degrees at both ends: where many supports overlap, the neighbours repeat one
+/// another's evidence, and each counts less.
 struct PairModel {
-  float unary_scale = 1;               ///< factor on -log of the unary's probabilities
-  float pair_scale = 0;                ///< 0: no pairwise term
-  float degree_power = 0;              ///< 0: edges count alike; 1: a node's edges count together as one
-  std::vector<HatKnots> knots;         ///< one per edge column
-  std::vector<PairCosts> weights;      ///< 1 + kHats * columns
+  float unary_scale = 1;           ///< factor on -log of the unary's probabilities
+  float pair_scale = 0;            ///< 0: no pairwise term
+  float degree_power = 0;          ///< 0: edges count alike; 1: a node's edges count together as one
+  std::vector<HatKnots> knots;     ///< one per edge column
+  std::vector<PairCosts> weights;  ///< 1 + kHats * columns
 };
 
 /// The values of the hats at `value`; NaN counts as the middle.

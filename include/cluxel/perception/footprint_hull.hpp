@@ -7,15 +7,15 @@
 
 namespace cluxel {
 
-/// The convex hull of `points`, counter-clockwise from the smallest (x, y), without points on its edges; fewer than three
-/// points come back sorted. Cost O(n log n).
+/// The convex hull of `points`, counter-clockwise from the smallest (x, y), without points on its edges; fewer than
+/// three points come back sorted. Cost O(n log n).
 std::vector<Eigen::Vector2d> convexHull(std::vector<Eigen::Vector2d> points);
 
 /// A rectangle around a hull: the one of smallest area has a side along one of the hull's.
 struct FootprintBox {
-  Eigen::Vector2d center = Eigen::Vector2d::Zero();   ///< [m]
-  double length_m = 0, width_m = 0;                   ///< length >= width
-  double yaw_rad = 0;                                 ///< of the length, in [-pi/2, pi/2)
+  Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< [m]
+  double length_m = 0, width_m = 0;                  ///< length >= width
+  double yaw_rad = 0;                                ///< of the length, in [-pi/2, pi/2)
 };
 FootprintBox smallestBox(const std::vector<Eigen::Vector2d>& hull);
 

@@ -13,8 +13,8 @@
 namespace cluxel {
 
 struct GroundParams {
-  double steepest = 0.5;        ///< rise over run that natural ground may have
-  double step_m = 0.2;          ///< what may rise above the slope cone and still be ground: kerbs and roughness
+  double steepest = 0.5;  ///< rise over run that natural ground may have
+  double step_m = 0.2;    ///< what may rise above the slope cone and still be ground: kerbs and roughness
 };
 void describe(GroundParams& params, ParameterVisitor& visitor);
 
@@ -24,18 +24,19 @@ enum class GroundSource : std::uint8_t { Measured, Filled };
 /// Heights at the centres of the tile's columns, row by row in y.
 struct GroundTile {
   TileKey key;
-  std::vector<float> height;            ///< [m, map], always finite
+  std::vector<float> height;  ///< [m, map], always finite
   std::vector<GroundSource> source;
 
   std::size_t size() const { return height.size(); }
 };
 
-/// The ground of the ring's centre tile from the columns of the ring. Every cell gets a height: where no ground was seen,
-/// it is filled from ground around it; without any in the ring, from the lowest things seen.
+/// The ground of the ring's centre tile from the columns of the ring. Every cell gets a height: where no ground was
+/// seen, it is filled from ground around it; without any in the ring, from the lowest things seen.
 GroundTile groundOf(const Ring<CluxelTile>& ring, const GroundParams& params);
 
-/// Ground height [m, map] at a place relative to the corner of the ring's centre tile [m]: bilinear between cell centres,
-/// held constant beyond the outermost known cells. The centre tile must be there. The same value from either tile of a border.
+/// Ground height [m, map] at a place relative to the corner of the ring's centre tile [m]: bilinear between cell
+/// centres, held constant beyond the outermost known cells. The centre tile must be there. The same value from either
+/// tile of a border.
 double groundHeightAt(const Ring<GroundTile>& ring, double x_local, double y_local);
 
 std::string toBytes(const GroundTile& tile);

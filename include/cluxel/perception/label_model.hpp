@@ -25,13 +25,13 @@ struct Calibration {
 };
 
 struct LabelModel {
-  std::string name;                             ///< "oakland"
-  PerceptionParams perception;                  ///< settings of the stages before, which the features were made with
-  FeatureLayout layout;                         ///< columns that the trees and the pairs read
+  std::string name;             ///< "oakland"
+  PerceptionParams perception;  ///< settings of the stages before, which the features were made with
+  FeatureLayout layout;         ///< columns that the trees and the pairs read
   TreeEnsemble unary;
   PairModel pairs;
   Calibration calibration;
-  std::map<std::string, std::string> provenance;   ///< what it was trained on and how, for people
+  std::map<std::string, std::string> provenance;  ///< what it was trained on and how, for people
 };
 
 /// The model as JSON text: equal models give equal bytes.

@@ -15,15 +15,15 @@ using TruthCounts = std::array<std::uint32_t, kPrimitiveLabelCount>;
 
 struct LabelScores {
   using Row = std::array<std::uint64_t, kPrimitiveLabelCount>;
-  std::array<Row, kPrimitiveLabelCount> confusion{};   ///< [truth][label] in points
+  std::array<Row, kPrimitiveLabelCount> confusion{};  ///< [truth][label] in points
 
   void add(const TruthCounts& truth, std::uint8_t label);
   LabelScores& operator+=(const LabelScores& other);
 
   std::uint64_t points() const;
   double accuracy() const;
-  double precision(std::size_t label) const;   ///< 0 when nothing has the label
-  double recall(std::size_t label) const;      ///< 0 when no truth has the label
+  double precision(std::size_t label) const;  ///< 0 when nothing has the label
+  double recall(std::size_t label) const;     ///< 0 when no truth has the label
   double f1(std::size_t label) const;
   /// Mean F1 of the labels that the truth has.
   double macroF1() const;
@@ -32,8 +32,8 @@ struct LabelScores {
 /// The scores as a Markdown table.
 std::string toMarkdown(const LabelScores& scores);
 
-/// Expected calibration error: the gap between stated probability and share of right answers, over 20 bins of equal width,
-/// weighted by points.
+/// Expected calibration error: the gap between stated probability and share of right answers, over 20 bins of equal
+/// width, weighted by points.
 class CalibrationError {
  public:
   void add(const TruthCounts& truth, std::uint8_t label, float probability);

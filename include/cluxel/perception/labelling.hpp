@@ -15,8 +15,8 @@
 namespace cluxel {
 
 struct LabellingParams {
-  int sweeps = 3;              ///< of message passing, each forth and back
-  double halo_m = 1.0;         ///< the ring's cluxels take part up to this distance from the tile
+  int sweeps = 3;       ///< of message passing, each forth and back
+  double halo_m = 1.0;  ///< the ring's cluxels take part up to this distance from the tile
 };
 void describe(LabellingParams& params, ParameterVisitor& visitor);
 
@@ -31,7 +31,8 @@ class TileLabeller {
   TileLabeller& operator=(const TileLabeller&) = delete;
 
   /// Labels the cluxels of the ring's centre tile. A pure function of the model and the arguments. The centre must be
-  /// there; the tiles must have been made with `model.perception`. Cost: some 1.3 us a cluxel of Oakland, edges and halo included.
+  /// there; the tiles must have been made with `model.perception`. Cost: some 1.3 us a cluxel of Oakland, edges and
+  /// halo included.
   LabelTile label(const Ring<FeatureTile>& ring, const LabellingParams& params) const;
 
  private:

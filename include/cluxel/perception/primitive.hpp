@@ -15,7 +15,7 @@
 
 namespace cluxel {
 
-enum class Dimension : std::uint8_t { Length, Area, Volume, Angle, Ratio, Count };   ///< m, m2, m3, rad, 1, 1
+enum class Dimension : std::uint8_t { Length, Area, Volume, Angle, Ratio, Count };  ///< m, m2, m3, rad, 1, 1
 
 /// The attributes of a primitive. Each one's name, unit, range and meaning stands in attributeInfos().
 enum class Attribute : std::uint8_t {
@@ -32,22 +32,25 @@ enum class Attribute : std::uint8_t {
   FreeHeightBelow,      ///< clear height scanned under it: its median height above the ground below it [m]
   NormalTilt,           ///< angle between the best plane's normal and the vertical [rad]
   AxisTilt,             ///< angle between the main axis and the vertical [rad]
-  Linearity, Planarity, Scattering,      ///< (l1-l2)/l1, (l2-l3)/l1, l3/l1 of the covariance's eigenvalues l1>=l2>=l3
-  Radius,               ///< rms distance of points to the main axis [m]
-  Roughness,            ///< rms distance to the best plane [m]
-  PointCount, CluxelCount,
-  Probability,          ///< mean probability of the label over its points
-  GroundContact,        ///< share of its lowest 0.3 m that touches ground
-  ViewCount,            ///< number of scans that saw it
-  MeanIntensity,        ///< mean intensity when the scans have it, else 0
+  Linearity,
+  Planarity,
+  Scattering,  ///< (l1-l2)/l1, (l2-l3)/l1, l3/l1 of the covariance's eigenvalues l1>=l2>=l3
+  Radius,      ///< rms distance of points to the main axis [m]
+  Roughness,   ///< rms distance to the best plane [m]
+  PointCount,
+  CluxelCount,
+  Probability,    ///< mean probability of the label over its points
+  GroundContact,  ///< share of its lowest 0.3 m that touches ground
+  ViewCount,      ///< number of scans that saw it
+  MeanIntensity,  ///< mean intensity when the scans have it, else 0
   Count_
 };
 inline constexpr std::size_t kAttributeCount = static_cast<std::size_t>(Attribute::Count_);
 
 struct AttributeInfo {
   Attribute attribute;
-  std::string_view name;        ///< snake_case, as rules write it
-  std::string_view property;    ///< local name of the RDF property: "horizontalExtent"
+  std::string_view name;      ///< snake_case, as rules write it
+  std::string_view property;  ///< local name of the RDF property: "horizontalExtent"
   Dimension dimension;
   std::string_view help;
 };
@@ -57,8 +60,8 @@ std::optional<Attribute> attributeOf(std::string_view name);
 
 /// A box that stands upright: `yaw` turns its length axis from the map's x [rad, in [-pi/2, pi/2)].
 struct UprightBox {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();   ///< [m, map frame]
-  Eigen::Vector3d size = Eigen::Vector3d::Zero();     ///< length, width, height [m]
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< [m, map frame]
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();    ///< length, width, height [m]
   double yaw_rad = 0;
 };
 
@@ -72,17 +75,17 @@ struct CluxelName {
 using PrimitiveIndex = std::uint32_t;
 
 struct Primitive {
-  ContentHash id;                       ///< hash of the label and the sorted members
+  ContentHash id;  ///< hash of the label and the sorted members
   PrimitiveLabel label = PrimitiveLabel::Scatter;
-  std::vector<std::uint32_t> cluxels;   ///< numbers in SceneCluxels, ascending
+  std::vector<std::uint32_t> cluxels;  ///< numbers in SceneCluxels, ascending
   std::array<double, kAttributeCount> attributes{};
-  std::array<float, kPrimitiveLabelCount> probabilities{};   ///< mean over points
+  std::array<float, kPrimitiveLabelCount> probabilities{};  ///< mean over points
   UprightBox box;
-  Eigen::Vector3d min = Eigen::Vector3d::Zero(), max = Eigen::Vector3d::Zero();   ///< axis-parallel bounds [m, map]
-  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();        ///< mean of its points [m, map]
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();           ///< main axis, z >= 0
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();         ///< best plane's normal, z >= 0
-  double ground_z = 0;                  ///< height of the local ground under its centroid [m, map]
+  Eigen::Vector3d min = Eigen::Vector3d::Zero(), max = Eigen::Vector3d::Zero();  ///< axis-parallel bounds [m, map]
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();                            ///< mean of its points [m, map]
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();                               ///< main axis, z >= 0
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();                             ///< best plane's normal, z >= 0
+  double ground_z = 0;  ///< height of the local ground under its centroid [m, map]
 
   double operator[](Attribute attribute) const { return attributes[static_cast<std::size_t>(attribute)]; }
 };

@@ -16,15 +16,26 @@ namespace cluxel {
 
 /// Relations between primitives; formulas and tolerances stand in relationInfos().
 enum class RelationKind : std::uint8_t {
-  Intersects, Touches, TouchesGround, Above, Below, Supports, StandsOn, Inside, Near, ParallelTo, Alongside, Count_
+  Intersects,
+  Touches,
+  TouchesGround,
+  Above,
+  Below,
+  Supports,
+  StandsOn,
+  Inside,
+  Near,
+  ParallelTo,
+  Alongside,
+  Count_
 };
 inline constexpr std::size_t kRelationKindCount = static_cast<std::size_t>(RelationKind::Count_);
 
 struct RelationInfo {
   RelationKind kind;
-  std::string_view name;       ///< snake_case, as rules write it: "touches_ground"
-  std::string_view property;   ///< local name of the RDF property: "touchesGround"
-  std::string_view help;       ///< the formula in words, with its tolerance in metres
+  std::string_view name;      ///< snake_case, as rules write it: "touches_ground"
+  std::string_view property;  ///< local name of the RDF property: "touchesGround"
+  std::string_view help;      ///< the formula in words, with its tolerance in metres
 };
 const std::array<RelationInfo, kRelationKindCount>& relationInfos();
 std::optional<RelationKind> relationKindOf(std::string_view name);
@@ -32,7 +43,7 @@ std::optional<RelationKind> relationKindOf(std::string_view name);
 struct Relation {
   RelationKind kind = RelationKind::Near;
   PrimitiveIndex from = 0, to = 0;
-  double measure = 0;          ///< what the tolerance is compared with: a gap or distance [m], or a share
+  double measure = 0;  ///< what the tolerance is compared with: a gap or distance [m], or a share
   auto operator<=>(const Relation&) const = default;
 };
 
@@ -44,18 +55,18 @@ struct SeedName {
 /// Cluxels of the whole scene as a structure of arrays, sorted by tile and number, with their graph in CSR form.
 struct SceneCluxels {
   std::vector<CluxelName> name;
-  std::vector<SeedName> seed;                     ///< names a cluxel whatever else lies in its tile
-  std::vector<ContentHash> scans;                 ///< ids of the scans of `seed`, ascending
-  std::vector<Eigen::Vector3d> center;            ///< mean of own points [m, map]
-  std::vector<Eigen::Vector3f> extent;            ///< size of the box around own points [m]
-  std::vector<Eigen::Vector3d> low_corner;        ///< of that box [m, map]
+  std::vector<SeedName> seed;               ///< names a cluxel whatever else lies in its tile
+  std::vector<ContentHash> scans;           ///< ids of the scans of `seed`, ascending
+  std::vector<Eigen::Vector3d> center;      ///< mean of own points [m, map]
+  std::vector<Eigen::Vector3f> extent;      ///< size of the box around own points [m]
+  std::vector<Eigen::Vector3d> low_corner;  ///< of that box [m, map]
   std::vector<std::uint32_t> point_count;
   std::vector<PrimitiveIndex> primitive;
   std::vector<PrimitiveLabel> label;
   std::vector<std::array<float, kPrimitiveLabelCount>> probability;
-  std::vector<float> height_above_ground;         ///< of the centre [m]
-  std::vector<std::uint32_t> edge_offset;         ///< size() + 1 entries
-  std::vector<std::uint32_t> edge_target;         ///< ascending within a cluxel; both directions are stored
+  std::vector<float> height_above_ground;  ///< of the centre [m]
+  std::vector<std::uint32_t> edge_offset;  ///< size() + 1 entries
+  std::vector<std::uint32_t> edge_target;  ///< ascending within a cluxel; both directions are stored
 
   std::size_t size() const { return name.size(); }
   std::span<const std::uint32_t> neighbours(std::uint32_t cluxel) const {
@@ -65,9 +76,9 @@ struct SceneCluxels {
 
 struct Scene {
   SceneCluxels cluxels;
-  std::vector<Primitive> primitives;     ///< sorted by id
-  std::vector<Relation> relations;       ///< sorted; symmetric ones are stored in both directions
-  std::vector<std::uint32_t> relation_offset;   ///< per primitive, the first of its relations (`from`); size + 1 entries
+  std::vector<Primitive> primitives;           ///< sorted by id
+  std::vector<Relation> relations;             ///< sorted; symmetric ones are stored in both directions
+  std::vector<std::uint32_t> relation_offset;  ///< per primitive, the first of its relations (`from`); size + 1 entries
 
   std::span<const Relation> relationsOf(PrimitiveIndex primitive) const {
     return {relations.data() + relation_offset[primitive], relations.data() + relation_offset[primitive + 1]};

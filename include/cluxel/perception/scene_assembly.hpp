@@ -13,13 +13,13 @@ namespace cluxel {
 
 /// The tolerances of relations; see relationInfos().
 struct RelationParams {
-  double touches_m = 0.20;           ///< largest gap of things that touch
-  double near_m = 1.0;               ///< largest gap of things that are near
-  double above_m = 0.25;             ///< least mean height difference of what is above
-  double stands_on_m = 0.30;         ///< largest gap of what stands on the other
-  double ground_m = 1.0;             ///< lowest points higher than this above the ground have no touches_ground
-  double inside_share = 0.9;         ///< least share of the box that lies in the other's
-  double parallel_rad = 0.1745;      ///< largest angle between parallel directions (10 degrees)
+  double touches_m = 0.20;       ///< largest gap of things that touch
+  double near_m = 1.0;           ///< largest gap of things that are near
+  double above_m = 0.25;         ///< least mean height difference of what is above
+  double stands_on_m = 0.30;     ///< largest gap of what stands on the other
+  double ground_m = 1.0;         ///< lowest points higher than this above the ground have no touches_ground
+  double inside_share = 0.9;     ///< least share of the box that lies in the other's
+  double parallel_rad = 0.1745;  ///< largest angle between parallel directions (10 degrees)
 };
 void describe(RelationParams& params, ParameterVisitor& visitor);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// All stages from scans to the scene in memory: for rule tests on clouds, tests and benchmarks. Maps run them from storage.
+// All stages from scans to the scene in memory: for rule tests on clouds, tests and benchmarks. Maps run them from
+// storage.
 #pragma once
 
 #include <span>

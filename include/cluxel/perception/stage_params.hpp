@@ -11,8 +11,8 @@ namespace cluxel {
 
 /// What is declared about one setting beside its value.
 struct ParameterInfo {
-  std::string_view name;        ///< snake_case with the stage in front: "cover.radius"
-  std::string_view unit;        ///< "m", "rad", "1"
+  std::string_view name;  ///< snake_case with the stage in front: "cover.radius"
+  std::string_view unit;  ///< "m", "rad", "1"
   double lowest = 0, highest = 0;
   std::string_view help;
 };

@@ -26,7 +26,9 @@ inline TileKey tileOf(const Eigen::Vector3d& p_map) {
 }
 
 /// The corner with the smallest x and y, at z = 0, in the map frame. Local floats of a tile are relative to it.
-inline Eigen::Vector3d cornerOf(const TileKey& key) { return {key.x * kTileSize_m, key.y * kTileSize_m, 0.0}; }
+inline Eigen::Vector3d cornerOf(const TileKey& key) {
+  return {key.x * kTileSize_m, key.y * kTileSize_m, 0.0};
+}
 
 /// The tile itself and its 8 neighbours, row by row from (x-1, y-1); entry 4 is the tile itself.
 inline std::array<TileKey, 9> ringOf(const TileKey& key) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stages from scans to features in memory: for training, tests and benchmarks. Maps run the same stages from storage.
+// The stages from scans to features in memory: for training, tests and benchmarks. Maps run the same stages from
+// storage.
 #pragma once
 
 #include <map>

@@ -15,8 +15,8 @@
 
 namespace cluxel {
 
-/// Local x and y are rounded to this step [m]: then they and their shifts to a neighbouring tile are exact floats, and a
-/// difference is the same number seen from either tile.
+/// Local x and y are rounded to this step [m]: then they and their shifts to a neighbouring tile are exact floats, and
+/// a difference is the same number seen from either tile.
 inline constexpr double kLocalStep_m = 1.0 / 262144.0;
 /// Points farther than this from the map's origin are refused: a wrong pose or unit [m].
 inline constexpr double kLargestCoordinate_m = 1e7;
@@ -24,8 +24,8 @@ inline constexpr double kLargestCoordinate_m = 1e7;
 inline constexpr double kLargestHeight_m = 2e4;
 
 struct ThinParams {
-  double voxel_m = 0.05;   ///< edge of the voxels that are thinned
-  int keep = 2;            ///< points kept per voxel
+  double voxel_m = 0.05;  ///< edge of the voxels that are thinned
+  int keep = 2;           ///< points kept per voxel
 };
 void describe(ThinParams& params, ParameterVisitor& visitor);
 
@@ -35,7 +35,7 @@ struct ScanSegment {
   TileKey key;
   ScanId scan;
   std::vector<float> x, y, z, intensity;
-  std::vector<std::uint32_t> point;            ///< index in the scan
+  std::vector<std::uint32_t> point;  ///< index in the scan
 
   std::size_t size() const { return x.size(); }
 };
@@ -44,10 +44,10 @@ struct ScanSegment {
 /// (when no scan of the tile has one; a scan without one counts as 0 otherwise).
 struct TilePoints {
   TileKey key;
-  std::vector<ScanId> scans;                   ///< ascending; scans that have a point here, thinned away or not
+  std::vector<ScanId> scans;  ///< ascending; scans that have a point here, thinned away or not
   std::vector<float> x, y, z, intensity;
-  std::vector<std::uint32_t> scan;             ///< index into `scans`
-  std::vector<std::uint32_t> point;            ///< index in that scan
+  std::vector<std::uint32_t> scan;   ///< index into `scans`
+  std::vector<std::uint32_t> point;  ///< index in that scan
 
   std::size_t size() const { return x.size(); }
   Eigen::Vector3f at(std::size_t i) const { return {x[i], y[i], z[i]}; }
@@ -56,8 +56,8 @@ struct TilePoints {
 /// Local coordinates of a map point in the tile that holds it, rounded as splitScan() does.
 Eigen::Vector3f localPoint(const TileKey& key, const Eigen::Vector3d& p_map);
 
-/// Cuts a scan into its tiles. Throws InputError naming the scan and point when a coordinate is not finite or too large.
-/// Cost: about 20 ns a point.
+/// Cuts a scan into its tiles. Throws InputError naming the scan and point when a coordinate is not finite or too
+/// large. Cost: about 20 ns a point.
 std::map<TileKey, ScanSegment> splitScan(const Scan& scan);
 
 /// Keeps in each voxel the `keep` points with the smallest hash of (scan id, point): which points stay depends neither
@@ -80,7 +80,7 @@ class RepresentativeFinder {
  private:
   const TilePoints& points_;
   double voxel_m_;
-  std::vector<std::uint64_t> voxel_;   ///< per point, ascending
+  std::vector<std::uint64_t> voxel_;  ///< per point, ascending
 };
 
 std::string toBytes(const TilePoints& tile);

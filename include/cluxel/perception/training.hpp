@@ -21,9 +21,9 @@ namespace cluxel {
 struct TrainingPlace {
   std::string name;
   int group = 0;
-  bool only_for_training = false;      ///< a thinned copy: never scored
+  bool only_for_training = false;  ///< a thinned copy: never scored
   std::map<TileKey, FeatureTile> features;
-  std::map<TileKey, std::vector<TruthCounts>> truth;   ///< per cluxel of each tile
+  std::map<TileKey, std::vector<TruthCounts>> truth;  ///< per cluxel of each tile
 };
 
 /// Perceives the scans and counts the truth of every point (also thinned away ones) at the cluxel that stands for it.
@@ -33,23 +33,23 @@ TrainingPlace makePlace(std::span<const Scan> scans, std::span<const PointTruth>
 
 struct TrainParams {
   BoostingParams boosting;
-  double class_balance = 0.5;          ///< classes weigh as 1 / frequency^this: 0 as they come, 1 all alike
-  double point_power = 0.5;            ///< a cluxel weighs as its points to this power
-  int most_rows = 1000000;             ///< cluxels for the unary: common labels are thinned, and weigh more for it
+  double class_balance = 0.5;  ///< classes weigh as 1 / frequency^this: 0 as they come, 1 all alike
+  double point_power = 0.5;    ///< a cluxel weighs as its points to this power
+  int most_rows = 1000000;     ///< cluxels for the unary: common labels are thinned, and weigh more for it
   bool pairwise = true;
-  bool overlap_correction = true;      ///< let overlap of supports and degree weaken edges
+  bool overlap_correction = true;  ///< let overlap of supports and degree weaken edges
   double pair_l2 = 3.0;
   /// Beginnings of names of columns that must not be used. These depend on how high and how densely a sensor sees.
-  std::vector<std::string> without_columns = {"metric.density",         "metric.extent",        "metric.column_0m5_top",
-                                              "metric.column_1m5_top",  "metric.column_3m5",    "metric.wide1m5_members",
+  std::vector<std::string> without_columns = {"metric.density",        "metric.extent",     "metric.column_0m5_top",
+                                              "metric.column_1m5_top", "metric.column_3m5", "metric.wide1m5_members",
                                               "metric.wide3m_members"};
   LabellingParams labelling;
 };
 
 struct TrainingReport {
   LabelModel model;
-  LabelScores left_out;                ///< by point, of each group labelled by a unary that did not see it
-  LabelScores left_out_unary;          ///< the same without the pairwise term
+  LabelScores left_out;        ///< by point, of each group labelled by a unary that did not see it
+  LabelScores left_out_unary;  ///< the same without the pairwise term
   double calibration_error_before = 0, calibration_error = 0;
 };
 

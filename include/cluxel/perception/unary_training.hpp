@@ -12,7 +12,7 @@ namespace cluxel {
 /// Rows to learn from. A row's targets are weights, one per label: mixed cluxels have several above 0.
 struct UnaryRows {
   std::uint32_t columns = 0;
-  std::vector<float> features;         ///< size() x columns, row-major
+  std::vector<float> features;  ///< size() x columns, row-major
   std::vector<LabelValues> targets;
 
   std::size_t size() const { return targets.size(); }
@@ -20,19 +20,19 @@ struct UnaryRows {
 
 struct BoostingParams {
   int trees = 200;
-  int depth = 6;                       ///< splits per tree, up to kLargestTreeDepth
+  int depth = 6;  ///< splits per tree, up to kLargestTreeDepth
   double learning_rate = 0.12;
-  double l2 = 10.0;                    ///< added to a leaf's second derivative; rows have a mean weight of 1
-  double row_share = 0.25;             ///< rows that one tree sees at most; rows labelled badly come first
-  double column_share = 0.3;           ///< columns that one tree may ask about
-  int bins = 64;                       ///< distinct values of a column, up to 256
+  double l2 = 10.0;           ///< added to a leaf's second derivative; rows have a mean weight of 1
+  double row_share = 0.25;    ///< rows that one tree sees at most; rows labelled badly come first
+  double column_share = 0.3;  ///< columns that one tree may ask about
+  int bins = 64;              ///< distinct values of a column, up to 256
   std::uint64_t seed = 1;
-  std::vector<bool> columns_used = {}; ///< columns that may be asked about; empty: all
+  std::vector<bool> columns_used = {};  ///< columns that may be asked about; empty: all
 };
 
-/// Gradient boosting of the multinomial log-likelihood (Friedman 2001, with second-order leaves), one tree for all labels
-/// per round. Leaves are rounded to kLeafStep, so that a model file holds exactly what was learned. The same bytes for
-/// every number of threads. Cost: about 4 ns x rows x columns x depth x trees x shares.
+/// Gradient boosting of the multinomial log-likelihood (Friedman 2001, with second-order leaves), one tree for all
+/// labels per round. Leaves are rounded to kLeafStep, so that a model file holds exactly what was learned. The same
+/// bytes for every number of threads. Cost: about 4 ns x rows x columns x depth x trees x shares.
 TreeEnsemble growTrees(const UnaryRows& rows, const BoostingParams& params, unsigned threads);
 
 inline constexpr float kLeafStep = 1.0F / 4096.0F;

@@ -27,13 +27,14 @@ struct TreeSplit {
 /// Bit d of a leaf's number is the answer to split d.
 struct ObliviousTree {
   std::vector<TreeSplit> splits;
-  std::vector<LabelValues> leaves;     ///< 2^splits rows of log-odds
+  std::vector<LabelValues> leaves;  ///< 2^splits rows of log-odds
 };
 
-/// The sum of all trees' leaves, on top of `bias`. Splits shared by a level make trees shallow tables: rows are scored in
-/// blocks without a branch, and few degrees of freedom per tree keep them from learning one sensor's habits by heart.
+/// The sum of all trees' leaves, on top of `bias`. Splits shared by a level make trees shallow tables: rows are scored
+/// in blocks without a branch, and few degrees of freedom per tree keep them from learning one sensor's habits by
+/// heart.
 struct TreeEnsemble {
-  std::uint32_t columns = 0;           ///< features per row
+  std::uint32_t columns = 0;  ///< features per row
   LabelValues bias{};
   std::vector<ObliviousTree> trees;
 };

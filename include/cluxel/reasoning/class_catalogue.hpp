@@ -13,8 +13,8 @@ struct OntologyView;
 /// One class of the ontology. All names are IRIs.
 struct ClassEntry {
   std::string iri;
-  std::vector<std::string> superclasses;   ///< direct ones
-  std::vector<std::string> parts;          ///< classes its parts may have; superclasses' parts count too
+  std::vector<std::string> superclasses;  ///< direct ones
+  std::vector<std::string> parts;         ///< classes its parts may have; superclasses' parts count too
 };
 
 /// The known classes, in any order; filled from the ontology graph by whoever holds it.

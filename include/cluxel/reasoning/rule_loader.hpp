@@ -22,8 +22,8 @@ struct RuleLoadOptions {
 };
 
 struct LoadedRules {
-  std::optional<RuleSet> rules;            ///< absent when there is an error
-  std::vector<Diagnostic> diagnostics;     ///< in the order of the files, by line
+  std::optional<RuleSet> rules;         ///< absent when there is an error
+  std::vector<Diagnostic> diagnostics;  ///< in the order of the files, by line
   /// The rules, or an InputError with all faults.
   RuleSet require() &&;
 };
@@ -43,7 +43,7 @@ std::vector<Diagnostic> checkRules(std::span<const std::filesystem::path> paths,
 
 /// One table per mapping of the language: which keys it takes. The JSON schemas are checked against them.
 struct RuleKeyTable {
-  std::string_view context;                ///< "rule", "accept", ...
+  std::string_view context;  ///< "rule", "accept", ...
   std::vector<std::string> keys;
 };
 const std::vector<RuleKeyTable>& ruleKeyTables();

@@ -19,17 +19,17 @@ namespace cluxel {
 struct GroupSpec {
   SourceLocation at;
   std::vector<PrimitiveLabel> labels;
-  std::optional<double> near_m;                          ///< link when the gap is at most this
-  std::optional<double> horizontal_m, vertical_m;        ///< or when both gaps are
-  bool adjacent = false;                                 ///< or when a cluxel edge joins them
+  std::optional<double> near_m;                    ///< link when the gap is at most this
+  std::optional<double> horizontal_m, vertical_m;  ///< or when both gaps are
+  bool adjacent = false;                           ///< or when a cluxel edge joins them
   std::vector<Condition> limits;
 };
 
 struct SeedSpec {
   std::string name = "seed";
   std::vector<PrimitiveLabel> labels;
-  std::optional<SliceSpec> slice;      ///< each connected bunch of its cluxels is a seed
-  std::vector<Condition> where;        ///< each primitive must pass before it is grouped
+  std::optional<SliceSpec> slice;  ///< each connected bunch of its cluxels is a seed
+  std::vector<Condition> where;    ///< each primitive must pass before it is grouped
 };
 
 enum class Choice : std::uint8_t { LargestVolume, MostPoints, Nearest, Highest, Lowest, MostAdjacent, All };
@@ -45,11 +45,11 @@ struct BranchNode {
 struct FindNode {
   std::string name;
   std::vector<PrimitiveLabel> labels;
-  std::string object_class;            ///< when given: among the primitives of such objects, for reference only
-  std::vector<Condition> where;        ///< relations and measures to bound names; the subject is the candidate
+  std::string object_class;      ///< when given: among the primitives of such objects, for reference only
+  std::vector<Condition> where;  ///< relations and measures to bound names; the subject is the candidate
   Choice choose = Choice::LargestVolume;
-  std::string nearest_to;              ///< for Nearest, MostAdjacent: the first bound name in `where`
-  bool share = false;                  ///< may be bound by several things of this class; a `part_among` parts it
+  std::string nearest_to;  ///< for Nearest, MostAdjacent: the first bound name in `where`
+  bool share = false;      ///< may be bound by several things of this class; a `part_among` parts it
   NodeIndex found = 0, missing = 0;
 };
 
@@ -61,7 +61,7 @@ struct ConfidenceRamp {
 };
 struct Confidence {
   double low = 1, high = 1;
-  std::vector<ConfidenceRamp> ramps;   ///< their mean counts; none: `high`
+  std::vector<ConfidenceRamp> ramps;  ///< their mean counts; none: `high`
 };
 
 struct AbsorbSpec {
@@ -69,39 +69,39 @@ struct AbsorbSpec {
   std::vector<PrimitiveLabel> labels;
   std::vector<Condition> when;
   double max_fraction_of_points = 1;
-  std::string into;                    ///< bound name whose part they join
-  bool late = false;                   ///< after all classes had their turn, instead of after this class
+  std::string into;   ///< bound name whose part they join
+  bool late = false;  ///< after all classes had their turn, instead of after this class
 };
 
 /// What hangs beside a parted thing without touching it, and belongs to it all the same.
 struct GatherSpec {
-  double within_m = 0;                 ///< largest gap to the object
-  double above_m = 0;                  ///< height above ground from which a primitive hangs
+  double within_m = 0;  ///< largest gap to the object
+  double above_m = 0;   ///< height above ground from which a primitive hangs
 };
 
 /// Shared primitives are parted among the objects that claim them, along the cluxel graph.
 struct PartingSpec {
   SourceLocation at;
-  std::string part, from;              ///< bound names: what is parted, and where the ways begin
-  double reach_m = 8;                  ///< largest plan distance from the foot of `from`
-  double jump_m = 0.5;                 ///< gaps up to this are bridged, at double length
-  double start_m = 0.5;                ///< the same between `from` and what is parted; at least jump_m
-  double clearance_m = 0;              ///< cluxels lower above the ground than this are left alone
-  std::optional<GatherSpec> gather;    ///< free primitives of the same labels that are parted after it
+  std::string part, from;            ///< bound names: what is parted, and where the ways begin
+  double reach_m = 8;                ///< largest plan distance from the foot of `from`
+  double jump_m = 0.5;               ///< gaps up to this are bridged, at double length
+  double start_m = 0.5;              ///< the same between `from` and what is parted; at least jump_m
+  double clearance_m = 0;            ///< cluxels lower above the ground than this are left alone
+  std::optional<GatherSpec> gather;  ///< free primitives of the same labels that are parted after it
 };
 
 struct AcceptLeaf {
-  std::vector<std::pair<std::string, std::string>> parts;   ///< bound name -> part class IRI, in the order written
+  std::vector<std::pair<std::string, std::string>> parts;  ///< bound name -> part class IRI, in the order written
   Confidence confidence;
   std::vector<AbsorbSpec> absorb;
   std::optional<PartingSpec> parting;
-  bool merge_into_related = false;     ///< joins the object that the last passed relation test met
+  bool merge_into_related = false;  ///< joins the object that the last passed relation test met
 };
 
 struct RejectLeaf {
   std::string reason;
-  std::string hint;                    ///< a rule that may fit instead
-  bool leave_unknown = false;          ///< no later rule may take the seed
+  std::string hint;            ///< a rule that may fit instead
+  bool leave_unknown = false;  ///< no later rule may take the seed
 };
 
 struct TreeNode {
@@ -116,7 +116,7 @@ struct Rule {
   SourceLocation at;
   SeedSpec seed;
   std::optional<GroupSpec> group;
-  std::vector<TreeNode> nodes;         ///< node 0 is the root
+  std::vector<TreeNode> nodes;  ///< node 0 is the root
 };
 
 /// A file that went into a rule set, under the name by which it was included.
@@ -128,11 +128,11 @@ struct RuleSource {
 struct RuleSet {
   std::string name, version, description;
   std::map<std::string, std::string> prefixes;
-  std::vector<std::string> order;      ///< class IRIs: who gets a primitive first
-  std::vector<Rule> rules;             ///< in the order written
-  bool asks_map = false;               ///< a condition somewhere in it is an `ask:`
+  std::vector<std::string> order;  ///< class IRIs: who gets a primitive first
+  std::vector<Rule> rules;         ///< in the order written
+  bool asks_map = false;           ///< a condition somewhere in it is an `ask:`
   std::vector<RuleSource> sources;
-  ClassCatalogue catalogue;            ///< the classes it was checked against
+  ClassCatalogue catalogue;  ///< the classes it was checked against
   /// Hash of the sources' texts.
   ContentHash hash() const;
   const Rule* find(std::string_view id) const;

@@ -23,10 +23,10 @@ struct SceneRequest {
 using SceneProvider = std::function<Scene(const SceneRequest&)>;
 
 struct RuleTestOptions {
-  SceneProvider scenes;                       ///< absent: tests with `cloud` or `map` are skipped
+  SceneProvider scenes;  ///< absent: tests with `cloud` or `map` are skipped
   AskOracle* oracle = nullptr;
   RuleLoadOptions load;
-  std::optional<std::string> only;            ///< run tests whose name contains this
+  std::optional<std::string> only;  ///< run tests whose name contains this
 };
 
 enum class RuleTestOutcome { Passed, Failed, KnownFailure, UnexpectedPass, Skipped };
@@ -35,20 +35,20 @@ struct RuleTestResult {
   std::string name;
   SourceLocation at;
   RuleTestOutcome outcome = RuleTestOutcome::Passed;
-  std::vector<std::string> failures;          ///< what was expected and what came out; for Skipped, why
+  std::vector<std::string> failures;  ///< what was expected and what came out; for Skipped, why
 };
 
 /// One leaf of one rule, and how many seeds ended in it.
 struct LeafCoverage {
   std::string rule_id;
   SourceLocation at;
-  std::string leaf;                           ///< "accept" or the reason of a reject
+  std::string leaf;  ///< "accept" or the reason of a reject
   std::size_t hits = 0;
 };
 
 struct RuleTestReport {
   std::vector<RuleTestResult> results;
-  std::vector<LeafCoverage> leaves;           ///< in the order of the rules
+  std::vector<LeafCoverage> leaves;  ///< in the order of the rules
   std::vector<Diagnostic> warnings;
 
   std::size_t count(RuleTestOutcome outcome) const;

@@ -14,56 +14,56 @@ namespace cluxel {
 
 /// Which cluxels of the scene play which part in an object.
 struct ObjectPart {
-  std::string part_class;                 ///< IRI: clx:TreeTrunk; the object's class when the rule names no part
-  std::vector<PrimitiveIndex> primitives; ///< ascending; a primitive that is parted stands in several objects
-  std::vector<std::uint32_t> cluxels;     ///< numbers in SceneCluxels, ascending; disjoint between all objects
+  std::string part_class;                  ///< IRI: clx:TreeTrunk; the object's class when the rule names no part
+  std::vector<PrimitiveIndex> primitives;  ///< ascending; a primitive that is parted stands in several objects
+  std::vector<std::uint32_t> cluxels;      ///< numbers in SceneCluxels, ascending; disjoint between all objects
 };
 
 /// One test on the way to a leaf, with what it measured.
 struct DecisionStep {
   std::string rule_id;
-  std::string test;                       ///< as people read it: "height of pole >= 6 m"
-  std::string file;                       ///< where the test stands
+  std::string test;  ///< as people read it: "height of pole >= 6 m"
+  std::string file;  ///< where the test stands
   std::size_t line = 0;
-  std::optional<double> measured, threshold;   ///< SI
+  std::optional<double> measured, threshold;  ///< SI
   std::string unit;
   bool passed = false;
 };
 
 /// What would have come out, had one test on the way come out otherwise; the rest of the tree is walked for real.
 struct DecisionFlip {
-  std::size_t step = 0;                   ///< the first of the branch's tests in Decision::path
-  std::size_t step_count = 0;             ///< how many tests of the path the branch has
-  std::size_t node = 0;                   ///< the branch's number in Rule::nodes
+  std::size_t step = 0;        ///< the first of the branch's tests in Decision::path
+  std::size_t step_count = 0;  ///< how many tests of the path the branch has
+  std::size_t node = 0;        ///< the branch's number in Rule::nodes
   bool accepted = false;
-  std::string outcome;                    ///< the other leaf's words
+  std::string outcome;  ///< the other leaf's words
 };
 
 /// Why a rule accepted or rejected a seed primitive.
 struct Decision {
   std::string rule_id;
-  PrimitiveIndex seed = 0;                ///< the one with most points, when several were grouped
-  std::vector<PrimitiveIndex> seeds;      ///< all of them, ascending
+  PrimitiveIndex seed = 0;            ///< the one with most points, when several were grouped
+  std::vector<PrimitiveIndex> seeds;  ///< all of them, ascending
   bool accepted = false;
-  std::size_t leaf = 0;                   ///< its number in Rule::nodes
-  std::string reason;                     ///< the leaf's own words, or what was accepted
+  std::size_t leaf = 0;  ///< its number in Rule::nodes
+  std::string reason;    ///< the leaf's own words, or what was accepted
   std::vector<DecisionStep> path;
-  std::string hint;                       ///< a rule that may fit instead
-  std::vector<DecisionFlip> flips;        ///< only for a probed primitive
+  std::string hint;                 ///< a rule that may fit instead
+  std::vector<DecisionFlip> flips;  ///< only for a probed primitive
 };
 
 struct SemanticObject {
-  ContentHash id;                         ///< hash of class and sorted members
+  ContentHash id;  ///< hash of class and sorted members
   std::string class_iri;
   double confidence = 0;
   std::string rule_id;
   std::vector<ObjectPart> parts;
-  std::size_t decision = 0;               ///< number in ReasoningResult::decisions
+  std::size_t decision = 0;  ///< number in ReasoningResult::decisions
 };
 
 struct ReasoningResult {
-  std::vector<SemanticObject> objects;    ///< sorted by id
-  std::vector<Decision> decisions;        ///< accepted and rejected, in the order they were taken
+  std::vector<SemanticObject> objects;  ///< sorted by id
+  std::vector<Decision> decisions;      ///< accepted and rejected, in the order they were taken
 };
 
 }  // namespace cluxel

@@ -10,8 +10,8 @@
 
 namespace cluxel {
 
-/// The text of a manifest for `file`: scans in the order given, with path (relative to the manifest's folder), format, time,
-/// labels and pose, and the set's frame. Reading it gives the same doubles. `comment` stands above, after '#'.
+/// The text of a manifest for `file`: scans in the order given, with path (relative to the manifest's folder), format,
+/// time, labels and pose, and the set's frame. Reading it gives the same doubles. `comment` stands above, after '#'.
 std::string manifestText(const ScanSet& set, const std::vector<PosedScan>& scans, const std::filesystem::path& file,
                          const std::string& comment);
 

@@ -15,7 +15,9 @@ inline constexpr std::size_t kPrimitiveLabelCount = 5;
 inline constexpr std::array<std::string_view, kPrimitiveLabelCount> kPrimitiveLabelNames{
     "horizontal_plane", "vertical_plane", "column", "small_structure", "scatter"};
 
-inline std::string_view nameOf(PrimitiveLabel label) { return kPrimitiveLabelNames[static_cast<std::size_t>(label)]; }
+inline std::string_view nameOf(PrimitiveLabel label) {
+  return kPrimitiveLabelNames[static_cast<std::size_t>(label)];
+}
 
 inline std::optional<PrimitiveLabel> primitiveLabelOf(std::string_view name) {
   for (std::size_t i = 0; i < kPrimitiveLabelCount; ++i)

@@ -22,8 +22,8 @@ using ScanId = ContentHash;
 struct ScanPoints {
   std::vector<float> x, y, z;
   std::vector<float> intensity;
-  std::vector<std::uint32_t> label;           ///< the data set's own label ids
-  std::vector<Eigen::Vector3f> origin;        ///< where each ray started, in the sensor frame [m]
+  std::vector<std::uint32_t> label;     ///< the data set's own label ids
+  std::vector<Eigen::Vector3f> origin;  ///< where each ray started, in the sensor frame [m]
 
   std::size_t size() const { return x.size(); }
   bool empty() const { return x.empty(); }
@@ -31,11 +31,11 @@ struct ScanPoints {
 
 struct Scan {
   ScanPoints points;
-  std::optional<double> time_s;               ///< seconds since the epoch of the recording
+  std::optional<double> time_s;  ///< seconds since the epoch of the recording
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
-  bool has_pose = false;                      ///< false: points are taken as given in the map frame, no sensor origin
-  std::string source;                         ///< the file it came from, for people
-  ScanId id;                                  ///< contentIdOf(*this)
+  bool has_pose = false;  ///< false: points are taken as given in the map frame, no sensor origin
+  std::string source;     ///< the file it came from, for people
+  ScanId id;              ///< contentIdOf(*this)
 };
 
 /// The content hash that names a scan.

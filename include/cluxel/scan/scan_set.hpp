@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A set of scans that lie in files: folders in a known layout, manifests, or single files. Scans are loaded one at a time.
+// A set of scans that lie in files: folders in a known layout, manifests, or single files. Scans are loaded one at a
+// time.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +18,7 @@ enum class ScanFormat { Pcd, Ply, Kitti, Freiburg, LabelledText, Xyz, Las };
 const char* nameOf(ScanFormat format);
 
 struct ScanSetParams {
-  std::filesystem::path poses;               ///< a poses file given by hand (KITTI 3x4, TUM, or 4x4 text), or empty
+  std::filesystem::path poses;  ///< a poses file given by hand (KITTI 3x4, TUM, or 4x4 text), or empty
 };
 
 /// One scan that is known but not loaded.
@@ -32,15 +33,17 @@ struct ScanFile {
 
 /// A scan of a set with another pose.
 struct PosedScan {
-  std::size_t index = 0;   ///< in the ScanSet
+  std::size_t index = 0;  ///< in the ScanSet
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
 };
 
 class ScanSet {
  public:
-  /// Finds the scans in files, folders and manifests, in the order given and by name inside a folder; reads poses but no
-  /// points. Throws InputError (what, file, line or byte). Notes go to `sink`: lone files without a pose, for example.
-  static ScanSet open(const std::vector<std::filesystem::path>& inputs, const ScanSetParams& params, ProgressSink& sink);
+  /// Finds the scans in files, folders and manifests, in the order given and by name inside a folder; reads poses but
+  /// no points. Throws InputError (what, file, line or byte). Notes go to `sink`: lone files without a pose, for
+  /// example.
+  static ScanSet open(const std::vector<std::filesystem::path>& inputs, const ScanSetParams& params,
+                      ProgressSink& sink);
 
   /// These scans alone, in this order, with the poses given here.
   ScanSet posed(const std::vector<PosedScan>& scans) const;

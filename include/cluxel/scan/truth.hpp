@@ -16,10 +16,10 @@ namespace cluxel {
 
 /// What one label id of a data set means. Absent: left out of training and scoring.
 struct LabelMeaning {
-  std::string name;                            ///< the data set's own name of the id
+  std::string name;  ///< the data set's own name of the id
   std::optional<PrimitiveLabel> primitive;
-  std::optional<std::string> object_class;     ///< local name in the ontology: "Tree"
-  std::optional<std::string> part;             ///< local name of the part: "TreeTrunk"
+  std::optional<std::string> object_class;  ///< local name in the ontology: "Tree"
+  std::optional<std::string> part;          ///< local name of the part: "TreeTrunk"
   /// When another id's point is nearer than this, horizontally, the object is of this class instead (posts of signs).
   struct NearRule {
     std::uint32_t other_id = 0;
@@ -44,10 +44,10 @@ class LabelMap {
 
 /// Truth per point of one scan, in the scan's point order; -1 means unknown.
 struct PointTruth {
-  std::vector<std::int8_t> primitive;          ///< PrimitiveLabel
-  std::vector<std::int8_t> object_class;       ///< index into `class_names`
-  std::vector<std::int32_t> instance;          ///< unique over the data set; 0 and more
-  std::vector<std::string> class_names;        ///< local names in the ontology, in the order of truth files
+  std::vector<std::int8_t> primitive;     ///< PrimitiveLabel
+  std::vector<std::int8_t> object_class;  ///< index into `class_names`
+  std::vector<std::int32_t> instance;     ///< unique over the data set; 0 and more
+  std::vector<std::string> class_names;   ///< local names in the ontology, in the order of truth files
 };
 
 /// The object classes in the order of the numbers in truth files: Ground, Building, Tree, Bush, StreetLamp, StreetSign,
@@ -66,7 +66,8 @@ PointTruth truthFromFile(const std::filesystem::path& file, std::size_t point_co
 
 /// The truth file of a scan file in a truth folder: below a folder of the name of the scan's own folder (for scans of
 /// one name in several folders), else in the folder itself; absent when there is none.
-std::optional<std::filesystem::path> truthFileOf(const std::filesystem::path& folder, const std::filesystem::path& scan);
+std::optional<std::filesystem::path> truthFileOf(const std::filesystem::path& folder,
+                                                 const std::filesystem::path& scan);
 
 /// Ids of instances that count neither way (instances.csv, column `ambiguous`), sorted; empty without such a file.
 std::vector<std::int32_t> ambiguousInstances(const std::filesystem::path& folder);

@@ -8,7 +8,8 @@
 
 namespace cluxel {
 
-/// How a stop is scanned: a full turn with equal angular steps, or 64 rings (-24.8 to 2 degrees) as on a vehicle's roof.
+/// How a stop is scanned: a full turn with equal angular steps, or 64 rings (-24.8 to 2 degrees) as on a vehicle's
+/// roof.
 enum class LaserKind { PanTilt, Spinning };
 
 /// Everything in the campus and in its scans follows from these.

@@ -20,8 +20,7 @@ struct Terrain {
   double heightAt(double x, double y) const {
     double height = slope.x() * x + slope.y() * y;
     for (const Wave& wave : waves)
-      height +=
-          wave.amplitude_m * std::sin(wave.wave_number.x() * x + wave.wave_number.y() * y + wave.phase_rad);
+      height += wave.amplitude_m * std::sin(wave.wave_number.x() * x + wave.wave_number.y() * y + wave.phase_rad);
     return height;
   }
   /// No place is steeper (rise per metre).

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Syntax tree of SPARQL 1.1 Query and Update as plain values, with IRIs resolved, prefixes expanded and all notes of the
-// grammar checked by the parser. It says what was written; the algebra says what it means.
+// Syntax tree of SPARQL 1.1 Query and Update as plain values, with IRIs resolved, prefixes expanded and all notes of
+// the grammar checked by the parser. It says what was written; the algebra says what it means.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ namespace cluxel::ast {
 /// subject predicate object, or subject path object. A path that is a single IRI is written as a predicate.
 struct TriplePattern {
   PatternTerm subject;
-  PatternTerm predicate;              ///< not used when there is a path
-  std::shared_ptr<const Path> path;   ///< null for a plain triple pattern
+  PatternTerm predicate;             ///< not used when there is a path
+  std::shared_ptr<const Path> path;  ///< null for a plain triple pattern
   PatternTerm object;
 
   bool isPath() const { return path != nullptr; }
@@ -35,14 +35,34 @@ struct GroupPattern {
 
 /// Triple patterns with nothing but FILTERs between them are one block (FILTER does not end a basic graph pattern; the
 /// filters follow the block).
-struct TriplesBlock { std::vector<TriplePattern> triples; };
-struct OptionalPattern { GroupPattern group; };
-struct UnionPattern { std::vector<GroupPattern> branches; };   ///< two or more
-struct MinusPattern { GroupPattern group; };
-struct GraphPattern { PatternTerm graph; GroupPattern group; };
-struct ServicePattern { PatternTerm endpoint; GroupPattern group; bool silent = false; };
-struct Filter { Expression condition; };
-struct Bind { Expression expression; VariableIndex variable = 0; };
+struct TriplesBlock {
+  std::vector<TriplePattern> triples;
+};
+struct OptionalPattern {
+  GroupPattern group;
+};
+struct UnionPattern {
+  std::vector<GroupPattern> branches;
+};  ///< two or more
+struct MinusPattern {
+  GroupPattern group;
+};
+struct GraphPattern {
+  PatternTerm graph;
+  GroupPattern group;
+};
+struct ServicePattern {
+  PatternTerm endpoint;
+  GroupPattern group;
+  bool silent = false;
+};
+struct Filter {
+  Expression condition;
+};
+struct Bind {
+  Expression expression;
+  VariableIndex variable = 0;
+};
 
 /// VALUES: every row has as many entries as there are variables; an absent entry is UNDEF.
 struct InlineData {
@@ -51,7 +71,9 @@ struct InlineData {
 };
 
 struct Select;
-struct SubSelect { std::shared_ptr<const Select> select; };
+struct SubSelect {
+  std::shared_ptr<const Select> select;
+};
 
 struct PatternElement {
   std::variant<TriplesBlock, GroupPattern, OptionalPattern, UnionPattern, MinusPattern, GraphPattern, ServicePattern,
@@ -90,12 +112,12 @@ enum class Duplicates : std::uint8_t { Keep, Distinct, Reduced };
 /// The body that queries and sub-selects share.
 struct Select {
   Duplicates duplicates = Duplicates::Keep;
-  bool all = false;                       ///< SELECT *; the projection then lists the visible variables, by appearance
-  std::vector<Projection> projection;     ///< empty for ASK, CONSTRUCT, DESCRIBE
-  GroupPattern where;                     ///< empty for DESCRIBE without WHERE
+  bool all = false;                    ///< SELECT *; the projection then lists the visible variables, by appearance
+  std::vector<Projection> projection;  ///< empty for ASK, CONSTRUCT, DESCRIBE
+  GroupPattern where;                  ///< empty for DESCRIBE without WHERE
   SolutionModifiers modifiers;
-  std::optional<InlineData> values;       ///< the VALUES clause at the end
-  bool grouped = false;                   ///< GROUP BY, HAVING or an aggregate is there
+  std::optional<InlineData> values;  ///< the VALUES clause at the end
+  bool grouped = false;              ///< GROUP BY, HAVING or an aggregate is there
 };
 
 /// FROM and FROM NAMED, or USING and USING NAMED. Both empty: the store's own dataset.
@@ -109,27 +131,40 @@ enum class QueryForm : std::uint8_t { Select, Construct, Describe, Ask };
 
 struct Query {
   QueryForm form = QueryForm::Select;
-  std::string text;                             ///< the request with \\u code points decoded: what offsets count in
-  std::string base_iri;                         ///< BASE or the caller's; IRI("…") resolves against it
+  std::string text;      ///< the request with \\u code points decoded: what offsets count in
+  std::string base_iri;  ///< BASE or the caller's; IRI("…") resolves against it
   VariableTable variables;
   DatasetClause dataset;
-  Select select;                                ///< where, modifiers and values of every form
-  std::vector<TriplePattern> construct_template;   ///< no paths; CONSTRUCT WHERE has its pattern here too
-  std::vector<PatternTerm> describe;            ///< what to describe
-  bool describe_all = false;                    ///< DESCRIBE *; `describe` then lists the visible variables
+  Select select;                                  ///< where, modifiers and values of every form
+  std::vector<TriplePattern> construct_template;  ///< no paths; CONSTRUCT WHERE has its pattern here too
+  std::vector<PatternTerm> describe;              ///< what to describe
+  bool describe_all = false;                      ///< DESCRIBE *; `describe` then lists the visible variables
 };
 
 /// A graph or group of graphs named by CLEAR, DROP, COPY …
 struct GraphTarget {
   enum class Kind : std::uint8_t { Graph, Default, Named, All };
   Kind kind = Kind::Default;
-  Term graph;                                   ///< for Graph
+  Term graph;  ///< for Graph
 };
 
-struct Load { bool silent = false; Term source; std::optional<Term> into; };
-struct Clear { bool silent = false; GraphTarget target; };
-struct Drop { bool silent = false; GraphTarget target; };
-struct Create { bool silent = false; Term graph; };
+struct Load {
+  bool silent = false;
+  Term source;
+  std::optional<Term> into;
+};
+struct Clear {
+  bool silent = false;
+  GraphTarget target;
+};
+struct Drop {
+  bool silent = false;
+  GraphTarget target;
+};
+struct Create {
+  bool silent = false;
+  Term graph;
+};
 
 /// ADD, MOVE and COPY: kinds Graph or Default only.
 struct Transfer {
@@ -154,7 +189,7 @@ struct QuadTemplate {
 
 /// [WITH] DELETE {…} INSERT {…} [USING…] WHERE {…}; DELETE WHERE has its pattern in both places.
 struct Modify {
-  std::optional<Term> with;                     ///< for templates, and for `where` when `using_clause` is empty
+  std::optional<Term> with;  ///< for templates, and for `where` when `using_clause` is empty
   std::vector<QuadTemplate> remove, insert;
   DatasetClause using_clause;
   GroupPattern where;
@@ -163,13 +198,13 @@ struct Modify {
 struct UpdateOperation {
   std::variant<Load, Clear, Drop, Create, Transfer, DataUpdate, Modify> value;
   VariableTable variables;
-  std::string base_iri;                         ///< BASE in force at the operation
+  std::string base_iri;  ///< BASE in force at the operation
   SourceOffset at = 0;
 };
 
 struct Update {
   std::string text;
-  std::vector<UpdateOperation> operations;      ///< to be done in this order, as one transaction
+  std::vector<UpdateOperation> operations;  ///< to be done in this order, as one transaction
 };
 
 }  // namespace cluxel::ast

@@ -20,7 +20,7 @@ using SourceOffset = std::uint32_t;
 using VariableIndex = std::uint32_t;
 
 struct Variable {
-  std::string name;         ///< without ? or $; of a hidden variable something no query can write ("_:label")
+  std::string name;  ///< without ? or $; of a hidden variable something no query can write ("_:label")
   /// Stands for a blank node of a pattern (each blank node label is one hidden variable, whose scope the parser has
   /// checked), or was made by the parser. Hidden ones are in no result and not in SELECT *.
   bool hidden = false;
@@ -43,14 +43,14 @@ struct PatternTerm {
 
 struct Path {
   enum class Kind : std::uint8_t {
-    Link,          ///< iri
-    Inverse,       ///< ^parts[0]
-    Sequence,      ///< parts[0] / parts[1] / …
-    Alternative,   ///< parts[0] | parts[1] | …
-    ZeroOrMore,    ///< parts[0]*
-    OneOrMore,     ///< parts[0]+
-    ZeroOrOne,     ///< parts[0]?
-    NegatedSet     ///< !(forward… | ^backward…); either list may be empty
+    Link,         ///< iri
+    Inverse,      ///< ^parts[0]
+    Sequence,     ///< parts[0] / parts[1] / …
+    Alternative,  ///< parts[0] | parts[1] | …
+    ZeroOrMore,   ///< parts[0]*
+    OneOrMore,    ///< parts[0]+
+    ZeroOrOne,    ///< parts[0]?
+    NegatedSet    ///< !(forward… | ^backward…); either list may be empty
   };
   Kind kind = Kind::Link;
   Term iri;
@@ -61,10 +61,57 @@ struct Path {
 
 /// The built-in functions, but for those that are operators or aggregates. URI is Iri.
 enum class Builtin : std::uint8_t {
-  Str, Lang, LangMatches, Datatype, Bound, Iri, Bnode, Rand, Abs, Ceil, Floor, Round, Concat, Strlen, Ucase, Lcase,
-  EncodeForUri, Contains, StrStarts, StrEnds, StrBefore, StrAfter, Year, Month, Day, Hours, Minutes, Seconds, Timezone,
-  Tz, Now, Uuid, StrUuid, Md5, Sha1, Sha256, Sha384, Sha512, Coalesce, If, StrLang, StrDt, SameTerm, IsIri, IsBlank,
-  IsLiteral, IsNumeric, Regex, Substr, Replace, Count_
+  Str,
+  Lang,
+  LangMatches,
+  Datatype,
+  Bound,
+  Iri,
+  Bnode,
+  Rand,
+  Abs,
+  Ceil,
+  Floor,
+  Round,
+  Concat,
+  Strlen,
+  Ucase,
+  Lcase,
+  EncodeForUri,
+  Contains,
+  StrStarts,
+  StrEnds,
+  StrBefore,
+  StrAfter,
+  Year,
+  Month,
+  Day,
+  Hours,
+  Minutes,
+  Seconds,
+  Timezone,
+  Tz,
+  Now,
+  Uuid,
+  StrUuid,
+  Md5,
+  Sha1,
+  Sha256,
+  Sha384,
+  Sha512,
+  Coalesce,
+  If,
+  StrLang,
+  StrDt,
+  SameTerm,
+  IsIri,
+  IsBlank,
+  IsLiteral,
+  IsNumeric,
+  Regex,
+  Substr,
+  Replace,
+  Count_
 };
 
 enum class AggregateFunction : std::uint8_t { Count, Sum, Min, Max, Avg, Sample, GroupConcat };
@@ -73,29 +120,41 @@ struct GroupPattern;
 
 struct Expression {
   enum class Kind : std::uint8_t {
-    Variable,      ///< variable
-    Constant,      ///< term: an IRI or a literal
-    Or, And,       ///< two or more arguments
+    Variable,  ///< variable
+    Constant,  ///< term: an IRI or a literal
+    Or,
+    And,  ///< two or more arguments
     Not,
-    Equal, NotEqual, Less, Greater, LessEqual, GreaterEqual,
-    In, NotIn,     ///< arguments[0] IN (arguments[1…])
-    Add, Subtract, Multiply, Divide,   ///< two arguments
-    Negate, Plus,
-    Call,          ///< builtin(arguments…)
-    Function,      ///< term is the function's IRI: a cast, a GeoSPARQL or extension function; `distinct` may be set
-    Aggregate,     ///< aggregate([distinct] arguments[0]); COUNT(*) has no argument
-    Exists, NotExists   ///< pattern
+    Equal,
+    NotEqual,
+    Less,
+    Greater,
+    LessEqual,
+    GreaterEqual,
+    In,
+    NotIn,  ///< arguments[0] IN (arguments[1…])
+    Add,
+    Subtract,
+    Multiply,
+    Divide,  ///< two arguments
+    Negate,
+    Plus,
+    Call,       ///< builtin(arguments…)
+    Function,   ///< term is the function's IRI: a cast, a GeoSPARQL or extension function; `distinct` may be set
+    Aggregate,  ///< aggregate([distinct] arguments[0]); COUNT(*) has no argument
+    Exists,
+    NotExists  ///< pattern
   };
   Kind kind = Kind::Constant;
   Builtin builtin = Builtin::Count_;
   AggregateFunction aggregate = AggregateFunction::Count;
   bool distinct = false;
-  std::uint32_t height = 1;                         ///< 1 + that of the highest argument; the parser bounds it
+  std::uint32_t height = 1;  ///< 1 + that of the highest argument; the parser bounds it
   VariableIndex variable = 0;
   SourceOffset at = 0;
   Term term;
   std::vector<Expression> arguments;
-  std::string separator = {};                       ///< GROUP_CONCAT; " " when the query names none
+  std::string separator = {};  ///< GROUP_CONCAT; " " when the query names none
   std::shared_ptr<const GroupPattern> pattern = {};
 };
 

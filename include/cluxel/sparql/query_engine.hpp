@@ -21,16 +21,17 @@ namespace cluxel {
 
 /// What the default graph of a query without FROM is.
 enum class DefaultGraph {
-  UnionButHistory,   ///< all graphs but clx's history graph, each triple once
-  Unnamed            ///< strictly the unnamed graph, as the W3C tests want it
+  UnionButHistory,  ///< all graphs but clx's history graph, each triple once
+  Unnamed           ///< strictly the unnamed graph, as the W3C tests want it
 };
 
-/// What a query may use up; 0 or absent means no limit. Exceeding one throws Error (BudgetExceeded), never half answers.
+/// What a query may use up; 0 or absent means no limit. Exceeding one throws Error (BudgetExceeded), never half
+/// answers.
 struct QueryBudget {
-  std::optional<std::chrono::milliseconds> deadline = std::nullopt;   ///< from the start of run
-  std::uint64_t max_rows = 0;          ///< rows of the answer
-  std::uint64_t max_work_rows = 0;     ///< rows passed between operators in all
-  std::uint64_t max_memory_bytes = 4ull << 30;   ///< held by joins, sorts, groups and the answer
+  std::optional<std::chrono::milliseconds> deadline = std::nullopt;  ///< from the start of run
+  std::uint64_t max_rows = 0;                                        ///< rows of the answer
+  std::uint64_t max_work_rows = 0;                                   ///< rows passed between operators in all
+  std::uint64_t max_memory_bytes = 4ull << 30;                       ///< held by joins, sorts, groups and the answer
 };
 
 struct QueryOptions {
@@ -45,13 +46,13 @@ struct QueryOptions {
   std::optional<std::uint64_t> seed = std::nullopt;
   /// The time NOW() gives, microseconds since 1970 UTC; absent: the clock at the start of run.
   std::optional<std::int64_t> now_us = std::nullopt;
-  /// SERVICE is refused but for these: the endpoint's IRI, and the store on this machine that answers for it. The readers
-  /// must outlive the query. Nothing is ever asked over a network.
+  /// SERVICE is refused but for these: the endpoint's IRI, and the store on this machine that answers for it. The
+  /// readers must outlive the query. Nothing is ever asked over a network.
   std::map<std::string, const QuadReader*> services = {};
-  bool refuse_volatile = false;   ///< rules: BNODE, RAND, NOW, UUID, cuts of unsorted rows are errors, history is hidden
+  bool refuse_volatile = false;  ///< rules: BNODE, RAND, NOW, UUID, cuts of unsorted rows are errors, history is hidden
 };
 
-using Binding = std::pair<std::string, Term>;   ///< a variable's name without '?', and its value
+using Binding = std::pair<std::string, Term>;  ///< a variable's name without '?', and its value
 
 /// A query parsed and planned once for one snapshot, run many times. Not thread-safe; the reader must outlive it.
 class PreparedQuery {
@@ -66,7 +67,7 @@ class PreparedQuery {
   ~PreparedQuery();
 
   ast::QueryForm form() const;
-  const std::vector<std::string>& variables() const;   ///< of a SELECT, in order
+  const std::vector<std::string>& variables() const;  ///< of a SELECT, in order
   /// The sink is called only when the answer is whole: a budget that runs out leaves it untouched.
   void run(ResultSink& sink, const std::vector<Binding>& bindings = {});
   QueryResult evaluate(const std::vector<Binding>& bindings = {});

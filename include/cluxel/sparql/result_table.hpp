@@ -50,7 +50,7 @@ class ResultSink {
 struct ResultTable {
   std::vector<std::string> variables;
   std::vector<Term> terms;
-  std::vector<std::uint32_t> cells;       ///< row by row
+  std::vector<std::uint32_t> cells;  ///< row by row
   std::size_t row_count = 0;
 
   /// Null when unbound.
@@ -65,9 +65,9 @@ struct QueryResult {
   Kind kind = Kind::Solutions;
   ResultTable table;
   bool boolean = false;
-  std::vector<Quad> graph;                ///< triples: the graph term is the default graph
+  std::vector<Quad> graph;  ///< triples: the graph term is the default graph
 
-  bool operator==(const QueryResult&) const = delete;   ///< blank nodes: compare with sameResults()
+  bool operator==(const QueryResult&) const = delete;  ///< blank nodes: compare with sameResults()
 };
 
 /// Keeps an answer as a value.

@@ -14,7 +14,7 @@ namespace cluxel {
 /// Counts of (truth, answer). Rows are the truth's classes; columns the same classes and, last, "no answer".
 struct ConfusionMatrix {
   std::vector<std::string> names;
-  std::vector<std::uint64_t> counts;      ///< names.size() rows of names.size() + 1
+  std::vector<std::uint64_t> counts;  ///< names.size() rows of names.size() + 1
 
   explicit ConfusionMatrix(std::vector<std::string> class_names);
   void add(std::size_t truth, std::size_t answer) { ++counts[truth * (names.size() + 1) + answer]; }
@@ -36,19 +36,19 @@ struct ConfusionMatrix {
 /// Objects of one class, found by a one-to-one match.
 struct ObjectScore {
   std::string name;
-  std::uint64_t truth = 0, answers = 0;   ///< that count
-  std::uint64_t matched_truth = 0;        ///< truth objects with a partner (not ambiguous)
-  std::uint64_t matched_answers = 0;      ///< answers with a partner that counts
+  std::uint64_t truth = 0, answers = 0;  ///< that count
+  std::uint64_t matched_truth = 0;       ///< truth objects with a partner (not ambiguous)
+  std::uint64_t matched_answers = 0;     ///< answers with a partner that counts
   double precision() const;
   double recall() const;
   double f1() const;
 };
 
 struct MapEvaluation {
-  ConfusionMatrix primitives, objects;    ///< by point
+  ConfusionMatrix primitives, objects;  ///< by point
   bool has_instances = false;
-  /// Partners whose axis-parallel boxes, padded by the cluxel radius, have an IoU of at least 0.8 (the paper's measure),
-  /// and partners whose point sets have an IoU of at least 0.5.
+  /// Partners whose axis-parallel boxes, padded by the cluxel radius, have an IoU of at least 0.8 (the paper's
+  /// measure), and partners whose point sets have an IoU of at least 0.5.
   std::vector<ObjectScore> by_box, by_points;
 };
 

@@ -9,7 +9,7 @@
 namespace cluxel {
 
 struct ModelCardText {
-  std::string name, command, data;   ///< the command that makes it; what the data are, with their licence
+  std::string name, command, data;  ///< the command that makes it; what the data are, with their licence
 };
 
 /// Markdown with the figures on left-out groups.

@@ -36,7 +36,7 @@ struct QueryParameter {
 /// A shipped question: the header of a file in queries/ (`#!` lines) and its text.
 struct Question {
   std::filesystem::path file;
-  std::string title;                       ///< in English
+  std::string title;  ///< in English
   std::vector<QueryParameter> parameters;
   std::vector<QueryColumn> columns;
   std::string text;
