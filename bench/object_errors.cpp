@@ -11,17 +11,17 @@
 #include <string>
 #include <vector>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/base/file_bytes.hpp"
-#include "cluxel/mapping/class_catalogue_of.hpp"
-#include "cluxel/mapping/map_reader.hpp"
-#include "cluxel/reasoning/reason.hpp"
-#include "cluxel/reasoning/rule_loader.hpp"
-#include "cluxel/scan/truth.hpp"
-#include "cluxel/tasks/truth_source.hpp"
-#include "mapping/object_geometry.hpp"
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/facts/object_geometry.hpp"
+#include "mapping/map_inputs.hpp"
+#include "mapping/map_reader.hpp"
+#include "rules/decide/reason.hpp"
+#include "rules/language/rule_loader.hpp"
+#include "scan/truth/truth.hpp"
 #include "tasks/object_matching.hpp"
 #include "tasks/truth_class.hpp"
+#include "tasks/truth_source.hpp"
 
 namespace {
 
@@ -46,7 +46,8 @@ Options optionsOf(int count, char** words) {
     else
       rest.push_back(word);
   }
-  if (rest.size() < 3) throw Error(ExitCode::Usage, "usage: object_errors [-v] [--ontology FOLDER] RULES TRUTH MAP...");
+  if (rest.size() < 3)
+    throw Error(ErrorKind::InvalidArgument, "usage: object_errors [-v] [--ontology FOLDER] RULES TRUTH MAP...");
   options.rules = rest[0], options.truth = rest[1];
   options.maps.assign(rest.begin() + 2, rest.end());
   return options;
@@ -81,20 +82,20 @@ class Errors {
     const std::string text = given.string();
     const std::size_t cut = text.find('=');
     if (cut != std::string::npos) open(text.substr(0, cut));
-    const MapReader map(cut == std::string::npos ? text : text.substr(cut + 1));
-    std::vector<NamedText> ontology = map.inputs().ontology;
+    const mapping::MapReader map(cut == std::string::npos ? text : text.substr(cut + 1));
+    std::vector<mapping::NamedText> ontology = map.inputs().ontology;
     if (!options_.ontology.empty()) {
       ontology.clear();
       for (const char* name : {"core.ttl", "outdoor.ttl"})
         ontology.push_back({name, readFile(options_.ontology / name)});
     }
-    const ClassCatalogue catalogue = classCatalogueOf(ontology);
-    const RuleSet rules = loadRules(std::vector{options_.rules}, catalogue).require();
+    const rules::ClassCatalogue catalogue = classCatalogueOf(ontology);
+    const rules::RuleSet rules = loadRules(std::vector{options_.rules}, catalogue).require();
     const auto begin = std::chrono::steady_clock::now();
-    const ReasoningResult result = reason(map.scene(), rules);
+    const rules::ReasoningResult result = reason(map.scene(), rules);
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     class_of_ = truthClassesOf(result.objects, names_, catalogue);
-    ObjectMatching matching(names_, class_of_, truth_->ambiguous());
+    tasks::ObjectMatching matching(names_, class_of_, truth_->ambiguous());
     const Overlap overlap = overlapOf(map, result, matching);
     add(matching.scoreByPoints({}), by_points_);
     add(matching.scoreByBox({}), by_box_);
@@ -105,7 +106,7 @@ class Errors {
   void print() const {
     std::printf("%-14s %6s %6s | %5s %5s %5s | boxes %5s %5s %5s\n", "class", "truth", "found", "P", "R", "F1", "P",
                 "R", "F1");
-    ObjectScore all{"all", 0, 0, 0, 0}, all_box = all;
+    tasks::ObjectScore all{"all", 0, 0, 0, 0}, all_box = all;
     for (std::size_t i = 0; i < by_points_.size(); ++i) {
       if (by_points_[i].truth + by_points_[i].answers == 0) continue;
       printRow(by_points_[i], by_box_[i]);
@@ -125,35 +126,36 @@ class Errors {
   }
 
  private:
-  void open(const fs::path& truth) { truth_.emplace(TruthSource::open(truth, DataHome::find())); }
+  void open(const fs::path& truth) { truth_.emplace(tasks::TruthSource::open(truth, DataHome::find())); }
 
-  static void add(const std::vector<ObjectScore>& scores, std::vector<ObjectScore>& sums) {
+  static void add(const std::vector<tasks::ObjectScore>& scores, std::vector<tasks::ObjectScore>& sums) {
     sums.resize(scores.size());
     for (std::size_t i = 0; i < scores.size(); ++i) sums[i].name = scores[i].name, add({scores[i]}, sums[i]);
   }
-  static void add(const ObjectScore& score, ObjectScore& sum) {
+  static void add(const tasks::ObjectScore& score, tasks::ObjectScore& sum) {
     sum.truth += score.truth, sum.answers += score.answers;
     sum.matched_truth += score.matched_truth, sum.matched_answers += score.matched_answers;
   }
-  static void printRow(const ObjectScore& points, const ObjectScore& box) {
+  static void printRow(const tasks::ObjectScore& points, const tasks::ObjectScore& box) {
     std::printf("%-14s %6llu %6llu | %.3f %.3f %.3f |       %.3f %.3f %.3f\n", points.name.c_str(),
                 static_cast<unsigned long long>(points.truth), static_cast<unsigned long long>(points.answers),
                 points.precision(), points.recall(), points.f1(), box.precision(), box.recall(), box.f1());
   }
 
-  Overlap overlapOf(const MapReader& map, const ReasoningResult& result, ObjectMatching& matching) {
+  Overlap overlapOf(const mapping::MapReader& map, const rules::ReasoningResult& result,
+                    tasks::ObjectMatching& matching) {
     Overlap overlap;
     overlap.found.resize(result.objects.size());
-    const Scene& scene = map.scene();
+    const perception::Scene& scene = map.scene();
     const auto object_of = objectOfCluxel(result, scene.cluxels.size());
     const std::size_t ground = classNumber("Ground");
-    for (const Cloud& cloud : map.clouds()) {
-      Scan scan;
+    for (const mapping::Cloud& cloud : map.clouds()) {
+      scan::Scan scan;
       scan.points = map.pointsOf(cloud.id);
       scan.T_map_sensor = cloud.T_map_sensor, scan.has_pose = cloud.has_pose;
       scan.source = cloud.source, scan.id = cloud.id;
-      const PointTruth truth = truth_->truthOf(scan);
-      const PointAnswers answers = map.answersFor(cloud);
+      const scan::PointTruth truth = truth_->truthOf(scan);
+      const mapping::PointAnswers answers = map.answersFor(cloud);
       for (std::size_t i = 0; i < scan.points.size(); ++i) {
         if (truth.object_class[i] < 0) continue;
         const auto of_class = static_cast<std::size_t>(truth.object_class[i]);
@@ -164,7 +166,7 @@ class Errors {
         matching.add(p, of_class, instance, object);
         const bool right = truth.primitive[i] == static_cast<int>(answers.label[i]);
         note(overlap, p, of_class, instance, object, right);
-        ++by_class_[{of_class, object == kNoObjectOfPoint ? names_.size() : class_of_[object]}];
+        ++by_class_[{of_class, object == mapping::kNoObjectOfPoint ? names_.size() : class_of_[object]}];
       }
     }
     return overlap;
@@ -182,7 +184,7 @@ class Errors {
       truth.box.extend(p);
       ++overlap.shared[instance][object];
     }
-    if (object == kNoObjectOfPoint) return;
+    if (object == mapping::kNoObjectOfPoint) return;
     Overlap::Found& found = overlap.found[object];
     ++found.points;
     found.sum += p;
@@ -195,20 +197,21 @@ class Errors {
     return static_cast<std::size_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());
   }
 
-  void sortTruths(const Overlap& overlap, const ReasoningResult& result) {
+  void sortTruths(const Overlap& overlap, const rules::ReasoningResult& result) {
     for (const auto& [instance, truth] : overlap.truths) {
       if (!truth.counts) continue;
-      std::uint32_t best = kNoObjectOfPoint;
+      std::uint32_t best = mapping::kNoObjectOfPoint;
       std::uint64_t most = 0, of_own_class = 0;
       std::size_t pieces = 0;
       const auto& takers = overlap.shared.at(instance);
       for (const auto& [object, count] : takers) {
         if (count > most) most = count, best = object;
-        if (object != kNoObjectOfPoint && class_of_[object] == truth.class_number) of_own_class += count, ++pieces;
+        if (object != mapping::kNoObjectOfPoint && class_of_[object] == truth.class_number)
+          of_own_class += count, ++pieces;
       }
       const std::string name = names_[truth.class_number];
       std::string cause;
-      if (best == kNoObjectOfPoint) {
+      if (best == mapping::kNoObjectOfPoint) {
         cause = "nobody took it";
       } else if (class_of_[best] != truth.class_number) {
         cause = "taken by " + result.objects[best].rule_id;
@@ -236,13 +239,13 @@ class Errors {
 
   static void printTakers(const char* what, const Overlap::Truth& truth,
                           const std::map<std::uint32_t, std::uint64_t>& takers, const Overlap& overlap,
-                          const ReasoningResult& result) {
+                          const rules::ReasoningResult& result) {
     const Eigen::Vector3d at = truth.sum / static_cast<double>(truth.points);
     std::printf("%s n=%llu right=%.2f at %.1f %.1f %.1f:", what, static_cast<unsigned long long>(truth.points),
                 static_cast<double>(truth.rightly_labelled) / static_cast<double>(truth.points), at.x(), at.y(),
                 at.z());
     for (const auto& [object, count] : takers) {
-      const bool is_free = object == kNoObjectOfPoint;
+      const bool is_free = object == mapping::kNoObjectOfPoint;
       const std::string name =
           is_free ? "-" : result.objects[object].rule_id + "#" + result.objects[object].id.hex().substr(0, 6);
       std::printf(" %s %llu/%llu", name.c_str(), static_cast<unsigned long long>(count),
@@ -269,7 +272,7 @@ class Errors {
     return what;
   }
 
-  void sortFound(const Overlap& overlap, const ReasoningResult& result) {
+  void sortFound(const Overlap& overlap, const rules::ReasoningResult& result) {
     for (std::uint32_t i = 0; i < overlap.found.size(); ++i) {
       const Overlap::Found& found = overlap.found[i];
       const std::size_t own = class_of_[i];
@@ -305,10 +308,10 @@ class Errors {
   }
 
   const Options& options_;
-  std::optional<TruthSource> truth_;
+  std::optional<tasks::TruthSource> truth_;
   std::vector<std::string> names_;
   std::vector<std::size_t> class_of_;  ///< of the objects of the map in hand
-  std::vector<ObjectScore> by_points_, by_box_;
+  std::vector<tasks::ObjectScore> by_points_, by_box_;
   std::map<std::pair<std::size_t, std::size_t>, double> by_class_;
   std::map<std::string, int> missed_, wrong_, sides_;
   double seconds_ = 0;
@@ -325,6 +328,6 @@ int main(int count, char** words) {
     return 0;
   } catch (const Error& fault) {
     std::fprintf(stderr, "object_errors: %s\n", fault.what());
-    return static_cast<int>(fault.code());
+    return static_cast<int>(fault.kind());
   }
 }

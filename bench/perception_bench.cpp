@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // Points to primitives, stage by stage, on one core: `perception_bench [--rounds N] [--digest] [SCANS...]` prints
-// points per second. Without scans it takes Oakland part 2 from the outside data, and where that is absent a generated
-// campus.
-// --digest also prints a hash of every stage's output, which tells whether a faster program still says the same.
+// points per second, the best of N rounds for each stage. Without scans it uses Oakland part 2 from the outside data,
+// or a generated campus where that is absent. --digest also prints a hash of every stage's output: a faster program
+// must produce identical output.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "cluxel/base/content_hash.hpp"
-#include "cluxel/perception/scene_pipeline.hpp"
-#include "cluxel/scan/scan_set.hpp"
-#include "cluxel/simulation/campus.hpp"
-#include "cluxel/simulation/laser.hpp"
+#include "base/content_hash.hpp"
+#include "perception/pipeline.hpp"
+#include "scan/scan_set.hpp"
+#include "simulation/laser/laser.hpp"
+#include "simulation/site/campus.hpp"
 
 namespace {
 
@@ -28,98 +28,56 @@ struct StageTime {
 };
 
 /// Processor time, so that other work on the machine counts less.
-double secondsOf(const std::function<void()>& work) {
-  const std::clock_t start = std::clock();
-  work();
-  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+double processorSeconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-/// Outputs of all stages of one pass.
-struct Outputs {
-  PerceivedTiles perceived;
-  std::map<TileKey, LabelTile> labels;
-  std::map<TileKey, ComponentTile> components;
-  std::map<TileKey, ContactTile> contacts;
-  Scene scene;
-};
-
 /// Collects the time of each stage.
-class Stopwatch {
+class Stopwatch final : public perception::StageObserver {
  public:
-  /// Times `work` on every tile of `tiles`.
-  template <typename Tiles, typename Work>
-  void overTiles(const char* name, const Tiles& tiles, const Work& work) {
-    once(name, [&] {
-      for (const auto& [key, tile] : tiles) work(key);
-    });
+  void finished(perception::Stage stage, double cpu_s) override {
+    times_.push_back({std::string(nameOf(stage)), cpu_s});
   }
-  void once(const char* name, const std::function<void()>& work) { times_.push_back({name, secondsOf(work)}); }
+  template <typename Work>
+  auto timed(const char* name, const Work& work) {
+    const double start_s = processorSeconds();
+    auto result = work();
+    times_.push_back({name, processorSeconds() - start_s});
+    return result;
+  }
   const std::vector<StageTime>& times() const { return times_; }
 
  private:
   std::vector<StageTime> times_;
 };
 
-using Segments = std::map<TileKey, std::vector<ScanSegment>>;
-
-Segments splitAll(const std::vector<Scan>& scans) {
-  Segments segments;
-  for (const auto& scan : scans)
-    for (auto& [key, segment] : splitScan(scan)) segments[key].push_back(std::move(segment));
-  return segments;
-}
-
-TilePoints thinOne(const TileKey& key, const std::vector<ScanSegment>& parts, const ThinParams& params) {
-  std::vector<const ScanSegment*> pointers;
-  for (const auto& part : parts) pointers.push_back(&part);
-  return thin(key, pointers, params);
-}
+/// Outputs of one pass.
+struct Outputs {
+  perception::TileOutputs tiles;
+  perception::Scene scene;
+};
 
 /// One pass over all stages, with the time of each.
-std::vector<StageTime> runOnce(const std::vector<Scan>& scans, const LabelModel& model, Outputs& out) {
-  const PerceptionParams& params = model.perception;
-  const SceneParams scene;
-  auto& [points, cluxels, ground, features] = out.perceived;
+std::vector<StageTime> runOnce(const std::vector<scan::Scan>& scans, const perception::LabelModel& model,
+                               Outputs& out) {
+  const perception::SceneParams params;
+  const perception::TileLabeller labeller(model);
   Stopwatch watch;
-  Segments segments;
-  watch.once("split into tiles", [&] { segments = splitAll(scans); });
-  watch.overTiles("thin", segments,
-                  [&](const TileKey& key) { points[key] = thinOne(key, segments.at(key), params.thin); });
-  watch.overTiles("cover", points,
-                  [&](const TileKey& key) { cluxels[key] = coverTile(ringIn(points, key), params.cover); });
-  watch.overTiles("ground", points,
-                  [&](const TileKey& key) { ground[key] = groundOf(ringIn(cluxels, key), params.ground); });
-  watch.overTiles("graph and features", points, [&](const TileKey& key) {
-    features[key] = computeFeatures(ringIn(cluxels, key), ringIn(ground, key), params.features);
-  });
-  const TileLabeller labeller(model);
-  watch.overTiles("labels (CRF)", points, [&](const TileKey& key) {
-    out.labels[key] = labeller.label(ringIn(features, key), scene.labelling);
-  });
-  watch.overTiles("components", points, [&](const TileKey& key) {
-    out.components[key] = componentsOf(points.at(key), cluxels.at(key), features.at(key), out.labels.at(key),
-                                       ringIn(ground, key), scene.component);
-  });
-  watch.overTiles("contacts", points, [&](const TileKey& key) {
-    out.contacts[key] =
-        contactsOf(ringIn(out.components, key), ringIn(cluxels, key), features.at(key), scene.component, scene.contact);
-  });
-  watch.once("primitives and relations", [&] {
-    out.scene =
-        assembleScene({points, cluxels, features, ground, out.labels, out.components, out.contacts}, scene.relation);
-  });
+  auto segments = watch.timed("split into tiles", [&] { return perception::segmentsOf(scans); });
+  runStages(std::move(segments), labeller, params, out.tiles, {.observer = &watch});
+  out.scene = watch.timed("scene", [&] { return assembleScene(out.tiles, params.relation); });
   return watch.times();
 }
 
 void print(const std::vector<StageTime>& best, const Outputs& out, std::size_t points) {
   std::size_t kept = 0, cluxels = 0, edges = 0;
-  for (const auto& [key, tile] : out.perceived.points) kept += tile.size();
-  for (const auto& [key, tile] : out.perceived.features) {
+  for (const auto& [key, tile] : out.tiles.points) kept += tile.size();
+  for (const auto& [key, tile] : out.tiles.features) {
     cluxels += tile.size();
     edges += tile.edge_target.size();
   }
   std::printf("%zu points in %zu tiles, %zu after thinning, %zu cluxels, %zu edges, %zu primitives\n\n", points,
-              out.perceived.points.size(), kept, cluxels, edges / 2, out.scene.primitives.size());
+              out.tiles.points.size(), kept, cluxels, edges / 2, out.scene.primitives.size());
   std::printf("| stage | ms | share | Mpoints/s | ns/point |\n|---|---:|---:|---:|---:|\n");
   double total = 0;
   for (const auto& stage : best) total += stage.seconds;
@@ -138,7 +96,7 @@ ContentHash digestOf(const Tiles& tiles) {
   return hasher.finish();
 }
 
-ContentHash digestOf(const Scene& scene) {
+ContentHash digestOf(const perception::Scene& scene) {
   ContentHasher hasher;
   for (const auto& primitive : scene.primitives) {
     hasher.add(primitive.id).add(primitive.label).addSpan(std::span<const double>(primitive.attributes));
@@ -154,33 +112,33 @@ void printDigests(const Outputs& out) {
     std::printf("%-12s %s\n", name, hash.hex().c_str());
   };
   std::printf("\n");
-  row("points", digestOf(out.perceived.points));
-  row("cluxels", digestOf(out.perceived.cluxels));
-  row("ground", digestOf(out.perceived.ground));
-  row("features", digestOf(out.perceived.features));
-  row("labels", digestOf(out.labels));
-  row("components", digestOf(out.components));
-  row("contacts", digestOf(out.contacts));
+  row("points", digestOf(out.tiles.points));
+  row("cluxels", digestOf(out.tiles.cluxels));
+  row("ground", digestOf(out.tiles.ground));
+  row("features", digestOf(out.tiles.features));
+  row("labels", digestOf(out.tiles.labels));
+  row("components", digestOf(out.tiles.components));
+  row("contacts", digestOf(out.tiles.contacts));
   row("scene", digestOf(out.scene));
 }
 
-std::vector<Scan> loadScans(const std::vector<std::filesystem::path>& inputs) {
+std::vector<scan::Scan> loadScans(const std::vector<std::filesystem::path>& inputs) {
   ProgressSink sink;
-  const ScanSet set = ScanSet::open(inputs, {}, sink);
-  std::vector<Scan> scans;
+  const scan::ScanSet set = scan::ScanSet::open(inputs, {}, sink);
+  std::vector<scan::Scan> scans;
   for (std::size_t i = 0; i < set.size(); ++i) scans.push_back(set.load(i));
   return scans;
 }
 
-std::vector<Scan> generatedScans() {
-  const Campus campus = buildCampus({.seed = 1, .stops = 6});
-  const Laser laser(campus);
-  std::vector<Scan> scans;
+std::vector<scan::Scan> generatedScans() {
+  const simulation::Campus campus = simulation::buildCampus({.seed = 1, .stops = 6});
+  const simulation::Laser laser(campus);
+  std::vector<scan::Scan> scans;
   for (std::size_t stop = 0; stop < campus.stops.size(); ++stop) scans.push_back(laser.scanAt(stop).scan);
   return scans;
 }
 
-std::vector<Scan> scansFor(const std::vector<std::filesystem::path>& inputs) {
+std::vector<scan::Scan> scansFor(const std::vector<std::filesystem::path>& inputs) {
   if (!inputs.empty()) return loadScans(inputs);
   const std::filesystem::path source = CLUXEL_SOURCE_DIR;
   const char* given = std::getenv("CLUXEL_DATA");
@@ -208,7 +166,8 @@ int main(int argc, char** argv) {
       inputs.emplace_back(argv[i]);
   }
   const auto scans = scansFor(inputs);
-  const LabelModel model = loadModel(std::filesystem::path(CLUXEL_SOURCE_DIR) / "models/oakland");
+  const perception::LabelModel model =
+      perception::loadModel(std::filesystem::path(CLUXEL_SOURCE_DIR) / "models/oakland");
   std::size_t points = 0;
   for (const auto& scan : scans) points += scan.points.size();
   std::vector<StageTime> best;

@@ -11,8 +11,8 @@
 #include <optional>
 #include <sstream>
 
-#include "cluxel/knowledge/quad_store.hpp"
-#include "cluxel/sparql/query_engine.hpp"
+#include "rdf/store/quad_store.hpp"
+#include "sparql/query_engine.hpp"
 #include "sparql_data.hpp"
 #include "sparql_peers.hpp"
 
@@ -49,15 +49,15 @@ Arguments argumentsOf(int argc, char** argv) {
 /// A generated map in a store, and for the peers as a file of triples, all in one default graph: their best case.
 class Data {
  public:
-  Data(std::uint64_t triples, bool with_file) : environment_(Environment::temporary()) {
+  Data(std::uint64_t triples, bool with_file) : environment_(rdf::Environment::temporary()) {
     const auto start = std::chrono::steady_clock::now();
     std::ofstream out;
     if (with_file) {
       file_ = fs::temp_directory_path() / ("cluxel_sparql_bench_" + std::to_string(getpid()) + ".nt");
       out.open(file_);
     }
-    WriteTransaction transaction = environment_->write();
-    QuadWriter writer(transaction);
+    rdf::WriteTransaction transaction = environment_->write();
+    rdf::QuadWriter writer(transaction);
     generateMap(triples, [&](const Quad& quad) {
       writer.add(quad);
       if (out.is_open())
@@ -67,7 +67,7 @@ class Data {
     writer.flush();
     transaction.commit();
     std::printf("\n%llu triples, made and loaded in %.1f s\n\n",
-                static_cast<unsigned long long>(QuadReader(environment_->read()).size()), since(start));
+                static_cast<unsigned long long>(rdf::QuadReader(environment_->read()).size()), since(start));
     std::fflush(stdout);
   }
   ~Data() {
@@ -75,11 +75,11 @@ class Data {
   }
   Data(const Data&) = delete;
   Data& operator=(const Data&) = delete;
-  const Environment& environment() const { return *environment_; }
+  const rdf::Environment& environment() const { return *environment_; }
   const fs::path& file() const { return file_; }
 
  private:
-  std::shared_ptr<Environment> environment_;
+  std::shared_ptr<rdf::Environment> environment_;
   fs::path file_;
 };
 
@@ -98,13 +98,13 @@ std::string nameOfLeast(const std::map<std::string, double>& ratios) {
       ->first;
 }
 
-void printComparison(const std::string& peer, const std::vector<Question>& asked, const Measures& ours,
+void printComparison(const std::string& peer, const std::vector<tasks::Question>& asked, const Measures& ours,
                      const Measures& theirs) {
   std::printf("| question | rows | cluxel [ms] | %s [ms] | ratio |\n|---|---|---|---|---|\n", peer.c_str());
   double logs = 0;
   std::map<std::string, double> ratios;
   std::size_t wrong = 0, unanswered = 0;
-  for (const Question& question : asked) {
+  for (const tasks::Question& question : asked) {
     const Measure& mine = ours.at(question.name);
     const auto found = theirs.find(question.name);
     const Measure other = found == theirs.end() ? Measure() : found->second;
@@ -132,9 +132,9 @@ void printComparison(const std::string& peer, const std::vector<Question>& asked
 }
 
 /// The same question with its patterns in another order: names that differ by "_bad".
-void printOrders(const std::vector<Question>& asked, const Measures& ours) {
+void printOrders(const std::vector<tasks::Question>& asked, const Measures& ours) {
   std::printf("\nPatterns in bad order against good order, time:");
-  for (const Question& question : asked) {
+  for (const tasks::Question& question : asked) {
     if (!question.name.ends_with("_bad")) continue;
     const std::string stem = question.name.substr(0, question.name.size() - 4);
     const auto good = ours.contains(stem) ? ours.find(stem) : ours.find(stem + "_good");
@@ -145,11 +145,11 @@ void printOrders(const std::vector<Question>& asked, const Measures& ours) {
 }
 
 /// Growth against the smaller data, measured in turn: time, rows of the answer, rows that the operators had to make.
-void printGrowth(const std::vector<Question>& asked, const Measures& small, const Measures& large) {
+void printGrowth(const std::vector<tasks::Question>& asked, const Measures& small, const Measures& large) {
   std::printf(
       "| question | rows | cluxel [ms] | time grows | rows grow | work grows | bar |\n|---|---|---|---|---|---|---|\n");
   std::size_t over = 0;
-  for (const Question& question : asked) {
+  for (const tasks::Question& question : asked) {
     const Measure &before = small.at(question.name), &now = large.at(question.name);
     const double time = now.seconds / before.seconds;
     const double rows = static_cast<double>(std::max<std::size_t>(now.rows, 1)) /
@@ -166,13 +166,13 @@ void printGrowth(const std::vector<Question>& asked, const Measures& small, cons
 }
 
 /// Text to plan, without running it.
-void printPreparation(const Environment& environment, const std::vector<Question>& asked) {
-  const QuadReader reader(environment.read());
+void printPreparation(const rdf::Environment& environment, const std::vector<tasks::Question>& asked) {
+  const rdf::QuadReader reader(environment.read());
   std::printf("\nParse and plan [ms]:");
-  for (const Question& question : asked) {
+  for (const tasks::Question& question : asked) {
     for (const char* name : {"class_lookup", "one_object", "star3_good", "chain3_bad", "range_height", "star5_bad"}) {
       if (question.name != name) continue;
-      const Measure measure = measured([&] { return PreparedQuery(reader, question.text).variables().size(); });
+      const Measure measure = measured([&] { return sparql::PreparedQuery(reader, question.text).variables().size(); });
       std::printf(" %s %.4f", name, measure.seconds * 1000);
     }
   }
@@ -180,8 +180,8 @@ void printPreparation(const Environment& environment, const std::vector<Question
 }
 
 /// A geo filter from the R-tree, and the same one where the planner does not see it; the first also makes the tree.
-void printGeometry(const Environment& environment) {
-  const QuadReader reader(environment.read());
+void printGeometry(const rdf::Environment& environment) {
+  const rdf::QuadReader reader(environment.read());
   const std::string prefixes =
       "PREFIX geo: <http://www.opengis.net/ont/geosparql#> PREFIX geof: "
       "<http://www.opengis.net/def/function/geosparql/> ";

@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "cluxel/knowledge/vocabulary.hpp"
+#include "rdf/vocabulary.hpp"
 
 namespace cluxel::bench {
 namespace {
@@ -16,7 +16,7 @@ using namespace vocabulary;
 struct ClassShare {
   const char* name;
   unsigned per_mille;
-  double least_height_m, most_height_m;
+  double min_height_m, max_height_m;
 };
 
 constexpr std::array<ClassShare, 8> kClasses = {{{"Tree", 330, 2.5, 18},
@@ -90,8 +90,8 @@ class Generator {
     // A field of objects some metres apart; it grows with their number.
     const auto side = static_cast<std::uint64_t>(std::max(1.0, std::sqrt(static_cast<double>(objects_))));
     const long x = static_cast<long>(i % side * 400 + upTo(400)), y = static_cast<long>(i / side * 400 + upTo(400));
-    const long height = static_cast<long>(share.least_height_m * 100) +
-                        upTo(static_cast<unsigned>((share.most_height_m - share.least_height_m) * 100));
+    const long height = static_cast<long>(share.min_height_m * 100) +
+                        upTo(static_cast<unsigned>((share.max_height_m - share.min_height_m) * 100));
     add(self, clx("x"), metres(x));
     add(self, clx("y"), metres(y));
     add(self, clx("z"), metres(static_cast<long>(upTo(300))));

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "cluxel/knowledge/term.hpp"
+#include "cluxel/term.hpp"
 
 namespace cluxel::bench {
 

@@ -11,10 +11,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "cluxel/knowledge/quad_store.hpp"
-#include "cluxel/sparql/query_engine.hpp"
-#include "cluxel/sparql/result_writer.hpp"
-#include "sparql/no_sink.hpp"
+#include "rdf/store/quad_store.hpp"
+#include "sparql/query_engine.hpp"
+#include "sparql/results/result_table.hpp"
+#include "sparql/results/result_writer.hpp"
 
 namespace cluxel::bench {
 
@@ -28,10 +28,10 @@ constexpr const char* kPrefixes =
     "PREFIX geof: <http://www.opengis.net/def/function/geosparql/> ";
 
 /// The sum of the actual rows of all operators, as the plan's text tells them.
-double workRows(const Environment& environment, const Question& question) {
-  const QuadReader reader(environment.read());
-  PreparedQuery query(reader, question.text);
-  NoSink sink;
+double workRows(const rdf::Environment& environment, const tasks::Question& question) {
+  const rdf::QuadReader reader(environment.read());
+  sparql::PreparedQuery query(reader, question.text);
+  sparql::NoSink sink;
   query.run(sink);
   const std::string plan = query.explain();
   constexpr std::string_view kMark = ", actual ";
@@ -41,10 +41,10 @@ double workRows(const Environment& environment, const Question& question) {
   return sum;
 }
 
-std::size_t linesOfAnswer(const Environment& environment, const Question& question) {
-  const QuadReader reader(environment.read());
+std::size_t linesOfAnswer(const rdf::Environment& environment, const tasks::Question& question) {
+  const rdf::QuadReader reader(environment.read());
   std::string text;
-  const auto writer = makeResultWriter(ResultFormat::Tsv, [&](std::string_view piece) { text += piece; });
+  const auto writer = makeResultWriter(sparql::ResultFormat::Tsv, [&](std::string_view piece) { text += piece; });
   runQuery(reader, question.text, {}, *writer);
   return lines(text);
 }
@@ -55,7 +55,7 @@ struct PipedMeasure {
   std::size_t rows = 0;
 };
 
-std::size_t rowsOfRasqal(librdf_world* world, librdf_model* model, const Question& question) {
+std::size_t rowsOfRasqal(librdf_world* world, librdf_model* model, const tasks::Question& question) {
   const auto* text = reinterpret_cast<const unsigned char*>(question.text.c_str());
   librdf_query* query = librdf_new_query(world, "sparql11-query", nullptr, text, nullptr);
   if (query == nullptr) _exit(1);
@@ -77,12 +77,12 @@ std::size_t rowsOfRasqal(librdf_world* world, librdf_model* model, const Questio
   return rows;
 }
 
-Measure askRasqal(librdf_world* world, librdf_model* model, const Question& question) {
+Measure askRasqal(librdf_world* world, librdf_model* model, const tasks::Question& question) {
   int ends[2];
   if (pipe(ends) != 0) return {};
   const pid_t child = fork();
   if (child == 0) {
-    alarm(static_cast<unsigned>(kMostSecondsPerQuery) * 2);
+    alarm(static_cast<unsigned>(kMaxSecondsPerQuery) * 2);
     const Measure measure = measured([&] { return rowsOfRasqal(world, model, question); });
     const PipedMeasure piped{measure.seconds, measure.rows};
     if (write(ends[1], &piped, sizeof piped) != sizeof piped) _exit(1);
@@ -99,7 +99,7 @@ Measure askRasqal(librdf_world* world, librdf_model* model, const Question& ques
     measure.seconds = piped.seconds;
     measure.rows = piped.rows;
   } else if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM) {
-    measure.failure = "over " + std::to_string(static_cast<int>(kMostSecondsPerQuery) * 2) + " s";
+    measure.failure = "over " + std::to_string(static_cast<int>(kMaxSecondsPerQuery) * 2) + " s";
   } else {
     measure.failure = WIFSIGNALED(status) ? "crashed" : "refused";
   }
@@ -108,22 +108,22 @@ Measure askRasqal(librdf_world* world, librdf_model* model, const Question& ques
 
 }  // namespace
 
-std::vector<Question> readQuestions(const fs::path& file, const std::string& only) {
+std::vector<tasks::Question> readQuestions(const fs::path& file, const std::string& only) {
   std::ifstream in(file);
-  std::vector<Question> result;
+  std::vector<tasks::Question> result;
   for (std::string line; std::getline(in, line);) {
     if (line.starts_with("== "))
       result.push_back({line.substr(3), kPrefixes});
     else if (!line.empty() && line[0] != '#' && !result.empty())
       result.back().text += line + "\n";
   }
-  std::erase_if(result, [&](const Question& q) { return q.name.find(only) == std::string::npos; });
+  std::erase_if(result, [&](const tasks::Question& q) { return q.name.find(only) == std::string::npos; });
   return result;
 }
 
-Measures askCluxel(const Environment& environment, const std::vector<Question>& asked) {
+Measures askCluxel(const rdf::Environment& environment, const std::vector<tasks::Question>& asked) {
   Measures measures;
-  for (const Question& question : asked) {
+  for (const tasks::Question& question : asked) {
     Measure& measure = measures[question.name];
     measure = measured([&] { return linesOfAnswer(environment, question); });
     measure.work_rows = workRows(environment, question);
@@ -131,10 +131,10 @@ Measures askCluxel(const Environment& environment, const std::vector<Question>& 
   return measures;
 }
 
-std::pair<Measures, Measures> askCluxelInTurn(const Environment& small, const Environment& large,
-                                              const std::vector<Question>& asked) {
+std::pair<Measures, Measures> askCluxelInTurn(const rdf::Environment& small, const rdf::Environment& large,
+                                              const std::vector<tasks::Question>& asked) {
   std::pair<Measures, Measures> measures;
-  for (const Question& question : asked) {
+  for (const tasks::Question& question : asked) {
     const auto [of_small, of_large] =
         measuredInTurn([&] { return linesOfAnswer(small, question); }, [&] { return linesOfAnswer(large, question); });
     measures.first[question.name] = of_small;
@@ -145,10 +145,10 @@ std::pair<Measures, Measures> askCluxelInTurn(const Environment& small, const En
   return measures;
 }
 
-Measures askOxigraph(const fs::path& module, const fs::path& nt_file, const std::vector<Question>& asked) {
+Measures askOxigraph(const fs::path& module, const fs::path& nt_file, const std::vector<tasks::Question>& asked) {
   const fs::path requests = nt_file.string() + ".requests.json", answers = nt_file.string() + ".answers.json";
   nlohmann::json list = nlohmann::json::array();
-  for (const Question& question : asked) list.push_back({{"name", question.name}, {"query", question.text}});
+  for (const tasks::Question& question : asked) list.push_back({{"name", question.name}, {"query", question.text}});
   std::ofstream(requests) << list;
   const std::string script = std::string(CLUXEL_SOURCE_DIR) + "/bench/sparql_oxigraph.mjs";
   const std::string command = "node --max-old-space-size=8000 '" + script + "' '" + module.string() + "' '" +
@@ -170,7 +170,7 @@ Measures askOxigraph(const fs::path& module, const fs::path& nt_file, const std:
   return measures;
 }
 
-Measures askRasqal(const fs::path& nt_file, const std::vector<Question>& asked) {
+Measures askRasqal(const fs::path& nt_file, const std::vector<tasks::Question>& asked) {
   librdf_world* world = librdf_new_world();
   librdf_world_open(world);
   librdf_world_set_logger(world, nullptr, [](void*, librdf_log_message*) { return 1; });
@@ -180,7 +180,7 @@ Measures askRasqal(const fs::path& nt_file, const std::vector<Question>& asked) 
   librdf_uri* uri = librdf_new_uri_from_filename(world, nt_file.c_str());
   Measures measures;
   if (librdf_parser_parse_into_model(parser, uri, uri, model) == 0) {
-    for (const Question& question : asked) measures[question.name] = askRasqal(world, model, question);
+    for (const tasks::Question& question : asked) measures[question.name] = askRasqal(world, model, question);
   }
   return measures;
 }

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "cluxel/knowledge/environment.hpp"
+#include "rdf/store/environment.hpp"
 
 namespace cluxel::bench {
 
@@ -30,7 +30,7 @@ struct Measure {
 };
 using Measures = std::map<std::string, Measure>;
 
-inline constexpr double kMostSecondsPerQuery = 5;
+inline constexpr double kMaxSecondsPerQuery = 5;
 
 inline double since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -57,7 +57,7 @@ std::array<Measure, sizeof...(Run)> measuredInTurn(Run... runs) {
   while (seconds[0].size() < 5 || (seconds[0].size() < 200 && since(start) < 0.4 * sizeof...(Run))) {
     std::size_t i = 0;
     (timed(i++, runs), ...);
-    if (since(start) > kMostSecondsPerQuery * sizeof...(Run)) break;
+    if (since(start) > kMaxSecondsPerQuery * sizeof...(Run)) break;
   }
   for (std::size_t i = 0; i < measures.size(); ++i) measures[i].seconds = medianOf(seconds[i]);
   return measures;
@@ -77,9 +77,9 @@ inline std::size_t lines(std::string_view text) {
 std::vector<Question> readQuestions(const std::filesystem::path& file, const std::string& only);
 
 /// This library: a reader, the text parsed and planned, the answer as TSV, anew in every run.
-Measures askCluxel(const Environment& environment, const std::vector<Question>& asked);
+Measures askCluxel(const rdf::Environment& environment, const std::vector<Question>& asked);
 /// The same of two stores, every question in turn of the one and the other.
-std::pair<Measures, Measures> askCluxelInTurn(const Environment& small, const Environment& large,
+std::pair<Measures, Measures> askCluxelInTurn(const rdf::Environment& small, const rdf::Environment& large,
                                               const std::vector<Question>& asked);
 /// Oxigraph in node, its store in memory. `module` holds node_modules.
 Measures askOxigraph(const std::filesystem::path& module, const std::filesystem::path& nt_file,

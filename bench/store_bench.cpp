@@ -10,9 +10,9 @@
 #include <random>
 #include <string>
 
-#include "cluxel/knowledge/environment.hpp"
-#include "cluxel/knowledge/quad_store.hpp"
-#include "cluxel/knowledge/rdf_io.hpp"
+#include "rdf/io/rdf_io.hpp"
+#include "rdf/store/environment.hpp"
+#include "rdf/store/quad_store.hpp"
 
 namespace {
 
@@ -45,8 +45,9 @@ std::string generatedNTriples(std::size_t triples) {
 
 constexpr std::size_t kTriples = 1'000'000;
 
-const RdfSource& source() {
-  static const RdfSource text{generatedNTriples(kTriples), "generated.nt", RdfFormat::NTriples, "", Term::iri("")};
+const rdf::RdfSource& source() {
+  static const rdf::RdfSource text{generatedNTriples(kTriples), "generated.nt", rdf::RdfFormat::NTriples, "",
+                                   Term::iri("")};
   return text;
 }
 
@@ -60,9 +61,9 @@ fs::path scratch() {
 
 void load(const fs::path& file) {
   fs::remove(file);
-  const auto environment = Environment::open(file, OpenMode::Create);
-  WriteTransaction transaction = environment->write();
-  QuadWriter writer(transaction);
+  const auto environment = rdf::Environment::open(file, rdf::OpenMode::Create);
+  rdf::WriteTransaction transaction = environment->write();
+  rdf::QuadWriter writer(transaction);
   loadRdf(source(), writer);
   writer.flush();
   transaction.commit();
@@ -74,20 +75,20 @@ const fs::path& compactMap() {
     const fs::path loaded = scratch() / "loaded.clx";
     load(loaded);
     const fs::path compact = scratch() / "compact.clx";
-    Environment::open(loaded, OpenMode::ReadOnly)->compactTo(compact);
+    rdf::Environment::open(loaded, rdf::OpenMode::ReadOnly)->compactTo(compact);
     return compact;
   }();
   return file;
 }
 
-TermId idOf(const QuadReader& reader, const std::string& local) {
+rdf::TermId idOf(const rdf::QuadReader& reader, const std::string& local) {
   return reader.idOf(Term::iri("https://w3id.org/cluxel/ontology#" + local)).value();
 }
 
-std::vector<TermId> subjects(const QuadReader& reader) {
-  std::vector<TermId> ids;
-  QuadCursor cursor = reader.scan({.s = {}, .p = idOf(reader, "height"), .o = {}, .g = {}});
-  for (QuadIds quad; cursor.next(quad);) ids.push_back(quad.s);
+std::vector<rdf::TermId> subjects(const rdf::QuadReader& reader) {
+  std::vector<rdf::TermId> ids;
+  rdf::QuadCursor cursor = reader.scan({.s = {}, .p = idOf(reader, "height"), .o = {}, .g = {}});
+  for (rdf::QuadIds quad; cursor.next(quad);) ids.push_back(quad.s);
   return ids;
 }
 
@@ -111,8 +112,8 @@ BENCHMARK(loadAMillion)->Unit(benchmark::kMillisecond)->Iterations(2);
 void openAndAskOne(benchmark::State& state) {
   compactMap();
   for (auto _ : state) {
-    const auto environment = Environment::open(compactMap(), OpenMode::ReadOnly);
-    const QuadReader reader(environment->read());
+    const auto environment = rdf::Environment::open(compactMap(), rdf::OpenMode::ReadOnly);
+    const rdf::QuadReader reader(environment->read());
     benchmark::DoNotOptimize(reader.estimate({.s = {}, .p = idOf(reader, "near"), .o = {}, .g = {}}));
   }
   state.counters["bytes/triple"] = static_cast<double>(fs::file_size(compactMap())) / kTriples;
@@ -120,9 +121,9 @@ void openAndAskOne(benchmark::State& state) {
 BENCHMARK(openAndAskOne)->Unit(benchmark::kMillisecond);
 
 void newSnapshot(benchmark::State& state) {
-  const auto environment = Environment::open(compactMap(), OpenMode::ReadOnly);
+  const auto environment = rdf::Environment::open(compactMap(), rdf::OpenMode::ReadOnly);
   for (auto _ : state) {
-    const QuadReader reader(environment->read());
+    const rdf::QuadReader reader(environment->read());
     benchmark::DoNotOptimize(reader.size());
   }
 }
@@ -130,13 +131,13 @@ BENCHMARK(newSnapshot);
 
 /// 0: ascending subjects, 1: random ones.
 void lookup(benchmark::State& state) {
-  const auto environment = Environment::open(compactMap(), OpenMode::ReadOnly);
-  const QuadReader reader(environment->read());
-  std::vector<TermId> ids = subjects(reader);
+  const auto environment = rdf::Environment::open(compactMap(), rdf::OpenMode::ReadOnly);
+  const rdf::QuadReader reader(environment->read());
+  std::vector<rdf::TermId> ids = subjects(reader);
   std::sort(ids.begin(), ids.end());
   if (state.range(0) == 1) std::shuffle(ids.begin(), ids.end(), std::mt19937(5));
-  const TermId near = idOf(reader, "near");
-  PrefixLookup lookup = reader.lookup(QuadOrder::Spog);
+  const rdf::TermId near = idOf(reader, "near");
+  rdf::PrefixLookup lookup = reader.lookup(rdf::QuadOrder::Spog);
   std::size_t i = 0;
   std::size_t found = 0;
   for (auto _ : state) {
@@ -149,11 +150,11 @@ void lookup(benchmark::State& state) {
 BENCHMARK(lookup)->Arg(0)->Arg(1);
 
 void contains(benchmark::State& state) {
-  const auto environment = Environment::open(compactMap(), OpenMode::ReadOnly);
-  const QuadReader reader(environment->read());
-  std::vector<TermId> ids = subjects(reader);
+  const auto environment = rdf::Environment::open(compactMap(), rdf::OpenMode::ReadOnly);
+  const rdf::QuadReader reader(environment->read());
+  std::vector<rdf::TermId> ids = subjects(reader);
   std::shuffle(ids.begin(), ids.end(), std::mt19937(5));
-  const TermId near = idOf(reader, "near");
+  const rdf::TermId near = idOf(reader, "near");
   std::size_t i = 0;
   std::size_t found = 0;
   for (auto _ : state) {
@@ -165,13 +166,13 @@ void contains(benchmark::State& state) {
 BENCHMARK(contains);
 
 void scanCursor(benchmark::State& state) {
-  const auto environment = Environment::open(compactMap(), OpenMode::ReadOnly);
-  const QuadReader reader(environment->read());
-  const QuadPattern pattern{.s = {}, .p = idOf(reader, "near"), .o = {}, .g = {}};
+  const auto environment = rdf::Environment::open(compactMap(), rdf::OpenMode::ReadOnly);
+  const rdf::QuadReader reader(environment->read());
+  const rdf::QuadPattern pattern{.s = {}, .p = idOf(reader, "near"), .o = {}, .g = {}};
   std::size_t count = 0;
   for (auto _ : state) {
-    QuadCursor cursor = reader.scan(pattern);
-    for (QuadIds quad; cursor.next(quad);) count += quad.o;
+    rdf::QuadCursor cursor = reader.scan(pattern);
+    for (rdf::QuadIds quad; cursor.next(quad);) count += quad.o;
   }
   benchmark::DoNotOptimize(count);
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(reader.count(pattern)));
@@ -179,13 +180,13 @@ void scanCursor(benchmark::State& state) {
 BENCHMARK(scanCursor)->Unit(benchmark::kMillisecond);
 
 void scanInBulk(benchmark::State& state) {
-  const auto environment = Environment::open(compactMap(), OpenMode::ReadOnly);
-  const QuadReader reader(environment->read());
-  const QuadPattern pattern{.s = {}, .p = idOf(reader, "near"), .o = {}, .g = {}};
-  std::vector<QuadIds> buffer(1024);
+  const auto environment = rdf::Environment::open(compactMap(), rdf::OpenMode::ReadOnly);
+  const rdf::QuadReader reader(environment->read());
+  const rdf::QuadPattern pattern{.s = {}, .p = idOf(reader, "near"), .o = {}, .g = {}};
+  std::vector<rdf::QuadIds> buffer(1024);
   std::size_t sum = 0;
   for (auto _ : state) {
-    QuadCursor cursor = reader.scan(pattern);
+    rdf::QuadCursor cursor = reader.scan(pattern);
     while (const std::size_t count = cursor.next(buffer))
       for (std::size_t i = 0; i < count; ++i) sum += buffer[i].o;
   }
@@ -195,47 +196,47 @@ void scanInBulk(benchmark::State& state) {
 BENCHMARK(scanInBulk)->Unit(benchmark::kMillisecond);
 
 void countExactly(benchmark::State& state) {
-  const auto environment = Environment::open(compactMap(), OpenMode::ReadOnly);
-  const QuadReader reader(environment->read());
-  const QuadPattern pattern{.s = {}, .p = idOf(reader, "near"), .o = {}, .g = {}};
+  const auto environment = rdf::Environment::open(compactMap(), rdf::OpenMode::ReadOnly);
+  const rdf::QuadReader reader(environment->read());
+  const rdf::QuadPattern pattern{.s = {}, .p = idOf(reader, "near"), .o = {}, .g = {}};
   for (auto _ : state) benchmark::DoNotOptimize(reader.count(pattern));
 }
 BENCHMARK(countExactly);
 
 void estimate(benchmark::State& state) {
-  const auto environment = Environment::open(compactMap(), OpenMode::ReadOnly);
-  const QuadReader reader(environment->read());
-  const QuadPattern pattern{.s = {}, .p = idOf(reader, "near"), .o = {}, .g = {}};
+  const auto environment = rdf::Environment::open(compactMap(), rdf::OpenMode::ReadOnly);
+  const rdf::QuadReader reader(environment->read());
+  const rdf::QuadPattern pattern{.s = {}, .p = idOf(reader, "near"), .o = {}, .g = {}};
   for (auto _ : state) benchmark::DoNotOptimize(reader.estimate(pattern));
 }
 BENCHMARK(estimate);
 
 void valuesWarm(benchmark::State& state) {
-  const auto environment = Environment::open(compactMap(), OpenMode::ReadOnly);
-  const QuadReader reader(environment->read());
-  const auto terms = static_cast<TermId>(reader.termCount());
-  for (TermId id = 1; id <= terms; ++id) benchmark::DoNotOptimize(reader.valueOf(id));
+  const auto environment = rdf::Environment::open(compactMap(), rdf::OpenMode::ReadOnly);
+  const rdf::QuadReader reader(environment->read());
+  const auto terms = static_cast<rdf::TermId>(reader.termCount());
+  for (rdf::TermId id = 1; id <= terms; ++id) benchmark::DoNotOptimize(reader.valueOf(id));
   std::mt19937 random(3);
-  std::vector<TermId> ids(100'000);
-  for (TermId& id : ids) id = 1 + static_cast<TermId>(random() % terms);
+  std::vector<rdf::TermId> ids(100'000);
+  for (rdf::TermId& id : ids) id = 1 + static_cast<rdf::TermId>(random() % terms);
   double sum = 0;
   for (auto _ : state)
-    for (const TermId id : ids) sum += reader.valueOf(id).number;
+    for (const rdf::TermId id : ids) sum += reader.valueOf(id).number;
   benchmark::DoNotOptimize(sum);
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(ids.size()));
 }
 BENCHMARK(valuesWarm)->Unit(benchmark::kMicrosecond);
 
 void termTexts(benchmark::State& state) {
-  const auto environment = Environment::open(compactMap(), OpenMode::ReadOnly);
-  const QuadReader reader(environment->read());
-  const auto terms = static_cast<TermId>(reader.termCount());
+  const auto environment = rdf::Environment::open(compactMap(), rdf::OpenMode::ReadOnly);
+  const rdf::QuadReader reader(environment->read());
+  const auto terms = static_cast<rdf::TermId>(reader.termCount());
   std::mt19937 random(3);
-  std::vector<TermId> ids(100'000);
-  for (TermId& id : ids) id = 1 + static_cast<TermId>(random() % terms);
+  std::vector<rdf::TermId> ids(100'000);
+  for (rdf::TermId& id : ids) id = 1 + static_cast<rdf::TermId>(random() % terms);
   std::size_t sum = 0;
   for (auto _ : state)
-    for (const TermId id : ids) sum += reader.viewOf(id).text.size();
+    for (const rdf::TermId id : ids) sum += reader.viewOf(id).text.size();
   benchmark::DoNotOptimize(sum);
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(ids.size()));
 }
@@ -245,12 +246,12 @@ BENCHMARK(termTexts)->Unit(benchmark::kMicrosecond);
 void commitOne(benchmark::State& state) {
   const fs::path file = scratch() / "commit.clx";
   load(file);
-  const auto environment = Environment::open(file, OpenMode::ReadWrite);
-  TermId n = 1;
+  const auto environment = rdf::Environment::open(file, rdf::OpenMode::ReadWrite);
+  rdf::TermId n = 1;
   for (auto _ : state) {
-    WriteTransaction transaction = environment->write();
-    QuadWriter writer(transaction);
-    writer.add(QuadIds{n, 1, ++n, 0});
+    rdf::WriteTransaction transaction = environment->write();
+    rdf::QuadWriter writer(transaction);
+    writer.add(rdf::QuadIds{n, 1, ++n, 0});
     writer.flush();
     transaction.commit();
   }
@@ -261,14 +262,14 @@ BENCHMARK(commitOne)->Unit(benchmark::kMillisecond)->Iterations(20);
 void addTenThousand(benchmark::State& state) {
   const fs::path file = scratch() / "batch.clx";
   load(file);
-  const auto environment = Environment::open(file, OpenMode::ReadWrite);
+  const auto environment = rdf::Environment::open(file, rdf::OpenMode::ReadWrite);
   std::mt19937 random(9);
   for (auto _ : state) {
-    WriteTransaction transaction = environment->write();
-    QuadWriter writer(transaction);
+    rdf::WriteTransaction transaction = environment->write();
+    rdf::QuadWriter writer(transaction);
     for (int i = 0; i < 10'000; ++i)
-      writer.add(
-          QuadIds{1 + static_cast<TermId>(random() % 200'000), 2, 1 + static_cast<TermId>(random() % 200'000), 0});
+      writer.add(rdf::QuadIds{1 + static_cast<rdf::TermId>(random() % 200'000), 2,
+                              1 + static_cast<rdf::TermId>(random() % 200'000), 0});
     writer.flush();
     transaction.commit();
   }

@@ -9,10 +9,13 @@ find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(ICU REQUIRED COMPONENTS uc i18n)
 find_package(Boost REQUIRED)
-find_package(embree 3 REQUIRED)
+if(CLUXEL_SIMULATION)
+  find_package(embree 3 REQUIRED)
+endif()
 pkg_check_modules(YAMLCPP REQUIRED IMPORTED_TARGET yaml-cpp)
 pkg_check_modules(REDLAND REQUIRED IMPORTED_TARGET redland)
 pkg_check_modules(RAPTOR REQUIRED IMPORTED_TARGET raptor2)
+pkg_check_modules(PROJ REQUIRED IMPORTED_TARGET proj)
 pkg_check_modules(PCRE2 REQUIRED IMPORTED_TARGET libpcre2-8)
 pkg_check_modules(LBFGS IMPORTED_TARGET liblbfgs)
 pkg_check_modules(LMDB IMPORTED_TARGET lmdb)
@@ -28,9 +31,9 @@ foreach(pair "LBFGS;lbfgs" "LMDB;lmdb")
   endif()
 endforeach()
 
-# PCL for reading, writing and registering clouds: its headers are not passed on to other wings.
+# PCL for reading, writing and registering clouds: only the module scan sees its headers.
 find_package(PCL REQUIRED COMPONENTS common io kdtree search registration)
-add_library(cluxel_pcl_io INTERFACE)
-target_include_directories(cluxel_pcl_io SYSTEM INTERFACE ${PCL_INCLUDE_DIRS})
-target_link_libraries(cluxel_pcl_io INTERFACE ${PCL_COMMON_LIBRARIES} ${PCL_IO_LIBRARIES} ${PCL_KDTREE_LIBRARIES}
+add_library(cluxel_pcl INTERFACE)
+target_include_directories(cluxel_pcl SYSTEM INTERFACE ${PCL_INCLUDE_DIRS})
+target_link_libraries(cluxel_pcl INTERFACE ${PCL_COMMON_LIBRARIES} ${PCL_IO_LIBRARIES} ${PCL_KDTREE_LIBRARIES}
   ${PCL_SEARCH_LIBRARIES} ${PCL_REGISTRATION_LIBRARIES})

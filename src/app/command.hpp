@@ -1,24 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the subcommands share: the options of the whole program, the console, and how a command hands back its exit
-// code.
+// What the subcommands share: the program's options, the console, validators, and how a command returns its exit code.
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "cluxel/base/data_home.hpp"
-#include "cluxel/base/exit_code.hpp"
-#include "cluxel/base/progress.hpp"
+#include "app/exit_code.hpp"
+#include "app/progress_line.hpp"
+#include "base/data_home.hpp"
+#include "cluxel/progress.hpp"
 
 namespace cluxel::app {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Progress on a terminal, notes always, both on stderr.
+/// Progress and notes on stderr. Progress is one line that changes on a terminal; elsewhere a line now and then, and
+/// none for short work.
 class Console : public ProgressSink {
  public:
   Console();
@@ -28,6 +30,9 @@ class Console : public ProgressSink {
 
  private:
   void clearLine();
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  ProgressMeter meter_;
+  double last_s_ = 0;  ///< when a line was last written
   bool is_terminal_, line_is_open_ = false;
 };
 
@@ -43,16 +48,16 @@ struct Session {
   unsigned threadCount() const;
 };
 
-/// Adds a subcommand whose `run` is called when it was chosen; what it returns becomes the exit code.
+/// Gives a subcommand its `run`, whose result becomes the exit code.
 void onRun(CLI::App& command, Session& session, std::function<ExitCode()> run);
 
 /// For options that take a number above 0.
 CLI::Validator above0();
 /// For options that take a share: a number from 0 to 1.
 CLI::Validator share();
-/// For options that take a whole number of at most 64 bits, as it stands: neither cut off nor wrapped round.
+/// For options that take an unsigned 64-bit number. CLI11 alone would truncate or wrap others.
 CLI::Validator whole();
-/// For names of what is written: the empty one is that of a variable that nobody has set.
+/// For names of output: an empty name usually comes from an unset shell variable.
 CLI::Validator named();
 
 /// Data to stdout, with a line end. A closed pipe is not an error.
@@ -72,5 +77,6 @@ void addExplain(CLI::App& app, Session& session);
 void addExport(CLI::App& app, Session& session);
 void addEvaluate(CLI::App& app, Session& session);
 void addUpkeep(CLI::App& app, Session& session);  ///< doctor, compact
+void addDocumentation(CLI::App& app);             ///< hidden: the man page and shell completion
 
 }  // namespace cluxel::app

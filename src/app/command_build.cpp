@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel build`: scans in, one map file out.
 #include "app/command.hpp"
-#include "cluxel/mapping/map_builder.hpp"
+#include "app/scan_options.hpp"
+#include "mapping/build/map_builder.hpp"
 
 namespace cluxel::app {
 
@@ -9,17 +10,18 @@ namespace {
 
 struct BuildOptions {
   std::vector<fs::path> inputs;
-  fs::path poses, output;
-  MapInputFiles files;
-  BuildParams params;
+  fs::path output;
+  ScanOptions scans;
+  mapping::MapInputFiles files;
+  mapping::BuildParams params;
 };
 
 ExitCode build(const BuildOptions& options, Session& session) {
-  const ScanSet scans = ScanSet::open(options.inputs, {options.poses}, session.console);
-  const MapInputs inputs = readMapInputs(options.files, session.dataHome());
-  BuildParams params = options.params;
+  const scan::ScanSet scans = scan::ScanSet::open(options.inputs, options.scans.params(), session.console);
+  const mapping::MapInputs inputs = readMapInputs(options.files, session.dataHome());
+  mapping::BuildParams params = options.params;
   params.threads = session.threadCount();
-  const BuildReport report = buildMap(scans, inputs, options.output, params, session.console);
+  const mapping::BuildReport report = buildMap(scans, inputs, options.output, params, session.console);
   if (session.json) {
     printJson(Json{{"map", options.output.string()},
                    {"scans", report.scans},
@@ -45,8 +47,8 @@ void addBuild(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("build", "make a map from scans");
   command->add_option("scans", options->inputs, "files, folders and manifests of scans")->required();
   command->add_option("-o,--output", options->output, "the map file to make")->required()->check(named());
-  command->add_option("--poses", options->poses, "poses of the scans: KITTI 3x4, TUM, or 4x4 text");
-  command->add_flag("--register", options->params.mend_poses, "mend the poses first, as the command register does");
+  addScanOptions(*command, options->scans);
+  command->add_flag("--register", options->params.refine_poses, "refine the poses first, as the command register does");
   command->add_option("--model", options->files.model, "a trained model: a name in models/, a folder or a file");
   command->add_option("--rules", options->files.rules, "rule files instead of rules/outdoor.rules.yaml");
   command->add_option("--sparql-rules", options->files.sparql_rules, "CONSTRUCT rules instead of rules/*.rq");
@@ -55,7 +57,7 @@ void addBuild(CLI::App& app, Session& session) {
       ->add_option("--batch-points", options->params.batch_points, "commit when a batch of scans has this many points")
       ->check(above0());
   CLI::Option* force =
-      command->add_flag("--force", options->params.force, "replace a finished map; the operator's statements stay");
+      command->add_flag("--force", options->params.force, "replace a finished map; the operator's statements are kept");
   command
       ->add_flag("--drop-statements", options->params.drop_statements,
                  "with --force: drop the operator's statements too")

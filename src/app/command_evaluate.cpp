@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// `cluxel evaluate`: how right a map is, with bars below which the exit code says so.
+// `cluxel evaluate`: the accuracy of a map; minimum values set the exit code.
 #include <charconv>
 
 #include "app/command.hpp"
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/tasks/evaluation.hpp"
+#include "cluxel/error.hpp"
+#include "tasks/evaluation.hpp"
 
 namespace cluxel::app {
 
@@ -17,11 +17,11 @@ struct EvaluateOptions {
 };
 
 /// "Tree=0.7": recall by point of an object class or a primitive.
-double recallOf(const MapEvaluation& evaluation, const std::string& name) {
-  for (const ConfusionMatrix* matrix : {&evaluation.objects, &evaluation.primitives})
+double recallOf(const tasks::MapEvaluation& evaluation, const std::string& name) {
+  for (const tasks::ConfusionMatrix* matrix : {&evaluation.objects, &evaluation.primitives})
     for (std::size_t i = 0; i < matrix->names.size(); ++i)
       if (matrix->names[i] == name) return matrix->recall(i);
-  throw Error(ExitCode::Usage, "--min-recall: no class '" + name + "' in the truth's classes");
+  throw Error(ErrorKind::InvalidArgument, "--min-recall: the truth has no class '" + name + "'");
 }
 
 bool isAbove(const char* what, double value, double bar) {
@@ -38,11 +38,12 @@ std::pair<std::string, double> barOf(const std::string& text) {
   const auto [end, fault] = std::from_chars(first, text.data() + text.size(), share);
   const bool is_share = share >= 0 && share <= 1;
   if (fault != std::errc() || end != text.data() + text.size() || cut == 0 || !is_share)
-    throw Error(ExitCode::Usage, "--min-recall: write CLASS=SHARE, for example Tree=0.7, not '" + text + "'");
+    throw Error(ErrorKind::InvalidArgument,
+                "--min-recall: write CLASS=SHARE, for example Tree=0.7, not '" + text + "'");
   return {text.substr(0, cut), share};
 }
 
-bool meetsBars(const MapEvaluation& evaluation, const EvaluateOptions& options) {
+bool meetsBars(const tasks::MapEvaluation& evaluation, const EvaluateOptions& options) {
   bool meets = isAbove("overall accuracy of objects by point", evaluation.objects.overallAccuracy(), options.min_oa);
   meets &= isAbove("macro F1 of objects by point", evaluation.objects.macroF1(), options.min_macro_f1);
   for (const std::string& bar : options.min_recall) {
@@ -56,7 +57,7 @@ bool meetsBars(const MapEvaluation& evaluation, const EvaluateOptions& options) 
 
 void addEvaluate(CLI::App& app, Session& session) {
   auto options = std::make_shared<EvaluateOptions>();
-  CLI::App* command = app.add_subcommand("evaluate", "compare a map with the truth of its scans");
+  CLI::App* command = app.add_subcommand("evaluate", "compare a map with ground truth");
   command->add_option("map", options->map, "a map")->required();
   command
       ->add_option("--truth", options->truth, "a folder of truth files, or a label map: oakland, semantickitti, campus")
@@ -68,9 +69,10 @@ void addEvaluate(CLI::App& app, Session& session) {
   command->add_option("--min-recall", options->min_recall, "CLASS=SHARE: exit 1 when the recall by point is below");
   onRun(*command, session, [options, &session] {
     for (const std::string& bar : options->min_recall) barOf(bar);
-    const MapReader map(options->map);
-    const MapEvaluation evaluation = evaluateMap(map, TruthSource::open(options->truth, session.dataHome()));
-    const bool meets = meetsBars(evaluation, *options);  // first: a bar on an unknown class is an error of usage
+    const mapping::MapReader map(options->map);
+    const tasks::MapEvaluation evaluation =
+        evaluateMap(map, tasks::TruthSource::open(options->truth, session.dataHome()));
+    const bool meets = meetsBars(evaluation, *options);  // before printing: an unknown class is a usage error
     print(session.json ? toJson(evaluation) : toText(evaluation));
     return meets ? ExitCode::Done : ExitCode::NegativeFinding;
   });

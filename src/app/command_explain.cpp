@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// `cluxel explain`: the way to a decision, why not another, and the least change that would turn it.
+// `cluxel explain`: the tests that led to a decision, why it was no other, and the smallest change that would reverse
+// it.
 #include "app/command.hpp"
-#include "cluxel/tasks/explanation.hpp"
+#include "tasks/explanation.hpp"
 
 namespace cluxel::app {
 
@@ -16,12 +17,14 @@ struct ExplainOptions {
 
 void addExplain(CLI::App& app, Session& session) {
   auto options = std::make_shared<ExplainOptions>();
-  CLI::App* command = app.add_subcommand("explain", "why an object or a primitive became what it is");
+  CLI::App* command = app.add_subcommand("explain", "show why an object or primitive has its class");
   command->add_option("map", options->map, "a map")->required();
-  command->add_option("thing", options->name, "an object or primitive: its IRI, or the first digits of its hash")
+  command
+      ->add_option("thing", options->name,
+                   "an object or primitive: its IRI, the first digits of its hash, or an object's number (17, #17)")
       ->required();
   onRun(*command, session, [options, &session] {
-    print(explainThing(MapReader(options->map), options->name, session.json));
+    print(tasks::explainThing(mapping::MapReader(options->map), options->name, session.json));
     return ExitCode::Done;
   });
 }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// `cluxel info`: what was understood of scans or of a map.
+// `cluxel info`: the contents of scans or of a map.
 #include <algorithm>
 
 #include "app/command.hpp"
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/knowledge/map_check.hpp"
-#include "cluxel/mapping/map_reader.hpp"
-#include "cluxel/scan/scan_summary.hpp"
+#include "app/scan_options.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/map_reader.hpp"
+#include "rdf/store/map_check.hpp"
+#include "scan/scan_summary.hpp"
 
 namespace cluxel::app {
 
@@ -14,7 +15,7 @@ namespace {
 
 struct InfoOptions {
   std::vector<fs::path> inputs;
-  fs::path poses;
+  ScanOptions scans;
 };
 
 Json boxJson(const Eigen::AlignedBox3d& box) {
@@ -29,7 +30,7 @@ Json labelsJson(const std::map<std::uint32_t, std::size_t>& labels) {
   return json;
 }
 
-Json scanJson(const ScanSummary& scan) {
+Json scanJson(const scan::ScanSummary& scan) {
   Json json{{"source", scan.source},
             {"format", nameOf(scan.format)},
             {"id", scan.id.hex()},
@@ -50,14 +51,15 @@ std::string sizeText(const Eigen::AlignedBox3d& box) {
   return text;
 }
 
-void printScans(const ScanSetSummary& summary) {
-  for (const ScanSummary& scan : summary.scans) {
+void printScans(const scan::ScanSetSummary& summary) {
+  for (const scan::ScanSummary& scan : summary.scans) {
     std::printf("%s  %s  %zu points  %s  %s%s%s\n", scan.source.c_str(), nameOf(scan.format), scan.point_count,
                 sizeText(scan.extent_map_m).c_str(), scan.has_pose ? "posed" : "no pose: in the map frame",
                 scan.has_intensity ? "  intensity" : "", scan.points_by_label.empty() ? "" : "  labels");
   }
   std::printf("%zu scans, %zu points, extent %s\n", summary.scans.size(), summary.point_count,
               sizeText(summary.extent_map_m).c_str());
+  if (!summary.crs.empty()) std::printf("coordinate system: %s\n", summary.crs.c_str());
   if (summary.points_by_label.empty()) return;
   std::printf("labels:");
   for (const auto& [label, count] : summary.points_by_label) std::printf(" %u:%zu", label, count);
@@ -65,8 +67,9 @@ void printScans(const ScanSetSummary& summary) {
 }
 
 ExitCode infoOfScans(const InfoOptions& options, Session& session) {
-  const ScanSet scans = ScanSet::open(options.inputs, {options.poses}, session.console);
-  const ScanSetSummary summary = summarize(scans, session.threadCount());
+  const scan::ScanSet scans = scan::ScanSet::open(options.inputs, options.scans.params(), session.console);
+  const scan::ScanSetSummary summary = summarize(scans, session.threadCount());
+  for (const std::string& note : summary.notes) session.console.note(note);
   if (!session.json) {
     printScans(summary);
     return ExitCode::Done;
@@ -75,19 +78,20 @@ ExitCode infoOfScans(const InfoOptions& options, Session& session) {
             {"points", summary.point_count},
             {"extent_map_m", boxJson(summary.extent_map_m)},
             {"labels", labelsJson(summary.points_by_label)}};
-  for (const ScanSummary& scan : summary.scans) json["scans"].push_back(scanJson(scan));
+  if (!summary.crs.empty()) json["crs"] = summary.crs;
+  for (const scan::ScanSummary& scan : summary.scans) json["scans"].push_back(scanJson(scan));
   printJson(json);
   return ExitCode::Done;
 }
 
-/// By its content, whatever its name; by its name even when it is damaged or not there.
+/// By its content; by the ending of its name too, so that a damaged or absent map is reported as such.
 bool isMap(const fs::path& input) {
-  return input.extension() == ".clx" || looksLikeMap(input);
+  return input.extension() == ".clx" || rdf::looksLikeMap(input);
 }
 
 ExitCode infoOfMap(const fs::path& file, const Session& session) {
-  const MapReader map(file);
-  const MapSummary summary = map.summary();
+  const mapping::MapReader map(file);
+  const mapping::MapSummary summary = map.summary();
   if (!session.json) {
     std::printf("%s: %s map, %zu clouds, %llu points, %zu objects, %llu quads\n", file.c_str(),
                 summary.is_finished ? "finished" : "unfinished", summary.clouds,
@@ -108,14 +112,15 @@ ExitCode infoOfMap(const fs::path& file, const Session& session) {
 
 void addInfo(CLI::App& app, Session& session) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App* command = app.add_subcommand("info", "what was understood of scans, or what is in a map");
+  CLI::App* command = app.add_subcommand("info", "show what scans or a map contain");
   command->add_option("input", options->inputs, "a map, or files, folders and manifests of scans")->required();
-  command->add_option("--poses", options->poses, "poses of the scans: KITTI 3x4, TUM, or 4x4 text");
+  addScanOptions(*command, options->scans);
   onRun(*command, session, [options, &session] {
     const auto map = std::find_if(options->inputs.begin(), options->inputs.end(), isMap);
     if (map == options->inputs.end()) return infoOfScans(*options, session);
     if (options->inputs.size() == 1) return infoOfMap(*map, session);
-    throw Error(ExitCode::Usage, map->string() + ": is a map; ask for it alone, scans and maps are told apart");
+    throw Error(ErrorKind::InvalidArgument,
+                map->string() + ": is a map; give it alone, because a map and scans are not summarised together");
   });
 }
 

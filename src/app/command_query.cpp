@@ -5,9 +5,9 @@
 
 #include "app/command.hpp"
 #include "app/named_sources.hpp"
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/sparql/result_writer.hpp"
-#include "cluxel/tasks/query_source.hpp"
+#include "cluxel/error.hpp"
+#include "sparql/results/result_writer.hpp"
+#include "tasks/query_source.hpp"
 
 namespace cluxel::app {
 
@@ -23,13 +23,13 @@ struct QueryArguments {
 };
 
 /// Counts the rows that go to the writer.
-class CountingSink : public ResultSink {
+class CountingSink : public sparql::ResultSink {
  public:
-  explicit CountingSink(ResultSink& next) : next_(next) {}
-  void beginSolutions(std::span<const std::string> variables, const TermLookup& terms) override {
+  explicit CountingSink(sparql::ResultSink& next) : next_(next) {}
+  void beginSolutions(std::span<const std::string> variables, const sparql::TermLookup& terms) override {
     next_.beginSolutions(variables, terms);
   }
-  void rows(std::span<const ResultId> cells, std::size_t count) override {
+  void rows(std::span<const sparql::ResultId> cells, std::size_t count) override {
     rows_ += count;
     next_.rows(cells, count);
   }
@@ -39,7 +39,7 @@ class CountingSink : public ResultSink {
     next_.boolean(value);
   }
   void beginGraph() override { next_.beginGraph(); }
-  void triple(const TermView& s, const TermView& p, const TermView& o) override {
+  void triple(const rdf::TermView& s, const rdf::TermView& p, const rdf::TermView& o) override {
     ++rows_;
     next_.triple(s, p, o);
   }
@@ -50,53 +50,55 @@ class CountingSink : public ResultSink {
   }
 
  private:
-  ResultSink& next_;
+  sparql::ResultSink& next_;
   std::uint64_t rows_ = 0;
   bool is_false_ = false;
 };
 
-/// Beyond these there is no limit in practice, and numbers overflow.
-constexpr double kLongest_s = 1e9;
-constexpr std::uint64_t kMost_mib = std::uint64_t{1} << 40U;
+/// Larger limits are no limits in practice, and would overflow.
+constexpr double kMaxDeadline_s = 1e9;
+constexpr std::uint64_t kMaxMemory_mib = std::uint64_t{1} << 40U;
 
-QueryOptions optionsOf(const QueryArguments& arguments, const QuerySource& source, const std::string& name) {
-  QueryOptions options;
-  options.default_graph = arguments.strict ? DefaultGraph::Unnamed : source.default_graph;
+sparql::QueryOptions optionsOf(const QueryArguments& arguments, const tasks::QuerySource& source,
+                               const std::string& name) {
+  sparql::QueryOptions options;
+  options.default_graph = arguments.strict ? sparql::DefaultGraph::Unnamed : source.default_graph;
   options.source_name = name;
   if (arguments.deadline_s > 0)
     options.budget.deadline =
-        std::chrono::milliseconds(std::llround(std::min(arguments.deadline_s, kLongest_s) * 1000));
+        std::chrono::milliseconds(std::llround(std::min(arguments.deadline_s, kMaxDeadline_s) * 1000));
   options.budget.max_rows = arguments.max_rows;
   if (arguments.max_memory_mib > 0)
-    options.budget.max_memory_bytes = std::min(arguments.max_memory_mib, kMost_mib) << 20U;
+    options.budget.max_memory_bytes = std::min(arguments.max_memory_mib, kMaxMemory_mib) << 20U;
   return options;
 }
 
-ResultFormat formatOf(const QueryArguments& arguments, const Session& session, ast::QueryForm form) {
-  const bool is_graph = form == ast::QueryForm::Construct || form == ast::QueryForm::Describe;
+sparql::ResultFormat formatOf(const QueryArguments& arguments, const Session& session, sparql::ast::QueryForm form) {
+  const bool is_graph = form == sparql::ast::QueryForm::Construct || form == sparql::ast::QueryForm::Describe;
   if (arguments.format.empty()) {
-    if (is_graph) return ResultFormat::Turtle;
-    return session.json ? ResultFormat::Json : ResultFormat::Table;
+    if (is_graph) return sparql::ResultFormat::Turtle;
+    return session.json ? sparql::ResultFormat::Json : sparql::ResultFormat::Table;
   }
-  const auto format = resultFormatOf(arguments.format);
+  const auto format = sparql::resultFormatOf(arguments.format);
   if (!format)
-    throw Error(ExitCode::Usage, "--format " + arguments.format +
-                                     ": known are table, json, xml, csv, tsv, and for graphs turtle, ntriples");
+    throw Error(
+        ErrorKind::InvalidArgument,
+        "--format " + arguments.format + ": known are table, json, xml, csv, tsv, and for graphs turtle, ntriples");
   return *format;
 }
 
 ExitCode query(const QueryArguments& arguments, const Session& session) {
-  const Question question = questionFrom(arguments.file, arguments.text, session);
-  const QuerySource source = openQuerySource(arguments.source);
-  const QuadReader reader = source.reader();
-  QueryOptions options = optionsOf(arguments, source, question.file.string());
+  const tasks::Question question = questionFrom(arguments.file, arguments.text, session);
+  const tasks::QuerySource source = tasks::openQuerySource(arguments.source);
+  const rdf::QuadReader reader = source.reader();
+  sparql::QueryOptions options = optionsOf(arguments, source, question.file.string());
   const NamedSources services("--service", arguments.services);
   options.services = services.readers();
-  const std::vector<Binding> bindings = bindingsFor(question, arguments.params);
+  const std::vector<sparql::Binding> bindings = bindingsFor(question, arguments.params);
   std::vector<std::string> names;
   names.reserve(bindings.size());
-  for (const Binding& binding : bindings) names.push_back(binding.first);
-  PreparedQuery prepared(reader, question.text, options, names);
+  for (const sparql::Binding& binding : bindings) names.push_back(binding.first);
+  sparql::PreparedQuery prepared(reader, question.text, options, names);
   for (const Diagnostic& warning : checkQuery(reader, question.text, options))
     std::fprintf(stderr, "%s\n", format(warning).c_str());
   const auto writer = makeResultWriter(formatOf(arguments, session, prepared.form()), [](std::string_view piece) {
@@ -111,30 +113,30 @@ ExitCode query(const QueryArguments& arguments, const Session& session) {
   return counter.exitCode();
 }
 
-Json questionJson(const Question& question) {
+Json questionJson(const tasks::Question& question) {
   Json json{{"file", question.file.filename().string()},
             {"title", question.title},
             {"parameters", Json::array()},
             {"columns", Json::array()}};
-  for (const QueryParameter& p : question.parameters)
+  for (const tasks::QueryParameter& p : question.parameters)
     json["parameters"].push_back({{"name", p.name}, {"unit", p.unit}, {"default", p.default_value}, {"help", p.help}});
-  for (const QueryColumn& c : question.columns)
+  for (const tasks::QueryColumn& c : question.columns)
     json["columns"].push_back({{"name", c.name}, {"unit", c.unit}, {"help", c.help}});
   return json;
 }
 
 ExitCode listTasks(const Session& session) {
   Json all = Json::array();
-  for (const Question& question : shippedQuestions(session.dataHome())) {
+  for (const tasks::Question& question : tasks::shippedQuestions(session.dataHome())) {
     if (session.json) {
       all.push_back(questionJson(question));
       continue;
     }
     std::printf("%s\n  %s\n", question.file.filename().c_str(), question.title.c_str());
-    for (const QueryParameter& p : question.parameters)
+    for (const tasks::QueryParameter& p : question.parameters)
       std::printf("  --param %s=%s  [%s] %s\n", p.name.c_str(), p.default_value.c_str(), p.unit.c_str(),
                   p.help.c_str());
-    for (const QueryColumn& c : question.columns)
+    for (const tasks::QueryColumn& c : question.columns)
       std::printf("    ?%s [%s] %s\n", c.name.c_str(), c.unit.c_str(), c.help.c_str());
   }
   if (session.json) printJson(all);
@@ -145,7 +147,7 @@ ExitCode listTasks(const Session& session) {
 
 void addQuery(CLI::App& app, Session& session) {
   auto options = std::make_shared<QueryArguments>();
-  CLI::App* command = app.add_subcommand("query", "ask a map, or an RDF file, in SPARQL");
+  CLI::App* command = app.add_subcommand("query", "query a map or an RDF file in SPARQL");
   command->add_option("source", options->source, "a map, or an RDF file (.ttl .nt .nq .trig .rdf)")->required();
   command->add_option("query", options->file, "a query file, by path or by name in queries/");
   command->add_option("-e,--text", options->text, "the query itself");
@@ -160,7 +162,8 @@ void addQuery(CLI::App& app, Session& session) {
   command->add_option("--max-memory", options->max_memory_mib, "MiB above which the query fails with exit code 6")
       ->check(above0());
   command->add_flag("--explain", options->explain, "print the plan with estimated and actual rows on stderr");
-  command->add_flag("--why-empty", options->why_empty, "when there is no row, name the pattern that left none");
+  command->add_flag("--why-empty", options->why_empty,
+                    "when there is no row, name the pattern that removed the last one");
   command->add_flag("--strict", options->strict, "the default graph is the unnamed graph, not the union");
   onRun(*command, session, [options, &session] { return query(*options, session); });
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// `cluxel register`: mends the poses of scans, or measures them.
+// `cluxel register`: refines the poses of scans, or measures how well they fit.
 #include <numbers>
 
 #include "app/command.hpp"
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/base/file_bytes.hpp"
-#include "cluxel/scan/manifest_writer.hpp"
-#include "cluxel/scan/pose_registration.hpp"
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "scan/formats/manifest_writer.hpp"
+#include "scan/registration/pose_registration.hpp"
 
 namespace cluxel::app {
 
@@ -15,8 +15,8 @@ namespace {
 struct RegisterOptions {
   std::vector<fs::path> inputs;
   fs::path poses, output;
-  RegistrationParams params;
-  double max_residual_m = kFittingResidual_m;
+  scan::RegistrationParams params;
+  double max_residual_m = scan::kFittingResidual_m;
   bool check = false, force = false;
 };
 
@@ -24,18 +24,20 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 
 void refuseWrongOutput(const RegisterOptions& options) {
   if (options.check == !options.output.empty())
-    throw Error(ExitCode::Usage, options.check ? "register --check writes nothing: leave out -o"
-                                               : "register needs -o FILE.yaml for the mended poses, or --check");
+    throw Error(ErrorKind::InvalidArgument, options.check
+                                                ? "register --check writes nothing: leave out -o"
+                                                : "register needs -o FILE.yaml for the refined poses, or --check");
   if (options.check) return;
   const std::string ending = options.output.extension().string();
   if (ending != ".yaml" && ending != ".yml")
-    throw Error(ExitCode::Usage, options.output.string() + ": what register writes is a manifest: name it *.yaml");
+    throw Error(ErrorKind::InvalidArgument,
+                options.output.string() + ": what register writes is a manifest: name it *.yaml");
   if (fs::exists(options.output) && !options.force)
-    throw Error(ExitCode::StoreUnavailable,
+    throw Error(ErrorKind::StoreUnavailable,
                 options.output.string() + " exists already: name another file, or give --force to replace it");
 }
 
-Json pairJson(const RegisteredPair& pair, const PoseRegistration& report, const ScanSet& set) {
+Json pairJson(const scan::RegisteredPair& pair, const scan::PoseRegistration& report, const scan::ScanSet& set) {
   const auto source = [&](std::size_t i) { return set.file(report.scans[i].index).path.string(); };
   return {{"first", source(pair.first)},
           {"second", source(pair.second)},
@@ -45,22 +47,22 @@ Json pairJson(const RegisteredPair& pair, const PoseRegistration& report, const 
           {"residual_after_m", pair.residual_after_m}};
 }
 
-Json reportJson(const PoseRegistration& report, const ScanSet& set) {
+Json reportJson(const scan::PoseRegistration& report, const scan::ScanSet& set) {
   Json json{{"residual_before_m", report.residual_before_m}, {"residual_after_m", report.residual_after_m}};
   json["scans"] = Json::array();
-  for (const MendedScan& scan : report.scans)
+  for (const scan::RefinedScan& scan : report.scans)
     json["scans"].push_back(Json{{"source", set.file(scan.index).path.string()},
                                  {"shift_m", scan.shift_m},
                                  {"turn_deg", scan.turn_rad * kDegrees},
                                  {"pairs", scan.pairs},
                                  {"group", scan.group}});
   json["pairs"] = Json::array();
-  for (const RegisteredPair& pair : report.pairs) json["pairs"].push_back(pairJson(pair, report, set));
+  for (const scan::RegisteredPair& pair : report.pairs) json["pairs"].push_back(pairJson(pair, report, set));
   return json;
 }
 
-/// Of two scans or more.
-std::size_t groupsIn(const PoseRegistration& report) {
+/// Groups of two scans or more.
+std::size_t groupsIn(const scan::PoseRegistration& report) {
   std::size_t groups = 0;
   for (std::size_t i = 0; i < report.scans.size(); ++i)
     if (report.scans[i].pairs > 0 && report.scans[i].group == i) ++groups;
@@ -68,36 +70,35 @@ std::size_t groupsIn(const PoseRegistration& report) {
 }
 
 /// Pairs left out, by name; then each scan with its correction.
-void printReport(const PoseRegistration& report, const ScanSet& set, bool check) {
+void printReport(const scan::PoseRegistration& report, const scan::ScanSet& set, bool check) {
   const auto source = [&](std::size_t i) { return set.file(report.scans[i].index).path.string(); };
   std::size_t used = 0;
-  for (const RegisteredPair& pair : report.pairs) {
-    if (pair.outcome == PairOutcome::Used) ++used;
-    if (pair.outcome != PairOutcome::Used || check)
+  for (const scan::RegisteredPair& pair : report.pairs) {
+    if (pair.outcome == scan::PairOutcome::Used) ++used;
+    if (pair.outcome != scan::PairOutcome::Used || check)
       std::printf("%s%s - %s: %s (overlap %.2f, residual %.3f m)\n",
                   check ? "" : "left out: ", source(pair.first).c_str(), source(pair.second).c_str(),
-                  check && pair.outcome == PairOutcome::Used ? "measured" : nameOf(pair.outcome), pair.overlap,
+                  check && pair.outcome == scan::PairOutcome::Used ? "measured" : nameOf(pair.outcome), pair.overlap,
                   pair.residual_after_m);
   }
-  for (const MendedScan& scan : report.scans) {
+  for (const scan::RefinedScan& scan : report.scans) {
     if (check) continue;
     std::printf("%s: moved by %.3f m and %.3f degrees, %zu pairs%s\n", set.file(scan.index).path.c_str(), scan.shift_m,
                 scan.turn_rad * kDegrees, scan.pairs, scan.pairs == 0 ? ": keeps its pose" : "");
   }
   if (groupsIn(report) > 1)
-    std::printf("%zu groups of scans that no pair joins: they lie to each other as the given poses say\n",
-                groupsIn(report));
-  if (used == 0) std::printf("no two scans overlap enough to be laid on each other\n");
+    std::printf("%zu groups of scans that no pair joins: their relative poses stay as given\n", groupsIn(report));
+  if (used == 0) std::printf("no two scans overlap enough to be aligned\n");
   std::printf("%zu scans, %zu of %zu pairs used, median residual %.3f m", report.scans.size(), used,
               report.pairs.size(), report.residual_before_m);
   std::printf(check ? "\n" : " before, %.3f m after\n", report.residual_after_m);
 }
 
-ExitCode checkPoses(const RegisterOptions& options, const ScanSet& set, Session& session) {
-  const PoseRegistration report = measurePoses(set, options.params, session.threadCount(), session.console);
+ExitCode checkPoses(const RegisterOptions& options, const scan::ScanSet& set, Session& session) {
+  const scan::PoseRegistration report = measurePoses(set, options.params, session.threadCount(), session.console);
   double worst_m = 0;
-  for (const RegisteredPair& pair : report.pairs)
-    if (pair.outcome == PairOutcome::Used) worst_m = std::max(worst_m, pair.residual_before_m);
+  for (const scan::RegisteredPair& pair : report.pairs)
+    if (pair.outcome == scan::PairOutcome::Used) worst_m = std::max(worst_m, pair.residual_before_m);
   const bool fits = worst_m <= options.max_residual_m;
   if (session.json) {
     Json json = reportJson(report, set);
@@ -114,10 +115,10 @@ ExitCode checkPoses(const RegisterOptions& options, const ScanSet& set, Session&
 
 ExitCode registerScans(const RegisterOptions& options, Session& session) {
   refuseWrongOutput(options);
-  const ScanSet set = ScanSet::open(options.inputs, {options.poses}, session.console);
+  const scan::ScanSet set = scan::ScanSet::open(options.inputs, {options.poses}, session.console);
   if (options.check) return checkPoses(options, set, session);
-  const PoseRegistration report = registerPoses(set, options.params, session.threadCount(), session.console);
-  writeFile(options.output, manifestText(set, report.poses(), options.output, "poses mended by cluxel register"));
+  const scan::PoseRegistration report = registerPoses(set, options.params, session.threadCount(), session.console);
+  writeFile(options.output, manifestText(set, report.poses(), options.output, "poses refined by cluxel register"));
   if (session.json)
     printJson(reportJson(report, set));
   else
@@ -129,17 +130,17 @@ ExitCode registerScans(const RegisterOptions& options, Session& session) {
 
 void addRegister(CLI::App& app, Session& session) {
   auto options = std::make_shared<RegisterOptions>();
-  CLI::App* command = app.add_subcommand("register", "mend the poses of scans by laying the scans on each other");
+  CLI::App* command = app.add_subcommand("register", "refine the poses of scans by registering overlapping scans");
   command->add_option("scans", options->inputs, "files, folders and manifests of scans")->required();
   command->add_option("-o,--output", options->output, "the manifest to write, *.yaml, which build takes")
       ->check(named());
   command->add_option("--poses", options->poses, "poses of the scans: KITTI 3x4, TUM, or 4x4 text");
-  command->add_flag("--check", options->check, "only measure, and exit with 1 when scans disagree");
-  command->add_option("--max-residual", options->max_residual_m, "with --check: how far surfaces may lie apart [m]")
+  command->add_flag("--check", options->check, "only measure; exit code 1 when scans do not fit");
+  command->add_option("--max-residual", options->max_residual_m, "with --check: how far surfaces may be apart [m]")
       ->check(above0())
       ->capture_default_str();
   command
-      ->add_option("--reach", options->params.reach_m, "how wrong poses of neighbouring scans may be to each other [m]")
+      ->add_option("--reach", options->params.reach_m, "how wrong the relative poses of neighbouring scans may be [m]")
       ->check(above0())
       ->capture_default_str();
   command->add_flag("--force", options->force, "replace the manifest");

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel rules`: checks rule files and runs their tests.
 #include "app/command.hpp"
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/base/file_bytes.hpp"
-#include "cluxel/mapping/ask_check.hpp"
-#include "cluxel/mapping/class_catalogue_of.hpp"
-#include "cluxel/mapping/map_inputs.hpp"
-#include "cluxel/mapping/map_reader.hpp"
-#include "cluxel/perception/scene_pipeline.hpp"
-#include "cluxel/reasoning/rule_loader.hpp"
-#include "cluxel/reasoning/rule_test.hpp"
-#include "cluxel/scan/scan_set.hpp"
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/facts/map_oracle.hpp"
+#include "mapping/map_inputs.hpp"
+#include "mapping/map_reader.hpp"
+#include "perception/pipeline.hpp"
+#include "rules/language/rule_loader.hpp"
+#include "rules/testing/rule_test.hpp"
+#include "scan/scan_set.hpp"
 
 namespace cluxel::app {
 
@@ -20,7 +19,7 @@ struct RulesOptions {
   std::vector<fs::path> files;
   fs::path junit;
   std::string only;
-  MapInputFiles inputs;
+  mapping::MapInputFiles inputs;
 };
 
 Json diagnosticJson(const Diagnostic& diagnostic) {
@@ -41,8 +40,8 @@ std::vector<fs::path> ruleFiles(const RulesOptions& options, const DataHome& hom
 
 ExitCode check(const RulesOptions& options, const Session& session) {
   const DataHome home = session.dataHome();
-  const ClassCatalogue catalogue = classCatalogueOf(readMapInputs(options.inputs, home).ontology);
-  const std::vector<Diagnostic> faults = checkRules(ruleFiles(options, home), catalogue, withCheckedQueries());
+  const rules::ClassCatalogue catalogue = classCatalogueOf(readMapInputs(options.inputs, home).ontology);
+  const std::vector<Diagnostic> faults = checkRules(ruleFiles(options, home), catalogue, mapping::withCheckedQueries());
   if (session.json) {
     Json json = Json::array();
     for (const Diagnostic& fault : faults) json.push_back(diagnosticJson(fault));
@@ -53,14 +52,14 @@ ExitCode check(const RulesOptions& options, const Session& session) {
   return hasErrors(faults) ? ExitCode::FaultyInput : ExitCode::Done;
 }
 
-/// Runs the pipeline on a cloud with the model, or takes the scene out of a map.
-Scene sceneFor(const SceneRequest& request, const RulesOptions& options, Session& session) {
-  if (request.kind == SceneRequest::Kind::Map) return MapReader(request.path).scene();
-  const NamedText model = readMapInputs(options.inputs, session.dataHome()).model;
-  const ScanSet scans = ScanSet::open({request.path}, {}, session.console);
-  std::vector<Scan> loaded;
+/// The scene of a map, or what the pipeline makes of a cloud with the model.
+perception::Scene sceneFor(const rules::SceneRequest& request, const RulesOptions& options, Session& session) {
+  if (request.kind == rules::SceneRequest::Kind::Map) return mapping::MapReader(request.path).scene();
+  const mapping::NamedText model = readMapInputs(options.inputs, session.dataHome()).model;
+  const scan::ScanSet scans = scan::ScanSet::open({request.path}, {}, session.console);
+  std::vector<scan::Scan> loaded;
   for (std::size_t i = 0; i < scans.size(); ++i) loaded.push_back(scans.load(i));
-  return sceneOf(loaded, parseModel(model.text, model.name), {}, session.threadCount());
+  return perception::sceneOf(loaded, perception::parseModel(model.text, model.name), {}, session.threadCount());
 }
 
 std::vector<fs::path> testFiles(const RulesOptions& options, const DataHome& home) {
@@ -70,19 +69,20 @@ std::vector<fs::path> testFiles(const RulesOptions& options, const DataHome& hom
   return files;
 }
 
-/// `--junit` takes the word behind it, which may have been meant as the tests to run.
+/// `--junit` takes the word behind it, which may be a test file when the report's name was forgotten.
 void refuseToReplaceTests(const fs::path& junit) {
   if (junit.extension() == ".yaml" || junit.extension() == ".yml")
-    throw Error(ExitCode::Usage, "--junit " + junit.string() +
-                                     ": the report would replace what looks like rules or their tests; name it *.xml");
+    throw Error(
+        ErrorKind::InvalidArgument,
+        "--junit " + junit.string() + ": the report would replace what looks like rules or their tests; name it *.xml");
 }
 
 ExitCode runTests(const RulesOptions& options, Session& session) {
   refuseToReplaceTests(options.junit);
   const DataHome home = session.dataHome();
-  const ClassCatalogue catalogue = classCatalogueOf(readMapInputs(options.inputs, home).ontology);
-  RuleTestOptions test_options;
-  test_options.scenes = [&](const SceneRequest& request) { return sceneFor(request, options, session); };
+  const rules::ClassCatalogue catalogue = classCatalogueOf(readMapInputs(options.inputs, home).ontology);
+  rules::RuleTestOptions test_options;
+  test_options.scenes = [&](const rules::SceneRequest& request) { return sceneFor(request, options, session); };
   if (!options.only.empty()) test_options.only = options.only;
   bool passed = true;
   std::size_t run = 0;
@@ -90,7 +90,7 @@ ExitCode runTests(const RulesOptions& options, Session& session) {
   std::string junit = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
   const std::vector<fs::path> files = testFiles(options, home);
   for (const fs::path& file : files) {
-    const RuleTestReport report = runRuleTests(file, catalogue, test_options);
+    const rules::RuleTestReport report = runRuleTests(file, catalogue, test_options);
     if (session.json)
       json.push_back(Json::parse(jsonOf(report)));
     else
@@ -102,8 +102,8 @@ ExitCode runTests(const RulesOptions& options, Session& session) {
   if (session.json) printJson(files.size() == 1 ? json.front() : json);
   if (!options.junit.empty()) writeFile(options.junit, junit + "</testsuites>\n");
   if (run == 0)
-    throw Error(ExitCode::Usage,
-                options.only.empty() ? "the test files hold no test" : "no test's name holds '" + options.only + "'");
+    throw Error(ErrorKind::InvalidArgument, options.only.empty() ? "the test files contain no test"
+                                                                 : "no test's name contains '" + options.only + "'");
   return passed ? ExitCode::Done : ExitCode::NegativeFinding;
 }
 
@@ -119,7 +119,7 @@ void addRules(CLI::App& app, Session& session) {
   CLI::App* testing = rules->add_subcommand("test", "run rule tests; exit 1 when one fails");
   testing->add_option("files", options->files, "test files; else rules/outdoor.rules-test.yaml");
   testing->add_option("--junit", options->junit, "write a JUnit report to this file");
-  testing->add_option("--only", options->only, "only tests whose name holds this text");
+  testing->add_option("--only", options->only, "only tests whose name contains this text");
   testing->add_option("--model", options->inputs.model, "the model for tests on clouds");
   testing->add_option("--ontology", options->inputs.ontology, "ontology files instead of ontology/*.ttl");
   onRun(*testing, session, [options, &session] { return runTests(*options, session); });

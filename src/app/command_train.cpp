@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// `cluxel train`: a label model from labelled scans.
+// `cluxel train`: trains a label model on labelled scans.
 #include "app/command.hpp"
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/base/file_bytes.hpp"
-#include "cluxel/perception/training_files.hpp"
-#include "cluxel/tasks/model_card.hpp"
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "perception/training/training_files.hpp"
+#include "tasks/model_card.hpp"
 
 namespace cluxel::app {
 
@@ -18,7 +18,7 @@ struct TrainOptions {
   bool no_copies = false;
 };
 
-/// A folder of truth files as it is; a label map by path or by name in labels/.
+/// A folder of truth files, or a label map by path or by name in labels/.
 fs::path truthPath(const fs::path& given, const DataHome& home) {
   if (fs::exists(given)) return given;
   fs::path name = given;
@@ -26,7 +26,7 @@ fs::path truthPath(const fs::path& given, const DataHome& home) {
   return home.locate("labels", name);
 }
 
-/// The command in a form that holds on any machine: names without their folders.
+/// The command without folders, which differ between machines.
 std::string commandText(const TrainOptions& options) {
   std::string command = "cluxel train";
   for (const fs::path& input : options.inputs) command += " " + input.filename().string();
@@ -39,25 +39,25 @@ std::string commandText(const TrainOptions& options) {
 
 ExitCode trainModel(const TrainOptions& options, Session& session) {
   if (!options.helpers.empty() && options.helper_truth.empty())
-    throw Error(ExitCode::Usage, "--helper needs --helper-truth");
+    throw Error(ErrorKind::InvalidArgument, "--helper needs --helper-truth");
   if (fs::exists(options.output) && !fs::is_directory(options.output))
-    throw Error(ExitCode::StoreUnavailable, options.output.string() + ": is a file; name a folder for the model");
+    throw Error(ErrorKind::StoreUnavailable, options.output.string() + ": is a file; name a folder for the model");
   const DataHome home = session.dataHome();
-  std::vector<TrainingSource> sources{{options.inputs, truthPath(options.truth, home), false}};
+  std::vector<perception::TrainingSource> sources{{options.inputs, truthPath(options.truth, home), false}};
   for (const fs::path& helper : options.helpers)
     sources.push_back({{helper}, truthPath(options.helper_truth, home), true});
-  CopyParams copies;
+  perception::CopyParams copies;
   if (options.no_copies) copies = {.sensors = {}, .drives = {}};
-  const PerceptionParams perception = portablePerception();
+  const perception::PerceptionParams perception = perception::portablePerception();
   const unsigned threads = session.threadCount();
   const auto places = readPlaces(sources, perception, copies, options.group_size, threads, session.console);
   const std::string name = options.name.empty() ? options.output.filename().string() : options.name;
-  TrainingReport report = train(name, places, perception, {}, threads, session.console);
+  perception::TrainingReport report = train(name, places, perception, {}, threads, session.console);
   report.model.provenance.insert(
       {{"command", commandText(options)}, {"data", options.data}, {"program", "cluxel " CLUXEL_VERSION}});
   fs::create_directories(options.output);
   saveModel(report.model, options.output / "model.json");
-  writeFile(options.output / "README.md", modelCard(report, {name, commandText(options), options.data}));
+  writeFile(options.output / "README.md", tasks::modelCard(report, {name, commandText(options), options.data}));
   if (session.json)
     printJson(Json{{"model", (options.output / "model.json").string()},
                    {"accuracy", report.left_out.accuracy()},
@@ -72,7 +72,7 @@ ExitCode trainModel(const TrainOptions& options, Session& session) {
 
 void addTrain(CLI::App& app, Session& session) {
   auto options = std::make_shared<TrainOptions>();
-  CLI::App* command = app.add_subcommand("train", "make a label model from labelled scans");
+  CLI::App* command = app.add_subcommand("train", "train a label model on labelled scans");
   command->add_option("scans", options->inputs, "files, folders and manifests of scans")->required();
   command
       ->add_option("--truth", options->truth, "a folder of truth files, or a label map: oakland, semantickitti, campus")
@@ -80,14 +80,14 @@ void addTrain(CLI::App& app, Session& session) {
   command->add_option("-o,--output", options->output, "the model's folder: model.json and README.md")
       ->required()
       ->check(named());
-  command->add_option("--helper", options->helpers, "scans that help to train, but are never left out and measured on");
+  command->add_option("--helper", options->helpers, "scans to train on that are never used for measuring");
   command->add_option("--helper-truth", options->helper_truth, "truth of the helpers, as --truth");
   command->add_option("--name", options->name, "the model's name; else the folder's");
   command->add_option("--data", options->data, "what the data are, for the model's card");
-  command->add_option("--group-size", options->group_size, "consecutive places that are left out together")
+  command->add_option("--group-size", options->group_size, "consecutive places left out together in cross-validation")
       ->check(above0())
       ->capture_default_str();
-  command->add_flag("--no-copies", options->no_copies, "do not also train on copies as other sensors would see them");
+  command->add_flag("--no-copies", options->no_copies, "do not train on copies that imitate other sensors");
   onRun(*command, session, [options, &session] { return trainModel(*options, session); });
 }
 

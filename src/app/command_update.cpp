@@ -2,28 +2,30 @@
 // `cluxel update`: changes to the operator's statements by SPARQL Update.
 #include "app/command.hpp"
 #include "app/named_sources.hpp"
-#include "cluxel/base/file_bytes.hpp"
-#include "cluxel/knowledge/rdf_io.hpp"
-#include "cluxel/mapping/map_update.hpp"
+#include "base/file_bytes.hpp"
+#include "mapping/build/map_update.hpp"
+#include "rdf/io/rdf_io.hpp"
 
 namespace cluxel::app {
 
 namespace {
 
-/// What LOAD <iri> reads: the file that the caller named for it, nothing else.
+/// What LOAD <iri> reads: the file named for the IRI. Nothing is fetched from the network.
 std::vector<Quad> triplesOf(const std::map<std::string, fs::path>& files, const std::string& iri) {
   const auto file = files.find(iri);
   if (file == files.end())
-    throw Error(ExitCode::FaultyInput,
+    throw Error(ErrorKind::FaultyInput,
                 "LOAD <" + iri + "> is refused: no file is named for it, and nothing is fetched; name it: --load '" +
                     iri + "=FILE'");
-  const auto format = rdfFormatOf(file->second);
+  const auto format = rdf::rdfFormatOf(file->second);
   if (!format)
-    throw Error(ExitCode::Usage, "--load: " + file->second.string() + " is no RDF file (.ttl .nt .nq .trig .rdf)");
+    throw Error(ErrorKind::InvalidArgument,
+                "--load: " + file->second.string() + " is not an RDF file (.ttl .nt .nq .trig .rdf)");
   std::vector<Quad> quads;
   const std::string text = readFile(file->second);
-  parseRdf({.text = text, .name = file->second.string(), .format = *format, .base_iri = iri, .graph = Term::iri("")},
-           [&quads](const Quad& quad) { quads.push_back(quad); });
+  rdf::parseRdf(
+      {.text = text, .name = file->second.string(), .format = *format, .base_iri = iri, .graph = Term::iri("")},
+      [&quads](const Quad& quad) { quads.push_back(quad); });
   return quads;
 }
 
@@ -34,12 +36,12 @@ struct UpdateArguments {
 };
 
 ExitCode update(const UpdateArguments& arguments, Session& session) {
-  const Question question = questionFrom(arguments.file, arguments.text, session);
+  const tasks::Question question = questionFrom(arguments.file, arguments.text, session);
   const std::map<std::string, fs::path> loads = namedFiles("--load", arguments.loads);
-  UpdateOptions options;
+  sparql::UpdateOptions options;
   options.query.source_name = question.file.string();
   if (!loads.empty()) options.load = [&loads](const std::string& iri) { return triplesOf(loads, iri); };
-  const UpdateReport report = updateMap(arguments.map, question.text, options, session.console);
+  const sparql::UpdateReport report = mapping::updateMap(arguments.map, question.text, options, session.console);
   if (session.json)
     printJson(Json{{"inserted", report.inserted}, {"deleted", report.deleted}});
   else

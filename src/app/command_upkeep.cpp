@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// `cluxel doctor` and `cluxel compact`: the health and size of a map file.
+// `cluxel doctor` and `cluxel compact`: the integrity and size of a map file.
 #include "app/command.hpp"
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/base/file_bytes.hpp"
-#include "cluxel/knowledge/environment.hpp"
-#include "cluxel/knowledge/map_check.hpp"
-#include "cluxel/knowledge/map_replacement.hpp"
-#include "cluxel/mapping/build_lock.hpp"
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/build/build_lock.hpp"
+#include "rdf/store/environment.hpp"
+#include "rdf/store/map_check.hpp"
+#include "rdf/store/map_replacement.hpp"
 
 namespace cluxel::app {
 
@@ -16,17 +16,17 @@ struct UpkeepOptions {
   fs::path map, output;
 };
 
-/// Nobody else may write while the map's file is replaced: what they commit would be lost.
+/// Locks out other writers: what they commit while the file is replaced would be lost.
 void compactInPlace(const fs::path& map) {
   const fs::path file = withoutLinks(map), target = file.string() + ".compact";
-  const BuildLock no_build(file);
-  const auto environment = Environment::open(file, OpenMode::ReadWrite);
-  const WriteTransaction no_other_writer = environment->write();
+  const mapping::BuildLock no_build(file);
+  const auto environment = rdf::Environment::open(file, rdf::OpenMode::ReadWrite);
+  const rdf::WriteTransaction no_other_writer = environment->write();
   std::error_code ignored;
-  fs::remove(target, ignored);  // of a run that was killed
+  fs::remove(target, ignored);  // left by a killed run
   environment->compactTo(target);
   try {
-    replaceMapFile(target, file);
+    rdf::replaceMapFile(target, file);
   } catch (...) {
     fs::remove(target, ignored);
     throw;
@@ -39,7 +39,7 @@ ExitCode compact(const UpkeepOptions& options, const Session& session) {
   if (options.output.empty())
     compactInPlace(options.map);
   else
-    Environment::open(options.map, OpenMode::ReadOnly)->compactTo(options.output);
+    rdf::Environment::open(options.map, rdf::OpenMode::ReadOnly)->compactTo(options.output);
   const auto after = fs::file_size(options.output.empty() ? options.map : options.output);
   const fs::path& written = options.output.empty() ? options.map : options.output;
   if (session.json)
@@ -51,7 +51,7 @@ ExitCode compact(const UpkeepOptions& options, const Session& session) {
 }
 
 ExitCode doctor(const UpkeepOptions& options, const Session& session) {
-  const MapCheck check = checkMap(options.map);
+  const rdf::MapCheck check = rdf::checkMap(options.map);
   if (session.json) {
     printJson(Json{{"blocks", check.blocks}, {"terms", check.terms}, {"quads", check.quads}, {"faults", check.faults}});
   } else {

@@ -22,11 +22,16 @@ void Console::clearLine() {
 }
 
 void Console::progress(std::string_view stage, std::size_t done, std::size_t total) {
-  if (!is_terminal_) return;
+  constexpr double kTerminalPause_s = 0.1, kPlainPause_s = 30;
+  const double now_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  const std::string line = meter_.line(stage, done, total, now_s);
+  const bool is_due = now_s - last_s_ >= (is_terminal_ ? kTerminalPause_s : kPlainPause_s);
+  if (!is_due && !(is_terminal_ && done == total)) return;
+  last_s_ = now_s;
   clearLine();
-  std::fprintf(stderr, "%.*s %zu/%zu", static_cast<int>(stage.size()), stage.data(), done, total);
+  std::fprintf(stderr, is_terminal_ ? "%s" : "%s\n", line.c_str());
   std::fflush(stderr);
-  line_is_open_ = true;
+  line_is_open_ = is_terminal_;
 }
 
 void Console::note(std::string_view message) {

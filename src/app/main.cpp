@@ -9,17 +9,23 @@
 #include <new>
 
 #include "app/command.hpp"
+#include "app/remedy_hint.hpp"
 #include "app/usage_fault.hpp"
-#include "cluxel/base/diagnostic.hpp"
+#include "app/version_text.hpp"
+#include "cluxel/error.hpp"
 
 namespace {
 
 using namespace cluxel;
 using namespace cluxel::app;
 
-constexpr const char* kExitCodes =
-    "Exit codes: 0 done; 1 negative finding (check failed, ASK false); 2 usage; 3 no rows; 4 unreadable input, faulty "
-    "query or rules; 5 store unavailable; 6 budget exceeded.";
+std::string exitCodesText() {
+  std::string text = "Exit codes:";
+  for (const ExitCodeHelp& help : kExitCodeHelp)
+    text +=
+        (help.code == ExitCode::Done ? " " : "; ") + std::to_string(static_cast<int>(help.code)) + " " + help.meaning;
+  return text + ".";
+}
 
 int fail(ExitCode code, const char* message) {
   std::fprintf(stderr, "cluxel: %s\n", message);
@@ -28,7 +34,9 @@ int fail(ExitCode code, const char* message) {
 
 void addCommands(CLI::App& app, Session& session) {
   addInfo(app, session);
+#ifdef CLUXEL_SIMULATION
   addSimulate(app, session);
+#endif
   addRegister(app, session);
   addBuild(app, session);
   addQuery(app, session);
@@ -40,17 +48,18 @@ void addCommands(CLI::App& app, Session& session) {
   addEvaluate(app, session);
   addExport(app, session);
   addUpkeep(app, session);
+  addDocumentation(app);
 }
 
 int runProgram(int argc, char** argv) {
   Session session;
   CLI::App app("Cluxel turns registered laser scans of outdoor places into semantic maps.");
-  app.footer(kExitCodes);
+  app.footer(exitCodesText());
   app.require_subcommand(1);
-  app.set_version_flag("--version", "cluxel " CLUXEL_VERSION);
-  app.add_option("--home", session.home, "folder that holds ontology, rules, queries, models and labels")
+  app.set_version_flag("--version", versionText, "print version, commit and formats");
+  app.add_option("--home", session.home, "folder with ontology, rules, queries, models and labels")
       ->check(CLI::ExistingDirectory);
-  app.add_option("--threads", session.threads, "threads to use, 0: all; the result does not depend on it")
+  app.add_option("--threads", session.threads, "threads to use (0: all); the result does not depend on it")
       ->check(CLI::Range(0, 1024));
   app.fallthrough();
   addCommands(app, session);
@@ -63,14 +72,14 @@ int runProgram(int argc, char** argv) {
   return static_cast<int>(session.exit_code);
 }
 
-/// A closed stdin, stdout or stderr would be given to the next file that is opened, and messages written into a map.
-/// They are opened the wrong way round, so that using them fails as if they were closed, and lostData() sees it.
+/// The descriptor of a closed standard stream would be reused for the next file, so that messages could be written into
+/// a map. It is opened in the opposite direction instead: using it fails as if it were closed, and lostData() sees it.
 void occupyStandardStreams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0) ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
 }
 
-/// Data that could not be written is an error, but nobody misses it when the reader of a pipe has gone.
+/// Data that could not be written is an error, except when the reader of a pipe has gone.
 bool lostData() {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return false;
   struct stat status {};
@@ -85,12 +94,13 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   try {
     const int code = runProgram(argc, argv);
-    if (lostData()) return fail(ExitCode::StoreUnavailable, "stdout could not be written whole: is the disk full?");
+    if (lostData())
+      return fail(ExitCode::StoreUnavailable, "stdout could not be written completely: is the disk full?");
     return code;
   } catch (const Error& error) {
-    return fail(error.code(), error.what());
+    return fail(exitCodeOf(error.kind()), messageOf(error).c_str());
   } catch (const std::bad_alloc&) {
-    return fail(ExitCode::BudgetExceeded, "the machine has not enough memory for this");
+    return fail(ExitCode::BudgetExceeded, "not enough memory");
   } catch (const std::exception& error) {
     return fail(ExitCode::FaultyInput, error.what());
   }

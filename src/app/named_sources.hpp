@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "app/command.hpp"
-#include "cluxel/tasks/query_source.hpp"
+#include "tasks/query_source.hpp"
 
 namespace cluxel::app {
 
 /// The question in a file (by path, or by name in queries/) or in a text; Error (Usage) for none or both.
-Question questionFrom(const fs::path& file, const std::string& text, const Session& session);
+tasks::Question questionFrom(const fs::path& file, const std::string& text, const Session& session);
 
 /// `IRI=FILE` texts of an option; Error (Usage) for a text of another form.
 std::map<std::string, fs::path> namedFiles(const std::string& option, const std::vector<std::string>& texts);
@@ -22,11 +22,11 @@ class NamedSources {
  public:
   NamedSources(const std::string& option, const std::vector<std::string>& texts);
   /// Valid while this lives.
-  std::map<std::string, const QuadReader*> readers() const;
+  std::map<std::string, const rdf::QuadReader*> readers() const;
 
  private:
-  std::vector<QuerySource> sources_;
-  std::map<std::string, QuadReader> readers_;
+  std::vector<tasks::QuerySource> sources_;
+  std::map<std::string, rdf::QuadReader> readers_;
 };
 
 }  // namespace cluxel::app

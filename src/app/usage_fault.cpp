@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// CLI11 says that an argument was not expected; people want to know what was.
+// CLI11 only says that an argument was not expected; this names the nearest expected one.
 #include "app/usage_fault.hpp"
 
 #include <vector>
 
-#include "cluxel/base/nearest_name.hpp"
+#include "base/nearest_name.hpp"
 
 namespace cluxel::app {
 
@@ -32,7 +32,7 @@ Reached reachedIn(const CLI::App& app) {
 Names commandsOf(const CLI::App& app) {
   Names names;
   for (const CLI::App* command : app.get_subcommands(std::function<bool(const CLI::App*)>{}))
-    names.push_back(command->get_name());
+    if (!command->get_group().empty()) names.push_back(command->get_name());  // without group: hidden
   return names;
 }
 
@@ -77,7 +77,7 @@ std::string usageMessage(const CLI::App& app, const CLI::ParseError& fault) {
   else if (const Names commands = commandsOf(*reached.command); !commands.empty())
     what = "a command is missing: " + listed(commands);
   const std::string help = "cluxel " + reached.name + (reached.name.empty() ? "" : " ") + "--help";
-  return reached.prefix() + what + "\n  hint: '" + help + "' says what it takes";
+  return reached.prefix() + what + "\n  hint: '" + help + "' shows what it takes";
 }
 
 }  // namespace cluxel::app

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is wrong with a command line, in words: the nearest known name, and where help is.
+// Messages for wrong command lines: the nearest known name, and where help is.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Content hashes by OpenSSL's SHA-256.
-#include "cluxel/base/content_hash.hpp"
+#include "base/content_hash.hpp"
 
 #include <openssl/evp.h>
 

@@ -1,42 +1,69 @@
 // SPDX-License-Identifier: Apache-2.0
-// The search order of the data folders.
-#include "cluxel/base/data_home.hpp"
+// Where the data folders lie: as given, beside the installed binary, or in the checkout.
+#include "base/data_home.hpp"
+
+#include <dlfcn.h>
+#include <sys/auxv.h>
 
 #include <cstdlib>
+#include <vector>
 
-#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/error.hpp"
 
 namespace cluxel {
 
 namespace fs = std::filesystem;
 
-DataHome DataHome::find(const fs::path& option) {
-  std::vector<fs::path> roots;
-  if (!option.empty()) roots.push_back(option);
-  if (const char* home = std::getenv("CLUXEL_HOME"); home != nullptr && *home != '\0') roots.emplace_back(home);
+namespace {
+
+/// The program or shared library that contains this code, symbolic links resolved; empty when unknown. The loader's
+/// name of the program may be relative to a working directory that has changed since, so /proc is asked instead.
+fs::path ownBinary() {
+  Dl_info own{}, program{};
   std::error_code ignored;
-  roots.push_back(fs::current_path(ignored));
-  const fs::path executable = fs::read_symlink("/proc/self/exe", ignored);
-  for (fs::path folder = executable.parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
-    roots.push_back(folder);
-    roots.push_back(folder / "share" / "cluxel");
+  const auto* entry = reinterpret_cast<const void*>(getauxval(AT_ENTRY));
+  const bool is_known = dladdr(reinterpret_cast<const void*>(&ownBinary), &own) != 0;
+  const bool is_library = is_known && dladdr(entry, &program) != 0 && own.dli_fbase != program.dli_fbase;
+  return fs::canonical(is_library ? fs::path(own.dli_fname) : fs::path("/proc/self/exe"), ignored);
+}
+
+}  // namespace
+
+fs::path dataHomeOf(const fs::path& binary) {
+  constexpr std::size_t kMaxDepth = 3;  // prefix/lib/<architecture>/cluxel
+  std::error_code ignored;
+  std::vector<fs::path> folders;
+  for (fs::path folder = binary.parent_path(); folder.has_relative_path(); folder = folder.parent_path())
+    folders.push_back(folder);
+  for (std::size_t depth = 1; depth <= kMaxDepth && depth < folders.size(); ++depth) {
+    const fs::path share = folders[depth] / "share" / "cluxel";
+    if (fs::is_directory(share / "ontology", ignored)) return share;
   }
-  return DataHome(std::move(roots));
+  for (const fs::path& folder : folders)
+    if (fs::exists(folder / "CMakeLists.txt", ignored) && fs::is_directory(folder / "ontology", ignored)) return folder;
+  return {};
+}
+
+DataHome DataHome::find(const fs::path& option) {
+  if (!option.empty()) return DataHome(option);
+  if (const char* home = std::getenv("CLUXEL_HOME"); home != nullptr && *home != '\0') return DataHome(home);
+  return DataHome(dataHomeOf(ownBinary()));
 }
 
 fs::path DataHome::locate(const fs::path& relative) const {
   std::error_code ignored;
-  for (const fs::path& root : roots_)
-    if (fs::exists(root / relative, ignored)) return root / relative;
-  std::string places;
-  for (const fs::path& root : roots_) places += "\n  " + (root / relative).string();
-  throw Error(ExitCode::FaultyInput, "'" + relative.string() + "' was not found; looked at:" + places +
-                                         "\n  hint: name its folder with --home or CLUXEL_HOME");
+  if (!root_.empty() && fs::exists(root_ / relative, ignored)) return root_ / relative;
+  const std::string place = root_.empty() ? "there is neither an installation nor a checkout around the program"
+                                          : "looked at " + (root_ / relative).string();
+  throw Error(ErrorKind::FaultyInput, "'" + relative.string() + "' was not found; " + place, Remedy::NameHome);
 }
 
 fs::path DataHome::locate(const std::string& folder, const fs::path& name) const {
   std::error_code ignored;
-  return fs::exists(name, ignored) ? name : locate(fs::path(folder) / name);
+  const bool is_there = fs::exists(name, ignored);
+  if (is_there && (name.has_parent_path() || !fs::is_directory(name, ignored))) return name;
+  const bool is_ours = !root_.empty() && fs::exists(root_ / folder / name, ignored);
+  return is_there && !is_ours ? name : locate(fs::path(folder) / name);
 }
 
 }  // namespace cluxel

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reading and atomic writing of whole files.
-#include "cluxel/base/file_bytes.hpp"
+#include "base/file_bytes.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -13,7 +13,7 @@
 #include <memory>
 #include <utility>
 
-#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/error.hpp"
 
 namespace cluxel {
 
@@ -28,7 +28,7 @@ using File = std::unique_ptr<std::FILE, decltype(&std::fclose)>;
 }
 
 [[noreturn]] void refuseToWrite(const fs::path& path, const std::string& what) {
-  throw Error(ExitCode::StoreUnavailable, path.string() + ": " + what + ": " + std::strerror(errno));
+  throw Error(ErrorKind::StoreUnavailable, path.string() + ": " + what + ": " + std::strerror(errno));
 }
 
 /// A file that is being written. Its name is taken away again unless it was moved into place.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A shared counter hands out the pieces.
-#include "cluxel/base/parallel.hpp"
+#include "base/parallel.hpp"
 
 #include <algorithm>
 #include <atomic>

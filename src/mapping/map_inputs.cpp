@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reading and hashing the inputs of a map.
-#include "cluxel/mapping/map_inputs.hpp"
+#include "mapping/map_inputs.hpp"
 
 #include <algorithm>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/base/file_bytes.hpp"
-#include "cluxel/mapping/class_catalogue_of.hpp"
-#include "cluxel/reasoning/rule_loader.hpp"
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "rdf/io/rdf_io.hpp"
+#include "rdf/ontology/ontology.hpp"
+#include "rdf/vocabulary.hpp"
+#include "rules/language/rule_loader.hpp"
 
-namespace cluxel {
+namespace cluxel::mapping {
 
 namespace fs = std::filesystem;
 
@@ -39,14 +41,14 @@ std::vector<fs::path> givenOr(const std::vector<fs::path>& given, const std::str
   return files;
 }
 
-/// The given rule files, then all that they include. Faults are reported by whoever loads the texts.
+/// The given rule files and all that they include. Faults are reported later, when the texts are loaded.
 std::vector<NamedText> readRules(std::vector<fs::path> roots, const std::vector<NamedText>& ontology) {
-  // Includes are found by whole paths, so the roots are named by theirs.
+  // Includes are resolved to absolute paths, so the roots must be absolute as well.
   for (fs::path& root : roots) root = fs::absolute(root).lexically_normal();
   std::vector<NamedText> texts = readAll(roots);
-  const LoadedRules loaded = loadRules(roots, classCatalogueOf(ontology));
+  const rules::LoadedRules loaded = loadRules(roots, classCatalogueOf(ontology));
   if (!loaded.rules) return texts;
-  for (const RuleSource& source : loaded.rules->sources) {
+  for (const rules::RuleSource& source : loaded.rules->sources) {
     const auto isSame = [&](const NamedText& text) { return text.name == source.name; };
     if (std::none_of(texts.begin(), texts.end(), isSame)) texts.push_back({source.name, source.text});
   }
@@ -60,7 +62,7 @@ void addTexts(ContentHasher& hasher, const std::vector<NamedText>& texts) {
 
 }  // namespace
 
-void describe(MapParams& params, ParameterVisitor& visitor) {
+void describe(MapParams& params, perception::ParameterVisitor& visitor) {
   describe(params.labelling, visitor);
   describe(params.component, visitor);
   describe(params.contact, visitor);
@@ -73,9 +75,9 @@ ContentHash MapInputs::hash() const {
   addTexts(hasher, rules);
   hasher.add(static_cast<std::uint64_t>(rule_roots));
   addTexts(hasher, sparql_rules);
-  for (const NamedText& rule : sparql_rules) hasher.addText(ruleFileName(rule));  // which stand in the map
+  for (const NamedText& rule : sparql_rules) hasher.addText(ruleFileName(rule));  // the names occur in the map's facts
   hasher.add(kStagesVersion);
-  hasher.addText(model.text).add(hashOf(params)).addText(crs);
+  hasher.addText(model.text).add(perception::hashOf(params)).addText(crs);
   for (int axis = 0; axis < 3; ++axis) hasher.add(map_origin[axis]);
   return hasher.finish();
 }
@@ -84,10 +86,23 @@ std::string ruleFileName(const NamedText& rule) {
   return fs::path(rule.name).filename().string();
 }
 
+std::vector<rdf::RdfSource> ontologySources(const std::vector<NamedText>& texts) {
+  std::vector<rdf::RdfSource> sources;
+  sources.reserve(texts.size());
+  for (const NamedText& text : texts)
+    sources.push_back({text.text, text.name, rdf::RdfFormat::Turtle, std::string(rdf::vocabulary::kClx),
+                       Term::iri(rdf::vocabulary::kGraphOntology)});
+  return sources;
+}
+
+rules::ClassCatalogue classCatalogueOf(const std::vector<NamedText>& ontology) {
+  return rules::catalogueOf(ontologyViewOf(ontologySources(ontology)));
+}
+
 MapInputs readMapInputs(const MapInputFiles& files, const DataHome& home) {
   MapInputs inputs;
   inputs.ontology = readAll(givenOr(files.ontology, "ontology", ".ttl", home));
-  // A name that nobody gave is not looked for in the working directory, where a file of that name may mean anything.
+  // A default name is never looked up in the working directory, where a file of that name may be unrelated.
   std::vector<fs::path> rules;
   for (const fs::path& name : files.rules) rules.push_back(home.locate("rules", name));
   if (rules.empty()) rules.push_back(home.locate("rules/outdoor.rules.yaml"));
@@ -100,4 +115,4 @@ MapInputs readMapInputs(const MapInputFiles& files, const DataHome& home) {
   return inputs;
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::mapping

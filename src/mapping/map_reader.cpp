@@ -1,36 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading a map: everything from one snapshot.
-#include "cluxel/mapping/map_reader.hpp"
+// All reads of a MapReader use one snapshot of the file.
+#include "mapping/map_reader.hpp"
 
 #include <optional>
 
-#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/build/scan_store.hpp"
+#include "mapping/build/tile_stages.hpp"
+#include "mapping/facts/object_geometry.hpp"
 #include "mapping/map_state.hpp"
-#include "mapping/object_geometry.hpp"
 #include "mapping/object_store.hpp"
-#include "mapping/scan_store.hpp"
-#include "mapping/tile_stages.hpp"
 
-namespace cluxel {
+namespace cluxel::mapping {
 
 struct MapReader::Impl {
-  std::shared_ptr<Environment> environment;
-  ReadTransaction transaction;
-  QuadReader quads;
+  std::shared_ptr<rdf::Environment> environment;
+  rdf::ReadTransaction transaction;
+  rdf::QuadReader quads;
   MapState state;
   std::optional<MapInputs> inputs;
-  std::optional<LabelModel> model;
+  std::optional<perception::LabelModel> model;
   std::optional<TileStages> stages;
-  std::optional<Scene> scene;
-  std::optional<std::vector<SemanticObject>> objects;
+  std::optional<perception::Scene> scene;
+  std::optional<std::vector<rules::SemanticObject>> objects;
   std::vector<std::uint32_t> object_of_cluxel;
-  std::map<TileKey, std::uint32_t> first_cluxel;
+  std::map<perception::TileKey, std::uint32_t> first_cluxel;
 
-  explicit Impl(std::shared_ptr<Environment> opened)
+  explicit Impl(std::shared_ptr<rdf::Environment> opened)
       : environment(std::move(opened)), transaction(environment->read()), quads(transaction) {
     const auto stored = storedState(transaction);
     if (!stored)
-      throw Error(ExitCode::StoreUnavailable,
+      throw Error(ErrorKind::StoreUnavailable,
                   environment->file().string() + ": holds no map (or its first build never committed); build it");
     state = *stored;
   }
@@ -40,14 +40,14 @@ struct MapReader::Impl {
     return *inputs;
   }
 
-  const std::vector<SemanticObject>& readObjects() {
+  const std::vector<rules::SemanticObject>& readObjects() {
     if (!objects) objects = storedObjects(transaction);
     return *objects;
   }
 
   const TileStages& readStages() {
     if (stages) return *stages;
-    model = parseModel(readInputs().model.text, inputs->model.name);
+    model = perception::parseModel(readInputs().model.text, inputs->model.name);
     stages.emplace(*model, inputs->params);
     stages->loadAll(transaction);
     std::uint32_t next = 0;
@@ -61,7 +61,7 @@ struct MapReader::Impl {
 };
 
 MapReader::MapReader(const std::filesystem::path& file)
-    : impl_(std::make_unique<Impl>(Environment::open(file, OpenMode::ReadOnly))) {}
+    : impl_(std::make_unique<Impl>(rdf::Environment::open(file, rdf::OpenMode::ReadOnly))) {}
 MapReader::~MapReader() = default;
 MapReader::MapReader(MapReader&&) noexcept = default;
 
@@ -78,7 +78,7 @@ MapSummary MapReader::summary() const {
     ++summary.clouds;
     summary.points += cloud.point_count;
   }
-  for (const SemanticObject& object : objects()) ++summary.objects_by_class[localName(object.class_iri)];
+  for (const rules::SemanticObject& object : objects()) ++summary.objects_by_class[localName(object.class_iri)];
   summary.objects = objects().size();
   summary.quads = impl_->quads.size();
   return summary;
@@ -87,20 +87,20 @@ MapSummary MapReader::summary() const {
 std::vector<Cloud> MapReader::clouds() const {
   return storedClouds(impl_->transaction);
 }
-ScanPoints MapReader::pointsOf(const ScanId& cloud) const {
+scan::ScanPoints MapReader::pointsOf(const scan::ScanId& cloud) const {
   return storedPoints(impl_->transaction, cloud);
 }
-const std::vector<SemanticObject>& MapReader::objects() const {
+const std::vector<rules::SemanticObject>& MapReader::objects() const {
   return impl_->readObjects();
 }
-const QuadReader& MapReader::quads() const {
+const rdf::QuadReader& MapReader::quads() const {
   return impl_->quads;
 }
 MapInputs MapReader::inputs() const {
   return impl_->readInputs();
 }
 
-const Scene& MapReader::scene() const {
+const perception::Scene& MapReader::scene() const {
   if (!impl_->scene) impl_->scene = impl_->readStages().scene();
   return *impl_->scene;
 }
@@ -111,14 +111,14 @@ const TileStages& MapReader::stages() const {
 
 PointAnswers MapReader::answersFor(const Cloud& cloud) const {
   const TileStages& stages = impl_->readStages();
-  const Scene& all = scene();
-  const ThinParams& thin = impl_->model->perception.thin;
-  const ScanPoints points = pointsOf(cloud.id);
-  std::map<TileKey, RepresentativeFinder> finders;
+  const perception::Scene& all = scene();
+  const perception::ThinParams& thin = impl_->model->perception.thin;
+  const scan::ScanPoints points = pointsOf(cloud.id);
+  std::map<perception::TileKey, perception::RepresentativeFinder> finders;
   PointAnswers answers;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector3d p_map = toMap(cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
-    const TileKey tile = tileOf(p_map);
+    const Eigen::Vector3d p_map = scan::toMap(cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
+    const perception::TileKey tile = perception::tileOf(p_map);
     const auto finder = finders.try_emplace(tile, stages.points().at(tile), thin).first;
     const std::uint32_t kept = finder->second.find(localPoint(tile, p_map));
     const std::uint32_t cluxel = impl_->first_cluxel.at(tile) + stages.cluxels().at(tile).point_cluxel.at(kept);
@@ -129,4 +129,4 @@ PointAnswers MapReader::answersFor(const Cloud& cloud) const {
   return answers;
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::mapping

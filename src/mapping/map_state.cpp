@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// State and inputs as JSON and texts in blocks.
+// State and inputs of a map as CBOR blocks.
 #include "mapping/map_state.hpp"
 
 #include <nlohmann/json.hpp>
 
-#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/error.hpp"
 #include "mapping/map_tables.hpp"
 
-namespace cluxel {
+namespace cluxel::mapping {
 
 namespace {
 
@@ -15,20 +15,20 @@ using Json = nlohmann::json;
 constexpr std::string_view kStateKey = "state", kInputsKey = "inputs";
 
 /// Writes every field of a settings struct by name.
-class ParameterWriter : public ParameterVisitor {
+class ParameterWriter : public perception::ParameterVisitor {
  public:
-  void real(const ParameterInfo& info, double& value) override { json[std::string(info.name)] = value; }
-  void whole(const ParameterInfo& info, int& value) override { json[std::string(info.name)] = value; }
-  void flag(const ParameterInfo& info, bool& value) override { json[std::string(info.name)] = value; }
+  void real(const perception::ParameterInfo& info, double& value) override { json[std::string(info.name)] = value; }
+  void whole(const perception::ParameterInfo& info, int& value) override { json[std::string(info.name)] = value; }
+  void flag(const perception::ParameterInfo& info, bool& value) override { json[std::string(info.name)] = value; }
   Json json = Json::object();
 };
 
-class ParameterReader : public ParameterVisitor {
+class ParameterReader : public perception::ParameterVisitor {
  public:
   explicit ParameterReader(const Json& json) : json_(json) {}
-  void real(const ParameterInfo& info, double& value) override { value = json_.at(std::string(info.name)); }
-  void whole(const ParameterInfo& info, int& value) override { value = json_.at(std::string(info.name)); }
-  void flag(const ParameterInfo& info, bool& value) override { value = json_.at(std::string(info.name)); }
+  void real(const perception::ParameterInfo& info, double& value) override { value = json_.at(std::string(info.name)); }
+  void whole(const perception::ParameterInfo& info, int& value) override { value = json_.at(std::string(info.name)); }
+  void flag(const perception::ParameterInfo& info, bool& value) override { value = json_.at(std::string(info.name)); }
 
  private:
   const Json& json_;
@@ -46,23 +46,23 @@ std::vector<NamedText> textsFrom(const Json& json) {
   return texts;
 }
 
-void put(WriteTransaction& transaction, std::string_view key, const Json& json) {
+void put(rdf::WriteTransaction& transaction, std::string_view key, const Json& json) {
   const auto bytes = Json::to_cbor(json);
   transaction.putBlock(tables::kMeta, key, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 [[noreturn]] void reportDamage(const char* what) {
-  throw Error(ExitCode::StoreUnavailable,
+  throw Error(ErrorKind::StoreUnavailable,
               std::string("the map's description of itself is damaged (") + what + "); build the map anew");
 }
 
 }  // namespace
 
-void storeState(WriteTransaction& transaction, const MapState& state) {
+void storeState(rdf::WriteTransaction& transaction, const MapState& state) {
   put(transaction, kStateKey, {{"finished", state.is_finished}, {"inputs", state.inputs_hash}});
 }
 
-std::optional<MapState> storedState(const ReadTransaction& transaction) {
+std::optional<MapState> storedState(const rdf::ReadTransaction& transaction) {
   const auto bytes = transaction.block(tables::kMeta, kStateKey);
   if (!bytes) return std::nullopt;
   try {
@@ -73,7 +73,7 @@ std::optional<MapState> storedState(const ReadTransaction& transaction) {
   }
 }
 
-void storeInputs(WriteTransaction& transaction, const MapInputs& inputs) {
+void storeInputs(rdf::WriteTransaction& transaction, const MapInputs& inputs) {
   ParameterWriter params;
   MapParams copy = inputs.params;
   describe(copy, params);
@@ -89,7 +89,7 @@ void storeInputs(WriteTransaction& transaction, const MapInputs& inputs) {
        {"crs", inputs.crs}});
 }
 
-MapInputs storedInputs(const ReadTransaction& transaction) {
+MapInputs storedInputs(const rdf::ReadTransaction& transaction) {
   const auto bytes = transaction.block(tables::kMeta, kInputsKey);
   if (!bytes) reportDamage("no inputs");
   try {
@@ -112,4 +112,4 @@ MapInputs storedInputs(const ReadTransaction& transaction) {
   }
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::mapping

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a map file says about itself: whether its build is finished, and of which inputs it is made.
+// The state of a map file: whether its build is finished, and the inputs it was built from.
 #pragma once
 
 #include <optional>
 #include <string>
 
-#include "cluxel/knowledge/environment.hpp"
-#include "cluxel/mapping/map_inputs.hpp"
+#include "mapping/map_inputs.hpp"
+#include "rdf/store/environment.hpp"
 
-namespace cluxel {
+namespace cluxel::mapping {
 
 struct MapState {
   bool is_finished = false;
@@ -16,11 +16,11 @@ struct MapState {
   bool operator==(const MapState&) const = default;
 };
 
-void storeState(WriteTransaction& transaction, const MapState& state);
-/// Absent in a file whose first commit has not happened.
-std::optional<MapState> storedState(const ReadTransaction& transaction);
+void storeState(rdf::WriteTransaction& transaction, const MapState& state);
+/// Absent before the first commit of a build.
+std::optional<MapState> storedState(const rdf::ReadTransaction& transaction);
 
-void storeInputs(WriteTransaction& transaction, const MapInputs& inputs);
-MapInputs storedInputs(const ReadTransaction& transaction);
+void storeInputs(rdf::WriteTransaction& transaction, const MapInputs& inputs);
+MapInputs storedInputs(const rdf::ReadTransaction& transaction);
 
-}  // namespace cluxel
+}  // namespace cluxel::mapping

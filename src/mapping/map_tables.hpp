@@ -7,10 +7,10 @@
 #include <string>
 #include <string_view>
 
-#include "cluxel/base/content_hash.hpp"
-#include "cluxel/perception/tile.hpp"
+#include "base/content_hash.hpp"
+#include "perception/tile.hpp"
 
-namespace cluxel::tables {
+namespace cluxel::mapping::tables {
 
 inline constexpr std::string_view kMeta = "meta";               ///< "state", "inputs", "objects": JSON and CBOR
 inline constexpr std::string_view kTexts = "texts";             ///< "ontology/0" ...: the inputs' texts
@@ -25,8 +25,8 @@ inline constexpr std::string_view kLabels = "stage_labels";
 inline constexpr std::string_view kComponents = "stage_components";
 inline constexpr std::string_view kContacts = "stage_contacts";
 
-/// Keys sort by tile: big-endian, with the sign bit turned.
-inline std::string keyOf(const TileKey& tile) {
+/// Keys sort by tile: big-endian with inverted sign bit.
+inline std::string keyOf(const perception::TileKey& tile) {
   std::string key;
   for (const std::int32_t value : {tile.x, tile.y}) {
     const std::uint32_t biased = static_cast<std::uint32_t>(value) ^ 0x80000000U;
@@ -35,7 +35,7 @@ inline std::string keyOf(const TileKey& tile) {
   return key;
 }
 
-inline TileKey tileOfKey(std::string_view key) {
+inline perception::TileKey tileOfKey(std::string_view key) {
   std::array<std::int32_t, 2> values{};
   for (std::size_t i = 0; i < 2; ++i) {
     std::uint32_t biased = 0;
@@ -55,4 +55,4 @@ inline ContentHash hashOfKey(std::string_view key) {
   return hash;
 }
 
-}  // namespace cluxel::tables
+}  // namespace cluxel::mapping::tables

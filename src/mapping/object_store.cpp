@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Objects as one CBOR block; lists of cluxels as binary strings of 32-bit numbers.
+// Objects as one CBOR block; cluxel lists as binary strings of 32-bit numbers.
 #include "mapping/object_store.hpp"
 
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/error.hpp"
 #include "mapping/map_tables.hpp"
 
-namespace cluxel {
+namespace cluxel::mapping {
 
 namespace {
 
@@ -28,24 +28,24 @@ std::vector<std::uint32_t> numbersFrom(const Json& json) {
   return numbers;
 }
 
-Json partJson(const ObjectPart& part) {
+Json partJson(const rules::ObjectPart& part) {
   return {
       {"class", part.part_class}, {"primitives", numbersJson(part.primitives)}, {"cluxels", numbersJson(part.cluxels)}};
 }
 
-ObjectPart partFrom(const Json& json) {
+rules::ObjectPart partFrom(const Json& json) {
   return {json.at("class"), numbersFrom(json.at("primitives")), numbersFrom(json.at("cluxels"))};
 }
 
-Json objectJson(const SemanticObject& object) {
+Json objectJson(const rules::SemanticObject& object) {
   Json json{{"id", object.id.hex()},  {"class", object.class_iri},   {"confidence", object.confidence},
             {"rule", object.rule_id}, {"decision", object.decision}, {"parts", Json::array()}};
-  for (const ObjectPart& part : object.parts) json["parts"].push_back(partJson(part));
+  for (const rules::ObjectPart& part : object.parts) json["parts"].push_back(partJson(part));
   return json;
 }
 
-SemanticObject objectFrom(const Json& json) {
-  SemanticObject object;
+rules::SemanticObject objectFrom(const Json& json) {
+  rules::SemanticObject object;
   object.id = ContentHash::fromHex(json.at("id").get<std::string>());
   object.class_iri = json.at("class");
   object.confidence = json.at("confidence");
@@ -57,24 +57,24 @@ SemanticObject objectFrom(const Json& json) {
 
 }  // namespace
 
-void storeObjects(WriteTransaction& transaction, const std::vector<SemanticObject>& objects) {
+void storeObjects(rdf::WriteTransaction& transaction, const std::vector<rules::SemanticObject>& objects) {
   Json json = Json::array();
-  for (const SemanticObject& object : objects) json.push_back(objectJson(object));
+  for (const rules::SemanticObject& object : objects) json.push_back(objectJson(object));
   const auto bytes = Json::to_cbor(json);
   transaction.putBlock(tables::kMeta, kObjectsKey, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-std::vector<SemanticObject> storedObjects(const ReadTransaction& transaction) {
-  std::vector<SemanticObject> objects;
+std::vector<rules::SemanticObject> storedObjects(const rdf::ReadTransaction& transaction) {
+  std::vector<rules::SemanticObject> objects;
   const auto bytes = transaction.block(tables::kMeta, kObjectsKey);
   if (!bytes) return objects;
   try {
     for (const Json& object : Json::from_cbor(*bytes)) objects.push_back(objectFrom(object));
   } catch (const std::exception& fault) {
-    throw Error(ExitCode::StoreUnavailable,
+    throw Error(ErrorKind::StoreUnavailable,
                 std::string("the map's objects are damaged (") + fault.what() + "); build the map anew");
   }
   return objects;
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::mapping

@@ -4,12 +4,12 @@
 
 #include <vector>
 
-#include "cluxel/knowledge/environment.hpp"
-#include "cluxel/reasoning/semantic_object.hpp"
+#include "rdf/store/environment.hpp"
+#include "rules/decide/semantic_object.hpp"
 
-namespace cluxel {
+namespace cluxel::mapping {
 
-void storeObjects(WriteTransaction& transaction, const std::vector<SemanticObject>& objects);
-std::vector<SemanticObject> storedObjects(const ReadTransaction& transaction);
+void storeObjects(rdf::WriteTransaction& transaction, const std::vector<rules::SemanticObject>& objects);
+std::vector<rules::SemanticObject> storedObjects(const rdf::ReadTransaction& transaction);
 
-}  // namespace cluxel
+}  // namespace cluxel::mapping

@@ -6,14 +6,14 @@
 #include <array>
 #include <cmath>
 
-#include "cluxel/perception/cluxel_tile.hpp"
-#include "perception/whole_below.hpp"
+#include "perception/clustering/cluxel_tile.hpp"
+#include "perception/clustering/fast_floor.hpp"
 
-namespace cluxel {
+namespace cluxel::perception {
 
 /// Rounded down to the step of local coordinates, so that shifts to a neighbouring tile stay exact.
 inline float toLocalStep(double value_m) {
-  return static_cast<float>(static_cast<double>(wholeBelow(value_m / kLocalStep_m)) * kLocalStep_m);
+  return static_cast<float>(static_cast<double>(fastFloor(value_m / kLocalStep_m)) * kLocalStep_m);
 }
 
 /// Sums over points given relative to one origin.
@@ -34,7 +34,7 @@ struct MomentSum {
     zz += dz * dz;
   }
 
-  /// Adds a set that weighs 1, with this mean (relative to the origin) and these mean products of deviations.
+  /// Adds a set of weight 1 with this mean (relative to the origin) and these mean products of deviations.
   void addSet(const Eigen::Vector3f& mean, const std::array<float, 6>& spread) {
     add(mean.x(), mean.y(), mean.z());
     xx += spread[0];
@@ -59,7 +59,7 @@ struct MomentSum {
     zz += other.zz;
   }
 
-  /// As stored: mean in the tile's coordinates, given the origin's place there.
+  /// The stored form, with the mean in the tile's coordinates. `origin`: position of the origin in the tile.
   Moments finish(const Eigen::Vector3f& origin) const {
     const double mx = x / n, my = y / n, mz = z / n;
     const auto part = [](double value) { return static_cast<float>(value); };
@@ -70,4 +70,4 @@ struct MomentSum {
   }
 };
 
-}  // namespace cluxel
+}  // namespace cluxel::perception

@@ -1,29 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Range errors in words.
-#include "cluxel/perception/stage_params.hpp"
+// Error messages for settings out of range.
+#include "perception/stage_params.hpp"
 
 #include <sstream>
 
-#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/error.hpp"
 
-namespace cluxel {
-namespace {
+namespace cluxel::perception {
 
-void requireRange(const ParameterInfo& info, double value) {
+void RangeCheck::require(const ParameterInfo& info, double value) {
   if (value >= info.lowest && value <= info.highest) return;
   std::ostringstream text;
   text << "setting " << info.name << " is " << value << ", but must lie between " << info.lowest << " and "
        << info.highest << " " << info.unit << " (" << info.help << ")";
-  throw Error(ExitCode::Usage, text.str());
+  throw Error(ErrorKind::InvalidArgument, text.str());
 }
 
-}  // namespace
-
-void RangeCheck::real(const ParameterInfo& info, double& value) {
-  requireRange(info, value);
-}
-void RangeCheck::whole(const ParameterInfo& info, int& value) {
-  requireRange(info, value);
-}
-
-}  // namespace cluxel
+}  // namespace cluxel::perception

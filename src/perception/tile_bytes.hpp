@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stored outputs as bytes: flat little-endian arrays behind a kind and a version, read back with every length checked.
+// Stage outputs as bytes: kind, version, then flat little-endian arrays. Reading checks every length.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,20 +13,20 @@
 #include <type_traits>
 #include <vector>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/perception/tile.hpp"
+#include "cluxel/error.hpp"
+#include "perception/tile.hpp"
 
-namespace cluxel {
+namespace cluxel::perception {
 
 static_assert(std::endian::native == std::endian::little, "stored tiles are little-endian");
 
-/// Types whose bytes are their value: numbers, plain structs without padding, and fixed Eigen vectors.
+/// Types that may be copied as bytes: numbers, plain structs without padding, and fixed-size Eigen vectors.
 template <typename T>
 inline constexpr bool kFlat = std::is_trivially_copyable_v<T> || std::is_same_v<T, Eigen::Vector3f>;
 
 class TileWriter {
  public:
-  /// `kind` is four letters, `version` counts changes of the form.
+  /// `kind` is four letters; `version` changes with the layout.
   TileWriter(std::string_view kind, std::uint32_t version, const TileKey& key) {
     bytes_.append(kind.substr(0, 4));
     put(version);
@@ -94,12 +94,12 @@ class TileReader {
 
  private:
   [[noreturn]] void fail(const char* what) const {
-    throw Error(ExitCode::StoreUnavailable,
+    throw Error(ErrorKind::StoreUnavailable,
                 "stored block " + std::string(kind_) + " " + what + "; the map is damaged, build it anew");
   }
 
   [[noreturn]] void failOther() const {
-    throw Error(ExitCode::StoreUnavailable,
+    throw Error(ErrorKind::StoreUnavailable,
                 "stored block " + std::string(kind_) +
                     " is of another version of cluxel, which writes it in another form; build the map anew");
   }
@@ -108,7 +108,7 @@ class TileReader {
   TileKey key_;
 };
 
-/// Whether all values are finite and at most `limit` in size.
+/// Whether all values are finite and at most `limit` in magnitude.
 inline bool allWithin(std::span<const float> values, double limit) {
   for (const float value : values)
     if (!(std::abs(value) <= limit)) return false;
@@ -135,4 +135,4 @@ inline bool isOffsets(std::span<const std::uint32_t> offset, std::size_t items) 
   return true;
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::perception

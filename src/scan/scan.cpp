@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The name of a scan is a hash of what was measured.
-#include "cluxel/scan/scan.hpp"
+#include "scan/scan.hpp"
 
 #include <span>
 
-namespace cluxel {
+namespace cluxel::scan {
 
 namespace {
 
@@ -32,4 +32,4 @@ ScanId contentIdOf(const Scan& scan) {
   return hasher.finish();
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::scan

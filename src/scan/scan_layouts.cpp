@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Listing of folders. Names decide; file contents are read only to tell text formats apart.
+// Lists folders. File names decide; contents are read only to distinguish text formats.
 #include "scan/scan_layouts.hpp"
 
 #include <algorithm>
@@ -7,20 +7,19 @@
 #include <charconv>
 #include <fstream>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/base/file_bytes.hpp"
-#include "scan/pcd_format.hpp"
-#include "scan/text_formats.hpp"
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "scan/formats/pcd_format.hpp"
+#include "scan/formats/text_formats.hpp"
 
-namespace cluxel {
+namespace cluxel::scan {
 
 namespace fs = std::filesystem;
 
 namespace {
 
 constexpr const char* kKnownFormats =
-    "known are .pcd, .ply, .las, .bin (KITTI), .xyz, .asc, .txt (x y z [intensity], or x y z label "
-    "confidence), "
+    "known are .pcd, .ply, .las, .bin (KITTI), .xyz, .asc, .txt (x y z [intensity], or x y z label confidence), "
     ".xyz_label_conf, and the folders of KITTI odometry and Freiburg/Behley";
 
 std::string lowerExtension(const fs::path& path) {
@@ -36,17 +35,18 @@ bool isScanOfPlainFolder(const fs::path& path) {
   return std::find(known.begin(), known.end(), extension) != known.end();
 }
 
-/// Whether a folder's entry is read. A scan's name that leads nowhere is an error: the others would take its pose.
+/// Whether an entry of a folder is read. A broken link with the name of a scan is an error: without it, the scans that
+/// follow would get the poses of their predecessors.
 bool isShownFile(const fs::path& path) {
   if (path.filename().string().starts_with('.')) return false;
   std::error_code error;
   if (fs::is_regular_file(path, error)) return true;
   if (fs::is_symlink(path, error) && !fs::exists(path, error) && isScanOfPlainFolder(path))
-    throw InputError({.file = path.string()}, "the link leads nowhere", "mend or delete it");
+    throw InputError({.file = path.string()}, "the link leads nowhere", "correct or delete it");
   return false;
 }
 
-/// The files of a folder by name; names that begin with a dot are hidden.
+/// The files of a folder in natural order of their names, without hidden ones (names that begin with a dot).
 std::vector<fs::path> filesOf(const fs::path& folder) {
   std::error_code error;
   std::vector<fs::path> files;
@@ -91,27 +91,48 @@ bool isKnownSideFile(const fs::path& path) {
          name.starts_with("README");
 }
 
-FolderLayout kittiLayout(const fs::path& folder) {
+std::optional<std::size_t> frameNumberOf(const fs::path& path) {
+  const std::string stem = path.stem().string();
+  std::size_t frame = 0;
+  const auto [end, error] = std::from_chars(stem.data(), stem.data() + stem.size(), frame);
+  if (error != std::errc() || end != stem.data() + stem.size()) return std::nullopt;
+  return frame;
+}
+
+/// The .bin files among `files`, with labels from `labels`; `frame` is the rank.
+FolderLayout binLayout(const std::vector<fs::path>& files, const fs::path& labels) {
   FolderLayout layout;
-  layout.frames_are_numbers = true;
-  for (const fs::path& path : filesOf(folder / "velodyne")) {
+  for (const fs::path& path : files) {
     if (lowerExtension(path) != ".bin") continue;
     LayoutScan scan;
     scan.file.path = path;
     scan.file.format = ScanFormat::Kitti;
-    scan.file.labels = existing(folder / "labels" / path.stem().concat(".label"));
-    const std::string stem = path.stem().string();
-    const auto [end, error] = std::from_chars(stem.data(), stem.data() + stem.size(), scan.frame);
-    if (error != std::errc() || end != stem.data() + stem.size())
-      throw InputError({.file = path.string()},
-                       "the name of a KITTI scan must be its frame number, such as 000042.bin");
+    scan.file.labels = existing(labels / path.stem().concat(".label"));
+    scan.frame = layout.scans.size();
     layout.scans.push_back(scan);
   }
+  return layout;
+}
+
+void addKittiPoses(FolderLayout& layout, const fs::path& folder) {
   layout.poses_file = existing(folder / "poses.txt");
   layout.times_file = existing(folder / "times.txt");
   layout.poses_in_camera = true;
   if (const auto calibration = existing(folder / "calib.txt"))
     layout.T_camera_sensor = parseKittiCalibration(readFile(*calibration), calibration->string());
+}
+
+FolderLayout kittiLayout(const fs::path& folder) {
+  FolderLayout layout = binLayout(filesOf(folder / "velodyne"), folder / "labels");
+  layout.frames_are_numbers = true;
+  for (LayoutScan& scan : layout.scans) {
+    const auto frame = frameNumberOf(scan.file.path);
+    if (!frame)
+      throw InputError({.file = scan.file.path.string()},
+                       "the name of a KITTI scan must be its frame number, such as 000042.bin");
+    scan.frame = *frame;
+  }
+  addKittiPoses(layout, folder);
   return layout;
 }
 
@@ -156,17 +177,44 @@ FolderLayout freiburgLayout(const fs::path& folder, const std::vector<fs::path>&
   return layout;
 }
 
-std::optional<fs::path> posesFileOf(const fs::path& folder, const std::vector<fs::path>& files) {
+/// poses.txt first, then .tum files.
+std::vector<fs::path> posesFilesOf(const std::vector<fs::path>& files) {
   std::vector<fs::path> found;
-  for (const fs::path& path : files)
-    if (path.filename() == "poses.txt" || lowerExtension(path) == ".tum") found.push_back(path);
-  if (found.size() > 1)
-    throw InputError({.file = folder.string()},
-                     "the folder has several files of poses: " + found[0].filename().string() + " and " +
-                         found[1].filename().string(),
-                     "keep one, or name it with --poses");
-  if (found.empty()) return std::nullopt;
-  return found.front();
+  for (const fs::path& path : files) {
+    if (path.filename() == "poses.txt") found.insert(found.begin(), path);
+    if (lowerExtension(path) == ".tum") found.push_back(path);
+  }
+  return found;
+}
+
+void addPlainPoses(FolderLayout& layout, const fs::path& folder, const std::vector<fs::path>& files) {
+  layout.other_poses_files = posesFilesOf(files);
+  if (!layout.other_poses_files.empty()) {
+    layout.poses_file = layout.other_poses_files.front();
+    layout.other_poses_files.erase(layout.other_poses_files.begin());
+  }
+  layout.times_file = existing(folder / "times.txt");
+}
+
+/// KITTI scans without the folder velodyne/. Each is in its own sensor frame, so several need poses. Poses beside a
+/// calib.txt are those of the camera.
+FolderLayout looseBinLayout(const fs::path& folder, const std::vector<fs::path>& files) {
+  FolderLayout layout = binLayout(files, folder);
+  for (LayoutScan& scan : layout.scans) scan.needs_pose = layout.scans.size() > 1;
+  if (existing(folder / "calib.txt"))
+    addKittiPoses(layout, folder);
+  else
+    addPlainPoses(layout, folder, files);
+  const auto isNumbered = [](const LayoutScan& scan) { return frameNumberOf(scan.file.path).has_value(); };
+  layout.frames_are_numbers = std::all_of(layout.scans.begin(), layout.scans.end(), isNumbered);
+  if (layout.frames_are_numbers)
+    for (LayoutScan& scan : layout.scans) scan.frame = *frameNumberOf(scan.file.path);
+  return layout;
+}
+
+bool holdsOnlyBins(const std::vector<fs::path>& files) {
+  return std::none_of(files.begin(), files.end(), isScanOfPlainFolder) &&
+         std::any_of(files.begin(), files.end(), [](const fs::path& path) { return lowerExtension(path) == ".bin"; });
 }
 
 FolderLayout plainLayout(const fs::path& folder, const std::vector<fs::path>& files) {
@@ -185,8 +233,7 @@ FolderLayout plainLayout(const fs::path& folder, const std::vector<fs::path>& fi
     scan.frame = layout.scans.size();
     layout.scans.push_back(scan);
   }
-  layout.poses_file = posesFileOf(folder, files);
-  layout.times_file = existing(folder / "times.txt");
+  addPlainPoses(layout, folder, files);
   return layout;
 }
 
@@ -200,21 +247,19 @@ FolderLayout layoutOfFolder(const fs::path& folder) {
   else if (std::any_of(files.begin(), files.end(), freiburgStem))
     layout = freiburgLayout(folder, files);
   else
-    layout = plainLayout(folder, files);
+    layout = holdsOnlyBins(files) ? looseBinLayout(folder, files) : plainLayout(folder, files);
   if (layout.scans.empty()) throw InputError({.file = folder.string()}, "the folder holds no scans", kKnownFormats);
   return layout;
 }
 
-std::optional<fs::path> layoutFolderOf(const fs::path& scan) {
+std::optional<OuterLayout> layoutFolderOf(const fs::path& scan) {
   const fs::path folder = scan.has_parent_path() ? scan.parent_path() : fs::path(".");
-  if (lowerExtension(scan) == ".bin") {
-    if (fs::absolute(folder).lexically_normal().filename() == "velodyne") return folder / "..";
-    return std::nullopt;
-  }
-  if (freiburgStem(scan)) return folder;
-  const std::vector<fs::path> files = filesOf(folder);
-  const bool explained = posesFileOf(folder, files) || fs::exists(folder / "times.txt");
-  return explained ? std::optional(folder) : std::nullopt;
+  if (lowerExtension(scan) == ".bin" && fs::absolute(folder).lexically_normal().filename() == "velodyne")
+    return OuterLayout{folder / ".."};
+  if (freiburgStem(scan)) return OuterLayout{folder};
+  const std::vector<fs::path> poses = posesFilesOf(filesOf(folder));
+  if (poses.empty()) return existing(folder / "times.txt") ? std::optional(OuterLayout{folder}) : std::nullopt;
+  return OuterLayout{.folder = folder, .is_guess = poses.front().filename() != "poses.txt"};
 }
 
 ScanFormat formatOf(const fs::path& scan) {
@@ -255,4 +300,4 @@ bool naturalLess(const std::string& a, const std::string& b) {
   return a_ended != b_ended ? a_ended : a < b;
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::scan

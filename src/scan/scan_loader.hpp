@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// One scan file, read whole.
+// Reads one scan file.
 #pragma once
 
 #include <string>
 #include <string_view>
 
-#include "cluxel/scan/scan_set.hpp"
-#include "scan/parsed_scan.hpp"
+#include "scan/formats/parsed_scan.hpp"
+#include "scan/scan_set.hpp"
 
-namespace cluxel {
+namespace cluxel::scan {
 
 /// Parses bytes of a known format. Throws InputError; never returns an empty scan.
 ParsedScan parseScan(std::string_view bytes, ScanFormat format, const std::string& file);
 
-/// Reads the file and its labels, and gives the scan its pose, time and id.
-Scan loadScan(const ScanFile& file);
+/// Reads the file and its labels, converts the points to metres with z up, and gives the scan its pose, time and id.
+LoadedScan loadScan(const ScanFile& file);
 
-}  // namespace cluxel
+}  // namespace cluxel::scan

@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Puts files, folders and manifests together to one list of scans with poses.
-#include "cluxel/scan/scan_set.hpp"
+// Gathers the scans of files, folders and manifests, with their poses, in one list.
+#include "scan/scan_set.hpp"
 
 #include <algorithm>
 #include <array>
 #include <fstream>
 #include <functional>
 #include <map>
+#include <utility>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/base/file_bytes.hpp"
-#include "scan/manifest.hpp"
-#include "scan/pcd_format.hpp"
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "scan/formats/las_crs.hpp"
+#include "scan/formats/manifest.hpp"
+#include "scan/formats/pcd_format.hpp"
 #include "scan/scan_layouts.hpp"
 #include "scan/scan_loader.hpp"
 
-namespace cluxel {
+namespace cluxel::scan {
 
 namespace fs = std::filesystem;
 
@@ -40,7 +42,7 @@ std::optional<Eigen::Isometry3d> viewpointOf(const fs::path& path) {
   return pcdViewpoint(head, path.string());
 }
 
-/// What is gathered while the inputs are gone through.
+/// Collects scans, poses and the map frame from the inputs, one after the other.
 class ScanGatherer {
  public:
   ScanGatherer(const ScanSetParams& params, ProgressSink& sink) : params_(&params), sink_(&sink) {}
@@ -52,10 +54,10 @@ class ScanGatherer {
     else if (isManifest(input))
       addManifest(input);
     else
-      scans_.push_back(loneScan(input));
+      scans_.push_back(singleScan(input));
   }
 
-  /// Poses given by hand, then those of PCD files themselves; says which scans are left without.
+  /// Assigns the poses of the parameters, then those inside PCD files, and notes which scans have none.
   std::vector<ScanFile> finish() {
     if (!params_->poses.empty()) assignGivenPoses();
     std::vector<ScanFile> files;
@@ -66,13 +68,22 @@ class ScanGatherer {
           scan.file.has_pose = true;
         }
       }
+      if (scan.needs_pose && !scan.file.has_pose)
+        throw InputError({.file = scan.file.path.string()},
+                         "has no pose: the KITTI scans (.bin) of a folder lie each in the frame of its sensor",
+                         params_->remedies.poses + ", or put poses.txt beside the scans");
+      scan.file.T_map_sensor = toMetresZUp(scan.file.T_map_sensor, params_->frame);
+      scan.file.frame = params_->frame;
       files.push_back(std::move(scan.file));
     }
-    noteLoneScans(files);
+    noteScansWithoutPose(files);
+    readCrs(files);
     return files;
   }
 
-  const std::optional<Eigen::Vector3d>& mapOrigin() const { return map_origin_; }
+  Eigen::Vector3d mapOrigin() const {
+    return toMetresZUp(map_origin_.value_or(Eigen::Vector3d::Zero()), params_->frame);
+  }
   const std::string& crs() const { return crs_; }
 
  private:
@@ -80,7 +91,8 @@ class ScanGatherer {
     // A manifest that lists its own folder means the scans there.
     if (const auto manifest = manifestIn(folder); manifest && !isReading(*manifest)) return addManifest(*manifest);
     const fs::path root = isVelodyneFolder(folder) ? folder / ".." : folder;
-    for (const LayoutScan& scan : layoutAt(root).scans) scans_.push_back(scan);
+    const FolderLayout& layout = layoutAt(root);
+    scans_.insert(scans_.end(), layout.scans.begin(), layout.scans.end());
   }
 
   static bool isVelodyneFolder(const fs::path& folder) {
@@ -95,18 +107,37 @@ class ScanGatherer {
     if (known != layouts_.end()) return known->second;
     FolderLayout layout = layoutOfFolder(folder);
     attachTimes(layout);
-    if (params_->poses.empty()) attachPoses(layout, *sink_);
+    if (params_->poses.empty()) {
+      if (!layout.other_poses_files.empty())
+        throw InputError({.file = folder.string()},
+                         "the folder has several poses files: " + layout.poses_file->filename().string() + " and " +
+                             layout.other_poses_files.front().filename().string(),
+                         "keep one, or " + params_->remedies.poses);
+      attachPoses(layout, *sink_);
+    }
     return layouts_.emplace(name, std::move(layout)).first->second;
   }
 
-  LayoutScan loneScan(const fs::path& path) {
-    const auto folder = layoutFolderOf(path);
-    if (!folder) return plainScan(path);
-    const FolderLayout& layout = layoutAt(*folder);
+  /// A single file has the pose and time that it has as a part of its folder.
+  LayoutScan singleScan(const fs::path& path) {
+    const auto outer = layoutFolderOf(path);
+    if (!outer) return plainScan(path);
+    if (!outer->is_guess) return scanOf(layoutAt(outer->folder), path);
+    try {
+      return scanOf(layoutAt(outer->folder), path);
+    } catch (const InputError& e) {
+      sink_->note(path.string() + ": a .tum file lies beside it, but is not used: " + e.diagnostics().front().message +
+                  "; if it holds the pose of this scan, " + params_->remedies.poses);
+      return plainScan(path);
+    }
+  }
+
+  static LayoutScan scanOf(const FolderLayout& layout, const fs::path& path) {
     for (const LayoutScan& scan : layout.scans) {
       if (scan.file.path.filename() != path.filename()) continue;
       LayoutScan found = scan;
       found.file.path = path;
+      found.needs_pose = false;
       return found;
     }
     throw InputError({.file = path.string()}, "is not among the scans of its folder, which have poses or times there",
@@ -121,7 +152,7 @@ class ScanGatherer {
     return scan;
   }
 
-  /// Whether the innermost manifest that is being read is this one; one further out would never end.
+  /// Whether the innermost manifest being read is this one. One further out would lead to an endless recursion.
   bool isReading(const fs::path& manifest) const {
     for (std::size_t i = open_manifests_.size(); i-- > 0;) {
       if (!fs::equivalent(manifest, open_manifests_[i])) continue;
@@ -173,7 +204,7 @@ class ScanGatherer {
     }
     if (isManifest(entry.path))
       throw InputError({.file = manifest.string()}, "a manifest cannot list the manifest " + entry.path.string());
-    LayoutScan scan = entry.pose || entry.format ? plainScan(entry.path, entry.format) : loneScan(entry.path);
+    LayoutScan scan = entry.pose || entry.format ? plainScan(entry.path, entry.format) : singleScan(entry.path);
     if (entry.pose) scan.file.T_map_sensor = *entry.pose;
     if (entry.pose) scan.file.has_pose = true;
     if (entry.time_s) scan.file.time_s = entry.time_s;
@@ -181,7 +212,7 @@ class ScanGatherer {
     scans_.push_back(std::move(scan));
   }
 
-  /// The poses of a file for the scans from `first` on, in their order.
+  /// Assigns the poses of a file to the scans from `first` on, in their order.
   void assignPosesFrom(const fs::path& poses, std::size_t first) {
     std::vector<LayoutScan*> scans;
     for (std::size_t i = first; i < scans_.size(); ++i) {
@@ -191,14 +222,13 @@ class ScanGatherer {
     assignPoses(scans, parsePoses(readFile(poses), poses.string()), poses.string(), false);
   }
 
-  /// Poses given by hand for one KITTI sequence are those of the whole sequence, by frame number, and of its
-  /// camera.
+  /// For one KITTI sequence, a given poses file is that of the whole sequence: by frame number, and of its camera.
   void assignGivenPoses() {
     if (layouts_.size() != 1 || !layouts_.begin()->second.frames_are_numbers) return assignPosesFrom(params_->poses, 0);
     if (without_layout_)
       throw InputError({.file = params_->poses.string()},
-                       "holds poses of a KITTI sequence, by the numbers of its frames; " + without_layout_->string() +
-                           " is not of that sequence",
+                       "holds the poses of a KITTI sequence by frame number; " + without_layout_->string() +
+                           " does not belong to that sequence",
                        "list it with its pose in a manifest, beside the folder of the sequence");
     FolderLayout sequence = layouts_.begin()->second;
     sequence.poses_file = params_->poses;
@@ -207,23 +237,64 @@ class ScanGatherer {
     scans_ = sequence.scans;
   }
 
-  void noteLoneScans(const std::vector<ScanFile>& files) const {
+  void noteScansWithoutPose(const std::vector<ScanFile>& files) const {
     const auto posed = [](const ScanFile& file) { return file.has_pose; };
     const auto first = std::find_if_not(files.begin(), files.end(), posed);
     if (first == files.end()) return;
-    const auto lone = std::count_if(files.begin(), files.end(), std::not_fn(posed));
-    sink_->note(std::to_string(lone) + " of " + std::to_string(files.size()) +
+    const auto unposed = std::count_if(files.begin(), files.end(), std::not_fn(posed));
+    sink_->note(std::to_string(unposed) + " of " + std::to_string(files.size()) +
                 " scans have no pose and are taken as given in the map frame (" + first->path.string() +
-                (lone > 1 ? ", ..." : "") +
-                "): where the sensor stood is not known, so questions of visibility answer \"not observed\"");
+                (unposed > 1 ? ", ..." : "") +
+                "): the position of the sensor is unknown, so visibility queries answer \"not observed\"");
+  }
+
+  /// The coordinate system of LAS files, unless a manifest states one. Only poses and map_origin of a manifest lead out
+  /// of it, so scans of different systems do not fit in one map.
+  void readCrs(const std::vector<ScanFile>& files) {
+    const ScanFile* first = nullptr;
+    std::string crs;
+    for (const ScanFile& file : files) {
+      if (file.format != ScanFormat::Las) continue;
+      const auto stated = lasCrsOf(file.path);
+      if (!stated) continue;
+      if (!std::exchange(unit_noted_, true)) noteUnit(*stated, file.path);
+      if (stated->crs.empty()) {
+        sink_->note(file.path.string() + ": its coordinate system is not kept: " + stated->fault);
+        continue;
+      }
+      if (first && crs != stated->crs)
+        throw InputError(
+            {.file = file.path.string()},
+            "has another coordinate system than " + first->path.string() + ": " + stated->crs + " and " + crs,
+            "one map has one frame: transform one of them");
+      first = &file;
+      crs = stated->crs;
+    }
+    if (!first || !crs_.empty()) return;
+    if (params_->frame == InputFrame{})
+      crs_ = crs;
+    else
+      sink_->note(first->path.string() + ": its coordinate system (" + crs +
+                  ") is not kept, because the coordinates are converted to metres with z up");
+  }
+
+  void noteUnit(const LasCrs& stated, const fs::path& path) const {
+    if (stated.is_geographic)
+      sink_->note(path.string() + ": warning: its coordinates are degrees (" + stated.crs +
+                  "); a map needs metres: project the file first");
+    else if (stated.unit && *stated.unit != params_->frame.unit)
+      sink_->note(path.string() + ": warning: the unit of its coordinate system is " +
+                  std::string(nameOf(*stated.unit)) + ", but its coordinates are read as " +
+                  std::string(nameOf(params_->frame.unit)) + "; " + params_->remedies.unit);
   }
 
   const ScanSetParams* params_;
   ProgressSink* sink_;
   std::vector<LayoutScan> scans_;
-  std::map<fs::path, FolderLayout> layouts_;  ///< by whole paths
-  std::vector<fs::path> open_manifests_;      ///< those that are being read, outermost first
-  std::optional<fs::path> without_layout_;    ///< the first scan of no folder that explains it
+  std::map<fs::path, FolderLayout> layouts_;  ///< by absolute path
+  std::vector<fs::path> open_manifests_;      ///< being read, outermost first
+  std::optional<fs::path> without_layout_;    ///< the first scan without a folder that states poses or times
+  bool unit_noted_ = false;
   std::optional<Eigen::Vector3d> map_origin_;
   std::string crs_;
 };
@@ -240,8 +311,9 @@ ScanSet ScanSet::open(const std::vector<fs::path>& inputs, const ScanSetParams& 
   for (const fs::path& input : inputs) gatherer.add(input);
   ScanSet set;
   set.files_ = gatherer.finish();
-  set.map_origin_ = gatherer.mapOrigin().value_or(Eigen::Vector3d::Zero());
+  set.map_origin_ = gatherer.mapOrigin();
   set.crs_ = gatherer.crs();
+  set.remedies_ = params.remedies;
   return set;
 }
 
@@ -257,8 +329,8 @@ ScanSet ScanSet::posed(const std::vector<PosedScan>& scans) const {
   return set;
 }
 
-Scan ScanSet::load(std::size_t index) const {
+LoadedScan ScanSet::read(std::size_t index) const {
   return loadScan(files_.at(index));
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::scan

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Counts and extents of scans.
-#include "cluxel/scan/scan_summary.hpp"
+#include "scan/scan_summary.hpp"
 
-#include "cluxel/base/parallel.hpp"
+#include "base/parallel.hpp"
 
-namespace cluxel {
+namespace cluxel::scan {
 
 ScanSummary summarize(const Scan& scan, ScanFormat format) {
   ScanSummary summary;
@@ -28,8 +28,16 @@ ScanSetSummary summarize(const ScanSet& scans, unsigned threads) {
   total.map_origin_m = scans.mapOrigin();
   total.crs = scans.crs();
   total.scans.resize(scans.size());
-  parallelFor(scans.size(), threads,
-              [&](std::size_t i) { total.scans[i] = summarize(scans.load(i), scans.file(i).format); });
+  std::vector<ScanReading> readings(scans.size());
+  parallelFor(scans.size(), threads, [&](std::size_t i) {
+    LoadedScan loaded = scans.read(i);
+    total.scans[i] = summarize(loaded.scan, scans.file(i).format);
+    readings[i] = std::move(loaded.reading);
+  });
+  ReadingNotes notes(scans.remedies());
+  for (const ScanReading& reading : readings)
+    for (std::string& note : notes.add(reading)) total.notes.push_back(std::move(note));
+  for (std::string& note : notes.totals()) total.notes.push_back(std::move(note));
   for (const ScanSummary& scan : total.scans) {
     total.point_count += scan.point_count;
     total.extent_map_m.extend(scan.extent_map_m);
@@ -38,4 +46,4 @@ ScanSetSummary summarize(const ScanSet& scans, unsigned threads) {
   return total;
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::scan

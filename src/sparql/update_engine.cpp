@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// SPARQL 1.1 Update: operation after operation, each seeing what those before it wrote.
-#include "cluxel/sparql/update_engine.hpp"
+// SPARQL 1.1 Update: executes operations in sequence; each sees the effects of the earlier ones.
+#include "sparql/update_engine.hpp"
 
 #include <algorithm>
 #include <map>
 #include <random>
 
-#include "cluxel/base/content_hash.hpp"
-#include "cluxel/sparql/parser.hpp"
-#include "sparql/source_text.hpp"
-#include "sparql/update_modify.hpp"
+#include "base/content_hash.hpp"
+#include "sparql/exec/update_modify.hpp"
+#include "sparql/syntax/parser.hpp"
+#include "sparql/syntax/source_text.hpp"
 
-namespace cluxel {
+namespace cluxel::sparql {
 namespace {
 
 bool mentionsBnode(std::string_view text) {
@@ -22,7 +22,7 @@ bool mentionsBnode(std::string_view text) {
 
 class UpdateRun {
  public:
-  UpdateRun(WriteTransaction& transaction, const ast::Update& update, const UpdateOptions& options)
+  UpdateRun(rdf::WriteTransaction& transaction, const ast::Update& update, const UpdateOptions& options)
       : transaction_(transaction),
         update_(update),
         options_(options),
@@ -48,11 +48,11 @@ class UpdateRun {
   void perform(const ast::DataUpdate& data);
   void perform(const ast::Modify& modify);
 
-  [[noreturn]] void fail(const std::string& message, const std::string& hint = {}) const {
-    failAt(options_.query.source_name, update_.text, operation_->at, message, hint);
+  [[noreturn]] void fail(const std::string& message, const std::string& hint = {}, Remedy remedy = Remedy::None) const {
+    failAt(options_.query.source_name, update_.text, operation_->at, message, hint, remedy);
   }
 
-  /// The graph that text without a graph writes.
+  /// The target graph of templates and DATA without GRAPH.
   Term defaultGraph() const {
     if (options_.any_graph_writable || options_.writable_graphs.empty()) return Term::iri("");
     return Term::iri(options_.writable_graphs.front());
@@ -71,17 +71,17 @@ class UpdateRun {
     writer_.add(quad);
     ++report_.inserted;
   }
-  void removeStored(const QuadReader& reader, const Quad& quad);
+  void removeStored(const rdf::QuadReader& reader, const Quad& quad);
   void clearTarget(const ast::GraphTarget& target);
   std::vector<Quad> quadsOf(const Term& graph) const;
   std::string freshPrefix();
   std::vector<std::string> blankLabels() const;
   std::string freshLabel() { return label_prefix_ + std::to_string(++fresh_labels_); }
 
-  WriteTransaction& transaction_;
+  rdf::WriteTransaction& transaction_;
   const ast::Update& update_;
   const UpdateOptions& options_;
-  QuadWriter writer_;
+  rdf::QuadWriter writer_;
   std::mt19937_64 random_;
   std::string label_prefix_;
   std::uint64_t fresh_labels_ = 0, modify_runs_ = 0;
@@ -90,29 +90,29 @@ class UpdateRun {
   UpdateReport report_;
 };
 
-/// The blank nodes of the graphs that may be written, sorted.
+/// The blank nodes of the writable graphs, sorted.
 std::vector<std::string> UpdateRun::blankLabels() const {
-  const QuadReader reader(transaction_);
+  const rdf::QuadReader reader(transaction_);
   std::vector<std::string> labels;
   for (const std::string& graph : options_.writable_graphs) {
-    QuadPattern pattern;
+    rdf::QuadPattern pattern;
     pattern.g = reader.idOf(Term::iri(graph));
     if (!pattern.g) continue;
-    QuadCursor cursor = reader.scan(pattern);
-    for (QuadIds quad; cursor.next(quad);)
-      for (const TermId id : {quad.s, quad.o})
+    rdf::QuadCursor cursor = reader.scan(pattern);
+    for (rdf::QuadIds quad; cursor.next(quad);)
+      for (const rdf::TermId id : {quad.s, quad.o})
         if (reader.valueOf(id).kind == TermKind::BlankNode) labels.emplace_back(reader.viewOf(id).text);
   }
   std::sort(labels.begin(), labels.end());
   return labels;
 }
 
-/// How the blank nodes of this request begin, unlike any that there is. In a map it follows from the request and from
-/// what is stated already, so that the same requests in the same order make the same map.
+/// The label prefix of this request's blank nodes, which no stored label has. For a map it is derived from the request
+/// and the writable graphs, so that equal sequences of requests give equal maps.
 std::string UpdateRun::freshPrefix() {
   if (options_.any_graph_writable || options_.query.seed)
     return "u" + std::to_string(random_() % 1'000'000'000'000) + "x";
-  // Most requests make no blank nodes, and do not pay for looking at those that there are.
+  // Computed on demand, because most requests create no blank nodes.
   const bool may_make = update_.text.find_first_of("[_\\") != std::string::npos || mentionsBnode(update_.text);
   const std::vector<std::string> labels = may_make ? blankLabels() : std::vector<std::string>();
   const auto isUsed = [&labels](const std::string& prefix) {
@@ -131,7 +131,7 @@ void UpdateRun::perform(const ast::Load& load) {
   checkWritable(graph);
   if (!options_.load) {
     if (load.silent) return;
-    fail("LOAD is refused", "name the file that it reads: cluxel update --load IRI=FILE");
+    fail("LOAD is refused", "name the file that it reads", Remedy::NameLoadFile);
   }
   try {
     for (Quad& quad : options_.load(load.source.text)) {
@@ -145,13 +145,13 @@ void UpdateRun::perform(const ast::Load& load) {
 
 std::vector<Quad> UpdateRun::quadsOf(const Term& graph) const {
   std::vector<Quad> quads;
-  const QuadReader reader(transaction_);
-  const auto id = graph.text.empty() ? std::optional<TermId>(kNoTerm) : reader.idOf(graph);
+  const rdf::QuadReader reader(transaction_);
+  const auto id = graph.text.empty() ? std::optional<rdf::TermId>(rdf::kNoTerm) : reader.idOf(graph);
   if (!id) return quads;
-  QuadPattern pattern;
+  rdf::QuadPattern pattern;
   pattern.g = *id;
-  QuadCursor cursor = reader.scan(pattern);
-  for (QuadIds quad; cursor.next(quad);) {
+  rdf::QuadCursor cursor = reader.scan(pattern);
+  for (rdf::QuadIds quad; cursor.next(quad);) {
     quads.push_back({reader.termOf(quad.s), reader.termOf(quad.p), reader.termOf(quad.o), graph});
   }
   return quads;
@@ -159,27 +159,27 @@ std::vector<Quad> UpdateRun::quadsOf(const Term& graph) const {
 
 void UpdateRun::clearTarget(const ast::GraphTarget& target) {
   using Kind = ast::GraphTarget::Kind;
-  const QuadReader reader(transaction_);
+  const rdf::QuadReader reader(transaction_);
   const auto clear = [&](const Term& graph) {
     checkWritable(graph);
-    const auto id = graph.text.empty() ? std::optional<TermId>(kNoTerm) : reader.idOf(graph);
+    const auto id = graph.text.empty() ? std::optional<rdf::TermId>(rdf::kNoTerm) : reader.idOf(graph);
     if (!id) return;
-    QuadPattern pattern;
+    rdf::QuadPattern pattern;
     pattern.g = *id;
     report_.deleted += reader.count(pattern);
     writer_.clearGraph(*id);
   };
   if (target.kind == Kind::Graph || target.kind == Kind::Default) return clear(targetGraph(target));
   std::vector<Term> graphs;
-  for (const TermId graph : reader.graphs()) {
-    if (graph != kNoTerm || target.kind == Kind::All) graphs.push_back(reader.termOf(graph));
+  for (const rdf::TermId graph : reader.graphs()) {
+    if (graph != rdf::kNoTerm || target.kind == Kind::All) graphs.push_back(reader.termOf(graph));
   }
   for (const Term& graph : graphs) clear(graph);
 }
 
 void UpdateRun::perform(const ast::Create& create) {
   checkWritable(create.graph);
-  // A graph without quads is not stored, so that creating one changes nothing.
+  // Empty graphs are not stored, so creating one has no effect.
   if (!create.silent && !quadsOf(create.graph).empty()) fail("the graph <" + create.graph.text + "> is there already");
 }
 
@@ -205,7 +205,7 @@ void UpdateRun::perform(const ast::Transfer& transfer) {
 }
 
 void UpdateRun::perform(const ast::DataUpdate& data) {
-  const QuadReader reader(transaction_);
+  const rdf::QuadReader reader(transaction_);
   const auto fresh = [this](Term& term) {
     if (term.kind != TermKind::BlankNode) return;
     std::string& label = request_labels_[term.text];
@@ -226,20 +226,20 @@ void UpdateRun::perform(const ast::DataUpdate& data) {
   }
 }
 
-void UpdateRun::removeStored(const QuadReader& reader, const Quad& quad) {
+void UpdateRun::removeStored(const rdf::QuadReader& reader, const Quad& quad) {
   const auto s = reader.idOf(quad.subject), p = reader.idOf(quad.predicate), o = reader.idOf(quad.object);
-  const auto g = quad.graph.text.empty() ? std::optional<TermId>(kNoTerm) : reader.idOf(quad.graph);
+  const auto g = quad.graph.text.empty() ? std::optional<rdf::TermId>(rdf::kNoTerm) : reader.idOf(quad.graph);
   if (s && p && o && g) writer_.remove({*s, *p, *o, *g});
 }
 
 void UpdateRun::perform(const ast::Modify& modify) {
-  const QuadReader reader(transaction_);
-  sparql::ModifyRun run(reader, update_, *operation_, modify, options_);
+  const rdf::QuadReader reader(transaction_);
+  ModifyRun run(reader, update_, *operation_, modify, options_);
   run.label_prefix = label_prefix_ + "w" + std::to_string(++modify_runs_) + "x";
   run.seed = random_();
   run.default_graph = modify.with.value_or(defaultGraph());
   run.fresh_label = [this] { return freshLabel(); };
-  const sparql::Changes changes = run.changes();
+  const Changes changes = run.changes();
   for (const Quad& quad : changes.removed) {
     checkWritable(quad.graph);
     ++report_.deleted;
@@ -253,7 +253,7 @@ void UpdateRun::perform(const ast::Modify& modify) {
 
 }  // namespace
 
-UpdateReport runUpdate(WriteTransaction& transaction, std::string_view text, const UpdateOptions& options) {
+UpdateReport runUpdate(rdf::WriteTransaction& transaction, std::string_view text, const UpdateOptions& options) {
   SparqlParseOptions parse_options;
   parse_options.file = options.query.source_name;
   parse_options.base_iri = options.query.base_iri;
@@ -261,4 +261,4 @@ UpdateReport runUpdate(WriteTransaction& transaction, std::string_view text, con
   return UpdateRun(transaction, update, options).run();
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::sparql

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Binary little-endian PLY, one vertex a point, cloud by cloud.
+// Binary little-endian PLY, one vertex per point, cloud by cloud. CloudCompare reads fields named scalar_… of type
+// float.
 #include "tasks/cloud_export.hpp"
 
 #include <array>
@@ -7,9 +8,9 @@
 #include <cstring>
 #include <string>
 
-#include "cluxel/knowledge/ontology.hpp"
+#include "rdf/ontology/ontology.hpp"
 
-namespace cluxel {
+namespace cluxel::tasks {
 
 namespace {
 
@@ -25,11 +26,11 @@ Colour colourOf(std::string_view text) {
   return colour;
 }
 
-std::vector<Colour> coloursOf(const MapReader& map) {
-  const OntologyView ontology = ontologyViewOf(map.quads());
+std::vector<Colour> coloursOf(const mapping::MapReader& map) {
+  const rdf::OntologyView ontology = ontologyViewOf(map.quads());
   std::vector<Colour> colours;
-  for (const SemanticObject& object : map.objects()) {
-    const OntologyClass* known = ontology.find(object.class_iri);
+  for (const rules::SemanticObject& object : map.objects()) {
+    const rdf::OntologyClass* known = ontology.find(object.class_iri);
     colours.push_back(known == nullptr ? kGrey : colourOf(known->color));
   }
   return colours;
@@ -39,7 +40,7 @@ std::string headerFor(std::uint64_t points) {
   return "ply\nformat binary_little_endian 1.0\ncomment Cluxel: map frame, metres\nelement vertex " +
          std::to_string(points) +
          "\nproperty double x\nproperty double y\nproperty double z\nproperty uchar red\nproperty uchar green\n"
-         "property uchar blue\nproperty uchar primitive\nproperty int object\nend_header\n";
+         "property uchar blue\nproperty float scalar_primitive\nproperty float scalar_object\nend_header\n";
 }
 
 template <typename T>
@@ -49,25 +50,25 @@ void append(std::string& bytes, const T& value) {
 
 }  // namespace
 
-void writeColouredPly(const MapReader& map, const ByteSink& out) {
+void writeColouredPly(const mapping::MapReader& map, const ByteSink& out) {
   const std::vector<Colour> colours = coloursOf(map);
   std::uint64_t total = 0;
-  for (const Cloud& cloud : map.clouds()) total += cloud.point_count;
+  for (const mapping::Cloud& cloud : map.clouds()) total += cloud.point_count;
   out(headerFor(total));
-  for (const Cloud& cloud : map.clouds()) {
-    const ScanPoints points = map.pointsOf(cloud.id);
-    const PointAnswers answers = map.answersFor(cloud);
+  for (const mapping::Cloud& cloud : map.clouds()) {
+    const scan::ScanPoints points = map.pointsOf(cloud.id);
+    const mapping::PointAnswers answers = map.answersFor(cloud);
     std::string bytes;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Eigen::Vector3d p = toMap(cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
+      const Eigen::Vector3d p = scan::toMap(cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
       append(bytes, p.x()), append(bytes, p.y()), append(bytes, p.z());
-      const bool has_object = answers.object[i] != kNoObjectOfPoint;
+      const bool has_object = answers.object[i] != mapping::kNoObjectOfPoint;
       append(bytes, has_object ? colours[answers.object[i]] : kGrey);
-      append(bytes, answers.label[i]);
-      append(bytes, has_object ? static_cast<std::int32_t>(answers.object[i]) : -1);
+      append(bytes, static_cast<float>(answers.label[i]));
+      append(bytes, has_object ? static_cast<float>(answers.object[i]) : -1.0F);
     }
     out(bytes);
   }
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::tasks

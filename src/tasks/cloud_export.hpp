@@ -2,10 +2,10 @@
 // Clouds coloured by class.
 #pragma once
 
-#include "cluxel/tasks/map_export.hpp"
+#include "tasks/map_export.hpp"
 
-namespace cluxel {
+namespace cluxel::tasks {
 
-void writeColouredPly(const MapReader& map, const ByteSink& out);
+void writeColouredPly(const mapping::MapReader& map, const ByteSink& out);
 
-}  // namespace cluxel
+}  // namespace cluxel::tasks

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Walks over all points of all clouds with their truth.
-#include "cluxel/tasks/evaluation.hpp"
+// Visits all points of all clouds with their truth.
+#include "tasks/evaluation.hpp"
 
 #include <algorithm>
 #include <filesystem>
 #include <map>
 #include <numeric>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/mapping/class_catalogue_of.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/map_inputs.hpp"
 #include "tasks/object_matching.hpp"
 #include "tasks/truth_class.hpp"
 
-namespace cluxel {
+namespace cluxel::tasks {
 
 namespace {
 
@@ -24,8 +24,8 @@ double harmonic(double a, double b) {
   return a + b == 0 ? 0.0 : 2 * a * b / (a + b);
 }
 
-Scan scanOf(const MapReader& map, const Cloud& cloud) {
-  Scan scan;
+scan::Scan scanOf(const mapping::MapReader& map, const mapping::Cloud& cloud) {
+  scan::Scan scan;
   scan.points = map.pointsOf(cloud.id);
   scan.T_map_sensor = cloud.T_map_sensor;
   scan.has_pose = cloud.has_pose;
@@ -35,14 +35,14 @@ Scan scanOf(const MapReader& map, const Cloud& cloud) {
 }
 
 std::vector<std::string> primitiveNames() {
-  return {kPrimitiveLabelNames.begin(), kPrimitiveLabelNames.end()};
+  return {scan::kPrimitiveLabelNames.begin(), scan::kPrimitiveLabelNames.end()};
 }
 
-/// Two scans of one name have one truth file, which cannot be true of both.
-void refuseSharedTruth(const MapReader& map, const TruthSource& source) {
+/// Two scans with the same name would share a truth file, which can fit only one of them.
+void refuseSharedTruth(const mapping::MapReader& map, const TruthSource& source) {
   std::map<std::filesystem::path, std::string> scan_of;
-  for (const Cloud& cloud : map.clouds()) {
-    Scan scan;
+  for (const mapping::Cloud& cloud : map.clouds()) {
+    scan::Scan scan;
     scan.source = cloud.source;
     const auto file = source.fileOf(scan);
     if (!file) continue;
@@ -117,37 +117,37 @@ double ObjectScore::f1() const {
   return harmonic(precision(), recall());
 }
 
-MapEvaluation evaluateMap(const MapReader& map, const TruthSource& source, const EvaluationParams& params) {
+MapEvaluation evaluateMap(const mapping::MapReader& map, const TruthSource& source, const EvaluationParams& params) {
   const std::vector<std::string> names = source.classNames();
   refuseSharedTruth(map, source);
   MapEvaluation evaluation{ConfusionMatrix(primitiveNames()), ConfusionMatrix(names), false, {}, {}};
   const std::vector<std::size_t> class_of_object =
       truthClassesOf(map.objects(), names, classCatalogueOf(map.inputs().ontology));
   ObjectMatching matching(names, class_of_object, source.ambiguous());
-  // Ground has no ends that two people would agree on: it counts by point only.
+  // Ground has no well-defined instances: it counts by point only.
   const auto ground = static_cast<std::size_t>(std::find(names.begin(), names.end(), "Ground") - names.begin());
-  for (const Cloud& cloud : map.clouds()) {
-    const Scan scan = scanOf(map, cloud);
-    const PointTruth truth = source.truthOf(scan);
-    const PointAnswers answers = map.answersFor(cloud);
+  for (const mapping::Cloud& cloud : map.clouds()) {
+    const scan::Scan scan = scanOf(map, cloud);
+    const scan::PointTruth truth = source.truthOf(scan);
+    const mapping::PointAnswers answers = map.answersFor(cloud);
     for (std::size_t i = 0; i < scan.points.size(); ++i) {
       if (truth.primitive[i] >= 0)
         evaluation.primitives.add(static_cast<std::size_t>(truth.primitive[i]), answers.label[i]);
       if (truth.object_class[i] < 0) continue;
       const auto truth_class = static_cast<std::size_t>(truth.object_class[i]);
       const std::uint32_t object = answers.object[i];
-      evaluation.objects.add(truth_class, object == kNoObjectOfPoint ? names.size() : class_of_object[object]);
+      evaluation.objects.add(truth_class, object == mapping::kNoObjectOfPoint ? names.size() : class_of_object[object]);
       const Eigen::Vector3f p(scan.points.x[i], scan.points.y[i], scan.points.z[i]);
       const bool has_instance = !truth.instance.empty() && truth_class != ground;
-      matching.add(toMap(scan.T_map_sensor, p), truth_class, has_instance ? truth.instance[i] : -1, object);
+      matching.add(scan::toMap(scan.T_map_sensor, p), truth_class, has_instance ? truth.instance[i] : -1, object);
     }
   }
   if (evaluation.primitives.total() == 0 && evaluation.objects.total() == 0)
-    throw Error(ExitCode::FaultyInput, "the truth says nothing about the points of this map; is it of other scans?");
+    throw Error(ErrorKind::FaultyInput, "the truth says nothing about the points of this map; is it of other scans?");
   evaluation.has_instances = matching.hasInstances();
   evaluation.by_box = matching.scoreByBox(params);
   evaluation.by_points = matching.scoreByPoints(params);
   return evaluation;
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::tasks

@@ -6,9 +6,9 @@
 #include <optional>
 #include <span>
 
-#include "cluxel/tasks/evaluation.hpp"
+#include "tasks/evaluation.hpp"
 
-namespace cluxel {
+namespace cluxel::tasks {
 
 namespace {
 
@@ -19,7 +19,7 @@ std::string padded(std::string text, std::size_t width) {
   return text;
 }
 
-/// A share, or nothing where it would be one of no things at all.
+/// A share; empty where the total is 0.
 using Share = std::optional<double>;
 
 Share shareOf(double value, std::uint64_t whole) {
@@ -39,7 +39,7 @@ std::string row(const std::string& name, std::span<const Share> shares, std::uin
   return text + padded("", 3) + std::to_string(count) + '\n';
 }
 
-/// Precision, recall, F1, IoU. Without truth there is nothing to find: only the false answers can be counted.
+/// Precision, recall, F1, IoU. A class without truth has a count of false answers only.
 std::array<Share, 4> sharesOf(const ConfusionMatrix& matrix, std::size_t i) {
   const std::uint64_t truth = matrix.truthCount(i);
   return {shareOf(matrix.precision(i), matrix.answerCount(i)), shareOf(matrix.recall(i), truth),
@@ -152,4 +152,4 @@ std::string toJson(const MapEvaluation& evaluation) {
   return json.dump(2);
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::tasks

@@ -1,23 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds what a name means in a map and hands it to the rules.
-#include "cluxel/tasks/explanation.hpp"
+// Finds what a name means in a map and has the rules explain it.
+#include "tasks/explanation.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <nlohmann/json.hpp>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/mapping/ask_replay.hpp"
-#include "cluxel/mapping/class_catalogue_of.hpp"
-#include "cluxel/reasoning/explain.hpp"
-#include "cluxel/reasoning/rule_loader.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/facts/ask_replay.hpp"
+#include "rules/explain/explain.hpp"
+#include "rules/language/rule_loader.hpp"
 
-namespace cluxel {
+namespace cluxel::tasks {
 
 namespace {
 
-RuleSet rulesOf(const MapInputs& inputs) {
-  std::vector<RuleSource> sources;
-  for (const NamedText& text : inputs.rules) sources.push_back({text.name, text.text});
+constexpr std::size_t kMinDigits = 4;  ///< of a hash
+
+rules::RuleSet rulesOf(const mapping::MapInputs& inputs) {
+  std::vector<rules::RuleSource> sources;
+  for (const mapping::NamedText& text : inputs.rules) sources.push_back({text.name, text.text});
   return loadRuleTexts(sources, inputs.rule_roots, classCatalogueOf(inputs.ontology)).require();
+}
+
+/// Names rule files relative to the folder of the first: the map holds the paths of the machine that built it.
+void shortenFiles(rules::Explanation& explanation, const mapping::MapInputs& inputs) {
+  if (inputs.rules.empty()) return;
+  const std::filesystem::path folder = std::filesystem::path(inputs.rules.front().name).parent_path();
+  for (rules::ExplainedDecision& explained : explanation.decisions)
+    for (rules::DecisionStep& step : explained.decision.path) {
+      const std::filesystem::path file(step.file), relative = file.lexically_relative(folder);
+      const bool is_below = !relative.empty() && *relative.begin() != "..";
+      step.file = (is_below ? relative : file.filename()).string();
+    }
 }
 
 /// The name without what tables and other formats write around it: <IRI>, map:object/HEX.
@@ -33,47 +48,97 @@ bool isNamed(const std::string& kind, const ContentHash& id, const std::string& 
   return path.starts_with(name) || hex.starts_with(name) || name.ends_with("/map/" + path);
 }
 
-/// The one thing of the list that has the name; none when there is none.
-template <typename Things>
-std::optional<std::size_t> findOne(const Things& things, const std::string& kind, const std::string& name) {
+/// The place of the only item that has the name; none when there is none.
+template <typename Items>
+std::optional<std::size_t> findOne(const Items& items, const std::string& kind, const std::string& name) {
   std::optional<std::size_t> found;
-  for (std::size_t i = 0; i < things.size(); ++i) {
-    if (!isNamed(kind, things[i].id, name)) continue;
-    if (found) throw Error(ExitCode::NoRows, "'" + name + "' names more than one " + kind + "; write more digits");
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (!isNamed(kind, items[i].id, name)) continue;
+    if (found) throw Error(ErrorKind::NotFound, "'" + name + "' names more than one " + kind + "; write more digits");
     found = i;
   }
   return found;
 }
 
-}  // namespace
-
-std::string explainThing(const MapReader& map, const std::string& written, bool as_json) {
-  const std::string name = plainName(written);
-  const RuleSet rules = rulesOf(map.inputs());
-  const Scene& scene = map.scene();
-  AskReplay oracle(map);
-  const ReasoningContext context{.oracle = &oracle};
-  Explanation explanation;
-  if (name.size() < 4)
-    throw Error(ExitCode::Usage, "'" + name + "' is too short: write at least four digits of the name");
-  const auto primitive = findOne(scene.primitives, "primitive", name);
-  const bool is_object = findOne(map.objects(), "object", name).has_value();
-  if (is_object && primitive)
-    throw Error(ExitCode::NoRows, "'" + name + "' names an object and a primitive; write more digits, or object/" +
-                                      name + " or primitive/" + name);
-  if (is_object) {
-    const ReasoningResult result = reason(scene, rules, context);
-    const auto object = findOne(result.objects, "object", name);
-    if (!object) throw Error(ExitCode::NoRows, "the map's rules make no object '" + name + "' any more");
-    const SemanticObject& found = result.objects[*object];
-    explanation = explain(scene, rules, context, found, result.decisions.at(found.decision));
-  } else if (primitive) {
-    explanation = explain(scene, rules, context, static_cast<PrimitiveIndex>(*primitive));
-  } else {
-    throw Error(ExitCode::NoRows,
-                "nothing in the map is named '" + name + "'; `cluxel query MAP objects.rq` lists objects");
-  }
-  return as_json ? jsonOf(explanation, rules, scene) : textOf(explanation, rules, scene);
+std::optional<std::size_t> numberIn(std::string_view digits) {
+  std::size_t number = 0;
+  const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  const bool is_number = fault == std::errc() && end == digits.data() + digits.size();
+  return is_number ? std::optional(number) : std::nullopt;
 }
 
-}  // namespace cluxel
+/// "#17", or "17" where it is too short for a hash.
+std::optional<std::size_t> objectNumber(const std::string& name, std::size_t objects) {
+  const bool is_marked = name.starts_with('#');
+  if (!is_marked && name.size() >= kMinDigits) return std::nullopt;
+  const auto number = numberIn(std::string_view(name).substr(is_marked ? 1 : 0));
+  if (number && *number >= objects)
+    throw Error(ErrorKind::NotFound, "there is no object #" + std::to_string(*number) + ": the map has " +
+                                         std::to_string(objects) + " objects, numbered from 0");
+  if (!number && is_marked) throw Error(ErrorKind::InvalidArgument, "'" + name + "' is not the number of an object");
+  return number;
+}
+
+/// What a name means: one of these.
+struct Named {
+  std::optional<std::size_t> object, primitive;
+};
+
+Named find(const mapping::MapReader& map, const std::string& name) {
+  Named named;
+  named.object = objectNumber(name, map.objects().size());
+  if (named.object) return named;
+  if (name.size() < kMinDigits)
+    throw Error(ErrorKind::InvalidArgument,
+                "'" + name + "' is too short: write the number of an object, or at least four digits of a hash");
+  named.object = findOne(map.objects(), "object", name);
+  named.primitive = findOne(map.scene().primitives, "primitive", name);
+  // Four digits or more may be meant as a number too; a hash that begins so comes first, "#" makes it a number.
+  if (!named.object && !named.primitive)
+    if (const auto number = numberIn(name); number && *number < map.objects().size()) named.object = number;
+  if (named.object && named.primitive)
+    throw Error(ErrorKind::NotFound, "'" + name + "' names an object and a primitive; write more digits, or object/" +
+                                         name + " or primitive/" + name);
+  if (!named.object && !named.primitive)
+    throw Error(ErrorKind::NotFound,
+                "nothing in the map is named '" + name + "'; the question objects.rq lists objects");
+  return named;
+}
+
+rules::Explanation explanationOf(const mapping::MapReader& map, const Named& named, const rules::RuleSet& rules) {
+  const perception::Scene& scene = map.scene();
+  mapping::AskReplay oracle(map);
+  const rules::ReasoningContext context{.oracle = &oracle};
+  if (named.primitive) return explain(scene, rules, context, static_cast<perception::PrimitiveIndex>(*named.primitive));
+  const ContentHash id = map.objects()[*named.object].id;
+  const rules::ReasoningResult result = reason(scene, rules, context);
+  const auto object = std::find_if(result.objects.begin(), result.objects.end(),
+                                   [&](const rules::SemanticObject& candidate) { return candidate.id == id; });
+  if (object == result.objects.end())
+    throw Error(ErrorKind::NotFound, "the map's rules make no object '" + id.hex() + "' any more");
+  return explain(scene, rules, context, *object, result.decisions.at(object->decision));
+}
+
+}  // namespace
+
+ExplanationTexts explainThing(const mapping::MapReader& map, const std::string& written) {
+  const Named named = find(map, plainName(written));
+  const mapping::MapInputs inputs = map.inputs();
+  const rules::RuleSet rules = rulesOf(inputs);
+  rules::Explanation explanation = explanationOf(map, named, rules);
+  shortenFiles(explanation, inputs);
+  auto json = nlohmann::ordered_json::parse(jsonOf(explanation, rules, map.scene()));
+  std::string text = textOf(explanation, rules, map.scene());
+  if (named.object) {
+    json["number"] = *named.object;
+    text = "object #" + std::to_string(*named.object) + "\n" + text;
+  }
+  return {std::move(text), json.dump(2)};
+}
+
+std::string explainThing(const mapping::MapReader& map, const std::string& name, bool as_json) {
+  ExplanationTexts texts = explainThing(map, name);
+  return as_json ? std::move(texts.json) : std::move(texts.text);
+}
+
+}  // namespace cluxel::tasks

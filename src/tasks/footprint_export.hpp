@@ -2,10 +2,11 @@
 // Footprints of objects as GeoJSON.
 #pragma once
 
-#include "cluxel/tasks/map_export.hpp"
+#include "tasks/map_export.hpp"
 
-namespace cluxel {
+namespace cluxel::tasks {
 
-void writeFootprints(const MapReader& map, const ByteSink& out);
+/// Throws Error (InvalidArgument, Remedy::LocalFrame) for longitude and latitude of a map without coordinate system.
+void writeFootprints(const mapping::MapReader& map, ExportFrame frame, const ByteSink& out);
 
-}  // namespace cluxel
+}  // namespace cluxel::tasks

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses the writer; RDF goes through the knowledge wing.
-#include "cluxel/tasks/map_export.hpp"
+// Chooses the writer; RDF is written by module rdf.
+#include "tasks/map_export.hpp"
 
 #include <algorithm>
 
-#include "cluxel/knowledge/rdf_io.hpp"
-#include "cluxel/knowledge/vocabulary.hpp"
+#include "rdf/io/rdf_io.hpp"
+#include "rdf/vocabulary.hpp"
 #include "tasks/cloud_export.hpp"
 #include "tasks/footprint_export.hpp"
 
-namespace cluxel {
+namespace cluxel::tasks {
 
 std::optional<ExportFormat> exportFormatOf(std::string_view name) {
   if (name == "turtle" || name == "ttl") return ExportFormat::Turtle;
@@ -20,7 +20,7 @@ std::optional<ExportFormat> exportFormatOf(std::string_view name) {
   return std::nullopt;
 }
 
-void exportMap(const MapReader& map, ExportFormat format, const ByteSink& out) {
+void exportMap(const mapping::MapReader& map, ExportFormat format, const ByteSink& out, ExportFrame frame) {
   switch (format) {
     case ExportFormat::Turtle:
       return writeTurtle(map.quads(), std::nullopt, out);
@@ -28,12 +28,12 @@ void exportMap(const MapReader& map, ExportFormat format, const ByteSink& out) {
       return writeSortedNQuads(map.quads(), out);
     case ExportFormat::Canonical:
       return writeSortedNQuads(map.quads(), out,
-                               [](const Quad& quad) { return quad.graph.text != vocabulary::kGraphHistory; });
+                               [](const Quad& quad) { return quad.graph.text != rdf::vocabulary::kGraphHistory; });
     case ExportFormat::Ply:
       return writeColouredPly(map, out);
     case ExportFormat::GeoJson:
-      return writeFootprints(map, out);
+      return writeFootprints(map, frame, out);
   }
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::tasks

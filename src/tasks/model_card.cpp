@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figures into a card.
-#include "cluxel/tasks/model_card.hpp"
+// Writes the card as Markdown.
+#include "tasks/model_card.hpp"
 
 #include <sstream>
 
-namespace cluxel {
+namespace cluxel::tasks {
 
-std::string modelCard(const TrainingReport& report, const ModelCardText& text) {
+std::string modelCard(const perception::TrainingReport& report, const ModelCardText& text) {
   std::ostringstream card;
   card << "# Model `" << text.name << "`\n\nMade by\n\n```\n"
        << text.command << "\n```\n\n## Data\n\n"
@@ -20,4 +20,4 @@ std::string modelCard(const TrainingReport& report, const ModelCardText& text) {
   return card.str();
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::tasks

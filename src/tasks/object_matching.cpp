@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Greedy matching by falling IoU: with thresholds of a half or more a truth object has few rivals.
+// Greedy matching in order of decreasing IoU: with thresholds of 0.5 or more, a truth object has few candidates.
 #include "tasks/object_matching.hpp"
 
 #include <algorithm>
 #include <set>
 #include <tuple>
 
-namespace cluxel {
+namespace cluxel::tasks {
 
 namespace {
 
@@ -39,7 +39,7 @@ void ObjectMatching::add(const Eigen::Vector3d& p_map, std::size_t truth_class, 
     ++truth.count;
     truth.box.extend(p_map);
   }
-  if (object == kNoObjectOfPoint) return;
+  if (object == mapping::kNoObjectOfPoint) return;
   PointSet& found = found_[object];
   ++found.count;
   found.box.extend(p_map);
@@ -57,7 +57,8 @@ std::int32_t ObjectMatching::bestInstance(std::uint32_t object) const {
   return best;
 }
 
-/// "A prediction whose best match is ambiguous or mostly instance -1 of its class counts neither way."
+/// A prediction whose best match is ambiguous, or mostly instance -1 of its class, counts neither as right nor as
+/// wrong.
 bool ObjectMatching::countsAsAnswer(std::uint32_t object) const {
   const PointSet& found = found_[object];
   if (found.count == 0 || 2 * found.without_instance > found.count) return false;
@@ -111,4 +112,4 @@ std::vector<ObjectScore> ObjectMatching::scoreByPoints(const EvaluationParams& p
   });
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::tasks

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "cluxel/tasks/evaluation.hpp"
+#include "tasks/evaluation.hpp"
 
-namespace cluxel {
+namespace cluxel::tasks {
 
 /// The points of one object, true or found.
 struct PointSet {
@@ -42,7 +42,7 @@ class ObjectMatching {
   };
   template <typename Iou>
   std::vector<ObjectScore> score(double least, const Iou& iou) const;
-  /// The instance that shares most points with the object, of any class; -1 when none does.
+  /// The instance that shares the most points with the object, of any class; -1 when none does.
   std::int32_t bestInstance(std::uint32_t object) const;
   bool countsAsAnswer(std::uint32_t object) const;
 
@@ -53,4 +53,4 @@ class ObjectMatching {
   std::map<std::pair<std::uint32_t, std::int32_t>, std::uint64_t> shared_;  ///< (object, instance) → points
 };
 
-}  // namespace cluxel
+}  // namespace cluxel::tasks

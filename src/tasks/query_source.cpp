@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opens what is asked, and reads the headers of shipped questions.
-#include "cluxel/tasks/query_source.hpp"
+// Opens maps and RDF files for queries, and reads the headers of shipped questions.
+#include "tasks/query_source.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -9,19 +9,19 @@
 #include <sstream>
 #include <string_view>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/base/file_bytes.hpp"
-#include "cluxel/base/nearest_name.hpp"
-#include "cluxel/knowledge/rdf_io.hpp"
-#include "cluxel/knowledge/vocabulary.hpp"
+#include "base/file_bytes.hpp"
+#include "base/nearest_name.hpp"
+#include "cluxel/error.hpp"
+#include "rdf/io/rdf_io.hpp"
+#include "rdf/vocabulary.hpp"
 
-namespace cluxel {
+namespace cluxel::tasks {
 
 namespace fs = std::filesystem;
 
 namespace {
 
-/// Reads from the front of a header line; blanks behind what was read are skipped.
+/// Reads a header line from its front, and skips the blanks behind each item.
 class HeaderReader {
  public:
   explicit HeaderReader(std::string_view line) : rest_(line) {}
@@ -37,7 +37,7 @@ class HeaderReader {
                          rest_.size()));
   }
   std::string word() { return take(std::min(rest_.find_first_of(kBlanks), rest_.size())); }
-  /// What stands in brackets.
+  /// The text in brackets.
   std::optional<std::string> unit() {
     const std::size_t close = rest_.find(']');
     if (!rest_.starts_with('[') || close == std::string_view::npos) return std::nullopt;
@@ -94,8 +94,8 @@ void readHeaderLine(std::string_view line, const SourceLocation& at, Question& q
                        : header.mark("parameter:") ? readParameter(header, question)
                                                    : false;
   if (is_read) return;
-  constexpr std::size_t most_shown = 200;
-  throw InputError(at, "this header line cannot be read: '" + std::string(line.substr(0, most_shown)) + "'",
+  constexpr std::size_t max_shown = 200;
+  throw InputError(at, "this header line cannot be read: '" + std::string(line.substr(0, max_shown)) + "'",
                    "write '#! title: …', '#! column: name [unit] help' or '#! parameter: name [unit] = default help'");
 }
 
@@ -107,19 +107,19 @@ bool isNumber(const std::string& text) {
 
 Term termOf(const std::string& text) {
   if (text.size() > 1 && text.front() == '<' && text.back() == '>') return Term::iri(text.substr(1, text.size() - 2));
-  if (text.starts_with("clx:")) return Term::iri(vocabulary::clx(text.substr(4)));
+  if (text.starts_with("clx:")) return Term::iri(rdf::vocabulary::clx(text.substr(4)));
   if (isNumber(text))
-    return Term::literal(text, vocabulary::xsd(text.find_first_of("eE") == text.npos ? "decimal" : "double"));
+    return Term::literal(text, rdf::vocabulary::xsd(text.find_first_of("eE") == text.npos ? "decimal" : "double"));
   return Term::literal(text);
 }
 
 }  // namespace
 
 QuerySource openQuerySource(const fs::path& file) {
-  if (!rdfFormatOf(file)) return {Environment::open(file, OpenMode::ReadOnly)};
-  QuerySource source{Environment::temporary()};
-  WriteTransaction transaction = source.environment->write();
-  QuadWriter writer(transaction);
+  if (!rdf::rdfFormatOf(file)) return {rdf::Environment::open(file, rdf::OpenMode::ReadOnly)};
+  QuerySource source{rdf::Environment::temporary()};
+  rdf::WriteTransaction transaction = source.environment->write();
+  rdf::QuadWriter writer(transaction);
   loadRdf(file, Term::iri(""), writer);
   writer.flush();
   transaction.commit();
@@ -154,11 +154,11 @@ std::vector<Question> shippedQuestions(const DataHome& home) {
   return questions;
 }
 
-std::vector<Binding> bindingsFor(const Question& question, const std::vector<std::string>& given) {
-  std::vector<Binding> bindings;
+std::vector<sparql::Binding> bindingsFor(const Question& question, const std::vector<std::string>& given) {
+  std::vector<sparql::Binding> bindings;
   std::vector<std::string> names;
   const auto refuse = [](const std::string& text, const std::string& why) {
-    throw Error(ExitCode::Usage, "--param " + text + ": " + why);
+    throw Error(ErrorKind::InvalidArgument, "parameter " + text + ": " + why, Remedy::NameValue);
   };
   for (const QueryParameter& parameter : question.parameters) {
     bindings.emplace_back(parameter.name, termOf(parameter.default_value));
@@ -182,4 +182,4 @@ std::vector<Binding> bindingsFor(const Question& question, const std::vector<std
   return bindings;
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::tasks

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Goes up the classes level by level, each class once.
+// Searches the superclasses breadth-first.
 #include "tasks/truth_class.hpp"
 
 #include <algorithm>
 #include <map>
 #include <set>
 
-#include "cluxel/mapping/map_reader.hpp"
+#include "mapping/map_reader.hpp"
 
-namespace cluxel {
+namespace cluxel::tasks {
 
 namespace {
 
 std::size_t numberOf(const std::string& iri, const std::vector<std::string>& names) {
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), localName(iri)) - names.begin());
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), mapping::localName(iri)) - names.begin());
 }
 
 std::size_t nearestNumber(const std::string& iri, const std::vector<std::string>& names,
-                          const ClassCatalogue& catalogue) {
+                          const rules::ClassCatalogue& catalogue) {
   std::set<std::string> seen{iri};
   std::vector<std::string> level{iri};
   while (!level.empty()) {
@@ -25,7 +25,7 @@ std::size_t nearestNumber(const std::string& iri, const std::vector<std::string>
     std::vector<std::string> above;
     for (const std::string& name : level) {
       best = std::min(best, numberOf(name, names));
-      const ClassEntry* entry = catalogue.find(name);
+      const rules::ClassEntry* entry = catalogue.find(name);
       if (entry == nullptr) continue;
       for (const std::string& superclass : entry->superclasses)
         if (seen.insert(superclass).second) above.push_back(superclass);
@@ -38,12 +38,12 @@ std::size_t nearestNumber(const std::string& iri, const std::vector<std::string>
 
 }  // namespace
 
-std::vector<std::size_t> truthClassesOf(const std::vector<SemanticObject>& objects,
-                                        const std::vector<std::string>& names, const ClassCatalogue& catalogue) {
+std::vector<std::size_t> truthClassesOf(const std::vector<rules::SemanticObject>& objects,
+                                        const std::vector<std::string>& names, const rules::ClassCatalogue& catalogue) {
   std::map<std::string, std::size_t> known;
   std::vector<std::size_t> numbers;
   numbers.reserve(objects.size());
-  for (const SemanticObject& object : objects) {
+  for (const rules::SemanticObject& object : objects) {
     const auto [entry, is_new] = known.try_emplace(object.class_iri, names.size());
     if (is_new) entry->second = nearestNumber(object.class_iri, names, catalogue);
     numbers.push_back(entry->second);
@@ -51,4 +51,4 @@ std::vector<std::size_t> truthClassesOf(const std::vector<SemanticObject>& objec
   return numbers;
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::tasks

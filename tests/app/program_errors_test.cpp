@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What goes wrong on the command line: one exit code for one kind of fault in every command, and words that say what,
-// where and what to do.
+// Errors on the command line: each kind has one exit code in every command, and says what, where and what to do.
 #include <nlohmann/json.hpp>
 
 #include "app/program_fixture.hpp"
+#include "test_paths.hpp"
 
-namespace cluxel {
+namespace cluxel::app {
+
+using namespace rdf;
 namespace {
 
 std::string campus() {
@@ -43,7 +45,7 @@ TEST_F(Program, WhatIsNoMapIsExitCodeFiveInEveryCommandThatNeedsOne) {
     SCOPED_TRACE(arguments);
     expectError(run(arguments), 5, "map");
   }
-  EXPECT_EQ(run("doctor " + text).code, 1) << "doctor was asked whether the file is a sound map";
+  EXPECT_EQ(run("doctor " + text).code, 1) << "doctor answers whether the file is a sound map";
 }
 
 TEST_F(Program, AnyOtherInputThatIsNotThereIsExitCodeFourInEveryCommand) {
@@ -117,7 +119,7 @@ TEST_F(Program, WhatIsMissingOrOutOfRangeIsNamedAndHelpIsPointedTo) {
   EXPECT_NE(run("query").err.find("hint: 'cluxel query --help'"), std::string::npos);
 }
 
-/// As `"$OUT"` is where nobody has set OUT: it is not the working directory, whose poses.txt would be written over.
+/// An unset shell variable gives an empty name. It must not mean the working directory, whose files would be replaced.
 TEST_F(Program, AnEmptyNameOfWhatIsWrittenIsAnErrorOfUsage) {
   for (const std::string& arguments :
        std::vector<std::string>{"simulate '' --stops 1", "build " + campus() + " -o ''",
@@ -144,7 +146,8 @@ TEST_F(Program, WrongChoicesOfOneCommandAreErrorsOfUsage) {
   expectError(run("query " + map() + " near_point --param radius=far"), 2, "a number is wanted [m]");
   expectError(run("query " + map() + " near_point --param raduis=3"), 2, "did you mean 'radius'?");
   expectError(run("query " + map() + " objects --format turtle"), 2, "choose table");
-  expectError(run("explain " + map() + " 12"), 2, "four digits");
+  expectError(run("explain " + map() + " abc"), 2, "four digits");
+  expectError(run("export " + map() + " --format geojson"), 2, "hint: --local");
   expectError(run("update " + map()), 2, "-e TEXT");
   expectError(run("info " + map() + " " + campus()), 2, "map.clx");
   expectError(run("evaluate " + map() + " --truth " + campus() + "/truth --min-recall Unicorn=0.5"), 2, "Unicorn");
@@ -153,8 +156,15 @@ TEST_F(Program, WrongChoicesOfOneCommandAreErrorsOfUsage) {
   expectError(run("simulate " + campus()), 2, "campus");
 }
 
+TEST_F(Program, ErrorsOfTheLibraryAreShownWithTheOptionThatHelps) {
+  expectError(run("build " + campus() + " -o " + map()), 2, "is a finished map\n  hint: --force replaces it");
+  expectError(query("three.ttl", "SELECT * { SERVICE <https://e.org/> { ?s ?p ?o } }"), 4, "hint: --service IRI=FILE");
+  expectError(run("query " + map() + " near_point --param raduis=3"), 2, "hint: --param NAME=VALUE");
+}
+
 TEST_F(Program, AThingThatIsNotInTheMapIsExitCodeThree) {
   expectError(run("explain " + map() + " ffffffffffffffff"), 3, "ffffffffffffffff");
+  expectError(run("explain " + map() + " '#100000'"), 3, "#100000");
   expectError(run("explain " + map() + " https://w3id.org/cluxel/map/object/nothing"), 3, "nothing");
 }
 
@@ -198,8 +208,7 @@ TEST_F(Program, ClosedStreamsAreNotTakenForTheMap) {
   const std::string closed = path("closed.clx").string();
   fs::copy_file(map(), closed);
   const auto runClosed = [](const std::string& arguments) {
-    const int status = std::system(
-        (std::string(CLUXEL_BINARY_DIR) + "/cluxel --home " + CLUXEL_SOURCE_DIR + " --threads 1 " + arguments).c_str());
+    const int status = std::system((program() + arguments).c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   };
   const std::string update = "update " + closed + " -e 'INSERT DATA { <https://e.org/a> a <https://e.org/b> }'";
@@ -221,8 +230,8 @@ TEST_F(Program, ABudgetBeyondAllNumbersIsNone) {
 }
 
 TEST_F(Program, AReaderThatGoesAwayIsNoError) {
-  const std::string command = std::string("bash -c 'set -o pipefail; ") + CLUXEL_BINARY_DIR +
-                              "/cluxel export --canonical " + map() + " | head -1 > /dev/null'";
+  const std::string command = std::string("bash -c 'set -o pipefail; ") + (test::buildFolder() / "cluxel").string() +
+                              " export --canonical " + map() + " | head -1 > /dev/null'";
   EXPECT_EQ(std::system(command.c_str()), 0);
 }
 
@@ -240,4 +249,4 @@ TEST_F(Program, FaultsOfDamagedScansNameFileAndByte) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::app

@@ -7,10 +7,13 @@
 
 #include <cstdlib>
 
-#include "cluxel/base/file_bytes.hpp"
-#include "knowledge/scratch_folder.hpp"
+#include "base/file_bytes.hpp"
+#include "rdf/scratch_folder.hpp"
+#include "test_paths.hpp"
 
-namespace cluxel {
+namespace cluxel::app {
+
+using namespace rdf;
 
 namespace fs = std::filesystem;
 
@@ -34,11 +37,14 @@ class Program : public testing::Test {
   }
   static void TearDownTestSuite() { delete folder; }
 
+  /// The program with the checkout's data, to be followed by arguments.
+  static std::string program() {
+    return (test::buildFolder() / "cluxel").string() + " --home " + test::sourceFolder().string() + " --threads 1 ";
+  }
   /// `to`: where stdout goes, when not into the outcome.
   static Outcome run(const std::string& arguments, const std::string& to = "") {
     const std::string err = path("stderr").string(), out = to.empty() ? path("stdout").string() : to;
-    const std::string command = std::string(CLUXEL_BINARY_DIR) + "/cluxel --home " + CLUXEL_SOURCE_DIR +
-                                " --threads 1 " + arguments + " > " + out + " 2> " + err;
+    const std::string command = program() + arguments + " > " + out + " 2> " + err;
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, to.empty() ? readFile(out) : "", readFile(err)};
   }
@@ -56,4 +62,4 @@ inline void expectError(const Outcome& outcome, int code, const std::string& wor
   EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::app

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program as its users meet it: exit codes, what goes to stdout, and what errors say.
+// The program as its users run it: exit codes, data on stdout, and messages of errors.
 #include <nlohmann/json.hpp>
 
 #include "app/program_fixture.hpp"
 
-namespace cluxel {
+namespace cluxel::app {
+
+using namespace rdf;
 namespace {
 
 using Json = nlohmann::json;
@@ -107,7 +109,7 @@ TEST_F(Program, HelpsWithEverySubcommand) {
   EXPECT_EQ(run("--version").out.substr(0, 7), "cluxel ");
 }
 
-/// The C library takes other code for exp, log and sine there. On a processor that has none it is the same code twice.
+/// The C library has other code for exp, log and sine there. On a processor without FMA both runs use the same code.
 TEST_F(Program, AProcessorWithoutFusedMultiplyAddMakesTheSameMap) {
   const std::string other = path("without_fma.clx").string();
   ASSERT_EQ(setenv("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX2_Usable,-FMA_Usable", 1), 0);
@@ -190,4 +192,4 @@ TEST_F(Program, DoctorAndExportAgreeThatTheMapIsWhole) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::app

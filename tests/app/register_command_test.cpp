@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wrong poses mended on the command line, and what `register` refuses.
+// Wrong poses refined on the command line, and what `register` refuses.
 #include <nlohmann/json.hpp>
 
 #include "app/program_fixture.hpp"
 
-namespace cluxel {
+namespace cluxel::app {
+
+using namespace rdf;
 namespace {
 
 using Json = nlohmann::json;
@@ -15,30 +17,31 @@ class RegisterCommand : public Program {
     folder = new ScratchFolder;
     made = run("simulate " + path("drive").string() +
                " --laser spinning --stops 3 --stop-distance 1 --size 50 --points-per-stop 20000 --drift 0.12 --seed 3");
-    mended = run("register " + path("drive").string() + " -o " + path("mended.yaml").string() + " --json");
+    refined = run("register " + path("drive").string() + " -o " + path("refined.yaml").string() + " --json");
   }
-  static inline Outcome made, mended;
+  static inline Outcome made, refined;
 };
 
-TEST_F(RegisterCommand, MendsPosesAndBuildTakesThem) {
+TEST_F(RegisterCommand, RefinesPosesAndBuildTakesThem) {
   ASSERT_EQ(made.code, 0) << made.err;
-  ASSERT_EQ(mended.code, 0) << mended.err;
-  const Json report = Json::parse(mended.out);
+  ASSERT_EQ(refined.code, 0) << refined.err;
+  const Json report = Json::parse(refined.out);
   EXPECT_GT(report.at("residual_before_m"), 2 * report.at("residual_after_m").get<double>());
   ASSERT_EQ(report.at("scans").size(), 3U);
   double farthest_m = 0;
   for (const Json& scan : report.at("scans")) farthest_m = std::max(farthest_m, scan.at("shift_m").get<double>());
   EXPECT_NEAR(farthest_m, 0.12, 0.06) << "half of two drifts";
-  const Json info = Json::parse(run("info --json " + path("mended.yaml").string()).out);
+  const Json info = Json::parse(run("info --json " + path("refined.yaml").string()).out);
   EXPECT_EQ(info.at("points"), Json::parse(run("info --json " + path("drive").string()).out).at("points"));
-  const Outcome built = run("build " + path("mended.yaml").string() + " -o " + path("mended.clx").string() + " --json");
+  const Outcome built =
+      run("build " + path("refined.yaml").string() + " -o " + path("refined.clx").string() + " --json");
   EXPECT_EQ(built.code, 0) << built.err;
   EXPECT_EQ(Json::parse(built.out).at("scans"), 3);
 }
 
-TEST_F(RegisterCommand, BuildMendsThemItselfIntoTheSameMap) {
+TEST_F(RegisterCommand, BuildRefinesThemItselfIntoTheSameMap) {
   const std::string one = path("by_manifest.clx").string(), other = path("by_build.clx").string();
-  ASSERT_EQ(run("build " + path("mended.yaml").string() + " -o " + one).code, 0);
+  ASSERT_EQ(run("build " + path("refined.yaml").string() + " -o " + one).code, 0);
   const Outcome built = run("build --register " + path("drive").string() + " -o " + other);
   ASSERT_EQ(built.code, 0) << built.err;
   EXPECT_NE(built.err.find("pairs of scans used, median residual"), std::string::npos) << built.err;
@@ -46,7 +49,7 @@ TEST_F(RegisterCommand, BuildMendsThemItselfIntoTheSameMap) {
   EXPECT_EQ(built.err.find("do not fit"), std::string::npos) << built.err;
   const Outcome again = run("build --register " + path("drive").string() + " -o " + other);
   EXPECT_EQ(again.code, 2) << "the finished map is refused ...";
-  EXPECT_EQ(again.err.find("poses mended"), std::string::npos) << "... before minutes go into poses: " << again.err;
+  EXPECT_EQ(again.err.find("poses refined"), std::string::npos) << "... before minutes go into poses: " << again.err;
   const std::string expected = run("export --canonical " + one).out;
   EXPECT_GT(expected.size(), 1000U);
   EXPECT_EQ(run("export --canonical " + other).out, expected);
@@ -56,17 +59,17 @@ TEST_F(RegisterCommand, BuildSaysThatPosesDoNotFitAndTakesThemAsGiven) {
   const Outcome wrong = run("build " + path("drive").string() + " -o " + path("wrong.clx").string());
   ASSERT_EQ(wrong.code, 0) << wrong.err;
   EXPECT_NE(wrong.err.find("poses do not fit each other"), std::string::npos) << wrong.err;
-  EXPECT_NE(wrong.err.find("--register"), std::string::npos) << wrong.err;
-  const Outcome right = run("build --force " + path("mended.yaml").string() + " -o " + path("wrong.clx").string());
+  EXPECT_NE(wrong.err.find("refine the poses"), std::string::npos) << wrong.err;
+  const Outcome right = run("build --force " + path("refined.yaml").string() + " -o " + path("wrong.clx").string());
   ASSERT_EQ(right.code, 0) << right.err;
   EXPECT_EQ(right.err.find("do not fit"), std::string::npos) << right.err;
 }
 
-TEST_F(RegisterCommand, CheckIsExitCodeOneForWrongPosesAndZeroForMendedOnes) {
+TEST_F(RegisterCommand, CheckIsExitCodeOneForWrongPosesAndZeroForRefinedOnes) {
   const Outcome wrong = run("register --check --json " + path("drive").string());
   EXPECT_EQ(wrong.code, 1) << wrong.err;
   EXPECT_GT(Json::parse(wrong.out).at("worst_residual_m"), 0.05);
-  const Outcome right = run("register --check " + path("mended.yaml").string());
+  const Outcome right = run("register --check " + path("refined.yaml").string());
   EXPECT_EQ(right.code, 0) << right.out;
   EXPECT_NE(right.out.find("worst residual"), std::string::npos);
   EXPECT_EQ(run("register --check --max-residual 5 " + path("drive").string()).code, 0);
@@ -78,11 +81,11 @@ TEST_F(RegisterCommand, TheBytesDoNotDependOnTheOrderOfScans) {
     scans += path("drive").string() + "/" + name + " ";
   const std::string again = path("again.yaml").string();
   ASSERT_EQ(run("register " + scans + " -o " + again).code, 0);
-  EXPECT_EQ(readFile(again), readFile(path("mended.yaml")));
+  EXPECT_EQ(readFile(again), readFile(path("refined.yaml")));
 }
 
 TEST_F(RegisterCommand, RefusesWhatItCannotDoAndTouchesNothing) {
-  const std::string drive = path("drive").string(), out = path("mended.yaml").string(), before = readFile(out);
+  const std::string drive = path("drive").string(), out = path("refined.yaml").string(), before = readFile(out);
   expectError(run("register " + drive), 2, "-o FILE.yaml");
   expectError(run("register --check " + drive + " -o " + path("x.yaml").string()), 2, "leave out -o");
   expectError(run("register " + drive + " -o " + path("poses.txt").string()), 2, "*.yaml");
@@ -106,4 +109,4 @@ TEST_F(RegisterCommand, SimulatedDriftIsWrittenBesideTheTruth) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::app

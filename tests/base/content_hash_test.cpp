@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Content hashes against published digests, and what they must tell apart.
-#include "cluxel/base/content_hash.hpp"
+#include "base/content_hash.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files are written whole or not at all.
-#include "cluxel/base/file_bytes.hpp"
+#include "base/file_bytes.hpp"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -13,7 +13,7 @@
 #include <fstream>
 #include <thread>
 
-#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/error.hpp"
 
 namespace cluxel {
 namespace {
@@ -67,7 +67,7 @@ TEST_F(FileBytes, LeaveTheOldFileWhenTheDiskIsFull) {
     try {
       writeFile(folder_ / "a", std::string(100'000, 'x'));
     } catch (const Error& error) {
-      ::_exit(error.code() == ExitCode::StoreUnavailable ? 0 : 1);
+      ::_exit(error.kind() == ErrorKind::StoreUnavailable ? 0 : 1);
     }
     ::_exit(2);
   }
@@ -131,7 +131,7 @@ TEST_F(FileBytes, NameTheFileThatCannotBeWritten) {
     writeFile(folder_ / "absent" / "a", "x");
     FAIL() << "nothing was refused";
   } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::StoreUnavailable);
+    EXPECT_EQ(e.kind(), ErrorKind::StoreUnavailable);
     EXPECT_NE(std::string(e.what()).find((folder_ / "absent" / "a").string() + ": cannot be written"),
               std::string::npos);
   }

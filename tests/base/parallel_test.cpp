@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every piece once, on any number of threads.
-#include "cluxel/base/parallel.hpp"
+#include "base/parallel.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,16 +4,18 @@
 #include <array>
 #include <cmath>
 
-#include "cluxel/perception/component_tile.hpp"
-#include "cluxel/perception/contact_tile.hpp"
-#include "cluxel/perception/labelling.hpp"
-#include "cluxel/perception/tile_pipeline.hpp"
 #include "edited_bytes.hpp"
+#include "perception/crf/labelling.hpp"
+#include "perception/pipeline.hpp"
+#include "perception/segments/component_tile.hpp"
+#include "perception/segments/contact_tile.hpp"
 #include "scan_reader_fuzzing.hpp"
 
 namespace {
 
 using namespace cluxel;
+using namespace cluxel::scan;
+using namespace cluxel::perception;
 constexpr std::size_t kKinds = 8;
 using Blocks = std::array<std::string, kKinds>;
 
@@ -34,7 +36,7 @@ Scan smallScan() {
 
 Blocks validBlocks() {
   const std::array<Scan, 1> scans{smallScan()};
-  const PerceivedTiles tiles = perceive(scans, {}, 1);
+  const TileOutputs tiles = perceive(scans, {}, 1);
   const TileKey key = tiles.points.begin()->first;
   const std::size_t cluxels = tiles.cluxels.at(key).size();
   LabelTile labels;
@@ -83,7 +85,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     fuzz::require(roundTrip(kind, bytes) == bytes);
   } catch (const Error& error) {
-    fuzz::require(error.code() == ExitCode::StoreUnavailable);
+    fuzz::require(error.kind() == ErrorKind::StoreUnavailable);
   }
   return 0;
 }

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a model file, or edits of a small model: a model or an InputError; a model that is read is written and
 // read again the same.
-#include "cluxel/perception/label_model.hpp"
 #include "edited_bytes.hpp"
+#include "perception/crf/label_model.hpp"
 #include "scan_reader_fuzzing.hpp"
 
 namespace {
 
 using namespace cluxel;
+using namespace cluxel::scan;
+using namespace cluxel::perception;
 
 LabelModel smallModel() {
   LabelModel model;

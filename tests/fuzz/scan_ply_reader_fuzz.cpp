@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a PLY file.
-#include "scan/ply_format.hpp"
+#include "scan/formats/ply_format.hpp"
 #include "scan_reader_fuzzing.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace cluxel;
+  using namespace cluxel::scan;
   const std::string_view bytes = fuzz::textOf(data, size);
   fuzz::feed([&] { fuzz::requireWholeScan(parsePly(bytes, "a.ply")); });
   return 0;

@@ -8,10 +8,12 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "scan/parsed_scan.hpp"
+#include "cluxel/error.hpp"
+#include "scan/formats/parsed_scan.hpp"
 
 namespace cluxel::fuzz {
+
+using namespace scan;
 
 inline std::string_view textOf(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a truth file, plain or gzip, and as a table of instances.
-#include "scan/truth_text.hpp"
+#include "scan/truth/truth_text.hpp"
 #include "scan_reader_fuzzing.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace cluxel;
+  using namespace cluxel::scan;
   const std::string_view bytes = fuzz::textOf(data, size);
   fuzz::feed([&] {
     const PointTruth truth = parseTruth(bytes, "a.truth", 2);

@@ -4,15 +4,17 @@
 #include <cstdint>
 #include <string_view>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/knowledge/environment.hpp"
-#include "cluxel/knowledge/quad_store.hpp"
-#include "cluxel/sparql/query_engine.hpp"
-#include "cluxel/sparql/update_engine.hpp"
+#include "cluxel/error.hpp"
+#include "rdf/store/environment.hpp"
+#include "rdf/store/quad_store.hpp"
+#include "sparql/query_engine.hpp"
+#include "sparql/update_engine.hpp"
 
 namespace {
 
 using namespace cluxel;
+using namespace cluxel::rdf;
+using namespace cluxel::sparql;
 
 std::shared_ptr<Environment> smallStore() {
   auto environment = Environment::temporary();

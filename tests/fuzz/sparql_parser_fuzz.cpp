@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <string_view>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/sparql/parser.hpp"
-#include "cluxel/sparql/results_reader.hpp"
+#include "cluxel/error.hpp"
+#include "sparql/results_reader_fixture.hpp"
+#include "sparql/syntax/parser.hpp"
 
 namespace {
 
@@ -24,28 +24,28 @@ void tryTo(Read read) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const std::string_view text(reinterpret_cast<const char*>(data) + 1, size - 1);
-  cluxel::SparqlParseOptions options;
+  cluxel::sparql::SparqlParseOptions options;
   options.base_iri = "http://example.org/base/";
   options.prefixes = {{"", "http://example.org/"}};
   switch (data[0] % 8) {
     case 0:
     case 1:
     case 2:
-      tryTo([&] { cluxel::parseQuery(text, options); });
+      tryTo([&] { cluxel::sparql::parseQuery(text, options); });
       break;
     case 3:
     case 4:
-      tryTo([&] { cluxel::parseUpdate(text, options); });
+      tryTo([&] { cluxel::sparql::parseUpdate(text, options); });
       break;
     case 5:
-      tryTo([&] { cluxel::readResults(text, cluxel::ResultFormat::Xml); });
+      tryTo([&] { cluxel::test::readResults(text, cluxel::sparql::ResultFormat::Xml); });
       break;
     case 6:
-      tryTo([&] { cluxel::readResults(text, cluxel::ResultFormat::Json); });
+      tryTo([&] { cluxel::test::readResults(text, cluxel::sparql::ResultFormat::Json); });
       break;
     default:
-      tryTo([&] { cluxel::readResults(text, cluxel::ResultFormat::Tsv); });
-      tryTo([&] { cluxel::readResults(text, cluxel::ResultFormat::Csv); });
+      tryTo([&] { cluxel::test::readResults(text, cluxel::sparql::ResultFormat::Tsv); });
+      tryTo([&] { cluxel::test::readResults(text, cluxel::sparql::ResultFormat::Csv); });
   }
   return 0;
 }

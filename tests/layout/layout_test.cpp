@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The laws of the layout: which wing may include which, what public headers may name, how long a file may be.
+// The laws of the layout: which module may include which, what public headers may name, how long a file may be.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,30 +11,33 @@
 #include <string>
 #include <vector>
 
+#include "test_paths.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = CLUXEL_SOURCE_DIR;
+const fs::path kRoot = cluxel::test::sourceFolder();
 
-/// The arrows: a wing and the wings it names directly; what those name is allowed as well.
+/// The arrows: a module and the modules it names directly; what those name is allowed as well.
 const std::map<std::string, std::set<std::string>> kArrows{
     {"base", {}},
     {"scan", {"base"}},
     {"simulation", {"scan"}},
     {"perception", {"scan"}},
-    {"knowledge", {"base"}},
-    {"sparql", {"knowledge"}},
-    {"reasoning", {"perception", "sparql"}},
-    {"mapping", {"reasoning"}},
+    {"rdf", {"base"}},
+    {"sparql", {"rdf"}},
+    {"rules", {"perception", "sparql"}},
+    {"mapping", {"rules"}},
     {"tasks", {"mapping"}},
-    {"app", {"tasks", "simulation"}},
-    {"redland_modules", {"sparql"}},
+    {"api", {"tasks"}},
+    {"app", {"api", "simulation"}},
+    {"redland_module", {"rdf"}},
 };
 
-std::set<std::string> reachable(const std::string& wing) {
-  std::set<std::string> all{wing};
-  for (const std::string& next : kArrows.at(wing)) all.merge(reachable(next));
+std::set<std::string> reachable(const std::string& module) {
+  std::set<std::string> all{module};
+  for (const std::string& next : kArrows.at(module)) all.merge(reachable(next));
   return all;
 }
 
@@ -53,9 +56,20 @@ std::vector<std::string> linesOf(const fs::path& path) {
   return lines;
 }
 
-/// "scan" for src/scan/x.cpp and include/cluxel/scan/x.hpp.
-std::string wingOf(const fs::path& path) {
-  return path.parent_path().filename().string();
+/// How an #include names a header: "scan/formats/pcd_format.hpp", "cluxel/error.hpp".
+std::string includeNameOf(const fs::path& path) {
+  const std::string from_root = fs::relative(path, kRoot).generic_string();
+  return from_root.substr(from_root.find('/') + 1);
+}
+
+/// "scan" for src/scan/formats/x.cpp and for the include "scan/formats/x.hpp"; empty for headers of the system.
+std::string moduleOfInclude(const std::string& name) {
+  const std::string first = name.substr(0, name.find('/'));
+  return kArrows.contains(first) && name.find('/') != std::string::npos ? first : std::string{};
+}
+
+std::string moduleOf(const fs::path& path) {
+  return moduleOfInclude(includeNameOf(path));
 }
 
 std::vector<std::string> includesOf(const fs::path& path) {
@@ -66,22 +80,55 @@ std::vector<std::string> includesOf(const fs::path& path) {
   return names;
 }
 
-/// The wing that an include names, or empty for a header of the system.
-std::string wingOfInclude(std::string name) {
-  if (name.starts_with("cluxel/")) name = name.substr(7);
-  const std::string first = name.substr(0, name.find('/'));
-  return kArrows.contains(first) && name.find('/') != std::string::npos ? first : std::string{};
-}
-
 TEST(Layout, IncludesRunOnlyAlongTheArrows) {
-  for (const fs::path& file : sourcesBelow({"include/cluxel", "src"})) {
-    ASSERT_TRUE(kArrows.contains(wingOf(file))) << file << " lies in no wing";
-    const auto allowed = reachable(wingOf(file));
+  for (const fs::path& file : sourcesBelow({"src"})) {
+    ASSERT_TRUE(kArrows.contains(moduleOf(file))) << file << " lies in no module";
+    const auto allowed = reachable(moduleOf(file));
     for (const std::string& name : includesOf(file)) {
-      const std::string wing = wingOfInclude(name);
-      EXPECT_TRUE(wing.empty() || allowed.contains(wing)) << file << " includes " << name;
+      const std::string module = moduleOfInclude(name);
+      EXPECT_TRUE(module.empty() || allowed.contains(module)) << file << " includes " << name;
     }
   }
+}
+
+TEST(Layout, AModuleIsANamespace) {
+  static const std::regex opening(R"(^namespace cluxel(::(\w+))?\b)");
+  const std::set<std::string> in_plain_cluxel{"base", "api", "term.cpp"};
+  for (const fs::path& file : sourcesBelow({"src"}))
+    for (const std::string& line : linesOf(file)) {
+      std::smatch match;
+      if (!std::regex_search(line, match, opening) || line.find('{') == std::string::npos) continue;
+      const std::string module = moduleOf(file);
+      const bool is_plain = in_plain_cluxel.contains(module) || in_plain_cluxel.contains(file.filename().string());
+      const bool is_forward = line.find('}') != std::string::npos || reachable(module).contains(match[2]);
+      EXPECT_TRUE(is_plain ? match[2].length() == 0 || is_forward : match[2] == module || is_forward)
+          << file << " opens " << line;
+    }
+}
+
+TEST(Layout, AFolderHoldsFewEnoughFilesToBeSeenAtOnce) {
+  constexpr std::size_t kMaxFiles = 52;  // some 25 units of header and source
+  std::map<fs::path, std::size_t> count;
+  for (const fs::path& file : sourcesBelow({"src", "include"})) ++count[file.parent_path()];
+  for (const auto& [folder, files] : count) EXPECT_LE(files, kMaxFiles) << folder << " wants subfolders";
+}
+
+TEST(Layout, TheInstalledApiIsAFacadeAndAtMostTwentyFiveHeaders) {
+  EXPECT_LE(sourcesBelow({"include/cluxel"}).size(), 26U);
+}
+
+TEST(Layout, ExitCodesLiveInTheProgramOnly) {
+  for (const fs::path& file : sourcesBelow({"src", "include"}))
+    for (const std::string& line : linesOf(file))
+      EXPECT_TRUE(moduleOf(file) == "app" || line.find("ExitCode") == std::string::npos) << file << ": " << line;
+}
+
+TEST(Layout, NamesOfOptionsLiveInTheProgramOnly) {
+  static const std::regex option(R"re("(?:[^"\\]*[\s'`(,;])?--[a-z])re");
+  for (const fs::path& file : sourcesBelow({"src", "include"}))
+    for (const std::string& line : linesOf(file))
+      EXPECT_TRUE(moduleOf(file) == "app" || !std::regex_search(line, option))
+          << file << " names an option; give the error a Remedy: " << line;
 }
 
 TEST(Layout, PublicHeadersNameTheStandardLibraryAndEigenOnly) {
@@ -102,10 +149,11 @@ struct Wall {
 };
 
 TEST(Layout, HeavyPackagesStayInFewFilesThatAreNamedForThem) {
-  const std::map<std::string, Wall> walls{
-      {"pcl/", {"pcl_", 2}},       {"yaml-cpp/", {"yaml_", 2}}, {"lmdb", {"lmdb_", 1}},
-      {"librdf", {"redland_", 7}}, {"raptor", {"rdf_", 1}},     {"rasqal", {"", 0}},
-      {"embree", {"ray_", 2}},     {"boost/graph/", {"", 3}},   {"boost/geometry", {"geometry", 2}}};
+  const std::map<std::string, Wall> walls{{"pcl/", {"pcl_", 2}},     {"yaml-cpp/", {"yaml_", 1}},
+                                          {"lmdb", {"lmdb_", 1}},    {"librdf", {"redland_", 7}},
+                                          {"raptor", {"rdf_", 1}},   {"rasqal", {"", 0}},
+                                          {"embree", {"ray_", 2}},   {"proj.h", {"proj_", 1}},
+                                          {"boost/graph/", {"", 3}}, {"boost/geometry", {"geometry", 2}}};
   for (const auto& [package, wall] : walls) {
     std::set<fs::path> users;
     for (const fs::path& file : sourcesBelow({"src"}))
@@ -118,27 +166,27 @@ TEST(Layout, HeavyPackagesStayInFewFilesThatAreNamedForThem) {
 }
 
 /// A unit is a header and a source of its name. Where several sources make one unit (operators, makers, readers), each
-/// includes the header of its wing that declares what it defines.
-TEST(Layout, EverySourceHasAHeaderInItsWing) {
+/// includes the header of its module that declares what it defines.
+TEST(Layout, EverySourceHasAHeaderInItsModule) {
   for (const fs::path& file : sourcesBelow({"src"})) {
-    const std::string wing = wingOf(file), name = file.stem().string() + ".hpp";
-    if (file.extension() != ".cpp" || wing == "redland_modules" || name == "main.hpp") continue;
-    const bool has_own = fs::exists(kRoot / "include/cluxel" / wing / name) || fs::exists(kRoot / "src" / wing / name);
+    const std::string module = moduleOf(file), name = file.stem().string() + ".hpp";
+    if (file.extension() != ".cpp" || module == "redland_module" || name == "main.hpp") continue;
+    const bool has_own = fs::exists(file.parent_path() / name) || fs::exists(kRoot / "include/cluxel" / name);
     const auto includes = includesOf(file);
-    const bool joins_a_unit = std::any_of(includes.begin(), includes.end(),
-                                          [&](const std::string& include) { return wingOfInclude(include) == wing; });
-    EXPECT_TRUE(has_own || joins_a_unit) << file << " defines what no header of its wing declares";
+    const bool joins_a_unit = std::any_of(includes.begin(), includes.end(), [&](const std::string& include) {
+      return moduleOfInclude(include) == module;
+    });
+    EXPECT_TRUE(has_own || joins_a_unit) << file << " defines what no header of its module declares";
   }
 }
 
-TEST(Layout, EveryHeaderOfAWingIsIncludedBySomeSource) {
+TEST(Layout, EveryHeaderOfAModuleIsIncludedBySomeSource) {
   std::set<std::string> included;
   for (const fs::path& file : sourcesBelow({"include/cluxel", "src"}))
-    for (const std::string& name : includesOf(file))
-      included.insert(name.starts_with("cluxel/") ? name.substr(7) : name);
-  for (const fs::path& file : sourcesBelow({"include/cluxel", "src"}))
+    for (const std::string& name : includesOf(file)) included.insert(name);
+  for (const fs::path& file : sourcesBelow({"src"}))
     if (file.extension() == ".hpp") {
-      EXPECT_TRUE(included.contains(wingOf(file) + "/" + file.filename().string())) << file << " is included by nobody";
+      EXPECT_TRUE(included.contains(includeNameOf(file))) << file << " is included by nobody";
     }
 }
 
@@ -151,13 +199,13 @@ TEST(Layout, FileNamesAreUniqueInTheTree) {
 }
 
 TEST(Layout, EveryFileOpensWithItsLicenceAndPurposeAndStaysShort) {
-  constexpr std::size_t kLongest = 350;
+  constexpr std::size_t kMaxLines = 350;
   for (const fs::path& file : sourcesBelow({"include/cluxel", "src", "tests", "bench"})) {
     const auto lines = linesOf(file);
     ASSERT_GE(lines.size(), 2U) << file;
     EXPECT_EQ(lines[0], "// SPDX-License-Identifier: Apache-2.0") << file;
     EXPECT_TRUE(lines[1].starts_with("// ")) << file << " does not say what it is for";
-    EXPECT_LE(lines.size(), kLongest) << file << " is longer than " << kLongest << " lines: split it";
+    EXPECT_LE(lines.size(), kMaxLines) << file << " is longer than " << kMaxLines << " lines: split it";
   }
 }
 

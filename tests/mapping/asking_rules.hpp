@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// A park with a bench, and rules that ask the map: for tests of `ask:` in builds, explanations and updates.
+// Fixture for tests of `ask:` in builds, explanations and updates: a park with a bench, and rules that query the map.
 #pragma once
 
 #include <random>
 
 #include "mapping/small_campus.hpp"
 
-namespace cluxel {
+namespace cluxel::mapping {
+
+using namespace scan;
+using namespace perception;
+using namespace simulation;
+using namespace rdf;
+using namespace rules;
 
 inline constexpr const char* kBenchOntology = R"(@prefix clx: <https://w3id.org/cluxel/ontology#> .
 @prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .
@@ -41,8 +47,8 @@ inline Scan parkWithBench() {
   return scan;
 }
 
-/// The raised piece is a bench while nobody knows of a small object or a tree; the floor becomes a small object once
-/// there is a bench. So the finished map answers the first question otherwise than the map did when it was asked.
+/// The raised part is a bench unless the map has a small object or a tree; the floor becomes a small object once there
+/// is a bench. The finished map therefore answers the first query differently from the map during the build.
 inline constexpr const char* kAskingRules = R"(apiVersion: cluxel.rules/v1
 ruleset: { name: asking, version: 1.0.0 }
 prefixes: { clx: "https://w3id.org/cluxel/ontology#" }
@@ -80,4 +86,4 @@ inline std::filesystem::path buildAskingMap(const std::filesystem::path& folder,
   return folder / "map.clx";
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::mapping

@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// A class that the program does not know, from an ontology text and a rule text alone, all the way into a map.
+// A class that the program does not know, defined by an ontology text and a rule text, in a built map.
 #include <gtest/gtest.h>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/sparql/query_engine.hpp"
+#include "cluxel/error.hpp"
 #include "mapping/asking_rules.hpp"
+#include "sparql/query_engine.hpp"
 
-namespace cluxel {
+namespace cluxel::mapping {
+
+using namespace scan;
+using namespace perception;
+using namespace simulation;
+using namespace rdf;
+using namespace sparql;
+using namespace rules;
 namespace {
 
-/// Size alone decides, so that the test does not hang on the label that a trained model gives.
+/// Only the size is tested, so that the test does not depend on the labels of a trained model.
 constexpr const char* kBenchRules = R"(apiVersion: cluxel.rules/v1
 ruleset: { name: benches, version: 1.0.0 }
 prefixes: { clx: "https://w3id.org/cluxel/ontology#" }
@@ -64,4 +71,4 @@ TEST(BenchClass, IsUnknownToAMapWithoutItsOntology) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::mapping

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A map is a function of its scans and inputs: not of order, threads, batches, or of a build that was killed.
-#include "cluxel/mapping/map_builder.hpp"
+// A map is a function of its scans and inputs: independent of order, threads, batches and killed builds.
+#include "mapping/build/map_builder.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -10,11 +10,18 @@
 #include <fstream>
 #include <random>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/base/file_bytes.hpp"
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
 #include "mapping/small_campus.hpp"
+#include "test_paths.hpp"
 
-namespace cluxel {
+namespace cluxel::mapping {
+
+using namespace scan;
+using namespace perception;
+using namespace simulation;
+using namespace rdf;
+using namespace rules;
 namespace {
 
 namespace fs = std::filesystem;
@@ -36,15 +43,15 @@ class MapBuilder : public testing::Test {
   BuildReport build(const Files& files, const BuildParams& params = {}) const {
     return buildMap(scansOf(files), *inputs, map(), params, silence());
   }
-  /// The error of a build with these inputs, or an absent one; the map's file must not be there afterwards.
-  ExitCode refusal(const MapInputs& changed) const {
+  /// The error of a build with these inputs, if any; no map file may exist afterwards.
+  std::optional<ErrorKind> refusal(const MapInputs& changed) const {
     try {
       buildMap(scansOf(campus->files()), changed, map(), {}, silence());
     } catch (const Error& error) {
       EXPECT_FALSE(fs::exists(map())) << error.what();
-      return error.code();
+      return error.kind();
     }
-    return ExitCode::Done;
+    return std::nullopt;
   }
 
   ScratchFolder folder;
@@ -89,9 +96,9 @@ TEST_F(MapBuilder, AScanThatIsGivenTwiceCountsOnce) {
 TEST_F(MapBuilder, WhereTheInputFilesLieDoesNotChangeTheMap) {
   for (const char* name : {"ontology", "rules", "models/oakland"}) {
     fs::create_directories((folder.path() / name).parent_path());
-    fs::copy(fs::path(CLUXEL_SOURCE_DIR) / name, folder.path() / name, fs::copy_options::recursive);
+    fs::copy(test::sourceFolder() / name, folder.path() / name, fs::copy_options::recursive);
   }
-  EXPECT_TRUE(builtText(campus->files(), readMapInputs({}, DataHome({folder.path()}))) == *expected);
+  EXPECT_TRUE(builtText(campus->files(), readMapInputs({}, DataHome(folder.path()))) == *expected);
 }
 
 TEST_F(MapBuilder, FewerScansGiveAnotherMap) {
@@ -105,8 +112,8 @@ TEST_F(MapBuilder, DoesNotOverwriteAFinishedMapWithoutForce) {
     build(campus->files());
     FAIL() << "the finished map was taken as unfinished";
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::Usage);
-    EXPECT_NE(std::string(error.what()).find("--force"), std::string::npos) << error.what();
+    EXPECT_EQ(error.kind(), ErrorKind::InvalidArgument);
+    EXPECT_EQ(error.remedy(), Remedy::ReplaceMap) << error.what();
   }
   EXPECT_EQ(canonicalText(map()), before);
   build(campus->files(), {.force = true});
@@ -135,7 +142,7 @@ TEST_F(MapBuilder, ABrokenScanInTheFirstBatchLeavesNoFile) {
   EXPECT_FALSE(fs::exists(map()));
 }
 
-/// Dies without a farewell when the second scan begins.
+/// Kills the process (SIGKILL) when the second scan begins.
 class SuddenDeath : public ProgressSink {
  public:
   explicit SuddenDeath(std::size_t at) : at_(at) {}
@@ -147,7 +154,7 @@ class SuddenDeath : public ProgressSink {
   std::size_t at_;
 };
 
-/// Builds in a process of its own that is killed while scan `at` (from 1) is being added, one batch a scan.
+/// Builds in another process, which is killed while scan `at` (from 1) is added; one scan per batch.
 void buildAndBeKilled(const Files& files, const MapInputs& inputs, const fs::path& map, std::size_t at) {
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
@@ -190,7 +197,7 @@ TEST_F(MapBuilder, OtherInputsOnAnUnfinishedMapAreAnError) {
     buildMap(scansOf(campus->files()), others, map(), {}, silence());
     FAIL() << "two sets of rules went into one map";
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::Usage);
+    EXPECT_EQ(error.kind(), ErrorKind::InvalidArgument);
     EXPECT_NE(std::string(error.what()).find("unfinished"), std::string::npos) << error.what();
   }
   build(campus->files());
@@ -232,17 +239,17 @@ TEST_F(MapBuilder, FaultyInputsWriteNothing) {
     change(changed);
     return refusal(changed);
   };
-  EXPECT_EQ(with([](MapInputs& i) { i.rules[0].text = "rules: [\n"; }), ExitCode::FaultyInput);
-  EXPECT_EQ(with([](MapInputs& i) { i.ontology[0].text += "\nclx:Tree a owl:Class"; }), ExitCode::FaultyInput);
-  EXPECT_EQ(with([](MapInputs& i) { i.model.text.resize(i.model.text.size() / 2); }), ExitCode::FaultyInput);
+  EXPECT_EQ(with([](MapInputs& i) { i.rules[0].text = "rules: [\n"; }), ErrorKind::FaultyInput);
+  EXPECT_EQ(with([](MapInputs& i) { i.ontology[0].text += "\nclx:Tree a owl:Class"; }), ErrorKind::FaultyInput);
+  EXPECT_EQ(with([](MapInputs& i) { i.model.text.resize(i.model.text.size() / 2); }), ErrorKind::FaultyInput);
   EXPECT_EQ(with([](MapInputs& i) {
               i.sparql_rules = {{"x.rq", "SELECT ?s WHERE { ?s ?p ?o }"}};
             }),
-            ExitCode::FaultyInput);
+            ErrorKind::FaultyInput);
   EXPECT_EQ(with([](MapInputs& i) {
               i.sparql_rules = {{"x.rq", "CONSTRUCT { ?s ?p } WHERE {}"}};
             }),
-            ExitCode::FaultyInput);
+            ErrorKind::FaultyInput);
 }
 
 TEST_F(MapBuilder, NoScansAreAnErrorOfUsage) {
@@ -251,11 +258,10 @@ TEST_F(MapBuilder, NoScansAreAnErrorOfUsage) {
 }
 
 fs::path kittiFolder() {
-  const char* data = std::getenv("CLUXEL_DATA");
-  return (data != nullptr ? fs::path(data) : fs::path(CLUXEL_SOURCE_DIR) / "../shared/data") / "kitti00";
+  return test::outsideDataFolder() / "kitti00";
 }
 
-/// The first frames of KITTI, each in a folder of its own with its pose, so that they can come in any order.
+/// The first frames of KITTI, each in a separate folder with its pose, so that they can be given in any order.
 Files kittiFrames(const fs::path& folder, std::size_t count) {
   const ScanSet all = ScanSet::open({kittiFolder()}, {}, silence());
   Files files;
@@ -282,4 +288,4 @@ TEST_F(MapBuilder, KittiFramesInAnyOrderGiveTheSameMap) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::mapping

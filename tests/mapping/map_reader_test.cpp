@@ -1,21 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// A map read back: points find their cluxels, objects do not overlap, and the facts say what the layers hold.
-#include "cluxel/mapping/map_reader.hpp"
+// Reading a map: points find their cluxels, objects are disjoint, and the facts agree with the layers.
+#include "mapping/map_reader.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <set>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/base/file_bytes.hpp"
-#include "cluxel/perception/label_model.hpp"
-#include "cluxel/perception/tile_pipeline.hpp"
-#include "cluxel/sparql/query_engine.hpp"
-#include "mapping/fact_sink.hpp"
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/facts/fact_sink.hpp"
 #include "mapping/small_campus.hpp"
+#include "perception/crf/label_model.hpp"
+#include "perception/pipeline.hpp"
+#include "sparql/query_engine.hpp"
 
-namespace cluxel {
+namespace cluxel::mapping {
+
+using namespace scan;
+using namespace perception;
+using namespace simulation;
+using namespace rdf;
+using namespace sparql;
+using namespace rules;
 namespace {
 
 class MapReading : public testing::Test {
@@ -43,7 +50,7 @@ class MapReading : public testing::Test {
   static inline MapReader* map = nullptr;
 };
 
-/// The kept point nearest to `p` among those in the same voxel: what a point that was thinned away is answered by.
+/// The kept point nearest to `p` in its voxel: it represents the points that thinning removed.
 std::uint32_t nearestInVoxel(const TilePoints& points, const Eigen::Vector3f& p, double voxel_m) {
   const auto voxel = [&](const Eigen::Vector3f& q) {
     return std::array<double, 3>{std::floor(q.x() / voxel_m), std::floor(q.y() / voxel_m), std::floor(q.z() / voxel_m)};
@@ -67,7 +74,7 @@ TEST_F(MapReading, AnswersEveryPointAsBruteForceDoes) {
     scan.T_map_sensor = cloud.T_map_sensor, scan.has_pose = cloud.has_pose, scan.id = cloud.id;
     scans.push_back(std::move(scan));
   }
-  const PerceivedTiles tiles = perceive(scans, model.perception, 2);
+  const TileOutputs tiles = perceive(scans, model.perception, 2);
   const Scene& scene = map->scene();
   std::map<CluxelName, std::uint32_t> number;
   for (std::uint32_t c = 0; c < scene.cluxels.size(); ++c) number[scene.cluxels.name[c]] = c;
@@ -115,7 +122,7 @@ TEST_F(MapReading, TheSummaryCountsWhatIsThere) {
   std::size_t by_class = 0;
   for (const auto& [name, objects] : summary.objects_by_class) {
     by_class += objects;
-    // In the observed graph: a barrier is inferred to be a small object too.
+    // Counted in the observed graph, because a barrier is inferred to be a small object as well.
     EXPECT_EQ(count("GRAPH <" + std::string(vocabulary::kGraphObserved) + "> { ?o a clx:" + name + " ; clx:rule ?r }"),
               objects)
         << name;
@@ -164,7 +171,7 @@ TEST_F(MapReading, EverySightingOfAnObjectInACloudIsOneObservation) {
     for (const std::uint32_t object : map->answersFor(cloud).object)
       if (object != kNoObjectOfPoint) sightings.insert({object, cloud.id.hex()});
   const std::size_t observations = count("?s a clx:Observation ; sosa:hasFeatureOfInterest ?o ; clx:inCloud ?c");
-  // Points that were thinned away may have been the only ones of a cloud on an object.
+  // Thinning may remove all points of a cloud on an object.
   EXPECT_LE(observations, sightings.size());
   EXPECT_GE(observations, sightings.size() * 95 / 100);
   EXPECT_EQ(count("?o clx:viewCount ?n ; clx:rule ?r { SELECT ?o (COUNT(?s) AS ?seen) WHERE { ?s "
@@ -199,7 +206,7 @@ TEST(MapReaderErrors, RefuseWhatIsNoMapNamingTheFile) {
       MapReader reader(file);
       FAIL() << "a text was taken for a map";
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::StoreUnavailable);
+      EXPECT_EQ(error.kind(), ErrorKind::StoreUnavailable);
       EXPECT_NE(std::string(error.what()).find("no-map.clx"), std::string::npos) << error.what();
     }
   }
@@ -227,4 +234,4 @@ TEST(LocalName, IsWhatFollowsTheLastHashOrSlash) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::mapping

@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// People's statements are inputs of a map: what follows from them stands in the map at once, and a build keeps them.
+// Operator's statements are inputs of a map: inference follows them in the same commit, and a build keeps them.
 #include <gtest/gtest.h>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/mapping/map_update.hpp"
-#include "cluxel/sparql/query_engine.hpp"
+#include "cluxel/error.hpp"
 #include "mapping/asking_rules.hpp"
+#include "mapping/build/map_update.hpp"
+#include "sparql/query_engine.hpp"
 
-namespace cluxel {
+namespace cluxel::mapping {
+
+using namespace scan;
+using namespace perception;
+using namespace simulation;
+using namespace rdf;
+using namespace sparql;
+using namespace rules;
 namespace {
 
 const std::string kPrefixes = "PREFIX clx: <https://w3id.org/cluxel/ontology#> PREFIX ex: <https://example.org/> ";
@@ -20,7 +27,7 @@ bool holds(const std::filesystem::path& map, const std::string& pattern) {
   return PreparedQuery(reader.quads(), kPrefixes + "ASK { " + pattern + " }").ask();
 }
 
-/// A map by the rules of the bench alone, which ask nothing.
+/// A map built with the bench rules only, which have no `ask:`.
 std::filesystem::path buildPark(const std::filesystem::path& folder, const BuildParams& params = {}) {
   writeScanFile(parkWithBench(), folder / "park.pcd");
   buildMap(scansOf({folder / "park.pcd"}), shippedInputs(), folder / "map.clx", params, silence());
@@ -84,4 +91,4 @@ TEST(OperatorStatements, OfAFaultyUpdateLeaveTheMapAsItWas) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::mapping

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// A build with a rule file that includes another: the map holds both texts and needs the files no more.
+// A build with a rule file that includes another: the map stores both texts and does not need the files any more.
 #include <gtest/gtest.h>
 
-#include "cluxel/base/file_bytes.hpp"
+#include "base/file_bytes.hpp"
 #include "mapping/asking_rules.hpp"
+#include "test_paths.hpp"
 
-namespace cluxel {
+namespace cluxel::mapping {
+
+using namespace scan;
+using namespace perception;
+using namespace simulation;
+using namespace rdf;
+using namespace rules;
 namespace {
 
 constexpr const char* kBase = R"(apiVersion: cluxel.rules/v1
@@ -38,7 +45,7 @@ TEST(RuleInclude, GoesIntoTheMapWithAllItsTexts) {
   writeScanFile(parkWithBench(), folder.path() / "park.pcd");
   MapInputFiles files;
   files.rules = {folder.path() / "mine/over.rules.yaml"};
-  const MapInputs inputs = readMapInputs(files, DataHome({CLUXEL_SOURCE_DIR}));
+  const MapInputs inputs = readMapInputs(files, DataHome(test::sourceFolder()));
   EXPECT_EQ(inputs.rule_roots, 1U);
   EXPECT_EQ(inputs.rules.size(), 2U);
   std::filesystem::remove(folder.path() / "base.rules.yaml");
@@ -59,11 +66,11 @@ TEST(RuleInclude, CountsInTheInputsOfTheMap) {
   writeFile(folder.path() / "mine/over.rules.yaml", kOver);
   MapInputFiles files;
   files.rules = {folder.path() / "mine/over.rules.yaml"};
-  const DataHome home({CLUXEL_SOURCE_DIR});
+  const DataHome home(test::sourceFolder());
   const ContentHash before = readMapInputs(files, home).hash();
   writeFile(folder.path() / "base.rules.yaml", std::string(kBase) + "# changed\n");
   EXPECT_NE(readMapInputs(files, home).hash(), before);
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::mapping

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A generated campus as scan files, the shipped inputs, and maps built from them: for tests of mapping and of tasks.
+// Fixtures for tests of mapping and tasks: scan files of a generated campus, the shipped inputs, and maps built from
+// them.
 #pragma once
 
 #include <algorithm>
@@ -7,15 +8,22 @@
 #include <string>
 #include <vector>
 
-#include "cluxel/knowledge/rdf_io.hpp"
-#include "cluxel/knowledge/vocabulary.hpp"
-#include "cluxel/mapping/map_builder.hpp"
-#include "cluxel/mapping/map_reader.hpp"
-#include "cluxel/scan/scan_writer.hpp"
-#include "cluxel/simulation/laser.hpp"
-#include "knowledge/scratch_folder.hpp"
+#include "mapping/build/map_builder.hpp"
+#include "mapping/map_reader.hpp"
+#include "rdf/io/rdf_io.hpp"
+#include "rdf/scratch_folder.hpp"
+#include "rdf/vocabulary.hpp"
+#include "scan/formats/scan_writer.hpp"
+#include "simulation/laser/laser.hpp"
+#include "test_paths.hpp"
 
-namespace cluxel {
+namespace cluxel::mapping {
+
+using namespace scan;
+using namespace perception;
+using namespace simulation;
+using namespace rdf;
+using namespace rules;
 
 inline ProgressSink& silence() {
   static ProgressSink sink;
@@ -27,7 +35,7 @@ inline ScanSet scansOf(const std::vector<std::filesystem::path>& files) {
 }
 
 inline MapInputs shippedInputs() {
-  return readMapInputs({}, DataHome({CLUXEL_SOURCE_DIR}));
+  return readMapInputs({}, DataHome(test::sourceFolder()));
 }
 
 /// Scan files of a small generated campus, posed by their VIEWPOINT.
@@ -51,7 +59,7 @@ class SmallCampus {
   std::vector<SimulatedScan> scans_;
 };
 
-/// Equal texts mean equal maps: sorted N-Quads without the history graph.
+/// Sorted N-Quads without the history graph: equal texts mean equal maps.
 inline std::string canonicalText(const MapReader& map) {
   std::string text;
   writeSortedNQuads(
@@ -64,7 +72,7 @@ inline std::string canonicalText(const std::filesystem::path& file) {
   return canonicalText(MapReader(file));
 }
 
-/// Builds a map of `files`, in that order, into a fresh file and gives its canonical text.
+/// Builds a map of `files`, in that order, and returns its canonical text.
 inline std::string builtText(const std::vector<std::filesystem::path>& files, const MapInputs& inputs,
                              const BuildParams& params = {}) {
   const ScratchFolder folder;
@@ -72,4 +80,4 @@ inline std::string builtText(const std::vector<std::filesystem::path>& files, co
   return canonicalText(folder.path() / "map.clx");
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::mapping

@@ -1,26 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// CONSTRUCT rules: what they derive, whose word each fact is, and which rules are refused.
-#include "mapping/sparql_rules.hpp"
+// CONSTRUCT rules: the derived facts, their derivations, and the rules that are refused.
+#include "mapping/facts/sparql_rules.hpp"
 
 #include <gtest/gtest.h>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/base/file_bytes.hpp"
-#include "cluxel/knowledge/quad_store.hpp"
-#include "cluxel/knowledge/vocabulary.hpp"
-#include "cluxel/mapping/ask_check.hpp"
-#include "cluxel/mapping/class_catalogue_of.hpp"
-#include "cluxel/sparql/query_engine.hpp"
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
 #include "mapping/asking_rules.hpp"
+#include "mapping/facts/map_oracle.hpp"
+#include "rdf/store/quad_store.hpp"
+#include "rdf/vocabulary.hpp"
+#include "sparql/query_engine.hpp"
+#include "test_paths.hpp"
 
-namespace cluxel {
+namespace cluxel::mapping {
+
+using namespace scan;
+using namespace perception;
+using namespace simulation;
+using namespace rdf;
+using namespace sparql;
+using namespace rules;
 namespace {
 
-const std::string kPrefixes =
+const std::string kQueryPrefixes =
     "PREFIX clx: <https://w3id.org/cluxel/ontology#> PREFIX rdf: <http://www.w3.org/1999/02/22-rdf-syntax-ns#> ";
 
 NamedText shippedRule(const std::string& name) {
-  const std::string file = std::string(CLUXEL_SOURCE_DIR) + "/rules/" + name;
+  const std::string file = (test::sourceFolder() / "rules" / name).string();
   return {file, readFile(file)};
 }
 
@@ -32,7 +39,7 @@ Term tree(int number) {
   return Term::iri("https://example.org/tree/" + std::to_string(number));
 }
 
-/// A store of trees and what is near what, over which rules run.
+/// A store of trees with `near` relations, as input of rules.
 class SparqlRules : public testing::Test {
  protected:
   void add(const Term& subject, const std::string& property, const Term& object) {
@@ -52,11 +59,11 @@ class SparqlRules : public testing::Test {
   }
   std::size_t countOf(const std::string& pattern) {
     const QuadReader reader{static_cast<const ReadTransaction&>(transaction)};
-    return evaluateQuery(reader, kPrefixes + "SELECT * WHERE { " + pattern + " }").table.row_count;
+    return evaluateQuery(reader, kQueryPrefixes + "SELECT * WHERE { " + pattern + " }").table.row_count;
   }
   bool ask(const std::string& pattern) {
     const QuadReader reader{static_cast<const ReadTransaction&>(transaction)};
-    return PreparedQuery(reader, kPrefixes + "ASK { " + pattern + " }").ask();
+    return PreparedQuery(reader, kQueryPrefixes + "ASK { " + pattern + " }").ask();
   }
   std::size_t inferred() {
     const QuadReader reader{static_cast<const ReadTransaction&>(transaction)};
@@ -129,14 +136,14 @@ TEST_F(SparqlRules, AKnownFactIsNotDerivedAgain) {
 TEST_F(SparqlRules, ARecursiveRuleRunsToItsFixpoint) {
   addRow(1, 9);
   runSparqlRules(transaction,
-                 {{"reach.rq", kPrefixes + "CONSTRUCT { ?a clx:reaches ?c } WHERE { { ?a clx:near ?c } UNION "
-                                           "{ ?a clx:reaches ?b . ?b clx:near ?c } FILTER(?a != ?c) }"}});
+                 {{"reach.rq", kQueryPrefixes + "CONSTRUCT { ?a clx:reaches ?c } WHERE { { ?a clx:near ?c } UNION "
+                                                "{ ?a clx:reaches ?b . ?b clx:near ?c } FILTER(?a != ?c) }"}});
   EXPECT_EQ(countOf("?a clx:reaches ?b"), 72U);
 }
 
 void expectRefusal(const std::string& text, const std::string& word) {
   try {
-    checkSparqlRules({{"my-rule.rq", kPrefixes + text}});
+    checkSparqlRules({{"my-rule.rq", kQueryPrefixes + text}});
     FAIL() << "accepted: " << text;
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("my-rule.rq"), std::string::npos) << error.what();
@@ -159,8 +166,8 @@ TEST(SparqlRulesCheck, RefusesCutsThatFollowFromTheOrderOfStorage) {
       "CONSTRUCT { ?t clx:n true } WHERE { ?t a clx:Tree FILTER EXISTS { SELECT ?u { ?u clx:near ?t } OFFSET 2 } }",
       "ORDER BY");
   EXPECT_NO_THROW(checkSparqlRules(
-      {{"sorted.rq", kPrefixes + "CONSTRUCT { ?t clx:first true } WHERE { { SELECT ?t { ?t a clx:Tree ; "
-                                 "clx:top ?top } ORDER BY DESC(?top) LIMIT 1 } }"}}));
+      {{"sorted.rq", kQueryPrefixes + "CONSTRUCT { ?t clx:first true } WHERE { { SELECT ?t { ?t a clx:Tree ; "
+                                      "clx:top ?top } ORDER BY DESC(?top) LIMIT 1 } }"}}));
 }
 
 TEST(SparqlRulesCheck, RefusesTheSameInQueriesOfRuleTrees) {
@@ -196,13 +203,14 @@ TEST_F(SparqlRules, SeeNothingOfTheHistoryOfBuilds) {
                            " FROM <https://w3id.org/cluxel/graph/observed> FROM NAMED " + history;
   runSparqlRules(
       transaction,
-      {{"1.rq", kPrefixes + "CONSTRUCT { ?t clx:leak ?f } WHERE { GRAPH " + history + " { ?t clx:sourceFile ?f } }"},
-       {"2.rq", kPrefixes + "CONSTRUCT { ?t clx:leak ?f } WHERE { GRAPH ?g { ?t clx:sourceFile ?f } }"},
-       {"3.rq",
-        kPrefixes + "CONSTRUCT { ?t clx:leak ?g } WHERE { ?t a clx:Tree . GRAPH ?g { } FILTER(?g = " + history + ") }"},
-       {"4.rq", kPrefixes + from + " WHERE { ?t clx:sourceFile ?f }"},
-       {"5.rq", kPrefixes + from + " WHERE { GRAPH ?g { ?t clx:sourceFile+ ?f } }"},
-       {"6.rq", kPrefixes + "CONSTRUCT { ?t clx:seen ?t } WHERE { ?t a clx:Tree }"}});
+      {{"1.rq",
+        kQueryPrefixes + "CONSTRUCT { ?t clx:leak ?f } WHERE { GRAPH " + history + " { ?t clx:sourceFile ?f } }"},
+       {"2.rq", kQueryPrefixes + "CONSTRUCT { ?t clx:leak ?f } WHERE { GRAPH ?g { ?t clx:sourceFile ?f } }"},
+       {"3.rq", kQueryPrefixes +
+                    "CONSTRUCT { ?t clx:leak ?g } WHERE { ?t a clx:Tree . GRAPH ?g { } FILTER(?g = " + history + ") }"},
+       {"4.rq", kQueryPrefixes + from + " WHERE { ?t clx:sourceFile ?f }"},
+       {"5.rq", kQueryPrefixes + from + " WHERE { GRAPH ?g { ?t clx:sourceFile+ ?f } }"},
+       {"6.rq", kQueryPrefixes + "CONSTRUCT { ?t clx:seen ?t } WHERE { ?t a clx:Tree }"}});
   EXPECT_FALSE(ask("?t clx:leak ?f"));
   EXPECT_TRUE(ask("?d a clx:Derivation ; rdf:predicate clx:seen")) << "what the history says is not known to the map";
   EXPECT_TRUE(ask("GRAPH " + history + " { ?t clx:sourceFile ?f }")) << "others may ask it";
@@ -231,9 +239,9 @@ TEST_F(SparqlRules, ARuleWithoutEndIsAnError) {
   try {
     runSparqlRules(
         transaction,
-        {{"endless.rq", kPrefixes + "CONSTRUCT { ?next a clx:Sprout . ?t clx:grows ?next } WHERE { ?t a ?c "
-                                    "FILTER(?c IN (clx:Tree, clx:Sprout)) FILTER NOT EXISTS { ?t clx:grows ?x } "
-                                    "BIND(clx:newObject(clx:Sprout, ?t) AS ?next) }"}});
+        {{"endless.rq", kQueryPrefixes + "CONSTRUCT { ?next a clx:Sprout . ?t clx:grows ?next } WHERE { ?t a ?c "
+                                         "FILTER(?c IN (clx:Tree, clx:Sprout)) FILTER NOT EXISTS { ?t clx:grows ?x } "
+                                         "BIND(clx:newObject(clx:Sprout, ?t) AS ?next) }"}});
     FAIL() << "the rule came to an end";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("endless.rq"), std::string::npos) << error.what();
@@ -242,4 +250,4 @@ TEST_F(SparqlRules, ARuleWithoutEndIsAnError) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::mapping

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds that meet other builds, updates, what killed builds left, and what people put in their place: nothing is lost
-// or mixed.
+// Builds beside other builds, updates, files of killed builds and foreign files: nothing is lost or mixed.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,21 +10,25 @@
 #include <limits>
 #include <thread>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/base/file_bytes.hpp"
-#include "cluxel/mapping/map_update.hpp"
-#include "mapping/map_history.hpp"
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/build/map_update.hpp"
+#include "mapping/build/scan_store.hpp"
+#include "mapping/facts/map_history.hpp"
 #include "mapping/map_state.hpp"
-#include "mapping/scan_store.hpp"
 #include "mapping/small_campus.hpp"
+namespace cluxel::mapping {
 
-namespace cluxel {
+using namespace scan;
+using namespace perception;
+using namespace simulation;
+using namespace rdf;
+using namespace sparql;
+using namespace rules;
 namespace {
-
 namespace fs = std::filesystem;
 using Files = std::vector<fs::path>;
-
-/// Does something when a stage has done so many.
+/// Calls a function when a stage reports a given count.
 class DoAt : public ProgressSink {
  public:
   DoAt(std::string stage, std::size_t done, std::function<void()> action)
@@ -62,12 +65,12 @@ class UnfinishedBuild : public testing::Test {
     return buildMap(scansOf(campus->files()), *inputs, map(), params, sink);
   }
   /// The message of a build that must fail.
-  std::string refusal(ExitCode code, const BuildParams& params = {}, const Files& files = campus->files(),
+  std::string refusal(ErrorKind code, const BuildParams& params = {}, const Files& files = campus->files(),
                       ProgressSink& sink = silence()) const {
     try {
       buildMap(scansOf(files), *inputs, map(), params, sink);
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), code) << error.what();
+      EXPECT_EQ(error.kind(), code) << error.what();
       return error.what();
     }
     ADD_FAILURE() << "was not refused";
@@ -83,7 +86,7 @@ class UnfinishedBuild : public testing::Test {
   bool isStated(const std::string& name) const {
     return canonicalText(map()).find("<https://example.org/" + name + ">") != std::string::npos;
   }
-  /// Builds in a process that ends by SIGKILL when scan `at` is being added.
+  /// Builds in a process that is killed (SIGKILL) while scan `at` is added.
   void buildAndBeKilled(std::size_t at, BuildParams params = {}) const {
     params.batch_points = 1;
     const pid_t child = ::fork();
@@ -103,7 +106,7 @@ class UnfinishedBuild : public testing::Test {
   static inline std::string* expected = nullptr;
 };
 
-/// A build in another process that waits in its first scan until it may go on.
+/// A build in another process that blocks in its first scan until it is released.
 class WaitingBuild {
  public:
   explicit WaitingBuild(const std::function<void(ProgressSink&)>& build) {
@@ -140,7 +143,7 @@ TEST_F(UnfinishedBuild, OfTwoBuildsAtOnceTheSecondIsToldOfTheFirst) {
   for (const bool force : {false, true}) {
     const BuildParams params{.force = force};
     WaitingBuild first([&](ProgressSink& sink) { build(params, sink); });
-    const std::string message = refusal(ExitCode::StoreUnavailable, params);
+    const std::string message = refusal(ErrorKind::StoreUnavailable, params);
     EXPECT_NE(message.find("process " + std::to_string(first.process())), std::string::npos) << message;
     if (force) {
       EXPECT_EQ(canonicalText(map()), *expected) << "the old map stays until the new one is whole";
@@ -195,7 +198,7 @@ TEST_F(UnfinishedBuild, ASuccessorOfOtherInputsIsNotThrownAway) {
     buildMap(scansOf(campus->files()), others, map(), {}, silence());
     FAIL() << "built beside it";
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::Usage);
+    EXPECT_EQ(error.kind(), ErrorKind::InvalidArgument);
     EXPECT_NE(std::string(error.what()).find("map.clx.building"), std::string::npos) << error.what();
   }
   EXPECT_EQ(canonicalText(building()), *expected);
@@ -204,7 +207,7 @@ TEST_F(UnfinishedBuild, ASuccessorOfOtherInputsIsNotThrownAway) {
 
 TEST_F(UnfinishedBuild, OfOtherScansIsNotGoneOnWith) {
   buildAndBeKilled(2);
-  const std::string message = refusal(ExitCode::Usage, {}, {campus->files()[1]});
+  const std::string message = refusal(ErrorKind::InvalidArgument, {}, {campus->files()[1]});
   EXPECT_NE(message.find("other scans"), std::string::npos) << message;
   EXPECT_NE(message.find("stop0.pcd"), std::string::npos) << message;
   build();
@@ -232,7 +235,7 @@ TEST_F(UnfinishedBuild, AStoreThatNoBuildMadeIsNotBuiltInto) {
     writer.flush();
     transaction.commit();
   }
-  EXPECT_NE(refusal(ExitCode::Usage).find("--force"), std::string::npos);
+  EXPECT_NE(refusal(ErrorKind::InvalidArgument).find("no build has made"), std::string::npos);
   EXPECT_EQ(QuadReader(Environment::open(map(), OpenMode::ReadOnly)->read()).size(), 1U);
   build({.force = true});
   EXPECT_EQ(canonicalText(map()), *expected);
@@ -250,7 +253,7 @@ TEST_F(UnfinishedBuild, ThatCannotBeMovedIntoPlaceIsNamedAndKept) {
     fs::remove(map());
     fs::create_directories(map() / "full");
   });
-  const std::string message = refusal(ExitCode::StoreUnavailable, {.force = true}, campus->files(), sink);
+  const std::string message = refusal(ErrorKind::StoreUnavailable, {.force = true}, campus->files(), sink);
   EXPECT_NE(message.find("map.clx.building"), std::string::npos) << message;
   EXPECT_EQ(canonicalText(building()), *expected);
 }
@@ -344,4 +347,4 @@ TEST(MapReaderSnapshot, IsOneForBlocksAndQuads) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::mapping

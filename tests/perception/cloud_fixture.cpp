@@ -10,6 +10,9 @@
 
 namespace cluxel::testing {
 
+using namespace scan;
+using namespace perception;
+
 void CloudMaker::add(const Eigen::Vector3d& point) {
   std::normal_distribution<double> noise(0, noise_m_);
   const double x = noise(random_), y = noise(random_), z = noise(random_);
@@ -90,7 +93,7 @@ std::map<TileKey, TilePoints> tilesOf(const std::vector<Scan>& scans, const Thin
   return tiles;
 }
 
-std::string bytesOf(const PerceivedTiles& tiles) {
+std::string bytesOf(const TileOutputs& tiles) {
   std::string bytes;
   for (const auto& [key, tile] : tiles.points) bytes += toBytes(tile);
   for (const auto& [key, tile] : tiles.cluxels) bytes += toBytes(tile);
@@ -102,7 +105,7 @@ std::string bytesOf(const PerceivedTiles& tiles) {
 std::vector<double> meanFeatures(const std::vector<Eigen::Vector3d>& points, const PerceptionParams& params,
                                  const Eigen::Vector3d& centre, double within_m) {
   const std::vector<Scan> scans{scanOf(points)};
-  const PerceivedTiles tiles = perceive(scans, params, 1);
+  const TileOutputs tiles = perceive(scans, params, 1);
   const std::size_t columns = featureLayout(params.features).columns.size();
   std::vector<double> mean(columns);
   std::size_t count = 0;

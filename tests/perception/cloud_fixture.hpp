@@ -8,9 +8,12 @@
 #include <random>
 #include <vector>
 
-#include "cluxel/perception/tile_pipeline.hpp"
+#include "perception/pipeline.hpp"
 
 namespace cluxel::testing {
+
+using namespace scan;
+using namespace perception;
 
 /// Draws points of surfaces; the same seed gives the same points.
 class CloudMaker {
@@ -51,7 +54,7 @@ std::vector<Scan> splitAtRandom(const std::vector<Eigen::Vector3d>& points, std:
 std::map<TileKey, TilePoints> tilesOf(const std::vector<Scan>& scans, const ThinParams& params);
 
 /// All outputs as bytes, tile by tile.
-std::string bytesOf(const PerceivedTiles& tiles);
+std::string bytesOf(const TileOutputs& tiles);
 
 /// The stages over a few hundred points as one tile's features: rows of the own cluxels whose centre is nearer than
 /// `within_m` to `centre`, averaged.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cover against brute force, and its laws: order, borders, volumes, moments.
-#include "cluxel/perception/cluxel_tile.hpp"
+// Clustering against brute force, and its properties: order, borders, volumes, moments.
+#include "perception/clustering/cluxel_tile.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,12 @@
 #include <numeric>
 
 #include "cloud_fixture.hpp"
-#include "cluxel/base/diagnostic.hpp"
-#include "perception/point_grid.hpp"
+#include "cluxel/error.hpp"
+#include "perception/clustering/point_grid.hpp"
 
-namespace cluxel {
+namespace cluxel::perception {
+
+using namespace scan;
 namespace {
 
 using testing::splitAtRandom;
@@ -33,8 +35,8 @@ std::vector<std::uint32_t> canonicalOrder(const TilePoints& tile, double radius_
   return order;
 }
 
-/// "A point joins the earliest seed within r, or becomes a seed", said plainly.
-std::vector<std::uint32_t> bruteCover(const TilePoints& tile, double radius_m, std::vector<std::uint32_t>& seeds) {
+/// "A point joins the earliest seed within r, or becomes a seed", by brute force.
+std::vector<std::uint32_t> bruteClustering(const TilePoints& tile, double radius_m, std::vector<std::uint32_t>& seeds) {
   std::vector<std::uint32_t> cluxel(tile.size());
   const float squared = static_cast<float>(radius_m) * static_cast<float>(radius_m);
   for (const auto i : canonicalOrder(tile, radius_m)) {
@@ -50,7 +52,7 @@ std::vector<std::uint32_t> bruteCover(const TilePoints& tile, double radius_m, s
   return cluxel;
 }
 
-/// All points of the ring within a distance of a place, relative to the ring's centre.
+/// All points of the ring within a distance of a position, relative to the ring's centre tile.
 std::vector<Eigen::Vector3f> pointsWithin(const Ring<TilePoints>& ring, const Eigen::Vector3f& place, float reach_m) {
   std::vector<Eigen::Vector3f> found;
   for (int r = 0; r < 9; ++r)
@@ -60,14 +62,14 @@ std::vector<Eigen::Vector3f> pointsWithin(const Ring<TilePoints>& ring, const Ei
   return found;
 }
 
-TEST(CluxelTile, GridCoverEqualsBruteForceCover) {
+TEST(CluxelTile, GridClusteringEqualsBruteForceClustering) {
   for (const double radius_m : {0.1, 0.2, 0.37}) {
     const auto tiles = streetTiles(11);
     for (const auto& [key, points] : tiles) {
-      const CluxelTile cover = coverTile(ringIn(tiles, key), {.radius_m = radius_m});
+      const CluxelTile clustered = clusterTile(ringIn(tiles, key), {.radius_m = radius_m});
       std::vector<std::uint32_t> seeds;
-      EXPECT_EQ(cover.point_cluxel, bruteCover(points, radius_m, seeds));
-      EXPECT_EQ(cover.seed, seeds);
+      EXPECT_EQ(clustered.point_cluxel, bruteClustering(points, radius_m, seeds));
+      EXPECT_EQ(clustered.seed, seeds);
     }
   }
 }
@@ -77,16 +79,16 @@ TEST(CluxelTile, VolumesHoldAllPointsWithinReachAlsoThoseOfNeighbouringTiles) {
   bool crossed = false;
   for (const auto& [key, points] : tiles) {
     const auto ring = ringIn(tiles, key);
-    const CluxelTile cover = coverTile(ring, {});
-    for (std::size_t c = 0; c < cover.size(); c += 7) {
-      Eigen::Vector3f low = points.at(cover.seed[c]), high = low;
-      const auto near = pointsWithin(ring, points.at(cover.seed[c]), cover.reach[c] * 1.00001F);
+    const CluxelTile clustered = clusterTile(ring, {});
+    for (std::size_t c = 0; c < clustered.size(); c += 7) {
+      Eigen::Vector3f low = points.at(clustered.seed[c]), high = low;
+      const auto near = pointsWithin(ring, points.at(clustered.seed[c]), clustered.reach[c] * 1.00001F);
       for (const auto& p : near) {
         low = low.cwiseMin(p);
         high = high.cwiseMax(p);
       }
-      EXPECT_LT((low - cover.volume_min[c]).norm() + (high - cover.volume_max[c]).norm(), 1e-6);
-      EXPECT_FLOAT_EQ(cover.ball[c].count, static_cast<float>(near.size()));
+      EXPECT_LT((low - clustered.volume_min[c]).norm() + (high - clustered.volume_max[c]).norm(), 1e-6);
+      EXPECT_FLOAT_EQ(clustered.ball[c].count, static_cast<float>(near.size()));
       crossed = crossed || low.x() < 0 || high.y() > 16;
     }
   }
@@ -94,17 +96,17 @@ TEST(CluxelTile, VolumesHoldAllPointsWithinReachAlsoThoseOfNeighbouringTiles) {
 }
 
 TEST(CluxelTile, SparseVolumesGrowUntilTheyHoldEnoughPointsAndDenseOnesDoNot) {
-  const CoverParams params;
+  const ClusterParams params;
   const auto tiles = streetTiles(13);
   std::size_t grown = 0, fixed = 0;
   for (const auto& [key, points] : tiles) {
-    const CluxelTile cover = coverTile(ringIn(tiles, key), params);
-    for (std::size_t c = 0; c < cover.size(); ++c) {
-      EXPECT_GE(cover.reach[c], static_cast<float>(params.radius_m) * 0.9999F);
-      EXPECT_LE(cover.reach[c], static_cast<float>(params.largest_reach_m) * 1.0001F);
-      const bool at_limit = cover.reach[c] > 0.999F * static_cast<float>(params.largest_reach_m);
-      EXPECT_TRUE(at_limit || cover.ball[c].count >= static_cast<float>(params.wanted_points));
-      ++(cover.reach[c] > 1.001F * static_cast<float>(params.radius_m) ? grown : fixed);
+    const CluxelTile clustered = clusterTile(ringIn(tiles, key), params);
+    for (std::size_t c = 0; c < clustered.size(); ++c) {
+      EXPECT_GE(clustered.reach[c], static_cast<float>(params.radius_m) * 0.9999F);
+      EXPECT_LE(clustered.reach[c], static_cast<float>(params.max_reach_m) * 1.0001F);
+      const bool at_limit = clustered.reach[c] > 0.999F * static_cast<float>(params.max_reach_m);
+      EXPECT_TRUE(at_limit || clustered.ball[c].count >= static_cast<float>(params.target_points));
+      ++(clustered.reach[c] > 1.001F * static_cast<float>(params.radius_m) ? grown : fixed);
     }
   }
   EXPECT_GT(grown, 100U);
@@ -114,9 +116,9 @@ TEST(CluxelTile, SparseVolumesGrowUntilTheyHoldEnoughPointsAndDenseOnesDoNot) {
 TEST(CluxelTile, MomentsAreThoseOfTheCluxelsPoints) {
   const auto tiles = streetTiles(14);
   const auto& [key, points] = *tiles.begin();
-  const CluxelTile cover = coverTile(ringIn(tiles, key), {});
-  const CluxelMembers members = membersOf(cover);
-  for (std::size_t c = 0; c < cover.size(); ++c) {
+  const CluxelTile clustered = clusterTile(ringIn(tiles, key), {});
+  const CluxelMembers members = membersOf(clustered);
+  for (std::size_t c = 0; c < clustered.size(); ++c) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     const std::uint32_t begin = members.offset[c], end = members.offset[c + 1];
     for (auto i = begin; i < end; ++i) mean += points.at(members.point[i]).cast<double>() / (end - begin);
@@ -125,9 +127,9 @@ TEST(CluxelTile, MomentsAreThoseOfTheCluxelsPoints) {
       const Eigen::Vector3d d = points.at(members.point[i]).cast<double>() - mean;
       scatter += d * d.transpose();
     }
-    ASSERT_FLOAT_EQ(cover.own[c].count, static_cast<float>(end - begin));
-    EXPECT_LT((cover.own[c].mean.cast<double>() - mean).norm(), 1e-5);
-    const auto& s = cover.own[c].scatter;
+    ASSERT_FLOAT_EQ(clustered.own[c].count, static_cast<float>(end - begin));
+    EXPECT_LT((clustered.own[c].mean.cast<double>() - mean).norm(), 1e-5);
+    const auto& s = clustered.own[c].scatter;
     const std::array<double, 6> expected{scatter(0, 0), scatter(0, 1), scatter(0, 2),
                                          scatter(1, 1), scatter(1, 2), scatter(2, 2)};
     for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(s[i], expected[i], 1e-6 + 1e-5 * std::abs(expected[i]));
@@ -139,7 +141,7 @@ TEST(CluxelTile, APointNearABorderJoinsNoSeedBeyondIt) {
   for (const auto& [key, points] : tiles) {
     Ring<TilePoints> alone{};
     alone[kRingCentre] = &points;
-    EXPECT_EQ(coverTile(ringIn(tiles, key), {}).point_cluxel, coverTile(alone, {}).point_cluxel);
+    EXPECT_EQ(clusterTile(ringIn(tiles, key), {}).point_cluxel, clusterTile(alone, {}).point_cluxel);
   }
 }
 
@@ -156,32 +158,32 @@ TEST(CluxelTile, MovingEverythingByWholeTilesChangesNothing) {
   const auto tiles = streetTiles(16);
   const auto moved = move(tiles);
   for (const auto& [key, tile] : tiles) {
-    CluxelTile there = coverTile(ringIn(moved, {key.x + 1000, key.y - 77}), {});
+    CluxelTile there = clusterTile(ringIn(moved, {key.x + 1000, key.y - 77}), {});
     there.key = key;
-    EXPECT_EQ(toBytes(there), toBytes(coverTile(ringIn(tiles, key), {})));
+    EXPECT_EQ(toBytes(there), toBytes(clusterTile(ringIn(tiles, key), {})));
   }
 }
 
 TEST(CluxelTile, ThePapersModeHasFixedVolumesOfATenthOfAMetre) {
   const auto tiles = streetTiles(17);
-  const CluxelTile cover = coverTile(ringIn(tiles, tiles.begin()->first), paperCover());
-  for (const auto reach : cover.reach) EXPECT_NEAR(reach, 0.10, 1e-6);
+  const CluxelTile clustered = clusterTile(ringIn(tiles, tiles.begin()->first), paperClustering());
+  for (const auto reach : clustered.reach) EXPECT_NEAR(reach, 0.10, 1e-6);
 }
 
 TEST(CluxelTile, SettingsOutsideTheirRangeAreRefusedByName) {
   try {
-    checkRanges(CoverParams{.radius_m = -1});
+    checkRanges(ClusterParams{.radius_m = -1});
     FAIL() << "took a negative radius";
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::Usage);
+    EXPECT_EQ(error.kind(), ErrorKind::InvalidArgument);
     EXPECT_NE(std::string(error.what()).find("cover.radius"), std::string::npos);
   }
-  EXPECT_NE(hashOf(CoverParams{}), hashOf(paperCover()));
+  EXPECT_NE(hashOf(ClusterParams{}), hashOf(paperClustering()));
 }
 
 TEST(CluxelTile, BytesComeBackAndDamagedOnesAreRefused) {
   const auto tiles = streetTiles(18);
-  const std::string bytes = toBytes(coverTile(ringIn(tiles, tiles.begin()->first), {}));
+  const std::string bytes = toBytes(clusterTile(ringIn(tiles, tiles.begin()->first), {}));
   EXPECT_EQ(toBytes(cluxelTileFromBytes(bytes)), bytes);
   for (std::size_t size = 0; size < bytes.size(); size += 1 + bytes.size() / 97)
     EXPECT_THROW(cluxelTileFromBytes(bytes.substr(0, size)), Error);
@@ -191,4 +193,4 @@ TEST(CluxelTile, BytesComeBackAndDamagedOnesAreRefused) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::perception

@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// Components against a flood fill, contacts seen from both ends, and what must not change at a border of tiles.
-#include "cluxel/perception/component_tile.hpp"
+// Components against a flood fill, symmetry of contacts, and independence of tile borders.
+#include "perception/segments/component_tile.hpp"
 
 #include <gtest/gtest.h>
 
-#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/error.hpp"
 
 #include <random>
 #include <set>
 
-#include "cluxel/perception/scene_assembly.hpp"
 #include "perception/cloud_fixture.hpp"
+#include "perception/segments/scene_assembly.hpp"
 
 namespace cluxel::testing {
+
+using namespace scan;
+using namespace perception;
 namespace {
 
 using LabelOf = std::function<PrimitiveLabel(const Eigen::Vector3d& center_map)>;
 
 /// All outputs of a cloud whose labels are given by hand.
 struct HandLabelled {
-  PerceivedTiles tiles;
-  std::map<TileKey, LabelTile> labels;
-  std::map<TileKey, ComponentTile> components;
-  std::map<TileKey, ContactTile> contacts;
+  TileOutputs tiles;
   Scene scene;
 };
 
@@ -38,16 +38,15 @@ HandLabelled labelled(const std::vector<Scan>& scans, const LabelOf& label_of) {
       tile.probability.push_back({});
       tile.probability.back()[static_cast<std::size_t>(label)] = 1.0F;
     }
-    all.labels.emplace(key, std::move(tile));
+    all.tiles.labels.emplace(key, std::move(tile));
   }
   for (const auto& [key, points] : all.tiles.points)
-    all.components.emplace(key, componentsOf(points, all.tiles.cluxels.at(key), all.tiles.features.at(key),
-                                             all.labels.at(key), ringIn(all.tiles.ground, key), {}));
+    all.tiles.components.emplace(key, componentsOf(points, all.tiles.cluxels.at(key), all.tiles.features.at(key),
+                                                   all.tiles.labels.at(key), ringIn(all.tiles.ground, key), {}));
   for (const auto& [key, graph] : all.tiles.features)
-    all.contacts.emplace(key, contactsOf(ringIn(all.components, key), ringIn(all.tiles.cluxels, key), graph, {}, {}));
-  all.scene = assembleScene({all.tiles.points, all.tiles.cluxels, all.tiles.features, all.tiles.ground, all.labels,
-                             all.components, all.contacts},
-                            {});
+    all.tiles.contacts.emplace(
+        key, contactsOf(ringIn(all.tiles.components, key), ringIn(all.tiles.cluxels, key), graph, {}, {}));
+  all.scene = assembleScene(all.tiles, {});
   return all;
 }
 
@@ -92,8 +91,9 @@ std::vector<std::uint32_t> flooded(const CluxelTile& cluxels, const FeatureTile&
 TEST(ComponentTile, HasTheComponentsOfAFloodFill) {
   for (std::uint32_t seed = 1; seed <= 3; ++seed) {
     const HandLabelled all = labelled({scanOf(streetPoints(seed))}, patches(seed));
-    for (const auto& [key, tile] : all.components) {
-      EXPECT_EQ(tile.component_of, flooded(all.tiles.cluxels.at(key), all.tiles.features.at(key), all.labels.at(key)));
+    for (const auto& [key, tile] : all.tiles.components) {
+      EXPECT_EQ(tile.component_of,
+                flooded(all.tiles.cluxels.at(key), all.tiles.features.at(key), all.tiles.labels.at(key)));
       std::uint64_t points = 0;
       for (const Component& component : tile.components) points += component.points;
       EXPECT_EQ(points, all.tiles.points.at(key).size());
@@ -107,11 +107,11 @@ TEST(ComponentTile, HasTheComponentsOfAFloodFill) {
 TEST(ContactTile, LooksTheSameFromBothEnds) {
   const HandLabelled all = labelled({scanOf(streetPoints(2))}, patches(9));
   std::size_t across = 0, heights = 0;
-  for (const auto& [key, tile] : all.contacts)
+  for (const auto& [key, tile] : all.tiles.contacts)
     for (const Contact& contact : tile.contacts) {
       const TileKey other = ringOf(key)[contact.to_ring];
       const Contact* back = nullptr;
-      for (const Contact& candidate : all.contacts.at(other).contacts)
+      for (const Contact& candidate : all.tiles.contacts.at(other).contacts)
         if (candidate.from == contact.to && candidate.to_ring == 8 - contact.to_ring && candidate.to == contact.from)
           back = &candidate;
       ASSERT_NE(back, nullptr) << "seen from one end only";
@@ -127,7 +127,7 @@ TEST(ContactTile, LooksTheSameFromBothEnds) {
   EXPECT_GT(heights, 10U);
 }
 
-/// A pole of label column over flat ground, with a crown of label scatter when wanted; the cloud is shifted by its
+/// A pole with label "column" over flat ground, optionally with a crown of label "scatter"; the cloud is shifted by its
 /// pose.
 HandLabelled poleAt(double shift_x_m, bool has_crown) {
   CloudMaker maker(21);
@@ -191,7 +191,7 @@ TEST(Scene, ACrownIsAboveItsTrunkAndTheTrunkBelowIt) {
   }
 }
 
-/// Half a corner at the end of a hull was dropped in silence (found by reading for the fuzzer).
+/// Regression: half a corner at the end of a hull was dropped silently.
 TEST(ComponentBytes, AreReadBackOrRefused) {
   ComponentTile tile;
   tile.components.resize(1);
@@ -212,31 +212,30 @@ TEST(ComponentBytes, AreReadBackOrRefused) {
   EXPECT_THROW(componentTileFromBytes(odd), Error);
 }
 
-/// Each block is sound by itself: only together they are seen to be damaged.
+/// Each block is valid by itself; only the combination is inconsistent.
 TEST(Scene, RefusesBlocksThatDoNotBelongTogether) {
   const auto scans = std::vector{scanOf(streetPoints(3))};
   const auto assembled = [&](const auto& damage) {
     HandLabelled all = labelled(scans, patches(3));
     damage(all);
-    return assembleScene({all.tiles.points, all.tiles.cluxels, all.tiles.features, all.tiles.ground, all.labels,
-                          all.components, all.contacts},
-                         {});
+    return assembleScene(all.tiles, {});
   };
   EXPECT_NO_THROW(assembled([](HandLabelled&) {}));
-  EXPECT_THROW(assembled([](HandLabelled& all) { all.labels.begin()->second.label.pop_back(); }), Error);
-  EXPECT_THROW(assembled([](HandLabelled& all) { all.components.begin()->second.component_of.push_back(0); }), Error);
+  EXPECT_THROW(assembled([](HandLabelled& all) { all.tiles.labels.begin()->second.label.pop_back(); }), Error);
+  EXPECT_THROW(assembled([](HandLabelled& all) { all.tiles.components.begin()->second.component_of.push_back(0); }),
+               Error);
   EXPECT_THROW(
       assembled([](HandLabelled& all) { all.tiles.features.begin()->second.edge_target.front().index = 1 << 27; }),
       Error);
   for (auto Contact::*number : {&Contact::from, &Contact::to}) {
     EXPECT_THROW(assembled([number](HandLabelled& all) {
-                   for (auto& [key, tile] : all.contacts) {
+                   for (auto& [key, tile] : all.tiles.contacts) {
                      if (!tile.contacts.empty()) tile.contacts.front().*number = 1U << 30U;
                    }
                  }),
                  Error);
   }
-  EXPECT_THROW(assembled([](HandLabelled& all) { all.contacts.erase(all.contacts.begin()); }), Error);
+  EXPECT_THROW(assembled([](HandLabelled& all) { all.tiles.contacts.erase(all.tiles.contacts.begin()); }), Error);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Inference against exact enumeration on small graphs and alpha-expansion on larger ones.
-#include "cluxel/perception/crf_inference.hpp"
+#include "perception/crf/crf_inference.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,15 +8,17 @@
 
 #include "perception/crf_oracle_fixture.hpp"
 
-namespace cluxel {
+namespace cluxel::perception {
+
+using namespace scan;
 namespace {
 
 TEST(CrfGraph, CountsAPairOfLabelsInBothOrdersAlike) {
   CrfGraph graph{{LabelCosts{1, 2, 3, 4, 5}, LabelCosts{1, 2, 3, 4, 5}}, {{0, 1}}, {PairCosts{}}};
   graph.pair_costs[0][labelPair(1, 3)] = 10.0F;
-  EXPECT_DOUBLE_EQ(energyOf(graph, std::vector<std::uint8_t>{1, 3}), 16.0);
-  EXPECT_DOUBLE_EQ(energyOf(graph, std::vector<std::uint8_t>{3, 1}), 16.0);
-  EXPECT_DOUBLE_EQ(energyOf(graph, std::vector<std::uint8_t>{3, 3}), 8.0);
+  EXPECT_DOUBLE_EQ(oracle::energyOf(graph, std::vector<std::uint8_t>{1, 3}), 16.0);
+  EXPECT_DOUBLE_EQ(oracle::energyOf(graph, std::vector<std::uint8_t>{3, 1}), 16.0);
+  EXPECT_DOUBLE_EQ(oracle::energyOf(graph, std::vector<std::uint8_t>{3, 3}), 8.0);
 }
 
 TEST(CrfInference, TakesTheCheapestLabelOfALoneNode) {
@@ -38,7 +40,7 @@ TEST(CrfInference, IsExactOnChains) {
     const CrfGraph graph = oracle::randomChain(random, 7);
     const InferenceResult result = inferTrws(graph, {.sweeps = 1});
     const oracle::Labelling best = oracle::enumerate(graph);
-    EXPECT_NEAR(energyOf(graph, result.labels), best.energy, 1e-4);
+    EXPECT_NEAR(oracle::energyOf(graph, result.labels), best.energy, 1e-4);
     EXPECT_NEAR(result.lower_bound, best.energy, 1e-4);
   }
 }
@@ -65,8 +67,8 @@ TEST(CrfInference, IsWithinTwoPercentOfTheBestOfAllLabellingsOnTinyGraphs) {
     const InferenceResult result = inferTrws(graph, {.sweeps = 10});
     const double least = oracle::enumerate(graph).energy;
     EXPECT_LE(result.lower_bound, least + 1e-4);
-    EXPECT_GE(energyOf(graph, result.labels), least - 1e-4);
-    found += energyOf(graph, result.labels);
+    EXPECT_GE(oracle::energyOf(graph, result.labels), least - 1e-4);
+    found += oracle::energyOf(graph, result.labels);
     best += least;
   }
   EXPECT_LE(found, 1.02 * best);
@@ -92,7 +94,7 @@ TEST(CrfInference, IsAsGoodAsAlphaExpansionOnNoisyGrids) {
     const CrfGraph graph = oracle::noisyGrid(random, 40);
     const InferenceResult result = inferTrws(graph, {.sweeps = 5});
     const double expanded = oracle::expandAlpha(graph).energy;
-    EXPECT_LE(energyOf(graph, result.labels), expanded + 0.005 * std::abs(expanded));
+    EXPECT_LE(oracle::energyOf(graph, result.labels), expanded + 0.005 * std::abs(expanded));
     EXPECT_LE(result.lower_bound, expanded);
   }
 }
@@ -117,4 +119,4 @@ TEST(CrfInference, GivesTheSameBitsTwice) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::perception

@@ -8,6 +8,9 @@
 
 namespace cluxel::oracle {
 
+using namespace scan;
+using namespace perception;
+
 namespace {
 
 constexpr std::size_t kLabels = kPrimitiveLabelCount;
@@ -96,6 +99,16 @@ std::vector<std::uint8_t> expansionMove(const CrfGraph& graph, const std::vector
 }
 
 }  // namespace
+
+double energyOf(const CrfGraph& graph, std::span<const std::uint8_t> labels) {
+  double energy = 0;
+  for (std::size_t i = 0; i < graph.size(); ++i) energy += static_cast<double>(graph.unary[i][labels[i]]);
+  for (std::size_t e = 0; e < graph.edges.size(); ++e) {
+    const std::uint8_t a = labels[graph.edges[e].from], b = labels[graph.edges[e].to];
+    if (a != b) energy += static_cast<double>(graph.pair_costs[e][labelPair(a, b)]);
+  }
+  return energy;
+}
 
 Labelling enumerate(const CrfGraph& graph) {
   Labelling best{{}, std::numeric_limits<double>::infinity()};

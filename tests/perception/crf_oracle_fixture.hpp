@@ -1,24 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-// What inference is compared with: exact enumeration, alpha-expansion by max-flow, and graphs made at random.
+// Oracles for inference: exact enumeration, alpha-expansion by max-flow; and random graphs.
 #pragma once
 
 #include <cstdint>
 #include <random>
+#include <span>
 #include <vector>
 
-#include "cluxel/perception/crf_graph.hpp"
+#include "perception/crf/crf_graph.hpp"
 
 namespace cluxel::oracle {
+
+using namespace scan;
+using namespace perception;
 
 struct Labelling {
   std::vector<std::uint8_t> labels;
   double energy = 0;
 };
 
+/// The energy of a labelling: the sum of its unary and pair costs.
+double energyOf(const CrfGraph& graph, std::span<const std::uint8_t> labels);
+
 /// The best labelling of all 5^n.
 Labelling enumerate(const CrfGraph& graph);
 
-/// Min-marginals by enumeration: the least energy with node i at label a, minus the least energy.
+/// Min-marginals by enumeration: the minimum energy with node i at label a, minus the minimum energy.
 std::vector<std::array<double, kPrimitiveLabelCount>> enumerateMinMarginals(const CrfGraph& graph);
 
 /// Alpha-expansion (Boykov, Veksler, Zabih 2001) until no label's move lowers the energy. Pair costs that break the

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pairwise term: its gradient by finite differences, and what pseudo-likelihood recovers.
-#include "cluxel/perception/crf_pairs.hpp"
+// The pairwise term: its gradient against finite differences, and recovery by pseudo-likelihood.
+#include "perception/crf/crf_pairs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,13 +8,15 @@
 #include <limits>
 #include <random>
 
-#include "perception/pair_cost_table.hpp"
-#include "perception/pair_training.hpp"
+#include "perception/crf/pair_cost_table.hpp"
+#include "perception/training/pair_training.hpp"
 
-namespace cluxel {
+namespace cluxel::perception {
+
+using namespace scan;
 namespace {
 
-/// Nodes on a chain; the one edge feature tells how likely both ends have one label.
+/// Nodes on a chain; the only edge feature determines the probability of equal labels.
 PairSamples chainSamples(std::uint32_t seed, std::uint32_t nodes) {
   std::mt19937 random(seed);
   const auto uniform = [&] { return static_cast<float>(random() % 10000U) / 10000.0F; };
@@ -39,13 +41,13 @@ PairSamples chainSamples(std::uint32_t seed, std::uint32_t nodes) {
   return samples;
 }
 
-PairShape shapeOf() {
+PairShape pairShape() {
   return {.knots = {{0.0F, 0.5F, 1.0F}, {0.0F, 0.4F, 1.0F}}, .columns_used = {}, .degree_power = 0.5F};
 }
 
 TEST(PairTraining, HasTheGradientThatFiniteDifferencesShow) {
   const PairSamples samples = chainSamples(1, 60);
-  const PairShape shape = shapeOf();
+  const PairShape shape = pairShape();
   const PseudoLikelihood objective(samples, shape);
   std::mt19937 random(2);
   std::vector<double> x(objective.parameters()), gradient(x.size()), unused(x.size());
@@ -63,7 +65,7 @@ TEST(PairTraining, HasTheGradientThatFiniteDifferencesShow) {
 
 TEST(PairTraining, IsConvexAlongRandomLines) {
   const PairSamples samples = chainSamples(3, 50);
-  const PairShape shape = shapeOf();
+  const PairShape shape = pairShape();
   const PseudoLikelihood objective(samples, shape);
   std::mt19937 random(4);
   std::vector<double> gradient(objective.parameters());
@@ -79,7 +81,7 @@ TEST(PairTraining, IsConvexAlongRandomLines) {
 }
 
 TEST(PairTraining, LearnsThatLikeEndsDifferRarely) {
-  const PairModel model = fitPairs(chainSamples(5, 4000), shapeOf());
+  const PairModel model = fitPairs(chainSamples(5, 4000), pairShape());
   double alike = 0, unlike = 0;
   for (std::size_t pair = 0; pair < kLabelPairCount; ++pair) {
     alike += static_cast<double>(pairCostsOf(model, std::vector{0.95F, 0.5F}, 0.5F)[pair]);
@@ -90,13 +92,14 @@ TEST(PairTraining, LearnsThatLikeEndsDifferRarely) {
 }
 
 TEST(PairTraining, GivesTheSameBitsTwice) {
-  const PairModel first = fitPairs(chainSamples(6, 500), shapeOf()), second = fitPairs(chainSamples(6, 500), shapeOf());
+  const PairModel first = fitPairs(chainSamples(6, 500), pairShape()),
+                  second = fitPairs(chainSamples(6, 500), pairShape());
   EXPECT_EQ(first.weights, second.weights);
   EXPECT_EQ(first.unary_scale, second.unary_scale);
 }
 
 TEST(PairTraining, LeavesAColumnThatIsSwitchedOffWithoutWeight) {
-  PairShape shape = shapeOf();
+  PairShape shape = pairShape();
   shape.columns_used = {true, false};
   const PairModel model = fitPairs(chainSamples(7, 500), shape);
   for (std::size_t hat = 0; hat < kHats; ++hat) EXPECT_EQ(model.weights[1 + kHats + hat], PairCosts{});
@@ -144,7 +147,7 @@ PairModel randomModel(std::mt19937& random, std::size_t columns, float degree_po
   return model;
 }
 
-/// Edges under a model: some features lie on a knot, some are not a number.
+/// Random edges for a model: some features lie on a knot, some are NaN.
 std::vector<std::vector<float>> randomEdges(std::mt19937& random, const PairModel& model, std::size_t count) {
   std::normal_distribution<float> normal(0, 2);
   const std::size_t columns = model.knots.size();
@@ -158,7 +161,7 @@ std::vector<std::vector<float>> randomEdges(std::mt19937& random, const PairMode
 }
 
 void expectTheFormulasBits(const PairModel& model, const std::vector<std::vector<float>>& edges,
-                           const LaneKernels& kernels) {
+                           const SimdKernels& kernels) {
   std::vector<PairCostTable::Edge> listed;
   for (std::uint32_t degrees = 0; degrees < edges.size(); ++degrees) listed.push_back({edges[degrees].data(), degrees});
   const auto costs = PairCostTable(model, kernels).costsOf(listed);
@@ -172,11 +175,11 @@ TEST(CrfPairs, GiveTheSameBitsByTableOfAnyWidthAndByFormula) {
   for (const std::size_t columns : {0U, 1U, 3U, 4U, 6U, 10U, 12U, 32U, 33U})
     for (const float degree_power : {0.0F, 0.5F, 1.0F}) {
       const PairModel model = randomModel(random, columns, degree_power);
-      const auto edges = randomEdges(random, model, 299);  // not a multiple of a vector
-      expectTheFormulasBits(model, edges, laneKernels<4>());
-      if (hasEightLanes()) expectTheFormulasBits(model, edges, laneKernels<8>());
+      const auto edges = randomEdges(random, model, 299);  // not a multiple of the vector width
+      expectTheFormulasBits(model, edges, simdKernels<4>());
+      if (hasEightLanes()) expectTheFormulasBits(model, edges, simdKernels<8>());
     }
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::perception

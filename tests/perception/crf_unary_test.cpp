@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boosted oblivious trees: what they can learn, and that learning is repeatable.
+// Boosted oblivious trees: accuracy on a known problem, and determinism.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <random>
 
-#include "cluxel/perception/unary_training.hpp"
+#include "perception/training/unary_training.hpp"
 
-namespace cluxel {
+namespace cluxel::perception {
+
+using namespace scan;
 namespace {
 
 /// Two columns decide the label, like elevation and height; a third is noise. A tenth of the labels are wrong.
@@ -57,7 +59,7 @@ BoostingParams small() {
 
 TEST(UnaryTraining, LearnsWhatTwoColumnsDecideTogether) {
   const TreeEnsemble ensemble = growTrees(checkerboard(1, 4000), small(), 1);
-  EXPECT_GT(accuracyOn(ensemble, checkerboard(2, 4000)), 0.89);  // 92 % is the most that the noise allows
+  EXPECT_GT(accuracyOn(ensemble, checkerboard(2, 4000)), 0.89);  // the noise limits it to 92 %
 }
 
 TEST(UnaryTraining, GivesTheSameTreesWithOneAndTwoThreads) {
@@ -124,4 +126,4 @@ TEST(UnaryTrees, TakeTheLeafThatTheAnswersSpell) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::perception

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eigenvalues and directions against Eigen's iterative solver in double, also where they are hard to tell apart.
-#include "perception/eigen_shape.hpp"
+// Eigenvalues and directions against Eigen's iterative solver in double, also for nearly equal eigenvalues.
+#include "perception/features/eigen_shape.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,15 +8,17 @@
 #include <Eigen/Geometry>
 #include <random>
 
-namespace cluxel {
+namespace cluxel::perception {
+
+using namespace scan;
 namespace {
 
 Covariance entriesOf(const Eigen::Matrix3d& m) {
   return {m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2)};
 }
 
-/// A covariance with these eigenvalues, turned at random.
-Eigen::Matrix3d turned(std::mt19937& random, const Eigen::Vector3d& values) {
+/// A covariance with these eigenvalues, rotated at random.
+Eigen::Matrix3d rotated(std::mt19937& random, const Eigen::Vector3d& values) {
   std::normal_distribution<double> normal;
   const Eigen::Matrix3d turn = Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random))
                                    .normalized()
@@ -32,8 +34,7 @@ void expectSolved(const Eigen::Matrix3d& m, const EigenShape& shape) {
   EXPECT_GE(shape.value[0], shape.value[1]);
   EXPECT_GE(shape.value[1], shape.value[2]);
   EXPECT_NEAR(shape.axis.norm(), 1.0, 1e-5);
-  // What a vector's own equation misses, which is small also where two eigenvalues are alike and vectors are not
-  // unique.
+  // The residual of the eigenvector equation is small even where two eigenvalues are equal and vectors are not unique.
   EXPECT_LE((m * shape.axis - shape.value[0] * shape.axis).norm(), 2e-6 * trace);
   if (shape.normal.isZero()) {
     EXPECT_LE(shape.value[1], kOnALine * shape.value[0]);
@@ -48,7 +49,7 @@ TEST(EigenShape, SolvesSetsOfAllForms) {
   std::uniform_real_distribution<double> share(0, 1);
   for (int trial = 0; trial < 5000; ++trial) {
     const double l1 = std::pow(10.0, -7.0 + 8.0 * share(random)), l2 = l1 * share(random);
-    const Eigen::Matrix3d m = turned(random, {l1, l2, l2 * share(random)});
+    const Eigen::Matrix3d m = rotated(random, {l1, l2, l2 * share(random)});
     expectSolved(m, shapeOf(entriesOf(m)));
   }
 }
@@ -61,7 +62,7 @@ TEST(EigenShape, SolvesFlatThinAndRoundSets) {
   for (const auto& form : forms) {
     expectSolved(form.asDiagonal(), shapeOf(entriesOf(form.asDiagonal())));
     for (int trial = 0; trial < 200; ++trial) {
-      const Eigen::Matrix3d m = turned(random, form);
+      const Eigen::Matrix3d m = rotated(random, form);
       expectSolved(m, shapeOf(entriesOf(m)));
     }
   }
@@ -70,7 +71,7 @@ TEST(EigenShape, SolvesFlatThinAndRoundSets) {
 TEST(EigenShape, FindsTheSameBitsAloneAndInCompany) {
   std::mt19937 random(3);
   std::array<Covariance, 4> four;
-  for (auto& entries : four) entries = entriesOf(turned(random, {3, 2, 1}));
+  for (auto& entries : four) entries = entriesOf(rotated(random, {3, 2, 1}));
   const auto together = shapesOf(four);
   for (std::size_t i = 0; i < four.size(); ++i) {
     const EigenShape alone = shapeOf(four[i]);
@@ -91,4 +92,4 @@ TEST(EigenShape, SeesNoShapeInAPointAndNoNormalOnALine) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::perception

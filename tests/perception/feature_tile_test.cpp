@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The graph against brute force, and the laws of tiles for features: order, threads, borders, moves.
-#include "cluxel/perception/feature_tile.hpp"
+// The graph against brute force, and independence of features from order, threads, borders and shifts.
+#include "perception/features/feature_tile.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,16 +9,18 @@
 #include <set>
 
 #include "cloud_fixture.hpp"
-#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/error.hpp"
 
-namespace cluxel {
+namespace cluxel::perception {
+
+using namespace scan;
 namespace {
 
 using testing::bytesOf;
 using testing::splitAtRandom;
 using testing::streetPoints;
 
-PerceivedTiles street(std::uint32_t seed, unsigned threads = 1) {
+TileOutputs street(std::uint32_t seed, unsigned threads = 1) {
   return perceive(splitAtRandom(streetPoints(seed), 3, seed), {}, threads);
 }
 
@@ -27,7 +29,7 @@ TileKey ringKey(const TileKey& key, RingIndex name) {
 }
 
 TEST(FeatureTile, JoinsExactlyTheCluxelsWhoseVolumesIntersect) {
-  const PerceivedTiles tiles = street(31);
+  const TileOutputs tiles = street(31);
   for (const auto& [key, tile] : tiles.features) {
     const auto ring = ringIn(tiles.cluxels, key);
     const CluxelTile& own = *ring[kRingCentre];
@@ -48,10 +50,10 @@ TEST(FeatureTile, JoinsExactlyTheCluxelsWhoseVolumesIntersect) {
   }
 }
 
-using EdgeName = std::array<std::int64_t, 6>;  ///< tile, number, and those of the other end
+using EdgeName = std::array<std::int64_t, 6>;  ///< tile and number of both ends
 
 TEST(FeatureTile, AnEdgeIsThereFromBothEndsAndHasTheSameFeaturesInTwoTiles) {
-  const PerceivedTiles tiles = street(32);
+  const TileOutputs tiles = street(32);
   const std::size_t columns = featureLayout({}).edge_columns.size();
   std::set<EdgeName> edges;
   std::map<EdgeName, std::vector<float>> rows;
@@ -84,7 +86,7 @@ TEST(FeatureTile, AnEdgeIsThereFromBothEndsAndHasTheSameFeaturesInTwoTiles) {
 }
 
 TEST(FeatureTile, FillsEveryColumnWithFiniteNumbers) {
-  const PerceivedTiles tiles = street(33);
+  const TileOutputs tiles = street(33);
   const FeatureLayout layout = featureLayout({});
   EXPECT_EQ(std::set<std::string>(layout.columns.begin(), layout.columns.end()).size(), layout.columns.size());
   for (const auto& [key, tile] : tiles.features) {
@@ -111,7 +113,7 @@ TEST(FeatureTile, BytesOfAnotherVersionAreNotCalledDamaged) {
 }
 
 TEST(FeatureTile, EveryColumnTellsSomethingApart) {
-  const PerceivedTiles tiles = street(34);
+  const TileOutputs tiles = street(34);
   const FeatureLayout layout = featureLayout({});
   for (std::size_t column = 0; column < layout.columns.size(); ++column) {
     std::set<float> values;
@@ -123,7 +125,7 @@ TEST(FeatureTile, EveryColumnTellsSomethingApart) {
 
 TEST(FeatureTile, GroupsAreSwitchedWithoutChangingTheOthers) {
   const auto scans = splitAtRandom(streetPoints(35), 2, 35);
-  const PerceivedTiles all = perceive(scans, {}, 1);
+  const TileOutputs all = perceive(scans, {}, 1);
   const FeatureLayout whole = featureLayout({});
   for (int group = 0; group < 7; ++group) {
     PerceptionParams params;
@@ -134,7 +136,7 @@ TEST(FeatureTile, GroupsAreSwitchedWithoutChangingTheOthers) {
     const FeatureLayout layout = featureLayout(f);
     EXPECT_LT(layout.columns.size(), whole.columns.size());
     EXPECT_NE(layout.hash(), whole.hash());
-    const PerceivedTiles part = perceive(scans, params, 1);
+    const TileOutputs part = perceive(scans, params, 1);
     for (const auto& [key, tile] : part.features)
       for (std::size_t column = 0; column < layout.columns.size(); ++column) {
         const std::size_t there = testing::columnOf(whole, layout.columns[column]);
@@ -157,7 +159,7 @@ TEST(FeatureTile, DependsOnItsRingOnly) {
   const auto scans = splitAtRandom(streetPoints(37), 2, 37);
   auto more = scans;
   more.push_back(testing::scanOf(testing::CloudMaker(38).ball(500, {200, 200, 3}, 2).points()));
-  const PerceivedTiles before = perceive(scans, {}, 1), after = perceive(more, {}, 1);
+  const TileOutputs before = perceive(scans, {}, 1), after = perceive(more, {}, 1);
   EXPECT_GT(after.features.size(), before.features.size());
   for (const auto& [key, tile] : before.features) EXPECT_EQ(toBytes(after.features.at(key)), toBytes(tile));
 }
@@ -170,7 +172,7 @@ TEST(FeatureTile, IntensityIsZeroWhereAScanHasNone) {
   const std::size_t columns = featureLayout(params.features).columns.size();
   const auto values = [&] {
     std::set<float> found;
-    const PerceivedTiles tiles = perceive(scans, params, 1);
+    const TileOutputs tiles = perceive(scans, params, 1);
     for (const auto& [key, tile] : tiles.features)
       for (std::size_t c = 0; c < tile.size(); ++c) found.insert(tile.features[c * columns + column]);
     return found;
@@ -181,7 +183,7 @@ TEST(FeatureTile, IntensityIsZeroWhereAScanHasNone) {
 }
 
 TEST(FeatureTile, BytesComeBackAndDamagedOnesAreRefused) {
-  const PerceivedTiles tiles = street(40);
+  const TileOutputs tiles = street(40);
   const std::string bytes = toBytes(tiles.features.begin()->second);
   EXPECT_EQ(toBytes(featureTileFromBytes(bytes)), bytes);
   for (std::size_t size = 0; size < bytes.size(); size += 1 + bytes.size() / 97)
@@ -189,4 +191,4 @@ TEST(FeatureTile, BytesComeBackAndDamagedOnesAreRefused) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::perception

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hulls and smallest boxes against brute force.
-#include "cluxel/perception/footprint_hull.hpp"
+#include "perception/segments/footprint_hull.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-namespace cluxel {
+namespace cluxel::perception {
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
@@ -29,8 +29,8 @@ Points randomPoints(std::mt19937& random, std::size_t count, bool on_grid) {
   return points;
 }
 
-/// A point is a corner when no segment or triangle of other points holds it: here, when some edge of the brute-force
-/// hull ends in it. An edge is a pair with all points on its left, and none farther out on its line.
+/// A point is a corner if an edge of the brute-force hull ends in it. An edge is a pair with all points on its left,
+/// and none farther out on its line.
 bool isEdge(const Points& points, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   if (a == b) return false;
   for (const Eigen::Vector2d& p : points) {
@@ -77,9 +77,9 @@ TEST(SmallestBox, IsNeverLargerThanABoxAtAnyAngleAndHoldsAllPoints) {
       EXPECT_LE(std::abs(local.y()), box.width_m / 2 + 1e-6);
     }
     for (int degrees = 0; degrees < 90; ++degrees) {
-      const Eigen::Rotation2Dd turned(degrees * std::numbers::pi / 180);
+      const Eigen::Rotation2Dd rotated(degrees * std::numbers::pi / 180);
       Eigen::AlignedBox2d around;
-      for (const Eigen::Vector2d& p : points) around.extend(Eigen::Vector2d(turned * p));
+      for (const Eigen::Vector2d& p : points) around.extend(Eigen::Vector2d(rotated * p));
       EXPECT_GE(around.volume(), box.length_m * box.width_m - 1e-9) << degrees;
     }
   }
@@ -94,4 +94,4 @@ TEST(SmallestBox, OfALineHasItsLengthAndNoWidth) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::perception

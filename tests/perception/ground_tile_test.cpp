@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ground surface on generated terrain, and against the labelled ground of real scans when these are there.
-#include "cluxel/perception/ground_tile.hpp"
+// The ground surface on generated terrain, and against the labelled ground of real scans where these are available.
+#include "perception/features/ground_tile.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,18 +10,21 @@
 #include <filesystem>
 
 #include "cloud_fixture.hpp"
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/scan/scan_set.hpp"
-#include "cluxel/scan/truth.hpp"
+#include "cluxel/error.hpp"
+#include "scan/scan_set.hpp"
+#include "scan/truth/truth.hpp"
+#include "test_paths.hpp"
 
-namespace cluxel {
+namespace cluxel::perception {
+
+using namespace scan;
 namespace {
 
 using testing::CloudMaker;
 using testing::scanOf;
 
 struct Ground {
-  PerceivedTiles tiles;
+  TileOutputs tiles;
   explicit Ground(const std::vector<Scan>& scans) : tiles(perceive(scans, {}, 1)) {}
   double at(const Eigen::Vector3d& p_map) const {
     const TileKey key = tileOf(p_map);
@@ -42,7 +45,7 @@ CloudMaker terrainCloud(const Terrain& height, std::size_t count) {
   return maker;
 }
 
-/// Largest error of the ground over a lattice of places inside.
+/// Largest error of the ground over a lattice of positions.
 double largestError(const Ground& ground, const Terrain& height) {
   double largest = 0;
   for (double x = -15; x <= 15; x += 0.73)
@@ -114,11 +117,6 @@ TEST(GroundTile, BytesComeBackAndDamagedOnesAreRefused) {
     EXPECT_THROW(groundTileFromBytes(bytes.substr(0, size)), Error);
 }
 
-std::filesystem::path dataFolder() {
-  const char* given = std::getenv("CLUXEL_DATA");
-  return given != nullptr ? std::filesystem::path(given) : std::filesystem::path(CLUXEL_SOURCE_DIR) / "../shared/data";
-}
-
 /// Distances of labelled ground points from the ground surface [m], sorted by size.
 std::vector<double> errorsOnGroundPoints(const std::vector<Scan>& scans, const std::filesystem::path& labels) {
   const LabelMap map = LabelMap::load(labels);
@@ -143,7 +141,7 @@ void expectGroundIsNear(const std::filesystem::path& scans_path, const std::stri
   const ScanSet set = ScanSet::open({scans_path}, {}, sink);
   std::vector<Scan> scans;
   for (std::size_t i = 0; i < std::min(scan_count, set.size()); ++i) scans.push_back(set.load(i));
-  const auto errors = errorsOnGroundPoints(scans, std::filesystem::path(CLUXEL_SOURCE_DIR) / labels);
+  const auto errors = errorsOnGroundPoints(scans, test::sourceFolder() / labels);
   ASSERT_GT(errors.size(), 1000U);
   const auto share = [&](double part) {
     return errors[static_cast<std::size_t>(part * static_cast<double>(errors.size() - 1))];
@@ -155,12 +153,12 @@ void expectGroundIsNear(const std::filesystem::path& scans_path, const std::stri
 }
 
 TEST(GroundTile, LiesOnTheLabelledGroundOfOakland) {
-  expectGroundIsNear(dataFolder() / "oakland3d", "labels/oakland.yaml", 10, 0.05, 0.25);
+  expectGroundIsNear(test::outsideDataFolder() / "oakland3d", "labels/oakland.yaml", 10, 0.05, 0.25);
 }
 
 TEST(GroundTile, LiesOnTheLabelledGroundOfKitti) {
-  expectGroundIsNear(dataFolder() / "kitti00", "labels/semantickitti.yaml", 3, 0.06, 0.35);
+  expectGroundIsNear(test::outsideDataFolder() / "kitti00", "labels/semantickitti.yaml", 3, 0.06, 0.35);
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::perception

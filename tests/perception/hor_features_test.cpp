@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the features promise: invariance to place, yaw and (the scale-free ones) size; surfaces told apart; density
-// forgiven.
+// Properties of the features: invariance to position, yaw and (scale-free ones) size; separation of surfaces;
+// robustness to density.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
 #include "cloud_fixture.hpp"
-#include "perception/oriented_residuals.hpp"
+#include "perception/features/oriented_residuals.hpp"
 
-namespace cluxel {
+namespace cluxel::perception {
+
+using namespace scan;
 namespace {
 
 using testing::CloudMaker;
@@ -56,9 +58,9 @@ TEST(Hor, IsInvariantToYawAndNotToTilt) {
   const auto residuals = unevenResiduals();
   const auto before = horOf(residuals);
   for (double yaw = 0.3; yaw < 6.3; yaw += 0.7) {
-    auto turned = residuals;
-    for (auto& d : turned) d = Eigen::AngleAxisf(static_cast<float>(yaw), Eigen::Vector3f::UnitZ()) * d;
-    expectNear(horOf(turned), before, 1e-4);
+    auto rotated = residuals;
+    for (auto& d : rotated) d = Eigen::AngleAxisf(static_cast<float>(yaw), Eigen::Vector3f::UnitZ()) * d;
+    expectNear(horOf(rotated), before, 1e-4);
   }
   auto tilted = residuals;
   for (auto& d : tilted) d = Eigen::AngleAxisf(1.2F, Eigen::Vector3f::UnitX()) * d;
@@ -90,7 +92,7 @@ TEST(Hor, DegenerateSupportsAreDefined) {
   EXPECT_FLOAT_EQ(horOf(supports[0])[kHorBins - 1], 1.0F);
 }
 
-/// Surfaces that the five labels stand for, with the place to look at.
+/// Typical surfaces of the five labels, with the position to evaluate.
 struct Thing {
   std::string name;
   std::vector<Eigen::Vector3d> points;
@@ -168,10 +170,10 @@ TEST(Features, AreInvariantToSmallMovesAndToYaw) {
       auto moved = thing.points;
       for (auto& p : moved) p = turn * (p - thing.centre) + thing.centre + move;
       const auto after = meanFeatures(moved, {}, thing.centre + move, 0.7);
-      EXPECT_LT(distance(before, after, columns), 0.12) << thing.name << " turned by " << yaw;
+      EXPECT_LT(distance(before, after, columns), 0.12) << thing.name << " rotated by " << yaw;
     }
   }
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::perception

@@ -6,6 +6,9 @@
 
 namespace cluxel::made_up {
 
+using namespace scan;
+using namespace perception;
+
 namespace {
 
 constexpr int kSide = 16;
@@ -26,7 +29,7 @@ void addEdge(FeatureTile& tile, int from_x, int from_y, int x, int y, std::size_
   tile.edge_target.push_back({ring & 15U, static_cast<std::uint32_t>(y * kSide + x % kSide) & 0xfffffffU});
   if (!FeatureTile::hasRow(static_cast<std::uint32_t>(from_y * kSide + from_x % kSide), tile.edge_target.back()))
     return;
-  // The same from both ends: made from what both have in common.
+  // Symmetric: computed from what both ends have in common.
   std::mt19937 random(static_cast<std::uint32_t>((from_x + x) * 1000 + from_y + y));
   const float likeness = labelAt(from_x, from_y) == labelAt(x, y) ? 0.4F : 0.0F;
   for (std::size_t c = 0; c < columns; ++c)

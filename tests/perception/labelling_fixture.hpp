@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// A made-up place: cluxels on a grid over two tiles, regions of one label, one telling feature under noise.
+// A synthetic place: cluxels on a grid over two tiles, regions of one label, one informative feature with noise.
 #pragma once
 
 #include <cstdint>
 
-#include "cluxel/perception/training.hpp"
+#include "perception/training/training.hpp"
 
 namespace cluxel::made_up {
+
+using namespace scan;
+using namespace perception;
 
 /// Two tiles side by side with 16 x 16 cluxels each, 1 m apart; labels change every 4 m in x and y.
 TrainingPlace place(std::uint32_t seed, int group);
 
-/// Quick settings that suffice for such places.
+/// Fast settings that suffice for such places.
 TrainParams quickTraining();
 
 /// A model trained on two such places.

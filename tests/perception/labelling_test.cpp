@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The labelling stage and the model file.
-#include "cluxel/perception/labelling.hpp"
+#include "perception/crf/labelling.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/error.hpp"
 #include "perception/labelling_fixture.hpp"
 
-namespace cluxel {
+namespace cluxel::perception {
+
+using namespace scan;
 namespace {
 
 const LabelModel& sharedModel() {
@@ -141,4 +143,4 @@ TEST(LabelModel, RefusesFaultyTextNamingTheFile) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::perception

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points of tiles: what stays does not depend on arrival, and every point keeps a representative.
-#include "cluxel/perception/tile_points.hpp"
+// Points of tiles: thinning is independent of arrival order, and every point has a representative.
+#include "perception/clustering/tile_points.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "cloud_fixture.hpp"
-#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/error.hpp"
 
-namespace cluxel {
+namespace cluxel::perception {
+
+using namespace scan;
 namespace {
 
 using testing::CloudMaker;
@@ -24,7 +26,7 @@ std::string bytesOf(const std::map<TileKey, TilePoints>& tiles) {
   return bytes;
 }
 
-/// A crowded cloud, so that thinning has something to do.
+/// A dense cloud, so that thinning removes points.
 std::vector<Scan> crowdedScans(std::uint32_t seed) {
   return splitAtRandom(CloudMaker(seed).plane(20000, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0.2}).points(), 5, seed);
 }
@@ -47,7 +49,7 @@ TEST(TilePoints, EveryPointOfAScanLiesInExactlyOneSegmentAndNearItsMapPlace) {
   EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](int count) { return count == 1; }));
 }
 
-/// Added to the corner at -16 m they are 0 m, though they belong to the tiles before it.
+/// Relative to the corner at -16 m they round to the tile's upper edge, though they belong to that tile.
 TEST(TilePoints, PointsJustBelowZeroStayInTheirTile) {
   Scan scan = scanOf({{-1e-20F, -1e-20F, 0.5F},
                       {-1e-20F, 3.0F, 0.5F},
@@ -118,7 +120,7 @@ TEST(TilePoints, KeepsNoMoreThanAskedForPerVoxelAndEmptiesNone) {
     std::map<std::array<int, 3>, int> counts;
     for (std::size_t i = 0; i < tile.size(); ++i)
       ++counts[{static_cast<int>(std::floor(tile.x[i] / 0.1)), static_cast<int>(std::floor(tile.y[i] / 0.1)),
-                static_cast<int>(std::floor((tile.z[i] + kLargestHeight_m + 1) / 0.1))}];
+                static_cast<int>(std::floor((tile.z[i] + kMaxHeight_m + 1) / 0.1))}];
     return counts;
   };
   bool thinned_some = false;
@@ -163,4 +165,4 @@ TEST(TilePoints, BytesComeBackAndDamagedOnesAreRefused) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::perception

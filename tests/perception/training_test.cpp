@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Training as a whole, on made-up places: what it reaches, that it repeats, and that its figures are honest.
-#include "cluxel/perception/training.hpp"
+// Training on synthetic places: accuracy, determinism, and correctness of the reported figures.
+#include "perception/training/training.hpp"
 
 #include <gtest/gtest.h>
 
-#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/error.hpp"
 #include "perception/labelling_fixture.hpp"
 
-namespace cluxel {
+namespace cluxel::perception {
+
+using namespace scan;
 namespace {
 
 std::vector<TrainingPlace> threePlaces() {
@@ -92,4 +94,4 @@ TEST(Training, CrossValidationMeasuresEveryGroupOnce) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::perception

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Copies of a place as other sensors, standing or driving past, would see it.
+// Copies of a place as seen by other sensors, standing or driving.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "cluxel/perception/virtual_drive.hpp"
+#include "perception/training/virtual_drive.hpp"
 
-namespace cluxel {
+namespace cluxel::perception {
+
+using namespace scan;
 namespace {
 
 /// A wall of points 4 m away, in front of another 8 m away, over flat ground.
@@ -70,7 +72,7 @@ VirtualDrive shortDrive() {
           .range_noise_m = 0};
 }
 
-/// Distance of a point from the nearest of the place [m].
+/// Distance of a point from the nearest point of the place [m].
 double offPlace(const Scan& place, const Eigen::Vector3d& p) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < place.points.size(); ++i)
@@ -130,4 +132,4 @@ TEST(VirtualDrive, SeesNothingWhereNoGroundIs) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::perception

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // KITTI's binary records and labels.
-#include "scan/kitti_format.hpp"
+#include "scan/formats/kitti_format.hpp"
 
 #include <limits>
 
 #include "scan/scan_fixture.hpp"
 
-namespace cluxel {
+namespace cluxel::scan {
 namespace {
 
 using test::bytesOfAll;
@@ -30,15 +30,23 @@ TEST(KittiFormat, RefusesAnEmptyFile) {
   EXPECT_THAT(refusalOf([] { parseKittiPoints("", "a.bin"); }), HasSubstr("holds no points"));
 }
 
-TEST(KittiFormat, RefusesNumbersThatAreNotFiniteNamingTheByte) {
+TEST(KittiFormat, SkipsAndCountsPointsWithoutAReturn) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float inf = std::numeric_limits<float>::infinity();
-  const std::string late = bytesOfAll(1.F, 2.F, 3.F, 0.F, 1.F, nan, 3.F, 0.F);
+  const ParsedScan scan =
+      parseKittiPoints(bytesOfAll(inf, 2.F, 3.F, 0.F, 1.F, 2.F, 3.F, 0.5F, 1.F, nan, 3.F, nan), "a.bin");
+  EXPECT_THAT(scan.points.x, ElementsAre(1.F));
+  EXPECT_THAT(scan.points.intensity, ElementsAre(0.5F));
+  EXPECT_THAT(scan.no_return, ElementsAre(0U, 2U));
+  EXPECT_THAT(refusalOf([&] { parseKittiPoints(bytesOfAll(nan, nan, nan, 0.F), "a.bin"); }),
+              HasSubstr("a.bin: error: none of its 1 points has a finite position"));
+}
+
+TEST(KittiFormat, RefusesUnusableNumbersNamingTheByte) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::string late = bytesOfAll(1.F, 2.F, 3.F, 0.F, 1.F, 1e9F, 3.F, 0.F);
   EXPECT_THAT(refusalOf([&] { parseKittiPoints(late, "a.bin"); }),
-              HasSubstr("byte 16: error: point 1 has a coordinate"));
-  const std::string first = bytesOfAll(inf, 2.F, 3.F, 0.F);
-  EXPECT_THAT(refusalOf([&] { parseKittiPoints(first, "a.bin"); }),
-              HasSubstr("byte 0: error: point 0 has a coordinate"));
+              HasSubstr("byte 16: error: point 1 has a coordinate beyond 100000 km"));
   const std::string dark = bytesOfAll(1.F, 2.F, 3.F, nan);
   EXPECT_THAT(refusalOf([&] { parseKittiPoints(dark, "a.bin"); }),
               HasSubstr("byte 12: error: point 0 has an intensity"));
@@ -58,4 +66,4 @@ TEST(KittiFormat, RefusesLabelsOfAnotherNumberOfPoints) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::scan

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Manifests, and the faults that people make in them.
-#include "scan/manifest.hpp"
+#include "scan/formats/manifest.hpp"
 
 #include "scan/scan_fixture.hpp"
 
-namespace cluxel {
+namespace cluxel::scan {
 namespace {
 
 using test::refusalOf;
@@ -53,7 +53,7 @@ TEST(Manifest, ReportsAllFaultsAtOnceWithPlaceAndSuggestion) {
 
 TEST(Manifest, RefusesDuplicateKeysAndAliases) {
   EXPECT_THAT(refusalOf([] { parsed("crs: a\nscans: [a.pcd]\ncrs: b\n"); }),
-              HasSubstr("m.yaml:3:1: error: 'crs' was given in line 1 already"));
+              HasSubstr("m.yaml:3:1: error: the key 'crs' stands here twice"));
   EXPECT_THAT(refusalOf([] { parsed("crs: &x a\nscans: [*x]\n"); }),
               HasSubstr("anchors and aliases are not supported"));
   EXPECT_THAT(refusalOf([] { parsed("scans: &a [*a]\n"); }), HasSubstr("anchors and aliases are not supported"));
@@ -111,4 +111,4 @@ TEST(Manifest, NamesScansThatAreNotThere) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::scan

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is written as a manifest is read back to the same scans with the poses given.
-#include "cluxel/scan/manifest_writer.hpp"
+#include "scan/formats/manifest_writer.hpp"
 
 #include "scan/registration_fixture.hpp"
 
 namespace cluxel::test {
+
+using namespace scan;
 namespace {
 
 TEST(ManifestWriter, ReadingGivesBackEveryBit) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The grid against trying all points.
-#include "scan/nearest_grid.hpp"
+#include "scan/registration/nearest_grid.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-namespace cluxel {
+namespace cluxel::scan {
 namespace {
 
 std::vector<Eigen::Vector3f> randomPoints(std::mt19937& bits, std::size_t count, float spread_m) {
@@ -61,4 +61,4 @@ TEST(NearestGrid, HoldsFarApartPointsAndNone) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::scan

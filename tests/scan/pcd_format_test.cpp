@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // PCD headers and bodies, whole and broken.
-#include "scan/pcd_format.hpp"
+#include "scan/formats/pcd_format.hpp"
 
 #include <limits>
 
-#include "scan/pcl_clouds.hpp"
+#include "scan/formats/pcl_clouds.hpp"
 #include "scan/scan_fixture.hpp"
 
-namespace cluxel {
+namespace cluxel::scan {
 namespace {
 
 using test::bytesOfAll;
@@ -112,12 +112,12 @@ TEST(PcdFormat, RefusesCompressedDataThatLie) {
   EXPECT_THAT(refusalOf([&] { parsePcd(bomb, "a"); }), HasSubstr("does not fit the header or the compressed data"));
 }
 
-struct Refusal {
+struct RefusedText {
   std::string bytes;
   const char* words;
 };
 
-class RefusedPcd : public testing::TestWithParam<Refusal> {};
+class RefusedPcd : public testing::TestWithParam<RefusedText> {};
 
 TEST_P(RefusedPcd, NamesTheFault) {
   EXPECT_THAT(refusalOf([] { parsePcd(GetParam().bytes, "a.pcd"); }), HasSubstr(GetParam().words));
@@ -128,33 +128,53 @@ const std::string kBody = "1 2 3\n";
 INSTANTIATE_TEST_SUITE_P(
     AllFaults, RefusedPcd,
     testing::Values(
-        Refusal{"", "ends without a DATA line"}, Refusal{"PK\x03\x04zip", "a.pcd:1"},
-        Refusal{header("x y", "4 4", "F F", 1, "ascii") + kBody, "has no field 'z'"},
-        Refusal{header("x y z x", "4 4 4 4", "F F F F", 1, "ascii") + kBody,
-                "field 'x' has the meaning of an earlier field"},
-        Refusal{header("x y z", "4 4", "F F F", 1, "ascii") + kBody, "a.pcd:4:9: error: the line ends where SIZE"},
-        Refusal{header("x y z", "4 4 3", "F F F", 1, "ascii") + kBody, "no field has TYPE F and SIZE 3"},
-        Refusal{header("x y z", "4 4 4", "F F Q", 1, "ascii") + kBody, "unknown TYPE"},
-        Refusal{header("x y z", "4 4 4", "F F F", 0, "ascii"), "holds no points"},
-        Refusal{header("x y z", "4 4 4", "F F F", 2, "ascii") + kBody, "ends after 1 of 2 points"},
-        Refusal{header("x y z", "4 4 4", "F F F", 1, "ascii") + kBody + kBody,
-                "a.pcd:12:1: error: more points than the header's 1"},
-        Refusal{header("x y z", "4 4 4", "F F F", 1, "ascii") + "1 nan 3\n", "a.pcd:11:3: error: y is not finite"},
-        Refusal{header("x y z", "4 4 4", "F F F", 1, "zipped") + kBody, "unknown DATA"},
-        Refusal{header("x y z", "4 4 4", "F F F", 1, "ascii", "0 0 0 2 0 0 0") + kBody,
-                "VIEWPOINT does not have length 1"},
-        Refusal{header("x y z label", "4 4 4 4", "F F F F", 1, "ascii") + "1 2 3 1.5\n",
-                "has a label that is no whole number"},
-        Refusal{"FIELDS x y z\nFIELDS x y z\n", "a.pcd:2:7: error: FIELDS stands twice"},
-        Refusal{header("x y z", "4 4 4", "F F F", 1, "binary") + std::string(13, 'a'),
-                "take 13 bytes where the header declares 12"}));
+        RefusedText{"", "ends without a DATA line"}, RefusedText{"PK\x03\x04zip", "a.pcd:1"},
+        RefusedText{header("x y", "4 4", "F F", 1, "ascii") + kBody, "has no field 'z'"},
+        RefusedText{header("x y z x", "4 4 4 4", "F F F F", 1, "ascii") + kBody, "field 'x' occurs twice"},
+        RefusedText{header("x y z", "4 4", "F F F", 1, "ascii") + kBody, "a.pcd:4:9: error: the line ends where SIZE"},
+        RefusedText{header("x y z", "4 4 3", "F F F", 1, "ascii") + kBody, "no field has TYPE F and SIZE 3"},
+        RefusedText{header("x y z", "4 4 4", "F F Q", 1, "ascii") + kBody, "unknown TYPE"},
+        RefusedText{header("x y z", "4 4 4", "F F F", 0, "ascii"), "holds no points"},
+        RefusedText{header("x y z", "4 4 4", "F F F", 2, "ascii") + kBody, "ends after 1 of 2 points"},
+        RefusedText{header("x y z", "4 4 4", "F F F", 1, "ascii") + kBody + kBody,
+                    "a.pcd:12:1: error: more points than the header's 1"},
+        RefusedText{header("x y z", "4 4 4", "F F F", 1, "ascii") + "1 nan 3\n",
+                    "none of its 1 points has a finite position"},
+        RefusedText{header("x y z", "4 4 4", "F F F", 1, "zipped") + kBody, "unknown DATA"},
+        RefusedText{header("x y z", "4 4 4", "F F F", 1, "ascii", "0 0 0 2 0 0 0") + kBody,
+                    "VIEWPOINT does not have length 1"},
+        RefusedText{header("x y z label", "4 4 4 4", "F F F F", 1, "ascii") + "1 2 3 1.5\n",
+                    "has a label that is not a whole number"},
+        RefusedText{"FIELDS x y z\nFIELDS x y z\n", "a.pcd:2:7: error: FIELDS stands twice"},
+        RefusedText{header("x y z", "4 4 4", "F F F", 1, "binary") + std::string(13, 'a'),
+                    "take 13 bytes where the header declares 12"}));
 
-TEST(PcdFormat, RefusesBinaryNumbersThatAreNotFiniteNamingTheByte) {
+TEST(PcdFormat, RefusesBinaryNumbersOutOfRangeNamingTheByte) {
   const std::string head = header("x y z", "4 4 4", "F F F", 2, "binary");
-  const std::string bytes = head + bytesOfAll(1.F, 2.F, 3.F, 4.F, std::numeric_limits<float>::quiet_NaN(), 6.F);
-  EXPECT_THAT(
-      refusalOf([&] { parsePcd(bytes, "a.pcd"); }),
-      HasSubstr("byte " + std::to_string(head.size() + 12) + ": error: point 1 has a coordinate that is not finite"));
+  const std::string bytes = head + bytesOfAll(1.F, 2.F, 3.F, 4.F, 1e9F, 6.F);
+  EXPECT_THAT(refusalOf([&] { parsePcd(bytes, "a.pcd"); }),
+              HasSubstr("byte " + std::to_string(head.size() + 12) + ": error: point 1 has a coordinate beyond"));
+}
+
+TEST(PcdFormat, TakesIntensityOfAnOusterAndIgnoresReflectivity) {
+  const std::string bytes =
+      header("x y z reflectivity intensity t ring ambient range near_ir", "4 4 4 2 4 4 2 2 4 2", "F F F U F U U U U U",
+             1, "binary") +
+      bytesOfAll(1.F, 2.F, 3.F, std::uint16_t{9}, 0.5F, 7U, std::uint16_t{1}, std::uint16_t{2}, 3U, std::uint16_t{4});
+  const ParsedScan scan = parsePcd(bytes, "ouster.pcd");
+  EXPECT_THAT(scan.points.intensity, ElementsAre(0.5F));
+  EXPECT_THAT(scan.ignored_fields, ElementsAre("reflectivity"));
+}
+
+TEST(PcdFormat, SkipsTheDirectionsOfAnOrganisedCloudWithoutAReturn) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  std::string head = header("x y z intensity", "4 4 4 4", "F F F F", 4, "binary");
+  head.replace(head.find("WIDTH 4\nHEIGHT 1"), 16, "WIDTH 2\nHEIGHT 2");
+  const ParsedScan scan = parsePcd(
+      head + bytesOfAll(nan, nan, nan, nan, 1.F, 2.F, 3.F, 0.5F, 0.F, 0.F, 0.F, 0.F, 4.F, 5.F, 6.F, 0.25F), "a.pcd");
+  EXPECT_THAT(scan.points.x, ElementsAre(1.F, 4.F));
+  EXPECT_THAT(scan.points.intensity, ElementsAre(0.5F, 0.25F));
+  EXPECT_THAT(scan.no_return, ElementsAre(0U, 2U));
 }
 
 TEST(PcdFormat, PrintsNothing) {
@@ -166,4 +186,4 @@ TEST(PcdFormat, PrintsNothing) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::scan

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Poses in their four text forms.
-#include "scan/pose_files.hpp"
+#include "scan/poses/pose_files.hpp"
 
 #include <numbers>
 
 #include "scan/scan_fixture.hpp"
 #include "scan/scan_layouts.hpp"
 
-namespace cluxel {
+namespace cluxel::scan {
 namespace {
 
 using test::refusalOf;
@@ -84,4 +84,4 @@ TEST(NaturalOrder, ComparesRunsOfDigitsAsNumbers) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::scan

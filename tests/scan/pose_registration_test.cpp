@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses are mended where surfaces tell how, and kept where they do not.
-#include "cluxel/scan/pose_registration.hpp"
+// Poses are refined where surfaces tell how, and kept where they do not.
+#include "scan/registration/pose_registration.hpp"
 
 #include <algorithm>
 
 #include "scan/registration_fixture.hpp"
 
 namespace cluxel::test {
+
+using namespace scan;
 namespace {
 
 using Poses = std::vector<Eigen::Isometry3d>;
@@ -33,7 +35,7 @@ TEST(PoseRegistration, MendsPosesThatDrift) {
   const Drive drive =
       writeDrive(folder, yardPlace(), truth, drifting(truth, moveBy({0.10, 0.03, 0.02}, {0.1, 0.1, 0.4})));
   PoseRegistration report;
-  const Poses poses = mendedPoses(drive, report);
+  const Poses poses = refinedPoses(drive, report);
   for (std::size_t i = 1; i < truth.size(); ++i) {
     EXPECT_GT(errorBetween(drive.given, truth, i - 1, i).translation().norm(), 0.1);
     EXPECT_LT(errorBetween(poses, truth, i - 1, i).translation().norm(), 0.01) << i;
@@ -41,7 +43,7 @@ TEST(PoseRegistration, MendsPosesThatDrift) {
   }
   EXPECT_GT(report.residual_before_m, 0.04);
   EXPECT_LT(report.residual_after_m, 0.02);
-  for (const MendedScan& scan : report.scans) EXPECT_GE(scan.pairs, 2U);
+  for (const RefinedScan& scan : report.scans) EXPECT_GE(scan.pairs, 2U);
 }
 
 TEST(PoseRegistration, ChangesAllPosesAsAWholeAsLittleAsItCan) {
@@ -50,7 +52,7 @@ TEST(PoseRegistration, ChangesAllPosesAsAWholeAsLittleAsItCan) {
   Poses given = truth;
   given[1] = given[1] * moveBy({0.15, 0, 0}, {0, 0, 0});
   PoseRegistration report;
-  const Poses poses = mendedPoses(writeDrive(folder, yardPlace(), truth, given), report);
+  const Poses poses = refinedPoses(writeDrive(folder, yardPlace(), truth, given), report);
   for (const RegisteredPair& pair : report.pairs)
     EXPECT_EQ(pair.outcome, PairOutcome::Used)
         << pair.first << " - " << pair.second << ": " << nameOf(pair.outcome) << ", overlap " << pair.overlap
@@ -80,7 +82,7 @@ TEST(PoseRegistration, LeavesRightPosesRight) {
   const ScratchFolder folder;
   const Poses truth = straightDrive(3);
   PoseRegistration report;
-  const Poses poses = mendedPoses(writeDrive(folder, yardPlace(), truth, truth), report);
+  const Poses poses = refinedPoses(writeDrive(folder, yardPlace(), truth, truth), report);
   for (std::size_t i = 0; i < truth.size(); ++i) {
     EXPECT_LT((truth[i].inverse() * poses[i]).translation().norm(), 0.01);
     EXPECT_LT(angle_deg(truth[i].inverse() * poses[i]), 0.05);
@@ -94,7 +96,7 @@ TEST(PoseRegistration, GivesTheSameBytesForAnyOrderAndNumberOfThreads) {
   NoteKeeper notes;
   const auto manifestOf = [&](unsigned threads) {
     const ScanSet set = ScanSet::open(drive.files, {}, notes);
-    return manifestText(set, registerPoses(set, {}, threads, notes).poses(), folder.path() / "mended.yaml", "test");
+    return manifestText(set, registerPoses(set, {}, threads, notes).poses(), folder.path() / "refined.yaml", "test");
   };
   const std::string once = manifestOf(1);
   EXPECT_EQ(manifestOf(2), once);
@@ -108,7 +110,7 @@ TEST(PoseRegistration, KeepsTheGivenPlaceAlongACorridor) {
   Poses truth{poseAt(-2, 0, 0), poseAt(-1, 0, 0), poseAt(0, 0.1, 0), poseAt(1, 0, 0)};
   const Poses given = drifting(truth, moveBy({0.10, 0.05, 0}, {0, 0, 0.3}));
   PoseRegistration report;
-  const Poses poses = mendedPoses(writeDrive(folder, corridorPlace(), truth, given), report);
+  const Poses poses = refinedPoses(writeDrive(folder, corridorPlace(), truth, given), report);
   for (std::size_t i = 1; i < truth.size(); ++i) {
     const Eigen::Isometry3d error = errorBetween(poses, truth, i - 1, i);
     EXPECT_LT(std::abs(error.translation().y()), 0.01) << "walls tell how far to the left";
@@ -122,7 +124,7 @@ TEST(PoseRegistration, KeepsPlaceAndHeadingOnABarePlane) {
   const Poses truth{poseAt(-1, 0, 0), poseAt(0, 0, 5), poseAt(1, 0, 10)};
   const Poses given = drifting(truth, moveBy({0.08, -0.06, 0.05}, {0.3, 0.2, 0.5}));
   PoseRegistration report;
-  const Poses poses = mendedPoses(writeDrive(folder, plainPlace(), truth, given), report);
+  const Poses poses = refinedPoses(writeDrive(folder, plainPlace(), truth, given), report);
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const Eigen::Isometry3d moved = given[i].inverse() * poses[i];
     EXPECT_LT(moved.translation().head<2>().norm(), 0.01) << i;
@@ -139,12 +141,12 @@ TEST(PoseRegistration, AScanFarFromAllOthersKeepsItsPoseToTheLastBit) {
   truth.push_back(poseAt(0, 0, 0));
   given.push_back(poseAt(3000, 0, 7));
   PoseRegistration report;
-  const Poses poses = mendedPoses(writeDrive(folder, yardPlace(), truth, given), report);
+  const Poses poses = refinedPoses(writeDrive(folder, yardPlace(), truth, given), report);
   EXPECT_EQ(poses[3].matrix(), ScanSet::open({folder.path() / "drive_3.pcd"}, {}, *std::make_unique<NoteKeeper>())
                                    .file(0)
                                    .T_map_sensor.matrix());
   EXPECT_EQ(report.scans[3].pairs, 0U);
-  EXPECT_LT(errorBetween(poses, truth, 0, 2).translation().norm(), 0.01) << "the others are mended";
+  EXPECT_LT(errorBetween(poses, truth, 0, 2).translation().norm(), 0.01) << "the others are refined";
 }
 
 TEST(PoseRegistration, TellsGroupsThatNothingJoins) {
@@ -156,7 +158,7 @@ TEST(PoseRegistration, TellsGroupsThatNothingJoins) {
   }
   given[1] = given[1] * moveBy({0.1, 0, 0}, {0, 0, 0});
   PoseRegistration report;
-  const Poses poses = mendedPoses(writeDrive(folder, yardPlace(), truth, given), report);
+  const Poses poses = refinedPoses(writeDrive(folder, yardPlace(), truth, given), report);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(report.scans[i].group, i < 2 ? 0U : 2U);
   EXPECT_LT(errorBetween(poses, truth, 0, 1).translation().norm(), 0.01);
   EXPECT_LT((poses[2].translation() - given[2].translation()).norm(), 0.01);
@@ -168,7 +170,7 @@ TEST(PoseRegistration, LeavesOutAScanThatIsNotWhereItsPoseSays) {
   Poses given = truth;
   given[2] = given[2] * moveBy({3, 4, 0}, {0, 0, 40});
   PoseRegistration report;
-  const Poses poses = mendedPoses(writeDrive(folder, yardPlace(), truth, given), report);
+  const Poses poses = refinedPoses(writeDrive(folder, yardPlace(), truth, given), report);
   EXPECT_EQ(report.scans[2].pairs, 0U);
   EXPECT_LT((given[2].inverse() * poses[2]).translation().norm(), 1e-9);
   EXPECT_LT(errorBetween(poses, truth, 0, 3).translation().norm(), 0.01) << "the others are not led astray";
@@ -182,12 +184,12 @@ TEST(PoseRegistration, TwoScansShareTheCorrectionAndOneIsLeftAlone) {
   const Poses truth = straightDrive(2);
   Drive drive = writeDrive(folder, yardPlace(), truth, drifting(truth, moveBy({0.12, 0, 0}, {0, 0, 0.3})));
   PoseRegistration report;
-  const Poses poses = mendedPoses(drive, report);
+  const Poses poses = refinedPoses(drive, report);
   EXPECT_LT(errorBetween(poses, truth, 0, 1).translation().norm(), 0.01);
   ASSERT_EQ(report.scans.size(), 2U);
   EXPECT_NEAR(report.scans[0].shift_m, report.scans[1].shift_m, 0.02);
   drive.files.resize(1);
-  mendedPoses(drive, report);
+  refinedPoses(drive, report);
   EXPECT_TRUE(report.pairs.empty());
   EXPECT_EQ(report.scans[0].shift_m, 0);
 }
@@ -201,7 +203,7 @@ TEST(PoseRegistration, MeasuringTellsRightPosesFromWrongOnesAndChangesNone) {
     const PoseRegistration report = measurePoses(ScanSet::open(drive.files, {}, notes), {}, 1, notes);
     double worst_m = 0;
     for (const RegisteredPair& pair : report.pairs) worst_m = std::max(worst_m, pair.residual_before_m);
-    for (const MendedScan& scan : report.scans) EXPECT_EQ(scan.shift_m, 0);
+    for (const RefinedScan& scan : report.scans) EXPECT_EQ(scan.shift_m, 0);
     return worst_m;
   };
   EXPECT_LT(worst(right, truth), 0.02);
@@ -215,7 +217,7 @@ TEST(PoseRegistration, RefusesScansWithoutPosesAndScansWithTwo) {
   const ScanSet unposed = ScanSet::open({folder.path() / "a.xyz"}, {}, notes);
   const std::string refusal = refusalOf([&] { registerPoses(unposed, {}, 1, notes); });
   EXPECT_NE(refusal.find("a.xyz"), std::string::npos) << refusal;
-  EXPECT_NE(refusal.find("--poses"), std::string::npos) << refusal;
+  EXPECT_NE(refusal.find("name a poses file"), std::string::npos) << refusal;
   const Drive drive = writeDrive(folder, yardPlace(), {poseAt(0, 0, 0)}, {poseAt(0, 0, 0)});
   const ScanSet same = ScanSet::open({drive.files[0], drive.files[0]}, {}, notes);
   EXPECT_EQ(registerPoses(same, {}, 1, notes).scans.size(), 1U) << "once";
@@ -234,7 +236,7 @@ TEST(PoseRegistration, ScansOfFewPointsAreLeftAlone) {
   folder.write("a.xyz", "1 2 3\n2 3 4\n");
   folder.write("b.xyz", "1 2 3\n2 3 5\n");
   const PoseRegistration report = registerPoses(ScanSet::open({folder.path() / "few.yaml"}, {}, notes), {}, 1, notes);
-  for (const MendedScan& scan : report.scans) EXPECT_EQ(scan.pairs, 0U);
+  for (const RefinedScan& scan : report.scans) EXPECT_EQ(scan.pairs, 0U);
 }
 
 }  // namespace

@@ -6,12 +6,14 @@
 #include <cmath>
 #include <random>
 
-#include "cluxel/scan/manifest_writer.hpp"
-#include "cluxel/scan/pose_registration.hpp"
-#include "cluxel/scan/scan_writer.hpp"
+#include "scan/formats/manifest_writer.hpp"
+#include "scan/formats/scan_writer.hpp"
+#include "scan/registration/pose_registration.hpp"
 #include "scan/scan_fixture.hpp"
 
 namespace cluxel::test {
+
+using namespace scan;
 
 /// A rectangle: all `corner + a·along + b·across` with a and b in [0, 1] [m].
 struct Rectangle {
@@ -103,11 +105,11 @@ inline Drive writeDrive(const ScratchFolder& folder, const Place& place, const s
 }
 
 /// Mended poses by the order of the files in `drive`.
-inline std::vector<Eigen::Isometry3d> mendedPoses(const Drive& drive, PoseRegistration& report, unsigned threads = 1) {
+inline std::vector<Eigen::Isometry3d> refinedPoses(const Drive& drive, PoseRegistration& report, unsigned threads = 1) {
   NoteKeeper notes;
   report = registerPoses(ScanSet::open(drive.files, {}, notes), {}, threads, notes);
   std::vector<Eigen::Isometry3d> poses(drive.files.size());
-  for (const MendedScan& scan : report.scans) poses[scan.index] = scan.T_map_sensor;
+  for (const RefinedScan& scan : report.scans) poses[scan.index] = scan.T_map_sensor;
   return poses;
 }
 

@@ -3,24 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cluxel/scan/scan_set.hpp"
-#include "cluxel/scan/scan_writer.hpp"
-#include "cluxel/scan/truth.hpp"
+#include "scan/formats/scan_writer.hpp"
 #include "scan/scan_fixture.hpp"
+#include "scan/scan_set.hpp"
+#include "scan/truth/truth.hpp"
+#include "test_paths.hpp"
 
-namespace cluxel {
+namespace cluxel::scan {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path dataFolder(const char* name) {
-  const fs::path data = test::outsideData();
-  return data.empty() || !fs::exists(data / name) ? fs::path() : data / name;
-}
-
-#define CLUXEL_REQUIRE_DATA(variable, name)   \
-  const fs::path variable = dataFolder(name); \
-  if (variable.empty()) GTEST_SKIP() << "outside data absent: " << (name)
+#define CLUXEL_REQUIRE_DATA(variable, name)                   \
+  const fs::path variable = test::outsideDataFolder() / name; \
+  if (!fs::exists(variable)) GTEST_SKIP() << "outside data absent: " << (name)
 
 ScanSet opened(const fs::path& input) {
   ProgressSink silent;
@@ -45,7 +41,7 @@ TEST(RealScans, OaklandHasTenChunksOfAHundredThousandLabelledPoints) {
 TEST(RealScans, OaklandTruthFilesFollowFromTheLabelsThroughTheLabelMap) {
   CLUXEL_REQUIRE_DATA(folder, "oakland3d");
   CLUXEL_REQUIRE_DATA(truth_folder, "oakland3d_truth");
-  const LabelMap map = LabelMap::load(fs::path(CLUXEL_SOURCE_DIR) / "labels" / "oakland.yaml");
+  const LabelMap map = LabelMap::load(test::sourceFolder() / "labels" / "oakland.yaml");
   const ScanSet set = opened(folder);
   constexpr std::uint32_t kPost = 1110;
   std::size_t primitives_differ = 0, posts_differ = 0, others_differ = 0;
@@ -128,4 +124,4 @@ TEST(RealScans, SurviveTheWayThroughThePcdWriter) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::scan

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Folders, files and refusals for the tests of the scan wing.
+// Folders, files and refusals for the tests of the module scan.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/base/progress.hpp"
+#include "cluxel/error.hpp"
+#include "cluxel/progress.hpp"
 
 namespace cluxel::test {
 
@@ -76,13 +76,6 @@ std::string bytesOfAll(Numbers... numbers) {
   };
   (append(numbers), ...);
   return bytes;
-}
-
-/// The folder of outside data; empty when it is absent.
-inline fs::path outsideData() {
-  const char* named = std::getenv("CLUXEL_DATA");
-  const fs::path folder = named ? fs::path(named) : fs::path(CLUXEL_SOURCE_DIR) / ".." / "shared" / "data";
-  return fs::is_directory(folder) ? folder : fs::path();
 }
 
 }  // namespace cluxel::test

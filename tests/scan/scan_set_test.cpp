@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files, folders and layouts to a list of scans.
-#include "cluxel/scan/scan_set.hpp"
+#include "scan/scan_set.hpp"
 
-#include "cluxel/scan/scan_summary.hpp"
 #include "scan/scan_fixture.hpp"
+#include "scan/scan_summary.hpp"
 
-namespace cluxel {
+namespace cluxel::scan {
 namespace {
 
 using test::bytesOfAll;
@@ -151,7 +151,7 @@ TEST(ScanSet, GivesNoPoseOfAKittiSequenceToAScanThatIsNotOfIt) {
   EXPECT_THAT(refusalOf([&] {
                 opened({folder.path() / "seq", extra}, {.poses = poses});
               }),
-              HasSubstr("extra.xyz is not of that sequence"));
+              HasSubstr("extra.xyz does not belong to that sequence"));
   const auto seq = folder.path() / "seq";
   const ScanSet twice =
       opened({seq / "velodyne" / "000001.bin", seq / "." / "velodyne" / "000001.bin"}, {.poses = poses});
@@ -296,4 +296,4 @@ TEST(ScanSummary, CountsPointsLabelsAndTheExtentInTheMap) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::scan

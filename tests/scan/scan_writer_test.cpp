@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is written is read back unchanged.
-#include "cluxel/scan/scan_writer.hpp"
+#include "scan/formats/scan_writer.hpp"
 
 #include <random>
 
-#include "cluxel/scan/scan_set.hpp"
 #include "scan/scan_fixture.hpp"
+#include "scan/scan_set.hpp"
 
-namespace cluxel {
+namespace cluxel::scan {
 namespace {
 
 using test::refusalOf;
@@ -104,4 +104,4 @@ TEST(ScanWriter, RefusesScansThatCannotBeReadBack) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::scan

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scans as text: what is read, and what is refused with which words.
-#include "scan/text_formats.hpp"
+#include "scan/formats/text_formats.hpp"
 
 #include "scan/scan_fixture.hpp"
 
-namespace cluxel {
+namespace cluxel::scan {
 namespace {
 
 using test::refusalOf;
@@ -47,12 +47,12 @@ TEST(XyzText, LeavesCoordinatesWithinTheReachOfFloatsAsTheyAre) {
   EXPECT_TRUE(parseXyzText("4096 -4096 0\n", "a.xyz").local_origin.isZero(0));
 }
 
-struct Refusal {
+struct RefusedLine {
   const char* text;
   const char* words;
 };
 
-class RefusedXyz : public testing::TestWithParam<Refusal> {};
+class RefusedXyz : public testing::TestWithParam<RefusedLine> {};
 
 TEST_P(RefusedXyz, NamesThePlaceAndTheFault) {
   EXPECT_THAT(refusalOf([] { parseXyzText(GetParam().text, "a.xyz"); }), HasSubstr(GetParam().words));
@@ -60,18 +60,17 @@ TEST_P(RefusedXyz, NamesThePlaceAndTheFault) {
 
 INSTANTIATE_TEST_SUITE_P(
     AllFaults, RefusedXyz,
-    testing::Values(Refusal{"", "a.xyz:1:1: error: holds no points"}, Refusal{"# only\n", "holds no points"},
-                    Refusal{"1 2 3\n1 2\n", "a.xyz:2:4: error: the line ends where z was expected"},
-                    Refusal{"1 2 nan\n", "a.xyz:1:5: error: z is not finite: 'nan'"},
-                    Refusal{"1 -inf 3\n", "a.xyz:1:3: error: y is not finite: '-inf'"},
-                    Refusal{"1 2 3\n4 x5 6\n", "a.xyz:2:3: error: y is not a number: 'x5'"},
-                    Refusal{"1 2.5m 3\n", "a.xyz:1:3: error: y is not a number: '2.5m'"},
-                    Refusal{"1 2 1e999\n", "z is out of range"},
-                    Refusal{"1e39 2 3\n",
-                            "a.xyz:1:9: error: the point has a coordinate that is not finite or beyond 100000 km"},
-                    Refusal{"1 2 3\n1 2 3 4\n", "a.xyz:2:7: error: unexpected '4'"},
-                    Refusal{"1 2 3 4\n1 2 3\n", "a.xyz:2:6: error: the line ends where intensity was expected"},
-                    Refusal{"1 2 3 4 5\n", "unexpected '5'"}));
+    testing::Values(RefusedLine{"", "a.xyz:1:1: error: holds no points"}, RefusedLine{"# only\n", "holds no points"},
+                    RefusedLine{"1 2 3\n1 2\n", "a.xyz:2:4: error: the line ends where z was expected"},
+                    RefusedLine{"1 2 nan\n", "a.xyz: error: none of its 1 points has a finite position"},
+                    RefusedLine{"1 2 3 nan\n", "a.xyz:1:7: error: intensity is not finite: 'nan'"},
+                    RefusedLine{"1 2 3\n4 x5 6\n", "a.xyz:2:3: error: y is not a number: 'x5'"},
+                    RefusedLine{"1 2.5m 3\n", "a.xyz:1:3: error: y is not a number: '2.5m'"},
+                    RefusedLine{"1 2 1e999\n", "z is out of range"},
+                    RefusedLine{"1e39 2 3\n", "a.xyz:1:9: error: the point has a coordinate beyond 100000 km"},
+                    RefusedLine{"1 2 3\n1 2 3 4\n", "a.xyz:2:7: error: unexpected '4'"},
+                    RefusedLine{"1 2 3 4\n1 2 3\n", "a.xyz:2:6: error: the line ends where intensity was expected"},
+                    RefusedLine{"1 2 3 4 5\n", "unexpected '5'"}));
 
 TEST(LabelledText, ReadsTheLayoutOfOakland) {
   const ParsedScan scan =
@@ -109,4 +108,4 @@ TEST(LabelLines, MustBeAsManyAsThePoints) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::scan

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Label maps, truth from labels, and truth files.
-#include "cluxel/scan/truth.hpp"
+#include "scan/truth/truth.hpp"
 
 #include <zlib.h>
 
 #include <random>
 
-#include "scan/label_map_text.hpp"
 #include "scan/scan_fixture.hpp"
-#include "scan/truth_text.hpp"
+#include "scan/truth/label_map_text.hpp"
+#include "scan/truth/truth_text.hpp"
 
-namespace cluxel {
+namespace cluxel::scan {
 namespace {
 
 using test::refusalOf;
@@ -81,7 +81,7 @@ TEST(LabelMap, ReportsAllFaultsAtOnceWithPlaceAndSuggestion) {
   EXPECT_THAT(text, AllOf(HasSubstr("l.yaml:1:1: error: unknown key 'datset'"), HasSubstr("did you mean 'dataset'?")));
   EXPECT_THAT(text,
               AllOf(HasSubstr("l.yaml:3:27: error: unknown primitive 'colum'"), HasSubstr("did you mean 'column'?")));
-  EXPECT_THAT(text, HasSubstr("l.yaml:4:3: error: '1' was given in line 3 already"));
+  EXPECT_THAT(text, HasSubstr("l.yaml:4:3: error: the key '1' stands here twice"));
   EXPECT_THAT(text, AllOf(HasSubstr("a label id is a whole number"), HasSubstr("a label needs a 'name'")));
   EXPECT_THAT(text, AllOf(HasSubstr("object must be a local name"), HasSubstr("write it as '0.6 m'")));
   EXPECT_THAT(text, AllOf(HasSubstr("the label 77 is not in this map"), HasSubstr("a 'part' needs an 'object'")));
@@ -209,4 +209,4 @@ TEST(AmbiguousInstances, AreThoseMarkedInTheTable) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::scan

@@ -2,9 +2,12 @@
 // Small campuses for tests.
 #include "simulation/campus_fixture.hpp"
 
-#include "simulation/mesh_shapes.hpp"
+#include "simulation/makers/mesh_shapes.hpp"
 
 namespace cluxel::test {
+
+using namespace scan;
+using namespace simulation;
 
 CampusParams smallCampus(std::uint64_t seed) {
   CampusParams params;

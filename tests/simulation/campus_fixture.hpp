@@ -5,9 +5,12 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "cluxel/simulation/laser.hpp"
+#include "simulation/laser/laser.hpp"
 
 namespace cluxel::test {
+
+using namespace scan;
+using namespace simulation;
 
 /// 50 m, few points: a second or less.
 CampusParams smallCampus(std::uint64_t seed);

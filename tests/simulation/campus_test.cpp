@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The generated campus: the same from the same seed, whole, plausible, and with truth that fits its shapes.
-#include "cluxel/simulation/campus.hpp"
+#include "simulation/site/campus.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,10 +10,12 @@
 #include <cmath>
 #include <map>
 
-#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/error.hpp"
 #include "simulation/campus_fixture.hpp"
 
-namespace cluxel {
+namespace cluxel::simulation {
+
+using namespace scan;
 namespace {
 
 using Eigen::Vector3d;
@@ -287,7 +289,7 @@ TEST(Campus, RefusesParametersOutOfRangeNamingTheRemedy) {
       buildCampus(params);
       FAIL() << "took " << stops << " stops";
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::Usage);
+      EXPECT_EQ(error.kind(), ErrorKind::InvalidArgument);
       EXPECT_THAT(error.what(), testing::HasSubstr(remedy)) << "no campus is larger than 400 m";
     }
   }
@@ -307,4 +309,4 @@ TEST(Campus, OffersEveryStopThatItCounts) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::simulation

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `cluxel simulate` leaves on disk: the same bytes always, and readable by the scan wing.
-#include "cluxel/simulation/campus_writer.hpp"
+// The output of `cluxel simulate`: identical bytes in every run, and readable by the module scan.
+#include "simulation/laser/campus_writer.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
@@ -12,13 +13,16 @@
 #include <set>
 #include <sstream>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/base/file_bytes.hpp"
-#include "cluxel/scan/scan_set.hpp"
-#include "cluxel/scan/truth.hpp"
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "scan/scan_set.hpp"
+#include "scan/truth/truth.hpp"
 #include "simulation/campus_fixture.hpp"
+#include "test_paths.hpp"
 
-namespace cluxel {
+namespace cluxel::simulation {
+
+using namespace scan;
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,7 +32,8 @@ class CampusWriter : public testing::Test {
  protected:
   CampusWriter()
       : folder_(fs::temp_directory_path() /
-                (std::string("cluxel_campus_") + testing::UnitTest::GetInstance()->current_test_info()->name())) {
+                (std::string("cluxel_campus_") + testing::UnitTest::GetInstance()->current_test_info()->name() + "_" +
+                 std::to_string(::getpid()))) {
     fs::remove_all(folder_);
   }
   ~CampusWriter() override { fs::remove_all(folder_); }
@@ -142,7 +147,7 @@ TEST_F(CampusWriter, ScansComeBackAsTheyWereTaken) {
 TEST_F(CampusWriter, TruthFilesFitTheScansAndTheLabelMap) {
   write("out", 2, params());
   const ScanSet set = ScanSet::open({folder_ / "out"}, {}, sink_);
-  const LabelMap map = LabelMap::load(std::string(CLUXEL_SOURCE_DIR) + "/labels/campus.yaml");
+  const LabelMap map = LabelMap::load(test::sourceFolder() / "labels/campus.yaml");
   for (std::size_t stop = 0; stop < set.size(); ++stop) {
     const Scan scan = set.load(stop);
     const auto file = truthFileOf(folder_ / "out" / "truth", set.file(stop).path);
@@ -205,7 +210,7 @@ TEST_F(CampusWriter, RefusesAFolderThatIsNotEmpty) {
     write("out", 1, params());
     FAIL() << "wrote into a folder in use";
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::Usage);
+    EXPECT_EQ(error.kind(), ErrorKind::InvalidArgument);
     EXPECT_THAT(error.what(), testing::HasSubstr("is not an empty folder"));
   }
   EXPECT_EQ(bytesOf("out").size(), 1U);
@@ -222,4 +227,4 @@ TEST(DefaultCampus, HasBetween150And200ThousandPointsPerStop) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::simulation

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The laser against geometry that is known on paper, and its noise against its own figures.
-#include "cluxel/simulation/laser.hpp"
+#include "simulation/laser/laser.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,11 +10,13 @@
 #include <map>
 #include <numeric>
 
-#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/error.hpp"
 #include "simulation/campus_fixture.hpp"
-#include "simulation/mesh_shapes.hpp"
+#include "simulation/makers/mesh_shapes.hpp"
 
-namespace cluxel {
+namespace cluxel::simulation {
+
+using namespace scan;
 namespace {
 
 using Eigen::Vector3d, Eigen::Vector3f;
@@ -255,4 +257,4 @@ TEST(Laser, TwoStopsAgreeOnTheSameWall) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::simulation

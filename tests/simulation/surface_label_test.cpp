@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // The table of surfaces and labels/campus.yaml say the same.
-#include "cluxel/simulation/surface_label.hpp"
+#include "simulation/laser/surface_label.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "cluxel/scan/truth.hpp"
+#include "scan/truth/truth.hpp"
+#include "test_paths.hpp"
 
-namespace cluxel {
+namespace cluxel::simulation {
+
+using namespace scan;
 namespace {
 
 TEST(SurfaceLabel, TheLabelMapSaysTheSameAsTheTable) {
-  const LabelMap map = LabelMap::load(std::string(CLUXEL_SOURCE_DIR) + "/labels/campus.yaml");
+  const LabelMap map = LabelMap::load(test::sourceFolder() / "labels/campus.yaml");
   EXPECT_EQ(map.entries().size(), surfaceInfos().size());
   for (const SurfaceInfo& info : surfaceInfos()) {
     const LabelMeaning* meaning = map.find(static_cast<std::uint32_t>(info.label));
@@ -38,4 +41,4 @@ TEST(SurfaceLabel, IdsAscendAndClassesHaveTheirNumberInTruthFiles) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::simulation

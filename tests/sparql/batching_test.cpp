@@ -8,10 +8,13 @@
 #include <optional>
 #include <random>
 
-#include "cluxel/knowledge/vocabulary.hpp"
+#include "rdf/vocabulary.hpp"
 #include "sparql/store_fixture.hpp"
 
 namespace cluxel::test {
+
+using namespace rdf;
+using namespace sparql;
 namespace {
 
 using testing::ElementsAre;

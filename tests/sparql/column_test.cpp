@@ -9,19 +9,22 @@
 #include <set>
 #include <thread>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/knowledge/vocabulary.hpp"
+#include "cluxel/error.hpp"
+#include "rdf/vocabulary.hpp"
+#include "sparql/exec/subject_column.hpp"
 #include "sparql/store_fixture.hpp"
-#include "sparql/subject_column.hpp"
 
 namespace cluxel::test {
+
+using namespace rdf;
+using namespace sparql;
 namespace {
 
 using namespace sparql;
 using testing::ElementsAreArray;
 using testing::HasSubstr;
 
-Term iri(const std::string& local) {
+Term columnIri(const std::string& local) {
   return Term::iri("http://example.org/" + local);
 }
 Term graph(unsigned number) {
@@ -35,15 +38,16 @@ SmallStore strewn(std::uint32_t seed, unsigned before, unsigned things, unsigned
   std::mt19937 random(seed);
   std::vector<Quad> quads;
   for (unsigned i = 0; i < before; ++i)
-    quads.push_back({iri("early" + std::to_string(i)), iri("is"), iri("early"), graph(0)});
+    quads.push_back({columnIri("early" + std::to_string(i)), columnIri("is"), columnIri("early"), graph(0)});
   for (unsigned i = 0; i < things; ++i) {
-    const Term self = iri("thing" + std::to_string(i));
-    quads.push_back({self, iri("is"), iri("thing"), graph(2)});
+    const Term self = columnIri("thing" + std::to_string(i));
+    quads.push_back({self, columnIri("is"), columnIri("thing"), graph(2)});
     const unsigned values = random() % 97 == 0 ? 300 : random() % (most + 1);
     for (unsigned k = 0; k < values; ++k)
-      quads.push_back({self, iri("p"), iri("thing" + std::to_string(random() % things)), graph(random() % 4)});
+      quads.push_back(
+          {self, columnIri("p"), columnIri("thing" + std::to_string(random() % things)), graph(random() % 4)});
   }
-  quads.push_back({iri("early0"), iri("p"), iri("thing0"), graph(0)});  // far from the others
+  quads.push_back({columnIri("early0"), columnIri("p"), columnIri("thing0"), graph(0)});  // far from the others
   std::shuffle(quads.begin() + before, quads.end(), random);
   SmallStore store;
   store.load(quads);
@@ -54,8 +58,8 @@ SmallStore strewn(std::uint32_t seed, unsigned before, unsigned things, unsigned
 void compareWithStore(const SmallStore& store, const std::string& predicate, const std::string& object,
                       bool without_history) {
   const QuadReader reader = store.reader();
-  const TermId p = reader.idOf(iri(predicate)).value_or(~TermId{0});
-  const TermId o = object.empty() ? kNoTerm : reader.idOf(iri(object)).value_or(~TermId{0});
+  const TermId p = reader.idOf(columnIri(predicate)).value_or(~TermId{0});
+  const TermId o = object.empty() ? kNoTerm : reader.idOf(columnIri(object)).value_or(~TermId{0});
   GraphFilter graphs;
   const auto history = reader.idOf(graph(1));
   if (without_history && history) graphs = {GraphFilter::Kind::AllBut, *history, {}, true};
@@ -104,7 +108,7 @@ TEST(SubjectColumn, HoldsWhatTheStoreHoldsOfAPredicate) {
 TEST(SubjectColumn, IsMadeWhenLookupsHaveCostAsMuch) {
   const SmallStore store = strewn(3, 100, 9000, 7);  // some 60,000 quads
   const QuadReader reader = store.reader();
-  const TermId p = *reader.idOf(iri("p"));
+  const TermId p = *reader.idOf(columnIri("p"));
   Guard guard;
   guard.start({});
   EXPECT_EQ(keptColumn(reader, {p}, {}), keptColumn(store.reader(), {p}, {})) << "readers of a commit share it";
@@ -115,11 +119,12 @@ TEST(SubjectColumn, IsMadeWhenLookupsHaveCostAsMuch) {
   ASSERT_NE(made, nullptr);
   EXPECT_EQ(kept->after(1, false, store.reader(), {}, guard), made);
   EXPECT_GE(kept->bytes() * 2, made->bytes());
-  const TermId is = *reader.idOf(iri("is"));
+  const TermId is = *reader.idOf(columnIri("is"));
   const auto unwanted = keptColumn(reader, {is}, {});
   EXPECT_EQ(unwanted->after(1023, false, reader, {}, guard), nullptr);
   EXPECT_NE(unwanted->after(5000, false, reader, {}, guard), nullptr);
-  EXPECT_NE(keptColumn(reader, {is, *reader.idOf(iri("thing"))}, {}), unwanted) << "one object has a column of its own";
+  EXPECT_NE(keptColumn(reader, {is, *reader.idOf(columnIri("thing"))}, {}), unwanted)
+      << "one object has a column of its own";
 }
 
 /// The same graphs as without options, but one by one: then patterns are looked up in the index.
@@ -141,8 +146,8 @@ void compareWithIndex(const SmallStore& store, const std::string& pattern) {
 
 TEST(ByColumn, GivesWhatTheIndexGives) {
   SmallStore store = strewn(8, 0, 2500, 3);
-  store.load({{iri("thing5"), iri("rare"), iri("thing6"), graph(0)},
-              {iri("thing2000"), iri("rare"), iri("thing6"), graph(0)}});
+  store.load({{columnIri("thing5"), columnIri("rare"), columnIri("thing6"), graph(0)},
+              {columnIri("thing2000"), columnIri("rare"), columnIri("thing6"), graph(0)}});
   for (const char* pattern :
        {"?o :is :thing . ?o :p ?v", "?o :is :thing OPTIONAL { ?o :p ?v }",
         "?o :is :thing OPTIONAL { ?o :p ?v . ?v :p ?o }", "?o :is :thing FILTER EXISTS { ?o :p ?v . ?v :p ?w }",
@@ -154,7 +159,8 @@ TEST(ByColumn, GivesWhatTheIndexGives) {
     compareWithIndex(store, pattern);
   }
   const QuadReader reader = store.reader();
-  const TermId p = *reader.idOf(iri("p")), is = *reader.idOf(iri("is")), thing = *reader.idOf(iri("thing"));
+  const TermId p = *reader.idOf(columnIri("p")), is = *reader.idOf(columnIri("is")),
+               thing = *reader.idOf(columnIri("thing"));
   const GraphFilter graphs{GraphFilter::Kind::AllBut, *reader.idOf(graph(1)), {}, true};
   EXPECT_TRUE(keptColumn(reader, {p}, graphs)->isMade());
   EXPECT_TRUE(keptColumn(reader, {is, thing}, graphs)->isMade());
@@ -182,7 +188,8 @@ TEST(ByColumn, FollowsCommitsAndDatasets) {
     return std::stoul(store.ask(text, options).table.at(0, 0)->text);
   };
   const std::size_t before = count({});
-  store.load({{iri("thing1"), iri("p"), iri("new"), graph(0)}, {iri("thing2"), iri("p"), iri("new"), graph(1)}});
+  store.load({{columnIri("thing1"), columnIri("p"), columnIri("new"), graph(0)},
+              {columnIri("thing2"), columnIri("p"), columnIri("new"), graph(1)}});
   EXPECT_EQ(count({}), before + 1) << "history is not asked";
   EXPECT_EQ(count({}), before + 1);
   QueryOptions of_two;
@@ -212,7 +219,7 @@ TEST(ByColumn, CountsInTheBudgetsOfMemoryAndTime) {
       break;
     }
   }
-  EXPECT_THROW(SubjectColumn(reader, {*reader.idOf(iri("p"))}, {}, late), Error);
+  EXPECT_THROW(SubjectColumn(reader, {*reader.idOf(columnIri("p"))}, {}, late), Error);
 }
 
 }  // namespace

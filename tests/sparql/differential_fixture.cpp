@@ -7,11 +7,14 @@
 #include <cstdio>
 #include <set>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/knowledge/vocabulary.hpp"
+#include "cluxel/error.hpp"
+#include "rdf/vocabulary.hpp"
 #include "sparql/result_comparison_fixture.hpp"
 
 namespace cluxel::test {
+
+using namespace rdf;
+using namespace sparql;
 
 namespace {
 

@@ -6,12 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "cluxel/knowledge/environment.hpp"
-#include "cluxel/knowledge/quad_store.hpp"
-#include "cluxel/sparql/query_engine.hpp"
+#include "rdf/store/environment.hpp"
+#include "rdf/store/quad_store.hpp"
+#include "sparql/query_engine.hpp"
 #include "sparql/second_engine_fixture.hpp"
 
 namespace cluxel::test {
+
+using namespace rdf;
+using namespace sparql;
 
 std::shared_ptr<Environment> storeOf(const std::vector<Quad>& quads);
 

@@ -12,7 +12,9 @@
 #include "sparql/generated_map_fixture.hpp"
 #include "sparql/query_generator_fixture.hpp"
 
-namespace cluxel {
+namespace cluxel::sparql {
+
+using namespace rdf;
 namespace {
 
 using test::EngineAnswer;
@@ -131,4 +133,4 @@ TEST_P(Differential, RandomQueriesHaveTheAnswersOfASecondEngine) {
 INSTANTIATE_TEST_SUITE_P(Seeds, Differential, testing::Values(1U, 2U, 3U, 4U));
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::sparql

@@ -5,9 +5,11 @@
 
 #include <random>
 
-#include "cluxel/knowledge/vocabulary.hpp"
+#include "rdf/vocabulary.hpp"
 
 namespace cluxel::test {
+
+using namespace rdf;
 
 namespace {
 

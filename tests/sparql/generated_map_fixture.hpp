@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cluxel/knowledge/term.hpp"
+#include "cluxel/term.hpp"
 
 namespace cluxel::test {
 

@@ -6,10 +6,13 @@
 #include <cmath>
 #include <random>
 
-#include "sparql/geometry.hpp"
+#include "sparql/functions/geometry.hpp"
 #include "sparql/store_fixture.hpp"
 
 namespace cluxel::test {
+
+using namespace rdf;
+using namespace sparql;
 namespace {
 
 std::string wkt(const std::string& text) {
@@ -18,7 +21,7 @@ std::string wkt(const std::string& text) {
 std::string call(const std::string& function, const std::string& a, const std::string& b) {
   return "geof:" + function + "(" + wkt(a) + ", " + wkt(b) + ")";
 }
-const std::string kTrue = "\"true\"^^boolean", kFalse = "\"false\"^^boolean";
+const std::string kGeoTrue = "\"true\"^^boolean", kGeoFalse = "\"false\"^^boolean";
 const std::string kSquare = "POLYGON((0 0, 4 0, 4 4, 0 4, 0 0))";
 
 TEST(GeoFunctions, MeasureInMetres) {
@@ -32,12 +35,12 @@ TEST(GeoFunctions, MeasureInMetres) {
 
 TEST(GeoFunctions, RelateGeometries) {
   const SmallStore store;
-  EXPECT_EQ(store.value(call("sfIntersects", kSquare, "LINESTRING(-1 2, 5 2)")), kTrue);
-  EXPECT_EQ(store.value(call("sfWithin", "POINT(1 1)", kSquare)), kTrue);
-  EXPECT_EQ(store.value(call("sfWithin", "POINT(0 1)", kSquare)), kFalse) << "on the border is not within";
-  EXPECT_EQ(store.value(call("sfContains", kSquare, "POLYGON((1 1, 2 1, 2 2, 1 1))")), kTrue);
-  EXPECT_EQ(store.value(call("sfTouches", kSquare, "POLYGON((4 0, 6 0, 6 4, 4 4, 4 0))")), kTrue);
-  EXPECT_EQ(store.value(call("sfTouches", kSquare, "POLYGON((3 0, 6 0, 6 4, 3 4, 3 0))")), kFalse);
+  EXPECT_EQ(store.value(call("sfIntersects", kSquare, "LINESTRING(-1 2, 5 2)")), kGeoTrue);
+  EXPECT_EQ(store.value(call("sfWithin", "POINT(1 1)", kSquare)), kGeoTrue);
+  EXPECT_EQ(store.value(call("sfWithin", "POINT(0 1)", kSquare)), kGeoFalse) << "on the border is not within";
+  EXPECT_EQ(store.value(call("sfContains", kSquare, "POLYGON((1 1, 2 1, 2 2, 1 1))")), kGeoTrue);
+  EXPECT_EQ(store.value(call("sfTouches", kSquare, "POLYGON((4 0, 6 0, 6 4, 4 4, 4 0))")), kGeoTrue);
+  EXPECT_EQ(store.value(call("sfTouches", kSquare, "POLYGON((3 0, 6 0, 6 4, 3 4, 3 0))")), kGeoFalse);
   EXPECT_EQ(store.value("geof:envelope(" + wkt("LINESTRING(1 5, 3 2)") + ")"),
             "\"POLYGON((1 2, 3 2, 3 5, 1 5, 1 2))\"^^<http://www.opengis.net/ont/geosparql#wktLiteral>");
 }
@@ -53,9 +56,9 @@ TEST(GeoFunctions, GiveErrorsForWhatIsNoGeometry) {
 
 TEST(GeoFunctions, TellEmptyGeometriesFromOthers) {
   const SmallStore store;
-  EXPECT_EQ(store.value(call("sfWithin", "POINT EMPTY", kSquare)), kFalse);
-  EXPECT_EQ(store.value(call("sfContains", kSquare, "GEOMETRYCOLLECTION EMPTY")), kFalse);
-  EXPECT_EQ(store.value(call("sfDisjoint", kSquare, "POINT EMPTY")), kTrue);
+  EXPECT_EQ(store.value(call("sfWithin", "POINT EMPTY", kSquare)), kGeoFalse);
+  EXPECT_EQ(store.value(call("sfContains", kSquare, "GEOMETRYCOLLECTION EMPTY")), kGeoFalse);
+  EXPECT_EQ(store.value(call("sfDisjoint", kSquare, "POINT EMPTY")), kGeoTrue);
   EXPECT_EQ(store.value("geof:envelope(" + wkt("POLYGON EMPTY") + ")"), "-");
 }
 
@@ -84,9 +87,9 @@ TEST(GeoFunctions, DoNotRelateDifferentReferenceSystems) {
 
 TEST(GeoFunctions, PartsOnTheBorderAreWithinWhereOthersAreInside) {
   const SmallStore store;
-  EXPECT_EQ(store.value(call("sfWithin", "MULTIPOINT((0 0), (1 1))", kSquare)), kTrue);
-  EXPECT_EQ(store.value(call("sfWithin", "MULTIPOINT((0 0), (4 1))", kSquare)), kFalse) << "none is inside";
-  EXPECT_EQ(store.value(call("sfWithin", "MULTIPOINT((1 1), (5 1))", kSquare)), kFalse) << "one is outside";
+  EXPECT_EQ(store.value(call("sfWithin", "MULTIPOINT((0 0), (1 1))", kSquare)), kGeoTrue);
+  EXPECT_EQ(store.value(call("sfWithin", "MULTIPOINT((0 0), (4 1))", kSquare)), kGeoFalse) << "none is inside";
+  EXPECT_EQ(store.value(call("sfWithin", "MULTIPOINT((1 1), (5 1))", kSquare)), kGeoFalse) << "one is outside";
 }
 
 /// Objects with points on a grid, asked by distance and by a window: the R-tree's answers against arithmetic.

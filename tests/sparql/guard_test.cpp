@@ -5,10 +5,13 @@
 
 #include <chrono>
 
-#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/error.hpp"
 #include "sparql/store_fixture.hpp"
 
 namespace cluxel::test {
+
+using namespace rdf;
+using namespace sparql;
 namespace {
 
 using testing::HasSubstr;
@@ -43,7 +46,7 @@ void expectRefused(const SmallStore& store, const std::string& query, const Quer
     runQuery(reader, kPrefixes + query, options, sink);
     FAIL() << "no error for " << query;
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::BudgetExceeded) << error.what();
+    EXPECT_EQ(error.kind(), ErrorKind::BudgetExceeded) << error.what();
   }
   EXPECT_FALSE(sink.touched) << "a partial answer was given";
 }
@@ -66,7 +69,7 @@ TEST(Guard, TellsOfIdsThatADamagedIndexMadeUp) {
       store.ask(query);
       FAIL() << query;
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::StoreUnavailable) << query;
+      EXPECT_EQ(error.kind(), ErrorKind::StoreUnavailable) << query;
       EXPECT_THAT(error.what(), HasSubstr("damaged")) << query;
     }
   }
@@ -216,7 +219,7 @@ TEST(Guard, RefusesQueriesOfThousandsOfPartsAndPlansThoseBelow) {
     try {
       store.ask("ASK { ?s :next ?o . " + repeated(part, 400) + end, options);
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::BudgetExceeded) << part << ": " << error.what();
+      EXPECT_EQ(error.kind(), ErrorKind::BudgetExceeded) << part << ": " << error.what();
     }
   }
 }

@@ -10,9 +10,11 @@
 #include <set>
 #include <string>
 
-#include "cluxel/knowledge/vocabulary.hpp"
+#include "rdf/vocabulary.hpp"
 
 namespace cluxel::test {
+
+using namespace rdf;
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "cluxel/knowledge/term.hpp"
+#include "cluxel/term.hpp"
 
 namespace cluxel::test {
 

@@ -4,10 +4,10 @@
 
 #include <random>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/sparql/parser.hpp"
+#include "cluxel/error.hpp"
+#include "sparql/syntax/parser.hpp"
 
-namespace cluxel {
+namespace cluxel::sparql {
 namespace {
 
 SparqlParseOptions withPrefix() {
@@ -104,7 +104,7 @@ TEST(SparqlParserErrors, CoverTheNotesOfTheQueryGrammar) {
       {"ASK { FILTER(RAND(1)) }", "RAND takes no argument, not 1"},
       {"ASK { FILTER :f }", "expected '(' and the function's arguments"},
       {"ASK { ?s <a> ?o }", "the relative IRI <a> has no base"},
-      {"ASK { ?s ?p ?o FILTER(?s<?p&&?o>1) }", "put a space behind it"},
+      {"ASK { ?s ?p ?o FILTER(?s<?p&&?o>1) }", "put a space after it"},
       {"ASK { ?s ?p 'a }", "the string is not closed on its line"},
       {"ASK { ?s ?p '''a }", "the string is never closed"},
       {"ASK { ?s ?p 'a\\q' }", "this escape means nothing"},
@@ -115,7 +115,7 @@ TEST(SparqlParserErrors, CoverTheNotesOfTheQueryGrammar) {
       {"SELECT ?x { } LIMIT 1.5", "expected a whole number after LIMIT"},
       {"INSERT DATA { :a :b :c }", "this is an update, not a query"},
       {"", "expected SELECT, CONSTRUCT, DESCRIBE or ASK, but the request ends here"},
-      {"ASK { ?s ?p \xFF }", "this byte is no UTF-8"},
+      {"ASK { ?s ?p \xFF }", "this byte is not UTF-8"},
       {std::string("ASK { \0 }", 9), "the request holds a zero byte"}};
   for (const Fault& fault : faults)
     EXPECT_NE(queryError(fault.text).find(fault.message), std::string::npos) << fault.text << "\n"
@@ -203,4 +203,4 @@ TEST(SparqlParserErrors, SurviveDamagedRequests) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::sparql

@@ -2,10 +2,10 @@
 // What the parser makes of queries and updates.
 #include <gtest/gtest.h>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/sparql/parser.hpp"
+#include "cluxel/error.hpp"
+#include "sparql/syntax/parser.hpp"
 
-namespace cluxel {
+namespace cluxel::sparql {
 namespace {
 
 using namespace ast;
@@ -303,4 +303,4 @@ TEST(SparqlParser, CountsOffsetsInTheDecodedText) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::sparql

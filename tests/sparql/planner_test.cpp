@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <random>
 
-#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/error.hpp"
 #include "sparql/store_fixture.hpp"
 
 namespace cluxel::test {
+
+using namespace rdf;
+using namespace sparql;
 namespace {
 
 using testing::AllOf;

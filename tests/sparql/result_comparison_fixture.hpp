@@ -5,10 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "cluxel/sparql/result_table.hpp"
 #include "sparql/isomorphism_fixture.hpp"
+#include "sparql/results/result_table.hpp"
 
 namespace cluxel::test {
+
+using namespace rdf;
+using namespace sparql;
 
 /// isomorphic() with the order of tuples kept.
 bool isomorphicInOrder(const std::vector<Tuple>& a, const std::vector<Tuple>& b);

@@ -6,11 +6,15 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "cluxel/base/file_bytes.hpp"
-#include "cluxel/knowledge/rdf_io.hpp"
-#include "cluxel/sparql/results_reader.hpp"
+#include "base/file_bytes.hpp"
+#include "rdf/io/rdf_io.hpp"
+#include "sparql/results_reader_fixture.hpp"
+#include "test_paths.hpp"
 
 namespace cluxel::test {
+
+using namespace rdf;
+using namespace sparql;
 
 namespace {
 
@@ -58,8 +62,7 @@ EngineAnswer answerOf(const json& entry) {
 
 std::optional<std::filesystem::path> secondEngineFolder() {
   if (std::system("node --version >/dev/null 2>&1") != 0) return std::nullopt;
-  std::vector<std::filesystem::path> places{std::filesystem::path(CLUXEL_SOURCE_DIR) / "build/npm",
-                                            std::filesystem::path(CLUXEL_BINARY_DIR) / "npm"};
+  std::vector<std::filesystem::path> places{test::sourceFolder() / "build/npm", test::buildFolder() / "npm"};
   if (const char* told = std::getenv("CLUXEL_OXIGRAPH")) places.insert(places.begin(), told);
   for (const std::filesystem::path& place : places)
     if (std::filesystem::exists(place / "node_modules/oxigraph")) return place;
@@ -73,7 +76,7 @@ std::vector<EngineAnswer> askSecondEngine(const std::filesystem::path& folder, c
   for (const Quad& quad : data) quads += toNQuads(quad);
   writeFile(scratch.file("data.nq"), quads);
   writeFile(scratch.file("requests.json"), requestsAsJson(requests));
-  const std::string script = std::string(CLUXEL_SOURCE_DIR) + "/tests/sparql/oxigraph_answers.mjs";
+  const std::string script = (test::sourceFolder() / "tests/sparql/oxigraph_answers.mjs").string();
   const std::string command = "node '" + script + "' '" + folder.string() + "' '" + scratch.file("data.nq").string() +
                               "' '" + scratch.file("requests.json").string() + "' '" +
                               scratch.file("answers.json").string() + "'";

@@ -7,9 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "cluxel/sparql/result_table.hpp"
+#include "sparql/results/result_table.hpp"
 
 namespace cluxel::test {
+
+using namespace rdf;
+using namespace sparql;
 
 struct EngineRequest {
   std::string query;

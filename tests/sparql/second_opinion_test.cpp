@@ -6,12 +6,15 @@
 #include <filesystem>
 #include <regex>
 
-#include "cluxel/base/file_bytes.hpp"
-#include "cluxel/knowledge/vocabulary.hpp"
+#include "base/file_bytes.hpp"
+#include "rdf/vocabulary.hpp"
 #include "sparql/differential_fixture.hpp"
 #include "sparql/generated_map_fixture.hpp"
+#include "test_paths.hpp"
 
-namespace cluxel {
+namespace cluxel::sparql {
+
+using namespace rdf;
 namespace {
 
 namespace fs = std::filesystem;
@@ -114,7 +117,7 @@ std::string filledIn(std::string text, const std::vector<Binding>& bindings) {
 
 TEST_P(SecondOpinion, ShippedQuestionsHaveTheSameAnswers) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(fs::path(CLUXEL_SOURCE_DIR) / "queries"))
+  for (const auto& entry : fs::directory_iterator(test::sourceFolder() / "queries"))
     if (entry.path().extension() == ".rq") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   ASSERT_GE(files.size(), 11U);
@@ -139,4 +142,4 @@ TEST_P(SecondOpinion, ShippedQuestionsHaveTheSameAnswers) {
 INSTANTIATE_TEST_SUITE_P(Seeds, SecondOpinion, testing::Values(1U, 2U, 3U));
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::sparql

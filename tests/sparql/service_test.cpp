@@ -5,10 +5,13 @@
 
 #include <utility>
 
-#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/error.hpp"
 #include "sparql/store_fixture.hpp"
 
 namespace cluxel::test {
+
+using namespace rdf;
+using namespace sparql;
 namespace {
 
 using testing::ElementsAre;

@@ -5,10 +5,13 @@
 
 #include <random>
 
-#include "cluxel/sparql/update_engine.hpp"
 #include "sparql/store_fixture.hpp"
+#include "sparql/update_engine.hpp"
 
 namespace cluxel::test {
+
+using namespace rdf;
+using namespace sparql;
 namespace {
 
 using testing::HasSubstr;

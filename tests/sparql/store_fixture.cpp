@@ -4,9 +4,12 @@
 
 #include <algorithm>
 
-#include "cluxel/knowledge/rdf_io.hpp"
+#include "rdf/io/rdf_io.hpp"
 
 namespace cluxel::test {
+
+using namespace rdf;
+using namespace sparql;
 
 const std::string kPrefixes =
     "PREFIX : <http://example.org/> PREFIX clx: <https://w3id.org/cluxel/ontology#> "

@@ -7,11 +7,14 @@
 #include <string_view>
 #include <vector>
 
-#include "cluxel/knowledge/environment.hpp"
-#include "cluxel/knowledge/quad_store.hpp"
-#include "cluxel/sparql/query_engine.hpp"
+#include "rdf/store/environment.hpp"
+#include "rdf/store/quad_store.hpp"
+#include "sparql/query_engine.hpp"
 
 namespace cluxel::test {
+
+using namespace rdf;
+using namespace sparql;
 
 /// Turtle with the prefixes : (http://example.org/), clx:, xsd:, rdf:, rdfs:, geo: loaded into the unnamed graph.
 class SmallStore {

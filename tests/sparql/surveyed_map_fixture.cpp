@@ -2,10 +2,12 @@
 // A made-up map in the vocabulary of built maps, for the shipped questions. Literals are in canonical form.
 #include <random>
 
-#include "cluxel/knowledge/vocabulary.hpp"
+#include "rdf/vocabulary.hpp"
 #include "sparql/generated_map_fixture.hpp"
 
 namespace cluxel::test {
+
+using namespace rdf;
 
 namespace {
 

@@ -3,11 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/sparql/update_engine.hpp"
+#include "cluxel/error.hpp"
 #include "sparql/store_fixture.hpp"
+#include "sparql/update_engine.hpp"
 
 namespace cluxel::test {
+
+using namespace rdf;
+using namespace sparql;
 namespace {
 
 using testing::ElementsAre;

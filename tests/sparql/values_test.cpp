@@ -9,12 +9,14 @@
 #include <random>
 
 #include "sparql/arithmetic_fixture.hpp"
-#include "sparql/calendar.hpp"
-#include "sparql/decimal.hpp"
+#include "sparql/functions/calendar.hpp"
+#include "sparql/functions/decimal.hpp"
+#include "sparql/functions/value.hpp"
 #include "sparql/store_fixture.hpp"
-#include "sparql/value.hpp"
 
 namespace cluxel::sparql {
+
+using namespace rdf;
 namespace {
 
 using boost::multiprecision::cpp_rational;

@@ -4,17 +4,20 @@
 
 #include <map>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/base/file_bytes.hpp"
-#include "cluxel/knowledge/rdf_io.hpp"
-#include "cluxel/sparql/parser.hpp"
-#include "cluxel/sparql/query_engine.hpp"
-#include "cluxel/sparql/result_writer.hpp"
-#include "cluxel/sparql/results_reader.hpp"
-#include "cluxel/sparql/update_engine.hpp"
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "rdf/io/rdf_io.hpp"
+#include "sparql/query_engine.hpp"
 #include "sparql/result_comparison_fixture.hpp"
+#include "sparql/results/result_writer.hpp"
+#include "sparql/results_reader_fixture.hpp"
+#include "sparql/syntax/parser.hpp"
+#include "sparql/update_engine.hpp"
 
 namespace cluxel::test {
+
+using namespace rdf;
+using namespace sparql;
 
 namespace {
 

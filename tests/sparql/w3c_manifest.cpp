@@ -5,11 +5,13 @@
 #include <map>
 #include <set>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/knowledge/rdf_io.hpp"
-#include "cluxel/knowledge/vocabulary.hpp"
+#include "cluxel/error.hpp"
+#include "rdf/io/rdf_io.hpp"
+#include "rdf/vocabulary.hpp"
 
 namespace cluxel::test {
+
+using namespace rdf;
 
 namespace {
 
@@ -126,7 +128,7 @@ std::string W3cFolder::iriOf(const std::filesystem::path& file) const {
 }
 
 std::filesystem::path W3cFolder::fileOf(const std::string& iri) const {
-  if (!iri.starts_with(kRoot)) throw Error(ExitCode::FaultyInput, iri + " is no file of the suites");
+  if (!iri.starts_with(kRoot)) throw Error(ErrorKind::FaultyInput, iri + " is no file of the suites");
   return folder_ / iri.substr(kRoot.size());
 }
 

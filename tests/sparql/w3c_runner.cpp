@@ -6,15 +6,16 @@
 #include <iostream>
 #include <map>
 
-#include "cluxel/base/diagnostic.hpp"
+#include "cluxel/error.hpp"
 #include "sparql/w3c_case.hpp"
+#include "test_paths.hpp"
 
 namespace {
 
 using namespace cluxel::test;
 
 struct Options {
-  std::filesystem::path folder = std::filesystem::path(CLUXEL_SOURCE_DIR) / "../shared/w3c/sparql";
+  std::filesystem::path folder = cluxel::test::sourceFolder() / "../shared/w3c/sparql";
   std::string only;  ///< run the tests whose id contains it
 };
 
@@ -33,7 +34,7 @@ Options optionsOf(int argc, char** argv) {
 /// Lines "id  reason"; # begins a comment.
 std::map<std::string, std::string> knownFailures() {
   std::map<std::string, std::string> known;
-  std::ifstream file(std::filesystem::path(CLUXEL_SOURCE_DIR) / "tests/sparql/w3c_known.txt");
+  std::ifstream file(cluxel::test::sourceFolder() / "tests/sparql/w3c_known.txt");
   for (std::string line; std::getline(file, line);) {
     const std::size_t space = line.find(' ');
     if (line.empty() || line[0] == '#' || space == std::string::npos) continue;

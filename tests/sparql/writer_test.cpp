@@ -4,20 +4,21 @@
 
 #include <random>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/knowledge/vocabulary.hpp"
-#include "cluxel/sparql/result_writer.hpp"
-#include "cluxel/sparql/results_reader.hpp"
+#include "cluxel/error.hpp"
+#include "rdf/vocabulary.hpp"
 #include "sparql/result_comparison_fixture.hpp"
-#include "sparql/result_table_builder.hpp"
+#include "sparql/results/result_writer.hpp"
+#include "sparql/results_reader_fixture.hpp"
 
-namespace cluxel {
+namespace cluxel::sparql {
+
+using namespace rdf;
 namespace {
 
 QueryResult tableOf(std::vector<std::string> variables, const std::vector<test::Tuple>& rows) {
   QueryResult result;
   result.table.variables = std::move(variables);
-  ResultTableBuilder builder(result.table);
+  test::ResultTableBuilder builder(result.table);
   for (const test::Tuple& row : rows) {
     builder.beginRow();
     for (std::size_t column = 0; column < row.size(); ++column)
@@ -90,7 +91,7 @@ TEST(ResultWriter, WritesBooleans) {
   EXPECT_EQ(writtenResult(result, ResultFormat::Json), "{\"head\":{},\"boolean\":true}\n");
   EXPECT_EQ(writtenResult(result, ResultFormat::Csv), "true\r\n");
   EXPECT_EQ(writtenResult(result, ResultFormat::Table), "yes\n");
-  EXPECT_TRUE(readResults(writtenResult(result, ResultFormat::Xml), ResultFormat::Xml).boolean);
+  EXPECT_TRUE(test::readResults(writtenResult(result, ResultFormat::Xml), ResultFormat::Xml).boolean);
   EXPECT_THROW(writtenResult(result, ResultFormat::Turtle), Error);
 }
 
@@ -175,7 +176,7 @@ TEST(ResultWriter, WritesRandomAnswersThatReadBackTheSame) {
     const QueryResult result = randomTable(random);
     for (const ResultFormat format : {ResultFormat::Json, ResultFormat::Xml, ResultFormat::Tsv}) {
       if (format == ResultFormat::Xml && holdsControl(result)) continue;  // XML 1.0 cannot hold U+0001
-      const QueryResult again = readResults(writtenResult(result, format), format);
+      const QueryResult again = test::readResults(writtenResult(result, format), format);
       EXPECT_EQ(test::difference(again, result, test::RowOrder::AsWritten), "") << mediaTypeOf(format);
     }
   }
@@ -191,7 +192,7 @@ TEST(ResultsReader, RefusesDamagedAnswersWithoutCrashing) {
       text[random() % text.size()] = static_cast<char>(random() % 256);
     if (random() % 4 == 0) text.resize(random() % text.size());
     try {
-      readResults(text, format);
+      test::readResults(text, format);
     } catch (const InputError&) {
     }
   }
@@ -201,7 +202,7 @@ TEST(ResultsReader, RefusesVariablesBehindTheFirstResult) {
   const std::string text =
       "<sparql><head><variable name=\"x\"/></head><results><result/>"
       "<variable name=\"y\"/><variable name=\"z\"/><binding name=\"x\"><uri>u</uri></binding></results></sparql>";
-  EXPECT_THROW(readResults(text, ResultFormat::Xml), InputError);
+  EXPECT_THROW(test::readResults(text, ResultFormat::Xml), InputError);
 }
 
 TEST(ResultComparison, SeesThroughTheNamesOfBlankNodes) {
@@ -260,4 +261,4 @@ TEST(ResultComparison, ComparesNumbersByValueAndOtherLiteralsByText) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::sparql

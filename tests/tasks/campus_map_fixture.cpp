@@ -8,14 +8,24 @@
 #include <limits>
 #include <map>
 
-namespace cluxel {
+#include "test_paths.hpp"
+
+namespace cluxel::tasks {
+
+using namespace scan;
+using namespace perception;
+using namespace simulation;
+using namespace rdf;
+using namespace sparql;
+using namespace rules;
+using namespace mapping;
 
 namespace {
 
 std::filesystem::path builtMap(const SmallCampus& campus, const std::filesystem::path& file) {
   MapInputFiles files;
   files.model = "campus";
-  buildMap(scansOf(campus.files()), readMapInputs(files, DataHome({CLUXEL_SOURCE_DIR})), file, {.threads = 2},
+  buildMap(scansOf(campus.files()), readMapInputs(files, DataHome(test::sourceFolder())), file, {.threads = 2},
            silence());
   return file;
 }
@@ -64,8 +74,25 @@ std::vector<TruthObject> CampusMap::truthOf(const std::string& class_name, std::
   return found;
 }
 
+std::map<std::string, Eigen::AlignedBox3d> CampusMap::boxesInRdf() const {
+  const QueryResult rows = evaluateQuery(
+      map_.quads(),
+      "PREFIX clx: <https://w3id.org/cluxel/ontology#> SELECT ?o ?ax ?ay ?az ?bx ?by ?bz { ?o clx:confidence ?c ; "
+      "clx:minX ?ax ; clx:minY ?ay ; clx:minZ ?az ; clx:maxX ?bx ; clx:maxY ?by ; clx:maxZ ?bz }");
+  std::map<std::string, Eigen::AlignedBox3d> boxes;
+  for (std::size_t i = 0; i < rows.table.row_count; ++i) {
+    const auto corner = [&](const std::string& end) {
+      return Eigen::Vector3d(numberAt(rows.table, i, end + "x"), numberAt(rows.table, i, end + "y"),
+                             numberAt(rows.table, i, end + "z"));
+    };
+    const std::string iri = textAt(rows.table, i, "o");
+    boxes[iri.substr(iri.rfind('/') + 1)] = {corner("a"), corner("b")};
+  }
+  return boxes;
+}
+
 ResultTable CampusMap::answer(const std::string& name, const std::vector<std::string>& parameters) const {
-  const Question question = readQuestion(std::filesystem::path(CLUXEL_SOURCE_DIR) / "queries" / (name + ".rq"));
+  const Question question = readQuestion(test::sourceFolder() / "queries" / (name + ".rq"));
   const std::vector<Binding> bindings = bindingsFor(question, parameters);
   std::vector<std::string> names;
   for (const Binding& binding : bindings) names.push_back(binding.first);
@@ -86,4 +113,4 @@ std::string textAt(const ResultTable& table, std::size_t row, const std::string&
   return term == nullptr ? "" : term->text;
 }
 
-}  // namespace cluxel
+}  // namespace cluxel::tasks

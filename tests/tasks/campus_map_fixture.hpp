@@ -3,13 +3,22 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <map>
 #include <string>
 #include <vector>
 
-#include "cluxel/tasks/query_source.hpp"
 #include "mapping/small_campus.hpp"
+#include "tasks/query_source.hpp"
 
-namespace cluxel {
+namespace cluxel::tasks {
+
+using namespace scan;
+using namespace perception;
+using namespace simulation;
+using namespace rdf;
+using namespace sparql;
+using namespace rules;
+using namespace mapping;
 
 /// One object of the truth as the scans saw it.
 struct TruthObject {
@@ -29,6 +38,8 @@ class CampusMap {
   const std::filesystem::path& file() const { return file_; }
   const std::vector<TruthObject>& truth() const { return truth_; }
   std::vector<TruthObject> truthOf(const std::string& class_name, std::size_t least_points) const;
+  /// The boxes that the RDF says the objects have [m, map], by hash: another way from the points to a file.
+  std::map<std::string, Eigen::AlignedBox3d> boxesInRdf() const;
   /// The answer of queries/NAME.rq, with parameters as NAME=VALUE.
   ResultTable answer(const std::string& name, const std::vector<std::string>& parameters = {}) const;
 
@@ -45,4 +56,4 @@ double numberAt(const ResultTable& table, std::size_t row, const std::string& co
 /// A cell's text; empty when it is unbound.
 std::string textAt(const ResultTable& table, std::size_t row, const std::string& column);
 
-}  // namespace cluxel
+}  // namespace cluxel::tasks

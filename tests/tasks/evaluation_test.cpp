@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scores against values that were counted by hand.
-#include "cluxel/tasks/evaluation.hpp"
+// Scores compared with values counted by hand.
+#include "tasks/evaluation.hpp"
 
 #include <gtest/gtest.h>
 
-#include "cluxel/knowledge/vocabulary.hpp"
+#include "rdf/vocabulary.hpp"
 #include "tasks/object_matching.hpp"
 #include "tasks/truth_class.hpp"
 
-namespace cluxel {
+namespace cluxel::tasks {
+
+using namespace scan;
+using namespace perception;
+using namespace rdf;
+using namespace rules;
+using namespace mapping;
 namespace {
 
 TEST(ConfusionMatrix, GivesTheFiguresThatAHandCounts) {
@@ -140,4 +146,4 @@ TEST_F(ObjectMatchingByHand, BoxesMatchFromEightTenthsOn) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::tasks

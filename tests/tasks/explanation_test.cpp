@@ -1,22 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// Explanations of a map's own objects: every one can be told, and an `ask:` is answered as the build answered it.
-#include "cluxel/tasks/explanation.hpp"
+// Explanations of a map's own objects: each has one, and an `ask:` is answered as the build answered it.
+#include "tasks/explanation.hpp"
 
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/reasoning/reason.hpp"
+#include "cluxel/error.hpp"
 #include "mapping/asking_rules.hpp"
+#include "rdf/map_iris.hpp"
+#include "rules/decide/reason.hpp"
 #include "tasks/campus_map_fixture.hpp"
+#include "test_paths.hpp"
 
-namespace cluxel {
+namespace cluxel::tasks {
+
+using namespace scan;
+using namespace perception;
+using namespace simulation;
+using namespace rdf;
+using namespace sparql;
+using namespace rules;
+using namespace mapping;
 namespace {
 
 using ::testing::HasSubstr;
 
-TEST(Explanation, TellsOfObjectsByTheirRuleAndClass) {
+TEST(Explanation, NamesRuleAndClassOfObjects) {
   const MapReader& map = CampusMap::shared().map();
   std::map<std::string, int> told;
   for (const SemanticObject& object : map.objects()) {
@@ -31,10 +41,31 @@ TEST(Explanation, TellsOfObjectsByTheirRuleAndClass) {
   EXPECT_GE(told.size(), 5U);
 }
 
+TEST(Explanation, TakesTheNumberOfAnObjectAndSaysIt) {
+  const MapReader& map = CampusMap::shared().map();
+  const std::string by_hash = explainThing(map, map.objects().at(1).id.hex(), false);
+  EXPECT_EQ(explainThing(map, "1", false), by_hash);
+  EXPECT_EQ(explainThing(map, "#1", false), by_hash);
+  EXPECT_TRUE(by_hash.starts_with("object #1\n")) << by_hash;
+  EXPECT_EQ(nlohmann::json::parse(explainThing(map, "#1", true)).at("number"), 1);
+  EXPECT_THROW(explainThing(map, "#" + std::to_string(map.objects().size()), false), Error);
+  EXPECT_THROW(explainThing(map, "#one", false), Error);
+}
+
+TEST(Explanation, NamesRuleFilesWithoutTheFoldersOfTheMachine) {
+  const MapReader& map = CampusMap::shared().map();
+  for (const char* name : {"0", "1", "2"}) {
+    const std::string text = explainThing(map, name, false);
+    EXPECT_THAT(text, HasSubstr("[outdoor.rules.yaml:"));
+    EXPECT_THAT(text, ::testing::Not(HasSubstr(test::sourceFolder().string())));
+  }
+}
+
 TEST(Explanation, TakesAPrimitiveByItsIri) {
   const MapReader& map = CampusMap::shared().map();
   const Primitive& primitive = map.scene().primitives.front();
-  EXPECT_THAT(explainThing(map, iriOf(primitive), false), HasSubstr("primitive " + primitive.id.hex()));
+  EXPECT_THAT(explainThing(map, rdf::iriOfPrimitive(primitive.id), false),
+              HasSubstr("primitive " + primitive.id.hex()));
 }
 
 TEST(Explanation, TakesNamesAsAnswersToQueriesWriteThem) {
@@ -56,7 +87,7 @@ TEST(Explanation, AnswersAnAskAsTheBuildDid) {
   const ScratchFolder folder;
   const auto file = buildAskingMap(folder.path());
   const MapReader map(file);
-  // The small object came after the bench; a question to the finished map would find it and turn the bench down.
+  // The small object was made after the bench: asked of the finished map, the rule would find it and reject the bench.
   ASSERT_EQ(map.summary().objects_by_class.count("Bench"), 1U);
   ASSERT_EQ(map.summary().objects_by_class.count("SmallObject"), 1U);
   for (const SemanticObject& object : map.objects()) {
@@ -66,4 +97,4 @@ TEST(Explanation, AnswersAnAskAsTheBuildDid) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::tasks

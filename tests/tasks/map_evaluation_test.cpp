@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A whole evaluation of a generated map: against a plain count over the points, and against answers that are the truth.
+// Evaluation of a generated map, compared with a plain count over the points, and of answers equal to the truth.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,11 +7,20 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "cluxel/base/file_bytes.hpp"
-#include "cluxel/tasks/evaluation.hpp"
+#include "base/file_bytes.hpp"
 #include "tasks/campus_map_fixture.hpp"
+#include "tasks/evaluation.hpp"
+#include "test_paths.hpp"
 
-namespace cluxel {
+namespace cluxel::tasks {
+
+using namespace scan;
+using namespace perception;
+using namespace simulation;
+using namespace rdf;
+using namespace sparql;
+using namespace rules;
+using namespace mapping;
 namespace {
 
 /// A truth folder as `--truth` takes it, out of the campus's own truth.
@@ -27,7 +36,7 @@ class TruthFolder {
             << truth.instance[p] << '\n';
     }
   }
-  TruthSource source() const { return TruthSource::open(folder_.path(), DataHome({CLUXEL_SOURCE_DIR})); }
+  TruthSource source() const { return TruthSource::open(folder_.path(), DataHome(test::sourceFolder())); }
 
  private:
   ScratchFolder folder_;
@@ -99,7 +108,7 @@ TEST(MapEvaluation, CountsClassesThatOnlyALabelMapNames) {
   for (const Cloud& cloud : map.clouds())
     for (const std::uint32_t label : map.pointsOf(cloud.id).label) lawn += label == 1, street += label == 3;
   ASSERT_GT(street, 0U);
-  const MapEvaluation made = evaluateMap(map, TruthSource::open(labels, DataHome({CLUXEL_SOURCE_DIR})));
+  const MapEvaluation made = evaluateMap(map, TruthSource::open(labels, DataHome(test::sourceFolder())));
   const auto track = static_cast<std::size_t>(
       std::find(made.objects.names.begin(), made.objects.names.end(), "Racetrack") - made.objects.names.begin());
   ASSERT_LT(track, made.objects.names.size());
@@ -122,7 +131,7 @@ TEST(MapEvaluation, RefusesOneTruthFileForTwoScans) {
   for (int i = 0; i < 50; ++i) lines += "0 0 -1\n";
   written(folder, "truth/scan.truth", lines);
   const auto file = folder.path() / "m.clx";
-  const DataHome home({CLUXEL_SOURCE_DIR});
+  const DataHome home(test::sourceFolder());
   buildMap(scansOf({folder.path() / "a/scan.xyz", folder.path() / "b/scan.xyz"}), readMapInputs({}, home), file, {},
            silence());
   const auto evaluated = [&] { return evaluateMap(MapReader(file), TruthSource::open(folder.path() / "truth", home)); };
@@ -156,4 +165,4 @@ TEST(MapEvaluation, ShowsADashWhereThereIsNoTruthAndNullInJson) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::tasks

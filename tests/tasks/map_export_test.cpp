@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every export is read back by a parser and compared with the map.
-#include "cluxel/tasks/map_export.hpp"
+#include "tasks/map_export.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,20 @@
 #include <set>
 #include <sstream>
 
-#include "cluxel/base/file_bytes.hpp"
-#include "cluxel/knowledge/ontology.hpp"
-#include "cluxel/scan/scan_set.hpp"
+#include "base/file_bytes.hpp"
+#include "rdf/ontology/ontology.hpp"
+#include "scan/scan_set.hpp"
 #include "tasks/campus_map_fixture.hpp"
 
-namespace cluxel {
+namespace cluxel::tasks {
+
+using namespace scan;
+using namespace perception;
+using namespace simulation;
+using namespace rdf;
+using namespace sparql;
+using namespace rules;
+using namespace mapping;
 namespace {
 
 using Json = nlohmann::json;
@@ -103,8 +111,8 @@ TEST(Export, TurtleReadBackIsTheUnionOfAllGraphsButHistory) {
 /// A vertex of the exported cloud.
 struct Vertex {
   double x, y, z;
-  std::uint8_t red, green, blue, primitive;
-  std::int32_t object;
+  std::uint8_t red, green, blue;
+  float primitive, object;
 };
 
 /// Reads binary little-endian PLY by its header's own list of properties.
@@ -130,7 +138,7 @@ std::vector<Vertex> parsedPly(const std::string& bytes) {
     std::memcpy(&value, bytes.data() + at, sizeof value);
     at += sizeof value;
   };
-  const std::map<std::string, std::size_t> sizes{{"double", 8}, {"uchar", 1}, {"int", 4}};
+  const std::map<std::string, std::size_t> sizes{{"double", 8}, {"uchar", 1}, {"float", 4}};
   std::size_t stride = 0;
   for (const auto& [type, name] : properties) stride += sizes.at(type);
   EXPECT_EQ(bytes.size(), body + count * stride);
@@ -143,8 +151,8 @@ std::vector<Vertex> parsedPly(const std::string& bytes) {
       if (name == "red") take(v.red);
       if (name == "green") take(v.green);
       if (name == "blue") take(v.blue);
-      if (name == "primitive") take(v.primitive);
-      if (name == "object") take(v.object);
+      if (name == "scalar_primitive") take(v.primitive);
+      if (name == "scalar_object") take(v.object);
     }
   return vertices;
 }
@@ -168,8 +176,8 @@ TEST(Export, PlyHoldsEveryPointWhereItLiesWithTheColourOfItsClass) {
       const Vertex& v = vertices[next];
       const Eigen::Vector3d p_map = cloud.T_map_sensor * Eigen::Vector3d(points.x[i], points.y[i], points.z[i]);
       ASSERT_NEAR((Eigen::Vector3d(v.x, v.y, v.z) - p_map).norm(), 0, 1e-9);
-      ASSERT_EQ(v.primitive, answers.label[i]);
-      ASSERT_EQ(v.object, answers.object[i] == kNoObjectOfPoint ? -1 : static_cast<std::int32_t>(answers.object[i]));
+      ASSERT_EQ(v.primitive, static_cast<float>(answers.label[i]));
+      ASSERT_EQ(v.object, answers.object[i] == kNoObjectOfPoint ? -1.0F : static_cast<float>(answers.object[i]));
       const std::string expected =
           v.object < 0 ? "#808080" : ontology.find(map.objects().at(answers.object[i]).class_iri)->color;
       ASSERT_EQ(hexColour(v), expected);
@@ -180,28 +188,10 @@ TEST(Export, PlyHoldsEveryPointWhereItLiesWithTheColourOfItsClass) {
   EXPECT_GT(coloured, vertices.size() / 4);
 }
 
-/// The boxes that the RDF says the objects have: another way from the points to the file.
-std::map<std::string, Eigen::AlignedBox3d> boxesInRdf() {
-  const QueryResult rows = evaluateQuery(
-      CampusMap::shared().map().quads(),
-      "PREFIX clx: <https://w3id.org/cluxel/ontology#> SELECT ?o ?ax ?ay ?az ?bx ?by ?bz { ?o clx:confidence ?c ; "
-      "clx:minX ?ax ; clx:minY ?ay ; clx:minZ ?az ; clx:maxX ?bx ; clx:maxY ?by ; clx:maxZ ?bz }");
-  std::map<std::string, Eigen::AlignedBox3d> boxes;
-  for (std::size_t i = 0; i < rows.table.row_count; ++i) {
-    const auto corner = [&](const std::string& end) {
-      return Eigen::Vector3d(numberAt(rows.table, i, end + "x"), numberAt(rows.table, i, end + "y"),
-                             numberAt(rows.table, i, end + "z"));
-    };
-    const std::string iri = textAt(rows.table, i, "o");
-    boxes[iri.substr(iri.rfind('/') + 1)] = {corner("a"), corner("b")};
-  }
-  return boxes;
-}
-
 TEST(Export, PlyPutsTheObjectsWhereTheRdfSaysTheyAre) {
   constexpr double kTolerance_m = 0.25;  // a point may lie a cluxel's radius beside what was measured after thinning
   const auto& objects = CampusMap::shared().map().objects();
-  const auto boxes = boxesInRdf();
+  const auto boxes = CampusMap::shared().boxesInRdf();
   ASSERT_EQ(boxes.size(), objects.size());
   std::vector<Eigen::AlignedBox3d> seen(objects.size());
   for (const Vertex& v : parsedPly(exported(ExportFormat::Ply)))
@@ -221,41 +211,6 @@ TEST(Export, PlyIsReadBackByThePlyReaderOfScans) {
   EXPECT_EQ(scan.points.size(), CampusMap::shared().map().summary().points);
 }
 
-double areaOf(const Json& ring) {
-  double twice = 0;
-  for (std::size_t i = 0; i + 1 < ring.size(); ++i)
-    twice += ring[i][0].get<double>() * ring[i + 1][1].get<double>() -
-             ring[i + 1][0].get<double>() * ring[i][1].get<double>();
-  return twice / 2;
-}
-
-TEST(Export, GeoJsonHasOneFootprintAnObjectInItsPlace) {
-  constexpr double kTolerance_m = 0.25;
-  const auto& objects = CampusMap::shared().map().objects();
-  const auto boxes = boxesInRdf();
-  const Json collection = Json::parse(exported(ExportFormat::GeoJson));
-  EXPECT_EQ(collection.at("type"), "FeatureCollection");
-  const Json& features = collection.at("features");
-  ASSERT_EQ(features.size(), objects.size());
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    EXPECT_EQ(features[i].at("type"), "Feature");
-    EXPECT_EQ(features[i].at("id"), objects[i].id.hex());
-    EXPECT_EQ(features[i].at("properties").at("class"), localName(objects[i].class_iri));
-    EXPECT_NEAR(features[i].at("properties").at("confidence").get<double>(), objects[i].confidence, 0.001);
-    EXPECT_EQ(features[i].at("geometry").at("type"), "Polygon");
-    ASSERT_EQ(features[i].at("geometry").at("coordinates").size(), 1U);
-    const Json& ring = features[i].at("geometry").at("coordinates")[0];
-    ASSERT_GE(ring.size(), 4U) << "RFC 7946: a ring has four positions or more";
-    EXPECT_EQ(ring.front(), ring.back()) << "RFC 7946: a ring is closed";
-    EXPECT_GT(areaOf(ring), 0) << "RFC 7946: an outer ring runs counter-clockwise";
-    Eigen::AlignedBox2d footprint;
-    for (const Json& p : ring) footprint.extend(Eigen::Vector2d(p[0].get<double>(), p[1].get<double>()));
-    const Eigen::AlignedBox3d& said = boxes.at(objects[i].id.hex());
-    EXPECT_LT((footprint.min() - said.min().head<2>()).cwiseAbs().maxCoeff(), kTolerance_m);
-    EXPECT_LT((footprint.max() - said.max().head<2>()).cwiseAbs().maxCoeff(), kTolerance_m);
-  }
-}
-
 TEST(Export, FormatsAreKnownByNameAndByEnding) {
   EXPECT_EQ(exportFormatOf("ttl"), ExportFormat::Turtle);
   EXPECT_EQ(exportFormatOf("nq"), ExportFormat::NQuads);
@@ -266,4 +221,4 @@ TEST(Export, FormatsAreKnownByNameAndByEnding) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::tasks

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Headers of questions, their parameters, and what can be asked.
-#include "cluxel/tasks/query_source.hpp"
+// Headers of questions, their parameters, and the sources of queries.
+#include "tasks/query_source.hpp"
 
 #include <gtest/gtest.h>
 
-#include "cluxel/base/diagnostic.hpp"
-#include "cluxel/base/file_bytes.hpp"
-#include "knowledge/scratch_folder.hpp"
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "rdf/scratch_folder.hpp"
+#include "test_paths.hpp"
 
-namespace cluxel {
+namespace cluxel::tasks {
+
+using namespace rdf;
+using namespace sparql;
 namespace {
 
 class Questions : public testing::Test {
@@ -95,7 +99,7 @@ TEST_F(Questions, ANumberIsWantedWhereTheDefaultIsOne) {
       bindingsFor(question, {text});
       FAIL() << text;
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::Usage);
+      EXPECT_EQ(error.kind(), ErrorKind::InvalidArgument);
       EXPECT_NE(std::string(error.what()).find("a number is wanted [m]"), std::string::npos) << error.what();
     }
   }
@@ -108,7 +112,7 @@ TEST_F(Questions, AnUnknownParameterIsAnErrorOfUsage) {
       bindingsFor(question, {text});
       FAIL() << text;
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::Usage);
+      EXPECT_EQ(error.kind(), ErrorKind::InvalidArgument);
       EXPECT_NE(std::string(error.what()).find(text), std::string::npos);
     }
   }
@@ -125,7 +129,7 @@ TEST_F(Questions, ATurtleFileIsAskedLikeAMap) {
 }
 
 TEST(ShippedQuestions, HaveATitleAndExactlyTheColumnsThatTheySelect) {
-  const auto questions = shippedQuestions(DataHome({CLUXEL_SOURCE_DIR}));
+  const auto questions = shippedQuestions(DataHome(test::sourceFolder()));
   ASSERT_GE(questions.size(), 5U);
   const auto environment = Environment::temporary();
   const QuadReader reader(environment->read());
@@ -145,4 +149,4 @@ TEST(ShippedQuestions, HaveATitleAndExactlyTheColumnsThatTheySelect) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::tasks

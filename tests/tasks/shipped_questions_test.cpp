@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shipped questions, answered on a generated map: columns as their headers say, answers as the truth and as plain
-// loops over the map have it.
+// The shipped questions on a generated map: columns agree with the headers, answers with the truth and with plain loops
+// over the map.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,8 +8,17 @@
 #include <set>
 
 #include "tasks/campus_map_fixture.hpp"
+#include "test_paths.hpp"
 
-namespace cluxel {
+namespace cluxel::tasks {
+
+using namespace scan;
+using namespace perception;
+using namespace simulation;
+using namespace rdf;
+using namespace sparql;
+using namespace rules;
+using namespace mapping;
 namespace {
 
 const CampusMap& campus() {
@@ -56,7 +65,7 @@ void expectWithin(const ResultTable& rows, const std::string& column, double lea
 
 TEST(QuestionsOfACampus, EveryColumnHoldsWhatItsUnitSays) {
   const std::set<std::string> optional{"headHeight", "trunkWidth"};
-  for (const Question& question : shippedQuestions(DataHome({CLUXEL_SOURCE_DIR}))) {
+  for (const Question& question : shippedQuestions(DataHome(test::sourceFolder()))) {
     const ResultTable rows = campus().answer(question.file.stem());
     EXPECT_GT(rows.row_count, 0U) << question.file << " has no answer on a campus";
     for (std::size_t i = 0; i < rows.row_count; ++i)
@@ -259,4 +268,4 @@ TEST(QuestionsOfACampus, UncertainObjectsAreAllThoseBelowTheBar) {
 }
 
 }  // namespace
-}  // namespace cluxel
+}  // namespace cluxel::tasks

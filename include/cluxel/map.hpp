@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// A semantic map: built from scans, opened, queried, updated and explained.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cluxel/answer.hpp"
+#include "cluxel/export.hpp"
+#include "cluxel/object.hpp"
+#include "cluxel/point_cloud.hpp"
+#include "cluxel/progress.hpp"
+#include "cluxel/term.hpp"
+
+namespace cluxel {
+
+/// How to build a map. Paths may also be names in the data home: model "oakland" is models/oakland.
+struct BuildOptions {
+  std::filesystem::path poses;  ///< poses of the scans: KITTI 3x4, TUM or 4x4 text; empty: beside the scans
+  std::filesystem::path model;  ///< a trained model; empty: models/oakland
+  std::vector<std::filesystem::path> rules;         ///< YAML; empty: rules/outdoor.rules.yaml
+  std::vector<std::filesystem::path> sparql_rules;  ///< CONSTRUCT rules; empty: rules/*.rq
+  std::vector<std::filesystem::path> ontology;      ///< Turtle; empty: ontology/*.ttl
+  /// The folder with ontology, rules, queries, models and labels. Empty: the variable CLUXEL_HOME, else share/cluxel of
+  /// the installation of this library, else the checkout it was built in.
+  std::filesystem::path home;
+  unsigned threads = 0;                     ///< 0: one a processor; the map does not depend on it
+  std::uint64_t batch_points = 20'000'000;  ///< scans are committed in batches of about this many points; at least 1
+  bool force = false;                       ///< replace a finished map; the operator's statements are kept
+  bool drop_statements = false;             ///< with `force`: drop the operator's statements too
+  bool refine_poses = false;                ///< register the scans with each other first
+};
+
+/// Limits and parameters of a query; 0 means no limit.
+struct QueryOptions {
+  std::chrono::milliseconds deadline{0};              ///< for the run of the query
+  std::uint64_t max_rows = 0;                         ///< of the answer
+  std::uint64_t max_memory_bytes = 4ULL << 30U;       ///< held by joins, sorts, groups and the answer
+  std::map<std::string, Term, std::less<>> bindings;  ///< values of variables, named without "?"
+  std::string source_name = "query";                  ///< names the query in errors and warnings
+  /// The default graph is the union of all graphs but history; true: the unnamed graph only.
+  bool strict_default_graph = false;
+};
+
+/// Quads that an update asked to add and to remove.
+struct UpdateCounts {
+  std::uint64_t inserted = 0, deleted = 0;
+};
+
+/// Why an object or a primitive is what it is.
+struct Explanation {
+  std::string text;  ///< English prose with line ends
+  std::string json;  ///< the same as a JSON object; numbers in the units that stand beside them
+};
+
+/// What a map holds.
+struct MapSummary {
+  bool is_finished = false;  ///< false: its build was interrupted
+  std::string inputs_hash;   ///< of ontology, rules, model and parameters
+  std::size_t clouds = 0, objects = 0;
+  std::uint64_t points = 0, quads = 0;
+  std::map<std::string, std::size_t> objects_by_class;  ///< by local name of the class: "Tree"
+};
+
+/// An open map file.
+///
+/// Thread-safe: any number of threads may call the const functions at once. query() and objects() run in parallel;
+/// points() and explain() wait for each other. Each call reads one consistent state, the newest at its begin, also when
+/// another process writes. points() and explain() keep what they read until the map changes: about 1 KB a cluxel.
+///
+/// All functions throw Error. StoreUnavailable: the file is not a map, or cannot be read or written; FaultyInput (as
+/// InputError with file, line and column): scans, rules, ontology, model, query or update; NotFound: no such name;
+/// InvalidArgument: options that contradict each other; BudgetExceeded: a limit of QueryOptions.
+class CLUXEL_API Map {
+ public:
+  /// Builds `file` from scan files, folders and manifests, and opens it. An unfinished build of the same inputs goes
+  /// on; a finished map is replaced only with `options.force`, and stays as it is when the build fails. Cost: some
+  /// seconds per million points, and about 1 KB of memory a point of a batch.
+  static Map build(const std::vector<std::filesystem::path>& scans, const std::filesystem::path& file,
+                   const BuildOptions& options = {});
+  /// The same; progress and notes go to `sink`.
+  static Map build(const std::vector<std::filesystem::path>& scans, const std::filesystem::path& file,
+                   const BuildOptions& options, ProgressSink& sink);
+  /// Opens a map file. Cost: independent of its size.
+  static Map open(const std::filesystem::path& file);
+
+  Map(Map&&) noexcept;
+  Map& operator=(Map&&) noexcept;
+  ~Map();
+
+  const std::filesystem::path& file() const;
+  MapSummary summary() const;
+
+  /// Runs a SPARQL 1.1 query. The answer is whole or an error; nothing is read from a network.
+  Answer query(std::string_view text, const QueryOptions& options = {}) const;
+  /// Runs a SPARQL 1.1 Update on the operator's statements (graph …/graph/operator) and infers what follows, all of it
+  /// or nothing. LOAD is refused. Other readers see the state before until it is committed.
+  UpdateCounts update(std::string_view text);
+
+  /// Explains an object or a primitive named by its IRI, by "object/…" or "primitive/…", or by at least four leading
+  /// digits of its hash. Applies the map's rules again: cost in the size of the map.
+  Explanation explain(const std::string& name) const;
+
+  /// All objects that the rules found, sorted by IRI. What SPARQL rules derive is answered by query() only.
+  std::vector<Object> objects() const;
+  /// Those of a class or its subclasses, named "Tree", "clx:Tree" or by IRI. Numbers are those of objects(). NotFound
+  /// when the ontology has no such class.
+  std::vector<Object> objects(std::string_view class_name) const;
+
+  /// The scans, sorted by id.
+  std::vector<Cloud> clouds() const;
+  /// All points of a scan, in the order in which they were measured.
+  PointCloud points(const Cloud& cloud) const;
+  /// The points of an object in all scans, scan by scan. Cost: in the scans whose bounds meet the object's.
+  PointCloud points(const Object& object) const;
+
+ private:
+  struct Impl;
+  explicit Map(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace cluxel

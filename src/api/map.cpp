@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// The facade over mapping, SPARQL and tasks: opens the newest state for each call and hands values out.
+#include "cluxel/map.hpp"
+
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "api/answer_data.hpp"
+#include "api/object_query.hpp"
+#include "api/point_query.hpp"
+#include "base/data_home.hpp"
+#include "cluxel/cluxel.hpp"
+#include "mapping/build/map_builder.hpp"
+#include "mapping/build/map_update.hpp"
+#include "mapping/map_reader.hpp"
+#include "sparql/query_engine.hpp"
+#include "tasks/explanation.hpp"
+
+namespace cluxel {
+
+std::string_view version() {
+  return CLUXEL_VERSION;
+}
+
+struct Map::Impl {
+  explicit Impl(std::filesystem::path map_file) : file(std::move(map_file)) {}
+
+  /// The newest state. What was read before serves again as long as nobody has committed. `mutex` is held.
+  const mapping::MapReader& newest() {
+    environment = rdf::Environment::open(file, rdf::OpenMode::ReadOnly);
+    const rdf::QuadReader present(environment->read());
+    if (reader && present.kept(kStateName) == state) return *reader;
+    reader.reset();
+    reader.emplace(file);
+    state = reader->quads().kept(kStateName);
+    if (!state) reader->quads().keep(kStateName, state = std::make_shared<int>());
+    return *reader;
+  }
+
+  rdf::QuadReader newestQuads() const {
+    return rdf::QuadReader(rdf::Environment::open(file, rdf::OpenMode::ReadOnly)->read());
+  }
+
+  static constexpr const char* kStateName = "api state";
+
+  std::filesystem::path file;
+  std::mutex mutex;
+  std::shared_ptr<rdf::Environment> environment;  ///< kept open, so that each call finds it open
+  std::optional<mapping::MapReader> reader;
+  std::shared_ptr<const void> state;  ///< names the commit that `reader` reads
+};
+
+Map::Map(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Map::Map(Map&&) noexcept = default;
+Map& Map::operator=(Map&&) noexcept = default;
+Map::~Map() = default;
+
+Map Map::build(const std::vector<std::filesystem::path>& scans, const std::filesystem::path& file,
+               const BuildOptions& options) {
+  ProgressSink silence;
+  return build(scans, file, options, silence);
+}
+
+Map Map::build(const std::vector<std::filesystem::path>& scans, const std::filesystem::path& file,
+               const BuildOptions& options, ProgressSink& sink) {
+  if (options.batch_points == 0) throw Error(ErrorKind::InvalidArgument, "batch_points: write a number above 0, not 0");
+  if (options.drop_statements && !options.force)
+    throw Error(ErrorKind::InvalidArgument, "drop_statements goes with force only");
+  const scan::ScanSet set = scan::ScanSet::open(scans, {options.poses}, sink);
+  const mapping::MapInputs inputs = mapping::readMapInputs({.ontology = options.ontology,
+                                                            .rules = options.rules,
+                                                            .sparql_rules = options.sparql_rules,
+                                                            .model = options.model},
+                                                           DataHome::find(options.home));
+  mapping::BuildParams params;
+  params.threads = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+  params.batch_points = options.batch_points;
+  params.force = options.force;
+  params.refine_poses = options.refine_poses;
+  params.drop_statements = options.drop_statements;
+  mapping::buildMap(set, inputs, file, params, sink);
+  return open(file);
+}
+
+Map Map::open(const std::filesystem::path& file) {
+  auto impl = std::make_unique<Impl>(std::filesystem::absolute(file));
+  impl->newest();
+  return Map(std::move(impl));
+}
+
+const std::filesystem::path& Map::file() const {
+  return impl_->file;
+}
+
+MapSummary Map::summary() const {
+  const std::lock_guard lock(impl_->mutex);
+  const mapping::MapSummary stored = impl_->newest().summary();
+  MapSummary summary;
+  summary.is_finished = stored.is_finished;
+  summary.inputs_hash = stored.inputs_hash;
+  summary.clouds = stored.clouds;
+  summary.objects = stored.objects;
+  summary.points = stored.points;
+  summary.quads = stored.quads;
+  summary.objects_by_class = stored.objects_by_class;
+  return summary;
+}
+
+Answer Map::query(std::string_view text, const QueryOptions& options) const {
+  const rdf::QuadReader reader = impl_->newestQuads();
+  sparql::QueryOptions engine;
+  if (options.strict_default_graph) engine.default_graph = sparql::DefaultGraph::Unnamed;
+  engine.source_name = options.source_name;
+  if (options.deadline.count() > 0) engine.budget.deadline = options.deadline;
+  engine.budget.max_rows = options.max_rows;
+  engine.budget.max_memory_bytes = options.max_memory_bytes;
+  const std::vector<sparql::Binding> bindings(options.bindings.begin(), options.bindings.end());
+  std::vector<std::string> names;
+  for (const sparql::Binding& binding : bindings) names.push_back(binding.first);
+  auto data = std::make_shared<Answer::Data>();
+  data->result = sparql::PreparedQuery(reader, text, engine, names).evaluate(bindings);
+  data->warnings = checkQuery(reader, text, engine);
+  return Answer(std::move(data));
+}
+
+UpdateCounts Map::update(std::string_view text) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->reader.reset();  // its pages can be used again once the update is committed
+  ProgressSink silence;
+  const sparql::UpdateReport report =
+      mapping::updateMap(impl_->file, std::string(text), {.query = {.source_name = "update"}}, silence);
+  return {report.inserted, report.deleted};
+}
+
+Explanation Map::explain(const std::string& name) const {
+  const std::lock_guard lock(impl_->mutex);
+  const tasks::ExplanationTexts texts = tasks::explainThing(impl_->newest(), name);
+  return {texts.text, texts.json};
+}
+
+std::vector<Object> Map::objects() const {
+  return objectsOf(impl_->newestQuads());
+}
+
+std::vector<Object> Map::objects(std::string_view class_name) const {
+  return objectsOf(impl_->newestQuads(), class_name);
+}
+
+std::vector<Cloud> Map::clouds() const {
+  const std::lock_guard lock(impl_->mutex);
+  return cloudsOf(impl_->newest());
+}
+
+PointCloud Map::points(const Cloud& cloud) const {
+  const std::lock_guard lock(impl_->mutex);
+  return pointsOf(impl_->newest(), cloud);
+}
+
+PointCloud Map::points(const Object& object) const {
+  const std::lock_guard lock(impl_->mutex);
+  return pointsOf(impl_->newest(), object);
+}
+
+}  // namespace cluxel

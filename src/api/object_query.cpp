@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two queries to the observed graph: objects, and their parts.
+#include "api/object_query.hpp"
+
+#include <map>
+
+#include "api/answer_data.hpp"
+#include "base/nearest_name.hpp"
+#include "cluxel/error.hpp"
+#include "rdf/ontology/ontology.hpp"
+#include "rdf/vocabulary.hpp"
+#include "sparql/query_engine.hpp"
+
+namespace cluxel {
+
+namespace {
+
+constexpr const char* kExtentPattern =
+    " a ?class ; clx:x ?x ; clx:y ?y ; clx:z ?z ; clx:minX ?minX ; clx:minY ?minY ; clx:minZ ?minZ ; clx:maxX ?maxX ; "
+    "clx:maxY ?maxY ; clx:maxZ ?maxZ ; clx:length ?length ; clx:width ?width ; clx:height ?height ; "
+    "clx:bottom ?bottom ; clx:top ?top ; clx:pointCount ?pointCount . ";
+
+Answer answerOf(const rdf::QuadReader& reader, const std::string& pattern, const std::string& order) {
+  const std::string text = "PREFIX clx: <" + std::string(rdf::vocabulary::kClx) + "> SELECT * { GRAPH <" +
+                           std::string(rdf::vocabulary::kGraphObserved) + "> { " + pattern + "} } ORDER BY " + order;
+  sparql::QueryOptions options;
+  options.budget.max_memory_bytes = 0;
+  return Answer(std::make_shared<Answer::Data>(Answer::Data{sparql::evaluateQuery(reader, text, options), {}}));
+}
+
+Extent extentOf(const Answer::Row& row) {
+  Extent extent;
+  extent.centroid = {row.number("x"), row.number("y"), row.number("z")};
+  extent.min = {row.number("minX"), row.number("minY"), row.number("minZ")};
+  extent.max = {row.number("maxX"), row.number("maxY"), row.number("maxZ")};
+  extent.length_m = row.number("length");
+  extent.width_m = row.number("width");
+  extent.height_m = row.number("height");
+  extent.bottom_m = row.number("bottom");
+  extent.top_m = row.number("top");
+  extent.point_count = static_cast<std::uint64_t>(row.number("pointCount"));
+  return extent;
+}
+
+std::string labelOf(const rdf::OntologyView& ontology, const std::string& class_iri) {
+  const rdf::OntologyClass* found = ontology.find(class_iri);
+  return found == nullptr ? class_iri.substr(class_iri.find_last_of("#/") + 1) : found->label();
+}
+
+std::map<std::string, std::vector<ObjectPart>> partsByObject(const rdf::QuadReader& reader,
+                                                             const rdf::OntologyView& ontology) {
+  std::map<std::string, std::vector<ObjectPart>> parts;
+  for (const Answer::Row row :
+       answerOf(reader, "?o clx:hasPart ?part . ?part" + std::string(kExtentPattern), "?part")) {
+    ObjectPart part;
+    static_cast<Extent&>(part) = extentOf(row);
+    part.iri = row.text("part");
+    part.class_iri = row.text("class");
+    part.label = labelOf(ontology, part.class_iri);
+    parts[row.text("o")].push_back(std::move(part));
+  }
+  return parts;
+}
+
+std::vector<Object> objectsOf(const rdf::QuadReader& reader, const rdf::OntologyView& ontology) {
+  auto parts = partsByObject(reader, ontology);
+  std::vector<Object> objects;
+  for (const Answer::Row row : answerOf(
+           reader,
+           "?o clx:confidence ?confidence ; clx:rule ?rule ; clx:heading ?heading . ?o" + std::string(kExtentPattern),
+           "?o")) {
+    Object object;
+    static_cast<Extent&>(object) = extentOf(row);
+    object.number = objects.size();
+    object.iri = row.text("o");
+    object.class_iri = row.text("class");
+    object.label = labelOf(ontology, object.class_iri);
+    object.confidence = row.number("confidence");
+    object.rule = row.text("rule");
+    object.heading_rad = row.number("heading");
+    if (const auto found = parts.find(object.iri); found != parts.end()) object.parts = std::move(found->second);
+    objects.push_back(std::move(object));
+  }
+  return objects;
+}
+
+/// The IRI of a class written "Tree", "clx:Tree" or in full.
+std::string classIriOf(const rdf::OntologyView& ontology, std::string_view written) {
+  std::string_view local = written;
+  if (local.starts_with("clx:")) local.remove_prefix(4);
+  for (const std::string& iri : {std::string(written), rdf::vocabulary::clx(local)})
+    if (ontology.find(iri) != nullptr) return iri;
+  std::vector<std::string> known;
+  for (const std::string& iri : ontology.classNames()) known.push_back(iri.substr(iri.find_last_of("#/") + 1));
+  const std::string hint = suggestion(local, known);
+  throw Error(ErrorKind::NotFound,
+              "the map's ontology has no class '" + std::string(written) + "'" + (hint.empty() ? "" : "; " + hint));
+}
+
+}  // namespace
+
+std::vector<Object> objectsOf(const rdf::QuadReader& reader) {
+  return objectsOf(reader, ontologyViewOf(reader));
+}
+
+std::vector<Object> objectsOf(const rdf::QuadReader& reader, std::string_view class_name) {
+  const rdf::OntologyView ontology = ontologyViewOf(reader);
+  const std::string wanted = classIriOf(ontology, class_name);
+  std::vector<Object> objects = objectsOf(reader, ontology);
+  std::erase_if(objects, [&](const Object& object) { return !ontology.isA(object.class_iri, wanted); });
+  return objects;
+}
+
+}  // namespace cluxel

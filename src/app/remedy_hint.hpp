@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which option of the program is the remedy that a library error names.
+#pragma once
+
+#include <string>
+
+#include "cluxel/error.hpp"
+
+namespace cluxel::app {
+
+/// The error's message; below it the option that helps, if there is one.
+std::string messageOf(const Error& error);
+
+}  // namespace cluxel::app

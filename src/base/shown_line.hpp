@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much of a faulty file a message shows: authored files are short, hostile ones need not be.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "cluxel/error.hpp"
+
+namespace cluxel {
+
+/// So many errors, and so many warnings, are told one by one; of the others it is said how many there are.
+inline constexpr std::size_t kMostFaults = 200;
+
+/// The word about those.
+inline Diagnostic furtherFaults(Severity severity, std::string file, std::size_t count) {
+  Diagnostic further;
+  further.severity = severity;
+  further.location.file = std::move(file);
+  further.message = std::to_string(count) + (severity == Severity::Error ? " further errors" : " further warnings");
+  further.hint = "correct those above first";
+  return further;
+}
+
+/// Line `line` (from 1) of `text`; empty for one that is longer than anyone could read.
+inline std::string shownLine(std::string_view text, std::size_t line) {
+  constexpr std::size_t kLongestShown = 500;
+  const std::string_view whole = lineOf(text, line);
+  return whole.size() <= kLongestShown ? std::string(whole) : std::string();
+}
+
+}  // namespace cluxel

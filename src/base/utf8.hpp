@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// UTF-8: decoding, encoding, validation and cutting of text.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace cluxel {
+
+struct CodePoint {
+  std::uint32_t value = 0;
+  std::uint32_t bytes = 0;  ///< 0 when the bytes are not UTF-8
+};
+
+constexpr bool isUtf8Continuation(char c) {
+  return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
+}
+
+/// The code point at `offset`, which is less than the text's size. Overlong forms, surrogates and values above U+10FFFF
+/// are not UTF-8 (Unicode 15, table 3-7).
+CodePoint decodeUtf8(std::string_view text, std::size_t offset);
+
+/// `code_point` is a Unicode scalar value.
+void appendUtf8(std::string& text, std::uint32_t code_point);
+
+/// The offset of the first byte that is not part of valid UTF-8. Cost O(length).
+std::optional<std::size_t> firstInvalidUtf8(std::string_view text);
+
+/// The number of code points of valid UTF-8.
+std::size_t countCodePoints(std::string_view text);
+
+/// The longest prefix of at most `max_bytes` bytes that does not end within a code point.
+std::string_view utf8Prefix(std::string_view text, std::size_t max_bytes);
+
+}  // namespace cluxel

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// flock on a file that its holder removes: after locking, check that the path still names the locked file.
+#include "mapping/build/build_lock.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include "cluxel/error.hpp"
+
+namespace cluxel::mapping {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+[[noreturn]] void refuse(const fs::path& map, const std::string& what) {
+  throw Error(ErrorKind::StoreUnavailable, map.string() + ": " + what);
+}
+
+std::string holderOf(int descriptor) {
+  char text[32] = {};
+  const ssize_t size = ::pread(descriptor, text, sizeof text - 1, 0);
+  return size > 0 ? "process " + std::string(text, static_cast<std::size_t>(size)) : "another process";
+}
+
+bool isNamed(int descriptor, const fs::path& file) {
+  struct stat mine {
+  }, there{};
+  return ::fstat(descriptor, &mine) == 0 && ::stat(file.c_str(), &there) == 0 && mine.st_dev == there.st_dev &&
+         mine.st_ino == there.st_ino;
+}
+
+}  // namespace
+
+BuildLock::BuildLock(const fs::path& map) : file_(map.string() + ".build-lock") {
+  while (true) {
+    const int descriptor = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor < 0) refuse(map, std::string("no lock can be made beside it: ") + std::strerror(errno));
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+      const std::string holder = holderOf(descriptor);
+      ::close(descriptor);
+      refuse(map, holder + " is building or compacting it; wait until that has ended");
+    }
+    if (isNamed(descriptor, file_)) {
+      descriptor_ = descriptor;
+      break;
+    }
+    ::close(descriptor);  // it was removed by a process that has just ended
+  }
+  const std::string id = std::to_string(::getpid());
+  if (::ftruncate(descriptor_, 0) == 0) (void)!::pwrite(descriptor_, id.data(), id.size(), 0);
+}
+
+BuildLock::~BuildLock() {
+  ::unlink(file_.c_str());
+  ::close(descriptor_);
+}
+
+}  // namespace cluxel::mapping

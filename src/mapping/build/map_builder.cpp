@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// Adds scans to a map file in batches; each batch is one transaction from points to facts.
+#include "mapping/build/map_builder.hpp"
+
+#include <chrono>
+#include <optional>
+#include <set>
+
+#include "cluxel/error.hpp"
+#include "mapping/build/build_poses.hpp"
+#include "mapping/build/scan_store.hpp"
+#include "mapping/build/work_file.hpp"
+#include "mapping/facts/map_history.hpp"
+#include "mapping/facts/semantic_layer.hpp"
+#include "mapping/map_state.hpp"
+#include "rdf/store/quad_store.hpp"
+
+namespace cluxel::mapping {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+double nowSeconds() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+/// All clouds of an unfinished build must be among the given scans, otherwise the map would hold scans that were not
+/// given. Loads scans until every cloud is found; when the same command is repeated, these are the first ones.
+void requireScansOf(const WorkFile& work, const scan::ScanSet& scans, const std::vector<Cloud>& clouds) {
+  std::set<scan::ScanId> given;
+  std::size_t loaded = 0;
+  for (const Cloud& cloud : clouds) {
+    while (!given.contains(cloud.id) && loaded < scans.size()) given.insert(scans.load(loaded++).id);
+    if (!given.contains(cloud.id))
+      throw Error(ErrorKind::InvalidArgument,
+                  work.path().string() + ": holds an unfinished build of other scans ('" + cloud.source +
+                      "' is not among those given); repeat that command to finish it, or remove the file");
+  }
+}
+
+class MapBuild {
+ public:
+  MapBuild(const scan::ScanSet& scans, const ParsedInputs& parsed, WorkFile& work, const BuildParams& params,
+           ProgressSink& sink)
+      : scans_(scans),
+        parsed_(parsed),
+        work_(work),
+        params_(params),
+        sink_(sink),
+        state_(work.found()),
+        stages_(parsed.model, parsed.inputs.params) {}
+
+  BuildReport run() {
+    goOn();
+    for (std::size_t next = 0; next < scans_.size();) next = addBatch(next);
+    for (const std::string& note : reading_notes_.totals()) sink_.note(note);
+    return report_;
+  }
+
+ private:
+  /// Checks that stored scans belong to this build.
+  void goOn() {
+    const std::vector<Cloud> there = storedClouds(work_.environment().read());
+    if (there.empty()) return;
+    requireScansOf(work_, scans_, there);
+    sink_.note("goes on with " + work_.path().string() + ": " + std::to_string(there.size()) + " of " +
+               std::to_string(scans_.size()) + " scans are there");
+  }
+
+  /// Detects another writer between two commits, in case it did not use the lock.
+  void requireOwn(const rdf::ReadTransaction& transaction) const {
+    if (storedState(transaction) != state_)
+      throw Error(
+          ErrorKind::StoreUnavailable,
+          work_.path().string() + ": another build has written to it meanwhile; wait until it has ended and run again");
+  }
+
+  /// Adds scans from `first` on until the batch is full, and commits; returns the first scan of the next batch.
+  std::size_t addBatch(std::size_t first) {
+    const double started_s = nowSeconds();
+    rdf::WriteTransaction transaction = work_.environment().write();
+    requireOwn(transaction);
+    TileSet touched;
+    std::uint64_t batch_points = 0;
+    std::size_t next = first;
+    for (; next < scans_.size() && batch_points < params_.batch_points; ++next) {
+      const scan::LoadedScan loaded = scans_.read(next);
+      const scan::Scan& scan = loaded.scan;
+      for (const std::string& note : reading_notes_.add(loaded.reading)) sink_.note(note);
+      const TileSet tiles = storeScan(transaction, scan);
+      report_.scans_already_there += tiles.empty() ? 1 : 0;
+      batch_points += tiles.empty() ? 0 : scan.points.size();
+      touched = unionOf(std::move(touched), tiles);
+      sink_.progress("scans", next + 1, scans_.size());
+    }
+    if (!touched.empty() || next == scans_.size()) commitBatch(transaction, touched, next == scans_.size(), started_s);
+    return next;
+  }
+
+  void commitBatch(rdf::WriteTransaction& transaction, const TileSet& touched, bool is_last, double started_s) {
+    stages_.update(transaction, touched, params_.threads, sink_);
+    stages_.loadAll(transaction);
+    if (is_last) work_.takeOverStatements(transaction, params_.drop_statements, sink_);
+    const SemanticCounts counts = writeSemanticLayer(transaction, parsed_, stages_, sink_);
+    const std::vector<Cloud> clouds = storedClouds(transaction);
+    storeInputs(transaction, parsed_.inputs);
+    state_ = MapState{is_last, parsed_.inputs.hash().hex()};
+    storeState(transaction, *state_);
+    addBuildActivity(transaction, clouds, parsed_.inputs, started_s, nowSeconds());
+    transaction.commit();
+    report_.scans = clouds.size();
+    report_.points = 0;
+    for (const Cloud& cloud : clouds) report_.points += cloud.point_count;
+    report_.tiles = stages_.points().size();
+    report_.cluxels = counts.cluxels, report_.primitives = counts.primitives, report_.objects = counts.objects;
+    report_.quads = rdf::QuadReader(work_.environment().read()).size();
+  }
+
+  const scan::ScanSet& scans_;
+  const ParsedInputs& parsed_;
+  WorkFile& work_;
+  const BuildParams& params_;
+  ProgressSink& sink_;
+  scan::ReadingNotes reading_notes_{scans_.remedies()};
+  std::optional<MapState> state_;  ///< the state in the file after the last commit
+  TileStages stages_;
+  BuildReport report_;
+};
+
+}  // namespace
+
+BuildReport buildMap(const scan::ScanSet& scans, const MapInputs& inputs, const fs::path& file,
+                     const BuildParams& params, ProgressSink& sink) {
+  if (scans.size() == 0) throw Error(ErrorKind::InvalidArgument, "there is no scan to build a map from");
+  MapInputs complete = inputs;
+  complete.map_origin = scans.mapOrigin();
+  complete.crs = scans.crs();
+  const ParsedInputs parsed = parseInputs(complete);
+  WorkFile work(file, complete.hash().hex(), params.force);
+  if (!params.refine_poses) noteDoubtfulPoses(scans, params.threads, sink);
+  const scan::ScanSet posed = params.refine_poses ? withRefinedPoses(scans, params.threads, sink) : scans;
+  const BuildReport report = MapBuild(posed, parsed, work, params, sink).run();
+  work.finish();
+  return report;
+}
+
+}  // namespace cluxel::mapping

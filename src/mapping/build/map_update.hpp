@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Changes of an operator's statements by SPARQL Update, and all inference from them, in one commit.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "cluxel/progress.hpp"
+#include "sparql/update_engine.hpp"
+
+namespace cluxel::mapping {
+
+/// Runs a SPARQL Update on a map or another quad file. In a map, graph `inferred` is computed again, SPARQL rules
+/// included; when its rules use `ask:`, the objects are computed again too, because answers may have changed. Commits
+/// everything or nothing. Throws as runUpdate(); Error (InvalidArgument) when a build of the map is unfinished.
+sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::string& update,
+                               const sparql::UpdateOptions& options, ProgressSink& sink);
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Perception's stages over a map's tiles: outputs are kept in the map file, and only what a change reaches is computed.
+#pragma once
+
+#include <map>
+
+#include "cluxel/progress.hpp"
+#include "mapping/map_inputs.hpp"
+#include "perception/pipeline.hpp"
+#include "rdf/store/environment.hpp"
+
+namespace cluxel::mapping {
+
+/// `model` and `params` must outlive it.
+class TileStages {
+ public:
+  TileStages(const perception::LabelModel& model, const MapParams& params)
+      : params_{params.labelling, params.component, params.contact, params.relation}, labeller_(model) {}
+
+  /// Brings every stage up to date after segments of the tiles `touched` were stored.
+  void update(rdf::WriteTransaction& transaction, const perception::TileSet& touched, unsigned threads,
+              ProgressSink& sink);
+  /// Decodes all stored outputs.
+  void loadAll(const rdf::ReadTransaction& transaction);
+  /// The scene of what is loaded.
+  perception::Scene scene() const { return assembleScene(outputs_, params_.relation); }
+
+  const std::map<perception::TileKey, perception::TilePoints>& points() const { return outputs_.points; }
+  const std::map<perception::TileKey, perception::CluxelTile>& cluxels() const { return outputs_.cluxels; }
+
+ private:
+  perception::SceneParams params_;
+  perception::TileLabeller labeller_;
+  perception::TileOutputs outputs_;
+};
+
+}  // namespace cluxel::mapping

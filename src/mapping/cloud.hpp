@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// One scan of a map: the paper's cloud layer.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "scan/scan.hpp"
+
+namespace cluxel::mapping {
+
+struct Cloud {
+  scan::ScanId id;
+  std::string source;  ///< source file; history, not part of the map function
+  std::optional<double> time_s;
+  Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
+  bool has_pose = false;
+  std::uint64_t point_count = 0;
+  Eigen::Vector3d min = Eigen::Vector3d::Zero(), max = Eigen::Vector3d::Zero();  ///< bounds of its points [m, map]
+};
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The observed graph: clouds, primitives with attributes and relations, objects with parts and observations as RDF.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "mapping/cloud.hpp"
+#include "mapping/facts/fact_sink.hpp"
+#include "mapping/facts/object_geometry.hpp"
+#include "mapping/map_inputs.hpp"
+#include "perception/segments/scene.hpp"
+#include "rules/decide/semantic_object.hpp"
+
+namespace cluxel::mapping {
+
+/// Objects closer than this are clx:near each other [m].
+inline constexpr double kNearObjects_m = 1.0;
+/// A primitive lower than this above the ground touches it [m].
+inline constexpr double kTouchesGround_m = 0.30;
+
+/// The sources of the observed graph.
+struct ObservedMap {
+  const MapInputs& inputs;
+  const std::vector<Cloud>& clouds;
+  const perception::Scene& scene;
+  const rules::ReasoningResult& reasoning;
+  const std::map<std::pair<std::uint32_t, scan::ScanId>, Sighting>& sightings;
+};
+
+void addObservedFacts(const ObservedMap& map, FactSink& facts);
+
+/// xsd:dateTime in UTC of seconds since 1970.
+std::string dateTimeText(double time_s);
+
+}  // namespace cluxel::mapping

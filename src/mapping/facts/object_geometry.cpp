@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// Boxes, centroids, sightings and neighbours of objects.
+#include "mapping/facts/object_geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "perception/segments/footprint_hull.hpp"
+
+namespace cluxel::mapping {
+
+ObjectGeometry geometryOf(const perception::SceneCluxels& cluxels, std::span<const std::uint32_t> members) {
+  ObjectGeometry geometry;
+  std::vector<Eigen::Vector2d> corners;
+  double bottom = 1e300, top = -1e300;
+  for (const std::uint32_t c : members) {
+    const Eigen::Vector3d low = cluxels.low_corner[c], high = low + cluxels.extent[c].cast<double>();
+    geometry.min = geometry.min.cwiseMin(low);
+    geometry.max = geometry.max.cwiseMax(high);
+    corners.insert(corners.end(), {low.head<2>(), {high.x(), low.y()}, {low.x(), high.y()}, high.head<2>()});
+    const double ground = cluxels.center[c].z() - static_cast<double>(cluxels.height_above_ground[c]);
+    bottom = std::min(bottom, low.z() - ground);
+    top = std::max(top, high.z() - ground);
+    geometry.centroid += cluxels.point_count[c] * cluxels.center[c];
+    geometry.point_count += cluxels.point_count[c];
+  }
+  geometry.centroid /= static_cast<double>(std::max<std::uint64_t>(geometry.point_count, 1));
+  const perception::FootprintBox box = perception::smallestBox(perception::convexHull(std::move(corners)));
+  geometry.box.center << box.center, 0.5 * (geometry.min.z() + geometry.max.z());
+  geometry.box.size << box.length_m, box.width_m, geometry.max.z() - geometry.min.z();
+  geometry.box.yaw_rad = box.yaw_rad;
+  geometry.bottom_m = bottom;
+  geometry.top_m = top;
+  return geometry;
+}
+
+std::vector<std::uint32_t> cluxelsOf(const rules::SemanticObject& object) {
+  std::vector<std::uint32_t> all;
+  for (const rules::ObjectPart& part : object.parts) all.insert(all.end(), part.cluxels.begin(), part.cluxels.end());
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+std::vector<std::uint32_t> objectOfCluxel(const rules::ReasoningResult& result, std::size_t cluxel_count) {
+  std::vector<std::uint32_t> object_of(cluxel_count, kNoObject);
+  for (std::uint32_t object = 0; object < result.objects.size(); ++object)
+    for (const rules::ObjectPart& part : result.objects[object].parts)
+      for (const std::uint32_t cluxel : part.cluxels) object_of[cluxel] = object;
+  return object_of;
+}
+
+std::map<std::pair<std::uint32_t, scan::ScanId>, Sighting> sightingsOf(
+    const std::map<perception::TileKey, perception::TilePoints>& points,
+    const std::map<perception::TileKey, perception::CluxelTile>& cluxels,
+    const std::vector<std::uint32_t>& object_of_cluxel) {
+  std::map<std::pair<std::uint32_t, scan::ScanId>, Sighting> sightings;
+  std::uint32_t base = 0;
+  for (const auto& [key, tile] : points) {
+    const perception::CluxelTile& clustered = cluxels.at(key);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, Sighting> of_tile;
+    for (std::uint32_t i = 0; i < tile.size(); ++i) {
+      const std::uint32_t object = object_of_cluxel[base + clustered.point_cluxel[i]];
+      if (object == kNoObject) continue;
+      Sighting& sighting = of_tile[{object, tile.scan[i]}];
+      ++sighting.point_count;
+      sighting.sum += cornerOf(key) + tile.at(i).cast<double>();
+    }
+    for (const auto& [pair, sighting] : of_tile) {
+      Sighting& sum = sightings[{pair.first, tile.scans[pair.second]}];
+      sum.point_count += sighting.point_count;
+      sum.sum += sighting.sum;
+    }
+    base += static_cast<std::uint32_t>(clustered.size());
+  }
+  return sightings;
+}
+
+namespace {
+
+using ObjectPair = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Cluxels of objects in one voxel.
+struct Voxel {
+  std::vector<std::uint32_t> cluxels;
+  std::set<std::uint32_t> objects;
+};
+using VoxelKey = std::array<int, 3>;
+
+double gapOf(const perception::SceneCluxels& cluxels, std::uint32_t a, std::uint32_t b) {
+  const Eigen::Vector3d high_a = cluxels.low_corner[a] + cluxels.extent[a].cast<double>();
+  const Eigen::Vector3d high_b = cluxels.low_corner[b] + cluxels.extent[b].cast<double>();
+  return (cluxels.low_corner[a] - high_b).cwiseMax(cluxels.low_corner[b] - high_a).cwiseMax(0.0).norm();
+}
+
+class NearPairs {
+ public:
+  NearPairs(const perception::SceneCluxels& cluxels, const std::vector<std::uint32_t>& object_of_cluxel,
+            double largest_m)
+      : cluxels_(cluxels), object_of_(object_of_cluxel), largest_m_(largest_m) {}
+
+  /// Compares the cluxels of two voxels, unless all their pairs of objects are known.
+  void compare(const Voxel& a, const Voxel& b) {
+    if (!hasUnknownPair(a, b)) return;
+    for (const std::uint32_t c : a.cluxels)
+      for (const std::uint32_t d : b.cluxels) {
+        if (object_of_[c] == object_of_[d]) continue;
+        const ObjectPair pair = std::minmax(object_of_[c], object_of_[d]);
+        if (!pairs_.contains(pair) && gapOf(cluxels_, c, d) <= largest_m_) pairs_.insert(pair);
+      }
+  }
+  std::vector<ObjectPair> sorted() const { return {pairs_.begin(), pairs_.end()}; }
+
+ private:
+  bool hasUnknownPair(const Voxel& a, const Voxel& b) const {
+    for (const std::uint32_t x : a.objects)
+      for (const std::uint32_t y : b.objects)
+        if (x != y && !pairs_.contains(ObjectPair(std::minmax(x, y)))) return true;
+    return false;
+  }
+
+  const perception::SceneCluxels& cluxels_;
+  const std::vector<std::uint32_t>& object_of_;
+  double largest_m_;
+  std::set<ObjectPair> pairs_;
+};
+
+}  // namespace
+
+std::vector<ObjectPair> nearObjects(const perception::SceneCluxels& cluxels,
+                                    const std::vector<std::uint32_t>& object_of_cluxel,
+                                    const std::vector<bool>& is_ground, double largest_m) {
+  // The centres of two such boxes are less than `largest_m` plus a large cluxel apart, so that they lie in the same or
+  // in neighbouring voxels.
+  const double edge = largest_m + 1.0;
+  std::map<VoxelKey, Voxel> voxels;
+  for (std::uint32_t c = 0; c < cluxels.size(); ++c) {
+    const std::uint32_t object = object_of_cluxel[c];
+    if (object == kNoObject || is_ground[object]) continue;
+    VoxelKey key;
+    for (int axis = 0; axis < 3; ++axis)
+      key[static_cast<std::size_t>(axis)] = static_cast<int>(std::floor(cluxels.center[c][axis] / edge));
+    voxels[key].cluxels.push_back(c);
+    voxels[key].objects.insert(object);
+  }
+  NearPairs pairs(cluxels, object_of_cluxel, largest_m);
+  for (const auto& [key, voxel] : voxels)
+    for (int i = 13; i < 27; ++i) {
+      const auto found = voxels.find({key[0] + i / 9 - 1, key[1] + i / 3 % 3 - 1, key[2] + i % 3 - 1});
+      if (found != voxels.end()) pairs.compare(voxel, found->second);
+    }
+  return pairs.sorted();
+}
+
+}  // namespace cluxel::mapping

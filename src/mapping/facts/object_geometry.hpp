@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Geometry of objects and parts from their cluxels, and the points each scan contributed.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "perception/clustering/cluxel_tile.hpp"
+#include "perception/clustering/tile_points.hpp"
+#include "perception/segments/scene.hpp"
+#include "rules/decide/semantic_object.hpp"
+
+namespace cluxel::mapping {
+
+struct ObjectGeometry {
+  perception::UprightBox box;
+  Eigen::Vector3d min = Eigen::Vector3d::Constant(1e300), max = Eigen::Vector3d::Constant(-1e300);  ///< [m, map]
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< mean of its points [m, map]
+  double bottom_m = 0, top_m = 0;                      ///< above the local ground
+  std::uint64_t point_count = 0;                       ///< points kept by thinning
+};
+
+/// Geometry of a set of cluxels of the scene.
+ObjectGeometry geometryOf(const perception::SceneCluxels& cluxels, std::span<const std::uint32_t> members);
+
+/// All cluxels of an object, ascending.
+std::vector<std::uint32_t> cluxelsOf(const rules::SemanticObject& object);
+
+/// For every cluxel of the scene, the number of its object or kNoObject.
+inline constexpr std::uint32_t kNoObject = 0xffffffffU;
+std::vector<std::uint32_t> objectOfCluxel(const rules::ReasoningResult& result, std::size_t cluxel_count);
+
+/// The points of one object in one scan.
+struct Sighting {
+  std::uint64_t point_count = 0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  ///< of its points [m, map]
+};
+/// By (object, scan). Points are summed tile by tile in canonical order.
+std::map<std::pair<std::uint32_t, scan::ScanId>, Sighting> sightingsOf(
+    const std::map<perception::TileKey, perception::TilePoints>& points,
+    const std::map<perception::TileKey, perception::CluxelTile>& cluxels,
+    const std::vector<std::uint32_t>& object_of_cluxel);
+
+/// Pairs of objects (a < b) with a gap below `largest_m` between their cluxels' boxes, sorted. Objects with `is_ground`
+/// are left out. Cost O(cluxels of objects).
+std::vector<std::pair<std::uint32_t, std::uint32_t>> nearObjects(const perception::SceneCluxels& cluxels,
+                                                                 const std::vector<std::uint32_t>& object_of_cluxel,
+                                                                 const std::vector<bool>& is_ground, double largest_m);
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ontology, rules, facts and closure, in the order of their dependencies.
+#include "mapping/facts/semantic_layer.hpp"
+
+#include "cluxel/error.hpp"
+#include "mapping/build/scan_store.hpp"
+#include "mapping/facts/map_facts.hpp"
+#include "mapping/facts/map_oracle.hpp"
+#include "mapping/facts/sparql_rules.hpp"
+#include "mapping/object_store.hpp"
+#include "rdf/io/rdf_io.hpp"
+#include "rdf/ontology/ontology.hpp"
+#include "rdf/vocabulary.hpp"
+#include "rules/decide/reason.hpp"
+#include "rules/language/rule_loader.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+std::vector<rules::RuleSource> ruleSources(const std::vector<NamedText>& texts) {
+  std::vector<rules::RuleSource> sources;
+  sources.reserve(texts.size());
+  for (const NamedText& text : texts) sources.push_back({text.name, text.text});
+  return sources;
+}
+
+/// Makes the observed graph hold the facts of the scene and of `reasoning`.
+void writeObserved(rdf::WriteTransaction& transaction, const ObservedMap& map) {
+  rdf::QuadWriter writer(transaction);
+  FactSink facts(writer, rdf::vocabulary::kGraphObserved);
+  addObservedFacts(map, facts);
+  writer.flush();
+  facts.writeTo(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction)));
+  writer.flush();
+}
+
+}  // namespace
+
+void writeOntology(rdf::WriteTransaction& transaction, const MapInputs& inputs) {
+  rdf::QuadWriter writer(transaction);
+  writer.clearGraph(writer.intern(Term::iri(rdf::vocabulary::kGraphOntology)));
+  loadOntology(ontologySources(inputs.ontology), writer);
+  writer.flush();
+}
+
+void writeObjectsSoFar(rdf::WriteTransaction& transaction, const MapInputs& inputs, const std::vector<Cloud>& clouds,
+                       const perception::Scene& scene, const TileStages& stages,
+                       std::span<const rules::SemanticObject> objects) {
+  const rules::ReasoningResult so_far{{objects.begin(), objects.end()}, {}};
+  const auto sightings = sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(so_far, scene.cluxels.size()));
+  writeObserved(transaction, {inputs, clouds, scene, so_far, sightings});
+  inferClosure(transaction);
+}
+
+ParsedInputs parseInputs(const MapInputs& inputs) {
+  ParsedInputs parsed;
+  parsed.inputs = inputs;
+  parsed.model = perception::parseModel(inputs.model.text, inputs.model.name);
+  perception::checkRanges(inputs.params);
+  parsed.rules = loadRuleTexts(ruleSources(inputs.rules), inputs.rule_roots, classCatalogueOf(inputs.ontology),
+                               withCheckedQueries())
+                     .require();
+  checkSparqlRules(inputs.sparql_rules);
+  return parsed;
+}
+
+SemanticCounts writeSemanticLayer(rdf::WriteTransaction& transaction, const ParsedInputs& parsed,
+                                  const TileStages& stages, ProgressSink& sink) {
+  writeOntology(transaction, parsed.inputs);
+  const perception::Scene scene = stages.scene();
+  sink.progress("scene", scene.primitives.size(), scene.primitives.size());
+  const std::vector<Cloud> clouds = storedClouds(transaction);
+  MapOracle oracle(transaction, [&](std::span<const rules::SemanticObject> objects) {
+    writeObjectsSoFar(transaction, parsed.inputs, clouds, scene, stages, objects);
+  });
+  const rules::ReasoningResult result = reason(scene, parsed.rules, {&oracle});
+  sink.progress("objects", result.objects.size(), result.objects.size());
+  const auto sightings = sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(result, scene.cluxels.size()));
+  writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings});
+  inferClosure(transaction);
+  runSparqlRules(transaction, parsed.inputs.sparql_rules);
+  storeObjects(transaction, result.objects);
+  sink.progress("facts", 1, 1);
+  return {scene.cluxels.size(), scene.primitives.size(), result.objects.size()};
+}
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the scene to the semantic layer: ontology, objects, facts, closure, SPARQL rules.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "cluxel/progress.hpp"
+#include "mapping/build/tile_stages.hpp"
+#include "mapping/cloud.hpp"
+#include "mapping/map_inputs.hpp"
+#include "perception/segments/scene.hpp"
+#include "rdf/store/environment.hpp"
+#include "rules/decide/semantic_object.hpp"
+#include "rules/language/rule_set.hpp"
+
+namespace cluxel::mapping {
+
+/// The parsed inputs of a map. Parsing reports all faults before anything is written.
+struct ParsedInputs {
+  MapInputs inputs;
+  perception::LabelModel model;
+  rules::RuleSet rules;
+};
+/// Throws InputError with all faults of ontology, rules or model.
+ParsedInputs parseInputs(const MapInputs& inputs);
+
+/// Replaces graph ontology by the inputs' ontology.
+void writeOntology(rdf::WriteTransaction& transaction, const MapInputs& inputs);
+/// Replaces the graphs observed and inferred by what a query of the reasoning stage may see: the scene and `objects`,
+/// those of the classes decided so far.
+void writeObjectsSoFar(rdf::WriteTransaction& transaction, const MapInputs& inputs, const std::vector<Cloud>& clouds,
+                       const perception::Scene& scene, const TileStages& stages,
+                       std::span<const rules::SemanticObject> objects);
+
+struct SemanticCounts {
+  std::size_t cluxels = 0, primitives = 0, objects = 0;
+};
+
+/// Computes objects and facts of the stages' outputs and stores them. The graphs ontology, observed and inferred are
+/// then a function of these outputs and the inputs.
+SemanticCounts writeSemanticLayer(rdf::WriteTransaction& transaction, const ParsedInputs& parsed,
+                                  const TileStages& stages, ProgressSink& sink);
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Evaluates SPARQL rules (CONSTRUCT queries) in strata, each to its fixpoint, into graph inferred.
+#pragma once
+
+#include <vector>
+
+#include "mapping/map_inputs.hpp"
+#include "rdf/store/environment.hpp"
+
+namespace cluxel::mapping {
+
+/// Throws InputError when a text is not a CONSTRUCT query or its result may differ between runs.
+void checkSparqlRules(const std::vector<NamedText>& rules);
+
+/// Evaluates the rules in order. Each rule is a stratum: it sees the facts of earlier rules and its own, and is
+/// repeated until it derives nothing new. Expects the closure to be complete and keeps it so. Each derived fact names
+/// its rule by a clx:Derivation.
+void runSparqlRules(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules);
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Read access to a map file: layers from cloud to object, quads, inputs.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mapping/cloud.hpp"
+#include "mapping/map_inputs.hpp"
+#include "perception/segments/scene.hpp"
+#include "rdf/store/quad_store.hpp"
+#include "rules/decide/semantic_object.hpp"
+
+namespace cluxel::mapping {
+
+class TileStages;
+
+struct MapSummary {
+  bool is_finished = false;
+  std::string inputs_hash;
+  std::size_t clouds = 0, objects = 0;
+  std::uint64_t points = 0, quads = 0;
+  std::map<std::string, std::size_t> objects_by_class;  ///< by local name of the class
+};
+
+/// The cluxel, label and object of each point of a cloud. The arrays are parallel to the cloud's points.
+struct PointAnswers {
+  std::vector<std::uint32_t> cluxel;  ///< number in the scene's cluxels
+  std::vector<std::uint8_t> label;    ///< PrimitiveLabel
+  std::vector<std::uint32_t> object;  ///< number in objects(), or kNoObjectOfPoint
+};
+inline constexpr std::uint32_t kNoObjectOfPoint = 0xffffffffU;
+
+/// One snapshot of a map. Not thread-safe.
+class MapReader {
+ public:
+  /// Throws Error (StoreUnavailable) when the file is not a readable map.
+  explicit MapReader(const std::filesystem::path& file);
+  ~MapReader();
+  MapReader(MapReader&&) noexcept;
+
+  MapSummary summary() const;
+  std::vector<Cloud> clouds() const;
+  scan::ScanPoints pointsOf(const scan::ScanId& cloud) const;
+  /// The objects, sorted by id; cluxel numbers refer to scene().
+  const std::vector<rules::SemanticObject>& objects() const;
+  /// The scene, assembled from the stored tiles by the first call.
+  const perception::Scene& scene() const;
+  /// The stored outputs of the stages, read by the first call.
+  const TileStages& stages() const;
+  PointAnswers answersFor(const Cloud& cloud) const;
+  const rdf::QuadReader& quads() const;
+  MapInputs inputs() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// "Tree" of "https://w3id.org/cluxel/ontology#Tree".
+std::string localName(std::string_view iri);
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+// Thinning sorts the points by voxel and keeps, per voxel, those with the smallest hash.
+#include "perception/clustering/tile_points.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "cluxel/error.hpp"
+#include "perception/clustering/fast_floor.hpp"
+#include "perception/clustering/radix_order.hpp"
+
+namespace cluxel::perception {
+namespace {
+
+/// The voxel of a local point as an integer that sorts by x, then y, then z. Wide enough for voxels of 1 cm.
+class VoxelKeys {
+ public:
+  explicit VoxelKeys(double voxel_m) : per_m_(1.0 / voxel_m) {}
+  std::uint64_t operator()(float x, float y, float z) const {
+    return cell(x) << 36U | cell(y) << 24U | cell(z + kMaxHeight_m + 1.0);
+  }
+
+ private:
+  std::uint64_t cell(double value_m) const { return static_cast<std::uint64_t>(std::max(0.0, value_m * per_m_)); }
+  double per_m_;
+};
+
+/// The concatenated points of all parts, each with its index into the scans.
+struct Pool {
+  std::vector<float> x, y, z, intensity;
+  std::vector<std::uint32_t> scan, point;
+};
+
+/// The rank by which points are kept: a hash of scan id and point (the finaliser of SplitMix64), independent of order.
+std::uint64_t lotOf(const scan::ScanId& scan, std::uint32_t point) {
+  std::uint64_t value = 0;
+  std::memcpy(&value, scan.bytes.data(), sizeof value);
+  value += 0x9e3779b97f4a7c15ULL * (std::uint64_t{point} + 1);
+  value = (value ^ (value >> 30U)) * 0xbf58476d1ce4e5b9ULL;
+  value = (value ^ (value >> 27U)) * 0x94d049bb133111ebULL;
+  return value ^ (value >> 31U);
+}
+
+/// Reduces one voxel's items to the kept ones, in the order (scan, point).
+void keepSome(std::vector<std::uint32_t>& items, const Pool& pool, const std::vector<scan::ScanId>& scans,
+              std::size_t keep) {
+  const auto name = [&](std::uint32_t i) { return std::pair(pool.scan[i], pool.point[i]); };
+  const auto by_name = [&](std::uint32_t a, std::uint32_t b) { return name(a) < name(b); };
+  std::sort(items.begin(), items.end(), by_name);
+  items.erase(std::unique(items.begin(), items.end(), [&](auto a, auto b) { return name(a) == name(b); }), items.end());
+  if (items.size() <= keep) return;
+  const auto lot = [&](std::uint32_t i) { return std::pair(lotOf(scans[pool.scan[i]], pool.point[i]), name(i)); };
+  std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(keep), items.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return lot(a) < lot(b); });
+  items.resize(keep);
+  std::sort(items.begin(), items.end(), by_name);
+}
+
+/// The kept items of the pool in canonical order.
+std::vector<std::uint32_t> keptOf(const Pool& pool, const std::vector<scan::ScanId>& scans, const ThinParams& params) {
+  const VoxelKeys voxel(params.voxel_m);
+  std::vector<std::uint64_t> keys(pool.x.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = voxel(pool.x[i], pool.y[i], pool.z[i]);
+  const std::vector<std::uint32_t> order = orderOf(keys);
+  std::vector<std::uint32_t> kept, items;
+  kept.reserve(order.size());
+  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+    const std::uint64_t key = keys[order[begin]];
+    for (end = begin + 1; end < order.size() && keys[order[end]] == key;) ++end;
+    if (end == begin + 1) {
+      kept.push_back(order[begin]);
+      continue;
+    }
+    items.assign(order.begin() + static_cast<std::ptrdiff_t>(begin), order.begin() + static_cast<std::ptrdiff_t>(end));
+    keepSome(items, pool, scans, static_cast<std::size_t>(params.keep));
+    kept.insert(kept.end(), items.begin(), items.end());
+  }
+  return kept;
+}
+
+template <typename T>
+std::vector<T> pick(const std::vector<T>& values, const std::vector<std::uint32_t>& which) {
+  std::vector<T> picked(values.empty() ? 0 : which.size());
+  for (std::size_t i = 0; i < picked.size(); ++i) picked[i] = values[which[i]];
+  return picked;
+}
+
+TilePoints thinPool(const TileKey& key, std::vector<scan::ScanId> scans, const Pool& pool, const ThinParams& params) {
+  const auto kept = keptOf(pool, scans, params);
+  return {key,
+          std::move(scans),
+          pick(pool.x, kept),
+          pick(pool.y, kept),
+          pick(pool.z, kept),
+          pick(pool.intensity, kept),
+          pick(pool.scan, kept),
+          pick(pool.point, kept)};
+}
+
+/// Appends a part's coordinates; intensity is filled with 0 where a part has none and another has.
+template <typename Part>
+void appendCoordinates(Pool& pool, const Part& part, bool with_intensity) {
+  pool.x.insert(pool.x.end(), part.x.begin(), part.x.end());
+  pool.y.insert(pool.y.end(), part.y.begin(), part.y.end());
+  pool.z.insert(pool.z.end(), part.z.begin(), part.z.end());
+  pool.point.insert(pool.point.end(), part.point.begin(), part.point.end());
+  if (!with_intensity) return;
+  pool.intensity.insert(pool.intensity.end(), part.intensity.begin(), part.intensity.end());
+  pool.intensity.resize(pool.x.size(), 0.0F);
+}
+
+std::vector<scan::ScanId> sortedUnique(std::vector<scan::ScanId> scans) {
+  std::sort(scans.begin(), scans.end());
+  scans.erase(std::unique(scans.begin(), scans.end()), scans.end());
+  return scans;
+}
+
+std::uint32_t placeOf(const std::vector<scan::ScanId>& scans, const scan::ScanId& scan) {
+  return static_cast<std::uint32_t>(std::lower_bound(scans.begin(), scans.end(), scan) - scans.begin());
+}
+
+bool isUsable(const Eigen::Vector3d& p_map) {
+  return std::abs(p_map.x()) <= kMaxCoordinate_m && std::abs(p_map.y()) <= kMaxCoordinate_m &&
+         std::abs(p_map.z()) <= kMaxHeight_m;
+}
+
+InputError unusablePoint(const scan::Scan& scan, std::size_t point) {
+  return InputError({.file = scan.source},
+                    "point " + std::to_string(point) + " lies outside the map's range or is not a number",
+                    "coordinates may reach 10000 km, heights 20 km; check the pose, or give the manifest a map origin");
+}
+
+/// As floats relative to a tile's corner.
+Eigen::Vector3f relativeTo(const Eigen::Vector3d& corner, const Eigen::Vector3d& p_map) {
+  const Eigen::Vector3d p = p_map - corner;
+  // Just below the upper edge, rounding could give the edge itself, which belongs to the next tile.
+  static constexpr auto kLastStep = static_cast<std::int64_t>(kTileSize_m / kLocalStep_m) - 1;
+  const auto rounded = [](double value_m) {
+    return static_cast<float>(static_cast<double>(std::min(fastFloor(value_m / kLocalStep_m), kLastStep)) *
+                              kLocalStep_m);
+  };
+  return {rounded(p.x()), rounded(p.y()), static_cast<float>(p.z())};
+}
+
+/// Whether tileOf() gives the tile with this corner. Corners and the tile size are exact.
+bool liesAt(const Eigen::Vector3d& corner, const Eigen::Vector3d& p_map) {
+  return p_map.x() >= corner.x() && p_map.x() < corner.x() + kTileSize_m && p_map.y() >= corner.y() &&
+         p_map.y() < corner.y() + kTileSize_m;
+}
+
+}  // namespace
+
+void describe(ThinParams& params, ParameterVisitor& visitor) {
+  visitor.real({"thin.voxel", "m", 0.01, 0.5, "edge of the voxels in which points are thinned"}, params.voxel_m);
+  visitor.whole({"thin.keep", "1", 1, 1000, "points kept in each voxel"}, params.keep);
+}
+
+Eigen::Vector3f localPoint(const TileKey& key, const Eigen::Vector3d& p_map) {
+  return relativeTo(cornerOf(key), p_map);
+}
+
+std::map<TileKey, ScanSegment> splitScan(const scan::Scan& scan) {
+  std::map<TileKey, ScanSegment> segments;
+  ScanSegment* segment = nullptr;
+  Eigen::Vector3d corner = Eigen::Vector3d::Zero();  // of the segment's tile
+  const auto& points = scan.points;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d p_map = scan::toMap(scan.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
+    if (!isUsable(p_map)) throw unusablePoint(scan, i);
+    if (segment == nullptr || !liesAt(corner, p_map)) {
+      const TileKey key = tileOf(p_map);
+      corner = cornerOf(key);
+      segment = &segments[key];
+      segment->key = key;
+      segment->scan = scan.id;
+    }
+    const Eigen::Vector3f p = relativeTo(corner, p_map);
+    segment->x.push_back(p.x());
+    segment->y.push_back(p.y());
+    segment->z.push_back(p.z());
+    if (!points.intensity.empty()) segment->intensity.push_back(points.intensity[i]);
+    segment->point.push_back(static_cast<std::uint32_t>(i));
+  }
+  return segments;
+}
+
+TilePoints thin(const TileKey& key, std::span<const ScanSegment* const> segments, const ThinParams& params) {
+  std::vector<const ScanSegment*> sorted(segments.begin(), segments.end());
+  std::sort(sorted.begin(), sorted.end(), [](auto* a, auto* b) { return a->scan < b->scan; });
+  const bool with_intensity = std::any_of(sorted.begin(), sorted.end(), [](auto* s) { return !s->intensity.empty(); });
+  Pool pool;
+  std::vector<scan::ScanId> scans;
+  for (const auto* segment : sorted) {
+    if (segment->size() == 0) continue;
+    if (scans.empty() || scans.back() != segment->scan) scans.push_back(segment->scan);
+    appendCoordinates(pool, *segment, with_intensity);
+    pool.scan.resize(pool.x.size(), static_cast<std::uint32_t>(scans.size() - 1));
+  }
+  return thinPool(key, std::move(scans), pool, params);
+}
+
+TilePoints thin(const TileKey& key, std::span<const TilePoints* const> parts, const ThinParams& params) {
+  std::vector<scan::ScanId> scans;
+  bool with_intensity = false;
+  for (const auto* part : parts) {
+    scans.insert(scans.end(), part->scans.begin(), part->scans.end());
+    with_intensity = with_intensity || !part->intensity.empty();
+  }
+  scans = sortedUnique(std::move(scans));
+  Pool pool;
+  for (const auto* part : parts) {
+    appendCoordinates(pool, *part, with_intensity);
+    for (const auto scan : part->scan) pool.scan.push_back(placeOf(scans, part->scans[scan]));
+  }
+  return thinPool(key, std::move(scans), pool, params);
+}
+
+RepresentativeFinder::RepresentativeFinder(const TilePoints& points, const ThinParams& params)
+    : points_(points), voxel_m_(params.voxel_m), voxel_(points.size()) {
+  const VoxelKeys voxel(voxel_m_);
+  for (std::size_t i = 0; i < points.size(); ++i) voxel_[i] = voxel(points.x[i], points.y[i], points.z[i]);
+}
+
+std::uint32_t RepresentativeFinder::find(const Eigen::Vector3f& p_local) const {
+  const auto [begin, end] =
+      std::equal_range(voxel_.begin(), voxel_.end(), VoxelKeys(voxel_m_)(p_local.x(), p_local.y(), p_local.z()));
+  std::uint32_t nearest = kNone;
+  float nearest_squared = 0;
+  for (auto at = begin; at != end; ++at) {
+    const auto i = static_cast<std::uint32_t>(at - voxel_.begin());
+    const float squared = (points_.at(i) - p_local).squaredNorm();
+    if (nearest != kNone && squared >= nearest_squared) continue;
+    nearest = i;
+    nearest_squared = squared;
+  }
+  return nearest;
+}
+
+}  // namespace cluxel::perception

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// The feature stage: collect cluxels, build the graph, then fill the groups one by one.
+#include "perception/features/feature_tile.hpp"
+
+#include "perception/features/feature_groups.hpp"
+#include "perception/tile_bytes.hpp"
+
+namespace cluxel::perception {
+namespace {
+
+void append(std::vector<std::string>& names, const std::vector<std::string>& more) {
+  names.insert(names.end(), more.begin(), more.end());
+}
+
+/// Increase it when the formula of a column changes, so that models trained on the old formula are refused.
+constexpr std::uint32_t kFeatureVersion = 1;
+
+/// The groups after the support features, in column order.
+struct FurtherGroup {
+  bool FeatureParams::*wanted;
+  std::vector<std::string> (*columns)();
+  void (*fill)(const FeatureInput&, std::size_t column, FeatureRows&);
+};
+constexpr std::array<FurtherGroup, 4> kFurtherGroups{
+    {{&FeatureParams::wide_shape, wideColumns, fillWideFeatures},
+     {&FeatureParams::height, heightColumns, fillHeightFeatures},
+     {&FeatureParams::pillar, pillarColumns, fillPillarFeatures},
+     {&FeatureParams::intensity, intensityColumns, fillIntensityFeatures}}};
+
+/// Shapes of the balls of own cluxels and of those that edges lead to.
+std::vector<EigenShape> ballShapes(const Ring<CluxelTile>& ring, const RingCluxels& cluxels) {
+  std::vector<EigenShape> shapes(cluxels.size());
+  const auto keep = [&](std::size_t c, const EigenShape& shape) { shapes[c] = shape; };
+  FourShapes four;
+  for (std::size_t c = 0; c < shapes.size(); ++c)
+    if (cluxels.near[c]) four.add(c, covarianceOf(ring[cluxels.name[c].ring]->ball[cluxels.name[c].index]), keep);
+  four.finish(keep);
+  return shapes;
+}
+
+/// The first edge row of each cluxel; not stored, since it follows from the targets.
+std::vector<std::uint32_t> edgeRowOffsets(const FeatureTile& tile) {
+  std::vector<std::uint32_t> offsets{0};
+  offsets.reserve(tile.size() + 1);
+  for (std::uint32_t c = 0; c < tile.size(); ++c) {
+    std::uint32_t rows = offsets.back();
+    for (std::uint32_t e = tile.edge_offset[c]; e < tile.edge_offset[c + 1]; ++e)
+      rows += FeatureTile::hasRow(c, tile.edge_target[e]) ? 1U : 0U;
+    offsets.push_back(rows);
+  }
+  return offsets;
+}
+
+}  // namespace
+
+void describe(FeatureParams& params, ParameterVisitor& visitor) {
+  visitor.flag({"features.hor", "1", 0, 1, "histogram of oriented residuals of the 2-ring"}, params.hor);
+  visitor.flag({"features.shape", "1", 0, 1, "eigenvalue shape of ball, 1-ring and 2-ring"}, params.shape);
+  visitor.flag({"features.wide_shape", "1", 0, 1, "eigenvalue shape of wide cubes"}, params.wide_shape);
+  visitor.flag({"features.height", "1", 0, 1, "height above ground and profile of the cell stack"}, params.height);
+  visitor.flag({"features.pillar", "1", 0, 1, "occupied cells beside, above and below"}, params.pillar);
+  visitor.flag({"features.extent", "1", 0, 1, "sizes of the supports"}, params.extent);
+  visitor.flag({"features.density", "1", 0, 1, "spacing of points and numbers of neighbours"}, params.density);
+  visitor.flag({"features.intensity", "1", 0, 1, "mean and spread of the intensity"}, params.intensity);
+}
+
+void describe(PerceptionParams& params, ParameterVisitor& visitor) {
+  describe(params.thin, visitor);
+  describe(params.clustering, visitor);
+  describe(params.ground, visitor);
+  describe(params.features, visitor);
+}
+
+ContentHash FeatureLayout::hash() const {
+  ContentHasher hasher;
+  hasher.add(kFeatureVersion);
+  for (const auto* names : {&columns, &edge_columns}) {
+    hasher.add(static_cast<std::uint64_t>(names->size()));
+    for (const auto& name : *names) hasher.addText(name);
+  }
+  return hasher.finish();
+}
+
+FeatureLayout featureLayout(const FeatureParams& params) {
+  FeatureLayout layout{supportColumns(params), edgeColumns()};
+  for (const auto& group : kFurtherGroups)
+    if (params.*group.wanted) append(layout.columns, group.columns());
+  return layout;
+}
+
+FeatureTile computeFeatures(const Ring<CluxelTile>& cluxels, const Ring<GroundTile>& ground,
+                            const FeatureParams& params) {
+  const CluxelTile& own = *cluxels[kRingCentre];
+  const RingCluxels gathered = gatherCluxels(cluxels);
+  const RingGraph graph = intersectionGraph(gathered);
+  const auto ball = ballShapes(cluxels, gathered);
+  const FeatureInput input{cluxels, ground, gathered, graph, ball};
+  FeatureTile tile;
+  tile.key = own.key;
+  for (const auto& moments : own.own) {
+    tile.center.push_back(moments.mean);
+    tile.point_count.push_back(static_cast<std::uint32_t>(moments.count));
+  }
+  FeatureRows rows(own.size(), featureLayout(params).columns.size());
+  std::size_t column = supportColumns(params).size();
+  fillSupportFeatures(input, params, 0, rows);
+  for (const auto& group : kFurtherGroups) {
+    if (!(params.*group.wanted)) continue;
+    group.fill(input, column, rows);
+    column += group.columns().size();
+  }
+  tile.features = rows.take();
+  fillEdges(input, tile);
+  return tile;
+}
+
+std::vector<std::string> intensityColumns() {
+  return {"intensity.mean", "intensity.deviation", "intensity.known"};
+}
+
+void fillIntensityFeatures(const FeatureInput& input, std::size_t column, FeatureRows& rows) {
+  const CluxelTile& own = input.own();
+  if (own.intensity_mean.empty()) return;
+  for (std::size_t c = 0; c < own.size(); ++c) {
+    auto out = rows.row(c, column, 3);
+    out[0] = own.intensity_mean[c];
+    out[1] = own.intensity_deviation[c];
+    out[2] = 1.0F;
+  }
+}
+
+std::string toBytes(const FeatureTile& tile) {
+  TileWriter writer("FEAT", 2, tile.key);
+  writer.put(tile.center);
+  writer.put(tile.point_count);
+  writer.put(tile.features);
+  writer.put(tile.edge_offset);
+  writer.put(tile.edge_target);
+  writer.put(tile.edge_features);
+  return writer.take();
+}
+
+FeatureTile featureTileFromBytes(std::string_view bytes) {
+  TileReader reader(bytes, "FEAT", 2);
+  FeatureTile tile;
+  tile.key = reader.key();
+  tile.center = reader.getMany<Eigen::Vector3f>();
+  const std::size_t size = tile.size();
+  tile.point_count = reader.getMany<std::uint32_t>(size);
+  tile.features = reader.getMany<float>();
+  tile.edge_offset = reader.getMany<std::uint32_t>(size + 1);
+  tile.edge_target = reader.getMany<RingIndex>();
+  tile.edge_features = reader.getMany<float>();
+  const std::size_t edges = tile.edge_target.size();
+  reader.require(isOffsets(tile.edge_offset, edges), "has edges that do not belong to a cluxel");
+  reader.require(size == 0 ? tile.features.empty() : tile.features.size() % size == 0, "has rows of different lengths");
+  for (const auto& target : tile.edge_target)
+    reader.require(target.ring < 9 && (target.ring != kRingCentre || target.index < size),
+                   "has an edge that leads nowhere");
+  tile.edge_row_offset = edgeRowOffsets(tile);
+  const std::size_t rows = tile.edge_row_offset.back();
+  reader.require(rows == 0 ? tile.edge_features.empty() : tile.edge_features.size() % rows == 0,
+                 "has edge rows of different lengths");
+  reader.require(allWithin(tile.center, kMaxHeight_m), "has a centre that is not a number");
+  reader.finish();
+  return tile;
+}
+
+}  // namespace cluxel::perception

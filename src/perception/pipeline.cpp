@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// The order of the stages, and how far a change of each output reaches.
+#include "perception/pipeline.hpp"
+
+#include <algorithm>
+#include <array>
+#include <ctime>
+#include <string>
+#include <utility>
+
+#include "base/parallel.hpp"
+
+namespace cluxel::perception {
+namespace {
+
+double processorSeconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+template <typename Tiles>
+TileSet keysOf(const Tiles& tiles) {
+  TileSet keys;
+  for (const auto& [key, tile] : tiles) keys.insert(keys.end(), key);
+  return keys;
+}
+
+/// One run over the tiles. A stage computes the tiles of which an input changed, and hands on those whose output did.
+class Run {
+ public:
+  Run(const PerceptionParams& params, TileOutputs& outputs, const RunOptions& options)
+      : params_(params), out_(outputs), options_(options) {}
+
+  void toFeatures(TileSegments segments) {
+    thin(std::move(segments));  // bounds the points where scans pile up
+    cluster();                  // points to cluxels (paper 3.1)
+    findGround();               // lowest layers of cell stacks to a surface
+    computeFeatures();          // cluxels and their 2-ring to HOR and other features (paper 3.1)
+  }
+  void toContacts(const TileLabeller& labeller, const SceneParams& params) {
+    label(labeller, params.labelling);  // features to primitive labels, by the CRF (paper 3.1)
+    joinComponents(params.component);   // intersecting cluxels of one label to components
+    findContacts(params);               // components that are near each other
+  }
+
+ private:
+  void thin(TileSegments segments) {
+    changed_points_ = update(Stage::Points, out_.points, keysOf(segments), [&](const TileKey& key) {
+      std::vector<const ScanSegment*> parts;
+      for (const ScanSegment& segment : segments.at(key)) parts.push_back(&segment);
+      return perception::thin(key, parts, params_.thin);
+    });
+    tiles_ = options_.store != nullptr ? options_.store->tiles() : keysOf(out_.points);
+    if (options_.store != nullptr) loadAround(changed_points_);
+  }
+
+  void cluster() {
+    changed_cluxels_ = update(Stage::Cluxels, out_.cluxels, around(changed_points_), [&](const TileKey& key) {
+      return clusterTile(ringIn(out_.points, key), params_.clustering);
+    });
+  }
+
+  void findGround() {
+    changed_ground_ = update(Stage::Ground, out_.ground, around(changed_cluxels_),
+                             [&](const TileKey& key) { return groundOf(ringIn(out_.cluxels, key), params_.ground); });
+  }
+
+  void computeFeatures() {
+    const TileSet dirty = around(unionOf(changed_cluxels_, changed_ground_));
+    changed_features_ = update(Stage::Features, out_.features, dirty, [&](const TileKey& key) {
+      return perception::computeFeatures(ringIn(out_.cluxels, key), ringIn(out_.ground, key), params_.features);
+    });
+  }
+
+  void label(const TileLabeller& labeller, const LabellingParams& params) {
+    changed_labels_ = update(Stage::Labels, out_.labels, around(changed_features_),
+                             [&](const TileKey& key) { return labeller.label(ringIn(out_.features, key), params); });
+  }
+
+  void joinComponents(const ComponentParams& params) {
+    const TileSet own =
+        unionOf(unionOf(changed_points_, changed_cluxels_), unionOf(changed_features_, changed_labels_));
+    const TileSet dirty = unionOf(own, around(changed_ground_));
+    changed_components_ = update(Stage::Components, out_.components, dirty, [&](const TileKey& key) {
+      return componentsOf(out_.points.at(key), out_.cluxels.at(key), out_.features.at(key), out_.labels.at(key),
+                          ringIn(out_.ground, key), params);
+    });
+  }
+
+  void findContacts(const SceneParams& params) {
+    const TileSet dirty = unionOf(changed_features_, around(unionOf(changed_components_, changed_cluxels_)));
+    update(Stage::Contacts, out_.contacts, dirty, [&](const TileKey& key) {
+      return contactsOf(ringIn(out_.components, key), ringIn(out_.cluxels, key), out_.features.at(key),
+                        params.component, params.contact);
+    });
+  }
+
+  TileSet around(const TileSet& changed) const { return withRing(changed, tiles_); }
+
+  /// Reads what the stages after the points may read: a change of points reaches contacts up to five tiles away, and
+  /// these read the sixth.
+  void loadAround(TileSet tiles) {
+    for (int ring = 0; ring < 6; ++ring) tiles = around(tiles);
+    options_.store->load(tiles, out_);
+  }
+
+  /// Computes the `dirty` tiles of one stage; returns those whose output differs from the stored one.
+  template <typename Tile, typename Compute>
+  TileSet update(Stage stage, std::map<TileKey, Tile>& tiles, const TileSet& dirty, const Compute& compute) {
+    const double start_s = processorSeconds();
+    const std::vector<TileKey> keys(dirty.begin(), dirty.end());
+    constexpr std::size_t kChunk = 64;  // bounds the bytes that wait for the store
+    TileSet changed;
+    for (std::size_t first = 0; first < keys.size(); first += kChunk) {
+      const auto chunk = std::span(keys).subspan(first, std::min(kChunk, keys.size() - first));
+      changed.merge(updateChunk(stage, tiles, chunk, compute));
+      if (options_.observer != nullptr) options_.observer->progress(stage, first + chunk.size(), keys.size());
+    }
+    if (options_.observer != nullptr) options_.observer->finished(stage, processorSeconds() - start_s);
+    return changed;
+  }
+
+  template <typename Tile, typename Compute>
+  TileSet updateChunk(Stage stage, std::map<TileKey, Tile>& tiles, std::span<const TileKey> keys,
+                      const Compute& compute) {
+    std::vector<Tile> outputs(keys.size());
+    std::vector<std::string> bytes(keys.size());
+    parallelFor(keys.size(), options_.threads, [&](std::size_t i) {
+      outputs[i] = compute(keys[i]);
+      if (options_.store != nullptr) bytes[i] = toBytes(outputs[i]);
+    });
+    TileSet changed;
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      tiles.insert_or_assign(keys[i], std::move(outputs[i]));
+      if (options_.store == nullptr || options_.store->store(stage, keys[i], bytes[i])) changed.insert(keys[i]);
+    }
+    return changed;
+  }
+
+  const PerceptionParams& params_;
+  TileOutputs& out_;
+  const RunOptions& options_;
+  TileSet tiles_;
+  TileSet changed_points_, changed_cluxels_, changed_ground_, changed_features_, changed_labels_, changed_components_;
+};
+
+}  // namespace
+
+std::string_view nameOf(Stage stage) {
+  constexpr std::array<std::string_view, kStageCount> kNames{"points", "cluxels",    "ground",  "features",
+                                                             "labels", "components", "contacts"};
+  return kNames[static_cast<std::size_t>(stage)];
+}
+
+TileSegments segmentsOf(std::span<const scan::Scan> scans) {
+  TileSegments segments;
+  for (const scan::Scan& scan : scans)
+    for (auto& [key, segment] : splitScan(scan)) segments[key].push_back(std::move(segment));
+  return segments;
+}
+
+void runStages(TileSegments segments, const TileLabeller& labeller, const SceneParams& params, TileOutputs& outputs,
+               const RunOptions& options) {
+  Run run(labeller.model().perception, outputs, options);
+  run.toFeatures(std::move(segments));
+  run.toContacts(labeller, params);
+}
+
+TileOutputs perceive(std::span<const scan::Scan> scans, const PerceptionParams& params, unsigned threads) {
+  checkRanges(params);
+  TileOutputs outputs;
+  const RunOptions options{.threads = threads};
+  Run(params, outputs, options).toFeatures(segmentsOf(scans));
+  return outputs;
+}
+
+Scene sceneOf(std::span<const scan::Scan> scans, const LabelModel& model, const SceneParams& params, unsigned threads) {
+  checkRanges(model.perception);
+  TileOutputs outputs;
+  runStages(segmentsOf(scans), TileLabeller(model), params, outputs, {.threads = threads});
+  return assembleScene(outputs, params.relation);
+}
+
+}  // namespace cluxel::perception

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sequence of perception's stages, from scans to the scene. One sequence serves maps, which keep outputs and
+// recompute what a change reaches, and runs in memory: training, rule tests on clouds, benchmarks.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "perception/crf/labelling.hpp"
+#include "perception/segments/scene_assembly.hpp"
+
+namespace cluxel::perception {
+
+/// The stages that write one output per tile, in the order in which they run.
+enum class Stage : std::uint8_t { Points, Cluxels, Ground, Features, Labels, Components, Contacts };
+inline constexpr std::size_t kStageCount = 7;
+
+/// "points", "cluxels", "ground", "features", "labels", "components", "contacts".
+std::string_view nameOf(Stage stage);
+
+/// Settings of the stages after the features. (Settings up to the features belong to the model.)
+struct SceneParams {
+  LabellingParams labelling;
+  ComponentParams component;
+  ContactParams contact;
+  RelationParams relation;
+};
+
+/// Points of scans by tile, the input of the first stage.
+using TileSegments = std::map<TileKey, std::vector<ScanSegment>>;
+
+/// Cuts scans into tiles. Errors and cost as for splitScan().
+TileSegments segmentsOf(std::span<const scan::Scan> scans);
+
+/// Keeps outputs beyond a run, so that a later run recomputes only what has changed. Called from one thread.
+class OutputStore {
+ public:
+  virtual ~OutputStore() = default;
+  /// All tiles of the place, those of the new segments included.
+  virtual TileSet tiles() const = 0;
+  /// Reads the stored outputs of `tiles` into `outputs`, except those that are there. Contacts may be left out: no
+  /// stage reads them.
+  virtual void load(const TileSet& tiles, TileOutputs& outputs) = 0;
+  /// Stores one output; false when the stored bytes are the same.
+  virtual bool store(Stage stage, const TileKey& key, std::string_view bytes) = 0;
+};
+
+/// Watches a run. Called from one thread.
+class StageObserver {
+ public:
+  virtual ~StageObserver() = default;
+  virtual void progress(Stage /*stage*/, std::size_t /*done*/, std::size_t /*total*/) {}
+  /// `cpu_s` is the processor time of the stage, all threads together.
+  virtual void finished(Stage /*stage*/, double /*cpu_s*/) {}
+};
+
+struct RunOptions {
+  unsigned threads = 1;               ///< outputs do not depend on it
+  OutputStore* store = nullptr;       ///< without a store every tile is computed and kept in memory only
+  StageObserver* observer = nullptr;  ///< may be absent
+};
+
+/// Runs all stages: brings `outputs` and the store up to date after `segments` came in. With a store, `segments` must
+/// hold all segments of each tile that got a new one. `outputs` then holds what was read or computed.
+void runStages(TileSegments segments, const TileLabeller& labeller, const SceneParams& params, TileOutputs& outputs,
+               const RunOptions& run);
+
+/// The same up to the features, in memory. The scans may come in any order.
+TileOutputs perceive(std::span<const scan::Scan> scans, const PerceptionParams& params, unsigned threads);
+
+/// The scene of some scans, in memory. The scans may come in any order.
+Scene sceneOf(std::span<const scan::Scan> scans, const LabelModel& model, const SceneParams& params, unsigned threads);
+
+}  // namespace cluxel::perception

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Monotone chain for the hull. The smallest box tries the direction of every side.
+#include "perception/segments/footprint_hull.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "base/steady_angle.hpp"
+
+namespace cluxel::perception {
+
+namespace {
+
+bool lessXy(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
+}
+
+double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
+  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+}
+
+/// One half of the hull of sorted points, without its last point, which belongs to the other half.
+template <typename Iterator>
+void appendChain(Iterator begin, Iterator end, std::vector<Eigen::Vector2d>& hull) {
+  const std::size_t start = hull.size();
+  for (Iterator point = begin; point != end; ++point) {
+    while (hull.size() >= start + 2 && turn(hull[hull.size() - 2], hull.back(), *point) <= 0) hull.pop_back();
+    hull.push_back(*point);
+  }
+  hull.pop_back();
+}
+
+FootprintBox boxAlong(const std::vector<Eigen::Vector2d>& hull, const Eigen::Vector2d& direction) {
+  const Eigen::Vector2d across(-direction.y(), direction.x());
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Eigen::Vector2d low(kInfinity, kInfinity), high(-kInfinity, -kInfinity);
+  for (const Eigen::Vector2d& point : hull) {
+    const Eigen::Vector2d rotated(point.dot(direction), point.dot(across));
+    low = low.cwiseMin(rotated);
+    high = high.cwiseMax(rotated);
+  }
+  const Eigen::Vector2d middle = 0.5 * (low + high), size = high - low;
+  FootprintBox box;
+  box.center = middle.x() * direction + middle.y() * across;
+  box.length_m = size.x();
+  box.width_m = size.y();
+  box.yaw_rad = steady(std::atan2(direction.y(), direction.x()));
+  return box;
+}
+
+FootprintBox longSideFirst(FootprintBox box) {
+  if (box.width_m > box.length_m) {
+    std::swap(box.length_m, box.width_m);
+    box.yaw_rad += std::numbers::pi / 2;
+  }
+  while (box.yaw_rad >= std::numbers::pi / 2) box.yaw_rad -= std::numbers::pi;
+  while (box.yaw_rad < -std::numbers::pi / 2) box.yaw_rad += std::numbers::pi;
+  return box;
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector2d> convexHull(std::vector<Eigen::Vector2d> points) {
+  std::sort(points.begin(), points.end(), lessXy);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  if (points.size() < 3) return points;
+  std::vector<Eigen::Vector2d> hull;
+  appendChain(points.begin(), points.end(), hull);
+  appendChain(points.rbegin(), points.rend(), hull);
+  return hull;
+}
+
+FootprintBox smallestBox(const std::vector<Eigen::Vector2d>& hull) {
+  if (hull.empty()) return {};
+  FootprintBox best = boxAlong(hull, Eigen::Vector2d::UnitX());
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const Eigen::Vector2d side = hull[(i + 1) % hull.size()] - hull[i];
+    if (side.norm() < 1e-9) continue;
+    const FootprintBox box = boxAlong(hull, side.normalized());
+    if (box.length_m * box.width_m < best.length_m * best.width_m) best = box;
+  }
+  return longSideFirst(best);
+}
+
+}  // namespace cluxel::perception

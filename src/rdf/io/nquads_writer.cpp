@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sorted canonical N-Quads.
+#include <algorithm>
+#include <vector>
+
+#include "rdf/io/rdf_io.hpp"
+
+namespace cluxel::rdf {
+
+void writeSortedNQuads(const QuadReader& reader, const TextSink& out, const std::function<bool(const Quad&)>& keep) {
+  std::vector<std::string> lines;
+  QuadCursor cursor = reader.scan({}, QuadOrder::Spog);
+  for (QuadIds ids; cursor.next(ids);) {
+    const Quad quad{reader.termOf(ids.s), reader.termOf(ids.p), reader.termOf(ids.o), reader.termOf(ids.g)};
+    if (!keep || keep(quad)) lines.push_back(toNQuads(quad));
+  }
+  std::sort(lines.begin(), lines.end());
+  lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
+  for (const std::string& line : lines) out(line);
+}
+
+}  // namespace cluxel::rdf

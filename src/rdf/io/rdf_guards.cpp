@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Checks of a text before it is passed to raptor.
+#include "rdf/io/rdf_guards.hpp"
+
+#include <algorithm>
+
+#include "base/utf8.hpp"
+#include "cluxel/error.hpp"
+
+namespace cluxel::rdf {
+
+namespace {
+
+// Raptor keeps the length of a language tag in one byte and reads beyond the tag when it is longer.
+constexpr std::size_t kMaxTagBytes = 255;
+
+[[noreturn]] void refuse(const RdfSource& source, std::size_t at, const char* what, const char* remedy = "") {
+  throw InputError(locate(source.name, source.text, at), what, remedy);
+}
+
+bool isTagByte(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+}
+
+void refuseLongTags(const RdfSource& source) {
+  const std::string& text = source.text;
+  for (std::size_t at = text.find('@'); at != std::string::npos; at = text.find('@', at + 1)) {
+    std::size_t length = 0;
+    while (at + 1 + length < text.size() && isTagByte(text[at + 1 + length])) ++length;
+    if (length > kMaxTagBytes) refuse(source, at, "the language tag is longer than 255 bytes");
+  }
+}
+
+/// In RDF/XML the tag is an attribute; entities and declared default values could hide its length.
+void refuseLongXmlTags(const RdfSource& source) {
+  const std::string& text = source.text;
+  if (const std::size_t at = text.find("<!ATTLIST"); at != std::string::npos)
+    refuse(source, at, "declared attributes are not supported", "write the attributes out");
+  for (std::size_t at = text.find("xml:lang"); at != std::string::npos; at = text.find("xml:lang", at + 1)) {
+    const std::size_t open = text.find_first_of("'\"", at);
+    if (open == std::string::npos) return;
+    const std::size_t close = std::min(text.find(text[open], open + 1), text.size());
+    const std::string_view tag = std::string_view(text).substr(open + 1, close - open - 1);
+    if (tag.size() > kMaxTagBytes || tag.find('&') != std::string_view::npos)
+      refuse(source, at, "the language tag is longer than 255 bytes, or is made with entities");
+  }
+}
+
+}  // namespace
+
+void refuseHostileText(const RdfSource& source) {
+  if (source.format == RdfFormat::RdfXml) return refuseLongXmlTags(source);  // XML declares its encoding
+  if (const auto offset = firstInvalidUtf8(source.text))
+    refuse(source, *offset, "is not UTF-8", "save the file in UTF-8");
+  if (const std::size_t zero = source.text.find('\0'); zero != std::string::npos)
+    refuse(source, zero, "holds a zero byte, which no RDF text has");
+  refuseLongTags(source);
+}
+
+}  // namespace cluxel::rdf

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads and writes RDF: Turtle, N-Triples, N-Quads, TriG and RDF/XML.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "cluxel/term.hpp"
+#include "rdf/store/quad_store.hpp"
+
+namespace cluxel::rdf {
+
+enum class RdfFormat { Turtle, NTriples, NQuads, TriG, RdfXml };
+
+/// The format of a file name's extension: .ttl .nt .nq .trig .rdf .owl .xml.
+std::optional<RdfFormat> rdfFormatOf(const std::filesystem::path& file);
+/// The format of a name or media type: "turtle", "ttl", "ntriples", "nt", "nquads", "nq", "trig", "rdfxml",
+/// "text/turtle" …
+std::optional<RdfFormat> rdfFormatNamed(std::string_view name);
+
+/// An RDF text and the context needed to parse it.
+struct RdfSource {
+  std::string text;
+  std::string name;  ///< the file name in messages
+  RdfFormat format = RdfFormat::Turtle;
+  std::string base_iri;        ///< for relative IRIs; if empty, a relative IRI is an error
+  Term graph = Term::iri("");  ///< the graph of statements without one
+};
+
+/// Reads a file as a source whose base IRI is its file: IRI. InputError when the extension is unknown.
+RdfSource readRdfSource(const std::filesystem::path& file, const Term& graph = Term::iri(""));
+
+/// Calls `take` for every quad, in document order. Blank node labels are derived from a hash of text, base and graph:
+/// equal sources give equal labels, different sources disjoint ones. Throws one InputError with all faults as
+/// file:line:col; `take` may have been called before. Cost: about a million statements per second for N-Quads.
+void parseRdf(const RdfSource& source, const std::function<void(const Quad&)>& take);
+
+/// Parses into a store and returns the number of statements. After an error the transaction must be dropped.
+std::uint64_t loadRdf(const RdfSource& source, QuadWriter& writer);
+inline std::uint64_t loadRdf(const std::filesystem::path& file, const Term& graph, QuadWriter& writer) {
+  return loadRdf(readRdfSource(file, graph), writer);
+}
+
+using TextSink = std::function<void(std::string_view)>;
+/// Pairs of a prefix without the colon and its namespace IRI.
+using RdfPrefixes = std::map<std::string, std::string, std::less<>>;
+/// clx, rdf, rdfs, owl, xsd, geo, sosa, prov, skos.
+const RdfPrefixes& commonPrefixes();
+
+/// Canonical N-Quads without duplicates, sorted bytewise: of all graphs or of the given one, restricted to the quads
+/// that `keep` accepts.
+void writeSortedNQuads(const QuadReader& reader, const TextSink& out,
+                       const std::function<bool(const Quad&)>& keep = {});
+/// Turtle of one graph, or of the union of all graphs but history when `graph` is absent. Subjects are sorted by term,
+/// rdf:type comes first, duplicates are removed, and lexical forms are preserved.
+void writeTurtle(const QuadReader& reader, const std::optional<Term>& graph, const TextSink& out,
+                 const RdfPrefixes& prefixes = commonPrefixes());
+
+}  // namespace cluxel::rdf

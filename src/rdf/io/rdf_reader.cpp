@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parses RDF with raptor: statements become quads, messages become diagnostics.
+#include <raptor2.h>
+
+#include <algorithm>
+#include <exception>
+#include <memory>
+#include <unordered_map>
+
+#include "base/content_hash.hpp"
+#include "cluxel/error.hpp"
+#include "rdf/io/rdf_faults.hpp"
+#include "rdf/io/rdf_guards.hpp"
+#include "rdf/io/rdf_io.hpp"
+
+namespace cluxel::rdf {
+
+namespace {
+
+// No RDF syntax allows this in a label, so generated labels cannot collide with written ones.
+constexpr char kGeneratedPrefix[] = "~";
+
+struct RaptorDeleter {
+  void operator()(raptor_world* world) const { raptor_free_world(world); }
+  void operator()(raptor_parser* parser) const { raptor_free_parser(parser); }
+  void operator()(raptor_uri* uri) const { raptor_free_uri(uri); }
+};
+template <typename T>
+using Raptor = std::unique_ptr<T, RaptorDeleter>;
+
+const unsigned char* bytes(const std::string& text) {
+  return reinterpret_cast<const unsigned char*>(text.c_str());
+}
+
+std::string_view viewOf(const unsigned char* text, std::size_t size) {
+  return {reinterpret_cast<const char*>(text), size};
+}
+
+std::string_view viewOf(raptor_uri* uri) {
+  std::size_t size = 0;
+  const unsigned char* text = raptor_uri_as_counted_string(uri, &size);
+  return viewOf(text, size);
+}
+
+const char* parserName(RdfFormat format) {
+  switch (format) {
+    case RdfFormat::Turtle:
+      return "turtle";
+    case RdfFormat::NTriples:
+      return "ntriples";
+    case RdfFormat::NQuads:
+      return "nquads";
+    case RdfFormat::TriG:
+      return "trig";
+    case RdfFormat::RdfXml:
+      break;
+  }
+  return "rdfxml";
+}
+
+/// Labels "b<hash of source>_<n>", where n counts blank nodes in document order.
+class BlankLabels {
+ public:
+  explicit BlankLabels(const RdfSource& source) {
+    ContentHasher hasher;
+    hasher.addText(source.text).addText(source.base_iri).addText(toNTriples(source.graph));
+    prefix_ = "b" + hasher.finish().hex().substr(0, 12) + "_";
+  }
+
+  const std::string& labelOf(std::string_view written) {
+    const auto [entry, is_new] = labels_.try_emplace(std::string(written));
+    if (is_new) entry->second = prefix_ + std::to_string(labels_.size());
+    return entry->second;
+  }
+
+ private:
+  std::string prefix_;
+  std::unordered_map<std::string, std::string> labels_;
+};
+
+/// One run of raptor's parser. Exceptions are stored and rethrown after raptor's C frames have returned.
+class Reading {
+ public:
+  Reading(const RdfSource& source, const std::function<void(const Quad&)>& take)
+      : source_(source), take_(take), labels_(source), faults_(source) {
+    quad_.graph = source.graph;
+  }
+
+  void run();
+
+ private:
+  static void onStatement(void* reading, raptor_statement* statement) {
+    static_cast<Reading*>(reading)->take(*statement);
+  }
+  static void onMessage(void* reading, raptor_log_message* message) { static_cast<Reading*>(reading)->note(*message); }
+
+  void take(const raptor_statement& statement) {
+    if (failure_) return;
+    try {
+      fill(quad_.subject, *statement.subject);
+      fill(quad_.predicate, *statement.predicate);
+      fill(quad_.object, *statement.object);
+      if (statement.graph != nullptr)
+        fill(quad_.graph, *statement.graph);
+      else
+        quad_.graph = source_.graph;
+      take_(quad_);
+    } catch (...) {
+      failure_ = std::current_exception();
+      raptor_parser_parse_abort(parser_.get());
+    }
+  }
+
+  void note(const raptor_log_message& message) {
+    if (message.level < RAPTOR_LOG_LEVEL_ERROR || failure_) return;
+    const raptor_locator* at = message.locator;
+    faults_.add(at == nullptr || at->line < 0 ? 0 : static_cast<std::size_t>(at->line),
+                at == nullptr || at->column < 0 ? 0 : static_cast<std::size_t>(at->column), message.text);
+  }
+
+  void fill(Term& term, const raptor_term& from);
+
+  const RdfSource& source_;
+  const std::function<void(const Quad&)>& take_;
+  BlankLabels labels_;
+  RdfFaults faults_;
+  Quad quad_;
+  std::exception_ptr failure_;
+  Raptor<raptor_parser> parser_;
+};
+
+void Reading::fill(Term& term, const raptor_term& from) {
+  switch (from.type) {
+    case RAPTOR_TERM_TYPE_URI:
+      term = Term::iri(viewOf(from.value.uri));
+      return;
+    case RAPTOR_TERM_TYPE_BLANK:
+      term = Term::blank(labels_.labelOf(viewOf(from.value.blank.string, from.value.blank.string_len)));
+      return;
+    default:
+      break;
+  }
+  const auto& literal = from.value.literal;
+  const std::string_view lexical = viewOf(literal.string, literal.string_len);
+  if (literal.language != nullptr && literal.language_len > 0)
+    term = Term::langLiteral(lexical, viewOf(literal.language, literal.language_len));
+  else if (literal.datatype != nullptr)
+    term = Term::literal(lexical, viewOf(literal.datatype));
+  else
+    term = Term::literal(lexical);
+}
+
+void Reading::run() {
+  const Raptor<raptor_world> world(raptor_new_world());
+  if (!world || raptor_world_open(world.get()) != 0) throw std::bad_alloc();
+  raptor_world_set_log_handler(world.get(), this, &Reading::onMessage);
+  raptor_world_set_generate_bnodeid_parameters(world.get(), const_cast<char*>(kGeneratedPrefix), 1);
+  parser_.reset(raptor_new_parser(world.get(), parserName(source_.format)));
+  if (!parser_) throw std::bad_alloc();
+  raptor_parser_set_statement_handler(parser_.get(), this, &Reading::onStatement);
+  raptor_parser_set_option(parser_.get(), RAPTOR_OPTION_NO_NET, nullptr, 1);
+  raptor_parser_set_option(parser_.get(), RAPTOR_OPTION_NO_FILE, nullptr, 1);
+  const std::string base = source_.base_iri.empty() ? std::string("invalid:/") : source_.base_iri;
+  const Raptor<raptor_uri> uri(raptor_new_uri(world.get(), bytes(base)));
+  if (!uri) throw InputError({.file = source_.name}, "the base IRI '" + base + "' is malformed");
+  raptor_parser_parse_start(parser_.get(), uri.get());
+  // Some editors write a byte order mark, which raptor accepts in XML only.
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  const bool skips = source_.format != RdfFormat::RdfXml && source_.text.starts_with(byte_order_mark);
+  const std::size_t from = skips ? byte_order_mark.size() : 0;
+  raptor_parser_parse_chunk(parser_.get(), bytes(source_.text) + from, source_.text.size() - from, 1);
+  parser_.reset();
+  if (failure_) std::rethrow_exception(failure_);
+  faults_.throwIfAny();
+}
+
+}  // namespace
+
+void parseRdf(const RdfSource& source, const std::function<void(const Quad&)>& take) {
+  refuseHostileText(source);
+  Reading(source, take).run();
+}
+
+std::uint64_t loadRdf(const RdfSource& source, QuadWriter& writer) {
+  std::uint64_t count = 0;
+  parseRdf(source, [&](const Quad& quad) {
+    writer.add(quad);
+    ++count;
+  });
+  return count;
+}
+
+}  // namespace cluxel::rdf

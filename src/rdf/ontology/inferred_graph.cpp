@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Maintains the graph `inferred` as the closure of the other graphs.
+#include <algorithm>
+#include <iterator>
+
+#include "rdf/ontology/ontology.hpp"
+#include "rdf/vocabulary.hpp"
+
+namespace cluxel::rdf {
+
+namespace {
+
+using namespace vocabulary;
+
+struct GraphIds {
+  TermId inferred = 0;
+  std::vector<TermId> stated;  ///< ontology, observed, operator
+};
+
+GraphIds internGraphs(QuadWriter& writer) {
+  GraphIds ids;
+  ids.inferred = writer.intern(Term::iri(kGraphInferred));
+  for (const std::string_view graph : {kGraphOntology, kGraphObserved, kGraphOperator})
+    ids.stated.push_back(writer.intern(Term::iri(graph)));
+  writer.flush();
+  return ids;
+}
+
+std::vector<QuadIds> quadsOf(const QuadReader& reader, TermId graph) {
+  std::vector<QuadIds> quads;
+  QuadCursor cursor = reader.scan({.s = {}, .p = {}, .o = {}, .g = graph}, QuadOrder::Gspo);
+  for (QuadIds quad; cursor.next(quad);) quads.push_back(quad);
+  return quads;
+}
+
+}  // namespace
+
+ClosureChange inferClosure(WriteTransaction& transaction) {
+  QuadWriter writer(transaction);
+  const GraphIds graphs = internGraphs(writer);
+  const QuadReader reader(transaction);
+  const std::vector<QuadIds> wanted = closureOf(reader, graphs.inferred, graphs.stated);
+  const std::vector<QuadIds> present = quadsOf(reader, graphs.inferred);
+  std::vector<QuadIds> added;
+  std::vector<QuadIds> removed;
+  std::set_difference(wanted.begin(), wanted.end(), present.begin(), present.end(), std::back_inserter(added));
+  std::set_difference(present.begin(), present.end(), wanted.begin(), wanted.end(), std::back_inserter(removed));
+  for (const QuadIds& quad : added) writer.add(quad);
+  for (const QuadIds& quad : removed) writer.remove(quad);
+  writer.flush();
+  return {added.size(), removed.size()};
+}
+
+ClosureChange extendClosure(WriteTransaction& transaction) {
+  QuadWriter writer(transaction);
+  GraphIds graphs = internGraphs(writer);
+  graphs.stated.push_back(graphs.inferred);
+  const std::vector<QuadIds> added = closureOf(QuadReader(transaction), graphs.inferred, graphs.stated);
+  for (const QuadIds& quad : added) writer.add(quad);
+  writer.flush();
+  return {added.size(), 0};
+}
+
+}  // namespace cluxel::rdf

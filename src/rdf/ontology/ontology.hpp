@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// The conceptual layer: loads ontologies, computes their closure, and gives a view of the classes for rules and user
+// interfaces.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cluxel/error.hpp"
+#include "rdf/io/rdf_io.hpp"
+#include "rdf/store/quad_store.hpp"
+
+namespace cluxel::rdf {
+
+enum class Mobility { Unknown, Static, Movable };
+
+/// A usual place of a class: near objects of another class.
+struct UsualPlace {
+  std::string near_class;  ///< IRI
+  double within_m = 0;
+  double probability = 0;  ///< in [0, 1]
+  auto operator<=>(const UsualPlace&) const = default;
+};
+
+/// One class of the ontology. All names are IRIs; lists are sorted and have no duplicates.
+struct OntologyClass {
+  std::string iri;
+  std::map<std::string, std::string> labels;  ///< by language tag; "" for none
+  std::string comment;                        ///< English
+  std::string color;                          ///< "#rrggbb", inherited from the nearest superclass, or ""
+  Mobility mobility = Mobility::Unknown;      ///< inherited as the colour is
+  std::vector<std::string> superclasses;      ///< direct ones
+  std::vector<std::string> ancestors;         ///< all superclasses, without the class itself
+  std::vector<std::string> parts;             ///< classes of its parts, including those inherited from ancestors
+  std::vector<UsualPlace> places;             ///< not inherited; most probable first
+
+  /// The label in a language, else in English, else the local name of the IRI.
+  std::string label(std::string_view language = "en") const;
+};
+
+/// A property and the unit of its values.
+struct OntologyProperty {
+  std::string iri, label, comment, unit;  ///< texts are English; unit is "" when there is none
+};
+
+/// The classes and properties of an ontology as values.
+struct OntologyView {
+  std::vector<OntologyClass> classes;        ///< sorted by IRI
+  std::vector<OntologyProperty> properties;  ///< sorted by IRI
+
+  const OntologyClass* find(std::string_view iri) const;
+  /// True when `iri` is `ancestor` or a subclass of it.
+  bool isA(std::string_view iri, std::string_view ancestor) const;
+  std::vector<std::string> classNames() const;  ///< the IRIs, for "did you mean"
+};
+
+/// Reads the classes from a graph of the store, by default the ontology graph.
+OntologyView ontologyViewOf(const QuadReader& reader, std::string_view graph = "");
+/// Reads the classes from texts, without a store. Throws InputError as loadOntology() does.
+OntologyView ontologyViewOf(std::span<const RdfSource> sources);
+
+/// Loads ontologies into the ontology graph, whatever graph the sources name. Throws one InputError with all faults:
+/// syntax, subclass cycles, malformed colours, mobilities and probabilities, places and parts of unknown classes. After
+/// an error the transaction must be dropped. Does not flush.
+void loadOntology(std::span<const RdfSource> sources, QuadWriter& writer);
+
+/// The quads entailed by the source graphs and not contained in them, sorted, with graph `target`. Rules, to a
+/// fixpoint: rdfs:subClassOf and rdfs:subPropertyOf with their transitivity, rdf:type of superclasses, owl:inverseOf,
+/// owl:SymmetricProperty, owl:TransitiveProperty. rdfs:domain and rdfs:range are left out, so that a misused property
+/// remains visible as a fault instead of becoming a type. Cost: linear in the quads of rdf:type and of properties with
+/// implications.
+std::vector<QuadIds> closureOf(const QuadReader& reader, TermId target, std::span<const TermId> sources);
+
+struct ClosureChange {
+  std::uint64_t added = 0, removed = 0;  ///< quads
+};
+/// Replaces the graph `inferred` by the closure of ontology, observed and operator. Writes only the differences, and
+/// flushes.
+ClosureChange inferClosure(WriteTransaction& transaction);
+/// Adds to the graph `inferred` the closure of ontology, observed, operator and inferred itself, and keeps the facts
+/// that rules have written there. Flushes.
+ClosureChange extendClosure(WriteTransaction& transaction);
+
+}  // namespace cluxel::rdf

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Registers Cluxel maps as the librdf storage "cluxel".
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "rdf/store/environment.hpp"
+
+struct librdf_world_s;
+struct librdf_storage_s;
+
+namespace cluxel::rdf {
+
+/// Registers the storage "cluxel" in a world. The storage's name is the map file. Options: new='yes' creates a map,
+/// which must not exist; write='no' opens read-only; strict='yes' makes the default graph the unnamed graph instead of
+/// the union of all graphs but history. Use one world per thread. Each change outside a transaction is a commit of its
+/// own, so add streams or use transactions.
+void registerRedlandStorage(librdf_world_s* world);
+
+/// What an open storage "cluxel" sees: its transaction when it has one, else the latest commit. Nothing for a storage
+/// of another kind.
+struct RedlandView {
+  std::shared_ptr<Environment> environment;
+  ReadTransaction transaction;
+  bool strict = false;
+};
+std::optional<RedlandView> viewRedlandStorage(librdf_storage_s* storage);
+
+}  // namespace cluxel::rdf

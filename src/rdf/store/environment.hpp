@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// An LMDB environment with transactions; it holds the quads and blocks of a map.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace cluxel::rdf {
+
+enum class OpenMode { ReadOnly, ReadWrite, Create };  ///< Create: the file must not exist yet
+
+class ReadTransaction;
+class WriteTransaction;
+
+/// An open map file. A process opens a file once; opening it again returns the same environment. Thread-safe.
+/// Throws Error (StoreUnavailable) with file and remedy: not a map, newer format, locked, disk full.
+class Environment : public std::enable_shared_from_this<Environment> {
+ public:
+  static std::shared_ptr<Environment> open(const std::filesystem::path& file, OpenMode mode);
+  /// An environment in a temporary file that is removed with it: for queries over Turtle files, and for tests.
+  static std::shared_ptr<Environment> temporary();
+  virtual ~Environment() = default;
+
+  /// Opens a snapshot, for use by one thread at a time. Cost: microseconds.
+  virtual ReadTransaction read() const = 0;
+  /// Starts the write transaction. Waits for another writer of this process; throws when another process is writing.
+  virtual WriteTransaction write() = 0;
+  virtual const std::filesystem::path& file() const = 0;
+  /// Writes a compact copy to `target`.
+  virtual void compactTo(const std::filesystem::path& target) const = 0;
+};
+
+/// A snapshot of one commit. Also the base of a write transaction, which sees its own writes.
+class ReadTransaction {
+ public:
+  struct Impl;
+  explicit ReadTransaction(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
+  /// The block `key` of the block table `table`, with verified checksum. Valid until the transaction ends and, in a
+  /// write transaction, until the next write. Throws Error (StoreUnavailable) when the checksum is wrong.
+  std::optional<std::string_view> block(std::string_view table, std::string_view key) const;
+  /// Visits the blocks whose key starts with `prefix`, in bytewise key order.
+  void forEachBlock(std::string_view table, std::string_view prefix,
+                    const std::function<void(std::string_view key, std::string_view bytes)>& visit) const;
+  Impl& impl() const { return *impl_; }
+
+ protected:
+  std::shared_ptr<Impl> impl_;
+};
+
+/// Atomic: without commit() all changes are rolled back.
+class WriteTransaction : public ReadTransaction {
+ public:
+  using ReadTransaction::ReadTransaction;
+  void putBlock(std::string_view table, std::string_view key, std::string_view bytes);
+  bool eraseBlock(std::string_view table, std::string_view key);  ///< false when the block does not exist
+  void commit();
+};
+
+}  // namespace cluxel::rdf

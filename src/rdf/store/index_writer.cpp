@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes an index by appending, by single puts, or by rewriting it.
+#include "rdf/store/index_writer.hpp"
+
+#include <algorithm>
+
+namespace cluxel::rdf {
+
+namespace {
+
+// Every index stores its entries as MDB_DUPFIXED duplicates of this key.
+constexpr std::string_view kIndexKey = "q";
+
+// The cost of a single put, in keys written by appending.
+constexpr std::uint64_t kPutCost = 4;
+
+/// A write cursor on one index.
+class IndexCursor {
+ public:
+  IndexCursor(ReadTransaction::Impl& transaction, Table index) : transaction_(transaction) {
+    MDB_cursor* raw = nullptr;
+    transaction.check(mdb_cursor_open(transaction.live(), transaction.table(index), &raw), "write an index");
+    cursor_.reset(raw);
+  }
+
+  void append(Key128 number) { put(number, MDB_APPENDDUP); }
+
+  void insert(Key128 number) {
+    const int code = tryPut(number, MDB_NODUPDATA);
+    if (code != MDB_KEYEXIST) transaction_.check(code, "write an index");
+  }
+
+  /// The last key, if any.
+  std::optional<Key128> last() {
+    MDB_val key;
+    MDB_val value;
+    if (mdb_cursor_get(cursor_.get(), &key, &value, MDB_LAST) != MDB_SUCCESS) return std::nullopt;
+    return toNumber(*static_cast<const QuadKey*>(value.mv_data));
+  }
+
+  MDB_cursor* get() const { return cursor_.get(); }
+
+ private:
+  void put(Key128 number, unsigned flags) { transaction_.check(tryPut(number, flags), "write an index"); }
+
+  int tryPut(Key128 number, unsigned flags) {
+    QuadKey bytes = toKey(number);
+    MDB_val key = toVal(kIndexKey);
+    MDB_val value{sizeof bytes, bytes.bytes.data()};
+    return mdb_cursor_put(cursor_.get(), &key, &value, flags);
+  }
+
+  ReadTransaction::Impl& transaction_;
+  CursorHandle cursor_;
+};
+
+std::uint64_t entriesOf(const ReadTransaction::Impl& transaction, Table index) {
+  MDB_stat stat;
+  transaction.check(mdb_stat(transaction.live(), transaction.table(index), &stat), "read an index");
+  return stat.ms_entries;
+}
+
+std::vector<Key128> allKeys(ReadTransaction::Impl& transaction, Table index) {
+  const IndexCursor cursor(transaction, index);
+  const PageDirectory directory(cursor.get());
+  std::vector<Key128> keys;
+  keys.reserve(entriesOf(transaction, index));
+  for (std::size_t i = 0; i < directory.pageCount(); ++i)
+    for (const QuadKey& key : directory.page(i)) keys.push_back(toNumber(key));
+  return keys;
+}
+
+void writeAnew(ReadTransaction::Impl& transaction, Table index, const IndexChange& change) {
+  const std::vector<Key128> old = allKeys(transaction, index);
+  std::vector<Key128> kept;
+  kept.reserve(old.size());
+  std::set_difference(old.begin(), old.end(), change.removed.begin(), change.removed.end(), std::back_inserter(kept));
+  std::vector<Key128> merged;
+  merged.reserve(kept.size() + change.added.size());
+  std::set_union(kept.begin(), kept.end(), change.added.begin(), change.added.end(), std::back_inserter(merged));
+  transaction.check(mdb_drop(transaction.live(), transaction.table(index), 0), "write an index");
+  IndexCursor cursor(transaction, index);
+  for (const Key128 key : merged) cursor.append(key);
+}
+
+/// Uses mdb_del only: loops of mdb_cursor_del over duplicates corrupt the file in LMDB 0.9.24.
+void removeSingly(ReadTransaction::Impl& transaction, Table index, const std::vector<Key128>& removed) {
+  for (const Key128 number : removed) {
+    QuadKey bytes = toKey(number);
+    MDB_val key = toVal(kIndexKey);
+    MDB_val value{sizeof bytes, bytes.bytes.data()};
+    const int code = mdb_del(transaction.live(), transaction.table(index), &key, &value);
+    if (code != MDB_NOTFOUND) transaction.check(code, "write an index");
+  }
+}
+
+void addSingly(ReadTransaction::Impl& transaction, Table index, const std::vector<Key128>& added) {
+  IndexCursor cursor(transaction, index);
+  const std::optional<Key128> last = cursor.last();
+  const auto beyond = last ? std::upper_bound(added.begin(), added.end(), *last) : added.begin();
+  for (auto key = added.begin(); key != beyond; ++key) cursor.insert(*key);
+  for (auto key = beyond; key != added.end(); ++key) cursor.append(*key);
+}
+
+}  // namespace
+
+void applyTo(ReadTransaction::Impl& transaction, Table index, const IndexChange& change) {
+  const std::uint64_t changes = change.added.size() + change.removed.size();
+  const std::uint64_t entries = entriesOf(transaction, index);
+  if (entries > 0 && changes * kPutCost > entries + 1000) return writeAnew(transaction, index, change);
+  removeSingly(transaction, index, change.removed);
+  addSingly(transaction, index, change.added);
+}
+
+}  // namespace cluxel::rdf

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Applies sorted changes to one index of 16-byte keys.
+#pragma once
+
+#include <vector>
+
+#include "rdf/store/lmdb_environment.hpp"
+#include "rdf/store/page_directory.hpp"
+
+namespace cluxel::rdf {
+
+/// Changes to an index: both lists are ascending, without duplicates, and disjoint.
+struct IndexChange {
+  std::vector<Key128> added, removed;
+};
+
+/// Applies the change: appends keys after the last one, puts single keys, and rewrites the index by a merge when the
+/// change is large. Adding an existing key or removing a missing one has no effect.
+void applyTo(ReadTransaction::Impl& transaction, Table index, const IndexChange& change);
+
+}  // namespace cluxel::rdf

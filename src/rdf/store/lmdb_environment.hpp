@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// The LMDB environment and the state of transactions.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "rdf/store/environment.hpp"
+#include "rdf/store/lmdb_handles.hpp"
+
+namespace cluxel::rdf {
+
+class StoreSnapshot;
+class ValueCache;
+
+/// The LMDB databases of a map file. An index is one constant key with sorted 16-byte values.
+enum class Table : std::uint8_t { Blocks, Terms, TermHashes, Spog, Posg, Ospg, Gspo };
+inline constexpr std::size_t kTableCount = 7;
+inline constexpr std::array<const char*, kTableCount> kTableNames = {"blocks", "terms", "hashes", "spog",
+                                                                     "posg",   "ospg",  "gspo"};
+
+constexpr unsigned tableFlags(Table table) {
+  switch (table) {
+    case Table::Blocks:
+      return 0;
+    case Table::Terms:
+      return MDB_INTEGERKEY;
+    default:
+      return MDB_DUPSORT | MDB_DUPFIXED;
+  }
+}
+
+class LmdbEnvironment final : public Environment {
+ public:
+  /// `data_lock` is the file descriptor that holds the writer's lock; the environment takes ownership.
+  LmdbEnvironment(std::filesystem::path file, EnvHandle handle, int data_lock, bool can_write);
+  ~LmdbEnvironment() override;
+  LmdbEnvironment(const LmdbEnvironment&) = delete;
+  LmdbEnvironment& operator=(const LmdbEnvironment&) = delete;
+
+  ReadTransaction read() const override;
+  WriteTransaction write() override;
+  const std::filesystem::path& file() const override { return file_; }
+  void compactTo(const std::filesystem::path& target) const override;
+
+  MDB_env* handle() const { return handle_.get(); }
+  MDB_dbi table(Table table) const { return tables_[static_cast<std::size_t>(table)]; }
+  ValueCache& values() const { return *values_; }
+  /// The shared snapshot of commit `transaction_id`; `make` creates it on first use.
+  std::shared_ptr<StoreSnapshot> snapshot(std::size_t transaction_id,
+                                          const std::function<std::shared_ptr<StoreSnapshot>()>& make) const;
+  void allowWriting();
+  /// From now on the file may be renamed or removed.
+  void loseName() { has_name_ = false; }
+  bool canWrite() const { return can_write_; }
+  void check(int code, std::string_view doing) const { checkLmdb(code, file_, doing); }
+  void enterWriting();
+  void leaveWriting();
+  /// Creates the databases of a new file or opens existing ones, and checks the format.
+  void openTables();
+
+ private:
+  void lockAgainstProcesses();
+  void requireName();
+  void createTables(MDB_txn* transaction);
+
+  std::filesystem::path file_;
+  EnvHandle handle_;
+  int data_lock_;
+  bool can_write_, has_name_ = true;
+  std::atomic<bool> writing_allowed_{false};
+  std::array<MDB_dbi, kTableCount> tables_{};
+  std::unique_ptr<ValueCache> values_;
+  mutable std::mutex snapshot_mutex_;
+  mutable std::size_t snapshot_transaction_ = 0;
+  mutable std::shared_ptr<StoreSnapshot> snapshot_;
+  std::mutex writer_mutex_;
+  std::condition_variable writer_left_;
+  bool writer_active_ = false;
+  std::thread::id writer_thread_;
+};
+
+struct ReadTransaction::Impl {
+  std::shared_ptr<LmdbEnvironment> environment;
+  MDB_txn* txn = nullptr;
+  bool writing = false;
+  std::uint64_t committed_terms = 0;        ///< in a write transaction: the number of terms before it
+  std::uint64_t generation = 0;             ///< incremented with each change in a write transaction
+  std::shared_ptr<StoreSnapshot> snapshot;  ///< created on first use, for this generation
+  std::uint64_t snapshot_generation = 0;
+
+  Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl();
+  MDB_dbi table(Table which) const { return environment->table(which); }
+  void check(int code, std::string_view doing) const { environment->check(code, doing); }
+  MDB_txn* live() const;  ///< throws when the transaction has ended
+  void end();
+};
+
+}  // namespace cluxel::rdf

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Verifies a whole map.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace cluxel::rdf {
+
+/// Version of the layout of a map file. A map of another version is not opened.
+inline constexpr int kMapFormat = 1;
+
+struct MapCheck {
+  std::uint64_t blocks = 0, terms = 0, quads = 0;  ///< numbers of checked items
+  std::vector<std::string> faults;                 ///< in words for a person; at most some dozens
+  bool sound() const { return faults.empty(); }
+};
+
+/// Verifies the structure of all pages, the checksum of every block, every term and its entry in the hash index, and
+/// that the four indexes contain the same quads of known terms. Does not crash on a damaged file. Throws Error
+/// (StoreUnavailable) when there is no map. Cost: reads the whole file.
+MapCheck checkMap(const std::filesystem::path& file);
+
+/// True when the file begins with an LMDB meta page. Cost: one page read.
+bool looksLikeMap(const std::filesystem::path& file);
+
+}  // namespace cluxel::rdf

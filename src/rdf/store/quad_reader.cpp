@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads quads and terms of one commit.
+#include "rdf/store/quad_store.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "rdf/store/literal_value.hpp"
+#include "rdf/store/quad_cursor.hpp"
+#include "rdf/store/quad_reader_impl.hpp"
+#include "rdf/store/term_record.hpp"
+#include "rdf/store/value_cache.hpp"
+#include "rdf/vocabulary.hpp"
+
+namespace cluxel::rdf {
+
+namespace {
+
+constexpr std::array<QuadOrder, 4> kOrders = {QuadOrder::Spog, QuadOrder::Posg, QuadOrder::Ospg, QuadOrder::Gspo};
+
+/// The bound ids in s, p, o, g order; 0 in s, p or o is a wildcard.
+std::array<std::optional<TermId>, 4> boundIds(const QuadPattern& pattern) {
+  std::array<std::optional<TermId>, 4> ids = {pattern.s, pattern.p, pattern.o, pattern.g};
+  for (std::size_t i = 0; i < 3; ++i)
+    if (ids[i] == kNoTerm) ids[i].reset();
+  return ids;
+}
+
+const std::string kString = vocabulary::xsd("string");
+const std::string kLangString = vocabulary::rdf("langString");
+
+}  // namespace
+
+IndexPattern layOut(const QuadPattern& pattern, QuadOrder order) {
+  const auto bound = boundIds(pattern);
+  IndexPattern laid_out;
+  std::array<TermId, 4> prefix{};
+  bool in_prefix = true;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::optional<TermId>& id = bound[placesOf(order)[i]];
+    in_prefix = in_prefix && id.has_value();
+    if (in_prefix) prefix[laid_out.prefix_length++] = *id;
+    if (in_prefix || !id) continue;
+    const auto shift = static_cast<unsigned>(32 * (3 - i));
+    laid_out.mask |= Key128{0xFFFFFFFFU} << shift;
+    laid_out.value |= Key128{*id} << shift;
+    laid_out.filtered = true;
+  }
+  laid_out.range = rangeOf(std::span(prefix).first(laid_out.prefix_length));
+  return laid_out;
+}
+
+QuadReader::Impl::Impl(ReadTransaction from) : transaction(std::move(from)) {
+  committed_terms = state().writing ? state().committed_terms : snapshot().termCount();
+}
+
+std::string_view QuadReader::Impl::datatypeText(TermId id) {
+  if (id == last_datatype && !state().writing) return last_datatype_text;
+  last_datatype = id;
+  last_datatype_text = decodeTerm(record(id)).text;
+  return last_datatype_text;
+}
+
+QuadReader::QuadReader(ReadTransaction transaction) : impl_(std::make_unique<Impl>(std::move(transaction))) {}
+QuadReader::~QuadReader() = default;
+QuadReader::QuadReader(QuadReader&&) noexcept = default;
+QuadReader& QuadReader::operator=(QuadReader&&) noexcept = default;
+
+std::optional<TermId> QuadReader::idOf(const Term& term) const {
+  if (term.kind == TermKind::Iri && term.text.empty()) return kNoTerm;
+  TermId datatype = kNoTerm;
+  if (needsDatatypeId(term)) {
+    const std::optional<TermId> found = idOf(Term::iri(term.datatype));
+    if (!found) return std::nullopt;
+    datatype = *found;
+  }
+  std::string record;
+  encodeTerm(term, datatype, record);
+  const TermHash hash = hashOfRecord(record);
+  const PageDirectory& hashes = impl_->snapshot().directory(Table::TermHashes, impl_->state());
+  const Key128 first = (Key128{hash.high} << 64U) | (Key128{hash.low} << 32U);
+  auto position = hashes.lowerBound(first);
+  for (; position.page < hashes.pageCount(); ++position.index) {
+    const auto keys = hashes.page(position.page);
+    if (position.index == keys.size()) position = {position.page + 1, 0};
+    if (position.page == hashes.pageCount()) break;
+    const QuadKey& key = hashes.page(position.page)[position.index];
+    if ((toNumber(key) >> 32U) != (first >> 32U)) break;
+    if (impl_->record(key.at(3)) == record) return key.at(3);
+  }
+  return std::nullopt;
+}
+
+TermView QuadReader::viewOf(TermId id) const {
+  if (id == kNoTerm) return {};
+  const TermRecord record = decodeTerm(impl_->record(id));
+  TermView view{record.kind, record.text, {}, record.language};
+  if (record.kind != TermKind::Literal) return view;
+  if (!record.language.empty() || record.value.type == DecodedValue::Type::LangString)
+    view.datatype = kLangString;
+  else if (record.datatype == kNoTerm)
+    view.datatype = kString;
+  else
+    view.datatype = impl_->datatypeText(record.datatype);
+  return view;
+}
+
+Term QuadReader::termOf(TermId id) const {
+  const TermView view = viewOf(id);
+  return {view.kind, std::string(view.text), std::string(view.datatype), std::string(view.language)};
+}
+
+const DecodedValue& QuadReader::valueOf(TermId id) const {
+  static const DecodedValue none;
+  if (id == kNoTerm) return none;
+  const auto decode = [this](TermId wanted) {
+    TermRecord record = decodeTerm(impl_->record(wanted));
+    if (record.value.type == DecodedValue::Type::Decimal) addExactDigits(record.text, record.value);
+    return record.value;
+  };
+  if (id <= impl_->committed_terms) return impl_->state().environment->values().get(id, decode);
+  const auto found = impl_->own_values.find(id);
+  return found != impl_->own_values.end() ? found->second : impl_->own_values.emplace(id, decode(id)).first->second;
+}
+
+void QuadReader::expectViews(std::span<const TermId> ids) const {
+  if (!impl_->state().writing) impl_->snapshot().expectRecords(ids);
+}
+
+void QuadReader::expectValues(std::span<const TermId> ids) const {
+  constexpr std::size_t together = 64;
+  std::array<TermId, together> undecoded;
+  const ValueCache& cache = impl_->state().environment->values();
+  for (; !ids.empty(); ids = ids.subspan(std::min(ids.size(), together))) {
+    const auto group = ids.first(std::min(ids.size(), together));
+    std::size_t count = 0;
+    for (const TermId id : group) cache.expect(id);
+    for (const TermId id : group) {
+      if (!cache.has(id)) undecoded[count++] = id;
+    }
+    if (count > 0) expectViews({undecoded.data(), count});
+  }
+}
+
+QuadOrder QuadReader::bestOrder(const QuadPattern& pattern) {
+  return *std::max_element(kOrders.begin(), kOrders.end(), [&](QuadOrder a, QuadOrder b) {
+    return layOut(pattern, a).prefix_length < layOut(pattern, b).prefix_length;
+  });
+}
+
+QuadCursor QuadReader::scan(const QuadPattern& pattern, QuadOrder order) const {
+  return QuadCursor(std::make_unique<QuadCursor::Impl>(impl_->directory(order), layOut(pattern, order), order));
+}
+
+QuadCursor QuadReader::scan(const QuadPattern& pattern) const {
+  return scan(pattern, bestOrder(pattern));
+}
+
+bool QuadReader::contains(const QuadIds& quad) const {
+  const PageDirectory& directory = impl_->directory(QuadOrder::Spog);
+  const Key128 key = toNumber(quad, QuadOrder::Spog);
+  const PageDirectory::Position position = directory.lowerBound(key);
+  return position.page < directory.pageCount() && toNumber(directory.page(position.page)[position.index]) == key;
+}
+
+std::uint64_t QuadReader::size() const {
+  return impl_->snapshot().size();
+}
+
+std::uint64_t QuadReader::termCount() const {
+  return impl_->snapshot().termCount();
+}
+
+std::shared_ptr<const void> QuadReader::kept(const std::string& name) const {
+  return impl_->snapshot().kept(name);
+}
+
+void QuadReader::keep(const std::string& name, std::shared_ptr<const void> made) const {
+  impl_->snapshot().keep(name, std::move(made));
+}
+
+}  // namespace cluxel::rdf

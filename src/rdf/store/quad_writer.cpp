@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// Buffers changes and merges them into the indexes on flush().
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <stdexcept>
+#include <unordered_map>
+
+#include "cluxel/error.hpp"
+#include "rdf/store/index_writer.hpp"
+#include "rdf/store/pending_terms.hpp"
+#include "rdf/store/quad_reader_impl.hpp"
+#include "rdf/store/quad_store.hpp"
+
+namespace cluxel::rdf {
+
+namespace {
+
+// Queries use ids from here on for computed terms.
+constexpr TermId kMaxTerms = 0x8000'0000U;
+constexpr std::size_t kMaxPendingQuads = 4'000'000;
+constexpr std::size_t kMaxPendingTermBytes = std::size_t{512} << 20U;
+
+}  // namespace
+
+struct QuadChange {
+  QuadIds quad;
+  bool added = false;
+};
+
+/// A small cache of recent IRIs and their ids: predicates, graphs and the subjects of runs of statements repeat.
+class RecentIris {
+ public:
+  struct Entry {
+    std::string iri;
+    TermId id = kNoTerm;
+  };
+  Entry& slotOf(std::string_view iri) {
+    std::uint64_t tail = iri.size();
+    std::memcpy(&tail, iri.data() + (iri.size() < 8 ? 0 : iri.size() - 8), std::min<std::size_t>(8, iri.size()));
+    return slots_[(tail * 0x9E3779B97F4A7C15U) >> 56U];
+  }
+
+ private:
+  std::array<Entry, 256> slots_;
+};
+
+struct QuadWriter::Impl {
+  ReadTransaction transaction;  ///< shares the write transaction
+  QuadReader reader;
+  PendingTerms terms;
+  std::vector<QuadChange> changes;  ///< in call order
+  std::unordered_map<std::string, TermId> datatypes;
+  RecentIris recent;
+  TermId next_id = kNoTerm;  ///< kNoTerm while no new term is pending, so that another writer can assign ids
+  std::string record;
+
+  explicit Impl(WriteTransaction& from) : transaction(from), reader(from) {}
+
+  ReadTransaction::Impl& state() const { return transaction.impl(); }
+  TermId internIri(const Term& term);
+  TermId internRecord(const Term& term);
+  void flushTerms();
+  void flushQuads();
+};
+
+TermId QuadWriter::Impl::internRecord(const Term& term) {
+  const TermHash hash = hashOfRecord(record);
+  if (const auto known = terms.find(hash, record)) return *known;
+  if (reader.termCount() > 0) {
+    if (const auto stored = reader.idOf(term)) {
+      terms.insert(hash, record, *stored, false);
+      return *stored;
+    }
+  }
+  if (next_id == kNoTerm) next_id = static_cast<TermId>(reader.termCount() + 1);
+  if (next_id == kMaxTerms) throw Error(ErrorKind::StoreUnavailable, "the map is full: it holds 2^31 different terms");
+  terms.insert(hash, record, next_id, true);
+  return next_id++;
+}
+
+TermId QuadWriter::Impl::internIri(const Term& term) {
+  if (term.text.empty()) return kNoTerm;
+  RecentIris::Entry& slot = recent.slotOf(term.text);
+  if (slot.id != kNoTerm && slot.iri == term.text) return slot.id;
+  encodeTerm(term, kNoTerm, record);
+  slot.id = internRecord(term);
+  slot.iri = term.text;
+  return slot.id;
+}
+
+void QuadWriter::Impl::flushTerms() {
+  IndexChange hashes;
+  for (const PendingTerms::Entry& entry : terms.entries()) {
+    if (!entry.is_new) continue;
+    TermId id = entry.id;
+    MDB_val key{sizeof id, &id};
+    MDB_val value = toVal(terms.record(entry));
+    const int code = mdb_put(state().live(), state().table(Table::Terms), &key, &value, MDB_APPEND);
+    if (code == MDB_KEYEXIST) throw std::logic_error("two quad writers write in one transaction at once");
+    state().check(code, "write a term");
+    hashes.added.push_back((Key128{entry.hash.high} << 64U) | (Key128{entry.hash.low} << 32U) | id);
+  }
+  std::sort(hashes.added.begin(), hashes.added.end());
+  applyTo(state(), Table::TermHashes, hashes);
+  terms.clear();
+  next_id = kNoTerm;
+}
+
+void QuadWriter::Impl::flushQuads() {
+  const auto earlier = [](const QuadChange& a, const QuadChange& b) { return a.quad < b.quad; };
+  std::stable_sort(changes.begin(), changes.end(), earlier);
+  for (const QuadOrder order : {QuadOrder::Spog, QuadOrder::Posg, QuadOrder::Ospg, QuadOrder::Gspo}) {
+    IndexChange change;
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+      const bool last_word = i + 1 == changes.size() || changes[i + 1].quad != changes[i].quad;
+      if (last_word) (changes[i].added ? change.added : change.removed).push_back(toNumber(changes[i].quad, order));
+    }
+    if (order != QuadOrder::Spog) {
+      std::sort(change.added.begin(), change.added.end());
+      std::sort(change.removed.begin(), change.removed.end());
+    }
+    applyTo(state(), tableOf(order), change);
+  }
+  changes.clear();
+}
+
+QuadWriter::QuadWriter(WriteTransaction& transaction) : impl_(std::make_unique<Impl>(transaction)) {}
+QuadWriter::~QuadWriter() = default;
+
+TermId QuadWriter::intern(const Term& term) {
+  if (term.kind == TermKind::Iri) return impl_->internIri(term);
+  TermId datatype = kNoTerm;
+  if (needsDatatypeId(term)) {
+    const auto known = impl_->datatypes.find(term.datatype);
+    datatype = known != impl_->datatypes.end() ? known->second : intern(Term::iri(term.datatype));
+    if (known == impl_->datatypes.end()) impl_->datatypes.emplace(term.datatype, datatype);
+  }
+  encodeTerm(term, datatype, impl_->record);
+  return impl_->internRecord(term);
+}
+
+void QuadWriter::add(const QuadIds& quad) {
+  impl_->changes.push_back({quad, true});
+  if (impl_->changes.size() >= kMaxPendingQuads || impl_->terms.bytes() >= kMaxPendingTermBytes) flush();
+}
+
+void QuadWriter::add(const Quad& quad) {
+  QuadIds ids;
+  ids.s = intern(quad.subject);
+  ids.p = intern(quad.predicate);
+  ids.o = intern(quad.object);
+  ids.g = intern(quad.graph);
+  add(ids);
+}
+
+void QuadWriter::remove(const QuadIds& quad) {
+  impl_->changes.push_back({quad, false});
+  if (impl_->changes.size() >= kMaxPendingQuads) flush();
+}
+
+void QuadWriter::clearGraph(TermId graph) {
+  flush();
+  QuadCursor quads = impl_->reader.scan({.s = {}, .p = {}, .o = {}, .g = graph}, QuadOrder::Gspo);
+  std::vector<QuadChange> removals;
+  for (QuadIds quad; quads.next(quad);) removals.push_back({quad, false});
+  impl_->changes = std::move(removals);
+  if (impl_->changes.size() >= kMaxPendingQuads) flush();
+}
+
+void QuadWriter::flush() {
+  if (impl_->changes.empty() && impl_->terms.entries().empty()) return;
+  impl_->flushTerms();
+  impl_->flushQuads();
+  ++impl_->state().generation;
+}
+
+}  // namespace cluxel::rdf

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// State shared by the readers of one commit: statistics and lazily built page directories.
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "rdf/store/lmdb_environment.hpp"
+#include "rdf/store/page_directory.hpp"
+#include "rdf/store/quad_store.hpp"
+#include "rdf/store/term_directory.hpp"
+
+namespace cluxel::rdf {
+
+class StoreSnapshot {
+ public:
+  /// For the commit, or the current state of the write transaction, that `transaction` sees.
+  explicit StoreSnapshot(const ReadTransaction::Impl& transaction);
+
+  std::uint64_t size() const { return size_; }
+  std::uint64_t termCount() const { return term_count_; }
+  /// The directory of an index; `transaction` must see the same state as this snapshot. Thread-safe.
+  const PageDirectory& directory(Table index, const ReadTransaction::Impl& transaction);
+  /// The record of a term; throws Error for an unknown id. Thread-safe.
+  std::string_view record(TermId id, const ReadTransaction::Impl& transaction);
+  /// Prefetches the records of terms. Thread-safe.
+  void expectRecords(std::span<const TermId> ids);
+
+  std::optional<QuadReader::PredicateStatistics> knownStatistics(TermId predicate);
+  void keepStatistics(TermId predicate, const QuadReader::PredicateStatistics& statistics);
+  std::shared_ptr<const void> kept(const std::string& name);
+  void keep(const std::string& name, std::shared_ptr<const void> made);
+
+ private:
+  std::uint64_t size_ = 0, term_count_ = 0;
+  PageMap map_;  ///< without a base address, pages are read through cursors
+  std::array<lmdb_page::Tree, kTableCount> trees_{};
+  std::array<std::once_flag, kTableCount> made_;
+  std::array<PageDirectory, kTableCount> directories_;
+  const TermDirectory& terms();
+  std::once_flag terms_made_;
+  std::unique_ptr<TermDirectory> terms_;
+  std::mutex statistics_mutex_;
+  std::map<TermId, QuadReader::PredicateStatistics> statistics_;
+  std::mutex kept_mutex_;
+  std::map<std::string, std::shared_ptr<const void>> kept_;
+};
+
+/// The snapshot of a transaction: shared among the readers of a commit, rebuilt after changes in a write transaction.
+StoreSnapshot& snapshotOf(ReadTransaction::Impl& transaction);
+
+}  // namespace cluxel::rdf

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// Transactions: snapshots, the single writer among threads and processes, and the file format check.
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <stdexcept>
+
+#include "cluxel/error.hpp"
+#include "rdf/store/file_guards.hpp"
+#include "rdf/store/lmdb_environment.hpp"
+#include "rdf/store/map_check.hpp"
+#include "rdf/store/map_replacement.hpp"
+#include "rdf/store/store_snapshot.hpp"
+#include "rdf/store/value_cache.hpp"
+
+namespace cluxel::rdf {
+
+namespace {
+
+constexpr std::string_view kFormatKey = "cluxel-format";
+constexpr int kFormat = kMapFormat;
+constexpr auto kLockPatience = std::chrono::milliseconds(1500);
+constexpr auto kLockPause = std::chrono::milliseconds(10);
+
+void checkFormat(const std::string& text, const std::filesystem::path& file) {
+  int format = 0;
+  std::from_chars(text.data(), text.data() + text.size(), format);
+  if (format == kFormat) return;
+  const std::string what = format > kFormat ? "is a map of a newer format (" + text + "; this program reads " +
+                                                  std::to_string(kFormat) + "); use a newer Cluxel"
+                                            : "is a map of an unknown format; build it again";
+  throw Error(ErrorKind::StoreUnavailable, file.string() + ": " + what);
+}
+
+}  // namespace
+
+void LmdbEnvironment::createTables(MDB_txn* transaction) {
+  for (std::size_t i = 0; i < kTableCount; ++i)
+    check(mdb_dbi_open(transaction, kTableNames[i], tableFlags(static_cast<Table>(i)) | MDB_CREATE, &tables_[i]),
+          "make the map's tables");
+  MDB_dbi main = 0;
+  check(mdb_dbi_open(transaction, nullptr, 0, &main), "make the map's tables");
+  const std::string format = std::to_string(kFormat);
+  MDB_val key = toVal(kFormatKey);
+  MDB_val value = toVal(format);
+  check(mdb_put(transaction, main, &key, &value, 0), "make the map's tables");
+}
+
+void LmdbEnvironment::openTables() {
+  MDB_txn* raw = nullptr;
+  check(mdb_txn_begin(handle(), nullptr, MDB_RDONLY, &raw), "read the map");
+  TxnHandle transaction(raw);
+  MDB_dbi main = 0;
+  check(mdb_dbi_open(raw, nullptr, 0, &main), "read the map");
+  MDB_val key = toVal(kFormatKey);
+  MDB_val value;
+  const int found = mdb_get(raw, main, &key, &value);
+  if (found == MDB_SUCCESS) {
+    checkFormat(std::string(toView(value)), file_);
+    for (std::size_t i = 0; i < kTableCount; ++i)
+      check(mdb_dbi_open(raw, kTableNames[i], tableFlags(static_cast<Table>(i)), &tables_[i]), "read the map's tables");
+    check(mdb_txn_commit(transaction.release()), "read the map's tables");
+    return;
+  }
+  if (found != MDB_NOTFOUND) check(found, "read the map");
+  MDB_stat main_stat;
+  check(mdb_stat(raw, main, &main_stat), "read the map");
+  transaction.reset();
+  if (main_stat.ms_entries != 0)
+    throw Error(ErrorKind::StoreUnavailable, file_.string() + ": is an LMDB file, but not a Cluxel map");
+  if (!writing_allowed_)
+    throw Error(ErrorKind::StoreUnavailable, file_.string() + ": holds no map yet; build it first");
+  WriteTransaction first = write();
+  createTables(first.impl().txn);
+  first.commit();
+}
+
+void LmdbEnvironment::allowWriting() {
+  if (!can_write_) failStore(file_, EACCES, "open the map for writing");
+  writing_allowed_ = true;
+  int dead_readers = 0;
+  check(mdb_reader_check(handle(), &dead_readers), "drop the readers that were killed");
+}
+
+void LmdbEnvironment::lockAgainstProcesses() {
+  const auto deadline = std::chrono::steady_clock::now() + kLockPatience;
+  while (::flock(data_lock_, LOCK_EX | LOCK_NB) != 0) {
+    if (errno != EWOULDBLOCK && errno != EINTR) failStore(file_, errno, "lock the map");
+    if (std::chrono::steady_clock::now() > deadline) throw MapBusy(file_);
+    std::this_thread::sleep_for(kLockPause);
+  }
+  requireName();
+}
+
+/// The previous lock holder may have replaced the file.
+void LmdbEnvironment::requireName() {
+  if (!has_name_ || isNamed(identityOf(data_lock_, file_), file_)) return;
+  ::flock(data_lock_, LOCK_UN);
+  throw MapReplaced(file_);
+}
+
+void LmdbEnvironment::enterWriting() {
+  if (!writing_allowed_)
+    throw Error(ErrorKind::StoreUnavailable, file_.string() + ": the map was opened for reading only");
+  std::unique_lock lock(writer_mutex_);
+  if (writer_active_ && writer_thread_ == std::this_thread::get_id())
+    throw std::logic_error("a thread cannot write in two transactions of one map at once");
+  writer_left_.wait(lock, [this] { return !writer_active_; });
+  lockAgainstProcesses();
+  writer_active_ = true;
+  writer_thread_ = std::this_thread::get_id();
+}
+
+void LmdbEnvironment::leaveWriting() {
+  ::flock(data_lock_, LOCK_UN);
+  {
+    const std::lock_guard lock(writer_mutex_);
+    writer_active_ = false;
+  }
+  writer_left_.notify_one();
+}
+
+ReadTransaction LmdbEnvironment::read() const {
+  auto impl = std::make_shared<ReadTransaction::Impl>();
+  // The shared state is protected by a mutex.
+  impl->environment = std::static_pointer_cast<LmdbEnvironment>(const_cast<LmdbEnvironment*>(this)->shared_from_this());
+  check(mdb_txn_begin(handle(), nullptr, MDB_RDONLY, &impl->txn), "read the map");
+  return ReadTransaction(std::move(impl));
+}
+
+WriteTransaction LmdbEnvironment::write() {
+  auto impl = std::make_shared<ReadTransaction::Impl>();
+  impl->environment = std::static_pointer_cast<LmdbEnvironment>(shared_from_this());
+  enterWriting();
+  impl->writing = true;
+  const int code = mdb_txn_begin(handle(), nullptr, 0, &impl->txn);
+  if (code != MDB_SUCCESS) impl->end();
+  check(code, "write the map");
+  MDB_stat terms;
+  if (mdb_stat(impl->txn, table(Table::Terms), &terms) == MDB_SUCCESS) impl->committed_terms = terms.ms_entries;
+  return WriteTransaction(std::move(impl));
+}
+
+std::shared_ptr<StoreSnapshot> LmdbEnvironment::snapshot(
+    std::size_t transaction_id, const std::function<std::shared_ptr<StoreSnapshot>()>& make) const {
+  const std::lock_guard lock(snapshot_mutex_);
+  if (snapshot_ && snapshot_transaction_ == transaction_id) return snapshot_;
+  std::shared_ptr<StoreSnapshot> made = make();
+  if (!snapshot_ || transaction_id > snapshot_transaction_) {
+    snapshot_ = made;
+    snapshot_transaction_ = transaction_id;
+  }
+  return made;
+}
+
+ReadTransaction::Impl::~Impl() {
+  end();
+}
+
+void ReadTransaction::Impl::end() {
+  if (txn != nullptr) mdb_txn_abort(std::exchange(txn, nullptr));
+  if (std::exchange(writing, false)) environment->leaveWriting();
+}
+
+MDB_txn* ReadTransaction::Impl::live() const {
+  if (txn == nullptr) throw std::logic_error("the transaction has ended");
+  return txn;
+}
+
+void WriteTransaction::commit() {
+  Impl& state = impl();
+  state.live();
+  const int code = mdb_txn_commit(std::exchange(state.txn, nullptr));
+  state.end();
+  state.check(code, "write the map");
+}
+
+}  // namespace cluxel::rdf

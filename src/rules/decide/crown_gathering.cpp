@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// All fragments are collected before any is assigned in a round: the result is independent of their order.
+#include "rules/decide/crown_gathering.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "rules/decide/crown_splitting.hpp"
+
+namespace cluxel::rules {
+
+namespace {
+
+class Gathering {
+ public:
+  Gathering(ReasoningState& state, const std::string& class_iri) : state_(state) {
+    for (OwnerIndex owner = 0; owner < state.objects.size(); ++owner) {
+      const ObjectInMaking& object = state.objects[owner];
+      if (object.rule->class_iri != class_iri || !object.leaf->splitting || !object.leaf->splitting->gather) continue;
+      if (const PartInMaking* from = partOf(object, object.leaf->splitting->from)) add(owner, *from);
+    }
+    std::sort(gatherers_.begin(), gatherers_.end(), [this](const Gatherer& a, const Gatherer& b) {
+      return a.owner != b.owner && state_.fragments.before(a.first_fragment, b.first_fragment);
+    });
+  }
+
+  void run() {
+    while (!gatherers_.empty()) {
+      const std::vector<ReachedFragment> in_reach = reached();
+      if (in_reach.empty()) break;
+      bool any = false;
+      for (const ReachedFragment& found : in_reach) any = hand(found) || any;
+      if (!any) break;
+    }
+    for (const Gatherer& gatherer : gatherers_) renew(gatherer);
+  }
+
+ private:
+  struct Gatherer {
+    OwnerIndex owner = 0;
+    FragmentIndex first_fragment = 0;  ///< the first of its `from` in canonical order
+    const SplittingSpec* spec = nullptr;
+    Eigen::Vector2d top = Eigen::Vector2d::Zero();
+    std::vector<scan::PrimitiveLabel> labels;  ///< of the split crown
+  };
+  struct ReachedFragment {
+    FragmentIndex fragment = 0;
+    std::map<std::size_t, double> near;  ///< number in gatherers_ → gap to its object [m]
+  };
+
+  static const PartInMaking* partOf(const ObjectInMaking& object, const std::string& name) {
+    for (const PartInMaking& part : object.parts)
+      if (part.name == name && !part.fragments.empty()) return &part;
+    return nullptr;
+  }
+
+  void add(OwnerIndex owner, const PartInMaking& from) {
+    Gatherer gatherer{owner, from.fragments.front(), &*state_.objects[owner].leaf->splitting, {}, {}};
+    for (FragmentIndex fragment : from.fragments)
+      if (state_.fragments.before(fragment, gatherer.first_fragment)) gatherer.first_fragment = fragment;
+    Candidate foot;
+    foot.fragments = from.fragments;
+    gatherer.top = topOf(state_.scene.cluxels, state_.fragments.cluxelsOf(foot));
+    if (const PartInMaking* crown = partOf(state_.objects[owner], gatherer.spec->part))
+      for (FragmentIndex fragment : crown->fragments) gatherer.labels.push_back(state_.fragments.labelOf(fragment));
+    gatherers_.push_back(std::move(gatherer));
+  }
+
+  bool mayTake(const Gatherer& gatherer, FragmentIndex fragment) const {
+    return state_.fragments.shapeOf(fragment)[perception::Attribute::Bottom] >= gatherer.spec->gather->above_m &&
+           std::find(gatherer.labels.begin(), gatherer.labels.end(), state_.fragments.labelOf(fragment)) !=
+               gatherer.labels.end();
+  }
+
+  /// The free fragments within reach of a gatherer in the current state.
+  std::vector<ReachedFragment> reached() const {
+    std::vector<std::vector<std::size_t>> of_owner(state_.objects.size());
+    for (std::size_t g = 0; g < gatherers_.size(); ++g) of_owner[gatherers_[g].owner].push_back(g);
+    std::vector<ReachedFragment> in_reach;
+    for (FragmentIndex fragment = 0; fragment < state_.fragments.size(); ++fragment) {
+      if (!state_.fragments[fragment].alive || state_.fragments[fragment].owner != kFree) continue;
+      ReachedFragment found{fragment, {}};
+      double widest = 0;
+      for (const Gatherer& gatherer : gatherers_)
+        if (mayTake(gatherer, fragment)) widest = std::max(widest, gatherer.spec->gather->within_m);
+      if (widest == 0) continue;
+      for (std::uint32_t cluxel : state_.fragments[fragment].cluxels)
+        state_.grid.near(cluxel, widest, [&](std::uint32_t other) {
+          const OwnerIndex owner = state_.fragments[state_.fragments.fragmentOf(other)].owner;
+          if (owner >= of_owner.size()) return;
+          for (std::size_t g : of_owner[owner]) consider(g, cluxel, other, found);
+        });
+      if (!found.near.empty()) in_reach.push_back(std::move(found));
+    }
+    std::sort(in_reach.begin(), in_reach.end(), [this](const ReachedFragment& a, const ReachedFragment& b) {
+      return a.fragment != b.fragment && state_.fragments.before(a.fragment, b.fragment);
+    });
+    return in_reach;
+  }
+
+  void consider(std::size_t number, std::uint32_t cluxel, std::uint32_t other, ReachedFragment& found) const {
+    const Gatherer& gatherer = gatherers_[number];
+    if (!mayTake(gatherer, found.fragment)) return;
+    const double gap = gapBetween(state_.scene.cluxels, cluxel, other).gap();
+    if (gap > gatherer.spec->gather->within_m) return;
+    double& smallest = found.near.try_emplace(number, gap).first->second;
+    smallest = std::min(smallest, gap);
+  }
+
+  /// Cuts the fragment among the gatherers it is near to; false when none of them reaches it.
+  bool hand(const ReachedFragment& found) {
+    std::map<std::size_t, std::vector<std::uint32_t>> parts;  // by gatherer
+    std::vector<std::uint32_t> rest;
+    for (std::uint32_t cluxel : state_.fragments[found.fragment].cluxels) {
+      const auto taker = nearestOf(found, cluxel);
+      (taker ? parts[*taker] : rest).push_back(cluxel);
+    }
+    if (parts.empty()) return false;
+    std::vector<std::vector<std::uint32_t>> kept;
+    for (auto& [taker, cluxels] : parts) kept.push_back(std::move(cluxels));
+    for (auto& bunch : connectedBunches(state_.scene.cluxels, rest)) kept.push_back(std::move(bunch));
+    const auto made = state_.fragments.cut(found.fragment, std::move(kept));
+    std::size_t next = 0;
+    for (const auto& [taker, cluxels] : parts) give(made[next++], gatherers_[taker], found.near.at(taker));
+    return true;
+  }
+
+  /// Of the gatherers that are near the fragment and reach the cluxel, the one with the nearest top in plan view.
+  std::optional<std::size_t> nearestOf(const ReachedFragment& found, std::uint32_t cluxel) const {
+    double nearest = std::numeric_limits<double>::infinity();
+    std::optional<std::size_t> taker;
+    for (const auto& [number, gap] : found.near) {
+      const double distance = (state_.scene.cluxels.center[cluxel].head<2>() - gatherers_[number].top).norm();
+      if (distance <= gatherers_[number].spec->reach_m && distance < nearest) nearest = distance, taker = number;
+    }
+    return taker;
+  }
+
+  void give(FragmentIndex fragment, const Gatherer& gatherer, double gap_m) {
+    state_.fragments.setOwner(fragment, gatherer.owner);
+    ObjectInMaking& object = state_.objects[gatherer.owner];
+    for (PartInMaking& part : object.parts)
+      if (part.name == gatherer.spec->part) part.fragments.push_back(fragment);
+    record(fragment, gatherer, gap_m);
+  }
+
+  /// Adds a decision, so that `explain` can report why the primitive belongs to the object.
+  void record(FragmentIndex fragment, const Gatherer& gatherer, double gap_m) {
+    const ObjectInMaking& object = state_.objects[gatherer.owner];
+    const SplittingSpec& spec = *gatherer.spec;
+    Decision decision;
+    decision.rule_id = object.rule->id;
+    decision.seed = state_.fragments[fragment].primitive;
+    decision.seeds = {decision.seed};
+    decision.accepted = true;
+    decision.leaf = state_.decisions[object.decision].leaf;
+    decision.reason = "gathered into " + spec.part + " of the " + state_.rules.shorten(object.rule->class_iri) +
+                      " whose " + spec.from + " is nearest in plan view";
+    DecisionStep step;
+    step.rule_id = object.rule->id;
+    step.test = "gap to the object <= gather's `within`";
+    step.file = spec.at.file;
+    step.line = spec.at.line;
+    step.measured = gap_m;
+    step.threshold = spec.gather->within_m;
+    step.unit = "m";
+    step.passed = true;
+    decision.path.push_back(std::move(step));
+    state_.decisions.push_back(std::move(decision));
+  }
+
+  void renew(const Gatherer& gatherer) {
+    ObjectInMaking& object = state_.objects[gatherer.owner];
+    const PartInMaking* crown = partOf(object, gatherer.spec->part);
+    Candidate* candidate = object.bindings.find(gatherer.spec->part);
+    if (crown != nullptr && candidate != nullptr) *candidate = state_.fragments.candidateOf(crown->fragments);
+  }
+
+  ReasoningState& state_;
+  std::vector<Gatherer> gatherers_;
+};
+
+}  // namespace
+
+void gatherFragments(ReasoningState& state, const std::string& class_iri) {
+  Gathering(state, class_iri).run();
+}
+
+}  // namespace cluxel::rules

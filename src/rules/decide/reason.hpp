@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// The reasoning stage: primitives and rules in, objects with reasons out.
+#pragma once
+
+#include <optional>
+
+#include "perception/segments/scene.hpp"
+#include "rules/ask_oracle.hpp"
+#include "rules/decide/semantic_object.hpp"
+#include "rules/language/rule_set.hpp"
+
+namespace cluxel::rules {
+
+struct ReasoningContext {
+  /// Needed by rule sets with `ask:`; without it such a test is an Error.
+  AskOracle* oracle = nullptr;
+  /// When set, decisions about this primitive also report what would have changed them (Decision::flips).
+  std::optional<perception::PrimitiveIndex> probe = std::nullopt;
+};
+
+/// Groups the primitives of a scene into objects, class by class in the order of the rule set. The objects' cluxels are
+/// disjoint. The result depends on the primitives' ids and measures and not on their order. Cost roughly linear in
+/// cluxels and edges. Throws InputError for a faulty query of an `ask:`.
+ReasoningResult reason(const perception::Scene& scene, const RuleSet& rules, const ReasoningContext& context = {});
+
+}  // namespace cluxel::rules

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Look-ups shared by all steps of the reasoning stage.
+#include "rules/decide/reasoning_state.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace cluxel::rules {
+
+const Candidate& Bindings::at(const std::string& name) const {
+  for (const auto& [bound, candidate] : candidates)
+    if (bound == name) return candidate;
+  throw std::logic_error("a rule uses the unbound name " + name);
+}
+
+Candidate* Bindings::find(const std::string& name) {
+  for (auto& [bound, candidate] : candidates)
+    if (bound == name) return &candidate;
+  return nullptr;
+}
+
+bool Bindings::holds(FragmentIndex fragment) const {
+  return std::any_of(candidates.begin(), candidates.end(), [&](const auto& entry) {
+    return std::binary_search(entry.second.fragments.begin(), entry.second.fragments.end(), fragment);
+  });
+}
+
+ReasoningState::ReasoningState(const perception::Scene& scene_, const RuleSet& rules_, const ReasoningContext& context_)
+    : scene(scene_), rules(rules_), context(context_), grid(scene_.cluxels), fragments(scene_) {
+  relations_to.resize(scene.primitives.size());
+  for (std::uint32_t i = 0; i < scene.relations.size(); ++i) relations_to[scene.relations[i].to].push_back(i);
+  std::vector<std::string> classes = rules.order;
+  for (const ClassEntry& entry : rules.catalogue.classes) classes.push_back(entry.iri);
+  for (const std::string& made : rules.order)
+    for (const std::string& ancestor : classes)
+      if (rules.catalogue.isA(made, ancestor)) is_a.emplace(made, ancestor);
+}
+
+bool ReasoningState::classIsA(const std::string& class_iri, const std::string& ancestor) const {
+  return is_a.count({class_iri, ancestor}) > 0;
+}
+
+bool ReasoningState::belongsTo(FragmentIndex fragment, const std::string& class_iri) const {
+  const OwnerIndex owner = fragments[fragment].owner;
+  if (owner < objects.size()) return classIsA(objects[owner].rule->class_iri, class_iri);
+  const auto claim = claims.find(fragment);
+  return claim != claims.end() && classIsA(objects[claim->second.front()].rule->class_iri, class_iri);
+}
+
+std::vector<FragmentIndex> ReasoningState::fragmentsOf(const ObjectInMaking& object) const {
+  std::vector<FragmentIndex> all;
+  for (const PartInMaking& part : object.parts) all.insert(all.end(), part.fragments.begin(), part.fragments.end());
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+}  // namespace cluxel::rules

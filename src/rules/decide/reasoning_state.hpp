@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// State of one run of the reasoning stage: fragments, objects under construction, and indexes of the scene.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "rules/decide/cluxel_grid.hpp"
+#include "rules/decide/fragment_table.hpp"
+#include "rules/decide/reason.hpp"
+
+namespace cluxel::rules {
+
+/// The candidates bound to names on a path through a tree, in binding order.
+struct Bindings {
+  std::vector<std::pair<std::string, Candidate>> candidates;
+
+  const Candidate& at(const std::string& name) const;
+  Candidate* find(const std::string& name);
+  bool holds(FragmentIndex fragment) const;
+};
+
+struct PartInMaking {
+  std::string name;        ///< the bound name
+  std::string part_class;  ///< IRI
+  std::vector<FragmentIndex> fragments;
+};
+
+struct ObjectInMaking {
+  const Rule* rule = nullptr;
+  const AcceptLeaf* leaf = nullptr;
+  double confidence = 0;
+  std::size_t decision = 0;
+  std::vector<PartInMaking> parts;
+  Bindings bindings;  ///< needed by absorbing and splitting
+};
+
+struct ReasoningState {
+  ReasoningState(const perception::Scene& scene_, const RuleSet& rules_, const ReasoningContext& context_);
+
+  const perception::Scene& scene;
+  const RuleSet& rules;
+  const ReasoningContext& context;
+  CluxelGrid grid;
+  FragmentTable fragments;
+  std::vector<ObjectInMaking> objects;
+  std::map<FragmentIndex, std::vector<OwnerIndex>> claims;  ///< the objects that claim a shared fragment
+  std::vector<Decision> decisions;
+  /// For each primitive the relations that lead to it, as numbers in scene.relations.
+  std::vector<std::vector<std::uint32_t>> relations_to;
+  std::set<std::pair<std::string, std::string>> is_a;  ///< pairs (class, ancestor) of the classes in the rule order
+
+  bool belongsTo(FragmentIndex fragment, const std::string& class_iri) const;
+  bool classIsA(const std::string& class_iri, const std::string& ancestor) const;
+  /// The fragments of an object, ascending.
+  std::vector<FragmentIndex> fragmentsOf(const ObjectInMaking& object) const;
+};
+
+}  // namespace cluxel::rules

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Results of the reasoning stage: objects with class and parts, and the decisions behind them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/content_hash.hpp"
+#include "perception/segments/scene.hpp"
+
+namespace cluxel::rules {
+
+/// The cluxels and primitives of one part of an object.
+struct ObjectPart {
+  std::string part_class;  ///< IRI: clx:TreeTrunk; the object's class when the rule names no part
+  std::vector<perception::PrimitiveIndex>
+      primitives;                      ///< ascending; a primitive that was split belongs to several objects
+  std::vector<std::uint32_t> cluxels;  ///< numbers in SceneCluxels, ascending; disjoint between objects
+};
+
+/// One test on the path to a leaf, with the value it measured.
+struct DecisionStep {
+  std::string rule_id;
+  std::string test;  ///< in words: "height of pole >= 6 m"
+  std::string file;  ///< where the test stands
+  std::size_t line = 0;
+  std::optional<double> measured, threshold;  ///< SI
+  std::string unit;
+  bool passed = false;
+};
+
+/// The outcome if one test on the path had the opposite result and the rest of the tree were evaluated as usual.
+struct DecisionFlip {
+  std::size_t step = 0;        ///< the first of the branch's tests in Decision::path
+  std::size_t step_count = 0;  ///< how many tests of the path the branch has
+  std::size_t node = 0;        ///< the branch's number in Rule::nodes
+  bool accepted = false;
+  std::string outcome;  ///< the reason or description of the leaf reached then
+};
+
+/// Why a rule accepted or rejected a seed primitive.
+struct Decision {
+  std::string rule_id;
+  perception::PrimitiveIndex seed = 0;            ///< the one with most points, when several were grouped
+  std::vector<perception::PrimitiveIndex> seeds;  ///< all of them, ascending
+  bool accepted = false;
+  std::size_t leaf = 0;  ///< its number in Rule::nodes
+  std::string reason;    ///< the reason of the leaf, or what was accepted
+  std::vector<DecisionStep> path;
+  std::string hint;                 ///< a rule that may fit instead
+  std::vector<DecisionFlip> flips;  ///< only for a probed primitive
+};
+
+struct SemanticObject {
+  ContentHash id;  ///< hash of class and sorted members
+  std::string class_iri;
+  double confidence = 0;
+  std::string rule_id;
+  std::vector<ObjectPart> parts;
+  std::size_t decision = 0;  ///< number in ReasoningResult::decisions
+};
+
+struct ReasoningResult {
+  std::vector<SemanticObject> objects;  ///< sorted by id
+  std::vector<Decision> decisions;      ///< accepted and rejected, in the order they were taken
+};
+
+}  // namespace cluxel::rules

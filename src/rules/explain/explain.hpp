@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Explains why a primitive has its class, why not another one, and what would change that.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rules/decide/reason.hpp"
+
+namespace cluxel::rules {
+
+/// A change of one measured value that flips a test.
+struct NeededChange {
+  std::string test;
+  double measured = 0, threshold = 0;  ///< in `unit`: degrees for angles
+  std::string unit;
+  double margin = 0;  ///< distance of the value from the threshold, >= 0
+};
+
+/// The smallest set of changes that flips a decision by flipping one branch of the tree.
+struct Counterfactual {
+  std::vector<NeededChange> changes;  ///< all of them are needed
+  bool accepted = false;              ///< the verdict after the changes
+  std::string outcome;
+};
+
+struct ExplainedDecision {
+  Decision decision;
+  std::string class_iri;
+  std::optional<Counterfactual> counterfactual;  ///< changes the verdict; absent when no single branch can
+};
+
+struct Explanation {
+  perception::PrimitiveIndex primitive = 0;
+  std::optional<SemanticObject>
+      object;  ///< the object it belongs to; for a split primitive the one with the smallest id
+  std::vector<ExplainedDecision> decisions;  ///< about this primitive, in the order in which they were taken
+  std::string note;  ///< set when it has no decision of its own because it was found or absorbed
+};
+
+/// Runs the reasoning stage again with a probe at the primitive. `scene` may be a part of the map, as long as it
+/// includes everything within reach of the rules.
+Explanation explain(const perception::Scene& scene, const RuleSet& rules, const ReasoningContext& context,
+                    perception::PrimitiveIndex primitive);
+
+/// The same for the seed primitive of an object.
+Explanation explain(const perception::Scene& scene, const RuleSet& rules, const ReasoningContext& context,
+                    const SemanticObject& object, const Decision& decision);
+
+/// As text: the path to the verdict, then the path of each rejected class with its nearest counterfactual.
+std::string textOf(const Explanation& explanation, const RuleSet& rules, const perception::Scene& scene);
+std::string jsonOf(const Explanation& explanation, const RuleSet& rules, const perception::Scene& scene);
+
+}  // namespace cluxel::rules

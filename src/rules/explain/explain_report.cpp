@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// Explanations as text and JSON.
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "rdf/map_iris.hpp"
+#include "rules/explain/explain.hpp"
+
+namespace cluxel::rules {
+
+namespace {
+
+/// Rounded to 0.001 without trailing zeros: scanners do not resolve less than a millimetre.
+std::string number(double value) {
+  std::array<char, 64> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), "%.3f", value);
+  std::string text = buffer.data();
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text == "-0" ? "0" : text;
+}
+
+double shown(const DecisionStep& step, double value) {
+  return step.unit == "rad" ? value * 180.0 / std::numbers::pi : value;
+}
+std::string shownUnit(const std::string& unit) {
+  return unit == "rad" ? "deg" : unit;
+}
+
+std::string measuredText(const DecisionStep& step) {
+  if (!step.measured) return {};
+  const std::string unit = shownUnit(step.unit);
+  std::string text = " (measured " + number(shown(step, *step.measured)) + (unit.empty() ? "" : " " + unit);
+  if (step.threshold)
+    text += ", margin " + number(std::abs(shown(step, *step.measured) - shown(step, *step.threshold))) +
+            (unit.empty() ? "" : " " + unit);
+  return text + ")";
+}
+
+std::string pathText(const Decision& decision, const std::string& indent) {
+  std::string text;
+  for (const DecisionStep& step : decision.path)
+    text += indent + (step.passed ? "yes  " : "no   ") + step.test + measuredText(step) + "   [" + step.file + ":" +
+            std::to_string(step.line) + "]\n";
+  return text;
+}
+
+std::string counterfactualText(const Counterfactual& point, const std::string& indent) {
+  std::string text = indent + "least change: ";
+  for (const NeededChange& change : point.changes) {
+    const std::string unit = change.unit.empty() ? "" : " " + change.unit;
+    text += (&change == &point.changes.front() ? "" : ", and ") + change.test + " turns at " +
+            number(change.threshold) + unit + " (now " + number(change.measured) + unit + ")";
+  }
+  return text + "; then: " + point.outcome + "\n";
+}
+
+std::string headline(const Explanation& explanation, const RuleSet& rules, const perception::Scene& scene) {
+  const perception::Primitive& primitive = scene.primitives[explanation.primitive];
+  std::string text = "primitive " + primitive.id.hex() + " (" + std::string(nameOf(primitive.label)) + ", " +
+                     number(primitive[perception::Attribute::Height]) + " m high, " +
+                     number(primitive[perception::Attribute::HorizontalExtent]) + " m wide, bottom " +
+                     number(primitive[perception::Attribute::Bottom]) + " m above the ground)\n";
+  if (!explanation.object) return text + "belongs to no object: unknown\n";
+  return text + "belongs to " + rules.shorten(explanation.object->class_iri) + " " + explanation.object->id.hex() +
+         ", confidence " + number(explanation.object->confidence) + ", by rule " + explanation.object->rule_id + "\n";
+}
+
+nlohmann::ordered_json stepJson(const DecisionStep& step) {
+  nlohmann::ordered_json json{{"test", step.test}, {"passed", step.passed}, {"file", step.file}, {"line", step.line}};
+  if (step.measured) json["measured"] = shown(step, *step.measured);
+  if (step.threshold) json["threshold"] = shown(step, *step.threshold);
+  if (step.measured && step.threshold)
+    json["margin"] = std::abs(shown(step, *step.measured) - shown(step, *step.threshold));
+  json["unit"] = shownUnit(step.unit);
+  return json;
+}
+
+nlohmann::ordered_json counterfactualJson(const Counterfactual& point) {
+  nlohmann::ordered_json json{{"accepted", point.accepted}, {"outcome", point.outcome}};
+  for (const NeededChange& change : point.changes)
+    json["changes"].push_back({{"test", change.test},
+                               {"measured", change.measured},
+                               {"threshold", change.threshold},
+                               {"margin", change.margin},
+                               {"unit", change.unit}});
+  return json;
+}
+
+}  // namespace
+
+std::string textOf(const Explanation& explanation, const RuleSet& rules, const perception::Scene& scene) {
+  std::string text = headline(explanation, rules, scene);
+  if (!explanation.note.empty()) text += explanation.note + "\n";
+  for (const bool accepted : {true, false}) {
+    bool first = true;
+    for (const ExplainedDecision& explained : explanation.decisions) {
+      const Decision& decision = explained.decision;
+      if (decision.accepted != accepted) continue;
+      if (first) text += accepted ? "\nwhy:\n" : "\nwhy nothing else:\n";
+      first = false;
+      text += "  " + rules.shorten(explained.class_iri) + " (" + decision.rule_id + "): " + decision.reason + "\n";
+      text += pathText(decision, "    ");
+      if (!decision.hint.empty()) text += "    see also rule " + decision.hint + "\n";
+      if (explained.counterfactual) text += counterfactualText(*explained.counterfactual, "    ");
+    }
+  }
+  return text;
+}
+
+std::string jsonOf(const Explanation& explanation, const RuleSet& rules, const perception::Scene& scene) {
+  nlohmann::ordered_json json;
+  json["primitive"] = rdf::iriOfPrimitive(scene.primitives[explanation.primitive].id);
+  json["label"] = std::string(nameOf(scene.primitives[explanation.primitive].label));
+  if (explanation.object)
+    json["object"] = {{"id", explanation.object->id.hex()},
+                      {"class", rules.shorten(explanation.object->class_iri)},
+                      {"confidence", explanation.object->confidence},
+                      {"rule", explanation.object->rule_id}};
+  if (!explanation.note.empty()) json["note"] = explanation.note;
+  for (const ExplainedDecision& explained : explanation.decisions) {
+    nlohmann::ordered_json decision{{"class", rules.shorten(explained.class_iri)},
+                                    {"rule", explained.decision.rule_id},
+                                    {"accepted", explained.decision.accepted},
+                                    {"reason", explained.decision.reason}};
+    for (const DecisionStep& step : explained.decision.path) decision["path"].push_back(stepJson(step));
+    if (!explained.decision.hint.empty()) decision["hint"] = explained.decision.hint;
+    if (explained.counterfactual) decision["least_change"] = counterfactualJson(*explained.counterfactual);
+    json["decisions"].push_back(std::move(decision));
+  }
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+}  // namespace cluxel::rules

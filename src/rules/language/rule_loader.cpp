@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+// Loads a rule set: gather files, read names and constants, read rules, then check them against each other.
+#include "rules/language/rule_loader.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "base/file_bytes.hpp"
+#include "base/nearest_name.hpp"
+#include "rules/language/rule_reading.hpp"
+#include "rules/language/rule_sources.hpp"
+
+namespace cluxel::rules {
+
+namespace {
+
+void readNames(const GatheredRules& gathered, RuleReading& reading) {
+  for (const auto& [key, value] : gathered.prefixes)
+    if (const auto iri = readText(value, "an IRI", reading.faults)) reading.prefixes[key.text] = *iri;
+  for (const auto& [key, value] : gathered.constants) {
+    const auto quantity = parseQuantity(value, reading.faults);
+    reading.constants[key.text] = {quantity.value_or(Quantity{}), key.at, false, !quantity.has_value()};
+  }
+}
+
+void readOrder(const GatheredRules& gathered, RuleReading& reading, RuleSet& rules) {
+  for (const YamlNode& node : gathered.order)
+    if (const auto iri = readClass(node, reading)) {
+      if (std::find(rules.order.begin(), rules.order.end(), *iri) != rules.order.end())
+        reading.faults.error(node.at, "'" + node.text + "' stands in the order twice");
+      rules.order.push_back(*iri);
+    }
+}
+
+/// A condition may only refer to objects of its own class or of classes earlier in the order.
+void checkEarlier(const std::string& object_class, const SourceLocation& at, const Rule& rule, const RuleSet& rules,
+                  FaultList& faults) {
+  if (object_class.empty() || rule.class_iri.empty()) return;
+  const auto turn = std::find(rules.order.begin(), rules.order.end(), rule.class_iri);
+  const bool known = std::any_of(rules.order.begin(), turn == rules.order.end() ? turn : turn + 1,
+                                 [&](const auto& iri) { return rules.catalogue.isA(iri, object_class); });
+  if (!known)
+    faults.error(
+        at, "no " + rules.shorten(object_class) + " exists yet when " + rules.shorten(rule.class_iri) + " has its turn",
+        "classes that a rule looks at come earlier in 'order'");
+}
+
+void checkCondition(const Condition& condition, const Rule& rule, const RuleSet& rules, FaultList& faults) {
+  if (condition.target) checkEarlier(condition.target->object_class, condition.at, rule, rules, faults);
+  checkEarlier(condition.class_iri, condition.at, rule, rules, faults);
+  for (const Condition& operand : condition.operands) checkCondition(operand, rule, rules, faults);
+}
+
+void checkNodes(const Rule& rule, const RuleSet& rules, FaultList& faults) {
+  std::vector<std::string> ids;
+  for (const Rule& other : rules.rules) ids.push_back(other.id);
+  for (const TreeNode& node : rule.nodes) {
+    if (const auto* branch = std::get_if<BranchNode>(&node.what))
+      checkCondition(branch->condition, rule, rules, faults);
+    if (const auto* find = std::get_if<FindNode>(&node.what)) {
+      checkEarlier(find->object_class, node.at, rule, rules, faults);
+      for (const Condition& condition : find->where) checkCondition(condition, rule, rules, faults);
+    }
+    const auto* reject = std::get_if<RejectLeaf>(&node.what);
+    if (reject != nullptr && !reject->hint.empty() && rules.find(reject->hint) == nullptr)
+      faults.error(node.at, "the hint names no rule: '" + reject->hint + "'", suggestion(reject->hint, ids));
+  }
+}
+
+/// `merge_into: related` needs a test of a relation to an object on the path to the leaf.
+void checkMerges(const Rule& rule, NodeIndex index, bool related, FaultList& faults) {
+  const TreeNode& node = rule.nodes[index];
+  auto meetsObject = [](const auto& self, const Condition& c) -> bool {
+    const bool object = c.target && c.target->kind == Target::Kind::Object;
+    return object || std::any_of(c.operands.begin(), c.operands.end(), [&](const auto& o) { return self(self, o); });
+  };
+  if (const auto* branch = std::get_if<BranchNode>(&node.what)) {
+    if (branch->yes != 0)
+      checkMerges(rule, branch->yes, related || meetsObject(meetsObject, branch->condition), faults);
+    if (branch->no != 0) checkMerges(rule, branch->no, related, faults);
+  } else if (const auto* find = std::get_if<FindNode>(&node.what)) {
+    if (find->found != 0) checkMerges(rule, find->found, related, faults);
+    if (find->missing != 0) checkMerges(rule, find->missing, related, faults);
+  } else if (const auto* accept = std::get_if<AcceptLeaf>(&node.what);
+             accept != nullptr && accept->merge_into_related) {
+    if (!related)
+      faults.error(node.at, "'merge_into: related', but no relation to an object was tested on the way",
+                   "test: { relation: near, with: { object: clx:Building } }");
+  }
+}
+
+/// Warns of unused names. Only in a file without errors, because errors cause such warnings.
+void warnOfUnused(const GatheredRules& gathered, const RuleReading& reading, const std::set<std::string>& with_rules,
+                  FaultList& faults) {
+  for (const YamlNode& node : gathered.order) {
+    const auto prefix = reading.prefixes.find(node.text.substr(0, node.text.find(':')));
+    if (prefix == reading.prefixes.end()) continue;
+    if (with_rules.count(prefix->second + node.text.substr(node.text.find(':') + 1)) == 0)
+      faults.warning(node.at, "no rule makes '" + node.text + "'");
+  }
+  for (const auto& [name, constant] : reading.constants)
+    if (!constant.used) faults.warning(constant.at, "the constant '" + name + "' is not used");
+}
+
+void checkTogether(const GatheredRules& gathered, const RuleReading& reading, const RuleSet& rules, FaultList& faults) {
+  std::set<std::string> with_rules;
+  for (const Rule& rule : rules.rules) {
+    with_rules.insert(rule.class_iri);
+    const bool ordered = std::find(rules.order.begin(), rules.order.end(), rule.class_iri) != rules.order.end();
+    if (!ordered && !rule.class_iri.empty())
+      faults.error(rule.at,
+                   "the class " + rules.shorten(rule.class_iri) + " of rule '" + rule.id +
+                       "' does not stand in 'order', so the rule never runs",
+                   "add it to 'order'");
+    checkNodes(rule, rules, faults);
+    if (!rule.nodes.empty()) checkMerges(rule, 0, false, faults);
+  }
+  if (faults.errorCount() == 0) warnOfUnused(gathered, reading, with_rules, faults);
+}
+
+LoadedRules load(const std::vector<std::string>& roots, const FindSource& findSource, const ClassCatalogue& catalogue,
+                 const RuleLoadOptions& options) {
+  FaultList faults;
+  GatheredRules gathered = gatherRules(roots, findSource, faults);
+  RuleReading reading{catalogue, options, faults};
+  readNames(gathered, reading);
+  RuleSet rules;
+  rules.name = gathered.name;
+  rules.version = gathered.version;
+  rules.description = gathered.description;
+  rules.prefixes = reading.prefixes;
+  rules.catalogue = catalogue;
+  readOrder(gathered, reading, rules);
+  for (const YamlNode& node : gathered.rules) {
+    const std::size_t faults_before = faults.errorCount();
+    auto rule = readRule(node, reading);
+    if (!rule) continue;
+    if (faults.errorCount() == faults_before) checkReachability(*rule, faults);
+    rules.rules.push_back(std::move(*rule));
+  }
+  if (rules.rules.empty() && faults.errorCount() == 0) {
+    SourceLocation at;
+    at.file = roots.empty() ? "" : roots.front();
+    faults.error(at, "there are no rules in it");
+  }
+  rules.asks_map = reading.asks_map;
+  checkTogether(gathered, reading, rules, faults);
+  rules.sources = std::move(gathered.sources);
+  LoadedRules loaded;
+  loaded.diagnostics = faults.sorted();
+  if (faults.errorCount() == 0) loaded.rules = std::move(rules);
+  return loaded;
+}
+
+FoundSource findFile(const std::string& name, const std::string& from_key) {
+  FoundSource found;
+  std::filesystem::path path = name;
+  if (path.is_relative() && !from_key.empty()) path = std::filesystem::path(from_key).parent_path() / path;
+  // Symbolic links are not resolved: includes are relative to the link, as they are in a map's stored texts.
+  found.key = std::filesystem::absolute(path).lexically_normal().string();
+  found.shown = path.lexically_normal().string();
+  try {
+    found.text = readFile(path);
+  } catch (const Error& fault) {
+    found.fault = fault.what();
+  }
+  return found;
+}
+
+}  // namespace
+
+RuleSet LoadedRules::require() && {
+  if (!rules) throw InputError(diagnostics);
+  return std::move(*rules);
+}
+
+LoadedRules loadRules(std::span<const std::filesystem::path> paths, const ClassCatalogue& catalogue,
+                      const RuleLoadOptions& options) {
+  std::vector<std::string> roots;
+  for (const auto& path : paths) roots.push_back(path.string());
+  return load(roots, findFile, catalogue, options);
+}
+
+LoadedRules loadRuleTexts(std::span<const RuleSource> texts, std::size_t roots, const ClassCatalogue& catalogue,
+                          const RuleLoadOptions& options) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < std::min(roots, texts.size()); ++i) names.push_back(texts[i].name);
+  auto findText = [&](const std::string& name, const std::string& from_key) {
+    FoundSource found;
+    const auto beside = (std::filesystem::path(from_key).parent_path() / name).lexically_normal().string();
+    for (const RuleSource& source : texts)
+      if (found.key.empty() && (source.name == name || source.name == beside))
+        found = {source.name, source.name, source.text, {}};
+    if (found.key.empty()) found.fault = "the file '" + name + "' is not among those given";
+    return found;
+  };
+  return load(names, findText, catalogue, options);
+}
+
+std::vector<Diagnostic> checkRules(std::span<const std::filesystem::path> paths, const ClassCatalogue& catalogue,
+                                   const RuleLoadOptions& options) {
+  return loadRules(paths, catalogue, options).diagnostics;
+}
+
+}  // namespace cluxel::rules

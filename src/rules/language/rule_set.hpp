@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// A rule set as plain values: decision trees per class. docs/rules.md defines the language.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "base/content_hash.hpp"
+#include "rules/language/class_catalogue.hpp"
+#include "rules/language/rule_condition.hpp"
+
+namespace cluxel::rules {
+
+/// Linked primitives become one candidate, as long as all limits hold for it.
+struct GroupSpec {
+  SourceLocation at;
+  std::vector<scan::PrimitiveLabel> labels;
+  std::optional<double> near_m;                    ///< link when the gap is at most this
+  std::optional<double> horizontal_m, vertical_m;  ///< or when both gaps are
+  bool adjacent = false;                           ///< or when a cluxel edge joins them
+  std::vector<Condition> limits;
+};
+
+struct SeedSpec {
+  std::string name = "seed";
+  std::vector<scan::PrimitiveLabel> labels;
+  std::optional<SliceSpec> slice;  ///< each connected component of its cluxels is a seed
+  std::vector<Condition> where;    ///< each primitive must pass before it is grouped
+};
+
+enum class Choice : std::uint8_t { LargestVolume, MostPoints, Nearest, Highest, Lowest, MostAdjacent, All };
+
+using NodeIndex = std::size_t;
+
+struct BranchNode {
+  Condition condition;
+  NodeIndex yes = 0, no = 0;
+};
+
+/// Binds another primitive, or all that pass, to a name for the rest of the branch.
+struct FindNode {
+  std::string name;
+  std::vector<scan::PrimitiveLabel> labels;
+  std::string object_class;      ///< when given: looks among the primitives of such objects, for reference only
+  std::vector<Condition> where;  ///< relations and measures to bound names; the subject is the candidate
+  Choice choose = Choice::LargestVolume;
+  std::string nearest_to;  ///< for Nearest, MostAdjacent: the first bound name in `where`
+  bool share = false;      ///< may be bound by several candidates of this class; `split` then divides it
+  NodeIndex found = 0, missing = 0;
+};
+
+/// Confidence grows from `low` to `high` while an attribute goes from `at_low` to `at_high`.
+struct ConfidenceRamp {
+  std::string of;
+  perception::Attribute attribute = perception::Attribute::Probability;
+  double at_low = 0, at_high = 1;
+};
+struct Confidence {
+  double low = 1, high = 1;
+  std::vector<ConfidenceRamp> ramps;  ///< their mean is used; none: `high`
+};
+
+struct AbsorbSpec {
+  SourceLocation at;
+  std::vector<scan::PrimitiveLabel> labels;
+  std::vector<Condition> when;
+  double max_fraction_of_points = 1;
+  std::string into;   ///< bound name whose part they join
+  bool late = false;  ///< after all classes instead of after this class
+};
+
+/// Collects fragments that belong to a split primitive without touching it.
+struct GatherSpec {
+  double within_m = 0;  ///< largest gap to the object
+  double above_m = 0;   ///< minimum height above the ground of such a fragment
+};
+
+/// Splits shared primitives among the objects that claim them, along the cluxel graph.
+struct SplittingSpec {
+  SourceLocation at;
+  std::string part, from;            ///< bound names: what is split, and where the paths start
+  double reach_m = 8;                ///< largest plan distance from the foot of `from`
+  double jump_m = 0.5;               ///< gaps up to this are bridged, at double length
+  double start_m = 0.5;              ///< the same between `from` and what is split; at least jump_m
+  double clearance_m = 0;            ///< cluxels below this height above ground are not assigned
+  std::optional<GatherSpec> gather;  ///< then also assigns free fragments of the same labels
+};
+
+struct AcceptLeaf {
+  std::vector<std::pair<std::string, std::string>> parts;  ///< bound name -> part class IRI, in the order written
+  Confidence confidence;
+  std::vector<AbsorbSpec> absorb;
+  std::optional<SplittingSpec> splitting;
+  bool merge_into_related = false;  ///< joins the object found by the last relation test that passed
+};
+
+struct RejectLeaf {
+  std::string reason;
+  std::string hint;            ///< a rule that may fit instead
+  bool leave_unknown = false;  ///< no later rule may take the seed
+};
+
+struct TreeNode {
+  SourceLocation at;
+  std::variant<BranchNode, FindNode, AcceptLeaf, RejectLeaf> what;
+};
+
+struct Rule {
+  std::string id;
+  std::string class_iri;
+  std::string description;
+  SourceLocation at;
+  SeedSpec seed;
+  std::optional<GroupSpec> group;
+  std::vector<TreeNode> nodes;  ///< node 0 is the root
+};
+
+/// A file of a rule set, under the name by which it was included.
+struct RuleSource {
+  std::string name;
+  std::string text;
+};
+
+struct RuleSet {
+  std::string name, version, description;
+  std::map<std::string, std::string> prefixes;
+  std::vector<std::string> order;  ///< class IRIs; earlier classes get a primitive first
+  std::vector<Rule> rules;         ///< in the order written
+  bool asks_map = false;           ///< some condition is an `ask:`
+  std::vector<RuleSource> sources;
+  ClassCatalogue catalogue;  ///< the classes it was checked against
+  /// Hash of the sources' texts.
+  ContentHash hash() const;
+  const Rule* find(std::string_view id) const;
+  /// "clx:Tree" for a class IRI, with the rule set's prefixes; the IRI itself when none fits.
+  std::string shorten(std::string_view iri) const;
+};
+
+}  // namespace cluxel::rules

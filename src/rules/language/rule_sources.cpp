@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// Order of evaluation: included files, the file's own rules, its overrides. A file is read once, however often it is
+// included.
+#include "rules/language/rule_sources.hpp"
+
+#include <algorithm>
+
+#include "base/nearest_name.hpp"
+#include "rules/language/rule_reading.hpp"
+
+namespace cluxel::rules {
+
+namespace {
+
+constexpr std::string_view kApiVersion = "cluxel.rules/v1";
+
+std::string idOf(const YamlNode& rule) {
+  const YamlNode* id = rule.find("id");
+  return id != nullptr && id->isScalar() ? id->text : std::string();
+}
+
+class Gatherer {
+ public:
+  Gatherer(const FindSource& find_source, FaultList& faults) : find_source_(find_source), faults_(faults) {}
+
+  void include(const std::string& name, const std::string& from_key, const SourceLocation& at) {
+    FoundSource source = find_source_(name, from_key);
+    if (!source.fault.empty()) return faults_.error(at, source.fault);
+    const auto open = std::find(open_.begin(), open_.end(), source.key);
+    if (open != open_.end()) return reportCycle(source, at);
+    if (std::find(read_.begin(), read_.end(), source.key) != read_.end()) return;
+    read_.push_back(source.key);
+    open_.push_back(source.key);
+    shown_.push_back(source.shown);
+    faults_.addFile(source.shown, source.text);
+    const YamlNode root = parseRuleYaml(source.shown, source.text, faults_);
+    result_.sources.push_back({source.shown, std::move(source.text)});
+    if (!root.isNull() && checkKeys(root, "file", faults_)) readFile(root, source.key);
+    open_.pop_back();
+    shown_.pop_back();
+  }
+
+  GatheredRules take() { return std::move(result_); }
+
+ private:
+  void reportCycle(const FoundSource& source, const SourceLocation& at) {
+    std::string way;
+    for (const std::string& name : shown_) way += name + " -> ";
+    faults_.error(at, "the files include each other: " + way + source.shown);
+  }
+
+  void readFile(const YamlNode& root, const std::string& key) {
+    if (const YamlNode* version = requireKey(root, "apiVersion", "file", faults_))
+      if (version->text != kApiVersion)
+        faults_.error(version->at, "rules of version '" + version->text + "' cannot be read",
+                      "this program reads " + std::string(kApiVersion));
+    if (const YamlNode* list = root.find("include")) {
+      if (!list->isSequence() && !list->isNull()) faults_.error(list->at, "'include' takes a list of files");
+      for (const YamlNode& item : list->items)
+        if (const auto name = readText(item, "a file", faults_)) include(*name, key, item.at);
+    }
+    readHead(root);
+    addEntries(root.find("prefixes"), "prefixes", result_.prefixes, true);
+    addEntries(root.find("constants"), "constants", result_.constants, false);
+    if (const YamlNode* order = root.find("order")) readOrder(*order, root.find("include") != nullptr);
+    if (const YamlNode* rules = root.find("rules")) addRules(*rules);
+    if (const YamlNode* overrides = root.find("override")) readOverride(*overrides);
+  }
+
+  void readHead(const YamlNode& root) {
+    const YamlNode* head = root.find("ruleset");
+    if (head == nullptr || !checkKeys(*head, "ruleset", faults_)) return;
+    for (const auto& [key, field] :
+         {std::pair{"name", &result_.name}, {"version", &result_.version}, {"description", &result_.description}})
+      if (const YamlNode* value = head->find(key)) *field = readText(*value, key, faults_).value_or("");
+  }
+
+  void addEntries(const YamlNode* map, std::string_view what, std::vector<std::pair<YamlNode, YamlNode>>& entries,
+                  bool may_repeat) {
+    if (map == nullptr || map->isNull()) return;
+    if (!map->isMap()) return faults_.error(map->at, "'" + std::string(what) + "' must be a mapping");
+    for (std::size_t i = 0; i < map->items.size(); ++i) {
+      const YamlNode& key = map->keys[i];
+      const auto earlier =
+          std::find_if(entries.begin(), entries.end(), [&](const auto& entry) { return entry.first.text == key.text; });
+      if (earlier == entries.end()) {
+        entries.emplace_back(key, map->items[i]);
+      } else if (!may_repeat || earlier->second.text != map->items[i].text) {
+        faults_.error(key.at, "'" + key.text + "' is already defined in " + toString(earlier->first.at),
+                      "to change it, write it below 'override:'");
+      }
+    }
+  }
+
+  /// A list replaces the order; { insert: [...], before: class } extends that of the included files.
+  void readOrder(const YamlNode& order, bool includes) {
+    if (order.isSequence()) {
+      if (includes) result_.order.clear();
+      for (const YamlNode& item : order.items) insertOrder(item, result_.order.size());
+      return;
+    }
+    if (!checkKeys(order, "order", faults_)) return;
+    const YamlNode* insert = requireKey(order, "insert", "order", faults_);
+    const YamlNode* before = order.find("before");
+    const YamlNode* after = order.find("after");
+    if ((before == nullptr) == (after == nullptr)) faults_.error(order.at, "'order' needs either 'before' or 'after'");
+    if (insert == nullptr) return;
+    std::size_t at = result_.order.size();
+    for (const YamlNode* anchor : {before, after})
+      if (anchor != nullptr) at = placeOf(*anchor, anchor == after);
+    const std::vector<YamlNode> classes = insert->isSequence() ? insert->items : std::vector<YamlNode>{*insert};
+    for (const YamlNode& item : classes) insertOrder(item, at++);
+  }
+
+  std::size_t placeOf(const YamlNode& anchor, bool behind) {
+    for (std::size_t i = 0; i < result_.order.size(); ++i)
+      if (result_.order[i].text == anchor.text) return i + (behind ? 1 : 0);
+    std::vector<std::string> known;
+    for (const YamlNode& node : result_.order) known.push_back(node.text);
+    faults_.error(anchor.at, "'" + anchor.text + "' does not stand in the order", suggestion(anchor.text, known));
+    return result_.order.size();
+  }
+
+  void insertOrder(const YamlNode& node, std::size_t at) {
+    for (const YamlNode& earlier : result_.order)
+      if (earlier.text == node.text)
+        return faults_.error(node.at, "'" + node.text + "' stands in the order twice",
+                             "first in " + toString(earlier.at));
+    result_.order.insert(result_.order.begin() + static_cast<std::ptrdiff_t>(std::min(at, result_.order.size())), node);
+  }
+
+  YamlNode* ruleById(const std::string& id) {
+    for (YamlNode& rule : result_.rules)
+      if (!id.empty() && idOf(rule) == id) return &rule;
+    return nullptr;
+  }
+
+  void addRules(const YamlNode& rules) {
+    if (!rules.isSequence() && !rules.isNull()) faults_.error(rules.at, "'rules' takes a list");
+    for (const YamlNode& rule : rules.items) {
+      if (const YamlNode* earlier = ruleById(idOf(rule)))
+        faults_.error(rule.find("id")->at, "the rule id '" + idOf(rule) + "' is already used",
+                      "first in " + toString(earlier->at) + "; to change that rule, write it below 'override:'");
+      else
+        result_.rules.push_back(rule);
+    }
+  }
+
+  void readOverride(const YamlNode& overrides) {
+    if (!checkKeys(overrides, "override", faults_)) return;
+    if (const YamlNode* constants = overrides.find("constants")) overrideConstants(*constants);
+    for (const YamlNode& rule : listUnder(overrides, "rules", "rules", faults_)) overrideRule(rule);
+    for (const YamlNode& id : listUnder(overrides, "remove", "ids of rules", faults_)) {
+      YamlNode* rule = knownRule(id, id.text);
+      if (rule != nullptr) result_.rules.erase(result_.rules.begin() + (rule - result_.rules.data()));
+    }
+  }
+
+  void overrideConstants(const YamlNode& constants) {
+    if (!constants.isMap() && !constants.isNull()) return faults_.error(constants.at, "'constants' must be a mapping");
+    for (std::size_t i = 0; i < constants.items.size(); ++i) {
+      const YamlNode& key = constants.keys[i];
+      const auto earlier = std::find_if(result_.constants.begin(), result_.constants.end(),
+                                        [&](const auto& entry) { return entry.first.text == key.text; });
+      std::vector<std::string> known;
+      for (const auto& entry : result_.constants) known.push_back(entry.first.text);
+      if (earlier == result_.constants.end())
+        faults_.error(key.at, "there is no constant '" + key.text + "' to override", suggestion(key.text, known));
+      else
+        *earlier = {key, constants.items[i]};
+    }
+  }
+
+  YamlNode* knownRule(const YamlNode& at, const std::string& id) {
+    if (YamlNode* rule = ruleById(id)) return rule;
+    std::vector<std::string> known;
+    for (const YamlNode& rule : result_.rules) known.push_back(idOf(rule));
+    faults_.error(at.at, "there is no rule '" + id + "' to override", suggestion(id, known));
+    return nullptr;
+  }
+
+  /// Replaces the given keys of the rule and keeps the others.
+  void overrideRule(const YamlNode& change) {
+    if (!checkKeys(change, "rule", faults_)) return;
+    const YamlNode* id = requireKey(change, "id", "rule", faults_);
+    YamlNode* rule = id == nullptr ? nullptr : knownRule(*id, id->text);
+    if (rule == nullptr) return;
+    for (std::size_t i = 0; i < change.items.size(); ++i) {
+      const auto place = std::find_if(rule->keys.begin(), rule->keys.end(),
+                                      [&](const YamlNode& key) { return key.text == change.keys[i].text; });
+      if (place == rule->keys.end()) {
+        rule->keys.push_back(change.keys[i]);
+        rule->items.push_back(change.items[i]);
+      } else {
+        rule->items[static_cast<std::size_t>(place - rule->keys.begin())] = change.items[i];
+        *place = change.keys[i];
+      }
+    }
+  }
+
+  const FindSource& find_source_;
+  FaultList& faults_;
+  GatheredRules result_;
+  std::vector<std::string> open_, shown_, read_;
+};
+
+}  // namespace
+
+GatheredRules gatherRules(const std::vector<std::string>& roots, const FindSource& findSource, FaultList& faults) {
+  Gatherer gatherer(findSource, faults);
+  for (const std::string& root : roots) gatherer.include(root, "", {});
+  return gatherer.take();
+}
+
+}  // namespace cluxel::rules

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads numbers from lines of text. '#' comments and empty lines are skipped; errors name line and column.
+#pragma once
+
+#include <charconv>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace cluxel::scan {
+
+class TextScanner {
+ public:
+  /// `text` must outlive the scanner; `file` is for messages. A byte order mark (written by Windows editors) is
+  /// skipped.
+  TextScanner(std::string_view text, std::string file)
+      : next_(text.data() + (text.starts_with("\xEF\xBB\xBF") ? 3 : 0)),
+        end_(text.data() + text.size()),
+        text_(text),
+        file_(std::move(file)) {}
+
+  /// Goes to the next line with content; false at the end of the text.
+  bool nextLine();
+  /// True when nothing but blanks and a comment is left on the line.
+  bool atLineEnd();
+  /// The next number of the line, which must be finite; faults call it `what`.
+  double number(const char* what);
+  /// The next number of the line, which may be NaN or infinite.
+  double anyNumber(const char* what);
+  std::uint32_t count(const char* what);
+  /// The next word of the line, ended by a blank.
+  std::string_view word(const char* what);
+  /// Refuses anything left on the line; `expected` says what a line holds.
+  void endLine(const char* expected);
+
+  std::size_t line() const { return line_; }
+  std::string_view currentLine() const { return {start_, static_cast<std::size_t>(stop_ - start_)}; }
+  const std::string& file() const { return file_; }
+  /// Refuses the line at the current position.
+  [[noreturn]] void refuse(const std::string& message, const std::string& hint = {}) const;
+  /// Refuses the file at its end.
+  [[noreturn]] void refuseEnd(const std::string& message, const std::string& hint = {}) const;
+
+ private:
+  void skipBlanks() {
+    while (at_ != stop_ && (*at_ == ' ' || *at_ == '\t' || *at_ == ',')) ++at_;
+  }
+  void endNumber(const char* end, const char* what);
+  std::string wordAt() const;
+
+  const char* next_;             ///< start of the next line
+  const char* end_;              ///< end of the text
+  const char* start_ = nullptr;  ///< start, current position and end of this line
+  const char* at_ = nullptr;
+  const char* stop_ = nullptr;
+  std::size_t line_ = 0;
+  std::string_view text_;
+  std::string file_;
+};
+
+}  // namespace cluxel::scan

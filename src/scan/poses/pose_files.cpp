@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parsers of pose files; every matrix is checked to be a rigid motion.
+#include "scan/poses/pose_files.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "scan/formats/text_scanner.hpp"
+
+namespace cluxel::scan {
+
+namespace {
+
+/// KITTI and hand-written poses have six or seven digits.
+constexpr double kRotationTolerance = 1e-3;
+
+void checkPose(const TextScanner& scanner, const Eigen::Isometry3d& pose) {
+  if (const auto fault = faultOfPose(pose)) scanner.refuse("the pose " + *fault);
+}
+
+void readRow(TextScanner& scanner, Eigen::Isometry3d& pose, int row) {
+  for (int column = 0; column < 4; ++column) pose(row, column) = scanner.number("a number of the pose");
+}
+
+Eigen::Isometry3d readThreeRows(TextScanner& scanner) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  for (int row = 0; row < 3; ++row) readRow(scanner, pose, row);
+  return pose;
+}
+
+Eigen::Isometry3d readFourLines(TextScanner& scanner) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  for (int row = 0; row < 4; ++row) {
+    if (row > 0 && !scanner.nextLine()) scanner.refuseEnd("ends inside a 4x4 matrix");
+    readRow(scanner, pose, row);
+    scanner.endLine("one row of a 4x4 matrix");
+  }
+  return pose;
+}
+
+Eigen::Isometry3d readTum(TextScanner& scanner) {
+  std::array<double, 7> v{};
+  for (double& value : v) value = scanner.number("a number of the pose");
+  const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
+  if (std::abs(rotation.norm() - 1) > kRotationTolerance) scanner.refuse("the quaternion does not have length 1");
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = rotation.normalized().toRotationMatrix();
+  pose.translation() = Eigen::Vector3d(v[0], v[1], v[2]);
+  return pose;
+}
+
+std::size_t columnsOf(TextScanner line) {
+  std::size_t columns = 0;
+  for (; !line.atLineEnd(); ++columns) line.word("a column");
+  return columns;
+}
+
+void readPose(TextScanner& scanner, std::size_t columns, PoseList& list) {
+  Eigen::Isometry3d pose;
+  if (columns == 4) {
+    pose = readFourLines(scanner);
+  } else if (columns == 8) {
+    list.time_s.push_back(scanner.number("the time"));
+    pose = readTum(scanner);
+  } else {
+    pose = readThreeRows(scanner);
+    if (columns == 16) readRow(scanner, pose, 3);
+  }
+  scanner.endLine("as many numbers as the first line");
+  checkPose(scanner, pose);
+  list.poses.push_back(pose);
+}
+
+}  // namespace
+
+std::optional<std::string> faultOfPose(const Eigen::Isometry3d& pose) {
+  if (!pose.matrix().allFinite()) return "has numbers that are not finite";
+  const Eigen::Matrix3d rotation = pose.linear();
+  const double off = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(off <= kRotationTolerance)) return "has a rotation part whose rows are not of length 1 and at right angles";
+  if (rotation.determinant() < 0) return "mirrors space: its rotation part has determinant -1";
+  if (pose.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1)) return "has a last row that is not 0 0 0 1";
+  return std::nullopt;
+}
+
+PoseList parsePoses(std::string_view bytes, const std::string& file) {
+  TextScanner scanner(bytes, file);
+  PoseList list;
+  std::size_t columns = 0;
+  while (scanner.nextLine()) {
+    if (columns == 0) columns = columnsOf(scanner);
+    if (columns != 4 && columns != 8 && columns != 12 && columns != 16)
+      scanner.refuse(std::to_string(columns) + " columns are no known form of a pose",
+                     "known are 12 (KITTI 3x4), 16 or four lines of 4 (4x4), and 8 (TUM: time x y z qx qy qz qw)");
+    readPose(scanner, columns, list);
+  }
+  if (list.poses.empty()) scanner.refuseEnd("holds no poses");
+  return list;
+}
+
+Eigen::Isometry3d parseKittiCalibration(std::string_view bytes, const std::string& file) {
+  TextScanner scanner(bytes, file);
+  while (scanner.nextLine()) {
+    const std::string_view name = scanner.word("a name");
+    if (name != "Tr:" && name != "Tr" && name != "Tr_velo_to_cam:" && name != "Tr_velo_cam:") continue;
+    Eigen::Isometry3d Tr = readThreeRows(scanner);
+    scanner.endLine("Tr: and 12 numbers");
+    checkPose(scanner, Tr);
+    return Tr;
+  }
+  scanner.refuseEnd("has no line 'Tr:'", "KITTI's calib.txt holds the motion from the laser to the camera as Tr");
+}
+
+Eigen::Isometry3d parseFreiburgPose(std::string_view bytes, const std::string& file) {
+  TextScanner scanner(bytes, file);
+  if (!scanner.nextLine() || !scanner.nextLine())
+    scanner.refuseEnd("has fewer than two lines", "line 1 is odometry, line 2 is the pose found by SLAM");
+  std::array<double, 6> v{};
+  for (double& value : v) value = scanner.number("a number of the pose");
+  scanner.endLine("x y z roll pitch yaw");
+  Eigen::Isometry3d T_map_robot = Eigen::Isometry3d::Identity();
+  T_map_robot.linear() = rotationFromRpy(v[3], v[4], v[5]);
+  T_map_robot.translation() = Eigen::Vector3d(v[0], v[1], v[2]);
+  checkPose(scanner, T_map_robot);
+  return T_map_robot;
+}
+
+std::vector<double> parseTimes(std::string_view bytes, const std::string& file) {
+  TextScanner scanner(bytes, file);
+  std::vector<double> times;
+  while (scanner.nextLine()) {
+    times.push_back(scanner.number("the time"));
+    scanner.endLine("one time in seconds");
+  }
+  return times;
+}
+
+Eigen::Matrix3d rotationFromRpy(double roll_rad, double pitch_rad, double yaw_rad) {
+  using Eigen::AngleAxisd;
+  using Eigen::Vector3d;
+  return (AngleAxisd(yaw_rad, Vector3d::UnitZ()) * AngleAxisd(pitch_rad, Vector3d::UnitY()) *
+          AngleAxisd(roll_rad, Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+}  // namespace cluxel::scan

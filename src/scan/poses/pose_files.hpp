@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Poses, calibration and times as lines of numbers.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cluxel::scan {
+
+/// Poses in the order of their file. TUM lines also have times.
+struct PoseList {
+  std::vector<Eigen::Isometry3d> poses;
+  std::vector<double> time_s;  ///< empty, or one for each pose
+};
+
+/// KITTI (12 numbers a line: 3x4 by rows), 4x4 (16 numbers a line, or four lines of 4), or TUM (time x y z qx
+/// qy qz qw); distinguished by the number of columns. Throws InputError naming the line when a pose is no rigid motion
+/// (1e-3).
+PoseList parsePoses(std::string_view bytes, const std::string& file);
+
+/// `Tr` (velodyne to left camera) of KITTI's calib.txt.
+Eigen::Isometry3d parseKittiCalibration(std::string_view bytes, const std::string& file);
+
+/// Line 2 (SLAM) of scan_i_robotPoses.dat: x y z roll pitch yaw in metres and radians.
+Eigen::Isometry3d parseFreiburgPose(std::string_view bytes, const std::string& file);
+
+/// One time a line [s].
+std::vector<double> parseTimes(std::string_view bytes, const std::string& file);
+
+/// Rz(yaw) Ry(pitch) Rx(roll), as REP-103.
+Eigen::Matrix3d rotationFromRpy(double roll_rad, double pitch_rad, double yaw_rad);
+
+/// What is wrong with a matrix that should be a rigid motion; nothing when it is one.
+std::optional<std::string> faultOfPose(const Eigen::Isometry3d& pose);
+
+}  // namespace cluxel::scan

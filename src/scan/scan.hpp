@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// One registered laser scan: points in the sensor frame and the pose of the sensor in the map.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/content_hash.hpp"
+
+namespace cluxel::scan {
+
+/// The name of a scan: the hash of its content (points, attributes, time; not its pose, path or file format).
+using ScanId = ContentHash;
+
+/// The points of a scan as a structure of arrays, in metres in the sensor frame (REP-103: x forward, y left, z up).
+/// Optional arrays are either empty or as long as `x`.
+struct ScanPoints {
+  std::vector<float> x, y, z;
+  std::vector<float> intensity;
+  std::vector<std::uint32_t> label;     ///< the data set's own label ids
+  std::vector<Eigen::Vector3f> origin;  ///< where each ray started, in the sensor frame [m]
+
+  std::size_t size() const { return x.size(); }
+  bool empty() const { return x.empty(); }
+};
+
+struct Scan {
+  ScanPoints points;
+  std::optional<double> time_s;  ///< seconds since the epoch of the recording
+  Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
+  bool has_pose = false;  ///< false: points are taken as given in the map frame, no sensor origin
+  std::string source;     ///< the file it came from, for people
+  ScanId id;              ///< contentIdOf(*this)
+};
+
+/// The content hash that names a scan.
+ScanId contentIdOf(const Scan& scan);
+
+/// `p_map = double(T_map_sensor) · p_sensor`: the one place where points change from the sensor to the map frame [m].
+inline Eigen::Vector3d toMap(const Eigen::Isometry3d& T_map_sensor, const Eigen::Vector3f& p_sensor) {
+  return T_map_sensor * p_sensor.cast<double>();
+}
+
+}  // namespace cluxel::scan

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads label maps (labels/*.yaml) and reports all their faults at once.
+#include <algorithm>
+#include <charconv>
+
+#include "base/file_bytes.hpp"
+#include "base/nearest_name.hpp"
+#include "base/yaml/yaml_tree.hpp"
+#include "scan/truth/label_map_text.hpp"
+#include "scan/truth/truth.hpp"
+
+namespace cluxel::scan {
+
+namespace {
+
+const std::vector<std::string> kFileKeys{"dataset", "cite", "labels"};
+const std::vector<std::string> kLabelKeys{"name", "primitive", "object", "part", "near"};
+const std::vector<std::string> kNearKeys{"label", "within", "object"};
+
+bool isLocalName(std::string_view name) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  return !name.empty() && letter(name.front()) &&
+         std::all_of(name.begin(), name.end(), [&](char c) { return letter(c) || digit(c) || c == '_' || c == '-'; });
+}
+
+class LabelMapReader {
+ public:
+  explicit LabelMapReader(FaultList& faults) : faults_(&faults) {}
+
+  std::map<std::uint32_t, LabelMeaning> read(const YamlNode& root) {
+    std::map<std::uint32_t, LabelMeaning> entries;
+    if (!checkMapping(root, kFileKeys, *faults_)) return entries;
+    const YamlNode* labels = root.find("labels");
+    if (!labels || !labels->isMap() || labels->items.empty()) {
+      faults_->error((labels ? *labels : root).at, "a label map needs 'labels', a mapping of ids that is not empty");
+      return entries;
+    }
+    for (std::size_t i = 0; i < labels->items.size(); ++i) {
+      const YamlNode& key = labels->keys[i];
+      const auto id = idOf(key);
+      LabelMeaning meaning = readMeaning(labels->items[i]);
+      if (id && !entries.emplace(*id, std::move(meaning)).second)
+        faults_->error(key.at, "the id " + std::to_string(*id) + " stands twice");
+    }
+    checkNearIds(*labels, entries);
+    return entries;
+  }
+
+ private:
+  std::optional<std::uint32_t> idOf(const YamlNode& value) {
+    std::uint32_t id = 0;
+    const char* end = value.text.data() + value.text.size();
+    const auto [stop, error] = std::from_chars(value.text.data(), end, id);
+    if (value.isScalar() && error == std::errc() && stop == end) return id;
+    faults_->error(value.at, "a label id is a whole number from 0 to 4294967295");
+    return std::nullopt;
+  }
+
+  LabelMeaning readMeaning(const YamlNode& value) {
+    LabelMeaning meaning;
+    if (!checkMapping(value, kLabelKeys, *faults_)) return meaning;
+    if (const YamlNode* name = value.find("name"))
+      meaning.name = textOf(*name, "name", *faults_).value_or("");
+    else
+      faults_->error(value.at, "a label needs a 'name'");
+    if (const YamlNode* primitive = value.find("primitive")) meaning.primitive = readPrimitive(*primitive);
+    meaning.object_class = localNameAt(value, "object");
+    meaning.part = localNameAt(value, "part");
+    if (meaning.part && !value.find("object"))
+      faults_->error(value.at, "a 'part' needs an 'object' that it is part of");
+    if (const YamlNode* near = value.find("near")) meaning.near = readNear(*near);
+    return meaning;
+  }
+
+  std::optional<PrimitiveLabel> readPrimitive(const YamlNode& value) {
+    if (const auto label = primitiveLabelOf(value.text)) return label;
+    const std::vector<std::string> known(kPrimitiveLabelNames.begin(), kPrimitiveLabelNames.end());
+    faults_->error(value.at, "unknown primitive '" + value.text + "'", suggestion(value.text, known));
+    return std::nullopt;
+  }
+
+  std::optional<std::string> localNameAt(const YamlNode& mapping, const char* key) {
+    const YamlNode* value = mapping.find(key);
+    if (!value) return std::nullopt;
+    if (value->isScalar() && isLocalName(value->text)) return value->text;
+    faults_->error(value->at, std::string(key) + " must be a local name of the ontology, such as StreetSign");
+    return std::nullopt;
+  }
+
+  std::optional<LabelMeaning::NearRule> readNear(const YamlNode& value) {
+    if (!checkMapping(value, kNearKeys, *faults_)) return std::nullopt;
+    for (const std::string& key : kNearKeys)
+      if (!value.find(key)) faults_->error(value.at, "'near' needs '" + key + "'");
+    const YamlNode* label = value.find("label");
+    const YamlNode* within = value.find("within");
+    const auto id = label ? idOf(*label) : std::nullopt;
+    const auto distance_m = within ? metresOf(*within) : std::nullopt;
+    const auto object_class = localNameAt(value, "object");
+    if (!id || !distance_m || !object_class) return std::nullopt;
+    return LabelMeaning::NearRule{*id, *distance_m, *object_class};
+  }
+
+  /// "0.6 m"
+  std::optional<double> metresOf(const YamlNode& value) {
+    double metres = 0;
+    const std::string& text = value.text;
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), metres);
+    const std::string_view unit(stop, static_cast<std::size_t>(text.data() + text.size() - stop));
+    const bool good = error == std::errc() && (unit == " m" || unit == "m") && metres > 0 && metres <= 100;
+    if (good) return metres;
+    faults_->error(value.at, "within must be a distance with its unit, above 0 and at most 100 m",
+                   "write it as '0.6 m'");
+    return std::nullopt;
+  }
+
+  void checkNearIds(const YamlNode& labels, const std::map<std::uint32_t, LabelMeaning>& entries) {
+    for (const YamlNode& value : labels.items) {
+      const YamlNode* near = value.find("near");
+      const YamlNode* label = near ? near->find("label") : nullptr;
+      std::uint32_t id = 0;
+      if (!label) continue;
+      const char* end = label->text.data() + label->text.size();
+      if (std::from_chars(label->text.data(), end, id).ptr == end && !entries.contains(id))
+        faults_->error(label->at, "the label " + label->text + " is not in this map");
+    }
+  }
+
+  FaultList* faults_;
+};
+
+}  // namespace
+
+std::map<std::uint32_t, LabelMeaning> parseLabelMap(std::string_view text, const std::string& file) {
+  FaultList faults(file, std::string(text));
+  std::map<std::uint32_t, LabelMeaning> entries;
+  if (const auto root = parseYaml(file, text, faults)) entries = LabelMapReader(faults).read(*root);
+  faults.throwIfErrors();
+  return entries;
+}
+
+LabelMap LabelMap::load(const std::filesystem::path& path) {
+  LabelMap map;
+  map.entries_ = parseLabelMap(readFile(path), path.string());
+  return map;
+}
+
+const LabelMeaning* LabelMap::find(std::uint32_t id) const {
+  const auto entry = entries_.find(id);
+  return entry == entries_.end() ? nullptr : &entry->second;
+}
+
+}  // namespace cluxel::scan

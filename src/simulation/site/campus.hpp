@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// A procedural campus: labelled triangle meshes, the objects that they form, and the stops of the robot.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "simulation/laser/surface_label.hpp"
+#include "simulation/site/campus_params.hpp"
+#include "simulation/site/terrain.hpp"
+
+namespace cluxel::simulation {
+
+/// One surface of one object, in the map frame [m].
+struct CampusMesh {
+  SurfaceLabel label = SurfaceLabel::Lawn;
+  std::int32_t instance = -1;  ///< number in Campus::objects, or -1
+  float reflectivity = 0.5F;   ///< share of the light that a diffuse surface sends back, in [0, 1]
+  float transparency = 0;      ///< share of rays that do not return from it, in [0, 1]
+  std::vector<Eigen::Vector3f> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// One thing on the campus. Its number in Campus::objects is its instance id in the truth of all scans; 0 is
+/// the ground.
+struct CampusObject {
+  int class_number = -1;                               ///< number in truthClassNames()
+  std::string kind;                                    ///< for people: "spruce", "lamp with arm"
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< where it stands on the ground [m, map]
+  Eigen::AlignedBox3d box;                             ///< bounds of its surfaces [m, map]
+  double reach_m = 0;                                  ///< radius of a tree's crown, else of its footprint
+  std::vector<std::string> traits;  ///< "under a crown", "leaves on top", "two plates", "crown touches 17"
+};
+
+struct Campus {
+  CampusParams params;
+  double heading_rad = 0;  ///< of the street, from the map's x; the whole plan is turned by it
+  Terrain terrain;
+  std::vector<CampusObject> objects;
+  std::vector<CampusMesh> meshes;
+  std::vector<Eigen::Isometry3d> stops;  ///< T_map_sensor, about 1.2 m above the ground
+};
+
+/// The campus that follows from `params`, on one thread. Cost: well below a second per hectare. Throws as
+/// check(CampusParams) does.
+Campus buildCampus(const CampusParams& params);
+
+/// campus.json: parameters, surfaces and objects with class, kind, box, parts and traits, for people and
+/// other programs.
+std::string describeCampus(const Campus& campus);
+
+}  // namespace cluxel::simulation

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// The table of parameters and their check.
+#include "simulation/site/campus_params.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "cluxel/error.hpp"
+#include "simulation/site/site_plan.hpp"
+
+namespace cluxel::simulation {
+
+namespace {
+constexpr double kMaxSize_m = 400;
+}
+
+const std::array<CampusParamInfo, 10>& campusParamInfos() {
+  using P = CampusParams;
+  static const std::array<CampusParamInfo, 10> infos{{
+      {"stops", &P::stops, "1", 1, 1000, "scans along the route"},
+      {"size", &P::size_m, "m", 45, kMaxSize_m, "edge of the square campus"},
+      {"points-per-stop", &P::points_per_stop, "1", 1000, 2e6, "returns per scan"},
+      {"range-sigma", &P::range_sigma_m, "m", 0, 0.2, "standard deviation of the range noise"},
+      {"max-range", &P::max_range_m, "m", 5, 300, "farthest return"},
+      {"miss-probability", &P::miss_probability, "1", 0, 0.5, "share of rays lost for no reason"},
+      {"mixed-pixel-probability", &P::mixed_pixel_probability, "1", 0, 1,
+       "share of rays on depth edges that mix both ranges"},
+      {"beam-radius", &P::beam_radius_rad, "rad", 0, 0.02, "half the divergence of the beam"},
+      {"stop-distance", &P::stop_distance_m, "m", 0.2, 50, "from stop to stop along the route"},
+      {"drift", &P::drift_m, "m", 0, 1, "error that the stated poses gain from scan to scan"},
+  }};
+  return infos;
+}
+
+namespace {
+
+std::string shortNumber(double value) {
+  std::string text = std::to_string(value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.ends_with('.')) text.pop_back();
+  return text;
+}
+
+void checkRange(const CampusParams& params, const CampusParamInfo& info) {
+  const double value = params.*info.field;
+  if (value >= info.min && value <= info.max) return;
+  const std::string unit = info.unit == "1" ? "" : " " + std::string(info.unit);
+  throw Error(ErrorKind::InvalidArgument, "the campus cannot have " + std::string(info.name) + " = " +
+                                              shortNumber(value) + unit + " (" + std::string(info.help) + "): choose " +
+                                              shortNumber(info.min) + " to " + shortNumber(info.max) + unit);
+}
+
+}  // namespace
+
+std::size_t maxStops(double size_m, double stop_distance_m) {
+  return static_cast<std::size_t>(SitePlan(size_m).routeLength_m() / stop_distance_m);
+}
+
+void check(const CampusParams& params) {
+  for (const CampusParamInfo& info : campusParamInfos()) checkRange(params, info);
+  if (params.stops != std::floor(params.stops))
+    throw Error(ErrorKind::InvalidArgument,
+                "the campus cannot have " + shortNumber(params.stops) + " stops: give a whole number");
+  const auto stops = static_cast<std::size_t>(params.stops);
+  if (stops <= maxStops(params.size_m, params.stop_distance_m)) return;
+  double roomy_m = std::ceil(params.size_m);
+  while (roomy_m <= kMaxSize_m && maxStops(roomy_m, params.stop_distance_m) < stops) roomy_m += 1;
+  throw Error(ErrorKind::InvalidArgument,
+              "a campus of " + shortNumber(params.size_m) + " m has a route of " +
+                  std::to_string(maxStops(params.size_m, params.stop_distance_m)) + " stops, not " +
+                  std::to_string(stops) + ": choose fewer stops" +
+                  (roomy_m <= kMaxSize_m ? " or a size of " + shortNumber(roomy_m) + " m" : ", nearer to each other"));
+}
+
+}  // namespace cluxel::simulation

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parameters of a generated campus, each with unit, range and help, declared once.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace cluxel::simulation {
+
+/// How a stop is scanned: a full turn with equal angular steps, or 64 rings (-24.8 to 2 degrees) as on a vehicle's
+/// roof.
+enum class LaserKind { PanTilt, Spinning };
+
+/// These determine the campus and its scans completely.
+struct CampusParams {
+  std::uint64_t seed = 1;
+  double stops = 12;                 ///< scans along the route, one every 10 m
+  double size_m = 100;               ///< edge of the square campus; the ground goes on for 15 m around it
+  double points_per_stop = 175'000;  ///< returns per scan, kept within about 5 %
+  double range_sigma_m = 0.012;      ///< standard deviation of the range noise
+  double max_range_m = 60;
+  double miss_probability = 0.005;       ///< share of rays lost at random
+  double mixed_pixel_probability = 0.6;  ///< of a ray that is cut by a depth edge
+  double beam_radius_rad = 0.003;        ///< half the divergence of the beam
+  double stop_distance_m = 10;           ///< along the route
+  double drift_m = 0;                    ///< error that the stated poses gain from scan to scan, mostly forwards
+  LaserKind laser = LaserKind::PanTilt;
+};
+
+/// A field of CampusParams as command lines and documents show it.
+struct CampusParamInfo {
+  std::string_view name;  ///< as options write it: "points-per-stop"
+  double CampusParams::*field;
+  std::string_view unit;
+  double min, max;
+  std::string_view help;
+};
+
+/// One row per number but the seed, which is any unsigned one.
+const std::array<CampusParamInfo, 10>& campusParamInfos();
+
+/// How many stops the route of a campus of this size offers.
+std::size_t maxStops(double size_m, double stop_distance_m = CampusParams{}.stop_distance_m);
+
+/// Throws Error (Usage) naming the parameter, its range, and for too many stops the size that has room for
+/// them.
+void check(const CampusParams& params);
+
+}  // namespace cluxel::simulation

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// Translates expressions: resolves functions, checks argument counts, extracts aggregates.
+#include "base/nearest_name.hpp"
+#include "cluxel/error.hpp"
+#include "sparql/algebra/algebra_builder.hpp"
+
+namespace cluxel::sparql {
+namespace {
+
+using Written = ast::Expression::Kind;
+
+std::optional<Expr::Kind> operatorKind(Written kind) {
+  switch (kind) {
+    case Written::Or:
+      return Expr::Kind::Or;
+    case Written::And:
+      return Expr::Kind::And;
+    case Written::Not:
+      return Expr::Kind::Not;
+    case Written::Equal:
+      return Expr::Kind::Equal;
+    case Written::NotEqual:
+      return Expr::Kind::NotEqual;
+    case Written::Less:
+      return Expr::Kind::Less;
+    case Written::Greater:
+      return Expr::Kind::Greater;
+    case Written::LessEqual:
+      return Expr::Kind::LessEqual;
+    case Written::GreaterEqual:
+      return Expr::Kind::GreaterEqual;
+    case Written::In:
+      return Expr::Kind::In;
+    case Written::NotIn:
+      return Expr::Kind::NotIn;
+    case Written::Add:
+      return Expr::Kind::Add;
+    case Written::Subtract:
+      return Expr::Kind::Subtract;
+    case Written::Multiply:
+      return Expr::Kind::Multiply;
+    case Written::Divide:
+      return Expr::Kind::Divide;
+    case Written::Negate:
+      return Expr::Kind::Negate;
+    case Written::Plus:
+      return Expr::Kind::Plus;
+    default:
+      return std::nullopt;
+  }
+}
+
+Expr ofKind(Expr::Kind kind, ast::SourceOffset at) {
+  Expr expression;
+  expression.kind = kind;
+  expression.at = at;
+  return expression;
+}
+
+}  // namespace
+
+Expr AlgebraBuilder::expression(const ast::Expression& written, Scope& scope, const SlotSet& visible) {
+  switch (written.kind) {
+    case Written::Variable: {
+      const Slot slot = slotOf(written.variable, scope);
+      const bool seen = visible.has(slot) || scope.substituted.has(slot) || isParameter(slot);
+      Expr result = ofKind(seen ? Expr::Kind::Slot : Expr::Kind::Unbound, written.at);
+      if (seen) result.slot = slot;
+      return result;
+    }
+    case Written::Constant: {
+      Expr result = ofKind(Expr::Kind::Constant, written.at);
+      result.constant = terms_.valueOf(terms_.intern(written.term));
+      return result;
+    }
+    case Written::Exists:
+    case Written::NotExists:
+      return exists(written, scope, visible);
+    case Written::Aggregate:
+      return aggregate(written);
+    case Written::Call:
+    case Written::Function:
+      return call(written, scope, visible);
+    default:
+      break;
+  }
+  Expr result = ofKind(*operatorKind(written.kind), written.at);
+  for (const ast::Expression& argument : written.arguments) {
+    result.arguments.push_back(expression(argument, scope, visible));
+  }
+  return result;
+}
+
+Expr AlgebraBuilder::call(const ast::Expression& written, Scope& scope, const SlotSet& visible) {
+  Expr result = ofKind(Expr::Kind::Call, written.at);
+  if (written.kind == Written::Function) {
+    result.function = findFunction(written.term.text);
+    if (result.function == nullptr) {
+      fail(written.at, "unknown function <" + written.term.text + ">", suggestion(written.term.text, functionIris()));
+    }
+  } else if (written.builtin == ast::Builtin::Bound) {
+    const Expr variable = expression(written.arguments[0], scope, visible);
+    result.kind = variable.kind == Expr::Kind::Slot ? Expr::Kind::Bound : Expr::Kind::Constant;
+    result.slot = variable.slot;
+    if (result.kind == Expr::Kind::Constant) result.constant = Value::boolean(false);
+    return result;
+  } else if (written.builtin == ast::Builtin::Coalesce) {
+    result.kind = Expr::Kind::Coalesce;
+  } else if (written.builtin == ast::Builtin::If) {
+    result.kind = Expr::Kind::If;
+  } else {
+    result.function = findBuiltin(written.builtin);
+  }
+  if (result.function != nullptr) checkCall(written, *result.function);
+  for (const ast::Expression& argument : written.arguments) {
+    result.arguments.push_back(expression(argument, scope, visible));
+  }
+  return result;
+}
+
+void AlgebraBuilder::checkCall(const ast::Expression& written, const FunctionEntry& function) {
+  const std::size_t count = written.arguments.size();
+  if (count < function.min_arguments || count > function.max_arguments) {
+    const std::string wanted = function.min_arguments == function.max_arguments
+                                   ? std::to_string(function.min_arguments)
+                                   : "at least " + std::to_string(function.min_arguments);
+    fail(written.at, std::string(function.name) + " takes " + wanted + " argument" + (wanted == "1" ? "" : "s") +
+                         ", not " + std::to_string(count));
+  }
+  is_volatile_ = is_volatile_ || function.is_volatile;
+  if (function.is_volatile && options_.refuse_volatile) {
+    fail(written.at, std::string(function.name) + " is refused here: a rule's result must follow from the map alone",
+         "use clx:newObject for new objects");
+  }
+}
+
+Expr AlgebraBuilder::exists(const ast::Expression& written, Scope& scope, const SlotSet& visible) {
+  Expr result = ofKind(written.kind == Written::Exists ? Expr::Kind::Exists : Expr::Kind::NotExists, written.at);
+  // Variables that are not bound by the outer solution are local to the pattern.
+  Scope inner = scope;
+  inner.substituted.add(visible);
+  for (Slot& slot : inner.slot_of) {
+    if (slot != kNoSlot && !visible.has(slot) && !scope.substituted.has(slot) && !isParameter(slot)) slot = kNoSlot;
+  }
+  result.pattern = group(*written.pattern, inner);
+  result.exists = exists_count_++;
+  return result;
+}
+
+Expr AlgebraBuilder::aggregate(const ast::Expression& written) {
+  if (aggregation_.found == nullptr) fail(written.at, "an aggregate is not allowed here");
+  AggregateSpec spec;
+  spec.function = written.aggregate;
+  spec.distinct = written.distinct;
+  spec.separator = written.separator;
+  if (!written.arguments.empty()) {
+    const Aggregation outer = aggregation_;
+    aggregation_ = {};  // aggregates cannot be nested
+    spec.argument = expression(written.arguments[0], *outer.scope, *outer.inner_visible);
+    aggregation_ = outer;
+  }
+  spec.result = freshSlot("." + std::string(ast::nameOf(written.aggregate)));
+  Expr result = ofKind(Expr::Kind::Slot, written.at);
+  result.slot = spec.result;
+  aggregation_.found->push_back(std::move(spec));
+  return result;
+}
+
+}  // namespace cluxel::sparql

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// Looks up terms and values of a query and assigns ids to computed terms.
+#include "sparql/exec/query_terms.hpp"
+
+#include "cluxel/error.hpp"
+#include "rdf/vocabulary.hpp"
+#include "sparql/functions/datatype.hpp"
+
+namespace cluxel::sparql {
+namespace {
+
+const TextPayload* textPayload(const Value& value) {
+  return value.payload ? std::get_if<TextPayload>(value.payload.get()) : nullptr;
+}
+
+/// Ids may come from damaged indexes of the store.
+const Term& termAt(const std::deque<Term>& computed, ValueId id) {
+  const std::size_t place = id - kFirstComputed;
+  if (place < computed.size()) return computed[place];
+  throw Error(ErrorKind::StoreUnavailable, "the map is damaged: an index names term " + std::to_string(id) +
+                                               ", which does not exist; run `cluxel doctor` for the location");
+}
+
+Value withId(Value value, ValueId id) {
+  value.id = id;
+  return value;
+}
+
+}  // namespace
+
+std::size_t QueryTerms::TermHash::operator()(const Term& term) const {
+  const std::hash<std::string> hash;
+  return hash(term.text) * 31 + hash(term.datatype) * 17 + hash(term.language) + static_cast<std::size_t>(term.kind);
+}
+
+Value QueryTerms::valueOf(ValueId id) const {
+  if (id == kUnbound) return {};
+  return valueOfStored(id);
+}
+
+Value QueryTerms::valueOfStored(ValueId id) const {
+  Value value;
+  value.id = id;
+  if (id < kFirstComputed) {
+    const rdf::DecodedValue& decoded = reader_.valueOf(id);
+    using Type = rdf::DecodedValue::Type;
+    if (decoded.kind == TermKind::Iri) return value.type = Value::Type::Iri, value;
+    if (decoded.kind == TermKind::BlankNode) return value.type = Value::Type::Blank, value;
+    value.integer = decoded.integer;
+    value.number = decoded.number;
+    switch (decoded.type) {
+      case Type::Integer:
+        value.type = Value::Type::Integer;
+        value.number = static_cast<double>(decoded.integer);
+        return value;
+      case Type::Float:
+        return value.type = Value::Type::Float, value;
+      case Type::Double:
+        return value.type = Value::Type::Double, value;
+      case Type::Decimal:
+        value.scale = decoded.scale;
+        return value.type = Value::Type::Decimal, value;
+      case Type::Boolean:
+        return value.type = Value::Type::Boolean, value;
+      case Type::String:
+        return value.type = Value::Type::String, value;
+      case Type::LangString:
+        return value.type = Value::Type::LangString, value;
+      default:
+        break;
+    }
+  }
+  const auto known = decoded_.find(id);
+  if (known != decoded_.end()) return known->second;
+  const rdf::TermView seen = view(id);
+  value = withId(valueOfTerm(seen.kind, seen.text, seen.datatype, seen.language), id);
+  decoded_.emplace(id, value);
+  return value;
+}
+
+rdf::TermView QueryTerms::view(ResultId id) const {
+  return id >= kFirstComputed ? rdf::TermView::of(termAt(computed_, id)) : reader_.viewOf(id);
+}
+
+Term QueryTerms::termOf(ValueId id) const {
+  return id >= kFirstComputed ? termAt(computed_, id) : reader_.termOf(id);
+}
+
+ValueId QueryTerms::intern(const Term& term) {
+  const auto known = id_of_.find(term);
+  if (known != id_of_.end()) return known->second;
+  ValueId id = kUnbound;
+  if (const auto stored = reader_.idOf(term)) {
+    id = *stored;
+  } else {
+    if (computed_.size() >= kFirstComputed - 1)
+      throw Error(ErrorKind::BudgetExceeded, "query: too many computed terms");
+    id = kFirstComputed + static_cast<ValueId>(computed_.size());
+    computed_.push_back(term);
+    computed_bytes_ += sizeof(Term) * 3 + term.text.size() * 2 + term.datatype.size() * 2;
+  }
+  id_of_.emplace(term, id);
+  return id;
+}
+
+ValueId QueryTerms::intern(const Value& value) {
+  if (value.id != kUnbound || value.isError()) return value.id;
+  return intern(termOfComputed(value));
+}
+
+std::string_view QueryTerms::textOf(const Value& value, std::string& scratch) const {
+  if (const TextPayload* text = textPayload(value)) return text->text;
+  if (value.id != kUnbound) return view(value.id).text;
+  scratch = termOfComputed(value).text;
+  return scratch;
+}
+
+std::string QueryTerms::textOf(const Value& value) const {
+  if (const TextPayload* text = textPayload(value)) return text->text;
+  if (value.id != kUnbound) return std::string(view(value.id).text);
+  return termOfComputed(value).text;
+}
+
+std::string QueryTerms::languageOf(const Value& value) const {
+  if (value.type != Value::Type::LangString) return {};
+  if (const TextPayload* text = textPayload(value)) return text->language;
+  return std::string(view(value.id).language);
+}
+
+std::string QueryTerms::datatypeOf(const Value& value) const {
+  if (value.type == Value::Type::LangString) return rdf::vocabulary::rdf("langString");
+  if (value.id != kUnbound && value.type != Value::Type::String) return std::string(view(value.id).datatype);
+  return std::string(datatypeIri(value));
+}
+
+Decimal QueryTerms::exactOf(const Value& value) const {
+  if (value.payload || value.scale != Value::kNoScale || value.id == kUnbound) return value.exact();
+  return Decimal::parse(trimmed(view(value.id).text)).value_or(Decimal());
+}
+
+CalendarTime QueryTerms::calendarOf(const Value& value) const {
+  return std::get<CalendarTime>(*value.payload);
+}
+Duration QueryTerms::durationOf(const Value& value) const {
+  return std::get<Duration>(*value.payload);
+}
+
+Term QueryTerms::termOf(const Value& value) const {
+  return value.id != kUnbound ? termOf(value.id) : termOfComputed(value);
+}
+
+void QueryTerms::rewind(std::size_t mark) {
+  if (computed_.size() == mark) return;
+  const ValueId first = kFirstComputed + static_cast<ValueId>(mark);
+  while (computed_.size() > mark) {
+    id_of_.erase(computed_.back());
+    computed_.pop_back();
+  }
+  computed_bytes_ = 0;
+  std::erase_if(decoded_, [first](const auto& entry) { return entry.first >= first; });
+}
+
+}  // namespace cluxel::sparql

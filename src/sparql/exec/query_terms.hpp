@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// The terms of one query: stored terms by their ids, and computed terms.
+#pragma once
+
+#include <deque>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+#include "sparql/functions/value.hpp"
+#include "sparql/results/result_table.hpp"
+
+namespace cluxel::sparql {
+
+/// Equal terms have equal ids; a computed term that the store contains has the store's id. Grows with each computed
+/// term.
+class QueryTerms : public TermLookup {
+ public:
+  explicit QueryTerms(const rdf::QuadReader& reader) : reader_(reader) {}
+  QueryTerms(const QueryTerms&) = delete;
+  QueryTerms& operator=(const QueryTerms&) = delete;
+
+  Value valueOf(ValueId id) const;
+  /// The text of a stored term is stable while the reader exists, that of a computed term until rewind(): sort keys
+  /// point to it.
+  rdf::TermView view(ResultId id) const override;
+  void expect(std::span<const ResultId> ids) const override { reader_.expectViews(ids); }
+  /// Prefetches for valueOf().
+  void expectValues(std::span<const ValueId> ids) const { reader_.expectValues(ids); }
+  Term termOf(ValueId id) const;
+  ValueId intern(const Term& term);
+  /// The id of a value; kUnbound for an error value.
+  ValueId intern(const Value& value);
+
+  /// The lexical form, IRI or label.
+  std::string textOf(const Value& value) const;
+  /// As above, without a copy if possible; valid while `value`, `scratch` and the transaction exist.
+  std::string_view textOf(const Value& value, std::string& scratch) const;
+  std::string languageOf(const Value& value) const;
+  std::string datatypeOf(const Value& value) const;
+  /// The exact value of an Integer or Decimal.
+  Decimal exactOf(const Value& value) const;
+  CalendarTime calendarOf(const Value& value) const;
+  Duration durationOf(const Value& value) const;
+  Term termOf(const Value& value) const;
+
+  const rdf::QuadReader& reader() const { return reader_; }
+  std::size_t computedBytes() const { return computed_bytes_; }
+  /// The number of computed terms. rewind() to it drops the terms of a run and keeps the constants of the query.
+  std::size_t mark() const { return computed_.size(); }
+  void rewind(std::size_t mark);
+
+ private:
+  struct TermHash {
+    std::size_t operator()(const Term& term) const;
+  };
+  Value valueOfStored(ValueId id) const;
+
+  const rdf::QuadReader& reader_;
+  std::deque<Term> computed_;
+  mutable std::unordered_map<ValueId, Value> decoded_;  ///< values that are decoded from text
+  std::unordered_map<Term, ValueId, TermHash> id_of_;
+  std::size_t computed_bytes_ = 0;
+};
+
+}  // namespace cluxel::sparql

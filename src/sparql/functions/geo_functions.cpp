@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// GeoSPARQL functions on WKT literals in the map's metric frame.
+#include <cmath>
+
+#include "rdf/vocabulary.hpp"
+#include "sparql/functions/function_bodies.hpp"
+#include "sparql/functions/geometry.hpp"
+
+namespace cluxel::sparql {
+namespace {
+
+using Type = Value::Type;
+
+const std::string& wktDatatype() {
+  static const std::string iri = std::string(rdf::vocabulary::kGeo) + "wktLiteral";
+  return iri;
+}
+
+/// Null for a value that is not a well-formed geo:wktLiteral.
+std::shared_ptr<const Geometry> geometryOf(const Value& value, FunctionContext& context) {
+  if (value.type != Type::Other || context.terms.view(value.id).datatype != wktDatatype()) return nullptr;
+  return context.geometries->find(context.terms.view(value.id).text);
+}
+
+template <typename Test>
+Value relate(Arguments arguments, FunctionContext& context, Test test) {
+  const auto a = geometryOf(arguments[0], context), b = geometryOf(arguments[1], context);
+  if (!a || !b || !mayMeasure(*a, *b)) return {};
+  return Value::boolean(test(*a, *b));
+}
+
+}  // namespace
+
+Value geoDistanceFunction(Arguments arguments, FunctionContext& context) {
+  // The optional unit must be metre.
+  if (arguments.size() == 3) {
+    const std::string iri = context.terms.textOf(arguments[2]);
+    const std::string_view unit = std::string_view(iri).substr(iri.find_last_of("/#:") + 1);
+    if (unit != "metre" && unit != "meter") return {};
+  }
+  const auto a = geometryOf(arguments[0], context), b = geometryOf(arguments[1], context);
+  if (!a || !b || !mayMeasure(*a, *b)) return {};
+  const double distance_m = distanceBetween(*a, *b);
+  return std::isfinite(distance_m) ? Value::ofDouble(distance_m) : Value();
+}
+
+Value sfIntersectsFunction(Arguments arguments, FunctionContext& context) {
+  return relate(arguments, context, [](const Geometry& a, const Geometry& b) { return intersects(a, b); });
+}
+
+Value sfDisjointFunction(Arguments arguments, FunctionContext& context) {
+  return relate(arguments, context, [](const Geometry& a, const Geometry& b) { return !intersects(a, b); });
+}
+
+Value sfWithinFunction(Arguments arguments, FunctionContext& context) {
+  return relate(arguments, context, [](const Geometry& a, const Geometry& b) { return within(a, b); });
+}
+
+Value sfContainsFunction(Arguments arguments, FunctionContext& context) {
+  return relate(arguments, context, [](const Geometry& a, const Geometry& b) { return within(b, a); });
+}
+
+Value sfTouchesFunction(Arguments arguments, FunctionContext& context) {
+  return relate(arguments, context, [](const Geometry& a, const Geometry& b) { return touches(a, b); });
+}
+
+Value envelopeFunction(Arguments arguments, FunctionContext& context) {
+  const auto geometry = geometryOf(arguments[0], context);
+  if (!geometry || !std::isfinite(boundsOf(*geometry).min_x)) return {};
+  const Term term = Term::literal(envelopeWkt(*geometry), wktDatatype());
+  return context.terms.valueOf(context.terms.intern(term));
+}
+
+}  // namespace cluxel::sparql

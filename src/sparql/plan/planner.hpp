@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// The query planner: join order, join algorithms and filter placement.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "sparql/exec/operators/operators.hpp"
+#include "sparql/plan/cardinality.hpp"
+#include "sparql/plan/pattern_access.hpp"
+
+namespace cluxel::sparql {
+
+class Planner {
+ public:
+  Planner(AlgebraQuery& query, const QueryTerms& terms, const Dataset& dataset)
+      : query_(query),
+        terms_(terms),
+        reader_(terms.reader()),
+        dataset_(dataset),
+        cardinality_(terms.reader(), dataset),
+        parameters_(query.parameters) {}
+
+  /// Plans the whole query.
+  OperatorPtr plan();
+  /// Plans one node on its own.
+  OperatorPtr planAlone(const Node& node);
+
+ private:
+  /// A partial plan that produces the solutions joined so far.
+  struct State {
+    OperatorPtr top;
+    SlotSet certain, possible;
+    double rows = 1;
+    Slot sorted_by = kNoSlot;
+    bool is_unit = true;    ///< one solution without bindings: joining it changes nothing
+    bool is_input = false;  ///< input rows arrive in batches from an outer operator
+    SlotSet outer;          ///< in EXISTS: slots of the outer solution, constant throughout
+  };
+  /// A step that is applied after all parts are joined.
+  struct Postponed {
+    enum class Kind { LeftJoin, Minus, Extend } kind;
+    const Node* node;
+  };
+  static constexpr double kAllRows = 1e300;
+  /// A flattened group.
+  struct Parts {
+    std::vector<const Node*> joined;
+    std::vector<Postponed> postponed;
+    std::vector<Expr> filters;
+    std::vector<NodePtr> made;      ///< owns nodes created by the planner
+    SlotSet constant;               ///< slots with the same value in all parts
+    double wanted_rows = kAllRows;  ///< number of rows of the first part that will be consumed
+  };
+
+  State unit();
+  State joinNode(State state, const Node& node, const std::vector<Expr>& extra_filters);
+  State joinParts(State state, Parts& parts);
+  State joinPart(State state, const Node& part, double wanted_rows);
+  State joinTriple(State state, const Node& part, double wanted_rows);
+  OperatorPtr joinOperator(State& state, const Node& part, const OrderChoice& scan, double wanted_rows);
+  double columnCost(const State& state, const TripleNode& pattern, double lookups);
+  static State joined(State state, OperatorPtr top, const Node& part, double rows);
+  State joinUnion(State state, const Node& part);
+  State joinAlone(State state, const Node& part);
+  State hashJoin(State state, State other);
+  State joinCorrelated(State state, const Node& part, const SlotSet& seen);
+  State minusCorrelated(State state, const Node& node, const SlotSet& seen, const std::vector<Slot>& shared);
+  OperatorPtr correlatedBody(const State& state, const Node& part, const SlotSet& seen);
+  SlotSet seenFromOutside(const State& state, const Node& part) const;
+  State applyPostponed(State state, Parts& parts, std::vector<bool>& used);
+  State leftJoin(State state, const Node& node);
+  State minus(State state, const Node& node);
+  static std::vector<const Node*> neighbouringBinds(std::span<const Postponed> steps);
+  State extend(State state, const std::vector<const Node*>& nodes);
+  State applyFilters(State state, Parts& parts, const SlotSet& still_to_come, std::vector<bool>& used);
+  State filter(State state, std::vector<Expr> conditions);
+  State filterBeforeBinds(State state, const std::vector<const Node*>& binds, Parts& parts,
+                          std::span<const Postponed> later, std::vector<bool>& used);
+  State alone(const Node& node);
+  State select(const Node& node, std::optional<std::uint64_t> max_rows, const std::vector<Slot>& columns);
+  State belowModifier(const Node& child, std::optional<std::uint64_t> max_rows, const std::vector<Slot>& columns);
+  State slice(const Node& node, const std::vector<Slot>& columns);
+  State distinct(const Node& node);
+  State project(const Node& node, std::optional<std::uint64_t> max_rows);
+  State order(const Node& node, std::optional<std::uint64_t> max_rows, const std::vector<Slot>& columns);
+  State group(const Node& node);
+  State graphLoop(const Node& node);
+  State values(const Node& node);
+
+  void takeApart(const Node& node, const SlotSet& rest, const SlotSet& after, Parts& parts);
+  void takeFilters(const Node& filter, const SlotSet& rest, const SlotSet& after, Parts& parts);
+  bool bindsByFilter(const Expr& condition, const Node& child, Parts& parts);
+  void searchBySpace(const Expr& condition, const Node& child, Parts& parts);
+  Slot scannedBy(const TripleNode& pattern) const;
+  double disorder(const Node& part, const std::vector<const Node*>& parts) const;
+  std::size_t choosePart(const State& state, const std::vector<const Node*>& parts);
+  double rowsAfter(const State& state, const Node& part);
+  Pipeline pipeline(const State& state, const SlotSet& outer, const std::function<State(State)>& body);
+  std::vector<ExistsPlan> planExists(const State& state, const std::vector<const Expr*>& expressions);
+  Slot freshSlot(const char* name);
+  static void setRows(State& state, double rows);
+
+  AlgebraQuery& query_;
+  const QueryTerms& terms_;
+  const rdf::QuadReader& reader_;
+  const Dataset& dataset_;
+  Cardinality cardinality_;
+  std::vector<Slot> parameters_;
+  double wanted_rows_ = kAllRows;  ///< from a LIMIT around the next group
+  SlotSet unsure_parameters_;      ///< parameters that may be unbound
+};
+
+}  // namespace cluxel::sparql

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPARQL 1.1 Query over a quad store: preparation, execution, query plans.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "cluxel/error.hpp"
+#include "cluxel/term.hpp"
+#include "rdf/store/quad_store.hpp"
+#include "sparql/results/result_table.hpp"
+
+namespace cluxel::sparql {
+
+/// The default graph of a query without FROM.
+enum class DefaultGraph {
+  UnionButHistory,  ///< the union of all graphs but history, without duplicate triples
+  Unnamed           ///< the unnamed graph only, as in the W3C tests
+};
+
+/// The resource limits of a query; 0 or absent means unlimited. Exceeding one throws Error (BudgetExceeded); partial
+/// results are never returned.
+struct QueryBudget {
+  std::optional<std::chrono::milliseconds> deadline = std::nullopt;  ///< measured from the start of run()
+  std::uint64_t max_rows = 0;                                        ///< rows of the result
+  std::uint64_t max_work_rows = 0;                                   ///< total rows passed between operators
+  std::uint64_t max_memory_bytes = 4ull << 30;                       ///< held by joins, sorts, groups and the result
+};
+
+struct QueryOptions {
+  DefaultGraph default_graph = DefaultGraph::UnionButHistory;
+  QueryBudget budget = {};
+  std::string base_iri = {};
+  /// The name of the query in diagnostics.
+  std::string source_name = "query";
+  /// The default and named graphs, in place of FROM and FROM NAMED (the parameters of the SPARQL protocol).
+  std::vector<std::string> default_graphs = {}, named_graphs = {};
+  /// Seed of RAND, UUID and new blank node labels; if absent, each run uses a different one.
+  std::optional<std::uint64_t> seed = std::nullopt;
+  /// The value of NOW() in microseconds since 1970 UTC; if absent, the time at the start of run().
+  std::optional<std::int64_t> now_us = std::nullopt;
+  /// The permitted SERVICE endpoints, each mapped to a local store that answers in its place; all others are refused.
+  /// The readers must outlive the query. No network access takes place.
+  std::map<std::string, const rdf::QuadReader*> services = {};
+  bool refuse_volatile =
+      false;  ///< for rules: BNODE, RAND, NOW, UUID and LIMIT over unsorted rows are errors; history is hidden
+};
+
+using Binding = std::pair<std::string, Term>;  ///< a variable's name without '?' and its value
+
+/// A query, parsed and planned once for one snapshot, that can be run repeatedly. Not thread-safe. The reader must
+/// outlive it.
+class PreparedQuery {
+ public:
+  struct Impl;
+  /// `parameters` are variables bound by every run(); they act as constants throughout the query.
+  /// Throws InputError with line, column and hint for a faulty query.
+  PreparedQuery(const rdf::QuadReader& reader, std::string_view text, const QueryOptions& options = {},
+                const std::vector<std::string>& parameters = {});
+  PreparedQuery(PreparedQuery&&) noexcept;
+  PreparedQuery& operator=(PreparedQuery&&) noexcept;
+  ~PreparedQuery();
+
+  ast::QueryForm form() const;
+  const std::vector<std::string>& variables() const;  ///< of a SELECT, in order
+  /// Calls the sink only after the complete result is computed; it is not called when a budget is exceeded.
+  void run(ResultSink& sink, const std::vector<Binding>& bindings = {});
+  QueryResult evaluate(const std::vector<Binding>& bindings = {});
+  /// True when there is a solution (the result of ASK); stops at the first.
+  bool ask(const std::vector<Binding>& bindings = {});
+  /// The plan as text; after a run, with actual and estimated row counts.
+  std::string explain() const;
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+void runQuery(const rdf::QuadReader& reader, std::string_view text, const QueryOptions& options, ResultSink& sink);
+QueryResult evaluateQuery(const rdf::QuadReader& reader, std::string_view text, const QueryOptions& options = {});
+
+/// Runs the query and returns its plan with estimated and actual row counts.
+std::string explainQuery(const rdf::QuadReader& reader, std::string_view text, const QueryOptions& options = {});
+/// For a query without solutions: describes the part of the pattern that eliminated them. Empty when there are
+/// solutions.
+std::string whyEmpty(const rdf::QuadReader& reader, std::string_view text, const QueryOptions& options = {},
+                     const std::vector<Binding>& bindings = {});
+/// Warnings for classes, properties and graphs that the store does not contain, with suggestions.
+std::vector<Diagnostic> checkQuery(const rdf::QuadReader& reader, std::string_view text,
+                                   const QueryOptions& options = {});
+
+}  // namespace cluxel::sparql

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPARQL 1.1 Update within one write transaction; a request is atomic.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rdf/store/environment.hpp"
+#include "rdf/vocabulary.hpp"
+#include "sparql/query_engine.hpp"
+
+namespace cluxel::sparql {
+
+struct UpdateOptions {
+  QueryOptions query = {};
+  /// IRIs of the writable graphs; "" is the unnamed graph. The first is the target of DELETE and INSERT without a
+  /// graph.
+  std::vector<std::string> writable_graphs = {std::string(rdf::vocabulary::kGraphOperator)};
+  bool any_graph_writable = false;  ///< then the unnamed graph is the default target
+  /// Returns the triples for the IRI of a LOAD (graph terms are ignored); if absent, LOAD is refused.
+  std::function<std::vector<Quad>(const std::string& iri)> load = {};
+};
+
+struct UpdateReport {
+  std::uint64_t inserted = 0, deleted = 0;  ///< quads requested for insertion and deletion
+};
+
+/// Runs a request. The caller commits the transaction, and must not commit it after an error.
+UpdateReport runUpdate(rdf::WriteTransaction& transaction, std::string_view text, const UpdateOptions& options = {});
+
+}  // namespace cluxel::sparql

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Accuracy of a map against ground truth: primitives by point, objects by point and by object.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "mapping/map_reader.hpp"
+#include "tasks/truth_source.hpp"
+
+namespace cluxel::tasks {
+
+/// Counts of (truth, answer). Rows are the truth's classes; columns the same classes and, last, "no answer".
+struct ConfusionMatrix {
+  std::vector<std::string> names;
+  std::vector<std::uint64_t> counts;  ///< names.size() rows of names.size() + 1
+
+  explicit ConfusionMatrix(std::vector<std::string> class_names);
+  void add(std::size_t truth, std::size_t answer) { ++counts[truth * (names.size() + 1) + answer]; }
+  std::uint64_t at(std::size_t truth, std::size_t answer) const { return counts[truth * (names.size() + 1) + answer]; }
+  std::uint64_t truthCount(std::size_t name) const;
+  std::uint64_t answerCount(std::size_t name) const;
+  std::uint64_t total() const;
+  /// 0 when the class has no answer or no truth.
+  double precision(std::size_t name) const;
+  double recall(std::size_t name) const;
+  double f1(std::size_t name) const;
+  double iou(std::size_t name) const;
+  double overallAccuracy() const;
+  /// Means over the classes that the truth has.
+  double macroF1() const;
+  double macroIou() const;
+};
+
+/// Objects of one class, found by a one-to-one match.
+struct ObjectScore {
+  std::string name;
+  std::uint64_t truth = 0, answers = 0;  ///< that count
+  std::uint64_t matched_truth = 0;       ///< truth objects with a partner (not ambiguous)
+  std::uint64_t matched_answers = 0;     ///< answers with a partner that counts
+  double precision() const;
+  double recall() const;
+  double f1() const;
+};
+
+struct MapEvaluation {
+  ConfusionMatrix primitives, objects;  ///< by point
+  bool has_instances = false;
+  /// Partners whose axis-parallel boxes, padded by the cluxel radius, have an IoU of at least 0.8 (the paper's
+  /// measure), and partners whose point sets have an IoU of at least 0.5.
+  std::vector<ObjectScore> by_box, by_points;
+};
+
+struct EvaluationParams {
+  double box_iou = 0.8, point_iou = 0.5;
+  double box_padding_m = 0.20;
+};
+
+/// Compares every point of the map's clouds that has truth. Points of unknown truth count nowhere.
+MapEvaluation evaluateMap(const mapping::MapReader& map, const TruthSource& truth, const EvaluationParams& params = {});
+
+/// Tables for people.
+std::string toText(const MapEvaluation& evaluation);
+/// The same as JSON text.
+std::string toJson(const MapEvaluation& evaluation);
+
+}  // namespace cluxel::tasks

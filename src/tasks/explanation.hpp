@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Why something in a map is what it is.
+#pragma once
+
+#include <string>
+
+#include "mapping/map_reader.hpp"
+
+namespace cluxel::tasks {
+
+/// One explanation in both forms.
+struct ExplanationTexts {
+  std::string text;  ///< prose
+  std::string json;
+};
+
+/// Explains an object or a primitive. `name` is its IRI (also in <> or as map:…), "object/…" or "primitive/…", the
+/// first digits of its hash (four or more), or an object's number in MapReader::objects() ("17" or "#17"), as exported
+/// clouds and footprints hold it. Runs the map's own rules again on its scene. Files of rules are named relative to the
+/// folder of the first. Throws Error (NotFound) when nothing or more than one resource has the name.
+ExplanationTexts explainThing(const mapping::MapReader& map, const std::string& name);
+/// One of the two: JSON instead of prose with `as_json`.
+std::string explainThing(const mapping::MapReader& map, const std::string& name, bool as_json);
+
+}  // namespace cluxel::tasks

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// The facade gives what the modules give, as values; errors keep their kind and place.
+#include "cluxel/map.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "api/facade_campus.hpp"
+#include "sparql/query_engine.hpp"
+#include "tasks/explanation.hpp"
+#include "test_paths.hpp"
+
+namespace cluxel {
+namespace {
+
+using ::testing::HasSubstr;
+
+const Map& mapOfCampus() {
+  return FacadeCampus::shared().map;
+}
+
+ErrorKind kindOf(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.kind();
+  }
+  ADD_FAILURE() << "nothing was refused";
+  return ErrorKind::InvalidArgument;
+}
+
+TEST(Map, IsBuiltAsTheModulesBuildIt) {
+  FacadeCampus& shared = FacadeCampus::shared();
+  mapping::MapInputFiles files;
+  files.model = "campus";
+  const std::string expected =
+      mapping::builtText(shared.campus.files(), readMapInputs(files, DataHome(test::sourceFolder())), {.threads = 2});
+  EXPECT_TRUE(mapping::canonicalText(shared.map.file()) == expected);
+  EXPECT_GT(shared.sink.calls, 0U);
+}
+
+TEST(Map, IsNotReplacedUnlessForced) {
+  FacadeCampus& shared = FacadeCampus::shared();
+  const auto again = [&] { Map::build(shared.campus.files(), shared.map.file(), FacadeCampus::options()); };
+  EXPECT_EQ(kindOf(again), ErrorKind::InvalidArgument);
+}
+
+TEST(Map, SumsUpAsTheReaderDoes) {
+  const MapSummary summary = mapOfCampus().summary();
+  const mapping::MapSummary expected = mapping::MapReader(mapOfCampus().file()).summary();
+  EXPECT_TRUE(summary.is_finished);
+  EXPECT_EQ(summary.inputs_hash, expected.inputs_hash);
+  EXPECT_EQ(summary.clouds, expected.clouds);
+  EXPECT_EQ(summary.points, expected.points);
+  EXPECT_EQ(summary.quads, expected.quads);
+  EXPECT_EQ(summary.objects_by_class, expected.objects_by_class);
+}
+
+TEST(Map, ExplainsAsTheTaskDoes) {
+  const mapping::MapReader reader(mapOfCampus().file());
+  const std::string name = mapOfCampus().objects().front().iri;
+  const Explanation explanation = mapOfCampus().explain(name);
+  EXPECT_EQ(explanation.text, tasks::explainThing(reader, name, false));
+  EXPECT_EQ(explanation.json, tasks::explainThing(reader, name, true));
+  EXPECT_TRUE(nlohmann::json::parse(explanation.json).is_object());
+  EXPECT_EQ(kindOf([] { mapOfCampus().explain("zzzzzzzz"); }), ErrorKind::NotFound);
+}
+
+TEST(Map, IsUpdatedForAllItsReaders) {
+  const rdf::ScratchFolder folder;
+  Map map = FacadeCampus::shared().copyIn(folder.path());
+  const Map other = Map::open(map.file());
+  const Object object = other.objects().front();
+  ASSERT_GT(other.points(object).size(), 0U);  // what was read before must not be served again
+  const UpdateCounts counts =
+      map.update("INSERT DATA { <" + object.iri + "> <http://example.org/name> \"the first\" }");
+  EXPECT_EQ(counts.inserted, 1U);
+  EXPECT_EQ(counts.deleted, 0U);
+  for (const Map* reader : {static_cast<const Map*>(&map), &other}) {
+    EXPECT_EQ(reader->query("SELECT ?o { ?o <http://example.org/name> \"the first\" }")[0].text("o"), object.iri);
+    EXPECT_GT(reader->summary().quads, mapOfCampus().summary().quads);
+  }
+  EXPECT_EQ(kindOf([&] { map.update("LOAD <http://example.org/x.ttl>"); }), ErrorKind::FaultyInput);
+}
+
+TEST(Map, FollowsAFileThatIsReplaced) {
+  const rdf::ScratchFolder folder;
+  const Map map = FacadeCampus::shared().copyIn(folder.path());
+  BuildOptions options = FacadeCampus::options();
+  options.force = true;
+  Map::build({FacadeCampus::shared().campus.files().front()}, map.file(), options);
+  EXPECT_EQ(map.summary().clouds, 1U);
+  EXPECT_EQ(map.clouds().size(), 1U);
+}
+
+TEST(Map, AnswersManyThreads) {
+  std::vector<std::thread> threads;
+  const std::size_t expected = mapOfCampus().objects().size();
+  std::atomic<int> wrong = 0;
+  for (int i = 0; i < 4; ++i)
+    threads.emplace_back([&] {
+      for (int round = 0; round < 5; ++round) {
+        wrong += mapOfCampus().objects().size() == expected ? 0 : 1;
+        wrong += mapOfCampus().query("ASK { ?s ?p ?o }").boolean() ? 0 : 1;
+        wrong += mapOfCampus().summary().objects == expected ? 0 : 1;
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST(Map, SaysWhatIsWrongWithAFile) {
+  const rdf::ScratchFolder folder;
+  EXPECT_EQ(kindOf([&] { Map::open(folder.path() / "absent.clx"); }), ErrorKind::StoreUnavailable);
+  std::ofstream(folder.path() / "text.clx") << "this is no map, but long enough to be read as the head of one";
+  EXPECT_EQ(kindOf([&] { Map::open(folder.path() / "text.clx"); }), ErrorKind::StoreUnavailable);
+}
+
+TEST(Map, NamesFileAndLineOfFaultyScans) {
+  const rdf::ScratchFolder folder;
+  const auto file = folder.path() / "scan.xyz";
+  std::ofstream(file) << "1 2 3\n4 five 6\n";
+  try {
+    Map::build({file}, folder.path() / "map.clx", FacadeCampus::options());
+    FAIL() << "nothing was refused";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::FaultyInput);
+    EXPECT_EQ(error.diagnostics().front().location.file, file.string());
+    EXPECT_EQ(error.diagnostics().front().location.line, 2U);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "map.clx"));
+}
+
+TEST(Map, RefusesOptionsThatContradictEachOther) {
+  BuildOptions options = FacadeCampus::options();
+  options.drop_statements = true;
+  EXPECT_EQ(kindOf([&] { Map::build({}, "map.clx", options); }), ErrorKind::InvalidArgument);
+  options = FacadeCampus::options();
+  options.batch_points = 0;
+  EXPECT_EQ(kindOf([&] { Map::build({}, "map.clx", options); }), ErrorKind::InvalidArgument);
+}
+
+TEST(Library, TellsItsVersion) {
+  EXPECT_THAT(std::string(version()), testing::MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+"));
+}
+
+}  // namespace
+}  // namespace cluxel

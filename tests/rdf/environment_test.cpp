@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// Opening, blocks, transactions, snapshots and compact copies.
+#include "rdf/store/environment.hpp"
+
+#include <atomic>
+#include <map>
+#include <random>
+#include <thread>
+
+#include "rdf/map_file_fixture.hpp"
+#include "rdf/store/quad_store.hpp"
+
+namespace cluxel::rdf {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+TEST_F(MapFile, KeepsBlocksOfAnySizeByTableAndKey) {
+  std::map<std::string, std::string> blocks = {{"", "empty key"},
+                                               {"a", ""},
+                                               {"b", std::string(5'000'000, 'x')},
+                                               {std::string("b\0c", 3), "zero in key"},
+                                               {std::string(500, 'k'), "long key"}};
+  {
+    const auto environment = create();
+    for (const auto& [key, bytes] : blocks) put(*environment, key, bytes);
+    WriteTransaction transaction = environment->write();
+    transaction.putBlock("s", "a", "other table");
+    transaction.putBlock("tt", "a", "table with the same beginning");
+    transaction.commit();
+  }
+  const auto environment = open(OpenMode::ReadOnly);
+  const ReadTransaction transaction = environment->read();
+  std::map<std::string, std::string> found;
+  transaction.forEachBlock("t", "", [&](std::string_view key, std::string_view bytes) { found.emplace(key, bytes); });
+  EXPECT_TRUE(found == blocks);
+  EXPECT_EQ(transaction.block("s", "a"), "other table");
+  EXPECT_EQ(transaction.block("s", "b"), std::nullopt);
+  std::vector<std::string> keys;
+  transaction.forEachBlock("t", "b", [&](std::string_view key, std::string_view) { keys.emplace_back(key); });
+  EXPECT_THAT(keys, ElementsAre("b", std::string("b\0c", 3)));
+}
+
+TEST_F(MapFile, ErasesBlocksAndForgetsWhatWasNotCommitted) {
+  const auto environment = create();
+  put(*environment, "a", "1");
+  {
+    WriteTransaction transaction = environment->write();
+    transaction.putBlock("t", "a", "2");
+    EXPECT_EQ(transaction.block("t", "a"), "2") << "a writer sees its own changes";
+    EXPECT_TRUE(transaction.eraseBlock("t", "a"));
+    EXPECT_FALSE(transaction.eraseBlock("t", "a"));
+  }
+  EXPECT_EQ(environment->read().block("t", "a"), "1");
+}
+
+TEST_F(MapFile, IsOneEnvironmentHoweverOftenAndByWhateverNameItIsOpened) {
+  const auto environment = create();
+  fs::create_symlink(file_, folder_.path() / "link.clx");
+  EXPECT_EQ(open(), environment);
+  EXPECT_EQ(Environment::open(folder_.path() / "link.clx", OpenMode::ReadOnly), environment);
+}
+
+TEST_F(MapFile, CanBeOpenedForWritingAfterItWasOpenedForReading) {
+  create().reset();
+  const auto reading = open(OpenMode::ReadOnly);
+  EXPECT_THROW(reading->write(), Error);
+  put(*open(OpenMode::ReadWrite), "a", "1");
+  EXPECT_EQ(reading->read().block("t", "a"), "1");
+}
+
+TEST_F(MapFile, GivesReadersASnapshotWhileAWriterGoesOn) {
+  const auto environment = create();
+  put(*environment, "n", "0");
+  std::atomic<bool> stop = false;
+  std::atomic<int> torn = 0;
+  std::vector<std::thread> readers;
+  for (int i = 0; i < 2; ++i)
+    readers.emplace_back([&] {
+      while (!stop) {
+        const ReadTransaction transaction = environment->read();
+        const std::string first(*transaction.block("t", "n"));
+        const std::size_t quads = QuadReader(transaction).size();
+        std::this_thread::yield();
+        torn += transaction.block("t", "n") != first || std::to_string(quads) != first ? 1 : 0;
+      }
+    });
+  for (TermId i = 1; i <= 60; ++i) {
+    WriteTransaction transaction = environment->write();
+    QuadWriter writer(transaction);
+    writer.add(QuadIds{i, i, i, 0});
+    writer.flush();
+    transaction.putBlock("t", "n", std::to_string(i));
+    transaction.commit();
+  }
+  stop = true;
+  for (std::thread& reader : readers) reader.join();
+  EXPECT_EQ(torn, 0);
+}
+
+TEST_F(MapFile, LetsWritersOfOneProcessTakeTurns) {
+  const auto environment = Environment::temporary();
+  std::vector<std::thread> writers;
+  for (int i = 0; i < 4; ++i)
+    writers.emplace_back([&] {
+      for (int j = 0; j < 25; ++j) {
+        WriteTransaction transaction = environment->write();
+        const auto stored = transaction.block("t", "n");
+        transaction.putBlock("t", "n", std::to_string(stored ? std::stoi(std::string(*stored)) + 1 : 1));
+        transaction.commit();
+      }
+    });
+  for (std::thread& writer : writers) writer.join();
+  EXPECT_EQ(environment->read().block("t", "n"), "100");
+}
+
+TEST_F(MapFile, IsNotMadeWhereAFileIs) {
+  create().reset();
+  EXPECT_THAT(refusal(OpenMode::Create), HasSubstr("exists already"));
+}
+
+TEST_F(MapFile, CompactsIntoASmallerMapWithTheSameContents) {
+  const auto environment = create();
+  std::mt19937 random(1);
+  for (int i = 0; i < 20; ++i) {
+    WriteTransaction transaction = environment->write();
+    QuadWriter writer(transaction);
+    for (int j = 0; j < 300; ++j)
+      writer.add({Term::iri("s" + std::to_string(random() % 500)), Term::iri("p"), Term::integer(random() % 900),
+                  Term::iri("")});
+    writer.flush();
+    transaction.putBlock("t", "a", std::string(100'000, static_cast<char>('a' + i)));
+    transaction.commit();
+  }
+  const fs::path target = folder_.path() / "small.clx";
+  environment->compactTo(target);
+  EXPECT_LT(fs::file_size(target), fs::file_size(file_));
+  EXPECT_THROW(environment->compactTo(target), Error) << "an existing file is not overwritten";
+  const auto copy = Environment::open(target, OpenMode::ReadOnly);
+  const ReadTransaction before = environment->read();
+  const ReadTransaction after = copy->read();
+  EXPECT_EQ(after.block("t", "a"), before.block("t", "a"));
+  const QuadReader old_reader(before);
+  const QuadReader new_reader(after);
+  ASSERT_EQ(new_reader.size(), old_reader.size());
+  for (TermId id = 1; id <= old_reader.termCount(); ++id) ASSERT_EQ(new_reader.termOf(id), old_reader.termOf(id));
+  QuadCursor old_quads = old_reader.scan({}, QuadOrder::Posg);
+  QuadCursor new_quads = new_reader.scan({}, QuadOrder::Posg);
+  for (QuadIds one, other; old_quads.next(one);) {
+    ASSERT_TRUE(new_quads.next(other));
+    ASSERT_EQ(one, other);
+  }
+}
+
+TEST_F(MapFile, ATemporaryOneLeavesNothingBehind) {
+  ::setenv("TMPDIR", folder_.path().c_str(), 1);
+  {
+    const auto environment = Environment::temporary();
+    put(*environment, "a", "1");
+    EXPECT_EQ(environment->read().block("t", "a"), "1");
+    EXPECT_TRUE(fs::is_empty(folder_.path()));
+  }
+  ::unsetenv("TMPDIR");
+  EXPECT_TRUE(fs::is_empty(folder_.path()));
+}
+
+}  // namespace
+}  // namespace cluxel::rdf

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files that are no maps, newer ones, and damaged ones.
+#include <lmdb.h>
+
+#include <fstream>
+#include <random>
+
+#include "base/file_bytes.hpp"
+#include "rdf/map_file_fixture.hpp"
+#include "rdf/store/map_check.hpp"
+#include "rdf/store/quad_store.hpp"
+
+namespace cluxel::rdf {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// Opens the file with LMDB itself, to make what the library would not.
+template <typename Work>
+void withLmdb(const fs::path& file, const Work& work) {
+  MDB_env* environment = nullptr;
+  MDB_txn* transaction = nullptr;
+  MDB_dbi main = 0;
+  ASSERT_EQ(mdb_env_create(&environment), 0);
+  ASSERT_EQ(mdb_env_open(environment, file.c_str(), MDB_NOSUBDIR, 0666), 0);
+  ASSERT_EQ(mdb_txn_begin(environment, nullptr, 0, &transaction), 0);
+  ASSERT_EQ(mdb_dbi_open(transaction, nullptr, 0, &main), 0);
+  work(transaction, main);
+  ASSERT_EQ(mdb_txn_commit(transaction), 0);
+  mdb_env_close(environment);
+}
+
+void putText(MDB_txn* transaction, MDB_dbi table, std::string key, std::string value) {
+  MDB_val stored_key{key.size(), key.data()};
+  MDB_val stored_value{value.size(), value.data()};
+  ASSERT_EQ(mdb_put(transaction, table, &stored_key, &stored_value, 0), 0);
+}
+
+TEST_F(MapFile, RefusesWhatIsNoMapInPlainWords) {
+  EXPECT_THAT(refusal(), HasSubstr("no such file"));
+  std::ofstream(file_).close();
+  EXPECT_THAT(refusal(), HasSubstr("is empty"));
+  std::ofstream(file_) << std::string(100'000, 'x');
+  EXPECT_THAT(refusal(), HasSubstr("not a Cluxel map"));
+  std::ofstream(file_) << "short";
+  EXPECT_THAT(refusal(), HasSubstr("not a Cluxel map"));
+  fs::remove(file_);
+  fs::create_directory(file_);
+  EXPECT_THAT(refusal(), HasSubstr("folder"));
+}
+
+TEST_F(MapFile, RefusesANewerFormatAndForeignLmdbFiles) {
+  withLmdb(file_, [](MDB_txn* transaction, MDB_dbi main) { putText(transaction, main, "other", "x"); });
+  EXPECT_THAT(refusal(), HasSubstr("not a Cluxel map"));
+  fs::remove(file_);
+  create().reset();
+  withLmdb(file_, [](MDB_txn* transaction, MDB_dbi main) { putText(transaction, main, "cluxel-format", "2"); });
+  EXPECT_THAT(refusal(), HasSubstr("newer format (2; this program reads 1)"));
+}
+
+TEST_F(MapFile, RefusesAFileThatIsCutShort) {
+  {
+    const auto environment = create();
+    WriteTransaction transaction = environment->write();
+    QuadWriter writer(transaction);
+    for (TermId i = 1; i < 20'000; ++i) writer.add(QuadIds{i, 1, i, 0});
+    writer.flush();
+    transaction.commit();
+  }
+  const auto size = fs::file_size(file_);
+  for (const std::uintmax_t part : {size - 4096, size / 2, std::uintmax_t{20'000}, std::uintmax_t{8192}}) {
+    fs::resize_file(file_, part);
+    EXPECT_THAT(refusal(), testing::AnyOf(HasSubstr("damaged"), HasSubstr("not a Cluxel map"))) << part;
+  }
+}
+
+TEST_F(MapFile, IsKnownByItsContentWhateverItsName) {
+  EXPECT_FALSE(looksLikeMap(file_)) << "not there";
+  EXPECT_FALSE(looksLikeMap(folder_.path())) << "a folder";
+  create().reset();
+  EXPECT_TRUE(looksLikeMap(file_));
+  fs::rename(file_, folder_.path() / "scan.pcd");
+  EXPECT_TRUE(looksLikeMap(folder_.path() / "scan.pcd"));
+  std::ofstream(file_) << "VERSION .7\nFIELDS x y z\n";
+  EXPECT_FALSE(looksLikeMap(file_));
+}
+
+TEST_F(MapFile, FindsAChangedByteInABlock) {
+  put(*create(), "a", std::string(10'000, 'x'));
+  std::string bytes = readFile(file_);
+  const std::size_t at = bytes.find(std::string(5'000, 'x'));
+  ASSERT_NE(at, std::string::npos);
+  bytes[at + 100] = 'y';
+  std::ofstream(file_, std::ios::binary) << bytes;
+  const auto environment = open(OpenMode::ReadOnly);
+  EXPECT_THROW(environment->read().block("t", "a"), Error);
+}
+
+TEST_F(MapFile, IsFoundSoundOrDamagedAsAWhole) {
+  {
+    const auto environment = create();
+    WriteTransaction transaction = environment->write();
+    QuadWriter writer(transaction);
+    for (int i = 1; i < 3'000; ++i)
+      writer.add({Term::iri("s" + std::to_string(i % 700)), Term::iri("p"), Term::integer(i), Term::iri("")});
+    writer.flush();
+    transaction.putBlock("t", "a", std::string(10'000, 'x'));
+    transaction.commit();
+  }
+  const MapCheck sound = checkMap(file_);
+  EXPECT_THAT(sound.faults, ElementsAre());
+  EXPECT_EQ(sound.quads, 2'999U);
+  EXPECT_EQ(sound.blocks, 1U);
+  EXPECT_EQ(sound.terms, 700U + 2'999 + 2);  // subjects, numbers, the predicate and xsd:integer
+  const std::string bytes = readFile(file_);
+  std::mt19937 random(11);
+  int found = 0;
+  for (int i = 0; i < 300; ++i) {
+    std::string damaged = bytes;
+    const std::size_t at = 8192 + random() % (bytes.size() - 8192);
+    damaged[at] = static_cast<char>(damaged[at] ^ (1U << (random() % 8)));
+    std::ofstream(file_, std::ios::binary) << damaged;
+    try {
+      found += checkMap(file_).sound() ? 0 : 1;
+    } catch (const Error&) {
+      ++found;
+    }
+  }
+  EXPECT_GT(found, 150) << "most bytes of the file are in use";
+}
+
+}  // namespace
+}  // namespace cluxel::rdf

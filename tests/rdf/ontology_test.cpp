@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+// The shipped ontologies, their faults when edited, and the closure against a naive one.
+#include "rdf/ontology/ontology.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+#include "rdf/vocabulary.hpp"
+#include "test_paths.hpp"
+
+namespace cluxel::rdf {
+namespace {
+
+using namespace vocabulary;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsSupersetOf;
+
+std::vector<RdfSource> shipped() {
+  const std::filesystem::path folder = test::sourceFolder() / "ontology";
+  return {readRdfSource(folder / "core.ttl"), readRdfSource(folder / "outdoor.ttl")};
+}
+
+std::vector<Diagnostic> faultsOf(const std::string& addition) {
+  std::vector<RdfSource> sources = shipped();
+  sources.push_back(
+      {"@prefix clx: <https://w3id.org/cluxel/ontology#> .\n@prefix owl: <http://www.w3.org/2002/07/owl#> .\n"
+       "@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .\n" +
+           addition,
+       "bench.ttl", RdfFormat::Turtle, "http://x/", Term::iri("")});
+  try {
+    ontologyViewOf(sources);
+  } catch (const InputError& error) {
+    return error.diagnostics();
+  }
+  return {};
+}
+
+TEST(Ontology, KnowsTheClassesThatRulesName) {
+  const OntologyView view = ontologyViewOf(shipped());
+  for (const char* name :
+       {"Ground", "Building", "Tree", "Bush", "StreetLamp", "StreetSign", "UtilityPole", "Vehicle", "SmallObject"}) {
+    const OntologyClass* entry = view.find(clx(name));
+    ASSERT_NE(entry, nullptr) << name;
+    EXPECT_TRUE(view.isA(clx(name), clx("Object")));
+    EXPECT_TRUE(view.isA(clx(name), std::string(kGeo) + "Feature"));
+    EXPECT_EQ(entry->color.size(), 7U);
+    EXPECT_NE(entry->mobility, Mobility::Unknown);
+    EXPECT_TRUE(entry->labels.contains("en") && entry->labels.contains("de")) << name;
+    EXPECT_FALSE(entry->comment.empty());
+  }
+  const OntologyClass& tree = *view.find(clx("Tree"));
+  EXPECT_THAT(tree.parts, ElementsAre(clx("TreeTop"), clx("TreeTrunk")));
+  EXPECT_EQ(tree.label("de"), "Baum");
+  EXPECT_EQ(tree.label("fr"), "tree");
+  EXPECT_EQ(view.find(clx("Vehicle"))->mobility, Mobility::Movable);
+  EXPECT_FALSE(view.isA(clx("Tree"), clx("StreetFurniture")));
+}
+
+TEST(Ontology, GivesUsualPlacesTheMostProbableFirst) {
+  const OntologyView view = ontologyViewOf(shipped());
+  for (const OntologyClass& entry : view.classes) {
+    double sum = 0;
+    double last = 1;
+    for (const UsualPlace& place : entry.places) {
+      sum += place.probability;
+      EXPECT_LE(place.probability, last);
+      EXPECT_GT(place.within_m, 0);
+      last = place.probability;
+    }
+    EXPECT_LE(sum, 1 + 1e-9) << entry.iri;
+  }
+  EXPECT_EQ(view.find(clx("StreetSign"))->places.front().near_class, clx("Crossing"));
+}
+
+TEST(Ontology, GivesAttributesAUnitAndAnEnglishText) {
+  const OntologyView view = ontologyViewOf(shipped());
+  std::map<std::string, OntologyProperty> properties;
+  for (const OntologyProperty& property : view.properties) properties[property.iri] = property;
+  for (const char* name : {"height", "horizontalExtent", "normalTilt", "pointCount", "minX", "z", "meanIntensity"}) {
+    EXPECT_FALSE(properties[clx(name)].unit.empty()) << name;
+    EXPECT_FALSE(properties[clx(name)].label.empty()) << name;
+    EXPECT_FALSE(properties[clx(name)].comment.empty()) << name;
+  }
+  EXPECT_EQ(properties[clx("footprintArea")].unit, "m2");
+}
+
+TEST(Ontology, TakesAClassFromAFileOfItsOwn) {
+  std::vector<RdfSource> sources = shipped();
+  sources.push_back(
+      {"@prefix clx: <https://w3id.org/cluxel/ontology#> . @prefix owl: <http://www.w3.org/2002/07/owl#> .\n"
+       "@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .\n"
+       "clx:Bench a owl:Class ; rdfs:subClassOf clx:StreetFurniture .",
+       "bench.ttl", RdfFormat::Turtle, "http://x/", Term::iri("")});
+  const OntologyView view = ontologyViewOf(sources);
+  EXPECT_TRUE(view.isA(clx("Bench"), clx("Object")));
+  EXPECT_EQ(view.find(clx("Bench"))->color, view.find(clx("StreetFurniture"))->color);
+  EXPECT_EQ(view.find(clx("Bench"))->label(), "Bench");
+}
+
+TEST(Ontology, ShowsAllFaultsAtTheirPlaces) {
+  const auto faults = faultsOf(
+      "clx:Bench a owl:Class ;\n  rdfs:subClassOf clx:Seat ;\n  clx:color \"red\" ;\n  clx:mayHavePart "
+      "clx:TreeTronk .\n"
+      "clx:Seat a owl:Class ; rdfs:subClassOf clx:Bench ; clx:mobility clx:Fixed .\n");
+  std::vector<std::string> texts;
+  for (const Diagnostic& fault : faults)
+    texts.push_back(toString(fault.location) + ' ' + fault.message + ' ' + fault.hint);
+  EXPECT_THAT(texts, IsSupersetOf({std::string("bench.ttl:6:14 Bench: a colour is written #rrggbb ")}));
+  EXPECT_THAT(texts,
+              Contains(HasSubstr("bench.ttl:7:23 Bench: there is no class TreeTronk did you mean 'TreeTrunk'?")));
+  EXPECT_THAT(texts, Contains(HasSubstr("is its own superclass")));
+  EXPECT_THAT(texts, Contains(HasSubstr("a mobility is clx:Static or clx:Movable")));
+}
+
+/// The rules as they are written in the specifications, applied to all pairs until nothing changes.
+std::set<QuadIds> naiveClosure(std::set<QuadIds> all, const std::map<std::string, TermId>& w, TermId literal) {
+  const auto has = [&](TermId s, TermId p, TermId o) { return all.contains({s, p, o, 0}); };
+  for (std::size_t before = 0; before != all.size();) {
+    before = all.size();
+    std::set<QuadIds> next = all;
+    for (const QuadIds& a : all) {
+      for (const QuadIds& b : all) {
+        const bool schema = a.p == w.at("subClassOf") || a.p == w.at("subPropertyOf");
+        if (a.p == b.p && a.o == b.s && (schema || has(a.p, w.at("type"), w.at("Transitive"))) &&
+            !(schema && a.s == b.o))
+          next.insert({a.s, a.p, b.o, 0});
+        if (a.p == w.at("type") && b.p == w.at("subClassOf") && a.o == b.s) next.insert({a.s, a.p, b.o, 0});
+        if (b.p == w.at("subPropertyOf") && a.p == b.s) next.insert({a.s, b.o, a.o, 0});
+        if (b.p == w.at("inverseOf") && a.p == b.s && a.o != literal) next.insert({a.o, b.o, a.s, 0});
+        if (b.p == w.at("inverseOf") && a.p == b.o && a.o != literal) next.insert({a.o, b.s, a.s, 0});
+        if (b.p == w.at("type") && b.o == w.at("Symmetric") && a.p == b.s && a.o != literal)
+          next.insert({a.o, a.p, a.s, 0});
+      }
+    }
+    all = std::move(next);
+  }
+  return all;
+}
+
+TEST(Closure, FindsWhatANaiveApplicationOfTheRulesFinds) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    std::mt19937 random(seed);
+    const auto environment = Environment::temporary();
+    WriteTransaction transaction = environment->write();
+    QuadWriter writer(transaction);
+    const std::map<std::string, TermId> words = {
+        {"type", writer.intern(Term::iri(rdf("type")))},
+        {"subClassOf", writer.intern(Term::iri(rdfs("subClassOf")))},
+        {"subPropertyOf", writer.intern(Term::iri(rdfs("subPropertyOf")))},
+        {"inverseOf", writer.intern(Term::iri(std::string(kOwl) + "inverseOf"))},
+        {"Symmetric", writer.intern(Term::iri(std::string(kOwl) + "SymmetricProperty"))},
+        {"Transitive", writer.intern(Term::iri(std::string(kOwl) + "TransitiveProperty"))}};
+    const TermId literal = writer.intern(Term::literal("x"));
+    std::vector<TermId> classes, properties, things;
+    for (int i = 0; i < 5; ++i) {
+      classes.push_back(writer.intern(Term::iri("c" + std::to_string(i))));
+      properties.push_back(writer.intern(Term::iri("p" + std::to_string(i))));
+      things.push_back(writer.intern(Term::iri("t" + std::to_string(i))));
+    }
+    const auto any = [&](const std::vector<TermId>& from) { return from[random() % from.size()]; };
+    std::set<QuadIds> stated;
+    for (int i = 0; i < 5; ++i) {
+      stated.insert({any(classes), words.at("subClassOf"), any(classes), 0});
+      if (i < 3) stated.insert({any(properties), words.at("subPropertyOf"), any(properties), 0});
+      if (i < 2) stated.insert({any(properties), words.at("inverseOf"), any(properties), 0});
+      stated.insert({any(things), words.at("type"), any(classes), 0});
+      stated.insert({any(things), any(properties), i == 0 ? literal : any(things), 0});
+      stated.insert({any(things), any(properties), any(things), 0});
+    }
+    stated.insert({any(properties), words.at("type"), words.at("Symmetric"), 0});
+    stated.insert({any(properties), words.at("type"), words.at("Transitive"), 0});
+    if (seed % 4 == 0) stated.insert({any(properties), words.at("subPropertyOf"), words.at("type"), 0});
+    for (const QuadIds& quad : stated) writer.add(quad);
+    writer.flush();
+    const TermId other_graph = things.front();
+    writer.add(QuadIds{things[1], words.at("type"), classes[0], other_graph});  // outside the sources: no effect
+    writer.flush();
+    const std::vector<TermId> sources = {0};
+    const std::vector<QuadIds> inferred = closureOf(QuadReader(transaction), 0, sources);
+    std::set<QuadIds> all = stated;
+    for (const QuadIds& quad : inferred) EXPECT_TRUE(all.insert(quad).second) << "was stated already";
+    EXPECT_TRUE(all == naiveClosure(stated, words, literal)) << seed;
+  }
+}
+
+TEST(Closure, MakesNoFactWhosePredicateIsNoIri) {
+  const auto environment = Environment::temporary();
+  WriteTransaction transaction = environment->write();
+  QuadWriter writer(transaction);
+  const Term p = Term::iri("http://x/p"), q = Term::iri("http://x/q"), blank = Term::blank("turned");
+  const Term sub_property = Term::iri(rdfs("subPropertyOf")), observed = Term::iri(kGraphObserved);
+  writer.add(Quad{p, sub_property, blank, observed});
+  writer.add(Quad{blank, Term::iri(std::string(kOwl) + "inverseOf"), q, observed});
+  writer.add(Quad{p, sub_property, Term::literal("nonsense"), observed});
+  writer.add(Quad{Term::iri("http://x/a"), p, Term::iri("http://x/b"), observed});
+  writer.add(Quad{Term::iri("http://x/c"), q, Term::iri("http://x/d"), observed});
+  writer.flush();
+  inferClosure(transaction);
+  const QuadReader reader(transaction);
+  std::set<std::string> inferred;
+  QuadCursor cursor = reader.scan({.s = {}, .p = {}, .o = {}, .g = reader.idOf(Term::iri(kGraphInferred))});
+  for (QuadIds quad; cursor.next(quad);)
+    inferred.insert(toNTriples(reader.termOf(quad.s)) + toNTriples(reader.termOf(quad.p)) +
+                    toNTriples(reader.termOf(quad.o)));
+  EXPECT_THAT(inferred, ElementsAre("<http://x/b><http://x/q><http://x/a>")) << "through the blank node";
+}
+
+TEST(Closure, KeepsTheInferredGraphWhatFollowsFromTheOthers) {
+  const auto environment = Environment::temporary();
+  WriteTransaction transaction = environment->write();
+  const Quad stated{Term::iri("http://x/tree"), Term::iri(rdf("type")), Term::iri(clx("Tree")),
+                    Term::iri(kGraphObserved)};
+  QuadWriter writer(transaction);
+  loadOntology(shipped(), writer);
+  writer.flush();
+  EXPECT_GT(inferClosure(transaction).added, 0U);
+  writer.add(stated);
+  writer.flush();
+  EXPECT_EQ(inferClosure(transaction).added, 4U);  // Plant, Object, SpatialThing, geo:Feature
+  EXPECT_EQ(inferClosure(transaction).added, 0U);
+  const auto quad = [&](const char* name) {
+    const QuadReader reader(transaction);
+    const auto id = [&](const std::string& iri) { return reader.idOf(Term::iri(iri)).value_or(0); };
+    return QuadIds{id("http://x/tree"), id(rdf("type")), id(clx(name)), id(std::string(kGraphInferred))};
+  };
+  EXPECT_TRUE(QuadReader(transaction).contains(quad("Plant")));
+  EXPECT_FALSE(QuadReader(transaction).contains(quad("Tree")));
+  writer.add(quad("Vehicle"));  // as a rule would
+  writer.flush();
+  EXPECT_EQ(extendClosure(transaction).added, 0U) << "Object was inferred already";
+  EXPECT_TRUE(QuadReader(transaction).contains(quad("Vehicle")));
+  EXPECT_EQ(inferClosure(transaction).removed, 1U);
+  EXPECT_FALSE(QuadReader(transaction).contains(quad("Vehicle")));
+}
+
+}  // namespace
+}  // namespace cluxel::rdf

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: Apache-2.0
+// The quad store against a std::set of quads.
+#include "rdf/store/quad_store.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+#include "base/parallel.hpp"
+#include "rdf/store/environment.hpp"
+#include "rdf/vocabulary.hpp"
+
+namespace cluxel::rdf {
+namespace {
+
+constexpr std::array<QuadOrder, 4> kAllOrders = {QuadOrder::Spog, QuadOrder::Posg, QuadOrder::Ospg, QuadOrder::Gspo};
+
+std::array<TermId, 4> inOrder(const QuadIds& quad, QuadOrder order) {
+  const std::array<TermId, 4> ids = {quad.s, quad.p, quad.o, quad.g};
+  std::array<TermId, 4> sorted{};
+  for (std::size_t i = 0; i < 4; ++i) sorted[i] = ids[placesOf(order)[i]];
+  return sorted;
+}
+
+bool matches(const QuadIds& quad, const QuadPattern& pattern) {
+  return (!pattern.s || *pattern.s == quad.s) && (!pattern.p || *pattern.p == quad.p) &&
+         (!pattern.o || *pattern.o == quad.o) && (!pattern.g || *pattern.g == quad.g);
+}
+
+/// What a scan of a plain set gives.
+std::vector<QuadIds> expected(const std::set<QuadIds>& quads, const QuadPattern& pattern, QuadOrder order) {
+  std::vector<QuadIds> found;
+  std::copy_if(quads.begin(), quads.end(), std::back_inserter(found),
+               [&](const QuadIds& quad) { return matches(quad, pattern); });
+  std::sort(found.begin(), found.end(),
+            [&](const QuadIds& a, const QuadIds& b) { return inOrder(a, order) < inOrder(b, order); });
+  return found;
+}
+
+std::vector<QuadIds> drain(QuadCursor cursor) {
+  std::vector<QuadIds> found;
+  for (QuadIds quad; cursor.next(quad);) found.push_back(quad);
+  return found;
+}
+
+QuadIds randomQuad(std::mt19937& random, TermId range) {
+  const auto id = [&](TermId most) { return static_cast<TermId>(random() % most); };
+  return {1 + id(range), 1 + id(7), 1 + id(range), id(3)};
+}
+
+QuadPattern patternOf(const QuadIds& quad, unsigned bound) {
+  QuadPattern pattern;
+  if ((bound & 1U) != 0) pattern.s = quad.s;
+  if ((bound & 2U) != 0) pattern.p = quad.p;
+  if ((bound & 4U) != 0) pattern.o = quad.o;
+  if ((bound & 8U) != 0) pattern.g = quad.g;
+  return pattern;
+}
+
+std::vector<QuadIds> drainInBulk(QuadCursor cursor, std::size_t at_once) {
+  std::vector<QuadIds> found;
+  std::vector<QuadIds> buffer(at_once);
+  while (const std::size_t count = cursor.next(buffer))
+    found.insert(found.end(), buffer.begin(), buffer.begin() + count);
+  return found;
+}
+
+std::vector<QuadIds> drainBlocks(QuadCursor cursor, const QuadPattern& pattern) {
+  std::vector<QuadIds> found;
+  for (auto block = cursor.nextBlock(); !block.empty(); block = cursor.nextBlock())
+    for (const QuadKey& key : block) {
+      const QuadIds quad = toQuad(key, cursor.order());
+      EXPECT_TRUE(cursor.filtered() || matches(quad, pattern));
+      if (matches(quad, pattern)) found.push_back(quad);
+    }
+  return found;
+}
+
+/// Runs through `quads` with a cursor that seeks ahead now and then.
+void expectSeeksLikeASortedList(QuadCursor cursor, const std::vector<QuadIds>& quads, std::mt19937& random,
+                                TermId range) {
+  const QuadOrder order = cursor.order();
+  std::size_t at = 0;
+  for (QuadIds quad; true;) {
+    if (random() % 3 == 0) {
+      const QuadIds target = randomQuad(random, range);
+      cursor.seek(target);
+      while (at < quads.size() && inOrder(quads[at], order) < inOrder(target, order)) ++at;
+    }
+    const bool more = cursor.next(quad);
+    ASSERT_EQ(more, at < quads.size());
+    if (!more) return;
+    ASSERT_EQ(quad, quads[at++]);
+  }
+}
+
+void expectLookupsFindWhatScansFind(const QuadReader& reader, const std::set<QuadIds>& quads, std::mt19937& random,
+                                    TermId range) {
+  for (const QuadOrder order : kAllOrders) {
+    PrefixLookup lookup = reader.lookup(order);
+    const std::vector<QuadIds> all = expected(quads, {}, order);
+    for (int i = 0; i < 20; ++i) {
+      const std::array<TermId, 4> ids = inOrder(randomQuad(random, range), order);
+      const std::size_t length = 1 + random() % 4;
+      std::vector<QuadIds> found;
+      for (auto keys = lookup.find(std::span(ids).first(length)); !keys.empty(); keys = lookup.more())
+        for (const QuadKey& key : keys) found.push_back(toQuad(key, order));
+      std::vector<QuadIds> wanted = all;
+      std::erase_if(wanted, [&](const QuadIds& quad) {
+        const auto other = inOrder(quad, order);
+        return !std::equal(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(length), other.begin());
+      });
+      ASSERT_EQ(found, wanted);
+    }
+  }
+}
+
+void expectSameAnswers(const QuadReader& reader, const std::set<QuadIds>& quads, std::mt19937& random, TermId range) {
+  ASSERT_EQ(reader.size(), quads.size());
+  for (unsigned bound = 0; bound < 16; ++bound) {
+    const QuadPattern pattern = patternOf(randomQuad(random, range), bound);
+    for (const QuadOrder order : kAllOrders) {
+      const std::vector<QuadIds> wanted = expected(quads, pattern, order);
+      ASSERT_EQ(drain(reader.scan(pattern, order)), wanted) << bound;
+      ASSERT_EQ(drainInBulk(reader.scan(pattern, order), 1 + random() % 300), wanted) << bound;
+      ASSERT_EQ(drainBlocks(reader.scan(pattern, order), pattern), wanted) << bound;
+      expectSeeksLikeASortedList(reader.scan(pattern, order), wanted, random, range);
+    }
+    ASSERT_EQ(reader.count(pattern), expected(quads, pattern, QuadOrder::Spog).size());
+    const QuadIds probe = randomQuad(random, range);
+    ASSERT_EQ(reader.contains(probe), quads.contains(probe));
+  }
+  expectLookupsFindWhatScansFind(reader, quads, random, range);
+}
+
+TEST(QuadStore, AnswersEveryPatternAsAPlainSetDoes) {
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    std::mt19937 random(seed);
+    const TermId range = seed % 2 == 0 ? 12 : 400;
+    auto environment = Environment::temporary();
+    std::set<QuadIds> quads;
+    for (int round = 0; round < 12; ++round) {
+      WriteTransaction transaction = environment->write();
+      QuadWriter writer(transaction);
+      std::set<QuadIds> changed = quads;
+      const int changes = static_cast<int>(random() % (round % 3 == 0 ? 4000 : 40));
+      for (int i = 0; i < changes; ++i) {
+        const QuadIds quad = randomQuad(random, range);
+        if (random() % 3 != 0) {
+          writer.add(quad);
+          changed.insert(quad);
+        } else {
+          writer.remove(quad);
+          changed.erase(quad);
+        }
+      }
+      writer.flush();
+      expectSameAnswers(QuadReader(transaction), changed, random, range);
+      if (random() % 4 != 0) {
+        transaction.commit();
+        quads = std::move(changed);
+      }
+      if (testing::Test::HasFatalFailure()) return;
+      WriteTransaction(std::move(transaction));
+      expectSameAnswers(QuadReader(environment->read()), quads, random, range);
+      if (testing::Test::HasFatalFailure()) return;
+    }
+  }
+}
+
+/// A store with terms of every kind and value.
+std::vector<Term> variedTerms() {
+  using vocabulary::xsd;
+  std::vector<Term> terms = {Term::iri("http://a"),
+                             Term::blank("b"),
+                             Term::literal(""),
+                             Term::literal("x"),
+                             Term::langLiteral("x", "en"),
+                             Term::langLiteral("x", "de"),
+                             Term::literal("x", "http://t"),
+                             Term::literal(std::string(200'000, 'l')),
+                             Term::literal(std::string("a\0b", 3)),
+                             Term::literal("1", xsd("integer")),
+                             Term::literal("01", xsd("integer")),
+                             Term::literal("1", xsd("int")),
+                             Term::literal("1", xsd("decimal"))};
+  for (int i = 0; i < 3000; ++i) terms.push_back(Term::integer(i * 7919));
+  return terms;
+}
+
+TEST(QuadStore, GivesBackEveryTermAndFindsItsIdAgain) {
+  const std::vector<Term> terms = variedTerms();
+  auto environment = Environment::temporary();
+  std::vector<TermId> ids;
+  for (std::size_t part = 0; part < 2; ++part) {  // the second time they are all there
+    WriteTransaction transaction = environment->write();
+    QuadWriter writer(transaction);
+    std::vector<TermId> given;
+    for (const Term& term : terms) given.push_back(writer.intern(term));
+    writer.flush();
+    for (std::size_t i = 0; i < terms.size(); ++i) ASSERT_EQ(QuadReader(transaction).termOf(given[i]), terms[i]);
+    if (part == 0) ids = given;
+    EXPECT_EQ(given, ids);
+    transaction.commit();
+  }
+  const QuadReader reader(environment->read());
+  EXPECT_EQ(std::set<TermId>(ids.begin(), ids.end()).size(), terms.size());
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    ASSERT_EQ(reader.idOf(terms[i]), ids[i]);
+    ASSERT_EQ(reader.termOf(ids[i]), terms[i]);
+    ASSERT_EQ(reader.viewOf(ids[i]).toTerm(), terms[i]);
+  }
+  EXPECT_EQ(reader.idOf(Term::literal("absent")), std::nullopt);
+  EXPECT_EQ(reader.idOf(Term::literal("1", "http://absent")), std::nullopt);
+  EXPECT_EQ(reader.idOf(Term::iri("")), kNoTerm) << "the unnamed graph";
+}
+
+TEST(QuadStore, ForgetsTermsOfATransactionThatWasNotCommitted) {
+  auto environment = Environment::temporary();
+  const auto intern = [&](const Term& term, bool commit) {
+    WriteTransaction transaction = environment->write();
+    QuadWriter writer(transaction);
+    const TermId id = writer.intern(term);
+    writer.flush();
+    EXPECT_EQ(QuadReader(transaction).valueOf(id).integer, std::stoi(term.text));
+    if (commit) transaction.commit();
+    return id;
+  };
+  intern(Term::integer(1), true);
+  const TermId dropped = intern(Term::integer(2), false);
+  EXPECT_EQ(intern(Term::integer(3), true), dropped) << "the number is given again";
+  EXPECT_EQ(QuadReader(environment->read()).valueOf(dropped).integer, 3);
+}
+
+TEST(QuadStore, SharesOneCommitAmongReadersOfManyThreads) {
+  auto environment = Environment::temporary();
+  {
+    WriteTransaction transaction = environment->write();
+    QuadWriter writer(transaction);
+    for (const Term& term : variedTerms()) {
+      const TermId id = writer.intern(term);
+      writer.add(QuadIds{id, 1 + id % 5, id, id % 3});
+    }
+    writer.flush();
+    transaction.commit();
+  }
+  std::array<std::uint64_t, 4> sums{};
+  parallelFor(sums.size(), 4, [&](std::size_t i) {
+    const QuadReader reader(environment->read());
+    PrefixLookup lookup = reader.lookup(QuadOrder::Ospg);
+    for (TermId id = 1; id <= reader.termCount(); ++id) {
+      sums[i] += static_cast<std::uint64_t>(reader.valueOf(id).integer) + reader.viewOf(id).text.size();
+      sums[i] += lookup.find(std::array{id}).size();
+    }
+    sums[i] += reader.statistics(2).subjects + reader.graphs().size();
+  });
+  EXPECT_EQ(std::set<std::uint64_t>(sums.begin(), sums.end()).size(), 1U);
+}
+
+TEST(QuadStore, EstimatesWithinAFactorOfTwoAndExactlyWhenFew) {
+  auto environment = Environment::temporary();
+  std::set<QuadIds> quads;
+  std::mt19937 random(4);
+  WriteTransaction transaction = environment->write();
+  QuadWriter writer(transaction);
+  for (int i = 0; i < 120'000; ++i) {
+    // Predicates of very different size, subjects that have a few or hundreds of quads.
+    const auto p = 1 + static_cast<TermId>(random() % 10 < 8 ? 1 : random() % 40);
+    const auto s = 1 + static_cast<TermId>(random() % 2 == 0 ? random() % 50 : random() % 40'000);
+    const QuadIds quad{s, p, 1 + static_cast<TermId>(random() % 3'000), 1 + static_cast<TermId>(i % 2)};
+    quads.insert(quad);
+    writer.add(quad);
+  }
+  writer.flush();
+  transaction.commit();
+  const QuadReader reader(environment->read());
+  for (const TermId p : {1U, 2U, 17U}) {
+    for (const auto& pattern : {QuadPattern{{}, p, {}, {}}, QuadPattern{{}, p, {}, 1}, QuadPattern{7, p, {}, {}},
+                                QuadPattern{{}, p, 5, {}}, QuadPattern{{}, {}, {}, 2}, QuadPattern{{}, {}, 9, {}}}) {
+      const auto exact = static_cast<double>(expected(quads, pattern, QuadOrder::Spog).size());
+      const auto estimate = static_cast<double>(reader.estimate(pattern));
+      EXPECT_TRUE(exact >= 4'000 || estimate == exact) << estimate << " for " << exact;
+      EXPECT_TRUE(estimate >= exact / 2 && estimate <= exact * 2) << estimate << " for " << exact;
+    }
+    std::set<TermId> subjects;
+    std::set<TermId> objects;
+    std::size_t count = 0;
+    for (const QuadIds& quad : quads)
+      if (quad.p == p) subjects.insert(quad.s), objects.insert(quad.o), ++count;
+    const auto statistics = reader.statistics(p);
+    EXPECT_EQ(statistics.quads, count);
+    EXPECT_NEAR(static_cast<double>(statistics.subjects), subjects.size(), 0.35 * subjects.size());
+    EXPECT_NEAR(static_cast<double>(statistics.objects), objects.size(), 0.35 * objects.size());
+  }
+  std::set<TermId> predicates;
+  for (const QuadIds& quad : quads) predicates.insert(quad.p);
+  EXPECT_EQ(reader.predicates(), std::vector<TermId>(predicates.begin(), predicates.end()));
+  EXPECT_EQ(reader.graphs(), (std::vector<TermId>{1, 2}));
+}
+
+}  // namespace
+}  // namespace cluxel::rdf

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Splitting crowns: against brute force, and where straight-line distance would be wrong.
+#include "rules/decide/crown_splitting.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+namespace cluxel::testing {
+
+using namespace scan;
+using namespace perception;
+using namespace rules;
+namespace {
+
+/// Cluxels at points, joined where they are closer than `edge_m`.
+SceneCluxels cloudOf(const std::vector<Eigen::Vector3d>& points, double edge_m) {
+  SceneCluxels cluxels;
+  cluxels.center = points;
+  cluxels.name.resize(points.size());
+  cluxels.extent.assign(points.size(), Eigen::Vector3f::Constant(0.1F));
+  cluxels.edge_offset.push_back(0);
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    cluxels.name[i].index = i;
+    cluxels.height_above_ground.push_back(static_cast<float>(points[i].z()));
+    for (std::uint32_t j = 0; j < points.size(); ++j)
+      if (i != j && (points[i] - points[j]).norm() <= edge_m) cluxels.edge_target.push_back(j);
+    cluxels.edge_offset.push_back(static_cast<std::uint32_t>(cluxels.edge_target.size()));
+  }
+  return cluxels;
+}
+
+/// Shortest paths by Bellman-Ford: relax all edges until nothing changes.
+std::vector<double> waysFrom(const SceneCluxels& all, std::uint32_t source, std::uint32_t first_crown) {
+  std::vector<double> way(all.size(), std::numeric_limits<double>::infinity());
+  way[source] = 0;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::uint32_t i = 0; i < all.size(); ++i)
+      for (std::uint32_t j : all.neighbours(i)) {
+        if (j < first_crown || (i < first_crown && i != source)) continue;
+        const double length = way[i] + (all.center[j] - all.center[i]).norm();
+        if (length < way[j] - 1e-12) way[j] = length, changed = true;
+      }
+  }
+  return way;
+}
+
+TEST(CrownSplitting, GivesEachCluxelToTheTrunkWithTheShortestWay) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> place(0, 6), height(2, 5);
+  int all_reached = 0;
+  for (int round = 0; round < 10; ++round) {
+    std::vector<Eigen::Vector3d> points{{1, 3, 2}, {5, 3, 2}};
+    for (int i = 0; i < 150; ++i) points.emplace_back(place(random), place(random), height(random));
+    const SceneCluxels all = cloudOf(points, 1.0);
+    std::vector<std::uint32_t> crown;
+    for (std::uint32_t i = 2; i < all.size(); ++i) crown.push_back(i);
+    std::vector<CrownSource> sources(2);
+    for (std::uint32_t s = 0; s < 2; ++s) {
+      sources[s].trunk = {s};
+      sources[s].reach_m = 20;
+      sources[s].jump_m = 0;
+    }
+    const auto taken = splitCrown(all, crown, sources);
+    const auto way_a = waysFrom(all, 0, 2), way_b = waysFrom(all, 1, 2);
+    for (std::size_t i = 0; i < crown.size(); ++i) {
+      const double a = way_a[crown[i]], b = way_b[crown[i]];
+      const std::uint32_t nearest = std::isinf(std::min(a, b)) ? kNoSource : a < b ? 0U : 1U;
+      EXPECT_EQ(taken[i], nearest) << "cluxel " << i << " has ways of " << a << " and " << b;
+      all_reached += nearest != kNoSource ? 1 : 0;
+    }
+  }
+  EXPECT_GT(all_reached, 1000);
+}
+
+TEST(CrownSplitting, FollowsABranchThatReachesOverToTheNeighbour) {
+  // A branch of the left tree ends nearer to the right trunk than to its own, without touching the right crown.
+  std::vector<Eigen::Vector3d> points{{0, 0, 3}, {6, 0, 3}};
+  for (int i = 1; i <= 9; ++i) points.emplace_back(0.5 * i, 0, 3.0 + 0.1 * i);
+  points.emplace_back(6, 0.4, 3.3);
+  const SceneCluxels all = cloudOf(points, 0.6);
+  std::vector<std::uint32_t> crown;
+  for (std::uint32_t i = 2; i < all.size(); ++i) crown.push_back(i);
+  std::vector<CrownSource> sources(2);
+  sources[0].trunk = {0};
+  sources[1].trunk = {1};
+  const auto taken = splitCrown(all, crown, sources);
+  for (std::size_t i = 0; i + 1 < crown.size(); ++i) EXPECT_EQ(taken[i], 0U) << i;
+  EXPECT_EQ(taken.back(), 1U);
+}
+
+TEST(CrownSplitting, BridgesGapsUpToTheJumpAndNotBeyond) {
+  const SceneCluxels all = cloudOf({{0, 0, 2}, {0, 0, 2.4}, {0, 0, 2.9}, {0, 0, 4.5}}, 0.1);
+  const std::vector<std::uint32_t> crown{1, 2, 3};
+  std::vector<CrownSource> sources(1);
+  sources[0].trunk = {0};
+  sources[0].jump_m = 0.6;
+  EXPECT_EQ(splitCrown(all, crown, sources), (std::vector<std::uint32_t>{0, 0, kNoSource}));
+}
+
+TEST(CrownSplitting, LeavesWhatIsTooFarTooLowOrNotClaimed) {
+  const SceneCluxels all = cloudOf({{0, 0, 2}, {0.5, 0, 2}, {1, 0, 2}, {0.5, 0, 1.6}, {0, 0.5, 2}}, 0.7);
+  const std::vector<std::uint32_t> crown{1, 2, 3, 4};
+  std::vector<CrownSource> sources(1);
+  sources[0].trunk = {0};
+  sources[0].reach_m = 0.8;
+  sources[0].clearance_m = 1.8;
+  sources[0].may_take = [](std::uint32_t cluxel) { return cluxel != 4; };
+  EXPECT_EQ(splitCrown(all, crown, sources), (std::vector<std::uint32_t>{0, kNoSource, kNoSource, kNoSource}));
+}
+
+}  // namespace
+}  // namespace cluxel::testing

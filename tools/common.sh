@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+# What the scripts of tools/ share: messages, Debian packages, building a preset. Sourced by them, from the checkout's root.
+# shellcheck shell=bash
+set -euo pipefail
+cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.."
+
+jobs="${CLUXEL_JOBS:-$(nproc)}"
+
+say() { printf '%s\n' "$*" >&2; }
+
+die() {  # die MESSAGE [EXIT_CODE]
+  say "run: $1"
+  exit "${2:-1}"
+}
+
+as_root() { if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi; }
+
+# Installs those of the named Debian packages that are missing.
+install_packages() {
+  local missing=() package
+  for package in "$@"; do
+    dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")
+  done
+  [ "${#missing[@]}" = 0 ] && return 0
+  say "run: installing from Debian: ${missing[*]}"
+  as_root apt-get update -qq >&2 || die "apt-get update failed: is the network there?"
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2 ||
+    die "apt-get could not install: ${missing[*]}"
+}
+
+install_base() {
+  local listed
+  mapfile -t listed < <(grep -v '^#' packages.txt)
+  install_packages "${listed[@]}"
+}
+
+install_clang() { install_packages clang libclang-rt-14-dev; }
+
+# The second SPARQL engine of the differential test: oxigraph from npm, beside the build, never in the repository.
+install_second_engine() {
+  command -v node >/dev/null || install_packages nodejs
+  command -v npm >/dev/null || install_packages npm
+  [ -d build/npm/node_modules/oxigraph ] && return 0
+  say "run: installing the second SPARQL engine (npm package oxigraph) under build/npm"
+  mkdir -p build/npm
+  cp tests/sparql/package.json build/npm/
+  npm install --silent --no-fund --no-audit --no-package-lock --prefix build/npm >&2 ||
+    say "run: npm could not install oxigraph: the differential test will say that it is absent"
+}
+
+configure() {  # configure PRESET
+  local log
+  mkdir -p build
+  log=$(mktemp build/configure.XXXXXX)
+  cmake --preset "$1" >"$log" 2>&1 || { cat "$log" >&2; rm -f "$log"; die "configuring '$1' failed"; }
+  rm -f "$log"
+}
+
+build() {  # build PRESET [TARGETS...]
+  local preset=$1
+  shift
+  configure "$preset"
+  say "run: building '$preset'"
+  cmake --build --preset "$preset" -j "$jobs" ${1:+--target "$@"} >&2 || die "the build failed"
+}

@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Builds everything and runs every test: test.sh [--long] [--require-data].
+source "$(dirname "$0")/common.sh"
+
+options=()
+for option in "$@"; do
+  case "$option" in
+    --long) export CLUXEL_LONG_TESTS=1 ;;
+    --require-data) options+=("$option") ;;
+    *) die "unknown option '$option' of ./run test" 2 ;;
+  esac
+done
+install_base
+install_second_engine
+build release
+exec bash tools/run_tests.sh release "${options[@]}"
