@@ -52,13 +52,17 @@ class Absorbing {
     return a.object != b.object && state_.fragments.before(firstMember(a.object), firstMember(b.object));
   }
 
-  std::vector<Claim> weigh() const {
+  std::vector<Claim> weigh() {
     std::map<FragmentIndex, Claim> best;
     for (std::size_t i = first_; i < state_.objects.size(); ++i) {
-      const ObjectInMaking& object = state_.objects[i];
+      ObjectInMaking& object = state_.objects[i];
+      const auto now = [this](const AbsorbSpec& spec) { return spec.late == late_; };
+      if (std::none_of(object.leaf->absorb.begin(), object.leaf->absorb.end(), now)) continue;
       if (state_.fragmentsOf(object).empty()) continue;
+      state_.renewBindings(object);
+      const Candidate whole = state_.fragments.extentOf(state_.fragmentsOf(object));
       for (const AbsorbSpec& spec : object.leaf->absorb)
-        if (spec.late == late_) weighSpec(i, spec, best);
+        if (now(spec)) weighSpec(i, spec, whole, best);
     }
     std::vector<Claim> claims;
     for (const auto& [fragment, claim] : best) claims.push_back(claim);
@@ -70,9 +74,9 @@ class Absorbing {
     return claims;
   }
 
-  void weighSpec(std::size_t number, const AbsorbSpec& spec, std::map<FragmentIndex, Claim>& best) const {
+  void weighSpec(std::size_t number, const AbsorbSpec& spec, const Candidate& whole,
+                 std::map<FragmentIndex, Claim>& best) const {
     const ObjectInMaking& object = state_.objects[number];
-    const Candidate whole = state_.fragments.candidateOf(state_.fragmentsOf(object));
     auto wanted = [&](FragmentIndex fragment) {
       if (state_.fragments[fragment].owner != kFree) return false;
       const scan::PrimitiveLabel label = state_.fragments.labelOf(fragment);
@@ -106,8 +110,7 @@ class Absorbing {
     for (PartInMaking& part : object.parts) {
       if (part.name != claim.spec->into) continue;
       part.fragments.push_back(claim.fragment);
-      if (Candidate* candidate = object.bindings.find(part.name))
-        *candidate = state_.fragments.candidateOf(part.fragments);
+      part.is_outdated = true;
       return;
     }
     object.parts.front().fragments.push_back(claim.fragment);

@@ -1,50 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
-// A sorted array of cells instead of a hash table, so that the order of visits depends on the cluxels only.
+// A sorted array of cells, so that the order of visits depends on the cluxels only.
 #include "rules/decide/cluxel_grid.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
+#include <tuple>
 
 namespace cluxel::rules {
 
-namespace {
-
-constexpr double kCell_m = 1.0;
-
-std::int32_t cellOf(double coordinate_m) {
-  return static_cast<std::int32_t>(std::floor(coordinate_m / kCell_m));
-}
-
-}  // namespace
-
-double CluxelGap::gap() const {
-  return std::sqrt(horizontal * horizontal + vertical * vertical);
-}
-
-CluxelGap gapBetween(const perception::SceneCluxels& all, std::uint32_t a, std::uint32_t b) {
-  const Eigen::Vector3d half = (all.extent[a] + all.extent[b]).cast<double>() / 2;
-  const Eigen::Vector3d apart = ((all.center[a] - all.center[b]).cwiseAbs() - half).cwiseMax(0);
-  return {std::sqrt(apart.x() * apart.x() + apart.y() * apart.y()), apart.z()};
-}
-
 CluxelGrid::CluxelGrid(const perception::SceneCluxels& all) : all_(all) {
-  entries_.reserve(all.size());
+  std::vector<Cell> entries;
+  entries.reserve(all.size());
   for (std::uint32_t i = 0; i < all.size(); ++i) {
-    entries_.push_back({cellOf(all.center[i].x()), cellOf(all.center[i].y()), i});
+    entries.push_back({cellOf(all.center[i].x()), cellOf(all.center[i].y()), i});
     margin_m_ = std::max(margin_m_, static_cast<double>(std::max(all.extent[i].x(), all.extent[i].y())) / 2);
   }
-  std::sort(entries_.begin(), entries_.end());
+  std::sort(entries.begin(), entries.end(),
+            [](const Cell& a, const Cell& b) { return std::tie(a.x, a.y, a.first) < std::tie(b.x, b.y, b.first); });
+  cluxels_.reserve(entries.size());
+  for (const Cell& entry : entries) {
+    if (cells_.empty() || cells_.back().x != entry.x || cells_.back().y != entry.y)
+      cells_.push_back({entry.x, entry.y, static_cast<std::uint32_t>(cluxels_.size())});
+    cluxels_.push_back(entry.first);
+  }
+  constexpr std::int32_t kBeyond = std::numeric_limits<std::int32_t>::max();
+  cells_.push_back({kBeyond, kBeyond, static_cast<std::uint32_t>(cluxels_.size())});
 }
 
-void CluxelGrid::near(std::uint32_t cluxel, double distance_m, const std::function<void(std::uint32_t)>& visit) const {
-  const Eigen::Vector3d& centre = all_.center[cluxel];
-  const double own = static_cast<double>(all_.extent[cluxel].head<2>().maxCoeff()) / 2;
-  const double reach = distance_m + margin_m_ + own;
-  const std::int32_t low_y = cellOf(centre.y() - reach), high_y = cellOf(centre.y() + reach);
-  for (std::int32_t x = cellOf(centre.x() - reach); x <= cellOf(centre.x() + reach); ++x) {
-    auto entry = std::lower_bound(entries_.begin(), entries_.end(), Entry{x, low_y, 0});
-    for (; entry != entries_.end() && entry->x == x && entry->y <= high_y; ++entry) visit(entry->cluxel);
-  }
+std::pair<std::uint32_t, std::uint32_t> CluxelGrid::row(std::int32_t x, std::int32_t low_y, std::int32_t high_y) const {
+  auto cell = std::lower_bound(
+      cells_.begin(), cells_.end() - 1, std::pair(x, low_y),
+      [](const Cell& c, const auto& at) { return std::tie(c.x, c.y) < std::tie(at.first, at.second); });
+  const std::uint32_t first = cell->first;
+  while (cell->x == x && cell->y <= high_y) ++cell;
+  return {first, cell->first};
 }
 
 std::vector<perception::PrimitiveIndex> CluxelGrid::primitivesNear(std::span<const std::uint32_t> cluxels,
@@ -59,10 +48,9 @@ std::vector<perception::PrimitiveIndex> CluxelGrid::primitivesNear(std::span<con
   const auto reach = static_cast<std::int32_t>(std::ceil((distance_m + 2 * margin_m_) / kCell_m));
   for (const auto& [cx, cy] : done)
     for (std::int32_t x = cx - reach; x <= cx + reach; ++x) {
-      auto entry = std::lower_bound(entries_.begin(), entries_.end(), Entry{x, cy - reach, 0});
-      for (; entry != entries_.end() && entry->x == x && entry->y <= cy + reach; ++entry)
-        if (found.empty() || found.back() != all_.primitive[entry->cluxel])
-          found.push_back(all_.primitive[entry->cluxel]);
+      const auto [first, last] = row(x, cy - reach, cy + reach);
+      for (std::uint32_t i = first; i < last; ++i)
+        if (found.empty() || found.back() != all_.primitive[cluxels_[i]]) found.push_back(all_.primitive[cluxels_[i]]);
     }
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());

@@ -24,15 +24,20 @@ class Gathering {
     std::sort(gatherers_.begin(), gatherers_.end(), [this](const Gatherer& a, const Gatherer& b) {
       return a.owner != b.owner && state_.fragments.before(a.first_fragment, b.first_fragment);
     });
+    for (std::size_t g = 0; g < gatherers_.size(); ++g) of_owner_[gatherers_[g].owner].push_back(g);
   }
 
   void run() {
-    while (!gatherers_.empty()) {
+    if (gatherers_.empty()) return;
+    for (FragmentIndex fragment = 0; fragment < state_.fragments.size(); ++fragment) lookAround(fragment);
+    while (true) {
       const std::vector<ReachedFragment> in_reach = reached();
-      if (in_reach.empty()) break;
-      bool any = false;
-      for (const ReachedFragment& found : in_reach) any = hand(found) || any;
-      if (!any) break;
+      std::vector<FragmentIndex> given;
+      const auto before = static_cast<FragmentIndex>(state_.fragments.size());
+      for (const ReachedFragment& found : in_reach) hand(found, given);
+      if (given.empty()) break;
+      for (FragmentIndex made = before; made < state_.fragments.size(); ++made) lookAround(made);
+      for (const FragmentIndex fragment : given) spreadFrom(fragment);
     }
     for (const Gatherer& gatherer : gatherers_) renew(gatherer);
   }
@@ -74,57 +79,82 @@ class Gathering {
                gatherer.labels.end();
   }
 
-  /// The free fragments within reach of a gatherer in the current state.
+  bool isFree(FragmentIndex fragment) const {
+    return state_.fragments[fragment].alive && state_.fragments[fragment].owner == kFree;
+  }
+
+  /// The gatherers of the object that owns the cluxel.
+  const std::vector<std::size_t>& gatherersAt(std::uint32_t cluxel) const {
+    static const std::vector<std::size_t> kNone;
+    const auto found = of_owner_.find(state_.fragments[state_.fragments.fragmentOf(cluxel)].owner);
+    return found == of_owner_.end() ? kNone : found->second;
+  }
+
+  /// Notes which gatherers are near a free fragment.
+  void lookAround(FragmentIndex fragment) {
+    if (!isFree(fragment)) return;
+    double widest = 0;
+    for (const Gatherer& gatherer : gatherers_)
+      if (mayTake(gatherer, fragment)) widest = std::max(widest, gatherer.spec->gather->within_m);
+    if (widest == 0) return;
+    for (std::uint32_t cluxel : state_.fragments[fragment].cluxels)
+      state_.grid.near(cluxel, widest, [&](std::uint32_t other) {
+        for (std::size_t g : gatherersAt(other)) consider(g, fragment, cluxel, other);
+      });
+  }
+
+  /// Notes which free fragments are near one that an object has just got.
+  void spreadFrom(FragmentIndex fragment) {
+    const auto& numbers = of_owner_.at(state_.fragments[fragment].owner);
+    double widest = 0;
+    for (std::size_t g : numbers) widest = std::max(widest, gatherers_[g].spec->gather->within_m);
+    for (std::uint32_t cluxel : state_.fragments[fragment].cluxels)
+      state_.grid.near(cluxel, widest, [&](std::uint32_t other) {
+        const FragmentIndex theirs = state_.fragments.fragmentOf(other);
+        if (!isFree(theirs)) return;
+        for (std::size_t g : numbers) consider(g, theirs, other, cluxel);
+      });
+  }
+
+  void consider(std::size_t number, FragmentIndex fragment, std::uint32_t cluxel, std::uint32_t other) {
+    const Gatherer& gatherer = gatherers_[number];
+    if (!mayTake(gatherer, fragment)) return;
+    const double gap = gapBetween(state_.scene.cluxels, cluxel, other).gap();
+    if (gap > gatherer.spec->gather->within_m) return;
+    double& smallest = near_[fragment].try_emplace(number, gap).first->second;
+    smallest = std::min(smallest, gap);
+  }
+
+  /// The free fragments within reach of a gatherer in the current state, in canonical order.
   std::vector<ReachedFragment> reached() const {
-    std::vector<std::vector<std::size_t>> of_owner(state_.objects.size());
-    for (std::size_t g = 0; g < gatherers_.size(); ++g) of_owner[gatherers_[g].owner].push_back(g);
     std::vector<ReachedFragment> in_reach;
-    for (FragmentIndex fragment = 0; fragment < state_.fragments.size(); ++fragment) {
-      if (!state_.fragments[fragment].alive || state_.fragments[fragment].owner != kFree) continue;
-      ReachedFragment found{fragment, {}};
-      double widest = 0;
-      for (const Gatherer& gatherer : gatherers_)
-        if (mayTake(gatherer, fragment)) widest = std::max(widest, gatherer.spec->gather->within_m);
-      if (widest == 0) continue;
-      for (std::uint32_t cluxel : state_.fragments[fragment].cluxels)
-        state_.grid.near(cluxel, widest, [&](std::uint32_t other) {
-          const OwnerIndex owner = state_.fragments[state_.fragments.fragmentOf(other)].owner;
-          if (owner >= of_owner.size()) return;
-          for (std::size_t g : of_owner[owner]) consider(g, cluxel, other, found);
-        });
-      if (!found.near.empty()) in_reach.push_back(std::move(found));
-    }
+    for (const auto& [fragment, near] : near_)
+      if (isFree(fragment)) in_reach.push_back({fragment, near});
     std::sort(in_reach.begin(), in_reach.end(), [this](const ReachedFragment& a, const ReachedFragment& b) {
       return a.fragment != b.fragment && state_.fragments.before(a.fragment, b.fragment);
     });
     return in_reach;
   }
 
-  void consider(std::size_t number, std::uint32_t cluxel, std::uint32_t other, ReachedFragment& found) const {
-    const Gatherer& gatherer = gatherers_[number];
-    if (!mayTake(gatherer, found.fragment)) return;
-    const double gap = gapBetween(state_.scene.cluxels, cluxel, other).gap();
-    if (gap > gatherer.spec->gather->within_m) return;
-    double& smallest = found.near.try_emplace(number, gap).first->second;
-    smallest = std::min(smallest, gap);
-  }
-
-  /// Cuts the fragment among the gatherers it is near to; false when none of them reaches it.
-  bool hand(const ReachedFragment& found) {
+  /// Cuts the fragment among the gatherers that are near and reach it. Adds the fragments that were given away to
+  /// `given`.
+  void hand(const ReachedFragment& found, std::vector<FragmentIndex>& given) {
     std::map<std::size_t, std::vector<std::uint32_t>> parts;  // by gatherer
     std::vector<std::uint32_t> rest;
     for (std::uint32_t cluxel : state_.fragments[found.fragment].cluxels) {
       const auto taker = nearestOf(found, cluxel);
       (taker ? parts[*taker] : rest).push_back(cluxel);
     }
-    if (parts.empty()) return false;
+    if (parts.empty()) return;
     std::vector<std::vector<std::uint32_t>> kept;
     for (auto& [taker, cluxels] : parts) kept.push_back(std::move(cluxels));
     for (auto& bunch : connectedBunches(state_.scene.cluxels, rest)) kept.push_back(std::move(bunch));
     const auto made = state_.fragments.cut(found.fragment, std::move(kept));
     std::size_t next = 0;
-    for (const auto& [taker, cluxels] : parts) give(made[next++], gatherers_[taker], found.near.at(taker));
-    return true;
+    for (const auto& [taker, cluxels] : parts) {
+      given.push_back(made[next]);
+      give(made[next++], gatherers_[taker], found.near.at(taker));
+    }
   }
 
   /// Of the gatherers that are near the fragment and reach the cluxel, the one with the nearest top in plan view.
@@ -172,14 +202,14 @@ class Gathering {
   }
 
   void renew(const Gatherer& gatherer) {
-    ObjectInMaking& object = state_.objects[gatherer.owner];
-    const PartInMaking* crown = partOf(object, gatherer.spec->part);
-    Candidate* candidate = object.bindings.find(gatherer.spec->part);
-    if (crown != nullptr && candidate != nullptr) *candidate = state_.fragments.candidateOf(crown->fragments);
+    for (PartInMaking& part : state_.objects[gatherer.owner].parts)
+      if (part.name == gatherer.spec->part) part.is_outdated = true;
   }
 
   ReasoningState& state_;
   std::vector<Gatherer> gatherers_;
+  std::map<OwnerIndex, std::vector<std::size_t>> of_owner_;      ///< numbers in gatherers_
+  std::map<FragmentIndex, std::map<std::size_t, double>> near_;  ///< see ReachedFragment::near
 };
 
 }  // namespace

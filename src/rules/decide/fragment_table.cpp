@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 
 namespace cluxel::rules {
 
@@ -86,6 +87,24 @@ Candidate FragmentTable::candidateOf(std::vector<FragmentIndex> fragments) const
     return candidate;
   }
   candidate.shape = shapeOf(candidate, cluxelsOf(candidate));
+  return candidate;
+}
+
+Candidate FragmentTable::extentOf(std::vector<FragmentIndex> fragments) const {
+  Candidate candidate;
+  std::sort(fragments.begin(), fragments.end());
+  fragments.erase(std::unique(fragments.begin(), fragments.end()), fragments.end());
+  candidate.fragments = std::move(fragments);
+  Shape& shape = candidate.shape;
+  shape.min = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  shape.max = -shape.min;
+  double cluxels = 0;
+  for (const FragmentIndex fragment : candidate.fragments) {
+    shape.min = shape.min.cwiseMin(shapes_[fragment].min);
+    shape.max = shape.max.cwiseMax(shapes_[fragment].max);
+    cluxels += static_cast<double>(fragments_[fragment].cluxels.size());
+  }
+  shape.attributes[static_cast<std::size_t>(perception::Attribute::CluxelCount)] = cluxels;
   return candidate;
 }
 

@@ -50,6 +50,8 @@ class FragmentTable {
   bool before(FragmentIndex a, FragmentIndex b) const;
   /// The candidate made of these fragments.
   Candidate candidateOf(std::vector<FragmentIndex> fragments) const;
+  /// The same, but of its shape only min, max and CluxelCount are set: enough for gaps and adjacency, and cheap.
+  Candidate extentOf(std::vector<FragmentIndex> fragments) const;
   /// The shape of the part of a candidate between two heights above the ground; absent when it has no cluxel there.
   std::optional<Shape> shapeOfSlice(const Candidate& candidate, const SliceSpec& slice) const;
   /// All cluxels of a candidate, ascending.

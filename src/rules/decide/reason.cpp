@@ -141,13 +141,12 @@ class RuleRun {
     auto part = std::find_if(object.parts.begin(), object.parts.end(),
                              [&as](const PartInMaking& known) { return known.part_class == as.second; });
     if (part == object.parts.end() && as.second == rule_.class_iri) part = object.parts.begin();
-    if (part == object.parts.end()) part = object.parts.insert(part, PartInMaking{as.first, as.second, {}});
+    if (part == object.parts.end()) part = object.parts.insert(part, PartInMaking{as.first, as.second, {}, false});
     for (FragmentIndex fragment : group) {
       state_.fragments.setOwner(fragment, related);
       part->fragments.push_back(fragment);
     }
-    if (Candidate* candidate = object.bindings.find(part->name))
-      *candidate = state_.fragments.candidateOf(part->fragments);
+    part->is_outdated = true;
     return true;
   }
 
@@ -159,7 +158,7 @@ class RuleRun {
     object.confidence = std::clamp(confidenceOf(accept.confidence, bindings), 0.0, 1.0);
     object.decision = state_.decisions.size() - 1;
     for (const auto& [name, part_class] : accept.parts) {
-      PartInMaking part{name, part_class, {}};
+      PartInMaking part{name, part_class, {}, false};
       const bool shared = accept.splitting && accept.splitting->part == name;
       for (FragmentIndex fragment : bindings.at(name).fragments) {
         const OwnerIndex owner = state_.fragments[fragment].owner;

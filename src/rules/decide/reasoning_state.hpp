@@ -28,6 +28,7 @@ struct PartInMaking {
   std::string name;        ///< the bound name
   std::string part_class;  ///< IRI
   std::vector<FragmentIndex> fragments;
+  bool is_outdated = false;  ///< fragments changed since the bound candidate of this name was measured
 };
 
 struct ObjectInMaking {
@@ -36,7 +37,7 @@ struct ObjectInMaking {
   double confidence = 0;
   std::size_t decision = 0;
   std::vector<PartInMaking> parts;
-  Bindings bindings;  ///< needed by absorbing and splitting
+  Bindings bindings;  ///< needed by absorbing; see ReasoningState::renewBindings
 };
 
 struct ReasoningState {
@@ -58,6 +59,9 @@ struct ReasoningState {
   bool classIsA(const std::string& class_iri, const std::string& ancestor) const;
   /// The fragments of an object, ascending.
   std::vector<FragmentIndex> fragmentsOf(const ObjectInMaking& object) const;
+  /// Measures the bound candidates of parts whose fragments changed. Objects grow by many fragments, and measuring
+  /// costs time in all of their cluxels: it is done when a candidate is needed, not at each change.
+  void renewBindings(ObjectInMaking& object) const;
 };
 
 }  // namespace cluxel::rules

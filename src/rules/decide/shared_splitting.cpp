@@ -100,12 +100,11 @@ class SharedSplitting {
     }
   }
 
-  /// Drops fragments that were cut and measures the bound candidates again.
+  /// Drops fragments that were cut.
   void renew(ObjectInMaking& object) {
     for (PartInMaking& part : object.parts) {
       std::erase_if(part.fragments, [this](FragmentIndex fragment) { return !state_.fragments[fragment].alive; });
-      if (Candidate* candidate = object.bindings.find(part.name))
-        *candidate = state_.fragments.candidateOf(part.fragments);
+      part.is_outdated = true;
     }
   }
 
