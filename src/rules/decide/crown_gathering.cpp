@@ -24,7 +24,15 @@ class Gathering {
     std::sort(gatherers_.begin(), gatherers_.end(), [this](const Gatherer& a, const Gatherer& b) {
       return a.owner != b.owner && state_.fragments.before(a.first_fragment, b.first_fragment);
     });
-    for (std::size_t g = 0; g < gatherers_.size(); ++g) of_owner_[gatherers_[g].owner].push_back(g);
+    of_owner_.resize(state.objects.size());
+    for (std::size_t g = 0; g < gatherers_.size(); ++g) {
+      of_owner_[gatherers_[g].owner].push_back(g);
+      for (const scan::PrimitiveLabel label : gatherers_[g].labels) {
+        const GatherSpec& spec = *gatherers_[g].spec->gather;
+        const Demand demand{label, spec.above_m, spec.within_m};
+        if (std::find(demands_.begin(), demands_.end(), demand) == demands_.end()) demands_.push_back(demand);
+      }
+    }
   }
 
   void run() {
@@ -49,6 +57,12 @@ class Gathering {
     const SplittingSpec* spec = nullptr;
     Eigen::Vector2d top = Eigen::Vector2d::Zero();
     std::vector<scan::PrimitiveLabel> labels;  ///< of the split crown
+  };
+  /// What some gatherer takes: fragments of a label, at or above a height, within a distance.
+  struct Demand {
+    scan::PrimitiveLabel label;
+    double above_m = 0, within_m = 0;
+    bool operator==(const Demand&) const = default;
   };
   struct ReachedFragment {
     FragmentIndex fragment = 0;
@@ -83,29 +97,37 @@ class Gathering {
     return state_.fragments[fragment].alive && state_.fragments[fragment].owner == kFree;
   }
 
-  /// The gatherers of the object that owns the cluxel.
-  const std::vector<std::size_t>& gatherersAt(std::uint32_t cluxel) const {
-    static const std::vector<std::size_t> kNone;
-    const auto found = of_owner_.find(state_.fragments[state_.fragments.fragmentOf(cluxel)].owner);
-    return found == of_owner_.end() ? kNone : found->second;
+  /// The gatherers of the object that owns the cluxel; null when there are none.
+  const std::vector<std::size_t>* gatherersAt(std::uint32_t cluxel) const {
+    const OwnerIndex owner = state_.fragments[state_.fragments.fragmentOf(cluxel)].owner;
+    return owner < of_owner_.size() && !of_owner_[owner].empty() ? &of_owner_[owner] : nullptr;
+  }
+
+  /// The largest distance at which some gatherer may take the fragment [m]; 0 when none may.
+  double widestFor(FragmentIndex fragment) const {
+    double widest = 0;
+    const double bottom = state_.fragments.shapeOf(fragment)[perception::Attribute::Bottom];
+    for (const Demand& demand : demands_)
+      if (demand.label == state_.fragments.labelOf(fragment) && bottom >= demand.above_m)
+        widest = std::max(widest, demand.within_m);
+    return widest;
   }
 
   /// Notes which gatherers are near a free fragment.
   void lookAround(FragmentIndex fragment) {
     if (!isFree(fragment)) return;
-    double widest = 0;
-    for (const Gatherer& gatherer : gatherers_)
-      if (mayTake(gatherer, fragment)) widest = std::max(widest, gatherer.spec->gather->within_m);
+    const double widest = widestFor(fragment);
     if (widest == 0) return;
     for (std::uint32_t cluxel : state_.fragments[fragment].cluxels)
       state_.grid.near(cluxel, widest, [&](std::uint32_t other) {
-        for (std::size_t g : gatherersAt(other)) consider(g, fragment, cluxel, other);
+        if (const auto* numbers = gatherersAt(other))
+          for (std::size_t g : *numbers) consider(g, fragment, cluxel, other);
       });
   }
 
   /// Notes which free fragments are near one that an object has just got.
   void spreadFrom(FragmentIndex fragment) {
-    const auto& numbers = of_owner_.at(state_.fragments[fragment].owner);
+    const auto& numbers = of_owner_[state_.fragments[fragment].owner];
     double widest = 0;
     for (std::size_t g : numbers) widest = std::max(widest, gatherers_[g].spec->gather->within_m);
     for (std::uint32_t cluxel : state_.fragments[fragment].cluxels)
@@ -208,7 +230,8 @@ class Gathering {
 
   ReasoningState& state_;
   std::vector<Gatherer> gatherers_;
-  std::map<OwnerIndex, std::vector<std::size_t>> of_owner_;      ///< numbers in gatherers_
+  std::vector<std::vector<std::size_t>> of_owner_;               ///< numbers in gatherers_
+  std::vector<Demand> demands_;                                  ///< each once
   std::map<FragmentIndex, std::map<std::size_t, double>> near_;  ///< see ReachedFragment::near
 };
 
