@@ -65,6 +65,7 @@ enum class Remedy : std::uint8_t {
   NameHome,      ///< name the folder that holds ontology, rules, queries, models and labels
   NamePoses,     ///< name the file of poses
   NameTruth,     ///< name a folder of truth files
+  ListClouds,    ///< list the clouds of the map
   NameService,   ///< name the store that answers SERVICE
   NameLoadFile,  ///< name the file that LOAD reads
   NameValue,     ///< give a parameter of a question as NAME=VALUE

@@ -76,6 +76,7 @@ void addRules(CLI::App& app, Session& session);
 void addExplain(CLI::App& app, Session& session);
 void addExport(CLI::App& app, Session& session);
 void addEvaluate(CLI::App& app, Session& session);
+void addChange(CLI::App& app, Session& session);  ///< extend, retract, repose, merge
 void addUpkeep(CLI::App& app, Session& session);  ///< doctor, compact
 void addDocumentation(CLI::App& app);             ///< hidden: the man page and shell completion
 

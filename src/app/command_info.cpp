@@ -16,6 +16,7 @@ namespace {
 struct InfoOptions {
   std::vector<fs::path> inputs;
   ScanOptions scans;
+  bool clouds = false;
 };
 
 Json boxJson(const Eigen::AlignedBox3d& box) {
@@ -89,7 +90,21 @@ bool isMap(const fs::path& input) {
   return input.extension() == ".clx" || rdf::looksLikeMap(input);
 }
 
-ExitCode infoOfMap(const fs::path& file, const Session& session) {
+Json cloudsJson(const std::vector<mapping::Cloud>& clouds) {
+  Json json = Json::array();
+  for (const mapping::Cloud& cloud : clouds) {
+    Json entry{{"id", cloud.id.hex()},
+               {"source", cloud.source},
+               {"points", cloud.point_count},
+               {"has_pose", cloud.has_pose},
+               {"extent_map_m", boxJson({cloud.min, cloud.max})}};
+    if (cloud.time_s) entry["time_s"] = *cloud.time_s;
+    json.push_back(std::move(entry));
+  }
+  return json;
+}
+
+ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Session& session) {
   const mapping::MapReader map(file);
   const mapping::MapSummary summary = map.summary();
   if (!session.json) {
@@ -98,12 +113,18 @@ ExitCode infoOfMap(const fs::path& file, const Session& session) {
                 static_cast<unsigned long long>(summary.points), summary.objects,
                 static_cast<unsigned long long>(summary.quads));
     for (const auto& [name, count] : summary.objects_by_class) std::printf("  %-14s %zu\n", name.c_str(), count);
+    if (options.clouds)
+      for (const mapping::Cloud& cloud : map.clouds())
+        std::printf("  cloud %s  %llu points  %s%s\n", cloud.id.hex().c_str(),
+                    static_cast<unsigned long long>(cloud.point_count), cloud.source.c_str(),
+                    cloud.has_pose ? "" : "  no pose");
     return ExitCode::Done;
   }
   Json json{{"file", file.string()},         {"finished", summary.is_finished},
             {"inputs", summary.inputs_hash}, {"clouds", summary.clouds},
             {"points", summary.points},      {"objects", summary.objects},
             {"quads", summary.quads},        {"objects_by_class", summary.objects_by_class}};
+  if (options.clouds) json["cloud_list"] = cloudsJson(map.clouds());
   printJson(json);
   return ExitCode::Done;
 }
@@ -115,10 +136,11 @@ void addInfo(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("info", "show what scans or a map contain");
   command->add_option("input", options->inputs, "a map, or files, folders and manifests of scans")->required();
   addScanOptions(*command, options->scans);
+  command->add_flag("--clouds", options->clouds, "list the clouds of a map, with their ids");
   onRun(*command, session, [options, &session] {
     const auto map = std::find_if(options->inputs.begin(), options->inputs.end(), isMap);
     if (map == options->inputs.end()) return infoOfScans(*options, session);
-    if (options->inputs.size() == 1) return infoOfMap(*map, session);
+    if (options->inputs.size() == 1) return infoOfMap(*options, *map, session);
     throw Error(ErrorKind::InvalidArgument,
                 map->string() + ": is a map; give it alone, because a map and scans are not summarised together");
   });

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// `cluxel rules`: checks rule files and runs their tests.
+// `cluxel rules`: checks rule files, runs their tests, and applies rules to a map.
+#include "app/change_report.hpp"
 #include "app/command.hpp"
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
+#include "mapping/change/map_change.hpp"
 #include "mapping/facts/map_oracle.hpp"
 #include "mapping/map_inputs.hpp"
 #include "mapping/map_reader.hpp"
@@ -107,11 +109,51 @@ ExitCode runTests(const RulesOptions& options, Session& session) {
   return passed ? ExitCode::Done : ExitCode::NegativeFinding;
 }
 
+struct ApplyOptions {
+  fs::path map;
+  mapping::MapInputFiles files;
+  mapping::ChangeParams change;
+};
+
+/// The map's inputs with those replaced that are named.
+mapping::MapInputs inputsWith(const mapping::MapInputFiles& named, mapping::MapInputs inputs, const Session& session) {
+  if (named.rules.empty() && named.sparql_rules.empty() && named.ontology.empty() && named.model.empty())
+    throw Error(ErrorKind::InvalidArgument,
+                "name what is to be applied: --rules, --sparql-rules, --ontology or --model; the rest stays");
+  const mapping::MapInputs read = readMapInputs(named, session.dataHome());
+  if (!named.rules.empty()) inputs.rules = read.rules, inputs.rule_roots = read.rule_roots;
+  if (!named.sparql_rules.empty()) inputs.sparql_rules = read.sparql_rules;
+  if (!named.ontology.empty()) inputs.ontology = read.ontology;
+  if (!named.model.empty()) inputs.model = read.model;
+  return inputs;
+}
+
+ExitCode apply(const ApplyOptions& options, Session& session) {
+  mapping::ChangeParams params = options.change;
+  params.threads = session.threadCount();
+  const mapping::MapInputs inputs = inputsWith(options.files, mapping::MapReader(options.map).inputs(), session);
+  printChange(options.map, applyInputs(options.map, inputs, params, session.console), params, session);
+  return ExitCode::Done;
+}
+
+void addApply(CLI::App& rules, Session& session) {
+  auto options = std::make_shared<ApplyOptions>();
+  CLI::App* applying = rules.add_subcommand("apply", "decide anew with other rules, ontology or model");
+  applying->add_option("map", options->map, "a finished map")->required();
+  applying->add_option("--rules", options->files.rules, "rule files instead of the map's");
+  applying->add_option("--sparql-rules", options->files.sparql_rules, "CONSTRUCT rules instead of the map's");
+  applying->add_option("--ontology", options->files.ontology, "ontology files instead of the map's");
+  applying->add_option("--model", options->files.model,
+                       "a trained model instead of the map's: a name in models/, a folder or a file");
+  addChangeOptions(*applying, options->change, false);
+  onRun(*applying, session, [options, &session] { return apply(*options, session); });
+}
+
 }  // namespace
 
 void addRules(CLI::App& app, Session& session) {
   auto options = std::make_shared<RulesOptions>();
-  CLI::App* rules = app.add_subcommand("rules", "check and test rules");
+  CLI::App* rules = app.add_subcommand("rules", "check, test and apply rules");
   rules->require_subcommand(1);
   CLI::App* checking = rules->add_subcommand("check", "report every fault with file, line and column");
   checking->add_option("files", options->files, "rule files; else rules/outdoor.rules.yaml");
@@ -124,6 +166,7 @@ void addRules(CLI::App& app, Session& session) {
   testing->add_option("--ontology", options->inputs.ontology, "ontology files instead of ontology/*.ttl");
   onRun(*testing, session, [options, &session] { return runTests(*options, session); });
   onRun(*checking, session, [options, &session] { return check(*options, session); });
+  addApply(*rules, session);
 }
 
 }  // namespace cluxel::app

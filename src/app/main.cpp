@@ -39,6 +39,7 @@ void addCommands(CLI::App& app, Session& session) {
 #endif
   addRegister(app, session);
   addBuild(app, session);
+  addChange(app, session);
   addQuery(app, session);
   addUpdate(app, session);
   addTasks(app, session);

@@ -18,6 +18,8 @@ const char* hintFor(Remedy remedy) {
       return "--poses FILE names the poses";
     case Remedy::NameTruth:
       return "--truth FOLDER names a folder of truth files";
+    case Remedy::ListClouds:
+      return "'cluxel info MAP --clouds' lists the clouds of a map";
     case Remedy::NameService:
       return "--service IRI=FILE names the map or RDF file that answers for an IRI";
     case Remedy::NameLoadFile:

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <ctime>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -41,15 +42,19 @@ class Run {
     joinComponents(params.component);   // intersecting cluxels of one label to components
     findContacts(params);               // components that are near each other
   }
+  const TileSet& changed() const { return changed_; }
 
  private:
   void thin(TileSegments segments) {
+    for (const auto& [key, parts] : segments)
+      if (parts.empty()) emptied_.insert(key);
     changed_points_ = update(Stage::Points, out_.points, keysOf(segments), [&](const TileKey& key) {
       std::vector<const ScanSegment*> parts;
       for (const ScanSegment& segment : segments.at(key)) parts.push_back(&segment);
       return perception::thin(key, parts, params_.thin);
     });
     tiles_ = options_.store != nullptr ? options_.store->tiles() : keysOf(out_.points);
+    if (options_.compute_all) changed_points_ = unionOf(std::move(changed_points_), tiles_);
     if (options_.store != nullptr) loadAround(changed_points_);
   }
 
@@ -105,18 +110,30 @@ class Run {
 
   /// Computes the `dirty` tiles of one stage; returns those whose output differs from the stored one.
   template <typename Tile, typename Compute>
-  TileSet update(Stage stage, std::map<TileKey, Tile>& tiles, const TileSet& dirty, const Compute& compute) {
+  TileSet update(Stage stage, std::map<TileKey, Tile>& tiles, TileSet dirty, const Compute& compute) {
     const double start_s = processorSeconds();
-    const std::vector<TileKey> keys(dirty.begin(), dirty.end());
+    if (options_.compute_all) dirty = unionOf(std::move(dirty), changed_points_);
+    std::vector<TileKey> keys;
+    std::set_difference(dirty.begin(), dirty.end(), emptied_.begin(), emptied_.end(), std::back_inserter(keys));
     constexpr std::size_t kChunk = 64;  // bounds the bytes that wait for the store
-    TileSet changed;
+    TileSet changed = emptied_;
+    eraseEmptied(stage, tiles);
     for (std::size_t first = 0; first < keys.size(); first += kChunk) {
       const auto chunk = std::span(keys).subspan(first, std::min(kChunk, keys.size() - first));
       changed.merge(updateChunk(stage, tiles, chunk, compute));
       if (options_.observer != nullptr) options_.observer->progress(stage, first + chunk.size(), keys.size());
     }
     if (options_.observer != nullptr) options_.observer->finished(stage, processorSeconds() - start_s);
+    changed_.insert(changed.begin(), changed.end());
     return changed;
+  }
+
+  template <typename Tile>
+  void eraseEmptied(Stage stage, std::map<TileKey, Tile>& tiles) {
+    for (const TileKey& key : emptied_) {
+      tiles.erase(key);
+      if (options_.store != nullptr) options_.store->erase(stage, key);
+    }
   }
 
   template <typename Tile, typename Compute>
@@ -140,6 +157,8 @@ class Run {
   TileOutputs& out_;
   const RunOptions& options_;
   TileSet tiles_;
+  TileSet emptied_;  ///< tiles that lost their points
+  TileSet changed_;  ///< in some stage
   TileSet changed_points_, changed_cluxels_, changed_ground_, changed_features_, changed_labels_, changed_components_;
 };
 
@@ -158,11 +177,12 @@ TileSegments segmentsOf(std::span<const scan::Scan> scans) {
   return segments;
 }
 
-void runStages(TileSegments segments, const TileLabeller& labeller, const SceneParams& params, TileOutputs& outputs,
-               const RunOptions& options) {
+TileSet runStages(TileSegments segments, const TileLabeller& labeller, const SceneParams& params, TileOutputs& outputs,
+                  const RunOptions& options) {
   Run run(labeller.model().perception, outputs, options);
   run.toFeatures(std::move(segments));
   run.toContacts(labeller, params);
+  return run.changed();
 }
 
 TileOutputs perceive(std::span<const scan::Scan> scans, const PerceptionParams& params, unsigned threads) {

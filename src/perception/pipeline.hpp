@@ -30,7 +30,7 @@ struct SceneParams {
   RelationParams relation;
 };
 
-/// Points of scans by tile, the input of the first stage.
+/// Points of scans by tile, the input of the first stage. A tile without segments has lost its points.
 using TileSegments = std::map<TileKey, std::vector<ScanSegment>>;
 
 /// Cuts scans into tiles. Errors and cost as for splitScan().
@@ -40,13 +40,15 @@ TileSegments segmentsOf(std::span<const scan::Scan> scans);
 class OutputStore {
  public:
   virtual ~OutputStore() = default;
-  /// All tiles of the place, those of the new segments included.
+  /// All tiles with points: with those of the new segments, without those that lost their points.
   virtual TileSet tiles() const = 0;
   /// Reads the stored outputs of `tiles` into `outputs`, except those that are there. Contacts may be left out: no
   /// stage reads them.
   virtual void load(const TileSet& tiles, TileOutputs& outputs) = 0;
   /// Stores one output; false when the stored bytes are the same.
   virtual bool store(Stage stage, const TileKey& key, std::string_view bytes) = 0;
+  /// Removes an output; does nothing when there is none.
+  virtual void erase(Stage stage, const TileKey& key) = 0;
 };
 
 /// Watches a run. Called from one thread.
@@ -62,12 +64,14 @@ struct RunOptions {
   unsigned threads = 1;               ///< outputs do not depend on it
   OutputStore* store = nullptr;       ///< without a store every tile is computed and kept in memory only
   StageObserver* observer = nullptr;  ///< may be absent
+  bool compute_all = false;           ///< every stage computes all tiles: the model or settings changed
 };
 
-/// Runs all stages: brings `outputs` and the store up to date after `segments` came in. With a store, `segments` must
-/// hold all segments of each tile that got a new one. `outputs` then holds what was read or computed.
-void runStages(TileSegments segments, const TileLabeller& labeller, const SceneParams& params, TileOutputs& outputs,
-               const RunOptions& run);
+/// Runs all stages: brings `outputs` and the store up to date after segments came in or went. With a store, `segments`
+/// must hold all segments of each tile of which a segment changed. `outputs` then holds what was read or computed.
+/// Returns the tiles of which an output of some stage changed.
+TileSet runStages(TileSegments segments, const TileLabeller& labeller, const SceneParams& params, TileOutputs& outputs,
+                  const RunOptions& run);
 
 /// The same up to the features, in memory. The scans may come in any order.
 TileOutputs perceive(std::span<const scan::Scan> scans, const PerceptionParams& params, unsigned threads);

@@ -298,7 +298,7 @@ TEST(MapHistory, NamesFilesInUtf8WhateverTheirNames) {
   cloud.source = "caf\xE9.pcd";
   MapInputs inputs;
   inputs.model.name = "mod\xC3\xA8le";
-  addBuildActivity(transaction, {cloud}, inputs, 0, 1);
+  addActivity(transaction, {"build", 0, 1}, {cloud}, inputs);
   const QuadReader reader(transaction);
   EXPECT_TRUE(reader.idOf(Term::literal("caf\xEF\xBF\xBD.pcd")));
   EXPECT_TRUE(reader.idOf(Term::literal("mod\xC3\xA8le")));

@@ -102,18 +102,19 @@ class MapBuild {
     stages_.update(transaction, touched, params_.threads, sink_);
     stages_.loadAll(transaction);
     if (is_last) work_.takeOverStatements(transaction, params_.drop_statements, sink_);
-    const SemanticCounts counts = writeSemanticLayer(transaction, parsed_, stages_, sink_);
+    const SemanticLayer layer = writeSemanticLayer(transaction, parsed_, stages_, sink_);
     const std::vector<Cloud> clouds = storedClouds(transaction);
     storeInputs(transaction, parsed_.inputs);
     state_ = MapState{is_last, parsed_.inputs.hash().hex()};
     storeState(transaction, *state_);
-    addBuildActivity(transaction, clouds, parsed_.inputs, started_s, nowSeconds());
+    addActivity(transaction, {"build", started_s, nowSeconds()}, clouds, parsed_.inputs);
     transaction.commit();
     report_.scans = clouds.size();
     report_.points = 0;
     for (const Cloud& cloud : clouds) report_.points += cloud.point_count;
     report_.tiles = stages_.points().size();
-    report_.cluxels = counts.cluxels, report_.primitives = counts.primitives, report_.objects = counts.objects;
+    report_.cluxels = layer.scene.cluxels.size(), report_.primitives = layer.scene.primitives.size();
+    report_.objects = layer.objects.size();
     report_.quads = rdf::QuadReader(work_.environment().read()).size();
   }
 

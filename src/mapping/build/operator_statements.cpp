@@ -6,7 +6,16 @@
 
 namespace cluxel::mapping {
 
-std::uint64_t copyOperatorStatements(const rdf::QuadReader& from, rdf::WriteTransaction& into) {
+namespace {
+
+Term withSuffix(const Term& term, const std::string& suffix) {
+  return term.kind == TermKind::BlankNode && !suffix.empty() ? Term::blank(term.text + suffix) : term;
+}
+
+}  // namespace
+
+std::uint64_t copyOperatorStatements(const rdf::QuadReader& from, rdf::WriteTransaction& into,
+                                     const std::string& blank_suffix) {
   const auto graph = from.idOf(Term::iri(rdf::vocabulary::kGraphOperator));
   if (!graph) return 0;
   rdf::QuadWriter writer(into);
@@ -15,8 +24,8 @@ std::uint64_t copyOperatorStatements(const rdf::QuadReader& from, rdf::WriteTran
   rdf::QuadCursor cursor = from.scan(pattern);
   std::uint64_t count = 0;
   for (rdf::QuadIds quad; cursor.next(quad); ++count)
-    writer.add(Quad{from.termOf(quad.s), from.termOf(quad.p), from.termOf(quad.o),
-                    Term::iri(rdf::vocabulary::kGraphOperator)});
+    writer.add(Quad{withSuffix(from.termOf(quad.s), blank_suffix), from.termOf(quad.p),
+                    withSuffix(from.termOf(quad.o), blank_suffix), Term::iri(rdf::vocabulary::kGraphOperator)});
   writer.flush();
   return count;
 }

@@ -3,14 +3,17 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "rdf/store/environment.hpp"
 #include "rdf/store/quad_store.hpp"
 
 namespace cluxel::mapping {
 
-/// Adds the quads of graph `operator` to `into`, flushes, and returns how many there are.
-std::uint64_t copyOperatorStatements(const rdf::QuadReader& from, rdf::WriteTransaction& into);
+/// Adds the quads of graph `operator` to `into`, flushes, and returns how many there are. Labels of blank nodes get
+/// `blank_suffix`, which keeps those of several maps apart.
+std::uint64_t copyOperatorStatements(const rdf::QuadReader& from, rdf::WriteTransaction& into,
+                                     const std::string& blank_suffix = {});
 /// Leaves graph `operator` empty.
 void clearOperatorStatements(rdf::WriteTransaction& transaction);
 

@@ -100,9 +100,9 @@ Cloud cloudOf(const scan::Scan& scan) {
   return cloud;
 }
 
-void addTiles(rdf::WriteTransaction& transaction, const TileSet& fresh) {
+void putTiles(rdf::WriteTransaction& transaction, const TileSet& tiles) {
   std::string bytes;
-  for (const perception::TileKey& tile : unionOf(storedTiles(transaction), fresh)) bytes += tables::keyOf(tile);
+  for (const perception::TileKey& tile : tiles) bytes += tables::keyOf(tile);
   transaction.putBlock(tables::kMeta, kTilesKey, bytes);
 }
 
@@ -137,7 +137,7 @@ TileSet storeScan(rdf::WriteTransaction& transaction, const scan::Scan& scan) {
                             : scan.has_pose                  ? "now with a pose"
                                                              : "now without a pose";
     throw InputError({.file = scan.source}, "is the same scan as '" + there->source + "', " + how,
-                     "give each scan once; to correct a pose, build anew with the right one");
+                     "give each scan once; `repose` corrects the pose of a scan in a map");
   }
   TileSet tiles;
   for (const auto& [tile, segment] : perception::splitScan(scan)) {
@@ -146,8 +146,40 @@ TileSet storeScan(rdf::WriteTransaction& transaction, const scan::Scan& scan) {
   }
   transaction.putBlock(tables::kScanPoints, tables::keyOf(scan.id), toBytes(scan.points));
   transaction.putBlock(tables::kScans, tables::keyOf(scan.id), toBytes(cloudOf(scan)));
-  addTiles(transaction, tiles);
+  putTiles(transaction, unionOf(storedTiles(transaction), tiles));
   return tiles;
+}
+
+TileSet removeScan(rdf::WriteTransaction& transaction, const scan::ScanId& id) {
+  const scan::Scan scan = storedScan(transaction, id);
+  TileSet touched, emptied;
+  for (const auto& [tile, segment] : perception::splitScan(scan)) {
+    transaction.eraseBlock(tables::kSegments, tables::keyOf(tile) + tables::keyOf(id));
+    touched.insert(tile);
+    bool is_empty = true;
+    transaction.forEachBlock(tables::kSegments, tables::keyOf(tile),
+                             [&](std::string_view, std::string_view) { is_empty = false; });
+    if (is_empty) emptied.insert(tile);
+  }
+  transaction.eraseBlock(tables::kScanPoints, tables::keyOf(id));
+  transaction.eraseBlock(tables::kScans, tables::keyOf(id));
+  TileSet left = storedTiles(transaction);
+  for (const perception::TileKey& tile : emptied) left.erase(tile);
+  putTiles(transaction, left);
+  return touched;
+}
+
+scan::Scan storedScan(const rdf::ReadTransaction& transaction, const scan::ScanId& id) {
+  const auto cloud = storedCloud(transaction, id);
+  if (!cloud) throw Error(ErrorKind::NotFound, "the map has no cloud " + id.hex());
+  scan::Scan scan;
+  scan.points = storedPoints(transaction, id);
+  scan.time_s = cloud->time_s;
+  scan.T_map_sensor = cloud->T_map_sensor;
+  scan.has_pose = cloud->has_pose;
+  scan.source = cloud->source;
+  scan.id = id;
+  return scan;
 }
 
 std::vector<Cloud> storedClouds(const rdf::ReadTransaction& transaction) {

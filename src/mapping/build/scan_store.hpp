@@ -18,6 +18,12 @@ using TileSet = perception::TileSet;
 /// stored already. The same scan with another pose, or with a pose where there was none, is an InputError.
 TileSet storeScan(rdf::WriteTransaction& transaction, const scan::Scan& scan);
 
+/// Removes a scan with its segments; returns the tiles it touched. Throws Error (NotFound) when there is none.
+TileSet removeScan(rdf::WriteTransaction& transaction, const scan::ScanId& id);
+
+/// A stored scan as it was given. Throws Error (NotFound) when there is none.
+scan::Scan storedScan(const rdf::ReadTransaction& transaction, const scan::ScanId& id);
+
 /// All tiles that hold points of some scan.
 TileSet storedTiles(const rdf::ReadTransaction& transaction);
 

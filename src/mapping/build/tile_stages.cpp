@@ -56,6 +56,8 @@ class MapOutputStore final : public perception::OutputStore {
     return true;
   }
 
+  void erase(Stage stage, const TileKey& key) override { transaction_.eraseBlock(tableOf(stage), tables::keyOf(key)); }
+
  private:
   rdf::WriteTransaction& transaction_;
 };
@@ -73,21 +75,32 @@ class StageProgress final : public perception::StageObserver {
 
 perception::TileSegments storedSegments(const rdf::ReadTransaction& transaction, const TileSet& tiles) {
   perception::TileSegments segments;
-  for (const TileKey& tile : tiles)
+  for (const TileKey& tile : tiles) {
+    auto& of_tile = segments[tile];  // stays empty when the last scan in it was removed
     transaction.forEachBlock(tables::kSegments, tables::keyOf(tile), [&](std::string_view, std::string_view bytes) {
-      segments[tile].push_back(perception::scanSegmentFromBytes(bytes));
+      of_tile.push_back(perception::scanSegmentFromBytes(bytes));
     });
+  }
   return segments;
 }
 
 }  // namespace
 
-void TileStages::update(rdf::WriteTransaction& transaction, const TileSet& touched, unsigned threads,
+TileSet TileStages::update(rdf::WriteTransaction& transaction, const TileSet& touched, unsigned threads,
+                           ProgressSink& sink) {
+  return run(transaction, touched, threads, false, sink);
+}
+
+TileSet TileStages::updateAll(rdf::WriteTransaction& transaction, unsigned threads, ProgressSink& sink) {
+  return run(transaction, storedTiles(transaction), threads, true, sink);
+}
+
+TileSet TileStages::run(rdf::WriteTransaction& transaction, const TileSet& touched, unsigned threads, bool compute_all,
                         ProgressSink& sink) {
   MapOutputStore store(transaction);
   StageProgress progress(sink);
-  runStages(storedSegments(transaction, touched), labeller_, params_, outputs_,
-            {.threads = threads, .store = &store, .observer = &progress});
+  return runStages(storedSegments(transaction, touched), labeller_, params_, outputs_,
+                   {.threads = threads, .store = &store, .observer = &progress, .compute_all = compute_all});
 }
 
 void TileStages::loadAll(const rdf::ReadTransaction& transaction) {

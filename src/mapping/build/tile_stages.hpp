@@ -17,9 +17,12 @@ class TileStages {
   TileStages(const perception::LabelModel& model, const MapParams& params)
       : params_{params.labelling, params.component, params.contact, params.relation}, labeller_(model) {}
 
-  /// Brings every stage up to date after segments of the tiles `touched` were stored.
-  void update(rdf::WriteTransaction& transaction, const perception::TileSet& touched, unsigned threads,
-              ProgressSink& sink);
+  /// Brings every stage up to date after segments of the tiles `touched` were stored or removed. Returns the tiles of
+  /// which an output changed.
+  perception::TileSet update(rdf::WriteTransaction& transaction, const perception::TileSet& touched, unsigned threads,
+                             ProgressSink& sink);
+  /// Computes all stages of all tiles: the model or the settings changed. Returns the tiles of which an output changed.
+  perception::TileSet updateAll(rdf::WriteTransaction& transaction, unsigned threads, ProgressSink& sink);
   /// Decodes all stored outputs.
   void loadAll(const rdf::ReadTransaction& transaction);
   /// The scene of what is loaded.
@@ -29,6 +32,9 @@ class TileStages {
   const std::map<perception::TileKey, perception::CluxelTile>& cluxels() const { return outputs_.cluxels; }
 
  private:
+  perception::TileSet run(rdf::WriteTransaction& transaction, const perception::TileSet& touched, unsigned threads,
+                          bool compute_all, ProgressSink& sink);
+
   perception::SceneParams params_;
   perception::TileLabeller labeller_;
   perception::TileOutputs outputs_;

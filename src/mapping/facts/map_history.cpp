@@ -24,12 +24,12 @@ std::string prov(std::string_view local) {
 
 }  // namespace
 
-void addBuildActivity(rdf::WriteTransaction& transaction, const std::vector<Cloud>& clouds, const MapInputs& inputs,
-                      double started_s, double ended_s) {
+std::string addActivity(rdf::WriteTransaction& transaction, const Activity& run, const std::vector<Cloud>& clouds,
+                        const MapInputs& inputs) {
   rdf::QuadWriter writer(transaction);
   const Term graph = Term::iri(rdf::vocabulary::kGraphHistory);
   ContentHasher hasher;
-  hasher.add(inputs.hash()).add(started_s).add(ended_s);
+  hasher.add(inputs.hash()).add(run.started_s).add(run.ended_s);
   const Term activity = Term::iri(rdf::iriOfActivity(hasher.finish()));
   const auto add = [&](const Term& subject, const std::string& property, const Term& object) {
     writer.add(Quad{subject, Term::iri(property), object, graph});
@@ -38,8 +38,9 @@ void addBuildActivity(rdf::WriteTransaction& transaction, const std::vector<Clou
     return Term::literal(dateTimeText(seconds), rdf::vocabulary::xsd("dateTime"));
   };
   add(activity, rdf::vocabulary::rdf("type"), Term::iri(prov("Activity")));
-  add(activity, prov("startedAtTime"), time(started_s));
-  add(activity, prov("endedAtTime"), time(ended_s));
+  add(activity, prov("startedAtTime"), time(run.started_s));
+  add(activity, prov("endedAtTime"), time(run.ended_s));
+  add(activity, rdf::vocabulary::clx("operation"), Term::literal(run.operation));
   add(activity, rdf::vocabulary::clx("inputsHash"), Term::literal(inputs.hash().hex()));
   add(activity, rdf::vocabulary::clx("modelFile"), nameText(inputs.model.name));
   for (const Cloud& cloud : clouds) {
@@ -47,6 +48,23 @@ void addBuildActivity(rdf::WriteTransaction& transaction, const std::vector<Clou
     add(activity, prov("used"), subject);
     add(subject, rdf::vocabulary::clx("sourceFile"), nameText(cloud.source));
   }
+  writer.flush();
+  return activity.text;
+}
+
+void addLineage(rdf::WriteTransaction& transaction, const std::string& activity_iri, const ObjectChanges& changes) {
+  rdf::QuadWriter writer(transaction);
+  const Term graph = Term::iri(rdf::vocabulary::kGraphHistory), activity = Term::iri(activity_iri);
+  const auto add = [&](const ContentHash& subject, const std::string& property, const Term& object) {
+    writer.add(Quad{Term::iri(rdf::iriOfObject(subject)), Term::iri(property), object, graph});
+  };
+  for (const auto* objects : {&changes.changed, &changes.split, &changes.joined})
+    for (const DerivedObject& object : *objects) {
+      for (const ContentHash& from : object.from)
+        add(object.id, prov("wasDerivedFrom"), Term::iri(rdf::iriOfObject(from)));
+      add(object.id, prov("wasGeneratedBy"), activity);
+    }
+  for (const ContentHash& gone : changes.gone) add(gone, prov("wasInvalidatedBy"), activity);
   writer.flush();
 }
 

@@ -2,16 +2,27 @@
 // The history graph: who ran what when, and from which files. Not part of the map function.
 #pragma once
 
+#include <string>
 #include <vector>
 
+#include "mapping/change/object_changes.hpp"
 #include "mapping/cloud.hpp"
 #include "mapping/map_inputs.hpp"
 #include "rdf/store/environment.hpp"
 
 namespace cluxel::mapping {
 
-/// Adds one activity that used `clouds` and `inputs`; `started_s` and `ended_s` in seconds since 1970.
-void addBuildActivity(rdf::WriteTransaction& transaction, const std::vector<Cloud>& clouds, const MapInputs& inputs,
-                      double started_s, double ended_s);
+/// One run of a command that changed the map. Times in seconds since 1970.
+struct Activity {
+  std::string operation;  ///< "build", "extend"
+  double started_s = 0, ended_s = 0;
+};
+
+/// Adds an activity that used `clouds` and `inputs`. Returns its IRI.
+std::string addActivity(rdf::WriteTransaction& transaction, const Activity& activity, const std::vector<Cloud>& clouds,
+                        const MapInputs& inputs);
+
+/// Adds that each object of `objects` was derived from others, by the activity.
+void addLineage(rdf::WriteTransaction& transaction, const std::string& activity_iri, const ObjectChanges& changes);
 
 }  // namespace cluxel::mapping

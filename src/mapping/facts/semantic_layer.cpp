@@ -65,16 +65,16 @@ ParsedInputs parseInputs(const MapInputs& inputs) {
   return parsed;
 }
 
-SemanticCounts writeSemanticLayer(rdf::WriteTransaction& transaction, const ParsedInputs& parsed,
-                                  const TileStages& stages, ProgressSink& sink) {
+SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const ParsedInputs& parsed,
+                                 const TileStages& stages, ProgressSink& sink) {
   writeOntology(transaction, parsed.inputs);
-  const perception::Scene scene = stages.scene();
+  perception::Scene scene = stages.scene();
   sink.progress("scene", scene.primitives.size(), scene.primitives.size());
   const std::vector<Cloud> clouds = storedClouds(transaction);
   MapOracle oracle(transaction, [&](std::span<const rules::SemanticObject> objects) {
     writeObjectsSoFar(transaction, parsed.inputs, clouds, scene, stages, objects);
   });
-  const rules::ReasoningResult result = reason(scene, parsed.rules, {&oracle});
+  rules::ReasoningResult result = reason(scene, parsed.rules, {&oracle});
   sink.progress("objects", result.objects.size(), result.objects.size());
   const auto sightings = sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(result, scene.cluxels.size()));
   writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings});
@@ -82,7 +82,7 @@ SemanticCounts writeSemanticLayer(rdf::WriteTransaction& transaction, const Pars
   runSparqlRules(transaction, parsed.inputs.sparql_rules);
   storeObjects(transaction, result.objects);
   sink.progress("facts", 1, 1);
-  return {scene.cluxels.size(), scene.primitives.size(), result.objects.size()};
+  return {std::move(scene), std::move(result.objects)};
 }
 
 }  // namespace cluxel::mapping

@@ -33,13 +33,14 @@ void writeObjectsSoFar(rdf::WriteTransaction& transaction, const MapInputs& inpu
                        const perception::Scene& scene, const TileStages& stages,
                        std::span<const rules::SemanticObject> objects);
 
-struct SemanticCounts {
-  std::size_t cluxels = 0, primitives = 0, objects = 0;
+struct SemanticLayer {
+  perception::Scene scene;
+  std::vector<rules::SemanticObject> objects;  ///< sorted by id
 };
 
 /// Computes objects and facts of the stages' outputs and stores them. The graphs ontology, observed and inferred are
 /// then a function of these outputs and the inputs.
-SemanticCounts writeSemanticLayer(rdf::WriteTransaction& transaction, const ParsedInputs& parsed,
-                                  const TileStages& stages, ProgressSink& sink);
+SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const ParsedInputs& parsed,
+                                 const TileStages& stages, ProgressSink& sink);
 
 }  // namespace cluxel::mapping

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// The operations in terms of MapEditor: they add and remove segments, and commit.
+#include "mapping/change/map_change.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "cluxel/error.hpp"
+#include "mapping/change/scan_additions.hpp"
+#include "mapping/map_state.hpp"
+
+namespace cluxel::mapping {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A set that names no origin or coordinate system lies in the map frame.
+void requireFrame(const MapInputs& map, const scan::ScanSet& scans) {
+  const bool other_origin = !scans.mapOrigin().isZero(0) && scans.mapOrigin() != map.map_origin;
+  const bool other_crs = !scans.crs().empty() && scans.crs() != map.crs;
+  if (!other_origin && !other_crs) return;
+  throw Error(ErrorKind::InvalidArgument,
+              std::string("the scans' ") + (other_crs ? "coordinate system" : "map_origin") +
+                  " is not the map's; give them in the map's frame, or build the map anew from all scans");
+}
+
+void requireOnce(const std::vector<scan::ScanId>& scans) {
+  std::set<scan::ScanId> seen;
+  for (const scan::ScanId& id : scans)
+    if (!seen.insert(id).second) throw Error(ErrorKind::InvalidArgument, "cloud " + id.hex() + " is named twice");
+}
+
+bool isNamed(const Cloud& cloud, const std::string& name) {
+  constexpr std::size_t kMinDigits = 4;
+  std::string digits = name;
+  if (const std::size_t slash = name.rfind('/'); slash != std::string::npos && name.find("cloud/") != std::string::npos)
+    digits = name.substr(slash + 1);
+  if (digits.size() >= kMinDigits && cloud.id.hex().starts_with(digits)) return true;
+  return cloud.source == name || fs::path(cloud.source).filename() == name;
+}
+
+}  // namespace
+
+ChangeReport extendMap(const fs::path& file, const scan::ScanSet& scans, const ChangeParams& params,
+                       ProgressSink& sink) {
+  if (scans.size() == 0) throw Error(ErrorKind::InvalidArgument, "there is no scan to add");
+  MapEditor editor(file, params, sink);
+  requireFrame(editor.inputs().inputs, scans);
+  ScanAdditions additions(editor, "extend");
+  scan::ReadingNotes notes(scans.remedies());
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const scan::LoadedScan loaded = scans.read(i);
+    for (const std::string& note : notes.add(loaded.reading)) sink.note(note);
+    additions.add(loaded.scan);
+    sink.progress("scans", i + 1, scans.size());
+  }
+  additions.finish();
+  for (const std::string& note : notes.totals()) sink.note(note);
+  return std::move(editor.result());
+}
+
+ChangeReport retractScans(const fs::path& file, const std::vector<scan::ScanId>& scans, const ChangeParams& params,
+                          ProgressSink& sink) {
+  requireOnce(scans);
+  MapEditor editor(file, params, sink);
+  rdf::WriteTransaction transaction = editor.begin();
+  TileSet touched;
+  for (const scan::ScanId& id : scans) {
+    touched = unionOf(std::move(touched), removeScan(transaction, id));
+    sink.progress("scans", ++editor.result().scans_removed, scans.size());
+  }
+  if (storedClouds(transaction).empty())
+    throw Error(ErrorKind::InvalidArgument, file.string() + ": no scan would be left; remove the file instead");
+  if (!scans.empty()) editor.commit(transaction, "retract", touched, scans);
+  return std::move(editor.result());
+}
+
+ChangeReport moveScans(const fs::path& file, const std::vector<ScanPose>& poses, const ChangeParams& params,
+                       ProgressSink& sink) {
+  std::vector<scan::ScanId> named;
+  for (const ScanPose& pose : poses) named.push_back(pose.scan);
+  requireOnce(named);
+  MapEditor editor(file, params, sink);
+  rdf::WriteTransaction transaction = editor.begin();
+  TileSet touched;
+  std::vector<scan::ScanId> moved;
+  for (const ScanPose& pose : poses) {
+    scan::Scan scan = storedScan(transaction, pose.scan);
+    sink.progress("scans", moved.size() + 1, poses.size());
+    if (scan.has_pose && scan.T_map_sensor.matrix() == pose.T_map_sensor.matrix()) continue;
+    scan.T_map_sensor = pose.T_map_sensor;
+    scan.has_pose = true;
+    touched = unionOf(std::move(touched), removeScan(transaction, scan.id));
+    touched = unionOf(std::move(touched), storeScan(transaction, scan));
+    moved.push_back(scan.id);
+  }
+  editor.result().scans_moved = moved.size();
+  if (!moved.empty()) editor.commit(transaction, "repose", touched, moved);
+  return std::move(editor.result());
+}
+
+ChangeReport applyInputs(const fs::path& file, MapInputs inputs, const ChangeParams& params, ProgressSink& sink) {
+  MapEditor editor(file, params, sink);
+  inputs.map_origin = editor.inputs().inputs.map_origin;
+  inputs.crs = editor.inputs().inputs.crs;
+  if (inputs.hash() == editor.inputs().inputs.hash()) return std::move(editor.result());
+  editor.setInputs(parseInputs(inputs));
+  rdf::WriteTransaction transaction = editor.begin();
+  editor.commit(transaction, "rules apply", {}, {});
+  return std::move(editor.result());
+}
+
+std::vector<scan::ScanId> cloudsNamed(const fs::path& file, std::span<const std::string> names) {
+  const auto environment = rdf::Environment::open(file, rdf::OpenMode::ReadOnly);
+  const std::vector<Cloud> clouds = storedClouds(environment->read());
+  std::vector<scan::ScanId> ids;
+  for (const std::string& name : names) {
+    std::vector<scan::ScanId> fitting;
+    for (const Cloud& cloud : clouds)
+      if (isNamed(cloud, name)) fitting.push_back(cloud.id);
+    if (fitting.empty())
+      throw Error(ErrorKind::NotFound, file.string() + ": has no cloud '" + name + "'", Remedy::ListClouds);
+    if (fitting.size() > 1)
+      throw Error(ErrorKind::InvalidArgument, file.string() + ": '" + name + "' names " +
+                                                  std::to_string(fitting.size()) + " clouds; name each by its id");
+    ids.push_back(fitting.front());
+  }
+  return ids;
+}
+
+}  // namespace cluxel::mapping

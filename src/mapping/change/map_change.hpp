@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Changes of a finished map: more scans, fewer scans, other poses, other rules. Each gives the very map that a build
+// from the changed inputs would give.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "mapping/change/map_editor.hpp"
+#include "scan/scan_set.hpp"
+
+namespace cluxel::mapping {
+
+/// All functions throw the Errors of MapEditor, and leave the map as it is when they fail. With
+/// ChangeParams::dry_run nothing is written.
+
+/// Adds scans, batch by batch; each commit is the exact map of the scans so far, so that a killed run goes on when it
+/// is repeated. Scans that are there with the same pose are passed over. Throws InputError for a scan that is there
+/// with another pose, or whose manifest names another map origin or coordinate system than the map's.
+ChangeReport extendMap(const std::filesystem::path& file, const scan::ScanSet& scans, const ChangeParams& params,
+                       ProgressSink& sink);
+
+/// Removes scans. Throws Error: NotFound for an unknown scan, InvalidArgument when none would be left.
+ChangeReport retractScans(const std::filesystem::path& file, const std::vector<scan::ScanId>& scans,
+                          const ChangeParams& params, ProgressSink& sink);
+
+struct ScanPose {
+  scan::ScanId scan;
+  Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
+};
+/// Gives scans other poses, all in one commit. Throws Error: NotFound for an unknown scan, InvalidArgument for a scan
+/// that is named twice.
+ChangeReport moveScans(const std::filesystem::path& file, const std::vector<ScanPose>& poses,
+                       const ChangeParams& params, ProgressSink& sink);
+
+/// Decides anew with other rules, ontology, model or settings. Scans, map origin and coordinate system stay.
+ChangeReport applyInputs(const std::filesystem::path& file, MapInputs inputs, const ChangeParams& params,
+                         ProgressSink& sink);
+
+/// The clouds that people name by file name ("scan7.pcd"), source path, or at least four leading digits of the id.
+/// Throws Error (NotFound, InvalidArgument) for a name that fits none, or several.
+std::vector<scan::ScanId> cloudsNamed(const std::filesystem::path& file, std::span<const std::string> names);
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Opens a map for changes and commits them.
+#include "mapping/change/map_editor.hpp"
+
+#include <chrono>
+
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/facts/map_history.hpp"
+#include "mapping/map_state.hpp"
+#include "mapping/object_store.hpp"
+
+namespace cluxel::mapping {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+double secondsNow() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+std::shared_ptr<rdf::Environment> openForChange(const fs::path& file) {
+  if (!fs::exists(file))
+    throw Error(ErrorKind::StoreUnavailable, file.string() + ": there is no such map; build it first");
+  return rdf::Environment::open(file, rdf::OpenMode::ReadWrite);
+}
+
+MapInputs requireInputs(const rdf::ReadTransaction& transaction, const fs::path& file) {
+  const auto state = storedState(transaction);
+  if (!state)
+    throw Error(ErrorKind::InvalidArgument, file.string() + ": holds no map that a build has made; build one first");
+  if (!state->is_finished)
+    throw Error(ErrorKind::InvalidArgument,
+                file.string() + ": its build is unfinished; repeat the build command first");
+  MapInputs inputs = storedInputs(transaction);
+  if (inputs.hash().hex() != state->inputs_hash)
+    throw Error(
+        ErrorKind::InvalidArgument,
+        file.string() + ": was made by another version of Cluxel, whose stages give other results; build it anew");
+  return inputs;
+}
+
+bool reachTiles(const MapInputs& before, const MapInputs& after) {
+  MapInputs with_new_tiles = before;
+  with_new_tiles.model = after.model;
+  with_new_tiles.params = after.params;
+  return with_new_tiles.hash() != before.hash();
+}
+
+}  // namespace
+
+MapEditor::MapEditor(const fs::path& file, const ChangeParams& params, ProgressSink& sink)
+    : lock_(withoutLinks(file)), environment_(openForChange(withoutLinks(file))), params_(params), sink_(sink) {
+  parsed_ = parseInputs(requireInputs(environment_->read(), file));
+  inputs_hash_ = parsed_.inputs.hash().hex();
+  stages_.emplace(parsed_.model, parsed_.inputs.params);
+  const rdf::ReadTransaction transaction = environment_->read();
+  stages_->loadAll(transaction);
+  report_.before = membersOf(storedObjects(transaction), stages_->scene().cluxels);
+}
+
+void MapEditor::setInputs(ParsedInputs inputs) {
+  all_tiles_ = all_tiles_ || reachTiles(parsed_.inputs, inputs.inputs);
+  stages_.reset();
+  parsed_ = std::move(inputs);
+}
+
+rdf::WriteTransaction MapEditor::begin() {
+  rdf::WriteTransaction transaction = environment_->write();
+  const auto state = storedState(transaction);
+  if (!state || !state->is_finished || state->inputs_hash != inputs_hash_)
+    throw Error(ErrorKind::StoreUnavailable,
+                environment_->file().string() + ": another program has changed it meanwhile; run the command again");
+  return transaction;
+}
+
+void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& operation, const TileSet& touched,
+                       const std::vector<scan::ScanId>& changed_scans) {
+  const double started_s = secondsNow();
+  if (!stages_) stages_.emplace(parsed_.model, parsed_.inputs.params);
+  report_.tiles_touched += touched.size();
+  const TileSet changed = all_tiles_ ? stages_->updateAll(transaction, params_.threads, sink_)
+                                     : stages_->update(transaction, touched, params_.threads, sink_);
+  report_.tiles_changed += changed.size();
+  all_tiles_ = false;
+  stages_->loadAll(transaction);
+  const SemanticLayer layer = writeSemanticLayer(transaction, parsed_, *stages_, sink_);
+  inputs_hash_ = parsed_.inputs.hash().hex();
+  storeInputs(transaction, parsed_.inputs);
+  storeState(transaction, MapState{true, inputs_hash_});
+  report(transaction, layer);
+  std::vector<Cloud> used;
+  for (const scan::ScanId& id : changed_scans)
+    if (auto cloud = storedCloud(transaction, id)) used.push_back(std::move(*cloud));
+  const Activity activity{operation, started_s, secondsNow()};
+  addLineage(transaction, addActivity(transaction, activity, used, parsed_.inputs), report_.objects);
+  if (!params_.dry_run) transaction.commit();
+}
+
+void MapEditor::report(const rdf::ReadTransaction& transaction, const SemanticLayer& layer) {
+  report_.scans = storedClouds(transaction).size();
+  report_.tiles = stages_->points().size();
+  report_.cluxels = layer.scene.cluxels.size();
+  report_.primitives = layer.scene.primitives.size();
+  report_.after = membersOf(layer.objects, layer.scene.cluxels);
+  report_.objects = compareObjects(report_.before, report_.after);
+}
+
+}  // namespace cluxel::mapping

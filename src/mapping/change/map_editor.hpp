@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// A finished map opened for changes of its inputs. Every commit is the exact map of the changed inputs.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cluxel/progress.hpp"
+#include "mapping/build/build_lock.hpp"
+#include "mapping/build/scan_store.hpp"
+#include "mapping/build/tile_stages.hpp"
+#include "mapping/change/object_changes.hpp"
+#include "mapping/facts/semantic_layer.hpp"
+
+namespace cluxel::mapping {
+
+struct ChangeParams {
+  unsigned threads = 1;
+  std::uint64_t batch_points = 20'000'000;  ///< scans are added in batches of about this many points
+  bool dry_run = false;                     ///< compute what would change, and write nothing
+};
+
+struct ChangeReport {
+  std::size_t scans_added = 0, scans_already_there = 0, scans_removed = 0, scans_moved = 0;
+  std::size_t tiles_touched = 0;                                  ///< a scan's points in them changed
+  std::size_t tiles_changed = 0;                                  ///< the output of some stage changed
+  std::size_t scans = 0, tiles = 0, cluxels = 0, primitives = 0;  ///< of the map afterwards
+  std::vector<ObjectMembers> before, after;                       ///< the objects
+  ObjectChanges objects;
+};
+
+class MapEditor {
+ public:
+  /// Takes the build lock and reads the inputs. Throws Error: InvalidArgument for an unfinished map or one that another
+  /// version of the stages has made, StoreUnavailable when the file cannot be written or is being written.
+  MapEditor(const std::filesystem::path& file, const ChangeParams& params, ProgressSink& sink);
+
+  const ParsedInputs& inputs() const { return parsed_; }
+  /// Changes the inputs beside the scans; the next commit computes the map anew as far as they reach: a new model or
+  /// new settings reach everything, rules and ontology the layers above the scene.
+  void setInputs(ParsedInputs inputs);
+
+  rdf::WriteTransaction begin();
+  /// Brings all layers up to date after segments of `touched` changed, and commits unless this is a dry run.
+  /// `operation` names the change in the history ("extend"), and `changed_scans` the scans it was about.
+  void commit(rdf::WriteTransaction& transaction, const std::string& operation, const TileSet& touched,
+              const std::vector<scan::ScanId>& changed_scans);
+
+  ChangeReport& result() { return report_; }
+  ProgressSink& sink() { return sink_; }
+  const ChangeParams& params() const { return params_; }
+
+ private:
+  void report(const rdf::ReadTransaction& transaction, const SemanticLayer& layer);
+
+  BuildLock lock_;
+  std::shared_ptr<rdf::Environment> environment_;
+  const ChangeParams& params_;
+  ProgressSink& sink_;
+  ParsedInputs parsed_;
+  std::string inputs_hash_;  ///< as stored in the file
+  bool all_tiles_ = false;   ///< the next commit computes every tile
+  std::optional<TileStages> stages_;
+  ChangeReport report_;
+};
+
+}  // namespace cluxel::mapping

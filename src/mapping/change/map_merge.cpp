@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// The largest map is copied, and the scans of the others are added to the copy.
+#include "mapping/change/map_merge.hpp"
+
+#include <algorithm>
+
+#include "cluxel/error.hpp"
+#include "mapping/build/operator_statements.hpp"
+#include "mapping/change/scan_additions.hpp"
+#include "mapping/map_reader.hpp"
+#include "rdf/store/map_replacement.hpp"
+
+namespace cluxel::mapping {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<std::string> differencesOf(const MapInputs& a, const MapInputs& b) {
+  std::vector<std::string> differences;
+  if (a.ontology != b.ontology) differences.emplace_back("ontology");
+  if (a.rules != b.rules || a.rule_roots != b.rule_roots || a.sparql_rules != b.sparql_rules)
+    differences.emplace_back("rules");
+  if (a.model != b.model) differences.emplace_back("model");
+  return differences;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+class Merge {
+ public:
+  Merge(const std::vector<MapToMerge>& maps, const fs::path& target, const MergeParams& params, ProgressSink& sink)
+      : maps_(maps), target_(target), beside_(target.string() + ".merging"), params_(params), sink_(sink) {}
+
+  Merge(const Merge&) = delete;
+  Merge& operator=(const Merge&) = delete;
+  ~Merge() { removeBeside(); }
+
+  ChangeReport run() {
+    if (maps_.size() < 2) throw Error(ErrorKind::InvalidArgument, "a merge needs at least two maps");
+    if (fs::exists(target_) && !params_.force)
+      throw Error(ErrorKind::InvalidArgument, target_.string() + ": is there already", Remedy::ReplaceMap);
+    for (const MapToMerge& map : maps_) readers_.emplace_back(map.file);
+    requireEqualInputs();
+    const std::size_t base = largest();
+    removeBeside();
+    rdf::Environment::open(maps_[base].file, rdf::OpenMode::ReadOnly)->compactTo(beside_);
+    ChangeReport report = addOthers(base);
+    if (!params_.change.dry_run) replaceTarget();
+    return report;
+  }
+
+ private:
+  void requireEqualInputs() const {
+    const MapInputs first = readers_.front().inputs();
+    for (std::size_t i = 0; i < readers_.size(); ++i) {
+      if (!readers_[i].summary().is_finished)
+        throw Error(ErrorKind::InvalidArgument,
+                    maps_[i].file.string() + ": its build is unfinished; repeat the build command first");
+      const MapInputs mine = readers_[i].inputs();
+      const bool moved = !maps_[i].T_first_map.matrix().isIdentity(0);
+      if (!moved && (mine.map_origin != first.map_origin || mine.crs != first.crs))
+        throw Error(ErrorKind::InvalidArgument, maps_[i].file.string() +
+                                                    ": has another map origin or coordinate system than " +
+                                                    maps_[0].file.string() + "; name the transform between the frames");
+      const auto differences = differencesOf(first, mine);
+      if (!differences.empty() && !params_.use)
+        throw Error(ErrorKind::InvalidArgument, maps_[i].file.string() + ": differs from " + maps_[0].file.string() +
+                                                    " in: " + joined(differences) +
+                                                    "; choose the map whose ontology, rules and model are used");
+    }
+  }
+
+  /// Of the maps in the frame of the result, the one with most points: its scans need no new stages.
+  std::size_t largest() const {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < maps_.size(); ++i)
+      if (maps_[i].T_first_map.matrix().isIdentity(0) && readers_[i].summary().points > readers_[best].summary().points)
+        best = i;
+    return best;
+  }
+
+  ChangeReport addOthers(std::size_t base) {
+    ChangeParams change = params_.change;
+    change.dry_run = false;  // the copy may be written: it becomes the target only at the end
+    MapEditor editor(beside_, change, sink_);
+    editor.setInputs(parseInputs(inputsOfResult()));
+    ScanAdditions additions(editor, "merge");
+    for (std::size_t i = 0; i < maps_.size(); ++i)
+      if (i != base) copyOperatorStatements(readers_[i].quads(), additions.transaction(), "of" + scansHash(i));
+    for (std::size_t i = 0; i < maps_.size(); ++i) {
+      if (i == base) continue;
+      const auto other = membersOf(readers_[i].objects(), readers_[i].scene().cluxels);
+      editor.result().before.insert(editor.result().before.end(), other.begin(), other.end());
+      addScans(i, additions);
+    }
+    additions.finish();
+    return std::move(editor.result());
+  }
+
+  /// Names a map by its scans, in digits.
+  std::string scansHash(std::size_t number) const {
+    ContentHasher hasher;
+    for (const Cloud& cloud : readers_[number].clouds()) hasher.add(cloud.id);
+    return hasher.finish().hex().substr(0, 8);
+  }
+
+  MapInputs inputsOfResult() const {
+    MapInputs inputs = readers_.at(params_.use.value_or(0)).inputs();
+    inputs.map_origin = readers_.front().inputs().map_origin;
+    inputs.crs = readers_.front().inputs().crs;
+    return inputs;
+  }
+
+  void addScans(std::size_t number, ScanAdditions& additions) {
+    const std::vector<Cloud> clouds = readers_[number].clouds();
+    for (std::size_t i = 0; i < clouds.size(); ++i) {
+      scan::Scan scan;
+      scan.points = readers_[number].pointsOf(clouds[i].id);
+      scan.time_s = clouds[i].time_s;
+      scan.T_map_sensor = maps_[number].T_first_map * clouds[i].T_map_sensor;
+      scan.has_pose = clouds[i].has_pose;
+      scan.source = clouds[i].source;
+      scan.id = clouds[i].id;
+      additions.add(scan);
+      sink_.progress("scans", i + 1, clouds.size());
+    }
+  }
+
+  void replaceTarget() {
+    if (!fs::exists(target_)) return rdf::replaceMapFile(beside_, target_);
+    const rdf::WriteTransaction old = rdf::writeMap(target_);
+    rdf::replaceMapFile(beside_, target_);
+  }
+
+  void removeBeside() const {
+    std::error_code ignored;
+    fs::remove(beside_, ignored);
+    fs::remove(beside_.string() + "-lock", ignored);
+  }
+
+  const std::vector<MapToMerge>& maps_;
+  fs::path target_, beside_;
+  const MergeParams& params_;
+  ProgressSink& sink_;
+  std::vector<MapReader> readers_;
+};
+
+}  // namespace
+
+ChangeReport mergeMaps(const std::vector<MapToMerge>& maps, const fs::path& target, const MergeParams& params,
+                       ProgressSink& sink) {
+  const BuildLock lock(target);
+  return Merge(maps, target, params, sink).run();
+}
+
+}  // namespace cluxel::mapping

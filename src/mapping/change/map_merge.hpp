@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Merges maps into a new one: the very map that a build from all of their scans would give.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "mapping/change/map_editor.hpp"
+
+namespace cluxel::mapping {
+
+struct MapToMerge {
+  std::filesystem::path file;
+  /// From this map's frame to that of the first map.
+  Eigen::Isometry3d T_first_map = Eigen::Isometry3d::Identity();
+};
+
+struct MergeParams {
+  ChangeParams change;
+  std::optional<std::size_t> use;  ///< the map whose ontology, rules and model are used; absent: they must be equal
+  bool force = false;              ///< replace a file that is there
+};
+
+/// Merges `maps` (at least two) into `target`. Scans that several maps hold with the same pose count once. Operator
+/// statements of all maps are kept. The result appears under its name when it is complete; a killed merge leaves
+/// TARGET.merging, which the next one removes. Throws Error (InvalidArgument) when inputs, map origin or coordinate
+/// system differ, or a scan has two poses.
+ChangeReport mergeMaps(const std::vector<MapToMerge>& maps, const std::filesystem::path& target,
+                       const MergeParams& params, ProgressSink& sink);
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a change did to the objects of a map: they are compared by the measured points that they hold.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/content_hash.hpp"
+#include "perception/segments/scene.hpp"
+#include "rules/decide/semantic_object.hpp"
+
+namespace cluxel::mapping {
+
+/// An object with the seed points of its cluxels. Seed points keep their name (scan, point number) when a scan moves.
+struct ObjectMembers {
+  ContentHash id;
+  std::string class_iri;
+  std::vector<std::uint64_t> seeds;  ///< ascending hashes of (scan, point)
+};
+
+std::vector<ObjectMembers> membersOf(const std::vector<rules::SemanticObject>& objects,
+                                     const perception::SceneCluxels& cluxels);
+
+/// The objects that an object was derived from.
+struct DerivedObject {
+  ContentHash id;
+  std::vector<ContentHash> from;  ///< ascending
+};
+
+struct ObjectChanges {
+  std::size_t unchanged = 0;
+  std::vector<ContentHash> added, gone;  ///< share no seed point with an object before, or after
+  std::vector<DerivedObject> changed;    ///< other members or another class, and one predecessor
+  std::vector<DerivedObject> split;      ///< the parts of an object that has become several
+  std::vector<DerivedObject> joined;     ///< made of several objects
+
+  bool isEmpty() const { return added.empty() && gone.empty() && changed.empty() && split.empty() && joined.empty(); }
+};
+
+/// Compares the objects before and after a change. An object goes on in another when that holds at least half of its
+/// seed points, or the other way round. Lists are sorted by id. Cost O(n log n) in the members.
+ObjectChanges compareObjects(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after);
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// A batch is open from its first scan to its commit.
+#include "mapping/change/scan_additions.hpp"
+
+namespace cluxel::mapping {
+
+void ScanAdditions::add(const scan::Scan& scan) {
+  if (!transaction_) transaction_.emplace(editor_.begin());
+  const TileSet tiles = storeScan(*transaction_, scan);
+  if (tiles.empty()) {
+    ++editor_.result().scans_already_there;
+    return;
+  }
+  added_.push_back(scan.id);
+  points_ += scan.points.size();
+  touched_ = unionOf(std::move(touched_), tiles);
+  if (!editor_.params().dry_run && points_ >= editor_.params().batch_points) finish();
+}
+
+rdf::WriteTransaction& ScanAdditions::transaction() {
+  if (!transaction_) transaction_.emplace(editor_.begin());
+  has_other_changes_ = true;
+  return *transaction_;
+}
+
+void ScanAdditions::finish() {
+  editor_.result().scans_added += added_.size();
+  if (!added_.empty() || has_other_changes_) editor_.commit(*transaction_, operation_, touched_, added_);
+  transaction_.reset();
+  touched_.clear();
+  added_.clear();
+  points_ = 0;
+  has_other_changes_ = false;
+}
+
+}  // namespace cluxel::mapping

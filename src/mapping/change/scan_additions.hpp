@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Adds scans to an opened map in batches; each batch is one commit.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapping/change/map_editor.hpp"
+
+namespace cluxel::mapping {
+
+class ScanAdditions {
+ public:
+  /// `operation` names the change in the history.
+  ScanAdditions(MapEditor& editor, std::string operation) : editor_(editor), operation_(std::move(operation)) {}
+
+  /// Stores a scan, and commits when the batch is full. A dry run has one batch, because what is not committed cannot
+  /// be the base of another one.
+  void add(const scan::Scan& scan);
+  /// The transaction of the open batch, for other changes. The batch is then committed even without scans.
+  rdf::WriteTransaction& transaction();
+  /// Commits the last batch.
+  void finish();
+
+ private:
+  MapEditor& editor_;
+  std::string operation_;
+  std::optional<rdf::WriteTransaction> transaction_;  ///< of the open batch
+  TileSet touched_;
+  std::vector<scan::ScanId> added_;
+  std::uint64_t points_ = 0;
+  bool has_other_changes_ = false;
+};
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+// Extending, retracting, moving and re-deciding give the map of a build from scratch, byte for byte.
+#include "mapping/change/map_change.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/build/map_update.hpp"
+#include "mapping/small_campus.hpp"
+
+namespace cluxel::mapping {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+constexpr std::size_t kScans = 4;
+
+/// A campus of four scans, and maps of any of them with any poses, built once each.
+class MapChange : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    campus = new SmallCampus({.seed = 5, .stops = kScans, .size_m = 45, .points_per_stop = 1200});
+    inputs = new MapInputs(shippedInputs());
+    scans = new ScanSet(scansOf(campus->files()));
+    for (std::size_t i = 0; i < scans->size(); ++i) ids.push_back(scans->load(i).id);
+  }
+  static void TearDownTestSuite() {
+    delete campus;
+    delete inputs;
+    delete scans;
+    ids.clear();
+    built.clear();
+  }
+
+  /// Scan number → pose number: 0 is the true pose, others are shifted by 0.5 m and turned by 2 degrees per number.
+  using Poses = std::map<std::size_t, int>;
+
+  static Eigen::Isometry3d poseOf(std::size_t scan, int number) {
+    Eigen::Isometry3d T = scans->file(scan).T_map_sensor;
+    if (number == 0) return T;
+    T.pretranslate(Eigen::Vector3d(0.5 * number, 0, 0));
+    T.rotate(Eigen::AngleAxisd(number * 0.035, Eigen::Vector3d::UnitZ()));
+    return T;
+  }
+  static ScanSet posed(const Poses& poses) {
+    std::vector<PosedScan> chosen;
+    for (const auto& [scan, number] : poses) chosen.push_back({scan, poseOf(scan, number)});
+    return scans->posed(chosen);
+  }
+  fs::path map() const { return folder.path() / "map.clx"; }
+  void build(const Poses& poses) const { buildMap(posed(poses), *inputs, map(), {.force = true}, silence()); }
+
+  static const std::string& fromScratch(const Poses& poses) {
+    auto [entry, fresh] = built.try_emplace(poses);
+    if (fresh) {
+      const ScratchFolder folder;
+      buildMap(posed(poses), *inputs, folder.path() / "map.clx", {}, silence());
+      entry->second = canonicalText(folder.path() / "map.clx");
+    }
+    return entry->second;
+  }
+  void expectExact(const Poses& poses) const { EXPECT_TRUE(canonicalText(map()) == fromScratch(poses)); }
+
+  ChangeReport extend(std::size_t scan, int pose, const ChangeParams& params = {}) const {
+    return extendMap(map(), posed({{scan, pose}}), params, silence());
+  }
+  ChangeReport retract(std::size_t scan, const ChangeParams& params = {}) const {
+    return retractScans(map(), {ids[scan]}, params, silence());
+  }
+  ChangeReport move(const Poses& poses, const ChangeParams& params = {}) const {
+    std::vector<ScanPose> moves;
+    for (const auto& [scan, number] : poses) moves.push_back({ids[scan], poseOf(scan, number)});
+    return moveScans(map(), moves, params, silence());
+  }
+
+  ScratchFolder folder;
+  inline static SmallCampus* campus = nullptr;
+  inline static MapInputs* inputs = nullptr;
+  inline static ScanSet* scans = nullptr;
+  inline static std::vector<ScanId> ids;
+  inline static std::map<Poses, std::string> built;
+};
+
+TEST_F(MapChange, ExtendingOneByOneInAnyOrderGivesTheBuildFromScratch) {
+  std::mt19937 random(1);
+  std::vector<std::size_t> order{0, 1, 2, 3};
+  for (int round = 0; round < 3; ++round) {
+    std::shuffle(order.begin(), order.end(), random);
+    build({{order[0], 0}});
+    Poses there{{order[0], 0}};
+    for (std::size_t i = 1; i < order.size(); ++i) {
+      const ChangeReport report = extend(order[i], 0);
+      there[order[i]] = 0;
+      EXPECT_EQ(report.scans_added, 1U);
+      EXPECT_EQ(report.scans, there.size());
+      EXPECT_GE(report.tiles_changed, report.tiles_touched);
+      expectExact(there);
+    }
+  }
+}
+
+TEST_F(MapChange, ExtendingPassesOverWhatIsThere) {
+  build({{0, 0}, {1, 0}});
+  const ChangeReport report = extendMap(map(), posed({{0, 0}, {1, 0}, {2, 0}}), {.batch_points = 1}, silence());
+  EXPECT_EQ(report.scans_added, 1U);
+  EXPECT_EQ(report.scans_already_there, 2U);
+  expectExact({{0, 0}, {1, 0}, {2, 0}});
+}
+
+TEST_F(MapChange, RetractingAScanLeavesNoTraceOfIt) {
+  build({{0, 0}, {1, 0}, {2, 0}});
+  EXPECT_EQ(retract(1).scans_removed, 1U);
+  expectExact({{0, 0}, {2, 0}});
+  extend(1, 0);
+  expectExact({{0, 0}, {1, 0}, {2, 0}});
+}
+
+TEST_F(MapChange, MovedScansGiveTheBuildWithTheirNewPoses) {
+  build({{0, 0}, {1, 0}, {2, 0}, {3, 0}});
+  EXPECT_EQ(move({{1, 1}, {3, -1}}).scans_moved, 2U);
+  expectExact({{0, 0}, {1, 1}, {2, 0}, {3, -1}});
+  move({{1, 0}, {3, 0}});
+  expectExact({{0, 0}, {1, 0}, {2, 0}, {3, 0}});
+  EXPECT_EQ(move({{1, 0}}).scans_moved, 0U);
+}
+
+TEST_F(MapChange, ARandomSequenceOfOperationsKeepsTheMapExact) {
+  const bool is_long = std::getenv("CLUXEL_LONG_TESTS") != nullptr;
+  std::mt19937 random(7);
+  const auto below = [&random](std::size_t count) { return static_cast<std::size_t>(random() % count); };
+  Poses there{{0, 0}};
+  build(there);
+  for (int step = 0; step < (is_long ? 50 : 10); ++step) {
+    const std::size_t scan = below(kScans);
+    const int pose = static_cast<int>(below(3)) - 1;
+    if (!there.contains(scan)) {
+      extend(scan, pose, {.threads = 1 + static_cast<unsigned>(below(2))});
+      there[scan] = pose;
+    } else if (there.size() > 1 && below(2) == 0) {
+      retract(scan);
+      there.erase(scan);
+    } else {
+      move({{scan, pose}});
+      there[scan] = pose;
+    }
+    ASSERT_TRUE(canonicalText(map()) == fromScratch(there)) << "step " << step;
+  }
+}
+
+TEST_F(MapChange, OtherRulesGiveTheBuildWithTheseRules) {
+  build({{0, 0}, {1, 0}});
+  MapInputs other = *inputs;
+  std::string& text = other.rules.front().text;
+  const std::string threshold = "group: { near: 1.5 m }";
+  ASSERT_NE(text.find(threshold), std::string::npos);
+  text.replace(text.find(threshold), threshold.size(), "group: { near: 0.2 m }");
+  const ChangeReport report = applyInputs(map(), other, {}, silence());
+  EXPECT_FALSE(report.objects.isEmpty());
+  EXPECT_EQ(report.tiles_changed, 0U);
+  buildMap(posed({{0, 0}, {1, 0}}), other, folder.path() / "other.clx", {}, silence());
+  EXPECT_TRUE(canonicalText(map()) == canonicalText(folder.path() / "other.clx"));
+  applyInputs(map(), *inputs, {}, silence());
+  expectExact({{0, 0}, {1, 0}});
+}
+
+TEST_F(MapChange, AnotherModelGivesTheBuildWithThisModel) {
+  MapInputFiles files;
+  files.model = "campus";
+  const MapInputs other = readMapInputs(files, DataHome(test::sourceFolder()));
+  build({{0, 0}, {1, 0}});
+  applyInputs(map(), other, {}, silence());
+  buildMap(posed({{0, 0}, {1, 0}}), other, folder.path() / "other.clx", {}, silence());
+  EXPECT_TRUE(canonicalText(map()) == canonicalText(folder.path() / "other.clx"));
+}
+
+TEST_F(MapChange, ADryRunTellsTheChangeAndWritesNothing) {
+  build({{0, 0}, {1, 0}});
+  const std::string before = readFile(map());
+  const ChangeReport dry = extend(2, 0, {.dry_run = true});
+  EXPECT_TRUE(readFile(map()) == before);
+  const ChangeReport real = extend(2, 0);
+  EXPECT_EQ(dry.objects.added, real.objects.added);
+  EXPECT_EQ(dry.objects.gone, real.objects.gone);
+  EXPECT_EQ(dry.objects.changed.size(), real.objects.changed.size());
+  EXPECT_EQ(dry.tiles_changed, real.tiles_changed);
+}
+
+TEST_F(MapChange, OperatorStatementsStay) {
+  build({{0, 0}, {1, 0}});
+  const std::string statement = "<https://example.org/bench7> <http://www.w3.org/2000/01/rdf-schema#label> \"bench\"";
+  updateMap(map(), "INSERT DATA { " + statement + " }", {}, silence());
+  extend(2, 0);
+  retract(0);
+  EXPECT_THAT(canonicalText(map()), HasSubstr(statement));
+}
+
+TEST_F(MapChange, WhatCannotBeDoneIsRefusedAndChangesNothing) {
+  build({{0, 0}});
+  const auto refusal = [](const auto& action) {
+    try {
+      action();
+    } catch (const std::exception& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(refusal([&] { retract(0); }), HasSubstr("no scan would be left"));
+  EXPECT_THAT(refusal([&] { retract(1); }), HasSubstr("has no cloud"));
+  EXPECT_THAT(refusal([&] { extend(0, 1); }), HasSubstr("with another pose"));
+  EXPECT_THAT(refusal([&] { extendMap(folder.path() / "none.clx", *scans, {}, silence()); }),
+              HasSubstr("build it first"));
+  EXPECT_THAT(refusal([&] { moveScans(map(), {{ids[0], {}}, {ids[0], {}}}, {}, silence()); }), HasSubstr("twice"));
+  expectExact({{0, 0}});
+}
+
+TEST(ObjectChanges, TellAddedGoneChangedSplitAndJoined) {
+  const auto object = [](const std::string& name, std::vector<std::uint64_t> seeds) {
+    return ObjectMembers{contentHashOf(name), "Tree", std::move(seeds)};
+  };
+  const std::vector<ObjectMembers> before{object("same", {1, 2, 3}),    object("grows", {10, 11}),
+                                          object("vanishes", {20, 21}), object("two", {30, 31, 32, 33}),
+                                          object("left", {40, 41}),     object("right", {50, 51})};
+  const std::vector<ObjectMembers> after{object("same", {1, 2, 3}), object("grown", {10, 11, 12, 13, 14, 15}),
+                                         object("new", {60}),       object("half1", {30, 31}),
+                                         object("half2", {32, 33}), object("one", {40, 41, 50, 51})};
+  const ObjectChanges changes = compareObjects(before, after);
+  EXPECT_EQ(changes.unchanged, 1U);
+  EXPECT_EQ(changes.added, std::vector{contentHashOf("new")});
+  EXPECT_EQ(changes.gone, std::vector{contentHashOf("vanishes")});
+  ASSERT_EQ(changes.changed.size(), 1U);
+  EXPECT_EQ(changes.changed.front().id, contentHashOf("grown"));
+  EXPECT_EQ(changes.changed.front().from, std::vector{contentHashOf("grows")});
+  EXPECT_EQ(changes.split.size(), 2U);
+  ASSERT_EQ(changes.joined.size(), 1U);
+  EXPECT_EQ(changes.joined.front().from.size(), 2U);
+}
+
+}  // namespace
+}  // namespace cluxel::mapping

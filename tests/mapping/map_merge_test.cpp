@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// Merging gives the map of a build from all scans, byte for byte.
+#include "mapping/change/map_merge.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/build/map_update.hpp"
+#include "mapping/small_campus.hpp"
+#include "sparql/query_engine.hpp"
+
+namespace cluxel::mapping {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class MapMerge : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    campus = new SmallCampus({.seed = 6, .stops = 4, .size_m = 45, .points_per_stop = 1200});
+    inputs = new MapInputs(shippedInputs());
+    whole = new std::string(builtText(campus->files(), *inputs));
+  }
+  static void TearDownTestSuite() {
+    delete campus;
+    delete inputs;
+    delete whole;
+  }
+  /// Builds a map of some stops, all moved by T.
+  fs::path built(const std::vector<std::size_t>& stops, const std::string& name,
+                 const Eigen::Isometry3d& T = Eigen::Isometry3d::Identity()) const {
+    const ScanSet all = scansOf(campus->files());
+    std::vector<PosedScan> chosen;
+    for (const std::size_t stop : stops) chosen.push_back({stop, T * all.file(stop).T_map_sensor});
+    buildMap(all.posed(chosen), *inputs, folder.path() / name, {}, silence());
+    return folder.path() / name;
+  }
+  fs::path target() const { return folder.path() / "all.clx"; }
+  ChangeReport merge(const std::vector<MapToMerge>& maps, const MergeParams& params = {}) const {
+    return mergeMaps(maps, target(), params, silence());
+  }
+  std::string refusal(const std::vector<MapToMerge>& maps) const {
+    try {
+      merge(maps);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  ScratchFolder folder;
+  inline static SmallCampus* campus = nullptr;
+  inline static MapInputs* inputs = nullptr;
+  inline static std::string* whole = nullptr;
+};
+
+TEST_F(MapMerge, OfTwoToFourMapsInAnyOrderIsTheBuildFromAllScans) {
+  const fs::path a = built({0}, "a"), b = built({1}, "b"), c = built({2}, "c"), d = built({3}, "d");
+  const fs::path bc = built({1, 2}, "bc"), ad = built({3, 0}, "ad"), abc = built({0, 1, 2}, "abc");
+  const std::vector<std::vector<MapToMerge>> splits{{{a}, {bc}, {d}}, {{d}, {abc}}, {{bc}, {ad}}, {{d}, {c}, {b}, {a}}};
+  for (const auto& maps : splits) {
+    fs::remove(target());
+    const ChangeReport report = merge(maps);
+    EXPECT_EQ(report.scans, 4U);
+    EXPECT_TRUE(canonicalText(target()) == *whole) << maps.front().file;
+    EXPECT_FALSE(fs::exists(target().string() + ".merging"));
+  }
+}
+
+TEST_F(MapMerge, CountsScansThatBothHoldOnce) {
+  const ChangeReport report = merge({{built({0, 1, 2}, "a")}, {built({1, 2, 3}, "b")}});
+  EXPECT_EQ(report.scans_already_there, 2U);
+  EXPECT_TRUE(canonicalText(target()) == *whole);
+}
+
+TEST_F(MapMerge, BringsTheSecondMapIntoTheFrameOfTheFirst) {
+  Eigen::Isometry3d shift = Eigen::Isometry3d::Identity();  // exact in binary, so that no coordinate is rounded twice
+  shift.translation() = Eigen::Vector3d(64, -128, 0.5);
+  const fs::path a = built({0, 1}, "a"), b = built({2, 3}, "b", shift.inverse());
+  merge({{a}, {b, shift}});
+  EXPECT_TRUE(canonicalText(target()) == *whole);
+}
+
+TEST_F(MapMerge, KeepsTheStatementsOfAllMaps) {
+  const fs::path a = built({0, 1}, "a"), b = built({2, 3}, "b");
+  const std::string label = "<http://www.w3.org/2000/01/rdf-schema#label>";
+  updateMap(a, "INSERT DATA { <https://example.org/a> " + label + " \"first\" . _:x " + label + " \"one\" }", {},
+            silence());
+  updateMap(b, "INSERT DATA { <https://example.org/b> " + label + " \"second\" . _:x " + label + " \"two\" }", {},
+            silence());
+  merge({{a}, {b}});
+  const std::string text = canonicalText(target());
+  EXPECT_THAT(text, HasSubstr("<https://example.org/a> " + label + " \"first\""));
+  EXPECT_THAT(text, HasSubstr("<https://example.org/b> " + label + " \"second\""));
+  const MapReader map(target());
+  const auto both =
+      sparql::evaluateQuery(map.quads(), "ASK { ?x <http://www.w3.org/2000/01/rdf-schema#label> 'one', 'two' }", {});
+  EXPECT_FALSE(both.boolean) << "blank nodes of two maps are two things";
+}
+
+TEST_F(MapMerge, RefusesWhatHasNoOneAnswerAndLeavesNothing) {
+  const fs::path a = built({0, 1}, "a");
+  Eigen::Isometry3d shift = Eigen::Isometry3d::Identity();
+  shift.translation().x() = 0.25;
+  EXPECT_THAT(refusal({{a}}), HasSubstr("at least two"));
+  EXPECT_THAT(refusal({{a}, {built({1, 2}, "moved", shift)}}), HasSubstr("with another pose"));
+  MapInputs other = *inputs;
+  other.rules.front().text += "\n# another comment\n";
+  buildMap(scansOf({campus->files()[2]}), other, folder.path() / "other", {}, silence());
+  EXPECT_THAT(refusal({{a}, {folder.path() / "other"}}), HasSubstr("differs from"));
+  EXPECT_FALSE(fs::exists(target()));
+  EXPECT_FALSE(fs::exists(target().string() + ".merging"));
+}
+
+TEST_F(MapMerge, UsesTheRulesOfTheMapThatIsNamed) {
+  MapInputs other = *inputs;
+  const std::string threshold = "group: { near: 1.5 m }";
+  std::string& text = other.rules.front().text;
+  text.replace(text.find(threshold), threshold.size(), "group: { near: 0.2 m }");
+  const fs::path a = built({0, 1, 2}, "a"), b = folder.path() / "b";
+  buildMap(scansOf({campus->files()[3]}), other, b, {}, silence());
+  merge({{a}, {b}}, {.change = {}, .use = 1, .force = false});
+  EXPECT_TRUE(canonicalText(target()) == builtText(campus->files(), other));
+}
+
+}  // namespace
+}  // namespace cluxel::mapping
