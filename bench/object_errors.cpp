@@ -76,7 +76,10 @@ struct Overlap {
 
 class Errors {
  public:
-  explicit Errors(const Options& options) : options_(options), names_(truthClassNames()) { open(options.truth); }
+  explicit Errors(const Options& options) : options_(options) {
+    open(options.truth);
+    names_ = truth_->classNames();
+  }
 
   void look(const fs::path& given) {
     const std::string text = given.string();
@@ -94,7 +97,7 @@ class Errors {
     const auto begin = std::chrono::steady_clock::now();
     const rules::ReasoningResult result = reason(map.scene(), rules);
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    class_of_ = truthClassesOf(result.objects, names_, catalogue);
+    class_of_ = truthClassesOf(result.objects, truth_->classes(), catalogue);
     tasks::ObjectMatching matching(names_, class_of_, truth_->ambiguous());
     const Overlap overlap = overlapOf(map, result, matching);
     add(matching.scoreByPoints({}), by_points_);
@@ -147,7 +150,7 @@ class Errors {
     Overlap overlap;
     overlap.found.resize(result.objects.size());
     const perception::Scene& scene = map.scene();
-    const auto object_of = objectOfCluxel(result, scene.cluxels.size());
+    const auto object_of = mapping::objectOfCluxel(result, scene.cluxels.size());
     const std::size_t ground = classNumber("Ground");
     for (const mapping::Cloud& cloud : map.clouds()) {
       scan::Scan scan;
@@ -162,7 +165,7 @@ class Errors {
         const std::int32_t instance = truth.instance.empty() || of_class == ground ? -1 : truth.instance[i];
         const std::uint32_t object = object_of[answers.cluxel[i]];
         const Eigen::Vector3d p =
-            toMap(scan.T_map_sensor, Eigen::Vector3f(scan.points.x[i], scan.points.y[i], scan.points.z[i]));
+            scan::toMap(scan.T_map_sensor, Eigen::Vector3f(scan.points.x[i], scan.points.y[i], scan.points.z[i]));
         matching.add(p, of_class, instance, object);
         const bool right = truth.primitive[i] == static_cast<int>(answers.label[i]);
         note(overlap, p, of_class, instance, object, right);

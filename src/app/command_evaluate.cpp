@@ -11,7 +11,8 @@ namespace cluxel::app {
 namespace {
 
 struct EvaluateOptions {
-  fs::path map, truth;
+  std::vector<fs::path> maps;
+  fs::path truth;
   double min_oa = 0, min_macro_f1 = 0;
   std::vector<std::string> min_recall;  ///< CLASS=share
 };
@@ -53,14 +54,28 @@ bool meetsBars(const tasks::MapEvaluation& evaluation, const EvaluateOptions& op
   return meets;
 }
 
+tasks::MapEvaluation evaluateAll(const EvaluateOptions& options, const DataHome& home) {
+  const auto truth = tasks::TruthSource::open(options.truth, home);
+  std::optional<tasks::MapEvaluation> sum;
+  for (const fs::path& file : options.maps) {
+    tasks::MapEvaluation one = evaluateMap(mapping::MapReader(file), truth);
+    if (sum)
+      sum->add(one);
+    else
+      sum = std::move(one);
+  }
+  return *sum;
+}
+
 }  // namespace
 
 void addEvaluate(CLI::App& app, Session& session) {
   auto options = std::make_shared<EvaluateOptions>();
-  CLI::App* command = app.add_subcommand("evaluate", "compare a map with ground truth");
-  command->add_option("map", options->map, "a map")->required();
+  CLI::App* command = app.add_subcommand("evaluate", "compare maps with ground truth");
+  command->add_option("maps", options->maps, "maps; their counts are added")->required();
   command
-      ->add_option("--truth", options->truth, "a folder of truth files, or a label map: oakland, semantickitti, campus")
+      ->add_option("--truth", options->truth,
+                   "a folder of truth files, or a label map: oakland, semantickitti, sydney, nuscenes, campus")
       ->required();
   command->add_option("--min-oa", options->min_oa, "exit 1 when the overall accuracy of objects by point is below")
       ->check(share());
@@ -69,9 +84,7 @@ void addEvaluate(CLI::App& app, Session& session) {
   command->add_option("--min-recall", options->min_recall, "CLASS=SHARE: exit 1 when the recall by point is below");
   onRun(*command, session, [options, &session] {
     for (const std::string& bar : options->min_recall) barOf(bar);
-    const mapping::MapReader map(options->map);
-    const tasks::MapEvaluation evaluation =
-        evaluateMap(map, tasks::TruthSource::open(options->truth, session.dataHome()));
+    const tasks::MapEvaluation evaluation = evaluateAll(*options, session.dataHome());
     const bool meets = meetsBars(evaluation, *options);  // before printing: an unknown class is a usage error
     print(session.json ? toJson(evaluation) : toText(evaluation));
     return meets ? ExitCode::Done : ExitCode::NegativeFinding;

@@ -5,6 +5,7 @@
 #include "cluxel/error.hpp"
 #include "perception/training/training_files.hpp"
 #include "tasks/model_card.hpp"
+#include "tasks/truth_source.hpp"
 
 namespace cluxel::app {
 
@@ -17,14 +18,6 @@ struct TrainOptions {
   int group_size = 2;
   bool no_copies = false;
 };
-
-/// A folder of truth files, or a label map by path or by name in labels/.
-fs::path truthPath(const fs::path& given, const DataHome& home) {
-  if (fs::exists(given)) return given;
-  fs::path name = given;
-  if (name.extension() != ".yaml") name += ".yaml";
-  return home.locate("labels", name);
-}
 
 /// The command without folders, which differ between machines.
 std::string commandText(const TrainOptions& options) {
@@ -43,9 +36,9 @@ ExitCode trainModel(const TrainOptions& options, Session& session) {
   if (fs::exists(options.output) && !fs::is_directory(options.output))
     throw Error(ErrorKind::StoreUnavailable, options.output.string() + ": is a file; name a folder for the model");
   const DataHome home = session.dataHome();
-  std::vector<perception::TrainingSource> sources{{options.inputs, truthPath(options.truth, home), false}};
+  std::vector<perception::TrainingSource> sources{{options.inputs, tasks::locateTruth(options.truth, home), false}};
   for (const fs::path& helper : options.helpers)
-    sources.push_back({{helper}, truthPath(options.helper_truth, home), true});
+    sources.push_back({{helper}, tasks::locateTruth(options.helper_truth, home), true});
   perception::CopyParams copies;
   if (options.no_copies) copies = {.sensors = {}, .drives = {}};
   const perception::PerceptionParams perception = perception::portablePerception();

@@ -53,6 +53,68 @@ void refuseSharedTruth(const mapping::MapReader& map, const TruthSource& source)
   }
 }
 
+/// Enters the points of a map, cloud by cloud.
+struct PointVisit {
+  const TruthSource& source;
+  std::vector<std::size_t> class_of_object;
+  ObjectMatching matching;
+  MapEvaluation& evaluation;
+  std::map<std::int32_t, std::string> kinds = {};
+  std::int32_t next_instance = 0;  ///< of the next cloud, where each cloud begins anew
+
+  void see(const scan::Scan& scan, const mapping::PointAnswers& answers) {
+    const scan::PointTruth truth = source.truthOf(scan);
+    const std::int32_t first = source.countsInstancesByScan() ? next_instance : 0;
+    for (std::size_t i = 0; i < scan.points.size(); ++i) {
+      if (truth.primitive[i] >= 0)
+        evaluation.primitives.add(static_cast<std::size_t>(truth.primitive[i]), answers.label[i]);
+      if (truth.object_class[i] < 0) {
+        matching.addWithoutTruth(answers.object[i]);
+        continue;
+      }
+      const std::int32_t instance = truth.instance[i] < 0 ? -1 : first + truth.instance[i];
+      if (source.countsInstancesByScan()) next_instance = std::max(next_instance, instance + 1);
+      seePoint(scan, i, static_cast<std::size_t>(truth.object_class[i]), instance, answers.object[i]);
+    }
+  }
+
+  void seePoint(const scan::Scan& scan, std::size_t i, std::size_t truth_class, std::int32_t instance,
+                std::uint32_t object) {
+    const bool is_free = object == mapping::kNoObjectOfPoint;
+    evaluation.objects.add(truth_class, is_free ? evaluation.objects.names.size() : class_of_object[object]);
+    const Eigen::Vector3f p(scan.points.x[i], scan.points.y[i], scan.points.z[i]);
+    matching.add(scan::toMap(scan.T_map_sensor, p), truth_class, instance, object);
+    if (instance < 0 || scan.points.label.empty() || kinds.contains(instance)) return;
+    if (std::string name = source.nameOfLabel(scan.points.label[i]); !name.empty())
+      kinds.emplace(instance, std::move(name));
+  }
+};
+
+void addScores(const std::vector<ObjectScore>& from, std::vector<ObjectScore>& into) {
+  for (std::size_t i = 0; i < into.size(); ++i) {
+    into[i].truth += from[i].truth;
+    into[i].answers += from[i].answers;
+    into[i].matched_truth += from[i].matched_truth;
+    into[i].matched_answers += from[i].matched_answers;
+  }
+}
+
+void addKinds(const std::vector<KindAnswers>& from, std::vector<KindAnswers>& into) {
+  for (const KindAnswers& kind : from) {
+    const auto after = std::lower_bound(into.begin(), into.end(), kind.name,
+                                        [](const KindAnswers& a, const std::string& name) { return a.name < name; });
+    if (after == into.end() || after->name != kind.name) {
+      into.insert(after, kind);
+      continue;
+    }
+    after->truth += kind.truth;
+    for (std::size_t i = 0; i < kind.found.size(); ++i) {
+      after->found[i] += kind.found[i];
+      after->called[i] += kind.called[i];
+    }
+  }
+}
+
 }  // namespace
 
 ConfusionMatrix::ConfusionMatrix(std::vector<std::string> class_names)
@@ -72,6 +134,11 @@ std::uint64_t ConfusionMatrix::answerCount(std::size_t name) const {
 
 std::uint64_t ConfusionMatrix::total() const {
   return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+}
+
+void ConfusionMatrix::add(const ConfusionMatrix& other) {
+  if (names != other.names) throw Error(ErrorKind::InvalidArgument, "evaluations of different classes cannot be added");
+  for (std::size_t i = 0; i < counts.size(); ++i) counts[i] += other.counts[i];
 }
 
 double ConfusionMatrix::precision(std::size_t name) const {
@@ -117,36 +184,34 @@ double ObjectScore::f1() const {
   return harmonic(precision(), recall());
 }
 
+void MapEvaluation::add(const MapEvaluation& other) {
+  primitives.add(other.primitives);
+  objects.add(other.objects);
+  has_instances |= other.has_instances;
+  covers_all &= other.covers_all;
+  matched_whole += other.matched_whole;
+  addScores(other.by_box, by_box);
+  addScores(other.by_points, by_points);
+  addKinds(other.kinds, kinds);
+}
+
 MapEvaluation evaluateMap(const mapping::MapReader& map, const TruthSource& source, const EvaluationParams& params) {
-  const std::vector<std::string> names = source.classNames();
   refuseSharedTruth(map, source);
-  MapEvaluation evaluation{ConfusionMatrix(primitiveNames()), ConfusionMatrix(names), false, {}, {}};
-  const std::vector<std::size_t> class_of_object =
-      truthClassesOf(map.objects(), names, classCatalogueOf(map.inputs().ontology));
-  ObjectMatching matching(names, class_of_object, source.ambiguous());
-  // Ground has no well-defined instances: it counts by point only.
-  const auto ground = static_cast<std::size_t>(std::find(names.begin(), names.end(), "Ground") - names.begin());
-  for (const mapping::Cloud& cloud : map.clouds()) {
-    const scan::Scan scan = scanOf(map, cloud);
-    const scan::PointTruth truth = source.truthOf(scan);
-    const mapping::PointAnswers answers = map.answersFor(cloud);
-    for (std::size_t i = 0; i < scan.points.size(); ++i) {
-      if (truth.primitive[i] >= 0)
-        evaluation.primitives.add(static_cast<std::size_t>(truth.primitive[i]), answers.label[i]);
-      if (truth.object_class[i] < 0) continue;
-      const auto truth_class = static_cast<std::size_t>(truth.object_class[i]);
-      const std::uint32_t object = answers.object[i];
-      evaluation.objects.add(truth_class, object == mapping::kNoObjectOfPoint ? names.size() : class_of_object[object]);
-      const Eigen::Vector3f p(scan.points.x[i], scan.points.y[i], scan.points.z[i]);
-      const bool has_instance = !truth.instance.empty() && truth_class != ground;
-      matching.add(scan::toMap(scan.T_map_sensor, p), truth_class, has_instance ? truth.instance[i] : -1, object);
-    }
-  }
+  const TruthClasses classes = source.classes();
+  MapEvaluation evaluation{ConfusionMatrix(primitiveNames()), ConfusionMatrix(classes.names), false, {}, {}, {}};
+  std::vector<std::size_t> class_of_object =
+      truthClassesOf(map.objects(), classes, classCatalogueOf(map.inputs().ontology));
+  ObjectMatching matching(classes.names, class_of_object, source.ambiguous());
+  PointVisit visit{source, std::move(class_of_object), std::move(matching), evaluation};
+  for (const mapping::Cloud& cloud : map.clouds()) visit.see(scanOf(map, cloud), map.answersFor(cloud));
   if (evaluation.primitives.total() == 0 && evaluation.objects.total() == 0)
     throw Error(ErrorKind::FaultyInput, "the truth says nothing about the points of this map; is it of other scans?");
-  evaluation.has_instances = matching.hasInstances();
-  evaluation.by_box = matching.scoreByBox(params);
-  evaluation.by_points = matching.scoreByPoints(params);
+  evaluation.covers_all = source.coversAll();
+  evaluation.has_instances = visit.matching.hasInstances();
+  evaluation.by_box = visit.matching.scoreByBox(params);
+  evaluation.by_points = visit.matching.scoreByPoints(params);
+  evaluation.matched_whole = visit.matching.matchedWhole(params);
+  evaluation.kinds = visit.matching.answersByKind(visit.kinds, params);
   return evaluation;
 }
 

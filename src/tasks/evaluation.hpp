@@ -18,6 +18,8 @@ struct ConfusionMatrix {
 
   explicit ConfusionMatrix(std::vector<std::string> class_names);
   void add(std::size_t truth, std::size_t answer) { ++counts[truth * (names.size() + 1) + answer]; }
+  /// Adds the counts of another map, which must have the same names.
+  void add(const ConfusionMatrix& other);
   std::uint64_t at(std::size_t truth, std::size_t answer) const { return counts[truth * (names.size() + 1) + answer]; }
   std::uint64_t truthCount(std::size_t name) const;
   std::uint64_t answerCount(std::size_t name) const;
@@ -44,12 +46,31 @@ struct ObjectScore {
   double f1() const;
 };
 
+/// What the true objects of one kind are called in the map. A kind is what the data set's own labels call a thing
+/// ("trunk"), or with truth files its class. Counts are by class of the truth; then "another class"; then "none".
+struct KindAnswers {
+  std::string name;
+  std::uint64_t truth = 0;            ///< objects of the kind
+  std::vector<std::uint64_t> found;   ///< class of the object with an IoU of 0.5 or more; none: there is no such object
+  std::vector<std::uint64_t> called;  ///< class of the object that has the most of its points; none: most are in none
+};
+
 struct MapEvaluation {
   ConfusionMatrix primitives, objects;  ///< by point
   bool has_instances = false;
   /// Partners whose axis-parallel boxes, padded by the cluxel radius, have an IoU of at least 0.8 (the paper's
   /// measure), and partners whose point sets have an IoU of at least 0.5.
   std::vector<ObjectScore> by_box, by_points;
+  std::vector<KindAnswers> kinds = {};  ///< sorted by name
+  /// False where only some objects are labelled: then the precision of objects says little, and points without a label
+  /// count neither way.
+  bool covers_all = true;
+  /// True objects whose partner by points is one also when its points without truth count as outside; equal to those
+  /// of `by_points` where every point has truth.
+  std::uint64_t matched_whole = 0;
+
+  /// Adds another map's evaluation against the same truth classes.
+  void add(const MapEvaluation& other);
 };
 
 struct EvaluationParams {
@@ -58,6 +79,7 @@ struct EvaluationParams {
 };
 
 /// Compares every point of the map's clouds that has truth. Points of unknown truth count nowhere.
+/// Classes without well-defined instances (Ground) count by point only.
 MapEvaluation evaluateMap(const mapping::MapReader& map, const TruthSource& truth, const EvaluationParams& params = {});
 
 /// Tables for people.

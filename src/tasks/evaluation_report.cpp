@@ -1,29 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// An evaluation as tables for people and as JSON.
-#include <array>
+// An evaluation as tables for people.
 #include <cstdio>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <span>
 
-#include "tasks/evaluation.hpp"
+#include "tasks/evaluation_shares.hpp"
 
 namespace cluxel::tasks {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::string padded(std::string text, std::size_t width) {
   if (text.size() < width) text.append(width - text.size(), ' ');
   return text;
-}
-
-/// A share; empty where the total is 0.
-using Share = std::optional<double>;
-
-Share shareOf(double value, std::uint64_t whole) {
-  return whole == 0 ? Share() : Share(value);
 }
 
 std::string row(const std::string& name, std::span<const Share> shares, std::uint64_t count) {
@@ -39,20 +27,23 @@ std::string row(const std::string& name, std::span<const Share> shares, std::uin
   return text + padded("", 3) + std::to_string(count) + '\n';
 }
 
-/// Precision, recall, F1, IoU. A class without truth has a count of false answers only.
-std::array<Share, 4> sharesOf(const ConfusionMatrix& matrix, std::size_t i) {
-  const std::uint64_t truth = matrix.truthCount(i);
-  return {shareOf(matrix.precision(i), matrix.answerCount(i)), shareOf(matrix.recall(i), truth),
-          shareOf(matrix.f1(i), truth), shareOf(matrix.iou(i), truth)};
+constexpr std::size_t kShareWidth = 22;
+
+/// "   0.722 (0.49-0.88)  "
+std::string cell(const ObjectShare& share) {
+  char text[40];
+  if (!share.share) return padded("       -", kShareWidth);
+  std::snprintf(text, sizeof text, "%8.3f (%.2f-%.2f)", *share.share, share.interval.low, share.interval.high);
+  return padded(text, kShareWidth);
 }
 
-std::array<Share, 3> sharesOf(const ObjectScore& score) {
-  return {shareOf(score.precision(), score.answers), shareOf(score.recall(), score.truth),
-          shareOf(score.f1(), score.truth)};
-}
-
-Json jsonOf(const Share& share) {
-  return share ? Json(*share) : Json();
+std::string row(const ObjectScore& score, bool with_precision) {
+  const auto [precision, recall, f1] = sharesOf(score);
+  std::string text = padded(score.name, 18);
+  if (with_precision) text += cell(precision);
+  text += cell(recall);
+  if (with_precision) text += cell(f1);
+  return text + std::to_string(score.truth) + '\n';
 }
 
 std::string pointTable(const char* title, const ConfusionMatrix& matrix) {
@@ -81,54 +72,44 @@ std::string confusionTable(const ConfusionMatrix& matrix) {
   return text;
 }
 
-std::string objectTable(const char* title, const std::vector<ObjectScore>& scores) {
-  std::string text = std::string(title) + "\n" + padded("class", 18) + "precision   recall       F1   objects\n";
-  std::uint64_t truth = 0, answers = 0, matched_truth = 0, matched_answers = 0;
+/// With the limits of 95 % Wilson intervals.
+std::string objectTable(const char* title, const std::vector<ObjectScore>& scores, bool with_precision) {
+  std::string text = std::string(title) + "\n" + padded("class", 18);
+  if (with_precision) text += padded("   precision", kShareWidth);
+  text += padded("   recall", kShareWidth);
+  if (with_precision) text += padded("   F1", kShareWidth);
+  text += "objects\n";
+  ObjectScore all{"all", 0, 0, 0, 0};
   for (const ObjectScore& score : scores) {
-    truth += score.truth, answers += score.answers;
-    matched_truth += score.matched_truth, matched_answers += score.matched_answers;
-    if (score.truth + score.answers > 0) text += row(score.name, sharesOf(score), score.truth);
+    all.truth += score.truth, all.answers += score.answers;
+    all.matched_truth += score.matched_truth, all.matched_answers += score.matched_answers;
+    if (score.truth + (with_precision ? score.answers : 0) > 0) text += row(score, with_precision);
   }
-  const ObjectScore all{"all", truth, answers, matched_truth, matched_answers};
-  return text + row("all", sharesOf(all), truth);
+  return text + row(all, with_precision);
 }
 
-Json pointJson(const ConfusionMatrix& matrix) {
-  Json json{{"overall_accuracy", matrix.overallAccuracy()},
-            {"macro_f1", matrix.macroF1()},
-            {"macro_iou", matrix.macroIou()},
-            {"points", matrix.total()},
-            {"classes", Json::array()}};
-  for (std::size_t i = 0; i < matrix.names.size(); ++i) {
-    Json counts = Json::object();
-    for (std::size_t answer = 0; answer <= matrix.names.size(); ++answer)
-      counts[answer < matrix.names.size() ? matrix.names[answer] : "none"] = matrix.at(i, answer);
-    const auto [precision, recall, f1, iou] = sharesOf(matrix, i);
-    json["classes"].push_back({{"class", matrix.names[i]},
-                               {"precision", jsonOf(precision)},
-                               {"recall", jsonOf(recall)},
-                               {"f1", jsonOf(f1)},
-                               {"iou", jsonOf(iou)},
-                               {"points", matrix.truthCount(i)},
-                               {"answers", counts}});
+/// "StreetSign 13, none 5"
+std::string countsText(const std::vector<std::uint64_t>& counts, const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] == 0) continue;
+    if (!text.empty()) text += ", ";
+    text += i < names.size() ? names[i] : i == names.size() ? "another class" : "none";
+    text += ' ' + std::to_string(counts[i]);
   }
-  return json;
+  return text;
 }
 
-Json objectJson(const std::vector<ObjectScore>& scores) {
-  Json json = Json::array();
-  for (const ObjectScore& score : scores) {
-    const auto [precision, recall, f1] = sharesOf(score);
-    json.push_back({{"class", score.name},
-                    {"truth", score.truth},
-                    {"answers", score.answers},
-                    {"matched_truth", score.matched_truth},
-                    {"matched_answers", score.matched_answers},
-                    {"precision", jsonOf(precision)},
-                    {"recall", jsonOf(recall)},
-                    {"f1", jsonOf(f1)}});
-  }
-  return json;
+std::string kindTable(const MapEvaluation& evaluation) {
+  std::string text = "True objects by kind: the class of the object that is their partner by points (IoU of 0.5)\n";
+  for (const KindAnswers& kind : evaluation.kinds)
+    text += padded(kind.name, 18) + padded(std::to_string(kind.truth), 6) +
+            countsText(kind.found, evaluation.objects.names) + '\n';
+  text += "\nTrue objects by kind: the class of the object that has the most of their points\n";
+  for (const KindAnswers& kind : evaluation.kinds)
+    text += padded(kind.name, 18) + padded(std::to_string(kind.truth), 6) +
+            countsText(kind.called, evaluation.objects.names) + '\n';
+  return text;
 }
 
 }  // namespace
@@ -138,18 +119,12 @@ std::string toText(const MapEvaluation& evaluation) {
                      confusionTable(evaluation.primitives) + '\n' + pointTable("Objects by point", evaluation.objects) +
                      '\n' + confusionTable(evaluation.objects) + '\n';
   if (!evaluation.has_instances) return text + "Objects by object: the truth has no instances.\n";
-  return text + objectTable("Objects by object, point sets with IoU of 0.5", evaluation.by_points) + '\n' +
-         objectTable("Objects by object, boxes with IoU of 0.8", evaluation.by_box);
-}
-
-std::string toJson(const MapEvaluation& evaluation) {
-  Json json{{"primitives_by_point", pointJson(evaluation.primitives)},
-            {"objects_by_point", pointJson(evaluation.objects)}};
-  if (evaluation.has_instances) {
-    json["objects_by_point_set"] = objectJson(evaluation.by_points);
-    json["objects_by_box"] = objectJson(evaluation.by_box);
-  }
-  return json.dump(2);
+  if (!evaluation.covers_all)
+    text += "Only some objects are labelled: points of others count neither way, and objects have no precision.\n\n";
+  return text +
+         objectTable("Objects by object, point sets with IoU of 0.5", evaluation.by_points, evaluation.covers_all) +
+         '\n' + objectTable("Objects by object, boxes with IoU of 0.8", evaluation.by_box, evaluation.covers_all) +
+         '\n' + kindTable(evaluation);
 }
 
 }  // namespace cluxel::tasks

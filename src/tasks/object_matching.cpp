@@ -26,11 +26,13 @@ ObjectMatching::ObjectMatching(const std::vector<std::string>& class_names,
                                const std::vector<std::size_t>& class_of_object,
                                const std::vector<std::int32_t>& ambiguous)
     : names_(class_names), ambiguous_(ambiguous), found_(class_of_object.size()) {
+  ground_ = static_cast<std::size_t>(std::find(names_.begin(), names_.end(), "Ground") - names_.begin());
   for (std::size_t i = 0; i < found_.size(); ++i) found_[i].class_number = class_of_object[i];
 }
 
 void ObjectMatching::add(const Eigen::Vector3d& p_map, std::size_t truth_class, std::int32_t instance,
                          std::uint32_t object) {
+  if (truth_class == ground_) instance = -1;
   if (instance >= 0) {
     PointSet& truth = truth_[instance];
     if (truth.count == 0)
@@ -49,6 +51,10 @@ void ObjectMatching::add(const Eigen::Vector3d& p_map, std::size_t truth_class, 
     ++found.without_instance;
 }
 
+void ObjectMatching::addWithoutTruth(std::uint32_t object) {
+  if (object != mapping::kNoObjectOfPoint) ++found_[object].without_truth;
+}
+
 std::int32_t ObjectMatching::bestInstance(std::uint32_t object) const {
   std::int32_t best = -1;
   std::uint64_t most = 0;
@@ -61,7 +67,7 @@ std::int32_t ObjectMatching::bestInstance(std::uint32_t object) const {
 /// wrong.
 bool ObjectMatching::countsAsAnswer(std::uint32_t object) const {
   const PointSet& found = found_[object];
-  if (found.count == 0 || 2 * found.without_instance > found.count) return false;
+  if (found.count == 0 || found.class_number == ground_ || 2 * found.without_instance > found.count) return false;
   const std::int32_t best = bestInstance(object);
   return best < 0 || truth_.at(best).counts;
 }
@@ -110,6 +116,53 @@ std::vector<ObjectScore> ObjectMatching::scoreByPoints(const EvaluationParams& p
   return score(params.point_iou, [](const PointSet& found, const PointSet& truth, std::uint64_t shared) {
     return static_cast<double>(shared) / static_cast<double>(found.count + truth.count - shared);
   });
+}
+
+std::uint64_t ObjectMatching::matchedWhole(const EvaluationParams& params) const {
+  const auto scores = score(params.point_iou, [](const PointSet& found, const PointSet& truth, std::uint64_t shared) {
+    const std::uint64_t whole = found.count + found.without_truth + truth.count - shared;
+    return static_cast<double>(shared) / static_cast<double>(whole);
+  });
+  std::uint64_t sum = 0;
+  for (const ObjectScore& one : scores) sum += one.matched_truth;
+  return sum;
+}
+
+std::map<std::int32_t, std::map<std::uint32_t, std::uint64_t>> ObjectMatching::objectsOfInstances() const {
+  std::map<std::int32_t, std::map<std::uint32_t, std::uint64_t>> objects;
+  for (const auto& [pair, count] : shared_) objects[pair.second][pair.first] = count;
+  return objects;
+}
+
+std::vector<KindAnswers> ObjectMatching::answersByKind(const std::map<std::int32_t, std::string>& kinds,
+                                                       const EvaluationParams& params) const {
+  const std::size_t none = names_.size() + 1;
+  std::map<std::string, KindAnswers> by_name;
+  const auto objects = objectsOfInstances();
+  for (const auto& [instance, truth] : truth_) {
+    if (!truth.counts) continue;
+    const auto kind = kinds.find(instance);
+    const std::string& name = kind == kinds.end() ? names_[truth.class_number] : kind->second;
+    KindAnswers& answers = by_name.try_emplace(name, KindAnswers{name, 0, {}, {}}).first->second;
+    answers.found.resize(none + 1);
+    answers.called.resize(none + 1);
+    std::size_t found = none, called = none;
+    std::uint64_t most = 0, in_none = truth.count;
+    if (const auto takers = objects.find(instance); takers != objects.end())
+      for (const auto& [object, shared] : takers->second) {
+        const PointSet& taker = found_[object];
+        const std::uint64_t whole = taker.count + truth.count - shared;
+        if (static_cast<double>(shared) >= params.point_iou * static_cast<double>(whole)) found = taker.class_number;
+        if (shared > most) most = shared, called = taker.class_number;
+        in_none -= shared;
+      }
+    ++answers.truth;
+    ++answers.found[found];
+    ++answers.called[in_none > most ? none : called];
+  }
+  std::vector<KindAnswers> sorted;
+  for (auto& [name, answers] : by_name) sorted.push_back(std::move(answers));
+  return sorted;
 }
 
 }  // namespace cluxel::tasks

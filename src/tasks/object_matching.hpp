@@ -20,6 +20,7 @@ struct PointSet {
   Eigen::AlignedBox3d box;             ///< [m, map]
   bool counts = true;                  ///< false: ambiguous
   std::uint64_t without_instance = 0;  ///< points whose truth has this class but no instance
+  std::uint64_t without_truth = 0;     ///< points that `count` leaves out
 };
 
 /// Collects points with truth and answer, then matches.
@@ -28,11 +29,19 @@ class ObjectMatching {
   /// `class_of_object` as truthClassesOf() gives it.
   ObjectMatching(const std::vector<std::string>& class_names, const std::vector<std::size_t>& class_of_object,
                  const std::vector<std::int32_t>& ambiguous);
-  /// A point with known truth class; `instance` -1 and `object` kNoObjectOfPoint mean none.
+  /// A point with known truth class; `instance` -1 and `object` kNoObjectOfPoint mean none. Ground has no well-defined
+  /// instances: its instances are ignored, and objects of this class are no answers.
   void add(const Eigen::Vector3d& p_map, std::size_t truth_class, std::int32_t instance, std::uint32_t object);
+  /// A point of unknown truth.
+  void addWithoutTruth(std::uint32_t object);
   bool hasInstances() const { return !truth_.empty(); }
   std::vector<ObjectScore> scoreByBox(const EvaluationParams& params) const;
   std::vector<ObjectScore> scoreByPoints(const EvaluationParams& params) const;
+  /// What true objects are called, by the kind of each instance. Ambiguous instances do not count.
+  std::vector<KindAnswers> answersByKind(const std::map<std::int32_t, std::string>& kinds,
+                                         const EvaluationParams& params) const;
+  /// As MapEvaluation::matched_whole.
+  std::uint64_t matchedWhole(const EvaluationParams& params) const;
 
  private:
   struct Candidate {
@@ -45,8 +54,11 @@ class ObjectMatching {
   /// The instance that shares the most points with the object, of any class; -1 when none does.
   std::int32_t bestInstance(std::uint32_t object) const;
   bool countsAsAnswer(std::uint32_t object) const;
+  /// The objects that share points with each instance, with the numbers of these points.
+  std::map<std::int32_t, std::map<std::uint32_t, std::uint64_t>> objectsOfInstances() const;
 
   std::vector<std::string> names_;
+  std::size_t ground_ = 0;  ///< the number of Ground, or names_.size()
   std::vector<std::int32_t> ambiguous_;
   std::map<std::int32_t, PointSet> truth_;
   std::vector<PointSet> found_;

@@ -7,6 +7,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace cluxel;
   using namespace cluxel::scan;
   const std::string_view bytes = fuzz::textOf(data, size);
-  fuzz::feed([&] { fuzz::require(!parseLabelMap(bytes, "labels.yaml").empty()); });
+  fuzz::feed([&] { fuzz::require(!parseLabelMap(bytes, "labels.yaml").labels.empty()); });
   return 0;
 }

@@ -2,6 +2,8 @@
 // The readers on real scans, where they are present.
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <map>
 
 #include "scan/formats/scan_writer.hpp"
 #include "scan/scan_fixture.hpp"
@@ -121,6 +123,30 @@ TEST(RealScans, SurviveTheWayThroughThePcdWriter) {
   const Scan back = opened(scratch.path()).load(0);
   EXPECT_EQ(back.id, scan.id);
   EXPECT_EQ(back.points.label, scan.points.label);
+}
+
+TEST(RealScans, SydneyHasTheObjectsOfItsTable) {
+  CLUXEL_REQUIRE_DATA(folder, "sydney");
+  const LabelMap map = LabelMap::load(test::sourceFolder() / "labels" / "sydney.yaml");
+  std::map<std::string, std::size_t> counted, listed;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() != ".ply") continue;
+    const Scan scan = opened(entry.path()).load(0);
+    const auto instances = instancesFromFile(entry.path(), map.instanceField(), scan.points.size());
+    std::map<std::int32_t, std::uint32_t> label_of;
+    for (std::size_t i = 0; i < instances.size(); ++i)
+      if (instances[i] >= 0) label_of.emplace(instances[i], scan.points.label[i]);
+    for (const auto& [instance, label] : label_of) ++counted[map.find(label)->name];
+  }
+  std::ifstream table(folder / "objects.csv");
+  std::string line;
+  std::getline(table, line);
+  ASSERT_EQ(line.substr(0, 19), "scan,instance,class");
+  while (std::getline(table, line)) {
+    const std::size_t first = line.find(',', line.find(',') + 1) + 1;
+    ++listed[line.substr(first, line.find(',', first) - first)];
+  }
+  EXPECT_EQ(counted, listed);
 }
 
 }  // namespace

@@ -92,6 +92,65 @@ TEST(LabelMap, TakesTheSameIdInTwoSpellingsForADuplicate) {
               HasSubstr("the id 7 stands twice"));
 }
 
+TEST(LabelMap, SaysWhatAnswersCountAsAndWhatItsLabelsCover) {
+  const std::string labels = "labels:\n  1: {name: wall, object: Static}\n";
+  const LabelMap plain = mapOf(labels);
+  EXPECT_TRUE(plain.coversAll());
+  EXPECT_EQ(plain.instanceField(), "");
+  EXPECT_TRUE(plain.countsAs().empty());
+  const LabelMap full =
+      mapOf("coverage: some\ninstance_field: number\ncounts_as: {Building: Static, Pole: Tree}\n" + labels);
+  EXPECT_FALSE(full.coversAll());
+  EXPECT_EQ(full.instanceField(), "number");
+  EXPECT_EQ(full.countsAs().at("Building"), "Static");
+  EXPECT_EQ(full.countsAs().at("Pole"), "Tree");
+}
+
+TEST(LabelMap, RefusesWhatAnswersCannotCountAs) {
+  const std::string text = refusalOf([] {
+    parseLabelMap(
+        "coverage: most\ncounts_as: {Building: Statik, a wall: Static}\nlabels:\n  1: {name: wall, object: Static}\n",
+        "l.yaml");
+  });
+  EXPECT_THAT(text, HasSubstr("l.yaml:1:11: error: coverage must be 'all' or 'some'"));
+  EXPECT_THAT(text, AllOf(HasSubstr("l.yaml:2:23: error: the truth has no class 'Statik'"),
+                          HasSubstr("did you mean 'Static'?"), HasSubstr("l.yaml:2:31: error: a key of counts_as")));
+  EXPECT_THAT(refusalOf([] { parseLabelMap("counts_as: Tree\nlabels:\n  1: {name: a}\n", "l"); }),
+              HasSubstr("counts_as must be a mapping"));
+}
+
+TEST(LabelMap, ThoseThatAreShippedCanBeRead) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::sourceFolder() / "labels"))
+    EXPECT_FALSE(LabelMap::load(entry.path()).entries().empty()) << entry.path();
+}
+
+/// Three points of a PLY file with the usual label and a number of objects.
+std::string numberedPly(const std::string& last_number) {
+  return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+         "property uchar label\nproperty int number\nend_header\n"
+         "0 0 0 9 7\n1 0 0 8 -1\nnan 0 0 8 5\n2 0 0 7 " +
+         last_number + "\n";
+}
+
+TEST(InstancesFromFile, AreTheFieldOfTheScansPoints) {
+  const ScratchFolder folder;
+  const auto file = folder.write("scan.ply", numberedPly("0"));
+  EXPECT_THAT(instancesFromFile(file, "number", 3), ElementsAre(7, -1, 0)) << "the record without a return is no point";
+  EXPECT_THAT(instancesFromFile(file, "label", 3), ElementsAre(9, 8, 7));
+}
+
+TEST(InstancesFromFile, RefusesWhatDoesNotFitTheMap) {
+  const ScratchFolder folder;
+  const auto file = folder.write("scan.ply", numberedPly("3000000000"));
+  EXPECT_THAT(refusalOf([&] { instancesFromFile(file, "number", 3); }), HasSubstr("holds 3000000000"));
+  EXPECT_THAT(refusalOf([&] { instancesFromFile(file, "label", 4); }),
+              HasSubstr("3 points where the map's scan has 4"));
+  EXPECT_THAT(refusalOf([&] { instancesFromFile(file, "numbers", 3); }), HasSubstr("has no field 'numbers'"));
+  EXPECT_THAT(refusalOf([&] { instancesFromFile(folder.path() / "b.ply", "n", 3); }), HasSubstr("is not there"));
+  EXPECT_THAT(refusalOf([&] { instancesFromFile(folder.write("a.xyz", "0 0 0\n"), "n", 1); }),
+              HasSubstr("is no PLY file"));
+}
+
 TEST(TruthFromLabels, LooksUpEachPointAndAddsClassesItDoesNotKnow) {
   const PointTruth truth =
       truthFromLabels(labelled({{0, 0}, {9, 9}, {5, 5}, {6, 6}, {7, 7}}, {1, 4, 5, 42, 3}), mapOf(kMap));

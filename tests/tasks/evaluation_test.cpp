@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "rdf/vocabulary.hpp"
 #include "tasks/object_matching.hpp"
 #include "tasks/truth_class.hpp"
+#include "tasks/wilson_interval.hpp"
 
 namespace cluxel::tasks {
 
@@ -58,10 +61,41 @@ TEST(TruthClasses, AreTheOwnOnesOrTheNearestAbove) {
   for (const char* name : {"Small", "Barrier", "Fence", "Plant", "Thing", "Circle", "Stranger"})
     objects.emplace_back().class_iri = clx(name);
   using Numbers = std::vector<std::size_t>;
-  EXPECT_EQ(truthClassesOf(objects, {"Plant", "Small"}, catalogue), (Numbers{1, 1, 0, 0, 2, 2, 2}));
-  EXPECT_EQ(truthClassesOf(objects, {"Small", "Barrier"}, catalogue), (Numbers{0, 1, 1, 2, 2, 2, 2}));
-  EXPECT_EQ(truthClassesOf(objects, {"Barrier", "Plant", "Thing"}, catalogue), (Numbers{2, 0, 0, 1, 2, 3, 3}));
-  EXPECT_EQ(truthClassesOf(objects, {}, catalogue), Numbers(objects.size(), 0));
+  EXPECT_EQ(truthClassesOf(objects, {{"Plant", "Small"}}, catalogue), (Numbers{1, 1, 0, 0, 2, 2, 2}));
+  EXPECT_EQ(truthClassesOf(objects, {{"Small", "Barrier"}}, catalogue), (Numbers{0, 1, 1, 2, 2, 2, 2}));
+  EXPECT_EQ(truthClassesOf(objects, {{"Barrier", "Plant", "Thing"}}, catalogue), (Numbers{2, 0, 0, 1, 2, 3, 3}));
+  EXPECT_EQ(truthClassesOf(objects, {{}}, catalogue), Numbers(objects.size(), 0));
+}
+
+TEST(TruthClasses, CountAsTheTruthSaysBeforeTheirOwnName) {
+  using vocabulary::clx;
+  const ClassCatalogue catalogue{{{clx("Structure"), {}, {}},
+                                  {clx("House"), {clx("Structure")}, {}},
+                                  {clx("Pole"), {}, {}},
+                                  {clx("Lamp"), {clx("Pole")}, {}}}};
+  std::vector<SemanticObject> objects;
+  for (const char* name : {"Structure", "House", "Pole", "Lamp"}) objects.emplace_back().class_iri = clx(name);
+  using Numbers = std::vector<std::size_t>;
+  const std::vector<std::string> names{"Lamp", "Fixed"};
+  EXPECT_EQ(truthClassesOf(objects, {names, {{"Structure", "Fixed"}}}, catalogue), (Numbers{1, 1, 2, 0}));
+  EXPECT_EQ(truthClassesOf(objects, {names, {{"Lamp", "Fixed"}}}, catalogue), (Numbers{2, 2, 2, 1}));
+  EXPECT_EQ(truthClassesOf(objects, {names, {{"Pole", "Fixed"}}}, catalogue), (Numbers{2, 2, 1, 0}));
+}
+
+TEST(WilsonInterval, IsThatOfTheFormulaAndStaysBetweenZeroAndOne) {
+  // Newcombe, Statistics in Medicine 17 (1998), table I, method 3.
+  for (const auto& [hits, total, low, high] : {std::array{81.0, 263.0, 0.2553, 0.3662},
+                                               {15.0, 148.0, 0.0624, 0.1605},
+                                               {0.0, 20.0, 0.0, 0.1611},
+                                               {1.0, 29.0, 0.0061, 0.1718}}) {
+    const ShareInterval interval = wilsonInterval(hits, total);
+    EXPECT_NEAR(interval.low, low, 5e-5) << hits << " of " << total;
+    EXPECT_NEAR(interval.high, high, 5e-5) << hits << " of " << total;
+    const ShareInterval other = wilsonInterval(total - hits, total);
+    EXPECT_NEAR(other.low, 1 - interval.high, 1e-12);
+  }
+  EXPECT_EQ(wilsonInterval(0, 0).low, 0);
+  EXPECT_EQ(wilsonInterval(0, 0).high, 1);
 }
 
 constexpr std::size_t kTree = 0, kBush = 1;
@@ -143,6 +177,52 @@ TEST_F(ObjectMatchingByHand, BoxesMatchFromEightTenthsOn) {
     add(matching, found, 11 - found, kTree, 7, kNoObjectOfPoint);
     EXPECT_EQ(matching.scoreByBox(params)[kTree].matched_truth, matches) << found;
   }
+}
+
+TEST_F(ObjectMatchingByHand, GroundIsNoAnswerAndHasNoTrueObjects) {
+  const std::vector<std::string> with_ground{"Tree", "Ground"};
+  ObjectMatching matching(with_ground, {0, 1, 1}, {});
+  add(matching, 0, 5, 0, 7, 0);
+  add(matching, 10, 50, 1, 3, 1);
+  add(matching, 70, 50, 0, 8, 2);  // ground that is a tree
+  for (const auto& scores : {matching.scoreByBox(params), matching.scoreByPoints(params)}) {
+    EXPECT_EQ(scores[0].truth, 2U);
+    EXPECT_EQ(scores[1].truth, 0U);
+    EXPECT_EQ(scores[1].answers, 0U);
+  }
+}
+
+TEST_F(ObjectMatchingByHand, PointsOfUnknownTruthCountNeitherWayUnlessAskedFor) {
+  ObjectMatching matching(names, two_trees_and_a_bush, {});
+  add(matching, 0, 6, kTree, 7, 0);
+  add(matching, 10, 4, kTree, 8, 1);
+  for (int i = 0; i < 5; ++i) matching.addWithoutTruth(0), matching.addWithoutTruth(1);
+  EXPECT_EQ(matching.scoreByPoints(params)[kTree].matched_truth, 2U);
+  EXPECT_EQ(matching.matchedWhole(params), 1U) << "IoU 6/11 and 4/9";
+}
+
+TEST_F(ObjectMatchingByHand, TrueObjectsAreCalledWhatTheirPartnerIsAndWhatHasMostOfThem) {
+  ObjectMatching matching(names, {kTree, kBush, names.size()}, {5});
+  add(matching, 0, 6, kTree, 1, 1);  // a trunk that is a bush
+  add(matching, 6, 4, kTree, 1, kNoObjectOfPoint);
+  add(matching, 10, 4, kTree, 2, 0);  // a trunk in pieces, most of them a tree
+  add(matching, 14, 3, kTree, 2, 2);
+  add(matching, 17, 2, kTree, 2, kNoObjectOfPoint);
+  add(matching, 20, 5, kBush, 3, 2);  // another class
+  add(matching, 30, 3, kBush, 4, kNoObjectOfPoint);
+  add(matching, 40, 9, kBush, 5, 0);  // ambiguous
+  const auto kinds = matching.answersByKind({{1, "trunk"}, {2, "trunk"}, {3, "shrub"}, {5, "shrub"}}, params);
+  using Counts = std::vector<std::uint64_t>;  // Tree, Bush, another class, none
+  ASSERT_EQ(kinds.size(), 3U);
+  EXPECT_EQ(kinds[0].name, "Bush") << "a kind without a name is its class";
+  EXPECT_EQ(kinds[0].found, (Counts{0, 0, 0, 1}));
+  EXPECT_EQ(kinds[0].called, (Counts{0, 0, 0, 1}));
+  EXPECT_EQ(kinds[1].name, "shrub");
+  EXPECT_EQ(kinds[1].truth, 1U);
+  EXPECT_EQ(kinds[1].found, (Counts{0, 0, 1, 0})) << "5 of 8 points";
+  EXPECT_EQ(kinds[2].name, "trunk");
+  EXPECT_EQ(kinds[2].found, (Counts{0, 1, 0, 1}));
+  EXPECT_EQ(kinds[2].called, (Counts{1, 1, 0, 0}));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // Reads the PLY header and finds the vertices after it.
 #include "scan/formats/ply_format.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -69,6 +70,7 @@ class PlyHeaderParser {
   TextScanner& scanner() { return scanner_; }
   PlyData data() const { return *data_; }
   const std::vector<PlyElement>& elements() const { return elements_; }
+  std::vector<PlyElement>& elements() { return elements_; }
   std::size_t bodyOffset() const { return body_offset_; }
 
  private:
@@ -177,14 +179,35 @@ ParsedScan fromBinary(const PlyHeaderParser& header, std::size_t vertex, std::st
   return scanFromRecords(records, vertices.fields, {.count = vertices.count, .body_offset = begin}, file);
 }
 
+/// Names the field "label", which is preferred to all other names of labels.
+void useAsLabel(std::vector<PointField>& fields, const std::string& label_field, const std::string& file) {
+  const auto is_chosen = [&](const PointField& field) { return field.name == label_field; };
+  const auto chosen = std::find_if(fields.begin(), fields.end(), is_chosen);
+  if (chosen == fields.end()) refuseFile(file, "has no field '" + label_field + "'");
+  for (PointField& field : fields)
+    if (field.name == "label") field.name = "other label";
+  chosen->name = "label";
+}
+
+ParsedScan fromBody(PlyHeaderParser& header, std::size_t vertex, std::string_view bytes, const std::string& file) {
+  if (header.data() == PlyData::Ascii) return fromText(header, vertex);
+  return fromBinary(header, vertex, bytes, file);
+}
+
 }  // namespace
 
 ParsedScan parsePly(std::string_view bytes, const std::string& file) {
   PlyHeaderParser header(bytes, file);
   header.parse();
+  return fromBody(header, vertexElement(header, file), bytes, file);
+}
+
+ParsedScan parsePly(std::string_view bytes, const std::string& file, const std::string& label_field) {
+  PlyHeaderParser header(bytes, file);
+  header.parse();
   const std::size_t vertex = vertexElement(header, file);
-  if (header.data() == PlyData::Ascii) return fromText(header, vertex);
-  return fromBinary(header, vertex, bytes, file);
+  useAsLabel(header.elements()[vertex].fields, label_field, file);
+  return fromBody(header, vertex, bytes, file);
 }
 
 }  // namespace cluxel::scan

@@ -13,7 +13,7 @@ namespace cluxel::scan {
 
 namespace {
 
-const std::vector<std::string> kFileKeys{"dataset", "cite", "labels"};
+const std::vector<std::string> kFileKeys{"dataset", "cite", "coverage", "instance_field", "counts_as", "labels"};
 const std::vector<std::string> kLabelKeys{"name", "primitive", "object", "part", "near"};
 const std::vector<std::string> kNearKeys{"label", "within", "object"};
 
@@ -28,26 +28,59 @@ class LabelMapReader {
  public:
   explicit LabelMapReader(FaultList& faults) : faults_(&faults) {}
 
-  std::map<std::uint32_t, LabelMeaning> read(const YamlNode& root) {
-    std::map<std::uint32_t, LabelMeaning> entries;
-    if (!checkMapping(root, kFileKeys, *faults_)) return entries;
+  LabelMapContent read(const YamlNode& root) {
+    LabelMapContent content;
+    if (!checkMapping(root, kFileKeys, *faults_)) return content;
     const YamlNode* labels = root.find("labels");
     if (!labels || !labels->isMap() || labels->items.empty()) {
       faults_->error((labels ? *labels : root).at, "a label map needs 'labels', a mapping of ids that is not empty");
-      return entries;
+      return content;
     }
-    for (std::size_t i = 0; i < labels->items.size(); ++i) {
-      const YamlNode& key = labels->keys[i];
-      const auto id = idOf(key);
-      LabelMeaning meaning = readMeaning(labels->items[i]);
-      if (id && !entries.emplace(*id, std::move(meaning)).second)
-        faults_->error(key.at, "the id " + std::to_string(*id) + " stands twice");
-    }
-    checkNearIds(*labels, entries);
-    return entries;
+    readLabels(*labels, content.labels);
+    if (const YamlNode* field = root.find("instance_field"))
+      content.instance_field = textOf(*field, "instance_field", *faults_).value_or("");
+    if (const YamlNode* coverage = root.find("coverage")) content.covers_all = coversAll(*coverage);
+    if (const YamlNode* counts_as = root.find("counts_as")) readCountsAs(*counts_as, content);
+    return content;
   }
 
  private:
+  void readLabels(const YamlNode& labels, std::map<std::uint32_t, LabelMeaning>& entries) {
+    for (std::size_t i = 0; i < labels.items.size(); ++i) {
+      const YamlNode& key = labels.keys[i];
+      const auto id = idOf(key);
+      LabelMeaning meaning = readMeaning(labels.items[i]);
+      if (id && !entries.emplace(*id, std::move(meaning)).second)
+        faults_->error(key.at, "the id " + std::to_string(*id) + " stands twice");
+    }
+    checkNearIds(labels, entries);
+  }
+
+  bool coversAll(const YamlNode& value) {
+    if (!value.isScalar() || (value.text != "all" && value.text != "some"))
+      faults_->error(value.at, "coverage must be 'all' or 'some'",
+                     "some: only some objects of a scan are labelled, and nothing is known of the other points");
+    return value.text != "some";
+  }
+
+  void readCountsAs(const YamlNode& value, LabelMapContent& content) {
+    if (!value.isMap()) {
+      faults_->error(value.at, "counts_as must be a mapping of classes to classes of the truth",
+                     "for example {Building: Static}");
+      return;
+    }
+    const std::vector<std::string> known = truthClassNames(LabelMap(content));
+    for (std::size_t i = 0; i < value.items.size(); ++i) {
+      const YamlNode& target = value.items[i];
+      if (!isLocalName(value.keys[i].text))
+        faults_->error(value.keys[i].at, "a key of counts_as must be a local name of the ontology, such as StreetSign");
+      else if (!target.isScalar() || std::find(known.begin(), known.end(), target.text) == known.end())
+        faults_->error(target.at, "the truth has no class '" + target.text + "'", suggestion(target.text, known));
+      else
+        content.counts_as.emplace(value.keys[i].text, target.text);
+    }
+  }
+
   std::optional<std::uint32_t> idOf(const YamlNode& value) {
     std::uint32_t id = 0;
     const char* end = value.text.data() + value.text.size();
@@ -131,23 +164,21 @@ class LabelMapReader {
 
 }  // namespace
 
-std::map<std::uint32_t, LabelMeaning> parseLabelMap(std::string_view text, const std::string& file) {
+LabelMapContent parseLabelMap(std::string_view text, const std::string& file) {
   FaultList faults(file, std::string(text));
-  std::map<std::uint32_t, LabelMeaning> entries;
-  if (const auto root = parseYaml(file, text, faults)) entries = LabelMapReader(faults).read(*root);
+  LabelMapContent content;
+  if (const auto root = parseYaml(file, text, faults)) content = LabelMapReader(faults).read(*root);
   faults.throwIfErrors();
-  return entries;
+  return content;
 }
 
 LabelMap LabelMap::load(const std::filesystem::path& path) {
-  LabelMap map;
-  map.entries_ = parseLabelMap(readFile(path), path.string());
-  return map;
+  return LabelMap(parseLabelMap(readFile(path), path.string()));
 }
 
 const LabelMeaning* LabelMap::find(std::uint32_t id) const {
-  const auto entry = entries_.find(id);
-  return entry == entries_.end() ? nullptr : &entry->second;
+  const auto entry = content_.labels.find(id);
+  return entry == content_.labels.end() ? nullptr : &entry->second;
 }
 
 }  // namespace cluxel::scan

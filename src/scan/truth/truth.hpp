@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scan/scan.hpp"
@@ -29,17 +30,31 @@ struct LabelMeaning {
   std::optional<NearRule> near;
 };
 
+/// What a label map says.
+struct LabelMapContent {
+  std::map<std::uint32_t, LabelMeaning> labels;
+  /// Answers of a class, and of its subclasses, count as another class, which the truth names: {"Building", "Static"}.
+  std::map<std::string, std::string> counts_as;
+  std::string instance_field;  ///< the field of the scan files that numbers the objects of a scan; empty: none
+  bool covers_all = true;      ///< false: only some objects are labelled, so nothing is known of the other points
+};
+
 /// A label map (labels/*.yaml): a data set's ids to Cluxel's names.
 class LabelMap {
  public:
+  LabelMap() = default;
+  explicit LabelMap(LabelMapContent content) : content_(std::move(content)) {}
   /// Throws InputError with every fault of the file, each with file:line:col.
   static LabelMap load(const std::filesystem::path& path);
   /// The meaning of `id`; an id that the map does not name is left out.
   const LabelMeaning* find(std::uint32_t id) const;
-  const std::map<std::uint32_t, LabelMeaning>& entries() const { return entries_; }
+  const std::map<std::uint32_t, LabelMeaning>& entries() const { return content_.labels; }
+  const std::map<std::string, std::string>& countsAs() const { return content_.counts_as; }
+  const std::string& instanceField() const { return content_.instance_field; }
+  bool coversAll() const { return content_.covers_all; }
 
  private:
-  std::map<std::uint32_t, LabelMeaning> entries_;
+  LabelMapContent content_;
 };
 
 /// Truth per point of one scan, in the scan's point order; -1 means unknown.
@@ -57,8 +72,13 @@ const std::vector<std::string>& truthClassNames();
 /// These, then what else the label map names, in the order of its ids. Throws Error for more than 127 of them.
 std::vector<std::string> truthClassNames(const LabelMap& map);
 
-/// Truth from the scan's own labels through a label map (no instances).
+/// Truth from the scan's own labels through a label map, without instances.
 PointTruth truthFromLabels(const Scan& scan, const LabelMap& map);
+
+/// The numbers of objects that the field `field` of a PLY file gives its points, in the scan's point order; -1: none. A
+/// map does not keep them. Throws InputError when the file is not there, is no PLY file, or does not fit.
+std::vector<std::int32_t> instancesFromFile(const std::filesystem::path& file, const std::string& field,
+                                            std::size_t point_count);
 
 /// Truth from a folder of files with one line `primitive object instance` per point, plain or gzip; the file of a scan
 /// has the scan file's stem followed by ".truth", ".truth.gz". Throws InputError naming file and line.
