@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Wilson's formula.
 #include "tasks/wilson_interval.hpp"
 
 #include <algorithm>

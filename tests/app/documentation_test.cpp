@@ -7,8 +7,9 @@
 namespace cluxel::app {
 namespace {
 
-const std::vector<std::string> kCommands{"info",    "simulate", "register", "build",    "query",  "update",  "tasks",
-                                         "explain", "rules",    "train",    "evaluate", "export", "compact", "doctor"};
+const std::vector<std::string> kCommands{"info",   "simulate", "register", "build",  "extend",  "retract",
+                                         "repose", "merge",    "query",    "update", "tasks",   "explain",
+                                         "rules",  "train",    "evaluate", "export", "compact", "doctor"};
 
 bool hasTool(const std::string& tool) {
   return std::system(("command -v " + tool + " > /dev/null").c_str()) == 0;
@@ -70,7 +71,7 @@ TEST_F(Documentation, BashCompletesCommandsAndOptions) {
   using Words = std::vector<std::string>;
   EXPECT_EQ(completed("cluxel qu"), Words{"query"});
   EXPECT_EQ(completed("cluxel ''").size(), kCommands.size());
-  EXPECT_EQ(completed("cluxel rules ''"), (Words{"check", "test"}));
+  EXPECT_EQ(completed("cluxel rules ''"), (Words{"check", "test", "apply"}));
   EXPECT_EQ(completed("cluxel build --batch"), Words{"--batch-points"});
   EXPECT_EQ(completed("cluxel rules test --ju"), Words{"--junit"});
   EXPECT_EQ(completed("cluxel --home query bui"), Words{"build"}) << "the word behind --home is a folder";

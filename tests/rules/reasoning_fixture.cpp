@@ -18,9 +18,12 @@ ClassCatalogue outdoorCatalogue() {
       {"Building", {"Facade", "Roof"}},
       {"Tree", {"TreeTrunk", "TreeTop"}},
       {"UtilityPole", {"PoleMast", "PoleCrossarm"}},
+      {"TrafficLight", {"TrafficLightPole", "TrafficLightHead"}},
       {"StreetLamp", {"LampPole", "LampHead"}},
       {"StreetSign", {"SignPole", "SignPlate"}},
       {"Vehicle", {}},
+      {"Person", {}},
+      {"Pole", {}},
       {"Bush", {}},
       {"SmallObject", {}}};
   ClassCatalogue catalogue;
