@@ -10,8 +10,14 @@ rm -rf "$out"
 mkdir -p "$out"
 say "run: generating the scans of a campus"
 "$cluxel" simulate "$out/scans" --seed 7
-say "run: building the map"
-"$cluxel" build "$out/scans" -o "$out/campus.clx" --force
+say "run: building a map of the first six scans"
+mkdir "$out/first"
+ln -s ../scans/scan_00{0..5}.pcd "$out/first/"
+grep -v '^#' "$out/scans/poses.txt" | head -6 >"$out/first/poses.txt"
+head -6 "$out/scans/times.txt" >"$out/first/times.txt"
+"$cluxel" build "$out/first" -o "$out/campus.clx"
+say "run: extending it by the others; what changes:"
+"$cluxel" extend "$out/campus.clx" "$out/scans"
 say "run: asking it: queries/street_signs.rq"
 "$cluxel" query "$out/campus.clx" queries/street_signs.rq
 "$cluxel" export "$out/campus.clx" -o "$out/campus.ply"

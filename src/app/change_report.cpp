@@ -80,6 +80,10 @@ void addChangeOptions(CLI::App& command, mapping::ChangeParams& params, bool in_
 void printChange(const fs::path& map, const ChangeReport& report, const mapping::ChangeParams& params,
                  const Session& session) {
   if (session.json) return printJsonReport(map, report, params.dry_run);
+  if (report.scans == 0) {  // nothing was committed
+    std::printf("%s: nothing changes%s\n", map.c_str(), report.scans_already_there > 0 ? "; all scans are there" : "");
+    return;
+  }
   const auto before = classesOf(report.before), after = classesOf(report.after);
   const mapping::ObjectChanges& objects = report.objects;
   const auto own = [](const ContentHash& id) { return id; };
