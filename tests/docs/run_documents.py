@@ -73,7 +73,8 @@ def matches(expected, actual):
 class Runner:
     def __init__(self, source, program, folder):
         self.source, self.folder = source, folder
-        self.environment = dict(os.environ, PATH=f"{program}:{os.environ['PATH']}", SOURCE=str(source), COLUMNS="160")
+        path = f"{program}:{pathlib.Path(sys.executable).parent}:{os.environ['PATH']}"
+        self.environment = dict(os.environ, PATH=path, SOURCE=str(source), COLUMNS="160", PYTHONPATH=f"{program}/python")
         self.environment.pop("CLUXEL_HOME", None)
         self.commands, self.faults = 0, []
 
