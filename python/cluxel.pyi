@@ -10,7 +10,7 @@ import numpy.typing as npt
 _Path = Union[str, os.PathLike[str]]
 _Paths = Union[_Path, Sequence[_Path]]
 _Value = Union[Term, str, bool, int, float]
-_Column = Union[npt.NDArray[np.int64], npt.NDArray[np.float64], list[Optional[str]]]
+_Column = Any  # an int64 or float64 array, or a list of str and None: it depends on the cells
 
 __version__: str
 LABELS: tuple[str, ...]

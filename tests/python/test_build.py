@@ -73,6 +73,19 @@ def test_an_exception_of_the_callback_ends_the_build_and_the_next_one_completes_
     assert canonical(campus.build(tmp_path / "map.clx").file, tmp_path) == canonical(campus.file, tmp_path)
 
 
+def test_an_exception_in_a_call_from_another_thread_ends_the_build(campus, tmp_path):
+    stages = []
+
+    def progress(stage, done, total):
+        stages.append(stage)
+        if stage == "register":
+            raise LookupError("from a worker")
+
+    with pytest.raises(LookupError, match="from a worker"):
+        campus.build(tmp_path / "map.clx", refine_poses=True, progress=progress)
+    assert stages.count("register") == 1 and stages[-1] == "register"
+
+
 def test_a_signal_ends_the_build(campus, tmp_path):
     def progress(stage, done, total):
         if stage == "cluxels":
