@@ -139,21 +139,8 @@ std::string reprOf(const Answer& answer) {
   return text + ">";
 }
 
-}  // namespace
-
-void bindAnswers(py::module_& module) {
-  py::class_<Answer>(module, "Answer",
-                     "The answer to a query. It stays valid when the map changes.\n\n"
-                     "SELECT: answer['height'] is a column, len(answer) the number of rows, and iterating gives rows.\n"
-                     "ASK: bool(answer). CONSTRUCT and DESCRIBE: answer.triples, and len(answer) counts them.")
-      .def_property_readonly("kind", &answerKindName,
-                             "'solutions' (SELECT), 'boolean' (ASK) or 'triples' (CONSTRUCT, DESCRIBE).")
-      .def_property_readonly("variables", &Answer::variables, "The variables of a SELECT without '?', in its order.")
-      .def_property_readonly("columns", &columnsOf, "dict from variable to column, as answer[variable] gives it.")
-      .def_property_readonly("triples", &triplesOf, "The triples as (subject, predicate, object) of Term.")
-      .def_property_readonly(
-          "warnings", [](const Answer& answer) { return tupleOf(answer.warnings()); },
-          "Classes, properties and graphs that the query names and the map does not know, as Diagnostic.")
+void bindColumns(py::class_<Answer>& answers) {
+  answers
       .def(
           "__getitem__",
           [](const Answer& answer, const std::string& variable) { return columnOf(answer, answer.column(variable)); },
@@ -174,7 +161,27 @@ void bindAnswers(py::module_& module) {
           [](const Answer& answer, const std::string& variable) {
             return cellsOf(answer, answer.column(variable), [](const Term& term) { return py::cast(term); });
           },
-          py::arg("variable"), "The column as a list of Term, with datatype and language; None where it is unbound.")
+          py::arg("variable"), "The column as a list of Term, with datatype and language; None where it is unbound.");
+}
+
+}  // namespace
+
+void bindAnswers(py::module_& module) {
+  py::class_<Answer> answers(
+      module, "Answer",
+      "The answer to a query. It stays valid when the map changes.\n\n"
+      "SELECT: answer['height'] is a column, len(answer) the number of rows, and iterating gives rows.\n"
+      "ASK: bool(answer). CONSTRUCT and DESCRIBE: answer.triples, and len(answer) counts them.");
+  bindColumns(answers);
+  answers
+      .def_property_readonly("kind", &answerKindName,
+                             "'solutions' (SELECT), 'boolean' (ASK) or 'triples' (CONSTRUCT, DESCRIBE).")
+      .def_property_readonly("variables", &Answer::variables, "The variables of a SELECT without '?', in its order.")
+      .def_property_readonly("columns", &columnsOf, "dict from variable to column, as answer[variable] gives it.")
+      .def_property_readonly("triples", &triplesOf, "The triples as (subject, predicate, object) of Term.")
+      .def_property_readonly(
+          "warnings", [](const Answer& answer) { return tupleOf(answer.warnings()); },
+          "Classes, properties and graphs that the query names and the map does not know, as Diagnostic.")
       .def("__len__", &lengthOf, "Number of rows, or of triples.")
       .def("__bool__", &truthOf, "The answer of an ASK; for others, whether there is a row or a triple.")
       .def(

@@ -44,8 +44,15 @@ inline py::object orNone(std::size_t number) {
   return number == 0 ? py::object(py::none()) : py::object(py::int_(number));
 }
 
-/// The arrays of points that the library gave. The GIL is held.
-py::object pointsObject(PointCloud&& cloud);
+/// The arrays of a PointCloud. Object numbers are signed here: -1 is no object.
+struct Points {
+  py::array_t<double> xyz;
+  py::object intensity;
+  py::array_t<std::uint8_t> label;
+  py::array_t<std::int32_t> object;
+};
+/// Takes over the library's arrays. The GIL is held.
+Points arraysOf(PointCloud&& cloud);
 
 /// An array that owns `values`, without a copy.
 template <typename Value, typename Element>

@@ -76,7 +76,7 @@ Answer query(const Map& map, const std::string& text, const py::dict& bindings, 
   return map.query(text, options);
 }
 
-py::object update(Map& map, const std::string& text) {
+py::tuple update(Map& map, const std::string& text) {
   UpdateCounts counts;
   {
     const py::gil_scoped_release release;
@@ -95,7 +95,7 @@ Explanation explanationOf(const Map& map, const Named& named) {
   return map.explain(std::get<std::string>(named));
 }
 
-py::object explain(const Map& map, const Named& named) {
+py::dict explain(const Map& map, const Named& named) {
   const Explanation explanation = explanationOf(map, named);
   return py::module_::import("json").attr("loads")(explanation.json);
 }
@@ -187,7 +187,7 @@ void bindMaps(py::module_& module) {
       .def(
           "points",
           [](const Map& map, const std::variant<Object, Cloud, std::string>& owner) {
-            return pointsObject(pointsOf(map, owner));
+            return arraysOf(pointsOf(map, owner));
           },
           py::arg("owner"),
           "The points of an Object, of an object named by its IRI, or of a Cloud, as Points. Those of a cloud come in\n"

@@ -8,14 +8,6 @@ namespace cluxel::python {
 
 namespace {
 
-/// The arrays of a PointCloud. Object numbers are signed here: -1 is no object.
-struct Points {
-  py::array_t<double> xyz;
-  py::object intensity;
-  py::array_t<std::uint8_t> label;
-  py::array_t<std::int32_t> object;
-};
-
 static_assert(static_cast<std::int32_t>(kNoObject) == -1);
 
 py::array_t<double> xyzOf(const PointCloud& cloud) {
@@ -60,7 +52,7 @@ void bindClouds(py::module_& module) {
 
 }  // namespace
 
-py::object pointsObject(PointCloud&& cloud) {
+Points arraysOf(PointCloud&& cloud) {
   Points points;
   points.xyz = xyzOf(cloud);
   points.intensity = cloud.intensity.size() == cloud.size() && cloud.size() > 0
@@ -68,7 +60,7 @@ py::object pointsObject(PointCloud&& cloud) {
                          : py::object(py::none());
   points.label = arrayOwning<std::uint8_t>(std::move(cloud.label));
   points.object = arrayOwning<std::int32_t>(std::move(cloud.object));
-  return py::cast(std::move(points));
+  return points;
 }
 
 void bindPoints(py::module_& module) {

@@ -13,5 +13,5 @@ rm -rf "$packages/_CPack_Packages"
 command -v lintian >/dev/null || { say "run: lintian is not installed: the packages are not checked"; exit 0; }
 say "run: checking the packages"
 # They are not uploaded to Debian: no report there asks for them.
-lintian --allow-root --fail-on error,warning --tag-display-limit 0 --suppress-tags initial-upload-closes-no-bugs \
+lintian --allow-root --fail-on error --tag-display-limit 0 --suppress-tags initial-upload-closes-no-bugs \
   "$packages"/*.deb >&2 || die "lintian found faults in the packages of $packages"
