@@ -20,5 +20,5 @@ endif()
 add_custom_target(cluxel_documentation ALL DEPENDS ${documentation_files} ${man_page})
 install(FILES ${man_page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
 install(FILES ${documentation}/cluxel.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME cluxel COMPONENT program)
-install(FILES ${documentation}/_cluxel DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT program)
+install(FILES ${documentation}/_cluxel DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT zsh)   # Debian's folder is another one: package.cmake
 install(FILES ${documentation}/cluxel.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)

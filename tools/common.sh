@@ -48,11 +48,11 @@ install_second_engine() {
     say "run: npm could not install oxigraph: the differential test will say that it is absent"
 }
 
-configure() {  # configure PRESET
+configure() {  # configure PRESET [OPTIONS OF CMAKE...]
   local log
   mkdir -p build
   log=$(mktemp build/configure.XXXXXX)
-  cmake --preset "$1" >"$log" 2>&1 || { cat "$log" >&2; rm -f "$log"; die "configuring '$1' failed"; }
+  cmake --preset "$@" >"$log" 2>&1 || { cat "$log" >&2; rm -f "$log"; die "configuring '$1' failed"; }
   rm -f "$log"
 }
 

@@ -1,6 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Runs the README's two commands in a clone of HEAD in a clean Debian 12: fresh.sh [--cache] [PATH]. Needs root.
+# Tries Cluxel on clean Debian 12 machines, made by debootstrap: fresh.sh [--cache] [--packages] [PATH]. Needs root.
+# The first machine holds a clone of HEAD, in which the README's two commands run and the packages are made. The second
+# one has no checkout: it installs the packages and uses them (tests/install/packages_test.sh). --packages: only the
+# second one, with packages made on this machine.
 # Mounts are made in a mount namespace of their own, so that none is left behind however this ends, and none can be
 # deleted with the folder.
 source "$(dirname "$0")/common.sh"
@@ -39,7 +42,7 @@ make_clean_debian() {  # make_clean_debian ROOT
   if [ -f "${HOME}/.npmrc" ]; then cp "${HOME}/.npmrc" "$root/root/.npmrc"; fi
 }
 
-run_in_clean_debian() {  # run_in_clean_debian ROOT CHECKOUT CACHE COMMAND
+run_in_clean_debian() {  # run_in_clean_debian ROOT CHECKOUT CACHE FOLDER COMMAND
   local root=$1 checkout=$2 cache=$3 shared settings
   shared=$(dirname "$checkout")/shared
   mount -t proc proc "$root/proc" || say "run: no /proc in the clean machine"
@@ -56,15 +59,42 @@ run_in_clean_debian() {  # run_in_clean_debian ROOT CHECKOUT CACHE COMMAND
   fi
   mapfile -t settings < <(network_settings)
   chroot "$root" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 "${settings[@]}" \
-    bash -c "cd '$checkout' && $4"
+    bash -c "cd '$4' && $5"
+}
+
+in_namespace() {  # in_namespace FOLDER COMMAND: runs COMMAND in FOLDER of the clean machine
+  # shellcheck disable=SC2016  # the inner shell expands "$@"
+  unshare --mount --propagation private bash -c 'run_in_clean_debian "$@"' fresh "$root" "$PWD" "$cache" "$1" "$2"
+}
+
+try_clone() {
+  make_clean_debian "$root"
+  mkdir -p "$(dirname "$root$PWD")"
+  git clone -q . "$root$PWD"
+  in_namespace "$PWD" './run demo && ./run test && ./run package' || die "the clone failed on a clean machine; it lies in $root"
+  rm -rf "$debs"
+  cp -r "$root$PWD/build/packages" "$debs"
+  rm -rf --one-file-system "$root"
+  say "run: demo, test and package passed on a clean Debian 12"
+}
+
+try_packages() {
+  local folder=/root/packages
+  make_clean_debian "$root"
+  mkdir -p "$root$folder"
+  cp "$debs"/*.deb README.md tests/docs/run_documents.py tests/install/packages_test.sh "$root$folder/"
+  in_namespace "$folder" 'bash packages_test.sh .' || die "the packages failed on a clean machine; it lies in $root"
+  rm -rf --one-file-system "$root"
+  say "run: the packages passed on a clean Debian 12"
 }
 
 [ "$(id -u)" = 0 ] || die "fresh needs root, for debootstrap and chroot"
 install_packages debootstrap git
-root=build/fresh cache=
+root=build/fresh cache='' packages_only='' debs=build/fresh-debs
 for option in "$@"; do
   case "$option" in
     --cache) cache=$(ccache -k cache_dir) || die "--cache needs ccache" ;;
+    --packages) packages_only=yes debs=build/packages ;;
     -*) die "unknown option '$option' of ./run fresh" 2 ;;
     *) root=$option ;;
   esac
@@ -72,12 +102,6 @@ done
 mkdir -p "$root"
 root=$(readlink -f "$root")
 rm -rf --one-file-system "$root"
-make_clean_debian "$root"
-mkdir -p "$(dirname "$root$PWD")"
-git clone -q . "$root$PWD"
 export -f run_in_clean_debian network_settings say
-# shellcheck disable=SC2016  # the inner shell expands "$@"
-unshare --mount --propagation private bash -c 'run_in_clean_debian "$@"' fresh "$root" "$PWD" "$cache" \
-  './run demo && ./run test' || die "the two commands failed on a clean machine; it lies in $root"
-rm -rf --one-file-system "$root"
-say "run: the two commands passed on a clean Debian 12"
+if [ -n "$packages_only" ]; then bash tools/package.sh >/dev/null; else try_clone; fi
+try_packages

@@ -12,6 +12,7 @@ for option in "$@"; do
   esac
 done
 install_base
+install_packages dpkg-dev file lintian   # for the test of the packages
 install_second_engine
 build release
 exec bash tools/run_tests.sh release "${options[@]}"

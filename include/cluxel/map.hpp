@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -47,6 +48,8 @@ struct QueryOptions {
   std::string source_name = "query";                  ///< names the query in errors and warnings
   /// The default graph is the union of all graphs but history; true: the unnamed graph only.
   bool strict_default_graph = false;
+  /// Called now and then while the query runs, in its thread. What it throws ends the query and reaches the caller.
+  std::function<void()> poll;
 };
 
 /// Quads that an update asked to add and to remove.

@@ -115,6 +115,7 @@ Answer Map::query(std::string_view text, const QueryOptions& options) const {
   if (options.deadline.count() > 0) engine.budget.deadline = options.deadline;
   engine.budget.max_rows = options.max_rows;
   engine.budget.max_memory_bytes = options.max_memory_bytes;
+  engine.budget.poll = options.poll;
   const std::vector<sparql::Binding> bindings(options.bindings.begin(), options.bindings.end());
   std::vector<std::string> names;
   for (const sparql::Binding& binding : bindings) names.push_back(binding.first);

@@ -24,6 +24,7 @@ void parallelFor(std::size_t count, unsigned threads, const std::function<void(s
         const std::lock_guard lock(failure_mutex);
         if (i < failed_piece) failure = std::current_exception();
         failed_piece = std::min(failed_piece, i);
+        next = count;  // all smaller pieces have been handed out already
       }
     }
   };

@@ -9,7 +9,7 @@ namespace cluxel {
 
 /// Calls `work(i)` once for every i in [0, count), on up to `threads` threads, in no order. Each call must write only
 /// what belongs to its own i: then the outcome is the same for every number of threads. The exception of the smallest
-/// failing i is thrown again.
+/// failing i is thrown again; no further piece begins after a failure.
 void parallelFor(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& work);
 
 }  // namespace cluxel

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -32,6 +33,8 @@ struct QueryBudget {
   std::uint64_t max_rows = 0;                                        ///< rows of the result
   std::uint64_t max_work_rows = 0;                                   ///< total rows passed between operators
   std::uint64_t max_memory_bytes = 4ull << 30;                       ///< held by joins, sorts, groups and the result
+  /// Called every few thousand rows in the thread of the query. What it throws ends the query.
+  std::function<void()> poll = {};
 };
 
 struct QueryOptions {

@@ -129,5 +129,17 @@ TEST(Query, EndsAtItsLimits) {
   EXPECT_EQ(kindWith(options), ErrorKind::BudgetExceeded);
 }
 
+TEST(Answer, IsGivenUpWhenThePollThrows) {
+  struct Stop {};
+  const std::string pairs = "SELECT (COUNT(*) AS ?n) { ?a ?p ?b . ?c ?q ?d FILTER(?b = ?c) }";
+  QueryOptions options;
+  int calls = 0;
+  options.poll = [&] {
+    if (++calls == 3) throw Stop();
+  };
+  EXPECT_THROW(campusMap().query(pairs, options), Stop);
+  EXPECT_EQ(calls, 3);
+}
+
 }  // namespace
 }  // namespace cluxel

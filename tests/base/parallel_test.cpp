@@ -36,5 +36,18 @@ TEST(ParallelFor, ThrowsTheErrorOfTheSmallestFailingPiece) {
     }
 }
 
+TEST(ParallelFor, BeginsNoPieceAfterAFailure) {
+  for (const unsigned threads : {1U, 4U}) {
+    std::atomic<std::size_t> calls = 0;
+    EXPECT_THROW(parallelFor(1'000'000, threads,
+                             [&](std::size_t) {
+                               ++calls;
+                               throw std::runtime_error("no");
+                             }),
+                 std::runtime_error);
+    EXPECT_LE(calls, threads);
+  }
+}
+
 }  // namespace
 }  // namespace cluxel

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # Runs what the documents print: every command of a ```console block, in order, in a scratch folder, and compares the
-# output with the lines shown below it. Usage: run_documents.py --source CHECKOUT --program FOLDER DOCUMENT.md ...
+# output with the lines shown below it. Usage:
+#   run_documents.py [--first] --source CHECKOUT --program FOLDER DOCUMENT.md ...
+# --first: only the first block of each document that runs commands; it needs no checkout.
 #
 #   ```console
 #   $ cluxel query campus.clx street_signs.rq      a command; it must exit with 0
@@ -73,7 +75,8 @@ def matches(expected, actual):
 class Runner:
     def __init__(self, source, program, folder):
         self.source, self.folder = source, folder
-        self.environment = dict(os.environ, PATH=f"{program}:{os.environ['PATH']}", SOURCE=str(source), COLUMNS="160")
+        path = f"{program}:{pathlib.Path(sys.executable).parent}:{os.environ['PATH']}"
+        self.environment = dict(os.environ, PATH=path, SOURCE=str(source), COLUMNS="160", PYTHONPATH=f"{program}/python")
         self.environment.pop("CLUXEL_HOME", None)
         self.commands, self.faults = 0, []
 
@@ -125,6 +128,7 @@ def with_header(text):
 
 def main():
     parser = argparse.ArgumentParser()
+    parser.add_argument("--first", action="store_true")
     parser.add_argument("--source", type=pathlib.Path, required=True)
     parser.add_argument("--program", type=pathlib.Path, required=True)
     parser.add_argument("documents", type=pathlib.Path, nargs="+")
@@ -134,7 +138,8 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             runner = Runner(args.source.resolve(), args.program.resolve(), pathlib.Path(folder))
             for line, language, mark, lines in blocks_of(document.read_text()):
-                runner.block(f"{document}:{line}", language, mark, lines)
+                if not args.first or (language == "console" and mark is None and runner.commands == 0):
+                    runner.block(f"{document}:{line}", language, mark, lines)
             print(f"{document}: {runner.commands} commands run, {len(runner.faults)} faults")
             faults += runner.faults
     print("\n".join(faults))

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# installed_test.sh SOURCE BUILD: installs into a prefix, moves it, and uses it as a stranger would: the example is built
-# with find_package and run, the program queries its map, each header compiles alone, nothing but the facade is exported.
+# installed_test.sh SOURCE BUILD [PYTHON]: installs into a prefix, moves it, and uses it as a stranger would: the example
+# is built with find_package and run, the program queries its map, each header compiles alone, nothing but the facade is
+# exported. With PYTHON, the interpreter of the module, the Python example runs too.
 set -euo pipefail
-source_dir=$1 build_dir=$2
+source_dir=$1 build_dir=$2 python=${3:-}
 work=$build_dir/installed_test
 prefix=$work/moved
 unset CLUXEL_HOME LD_LIBRARY_PATH
@@ -59,6 +60,19 @@ wants "$work/version" '^cluxel [0-9]+\.[0-9]+\.[0-9]+'
 "$example" "$work/scans" "$work/campus.clx" >"$work/example.out"
 wants "$work/example.out" '^[1-9][0-9]* objects, '
 wants "$work/example.out" 'why:'
+
+# The Python module finds the library and the data of the moved installation, and builds the same map.
+if [ -n "$python" ]; then
+  module=$(dirname "$(find "$prefix" -name 'cluxel.*.so')")
+  [ -f "$module/cluxel.pyi" ] || fail "the types of the Python module are not installed"
+  objdump -p "$module"/cluxel.*.so >"$work/module_headers"
+  wants "$work/module_headers" 'RUNPATH +\$ORIGIN/[./a-z0-9_-]*$'
+  PYTHONPATH=$module PYTHONDONTWRITEBYTECODE=1 "$python" "$source_dir/examples/python/build_and_ask.py" "$work/scans" \
+    "$work/python.clx" >"$work/python.out" || fail "the Python example failed"
+  wants "$work/python.out" '^[1-9][0-9]* trees, on average'
+  for map in campus python; do "$prefix/bin/cluxel" export --canonical "$work/$map.clx" -o "$work/$map.nq" 2>/dev/null; done
+  cmp "$work/campus.nq" "$work/python.nq" || fail "C++ and Python built different maps"
+fi
 
 # An error crosses the border of the library with its type and place.
 printf '1 2 3\n4 five 6\n' >"$work/faulty.xyz"

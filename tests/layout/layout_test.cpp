@@ -141,6 +141,15 @@ TEST(Layout, PublicHeadersNameTheStandardLibraryAndEigenOnly) {
     }
 }
 
+TEST(Layout, ThePythonModuleSeesTheInstalledInterfaceOnly) {
+  for (const fs::path& file : sourcesBelow({"python"}))
+    for (const std::string& name : includesOf(file)) {
+      const bool is_own = name.starts_with("cluxel/") || fs::exists(kRoot / "python" / name);
+      const bool is_standard = name.find('/') == std::string::npos && name.find('.') == std::string::npos;
+      EXPECT_TRUE(is_own || name.starts_with("pybind11/") || is_standard) << file << " includes " << name;
+    }
+}
+
 /// What a heavy package is walled in by: files whose names begin so, and no more of them than these. Redland's C tables
 /// of callbacks fill two modules (docs/decisions.md).
 struct Wall {
@@ -200,7 +209,7 @@ TEST(Layout, FileNamesAreUniqueInTheTree) {
 
 TEST(Layout, EveryFileOpensWithItsLicenceAndPurposeAndStaysShort) {
   constexpr std::size_t kMaxLines = 350;
-  for (const fs::path& file : sourcesBelow({"include/cluxel", "src", "tests", "bench"})) {
+  for (const fs::path& file : sourcesBelow({"include/cluxel", "src", "python", "tests", "bench"})) {
     const auto lines = linesOf(file);
     ASSERT_GE(lines.size(), 2U) << file;
     EXPECT_EQ(lines[0], "// SPDX-License-Identifier: Apache-2.0") << file;

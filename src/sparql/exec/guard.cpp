@@ -31,7 +31,7 @@ void Guard::start(const QueryBudget& budget, const Usage& used) {
 
 void Guard::check() {
   if (work_rows_ > max_work_rows_) refuse("rows");
-  if (budget_.deadline && std::chrono::steady_clock::now() > deadline_) refuse("time");
+  checkTime();
   next_check_ =
       std::min(work_rows_ + kRowsBetweenChecks, max_work_rows_ + (max_work_rows_ == ~std::uint64_t{0} ? 0 : 1));
 }

@@ -42,8 +42,9 @@ class Guard {
   void release(std::size_t bytes) { bytes_ -= std::min(bytes, bytes_); }
   /// True when `bytes` more fit the memory budget.
   bool hasRoomFor(std::size_t bytes) const { return bytes_ <= max_bytes_ && bytes <= max_bytes_ - bytes_; }
-  /// For work shared with other queries: checks the deadline only.
+  /// For work shared with other queries: checks the deadline and polls only.
   void checkTime() const {
+    if (budget_.poll) budget_.poll();
     if (budget_.deadline && std::chrono::steady_clock::now() > deadline_) refuse("time");
   }
   /// Reduces the charged memory to `bytes`.

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// Answers in Python: columns as NumPy arrays of numbers or lists of text, terms, rows, triples.
+#include <pybind11/stl.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "bindings.hpp"
+
+namespace cluxel::python {
+
+namespace {
+
+template <typename Number>
+std::optional<Number> numberOf(const std::string& text) {
+  Number value{};
+  const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
+}
+
+std::optional<double> numberOf(const Term* term) {
+  if (term == nullptr || term->kind != TermKind::Literal || !isNumberType(term->datatype)) return std::nullopt;
+  return numberOf<double>(term->text);
+}
+
+/// What the cells of a column have in common.
+enum class ColumnKind : std::uint8_t { Integers, Numbers, Text };
+
+bool isInteger(const Term& term) {
+  return isIntegerType(term.datatype) && numberOf<std::int64_t>(term.text).has_value();
+}
+
+ColumnKind columnKindOf(const Answer& answer, std::size_t column) {
+  bool is_whole = true, has_number = false;
+  for (std::size_t row = 0; row < answer.size(); ++row) {
+    const Term* term = answer.at(row, column);
+    if (term != nullptr && !numberOf(term)) return ColumnKind::Text;
+    has_number = has_number || term != nullptr;
+    is_whole = is_whole && term != nullptr && isInteger(*term);
+  }
+  if (!has_number) return ColumnKind::Text;
+  return is_whole ? ColumnKind::Integers : ColumnKind::Numbers;
+}
+
+py::array_t<double> numbersOf(const Answer& answer, std::size_t column) {
+  std::vector<double> values(answer.size());
+  for (std::size_t row = 0; row < values.size(); ++row)
+    values[row] = numberOf(answer.at(row, column)).value_or(std::numeric_limits<double>::quiet_NaN());
+  return arrayOwning<double>(std::move(values));
+}
+
+py::array_t<std::int64_t> integersOf(const Answer& answer, std::size_t column) {
+  std::vector<std::int64_t> values(answer.size());
+  for (std::size_t row = 0; row < values.size(); ++row)
+    values[row] = *numberOf<std::int64_t>(answer.at(row, column)->text);
+  return arrayOwning<std::int64_t>(std::move(values));
+}
+
+/// One Python value for each cell; None where the variable is unbound.
+template <typename Convert>
+py::list cellsOf(const Answer& answer, std::size_t column, const Convert& convert) {
+  py::list cells(answer.size());
+  for (std::size_t row = 0; row < answer.size(); ++row) {
+    const Term* term = answer.at(row, column);
+    cells[row] = term == nullptr ? py::object(py::none()) : convert(*term);
+  }
+  return cells;
+}
+
+py::list textsOf(const Answer& answer, std::size_t column) {
+  return cellsOf(answer, column, [](const Term& term) -> py::object { return py::str(term.text); });
+}
+
+py::object columnOf(const Answer& answer, std::size_t column) {
+  switch (columnKindOf(answer, column)) {
+    case ColumnKind::Integers:
+      return integersOf(answer, column);
+    case ColumnKind::Numbers:
+      return numbersOf(answer, column);
+    default:
+      return textsOf(answer, column);
+  }
+}
+
+py::dict columnsOf(const Answer& answer) {
+  py::dict columns;
+  for (std::size_t i = 0; i < answer.variables().size(); ++i)
+    columns[py::str(answer.variables()[i])] = columnOf(answer, i);
+  return columns;
+}
+
+py::list rowsOf(const Answer& answer) {
+  py::list rows(answer.size());
+  for (std::size_t row = 0; row < answer.size(); ++row) {
+    py::tuple cells(answer.variables().size());
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const Term* term = answer.at(row, i);
+      cells[i] = term == nullptr ? py::object(py::none()) : valueOf(*term);
+    }
+    rows[row] = cells;
+  }
+  return rows;
+}
+
+py::list triplesOf(const Answer& answer) {
+  py::list triples;
+  for (const Quad& quad : answer.triples()) triples.append(py::make_tuple(quad.subject, quad.predicate, quad.object));
+  return triples;
+}
+
+const char* answerKindName(const Answer& answer) {
+  switch (answer.kind()) {
+    case AnswerKind::Boolean:
+      return "boolean";
+    case AnswerKind::Triples:
+      return "triples";
+    default:
+      return "solutions";
+  }
+}
+
+std::size_t lengthOf(const Answer& answer) {
+  return answer.kind() == AnswerKind::Triples ? answer.triples().size() : answer.size();
+}
+
+bool truthOf(const Answer& answer) {
+  return answer.kind() == AnswerKind::Boolean ? answer.boolean() : lengthOf(answer) > 0;
+}
+
+std::string reprOf(const Answer& answer) {
+  std::string text = std::string("<cluxel.Answer ") + answerKindName(answer);
+  if (answer.kind() == AnswerKind::Boolean) return text + (answer.boolean() ? " true>" : " false>");
+  text += " " + std::to_string(lengthOf(answer));
+  for (const std::string& variable : answer.variables()) text += " ?" + variable;
+  return text + ">";
+}
+
+void bindColumns(py::class_<Answer>& answers) {
+  answers
+      .def(
+          "__getitem__",
+          [](const Answer& answer, const std::string& variable) { return columnOf(answer, answer.column(variable)); },
+          py::arg("variable"),
+          "The column of a variable, shape (rows,): an int64 array when all cells are whole numbers, a float64 array\n"
+          "(NaN: unbound) when all bound cells are numbers, else a list of str with None for unbound cells. An empty\n"
+          "column and one without bound cells is a list; numbers(variable) is an array always.")
+      .def(
+          "numbers",
+          [](const Answer& answer, const std::string& variable) { return numbersOf(answer, answer.column(variable)); },
+          py::arg("variable"), "The column as a float64 array of shape (rows,); NaN where it is unbound or no number.")
+      .def(
+          "texts",
+          [](const Answer& answer, const std::string& variable) { return textsOf(answer, answer.column(variable)); },
+          py::arg("variable"), "The column as a list of str: IRI, label or lexical form; None where it is unbound.")
+      .def(
+          "terms",
+          [](const Answer& answer, const std::string& variable) {
+            return cellsOf(answer, answer.column(variable), [](const Term& term) { return py::cast(term); });
+          },
+          py::arg("variable"), "The column as a list of Term, with datatype and language; None where it is unbound.");
+}
+
+}  // namespace
+
+void bindAnswers(py::module_& module) {
+  py::class_<Answer> answers(
+      module, "Answer",
+      "The answer to a query. It stays valid when the map changes.\n\n"
+      "SELECT: answer['height'] is a column, len(answer) the number of rows, and iterating gives rows.\n"
+      "ASK: bool(answer). CONSTRUCT and DESCRIBE: answer.triples, and len(answer) counts them.");
+  bindColumns(answers);
+  answers
+      .def_property_readonly("kind", &answerKindName,
+                             "'solutions' (SELECT), 'boolean' (ASK) or 'triples' (CONSTRUCT, DESCRIBE).")
+      .def_property_readonly("variables", &Answer::variables, "The variables of a SELECT without '?', in its order.")
+      .def_property_readonly("columns", &columnsOf, "dict from variable to column, as answer[variable] gives it.")
+      .def_property_readonly("triples", &triplesOf, "The triples as (subject, predicate, object) of Term.")
+      .def_property_readonly(
+          "warnings", [](const Answer& answer) { return tupleOf(answer.warnings()); },
+          "Classes, properties and graphs that the query names and the map does not know, as Diagnostic.")
+      .def("__len__", &lengthOf, "Number of rows, or of triples.")
+      .def("__bool__", &truthOf, "The answer of an ASK; for others, whether there is a row or a triple.")
+      .def(
+          "__iter__", [](const Answer& answer) { return py::iter(rowsOf(answer)); },
+          "Iterates over rows: tuples of int, float, bool, str, or None where a variable is unbound.")
+      .def("__repr__", &reprOf);
+}
+
+}  // namespace cluxel::python

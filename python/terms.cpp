@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// RDF terms in Python, and Python values as terms.
+#include <pybind11/operators.h>
+
+#include <optional>
+#include <set>
+#include <string_view>
+
+#include "bindings.hpp"
+
+namespace cluxel::python {
+
+namespace {
+
+constexpr std::string_view kXsd = "http://www.w3.org/2001/XMLSchema#";
+
+const char* termKindName(const Term& term) {
+  switch (term.kind) {
+    case TermKind::Iri:
+      return "iri";
+    case TermKind::BlankNode:
+      return "blank";
+    default:
+      return "literal";
+  }
+}
+
+Term literalOf(const std::string& text, const std::optional<std::string>& datatype,
+               const std::optional<std::string>& language) {
+  if (datatype && language)
+    throw Error(ErrorKind::InvalidArgument, "a literal has a datatype or a language, not both: leave one out");
+  if (datatype) return Term::literal(text, *datatype);
+  return language ? Term::langLiteral(text, *language) : Term::literal(text);
+}
+
+bool isLocalXsd(const std::string& datatype, const std::set<std::string_view>& names) {
+  const std::string_view text = datatype;
+  return text.starts_with(kXsd) && names.contains(text.substr(kXsd.size()));
+}
+
+std::size_t hashOf(const Term& term) {
+  return static_cast<std::size_t>(py::hash(py::str(toNTriples(term))));
+}
+
+}  // namespace
+
+bool isIntegerType(const std::string& datatype) {
+  static const std::set<std::string_view> names{"integer",
+                                                "long",
+                                                "int",
+                                                "short",
+                                                "byte",
+                                                "nonNegativeInteger",
+                                                "unsignedLong",
+                                                "unsignedInt",
+                                                "unsignedShort",
+                                                "unsignedByte",
+                                                "positiveInteger",
+                                                "nonPositiveInteger",
+                                                "negativeInteger"};
+  return isLocalXsd(datatype, names);
+}
+
+bool isNumberType(const std::string& datatype) {
+  static const std::set<std::string_view> names{"decimal", "double", "float"};
+  return isIntegerType(datatype) || isLocalXsd(datatype, names);
+}
+
+Term termOf(const py::handle& value) {
+  if (py::isinstance<Term>(value)) return value.cast<Term>();
+  if (py::isinstance<py::bool_>(value)) return Term::boolean(value.cast<bool>());
+  if (py::isinstance<py::int_>(value))
+    return Term::literal(py::str(value).cast<std::string>(), std::string(kXsd) + "integer");
+  if (py::isinstance<py::float_>(value)) return Term::real(value.cast<double>());
+  if (py::isinstance<py::str>(value)) return Term::literal(value.cast<std::string>());
+  throw Error(ErrorKind::InvalidArgument, "a value is Term, str, bool, int or float, not " +
+                                              py::str(py::type::handle_of(value).attr("__name__")).cast<std::string>() +
+                                              "; cluxel.Term.iri(...) makes an IRI");
+}
+
+py::object valueOf(const Term& term) {
+  if (term.kind == TermKind::Literal) {
+    PyObject* number = nullptr;
+    const py::str text(term.text);
+    if (isIntegerType(term.datatype))
+      number = PyLong_FromUnicodeObject(text.ptr(), 10);
+    else if (isNumberType(term.datatype))
+      number = PyFloat_FromString(text.ptr());
+    if (number != nullptr) return py::reinterpret_steal<py::object>(number);
+    PyErr_Clear();  // an ill-typed literal keeps its text
+    if (isLocalXsd(term.datatype, {"boolean"})) return py::bool_(term.text == "true" || term.text == "1");
+  }
+  return py::str(term.text);
+}
+
+void bindTerms(py::module_& module) {
+  py::class_<Term>(module, "Term", "An RDF 1.1 term: an IRI, a blank node or a literal. Immutable, hashable.")
+      .def_static(
+          "iri", [](const std::string& iri) { return Term::iri(iri); }, py::arg("iri"), "The term of an IRI.")
+      .def_static("literal", &literalOf, py::arg("text"), py::arg("datatype") = py::none(),
+                  py::arg("language") = py::none(),
+                  "A literal with the IRI of a datatype, or a language tag, or neither (xsd:string).")
+      .def_property_readonly("kind", &termKindName, "'iri', 'blank' or 'literal'.")
+      .def_readonly("text", &Term::text, "The IRI, the blank node's label, or the lexical form.")
+      .def_property_readonly(
+          "datatype", [](const Term& term) { return orNone(term.datatype); }, "IRI of a literal's datatype, else None.")
+      .def_property_readonly(
+          "language", [](const Term& term) { return orNone(term.language); }, "Language tag of a literal, else None.")
+      .def_property_readonly("value", &valueOf, "int, float or bool of such a literal, else the text.")
+      .def("n3", &toNTriples, "The term in N-Triples form.")
+      .def(py::self == py::self)
+      .def(py::self < py::self)
+      .def("__hash__", &hashOf)
+      .def("__str__", [](const Term& term) { return term.text; })
+      .def("__repr__", [](const Term& term) { return "<cluxel.Term " + toNTriples(term) + ">"; });
+}
+
+}  // namespace cluxel::python

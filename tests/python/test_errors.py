@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Errors carry kind, place and remedy; the stub and the docstrings describe the module as it is."""
+import ast
+import inspect
+import pickle
+
+import pytest
+
+import cluxel
+from conftest import SOURCE
+
+KINDS = {
+    "InvalidArgument": cluxel.InvalidArgumentError,
+    "NotFound": cluxel.NotFoundError,
+    "FaultyInput": cluxel.FaultyInputError,
+    "StoreUnavailable": cluxel.StoreUnavailableError,
+    "BudgetExceeded": cluxel.BudgetExceededError,
+}
+
+
+def test_each_kind_has_its_class():
+    for kind, error in KINDS.items():
+        assert error.kind == kind and issubclass(error, cluxel.CluxelError) and error.__doc__
+    assert issubclass(cluxel.InvalidArgumentError, ValueError) and issubclass(cluxel.NotFoundError, LookupError)
+
+
+def test_a_faulty_scan_is_named_with_its_line(campus, tmp_path):
+    scan = tmp_path / "scan.xyz"
+    scan.write_text("1 2 3\n4 five 6\n")
+    with pytest.raises(cluxel.FaultyInputError) as raised:
+        campus.build(tmp_path / "map.clx", scans=scan)
+    error = raised.value
+    assert (error.kind, error.file, error.line) == ("FaultyInput", str(scan), 2)
+    assert "scan.xyz:2" in str(error) and error.diagnostics[0].severity == "error"
+    assert not (tmp_path / "map.clx").exists()
+
+
+def test_a_faulty_query_is_named_with_line_and_column(campus_map):
+    with pytest.raises(cluxel.FaultyInputError) as raised:
+        campus_map.query("SELECT *\nWHERE { ?s ?p }", source_name="mine.rq")
+    error = raised.value
+    assert (error.file, error.line, error.column) == ("mine.rq", 2, 15)
+    assert error.diagnostics[0].source_line == "WHERE { ?s ?p }" and str(error).startswith("mine.rq:2:15: error:")
+
+
+def test_all_faults_of_a_file_are_reported(campus, tmp_path):
+    rules = tmp_path / "town.rules.yaml"
+    text = (SOURCE / "rules" / "outdoor.rules.yaml").read_text()
+    rules.write_text(text.replace("attribute: top", "attribute: topp"))
+    with pytest.raises(cluxel.FaultyInputError) as raised:
+        campus.build(tmp_path / "map.clx", rules=[rules])
+    error = raised.value
+    assert len(error.diagnostics) > 1 and error.file == str(rules) and error.line == error.diagnostics[0].line > 1
+    assert {fault.line for fault in error.diagnostics} == {
+        number for number, line in enumerate(rules.read_text().split("\n"), 1) if "attribute: topp" in line}
+    assert error.hint is not None and "top" in error.hint
+
+
+def test_what_is_not_known_is_none(tmp_path):
+    with pytest.raises(cluxel.StoreUnavailableError, match="there is no such file") as raised:
+        cluxel.open(tmp_path / "absent.clx")
+    error = raised.value
+    assert error.file is error.line is error.column is error.hint is error.remedy is None and error.diagnostics == ()
+
+
+def test_a_missing_data_folder_is_told_with_its_remedy(campus, tmp_path):
+    with pytest.raises(cluxel.FaultyInputError) as raised:
+        cluxel.build(campus.scans, tmp_path / "map.clx", home=tmp_path)
+    assert "home=FOLDER" in raised.value.remedy and raised.value.remedy in str(raised.value)
+
+
+def test_errors_can_be_pickled(campus_map):
+    with pytest.raises(cluxel.FaultyInputError) as raised:
+        campus_map.query("SELECT {")
+    copy = pickle.loads(pickle.dumps(raised.value))
+    assert type(copy) is cluxel.FaultyInputError and copy.diagnostics == raised.value.diagnostics
+
+
+def test_wrong_types_are_refused(campus_map):
+    for call in (lambda: campus_map.query(7), lambda: campus_map.points(7), lambda: cluxel.open(7), lambda: cluxel.Map()):
+        with pytest.raises(TypeError):
+            call()
+
+
+def names_in(body):
+    """name -> node of what a stub declares, private names and typing's imports apart."""
+    found = {}
+    for node in body:
+        if isinstance(node, (ast.ClassDef, ast.FunctionDef)):
+            found[node.name] = node
+        elif isinstance(node, ast.AnnAssign):
+            found[node.target.id] = node
+    return found
+
+
+STUB = names_in(ast.parse((SOURCE / "python" / "cluxel.pyi").read_text()).body)
+
+
+def public(names):
+    return {name for name in names if not name.startswith("_")}
+
+
+def test_the_stub_declares_what_the_module_has():
+    assert public(STUB) == public(dir(cluxel))
+    for name, node in STUB.items():
+        if isinstance(node, ast.ClassDef) and not issubclass(getattr(cluxel, name), (tuple, Exception)):
+            members = names_in(node.body)
+            assert public(members) == public(vars(getattr(cluxel, name))), name
+            assert all(hasattr(getattr(cluxel, name), member) for member in members), name
+    assert cluxel.Diagnostic._fields == tuple(names_in(STUB["Diagnostic"].body))
+    assert cluxel.UpdateCounts._fields == tuple(names_in(STUB["UpdateCounts"].body))
+    assert set(names_in(STUB["CluxelError"].body)) == public(vars(cluxel.CluxelError))
+
+
+def arguments_of(node):
+    return [argument.arg for argument in node.args.args + node.args.kwonlyargs]
+
+
+@pytest.mark.parametrize("owner, name", [(None, "build"), (None, "open"), ("Map", "query"), ("Map", "objects"),
+                                         ("Map", "points"), ("Map", "explain"), ("Map", "update"), ("Term", "literal")])
+def test_the_stub_names_the_arguments_of_the_module(owner, name):
+    node = names_in(STUB[owner].body)[name] if owner else STUB[name]
+    signature = getattr(getattr(cluxel, owner) if owner else cluxel, name).__doc__.split("\n")[0]
+    positions = [signature.find(argument + ": ") for argument in arguments_of(node)]
+    assert -1 not in positions and positions == sorted(positions), signature
+    assert signature.count(": ") == len(positions), signature
+
+
+def test_everything_has_a_docstring():
+    for name in public(dir(cluxel)) - {"LABELS"}:
+        assert inspect.getdoc(getattr(cluxel, name)), name
+        if isinstance(getattr(cluxel, name), type):
+            for member in public(vars(getattr(cluxel, name))):
+                value = inspect.getattr_static(getattr(cluxel, name), member)
+                if callable(value) or isinstance(value, property):
+                    text = (inspect.getdoc(value) or "").split("->", 1)[-1]
+                    assert len(text.split()) > 2, f"{name}.{member}"
