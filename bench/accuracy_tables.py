@@ -26,6 +26,7 @@ PARTS = [
     ("stops", "campus.json", "Campus 904, 77 stop-and-go scans (generated data), model `campus`"),
 ]
 EXPECTED_ERRORS = {"oakland": 0.03, "sydney": 0.06, "sydney_halves": 0.06, "nuscenes": 0.06, "kitti": 0.06}   # largest, of calibration
+FOLDS = 5
 POLES_AND_TRUNKS = ("pole", "trunk")
 Z = 1.959963984540054   # 97.5 % quantile of the normal distribution
 
@@ -282,6 +283,8 @@ def print_bars(out):
     print("| data | measure | value | bar | holds |\n|---|---|---|---|---|")
     for part, pattern, title in PARTS:
         files = load(sorted(glob.glob(f"{out}/{part}/{pattern}")))
+        if pattern == "fold?.json" and 0 < len(files) < FOLDS:
+            title += f", only {len(files)} of them"
         for what, value, bar, total in all_bars(part, pattern, files) if files else ():
             if total == 0:
                 continue
