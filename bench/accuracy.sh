@@ -7,14 +7,16 @@
 #   folds     Oakland by pairs of chunks: five models trained without them
 #   halves    Oakland by place: trained on ac to ah, judged on ai to ao, and the other way
 #   sydney, nuscenes, kitti   each scan a map of its own; the shipped models, which saw none of them
+#   sydney_halves   Sydney again, with the other half of its scans in training
 #   campus    generated campuses that no model was trained on and no rule was chosen on
+#   stops     the paper's experiment on a generated campus: 77 stop-and-go scans
 # THREADS (default 1) is the number of threads.
 set -euo pipefail
 here=$(dirname "$(realpath "$0")")
-[ $# -ge 3 ] || { sed -n '5,12s/^# //p' "$0" >&2; exit 2; }
+[ $# -ge 3 ] || { sed -n '5,14s/^# //p' "$0" >&2; exit 2; }
 program=$1 data=$2 out=$3
 shift 3
-[ $# -gt 0 ] || set -- folds halves sydney nuscenes kitti campus
+[ $# -gt 0 ] || set -- folds halves sydney nuscenes kitti sydney_halves campus stops
 chunks=(ac ad ae ag ah ai aj ak al ao)
 models=(oakland campus)
 
@@ -69,6 +71,29 @@ scans() {
   done
 }
 
+# Every second scan of Sydney trains a model beside Oakland and the generated campuses; the others are judged by it.
+sydney_halves() {
+  local half scan i held names=(even odd)
+  make_helpers
+  mkdir -p "$out/sydney_halves"
+  for half in 0 1; do
+    local model=$out/sydney_halves/${names[$half]} helping=("${helpers[@]}") truths=()
+    for i in 1 2 3 4; do truths+=(--helper-truth campus.yaml); done
+    held=() i=0
+    for scan in "$data"/sydney/*.ply; do
+      if [ $((i % 2)) = "$half" ]; then helping+=(--helper "$scan") truths+=(--helper-truth sydney.yaml); else held+=("$scan"); fi
+      i=$((i + 1))
+    done
+    [ -f "$model/model.json" ] || cluxel train $(files_of "${chunks[@]}") --truth "$data/oakland3d_truth" \
+      "${helping[@]}" "${truths[@]}" -o "$model" >"$model.train.txt"
+    mkdir -p "$model.maps"
+    for scan in "${held[@]}"; do
+      cluxel build "$scan" -o "$model.maps/$(basename "$scan" .ply).clx" --model "$model" --force >/dev/null
+    done
+    cluxel evaluate "$model.maps"/*.clx --truth sydney --json >"$out/sydney_halves/${names[$half]}.json"
+  done
+}
+
 # A frame with its labels but without its pose, as a folder in KITTI's layout.
 kitti_frames() {
   local scan frame
@@ -93,6 +118,14 @@ campuses() {
   done
 }
 
+many_stops() {
+  local folder=$out/stops/904
+  mkdir -p "$out/stops"
+  [ -d "$folder" ] || cluxel simulate "$folder" --seed 904 --stops 77 --size 369 >/dev/null
+  cluxel build "$folder" -o "$folder.clx" --model campus --force >/dev/null
+  cluxel evaluate "$folder.clx" --truth "$folder/truth" --json >"$out/stops/campus.json"
+}
+
 for part in "$@"; do
   case $part in
     folds)
@@ -111,9 +144,11 @@ for part in "$@"; do
       kitti_frames
       scans kitti semantickitti "$out"/kitti/frames/*
       ;;
+    sydney_halves) sydney_halves ;;
     campus) campuses ;;
+    stops) many_stops ;;
     *)
-      echo "accuracy.sh: no part '$part': the parts are folds, halves, sydney, nuscenes, kitti, campus" >&2
+      echo "accuracy.sh: no part '$part': the parts are folds, halves, sydney, nuscenes, kitti, sydney_halves, campus, stops" >&2
       exit 2
       ;;
   esac

@@ -58,7 +58,9 @@ struct PointVisit {
   const TruthSource& source;
   std::vector<std::size_t> class_of_object;
   ObjectMatching matching;
+  ClassVotes votes;
   MapEvaluation& evaluation;
+  CrownPairs crowns = {};
   std::map<std::int32_t, std::string> kinds = {};
   std::int32_t next_instance = 0;  ///< of the next cloud, where each cloud begins anew
 
@@ -74,16 +76,21 @@ struct PointVisit {
       }
       const std::int32_t instance = truth.instance[i] < 0 ? -1 : first + truth.instance[i];
       if (source.countsInstancesByScan()) next_instance = std::max(next_instance, instance + 1);
-      seePoint(scan, i, static_cast<std::size_t>(truth.object_class[i]), instance, answers.object[i]);
+      seePoint(scan, i, truth, instance, answers.object[i]);
     }
   }
 
-  void seePoint(const scan::Scan& scan, std::size_t i, std::size_t truth_class, std::int32_t instance,
+  void seePoint(const scan::Scan& scan, std::size_t i, const scan::PointTruth& truth, std::int32_t instance,
                 std::uint32_t object) {
+    const auto truth_class = static_cast<std::size_t>(truth.object_class[i]);
     const bool is_free = object == mapping::kNoObjectOfPoint;
     evaluation.objects.add(truth_class, is_free ? evaluation.objects.names.size() : class_of_object[object]);
-    const Eigen::Vector3f p(scan.points.x[i], scan.points.y[i], scan.points.z[i]);
-    matching.add(scan::toMap(scan.T_map_sensor, p), truth_class, instance, object);
+    if (!is_free) votes.add(object, truth_class);
+    const Eigen::Vector3d p_map =
+        scan::toMap(scan.T_map_sensor, Eigen::Vector3f(scan.points.x[i], scan.points.y[i], scan.points.z[i]));
+    matching.add(p_map, truth_class, instance, object);
+    const bool is_trunk = truth.primitive[i] == static_cast<std::int8_t>(scan::PrimitiveLabel::Column);
+    if (instance >= 0 && truth.class_names[truth_class] == "Tree") crowns.add(p_map, instance, is_trunk, object);
     if (instance < 0 || scan.points.label.empty() || kinds.contains(instance)) return;
     if (std::string name = source.nameOfLabel(scan.points.label[i]); !name.empty())
       kinds.emplace(instance, std::move(name));
@@ -111,6 +118,7 @@ void addKinds(const std::vector<KindAnswers>& from, std::vector<KindAnswers>& in
     for (std::size_t i = 0; i < kind.found.size(); ++i) {
       after->found[i] += kind.found[i];
       after->called[i] += kind.called[i];
+      after->boxed[i] += kind.boxed[i];
     }
   }
 }
@@ -190,6 +198,9 @@ void MapEvaluation::add(const MapEvaluation& other) {
   has_instances |= other.has_instances;
   covers_all &= other.covers_all;
   matched_whole += other.matched_whole;
+  calibration.add(other.calibration);
+  crown_pairs.pairs += other.crown_pairs.pairs;
+  crown_pairs.parted += other.crown_pairs.parted;
   addScores(other.by_box, by_box);
   addScores(other.by_points, by_points);
   addKinds(other.kinds, kinds);
@@ -202,7 +213,8 @@ MapEvaluation evaluateMap(const mapping::MapReader& map, const TruthSource& sour
   std::vector<std::size_t> class_of_object =
       truthClassesOf(map.objects(), classes, classCatalogueOf(map.inputs().ontology));
   ObjectMatching matching(classes.names, class_of_object, source.ambiguous());
-  PointVisit visit{source, std::move(class_of_object), std::move(matching), evaluation};
+  PointVisit visit{source, std::move(class_of_object), std::move(matching), ClassVotes(map.objects().size()),
+                   evaluation};
   for (const mapping::Cloud& cloud : map.clouds()) visit.see(scanOf(map, cloud), map.answersFor(cloud));
   if (evaluation.primitives.total() == 0 && evaluation.objects.total() == 0)
     throw Error(ErrorKind::FaultyInput, "the truth says nothing about the points of this map; is it of other scans?");
@@ -212,6 +224,10 @@ MapEvaluation evaluateMap(const mapping::MapReader& map, const TruthSource& sour
   evaluation.by_points = visit.matching.scoreByPoints(params);
   evaluation.matched_whole = visit.matching.matchedWhole(params);
   evaluation.kinds = visit.matching.answersByKind(visit.kinds, params);
+  const auto ground = std::find(classes.names.begin(), classes.names.end(), "Ground") - classes.names.begin();
+  evaluation.calibration = visit.votes.calibrationOf(map.objects(), visit.class_of_object, classes.names.size(),
+                                                     static_cast<std::size_t>(ground));
+  evaluation.crown_pairs = visit.crowns.score(source.ambiguous());
   return evaluation;
 }
 

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "mapping/map_reader.hpp"
+#include "tasks/class_calibration.hpp"
+#include "tasks/crown_pairs.hpp"
 #include "tasks/truth_source.hpp"
 
 namespace cluxel::tasks {
@@ -53,6 +55,7 @@ struct KindAnswers {
   std::uint64_t truth = 0;            ///< objects of the kind
   std::vector<std::uint64_t> found;   ///< class of the object with an IoU of 0.5 or more; none: there is no such object
   std::vector<std::uint64_t> called;  ///< class of the object that has the most of its points; none: most are in none
+  std::vector<std::uint64_t> boxed;   ///< class of the object with an IoU of boxes of 0.8 or more; none: there is none
 };
 
 struct MapEvaluation {
@@ -68,6 +71,8 @@ struct MapEvaluation {
   /// True objects whose partner by points is one also when its points without truth count as outside; equal to those
   /// of `by_points` where every point has truth.
   std::uint64_t matched_whole = 0;
+  Calibration calibration = {};  ///< of all objects but Ground
+  CrownPairScore crown_pairs = {};
 
   /// Adds another map's evaluation against the same truth classes.
   void add(const MapEvaluation& other);

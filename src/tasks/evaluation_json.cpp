@@ -74,8 +74,16 @@ EvaluationJson kindJson(const MapEvaluation& evaluation) {
     json.push_back({{"kind", kind.name},
                     {"truth", kind.truth},
                     {"found", answersJson(kind.found, evaluation.objects.names)},
-                    {"called", answersJson(kind.called, evaluation.objects.names)}});
+                    {"called", answersJson(kind.called, evaluation.objects.names)},
+                    {"boxed", answersJson(kind.boxed, evaluation.objects.names)}});
   return json;
+}
+
+EvaluationJson calibrationJson(const Calibration& calibration) {
+  EvaluationJson bins = EvaluationJson::array();
+  for (const CalibrationBin& bin : calibration.bins)
+    bins.push_back({{"objects", bin.objects}, {"right", bin.right}, {"confidence_sum", bin.confidence_sum}});
+  return {{"expected_error", calibration.expectedError()}, {"objects", calibration.objects()}, {"bins", bins}};
 }
 
 }  // namespace
@@ -89,7 +97,9 @@ std::string toJson(const MapEvaluation& evaluation) {
     json["objects_by_box"] = objectJson(evaluation.by_box);
     json["objects_by_kind"] = kindJson(evaluation);
     json["matched_whole"] = evaluation.matched_whole;
+    json["crown_pairs"] = {{"pairs", evaluation.crown_pairs.pairs}, {"parted", evaluation.crown_pairs.parted}};
   }
+  json["calibration"] = calibrationJson(evaluation.calibration);
   return json.dump(2);
 }
 

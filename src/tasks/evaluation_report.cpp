@@ -112,19 +112,32 @@ std::string kindTable(const MapEvaluation& evaluation) {
   return text;
 }
 
+std::string calibrationLine(const Calibration& calibration) {
+  char line[160];
+  std::snprintf(line, sizeof line, "Confidence of the class: expected calibration error %.3f over %llu objects\n",
+                calibration.expectedError(), static_cast<unsigned long long>(calibration.objects()));
+  return line;
+}
+
+std::string crownLine(const CrownPairScore& score) {
+  return "Trees whose crowns touch and whose trunks stand 2 m or more apart: " + std::to_string(score.parted) + " of " +
+         std::to_string(score.pairs) + " pairs are parted\n";
+}
+
 }  // namespace
 
 std::string toText(const MapEvaluation& evaluation) {
   std::string text = pointTable("Primitives by point", evaluation.primitives) + '\n' +
                      confusionTable(evaluation.primitives) + '\n' + pointTable("Objects by point", evaluation.objects) +
                      '\n' + confusionTable(evaluation.objects) + '\n';
+  text += calibrationLine(evaluation.calibration) + '\n';
   if (!evaluation.has_instances) return text + "Objects by object: the truth has no instances.\n";
   if (!evaluation.covers_all)
     text += "Only some objects are labelled: points of others count neither way, and objects have no precision.\n\n";
   return text +
          objectTable("Objects by object, point sets with IoU of 0.5", evaluation.by_points, evaluation.covers_all) +
          '\n' + objectTable("Objects by object, boxes with IoU of 0.8", evaluation.by_box, evaluation.covers_all) +
-         '\n' + kindTable(evaluation);
+         '\n' + kindTable(evaluation) + '\n' + crownLine(evaluation.crown_pairs);
 }
 
 }  // namespace cluxel::tasks

@@ -134,31 +134,46 @@ std::map<std::int32_t, std::map<std::uint32_t, std::uint64_t>> ObjectMatching::o
   return objects;
 }
 
+std::size_t ObjectMatching::boxedClass(const PointSet& truth, const std::map<std::uint32_t, std::uint64_t>& takers,
+                                       const EvaluationParams& params) const {
+  std::size_t boxed = names_.size() + 1;
+  double best = params.box_iou;
+  for (const auto& [object, shared] : takers) {
+    const double iou = boxIou(found_[object].box, truth.box, params.box_padding_m);
+    if (iou >= best) best = iou, boxed = found_[object].class_number;
+  }
+  return boxed;
+}
+
+void ObjectMatching::countAnswers(const PointSet& truth, const std::map<std::uint32_t, std::uint64_t>& takers,
+                                  const EvaluationParams& params, KindAnswers& answers) const {
+  const std::size_t none = names_.size() + 1;
+  std::size_t found = none, called = none;
+  std::uint64_t most = 0, in_none = truth.count;
+  for (const auto& [object, shared] : takers) {
+    const PointSet& taker = found_[object];
+    const std::uint64_t whole = taker.count + truth.count - shared;
+    if (static_cast<double>(shared) >= params.point_iou * static_cast<double>(whole)) found = taker.class_number;
+    if (shared > most) most = shared, called = taker.class_number;
+    in_none -= shared;
+  }
+  for (auto* counts : {&answers.found, &answers.called, &answers.boxed}) counts->resize(none + 1);
+  ++answers.truth;
+  ++answers.found[found];
+  ++answers.called[in_none > most ? none : called];
+  ++answers.boxed[boxedClass(truth, takers, params)];
+}
+
 std::vector<KindAnswers> ObjectMatching::answersByKind(const std::map<std::int32_t, std::string>& kinds,
                                                        const EvaluationParams& params) const {
-  const std::size_t none = names_.size() + 1;
   std::map<std::string, KindAnswers> by_name;
-  const auto objects = objectsOfInstances();
+  auto objects = objectsOfInstances();
   for (const auto& [instance, truth] : truth_) {
     if (!truth.counts) continue;
     const auto kind = kinds.find(instance);
     const std::string& name = kind == kinds.end() ? names_[truth.class_number] : kind->second;
-    KindAnswers& answers = by_name.try_emplace(name, KindAnswers{name, 0, {}, {}}).first->second;
-    answers.found.resize(none + 1);
-    answers.called.resize(none + 1);
-    std::size_t found = none, called = none;
-    std::uint64_t most = 0, in_none = truth.count;
-    if (const auto takers = objects.find(instance); takers != objects.end())
-      for (const auto& [object, shared] : takers->second) {
-        const PointSet& taker = found_[object];
-        const std::uint64_t whole = taker.count + truth.count - shared;
-        if (static_cast<double>(shared) >= params.point_iou * static_cast<double>(whole)) found = taker.class_number;
-        if (shared > most) most = shared, called = taker.class_number;
-        in_none -= shared;
-      }
-    ++answers.truth;
-    ++answers.found[found];
-    ++answers.called[in_none > most ? none : called];
+    KindAnswers& answers = by_name.try_emplace(name, KindAnswers{name, 0, {}, {}, {}}).first->second;
+    countAnswers(truth, objects[instance], params, answers);
   }
   std::vector<KindAnswers> sorted;
   for (auto& [name, answers] : by_name) sorted.push_back(std::move(answers));

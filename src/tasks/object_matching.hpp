@@ -54,6 +54,12 @@ class ObjectMatching {
   /// The instance that shares the most points with the object, of any class; -1 when none does.
   std::int32_t bestInstance(std::uint32_t object) const;
   bool countsAsAnswer(std::uint32_t object) const;
+  /// The class of the object whose box is that of the true object, or names_.size() + 1.
+  std::size_t boxedClass(const PointSet& truth, const std::map<std::uint32_t, std::uint64_t>& takers,
+                         const EvaluationParams& params) const;
+  /// Enters one true object into the counts of its kind.
+  void countAnswers(const PointSet& truth, const std::map<std::uint32_t, std::uint64_t>& takers,
+                    const EvaluationParams& params, KindAnswers& answers) const;
   /// The objects that share points with each instance, with the numbers of these points.
   std::map<std::int32_t, std::map<std::uint32_t, std::uint64_t>> objectsOfInstances() const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wilson's formula.
+// Half numbers need no other formula: the share and the number of examples are real numbers in it.
 #include "tasks/wilson_interval.hpp"
 
 #include <algorithm>

@@ -154,6 +154,9 @@ TEST_F(Program, WrongChoicesOfOneCommandAreErrorsOfUsage) {
   expectError(run("evaluate " + map() + " --truth " + campus() + "/truth --min-recall Unicorn=0.5"), 2, "Unicorn");
   expectError(run("train " + campus() + " --truth campus -o " + fresh() + " --helper " + campus()), 2,
               "--helper-truth");
+  expectError(run("train " + campus() + " --truth campus -o " + fresh() + " --helper " + campus() + " --helper " +
+                  campus() + " --helper " + campus() + " --helper-truth campus --helper-truth campus"),
+              2, "one for each");
   expectError(run("simulate " + campus()), 2, "campus");
 }
 

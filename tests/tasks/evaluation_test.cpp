@@ -225,5 +225,55 @@ TEST_F(ObjectMatchingByHand, TrueObjectsAreCalledWhatTheirPartnerIsAndWhatHasMos
   EXPECT_EQ(kinds[2].called, (Counts{1, 1, 0, 0}));
 }
 
+TEST(Calibration, ErrorIsTheGapBetweenConfidenceAndWhatIsRight) {
+  Calibration calibration;
+  EXPECT_EQ(calibration.expectedError(), 0);
+  for (int i = 0; i < 10; ++i) calibration.add(0.85, i < 8);  // 0.05 too sure
+  EXPECT_NEAR(calibration.expectedError(), 0.05, 1e-12);
+  for (int i = 0; i < 10; ++i) calibration.add(0.35, i < 5);  // 0.15 too unsure
+  EXPECT_NEAR(calibration.expectedError(), 0.10, 1e-12);
+  Calibration sum = calibration;
+  sum.add(calibration);
+  EXPECT_EQ(sum.objects(), 40U);
+  EXPECT_NEAR(sum.expectedError(), 0.10, 1e-12);
+  Calibration ends;
+  ends.add(1.0, true);
+  ends.add(0.0, false);
+  EXPECT_EQ(ends.expectedError(), 0);
+}
+
+TEST(ClassVotes, CallAClassRightThatMostPointsHave) {
+  std::vector<SemanticObject> objects(4);
+  for (SemanticObject& object : objects) object.confidence = 0.95;
+  ClassVotes votes(objects.size());
+  for (int i = 0; i < 5; ++i) votes.add(0, i < 3 ? 1 : 0);
+  for (int i = 0; i < 5; ++i) votes.add(1, i < 2 ? 1 : 0);
+  votes.add(2, 0);  // of a class that is left out; object 3 has no point with truth
+  const CalibrationBin bin = votes.calibrationOf(objects, {1, 1, 0, 1}, 2, 0).bins[9];
+  EXPECT_EQ(bin.objects, 2U);
+  EXPECT_EQ(bin.right, 1U);
+}
+
+TEST(CrownPairs, ArePartedWhenTwoObjectsHaveMostOfThem) {
+  // Trees in a row, 3 m apart, with crowns of 3 m: each touches the next. The last stands 1 m from its neighbour.
+  const auto rowOfTrees = [](const std::vector<std::uint32_t>& object_of_tree) {
+    CrownPairs crowns;
+    const std::array trunks{0.0, 3.0, 6.0, 7.0};
+    for (std::size_t tree = 0; tree < trunks.size(); ++tree) {
+      const auto instance = static_cast<std::int32_t>(tree) + 10;
+      crowns.add({trunks[tree], 0, 1}, instance, true, object_of_tree[tree]);
+      for (double x = -1.5; x <= 1.5; x += 0.1)
+        crowns.add({trunks[tree] + x, 0, 4}, instance, false, object_of_tree[tree]);
+    }
+    return crowns;
+  };
+  const CrownPairScore apart = rowOfTrees({0, 1, 2, 3}).score({});
+  EXPECT_EQ(apart.pairs, 2U) << "the last two trunks stand too near";
+  EXPECT_EQ(apart.parted, 2U);
+  EXPECT_EQ(rowOfTrees({0, 0, 2, 3}).score({}).parted, 1U);
+  EXPECT_EQ(rowOfTrees({0, kNoObjectOfPoint, 2, 3}).score({}).parted, 0U);
+  EXPECT_EQ(rowOfTrees({0, 1, 2, 3}).score({11}).pairs, 0U) << "the second tree is ambiguous";
+}
+
 }  // namespace
 }  // namespace cluxel::tasks

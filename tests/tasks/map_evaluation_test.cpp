@@ -125,6 +125,8 @@ TEST(MapEvaluation, OfTwoMapsAddsTheirCounts) {
   EXPECT_EQ(sum.objects.total(), 2 * evaluation().objects.total());
   EXPECT_EQ(sum.primitives.at(0, 0), 2 * evaluation().primitives.at(0, 0));
   EXPECT_EQ(sum.matched_whole, 2 * evaluation().matched_whole);
+  EXPECT_EQ(sum.calibration.objects(), 2 * evaluation().calibration.objects());
+  EXPECT_EQ(sum.crown_pairs.pairs, 2 * evaluation().crown_pairs.pairs);
   EXPECT_DOUBLE_EQ(sum.objects.macroF1(), evaluation().objects.macroF1());
   for (std::size_t i = 0; i < sum.by_points.size(); ++i) {
     EXPECT_EQ(sum.by_points[i].matched_truth, 2 * evaluation().by_points[i].matched_truth);
@@ -144,6 +146,7 @@ TEST(MapEvaluation, CallsNearlyAllFoundObjectsByTheirOwnClass) {
     EXPECT_EQ(kind.truth, own->truth);
     EXPECT_EQ(kind.found[static_cast<std::size_t>(own - evaluation().by_points.begin())], own->matched_truth);
     EXPECT_EQ(std::accumulate(kind.found.begin(), kind.found.end(), std::uint64_t{0}), kind.truth);
+    EXPECT_EQ(std::accumulate(kind.boxed.begin(), kind.boxed.end(), std::uint64_t{0}), kind.truth);
     EXPECT_EQ(std::accumulate(kind.called.begin(), kind.called.end(), std::uint64_t{0}), kind.truth);
   }
 }
