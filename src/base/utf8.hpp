@@ -15,6 +15,14 @@ struct CodePoint {
   std::uint32_t bytes = 0;  ///< 0 when the bytes are not UTF-8
 };
 
+/// Some editors begin UTF-8 files with it.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+/// The text after a byte order mark, if it begins with one.
+constexpr std::string_view withoutByteOrderMark(std::string_view text) {
+  return text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text;
+}
+
 constexpr bool isUtf8Continuation(char c) {
   return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
 }

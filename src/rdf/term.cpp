@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "rdf/iri.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel {
@@ -49,13 +50,10 @@ void appendEscapedLiteral(std::string& out, std::string_view text) {
   }
 }
 
-/// Characters that the grammar's IRIREF forbids unescaped.
 void appendEscapedIri(std::string& out, std::string_view iri) {
-  constexpr std::string_view forbidden = "<>\"{}|^`\\";
   for (const char c : iri) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte <= 0x20 || forbidden.find(c) != std::string_view::npos)
-      appendHex(out, byte);
+    if (rdf::isForbiddenInIri(c))
+      appendHex(out, static_cast<unsigned char>(c));
     else
       out += c;
   }

@@ -88,8 +88,6 @@ class PreparedQuery {
 void runQuery(const rdf::QuadReader& reader, std::string_view text, const QueryOptions& options, ResultSink& sink);
 QueryResult evaluateQuery(const rdf::QuadReader& reader, std::string_view text, const QueryOptions& options = {});
 
-/// Runs the query and returns its plan with estimated and actual row counts.
-std::string explainQuery(const rdf::QuadReader& reader, std::string_view text, const QueryOptions& options = {});
 /// For a query without solutions: describes the part of the pattern that eliminated them. Empty when there are
 /// solutions.
 std::string whyEmpty(const rdf::QuadReader& reader, std::string_view text, const QueryOptions& options = {},

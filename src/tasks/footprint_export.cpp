@@ -6,9 +6,9 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "base/convex_hull.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/facts/object_geometry.hpp"
-#include "perception/segments/footprint_hull.hpp"
 #include "rdf/map_iris.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "tasks/proj_geo_reference.hpp"
@@ -40,7 +40,7 @@ std::vector<Eigen::Vector2d> footprintOf(const rules::SemanticObject& object, co
       const Eigen::Vector2d low = corner.array() - kMargin_m, high = (corner + extent).array() + kMargin_m;
       corners.insert(corners.end(), {low, {high.x(), low.y()}, {low.x(), high.y()}, high});
     }
-  return perception::convexHull(std::move(corners));
+  return convexHull(std::move(corners));
 }
 
 Json polygonJson(const std::vector<Eigen::Vector2d>& hull, const ToPosition& position) {

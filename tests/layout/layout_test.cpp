@@ -150,11 +150,11 @@ TEST(Layout, ThePythonModuleSeesTheInstalledInterfaceOnly) {
     }
 }
 
-/// What a heavy package is walled in by: files whose names begin so, and no more of them than these. Redland's C tables
-/// of callbacks fill two modules (docs/decisions.md).
+/// The files that may include a heavy package: names that begin with `name`, and at most `max_files` of them. Redland's
+/// tables of C callbacks need two modules (docs/decisions.md).
 struct Wall {
   std::string name;
-  std::size_t most;
+  std::size_t max_files;
 };
 
 TEST(Layout, HeavyPackagesStayInFewFilesThatAreNamedForThem) {
@@ -170,7 +170,7 @@ TEST(Layout, HeavyPackagesStayInFewFilesThatAreNamedForThem) {
         if (name.starts_with(package)) users.insert(file);
     for (const fs::path& file : users)
       EXPECT_TRUE(file.filename().string().starts_with(wall.name)) << file << " includes " << package;
-    EXPECT_LE(users.size(), wall.most) << package << " is included by too many files";
+    EXPECT_LE(users.size(), wall.max_files) << package << " is included by too many files";
   }
 }
 

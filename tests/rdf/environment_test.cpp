@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opening, blocks, transactions, snapshots and compact copies.
+// Tests of opening maps, of blocks, transactions, snapshots and compact copies.
 #include "rdf/store/environment.hpp"
 
 #include <atomic>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Telling the store what will be asked next changes how fast it answers, never what.
+// Announced lookups give the same results as unannounced ones.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ constexpr std::array<QuadOrder, 4> kOrders = {QuadOrder::Spog, QuadOrder::Posg, 
 constexpr std::array<std::size_t, 9> kCounts = {0, 1, 2, 31, 32, 33, 63, 64, 65};
 
 QuadIds randomQuad(std::mt19937& random) {
-  const auto id = [&](TermId most) { return static_cast<TermId>(random() % most); };
+  const auto id = [&](TermId max) { return static_cast<TermId>(random() % max); };
   return {1 + id(400), 1 + id(5), 1 + id(400), id(3)};
 }
 
@@ -34,18 +34,18 @@ bool same(const std::vector<QuadKey>& a, const std::vector<QuadKey>& b) {
                     [](const QuadKey& x, const QuadKey& y) { return x.bytes == y.bytes; });
 }
 
-/// Random prefixes, in ascending order or not, of which the lookup is told all, some, or others.
+/// Random prefixes in ascending or random order; all of them, some of them, or other prefixes are announced.
 void expectSameLookups(const QuadReader& reader, QuadOrder order, std::size_t length, std::size_t count,
                        std::mt19937& random) {
-  std::vector<std::array<TermId, 4>> wanted(count);
-  for (auto& prefix : wanted) {
+  std::vector<std::array<TermId, 4>> prefixes(count);
+  for (auto& prefix : prefixes) {
     const QuadIds quad = randomQuad(random);
     const std::array<TermId, 4> ids = {quad.s, quad.p, quad.o, quad.g};
     for (std::size_t i = 0; i < 4; ++i) prefix[i] = ids[placesOf(order)[i]];
   }
-  if (random() % 2 == 0) std::sort(wanted.begin(), wanted.end());
+  if (random() % 2 == 0) std::sort(prefixes.begin(), prefixes.end());
   std::vector<TermId> told;
-  for (const auto& prefix : wanted) {
+  for (const auto& prefix : prefixes) {
     if (random() % 8 == 0) continue;
     told.insert(told.end(), prefix.begin(), prefix.begin() + static_cast<std::ptrdiff_t>(length));
   }
@@ -55,7 +55,7 @@ void expectSameLookups(const QuadReader& reader, QuadOrder order, std::size_t le
     informed.expect(told, 0);
     informed.expect(told, 5);
   }
-  for (const auto& prefix : wanted) {
+  for (const auto& prefix : prefixes) {
     const std::span<const TermId> ids(prefix.data(), length);
     EXPECT_TRUE(same(drained(plain, ids), drained(informed, ids)));
   }

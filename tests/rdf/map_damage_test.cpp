@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that are no maps, newer ones, and damaged ones.
+// Tests of files that are not maps, of maps of newer formats, and of damaged maps.
 #include <lmdb.h>
 
 #include <fstream>
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// Opens the file with LMDB itself, to make what the library would not.
+/// Opens the file with LMDB directly, to write what the library would not write.
 template <typename Work>
 void withLmdb(const fs::path& file, const Work& work) {
   MDB_env* environment = nullptr;

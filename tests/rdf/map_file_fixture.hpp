@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A map file in a folder of its own, and work in child processes.
+// A map file in a temporary folder, and functions that run in child processes.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -37,7 +37,7 @@ class MapFile : public testing::Test {
     return "opened";
   }
 
-  /// Runs `work` in a child process; its exit status, or minus the signal that ended it.
+  /// Runs `work` in a child process. Returns its exit status, or the negative number of the signal that ended it.
   template <typename Work>
   static int inChild(const Work& work) {
     const pid_t child = ::fork();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several processes, killed writers, full disks.
+// Tests with several processes, killed writers and full disks.
 #include <signal.h>
 #include <sys/resource.h>
 

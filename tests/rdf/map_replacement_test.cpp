@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A map that takes another's place while others read it, wait to write to it, or open it; closed streams; full disks.
+// Tests of replacing a map while other processes read it, open it or wait to write; of closed streams and full disks.
 #include "rdf/store/map_replacement.hpp"
 
 #include <sched.h>
@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 class MapReplacement : public MapFile {
  protected:
-  /// A closed map whose block "n" says how many quads it has.
+  /// A closed map whose block "n" holds its number of quads.
   fs::path fresh(int n) const {
     const fs::path file = folder_.path() / "fresh.clx";
     const auto environment = Environment::open(file, OpenMode::Create);
@@ -155,7 +155,7 @@ TEST_F(MapFile, HasALockFileWithoutHoles) {
   EXPECT_GE(status.st_blocks * 512, status.st_size);
 }
 
-/// Fills a disk to the last byte.
+/// Fills a disk completely.
 void fill(const fs::path& file) {
   std::ofstream out(file, std::ios::binary);
   const std::string block(4096, 'x');
@@ -163,7 +163,7 @@ void fill(const fs::path& file) {
   }
 }
 
-/// On a full disk of its own: 0, or what went wrong.
+/// Runs on a separate full disk. Returns 0, or the number of the failed check.
 int useAFullDisk(const fs::path& disk) {
   const fs::path map = disk / "map.clx", copy = disk / "copy.clx";
   {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shipped ontologies, their faults when edited, and the closure against a naive one.
+// Tests of the shipped ontologies, of faults in edited ones, and of the closure against a naive implementation.
 #include "rdf/ontology/ontology.hpp"
 
 #include <gmock/gmock.h>
@@ -117,7 +117,7 @@ TEST(Ontology, ShowsAllFaultsAtTheirPlaces) {
   EXPECT_THAT(texts, Contains(HasSubstr("a mobility is clx:Static or clx:Movable")));
 }
 
-/// The rules as they are written in the specifications, applied to all pairs until nothing changes.
+/// Applies the rules of the specifications to all pairs of quads until nothing changes.
 std::set<QuadIds> naiveClosure(std::set<QuadIds> all, const std::map<std::string, TermId>& w, TermId literal) {
   const auto has = [&](TermId s, TermId p, TermId o) { return all.contains({s, p, o, 0}); };
   for (std::size_t before = 0; before != all.size();) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The quad store against a std::set of quads.
+// Compares the quad store with a std::set of quads.
 #include "rdf/store/quad_store.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ bool matches(const QuadIds& quad, const QuadPattern& pattern) {
          (!pattern.o || *pattern.o == quad.o) && (!pattern.g || *pattern.g == quad.g);
 }
 
-/// What a scan of a plain set gives.
+/// The expected result of a scan, from a plain set.
 std::vector<QuadIds> expected(const std::set<QuadIds>& quads, const QuadPattern& pattern, QuadOrder order) {
   std::vector<QuadIds> found;
   std::copy_if(quads.begin(), quads.end(), std::back_inserter(found),
@@ -46,7 +46,7 @@ std::vector<QuadIds> drain(QuadCursor cursor) {
 }
 
 QuadIds randomQuad(std::mt19937& random, TermId range) {
-  const auto id = [&](TermId most) { return static_cast<TermId>(random() % most); };
+  const auto id = [&](TermId max) { return static_cast<TermId>(random() % max); };
   return {1 + id(range), 1 + id(7), 1 + id(range), id(3)};
 }
 
@@ -78,7 +78,7 @@ std::vector<QuadIds> drainBlocks(QuadCursor cursor, const QuadPattern& pattern) 
   return found;
 }
 
-/// Runs through `quads` with a cursor that seeks ahead now and then.
+/// Reads `quads` with a cursor that sometimes seeks forward.
 void expectSeeksLikeASortedList(QuadCursor cursor, const std::vector<QuadIds>& quads, std::mt19937& random,
                                 TermId range) {
   const QuadOrder order = cursor.order();
@@ -107,12 +107,12 @@ void expectLookupsFindWhatScansFind(const QuadReader& reader, const std::set<Qua
       std::vector<QuadIds> found;
       for (auto keys = lookup.find(std::span(ids).first(length)); !keys.empty(); keys = lookup.more())
         for (const QuadKey& key : keys) found.push_back(toQuad(key, order));
-      std::vector<QuadIds> wanted = all;
-      std::erase_if(wanted, [&](const QuadIds& quad) {
+      std::vector<QuadIds> expected_quads = all;
+      std::erase_if(expected_quads, [&](const QuadIds& quad) {
         const auto other = inOrder(quad, order);
         return !std::equal(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(length), other.begin());
       });
-      ASSERT_EQ(found, wanted);
+      ASSERT_EQ(found, expected_quads);
     }
   }
 }
@@ -122,11 +122,11 @@ void expectSameAnswers(const QuadReader& reader, const std::set<QuadIds>& quads,
   for (unsigned bound = 0; bound < 16; ++bound) {
     const QuadPattern pattern = patternOf(randomQuad(random, range), bound);
     for (const QuadOrder order : kAllOrders) {
-      const std::vector<QuadIds> wanted = expected(quads, pattern, order);
-      ASSERT_EQ(drain(reader.scan(pattern, order)), wanted) << bound;
-      ASSERT_EQ(drainInBulk(reader.scan(pattern, order), 1 + random() % 300), wanted) << bound;
-      ASSERT_EQ(drainBlocks(reader.scan(pattern, order), pattern), wanted) << bound;
-      expectSeeksLikeASortedList(reader.scan(pattern, order), wanted, random, range);
+      const std::vector<QuadIds> expected_quads = expected(quads, pattern, order);
+      ASSERT_EQ(drain(reader.scan(pattern, order)), expected_quads) << bound;
+      ASSERT_EQ(drainInBulk(reader.scan(pattern, order), 1 + random() % 300), expected_quads) << bound;
+      ASSERT_EQ(drainBlocks(reader.scan(pattern, order), pattern), expected_quads) << bound;
+      expectSeeksLikeASortedList(reader.scan(pattern, order), expected_quads, random, range);
     }
     ASSERT_EQ(reader.count(pattern), expected(quads, pattern, QuadOrder::Spog).size());
     const QuadIds probe = randomQuad(random, range);
@@ -170,7 +170,7 @@ TEST(QuadStore, AnswersEveryPatternAsAPlainSetDoes) {
   }
 }
 
-/// A store with terms of every kind and value.
+/// A store with terms of every kind and literals of every value type.
 std::vector<Term> variedTerms() {
   using vocabulary::xsd;
   std::vector<Term> terms = {Term::iri("http://a"),
@@ -266,7 +266,7 @@ TEST(QuadStore, EstimatesWithinAFactorOfTwoAndExactlyWhenFew) {
   WriteTransaction transaction = environment->write();
   QuadWriter writer(transaction);
   for (int i = 0; i < 120'000; ++i) {
-    // Predicates of very different size, subjects that have a few or hundreds of quads.
+    // Predicates with very different numbers of quads; subjects with a few or hundreds of quads.
     const auto p = 1 + static_cast<TermId>(random() % 10 < 8 ? 1 : random() % 40);
     const auto s = 1 + static_cast<TermId>(random() % 2 == 0 ? random() % 50 : random() % 40'000);
     const QuadIds quad{s, p, 1 + static_cast<TermId>(random() % 3'000), 1 + static_cast<TermId>(i % 2)};

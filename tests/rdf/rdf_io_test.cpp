@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading and writing RDF texts.
+// Tests of the RDF readers and writers.
 #include "rdf/io/rdf_io.hpp"
 
 #include <gmock/gmock.h>
@@ -36,7 +36,7 @@ std::vector<Diagnostic> faultsOf(const RdfSource& source) {
   return {};
 }
 
-/// A store that holds `quads`, and what was written of it.
+/// Stores `quads` and returns the text that is written from the store.
 template <typename Write>
 std::string written(const std::vector<Quad>& quads, const Write& write) {
   auto environment = Environment::temporary();
@@ -168,8 +168,8 @@ Term randomTerm(std::mt19937& random, bool literal) {
   }
 }
 
-/// Quads whose blank nodes have been renamed by the order in which they occur in sorted lines; enough for
-/// these few.
+/// Renames blank nodes in the order in which they occur in the sorted lines. This is no canonical form in general, but
+/// sufficient for these few quads.
 std::multiset<std::string> shapes(const std::vector<Quad>& quads) {
   std::multiset<std::string> lines;
   for (Quad quad : quads) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The storage "cluxel" through librdf's own interface, and as a module of stock rdfproc.
+// Tests the storage "cluxel" through librdf's API and as a module of the unmodified rdfproc.
 #include "rdf/redland/redland_storage.hpp"
 
 #include <gmock/gmock.h>
@@ -256,15 +256,6 @@ TEST_F(RedlandStorage, TellsTheLoggerWhatWentWrong) {
   ASSERT_TRUE(model_);
   EXPECT_NE(add(a_, b_, c_), 0);
   EXPECT_THAT(messages_.back(), HasSubstr("reading only"));
-}
-
-TEST_F(RedlandStorage, ShowsItsMapToAQueryModule) {
-  add(a_, b_, c_);
-  const auto view = viewRedlandStorage(storage_.get());
-  ASSERT_TRUE(view);
-  EXPECT_EQ(QuadReader(view->transaction).size(), 1U);
-  const Handle<librdf_storage> other(librdf_new_storage(world_.get(), "memory", nullptr, nullptr));
-  EXPECT_FALSE(viewRedlandStorage(other.get()));
 }
 
 TEST_F(RedlandStorage, IsListedByStockRdfproc) {

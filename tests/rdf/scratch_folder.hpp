@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A folder for a test's files that vanishes with the test.
+// A temporary folder for a test's files, removed after the test.
 #pragma once
 
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Terms, their canonical text, and the values of literals.
+// Tests of terms, their canonical text and the values of literals.
 #include "cluxel/term.hpp"
 
 #include <gtest/gtest.h>

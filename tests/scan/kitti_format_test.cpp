@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// KITTI's binary records and labels.
+// Tests of KITTI's binary records and labels.
 #include "scan/formats/kitti_format.hpp"
 
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// LAS files made here byte by byte.
+// Tests on LAS files that are generated here.
 #include "scan/formats/las_format.hpp"
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Manifests, and the faults that people make in them.
+// Tests of manifests and of common faults in them.
 #include "scan/formats/manifest.hpp"
 
 #include "scan/scan_fixture.hpp"

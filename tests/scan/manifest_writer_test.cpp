@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is written as a manifest is read back to the same scans with the poses given.
+// A written manifest is read back to the same scans with the given poses.
 #include "scan/formats/manifest_writer.hpp"
 
 #include "scan/registration_fixture.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grid against trying all points.
+// Compares the grid with a linear search.
 #include "scan/registration/nearest_grid.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PCD headers and bodies, whole and broken.
+// Tests of valid and faulty PCD headers and bodies.
 #include "scan/formats/pcd_format.hpp"
 
 #include <limits>
@@ -22,7 +22,7 @@ std::string header(const std::string& fields, const std::string& size, const std
          type + "\nWIDTH " + n + "\nHEIGHT 1\nVIEWPOINT " + viewpoint + "\nPOINTS " + n + "\nDATA " + data + "\n";
 }
 
-/// Literal runs only: every LZF decoder must take them.
+/// Literal runs only, which every LZF decoder accepts.
 std::string storedAsLzf(const std::string& bytes) {
   std::string packed;
   for (std::size_t at = 0; at < bytes.size(); at += 32) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY headers and bodies, whole and broken.
+// Tests of valid and faulty PLY headers and bodies.
 #include "scan/formats/ply_format.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses in their four text forms.
+// Tests of the four text formats of poses.
 #include "scan/poses/pose_files.hpp"
 
 #include <numbers>
@@ -13,7 +13,7 @@ namespace {
 using test::refusalOf;
 using testing::HasSubstr;
 
-/// A quarter turn to the left at (1, 2, 3).
+/// A rotation by 90 degrees to the left at (1, 2, 3).
 Eigen::Isometry3d quarterTurn() {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;

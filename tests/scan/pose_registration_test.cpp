@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses are refined where surfaces tell how, and kept where they do not.
+// Poses are refined where surfaces constrain them, and kept where they do not.
 #include "scan/registration/pose_registration.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ Poses straightDrive(std::size_t scans, double step_m = 1.5) {
   return poses;
 }
 
-/// Errors that add up from pose to pose.
+/// Errors that accumulate from pose to pose.
 Poses drifting(const Poses& truth, const Eigen::Isometry3d& error) {
   Poses given{truth.front()};
   for (std::size_t i = 1; i < truth.size(); ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files as sensors and surveyors deliver them: missing poses, unrelated tracks, units, axes and coordinate systems.
+// Tests of typical problems of real files: missing poses, unrelated trajectories, units, axes, coordinate systems.
 #include "scan/formats/las_crs.hpp"
 #include "scan/scan_fixture.hpp"
 #include "scan/scan_set.hpp"
@@ -79,7 +79,7 @@ TEST(RealFiles, UnitAndUpAxisConvertPointsAndPosesAlike) {
       (toMetresZUp(pose, frame) * toMetresZUp(p, frame)).isApprox(toMetresZUp(Eigen::Vector3d(pose * p), frame)));
 }
 
-/// A ground of 40 m x 40 m and a wall of 3 m along x, written with coordinates in `order`.
+/// A ground of 40 m x 40 m with a wall of 3 m height along x; coordinates are written in `order`.
 std::string sceneText(const std::array<int, 3>& order) {
   std::string text;
   const auto add = [&](double x, double y, double z) {

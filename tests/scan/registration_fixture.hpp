@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scans of places made of rectangles, each scan with points of its own, and poses that are wrong by a known amount.
+// Scans of places made of rectangles, sampled independently for each scan, with poses of known error.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -25,14 +25,14 @@ inline Place plainPlace() {
   return {{{-34, -34, 0}, {68, 0, 0}, {0, 68, 0}}};
 }
 
-/// Walls 5 m to the left and right that end beyond what any scan sees.
+/// A corridor with walls 5 m to the left and right whose ends no scan sees.
 inline Place corridorPlace() {
   Place place = plainPlace();
   for (const double y : {-5.0, 5.0}) place.push_back({{-34, y, 0}, {68, 0, 0}, {0, 0, 4}});
   return place;
 }
 
-/// Walls that face all ways, and crates.
+/// Walls in all directions, and crates.
 inline Place yardPlace() {
   Place place = plainPlace();
   place.push_back({{-20, 9, 0}, {40, 1, 0}, {0, 0, 5}});
@@ -46,7 +46,7 @@ inline Place yardPlace() {
   return place;
 }
 
-/// Points on the place within 25 m of the sensor, evenly by area, with 1 cm of noise; others for every `seed`.
+/// Random points on the place within 25 m of the sensor, uniform by area, with 1 cm of noise.
 inline Scan scanOf(const Place& place, const Eigen::Isometry3d& T_map_sensor, unsigned seed) {
   constexpr double kPerSquareMetre = 12, kRange_m = 25, kNoise_m = 0.01;
   std::mt19937 bits(seed);
@@ -73,7 +73,7 @@ inline Eigen::Isometry3d poseAt(double x, double y, double yaw_deg) {
   return Eigen::Translation3d(x, y, 1.5) * Eigen::AngleAxisd(yaw_deg * M_PI / 180, Eigen::Vector3d::UnitZ());
 }
 
-/// A move in the sensor's frame: metres, and degrees about its axes.
+/// A motion in the sensor's frame: metres, and degrees about its axes.
 inline Eigen::Isometry3d moveBy(const Eigen::Vector3d& by_m, const Eigen::Vector3d& turn_deg) {
   const double angle_deg = turn_deg.norm();
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
@@ -104,7 +104,7 @@ inline Drive writeDrive(const ScratchFolder& folder, const Place& place, const s
   return drive;
 }
 
-/// Mended poses by the order of the files in `drive`.
+/// Refined poses in the order of the files in `drive`.
 inline std::vector<Eigen::Isometry3d> refinedPoses(const Drive& drive, PoseRegistration& report, unsigned threads = 1) {
   NoteKeeper notes;
   report = registerPoses(ScanSet::open(drive.files, {}, notes), {}, threads, notes);
@@ -113,7 +113,7 @@ inline std::vector<Eigen::Isometry3d> refinedPoses(const Drive& drive, PoseRegis
   return poses;
 }
 
-/// How wrong the pose of `b` is as seen from `a`.
+/// The error of the pose of `b` relative to `a`.
 inline Eigen::Isometry3d errorBetween(const std::vector<Eigen::Isometry3d>& poses,
                                       const std::vector<Eigen::Isometry3d>& truth, std::size_t a, std::size_t b) {
   return (truth[a].inverse() * truth[b]).inverse() * (poses[a].inverse() * poses[b]);

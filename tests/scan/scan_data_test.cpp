@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The readers on real scans, where they are present.
+// Tests the readers on real scans; skipped where these are absent.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -73,7 +73,7 @@ TEST(RealScans, OaklandNamesInstancesThatDoNotCount) {
   EXPECT_TRUE(std::is_sorted(ids.begin(), ids.end()));
 }
 
-/// The median height of the ground points (road) within 10 m of a place of the map.
+/// The median height of the road points within 10 m of a place in the map frame.
 double groundHeight(const Scan& scan, const Eigen::Vector2d& place) {
   std::vector<double> heights;
   for (std::size_t i = 0; i < scan.points.size(); ++i) {

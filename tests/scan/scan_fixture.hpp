@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Folders, files and refusals for the tests of the module scan.
+// Temporary folders, files and expected errors for the tests of the module scan.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -21,7 +21,7 @@ namespace cluxel::test {
 
 namespace fs = std::filesystem;
 
-/// A folder that is gone after the test.
+/// A temporary folder that is removed after the test.
 class ScratchFolder {
  public:
   ScratchFolder() {
@@ -46,14 +46,14 @@ class ScratchFolder {
   fs::path path_;
 };
 
-/// Keeps the notes it gets.
+/// Records notes.
 class NoteKeeper : public ProgressSink {
  public:
   void note(std::string_view message) override { notes.emplace_back(message); }
   std::vector<std::string> notes;
 };
 
-/// The text of the InputError that `act` throws; fails the test when there is none.
+/// The message of the InputError that `act` throws; the test fails when it throws none.
 template <typename Act>
 std::string refusalOf(const Act& act) {
   try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files, folders and layouts to a list of scans.
+// Tests which scans a set of files, folders and layouts gives.
 #include "scan/scan_set.hpp"
 
 #include "scan/scan_fixture.hpp"

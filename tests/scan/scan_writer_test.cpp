@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is written is read back unchanged.
+// Tests round trips of written scans.
 #include "scan/formats/scan_writer.hpp"
 
 #include <random>

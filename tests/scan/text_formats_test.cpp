@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scans as text: what is read, and what is refused with which words.
+// Tests of the text formats and of their error messages.
 #include "scan/formats/text_formats.hpp"
 
 #include "scan/scan_fixture.hpp"

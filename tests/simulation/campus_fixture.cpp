@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small campuses for tests.
+// Parameters of small campuses.
 #include "simulation/campus_fixture.hpp"
 
 #include "simulation/makers/mesh_shapes.hpp"

@@ -12,10 +12,10 @@ namespace cluxel::test {
 using namespace scan;
 using namespace simulation;
 
-/// 50 m, few points: a second or less.
+/// A campus of 50 m with few points; it takes a second or less.
 CampusParams smallCampus(std::uint64_t seed);
 
-/// Without noise of any kind.
+/// Without noise.
 CampusParams withoutNoise(CampusParams params);
 
 /// One stop at the origin inside a closed cube with walls at a distance of `half_m`.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The generated campus: the same from the same seed, whole, plausible, and with truth that fits its shapes.
+// Tests that a generated campus is deterministic, complete and plausible, and that its truth agrees with its shapes.
 #include "simulation/site/campus.hpp"
 
 #include <gmock/gmock.h>
@@ -50,7 +50,7 @@ TEST(Campus, EveryMeshHasTrianglesWithinItsVerticesAndAnObjectOfItsClass) {
   }
 }
 
-/// How many objects of each class the scans saw with at least 20 points.
+/// The number of objects of each class with at least 20 points in the scans.
 std::map<int, int> seenObjects(const CampusParams& params) {
   const Campus campus = buildCampus(params);
   std::map<std::int32_t, int> points;
@@ -101,7 +101,7 @@ TEST(Campus, HasTheHardCasesOfThePaper) {
   }
 }
 
-/// How often each kind of thing stands on the campus; fences by their trait.
+/// The number of objects of each kind on the campus; fences are counted by their trait.
 std::map<std::string, int> kindsOf(const Campus& campus) {
   std::map<std::string, int> kinds;
   for (const CampusObject& object : campus.objects) ++kinds[object.kind == "fence" ? object.traits.at(0) : object.kind];
@@ -188,12 +188,12 @@ TEST(Campus, ThicketsThatOneLooksOverAreBushes) {
   EXPECT_GE(bushes, 3);
 }
 
-/// A place as seen along the street, to which walls and cars are parallel.
+/// A place in a frame along the street, to which walls and cars are parallel.
 Eigen::Vector2d inPlan(const Campus& campus, const Vector3d& p_map) {
   return Eigen::Rotation2Dd(-campus.heading_rad) * p_map.head<2>();
 }
 
-/// Plan views of what nothing else may stand in: walls of buildings and bodies of cars, by instance.
+/// Footprints in which no other object may stand: walls of buildings and bodies of cars, by instance.
 std::map<std::int32_t, Eigen::AlignedBox2d> solidPlans(const Campus& campus) {
   std::map<std::int32_t, Eigen::AlignedBox2d> plans;
   for (const CampusMesh& mesh : campus.meshes)

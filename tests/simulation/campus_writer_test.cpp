@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of this test that vanishes with it.
+/// A temporary folder that is removed after the test.
 class CampusWriter : public testing::Test {
  protected:
   CampusWriter()
@@ -67,7 +67,7 @@ TEST_F(CampusWriter, WritesTheSameBytesWithOneAndTwoThreadsAndAgain) {
   EXPECT_EQ(bytesOf("two"), bytesOf("again"));
 }
 
-/// The longest move between two poses of one number [m].
+/// The maximum distance between two poses with the same number [m].
 double farthest(const ScanSet& a, const ScanSet& b) {
   double farthest_m = 0;
   for (std::size_t i = 0; i < a.size(); ++i)

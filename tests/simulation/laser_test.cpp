@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The laser against geometry that is known on paper, and its noise against its own figures.
+// Compares the laser with analytic geometry, and its noise with its parameters.
 #include "simulation/laser/laser.hpp"
 
 #include <gtest/gtest.h>
@@ -156,7 +156,7 @@ TEST(Laser, LosesRaysThatGrazeTheGround) {
   EXPECT_NEAR(flat / steep, 0.61, 0.06);
 }
 
-/// Points that lie on no surface: farther than `tolerance_m` from what a ray in their direction meets.
+/// Points that are farther than `tolerance_m` from the surface that a ray in their direction hits.
 std::size_t pointsInTheAir(const Campus& campus, double tolerance_m) {
   const Laser laser(campus);
   const SimulatedScan scan = laser.scanAt(0);
@@ -183,7 +183,7 @@ TEST(Laser, MixesPixelsAtDepthEdgesOnlyWhenAsked) {
 
 using Cell = std::pair<long, long>;
 
-/// Means of `value` over cells of 0.5 m, for the points of one kind of surface that `place` puts on a grid.
+/// Means of `value` over cells of 0.5 m for points of one surface type; `place` gives grid coordinates.
 template <typename Place, typename Value>
 std::map<Cell, double> cellMeans(const SimulatedScan& scan, SurfaceLabel label, const Place& place,
                                  const Value& value) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of surfaces and labels/campus.yaml say the same.
+// The table of surfaces agrees with labels/campus.yaml.
 #include "simulation/laser/surface_label.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What patterns mean: scopes, optionals, negation, graphs, sub-selects, groups; the corners that engines get wrong.
+// Tests of the semantics of patterns: scopes, OPTIONAL, negation, graphs, sub-selects and groups, with cases in which
+// other engines are known to be wrong.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -60,7 +61,7 @@ TEST(Filters, HoldForTheWholeGroupWhereverTheyStand) {
   EXPECT_THAT(store.rows("SELECT ?p { ?p :knows :c { ?p :age ?n FILTER(BOUND(?p)) } }"), ElementsAre(":a"));
 }
 
-/// An EXISTS sees what the BIND before it gives.
+/// A variable of a preceding BIND is bound within EXISTS.
 TEST(Binds, AreSeenByExistsInTheNextOne) {
   const SmallStore store(kPeople);
   EXPECT_THAT(store.rows("SELECT ?e { BIND(:z AS ?x) BIND(EXISTS { ?p :knows ?x } AS ?e) }"),
@@ -79,7 +80,7 @@ TEST(Aggregates, CountDistinctSolutionsByTheirVariablesAlone) {
   EXPECT_THAT(store.rows("SELECT (COUNT(DISTINCT *) AS ?n) { [] :knows [] }"), ElementsAre("\"1\"^^integer"));
 }
 
-/// Their plans once had no end.
+/// Regression test: planning these queries did not terminate.
 TEST(Unions, OfFewSolutionsMayShareAVariableWithAllAroundThem) {
   SmallStore store(":a :r 1 .");
   store.load(":a :p 1 . :b :q 2 .", "http://example.org/g");
@@ -143,14 +144,14 @@ TEST(Negation, ExistsWithinExistsAndInsideExpressions) {
 
 TEST(Negation, SubSelectsAndMinusWithinExistsSeeTheSolution) {
   const SmallStore store(":a :v 3 ; :n :x , :y . :b :v 1 ; :n :x . :x :w 2 . :y :w 5 .");
-  // The sub-select hands ?v on, so that its filter sees it; LIMIT counts within one solution.
+  // The sub-select projects ?v, so its filter sees the value; LIMIT applies to each solution separately.
   EXPECT_THAT(
       store.rows(
           "SELECT ?s { ?s :v ?v FILTER EXISTS { { SELECT ?s ?v { ?s :n ?x . ?x :w ?w FILTER(?w > ?v + 1) } } } }"),
       ElementsAre(":a"));
   EXPECT_THAT(store.rows("SELECT ?s { ?s :v ?v FILTER EXISTS { { SELECT ?s ?x { ?s :n ?x } ORDER BY ?x LIMIT 1 } } }"),
               ElementsAre(":a", ":b"));
-  // What a sub-select does not hand on is another variable.
+  // A variable that a sub-select does not project is a different variable.
   EXPECT_THAT(
       store.rows("SELECT ?s { ?s :v ?v FILTER EXISTS { { SELECT ?s { ?s :n ?x . ?x :w ?w FILTER(?w > ?v) } } } }"),
       ElementsAre());
@@ -164,7 +165,7 @@ TEST(Negation, PartsOfAnExistsThatStandAloneSeeTheSolutionButNotEachOther) {
   const SmallStore store(":a :v 3 ; :n :x . :b :v 1 ; :n :x . :x :w 2 .");
   EXPECT_THAT(store.rows("SELECT ?s { ?s :v ?v FILTER EXISTS { ?s :n ?x { ?x :w ?w FILTER(?w < ?v) } } }"),
               ElementsAre(":a"));
-  // ?x of the group around is not bound within the nested group, so that its filter is an error there.
+  // ?x of the outer group is not bound within the nested group, so the filter is an error there.
   EXPECT_THAT(store.rows("SELECT ?s { ?s :v ?v FILTER EXISTS { ?s :n ?x { ?y :w ?w FILTER(?x = ?y) } } }"),
               ElementsAre());
   EXPECT_THAT(store.rows("SELECT ?s { ?s :v ?v FILTER EXISTS { ?s :n ?x OPTIONAL { ?s :n ?z { ?z :w ?w FILTER(?v > 2) "

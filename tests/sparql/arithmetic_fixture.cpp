@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reference: rational numbers for integers and decimals, the processor for float and double.
+// The reference: rational numbers for integers and decimals, hardware arithmetic for float and double.
 #include "sparql/arithmetic_fixture.hpp"
 
 #include <array>
@@ -16,7 +16,7 @@ std::string randomDecimalText(std::mt19937_64& random) {
   const auto digits = [&](std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) text += static_cast<char>('0' + random() % 10);
   };
-  // Short ones and ones around the end of 64 bits, which are computed differently.
+  // Short numbers, and numbers near the limit of 64 bits, which are computed differently.
   const bool is_short = random() % 2 == 0;
   digits(1 + random() % (is_short ? 4 : 20));
   if (random() % 3 == 0) return text;
@@ -39,7 +39,7 @@ cpp_rational rationalOf(const std::string& text) {
 
 namespace {
 
-/// Text of a rational that ends within some digits.
+/// The decimal text of a rational with a finite expansion.
 std::string decimalText(cpp_rational value) {
   const bool negative = value < 0;
   if (negative) value = -value;

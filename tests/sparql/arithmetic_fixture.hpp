@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random arithmetic with its right answer from rational numbers and the hardware's doubles.
+// Random arithmetic expressions with their expected values.
 #pragma once
 
 #include <boost/multiprecision/cpp_int.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows that are worked on together give what each gives alone, at the borders of what is done together too.
+// Rows processed in batches give the same results as single rows, also at the borders of batches.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ Term decimal(unsigned hundredths) {
                        vocabulary::xsd("decimal"));
 }
 
-/// A value of one kind or another, of which nothing is one. Texts begin with fewer common letters the later they come.
+/// A random value of a random kind, or no value. Later texts share shorter prefixes.
 std::optional<Term> mixed(std::size_t kind, std::size_t number, std::size_t of, std::mt19937& random) {
   const std::string text =
       std::string(40 - number * 40 / of, 'm') + static_cast<char>('a' + random() % 26) + std::to_string(random() % 50);
@@ -56,14 +56,14 @@ std::optional<Term> mixed(std::size_t kind, std::size_t number, std::size_t of, 
   }
 }
 
-/// Things with heights, of which many are equal, a few names and neighbours, in two graphs.
+/// Objects in two graphs with heights (many of them equal), a few names and neighbours.
 class Batching : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     store = new SmallStore();
     std::mt19937 random(4);
     std::vector<Quad> quads;
-    // Terms are numbered as they come: the things in turn, so that later ones are met later.
+    // Term ids are assigned in insertion order, so later objects have higher ids.
     for (std::size_t i = 0; i < kThings; ++i) {
       quads.push_back({iri("thing" + std::to_string(i)), iri("is"), iri("thing"), Term::iri("")});
     }
@@ -86,7 +86,7 @@ class Batching : public testing::Test {
   }
   static void TearDownTestSuite() { delete store; }
 
-  /// The first `count` things of a scattered order, as VALUES of ?o; some are not in the store.
+  /// VALUES of ?o with the first `count` objects in shuffled order; some are not in the store.
   static std::vector<std::string> things(std::size_t count) {
     std::mt19937 random(static_cast<unsigned>(count) + 9);
     std::vector<std::string> names;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Columns of a predicate's objects by subject: what the index says, and queries answered from either.
+// Columns of a predicate's objects by subject hold what the index holds, and queries give the same answers with both.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,8 +33,8 @@ Term graph(unsigned number) {
                                  : "http://example.org/g" + std::to_string(number));
 }
 
-/// `things` subjects that begin after `before` others, with up to `most` values each, a few with very many.
-SmallStore strewn(std::uint32_t seed, unsigned before, unsigned things, unsigned most) {
+/// `things` subjects after `before` others, with up to `max_values` values each; a few have very many.
+SmallStore strewn(std::uint32_t seed, unsigned before, unsigned things, unsigned max_values) {
   std::mt19937 random(seed);
   std::vector<Quad> quads;
   for (unsigned i = 0; i < before; ++i)
@@ -42,7 +42,7 @@ SmallStore strewn(std::uint32_t seed, unsigned before, unsigned things, unsigned
   for (unsigned i = 0; i < things; ++i) {
     const Term self = columnIri("thing" + std::to_string(i));
     quads.push_back({self, columnIri("is"), columnIri("thing"), graph(2)});
-    const unsigned values = random() % 97 == 0 ? 300 : random() % (most + 1);
+    const unsigned values = random() % 97 == 0 ? 300 : random() % (max_values + 1);
     for (unsigned k = 0; k < values; ++k)
       quads.push_back(
           {self, columnIri("p"), columnIri("thing" + std::to_string(random() % things)), graph(random() % 4)});
@@ -54,7 +54,7 @@ SmallStore strewn(std::uint32_t seed, unsigned before, unsigned things, unsigned
   return store;
 }
 
-/// The column beside all quads of the store, for every id there is and some that there are not; "": of any object.
+/// Compares the column with all quads of the store, for every existing id and some that do not exist.
 void compareWithStore(const SmallStore& store, const std::string& predicate, const std::string& object,
                       bool without_history) {
   const QuadReader reader = store.reader();
@@ -85,10 +85,10 @@ void compareWithStore(const SmallStore& store, const std::string& predicate, con
       ASSERT_EQ(row.subject, subject);
       objects.push_back(row.object);
     }
-    const auto& wanted = expected[subject];
-    ASSERT_THAT(objects, ElementsAreArray(wanted.begin(), wanted.end())) << subject;
+    const auto& expected_objects = expected[subject];
+    ASSERT_THAT(objects, ElementsAreArray(expected_objects.begin(), expected_objects.end())) << subject;
     for (TermId object = subject % 7; object < all.size(); object += 13) {
-      ASSERT_EQ(column.find(subject, object).size(), wanted.count(object)) << subject << ' ' << object;
+      ASSERT_EQ(column.find(subject, object).size(), expected_objects.count(object)) << subject << ' ' << object;
     }
   }
 }
@@ -127,7 +127,7 @@ TEST(SubjectColumn, IsMadeWhenLookupsHaveCostAsMuch) {
       << "one object has a column of its own";
 }
 
-/// The same graphs as without options, but one by one: then patterns are looked up in the index.
+/// Names the same graphs one by one, so that patterns are looked up in the index.
 QueryOptions graphByGraph() {
   QueryOptions options;
   for (const unsigned number : {0u, 2u, 3u}) options.default_graphs.push_back(graph(number).text);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Default graph, named graphs, FROM, and GRAPH over variables.
+// Tests of the default graph, named graphs, FROM, and GRAPH with variables.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Asks and compares.
+// Asks both engines and compares their answers.
 #include "sparql/differential_fixture.hpp"
 
 #include <array>
@@ -18,7 +18,7 @@ using namespace sparql;
 
 namespace {
 
-/// Numbers to ten digits, so that the order of a sum and the digits of a division do not count.
+/// Rounds numbers to ten digits, so that the order of summation and the precision of divisions do not matter.
 Term rounded(const Term& term) {
   const bool number = term.datatype == vocabulary::xsd("double") || term.datatype == vocabulary::xsd("decimal") ||
                       term.datatype == vocabulary::xsd("float");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One question to Cluxel and to a second engine, and what their answers differ in.
+// Asks Cluxel and a second engine the same query and compares the answers.
 #pragma once
 
 #include <memory>

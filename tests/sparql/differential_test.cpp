@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same random queries to Cluxel and to oxigraph: the same answers, as multisets. CLUXEL_DIFFERENTIAL sets how many.
+// Cluxel and oxigraph answer the same random queries with equal multisets. CLUXEL_DIFFERENTIAL sets their number.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -73,7 +73,7 @@ std::map<std::string, int> rowCounts(const ResultTable& table) {
   return counts;
 }
 
-/// The rows under a LIMIT are as many as they may be, and all among the rows without it.
+/// The rows with a LIMIT have the expected number, and all are among the rows without it.
 void checkLimited(const QuadReader& reader, const Asked& asked, const QueryResult& unlimited) {
   Asked limited = asked;
   limited.text = asked.query.text;

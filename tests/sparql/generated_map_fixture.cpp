@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the map for tests of the query engine. All literals are in canonical form: engines that keep numbers by value
-// then show the same text.
+// All literals are in canonical form, so that engines that store numbers by value show the same text.
 #include "sparql/generated_map_fixture.hpp"
 
 #include <random>

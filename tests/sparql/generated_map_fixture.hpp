@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A small made-up map for tests of the query engine: objects, parts, classes, numbers, strings, blank nodes, graphs.
+// A small generated map for tests of the query engine: objects, parts, classes, numbers, strings, blank nodes, graphs.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,8 @@ std::vector<std::string> madeGraphs();
 
 /// About 14 quads per object, the same for the same seed.
 std::vector<Quad> madeMap(std::uint32_t seed, int objects);
-/// A map as building one gives it: objects with measures, parts, neighbours and observations, in the graph "observed".
+/// A map with the vocabulary of built maps: objects with measures, parts, neighbours and observations in the graph
+/// "observed".
 std::vector<Quad> surveyedMap(std::uint32_t seed, int objects);
 
 }  // namespace cluxel::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// GeoSPARQL functions on plane geometry in metres.
+// Tests of GeoSPARQL functions on plane geometry in metres.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -73,7 +73,7 @@ TEST(GeoFunctions, MeasureInNoOtherUnit) {
   EXPECT_EQ(in("degree"), "-");
 }
 
-/// Degrees of one literal are no metres of another.
+/// Geometries in degrees and in metres cannot be compared.
 TEST(GeoFunctions, DoNotRelateDifferentReferenceSystems) {
   const SmallStore store;
   const std::string degrees = "<http://www.opengis.net/def/crs/EPSG/0/4326> POINT(1 2)",
@@ -92,7 +92,7 @@ TEST(GeoFunctions, PartsOnTheBorderAreWithinWhereOthersAreInside) {
   EXPECT_EQ(store.value(call("sfWithin", "MULTIPOINT((1 1), (5 1))", kSquare)), kGeoFalse) << "one is outside";
 }
 
-/// Objects with points on a grid, asked by distance and by a window: the R-tree's answers against arithmetic.
+/// Compares the R-tree's answers to distance and window queries with arithmetic, for points on a grid.
 TEST(GeoFilters, FindTheSameObjectsAsComparisonsOfCoordinates) {
   SmallStore store;
   std::vector<Quad> quads;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Budgets, refusals, and what is said about queries: plans, emptiness, unknown names.
+// Tests of budgets, refusals, plans, explanations of empty results, and warnings about unknown names.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ SmallStore chain(int length) {
   return store;
 }
 
-/// Sees whether anything was handed out.
+/// A sink that records whether anything was written to it.
 class WatchingSink : public ResultSink {
  public:
   bool touched = false;
@@ -118,7 +118,7 @@ TEST(Guard, CountsTermsThatAreComputedAnywhereAndRowsOfCountDistinct) {
   expectRefused(store, "SELECT (COUNT(DISTINCT *) AS ?n) { ?a :next ?b }", options);
 }
 
-/// Each inner SELECT holds next to nothing, and gives it back.
+/// Each inner SELECT needs little memory and releases it.
 TEST(Guard, DoesNotCountWhatIsGivenBack) {
   const SmallStore store = chain(3000);
   QueryOptions options;
@@ -150,7 +150,7 @@ TEST(Guard, CountsCandidatesThatDoNotAgree) {
                 options);
 }
 
-/// Not all pairs that a path joins are looked for before the first is given.
+/// The first pair of a path is returned before all pairs are computed.
 TEST(Guard, PathsBetweenVariablesStopEarly) {
   const SmallStore store = chain(1500);
   QueryOptions options;
@@ -174,7 +174,7 @@ TEST(Guard, EndsCostlyRegularExpressions) {
   expectRefused(store, "SELECT * { ?s :p ?v FILTER(REGEX(?v, \"^(a+)+$\")) }", {});
 }
 
-/// A long text takes much room on the stack, but few steps.
+/// A long text needs much stack, but few steps.
 TEST(Guard, LetsPlainRegularExpressionsReadLongTexts) {
   std::string text;
   for (int i = 0; i < 50'000; ++i) text += "ab";
@@ -199,7 +199,7 @@ TEST(Guard, RefusesDeepNesting) {
   EXPECT_THROW(store.ask("SELECT * {" + groups + "}"), InputError);
 }
 
-/// A plan that takes time exponential in its parts is ended by the test program's own limit.
+/// If planning took exponential time, the test would exceed its time limit.
 TEST(Guard, RefusesQueriesOfThousandsOfPartsAndPlansThoseBelow) {
   const SmallStore store = chain(10);
   const auto repeated = [](const std::string& part, int count) {

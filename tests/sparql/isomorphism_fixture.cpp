@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Isomorphism: colours by refinement, then part by part; within a part, pairs that colours do not tell apart are tried.
+// Isomorphism by colour refinement for each connected part; nodes of equal colour are matched by backtracking.
 #include "sparql/isomorphism_fixture.hpp"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ Key mixed(Key seed, Key value) {
   return seed ^ (seed >> 33U);
 }
 
-/// Numbers are written by value: 2, 02 and +2 are one decimal.
+/// Numbers are normalised: 2, 02 and +2 are the same decimal.
 std::string literalKey(const Term& term) {
   static const std::set<std::string> numeric{vocabulary::xsd("integer"), vocabulary::xsd("decimal"),
                                              vocabulary::xsd("double"), vocabulary::xsd("float")};
@@ -91,7 +91,7 @@ std::size_t countOf(const Colours& colours) {
   return std::set<Key>(colours.begin(), colours.end()).size();
 }
 
-/// One round: a node's new colour is its old one and where it stands in which rows.
+/// One round of refinement: a node's new colour is a hash of its old colour and of its places in rows.
 Colours refinedOnce(const std::vector<Row>& rows, const Colours& colours) {
   std::vector<std::vector<Key>> seen(colours.size());
   for (const Row& row : rows) {
@@ -117,7 +117,7 @@ Colours refined(const std::vector<Row>& rows, Colours colours) {
   return refinedOnce(rows, colours);
 }
 
-/// Rows that blank nodes tie together, with the nodes numbered anew.
+/// Rows connected by blank nodes, with renumbered nodes.
 struct Part {
   std::vector<Row> rows;
   Colours colours;
@@ -175,8 +175,8 @@ Classes classesOf(const Colours& colours) {
   return classes;
 }
 
-/// When no row ties two nodes together that share their colours with others, nodes of one colour may stand for each
-/// other.
+/// True when no row connects two nodes whose colours are shared with other nodes; nodes of one colour are then
+/// interchangeable.
 bool areUntied(const std::vector<Row>& rows, const Colours& colours, const Classes& classes) {
   return std::none_of(rows.begin(), rows.end(), [&](const Row& row) {
     std::set<std::size_t> ambiguous;
@@ -186,7 +186,8 @@ bool areUntied(const std::vector<Row>& rows, const Colours& colours, const Class
   });
 }
 
-/// Colours both sides; where nodes share a colour one of `a` is told apart and every candidate of `b` tried for it.
+/// Refines the colours of both sides. Where nodes share a colour, one of `a` is individualised and every candidate of
+/// `b` is tried.
 bool match(const std::vector<Row>& a, Colours colours_a, const std::vector<Row>& b, Colours colours_b, Key depth) {
   colours_a = refined(a, std::move(colours_a));
   colours_b = refined(b, std::move(colours_b));
@@ -212,7 +213,7 @@ bool isSame(const Part& a, const Part& b) {
   return (a.isTold() && b.isTold()) || match(a.rows, a.colours, b.rows, b.colours, 0);
 }
 
-/// Parts with the same keys, sorted into kinds: how many of each kind `a` has more than `b`.
+/// Groups parts with equal keys into isomorphism classes and counts how many more of each class `a` has than `b`.
 bool balanced(const std::vector<const Part*>& a, const std::vector<const Part*>& b) {
   std::vector<std::pair<const Part*, long>> kinds;
   const auto count = [&kinds](const Part& part, long by) {
@@ -244,7 +245,7 @@ bool isomorphic(const std::vector<Tuple>& a, const std::vector<Tuple>& b) {
   if (coded_a.nodes != coded_b.nodes) return false;
   const Colours colours_a = refined(coded_a.rows, Colours(coded_a.nodes, 7)),
                 colours_b = refined(coded_b.rows, Colours(coded_b.nodes, 7));
-  // The rows without blank nodes are compared here, and most differences found.
+  // Rows without blank nodes are compared first, which finds most differences.
   if (keysOf(coded_a.rows, colours_a) != keysOf(coded_b.rows, colours_b)) return false;
   const std::vector<Part> parts_a = partsOf(coded_a, colours_a), parts_b = partsOf(coded_b, colours_b);
   const PartsByKeys sorted_a = byKeys(parts_a), sorted_b = byKeys(parts_b);

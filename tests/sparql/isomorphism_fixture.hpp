@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Multisets of tuples that are the same up to the names of blank nodes.
+// Equality of multisets of tuples up to the names of blank nodes.
 #pragma once
 
 #include <optional>
@@ -12,9 +12,8 @@ namespace cluxel::test {
 /// A row, triple or quad.
 using Tuple = std::vector<std::optional<Term>>;
 
-/// Whether a bijection of blank nodes turns the one multiset of tuples into the other. Numbers of one datatype are
-/// compared by value. Thousands of alike blank nodes cost no more than others: the tuples are split where no blank node
-/// ties them, and each part is compared by itself.
+/// True when a bijection of blank nodes maps one multiset of tuples to the other. Numbers of one datatype are compared
+/// by value. Connected parts are compared separately, so thousands of similar blank nodes are cheap.
 bool isomorphic(const std::vector<Tuple>& a, const std::vector<Tuple>& b);
 
 }  // namespace cluxel::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the parser says about faulty requests, word by word, and that it survives hostile ones.
+// Tests of the parser's messages for faulty requests, and of hostile requests.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -77,7 +77,7 @@ TEST(SparqlParserErrors, PointIntoTheOriginalTextBehindCodePoints) {
             "                                 ^");
 }
 
-/// Each faulty text with a part of what is said about it.
+/// Faulty texts, each with a part of its message.
 struct Fault {
   std::string text, message;
 };
@@ -180,7 +180,7 @@ TEST(SparqlParserErrors, RefuseWhatIsLongerThanTheLimit) {
   EXPECT_THROW(parseQuery("ASK { ?s ?p ?o }", options), InputError);
 }
 
-/// Any prefix of a request, and any request with bytes changed, gives a tree or an InputError.
+/// Any prefix of a request and any request with changed bytes gives a syntax tree or an InputError.
 TEST(SparqlParserErrors, SurviveDamagedRequests) {
   const std::string whole =
       "PREFIX a: <http://a/> SELECT DISTINCT ?x (GROUP_CONCAT(?y ; SEPARATOR = ', ') AS ?z) FROM <http://g> WHERE { ?x "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the parser makes of queries and updates.
+// Tests of the syntax trees of queries and updates.
 #include <gtest/gtest.h>
 
 #include "cluxel/error.hpp"
@@ -31,7 +31,7 @@ const Expression& firstFilter(const Query& query) {
   return std::get<Filter>(query.select.where.elements.at(0).value).condition;
 }
 
-/// An expression as nested calls, so that its shape can be read.
+/// An expression as nested calls, which show its structure.
 std::string shape(const Expression& expression, const Query& query) {
   using K = Expression::Kind;
   static const std::map<K, std::string> signs{{K::Or, "||"},

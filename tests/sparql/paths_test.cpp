@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Property paths against a brute-force reading of the specification on random graphs.
+// Compares property paths with a brute-force implementation of the specification on random graphs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -112,7 +112,7 @@ TEST_P(Paths, GiveThePairsThatBruteForceGives) {
         if (a == node) from.push_back(":n" + std::to_string(b));
         if (b == node) to.push_back(":n" + std::to_string(a));
       }
-      // A constant end is reached by the path of length zero even when the graph does not have it.
+      // A path of length zero reaches a constant end even when the graph does not contain it.
       const bool zero = path.ends_with("*") || path.ends_with("?");
       if (zero && !graph.used().contains(node)) from.push_back(name), to.push_back(name);
       std::sort(from.begin(), from.end());
@@ -134,7 +134,7 @@ TEST(PathCounts, SequencesAndAlternativesKeepDuplicatesAndClosuresDoNot) {
 }
 
 TEST(PathCounts, OfAllPairsEndAndJoinWithPatterns) {
-  // Both ends variable once never ended: the rows of the last batch came again and again.
+  // Regression test: with two variable ends, the last batch was repeated for ever.
   const SmallStore store(":a a :T ; :n :b . :b a :T ; :n :c . :c a :T .");
   EXPECT_THAT(store.rows("SELECT (COUNT(*) AS ?n) { ?x a :T ; :n+ ?y }"), ElementsAre("\"3\"^^integer"));
   EXPECT_THAT(store.rows("SELECT ?x (COUNT(?y) AS ?n) { ?x a :T . ?x :n+ ?y } GROUP BY ?x HAVING(COUNT(?y) > 1)"),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plans: the same answers in every written order, the order chosen, fast paths, prepared queries.
+// Tests of the planner: equal answers for every written order, chosen join orders, fast paths, prepared queries.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Many things of class Common, few of class Rare, with numbers and neighbours.
+/// Many objects of class Common and few of class Rare, with numbers and neighbours.
 SmallStore& wideStore() {
   static SmallStore* const made = [] {
     auto* store = new SmallStore;
@@ -79,7 +79,7 @@ TEST(Planner, HashesWhereBothSidesAreLargeOrMakesAColumn) {
 }
 
 TEST(Planner, BeginsWithRowsInAnOrderThatOthersCanUse) {
-  // One height fewer than things: by rows alone it would begin with the heights, which come by value.
+  // There is one height fewer than objects. By row counts alone the plan would begin with the heights, sorted by value.
   SmallStore store;
   std::vector<Quad> quads;
   const auto iri = [](const std::string& name) { return Term::iri("http://example.org/" + name); };
@@ -108,7 +108,7 @@ TEST(Planner, MergesWhereBothSidesComeSorted) {
   const std::string both = "SELECT ?x { ?x a :A . ?x a :B }", joined = "SELECT ?x ?y { ?y a :A . ?x :near ?y }";
   EXPECT_THAT(explainQuery(store.reader(), kPrefixes + both), HasSubstr("merge join on ?x"));
   EXPECT_THAT(explainQuery(store.reader(), kPrefixes + joined), HasSubstr("merge join on ?y"));
-  // Written so that nothing can be joined by order: the same rows.
+  // Written so that no merge join is possible; the rows are the same.
   EXPECT_EQ(
       store.rows(both),
       store.rows("SELECT ?x { { SELECT ?x { ?x a :A } ORDER BY DESC(?x) LIMIT 100000 } FILTER EXISTS { ?x a :B } }"));

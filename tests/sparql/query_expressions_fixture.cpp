@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Expressions of the generator, typed roughly: what the specification leaves open (the order of unlike terms, digits of
-// printed doubles) is left out.
+// Random expressions with approximate types. What the specification leaves open (the order of terms of different kinds,
+// digits of printed doubles) is not generated.
 #include "sparql/query_generator_fixture.hpp"
 
 namespace cluxel::test {

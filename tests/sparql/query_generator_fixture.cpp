@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Query forms and graph patterns of the generator. Letters: a b c objects, k l classes, n m h i j numbers, s t u v
-// strings, e blank nodes, f booleans, p q predicates, g graphs, x y z anything, r what BIND and aggregates make.
+// strings, e blank nodes, f booleans, p q predicates, g graphs, x y z any terms, r results of BIND and aggregates.
 #include "sparql/query_generator_fixture.hpp"
 
 #include <algorithm>
@@ -113,7 +113,7 @@ std::string QueryGenerator::path(int depth) {
   }
 }
 
-/// The second engine drops duplicates of alternatives, so it gets what the specification defines them as.
+/// The second engine drops duplicates of alternatives, so it gets the equivalent UNION of the specification.
 std::string QueryGenerator::alternative(const std::string& subject, const std::string& object) {
   if (chance(20))
     return kOurs + subject + " !(^clx:near|clx:hasPart) " + object + " ." + kTheirs + "{ " + subject +
@@ -227,7 +227,7 @@ std::string QueryGenerator::aggregate() {
   }
 }
 
-/// Leaves the columns in used_.
+/// Stores the columns in used_.
 std::string QueryGenerator::aggregateSelect(int depth) {
   const bool one_group = chance(30);
   const bool around = std::exchange(no_filters_, no_filters_ || one_group);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random queries from a grammar, over the vocabulary of the generated map. A variable's letter tells what it stands
-// for, so that patterns join and functions get arguments that suit them more often than not.
+// Random queries from a grammar over the vocabulary of the generated map. The letter of a variable is its type, so that
+// patterns usually join and functions usually get suitable arguments.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,21 @@ namespace cluxel::test {
 
 enum class MadeForm : std::uint8_t { Select, Ask, Construct };
 
-/// Where the second engine departs from the specification, it is given another form of the same meaning: between these
-/// marks stand Cluxel's form and the second engine's.
+/// Where the second engine deviates from the specification, it gets an equivalent form. These marks enclose Cluxel's
+/// form and the second engine's.
 inline constexpr char kOurs = '\x01', kTheirs = '\x02', kEnd = '\x03';
 
 struct MadeQuery {
   MadeForm form = MadeForm::Select;
   std::string text;  ///< with the marks, as all texts here
-  /// With LIMIT or OFFSET, the same query without: any rows of its answer will do, as many as LIMIT allows.
+  /// For a query with LIMIT or OFFSET: the same query without them. Any of its rows are right, as many as LIMIT allows.
   std::string unlimited;
-  /// The column of numbers that the rows are ordered by; empty: the order says nothing.
+  /// The numeric column by which the rows are ordered; empty when the order is not defined.
   std::string ordered_by;
   bool descending = false;
 };
 
-/// The letters of variables for numbers and strings.
+/// The letters of variables of numbers and strings.
 inline constexpr const char* kNumbers = "nmhij";
 inline constexpr const char* kStrings = "stuv";
 
@@ -76,10 +76,10 @@ class QueryGenerator {
   std::string one(const std::vector<std::string>& choices) {
     return choices[upTo(static_cast<std::uint32_t>(choices.size()))];
   }
-  /// A variable from `letters`; most often one that the query has already.
+  /// A variable from `letters`, usually one that already occurs in the query.
   std::string variable(const std::string& letters) { return variable(letters, 80); }
   std::string variable(const std::string& letters, std::uint32_t percent_known);
-  /// For the object of a triple: numbers and strings are seldom the same ones twice.
+  /// A variable for the object of a triple; numbers and strings are rarely reused.
   std::string value(const std::string& letters) { return variable(letters, 20); }
   std::string anyVariable();
   std::string fresh() { return used("?r" + std::to_string(++fresh_)); }

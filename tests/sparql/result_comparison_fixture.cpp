@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers as multisets of tuples, compared up to the names of blank nodes.
+// Converts answers to multisets of tuples and compares them up to the names of blank nodes.
 #include "sparql/result_comparison_fixture.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ std::vector<Tuple> withRowNumbers(const std::vector<Tuple>& tuples) {
   return numbered;
 }
 
-/// Columns by name, so that their order does not count.
+/// Columns sorted by name, so that their order does not matter.
 std::vector<Tuple> tuplesOf(const ResultTable& table) {
   std::map<std::string, std::size_t> columns;
   for (std::size_t i = 0; i < table.variables.size(); ++i) columns[table.variables[i]] = i;
@@ -52,7 +52,7 @@ bool withinReduced(const std::vector<Tuple>& actual, const std::vector<Tuple>& e
   return isomorphic(distinct(actual), distinct(expected)) && actual.size() <= expected.size();
 }
 
-/// Rows that only one side has, as far as ten of each go; blank nodes are written alike.
+/// At most ten rows that only one side has; blank nodes are written without their names.
 std::string shown(const std::vector<Tuple>& actual, const std::vector<Tuple>& expected) {
   std::map<std::string, int> surplus;
   const auto count = [&surplus](const std::vector<Tuple>& tuples, int by) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Are two answers the same, up to the names of blank nodes?
+// Compares two answers up to the names of blank nodes.
 #pragma once
 
 #include <string>
@@ -19,7 +19,7 @@ bool isomorphicInOrder(const std::vector<Tuple>& a, const std::vector<Tuple>& b)
 enum class RowOrder { Any, AsWritten };
 enum class Cardinality { Exact, Reduced };  ///< Reduced: `actual` may hold fewer copies of a row, but at least one
 
-/// Empty when the same, else what differs, for people.
+/// Empty when the answers are equal, else a description of the differences.
 std::string difference(const QueryResult& actual, const QueryResult& expected, RowOrder order = RowOrder::Any,
                        Cardinality cardinality = Cardinality::Exact);
 std::string graphDifference(const std::vector<Quad>& actual, const std::vector<Quad>& expected);

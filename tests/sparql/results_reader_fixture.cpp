@@ -9,7 +9,7 @@
 
 #include "cluxel/error.hpp"
 #include "rdf/vocabulary.hpp"
-#include "sparql/syntax/sparql_parser.hpp"
+#include "sparql/syntax/parser.hpp"
 
 namespace cluxel::test {
 
@@ -59,7 +59,7 @@ QueryResult readJsonResults(std::string_view text, const std::string& file) {
   }
 }
 
-/// Cuts CSV (RFC 4180) or, without quoting, TSV into records.
+/// Splits CSV (RFC 4180) or, without quoting, TSV into records.
 std::vector<std::vector<std::string>> recordsOf(std::string_view text, char separator, bool quoting) {
   std::vector<std::vector<std::string>> records;
   for (std::size_t i = 0; i < text.size();) {
@@ -116,9 +116,13 @@ Term csvTerm(const std::string& cell, const std::string&) {
 }
 
 Term tsvTerm(const std::string& cell, const std::string& file) {
+  if (cell.starts_with("_:")) return Term::blank(cell.substr(2));
   SparqlParseOptions options;
   options.file = file;
-  return SparqlParser(cell, options).singleTerm();
+  const ast::Query query = parseQuery("ASK {} VALUES ?term {\n" + cell + "\n}", options);
+  const auto& rows = query.select.values->rows;
+  if (rows.size() != 1 || !rows[0][0]) throw InputError({.file = file}, "the cell '" + cell + "' is not one term");
+  return *rows[0][0];
 }
 
 QueryResult readCsvResults(std::string_view text, const std::string& file) {
@@ -313,6 +317,14 @@ QueryResult readResults(std::string_view text, ResultFormat format, const std::s
 
 QueryResult resultsFromGraph(const std::vector<Quad>& graph, const std::string& file) {
   return GraphResults(graph, file).read();
+}
+
+std::string writtenResult(const QueryResult& result, ResultFormat format, const WriterOptions& options) {
+  std::string text;
+  const auto writer = makeResultWriter(
+      format, [&text](std::string_view piece) { text.append(piece); }, options);
+  replay(result, *writer);
+  return text;
 }
 
 }  // namespace cluxel::test

@@ -39,6 +39,10 @@ class ResultTableBuilder {
   std::map<Term, std::uint32_t> cell_of_;
 };
 
+/// The text of a collected result.
+std::string writtenResult(const sparql::QueryResult& result, sparql::ResultFormat format,
+                          const sparql::WriterOptions& options = {});
+
 /// Reads JSON, XML, CSV or TSV. CSV loses the kind of term: a cell becomes a blank node (`_:x`) or a plain literal, an
 /// empty cell is unbound. Throws InputError with the location of the fault, Error (InvalidArgument) for other formats.
 sparql::QueryResult readResults(std::string_view text, sparql::ResultFormat format,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hands data and queries to oxigraph_answers.mjs and reads its answers.
+// Sends data and queries to oxigraph_answers.mjs and reads its answers.
 #include "sparql/second_engine_fixture.hpp"
 
 #include <cstdlib>
@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A folder of its own that vanishes.
+/// A temporary folder that is removed afterwards.
 class ScratchFolder {
  public:
   ScratchFolder() {

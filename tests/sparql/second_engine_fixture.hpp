@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Oxigraph as a second opinion: a whole batch of queries in one node process.
+// Oxigraph as the second engine: one node process answers a batch of queries.
 #pragma once
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Questions that are not random, put to Cluxel and to oxigraph: the shipped ones, and every way in which an EXISTS can
-// look at the solution around it.
+// Compares Cluxel with oxigraph on the shipped questions and on all ways in which an EXISTS can refer to the outer
+// solution.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using test::EngineAnswer;
 using test::EngineRequest;
 
-/// The solution around: a variable that is always bound, one that is not always.
+/// The outer solution: one variable that is always bound, and one that is sometimes bound.
 const std::vector<std::string> kAround = {
     "?a a clx:Tree ; clx:height ?n .",
     "?a clx:near ?b . ?a clx:pointCount ?n .",
@@ -108,7 +108,7 @@ std::vector<Binding> parametersOf(const std::string& text) {
   return bindings;
 }
 
-/// The second engine gets the values in place of the variables.
+/// For the second engine, parameters are replaced by their values.
 std::string filledIn(std::string text, const std::vector<Binding>& bindings) {
   for (const auto& [name, value] : bindings)
     text = std::regex_replace(text, std::regex("\\?" + name + "\\b"), toNTriples(value));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SERVICE: refused, or answered by the store that the caller has named for the endpoint.
+// Tests of SERVICE: it is refused, or answered by the store that the caller named for the endpoint.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -54,8 +54,8 @@ TEST_F(Services, JoinWhatTheNamedStoreAnswers) {
       1U);
 }
 
-/// It is computed when the query is prepared: without a refusal the parameter would be unbound within it, and the
-/// answer wrong.
+/// A service is evaluated when the query is prepared. A parameter would be unbound within it and the answer wrong, so
+/// it is refused.
 TEST_F(Services, RefuseParametersWithin) {
   const auto prepare = [&](const std::string& service) {
     PreparedQuery(ours.reader(), kPrefixes + "SELECT ?s { ?s :p ?o SERVICE <http://elsewhere/> { " + service + " } }",
@@ -84,7 +84,7 @@ TEST_F(Services, WorkWithinTheBudget) {
 }
 
 TEST_F(Services, ShareOneBudgetWithEachOtherAndTheQuery) {
-  // Four rows each, and four of the rows that join them.
+  // Four rows of each side, and four joined rows.
   const std::string one = "{ SERVICE <http://elsewhere/> { ?x :name ?n } }";
   const auto worked = [&](const std::string& query, std::uint64_t rows) {
     options.budget.max_work_rows = rows;
@@ -97,7 +97,7 @@ TEST_F(Services, ShareOneBudgetWithEachOtherAndTheQuery) {
   EXPECT_TRUE(worked("SELECT ?x { " + one + " UNION " + one + " }", 4 * least));
 }
 
-/// The least budget with which `works` answers true.
+/// The minimum budget for which `works` returns true.
 template <typename Works>
 std::uint64_t leastBudget(const Works& works) {
   std::uint64_t enough = 1, too_little = 0;
@@ -127,7 +127,7 @@ TEST_F(Services, CountInEveryRunOfAPreparedQuery) {
     });
     ASSERT_GT(least, 4U);
     PreparedQuery enough(mine, text, with(least));
-    // The service itself needs less than the run that counts it, so that preparing works.
+    // The service needs less than the whole run, so preparing succeeds.
     PreparedQuery too_little(mine, text, with(least - 1));
     for (int run = 0; run < 3; ++run) {
       EXPECT_EQ(enough.evaluate().table.row_count, 4U) << run;
@@ -161,7 +161,7 @@ TEST_F(Services, HoldNoMoreThanTheirRowsOnceTheyAreAnswered) {
     const std::uint64_t both = leastBudget(works("SELECT ?x { " + one + " UNION " + one + " UNION " + one + " }"));
     EXPECT_LT(both, least + 2'000) << one;
     EXPECT_GE(both, least) << one;
-    // What a run needs beside the rows is not added to what the service's plan needed.
+    // The memory of the service's plan is released before the run.
     const std::uint64_t with_own =
         leastBudget(works("SELECT ?x { " + one + " { SELECT ?s { ?s :p ?o } ORDER BY ?o } }"));
     EXPECT_LT(with_own, least + 2'000) << one;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The R-tree behind geo filters: it may only leave out what the filter would leave out.
+// Tests of the R-tree for spatial filters: it may only exclude what the filter excludes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ class GeometryMaker {
 
   int upTo(int limit) { return static_cast<int>(random_() % static_cast<std::uint32_t>(limit)); }
   std::string pair(int x, int y) { return std::to_string(x) + " " + std::to_string(y); }
-  /// Mostly small geometries on a grid, so that many only touch; some empty ones, faults, and one that spans all.
+  /// Mostly small geometries on a grid, many of which touch; some empty and some faulty ones; one that covers all.
   std::string wkt() {
     const int x = upTo(200), y = upTo(200), w = 1 + upTo(12), h = 1 + upTo(12);
     switch (upTo(12)) {
@@ -106,7 +106,7 @@ TEST(SpatialIndex, GivesTheAnswersOfTheFilterAlone) {
                                       "?o :kind ?k ; geo:asWKT ?g OPTIONAL { ?o :also ?h } "};
       const std::string& pattern = patterns[maker.upTo(3)];
       const std::string indexed = "SELECT * { " + pattern + "FILTER(" + condition + ") }";
-      // The planner does not look into IF.
+      // The planner does not analyse IF.
       const std::string alone = "SELECT * { " + pattern + "FILTER(IF(" + condition + ", true, false)) }";
       const auto expected = store.rows(alone);
       EXPECT_EQ(store.rows(indexed), expected) << indexed;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small stores for tests of the engine.
+// Loads small stores and formats their answers.
 #include "sparql/store_fixture.hpp"
 
 #include <algorithm>
@@ -86,6 +86,12 @@ std::vector<std::string> SmallStore::rows(std::string_view query, const QueryOpt
 std::string SmallStore::value(const std::string& expression) const {
   const std::vector<std::string> lines = rows("SELECT (" + expression + " AS ?v) WHERE {}");
   return lines.size() == 1 ? lines[0] : "no row";
+}
+
+std::string explainQuery(const QuadReader& reader, std::string_view text, const QueryOptions& options) {
+  PreparedQuery query(reader, text, options);
+  query.evaluate();
+  return query.explain();
 }
 
 }  // namespace cluxel::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A small store from Turtle, and short ways to ask it.
+// A small store loaded from Turtle, with short functions for queries.
 #pragma once
 
 #include <memory>
@@ -38,6 +38,9 @@ class SmallStore {
  private:
   std::shared_ptr<Environment> environment_;
 };
+
+/// Runs the query and returns its plan with estimated and actual row counts.
+std::string explainQuery(const QuadReader& reader, std::string_view text, const QueryOptions& options = {});
 
 /// The prefixes above as SPARQL.
 extern const std::string kPrefixes;

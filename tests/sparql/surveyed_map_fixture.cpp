@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A made-up map in the vocabulary of built maps, for the shipped questions. Literals are in canonical form.
+// A generated map in the vocabulary of built maps, for the shipped questions. Literals are in canonical form.
 #include <random>
 
 #include "rdf/vocabulary.hpp"
@@ -33,7 +33,7 @@ class SurveyMaker {
   void add(const Term& subject, const std::string& predicate, const Term& value) {
     quads_.push_back({subject, Term::iri(predicate), value, Term::iri(vocabulary::kGraphObserved)});
   }
-  /// Tenths, without a zero at the end.
+  /// A decimal with one digit, without a trailing zero.
   Term tenths(int value) {
     const std::string sign = value < 0 ? "-" : "";
     const int size = value < 0 ? -value : value;
@@ -53,7 +53,7 @@ class SurveyMaker {
     const char* type = classes[upTo(7)];
     const Term self = object(number);
     add(self, vocabulary::rdf("type"), Term::iri(clx(type)));
-    // Never 0: oxigraph 0.5.11 takes 0.0 * 0.0 for an error.
+    // Never 0, because 0.0 * 0.0 is an error in oxigraph 0.5.11.
     for (const char* name : {"x", "y", "z", "heading"}) add(self, clx(name), tenths(2 * upTo(200) - 199));
     for (const char* name : {"height", "top", "length", "width"}) add(self, clx(name), tenths(1 + upTo(120)));
     add(self, clx("confidence"), tenths(1 + upTo(9)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Updates of a map: what may be written, all or nothing, and the order of operations.
+// Tests of updates: permitted graphs, atomicity and the order of operations.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

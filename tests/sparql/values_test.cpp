@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers, times and their text, against references and laws.
+// Compares numbers, times and their text with references, and tests algebraic laws.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -179,7 +179,7 @@ TEST(Times, MoveByDurations) {
   EXPECT_EQ(store.value("\"P1Y\"^^xsd:duration = \"P12M\"^^xsd:duration"), "\"true\"^^boolean");
 }
 
-/// What a cast or a sum drops must not take part in comparisons.
+/// What a cast or a sum drops must not affect comparisons.
 TEST(Times, ComputedOnesEqualThoseThatAreWritten) {
   const test::SmallStore store;
   for (

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Evaluates, writes the answer in the format of the expected one, reads it back and compares.
+// Evaluates a query, writes the answer in the format of the expected one, reads it back and compares.
 #include "sparql/w3c_case.hpp"
 
 #include <map>
@@ -42,7 +42,7 @@ ast::Query parsed(const W3cFolder& folder, const W3cCase& test, const std::strin
   return parseQuery(text, options);
 }
 
-/// Graphs that the query itself names with FROM stand in the store under their IRIs.
+/// Loads the graphs that the query names with FROM under their IRIs.
 void loadDataset(QuadWriter& writer, const W3cFolder& folder, const W3cCase& test, const ast::Query& query) {
   for (const W3cGraph& graph : test.data) loadInto(writer, folder, graph);
   if (!test.data.empty()) return;
@@ -80,7 +80,7 @@ Expected expectedOf(const W3cFolder& folder, const W3cCase& test, const ast::Que
   return expected;
 }
 
-/// CSV forgets what the terms were; so the expected answer is read from CSV, and ours is written to it first.
+/// CSV loses the kinds of terms, so our answer is written as CSV and read back before the comparison.
 QueryResult throughFormat(const QueryResult& result, std::optional<ResultFormat> format) {
   if (!format || result.kind == QueryResult::Kind::Graph) return result;
   return readResults(writtenResult(result, *format), *format, "our own answer");
@@ -116,7 +116,7 @@ std::map<std::string, std::vector<Quad>> graphsOf(const QuadReader& reader) {
   return graphs;
 }
 
-/// Graph by graph, because blank nodes of different files are never the same.
+/// Compares graph by graph, because blank nodes of different files are always different.
 std::string compareGraphs(const W3cFolder& folder, const W3cCase& test, const QuadReader& reader) {
   std::map<std::string, std::vector<Quad>> expected;
   for (const W3cGraph& graph : test.graphs_after)

@@ -8,7 +8,7 @@
 
 namespace cluxel::test {
 
-/// Empty when the test passes, else why not.
+/// Empty when the test passes, else the reason of the failure.
 std::string runCase(const W3cFolder& folder, const W3cCase& test);
 
 }  // namespace cluxel::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads manifests (mf:, qt:, ut: vocabularies) with Cluxel's own Turtle reading.
+// Reads manifests (mf:, qt:, ut: vocabularies) with Cluxel's Turtle reader.
 #include "sparql/w3c_manifest.hpp"
 
 #include <map>

@@ -35,7 +35,7 @@ struct W3cCase {
   bool lax_cardinality = false;
 };
 
-/// IRIs that stand for the files below the folder of the suites, the same on every machine.
+/// Machine-independent IRIs of the files of the suites.
 class W3cFolder {
  public:
   explicit W3cFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
@@ -47,7 +47,7 @@ class W3cFolder {
   std::filesystem::path folder_;
 };
 
-/// All tests that a manifest names, itself or by inclusion, in its order.
+/// All tests of a manifest and of the manifests it includes, in order.
 std::vector<W3cCase> readManifest(const W3cFolder& folder, const std::string& manifest);
 
 }  // namespace cluxel::test

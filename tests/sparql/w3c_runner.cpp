@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the W3C SPARQL suites and prints a table: w3c_runner [FOLDER] [--only TEXT]. Exit code 77: no suites there.
+// Runs the W3C SPARQL suites and prints a table: w3c_runner [FOLDER] [--only TEXT]. Exit code 77: the suites are
+// absent.
 #include <cstdlib>
 #include <fstream>
 #include <iomanip>

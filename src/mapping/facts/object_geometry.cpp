@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "perception/segments/footprint_hull.hpp"
+#include "base/convex_hull.hpp"
 
 namespace cluxel::mapping {
 
@@ -26,7 +26,7 @@ ObjectGeometry geometryOf(const perception::SceneCluxels& cluxels, std::span<con
     geometry.point_count += cluxels.point_count[c];
   }
   geometry.centroid /= static_cast<double>(std::max<std::uint64_t>(geometry.point_count, 1));
-  const perception::FootprintBox box = perception::smallestBox(perception::convexHull(std::move(corners)));
+  const FootprintBox box = smallestBox(convexHull(std::move(corners)));
   geometry.box.center << box.center, 0.5 * (geometry.min.z() + geometry.max.z());
   geometry.box.size << box.length_m, box.width_m, geometry.max.z() - geometry.min.z();
   geometry.box.yaw_rad = box.yaw_rad;

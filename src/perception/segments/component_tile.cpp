@@ -8,9 +8,9 @@
 #include <numbers>
 #include <numeric>
 
+#include "base/convex_hull.hpp"
 #include "base/disjoint_sets.hpp"
 #include "perception/clustering/fast_floor.hpp"
-#include "perception/segments/footprint_hull.hpp"
 #include "perception/simd_vector.hpp"
 
 namespace cluxel::perception {

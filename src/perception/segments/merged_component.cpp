@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/convex_hull.hpp"
 #include "base/steady_angle.hpp"
-#include "perception/segments/footprint_hull.hpp"
 
 namespace cluxel::perception {
 

@@ -50,15 +50,4 @@ void indexRelations(Scene& scene) {
     scene.relation_offset[i] += scene.relation_offset[i - 1];
 }
 
-double adjacentFraction(const Scene& scene, PrimitiveIndex a, PrimitiveIndex b) {
-  std::size_t outward = 0, to_b = 0;
-  for (std::uint32_t cluxel : scene.primitives[a].cluxels)
-    for (std::uint32_t other : scene.cluxels.neighbours(cluxel)) {
-      const PrimitiveIndex primitive = scene.cluxels.primitive[other];
-      outward += primitive != a ? 1 : 0;
-      to_b += primitive == b && b != a ? 1 : 0;
-    }
-  return outward == 0 ? 0.0 : static_cast<double>(to_b) / static_cast<double>(outward);
-}
-
 }  // namespace cluxel::perception

@@ -88,7 +88,4 @@ struct Scene {
 /// Sorts relations and fills relation_offset.
 void indexRelations(Scene& scene);
 
-/// The share of a's cluxel edges to other primitives that lead to b; 0 without such edges. Cost O(edges of a).
-double adjacentFraction(const Scene& scene, PrimitiveIndex a, PrimitiveIndex b);
-
 }  // namespace cluxel::perception

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "base/content_hash.hpp"
+#include "base/utf8.hpp"
 #include "cluxel/error.hpp"
 #include "rdf/io/rdf_faults.hpp"
 #include "rdf/io/rdf_guards.hpp"
@@ -28,8 +29,8 @@ struct RaptorDeleter {
 template <typename T>
 using Raptor = std::unique_ptr<T, RaptorDeleter>;
 
-const unsigned char* bytes(const std::string& text) {
-  return reinterpret_cast<const unsigned char*>(text.c_str());
+const unsigned char* raptorBytes(std::string_view text) {
+  return reinterpret_cast<const unsigned char*>(text.data());
 }
 
 std::string_view viewOf(const unsigned char* text, std::size_t size) {
@@ -161,14 +162,13 @@ void Reading::run() {
   raptor_parser_set_option(parser_.get(), RAPTOR_OPTION_NO_NET, nullptr, 1);
   raptor_parser_set_option(parser_.get(), RAPTOR_OPTION_NO_FILE, nullptr, 1);
   const std::string base = source_.base_iri.empty() ? std::string("invalid:/") : source_.base_iri;
-  const Raptor<raptor_uri> uri(raptor_new_uri(world.get(), bytes(base)));
+  const Raptor<raptor_uri> uri(raptor_new_uri(world.get(), raptorBytes(base)));
   if (!uri) throw InputError({.file = source_.name}, "the base IRI '" + base + "' is malformed");
   raptor_parser_parse_start(parser_.get(), uri.get());
-  // Some editors write a byte order mark, which raptor accepts in XML only.
-  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-  const bool skips = source_.format != RdfFormat::RdfXml && source_.text.starts_with(byte_order_mark);
-  const std::size_t from = skips ? byte_order_mark.size() : 0;
-  raptor_parser_parse_chunk(parser_.get(), bytes(source_.text) + from, source_.text.size() - from, 1);
+  // Raptor accepts a byte order mark in XML only.
+  const std::string_view text =
+      source_.format == RdfFormat::RdfXml ? std::string_view(source_.text) : withoutByteOrderMark(source_.text);
+  raptor_parser_parse_chunk(parser_.get(), raptorBytes(text), text.size(), 1);
   parser_.reset();
   if (failure_) std::rethrow_exception(failure_);
   faults_.throwIfAny();

@@ -7,7 +7,6 @@
 #include <rdf_storage_module.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "base/utf8.hpp"
 #include "rdf/redland/redland_calls.hpp"
@@ -19,7 +18,6 @@ namespace {
 using namespace redland_calls;
 
 // A feature that only this storage has: the address of its RedlandMap, by which a query module finds the map.
-constexpr char kMapFeature[] = "https://w3id.org/cluxel/redland#map";
 
 bool flag(librdf_hash* options, const char* name, bool otherwise) {
   const Redland<char> value(options != nullptr ? librdf_hash_get(options, name) : nullptr);
@@ -150,9 +148,7 @@ librdf_node* getFeature(librdf_storage* storage, librdf_uri* feature) {
   return on(storage, static_cast<librdf_node*>(nullptr), [&](RedlandMap& map) -> librdf_node* {
     const std::string_view name(reinterpret_cast<const char*>(librdf_uri_as_string(feature)));
     if (name == LIBRDF_MODEL_FEATURE_CONTEXTS) return nodeOf(map.world(), TermView::of(Term::literal("1"))).release();
-    if (name != kMapFeature) return nullptr;
-    const auto address = reinterpret_cast<std::uintptr_t>(&map);
-    return nodeOf(map.world(), TermView::of(Term::literal(std::to_string(address)))).release();
+    return nullptr;
   });
 }
 
@@ -223,18 +219,6 @@ void fillFactory(librdf_storage_factory* factory) {
 
 void registerRedlandStorage(librdf_world_s* world) {
   librdf_storage_register_factory(world, "cluxel", "Cluxel map", fillFactory);
-}
-
-std::optional<RedlandView> viewRedlandStorage(librdf_storage_s* storage) {
-  librdf_world* world = librdf_storage_get_world(storage);
-  const Redland<librdf_uri> feature(librdf_new_uri(world, reinterpret_cast<const unsigned char*>(kMapFeature)));
-  const Redland<librdf_node> node(librdf_storage_get_feature(storage, feature.get()));
-  if (!node) return std::nullopt;
-  const Term address = termOf(node.get());
-  std::uintptr_t value = 0;
-  std::from_chars(address.text.data(), address.text.data() + address.text.size(), value);
-  auto& map = *reinterpret_cast<RedlandMap*>(value);  // NOLINT(performance-no-int-to-ptr): Redland's features are texts
-  return RedlandView{map.environment(), map.read(), map.options().strict};
 }
 
 }  // namespace cluxel::rdf

@@ -18,13 +18,4 @@ namespace cluxel::rdf {
 /// own, so add streams or use transactions.
 void registerRedlandStorage(librdf_world_s* world);
 
-/// What an open storage "cluxel" sees: its transaction when it has one, else the latest commit. Nothing for a storage
-/// of another kind.
-struct RedlandView {
-  std::shared_ptr<Environment> environment;
-  ReadTransaction transaction;
-  bool strict = false;
-};
-std::optional<RedlandView> viewRedlandStorage(librdf_storage_s* storage);
-
 }  // namespace cluxel::rdf

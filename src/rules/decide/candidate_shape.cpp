@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 
+#include "base/convex_hull.hpp"
 #include "base/steady_angle.hpp"
 #include "perception/segments/component_tile.hpp"
 #include "rules/decide/candidate.hpp"
@@ -15,54 +16,6 @@ namespace cluxel::rules {
 namespace {
 
 using Point2 = Eigen::Vector2d;
-
-double cross(const Point2& o, const Point2& a, const Point2& b) {
-  return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
-}
-
-/// Andrew's monotone chain; counter-clockwise, without collinear points.
-std::vector<Point2> convexHull(std::vector<Point2> points) {
-  std::sort(points.begin(), points.end(),
-            [](const Point2& a, const Point2& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  if (points.size() < 3) return points;
-  std::vector<Point2> hull(2 * points.size());
-  std::size_t size = 0;
-  for (const Point2& p : points) {
-    while (size >= 2 && cross(hull[size - 2], hull[size - 1], p) <= 0) --size;
-    hull[size++] = p;
-  }
-  const std::size_t lower = size + 1;
-  for (auto p = points.rbegin() + 1; p != points.rend(); ++p) {
-    while (size >= lower && cross(hull[size - 2], hull[size - 1], *p) <= 0) --size;
-    hull[size++] = *p;
-  }
-  hull.resize(size - 1);
-  return hull;
-}
-
-/// Larger and smaller side of the smallest-area box with a side along an edge of the hull.
-std::pair<double, double> smallestBox(const std::vector<Point2>& hull) {
-  double best_area = std::numeric_limits<double>::infinity();
-  std::pair<double, double> best{0, 0};
-  for (std::size_t i = 0; i < hull.size(); ++i) {
-    Point2 along = hull[(i + 1) % hull.size()] - hull[i];
-    if (along.norm() == 0) continue;
-    along.normalize();
-    const Point2 across(-along.y(), along.x());
-    double low_u = 1e300, high_u = -1e300, low_v = 1e300, high_v = -1e300;
-    for (const Point2& p : hull) {
-      const double u = p.dot(along), v = p.dot(across);
-      low_u = std::min(low_u, u), high_u = std::max(high_u, u);
-      low_v = std::min(low_v, v), high_v = std::max(high_v, v);
-    }
-    const double a = high_u - low_u, b = high_v - low_v;
-    if (a * b >= best_area) continue;
-    best_area = a * b;
-    best = {std::max(a, b), std::min(a, b)};
-  }
-  return best;
-}
 
 std::vector<Point2> footprintCorners(const perception::SceneCluxels& all, std::span<const std::uint32_t> cluxels) {
   std::vector<Point2> corners;
@@ -166,7 +119,8 @@ class Measuring {
   }
 
   void upright() {
-    const auto [length, width] = smallestBox(convexHull(footprintCorners(all_, cluxels_)));
+    const FootprintBox box = smallestBox(convexHull(footprintCorners(all_, cluxels_)));
+    const double length = box.length_m, width = box.width_m;
     at(perception::Attribute::HorizontalExtent) = at(perception::Attribute::Length) = length;
     at(perception::Attribute::HorizontalThickness) = at(perception::Attribute::Width) = width;
     at(perception::Attribute::Height) = shape_.max.z() - shape_.min.z();

@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "base/utf8.hpp"
+
 namespace cluxel::scan {
 
 class TextScanner {
@@ -14,7 +16,7 @@ class TextScanner {
   /// `text` must outlive the scanner; `file` is for messages. A byte order mark (written by Windows editors) is
   /// skipped.
   TextScanner(std::string_view text, std::string file)
-      : next_(text.data() + (text.starts_with("\xEF\xBB\xBF") ? 3 : 0)),
+      : next_(withoutByteOrderMark(text).data()),
         end_(text.data() + text.size()),
         text_(text),
         file_(std::move(file)) {}

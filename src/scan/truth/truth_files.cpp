@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/file_bytes.hpp"
+#include "base/utf8.hpp"
 #include "scan/formats/gzip_text.hpp"
 #include "scan/formats/parsed_scan.hpp"
 #include "scan/formats/text_scanner.hpp"
@@ -86,7 +87,7 @@ std::optional<fs::path> truthFileOf(const fs::path& folder, const fs::path& scan
 std::vector<std::int32_t> parseAmbiguousInstances(std::string_view text, const std::string& file) {
   // A table that was cut off to nothing would make hidden instances count.
   if (text.empty()) throw InputError({.file = file}, "is empty where a row of column names was expected");
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // a byte order mark, as spreadsheets write it
+  text = withoutByteOrderMark(text);
   std::vector<std::int32_t> ids;
   std::size_t id_column = 0, ambiguous_column = 0;
   for (std::size_t line = 1; !text.empty(); ++line) {

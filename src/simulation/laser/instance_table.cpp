@@ -5,52 +5,13 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "base/convex_hull.hpp"
 #include "simulation/site/campus_site.hpp"
 
 namespace cluxel::simulation {
 namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d;
-
-double cross(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
-  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-}
-
-/// Andrew's monotone chain.
-std::vector<Vector2d> convexHull(std::vector<Vector2d> points) {
-  std::sort(points.begin(), points.end(),
-            [](const Vector2d& a, const Vector2d& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
-  if (points.size() < 3) return points;
-  std::vector<Vector2d> hull;
-  for (int pass = 0; pass < 2; ++pass) {
-    const std::size_t start = hull.size();
-    for (const Vector2d& point : points) {
-      while (hull.size() >= start + 2 && cross(hull[hull.size() - 2], hull.back(), point) <= 0) hull.pop_back();
-      hull.push_back(point);
-    }
-    hull.pop_back();
-    std::reverse(points.begin(), points.end());
-  }
-  return hull;
-}
-
-/// Long and short side of the smallest rectangle around a hull.
-Vector2d extentsOf(const std::vector<Vector2d>& hull) {
-  Vector2d best{0, 0};
-  double best_area = 1e300;
-  for (std::size_t i = 0; i < hull.size(); ++i) {
-    const Vector2d edge = hull[(i + 1) % hull.size()] - hull[i];
-    if (edge.norm() == 0) continue;
-    const Vector2d u = edge.normalized(), v{-u.y(), u.x()};
-    Eigen::AlignedBox2d box;
-    for (const Vector2d& point : hull) box.extend(Vector2d{u.dot(point), v.dot(point)});
-    const Vector2d size = box.sizes();
-    if (size.prod() >= best_area) continue;
-    best_area = size.prod();
-    best = {size.maxCoeff(), size.minCoeff()};
-  }
-  return best;
-}
 
 void merge(InstanceSight& into, const InstanceSight& part) {
   into.points += part.points;
@@ -62,9 +23,11 @@ void merge(InstanceSight& into, const InstanceSight& part) {
 }
 
 /// The reason why an object is ambiguous (not scored); empty when it is scored.
-std::string reasonsAgainst(const CampusObject& object, const InstanceSight& sight, const Vector2d& extents) {
+std::string reasonsAgainst(const CampusObject& object, const InstanceSight& sight, const FootprintBox& extents) {
   std::string reasons;
-  const auto is = [&object](ObjectClass wanted) { return object.class_number == static_cast<int>(wanted); };
+  const auto is = [&object](ObjectClass expected_class) {
+    return object.class_number == static_cast<int>(expected_class);
+  };
   const auto when = [&reasons](bool applies, const char* reason) {
     if (applies) reasons += std::string(reason) + ";";
   };
@@ -74,12 +37,12 @@ std::string reasonsAgainst(const CampusObject& object, const InstanceSight& sigh
   when(is(ObjectClass::Ground), "ground");
   when(sight.points < (is(ObjectClass::Building) ? 200U : 20U), "few points");
   when(sight.box.sizes().z() < 0.5 * object.box.sizes().z(), "mostly hidden");
-  when(is(ObjectClass::Building) && extents.x() > 40, "longer than 40 m");
+  when(is(ObjectClass::Building) && extents.length_m > 40, "longer than 40 m");
   when(is(ObjectClass::Tree) && (!seen_label(SurfaceLabel::TreeTrunk) || !seen_label(SurfaceLabel::TreeTop)),
        "trunk or top unseen");
-  when(is(ObjectClass::Bush) && extents.x() > 5, "hedge");
+  when(is(ObjectClass::Bush) && extents.length_m > 5, "hedge");
   when(is(ObjectClass::StreetSign) && !seen_label(SurfaceLabel::SignPlate), "plate unseen");
-  when(is(ObjectClass::Vehicle) && extents.x() < 1, "shorter than 1 m");
+  when(is(ObjectClass::Vehicle) && extents.length_m < 1, "shorter than 1 m");
   when(object.kind == "fence" || object.kind == "bollard", "fence or post");
   return reasons;
 }
@@ -146,7 +109,7 @@ std::string instanceTable(const Campus& campus, const std::vector<InstanceSights
       "fine_labels,ambiguous,flags\n";
   for (const auto& [id, sight] : all) {
     const CampusObject& object = campus.objects[static_cast<std::size_t>(id)];
-    const Vector2d extents = extentsOf(sight.outline);
+    const FootprintBox extents = smallestBox(sight.outline);
     const std::string reasons = reasonsAgainst(object, sight, extents);
     table += std::to_string(id) + "," +
              snakeCase(scan::truthClassNames()[static_cast<std::size_t>(object.class_number)]) + "," +
@@ -154,8 +117,8 @@ std::string instanceTable(const Campus& campus, const std::vector<InstanceSights
     for (const Vector3d& corner :
          {Vector3d(sight.sum / static_cast<double>(sight.points)), sight.box.min(), sight.box.max()})
       for (int axis = 0; axis < 3; ++axis) table += "," + number(corner[axis]);
-    table += "," + number(sight.box.sizes().z()) + "," + number(extents.x()) + "," + number(extents.y()) + "," +
-             joinCounts(points_in_scan[id], "+", [&scans](std::size_t scan) { return scans[scan]; }) + "," +
+    table += "," + number(sight.box.sizes().z()) + "," + number(extents.length_m) + "," + number(extents.width_m) +
+             "," + joinCounts(points_in_scan[id], "+", [&scans](std::size_t scan) { return scans[scan]; }) + "," +
              joinCounts(sight.points_of_label, "+", [](std::uint32_t label) { return std::to_string(label); }) + "," +
              (reasons.empty() ? "0" : "1") + "," + reasons + "\n";
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Buildings: walls with recessed windows, ledges, doors and steps, flat or gabled roofs, porticos.
+// Buildings with recessed windows, ledges, doors, steps, flat or gabled roofs and porticos.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d;
 
-/// Surfaces and measures that the parts of one building share.
+/// Surfaces and dimensions shared by the parts of one building.
 struct Building {
   BuildingSurfaces surfaces;
   FacadeStyle style;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cars: a lower body by its side view, a cabin of framed glass that narrows upwards, four wheels.
+// Cars: a lower body extruded from its side view, a tapered cabin with framed windows, four wheels.
 #include <cmath>
 
 #include "simulation/makers/makers.hpp"
@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Isometry3d, Eigen::Vector2d, Eigen::Vector3d;
 
-/// Shape of a car; x runs forward from its middle, heights above the road [m].
+/// Dimensions of a car [m]. x runs forward from the middle of the car, heights are above the road.
 struct CarShape {
   const char* kind;
   double length, width, height;
@@ -32,7 +32,7 @@ CarShape randomShape(CampusRandom& random) {
   }
 }
 
-/// The side view lies in the x-z plane; its plate is as thick as the car is wide.
+/// Extrudes the side view (x-z plane) over the width of the car.
 void addLowerBody(CampusMesh& body, const Isometry3d& T_map_car, const CarShape& shape) {
   const double front = shape.length / 2, rear = -front, hood = shape.belt - 0.04;
   const std::vector<Vector2d> outline{
@@ -76,7 +76,7 @@ void addWheels(CampusMesh& wheels, const Isometry3d& T_map_car, const CarShape& 
     }
 }
 
-/// Standing on the road with the road's slope.
+/// The pose of a car on the road, tilted by the road's slope.
 Isometry3d carPose(const CampusSite& site, const Vector2d& place, double yaw_rad) {
   const Vector2d ahead{std::cos(yaw_rad), std::sin(yaw_rad)}, left{-ahead.y(), ahead.x()};
   const Vector3d x = (site.onGround(place + 1.4 * ahead) - site.onGround(place - 1.4 * ahead)).normalized();

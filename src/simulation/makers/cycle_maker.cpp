@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bicycles and motorcycles: two wheels in a line, and little between them.
+// Bicycles and motorcycles: two wheels and a thin frame.
 #include <cmath>
 #include <numbers>
 
@@ -11,7 +11,7 @@ using Eigen::Isometry3d, Eigen::Vector2d, Eigen::Vector3d;
 
 namespace {
 
-/// Parts of a cycle in its own frame: x ahead, z up, the origin on the ground between the wheels.
+/// Parts of a cycle in its own frame: x forward, z up, origin on the ground between the wheels.
 class CycleBody {
  public:
   CycleBody(CampusMesh& mesh, const Isometry3d& T_map_cycle) : mesh_(mesh), T_(T_map_cycle) {}

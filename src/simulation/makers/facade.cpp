@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Walls are cut into rectangles around their openings.
+// Splits a wall into rectangles around its openings.
 #include "simulation/makers/facade.hpp"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ void BuildingSurfaces::addTo(CampusSite& site) {
 
 namespace {
 
-/// Coordinates on a facade: s along, t up from the ground floor, d outward [m].
+/// Coordinates on a facade [m]: s along the wall, t upwards from the ground floor, d outwards.
 class FacadeMaker {
  public:
   FacadeMaker(BuildingSurfaces& surfaces, const FacadeStyle& style, const FacadePlace& place)
@@ -82,7 +82,7 @@ class FacadeMaker {
       addQuad(surfaces_.facade, {at(s0, t0, 0), at(s1, t1, 0), at(s1, t1, d), at(s0, t0, d)});
     }
   }
-  /// A bar along the wall, from the wall's face outward.
+  /// A bar along the wall that protrudes from its face.
   void bar(CampusMesh& mesh, double s0, double s1, double middle_t, double height, double depth) {
     Eigen::Isometry3d T_map_bar = Eigen::Isometry3d::Identity();
     T_map_bar.linear().col(0) = place_.along;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One side of a building: a wall with windows set back in it, string courses, a door with steps.
+// One facade: a wall with recessed windows, string courses and a door with steps.
 #pragma once
 
 #include <Eigen/Core>

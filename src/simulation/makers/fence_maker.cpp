@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fences of pickets, bars, wire mesh and boards, and low garden walls: what is long, upright and can be
-// looked over.
+// Picket, bar, wire mesh and board fences, and low garden walls.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +11,7 @@ using Eigen::Isometry3d, Eigen::Vector2d, Eigen::Vector3d;
 
 namespace {
 
-/// A line over the ground, along which a fence is put together.
+/// A line on the ground along which a fence is built.
 class FenceLine {
  public:
   FenceLine(const CampusSite& site, const Vector2d& from, const Vector2d& to)
@@ -24,17 +23,17 @@ class FenceLine {
 
   double length() const { return length_; }
   Vector3d foot(double s) const { return site_.onGround(from_ + (to_ - from_) * (std::min(s, length_) / length_)); }
-  /// Upright at `s`, x along the line.
+  /// The upright pose at `s` with x along the line.
   Isometry3d at(double s) const { return standing(foot(s), yaw_rad_); }
 
-  /// A rail between two places, at a height above the ground.
+  /// Adds a rail between two places at a height above the ground.
   void rail(CampusMesh& mesh, double s, double next, double up, double radius) const {
     const Vector3d above{0, 0, up};
     addTube(
         mesh,
         {.from = foot(s) + above, .to = foot(next) + above, .radius_from = radius, .radius_to = radius, .sides = 4});
   }
-  /// Posts every `distance`, and what `between` puts from each to the next.
+  /// Adds a post every `distance` and calls `between` for each pair of consecutive posts.
   template <typename Between>
   void posts(CampusMesh& mesh, double distance, const Vector3d& size, double aside, const Between& between) const {
     for (double s = 0; s <= length_; s += distance) {
@@ -73,7 +72,7 @@ void addBars(CampusMesh& fence, const FenceLine& line, CampusRandom& random) {
   });
 }
 
-/// Flat strips stand for wires and what a beam sees around them.
+/// Flat strips model the wires at the width that a laser beam sees.
 void addWireMesh(CampusMesh& fence, const FenceLine& line, CampusRandom& random) {
   const double height = random.uniform(1.0, 1.8);
   constexpr double kPitch_m = 0.06, kWire_m = 0.01;
@@ -94,7 +93,7 @@ void addBoards(CampusMesh& fence, const FenceLine& line, CampusRandom& random) {
   });
 }
 
-/// In pieces of a metre, so that it follows the ground.
+/// Built in segments of one metre, so that it follows the ground.
 void addLowWall(CampusMesh& wall, const FenceLine& line, CampusRandom& random) {
   const double height = random.uniform(0.6, 1.3), thick = random.uniform(0.18, 0.35);
   const bool coped = random.chance(0.5);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ground as a grid of quads, each on the mesh of its kind.
+// The ground as a grid of quads, one mesh per surface type.
 #include <map>
 
 #include "simulation/makers/makers.hpp"
@@ -26,7 +26,7 @@ SurfaceLook lookOf(SurfaceLabel kind) {
   }
 }
 
-/// Corners of the ground grid, rough where grass grows.
+/// The grid's corners, with random roughness on grass.
 class GroundGrid {
  public:
   explicit GroundGrid(const CampusSite& site) : xs_(site.plan().gridX()), ys_(site.plan().gridY()) {

@@ -24,7 +24,7 @@ struct Lamp {
   CampusMesh pole, arm, head;
 };
 
-/// A thick base, then a pole that tapers.
+/// A pole that tapers above a thick base.
 void addPole(CampusMesh& mesh, const Vector3d& foot, double height, double radius) {
   const Vector3d up = Vector3d::UnitZ();
   addTube(mesh, {.from = foot - 0.2 * up,

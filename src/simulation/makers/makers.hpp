@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The makers of single objects: each enters one object with its surfaces and gives its instance id.
+// Functions that make one object each: they add the object and its surfaces to the campus and return its instance id.
 #pragma once
 
 #include <Eigen/Core>
@@ -32,18 +32,17 @@ std::int32_t makeTree(CampusSite& site, const Eigen::Vector2d& place, const Tree
 
 std::int32_t makeBush(CampusSite& site, const Eigen::Vector2d& place, double radius, CampusRandom random);
 std::int32_t makeHedge(CampusSite& site, const Eigen::Vector2d& from, const Eigen::Vector2d& to, CampusRandom random);
-/// Higher growth is left out of truth: people do not agree whether it is a bush or a tree.
+/// Higher vegetation is not part of the truth, because annotators disagree whether it is a bush or a tree.
 inline constexpr double kBushTop_m = 1.6;
 struct ThicketSpec {
   double height_m = 2;
   double half_depth_m = 0.8;
 };
-/// Shrubs that have grown into one another, deep and rough: a bush up to kBushTop_m, else leaves of no
-/// object.
+/// A thicket of merged shrubs. Up to kBushTop_m it is one bush; higher ones are leaves without an object.
 void makeThicket(CampusSite& site, const Eigen::Vector2d& from, const Eigen::Vector2d& to, const ThicketSpec& spec,
                  CampusRandom random);
 
-/// `yaw_rad` is where the arm points.
+/// `yaw_rad` is the direction of the arm.
 std::int32_t makeStraightLamp(CampusSite& site, const Eigen::Vector2d& place, CampusRandom random);
 std::int32_t makeArmLamp(CampusSite& site, const Eigen::Vector2d& place, double yaw_rad, CampusRandom random);
 
@@ -57,7 +56,7 @@ std::int32_t makeSign(CampusSite& site, const Eigen::Vector2d& place, const Sign
 /// A row of poles along x with wires between them.
 void makeUtilityLine(CampusSite& site, const std::vector<Eigen::Vector2d>& places, CampusRandom random);
 
-/// `yaw_rad` is where the car looks.
+/// `yaw_rad` is the heading of the car.
 std::int32_t makeCar(CampusSite& site, const Eigen::Vector2d& place, double yaw_rad, CampusRandom random);
 
 std::int32_t makeBin(CampusSite& site, const Eigen::Vector2d& place, CampusRandom random);
@@ -67,13 +66,13 @@ enum class FenceKind { Pickets, Bars, WireMesh, Boards, LowWall };
 std::int32_t makeFence(CampusSite& site, const Eigen::Vector2d& from, const Eigen::Vector2d& to, FenceKind kind,
                        CampusRandom random);
 enum class CycleKind { Bicycle, Motorcycle };
-/// `yaw_rad` is where it looks.
+/// `yaw_rad` is its heading.
 std::int32_t makeCycle(CampusSite& site, const Eigen::Vector2d& place, double yaw_rad, CycleKind kind,
                        CampusRandom random);
 std::int32_t makeHydrant(CampusSite& site, const Eigen::Vector2d& place, CampusRandom random);
 std::int32_t makePerson(CampusSite& site, const Eigen::Vector2d& place, CampusRandom random);
 
-/// These lay out the campus in this order. Each uses the ground that the earlier ones left free.
+/// The layout functions in the order of their calls. Each uses the ground that the earlier ones left free.
 void layOutBuildings(CampusSite& site);
 void plantAvenues(CampusSite& site);
 void furnishStreet(CampusSite& site);
@@ -81,7 +80,7 @@ void furnishPaths(CampusSite& site);
 void plantLawns(CampusSite& site);
 void layOutBorders(CampusSite& site);
 
-/// Places of the trees on each side of the avenue along the west path: their y.
+/// The y coordinates of the trees on each side of the avenue along the west path.
 std::vector<double> avenueRows(const SitePlan& plan);
 inline constexpr double kAvenueAside_m = 2.9;  ///< from the middle of the path to the trunks
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles of simple bodies.
+// Generates the triangles of simple bodies.
 #include "simulation/makers/mesh_shapes.hpp"
 
 #include <cmath>

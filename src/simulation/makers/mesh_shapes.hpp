@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Simple bodies as triangles: boxes, tubes, balls, plates, leaves. All lengths in metres.
+// Triangle meshes of boxes, tubes, balls, plates and leaves. All lengths are in metres.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +14,7 @@ namespace cluxel::simulation {
 using Corners = std::array<Eigen::Vector3d, 4>;
 
 void addTriangle(CampusMesh& mesh, const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
-/// Corners in order around the quad.
+/// The corners are given in order around the quad.
 void addQuad(CampusMesh& mesh, const Corners& corners);
 
 /// A box of the given size around the origin of T_map_box.
@@ -41,16 +41,16 @@ std::vector<Eigen::Vector2d> rectangleOutline(double width, double height);
 /// One triangle of edge length `size` around `center`, in a random orientation.
 void addLeaf(CampusMesh& mesh, CampusRandom& random, const Eigen::Vector3d& center, double size);
 
-/// A random direction, evenly over the sphere.
+/// A random direction, uniform on the sphere.
 Eigen::Vector3d randomDirection(CampusRandom& random);
 
-/// Glass in a frame: the inner quad goes to `glass`, four strips around it to `frame`; `margin` in shares of
-/// the edges.
+/// A framed pane: the inner quad is added to `glass`, the four strips around it to `frame`. `margin` is a share of the
+/// edge lengths.
 void addFramedGlass(CampusMesh& frame, CampusMesh& glass, const Corners& corners, double margin);
 
-/// Standing at `position`, turned by `yaw_rad` about the vertical.
+/// The pose at `position`, rotated by `yaw_rad` about the vertical axis.
 Eigen::Isometry3d standing(const Eigen::Vector3d& position, double yaw_rad);
-/// `T` moved by `offset` in its own frame.
+/// `T` translated by `offset` in its own frame.
 Eigen::Isometry3d movedBy(const Eigen::Isometry3d& T, const Eigen::Vector3d& offset);
 
 }  // namespace cluxel::simulation

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bushes, hedges and thickets: leaves close to the skin of a body that rests on the ground.
+// Bushes, hedges and thickets: leaves near the surface of a body that stands on the ground.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@ using Eigen::Vector2d, Eigen::Vector3d;
 
 namespace {
 
-/// Where a leaf sits in an ellipsoid about the origin: at least half way out.
+/// A random position of a leaf in the outer half of an ellipsoid around the origin.
 Vector3d placeInOuterHalf(const Vector3d& radii, CampusRandom& random) {
   const Vector3d direction = randomDirection(random);
   return (0.5 + 0.5 * std::sqrt(random.uniform())) * radii.cwiseProduct(direction);
@@ -62,7 +62,7 @@ std::int32_t makeHedge(CampusSite& site, const Vector2d& from, const Vector2d& t
 
 namespace {
 
-/// Leaves in the outer half of an ellipsoid.
+/// Adds leaves in the outer half of an ellipsoid.
 void addLobe(CampusMesh& leaves, const Vector3d& middle, const Vector3d& radii, CampusRandom& random) {
   const int count = static_cast<int>(420 * radii.squaredNorm() / 3 + 50);
   for (int i = 0; i < count; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Street signs: a thin pole with one or two plates, round, rectangular or triangular; leaves may have grown
-// over it.
+// Street signs: a thin pole with one or two round, rectangular or triangular plates, sometimes partly covered by
+// leaves.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -33,7 +33,7 @@ PlateOutline randomPlate(CampusRandom& random) {
   return {rectangleOutline(width, height), height / 2};
 }
 
-/// Upright, looking where `yaw_rad` points: plate x to the side, y up, z ahead.
+/// The pose of an upright plate that faces `yaw_rad`: x to the side, y up, z forward.
 Eigen::Isometry3d uprightPlate(const Vector3d& center, double yaw_rad) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear().col(0) = Vector3d{-std::sin(yaw_rad), std::cos(yaw_rad), 0};

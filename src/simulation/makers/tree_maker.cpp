@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trees: a trunk that bends a little, branches, and leaves as small triangles in clumps, so that scans show
-// scatter.
+// Trees: a slightly bent trunk, branches, and clumps of small triangles as leaves, so that scans of crowns are
+// scattered.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector2d, Eigen::Vector3d;
 constexpr double kTurn = 2 * std::numbers::pi;
 
-/// The surfaces of one tree and where its trunk runs.
+/// The surfaces of one tree and the axis of its trunk.
 struct Tree {
   CampusMesh trunk, branches, leaves;
   Vector3d foot, lean;  ///< lean: how far the axis moves per metre of height
@@ -40,7 +40,7 @@ void addBranch(Tree& tree, double height, const Vector3d& tip) {
           {.from = knee, .to = tip, .radius_from = 0.7 * r, .radius_to = 0.2 * r, .sides = 6, .capped = false});
 }
 
-/// Leaves around a point, dense in its middle.
+/// Leaves around a point; their density falls with the distance.
 void addClump(Tree& tree, CampusRandom& random, const Vector3d& center, double radius, int leaves) {
   for (int i = 0; i < leaves; ++i) {
     const double reach = radius * std::cbrt(random.uniform());
@@ -49,7 +49,7 @@ void addClump(Tree& tree, CampusRandom& random, const Vector3d& center, double r
   }
 }
 
-/// Crowns that are a ball, an egg or an umbrella: clumps between the skin of an ellipsoid and its inside.
+/// Round, oval and umbrella crowns: clumps of leaves in the outer part of an ellipsoid.
 void addEllipsoidCrown(Tree& tree, CampusRandom& random, const TreeSpec& spec, double flatness) {
   const double half_height = 0.5 * (spec.height_m - spec.clear_trunk_m);
   const double middle = spec.clear_trunk_m + half_height;
@@ -68,7 +68,7 @@ void addEllipsoidCrown(Tree& tree, CampusRandom& random, const TreeSpec& spec, d
   addTrunk(tree, middle);
 }
 
-/// A spruce: whorls of drooping twigs, wide below.
+/// A spruce: whorls of drooping branches that are longest at the bottom.
 void addConicalCrown(Tree& tree, CampusRandom& random, const TreeSpec& spec) {
   const double crown = spec.height_m - spec.clear_trunk_m;
   for (double up = 0; up < crown; up += 0.4) {

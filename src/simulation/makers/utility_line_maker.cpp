@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wooden poles with crossarms, and the wires that sag between them.
+// Utility lines: wooden poles with crossarms and sagging wires.
 #include <cmath>
 
 #include "simulation/makers/makers.hpp"
@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d;
 
-/// The line runs along x, so arms lie along y.
+/// The line runs along x and the crossarms along y.
 Vector3d makePole(CampusSite& site, const Vector2d& place, CampusRandom& random) {
   const Vector3d foot = site.onGround(place);
   const std::int32_t id = site.addObject(ObjectClass::UtilityPole, "utility pole", foot, 0.2);
@@ -36,7 +36,7 @@ Vector3d makePole(CampusSite& site, const Vector2d& place, CampusRandom& random)
   return top - Vector3d{0, 0, 0.18};
 }
 
-/// A parabola between two fixings, as a thin chain of tubes.
+/// A wire between two fixings: a parabola of thin tube segments.
 void addWire(CampusMesh& wires, const Vector3d& from, const Vector3d& to, double sag) {
   constexpr int kPieces = 16;
   const auto at = [&](int piece) -> Vector3d {

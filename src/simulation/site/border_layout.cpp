@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What bounds gardens and lawns, laid out last on the ground that is left: fences of every kind, alone,
-// before hedges and under trees, thickets beside the street; and bicycles and motorcycles where people leave
-// them.
+// Places fences, hedges, thickets, bicycles and motorcycles at the borders of gardens and lawns. This layout comes last
+// and uses the ground that is left.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -19,7 +18,7 @@ class BorderLayout {
   explicit BorderLayout(CampusSite& site)
       : site_(site), plan_(site.plan()), random_(site.stream(RandomUse::Placement, 6)) {}
 
-  /// Pieces one after the other along a line parallel to the street, as neighbours choose them.
+  /// Consecutive fences of different kinds along a line parallel to the street.
   void alongStreet(double across, double thicket_share) {
     const double y = plan_.streetY() + across;
     for (double x = -plan_.half_m() - 4; x < plan_.half_m() + 4;) {
@@ -39,7 +38,7 @@ class BorderLayout {
       }
   }
 
-  /// Along the side walls of the gardens between two houses, away from the street.
+  /// Fences between the gardens of neighbouring houses.
   void betweenGardens() {
     for (double x = -plan_.half_m(); x < plan_.half_m(); x += random_.uniform(7, 13))
       border({x, plan_.streetY() - 8}, {x, plan_.streetY() - 8 - random_.uniform(2, 6)}, 0.2);
@@ -81,7 +80,7 @@ class BorderLayout {
     return isLawn(from, to, half_width) && site_.claimStrip(from, to, half_width);
   }
 
-  /// A thicket or a fence; in halves where something stands in its way.
+  /// A thicket or a fence; it is split in halves when the ground is occupied.
   bool border(const Vector2d& from, const Vector2d& to, double thicket_share) {
     constexpr double kShortest_m = 2;
     if (random_.chance(thicket_share) ? thicket(from, to) : fence(from, to)) return true;
@@ -96,7 +95,7 @@ class BorderLayout {
     makeThicket(site_, from, to, spec, stream());
     return true;
   }
-  /// With or without a hedge behind it.
+  /// A fence, with or without a hedge behind it.
   bool fence(const Vector2d& from, const Vector2d& to) {
     constexpr double kFenceHalf_m = 0.25, kHedge_m = 0.65;
     if (!take(from, to, kFenceHalf_m)) return false;
@@ -110,7 +109,7 @@ class BorderLayout {
   void cycle(const Vector2d& place, double yaw_rad, double radius, CycleKind kind) {
     if (site_.claim(place, radius)) makeCycle(site_, place, yaw_rad, kind, stream());
   }
-  /// Side by side, all looking one way.
+  /// Cycles parked side by side with the same heading.
   void rack(const Vector2d& place) {
     const int count = 3 + random_.below(4);
     if (!site_.claimStrip(place, place + Vector2d{0.55 * (count - 1), 0}, 0.75)) return;

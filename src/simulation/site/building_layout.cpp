@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where buildings stand: a main hall in the north, halls in the west and east, a row of houses south of the
-// street.
+// Places the buildings: a main hall in the north, halls in the west and east, a row of houses south of the street.
 #include <algorithm>
 #include <cmath>
 

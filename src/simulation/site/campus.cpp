@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A campus from its parameters: ground, buildings, what grows and what stands on it, and the robot's stops.
+// Builds a campus from its parameters: ground, buildings, vegetation, other objects and the robot's stops.
 #include "simulation/site/campus.hpp"
 
 #include <algorithm>

@@ -25,8 +25,8 @@ struct CampusMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// One thing on the campus. Its number in Campus::objects is its instance id in the truth of all scans; 0 is
-/// the ground.
+/// One object of the campus. Its index in Campus::objects is its instance id in the truth of all scans; 0 is the
+/// ground.
 struct CampusObject {
   int class_number = -1;                               ///< number in truthClassNames()
   std::string kind;                                    ///< for people: "spruce", "lamp with arm"
@@ -49,8 +49,7 @@ struct Campus {
 /// check(CampusParams) does.
 Campus buildCampus(const CampusParams& params);
 
-/// campus.json: parameters, surfaces and objects with class, kind, box, parts and traits, for people and
-/// other programs.
+/// The text of campus.json: parameters, surfaces, and objects with class, kind, box, parts and traits.
 std::string describeCampus(const Campus& campus);
 
 }  // namespace cluxel::simulation

@@ -8,11 +8,11 @@
 
 namespace cluxel::simulation {
 
-/// How a stop is scanned: a full turn with equal angular steps, or 64 rings (-24.8 to 2 degrees) as on a vehicle's
-/// roof.
+/// The scanner at a stop: a panoramic scanner with equal angular steps, or a vehicle's scanner with 64 rings (-24.8 to
+/// 2 degrees).
 enum class LaserKind { PanTilt, Spinning };
 
-/// These determine the campus and its scans completely.
+/// The campus and its scans are a function of these parameters.
 struct CampusParams {
   std::uint64_t seed = 1;
   double stops = 12;                 ///< scans along the route, one every 10 m
@@ -28,7 +28,7 @@ struct CampusParams {
   LaserKind laser = LaserKind::PanTilt;
 };
 
-/// A field of CampusParams as command lines and documents show it.
+/// The name, unit, range and help of a field of CampusParams.
 struct CampusParamInfo {
   std::string_view name;  ///< as options write it: "points-per-stop"
   double CampusParams::*field;
@@ -37,10 +37,10 @@ struct CampusParamInfo {
   std::string_view help;
 };
 
-/// One row per number but the seed, which is any unsigned one.
+/// One row per numeric parameter, except the seed, which has no range.
 const std::array<CampusParamInfo, 10>& campusParamInfos();
 
-/// How many stops the route of a campus of this size offers.
+/// The maximum number of stops on the route of a campus of this size.
 std::size_t maxStops(double size_m, double stop_distance_m = CampusParams{}.stop_distance_m);
 
 /// Throws Error (Usage) naming the parameter, its range, and for too many stops the size that has room for

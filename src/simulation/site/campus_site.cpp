@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bookkeeping of a campus under construction.
+// Reserves ground and collects the objects of a campus under construction.
 #include "simulation/site/campus_site.hpp"
 
 #include <algorithm>

@@ -32,7 +32,7 @@ struct SurfaceLook {
   float transparency = 0;
 };
 
-/// A surface of an object that is being made; becomes a CampusMesh when it is not empty.
+/// A surface under construction; it becomes a CampusMesh when it is not empty.
 CampusMesh surfaceOf(SurfaceLabel label, std::int32_t instance, const SurfaceLook& look);
 
 class CampusSite {
@@ -42,28 +42,27 @@ class CampusSite {
   const SitePlan& plan() const { return plan_; }
   const Campus& campus() const { return campus_; }
   CampusRandom stream(RandomUse use, std::uint64_t number) const { return streamOf(campus_.params.seed, use, number); }
-  /// The ground at a place, kerbs and all [m, map].
+  /// The height of the ground at a place, kerbs included [m, map].
   Eigen::Vector3d onGround(const Eigen::Vector2d& place) const;
 
-  /// Takes a disc of ground when nothing stands there and the robot has room to pass; else false.
+  /// Reserves a disc of ground. Returns false when it is occupied or would block the robot's route.
   bool claim(const Eigen::Vector2d& center, double radius);
-  /// The same for all of a strip, or none of it.
+  /// Reserves a whole strip likewise, or nothing.
   bool claimStrip(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double half_width);
-  /// Occupies an axis-parallel rectangle without a check: buildings are laid out first.
+  /// Reserves an axis-parallel rectangle without a check; buildings are laid out first.
   void reserve(const Eigen::AlignedBox2d& rectangle);
   /// Distance to the nearest reserved rectangle, 0 inside.
   double distanceToBuildings(const Eigen::Vector2d& place) const;
-  /// Whether a crown of this radius would touch a crown that stands already.
+  /// True when a crown of this radius would touch an existing crown.
   bool touchesCrown(const Eigen::Vector2d& center, double radius) const;
 
-  /// Enters an object; its number is the instance id of its surfaces.
+  /// Adds an object and returns its number, which is the instance id of its surfaces.
   std::int32_t addObject(ObjectClass object_class, std::string kind, const Eigen::Vector3d& position, double reach_m);
   void addTrait(std::int32_t instance, std::string trait);
   void addSurface(CampusMesh surface);
   void addStop(const Eigen::Isometry3d& T_map_sensor) { campus_.stops.push_back(T_map_sensor); }
 
-  /// The campus, turned as a whole by a heading that the seed chooses, so that nothing lies along the map's
-  /// axes.
+  /// The campus, rotated by a heading that depends on the seed, so that its directions are not those of the map's axes.
   Campus finish() &&;
 
  private:

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands along the paths: post lamps, some of them between the trees of the avenue, benches with bins,
-// signs.
+// Places post lamps, benches, bins and signs along the paths; some lamps stand between the trees of the avenue.
 #include <cmath>
 #include <numbers>
 

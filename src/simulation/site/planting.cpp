@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where trees, bushes and hedges grow: an avenue, rows along street and paths, groups on the lawns.
+// Places trees, bushes and hedges: an avenue, rows along street and paths, groups on the lawns.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -65,7 +65,7 @@ class Planting {
            site_.distanceToBuildings(place) > spec.crown_radius_m + 0.3;
   }
 
-  /// A tree on free lawn; every third gets a neighbour whose crown it touches.
+  /// A tree on free lawn; every third one gets a neighbour with a touching crown.
   void lawnTree(int number) {
     TreeSpec spec = usualTree(static_cast<TreeShape>(number % 4), random_);
     for (int attempt = 0; attempt < 60; ++attempt) {

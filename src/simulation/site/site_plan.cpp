@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ground plan as formulas.
+// The formulas of the site plan.
 #include "simulation/site/site_plan.hpp"
 
 #include <algorithm>

@@ -37,7 +37,7 @@ class SitePlan {
   double windingY(double x) const;
 
   SurfaceLabel kindAt(double x, double y) const;
-  /// How far the surface lies above or below the terrain: street under kerb, path under lawn [m].
+  /// Height of the surface relative to the terrain [m]: streets lie below kerbs, paths below the lawn.
   double offsetAt(double x, double y) const;
   /// Whether a disc stays clear of street, walks and paths.
   bool onLawn(const Eigen::Vector2d& center, double radius) const;

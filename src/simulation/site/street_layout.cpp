@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands along the street: wires, lamps, signs, parked cars, garden fences and hedges, hydrants, people.
+// Places utility lines, lamps, signs, parked cars, garden fences, hedges, hydrants and people along the street.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

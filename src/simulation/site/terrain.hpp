@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rolling ground of the campus as a formula: an inclined plane and three waves.
+// The terrain as a formula: an inclined plane and three waves.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,14 +16,14 @@ struct Terrain {
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();  ///< rise per metre along x and y
   std::array<Wave, 3> waves;
 
-  /// Height of the smooth ground [m, map]; kerbs and blades of grass come on top.
+  /// Height of the terrain [m, map], without kerbs and the roughness of grass.
   double heightAt(double x, double y) const {
     double height = slope.x() * x + slope.y() * y;
     for (const Wave& wave : waves)
       height += wave.amplitude_m * std::sin(wave.wave_number.x() * x + wave.wave_number.y() * y + wave.phase_rad);
     return height;
   }
-  /// No place is steeper (rise per metre).
+  /// The maximum slope (rise per metre).
   double steepest() const {
     double sum = slope.norm();
     for (const Wave& wave : waves) sum += wave.amplitude_m * wave.wave_number.norm();

@@ -121,9 +121,6 @@ double Decimal::toDouble() const {
   }
   return std::strtod(text().c_str(), nullptr);
 }
-float Decimal::toFloat() const {
-  return std::strtof(text().c_str(), nullptr);
-}
 
 Integer Decimal::truncated() const {
   return scale_ == 0 ? whole() : Integer(whole() / powerOfTen(scale_));

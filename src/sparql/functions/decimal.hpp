@@ -32,7 +32,6 @@ class Decimal {
   /// The exact value of a finite double.
   static std::optional<Decimal> fromDouble(double value);
 
-  bool isInteger() const { return scale_ == 0; }
   bool isZero() const { return !great_ && small_ == 0; }
   bool isNegative() const { return great_ ? *great_ < 0 : small_ < 0; }
   /// True when the value is unscaled() * 10^-scale().
@@ -41,9 +40,7 @@ class Decimal {
   unsigned scale() const { return scale_; }
   std::optional<std::int64_t> toInt64() const;  ///< none for fractions and larger numbers
   double toDouble() const;                      ///< the nearest double
-  float toFloat() const;
   Integer truncated() const;
-  std::string integerText() const { return truncated().str(); }
   /// The canonical form of XSD 1.1; integers are printed as "1" or, with `point`, "1.0".
   std::string text(bool point = false) const;
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "base/content_hash.hpp"
+#include "rdf/iri.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/functions/comparison.hpp"
 #include "sparql/functions/datatype.hpp"
@@ -87,7 +88,7 @@ Value iriFunction(Arguments arguments, FunctionContext& context) {
   if (value.type == Type::Iri) return value;
   if (value.type != Type::String) return {};
   const std::string text = context.terms.textOf(value);
-  if (text.find_first_of("<>\"{}|^`\\ \n\r\t") != std::string::npos) return {};
+  if (!rdf::hasIriCharactersOnly(text)) return {};
   return Value::iri(context.base_iri.empty() ? text : resolveIri(text, context.base_iri));
 }
 

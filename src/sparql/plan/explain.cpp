@@ -31,11 +31,4 @@ std::string PreparedQuery::explain() const {
   return out;
 }
 
-std::string explainQuery(const rdf::QuadReader& reader, std::string_view text, const QueryOptions& options) {
-  PreparedQuery query(reader, text, options);
-  NoSink sink;
-  query.run(sink);
-  return query.explain();
-}
-
 }  // namespace cluxel::sparql

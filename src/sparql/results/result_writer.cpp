@@ -17,7 +17,6 @@ struct FormatName {
   ResultFormat format;
 };
 
-/// The first name of each format is its media type.
 constexpr std::array<FormatName, 22> kFormatNames{{{"application/sparql-results+json", ResultFormat::Json},
                                                    {"json", ResultFormat::Json},
                                                    {"srj", ResultFormat::Json},
@@ -50,12 +49,6 @@ std::optional<ResultFormat> resultFormatOf(std::string_view name) {
   return found->format;
 }
 
-std::string_view mediaTypeOf(ResultFormat format) {
-  return std::find_if(kFormatNames.begin(), kFormatNames.end(),
-                      [format](const FormatName& known) { return known.format == format; })
-      ->name;
-}
-
 std::vector<std::pair<std::string, std::string>> vocabularyPrefixes() {
   using namespace rdf::vocabulary;
   const auto entry = [](std::string_view prefix, std::string_view iri) {
@@ -86,14 +79,6 @@ std::unique_ptr<ResultSink> makeResultWriter(ResultFormat format, TextSink out, 
       break;
   }
   return makeNTriplesWriter(std::move(out));
-}
-
-std::string writtenResult(const QueryResult& result, ResultFormat format, const WriterOptions& options) {
-  std::string text;
-  const auto writer = makeResultWriter(
-      format, [&text](std::string_view piece) { text.append(piece); }, options);
-  replay(result, *writer);
-  return text;
 }
 
 }  // namespace cluxel::sparql

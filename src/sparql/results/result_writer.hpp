@@ -19,7 +19,6 @@ enum class ResultFormat : std::uint8_t { Json, Xml, Csv, Tsv, Table, Turtle, NTr
 
 /// The format of a name, file extension or media type: "json", "srj", "application/sparql-results+json", "ttl", …
 std::optional<ResultFormat> resultFormatOf(std::string_view name);
-std::string_view mediaTypeOf(ResultFormat format);
 
 struct WriterOptions {
   /// Prefixes that shorten IRIs in tables and Turtle: {"clx", "https://…#"}. If empty, the prefixes of Cluxel's
@@ -33,8 +32,5 @@ using TextSink = std::function<void(std::string_view)>;
 /// A sink that writes one result to `out` in chunks of about 64 KiB. Solution formats write a graph as a table of
 /// subject, predicate and object; writing solutions or a boolean as Turtle or N-Triples throws Error (InvalidArgument).
 std::unique_ptr<ResultSink> makeResultWriter(ResultFormat format, TextSink out, const WriterOptions& options = {});
-
-/// The text of a collected result.
-std::string writtenResult(const QueryResult& result, ResultFormat format, const WriterOptions& options = {});
 
 }  // namespace cluxel::sparql

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cstdio>
 
+#include "rdf/iri.hpp"
 #include "sparql/syntax/character_class.hpp"
 
 namespace cluxel::sparql {
@@ -23,10 +24,10 @@ constexpr std::array<std::uint8_t, 256> makeEscapes() {
   const auto mark = [&table](std::string_view characters, std::uint8_t flag) {
     for (const char c : characters) table[static_cast<unsigned char>(c)] |= flag;
   };
-  for (std::size_t c = 0; c < 0x20; ++c) table[c] = kTurtleEscape | kIriEscape | kJsonEscape | kXmlEscape;
+  for (std::size_t c = 0; c < 0x20; ++c) table[c] = kTurtleEscape | kJsonEscape | kXmlEscape;
+  for (std::size_t c = 0; c < 256; ++c) table[c] |= rdf::isForbiddenInIri(static_cast<char>(c)) ? kIriEscape : 0;
   table[0x7F] = kTurtleEscape;
-  mark("\"\\", kTurtleEscape | kIriEscape | kJsonEscape);
-  mark(" <>{}|^`", kIriEscape);
+  mark("\"\\", kTurtleEscape | kJsonEscape);
   mark("\",\r\n", kCsvQuote);
   mark("<>&\"", kXmlEscape);
   mark("\xEF", kXmlEscape);  // the first byte of U+FFFE and U+FFFF

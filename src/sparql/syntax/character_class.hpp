@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "rdf/iri.hpp"
+
 namespace cluxel::sparql::character {
 
 enum Class : std::uint8_t {
@@ -18,13 +20,11 @@ enum Class : std::uint8_t {
 
 constexpr std::array<std::uint8_t, 256> makeClasses() {
   std::array<std::uint8_t, 256> classes{};
-  for (std::size_t c = 0; c <= 0x20; ++c) classes[c] = kNotInIri;
+  for (std::size_t c = 0; c < 128; ++c) classes[c] = rdf::isForbiddenInIri(static_cast<char>(c)) ? kNotInIri : 0;
   for (const char c : {' ', '\t', '\r', '\n'}) classes[static_cast<unsigned char>(c)] |= kSpace;
   for (std::size_t c = '0'; c <= '9'; ++c) classes[c] = kDigit;
   for (std::size_t c = 'a'; c <= 'z'; ++c) classes[c] = kLetter;
   for (std::size_t c = 'A'; c <= 'Z'; ++c) classes[c] = kLetter;
-  for (const char c : {'<', '>', '"', '{', '}', '|', '^', '`', '\\'})
-    classes[static_cast<unsigned char>(c)] |= kNotInIri;
   for (std::size_t c = 128; c < 256; ++c) classes[c] = kHigh;
   return classes;
 }

@@ -239,18 +239,6 @@ ast::PatternTerm SparqlParser::varOrIri(std::string_view expected) {
   return {iri(expected), at};
 }
 
-Term SparqlParser::singleTerm() {
-  Term term;
-  if (is(Kind::BlankLabel)) {
-    term = Term::blank(slice(token_).substr(2));
-    advance();
-  } else {
-    term = graphTerm();
-  }
-  if (!is(Kind::End)) unexpected("the end of the term");
-  return term;
-}
-
 Term SparqlParser::graphTerm() {
   if (isIri()) return iri();
   if (is(Kind::String) || is(Kind::LongString)) return literal();

@@ -56,8 +56,7 @@ SparqlParser::SparqlParser(std::string_view text, const SparqlParseOptions& opti
       lexer_(source_.text()),
       base_iri_(options.base_iri) {
   for (const auto& [prefix, iri] : options.prefixes) prefixes_.insert_or_assign(prefix, iri);
-  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-  token_ = lexer_.tokenAt(source_.text().starts_with(byte_order_mark) ? 3 : 0);
+  token_ = lexer_.tokenAt(source_.text().size() - withoutByteOrderMark(source_.text()).size());
   if (token_.kind == Kind::Invalid) fail(token_.begin, token_.problem);
 }
 

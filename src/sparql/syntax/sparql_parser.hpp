@@ -36,8 +36,6 @@ class SparqlParser {
   SparqlParser(std::string_view text, const SparqlParseOptions& options);
   ast::Query query();
   ast::Update update();
-  /// Parses exactly one IRI, literal or blank node.
-  Term singleTerm();
 
  private:
   using Kind = TokenKind;

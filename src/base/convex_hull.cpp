@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Monotone chain for the hull. The smallest box tries the direction of every side.
-#include "perception/segments/footprint_hull.hpp"
+#include "base/convex_hull.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include "base/steady_angle.hpp"
 
-namespace cluxel::perception {
+namespace cluxel {
 
 namespace {
 
@@ -32,7 +32,14 @@ void appendChain(Iterator begin, Iterator end, std::vector<Eigen::Vector2d>& hul
   hull.pop_back();
 }
 
-FootprintBox boxAlong(const std::vector<Eigen::Vector2d>& hull, const Eigen::Vector2d& direction) {
+/// The corners of the box along a direction, in the frame of that direction.
+struct AlignedBox {
+  Eigen::Vector2d direction, low, high;
+
+  Eigen::Vector2d size() const { return high - low; }
+};
+
+AlignedBox boxAlong(const std::vector<Eigen::Vector2d>& hull, const Eigen::Vector2d& direction) {
   const Eigen::Vector2d across(-direction.y(), direction.x());
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Eigen::Vector2d low(kInfinity, kInfinity), high(-kInfinity, -kInfinity);
@@ -41,16 +48,17 @@ FootprintBox boxAlong(const std::vector<Eigen::Vector2d>& hull, const Eigen::Vec
     low = low.cwiseMin(rotated);
     high = high.cwiseMax(rotated);
   }
-  const Eigen::Vector2d middle = 0.5 * (low + high), size = high - low;
-  FootprintBox box;
-  box.center = middle.x() * direction + middle.y() * across;
-  box.length_m = size.x();
-  box.width_m = size.y();
-  box.yaw_rad = steady(std::atan2(direction.y(), direction.x()));
-  return box;
+  return {direction, low, high};
 }
 
-FootprintBox longSideFirst(FootprintBox box) {
+FootprintBox longSideFirst(const AlignedBox& aligned) {
+  const Eigen::Vector2d& direction = aligned.direction;
+  const Eigen::Vector2d across(-direction.y(), direction.x()), middle = 0.5 * (aligned.low + aligned.high);
+  FootprintBox box;
+  box.center = middle.x() * direction + middle.y() * across;
+  box.length_m = aligned.size().x();
+  box.width_m = aligned.size().y();
+  box.yaw_rad = steady(std::atan2(direction.y(), direction.x()));
   if (box.width_m > box.length_m) {
     std::swap(box.length_m, box.width_m);
     box.yaw_rad += std::numbers::pi / 2;
@@ -74,14 +82,14 @@ std::vector<Eigen::Vector2d> convexHull(std::vector<Eigen::Vector2d> points) {
 
 FootprintBox smallestBox(const std::vector<Eigen::Vector2d>& hull) {
   if (hull.empty()) return {};
-  FootprintBox best = boxAlong(hull, Eigen::Vector2d::UnitX());
+  AlignedBox best = boxAlong(hull, Eigen::Vector2d::UnitX());
   for (std::size_t i = 0; i < hull.size(); ++i) {
     const Eigen::Vector2d side = hull[(i + 1) % hull.size()] - hull[i];
     if (side.norm() < 1e-9) continue;
-    const FootprintBox box = boxAlong(hull, side.normalized());
-    if (box.length_m * box.width_m < best.length_m * best.width_m) best = box;
+    const AlignedBox box = boxAlong(hull, side.normalized());
+    if (box.size().prod() < best.size().prod()) best = box;
   }
   return longSideFirst(best);
 }
 
-}  // namespace cluxel::perception
+}  // namespace cluxel

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hulls and smallest boxes against brute force.
-#include "perception/segments/footprint_hull.hpp"
+#include "base/convex_hull.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-namespace cluxel::perception {
+namespace cluxel {
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
@@ -94,4 +94,4 @@ TEST(SmallestBox, OfALineHasItsLengthAndNoWidth) {
 }
 
 }  // namespace
-}  // namespace cluxel::perception
+}  // namespace cluxel

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace cluxel::perception {
+namespace cluxel {
 
 /// The convex hull of `points`, counter-clockwise from the smallest (x, y), without points on its edges; fewer than
 /// three points are returned sorted. Cost O(n log n).
@@ -19,4 +19,4 @@ struct FootprintBox {
 };
 FootprintBox smallestBox(const std::vector<Eigen::Vector2d>& hull);
 
-}  // namespace cluxel::perception
+}  // namespace cluxel
