@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copies a map table by table in key order, which fills all pages and leaves none free.
 #include "cluxel/error.hpp"
-#include "rdf/store/file_guards.hpp"
 #include "rdf/store/lmdb_environment.hpp"
+#include "rdf/store/lock_file.hpp"
 
 namespace cluxel::rdf {
 

@@ -6,7 +6,6 @@
 
 #include <cerrno>
 #include <charconv>
-#include <chrono>
 #include <stdexcept>
 
 #include "cluxel/error.hpp"
@@ -23,8 +22,6 @@ namespace {
 
 constexpr std::string_view kFormatKey = "cluxel-format";
 constexpr int kFormat = kMapFormat;
-constexpr auto kLockPatience = std::chrono::milliseconds(1500);
-constexpr auto kLockPause = std::chrono::milliseconds(10);
 
 void checkFormat(const std::string& text, const std::filesystem::path& file) {
   int format = 0;
@@ -87,12 +84,7 @@ void LmdbEnvironment::allowWriting() {
 }
 
 void LmdbEnvironment::lockAgainstProcesses() {
-  const auto deadline = std::chrono::steady_clock::now() + kLockPatience;
-  while (::flock(data_lock_, LOCK_EX | LOCK_NB) != 0) {
-    if (errno != EWOULDBLOCK && errno != EINTR) failStore(file_, errno, "lock the map");
-    if (std::chrono::steady_clock::now() > deadline) throw MapBusy(file_);
-    std::this_thread::sleep_for(kLockPause);
-  }
+  lockAgainstWriters(data_lock_, WriteLock::Writing, file_);
   requireName();
 }
 
