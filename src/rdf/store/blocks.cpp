@@ -53,7 +53,10 @@ std::optional<std::string_view> ReadTransaction::block(std::string_view table, s
   MDB_val stored_key = toVal(full);
   MDB_val stored;
   const int code = mdb_get(impl_->live(), impl_->table(Table::Blocks), &stored_key, &stored);
-  if (code == MDB_NOTFOUND) return std::nullopt;
+  if (code == MDB_NOTFOUND) {
+    impl_->block_keys.verify(*impl_, table);
+    return std::nullopt;
+  }
   impl_->check(code, "read a block");
   return verified(full, toView(stored), impl_->environment->file());
 }
@@ -61,6 +64,7 @@ std::optional<std::string_view> ReadTransaction::block(std::string_view table, s
 void ReadTransaction::forEachBlock(
     std::string_view table, std::string_view prefix,
     const std::function<void(std::string_view key, std::string_view bytes)>& visit) const {
+  impl_->block_keys.verify(*impl_, table);
   MDB_cursor* raw = nullptr;
   impl_->check(mdb_cursor_open(impl_->live(), impl_->table(Table::Blocks), &raw), "read the blocks");
   const CursorHandle cursor(raw);
@@ -80,7 +84,13 @@ void WriteTransaction::putBlock(std::string_view table, std::string_view key, st
   const std::string full = fullKey(table, key);
   const BlockHead head{checksumOf(full, bytes), bytes.size()};
   MDB_val stored_key = toVal(full);
-  MDB_val stored{sizeof head + bytes.size(), nullptr};
+  MDB_val stored;
+  const int there = mdb_get(impl_->live(), impl_->table(Table::Blocks), &stored_key, &stored);
+  if (there == MDB_NOTFOUND)
+    impl_->block_keys.noteAdded(*impl_, table, full);
+  else
+    impl_->check(there, "write a block");
+  stored = {sizeof head + bytes.size(), nullptr};
   const int code = mdb_put(impl_->live(), impl_->table(Table::Blocks), &stored_key, &stored, MDB_RESERVE);
   impl_->check(code, "write a block");
   std::memcpy(stored.mv_data, &head, sizeof head);
@@ -91,9 +101,12 @@ void WriteTransaction::putBlock(std::string_view table, std::string_view key, st
 bool WriteTransaction::eraseBlock(std::string_view table, std::string_view key) {
   const std::string full = fullKey(table, key);
   MDB_val stored_key = toVal(full);
-  const int code = mdb_del(impl_->live(), impl_->table(Table::Blocks), &stored_key, nullptr);
-  if (code == MDB_NOTFOUND) return false;
-  impl_->check(code, "erase a block");
+  MDB_val stored;
+  const int there = mdb_get(impl_->live(), impl_->table(Table::Blocks), &stored_key, &stored);
+  if (there == MDB_NOTFOUND) return false;
+  impl_->check(there, "erase a block");
+  impl_->block_keys.noteRemoved(*impl_, table, full);
+  impl_->check(mdb_del(impl_->live(), impl_->table(Table::Blocks), &stored_key, nullptr), "erase a block");
   ++impl_->generation;
   return true;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copies a map table by table in key order, which fills all pages and leaves none free.
 #include "cluxel/error.hpp"
-#include "rdf/store/file_guards.hpp"
 #include "rdf/store/lmdb_environment.hpp"
+#include "rdf/store/lock_file.hpp"
 
 namespace cluxel::rdf {
 
@@ -25,9 +25,23 @@ void copyTable(const ReadTransaction::Impl& from, const ReadTransaction::Impl& t
   if (code != MDB_NOTFOUND) from.check(code, "read a table");
 }
 
+/// The sums of block keys and the format; tables, which stand in the same database, have their own copies.
+void copyMainRecords(const ReadTransaction::Impl& from, const ReadTransaction::Impl& to) {
+  MDB_cursor* raw = nullptr;
+  from.check(mdb_cursor_open(from.live(), from.environment->mainTable(), &raw), "read a table");
+  const CursorHandle source(raw);
+  MDB_val key;
+  MDB_val value;
+  for (int code = mdb_cursor_get(raw, &key, &value, MDB_FIRST); code == MDB_SUCCESS;
+       code = mdb_cursor_get(raw, &key, &value, MDB_NEXT))
+    if (toView(key).starts_with("cluxel-"))
+      to.check(mdb_put(to.live(), to.environment->mainTable(), &key, &value, 0), "write a table");
+}
+
 void copyAll(const ReadTransaction& from, Environment& to) {
   WriteTransaction transaction = to.write();
   for (std::size_t i = 0; i < kTableCount; ++i) copyTable(from.impl(), transaction.impl(), static_cast<Table>(i));
+  copyMainRecords(from.impl(), transaction.impl());
   transaction.commit();
 }
 

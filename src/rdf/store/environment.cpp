@@ -3,7 +3,6 @@
 #include "rdf/store/environment.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -16,8 +15,10 @@
 #include "cluxel/error.hpp"
 #include "rdf/store/file_guards.hpp"
 #include "rdf/store/lmdb_environment.hpp"
+#include "rdf/store/lock_file.hpp"
 #include "rdf/store/map_file_check.hpp"
 #include "rdf/store/map_replacement.hpp"
+#include "rdf/store/private_copy.hpp"
 #include "rdf/store/store_snapshot.hpp"
 #include "rdf/store/value_cache.hpp"
 
@@ -48,28 +49,14 @@ struct OpenEnvironments {
       mutex;  ///< recursive, because an environment that fails to open is destroyed while the table is locked
   std::condition_variable_any closed;
   std::map<FileIdentity, std::weak_ptr<LmdbEnvironment>> entries;
+  /// Private copies, by the file that was copied; the number is the commit.
+  std::map<FileIdentity, std::pair<std::uint64_t, std::weak_ptr<LmdbEnvironment>>> copies;
 };
 
 OpenEnvironments& openEnvironments() {
   static OpenEnvironments table;
   return table;
 }
-
-/// Owns a file descriptor.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  int get() const { return number_; }
-  int release() { return std::exchange(number_, -1); }
-
- private:
-  int number_;
-};
 
 int openFile(const fs::path& file, OpenMode mode, bool& can_write) {
   const int creation = mode == OpenMode::Create ? O_CREAT | O_EXCL : 0;
@@ -103,24 +90,22 @@ EnvHandle openLmdb(const fs::path& file, std::uint64_t file_size, unsigned flags
   failStore(file, code, "open the map");
 }
 
-bool isFullDisk(int code) {
-  return code == ENOSPC || code == EDQUOT || code == EFBIG;
-}
+/// How this process may use a file.
+struct Access {
+  bool can_write = true;       ///< may write the file
+  bool holds_writers = false;  ///< has no lock file, but the writers' lock until it closes the file
+};
 
-/// Sets `can_write` to false when the lock file cannot be created; then no other process can write either.
-EnvHandle openLmdbFor(const fs::path& file, std::uint64_t file_size, OpenMode mode, bool& can_write, unsigned extra) {
-  if (can_write) {
-    const int no_room = reserveLockFile(file);
-    if (!isFullDisk(no_room)) return openLmdb(file, file_size, extra);
-    if (mode != OpenMode::ReadOnly) failStore(file, no_room, "make its lock file");
-    can_write = false;
-    return openLmdb(file, file_size, MDB_RDONLY | MDB_NOLOCK);
-  }
-  try {
-    return openLmdb(file, file_size, MDB_RDONLY);
-  } catch (const Error&) {
-    return openLmdb(file, file_size, MDB_RDONLY | MDB_NOLOCK);
-  }
+/// None when the process cannot register as a reader: it then needs a copy of its own.
+EnvHandle openLmdbFor(const fs::path& file, std::uint64_t file_size, OpenMode mode, Access& access, int descriptor,
+                      unsigned extra) {
+  const LockFile lock = prepareLockFile(file, descriptor, access.can_write);
+  if (lock.state == LockFileState::Usable) return openLmdb(file, file_size, access.can_write ? extra : MDB_RDONLY);
+  if (mode != OpenMode::ReadOnly) failLockFile(file, lock);
+  if (lock.state == LockFileState::Refused) return nullptr;
+  lockAgainstWriters(descriptor, WriteLock::Copying, file);
+  access = {.can_write = false, .holds_writers = true};
+  return openLmdb(file, file_size, MDB_RDONLY | MDB_NOLOCK);
 }
 
 /// Checks the structure of the current commit while a read transaction pins its pages.
@@ -131,24 +116,54 @@ void checkUnderSnapshot(MDB_env* handle, int descriptor, const fs::path& file) {
   checkMapStructure(descriptor, file, mdb_txn_id(raw));
 }
 
-/// None when the file was replaced while it was being opened.
-std::shared_ptr<LmdbEnvironment> openNew(const fs::path& file, Descriptor& descriptor, bool can_write, OpenMode mode,
-                                         unsigned extra_flags) {
-  const bool may_initialise = mode != OpenMode::ReadOnly;
-  const MapFileHead head = readMapFileHead(descriptor.get(), file);
-  if (head.file_size == 0 && !may_initialise)
-    throw Error(ErrorKind::StoreUnavailable, file.string() + ": is empty, a map was expected");
-  EnvHandle handle;
-  {
-    const NameLock lock(descriptor.get(), NameLock::Kind::Opening);  // LMDB opens the file again by its name
-    if (!isNamed(identityOf(descriptor.get(), file), file)) return nullptr;
-    handle = openLmdbFor(file, head.file_size, mode, can_write, extra_flags);
-  }
+/// The environment of a file that LMDB has opened.
+std::shared_ptr<LmdbEnvironment> environmentOf(const fs::path& file, EnvHandle handle, Descriptor& descriptor,
+                                               const MapFileHead& head, bool can_write, bool may_initialise) {
   if (head.file_size != 0 && needsStructureCheck(head)) checkUnderSnapshot(handle.get(), descriptor.get(), file);
   auto environment = std::make_shared<LmdbEnvironment>(file, std::move(handle), descriptor.release(), can_write);
   if (may_initialise) environment->allowWriting();
   environment->openTables();
   return environment;
+}
+
+/// An environment on a private copy of the map, or the one that was made of the same commit before.
+std::shared_ptr<LmdbEnvironment> openCopy(const fs::path& file, const Descriptor& descriptor) {
+  OpenEnvironments& table = openEnvironments();
+  auto& [commit, known] = table.copies[identityOf(descriptor.get(), file)];
+  if (auto open = known.lock(); open && commit == readMapFileHead(descriptor.get(), file).transaction) return open;
+  PrivateCopy copy(file, descriptor.get());
+  Descriptor bytes = copy.takeDescriptor();
+  const MapFileHead head = readMapFileHead(bytes.get(), file);
+  EnvHandle handle = openLmdb(copy.file(), head.file_size, MDB_RDONLY | MDB_NOLOCK);
+  auto environment = environmentOf(file, std::move(handle), bytes, head, false, false);
+  environment->loseName();
+  known = environment;
+  commit = head.transaction;
+  return environment;
+}
+
+/// An opened environment and whether others of this process may share it.
+struct Opened {
+  std::shared_ptr<LmdbEnvironment> environment;
+  bool is_shared = true;
+};
+
+/// No environment when the file was replaced while it was being opened.
+Opened openNew(const fs::path& file, Descriptor& descriptor, bool can_write, OpenMode mode, unsigned extra_flags) {
+  const bool may_initialise = mode != OpenMode::ReadOnly;
+  const MapFileHead head = readMapFileHead(descriptor.get(), file);
+  if (head.file_size == 0 && !may_initialise)
+    throw Error(ErrorKind::StoreUnavailable, file.string() + ": is empty, a map was expected");
+  Access access{.can_write = can_write};
+  EnvHandle handle;
+  {
+    const NameLock lock(descriptor.get(), NameLock::Kind::Opening);  // LMDB opens the file again by its name
+    if (!isNamed(identityOf(descriptor.get(), file), file)) return {};
+    handle = openLmdbFor(file, head.file_size, mode, access, descriptor.get(), extra_flags);
+  }
+  if (!handle) return {openCopy(file, descriptor), false};
+  return {environmentOf(file, std::move(handle), descriptor, head, access.can_write, may_initialise),
+          !access.holds_writers};
 }
 
 /// The environment from the process-wide table, or a new one; none when the file was replaced meanwhile.
@@ -164,9 +179,9 @@ std::shared_ptr<LmdbEnvironment> openAs(const fs::path& file, OpenMode mode, boo
     }
     table.closed.wait(lock);  // another thread is closing it
   }
-  auto environment = openNew(file, descriptor, can_write, mode, extra_flags);
-  if (environment) table.entries[identity] = environment;
-  return environment;
+  const Opened opened = openNew(file, descriptor, can_write, mode, extra_flags);
+  if (opened.environment && opened.is_shared) table.entries[identity] = opened.environment;
+  return opened.environment;
 }
 
 std::shared_ptr<LmdbEnvironment> openOnce(const fs::path& file, OpenMode mode, unsigned extra_flags) {

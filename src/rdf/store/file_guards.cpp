@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// File descriptors, file locks and preallocation.
+// File descriptors and file locks.
 #include "rdf/store/file_guards.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
+#include <thread>
 
 #include "rdf/store/lmdb_handles.hpp"
+#include "rdf/store/map_replacement.hpp"
 
 namespace cluxel::rdf {
 
@@ -16,8 +20,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// More than LMDB needs for kMaxReaders readers of 64 bytes each.
-constexpr off_t kLockFileBytes = 64 * 1024;
+constexpr auto kLockPatience = std::chrono::milliseconds(1500);
+constexpr auto kLockPause = std::chrono::milliseconds(10);
 /// A byte offset that is locked but never written; LMDB itself takes no lock on the map file.
 constexpr off_t kNameByte = off_t{1} << 61;
 
@@ -67,16 +71,14 @@ NameLock::~NameLock() {
   lockNameByte(descriptor_, F_UNLCK);
 }
 
-fs::path lockFileOf(fs::path map) {
-  return map += "-lock";
-}
-
-int reserveLockFile(const fs::path& map) {
-  const int descriptor = ::open(lockFileOf(map).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor < 0) return errno;
-  const int code = ::fallocate(descriptor, 0, 0, kLockFileBytes) == 0 ? 0 : errno;
-  ::close(descriptor);
-  return code == EOPNOTSUPP || code == ENOSYS ? 0 : code;
+void lockAgainstWriters(int descriptor, WriteLock kind, const fs::path& file) {
+  const int operation = kind == WriteLock::Writing ? LOCK_EX : LOCK_SH;
+  const auto deadline = std::chrono::steady_clock::now() + kLockPatience;
+  while (::flock(descriptor, operation | LOCK_NB) != 0) {
+    if (errno != EWOULDBLOCK && errno != EINTR) failStore(file, errno, "lock the map");
+    if (std::chrono::steady_clock::now() > deadline) throw MapBusy(file);
+    std::this_thread::sleep_for(kLockPause);
+  }
 }
 
 }  // namespace cluxel::rdf

@@ -1,14 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
-// Preparations before LMDB opens a file: safe descriptors, file identity, and a preallocated lock file.
+// Preparations before LMDB opens a file: safe descriptors, file identity, and the locks of processes.
 #pragma once
 
 #include <sys/types.h>
+#include <unistd.h>
 
 #include <array>
 #include <compare>
 #include <filesystem>
+#include <utility>
 
 namespace cluxel::rdf {
+
+/// Owns a file descriptor.
+class Descriptor {
+ public:
+  explicit Descriptor(int number = -1) : number_(number) {}
+  Descriptor(Descriptor&& other) noexcept : number_(other.release()) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  int get() const { return number_; }
+  int release() { return std::exchange(number_, -1); }
+
+ private:
+  int number_;
+};
 
 struct FileIdentity {
   dev_t device = 0;
@@ -46,10 +67,9 @@ class NameLock {
   int descriptor_;
 };
 
-std::filesystem::path lockFileOf(std::filesystem::path map);
-
-/// Creates and preallocates the lock file of `map`: LMDB makes it sparse, and writing to a hole on a full disk raises
-/// SIGBUS. Returns 0 or the errno value.
-int reserveLockFile(const std::filesystem::path& map);
+/// Writers exclude each other and whoever copies the map. The lock belongs to the descriptor and ends with it.
+enum class WriteLock { Writing, Copying };
+/// Waits up to 1.5 s; throws MapBusy.
+void lockAgainstWriters(int descriptor, WriteLock kind, const std::filesystem::path& file);
 
 }  // namespace cluxel::rdf

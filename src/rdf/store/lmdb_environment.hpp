@@ -8,6 +8,7 @@
 #include <mutex>
 #include <thread>
 
+#include "rdf/store/block_keys.hpp"
 #include "rdf/store/environment.hpp"
 #include "rdf/store/lmdb_handles.hpp"
 
@@ -47,6 +48,7 @@ class LmdbEnvironment final : public Environment {
   void compactTo(const std::filesystem::path& target) const override;
 
   MDB_env* handle() const { return handle_.get(); }
+  MDB_dbi mainTable() const { return main_; }  ///< LMDB's table of tables, with the records of the format
   MDB_dbi table(Table table) const { return tables_[static_cast<std::size_t>(table)]; }
   ValueCache& values() const { return *values_; }
   /// The shared snapshot of commit `transaction_id`; `make` creates it on first use.
@@ -73,6 +75,7 @@ class LmdbEnvironment final : public Environment {
   bool can_write_, has_name_ = true;
   std::atomic<bool> writing_allowed_{false};
   std::array<MDB_dbi, kTableCount> tables_{};
+  MDB_dbi main_ = 0;
   std::unique_ptr<ValueCache> values_;
   mutable std::mutex snapshot_mutex_;
   mutable std::size_t snapshot_transaction_ = 0;
@@ -87,8 +90,9 @@ struct ReadTransaction::Impl {
   std::shared_ptr<LmdbEnvironment> environment;
   MDB_txn* txn = nullptr;
   bool writing = false;
-  std::uint64_t committed_terms = 0;        ///< in a write transaction: the number of terms before it
-  std::uint64_t generation = 0;             ///< incremented with each change in a write transaction
+  std::uint64_t committed_terms = 0;  ///< in a write transaction: the number of terms before it
+  std::uint64_t generation = 0;       ///< incremented with each change in a write transaction
+  BlockKeys block_keys;
   std::shared_ptr<StoreSnapshot> snapshot;  ///< created on first use, for this generation
   std::uint64_t snapshot_generation = 0;
 

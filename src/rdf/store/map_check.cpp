@@ -48,6 +48,7 @@ class Check {
 
   MapCheck run() {
     guarded([&] { checkBlocks(); });
+    guarded([&] { checkBlockKeys(); });
     guarded([&] { checkTerms(); });
     for (const QuadOrder order : {QuadOrder::Spog, QuadOrder::Posg, QuadOrder::Ospg, QuadOrder::Gspo})
       guarded([&] { checkIndex(order); });
@@ -85,6 +86,11 @@ class Check {
       else
         guarded([&] { transaction_.block(full.substr(0, zero), full.substr(zero + 1)); });
     }
+  }
+
+  void checkBlockKeys() {
+    for (const std::string& table : BlockKeys::tablesOf(state()))
+      guarded([&] { state().block_keys.verify(state(), table); });
   }
 
   void checkTerms() {

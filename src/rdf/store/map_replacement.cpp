@@ -13,6 +13,7 @@
 
 #include "base/file_bytes.hpp"
 #include "rdf/store/file_guards.hpp"
+#include "rdf/store/lock_file.hpp"
 
 namespace cluxel::rdf {
 
@@ -48,7 +49,8 @@ class HeldName {
 
 MapBusy::MapBusy(const fs::path& map)
     : Error(ErrorKind::StoreUnavailable,
-            map.string() + ": another process is writing to the map; wait until it has ended and run again") {}
+            map.string() +
+                ": another process is writing to the map or copying it; wait until it has ended and run again") {}
 
 MapReplaced::MapReplaced(const fs::path& map)
     : Error(ErrorKind::StoreUnavailable, map.string() +

@@ -10,7 +10,7 @@
 
 namespace cluxel::rdf {
 
-/// Another process is writing to the map.
+/// Another process is writing to the map, or copying it.
 class MapBusy : public Error {
  public:
   explicit MapBusy(const std::filesystem::path& map);

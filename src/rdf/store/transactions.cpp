@@ -6,7 +6,6 @@
 
 #include <cerrno>
 #include <charconv>
-#include <chrono>
 #include <stdexcept>
 
 #include "cluxel/error.hpp"
@@ -23,8 +22,6 @@ namespace {
 
 constexpr std::string_view kFormatKey = "cluxel-format";
 constexpr int kFormat = kMapFormat;
-constexpr auto kLockPatience = std::chrono::milliseconds(1500);
-constexpr auto kLockPause = std::chrono::milliseconds(10);
 
 void checkFormat(const std::string& text, const std::filesystem::path& file) {
   int format = 0;
@@ -42,23 +39,20 @@ void LmdbEnvironment::createTables(MDB_txn* transaction) {
   for (std::size_t i = 0; i < kTableCount; ++i)
     check(mdb_dbi_open(transaction, kTableNames[i], tableFlags(static_cast<Table>(i)) | MDB_CREATE, &tables_[i]),
           "make the map's tables");
-  MDB_dbi main = 0;
-  check(mdb_dbi_open(transaction, nullptr, 0, &main), "make the map's tables");
   const std::string format = std::to_string(kFormat);
   MDB_val key = toVal(kFormatKey);
   MDB_val value = toVal(format);
-  check(mdb_put(transaction, main, &key, &value, 0), "make the map's tables");
+  check(mdb_put(transaction, main_, &key, &value, 0), "make the map's tables");
 }
 
 void LmdbEnvironment::openTables() {
   MDB_txn* raw = nullptr;
   check(mdb_txn_begin(handle(), nullptr, MDB_RDONLY, &raw), "read the map");
   TxnHandle transaction(raw);
-  MDB_dbi main = 0;
-  check(mdb_dbi_open(raw, nullptr, 0, &main), "read the map");
+  check(mdb_dbi_open(raw, nullptr, 0, &main_), "read the map");
   MDB_val key = toVal(kFormatKey);
   MDB_val value;
-  const int found = mdb_get(raw, main, &key, &value);
+  const int found = mdb_get(raw, main_, &key, &value);
   if (found == MDB_SUCCESS) {
     checkFormat(std::string(toView(value)), file_);
     for (std::size_t i = 0; i < kTableCount; ++i)
@@ -68,7 +62,7 @@ void LmdbEnvironment::openTables() {
   }
   if (found != MDB_NOTFOUND) check(found, "read the map");
   MDB_stat main_stat;
-  check(mdb_stat(raw, main, &main_stat), "read the map");
+  check(mdb_stat(raw, main_, &main_stat), "read the map");
   transaction.reset();
   if (main_stat.ms_entries != 0)
     throw Error(ErrorKind::StoreUnavailable, file_.string() + ": is an LMDB file, but not a Cluxel map");
@@ -87,12 +81,7 @@ void LmdbEnvironment::allowWriting() {
 }
 
 void LmdbEnvironment::lockAgainstProcesses() {
-  const auto deadline = std::chrono::steady_clock::now() + kLockPatience;
-  while (::flock(data_lock_, LOCK_EX | LOCK_NB) != 0) {
-    if (errno != EWOULDBLOCK && errno != EINTR) failStore(file_, errno, "lock the map");
-    if (std::chrono::steady_clock::now() > deadline) throw MapBusy(file_);
-    std::this_thread::sleep_for(kLockPause);
-  }
+  lockAgainstWriters(data_lock_, WriteLock::Writing, file_);
   requireName();
 }
 
@@ -174,6 +163,7 @@ MDB_txn* ReadTransaction::Impl::live() const {
 void WriteTransaction::commit() {
   Impl& state = impl();
   state.live();
+  state.block_keys.store(state);
   const int code = mdb_txn_commit(std::exchange(state.txn, nullptr));
   state.end();
   state.check(code, "write the map");
