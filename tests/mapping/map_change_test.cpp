@@ -219,9 +219,13 @@ TEST_F(MapChange, WhatCannotBeDoneIsRefusedAndChangesNothing) {
   expectExact({{0, 0}});
 }
 
+ContentHash idNamed(const std::string& name) {
+  return ContentHasher().addText(name).finish();
+}
+
 TEST(ObjectChanges, TellAddedGoneChangedSplitAndJoined) {
   const auto object = [](const std::string& name, std::vector<std::uint64_t> seeds) {
-    return ObjectMembers{contentHashOf(name), "Tree", std::move(seeds)};
+    return ObjectMembers{idNamed(name), "Tree", std::move(seeds)};
   };
   const std::vector<ObjectMembers> before{object("same", {1, 2, 3}),    object("grows", {10, 11}),
                                           object("vanishes", {20, 21}), object("two", {30, 31, 32, 33}),
@@ -231,11 +235,11 @@ TEST(ObjectChanges, TellAddedGoneChangedSplitAndJoined) {
                                          object("half2", {32, 33}), object("one", {40, 41, 50, 51})};
   const ObjectChanges changes = compareObjects(before, after);
   EXPECT_EQ(changes.unchanged, 1U);
-  EXPECT_EQ(changes.added, std::vector{contentHashOf("new")});
-  EXPECT_EQ(changes.gone, std::vector{contentHashOf("vanishes")});
+  EXPECT_EQ(changes.added, std::vector{idNamed("new")});
+  EXPECT_EQ(changes.gone, std::vector{idNamed("vanishes")});
   ASSERT_EQ(changes.changed.size(), 1U);
-  EXPECT_EQ(changes.changed.front().id, contentHashOf("grown"));
-  EXPECT_EQ(changes.changed.front().from, std::vector{contentHashOf("grows")});
+  EXPECT_EQ(changes.changed.front().id, idNamed("grown"));
+  EXPECT_EQ(changes.changed.front().from, std::vector{idNamed("grows")});
   EXPECT_EQ(changes.split.size(), 2U);
   ASSERT_EQ(changes.joined.size(), 1U);
   EXPECT_EQ(changes.joined.front().from.size(), 2U);
