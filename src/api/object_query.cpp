@@ -105,9 +105,9 @@ std::vector<Object> objectsOf(const rdf::QuadReader& reader) {
 
 std::vector<Object> objectsOf(const rdf::QuadReader& reader, std::string_view class_name) {
   const rdf::OntologyView ontology = ontologyViewOf(reader);
-  const std::string wanted = classIriOf(ontology, class_name);
+  const std::string class_iri = classIriOf(ontology, class_name);
   std::vector<Object> objects = objectsOf(reader, ontology);
-  std::erase_if(objects, [&](const Object& object) { return !ontology.isA(object.class_iri, wanted); });
+  std::erase_if(objects, [&](const Object& object) { return !ontology.isA(object.class_iri, class_iri); });
   return objects;
 }
 

@@ -41,13 +41,13 @@ Cloud valueOf(const mapping::Cloud& stored) {
   return cloud;
 }
 
-/// Appends the points of a scan whose object number is wanted.
+/// Appends the points of a scan whose object number is accepted.
 void append(const mapping::MapReader& map, const mapping::Cloud& cloud,
-            const std::function<bool(std::uint32_t)>& wanted, bool with_intensity, PointCloud& out) {
+            const std::function<bool(std::uint32_t)>& accept, bool with_intensity, PointCloud& out) {
   const scan::ScanPoints points = map.pointsOf(cloud.id);
   const mapping::PointAnswers answers = map.answersFor(cloud);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!wanted(answers.object[i])) continue;
+    if (!accept(answers.object[i])) continue;
     const Eigen::Vector3d p_map = scan::toMap(cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
     out.x.push_back(p_map.x());
     out.y.push_back(p_map.y());

@@ -37,11 +37,11 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
 }
 
 std::optional<std::string> nearestName(std::string_view name, std::span<const std::string> known) {
-  const std::string wanted = lowerCase(name);
-  std::size_t best_distance = std::max<std::size_t>(1, wanted.size() / 3) + 1;
+  const std::string name_to_find = lowerCase(name);
+  std::size_t best_distance = std::max<std::size_t>(1, name_to_find.size() / 3) + 1;
   std::optional<std::string> best;
   for (const std::string& candidate : known) {
-    const std::size_t distance = editDistance(wanted, lowerCase(candidate));
+    const std::size_t distance = editDistance(name_to_find, lowerCase(candidate));
     if (distance >= best_distance) continue;
     best_distance = distance;
     best = candidate;

@@ -10,10 +10,10 @@
 
 namespace cluxel {
 
-/// So many errors, and so many warnings, are told one by one; of the others it is said how many there are.
-inline constexpr std::size_t kMostFaults = 200;
+/// At most this number of errors, and of warnings, is listed; further ones are only counted.
+inline constexpr std::size_t kMaxFaults = 200;
 
-/// The word about those.
+/// The diagnostic that gives the number of further faults.
 inline Diagnostic furtherFaults(Severity severity, std::string file, std::size_t count) {
   Diagnostic further;
   further.severity = severity;
@@ -25,9 +25,9 @@ inline Diagnostic furtherFaults(Severity severity, std::string file, std::size_t
 
 /// Line `line` (from 1) of `text`; empty for one that is longer than anyone could read.
 inline std::string shownLine(std::string_view text, std::size_t line) {
-  constexpr std::size_t kLongestShown = 500;
+  constexpr std::size_t kMaxShownBytes = 500;
   const std::string_view whole = lineOf(text, line);
-  return whole.size() <= kLongestShown ? std::string(whole) : std::string();
+  return whole.size() <= kMaxShownBytes ? std::string(whole) : std::string();
 }
 
 }  // namespace cluxel

@@ -14,11 +14,11 @@ void FaultList::addFile(std::string file, std::string text) {
 }
 
 void FaultList::error(const SourceLocation& at, std::string message, std::string hint) {
-  if (++errors_ <= kMostFaults) add(Severity::Error, at, std::move(message), std::move(hint));
+  if (++errors_ <= kMaxFaults) add(Severity::Error, at, std::move(message), std::move(hint));
 }
 
 void FaultList::warning(const SourceLocation& at, std::string message, std::string hint) {
-  if (++warnings_ <= kMostFaults) add(Severity::Warning, at, std::move(message), std::move(hint));
+  if (++warnings_ <= kMaxFaults) add(Severity::Warning, at, std::move(message), std::move(hint));
 }
 
 void FaultList::add(Severity severity, const SourceLocation& at, std::string message, std::string hint) {
@@ -49,8 +49,8 @@ std::vector<Diagnostic> FaultList::sorted() const {
   });
   faults.erase(last, faults.end());
   const std::string file = files_.empty() ? "" : files_.front().first;
-  if (errors_ > kMostFaults) faults.push_back(furtherFaults(Severity::Error, file, errors_ - kMostFaults));
-  if (warnings_ > kMostFaults) faults.push_back(furtherFaults(Severity::Warning, file, warnings_ - kMostFaults));
+  if (errors_ > kMaxFaults) faults.push_back(furtherFaults(Severity::Error, file, errors_ - kMaxFaults));
+  if (warnings_ > kMaxFaults) faults.push_back(furtherFaults(Severity::Warning, file, warnings_ - kMaxFaults));
   return faults;
 }
 

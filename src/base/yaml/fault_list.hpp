@@ -11,7 +11,7 @@
 
 namespace cluxel {
 
-/// The faults found so far in one or more files. The first kMostFaults errors (base/shown_line.hpp), and as many
+/// The faults found so far in one or more files. The first kMaxFaults errors (base/shown_line.hpp), and as many
 /// warnings, are kept; the rest are only counted.
 class FaultList {
  public:

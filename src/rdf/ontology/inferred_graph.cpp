@@ -39,12 +39,12 @@ ClosureChange inferClosure(WriteTransaction& transaction) {
   QuadWriter writer(transaction);
   const GraphIds graphs = internGraphs(writer);
   const QuadReader reader(transaction);
-  const std::vector<QuadIds> wanted = closureOf(reader, graphs.inferred, graphs.stated);
+  const std::vector<QuadIds> target = closureOf(reader, graphs.inferred, graphs.stated);
   const std::vector<QuadIds> present = quadsOf(reader, graphs.inferred);
   std::vector<QuadIds> added;
   std::vector<QuadIds> removed;
-  std::set_difference(wanted.begin(), wanted.end(), present.begin(), present.end(), std::back_inserter(added));
-  std::set_difference(present.begin(), present.end(), wanted.begin(), wanted.end(), std::back_inserter(removed));
+  std::set_difference(target.begin(), target.end(), present.begin(), present.end(), std::back_inserter(added));
+  std::set_difference(present.begin(), present.end(), target.begin(), target.end(), std::back_inserter(removed));
   for (const QuadIds& quad : added) writer.add(quad);
   for (const QuadIds& quad : removed) writer.remove(quad);
   writer.flush();

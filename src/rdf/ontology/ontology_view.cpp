@@ -156,8 +156,8 @@ std::vector<OntologyProperty> readProperties(const GraphReader& graph) {
 }  // namespace
 
 std::string OntologyClass::label(std::string_view language) const {
-  for (const std::string_view wanted : {language, std::string_view("en"), std::string_view("")})
-    if (const auto found = labels.find(std::string(wanted)); found != labels.end()) return found->second;
+  for (const std::string_view tag : {language, std::string_view("en"), std::string_view("")})
+    if (const auto found = labels.find(std::string(tag)); found != labels.end()) return found->second;
   return iri.substr(iri.find_last_of("#/") + 1);
 }
 

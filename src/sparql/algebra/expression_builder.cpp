@@ -121,11 +121,11 @@ Expr AlgebraBuilder::call(const ast::Expression& written, Scope& scope, const Sl
 void AlgebraBuilder::checkCall(const ast::Expression& written, const FunctionEntry& function) {
   const std::size_t count = written.arguments.size();
   if (count < function.min_arguments || count > function.max_arguments) {
-    const std::string wanted = function.min_arguments == function.max_arguments
-                                   ? std::to_string(function.min_arguments)
-                                   : "at least " + std::to_string(function.min_arguments);
-    fail(written.at, std::string(function.name) + " takes " + wanted + " argument" + (wanted == "1" ? "" : "s") +
-                         ", not " + std::to_string(count));
+    const std::string expected_count = function.min_arguments == function.max_arguments
+                                           ? std::to_string(function.min_arguments)
+                                           : "at least " + std::to_string(function.min_arguments);
+    fail(written.at, std::string(function.name) + " takes " + expected_count + " argument" +
+                         (expected_count == "1" ? "" : "s") + ", not " + std::to_string(count));
   }
   is_volatile_ = is_volatile_ || function.is_volatile;
   if (function.is_volatile && options_.refuse_volatile) {

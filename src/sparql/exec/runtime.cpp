@@ -62,18 +62,18 @@ std::vector<Term> irisOf(const std::vector<std::string>& texts) {
 }
 
 Dataset wholeDatasetOf(const ast::DatasetClause& clause, const QueryOptions& options, const rdf::QuadReader& reader) {
-  ast::DatasetClause wanted = clause;
+  ast::DatasetClause dataset_clause = clause;
   if (!options.default_graphs.empty() || !options.named_graphs.empty()) {
-    wanted.default_graphs = irisOf(options.default_graphs);
-    wanted.named_graphs = irisOf(options.named_graphs);
+    dataset_clause.default_graphs = irisOf(options.default_graphs);
+    dataset_clause.named_graphs = irisOf(options.named_graphs);
   }
   std::vector<rdf::TermId> stored = reader.graphs();
   std::sort(stored.begin(), stored.end());
   Dataset dataset;
-  if (!wanted.empty()) {
+  if (!dataset_clause.empty()) {
     // Graphs come from the store; nothing is fetched.
-    dataset.default_graph = anyOf(idsOf(wanted.default_graphs, reader));
-    const std::vector<rdf::TermId> named = idsOf(wanted.named_graphs, reader);
+    dataset.default_graph = anyOf(idsOf(dataset_clause.default_graphs, reader));
+    const std::vector<rdf::TermId> named = idsOf(dataset_clause.named_graphs, reader);
     std::set_intersection(named.begin(), named.end(), stored.begin(), stored.end(), std::back_inserter(dataset.named));
     return dataset;
   }

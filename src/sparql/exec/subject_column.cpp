@@ -151,12 +151,12 @@ void SubjectColumn::expect(std::span<const rdf::TermId> subjects) const {
   }
 }
 
-const SubjectColumn* KeptColumn::after(std::size_t lookups, bool wanted, const rdf::QuadReader& reader,
+const SubjectColumn* KeptColumn::after(std::size_t lookups, bool is_needed, const rdf::QuadReader& reader,
                                        const GraphFilter& graphs, Guard& guard) const {
   if (const SubjectColumn* column = column_.load(std::memory_order_acquire)) return column;
   const std::uint64_t made = lookups_.fetch_add(lookups, std::memory_order_relaxed) + lookups;
   const std::uint64_t worth = quads_ / kQuadsPerLookup;
-  if (made < kMinLookups || quads_ >= kMaxQuads || (!wanted && made < worth)) return nullptr;
+  if (made < kMinLookups || quads_ >= kMaxQuads || (!is_needed && made < worth)) return nullptr;
   const std::unique_lock lock(making_, std::try_to_lock);
   if (!lock.owns_lock()) return nullptr;  // another reader is building it
   if (!made_) {

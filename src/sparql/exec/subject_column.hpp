@@ -68,10 +68,10 @@ class KeptColumn {
  public:
   KeptColumn(const ColumnPattern& pattern, std::uint64_t quads) : pattern_(pattern), quads_(quads) {}
 
-  /// The column if it exists or if building it is justified after `lookups` more lookups; else null. `wanted`: the plan
-  /// expects it.
-  const SubjectColumn* after(std::size_t lookups, bool wanted, const rdf::QuadReader& reader, const GraphFilter& graphs,
-                             Guard& guard) const;
+  /// The column if it exists or if building it is justified after `lookups` more lookups; else null. `is_needed`: the
+  /// plan expects it.
+  const SubjectColumn* after(std::size_t lookups, bool is_needed, const rdf::QuadReader& reader,
+                             const GraphFilter& graphs, Guard& guard) const;
   bool isMade() const { return column_.load(std::memory_order_acquire) != nullptr; }
   /// The approximate size in bytes, built or not.
   std::size_t bytes() const { return quads_ * (sizeof(SubjectColumn::Row) + sizeof(std::uint32_t) / 2); }

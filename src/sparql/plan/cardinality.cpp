@@ -27,19 +27,19 @@ const rdf::QuadReader::PredicateStatistics& Cardinality::statistics(rdf::TermId 
 double Cardinality::matches(const TripleNode& pattern) {
   const auto known = known_.find(&pattern);
   if (known != known_.end()) return known->second;
-  rdf::QuadPattern wanted;
+  rdf::QuadPattern quad_pattern;
   bool possible = true;
   const auto bind = [&possible](const PatternPlace& place, std::optional<rdf::TermId>& id) {
     if (place.isSlot()) return;
     id = place.constant;
     possible = possible && place.constant < kFirstComputed;
   };
-  bind(pattern.subject, wanted.s);
-  if (!pattern.path) bind(pattern.predicate, wanted.p);
-  bind(pattern.object, wanted.o);
-  if (pattern.graph.kind == GraphPlace::Kind::Constant) wanted.g = pattern.graph.constant;
+  bind(pattern.subject, quad_pattern.s);
+  if (!pattern.path) bind(pattern.predicate, quad_pattern.p);
+  bind(pattern.object, quad_pattern.o);
+  if (pattern.graph.kind == GraphPlace::Kind::Constant) quad_pattern.g = pattern.graph.constant;
   const double count =
-      possible && wanted.g.value_or(0) < kFirstComputed ? static_cast<double>(reader_.estimate(wanted)) : 0;
+      possible && quad_pattern.g.value_or(0) < kFirstComputed ? static_cast<double>(reader_.estimate(quad_pattern)) : 0;
   known_.emplace(&pattern, count);
   return count;
 }

@@ -15,7 +15,7 @@ namespace {
 constexpr double kAscendingLookup = 120, kScatteredLookup = 350, kScannedEntry = 4, kHashBuild = 35, kHashProbe = 25,
                  kMergedRow = 8, kColumnMade = 25, kColumnLookup = 25;  // building a column, per quad of the predicate
 /// The assumed number of input rows per row requested by a LIMIT.
-constexpr double kRowsPerWanted = 64;
+constexpr double kRowsPerNeededRow = 64;
 
 BoundMask constantsOf(const TripleNode& pattern, const Dataset& dataset) {
   BoundMask mask = 0;
@@ -53,10 +53,10 @@ Slot Planner::scannedBy(const TripleNode& pattern) const {
   return sortedBy(pattern, chooseOrder(constantsOf(pattern, dataset_)));
 }
 
-Planner::State Planner::joinPart(State state, const Node& part, double wanted_rows) {
+Planner::State Planner::joinPart(State state, const Node& part, double needed_rows) {
   switch (part.kind) {
     case Node::Kind::Triple:
-      return joinTriple(std::move(state), part, wanted_rows);
+      return joinTriple(std::move(state), part, needed_rows);
     case Node::Kind::Union:
       return joinUnion(std::move(state), part);
     case Node::Kind::GraphNames: {
@@ -80,7 +80,7 @@ Planner::State Planner::joined(State state, OperatorPtr top, const Node& part, d
   return state;
 }
 
-Planner::State Planner::joinTriple(State state, const Node& part, double wanted_rows) {
+Planner::State Planner::joinTriple(State state, const Node& part, double needed_rows) {
   const TripleNode& pattern = part.triple;
   const double rows = rowsAfter(state, part);
   const auto finish = [&](OperatorPtr top) { return joined(std::move(state), std::move(top), part, rows); };
@@ -97,17 +97,17 @@ Planner::State Planner::joinTriple(State state, const Node& part, double wanted_
     state.sorted_by = sortedBy(pattern, scan);
     return finish(makeScan(pattern, scan.order));
   }
-  return finish(joinOperator(state, part, scan, wanted_rows));
+  return finish(joinOperator(state, part, scan, needed_rows));
 }
 
 /// Chooses the cheapest of merge join, hash join and index nested loop join.
-OperatorPtr Planner::joinOperator(State& state, const Node& part, const OrderChoice& scan, double wanted_rows) {
+OperatorPtr Planner::joinOperator(State& state, const Node& part, const OrderChoice& scan, double needed_rows) {
   const TripleNode& pattern = part.triple;
   const std::vector<Slot> keys = (part.possible & state.certain).list();
   const double own = cardinality_.matches(pattern);
   const bool ascending = state.sorted_by != kNoSlot && part.possible.has(state.sorted_by);
   // With a LIMIT the lookups end early, whereas a hash table is built completely. Not every row has a match.
-  const double looked_up = std::min(state.rows, wanted_rows * kRowsPerWanted);
+  const double looked_up = std::min(state.rows, needed_rows * kRowsPerNeededRow);
   const double index_cost = looked_up * (ascending ? kAscendingLookup : kScatteredLookup);
   const double column_cost = columnCost(state, pattern, looked_up);
   const double lookup_cost = std::min(index_cost, column_cost);

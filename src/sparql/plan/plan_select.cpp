@@ -23,7 +23,7 @@ std::uint64_t plus(std::uint64_t a, std::uint64_t b) {
 
 OperatorPtr Planner::plan() {
   const Node& root = *query_.root;
-  if (query_.wants_one && !isModifier(root) && root.kind != Node::Kind::Group) wanted_rows_ = 1;
+  if (query_.wants_one && !isModifier(root) && root.kind != Node::Kind::Group) needed_rows_ = 1;
   return alone(root).top;
 }
 OperatorPtr Planner::planAlone(const Node& node) {
@@ -84,12 +84,12 @@ Planner::State Planner::belowModifier(const Node& child, std::optional<std::uint
 
 Planner::State Planner::slice(const Node& node, const std::vector<Slot>& columns) {
   const Node& child = *node.children[0];
-  std::optional<std::uint64_t> wanted;
-  if (node.limit && child.kind != Node::Kind::Distinct) wanted = plus(node.offset, *node.limit);
+  std::optional<std::uint64_t> rows_needed;
+  if (node.limit && child.kind != Node::Kind::Distinct) rows_needed = plus(node.offset, *node.limit);
   const bool cuts_group = child.kind == Node::Kind::Project && !isModifier(*child.children[0]);
-  if (wanted && cuts_group) wanted_rows_ = static_cast<double>(*wanted);
-  State state = belowModifier(child, wanted, columns);
-  wanted_rows_ = kAllRows;
+  if (rows_needed && cuts_group) needed_rows_ = static_cast<double>(*rows_needed);
+  State state = belowModifier(child, rows_needed, columns);
+  needed_rows_ = kAllRows;
   const double rows = node.limit ? std::min(state.rows, static_cast<double>(*node.limit)) : state.rows;
   state.top = makeSlice(std::move(state.top), node.offset, node.limit);
   setRows(state, rows);

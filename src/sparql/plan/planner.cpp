@@ -131,7 +131,7 @@ bool Planner::bindsByFilter(const Expr& condition, const Node& child, Parts& par
 
 Planner::State Planner::joinNode(State state, const Node& node, const std::vector<Expr>& extra_filters) {
   Parts parts;
-  const double wanted_rows = std::exchange(wanted_rows_, kAllRows);
+  const double needed_rows = std::exchange(needed_rows_, kAllRows);
   // Constants such as parameters are visible everywhere.
   SlotSet rest = state.possible - state.outer;
   parts.constant = state.outer & state.certain;
@@ -145,7 +145,7 @@ Planner::State Planner::joinNode(State state, const Node& node, const std::vecto
   const bool keeps_rows = parts.filters.empty() && std::all_of(parts.joined.begin(), parts.joined.end(), is_triple) &&
                           std::none_of(parts.postponed.begin(), parts.postponed.end(),
                                        [](const Postponed& step) { return step.kind == Postponed::Kind::Minus; });
-  if (keeps_rows) parts.wanted_rows = wanted_rows;
+  if (keeps_rows) parts.needed_rows = needed_rows;
   return joinParts(std::move(state), parts);
 }
 
@@ -161,7 +161,7 @@ Planner::State Planner::joinParts(State state, Parts& parts) {
     const std::size_t next = choosePart(state, waiting);
     const Node* part = waiting[next];
     waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(next));
-    state = joinPart(std::move(state), *part, parts.wanted_rows);
+    state = joinPart(std::move(state), *part, parts.needed_rows);
   }
   return applyPostponed(std::move(state), parts, used);
 }

@@ -51,15 +51,15 @@ class Planner {
     std::vector<Expr> filters;
     std::vector<NodePtr> made;      ///< owns nodes created by the planner
     SlotSet constant;               ///< slots with the same value in all parts
-    double wanted_rows = kAllRows;  ///< number of rows of the first part that will be consumed
+    double needed_rows = kAllRows;  ///< number of rows of the first part that will be consumed
   };
 
   State unit();
   State joinNode(State state, const Node& node, const std::vector<Expr>& extra_filters);
   State joinParts(State state, Parts& parts);
-  State joinPart(State state, const Node& part, double wanted_rows);
-  State joinTriple(State state, const Node& part, double wanted_rows);
-  OperatorPtr joinOperator(State& state, const Node& part, const OrderChoice& scan, double wanted_rows);
+  State joinPart(State state, const Node& part, double needed_rows);
+  State joinTriple(State state, const Node& part, double needed_rows);
+  OperatorPtr joinOperator(State& state, const Node& part, const OrderChoice& scan, double needed_rows);
   double columnCost(const State& state, const TripleNode& pattern, double lookups);
   static State joined(State state, OperatorPtr top, const Node& part, double rows);
   State joinUnion(State state, const Node& part);
@@ -108,7 +108,7 @@ class Planner {
   const Dataset& dataset_;
   Cardinality cardinality_;
   std::vector<Slot> parameters_;
-  double wanted_rows_ = kAllRows;  ///< from a LIMIT around the next group
+  double needed_rows_ = kAllRows;  ///< from a LIMIT around the next group
   SlotSet unsure_parameters_;      ///< parameters that may be unbound
 };
 

@@ -57,10 +57,11 @@ class CorrelatedRows {
 /// The columns shared by the part's rows and the solutions.
 using SharedColumns = std::vector<std::pair<Slot, std::size_t>>;
 
-SharedColumns columnsOf(const std::vector<Slot>& wanted, const std::vector<Slot>& slots) {
+SharedColumns columnsOf(const std::vector<Slot>& target_slots, const std::vector<Slot>& slots) {
   SharedColumns columns;
   for (std::size_t i = 0; i < slots.size(); ++i) {
-    if (std::find(wanted.begin(), wanted.end(), slots[i]) != wanted.end()) columns.emplace_back(slots[i], i);
+    if (std::find(target_slots.begin(), target_slots.end(), slots[i]) != target_slots.end())
+      columns.emplace_back(slots[i], i);
   }
   return columns;
 }

@@ -78,8 +78,8 @@ class OrderOperator : public UnaryOperator {
   }
 
   /// True when the buffer holds more than twice the requested rows; safe against overflow.
-  bool isCrowded(std::uint64_t wanted) const {
-    return table_.rows() > kSpareRows && (table_.rows() - kSpareRows) / 2 > wanted;
+  bool isCrowded(std::uint64_t rows_needed) const {
+    return table_.rows() > kSpareRows && (table_.rows() - kSpareRows) / 2 > rows_needed;
   }
 
   void take(const Batch& in, Evaluator& evaluator) {

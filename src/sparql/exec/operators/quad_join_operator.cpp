@@ -208,9 +208,9 @@ class QuadJoinOperator : public UnaryOperator {
   void emit(Batch& out) {
     Access& access = *active_;
     std::size_t used = 0;
-    const std::size_t most = target() - out.rows;
+    const std::size_t room = target() - out.rows;
     std::size_t taken = 0;
-    for (; used < block_.size() && taken < most; ++used) {
+    for (; used < block_.size() && taken < room; ++used) {
       if (!access.reader.admits(block_[used], bound_)) continue;
       ++taken;
       for (const auto& output : access.reader.outputs()) {

@@ -37,25 +37,25 @@ class ScanOperator : public Operator {
   void reopen(bool) override {
     filter_ = graphFilterOf(pattern_, runtime().dataset);
     BoundMask mask = 0;
-    rdf::QuadPattern wanted;
+    rdf::QuadPattern pattern;
     const auto bind = [&](const PatternPlace& place, std::optional<rdf::TermId>& id, unsigned bit) {
       if (place.isSlot()) return;
       id = place.constant;
       mask |= bit;
     };
-    bind(pattern_.subject, wanted.s, 1);
-    bind(pattern_.predicate, wanted.p, 2);
-    bind(pattern_.object, wanted.o, 4);
+    bind(pattern_.subject, pattern.s, 1);
+    bind(pattern_.predicate, pattern.p, 2);
+    bind(pattern_.object, pattern.o, 4);
     if (pattern_.graph.kind == GraphPlace::Kind::Constant) {
-      wanted.g = pattern_.graph.constant;
+      pattern.g = pattern_.graph.constant;
       mask |= 8;
     } else if (filter_.kind == GraphFilter::Kind::One && pattern_.graph.kind == GraphPlace::Kind::Default) {
-      wanted.g = filter_.graph;
+      pattern.g = filter_.graph;
       mask |= 8;
     }
-    bound_ = {wanted.s.value_or(0), wanted.p.value_or(0), wanted.o.value_or(0), wanted.g.value_or(0)};
+    bound_ = {pattern.s.value_or(0), pattern.p.value_or(0), pattern.o.value_or(0), pattern.g.value_or(0)};
     reader_ = EntryReader(pattern_, filter_, order_, mask);
-    cursor_ = runtime().reader.scan(wanted, order_);
+    cursor_ = runtime().reader.scan(pattern, order_);
     block_ = {};
   }
 
