@@ -63,8 +63,4 @@ ContentHash ContentHash::fromHex(std::string_view digits) {
   return hash;
 }
 
-ContentHash contentHashOf(std::string_view text) {
-  return ContentHasher().addBytes(text.data(), text.size()).finish();
-}
-
 }  // namespace cluxel

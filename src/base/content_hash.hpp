@@ -59,9 +59,6 @@ class ContentHasher {
   std::unique_ptr<State> state_;
 };
 
-/// The hash of a text, for file contents.
-ContentHash contentHashOf(std::string_view text);
-
 }  // namespace cluxel
 
 template <>

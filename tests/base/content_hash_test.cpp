@@ -19,7 +19,7 @@ TEST(ContentHash, IsTheBeginningOfASha256) {
 }
 
 TEST(ContentHash, IsReadBackFromItsDigits) {
-  const ContentHash hash = contentHashOf("a map");
+  const ContentHash hash = ContentHasher().addText("a map").finish();
   EXPECT_EQ(ContentHash::fromHex(hash.hex()), hash);
   EXPECT_FALSE(hash.isZero());
   EXPECT_TRUE(ContentHash::fromHex(std::string(32, '0')).isZero());

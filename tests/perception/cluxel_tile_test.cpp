@@ -117,17 +117,18 @@ TEST(CluxelTile, MomentsAreThoseOfTheCluxelsPoints) {
   const auto tiles = streetTiles(14);
   const auto& [key, points] = *tiles.begin();
   const CluxelTile clustered = clusterTile(ringIn(tiles, key), {});
-  const CluxelMembers members = membersOf(clustered);
+  std::vector<std::vector<std::uint32_t>> members(clustered.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i) members[clustered.point_cluxel[i]].push_back(i);
   for (std::size_t c = 0; c < clustered.size(); ++c) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    const std::uint32_t begin = members.offset[c], end = members.offset[c + 1];
-    for (auto i = begin; i < end; ++i) mean += points.at(members.point[i]).cast<double>() / (end - begin);
+    const auto count = static_cast<double>(members[c].size());
+    for (const std::uint32_t i : members[c]) mean += points.at(i).cast<double>() / count;
     Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-    for (auto i = begin; i < end; ++i) {
-      const Eigen::Vector3d d = points.at(members.point[i]).cast<double>() - mean;
+    for (const std::uint32_t i : members[c]) {
+      const Eigen::Vector3d d = points.at(i).cast<double>() - mean;
       scatter += d * d.transpose();
     }
-    ASSERT_FLOAT_EQ(clustered.own[c].count, static_cast<float>(end - begin));
+    ASSERT_FLOAT_EQ(clustered.own[c].count, static_cast<float>(count));
     EXPECT_LT((clustered.own[c].mean.cast<double>() - mean).norm(), 1e-5);
     const auto& s = clustered.own[c].scatter;
     const std::array<double, 6> expected{scatter(0, 0), scatter(0, 1), scatter(0, 2),
@@ -162,6 +163,11 @@ TEST(CluxelTile, MovingEverythingByWholeTilesChangesNothing) {
     there.key = key;
     EXPECT_EQ(toBytes(there), toBytes(clusterTile(ringIn(tiles, key), {})));
   }
+}
+
+/// The paper's setting: radius 0.10 m, volumes that do not grow.
+ClusterParams paperClustering() {
+  return {.radius_m = 0.10, .max_reach_m = 0.10, .target_points = 1};
 }
 
 TEST(CluxelTile, ThePapersModeHasFixedVolumesOfATenthOfAMetre) {

@@ -85,13 +85,5 @@ TEST(Training, RefusesPlacesWithoutAnyTruth) {
   EXPECT_THROW(trained(places, made_up::quickTraining()), InputError);
 }
 
-TEST(Training, CrossValidationMeasuresEveryGroupOnce) {
-  ProgressSink sink;
-  const auto places = threePlaces();
-  const auto folds = crossValidate(places, PerceptionParams{}, made_up::quickTraining(), 1, sink);
-  ASSERT_EQ(folds.size(), 3U);
-  for (const FoldReport& fold : folds) EXPECT_EQ(fold.evaluation.scores.points(), 2U * 16 * 16 * 10);
-}
-
 }  // namespace
 }  // namespace cluxel::perception

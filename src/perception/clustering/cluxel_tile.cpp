@@ -21,8 +21,8 @@ struct Seeds {
   std::vector<std::uint32_t> before;  ///< per cell: seeds in earlier cells
   std::uint32_t count = 0;
 
-  Seeds(std::size_t most, std::size_t cells)
-      : x(most + kLanes), y(most + kLanes), z(most + kLanes), before(cells + 1) {}
+  Seeds(std::size_t max_seeds, std::size_t cells)
+      : x(max_seeds + kLanes), y(max_seeds + kLanes), z(max_seeds + kLanes), before(cells + 1) {}
   void add(float px, float py, float pz) {
     x[count] = px;
     y[count] = py;
@@ -123,21 +123,6 @@ void describe(ClusterParams& params, ParameterVisitor& visitor) {
                params.max_reach_m);
   visitor.whole({"cover.wanted_points", "1", 1, 1000, "a volume grows until it holds this many points"},
                 params.target_points);
-}
-
-ClusterParams paperClustering() {
-  return {.radius_m = 0.10, .max_reach_m = 0.10, .target_points = 1};
-}
-
-CluxelMembers membersOf(const CluxelTile& tile) {
-  CluxelMembers members;
-  members.offset.assign(tile.size() + 1, 0);
-  for (const auto c : tile.point_cluxel) ++members.offset[c + 1];
-  for (std::size_t c = 0; c < tile.size(); ++c) members.offset[c + 1] += members.offset[c];
-  auto next = members.offset;
-  members.point.resize(tile.point_cluxel.size());
-  for (std::uint32_t i = 0; i < members.point.size(); ++i) members.point[next[tile.point_cluxel[i]]++] = i;
-  return members;
 }
 
 CluxelTile clusterTile(const Ring<TilePoints>& ring, const ClusterParams& params) {

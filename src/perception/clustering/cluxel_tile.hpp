@@ -22,8 +22,6 @@ struct ClusterParams {
   int target_points = 8;      ///< a volume grows until it holds this many points
 };
 void describe(ClusterParams& params, ParameterVisitor& visitor);
-/// The paper's setting: radius 0.10 m, volumes that do not grow.
-ClusterParams paperClustering();
 
 /// Count, mean and centred second moments of a set of points. Moments of disjoint sets can be merged. Sums run in
 /// double and in a fixed order, so that equal inputs give equal bytes.
@@ -60,12 +58,6 @@ struct CluxelTile {
 
   std::size_t size() const { return seed.size(); }
 };
-
-/// Points of each cluxel, as CSR: `point[offset[c]..offset[c+1])` ascending.
-struct CluxelMembers {
-  std::vector<std::uint32_t> offset, point;
-};
-CluxelMembers membersOf(const CluxelTile& tile);
 
 /// "A point joins the earliest seed within the radius, or becomes a seed", in canonical order (cell of radius_m, then
 /// the order of the points), with seeds of the own tile only. Points of neighbouring tiles extend volumes and balls.

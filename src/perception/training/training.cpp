@@ -161,16 +161,4 @@ Evaluation evaluate(const LabelModel& model, std::span<const TrainingPlace> plac
   return evaluateOn(model, refs, params, threads);
 }
 
-std::vector<FoldReport> crossValidate(std::span<const TrainingPlace> places, const PerceptionParams& perception,
-                                      const TrainParams& params, unsigned threads, ProgressSink& sink) {
-  const PlaceRefs refs = refsOf(places);
-  std::vector<FoldReport> folds;
-  for (const int group : groupsOf(refs)) {
-    const TrainingReport report = trainOn(placesWithout(refs, group), perception, params, threads, sink);
-    folds.push_back({group, evaluateOn(report.model, scoredPlaces(refs, group), params.labelling, threads)});
-    sink.progress("folds", folds.size(), groupsOf(refs).size());
-  }
-  return folds;
-}
-
 }  // namespace cluxel::perception

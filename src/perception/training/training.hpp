@@ -67,12 +67,4 @@ struct Evaluation {
 Evaluation evaluate(const LabelModel& model, std::span<const TrainingPlace> places, const LabellingParams& params,
                     unsigned threads);
 
-/// For each group: trains everything, pairwise term and calibration included, on the other groups; measures on it.
-struct FoldReport {
-  int group = 0;
-  Evaluation evaluation;
-};
-std::vector<FoldReport> crossValidate(std::span<const TrainingPlace> places, const PerceptionParams& perception,
-                                      const TrainParams& params, unsigned threads, ProgressSink& sink);
-
 }  // namespace cluxel::perception
