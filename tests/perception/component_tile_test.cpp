@@ -6,6 +6,7 @@
 
 #include "cluxel/error.hpp"
 
+#include <limits>
 #include <random>
 #include <set>
 
@@ -127,6 +128,56 @@ TEST(ContactTile, LooksTheSameFromBothEnds) {
   EXPECT_GT(heights, 10U);
 }
 
+/// Cells of horizontal planes near the ground are not compared.
+bool isGround(const ComponentTile& tile, std::size_t component, const FootprintCell& cell) {
+  return tile.components[component].label == static_cast<std::uint32_t>(PrimitiveLabel::HorizontalPlane) &&
+         cell.highest < static_cast<float>(ContactParams{}.ground_layer_m);
+}
+
+/// The cell's coordinate from the centre tile's corner; its tile is `step` tiles away.
+int acrossTiles(std::uint16_t cell, int step) {
+  return cell + step * kFootprintCellsPerTile;
+}
+
+/// The gap and the overlaps between two components, from all pairs of their cells; an infinite gap without a near pair.
+std::pair<float, std::uint32_t> cellsBetween(const ComponentTile& own, std::size_t from, const ComponentTile& other,
+                                             int ring, std::size_t to) {
+  std::pair<float, std::uint32_t> result{std::numeric_limits<float>::infinity(), 0};
+  const Eigen::Vector3f shift = ringShift(ring);
+  for (const FootprintCell& a : own.cellsOf(from))
+    for (const FootprintCell& b : other.cellsOf(to)) {
+      if (isGround(own, from, a) || isGround(other, to, b)) continue;
+      const int dx = acrossTiles(b.x, ring % 3 - 1) - a.x, dy = acrossTiles(b.y, ring / 3 - 1) - a.y;
+      const bool touch = std::abs(dx) <= 1 && std::abs(dy) <= 1;
+      const float gap = gapBetween(Eigen::Vector3f(a.min.data()), Eigen::Vector3f(a.max.data()),
+                                   Eigen::Vector3f(b.min.data()) + shift, Eigen::Vector3f(b.max.data()) + shift);
+      if (touch || gap <= static_cast<float>(ContactParams{}.near_m)) result.first = std::min(result.first, gap);
+      result.second += touch ? 1 : 0;
+    }
+  return result;
+}
+
+TEST(ContactTile, HasTheGapsAndOverlapsOfAllPairsOfCells) {
+  const HandLabelled all = labelled({scanOf(streetPoints(4))}, patches(5));
+  std::size_t near = 0, overlapping = 0;
+  for (const auto& [key, tile] : all.tiles.contacts) {
+    const Ring<ComponentTile> ring = ringIn(all.tiles.components, key);
+    for (const Contact& contact : tile.contacts) {
+      const auto [gap, overlaps] = cellsBetween(*ring[kRingCentre], contact.from, *ring[contact.to_ring],
+                                                static_cast<int>(contact.to_ring), contact.to);
+      EXPECT_EQ(contact.overlaps, overlaps);
+      if (contact.edges == 0) {
+        EXPECT_EQ(contact.gap, static_cast<double>(gap));
+      }
+      EXPECT_LE(contact.gap, static_cast<double>(gap));
+      near += contact.edges == 0 && overlaps == 0 ? 1 : 0;
+      overlapping += overlaps > 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(near, 10U);
+  EXPECT_GT(overlapping, 10U);
+}
+
 /// A pole with label "column" over flat ground, optionally with a crown of label "scatter"; the cloud is shifted by its
 /// pose.
 HandLabelled poleAt(double shift_x_m, bool has_crown) {
@@ -144,13 +195,13 @@ HandLabelled poleAt(double shift_x_m, bool has_crown) {
   });
 }
 
-/// The primitive of the label with most points.
+/// The primitive of the label with the most points.
 PrimitiveIndex largest(const Scene& scene, PrimitiveLabel label) {
   PrimitiveIndex best = 0;
-  double most = 0;
+  double max_points = 0;
   for (PrimitiveIndex i = 0; i < scene.primitives.size(); ++i)
-    if (scene.primitives[i].label == label && scene.primitives[i][Attribute::PointCount] > most)
-      most = scene.primitives[i][Attribute::PointCount], best = i;
+    if (scene.primitives[i].label == label && scene.primitives[i][Attribute::PointCount] > max_points)
+      max_points = scene.primitives[i][Attribute::PointCount], best = i;
   return best;
 }
 
