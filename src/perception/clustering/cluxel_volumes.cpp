@@ -110,24 +110,25 @@ void fillVolume(const PointGrid& grid, const NearPoints& near, float reach_squar
 
 /// The squared distance within which the target number of points lie, clamped to the two bounds. Distances are counted
 /// in buckets first, so that only one bucket needs a selection.
-float grownReach(const NearPoints& near, std::size_t wanted, float least, float largest, std::vector<float>& scratch) {
-  if (near.count <= wanted) return largest;
+float grownReach(const NearPoints& near, std::size_t target_points, float min_reach, float largest,
+                 std::vector<float>& scratch) {
+  if (near.count <= target_points) return largest;
   constexpr std::size_t kBuckets = 32;
   const float scale = (static_cast<float>(kBuckets) - 0.5F) / largest;
   const auto bucketOf = [scale](float squared) { return static_cast<std::size_t>(static_cast<int>(squared * scale)); };
   std::array<std::uint32_t, kBuckets> count{};
   for (std::size_t n = 0; n < near.count; ++n) ++count[bucketOf(near.squared[n])];
   std::size_t before = 0, bucket = 0;
-  while (before + count[bucket] < wanted) before += count[bucket++];
+  while (before + count[bucket] < target_points) before += count[bucket++];
   if (scratch.size() < near.count) scratch.resize(2 * near.count);
   std::size_t found = 0;
   for (std::size_t n = 0; n < near.count; ++n) {  // branchless append
     scratch[found] = near.squared[n];
     found += bucketOf(near.squared[n]) == bucket ? 1U : 0U;
   }
-  const auto nth = scratch.begin() + static_cast<std::ptrdiff_t>(wanted - 1 - before);
+  const auto nth = scratch.begin() + static_cast<std::ptrdiff_t>(target_points - 1 - before);
   std::nth_element(scratch.begin(), nth, scratch.begin() + static_cast<std::ptrdiff_t>(found));
-  return std::max(least, *nth);
+  return std::max(min_reach, *nth);
 }
 
 /// Squared distances [m2].
@@ -139,7 +140,7 @@ struct Squares {
 
 /// Volumes with the fixed radius for the cluxels of `cluxels` (ascending); returns those that hold too few points.
 std::vector<std::uint32_t> measureFixed(const PointGrid& grid, const TilePoints& points, const CellKeys& key,
-                                        const Squares& squares, std::size_t wanted,
+                                        const Squares& squares, std::size_t target_points,
                                         const std::vector<std::uint32_t>& cluxels, CluxelTile& tile) {
   std::vector<std::uint32_t> sparse;
   NeighbourWalk walk(grid.cell_key);
@@ -151,7 +152,7 @@ std::vector<std::uint32_t> measureFixed(const PointGrid& grid, const TilePoints&
     if (cell != at) walk.moveTo(cell);
     at = cell;
     near.collect(grid, walk, StackGaps{}, seed, squares.radius);
-    if (near.count < wanted && squares.largest > squares.radius)
+    if (near.count < target_points && squares.largest > squares.radius)
       sparse.push_back(c);
     else
       fillVolume(grid, near, squares.radius, seed, c, tile);
@@ -175,7 +176,7 @@ std::vector<KeyedItem> byCell(const std::vector<std::uint32_t>& cluxels, const T
 /// Volumes of the sparse ones among `cluxels`, in the order of the wide cells; returns the others, ascending. A cluxel
 /// with more than `crowd` points in the neighbouring cells counts as dense without computing distances.
 std::vector<std::uint32_t> measureGrown(const PointGrid& grid, const TilePoints& points, const CellKeys& key,
-                                        const Squares& squares, std::size_t wanted, std::size_t crowd,
+                                        const Squares& squares, std::size_t target_points, std::size_t crowd,
                                         const std::vector<std::uint32_t>& cluxels, CluxelTile& tile) {
   std::vector<std::uint32_t> others;
   NeighbourWalk walk(grid.cell_key);
@@ -192,12 +193,12 @@ std::vector<std::uint32_t> measureGrown(const PointGrid& grid, const TilePoints&
     const Eigen::Vector3f seed = points.at(tile.seed[c]);
     const StackGaps gaps = key.gapsAround(seed.x(), seed.y());
     if (!is_crowded) near.collect(grid, walk, gaps, seed, squares.middle());
-    if (is_crowded || near.countWithin(squares.radius) >= wanted) {
+    if (is_crowded || near.countWithin(squares.radius) >= target_points) {
       others.push_back(c);
       continue;
     }
-    if (near.count <= wanted) near.collect(grid, walk, gaps, seed, squares.largest);
-    const float reach_squared = grownReach(near, wanted, squares.radius, squares.largest, scratch);
+    if (near.count <= target_points) near.collect(grid, walk, gaps, seed, squares.largest);
+    const float reach_squared = grownReach(near, target_points, squares.radius, squares.largest, scratch);
     near.keepWithin(reach_squared);
     fillVolume(grid, near, reach_squared, seed, c, tile);
   }
@@ -228,17 +229,18 @@ void measureVolumes(const PointGrid& cells, const PointGrid& wide_cells, const T
   const double largest_m = std::max(params.radius_m, params.max_reach_m);
   const auto squareOf = [](double value_m) { return static_cast<float>(value_m) * static_cast<float>(value_m); };
   const Squares squares{squareOf(params.radius_m), squareOf(largest_m)};
-  const auto wanted = static_cast<std::size_t>(params.target_points);
+  const auto target_points = static_cast<std::size_t>(params.target_points);
   const CellKeys key(params.radius_m, params.radius_m), wide_key(largest_m, largest_m);
   std::vector<std::uint32_t> left(tile.size());
   std::iota(left.begin(), left.end(), 0U);
   // Most cluxels are sparse, and the wide cells suffice for them; only the others need the narrow cells. On a surface,
   // 1 in 25 of the points in the neighbouring wide cells is within the radius, so a crowded neighbourhood is dense.
-  const std::size_t crowd = 32 * wanted;
+  const std::size_t crowd = 32 * target_points;
   if (squares.largest > squares.radius)
-    left = measureGrown(wide_cells, points, wide_key, squares, wanted, crowd, left, tile);
-  left = measureFixed(cells, points, key, squares, wanted, left, tile);
-  measureGrown(wide_cells, points, wide_key, squares, wanted, std::numeric_limits<std::size_t>::max(), left, tile);
+    left = measureGrown(wide_cells, points, wide_key, squares, target_points, crowd, left, tile);
+  left = measureFixed(cells, points, key, squares, target_points, left, tile);
+  measureGrown(wide_cells, points, wide_key, squares, target_points, std::numeric_limits<std::size_t>::max(), left,
+               tile);
 }
 
 std::vector<CellStack> stacksOf(const TilePoints& points) {

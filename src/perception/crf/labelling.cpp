@@ -20,11 +20,11 @@ CalibratedLabel calibrate(const Calibration& calibration, const LabelValues& mar
   for (std::size_t k = 0; k < scores.size(); ++k)
     scores[k] = calibration.slope * std::log(std::max(marginals[k], 1e-9F)) + calibration.offset[k];
   CalibratedLabel result{0, softmax(scores)};
-  float most = -1;
+  float best = -1;
   for (std::size_t k = 0; k < scores.size(); ++k) {
     const float favoured = result.probability[k] * calibration.favour[k];
-    if (favoured <= most) continue;
-    most = favoured;
+    if (favoured <= best) continue;
+    best = favoured;
     result.label = static_cast<std::uint8_t>(k);
   }
   return result;

@@ -90,10 +90,10 @@ std::vector<LabelValues> scoreRows(const TreeEnsemble& ensemble, std::span<const
 }
 
 LabelValues softmax(const LabelValues& scores) {
-  const float most = *std::max_element(scores.begin(), scores.end());
+  const float highest = *std::max_element(scores.begin(), scores.end());
   LabelValues shares;
   float sum = 0;
-  for (std::size_t k = 0; k < scores.size(); ++k) sum += shares[k] = std::exp(scores[k] - most);
+  for (std::size_t k = 0; k < scores.size(); ++k) sum += shares[k] = std::exp(scores[k] - highest);
   for (float& share : shares) share /= sum;
   return shares;
 }

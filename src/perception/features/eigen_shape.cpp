@@ -93,7 +93,7 @@ std::array<Vector, 2> across(const Vector& v) {
 }
 
 struct Eigen3 {
-  Floats largest, middle, least;
+  Floats largest, middle, smallest;
   Vector axis, normal;
 };
 
@@ -153,7 +153,7 @@ std::array<EigenShape, 4> shapesOf(std::span<const Covariance> covariances) {
   for (std::size_t i = 0; i < covariances.size(); ++i) {
     if (!(trace[i] > kNoExtent_m2)) continue;
     const float l1 = found.largest[i], l2 = std::min(l1, std::max(found.middle[i], 0.0F));
-    const float l3 = std::min(l2, std::max(found.least[i], 0.0F));
+    const float l3 = std::min(l2, std::max(found.smallest[i], 0.0F));
     for (std::size_t k = 0; k < 3; ++k) shapes[i].value[k] = trace[i] * static_cast<double>(std::array{l1, l2, l3}[k]);
     shapes[i].axis = laneOf(found.axis, i);
     if (shapes[i].value[1] > kOnALine * shapes[i].value[0]) shapes[i].normal = laneOf(found.normal, i);

@@ -17,7 +17,7 @@ constexpr std::uint32_t kFeatureVersion = 1;
 
 /// The groups after the support features, in column order.
 struct FurtherGroup {
-  bool FeatureParams::*wanted;
+  bool FeatureParams::*is_on;
   std::vector<std::string> (*columns)();
   void (*fill)(const FeatureInput&, std::size_t column, FeatureRows&);
 };
@@ -84,7 +84,7 @@ ContentHash FeatureLayout::hash() const {
 FeatureLayout featureLayout(const FeatureParams& params) {
   FeatureLayout layout{supportColumns(params), edgeColumns()};
   for (const auto& group : kFurtherGroups)
-    if (params.*group.wanted) append(layout.columns, group.columns());
+    if (params.*group.is_on) append(layout.columns, group.columns());
   return layout;
 }
 
@@ -105,7 +105,7 @@ FeatureTile computeFeatures(const Ring<CluxelTile>& cluxels, const Ring<GroundTi
   std::size_t column = supportColumns(params).size();
   fillSupportFeatures(input, params, 0, rows);
   for (const auto& group : kFurtherGroups) {
-    if (!(params.*group.wanted)) continue;
+    if (!(params.*group.is_on)) continue;
     group.fill(input, column, rows);
     column += group.columns().size();
   }

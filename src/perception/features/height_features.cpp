@@ -131,14 +131,14 @@ std::size_t cellOf(const Eigen::Vector3f& center) {
 
 /// Profiles around the stacks that hold a cluxel's centre.
 std::vector<ProfileSquares::Nested> profilesOf(const FeatureInput& input) {
-  std::vector<std::uint8_t> wanted(static_cast<std::size_t>(kStacksPerTile) * kStacksPerTile);
-  for (const auto& own : input.own().own) wanted[cellOf(own.mean)] = 1;
+  std::vector<std::uint8_t> occupied(static_cast<std::size_t>(kStacksPerTile) * kStacksPerTile);
+  for (const auto& own : input.own().own) occupied[cellOf(own.mean)] = 1;
   const ProfileSquares squares(input.ring);
-  std::vector<ProfileSquares::Nested> profiles(wanted.size());
+  std::vector<ProfileSquares::Nested> profiles(occupied.size());
   for (int y = 0; y < kStacksPerTile; ++y)
     for (int x = 0; x < kStacksPerTile; ++x) {
       const auto cell = static_cast<std::size_t>(y * kStacksPerTile + x);
-      if (wanted[cell]) profiles[cell] = squares.at(x, y);
+      if (occupied[cell]) profiles[cell] = squares.at(x, y);
     }
   return profiles;
 }

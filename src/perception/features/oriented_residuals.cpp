@@ -50,9 +50,9 @@ struct FourVotes {
   std::array<Floats, kLanes> azimuth;
 };
 
-/// The integer part of values in [0, most + 1].
-Numbers wholeOf(const Floats& values, std::int32_t most) {
-  const Numbers whole = __builtin_convertvector(values, Numbers), last = Numbers{} + most;
+/// The integer part of values in [0, max + 1].
+Numbers wholeOf(const Floats& values, std::int32_t max) {
+  const Numbers whole = __builtin_convertvector(values, Numbers), last = Numbers{} + max;
   return whole < last ? whole : last;
 }
 

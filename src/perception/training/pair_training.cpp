@@ -15,11 +15,11 @@ using Scores = std::array<double, scan::kPrimitiveLabelCount>;
 
 /// Replaces scores by probabilities (softmax) and returns log(sum of exp).
 double normalise(Scores& scores) {
-  const double most = *std::max_element(scores.begin(), scores.end());
+  const double highest = *std::max_element(scores.begin(), scores.end());
   double sum = 0;
-  for (double& score : scores) sum += score = std::exp(score - most);
+  for (double& score : scores) sum += score = std::exp(score - highest);
   for (double& score : scores) score /= sum;
-  return most + std::log(sum);
+  return highest + std::log(sum);
 }
 
 }  // namespace

@@ -41,8 +41,8 @@ std::vector<bool> columnsUsed(const std::vector<std::string>& names, const std::
 }
 
 bool isClear(const TruthCounts& truth) {
-  const std::uint32_t most = *std::max_element(truth.begin(), truth.end());
-  return most > 0 && 2.0 * most > pointsOf(truth);
+  const std::uint32_t max_truth = *std::max_element(truth.begin(), truth.end());
+  return max_truth > 0 && 2.0 * max_truth > pointsOf(truth);
 }
 
 std::uint8_t majority(const TruthCounts& truth) {

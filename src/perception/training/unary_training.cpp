@@ -88,8 +88,8 @@ SplitChoice bestCut(const FeatureBins& bins, std::size_t column, const RoundRows
       gain[cut] += gainOf(at[cut], l2) + gainOf(above, l2);
     }
   }
-  const auto most = std::max_element(gain.begin(), gain.end());
-  return {*most, column, static_cast<std::size_t>(most - gain.begin())};
+  const auto highest = std::max_element(gain.begin(), gain.end());
+  return {*highest, column, static_cast<std::size_t>(highest - gain.begin())};
 }
 
 class Booster {
