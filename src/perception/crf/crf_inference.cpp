@@ -36,23 +36,23 @@ Incidence incidenceOf(const CrfGraph& graph) {
   return at;
 }
 
-/// Costs of the labels: the first four in a SIMD vector (`most`), the last one as a scalar.
+/// Costs of the labels: the first four in a SIMD vector (`first_four`), the last one as a scalar.
 struct Costs {
-  Floats most;
+  Floats first_four;
   float last;
 
   void add(const LabelCosts& term) {
-    most += loadFloats(term.data());
+    first_four += loadFloats(term.data());
     last += term[kLanes];
   }
   float subtractMin() {
-    const float least = std::min(minOf(most), last);
-    most -= least;
-    last -= least;
-    return least;
+    const float min = std::min(minOf(first_four), last);
+    first_four -= min;
+    last -= min;
+    return min;
   }
   void store(LabelCosts& to) const {
-    storeFloats(most, to.data());
+    storeFloats(first_four, to.data());
     to[kLanes] = last;
   }
 };
@@ -73,13 +73,13 @@ PairRows rowsOf(const PairCosts& pair) {
 
 /// min over a of from[a] + V(a, b), for each b.
 [[gnu::always_inline]] inline Costs minSum(const Costs& from, const PairRows& pair) {
-  const Floats& most = from.most;
-  const Floats by_0 = __builtin_shufflevector(most, most, 0, 0, 0, 0) + pair[0];
-  const Floats by_1 = __builtin_shufflevector(most, most, 1, 1, 1, 1) + pair[1];
-  const Floats by_2 = __builtin_shufflevector(most, most, 2, 2, 2, 2) + pair[2];
-  const Floats by_3 = __builtin_shufflevector(most, most, 3, 3, 3, 3) + pair[3];
+  const Floats& first_four = from.first_four;
+  const Floats by_0 = __builtin_shufflevector(first_four, first_four, 0, 0, 0, 0) + pair[0];
+  const Floats by_1 = __builtin_shufflevector(first_four, first_four, 1, 1, 1, 1) + pair[1];
+  const Floats by_2 = __builtin_shufflevector(first_four, first_four, 2, 2, 2, 2) + pair[2];
+  const Floats by_3 = __builtin_shufflevector(first_four, first_four, 3, 3, 3, 3) + pair[3];
   const Floats best = minimum(minimum(by_0, by_1), minimum(by_2, by_3));
-  return {minimum(best, from.last + pair[4]), std::min(from.last, minOf(most + pair[4]))};
+  return {minimum(best, from.last + pair[4]), std::min(from.last, minOf(first_four + pair[4]))};
 }
 
 class Trws {
@@ -156,10 +156,10 @@ class Trws {
   [[gnu::always_inline]] static float send(const Costs& belief, float share, const LabelCosts& received,
                                            const PairRows& pair, LabelCosts& sent) {
     const Costs back = costsOf(received);
-    Costs message = minSum({share * belief.most - back.most, share * belief.last - back.last}, pair);
-    const float least = message.subtractMin();
+    Costs message = minSum({share * belief.first_four - back.first_four, share * belief.last - back.last}, pair);
+    const float min = message.subtractMin();
     message.store(sent);
-    return least;
+    return min;
   }
 
   void sendForward(std::uint32_t i, const Costs& costs) {
@@ -168,23 +168,11 @@ class Trws {
       send(costs, share, to_earlier_[e], pairs_[e], to_later_[e]);
   }
 
-  /// Edges to earlier nodes are scattered in memory: those of the next nodes of the backward pass are prefetched.
-  void prefetchBackward(std::uint32_t k) const {
-    constexpr std::uint32_t kAhead = 12;
-    if (k < kAhead) return;
-    const std::uint32_t e = at_.backward[k - kAhead];
-    __builtin_prefetch(&pairs_[e]);
-    __builtin_prefetch(&pairs_[e].back());
-    __builtin_prefetch(&to_later_[e]);
-    __builtin_prefetch(&to_earlier_[e]);
-  }
-
   double sendBackward(std::uint32_t i, const Costs& costs) {
     const float share = treeShare(i);
     double bound = 0;
     for (std::uint32_t k = at_.backward_begin[i]; k < at_.backward_begin[i + 1]; ++k) {
       const std::uint32_t e = at_.backward[k];
-      prefetchBackward(k);
       bound += static_cast<double>(send(costs, share, to_later_[e], pairs_[e], to_earlier_[e]));
     }
     return bound;

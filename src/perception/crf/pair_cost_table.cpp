@@ -51,9 +51,6 @@ std::vector<PairCosts> PairCostTable::costsOf(std::span<const Edge> edges) const
   std::array<std::array<float, kPairEdges>, kLabelPairCount> found;
   for (std::size_t begin = 0; begin < edges.size(); begin += kPairEdges) {
     const std::size_t some = std::min(kPairEdges, edges.size() - begin);
-    constexpr std::size_t kAhead = 3 * kPairEdges;
-    for (std::size_t i = begin + kAhead; i < std::min(begin + kAhead + kPairEdges, edges.size()); ++i)
-      __builtin_prefetch(edges[i].features);
     const auto at = [&](std::size_t lane) {
       return edges[begin + std::min(lane, some - 1)];
     };  // padding repeats the last one
