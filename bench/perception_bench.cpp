@@ -13,10 +13,8 @@
 #include <vector>
 
 #include "base/content_hash.hpp"
+#include "bench_scans.hpp"
 #include "perception/pipeline.hpp"
-#include "scan/scan_set.hpp"
-#include "simulation/laser/laser.hpp"
-#include "simulation/site/campus.hpp"
 
 namespace {
 
@@ -122,35 +120,6 @@ void printDigests(const Outputs& out) {
   row("scene", digestOf(out.scene));
 }
 
-std::vector<scan::Scan> loadScans(const std::vector<std::filesystem::path>& inputs) {
-  ProgressSink sink;
-  const scan::ScanSet set = scan::ScanSet::open(inputs, {}, sink);
-  std::vector<scan::Scan> scans;
-  for (std::size_t i = 0; i < set.size(); ++i) scans.push_back(set.load(i));
-  return scans;
-}
-
-std::vector<scan::Scan> generatedScans() {
-  const simulation::Campus campus = simulation::buildCampus({.seed = 1, .stops = 6});
-  const simulation::Laser laser(campus);
-  std::vector<scan::Scan> scans;
-  for (std::size_t stop = 0; stop < campus.stops.size(); ++stop) scans.push_back(laser.scanAt(stop).scan);
-  return scans;
-}
-
-std::vector<scan::Scan> scansFor(const std::vector<std::filesystem::path>& inputs) {
-  if (!inputs.empty()) return loadScans(inputs);
-  const std::filesystem::path source = CLUXEL_SOURCE_DIR;
-  const char* given = std::getenv("CLUXEL_DATA");
-  const auto oakland = (given != nullptr ? std::filesystem::path(given) : source / "../shared/data") / "oakland3d";
-  if (std::filesystem::exists(oakland)) {
-    std::printf("Oakland 3-D, part 2: ");
-    return loadScans({oakland});
-  }
-  std::printf("outside data absent, a generated campus instead: ");
-  return generatedScans();
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -165,9 +134,8 @@ int main(int argc, char** argv) {
     else
       inputs.emplace_back(argv[i]);
   }
-  const auto scans = scansFor(inputs);
-  const perception::LabelModel model =
-      perception::loadModel(std::filesystem::path(CLUXEL_SOURCE_DIR) / "models/oakland");
+  const auto scans = bench::scansFor(inputs);
+  const perception::LabelModel model = perception::loadModel(bench::sourceFolder() / "models/oakland");
   std::size_t points = 0;
   for (const auto& scan : scans) points += scan.points.size();
   std::vector<StageTime> best;
