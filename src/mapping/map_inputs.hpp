@@ -25,7 +25,7 @@ namespace cluxel::mapping {
 
 /// Increase it with every change of the program that changes stage outputs or facts for the same inputs (perception,
 /// reasoning, facts, closure; not storage). An unfinished build of an older program is then refused instead of mixed.
-inline constexpr std::uint32_t kStagesVersion = 3;
+inline constexpr std::uint32_t kStagesVersion = 4;
 
 /// An authored file as stored in a map.
 struct NamedText {
