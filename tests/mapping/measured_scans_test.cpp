@@ -2,6 +2,7 @@
 // What a map holds follows from what was measured: not from clocks, nor from where the map's origin lies.
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <iomanip>
 #include <set>
 #include <sstream>
@@ -119,6 +120,43 @@ TEST_F(MeasuredScans, OfTwoThatAreAlikeButForTimeAndPoseTheSecondIsRefused) {
   scan.T_map_sensor.translation().x() += 1;
   scan.id = contentIdOf(scan);
   EXPECT_THROW(storeScan(transaction, scan), InputError);
+}
+
+/// The error of storing points at (x(i), y(i), z(i)).
+std::string refusalOf(int count, const std::function<Eigen::Vector3f(int)>& at) {
+  Scan scan;
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector3f p = at(i);
+    scan.points.x.push_back(p.x());
+    scan.points.y.push_back(p.y());
+    scan.points.z.push_back(p.z());
+  }
+  scan.source = "odd.xyz";
+  const auto environment = Environment::temporary();
+  WriteTransaction transaction = environment->write();
+  try {
+    storeScan(transaction, scan);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "stored";
+}
+
+TEST(ImplausibleScan, OfPointsScatteredOverThousandsOfTilesIsRefused) {
+  const auto dust = [](int i) { return Eigen::Vector3f(float(i % 50) * 20, float(i / 50) * 20, 1); };
+  const std::string refusal = refusalOf(2500, dust);
+  EXPECT_NE(refusal.find("odd.xyz: error: its 2500 points lie in 2"), std::string::npos) << refusal;
+  EXPECT_EQ(refusalOf(600, dust), "stored") << "few tiles";
+}
+
+TEST(ImplausibleScan, OfAColumnThatIsKilometresHighIsRefusedAndStrayPointsAreNot) {
+  const auto column = [](int i) { return Eigen::Vector3f(1, 1, float(i)); };
+  const std::string refusal = refusalOf(19000, column);
+  EXPECT_NE(refusal.find("points in one tile of 16 m lie more than 2 km above or below"), std::string::npos) << refusal;
+  const auto ground_with_strays = [](int i) {
+    return Eigen::Vector3f(float(i % 150) * 0.1F, float(i / 150) * 0.1F, i % 50 == 0 ? 5000.0F : 0.0F);
+  };
+  EXPECT_EQ(refusalOf(19000, ground_with_strays), "stored");
 }
 
 }  // namespace

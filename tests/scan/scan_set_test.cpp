@@ -2,6 +2,8 @@
 // Files, folders and layouts to a list of scans.
 #include "scan/scan_set.hpp"
 
+#include <sys/stat.h>
+
 #include "scan/scan_fixture.hpp"
 #include "scan/scan_summary.hpp"
 
@@ -287,6 +289,17 @@ TEST(ContentId, DoesNotChangeWithTimeLabelsPoseOrPath) {
   other.has_pose = true;
   other.source = "elsewhere.pcd";
   EXPECT_EQ(contentIdOf(other), contentIdOf(scan));
+}
+
+/// A pipe without a writer would be waited for.
+TEST(ScanSet, RefusesPipesAndDevices) {
+  const ScratchFolder folder;
+  const auto pipe = folder.path() / "pipe.xyz";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  folder.write("manifest.yaml", "scans: [{path: pipe.xyz}]\n");
+  for (const auto& input : {pipe, folder.path() / "manifest.yaml", std::filesystem::path("/dev/zero")})
+    EXPECT_THAT(refusalOf([&] { opened({input}); }),
+                HasSubstr("is a pipe or a device, a file or a folder was expected"));
 }
 
 TEST(ScanSummary, CountsPointsLabelsAndTheExtentInTheMap) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cluxel/error.hpp"
+#include "mapping/build/scan_plausibility.hpp"
 #include "mapping/map_tables.hpp"
 #include "perception/clustering/tile_points.hpp"
 
@@ -150,7 +151,9 @@ TileSet storeScan(rdf::WriteTransaction& transaction, const scan::Scan& scan) {
                      "give each scan once; to correct a pose, build anew with the right one");
   }
   TileSet tiles;
-  for (const auto& [tile, segment] : perception::splitScan(scan)) {
+  const auto segments = perception::splitScan(scan);
+  requirePlausible(scan, segments);
+  for (const auto& [tile, segment] : segments) {
     transaction.putBlock(tables::kSegments, tables::keyOf(tile) + tables::keyOf(scan.id), toBytes(segment));
     tiles.insert(tile);
   }
