@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "app/command.hpp"
+#include "app/unfinished_note.hpp"
 #include "cluxel/error.hpp"
 #include "tasks/evaluation.hpp"
 
@@ -14,6 +15,7 @@ struct EvaluateOptions {
   fs::path map, truth;
   double min_oa = 0, min_macro_f1 = 0;
   std::vector<std::string> min_recall;  ///< CLASS=share
+  bool allow_unfinished = false;
 };
 
 /// "Tree=0.7": recall by point of an object class or a primitive.
@@ -67,9 +69,11 @@ void addEvaluate(CLI::App& app, Session& session) {
   command->add_option("--min-macro-f1", options->min_macro_f1, "exit 1 when the macro F1 of objects by point is below")
       ->check(share());
   command->add_option("--min-recall", options->min_recall, "CLASS=SHARE: exit 1 when the recall by point is below");
+  addAllowUnfinished(*command, options->allow_unfinished);
   onRun(*command, session, [options, &session] {
     for (const std::string& bar : options->min_recall) barOf(bar);
     const mapping::MapReader map(options->map);
+    noteUnfinished(options->map, map.isFinished(), options->allow_unfinished, session);
     const tasks::MapEvaluation evaluation =
         evaluateMap(map, tasks::TruthSource::open(options->truth, session.dataHome()));
     const bool meets = meetsBars(evaluation, *options);  // before printing: an unknown class is a usage error

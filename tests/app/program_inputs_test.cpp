@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the program takes its data from.
+// Where the program takes its data from, and what it says of maps whose build is unfinished.
 #include "app/program_fixture.hpp"
 
 namespace cluxel::app {
@@ -60,6 +60,34 @@ TEST_F(Program, BuildAndInfoNameTheDataHomeAndTheFiles) {
   const std::string json = run("info --json " + path("named.clx").string()).out;
   EXPECT_NE(json.find("\"home\": \"" + home), std::string::npos) << json;
   EXPECT_NE(json.find(home + "/rules/20_avenues.rq"), std::string::npos) << json;
+}
+
+/// The first scan is committed before the second one is found to be cut.
+fs::path unfinishedMap() {
+  const fs::path scans = Program::path("cut"), map = Program::path("cut.clx");
+  if (fs::exists(map)) return map;
+  fs::copy(Program::path("campus"), scans);
+  fs::path last;
+  for (const auto& entry : fs::directory_iterator(scans))
+    if (entry.path().extension() == ".pcd" && entry.path() > last) last = entry.path();
+  fs::resize_file(last, fs::file_size(last) - 100);
+  return map;
+}
+
+TEST_F(Program, AnswersFromAnUnfinishedMapComeWithANote) {
+  const std::string map = unfinishedMap().string();
+  const Outcome build = run("build " + path("cut").string() + " -o " + map + " --batch-points 1");
+  ASSERT_EQ(build.code, 4) << build.err;
+  ASSERT_TRUE(fs::exists(map));
+  for (const std::string& command : {"query " + map + " -e 'SELECT * { ?s a ?c } LIMIT 1'",
+                                     "export " + map + " --canonical", "evaluate " + map + " --truth campus"}) {
+    const Outcome told = run(command), silent = run(command + " --allow-unfinished");
+    EXPECT_EQ(told.code, 0) << command << told.err;
+    EXPECT_NE(told.err.find("the build of this map is unfinished"), std::string::npos) << command << told.err;
+    EXPECT_EQ(silent.err.find("unfinished"), std::string::npos) << command << silent.err;
+    EXPECT_EQ(told.out, silent.out) << command;
+  }
+  EXPECT_EQ(run("export " + path("map.clx").string() + " --canonical").err, "") << "a finished map";
 }
 
 }  // namespace
