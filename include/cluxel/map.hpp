@@ -93,6 +93,8 @@ class CLUXEL_API Map {
                    const BuildOptions& options, ProgressSink& sink);
   /// Opens a map file. Cost: independent of its size.
   static Map open(const std::filesystem::path& file);
+  /// The same; notes to `sink` when the build of the map is unfinished, so that answers are those of some of its scans.
+  static Map open(const std::filesystem::path& file, ProgressSink& sink);
 
   Map(Map&&) noexcept;
   Map& operator=(Map&&) noexcept;

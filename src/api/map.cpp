@@ -89,6 +89,15 @@ Map Map::open(const std::filesystem::path& file) {
   return Map(std::move(impl));
 }
 
+Map Map::open(const std::filesystem::path& file, ProgressSink& sink) {
+  Map map = open(file);
+  if (!map.impl_->newest().isFinished())
+    sink.note(file.string() +
+              ": warning: the build of this map is unfinished, so the answers are those of some of its "
+              "scans; build it again with the same scans to finish it");
+  return map;
+}
+
 const std::filesystem::path& Map::file() const {
   return impl_->file;
 }

@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "app/command.hpp"
+#include "app/unfinished_note.hpp"
 #include "cluxel/error.hpp"
 #include "tasks/evaluation.hpp"
 
@@ -15,6 +16,7 @@ struct EvaluateOptions {
   fs::path truth;
   double min_oa = 0, min_macro_f1 = 0;
   std::vector<std::string> min_recall;  ///< CLASS=share
+  bool allow_unfinished = false;
 };
 
 /// "Tree=0.7": recall by point of an object class or a primitive.
@@ -54,11 +56,13 @@ bool meetsBars(const tasks::MapEvaluation& evaluation, const EvaluateOptions& op
   return meets;
 }
 
-tasks::MapEvaluation evaluateAll(const EvaluateOptions& options, const DataHome& home) {
-  const auto truth = tasks::TruthSource::open(options.truth, home);
+tasks::MapEvaluation evaluateAll(const EvaluateOptions& options, Session& session) {
+  const auto truth = tasks::TruthSource::open(options.truth, session.dataHome());
   std::optional<tasks::MapEvaluation> sum;
   for (const fs::path& file : options.maps) {
-    tasks::MapEvaluation one = evaluateMap(mapping::MapReader(file), truth);
+    const mapping::MapReader map(file);
+    noteUnfinished(file, map.isFinished(), options.allow_unfinished, session);
+    tasks::MapEvaluation one = evaluateMap(map, truth);
     if (sum)
       sum->add(one);
     else
@@ -82,9 +86,10 @@ void addEvaluate(CLI::App& app, Session& session) {
   command->add_option("--min-macro-f1", options->min_macro_f1, "exit 1 when the macro F1 of objects by point is below")
       ->check(share());
   command->add_option("--min-recall", options->min_recall, "CLASS=SHARE: exit 1 when the recall by point is below");
+  addAllowUnfinished(*command, options->allow_unfinished);
   onRun(*command, session, [options, &session] {
     for (const std::string& bar : options->min_recall) barOf(bar);
-    const tasks::MapEvaluation evaluation = evaluateAll(*options, session.dataHome());
+    const tasks::MapEvaluation evaluation = evaluateAll(*options, session);
     const bool meets = meetsBars(evaluation, *options);  // before printing: an unknown class is a usage error
     print(session.json ? toJson(evaluation) : toText(evaluation));
     return meets ? ExitCode::Done : ExitCode::NegativeFinding;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel export`: a map in other formats.
 #include "app/command.hpp"
+#include "app/unfinished_note.hpp"
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "rdf/store/map_check.hpp"
@@ -13,7 +14,7 @@ namespace {
 struct ExportOptions {
   fs::path map, output;
   std::string format;
-  bool canonical = false, local = false;
+  bool canonical = false, local = false, allow_unfinished = false;
 };
 
 tasks::ExportFormat formatOf(const ExportOptions& options) {
@@ -45,10 +46,12 @@ void addExport(CLI::App& app, Session& session) {
                       "turtle, nquads, canonical, ply, geojson; else by the file's ending");
   command->add_flag("--canonical", options->canonical, "sorted N-Quads without history: equal bytes mean equal maps");
   command->add_flag("--local", options->local, "geojson in metres of the map frame, not in longitude and latitude");
-  onRun(*command, session, [options] {
+  addAllowUnfinished(*command, options->allow_unfinished);
+  onRun(*command, session, [options, &session] {
     const tasks::ExportFormat format = formatOf(*options);
     refuseToReplaceAMap(options->output);
     const mapping::MapReader map(options->map);
+    noteUnfinished(options->map, map.isFinished(), options->allow_unfinished, session);
     std::string bytes;
     const bool to_stdout = options->output.empty();
     const auto write = [&](std::string_view piece) {

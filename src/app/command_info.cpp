@@ -85,6 +85,20 @@ ExitCode infoOfScans(const InfoOptions& options, Session& session) {
   return ExitCode::Done;
 }
 
+Json namesJson(const std::vector<mapping::NamedText>& texts) {
+  Json json = Json::array();
+  for (const mapping::NamedText& text : texts) json.push_back(text.name);
+  return json;
+}
+
+Json inputFilesJson(const mapping::MapInputs& inputs) {
+  return {{"home", inputs.home},
+          {"ontology", namesJson(inputs.ontology)},
+          {"rules", namesJson(inputs.rules)},
+          {"sparql_rules", namesJson(inputs.sparql_rules)},
+          {"model", inputs.model.name}};
+}
+
 /// By its content; by the ending of its name too, so that a damaged or absent map is reported as such.
 bool isMap(const fs::path& input) {
   return input.extension() == ".clx" || rdf::looksLikeMap(input);
@@ -107,6 +121,7 @@ Json cloudsJson(const std::vector<mapping::Cloud>& clouds) {
 ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Session& session) {
   const mapping::MapReader map(file);
   const mapping::MapSummary summary = map.summary();
+  const mapping::MapInputs inputs = map.inputs();
   if (!session.json) {
     std::printf("%s: %s map, %zu clouds, %llu points, %zu objects, %llu quads\n", file.c_str(),
                 summary.is_finished ? "finished" : "unfinished", summary.clouds,
@@ -118,6 +133,7 @@ ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Sessi
         std::printf("  cloud %s  %llu points  %s%s\n", cloud.id.hex().c_str(),
                     static_cast<unsigned long long>(cloud.point_count), cloud.source.c_str(),
                     cloud.has_pose ? "" : "  no pose");
+    std::printf("built with %s\n", describeFiles(inputs).c_str());
     return ExitCode::Done;
   }
   Json json{{"file", file.string()},         {"finished", summary.is_finished},
@@ -125,6 +141,7 @@ ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Sessi
             {"points", summary.points},      {"objects", summary.objects},
             {"quads", summary.quads},        {"objects_by_class", summary.objects_by_class}};
   if (options.clouds) json["cloud_list"] = cloudsJson(map.clouds());
+  json["input_files"] = inputFilesJson(inputs);
   printJson(json);
   return ExitCode::Done;
 }

@@ -5,7 +5,9 @@
 
 #include "app/command.hpp"
 #include "app/named_sources.hpp"
+#include "app/unfinished_note.hpp"
 #include "cluxel/error.hpp"
+#include "mapping/map_state.hpp"
 #include "sparql/results/result_writer.hpp"
 #include "tasks/query_source.hpp"
 
@@ -19,7 +21,7 @@ struct QueryArguments {
   std::vector<std::string> params, services;
   double deadline_s = 0;
   std::uint64_t max_rows = 0, max_memory_mib = 0;
-  bool explain = false, why_empty = false, strict = false;
+  bool explain = false, why_empty = false, strict = false, allow_unfinished = false;
 };
 
 /// Counts the rows that go to the writer.
@@ -87,9 +89,16 @@ sparql::ResultFormat formatOf(const QueryArguments& arguments, const Session& se
   return *format;
 }
 
-ExitCode query(const QueryArguments& arguments, const Session& session) {
+/// An RDF file, and a store that no build has made, have no state.
+bool isFinished(const tasks::QuerySource& source) {
+  const auto state = mapping::storedState(source.environment->read());
+  return !state || state->is_finished;
+}
+
+ExitCode query(const QueryArguments& arguments, Session& session) {
   const tasks::Question question = questionFrom(arguments.file, arguments.text, session);
   const tasks::QuerySource source = tasks::openQuerySource(arguments.source);
+  noteUnfinished(arguments.source, isFinished(source), arguments.allow_unfinished, session);
   const rdf::QuadReader reader = source.reader();
   sparql::QueryOptions options = optionsOf(arguments, source, question.file.string());
   const NamedSources services("--service", arguments.services);
@@ -165,6 +174,7 @@ void addQuery(CLI::App& app, Session& session) {
   command->add_flag("--why-empty", options->why_empty,
                     "when there is no row, name the pattern that removed the last one");
   command->add_flag("--strict", options->strict, "the default graph is the unnamed graph, not the union");
+  addAllowUnfinished(*command, options->allow_unfinished);
   onRun(*command, session, [options, &session] { return query(*options, session); });
 }
 

@@ -100,6 +100,12 @@ bool isSpecial(const fs::path& path) {
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
+/// A named pipe without a writer waits for ever; one that the shell has opened ends.
+bool isOpenedByShell(const fs::path& path) {
+  const std::string name = path.string();
+  return name == "/dev/stdin" || name.starts_with("/dev/fd/") || name.starts_with("/proc/self/fd/");
+}
+
 }  // namespace
 
 fs::path withoutLinks(fs::path path) {
@@ -123,6 +129,9 @@ void syncFolderOf(const fs::path& file) {
 
 std::string readFile(const fs::path& path) {
   std::error_code ignored;
+  if (isSpecial(path) && !isOpenedByShell(path))
+    throw InputError({.file = path.string()}, "is a pipe or a device, a file was expected",
+                     "write its data to a file first");
   if (fs::is_directory(path, ignored)) throw InputError({.file = path.string()}, "is a folder, a file was expected");
   const File file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) refuse(path, "cannot be opened");

@@ -8,7 +8,7 @@
 
 namespace cluxel {
 
-/// The bytes of a file; InputError naming the file when it cannot be read or is a folder.
+/// The bytes of a file, or of /dev/stdin and /dev/fd/N; InputError when it cannot be read, or is no regular file.
 std::string readFile(const std::filesystem::path& path);
 
 /// Writes all of `bytes` or leaves the old file as it was; Error (StoreUnavailable) when the disk refuses. A link stays

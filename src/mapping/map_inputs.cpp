@@ -82,6 +82,21 @@ ContentHash MapInputs::hash() const {
   return hasher.finish();
 }
 
+std::string describeFiles(const MapInputs& inputs) {
+  const auto shortName = [&](const NamedText& text) {
+    const fs::path name = fs::path(text.name).lexically_relative(fs::absolute(inputs.home).lexically_normal());
+    return inputs.home.empty() || name.empty() || *name.begin() == ".." ? text.name : name.string();
+  };
+  const auto listOf = [&](const std::vector<NamedText>& texts) {
+    std::string names;
+    for (const NamedText& text : texts) names += (names.empty() ? "" : ", ") + shortName(text);
+    return names.empty() ? "none" : names;
+  };
+  return "data home " + (inputs.home.empty() ? "unknown" : inputs.home) + "; ontology " + listOf(inputs.ontology) +
+         "; rules " + listOf(inputs.rules) + "; SPARQL rules " + listOf(inputs.sparql_rules) + "; model " +
+         listOf({inputs.model});
+}
+
 std::string ruleFileName(const NamedText& rule) {
   return fs::path(rule.name).filename().string();
 }
@@ -101,6 +116,7 @@ rules::ClassCatalogue classCatalogueOf(const std::vector<NamedText>& ontology) {
 
 MapInputs readMapInputs(const MapInputFiles& files, const DataHome& home) {
   MapInputs inputs;
+  inputs.home = home.root().string();
   inputs.ontology = readAll(givenOr(files.ontology, "ontology", ".ttl", home));
   // A default name is never looked up in the working directory, where a file of that name may be unrelated.
   std::vector<fs::path> rules;

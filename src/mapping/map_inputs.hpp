@@ -25,7 +25,7 @@ namespace cluxel::mapping {
 
 /// Increase it with every change of the program that changes stage outputs or facts for the same inputs (perception,
 /// reasoning, facts, closure; not storage). An unfinished build of an older program is then refused instead of mixed.
-inline constexpr std::uint32_t kStagesVersion = 3;
+inline constexpr std::uint32_t kStagesVersion = 4;
 
 /// An authored file as stored in a map.
 struct NamedText {
@@ -47,6 +47,7 @@ struct MapParams {
 void describe(MapParams& params, perception::ParameterVisitor& visitor);
 
 struct MapInputs {
+  std::string home;                 ///< the data home; not part of the map function
   std::vector<NamedText> ontology;  ///< Turtle
   std::vector<NamedText> rules;     ///< YAML: the first `rule_roots` are loaded, the others are included by them
   std::size_t rule_roots = 0;
@@ -59,6 +60,10 @@ struct MapInputs {
   /// Two maps with the same hash and the same scans are equal.
   ContentHash hash() const;
 };
+
+/// "data home …; ontology core.ttl, outdoor.ttl; rules …; SPARQL rules …; model …", for people. Files outside the data
+/// home are written with their folders.
+std::string describeFiles(const MapInputs& inputs);
 
 /// The input files; empty lists mean the shipped ones.
 struct MapInputFiles {

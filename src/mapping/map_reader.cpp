@@ -84,6 +84,10 @@ MapSummary MapReader::summary() const {
   return summary;
 }
 
+bool MapReader::isFinished() const {
+  return impl_->state.is_finished;
+}
+
 std::vector<Cloud> MapReader::clouds() const {
   return storedClouds(impl_->transaction);
 }

@@ -44,6 +44,8 @@ class MapReader {
   MapReader(MapReader&&) noexcept;
 
   MapSummary summary() const;
+  /// False when the map holds only some scans of a build that was interrupted. Cost: none.
+  bool isFinished() const;
   std::vector<Cloud> clouds() const;
   scan::ScanPoints pointsOf(const scan::ScanId& cloud) const;
   /// The objects, sorted by id; cluxel numbers refer to scene().

@@ -79,7 +79,8 @@ void storeInputs(rdf::WriteTransaction& transaction, const MapInputs& inputs) {
   describe(copy, params);
   const Eigen::Vector3d& origin = inputs.map_origin;
   put(transaction, kInputsKey,
-      {{"ontology", textsJson(inputs.ontology)},
+      {{"home", inputs.home},
+       {"ontology", textsJson(inputs.ontology)},
        {"rules", textsJson(inputs.rules)},
        {"rule_roots", inputs.rule_roots},
        {"sparql_rules", textsJson(inputs.sparql_rules)},
@@ -95,6 +96,7 @@ MapInputs storedInputs(const rdf::ReadTransaction& transaction) {
   try {
     const Json json = Json::from_cbor(*bytes);
     MapInputs inputs;
+    inputs.home = json.value("home", "");
     inputs.ontology = textsFrom(json.at("ontology"));
     inputs.rules = textsFrom(json.at("rules"));
     inputs.rule_roots = json.at("rule_roots");

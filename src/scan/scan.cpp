@@ -21,14 +21,12 @@ std::vector<float> flattened(const std::vector<Eigen::Vector3f>& origins) {
 ScanId contentIdOf(const Scan& scan) {
   const ScanPoints& points = scan.points;
   ContentHasher hasher;
-  hasher.addText("cluxel scan 1");
+  hasher.addText("cluxel scan 2");
   hasher.addSpan(std::span<const float>(points.x));
   hasher.addSpan(std::span<const float>(points.y));
   hasher.addSpan(std::span<const float>(points.z));
   hasher.addSpan(std::span<const float>(points.intensity));
   hasher.addSpan(std::span<const float>(flattened(points.origin)));
-  hasher.add(static_cast<std::uint8_t>(scan.time_s.has_value()));
-  if (scan.time_s) hasher.add(*scan.time_s);
   return hasher.finish();
 }
 

@@ -14,7 +14,8 @@
 
 namespace cluxel::scan {
 
-/// The name of a scan: the hash of its content (points, attributes, time; not its pose, path or file format).
+/// The name of a scan: the hash of what was measured (coordinates, intensities, ray origins), without time, labels,
+/// pose, path and file format.
 using ScanId = ContentHash;
 
 /// The points of a scan as a structure of arrays, in metres in the sensor frame (REP-103: x forward, y left, z up).

@@ -23,6 +23,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// Opening a named pipe waits for a writer, which may never come.
+void requireFileOrFolder(const fs::path& path) {
+  if (fs::is_regular_file(path) || fs::is_directory(path)) return;
+  throw InputError({.file = path.string()}, "is a pipe or a device, a file or a folder was expected",
+                   "write its data to a file first");
+}
+
 bool isManifest(const fs::path& path) {
   return path.extension() == ".yaml" || path.extension() == ".yml";
 }
@@ -49,6 +56,7 @@ class ScanGatherer {
 
   void add(const fs::path& input) {
     if (!fs::exists(input)) throw InputError({.file = input.string()}, "there is no such file or folder");
+    requireFileOrFolder(input);
     if (fs::is_directory(input))
       addFolder(input);
     else if (isManifest(input))
@@ -196,6 +204,7 @@ class ScanGatherer {
     if (!fs::exists(entry.path))
       throw InputError({.file = entry.path.string()},
                        "there is no such file or folder; " + manifest.string() + " lists it");
+    requireFileOrFolder(entry.path);
     if (fs::is_directory(entry.path)) {
       if (entry.pose || entry.time_s || entry.labels || entry.format)
         throw InputError({.file = manifest.string()},

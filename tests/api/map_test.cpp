@@ -143,6 +143,28 @@ TEST(Map, RefusesOptionsThatContradictEachOther) {
   EXPECT_EQ(kindOf([&] { Map::build({}, "map.clx", options); }), ErrorKind::InvalidArgument);
 }
 
+class NoteKeeper : public ProgressSink {
+ public:
+  void note(std::string_view message) override { notes += std::string(message) + '\n'; }
+  std::string notes;
+};
+
+TEST(Map, WhoseBuildIsUnfinishedSaysSoToTheSink) {
+  const FacadeCampus& shared = FacadeCampus::shared();
+  const rdf::ScratchFolder folder;
+  const std::filesystem::path cut = folder.path() / "cut.pcd", file = folder.path() / "map.clx";
+  std::filesystem::copy_file(shared.campus.files()[1], cut);
+  std::filesystem::resize_file(cut, std::filesystem::file_size(cut) - 100);
+  BuildOptions options = FacadeCampus::options();
+  options.batch_points = 1;
+  EXPECT_EQ(kindOf([&] { Map::build({shared.campus.files()[0], cut}, file, options); }), ErrorKind::FaultyInput);
+  NoteKeeper unfinished, finished;
+  EXPECT_FALSE(Map::open(file, unfinished).summary().is_finished);
+  EXPECT_THAT(unfinished.notes, HasSubstr("the build of this map is unfinished"));
+  Map::open(shared.map.file(), finished);
+  EXPECT_EQ(finished.notes, "");
+}
+
 TEST(Library, TellsItsVersion) {
   EXPECT_THAT(std::string(version()), testing::MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+"));
 }

@@ -102,12 +102,32 @@ TEST_F(FileBytes, AreWrittenIntoAPipeThatIsThere) {
   const fs::path pipe = folder_ / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   std::string read;
-  std::thread reader([&] { read = readFile(pipe); });
+  std::thread reader([&] { std::getline(std::ifstream(pipe), read); });
   writeFile(pipe, "through the pipe");
   reader.join();
   EXPECT_EQ(read, "through the pipe");
   EXPECT_TRUE(fs::is_fifo(pipe));
   EXPECT_EQ(filesThere(), 1U);
+}
+
+/// Opening a pipe that nobody writes to waits for ever.
+TEST_F(FileBytes, OfANamedPipeOrADeviceAreRefused) {
+  const fs::path pipe = folder_ / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  fs::create_symlink(pipe, folder_ / "link");
+  EXPECT_THROW(readFile(pipe), InputError);
+  EXPECT_THROW(readFile(folder_ / "link"), InputError);
+  EXPECT_THROW(readFile("/dev/zero"), InputError);
+}
+
+/// As the shell does for <(command).
+TEST_F(FileBytes, OfAPipeThatIsOpenAreRead) {
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  ASSERT_EQ(::write(ends[1], "through", 7), 7);
+  ::close(ends[1]);
+  EXPECT_EQ(readFile("/dev/fd/" + std::to_string(ends[0])), "through");
+  ::close(ends[0]);
 }
 
 TEST_F(FileBytes, AreWrittenToADeviceThatStaysOne) {

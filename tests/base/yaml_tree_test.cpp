@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <ctime>
+
 namespace cluxel::testing {
 namespace {
 
@@ -79,6 +81,27 @@ TEST(FaultList, SortsByPlaceAndReportsEqualFaultsOnce) {
   EXPECT_EQ(sorted[0].message, "first");
   EXPECT_EQ(sorted[1].source_line, "two");
   EXPECT_THROW(faults.throwIfErrors(), InputError);
+}
+
+/// The CPU time to read a mapping of so many keys.
+double secondsFor(int keys) {
+  std::string text;
+  for (int i = 0; i < keys; ++i) text += "key" + std::to_string(i) + ": 1\n";
+  FaultList faults("f.yaml", text);
+  const std::clock_t start = std::clock();
+  EXPECT_TRUE(parseYaml("f.yaml", text, faults));
+  EXPECT_EQ(faults.errorCount(), 0U);
+  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+}
+
+TEST(YamlTree, CostsOfAMappingAreLinearInItsKeys) {
+  const double few = secondsFor(10'000);
+  EXPECT_LT(secondsFor(80'000), 24 * few + 0.1);
+}
+
+TEST(YamlTree, RefusesATextOfMoreThanEightMebibytes) {
+  const std::string text = "a: " + std::string(std::size_t{8} << 20U, 'x');
+  EXPECT_THAT(faultsOf(text), HasSubstr("f.yaml: error: is larger than 8 MiB"));
 }
 
 }  // namespace

@@ -83,5 +83,12 @@ TEST(NaturalOrder, ComparesRunsOfDigitsAsNumbers) {
   EXPECT_FALSE(naturalLess("a1", "a1"));
 }
 
+TEST(Poses, ThatMayBeCutAtTheEndAreRefusedUnlessTheLastNumberIsKnown) {
+  const std::string rows = "1 0 0 5\n0 1 0 6\n0 0 1 7.25\n";
+  EXPECT_EQ(parsePoses(rows + "0 0 0 1", "p.txt").poses.size(), 1U);
+  EXPECT_EQ(parsePoses("1 0 0 5 0 1 0 6 0 0 1 7.25\n", "p.txt").poses.size(), 1U);
+  EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 5 0 1 0 6 0 0 1 7.2", "p.txt"); }), HasSubstr("which may be cut"));
+}
+
 }  // namespace
 }  // namespace cluxel::scan

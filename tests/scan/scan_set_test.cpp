@@ -2,6 +2,8 @@
 // Tests which scans a set of files, folders and layouts gives.
 #include "scan/scan_set.hpp"
 
+#include <sys/stat.h>
+
 #include "scan/scan_fixture.hpp"
 #include "scan/scan_summary.hpp"
 
@@ -273,10 +275,31 @@ TEST(ContentId, ChangesWithEveryThingThatWasMeasured) {
   changed([](Scan& s) { std::swap(s.points.x[0], s.points.x[1]); });
   changed([](Scan& s) { s.points.intensity = {1, 2}; });
   changed([](Scan& s) { s.points.origin.assign(2, Eigen::Vector3f::Zero()); });
-  changed([](Scan& s) { s.time_s = 0; });
-  changed([](Scan& s) { s.time_s = 1; });
   std::sort(ids.begin(), ids.end());
   EXPECT_EQ(std::adjacent_find(ids.begin(), ids.end()), ids.end());
+}
+
+TEST(ContentId, DoesNotChangeWithTimeLabelsPoseOrPath) {
+  Scan scan;
+  scan.points.x = scan.points.y = scan.points.z = {1, 2};
+  Scan other = scan;
+  other.time_s = 5;
+  other.points.label = {1, 2};
+  other.T_map_sensor.translation().x() = 7;
+  other.has_pose = true;
+  other.source = "elsewhere.pcd";
+  EXPECT_EQ(contentIdOf(other), contentIdOf(scan));
+}
+
+/// A pipe without a writer would be waited for.
+TEST(ScanSet, RefusesPipesAndDevices) {
+  const ScratchFolder folder;
+  const auto pipe = folder.path() / "pipe.xyz";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  folder.write("manifest.yaml", "scans: [{path: pipe.xyz}]\n");
+  for (const auto& input : {pipe, folder.path() / "manifest.yaml", std::filesystem::path("/dev/zero")})
+    EXPECT_THAT(refusalOf([&] { opened({input}); }),
+                HasSubstr("is a pipe or a device, a file or a folder was expected"));
 }
 
 TEST(ScanSummary, CountsPointsLabelsAndTheExtentInTheMap) {

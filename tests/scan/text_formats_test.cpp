@@ -17,7 +17,7 @@ TEST(XyzText, ReadsPointsWithAndWithoutIntensity) {
   EXPECT_THAT(bare.points.y, ElementsAre(2.0F, 0.5F));
   EXPECT_THAT(bare.points.z, ElementsAre(3.0F, 6.0F));
   EXPECT_TRUE(bare.points.intensity.empty());
-  const ParsedScan lit = parseXyzText("1 2 3 0.5\n4 5 6 0.25", "a.xyz");
+  const ParsedScan lit = parseXyzText("1 2 3 0.5\n4 5 6 0.25\n", "a.xyz");
   EXPECT_THAT(lit.points.intensity, ElementsAre(0.5F, 0.25F));
 }
 
@@ -45,6 +45,31 @@ TEST(XyzText, KeepsMillimetresOfWorldCoordinatesByALocalOrigin) {
 
 TEST(XyzText, LeavesCoordinatesWithinTheReachOfFloatsAsTheyAre) {
   EXPECT_TRUE(parseXyzText("4096 -4096 0\n", "a.xyz").local_origin.isZero(0));
+}
+
+/// A decimal comma would make two columns of one number.
+TEST(XyzText, RefusesDecimalCommasAndMissingValues) {
+  const auto refusal = [](const std::string& text) { return refusalOf([&] { parseXyzText(text, "a.xyz"); }); };
+  EXPECT_THAT(refusal("1 2 3\n1,5 2 3\n"), HasSubstr("a.xyz:2:4: error: the line mixes commas and blanks"));
+  EXPECT_THAT(refusal("1,5 2,5 3,5\n"), HasSubstr("write decimals with a point"));
+  EXPECT_THAT(refusal("1,5\t2,5\n"), HasSubstr("the line mixes commas and blanks"));
+  EXPECT_THAT(refusal("1,,2,3\n"), HasSubstr("a.xyz:1:2: error: a value is missing between two commas"));
+  EXPECT_THAT(refusal(",1,2,3\n"), HasSubstr("a value is missing before the first comma"));
+  EXPECT_THAT(parseXyzText("1, 2,\t3 # a, b c\n4 ,5 , 6,\n7 8 9\n", "a.xyz").points.z, ElementsAre(3.0F, 6.0F, 9.0F));
+}
+
+/// Every cut of a text of numbers is an error, or ends with a whole line.
+TEST(XyzText, RefusesANumberThatTheEndOfTheFileMayHaveCut) {
+  const std::string text = "1.25 2.5 3.75\n-4.5 5.125 6.0625\n";
+  for (std::size_t size = 1; size < text.size(); ++size) {
+    if (text[size - 1] == '\n') {
+      EXPECT_EQ(parseXyzText(text.substr(0, size), "a.xyz").points.size(), 1U);
+      continue;
+    }
+    EXPECT_NE(refusalOf([&] { parseXyzText(text.substr(0, size), "a.xyz"); }), "") << size;
+  }
+  EXPECT_THAT(refusalOf([&] { parseXyzText("1 2 3.7", "a.xyz"); }),
+              HasSubstr("a.xyz:1:5: error: the file ends with z '3.7', which may be cut"));
 }
 
 struct RefusedLine {

@@ -8,12 +8,17 @@
 
 #include <algorithm>
 #include <sstream>
+#include <unordered_set>
+
+#include "base/shown_line.hpp"
 
 namespace cluxel {
 
 namespace {
 
 constexpr std::size_t kMaxDepth = 80;
+/// A tree takes up to 100 times the size of its text.
+constexpr std::size_t kMaxYamlBytes = std::size_t{8} << 20U;
 
 SourceLocation placeOf(const std::string& file, const YAML::Mark& mark) {
   SourceLocation location;
@@ -57,8 +62,9 @@ class TreeBuilder : public YAML::EventHandler {
  private:
   struct Open {
     YamlNode node;
-    bool key_waits = false;    ///< the last key has no value yet
-    bool key_refused = false;  ///< and its value is dropped with it
+    std::unordered_set<std::string> keys{};  ///< the texts of node.keys: a look-up in the list is linear
+    bool key_waits = false;                  ///< the last key has no value yet
+    bool key_refused = false;                ///< and its value is dropped with it
   };
 
   YamlNode nodeAt(const YAML::Mark& mark, YamlNode::Kind kind) const {
@@ -94,11 +100,13 @@ class TreeBuilder : public YAML::EventHandler {
   }
   void addKey(Open& parent, YamlNode key) {
     if (!key.isScalar()) faults_.error(key.at, "a key must be plain text");
-    const YamlNode* earlier = key.isScalar() ? parent.node.keyNode(key.text) : nullptr;
-    if (earlier != nullptr)
+    const bool is_repeated = key.isScalar() && !parent.keys.insert(key.text).second;
+    if (is_repeated && faults_.errorCount() < kMostFaults)
       faults_.error(key.at, "the key '" + key.text + "' stands here twice",
-                    "it was given first in line " + std::to_string(earlier->at.line));
-    parent.key_refused = earlier != nullptr || !key.isScalar();
+                    "it was given first in line " + std::to_string(parent.node.keyNode(key.text)->at.line));
+    else if (is_repeated)
+      faults_.error(key.at, "the key '" + key.text + "' stands here twice");
+    parent.key_refused = is_repeated || !key.isScalar();
     parent.key_waits = true;
     if (!parent.key_refused) parent.node.keys.push_back(std::move(key));
   }
@@ -116,6 +124,11 @@ class TreeBuilder : public YAML::EventHandler {
 }  // namespace
 
 std::optional<YamlNode> parseYaml(const std::string& file, std::string_view text, FaultList& faults) {
+  if (text.size() > kMaxYamlBytes) {
+    faults.error({.file = file}, "is larger than 8 MiB, the most that a YAML file may have",
+                 "split it, or list folders instead of files and name a poses file instead of single poses");
+    return std::nullopt;
+  }
   TreeBuilder builder(file, faults);
   try {
     std::istringstream stream{std::string(text)};

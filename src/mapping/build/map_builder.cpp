@@ -137,6 +137,7 @@ BuildReport buildMap(const scan::ScanSet& scans, const MapInputs& inputs, const 
   MapInputs complete = inputs;
   complete.map_origin = scans.mapOrigin();
   complete.crs = scans.crs();
+  sink.note(describeFiles(complete));
   const ParsedInputs parsed = parseInputs(complete);
   WorkFile work(file, complete.hash().hex(), params.force);
   if (!params.refine_poses) noteDoubtfulPoses(scans, params.threads, sink);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cluxel/error.hpp"
+#include "mapping/build/scan_plausibility.hpp"
 #include "mapping/map_tables.hpp"
 #include "perception/clustering/tile_points.hpp"
 
@@ -106,6 +107,13 @@ void putTiles(rdf::WriteTransaction& transaction, const TileSet& tiles) {
   transaction.putBlock(tables::kMeta, kTilesKey, bytes);
 }
 
+/// The later one does not depend on the order of the scans. An absent time compares as earlier.
+void keepLaterTime(rdf::WriteTransaction& transaction, Cloud there, std::optional<double> time_s) {
+  if (time_s <= there.time_s) return;
+  there.time_s = time_s;
+  transaction.putBlock(tables::kScans, tables::keyOf(there.id), toBytes(there));
+}
+
 /// The years that xsd:dateTime writes with four digits.
 void requireTime(const scan::Scan& scan) {
   constexpr double kFirst_s = -62135596800.0, kEnd_s = 253402300799.0;
@@ -127,12 +135,15 @@ TileSet storedTiles(const rdf::ReadTransaction& transaction) {
 
 TileSet storeScan(rdf::WriteTransaction& transaction, const scan::Scan& scan) {
   requireTime(scan);
-  if (const auto there = storedCloud(transaction, scan.id)) {
+  if (auto there = storedCloud(transaction, scan.id)) {
     // Sensor positions are stored only for scans with a pose, so a scan given with and without one would make the map
     // depend on arrival order.
     const bool same =
         numbersOf(there->T_map_sensor) == numbersOf(scan.T_map_sensor) && there->has_pose == scan.has_pose;
-    if (same) return {};
+    if (same) {
+      keepLaterTime(transaction, *std::move(there), scan.time_s);
+      return {};
+    }
     const std::string how = there->has_pose == scan.has_pose ? "with another pose"
                             : scan.has_pose                  ? "now with a pose"
                                                              : "now without a pose";
@@ -140,7 +151,9 @@ TileSet storeScan(rdf::WriteTransaction& transaction, const scan::Scan& scan) {
                      "give each scan once; `repose` corrects the pose of a scan in a map");
   }
   TileSet tiles;
-  for (const auto& [tile, segment] : perception::splitScan(scan)) {
+  const auto segments = perception::splitScan(scan);
+  requirePlausible(scan, segments);
+  for (const auto& [tile, segment] : segments) {
     transaction.putBlock(tables::kSegments, tables::keyOf(tile) + tables::keyOf(scan.id), toBytes(segment));
     tiles.insert(tile);
   }

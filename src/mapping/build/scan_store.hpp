@@ -14,8 +14,9 @@ namespace cluxel::mapping {
 
 using TileSet = perception::TileSet;
 
-/// Stores a scan and its segments; returns the tiles it touches. Does nothing when the same scan with the same pose is
-/// stored already. The same scan with another pose, or with a pose where there was none, is an InputError.
+/// Stores a scan and its segments; returns the tiles it touches. A scan that was measured alike and has the same pose
+/// is the same cloud: nothing is stored but the later of the two times (a time is later than none). The same scan with
+/// another pose, or with a pose where there was none, is an InputError.
 TileSet storeScan(rdf::WriteTransaction& transaction, const scan::Scan& scan);
 
 /// Removes a scan with its segments; returns the tiles it touched. Throws Error (NotFound) when there is none.

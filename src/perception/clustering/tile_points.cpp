@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Thinning sorts the points by voxel and keeps, per voxel, those with the smallest hash.
+// Thinning sorts the points by voxel and keeps, per voxel, those with the smallest lots.
 #include "perception/clustering/tile_points.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "cluxel/error.hpp"
 #include "perception/clustering/fast_floor.hpp"
@@ -30,28 +29,36 @@ class VoxelKeys {
 /// The concatenated points of all parts, each with its index into the scans.
 struct Pool {
   std::vector<float> x, y, z, intensity;
-  std::vector<std::uint32_t> scan, point;
+  std::vector<std::uint32_t> scan, point, lot;
 };
 
-/// The rank by which points are kept: a hash of scan id and point (the finaliser of SplitMix64), independent of order.
-std::uint64_t lotOf(const scan::ScanId& scan, std::uint32_t point) {
-  std::uint64_t value = 0;
-  std::memcpy(&value, scan.bytes.data(), sizeof value);
-  value += 0x9e3779b97f4a7c15ULL * (std::uint64_t{point} + 1);
+/// The finaliser of SplitMix64.
+std::uint64_t mixedBits(std::uint64_t value) {
   value = (value ^ (value >> 30U)) * 0xbf58476d1ce4e5b9ULL;
   value = (value ^ (value >> 27U)) * 0x94d049bb133111ebULL;
   return value ^ (value >> 31U);
 }
 
+/// A hash of the measured values of a point, in the sensor frame: a pose, a time or the map's origin does not change
+/// it.
+std::uint32_t lotOf(const scan::ScanPoints& points, std::size_t i) {
+  const auto two = [](float high, float low) {
+    return std::uint64_t{std::bit_cast<std::uint32_t>(high)} << 32U | std::bit_cast<std::uint32_t>(low);
+  };
+  constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15ULL;
+  const float intensity = points.intensity.empty() ? 0.0F : points.intensity[i];
+  const std::uint64_t plane = mixedBits(two(points.x[i], points.y[i]) + kStep);
+  return static_cast<std::uint32_t>(mixedBits(plane + kStep + two(points.z[i], intensity)) >> 32U);
+}
+
 /// Reduces one voxel's items to the kept ones, in the order (scan, point).
-void keepSome(std::vector<std::uint32_t>& items, const Pool& pool, const std::vector<scan::ScanId>& scans,
-              std::size_t keep) {
+void keepSome(std::vector<std::uint32_t>& items, const Pool& pool, std::size_t keep) {
   const auto name = [&](std::uint32_t i) { return std::pair(pool.scan[i], pool.point[i]); };
   const auto by_name = [&](std::uint32_t a, std::uint32_t b) { return name(a) < name(b); };
   std::sort(items.begin(), items.end(), by_name);
   items.erase(std::unique(items.begin(), items.end(), [&](auto a, auto b) { return name(a) == name(b); }), items.end());
   if (items.size() <= keep) return;
-  const auto lot = [&](std::uint32_t i) { return std::pair(lotOf(scans[pool.scan[i]], pool.point[i]), name(i)); };
+  const auto lot = [&](std::uint32_t i) { return std::pair(pool.lot[i], name(i)); };
   std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(keep), items.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return lot(a) < lot(b); });
   items.resize(keep);
@@ -59,7 +66,7 @@ void keepSome(std::vector<std::uint32_t>& items, const Pool& pool, const std::ve
 }
 
 /// The kept items of the pool in canonical order.
-std::vector<std::uint32_t> keptOf(const Pool& pool, const std::vector<scan::ScanId>& scans, const ThinParams& params) {
+std::vector<std::uint32_t> keptOf(const Pool& pool, const ThinParams& params) {
   const VoxelKeys voxel(params.voxel_m);
   std::vector<std::uint64_t> keys(pool.x.size());
   for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = voxel(pool.x[i], pool.y[i], pool.z[i]);
@@ -74,7 +81,7 @@ std::vector<std::uint32_t> keptOf(const Pool& pool, const std::vector<scan::Scan
       continue;
     }
     items.assign(order.begin() + static_cast<std::ptrdiff_t>(begin), order.begin() + static_cast<std::ptrdiff_t>(end));
-    keepSome(items, pool, scans, static_cast<std::size_t>(params.keep));
+    keepSome(items, pool, static_cast<std::size_t>(params.keep));
     kept.insert(kept.end(), items.begin(), items.end());
   }
   return kept;
@@ -88,7 +95,7 @@ std::vector<T> pick(const std::vector<T>& values, const std::vector<std::uint32_
 }
 
 TilePoints thinPool(const TileKey& key, std::vector<scan::ScanId> scans, const Pool& pool, const ThinParams& params) {
-  const auto kept = keptOf(pool, scans, params);
+  const auto kept = keptOf(pool, params);
   return {key,
           std::move(scans),
           pick(pool.x, kept),
@@ -96,7 +103,8 @@ TilePoints thinPool(const TileKey& key, std::vector<scan::ScanId> scans, const P
           pick(pool.z, kept),
           pick(pool.intensity, kept),
           pick(pool.scan, kept),
-          pick(pool.point, kept)};
+          pick(pool.point, kept),
+          pick(pool.lot, kept)};
 }
 
 /// Appends a part's coordinates; intensity is filled with 0 where a part has none and another has.
@@ -106,6 +114,7 @@ void appendCoordinates(Pool& pool, const Part& part, bool with_intensity) {
   pool.y.insert(pool.y.end(), part.y.begin(), part.y.end());
   pool.z.insert(pool.z.end(), part.z.begin(), part.z.end());
   pool.point.insert(pool.point.end(), part.point.begin(), part.point.end());
+  pool.lot.insert(pool.lot.end(), part.lot.begin(), part.lot.end());
   if (!with_intensity) return;
   pool.intensity.insert(pool.intensity.end(), part.intensity.begin(), part.intensity.end());
   pool.intensity.resize(pool.x.size(), 0.0F);
@@ -182,6 +191,7 @@ std::map<TileKey, ScanSegment> splitScan(const scan::Scan& scan) {
     segment->z.push_back(p.z());
     if (!points.intensity.empty()) segment->intensity.push_back(points.intensity[i]);
     segment->point.push_back(static_cast<std::uint32_t>(i));
+    segment->lot.push_back(lotOf(points, i));
   }
   return segments;
 }

@@ -19,6 +19,7 @@ void putPoints(TileWriter& writer, const Part& part) {
   writer.put(part.z);
   writer.put(part.intensity);
   writer.put(part.point);
+  writer.put(part.lot);
 }
 
 template <typename Part>
@@ -28,6 +29,7 @@ void getPoints(TileReader& reader, Part& part) {
   part.z = reader.getMany<float>(part.x.size());
   part.intensity = reader.getMany<float>(part.x.size(), true);
   part.point = reader.getMany<std::uint32_t>(part.x.size());
+  part.lot = reader.getMany<std::uint32_t>(part.x.size());
   reader.require(isInTile(part.x) && isInTile(part.y) && allWithin(part.z, kMaxHeight_m),
                  "has points outside its tile");
 }
@@ -35,14 +37,14 @@ void getPoints(TileReader& reader, Part& part) {
 }  // namespace
 
 std::string toBytes(const ScanSegment& segment) {
-  TileWriter writer("SEGM", 1, segment.key);
+  TileWriter writer("SEGM", 2, segment.key);
   writer.put(std::vector<scan::ScanId>{segment.scan});
   putPoints(writer, segment);
   return writer.take();
 }
 
 ScanSegment scanSegmentFromBytes(std::string_view bytes) {
-  TileReader reader(bytes, "SEGM", 1);
+  TileReader reader(bytes, "SEGM", 2);
   ScanSegment segment;
   segment.key = reader.key();
   segment.scan = reader.getMany<scan::ScanId>(1).front();
@@ -52,7 +54,7 @@ ScanSegment scanSegmentFromBytes(std::string_view bytes) {
 }
 
 std::string toBytes(const TilePoints& tile) {
-  TileWriter writer("PNTS", 1, tile.key);
+  TileWriter writer("PNTS", 2, tile.key);
   writer.put(tile.scans);
   putPoints(writer, tile);
   writer.put(tile.scan);
@@ -60,7 +62,7 @@ std::string toBytes(const TilePoints& tile) {
 }
 
 TilePoints tilePointsFromBytes(std::string_view bytes) {
-  TileReader reader(bytes, "PNTS", 1);
+  TileReader reader(bytes, "PNTS", 2);
   TilePoints tile;
   tile.key = reader.key();
   tile.scans = reader.getMany<scan::ScanId>();

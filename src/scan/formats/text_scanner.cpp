@@ -2,6 +2,7 @@
 // Scans lines in place with std::from_chars, which ignores locales and does not allocate.
 #include "scan/formats/text_scanner.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -49,6 +50,7 @@ double TextScanner::number(const char* what) {
 
 double TextScanner::anyNumber(const char* what) {
   if (atLineEnd()) refuse(std::string("the line ends where ") + what + " was expected");
+  if (checked_line_ != line_) checkCommas();
   const char* from = *at_ == '+' ? at_ + 1 : at_;
   double value = 0;
   const auto [end, error] = std::from_chars(from, stop_, value);
@@ -60,6 +62,7 @@ double TextScanner::anyNumber(const char* what) {
 
 std::uint32_t TextScanner::count(const char* what) {
   if (atLineEnd()) refuse(std::string("the line ends where ") + what + " was expected");
+  if (checked_line_ != line_) checkCommas();
   std::uint32_t value = 0;
   const auto [end, error] = std::from_chars(at_, stop_, value);
   if (error != std::errc())
@@ -70,7 +73,35 @@ std::uint32_t TextScanner::count(const char* what) {
 
 void TextScanner::endNumber(const char* end, const char* what) {
   if (end != stop_ && !isBlank(*end) && *end != '#') refuse(std::string(what) + " is not a number: '" + wordAt() + "'");
+  if (end == end_ && !trusts_last_number_)
+    refuse("the file ends with " + std::string(what) + " '" + wordAt() + "', which may be cut",
+           "copy the file again, or, when it is whole, end its last line with a line end");
   at_ = end;
+}
+
+/// From the first number of a line on. Two commas in a row mean a missing value.
+void TextScanner::checkCommas() {
+  checked_line_ = line_;
+  if (std::memchr(at_, ',', static_cast<std::size_t>(stop_ - at_)) == nullptr) return;
+  const char* const line_at = at_;
+  if (std::memchr(start_, ',', static_cast<std::size_t>(at_ - start_)) != nullptr)
+    refuse("a value is missing before the first comma of the line");
+  bool has_gap = false, with_comma = false;
+  for (const char* at = at_; at != stop_ && *at != '#';) {
+    while (at != stop_ && !isBlank(*at) && *at != '#') ++at;
+    const char* const gap = at;
+    while (at != stop_ && isBlank(*at)) ++at;
+    if (at == stop_ || *at == '#') break;
+    const auto commas = std::count(gap, at, ',');
+    at_ = gap;
+    if (commas > 1) refuse("a value is missing between two commas");
+    if (has_gap && with_comma != (commas == 1))
+      refuse("the line mixes commas and blanks between numbers",
+             "write decimals with a point, and separate numbers by blanks, or all of them by commas");
+    has_gap = true;
+    with_comma = commas == 1;
+  }
+  at_ = line_at;
 }
 
 std::string_view TextScanner::word(const char* what) {

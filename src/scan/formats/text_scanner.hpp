@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads numbers from lines of text. '#' comments and empty lines are skipped; errors name line and column.
+// Numbers of a line are separated by blanks, or each two of them by one comma: a decimal comma would shift the columns.
+// A number that ends with the file may have been cut and is refused.
 #pragma once
 
 #include <charconv>
@@ -32,6 +34,8 @@ class TextScanner {
   std::uint32_t count(const char* what);
   /// The next word of the line, ended by a blank.
   std::string_view word(const char* what);
+  /// For a text whose last number has a known value: it need not be followed by a line end.
+  void trustLastNumber() { trusts_last_number_ = true; }
   /// Refuses anything left on the line; `expected` says what a line holds.
   void endLine(const char* expected);
 
@@ -48,6 +52,7 @@ class TextScanner {
     while (at_ != stop_ && (*at_ == ' ' || *at_ == '\t' || *at_ == ',')) ++at_;
   }
   void endNumber(const char* end, const char* what);
+  void checkCommas();
   std::string wordAt() const;
 
   const char* next_;             ///< start of the next line
@@ -55,7 +60,8 @@ class TextScanner {
   const char* start_ = nullptr;  ///< start, current position and end of this line
   const char* at_ = nullptr;
   const char* stop_ = nullptr;
-  std::size_t line_ = 0;
+  std::size_t line_ = 0, checked_line_ = 0;
+  bool trusts_last_number_ = false;
   std::string_view text_;
   std::string file_;
 };

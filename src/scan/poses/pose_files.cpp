@@ -92,6 +92,7 @@ PoseList parsePoses(std::string_view bytes, const std::string& file) {
     if (columns != 4 && columns != 8 && columns != 12 && columns != 16)
       scanner.refuse(std::to_string(columns) + " columns are no known form of a pose",
                      "known are 12 (KITTI 3x4), 16 or four lines of 4 (4x4), and 8 (TUM: time x y z qx qy qz qw)");
+    if (columns == 4 || columns == 16) scanner.trustLastNumber();  // the last row is 0 0 0 1
     readPose(scanner, columns, list);
   }
   if (list.poses.empty()) scanner.refuseEnd("holds no poses");

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the program takes its data from, and what it says of maps whose build is unfinished.
+#include "app/program_fixture.hpp"
+
+namespace cluxel::app {
+namespace {
+
+/// A working directory with folders of the names that the data home has, full of what would be noticed.
+fs::path decoyFolder() {
+  const fs::path folder = Program::path("decoy");
+  fs::create_directory(folder);
+  for (const char* name : {"ontology", "rules", "queries", "models", "labels", "models/oakland"})
+    fs::create_directory(folder / name);
+  for (const char* name : {"ontology/core.ttl", "ontology/mine.ttl", "rules/outdoor.rules.yaml",
+                           "rules/outdoor.rules-test.yaml", "rules/20_avenues.rq", "rules/mine.rq",
+                           "queries/street_signs.rq", "models/oakland/model.json", "labels/campus.yaml"})
+    writeFile(folder / name, "somebody's draft\n");
+  return folder;
+}
+
+/// Runs the program in a folder, without --home: it finds the checkout that it was built in.
+Outcome runIn(const fs::path& folder, const std::string& arguments) {
+  const std::string out = Program::path("stdout").string(), err = Program::path("stderr").string();
+  const std::string command = "cd " + folder.string() + " && env -u CLUXEL_HOME " +
+                              (test::buildFolder() / "cluxel").string() + " --threads 1 " + arguments + " > " + out +
+                              " 2> " + err;
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readFile(out), readFile(err)};
+}
+
+TEST_F(Program, FoldersOfTheWorkingDirectoryAreNotDataFolders) {
+  const fs::path decoy = decoyFolder();
+  const std::string map = path("map.clx").string();
+  const std::vector<std::string> commands{
+      "build " + path("campus").string() + " -o " + path("decoy.clx").string() + " --force --json",
+      "query " + map + " street_signs.rq --json",
+      "tasks --json",
+      "rules check",
+      "rules test",
+      "evaluate " + map + " --truth campus --json",
+      "export " + map + " --canonical"};
+  for (const std::string& command : commands) {
+    const Outcome usual = run(command), there = runIn(decoy, command);
+    EXPECT_LT(usual.code, 4) << command << usual.err;
+    EXPECT_EQ(there.code, usual.code) << command << there.err;
+    EXPECT_EQ(there.out, usual.out) << command;
+  }
+  EXPECT_EQ(run("export " + path("decoy.clx").string() + " --canonical").out,
+            run("export " + map + " --canonical").out);
+}
+
+TEST_F(Program, BuildAndInfoNameTheDataHomeAndTheFiles) {
+  const std::string home = test::sourceFolder().string();
+  const Outcome again = run("build " + path("campus").string() + " -o " + path("named.clx").string());
+  EXPECT_NE(again.err.find("data home " + home), std::string::npos) << again.err;
+  EXPECT_NE(again.err.find("rules/outdoor.rules.yaml"), std::string::npos) << again.err;
+  const std::string text = run("info " + path("named.clx").string()).out;
+  EXPECT_NE(text.find("built with data home " + home + "; ontology ontology/core.ttl"), std::string::npos) << text;
+  EXPECT_NE(text.find("model models/oakland/model.json"), std::string::npos) << text;
+  const std::string json = run("info --json " + path("named.clx").string()).out;
+  EXPECT_NE(json.find("\"home\": \"" + home), std::string::npos) << json;
+  EXPECT_NE(json.find(home + "/rules/20_avenues.rq"), std::string::npos) << json;
+}
+
+/// The first scan is committed before the second one is found to be cut.
+fs::path unfinishedMap() {
+  const fs::path scans = Program::path("cut"), map = Program::path("cut.clx");
+  if (fs::exists(map)) return map;
+  fs::copy(Program::path("campus"), scans);
+  fs::path last;
+  for (const auto& entry : fs::directory_iterator(scans))
+    if (entry.path().extension() == ".pcd" && entry.path() > last) last = entry.path();
+  fs::resize_file(last, fs::file_size(last) - 100);
+  return map;
+}
+
+TEST_F(Program, AnswersFromAnUnfinishedMapComeWithANote) {
+  const std::string map = unfinishedMap().string();
+  const Outcome build = run("build " + path("cut").string() + " -o " + map + " --batch-points 1");
+  ASSERT_EQ(build.code, 4) << build.err;
+  ASSERT_TRUE(fs::exists(map));
+  for (const std::string& command : {"query " + map + " -e 'SELECT * { ?s a ?c } LIMIT 1'",
+                                     "export " + map + " --canonical", "evaluate " + map + " --truth campus"}) {
+    const Outcome told = run(command), silent = run(command + " --allow-unfinished");
+    EXPECT_EQ(told.code, 0) << command << told.err;
+    EXPECT_NE(told.err.find("the build of this map is unfinished"), std::string::npos) << command << told.err;
+    EXPECT_EQ(silent.err.find("unfinished"), std::string::npos) << command << silent.err;
+    EXPECT_EQ(told.out, silent.out) << command;
+  }
+  EXPECT_EQ(run("export " + path("map.clx").string() + " --canonical").err, "") << "a finished map";
+}
+
+}  // namespace
+}  // namespace cluxel::app
