@@ -152,6 +152,29 @@ constexpr const char* kQueryDoc =
     "not the union of all graphs but history.\n"
     "Raises FaultyInputError with line and column of a fault, BudgetExceededError at a limit. Ctrl-C ends the query.";
 
+/// Keeps notes until they can be given to Python.
+class KeptNotes : public ProgressSink {
+ public:
+  void note(std::string_view message) override { notes.emplace_back(message); }
+  std::vector<std::string> notes;
+};
+
+Map openMap(const std::filesystem::path& file, const py::object& note) {
+  KeptNotes kept;
+  std::optional<Map> map;
+  {
+    const py::gil_scoped_release release;
+    map.emplace(Map::open(file, kept));
+  }
+  const py::object tell = note.is_none() ? py::module_::import("warnings").attr("warn") : note;
+  for (const std::string& message : kept.notes) tell(message);
+  return std::move(*map);
+}
+
+constexpr const char* kOpenDoc =
+    "Opens a map file. Cost: independent of its size.\n\n"
+    "note: called as note(message: str), when the map's build is unfinished; None: warnings.warn.";
+
 void bindBuild(py::module_& module) {
   module.def("build", &build, py::arg("scans"), py::arg("file"), py::kw_only(), py::arg("poses") = py::none(),
              py::arg("model") = py::none(), py::arg("rules") = py::none(), py::arg("sparql_rules") = py::none(),
@@ -159,7 +182,7 @@ void bindBuild(py::module_& module) {
              py::arg("batch_points") = BuildOptions().batch_points, py::arg("force") = false,
              py::arg("drop_statements") = false, py::arg("refine_poses") = false, py::arg("progress") = py::none(),
              py::arg("note") = py::none(), kBuildDoc);
-  module.def("open", &Map::open, py::arg("file"), Release(), "Opens a map file. Cost: independent of its size.");
+  module.def("open", &openMap, py::arg("file"), py::kw_only(), py::arg("note") = py::none(), kOpenDoc);
 }
 
 }  // namespace

@@ -101,7 +101,7 @@ class TreeBuilder : public YAML::EventHandler {
   void addKey(Open& parent, YamlNode key) {
     if (!key.isScalar()) faults_.error(key.at, "a key must be plain text");
     const bool is_repeated = key.isScalar() && !parent.keys.insert(key.text).second;
-    if (is_repeated && faults_.errorCount() < kMostFaults)
+    if (is_repeated && faults_.errorCount() < kMaxFaults)
       faults_.error(key.at, "the key '" + key.text + "' stands here twice",
                     "it was given first in line " + std::to_string(parent.node.keyNode(key.text)->at.line));
     else if (is_repeated)

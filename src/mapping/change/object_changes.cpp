@@ -38,7 +38,7 @@ Succession successionOf(const std::vector<ObjectMembers>& before, const std::vec
 }
 
 /// Scan ids are random bits already; the point number is spread over all bits by the golden ratio.
-std::uint64_t keyOfSeed(const scan::ScanId& scan, std::uint32_t point) {
+std::uint64_t keyOfSeed(const ContentHash& scan, std::uint32_t point) {
   std::uint64_t key = 0;
   std::memcpy(&key, scan.bytes.data(), sizeof key);
   return key ^ (static_cast<std::uint64_t>(point) + 1) * 0x9E3779B97F4A7C15ULL;
