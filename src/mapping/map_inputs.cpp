@@ -83,9 +83,10 @@ ContentHash MapInputs::hash() const {
 }
 
 std::string describeFiles(const MapInputs& inputs) {
+  const fs::path home = inputs.home.empty() ? fs::path() : fs::absolute(inputs.home).lexically_normal();
   const auto shortName = [&](const NamedText& text) {
-    const fs::path name = fs::path(text.name).lexically_relative(fs::absolute(inputs.home).lexically_normal());
-    return inputs.home.empty() || name.empty() || *name.begin() == ".." ? text.name : name.string();
+    const fs::path name = fs::path(text.name).lexically_relative(home);
+    return home.empty() || name.empty() || *name.begin() == ".." ? text.name : name.string();
   };
   const auto listOf = [&](const std::vector<NamedText>& texts) {
     std::string names;
