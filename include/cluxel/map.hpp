@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "cluxel/answer.hpp"
+#include "cluxel/change.hpp"
 #include "cluxel/export.hpp"
 #include "cluxel/object.hpp"
 #include "cluxel/point_cloud.hpp"
@@ -108,6 +109,18 @@ class CLUXEL_API Map {
   /// Runs a SPARQL 1.1 Update on the operator's statements (graph …/graph/operator) and infers what follows, all of it
   /// or nothing. LOAD is refused. Other readers see the state before until it is committed.
   UpdateCounts update(std::string_view text);
+
+  /// Adds scans (files, folders, manifests) to the map: it is then the map that build() makes from all scans. Scans that
+  /// are there with the same pose are passed over. Each batch is one commit; progress and notes go to `sink`.
+  MapChanges extend(const std::vector<std::filesystem::path>& scans, const ChangeOptions& options, ProgressSink& sink);
+  /// Removes scans, named as in CloudPose. NotFound for an unknown name; InvalidArgument when none would be left.
+  MapChanges retract(const std::vector<std::string>& clouds, const ChangeOptions& options, ProgressSink& sink);
+  /// Gives scans other poses, all in one commit, as after a loop closure.
+  MapChanges repose(const std::vector<CloudPose>& poses, const ChangeOptions& options, ProgressSink& sink);
+  /// Merges maps, all in the frame of the first, into the new file `target`, and opens it: the map that build() makes
+  /// from all scans. InvalidArgument when `target` exists, inputs differ, or a scan has two poses.
+  static Map merge(const std::vector<std::filesystem::path>& maps, const std::filesystem::path& target,
+                   const ChangeOptions& options, ProgressSink& sink);
 
   /// Explains an object or a primitive named by its IRI, by "object/…" or "primitive/…", or by at least four leading
   /// digits of its hash. Applies the map's rules again: cost in the size of the map.

@@ -7,12 +7,15 @@
 #include <thread>
 
 #include "api/answer_data.hpp"
+#include "api/change_values.hpp"
 #include "api/object_query.hpp"
 #include "api/point_query.hpp"
 #include "base/data_home.hpp"
 #include "cluxel/cluxel.hpp"
 #include "mapping/build/map_builder.hpp"
 #include "mapping/build/map_update.hpp"
+#include "mapping/change/map_change.hpp"
+#include "mapping/change/map_merge.hpp"
 #include "mapping/map_reader.hpp"
 #include "sparql/query_engine.hpp"
 #include "tasks/explanation.hpp"
@@ -141,6 +144,41 @@ UpdateCounts Map::update(std::string_view text) {
   const sparql::UpdateReport report =
       mapping::updateMap(impl_->file, std::string(text), {.query = {.source_name = "update"}}, silence);
   return {report.inserted, report.deleted};
+}
+
+MapChanges Map::extend(const std::vector<std::filesystem::path>& scans, const ChangeOptions& options,
+                       ProgressSink& sink) {
+  const scan::ScanSet set = scan::ScanSet::open(scans, {options.poses}, sink);
+  const std::lock_guard lock(impl_->mutex);
+  impl_->reader.reset();
+  return changesOf(mapping::extendMap(impl_->file, set, changeParams(options), sink));
+}
+
+MapChanges Map::retract(const std::vector<std::string>& clouds, const ChangeOptions& options, ProgressSink& sink) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->reader.reset();
+  const auto ids = mapping::cloudsNamed(impl_->file, clouds);
+  return changesOf(mapping::retractScans(impl_->file, ids, changeParams(options), sink));
+}
+
+MapChanges Map::repose(const std::vector<CloudPose>& poses, const ChangeOptions& options, ProgressSink& sink) {
+  std::vector<std::string> names;
+  for (const CloudPose& pose : poses) names.push_back(pose.cloud);
+  const std::lock_guard lock(impl_->mutex);
+  impl_->reader.reset();
+  const auto ids = mapping::cloudsNamed(impl_->file, names);
+  std::vector<mapping::ScanPose> moves;
+  for (std::size_t i = 0; i < ids.size(); ++i) moves.push_back({ids[i], poseOf(poses[i])});
+  return changesOf(mapping::moveScans(impl_->file, moves, changeParams(options), sink));
+}
+
+Map Map::merge(const std::vector<std::filesystem::path>& maps, const std::filesystem::path& target,
+               const ChangeOptions& options, ProgressSink& sink) {
+  std::vector<mapping::MapToMerge> parts;
+  for (const std::filesystem::path& map : maps) parts.push_back({map, Eigen::Isometry3d::Identity()});
+  if (options.dry_run) throw Error(ErrorKind::InvalidArgument, "dry_run: a merge makes the map that it returns");
+  mapping::mergeMaps(parts, target, {.change = changeParams(options), .use = std::nullopt, .force = false}, sink);
+  return open(target);
 }
 
 Explanation Map::explain(const std::string& name) const {

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Changes of a map: how to make them, and what they did to its objects.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace cluxel {
+
+struct ChangeOptions {
+  std::filesystem::path poses;              ///< poses of added scans, as in BuildOptions
+  unsigned threads = 0;                     ///< 0: one a processor; the map does not depend on it
+  std::uint64_t batch_points = 20'000'000;  ///< scans are added in batches of about this many points; at least 1
+  bool dry_run = false;                     ///< compute what would change, and write nothing
+};
+
+/// Another pose of a scan that is in the map.
+struct CloudPose {
+  std::string cloud;                      ///< its id (four digits or more), source path or file name
+  std::array<double, 16> T_map_sensor{};  ///< as in Cloud: a rigid motion
+};
+
+enum class ChangeKind : std::uint8_t { Added, Gone, Changed, Split, Joined };
+
+/// An object that is not what it was.
+struct ObjectChange {
+  ChangeKind kind = ChangeKind::Changed;
+  std::string iri;                        ///< of Gone: the IRI that it had
+  std::string class_name;                 ///< local name: "Tree"
+  std::vector<std::string> derived_from;  ///< IRIs of Changed, Split and Joined before the change
+};
+
+/// What a change did. An object goes on in another one that holds at least half of its measured points, or the other
+/// way round.
+struct MapChanges {
+  std::size_t scans_added = 0, scans_already_there = 0, scans_removed = 0, scans_moved = 0;
+  std::size_t tiles_changed = 0;  ///< tiles of 16 m of which something was computed anew and differs
+  std::size_t objects_unchanged = 0;
+  std::vector<ObjectChange> objects;  ///< by kind, then by IRI
+};
+
+}  // namespace cluxel

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Options and reports of changes as values of the facade.
+#pragma once
+
+#include "cluxel/change.hpp"
+#include "mapping/change/map_editor.hpp"
+
+namespace cluxel {
+
+/// Throws Error (InvalidArgument) for a batch of no points.
+mapping::ChangeParams changeParams(const ChangeOptions& options);
+/// Throws Error (InvalidArgument) when the matrix is no rigid motion.
+Eigen::Isometry3d poseOf(const CloudPose& pose);
+MapChanges changesOf(const mapping::ChangeReport& report);
+
+}  // namespace cluxel
