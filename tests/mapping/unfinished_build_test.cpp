@@ -291,20 +291,6 @@ TEST(DefaultInputs, AreNotTakenFromFilesOfThatNameInTheWorkingDirectory) {
   EXPECT_EQ(there.hash(), shipped.hash());
 }
 
-TEST(DescribedInputs, AreShortWithinTheDataHomeAndWholeElsewhere) {
-  MapInputs inputs;
-  inputs.ontology = {{"/home/ontology/core.ttl", ""}};
-  inputs.rules = {{"/elsewhere/my.rules.yaml", ""}, {"/home/rules/outdoor.rules.yaml", ""}};
-  inputs.model.name = "/home/models/oakland/model.json";
-  EXPECT_EQ(describeFiles(inputs),
-            "data home unknown; ontology /home/ontology/core.ttl; rules /elsewhere/my.rules.yaml, "
-            "/home/rules/outdoor.rules.yaml; SPARQL rules none; model /home/models/oakland/model.json");
-  inputs.home = "/home";
-  EXPECT_EQ(describeFiles(inputs),
-            "data home /home; ontology ontology/core.ttl; rules /elsewhere/my.rules.yaml, rules/outdoor.rules.yaml; "
-            "SPARQL rules none; model models/oakland/model.json");
-}
-
 TEST(MapHistory, NamesFilesInUtf8WhateverTheirNames) {
   const auto environment = Environment::temporary();
   WriteTransaction transaction = environment->write();
