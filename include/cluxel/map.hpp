@@ -110,8 +110,8 @@ class CLUXEL_API Map {
   /// or nothing. LOAD is refused. Other readers see the state before until it is committed.
   UpdateCounts update(std::string_view text);
 
-  /// Adds scans (files, folders, manifests) to the map: it is then the map that build() makes from all scans. Scans that
-  /// are there with the same pose are passed over. Each batch is one commit; progress and notes go to `sink`.
+  /// Adds scans (files, folders, manifests) to the map: it is then the map that build() makes from all scans. Scans
+  /// that are there with the same pose are passed over. Each batch is one commit; progress and notes go to `sink`.
   MapChanges extend(const std::vector<std::filesystem::path>& scans, const ChangeOptions& options, ProgressSink& sink);
   /// Removes scans, named as in CloudPose. NotFound for an unknown name; InvalidArgument when none would be left.
   MapChanges retract(const std::vector<std::string>& clouds, const ChangeOptions& options, ProgressSink& sink);
