@@ -64,7 +64,7 @@ TEST_F(Program, BuildAndInfoNameTheDataHomeAndTheFiles) {
 
 /// The first scan is committed before the second one is found to be cut.
 fs::path unfinishedMap() {
-  const fs::path scans = Program::path("cut"), map = Program::path("cut.clx");
+  const fs::path scans = Program::path("cut_campus"), map = Program::path("cut_campus.clx");
   if (fs::exists(map)) return map;
   fs::copy(Program::path("campus"), scans);
   fs::path last;
@@ -76,7 +76,7 @@ fs::path unfinishedMap() {
 
 TEST_F(Program, AnswersFromAnUnfinishedMapComeWithANote) {
   const std::string map = unfinishedMap().string();
-  const Outcome build = run("build " + path("cut").string() + " -o " + map + " --batch-points 1");
+  const Outcome build = run("build " + path("cut_campus").string() + " -o " + map + " --batch-points 1");
   ASSERT_EQ(build.code, 4) << build.err;
   ASSERT_TRUE(fs::exists(map));
   for (const std::string& command : {"query " + map + " -e 'SELECT * { ?s a ?c } LIMIT 1'",
