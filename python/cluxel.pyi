@@ -172,6 +172,32 @@ class UpdateCounts(NamedTuple):
     inserted: int
     deleted: int
 
+class ObjectChange:
+    @property
+    def kind(self) -> Literal["added", "gone", "changed", "split", "joined"]: ...
+    @property
+    def iri(self) -> str: ...
+    @property
+    def class_name(self) -> str: ...
+    @property
+    def derived_from(self) -> list[str]: ...
+
+class MapChanges:
+    @property
+    def scans_added(self) -> int: ...
+    @property
+    def scans_already_there(self) -> int: ...
+    @property
+    def scans_removed(self) -> int: ...
+    @property
+    def scans_moved(self) -> int: ...
+    @property
+    def tiles_changed(self) -> int: ...
+    @property
+    def objects_unchanged(self) -> int: ...
+    @property
+    def objects(self) -> list[ObjectChange]: ...
+
 class Map:
     @property
     def file(self) -> pathlib.Path: ...
@@ -188,6 +214,35 @@ class Map:
         strict_default_graph: bool = False,
     ) -> Answer: ...
     def update(self, text: str) -> UpdateCounts: ...
+    def extend(
+        self,
+        scans: _Paths,
+        *,
+        poses: Optional[_Path] = None,
+        threads: int = 0,
+        batch_points: int = ...,
+        dry_run: bool = False,
+        progress: Optional[Callable[[str, int, int], object]] = None,
+        note: Optional[Callable[[str], object]] = None,
+    ) -> MapChanges: ...
+    def retract(
+        self,
+        clouds: Sequence[str],
+        *,
+        threads: int = 0,
+        dry_run: bool = False,
+        progress: Optional[Callable[[str, int, int], object]] = None,
+        note: Optional[Callable[[str], object]] = None,
+    ) -> MapChanges: ...
+    def repose(
+        self,
+        poses: Mapping[str, npt.ArrayLike],
+        *,
+        threads: int = 0,
+        dry_run: bool = False,
+        progress: Optional[Callable[[str, int, int], object]] = None,
+        note: Optional[Callable[[str], object]] = None,
+    ) -> MapChanges: ...
     def objects(self, class_name: Optional[str] = None) -> list[Object]: ...
     def clouds(self) -> list[Cloud]: ...
     def points(self, owner: Union[Object, Cloud, str]) -> Points: ...
@@ -212,4 +267,13 @@ def build(
     progress: Optional[Callable[[str, int, int], object]] = None,
     note: Optional[Callable[[str], object]] = None,
 ) -> Map: ...
-def open(file: _Path, *, note: Callable[[str], object] | None = None) -> Map: ...
+def open(file: _Path, *, note: Optional[Callable[[str], object]] = None) -> Map: ...
+def merge(
+    maps: Sequence[_Path],
+    target: _Path,
+    *,
+    threads: int = 0,
+    batch_points: int = ...,
+    progress: Optional[Callable[[str, int, int], object]] = None,
+    note: Optional[Callable[[str], object]] = None,
+) -> Map: ...

@@ -189,11 +189,11 @@ void bindBuild(py::module_& module) {
 
 void bindMaps(py::module_& module) {
   bindSummary(module);
-  py::class_<Map>(
+  py::class_<Map> map(
       module, "Map",
       "An open map file; cluxel.build and cluxel.open make it. Any number of threads may call its methods.\n"
-      "Each call reads the newest state of the file, and other Python threads run meanwhile.")
-      .def_property_readonly("file", &Map::file, "Path of the map file.")
+      "Each call reads the newest state of the file, and other Python threads run meanwhile.");
+  map.def_property_readonly("file", &Map::file, "Path of the map file.")
       .def("summary", &Map::summary, Release(), "What the map holds, as MapSummary.")
       .def("query", &query, py::arg("text"), py::kw_only(), py::arg("bindings") = py::dict(),
            py::arg("deadline_s") = py::none(), py::arg("max_rows") = 0U,
@@ -224,6 +224,7 @@ void bindMaps(py::module_& module) {
           "explain_text", [](const Map& map, const Named& named) { return explanationOf(map, named).text; },
           py::arg("name"), "The same as explain(name), in English prose.")
       .def("__repr__", [](const Map& map) { return "<cluxel.Map " + map.file().string() + ">"; });
+  bindChanges(module, map);
   bindBuild(module);
 }
 

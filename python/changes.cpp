@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Changes of maps in Python: extend, retract, repose, merge, and what they did to the objects.
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <map>
+#include <variant>
+
+#include "python_calls.hpp"
+
+namespace cluxel::python {
+
+namespace {
+
+using ChangePaths = std::variant<std::filesystem::path, std::vector<std::filesystem::path>>;
+using Matrix = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+std::vector<std::filesystem::path> listOfChanged(const ChangePaths& paths) {
+  if (const auto* one = std::get_if<std::filesystem::path>(&paths)) return {*one};
+  return std::get<std::vector<std::filesystem::path>>(paths);
+}
+
+const char* nameOf(ChangeKind kind) {
+  switch (kind) {
+    case ChangeKind::Added:
+      return "added";
+    case ChangeKind::Gone:
+      return "gone";
+    case ChangeKind::Changed:
+      return "changed";
+    case ChangeKind::Split:
+      return "split";
+    case ChangeKind::Joined:
+      break;
+  }
+  return "joined";
+}
+
+/// Runs a change without the GIL.
+template <typename Change>
+auto changed(py::object progress, py::object note, const Change& change) {
+  PythonSink sink(std::move(progress), std::move(note));
+  const py::gil_scoped_release release;
+  return change(sink);
+}
+
+MapChanges extend(Map& map, const ChangePaths& scans, const std::optional<std::filesystem::path>& poses,
+                  unsigned threads, std::uint64_t batch_points, bool dry_run, py::object progress, py::object note) {
+  const ChangeOptions options{poses.value_or(std::filesystem::path()), threads, batch_points, dry_run};
+  return changed(std::move(progress), std::move(note),
+                 [&](ProgressSink& sink) { return map.extend(listOfChanged(scans), options, sink); });
+}
+
+MapChanges retract(Map& map, const std::vector<std::string>& clouds, unsigned threads, bool dry_run,
+                   py::object progress, py::object note) {
+  const ChangeOptions options{{}, threads, ChangeOptions().batch_points, dry_run};
+  return changed(std::move(progress), std::move(note),
+                 [&](ProgressSink& sink) { return map.retract(clouds, options, sink); });
+}
+
+MapChanges repose(Map& map, const std::map<std::string, Matrix>& poses, unsigned threads, bool dry_run,
+                  py::object progress, py::object note) {
+  std::vector<CloudPose> given;
+  for (const auto& [cloud, matrix] : poses) {
+    if (matrix.ndim() != 2 || matrix.shape(0) != 4 || matrix.shape(1) != 4)
+      throw Error(ErrorKind::InvalidArgument, "the pose for cloud " + cloud + " has another shape than (4, 4)");
+    CloudPose pose{cloud, {}};
+    std::copy_n(matrix.data(), pose.T_map_sensor.size(), pose.T_map_sensor.begin());
+    given.push_back(std::move(pose));
+  }
+  const ChangeOptions options{{}, threads, ChangeOptions().batch_points, dry_run};
+  return changed(std::move(progress), std::move(note),
+                 [&](ProgressSink& sink) { return map.repose(given, options, sink); });
+}
+
+Map merge(const std::vector<std::filesystem::path>& maps, const std::filesystem::path& target, unsigned threads,
+          std::uint64_t batch_points, py::object progress, py::object note) {
+  const ChangeOptions options{{}, threads, batch_points, false};
+  return changed(std::move(progress), std::move(note),
+                 [&](ProgressSink& sink) { return Map::merge(maps, target, options, sink); });
+}
+
+void bindValues(py::module_& module) {
+  py::class_<ObjectChange>(module, "ObjectChange", "An object that is not what it was.")
+      .def_property_readonly(
+          "kind", [](const ObjectChange& change) { return nameOf(change.kind); },
+          "'added', 'gone', 'changed', 'split' or 'joined'.")
+      .def_readonly("iri", &ObjectChange::iri, "Its IRI; of a gone object the one that it had.")
+      .def_readonly("class_name", &ObjectChange::class_name, "Local name of its class, such as 'Tree'.")
+      .def_readonly("derived_from", &ObjectChange::derived_from, "IRIs of the objects before the change.");
+  py::class_<MapChanges>(
+      module, "MapChanges",
+      "What a change did. An object goes on in another one that holds at least half of its measured\n"
+      "points, or the other way round.")
+      .def_readonly("scans_added", &MapChanges::scans_added, "Number of scans.")
+      .def_readonly("scans_already_there", &MapChanges::scans_already_there, "Number of scans that were passed over.")
+      .def_readonly("scans_removed", &MapChanges::scans_removed, "Number of scans.")
+      .def_readonly("scans_moved", &MapChanges::scans_moved, "Number of scans.")
+      .def_readonly("tiles_changed", &MapChanges::tiles_changed, "Number of tiles of 16 m that were computed anew.")
+      .def_readonly("objects_unchanged", &MapChanges::objects_unchanged, "Number of objects.")
+      .def_readonly("objects", &MapChanges::objects, "list of ObjectChange, by kind and IRI.");
+}
+
+}  // namespace
+
+void bindChanges(py::module_& module, py::class_<Map>& map) {
+  bindValues(module);
+  map.def("extend", &extend, py::arg("scans"), py::kw_only(), py::arg("poses") = py::none(), py::arg("threads") = 0U,
+          py::arg("batch_points") = ChangeOptions().batch_points, py::arg("dry_run") = false,
+          py::arg("progress") = py::none(), py::arg("note") = py::none(),
+          "Adds scans: the map is then the one that build() makes from all scans. Scans that are there with the same\n"
+          "pose are passed over. dry_run: tells what would change, and writes nothing. Gives MapChanges.");
+  map.def("retract", &retract, py::arg("clouds"), py::kw_only(), py::arg("threads") = 0U, py::arg("dry_run") = false,
+          py::arg("progress") = py::none(), py::arg("note") = py::none(),
+          "Removes scans, named by id (four digits or more), source path or file name. Gives MapChanges.");
+  map.def("repose", &repose, py::arg("poses"), py::kw_only(), py::arg("threads") = 0U, py::arg("dry_run") = false,
+          py::arg("progress") = py::none(), py::arg("note") = py::none(),
+          "Gives scans other poses, all at once. poses: dict from cloud, named as in retract(), to the pose of the\n"
+          "sensor in the map, an array of shape (4, 4) [m]. Gives MapChanges.");
+  module.def("merge", &merge, py::arg("maps"), py::arg("target"), py::kw_only(), py::arg("threads") = 0U,
+             py::arg("batch_points") = ChangeOptions().batch_points, py::arg("progress") = py::none(),
+             py::arg("note") = py::none(),
+             "Merges maps, all in the frame of the first, into the new file `target`, and opens it.");
+}
+
+}  // namespace cluxel::python
