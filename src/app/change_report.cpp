@@ -51,6 +51,7 @@ void printJsonReport(const fs::path& map, const ChangeReport& report, bool dry_r
   const auto before = classesOf(report.before), after = classesOf(report.after);
   printJson(Json{{"map", map.string()},
                  {"dry_run", dry_run},
+                 {"has_changes", report.has_changes},
                  {"scans_added", report.scans_added},
                  {"scans_already_there", report.scans_already_there},
                  {"scans_removed", report.scans_removed},
@@ -80,7 +81,7 @@ void addChangeOptions(CLI::App& command, mapping::ChangeParams& params, bool in_
 void printChange(const fs::path& map, const ChangeReport& report, const mapping::ChangeParams& params,
                  const Session& session) {
   if (session.json) return printJsonReport(map, report, params.dry_run);
-  if (report.scans == 0) {  // nothing was committed
+  if (!report.has_changes) {
     std::printf("%s: nothing changes%s\n", map.c_str(), report.scans_already_there > 0 ? "; all scans are there" : "");
     return;
   }

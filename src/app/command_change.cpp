@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel extend`, `retract`, `repose` and `merge`: a finished map gets other inputs.
+#include <set>
+
 #include "app/change_report.hpp"
 #include "app/command.hpp"
 #include "app/scan_options.hpp"
@@ -7,6 +9,7 @@
 #include "cluxel/error.hpp"
 #include "mapping/change/map_change.hpp"
 #include "mapping/change/map_merge.hpp"
+#include "mapping/map_reader.hpp"
 #include "scan/poses/pose_files.hpp"
 
 namespace cluxel::app {
@@ -37,14 +40,21 @@ ExitCode retract(const ChangeOptions& options, Session& session) {
   return ExitCode::Done;
 }
 
-/// The clouds of the map among the scans, with the poses that the set gives them.
-std::vector<mapping::ScanPose> posesOf(const scan::ScanSet& scans, ProgressSink& sink) {
+/// The clouds of the map, which all scans must be, with the poses that the set gives them.
+std::vector<mapping::ScanPose> posesOf(const scan::ScanSet& scans, const fs::path& map, ProgressSink& sink) {
+  const mapping::MapReader reader(map);
+  requireFrame(reader.inputs(), scans);
+  std::set<scan::ScanId> known;
+  for (const mapping::Cloud& cloud : reader.clouds()) known.insert(cloud.id);
   std::vector<mapping::ScanPose> poses;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     if (!scans.file(i).has_pose)
       throw Error(ErrorKind::FaultyInput, scans.file(i).path.string() + ": has no pose to give to the map's cloud",
                   Remedy::NamePoses);
     poses.push_back({scans.load(i).id, scans.file(i).T_map_sensor});
+    if (!known.contains(poses.back().scan))
+      throw Error(ErrorKind::NotFound, map.string() + ": does not hold the scan " + scans.file(i).path.string(),
+                  Remedy::ListClouds);
     sink.progress("reading", i + 1, scans.size());
   }
   return poses;
@@ -54,7 +64,7 @@ ExitCode repose(const ChangeOptions& options, Session& session) {
   const scan::ScanSet scans = scan::ScanSet::open(options.inputs, options.scans.params(), session.console);
   mapping::ChangeParams params = options.change;
   params.threads = session.threadCount();
-  const auto poses = posesOf(scans, session.console);
+  const auto poses = posesOf(scans, options.map, session.console);
   printChange(options.map, moveScans(options.map, poses, params, session.console), params, session);
   return ExitCode::Done;
 }
@@ -68,7 +78,7 @@ struct MergeOptions {
 std::optional<std::size_t> numberOf(const fs::path& used, const std::vector<fs::path>& maps) {
   if (used.empty()) return std::nullopt;
   for (std::size_t i = 0; i < maps.size(); ++i)
-    if (maps[i] == used) return i;
+    if (maps[i] == used || (fs::exists(maps[i]) && fs::exists(used) && fs::equivalent(maps[i], used))) return i;
   throw Error(ErrorKind::InvalidArgument, "--use " + used.string() + ": is not one of the maps that are merged");
 }
 

@@ -120,19 +120,14 @@ mapping::MapInputs inputsWith(const mapping::MapInputFiles& named, mapping::MapI
   if (named.rules.empty() && named.sparql_rules.empty() && named.ontology.empty() && named.model.empty())
     throw Error(ErrorKind::InvalidArgument,
                 "name what is to be applied: --rules, --sparql-rules, --ontology or --model; the rest stays");
-  const mapping::MapInputs read = readMapInputs(named, session.dataHome());
-  if (!named.rules.empty()) inputs.rules = read.rules, inputs.rule_roots = read.rule_roots;
-  if (!named.sparql_rules.empty()) inputs.sparql_rules = read.sparql_rules;
-  if (!named.ontology.empty()) inputs.ontology = read.ontology;
-  if (!named.model.empty()) inputs.model = read.model;
-  return inputs;
+  return withNamedFiles(std::move(inputs), named, session.dataHome());
 }
 
 ExitCode apply(const ApplyOptions& options, Session& session) {
   mapping::ChangeParams params = options.change;
   params.threads = session.threadCount();
-  const mapping::MapInputs inputs = inputsWith(options.files, mapping::MapReader(options.map).inputs(), session);
-  printChange(options.map, applyInputs(options.map, inputs, params, session.console), params, session);
+  const auto change = [&](mapping::MapInputs inputs) { return inputsWith(options.files, std::move(inputs), session); };
+  printChange(options.map, applyInputs(options.map, change, params, session.console), params, session);
   return ExitCode::Done;
 }
 

@@ -116,17 +116,28 @@ rules::ClassCatalogue classCatalogueOf(const std::vector<NamedText>& ontology) {
 }
 
 MapInputs readMapInputs(const MapInputFiles& files, const DataHome& home) {
+  // A default name is never looked up in the working directory, where a file of that name may be unrelated.
+  MapInputFiles all = files;
+  all.ontology = givenOr(files.ontology, "ontology", ".ttl", home);
+  if (files.rules.empty()) all.rules = {home.locate("rules/outdoor.rules.yaml")};
+  all.sparql_rules = givenOr(files.sparql_rules, "rules", ".rq", home);
+  if (files.model.empty()) all.model = home.locate("models/oakland");
   MapInputs inputs;
   inputs.home = home.root().string();
-  inputs.ontology = readAll(givenOr(files.ontology, "ontology", ".ttl", home));
-  // A default name is never looked up in the working directory, where a file of that name may be unrelated.
+  return withNamedFiles(std::move(inputs), all, home);
+}
+
+MapInputs withNamedFiles(MapInputs inputs, const MapInputFiles& files, const DataHome& home) {
+  if (!files.ontology.empty()) inputs.ontology = readAll(givenOr(files.ontology, "ontology", ".ttl", home));
   std::vector<fs::path> rules;
   for (const fs::path& name : files.rules) rules.push_back(home.locate("rules", name));
-  if (rules.empty()) rules.push_back(home.locate("rules/outdoor.rules.yaml"));
-  inputs.rules = readRules(rules, inputs.ontology);
-  inputs.rule_roots = rules.size();
-  inputs.sparql_rules = readAll(givenOr(files.sparql_rules, "rules", ".rq", home));
-  fs::path model = files.model.empty() ? home.locate("models/oakland") : home.locate("models", files.model);
+  if (!rules.empty()) {
+    inputs.rules = readRules(rules, inputs.ontology);
+    inputs.rule_roots = rules.size();
+  }
+  if (!files.sparql_rules.empty()) inputs.sparql_rules = readAll(givenOr(files.sparql_rules, "rules", ".rq", home));
+  if (files.model.empty()) return inputs;
+  fs::path model = home.locate("models", files.model);
   if (fs::is_directory(model)) model /= "model.json";
   inputs.model = {model.string(), readFile(model)};
   return inputs;

@@ -73,6 +73,8 @@ struct MapInputFiles {
 
 /// Reads the files through `home`. Throws InputError for a file that is missing.
 MapInputs readMapInputs(const MapInputFiles& files, const DataHome& home);
+/// `inputs` with those replaced that `files` names. Rules are read for the ontology of the result.
+MapInputs withNamedFiles(MapInputs inputs, const MapInputFiles& files, const DataHome& home);
 
 /// The ontology texts as Turtle sources of graph ontology.
 std::vector<rdf::RdfSource> ontologySources(const std::vector<NamedText>& texts);

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <map>
 #include <random>
 
@@ -12,6 +13,7 @@
 #include "cluxel/error.hpp"
 #include "mapping/build/map_update.hpp"
 #include "mapping/small_campus.hpp"
+#include "sparql/query_engine.hpp"
 
 namespace cluxel::mapping {
 namespace {
@@ -77,6 +79,10 @@ class MapChange : public testing::Test {
     std::vector<ScanPose> moves;
     for (const auto& [scan, number] : poses) moves.push_back({ids[scan], poseOf(scan, number)});
     return moveScans(map(), moves, params, silence());
+  }
+
+  static std::function<MapInputs(MapInputs)> always(const MapInputs& inputs) {
+    return [inputs](const MapInputs&) { return inputs; };
   }
 
   ScratchFolder folder;
@@ -160,12 +166,12 @@ TEST_F(MapChange, OtherRulesGiveTheBuildWithTheseRules) {
   const std::string threshold = "group: { near: 1.5 m }";
   ASSERT_NE(text.find(threshold), std::string::npos);
   text.replace(text.find(threshold), threshold.size(), "group: { near: 0.2 m }");
-  const ChangeReport report = applyInputs(map(), other, {}, silence());
+  const ChangeReport report = applyInputs(map(), always(other), {}, silence());
   EXPECT_FALSE(report.objects.isEmpty());
   EXPECT_EQ(report.tiles_changed, 0U);
   buildMap(posed({{0, 0}, {1, 0}}), other, folder.path() / "other.clx", {}, silence());
   EXPECT_TRUE(canonicalText(map()) == canonicalText(folder.path() / "other.clx"));
-  applyInputs(map(), *inputs, {}, silence());
+  applyInputs(map(), always(*inputs), {}, silence());
   expectExact({{0, 0}, {1, 0}});
 }
 
@@ -174,7 +180,7 @@ TEST_F(MapChange, AnotherModelGivesTheBuildWithThisModel) {
   files.model = "campus";
   const MapInputs other = readMapInputs(files, DataHome(test::sourceFolder()));
   build({{0, 0}, {1, 0}});
-  applyInputs(map(), other, {}, silence());
+  applyInputs(map(), always(other), {}, silence());
   buildMap(posed({{0, 0}, {1, 0}}), other, folder.path() / "other.clx", {}, silence());
   EXPECT_TRUE(canonicalText(map()) == canonicalText(folder.path() / "other.clx"));
 }
@@ -198,6 +204,33 @@ TEST_F(MapChange, OperatorStatementsStay) {
   extend(2, 0);
   retract(0);
   EXPECT_THAT(canonicalText(map()), HasSubstr(statement));
+}
+
+TEST_F(MapChange, ALaterTimeOfAKnownScanIsKept) {
+  std::ofstream(folder.path() / "later.yaml")
+      << "scans:\n  - {path: " << campus->files()[1].string() << ", time_s: 1700000000.5}\n";
+  const ScanSet again = scansOf({folder.path() / "later.yaml"});
+  ASSERT_EQ(again.load(0).id, ids[1]);
+  build({{0, 0}, {1, 0}});
+  const ChangeReport report = extendMap(map(), again, {}, silence());
+  EXPECT_EQ(report.scans_already_there, 1U);
+  EXPECT_TRUE(report.has_changes);
+  const ScanSet both = scansOf({campus->files()[0], folder.path() / "later.yaml"});
+  buildMap(both, *inputs, folder.path() / "other.clx", {}, silence());
+  EXPECT_TRUE(canonicalText(map()) == canonicalText(folder.path() / "other.clx"));
+}
+
+TEST_F(MapChange, LineageLeadsFromCommitToCommit) {
+  build({{0, 0}});
+  extendMap(map(), posed({{1, 0}, {2, 0}}), {.threads = 1, .batch_points = 1}, silence());
+  const MapReader reader(map());
+  const auto origins = sparql::evaluateQuery(reader.quads(), R"(PREFIX prov: <http://www.w3.org/ns/prov#>
+    ASK { GRAPH <https://w3id.org/cluxel/graph/history> { ?a prov:wasDerivedFrom ?b . ?b prov:wasDerivedFrom ?c } })");
+  EXPECT_TRUE(origins.boolean) << "an object that changed twice has two steps";
+  const auto gone = sparql::evaluateQuery(
+      reader.quads(), R"(PREFIX prov: <http://www.w3.org/ns/prov#> PREFIX clx: <https://w3id.org/cluxel/ontology#>
+    ASK { GRAPH <https://w3id.org/cluxel/graph/history> { ?a prov:wasInvalidatedBy ?x, ?y FILTER(?x != ?y) } })");
+  EXPECT_FALSE(gone.boolean) << "an object goes once";
 }
 
 TEST_F(MapChange, WhatCannotBeDoneIsRefusedAndChangesNothing) {

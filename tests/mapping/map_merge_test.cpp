@@ -115,6 +115,31 @@ TEST_F(MapMerge, RefusesWhatHasNoOneAnswerAndLeavesNothing) {
   EXPECT_FALSE(fs::exists(target().string() + ".merging"));
 }
 
+TEST_F(MapMerge, DoesNotCareWhereTheInputsWereRead) {
+  const fs::path a = built({0, 1}, "a"), b = folder.path() / "b";
+  MapInputs elsewhere = *inputs;
+  for (auto* texts : {&elsewhere.ontology, &elsewhere.rules, &elsewhere.sparql_rules})
+    for (NamedText& text : *texts) text.name = "/usr/share/cluxel/" + fs::path(text.name).filename().string();
+  elsewhere.model.name = "/usr/share/cluxel/model.json";
+  buildMap(scansOf({campus->files()[2], campus->files()[3]}), elsewhere, b, {}, silence());
+  merge({{a}, {b}});
+  EXPECT_TRUE(canonicalText(target()) == *whole);
+}
+
+TEST_F(MapMerge, RefusesOneFileTwiceAndATargetThatIsOneOfTheMaps) {
+  const fs::path a = built({0, 1}, "a"), b = built({2, 3}, "b"), link = folder.path() / "link";
+  fs::create_symlink(a, link);
+  EXPECT_THAT(refusal({{a}, {link}}), HasSubstr("is named twice"));
+  const std::string before = readFile(a);
+  try {
+    mergeMaps({{a}, {b}}, link, {.change = {}, .use = std::nullopt, .force = true}, silence());
+    ADD_FAILURE() << "was not refused";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("is one of the maps"));
+  }
+  EXPECT_TRUE(readFile(a) == before);
+}
+
 TEST_F(MapMerge, UsesTheRulesOfTheMapThatIsNamed) {
   MapInputs other = *inputs;
   const std::string threshold = "group: { near: 1.5 m }";

@@ -15,16 +15,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A set that names no origin or coordinate system lies in the map frame.
-void requireFrame(const MapInputs& map, const scan::ScanSet& scans) {
-  const bool other_origin = !scans.mapOrigin().isZero(0) && scans.mapOrigin() != map.map_origin;
-  const bool other_crs = !scans.crs().empty() && scans.crs() != map.crs;
-  if (!other_origin && !other_crs) return;
-  throw Error(ErrorKind::InvalidArgument,
-              std::string("the scans' ") + (other_crs ? "coordinate system" : "map_origin") +
-                  " is not the map's; give them in the map's frame, or build the map anew from all scans");
-}
-
 void requireOnce(const std::vector<scan::ScanId>& scans) {
   std::set<scan::ScanId> seen;
   for (const scan::ScanId& id : scans)
@@ -37,10 +27,25 @@ bool isNamed(const Cloud& cloud, const std::string& name) {
   if (const std::size_t slash = name.rfind('/'); slash != std::string::npos && name.find("cloud/") != std::string::npos)
     digits = name.substr(slash + 1);
   if (digits.size() >= kMinDigits && cloud.id.hex().starts_with(digits)) return true;
-  return cloud.source == name || fs::path(cloud.source).filename() == name;
+  const fs::path source = cloud.source;
+  return source == name || source.filename() == name || source.stem() == name;  // "0001" may be meant as a file
 }
 
 }  // namespace
+
+void requireFrame(const MapInputs& map, const scan::ScanSet& scans) {
+  // A set that names no origin and no coordinate system lies in the map frame.
+  const bool other_origin = !scans.mapOrigin().isZero(0) && scans.mapOrigin() != map.map_origin;
+  const bool other_crs = !scans.crs().empty() && scans.crs() != map.crs;
+  if (other_origin || other_crs)
+    throw Error(ErrorKind::InvalidArgument,
+                std::string("the scans' ") + (other_crs ? "coordinate system" : "map_origin") +
+                    " is not the map's; give them in the map's frame, or build the map anew from all scans");
+  if (!scans.crs().empty() && scans.mapOrigin().isZero(0) && !map.map_origin.isZero(0))
+    throw Error(ErrorKind::InvalidArgument,
+                "the scans name the map's coordinate system but not its map_origin, so that their coordinates may be "
+                "the outer ones; name map_origin in a manifest");
+}
 
 ChangeReport extendMap(const fs::path& file, const scan::ScanSet& scans, const ChangeParams& params,
                        ProgressSink& sink) {
@@ -49,13 +54,20 @@ ChangeReport extendMap(const fs::path& file, const scan::ScanSet& scans, const C
   requireFrame(editor.inputs().inputs, scans);
   ScanAdditions additions(editor, "extend");
   scan::ReadingNotes notes(scans.remedies());
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    const scan::LoadedScan loaded = scans.read(i);
-    for (const std::string& note : notes.add(loaded.reading)) sink.note(note);
-    additions.add(loaded.scan);
-    sink.progress("scans", i + 1, scans.size());
+  try {
+    for (std::size_t i = 0; i < scans.size(); ++i) {
+      const scan::LoadedScan loaded = scans.read(i);
+      for (const std::string& note : notes.add(loaded.reading)) sink.note(note);
+      additions.add(loaded.scan);
+      sink.progress("scans", i + 1, scans.size());
+    }
+    additions.finish();
+  } catch (...) {
+    if (editor.result().scans_added > 0 && !params.dry_run)
+      sink.note(std::to_string(editor.result().scans_added) +
+                " scans were added before the error; the same command goes on from there");
+    throw;
   }
-  additions.finish();
   for (const std::string& note : notes.totals()) sink.note(note);
   return std::move(editor.result());
 }
@@ -66,13 +78,15 @@ ChangeReport retractScans(const fs::path& file, const std::vector<scan::ScanId>&
   MapEditor editor(file, params, sink);
   rdf::WriteTransaction transaction = editor.begin();
   TileSet touched;
+  std::vector<Cloud> removed;
   for (const scan::ScanId& id : scans) {
+    if (const auto cloud = storedCloud(transaction, id)) removed.push_back(*cloud);
     touched = unionOf(std::move(touched), removeScan(transaction, id));
     sink.progress("scans", ++editor.result().scans_removed, scans.size());
   }
   if (storedClouds(transaction).empty())
     throw Error(ErrorKind::InvalidArgument, file.string() + ": no scan would be left; remove the file instead");
-  if (!scans.empty()) editor.commit(transaction, "retract", touched, scans);
+  if (!scans.empty()) editor.commit(transaction, "retract", touched, removed);
   return std::move(editor.result());
 }
 
@@ -84,7 +98,7 @@ ChangeReport moveScans(const fs::path& file, const std::vector<ScanPose>& poses,
   MapEditor editor(file, params, sink);
   rdf::WriteTransaction transaction = editor.begin();
   TileSet touched;
-  std::vector<scan::ScanId> moved;
+  std::vector<Cloud> moved;
   for (const ScanPose& pose : poses) {
     scan::Scan scan = storedScan(transaction, pose.scan);
     sink.progress("scans", moved.size() + 1, poses.size());
@@ -93,15 +107,17 @@ ChangeReport moveScans(const fs::path& file, const std::vector<ScanPose>& poses,
     scan.has_pose = true;
     touched = unionOf(std::move(touched), removeScan(transaction, scan.id));
     touched = unionOf(std::move(touched), storeScan(transaction, scan));
-    moved.push_back(scan.id);
+    moved.push_back(*storedCloud(transaction, scan.id));
   }
   editor.result().scans_moved = moved.size();
   if (!moved.empty()) editor.commit(transaction, "repose", touched, moved);
   return std::move(editor.result());
 }
 
-ChangeReport applyInputs(const fs::path& file, MapInputs inputs, const ChangeParams& params, ProgressSink& sink) {
+ChangeReport applyInputs(const fs::path& file, const std::function<MapInputs(MapInputs)>& change,
+                         const ChangeParams& params, ProgressSink& sink) {
   MapEditor editor(file, params, sink);
+  MapInputs inputs = change(editor.inputs().inputs);
   inputs.map_origin = editor.inputs().inputs.map_origin;
   inputs.crs = editor.inputs().inputs.crs;
   if (inputs.hash() == editor.inputs().inputs.hash()) return std::move(editor.result());

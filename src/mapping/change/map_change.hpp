@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -12,8 +13,12 @@
 
 namespace cluxel::mapping {
 
-/// All functions throw the Errors of MapEditor, and leave the map as it is when they fail. With
-/// ChangeParams::dry_run nothing is written.
+/// All functions throw the Errors of MapEditor, and leave the map as it is when they fail, except for batches of
+/// extendMap() that were committed before. With ChangeParams::dry_run nothing is written.
+
+/// Scans that are given poses of their own must lie in the map's frame. Throws Error (InvalidArgument) when their
+/// manifest names another map origin or coordinate system than the map's, or when they are in outer coordinates.
+void requireFrame(const MapInputs& map, const scan::ScanSet& scans);
 
 /// Adds scans, batch by batch; each commit is the exact map of the scans so far, so that a killed run goes on when it
 /// is repeated. Scans that are there with the same pose are passed over. Throws InputError for a scan that is there
@@ -34,9 +39,10 @@ struct ScanPose {
 ChangeReport moveScans(const std::filesystem::path& file, const std::vector<ScanPose>& poses,
                        const ChangeParams& params, ProgressSink& sink);
 
-/// Decides anew with other rules, ontology, model or settings. Scans, map origin and coordinate system stay.
-ChangeReport applyInputs(const std::filesystem::path& file, MapInputs inputs, const ChangeParams& params,
-                         ProgressSink& sink);
+/// Decides anew with other rules, ontology, model or settings. `change` gets the inputs of the map, which nobody can
+/// change meanwhile, and returns the new ones. Scans, map origin and coordinate system stay.
+ChangeReport applyInputs(const std::filesystem::path& file, const std::function<MapInputs(MapInputs)>& change,
+                         const ChangeParams& params, ProgressSink& sink);
 
 /// The clouds that people name by file name ("scan7.pcd"), source path, or at least four leading digits of the id.
 /// Throws Error (NotFound, InvalidArgument) for a name that fits none, or several.

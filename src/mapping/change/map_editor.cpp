@@ -2,6 +2,7 @@
 // Opens a map for changes and commits them.
 #include "mapping/change/map_editor.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "base/file_bytes.hpp"
@@ -54,10 +55,21 @@ MapEditor::MapEditor(const fs::path& file, const ChangeParams& params, ProgressS
     : lock_(withoutLinks(file)), environment_(openForChange(withoutLinks(file))), params_(params), sink_(sink) {
   parsed_ = parseInputs(requireInputs(environment_->read(), file));
   inputs_hash_ = parsed_.inputs.hash().hex();
-  stages_.emplace(parsed_.model, parsed_.inputs.params);
-  const rdf::ReadTransaction transaction = environment_->read();
-  stages_->loadAll(transaction);
-  report_.before = membersOf(storedObjects(transaction), stages_->scene().cluxels);
+  readBefore(environment_->read());
+}
+
+/// Another process may change objects by an update until the first write transaction begins; the stages it leaves.
+void MapEditor::readBefore(const rdf::ReadTransaction& transaction) {
+  if (!stages_) {
+    stages_.emplace(parsed_.model, parsed_.inputs.params);
+    stages_->loadAll(transaction);
+  }
+  const perception::Scene scene = stages_->scene();
+  report_.before = report_.after = membersOf(storedObjects(transaction), scene.cluxels);
+  report_.objects = compareObjects(report_.before, report_.after);
+  report_.scans = storedClouds(transaction).size();
+  report_.tiles = stages_->points().size();
+  report_.cluxels = scene.cluxels.size(), report_.primitives = scene.primitives.size();
 }
 
 void MapEditor::setInputs(ParsedInputs inputs) {
@@ -72,17 +84,24 @@ rdf::WriteTransaction MapEditor::begin() {
   if (!state || !state->is_finished || state->inputs_hash != inputs_hash_)
     throw Error(ErrorKind::StoreUnavailable,
                 environment_->file().string() + ": another program has changed it meanwhile; run the command again");
+  if (!present_) {
+    const std::vector<rules::SemanticObject> objects = storedObjects(transaction);
+    const bool is_same = std::equal(objects.begin(), objects.end(), report_.before.begin(), report_.before.end(),
+                                    [](const auto& now, const auto& before) { return now.id == before.id; });
+    if (!is_same) readBefore(transaction);  // an update came in between
+    present_ = report_.before;
+  }
   return transaction;
 }
 
 void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& operation, const TileSet& touched,
-                       const std::vector<scan::ScanId>& changed_scans) {
+                       const std::vector<Cloud>& scans) {
   const double started_s = secondsNow();
   if (!stages_) stages_.emplace(parsed_.model, parsed_.inputs.params);
-  report_.tiles_touched += touched.size();
+  touched_.insert(touched.begin(), touched.end());
   const TileSet changed = all_tiles_ ? stages_->updateAll(transaction, params_.threads, sink_)
                                      : stages_->update(transaction, touched, params_.threads, sink_);
-  report_.tiles_changed += changed.size();
+  changed_.insert(changed.begin(), changed.end());
   all_tiles_ = false;
   stages_->loadAll(transaction);
   const SemanticLayer layer = writeSemanticLayer(transaction, parsed_, *stages_, sink_);
@@ -90,15 +109,17 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
   storeInputs(transaction, parsed_.inputs);
   storeState(transaction, MapState{true, inputs_hash_});
   report(transaction, layer);
-  std::vector<Cloud> used;
-  for (const scan::ScanId& id : changed_scans)
-    if (auto cloud = storedCloud(transaction, id)) used.push_back(std::move(*cloud));
   const Activity activity{operation, started_s, secondsNow()};
-  addLineage(transaction, addActivity(transaction, activity, used, parsed_.inputs), report_.objects);
+  const ObjectChanges changes = compareObjects(*present_, report_.after);
+  addLineage(transaction, addActivity(transaction, activity, scans, parsed_.inputs), changes);
+  present_ = report_.after;
   if (!params_.dry_run) transaction.commit();
 }
 
 void MapEditor::report(const rdf::ReadTransaction& transaction, const SemanticLayer& layer) {
+  report_.has_changes = true;
+  report_.tiles_touched = touched_.size();
+  report_.tiles_changed = changed_.size();
   report_.scans = storedClouds(transaction).size();
   report_.tiles = stages_->points().size();
   report_.cluxels = layer.scene.cluxels.size();

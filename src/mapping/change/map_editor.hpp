@@ -25,6 +25,7 @@ struct ChangeParams {
 };
 
 struct ChangeReport {
+  bool has_changes = false;  ///< something was committed, or would be without dry_run
   std::size_t scans_added = 0, scans_already_there = 0, scans_removed = 0, scans_moved = 0;
   std::size_t tiles_touched = 0;                                  ///< a scan's points in them changed
   std::size_t tiles_changed = 0;                                  ///< the output of some stage changed
@@ -46,15 +47,16 @@ class MapEditor {
 
   rdf::WriteTransaction begin();
   /// Brings all layers up to date after segments of `touched` changed, and commits unless this is a dry run.
-  /// `operation` names the change in the history ("extend"), and `changed_scans` the scans it was about.
+  /// `operation` names the change in the history ("extend"), and `scans` those it was about.
   void commit(rdf::WriteTransaction& transaction, const std::string& operation, const TileSet& touched,
-              const std::vector<scan::ScanId>& changed_scans);
+              const std::vector<Cloud>& scans);
 
   ChangeReport& result() { return report_; }
   ProgressSink& sink() { return sink_; }
   const ChangeParams& params() const { return params_; }
 
  private:
+  void readBefore(const rdf::ReadTransaction& transaction);
   void report(const rdf::ReadTransaction& transaction, const SemanticLayer& layer);
 
   BuildLock lock_;
@@ -65,6 +67,8 @@ class MapEditor {
   std::string inputs_hash_;  ///< as stored in the file
   bool all_tiles_ = false;   ///< the next commit computes every tile
   std::optional<TileStages> stages_;
+  TileSet touched_, changed_;                          ///< in all commits
+  std::optional<std::vector<ObjectMembers>> present_;  ///< the objects of the last commit
   ChangeReport report_;
 };
 

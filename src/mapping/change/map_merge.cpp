@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/scan_additions.hpp"
@@ -16,12 +17,21 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// File names differ between machines, and mean nothing: except those of SPARQL rules, which stand in the facts.
+std::vector<std::string> textsOf(const std::vector<NamedText>& named, bool with_names = false) {
+  std::vector<std::string> texts;
+  for (const NamedText& text : named) texts.push_back((with_names ? ruleFileName(text) + "\n" : "") + text.text);
+  return texts;
+}
+
 std::vector<std::string> differencesOf(const MapInputs& a, const MapInputs& b) {
   std::vector<std::string> differences;
-  if (a.ontology != b.ontology) differences.emplace_back("ontology");
-  if (a.rules != b.rules || a.rule_roots != b.rule_roots || a.sparql_rules != b.sparql_rules)
+  if (textsOf(a.ontology) != textsOf(b.ontology)) differences.emplace_back("ontology");
+  if (textsOf(a.rules) != textsOf(b.rules) || a.rule_roots != b.rule_roots ||
+      textsOf(a.sparql_rules, true) != textsOf(b.sparql_rules, true))
     differences.emplace_back("rules");
-  if (a.model != b.model) differences.emplace_back("model");
+  if (a.model.text != b.model.text) differences.emplace_back("model");
+  if (perception::hashOf(a.params) != perception::hashOf(b.params)) differences.emplace_back("settings");
   return differences;
 }
 
@@ -34,7 +44,12 @@ std::string joined(const std::vector<std::string>& words) {
 class Merge {
  public:
   Merge(const std::vector<MapToMerge>& maps, const fs::path& target, const MergeParams& params, ProgressSink& sink)
-      : maps_(maps), target_(target), beside_(target.string() + ".merging"), params_(params), sink_(sink) {}
+      : maps_(maps),
+        target_(withoutLinks(target)),
+        beside_(target_.string() + ".merging"),
+        lock_(target_),
+        params_(params),
+        sink_(sink) {}
 
   Merge(const Merge&) = delete;
   Merge& operator=(const Merge&) = delete;
@@ -44,6 +59,7 @@ class Merge {
     if (maps_.size() < 2) throw Error(ErrorKind::InvalidArgument, "a merge needs at least two maps");
     if (fs::exists(target_) && !params_.force)
       throw Error(ErrorKind::InvalidArgument, target_.string() + ": is there already", Remedy::ReplaceMap);
+    requireDifferentFiles();
     for (const MapToMerge& map : maps_) readers_.emplace_back(map.file);
     requireEqualInputs();
     const std::size_t base = largest();
@@ -55,6 +71,18 @@ class Merge {
   }
 
  private:
+  void requireDifferentFiles() const {
+    for (std::size_t i = 0; i < maps_.size(); ++i) {
+      if (!fs::exists(maps_[i].file)) continue;  // opening it tells
+      if (fs::exists(target_) && fs::equivalent(maps_[i].file, target_))
+        throw Error(ErrorKind::InvalidArgument,
+                    target_.string() + ": is one of the maps; name another file, or extend that map");
+      for (std::size_t j = 0; j < i; ++j)
+        if (fs::equivalent(maps_[i].file, maps_[j].file))
+          throw Error(ErrorKind::InvalidArgument, maps_[i].file.string() + ": is named twice");
+    }
+  }
+
   void requireEqualInputs() const {
     const MapInputs first = readers_.front().inputs();
     for (std::size_t i = 0; i < readers_.size(); ++i) {
@@ -62,6 +90,10 @@ class Merge {
         throw Error(ErrorKind::InvalidArgument,
                     maps_[i].file.string() + ": its build is unfinished; repeat the build command first");
       const MapInputs mine = readers_[i].inputs();
+      if (mine.hash().hex() != readers_[i].summary().inputs_hash)
+        throw Error(ErrorKind::InvalidArgument,
+                    maps_[i].file.string() +
+                        ": was made by another version of Cluxel, whose stages give other results; build it anew");
       const bool moved = !maps_[i].T_first_map.matrix().isIdentity(0);
       if (!moved && (mine.map_origin != first.map_origin || mine.crs != first.crs))
         throw Error(ErrorKind::InvalidArgument, maps_[i].file.string() +
@@ -88,10 +120,14 @@ class Merge {
     ChangeParams change = params_.change;
     change.dry_run = false;  // the copy may be written: it becomes the target only at the end
     MapEditor editor(beside_, change, sink_);
+    if (editor.inputs().inputs.hash() != readers_[base].inputs().hash())
+      throw Error(ErrorKind::StoreUnavailable,
+                  maps_[base].file.string() + ": another program has changed it meanwhile; run the command again");
     editor.setInputs(parseInputs(inputsOfResult()));
     ScanAdditions additions(editor, "merge");
     for (std::size_t i = 0; i < maps_.size(); ++i)
-      if (i != base) copyOperatorStatements(readers_[i].quads(), additions.transaction(), "of" + scansHash(i));
+      if (i != base)
+        copyOperatorStatements(readers_[i].quads(), additions.transaction(), "of" + std::to_string(i) + scansHash(i));
     for (std::size_t i = 0; i < maps_.size(); ++i) {
       if (i == base) continue;
       const auto other = membersOf(readers_[i].objects(), readers_[i].scene().cluxels);
@@ -134,6 +170,7 @@ class Merge {
   void replaceTarget() {
     if (!fs::exists(target_)) return rdf::replaceMapFile(beside_, target_);
     const rdf::WriteTransaction old = rdf::writeMap(target_);
+    sink_.note(target_.string() + ": is replaced; operator statements that it had are dropped");
     rdf::replaceMapFile(beside_, target_);
   }
 
@@ -145,6 +182,7 @@ class Merge {
 
   const std::vector<MapToMerge>& maps_;
   fs::path target_, beside_;
+  BuildLock lock_;
   const MergeParams& params_;
   ProgressSink& sink_;
   std::vector<MapReader> readers_;
@@ -154,7 +192,6 @@ class Merge {
 
 ChangeReport mergeMaps(const std::vector<MapToMerge>& maps, const fs::path& target, const MergeParams& params,
                        ProgressSink& sink) {
-  const BuildLock lock(target);
   return Merge(maps, target, params, sink).run();
 }
 

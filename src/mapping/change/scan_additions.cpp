@@ -6,12 +6,15 @@ namespace cluxel::mapping {
 
 void ScanAdditions::add(const scan::Scan& scan) {
   if (!transaction_) transaction_.emplace(editor_.begin());
+  const std::optional<Cloud> known = storedCloud(*transaction_, scan.id);
   const TileSet tiles = storeScan(*transaction_, scan);
   if (tiles.empty()) {
     ++editor_.result().scans_already_there;
+    // The scan's time may be later than the one that was known.
+    has_other_changes_ = has_other_changes_ || storedCloud(*transaction_, scan.id)->time_s != known->time_s;
     return;
   }
-  added_.push_back(scan.id);
+  added_.push_back(*storedCloud(*transaction_, scan.id));
   points_ += scan.points.size();
   touched_ = unionOf(std::move(touched_), tiles);
   if (!editor_.params().dry_run && points_ >= editor_.params().batch_points) finish();

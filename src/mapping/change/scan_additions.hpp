@@ -28,7 +28,7 @@ class ScanAdditions {
   std::string operation_;
   std::optional<rdf::WriteTransaction> transaction_;  ///< of the open batch
   TileSet touched_;
-  std::vector<scan::ScanId> added_;
+  std::vector<Cloud> added_;
   std::uint64_t points_ = 0;
   bool has_other_changes_ = false;
 };
