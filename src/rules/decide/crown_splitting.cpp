@@ -3,6 +3,7 @@
 #include "rules/decide/crown_splitting.hpp"
 
 #include <algorithm>
+#include <array>
 #include <boost/graph/dijkstra_shortest_paths_no_color_map.hpp>
 #include <boost/property_map/function_property_map.hpp>
 #include <cmath>
@@ -17,15 +18,27 @@ namespace {
 
 constexpr double kJumpPenalty = 2.0;
 constexpr double kTop_m = 0.5;
+constexpr double kRounding_m = 1e-6;  // half diagonals are rounded to floats
 
-/// Hash-free grid of crown cluxels with cells as wide as the largest allowed jump. Finds pairs across gaps that no edge
-/// of the cluxel graph bridges.
+/// Crown cluxels in cells as wide as the largest allowed jump. Finds pairs across gaps that no edge of the cluxel graph
+/// bridges.
 class JumpGrid {
  public:
+  struct Entry {
+    Eigen::Vector3d centre;
+    double half_m = 0;   ///< half of the box's diagonal
+    std::size_t at = 0;  ///< number in the crown
+  };
+
   JumpGrid(const perception::SceneCluxels& all, std::span<const std::uint32_t> crown, double centres_m)
       : cell_m_(std::max(centres_m, 0.05)) {
-    for (std::size_t i = 0; i < crown.size(); ++i) entries_.push_back({cellOf(all.center[crown[i]]), i});
-    std::sort(entries_.begin(), entries_.end());
+    std::vector<std::pair<Cell, std::size_t>> order;
+    for (std::size_t i = 0; i < crown.size(); ++i) order.emplace_back(cellOf(all.center[crown[i]]), i);
+    std::sort(order.begin(), order.end());
+    for (const auto& [cell, i] : order) {
+      if (cells_.empty() || cells_.back().first != cell) cells_.emplace_back(cell, entries_.size());
+      entries_.push_back({all.center[crown[i]], static_cast<double>(all.extent[crown[i]].norm()) / 2, i});
+    }
   }
 
   template <typename Visit>
@@ -33,11 +46,12 @@ class JumpGrid {
     const Cell centre = cellOf(p);
     for (int dx = -1; dx <= 1; ++dx)
       for (int dy = -1; dy <= 1; ++dy) {
-        const Cell first{centre[0] + dx, centre[1] + dy, centre[2] - 1};
-        for (auto e = std::lower_bound(entries_.begin(), entries_.end(), std::pair(first, std::size_t{0}));
-             e != entries_.end() && e->first[0] == first[0] && e->first[1] == first[1] && e->first[2] <= first[2] + 2;
-             ++e)
-          visit(e->second);
+        const Cell first{centre[0] + dx, centre[1] + dy, centre[2] - 1}, last{first[0], first[1], centre[2] + 1};
+        auto cell = std::lower_bound(cells_.begin(), cells_.end(), std::pair(first, std::size_t{0}));
+        for (; cell != cells_.end() && cell->first <= last; ++cell) {
+          const std::size_t end = cell + 1 == cells_.end() ? entries_.size() : (cell + 1)->second;
+          for (std::size_t i = cell->second; i < end; ++i) visit(entries_[i]);
+        }
       }
   }
 
@@ -49,7 +63,8 @@ class JumpGrid {
             static_cast<std::int64_t>(std::floor(p.z() / cell_m_))};
   }
   double cell_m_;
-  std::vector<std::pair<Cell, std::size_t>> entries_;
+  std::vector<std::pair<Cell, std::size_t>> cells_;  ///< with the first of their entries, ascending
+  std::vector<Entry> entries_;
 };
 
 /// Length of a path and the number of its source. Shorter paths come first; of equal ones, the smaller source number.
@@ -142,8 +157,9 @@ class CrownGraph {
       if (isBeyond(to, s)) continue;
       double shortest = std::numeric_limits<double>::infinity();
       for (std::uint32_t cluxel : from)
-        if (gapBetween(all_, cluxel, crown_[to]).gap() <= sources_[s].start_m)
-          shortest = std::min(shortest, (all_.center[crown_[to]] - all_.center[cluxel]).norm());
+        if (const double distance = (all_.center[crown_[to]] - all_.center[cluxel]).norm();
+            distance < shortest && gapBetween(all_, cluxel, crown_[to]).gap() <= sources_[s].start_m)
+          shortest = distance;
       if (std::isfinite(shortest)) addEdge(to, {kJumpPenalty * shortest, s});
     }
   }
@@ -158,9 +174,14 @@ class CrownGraph {
       if (best_[to] > so_far) addEdge(to, {(all_.center[neighbour] - from).norm(), so_far.source});
     }
     const double jump = sources_[so_far.source].jump_m;
-    grid_.near(from, [&](std::size_t to) {
-      if (best_[to] > so_far && gapBetween(all_, cluxel, crown_[to]).gap() <= jump)
-        addEdge(to, {kJumpPenalty * (all_.center[crown_[to]] - from).norm(), so_far.source});
+    const double reach = jump + static_cast<double>(all_.extent[cluxel].norm()) / 2 + kRounding_m;
+    grid_.near(from, [&](const JumpGrid::Entry& other) {
+      // Most pairs are too far apart, or have a shorter path: both are known before the gap is measured.
+      const double square = (other.centre - from).squaredNorm();
+      if (square > (reach + other.half_m) * (reach + other.half_m)) return;
+      const Way step{kJumpPenalty * (other.centre - from).norm(), so_far.source};
+      if (best_[other.at] > onward(so_far, step) && gapBetween(all_, cluxel, crown_[other.at]).gap() <= jump)
+        addEdge(other.at, step);
     });
   }
 
