@@ -98,13 +98,13 @@ std::string nameOfLeast(const std::map<std::string, double>& ratios) {
       ->first;
 }
 
-void printComparison(const std::string& peer, const std::vector<tasks::Question>& asked, const Measures& ours,
+void printComparison(const std::string& peer, const std::vector<Question>& asked, const Measures& ours,
                      const Measures& theirs) {
   std::printf("| question | rows | cluxel [ms] | %s [ms] | ratio |\n|---|---|---|---|---|\n", peer.c_str());
   double logs = 0;
   std::map<std::string, double> ratios;
   std::size_t wrong = 0, unanswered = 0;
-  for (const tasks::Question& question : asked) {
+  for (const Question& question : asked) {
     const Measure& mine = ours.at(question.name);
     const auto found = theirs.find(question.name);
     const Measure other = found == theirs.end() ? Measure() : found->second;
@@ -132,9 +132,9 @@ void printComparison(const std::string& peer, const std::vector<tasks::Question>
 }
 
 /// The same question with its patterns in another order: names that differ by "_bad".
-void printOrders(const std::vector<tasks::Question>& asked, const Measures& ours) {
+void printOrders(const std::vector<Question>& asked, const Measures& ours) {
   std::printf("\nPatterns in bad order against good order, time:");
-  for (const tasks::Question& question : asked) {
+  for (const Question& question : asked) {
     if (!question.name.ends_with("_bad")) continue;
     const std::string stem = question.name.substr(0, question.name.size() - 4);
     const auto good = ours.contains(stem) ? ours.find(stem) : ours.find(stem + "_good");
@@ -145,11 +145,11 @@ void printOrders(const std::vector<tasks::Question>& asked, const Measures& ours
 }
 
 /// Growth against the smaller data, measured in turn: time, rows of the answer, rows that the operators had to make.
-void printGrowth(const std::vector<tasks::Question>& asked, const Measures& small, const Measures& large) {
+void printGrowth(const std::vector<Question>& asked, const Measures& small, const Measures& large) {
   std::printf(
       "| question | rows | cluxel [ms] | time grows | rows grow | work grows | bar |\n|---|---|---|---|---|---|---|\n");
   std::size_t over = 0;
-  for (const tasks::Question& question : asked) {
+  for (const Question& question : asked) {
     const Measure &before = small.at(question.name), &now = large.at(question.name);
     const double time = now.seconds / before.seconds;
     const double rows = static_cast<double>(std::max<std::size_t>(now.rows, 1)) /
@@ -166,10 +166,10 @@ void printGrowth(const std::vector<tasks::Question>& asked, const Measures& smal
 }
 
 /// Text to plan, without running it.
-void printPreparation(const rdf::Environment& environment, const std::vector<tasks::Question>& asked) {
+void printPreparation(const rdf::Environment& environment, const std::vector<Question>& asked) {
   const rdf::QuadReader reader(environment.read());
   std::printf("\nParse and plan [ms]:");
-  for (const tasks::Question& question : asked) {
+  for (const Question& question : asked) {
     for (const char* name : {"class_lookup", "one_object", "star3_good", "chain3_bad", "range_height", "star5_bad"}) {
       if (question.name != name) continue;
       const Measure measure = measured([&] { return sparql::PreparedQuery(reader, question.text).variables().size(); });
@@ -189,7 +189,7 @@ void printGeometry(const rdf::Environment& environment) {
   for (const char* radius : {"10", "100"}) {
     const std::string filter = std::string("geof:distance(?w, \"POINT(200 200)\"^^geo:wktLiteral) < ") + radius;
     const auto ask = [&](const std::string& condition) {
-      return evaluateQuery(reader, prefixes + "SELECT ?g { ?g geo:asWKT ?w FILTER(" + condition + ") }")
+      return sparql::evaluateQuery(reader, prefixes + "SELECT ?g { ?g geo:asWKT ?w FILTER(" + condition + ") }")
           .table.row_count;
     };
     const auto start = std::chrono::steady_clock::now();

@@ -11,7 +11,7 @@
 namespace cluxel::bench {
 namespace {
 
-using namespace vocabulary;
+using namespace rdf::vocabulary;
 
 struct ClassShare {
   const char* name;
@@ -39,7 +39,7 @@ class Generator {
     const std::uint64_t clouds = objects_ / 400 + 4;
     for (std::uint64_t i = 0; i < clouds; ++i) {
       add(cloud(i), clx("time"), Term::integer(static_cast<std::int64_t>(1'700'000'000 + 10 * i)));
-      add(cloud(i), rdf("type"), Term::iri(clx("Cloud")));
+      add(cloud(i), rdf::vocabulary::rdf("type"), Term::iri(clx("Cloud")));
     }
     for (std::uint64_t i = 0; i < objects_; ++i) object(i, clouds);
   }
@@ -85,8 +85,8 @@ class Generator {
     const ClassShare& share = pickClass();
     const Term self = object(i);
     const std::string name = share.name;
-    add(self, rdf("type"), Term::iri(clx(name)));
-    add(self, rdf("type"), Term::iri(clx("Feature")), kGraphInferred);
+    add(self, rdf::vocabulary::rdf("type"), Term::iri(clx(name)));
+    add(self, rdf::vocabulary::rdf("type"), Term::iri(clx("Feature")), kGraphInferred);
     // A field of objects some metres apart; it grows with their number.
     const auto side = static_cast<std::uint64_t>(std::max(1.0, std::sqrt(static_cast<double>(objects_))));
     const long x = static_cast<long>(i % side * 400 + upTo(400)), y = static_cast<long>(i / side * 400 + upTo(400));
@@ -122,7 +122,7 @@ class Generator {
     for (unsigned k = 0; k < 2; ++k) {
       const Term primitive = Term::iri(std::string(kMap) + "primitive/" + std::to_string(2 * i + k));
       add(self, clx("hasPrimitive"), primitive);
-      add(primitive, rdf("type"), Term::iri(clx("Primitive")));
+      add(primitive, rdf::vocabulary::rdf("type"), Term::iri(clx("Primitive")));
       add(primitive, clx("label"), Term::iri(clx(kLabels[upTo(5)])));
       add(primitive, clx("probability"), Term::literal("0." + std::to_string(upTo(900) + 100), xsd("decimal")));
       add(primitive, clx("minX"), metres(x - static_cast<long>(upTo(100))));
@@ -135,7 +135,7 @@ class Generator {
   void observations(std::uint64_t i, const Term& self, std::uint64_t clouds) {
     for (unsigned k = 0; k < 1 + upTo(2); ++k) {
       const Term seen = Term::iri(std::string(kMap) + "observation/" + std::to_string(i) + "-" + std::to_string(k));
-      add(seen, rdf("type"), Term::iri(std::string(kSosa) + "Observation"));
+      add(seen, rdf::vocabulary::rdf("type"), Term::iri(std::string(kSosa) + "Observation"));
       add(seen, std::string(kSosa) + "hasFeatureOfInterest", self);
       add(seen, clx("inCloud"), cloud((i / 400 + k) % clouds));
       add(seen, clx("pointCount"), Term::integer(upTo(3000)));

@@ -28,7 +28,7 @@ constexpr const char* kPrefixes =
     "PREFIX geof: <http://www.opengis.net/def/function/geosparql/> ";
 
 /// The sum of the actual rows of all operators, as the plan's text tells them.
-double workRows(const rdf::Environment& environment, const tasks::Question& question) {
+double workRows(const rdf::Environment& environment, const Question& question) {
   const rdf::QuadReader reader(environment.read());
   sparql::PreparedQuery query(reader, question.text);
   sparql::NoSink sink;
@@ -41,7 +41,7 @@ double workRows(const rdf::Environment& environment, const tasks::Question& ques
   return sum;
 }
 
-std::size_t linesOfAnswer(const rdf::Environment& environment, const tasks::Question& question) {
+std::size_t linesOfAnswer(const rdf::Environment& environment, const Question& question) {
   const rdf::QuadReader reader(environment.read());
   std::string text;
   const auto writer = makeResultWriter(sparql::ResultFormat::Tsv, [&](std::string_view piece) { text += piece; });
@@ -55,7 +55,7 @@ struct PipedMeasure {
   std::size_t rows = 0;
 };
 
-std::size_t rowsOfRasqal(librdf_world* world, librdf_model* model, const tasks::Question& question) {
+std::size_t rowsOfRasqal(librdf_world* world, librdf_model* model, const Question& question) {
   const auto* text = reinterpret_cast<const unsigned char*>(question.text.c_str());
   librdf_query* query = librdf_new_query(world, "sparql11-query", nullptr, text, nullptr);
   if (query == nullptr) _exit(1);
@@ -77,7 +77,7 @@ std::size_t rowsOfRasqal(librdf_world* world, librdf_model* model, const tasks::
   return rows;
 }
 
-Measure askRasqal(librdf_world* world, librdf_model* model, const tasks::Question& question) {
+Measure askRasqal(librdf_world* world, librdf_model* model, const Question& question) {
   int ends[2];
   if (pipe(ends) != 0) return {};
   const pid_t child = fork();
@@ -108,22 +108,22 @@ Measure askRasqal(librdf_world* world, librdf_model* model, const tasks::Questio
 
 }  // namespace
 
-std::vector<tasks::Question> readQuestions(const fs::path& file, const std::string& only) {
+std::vector<Question> readQuestions(const fs::path& file, const std::string& only) {
   std::ifstream in(file);
-  std::vector<tasks::Question> result;
+  std::vector<Question> result;
   for (std::string line; std::getline(in, line);) {
     if (line.starts_with("== "))
       result.push_back({line.substr(3), kPrefixes});
     else if (!line.empty() && line[0] != '#' && !result.empty())
       result.back().text += line + "\n";
   }
-  std::erase_if(result, [&](const tasks::Question& q) { return q.name.find(only) == std::string::npos; });
+  std::erase_if(result, [&](const Question& q) { return q.name.find(only) == std::string::npos; });
   return result;
 }
 
-Measures askCluxel(const rdf::Environment& environment, const std::vector<tasks::Question>& asked) {
+Measures askCluxel(const rdf::Environment& environment, const std::vector<Question>& asked) {
   Measures measures;
-  for (const tasks::Question& question : asked) {
+  for (const Question& question : asked) {
     Measure& measure = measures[question.name];
     measure = measured([&] { return linesOfAnswer(environment, question); });
     measure.work_rows = workRows(environment, question);
@@ -132,9 +132,9 @@ Measures askCluxel(const rdf::Environment& environment, const std::vector<tasks:
 }
 
 std::pair<Measures, Measures> askCluxelInTurn(const rdf::Environment& small, const rdf::Environment& large,
-                                              const std::vector<tasks::Question>& asked) {
+                                              const std::vector<Question>& asked) {
   std::pair<Measures, Measures> measures;
-  for (const tasks::Question& question : asked) {
+  for (const Question& question : asked) {
     const auto [of_small, of_large] =
         measuredInTurn([&] { return linesOfAnswer(small, question); }, [&] { return linesOfAnswer(large, question); });
     measures.first[question.name] = of_small;
@@ -145,10 +145,10 @@ std::pair<Measures, Measures> askCluxelInTurn(const rdf::Environment& small, con
   return measures;
 }
 
-Measures askOxigraph(const fs::path& module, const fs::path& nt_file, const std::vector<tasks::Question>& asked) {
+Measures askOxigraph(const fs::path& module, const fs::path& nt_file, const std::vector<Question>& asked) {
   const fs::path requests = nt_file.string() + ".requests.json", answers = nt_file.string() + ".answers.json";
   nlohmann::json list = nlohmann::json::array();
-  for (const tasks::Question& question : asked) list.push_back({{"name", question.name}, {"query", question.text}});
+  for (const Question& question : asked) list.push_back({{"name", question.name}, {"query", question.text}});
   std::ofstream(requests) << list;
   const std::string script = std::string(CLUXEL_SOURCE_DIR) + "/bench/sparql_oxigraph.mjs";
   const std::string command = "node --max-old-space-size=8000 '" + script + "' '" + module.string() + "' '" +
@@ -170,7 +170,7 @@ Measures askOxigraph(const fs::path& module, const fs::path& nt_file, const std:
   return measures;
 }
 
-Measures askRasqal(const fs::path& nt_file, const std::vector<tasks::Question>& asked) {
+Measures askRasqal(const fs::path& nt_file, const std::vector<Question>& asked) {
   librdf_world* world = librdf_new_world();
   librdf_world_open(world);
   librdf_world_set_logger(world, nullptr, [](void*, librdf_log_message*) { return 1; });
@@ -180,7 +180,7 @@ Measures askRasqal(const fs::path& nt_file, const std::vector<tasks::Question>& 
   librdf_uri* uri = librdf_new_uri_from_filename(world, nt_file.c_str());
   Measures measures;
   if (librdf_parser_parse_into_model(parser, uri, uri, model) == 0) {
-    for (const tasks::Question& question : asked) measures[question.name] = askRasqal(world, model, question);
+    for (const Question& question : asked) measures[question.name] = askRasqal(world, model, question);
   }
   return measures;
 }
