@@ -94,6 +94,9 @@ std::vector<Cloud> MapReader::clouds() const {
 scan::ScanPoints MapReader::pointsOf(const scan::ScanId& cloud) const {
   return storedPoints(impl_->transaction, cloud);
 }
+scan::Scan MapReader::scanOf(const scan::ScanId& cloud) const {
+  return storedScan(impl_->transaction, cloud);
+}
 const std::vector<rules::SemanticObject>& MapReader::objects() const {
   return impl_->readObjects();
 }

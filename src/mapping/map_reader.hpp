@@ -48,6 +48,8 @@ class MapReader {
   bool isFinished() const;
   std::vector<Cloud> clouds() const;
   scan::ScanPoints pointsOf(const scan::ScanId& cloud) const;
+  /// A cloud as the scan that it was given as.
+  scan::Scan scanOf(const scan::ScanId& cloud) const;
   /// The objects, sorted by id; cluxel numbers refer to scene().
   const std::vector<rules::SemanticObject>& objects() const;
   /// The scene, assembled from the stored tiles by the first call.

@@ -2,6 +2,7 @@
 // The state of a map file: whether its build is finished, and the inputs it was built from.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -22,5 +23,8 @@ std::optional<MapState> storedState(const rdf::ReadTransaction& transaction);
 
 void storeInputs(rdf::WriteTransaction& transaction, const MapInputs& inputs);
 MapInputs storedInputs(const rdf::ReadTransaction& transaction);
+/// The inputs of a map that can be changed. Throws Error (InvalidArgument), naming `file`, for a store that no build
+/// has made, an unfinished map, and one of another version of the stages.
+MapInputs requireFinishedInputs(const rdf::ReadTransaction& transaction, const std::filesystem::path& file);
 
 }  // namespace cluxel::mapping

@@ -148,7 +148,7 @@ TileSet storeScan(rdf::WriteTransaction& transaction, const scan::Scan& scan) {
                             : scan.has_pose                  ? "now with a pose"
                                                              : "now without a pose";
     throw InputError({.file = scan.source}, "is the same scan as '" + there->source + "', " + how,
-                     "give each scan once; `repose` corrects the pose of a scan in a map");
+                     "give each scan once; to correct its pose, move the scan in the map");
   }
   TileSet tiles;
   const auto segments = perception::splitScan(scan);

@@ -27,21 +27,6 @@ std::shared_ptr<rdf::Environment> openForChange(const fs::path& file) {
   return rdf::Environment::open(file, rdf::OpenMode::ReadWrite);
 }
 
-MapInputs requireInputs(const rdf::ReadTransaction& transaction, const fs::path& file) {
-  const auto state = storedState(transaction);
-  if (!state)
-    throw Error(ErrorKind::InvalidArgument, file.string() + ": holds no map that a build has made; build one first");
-  if (!state->is_finished)
-    throw Error(ErrorKind::InvalidArgument,
-                file.string() + ": its build is unfinished; repeat the build command first");
-  MapInputs inputs = storedInputs(transaction);
-  if (inputs.hash().hex() != state->inputs_hash)
-    throw Error(
-        ErrorKind::InvalidArgument,
-        file.string() + ": was made by another version of Cluxel, whose stages give other results; build it anew");
-  return inputs;
-}
-
 bool reachTiles(const MapInputs& before, const MapInputs& after) {
   MapInputs with_new_tiles = before;
   with_new_tiles.model = after.model;
@@ -53,7 +38,7 @@ bool reachTiles(const MapInputs& before, const MapInputs& after) {
 
 MapEditor::MapEditor(const fs::path& file, const ChangeParams& params, ProgressSink& sink)
     : lock_(withoutLinks(file)), environment_(openForChange(withoutLinks(file))), params_(params), sink_(sink) {
-  parsed_ = parseInputs(requireInputs(environment_->read(), file));
+  parsed_ = parseInputs(requireFinishedInputs(environment_->read(), file));
   inputs_hash_ = parsed_.inputs.hash().hex();
   readBefore(environment_->read());
 }

@@ -9,6 +9,7 @@
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/scan_additions.hpp"
 #include "mapping/map_reader.hpp"
+#include "mapping/map_state.hpp"
 #include "rdf/store/map_replacement.hpp"
 
 namespace cluxel::mapping {
@@ -86,14 +87,8 @@ class Merge {
   void requireEqualInputs() const {
     const MapInputs first = readers_.front().inputs();
     for (std::size_t i = 0; i < readers_.size(); ++i) {
-      if (!readers_[i].summary().is_finished)
-        throw Error(ErrorKind::InvalidArgument,
-                    maps_[i].file.string() + ": its build is unfinished; repeat the build command first");
-      const MapInputs mine = readers_[i].inputs();
-      if (mine.hash().hex() != readers_[i].summary().inputs_hash)
-        throw Error(ErrorKind::InvalidArgument,
-                    maps_[i].file.string() +
-                        ": was made by another version of Cluxel, whose stages give other results; build it anew");
+      const auto environment = rdf::Environment::open(maps_[i].file, rdf::OpenMode::ReadOnly);
+      const MapInputs mine = requireFinishedInputs(environment->read(), maps_[i].file);
       const bool moved = !maps_[i].T_first_map.matrix().isIdentity(0);
       if (!moved && (mine.map_origin != first.map_origin || mine.crs != first.crs))
         throw Error(ErrorKind::InvalidArgument, maps_[i].file.string() +
@@ -155,13 +150,8 @@ class Merge {
   void addScans(std::size_t number, ScanAdditions& additions) {
     const std::vector<Cloud> clouds = readers_[number].clouds();
     for (std::size_t i = 0; i < clouds.size(); ++i) {
-      scan::Scan scan;
-      scan.points = readers_[number].pointsOf(clouds[i].id);
-      scan.time_s = clouds[i].time_s;
-      scan.T_map_sensor = maps_[number].T_first_map * clouds[i].T_map_sensor;
-      scan.has_pose = clouds[i].has_pose;
-      scan.source = clouds[i].source;
-      scan.id = clouds[i].id;
+      scan::Scan scan = readers_[number].scanOf(clouds[i].id);
+      scan.T_map_sensor = maps_[number].T_first_map * scan.T_map_sensor;
       additions.add(scan);
       sink_.progress("scans", i + 1, clouds.size());
     }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kNoLabel = 0xFFFFFFFFU;
 /// Evaluation numbers the objects of several scans one after the other.
-constexpr std::uint32_t kMostInstances = 1'000'000;
+constexpr std::uint32_t kMaxInstances = 1'000'000;
 
 }  // namespace
 
@@ -35,9 +35,9 @@ std::vector<std::int32_t> instancesFromFile(const std::filesystem::path& file, c
   instances.reserve(numbers.size());
   // The reader of labels gives the largest number for -1, which is none.
   for (const std::uint32_t number : numbers) {
-    if (number != kNoLabel && number > kMostInstances)
+    if (number != kNoLabel && number > kMaxInstances)
       throw InputError({.file = file.string()}, "the field '" + field + "' holds " + std::to_string(number),
-                       "numbers of objects go up to " + std::to_string(kMostInstances));
+                       "numbers of objects go up to " + std::to_string(kMaxInstances));
     instances.push_back(number == kNoLabel ? -1 : static_cast<std::int32_t>(number));
   }
   return instances;
