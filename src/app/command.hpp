@@ -73,6 +73,7 @@ void addQuery(CLI::App& app, Session& session);
 void addUpdate(CLI::App& app, Session& session);
 void addTasks(CLI::App& app, Session& session);
 void addRules(CLI::App& app, Session& session);
+void addRuleFit(CLI::App& rules, Session& session);  ///< a subcommand of `rules`
 void addExplain(CLI::App& app, Session& session);
 void addExport(CLI::App& app, Session& session);
 void addEvaluate(CLI::App& app, Session& session);

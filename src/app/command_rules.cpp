@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `cluxel rules`: checks rule files, runs their tests, and applies rules to a map.
+// `cluxel rules`: checks rule files, runs their tests, and applies rules to a map. command_rules_fit.cpp fits them.
 #include "app/change_report.hpp"
 #include "app/command.hpp"
 #include "base/file_bytes.hpp"
@@ -148,7 +148,7 @@ void addApply(CLI::App& rules, Session& session) {
 
 void addRules(CLI::App& app, Session& session) {
   auto options = std::make_shared<RulesOptions>();
-  CLI::App* rules = app.add_subcommand("rules", "check, test and apply rules");
+  CLI::App* rules = app.add_subcommand("rules", "check, test, fit and apply rules");
   rules->require_subcommand(1);
   CLI::App* checking = rules->add_subcommand("check", "report every fault with file, line and column");
   checking->add_option("files", options->files, "rule files; else rules/outdoor.rules.yaml");
@@ -162,6 +162,7 @@ void addRules(CLI::App& app, Session& session) {
   onRun(*testing, session, [options, &session] { return runTests(*options, session); });
   onRun(*checking, session, [options, &session] { return check(*options, session); });
   addApply(*rules, session);
+  addRuleFit(*rules, session);
 }
 
 }  // namespace cluxel::app

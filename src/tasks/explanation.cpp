@@ -27,12 +27,15 @@ rules::RuleSet rulesOf(const mapping::MapInputs& inputs) {
 void shortenFiles(rules::Explanation& explanation, const mapping::MapInputs& inputs) {
   if (inputs.rules.empty()) return;
   const std::filesystem::path folder = std::filesystem::path(inputs.rules.front().name).parent_path();
-  for (rules::ExplainedDecision& explained : explanation.decisions)
-    for (rules::DecisionStep& step : explained.decision.path) {
-      const std::filesystem::path file(step.file), relative = file.lexically_relative(folder);
-      const bool is_below = !relative.empty() && *relative.begin() != "..";
-      step.file = (is_below ? relative : file.filename()).string();
-    }
+  const auto shorten = [&](std::string& name) {
+    const std::filesystem::path file(name), relative = file.lexically_relative(folder);
+    const bool is_below = !relative.empty() && *relative.begin() != "..";
+    name = (is_below ? relative : file.filename()).string();
+  };
+  for (rules::ExplainedDecision& explained : explanation.decisions) {
+    for (rules::DecisionStep& step : explained.decision.path) shorten(step.file);
+    for (rules::EvidenceStep& step : explained.decision.evidence) shorten(step.file);
+  }
 }
 
 /// The name without what tables and other formats write around it: <IRI>, map:object/HEX.

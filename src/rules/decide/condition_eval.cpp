@@ -140,6 +140,30 @@ std::optional<double> ConditionEvaluator::measured(const std::string& of, const 
   return shape ? std::optional((*shape)[attribute]) : std::nullopt;
 }
 
+std::optional<double> ConditionEvaluator::measure(const Condition& condition, double reach) {
+  if (condition.kind == Condition::Kind::Attribute) {
+    const auto value = measured(condition.of, condition.slice, condition.attribute);
+    if (!value || !condition.ratio_attribute) return value;
+    const auto other = measured(condition.ratio_of, condition.ratio_slice, *condition.ratio_attribute);
+    return other && *other > 0 ? std::optional(*value / *other) : std::nullopt;
+  }
+  const bool share = condition.measure == PairMeasure::AdjacentFraction;
+  const double limit = share ? 0.5 : std::min(reach, kMaxMeasure_m - kMeasureMargin_m) + kMeasureMargin_m;
+  const double none = share ? 0 : reach;
+  double value = none;
+  if (condition.target->kind == Target::Kind::Name)
+    value =
+        measurePair(state_, condition.measure, bindings_.at(condition.of), bindings_.at(condition.target->name), limit);
+  else if (const auto nearest = nearestTarget(condition, limit))
+    value = nearest->second;
+  return std::isfinite(value) ? value : none;
+}
+
+std::string ConditionEvaluator::unitOf(const Condition& condition) {
+  if (condition.ratio_attribute) return "";
+  return std::string(stepUnit(condition));
+}
+
 bool ConditionEvaluator::fits(FragmentIndex fragment, const Target& target) const {
   if (!target.labels.empty()) {
     const scan::PrimitiveLabel label = state_.fragments.labelOf(fragment);

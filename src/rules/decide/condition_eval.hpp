@@ -20,6 +20,11 @@ class ConditionEvaluator {
   /// Evaluates, and appends one step per elementary test to `steps` when given.
   bool holds(const Condition& condition, std::vector<DecisionStep>* steps = nullptr);
   bool allHold(const std::vector<Condition>& conditions);
+  /// What a line of evidence measures; absent when a slice is empty. Distances are measured up to `reach`, and are
+  /// `reach` beyond.
+  std::optional<double> measure(const Condition& condition, double reach);
+  /// "m", "rad" and the like.
+  static std::string unitOf(const Condition& condition);
   /// The object found by the last relation or measure that passed.
   std::optional<OwnerIndex> related() const { return related_; }
 

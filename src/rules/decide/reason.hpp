@@ -2,6 +2,7 @@
 // The reasoning stage: primitives and rules in, objects with reasons out.
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "perception/segments/scene.hpp"
@@ -11,11 +12,19 @@
 
 namespace cluxel::rules {
 
+struct ReasoningState;
+struct Rule;
+struct Verdict;
+
+/// Called for every candidate that a rule proposes, when it proposes it first.
+using CandidateObserver = std::function<void(const ReasoningState&, const Rule&, const Verdict&)>;
+
 struct ReasoningContext {
   /// Needed by rule sets with `ask:`; without it such a test is an Error.
   AskOracle* oracle = nullptr;
   /// When set, decisions about this primitive also report what would have changed them (Decision::flips).
   std::optional<perception::PrimitiveIndex> probe = std::nullopt;
+  CandidateObserver onCandidate = {};
 };
 
 /// Groups the primitives of a scene into objects, class by class in the order of the rule set. The objects' cluxels are

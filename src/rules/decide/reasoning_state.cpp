@@ -25,6 +25,10 @@ bool Bindings::holds(FragmentIndex fragment) const {
   });
 }
 
+bool Bindings::has(const std::string& name) const {
+  return std::any_of(candidates.begin(), candidates.end(), [&](const auto& entry) { return entry.first == name; });
+}
+
 ReasoningState::ReasoningState(const perception::Scene& scene_, const RuleSet& rules_, const ReasoningContext& context_)
     : scene(scene_), rules(rules_), context(context_), grid(scene_.cluxels), fragments(scene_) {
   relations_to.resize(scene.primitives.size());

@@ -22,6 +22,7 @@ struct Bindings {
   const Candidate& at(const std::string& name) const;
   Candidate* find(const std::string& name);
   bool holds(FragmentIndex fragment) const;
+  bool has(const std::string& name) const;
 };
 
 struct PartInMaking {

@@ -31,6 +31,24 @@ struct DecisionStep {
   bool passed = false;
 };
 
+/// What one line of evidence added to the log-odds of a candidate.
+struct EvidenceStep {
+  std::string text;  ///< in words: "roughness of pole"
+  std::string file;
+  std::size_t line = 0;
+  std::optional<double> measured;  ///< SI; absent for a test, and when nothing could be measured
+  std::optional<bool> holds;       ///< of a test
+  std::string unit;
+  double log_odds = 0;
+};
+
+/// A candidate that wanted some of the same fragments.
+struct RivalNote {
+  std::string rule_id, class_iri;
+  double log_odds = 0;
+  bool won = false;
+};
+
 /// The outcome if one test on the path had the opposite result and the rest of the tree were evaluated as usual.
 struct DecisionFlip {
   std::size_t step = 0;        ///< the first of the branch's tests in Decision::path
@@ -49,8 +67,11 @@ struct Decision {
   std::size_t leaf = 0;  ///< its number in Rule::nodes
   std::string reason;    ///< the reason of the leaf, or what was accepted
   std::vector<DecisionStep> path;
-  std::string hint;                 ///< a rule that may fit instead
-  std::vector<DecisionFlip> flips;  ///< only for a probed primitive
+  double log_odds = 0;                 ///< sum of the evidence; of accept leaves only
+  std::vector<EvidenceStep> evidence;  ///< the leaf's confidence, then each line
+  std::vector<RivalNote> rivals;       ///< in a stratum of several classes
+  std::string hint;                    ///< a rule that may fit instead
+  std::vector<DecisionFlip> flips;     ///< only for a probed primitive
 };
 
 struct SemanticObject {

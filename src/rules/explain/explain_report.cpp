@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "rdf/map_iris.hpp"
+#include "rules/decide/evidence.hpp"
 #include "rules/explain/explain.hpp"
 
 namespace cluxel::rules {
@@ -45,6 +46,34 @@ std::string pathText(const Decision& decision, const std::string& indent) {
   for (const DecisionStep& step : decision.path)
     text += indent + (step.passed ? "yes  " : "no   ") + step.test + measuredText(step) + "   [" + step.file + ":" +
             std::to_string(step.line) + "]\n";
+  return text;
+}
+
+std::string signedNumber(double value) {
+  return (value < 0 ? "" : "+") + number(value);
+}
+
+/// The log-odds line by line, then the rivals.
+std::string evidenceText(const Decision& decision, const RuleSet& rules, const std::string& indent) {
+  std::string text;
+  if (decision.evidence.size() > 1 || !decision.rivals.empty()) {
+    for (const EvidenceStep& step : decision.evidence) {
+      std::string measured;
+      if (step.measured) {
+        const double scale = step.unit == "rad" ? 180.0 / std::numbers::pi : 1.0;
+        const std::string unit = shownUnit(step.unit);
+        measured = " (" + number(*step.measured * scale) + (unit.empty() ? "" : " " + unit) + ")";
+      }
+      if (step.holds) measured = *step.holds ? " (yes)" : " (no)";
+      text += indent + signedNumber(step.log_odds) + "  " + step.text + measured + "   [" + step.file + ":" +
+              std::to_string(step.line) + "]\n";
+    }
+    text += indent + "log-odds " + signedNumber(decision.log_odds) + ", probability " +
+            number(probabilityOf(decision.log_odds)) + "\n";
+  }
+  for (const RivalNote& rival : decision.rivals)
+    text += indent + "rival: " + rules.shorten(rival.class_iri) + " (" + rival.rule_id + "), log-odds " +
+            signedNumber(rival.log_odds) + (rival.won ? ", won" : "") + "\n";
   return text;
 }
 
@@ -90,6 +119,26 @@ nlohmann::ordered_json counterfactualJson(const Counterfactual& point) {
   return json;
 }
 
+void addEvidence(const Decision& decision, const RuleSet& rules, nlohmann::ordered_json& json) {
+  if (decision.evidence.empty()) return;
+  json["log_odds"] = decision.log_odds;
+  json["probability"] = probabilityOf(decision.log_odds);
+  for (const EvidenceStep& step : decision.evidence) {
+    nlohmann::ordered_json line{
+        {"of", step.text}, {"log_odds", step.log_odds}, {"file", step.file}, {"line", step.line}};
+    if (step.measured)
+      line["measured"] = step.unit == "rad" ? *step.measured * 180.0 / std::numbers::pi : *step.measured;
+    if (step.holds) line["holds"] = *step.holds;
+    line["unit"] = shownUnit(step.unit);
+    json["evidence"].push_back(std::move(line));
+  }
+  for (const RivalNote& rival : decision.rivals)
+    json["rivals"].push_back({{"class", rules.shorten(rival.class_iri)},
+                              {"rule", rival.rule_id},
+                              {"log_odds", rival.log_odds},
+                              {"won", rival.won}});
+}
+
 }  // namespace
 
 std::string textOf(const Explanation& explanation, const RuleSet& rules, const perception::Scene& scene) {
@@ -104,6 +153,7 @@ std::string textOf(const Explanation& explanation, const RuleSet& rules, const p
       first = false;
       text += "  " + rules.shorten(explained.class_iri) + " (" + decision.rule_id + "): " + decision.reason + "\n";
       text += pathText(decision, "    ");
+      text += evidenceText(decision, rules, "    ");
       if (!decision.hint.empty()) text += "    see also rule " + decision.hint + "\n";
       if (explained.counterfactual) text += counterfactualText(*explained.counterfactual, "    ");
     }
@@ -127,6 +177,7 @@ std::string jsonOf(const Explanation& explanation, const RuleSet& rules, const p
                                     {"accepted", explained.decision.accepted},
                                     {"reason", explained.decision.reason}};
     for (const DecisionStep& step : explained.decision.path) decision["path"].push_back(stepJson(step));
+    addEvidence(explained.decision, rules, decision);
     if (!explained.decision.hint.empty()) decision["hint"] = explained.decision.hint;
     if (explained.counterfactual) decision["least_change"] = counterfactualJson(*explained.counterfactual);
     json["decisions"].push_back(std::move(decision));

@@ -2,40 +2,15 @@
 // Reads conditions: tests of attributes, measures, relations, labels, classes and queries, combined by all, any and
 // not.
 #include <algorithm>
-#include <array>
 
 #include "base/nearest_name.hpp"
 #include "rules/decide/pair_measures.hpp"
+#include "rules/language/condition_words.hpp"
 #include "rules/language/rule_reading.hpp"
 
 namespace cluxel::rules {
 
 namespace {
-
-struct Operator {
-  std::string_view text;
-  Comparison comparison;
-};
-constexpr std::array<Operator, 8> kOperators{{{"<", Comparison::Less},
-                                              {"<=", Comparison::LessEqual},
-                                              {">", Comparison::Greater},
-                                              {">=", Comparison::GreaterEqual},
-                                              {"=", Comparison::Equal},
-                                              {"!=", Comparison::NotEqual},
-                                              {"between", Comparison::Between},
-                                              {"outside", Comparison::Outside}}};
-
-struct Measure {
-  std::string_view key;
-  PairMeasure measure;
-  perception::Dimension dimension;
-};
-constexpr std::array<Measure, 5> kMeasures{
-    {{"gap_to", PairMeasure::Gap, perception::Dimension::Length},
-     {"horizontal_gap_to", PairMeasure::HorizontalGap, perception::Dimension::Length},
-     {"vertical_gap_to", PairMeasure::VerticalGap, perception::Dimension::Length},
-     {"axis_distance_to", PairMeasure::AxisDistance, perception::Dimension::Length},
-     {"adjacent_fraction_to", PairMeasure::AdjacentFraction, perception::Dimension::Ratio}}};
 
 /// Reads one condition.
 class ConditionReader {
@@ -55,7 +30,35 @@ class ConditionReader {
     return condition_;
   }
 
+  /// What is measured, without a comparison.
+  std::optional<Condition> readMeasureOnly() {
+    const std::size_t faults_before = faults_.errorCount();
+    condition_.at = node_.at;
+    condition_.of = scope_.subject;
+    if (const YamlNode* of = node_.find("of"))
+      if (const auto name = readBoundName(*of, scope_, faults_)) condition_.of = *name;
+    for (const MeasureWord& measure : kMeasureWords)
+      if (const YamlNode* target = node_.find(measure.key)) {
+        condition_.kind = Condition::Kind::Pair;
+        condition_.measure = measure.measure;
+        condition_.target = readTarget(*target);
+      }
+    if (const YamlNode* attribute = node_.find("attribute")) readMeasuredAttribute(*attribute);
+    if (faults_.errorCount() != faults_before) return std::nullopt;
+    return condition_;
+  }
+
  private:
+  void readMeasuredAttribute(const YamlNode& value) {
+    condition_.kind = Condition::Kind::Attribute;
+    const auto attribute = readAttributeName(value);
+    if (!attribute) return;
+    condition_.attribute = *attribute;
+    condition_.slice = readSliceOf(node_, value, *attribute);
+    if (const YamlNode* to = node_.find("relative_to"))
+      readOtherAttribute(*to, perception::attributeInfos()[static_cast<std::size_t>(*attribute)].dimension);
+  }
+
   void readKind() {
     std::vector<std::string> kinds;
     for (const YamlNode& key : node_.keys)
@@ -75,10 +78,6 @@ class ConditionReader {
     return std::find(kinds.begin(), kinds.end(), key) != kinds.end() || perception::relationKindOf(key) ||
            measureOf(key) != nullptr;
   }
-  static const Measure* measureOf(const std::string& key) {
-    const auto found = std::find_if(kMeasures.begin(), kMeasures.end(), [&](const Measure& m) { return m.key == key; });
-    return found == kMeasures.end() ? nullptr : &*found;
-  }
 
   void readAs(const std::string& kind, const YamlNode& value) {
     if (kind == "all" || kind == "any") return readOperands(kind == "all", value);
@@ -88,7 +87,7 @@ class ConditionReader {
     if (kind == "ask") return readAsk(value);
     if (kind == "class") return readClassTest(value);
     if (kind == "label" || kind == "label_in") return readLabelTest();
-    if (const Measure* measure = measureOf(kind)) return readPair(*measure, value);
+    if (const MeasureWord* measure = measureOf(kind)) return readPair(*measure, value);
     readShortRelation(*perception::relationKindOf(kind), value);
   }
 
@@ -162,6 +161,11 @@ class ConditionReader {
     if (const YamlNode* ratio = node_.find("ratio"))
       if (const auto factor = readQuantity(*ratio, perception::Dimension::Ratio, reading_))
         condition_.ratio = factor->value;
+    readOtherAttribute(to, dimension);
+  }
+
+  /// The attribute that another one is compared with or divided by.
+  void readOtherAttribute(const YamlNode& to, perception::Dimension dimension) {
     if (!checkKeys(to, "ratio_to", faults_)) return;
     condition_.ratio_of = condition_.of;
     if (const YamlNode* of = to.find("of")) condition_.ratio_of = readBoundName(*of, scope_, faults_).value_or("");
@@ -174,7 +178,7 @@ class ConditionReader {
       faults_.error(name->at, "the two attributes have different dimensions");
   }
 
-  void readPair(const Measure& measure, const YamlNode& value) {
+  void readPair(const MeasureWord& measure, const YamlNode& value) {
     onlyWith({"op", "value", "min", "max"});
     condition_.kind = Condition::Kind::Pair;
     condition_.measure = measure.measure;
@@ -186,10 +190,8 @@ class ConditionReader {
   void readOperator() {
     const YamlNode* op = requireKey(node_, "op", "condition", faults_);
     if (op == nullptr) return;
-    const auto found = std::find_if(kOperators.begin(), kOperators.end(),
-                                    [&](const Operator& known) { return known.text == op->text; });
-    if (op->isScalar() && found != kOperators.end()) {
-      condition_.comparison = found->comparison;
+    if (const auto comparison = comparisonOf(op->text); op->isScalar() && comparison) {
+      condition_.comparison = *comparison;
       return;
     }
     faults_.error(op->at, "unknown operator '" + op->text + "'", "known: <, <=, >, >=, =, !=, between, outside");
@@ -321,6 +323,10 @@ class ConditionReader {
 
 std::optional<Condition> readCondition(const YamlNode& node, const NameScope& scope, RuleReading& reading) {
   return ConditionReader(node, scope, reading).read();
+}
+
+std::optional<Condition> readMeasure(const YamlNode& node, const NameScope& scope, RuleReading& reading) {
+  return ConditionReader(node, scope, reading).readMeasureOnly();
 }
 
 std::vector<Condition> readConditions(const YamlNode& node, const NameScope& scope, RuleReading& reading) {

@@ -18,6 +18,7 @@ class AcceptReader {
     if (!checkKeys(node_, "accept", faults_)) return std::nullopt;
     readParts();
     if (const YamlNode* confidence = requireKey(node_, "confidence", "accept", faults_)) readConfidence(*confidence);
+    if (const YamlNode* evidence = node_.find("evidence")) leaf_.evidence = readEvidence(*evidence, scope_, reading_);
     if (const YamlNode* absorb = node_.find("absorb")) readAbsorbs(*absorb);
     if (const YamlNode* split = node_.find("split")) readSplit(*split);
     if (const YamlNode* merge = node_.find("merge_into")) {
@@ -70,15 +71,20 @@ class AcceptReader {
   }
 
   void readConfidence(const YamlNode& node) {
+    leaf_.confidence.low_at = leaf_.confidence.high_at = node.at;
     if (!node.isMap()) {
       leaf_.confidence.low = leaf_.confidence.high = readShare(node).value_or(1.0);
       return;
     }
     if (!checkKeys(node, "confidence", faults_)) return;
-    if (const YamlNode* from = requireKey(node, "from", "confidence", faults_))
+    if (const YamlNode* from = requireKey(node, "from", "confidence", faults_)) {
       leaf_.confidence.low = readShare(*from).value_or(0.0);
-    if (const YamlNode* to = requireKey(node, "to", "confidence", faults_))
+      leaf_.confidence.low_at = from->at;
+    }
+    if (const YamlNode* to = requireKey(node, "to", "confidence", faults_)) {
       leaf_.confidence.high = readShare(*to).value_or(1.0);
+      leaf_.confidence.high_at = to->at;
+    }
     if (leaf_.confidence.low > leaf_.confidence.high) faults_.error(node.at, "'from' is greater than 'to'");
     const YamlNode* over = requireKey(node, "over", "confidence", faults_);
     if (over == nullptr) return;

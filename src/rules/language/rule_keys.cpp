@@ -44,11 +44,11 @@ std::vector<std::string> conditionKeys() {
 
 const std::vector<RuleKeyTable>& ruleKeyTables() {
   static const std::vector<RuleKeyTable> tables{
-      {"file", {"apiVersion", "ruleset", "include", "prefixes", "constants", "order", "rules", "override"}},
+      {"file", {"apiVersion", "ruleset", "include", "prefixes", "constants", "order", "nothing", "rules", "override"}},
       {"ruleset", {"name", "version", "description"}},
-      {"order", {"insert", "before", "after"}},
+      {"order", {"insert", "before", "after", "beside"}},
       {"override", {"constants", "rules", "remove"}},
-      {"rule", {"id", "class", "description", "seed", "group", "tree"}},
+      {"rule", {"id", "class", "description", "seed", "group", "leftovers", "evidence", "tree"}},
       {"seed", {"label", "label_in", "as", "slice", "where"}},
       {"slice", {"from", "to"}},
       {"group", {"label", "label_in", "near", "horizontal", "vertical", "adjacent", "limits"}},
@@ -56,9 +56,12 @@ const std::vector<RuleKeyTable>& ruleKeyTables() {
        {"test", "all", "any", "not", "ask", "yes", "no", "find", "found", "missing", "accept", "reject", "hint",
         "leave"}},
       {"find", {"as", "label", "label_in", "object", "relations", "where", "choose", "share"}},
-      {"accept", {"part", "parts", "confidence", "absorb", "split", "merge_into"}},
+      {"accept", {"part", "parts", "confidence", "evidence", "absorb", "split", "merge_into"}},
       {"confidence", {"from", "to", "over"}},
       {"ramp", {"of", "attribute", "min", "max"}},
+      {"evidence",
+       {"of", "attribute", "slice", "relative_to", "gap_to", "horizontal_gap_to", "vertical_gap_to", "axis_distance_to",
+        "adjacent_fraction_to", "when", "curve", "about", "spread", "weight", "missing"}},
       {"absorb", {"from", "when", "max_fraction_of_points", "into", "late"}},
       {"absorb_from", {"label", "label_in"}},
       {"split", {"shared", "from", "reach", "jump", "start", "clearance", "gather"}},

@@ -14,6 +14,8 @@ namespace cluxel::rules {
 
 namespace {
 
+constexpr double kDefaultNothing = -3;  ///< one in twenty
+
 void readNames(const GatheredRules& gathered, RuleReading& reading) {
   for (const auto& [key, value] : gathered.prefixes)
     if (const auto iri = readText(value, "an IRI", reading.faults)) reading.prefixes[key.text] = *iri;
@@ -24,22 +26,50 @@ void readNames(const GatheredRules& gathered, RuleReading& reading) {
 }
 
 void readOrder(const GatheredRules& gathered, RuleReading& reading, RuleSet& rules) {
-  for (const YamlNode& node : gathered.order)
-    if (const auto iri = readClass(node, reading)) {
-      if (std::find(rules.order.begin(), rules.order.end(), *iri) != rules.order.end())
-        reading.faults.error(node.at, "'" + node.text + "' stands in the order twice");
-      rules.order.push_back(*iri);
-    }
+  for (const std::vector<YamlNode>& nodes : gathered.order) {
+    std::vector<std::string> stratum;
+    for (const YamlNode& node : nodes)
+      if (const auto iri = readClass(node, reading)) {
+        if (std::find(rules.order.begin(), rules.order.end(), *iri) != rules.order.end())
+          reading.faults.error(node.at, "'" + node.text + "' stands in the order twice");
+        rules.order.push_back(*iri);
+        stratum.push_back(*iri);
+      }
+    rules.strata.push_back(std::move(stratum));
+  }
 }
 
-/// A condition may only refer to objects of its own class or of classes earlier in the order.
+/// `nothing: { column: -1 }`: by label, the log-odds that a primitive which a rule accepts is no object.
+void readNothing(const GatheredRules& gathered, RuleReading& reading, RuleSet& rules) {
+  rules.nothing.fill(kDefaultNothing);
+  for (const auto& [key, value] : gathered.nothing) {
+    const auto label = scan::primitiveLabelOf(key.text);
+    const std::vector<std::string> known{scan::kPrimitiveLabelNames.begin(), scan::kPrimitiveLabelNames.end()};
+    if (!label) reading.faults.error(key.at, "unknown label '" + key.text + "'", suggestion(key.text, known));
+    const auto log_odds = readQuantity(value, perception::Dimension::Ratio, reading);
+    if (label && log_odds) rules.nothing[static_cast<std::size_t>(*label)] = log_odds->value;
+  }
+}
+
+/// A condition may only refer to objects of its own class or of classes in earlier strata. Those of its own stratum are
+/// decided at the same time.
 void checkEarlier(const std::string& object_class, const SourceLocation& at, const Rule& rule, const RuleSet& rules,
                   FaultList& faults) {
   if (object_class.empty() || rule.class_iri.empty()) return;
-  const auto turn = std::find(rules.order.begin(), rules.order.end(), rule.class_iri);
-  const bool known = std::any_of(rules.order.begin(), turn == rules.order.end() ? turn : turn + 1,
-                                 [&](const auto& iri) { return rules.catalogue.isA(iri, object_class); });
-  if (!known)
+  if (rules.catalogue.isA(rule.class_iri, object_class)) return;
+  bool beside = false;
+  for (const std::vector<std::string>& stratum : rules.strata) {
+    const bool made = std::any_of(stratum.begin(), stratum.end(),
+                                  [&](const auto& iri) { return rules.catalogue.isA(iri, object_class); });
+    const bool own = std::find(stratum.begin(), stratum.end(), rule.class_iri) != stratum.end();
+    if (made && (!own || rule.leftovers)) return;
+    beside = beside || (made && own);
+    if (own) break;
+  }
+  if (beside)
+    faults.error(at, rules.shorten(object_class) + " is decided together with " + rules.shorten(rule.class_iri),
+                 "put it into an earlier stratum of 'order', or give the rule 'leftovers: true'");
+  else
     faults.error(
         at, "no " + rules.shorten(object_class) + " exists yet when " + rules.shorten(rule.class_iri) + " has its turn",
         "classes that a rule looks at come earlier in 'order'");
@@ -49,6 +79,10 @@ void checkCondition(const Condition& condition, const Rule& rule, const RuleSet&
   if (condition.target) checkEarlier(condition.target->object_class, condition.at, rule, rules, faults);
   checkEarlier(condition.class_iri, condition.at, rule, rules, faults);
   for (const Condition& operand : condition.operands) checkCondition(operand, rule, rules, faults);
+}
+
+void checkEvidence(const std::vector<EvidenceLine>& lines, const Rule& rule, const RuleSet& rules, FaultList& faults) {
+  for (const EvidenceLine& line : lines) checkCondition(line.measure, rule, rules, faults);
 }
 
 void checkNodes(const Rule& rule, const RuleSet& rules, FaultList& faults) {
@@ -61,6 +95,7 @@ void checkNodes(const Rule& rule, const RuleSet& rules, FaultList& faults) {
       checkEarlier(find->object_class, node.at, rule, rules, faults);
       for (const Condition& condition : find->where) checkCondition(condition, rule, rules, faults);
     }
+    if (const auto* accept = std::get_if<AcceptLeaf>(&node.what)) checkEvidence(accept->evidence, rule, rules, faults);
     const auto* reject = std::get_if<RejectLeaf>(&node.what);
     if (reject != nullptr && !reject->hint.empty() && rules.find(reject->hint) == nullptr)
       faults.error(node.at, "the hint names no rule: '" + reject->hint + "'", suggestion(reject->hint, ids));
@@ -92,12 +127,13 @@ void checkMerges(const Rule& rule, NodeIndex index, bool related, FaultList& fau
 /// Warns of unused names. Only in a file without errors, because errors cause such warnings.
 void warnOfUnused(const GatheredRules& gathered, const RuleReading& reading, const std::set<std::string>& with_rules,
                   FaultList& faults) {
-  for (const YamlNode& node : gathered.order) {
-    const auto prefix = reading.prefixes.find(node.text.substr(0, node.text.find(':')));
-    if (prefix == reading.prefixes.end()) continue;
-    if (with_rules.count(prefix->second + node.text.substr(node.text.find(':') + 1)) == 0)
-      faults.warning(node.at, "no rule makes '" + node.text + "'");
-  }
+  for (const std::vector<YamlNode>& stratum : gathered.order)
+    for (const YamlNode& node : stratum) {
+      const auto prefix = reading.prefixes.find(node.text.substr(0, node.text.find(':')));
+      if (prefix == reading.prefixes.end()) continue;
+      if (with_rules.count(prefix->second + node.text.substr(node.text.find(':') + 1)) == 0)
+        faults.warning(node.at, "no rule makes '" + node.text + "'");
+    }
   for (const auto& [name, constant] : reading.constants)
     if (!constant.used) faults.warning(constant.at, "the constant '" + name + "' is not used");
 }
@@ -112,6 +148,7 @@ void checkTogether(const GatheredRules& gathered, const RuleReading& reading, co
                    "the class " + rules.shorten(rule.class_iri) + " of rule '" + rule.id +
                        "' does not stand in 'order', so the rule never runs",
                    "add it to 'order'");
+    checkEvidence(rule.evidence, rule, rules, faults);
     checkNodes(rule, rules, faults);
     if (!rule.nodes.empty()) checkMerges(rule, 0, false, faults);
   }
@@ -131,6 +168,7 @@ LoadedRules load(const std::vector<std::string>& roots, const FindSource& findSo
   rules.prefixes = reading.prefixes;
   rules.catalogue = catalogue;
   readOrder(gathered, reading, rules);
+  readNothing(gathered, reading, rules);
   for (const YamlNode& node : gathered.rules) {
     const std::size_t faults_before = faults.errorCount();
     auto rule = readRule(node, reading);

@@ -64,6 +64,23 @@ std::optional<GroupSpec> readGroup(const YamlNode& node, const SeedSpec& seed, R
   return group;
 }
 
+/// The names that the seed and the finds of a rule bind.
+std::vector<std::string> namesIn(const Rule& rule) {
+  std::vector<std::string> names{rule.seed.name};
+  for (const TreeNode& node : rule.nodes)
+    if (const auto* find = std::get_if<FindNode>(&node.what))
+      if (std::find(names.begin(), names.end(), find->name) == names.end()) names.push_back(find->name);
+  return names;
+}
+
+/// Such a rule looks at objects of its own class, and a sliced seed cuts primitives: neither can compete.
+bool joinsObjects(const Rule& rule) {
+  return std::any_of(rule.nodes.begin(), rule.nodes.end(), [](const TreeNode& node) {
+    const auto* accept = std::get_if<AcceptLeaf>(&node.what);
+    return accept != nullptr && accept->merge_into_related;
+  });
+}
+
 }  // namespace
 
 std::optional<SliceSpec> readSlice(const YamlNode& node, RuleReading& reading) {
@@ -89,7 +106,12 @@ std::optional<Rule> readRule(const YamlNode& node, RuleReading& reading) {
     rule.description = readText(*text, "a description", reading.faults).value_or("");
   if (const YamlNode* seed = requireKey(node, "seed", "rule", reading.faults)) readSeed(*seed, rule.seed, reading);
   if (const YamlNode* group = node.find("group")) rule.group = readGroup(*group, rule.seed, reading);
+  if (const YamlNode* leftovers = node.find("leftovers"))
+    rule.leftovers = readFlag(*leftovers, reading.faults).value_or(false);
   if (const YamlNode* tree = requireKey(node, "tree", "rule", reading.faults)) readTree(*tree, rule, reading);
+  if (const YamlNode* evidence = node.find("evidence"))
+    rule.evidence = readEvidence(*evidence, {namesIn(rule), rule.seed.name}, reading);
+  rule.leftovers = rule.leftovers || rule.seed.slice.has_value() || joinsObjects(rule);
   return rule;
 }
 

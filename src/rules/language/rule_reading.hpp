@@ -79,6 +79,11 @@ std::optional<Rule> readRule(const YamlNode& node, RuleReading& reading);
 std::optional<AcceptLeaf> readAccept(const YamlNode& node, const NameScope& scope, const Rule& rule,
                                      RuleReading& reading);
 
+/// The lines of an `evidence:` list. Lines may mention names that only some branches bind.
+std::vector<EvidenceLine> readEvidence(const YamlNode& node, const NameScope& scope, RuleReading& reading);
+/// What a line of evidence measures: an attribute, also relative to another one, or a measure between two things.
+std::optional<Condition> readMeasure(const YamlNode& node, const NameScope& scope, RuleReading& reading);
+
 /// Reports branches that no primitive can reach because the tests before them contradict each other.
 void checkReachability(const Rule& rule, FaultList& faults);
 

@@ -141,6 +141,17 @@ std::string describe(const Condition& condition) {
   return {};
 }
 
+std::string describe(const EvidenceLine& line) {
+  const Condition& measure = line.measure;
+  if (line.kind == EvidenceLine::Kind::Test) return describe(measure);
+  if (measure.kind == Condition::Kind::Pair)
+    return std::string(nameOf(measure.measure)) + " of " + measure.of + " to " + describeTarget(*measure.target);
+  std::string text = describeMeasured(measure.attribute, measure.of, measure.slice);
+  if (measure.ratio_attribute)
+    text += " relative to " + describeMeasured(*measure.ratio_attribute, measure.ratio_of, measure.ratio_slice);
+  return text;
+}
+
 ContentHash RuleSet::hash() const {
   ContentHasher hasher;
   for (const RuleSource& source : sources) hasher.addText(source.text);

@@ -2,9 +2,11 @@
 // A rule set as plain values: decision trees per class. docs/rules.md defines the language.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -62,6 +64,32 @@ struct ConfidenceRamp {
 struct Confidence {
   double low = 1, high = 1;
   std::vector<ConfidenceRamp> ramps;  ///< their mean is used; none: `high`
+  SourceLocation low_at, high_at;     ///< where the numbers stand
+};
+
+/// In evidence, the name of everything that a candidate would own.
+inline constexpr std::string_view kWholeCandidate = "whole";
+
+/// One line of evidence: it adds log-odds to a candidate for what is measured of it.
+struct EvidenceLine {
+  enum class Kind : std::uint8_t {
+    Curve,  ///< log-odds between knots of a measured value, interpolated linearly, constant beyond the ends
+    Bell,   ///< weight * exp(-(value - about)^2 / (2 spread^2))
+    Test,   ///< weight when the condition holds
+  };
+  struct Knot {
+    double at = 0;        ///< measured value, SI
+    double log_odds = 0;  ///< what it adds there
+    SourceLocation where;
+  };
+  Kind kind = Kind::Curve;
+  SourceLocation at;
+  Condition measure;  ///< Attribute or Pair without a comparison; of Test: the condition
+  std::vector<Knot> knots;
+  double about = 0, spread = 1;
+  double weight = 0;  ///< of Bell and Test
+  SourceLocation weight_at;
+  double missing = 0;  ///< log-odds when the value cannot be measured: nothing is bound to the name, an empty slice
 };
 
 struct AbsorbSpec {
@@ -92,7 +120,9 @@ struct SplittingSpec {
 
 struct AcceptLeaf {
   std::vector<std::pair<std::string, std::string>> parts;  ///< bound name -> part class IRI, in the order written
-  Confidence confidence;
+  Confidence confidence;                                   ///< before the evidence
+  SourceLocation confidence_at;
+  std::vector<EvidenceLine> evidence;  ///< beside the rule's own
   std::vector<AbsorbSpec> absorb;
   std::optional<SplittingSpec> splitting;
   bool merge_into_related = false;  ///< joins the object found by the last relation test that passed
@@ -116,8 +146,13 @@ struct Rule {
   SourceLocation at;
   SeedSpec seed;
   std::optional<GroupSpec> group;
-  std::vector<TreeNode> nodes;  ///< node 0 is the root
+  std::vector<EvidenceLine> evidence;  ///< for every accept leaf
+  bool leftovers = false;              ///< proposes after its stratum was decided, from what is left
+  std::vector<TreeNode> nodes;         ///< node 0 is the root
 };
+
+/// In words, for explanations: "roughness of pole".
+std::string describe(const EvidenceLine& line);
 
 /// A file of a rule set, under the name by which it was included.
 struct RuleSource {
@@ -128,9 +163,12 @@ struct RuleSource {
 struct RuleSet {
   std::string name, version, description;
   std::map<std::string, std::string> prefixes;
-  std::vector<std::string> order;  ///< class IRIs; earlier classes get a primitive first
-  std::vector<Rule> rules;         ///< in the order written
-  bool asks_map = false;           ///< some condition is an `ask:`
+  std::vector<std::string> order;                ///< class IRIs; earlier classes get a primitive first
+  std::vector<std::vector<std::string>> strata;  ///< the same classes; those of one stratum compete
+  /// For each label, the log-odds that a primitive which a rule accepts is no object at all.
+  std::array<double, scan::kPrimitiveLabelCount> nothing{};
+  std::vector<Rule> rules;  ///< in the order written
+  bool asks_map = false;    ///< some condition is an `ask:`
   std::vector<RuleSource> sources;
   ClassCatalogue catalogue;  ///< the classes it was checked against
   /// Hash of the sources' texts.

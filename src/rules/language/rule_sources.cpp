@@ -62,6 +62,7 @@ class Gatherer {
     readHead(root);
     addEntries(root.find("prefixes"), "prefixes", result_.prefixes, true);
     addEntries(root.find("constants"), "constants", result_.constants, false);
+    addEntries(root.find("nothing"), "nothing", result_.nothing, false);
     if (const YamlNode* order = root.find("order")) readOrder(*order, root.find("include") != nullptr);
     if (const YamlNode* rules = root.find("rules")) addRules(*rules);
     if (const YamlNode* overrides = root.find("override")) readOverride(*overrides);
@@ -92,41 +93,65 @@ class Gatherer {
     }
   }
 
-  /// A list replaces the order; { insert: [...], before: class } extends that of the included files.
+  /// A list replaces the order; { insert: [...], before: class } extends that of the included files. An item that is
+  /// itself a list is a stratum of several classes.
   void readOrder(const YamlNode& order, bool includes) {
     if (order.isSequence()) {
       if (includes) result_.order.clear();
-      for (const YamlNode& item : order.items) insertOrder(item, result_.order.size());
+      for (const YamlNode& item : order.items) insertStratum(item, result_.order.size());
       return;
     }
     if (!checkKeys(order, "order", faults_)) return;
     const YamlNode* insert = requireKey(order, "insert", "order", faults_);
-    const YamlNode* before = order.find("before");
-    const YamlNode* after = order.find("after");
-    if ((before == nullptr) == (after == nullptr)) faults_.error(order.at, "'order' needs either 'before' or 'after'");
+    const std::array<const YamlNode*, 3> anchors{order.find("before"), order.find("after"), order.find("beside")};
+    if (std::count(anchors.begin(), anchors.end(), nullptr) != 2)
+      faults_.error(order.at, "'order' needs one of 'before', 'after' and 'beside'");
     if (insert == nullptr) return;
     std::size_t at = result_.order.size();
-    for (const YamlNode* anchor : {before, after})
-      if (anchor != nullptr) at = placeOf(*anchor, anchor == after);
+    for (const YamlNode* anchor : anchors)
+      if (anchor != nullptr) at = stratumOf(*anchor) + (anchor == anchors[1] ? 1 : 0);
     const std::vector<YamlNode> classes = insert->isSequence() ? insert->items : std::vector<YamlNode>{*insert};
-    for (const YamlNode& item : classes) insertOrder(item, at++);
+    for (const YamlNode& item : classes)
+      if (anchors[2] != nullptr && at < result_.order.size())
+        addTo(result_.order[at], item);
+      else
+        insertStratum(item, at++);
   }
 
-  std::size_t placeOf(const YamlNode& anchor, bool behind) {
-    for (std::size_t i = 0; i < result_.order.size(); ++i)
-      if (result_.order[i].text == anchor.text) return i + (behind ? 1 : 0);
+  std::size_t stratumOf(const YamlNode& anchor) {
     std::vector<std::string> known;
-    for (const YamlNode& node : result_.order) known.push_back(node.text);
+    for (std::size_t i = 0; i < result_.order.size(); ++i)
+      for (const YamlNode& node : result_.order[i]) {
+        if (node.text == anchor.text) return i;
+        known.push_back(node.text);
+      }
     faults_.error(anchor.at, "'" + anchor.text + "' does not stand in the order", suggestion(anchor.text, known));
     return result_.order.size();
   }
 
-  void insertOrder(const YamlNode& node, std::size_t at) {
-    for (const YamlNode& earlier : result_.order)
-      if (earlier.text == node.text)
-        return faults_.error(node.at, "'" + node.text + "' stands in the order twice",
-                             "first in " + toString(earlier.at));
-    result_.order.insert(result_.order.begin() + static_cast<std::ptrdiff_t>(std::min(at, result_.order.size())), node);
+  void insertStratum(const YamlNode& node, std::size_t at) {
+    std::vector<YamlNode> stratum;
+    if (node.isSequence())
+      for (const YamlNode& item : node.items) addTo(stratum, item);
+    else
+      addTo(stratum, node);
+    if (node.isSequence() && node.items.empty()) faults_.error(node.at, "a stratum without classes");
+    if (stratum.empty()) return;
+    at = std::min(at, result_.order.size());
+    result_.order.insert(result_.order.begin() + static_cast<std::ptrdiff_t>(at), std::move(stratum));
+  }
+
+  void addTo(std::vector<YamlNode>& stratum, const YamlNode& node) {
+    const auto refuseTwin = [&](const std::vector<YamlNode>& others) {
+      for (const YamlNode& earlier : others) {
+        if (earlier.text != node.text || !node.isScalar()) continue;
+        faults_.error(node.at, "'" + node.text + "' stands in the order twice", "first in " + toString(earlier.at));
+        return true;
+      }
+      return false;
+    };
+    if (refuseTwin(stratum) || std::any_of(result_.order.begin(), result_.order.end(), refuseTwin)) return;
+    stratum.push_back(node);
   }
 
   YamlNode* ruleById(const std::string& id) {

@@ -17,7 +17,8 @@ namespace cluxel::rules {
 struct GatheredRules {
   std::string name, version, description;
   std::vector<std::pair<YamlNode, YamlNode>> prefixes, constants;  ///< key, value
-  std::vector<YamlNode> order;
+  std::vector<std::vector<YamlNode>> order;                        ///< strata of class names
+  std::vector<std::pair<YamlNode, YamlNode>> nothing;              ///< label, log-odds
   std::vector<YamlNode> rules;
   std::vector<RuleSource> sources;  ///< in the order they were read
 };

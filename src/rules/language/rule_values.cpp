@@ -230,6 +230,10 @@ std::optional<std::string> readNewName(const YamlNode& node, const NameScope& sc
     faults.error(node.at, "'" + *name + "' cannot be a name", "use letters, digits and underscores, a letter first");
     return std::nullopt;
   }
+  if (*name == kWholeCandidate) {
+    faults.error(node.at, "'whole' means all parts of a candidate in evidence", "choose another name");
+    return std::nullopt;
+  }
   if (std::find(scope.names.begin(), scope.names.end(), *name) == scope.names.end()) return name;
   faults.error(node.at, "the name '" + *name + "' is already bound here", "choose another one");
   return std::nullopt;

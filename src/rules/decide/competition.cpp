@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rounds of proposals. A group of seeds that a rule rejected is not proposed to it again; a candidate that lost is, as
+// long as its seeds are free.
+#include "rules/decide/competition.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "rules/decide/decision_record.hpp"
+#include "rules/decide/object_making.hpp"
+#include "rules/decide/rivals.hpp"
+#include "rules/decide/seed_groups.hpp"
+
+namespace cluxel::rules {
+
+namespace {
+
+struct Proposal {
+  const Rule* rule = nullptr;
+  Verdict verdict;
+  std::vector<FragmentIndex> group;
+};
+
+class Competition {
+ public:
+  Competition(ReasoningState& state, std::span<const Rule* const> rules) : state_(state), rules_(rules) {}
+
+  void run() {
+    while (true) {
+      std::vector<Proposal> proposals = propose();
+      const std::vector<Rival> rivals = rivalsOf(proposals);
+      const std::vector<bool> wins = chooseAmongRivals(rivals);
+      recordLosers(proposals, rivals, wins);
+      bool any = false;
+      for (std::size_t i = 0; i < proposals.size(); ++i) {
+        if (!wins[i]) continue;
+        accept(proposals[i]);
+        any = true;
+      }
+      if (!any) break;
+    }
+    for (const std::vector<FragmentIndex>& group : unknown_)
+      for (FragmentIndex fragment : group)
+        if (state_.fragments[fragment].owner == kFree) state_.fragments.setOwner(fragment, kUnknown);
+  }
+
+ private:
+  std::vector<Proposal> propose() {
+    std::vector<Proposal> proposals;
+    for (const Rule* rule : rules_)
+      for (std::vector<FragmentIndex>& group : seedGroups(state_, *rule, {})) {
+        if (rejected_.count({rule, group}) > 0) continue;
+        Verdict verdict = judge(state_, *rule, group);
+        if (verdict.accept != nullptr) {
+          if (state_.context.onCandidate && lost_.count({rule, group}) == 0)
+            state_.context.onCandidate(state_, *rule, verdict);
+          proposals.push_back({rule, std::move(verdict), std::move(group)});
+          continue;
+        }
+        state_.decisions.push_back(std::move(verdict.decision));
+        if (verdict.leaves_unknown) unknown_.push_back(group);
+        rejected_.emplace(rule, std::move(group));
+      }
+    return proposals;
+  }
+
+  std::vector<Rival> rivalsOf(const std::vector<Proposal>& proposals) const {
+    std::vector<Rival> rivals;
+    for (const Proposal& proposal : proposals) {
+      const AcceptLeaf& accept = *proposal.verdict.accept;
+      const Bindings& bindings = proposal.verdict.bindings;
+      Rival rival;
+      const double score = proposal.verdict.decision.log_odds - logOddsOfNothing(state_, accept, bindings);
+      rival.score = std::llround(score * 1e6);
+      rival.share_class = static_cast<std::uint32_t>(
+          std::find(state_.rules.order.begin(), state_.rules.order.end(), proposal.rule->class_iri) -
+          state_.rules.order.begin());
+      for (const auto& [name, part_class] : accept.parts) {
+        const bool shared = accept.splitting && accept.splitting->part == name;
+        for (FragmentIndex fragment : bindings.at(name).fragments) {
+          const OwnerIndex owner = state_.fragments[fragment].owner;
+          if (shared && (owner == kFree || owner == kShared))
+            rival.shared.push_back(fragment);
+          else if (owner == kFree)
+            rival.owned.push_back(fragment);
+        }
+      }
+      rivals.push_back(std::move(rival));
+    }
+    return rivals;
+  }
+
+  /// A candidate that lost says to whom. Only its first defeat is recorded.
+  void recordLosers(std::vector<Proposal>& proposals, const std::vector<Rival>& rivals, const std::vector<bool>& wins) {
+    const auto conflicts = conflictsOf(rivals);
+    for (std::size_t i = 0; i < proposals.size(); ++i) {
+      Decision& decision = proposals[i].verdict.decision;
+      for (std::uint32_t other : conflicts[i])
+        decision.rivals.push_back({proposals[other].rule->id, proposals[other].rule->class_iri,
+                                   proposals[other].verdict.decision.log_odds, bool{wins[other]}});
+      if (wins[i] || !lost_.emplace(proposals[i].rule, proposals[i].group).second) continue;
+      Decision record = decision;
+      record.accepted = false;
+      record.reason = reasonOfDefeat(decision);
+      state_.decisions.push_back(std::move(record));
+    }
+  }
+
+  std::string reasonOfDefeat(const Decision& decision) const {
+    const auto winner =
+        std::find_if(decision.rivals.begin(), decision.rivals.end(), [](const RivalNote& note) { return note.won; });
+    if (winner == decision.rivals.end()) return "the evidence speaks against it";
+    return "the evidence for " + state_.rules.shorten(winner->class_iri) + " is stronger";
+  }
+
+  void accept(Proposal& proposal) {
+    const double log_odds = proposal.verdict.decision.log_odds;
+    state_.decisions.push_back(std::move(proposal.verdict.decision));
+    makeObject(state_, *proposal.rule, *proposal.verdict.accept, std::move(proposal.verdict.bindings), log_odds);
+  }
+
+  ReasoningState& state_;
+  std::span<const Rule* const> rules_;
+  std::set<std::pair<const Rule*, std::vector<FragmentIndex>>> rejected_, lost_;
+  std::vector<std::vector<FragmentIndex>> unknown_;  ///< seeds of leaves with `leave: unknown`
+};
+
+}  // namespace
+
+void compete(ReasoningState& state, std::span<const Rule* const> rules) {
+  Competition(state, rules).run();
+}
+
+}  // namespace cluxel::rules

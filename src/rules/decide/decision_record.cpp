@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Describes seeds, leaves and what would have happened on the other side of a branch.
+#include "rules/decide/decision_record.hpp"
+
+#include <algorithm>
+
+#include "rules/decide/evidence.hpp"
+
+namespace cluxel::rules {
+
+namespace {
+
+class Judging {
+ public:
+  Judging(const ReasoningState& state, const Rule& rule) : state_(state), rule_(rule) {}
+
+  Verdict about(const std::vector<FragmentIndex>& group) const {
+    const Candidate seed = state_.fragments.candidateOf(group);
+    WalkResult walk = walkTree(state_, rule_, seed);
+    Verdict verdict;
+    verdict.decision = describeSeed(seed);
+    if (isProbed(verdict.decision)) verdict.decision.flips = flipsOf(seed, walk);
+    verdict.decision.path = std::move(walk.path);
+    verdict.decision.leaf = walk.leaf;
+    const TreeNode& leaf = rule_.nodes[walk.leaf];
+    if (const auto* reject = std::get_if<RejectLeaf>(&leaf.what)) {
+      verdict.decision.reason = reject->reason;
+      verdict.decision.hint = reject->hint;
+      verdict.leaves_unknown = reject->leave_unknown;
+      return verdict;
+    }
+    verdict.accept = &std::get<AcceptLeaf>(leaf.what);
+    verdict.decision.accepted = true;
+    verdict.decision.reason = describeAccept(*verdict.accept);
+    verdict.decision.log_odds = weigh(state_, rule_, *verdict.accept, walk.bindings, &verdict.decision.evidence);
+    verdict.bindings = std::move(walk.bindings);
+    verdict.related = walk.related;
+    return verdict;
+  }
+
+ private:
+  Decision describeSeed(const Candidate& seed) const {
+    Decision decision;
+    decision.rule_id = rule_.id;
+    std::optional<FragmentIndex> largest;
+    for (FragmentIndex fragment : seed.fragments) {
+      decision.seeds.push_back(state_.fragments[fragment].primitive);
+      const double points = state_.fragments.shapeOf(fragment).points;
+      const bool larger =
+          !largest || points > state_.fragments.shapeOf(*largest).points ||
+          (points == state_.fragments.shapeOf(*largest).points && state_.fragments.before(fragment, *largest));
+      if (larger) largest = fragment;
+    }
+    decision.seed = state_.fragments[*largest].primitive;
+    std::sort(decision.seeds.begin(), decision.seeds.end());
+    decision.seeds.erase(std::unique(decision.seeds.begin(), decision.seeds.end()), decision.seeds.end());
+    return decision;
+  }
+
+  bool isProbed(const Decision& decision) const {
+    return state_.context.probe &&
+           std::binary_search(decision.seeds.begin(), decision.seeds.end(), *state_.context.probe);
+  }
+
+  std::string describeAccept(const AcceptLeaf& accept) const {
+    std::string text = state_.rules.shorten(rule_.class_iri);
+    for (const auto& [name, part] : accept.parts)
+      if (part != rule_.class_iri)
+        text += (&accept.parts.front().second == &part ? ": " : ", ") + name + " is " + state_.rules.shorten(part);
+    return text;
+  }
+
+  std::vector<DecisionFlip> flipsOf(const Candidate& seed, const WalkResult& walk) const {
+    std::vector<DecisionFlip> flips;
+    for (const WalkedNode& walked : walk.walked) {
+      const WalkResult other = walkTree(state_, rule_, seed, walked.node);
+      DecisionFlip flip{walked.first_step, walked.step_count, walked.node, false, {}};
+      const auto& leaf = rule_.nodes[other.leaf].what;
+      if (const auto* reject = std::get_if<RejectLeaf>(&leaf)) flip.outcome = reject->reason;
+      if (const auto* accept = std::get_if<AcceptLeaf>(&leaf)) {
+        flip.accepted = true;
+        flip.outcome = describeAccept(*accept);
+      }
+      flips.push_back(std::move(flip));
+    }
+    return flips;
+  }
+
+  const ReasoningState& state_;
+  const Rule& rule_;
+};
+
+}  // namespace
+
+Verdict judge(const ReasoningState& state, const Rule& rule, const std::vector<FragmentIndex>& group) {
+  return Judging(state, rule).about(group);
+}
+
+double logOddsOfNothing(const ReasoningState& state, const AcceptLeaf& accept, const Bindings& bindings) {
+  double sum = 0;
+  for (const auto& [name, part_class] : accept.parts) {
+    if (accept.splitting && accept.splitting->part == name) continue;
+    for (FragmentIndex fragment : bindings.at(name).fragments)
+      if (state.fragments[fragment].owner == kFree)
+        sum += state.rules.nothing[static_cast<std::size_t>(state.fragments.labelOf(fragment))];
+  }
+  return sum;
+}
+
+}  // namespace cluxel::rules

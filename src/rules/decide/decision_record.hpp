@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Describes what a rule decided about a candidate, with the path through its tree and its evidence.
+#pragma once
+
+#include "rules/decide/tree_walk.hpp"
+
+namespace cluxel::rules {
+
+/// A walk through the tree of a rule together with its outcome.
+struct Verdict {
+  Decision decision;
+  Bindings bindings;
+  std::optional<OwnerIndex> related;
+  const AcceptLeaf* accept = nullptr;  ///< absent for a rejection
+  bool leaves_unknown = false;         ///< a rejection after which no rule may take the seed
+};
+
+/// Walks the tree of the rule for a group of seeds and weighs the evidence when a leaf accepts.
+Verdict judge(const ReasoningState& state, const Rule& rule, const std::vector<FragmentIndex>& group);
+
+/// The log-odds that the fragments which `accept` would own are no object at all.
+double logOddsOfNothing(const ReasoningState& state, const AcceptLeaf& accept, const Bindings& bindings);
+
+}  // namespace cluxel::rules

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// Looks up the truth of every cluxel once, then sums it over the cluxels of each candidate.
+#include "tasks/rule_fitting/candidate_examples.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "mapping/facts/ask_replay.hpp"
+#include "rules/decide/decision_record.hpp"
+#include "rules/decide/reason.hpp"
+
+namespace cluxel::tasks {
+
+namespace {
+
+using Votes = std::map<std::size_t, double>;  ///< points by class number
+
+/// The truth of the points of each cluxel.
+struct CluxelTruth {
+  std::vector<Votes> votes;
+  std::vector<double> points;  ///< all points, with truth or without
+};
+
+CluxelTruth truthOfCluxels(const mapping::MapReader& map, const TruthSource& truth) {
+  CluxelTruth known;
+  known.votes.resize(map.scene().cluxels.size());
+  known.points.resize(map.scene().cluxels.size(), 0);
+  for (const mapping::Cloud& cloud : map.clouds()) {
+    const scan::Scan scan = map.scanOf(cloud.id);
+    const scan::PointTruth of_points = truth.truthOf(scan);
+    const mapping::PointAnswers answers = map.answersFor(cloud);
+    for (std::size_t i = 0; i < scan.points.size(); ++i) {
+      known.points[answers.cluxel[i]] += 1;
+      if (of_points.object_class[i] >= 0)
+        known.votes[answers.cluxel[i]][static_cast<std::size_t>(of_points.object_class[i])] += 1;
+    }
+  }
+  return known;
+}
+
+class ExampleCollector {
+ public:
+  ExampleCollector(const mapping::MapReader& map, const TruthSource& truth, const rules::RuleSet& rules,
+                   bool attributes)
+      : map_(map),
+        rules_(rules),
+        classes_(truth.classes()),
+        truth_(truthOfCluxels(map, truth)),
+        attributes_(attributes) {}
+
+  void see(const rules::ReasoningState& state, const rules::Rule& rule, const rules::Verdict& verdict) {
+    const auto cluxels = cluxelsOf(state, *verdict.accept, verdict.bindings);
+    Votes votes;
+    double with_truth = 0, all = 0;
+    for (std::uint32_t cluxel : cluxels) {
+      all += truth_.points[cluxel];
+      for (const auto& [class_number, count] : truth_.votes[cluxel]) {
+        votes[class_number] += count;
+        with_truth += count;
+      }
+    }
+    if (votes.empty() || 2 * with_truth < all) return;
+    const auto winner =
+        std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    CandidateExample example;
+    example.truth_class = classes_.names[winner->first];
+    const Match match = matchOf(rule.class_iri, example.truth_class);
+    if (match == Match::Unknown) return;
+    example.is_right = match != Match::None && 2 * winner->second > with_truth;
+    example.is_named = hasWordFor(rule.class_iri);
+    example.class_iri = rule.class_iri;
+    example.rule_id = rule.id;
+    example.leaf = verdict.decision.leaf;
+    example.points = with_truth;
+    example.log_odds = verdict.decision.log_odds;
+    const auto& scene = state.scene.cluxels;
+    example.place = scene.scans[scene.seed[cluxels.front()].scan].hex();
+    readEvidence(verdict.decision, example);
+    if (attributes_) describe(state, verdict, example);
+    examples.push_back(std::move(example));
+  }
+
+  std::vector<CandidateExample> examples;
+
+ private:
+  static std::vector<std::uint32_t> cluxelsOf(const rules::ReasoningState& state, const rules::AcceptLeaf& accept,
+                                              const rules::Bindings& bindings) {
+    std::vector<std::uint32_t> cluxels;
+    for (const auto& [name, part_class] : accept.parts) {
+      const auto own = state.fragments.cluxelsOf(bindings.at(name));
+      cluxels.insert(cluxels.end(), own.begin(), own.end());
+    }
+    std::sort(cluxels.begin(), cluxels.end());
+    cluxels.erase(std::unique(cluxels.begin(), cluxels.end()), cluxels.end());
+    return cluxels;
+  }
+
+  enum class Match : std::uint8_t { Named, Counted, None, Unknown };
+
+  /// Named: the truth's class is the candidate's or below it. Counted: it is what the candidate's class counts as.
+  /// Unknown: the truth has no class for it.
+  Match matchOf(const std::string& class_iri, const std::string& truth_class) const {
+    const auto truth_entry =
+        std::find_if(rules_.catalogue.classes.begin(), rules_.catalogue.classes.end(),
+                     [&](const rules::ClassEntry& entry) { return mapping::localName(entry.iri) == truth_class; });
+    if (truth_entry != rules_.catalogue.classes.end() && rules_.catalogue.isA(truth_entry->iri, class_iri))
+      return Match::Named;
+    const std::size_t counted = countedAs(class_iri);
+    if (counted == classes_.names.size()) return Match::Unknown;
+    return classes_.names[counted] == truth_class ? Match::Counted : Match::None;
+  }
+
+  /// Whether the truth tells this class, or one below it, from others.
+  bool hasWordFor(const std::string& class_iri) const {
+    return std::any_of(rules_.catalogue.classes.begin(), rules_.catalogue.classes.end(), [&](const auto& entry) {
+      return rules_.catalogue.isA(entry.iri, class_iri) &&
+             std::find(classes_.names.begin(), classes_.names.end(), mapping::localName(entry.iri)) !=
+                 classes_.names.end();
+    });
+  }
+
+  std::size_t countedAs(const std::string& class_iri) const {
+    rules::SemanticObject object;
+    object.class_iri = class_iri;
+    return truthClassesOf({object}, classes_, rules_.catalogue).front();
+  }
+
+  static void readEvidence(const rules::Decision& decision, CandidateExample& example) {
+    example.confidence = decision.evidence.front().log_odds;
+    for (std::size_t i = 1; i < decision.evidence.size(); ++i) {
+      const rules::EvidenceStep& step = decision.evidence[i];
+      example.values.push_back(step.holds ? std::optional(*step.holds ? 1.0 : 0.0) : step.measured);
+    }
+  }
+
+  void describe(const rules::ReasoningState& state, const rules::Verdict& verdict, CandidateExample& example) const {
+    static constexpr std::array<rules::SliceSpec, 7> kSlices{
+        {{0.2, 0.7}, {0.7, 1.3}, {1.3, 2}, {2, 3}, {3, 4.5}, {4.5, 7}, {7, 12}}};
+    rules::Candidate all;
+    for (const auto& [name, part_class] : verdict.accept->parts) {
+      const rules::Candidate& part = verdict.bindings.at(name);
+      addShape(name, part.shape, example);
+      all.fragments.insert(all.fragments.end(), part.fragments.begin(), part.fragments.end());
+    }
+    all = state.fragments.candidateOf(all.fragments);
+    addShape("all", all.shape, example);
+    for (const rules::SliceSpec& slice : kSlices) {
+      char text[32];
+      std::snprintf(text, sizeof text, "slice%.1f", slice.from_m);
+      const auto shape = state.fragments.shapeOfSlice(all, slice);
+      if (shape) addShape(text, *shape, example);
+    }
+  }
+
+  static void addShape(const std::string& name, const rules::Shape& shape, CandidateExample& example) {
+    for (const perception::AttributeInfo& info : perception::attributeInfos())
+      example.attributes.push_back({name + "." + std::string(info.name), shape[info.attribute]});
+  }
+
+  const mapping::MapReader& map_;
+  const rules::RuleSet& rules_;
+  TruthClasses classes_;
+  CluxelTruth truth_;
+  bool attributes_;
+};
+
+}  // namespace
+
+std::vector<CandidateExample> candidateExamples(const mapping::MapReader& map, const rules::RuleSet& rules,
+                                                const TruthSource& truth, bool with_attributes) {
+  ExampleCollector collector(map, truth, rules, with_attributes);
+  mapping::AskReplay oracle(map);
+  rules::ReasoningContext context{.oracle = &oracle};
+  context.onCandidate = [&](const auto&... seen) { collector.see(seen...); };
+  reason(map.scene(), rules, context);
+  return std::move(collector.examples);
+}
+
+}  // namespace cluxel::tasks

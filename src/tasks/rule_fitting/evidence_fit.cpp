@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parameters of a rule: one shift of its confidences, one more for each leaf, and the log-odds of its evidence.
+#include "tasks/rule_fitting/evidence_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <set>
+
+#include "perception/training/lbfgs_minimise.hpp"
+#include "rules/decide/evidence.hpp"
+#include "tasks/rule_fitting/round_number.hpp"
+
+namespace cluxel::tasks {
+
+namespace {
+
+using Row = std::vector<std::pair<std::size_t, double>>;  ///< parameter, factor
+
+/// A parameter of the regression that stands for a number of the rule file.
+struct Parameter {
+  SourceLocation at;
+  std::string what;
+  double before = 0;
+};
+
+/// The design of one rule: how its numbers add up to a candidate's log-odds.
+class Design {
+ public:
+  explicit Design(const rules::Rule& rule) : rule_(rule) {
+    for (const rules::EvidenceLine& line : rule.evidence) addLine(line);
+    for (std::size_t node = 0; node < rule.nodes.size(); ++node)
+      if (const auto* accept = std::get_if<rules::AcceptLeaf>(&rule.nodes[node].what)) {
+        first_of_leaf_[node] = lines_.size();
+        for (const rules::EvidenceLine& line : accept->evidence) addLine(line);
+        shift_of_leaf_.emplace(node, 1 + shift_of_leaf_.size());
+      }
+  }
+
+  /// The shift of the rule, those of its leaves, then the numbers of the evidence.
+  std::size_t size() const { return 1 + shift_of_leaf_.size() + numbers_.size(); }
+  std::size_t firstNumber() const { return 1 + shift_of_leaf_.size(); }
+  const std::vector<Parameter>& numbers() const { return numbers_; }
+  const std::map<std::size_t, std::size_t>& shifts() const { return shift_of_leaf_; }
+
+  Row rowOf(const CandidateExample& example) const {
+    Row row{{0, 1.0}, {shift_of_leaf_.at(example.leaf), 1.0}};
+    const std::size_t shared = rule_.evidence.size();
+    for (std::size_t i = 0; i < example.values.size(); ++i) {
+      const std::size_t line = i < shared ? i : first_of_leaf_.at(example.leaf) + i - shared;
+      if (example.values[i]) addTo(row, *lines_[line], first_number_[line], *example.values[i]);
+    }
+    return row;
+  }
+
+ private:
+  void addLine(const rules::EvidenceLine& line) {
+    lines_.push_back(&line);
+    first_number_.push_back(numbers_.size());
+    const std::string what = describe(line);
+    if (line.kind != rules::EvidenceLine::Kind::Curve) {
+      numbers_.push_back({line.weight_at, what, line.weight});
+      return;
+    }
+    for (const rules::EvidenceLine::Knot& knot : line.knots)
+      numbers_.push_back({knot.where, what + " at " + shortNumberText(knot.at), knot.log_odds});
+  }
+
+  void addTo(Row& row, const rules::EvidenceLine& line, std::size_t number, double value) const {
+    const std::size_t first = firstNumber() + number;
+    if (line.kind == rules::EvidenceLine::Kind::Test) return row.emplace_back(first, value), void();
+    if (line.kind == rules::EvidenceLine::Kind::Bell) {
+      const double distance = (value - line.about) / line.spread;
+      return row.emplace_back(first, std::exp(-distance * distance / 2)), void();
+    }
+    const auto& knots = line.knots;
+    const auto above = std::find_if(knots.begin(), knots.end(), [&](const auto& knot) { return knot.at >= value; });
+    const auto i = static_cast<std::size_t>(above - knots.begin());
+    if (i == 0 || i == knots.size()) return row.emplace_back(first + std::min(i, knots.size() - 1), 1.0), void();
+    const double share = (value - knots[i - 1].at) / (knots[i].at - knots[i - 1].at);
+    row.emplace_back(first + i - 1, 1 - share);
+    row.emplace_back(first + i, share);
+  }
+
+  const rules::Rule& rule_;
+  std::vector<const rules::EvidenceLine*> lines_;
+  std::vector<std::size_t> first_number_;
+  std::map<std::size_t, std::size_t> first_of_leaf_, shift_of_leaf_;  ///< by node
+  std::vector<Parameter> numbers_;
+};
+
+struct Sample {
+  Row row;
+  double offset = 0;  ///< log-odds of the leaf's confidence
+  bool is_right = false;
+  std::string place;
+};
+
+double logOddsAt(const Sample& sample, std::span<const double> x) {
+  double sum = sample.offset;
+  for (const auto& [parameter, factor] : sample.row) sum += factor * x[parameter];
+  return sum;
+}
+
+double lossOf(const Sample& sample, double log_odds) {
+  const double signed_odds = sample.is_right ? log_odds : -log_odds;
+  return signed_odds > 30 ? 0 : std::log1p(std::exp(-signed_odds));
+}
+
+/// Logistic regression with a ridge; `weights` says how often each sample counts.
+std::vector<double> regress(const std::vector<Sample>& samples, const std::vector<double>& weights, std::size_t size,
+                            double ridge) {
+  const auto objective = [&](std::span<const double> x, std::span<double> gradient) {
+    double value = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      // The shift of the whole rule is its base rate, which the data knows best.
+      const double pull = i == 0 ? ridge / 100 : ridge;
+      value += pull * x[i] * x[i] / 2;
+      gradient[i] = pull * x[i];
+    }
+    for (std::size_t s = 0; s < samples.size(); ++s) {
+      if (weights[s] == 0) continue;
+      const double log_odds = logOddsAt(samples[s], x);
+      value += weights[s] * lossOf(samples[s], log_odds);
+      const double error = weights[s] * (rules::probabilityOf(log_odds) - (samples[s].is_right ? 1.0 : 0.0));
+      for (const auto& [parameter, factor] : samples[s].row) gradient[parameter] += error * factor;
+    }
+    return value;
+  };
+  return perception::minimise(objective, std::vector<double>(size, 0), {.iterations = 300, .precision = 1e-6});
+}
+
+class RuleFit {
+ public:
+  RuleFit(const rules::Rule& rule, std::vector<Sample> samples, std::size_t right_of_class, const Design& design,
+          const EvidenceFitParams& params)
+      : rule_(rule), samples_(std::move(samples)), right_of_class_(right_of_class), design_(design), params_(params) {
+    std::set<std::string> places;
+    for (const Sample& sample : samples_) places.insert(sample.place);
+    places_.assign(places.begin(), places.end());
+  }
+
+  FittedRule run() {
+    FittedRule fitted;
+    fitted.rule_id = rule_.id;
+    for (const Sample& sample : samples_) ++(sample.is_right ? fitted.right : fitted.wrong);
+    const std::string few = "fewer than " + std::to_string(params_.min_examples);
+    if (samples_.size() < params_.min_examples || right_of_class_ < params_.min_examples) {
+      fitted.refusal = few + (samples_.size() < params_.min_examples ? " candidates" : " right ones of its class");
+      return fitted;
+    }
+    if (std::min(fitted.right, fitted.wrong) < params_.min_examples) {
+      fitted.refusal = few + " right or wrong candidates: only its confidence is fitted";
+      keepShiftOnly();
+    }
+    estimate_ = regress(samples_, std::vector<double>(samples_.size(), 1), design_.size(), params_.ridge);
+    resample();
+    scoreLeftOut(fitted);
+    addConfidences(fitted);
+    addNumbers(fitted);
+    return fitted;
+  }
+
+ private:
+  void keepShiftOnly() {
+    const auto current = startingPoint();
+    for (Sample& sample : samples_) {
+      sample.offset = logOddsAt(sample, current);
+      sample.row = {{0, 1.0}};
+    }
+    only_shift_ = true;
+  }
+
+  /// Fits to places drawn with replacement.
+  void resample() {
+    std::mt19937_64 random(params_.seed);
+    for (int round = 0; round < params_.resamples; ++round) {
+      std::map<std::string, double> drawn;
+      for (std::size_t i = 0; i < places_.size(); ++i) drawn[places_[random() % places_.size()]] += 1;
+      resamples_.push_back(regress(samples_, weightsOf(drawn), design_.size(), params_.ridge));
+    }
+  }
+
+  std::vector<double> weightsOf(const std::map<std::string, double>& drawn) const {
+    std::vector<double> weights;
+    for (const Sample& sample : samples_) {
+      const auto found = drawn.find(sample.place);
+      weights.push_back(found == drawn.end() ? 0 : found->second);
+    }
+    return weights;
+  }
+
+  /// Every fifth place in turn is left out.
+  void scoreLeftOut(FittedRule& fitted) const {
+    constexpr std::size_t kFolds = 5;
+    for (std::size_t fold = 0; fold < kFolds; ++fold) {
+      std::map<std::string, double> kept;
+      for (std::size_t i = 0; i < places_.size(); ++i)
+        if (i % kFolds != fold) kept[places_[i]] = 1;
+      const auto weights = weightsOf(kept);
+      const auto x = regress(samples_, weights, design_.size(), params_.ridge);
+      const auto before = startingPoint();
+      for (std::size_t s = 0; s < samples_.size(); ++s) {
+        if (weights[s] != 0) continue;
+        fitted.loss_after += lossOf(samples_[s], logOddsAt(samples_[s], x)) / static_cast<double>(samples_.size());
+        fitted.loss_before +=
+            lossOf(samples_[s], logOddsAt(samples_[s], before)) / static_cast<double>(samples_.size());
+      }
+    }
+  }
+
+  /// The parameters that the rule file has now.
+  std::vector<double> startingPoint() const {
+    std::vector<double> x(design_.size(), 0);
+    for (std::size_t i = 0; i < design_.numbers().size(); ++i)
+      x[design_.firstNumber() + i] = design_.numbers()[i].before;
+    return x;
+  }
+
+  /// The interval of a sum of parameters over the resamples, as (low, high).
+  std::pair<double, double> intervalOf(const std::vector<std::size_t>& parameters, double share) const {
+    std::vector<double> values;
+    for (const auto& x : resamples_) {
+      double sum = 0;
+      for (std::size_t parameter : parameters) sum += x[parameter];
+      values.push_back(sum);
+    }
+    std::sort(values.begin(), values.end());
+    const auto at = [&](double quantile) {
+      return values[static_cast<std::size_t>(std::lround(quantile * static_cast<double>(values.size() - 1)))];
+    };
+    return {at((1 - share) / 2), at((1 + share) / 2)};
+  }
+
+  void addNumbers(FittedRule& fitted) const {
+    if (only_shift_) return;
+    for (std::size_t i = 0; i < design_.numbers().size(); ++i) {
+      const Parameter& number = design_.numbers()[i];
+      const std::vector<std::size_t> parameter{design_.firstNumber() + i};
+      const auto [low, high] = intervalOf(parameter, params_.interval);
+      if (low <= number.before && number.before <= high) continue;
+      const auto [inner_low, inner_high] = intervalOf(parameter, 0.5);
+      fitted.changes.push_back(
+          {number.at, number.what, number.before, roundestIn(inner_low, inner_high), low, high, false});
+    }
+  }
+
+  void addConfidences(FittedRule& fitted) const {
+    for (const auto& [node, shift] : design_.shifts()) {
+      const rules::Confidence& confidence = std::get<rules::AcceptLeaf>(rule_.nodes[node].what).confidence;
+      addConfidence(confidence.high, confidence.high_at, shift, fitted);
+      if (!confidence.ramps.empty()) addConfidence(confidence.low, confidence.low_at, shift, fitted);
+    }
+  }
+
+  void addConfidence(double before, const SourceLocation& at, std::size_t shift, FittedRule& fitted) const {
+    const auto shifted = [&](double by) { return rules::probabilityOf(rules::logOdds(before) + by); };
+    const auto [low, high] = intervalOf({0, shift}, params_.interval);
+    const auto [inner_low, inner_high] = intervalOf({0, shift}, 0.5);
+    if (low <= 0 && 0 <= high) return;
+    fitted.changes.push_back({at, "confidence", before, roundestIn(shifted(inner_low), shifted(inner_high)),
+                              shifted(low), shifted(high), true});
+  }
+
+  const rules::Rule& rule_;
+  std::vector<Sample> samples_;
+  std::size_t right_of_class_;
+  const Design& design_;
+  const EvidenceFitParams& params_;
+  std::vector<std::string> places_;
+  std::vector<double> estimate_;
+  std::vector<std::vector<double>> resamples_;
+  bool only_shift_ = false;
+};
+
+}  // namespace
+
+std::vector<FittedRule> fitEvidence(const rules::RuleSet& rules, const std::vector<CandidateExample>& examples,
+                                    const EvidenceFitParams& params) {
+  std::set<std::string> named;
+  for (const CandidateExample& example : examples)
+    if (example.is_named) named.insert(example.class_iri);
+  const auto speaks = [&](const CandidateExample& example) {
+    return example.is_named || !named.contains(example.class_iri);
+  };
+  std::map<std::string, std::size_t> right_of_class;
+  for (const CandidateExample& example : examples)
+    right_of_class[example.class_iri] += example.is_right && speaks(example) ? 1 : 0;
+  std::vector<FittedRule> fitted;
+  for (const rules::Rule& rule : rules.rules) {
+    const Design design(rule);
+    std::vector<Sample> samples;
+    for (const CandidateExample& example : examples)
+      if (example.rule_id == rule.id && speaks(example))
+        samples.push_back({design.rowOf(example), example.confidence, example.is_right, example.place});
+    if (!samples.empty())
+      fitted.push_back(RuleFit(rule, std::move(samples), right_of_class[rule.class_iri], design, params).run());
+  }
+  return fitted;
+}
+
+}  // namespace cluxel::tasks

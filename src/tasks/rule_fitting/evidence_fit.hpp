@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Learns the numbers of evidence from candidates with known truth: one logistic regression for each rule.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tasks/rule_fitting/candidate_examples.hpp"
+
+namespace cluxel::tasks {
+
+struct EvidenceFitParams {
+  std::size_t min_examples = 10;  ///< right ones, and as many wrong ones
+  double ridge = 4;               ///< pulls log-odds to 0: as much as this many examples
+  int resamples = 40;             ///< of the bootstrap over places
+  double interval = 0.8;          ///< a number is changed when this interval of its resamples excludes the old one
+  std::uint64_t seed = 1;
+};
+
+/// A number of a rule file with what the data says of it.
+struct FittedNumber {
+  SourceLocation at;
+  std::string what;  ///< in words: "roughness of pole at 0.05 m"
+  double before = 0, after = 0;
+  double low = 0, high = 0;  ///< the interval
+  bool is_share = false;     ///< a confidence, written as 0.85; else log-odds
+};
+
+struct FittedRule {
+  std::string rule_id;
+  std::size_t right = 0, wrong = 0;
+  std::string refusal;                     ///< why nothing was learned; else empty
+  double loss_before = 0, loss_after = 0;  ///< mean log loss on places left out of the fit, in turn
+  std::vector<FittedNumber> changes;
+};
+
+/// Where some truth names a class, maps with other truths say nothing of it: what they call a small object may be a
+/// person. A rule with fewer than `min_examples` candidates, or of a class with fewer right
+/// ones, stays as it is. One with fewer right or wrong ones gets another confidence only.
+/// One entry for each rule that proposed a candidate, in the order of the rule set. Deterministic for a seed.
+std::vector<FittedRule> fitEvidence(const rules::RuleSet& rules, const std::vector<CandidateExample>& examples,
+                                    const EvidenceFitParams& params);
+
+}  // namespace cluxel::tasks
