@@ -11,6 +11,7 @@ mkdir -p "$out"
 [ -d "$out/scans" ] || "$cluxel" simulate "$out/scans" --seed 31 --stops "$stops" >/dev/null
 [ -f "$out/campus.clx" ] || "$cluxel" build "$out/scans" -o "$out/campus.clx" >/dev/null 2>&1
 
+rm -f "$out/url"
 "$cluxel" serve "$out/campus.clx" --port 0 --quiet >"$out/url" &
 server=$!
 trap 'kill $server 2>/dev/null || true' EXIT
