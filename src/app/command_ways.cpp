@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `cluxel route`, `cluxel reach` and `cluxel costmap`: ways over a map's ground.
+// `cluxel route`, `cluxel reach`, `cluxel costmap` and `cluxel search`: ways over a map's ground.
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +8,7 @@
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "rdf/store/map_check.hpp"
+#include "tasks/search/search_tour.hpp"
 #include "tasks/ways/cost_map.hpp"
 #include "tasks/ways/way_report.hpp"
 
@@ -89,6 +90,26 @@ ExitCode costMap(WayArguments arguments, Session& session) {
   return ExitCode::Done;
 }
 
+ExitCode search(const WayArguments& arguments, tasks::SearchRequest request, Session& session) {
+  const mapping::MapReader map = openMap(arguments, session);
+  request.ways = arguments.request;
+  const tasks::SearchAnswer answer = searchFor(map, request);
+  if (session.json) {
+    print(searchJson(map, answer));
+  } else {
+    std::printf("%zu known\n", answer.known.size());
+    for (std::size_t i = 0; i < answer.stops.size(); ++i) {
+      const tasks::SearchStop& stop = answer.stops[i];
+      const Eigen::Vector2d place = answer.frame.centreOf(stop.cell);
+      const std::string reason =
+          stop.reason == tasks::kAnywhere ? "not seen yet" : "near " + answer.reasons[stop.reason];
+      std::printf("%2zu. (%.1f, %.1f)  walk %.1f m, in all %.1f m  %.1f %%, so far %.1f %%  %s\n", i + 1, place.x(),
+                  place.y(), stop.walk_m, stop.total_m, stop.probability * 100, stop.so_far * 100, reason.c_str());
+    }
+  }
+  return answer.stops.empty() ? ExitCode::NoRows : ExitCode::Done;
+}
+
 /// Options of all ways.
 void addWayOptions(CLI::App& command, WayArguments& arguments) {
   tasks::WayRequest& request = arguments.request;
@@ -108,6 +129,27 @@ void addWalkOptions(CLI::App& command, WayArguments& arguments) {
   command.add_option("from", arguments.from, "X,Y in metres of the map frame, or an object")->required();
   command.add_option("--width", arguments.request.params.width_m, "free width that is needed [m, 0.6]")
       ->check(CLI::Range(0.0, 20.0));
+}
+
+void addSearch(CLI::App& app, Session& session) {
+  auto options = std::make_shared<WayArguments>();
+  auto request = std::make_shared<tasks::SearchRequest>();
+  CLI::App* command = app.add_subcommand("search", "tell where to look first for objects of a class");
+  command->add_option("map", options->map, "a map")->required();
+  command->add_option("--for", request->class_name, "the class to look for")->required();
+  command->add_option("--from", request->from, "X,Y or an object; else where the last scan was taken");
+  command->add_option("--budget", request->tour.budget_m, "how long the walk may be [m]")->check(above0());
+  command->add_option("--stops", request->tour.max_stops, "at most so many stops [10]")->check(CLI::Range(1, 100));
+  command->add_option("--view", request->search.view_m, "how far an object is recognised [m, 10]")
+      ->check(CLI::Range(1.0, 100.0));
+  command
+      ->add_option("--detection", request->search.detection,
+                   "share of the class that the map knows where ground was seen [0.8]")
+      ->check(share());
+  command->add_option("--width", options->request.params.width_m, "free width that is needed [m, 0.6]")
+      ->check(CLI::Range(0.0, 20.0));
+  addWayOptions(*command, *options);
+  onRun(*command, session, [options, request, &session] { return search(*options, *request, session); });
 }
 
 }  // namespace
@@ -142,6 +184,7 @@ void addWays(CLI::App& app, Session& session) {
       ->check(named());
   addWayOptions(*map_command, *map_options);
   onRun(*map_command, session, [map_options, &session] { return costMap(*map_options, session); });
+  addSearch(app, session);
 }
 
 }  // namespace cluxel::app

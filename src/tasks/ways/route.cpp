@@ -24,27 +24,6 @@ std::string written(const Eigen::Vector2d& p_map) {
   return "(" + tenth(p_map.x()) + ", " + tenth(p_map.y()) + ")";
 }
 
-/// The open cell nearest to a place.
-std::uint32_t openCellNear(const PassableGrid& grid, const Eigen::Vector2d& p_map) {
-  const auto middle = grid.frame.cellAt(p_map);
-  if (!middle) throw Error(ErrorKind::NotFound, "the place " + written(p_map) + " lies outside the map");
-  const int reach = static_cast<int>(std::ceil(kSnap_m / grid.frame.cell_m));
-  std::uint32_t best = *middle;
-  double best_m = std::numeric_limits<double>::infinity();
-  for (int dy = -reach; dy <= reach; ++dy)
-    for (int dx = -reach; dx <= reach; ++dx) {
-      const int x = grid.frame.columnOf(*middle) + dx, y = grid.frame.rowOf(*middle) + dy;
-      if (!grid.frame.holds(x, y) || grid.closure[grid.frame.index(x, y)] != Closure::Open) continue;
-      const double distance_m = (grid.frame.centreOf(grid.frame.index(x, y)) - p_map).norm();
-      if (distance_m >= best_m) continue;
-      best_m = distance_m;
-      best = grid.frame.index(x, y);
-    }
-  if (best_m <= kSnap_m) return best;
-  throw Error(ErrorKind::NotFound, "no open ground lies within 2 m of " + written(p_map) +
-                                       "; choose another place, or ask for less width or more slope");
-}
-
 Route routeOf(const PassableGrid& grid, std::vector<std::uint32_t> cells) {
   Route route;
   route.narrowest_m = std::numeric_limits<double>::infinity();
@@ -133,6 +112,26 @@ std::vector<Barrier> barriersOn(const PassableGrid& grid, const std::vector<std:
 }
 
 }  // namespace
+
+std::uint32_t openCellNear(const PassableGrid& grid, const Eigen::Vector2d& p_map) {
+  const auto middle = grid.frame.cellAt(p_map);
+  if (!middle) throw Error(ErrorKind::NotFound, "the place " + written(p_map) + " lies outside the map");
+  const int reach = static_cast<int>(std::ceil(kSnap_m / grid.frame.cell_m));
+  std::uint32_t best = *middle;
+  double best_m = std::numeric_limits<double>::infinity();
+  for (int dy = -reach; dy <= reach; ++dy)
+    for (int dx = -reach; dx <= reach; ++dx) {
+      const int x = grid.frame.columnOf(*middle) + dx, y = grid.frame.rowOf(*middle) + dy;
+      if (!grid.frame.holds(x, y) || grid.closure[grid.frame.index(x, y)] != Closure::Open) continue;
+      const double distance_m = (grid.frame.centreOf(grid.frame.index(x, y)) - p_map).norm();
+      if (distance_m >= best_m) continue;
+      best_m = distance_m;
+      best = grid.frame.index(x, y);
+    }
+  if (best_m <= kSnap_m) return best;
+  throw Error(ErrorKind::NotFound, "no open ground lies within 2 m of " + written(p_map) +
+                                       "; choose another place, or ask for less width or more slope");
+}
 
 RouteAnswer findRoutes(const PassableGrid& grid, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                        std::size_t count) {

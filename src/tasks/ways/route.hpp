@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mapping/map_reader.hpp"
+#include "rdf/ontology/ontology.hpp"
 #include "tasks/ways/passable_grid.hpp"
 
 namespace cluxel::tasks {
@@ -25,6 +26,11 @@ PassableGrid passableIn(const mapping::MapReader& map, const WayRequest& request
 /// "X,Y" in metres of the map frame, or an object: its IRI, at least four digits of its hash, or "#17". Throws Error
 /// (InvalidArgument, NotFound).
 Eigen::Vector2d placeNamed(const mapping::MapReader& map, const std::string& text);
+
+/// The open cell nearest to a place. Throws Error (NotFound) when there is none within 2 m.
+std::uint32_t openCellNear(const PassableGrid& grid, const Eigen::Vector2d& p_map);
+/// The IRI of a class written "Tree", "clx:Tree" or in full. Throws Error (NotFound).
+std::string classNamed(const rdf::OntologyView& ontology, const std::string& name);
 
 struct Route {
   std::vector<std::uint32_t> cells;

@@ -21,7 +21,7 @@ class ObjectSelector {
 
   void mark(const std::string& name, std::vector<bool>& marked) const {
     const bool is_mobility = name == "Movable" || name == "Static";
-    const std::string iri = is_mobility ? std::string() : classIri(name);
+    const std::string iri = is_mobility ? std::string() : classNamed(ontology_, name);
     const rdf::Mobility wanted = name == "Movable" ? rdf::Mobility::Movable : rdf::Mobility::Static;
     for (std::size_t i = 0; i < map_.objects().size(); ++i) {
       const std::string& class_iri = map_.objects()[i].class_iri;
@@ -32,17 +32,6 @@ class ObjectSelector {
   }
 
  private:
-  std::string classIri(const std::string& name) const {
-    const std::string local = name.starts_with("clx:") ? name.substr(4) : name;
-    for (const std::string& iri : {name, rdf::vocabulary::clx(local)})
-      if (ontology_.find(iri) != nullptr) return iri;
-    std::vector<std::string> known{"Movable", "Static"};
-    for (const std::string& iri : ontology_.classNames()) known.push_back(mapping::localName(iri));
-    const std::string hint = suggestion(local, known);
-    throw Error(ErrorKind::NotFound,
-                "the map's ontology has no class '" + name + "'" + (hint.empty() ? "" : "; " + hint));
-  }
-
   const mapping::MapReader& map_;
   rdf::OntologyView ontology_;
 };
@@ -70,6 +59,17 @@ Eigen::Vector2d centroidOf(const mapping::MapReader& map, const std::string& iri
 }
 
 }  // namespace
+
+std::string classNamed(const rdf::OntologyView& ontology, const std::string& name) {
+  const std::string local = name.starts_with("clx:") ? name.substr(4) : name;
+  for (const std::string& iri : {name, rdf::vocabulary::clx(local)})
+    if (ontology.find(iri) != nullptr) return iri;
+  std::vector<std::string> known;
+  for (const std::string& iri : ontology.classNames()) known.push_back(mapping::localName(iri));
+  const std::string hint = suggestion(local, known);
+  throw Error(ErrorKind::NotFound,
+              "the map's ontology has no class '" + name + "'" + (hint.empty() ? "" : "; " + hint));
+}
 
 PassableGrid passableIn(const mapping::MapReader& map, const WayRequest& request) {
   const ObjectSelector selector(map);
