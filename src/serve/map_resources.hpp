@@ -37,6 +37,10 @@ HttpResponse answerQuestionList(const std::vector<tasks::Question>& questions);
 /// Runs a shipped question; its parameters are those of the request.
 HttpResponse answerQuestion(const ServedMap& map, const ResourceRequest& asked,
                             const std::vector<tasks::Question>& questions, const std::string& name);
+/// The tasks with their parameters.
+HttpResponse answerTaskList();
+/// Runs route, reach or search; the parameters are those of the request.
+HttpResponse answerTask(ServedMap& map, const ResourceRequest& asked, const std::string& name);
 /// One graph in Turtle or N-Triples (SPARQL 1.1 Graph Store HTTP Protocol, reading): parameter graph=IRI, or default.
 HttpResponse answerGraph(const ServedMap& map, const ResourceRequest& asked);
 

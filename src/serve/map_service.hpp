@@ -27,6 +27,7 @@ namespace cluxel::serve {
 ///   /maps/NAME/graph                     Graph Store Protocol, reading
 ///   /maps/NAME/objects[/ID[/explanation|/points]]
 ///   /maps/NAME/questions[/QUESTION]
+///   /maps/NAME/tasks[/TASK]
 /// When one map is served, what follows /maps/NAME may stand alone: /sparql.
 class MapService {
  public:

@@ -15,10 +15,11 @@ struct Link {
   const char* text;
 };
 
-constexpr std::array<Link, 6> kLinks{{{"", "what the map holds (JSON)"},
+constexpr std::array<Link, 7> kLinks{{{"", "what the map holds (JSON)"},
                                       {"/objects", "objects (JSON): class, bbox, limit, offset"},
                                       {"/questions", "shipped questions (JSON)"},
                                       {"/questions/count_by_class?format=table", "objects of each class (text)"},
+                                      {"/tasks", "tasks: route, reach, search (JSON)"},
                                       {"/sparql", "SPARQL 1.1 endpoint; without a query its Service Description"},
                                       {"/graph?default", "all facts (Turtle)"}}};
 

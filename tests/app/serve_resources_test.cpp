@@ -99,6 +99,23 @@ TEST_F(ServeCommand, ShippedQuestionsAnswerAsTheCommandQuery) {
             run("query " + path("map.clx").string() + " near_point.rq --param radius=25 --param x=3 --format csv").out);
 }
 
+TEST_F(ServeCommand, TasksAnswerAsTheirCommands) {
+  EXPECT_EQ(jsonOf(shared().get("/tasks")).at("tasks").size(), 3U);
+  const std::string map = path("map.clx").string();
+  EXPECT_EQ(shared().get("/tasks/search?for=StreetSign&from=0,0&budget=40").body,
+            run("search " + map + " --for StreetSign --from 0,0 --budget 40 --json").out);
+  EXPECT_EQ(shared().get("/tasks/reach?from=0,0&minutes=0.2&without=Movable").body,
+            run("reach " + map + " 0,0 --minutes 0.2 --without Movable --json").out);
+  const ServeJson place = jsonOf(shared().get("/tasks/search?for=StreetSign&from=0,0")).at("stops").at(0).at("at");
+  const std::string to = std::to_string(place[0].get<double>()) + "," + std::to_string(place[1].get<double>());
+  EXPECT_EQ(shared().get("/tasks/route?from=0,0&to=" + to).body, run("route " + map + " 0,0 --json -- " + to).out);
+  EXPECT_EQ(shared().get("/tasks/route?from=0,0").status, 400);
+  EXPECT_EQ(shared().get("/tasks/route?from=0,0&to=1e9,0").status, 404);
+  EXPECT_EQ(shared().get("/tasks/route?from=0,0&to=1,1&width=-1").status, 400);
+  EXPECT_EQ(shared().get("/tasks/search?for=StreetSing").status, 404);
+  EXPECT_EQ(shared().get("/tasks/serch").status, 404);
+}
+
 TEST_F(ServeCommand, SeveralMapsAreToldApartByName) {
   const Served both(command("one=" + path("map.clx").string() + " " + path("three.clx").string()), path("both.log"));
   EXPECT_EQ(both.port(), 0) << "three.clx is no map";
