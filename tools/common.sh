@@ -36,16 +36,25 @@ install_base() {
 
 install_clang() { install_packages clang libclang-rt-14-dev; }
 
-# The second SPARQL engine of the differential test: oxigraph from npm, beside the build, never in the repository.
-install_second_engine() {
+# npm packages that tests use, beside the build, never in the repository: install_from_npm FOLDER MANIFEST PACKAGE TEST.
+install_from_npm() {
+  local folder=build/$1 manifest=$2 package=$3
   command -v node >/dev/null || install_packages nodejs
   command -v npm >/dev/null || install_packages npm
-  [ -d build/npm/node_modules/oxigraph ] && return 0
-  say "run: installing the second SPARQL engine (npm package oxigraph) under build/npm"
-  mkdir -p build/npm
-  cp tests/sparql/package.json build/npm/
-  npm install --silent --no-fund --no-audit --no-package-lock --prefix build/npm >&2 ||
-    say "run: npm could not install oxigraph: the differential test will say that it is absent"
+  [ -d "$folder/node_modules/$package" ] && return 0
+  say "run: installing the npm package $package under $folder"
+  mkdir -p "$folder"
+  cp "$manifest" "$folder/"
+  npm install --silent --no-fund --no-audit --no-package-lock --prefix "$folder" >&2 ||
+    say "run: npm could not install $package: $4 will say that it is absent"
+}
+
+# The second SPARQL engine of the differential test.
+install_second_engine() { install_from_npm npm tests/sparql/package.json oxigraph "the differential test"; }
+
+# The SPARQL client that asks `cluxel serve`.
+install_endpoint_client() {
+  install_from_npm npm-endpoint tests/app/package.json @comunica/query-sparql "the test of the endpoint"
 }
 
 configure() {  # configure PRESET [OPTIONS OF CMAKE...]

@@ -14,5 +14,6 @@ done
 install_base
 install_packages dpkg-dev file lintian   # for the test of the packages
 install_second_engine
+install_endpoint_client
 build release
 exec bash tools/run_tests.sh release "${options[@]}"

@@ -3,7 +3,6 @@
 #include "cluxel/map.hpp"
 
 #include <mutex>
-#include <optional>
 #include <thread>
 
 #include "api/answer_data.hpp"
@@ -16,7 +15,7 @@
 #include "mapping/build/map_update.hpp"
 #include "mapping/change/map_change.hpp"
 #include "mapping/change/map_merge.hpp"
-#include "mapping/map_reader.hpp"
+#include "mapping/newest_map.hpp"
 #include "sparql/query_engine.hpp"
 #include "tasks/explanation.hpp"
 
@@ -27,31 +26,15 @@ std::string_view version() {
 }
 
 struct Map::Impl {
-  explicit Impl(std::filesystem::path map_file) : file(std::move(map_file)) {}
+  explicit Impl(const std::filesystem::path& map_file) : file(map_file), map(map_file) {}
 
-  /// The newest state. What was read before serves again as long as nobody has committed. `mutex` is held.
-  const mapping::MapReader& newest() {
-    environment = rdf::Environment::open(file, rdf::OpenMode::ReadOnly);
-    const rdf::QuadReader present(environment->read());
-    if (reader && present.kept(kStateName) == state) return *reader;
-    reader.reset();
-    reader.emplace(file);
-    state = reader->quads().kept(kStateName);
-    if (!state) reader->quads().keep(kStateName, state = std::make_shared<int>());
-    return *reader;
-  }
+  /// The newest state. `mutex` is held.
+  const mapping::MapReader& newest() { return map.reader(); }
+  rdf::QuadReader newestQuads() const { return map.quads(); }
 
-  rdf::QuadReader newestQuads() const {
-    return rdf::QuadReader(rdf::Environment::open(file, rdf::OpenMode::ReadOnly)->read());
-  }
-
-  static constexpr const char* kStateName = "api state";
-
-  std::filesystem::path file;
+  const std::filesystem::path file;
   std::mutex mutex;
-  std::shared_ptr<rdf::Environment> environment;  ///< kept open, so that each call finds it open
-  std::optional<mapping::MapReader> reader;
-  std::shared_ptr<const void> state;  ///< names the commit that `reader` reads
+  mapping::NewestMap map;
 };
 
 Map::Map(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -139,7 +122,7 @@ Answer Map::query(std::string_view text, const QueryOptions& options) const {
 
 UpdateCounts Map::update(std::string_view text) {
   const std::lock_guard lock(impl_->mutex);
-  impl_->reader.reset();  // its pages can be used again once the update is committed
+  impl_->map.release();  // its pages can be used again once the update is committed
   ProgressSink silence;
   const sparql::UpdateReport report =
       mapping::updateMap(impl_->file, std::string(text), {.query = {.source_name = "update"}}, silence);
@@ -150,13 +133,13 @@ MapChanges Map::extend(const std::vector<std::filesystem::path>& scans, const Ch
                        ProgressSink& sink) {
   const scan::ScanSet set = scan::ScanSet::open(scans, {options.poses}, sink);
   const std::lock_guard lock(impl_->mutex);
-  impl_->reader.reset();
+  impl_->map.release();
   return changesOf(mapping::extendMap(impl_->file, set, changeParams(options), sink));
 }
 
 MapChanges Map::retract(const std::vector<std::string>& clouds, const ChangeOptions& options, ProgressSink& sink) {
   const std::lock_guard lock(impl_->mutex);
-  impl_->reader.reset();
+  impl_->map.release();
   const auto ids = mapping::cloudsNamed(impl_->file, clouds);
   return changesOf(mapping::retractScans(impl_->file, ids, changeParams(options), sink));
 }
@@ -165,7 +148,7 @@ MapChanges Map::repose(const std::vector<CloudPose>& poses, const ChangeOptions&
   std::vector<std::string> names;
   for (const CloudPose& pose : poses) names.push_back(pose.cloud);
   const std::lock_guard lock(impl_->mutex);
-  impl_->reader.reset();
+  impl_->map.release();
   const auto ids = mapping::cloudsNamed(impl_->file, names);
   std::vector<mapping::ScanPose> moves;
   for (std::size_t i = 0; i < ids.size(); ++i) moves.push_back({ids[i], poseOf(poses[i])});

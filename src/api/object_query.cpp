@@ -7,7 +7,6 @@
 #include "api/answer_data.hpp"
 #include "base/nearest_name.hpp"
 #include "cluxel/error.hpp"
-#include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/query_engine.hpp"
 
@@ -84,7 +83,8 @@ std::vector<Object> objectsOf(const rdf::QuadReader& reader, const rdf::Ontology
   return objects;
 }
 
-/// The IRI of a class written "Tree", "clx:Tree" or in full.
+}  // namespace
+
 std::string classIriOf(const rdf::OntologyView& ontology, std::string_view written) {
   std::string_view local = written;
   if (local.starts_with("clx:")) local.remove_prefix(4);
@@ -96,8 +96,6 @@ std::string classIriOf(const rdf::OntologyView& ontology, std::string_view writt
   throw Error(ErrorKind::NotFound,
               "the map's ontology has no class '" + std::string(written) + "'" + (hint.empty() ? "" : "; " + hint));
 }
-
-}  // namespace
 
 std::vector<Object> objectsOf(const rdf::QuadReader& reader) {
   return objectsOf(reader, ontologyViewOf(reader));

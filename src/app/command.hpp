@@ -78,6 +78,8 @@ void addExplain(CLI::App& app, Session& session);
 void addExport(CLI::App& app, Session& session);
 void addEvaluate(CLI::App& app, Session& session);
 void addChange(CLI::App& app, Session& session);  ///< extend, retract, repose, merge
+void addWays(CLI::App& app, Session& session);    ///< route, reach, costmap, search
+void addServe(CLI::App& app, Session& session);
 void addUpkeep(CLI::App& app, Session& session);  ///< doctor, compact
 void addDocumentation(CLI::App& app);             ///< hidden: the man page and shell completion
 

@@ -48,6 +48,8 @@ void addCommands(CLI::App& app, Session& session) {
   addTrain(app, session);
   addEvaluate(app, session);
   addExport(app, session);
+  addWays(app, session);
+  addServe(app, session);
   addUpkeep(app, session);
   addDocumentation(app);
 }

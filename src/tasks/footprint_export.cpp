@@ -3,7 +3,6 @@
 #include "tasks/footprint_export.hpp"
 
 #include <cmath>
-#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "base/convex_hull.hpp"
@@ -18,8 +17,6 @@ namespace cluxel::tasks {
 namespace {
 
 using Json = nlohmann::ordered_json;
-/// From the map frame [m] to the coordinates in the file.
-using ToPosition = std::function<Eigen::Vector2d(const Eigen::Vector2d&)>;
 
 double rounded(double value, double per_unit) {
   return std::round(value * per_unit) / per_unit;
@@ -43,7 +40,7 @@ std::vector<Eigen::Vector2d> footprintOf(const rules::SemanticObject& object, co
   return convexHull(std::move(corners));
 }
 
-Json polygonJson(const std::vector<Eigen::Vector2d>& hull, const ToPosition& position) {
+Json polygonJson(const std::vector<Eigen::Vector2d>& hull, const PlaceWriter& position) {
   Json ring = Json::array();
   for (const Eigen::Vector2d& p : hull) {
     const Eigen::Vector2d written = position(p);
@@ -68,8 +65,10 @@ Json propertiesOf(const rules::SemanticObject& object, std::size_t number, const
           {"number", number}};
 }
 
+}  // namespace
+
 /// The georeference lives as long as the function.
-ToPosition positionsIn(ExportFrame frame, const mapping::MapInputs& inputs) {
+PlaceWriter placesIn(ExportFrame frame, const mapping::MapInputs& inputs) {
   if (frame == ExportFrame::Local)
     return
         [](const Eigen::Vector2d& p) { return Eigen::Vector2d(rounded(p.x(), kPerMetre), rounded(p.y(), kPerMetre)); };
@@ -85,11 +84,9 @@ ToPosition positionsIn(ExportFrame frame, const mapping::MapInputs& inputs) {
   };
 }
 
-}  // namespace
-
 void writeFootprints(const mapping::MapReader& map, ExportFrame frame, const ByteSink& out) {
   const mapping::MapInputs inputs = map.inputs();
-  const ToPosition position = positionsIn(frame, inputs);
+  const PlaceWriter position = placesIn(frame, inputs);
   const perception::SceneCluxels& cluxels = map.scene().cluxels;
   const rdf::OntologyView ontology = ontologyViewOf(map.quads());
   Json features = Json::array();

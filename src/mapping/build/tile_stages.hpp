@@ -30,6 +30,7 @@ class TileStages {
 
   const std::map<perception::TileKey, perception::TilePoints>& points() const { return outputs_.points; }
   const std::map<perception::TileKey, perception::CluxelTile>& cluxels() const { return outputs_.cluxels; }
+  const std::map<perception::TileKey, perception::GroundTile>& ground() const { return outputs_.ground; }
 
  private:
   perception::TileSet run(rdf::WriteTransaction& transaction, const perception::TileSet& touched, unsigned threads,

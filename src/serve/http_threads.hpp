@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// One thread for each open connection, up to a limit; threads are used again.
+#pragma once
+
+#include <httplib.h>
+
+#include <condition_variable>
+#include <cstddef>
+#include <functional>
+#include <list>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace cluxel::serve {
+
+class HttpThreads : public httplib::TaskQueue {
+ public:
+  explicit HttpThreads(std::size_t max_threads) : max_threads_(max_threads) {}
+
+  /// Beyond the limit, `serve` runs at once in the calling thread, where isRefused() is then true.
+  void enqueue(std::function<void()> serve) override;
+  /// Waits for all connections.
+  void shutdown() override;
+
+  /// True in a connection that must be refused.
+  static bool isRefused();
+
+ private:
+  void work();
+
+  std::size_t max_threads_, busy_ = 0;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool is_ending_ = false;
+  std::list<std::function<void()>> waiting_;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace cluxel::serve

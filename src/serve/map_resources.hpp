@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Resources of a map as JSON: its summary, objects, explanations, points, graphs, and the shipped questions.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "serve/http_message.hpp"
+#include "serve/served_map.hpp"
+#include "serve/service_options.hpp"
+#include "serve/url.hpp"
+#include "tasks/query_source.hpp"
+
+namespace cluxel::serve {
+
+/// A request to a resource of a map. Handlers throw Refusal and Error.
+struct ResourceRequest {
+  const HttpRequest& request;
+  const Target& target;
+  const RequestLimits& limits;
+};
+
+/// Name, numbers and bounds of a map as a JSON object.
+std::string mapSummaryJson(const ServedMap& map);
+
+/// Parameters: class, bbox (minX,minY,maxX,maxY, or with heights minX,minY,minZ,maxX,maxY,maxZ), limit, offset.
+HttpResponse answerObjects(const ServedMap& map, const ResourceRequest& asked);
+/// `id`: the object's hash, at least four of its first digits, or its number as "#17".
+HttpResponse answerObject(const ServedMap& map, const ResourceRequest& asked, const std::string& id);
+/// JSON, or prose when the client wants text/plain.
+HttpResponse answerExplanation(ServedMap& map, const ResourceRequest& asked, const std::string& id);
+/// JSON with one array a column, or CSV.
+HttpResponse answerPoints(ServedMap& map, const ResourceRequest& asked, const std::string& id);
+
+/// The shipped questions with parameters and columns.
+HttpResponse answerQuestionList(const std::vector<tasks::Question>& questions);
+/// Runs a shipped question; its parameters are those of the request.
+HttpResponse answerQuestion(const ServedMap& map, const ResourceRequest& asked,
+                            const std::vector<tasks::Question>& questions, const std::string& name);
+/// The tasks with their parameters.
+HttpResponse answerTaskList();
+/// Runs route, reach or search; the parameters are those of the request.
+HttpResponse answerTask(ServedMap& map, const ResourceRequest& asked, const std::string& name);
+/// One graph in Turtle or N-Triples (SPARQL 1.1 Graph Store HTTP Protocol, reading): parameter graph=IRI, or default.
+HttpResponse answerGraph(const ServedMap& map, const ResourceRequest& asked);
+
+}  // namespace cluxel::serve

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Snapshots of a served map.
+#include "serve/served_map.hpp"
+
+#include <set>
+
+#include "api/object_query.hpp"
+#include "cluxel/error.hpp"
+
+namespace cluxel::serve {
+
+ServedMap::ServedMap(std::string name, const std::filesystem::path& file)
+    : name_(std::move(name)), map_(std::filesystem::absolute(file)) {
+  map_.reader();  // throws when the file is no map
+  map_.release();
+}
+
+void ServedMap::withReader(const std::function<void(const mapping::MapReader&)>& use) {
+  const std::lock_guard lock(mutex_);
+  use(map_.reader());
+}
+
+void ServedMap::releaseOldCommit() {
+  const std::lock_guard lock(mutex_);
+  map_.releaseIfOld();
+}
+
+void ServedMap::release() {
+  const std::lock_guard lock(mutex_);
+  map_.release();
+}
+
+std::shared_ptr<const ObjectTable> objectsOf(const rdf::QuadReader& snapshot) {
+  constexpr const char* kName = "served objects";
+  if (const auto kept = snapshot.kept(kName)) return std::static_pointer_cast<const ObjectTable>(kept);
+  auto table = std::make_shared<ObjectTable>();
+  table->objects = cluxel::objectsOf(snapshot);
+  table->ontology = ontologyViewOf(snapshot);
+  snapshot.keep(kName, table);
+  return table;
+}
+
+std::vector<MapArgument> mapArgumentsOf(const std::vector<std::string>& texts) {
+  std::vector<MapArgument> maps;
+  std::set<std::string> names;
+  for (const std::string& text : texts) {
+    const std::size_t cut = text.find('=');
+    const bool is_named = cut != std::string::npos && text.find('/') >= cut;
+    const std::filesystem::path file = is_named ? text.substr(cut + 1) : text;
+    const std::string name = is_named ? text.substr(0, cut) : file.stem().string();
+    if (name.empty() || name == "." || name == "..")
+      throw Error(ErrorKind::InvalidArgument, text + ": the map has no name; write NAME=FILE");
+    if (!names.insert(name).second)
+      throw Error(ErrorKind::InvalidArgument, text + ": two maps are named '" + name + "'; write NAME=FILE");
+    maps.push_back({name, file});
+  }
+  return maps;
+}
+
+}  // namespace cluxel::serve

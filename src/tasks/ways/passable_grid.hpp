@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which cells of the terrain a walker or robot may use, at what cost, and why others are closed.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "tasks/ways/terrain_grid.hpp"
+
+namespace cluxel::tasks {
+
+enum class Closure : std::uint8_t { Open, Unobserved, Thing, TooSteep, TooNarrow };
+
+struct WayParams {
+  double width_m = 0.6;      ///< free width that is needed
+  double max_slope = 0.12;   ///< rise over run
+  double max_step_m = 0.06;  ///< height difference between neighbouring cells
+  double near_m = 8;         ///< how far `near` things may be without extra cost
+  double far_factor = 3;     ///< cost of a metre that is farther from them
+};
+
+struct PassableGrid {
+  GridFrame frame;
+  std::vector<Closure> closure;
+  std::vector<std::uint32_t> blocker;  ///< of Thing and TooNarrow: the thing, as in TerrainGrid
+  std::vector<float> factor;           ///< cost of a metre, at least 1
+  std::vector<float> clearance_m;      ///< from the cell's centre to the nearest thing's cell
+  std::vector<float> height, slope;
+  double max_step_m = 0;
+
+  /// The difference in height between neighbouring cells is small enough.
+  bool isStepOpen(std::uint32_t a, std::uint32_t b) const;
+};
+
+/// `is_left_out`: per object, true when it is taken to be gone. `near`: objects that the way should stay near; empty:
+/// none.
+PassableGrid passableOf(const TerrainGrid& terrain, const WayParams& params, const std::vector<bool>& is_left_out,
+                        const std::vector<bool>& near);
+
+/// The distance [cells] from each cell to the nearest marked one, and that cell's number; infinite and the cell itself
+/// without any. Exact Euclidean distance in linear time.
+struct NearestMarked {
+  std::vector<float> distance;
+  std::vector<std::uint32_t> cell;
+};
+NearestMarked nearestMarked(const GridFrame& frame, const std::vector<std::uint8_t>& marked);
+
+}  // namespace cluxel::tasks

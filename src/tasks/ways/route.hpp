@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Routes over a map's ground, other routes beside the best, what closes a way, and what is within reach.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "mapping/map_reader.hpp"
+#include "rdf/ontology/ontology.hpp"
+#include "tasks/ways/passable_grid.hpp"
+
+namespace cluxel::tasks {
+
+/// What a way must be like. Names are local names or IRIs of classes; `without` also takes "Movable" and "Static".
+struct WayRequest {
+  WayParams params = {};
+  TerrainParams terrain = {};
+  std::vector<std::string> without;  ///< objects that are taken to be gone
+  std::string near;                  ///< the way should stay near objects of this class; empty: none
+};
+
+/// Throws Error (NotFound) for a class that the map's ontology does not know.
+PassableGrid passableIn(const mapping::MapReader& map, const WayRequest& request);
+
+/// "X,Y" in metres of the map frame, or an object: its IRI, at least four digits of its hash, or "#17". Throws Error
+/// (InvalidArgument, NotFound).
+Eigen::Vector2d placeNamed(const mapping::MapReader& map, const std::string& text);
+
+/// The open cell nearest to a place. Throws Error (NotFound) when there is none within 2 m.
+std::uint32_t openCellNear(const PassableGrid& grid, const Eigen::Vector2d& p_map);
+/// The IRI of a class written "Tree", "clx:Tree" or in full. Throws Error (NotFound).
+std::string classNamed(const rdf::OntologyView& ontology, const std::string& name);
+
+struct Route {
+  std::vector<std::uint32_t> cells;
+  double cost = 0;
+  double length_m = 0;
+  double climb_m = 0;         ///< sum of all that goes up
+  double steepest = 0;        ///< rise over run
+  double highest_step_m = 0;  ///< between neighbouring cells
+  double narrowest_m = 0;     ///< free width at the narrowest place; infinite without things
+};
+
+/// A stretch of closed cells on the way that crosses the fewest of them.
+struct Barrier {
+  enum class Kind : std::uint8_t { Unobserved, Thing, TooSteep, TooNarrow, Step };
+  Kind kind = Kind::Thing;
+  std::uint32_t thing = kUnnamedThing;           ///< of Thing and TooNarrow
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< where the stretch begins [m, map]
+  double length_m = 0;
+  double measured = 0;  ///< slope, free width [m] or height of the step [m]
+};
+
+struct RouteAnswer {
+  std::vector<Route> routes;      ///< best first; empty: no way leads there
+  std::vector<Barrier> barriers;  ///< without a route: what is in the way
+};
+
+/// At most `count` routes; a further one shares less than 70 % of its cells with the surroundings of those before.
+/// Start and goal are moved to the nearest open cell within 2 m; Error (NotFound) when there is none.
+RouteAnswer findRoutes(const PassableGrid& grid, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+                       std::size_t count);
+
+/// The cells within a walk of `reach_m`, with the length of the shortest walk; infinite beyond.
+std::vector<double> walkLengths(const PassableGrid& grid, const Eigen::Vector2d& from, double reach_m);
+
+/// Objects within reach: a cell of theirs or beside them is. By length of the walk.
+struct ReachedObject {
+  std::uint32_t object = 0;
+  double walk_m = 0;
+};
+std::vector<ReachedObject> objectsWithin(const TerrainGrid& terrain, const std::vector<double>& walk_m);
+
+}  // namespace cluxel::tasks

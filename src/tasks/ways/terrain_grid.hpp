@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// The ground of a map as a grid: its height, whether it was seen, and which objects stand in a robot's way.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mapping/map_reader.hpp"
+
+namespace cluxel::tasks {
+
+/// Square cells of the map frame, numbered row by row from the corner with the smallest x and y.
+struct GridFrame {
+  double min_x = 0, min_y = 0;  ///< of that corner [m, map]
+  double cell_m = 0.25;
+  int columns = 0, rows = 0;
+
+  std::size_t size() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
+  std::uint32_t index(int column, int row) const { return static_cast<std::uint32_t>(row * columns + column); }
+  int columnOf(std::uint32_t cell) const { return static_cast<int>(cell) % columns; }
+  int rowOf(std::uint32_t cell) const { return static_cast<int>(cell) / columns; }
+  bool holds(int column, int row) const { return column >= 0 && row >= 0 && column < columns && row < rows; }
+  Eigen::Vector2d centreOf(std::uint32_t cell) const {
+    return {min_x + (columnOf(cell) + 0.5) * cell_m, min_y + (rowOf(cell) + 0.5) * cell_m};
+  }
+  /// None outside the grid.
+  std::optional<std::uint32_t> cellAt(const Eigen::Vector2d& p_map) const;
+};
+
+/// The number of points that belong to no object.
+inline constexpr std::uint32_t kUnnamedThing = 0xffffffffU;
+
+struct TerrainGrid {
+  GridFrame frame;
+  std::vector<float> height;               ///< of the ground [m, map]
+  std::vector<std::uint8_t> seen;          ///< 1: ground was measured here or within kSeenReach_m
+  std::vector<std::uint32_t> first_thing;  ///< per cell, the first of its things; size() + 1 entries
+  std::vector<std::uint32_t> things;  ///< numbers in MapReader::objects(), or kUnnamedThing; ascending within a cell
+
+  std::span<const std::uint32_t> thingsIn(std::uint32_t cell) const {
+    return {things.data() + first_thing[cell], things.data() + first_thing[cell + 1]};
+  }
+};
+
+struct TerrainParams {
+  double cell_m = 0.25;
+  double lowest_m = 0.20;   ///< things below this height above the ground are steps, not obstacles
+  double highest_m = 2.00;  ///< things above it are passed under
+};
+inline constexpr double kSeenReach_m = 1.0;
+
+/// From the map's thinned points and ground surface. Objects of surface classes are no things. Cost: in the points.
+TerrainGrid terrainOf(const mapping::MapReader& map, const TerrainParams& params = {});
+
+}  // namespace cluxel::tasks

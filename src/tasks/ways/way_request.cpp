@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// What names mean in a request for ways: classes, mobilities, places.
+#include <algorithm>
+#include <charconv>
+
+#include "base/nearest_name.hpp"
+#include "cluxel/error.hpp"
+#include "rdf/map_iris.hpp"
+#include "rdf/ontology/ontology.hpp"
+#include "rdf/vocabulary.hpp"
+#include "tasks/ways/route.hpp"
+
+namespace cluxel::tasks {
+
+namespace {
+
+/// Which objects belong to a class, or are of a mobility.
+class ObjectSelector {
+ public:
+  explicit ObjectSelector(const mapping::MapReader& map) : map_(map), ontology_(ontologyViewOf(map.quads())) {}
+
+  void mark(const std::string& name, std::vector<bool>& marked) const {
+    const bool is_mobility = name == "Movable" || name == "Static";
+    const std::string iri = is_mobility ? std::string() : classNamed(ontology_, name);
+    const rdf::Mobility wanted = name == "Movable" ? rdf::Mobility::Movable : rdf::Mobility::Static;
+    for (std::size_t i = 0; i < map_.objects().size(); ++i) {
+      const std::string& class_iri = map_.objects()[i].class_iri;
+      const rdf::OntologyClass* known = ontology_.find(class_iri);
+      const bool is_meant = is_mobility ? known != nullptr && known->mobility == wanted : ontology_.isA(class_iri, iri);
+      if (is_meant) marked[i] = true;
+    }
+  }
+
+ private:
+  const mapping::MapReader& map_;
+  rdf::OntologyView ontology_;
+};
+
+std::optional<double> wholeNumber(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool is_read = !text.empty() && error == std::errc() && end == text.data() + text.size();
+  return is_read ? std::optional(value) : std::nullopt;
+}
+
+Eigen::Vector2d centroidOf(const mapping::MapReader& map, const std::string& iri) {
+  const rdf::QuadReader& quads = map.quads();
+  Eigen::Vector2d place = Eigen::Vector2d::Zero();
+  for (const int axis : {0, 1}) {
+    rdf::QuadPattern pattern;
+    pattern.s = quads.idOf(Term::iri(iri));
+    pattern.p = quads.idOf(Term::iri(rdf::vocabulary::clx(axis == 0 ? "x" : "y")));
+    rdf::QuadIds quad;
+    if (!pattern.s || !pattern.p || !quads.scan(pattern).next(quad))
+      throw Error(ErrorKind::NotFound, "the map says no position of <" + iri + ">");
+    place[axis] = quads.valueOf(quad.o).number;
+  }
+  return place;
+}
+
+}  // namespace
+
+std::string classNamed(const rdf::OntologyView& ontology, const std::string& name) {
+  const std::string local = name.starts_with("clx:") ? name.substr(4) : name;
+  for (const std::string& iri : {name, rdf::vocabulary::clx(local)})
+    if (ontology.find(iri) != nullptr) return iri;
+  std::vector<std::string> known;
+  for (const std::string& iri : ontology.classNames()) known.push_back(mapping::localName(iri));
+  const std::string hint = suggestion(local, known);
+  throw Error(ErrorKind::NotFound,
+              "the map's ontology has no class '" + name + "'" + (hint.empty() ? "" : "; " + hint));
+}
+
+PassableGrid passableIn(const mapping::MapReader& map, const WayRequest& request) {
+  const ObjectSelector selector(map);
+  std::vector<bool> is_left_out(map.objects().size(), false), near;
+  for (const std::string& name : request.without) selector.mark(name, is_left_out);
+  if (!request.near.empty()) {
+    near.assign(map.objects().size(), false);
+    selector.mark(request.near, near);
+  }
+  return passableOf(terrainOf(map, request.terrain), request.params, is_left_out, near);
+}
+
+Eigen::Vector2d placeNamed(const mapping::MapReader& map, const std::string& text) {
+  constexpr std::size_t least_digits = 4;
+  const std::size_t comma = text.find(',');
+  if (comma != std::string::npos) {
+    const auto x = wholeNumber(std::string_view(text).substr(0, comma));
+    const auto y = wholeNumber(std::string_view(text).substr(comma + 1));
+    if (x && y) return {*x, *y};
+    throw Error(ErrorKind::InvalidArgument, "'" + text + "': write a place as X,Y in metres of the map frame");
+  }
+  const std::string digits = text.substr(text.rfind('/') == std::string::npos ? 0 : text.rfind('/') + 1);
+  std::vector<std::string> found;
+  for (std::size_t i = 0; i < map.objects().size(); ++i) {
+    const ContentHash& id = map.objects()[i].id;
+    if (text == "#" + std::to_string(i) || (digits.size() >= least_digits && id.hex().starts_with(digits)))
+      found.push_back(rdf::iriOfObject(id));
+  }
+  if (found.size() == 1) return centroidOf(map, found.front());
+  throw Error(ErrorKind::NotFound,
+              "'" + text + "' names " + (found.empty() ? "no object" : "more than one object") +
+                  " of the map; write X,Y in metres, at least four digits of an object's hash, or # and its number");
+}
+
+}  // namespace cluxel::tasks

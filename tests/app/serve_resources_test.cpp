@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// `cluxel serve` by its sockets: objects, explanations, points, questions, several maps, updates.
+#include <nlohmann/json.hpp>
+
+#include "app/serve_fixture.hpp"
+
+namespace cluxel::app {
+namespace {
+
+using ServeJson = nlohmann::json;
+
+ServeJson jsonOf(const Reply& reply) {
+  EXPECT_EQ(reply.status, 200) << reply.body;
+  EXPECT_EQ(reply.header("Content-Type"), "application/json");
+  return ServeJson::parse(reply.body);
+}
+
+TEST_F(ServeCommand, ListsItsMapsAndTheirObjects) {
+  const ServeJson map = jsonOf(shared().get("/maps")).at("maps").at(0);
+  EXPECT_EQ(map.at("name"), "map");
+  EXPECT_EQ(map.at("objects"), ServeJson::parse(built.out).at("objects"));
+  EXPECT_EQ(jsonOf(shared().get("/maps/map")), map);
+  std::size_t counted = 0;
+  for (const auto& [name, count] : map.at("objectsByClass").items()) {
+    counted += count.get<std::size_t>();
+    EXPECT_GE(jsonOf(shared().get("/objects?limit=0&class=" + name)).at("total"), count) << name;
+  }
+  EXPECT_EQ(counted, map.at("objects"));
+}
+
+TEST_F(ServeCommand, PagesOfObjectsPutTogetherAreAllObjects) {
+  const ServeJson all = jsonOf(shared().get("/objects?limit=10000"));
+  ServeJson pages = ServeJson::array();
+  for (std::size_t offset = 0;;) {
+    const ServeJson page = jsonOf(shared().get("/objects?limit=7&offset=" + std::to_string(offset)));
+    for (const ServeJson& object : page.at("objects")) pages.push_back(object);
+    if (!page.contains("nextOffset")) break;
+    offset = page.at("nextOffset");
+  }
+  EXPECT_EQ(pages, all.at("objects"));
+  EXPECT_EQ(all.at("total"), all.at("objects").size());
+}
+
+TEST_F(ServeCommand, ABoxSelectsTheObjectsThatMeetIt) {
+  const ServeJson all = jsonOf(shared().get("/objects?limit=10000")).at("objects");
+  const ServeJson near = jsonOf(shared().get("/objects?limit=10000&bbox=0,0,12,9")).at("objects");
+  ServeJson expected = ServeJson::array();
+  for (const ServeJson& object : all)
+    if (object["min"][0] <= 12 && object["max"][0] >= 0 && object["min"][1] <= 9 && object["max"][1] >= 0)
+      expected.push_back(object);
+  EXPECT_EQ(near, expected);
+  EXPECT_GT(near.size(), 0U);
+  EXPECT_LT(near.size(), all.size());
+  EXPECT_EQ(shared().get("/objects?bbox=0,0,12").status, 400);
+  EXPECT_EQ(shared().get("/objects?bbox=9,0,1,2").status, 400);
+  EXPECT_EQ(shared().get("/objects?class=Tre").status, 404);
+  EXPECT_EQ(shared().get("/objects?limit=-1").status, 400);
+  EXPECT_EQ(shared().get("/objects?clas=Tree").status, 400);
+}
+
+TEST_F(ServeCommand, AnObjectIsExplainedAsByTheCommandExplain) {
+  const ServeJson object = jsonOf(shared().get("/objects?class=Tree")).at("objects").at(0);
+  const std::string id = object.at("id");
+  EXPECT_EQ(jsonOf(shared().get("/objects/" + id)), object);
+  EXPECT_EQ(jsonOf(shared().get("/objects/" + id.substr(0, 12))), object);
+  EXPECT_EQ(jsonOf(shared().get("/objects/%23" + std::to_string(object.at("number").get<int>()))), object);
+  const std::string explain = "explain " + path("map.clx").string() + " object/" + id;
+  EXPECT_EQ(shared().get("/objects/" + id + "/explanation").body, run(explain + " --json").out);
+  EXPECT_EQ(shared().get("/objects/" + id + "/explanation", "Accept: text/plain\r\n").body, run(explain).out);
+  EXPECT_EQ(shared().get("/objects/ffffffffffff").status, 404);
+  EXPECT_EQ(shared().get("/objects/a").status, 400);
+}
+
+TEST_F(ServeCommand, PointsOfAnObjectLieInItsBox) {
+  const ServeJson object = jsonOf(shared().get("/objects?class=Tree")).at("objects").at(0);
+  const std::string resource = "/objects/" + object.at("id").get<std::string>() + "/points";
+  const ServeJson points = jsonOf(shared().get(resource));
+  ASSERT_GE(points.at("count"), object.at("pointCount"));
+  for (const char* axis : {"x", "y", "z"}) {
+    const int place = axis[0] - 'x';
+    for (const ServeJson& value : points.at(axis)) {
+      EXPECT_GE(value.get<double>(), object["min"][place].get<double>() - 0.06);
+      EXPECT_LE(value.get<double>(), object["max"][place].get<double>() + 0.06);
+    }
+  }
+  const std::string csv = shared().get(resource, "Accept: text/csv\r\n").body;
+  EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')),
+            points.at("count").get<std::size_t>() + 1);
+}
+
+TEST_F(ServeCommand, ShippedQuestionsAnswerAsTheCommandQuery) {
+  for (const ServeJson& question : jsonOf(shared().get("/questions")).at("questions")) {
+    const std::string name = question.at("name");
+    const Reply reply = shared().get("/questions/" + name + "?format=csv");
+    EXPECT_EQ(reply.status, 200) << name << reply.body;
+    EXPECT_EQ(reply.body, run("query " + path("map.clx").string() + " " + name + ".rq --format csv").out) << name;
+  }
+  EXPECT_EQ(shared().get("/questions/near_point?format=csv&radius=25&x=3").body,
+            run("query " + path("map.clx").string() + " near_point.rq --param radius=25 --param x=3 --format csv").out);
+}
+
+TEST_F(ServeCommand, TasksAnswerAsTheirCommands) {
+  EXPECT_EQ(jsonOf(shared().get("/tasks")).at("tasks").size(), 3U);
+  const std::string map = path("map.clx").string();
+  EXPECT_EQ(shared().get("/tasks/search?for=StreetSign&from=0,0&budget=40").body,
+            run("search " + map + " --for StreetSign --from 0,0 --budget 40 --json").out);
+  EXPECT_EQ(shared().get("/tasks/reach?from=0,0&minutes=0.2&without=Movable").body,
+            run("reach " + map + " 0,0 --minutes 0.2 --without Movable --json").out);
+  const ServeJson place = jsonOf(shared().get("/tasks/search?for=StreetSign&from=0,0")).at("stops").at(0).at("at");
+  const std::string to = std::to_string(place[0].get<double>()) + "," + std::to_string(place[1].get<double>());
+  EXPECT_EQ(shared().get("/tasks/route?from=0,0&to=" + to).body, run("route " + map + " 0,0 --json -- " + to).out);
+  EXPECT_EQ(shared().get("/tasks/route?from=0,0").status, 400);
+  EXPECT_EQ(shared().get("/tasks/route?from=0,0&to=1e9,0").status, 404);
+  EXPECT_EQ(shared().get("/tasks/route?from=0,0&to=1,1&width=-1").status, 400);
+  EXPECT_EQ(shared().get("/tasks/search?for=StreetSing").status, 404);
+  EXPECT_EQ(shared().get("/tasks/serch").status, 404);
+}
+
+TEST_F(ServeCommand, SeveralMapsAreToldApartByName) {
+  const Served both(command("one=" + path("map.clx").string() + " " + path("three.clx").string()), path("both.log"));
+  EXPECT_EQ(both.port(), 0) << "three.clx is no map";
+  fs::copy_file(path("map.clx"), path("second.clx"), fs::copy_options::overwrite_existing);
+  const Served two(command("one=" + path("map.clx").string() + " " + path("second.clx").string()), path("both.log"));
+  EXPECT_EQ(two.get("/sparql").status, 404);
+  EXPECT_EQ(two.get("/maps/one/sparql?query=ASK%7B%7D").status, 200);
+  EXPECT_EQ(two.get("/maps/second/objects").status, 200);
+  EXPECT_NE(two.get("/").body.find("/maps/second/sparql"), std::string::npos);
+  expectError(run("serve --port 0 " + path("map.clx").string() + " " + path("map.clx").string()), 2, "NAME=FILE");
+}
+
+TEST_F(ServeCommand, NamesOfMapsAreTextInThePageAndNeverMarkup) {
+  const Served served(command("'<script>x=" + path("map.clx").string() + "'"), path("markup.log"));
+  const Reply page = served.get("/");
+  EXPECT_EQ(page.status, 200);
+  EXPECT_EQ(page.body.find("<script"), std::string::npos);
+  EXPECT_NE(page.body.find("&lt;script&gt;x"), std::string::npos);
+  EXPECT_TRUE(page.has("Content-Security-Policy: default-src 'none'")) << page.head;
+}
+
+TEST_F(ServeCommand, UpdatesNeedTheTokenAndReachTheOperatorsGraphOnly) {
+  const std::string update = "INSERT DATA { <urn:a> <urn:b> 1 }", type = "application/sparql-update";
+  EXPECT_EQ(shared().post("/sparql", type, update).status, 403) << "started without a token";
+  fs::copy_file(path("map.clx"), path("written.clx"), fs::copy_options::overwrite_existing);
+  writeFile(path("token"), "a token must be long\n");
+  expectError(run("serve --port 0 " + path("map.clx").string() + " --token-file " + path("token").string()), 4,
+              "token");
+  writeFile(path("token"), "0123456789abcdef0123\n");
+  const Served served = serve("--token-file " + path("token").string(), "written.clx");
+  const std::string right = "Authorization: Bearer 0123456789abcdef0123\r\n";
+  EXPECT_EQ(served.post("/sparql", type, update).status, 401);
+  EXPECT_TRUE(served.post("/sparql", type, update).has("WWW-Authenticate: Bearer"));
+  EXPECT_EQ(served.post("/sparql", type, update, "Authorization: Bearer 0123456789abcdef0124\r\n").status, 401);
+  EXPECT_EQ(served.query("ASK { <urn:a> <urn:b> 1 }", "Accept: text/csv\r\n").body.find("true"), std::string::npos);
+  EXPECT_EQ(served.post("/sparql", type, update, right).status, 200);
+  EXPECT_NE(
+      served.query("ASK { GRAPH <https://w3id.org/cluxel/graph/operator> { <urn:a> <urn:b> 1 } }").body.find("true"),
+      std::string::npos);
+  EXPECT_EQ(served
+                .post("/sparql", "application/x-www-form-urlencoded",
+                      "update=DELETE+DATA+%7B+%3Curn:a%3E+%3Curn:b%3E+1+%7D", right)
+                .status,
+            200);
+  EXPECT_NE(served.query("ASK { <urn:a> <urn:b> 1 }").body.find("false"), std::string::npos);
+  const Reply observed = served.post("/sparql", type, "CLEAR GRAPH <https://w3id.org/cluxel/graph/observed>", right);
+  EXPECT_EQ(observed.status, 400);
+  EXPECT_NE(observed.body.find("may not be written"), std::string::npos);
+  EXPECT_EQ(
+      served.post("/sparql?using-graph-uri=urn:g", type, "WITH <urn:g> DELETE { ?s ?p ?o } WHERE { ?s ?p ?o }", right)
+          .status,
+      400);
+  EXPECT_EQ(served.post("/sparql", type, "LOAD <file:///etc/passwd>", right).status, 400);
+}
+
+}  // namespace
+}  // namespace cluxel::app

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ways over a generated campus: what closes cells is what stands there.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "rdf/map_iris.hpp"
+#include "tasks/campus_map_fixture.hpp"
+#include "tasks/ways/way_report.hpp"
+
+namespace cluxel::tasks {
+namespace {
+
+TEST(WaysOfACampus, ThingsLieInTheBoxesOfTheirObjects) {
+  const MapReader& map = CampusMap::shared().map();
+  const TerrainGrid terrain = terrainOf(map);
+  const auto boxes = CampusMap::shared().boxesInRdf();
+  std::size_t checked = 0;
+  for (std::uint32_t cell = 0; cell < terrain.frame.size(); ++cell)
+    for (const std::uint32_t thing : terrain.thingsIn(cell)) {
+      if (thing == kUnnamedThing) continue;
+      const Eigen::AlignedBox3d& box = boxes.at(map.objects()[thing].id.hex());
+      const Eigen::Vector2d centre = terrain.frame.centreOf(cell);
+      const double reach_m = terrain.frame.cell_m;
+      EXPECT_GT(centre.x(), box.min().x() - reach_m);
+      EXPECT_GT(centre.y(), box.min().y() - reach_m);
+      EXPECT_LT(centre.x(), box.max().x() + reach_m);
+      EXPECT_LT(centre.y(), box.max().y() + reach_m);
+      ++checked;
+    }
+  EXPECT_GT(checked, 100U);
+}
+
+TEST(WaysOfACampus, LeavingThingsOutOnlyOpensCells) {
+  const MapReader& map = CampusMap::shared().map();
+  WayRequest request;
+  const PassableGrid with = passableIn(map, request);
+  request.without = {"Movable"};
+  const PassableGrid without = passableIn(map, request);
+  std::size_t opened = 0;
+  for (std::uint32_t cell = 0; cell < with.frame.size(); ++cell) {
+    const bool was_open = with.closure[cell] == Closure::Open, is_open = without.closure[cell] == Closure::Open;
+    EXPECT_TRUE(is_open || !was_open);
+    opened += is_open && !was_open ? 1 : 0;
+  }
+  EXPECT_GT(opened, 0U);
+}
+
+TEST(WaysOfACampus, RoutesStayOnOpenCellsAndAreReported) {
+  const MapReader& map = CampusMap::shared().map();
+  const PassableGrid grid = passableIn(map, {});
+  std::uint32_t from = 0;
+  while (grid.closure[from] != Closure::Open) ++from;
+  const std::vector<double> walk_m = walkLengths(grid, grid.frame.centreOf(from), 1e6);
+  std::uint32_t to = from;
+  for (std::uint32_t cell = 0; cell < walk_m.size(); ++cell)
+    if (std::isfinite(walk_m[cell]) && walk_m[cell] > walk_m[to]) to = cell;
+  const RouteAnswer answer = findRoutes(grid, grid.frame.centreOf(from), grid.frame.centreOf(to), 1);
+  ASSERT_EQ(answer.routes.size(), 1U);
+  EXPECT_GE(answer.routes[0].length_m, walk_m[to] - 1e-6) << "the shortest walk is not longer";
+  for (const std::uint32_t cell : answer.routes[0].cells) EXPECT_EQ(grid.closure[cell], Closure::Open);
+  const std::string line = routesGeoJson(map, grid.frame, answer, ExportFrame::Local);
+  EXPECT_NE(line.find("LineString"), std::string::npos);
+  EXPECT_NE(routesJson(map, grid.frame, answer).find("\"barriers\": []"), std::string::npos);
+}
+
+TEST(WaysOfACampus, NamesAreThoseOfTheMap) {
+  const MapReader& map = CampusMap::shared().map();
+  EXPECT_EQ(placeNamed(map, "1.5,-2"), Eigen::Vector2d(1.5, -2));
+  const std::string hash = map.objects()[0].id.hex();
+  EXPECT_EQ(placeNamed(map, "#0"), placeNamed(map, hash));
+  EXPECT_EQ(placeNamed(map, rdf::iriOfObject(map.objects()[0].id)), placeNamed(map, hash));
+  for (const char* bad : {"#100000", "1,x", "abc", "", "ffffffffffff"})
+    EXPECT_THROW(placeNamed(map, bad), Error) << bad;
+  WayRequest request;
+  request.without = {"Vehicel"};
+  try {
+    passableIn(map, request);
+    ADD_FAILURE() << "an unknown class";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("Vehicle"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace cluxel::tasks

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// Fields of probability and tours against brute force on small grids, and a search on a generated campus.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "tasks/campus_map_fixture.hpp"
+#include "tasks/search/search_tour.hpp"
+#include "tasks/ways/way_search.hpp"
+
+namespace cluxel::tasks {
+namespace {
+
+PlaceEvidence evidence(const GridFrame& frame, std::uint32_t cell, double within_m, double probability) {
+  PlaceEvidence place{"Thing", within_m, probability, std::vector<std::uint8_t>(frame.size(), 0)};
+  if (cell < frame.size()) place.is_there[cell] = 1;
+  return place;
+}
+
+/// Everything is open.
+PassableGrid plain(const GridFrame& frame) {
+  TerrainGrid terrain;
+  terrain.frame = frame;
+  terrain.height.assign(frame.size(), 0.0F);
+  terrain.seen.assign(frame.size(), 1);
+  terrain.first_thing.assign(frame.size() + 1, 0);
+  return passableOf(terrain, {}, {}, {});
+}
+
+TEST(SearchField, SpreadsEachPlaceAndTheRest) {
+  const GridFrame frame{0, 0, 1, 5, 4};
+  const SearchField field =
+      fieldOf(frame, std::vector<std::uint8_t>(frame.size(), 0), {evidence(frame, 0, 1, 0.6)}, {});
+  EXPECT_NEAR(std::accumulate(field.probability.begin(), field.probability.end(), 0.0), 1, 1e-12);
+  EXPECT_NEAR(field.probability[frame.index(0, 0)], 0.6 / 3 + 0.4 / 20, 1e-12);
+  EXPECT_NEAR(field.probability[frame.index(1, 0)], 0.6 / 3 + 0.4 / 20, 1e-12);
+  EXPECT_NEAR(field.probability[frame.index(4, 3)], 0.4 / 20, 1e-12);
+  EXPECT_EQ(field.reason[frame.index(0, 1)], 0);
+  EXPECT_EQ(field.reason[frame.index(4, 3)], kAnywhere);
+  const SearchField nothing =
+      fieldOf(frame, std::vector<std::uint8_t>(frame.size(), 0), {evidence(frame, 99, 1, 0.6)}, {});
+  for (const double value : nothing.probability) EXPECT_NEAR(value, 1.0 / 20, 1e-12);
+  EXPECT_THROW(fieldOf(frame, nothing.reason, {evidence(frame, 0, 1, 0.6), evidence(frame, 1, 1, 0.6)}, {}), Error);
+}
+
+TEST(SearchField, WhatWasSeenHoldsOnlyWhatWasOverlooked) {
+  const GridFrame frame{0, 0, 1, 4, 1};
+  SearchParams params;
+  params.detection = 0.75;
+  const SearchField field = fieldOf(frame, {1, 0, 0, 1}, {}, params);
+  EXPECT_NEAR(field.probability[0] / field.probability[1], 0.25, 1e-12);
+  params.detection = 1;
+  EXPECT_EQ(fieldOf(frame, {1, 0, 0, 1}, {}, params).probability[3], 0);
+  EXPECT_EQ(fieldOf(frame, {1, 1, 1, 1}, {}, params).probability[0], 0) << "all was seen, and nothing is overlooked";
+}
+
+TEST(SearchTour, EachStopIsTheBestOfAllCellsForItsWalk) {
+  std::mt19937 random(31);
+  for (int round = 0; round < 20; ++round) {
+    const GridFrame frame{0, 0, 1, 9, 8};
+    const PassableGrid grid = plain(frame);
+    SearchField field = fieldOf(frame, std::vector<std::uint8_t>(frame.size(), 0), {}, {});
+    for (double& value : field.probability) value = static_cast<double>(random() % 100) / 10000;
+    SearchParams search;
+    search.view_m = 2;  // stops on every cell
+    const TourParams params{.budget_m = 15, .max_stops = 4, .least_probability = 0, .settle_m = 3};
+    const auto stops = tourOf(grid, field, {0.5, 0.5}, search, params);
+    ASSERT_FALSE(stops.empty());
+    std::uint32_t at = 0;
+    double total_m = 0, so_far = 0;
+    for (const SearchStop& stop : stops) {
+      const std::vector<double> walk_m = cheapestWays(grid, at, {.is_priced = false}).cost;
+      double best = 0, here = 0;
+      for (std::uint32_t cell = 0; cell < frame.size(); ++cell) {
+        double gain = 0;
+        for (std::uint32_t other = 0; other < frame.size(); ++other)
+          if ((frame.centreOf(cell) - frame.centreOf(other)).norm() <= search.view_m) gain += field.probability[other];
+        const double value = gain / (walk_m[cell] + params.settle_m);
+        if (total_m + walk_m[cell] <= params.budget_m) best = std::max(best, value);
+        if (cell == stop.cell) here = value;
+      }
+      EXPECT_NEAR(here, best, 1e-12);
+      total_m += walk_m[stop.cell];
+      so_far += stop.probability;
+      EXPECT_NEAR(stop.total_m, total_m, 1e-9);
+      EXPECT_NEAR(stop.so_far, so_far, 1e-12);
+      EXPECT_LE(total_m, params.budget_m);
+      for (std::uint32_t other = 0; other < frame.size(); ++other)
+        if ((frame.centreOf(stop.cell) - frame.centreOf(other)).norm() <= search.view_m) field.probability[other] = 0;
+      at = stop.cell;
+    }
+  }
+}
+
+TEST(WaysOfACampus, ASearchListsWhatIsKnownAndWhereToLook) {
+  const MapReader& map = CampusMap::shared().map();
+  SearchRequest request;
+  request.class_name = "StreetLamp";
+  const SearchAnswer answer = searchFor(map, request);
+  for (std::size_t i = 0; i < answer.known.size(); ++i) {
+    EXPECT_EQ(localName(map.objects()[answer.known[i].object].class_iri), "StreetLamp");
+    EXPECT_TRUE(i == 0 || answer.known[i - 1].distance_m <= answer.known[i].distance_m);
+  }
+  ASSERT_FALSE(answer.stops.empty());
+  EXPECT_LE(answer.stops.back().so_far, 1 + 1e-9);
+  request.class_name = "StreetLam";
+  EXPECT_THROW(searchFor(map, request), Error);
+}
+
+}  // namespace
+}  // namespace cluxel::tasks
