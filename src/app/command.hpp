@@ -75,6 +75,7 @@ void addTasks(CLI::App& app, Session& session);
 void addRules(CLI::App& app, Session& session);
 void addExplain(CLI::App& app, Session& session);
 void addExport(CLI::App& app, Session& session);
+void addView(CLI::App& app, Session& session);
 void addEvaluate(CLI::App& app, Session& session);
 void addChange(CLI::App& app, Session& session);  ///< extend, retract, repose, merge
 void addUpkeep(CLI::App& app, Session& session);  ///< doctor, compact

@@ -48,6 +48,7 @@ void addCommands(CLI::App& app, Session& session) {
   addTrain(app, session);
   addEvaluate(app, session);
   addExport(app, session);
+  addView(app, session);
   addUpkeep(app, session);
   addDocumentation(app);
 }

@@ -2,7 +2,7 @@
 // The reasoning stage: primitives and rules in, objects with reasons out.
 #pragma once
 
-#include <optional>
+#include <vector>
 
 #include "perception/segments/scene.hpp"
 #include "rules/ask_oracle.hpp"
@@ -14,8 +14,8 @@ namespace cluxel::rules {
 struct ReasoningContext {
   /// Needed by rule sets with `ask:`; without it such a test is an Error.
   AskOracle* oracle = nullptr;
-  /// When set, decisions about this primitive also report what would have changed them (Decision::flips).
-  std::optional<perception::PrimitiveIndex> probe = std::nullopt;
+  /// Ascending. Decisions about these primitives also report what would have changed them (Decision::flips).
+  std::vector<perception::PrimitiveIndex> probes = {};
 };
 
 /// Groups the primitives of a scene into objects, class by class in the order of the rule set. The objects' cluxels are
