@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel view`: a map as one HTML page.
+#include <array>
+#include <cmath>
+
 #include "app/command.hpp"
 #include "app/unfinished_note.hpp"
 #include "base/file_bytes.hpp"
@@ -46,10 +49,10 @@ std::string reportText(const fs::path& output, const tasks::ViewReport& report) 
 }
 
 ExitCode view(const ViewArguments& arguments, Session& session) {
-  const DataHome home = session.dataHome();
-  const std::string page = tasks::viewTemplate(home);
   refuseToReplaceMapByPage(arguments.output);
   const mapping::MapReader map(arguments.map);
+  const DataHome home = session.dataHome();
+  const std::string page = tasks::viewTemplate(home);
   noteUnfinished(arguments.map, map.isFinished(), arguments.allow_unfinished, session);
   const tasks::ViewOptions options{arguments.map.stem().string(), arguments.max_points, !arguments.without_reasons};
   std::string bytes;
