@@ -6,13 +6,13 @@ import type { Tile } from './cloud_tiles';
 
 interface Job { tile: Tile; level: number; urgency: number }
 
-const SLOW_MS = 55, FAST_MS = 24;
+const SLOW_MS = 75, FAST_MS = 34;
 const LEAST_BUDGET = 40_000, LARGEST_BUDGET = 30_000_000;
 
 export class LevelOfDetail {
   private jobs: Job[] = [];
   private next = 0;
-  private budget = 400_000;
+  private budget = 150_000;
 
   get isDone(): boolean {
     return this.next >= this.jobs.length;

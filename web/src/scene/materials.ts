@@ -117,6 +117,7 @@ const PICTURE_FRAGMENT = /* glsl */ `
   uniform vec2 pixel, planes;
   uniform vec3 background;
   uniform float strength;
+  uniform bool isFine;  // four more neighbours, when the picture rests
   in vec2 place;
   out vec4 written;
   float distanceAt(vec2 at) {
@@ -134,8 +135,12 @@ const PICTURE_FRAGMENT = /* glsl */ `
     float own = distanceAt(place), drop = 0.0;
     drop += dropTo(own, vec2(1.0, 0.0)) + dropTo(own, vec2(-1.0, 0.0));
     drop += dropTo(own, vec2(0.0, 1.0)) + dropTo(own, vec2(0.0, -1.0));
-    drop += 0.5 * (dropTo(own, vec2(2.0, 2.0)) + dropTo(own, vec2(-2.0, -2.0)));
-    drop += 0.5 * (dropTo(own, vec2(2.0, -2.0)) + dropTo(own, vec2(-2.0, 2.0)));
+    if (isFine) {
+      drop += 0.5 * (dropTo(own, vec2(2.0, 2.0)) + dropTo(own, vec2(-2.0, -2.0)));
+      drop += 0.5 * (dropTo(own, vec2(2.0, -2.0)) + dropTo(own, vec2(-2.0, 2.0)));
+    } else {
+      drop *= 1.6;
+    }
     written = vec4(texture(colours, place).rgb * max(0.42, exp(-drop * strength)), 1.0);
   }
 `;
@@ -173,6 +178,7 @@ export function pictureMaterial(): THREE.ShaderMaterial {
   const material = shader(PICTURE_VERTEX, PICTURE_FRAGMENT, {
     colours: { value: null }, depths: { value: null }, pixel: { value: new THREE.Vector2() },
     planes: { value: new THREE.Vector2() }, background: { value: new THREE.Color() }, strength: { value: 4.5 },
+    isFine: { value: true },
   });
   material.depthFunc = THREE.AlwaysDepth;
   return material;

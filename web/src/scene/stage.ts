@@ -40,7 +40,7 @@ export class Stage {
     const reach = 0.5 * Math.hypot(size.x, size.y) / Math.tan((this.viewer.camera.fov * Math.PI) / 360);
     const narrow = Math.max(1, 1.15 / this.viewer.camera.aspect);
     const direction = fromAbove ? new THREE.Vector3(0, -0.01, 1) : new THREE.Vector3(-0.45, -0.72, 0.55);
-    this.look(center, direction, reach * (fromAbove ? 0.95 : 0.66) * narrow);
+    this.look(center, direction, reach * (fromAbove ? 0.9 : 0.56) * narrow);
   }
 
   /** Moves near an object, keeping the direction of the view. */
@@ -49,7 +49,7 @@ export class Stage {
     const center = new THREE.Vector3(box.x, box.y, box.z).sub(origin);
     const direction = camera.position.clone().sub(controls.target).normalize();
     direction.z = Math.max(direction.z, 0.35);
-    this.look(center, direction, Math.max(9, 2.6 * Math.hypot(box.length, box.width, box.height)));
+    this.look(center, direction, Math.max(13, 2.8 * Math.hypot(box.length, box.width, box.height)));
   }
 
   look(target: THREE.Vector3, direction: THREE.Vector3, distance: number): void {
@@ -71,8 +71,8 @@ export class Stage {
       const sorted = [...tiles].sort((a, b) => a.origin[axis] - b.origin[axis]);
       let seen = 0, low = Infinity, high = -Infinity;
       for (const tile of sorted) {
-        if (seen + tile.pointsTo.at(-1)! > 0.02 * total) low = Math.min(low, tile.origin[axis]);
-        if (seen < 0.98 * total) high = Math.max(high, tile.origin[axis] + tile.size[axis]);
+        if (seen + tile.pointsTo.at(-1)! > 0.04 * total) low = Math.min(low, tile.origin[axis]);
+        if (seen < 0.96 * total) high = Math.max(high, tile.origin[axis] + tile.size[axis]);
         seen += tile.pointsTo.at(-1)!;
       }
       return [low, high];

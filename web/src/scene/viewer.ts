@@ -27,7 +27,8 @@ export class Viewer {
   onFrame: (() => void)[] = [];
   /** Called when the camera has moved. */
   onMove: (() => void)[] = [];
-  frameTimes: number[] = [];
+  /** Since the page was opened [ms]; 0 before. */
+  firstPicture = 0;
   private readonly picture: THREE.WebGLRenderTarget;
   private readonly shading = pictureMaterial();
   private readonly shadingScene = new THREE.Scene();
@@ -36,6 +37,9 @@ export class Viewer {
   private overlayIsStale = true;
   private lastFrame = 0;
   private lastPoints = 0;
+  /** The last frame was drawn in haste: one more follows with full shading. */
+  private wasMoving = false;
+  private fence: WebGLSync | null = null;
 
   constructor(readonly host: HTMLElement, model: MapModel) {
     const canvas = document.createElement('canvas');
@@ -104,7 +108,7 @@ export class Viewer {
 
   /** True when every visible point is drawn. */
   get isComplete(): boolean {
-    return !this.isStale && this.detail.isDone;
+    return !this.isStale && !this.wasMoving && this.detail.isDone && this.fence === null;
   }
 
   private resize(): void {
@@ -121,32 +125,55 @@ export class Viewer {
   }
 
   private frame(time: number): void {
-    if (this.lastPoints > 0) {
-      this.detail.learn(time - this.lastFrame, this.lastPoints);
-      this.frameTimes.push(time - this.lastFrame);
-    }
-    this.lastFrame = time;
-    this.lastPoints = 0;
+    if (!this.isFrameFinished(time)) return;
+    const isMoving = this.isStale;
     if (this.isStale) {
       this.isStale = false;
       this.camera.updateMatrixWorld();
       this.detail.restart(this.tiles, this.camera);
       this.renderer.setRenderTarget(this.picture);
       this.renderer.clear();
-    } else if (this.detail.isDone && !this.overlayIsStale) {
+      this.wasMoving = true;
+    } else if (this.detail.isDone && !this.overlayIsStale && !this.wasMoving) {
       return;
+    } else {
+      this.wasMoving = false;
     }
     this.overlayIsStale = false;
     this.lastPoints = this.detail.prepareFrame(this.tiles);
+    this.lastFrame = time;
     this.renderer.setRenderTarget(this.picture);
     this.renderer.render(this.cloud, this.camera);
-    this.present();
+    this.present(!isMoving);
+    this.setFence();
+    if (this.lastPoints > 0) this.firstPicture ||= performance.now();
     for (const call of this.onFrame) call();
   }
 
+  /**
+   * False while the graphics still draw the frame before: frames in a queue would delay what comes next. Its time sets the
+   * number of points of later frames.
+   */
+  private isFrameFinished(time: number): boolean {
+    if (!this.fence) return true;
+    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    if (gl.clientWaitSync(this.fence, 0, 0) === gl.TIMEOUT_EXPIRED) return false;
+    gl.deleteSync(this.fence);
+    this.fence = null;
+    if (this.lastPoints > 0) this.detail.learn(time - this.lastFrame, this.lastPoints);
+    return true;
+  }
+
+  private setFence(): void {
+    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+  }
+
   /** The picture with shading on the screen, and the lines on it. */
-  private present(): void {
+  private present(isFine: boolean): void {
     const uniforms = this.shading.uniforms;
+    uniforms.isFine.value = isFine;
     uniforms.colours.value = this.picture.texture;
     uniforms.depths.value = this.picture.depthTexture;
     (uniforms.pixel.value as THREE.Vector2).set(1 / this.picture.width, 1 / this.picture.height);
