@@ -67,12 +67,9 @@ TEST_F(Program, AnyOtherInputThatIsNotThereIsExitCodeFourInEveryCommand) {
   }
 }
 
-TEST_F(Program, APageWithoutItsProgramIsAnErrorThatNamesTheRemedy) {
-  fs::create_directories(path("bare-home/queries"));
-  expectError(run("--home " + path("bare-home").string() + " view " + map() + " -o " + fresh()), 4, "./run web");
+TEST_F(Program, APageNeedsAnOutputThatIsNoMap) {
   expectError(run("view " + map() + " -o " + map()), 5, "is a map");
   expectError(run("view " + map()), 2, "--output");
-  EXPECT_FALSE(fs::exists(fresh()));
 }
 
 TEST_F(Program, AnUnknownCommandIsNamedWithTheNearestAndTheList) {

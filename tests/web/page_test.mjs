@@ -123,6 +123,32 @@ test('what is hidden is neither seen nor clicked', async () => {
   assert.notEqual(selected, 'tree');
 });
 
+/** A colour as CIE Lab, as an eye without green cones sees it (Machado, Oliveira and Fernandes 2009). */
+function seenWithoutGreenCones(rgb) {
+  const [r, g, b] = rgb.map((value) => (value <= 10.31475 ? value / 3294.6 : ((value / 255 + 0.055) / 1.055) ** 2.4));
+  const R = 0.367322 * r + 0.860646 * g - 0.227968 * b, G = 0.280085 * r + 0.672501 * g + 0.047413 * b;
+  const B = -0.01182 * r + 0.04294 * g + 0.968881 * b;
+  const f = (t) => (t > 0.008856 ? Math.cbrt(t) : 7.787 * t + 16 / 116);
+  const x = f((0.4124 * R + 0.3576 * G + 0.1805 * B) / 0.9505), y = f(0.2126 * R + 0.7152 * G + 0.0722 * B);
+  const z = f((0.0193 * R + 0.1192 * G + 0.9505 * B) / 1.089);
+  return [116 * y - 16, 500 * (x - y), 200 * (y - z)];
+}
+
+test('classes stay apart for an eye without green cones', async () => {
+  await open.page.selectOption('#colour-mode', 'distinct');
+  const colours = await open.page.evaluate(() => {
+    const { model, viewer } = window.cluxelPage;
+    return model.shownClasses.filter(({ info }) => info.label !== 'ground').slice(0, 7).map(({ info }) => viewer.palette.classColour(info.iri));
+  });
+  assert.equal(colours.length, 7);
+  const seen = colours.map(seenWithoutGreenCones);
+  for (let i = 0; i < seen.length; ++i)
+    for (let k = 0; k < i; ++k) {
+      const apart = Math.hypot(...seen[i].map((value, axis) => value - seen[k][axis]));
+      assert.ok(apart > 12, `${colours[i]} and ${colours[k]}: ${apart}`);
+    }
+});
+
 test('the card tells why, as cluxel explain does', async () => {
   await askNamed(open.page, 'trees.rq');
   await open.page.click(firstRow);
@@ -194,7 +220,7 @@ test('the address brings camera, selection and question back', async () => {
 test('a faulty question is told with the engine\'s words', async () => {
   await ask(open.page, 'SELECT ?x { ?x');
   assert.ok(await open.page.isVisible('.status.fault'));
-  assert.match(await open.page.textContent('.status'), /error|expected/i);
+  assert.match(await open.page.textContent('.status'), /^Line 1, column \d+: .*expected/s);
   await ask(open.page, 'ASK { ?s ?p ?o }');
   assert.match(await open.page.textContent('.status'), /^Yes/);
 });

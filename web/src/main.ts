@@ -80,7 +80,7 @@ async function open(app: HTMLElement): Promise<void> {
   const ask = new AskPanel(model, engine, store, address, goTo), card = new ObjectCard(model, engine, store, goTo);
   const help = new Help(model), toolbar = new Toolbar(stage, store, () => help.show(toolbar.commands), () => ask.focus());
   side.append(ask.element);
-  host.append(new Legend(model, store).element, toolbar.element);
+  host.append(new Legend(model, store, viewer.palette).element, toolbar.element);
   app.append(card.element, help.element);
   new Pins(viewer, store);
   listenToClicks(viewer, new Picking(viewer, model), store, new Measure(viewer, store));

@@ -117,7 +117,7 @@ export class AskPanel {
       this.owners ??= await this.readOwners();
       this.show(await this.engine.ask(text), question);
     } catch (fault) {
-      this.showFault(fault instanceof Error ? fault.message : String(fault));
+      this.showEngineFault(fault instanceof Error ? fault.message : String(fault));
     }
     this.busy(false);
   }
@@ -133,6 +133,15 @@ export class AskPanel {
   private async readOwners(): Promise<Map<string, string>> {
     const answer = (await this.engine.ask(OWNERS)) as Rows;
     return new Map(answer.rows.map((row) => [row[0]!.value, row[1]!.value]));
+  }
+
+  /** A fault of the engine, with the place in the question. */
+  private showEngineFault(message: string): void {
+    const place = /^error at (\d+):(\d+): (.*)$/s.exec(message);
+    if (!place) return this.showFault(message);
+    this.editor.pointTo(Number(place[1]), Number(place[2]));
+    const detail = place[3].length > 240 ? `${place[3].slice(0, 240)}…` : place[3];
+    this.showFault(`Line ${place[1]}, column ${place[2]}: the question cannot be read here.\n${detail}`);
   }
 
   private showFault(message: string): void {

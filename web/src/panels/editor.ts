@@ -82,6 +82,13 @@ export class Editor {
     this.yasqe.setValue(value);
   }
 
+  /** Puts the cursor at a place, counted from 1, and shows it. */
+  pointTo(line: number, column: number): void {
+    (this.yasqe.getWrapperElement().closest('details') as HTMLDetailsElement | null)?.setAttribute('open', '');
+    this.yasqe.setCursor(line - 1, column - 1);
+    this.yasqe.scrollIntoView(null, 30);
+  }
+
   /** The editor measures itself only while it is seen. */
   refresh(): void {
     this.yasqe.refresh();

@@ -3,11 +3,12 @@
 import { capitalised, type MapModel } from '../data/model';
 import { counted, el, rounded } from '../dom';
 import { COLOUR_MODES, type ColourMode } from '../scene/materials';
+import type { Palette } from '../scene/palette';
 import type { Store } from '../state';
 
 const NAMES: Record<ColourMode, string> = {
   class: 'Class', certainty: 'Certainty', height: 'Height above ground', intensity: 'Intensity', scan: 'Scan',
-  primitive: 'Primitive label',
+  primitive: 'Primitive label', distinct: 'Class, for all colour sight',
 };
 const PRIMITIVE_COLOURS = ['#b8a380', '#c75c47', '#fabd29', '#4078d9', '#409957'];
 
@@ -16,11 +17,12 @@ export class Legend {
   private readonly scale = el('div', { class: 'scale' });
   private readonly list: HTMLElement;
 
-  constructor(private readonly model: MapModel, private readonly store: Store) {
+  constructor(private readonly model: MapModel, private readonly store: Store,
+              private readonly palette: Palette) {
     const mode = el('select', { id: 'colour-mode', onchange: () => store.set('colourMode', mode.value as ColourMode) },
                     ...COLOUR_MODES.filter((name) => this.isUseful(name)).map((name) => el('option', { value: name }, NAMES[name])));
     this.list = el('ul', { class: 'classes' }, ...this.classRows());
-    this.element = el('details', { class: 'legend', open: true },
+    this.element = el('details', { class: 'legend', open: !matchMedia('(max-width: 820px)').matches },
                       el('summary', {}, 'Legend'),
                       el('div', { class: 'legend-body' },
                          el('div', { class: 'field' }, el('label', { for: 'colour-mode' }, 'Colour by'), mode), this.scale,
@@ -80,10 +82,13 @@ export class Legend {
 
   private show(): void {
     const { colourMode, hiddenClasses } = this.store.state;
-    for (const box of this.list.querySelectorAll('input'))
-      box.checked = !hiddenClasses.has(box.dataset.class ?? '');
+    for (const box of this.list.querySelectorAll('input')) {
+      const iri = box.dataset.class ?? '';
+      box.checked = !hiddenClasses.has(iri);
+      (box.nextElementSibling as HTMLElement).style.background = `rgb(${this.palette.classColour(iri).join(' ')})`;
+    }
     this.scale.replaceChildren(...this.scaleOf(colourMode));
-    this.list.classList.toggle('without-colours', colourMode !== 'class');
+    this.list.classList.toggle('without-colours', colourMode !== 'class' && colourMode !== 'distinct');
     this.element.querySelector<HTMLSelectElement>('#colour-mode')!.value = colourMode;
   }
 

@@ -2,8 +2,11 @@
 // Shaders: points coloured by their object or by a measure, points as numbers for picking, and the picture with shading.
 import * as THREE from 'three';
 
-/** How points are coloured. Class and certainty come from the palette, the others from measures of the point. */
-export const COLOUR_MODES = ['class', 'certainty', 'height', 'intensity', 'scan', 'primitive'] as const;
+/**
+ * How points are coloured. Class, certainty and distinct (classes in colours that all kinds of sight tell apart) come from
+ * the palette, the others from measures of the point. The shader knows them by their place.
+ */
+export const COLOUR_MODES = ['class', 'certainty', 'height', 'intensity', 'scan', 'primitive', 'distinct'] as const;
 export type ColourMode = (typeof COLOUR_MODES)[number];
 
 export interface PointUniforms {

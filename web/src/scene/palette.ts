@@ -15,6 +15,11 @@ export function rgbOf(hex: string): Rgb {
   return [value >> 16, (value >> 8) & 255, value & 255];
 }
 
+/** The colours of Okabe and Ito, which stay apart without red or green cones, for the most frequent classes. */
+export const DISTINCT: Rgb[] = [
+  [0, 114, 178], [230, 159, 0], [0, 158, 115], [204, 121, 167], [86, 180, 233], [213, 94, 0], [240, 228, 66],
+];
+
 /** Red (unsure) over yellow to blue (sure): apart for all kinds of colour sight. */
 export function certaintyColour(confidence: number): Rgb {
   const stops: Rgb[] = [[202, 70, 48], [244, 190, 98], [120, 170, 206], [38, 92, 160]];
@@ -26,11 +31,18 @@ export function certaintyColour(confidence: number): Rgb {
 export class Palette {
   readonly texture: THREE.DataTexture;
   private readonly data: Uint8Array;
-  private byCertainty = false;
+  private readonly distinct = new Map<string, Rgb>();
+  private scheme: 'class' | 'certainty' | 'distinct' = 'class';
   private hiddenClasses = new Set<string>();
   private lit: Set<number> | null = null;
 
   constructor(private readonly model: MapModel) {
+    // Ground is a backdrop: grey leaves the colours to things that stand on it.
+    const things = model.shownClasses.filter(({ info }) => !info.iri.endsWith('#Ground'));
+    things.forEach(({ info }, i) => {
+      const shade = 1 - 0.45 * Math.floor(i / DISTINCT.length);
+      this.distinct.set(info.iri, DISTINCT[i % DISTINCT.length].map((value) => Math.round(value * shade)) as Rgb);
+    });
     const height = Math.max(1, Math.ceil((model.objects.length + 1) / WIDTH));
     this.data = new Uint8Array(WIDTH * height * 4);
     this.texture = new THREE.DataTexture(this.data, WIDTH, height, THREE.RGBAFormat, THREE.UnsignedByteType);
@@ -41,9 +53,16 @@ export class Palette {
     return WIDTH;
   }
 
-  setCertainty(on: boolean): void {
-    this.byCertainty = on;
+  setScheme(scheme: 'class' | 'certainty' | 'distinct'): void {
+    if (this.scheme === scheme) return;
+    this.scheme = scheme;
     this.refresh();
+  }
+
+  /** The colour of a class in the scheme that is shown. */
+  classColour(iri: string): Rgb {
+    if (this.scheme === 'distinct') return this.distinct.get(iri) ?? NO_OBJECT;
+    return rgbOf(this.model.classes.get(iri)?.color ?? '');
   }
 
   /** Classes by IRI; '' stands for points without an object. */
@@ -66,7 +85,7 @@ export class Palette {
     const other = this.lit ? DIMMED : PLAIN;
     this.set(0, NO_OBJECT, this.hiddenClasses.has('') ? HIDDEN : other);
     for (const object of this.model.objects) {
-      const colour = this.byCertainty ? certaintyColour(object.confidence) : rgbOf(object.class.color);
+      const colour = this.scheme === 'certainty' ? certaintyColour(object.confidence) : this.classColour(object.class.iri);
       const state = this.isHidden(object) ? HIDDEN : this.lit?.has(object.number) ? LIT : other;
       this.set(object.number + 1, colour, state);
     }

@@ -93,7 +93,7 @@ export class Stage {
     const { lit, hiddenClasses, colourMode, slice } = this.store.state, { palette, uniforms } = this.viewer;
     palette.light(lit ? lit.objects : null);
     palette.hideClasses(hiddenClasses);
-    palette.setCertainty(colourMode === 'certainty');
+    palette.setScheme(colourMode === 'certainty' || colourMode === 'distinct' ? colourMode : 'class');
     uniforms.mode.value = COLOUR_MODES.indexOf(colourMode);
     const { lowestHeight, heightStep } = this.model.values;
     const byteOf = (height: number) => (height - lowestHeight) / heightStep;

@@ -9,11 +9,15 @@ export function termText(value: string): string {
   const written = value.trim();
   if (/^<[^<>"{}|^`\\\s]+>$/.test(written)) return written;
   if (/^clx:[A-Za-z][A-Za-z0-9_]*$/.test(written)) return `<${CLX}${written.slice(4)}>`;
-  if (NUMBER.test(written)) {
-    const type = /[eE]/.test(written) ? 'double' : 'decimal';
-    return `"${written}"^^<http://www.w3.org/2001/XMLSchema#${type}>`;
-  }
+  if (NUMBER.test(written)) return decimalText(written);
   return JSON.stringify(written);
+}
+
+/** "10" as the decimal 10.0: whole numbers alone would be integers, which divide otherwise. */
+function decimalText(number: string): string {
+  if (/[eE]/.test(number)) return number;
+  const [, sign, whole, fraction] = /^([+-]?)(\d*)\.?(\d*)$/.exec(number)!;
+  return `${sign}${whole || '0'}.${fraction || '0'}`;
 }
 
 /** The text without its header lines, which describe the question for tables and forms. */
