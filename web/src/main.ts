@@ -12,6 +12,7 @@ import { readTile } from './scene/cloud_tiles';
 import { Measure } from './scene/measure';
 import { Picking } from './scene/picking';
 import { Pins } from './scene/pins';
+import { Portrait } from './scene/portrait';
 import { Stage } from './scene/stage';
 import { Viewer } from './scene/viewer';
 import { Engine } from './sparql/engine';
@@ -24,7 +25,7 @@ function initialStore(): Store {
   const isDark = matchMedia('(prefers-color-scheme: dark)').matches;
   return new Store({
     selected: null, lit: null, colourMode: 'class', hiddenClasses: new Set(), boxes: false, sensorPath: false,
-    measuring: false, slice: null, theme: isDark ? 'dark' : 'light',
+    measuring: false, slice: null, scans: null, theme: isDark ? 'dark' : 'light',
   });
 }
 
@@ -77,7 +78,7 @@ async function open(app: HTMLElement): Promise<void> {
   viewer.renderer.domElement.setAttribute('aria-label', 'Points of the map in 3D. Arrow keys move the view.');
   viewer.controls.listenToKeyEvents(viewer.renderer.domElement);
   const address = new Address(viewer, store, model), goTo = (object: MapObject) => stage.goTo(object.box);
-  const ask = new AskPanel(model, engine, store, address, goTo), card = new ObjectCard(model, engine, store, goTo);
+  const ask = new AskPanel(model, engine, store, address, goTo), card = new ObjectCard(model, engine, store, new Portrait(viewer), goTo);
   const help = new Help(model), toolbar = new Toolbar(stage, store, () => help.show(toolbar.commands), () => ask.focus());
   side.append(ask.element);
   host.append(new Legend(model, store, viewer.palette).element, toolbar.element);
@@ -89,6 +90,7 @@ async function open(app: HTMLElement): Promise<void> {
   app.removeAttribute('aria-busy');
   Object.assign(window, { cluxelPage: { model, store, viewer, stage, engine } });  // for tests and the curious
   await loadTiles(viewer, model, reading);
+  card.redraw();
   ask.restore(restored.question);
   void engine.start();
 }

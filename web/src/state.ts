@@ -18,6 +18,8 @@ export interface PageState {
   measuring: boolean;
   /** Heights above the ground that are shown [m]; null: all. */
   slice: [number, number] | null;
+  /** The first and the last scan that is shown, in the order of time; null: all. */
+  scans: [number, number] | null;
   theme: 'light' | 'dark';
 }
 

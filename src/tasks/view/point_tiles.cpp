@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <tuple>
 
 #include "tasks/view/page_blocks.hpp"
 
@@ -188,8 +189,16 @@ class TileWriter {
 
 }  // namespace
 
+std::vector<mapping::Cloud> cloudsByTime(const mapping::MapReader& map) {
+  std::vector<mapping::Cloud> clouds = map.clouds();
+  std::sort(clouds.begin(), clouds.end(), [](const mapping::Cloud& a, const mapping::Cloud& b) {
+    return std::tie(a.time_s, a.id) < std::tie(b.time_s, b.id);
+  });
+  return clouds;
+}
+
 PointTiles pointTilesOf(const mapping::MapReader& map, std::uint64_t max_points) {
-  const std::vector<mapping::Cloud> clouds = map.clouds();
+  const std::vector<mapping::Cloud> clouds = cloudsByTime(map);
   PointTiles result;
   for (const mapping::Cloud& cloud : clouds) result.points_in_map += cloud.point_count;
   const double share = result.points_in_map <= max_points

@@ -35,6 +35,9 @@ struct PointTiles {
   std::uint64_t points = 0, points_in_map = 0;  ///< shown, and all
 };
 
+/// The clouds of the map by time, those without a time first: their places are the numbers of clouds in the page.
+std::vector<mapping::Cloud> cloudsByTime(const mapping::MapReader& map);
+
 /// At most about `max_points` points: of a larger map a uniform sample, the same for the same map.
 PointTiles pointTilesOf(const mapping::MapReader& map, std::uint64_t max_points);
 

@@ -24,7 +24,7 @@ ViewJson vectorJson(const Eigen::Vector3d& v) {
 
 ViewJson cloudsJson(const mapping::MapReader& map) {
   ViewJson all = ViewJson::array();
-  for (const mapping::Cloud& cloud : map.clouds()) {
+  for (const mapping::Cloud& cloud : cloudsByTime(map)) {
     ViewJson json{{"id", cloud.id.hex()}, {"points", cloud.point_count}};
     json["source"] = std::filesystem::path(cloud.source).filename().string();
     if (cloud.time_s) json["time"] = *cloud.time_s;

@@ -3,6 +3,7 @@
 import { capitalised, CLX, type MapModel, type MapObject } from '../data/model';
 import { counted, el, iconButton, rounded } from '../dom';
 import type { Answer, Rows } from '../sparql/answers';
+import type { Portrait } from '../scene/portrait';
 import type { Engine } from '../sparql/engine';
 import type { Store } from '../state';
 import { shortened } from './editor';
@@ -13,16 +14,27 @@ const LABEL = 'http://www.w3.org/2000/01/rdf-schema#label';
 export class ObjectCard {
   readonly element = el('aside', { class: 'card', hidden: true, 'aria-label': 'Selected object', tabindex: -1 });
 
+  private picture = el('canvas');
+
   constructor(private readonly model: MapModel, private readonly engine: Engine, private readonly store: Store,
-              private readonly goTo: (object: MapObject) => void) {
+              private readonly portrait: Portrait, private readonly goTo: (object: MapObject) => void) {
     store.on(['selected'], (state) => this.show(state.selected));
+  }
+
+  /** Draws the picture anew, after more points have come. */
+  redraw(): void {
+    const object = this.store.state.selected;
+    if (object) this.portrait.drawInto(this.picture, object);
   }
 
   private show(object: MapObject | null): void {
     this.element.hidden = object === null;
     if (!object) return;
     const facts = el('div', { class: 'facts' }), reasons = el('div', { class: 'reasons' });
-    this.element.replaceChildren(this.head(object), this.measures(object), this.parts(object), reasons,
+    const picture = el('canvas', { class: 'portrait', role: 'img', 'aria-label': `Points of ${object.class.label}` });
+    this.picture = picture;
+    this.portrait.drawInto(picture, object);
+    this.element.replaceChildren(this.head(object), picture, this.measures(object), this.parts(object), reasons,
                                  el('details', { ontoggle: (event: Event) => {
                                    if ((event.target as HTMLDetailsElement).open) void this.fillFacts(object, facts);
                                  } }, el('summary', {}, 'All facts and observations'), facts),

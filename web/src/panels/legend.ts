@@ -26,7 +26,7 @@ export class Legend {
                       el('summary', {}, 'Legend'),
                       el('div', { class: 'legend-body' },
                          el('div', { class: 'field' }, el('label', { for: 'colour-mode' }, 'Colour by'), mode), this.scale,
-                         this.list, this.heights()));
+                         this.list, this.heights(), this.model.values.clouds.length > 1 && this.scans()));
     store.on(['colourMode', 'hiddenClasses'], () => this.show());
     this.show();
   }
@@ -78,6 +78,20 @@ export class Legend {
     const low = slider('slice-low', 'Lowest height above the ground [m]', -2);
     const high = slider('slice-high', 'Greatest height above the ground [m]', 30);
     return el('fieldset', { class: 'heights' }, el('legend', {}, 'Heights above ground ', text), low, high);
+  }
+
+  /** Two sliders choose the scans whose points are shown. */
+  private scans(): HTMLElement {
+    const { clouds } = this.model.values, last = clouds.length - 1, text = el('output', { class: 'count' }, 'all');
+    const name = (number: number) => clouds[number].source || String(number + 1);
+    const slider = (id: string, label: string, value: number) =>
+      el('input', { type: 'range', id, min: 0, max: last, step: 1, value, 'aria-label': label, oninput: () => {
+        const from = Math.min(Number(low.value), Number(high.value)), to = Math.max(Number(low.value), Number(high.value));
+        text.textContent = from === 0 && to === last ? 'all' : from === to ? name(from) : `${from + 1} to ${to + 1} of ${last + 1}`;
+        this.store.set('scans', from === 0 && to === last ? null : [from, to]);
+      } });
+    const low = slider('first-scan', 'First scan', 0), high = slider('last-scan', 'Last scan', last);
+    return el('fieldset', { class: 'heights' }, el('legend', {}, 'Scans, by time ', text), low, high);
   }
 
   private show(): void {

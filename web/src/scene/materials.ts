@@ -21,6 +21,10 @@ export interface PointUniforms {
   relief: THREE.IUniform<number>;
   pixelRatio: THREE.IUniform<number>;
   slice: THREE.IUniform<THREE.Vector2>;
+  /** The first and the last scan that is shown. */
+  scans: THREE.IUniform<THREE.Vector2>;
+  /** Number + 1 of the only object to draw; 0: all. */
+  only: THREE.IUniform<number>;
   heightRange: THREE.IUniform<THREE.Vector2>;
   clouds: THREE.IUniform<number>;
   dimmed: THREE.IUniform<THREE.Color>;
@@ -33,7 +37,8 @@ const COMMON = /* glsl */ `
   uniform sampler2D palette;
   uniform float paletteWidth;
   uniform float pixelsPerMetre, pixelRatio, spread;
-  uniform vec2 slice;
+  uniform vec2 slice, scans;
+  uniform int only;
   in uint object;
   in float cloud;
   in vec3 measures;
@@ -41,7 +46,10 @@ const COMMON = /* glsl */ `
     int n = int(number), width = int(paletteWidth);
     return texelFetch(palette, ivec2(n % width, n / width), 0);
   }
-  bool isCut() { return measures.y < slice.x || measures.y > slice.y; }
+  bool isCut() {
+    return measures.y < slice.x || measures.y > slice.y || cloud < scans.x || cloud > scans.y ||
+           (only > 0 && int(object) != only);
+  }
   float sizeAt(float depth, bool isLit) {
     float size = clamp(spread * pixelsPerMetre / max(depth, 0.1), 1.4, 6.5);
     return (isLit ? size + 1.2 : size) * pixelRatio;
@@ -78,8 +86,8 @@ const POINT_VERTEX = /* glsl */ `
     if (mode == 3) colour = ramp(measures.x / 255.0);
     if (mode == 4) colour = ramp(clouds < 1.5 ? 0.5 : cloud / (clouds - 1.0));
     if (mode == 5) colour = labelColour(measures.z);
-    if (texel.a < 0.5) colour = mix(colour, dimmed, 0.82);
-    if (texel.a < 0.1 || isCut()) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+    if (texel.a < 0.5 && only == 0) colour = mix(colour, dimmed, 0.82);
+    if ((texel.a < 0.1 && only == 0) || isCut()) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   }
 `;
 
@@ -161,7 +169,7 @@ export function pointUniforms(): PointUniforms {
   return {
     palette: { value: null }, paletteWidth: { value: 1 }, mode: { value: 0 },
     pixelsPerMetre: { value: 500 }, spread: { value: 0.04 }, relief: { value: 0 }, pixelRatio: { value: 1 },
-    slice: { value: new THREE.Vector2(0, 255) }, heightRange: { value: new THREE.Vector2(16, 96) },
+    slice: { value: new THREE.Vector2(0, 255) }, scans: { value: new THREE.Vector2(0, 65535) }, only: { value: 0 }, heightRange: { value: new THREE.Vector2(16, 96) },
     clouds: { value: 1 }, dimmed: { value: new THREE.Color() },
   };
 }

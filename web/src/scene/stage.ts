@@ -25,7 +25,7 @@ export class Stage {
     this.sensorPath = pathOf(model, viewer.origin);
     viewer.overlay.add(this.objectBoxes.lines, this.selectionBehind.lines, this.selection.lines, this.sensorPath);
     store.on(['theme'], () => this.showTheme());
-    store.on(['lit', 'hiddenClasses', 'colourMode', 'slice'], () => this.showPoints());
+    store.on(['lit', 'hiddenClasses', 'colourMode', 'slice', 'scans'], () => this.showPoints());
     store.on(['lit', 'hiddenClasses', 'boxes', 'selected', 'theme'], () => this.showBoxes());
     store.on(['sensorPath'], () => this.showBoxes());
     this.showTheme();
@@ -90,7 +90,7 @@ export class Stage {
   }
 
   private showPoints(): void {
-    const { lit, hiddenClasses, colourMode, slice } = this.store.state, { palette, uniforms } = this.viewer;
+    const { lit, hiddenClasses, colourMode, slice, scans } = this.store.state, { palette, uniforms } = this.viewer;
     palette.light(lit ? lit.objects : null);
     palette.hideClasses(hiddenClasses);
     palette.setScheme(colourMode === 'certainty' || colourMode === 'distinct' ? colourMode : 'class');
@@ -98,6 +98,7 @@ export class Stage {
     const { lowestHeight, heightStep } = this.model.values;
     const byteOf = (height: number) => (height - lowestHeight) / heightStep;
     uniforms.slice.value.set(slice ? byteOf(slice[0]) : 0, slice && slice[1] < 29 ? byteOf(slice[1]) : 255);
+    uniforms.scans.value.set(scans ? scans[0] : 0, scans ? scans[1] : 65535);
     uniforms.heightRange.value.set(byteOf(0), byteOf(12));
     this.viewer.refresh();
   }
@@ -118,11 +119,10 @@ export class Stage {
   }
 }
 
-/** Where the scans were taken, in the order of their times. */
+/** Where the scans were taken; clouds stand in the order of their times. */
 function pathOf(model: MapModel, origin: THREE.Vector3): THREE.Group {
   const group = new THREE.Group();
   const places = model.values.clouds.filter((cloud) => cloud.position)
-    .sort((a, b) => (a.time ?? 0) - (b.time ?? 0))
     .map((cloud) => new THREE.Vector3(...cloud.position!).sub(origin));
   const geometry = new THREE.BufferGeometry().setFromPoints(places);
   group.add(new THREE.Line(geometry, new THREE.LineBasicMaterial({ color: '#e8590c' })));
