@@ -149,6 +149,54 @@ test('classes stay apart for an eye without green cones', async () => {
     }
 });
 
+/** How many pixels of the view are not background. */
+const coveredPixels = (page) => page.evaluate(() => {
+  const { renderer, picture } = window.cluxelPage.viewer;
+  const pixels = new Uint8Array(4 * picture.width * picture.height);
+  renderer.setRenderTarget(picture);
+  renderer.readRenderTargetPixels(picture, 0, 0, picture.width, picture.height, pixels);
+  renderer.setRenderTarget(null);
+  let covered = 0;
+  for (let i = 0; i < pixels.length; i += 4) covered += pixels[i] + pixels[i + 1] + pixels[i + 2] > 0 ? 1 : 0;
+  return covered;
+});
+
+test('sliders cut heights and scans', async () => {
+  const slide = async (id, value) => {
+    await open.page.$eval(`#${id}`, (slider, wanted) => {
+      slider.value = wanted;
+      slider.dispatchEvent(new Event('input'));
+    }, String(value));
+    await settled(open.page);
+  };
+  const whole = await coveredPixels(open.page);
+  await slide('slice-low', 2);
+  const high = await coveredPixels(open.page);
+  await slide('slice-low', -2);
+  await slide('slice-high', 2);
+  const low = await coveredPixels(open.page);
+  assert.ok(high > 0 && high < 0.9 * whole && low > 0 && low < whole, `${whole}, above 2 m ${high}, below ${low}`);
+  await slide('slice-high', 30);
+  await slide('last-scan', 0);
+  const first = await coveredPixels(open.page);
+  assert.ok(first > 0 && first < 0.8 * whole, `the first of three scans covers ${first} of ${whole}`);
+  assert.match(await open.page.textContent('.legend'), /scan_000/);
+  await slide('last-scan', 2);
+  assert.equal(await coveredPixels(open.page), whole);
+});
+
+test('the card shows the points of its object alone', async () => {
+  await askNamed(open.page, 'trees.rq');
+  await open.page.click(firstRow);
+  const picture = await open.page.$eval('.portrait', (canvas) => {
+    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height), colours = new Map();
+    for (let i = 0; i < data.length; i += 4)
+      if (data[i + 3] > 0) colours.set(data[i + 1] > data[i] && data[i + 1] > data[i + 2], (colours.get(true) ?? 0) + 1);
+    return [...colours.keys()];
+  });
+  assert.deepEqual(picture, [true], 'green, and nothing else');
+});
+
 test('the card tells why, as cluxel explain does', async () => {
   await askNamed(open.page, 'trees.rq');
   await open.page.click(firstRow);
