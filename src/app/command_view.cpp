@@ -17,6 +17,7 @@ namespace {
 struct ViewArguments {
   fs::path map, output;
   std::uint64_t max_points = tasks::ViewOptions{}.max_points;
+  std::uint64_t max_quads = tasks::ViewOptions{}.max_quads;
   bool without_reasons = false, allow_unfinished = false;
 };
 
@@ -32,10 +33,15 @@ double megabytes(std::uint64_t bytes) {
 }
 
 Json reportJson(const tasks::ViewReport& report) {
-  return {
-      {"points", report.points},         {"points_in_map", report.points_in_map}, {"objects", report.objects},
-      {"quads", report.quads},           {"program_bytes", report.program_bytes}, {"point_bytes", report.point_bytes},
-      {"quad_bytes", report.quad_bytes}, {"object_bytes", report.object_bytes}};
+  return {{"points", report.points},
+          {"points_in_map", report.points_in_map},
+          {"objects", report.objects},
+          {"quads", report.quads},
+          {"quads_left_out", report.quads_left_out},
+          {"program_bytes", report.program_bytes},
+          {"point_bytes", report.point_bytes},
+          {"quad_bytes", report.quad_bytes},
+          {"object_bytes", report.object_bytes}};
 }
 
 std::string reportText(const fs::path& output, const tasks::ViewReport& report) {
@@ -54,7 +60,8 @@ ExitCode view(const ViewArguments& arguments, Session& session) {
   const DataHome home = session.dataHome();
   const std::string page = tasks::viewTemplate(home);
   noteUnfinished(arguments.map, map.isFinished(), arguments.allow_unfinished, session);
-  const tasks::ViewOptions options{arguments.map.stem().string(), arguments.max_points, !arguments.without_reasons};
+  const tasks::ViewOptions options{arguments.map.stem().string(), arguments.max_points, arguments.max_quads,
+                                   !arguments.without_reasons};
   std::string bytes;
   const tasks::ViewReport report = writeViewPage(map, page, tasks::shippedQuestions(home), options,
                                                  [&bytes](std::string_view piece) { bytes.append(piece); });
@@ -74,6 +81,8 @@ void addView(CLI::App& app, Session& session) {
   command->add_option("map", options->map, "a map")->required();
   command->add_option("-o,--output", options->output, "the page to write")->required()->check(named());
   command->add_option("--max-points", options->max_points, "points to show; of a larger map an even sample is taken")
+      ->check(above0());
+  command->add_option("--max-quads", options->max_quads, "quads above which those about primitives are left out")
       ->check(above0());
   command->add_flag("--without-reasons", options->without_reasons, "leave out why objects are what they are");
   addAllowUnfinished(*command, options->allow_unfinished);

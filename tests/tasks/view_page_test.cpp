@@ -198,6 +198,17 @@ TEST(CampusMapPage, OfALargeMapHoldsAnEvenSample) {
   EXPECT_TRUE(beyond.empty()) << "a sample has no points of its own";
 }
 
+TEST(CampusMapPage, OfAMapWithManyQuadsLeavesOutPrimitives) {
+  ViewReport whole, some;
+  pageOf({.name = "campus", .reasons = false}, &whole);
+  const std::string page = pageOf({.name = "campus", .max_quads = whole.quads - 1, .reasons = false}, &some);
+  EXPECT_EQ(whole.quads_left_out, 0U);
+  EXPECT_GT(some.quads_left_out, 0U);
+  EXPECT_EQ(some.quads + some.quads_left_out, whole.quads);
+  EXPECT_EQ(ViewDocument::parse(blockOf(page, "map")).at("quadsLeftOut"), some.quads_left_out);
+  EXPECT_THAT(blockOf(page, "terms"), HasSubstr("/map/object/"));
+}
+
 TEST(CampusMapPage, LetsNoTextOfTheMapBecomeMarkup) {
   const std::string page = pageOf({.name = "</script><script>alert(1)</script>"});
   EXPECT_THAT(page, Not(HasSubstr("alert")));

@@ -29,4 +29,4 @@ grep -q wasRun markup.ttl || { printf 'page_test: the label of trees was not fou
 tree=$("$cluxel" query '<b>markup.clx' trees.rq --format csv | sed -n 2p | cut -d, -f1)
 "$cluxel" update '<b>markup.clx' -e "INSERT DATA { <$tree> <http://www.w3.org/2000/01/rdf-schema#label> \"\"\"<img src=x onerror=\"window.wasRun=1\">\"\"\" }" >/dev/null
 "$cluxel" view '<b>markup.clx' -o markup.html
-node --test --test-concurrency=1 "$source_dir/tests/web/page_test.mjs"
+node --test "$source_dir/tests/web/page_test.mjs"

@@ -30,11 +30,12 @@ function initialStore(): Store {
 }
 
 function titleBar(model: MapModel): HTMLElement {
-  const { name, points, pointsInMap, clouds, finished } = model.values;
+  const { name, points, pointsInMap, quadsLeftOut, clouds, finished } = model.values;
   const shown = points < pointsInMap ? `${counted(points)} of ${counted(pointsInMap)}` : counted(points);
   return el('header', { class: 'title' },
             el('h1', {}, name), el('p', {}, `${counted(model.objects.length)} objects · ${shown} points · ${counted(clouds.length)} scans`),
             points < pointsInMap && el('p', { class: 'note' }, 'Thinned to an even sample; questions see the whole map.'),
+            quadsLeftOut > 0 && el('p', { class: 'note' }, `Questions see all but ${counted(quadsLeftOut)} facts about primitives; cluxel query sees all.`),
             !finished && el('p', { class: 'note' }, 'The build of this map is not finished.'));
 }
 

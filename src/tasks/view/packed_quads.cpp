@@ -6,6 +6,7 @@
 #include <array>
 #include <tuple>
 
+#include "rdf/map_iris.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::tasks {
@@ -24,6 +25,12 @@ std::vector<rdf::QuadIds> currentQuads(const rdf::QuadReader& reader) {
   for (rdf::QuadIds quad; cursor.next(quad);)
     if (!history || quad.g != *history) quads.push_back(quad);
   return quads;
+}
+
+/// Removes the quads whose subject is a primitive; returns their number.
+std::uint64_t removePrimitives(const rdf::QuadReader& reader, std::vector<rdf::QuadIds>& quads) {
+  const std::string prefix = rdf::mapIri("primitive", "");
+  return std::erase_if(quads, [&](const rdf::QuadIds& quad) { return reader.viewOf(quad.s).text.starts_with(prefix); });
 }
 
 /// The numbers of the terms that occur, by id, and the terms' lines.
@@ -57,15 +64,16 @@ class TermNumbers {
 
 }  // namespace
 
-PackedQuads packedQuadsOf(const rdf::QuadReader& reader) {
-  const std::vector<rdf::QuadIds> quads = currentQuads(reader);
+PackedQuads packedQuadsOf(const rdf::QuadReader& reader, std::uint64_t max_quads) {
+  std::vector<rdf::QuadIds> quads = currentQuads(reader);
+  PackedQuads packed;
+  if (quads.size() > max_quads) packed.left_out = removePrimitives(reader, quads);
   TermNumbers number(reader, quads);
   std::vector<std::array<std::uint32_t, 4>> rows;
   rows.reserve(quads.size());
   for (const rdf::QuadIds& quad : quads)
     rows.push_back({number[quad.g], number[quad.s], number[quad.p], number[quad.o]});
   std::sort(rows.begin(), rows.end());
-  PackedQuads packed;
   packed.quad_count = rows.size();
   for (std::size_t i = 0, end = 0; i < rows.size(); i = end) {
     while (end < rows.size() && rows[end][0] == rows[i][0]) ++end;

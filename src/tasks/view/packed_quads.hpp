@@ -17,9 +17,12 @@ struct PackedQuads {
   /// subject's number is above the one before, then the numbers of predicate and object. All numbers are LEB128.
   std::string quads;
   std::uint64_t quad_count = 0;
+  std::uint64_t left_out = 0;  ///< quads about primitives
 };
 
-/// All graphs but history, which is no part of the default graph either. The same quads give the same bytes.
-PackedQuads packedQuadsOf(const rdf::QuadReader& quads);
+/// All graphs but history, which is no part of the default graph either. A map with more than `max_quads` quads is held
+/// without those about primitives, which are most of them: a page has little memory. The same quads give the same
+/// bytes.
+PackedQuads packedQuadsOf(const rdf::QuadReader& quads, std::uint64_t max_quads);
 
 }  // namespace cluxel::tasks

@@ -31,15 +31,16 @@ std::uint64_t writeReasons(const mapping::MapReader& map, const ByteSink& out) {
 void writeData(const mapping::MapReader& map, const std::vector<Question>& questions, const ViewOptions& options,
                const ByteSink& out, ViewReport& report) {
   const PointTiles tiles = pointTilesOf(map, options.max_points);
+  const PackedQuads quads = packedQuadsOf(map.quads(), options.max_quads);
   report.points = tiles.points;
   report.points_in_map = tiles.points_in_map;
   report.objects = map.objects().size();
-  report.object_bytes = writeBlock("map", mapValuesJson(map, tiles, options.name, questions), out) +
+  report.quads = quads.quad_count;
+  report.quads_left_out = quads.left_out;
+  report.object_bytes = writeBlock("map", mapValuesJson(map, tiles, quads.left_out, options.name, questions), out) +
                         writeBlock("objects", objectValuesJson(map), out);
   for (std::size_t i = 0; i < tiles.tiles.size(); ++i)
     report.point_bytes += writeBlock("tile-" + std::to_string(i), tiles.tiles[i].planes, out);
-  const PackedQuads quads = packedQuadsOf(map.quads());
-  report.quads = quads.quad_count;
   report.quad_bytes = writeBlock("terms", quads.terms, out) + writeBlock("quads", quads.quads, out);
   if (options.reasons) report.object_bytes += writeReasons(map, out);
 }

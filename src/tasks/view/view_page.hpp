@@ -15,6 +15,7 @@ namespace cluxel::tasks {
 struct ViewOptions {
   std::string name;                      ///< of the map, shown as the page's title
   std::uint64_t max_points = 5'000'000;  ///< a larger map is shown by a uniform sample, and the page says so
+  std::uint64_t max_quads = 2'000'000;   ///< a larger map is held without the quads about primitives
   bool reasons = true;                   ///< with the explanation of every object
 };
 
@@ -22,7 +23,7 @@ struct ViewOptions {
 struct ViewReport {
   std::uint64_t points = 0, points_in_map = 0;
   std::size_t objects = 0;
-  std::uint64_t quads = 0;
+  std::uint64_t quads = 0, quads_left_out = 0;
   std::uint64_t program_bytes = 0, point_bytes = 0, quad_bytes = 0, object_bytes = 0;
 };
 

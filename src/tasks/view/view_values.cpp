@@ -98,8 +98,8 @@ ViewJson partsJson(const rules::SemanticObject& object, const perception::SceneC
 
 }  // namespace
 
-std::string mapValuesJson(const mapping::MapReader& map, const PointTiles& tiles, const std::string& name,
-                          const std::vector<Question>& questions) {
+std::string mapValuesJson(const mapping::MapReader& map, const PointTiles& tiles, std::uint64_t quads_left_out,
+                          const std::string& name, const std::vector<Question>& questions) {
   const mapping::MapInputs inputs = map.inputs();
   ViewJson json{{"name", name},
                 {"finished", map.isFinished()},
@@ -107,6 +107,7 @@ std::string mapValuesJson(const mapping::MapReader& map, const PointTiles& tiles
                 {"origin", vectorJson(inputs.map_origin)},
                 {"points", tiles.points},
                 {"pointsInMap", tiles.points_in_map},
+                {"quadsLeftOut", quads_left_out},
                 {"quantum", kViewQuantum_m},
                 {"lowestHeight", kLowestHeight_m},
                 {"heightStep", kHeightStep_m},

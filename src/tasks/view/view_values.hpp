@@ -11,8 +11,8 @@
 namespace cluxel::tasks {
 
 /// The map: name, frame, clouds with sensor positions, tiles of points, shipped questions, units of properties.
-std::string mapValuesJson(const mapping::MapReader& map, const PointTiles& tiles, const std::string& name,
-                          const std::vector<Question>& questions);
+std::string mapValuesJson(const mapping::MapReader& map, const PointTiles& tiles, std::uint64_t quads_left_out,
+                          const std::string& name, const std::vector<Question>& questions);
 
 /// Classes, and the objects in the order of MapReader::objects(): arrays side by side. A box is its centre, length,
 /// width, height [m, map] and the angle of its length [rad].

@@ -36,7 +36,7 @@ export interface Question { file: string; title: string; text: string; parameter
 export interface Property { iri: string; label: string; unit: string }
 interface MapValues {
   name: string; finished: boolean; crs: string; origin: number[];
-  points: number; pointsInMap: number;
+  points: number; pointsInMap: number; quadsLeftOut: number;
   quantum: number; lowestHeight: number; heightStep: number; intensity: number[];
   labels: string[]; clouds: Cloud[]; tiles: TileInfo[]; questions: Question[]; properties: Property[];
 }
