@@ -28,11 +28,14 @@ export function certaintyColour(confidence: number): Rgb {
   return stops[low].map((value, i) => Math.round(value + (stops[low + 1][i] - value) * share)) as Rgb;
 }
 
+/** What the colours of objects tell. */
+export type Scheme = 'class' | 'certainty' | 'distinct';
+
 export class Palette {
   readonly texture: THREE.DataTexture;
   private readonly data: Uint8Array;
   private readonly distinct = new Map<string, Rgb>();
-  private scheme: 'class' | 'certainty' | 'distinct' = 'class';
+  private scheme: Scheme = 'class';
   private hiddenClasses = new Set<string>();
   private lit: Set<number> | null = null;
 
@@ -53,9 +56,14 @@ export class Palette {
     return WIDTH;
   }
 
-  setScheme(scheme: 'class' | 'certainty' | 'distinct'): void {
-    if (this.scheme === scheme) return;
-    this.scheme = scheme;
+  /**
+   * `lit`: these objects are lit and the others dimmed; null: all are plain. `hiddenClasses`: IRIs; '' stands for points
+   * without an object.
+   */
+  show(look: { scheme: Scheme; lit: MapObject[] | null; hiddenClasses: Set<string> }): void {
+    this.scheme = look.scheme;
+    this.hiddenClasses = new Set(look.hiddenClasses);
+    this.lit = look.lit && new Set(look.lit.map((object) => object.number));
     this.refresh();
   }
 
@@ -65,20 +73,8 @@ export class Palette {
     return rgbOf(this.model.classes.get(iri)?.color ?? '');
   }
 
-  /** Classes by IRI; '' stands for points without an object. */
-  hideClasses(hidden: Set<string>): void {
-    this.hiddenClasses = new Set(hidden);
-    this.refresh();
-  }
-
   isHidden(object: MapObject): boolean {
     return this.hiddenClasses.has(object.class.iri);
-  }
-
-  /** Lights up these objects and dims the others; null: all are plain. */
-  light(objects: MapObject[] | null): void {
-    this.lit = objects && new Set(objects.map((object) => object.number));
-    this.refresh();
   }
 
   private refresh(): void {

@@ -91,9 +91,8 @@ export class Stage {
 
   private showPoints(): void {
     const { lit, hiddenClasses, colourMode, slice, scans } = this.store.state, { palette, uniforms } = this.viewer;
-    palette.light(lit ? lit.objects : null);
-    palette.hideClasses(hiddenClasses);
-    palette.setScheme(colourMode === 'certainty' || colourMode === 'distinct' ? colourMode : 'class');
+    const scheme = colourMode === 'certainty' || colourMode === 'distinct' ? colourMode : 'class';
+    palette.show({ scheme, lit: lit && lit.objects, hiddenClasses });
     uniforms.mode.value = COLOUR_MODES.indexOf(colourMode);
     const { lowestHeight, heightStep } = this.model.values;
     const byteOf = (height: number) => (height - lowestHeight) / heightStep;
