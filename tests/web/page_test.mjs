@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page in a browser: page_test.mjs FOLDER, which holds campus.clx, campus.html and their like from page_test.sh.
+// The page in a browser. page_test.sh makes the maps and pages, and sets the variables CLUXEL_… that name them.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, afterEach, before, beforeEach, test } from 'node:test';
-import { answered, ask, askNamed, drawn, editorText, openPage, placeOf, settled, startBrowser, states, stopBrowser } from './browser.mjs';
+import {
+  answered, ask, askNamed, coveredPixels, drawn, editorText, openPage, placeOf, seenWithoutGreenCones, settled, startBrowser,
+  states, stopBrowser,
+} from './browser.mjs';
 
 const folder = process.env.CLUXEL_PAGES, program = process.env.CLUXEL_PROGRAM;
 const map = join(folder, 'campus.clx'), html = join(folder, 'campus.html');
@@ -123,17 +126,6 @@ test('what is hidden is neither seen nor clicked', async () => {
   assert.notEqual(selected, 'tree');
 });
 
-/** A colour as CIE Lab, as an eye without green cones sees it (Machado, Oliveira and Fernandes 2009). */
-function seenWithoutGreenCones(rgb) {
-  const [r, g, b] = rgb.map((value) => (value <= 10.31475 ? value / 3294.6 : ((value / 255 + 0.055) / 1.055) ** 2.4));
-  const R = 0.367322 * r + 0.860646 * g - 0.227968 * b, G = 0.280085 * r + 0.672501 * g + 0.047413 * b;
-  const B = -0.01182 * r + 0.04294 * g + 0.968881 * b;
-  const f = (t) => (t > 0.008856 ? Math.cbrt(t) : 7.787 * t + 16 / 116);
-  const x = f((0.4124 * R + 0.3576 * G + 0.1805 * B) / 0.9505), y = f(0.2126 * R + 0.7152 * G + 0.0722 * B);
-  const z = f((0.0193 * R + 0.1192 * G + 0.9505 * B) / 1.089);
-  return [116 * y - 16, 500 * (x - y), 200 * (y - z)];
-}
-
 test('classes stay apart for an eye without green cones', async () => {
   await open.page.selectOption('#colour-mode', 'distinct');
   const colours = await open.page.evaluate(() => {
@@ -147,18 +139,6 @@ test('classes stay apart for an eye without green cones', async () => {
       const apart = Math.hypot(...seen[i].map((value, axis) => value - seen[k][axis]));
       assert.ok(apart > 12, `${colours[i]} and ${colours[k]}: ${apart}`);
     }
-});
-
-/** How many pixels of the view are not background. */
-const coveredPixels = (page) => page.evaluate(() => {
-  const { renderer, picture } = window.cluxelPage.viewer;
-  const pixels = new Uint8Array(4 * picture.width * picture.height);
-  renderer.setRenderTarget(picture);
-  renderer.readRenderTargetPixels(picture, 0, 0, picture.width, picture.height, pixels);
-  renderer.setRenderTarget(null);
-  let covered = 0;
-  for (let i = 0; i < pixels.length; i += 4) covered += pixels[i] + pixels[i + 1] + pixels[i + 2] > 0 ? 1 : 0;
-  return covered;
 });
 
 test('sliders cut heights and scans', async () => {
