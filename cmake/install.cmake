@@ -8,6 +8,8 @@ install(TARGETS cluxel_library EXPORT cluxel
 install(DIRECTORY include/cluxel DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development
   FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY ontology rules queries models labels DESTINATION ${CMAKE_INSTALL_DATADIR}/cluxel COMPONENT data)
+# The page of `cluxel view`, where `./run web` has made it.
+install(FILES web/dist/page.html DESTINATION ${CMAKE_INSTALL_DATADIR}/cluxel/web/dist COMPONENT data OPTIONAL)
 # For stock Redland tools: REDLAND_MODULE_PATH names this folder.
 install(TARGETS librdf_storage_cluxel LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/cluxel/redland COMPONENT redland)
 

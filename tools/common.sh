@@ -57,6 +57,30 @@ install_endpoint_client() {
   install_from_npm npm-endpoint tests/app/package.json @comunica/query-sparql "the test of the endpoint"
 }
 
+# Node, npm and the packages of web/package-lock.json under web/node_modules.
+install_web_tools() {
+  command -v node >/dev/null || install_packages nodejs
+  command -v npm >/dev/null || install_packages npm
+  [ web/node_modules/.package-lock.json -nt web/package-lock.json ] && return 0
+  say "run: installing what the page is made of under web/node_modules"
+  (cd web && npm ci --silent --ignore-scripts --no-fund --no-audit) >&2 &&
+    touch web/node_modules/.package-lock.json
+}
+
+# Checks and bundles web/src into web/dist/page.html where a source is newer, or with --again.
+build_web() {
+  [ "${1:-}" = --again ] || [ ! -f web/dist/page.html ] ||
+    [ -n "$(find web/src web/*.mjs web/package-lock.json -newer web/dist/page.html -print -quit)" ] || return 0
+  say "run: making the page's program"
+  (cd web && node node_modules/typescript/bin/tsc --noEmit && node build.mjs) >&2
+}
+
+# The page's program where it can be made; without it all but `cluxel view` works.
+make_page() {
+  { install_web_tools && build_web; } ||
+    say "run: npm could not make the page's program: cluxel view will say that it is absent"
+}
+
 configure() {  # configure PRESET [OPTIONS OF CMAKE...]
   local log
   mkdir -p build

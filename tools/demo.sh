@@ -5,6 +5,7 @@ source "$(dirname "$0")/common.sh"
 
 install_base
 build release cluxel
+make_page
 cluxel=build/release/cluxel out=out/demo
 rm -rf "$out"
 mkdir -p "$out"
@@ -21,6 +22,11 @@ say "run: extending it by the others; what changes:"
 say "run: asking it: queries/street_signs.rq"
 "$cluxel" query "$out/campus.clx" queries/street_signs.rq
 "$cluxel" export "$out/campus.clx" -o "$out/campus.ply"
+if [ -f web/dist/page.html ]; then
+  "$cluxel" view "$out/campus.clx" -o "$out/campus.html"
+  say ""
+  say "Open $PWD/$out/campus.html in a browser: look around, ask, click on things, see why they are what they are."
+fi
 say ""
 say "The map is $out/campus.clx; its points coloured by class are in $out/campus.ply (any point cloud viewer shows it)."
 say "More questions: $cluxel tasks      Why is it that?  $cluxel explain $out/campus.clx <object>"

@@ -15,5 +15,7 @@ install_base
 install_packages dpkg-dev file lintian   # for the test of the packages
 install_second_engine
 install_endpoint_client
+make_page
+install_packages chromium   # the tests of the page
 build release
 exec bash tools/run_tests.sh release "${options[@]}"

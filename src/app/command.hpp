@@ -76,6 +76,7 @@ void addRules(CLI::App& app, Session& session);
 void addRuleFit(CLI::App& rules, Session& session);  ///< a subcommand of `rules`
 void addExplain(CLI::App& app, Session& session);
 void addExport(CLI::App& app, Session& session);
+void addView(CLI::App& app, Session& session);
 void addEvaluate(CLI::App& app, Session& session);
 void addChange(CLI::App& app, Session& session);  ///< extend, retract, repose, merge
 void addWays(CLI::App& app, Session& session);    ///< route, reach, costmap, search

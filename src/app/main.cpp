@@ -50,6 +50,7 @@ void addCommands(CLI::App& app, Session& session) {
   addExport(app, session);
   addWays(app, session);
   addServe(app, session);
+  addView(app, session);
   addUpkeep(app, session);
   addDocumentation(app);
 }

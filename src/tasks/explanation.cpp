@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "cluxel/error.hpp"
@@ -142,6 +143,24 @@ ExplanationTexts explainThing(const mapping::MapReader& map, const std::string& 
 std::string explainThing(const mapping::MapReader& map, const std::string& name, bool as_json) {
   ExplanationTexts texts = explainThing(map, name);
   return as_json ? std::move(texts.json) : std::move(texts.text);
+}
+
+std::vector<std::string> explainObjects(const mapping::MapReader& map) {
+  const mapping::MapInputs inputs = map.inputs();
+  const rules::RuleSet rules = rulesOf(inputs);
+  mapping::AskReplay oracle(map);
+  const rules::ReasoningContext context{.oracle = &oracle};
+  const rules::ReasoningResult result = reason(map.scene(), rules, context);
+  std::vector<rules::Explanation> explanations = explainAll(map.scene(), rules, context, result);
+  std::map<ContentHash, std::string> by_object;
+  for (rules::Explanation& explanation : explanations) {
+    shortenFiles(explanation, inputs);
+    by_object[explanation.object->id] = nlohmann::ordered_json::parse(jsonOf(explanation, rules, map.scene())).dump();
+  }
+  std::vector<std::string> texts;
+  texts.reserve(map.objects().size());
+  for (const rules::SemanticObject& object : map.objects()) texts.push_back(by_object[object.id]);
+  return texts;
 }
 
 }  // namespace cluxel::tasks

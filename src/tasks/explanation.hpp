@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "mapping/map_reader.hpp"
 
@@ -21,5 +22,9 @@ struct ExplanationTexts {
 ExplanationTexts explainThing(const mapping::MapReader& map, const std::string& name);
 /// One of the two: JSON instead of prose with `as_json`.
 std::string explainThing(const mapping::MapReader& map, const std::string& name, bool as_json);
+
+/// Explains every object of the map: one line of JSON for each, in the order of MapReader::objects(), as explainThing()
+/// gives it. Runs the rules twice, whatever the number of objects.
+std::vector<std::string> explainObjects(const mapping::MapReader& map);
 
 }  // namespace cluxel::tasks

@@ -25,8 +25,8 @@ TEST_F(Program, AMapThatIsNotThereIsExitCodeFiveInEveryCommand) {
   for (const std::string& arguments : std::vector<std::string>{
            "info " + absent, "query " + absent + " -e 'ASK {}'", "update " + absent + " -e 'CLEAR ALL'",
            "explain " + absent + " 1234", "evaluate " + absent + " --truth " + campus() + "/truth",
-           "export " + absent + " --canonical", "compact " + absent, "compact " + absent + " -o " + fresh(),
-           "doctor " + absent}) {
+           "export " + absent + " --canonical", "view " + absent + " -o " + fresh(), "compact " + absent,
+           "compact " + absent + " -o " + fresh(), "doctor " + absent}) {
     SCOPED_TRACE(arguments);
     expectError(run(arguments), 5, "absent.clx");
     EXPECT_FALSE(fs::exists(absent));
@@ -40,7 +40,7 @@ TEST_F(Program, WhatIsNoMapIsExitCodeFiveInEveryCommandThatNeedsOne) {
   for (const std::string& arguments :
        std::vector<std::string>{"info " + text, "query " + text + " -e 'ASK {}'", "update " + text + " -e 'CLEAR ALL'",
                                 "explain " + text + " 1234", "evaluate " + text + " --truth " + campus() + "/truth",
-                                "export " + text + " --canonical", "compact " + text,
+                                "export " + text + " --canonical", "view " + text + " -o " + fresh(), "compact " + text,
                                 "query " + campus() + " -e 'ASK {}'", "compact " + campus(), "doctor " + campus()}) {
     SCOPED_TRACE(arguments);
     expectError(run(arguments), 5, "map");
@@ -67,12 +67,17 @@ TEST_F(Program, AnyOtherInputThatIsNotThereIsExitCodeFourInEveryCommand) {
   }
 }
 
+TEST_F(Program, APageNeedsAnOutputThatIsNoMap) {
+  expectError(run("view " + map() + " -o " + map()), 5, "is a map");
+  expectError(run("view " + map()), 2, "--output");
+}
+
 TEST_F(Program, AnUnknownCommandIsNamedWithTheNearestAndTheList) {
   expectError(run("qeury x"), 2, "there is no command 'qeury'; did you mean 'query'?");
   expectError(
       run("qeury x"), 2,
       "info, simulate, register, build, extend, retract, repose, merge, query, update, tasks, explain, rules, train, "
-      "evaluate, export, compact, doctor");
+      "evaluate, export, view, compact, doctor");
   expectError(run("rules tset"), 2, "rules: there is no command 'tset'; did you mean 'test'?");
   expectError(run("rules"), 2, "rules: a command is missing: check, test, apply");
   expectError(run(""), 2, "a command is missing: info");

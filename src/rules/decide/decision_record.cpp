@@ -58,8 +58,10 @@ class Judging {
   }
 
   bool isProbed(const Decision& decision) const {
-    return state_.context.probe &&
-           std::binary_search(decision.seeds.begin(), decision.seeds.end(), *state_.context.probe);
+    const std::vector<perception::PrimitiveIndex>& probes = state_.context.probes;
+    return std::any_of(decision.seeds.begin(), decision.seeds.end(), [&probes](perception::PrimitiveIndex seed) {
+      return std::binary_search(probes.begin(), probes.end(), seed);
+    });
   }
 
   std::string describeAccept(const AcceptLeaf& accept) const {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <functional>
-#include <optional>
+#include <vector>
 
 #include "perception/segments/scene.hpp"
 #include "rules/ask_oracle.hpp"
@@ -22,8 +22,8 @@ using CandidateObserver = std::function<void(const ReasoningState&, const Rule&,
 struct ReasoningContext {
   /// Needed by rule sets with `ask:`; without it such a test is an Error.
   AskOracle* oracle = nullptr;
-  /// When set, decisions about this primitive also report what would have changed them (Decision::flips).
-  std::optional<perception::PrimitiveIndex> probe = std::nullopt;
+  /// Ascending. Decisions about these primitives also report what would have changed them (Decision::flips).
+  std::vector<perception::PrimitiveIndex> probes = {};
   CandidateObserver onCandidate = {};
 };
 

@@ -48,6 +48,11 @@ Explanation explain(const perception::Scene& scene, const RuleSet& rules, const 
 Explanation explain(const perception::Scene& scene, const RuleSet& rules, const ReasoningContext& context,
                     const SemanticObject& object, const Decision& decision);
 
+/// The same for all objects of `result`, which reason() gave for the same scene, rules and context: one explanation for
+/// each, in their order. Cost: one run of the stage with a probe at every object.
+std::vector<Explanation> explainAll(const perception::Scene& scene, const RuleSet& rules,
+                                    const ReasoningContext& context, const ReasoningResult& result);
+
 /// As text: the path to the verdict, then the path of each rejected class with its nearest counterfactual.
 std::string textOf(const Explanation& explanation, const RuleSet& rules, const perception::Scene& scene);
 std::string jsonOf(const Explanation& explanation, const RuleSet& rules, const perception::Scene& scene);

@@ -3,6 +3,7 @@
 #include "rules/explain/explain.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "rules/explain/counterfactuals.hpp"
 
@@ -29,20 +30,26 @@ bool owns(const SemanticObject& object, perception::PrimitiveIndex primitive) {
   });
 }
 
-}  // namespace
+/// The decisions about each of some primitives, as numbers in ReasoningResult::decisions.
+using DecisionsOf = std::map<perception::PrimitiveIndex, std::vector<std::size_t>>;
 
-Explanation explain(const perception::Scene& scene, const RuleSet& rules, const ReasoningContext& context,
-                    perception::PrimitiveIndex primitive) {
-  ReasoningContext probing = context;
-  probing.probe = primitive;
-  const ReasoningResult result = reason(scene, rules, probing);
+DecisionsOf decisionsAbout(const std::vector<perception::PrimitiveIndex>& primitives, const ReasoningResult& result) {
+  DecisionsOf decisions;
+  for (const perception::PrimitiveIndex primitive : primitives) decisions[primitive];
+  for (std::size_t i = 0; i < result.decisions.size(); ++i)
+    for (const perception::PrimitiveIndex seed : result.decisions[i].seeds)
+      if (const auto known = decisions.find(seed); known != decisions.end()) known->second.push_back(i);
+  return decisions;
+}
+
+Explanation explanationOf(perception::PrimitiveIndex primitive, const std::vector<std::size_t>& decisions,
+                          const SemanticObject* object, const ReasoningResult& result, const RuleSet& rules) {
   Explanation explanation;
   explanation.primitive = primitive;
-  for (const SemanticObject& object : result.objects)
-    if (!explanation.object && owns(object, primitive)) explanation.object = object;
+  if (object != nullptr) explanation.object = *object;
   bool decided = false;
-  for (const Decision& decision : result.decisions) {
-    if (!std::binary_search(decision.seeds.begin(), decision.seeds.end(), primitive)) continue;
+  for (const std::size_t i : decisions) {
+    const Decision& decision = result.decisions[i];
     const Rule* rule = rules.find(decision.rule_id);
     explanation.decisions.push_back({decision, rule->class_iri, nearestCounterfactual(decision, *rule)});
     decided = decided || decision.accepted;
@@ -55,12 +62,42 @@ Explanation explain(const perception::Scene& scene, const RuleSet& rules, const 
   return explanation;
 }
 
+}  // namespace
+
+Explanation explain(const perception::Scene& scene, const RuleSet& rules, const ReasoningContext& context,
+                    perception::PrimitiveIndex primitive) {
+  ReasoningContext probing = context;
+  probing.probes = {primitive};
+  const ReasoningResult result = reason(scene, rules, probing);
+  const auto owner = std::find_if(result.objects.begin(), result.objects.end(),
+                                  [primitive](const SemanticObject& object) { return owns(object, primitive); });
+  return explanationOf(primitive, decisionsAbout({primitive}, result).at(primitive),
+                       owner == result.objects.end() ? nullptr : &*owner, result, rules);
+}
+
 Explanation explain(const perception::Scene& scene, const RuleSet& rules, const ReasoningContext& context,
                     const SemanticObject& object, const Decision& decision) {
   Explanation explanation = explain(scene, rules, context, decision.seed);
   const bool same = explanation.object && explanation.object->id == object.id;
   if (!same && owns(object, decision.seed)) explanation.object = object;
   return explanation;
+}
+
+std::vector<Explanation> explainAll(const perception::Scene& scene, const RuleSet& rules,
+                                    const ReasoningContext& context, const ReasoningResult& result) {
+  ReasoningContext probing = context;
+  for (const SemanticObject& object : result.objects)
+    probing.probes.push_back(result.decisions.at(object.decision).seed);
+  std::sort(probing.probes.begin(), probing.probes.end());
+  const ReasoningResult probed = reason(scene, rules, probing);
+  const DecisionsOf decisions = decisionsAbout(probing.probes, probed);
+  std::vector<Explanation> explanations;
+  explanations.reserve(probed.objects.size());
+  for (const SemanticObject& object : probed.objects) {
+    const perception::PrimitiveIndex seed = probed.decisions.at(object.decision).seed;
+    explanations.push_back(explanationOf(seed, decisions.at(seed), &object, probed, rules));
+  }
+  return explanations;
 }
 
 }  // namespace cluxel::rules

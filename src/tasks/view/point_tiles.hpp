@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// The points of a map as tiles for the page: quantised, with their object, in levels of detail.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "mapping/map_reader.hpp"
+
+namespace cluxel::tasks {
+
+inline constexpr double kViewTile_m = 16, kViewQuantum_m = 0.005;
+/// Heights above the local ground are one byte: kLowestHeight_m + byte * kHeightStep_m, cut at both ends.
+inline constexpr double kLowestHeight_m = -2, kHeightStep_m = 0.125;
+inline constexpr std::size_t kViewLevels = 4;
+
+/// One square of the map seen from above. Points of a level are a uniform sample, so that the first levels alone show
+/// the whole tile coarsely.
+struct PointTile {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< corner with the least coordinates [m, map]
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();    ///< of the box around its points, from the origin [m]
+  double z_quantum_m = kViewQuantum_m;
+  std::array<std::uint32_t, kViewLevels> points_to{};  ///< the number of points up to and with each level
+  /// Planes of bytes for all points: x, y, z (2 bytes each, quanta from the origin), number of the object + 1 or 0 (3),
+  /// cloud (2), intensity (1), height above the ground (1), primitive label (1).
+  std::string planes;
+};
+
+struct PointTiles {
+  std::vector<PointTile> tiles;                 ///< by x, then y
+  std::array<double, 2> intensity{};            ///< the values of bytes 0 and 255; equal when there are none
+  std::uint64_t points = 0, points_in_map = 0;  ///< shown, and all
+};
+
+/// The clouds of the map by time, those without a time first: their places are the numbers of clouds in the page.
+std::vector<mapping::Cloud> cloudsByTime(const mapping::MapReader& map);
+
+/// At most about `max_points` points: of a larger map a uniform sample, the same for the same map.
+PointTiles pointTilesOf(const mapping::MapReader& map, std::uint64_t max_points);
+
+}  // namespace cluxel::tasks

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Puts blocks of data where the page has its mark.
+#include "tasks/view/view_page.hpp"
+
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "tasks/explanation.hpp"
+#include "tasks/view/packed_quads.hpp"
+#include "tasks/view/page_blocks.hpp"
+#include "tasks/view/point_tiles.hpp"
+#include "tasks/view/view_values.hpp"
+
+namespace cluxel::tasks {
+
+namespace {
+
+constexpr std::string_view kDataMark = "<!--map data-->";
+constexpr std::size_t kReasonsInBlock = 64;  // read one block for a click, not all
+
+std::uint64_t writeReasons(const mapping::MapReader& map, const ByteSink& out) {
+  const std::vector<std::string> reasons = explainObjects(map);
+  std::uint64_t written = 0;
+  for (std::size_t i = 0; i < reasons.size(); i += kReasonsInBlock) {
+    std::string lines;
+    for (std::size_t k = i; k < std::min(reasons.size(), i + kReasonsInBlock); ++k) lines += reasons[k] + "\n";
+    written += writeBlock("reasons-" + std::to_string(i / kReasonsInBlock), lines, out);
+  }
+  return written;
+}
+
+void writeData(const mapping::MapReader& map, const std::vector<Question>& questions, const ViewOptions& options,
+               const ByteSink& out, ViewReport& report) {
+  const PointTiles tiles = pointTilesOf(map, options.max_points);
+  const PackedQuads quads = packedQuadsOf(map.quads(), options.max_quads);
+  report.points = tiles.points;
+  report.points_in_map = tiles.points_in_map;
+  report.objects = map.objects().size();
+  report.quads = quads.quad_count;
+  report.quads_left_out = quads.left_out;
+  report.object_bytes = writeBlock("map", mapValuesJson(map, tiles, quads.left_out, options.name, questions), out) +
+                        writeBlock("objects", objectValuesJson(map), out);
+  for (std::size_t i = 0; i < tiles.tiles.size(); ++i)
+    report.point_bytes += writeBlock("tile-" + std::to_string(i), tiles.tiles[i].planes, out);
+  report.quad_bytes = writeBlock("terms", quads.terms, out) + writeBlock("quads", quads.quads, out);
+  if (options.reasons) report.object_bytes += writeReasons(map, out);
+}
+
+}  // namespace
+
+std::string viewTemplate(const DataHome& home) {
+  const std::filesystem::path file = std::filesystem::path("web") / "dist" / "page.html";
+  std::error_code ignored;
+  if (!home.root().empty() && !std::filesystem::exists(home.root() / file, ignored))
+    throw Error(ErrorKind::FaultyInput, (home.root() / file).string() +
+                                            ": the page's program is not there; './run web' in the checkout makes it "
+                                            "(needs npm)");
+  return readFile(home.locate(file));
+}
+
+ViewReport writeViewPage(const mapping::MapReader& map, const std::string& page, const std::vector<Question>& questions,
+                         const ViewOptions& options, const ByteSink& out) {
+  const std::size_t mark = page.find(kDataMark);
+  if (mark == std::string::npos)
+    throw Error(ErrorKind::FaultyInput, "the page's program has no mark '" + std::string(kDataMark) +
+                                            "' for the map's data; './run web' in the checkout makes it anew");
+  ViewReport report;
+  report.program_bytes = page.size() - kDataMark.size();
+  out(std::string_view(page).substr(0, mark));
+  writeData(map, questions, options, out, report);
+  out(std::string_view(page).substr(mark + kDataMark.size()));
+  return report;
+}
+
+}  // namespace cluxel::tasks

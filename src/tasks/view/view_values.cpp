@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers are rounded to a millimetre: more digits say nothing and cost bytes.
+#include "tasks/view/view_values.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "mapping/facts/object_geometry.hpp"
+#include "rdf/ontology/ontology.hpp"
+
+namespace cluxel::tasks {
+
+namespace {
+
+using ViewJson = nlohmann::ordered_json;
+
+double toMillimetre(double value) {
+  return std::round(value * 1e3) / 1e3;
+}
+
+ViewJson vectorJson(const Eigen::Vector3d& v) {
+  return {toMillimetre(v.x()), toMillimetre(v.y()), toMillimetre(v.z())};
+}
+
+ViewJson cloudsJson(const mapping::MapReader& map) {
+  ViewJson all = ViewJson::array();
+  for (const mapping::Cloud& cloud : cloudsByTime(map)) {
+    ViewJson json{{"id", cloud.id.hex()}, {"points", cloud.point_count}};
+    json["source"] = std::filesystem::path(cloud.source).filename().string();
+    if (cloud.time_s) json["time"] = *cloud.time_s;
+    if (cloud.has_pose) json["position"] = vectorJson(cloud.T_map_sensor.translation());
+    all.push_back(std::move(json));
+  }
+  return all;
+}
+
+ViewJson tilesJson(const PointTiles& tiles) {
+  ViewJson all = ViewJson::array();
+  for (const PointTile& tile : tiles.tiles)
+    all.push_back({{"origin", vectorJson(tile.origin)},
+                   {"size", vectorJson(tile.size)},
+                   {"zQuantum", tile.z_quantum_m},
+                   {"pointsTo", tile.points_to}});
+  return all;
+}
+
+ViewJson questionsJson(const std::vector<Question>& questions) {
+  ViewJson all = ViewJson::array();
+  for (const Question& question : questions) {
+    ViewJson json{{"file", question.file.filename().string()},
+                  {"title", question.title},
+                  {"text", question.text},
+                  {"parameters", ViewJson::array()},
+                  {"columns", ViewJson::array()}};
+    for (const QueryParameter& p : question.parameters)
+      json["parameters"].push_back({{"name", p.name}, {"unit", p.unit}, {"value", p.default_value}, {"help", p.help}});
+    for (const QueryColumn& column : question.columns)
+      json["columns"].push_back({{"name", column.name}, {"unit", column.unit}, {"help", column.help}});
+    all.push_back(std::move(json));
+  }
+  return all;
+}
+
+ViewJson propertiesJson(const rdf::OntologyView& ontology) {
+  ViewJson all = ViewJson::array();
+  for (const rdf::OntologyProperty& property : ontology.properties)
+    all.push_back({{"iri", property.iri}, {"label", property.label}, {"unit", property.unit}});
+  return all;
+}
+
+ViewJson classesJson(const rdf::OntologyView& ontology) {
+  ViewJson all = ViewJson::array();
+  for (const rdf::OntologyClass& known : ontology.classes)
+    all.push_back({{"iri", known.iri},
+                   {"label", known.label()},
+                   {"comment", known.comment},
+                   {"color", known.color},
+                   {"movable", known.mobility == rdf::Mobility::Movable},
+                   {"ancestors", known.ancestors}});
+  return all;
+}
+
+ViewJson boxJson(const perception::UprightBox& box) {
+  ViewJson json = vectorJson(box.center);
+  for (const double value : {box.size.x(), box.size.y(), box.size.z(), box.yaw_rad})
+    json.push_back(toMillimetre(value));
+  return json;
+}
+
+ViewJson partsJson(const rules::SemanticObject& object, const perception::SceneCluxels& cluxels) {
+  ViewJson parts = ViewJson::array();
+  for (const rules::ObjectPart& part : object.parts) {
+    if (part.part_class == object.class_iri || part.cluxels.empty()) continue;
+    parts.push_back({{"class", part.part_class}, {"box", boxJson(mapping::geometryOf(cluxels, part.cluxels).box)}});
+  }
+  return parts;
+}
+
+}  // namespace
+
+std::string mapValuesJson(const mapping::MapReader& map, const PointTiles& tiles, std::uint64_t quads_left_out,
+                          const std::string& name, const std::vector<Question>& questions) {
+  const mapping::MapInputs inputs = map.inputs();
+  ViewJson json{{"name", name},
+                {"finished", map.isFinished()},
+                {"crs", inputs.crs},
+                {"origin", vectorJson(inputs.map_origin)},
+                {"points", tiles.points},
+                {"pointsInMap", tiles.points_in_map},
+                {"quadsLeftOut", quads_left_out},
+                {"quantum", kViewQuantum_m},
+                {"lowestHeight", kLowestHeight_m},
+                {"heightStep", kHeightStep_m},
+                {"intensity", tiles.intensity}};
+  json["labels"] = scan::kPrimitiveLabelNames;
+  json["clouds"] = cloudsJson(map);
+  json["tiles"] = tilesJson(tiles);
+  json["questions"] = questionsJson(questions);
+  json["properties"] = propertiesJson(ontologyViewOf(map.quads()));
+  return json.dump(-1, ' ', false, ViewJson::error_handler_t::replace);
+}
+
+std::string objectValuesJson(const mapping::MapReader& map) {
+  const perception::SceneCluxels& cluxels = map.scene().cluxels;
+  ViewJson json{{"classes", classesJson(ontologyViewOf(map.quads()))}};
+  for (const char* column : {"id", "class", "confidence", "rule", "box", "bottom", "top", "points", "parts"})
+    json[column] = ViewJson::array();
+  for (const rules::SemanticObject& object : map.objects()) {
+    const mapping::ObjectGeometry geometry = mapping::geometryOf(cluxels, mapping::cluxelsOf(object));
+    json["id"].push_back(object.id.hex());
+    json["class"].push_back(object.class_iri);
+    json["confidence"].push_back(toMillimetre(object.confidence));
+    json["rule"].push_back(object.rule_id);
+    json["box"].push_back(boxJson(geometry.box));
+    json["bottom"].push_back(toMillimetre(geometry.bottom_m));
+    json["top"].push_back(toMillimetre(geometry.top_m));
+    json["points"].push_back(geometry.point_count);
+    json["parts"].push_back(partsJson(object, cluxels));
+  }
+  return json.dump(-1, ' ', false, ViewJson::error_handler_t::replace);
+}
+
+}  // namespace cluxel::tasks

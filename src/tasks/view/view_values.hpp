@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the page must know of a map beside points and quads, as JSON.
+#pragma once
+
+#include <string>
+
+#include "mapping/map_reader.hpp"
+#include "tasks/query_source.hpp"
+#include "tasks/view/point_tiles.hpp"
+
+namespace cluxel::tasks {
+
+/// The map: name, frame, clouds with sensor positions, tiles of points, shipped questions, units of properties.
+std::string mapValuesJson(const mapping::MapReader& map, const PointTiles& tiles, std::uint64_t quads_left_out,
+                          const std::string& name, const std::vector<Question>& questions);
+
+/// Classes, and the objects in the order of MapReader::objects(): arrays side by side. A box is its centre, length,
+/// width, height [m, map] and the angle of its length [rad].
+std::string objectValuesJson(const mapping::MapReader& map);
+
+}  // namespace cluxel::tasks

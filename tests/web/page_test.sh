@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# page_test.sh SOURCE BUILD: maps of a small generated campus as pages, then tests in a browser. Skipped (77) where the
+# page's program, Node or Chromium is absent.
+set -euo pipefail
+source_dir=$1 build_dir=$2
+work=$build_dir/page_test cluxel=$build_dir/cluxel
+readonly skipped=77
+
+skip() { printf 'page_test: skipped: %s\n' "$*" >&2; exit "$skipped"; }
+
+command -v node >/dev/null || skip "there is no node"
+chromium=$(command -v chromium || command -v chromium-browser) || skip "there is no chromium"
+[ -f "$source_dir/web/dist/page.html" ] || skip "web/dist/page.html is not there: ./run web"
+[ -d "$source_dir/web/node_modules/playwright-core" ] || skip "playwright-core is not there: ./run web"
+
+export CLUXEL_SOURCE=$source_dir CLUXEL_PROGRAM=$cluxel CLUXEL_PAGES=$work CLUXEL_CHROMIUM=$chromium CLUXEL_HOME=$source_dir
+rm -rf "$work"
+mkdir -p "$work"
+cd "$work"
+"$cluxel" simulate scans --stops 3 --size 60 --points-per-stop 40000 >/dev/null 2>&1
+"$cluxel" build scans -o campus.clx 2>/dev/null
+"$cluxel" view campus.clx -o campus.html
+
+# The same scans with an ontology, a statement and a file name that try to be markup.
+sed 's|"tree"@en|"</script><script>window.wasRun=1</script>"@en|' "$source_dir/ontology/outdoor.ttl" >markup.ttl
+grep -q wasRun markup.ttl || { printf 'page_test: the label of trees was not found in the ontology\n' >&2; exit 1; }
+"$cluxel" build scans -o '<b>markup.clx' --ontology "$source_dir/ontology/core.ttl" markup.ttl 2>/dev/null
+tree=$("$cluxel" query '<b>markup.clx' trees.rq --format csv | sed -n 2p | cut -d, -f1)
+"$cluxel" update '<b>markup.clx' -e "INSERT DATA { <$tree> <http://www.w3.org/2000/01/rdf-schema#label> \"\"\"<img src=x onerror=\"window.wasRun=1\">\"\"\" }" >/dev/null
+"$cluxel" view '<b>markup.clx' -o markup.html
+node --test "$source_dir/tests/web/page_test.mjs"

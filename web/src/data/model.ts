@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// A map as the page knows it: classes, objects by number, clouds, tiles, shipped questions.
+import { blockJson, blockText, hasBlock } from './blocks';
+
+export const CLX = 'https://w3id.org/cluxel/ontology#';
+export const OBJECT = 'https://w3id.org/cluxel/map/object/';
+const REASONS_IN_BLOCK = 64;
+
+export interface Box {
+  x: number; y: number; z: number;
+  length: number; width: number; height: number;
+  yaw: number;
+}
+export interface Part { class: string; box: Box }
+export interface ClassInfo {
+  iri: string; label: string; comment: string; color: string; movable: boolean; ancestors: string[];
+}
+export interface MapObject {
+  number: number;
+  id: string;
+  iri: string;
+  class: ClassInfo;
+  confidence: number;
+  rule: string;
+  box: Box;
+  bottom: number;
+  top: number;
+  points: number;
+  parts: Part[];
+}
+export interface Cloud { id: string; points: number; source: string; time?: number; position?: number[] }
+export interface TileInfo { origin: number[]; size: number[]; zQuantum: number; pointsTo: number[] }
+export interface Parameter { name: string; unit: string; value: string; help: string }
+export interface Column { name: string; unit: string; help: string }
+export interface Question { file: string; title: string; text: string; parameters: Parameter[]; columns: Column[] }
+export interface Property { iri: string; label: string; unit: string }
+interface MapValues {
+  name: string; finished: boolean; crs: string; origin: number[];
+  points: number; pointsInMap: number; quadsLeftOut: number;
+  quantum: number; lowestHeight: number; heightStep: number; intensity: number[];
+  labels: string[]; clouds: Cloud[]; tiles: TileInfo[]; questions: Question[]; properties: Property[];
+}
+interface ObjectValues {
+  classes: ClassInfo[];
+  id: string[]; class: string[]; confidence: number[]; rule: string[];
+  box: number[][]; bottom: number[]; top: number[]; points: number[];
+  parts: { class: string; box: number[] }[][];
+}
+
+export interface Step {
+  test: string; passed: boolean; file: string; line: number; unit: string;
+  measured?: number; threshold?: number; margin?: number;
+}
+export interface Change { test: string; measured: number; threshold: number; margin: number; unit: string }
+export interface Verdict {
+  class: string; rule: string; accepted: boolean; reason: string; path?: Step[]; hint?: string;
+  least_change?: { accepted: boolean; outcome: string; changes: Change[] };
+}
+export interface Reasons { primitive: string; label: string; note?: string; decisions?: Verdict[] }
+
+export function localName(iri: string): string {
+  return iri.slice(Math.max(iri.lastIndexOf('#'), iri.lastIndexOf('/')) + 1);
+}
+
+function boxOf(v: number[]): Box {
+  return { x: v[0], y: v[1], z: v[2], length: v[3], width: v[4], height: v[5], yaw: v[6] };
+}
+
+const UNKNOWN_COLOR = '#808080';
+
+export class MapModel {
+  readonly objects: MapObject[];
+  readonly classes = new Map<string, ClassInfo>();
+  /** Classes that objects have, most frequent first. */
+  readonly shownClasses: { info: ClassInfo; count: number }[];
+  private readonly byIri = new Map<string, MapObject>();
+  private readonly reasonBlocks = new Map<number, Promise<Reasons[]>>();
+
+  static async read(): Promise<MapModel> {
+    return new MapModel(await blockJson<MapValues>('map'), await blockJson<ObjectValues>('objects'));
+  }
+
+  private constructor(readonly values: MapValues, columns: ObjectValues) {
+    for (const info of columns.classes) this.classes.set(info.iri, info);
+    this.objects = columns.id.map((id, number) => ({
+      number, id, iri: OBJECT + id,
+      class: this.classOf(columns.class[number]),
+      confidence: columns.confidence[number], rule: columns.rule[number], box: boxOf(columns.box[number]),
+      bottom: columns.bottom[number], top: columns.top[number], points: columns.points[number],
+      parts: columns.parts[number].map((part) => ({ class: part.class, box: boxOf(part.box) })),
+    }));
+    const counts = new Map<ClassInfo, number>();
+    for (const object of this.objects) {
+      this.byIri.set(object.iri, object);
+      counts.set(object.class, (counts.get(object.class) ?? 0) + 1);
+    }
+    this.shownClasses = [...counts].map(([info, count]) => ({ info, count }));
+    this.shownClasses.sort((a, b) => b.count - a.count || (a.info.label < b.info.label ? -1 : 1));
+  }
+
+  classOf(iri: string): ClassInfo {
+    const known = this.classes.get(iri);
+    if (known) return known;
+    const made = { iri, label: localName(iri), comment: '', color: UNKNOWN_COLOR, movable: false, ancestors: [] };
+    this.classes.set(iri, made);
+    return made;
+  }
+
+  objectOf(iri: string): MapObject | undefined {
+    return this.byIri.get(iri);
+  }
+
+  /** By the first digits of its hash, as the address of the page holds it. */
+  objectStartingWith(digits: string): MapObject | undefined {
+    return digits.length < 4 ? undefined : this.objects.find((object) => object.id.startsWith(digits));
+  }
+
+  /** The objects of a class or of one below it. */
+  objectsOfClass(iri: string): MapObject[] {
+    return this.objects.filter((object) => object.class.iri === iri || object.class.ancestors.includes(iri));
+  }
+
+  get hasReasons(): boolean {
+    return hasBlock('reasons-0');
+  }
+
+  async reasonsOf(object: MapObject): Promise<Reasons | undefined> {
+    if (!this.hasReasons) return undefined;
+    const number = Math.floor(object.number / REASONS_IN_BLOCK);
+    let block = this.reasonBlocks.get(number);
+    if (!block) {
+      block = blockText(`reasons-${number}`).then((text) =>
+        text.split('\n').filter((line) => line !== '').map((line) => JSON.parse(line) as Reasons));
+      this.reasonBlocks.set(number, block);
+    }
+    return (await block)[object.number % REASONS_IN_BLOCK];
+  }
+}
+
+/** "Street sign 6b9130b2": the name of an object for people. */
+export function nameOf(object: MapObject): string {
+  return `${capitalised(object.class.label)} ${object.id.slice(0, 8)}`;
+}
+
+export function capitalised(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}

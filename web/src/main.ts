@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Puts the page together: reads the map, shows the view, then the points tile by tile.
+import { Address } from './address';
+import { MapModel, type MapObject } from './data/model';
+import { counted, el } from './dom';
+import { AskPanel } from './panels/ask';
+import { ObjectCard } from './panels/card';
+import { Help } from './panels/help';
+import { Legend } from './panels/legend';
+import { Toolbar } from './panels/toolbar';
+import { readTile } from './scene/cloud_tiles';
+import { Measure } from './scene/measure';
+import { Picking } from './scene/picking';
+import { Pins } from './scene/pins';
+import { Portrait } from './scene/portrait';
+import { Stage } from './scene/stage';
+import { Viewer } from './scene/viewer';
+import { Engine } from './sparql/engine';
+import { Store } from './state';
+
+/** A press that moves farther than this is a drag, not a click [CSS pixels]. */
+const CLICK_REACH = 5;
+
+function initialStore(): Store {
+  const isDark = matchMedia('(prefers-color-scheme: dark)').matches;
+  return new Store({
+    selected: null, lit: null, colourMode: 'class', hiddenClasses: new Set(), boxes: false, sensorPath: false,
+    measuring: false, slice: null, scans: null, theme: isDark ? 'dark' : 'light',
+  });
+}
+
+function titleBar(model: MapModel): HTMLElement {
+  const { name, points, pointsInMap, quadsLeftOut, clouds, finished } = model.values;
+  const shown = points < pointsInMap ? `${counted(points)} of ${counted(pointsInMap)}` : counted(points);
+  return el('header', { class: 'title' },
+            el('h1', {}, name), el('p', {}, `${counted(model.objects.length)} objects · ${shown} points · ${counted(clouds.length)} scans`),
+            points < pointsInMap && el('p', { class: 'note' }, 'Thinned to an even sample; questions see the whole map.'),
+            quadsLeftOut > 0 && el('p', { class: 'note' }, `Questions see all but ${counted(quadsLeftOut)} facts about primitives; cluxel query sees all.`),
+            !finished && el('p', { class: 'note' }, 'The build of this map is not finished.'));
+}
+
+/** Clicks in the view select objects or measure. */
+function listenToClicks(viewer: Viewer, picking: Picking, store: Store, measure: Measure): void {
+  const canvas = viewer.renderer.domElement;
+  let down = { x: 0, y: 0 };
+  canvas.addEventListener('pointerdown', (event) => { down = { x: event.offsetX, y: event.offsetY }; });
+  canvas.addEventListener('pointerup', (event) => {
+    if (event.button !== 0 || Math.hypot(event.offsetX - down.x, event.offsetY - down.y) > CLICK_REACH) return;
+    const pick = picking.at(event.offsetX, event.offsetY);
+    if (!store.state.measuring) store.set('selected', pick?.object ?? null);
+    else if (pick) measure.add(pick.place);
+  });
+}
+
+async function loadTiles(viewer: Viewer, model: MapModel, status: HTMLElement): Promise<void> {
+  const { tiles } = model.values, target = viewer.controls.target.clone().add(viewer.origin);
+  const order = tiles.map((_, number) => number);
+  const distance = (number: number) => Math.hypot(tiles[number].origin[0] + 8 - target.x, tiles[number].origin[1] + 8 - target.y);
+  order.sort((a, b) => distance(a) - distance(b));
+  for (let i = 0; i < order.length; ++i) {
+    viewer.addTile(await readTile(model, order[i], viewer.origin, viewer.material));
+    status.textContent = `Reading points: ${i + 1} of ${order.length} tiles`;
+    status.hidden = i + 1 === order.length;
+  }
+}
+
+async function open(app: HTMLElement): Promise<void> {
+  const model = await MapModel.read(), store = initialStore(), engine = new Engine();
+  document.title = `${model.values.name} · Cluxel`;
+  const host = el('main', { class: 'view', 'aria-label': 'Map in 3D' });
+  const reading = el('p', { class: 'reading', role: 'status' });
+  const side = el('div', { class: 'side' }, titleBar(model));
+  host.append(reading);
+  app.replaceChildren(side, host);
+  const showTheme = () => { document.documentElement.dataset.theme = store.state.theme; };
+  store.on(['theme'], showTheme);
+  showTheme();
+  const viewer = new Viewer(host, model), stage = new Stage(viewer, model, store);
+  viewer.renderer.domElement.setAttribute('aria-label', 'Points of the map in 3D. Arrow keys move the view.');
+  viewer.controls.listenToKeyEvents(viewer.renderer.domElement);
+  const address = new Address(viewer, store, model), goTo = (object: MapObject) => stage.goTo(object.box);
+  const ask = new AskPanel(model, engine, store, address, goTo), card = new ObjectCard(model, engine, store, new Portrait(viewer), goTo);
+  const help = new Help(model), toolbar = new Toolbar(stage, store, () => help.show(toolbar.commands), () => ask.focus());
+  side.append(ask.element);
+  host.append(new Legend(model, store, viewer.palette).element, toolbar.element);
+  app.append(card.element, help.element);
+  new Pins(viewer, store);
+  listenToClicks(viewer, new Picking(viewer, model), store, new Measure(viewer, store));
+  const restored = address.restore();
+  if (!restored.hasCamera) stage.home();
+  app.removeAttribute('aria-busy');
+  Object.assign(window, { cluxelPage: { model, store, viewer, stage, engine } });  // for tests and the curious
+  await loadTiles(viewer, model, reading);
+  card.redraw();
+  ask.restore(restored.question);
+  void engine.start();
+}
+
+const app = document.getElementById('app')!;
+open(app).catch((fault: unknown) => {
+  const message = fault instanceof Error ? fault.message : String(fault);
+  app.replaceChildren(el('p', { class: 'opening', role: 'alert' }, `The map cannot be shown: ${message}`));
+  throw fault;
+});

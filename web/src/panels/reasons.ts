@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Why an object has its class, and why not another: the tests of the rules with measured values and margins.
+import { capitalised, CLX, type MapModel, type Reasons, type Step, type Verdict } from '../data/model';
+import { el, rounded } from '../dom';
+
+function withUnit(value: number, unit: string): string {
+  return `${rounded(value)}${unit ? ` ${unit === 'deg' ? '°' : unit}` : ''}`;
+}
+
+/** The measured value as a place relative to its threshold: the bar ends at twice the threshold or the value. */
+function gauge(step: Step): HTMLElement | null {
+  if (step.measured === undefined || step.threshold === undefined) return null;
+  const reach = Math.max(Math.abs(step.measured), 1.6 * Math.abs(step.threshold), 1e-9);
+  const percent = (value: number) => `${(100 * Math.min(1, Math.max(0, Math.abs(value) / reach))).toFixed(1)}%`;
+  return el('span', { class: 'gauge', 'aria-hidden': 'true' },
+            el('span', { class: 'gauge-value', style: `width:${percent(step.measured)}` }),
+            el('span', { class: 'gauge-limit', style: `left:${percent(step.threshold)}` }));
+}
+
+/** Names of classes in a text as people read them. */
+function readable(text: string, model: MapModel): string {
+  return text.replace(/\bclx:(\w+)/g, (_, name: string) => model.classOf(CLX + name).label).replaceAll('_', ' ');
+}
+
+function stepRow(step: Step): HTMLElement {
+  const measured = step.measured === undefined ? '' : `measured ${withUnit(step.measured, step.unit)}`;
+  const margin = step.margin === undefined ? '' : `margin ${withUnit(step.margin, step.unit)}`;
+  return el('li', { class: step.passed ? 'step yes' : 'step no' },
+            el('span', { class: 'mark', role: 'img', 'aria-label': step.passed ? 'holds' : 'does not hold' }, step.passed ? '✓' : '✗'),
+            el('span', { class: 'step-text' }, step.test.replaceAll('_', ' '),
+               (measured || margin) && el('small', {}, [measured, margin].filter(Boolean).join(', ')), gauge(step),
+               el('small', { class: 'place' }, `${step.file}:${step.line}`)));
+}
+
+function leastChange(verdict: Verdict, model: MapModel): HTMLElement | null {
+  const change = verdict.least_change;
+  if (!change) return null;
+  const needed = change.changes.map((one) =>
+    `${one.test.replaceAll('_', ' ')} turns at ${withUnit(one.threshold, one.unit)} (now ${withUnit(one.measured, one.unit)})`);
+  return el('p', { class: 'least-change' }, el('b', {}, 'Least change: '), `${needed.join(', and ')}; then: ${readable(change.outcome, model)}`);
+}
+
+function verdictBody(verdict: Verdict, model: MapModel): Node[] {
+  const steps = (verdict.path ?? []).map(stepRow);
+  return [el('p', { class: 'verdict' }, capitalised(readable(verdict.reason, model)), el('small', {}, ` rule ${verdict.rule}`)),
+          el('ul', { class: 'steps' }, ...steps), leastChange(verdict, model)].filter((node): node is HTMLElement => node !== null);
+}
+
+export function reasonsView(reasons: Reasons, model: MapModel): HTMLElement {
+  const labelOf = (name: string) => capitalised(model.classOf(name.replace(/^clx:/, CLX)).label);
+  const all = reasons.decisions ?? [], accepted = all.filter((verdict) => verdict.accepted);
+  const rejected = all.filter((verdict) => !verdict.accepted);
+  return el('div', { class: 'reasons' },
+            reasons.note && el('p', { class: 'note' }, capitalised(reasons.note), '.'),
+            ...accepted.map((verdict) => el('details', { open: true, class: 'why' },
+                                            el('summary', {}, `Why ${labelOf(verdict.class)}?`), ...verdictBody(verdict, model))),
+            rejected.length > 0 && el('h3', {}, 'Why nothing else?'),
+            ...rejected.map((verdict) => el('details', { class: 'why-not' },
+                                            el('summary', {}, `Not ${labelOf(verdict.class)}`, el('small', {}, ` ${readable(verdict.reason, model)}`)),
+                                            ...verdictBody(verdict, model))));
+}

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Turns the planes of bytes of a tile into vertex buffers.
+import * as THREE from 'three';
+import { blockBytes } from '../data/blocks';
+import type { MapModel, TileInfo } from '../data/model';
+
+/** Bytes of a vertex: x, y, z, cloud (2 each), object (4), intensity, height, label, unused (1 each). */
+const STRIDE = 16;
+
+export interface Tile {
+  info: TileInfo;
+  number: number;
+  points: THREE.Points<THREE.BufferGeometry, THREE.Material>;
+  center: THREE.Vector3;
+  /** First point of each level, and the number of points at the end. */
+  levels: number[];
+  buffer: ArrayBuffer;
+  /** Size of its points [m]: sparse tiles have larger ones. */
+  spread: number;
+}
+
+/** Planes: x, y, z (low and high bytes), object (3), cloud (2), intensity, height, label. */
+function vertexBuffer(planes: Uint8Array, count: number): ArrayBuffer {
+  const buffer = new ArrayBuffer(count * STRIDE);
+  const shorts = new Uint16Array(buffer), words = new Uint32Array(buffer), bytes = new Uint8Array(buffer);
+  for (let i = 0; i < count; ++i) {
+    const byteAt = (plane: number) => planes[plane * count + i];
+    shorts[8 * i] = byteAt(0) | (byteAt(1) << 8);
+    shorts[8 * i + 1] = byteAt(2) | (byteAt(3) << 8);
+    shorts[8 * i + 2] = byteAt(4) | (byteAt(5) << 8);
+    shorts[8 * i + 3] = byteAt(9) | (byteAt(10) << 8);
+    words[4 * i + 2] = byteAt(6) | (byteAt(7) << 8) | (byteAt(8) << 16);
+    bytes[16 * i + 12] = byteAt(11);
+    bytes[16 * i + 13] = byteAt(12);
+    bytes[16 * i + 14] = byteAt(13);
+  }
+  return buffer;
+}
+
+function geometryOf(buffer: ArrayBuffer, info: TileInfo, quantum: number): THREE.BufferGeometry {
+  const geometry = new THREE.BufferGeometry();
+  const shorts = new THREE.InterleavedBuffer(new Uint16Array(buffer), STRIDE / 2);
+  const words = new THREE.InterleavedBuffer(new Uint32Array(buffer), STRIDE / 4);
+  const bytes = new THREE.InterleavedBuffer(new Uint8Array(buffer), STRIDE);
+  geometry.setAttribute('position', new THREE.InterleavedBufferAttribute(shorts, 3, 0));
+  geometry.setAttribute('cloud', new THREE.InterleavedBufferAttribute(shorts, 1, 3));
+  geometry.setAttribute('object', new THREE.InterleavedBufferAttribute(words, 1, 2));
+  geometry.setAttribute('measures', new THREE.InterleavedBufferAttribute(bytes, 3, 12));
+  const size = new THREE.Vector3(info.size[0] / quantum, info.size[1] / quantum, info.size[2] / info.zQuantum);
+  geometry.boundingBox = new THREE.Box3(new THREE.Vector3(), size);
+  geometry.boundingSphere = geometry.boundingBox.getBoundingSphere(new THREE.Sphere());
+  return geometry;
+}
+
+/** Reads tile `number`. `origin` is the place in the map that the scene has as its zero. */
+export async function readTile(model: MapModel, number: number, origin: THREE.Vector3, material: THREE.Material):
+    Promise<Tile> {
+  const info = model.values.tiles[number], quantum = model.values.quantum;
+  const count = info.pointsTo[info.pointsTo.length - 1];
+  const planes = await blockBytes(`tile-${number}`);
+  if (planes.length !== 14 * count) throw new Error(`Tile ${number} of this page is damaged. Write it anew.`);
+  const buffer = vertexBuffer(planes, count);
+  const points = new THREE.Points(geometryOf(buffer, info, quantum), material);
+  points.position.set(info.origin[0], info.origin[1], info.origin[2]).sub(origin);
+  points.scale.set(quantum, quantum, info.zQuantum);
+  points.updateMatrixWorld();
+  points.matrixAutoUpdate = false;
+  const center = points.geometry.boundingSphere!.center.clone().applyMatrix4(points.matrixWorld);
+  const spread = Math.min(0.11, Math.max(0.03, 0.55 * Math.sqrt((info.size[0] * info.size[1]) / count)));
+  return { info, number, points, center, levels: [0, ...info.pointsTo], buffer, spread };
+}
+
+/** The place of a point in the scene [m]. */
+export function pointAt(tile: Tile, vertex: number): THREE.Vector3 {
+  const shorts = new Uint16Array(tile.buffer, vertex * STRIDE, 3);
+  return new THREE.Vector3(shorts[0], shorts[1], shorts[2]).applyMatrix4(tile.points.matrixWorld);
+}

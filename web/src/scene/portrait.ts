@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// A small picture of one object: its own points, seen from its longer side.
+import * as THREE from 'three';
+import type { MapObject } from '../data/model';
+import { LevelOfDetail } from './level_of_detail';
+import type { Viewer } from './viewer';
+
+const WIDTH = 320, HEIGHT = 200;
+
+export class Portrait {
+  private readonly target = new THREE.WebGLRenderTarget(WIDTH, HEIGHT);
+  private readonly camera = new THREE.OrthographicCamera();
+
+  constructor(private readonly viewer: Viewer) {
+    this.camera.up.set(0, 0, 1);
+  }
+
+  /** Draws into a canvas that a card holds. */
+  drawInto(canvas: HTMLCanvasElement, object: MapObject): void {
+    canvas.width = WIDTH;
+    canvas.height = HEIGHT;
+    const context = canvas.getContext('2d'), pixels = this.pixelsOf(object);
+    if (!context) return;
+    const image = context.createImageData(WIDTH, HEIGHT);
+    for (let row = 0; row < HEIGHT; ++row)   // the first row of a texture is the lowest
+      image.data.set(pixels.subarray(4 * WIDTH * (HEIGHT - 1 - row), 4 * WIDTH * (HEIGHT - row)), 4 * WIDTH * row);
+    context.putImageData(image, 0, 0);
+  }
+
+  private pixelsOf(object: MapObject): Uint8Array {
+    const { renderer, cloud, tiles, uniforms } = this.viewer, pixels = new Uint8Array(4 * WIDTH * HEIGHT);
+    this.aim(object);
+    LevelOfDetail.showAll(tiles);
+    const before = { only: uniforms.only.value, perMetre: uniforms.pixelsPerMetre.value };
+    uniforms.only.value = object.number + 1;
+    uniforms.pixelsPerMetre.value = 80;
+    renderer.setRenderTarget(this.target);
+    renderer.setClearColor(0, 0);
+    renderer.clear();
+    renderer.render(cloud, this.camera);
+    renderer.readRenderTargetPixels(this.target, 0, 0, WIDTH, HEIGHT, pixels);
+    uniforms.only.value = before.only;
+    uniforms.pixelsPerMetre.value = before.perMetre;
+    renderer.setRenderTarget(null);
+    return pixels;
+  }
+
+  /** From the side on which the object is longer, a little from above. */
+  private aim(object: MapObject): void {
+    const { box } = object, { camera } = this;
+    const center = new THREE.Vector3(box.x, box.y, box.z).sub(this.viewer.origin);
+    const side = new THREE.Vector3(-Math.sin(box.yaw), Math.cos(box.yaw), 0.3).normalize();
+    const distance = 20 + Math.hypot(box.length, box.width, box.height);
+    camera.position.copy(center).addScaledVector(side, distance);
+    camera.lookAt(center);
+    const tall = 0.55 * (box.height + 0.35 * box.width), wide = 0.55 * box.length;
+    const half = Math.max(tall, (wide * HEIGHT) / WIDTH, 0.3);
+    camera.top = half;
+    camera.bottom = -half;
+    camera.right = (half * WIDTH) / HEIGHT;
+    camera.left = -camera.right;
+    camera.near = 1;
+    camera.far = 2 * distance;
+    camera.updateProjectionMatrix();
+    camera.updateMatrixWorld();
+  }
+}
