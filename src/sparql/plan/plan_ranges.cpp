@@ -80,7 +80,8 @@ std::vector<Planner::Waiting> Planner::componentsOf(const State& state, const Wa
 
 std::optional<Planner::State> Planner::joinByRange(State& state, Waiting& waiting, const Parts& parts,
                                                    std::vector<bool>& used) {
-  if (!spatial_plans_ || state.is_unit || parts.filters.empty() || !blowsUp(state, waiting)) return std::nullopt;
+  const bool has_conditions = !parts.filters.empty() || parts.closest;
+  if (!spatial_plans_ || state.is_unit || !has_conditions || !blowsUp(state, waiting)) return std::nullopt;
   std::optional<RangeJoin> best;
   Waiting best_component;
   for (const Waiting& component : componentsOf(state, waiting)) {
@@ -104,42 +105,70 @@ std::optional<Planner::RangeJoin> Planner::rangeJoinWith(const State& state, con
   for (const Node* part : component) {
     if (!seenFromOutside(state, *part).empty()) return std::nullopt;
   }
-  const SlotSet certain = certainOf(component), possible = possibleOf(component);
-  if (!certain.contains(state.possible & possible) || !state.certain.contains(state.possible & possible))
-    return std::nullopt;
-  SlotSet later = possibleOf(waiting);
-  std::vector<const Node*> binds;
-  for (const Postponed& step : parts.postponed) {
-    if (step.kind == Postponed::Kind::LeftJoin) later.add(step.node->children[1]->possible);
-    if (step.kind == Postponed::Kind::Extend) binds.push_back(step.node);
-  }
-  SlotSet elsewhere = later;
-  elsewhere.add(state.possible);
-  const BoundExpressions expressions = bindsOf(binds, elsewhere);
-  // An unbound variable fails the filter, unless a later part binds it.
-  SlotSet given = state.possible - later;
-  given.add(state.certain);
-  const SlotSet build = certain - state.possible;
+  const SlotSet shared = state.possible & possibleOf(component), certain = certainOf(component);
+  if (!certain.contains(shared) || !state.certain.contains(shared)) return std::nullopt;
+  const RangeSides sides = sidesOf(state, component, waiting, parts);
   RangeJoin join;
   join.used = used;
-  for (std::size_t i = 0; i < parts.filters.size(); ++i) {
-    if (used[i]) continue;
-    const Expr condition = expanded(parts.filters[i], expressions);
-    for (RangeTest& test : rangeTestsOf(condition, {given, build}, terms_))
-      if (readsRow(test)) join.tests.push_back(std::move(test));
-    if (!join.nearest && (join.nearest = nearestOf(condition, state.certain, build, elsewhere))) continue;
-    if (!join.nearest && !state.is_input && (join.nearest = nearestOf(condition, build, state.certain, elsewhere)))
-      join.is_turned = true;
-  }
+  addTests(state, sides, parts, join);
   if (parts.closest && !join.nearest)
-    addClosest(state, waiting, parts, build, expanded(parts.closest->distance, expressions), join);
-  // The tests limit the component's side only.
-  if (join.is_turned) join.tests.clear();
+    addClosest(state, waiting, parts, sides.other, expanded(parts.closest->distance, sides.binds), join);
   if (join.tests.empty() && !join.nearest) return std::nullopt;
-  Parts within = taken(component, parts, build);
-  for (std::size_t i = 0; i < parts.filters.size(); ++i) join.used[i] = used[i] || readsOnly(parts.filters[i], build);
+  Parts within = taken(component, parts, sides.other);
+  for (std::size_t i = 0; i < parts.filters.size(); ++i)
+    join.used[i] = used[i] || readsOnly(parts.filters[i], sides.other);
   join.other = joinParts(unit(), within);
   return join;
+}
+
+Planner::RangeSides Planner::sidesOf(const State& state, const Waiting& component, const Waiting& waiting,
+                                     const Parts& parts) const {
+  Waiting rest = waiting;
+  std::erase_if(
+      rest, [&](const Node* part) { return std::find(component.begin(), component.end(), part) != component.end(); });
+  SlotSet after = possibleOf(rest);
+  std::vector<const Node*> binds;
+  for (const Postponed& step : parts.postponed) {
+    if (step.kind == Postponed::Kind::LeftJoin) after.add(step.node->children[1]->possible);
+    if (step.kind == Postponed::Kind::Extend) binds.push_back(step.node);
+  }
+  const SlotSet certain = certainOf(component), possible = possibleOf(component);
+  RangeSides sides;
+  sides.other = certain - state.possible;
+  // An unbound variable fails the filter, unless a later part binds it.
+  sides.given = state.possible - possible - after;
+  sides.given.add(state.certain);
+  sides.given_by_other = possible - state.possible - after;
+  sides.given_by_other.add(sides.other);
+  sides.outside = state.possible;
+  sides.outside.add(possible);
+  sides.outside.add(after);
+  sides.binds = bindsOf(binds, sides.outside);
+  for (const Node* bind : binds) sides.outside.add(bind->slot);
+  return sides;
+}
+
+/// Collects tests of the component by the rows so far; if there are none, of the rows so far by the component.
+void Planner::addTests(const State& state, const RangeSides& sides, const Parts& parts, RangeJoin& join) {
+  std::vector<RangeTest> turned;
+  const auto add = [&](const Expr& condition, const JoinSides& slots, std::vector<RangeTest>& tests) {
+    for (RangeTest& test : rangeTestsOf(condition, slots, terms_))
+      if (readsRow(test)) tests.push_back(std::move(test));
+  };
+  const bool may_turn = !state.is_input;
+  for (std::size_t i = 0; i < parts.filters.size(); ++i) {
+    if (join.used[i]) continue;
+    const Expr condition = expanded(parts.filters[i], sides.binds);
+    add(condition, {sides.given, sides.other}, join.tests);
+    if (may_turn) add(condition, {sides.given_by_other, state.certain}, turned);
+    if (join.nearest) continue;
+    join.nearest = nearestOf(condition, state.certain, sides.other, sides.outside);
+    if (join.nearest || !may_turn) continue;
+    join.nearest = nearestOf(condition, sides.other, state.certain, sides.outside);
+    join.is_turned = join.nearest.has_value();
+  }
+  if (join.tests.empty() && !join.nearest && !turned.empty()) join.is_turned = true;
+  if (join.is_turned) join.tests = std::move(turned);
 }
 
 /// Some nodes of a group as a group of their own, with the filters that read their slots only.
@@ -170,7 +199,7 @@ Planner::State Planner::finishRange(State state, RangeJoin join) {
 std::optional<Planner::State> Planner::joinByIndex(State& state, const RangeJoin& join, const Waiting& component) {
   const auto near = std::find_if(join.tests.begin(), join.tests.end(),
                                  [](const RangeTest& test) { return test.kind == RangeTest::Kind::Near; });
-  if (near == join.tests.end() || join.nearest) return std::nullopt;
+  if (near == join.tests.end() || join.nearest || join.is_turned) return std::nullopt;
   const bool is_object = std::any_of(component.begin(), component.end(), [&](const Node* part) {
     return part->kind == Node::Kind::Triple && !part->triple.path && part->triple.object.slot == near->slot;
   });

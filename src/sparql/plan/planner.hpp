@@ -10,6 +10,7 @@
 #include "sparql/exec/operators/operators.hpp"
 #include "sparql/plan/cardinality.hpp"
 #include "sparql/plan/pattern_access.hpp"
+#include "sparql/plan/range_finder.hpp"
 
 namespace cluxel::sparql {
 
@@ -107,12 +108,20 @@ class Planner {
   void takeFilters(const Node& filter, const SlotSet& rest, const SlotSet& after, Parts& parts);
   bool bindsByFilter(const Expr& condition, const Node& child, Parts& parts);
   using Waiting = std::vector<const Node*>;
+  /// The variables of the two sides of a range join.
+  struct RangeSides {
+    SlotSet other;           ///< bound in every row of the component only
+    SlotSet given;           ///< of the rows so far: what tests of the component may read
+    SlotSet given_by_other;  ///< of the component: what tests of the rows so far may read
+    SlotSet outside;         ///< all that is visible around an EXISTS
+    BoundExpressions binds;
+  };
   /// A component of the waiting parts, and what ties it to the rows so far.
   struct RangeJoin {
     State other;
     std::vector<RangeTest> tests;
     std::optional<NearestTest> nearest;
-    bool is_turned = false;  ///< the rows so far must be the nearest ones, not those of the component
+    bool is_turned = false;  ///< the tests limit the rows so far by the component
     std::vector<bool> used;  ///< the filters, after those within the component
   };
   std::optional<State> joinByRange(State& state, Waiting& waiting, const Parts& parts, std::vector<bool>& used);
@@ -120,6 +129,8 @@ class Planner {
   std::vector<Waiting> componentsOf(const State& state, const Waiting& waiting) const;
   std::optional<RangeJoin> rangeJoinWith(const State& state, const Waiting& component, const Waiting& waiting,
                                          const Parts& parts, const std::vector<bool>& used);
+  RangeSides sidesOf(const State& state, const Waiting& component, const Waiting& waiting, const Parts& parts) const;
+  void addTests(const State& state, const RangeSides& sides, const Parts& parts, RangeJoin& join);
   std::optional<NearestTest> nearestOf(const Expr& condition, const SlotSet& probe, const SlotSet& build,
                                        const SlotSet& outside);
   static std::optional<Closest> closestOf(const Node& group);

@@ -73,10 +73,10 @@ class NearestSourceOperator : public Operator {
   /// Reads the places. What has no known distance comes first, as ORDER BY has it.
   void start() {
     started_ = true;
-    const std::vector<ValueId> strange = strangeObjects();
+    const auto strange = strangeObjects();
     Batch in(runtime().slot_count);
     while (places_->next(in)) {
-      for (std::uint32_t row = 0; row < in.rows; ++row) startAround(in, row, strange);
+      for (std::uint32_t row = 0; row < in.rows; ++row) startAround(in, row, *strange);
     }
   }
 
@@ -104,23 +104,28 @@ class NearestSourceOperator : public Operator {
     if (one.geometries.next(one.found)) queue_.push({one.found.at_least, stream});
   }
 
-  /// The objects of the predicate that are not geometries, which the index does not hold.
-  std::vector<ValueId> strangeObjects() {
-    const auto wkt = runtime().reader.idOf(Term::iri(std::string(rdf::vocabulary::kGeo) + "wktLiteral"));
+  /// The objects of the predicate that are not geometries, which the index does not hold. Kept for the commit.
+  std::shared_ptr<const std::vector<ValueId>> strangeObjects() {
+    const rdf::QuadReader& reader = runtime().reader;
+    const std::string name = "no geometries of " + std::to_string(scan_.predicate);
+    auto known = std::static_pointer_cast<const std::vector<ValueId>>(reader.kept(name));
+    if (known) return known;
+    const auto wkt = reader.idOf(Term::iri(std::string(rdf::vocabulary::kGeo) + "wktLiteral"));
     rdf::QuadPattern pattern;
     pattern.p = scan_.predicate;
-    rdf::QuadCursor cursor = runtime().reader.scan(pattern, rdf::QuadOrder::Posg);
-    std::vector<ValueId> strange;
+    rdf::QuadCursor cursor = reader.scan(pattern, rdf::QuadOrder::Posg);
+    auto strange = std::make_shared<std::vector<ValueId>>();
     rdf::TermId last = rdf::kNoTerm;
     for (auto block = cursor.nextBlock(); !block.empty(); block = cursor.nextBlock()) {
       for (const rdf::QuadKey& key : block) {
         const rdf::TermId object = key.at(1);
         if (object == last) continue;
         last = object;
-        if (!wkt || runtime().reader.valueOf(object).datatype != *wkt) strange.push_back(object);
+        if (!wkt || reader.valueOf(object).datatype != *wkt) strange->push_back(object);
       }
       runtime().guard.work(block.size());
     }
+    reader.keep(name, strange);
     return strange;
   }
 
