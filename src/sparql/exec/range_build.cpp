@@ -78,7 +78,7 @@ Known RangeBuild::place(const ValueId* row, Runtime& runtime, BoxTree::Box& box)
   return known;
 }
 
-void RangeBuild::narrow(const RangeTest& test, double bound, double error, const Box2& place,
+void RangeBuild::narrow(const RangeTest& test, const KnownNumber& bound, const Box2& place,
                         BoxTree::Box& wanted) const {
   const bool is_geometry = test.kind == RangeTest::Kind::Near;
   const std::size_t axis = axisOf(test.slot, is_geometry);
@@ -88,15 +88,16 @@ void RangeBuild::narrow(const RangeTest& test, double bound, double error, const
   };
   constexpr double kFar = std::numeric_limits<double>::infinity();
   if (is_geometry) {
-    const Box2 box = widened(place, bound + error);
+    const Box2 box = widened(place, bound.number + bound.error);
     cut(axis, box.min_x, box.max_x);
     cut(axis + 1, box.min_y, box.max_y);
     return;
   }
-  const double margin = error + std::abs(bound) * (has_floats_ ? kFloatRounding : kRounding);
+  const double rounding = has_floats_ ? kFloatRounding : kRounding;
+  const double margin = bound.error + (bound.size + std::abs(bound.number)) * rounding;
   if (!std::isfinite(margin)) return;
-  if (test.kind == RangeTest::Kind::AtMost) cut(axis, -kFar, bound + margin);
-  if (test.kind == RangeTest::Kind::AtLeast) cut(axis, bound - margin, kFar);
+  if (test.kind == RangeTest::Kind::AtMost) cut(axis, -kFar, bound.number + margin);
+  if (test.kind == RangeTest::Kind::AtLeast) cut(axis, bound.number - margin, kFar);
 }
 
 }  // namespace cluxel::sparql

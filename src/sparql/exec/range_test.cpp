@@ -9,7 +9,7 @@ namespace cluxel::sparql {
 
 KnownNumber evaluated(const RowSum& sum, const Batch& batch, std::size_t row, Evaluator& evaluator) {
   KnownNumber result{Known::Value};
-  double size = 0, rounding = kRounding;
+  double rounding = kRounding;
   for (const RowSum::Part& part : sum.parts) {
     const Value value = evaluator.value(part.expression, batch, row);
     if (value.isError()) return {Known::Error};
@@ -17,9 +17,9 @@ KnownNumber evaluated(const RowSum& sum, const Batch& batch, std::size_t row, Ev
     if (value.type == Value::Type::Float) rounding = kFloatRounding;
     const double number = part.is_root ? std::sqrt(std::max(0.0, value.number)) : value.number;
     result.number += part.is_negative ? -number : number;
-    size += std::abs(number);
+    result.size += std::abs(number);
   }
-  result.error = size * rounding;
+  result.error = result.size * rounding;
   if (std::isnan(result.number) || std::isnan(result.error)) return {Known::Nothing};
   return result;
 }

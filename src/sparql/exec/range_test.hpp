@@ -46,6 +46,7 @@ enum class Known {
 struct KnownNumber {
   Known known = Known::Nothing;
   double number = 0;
+  double size = 0;   ///< the sum of the magnitudes of the parts
   double error = 0;  ///< the true value differs by less
 };
 /// The numeric value of a sum for one row.

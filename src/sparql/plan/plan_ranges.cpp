@@ -36,6 +36,10 @@ bool readsRow(const RangeTest& test) {
                      [](const RowSum::Part& part) { return !part.expression.slots().empty(); });
 }
 
+bool isDistance(const RangeTest& test) {
+  return test.kind == RangeTest::Kind::Near;
+}
+
 SlotSet certainOf(const std::vector<const Node*>& parts) {
   SlotSet certain;
   for (const Node* part : parts) certain.add(part->certain);
@@ -113,7 +117,9 @@ std::optional<Planner::RangeJoin> Planner::rangeJoinWith(const State& state, con
   addTests(state, sides, parts, join);
   if (parts.closest && !join.nearest)
     addClosest(state, waiting, parts, sides.other, expanded(parts.closest->distance, sides.binds), join);
-  if (join.tests.empty() && !join.nearest) return std::nullopt;
+  // Where the sides share a variable, lookups by it are cheaper than a range of numbers.
+  const bool has_distance = join.nearest || std::any_of(join.tests.begin(), join.tests.end(), isDistance);
+  if (!has_distance && (join.tests.empty() || !shared.empty())) return std::nullopt;
   Parts within = taken(component, parts, sides.other);
   for (std::size_t i = 0; i < parts.filters.size(); ++i)
     join.used[i] = used[i] || readsOnly(parts.filters[i], sides.other);
@@ -197,8 +203,7 @@ Planner::State Planner::finishRange(State state, RangeJoin join) {
 /// Finds the candidates of few rows in the index of stored geometries, when that is cheaper than reading all rows of
 /// the component. Its patterns then look the candidates up.
 std::optional<Planner::State> Planner::joinByIndex(State& state, const RangeJoin& join, const Waiting& component) {
-  const auto near = std::find_if(join.tests.begin(), join.tests.end(),
-                                 [](const RangeTest& test) { return test.kind == RangeTest::Kind::Near; });
+  const auto near = std::find_if(join.tests.begin(), join.tests.end(), isDistance);
   if (near == join.tests.end() || join.nearest || join.is_turned) return std::nullopt;
   const bool is_object = std::any_of(component.begin(), component.end(), [&](const Node* part) {
     return part->kind == Node::Kind::Triple && !part->triple.path && part->triple.object.slot == near->slot;

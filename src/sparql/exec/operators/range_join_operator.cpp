@@ -98,7 +98,7 @@ class RangeJoinOperator : public UnaryOperator {
       if (test.place) place = boxOf(evaluator.value(*test.place, in_, current_), runtime().functions);
       if (place.known == Known::Error) return false;
       if (bound.known == Known::Value && place.known == Known::Value)
-        build_.narrow(test, bound.number, bound.error, place.box, wanted);
+        build_.narrow(test, bound, place.box, wanted);
     }
     if (nearest_) limitToNearest(wanted, evaluator);
     return true;
@@ -110,7 +110,7 @@ class RangeJoinOperator : public UnaryOperator {
     const KnownBox box = boxOf(place, runtime().functions);
     if (box.known != Known::Value) return;
     const RangeTest near{RangeTest::Kind::Near, test.slot, {}, test.place};
-    build_.narrow(near, nearest_->reach(place, box.box, runtime()), 0, box.box, wanted);
+    build_.narrow(near, {Known::Value, nearest_->reach(place, box.box, runtime())}, box.box, wanted);
   }
 
   void take(Batch& out) {
