@@ -102,7 +102,9 @@ std::string nameOfLeast(const std::map<std::string, double>& ratios) {
 
 void printComparison(const std::string& peer, const std::vector<Question>& asked, const Measures& ours,
                      const Measures& theirs) {
-  std::printf("| question | rows | cluxel [ms] | %s [ms] | ratio |\n|---|---|---|---|---|\n", peer.c_str());
+  std::printf(
+      "| question | rows | cluxel [ms] | %s [ms] | ratio | cluxel, processor [ms] |\n|---|---|---|---|---|---|\n",
+      peer.c_str());
   double logs = 0;
   std::map<std::string, double> ratios;
   std::size_t wrong = 0, unanswered = 0;
@@ -112,10 +114,11 @@ void printComparison(const std::string& peer, const std::vector<Question>& asked
     const Measure other = found == theirs.end() ? Measure() : found->second;
     const bool answered = other.seconds >= 0, same = !answered || other.given_up || other.rows == mine.rows;
     const double ratio = other.seconds / mine.seconds;
-    std::printf("| %s | %zu%s | %s | %s | %s |\n", question.name.c_str(), mine.rows,
+    std::printf("| %s | %zu%s | %s | %s | %s | %.3g |\n", question.name.c_str(), mine.rows,
                 same ? "" : (" (" + peer + " " + std::to_string(other.rows) + ")").c_str(), milliseconds(mine).c_str(),
                 milliseconds(other).c_str(),
-                answered ? (std::ostringstream() << std::fixed << std::setprecision(1) << ratio).str().c_str() : "");
+                answered ? (std::ostringstream() << std::fixed << std::setprecision(1) << ratio).str().c_str() : "",
+                mine.processor * 1000);
     wrong += same ? 0 : 1;
     unanswered += answered ? 0 : 1;
     if (!answered) continue;

@@ -62,9 +62,8 @@ Planner::State Planner::order(const Node& node, std::optional<std::uint64_t> max
 /// Takes BINDs off the pattern, and puts their expressions into the keys that use them.
 std::vector<const Node*> Planner::lateBinds(const Node*& child, std::vector<SortKey>& keys) const {
   std::vector<const Node*> late;
-  const bool are_plain = std::all_of(keys.begin(), keys.end(), [](const SortKey& key) {
-    return readsOnly(key.expression, key.expression.slots());
-  });
+  const bool are_plain = std::all_of(
+      keys.begin(), keys.end(), [](const SortKey& key) { return readsOnly(key.expression, key.expression.slots()); });
   if (!are_plain) return late;
   for (; child->kind == Node::Kind::Extend; child = child->children[0].get()) {
     const Expr& expression = *child->expression;

@@ -97,8 +97,7 @@ class RangeJoinOperator : public UnaryOperator {
       KnownBox place{Known::Value, {}};
       if (test.place) place = boxOf(evaluator.value(*test.place, in_, current_), runtime().functions);
       if (place.known == Known::Error) return false;
-      if (bound.known == Known::Value && place.known == Known::Value)
-        build_.narrow(test, bound, place.box, wanted);
+      if (bound.known == Known::Value && place.known == Known::Value) build_.narrow(test, bound, place.box, wanted);
     }
     if (nearest_) limitToNearest(wanted, evaluator);
     return true;
