@@ -213,6 +213,19 @@ TEST(NearestByMinimum, IsNotUsedWhereOtherConditionsRejectPairs) {
   EXPECT_THAT(store.rows(query), testing::ElementsAre(":s1 \"3.0E0\"^^double", ":s2 \"3.0E0\"^^double"));
 }
 
+TEST(NearestByMinimum, IsTheNearestOfThoseThatShareAVariable) {
+  std::string turtle;
+  for (int i = 0; i < 400; ++i) {
+    const std::string kind = std::to_string(i % 2), at = std::to_string(i * 37 % 400);
+    turtle += ":p" + std::to_string(i) + " :kind " + kind + " ; :at \"POINT(" + at + " 0)\"^^geo:wktLiteral . ";
+    turtle += ":q" + std::to_string(i) + " :sort " + kind + " ; :place \"POINT(" + at + " 1)\"^^geo:wktLiteral . ";
+  }
+  const SmallStore store(turtle);
+  const std::string query =
+      "SELECT ?p (MIN(geof:distance(?gp, ?gq)) AS ?d) { ?p :kind ?k ; :at ?gp . ?q :sort ?k ; :place ?gq } GROUP BY ?p";
+  EXPECT_EQ(store.rows(query), store.rows(query, plain()));
+}
+
 TEST(OrderWithLimit, ComputesColumnsOfKeptRowsOnlyAndBreaksTiesByThem) {
   std::string turtle;
   for (int i = 0; i < 2000; ++i)

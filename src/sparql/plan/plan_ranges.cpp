@@ -115,7 +115,7 @@ std::optional<Planner::RangeJoin> Planner::rangeJoinWith(const State& state, con
   RangeJoin join;
   join.used = used;
   addTests(state, sides, parts, join);
-  if (parts.closest && !join.nearest)
+  if (parts.closest && !join.nearest && shared.empty())
     addClosest(state, waiting, parts, sides.other, expanded(parts.closest->distance, sides.binds), join);
   // Where the sides share a variable, lookups by it are cheaper than a range of numbers.
   const bool has_distance = join.nearest || std::any_of(join.tests.begin(), join.tests.end(), isDistance);
