@@ -2,6 +2,7 @@
 // Cluxel's SPARQL engine beside rasqal over librdf's `trees` (10k triples) and oxigraph (npm, WASM; 100k and 1M), and
 // alone at 10M: text in, TSV out, all in one run.
 //   sparql_bench [--only NAME] [--module FOLDER] [--rasqal N] [--oxigraph N,N] [--alone N]     (0: leave out)
+//                [--questions FILE]     a file in bench/, by default sparql_queries.txt
 #include <unistd.h>
 
 #include <cmath>
@@ -23,7 +24,7 @@ using namespace cluxel::bench;
 namespace fs = std::filesystem;
 
 struct Arguments {
-  std::string only;
+  std::string only, questions = "sparql_queries.txt";
   fs::path module = fs::path(CLUXEL_SOURCE_DIR) / "build/npm";
   std::uint64_t rasqal = 10'000, alone = 10'000'000;
   std::vector<std::uint64_t> oxigraph = {100'000, 1'000'000};
@@ -34,6 +35,7 @@ Arguments argumentsOf(int argc, char** argv) {
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string option = argv[i], value = argv[i + 1];
     if (option == "--only") arguments.only = value;
+    if (option == "--questions") arguments.questions = value;
     if (option == "--module") arguments.module = fs::absolute(value);  // node would look beside its script
     if (option == "--rasqal") arguments.rasqal = std::stoull(value);
     if (option == "--alone") arguments.alone = std::stoull(value);
@@ -100,7 +102,9 @@ std::string nameOfLeast(const std::map<std::string, double>& ratios) {
 
 void printComparison(const std::string& peer, const std::vector<Question>& asked, const Measures& ours,
                      const Measures& theirs) {
-  std::printf("| question | rows | cluxel [ms] | %s [ms] | ratio |\n|---|---|---|---|---|\n", peer.c_str());
+  std::printf(
+      "| question | rows | cluxel [ms] | %s [ms] | ratio | cluxel, processor [ms] |\n|---|---|---|---|---|---|\n",
+      peer.c_str());
   double logs = 0;
   std::map<std::string, double> ratios;
   std::size_t wrong = 0, unanswered = 0;
@@ -110,10 +114,11 @@ void printComparison(const std::string& peer, const std::vector<Question>& asked
     const Measure other = found == theirs.end() ? Measure() : found->second;
     const bool answered = other.seconds >= 0, same = !answered || other.given_up || other.rows == mine.rows;
     const double ratio = other.seconds / mine.seconds;
-    std::printf("| %s | %zu%s | %s | %s | %s |\n", question.name.c_str(), mine.rows,
+    std::printf("| %s | %zu%s | %s | %s | %s | %.3g |\n", question.name.c_str(), mine.rows,
                 same ? "" : (" (" + peer + " " + std::to_string(other.rows) + ")").c_str(), milliseconds(mine).c_str(),
                 milliseconds(other).c_str(),
-                answered ? (std::ostringstream() << std::fixed << std::setprecision(1) << ratio).str().c_str() : "");
+                answered ? (std::ostringstream() << std::fixed << std::setprecision(1) << ratio).str().c_str() : "",
+                mine.processor * 1000);
     wrong += same ? 0 : 1;
     unanswered += answered ? 0 : 1;
     if (!answered) continue;
@@ -208,7 +213,7 @@ void printGeometry(const rdf::Environment& environment) {
 
 int main(int argc, char** argv) {
   const Arguments arguments = argumentsOf(argc, argv);
-  const auto asked = readQuestions(fs::path(CLUXEL_SOURCE_DIR) / "bench/sparql_queries.txt", arguments.only);
+  const auto asked = readQuestions(fs::path(CLUXEL_SOURCE_DIR) / "bench" / arguments.questions, arguments.only);
   if (arguments.rasqal > 0) {
     const Data data(arguments.rasqal, true);
     printComparison("rasqal", asked, askCluxel(data.environment(), asked), askRasqal(data.file(), asked));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -23,6 +24,7 @@ struct Question {
 /// Seconds of the median run, and the rows of the answer.
 struct Measure {
   double seconds = -1;       ///< below 0: no answer
+  double processor = -1;     ///< seconds of processor time, which other work on the machine changes less
   std::size_t rows = 0;      ///< lines of the TSV
   double work_rows = 0;      ///< rows that all operators of our plan made together
   bool given_up = false;     ///< the seconds are a lower bound
@@ -47,19 +49,24 @@ template <typename... Run>
 std::array<Measure, sizeof...(Run)> measuredInTurn(Run... runs) {
   using Clock = std::chrono::steady_clock;
   std::array<Measure, sizeof...(Run)> measures;
-  std::array<std::vector<double>, sizeof...(Run)> seconds;
+  std::array<std::vector<double>, sizeof...(Run)> seconds, processor;
   const auto start = Clock::now();
   const auto timed = [&](std::size_t i, const auto& run) {
     const auto begin = Clock::now();
+    const std::clock_t ticks = std::clock();
     measures[i].rows = run();
     seconds[i].push_back(since(begin));
+    processor[i].push_back(static_cast<double>(std::clock() - ticks) / CLOCKS_PER_SEC);
   };
   while (seconds[0].size() < 5 || (seconds[0].size() < 200 && since(start) < 0.4 * sizeof...(Run))) {
     std::size_t i = 0;
     (timed(i++, runs), ...);
     if (since(start) > kMaxSecondsPerQuery * sizeof...(Run)) break;
   }
-  for (std::size_t i = 0; i < measures.size(); ++i) measures[i].seconds = medianOf(seconds[i]);
+  for (std::size_t i = 0; i < measures.size(); ++i) {
+    measures[i].seconds = medianOf(seconds[i]);
+    measures[i].processor = medianOf(processor[i]);
+  }
   return measures;
 }
 

@@ -52,6 +52,8 @@ struct QueryOptions {
   /// The permitted SERVICE endpoints, each mapped to a local store that answers in its place; all others are refused.
   /// The readers must outlive the query. No network access takes place.
   std::map<std::string, const rdf::QuadReader*> services = {};
+  /// False: no index and no join by distances or ranges is used. The answers are the same; for comparisons.
+  bool spatial_plans = true;
   bool refuse_volatile =
       false;  ///< for rules: BNODE, RAND, NOW, UUID and LIMIT over unsorted rows are errors; history is hidden
 };

@@ -168,5 +168,77 @@ TEST(SpatialIndex, SeesWhatAnUpdateHasWrittenBefore) {
   EXPECT_EQ(report.inserted, 2U) << "the second operation finds the geometry where the first has put it";
 }
 
+/// Signs, lamps and trees at given places.
+const char* const kStreet =
+    ":s1 a :Sign ; geo:asWKT \"POINT(0 0)\"^^geo:wktLiteral . :s2 a :Sign ; geo:asWKT \"POINT(10 0)\"^^geo:wktLiteral "
+    ". "
+    ":l1 a :Lamp ; :kind 1 ; geo:asWKT \"POINT(1 0)\"^^geo:wktLiteral . "
+    ":l2 a :Lamp ; :kind 2 ; geo:asWKT \"POINT(3 0)\"^^geo:wktLiteral . "
+    ":l3 a :Lamp ; :kind 1 ; geo:asWKT \"POINT(13 0)\"^^geo:wktLiteral . ";
+
+QueryOptions plain() {
+  QueryOptions options;
+  options.spatial_plans = false;
+  return options;
+}
+
+TEST(SpatialJoin, LimitsByAVariableRadiusAndByRadiiOfBothSides) {
+  SmallStore store(std::string(kStreet) + ":s1 :reach 2 . :s2 :reach \"far\" . :l1 :reach 1 . :l3 :reach 2 .");
+  const std::string pairs = "?s a :Sign ; geo:asWKT ?gs . ?l a :Lamp ; geo:asWKT ?gl . ";
+  EXPECT_THAT(store.rows("SELECT ?s ?l { " + pairs + "?s :reach ?r FILTER(geof:distance(?gs, ?gl) < ?r) }"),
+              testing::ElementsAre(":s1 :l1"));
+  const std::string both = "SELECT ?s ?l { " + pairs + "?l :reach ?r FILTER(geof:distance(?gs, ?gl) < ?r + 2) }";
+  EXPECT_THAT(store.rows(both), testing::ElementsAre(":s1 :l1", ":s2 :l3"));
+  EXPECT_EQ(store.rows(both), store.rows(both, plain()));
+}
+
+TEST(NearestByAbsence, SeesVariablesOfTheOuterPatternWithinIt) {
+  SmallStore store(kStreet);
+  const std::string pairs = "?s a :Sign ; geo:asWKT ?gs . ?l a :Lamp ; geo:asWKT ?gl ; :kind ?k . ";
+  const std::string closer = "FILTER(geof:distance(?gs, ?gm) < geof:distance(?gs, ?gl)) }";
+  const std::string same_kind =
+      "SELECT ?s ?l { " + pairs + "FILTER NOT EXISTS { ?m :kind ?k ; geo:asWKT ?gm . " + closer + " }";
+  EXPECT_THAT(store.rows(same_kind), testing::ElementsAre(":s1 :l1", ":s1 :l2", ":s2 :l2", ":s2 :l3"));
+  const std::string by_bind =
+      "SELECT ?s ?l { " + pairs + "BIND(2 AS ?b) FILTER NOT EXISTS { ?m :kind ?b ; geo:asWKT ?gm . " + closer + " }";
+  EXPECT_EQ(store.rows(by_bind), store.rows(by_bind, plain()));
+  EXPECT_THAT(store.rows(by_bind), testing::ElementsAre(":s1 :l1", ":s1 :l2", ":s2 :l2", ":s2 :l3"));
+}
+
+TEST(NearestByMinimum, IsNotUsedWhereOtherConditionsRejectPairs) {
+  SmallStore store(kStreet);
+  const std::string query =
+      "SELECT ?s (MIN(geof:distance(?gs, ?gl)) AS ?d) { ?s a :Sign ; geo:asWKT ?gs . ?l a :Lamp ; geo:asWKT ?gl "
+      "FILTER(STR(?s) != \"http://example.org/s1\" || STR(?l) != \"http://example.org/l1\") } GROUP BY ?s";
+  EXPECT_THAT(store.rows(query), testing::ElementsAre(":s1 \"3.0E0\"^^double", ":s2 \"3.0E0\"^^double"));
+}
+
+TEST(NearestByMinimum, IsTheNearestOfThoseThatShareAVariable) {
+  std::string turtle;
+  for (int i = 0; i < 400; ++i) {
+    const std::string kind = std::to_string(i % 2), at = std::to_string(i * 37 % 400);
+    turtle += ":p" + std::to_string(i) + " :kind " + kind + " ; :at \"POINT(" + at + " 0)\"^^geo:wktLiteral . ";
+    turtle += ":q" + std::to_string(i) + " :sort " + kind + " ; :place \"POINT(" + at + " 1)\"^^geo:wktLiteral . ";
+  }
+  const SmallStore store(turtle);
+  const std::string query =
+      "SELECT ?p (MIN(geof:distance(?gp, ?gq)) AS ?d) { ?p :kind ?k ; :at ?gp . ?q :sort ?k ; :place ?gq } GROUP BY ?p";
+  EXPECT_EQ(store.rows(query), store.rows(query, plain()));
+}
+
+TEST(OrderWithLimit, ComputesColumnsOfKeptRowsOnlyAndBreaksTiesByThem) {
+  std::string turtle;
+  for (int i = 0; i < 2000; ++i)
+    turtle +=
+        ":o" + std::to_string(i) + " :height " + std::to_string(i % 7) + " ; :name \"n" + std::to_string(i) + "\" . ";
+  SmallStore store(turtle);
+  for (const char* query :
+       {"SELECT ?t { ?o :height ?h ; :name ?n BIND(UCASE(?n) AS ?t) } ORDER BY DESC(?h) LIMIT 9 OFFSET 3",
+        "SELECT (UCASE(?n) AS ?t) ?h { ?o :height ?h ; :name ?n } ORDER BY ?h LIMIT 400",
+        "SELECT (UCASE(?n) AS ?t) { ?o :name ?n } ORDER BY DESC(?t) LIMIT 5",
+        "SELECT (UCASE(?n) AS ?t) (STRLEN(?t) AS ?u) { ?o :name ?n } ORDER BY ?u ?t LIMIT 5"})
+    EXPECT_EQ(store.ordered(query), store.ordered(query, plain())) << query;
+}
+
 }  // namespace
 }  // namespace cluxel::test

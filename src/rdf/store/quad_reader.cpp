@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "rdf/store/geometry_index.hpp"
 #include "rdf/store/literal_value.hpp"
 #include "rdf/store/quad_cursor.hpp"
 #include "rdf/store/quad_reader_impl.hpp"
@@ -177,6 +178,15 @@ std::shared_ptr<const void> QuadReader::kept(const std::string& name) const {
 
 void QuadReader::keep(const std::string& name, std::shared_ptr<const void> made) const {
   impl_->snapshot().keep(name, std::move(made));
+}
+
+std::shared_ptr<const GeometryIndex> QuadReader::geometries() const {
+  constexpr const char* kName = "geometries";
+  auto index = std::static_pointer_cast<const GeometryIndex>(kept(kName));
+  if (index) return index;
+  index = std::make_shared<const GeometryIndex>(*this, impl_->transaction);
+  keep(kName, index);
+  return index;
 }
 
 }  // namespace cluxel::rdf

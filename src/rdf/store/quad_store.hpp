@@ -157,6 +157,8 @@ class PrefixLookup {
   std::unique_ptr<Impl> impl_;
 };
 
+class GeometryIndex;
+
 /// Read access to the quads of one commit, for one thread at a time; the readers of a commit share its caches. Within a
 /// write transaction it sees flushed changes, and a flush invalidates its cursors, blocks and views.
 class QuadReader {
@@ -201,6 +203,8 @@ class QuadReader {
     std::uint64_t quads = 0, subjects = 0, objects = 0;
   };
   PredicateStatistics statistics(TermId predicate) const;
+  /// The spatial index (geometry_index.hpp) of this commit; opened on first use.
+  std::shared_ptr<const GeometryIndex> geometries() const;
   /// A cache slot of this commit for the layers above, by name; null when it is empty. Thread-safe among the readers of
   /// a commit.
   std::shared_ptr<const void> kept(const std::string& name) const;

@@ -7,10 +7,12 @@
 #include <unordered_map>
 
 #include "cluxel/error.hpp"
+#include "rdf/store/geometry_index.hpp"
 #include "rdf/store/index_writer.hpp"
 #include "rdf/store/pending_terms.hpp"
 #include "rdf/store/quad_reader_impl.hpp"
 #include "rdf/store/quad_store.hpp"
+#include "rdf/vocabulary.hpp"
 
 namespace cluxel::rdf {
 
@@ -46,7 +48,7 @@ class RecentIris {
 };
 
 struct QuadWriter::Impl {
-  ReadTransaction transaction;  ///< shares the write transaction
+  WriteTransaction transaction;  ///< shares the write transaction
   QuadReader reader;
   PendingTerms terms;
   std::vector<QuadChange> changes;  ///< in call order
@@ -61,6 +63,7 @@ struct QuadWriter::Impl {
   TermId internIri(const Term& term);
   TermId internRecord(const Term& term);
   void flushTerms();
+  void flushGeometries(TermId first, TermId last);
   void flushQuads();
 };
 
@@ -91,9 +94,11 @@ TermId QuadWriter::Impl::internIri(const Term& term) {
 
 void QuadWriter::Impl::flushTerms() {
   IndexChange hashes;
+  TermId first = kNoTerm;
   for (const PendingTerms::Entry& entry : terms.entries()) {
     if (!entry.is_new) continue;
     TermId id = entry.id;
+    if (first == kNoTerm) first = id;
     MDB_val key{sizeof id, &id};
     MDB_val value = toVal(terms.record(entry));
     const int code = mdb_put(state().live(), state().table(Table::Terms), &key, &value, MDB_APPEND);
@@ -103,8 +108,22 @@ void QuadWriter::Impl::flushTerms() {
   }
   std::sort(hashes.added.begin(), hashes.added.end());
   applyTo(state(), Table::TermHashes, hashes);
+  if (first != kNoTerm) flushGeometries(first, next_id - 1);
   terms.clear();
   next_id = kNoTerm;
+}
+
+/// Adds the geometries among the new terms to the spatial index.
+void QuadWriter::Impl::flushGeometries(TermId first, TermId last) {
+  GeometryEntries made;
+  const auto wkt = datatypes.find(std::string(vocabulary::kGeo) + "wktLiteral");
+  for (const PendingTerms::Entry& entry : terms.entries()) {
+    if (!entry.is_new || wkt == datatypes.end()) continue;
+    const TermRecord term = decodeTerm(terms.record(entry));
+    if (term.datatype == wkt->second) made.add(entry.id, term.text);
+  }
+  ++state().generation;  // the reader sees the new terms
+  extendGeometryIndex(transaction, reader, std::move(made), first, last);
 }
 
 void QuadWriter::Impl::flushQuads() {

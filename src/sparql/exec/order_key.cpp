@@ -78,4 +78,19 @@ std::strong_ordering compareKeys(const OrderKey& a, const OrderKey& b, const Que
   return valueOrderOf(terms.valueOf(a.id), terms.valueOf(b.id), terms);
 }
 
+bool mayPrecede(const Value& value, const OrderKey& last, bool descending, const QueryTerms& terms) {
+  std::strong_ordering order = orderRankOf(value) <=> last.rank;
+  if (order == 0 && value.isNumeric()) order = sortable(value.number) <=> last.bits;
+  if (order == 0 && (value.isStringLike() || value.type == Value::Type::Iri) && last.text != nullptr) {
+    std::string scratch;
+    order = terms.textOf(value, scratch).compare(last.view()) <=> 0;
+  }
+  return descending ? order >= 0 : order <= 0;
+}
+
+bool mayPrecede(double least, const OrderKey& last) {
+  const std::uint32_t rank = orderRankOf(Value::ofDouble(least));
+  return rank < last.rank || (rank == last.rank && sortable(least) <= last.bits);
+}
+
 }  // namespace cluxel::sparql

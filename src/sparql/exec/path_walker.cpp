@@ -7,7 +7,7 @@
 namespace cluxel::sparql {
 namespace {
 
-using Kind = ast::Path::Kind;
+using PathKind = ast::Path::Kind;
 constexpr std::size_t kMaxKnownBytes = 64 << 20, kBytesOfEntry = 96;
 
 void makeUnique(PathWalker::Nodes& nodes) {
@@ -63,24 +63,24 @@ void PathWalker::forget() {
 
 void PathWalker::step(const CompiledPath& path, ValueId node, bool forward, Nodes& out) {
   switch (path.kind) {
-    case Kind::Link:
+    case PathKind::Link:
       return link(path.iri, node, forward, out);
-    case Kind::Inverse:
+    case PathKind::Inverse:
       return step(path.parts[0], node, !forward, out);
-    case Kind::NegatedSet:
+    case PathKind::NegatedSet:
       return negated(path, node, forward, out);
-    case Kind::ZeroOrMore:
+    case PathKind::ZeroOrMore:
       return closure(path.parts[0], node, forward, true, out);
-    case Kind::OneOrMore:
+    case PathKind::OneOrMore:
       return closure(path.parts[0], node, forward, false, out);
-    case Kind::Alternative:
+    case PathKind::Alternative:
       for (const CompiledPath& part : path.parts) step(part, node, forward, out);
       return makeUnique(out);
-    case Kind::ZeroOrOne:
+    case PathKind::ZeroOrOne:
       step(path.parts[0], node, forward, out);
       out.push_back(node);
       return makeUnique(out);
-    case Kind::Sequence: {
+    case PathKind::Sequence: {
       Nodes frontier = {node}, next;
       for (std::size_t i = 0; i < path.parts.size(); ++i) {
         const CompiledPath& part = path.parts[forward ? i : path.parts.size() - 1 - i];
@@ -162,10 +162,10 @@ PathWalker::Nodes PathWalker::starts(const CompiledPath& path) {
   Nodes nodes;
   const CompiledPath* first = &path;
   bool zero = false;
-  while (first->kind == Kind::OneOrMore || first->kind == Kind::Sequence) first = &first->parts[0];
-  zero = first->kind == Kind::ZeroOrMore || first->kind == Kind::ZeroOrOne;
+  while (first->kind == PathKind::OneOrMore || first->kind == PathKind::Sequence) first = &first->parts[0];
+  zero = first->kind == PathKind::ZeroOrMore || first->kind == PathKind::ZeroOrOne;
   rdf::QuadPattern pattern;
-  const bool one_predicate = !zero && first->kind == Kind::Link;
+  const bool one_predicate = !zero && first->kind == PathKind::Link;
   if (one_predicate) {
     if (first->iri >= kFirstComputed) return nodes;
     pattern.p = first->iri;

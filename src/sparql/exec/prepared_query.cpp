@@ -44,7 +44,7 @@ PreparedQuery::Impl::Impl(const rdf::QuadReader& quad_reader, std::string_view t
   algebra_options.guard = &service_guard;
   algebra = buildAlgebra(query, terms, algebra_options);
   if (!options.services.empty()) used_by_services = service_guard.usage();
-  plan = Planner(algebra, terms, dataset).plan();
+  plan = Planner(algebra, terms, dataset, options.spatial_plans).plan();
   for (const ast::Projection& column : query.select.projection)
     variables.push_back(query.variables[column.variable].name);
   for (ast::VariableIndex i = 0; i < query.variables.size(); ++i) {

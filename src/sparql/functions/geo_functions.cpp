@@ -16,12 +16,6 @@ const std::string& wktDatatype() {
   return iri;
 }
 
-/// Null for a value that is not a well-formed geo:wktLiteral.
-std::shared_ptr<const Geometry> geometryOf(const Value& value, FunctionContext& context) {
-  if (value.type != Type::Other || context.terms.view(value.id).datatype != wktDatatype()) return nullptr;
-  return context.geometries->find(context.terms.view(value.id).text);
-}
-
 template <typename Test>
 Value relate(Arguments arguments, FunctionContext& context, Test test) {
   const auto a = geometryOf(arguments[0], context), b = geometryOf(arguments[1], context);
@@ -30,6 +24,17 @@ Value relate(Arguments arguments, FunctionContext& context, Test test) {
 }
 
 }  // namespace
+
+std::shared_ptr<const Geometry> geometryOf(const Value& value, FunctionContext& context) {
+  if (value.type != Type::Other) return nullptr;
+  const bool is_stored = value.id < kFirstComputed;
+  if (is_stored) {
+    if (const auto* known = context.geometries->known(value.id)) return *known;
+  }
+  const rdf::TermView literal = context.terms.view(value.id);
+  if (literal.datatype != wktDatatype()) return nullptr;
+  return is_stored ? context.geometries->add(value.id, literal.text) : context.geometries->find(literal.text);
+}
 
 Value geoDistanceFunction(Arguments arguments, FunctionContext& context) {
   // The optional unit must be metre.

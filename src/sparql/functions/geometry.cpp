@@ -16,8 +16,8 @@
 #include <charconv>
 #include <limits>
 
+#include "rdf/wkt_reader.hpp"
 #include "sparql/functions/value.hpp"
-#include "sparql/functions/wkt_reader.hpp"
 
 namespace cluxel::sparql {
 namespace bg = boost::geometry;
@@ -39,15 +39,15 @@ struct Geometry {
 
 namespace {
 
-Line lineOf(const WktPath& path) {
+Line lineOf(const rdf::WktPath& path) {
   Line line;
   for (const auto& [x, y] : path) line.emplace_back(x, y);
   return line;
 }
 
-void addParts(const WktShape& shape, Geometry& out) {
+void addParts(const rdf::WktShape& shape, Geometry& out) {
   for (const auto& [x, y] : shape.points) out.points.emplace_back(x, y);
-  for (const WktPath& path : shape.lines) out.lines.push_back(lineOf(path));
+  for (const rdf::WktPath& path : shape.lines) out.lines.push_back(lineOf(path));
   for (const auto& rings : shape.polygons) {
     Polygon polygon;
     for (std::size_t i = 0; i < rings.size(); ++i) {
@@ -77,6 +77,12 @@ template <typename Test>
 bool anyKind(const Geometry& geometry, Test test) {
   return (!geometry.polygons.empty() && test(geometry.polygons)) || (!geometry.lines.empty() && test(geometry.lines)) ||
          (!geometry.points.empty() && test(geometry.points));
+}
+
+/// The point of a geometry that is one point; else null.
+const Point* onlyPoint(const Geometry& geometry) {
+  const bool is_point = geometry.points.size() == 1 && geometry.lines.empty() && geometry.polygons.empty();
+  return is_point ? &geometry.points.front() : nullptr;
 }
 
 /// Tests a part against the outer parts of at least its dimension.
@@ -109,16 +115,12 @@ struct Within {
 }  // namespace
 
 std::shared_ptr<const Geometry> parseWkt(std::string_view text) {
-  auto geometry = std::make_shared<Geometry>();
-  std::string_view rest = trimmed(text);
-  if (rest.starts_with('<')) {
-    const std::size_t end = rest.find('>');
-    if (end == std::string_view::npos) return nullptr;
-    geometry->crs = rest.substr(0, end + 1);
-    rest = trimmed(rest.substr(end + 1));
-  }
-  const auto shape = readWkt(rest);
+  const auto parts = rdf::splitWkt(text);
+  if (!parts) return nullptr;
+  const auto shape = rdf::readWkt(parts->shape);
   if (!shape) return nullptr;
+  auto geometry = std::make_shared<Geometry>();
+  geometry->crs = parts->reference_system;
   addParts(*shape, *geometry);
   return geometry;
 }
@@ -154,7 +156,12 @@ bool mayMeasure(const Geometry& a, const Geometry& b) {
   return a.crs.empty() || b.crs.empty() || a.crs == b.crs;
 }
 
+bool namesReferenceSystem(const Geometry& geometry) {
+  return !geometry.crs.empty();
+}
+
 double distanceBetween(const Geometry& a, const Geometry& b) {
+  if (const auto p = onlyPoint(a), q = onlyPoint(b); p && q) return bg::distance(*p, *q);
   double min_distance = std::numeric_limits<double>::infinity();
   anyPair(a, b, [&min_distance](const auto& part, const auto& other) {
     min_distance = std::min(min_distance, static_cast<double>(bg::distance(part, other)));
@@ -191,6 +198,16 @@ bool touches(const Geometry& a, const Geometry& b) {
 
 GeometryCache::GeometryCache() = default;
 GeometryCache::~GeometryCache() = default;
+
+const std::shared_ptr<const Geometry>* GeometryCache::known(std::uint32_t id) const {
+  const auto found = stored_.find(id);
+  return found == stored_.end() ? nullptr : &found->second;
+}
+
+std::shared_ptr<const Geometry> GeometryCache::add(std::uint32_t id, std::string_view text) {
+  if (stored_.size() >= kMaxCached) stored_.clear();
+  return stored_.emplace(id, parseWkt(text)).first->second;
+}
 
 std::shared_ptr<const Geometry> GeometryCache::find(std::string_view text) {
   const auto known = parsed_.find(text);

@@ -118,19 +118,8 @@ Planner::State Planner::project(const Node& node, std::optional<std::uint64_t> m
   return state;
 }
 
-Planner::State Planner::order(const Node& node, std::optional<std::uint64_t> max_rows,
-                              const std::vector<Slot>& columns) {
-  State state = alone(*node.children[0]);
-  std::vector<const Expr*> expressions;
-  for (const SortKey& key : node.sort_keys) expressions.push_back(&key.expression);
-  auto exists = planExists(state, expressions);
-  const double rows = max_rows ? std::min(state.rows, static_cast<double>(*max_rows)) : state.rows;
-  state.top = makeOrder(std::move(state.top), node.sort_keys, columns, max_rows, std::move(exists));
-  setRows(state, rows);
-  return state;
-}
-
 Planner::State Planner::group(const Node& node) {
+  closest_ = closestOf(node);
   State state = alone(*node.children[0]);
   std::vector<const Expr*> expressions;
   for (const AggregateSpec& aggregate : node.aggregates) {

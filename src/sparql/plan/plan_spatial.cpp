@@ -3,54 +3,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rdf/store/geometry_index.hpp"
 #include "rdf/vocabulary.hpp"
-#include "sparql/exec/geometry_index.hpp"
-#include "sparql/functions/function_bodies.hpp"
 #include "sparql/functions/geometry.hpp"
 #include "sparql/plan/planner.hpp"
+#include "sparql/plan/range_finder.hpp"
 
 namespace cluxel::sparql {
 namespace {
 
 using Kind = Expr::Kind;
 
-/// The R-tree is built when the filter would test at least this fraction of its literals, and used when it keeps at
-/// most this fraction.
-constexpr double kWorthMaking = 0.25, kWorthUsing = 0.25;
+/// The index is used when it keeps at most this fraction of its geometries.
+constexpr double kWorthUsing = 0.25;
 
-/// The condition of a filter on the bounding box of the geometry in `slot`.
+/// Boxes that a geometry must meet one of.
 struct Search {
   Slot slot = kNoSlot;
-  Box2 box;
+  std::vector<rdf::FlatBox> boxes;
 };
-
-/// Grows the box by more than the rounding tolerance of the relations.
-Box2 widened(Box2 box, double by_m) {
-  const double size = std::max({std::abs(box.min_x), std::abs(box.min_y), std::abs(box.max_x), std::abs(box.max_y)});
-  const double margin = by_m * (1 + 1e-9) + 1e-6 + size * 1e-9;
-  return {box.min_x - margin, box.min_y - margin, box.max_x + margin, box.max_y + margin};
-}
-
-/// Matches calls with one variable and one constant geometry.
-std::optional<Search> searchBy(const Expr& call, double by_m, const QueryTerms& terms) {
-  if (call.arguments.size() < 2) return std::nullopt;
-  const bool first = call.arguments[0].kind == Kind::Slot;
-  const Expr& variable = call.arguments[first ? 0 : 1];
-  const Expr& constant = call.arguments[first ? 1 : 0];
-  if (variable.kind != Kind::Slot || constant.kind != Kind::Constant || constant.constant.id == kUnbound)
-    return std::nullopt;
-  const rdf::TermView literal = terms.view(constant.constant.id);
-  if (literal.datatype != std::string(rdf::vocabulary::kGeo) + "wktLiteral") return std::nullopt;
-  const auto geometry = parseWkt(literal.text);
-  if (!geometry) return std::nullopt;
-  const Box2 box = boundsOf(*geometry);
-  if (!std::isfinite(box.min_x) || !std::isfinite(by_m)) return std::nullopt;
-  return Search{variable.slot, widened(box, std::max(by_m, 0.0))};
-}
-
-bool isCallOf(const Expr& expression, FunctionBody body) {
-  return expression.kind == Kind::Call && expression.function != nullptr && expression.function->body == body;
-}
 
 /// Replaces a slot by the expression of its BIND.
 const Expr& resolved(const Expr& expression, const Node& group) {
@@ -65,18 +36,44 @@ const Expr& resolved(const Expr& expression, const Node& group) {
   return expression;
 }
 
-std::optional<Search> searchOf(const Expr& condition, const Node& group, const QueryTerms& terms) {
-  for (const FunctionBody body : {sfIntersectsFunction, sfWithinFunction, sfContainsFunction, sfTouchesFunction}) {
-    if (isCallOf(condition, body)) return searchBy(condition, 0, terms);
+/// The test of a slot against a constant geometry and a constant distance.
+std::optional<Search> searchBy(const RangeTest& test, const QueryTerms& terms) {
+  double by_m = 0;
+  for (const RowSum::Part& part : test.bound.parts) {
+    const Expr& limit = part.expression;
+    if (limit.kind != Kind::Constant || !limit.constant.isNumeric()) return std::nullopt;
+    by_m += part.is_negative ? -limit.constant.number : limit.constant.number;
   }
-  const bool less = condition.kind == Kind::Less || condition.kind == Kind::LessEqual;
-  const bool greater = condition.kind == Kind::Greater || condition.kind == Kind::GreaterEqual;
-  if (!less && !greater) return std::nullopt;
-  const Expr& distance = resolved(condition.arguments[less ? 0 : 1], group);
-  const Expr& limit = condition.arguments[less ? 1 : 0];
-  if (!isCallOf(distance, geoDistanceFunction) || limit.kind != Kind::Constant || !limit.constant.isNumeric())
-    return std::nullopt;
-  return searchBy(distance, limit.constant.number, terms);
+  if (test.place->kind != Kind::Constant || test.place->constant.id == kUnbound) return std::nullopt;
+  const rdf::TermView literal = terms.view(test.place->constant.id);
+  if (literal.datatype != std::string(rdf::vocabulary::kGeo) + "wktLiteral") return std::nullopt;
+  const auto geometry = parseWkt(literal.text);
+  if (!geometry || namesReferenceSystem(*geometry)) return std::nullopt;
+  const Box2 box = boundsOf(*geometry);
+  if (!std::isfinite(box.min_x) || !std::isfinite(by_m)) return std::nullopt;
+  const Box2 wide = widened(box, by_m);
+  return Search{test.slot, {rdf::FlatBox::around(wide.min_x, wide.min_y, wide.max_x, wide.max_y)}};
+}
+
+std::optional<Search> searchOf(const Expr& condition, const Node& group, const SlotSet& slots,
+                               const QueryTerms& terms) {
+  if (condition.kind == Kind::Or) {
+    std::optional<Search> any;
+    for (const Expr& argument : condition.arguments) {
+      auto one = searchOf(argument, group, slots, terms);
+      if (!one || (any && any->slot != one->slot)) return std::nullopt;
+      if (any) one->boxes.insert(one->boxes.end(), any->boxes.begin(), any->boxes.end());
+      any = std::move(one);
+    }
+    return any;
+  }
+  Expr whole = condition;
+  for (Expr& argument : whole.arguments) argument = resolved(argument, group);
+  for (const RangeTest& test : rangeTestsOf(whole, {{}, slots}, terms)) {
+    if (test.kind != RangeTest::Kind::Near) continue;
+    if (auto search = searchBy(test, terms)) return search;
+  }
+  return std::nullopt;
 }
 
 /// The predicate of a mandatory pattern whose object is the slot; kUnbound if there is none.
@@ -104,20 +101,18 @@ ValueId predicateOf(const Node& node, Slot slot) {
 
 }  // namespace
 
-/// Adds the candidate literals as VALUES to the parts, if they are a small fraction of the predicate's literals.
+/// Adds the candidate literals as VALUES to the parts, if they are a small fraction of all.
 void Planner::searchBySpace(const Expr& condition, const Node& child, Parts& parts) {
-  const auto search = searchOf(condition, child, terms_);
-  if (!search) return;
-  const ValueId predicate = predicateOf(child, search->slot);
-  if (predicate == kUnbound) return;
-  auto index = knownGeometryIndex(reader_, predicate);
-  if (!index) {
-    rdf::QuadPattern all;
-    all.p = predicate;
-    if (cardinality_.rows(child) < kWorthMaking * static_cast<double>(reader_.estimate(all))) return;
-    index = geometryIndex(reader_, predicate);
+  const auto search = searchOf(condition, child, child.certain, terms_);
+  if (!search || predicateOf(child, search->slot) == kUnbound) return;
+  const auto index = reader_.geometries();
+  std::vector<rdf::TermId> found;
+  for (const rdf::FlatBox& box : search->boxes) {
+    const std::vector<rdf::TermId> more = index->meeting(box);
+    std::vector<rdf::TermId> both;
+    std::set_union(found.begin(), found.end(), more.begin(), more.end(), std::back_inserter(both));
+    found = std::move(both);
   }
-  const std::vector<rdf::TermId> found = index->meeting(search->box);
   if (static_cast<double>(found.size()) > kWorthUsing * static_cast<double>(index->size())) return;
   NodePtr values = makeNode(Node::Kind::Values, condition.at);
   values->slots = {search->slot};

@@ -100,7 +100,7 @@ void Planner::takeFilters(const Node& node, const SlotSet& rest, const SlotSet& 
   takeApart(child, rest, after, parts);
   for (const Expr& condition : node.conditions) {
     if (bindsByFilter(condition, child, parts)) continue;
-    searchBySpace(condition, child, parts);
+    if (spatial_plans_) searchBySpace(condition, child, parts);
     parts.filters.push_back(condition);
   }
 }
@@ -132,6 +132,7 @@ bool Planner::bindsByFilter(const Expr& condition, const Node& child, Parts& par
 Planner::State Planner::joinNode(State state, const Node& node, const std::vector<Expr>& extra_filters) {
   Parts parts;
   const double needed_rows = std::exchange(needed_rows_, kAllRows);
+  parts.closest = std::exchange(closest_, std::nullopt);
   // Constants such as parameters are visible everywhere.
   SlotSet rest = state.possible - state.outer;
   parts.constant = state.outer & state.certain;
@@ -158,6 +159,10 @@ Planner::State Planner::joinParts(State state, Parts& parts) {
     for (const Postponed& step : parts.postponed) to_come.add(step.node->possible);
     state = applyFilters(std::move(state), parts, to_come, used);
     if (waiting.empty()) break;
+    if (auto by_range = joinByRange(state, waiting, parts, used)) {
+      state = std::move(*by_range);
+      continue;
+    }
     const std::size_t next = choosePart(state, waiting);
     const Node* part = waiting[next];
     waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(next));

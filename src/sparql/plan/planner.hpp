@@ -6,21 +6,25 @@
 #include <span>
 #include <vector>
 
+#include "sparql/exec/nearest_others.hpp"
 #include "sparql/exec/operators/operators.hpp"
 #include "sparql/plan/cardinality.hpp"
 #include "sparql/plan/pattern_access.hpp"
+#include "sparql/plan/range_finder.hpp"
 
 namespace cluxel::sparql {
 
 class Planner {
  public:
-  Planner(AlgebraQuery& query, const QueryTerms& terms, const Dataset& dataset)
+  /// `spatial_plans`: see QueryOptions.
+  Planner(AlgebraQuery& query, const QueryTerms& terms, const Dataset& dataset, bool spatial_plans = true)
       : query_(query),
         terms_(terms),
         reader_(terms.reader()),
         dataset_(dataset),
         cardinality_(terms.reader(), dataset),
-        parameters_(query.parameters) {}
+        parameters_(query.parameters),
+        spatial_plans_(spatial_plans) {}
 
   /// Plans the whole query.
   OperatorPtr plan();
@@ -44,14 +48,20 @@ class Planner {
     const Node* node;
   };
   static constexpr double kAllRows = 1e300;
+  /// Only the least distance counts among the rows that agree in `keys`.
+  struct Closest {
+    Expr distance;
+    SlotSet keys;
+  };
   /// A flattened group.
   struct Parts {
     std::vector<const Node*> joined;
     std::vector<Postponed> postponed;
     std::vector<Expr> filters;
-    std::vector<NodePtr> made;      ///< owns nodes created by the planner
-    SlotSet constant;               ///< slots with the same value in all parts
-    double needed_rows = kAllRows;  ///< number of rows of the first part that will be consumed
+    std::vector<NodePtr> made;       ///< owns nodes created by the planner
+    SlotSet constant;                ///< slots with the same value in all parts
+    std::optional<Closest> closest;  ///< what is asked of the rows
+    double needed_rows = kAllRows;   ///< number of rows of the first part that will be consumed
   };
 
   State unit();
@@ -85,6 +95,11 @@ class Planner {
   State distinct(const Node& node);
   State project(const Node& node, std::optional<std::uint64_t> max_rows);
   State order(const Node& node, std::optional<std::uint64_t> max_rows, const std::vector<Slot>& columns);
+  std::vector<const Node*> lateBinds(const Node*& child, std::vector<SortKey>& keys) const;
+  static Expr tieOf(Slot slot, const std::vector<const Node*>& late);
+  std::optional<State> nearestFirst(const Node& body, const SortKey& key, std::uint64_t max_rows);
+  std::optional<State> nearestFirst(const Node& body, Slot geometry, const Expr& place, std::uint64_t max_rows);
+  State nearestSource(State around, Parts& parts, NearestScan scan, double rows);
   State group(const Node& node);
   State graphLoop(const Node& node);
   State values(const Node& node);
@@ -92,6 +107,38 @@ class Planner {
   void takeApart(const Node& node, const SlotSet& rest, const SlotSet& after, Parts& parts);
   void takeFilters(const Node& filter, const SlotSet& rest, const SlotSet& after, Parts& parts);
   bool bindsByFilter(const Expr& condition, const Node& child, Parts& parts);
+  using Waiting = std::vector<const Node*>;
+  /// The variables of the two sides of a range join.
+  struct RangeSides {
+    SlotSet other;           ///< bound in every row of the component only
+    SlotSet given;           ///< of the rows so far: what tests of the component may read
+    SlotSet given_by_other;  ///< of the component: what tests of the rows so far may read
+    SlotSet outside;         ///< all that is visible around an EXISTS
+    BoundExpressions binds;
+  };
+  /// A component of the waiting parts, and what ties it to the rows so far.
+  struct RangeJoin {
+    State other;
+    std::vector<RangeTest> tests;
+    std::optional<NearestTest> nearest;
+    bool is_turned = false;  ///< the tests limit the rows so far by the component
+    std::vector<bool> used;  ///< the filters, after those within the component
+  };
+  std::optional<State> joinByRange(State& state, Waiting& waiting, const Parts& parts, std::vector<bool>& used);
+  bool blowsUp(const State& state, const Waiting& waiting);
+  std::vector<Waiting> componentsOf(const State& state, const Waiting& waiting) const;
+  std::optional<RangeJoin> rangeJoinWith(const State& state, const Waiting& component, const Waiting& waiting,
+                                         const Parts& parts, const std::vector<bool>& used);
+  RangeSides sidesOf(const State& state, const Waiting& component, const Waiting& waiting, const Parts& parts) const;
+  void addTests(const State& state, const RangeSides& sides, const Parts& parts, RangeJoin& join);
+  std::optional<NearestTest> nearestOf(const Expr& condition, const SlotSet& probe, const SlotSet& build,
+                                       const SlotSet& outside);
+  static std::optional<Closest> closestOf(const Node& group);
+  void addClosest(const State& state, const Waiting& waiting, const Parts& parts, const SlotSet& build,
+                  const Expr& distance, RangeJoin& join);
+  Parts taken(const Waiting& nodes, const Parts& parts, const SlotSet& slots) const;
+  State finishRange(State state, RangeJoin join);
+  std::optional<State> joinByIndex(State& state, const RangeJoin& join, const Waiting& component);
   void searchBySpace(const Expr& condition, const Node& child, Parts& parts);
   Slot scannedBy(const TripleNode& pattern) const;
   double disorder(const Node& part, const std::vector<const Node*>& parts) const;
@@ -110,6 +157,9 @@ class Planner {
   std::vector<Slot> parameters_;
   double needed_rows_ = kAllRows;  ///< from a LIMIT around the next group
   SlotSet unsure_parameters_;      ///< parameters that may be unbound
+  bool spatial_plans_;
+  std::optional<Closest> closest_;  ///< from a MIN around the next group
+  std::vector<NodePtr> made_;       ///< nodes that estimates are kept for
 };
 
 }  // namespace cluxel::sparql

@@ -2,6 +2,7 @@
 // Plan operators: each produces batches of solutions from the batches of its inputs (the iterator model).
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,8 @@
 namespace cluxel::sparql {
 
 class Operator;
+struct RangeTest;
+struct NearestTest;
 using OperatorPtr = std::unique_ptr<Operator>;
 
 /// Names for printing plans.
@@ -42,6 +45,10 @@ class Operator {
     if (target_ < kLastTarget) target_ *= 4;
     return true;
   }
+
+  /// For an operator that gives rows by ascending distance: it ends when `is_enough(distance)` says that rows of this
+  /// distance and more are not needed.
+  virtual void stopWhen(std::function<bool(double)> /*is_enough*/) {}
 
   /// The slots that may be bound, ascending.
   const std::vector<Slot>& slots() const { return slots_; }
@@ -148,6 +155,12 @@ OperatorPtr makeScan(const TripleNode& pattern, rdf::QuadOrder order);
 OperatorPtr makeQuadJoin(OperatorPtr child, const TripleNode& pattern, bool by_column);
 /// Merge join. Both inputs are sorted by `slot`; all shared slots must be bound in every row.
 OperatorPtr makeMergeJoin(OperatorPtr child, OperatorPtr other, Slot slot);
+/// Pairs each row with the rows of `build` that pass the tests; all slots of `build` are bound in every row. The caller
+/// filters the result: rows without numbers or boxes always pass.
+OperatorPtr makeRangeJoin(OperatorPtr child, OperatorPtr build, std::vector<RangeTest> tests,
+                          std::optional<NearestTest> nearest);
+/// Binds the slot of the test to the stored geometries that may pass it.
+OperatorPtr makeNearLookup(OperatorPtr child, RangeTest test);
 OperatorPtr makePathJoin(OperatorPtr child, const TripleNode& pattern);
 /// Hash join. The keys are the slots bound in every row of both sides; other shared slots are compared per candidate.
 OperatorPtr makeHashJoin(OperatorPtr child, OperatorPtr build, std::vector<Slot> keys, std::vector<Slot> compared);
@@ -178,8 +191,17 @@ OperatorPtr makeGraphNames(OperatorPtr child, const GraphPlace& graph);
 OperatorPtr makeGraphLoop(OperatorPtr body, Slot slot);
 OperatorPtr makeGroup(OperatorPtr child, std::vector<Slot> keys, std::vector<AggregateSpec> aggregates,
                       bool grouped_by_keys, std::vector<Slot> parameters, std::vector<ExistsPlan> exists);
-/// Sorts; with `max_rows`, keeps only the first rows. Ties are broken by the terms of `tie_slots`.
-OperatorPtr makeOrder(OperatorPtr child, std::vector<SortKey> keys, std::vector<Slot> tie_slots,
+/// The geometries in `slot`, objects of `predicate`, around `place`.
+struct NearestScan {
+  Slot slot = kNoSlot;
+  Expr place;
+  rdf::TermId predicate = rdf::kNoTerm;
+};
+/// Runs `body` for the stored geometries around the place of each row of `places`, the nearest first, until stopWhen().
+/// Objects without a known distance come first.
+OperatorPtr makeNearestSource(OperatorPtr places, Pipeline body, NearestScan scan);
+/// Sorts; with `max_rows`, keeps only the first rows. Ties are broken by the terms of `ties`.
+OperatorPtr makeOrder(OperatorPtr child, std::vector<SortKey> keys, std::vector<Expr> ties,
                       std::optional<std::uint64_t> max_rows, std::vector<ExistsPlan> exists);
 OperatorPtr makeProject(OperatorPtr child, const std::vector<Slot>& slots);
 OperatorPtr makeDistinct(OperatorPtr child, std::vector<Slot> slots);

@@ -13,7 +13,7 @@ namespace {
 
 class OrderOperator : public UnaryOperator {
  public:
-  OrderOperator(OperatorPtr child, std::vector<SortKey> keys, std::vector<Slot> tie_slots,
+  OrderOperator(OperatorPtr child, std::vector<SortKey> keys, std::vector<Expr> ties,
                 std::optional<std::uint64_t> max_rows, std::vector<ExistsPlan> exists)
       : UnaryOperator(std::move(child)),
         keys_(std::move(keys)),
@@ -21,10 +21,14 @@ class OrderOperator : public UnaryOperator {
         exists_(std::move(exists)),
         table_(child_->slots()) {
     for (const SortKey& key : keys_) ahead_.add(key.expression);
-    for (const Slot slot : tie_slots) {
-      const auto at = std::find(slots_.begin(), slots_.end(), slot);
-      if (at != slots_.end()) tie_columns_.push_back(static_cast<std::size_t>(at - slots_.begin()));
+    for (Expr& tie : ties) {
+      const auto at = std::find(slots_.begin(), slots_.end(), tie.slot);
+      if (tie.kind != Expr::Kind::Slot)
+        ties_.push_back({kNoColumn, std::move(tie)});
+      else if (at != slots_.end())
+        ties_.push_back({static_cast<std::size_t>(at - slots_.begin()), {}});
     }
+    if (max_rows_) child_->stopWhen([this](double distance) { return isEnough(distance); });
   }
   std::string label(const PlanNames& names) const override {
     std::string text = max_rows_ ? "first " + std::to_string(*max_rows_) + " by" : "sort by";
@@ -45,6 +49,8 @@ class OrderOperator : public UnaryOperator {
     fast_.clear();
     columns_.assign(keys_.size(), {});
     is_full_ = false;
+    left_ = Batch(runtime().slot_count);
+    right_ = Batch(runtime().slot_count);
   }
   void listInputs(std::vector<const Operator*>& inputs) const override {
     UnaryOperator::listInputs(inputs);
@@ -87,7 +93,13 @@ class OrderOperator : public UnaryOperator {
     for (std::uint32_t row = 0; row < in.rows; ++row) {
       ahead_.before(row, in, runtime().terms);
       const std::size_t before = fast_.size();
-      for (std::size_t i = 0; i < keys_.size(); ++i) addKey(i, evaluator.value(keys_[i].expression, in, row), row == 0);
+      const Value first = evaluator.value(keys_[0].expression, in, row);
+      // A computed value gets a term only when its row may be kept.
+      if (is_full_ && first.id == kUnbound &&
+          !mayPrecede(first, fast_[(*max_rows_ - 1) * keys_.size()], keys_[0].descending, runtime().terms))
+        continue;
+      addKey(0, first, row == 0);
+      for (std::size_t i = 1; i < keys_.size(); ++i) addKey(i, evaluator.value(keys_[i].expression, in, row), row == 0);
       if (is_full_ && !beatsLast(in, row, before)) {
         fast_.resize(before);
       } else {
@@ -96,6 +108,14 @@ class OrderOperator : public UnaryOperator {
     }
     table_.append(in, picks_, runtime().guard);
     runtime().guard.charge(picks_.size() * keys_.size() * sizeof(OrderKey));
+  }
+
+  /// True when no row of this distance or more can be among the first rows; the first key is a distance.
+  bool isEnough(double distance) {
+    if (*max_rows_ == 0) return true;
+    if (table_.rows() < *max_rows_) return false;
+    keepFirst();
+    return !mayPrecede(distance, fast_[(*max_rows_ - 1) * keys_.size()]);
   }
 
   void addKey(std::size_t column, const Value& value, bool is_first) {
@@ -145,16 +165,15 @@ class OrderOperator : public UnaryOperator {
     return std::strong_ordering::equal;
   }
 
-  bool isBefore(std::uint32_t a, std::uint32_t b) const {
+  bool isBefore(std::uint32_t a, std::uint32_t b) {
     const auto order = orderOfKeys(a * keys_.size(), b * keys_.size());
     if (order != 0) return order < 0;
-    const ValueId* left = table_.row(a);
-    const ValueId* right = table_.row(b);
-    return isTieBefore([&](std::size_t column) { return left[column]; }, right);
+    const ValueId *left = table_.row(a), *right = table_.row(b);
+    return isTieBefore([left](std::size_t column) { return left[column]; }, right);
   }
 
   /// True when the row with these keys sorts before the last kept row.
-  bool beatsLast(const Batch& in, std::size_t row, std::size_t keys) const {
+  bool beatsLast(const Batch& in, std::size_t row, std::size_t keys) {
     const std::size_t last = *max_rows_ - 1;
     const auto order = orderOfKeys(keys, last * keys_.size());
     if (order != 0) return order < 0;
@@ -163,19 +182,38 @@ class OrderOperator : public UnaryOperator {
 
   /// Orders rows with equal keys by their terms, so that LIMIT is deterministic.
   template <typename IdAt>
-  bool isTieBefore(const IdAt& left, const ValueId* right) const {
-    for (const std::size_t column : tie_columns_) {
-      if (left(column) == right[column]) continue;
-      const auto order = termOrderOf(left(column), right[column], runtime().terms);
+  bool isTieBefore(const IdAt& left, const ValueId* right) {
+    for (const Tie& tie : ties_) {
+      const bool is_column = tie.column != kNoColumn;
+      const ValueId a = is_column ? left(tie.column) : computed(tie.expression, left, left_);
+      const auto right_at = [right](std::size_t column) { return right[column]; };
+      const ValueId b = is_column ? right[tie.column] : computed(tie.expression, right_at, right_);
+      if (a == b) continue;
+      const auto order = termOrderOf(a, b, runtime().terms);
       if (order != 0) return order < 0;
     }
     return false;
   }
 
+  /// The term of an expression for one row.
+  template <typename IdAt>
+  ValueId computed(const Expr& expression, const IdAt& ids, Batch& scratch) {
+    scratch.rows = 1;
+    for (std::size_t column = 0; column < slots_.size(); ++column) scratch.columns[slots_[column]] = {ids(column)};
+    return runtime().terms.intern(Evaluator(runtime()).value(expression, scratch, 0));
+  }
+
   /// Extra rows buffered before a selection.
   static constexpr std::size_t kSpareRows = 256;
   std::vector<SortKey> keys_;
-  std::vector<std::size_t> tie_columns_;
+  static constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
+  /// A column of the rows, or an expression over them.
+  struct Tie {
+    std::size_t column;
+    Expr expression;
+  };
+  std::vector<Tie> ties_;
+  Batch left_, right_;  ///< one row each, for expressions of ties
   std::optional<std::uint64_t> max_rows_;
   std::vector<ExistsPlan> exists_;
   RowTable table_;
@@ -190,9 +228,9 @@ class OrderOperator : public UnaryOperator {
 
 }  // namespace
 
-OperatorPtr makeOrder(OperatorPtr child, std::vector<SortKey> keys, std::vector<Slot> tie_slots,
+OperatorPtr makeOrder(OperatorPtr child, std::vector<SortKey> keys, std::vector<Expr> ties,
                       std::optional<std::uint64_t> max_rows, std::vector<ExistsPlan> exists) {
-  return std::make_unique<OrderOperator>(std::move(child), std::move(keys), std::move(tie_slots), max_rows,
+  return std::make_unique<OrderOperator>(std::move(child), std::move(keys), std::move(ties), max_rows,
                                          std::move(exists));
 }
 

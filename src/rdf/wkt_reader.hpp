@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace cluxel::sparql {
+namespace cluxel::rdf {
 
 using WktPath = std::vector<std::pair<double, double>>;
 
@@ -18,7 +18,14 @@ struct WktShape {
   std::vector<std::vector<WktPath>> polygons;  ///< outer ring, then the holes
 };
 
+/// A geo:wktLiteral: the IRI of its reference system with angle brackets, if it begins with one, and the rest.
+struct WktText {
+  std::string_view reference_system, shape;
+};
+/// None when the bracket of the reference system is not closed.
+std::optional<WktText> splitWkt(std::string_view text);
+
 /// POINT, LINESTRING, POLYGON, MULTI…, GEOMETRYCOLLECTION, with Z, M, ZM (dropped) and EMPTY; none for other text.
 std::optional<WktShape> readWkt(std::string_view text);
 
-}  // namespace cluxel::sparql
+}  // namespace cluxel::rdf

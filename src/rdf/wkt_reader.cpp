@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recursive descent parser of well-known text.
-#include "sparql/functions/wkt_reader.hpp"
+#include "rdf/wkt_reader.hpp"
 
 #include <charconv>
 #include <cmath>
 #include <string>
 
-namespace cluxel::sparql {
+namespace cluxel::rdf {
 namespace {
 
 constexpr int kMaxWktNesting = 16;
@@ -118,7 +118,22 @@ class Reader {
   std::string_view text_;
 };
 
+std::string_view withoutSpace(std::string_view text) {
+  const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; };
+  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+  return text;
+}
+
 }  // namespace
+
+std::optional<WktText> splitWkt(std::string_view text) {
+  std::string_view rest = withoutSpace(text);
+  if (!rest.starts_with('<')) return WktText{{}, rest};
+  const std::size_t end = rest.find('>');
+  if (end == std::string_view::npos) return std::nullopt;
+  return WktText{rest.substr(0, end + 1), withoutSpace(rest.substr(end + 1))};
+}
 
 std::optional<WktShape> readWkt(std::string_view text) {
   Reader reader(text);
@@ -127,4 +142,4 @@ std::optional<WktShape> readWkt(std::string_view text) {
   return shape;
 }
 
-}  // namespace cluxel::sparql
+}  // namespace cluxel::rdf
