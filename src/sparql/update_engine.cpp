@@ -7,7 +7,7 @@
 #include <random>
 
 #include "base/content_hash.hpp"
-#include "sparql/exec/update_modify.hpp"
+#include "sparql/exec/stored_changes.hpp"
 #include "sparql/syntax/parser.hpp"
 #include "sparql/syntax/source_text.hpp"
 
@@ -34,7 +34,6 @@ class UpdateRun {
     for (const ast::UpdateOperation& operation : update_.operations) {
       operation_ = &operation;
       std::visit([this](const auto& part) { perform(part); }, operation.value);
-      writer_.flush();
     }
     return report_;
   }
@@ -67,11 +66,8 @@ class UpdateRun {
   Term targetGraph(const ast::GraphTarget& target) const {
     return target.kind == ast::GraphTarget::Kind::Default ? defaultGraph() : target.graph;
   }
-  void add(const Quad& quad) {
-    writer_.add(quad);
-    ++report_.inserted;
-  }
-  void removeStored(const rdf::QuadReader& reader, const Quad& quad);
+  void checkRemovable(const rdf::QuadReader& reader, const std::vector<ChangedQuad>& removals) const;
+  void apply(const rdf::QuadReader& reader, const Changes& changes);
   void clearTarget(const ast::GraphTarget& target);
   std::vector<Quad> quadsOf(const Term& graph) const;
   std::string freshPrefix();
@@ -133,14 +129,16 @@ void UpdateRun::perform(const ast::Load& load) {
     if (load.silent) return;
     fail("LOAD is refused", "name the file that it reads", Remedy::NameLoadFile);
   }
+  Changes changes;
   try {
     for (Quad& quad : options_.load(load.source.text)) {
       quad.graph = graph;
-      add(quad);
+      changes.inserted.push_back({std::move(quad)});
     }
   } catch (const Error&) {
     if (!load.silent) throw;
   }
+  apply(rdf::QuadReader(transaction_), changes);
 }
 
 std::vector<Quad> UpdateRun::quadsOf(const Term& graph) const {
@@ -168,6 +166,7 @@ void UpdateRun::clearTarget(const ast::GraphTarget& target) {
     pattern.g = *id;
     report_.deleted += reader.count(pattern);
     writer_.clearGraph(*id);
+    writer_.flush();
   };
   if (target.kind == Kind::Graph || target.kind == Kind::Default) return clear(targetGraph(target));
   std::vector<Term> graphs;
@@ -193,15 +192,17 @@ void UpdateRun::perform(const ast::Transfer& transfer) {
     if (transfer.silent) return;
     fail("the graph <" + from.text + "> is not there");
   }
-  if (transfer.kind != ast::Transfer::Kind::Add) {
-    clearTarget(transfer.to);
-    writer_.flush();
-  }
+  Changes changes;
+  const auto remove = [&](const Term& graph) {
+    for (Quad& quad : quadsOf(graph)) changes.removed.push_back({std::move(quad)});
+  };
+  if (transfer.kind != ast::Transfer::Kind::Add) remove(to);
+  if (transfer.kind == ast::Transfer::Kind::Move) remove(from);
   for (Quad& quad : quads) {
     quad.graph = to;
-    add(quad);
+    changes.inserted.push_back({std::move(quad)});
   }
-  if (transfer.kind == ast::Transfer::Kind::Move) clearTarget(transfer.from);
+  apply(rdf::QuadReader(transaction_), changes);
 }
 
 void UpdateRun::perform(const ast::DataUpdate& data) {
@@ -212,24 +213,40 @@ void UpdateRun::perform(const ast::DataUpdate& data) {
     if (label.empty()) label = freshLabel();
     term.text = label;
   };
+  Changes changes;
   for (Quad quad : data.quads) {
-    if (quad.graph.text.empty()) quad.graph = defaultGraph();
+    const bool names_graph = !quad.graph.text.empty();
+    if (!names_graph) quad.graph = defaultGraph();
     checkWritable(quad.graph);
     if (data.insert) {
       fresh(quad.subject);
       fresh(quad.object);
-      add(quad);
-      continue;
     }
-    ++report_.deleted;
-    removeStored(reader, quad);
+    (data.insert ? changes.inserted : changes.removed).push_back({std::move(quad), names_graph});
   }
+  checkRemovable(reader, changes.removed);
+  apply(reader, changes);
 }
 
-void UpdateRun::removeStored(const rdf::QuadReader& reader, const Quad& quad) {
-  const auto s = reader.idOf(quad.subject), p = reader.idOf(quad.predicate), o = reader.idOf(quad.object);
-  const auto g = quad.graph.text.empty() ? std::optional<rdf::TermId>(rdf::kNoTerm) : reader.idOf(quad.graph);
-  if (s && p && o && g) writer_.remove({*s, *p, *o, *g});
+void UpdateRun::checkRemovable(const rdf::QuadReader& reader, const std::vector<ChangedQuad>& removals) const {
+  if (options_.any_graph_writable || options_.query.default_graph == DefaultGraph::Unnamed) return;
+  const auto locked = lockedTriples(reader, removals, options_.writable_graphs);
+  if (!locked) return;
+  const Quad& first = locked->first;
+  fail(std::to_string(locked->count) + " of the " + std::to_string(locked->of) +
+           " triples to delete lie in graphs that an update may not write, such as " + toNTriples(first.subject) + ' ' +
+           toNTriples(first.predicate) + ' ' + toNTriples(first.object) + " in <" + first.graph.text +
+           ">; nothing was changed",
+       "what a build writes follows from scans, rules and ontology. To correct it, insert what holds instead (it goes "
+       "to graph operator), or change rules or ontology and apply them. To delete operator statements alone, write "
+       "GRAPH <" +
+           std::string(rdf::vocabulary::kGraphOperator) + "> { ... } in the template or WITH before it");
+}
+
+void UpdateRun::apply(const rdf::QuadReader& reader, const Changes& changes) {
+  const ChangeCounts counts = applyChanges(reader, writer_, changes);
+  report_.inserted += counts.inserted;
+  report_.deleted += counts.deleted;
 }
 
 void UpdateRun::perform(const ast::Modify& modify) {
@@ -240,15 +257,10 @@ void UpdateRun::perform(const ast::Modify& modify) {
   run.default_graph = modify.with.value_or(defaultGraph());
   run.fresh_label = [this] { return freshLabel(); };
   const Changes changes = run.changes();
-  for (const Quad& quad : changes.removed) {
-    checkWritable(quad.graph);
-    ++report_.deleted;
-    removeStored(reader, quad);
-  }
-  for (const Quad& quad : changes.inserted) {
-    checkWritable(quad.graph);
-    add(quad);
-  }
+  for (const ChangedQuad& removal : changes.removed) checkWritable(removal.quad.graph);
+  for (const ChangedQuad& insertion : changes.inserted) checkWritable(insertion.quad.graph);
+  checkRemovable(reader, changes.removed);
+  apply(reader, changes);
 }
 
 }  // namespace

@@ -80,15 +80,15 @@ std::optional<Term> ModifyRun::filled(const ast::PatternTerm& place, const Batch
 
 /// Skips quads with an unbound position or a term kind that RDF does not allow there.
 void ModifyRun::instantiate(const std::vector<ast::QuadTemplate>& templates, const Batch& batch, std::size_t row,
-                            Blanks& blanks, Guard& guard, std::vector<Quad>& out) {
+                            Blanks& blanks, Guard& guard, std::vector<ChangedQuad>& out) {
   for (const ast::QuadTemplate& quad : templates) {
     const auto s = filled(quad.subject, batch, row, blanks), p = filled(quad.predicate, batch, row, blanks);
     const auto o = filled(quad.object, batch, row, blanks);
     const auto g = quad.graph ? filled(*quad.graph, batch, row, blanks) : std::optional<Term>(default_graph);
     if (!s || !p || !o || !g || s->kind == TermKind::Literal || p->kind != TermKind::Iri || g->kind != TermKind::Iri)
       continue;
-    out.push_back({*s, *p, *o, *g});
-    guard.charge(sizeof(Quad) + s->text.size() + o->text.size());
+    out.push_back({{*s, *p, *o, *g}, quad.graph || modify_.with});
+    guard.charge(sizeof(ChangedQuad) + s->text.size() + o->text.size());
   }
 }
 

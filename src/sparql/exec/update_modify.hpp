@@ -13,8 +13,14 @@
 
 namespace cluxel::sparql {
 
+/// A quad of a template for one solution.
+struct ChangedQuad {
+  Quad quad;
+  bool names_graph = true;  ///< by GRAPH or WITH; else it is meant for the graphs that the pattern reads
+};
+
 struct Changes {
-  std::vector<Quad> removed, inserted;
+  std::vector<ChangedQuad> removed, inserted;
 };
 
 class ModifyRun {
@@ -37,7 +43,7 @@ class ModifyRun {
   void prepare(FunctionContext& functions) const;
   std::optional<Term> filled(const ast::PatternTerm& place, const Batch& batch, std::size_t row, Blanks& blanks);
   void instantiate(const std::vector<ast::QuadTemplate>& templates, const Batch& batch, std::size_t row, Blanks& blanks,
-                   Guard& guard, std::vector<Quad>& out);
+                   Guard& guard, std::vector<ChangedQuad>& out);
 
   const rdf::QuadReader& reader_;
   const ast::Update& update_;
