@@ -4,9 +4,7 @@
 
 #include "cluxel/error.hpp"
 #include "mapping/facts/semantic_layer.hpp"
-#include "mapping/facts/sparql_rules.hpp"
 #include "mapping/map_state.hpp"
-#include "rdf/ontology/ontology.hpp"
 #include "rdf/store/map_replacement.hpp"
 
 namespace cluxel::mapping {
@@ -20,8 +18,7 @@ void inferAnew(rdf::WriteTransaction& transaction, ProgressSink& sink) {
     writeSemanticLayer(transaction, parsed, stages, sink);
     return;
   }
-  inferClosure(transaction);
-  runSparqlRules(transaction, parsed.inputs.sparql_rules);
+  inferFacts(transaction, parsed.inputs, sink);
 }
 
 }  // namespace
