@@ -132,8 +132,9 @@ Answer Map::query(std::string_view text, const QueryOptions& options) const {
   std::vector<std::string> names;
   for (const sparql::Binding& binding : bindings) names.push_back(binding.first);
   auto data = std::make_shared<Answer::Data>();
-  data->result = sparql::PreparedQuery(reader, text, engine, names).evaluate(bindings);
-  data->warnings = checkQuery(reader, text, engine);
+  sparql::PreparedQuery prepared(reader, text, engine, names);
+  data->result = prepared.evaluate(bindings);
+  data->warnings = prepared.warnings();
   return Answer(std::move(data));
 }
 

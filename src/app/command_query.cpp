@@ -108,8 +108,7 @@ ExitCode query(const QueryArguments& arguments, Session& session) {
   names.reserve(bindings.size());
   for (const sparql::Binding& binding : bindings) names.push_back(binding.first);
   sparql::PreparedQuery prepared(reader, question.text, options, names);
-  for (const Diagnostic& warning : checkQuery(reader, question.text, options))
-    std::fprintf(stderr, "%s\n", format(warning).c_str());
+  for (const Diagnostic& warning : prepared.warnings()) std::fprintf(stderr, "%s\n", format(warning).c_str());
   const auto writer = makeResultWriter(formatOf(arguments, session, prepared.form()), [](std::string_view piece) {
     std::fwrite(piece.data(), 1, piece.size(), stdout);
   });

@@ -73,6 +73,9 @@ class PreparedQuery {
 
   ast::QueryForm form() const;
   const std::vector<std::string>& variables() const;  ///< of a SELECT, in order
+  /// Classes, properties and graphs that the store does not contain, with suggestions; unknown functions and constant
+  /// patterns that are no regular expressions.
+  std::vector<Diagnostic> warnings() const;
   /// Calls the sink only after the complete result is computed; it is not called when a budget is exceeded.
   void run(ResultSink& sink, const std::vector<Binding>& bindings = {});
   QueryResult evaluate(const std::vector<Binding>& bindings = {});
@@ -92,7 +95,7 @@ QueryResult evaluateQuery(const rdf::QuadReader& reader, std::string_view text, 
 /// solutions.
 std::string whyEmpty(const rdf::QuadReader& reader, std::string_view text, const QueryOptions& options = {},
                      const std::vector<Binding>& bindings = {});
-/// Warnings for classes, properties and graphs that the store does not contain, with suggestions.
+/// PreparedQuery::warnings() of a query without parameters.
 std::vector<Diagnostic> checkQuery(const rdf::QuadReader& reader, std::string_view text,
                                    const QueryOptions& options = {});
 

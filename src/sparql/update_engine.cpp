@@ -257,6 +257,9 @@ void UpdateRun::perform(const ast::Modify& modify) {
   run.default_graph = modify.with.value_or(defaultGraph());
   run.fresh_label = [this] { return freshLabel(); };
   const Changes changes = run.changes();
+  for (const ExpressionWarning& warning : run.warnings())
+    report_.warnings.push_back(
+        warningAt(options_.query.source_name, update_.text, warning.at, warning.message, warning.hint));
   for (const ChangedQuad& removal : changes.removed) checkWritable(removal.quad.graph);
   for (const ChangedQuad& insertion : changes.inserted) checkWritable(insertion.quad.graph);
   checkRemovable(reader, changes.removed);

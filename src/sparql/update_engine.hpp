@@ -28,6 +28,7 @@ struct UpdateReport {
   /// Quads that came and went, summed over the operations; one that an operation deletes and inserts counts for
   /// neither.
   std::uint64_t inserted = 0, deleted = 0;
+  std::vector<Diagnostic> warnings = {};  ///< unknown functions, and constant patterns that are no regular expressions
 };
 
 /// Runs a request. The caller commits the transaction, and must not commit it after an error. A deletion that names no

@@ -33,6 +33,7 @@ sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::str
   const sparql::UpdateReport report = runUpdate(transaction, update, options);
   if (state && report.inserted + report.deleted > 0) inferAnew(transaction, sink);
   transaction.commit();
+  for (const Diagnostic& warning : report.warnings) sink.note(format(warning));
   return report;
 }
 

@@ -49,6 +49,7 @@ Changes ModifyRun::changes() {
   guard.start(options_.query.budget);
   AlgebraQuery query = algebra(guard);
   slot_of_variable_ = query.slot_of_variable;
+  warnings_ = query.warnings;
   const OperatorPtr plan = Planner(query, terms_, data).plan();
   FunctionContext functions(terms_);
   prepare(functions);

@@ -35,6 +35,7 @@ class ModifyRun {
 
   /// The quads to remove and insert for all solutions; does not modify the store.
   Changes changes();
+  const std::vector<ExpressionWarning>& warnings() const { return warnings_; }
 
  private:
   using Blanks = std::map<std::string, Term>;  ///< per solution, by label in the template
@@ -52,6 +53,7 @@ class ModifyRun {
   const UpdateOptions& options_;
   QueryTerms terms_;
   std::vector<Slot> slot_of_variable_;
+  std::vector<ExpressionWarning> warnings_;
 };
 
 }  // namespace cluxel::sparql
