@@ -22,18 +22,23 @@ bool mentionsBnode(std::string_view text) {
 
 class UpdateRun {
  public:
-  UpdateRun(rdf::WriteTransaction& transaction, const ast::Update& update, const UpdateOptions& options)
+  UpdateRun(rdf::WriteTransaction& transaction, const ast::Update& update, const UpdateOptions& options,
+            const Guard& guard)
       : transaction_(transaction),
         update_(update),
         options_(options),
         writer_(transaction),
         random_(options.query.seed ? *options.query.seed : std::random_device{}()),
-        label_prefix_(freshPrefix()) {}
+        label_prefix_(freshPrefix()) {
+    guard_ = guard;
+  }
 
   UpdateReport run() {
     for (const ast::UpdateOperation& operation : update_.operations) {
       operation_ = &operation;
+      const std::size_t held = guard_.usage().bytes;
       std::visit([this](const auto& part) { perform(part); }, operation.value);
+      guard_.holdOnly(held);
     }
     return report_;
   }
@@ -69,7 +74,7 @@ class UpdateRun {
   void checkRemovable(const rdf::QuadReader& reader, const std::vector<ChangedQuad>& removals) const;
   void apply(const rdf::QuadReader& reader, const Changes& changes);
   void clearTarget(const ast::GraphTarget& target);
-  std::vector<Quad> quadsOf(const Term& graph) const;
+  std::vector<Quad> quadsOf(const Term& graph);
   std::string freshPrefix();
   std::vector<std::string> blankLabels() const;
   std::string freshLabel() { return label_prefix_ + std::to_string(++fresh_labels_); }
@@ -83,6 +88,7 @@ class UpdateRun {
   std::uint64_t fresh_labels_ = 0, modify_runs_ = 0;
   std::map<std::string, std::string> request_labels_;
   const ast::UpdateOperation* operation_ = nullptr;
+  Guard guard_;
   UpdateReport report_;
 };
 
@@ -141,7 +147,7 @@ void UpdateRun::perform(const ast::Load& load) {
   apply(rdf::QuadReader(transaction_), changes);
 }
 
-std::vector<Quad> UpdateRun::quadsOf(const Term& graph) const {
+std::vector<Quad> UpdateRun::quadsOf(const Term& graph) {
   std::vector<Quad> quads;
   const rdf::QuadReader reader(transaction_);
   const auto id = graph.text.empty() ? std::optional<rdf::TermId>(rdf::kNoTerm) : reader.idOf(graph);
@@ -150,6 +156,8 @@ std::vector<Quad> UpdateRun::quadsOf(const Term& graph) const {
   pattern.g = *id;
   rdf::QuadCursor cursor = reader.scan(pattern);
   for (rdf::QuadIds quad; cursor.next(quad);) {
+    guard_.work(1);
+    guard_.charge(sizeof(ChangedQuad));
     quads.push_back({reader.termOf(quad.s), reader.termOf(quad.p), reader.termOf(quad.o), graph});
   }
   return quads;
@@ -244,7 +252,7 @@ void UpdateRun::checkRemovable(const rdf::QuadReader& reader, const std::vector<
 }
 
 void UpdateRun::apply(const rdf::QuadReader& reader, const Changes& changes) {
-  const ChangeCounts counts = applyChanges(reader, writer_, changes);
+  const ChangeCounts counts = applyChanges(reader, writer_, changes, guard_);
   report_.inserted += counts.inserted;
   report_.deleted += counts.deleted;
 }
@@ -256,7 +264,9 @@ void UpdateRun::perform(const ast::Modify& modify) {
   run.seed = random_();
   run.default_graph = modify.with.value_or(defaultGraph());
   run.fresh_label = [this] { return freshLabel(); };
+  run.used = guard_.usage();
   const Changes changes = run.changes();
+  guard_.start(options_.query.budget, run.usedAfter());
   for (const ExpressionWarning& warning : run.warnings())
     report_.warnings.push_back(
         warningAt(options_.query.source_name, update_.text, warning.at, warning.message, warning.hint));
@@ -272,8 +282,12 @@ UpdateReport runUpdate(rdf::WriteTransaction& transaction, std::string_view text
   SparqlParseOptions parse_options;
   parse_options.file = options.query.source_name;
   parse_options.base_iri = options.query.base_iri;
+  parse_options.prefixes = options.query.prefixes;
+  Guard guard;
+  guard.start(options.query.budget);
+  parse_options.count = [&guard](std::size_t tokens) { guard.chargeForTokens(tokens); };
   const ast::Update update = parseUpdate(text, parse_options);
-  return UpdateRun(transaction, update, options).run();
+  return UpdateRun(transaction, update, options, guard).run();
 }
 
 }  // namespace cluxel::sparql

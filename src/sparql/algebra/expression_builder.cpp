@@ -3,6 +3,7 @@
 #include "base/nearest_name.hpp"
 #include "cluxel/error.hpp"
 #include "sparql/algebra/algebra_builder.hpp"
+#include "sparql/exec/guard.hpp"
 #include "sparql/functions/regex_cache.hpp"
 
 namespace cluxel::sparql {
@@ -61,6 +62,7 @@ Expr ofKind(Expr::Kind kind, ast::SourceOffset at) {
 }  // namespace
 
 Expr AlgebraBuilder::expression(const ast::Expression& written, Scope& scope, const SlotSet& visible) {
+  if (options_.guard != nullptr) options_.guard->spend(sizeof(Expr));
   switch (written.kind) {
     case Written::Variable: {
       const Slot slot = slotOf(written.variable, scope);

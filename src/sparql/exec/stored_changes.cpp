@@ -9,6 +9,9 @@
 namespace cluxel::sparql {
 namespace {
 
+/// Of a change that waits for the writer's flush, and its place in the lists.
+constexpr std::size_t kBytesOfPending = 64;
+
 std::optional<rdf::QuadIds> storedIds(const rdf::QuadReader& reader, const Quad& quad) {
   const auto s = reader.idOf(quad.subject), p = reader.idOf(quad.predicate), o = reader.idOf(quad.object);
   const auto g = quad.graph.text.empty() ? std::optional<rdf::TermId>(rdf::kNoTerm) : reader.idOf(quad.graph);
@@ -17,10 +20,14 @@ std::optional<rdf::QuadIds> storedIds(const rdf::QuadReader& reader, const Quad&
   return reader.contains(ids) ? std::optional(ids) : std::nullopt;
 }
 
-std::vector<rdf::QuadIds> storedRemovals(const rdf::QuadReader& reader, const std::vector<ChangedQuad>& removed) {
+std::vector<rdf::QuadIds> storedRemovals(const rdf::QuadReader& reader, const std::vector<ChangedQuad>& removed,
+                                         Guard& guard) {
   std::vector<rdf::QuadIds> ids;
-  for (const ChangedQuad& change : removed)
+  guard.charge(removed.size() * kBytesOfPending);
+  for (const ChangedQuad& change : removed) {
+    guard.work(1);
     if (const auto stored = storedIds(reader, change.quad)) ids.push_back(*stored);
+  }
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   return ids;
@@ -39,8 +46,10 @@ std::optional<rdf::TermId> lockedGraph(const rdf::QuadReader& reader, const Quad
 
 }  // namespace
 
-ChangeCounts applyChanges(const rdf::QuadReader& reader, rdf::QuadWriter& writer, const Changes& changes) {
-  const std::vector<rdf::QuadIds> removed = storedRemovals(reader, changes.removed);
+ChangeCounts applyChanges(const rdf::QuadReader& reader, rdf::QuadWriter& writer, const Changes& changes,
+                          Guard& guard) {
+  const std::vector<rdf::QuadIds> removed = storedRemovals(reader, changes.removed, guard);
+  guard.charge(changes.inserted.size() * kBytesOfPending);
   std::vector<bool> stays(removed.size(), false);
   for (const ChangedQuad& change : changes.inserted) {
     const auto stored = storedIds(reader, change.quad);
@@ -55,7 +64,10 @@ ChangeCounts applyChanges(const rdf::QuadReader& reader, rdf::QuadWriter& writer
     writer.remove(removed[i]);
     ++counts.deleted;
   }
-  for (const ChangedQuad& change : changes.inserted) writer.add(change.quad);
+  for (const ChangedQuad& change : changes.inserted) {
+    guard.work(1);
+    writer.add(change.quad);
+  }
   writer.flush();
   counts.inserted = reader.size() + counts.deleted - before;
   return counts;

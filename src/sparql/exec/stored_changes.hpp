@@ -19,7 +19,7 @@ struct ChangeCounts {
 
 /// Writes and flushes the changes. A quad that is removed and inserted stays. The reader must see the state of the
 /// writer's last flush.
-ChangeCounts applyChanges(const rdf::QuadReader& reader, rdf::QuadWriter& writer, const Changes& changes);
+ChangeCounts applyChanges(const rdf::QuadReader& reader, rdf::QuadWriter& writer, const Changes& changes, Guard& guard);
 
 /// The removals that name no graph and whose triples lie in graphs that may not be written: after the removal from the
 /// default graph the union would still hold them.

@@ -32,9 +32,11 @@ class ModifyRun {
   std::uint64_t seed = 0;
   Term default_graph;                        ///< for templates without a graph
   std::function<std::string()> fresh_label;  ///< labels for blank nodes of templates
+  Guard::Usage used;                         ///< of the budget, by what went before
 
   /// The quads to remove and insert for all solutions; does not modify the store.
   Changes changes();
+  Guard::Usage usedAfter() const { return used_after_; }
   const std::vector<ExpressionWarning>& warnings() const { return warnings_; }
 
  private:
@@ -54,6 +56,7 @@ class ModifyRun {
   QueryTerms terms_;
   std::vector<Slot> slot_of_variable_;
   std::vector<ExpressionWarning> warnings_;
+  Guard::Usage used_after_;
 };
 
 }  // namespace cluxel::sparql
