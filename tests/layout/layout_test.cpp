@@ -151,7 +151,7 @@ TEST(Layout, ThePythonModuleSeesTheInstalledInterfaceOnly) {
 }
 
 /// The files that may include a heavy package: names that begin with `name`, and at most `max_files` of them. Redland's
-/// tables of C callbacks need two modules (docs/decisions.md).
+/// tables of C callbacks need two modules (docs/decisions.md). PROJ places maps (tasks) and measures (sparql).
 struct Wall {
   std::string name;
   std::size_t max_files;
@@ -161,7 +161,7 @@ TEST(Layout, HeavyPackagesStayInFewFilesThatAreNamedForThem) {
   const std::map<std::string, Wall> walls{{"pcl/", {"pcl_", 2}},     {"yaml-cpp/", {"yaml_", 1}},
                                           {"lmdb", {"lmdb_", 1}},    {"librdf", {"redland_", 7}},
                                           {"raptor", {"rdf_", 1}},   {"rasqal", {"", 0}},
-                                          {"embree", {"ray_", 2}},   {"proj.h", {"proj_", 1}},
+                                          {"embree", {"ray_", 2}},   {"proj.h", {"proj_", 2}},
                                           {"boost/graph/", {"", 3}}, {"boost/geometry", {"geometry", 2}}};
   for (const auto& [package, wall] : walls) {
     std::set<fs::path> users;

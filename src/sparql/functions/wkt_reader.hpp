@@ -16,6 +16,7 @@ struct WktShape {
   WktPath points;
   std::vector<WktPath> lines;
   std::vector<std::vector<WktPath>> polygons;  ///< outer ring, then the holes
+  bool has_height = false;                     ///< coordinates beyond x and y were dropped
 };
 
 /// POINT, LINESTRING, POLYGON, MULTI…, GEOMETRYCOLLECTION, with Z, M, ZM (dropped) and EMPTY; none for other text.
