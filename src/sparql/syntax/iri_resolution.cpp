@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// IRI resolution by RFC 3986, sections 5.2.2 to 5.2.4 and 5.3. Absolute IRIs stay as they are: N-Triples keeps their
-// dot segments, and what a query shows must be what a query can ask for.
+// IRI resolution by RFC 3986, sections 5.2.2 to 5.2.4 and 5.3.
 #include "sparql/syntax/iri_resolution.hpp"
 
 #include <optional>
@@ -92,6 +91,11 @@ std::string mergedPath(const IriParts& base, std::string_view path) {
   return std::string(base.path.substr(0, slash == std::string_view::npos ? 0 : slash + 1)).append(path);
 }
 
+bool mayHoldDotSegments(std::string_view iri) {
+  return iri.find("/./") != std::string_view::npos || iri.find("/../") != std::string_view::npos ||
+         iri.ends_with("/.") || iri.ends_with("/..");
+}
+
 std::string recompose(const IriParts& parts, std::string_view path) {
   std::string iri(parts.scheme);
   iri += ':';
@@ -109,7 +113,11 @@ bool isAbsoluteIri(std::string_view iri) {
 }
 
 std::string resolveIri(std::string_view reference, std::string_view base_iri) {
-  if (isAbsoluteIri(reference)) return std::string(reference);
+  if (isAbsoluteIri(reference)) {
+    if (!mayHoldDotSegments(reference)) return std::string(reference);
+    const IriParts parts = split(reference);
+    return recompose(parts, parts.path.starts_with('/') ? withoutDotSegments(parts.path) : std::string(parts.path));
+  }
   const IriParts base = split(base_iri);
   IriParts target = split(reference);
   target.scheme = base.scheme;

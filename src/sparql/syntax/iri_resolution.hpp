@@ -10,8 +10,9 @@ namespace cluxel::sparql {
 /// True when `iri` has a scheme ("http:") and needs no base.
 bool isAbsoluteIri(std::string_view iri);
 
-/// Resolves `reference` against `base`, which must be absolute unless the reference is. An absolute reference is
-/// returned as it is, dot segments included: N-Triples and N-Quads keep them, and IRIs in queries and data must agree.
+/// Resolves `reference` against `base`, which must be absolute unless the reference is. Dot segments are removed from
+/// absolute references too; nothing else is normalised. The readers of RDF do the same, and IRIs in queries
+/// and data must agree.
 std::string resolveIri(std::string_view reference, std::string_view base);
 
 }  // namespace cluxel::sparql
