@@ -7,9 +7,9 @@
 namespace cluxel::app {
 namespace {
 
-const std::vector<std::string> kCommands{"info",   "simulate", "register", "build",  "extend",  "retract",
-                                         "repose", "merge",    "query",    "update", "tasks",   "explain",
-                                         "rules",  "train",    "evaluate", "export", "compact", "doctor"};
+const std::vector<std::string> kCommands{"info",  "simulate", "register", "build",  "extend",  "retract", "repose",
+                                         "merge", "query",    "update",   "load",   "dump",    "tasks",   "explain",
+                                         "rules", "train",    "evaluate", "export", "compact", "doctor"};
 
 bool hasTool(const std::string& tool) {
   return std::system(("command -v " + tool + " > /dev/null").c_str()) == 0;
