@@ -5,7 +5,7 @@
 #include <set>
 #include <unordered_set>
 
-#include "cluxel/error.hpp"
+#include "rdf/ontology/closure_bounds.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
 
@@ -47,36 +47,10 @@ struct Implied {
   auto operator<=>(const Implied&) const = default;
 };
 
-/// Counts derived facts and steps of work, and ends a closure that grows beyond its limits.
-class Bounds {
- public:
-  Bounds(const QuadReader& reader, const ClosureLimits& limits) : reader_(reader), limits_(limits) {}
-
-  void addFact(TermId property) {
-    if (++facts_ > limits_.max_facts) fail(property, "more than " + std::to_string(limits_.max_facts) + " facts");
-  }
-  void addStep(TermId property) {
-    if (++steps_ > limits_.max_steps) fail(property, "more than " + std::to_string(limits_.max_steps) + " steps");
-  }
-
- private:
-  [[noreturn]] void fail(TermId property, const std::string& what) const {
-    throw Error(ErrorKind::BudgetExceeded,
-                "the closure was ended because it takes " + what + ", at the last of " +
-                    toNTriples(reader_.termOf(property)) +
-                    ": remove the statement that makes this property or one below it transitive, symmetric or inverse, "
-                    "or the cycle in which it lies");
-  }
-
-  const QuadReader& reader_;
-  ClosureLimits limits_;
-  std::uint64_t facts_ = 0, steps_ = 0;
-};
-
 /// The known facts by property: facts of the store are read on demand, derived facts are kept here.
 class Facts {
  public:
-  Facts(const QuadReader& reader, std::span<const TermId> sources, Bounds& bounds)
+  Facts(const QuadReader& reader, std::span<const TermId> sources, ClosureBounds& bounds)
       : reader_(reader),
         sources_(sources.begin(), sources.end()),
         lookup_(reader.lookup(QuadOrder::Spog)),
@@ -129,7 +103,7 @@ class Facts {
     return quads;
   }
 
-  Bounds& bounds() const { return bounds_; }
+  ClosureBounds& bounds() const { return bounds_; }
   bool isIri(TermId id) const { return reader_.valueOf(id).kind == TermKind::Iri; }
   bool isResource(TermId id) const { return reader_.valueOf(id).kind != TermKind::Literal; }
 
@@ -164,7 +138,7 @@ class Facts {
   const QuadReader& reader_;
   std::vector<TermId> sources_;
   PrefixLookup lookup_;
-  Bounds& bounds_;
+  ClosureBounds& bounds_;
   std::map<TermId, Derived> derived_;
 };
 
@@ -177,7 +151,7 @@ Edges edgesOf(const Facts& facts, TermId property) {
 }
 
 /// All nodes reachable from a node along a property.
-std::set<TermId> reachableFrom(TermId node, const Edges& edges, TermId property, Bounds& bounds) {
+std::set<TermId> reachableFrom(TermId node, const Edges& edges, TermId property, ClosureBounds& bounds) {
   std::set<TermId> reached;
   std::vector<TermId> open = {node};
   while (!open.empty()) {
@@ -201,7 +175,8 @@ struct OntologyRules {
   bool operator==(const OntologyRules&) const = default;
 };
 
-std::set<Implied> allImplied(TermId property, const std::map<TermId, std::set<Implied>>& direct, Bounds& bounds) {
+std::set<Implied> allImplied(TermId property, const std::map<TermId, std::set<Implied>>& direct,
+                             ClosureBounds& bounds) {
   std::set<Implied> reached;
   std::vector<Implied> open(direct.at(property).begin(), direct.at(property).end());
   while (!open.empty()) {
@@ -343,7 +318,7 @@ ClosureLimits ClosureLimits::of(const QuadReader& reader) {
 EntailedQuads closureOf(const QuadReader& reader, TermId target, std::span<const TermId> sources,
                         const ClosureLimits& limits) {
   const Words words(reader);
-  Bounds bounds(reader, limits);
+  ClosureBounds bounds(reader, limits);
   Facts facts(reader, sources, bounds);
   Closure closure(facts, words);
   closure.run();
