@@ -114,7 +114,7 @@ std::vector<Object> objectsOf(const Map& map, const std::optional<std::string>& 
 }
 
 void bindSummary(py::module_& module) {
-  namedTuple(module, "UpdateCounts", "inserted deleted", "Numbers of quads that an update asked to add and to remove.");
+  namedTuple(module, "UpdateCounts", "inserted deleted", "Numbers of quads that came and went by an update.");
   py::class_<MapSummary>(module, "MapSummary", "What a map holds.")
       .def_readonly("is_finished", &MapSummary::is_finished, "False: its build was interrupted.")
       .def_readonly("inputs_hash", &MapSummary::inputs_hash, "Hash of ontology, rules, model and parameters.")

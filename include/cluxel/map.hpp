@@ -53,7 +53,7 @@ struct QueryOptions {
   std::function<void()> poll;
 };
 
-/// Quads that an update asked to add and to remove.
+/// Quads that came and went by an update.
 struct UpdateCounts {
   std::uint64_t inserted = 0, deleted = 0;
 };

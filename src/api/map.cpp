@@ -107,6 +107,7 @@ Answer Map::query(std::string_view text, const QueryOptions& options) const {
   sparql::QueryOptions engine;
   if (options.strict_default_graph) engine.default_graph = sparql::DefaultGraph::Unnamed;
   engine.source_name = options.source_name;
+  engine.prefixes = sparql::mapPrefixes();
   if (options.deadline.count() > 0) engine.budget.deadline = options.deadline;
   engine.budget.max_rows = options.max_rows;
   engine.budget.max_memory_bytes = options.max_memory_bytes;
@@ -115,8 +116,10 @@ Answer Map::query(std::string_view text, const QueryOptions& options) const {
   std::vector<std::string> names;
   for (const sparql::Binding& binding : bindings) names.push_back(binding.first);
   auto data = std::make_shared<Answer::Data>();
-  data->result = sparql::PreparedQuery(reader, text, engine, names).evaluate(bindings);
-  data->warnings = checkQuery(reader, text, engine);
+  sparql::PreparedQuery prepared(reader, text, engine, names);
+  data->result = prepared.evaluate(bindings);
+  data->warnings = prepared.warnings();
+  for (Diagnostic& note : prepared.notes()) data->warnings.push_back(std::move(note));
   return Answer(std::move(data));
 }
 
@@ -124,8 +127,8 @@ UpdateCounts Map::update(std::string_view text) {
   const std::lock_guard lock(impl_->mutex);
   impl_->map.release();  // its pages can be used again once the update is committed
   ProgressSink silence;
-  const sparql::UpdateReport report =
-      mapping::updateMap(impl_->file, std::string(text), {.query = {.source_name = "update"}}, silence);
+  const sparql::UpdateReport report = mapping::updateMap(
+      impl_->file, std::string(text), {.query = {.prefixes = sparql::mapPrefixes(), .source_name = "update"}}, silence);
   return {report.inserted, report.deleted};
 }
 

@@ -70,6 +70,8 @@ void addRegister(CLI::App& app, Session& session);
 void addBuild(CLI::App& app, Session& session);
 void addTrain(CLI::App& app, Session& session);
 void addQuery(CLI::App& app, Session& session);
+void addLoad(CLI::App& app, Session& session);
+void addDump(CLI::App& app, Session& session);
 void addUpdate(CLI::App& app, Session& session);
 void addTasks(CLI::App& app, Session& session);
 void addRules(CLI::App& app, Session& session);

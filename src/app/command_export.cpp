@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel export`: a map in other formats.
 #include "app/command.hpp"
+#include "app/plain_store.hpp"
 #include "app/unfinished_note.hpp"
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
@@ -50,8 +51,6 @@ void addExport(CLI::App& app, Session& session) {
   onRun(*command, session, [options, &session] {
     const tasks::ExportFormat format = formatOf(*options);
     refuseToReplaceAMap(options->output);
-    const mapping::MapReader map(options->map);
-    noteUnfinished(options->map, map.isFinished(), options->allow_unfinished, session);
     std::string bytes;
     const bool to_stdout = options->output.empty();
     const auto write = [&](std::string_view piece) {
@@ -60,7 +59,13 @@ void addExport(CLI::App& app, Session& session) {
       else
         bytes.append(piece);
     };
-    exportMap(map, format, write, options->local ? tasks::ExportFrame::Local : tasks::ExportFrame::LongitudeLatitude);
+    if (const auto store = storeWithoutScans(options->map); store && isRdf(format)) {
+      exportQuads(*store, format, write);
+    } else {
+      const mapping::MapReader map(options->map);
+      noteUnfinished(options->map, map.isFinished(), options->allow_unfinished, session);
+      exportMap(map, format, write, options->local ? tasks::ExportFrame::Local : tasks::ExportFrame::LongitudeLatitude);
+    }
     if (!to_stdout) writeFile(options->output, bytes);
     return ExitCode::Done;
   });

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/command.hpp"
+#include "app/plain_store.hpp"
 #include "app/scan_options.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/map_reader.hpp"
@@ -118,7 +119,25 @@ Json cloudsJson(const std::vector<mapping::Cloud>& clouds) {
   return json;
 }
 
+ExitCode infoOfStore(const fs::path& file, const rdf::QuadReader& quads, const Session& session) {
+  Json graphs = Json::object();
+  for (const rdf::TermId graph : quads.graphs())
+    graphs[graph == rdf::kNoTerm ? "" : quads.termOf(graph).text] =
+        quads.count({.s = {}, .p = {}, .o = {}, .g = graph});
+  if (session.json) {
+    printJson(Json{{"file", file.string()}, {"quads", quads.size()}, {"terms", quads.termCount()}, {"graphs", graphs}});
+    return ExitCode::Done;
+  }
+  std::printf("%s: store without scans, %llu quads, %zu graphs\n", file.c_str(),
+              static_cast<unsigned long long>(quads.size()), graphs.size());
+  for (const auto& [name, count] : graphs.items())
+    std::printf("  %10llu  %s\n", count.get<unsigned long long>(),
+                name.empty() ? "the unnamed graph" : ("<" + name + ">").c_str());
+  return ExitCode::Done;
+}
+
 ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Session& session) {
+  if (const auto store = storeWithoutScans(file)) return infoOfStore(file, *store, session);
   const mapping::MapReader map(file);
   const mapping::MapSummary summary = map.summary();
   const mapping::MapInputs inputs = map.inputs();

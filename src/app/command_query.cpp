@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/budget_options.hpp"
 #include "app/command.hpp"
 #include "app/named_sources.hpp"
+#include "app/spool.hpp"
 #include "app/unfinished_note.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/map_state.hpp"
 #include "sparql/results/result_writer.hpp"
+#include "sparql/syntax/parser.hpp"
 #include "tasks/query_source.hpp"
 
 namespace cluxel::app {
@@ -17,11 +20,11 @@ namespace {
 
 struct QueryArguments {
   fs::path source, file;
-  std::string text, format;
+  std::string text, format, base_iri;
   std::vector<std::string> params, services;
-  double deadline_s = 0;
-  std::uint64_t max_rows = 0, max_memory_mib = 0;
-  bool explain = false, why_empty = false, strict = false, allow_unfinished = false;
+  BudgetOptions budget;
+  std::uint64_t max_rows = 0;
+  bool explain = false, why_empty = false, strict = false, no_prefixes = false, check = false, allow_unfinished = false;
 };
 
 /// Counts the rows that go to the writer.
@@ -57,21 +60,15 @@ class CountingSink : public sparql::ResultSink {
   bool is_false_ = false;
 };
 
-/// Larger limits are no limits in practice, and would overflow.
-constexpr double kMaxDeadline_s = 1e9;
-constexpr std::uint64_t kMaxMemory_mib = std::uint64_t{1} << 40U;
-
 sparql::QueryOptions optionsOf(const QueryArguments& arguments, const tasks::QuerySource& source,
                                const std::string& name) {
   sparql::QueryOptions options;
   options.default_graph = arguments.strict ? sparql::DefaultGraph::Unnamed : source.default_graph;
   options.source_name = name;
-  if (arguments.deadline_s > 0)
-    options.budget.deadline =
-        std::chrono::milliseconds(std::llround(std::min(arguments.deadline_s, kMaxDeadline_s) * 1000));
+  options.base_iri = arguments.base_iri;
+  if (!arguments.no_prefixes) options.prefixes = sparql::mapPrefixes();
+  arguments.budget.applyTo(options.budget);
   options.budget.max_rows = arguments.max_rows;
-  if (arguments.max_memory_mib > 0)
-    options.budget.max_memory_bytes = std::min(arguments.max_memory_mib, kMaxMemory_mib) << 20U;
   return options;
 }
 
@@ -95,8 +92,22 @@ bool isFinished(const tasks::QuerySource& source) {
   return !state || state->is_finished;
 }
 
+void warn(const std::vector<Diagnostic>& warnings) {
+  for (const Diagnostic& warning : warnings) std::fprintf(stderr, "%s\n", format(warning).c_str());
+}
+
+ExitCode checkSyntax(const QueryArguments& arguments, const tasks::Question& question) {
+  sparql::SparqlParseOptions options;
+  options.file = question.file.string();
+  options.base_iri = arguments.base_iri;
+  if (!arguments.no_prefixes) options.prefixes = sparql::mapPrefixes();
+  parseQuery(question.text, options);
+  return ExitCode::Done;
+}
+
 ExitCode query(const QueryArguments& arguments, Session& session) {
   const tasks::Question question = questionFrom(arguments.file, arguments.text, session);
+  if (arguments.check) return checkSyntax(arguments, question);
   const tasks::QuerySource source = tasks::openQuerySource(arguments.source);
   noteUnfinished(arguments.source, isFinished(source), arguments.allow_unfinished, session);
   const rdf::QuadReader reader = source.reader();
@@ -108,15 +119,16 @@ ExitCode query(const QueryArguments& arguments, Session& session) {
   names.reserve(bindings.size());
   for (const sparql::Binding& binding : bindings) names.push_back(binding.first);
   sparql::PreparedQuery prepared(reader, question.text, options, names);
-  for (const Diagnostic& warning : checkQuery(reader, question.text, options))
-    std::fprintf(stderr, "%s\n", format(warning).c_str());
-  const auto writer = makeResultWriter(formatOf(arguments, session, prepared.form()), [](std::string_view piece) {
-    std::fwrite(piece.data(), 1, piece.size(), stdout);
-  });
+  for (const Diagnostic& warning : prepared.warnings()) std::fprintf(stderr, "%s\n", format(warning).c_str());
+  Spool spool(options.budget.deadline.has_value());
+  const auto writer = makeResultWriter(formatOf(arguments, session, prepared.form()),
+                                       [&spool](std::string_view piece) { spool.write(piece); });
   CountingSink counter(*writer);
   prepared.run(counter, bindings);
-  std::fflush(stdout);
-  if (arguments.explain) std::fprintf(stderr, "%s\n", prepared.explain().c_str());
+  spool.finish();
+  warn(prepared.notes());
+  if (arguments.explain)
+    std::fprintf(stderr, "%s\n", (session.json ? prepared.explainJson() : prepared.explain()).c_str());
   if (arguments.why_empty && counter.exitCode() == ExitCode::NoRows)
     std::fprintf(stderr, "%s\n", whyEmpty(reader, question.text, options, bindings).c_str());
   return counter.exitCode();
@@ -164,16 +176,17 @@ void addQuery(CLI::App& app, Session& session) {
   command->add_option("--service", options->services,
                       "IRI=SOURCE: a map or RDF file that answers SERVICE <IRI>; others are refused");
   command->add_option("--format", options->format, "table, json, xml, csv, tsv; for graphs turtle, ntriples");
-  command->add_option("--deadline", options->deadline_s, "seconds after which the query fails with exit code 6")
-      ->check(above0());
+  addBudget(*command, options->budget);
   command->add_option("--max-rows", options->max_rows, "rows above which the query fails with exit code 6")
       ->check(above0());
-  command->add_option("--max-memory", options->max_memory_mib, "MiB above which the query fails with exit code 6")
-      ->check(above0());
-  command->add_flag("--explain", options->explain, "print the plan with estimated and actual rows on stderr");
+  command->add_flag("--explain", options->explain,
+                    "print the plan with estimated and actual rows on stderr; with --json as JSON in one line");
   command->add_flag("--why-empty", options->why_empty,
                     "when there is no row, name the pattern that removed the last one");
   command->add_flag("--strict", options->strict, "the default graph is the unnamed graph, not the union");
+  command->add_flag("--no-prefixes", options->no_prefixes, "know only the prefixes that the query declares");
+  command->add_option("--base", options->base_iri, "base IRI of relative IRIs");
+  command->add_flag("--check", options->check, "only check the syntax");
   addAllowUnfinished(*command, options->allow_unfinished);
   onRun(*command, session, [options, &session] { return query(*options, session); });
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel update`: changes to the operator's statements by SPARQL Update.
+#include "app/budget_options.hpp"
 #include "app/command.hpp"
 #include "app/named_sources.hpp"
 #include "base/file_bytes.hpp"
 #include "mapping/build/map_update.hpp"
 #include "rdf/io/rdf_io.hpp"
+#include "sparql/syntax/parser.hpp"
 
 namespace cluxel::app {
 
@@ -33,13 +35,36 @@ struct UpdateArguments {
   fs::path map, file;
   std::string text;
   std::vector<std::string> loads;
+  std::string base_iri;
+  BudgetOptions budget;
+  bool strict = false, no_prefixes = false, check = false;
 };
+
+sparql::UpdateOptions optionsOf(const UpdateArguments& arguments, const std::string& name) {
+  sparql::UpdateOptions options;
+  options.query.source_name = name;
+  options.query.base_iri = arguments.base_iri;
+  if (!arguments.no_prefixes) options.query.prefixes = sparql::mapPrefixes();
+  if (arguments.strict) options.query.default_graph = sparql::DefaultGraph::Unnamed;
+  options.any_graph_writable = arguments.strict;
+  arguments.budget.applyTo(options.query.budget);
+  return options;
+}
+
+ExitCode checkSyntax(const sparql::QueryOptions& query, const std::string& text) {
+  sparql::SparqlParseOptions options;
+  options.file = query.source_name;
+  options.base_iri = query.base_iri;
+  options.prefixes = query.prefixes;
+  parseUpdate(text, options);
+  return ExitCode::Done;
+}
 
 ExitCode update(const UpdateArguments& arguments, Session& session) {
   const tasks::Question question = questionFrom(arguments.file, arguments.text, session);
   const std::map<std::string, fs::path> loads = namedFiles("--load", arguments.loads);
-  sparql::UpdateOptions options;
-  options.query.source_name = question.file.string();
+  sparql::UpdateOptions options = optionsOf(arguments, question.file.string());
+  if (arguments.check) return checkSyntax(options.query, question.text);
   if (!loads.empty()) options.load = [&loads](const std::string& iri) { return triplesOf(loads, iri); };
   const sparql::UpdateReport report = mapping::updateMap(arguments.map, question.text, options, session.console);
   if (session.json)
@@ -59,6 +84,13 @@ void addUpdate(CLI::App& app, Session& session) {
   command->add_option("update", options->file, "a file with the update");
   command->add_option("-e,--text", options->text, "the update itself");
   command->add_option("--load", options->loads, "IRI=FILE: the RDF file that LOAD <IRI> reads; others are refused");
+  addBudget(*command, options->budget);
+  command->add_option("--base", options->base_iri, "base IRI of relative IRIs");
+  command->add_flag("--no-prefixes", options->no_prefixes, "know only the prefixes that the update declares");
+  command->add_flag(
+      "--strict", options->strict,
+      "in a store that no build has made: every graph may be written, and the default graph is the unnamed one");
+  command->add_flag("--check", options->check, "only check the syntax");
   onRun(*command, session, [options, &session] { return update(*options, session); });
 }
 

@@ -42,6 +42,8 @@ void addCommands(CLI::App& app, Session& session) {
   addChange(app, session);
   addQuery(app, session);
   addUpdate(app, session);
+  addLoad(app, session);
+  addDump(app, session);
   addTasks(app, session);
   addExplain(app, session);
   addRules(app, session);

@@ -35,6 +35,7 @@ class Reader {
     space();
     return text_.empty();
   }
+  bool hasHeight() const { return has_height_; }
 
  private:
   static bool isTag(const std::string& tag) {
@@ -87,6 +88,7 @@ class Reader {
     space();
     for (int i = 0; i < 2 && !text_.empty() && text_[0] != ',' && text_[0] != ')'; ++i) {
       if (!number(dropped)) return false;
+      has_height_ = true;
       space();
     }
     out.emplace_back(x, y);
@@ -116,6 +118,7 @@ class Reader {
   }
 
   std::string_view text_;
+  bool has_height_ = false;
 };
 
 std::string_view withoutSpace(std::string_view text) {
@@ -139,6 +142,7 @@ std::optional<WktShape> readWkt(std::string_view text) {
   Reader reader(text);
   WktShape shape;
   if (!reader.geometry(shape) || !reader.done()) return std::nullopt;
+  shape.has_height = reader.hasHeight();
   return shape;
 }
 

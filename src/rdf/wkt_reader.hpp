@@ -16,6 +16,7 @@ struct WktShape {
   WktPath points;
   std::vector<WktPath> lines;
   std::vector<std::vector<WktPath>> polygons;  ///< outer ring, then the holes
+  bool has_height = false;                     ///< coordinates beyond x and y were dropped
 };
 
 /// A geo:wktLiteral: the IRI of its reference system with angle brackets, if it begins with one, and the rest.

@@ -26,13 +26,14 @@ enum class DefaultGraph {
   Unnamed           ///< the unnamed graph only, as in the W3C tests
 };
 
-/// The resource limits of a query; 0 or absent means unlimited. Exceeding one throws Error (BudgetExceeded); partial
-/// results are never returned.
+/// The resource limits of a query or update; 0 or absent means unlimited. They cover parsing, planning, evaluation and
+/// the calls of the result sink. Exceeding one throws Error (BudgetExceeded); partial results are never returned.
 struct QueryBudget {
-  std::optional<std::chrono::milliseconds> deadline = std::nullopt;  ///< measured from the start of run()
-  std::uint64_t max_rows = 0;                                        ///< rows of the result
-  std::uint64_t max_work_rows = 0;                                   ///< total rows passed between operators
-  std::uint64_t max_memory_bytes = 4ull << 30;                       ///< held by joins, sorts, groups and the result
+  std::optional<std::chrono::milliseconds> deadline =
+      std::nullopt;                             ///< of a run; the first run includes the preparation
+  std::uint64_t max_rows = 0;                   ///< rows of the result
+  std::uint64_t max_work_rows = 0;              ///< total rows passed between operators
+  std::uint64_t max_memory_bytes = 4ull << 30;  ///< held by the query, its plan and its results
   /// Called every few thousand rows in the thread of the query. What it throws ends the query.
   std::function<void()> poll = {};
 };
@@ -41,6 +42,8 @@ struct QueryOptions {
   DefaultGraph default_graph = DefaultGraph::UnionButHistory;
   QueryBudget budget = {};
   std::string base_iri = {};
+  /// Prefixes that need no PREFIX line, such as mapPrefixes(); a PREFIX line overrides them.
+  std::vector<std::pair<std::string, std::string>> prefixes = {};
   /// The name of the query in diagnostics.
   std::string source_name = "query";
   /// The default and named graphs, in place of FROM and FROM NAMED (the parameters of the SPARQL protocol).
@@ -57,6 +60,9 @@ struct QueryOptions {
   bool refuse_volatile =
       false;  ///< for rules: BNODE, RAND, NOW, UUID and LIMIT over unsorted rows are errors; history is hidden
 };
+
+/// The prefixes of a map's vocabularies with their namespaces: clx, geo, geof, sosa, prov, rdf, rdfs, owl, xsd, skos.
+const std::vector<std::pair<std::string, std::string>>& mapPrefixes();
 
 using Binding = std::pair<std::string, Term>;  ///< a variable's name without '?' and its value
 
@@ -75,13 +81,21 @@ class PreparedQuery {
 
   ast::QueryForm form() const;
   const std::vector<std::string>& variables() const;  ///< of a SELECT, in order
-  /// Calls the sink only after the complete result is computed; it is not called when a budget is exceeded.
+  /// Classes, properties and graphs that the store does not contain, with suggestions; unknown functions and constant
+  /// patterns that are no regular expressions.
+  std::vector<Diagnostic> warnings() const;
+  /// What the functions noted in the last run: geometries that could not be measured, coordinates that were left out.
+  std::vector<Diagnostic> notes() const;
+  /// Calls the sink only after the complete result is computed; it is not called when a budget is exceeded before. A
+  /// deadline that passes during its calls ends them by an Error.
   void run(ResultSink& sink, const std::vector<Binding>& bindings = {});
   QueryResult evaluate(const std::vector<Binding>& bindings = {});
   /// True when there is a solution (the result of ASK); stops at the first.
   bool ask(const std::vector<Binding>& bindings = {});
   /// The plan as text; after a run, with actual and estimated row counts.
   std::string explain() const;
+  /// The same as JSON in one line: {"operator", "estimated", "actual" (after a run), "inputs": [...]}.
+  std::string explainJson() const;
 
  private:
   std::unique_ptr<Impl> impl_;
@@ -94,7 +108,7 @@ QueryResult evaluateQuery(const rdf::QuadReader& reader, std::string_view text, 
 /// solutions.
 std::string whyEmpty(const rdf::QuadReader& reader, std::string_view text, const QueryOptions& options = {},
                      const std::vector<Binding>& bindings = {});
-/// Warnings for classes, properties and graphs that the store does not contain, with suggestions.
+/// PreparedQuery::warnings() of a query without parameters.
 std::vector<Diagnostic> checkQuery(const rdf::QuadReader& reader, std::string_view text,
                                    const QueryOptions& options = {});
 

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "base/content_hash.hpp"
-#include "sparql/exec/update_modify.hpp"
+#include "sparql/exec/stored_changes.hpp"
 #include "sparql/syntax/parser.hpp"
 #include "sparql/syntax/source_text.hpp"
 
@@ -22,19 +22,23 @@ bool mentionsBnode(std::string_view text) {
 
 class UpdateRun {
  public:
-  UpdateRun(rdf::WriteTransaction& transaction, const ast::Update& update, const UpdateOptions& options)
+  UpdateRun(rdf::WriteTransaction& transaction, const ast::Update& update, const UpdateOptions& options,
+            const Guard& guard)
       : transaction_(transaction),
         update_(update),
         options_(options),
         writer_(transaction),
         random_(options.query.seed ? *options.query.seed : std::random_device{}()),
-        label_prefix_(freshPrefix()) {}
+        label_prefix_(freshPrefix()) {
+    guard_ = guard;
+  }
 
   UpdateReport run() {
     for (const ast::UpdateOperation& operation : update_.operations) {
       operation_ = &operation;
+      const std::size_t held = guard_.usage().bytes;
       std::visit([this](const auto& part) { perform(part); }, operation.value);
-      writer_.flush();
+      guard_.holdOnly(held);
     }
     return report_;
   }
@@ -67,13 +71,10 @@ class UpdateRun {
   Term targetGraph(const ast::GraphTarget& target) const {
     return target.kind == ast::GraphTarget::Kind::Default ? defaultGraph() : target.graph;
   }
-  void add(const Quad& quad) {
-    writer_.add(quad);
-    ++report_.inserted;
-  }
-  void removeStored(const rdf::QuadReader& reader, const Quad& quad);
+  void checkRemovable(const rdf::QuadReader& reader, const std::vector<ChangedQuad>& removals) const;
+  void apply(const rdf::QuadReader& reader, const Changes& changes);
   void clearTarget(const ast::GraphTarget& target);
-  std::vector<Quad> quadsOf(const Term& graph) const;
+  std::vector<Quad> quadsOf(const Term& graph);
   std::string freshPrefix();
   std::vector<std::string> blankLabels() const;
   std::string freshLabel() { return label_prefix_ + std::to_string(++fresh_labels_); }
@@ -87,6 +88,7 @@ class UpdateRun {
   std::uint64_t fresh_labels_ = 0, modify_runs_ = 0;
   std::map<std::string, std::string> request_labels_;
   const ast::UpdateOperation* operation_ = nullptr;
+  Guard guard_;
   UpdateReport report_;
 };
 
@@ -133,17 +135,19 @@ void UpdateRun::perform(const ast::Load& load) {
     if (load.silent) return;
     fail("LOAD is refused", "name the file that it reads", Remedy::NameLoadFile);
   }
+  Changes changes;
   try {
     for (Quad& quad : options_.load(load.source.text)) {
       quad.graph = graph;
-      add(quad);
+      changes.inserted.push_back({std::move(quad)});
     }
   } catch (const Error&) {
     if (!load.silent) throw;
   }
+  apply(rdf::QuadReader(transaction_), changes);
 }
 
-std::vector<Quad> UpdateRun::quadsOf(const Term& graph) const {
+std::vector<Quad> UpdateRun::quadsOf(const Term& graph) {
   std::vector<Quad> quads;
   const rdf::QuadReader reader(transaction_);
   const auto id = graph.text.empty() ? std::optional<rdf::TermId>(rdf::kNoTerm) : reader.idOf(graph);
@@ -152,6 +156,8 @@ std::vector<Quad> UpdateRun::quadsOf(const Term& graph) const {
   pattern.g = *id;
   rdf::QuadCursor cursor = reader.scan(pattern);
   for (rdf::QuadIds quad; cursor.next(quad);) {
+    guard_.work(1);
+    guard_.charge(sizeof(ChangedQuad));
     quads.push_back({reader.termOf(quad.s), reader.termOf(quad.p), reader.termOf(quad.o), graph});
   }
   return quads;
@@ -168,6 +174,7 @@ void UpdateRun::clearTarget(const ast::GraphTarget& target) {
     pattern.g = *id;
     report_.deleted += reader.count(pattern);
     writer_.clearGraph(*id);
+    writer_.flush();
   };
   if (target.kind == Kind::Graph || target.kind == Kind::Default) return clear(targetGraph(target));
   std::vector<Term> graphs;
@@ -193,15 +200,17 @@ void UpdateRun::perform(const ast::Transfer& transfer) {
     if (transfer.silent) return;
     fail("the graph <" + from.text + "> is not there");
   }
-  if (transfer.kind != ast::Transfer::Kind::Add) {
-    clearTarget(transfer.to);
-    writer_.flush();
-  }
+  Changes changes;
+  const auto remove = [&](const Term& graph) {
+    for (Quad& quad : quadsOf(graph)) changes.removed.push_back({std::move(quad)});
+  };
+  if (transfer.kind != ast::Transfer::Kind::Add) remove(to);
+  if (transfer.kind == ast::Transfer::Kind::Move) remove(from);
   for (Quad& quad : quads) {
     quad.graph = to;
-    add(quad);
+    changes.inserted.push_back({std::move(quad)});
   }
-  if (transfer.kind == ast::Transfer::Kind::Move) clearTarget(transfer.from);
+  apply(rdf::QuadReader(transaction_), changes);
 }
 
 void UpdateRun::perform(const ast::DataUpdate& data) {
@@ -212,24 +221,40 @@ void UpdateRun::perform(const ast::DataUpdate& data) {
     if (label.empty()) label = freshLabel();
     term.text = label;
   };
+  Changes changes;
   for (Quad quad : data.quads) {
-    if (quad.graph.text.empty()) quad.graph = defaultGraph();
+    const bool names_graph = !quad.graph.text.empty();
+    if (!names_graph) quad.graph = defaultGraph();
     checkWritable(quad.graph);
     if (data.insert) {
       fresh(quad.subject);
       fresh(quad.object);
-      add(quad);
-      continue;
     }
-    ++report_.deleted;
-    removeStored(reader, quad);
+    (data.insert ? changes.inserted : changes.removed).push_back({std::move(quad), names_graph});
   }
+  checkRemovable(reader, changes.removed);
+  apply(reader, changes);
 }
 
-void UpdateRun::removeStored(const rdf::QuadReader& reader, const Quad& quad) {
-  const auto s = reader.idOf(quad.subject), p = reader.idOf(quad.predicate), o = reader.idOf(quad.object);
-  const auto g = quad.graph.text.empty() ? std::optional<rdf::TermId>(rdf::kNoTerm) : reader.idOf(quad.graph);
-  if (s && p && o && g) writer_.remove({*s, *p, *o, *g});
+void UpdateRun::checkRemovable(const rdf::QuadReader& reader, const std::vector<ChangedQuad>& removals) const {
+  if (options_.any_graph_writable || options_.query.default_graph == DefaultGraph::Unnamed) return;
+  const auto locked = lockedTriples(reader, removals, options_.writable_graphs);
+  if (!locked) return;
+  const Quad& first = locked->first;
+  fail(std::to_string(locked->count) + " of the " + std::to_string(locked->of) +
+           " triples to delete lie in graphs that an update may not write, such as " + toNTriples(first.subject) + ' ' +
+           toNTriples(first.predicate) + ' ' + toNTriples(first.object) + " in <" + first.graph.text +
+           ">; nothing was changed",
+       "what a build writes follows from scans, rules and ontology. To correct it, insert what holds instead (it goes "
+       "to graph operator), or change rules or ontology and apply them. To delete operator statements alone, write "
+       "GRAPH <" +
+           std::string(rdf::vocabulary::kGraphOperator) + "> { ... } in the template or WITH before it");
+}
+
+void UpdateRun::apply(const rdf::QuadReader& reader, const Changes& changes) {
+  const ChangeCounts counts = applyChanges(reader, writer_, changes, guard_);
+  report_.inserted += counts.inserted;
+  report_.deleted += counts.deleted;
 }
 
 void UpdateRun::perform(const ast::Modify& modify) {
@@ -239,16 +264,16 @@ void UpdateRun::perform(const ast::Modify& modify) {
   run.seed = random_();
   run.default_graph = modify.with.value_or(defaultGraph());
   run.fresh_label = [this] { return freshLabel(); };
+  run.used = guard_.usage();
   const Changes changes = run.changes();
-  for (const Quad& quad : changes.removed) {
-    checkWritable(quad.graph);
-    ++report_.deleted;
-    removeStored(reader, quad);
-  }
-  for (const Quad& quad : changes.inserted) {
-    checkWritable(quad.graph);
-    add(quad);
-  }
+  guard_.start(options_.query.budget, run.usedAfter());
+  for (const ExpressionWarning& warning : run.warnings())
+    report_.warnings.push_back(
+        warningAt(options_.query.source_name, update_.text, warning.at, warning.message, warning.hint));
+  for (const ChangedQuad& removal : changes.removed) checkWritable(removal.quad.graph);
+  for (const ChangedQuad& insertion : changes.inserted) checkWritable(insertion.quad.graph);
+  checkRemovable(reader, changes.removed);
+  apply(reader, changes);
 }
 
 }  // namespace
@@ -257,8 +282,12 @@ UpdateReport runUpdate(rdf::WriteTransaction& transaction, std::string_view text
   SparqlParseOptions parse_options;
   parse_options.file = options.query.source_name;
   parse_options.base_iri = options.query.base_iri;
+  parse_options.prefixes = options.query.prefixes;
+  Guard guard;
+  guard.start(options.query.budget);
+  parse_options.count = [&guard](std::size_t tokens) { guard.chargeForTokens(tokens); };
   const ast::Update update = parseUpdate(text, parse_options);
-  return UpdateRun(transaction, update, options).run();
+  return UpdateRun(transaction, update, options, guard).run();
 }
 
 }  // namespace cluxel::sparql

@@ -25,10 +25,14 @@ struct UpdateOptions {
 };
 
 struct UpdateReport {
-  std::uint64_t inserted = 0, deleted = 0;  ///< quads requested for insertion and deletion
+  /// Quads that came and went, summed over the operations; one that an operation deletes and inserts counts for
+  /// neither.
+  std::uint64_t inserted = 0, deleted = 0;
+  std::vector<Diagnostic> warnings = {};  ///< unknown functions, and constant patterns that are no regular expressions
 };
 
-/// Runs a request. The caller commits the transaction, and must not commit it after an error.
+/// Runs a request. The caller commits the transaction, and must not commit it after an error. A deletion that names no
+/// graph and meets triples of graphs that may not be written is refused: the union would hold them afterwards, too.
 UpdateReport runUpdate(rdf::WriteTransaction& transaction, std::string_view text, const UpdateOptions& options = {});
 
 }  // namespace cluxel::sparql

@@ -20,15 +20,22 @@ std::optional<ExportFormat> exportFormatOf(std::string_view name) {
   return std::nullopt;
 }
 
+bool isRdf(ExportFormat format) {
+  return format == ExportFormat::Turtle || format == ExportFormat::NQuads || format == ExportFormat::Canonical;
+}
+
+void exportQuads(const rdf::QuadReader& quads, ExportFormat format, const ByteSink& out) {
+  if (format == ExportFormat::Turtle) return writeTurtle(quads, std::nullopt, out);
+  if (format == ExportFormat::NQuads) return writeSortedNQuads(quads, out);
+  writeSortedNQuads(quads, out, [](const Quad& quad) { return quad.graph.text != rdf::vocabulary::kGraphHistory; });
+}
+
 void exportMap(const mapping::MapReader& map, ExportFormat format, const ByteSink& out, ExportFrame frame) {
   switch (format) {
     case ExportFormat::Turtle:
-      return writeTurtle(map.quads(), std::nullopt, out);
     case ExportFormat::NQuads:
-      return writeSortedNQuads(map.quads(), out);
     case ExportFormat::Canonical:
-      return writeSortedNQuads(map.quads(), out,
-                               [](const Quad& quad) { return quad.graph.text != rdf::vocabulary::kGraphHistory; });
+      return exportQuads(map.quads(), format, out);
     case ExportFormat::Ply:
       return writeColouredPly(map, out);
     case ExportFormat::GeoJson:

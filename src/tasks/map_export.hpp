@@ -32,4 +32,9 @@ using ByteSink = std::function<void(std::string_view)>;
 void exportMap(const mapping::MapReader& map, ExportFormat format, const ByteSink& out,
                ExportFrame frame = ExportFrame::LongitudeLatitude);
 
+/// Turtle, NQuads and Canonical need no more than quads.
+bool isRdf(ExportFormat format);
+/// As exportMap(), in one of these formats, also for a store that no build has made.
+void exportQuads(const rdf::QuadReader& quads, ExportFormat format, const ByteSink& out);
+
 }  // namespace cluxel::tasks

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only file that includes PROJ.
+// Places map positions on the earth by PROJ.
 #include "tasks/proj_geo_reference.hpp"
 
 #include <proj.h>

@@ -100,8 +100,9 @@ TEST_F(Program, ListsItsQuestions) {
 }
 
 TEST_F(Program, HelpsWithEverySubcommand) {
-  for (const char* name : {"", "info", "simulate", "register", "build", "query", "update", "tasks", "explain", "rules",
-                           "rules check", "rules test", "train", "evaluate", "export", "compact", "doctor"}) {
+  for (const char* name :
+       {"", "info", "simulate", "register", "build", "query", "update", "load", "dump", "tasks", "explain", "rules",
+        "rules check", "rules test", "train", "evaluate", "export", "compact", "doctor"}) {
     const Outcome help = run(std::string(name) + " --help");
     EXPECT_EQ(help.code, 0) << name;
     EXPECT_NE(help.out.find("--help"), std::string::npos) << name;

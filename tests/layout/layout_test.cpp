@@ -152,7 +152,7 @@ TEST(Layout, ThePythonModuleSeesTheInstalledInterfaceOnly) {
 }
 
 /// The files that may include a heavy package: names that begin with `name`, and at most `max_files` of them. Redland's
-/// tables of C callbacks need two modules (docs/decisions.md).
+/// tables of C callbacks need two modules (docs/decisions.md). PROJ places maps (tasks) and measures (sparql).
 struct Wall {
   std::string name;
   std::size_t max_files;
@@ -167,7 +167,7 @@ TEST(Layout, HeavyPackagesStayInFewFilesThatAreNamedForThem) {
                                           {"rasqal", {"", 0}},
                                           {"embree", {"ray_", 2}},
                                           {"httplib.h", {"http_", 2}},
-                                          {"proj.h", {"proj_", 1}},
+                                          {"proj.h", {"proj_", 2}},
                                           {"boost/graph/", {"", 3}},
                                           {"boost/geometry", {"geometry", 2}}};
   for (const auto& [package, wall] : walls) {

@@ -168,6 +168,27 @@ TEST_F(RedlandStorage, RemovesFromOneContextOrFromAll) {
   EXPECT_EQ(librdf_model_contains_statement(model_.get(), triple.get()), 0);
 }
 
+TEST_F(RedlandStorage, RemovesNothingThatABuildWrites) {
+  const std::string observed(vocabulary::kGraphObserved), operators(vocabulary::kGraphOperator);
+  add(a_, b_, c_, observed.c_str());
+  add(a_, b_, c_, operators.c_str());
+  add(a_, b_, a_, operators.c_str());
+  const auto both = statement(a_, b_, c_), stated = statement(a_, b_, a_);
+  const auto built = node(Term::iri(observed)), own = node(Term::iri(operators));
+  EXPECT_NE(librdf_model_remove_statement(model_.get(), both.get()), 0);
+  ASSERT_FALSE(messages_.empty());
+  EXPECT_THAT(messages_.back(), HasSubstr("graph/observed> is what a build made"));
+  EXPECT_NE(librdf_model_context_remove_statement(model_.get(), built.get(), both.get()), 0);
+  EXPECT_NE(librdf_model_context_remove_statements(model_.get(), built.get()), 0);
+  EXPECT_EQ(librdf_model_size(model_.get()), 3);
+  EXPECT_EQ(librdf_model_remove_statement(model_.get(), stated.get()), 0);
+  EXPECT_EQ(librdf_model_context_remove_statement(model_.get(), own.get(), both.get()), 0);
+  EXPECT_EQ(librdf_model_size(model_.get()), 1);
+  add(a_, b_, a_, operators.c_str());
+  EXPECT_EQ(librdf_model_context_remove_statements(model_.get(), own.get()), 0);
+  EXPECT_EQ(librdf_model_size(model_.get()), 1);
+}
+
 TEST_F(RedlandStorage, RollsBackAndCommitsTransactions) {
   add(a_, b_, a_);
   ASSERT_EQ(librdf_model_transaction_start(model_.get()), 0);

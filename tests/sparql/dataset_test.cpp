@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "rdf/io/rdf_io.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/store_fixture.hpp"
 
@@ -73,6 +74,25 @@ TEST_F(Datasets, TheProtocolsGraphsReplaceFrom) {
   QueryOptions options;
   options.default_graphs = {"http://example.org/g2"};
   EXPECT_THAT(store_.rows("SELECT ?s FROM :g1 { ?s :p ?v }", options), ElementsAre(":a", ":c"));
+}
+
+TEST(Iris, ThatAQueryShowsCanBeAskedFor) {
+  for (const RdfFormat format : {RdfFormat::NTriples, RdfFormat::NQuads, RdfFormat::Turtle, RdfFormat::TriG}) {
+    const std::string iris[] = {"http://x/a/../b", "http://x/./c", "http://x/d/..", "urn:x:../e", "http://x//f/."};
+    std::string text;
+    for (const std::string& iri : iris) text += "<" + iri + "> <http://x/p> <" + iri + "> .\n";
+    std::vector<Quad> quads;
+    parseRdf({text, "dots", format, "http://base/", Term::iri("")}, [&](const Quad& quad) { quads.push_back(quad); });
+    SmallStore store;
+    store.load(quads);
+    const QueryResult shown = store.ask("SELECT ?s { ?s ?p ?o }");
+    ASSERT_EQ(shown.table.row_count, std::size(iris));
+    for (std::size_t row = 0; row < shown.table.row_count; ++row) {
+      const std::string iri = toNTriples(*shown.table.at(row, 0));
+      EXPECT_EQ(store.rows("SELECT ?o { " + iri + " ?p ?o }").size(), 1U) << iri;
+      EXPECT_EQ(store.rows("SELECT ?s { ?s ?p ?o FILTER(?o = " + iri + ") }").size(), 1U) << iri;
+    }
+  }
 }
 
 }  // namespace

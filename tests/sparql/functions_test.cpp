@@ -133,15 +133,43 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"\"x\"^^<u:t> = \"y\"^^<u:t>", "-"}, Case{"\"x\"^^xsd:integer = 1", "-"},
                     Case{"true > false", kTrue}, Case{"!\"x\"^^xsd:integer", kTrue}, Case{"!<a:>", "-"}));
 
-TEST(Functions, UnknownOnesAreRefusedWithASuggestion) {
+TEST(Functions, UnknownOnesAreErrorsOfTheirExpressionAndWarnedOfOnce) {
+  const SmallStore store(":a :p 1 .");
+  EXPECT_EQ(store.value("geof:distnace(1, 2)"), "-");
+  EXPECT_EQ(store.value("COALESCE(geof:area(:a), 0)"), "\"0\"^^integer");
+  EXPECT_TRUE(store.rows("SELECT * { ?s :p ?v FILTER(:nobody(?v)) }").empty());
+  EXPECT_EQ(store.rows("SELECT * { ?s :p ?v FILTER(:nobody(?v) || true) }").size(), 1U);
+  EXPECT_EQ(store.rows("SELECT (:nobody(COUNT(*)) AS ?n) { ?s :p ?v }"), std::vector<std::string>{"-"});
+  const auto warnings =
+      checkQuery(store.reader(), kPrefixes + "SELECT (geof:distnace(1, 2) + geof:distnace(2, 3) AS ?d) {}");
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0].severity, Severity::Warning);
+  EXPECT_THAT(warnings[0].message, testing::HasSubstr("unknown function <"));
+  EXPECT_THAT(warnings[0].hint, testing::HasSubstr("geosparql/distance"));
+}
+
+TEST(Functions, UnknownOnesAreRefusedInRules) {
+  QueryOptions of_a_rule;
+  of_a_rule.refuse_volatile = true;
+  EXPECT_THROW(SmallStore().rows("SELECT (:nobody(1) AS ?x) {}", of_a_rule), InputError);
+}
+
+TEST(Functions, WarnOfConstantPatternsThatAreNoRegularExpressions) {
   const SmallStore store;
-  try {
-    store.value("geof:distnace(1, 2)");
-    FAIL() << "no error";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("unknown function"));
-    EXPECT_THAT(error.what(), testing::HasSubstr("geosparql/distance"));
+  const auto warnings = [&store](const std::string& expression) {
+    return checkQuery(store.reader(), "SELECT (" + expression + " AS ?x) { BIND(\"a\" AS ?p) }");
+  };
+  for (const char* faulty :
+       {"REGEX(\"a\", \"(\")", "REGEX(\"a\", \"*a\")", "REGEX(\"a\", \"[a\", \"i\")", "REGEX(\"a\", \"a\", \"z\")",
+        "REPLACE(\"a\", \"a{2,1}\", \"\")", "REPLACE(\"a\", \"a\", \"\", \"y\")", "REGEX(\"a\", \"\\\\i\")"}) {
+    const auto found = warnings(faulty);
+    ASSERT_EQ(found.size(), 1U) << faulty;
+    EXPECT_THAT(found[0].message, testing::HasSubstr("is no regular expression: ")) << faulty;
+    EXPECT_GT(found[0].location.column, 0U);
   }
+  for (const char* right : {"REGEX(\"a\", \"(\", \"q\")", "REGEX(\"a\", \"^a$\", \"ims\")", "REGEX(\"a\", ?p)",
+                            "REPLACE(\"a\", \"b\", \"(\")"})
+    EXPECT_TRUE(warnings(right).empty()) << right;
 }
 
 TEST(Functions, NewObjectIsAFunctionOfClassAndMembersOnly) {

@@ -161,10 +161,15 @@ TEST(SpatialIndex, SeesWhatAnUpdateHasWrittenBefore) {
   options.any_graph_writable = true;
   options.query.default_graph = DefaultGraph::Unnamed;
   const std::string move =
-      "DELETE { ?o geo:asWKT ?g } INSERT { ?o geo:asWKT \"POINT(50 50)\"^^geo:wktLiteral } "
+      "DELETE { ?o geo:asWKT ?g } INSERT { ?o geo:asWKT \"POINT(TO)\"^^geo:wktLiteral } "
       "WHERE { ?o geo:asWKT ?g FILTER(geof:distance(?g, \"POINT(AT)\"^^geo:wktLiteral) < 1) }";
-  const auto at = [&](const std::string& place) { return std::string(move).replace(move.find("AT"), 2, place); };
-  const UpdateReport report = runUpdate(transaction, kPrefixes + at("0 0") + " ; " + at("50 50"), options);
+  const auto moved = [&](const std::string& from, const std::string& to) {
+    std::string request = move;
+    request.replace(request.find("AT"), 2, from);
+    return request.replace(request.find("TO"), 2, to);
+  };
+  const UpdateReport report =
+      runUpdate(transaction, kPrefixes + moved("0 0", "50 50") + " ; " + moved("50 50", "60 60"), options);
   EXPECT_EQ(report.inserted, 2U) << "the second operation finds the geometry where the first has put it";
 }
 

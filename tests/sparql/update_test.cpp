@@ -122,6 +122,57 @@ TEST_F(Updates, DeleteBeforeTheyInsert) {
   EXPECT_THAT(store_.rows("SELECT ?v { :x :v ?v }"), ElementsAre("\"1\"^^integer"));
 }
 
+TEST_F(Updates, CountWhatReallyChanged) {
+  const auto counts = [this](const std::string& text) {
+    const UpdateReport report = change(text);
+    return std::pair(report.inserted, report.deleted);
+  };
+  using Counts = std::pair<std::uint64_t, std::uint64_t>;
+  EXPECT_EQ(counts("INSERT DATA { :a :note 1, 2 . :a :note 1 }"), Counts(2, 0));
+  EXPECT_EQ(counts("INSERT DATA { :a :note 1, 3 }"), Counts(1, 0));
+  EXPECT_EQ(counts("DELETE DATA { :a :note 3, 4 }"), Counts(0, 1));
+  EXPECT_EQ(counts("DELETE { ?s :note ?v } INSERT { ?s :note ?v } WHERE { ?s :note ?v }"), Counts(0, 0));
+  EXPECT_EQ(counts("DELETE { ?s :note 1, 2 } INSERT { ?s :note 2, 5 } WHERE { ?s :note ?v }"), Counts(1, 1));
+  EXPECT_EQ(counts("INSERT DATA { :a :note 6 } ; DELETE DATA { :a :note 6 }"), Counts(1, 1));
+  EXPECT_EQ(counts("CLEAR DEFAULT"), Counts(0, 2));
+}
+
+TEST_F(Updates, CountTheNetChangeOfATransfer) {
+  UpdateOptions all;
+  all.any_graph_writable = true;
+  change("INSERT DATA { GRAPH :g { :x :n 1, 2 } GRAPH :h { :x :n 2, 3 } }", all);
+  const UpdateReport copied = change("COPY :g TO :h", all);
+  EXPECT_EQ(copied.inserted, 1U);
+  EXPECT_EQ(copied.deleted, 1U);
+  const UpdateReport moved = change("MOVE :g TO :h", all);
+  EXPECT_EQ(moved.inserted, 0U);
+  EXPECT_EQ(moved.deleted, 2U);
+  EXPECT_THAT(in("http://example.org/h"), ElementsAre(":x :n \"1\"^^integer", ":x :n \"2\"^^integer"));
+}
+
+TEST_F(Updates, RefuseToDeleteWhatOnlyABuildWrites) {
+  store_.load(":a :kind :Plant .", std::string(vocabulary::kGraphInferred));
+  change("INSERT DATA { :a :note 1 }");
+  for (const char* request :
+       {"DELETE WHERE { ?s :p ?v }", "DELETE DATA { :a :p 1 }", "DELETE WHERE { :a ?p ?o }",
+        "DELETE DATA { :a :kind :Plant }", "DELETE { ?s :p ?v } INSERT { ?s :p 7 } WHERE { ?s :p ?v }",
+        "INSERT DATA { :a :note 9 } ; DELETE { ?s :p ?v } WHERE { ?s :p ?v ; :note ?n }"}) {
+    try {
+      change(request);
+      FAIL() << request;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("may not write")) << request;
+      EXPECT_THAT(error.what(), HasSubstr("http://example.org/a> <http://example.org/")) << request;
+      EXPECT_THAT(error.what(), HasSubstr("insert what holds instead")) << request;
+    }
+  }
+  EXPECT_THAT(in(vocabulary::kGraphOperator), ElementsAre(":a :note \"1\"^^integer")) << "nothing was changed";
+  change("INSERT { ?s :p 7 } WHERE { ?s :p 1 }");
+  EXPECT_EQ(change("WITH <https://w3id.org/cluxel/graph/operator> DELETE { :a ?p ?o } WHERE { :a ?p ?o }").deleted, 2U);
+  EXPECT_EQ(change("DELETE WHERE { GRAPH <https://w3id.org/cluxel/graph/operator> { :a ?p ?o } }").deleted, 0U);
+  EXPECT_EQ(in(vocabulary::kGraphObserved).size(), 2U);
+}
+
 TEST_F(Updates, LoadOnlyThroughTheCallersDoor) {
   EXPECT_THROW(change("LOAD <file:///etc/passwd>"), InputError);
   EXPECT_NO_THROW(change("LOAD SILENT <http://elsewhere/>"));

@@ -8,11 +8,11 @@
 #include "cluxel/error.hpp"
 #include "rdf/io/rdf_io.hpp"
 #include "sparql/query_engine.hpp"
-#include "sparql/result_comparison_fixture.hpp"
 #include "sparql/results/result_writer.hpp"
 #include "sparql/results_reader_fixture.hpp"
 #include "sparql/syntax/parser.hpp"
 #include "sparql/update_engine.hpp"
+#include "sparql/w3c_expectation.hpp"
 
 namespace cluxel::test {
 
@@ -27,6 +27,8 @@ void loadInto(QuadWriter& writer, const W3cFolder& folder, const W3cGraph& graph
   loadRdf(source, writer);
 }
 
+}  // namespace
+
 std::vector<Quad> graphIn(const W3cFolder& folder, const W3cGraph& graph) {
   RdfSource source = readRdfSource(graph.file, Term::iri(graph.iri));
   source.base_iri = folder.iriOf(graph.file);
@@ -35,26 +37,20 @@ std::vector<Quad> graphIn(const W3cFolder& folder, const W3cGraph& graph) {
   return quads;
 }
 
-ast::Query parsed(const W3cFolder& folder, const W3cCase& test, const std::string& text) {
+ast::Query parsedRequest(const W3cFolder& folder, const W3cCase& test, const std::string& text) {
   SparqlParseOptions options;
   options.file = test.request.filename().string();
   options.base_iri = folder.iriOf(test.request);
   return parseQuery(text, options);
 }
 
-/// Loads the graphs that the query names with FROM under their IRIs.
-void loadDataset(QuadWriter& writer, const W3cFolder& folder, const W3cCase& test, const ast::Query& query) {
-  for (const W3cGraph& graph : test.data) loadInto(writer, folder, graph);
-  if (!test.data.empty()) return;
+std::vector<W3cGraph> datasetOf(const W3cFolder& folder, const W3cCase& test, const ast::Query& query) {
+  std::vector<W3cGraph> dataset = test.data;
+  if (!dataset.empty()) return dataset;
   for (const auto* graphs : {&query.dataset.default_graphs, &query.dataset.named_graphs})
-    for (const Term& graph : *graphs) loadInto(writer, folder, {graph.text, folder.fileOf(graph.text)});
+    for (const Term& graph : *graphs) dataset.push_back({graph.text, folder.fileOf(graph.text)});
+  return dataset;
 }
-
-struct Expected {
-  QueryResult result;
-  RowOrder order = RowOrder::Any;
-  std::optional<ResultFormat> format;  ///< absent: an RDF graph
-};
 
 Expected expectedOf(const W3cFolder& folder, const W3cCase& test, const ast::Query& query) {
   Expected expected;
@@ -80,6 +76,8 @@ Expected expectedOf(const W3cFolder& folder, const W3cCase& test, const ast::Que
   return expected;
 }
 
+namespace {
+
 /// CSV loses the kinds of terms, so our answer is written as CSV and read back before the comparison.
 QueryResult throughFormat(const QueryResult& result, std::optional<ResultFormat> format) {
   if (!format || result.kind == QueryResult::Kind::Graph) return result;
@@ -88,11 +86,11 @@ QueryResult throughFormat(const QueryResult& result, std::optional<ResultFormat>
 
 std::string evaluateQueryCase(const W3cFolder& folder, const W3cCase& test) {
   const std::string text = readFile(test.request);
-  const ast::Query query = parsed(folder, test, text);
+  const ast::Query query = parsedRequest(folder, test, text);
   const auto environment = Environment::temporary();
   WriteTransaction transaction = environment->write();
   QuadWriter writer(transaction);
-  loadDataset(writer, folder, test, query);
+  for (const W3cGraph& graph : datasetOf(folder, test, query)) loadInto(writer, folder, graph);
   writer.flush();
   transaction.commit();
   const QuadReader reader(environment->read());
@@ -116,12 +114,13 @@ std::map<std::string, std::vector<Quad>> graphsOf(const QuadReader& reader) {
   return graphs;
 }
 
-/// Compares graph by graph, because blank nodes of different files are always different.
-std::string compareGraphs(const W3cFolder& folder, const W3cCase& test, const QuadReader& reader) {
+}  // namespace
+
+std::string compareGraphs(const W3cFolder& folder, const W3cCase& test,
+                          std::map<std::string, std::vector<Quad>> actual) {
   std::map<std::string, std::vector<Quad>> expected;
   for (const W3cGraph& graph : test.graphs_after)
     for (const Quad& quad : graphIn(folder, graph)) expected[graph.iri].push_back(quad);
-  std::map<std::string, std::vector<Quad>> actual = graphsOf(reader);
   for (const auto& [iri, quads] : expected) actual[iri];
   for (const auto& [iri, quads] : actual) {
     const std::string difference = graphDifference(quads, expected[iri]);
@@ -129,6 +128,8 @@ std::string compareGraphs(const W3cFolder& folder, const W3cCase& test, const Qu
   }
   return {};
 }
+
+namespace {
 
 std::string evaluateUpdateCase(const W3cFolder& folder, const W3cCase& test) {
   const auto environment = Environment::temporary();
@@ -144,7 +145,7 @@ std::string evaluateUpdateCase(const W3cFolder& folder, const W3cCase& test) {
   WriteTransaction transaction = environment->write();
   runUpdate(transaction, readFile(test.request), options);
   transaction.commit();
-  return compareGraphs(folder, test, QuadReader(environment->read()));
+  return compareGraphs(folder, test, graphsOf(QuadReader(environment->read())));
 }
 
 std::string checkSyntax(const W3cFolder& folder, const W3cCase& test) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the W3C SPARQL suites and prints a table: w3c_runner [FOLDER] [--only TEXT]. Exit code 77: the suites are
-// absent.
+// Runs the W3C SPARQL suites and prints a table: w3c_runner [FOLDER] [--only TEXT] [--program FILE]. With --program all
+// is done by starting the program. Exit code 77: the suites are absent.
 #include <cstdlib>
 #include <fstream>
 #include <iomanip>
@@ -8,6 +8,7 @@
 #include <map>
 
 #include "cluxel/error.hpp"
+#include "rdf/scratch_folder.hpp"
 #include "sparql/w3c_case.hpp"
 #include "test_paths.hpp"
 
@@ -17,7 +18,8 @@ using namespace cluxel::test;
 
 struct Options {
   std::filesystem::path folder = cluxel::test::sourceFolder() / "../shared/w3c/sparql";
-  std::string only;  ///< run the tests whose id contains it
+  std::string only;               ///< run the tests whose id contains it
+  std::filesystem::path program;  ///< empty: the engine within this process
 };
 
 Options optionsOf(int argc, char** argv) {
@@ -26,6 +28,8 @@ Options optionsOf(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     if (std::string(argv[i]) == "--only" && i + 1 < argc)
       options.only = argv[++i];
+    else if (std::string(argv[i]) == "--program" && i + 1 < argc)
+      options.program = argv[++i];
     else
       options.folder = argv[i];
   }
@@ -74,9 +78,11 @@ int runAll(const Options& options) {
   std::map<std::string, Tally> groups;
   Tally total;
   int surprises = 0;
+  const cluxel::rdf::ScratchFolder scratch;
   for (const W3cCase& test : allCases(folder)) {
     if (test.id.find(options.only) == std::string::npos) continue;
-    const std::string fault = runCase(folder, test);
+    const std::string fault = options.program.empty() ? runCase(folder, test)
+                                                      : runCaseByProgram(options.program, scratch.path(), folder, test);
     const auto listed = known.find(test.id);
     const bool as_known = fault.empty() == (listed == known.end());
     surprises += as_known ? 0 : 1;

@@ -2,17 +2,16 @@
 // After the update, closure and SPARQL rules are computed again; the whole semantic layer only when rules use `ask:`.
 #include "mapping/build/map_update.hpp"
 
+#include <chrono>
+
 #include "cluxel/error.hpp"
 #include "mapping/facts/semantic_layer.hpp"
-#include "mapping/facts/sparql_rules.hpp"
 #include "mapping/map_state.hpp"
-#include "rdf/ontology/ontology.hpp"
 #include "rdf/store/map_replacement.hpp"
 
 namespace cluxel::mapping {
-namespace {
 
-void inferAnew(rdf::WriteTransaction& transaction, ProgressSink& sink) {
+void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink) {
   const ParsedInputs parsed = parseInputs(storedInputs(transaction));
   if (parsed.rules.asks_map) {
     TileStages stages(parsed.model, parsed.inputs.params);
@@ -20,22 +19,34 @@ void inferAnew(rdf::WriteTransaction& transaction, ProgressSink& sink) {
     writeSemanticLayer(transaction, parsed, stages, sink);
     return;
   }
-  inferClosure(transaction);
-  runSparqlRules(transaction, parsed.inputs.sparql_rules);
+  inferFacts(transaction, parsed.inputs, sink);
 }
 
-}  // namespace
-
-sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::string& update,
-                               const sparql::UpdateOptions& options, ProgressSink& sink) {
-  rdf::WriteTransaction transaction = rdf::writeMap(file);
+bool requireFinished(const std::filesystem::path& file, const rdf::ReadTransaction& transaction) {
   const auto state = storedState(transaction);
   if (state && !state->is_finished)
     throw Error(ErrorKind::InvalidArgument,
                 file.string() + ": its build is unfinished; repeat the build command first");
+  return state.has_value();
+}
+
+sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::string& update,
+                               const sparql::UpdateOptions& options, ProgressSink& sink) {
+  const auto start = std::chrono::steady_clock::now();
+  rdf::WriteTransaction transaction = rdf::writeMap(file);
+  const bool is_map = requireFinished(file, transaction);
+  if (is_map && options.any_graph_writable)
+    throw Error(ErrorKind::InvalidArgument, file.string() +
+                                                ": is a map, of which only the operator's statements may be "
+                                                "written; a store that no build has made is open");
   const sparql::UpdateReport report = runUpdate(transaction, update, options);
-  if (state && report.inserted + report.deleted > 0) inferAnew(transaction, sink);
+  if (is_map && report.inserted + report.deleted > 0) inferAfterUpdate(transaction, sink);
+  const auto& deadline = options.query.budget.deadline;
+  if (deadline && std::chrono::steady_clock::now() - start > *deadline)
+    throw Error(ErrorKind::BudgetExceeded,
+                "update: its budget of time is exceeded by what had to be inferred; nothing was changed");
   transaction.commit();
+  for (const Diagnostic& warning : report.warnings) sink.note(format(warning));
   return report;
 }
 

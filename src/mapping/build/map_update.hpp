@@ -12,8 +12,14 @@ namespace cluxel::mapping {
 
 /// Runs a SPARQL Update on a map or another quad file. In a map, graph `inferred` is computed again, SPARQL rules
 /// included; when its rules use `ask:`, the objects are computed again too, because answers may have changed. Commits
-/// everything or nothing. Throws as runUpdate(); Error (InvalidArgument) when a build of the map is unfinished.
+/// everything or nothing. Throws as runUpdate(); Error (InvalidArgument) when a build of the map is unfinished,
+/// or all graphs of a map are to be writable. The deadline is checked once more before the commit.
 sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::string& update,
                                const sparql::UpdateOptions& options, ProgressSink& sink);
+
+/// True for a map, false for a store that no build has made. Throws Error (InvalidArgument) when a build is unfinished.
+bool requireFinished(const std::filesystem::path& file, const rdf::ReadTransaction& transaction);
+/// Computes again what follows from the operator's statements of a map.
+void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink);
 
 }  // namespace cluxel::mapping

@@ -65,6 +65,14 @@ ParsedInputs parseInputs(const MapInputs& inputs) {
   return parsed;
 }
 
+void inferFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, ProgressSink& sink) {
+  for (const std::string& axiom : inferClosure(transaction).ignored)
+    sink.note("warning: nothing is inferred from " + axiom +
+              ": rdf:type, rdfs:subClassOf, rdfs:subPropertyOf and owl:inverseOf keep their meaning; remove the "
+              "statement, or use properties of your own");
+  runSparqlRules(transaction, inputs.sparql_rules);
+}
+
 SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const ParsedInputs& parsed,
                                  const TileStages& stages, ProgressSink& sink) {
   writeOntology(transaction, parsed.inputs);
@@ -78,8 +86,7 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   sink.progress("objects", result.objects.size(), result.objects.size());
   const auto sightings = sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(result, scene.cluxels.size()));
   writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings});
-  inferClosure(transaction);
-  runSparqlRules(transaction, parsed.inputs.sparql_rules);
+  inferFacts(transaction, parsed.inputs, sink);
   storeObjects(transaction, result.objects);
   sink.progress("facts", 1, 1);
   return {std::move(scene), std::move(result.objects)};

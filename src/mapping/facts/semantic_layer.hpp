@@ -33,6 +33,9 @@ void writeObjectsSoFar(rdf::WriteTransaction& transaction, const MapInputs& inpu
                        const perception::Scene& scene, const TileStages& stages,
                        std::span<const rules::SemanticObject> objects);
 
+/// Makes graph inferred hold the closure and what SPARQL rules derive. Notes axioms that are ignored.
+void inferFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, ProgressSink& sink);
+
 struct SemanticLayer {
   perception::Scene scene;
   std::vector<rules::SemanticObject> objects;  ///< sorted by id

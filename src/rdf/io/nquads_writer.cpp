@@ -19,4 +19,16 @@ void writeSortedNQuads(const QuadReader& reader, const TextSink& out, const std:
   for (const std::string& line : lines) out(line);
 }
 
+void writeStoredNQuads(const QuadReader& reader, const std::optional<Term>& graph, const TextSink& out) {
+  QuadPattern pattern;
+  if (graph) {
+    pattern.g = graph->text.empty() ? std::optional<TermId>(kNoTerm) : reader.idOf(*graph);
+    if (!pattern.g) return;
+  }
+  QuadCursor cursor = reader.scan(pattern, QuadOrder::Gspo);
+  for (QuadIds ids; cursor.next(ids);)
+    out(toNQuads({reader.termOf(ids.s), reader.termOf(ids.p), reader.termOf(ids.o),
+                  graph ? Term::iri("") : reader.termOf(ids.g)}));
+}
+
 }  // namespace cluxel::rdf

@@ -56,6 +56,8 @@ const RdfPrefixes& commonPrefixes();
 /// that `keep` accepts.
 void writeSortedNQuads(const QuadReader& reader, const TextSink& out,
                        const std::function<bool(const Quad&)>& keep = {});
+/// N-Quads of all graphs, or the triples of one as N-Triples, in the order of the store. Memory does not grow with it.
+void writeStoredNQuads(const QuadReader& reader, const std::optional<Term>& graph, const TextSink& out);
 /// Turtle of one graph, or of the union of all graphs but history when `graph` is absent. Subjects are sorted by term,
 /// rdf:type comes first, duplicates are removed, and lexical forms are preserved.
 void writeTurtle(const QuadReader& reader, const std::optional<Term>& graph, const TextSink& out,

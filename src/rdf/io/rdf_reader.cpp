@@ -43,6 +43,11 @@ std::string_view viewOf(raptor_uri* uri) {
   return viewOf(text, size);
 }
 
+bool mayHoldDotSegments(std::string_view iri) {
+  return iri.find("/./") != std::string_view::npos || iri.find("/../") != std::string_view::npos ||
+         iri.ends_with("/.") || iri.ends_with("/..");
+}
+
 const char* parserName(RdfFormat format) {
   switch (format) {
     case RdfFormat::Turtle:
@@ -120,6 +125,7 @@ class Reading {
   }
 
   void fill(Term& term, const raptor_term& from);
+  Term iriOf(raptor_uri* uri) const;
 
   const RdfSource& source_;
   const std::function<void(const Quad&)>& take_;
@@ -130,10 +136,20 @@ class Reading {
   Raptor<raptor_parser> parser_;
 };
 
+/// Raptor removes the dot segments of absolute IRIs in all formats but N-Triples and N-Quads, and queries do so too: an
+/// IRI must be the same in all of them.
+Term Reading::iriOf(raptor_uri* uri) const {
+  const std::string_view written = viewOf(uri);
+  if (!mayHoldDotSegments(written)) return Term::iri(written);
+  const Raptor<raptor_uri> resolved(
+      raptor_new_uri_relative_to_base(raptor_uri_get_world(uri), uri, raptor_uri_as_string(uri)));
+  return Term::iri(resolved ? viewOf(resolved.get()) : written);
+}
+
 void Reading::fill(Term& term, const raptor_term& from) {
   switch (from.type) {
     case RAPTOR_TERM_TYPE_URI:
-      term = Term::iri(viewOf(from.value.uri));
+      term = iriOf(from.value.uri);
       return;
     case RAPTOR_TERM_TYPE_BLANK:
       term = Term::blank(labels_.labelOf(viewOf(from.value.blank.string, from.value.blank.string_len)));

@@ -5,6 +5,7 @@
 #include <set>
 #include <unordered_set>
 
+#include "rdf/ontology/closure_bounds.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
 
@@ -26,6 +27,12 @@ struct Words {
     symmetric = id(owl + "SymmetricProperty");
     transitive = id(owl + "TransitiveProperty");
   }
+
+  /// A property by which the rules themselves work. An axiom about it would turn every fact into schema.
+  bool isReserved(TermId property) const {
+    return property != kNoTerm &&
+           (property == type || property == sub_class || property == sub_property || property == inverse);
+  }
 };
 
 struct Pair {
@@ -43,8 +50,11 @@ struct Implied {
 /// The known facts by property: facts of the store are read on demand, derived facts are kept here.
 class Facts {
  public:
-  Facts(const QuadReader& reader, std::span<const TermId> sources)
-      : reader_(reader), sources_(sources.begin(), sources.end()), lookup_(reader.lookup(QuadOrder::Spog)) {
+  Facts(const QuadReader& reader, std::span<const TermId> sources, ClosureBounds& bounds)
+      : reader_(reader),
+        sources_(sources.begin(), sources.end()),
+        lookup_(reader.lookup(QuadOrder::Spog)),
+        bounds_(bounds) {
     std::sort(sources_.begin(), sources_.end());
   }
 
@@ -53,8 +63,10 @@ class Facts {
   void forEach(TermId property, const Visit& visit) const {
     if (property == kNoTerm) return;
     QuadCursor cursor = reader_.scan({.s = {}, .p = property, .o = {}, .g = {}}, QuadOrder::Posg);
-    for (QuadIds quad; cursor.next(quad);)
+    for (QuadIds quad; cursor.next(quad);) {
+      bounds_.addStep(property);
       if (std::binary_search(sources_.begin(), sources_.end(), quad.g)) visit(quad.s, quad.o);
+    }
     forEachDerived(property, 0, visit);
   }
 
@@ -74,8 +86,10 @@ class Facts {
 
   /// Returns true when the fact is new.
   bool derive(TermId subject, TermId property, TermId object) {
+    bounds_.addStep(property);
     Derived& derived = derived_[property];
     if (derived.known.contains(key(subject, object)) || isStated(subject, property, object)) return false;
+    bounds_.addFact(property);
     derived.known.insert(key(subject, object));
     derived.pairs.push_back({subject, object});
     return true;
@@ -89,6 +103,7 @@ class Facts {
     return quads;
   }
 
+  ClosureBounds& bounds() const { return bounds_; }
   bool isIri(TermId id) const { return reader_.valueOf(id).kind == TermKind::Iri; }
   bool isResource(TermId id) const { return reader_.valueOf(id).kind != TermKind::Literal; }
 
@@ -106,6 +121,7 @@ class Facts {
     const auto derived = derived_.find(property);
     if (derived == derived_.end()) return;
     for (std::size_t i = from; i < derived->second.round_start; ++i) {
+      bounds_.addStep(property);
       const Pair pair = derived->second.pairs[i];  // visit() may append to the list
       visit(pair.subject, pair.object);
     }
@@ -122,6 +138,7 @@ class Facts {
   const QuadReader& reader_;
   std::vector<TermId> sources_;
   PrefixLookup lookup_;
+  ClosureBounds& bounds_;
   std::map<TermId, Derived> derived_;
 };
 
@@ -133,16 +150,18 @@ Edges edgesOf(const Facts& facts, TermId property) {
   return edges;
 }
 
-/// All nodes reachable from a node.
-std::set<TermId> reachableFrom(TermId node, const Edges& edges) {
+/// All nodes reachable from a node along a property.
+std::set<TermId> reachableFrom(TermId node, const Edges& edges, TermId property, ClosureBounds& bounds) {
   std::set<TermId> reached;
   std::vector<TermId> open = {node};
   while (!open.empty()) {
     const auto next = edges.find(open.back());
     open.pop_back();
     if (next == edges.end()) continue;
-    for (const TermId target : next->second)
+    for (const TermId target : next->second) {
+      bounds.addStep(property);
       if (reached.insert(target).second) open.push_back(target);
+    }
   }
   return reached;
 }
@@ -151,16 +170,19 @@ std::set<TermId> reachableFrom(TermId node, const Edges& edges) {
 struct OntologyRules {
   std::map<TermId, std::set<Implied>> implications;  ///< the implied properties of each property
   std::set<TermId> transitive;
-  Edges ancestors;  ///< of each class
+  Edges ancestors;                          ///< of each class
+  std::set<std::array<TermId, 3>> ignored;  ///< axioms about reserved properties: subject, predicate, object
   bool operator==(const OntologyRules&) const = default;
 };
 
-std::set<Implied> allImplied(TermId property, const std::map<TermId, std::set<Implied>>& direct) {
+std::set<Implied> allImplied(TermId property, const std::map<TermId, std::set<Implied>>& direct,
+                             ClosureBounds& bounds) {
   std::set<Implied> reached;
   std::vector<Implied> open(direct.at(property).begin(), direct.at(property).end());
   while (!open.empty()) {
     const Implied next = open.back();
     open.pop_back();
+    bounds.addStep(property);
     if (!reached.insert(next).second) continue;
     const auto further = direct.find(next.property);
     if (further == direct.end()) continue;
@@ -171,26 +193,45 @@ std::set<Implied> allImplied(TermId property, const std::map<TermId, std::set<Im
   return reached;
 }
 
-OntologyRules readRules(const Facts& facts, const Words& words) {
-  OntologyRules rules;
-  std::map<TermId, std::set<Implied>> direct;
-  facts.forEach(words.sub_property, [&](TermId sub, TermId super) { direct[sub].insert({super, false, false}); });
+using DirectImplications = std::map<TermId, std::set<Implied>>;
+
+/// The axioms on properties. Those about reserved properties are set aside in `rules.ignored`.
+DirectImplications readAxioms(const Facts& facts, const Words& words, OntologyRules& rules) {
+  DirectImplications direct;
+  const auto heeded = [&](TermId subject, TermId predicate, TermId object) {
+    if (!words.isReserved(subject) && (predicate == words.type || !words.isReserved(object))) return true;
+    rules.ignored.insert({subject, predicate, object});
+    return false;
+  };
+  facts.forEach(words.sub_property, [&](TermId sub, TermId super) {
+    if (sub != super && heeded(sub, words.sub_property, super)) direct[sub].insert({super, false, false});
+  });
   facts.forEach(words.inverse, [&](TermId one, TermId other) {
+    if (!heeded(one, words.inverse, other)) return;
     direct[one].insert({other, true, true});
     direct[other].insert({one, true, true});
   });
   facts.forEach(words.type, [&](TermId property, TermId kind) {
+    if ((kind != words.symmetric && kind != words.transitive) || !heeded(property, words.type, kind)) return;
     if (kind == words.symmetric) direct[property].insert({property, true, true});
     if (kind == words.transitive) rules.transitive.insert(property);
   });
+  return direct;
+}
+
+OntologyRules readRules(const Facts& facts, const Words& words) {
+  OntologyRules rules;
+  const DirectImplications direct = readAxioms(facts, words, rules);
   for (const TermId property : {words.sub_class, words.sub_property})
     if (property != kNoTerm) rules.transitive.insert(property);
   // A blank node such as [ owl:inverseOf p ] takes part in the schema, but cannot be the predicate of a fact.
   const auto is_no_predicate = [&](const Implied& implied) { return !facts.isIri(implied.property); };
   for (const auto& [property, first] : direct)
-    std::erase_if(rules.implications.emplace(property, allImplied(property, direct)).first->second, is_no_predicate);
+    std::erase_if(rules.implications.emplace(property, allImplied(property, direct, facts.bounds())).first->second,
+                  is_no_predicate);
   const Edges above = edgesOf(facts, words.sub_class);
-  for (const auto& [kind, direct_ones] : above) rules.ancestors.emplace(kind, reachableFrom(kind, above));
+  for (const auto& [kind, direct_ones] : above)
+    rules.ancestors.emplace(kind, reachableFrom(kind, above, words.sub_class, facts.bounds()));
   return rules;
 }
 
@@ -208,6 +249,7 @@ class Closure {
       rules_ = std::move(rules);
     }
   }
+  const std::set<std::array<TermId, 3>>& ignored() const { return rules_.ignored; }
 
  private:
   bool round(bool only_new) {
@@ -244,7 +286,7 @@ class Closure {
     if (!any) return;
     const Edges edges = edgesOf(facts_, property);
     for (const auto& [node, targets] : edges)
-      for (const TermId reached : reachableFrom(node, edges))
+      for (const TermId reached : reachableFrom(node, edges, property, facts_.bounds()))
         // In a cycle of subclasses every class is its own superclass; such trivial facts are not stored.
         if (!targets.contains(reached) && (reached != node || !isSchema(property)))
           changed_ |= facts_.derive(node, property, reached);
@@ -269,11 +311,23 @@ class Closure {
 
 }  // namespace
 
-std::vector<QuadIds> closureOf(const QuadReader& reader, TermId target, std::span<const TermId> sources) {
+ClosureLimits ClosureLimits::of(const QuadReader& reader) {
+  return {5'000'000 + 4 * reader.size(), 200'000'000 + 100 * reader.size()};
+}
+
+EntailedQuads closureOf(const QuadReader& reader, TermId target, std::span<const TermId> sources,
+                        const ClosureLimits& limits) {
   const Words words(reader);
-  Facts facts(reader, sources);
-  Closure(facts, words).run();
-  return facts.derivedQuads(target);
+  ClosureBounds bounds(reader, limits);
+  Facts facts(reader, sources, bounds);
+  Closure closure(facts, words);
+  closure.run();
+  EntailedQuads entailed{facts.derivedQuads(target), {}};
+  for (const auto& [subject, predicate, object] : closure.ignored())
+    entailed.ignored.push_back(toNTriples(reader.termOf(subject)) + ' ' + toNTriples(reader.termOf(predicate)) + ' ' +
+                               toNTriples(reader.termOf(object)));
+  std::sort(entailed.ignored.begin(), entailed.ignored.end());
+  return entailed;
 }
 
 }  // namespace cluxel::rdf

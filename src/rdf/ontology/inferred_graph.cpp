@@ -39,7 +39,8 @@ ClosureChange inferClosure(WriteTransaction& transaction) {
   QuadWriter writer(transaction);
   const GraphIds graphs = internGraphs(writer);
   const QuadReader reader(transaction);
-  const std::vector<QuadIds> target = closureOf(reader, graphs.inferred, graphs.stated);
+  EntailedQuads entailed = closureOf(reader, graphs.inferred, graphs.stated, ClosureLimits::of(reader));
+  const std::vector<QuadIds>& target = entailed.quads;
   const std::vector<QuadIds> present = quadsOf(reader, graphs.inferred);
   std::vector<QuadIds> added;
   std::vector<QuadIds> removed;
@@ -48,17 +49,18 @@ ClosureChange inferClosure(WriteTransaction& transaction) {
   for (const QuadIds& quad : added) writer.add(quad);
   for (const QuadIds& quad : removed) writer.remove(quad);
   writer.flush();
-  return {added.size(), removed.size()};
+  return {added.size(), removed.size(), std::move(entailed.ignored)};
 }
 
 ClosureChange extendClosure(WriteTransaction& transaction) {
   QuadWriter writer(transaction);
   GraphIds graphs = internGraphs(writer);
   graphs.stated.push_back(graphs.inferred);
-  const std::vector<QuadIds> added = closureOf(QuadReader(transaction), graphs.inferred, graphs.stated);
-  for (const QuadIds& quad : added) writer.add(quad);
+  const QuadReader reader(transaction);
+  EntailedQuads entailed = closureOf(reader, graphs.inferred, graphs.stated, ClosureLimits::of(reader));
+  for (const QuadIds& quad : entailed.quads) writer.add(quad);
   writer.flush();
-  return {added.size(), 0};
+  return {entailed.quads.size(), 0, std::move(entailed.ignored)};
 }
 
 }  // namespace cluxel::rdf

@@ -69,15 +69,32 @@ OntologyView ontologyViewOf(std::span<const RdfSource> sources);
 /// an error the transaction must be dropped. Does not flush.
 void loadOntology(std::span<const RdfSource> sources, QuadWriter& writer);
 
-/// The quads entailed by the source graphs and not contained in them, sorted, with graph `target`. Rules, to a
+/// How far a closure may go. A transitive property can make as many facts as there are pairs of things.
+struct ClosureLimits {
+  std::uint64_t max_facts = 0;  ///< derived
+  std::uint64_t max_steps = 0;  ///< facts and edges looked at
+  /// Five million facts and four for each quad of the store; 200 million steps and 100 for each quad.
+  static ClosureLimits of(const QuadReader& reader);
+};
+
+struct EntailedQuads {
+  std::vector<QuadIds> quads;        ///< sorted
+  std::vector<std::string> ignored;  ///< axioms about reserved properties, as N-Triples without the full stop; sorted
+};
+
+/// The quads entailed by the source graphs and not contained in them, with graph `target`. Rules, to a
 /// fixpoint: rdfs:subClassOf and rdfs:subPropertyOf with their transitivity, rdf:type of superclasses, owl:inverseOf,
 /// owl:SymmetricProperty, owl:TransitiveProperty. rdfs:domain and rdfs:range are left out, so that a misused property
-/// remains visible as a fault instead of becoming a type. Cost: linear in the quads of rdf:type and of properties with
-/// implications.
-std::vector<QuadIds> closureOf(const QuadReader& reader, TermId target, std::span<const TermId> sources);
+/// remains visible as a fault instead of becoming a type. Axioms that name rdf:type, rdfs:subClassOf,
+/// rdfs:subPropertyOf or owl:inverseOf as subject or object are ignored: they would turn facts into schema. Cost:
+/// linear in the quads of rdf:type and of properties with implications. Throws Error (BudgetExceeded) beyond the
+/// limits.
+EntailedQuads closureOf(const QuadReader& reader, TermId target, std::span<const TermId> sources,
+                        const ClosureLimits& limits);
 
 struct ClosureChange {
-  std::uint64_t added = 0, removed = 0;  ///< quads
+  std::uint64_t added = 0, removed = 0;   ///< quads
+  std::vector<std::string> ignored = {};  ///< as in EntailedQuads
 };
 /// Replaces the graph `inferred` by the closure of ontology, observed and operator. Writes only the differences, and
 /// flushes.

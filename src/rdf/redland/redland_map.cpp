@@ -9,6 +9,22 @@
 
 namespace cluxel::rdf {
 
+namespace {
+
+/// A build computes these graphs. What is removed there would be missing until the next build.
+void requireRemovable(const Term& graph) {
+  using namespace vocabulary;
+  for (const std::string_view built : {kGraphOntology, kGraphObserved, kGraphInferred, kGraphHistory})
+    if (graph.text == built)
+      throw Error(ErrorKind::InvalidArgument,
+                  "nothing was removed: graph <" + graph.text +
+                      "> is what a build made of scans, rules and ontology. Change these, or state what holds "
+                      "instead in graph <" +
+                      std::string(kGraphOperator) + ">; statements there can be removed");
+}
+
+}  // namespace
+
 RedlandMatches::RedlandMatches(QuadReader reader, const QuadPattern& pattern, std::function<bool(QuadIds&)> accept,
                                bool copy)
     : reader_(std::move(reader)), cursor_(reader_->scan(pattern)), accept_(std::move(accept)) {
@@ -143,13 +159,28 @@ std::unique_ptr<RedlandMatches> RedlandMap::all() {
 void RedlandMap::remove(const Term& s, const Term& p, const Term& o) {
   change([&](QuadWriter& writer) {
     writer.flush();
+    const QuadReader reader(read());
     const auto found = match(&s, &p, &o, nullptr, true);
-    const TermId history = QuadReader(read()).idOf(Term::iri(vocabulary::kGraphHistory)).value_or(kNoTerm);
+    const TermId history = reader.idOf(Term::iri(vocabulary::kGraphHistory)).value_or(kNoTerm);
     std::vector<QuadIds> quads;
     for (; !found->atEnd(); found->next())
       if (history == kNoTerm || found->quad().g != history) quads.push_back(found->quad());
+    for (const QuadIds& quad : quads) requireRemovable(reader.termOf(quad.g));
     for (const QuadIds& quad : quads) writer.remove(quad);
   });
+}
+
+void RedlandMap::removeFrom(const Quad& quad) {
+  requireRemovable(quad.graph);
+  change([&](QuadWriter& writer) {
+    writer.remove({writer.intern(quad.subject), writer.intern(quad.predicate), writer.intern(quad.object),
+                   writer.intern(quad.graph)});
+  });
+}
+
+void RedlandMap::removeContext(const Term& graph) {
+  requireRemovable(graph);
+  change([&](QuadWriter& writer) { writer.clearGraph(writer.intern(graph)); });
 }
 
 }  // namespace cluxel::rdf

@@ -71,8 +71,11 @@ class RedlandMap {
   std::unique_ptr<RedlandMatches> findIn(const Term& graph, const Term* s, const Term* p, const Term* o);
   /// All quads of all graphs; in a strict storage those of the unnamed graph.
   std::unique_ptr<RedlandMatches> all();
-  /// Removes the triple from all graphs that find() reads.
+  /// Removes the triple from all graphs that find() reads. Throws Error (InvalidArgument), and removes nothing, when it
+  /// lies in a graph that a build writes.
   void remove(const Term& s, const Term& p, const Term& o);
+  void removeFrom(const Quad& quad);      ///< throws as above
+  void removeContext(const Term& graph);  ///< throws as above, also for an empty graph
 
  private:
   std::unique_ptr<RedlandMatches> match(const Term* s, const Term* p, const Term* o, const Term* graph, bool whole);

@@ -123,20 +123,12 @@ int remove(librdf_storage* storage, librdf_statement* statement) {
 
 int removeFrom(librdf_storage* storage, librdf_node* context, librdf_statement* statement) {
   if (context == nullptr) return remove(storage, statement);
-  return run(storage, [&](RedlandMap& map) {
-    const Quad quad = quadOf(statement, context);
-    map.change([&](QuadWriter& writer) {
-      writer.remove({writer.intern(quad.subject), writer.intern(quad.predicate), writer.intern(quad.object),
-                     writer.intern(quad.graph)});
-    });
-  });
+  return run(storage, [&](RedlandMap& map) { map.removeFrom(quadOf(statement, context)); });
 }
 
 int removeContext(librdf_storage* storage, librdf_node* context) {
-  return run(storage, [&](RedlandMap& map) {
-    const Term graph = context != nullptr ? termOf(context) : Term::iri("");
-    map.change([&](QuadWriter& writer) { writer.clearGraph(writer.intern(graph)); });
-  });
+  return run(storage,
+             [&](RedlandMap& map) { map.removeContext(context != nullptr ? termOf(context) : Term::iri("")); });
 }
 
 // Nothing to do: every commit is synchronised to disk.

@@ -176,12 +176,19 @@ struct Node {
 
 NodePtr makeNode(Node::Kind kind, ast::SourceOffset at = 0);
 
+/// Something in an expression that makes it an error for every solution.
+struct ExpressionWarning {
+  ast::SourceOffset at = 0;
+  std::string message, hint;
+};
+
 struct AlgebraQuery {
   NodePtr root;
-  std::vector<std::string> slot_names;  ///< by slot; names of internal slots begin with a dot
-  std::vector<Slot> slot_of_variable;   ///< of the outermost scope, by VariableIndex
-  std::vector<Slot> projection;         ///< columns of the result
-  std::vector<Slot> parameters;         ///< slots bound from the start of a run
+  std::vector<ExpressionWarning> warnings;  ///< in the order of the text, each message once
+  std::vector<std::string> slot_names;      ///< by slot; names of internal slots begin with a dot
+  std::vector<Slot> slot_of_variable;       ///< of the outermost scope, by VariableIndex
+  std::vector<Slot> projection;             ///< columns of the result
+  std::vector<Slot> parameters;             ///< slots bound from the start of a run
   std::uint32_t exists_count = 0;
   bool wants_one = false;    ///< ASK: stop at the first solution
   bool is_volatile = false;  ///< uses the clock, random numbers or fresh blank nodes
@@ -191,13 +198,13 @@ class Guard;
 
 struct AlgebraOptions {
   std::vector<std::string> parameters = {};
-  bool refuse_volatile = false;
+  bool refuse_volatile = false;  ///< as in QueryOptions; unknown functions are errors, too
   std::string source_name = "query";
   std::map<std::string, const rdf::QuadReader*> services = {};  ///< as in QueryOptions
   Guard* guard = nullptr;  ///< accounts for the resources used by SERVICE; not null when there are services
 };
 
-/// Throws InputError for unknown functions, wrong argument counts, refused SERVICE and volatile functions.
+/// Throws InputError for wrong argument counts, refused SERVICE and volatile functions.
 AlgebraQuery buildAlgebra(const ast::Query& query, QueryTerms& terms, const AlgebraOptions& options);
 /// As above, for the WHERE clause of an update.
 AlgebraQuery buildAlgebra(const ast::GroupPattern& where, const ast::VariableTable& variables, const std::string& text,

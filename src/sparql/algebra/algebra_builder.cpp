@@ -79,7 +79,14 @@ AlgebraQuery AlgebraBuilder::finish(NodePtr root, const Scope& scope) {
   query.parameters = parameter_list_;
   query.exists_count = exists_count_;
   query.is_volatile = is_volatile_;
+  query.warnings = std::move(warnings_);
   return query;
+}
+
+void AlgebraBuilder::warn(ast::SourceOffset at, std::string message, std::string hint) {
+  const auto same = [&message](const ExpressionWarning& warning) { return warning.message == message; };
+  if (std::none_of(warnings_.begin(), warnings_.end(), same))
+    warnings_.push_back({at, std::move(message), std::move(hint)});
 }
 
 void AlgebraBuilder::fail(ast::SourceOffset at, std::string message, std::string hint, Remedy remedy) const {

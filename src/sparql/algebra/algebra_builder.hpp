@@ -69,7 +69,10 @@ class AlgebraBuilder {
   Expr call(const ast::Expression& written, Scope& scope, const SlotSet& visible);
   Expr exists(const ast::Expression& written, Scope& scope, const SlotSet& visible);
   Expr aggregate(const ast::Expression& written);
+  Expr unknownFunction(const ast::Expression& written, Scope& scope, const SlotSet& visible);
   void checkCall(const ast::Expression& written, const FunctionEntry& function);
+  void checkRegex(const ast::Expression& written);
+  void warn(ast::SourceOffset at, std::string message, std::string hint);
   PatternPlace place(const ast::PatternTerm& term, Scope& scope);
   Slot freshSlot(std::string name);
   bool isParameter(Slot slot) const { return parameters_.has(slot); }
@@ -88,6 +91,7 @@ class AlgebraBuilder {
   std::uint32_t exists_count_ = 0, service_count_ = 0;
   bool is_volatile_ = false;
   Aggregation aggregation_;
+  std::vector<ExpressionWarning> warnings_;
 };
 
 }  // namespace cluxel::sparql

@@ -3,6 +3,8 @@
 #include "base/nearest_name.hpp"
 #include "cluxel/error.hpp"
 #include "sparql/algebra/algebra_builder.hpp"
+#include "sparql/exec/guard.hpp"
+#include "sparql/functions/regex_cache.hpp"
 
 namespace cluxel::sparql {
 namespace {
@@ -60,6 +62,7 @@ Expr ofKind(Expr::Kind kind, ast::SourceOffset at) {
 }  // namespace
 
 Expr AlgebraBuilder::expression(const ast::Expression& written, Scope& scope, const SlotSet& visible) {
+  if (options_.guard != nullptr) options_.guard->spend(sizeof(Expr));
   switch (written.kind) {
     case Written::Variable: {
       const Slot slot = slotOf(written.variable, scope);
@@ -95,9 +98,7 @@ Expr AlgebraBuilder::call(const ast::Expression& written, Scope& scope, const Sl
   Expr result = ofKind(Expr::Kind::Call, written.at);
   if (written.kind == Written::Function) {
     result.function = findFunction(written.term.text);
-    if (result.function == nullptr) {
-      fail(written.at, "unknown function <" + written.term.text + ">", suggestion(written.term.text, functionIris()));
-    }
+    if (result.function == nullptr) return unknownFunction(written, scope, visible);
   } else if (written.builtin == ast::Builtin::Bound) {
     const Expr variable = expression(written.arguments[0], scope, visible);
     result.kind = variable.kind == Expr::Kind::Slot ? Expr::Kind::Bound : Expr::Kind::Constant;
@@ -118,6 +119,31 @@ Expr AlgebraBuilder::call(const ast::Expression& written, Scope& scope, const Sl
   return result;
 }
 
+/// A call of a function that nobody has is an error of its expression, as the specification says: FILTER drops the row,
+/// COALESCE goes on. In rules it is an error of the rule.
+Expr AlgebraBuilder::unknownFunction(const ast::Expression& written, Scope& scope, const SlotSet& visible) {
+  const std::string message = "unknown function <" + written.term.text + ">";
+  const std::string hint = suggestion(written.term.text, functionIris());
+  if (options_.refuse_volatile) fail(written.at, message, hint);
+  warn(written.at, message + ": an expression that calls it is an error", hint);
+  for (const ast::Expression& argument : written.arguments) expression(argument, scope, visible);
+  return ofKind(Expr::Kind::Unbound, written.at);
+}
+
+void AlgebraBuilder::checkRegex(const ast::Expression& written) {
+  const std::size_t flags_at = written.builtin == ast::Builtin::Replace ? 3 : 2;
+  const auto text = [&](std::size_t i) {
+    const bool is_constant = i < written.arguments.size() && written.arguments[i].kind == Written::Constant;
+    return is_constant ? std::optional(written.arguments[i].term.text) : std::nullopt;
+  };
+  const bool has_flags = written.arguments.size() > flags_at;
+  if (!text(1) || (has_flags && !text(flags_at))) return;
+  const std::string fault = regexFault(*text(1), has_flags ? *text(flags_at) : "");
+  if (!fault.empty())
+    warn(written.arguments[1].at, "\"" + *text(1) + "\" is no regular expression: " + fault,
+         "the expression is an error for every row; the flag \"q\" takes the pattern as plain text");
+}
+
 void AlgebraBuilder::checkCall(const ast::Expression& written, const FunctionEntry& function) {
   const std::size_t count = written.arguments.size();
   if (count < function.min_arguments || count > function.max_arguments) {
@@ -127,6 +153,7 @@ void AlgebraBuilder::checkCall(const ast::Expression& written, const FunctionEnt
     fail(written.at, std::string(function.name) + " takes " + expected_count + " argument" +
                          (expected_count == "1" ? "" : "s") + ", not " + std::to_string(count));
   }
+  if (written.builtin == ast::Builtin::Regex || written.builtin == ast::Builtin::Replace) checkRegex(written);
   is_volatile_ = is_volatile_ || function.is_volatile;
   if (function.is_volatile && options_.refuse_volatile) {
     fail(written.at, std::string(function.name) + " is refused here: a rule's result must follow from the map alone",

@@ -169,8 +169,18 @@ Value Evaluator::called(const Expr& expression, const Batch& batch, std::size_t 
     if (!arguments[i]) return {};
   }
   Value result = expression.function->body({arguments, count}, runtime_.functions);
-  if (result.isStringLike() && result.payload) requireTextSize(std::get<TextPayload>(*result.payload).text.size());
+  if (result.isStringLike() && result.payload) countText(std::get<TextPayload>(*result.payload).text.size());
   return result;
+}
+
+/// A text is held several times while it becomes a term, and batches are charged only when they are complete.
+void Evaluator::countText(std::size_t bytes) {
+  constexpr std::size_t kLong = 4096, kCopies = 3;
+  requireTextSize(bytes);
+  if (bytes < kLong) return;
+  runtime_.chargeForTerms();
+  runtime_.guard.requireRoomFor(kCopies * bytes);
+  runtime_.guard.spend(bytes);
 }
 
 }  // namespace cluxel::sparql

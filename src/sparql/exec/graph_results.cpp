@@ -70,8 +70,10 @@ void GraphResult::describeNode(ValueId node) {
 }
 
 void GraphResult::write(ResultSink& sink) const {
+  constexpr std::size_t kBytesOfTriple = 256;
   for (std::size_t i = 0; i < triples_.size(); ++i) {
     const ValueId* triple = triples_.row(i);
+    runtime_.guard.spend(kBytesOfTriple);
     sink.triple(runtime_.terms.view(triple[0]), runtime_.terms.view(triple[1]), runtime_.terms.view(triple[2]));
   }
 }

@@ -39,6 +39,23 @@ class Guard {
     shared_.push_back(thing);
     charge(bytes);
   }
+  /// For memory that is about to be held for a moment, such as the copy of a growing array.
+  void requireRoomFor(std::size_t bytes) const {
+    if (!hasRoomFor(bytes)) refuse("memory");
+  }
+  /// Counts bytes that were computed or read between batches, and checks the deadline once in a while.
+  void spend(std::size_t bytes) {
+    spent_ += bytes;
+    if (spent_ < kBytesBetweenChecks) return;
+    spent_ = 0;
+    checkTime();
+  }
+  /// Charges what the syntax tree, the algebra and the plan hold for these tokens, and checks the deadline.
+  void chargeForTokens(std::size_t tokens) {
+    constexpr std::size_t kBytesOfToken = 600;
+    charge(tokens * kBytesOfToken);
+    checkTime();
+  }
   void release(std::size_t bytes) { bytes_ -= std::min(bytes, bytes_); }
   /// True when `bytes` more fit the memory budget.
   bool hasRoomFor(std::size_t bytes) const { return bytes_ <= max_bytes_ && bytes <= max_bytes_ - bytes_; }
@@ -54,13 +71,14 @@ class Guard {
   }
 
  private:
+  static constexpr std::size_t kBytesBetweenChecks = std::size_t{1} << 20U;
   void check();
   [[noreturn]] void refuse(const char* what) const;
 
   QueryBudget budget_;
   std::chrono::steady_clock::time_point start_, deadline_;
   std::uint64_t work_rows_ = 0, next_check_ = 0, max_work_rows_ = 0, max_answer_rows_ = 0;
-  std::size_t bytes_ = 0, max_bytes_ = 0;
+  std::size_t bytes_ = 0, max_bytes_ = ~std::size_t{0}, spent_ = 0;
   std::vector<const void*> shared_;  ///< resources charged by chargeOnce()
 };
 

@@ -6,16 +6,25 @@
 #include <chrono>
 #include <random>
 
+#include "rdf/vocabulary.hpp"
 #include "sparql/exec/graph_results.hpp"
 #include "sparql/plan/planner.hpp"
 
 namespace cluxel::sparql {
 namespace {
 
-ast::Query parsed(std::string_view text, const QueryOptions& options) {
+Guard started(const QueryBudget& budget) {
+  Guard guard;
+  guard.start(budget);
+  return guard;
+}
+
+ast::Query parsed(std::string_view text, const QueryOptions& options, Guard& guard) {
   SparqlParseOptions parse_options;
   parse_options.file = options.source_name;
   parse_options.base_iri = options.base_iri;
+  parse_options.prefixes = options.prefixes;
+  parse_options.count = [&guard](std::size_t tokens) { guard.chargeForTokens(tokens); };
   return parseQuery(text, parse_options);
 }
 
@@ -30,8 +39,9 @@ PreparedQuery::Impl::Impl(const rdf::QuadReader& quad_reader, std::string_view t
                           const std::vector<std::string>& parameters)
     : reader(quad_reader),
       options(query_options),
+      preparing(started(query_options.budget)),
       terms(quad_reader),
-      query(parsed(text, query_options)),
+      query(parsed(text, query_options, preparing)),
       dataset(datasetOf(query.dataset, options, reader)),
       functions(terms) {
   AlgebraOptions algebra_options;
@@ -39,12 +49,11 @@ PreparedQuery::Impl::Impl(const rdf::QuadReader& quad_reader, std::string_view t
   algebra_options.refuse_volatile = options.refuse_volatile;
   algebra_options.source_name = options.source_name;
   algebra_options.services = options.services;
-  Guard service_guard;
-  if (!options.services.empty()) service_guard.start(options.budget);
-  algebra_options.guard = &service_guard;
+  algebra_options.guard = &preparing;
   algebra = buildAlgebra(query, terms, algebra_options);
-  if (!options.services.empty()) used_by_services = service_guard.usage();
+  preparing.checkTime();
   plan = Planner(algebra, terms, dataset, options.spatial_plans).plan();
+  preparing.checkTime();
   for (const ast::Projection& column : query.select.projection)
     variables.push_back(query.variables[column.variable].name);
   for (ast::VariableIndex i = 0; i < query.variables.size(); ++i) {
@@ -57,6 +66,7 @@ PreparedQuery::Impl::Impl(const rdf::QuadReader& quad_reader, std::string_view t
       std::make_unique<Runtime>(reader, terms, functions, dataset, algebra.slot_names.size(), algebra.exists_count);
   functions.base_iri = query.base_iri;
   mark = terms.mark();
+  used_before = preparing.usage();
 }
 
 void PreparedQuery::Impl::setParameters(const std::vector<Binding>& bindings) {
@@ -72,6 +82,7 @@ void PreparedQuery::Impl::setParameters(const std::vector<Binding>& bindings) {
 
 void PreparedQuery::Impl::begin(const std::vector<Binding>& bindings) {
   terms.rewind(mark);
+  functions.notes.clear();
   setParameters(bindings);
   if (algebra.is_volatile || !query.construct_template.empty()) {
     functions.random.seed(options.seed ? *options.seed : std::random_device{}());
@@ -81,7 +92,8 @@ void PreparedQuery::Impl::begin(const std::vector<Binding>& bindings) {
   }
   // Opening releases the memory that the operators hold from the last run.
   plan->open(*runtime, true);
-  runtime->guard.start(options.budget, used_by_services);
+  runtime->guard.start(options.budget, used_before);
+  if (options.services.empty()) used_before.time = {};
   runtime->charged_for_terms = terms.computedBytes();
   has_run = true;
 }
@@ -113,7 +125,10 @@ void PreparedQuery::Impl::runSelect(ResultSink& sink) {
     row_counts.push_back(batch.rows);
   }
   sink.beginSolutions(variables, terms);
-  for (std::size_t i = 0; i < pieces.size(); ++i) sink.rows(pieces[i], row_counts[i]);
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    runtime->guard.checkTime();
+    sink.rows(pieces[i], row_counts[i]);
+  }
   sink.end();
 }
 
@@ -133,6 +148,16 @@ void PreparedQuery::Impl::runGraph(ResultSink& sink) {
   sink.end();
 }
 
+const std::vector<std::pair<std::string, std::string>>& mapPrefixes() {
+  using namespace rdf::vocabulary;
+  static const std::vector<std::pair<std::string, std::string>> prefixes = {
+      {"clx", std::string(kClx)},   {"geo", std::string(kGeo)},   {"geof", std::string(kGeof)},
+      {"sosa", std::string(kSosa)}, {"prov", std::string(kProv)}, {"rdf", std::string(kRdf)},
+      {"rdfs", std::string(kRdfs)}, {"owl", std::string(kOwl)},   {"xsd", std::string(kXsd)},
+      {"skos", std::string(kSkos)}};
+  return prefixes;
+}
+
 PreparedQuery::PreparedQuery(const rdf::QuadReader& reader, std::string_view text, const QueryOptions& options,
                              const std::vector<std::string>& parameters)
     : impl_(std::make_unique<Impl>(reader, text, options, parameters)) {}
@@ -145,6 +170,13 @@ ast::QueryForm PreparedQuery::form() const {
 }
 const std::vector<std::string>& PreparedQuery::variables() const {
   return impl_->variables;
+}
+
+std::vector<Diagnostic> PreparedQuery::notes() const {
+  std::vector<Diagnostic> notes;
+  for (const std::string& text : impl_->functions.notes)
+    notes.push_back({Severity::Warning, {.file = impl_->options.source_name}, text, {}, {}});
+  return notes;
 }
 
 void PreparedQuery::run(ResultSink& sink, const std::vector<Binding>& bindings) {

@@ -21,6 +21,7 @@ struct PreparedQuery::Impl {
 
   const rdf::QuadReader& reader;
   QueryOptions options;
+  Guard preparing;  ///< counts what parsing, SERVICE and planning use; the first run goes on from it
   QueryTerms terms;
   ast::Query query;
   Dataset dataset;
@@ -30,7 +31,7 @@ struct PreparedQuery::Impl {
   std::vector<std::pair<std::string, Slot>> parameter_slots;
   FunctionContext functions;
   std::unique_ptr<Runtime> runtime;
-  Guard::Usage used_by_services;  ///< SERVICE is evaluated during preparation and charged to every run
+  Guard::Usage used_before;  ///< by the preparation; charged to every run, its time without SERVICE to the first only
   std::size_t mark = 0;
   bool has_run = false;
 };

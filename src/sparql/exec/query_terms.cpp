@@ -21,6 +21,9 @@ const Term& termAt(const std::deque<Term>& computed, ValueId id) {
                                                ", which does not exist; run `cluxel doctor` for the location");
 }
 
+/// Of a hash table's node with what it points to.
+constexpr std::size_t kBytesOfNode = 64;
+
 Value withId(Value value, ValueId id) {
   value.id = id;
   return value;
@@ -75,6 +78,7 @@ Value QueryTerms::valueOfStored(ValueId id) const {
   const rdf::TermView seen = view(id);
   value = withId(valueOfTerm(seen.kind, seen.text, seen.datatype, seen.language), id);
   decoded_.emplace(id, value);
+  computed_bytes_ += sizeof(Value) + kBytesOfNode;
   return value;
 }
 

@@ -60,7 +60,7 @@ class QueryTerms : public TermLookup {
   std::deque<Term> computed_;
   mutable std::unordered_map<ValueId, Value> decoded_;  ///< values that are decoded from text
   std::unordered_map<Term, ValueId, TermHash> id_of_;
-  std::size_t computed_bytes_ = 0;
+  mutable std::size_t computed_bytes_ = 0;  ///< of computed_, id_of_ and decoded_
 };
 
 }  // namespace cluxel::sparql

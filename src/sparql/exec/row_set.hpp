@@ -71,6 +71,13 @@ class RowSet {
   const ValueId* row(std::size_t number) const { return cells_.data() + number * width_; }
   std::size_t size() const { return rows_; }
   std::size_t bytes() const { return cells_.capacity() * sizeof(ValueId) + places_.size() * sizeof(std::uint32_t); }
+  /// The bytes that the set may grow by when `rows` more come.
+  std::size_t growthFor(std::size_t rows) const {
+    const bool more_cells = cells_.size() + rows * width_ > cells_.capacity();
+    const bool more_places = (rows_ + rows) * 2 > places_.size();
+    return (more_cells ? 2 * cells_.capacity() * sizeof(ValueId) : 0) +
+           (more_places ? 2 * places_.size() * sizeof(std::uint32_t) : 0);
+  }
   void clear() {
     cells_ = {};
     places_ = {};

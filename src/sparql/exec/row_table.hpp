@@ -37,6 +37,7 @@ class RowTable {
   /// Charges its growth to the guard.
   void append(const Batch& batch, Guard& guard) {
     const std::size_t before = cells_.size();
+    requireGrowth(batch.rows, guard);
     cells_.resize(before + batch.rows * slots_.size());
     guard.charge((cells_.size() - before) * sizeof(ValueId));
     for (std::size_t column = 0; column < slots_.size(); ++column) {
@@ -51,6 +52,7 @@ class RowTable {
   /// Appends the rows `picks` of the batch.
   void append(const Batch& batch, const std::vector<std::uint32_t>& picks, Guard& guard) {
     guard.charge(picks.size() * slots_.size() * sizeof(ValueId));
+    requireGrowth(picks.size(), guard);
     for (const std::uint32_t row : picks) {
       for (const Slot slot : slots_) cells_.push_back(batch.at(slot, row));
     }
@@ -65,6 +67,11 @@ class RowTable {
   void setRows(std::size_t rows) { rows_ = rows; }
 
  private:
+  /// While a full array moves to a larger one, its cells are held twice.
+  void requireGrowth(std::size_t rows, const Guard& guard) const {
+    if (cells_.size() + rows * slots_.size() > cells_.capacity()) guard.requireRoomFor(cells_.size() * sizeof(ValueId));
+  }
+
   std::vector<Slot> slots_;
   std::vector<ValueId> cells_;
   std::size_t rows_ = 0;

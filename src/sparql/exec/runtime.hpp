@@ -88,6 +88,7 @@ class Evaluator {
   Value membership(const Expr& expression, const Batch& batch, std::size_t row);
   Value arithmetic(const Expr& expression, const Batch& batch, std::size_t row);
   Value called(const Expr& expression, const Batch& batch, std::size_t row);
+  void countText(std::size_t bytes);
 
   Runtime& runtime_;
 };

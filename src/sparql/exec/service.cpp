@@ -35,6 +35,7 @@ NodePtr AlgebraBuilder::answered(const ast::ServicePattern& service, const rdf::
   QueryTerms terms(reader);
   AlgebraQuery algebra = buildAlgebra(service.group, variables_, std::string(text_), terms, options_);
   if (algebra.is_volatile) fail(at, "RAND, NOW, UUID and BNODE do not work within SERVICE", "use them outside of it");
+  for (ExpressionWarning& warning : algebra.warnings) warn(warning.at, warning.message, warning.hint);
   const SlotSet used = algebra.root->mentioned();
   for (const Slot slot : algebra.parameters) {
     if (!used.has(slot)) continue;

@@ -7,6 +7,18 @@
 #include "sparql/plan/planner.hpp"
 
 namespace cluxel::sparql {
+namespace {
+
+/// With the texts that do not fit into their strings.
+std::size_t bytesOf(const ChangedQuad& change) {
+  constexpr std::size_t kBytesOfBlock = 24;
+  std::size_t bytes = sizeof(ChangedQuad);
+  for (const Term* term : {&change.quad.subject, &change.quad.predicate, &change.quad.object, &change.quad.graph})
+    bytes += term->text.size() + term->datatype.size() + kBytesOfBlock;
+  return bytes;
+}
+
+}  // namespace
 
 ModifyRun::ModifyRun(const rdf::QuadReader& reader, const ast::Update& update, const ast::UpdateOperation& operation,
                      const ast::Modify& modify, const UpdateOptions& options)
@@ -46,9 +58,10 @@ void ModifyRun::prepare(FunctionContext& functions) const {
 Changes ModifyRun::changes() {
   const Dataset data = dataset();
   Guard guard;
-  guard.start(options_.query.budget);
+  guard.start(options_.query.budget, used);
   AlgebraQuery query = algebra(guard);
   slot_of_variable_ = query.slot_of_variable;
+  warnings_ = query.warnings;
   const OperatorPtr plan = Planner(query, terms_, data).plan();
   FunctionContext functions(terms_);
   prepare(functions);
@@ -63,6 +76,8 @@ Changes ModifyRun::changes() {
       instantiate(modify_.insert, batch, row, blanks, runtime.guard, changes.inserted);
     }
   }
+  used_after_ = runtime.guard.usage();
+  for (const std::string& note : functions.notes) warnings_.push_back({operation_.at, note, {}});
   return changes;
 }
 
@@ -80,15 +95,17 @@ std::optional<Term> ModifyRun::filled(const ast::PatternTerm& place, const Batch
 
 /// Skips quads with an unbound position or a term kind that RDF does not allow there.
 void ModifyRun::instantiate(const std::vector<ast::QuadTemplate>& templates, const Batch& batch, std::size_t row,
-                            Blanks& blanks, Guard& guard, std::vector<Quad>& out) {
+                            Blanks& blanks, Guard& guard, std::vector<ChangedQuad>& out) {
   for (const ast::QuadTemplate& quad : templates) {
     const auto s = filled(quad.subject, batch, row, blanks), p = filled(quad.predicate, batch, row, blanks);
     const auto o = filled(quad.object, batch, row, blanks);
     const auto g = quad.graph ? filled(*quad.graph, batch, row, blanks) : std::optional<Term>(default_graph);
     if (!s || !p || !o || !g || s->kind == TermKind::Literal || p->kind != TermKind::Iri || g->kind != TermKind::Iri)
       continue;
-    out.push_back({*s, *p, *o, *g});
-    guard.charge(sizeof(Quad) + s->text.size() + o->text.size());
+    if (out.size() == out.capacity()) guard.requireRoomFor(out.size() * sizeof(ChangedQuad));
+    out.push_back({{*s, *p, *o, *g}, quad.graph || modify_.with});
+    guard.work(1);
+    guard.charge(bytesOf(out.back()));
   }
 }
 

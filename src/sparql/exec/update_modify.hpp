@@ -13,8 +13,14 @@
 
 namespace cluxel::sparql {
 
+/// A quad of a template for one solution.
+struct ChangedQuad {
+  Quad quad;
+  bool names_graph = true;  ///< by GRAPH or WITH; else it is meant for the graphs that the pattern reads
+};
+
 struct Changes {
-  std::vector<Quad> removed, inserted;
+  std::vector<ChangedQuad> removed, inserted;
 };
 
 class ModifyRun {
@@ -26,9 +32,12 @@ class ModifyRun {
   std::uint64_t seed = 0;
   Term default_graph;                        ///< for templates without a graph
   std::function<std::string()> fresh_label;  ///< labels for blank nodes of templates
+  Guard::Usage used;                         ///< of the budget, by what went before
 
   /// The quads to remove and insert for all solutions; does not modify the store.
   Changes changes();
+  Guard::Usage usedAfter() const { return used_after_; }
+  const std::vector<ExpressionWarning>& warnings() const { return warnings_; }
 
  private:
   using Blanks = std::map<std::string, Term>;  ///< per solution, by label in the template
@@ -37,7 +46,7 @@ class ModifyRun {
   void prepare(FunctionContext& functions) const;
   std::optional<Term> filled(const ast::PatternTerm& place, const Batch& batch, std::size_t row, Blanks& blanks);
   void instantiate(const std::vector<ast::QuadTemplate>& templates, const Batch& batch, std::size_t row, Blanks& blanks,
-                   Guard& guard, std::vector<Quad>& out);
+                   Guard& guard, std::vector<ChangedQuad>& out);
 
   const rdf::QuadReader& reader_;
   const ast::Update& update_;
@@ -46,6 +55,8 @@ class ModifyRun {
   const UpdateOptions& options_;
   QueryTerms terms_;
   std::vector<Slot> slot_of_variable_;
+  std::vector<ExpressionWarning> warnings_;
+  Guard::Usage used_after_;
 };
 
 }  // namespace cluxel::sparql

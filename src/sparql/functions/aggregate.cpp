@@ -172,6 +172,7 @@ void Accumulator::take(const AggregateSpec& spec, const Value& value, Runtime& r
       if (!texts_) texts_ = std::make_unique<std::vector<Value>>();
       texts_->push_back(value);
       runtime.guard.charge(sizeof(Value));
+      runtime.guard.spend(sizeof(Value));
       countText(value, spec, runtime);
       return;
   }

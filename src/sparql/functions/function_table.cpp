@@ -101,6 +101,11 @@ FunctionContext::FunctionContext(QueryTerms& query_terms)
     : terms(query_terms), regexes(std::make_unique<RegexCache>()), geometries(std::make_unique<GeometryCache>()) {}
 FunctionContext::~FunctionContext() = default;
 
+void FunctionContext::note(std::string_view text) {
+  constexpr std::size_t kMaxNotes = 8;
+  if (notes.size() < kMaxNotes) notes.emplace(text);
+}
+
 const FunctionEntry* findBuiltin(ast::Builtin builtin) {
   for (const BuiltinEntry& entry : kBuiltins) {
     if (entry.builtin == builtin) return &entry.entry;

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <random>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -47,7 +48,10 @@ struct FunctionContext {
   std::unique_ptr<RegexCache> regexes;
   std::unique_ptr<GeometryCache> geometries;
 
+  std::set<std::string> notes = {};  ///< what a person should know about the values of this run
+
   std::string freshLabel();
+  void note(std::string_view text);
 };
 
 using Arguments = std::span<const Value>;

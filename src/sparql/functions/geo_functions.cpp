@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// GeoSPARQL functions on WKT literals in the map's metric frame.
+// GeoSPARQL functions on WKT literals in the map's metric frame, or in one named system.
 #include <cmath>
 
 #include "rdf/vocabulary.hpp"
 #include "sparql/functions/function_bodies.hpp"
 #include "sparql/functions/geometry.hpp"
+#include "sparql/functions/proj_reference_system.hpp"
 
 namespace cluxel::sparql {
 namespace {
@@ -16,10 +17,44 @@ const std::string& wktDatatype() {
   return iri;
 }
 
+std::string shownSystem(const Geometry& geometry) {
+  return systemOf(geometry).empty() ? "none (the map frame)" : systemOf(geometry);
+}
+
+/// False, with a note, for geometries of different systems: they are not converted.
+bool haveOneSystem(const Geometry& a, const Geometry& b, FunctionContext& context) {
+  if (systemOf(a) == systemOf(b)) return true;
+  std::string first = shownSystem(a), second = shownSystem(b);
+  if (second < first) std::swap(first, second);
+  context.note("geometries of different coordinate systems are not related to each other: " + first + " and " + second +
+               "; write both in one system");
+  return false;
+}
+
+/// In metres; absent, with a note, where nothing right can be said.
+std::optional<double> metresBetween(const Geometry& a, const Geometry& b, FunctionContext& context) {
+  const std::string& name = systemOf(a);
+  if (name.empty()) return distanceBetween(a, b);
+  const ReferenceSystem& system = context.geometries->system(name);
+  switch (system.kind) {
+    case ReferenceSystem::Kind::Projected:
+      return distanceBetween(a, b) * system.metres_per_unit;
+    case ReferenceSystem::Kind::Geographic:
+      if (const auto distance_m = geodesicDistance(a, b, system)) return distance_m;
+      context.note("a latitude beyond 90 degrees in " + name + " has no distance: " +
+                   (system.latitude_first ? "this system names the latitude first" : "it names the longitude first"));
+      return std::nullopt;
+    case ReferenceSystem::Kind::Unknown:
+      break;
+  }
+  context.note("distances in " + name + " are unknown: it is no projected or geographic system that PROJ knows");
+  return std::nullopt;
+}
+
 template <typename Test>
 Value relate(Arguments arguments, FunctionContext& context, Test test) {
   const auto a = geometryOf(arguments[0], context), b = geometryOf(arguments[1], context);
-  if (!a || !b || !mayMeasure(*a, *b)) return {};
+  if (!a || !b || !haveOneSystem(*a, *b, context)) return {};
   return Value::boolean(test(*a, *b));
 }
 
@@ -44,9 +79,10 @@ Value geoDistanceFunction(Arguments arguments, FunctionContext& context) {
     if (unit != "metre" && unit != "meter") return {};
   }
   const auto a = geometryOf(arguments[0], context), b = geometryOf(arguments[1], context);
-  if (!a || !b || !mayMeasure(*a, *b)) return {};
-  const double distance_m = distanceBetween(*a, *b);
-  return std::isfinite(distance_m) ? Value::ofDouble(distance_m) : Value();
+  if (!a || !b || !haveOneSystem(*a, *b, context)) return {};
+  if (hasHeight(*a) || hasHeight(*b)) context.note("geof:distance leaves the Z and M coordinates of geometries out");
+  const auto distance_m = metresBetween(*a, *b, context);
+  return distance_m && std::isfinite(*distance_m) ? Value::ofDouble(*distance_m) : Value();
 }
 
 Value sfIntersectsFunction(Arguments arguments, FunctionContext& context) {
@@ -71,8 +107,9 @@ Value sfTouchesFunction(Arguments arguments, FunctionContext& context) {
 
 Value envelopeFunction(Arguments arguments, FunctionContext& context) {
   const auto geometry = geometryOf(arguments[0], context);
-  if (!geometry || !std::isfinite(boundsOf(*geometry).min_x)) return {};
-  const Term term = Term::literal(envelopeWkt(*geometry), wktDatatype());
+  const auto box = geometry ? envelopeWkt(*geometry) : std::nullopt;
+  if (!box) return {};
+  const Term term = Term::literal(*box, wktDatatype());
   return context.terms.valueOf(context.terms.intern(term));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Planar geometry with Boost.Geometry.
+// Geometry in the plane with Boost.Geometry.
 #include "sparql/functions/geometry.hpp"
 
 // GCC 12 reports boxes of Boost.Geometry 1.74 as maybe uninitialised (a false positive); Clang lacks this warning.
@@ -8,36 +8,22 @@
 #endif
 #include <algorithm>
 #include <array>
-#include <boost/geometry.hpp>
-#include <boost/geometry/geometries/multi_linestring.hpp>
-#include <boost/geometry/geometries/multi_point.hpp>
-#include <boost/geometry/geometries/multi_polygon.hpp>
-#include <boost/geometry/geometries/point_xy.hpp>
 #include <charconv>
 #include <limits>
 
 #include "rdf/wkt_reader.hpp"
+#include "sparql/functions/geometry_parts.hpp"
+#include "sparql/functions/proj_reference_system.hpp"
 #include "sparql/functions/value.hpp"
 
 namespace cluxel::sparql {
 namespace bg = boost::geometry;
 namespace {
 
-using Point = bg::model::d2::point_xy<double>;
-using Line = bg::model::linestring<Point>;
-using Polygon = bg::model::polygon<Point>;
+using Point = PlanePoint;
+using Line = PlaneLine;
+using Polygon = PlanePolygon;
 constexpr std::size_t kMaxCached = 200'000;
-
-}  // namespace
-
-struct Geometry {
-  std::string crs;  ///< including angle brackets, or empty
-  bg::model::multi_point<Point> points;
-  bg::model::multi_linestring<Line> lines;
-  bg::model::multi_polygon<Polygon> polygons;
-};
-
-namespace {
 
 Line lineOf(const rdf::WktPath& path) {
   Line line;
@@ -122,11 +108,32 @@ std::shared_ptr<const Geometry> parseWkt(std::string_view text) {
   auto geometry = std::make_shared<Geometry>();
   geometry->crs = parts->reference_system;
   addParts(*shape, *geometry);
+  geometry->has_height = shape->has_height;
   return geometry;
 }
 
-std::string envelopeWkt(const Geometry& geometry) {
-  const Box2 box = boundsOf(geometry);
+namespace {
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+/// Minima above maxima for an empty geometry.
+Box2 planeBox(const Geometry& geometry) {
+  Box2 box{kFar, kFar, -kFar, -kFar};
+  const auto grow = [&box](const Point& point) {
+    box = {std::min(box.min_x, point.x()), std::min(box.min_y, point.y()), std::max(box.max_x, point.x()),
+           std::max(box.max_y, point.y())};
+  };
+  bg::for_each_point(geometry.points, grow);
+  bg::for_each_point(geometry.lines, grow);
+  bg::for_each_point(geometry.polygons, grow);
+  return box;
+}
+
+}  // namespace
+
+std::optional<std::string> envelopeWkt(const Geometry& geometry) {
+  const Box2 box = planeBox(geometry);
+  if (box.min_x > box.max_x) return std::nullopt;
   const auto corner = [](double x, double y) {
     std::array<char, 64> buffer{};
     char* end = std::to_chars(buffer.data(), buffer.data() + 31, x).ptr;
@@ -140,20 +147,15 @@ std::string envelopeWkt(const Geometry& geometry) {
 }
 
 Box2 boundsOf(const Geometry& geometry) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  Box2 box{kFar, kFar, -kFar, -kFar};
-  const auto grow = [&box](const Point& point) {
-    box = {std::min(box.min_x, point.x()), std::min(box.min_y, point.y()), std::max(box.max_x, point.x()),
-           std::max(box.max_y, point.y())};
-  };
-  bg::for_each_point(geometry.points, grow);
-  bg::for_each_point(geometry.lines, grow);
-  bg::for_each_point(geometry.polygons, grow);
-  return box;
+  return geometry.crs.empty() ? planeBox(geometry) : Box2{-kFar, -kFar, kFar, kFar};
 }
 
-bool mayMeasure(const Geometry& a, const Geometry& b) {
-  return a.crs.empty() || b.crs.empty() || a.crs == b.crs;
+const std::string& systemOf(const Geometry& geometry) {
+  return geometry.crs;
+}
+
+bool hasHeight(const Geometry& geometry) {
+  return geometry.has_height;
 }
 
 bool namesReferenceSystem(const Geometry& geometry) {
@@ -214,6 +216,12 @@ std::shared_ptr<const Geometry> GeometryCache::find(std::string_view text) {
   if (known != parsed_.end()) return known->second;
   if (parsed_.size() >= kMaxCached) parsed_.clear();
   return parsed_.emplace(std::string(text), parseWkt(text)).first->second;
+}
+
+const ReferenceSystem& GeometryCache::system(const std::string& name) {
+  auto& known = systems_[name];
+  if (!known) known = std::make_unique<const ReferenceSystem>(referenceSystem(name));
+  return *known;
 }
 
 }  // namespace cluxel::sparql

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Planar geometry for the GeoSPARQL functions: WKT literals in metres, parsed once per query.
+// Geometry for the GeoSPARQL functions: WKT literals in the map frame or a named system, parsed once per query.
 #pragma once
 
 #include <cstdint>
@@ -15,26 +15,34 @@ namespace cluxel::sparql {
 struct Geometry;
 struct FunctionContext;
 struct Value;
+struct ReferenceSystem;
 
-/// Coordinates in metres, in the map frame.
+/// Coordinates as written: metres of the map frame, unless the geometry names a system.
 struct Box2 {
   double min_x = 0, min_y = 0, max_x = 0, max_y = 0;
 };
 
 /// Null for text that is not WKT of a point, line, polygon, their multi-forms or a collection of them. A leading CRS
-/// IRI is accepted and kept; Z and M coordinates are dropped, because the functions are planar.
+/// IRI is accepted and kept; Z and M coordinates are dropped, because the functions measure in two dimensions.
 std::shared_ptr<const Geometry> parseWkt(std::string_view text);
-/// The bounding box as a WKT polygon in the same CRS.
-std::string envelopeWkt(const Geometry& geometry);
+/// The bounding box as a WKT polygon in the same CRS; absent for an empty geometry.
+std::optional<std::string> envelopeWkt(const Geometry& geometry);
+/// For searches in the map frame. Infinite for an empty geometry and for one in a named system, where boxes of numbers
+/// do not tell distances in metres.
 Box2 boundsOf(const Geometry& geometry);
-/// False when both name different reference systems; there is no conversion.
-bool mayMeasure(const Geometry& a, const Geometry& b);
 /// True when the literal begins with the IRI of a reference system.
 bool namesReferenceSystem(const Geometry& geometry);
 /// Null for a value that is not a well-formed geo:wktLiteral.
 std::shared_ptr<const Geometry> geometryOf(const Value& value, FunctionContext& context);
-/// The minimum distance in metres; 0 when they intersect.
+/// The system that the literal names, in angle brackets; empty for the map frame.
+const std::string& systemOf(const Geometry& geometry);
+/// The literal has Z or M coordinates, which measuring leaves out.
+bool hasHeight(const Geometry& geometry);
+/// The minimum distance in the plane, in units of the coordinates; 0 when they intersect, infinite when one is empty.
 double distanceBetween(const Geometry& a, const Geometry& b);
+/// The minimum distance along the ellipsoid of a geographic system [m]; absent when a latitude lies beyond a pole.
+std::optional<double> geodesicDistance(const Geometry& a, const Geometry& b, const ReferenceSystem& system);
+/// Relations in the plane of the coordinates, for geometries of one system.
 bool intersects(const Geometry& a, const Geometry& b);
 bool within(const Geometry& a, const Geometry& b);
 bool touches(const Geometry& a, const Geometry& b);
@@ -49,10 +57,12 @@ class GeometryCache {
   std::shared_ptr<const Geometry> add(std::uint32_t id, std::string_view text);
   /// By the text of a computed literal, whose id may change its meaning between runs.
   std::shared_ptr<const Geometry> find(std::string_view text);
+  const ReferenceSystem& system(const std::string& name);
 
  private:
   std::map<std::string, std::shared_ptr<const Geometry>, std::less<>> parsed_;
   std::unordered_map<std::uint32_t, std::shared_ptr<const Geometry>> stored_;
+  std::map<std::string, std::unique_ptr<const ReferenceSystem>> systems_;
 };
 
 }  // namespace cluxel::sparql

@@ -6,6 +6,7 @@
 #include <pcre2.h>
 
 #include <algorithm>
+#include <array>
 
 #include "sparql/functions/functions.hpp"
 #include "sparql/functions/regex_pattern.hpp"
@@ -83,32 +84,62 @@ struct CompiledRegex {
 RegexCache::RegexCache() = default;
 RegexCache::~RegexCache() = default;
 
+namespace {
+
+std::string pcreMessage(int code, std::size_t at) {
+  std::array<PCRE2_UCHAR, 256> text{};
+  pcre2_get_error_message(code, text.data(), text.size());
+  return std::string(reinterpret_cast<const char*>(text.data())) + " at byte " + std::to_string(at);
+}
+
+/// Null, with the reason in `fault`, for a malformed pattern or unknown flags.
+std::unique_ptr<CompiledRegex> compileRegex(const std::string& pattern, const std::string& flags, std::string& fault) {
+  const auto options = optionsOf(flags);
+  if (!options) {
+    fault = "the flags are i, s, m, x and q";
+    return nullptr;
+  }
+  const bool is_literal = (*options & PCRE2_LITERAL) != 0;
+  const auto translated =
+      is_literal ? std::optional(pattern) : pcrePattern(pattern, flags.find('x') != std::string::npos);
+  if (!translated) {
+    fault = "a class that does not end, a bracket within a class, or \\i or \\c";
+    return nullptr;
+  }
+  int error = 0;
+  std::size_t at = 0;
+  std::unique_ptr<pcre2_code, Deleter> code(pcre2_compile(reinterpret_cast<PCRE2_SPTR>(translated->data()),
+                                                          translated->size(), *options, &error, &at, nullptr));
+  if (!code) {
+    fault = pcreMessage(error, at);
+    return nullptr;
+  }
+  pcre2_jit_compile(code.get(), PCRE2_JIT_COMPLETE);
+  auto regex = std::make_unique<CompiledRegex>();
+  regex->code = std::move(code);
+  regex->data.reset(pcre2_match_data_create_from_pattern(regex->code.get(), nullptr));
+  regex->context.reset(pcre2_match_context_create(nullptr));
+  pcre2_set_match_limit(regex->context.get(), kMaxSteps);
+  pcre2_set_heap_limit(regex->context.get(), kMaxHeapKib);
+  regex->literal = is_literal;
+  return regex;
+}
+
+}  // namespace
+
 const CompiledRegex* RegexCache::find(const std::string& pattern, const std::string& flags) {
   const auto key = std::make_pair(pattern, flags);
   const auto known = compiled_.find(key);
   if (known != compiled_.end()) return known->second.get();
   if (compiled_.size() >= kMaxCompiled) compiled_.clear();
-  std::unique_ptr<CompiledRegex>& entry = compiled_[key];
-  const auto options = optionsOf(flags);
-  if (!options) return nullptr;
-  const bool is_literal = (*options & PCRE2_LITERAL) != 0;
-  const auto translated =
-      is_literal ? std::optional(pattern) : pcrePattern(pattern, flags.find('x') != std::string::npos);
-  if (!translated) return nullptr;
-  int error = 0;
-  std::size_t at = 0;
-  std::unique_ptr<pcre2_code, Deleter> code(pcre2_compile(reinterpret_cast<PCRE2_SPTR>(translated->data()),
-                                                          translated->size(), *options, &error, &at, nullptr));
-  if (!code) return nullptr;
-  pcre2_jit_compile(code.get(), PCRE2_JIT_COMPLETE);
-  entry = std::make_unique<CompiledRegex>();
-  entry->code = std::move(code);
-  entry->data.reset(pcre2_match_data_create_from_pattern(entry->code.get(), nullptr));
-  entry->context.reset(pcre2_match_context_create(nullptr));
-  pcre2_set_match_limit(entry->context.get(), kMaxSteps);
-  pcre2_set_heap_limit(entry->context.get(), kMaxHeapKib);
-  entry->literal = is_literal;
-  return entry.get();
+  std::string fault;
+  return (compiled_[key] = compileRegex(pattern, flags, fault)).get();
+}
+
+std::string regexFault(const std::string& pattern, const std::string& flags) {
+  std::string fault;
+  compileRegex(pattern, flags, fault);
+  return fault;
 }
 
 bool regexMatches(const CompiledRegex& regex, std::string_view text) {

@@ -23,6 +23,8 @@ class RegexCache {
   std::map<std::pair<std::string, std::string>, std::unique_ptr<CompiledRegex>> compiled_;
 };
 
+/// Why a pattern with these flags is no regular expression; empty when it is one.
+std::string regexFault(const std::string& pattern, const std::string& flags);
 /// Throws Error (BudgetExceeded) when matching exceeds the step limit.
 bool regexMatches(const CompiledRegex& regex, std::string_view text);
 /// fn:replace; none when the pattern matches the empty string or the replacement is malformed.

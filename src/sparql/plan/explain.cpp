@@ -2,6 +2,7 @@
 // Prints a query plan with estimated and actual row counts.
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "sparql/exec/prepared_query.hpp"
 #include "sparql/results/result_table.hpp"
@@ -23,12 +24,26 @@ void printPlan(const Operator& plan, const PlanNames& names, bool has_run, std::
   for (const Operator* input : plan.inputs()) printPlan(*input, names, has_run, depth + 1, out);
 }
 
+nlohmann::ordered_json planJson(const Operator& plan, const PlanNames& names, bool has_run) {
+  nlohmann::ordered_json json{{"operator", plan.label(names)},
+                              {"estimated", std::llround(std::min(plan.estimated_rows, 1e18))}};
+  if (has_run) json["actual"] = plan.actualRows();
+  json["inputs"] = nlohmann::ordered_json::array();
+  for (const Operator* input : plan.inputs()) json["inputs"].push_back(planJson(*input, names, has_run));
+  return json;
+}
+
 }  // namespace
 
 std::string PreparedQuery::explain() const {
   std::string out;
   printPlan(*impl_->plan, {impl_->algebra, impl_->terms}, impl_->has_run, 0, out);
   return out;
+}
+
+std::string PreparedQuery::explainJson() const {
+  constexpr auto kReplaceInvalid = nlohmann::ordered_json::error_handler_t::replace;
+  return planJson(*impl_->plan, {impl_->algebra, impl_->terms}, impl_->has_run).dump(-1, ' ', false, kReplaceInvalid);
 }
 
 }  // namespace cluxel::sparql

@@ -4,9 +4,9 @@
 #include <map>
 
 #include "base/nearest_name.hpp"
-#include "base/shown_line.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/exec/prepared_query.hpp"
+#include "sparql/syntax/source_text.hpp"
 
 namespace cluxel::sparql {
 namespace {
@@ -74,6 +74,9 @@ class NameCheck {
       for (const Term& graph : *graphs) checkFrom(graph);
     }
     visit(*query_.algebra.root);
+    for (const ExpressionWarning& warning : query_.algebra.warnings)
+      found_.push_back(
+          warningAt(query_.options.source_name, query_.query.text, warning.at, warning.message, warning.hint));
     return std::move(found_);
   }
 
@@ -123,13 +126,8 @@ class NameCheck {
   void warn(const std::string& what, ValueId id, ast::SourceOffset at, const std::vector<std::string>& known) {
     const std::string name = textOf(id);
     if (!warned_.emplace(name, true).second) return;
-    Diagnostic diagnostic;
-    diagnostic.severity = Severity::Warning;
-    diagnostic.location = locate(query_.options.source_name, query_.query.text, at);
-    diagnostic.message = "the map has no " + what + " <" + name + ">";
-    diagnostic.hint = hintFor(name, known);
-    diagnostic.source_line = shownLine(query_.query.text, diagnostic.location.line);
-    found_.push_back(std::move(diagnostic));
+    found_.push_back(warningAt(query_.options.source_name, query_.query.text, at,
+                               "the map has no " + what + " <" + name + ">", hintFor(name, known)));
   }
 
   PreparedQuery::Impl& query_;
@@ -139,9 +137,12 @@ class NameCheck {
 
 }  // namespace
 
+std::vector<Diagnostic> PreparedQuery::warnings() const {
+  return NameCheck(*impl_).run();
+}
+
 std::vector<Diagnostic> checkQuery(const rdf::QuadReader& reader, std::string_view text, const QueryOptions& options) {
-  PreparedQuery::Impl query(reader, text, options, {});
-  return NameCheck(query).run();
+  return PreparedQuery(reader, text, options).warnings();
 }
 
 }  // namespace cluxel::sparql

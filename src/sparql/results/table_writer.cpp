@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes an aligned text table. Buffers all rows, because column widths depend on all cells.
+// Writes an aligned text table. The first rows are kept back, because column widths depend on their cells; later cells
+// that are wider move the rest of their row.
 #include <algorithm>
 
 #include "base/utf8.hpp"
@@ -41,7 +42,7 @@ class TableWriter : public ResultSink {
  private:
   void begin(std::vector<std::string> variables) {
     variables_ = std::move(variables);
-    tabular_ = true;
+    is_tabular_ = true;
     for (const std::string& name : variables_) widths_.push_back(countCodePoints(name));
   }
   void add(const rdf::TermView& term) {
@@ -52,30 +53,43 @@ class TableWriter : public ResultSink {
     addCell(std::move(text), number);
   }
   void addCell(std::string text, bool number) {
+    if (is_header_written_) return writeNext({std::move(text), number});
     std::size_t& width = widths_[cells_.size() % variables_.size()];
     width = std::max(width, countCodePoints(text));
+    kept_bytes_ += sizeof(Cell) + text.size();
     cells_.push_back({std::move(text), number});
+    if (kept_bytes_ > kMaxKeptBytes) writeKept();
   }
   void writeCell(std::size_t column, std::string_view text, bool right) {
-    const std::string padding(widths_[column] - countCodePoints(text), ' ');
+    const std::size_t shown = countCodePoints(text);
+    const std::string padding(widths_[column] - std::min(widths_[column], shown), ' ');
     const bool last = column + 1 == variables_.size();
     buffer_.text().append(column > 0 ? "  " : "").append(right ? padding : "").append(text);
     if (!right && !last) buffer_.text().append(padding);
   }
   void writeHeader();
+  void writeKept();
 
   struct Cell {
     std::string text;
     bool number;
   };
+  void writeNext(const Cell& cell) {
+    writeCell(next_column_, cell.text, cell.number);
+    next_column_ = (next_column_ + 1) % variables_.size();
+    if (next_column_ == 0) buffer_.text() += '\n';
+    buffer_.flushWhenFull();
+  }
+
+  static constexpr std::size_t kMaxKeptBytes = std::size_t{8} << 20U;
   TextBuffer buffer_;
   PrefixList prefixes_;
   const TermLookup* terms_ = nullptr;
   std::vector<std::string> variables_;
   std::vector<std::size_t> widths_;
   std::vector<Cell> cells_;
-  std::size_t row_count_ = 0;
-  bool tabular_ = false;
+  std::size_t row_count_ = 0, kept_bytes_ = 0, next_column_ = 0;
+  bool is_tabular_ = false, is_header_written_ = false;
 };
 
 void TableWriter::writeHeader() {
@@ -85,15 +99,16 @@ void TableWriter::writeHeader() {
   buffer_.text() += '\n';
 }
 
+void TableWriter::writeKept() {
+  writeHeader();
+  is_header_written_ = true;
+  for (const Cell& cell : cells_) writeNext(cell);
+  cells_ = {};
+}
+
 void TableWriter::end() {
-  if (tabular_) {
-    writeHeader();
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-      const std::size_t column = i % variables_.size();
-      writeCell(column, cells_[i].text, cells_[i].number);
-      if (column + 1 == variables_.size()) buffer_.text() += '\n';
-      buffer_.flushWhenFull();
-    }
+  if (is_tabular_) {
+    if (!is_header_written_) writeKept();
     buffer_.text().append(std::to_string(row_count_)).append(row_count_ == 1 ? " row\n" : " rows\n");
   }
   buffer_.flush();

@@ -11,7 +11,7 @@ namespace cluxel::sparql {
 bool isAbsoluteIri(std::string_view iri);
 
 /// Resolves `reference` against `base`, which must be absolute unless the reference is. Dot segments are removed from
-/// absolute references too; nothing else is normalised. Raptor does the same when it reads data, and IRIs in queries
+/// absolute references too; nothing else is normalised. The readers of RDF do the same, and IRIs in queries
 /// and data must agree.
 std::string resolveIri(std::string_view reference, std::string_view base);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,8 +17,10 @@ struct SparqlParseOptions {
   std::string file = "query";  ///< the name of the text in messages
   std::string base_iri;        ///< for relative IRIs before any BASE; if empty, a relative IRI is an error
   std::vector<std::pair<std::string, std::string>> prefixes;  ///< predefined prefixes: {"clx", "https://…#"}
-  std::size_t max_bytes = 16u << 20;                          ///< longer requests are refused
-  std::size_t max_depth = 256;  ///< groups, sub-selects, parentheses and lists nested deeper are refused
+  /// Called after every few thousand tokens with their number; what it throws ends the parsing.
+  std::function<void(std::size_t)> count = {};
+  std::size_t max_bytes = 16u << 20;  ///< longer requests are refused
+  std::size_t max_depth = 256;        ///< groups, sub-selects, parentheses and lists nested deeper are refused
 };
 
 /// Throws InputError with line, column, caret, the expected token and, for a misspelt keyword or prefix, a suggestion.

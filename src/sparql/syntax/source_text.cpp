@@ -6,6 +6,7 @@
 #include <charconv>
 #include <optional>
 
+#include "base/shown_line.hpp"
 #include "base/utf8.hpp"
 #include "sparql/syntax/character_class.hpp"
 
@@ -98,6 +99,17 @@ void failAt(const std::string& file, std::string_view text, std::size_t offset, 
   const std::string_view shown = utf8Prefix(line, kMaxShownBytes);
   if (valid && diagnostic.location.column <= shown.size() + 1) diagnostic.source_line = shown;
   throw InputError({std::move(diagnostic)}, remedy);
+}
+
+Diagnostic warningAt(const std::string& file, std::string_view text, std::size_t offset, std::string message,
+                     std::string hint) {
+  Diagnostic diagnostic;
+  diagnostic.severity = Severity::Warning;
+  diagnostic.location = locate(file, text, offset);
+  diagnostic.message = std::move(message);
+  diagnostic.hint = std::move(hint);
+  diagnostic.source_line = shownLine(text, diagnostic.location.line);
+  return diagnostic;
 }
 
 }  // namespace cluxel::sparql

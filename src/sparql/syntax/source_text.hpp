@@ -40,4 +40,8 @@ class SourceText {
 [[noreturn]] void failAt(const std::string& file, std::string_view text, std::size_t offset, std::string message,
                          std::string hint, Remedy remedy = Remedy::None);
 
+/// A warning about a byte of `text`, with its line.
+Diagnostic warningAt(const std::string& file, std::string_view text, std::size_t offset, std::string message,
+                     std::string hint);
+
 }  // namespace cluxel::sparql

@@ -71,6 +71,8 @@ SparqlParser::Nested::Nested(SparqlParser& parser) : parser_(parser) {
 void SparqlParser::advance() {
   token_ = lexer_.tokenAt(token_.end);
   if (token_.kind == Kind::Invalid) fail(token_.begin, token_.problem);
+  constexpr std::size_t kTokensBetweenCounts = 4096;
+  if (++tokens_ % kTokensBetweenCounts == 0 && options_.count) options_.count(kTokensBetweenCounts);
 }
 
 bool SparqlParser::take(Kind kind) {

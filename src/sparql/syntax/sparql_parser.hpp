@@ -211,6 +211,7 @@ class SparqlParser {
 
   std::string base_iri_;
   std::map<std::string, std::string, std::less<>> prefixes_;
+  std::size_t tokens_ = 0;  ///< read so far
   ast::VariableTable variables_;
   std::unordered_map<std::string_view, ast::VariableIndex> variable_of_name_;
 

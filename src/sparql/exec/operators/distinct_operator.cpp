@@ -24,6 +24,7 @@ class DistinctOperator : public UnaryOperator {
     while (child_->next(in_)) {
       kept_.clear();
       const std::size_t before = seen_.bytes();
+      runtime().guard.requireRoomFor(seen_.growthFor(in_.rows));
       for (std::uint32_t i = 0; i < in_.rows; ++i) {
         for (std::size_t column = 0; column < columns_.size(); ++column) row[column] = in_.at(columns_[column], i);
         if (seen_.insert(row.data()).second) kept_.push_back(i);

@@ -76,7 +76,7 @@ class GroupOperator : public UnaryOperator {
     if (groups_.size() == 0 && !grouped_by_keys_) newGroup(nullptr);
   }
 
-  std::size_t bytesOfGroup() const { return aggregates_.size() * sizeof(Accumulator) + keys_.size() * 8; }
+  std::size_t bytesOfGroup() const { return aggregates_.size() * sizeof(Accumulator) + keys_.size() * 8 + 16; }
 
   void newGroup(const ValueId* key) {
     if (key == nullptr) groups_.insert(kNoKey.data());
@@ -86,6 +86,9 @@ class GroupOperator : public UnaryOperator {
 
   void assignGroups(const Batch& in) {
     group_of_row_.resize(in.rows);
+    const bool moves = accumulators_.size() + in.rows * aggregates_.size() > accumulators_.capacity();
+    runtime().guard.requireRoomFor(groups_.growthFor(in.rows) +
+                                   (moves ? accumulators_.size() * sizeof(Accumulator) : 0));
     std::vector<ValueId> key(std::max<std::size_t>(keys_.size(), 1));
     for (std::size_t row = 0; row < in.rows; ++row) {
       for (std::size_t i = 0; i < keys_.size(); ++i) key[i] = in.at(keys_[i], row);

@@ -90,6 +90,8 @@ class OrderOperator : public UnaryOperator {
 
   void take(const Batch& in, Evaluator& evaluator) {
     picks_.clear();
+    if (fast_.size() + in.rows * keys_.size() > fast_.capacity())
+      runtime().guard.requireRoomFor(fast_.size() * sizeof(OrderKey));
     for (std::uint32_t row = 0; row < in.rows; ++row) {
       ahead_.before(row, in, runtime().terms);
       const std::size_t before = fast_.size();
@@ -107,6 +109,7 @@ class OrderOperator : public UnaryOperator {
       }
     }
     table_.append(in, picks_, runtime().guard);
+    runtime().chargeForTerms();
     runtime().guard.charge(picks_.size() * keys_.size() * sizeof(OrderKey));
   }
 
@@ -127,9 +130,13 @@ class OrderOperator : public UnaryOperator {
   }
 
   void sortAll() {
+    runtime().guard.requireRoomFor(table_.rows() * sizeof(order_[0]));
     order_.resize(table_.rows());
     for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
-    const auto before = [this](std::uint32_t a, std::uint32_t b) { return isBefore(a, b); };
+    const auto before = [this](std::uint32_t a, std::uint32_t b) {
+      runtime().guard.spend(kBytesOfComparison);
+      return isBefore(a, b);
+    };
     if (max_rows_ && *max_rows_ < order_.size()) {
       const auto middle = order_.begin() + static_cast<std::ptrdiff_t>(*max_rows_);
       std::nth_element(order_.begin(), middle, order_.end(), before);
@@ -203,6 +210,7 @@ class OrderOperator : public UnaryOperator {
     return runtime().terms.intern(Evaluator(runtime()).value(expression, scratch, 0));
   }
 
+  static constexpr std::size_t kBytesOfComparison = 16;
   /// Extra rows buffered before a selection.
   static constexpr std::size_t kSpareRows = 256;
   std::vector<SortKey> keys_;

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Statements go from the parser to the store one by one.
+#include "mapping/build/rdf_loading.hpp"
+
+#include "cluxel/error.hpp"
+#include "mapping/build/map_update.hpp"
+#include "mapping/map_state.hpp"
+#include "rdf/io/rdf_io.hpp"
+#include "rdf/store/map_replacement.hpp"
+#include "rdf/vocabulary.hpp"
+
+namespace cluxel::mapping {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A store that this run has made; removed unless it is kept.
+class NewStore {
+ public:
+  explicit NewStore(const fs::path& file) : file_(file), is_new_(isAbsent(file)) {
+    if (is_new_) environment_ = rdf::Environment::open(file, rdf::OpenMode::Create);
+  }
+  ~NewStore() {
+    if (!is_new_ || is_kept_) return;
+    environment_.reset();
+    std::error_code ignored;
+    fs::remove(file_, ignored);
+    fs::remove(file_.string() + "-lock", ignored);
+  }
+  NewStore(const NewStore&) = delete;
+  NewStore& operator=(const NewStore&) = delete;
+  void keep() { is_kept_ = true; }
+
+ private:
+  static bool isAbsent(const fs::path& file) {
+    std::error_code ignored;
+    return !fs::exists(file, ignored);
+  }
+
+  fs::path file_;
+  bool is_new_, is_kept_ = false;
+  std::shared_ptr<rdf::Environment> environment_;
+};
+
+void requireOperatorGraph(const fs::path& store, const fs::path& file, const std::string& graph) {
+  if (graph == rdf::vocabulary::kGraphOperator) return;
+  throw Error(ErrorKind::InvalidArgument, file.string() + ": has statements of graph <" + graph +
+                                              ">, but in a map only graph <" +
+                                              std::string(rdf::vocabulary::kGraphOperator) +
+                                              "> may be written; load into a store of its own, not " + store.string());
+}
+
+std::uint64_t loadFile(const fs::path& store, const fs::path& file, const RdfLoadParams& params, bool is_map,
+                       rdf::QuadWriter& writer) {
+  rdf::RdfSource source = rdf::readRdfSource(file, Term::iri(params.graph));
+  if (!params.base_iri.empty()) source.base_iri = params.base_iri;
+  if (!is_map) return loadRdf(source, writer);
+  std::uint64_t count = 0;
+  rdf::parseRdf(source, [&](const Quad& quad) {
+    requireOperatorGraph(store, file, quad.graph.text);
+    writer.add(quad);
+    ++count;
+  });
+  return count;
+}
+
+}  // namespace
+
+RdfLoadReport loadRdfFiles(const fs::path& store, const std::vector<fs::path>& files, const RdfLoadParams& params,
+                           ProgressSink& sink) {
+  NewStore made(store);
+  rdf::WriteTransaction transaction = rdf::writeMap(store);
+  const bool is_map = requireFinished(store, transaction);
+  RdfLoadParams own = params;
+  if (is_map && own.graph.empty()) own.graph = rdf::vocabulary::kGraphOperator;
+  const rdf::QuadReader reader(transaction);
+  const std::uint64_t before = reader.size();
+  RdfLoadReport report;
+  rdf::QuadWriter writer(transaction);
+  for (const fs::path& file : files) {
+    report.statements += loadFile(store, file, own, is_map, writer);
+    writer.flush();
+  }
+  report.added = reader.size() - before;
+  if (is_map && report.added > 0) inferAfterUpdate(transaction, sink);
+  transaction.commit();
+  made.keep();
+  return report;
+}
+
+}  // namespace cluxel::mapping

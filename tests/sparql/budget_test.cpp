@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tests that budgets cover what happens before, between and after the batches of a query, and updates.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "cluxel/error.hpp"
+#include "sparql/store_fixture.hpp"
+#include "sparql/update_engine.hpp"
+
+namespace cluxel::test {
+
+using namespace rdf;
+using namespace sparql;
+namespace {
+
+SmallStore numberedChain(int length) {
+  SmallStore store;
+  std::vector<Quad> quads;
+  for (int i = 0; i < length; ++i)
+    quads.push_back({Term::iri("http://example.org/n" + std::to_string(i)), Term::iri("http://example.org/next"),
+                     Term::iri("http://example.org/n" + std::to_string(i + 1)), Term::iri("")});
+  store.load(quads);
+  return store;
+}
+
+void expectOverBudget(const SmallStore& store, const std::string& query, const QueryOptions& options) {
+  try {
+    store.ask(query, options);
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::BudgetExceeded) << error.what();
+  }
+}
+
+std::string longList(int length) {
+  std::string list;
+  for (int i = 0; i < length; ++i) list += (i > 0 ? ", \"text " : "\"text ") + std::to_string(i) + "\"";
+  return list;
+}
+
+TEST(Budgets, CoverParsingAndPlanning) {
+  const SmallStore store = numberedChain(3);
+  const std::string query = "SELECT * { ?a :next ?b FILTER(STR(?b) IN (" + longList(200'000) + ")) }";
+  QueryOptions options;
+  options.budget.deadline = std::chrono::milliseconds(2);
+  expectOverBudget(store, query, options);
+  options.budget.deadline.reset();
+  options.budget.max_memory_bytes = 20 << 20;
+  expectOverBudget(store, query, options);
+  options.budget.max_memory_bytes = 2048ULL << 20;
+  EXPECT_TRUE(store.rows(query, options).empty());
+}
+
+TEST(Budgets, CoverLongTextsWithinABatch) {
+  const SmallStore store = numberedChain(2000);
+  const std::string long_text = "CONCAT(\"" + std::string(2'000'000, 'x') + "\", STR(?a))";
+  QueryOptions options;
+  options.budget.max_memory_bytes = 60 << 20;
+  expectOverBudget(store, "SELECT ?a (" + long_text + " AS ?t) { ?a :next ?b }", options);
+  options.budget.max_memory_bytes = 0;
+  options.budget.deadline = std::chrono::milliseconds(100);
+  const auto start = std::chrono::steady_clock::now();
+  expectOverBudget(store, "SELECT (SUM(STRLEN(UCASE(" + long_text + "))) AS ?n) { ?a :next ?b }", options);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2)) << "all rows take some 30 s";
+}
+
+TEST(Budgets, CoverSorting) {
+  const SmallStore store = numberedChain(600);
+  QueryOptions options;
+  options.budget.max_memory_bytes = 5'000'000;
+  expectOverBudget(store, "SELECT ?a ?c { ?a :next ?b . ?c :next ?d } ORDER BY ?d ?b", options);
+}
+
+TEST(Budgets, CoverTheCallsOfTheSink) {
+  class SlowSink : public ResultSink {
+   public:
+    void beginSolutions(std::span<const std::string>, const TermLookup&) override {}
+    void boolean(bool) override {}
+    void beginGraph() override {}
+    void triple(const TermView&, const TermView&, const TermView&) override {}
+    void end() override {}
+    void rows(std::span<const ResultId>, std::size_t) override {
+      std::this_thread::sleep_for(std::chrono::milliseconds(60));
+      ++calls;
+    }
+    int calls = 0;
+  };
+  const SmallStore store = numberedChain(3000);
+  const QuadReader reader = store.reader();
+  QueryOptions options;
+  options.budget.deadline = std::chrono::milliseconds(1500);
+  SlowSink sink;
+  EXPECT_THROW(runQuery(reader, kPrefixes + "SELECT * { ?a :next ?b . ?c :next ?d . FILTER(?a != ?c) } LIMIT 100000",
+                        options, sink),
+               Error);
+  EXPECT_GT(sink.calls, 0);
+}
+
+TEST(Budgets, CoverUpdates) {
+  const SmallStore store = numberedChain(600);
+  const std::string request = kPrefixes + "INSERT { ?a :with ?c } WHERE { ?a :next ?b . ?c :next ?d }";
+  for (const bool by_time : {false, true}) {
+    UpdateOptions options;
+    options.any_graph_writable = true;
+    options.query.default_graph = DefaultGraph::Unnamed;
+    if (by_time)
+      options.query.budget.deadline = std::chrono::milliseconds(5);
+    else
+      options.query.budget.max_memory_bytes = 10 << 20;
+    WriteTransaction transaction = store.environment()->write();
+    try {
+      runUpdate(transaction, request, options);
+      FAIL() << "no error";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::BudgetExceeded) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cluxel::test
