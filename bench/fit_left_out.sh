@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Judges fitted rules on places and sensors that the fit left out: for each target in turn, fits the evidence to the maps
+# of all others, applies the rules to the target's maps, and evaluates. bench/accuracy_tables.py OUT makes the tables.
+# Usage: bench/fit_left_out.sh CLUXEL DATA MAPS RULES OUT
+#   MAPS is a folder that bench/accuracy.sh filled (parts halves, sydney, nuscenes, kitti); its maps are changed.
+#   RULES is the rule file before the fit, with the lines of evidence at 0.
+set -euo pipefail
+[ $# -eq 5 ] || { sed -n '5,7s/^# //p' "$0" >&2; exit 2; }
+program=$1 data=$2 maps=$3 rules=$4 out=$5
+oakland=$data/oakland3d_truth
+keep=(--keep ground/patches --keep barrier/fence --keep barrier/run --keep bush/solid-leaves)   # no truth tells these apart
+mkdir -p "$out"/{oakland,sydney,nuscenes,kitti}
+
+# fit TARGET FIT-ARGUMENT...
+fit() { "$program" rules fit "${@:2}" "${keep[@]}" --rules "$rules" -o "$out/$1.yaml" >"$out/$1.fit.txt"; }
+
+# judge TARGET TRUTH RESULT MAP...
+judge() {
+  local map
+  for map in "${@:4}"; do "$program" rules apply "$map" --rules "$out/$1.yaml" >/dev/null; done
+  "$program" evaluate "${@:4}" --truth "$2" --json >"$3"
+}
+
+sydney=(--also "sydney=$maps/sydney/oakland") nuscenes=(--also "nuscenes=$maps/nuscenes/oakland")
+kitti=(--also "semantickitti=$maps/kitti/oakland")
+first=$maps/oakland/half_ac_ah.clx second=$maps/oakland/half_ai_ao.clx   # named for the model; each shows the other half
+
+fit half_ac_ah "$second" --truth "$oakland" "${sydney[@]}" "${nuscenes[@]}" "${kitti[@]}"
+fit half_ai_ao "$first" --truth "$oakland" "${sydney[@]}" "${nuscenes[@]}" "${kitti[@]}"
+fit sydney "$first" "$second" --truth "$oakland" "${nuscenes[@]}" "${kitti[@]}"
+fit nuscenes "$first" "$second" --truth "$oakland" "${sydney[@]}" "${kitti[@]}"
+fit kitti "$first" "$second" --truth "$oakland" "${sydney[@]}" "${nuscenes[@]}"
+
+judge half_ac_ah "$oakland" "$out/oakland/half_ac_ah.json" "$first"
+judge half_ai_ao "$oakland" "$out/oakland/half_ai_ao.json" "$second"
+judge sydney sydney "$out/sydney/oakland.json" "$maps"/sydney/oakland/*.clx
+judge nuscenes nuscenes "$out/nuscenes/oakland.json" "$maps"/nuscenes/oakland/*.clx
+judge kitti semantickitti "$out/kitti/oakland.json" "$maps"/kitti/oakland/*.clx
