@@ -13,6 +13,7 @@
 #include "cluxel/error.hpp"
 #include "serve/http_server.hpp"
 #include "serve/map_service.hpp"
+#include "tasks/view/view_page.hpp"
 
 namespace cluxel::app {
 
@@ -82,6 +83,23 @@ std::string tokenIn(const fs::path& file) {
   return token;
 }
 
+/// The page of `cluxel view`; none where the checkout has not made its program yet.
+std::function<std::string(const mapping::MapReader&, const std::string&)> pageMaker(const DataHome& home) {
+  std::string program;
+  try {
+    program = tasks::viewTemplate(home);
+  } catch (const Error&) {
+    return {};
+  }
+  return [program, questions = tasks::shippedQuestions(home)](const mapping::MapReader& map, const std::string& name) {
+    tasks::ViewOptions options;
+    options.name = name;
+    std::string page;
+    writeViewPage(map, program, questions, options, [&page](std::string_view piece) { page.append(piece); });
+    return page;
+  };
+}
+
 bool isLoopback(const std::string& host) {
   return host == "localhost" || host == "::1" || host.starts_with("127.");
 }
@@ -97,6 +115,7 @@ serve::ServiceOptions serviceOptions(const ServeArguments& arguments, const Sess
   options.load.per_second = arguments.rate;
   options.token = tokenIn(arguments.token_file);
   options.allowed_origins = arguments.origins;
+  options.page = pageMaker(session.dataHome());
   if (isLoopback(arguments.host)) options.host_names = {"localhost", "127.0.0.1", "[::1]", arguments.host};
   return options;
 }

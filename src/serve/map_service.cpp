@@ -145,7 +145,6 @@ HttpResponse MapService::answerRoute(const Route& route, const HttpRequest& requ
 
 HttpResponse MapService::answerOwn(const Route& route) const {
   const std::vector<std::string>& path = route.segments;
-  if (path.empty() && maps_.size() == 1) return pageOf(maps_.front()->name());
   if (path.empty()) {
     std::vector<std::string> names;
     for (const auto& map : maps_) names.push_back(map->name());
@@ -157,9 +156,17 @@ HttpResponse MapService::answerOwn(const Route& route) const {
   return {200, "application/json", body + "]}\n", {}};
 }
 
-HttpResponse MapService::pageOf(const std::string& map_name) const {
-  if (!options_.page) return startPage({map_name});
-  return {200, "text/html; charset=utf-8", options_.page(map_name), {}};
+HttpResponse MapService::pageOf(ServedMap& map) const {
+  if (!options_.page) return startPage({map.name()});
+  const std::string slot = "page of " + map.name();
+  std::shared_ptr<const std::string> page;
+  map.withReader([&](const mapping::MapReader& reader) {
+    page = std::static_pointer_cast<const std::string>(reader.quads().kept(slot));
+    if (page) return;
+    page = std::make_shared<const std::string>(options_.page(reader, map.name()));
+    reader.quads().keep(slot, page);
+  });
+  return {200, "text/html; charset=utf-8", *page, {}};
 }
 
 HttpResponse MapService::answerMap(const Route& route, const HttpRequest& request, const Target& target) {
@@ -176,7 +183,7 @@ HttpResponse MapService::answerMap(const Route& route, const HttpRequest& reques
     if (first == "objects") return answerObjects(map, asked);
     if (first == "questions") return answerQuestionList(questions_);
     if (first == "tasks") return answerTaskList();
-    if (first == "page") return pageOf(map.name());
+    if (first == "page") return pageOf(map);
   }
   if (path.size() == 2 && first == "objects") return answerObject(map, asked, second);
   if (path.size() == 2 && first == "questions") return answerQuestion(map, asked, questions_, second);

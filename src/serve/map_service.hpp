@@ -19,7 +19,7 @@ namespace cluxel::serve {
 
 /// Thread-safe. Every request reads one snapshot: the newest commit at its begin.
 ///
-///   /                                    the page of the only map, or a list
+///   /                                    what there is, as a plain page
 ///   /maps                                the maps
 ///   /maps/NAME                           one of them
 ///   /maps/NAME/page                      its page
@@ -52,7 +52,7 @@ class MapService {
   HttpResponse answerRoute(const Route& route, const HttpRequest& request, const Target& target);
   HttpResponse answerOwn(const Route& route) const;
   HttpResponse answerMap(const Route& route, const HttpRequest& request, const Target& target);
-  HttpResponse pageOf(const std::string& map_name) const;
+  HttpResponse pageOf(ServedMap& map) const;
 
   ServiceOptions options_;
   std::vector<tasks::Question> questions_;

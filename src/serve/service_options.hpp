@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "mapping/map_reader.hpp"
+
 namespace cluxel::serve {
 
 /// The limits of one request.
@@ -34,8 +36,9 @@ struct ServiceOptions {
   /// The accepted values of Host without port. Empty: all. It keeps web sites from reading a service on this machine
   /// under a name of theirs.
   std::vector<std::string> host_names = {};
-  /// The HTML text of a map's page; absent: a plain page that lists what the service answers.
-  std::function<std::string(const std::string& map_name)> page = {};
+  /// The HTML text of a map's page, made once for each commit; absent: a plain page that lists what the service
+  /// answers.
+  std::function<std::string(const mapping::MapReader& map, const std::string& map_name)> page = {};
 };
 
 }  // namespace cluxel::serve

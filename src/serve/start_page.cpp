@@ -15,7 +15,8 @@ struct Link {
   const char* text;
 };
 
-constexpr std::array<Link, 7> kLinks{{{"", "what the map holds (JSON)"},
+constexpr std::array<Link, 8> kLinks{{{"/page", "points, objects and questions as a page"},
+                                      {"", "what the map holds (JSON)"},
                                       {"/objects", "objects (JSON): class, bbox, limit, offset"},
                                       {"/questions", "shipped questions (JSON)"},
                                       {"/questions/count_by_class?format=table", "objects of each class (text)"},

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/serve_fixture.hpp"
+#include "base/file_bytes.hpp"
 
 namespace cluxel::app {
 namespace {
@@ -135,6 +136,16 @@ TEST_F(ServeCommand, NamesOfMapsAreTextInThePageAndNeverMarkup) {
   EXPECT_EQ(page.body.find("<script"), std::string::npos);
   EXPECT_NE(page.body.find("&lt;script&gt;x"), std::string::npos);
   EXPECT_TRUE(page.has("Content-Security-Policy: default-src 'none'")) << page.head;
+}
+
+TEST_F(ServeCommand, ShowsThePageOfTheCommandView) {
+  const Outcome written = run("view " + path("map.clx").string() + " -o " + path("page.html").string());
+  if (written.code != 0) GTEST_SKIP() << "the page's program is not made: ./run web";
+  const Served served(command(path("map.clx").string()), path("page.log"));
+  const Reply page = served.get("/maps/map/page");
+  ASSERT_EQ(page.status, 200);
+  EXPECT_TRUE(page.body == readFile(path("page.html")));
+  EXPECT_TRUE(served.get("/maps/map/page").body == page.body);
 }
 
 TEST_F(ServeCommand, UpdatesNeedTheTokenAndReachTheOperatorsGraphOnly) {
