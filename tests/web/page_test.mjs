@@ -186,6 +186,9 @@ test('the card tells why, as cluxel explain does', async () => {
   assert.equal(await open.page.textContent('.why summary'), 'Why Tree?');
   assert.equal(await open.page.locator('.why .step').count(), accepted.path.length);
   assert.ok((await open.page.textContent('.why .step')).includes(accepted.path[0].test.replaceAll('_', ' ')));
+  const weighed = accepted.evidence.length > 1 || accepted.rivals !== undefined;
+  assert.equal(await open.page.locator('.why .evidence tr').count(), weighed ? accepted.evidence.length : 0);
+  assert.equal(await open.page.locator('.why .evidence .rival').count(), accepted.rivals?.length ?? 0);
   const others = wanted.decisions.filter((decision) => !decision.accepted).length;
   assert.equal(await open.page.locator('.why-not').count(), others);
 });

@@ -55,7 +55,12 @@ export interface Change { test: string; measured: number; threshold: number; mar
 export interface Verdict {
   class: string; rule: string; accepted: boolean; reason: string; path?: Step[]; hint?: string;
   least_change?: { accepted: boolean; outcome: string; changes: Change[] };
+  log_odds?: number; probability?: number; evidence?: EvidenceLine[]; rivals?: Rival[];
 }
+/** What one line of evidence adds to the log-odds of a candidate. */
+export interface EvidenceLine { of: string; log_odds: number; unit: string; measured?: number; holds?: boolean; file: string; line: number }
+/** A candidate that wanted some of the same points. */
+export interface Rival { class: string; rule: string; log_odds: number; won: boolean }
 export interface Reasons { primitive: string; label: string; note?: string; decisions?: Verdict[] }
 
 export function localName(iri: string): string {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Why an object has its class, and why not another: the tests of the rules with measured values and margins.
-import { capitalised, CLX, type MapModel, type Reasons, type Step, type Verdict } from '../data/model';
+import { capitalised, CLX, type EvidenceLine, type MapModel, type Reasons, type Step, type Verdict } from '../data/model';
 import { el, rounded } from '../dom';
 
 function withUnit(value: number, unit: string): string {
@@ -40,10 +40,33 @@ function leastChange(verdict: Verdict, model: MapModel): HTMLElement | null {
   return el('p', { class: 'least-change' }, el('b', {}, 'Least change: '), `${needed.join(', and ')}; then: ${readable(change.outcome, model)}`);
 }
 
+function signed(logOdds: number): string {
+  return `${logOdds < 0 ? '−' : '+'}${rounded(Math.abs(logOdds))}`;
+}
+
+function evidenceRow(line: EvidenceLine): HTMLElement {
+  const measured = line.holds !== undefined ? (line.holds ? 'holds' : 'does not hold')
+                 : line.measured !== undefined ? withUnit(line.measured, line.unit) : 'not measured';
+  return el('tr', {}, el('td', { class: 'log-odds' }, signed(line.log_odds)), el('td', {}, line.of.replaceAll('_', ' ')), el('td', {}, measured));
+}
+
+/** The log-odds line by line, and the candidates that wanted the same points. */
+function evidenceView(verdict: Verdict, model: MapModel): HTMLElement | null {
+  const lines = verdict.evidence ?? [], rivals = verdict.rivals ?? [];
+  if (lines.length < 2 && rivals.length === 0) return null;
+  const sum = `${signed(verdict.log_odds ?? 0)} in all: ${Math.round(100 * (verdict.probability ?? 0))} %`;
+  return el('details', { class: 'evidence' },
+            el('summary', {}, 'Evidence', el('small', {}, ` log-odds ${sum}`)),
+            el('table', { 'aria-label': 'What each line of evidence adds to the log-odds' },
+               el('tbody', {}, ...lines.map(evidenceRow))),
+            ...rivals.map((rival) => el('p', { class: 'rival' },
+              `${rival.won ? 'Stronger' : 'Weaker'} rival: ${readable(rival.class, model)} by ${rival.rule}, log-odds ${signed(rival.log_odds)}`)));
+}
+
 function verdictBody(verdict: Verdict, model: MapModel): Node[] {
   const steps = (verdict.path ?? []).map(stepRow);
   return [el('p', { class: 'verdict' }, capitalised(readable(verdict.reason, model)), el('small', {}, ` rule ${verdict.rule}`)),
-          el('ul', { class: 'steps' }, ...steps), leastChange(verdict, model)].filter((node): node is HTMLElement => node !== null);
+          evidenceView(verdict, model), el('ul', { class: 'steps' }, ...steps), leastChange(verdict, model)].filter((node): node is HTMLElement => node !== null);
 }
 
 export function reasonsView(reasons: Reasons, model: MapModel): HTMLElement {
