@@ -115,9 +115,8 @@ class Competition {
   }
 
   void accept(Proposal& proposal) {
-    const double log_odds = proposal.verdict.decision.log_odds;
     state_.decisions.push_back(std::move(proposal.verdict.decision));
-    makeObject(state_, *proposal.rule, *proposal.verdict.accept, std::move(proposal.verdict.bindings), log_odds);
+    makeObject(state_, *proposal.rule, *proposal.verdict.accept, std::move(proposal.verdict.bindings));
   }
 
   ReasoningState& state_;

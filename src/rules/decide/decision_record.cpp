@@ -32,7 +32,7 @@ class Judging {
     verdict.accept = &std::get<AcceptLeaf>(leaf.what);
     verdict.decision.accepted = true;
     verdict.decision.reason = describeAccept(*verdict.accept);
-    verdict.decision.log_odds = weigh(state_, rule_, *verdict.accept, walk.bindings, &verdict.decision.evidence);
+    weigh(state_, rule_, *verdict.accept, walk.bindings, verdict.decision);
     verdict.bindings = std::move(walk.bindings);
     verdict.related = walk.related;
     return verdict;

@@ -39,18 +39,17 @@ double reachOf(const EvidenceLine& line) {
 
 class Weighing {
  public:
-  Weighing(const ReasoningState& state, const Rule& rule, const Bindings& bindings, std::vector<EvidenceStep>* steps)
-      : bindings_(bindings), evaluator_(state, rule, bindings), steps_(steps) {}
+  Weighing(const ReasoningState& state, const Rule& rule, const Bindings& bindings)
+      : bindings_(bindings), evaluator_(state, rule, bindings) {}
 
-  double of(const EvidenceLine& line) {
+  EvidenceStep of(const EvidenceLine& line) {
     EvidenceStep step;
     step.text = describe(line);
     step.file = line.at.file;
     step.line = line.at.line;
     step.log_odds = line.missing;
     if (isBound(line.measure)) measure(line, step);
-    if (steps_ != nullptr) steps_->push_back(step);
-    return step.log_odds;
+    return step;
   }
 
  private:
@@ -77,7 +76,6 @@ class Weighing {
 
   const Bindings& bindings_;
   ConditionEvaluator evaluator_;
-  std::vector<EvidenceStep>* steps_;
 };
 
 bool mentionsWhole(const Condition& condition) {
@@ -121,24 +119,24 @@ double logOddsOf(const EvidenceLine& line, double value) {
   return line.weight * std::exp(-distance * distance / 2);
 }
 
-double weigh(const ReasoningState& state, const Rule& rule, const AcceptLeaf& accept, const Bindings& bindings,
-             std::vector<EvidenceStep>* steps) {
-  const double confidence = confidenceOf(accept.confidence, bindings);
-  double sum = logOdds(confidence);
-  if (steps != nullptr) {
-    EvidenceStep step;
-    step.text = "the rule's confidence";
-    step.measured = confidence;
-    step.file = accept.confidence.high_at.file;
-    step.line = accept.confidence.high_at.line;
-    step.log_odds = sum;
-    steps->push_back(std::move(step));
-  }
+void weigh(const ReasoningState& state, const Rule& rule, const AcceptLeaf& accept, const Bindings& bindings,
+           Decision& decision) {
+  const double confidence = std::clamp(confidenceOf(accept.confidence, bindings), 0.0, 1.0);
+  EvidenceStep prior;
+  prior.text = "the rule's confidence";
+  prior.measured = confidence;
+  prior.file = accept.confidence.high_at.file;
+  prior.line = accept.confidence.high_at.line;
+  prior.log_odds = decision.log_odds = logOdds(confidence);
+  decision.evidence = {std::move(prior)};
   const Bindings with_whole = mentionsWhole(rule, accept) ? withWhole(state, accept, bindings) : bindings;
-  Weighing weighing(state, rule, with_whole, steps);
+  Weighing weighing(state, rule, with_whole);
   for (const std::vector<EvidenceLine>* lines : {&rule.evidence, &accept.evidence})
-    for (const EvidenceLine& line : *lines) sum += weighing.of(line);
-  return sum;
+    for (const EvidenceLine& line : *lines) {
+      decision.evidence.push_back(weighing.of(line));
+      decision.log_odds += decision.evidence.back().log_odds;
+    }
+  decision.probability = decision.evidence.size() == 1 ? confidence : probabilityOf(decision.log_odds);
 }
 
 }  // namespace cluxel::rules

@@ -12,11 +12,10 @@ namespace cluxel::rules {
 double logOdds(double probability);
 double probabilityOf(double log_odds);
 
-/// The log-odds that the candidate is what the leaf says: those of the leaf's confidence plus those of every line of
-/// evidence of the rule and of the leaf. Appends one step for the confidence and one for each line to `steps` when
-/// given.
-double weigh(const ReasoningState& state, const Rule& rule, const AcceptLeaf& accept, const Bindings& bindings,
-             std::vector<EvidenceStep>* steps = nullptr);
+/// Fills in how likely the candidate is what the leaf says: the log-odds of the leaf's confidence plus those of every
+/// line of evidence of the rule and of the leaf, one step for each.
+void weigh(const ReasoningState& state, const Rule& rule, const AcceptLeaf& accept, const Bindings& bindings,
+           Decision& decision);
 
 /// What a line adds for a measured value.
 double logOddsOf(const EvidenceLine& line, double value);

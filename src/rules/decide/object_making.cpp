@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "rules/decide/evidence.hpp"
-
 namespace cluxel::rules {
 
 void joinRelated(ReasoningState& state, const Rule& rule, OwnerIndex related,
@@ -22,12 +20,12 @@ void joinRelated(ReasoningState& state, const Rule& rule, OwnerIndex related,
   part->is_outdated = true;
 }
 
-void makeObject(ReasoningState& state, const Rule& rule, const AcceptLeaf& accept, Bindings bindings, double log_odds) {
+void makeObject(ReasoningState& state, const Rule& rule, const AcceptLeaf& accept, Bindings bindings) {
   const auto number = static_cast<OwnerIndex>(state.objects.size());
   ObjectInMaking object;
   object.rule = &rule;
   object.leaf = &accept;
-  object.confidence = probabilityOf(log_odds);
+  object.confidence = state.decisions.back().probability;
   object.decision = state.decisions.size() - 1;
   for (const auto& [name, part_class] : accept.parts) {
     PartInMaking part{name, part_class, {}, false};

@@ -60,13 +60,12 @@ class RuleRun {
       state_.decisions.push_back(std::move(verdict.decision));
       return std::nullopt;
     }
-    const double log_odds = verdict.decision.log_odds;
     state_.decisions.push_back(std::move(verdict.decision));
     if (verdict.accept->merge_into_related && verdict.related) {
       joinRelated(state_, rule_, *verdict.related, verdict.accept->parts.front(), group);
       grown = true;
     } else {
-      makeObject(state_, rule_, *verdict.accept, std::move(verdict.bindings), log_odds);
+      makeObject(state_, rule_, *verdict.accept, std::move(verdict.bindings));
     }
     return std::nullopt;
   }

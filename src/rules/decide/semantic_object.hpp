@@ -68,6 +68,7 @@ struct Decision {
   std::string reason;    ///< the reason of the leaf, or what was accepted
   std::vector<DecisionStep> path;
   double log_odds = 0;                 ///< sum of the evidence; of accept leaves only
+  double probability = 0;              ///< of these log-odds; without evidence the leaf's confidence as written
   std::vector<EvidenceStep> evidence;  ///< the leaf's confidence, then each line
   std::vector<RivalNote> rivals;       ///< in a stratum of several classes
   std::string hint;                    ///< a rule that may fit instead

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "rdf/map_iris.hpp"
-#include "rules/decide/evidence.hpp"
 #include "rules/explain/explain.hpp"
 
 namespace cluxel::rules {
@@ -68,8 +67,8 @@ std::string evidenceText(const Decision& decision, const RuleSet& rules, const s
       text += indent + signedNumber(step.log_odds) + "  " + step.text + measured + "   [" + step.file + ":" +
               std::to_string(step.line) + "]\n";
     }
-    text += indent + "log-odds " + signedNumber(decision.log_odds) + ", probability " +
-            number(probabilityOf(decision.log_odds)) + "\n";
+    text +=
+        indent + "log-odds " + signedNumber(decision.log_odds) + ", probability " + number(decision.probability) + "\n";
   }
   for (const RivalNote& rival : decision.rivals)
     text += indent + "rival: " + rules.shorten(rival.class_iri) + " (" + rival.rule_id + "), log-odds " +
@@ -122,7 +121,7 @@ nlohmann::ordered_json counterfactualJson(const Counterfactual& point) {
 void addEvidence(const Decision& decision, const RuleSet& rules, nlohmann::ordered_json& json) {
   if (decision.evidence.empty()) return;
   json["log_odds"] = decision.log_odds;
-  json["probability"] = probabilityOf(decision.log_odds);
+  json["probability"] = decision.probability;
   for (const EvidenceStep& step : decision.evidence) {
     nlohmann::ordered_json line{
         {"of", step.text}, {"log_odds", step.log_odds}, {"file", step.file}, {"line", step.line}};
