@@ -82,7 +82,7 @@ void printFit(const std::vector<tasks::FittedRule>& fitted, Session& session) {
   for (const tasks::FittedRule& rule : fitted) {
     Json entry{{"rule", rule.rule_id}, {"right", rule.right}, {"wrong", rule.wrong}, {"changes", Json::array()}};
     if (!rule.refusal.empty()) entry["refusal"] = rule.refusal;
-    entry["loss_before"] = rule.loss_before, entry["loss_after"] = rule.loss_after;
+    if (rule.is_fitted) entry["loss_before"] = rule.loss_before, entry["loss_after"] = rule.loss_after;
     for (const tasks::FittedNumber& number : rule.changes)
       entry["changes"].push_back({{"line", number.at.line},
                                   {"what", number.what},
@@ -96,8 +96,8 @@ void printFit(const std::vector<tasks::FittedRule>& fitted, Session& session) {
                        " wrong candidates; ";
     char losses[96];
     std::snprintf(losses, sizeof losses, "log loss on places left out %.3f -> %.3f", rule.loss_before, rule.loss_after);
-    text += losses;
-    if (!rule.refusal.empty()) text += "; " + rule.refusal;
+    text += rule.is_fitted ? std::string(losses) : "unchanged";
+    if (!rule.refusal.empty()) text += ": " + rule.refusal;
     for (const tasks::FittedNumber& number : rule.changes) text += "\n  " + shown(number);
     print(text);
   }

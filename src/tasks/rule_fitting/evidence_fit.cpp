@@ -154,9 +154,9 @@ class RuleFit {
       fitted.refusal = few + " right or wrong candidates: only its confidence is fitted";
       keepShiftOnly();
     }
-    estimate_ = regress(samples_, std::vector<double>(samples_.size(), 1), design_.size(), params_.ridge);
     resample();
     scoreLeftOut(fitted);
+    fitted.is_fitted = true;
     addConfidences(fitted);
     addNumbers(fitted);
     return fitted;
@@ -269,7 +269,6 @@ class RuleFit {
   const Design& design_;
   const EvidenceFitParams& params_;
   std::vector<std::string> places_;
-  std::vector<double> estimate_;
   std::vector<std::vector<double>> resamples_;
   bool only_shift_ = false;
 };

@@ -31,6 +31,7 @@ struct FittedRule {
   std::string rule_id;
   std::size_t right = 0, wrong = 0;
   std::string refusal;                     ///< why nothing was learned; else empty
+  bool is_fitted = false;                  ///< some numbers were estimated
   double loss_before = 0, loss_after = 0;  ///< mean log loss on places left out of the fit, in turn
   std::vector<FittedNumber> changes;
 };
