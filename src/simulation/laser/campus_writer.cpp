@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scans are simulated and written one by one on each thread; tables are put together in the order of the
-// stops.
+// Scans are simulated and written one by one on each thread; tables are put together in the order of the scans.
 #include "simulation/laser/campus_writer.hpp"
 
 #include <zlib.h>
@@ -18,7 +17,9 @@
 #include "scan/formats/scan_writer.hpp"
 #include "simulation/laser/instance_table.hpp"
 #include "simulation/laser/laser.hpp"
+#include "simulation/laser/visit_truth.hpp"
 #include "simulation/site/campus_random.hpp"
+#include "simulation/site/site_visits.hpp"
 
 namespace cluxel::simulation {
 namespace {
@@ -58,15 +59,15 @@ std::string truthLines(const scan::PointTruth& truth) {
   return lines;
 }
 
-std::string stemOf(std::size_t stop) {
+std::string stemOf(std::size_t number) {
   char text[32];
-  std::snprintf(text, sizeof text, "scan_%03zu", stop);
+  std::snprintf(text, sizeof text, "scan_%03zu", number);
   return text;
 }
 
 /// Poses with accumulated errors: each step is off by `drift_m` times 0.5 to 1.5 along its direction, with small errors
 /// in the other directions. The first pose is exact.
-std::vector<Eigen::Isometry3d> statedPoses(const Campus& campus) {
+std::vector<Eigen::Isometry3d> driftedPoses(const Campus& campus) {
   const double drift_m = campus.params.drift_m;
   if (drift_m == 0) return campus.stops;
   constexpr double kTurn_radPerM = 0.02, kTilt_radPerM = 0.005;
@@ -84,6 +85,18 @@ std::vector<Eigen::Isometry3d> statedPoses(const Campus& campus) {
   return stated;
 }
 
+/// Errors of later visits: `pose_error_m` along x and y, less in height, and a hundredth of it per metre in heading.
+void disturb(std::vector<Eigen::Isometry3d>& poses, const CampusParams& params) {
+  for (std::size_t stop = 0; stop < poses.size(); ++stop) {
+    CampusRandom random = streamOf(params.seed, RandomUse::Visit, stop);
+    const double x = random.normal(), y = random.normal(), z = 0.4 * random.normal(), yaw = 0.01 * random.normal();
+    const Eigen::Vector3d place = poses[stop].translation();
+    poses[stop].linear() =
+        Eigen::AngleAxisd(params.pose_error_m * yaw, Eigen::Vector3d::UnitZ()) * poses[stop].linear();
+    poses[stop].translation() = place + params.pose_error_m * Eigen::Vector3d(x, y, z);
+  }
+}
+
 void prepare(const fs::path& folder) {
   std::error_code failure;
   if (folder.empty()) throw Error(ErrorKind::InvalidArgument, "the folder for the scans has no name");
@@ -95,37 +108,46 @@ void prepare(const fs::path& folder) {
     throw Error(ErrorKind::StoreUnavailable, "cannot make the folder " + folder.string() + ": " + failure.message());
 }
 
-/// The contribution of one scan to the tables.
+/// The scans of all visits, numbered in the order in which they were taken, and what they contribute to the tables.
 struct Written {
   std::vector<InstanceSights> sights;
   std::vector<std::size_t> points;
+  std::vector<std::string> stems;
+  std::vector<double> times_s;
+  std::vector<Eigen::Isometry3d> stated, exact;
 };
 
-Written writeScans(const Campus& campus, const std::vector<Eigen::Isometry3d>& stated, const fs::path& folder,
-                   unsigned threads, ProgressSink& sink) {
+void writeScans(const Campus& campus, std::size_t visit, const fs::path& folder, unsigned threads,
+                CountedProgress& progress, Written& written) {
   const Laser laser(campus);
-  const std::size_t count = campus.stops.size();
-  Written written{.sights = std::vector<InstanceSights>(count), .points = std::vector<std::size_t>(count)};
-  CountedProgress progress(sink, "scan", count);
+  const std::size_t first = written.points.size(), count = campus.stops.size();
+  std::vector<Eigen::Isometry3d> stated = driftedPoses(campus);
+  if (visit > 0) disturb(stated, campus.params);
+  written.sights.resize(first + count), written.points.resize(first + count);
+  for (std::size_t stop = 0; stop < count; ++stop) {
+    written.stems.push_back(stemOf(first + stop));
+    written.times_s.push_back(stopTime_s(stop, visit));
+  }
   parallelFor(count, threads, [&](std::size_t stop) {
     SimulatedScan simulated = laser.scanAt(stop);
-    written.sights[stop] = sightsOf(simulated);
-    written.points[stop] = simulated.scan.points.size();
+    written.sights[first + stop] = sightsOf(simulated);
+    written.points[first + stop] = simulated.scan.points.size();
     simulated.scan.T_map_sensor = stated[stop];
-    writeScanFile(simulated.scan, folder / (stemOf(stop) + ".pcd"));
-    writeFile(folder / "truth" / (stemOf(stop) + ".truth.gz"), gzip(truthLines(simulated.truth)));
+    writeScanFile(simulated.scan, folder / (stemOf(first + stop) + ".pcd"));
+    writeFile(folder / "truth" / (stemOf(first + stop) + ".truth.gz"), gzip(truthLines(simulated.truth)));
     progress.step();
   });
-  return written;
+  written.stated.insert(written.stated.end(), stated.begin(), stated.end());
+  written.exact.insert(written.exact.end(), campus.stops.begin(), campus.stops.end());
 }
 
 CampusSummary summaryOf(const Campus& campus, const Written& written) {
   CampusSummary summary;
-  summary.scans = campus.stops.size();
+  summary.scans = written.points.size();
   std::set<std::int32_t> seen;
-  for (std::size_t stop = 0; stop < summary.scans; ++stop) {
-    summary.points += written.points[stop];
-    for (const auto& [id, sight] : written.sights[stop]) seen.insert(id);
+  for (std::size_t i = 0; i < summary.scans; ++i) {
+    summary.points += written.points[i];
+    for (const auto& [id, sight] : written.sights[i]) seen.insert(id);
   }
   summary.objects = seen.size();
   for (const std::int32_t id : seen)
@@ -137,20 +159,21 @@ CampusSummary summaryOf(const Campus& campus, const Written& written) {
 
 CampusSummary writeCampus(const Campus& campus, const fs::path& folder, unsigned threads, ProgressSink& sink) {
   prepare(folder);
-  const std::vector<Eigen::Isometry3d> stated = statedPoses(campus);
-  const Written written = writeScans(campus, stated, folder, threads, sink);
-  std::vector<std::string> stems;
-  std::vector<double> times_s;
-  for (std::size_t stop = 0; stop < campus.stops.size(); ++stop) {
-    stems.push_back(stemOf(stop));
-    times_s.push_back(stopTime_s(stop));
-  }
-  writeFile(folder / "truth" / "instances.csv", instanceTable(campus, written.sights, stems));
-  writeFile(folder / "campus.json", describeCampus(campus));
-  scan::writeTimes(times_s, folder / "times.txt");
-  scan::writePoses(stated, folder / "poses.txt");
-  if (campus.params.drift_m != 0) scan::writePoses(campus.stops, folder / "true_poses.txt");
-  return summaryOf(campus, written);
+  const auto visits = static_cast<std::size_t>(campus.params.visits);
+  const VisitedSite site = visits > 1 ? visitSite(campus, visits) : VisitedSite{{campus}, {}};
+  CountedProgress progress(sink, "scan", visits * campus.stops.size());
+  Written written;
+  for (std::size_t visit = 0; visit < visits; ++visit)
+    writeScans(site.visits[visit], visit, folder, threads, progress, written);
+  const Campus& all = site.visits.front();
+  writeFile(folder / "truth" / "instances.csv", instanceTable(all, written.sights, written.stems));
+  writeFile(folder / "campus.json", describeCampus(all));
+  scan::writeTimes(written.times_s, folder / "times.txt");
+  scan::writePoses(written.stated, folder / "poses.txt");
+  if (campus.params.drift_m != 0 || campus.params.pose_error_m != 0)
+    scan::writePoses(written.exact, folder / "true_poses.txt");
+  if (visits > 1) writeVisitTruth(site, folder / "truth", threads);
+  return summaryOf(all, written);
 }
 
 }  // namespace cluxel::simulation

@@ -20,7 +20,8 @@ struct CampusSummary {
 
 /// Scans the campus from every stop and writes
 ///   scan_000.pcd ... (binary, sensor frame), poses.txt (T_map_sensor, 4x4 rows), times.txt, campus.json,
-///   truth/scan_000.truth.gz ... (`primitive object instance` per point), truth/instances.csv.
+///   truth/scan_000.truth.gz ... (`primitive object instance` per point), truth/instances.csv,
+///   with more than one visit also truth/events.csv and truth/visits.csv.
 /// The bytes are the same for every number of threads. The folder is made when missing and must be empty,
 /// else Error (Usage); Error (StoreUnavailable) when the disk refuses.
 CampusSummary writeCampus(const Campus& campus, const std::filesystem::path& folder, unsigned threads,

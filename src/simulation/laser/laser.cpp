@@ -129,6 +129,22 @@ std::optional<RayHit> Laser::cast(const Vector3d& origin_map, const Vector3d& di
   return impl_->caster.cast(origin_map, direction_map, impl_->campus.params.max_range_m);
 }
 
+bool Laser::reaches(const Eigen::Isometry3d& T_map_sensor, const Vector3d& place_map) const {
+  const Vector3d place = T_map_sensor.inverse() * place_map;
+  const CampusParams& params = impl_->campus.params;
+  const double elevation = std::atan2(place.z(), place.head<2>().norm());
+  const bool spins = params.laser == LaserKind::Spinning;
+  return place.norm() <= params.max_range_m && elevation >= (spins ? kLowestRing_rad : kLowest_rad) &&
+         elevation <= (spins ? kHighestRing_rad : kHighest_rad);
+}
+
+double Laser::meanStep_rad() const {
+  const CampusParams& params = impl_->campus.params;
+  const bool spins = params.laser == LaserKind::Spinning;
+  const double height = spins ? kHighestRing_rad - kLowestRing_rad : kHighest_rad - kLowest_rad;
+  return std::sqrt(height * 2 * std::numbers::pi / params.points_per_stop);
+}
+
 namespace {
 
 void append(SimulatedScan& result, const Return& echo, const CampusMesh& mesh) {

@@ -27,9 +27,9 @@ struct SimulatedScan {
   scan::PointTruth truth;
 };
 
-/// When the scan of a stop is taken: a minute after the one before [s since 1970].
-inline double stopTime_s(std::size_t stop) {
-  return 1.7e9 + 60.0 * static_cast<double>(stop);
+/// When the scan of a stop is taken: a minute after the one before, and visits a day after each other [s since 1970].
+inline double stopTime_s(std::size_t stop, std::size_t visit = 0) {
+  return 1.7e9 + 86400.0 * static_cast<double>(visit) + 60.0 * static_cast<double>(stop);
 }
 
 /// Casts rays at a campus, which must outlive it. All methods are thread-safe, and their results are independent of the
@@ -42,6 +42,12 @@ class Laser {
 
   /// `direction_map` has length 1. Absent: nothing within max_range_m.
   std::optional<RayHit> cast(const Eigen::Vector3d& origin_map, const Eigen::Vector3d& direction_map) const;
+
+  /// Whether rays of a sensor with this pose may go there by their elevation and range.
+  bool reaches(const Eigen::Isometry3d& T_map_sensor, const Eigen::Vector3d& place_map) const;
+
+  /// The angle between neighbouring rays, the same in both directions on average, when most rays return.
+  double meanStep_rad() const;
 
   /// One full turn at a stop: elevations from -50 to 55 degrees, with equal angular steps in pan and tilt,
   /// chosen from a coarse preview turn so that about points_per_stop rays return. Throws Error (Usage) for a

@@ -19,7 +19,8 @@ Json vectorJson(const Eigen::Vector3d& v) {
 /// Newer parameters are written only when they differ from their default, so that files of other campuses stay
 /// identical.
 bool isAlwaysSaid(const CampusParamInfo& info) {
-  return info.field != &CampusParams::stop_distance_m && info.field != &CampusParams::drift_m;
+  return info.field != &CampusParams::stop_distance_m && info.field != &CampusParams::drift_m &&
+         info.field != &CampusParams::visits && info.field != &CampusParams::pose_error_m;
 }
 
 Json parametersJson(const CampusParams& params) {

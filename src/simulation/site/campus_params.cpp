@@ -14,9 +14,9 @@ namespace {
 constexpr double kMaxSize_m = 400;
 }
 
-const std::array<CampusParamInfo, 10>& campusParamInfos() {
+const std::array<CampusParamInfo, 12>& campusParamInfos() {
   using P = CampusParams;
-  static const std::array<CampusParamInfo, 10> infos{{
+  static const std::array<CampusParamInfo, 12> infos{{
       {"stops", &P::stops, "1", 1, 1000, "scans along the route"},
       {"size", &P::size_m, "m", 45, kMaxSize_m, "edge of the square campus"},
       {"points-per-stop", &P::points_per_stop, "1", 1000, 2e6, "returns per scan"},
@@ -28,6 +28,8 @@ const std::array<CampusParamInfo, 10>& campusParamInfos() {
       {"beam-radius", &P::beam_radius_rad, "rad", 0, 0.02, "half the divergence of the beam"},
       {"stop-distance", &P::stop_distance_m, "m", 0.2, 50, "from stop to stop along the route"},
       {"drift", &P::drift_m, "m", 0, 1, "error that the stated poses gain from scan to scan"},
+      {"visits", &P::visits, "1", 1, 9, "drives along the route, between which things change"},
+      {"pose-error", &P::pose_error_m, "m", 0, 0.5, "deviation of the stated poses on later visits"},
   }};
   return infos;
 }
@@ -61,6 +63,9 @@ void check(const CampusParams& params) {
   if (params.stops != std::floor(params.stops))
     throw Error(ErrorKind::InvalidArgument,
                 "the campus cannot have " + shortNumber(params.stops) + " stops: give a whole number");
+  if (params.visits != std::floor(params.visits))
+    throw Error(ErrorKind::InvalidArgument,
+                "the campus cannot have " + shortNumber(params.visits) + " visits: give a whole number");
   const auto stops = static_cast<std::size_t>(params.stops);
   if (stops <= maxStops(params.size_m, params.stop_distance_m)) return;
   double roomy_m = std::ceil(params.size_m);

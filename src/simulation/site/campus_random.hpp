@@ -52,7 +52,8 @@ enum class RandomUse : std::uint64_t {
   Placement,
   Stop,
   Ray,
-  Drift
+  Drift,
+  Visit
 };
 
 inline CampusRandom streamOf(std::uint64_t seed, RandomUse use, std::uint64_t number = 0) {

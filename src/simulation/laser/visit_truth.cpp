@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// Each object stands alone in a scene of its own; rays that meet it there are cast in the scene of the visit.
+#include "simulation/laser/visit_truth.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "base/file_bytes.hpp"
+#include "base/parallel.hpp"
+#include "scan/truth/truth.hpp"
+#include "simulation/laser/laser.hpp"
+#include "simulation/site/campus_site.hpp"
+
+namespace cluxel::simulation {
+
+namespace {
+
+using Eigen::AlignedBox3d, Eigen::Vector3d;
+
+constexpr double kBehind_m = 0.05;  ///< a ray that ends this much before a surface counts as reaching it
+
+/// The surfaces of each object, as it stood when it was first there.
+std::map<std::int32_t, std::vector<CampusMesh>> surfacesOfObjects(const VisitedSite& site) {
+  std::map<std::int32_t, std::vector<CampusMesh>> surfaces;
+  for (const Campus& campus : site.visits) {
+    std::map<std::int32_t, std::vector<CampusMesh>> found;
+    for (const CampusMesh& mesh : campus.meshes)
+      if (!surfaces.contains(mesh.instance)) found[mesh.instance].push_back(mesh);
+    surfaces.merge(found);
+  }
+  return surfaces;
+}
+
+/// An object that stands alone in a scene of its own.
+struct LoneObject {
+  LoneObject(const CampusParams& params, const std::vector<CampusMesh>& meshes, const AlignedBox3d& its_bounds)
+      : bounds(its_bounds) {
+    campus.params = params;
+    campus.meshes = meshes;
+    laser.emplace(campus);
+  }
+  LoneObject(const LoneObject&) = delete;
+
+  Campus campus;
+  std::optional<Laser> laser;
+  AlignedBox3d bounds;
+};
+
+/// The points within `part` that a visit measures on the object, or would if it stood there: rays at the mean angular
+/// steps of the laser through the object's bounds, from each stop.
+std::size_t pointsOn(const LoneObject& object, const AlignedBox3d& part, const Campus& campus, const Laser& scene) {
+  std::size_t points = 0;
+  const double step_rad = scene.meanStep_rad();
+  for (const Eigen::Isometry3d& T_map_sensor : campus.stops) {
+    const Vector3d origin = T_map_sensor.translation(), middle = object.bounds.center() - origin;
+    const double distance = middle.norm(), radius = 0.5 * object.bounds.sizes().norm();
+    const double half_angle = std::asin(std::min(0.99, radius / distance));
+    const Vector3d forward = middle.normalized(), right = forward.unitOrthogonal(), up = forward.cross(right);
+    const int steps = static_cast<int>(std::ceil(half_angle / step_rad));
+    for (int i = -steps; i <= steps; ++i)
+      for (int j = -steps; j <= steps; ++j) {
+        const Vector3d way = forward + std::tan(i * step_rad) * right + std::tan(j * step_rad) * up;
+        const Vector3d direction = way.normalized();
+        const auto hit = object.laser->cast(origin, direction);
+        if (!hit) continue;
+        const Vector3d place = origin + hit->range_m * direction;
+        if (!part.contains(place) || !scene.reaches(T_map_sensor, place)) continue;
+        const auto first = scene.cast(origin, direction);
+        points += first && first->range_m >= hit->range_m - kBehind_m ? 1 : 0;
+      }
+  }
+  return points;
+}
+
+bool isScored(const CampusObject& object) {
+  return object.class_number != static_cast<int>(ObjectClass::Ground) &&
+         object.class_number != static_cast<int>(ObjectClass::Building);
+}
+
+const std::string& className(const CampusObject& object) {
+  return scan::truthClassNames()[static_cast<std::size_t>(object.class_number)];
+}
+
+std::string boxText(const AlignedBox3d& box) {
+  char text[160];
+  if (box.isEmpty()) return ",,,,,";
+  std::snprintf(text, sizeof text, "%.2f,%.2f,%.2f,%.2f,%.2f,%.2f", box.min().x(), box.min().y(), box.min().z(),
+                box.max().x(), box.max().y(), box.max().z());
+  return text;
+}
+
+AlignedBox3d padded(const AlignedBox3d& box) {
+  return AlignedBox3d(box.min() - Vector3d::Constant(0.01), box.max() + Vector3d::Constant(0.01));
+}
+
+class TruthTables {
+ public:
+  TruthTables(const VisitedSite& site, unsigned threads)
+      : site_(site), objects_(site.visits.front().objects), threads_(threads) {
+    for (const auto& [instance, meshes] : surfacesOfObjects(site))
+      if (instance >= 0 && isScored(objects_[static_cast<std::size_t>(instance)]))
+        lone_.emplace(instance, std::make_unique<LoneObject>(site.visits.front().params, meshes, boxOf(instance)));
+    for (const Campus& campus : site.visits) scenes_.push_back(std::make_unique<Laser>(campus));
+  }
+
+  std::string events() const {
+    std::string table =
+        "visit,event,class,instance,new_instance,xmin,ymin,zmin,xmax,ymax,zmax,new_xmin,new_ymin,new_zmin,new_xmax,"
+        "new_ymax,new_zmax,points_before,points_after,new_points_before,new_points_after\n";
+    for (const SiteEvent& event : site_.events) {
+      const std::int32_t any = event.instance >= 0 ? event.instance : event.new_instance;
+      const AlignedBox3d gone = event.gone.isEmpty() ? boxOf(event.instance) : event.gone;
+      const AlignedBox3d come = event.kind == SiteEventKind::Cut ? AlignedBox3d()
+                                : event.come.isEmpty()           ? boxOf(event.new_instance)
+                                                                 : event.come;
+      table += std::to_string(event.visit) + "," + std::string(nameOf(event.kind)) + "," +
+               className(objects_[static_cast<std::size_t>(any)]) + "," + std::to_string(event.instance) + "," +
+               std::to_string(event.new_instance) + "," + boxText(gone) + "," + boxText(come) + "," +
+               pointsText(event.instance, gone, event.visit) + "," + pointsText(event.new_instance, come, event.visit) +
+               "\n";
+    }
+    return table;
+  }
+
+  std::string visits() const {
+    std::string table = "instance,class,visit,present,points\n";
+    std::vector<std::int32_t> instances;
+    for (const auto& [instance, object] : lone_) instances.push_back(instance);
+    for (std::size_t visit = 0; visit < site_.visits.size(); ++visit) {
+      std::set<std::int32_t> present;
+      for (const CampusMesh& mesh : site_.visits[visit].meshes) present.insert(mesh.instance);
+      std::vector<std::size_t> points(instances.size());
+      parallelFor(instances.size(), threads_,
+                  [&](std::size_t i) { points[i] = pointsIn(instances[i], boxOf(instances[i]), visit); });
+      for (std::size_t i = 0; i < instances.size(); ++i)
+        table += std::to_string(instances[i]) + "," + className(objects_[static_cast<std::size_t>(instances[i])]) +
+                 "," + std::to_string(visit) + "," + (present.contains(instances[i]) ? "1," : "0,") +
+                 std::to_string(points[i]) + "\n";
+    }
+    return table;
+  }
+
+ private:
+  AlignedBox3d boxOf(std::int32_t instance) const {
+    return instance < 0 ? AlignedBox3d() : objects_[static_cast<std::size_t>(instance)].box;
+  }
+
+  std::size_t pointsIn(std::int32_t instance, const AlignedBox3d& part, std::size_t visit) const {
+    return pointsOn(*lone_.at(instance), padded(part), site_.visits[visit], *scenes_[visit]);
+  }
+
+  /// Points on a part in the visit before an event and in its own; empty when there is no such part.
+  std::string pointsText(std::int32_t instance, const AlignedBox3d& part, std::size_t visit) const {
+    if (instance < 0 || part.isEmpty()) return ",";
+    return std::to_string(pointsIn(instance, part, visit - 1)) + "," + std::to_string(pointsIn(instance, part, visit));
+  }
+
+  const VisitedSite& site_;
+  const std::vector<CampusObject>& objects_;
+  unsigned threads_;
+  std::map<std::int32_t, std::unique_ptr<LoneObject>> lone_;
+  std::vector<std::unique_ptr<Laser>> scenes_;
+};
+
+}  // namespace
+
+void writeVisitTruth(const VisitedSite& site, const std::filesystem::path& folder, unsigned threads) {
+  const TruthTables tables(site, threads);
+  writeFile(folder / "events.csv", tables.events());
+  writeFile(folder / "visits.csv", tables.visits());
+}
+
+}  // namespace cluxel::simulation

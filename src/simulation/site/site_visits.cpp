@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+// Events are drawn object by object, each from a stream of its own, so that one event does not shift the others.
+#include "simulation/site/site_visits.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <optional>
+#include <set>
+
+#include "simulation/site/campus_random.hpp"
+#include "simulation/site/campus_site.hpp"
+
+namespace cluxel::simulation {
+
+namespace {
+
+using Eigen::AlignedBox3d, Eigen::Vector2d, Eigen::Vector3d, Eigen::Vector3f;
+
+/// How often a visit finds something changed about an object.
+struct Chances {
+  double arrives_later = 0, leaves = 0, moves = 0, is_replaced = 0, is_cut = 0;
+};
+
+bool isOf(const CampusObject& object, ObjectClass object_class) {
+  return object.class_number == static_cast<int>(object_class);
+}
+
+Chances chancesOf(const CampusObject& object) {
+  if (isOf(object, ObjectClass::Vehicle)) return {.arrives_later = 0.2, .leaves = 0.25, .moves = 0.15};
+  if (isOf(object, ObjectClass::StreetSign)) return {.leaves = 0.12};
+  if (isOf(object, ObjectClass::StreetLamp)) return {.is_replaced = 0.15};
+  constexpr double kTall_m = 1.2;  // lower bushes are left alone
+  if (isOf(object, ObjectClass::Bush)) return {.is_cut = object.box.sizes().z() >= kTall_m ? 0.3 : 0};
+  const bool can_move = isOf(object, ObjectClass::SmallObject) && object.kind != "fence" && object.kind != "bollard" &&
+                        object.kind != "hydrant" && object.kind != "bench";
+  return can_move ? Chances{.arrives_later = 0.1, .leaves = 0.2, .moves = 0.25} : Chances{};
+}
+
+class Visits {
+ public:
+  Visits(const Campus& campus, std::size_t count) : seed_(campus.params.seed), terrain_(campus.terrain) {
+    site_.visits.push_back(campus);
+    for (std::size_t i = 0; i < campus.objects.size(); ++i) drawArrival(campus, i, count);
+    Campus& first = site_.visits.front();
+    std::erase_if(first.meshes, [this](const CampusMesh& mesh) { return arrivalOf(mesh.instance) > 0; });
+    for (std::size_t visit = 1; visit < count; ++visit) addVisit(campus, visit);
+    for (Campus& each : site_.visits) each.objects = site_.visits.back().objects;
+  }
+
+  VisitedSite result() && { return std::move(site_); }
+
+ private:
+  CampusRandom stream(std::size_t object, std::size_t visit) const {
+    return CampusRandom{seed_, static_cast<std::uint64_t>(RandomUse::Visit), visit, object};
+  }
+
+  void drawArrival(const Campus& campus, std::size_t object, std::size_t count) {
+    CampusRandom random = stream(object, 0);
+    const bool is_late = count > 1 && random.chance(chancesOf(campus.objects[object]).arrives_later);
+    arrival_.push_back(is_late ? 1 + static_cast<std::size_t>(random.below(static_cast<int>(count) - 1)) : 0);
+  }
+
+  std::size_t arrivalOf(std::int32_t instance) const {
+    return instance < 0 || static_cast<std::size_t>(instance) >= arrival_.size()
+               ? 0
+               : arrival_[static_cast<std::size_t>(instance)];
+  }
+
+  void addVisit(const Campus& base, std::size_t visit) {
+    Campus next = site_.visits.back();
+    next.params.seed = scramble(seed_ + visit);  // other noise than on the visits before
+    const std::size_t known = next.objects.size();
+    for (std::size_t i = 0; i < known; ++i) {
+      const auto instance = static_cast<std::int32_t>(i);
+      if (arrivalOf(instance) == visit)
+        arrive(base, next, instance, visit);
+      else if (isThere(next, instance))
+        change(next, instance, visit);
+    }
+    next.stops = stopsOf(base, visit);
+    site_.visits.push_back(std::move(next));
+  }
+
+  static bool isThere(const Campus& campus, std::int32_t instance) {
+    return std::any_of(campus.meshes.begin(), campus.meshes.end(),
+                       [instance](const CampusMesh& mesh) { return mesh.instance == instance; });
+  }
+
+  void arrive(const Campus& base, Campus& next, std::int32_t instance, std::size_t visit) {
+    for (const CampusMesh& mesh : base.meshes)
+      if (mesh.instance == instance) next.meshes.push_back(mesh);
+    site_.events.push_back({SiteEventKind::Arrived, visit, -1, instance, {}, {}});
+  }
+
+  void change(Campus& next, std::int32_t instance, std::size_t visit) {
+    const auto i = static_cast<std::size_t>(instance);
+    const Chances chances = chancesOf(next.objects[i]);
+    CampusRandom random = stream(i, visit);
+    const double draw = random.uniform();
+    double bound = chances.leaves;
+    if (draw < bound) return leave(next, instance, visit);
+    if (draw < (bound += chances.moves)) return move(next, instance, visit, random);
+    if (draw < (bound += chances.is_replaced)) return replace(next, instance, visit);
+    if (draw < bound + chances.is_cut) cut(next, instance, visit);
+  }
+
+  void leave(Campus& next, std::int32_t instance, std::size_t visit) {
+    erase(next, instance);
+    site_.events.push_back({SiteEventKind::Left, visit, instance, -1, {}, {}});
+  }
+
+  static void erase(Campus& campus, std::int32_t instance) {
+    std::erase_if(campus.meshes, [instance](const CampusMesh& mesh) { return mesh.instance == instance; });
+  }
+
+  /// A place 1.5 to 6 m away where nothing stands; none when ten attempts fail.
+  void move(Campus& next, std::int32_t instance, std::size_t visit, CampusRandom& random) {
+    const CampusObject& object = next.objects[static_cast<std::size_t>(instance)];
+    for (int attempt = 0; attempt < 10; ++attempt) {
+      const double angle = random.uniform(0, 2 * std::numbers::pi), far_m = random.uniform(1.5, 6);
+      const Vector3d shift = alongGround(object.position, far_m * Vector2d(std::cos(angle), std::sin(angle)));
+      AlignedBox3d place = object.box;
+      place.translate(shift);
+      if (!isFree(next, place, instance)) continue;
+      const std::int32_t moved = copyOf(next, instance, instance, shift);
+      erase(next, instance);
+      site_.events.push_back({SiteEventKind::Moved, visit, instance, moved, {}, {}});
+      return;
+    }
+  }
+
+  Vector3d alongGround(const Vector3d& from, const Vector2d& step) const {
+    const Vector2d to = from.head<2>() + step;
+    return {step.x(), step.y(), terrain_.heightAt(to.x(), to.y()) - terrain_.heightAt(from.x(), from.y())};
+  }
+
+  static bool isFree(const Campus& campus, const AlignedBox3d& place, std::int32_t mover) {
+    AlignedBox3d roomy(place.min() - Vector3d::Constant(0.5), place.max() + Vector3d::Constant(0.5));
+    for (const CampusMesh& mesh : campus.meshes) {
+      if (mesh.instance == mover || mesh.instance <= 0) continue;  // 0 is the ground
+      const CampusObject& other = campus.objects[static_cast<std::size_t>(mesh.instance)];
+      if (roomy.intersects(other.box)) return false;
+    }
+    return true;
+  }
+
+  /// Adds an object with the surfaces of `model`, moved by `shift`, and returns its number.
+  static std::int32_t copyOf(Campus& campus, std::int32_t model, std::int32_t named_after, const Vector3d& shift) {
+    CampusObject object = campus.objects[static_cast<std::size_t>(model)];
+    object.traits = campus.objects[static_cast<std::size_t>(named_after)].traits;
+    object.position += shift;
+    object.box.translate(shift);
+    const auto made = static_cast<std::int32_t>(campus.objects.size());
+    campus.objects.push_back(std::move(object));
+    const std::size_t count = campus.meshes.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      if (campus.meshes[i].instance != model) continue;
+      CampusMesh mesh = campus.meshes[i];
+      mesh.instance = made;
+      for (Vector3f& vertex : mesh.vertices) vertex = (vertex.cast<double>() + shift).cast<float>();
+      campus.meshes.push_back(std::move(mesh));
+    }
+    return made;
+  }
+
+  /// A lamp gives way to one as the nearest lamp of another kind. The lower pole stays the same for all who look.
+  void replace(Campus& next, std::int32_t instance, std::size_t visit) {
+    const CampusObject old = next.objects[static_cast<std::size_t>(instance)];
+    std::optional<std::int32_t> model;
+    double nearest = 1e300;
+    for (std::size_t i = 0; i < next.objects.size(); ++i) {
+      const CampusObject& other = next.objects[i];
+      const double distance = (other.position - old.position).norm();
+      const bool is_model = other.class_number == old.class_number && other.kind != old.kind &&
+                            isThere(next, static_cast<std::int32_t>(i));
+      if (is_model && distance < nearest) nearest = distance, model = static_cast<std::int32_t>(i);
+    }
+    if (!model) return;
+    const Vector3d shift = old.position - next.objects[static_cast<std::size_t>(*model)].position;
+    const std::int32_t made = copyOf(next, *model, instance, shift);
+    erase(next, instance);
+    const AlignedBox3d now = next.objects[static_cast<std::size_t>(made)].box;
+    const double differs_from = std::min(old.box.max().z(), now.max().z()) - 1;
+    site_.events.push_back(
+        {SiteEventKind::Replaced, visit, instance, made, above(old.box, differs_from), above(now, differs_from)});
+  }
+
+  static AlignedBox3d above(AlignedBox3d box, double height) {
+    box.min().z() = std::max(box.min().z(), height);
+    return box;
+  }
+
+  /// Takes the upper 45 % off a bush or hedge, once.
+  void cut(Campus& next, std::int32_t instance, std::size_t visit) {
+    if (!cut_.insert(instance).second) return;
+    const AlignedBox3d box = next.objects[static_cast<std::size_t>(instance)].box;
+    constexpr double kLeft = 0.55;
+    for (CampusMesh& mesh : next.meshes) {
+      if (mesh.instance != instance) continue;
+      for (Vector3f& vertex : mesh.vertices) {
+        const double ground = terrain_.heightAt(vertex.x(), vertex.y());
+        vertex.z() = static_cast<float>(ground + kLeft * (vertex.z() - ground));
+      }
+    }
+    AlignedBox3d gone = box;
+    gone.min().z() += kLeft * box.sizes().z();
+    site_.events.push_back({SiteEventKind::Cut, visit, instance, instance, gone, {}});
+  }
+
+  /// The stops of a later visit lie half a stop farther along the route, up to half a metre aside.
+  std::vector<Eigen::Isometry3d> stopsOf(const Campus& base, std::size_t visit) const {
+    std::vector<Eigen::Isometry3d> stops = base.stops;
+    for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
+      CampusRandom random = stream(i, 1000 + visit);
+      const double share = random.uniform(0.2, 0.8);
+      const Vector3d from = base.stops[i].translation(), step = base.stops[i + 1].translation() - from;
+      const Vector2d aside(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5));
+      const Vector3d to = from + share * step + Vector3d(aside.x(), aside.y(), 0);
+      const double height = from.z() - terrain_.heightAt(from.x(), from.y());
+      stops[i].translation() = Vector3d(to.x(), to.y(), terrain_.heightAt(to.x(), to.y()) + height);
+    }
+    return stops;
+  }
+
+  std::uint64_t seed_;
+  const Terrain& terrain_;
+  std::vector<std::size_t> arrival_;  ///< the first visit that finds the object
+  std::set<std::int32_t> cut_;
+  VisitedSite site_;
+};
+
+}  // namespace
+
+std::string_view nameOf(SiteEventKind kind) {
+  constexpr std::array<std::string_view, 5> kNames{"left", "arrived", "moved", "replaced", "cut"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+VisitedSite visitSite(const Campus& campus, std::size_t count) {
+  return Visits(campus, count).result();
+}
+
+}  // namespace cluxel::simulation

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Later visits to a campus: what events say is what the surfaces show.
+#include "simulation/site/site_visits.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "simulation/campus_fixture.hpp"
+
+namespace cluxel::simulation {
+namespace {
+
+class SiteVisits : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    CampusParams params = test::smallCampus(12);
+    params.size_m = 90;
+    campus = new Campus(buildCampus(params));
+    site = new VisitedSite(visitSite(*campus, 3));
+  }
+  static void TearDownTestSuite() {
+    delete campus;
+    delete site;
+  }
+
+  static std::set<std::int32_t> thereOn(std::size_t visit) {
+    std::set<std::int32_t> there;
+    for (const CampusMesh& mesh : site->visits[visit].meshes) there.insert(mesh.instance);
+    return there;
+  }
+  static Eigen::AlignedBox3d boundsOn(std::size_t visit, std::int32_t instance) {
+    Eigen::AlignedBox3d box;
+    for (const CampusMesh& mesh : site->visits[visit].meshes)
+      if (mesh.instance == instance)
+        for (const Eigen::Vector3f& vertex : mesh.vertices) box.extend(vertex.cast<double>());
+    return box;
+  }
+
+  static inline Campus* campus = nullptr;
+  static inline VisitedSite* site = nullptr;
+};
+
+TEST_F(SiteVisits, EventsExplainEveryDifference) {
+  ASSERT_EQ(site->visits.size(), 3);
+  for (std::size_t visit = 1; visit < 3; ++visit) {
+    std::set<std::int32_t> expected = thereOn(visit - 1);
+    for (const SiteEvent& event : site->events) {
+      if (event.visit != visit || event.kind == SiteEventKind::Cut) continue;
+      if (event.instance >= 0) {
+        EXPECT_EQ(expected.erase(event.instance), 1);
+      }
+      if (event.new_instance >= 0) {
+        EXPECT_TRUE(expected.insert(event.new_instance).second);
+      }
+    }
+    EXPECT_EQ(thereOn(visit), expected) << "visit " << visit;
+  }
+}
+
+TEST_F(SiteVisits, HasEventsOfEachKind) {
+  std::map<SiteEventKind, int> count;
+  for (const SiteEvent& event : site->events) ++count[event.kind];
+  EXPECT_EQ(count.size(), 5);
+}
+
+TEST_F(SiteVisits, MovesThingsToFreePlacesOfTheSameSize) {
+  for (const SiteEvent& event : site->events) {
+    if (event.kind != SiteEventKind::Moved) continue;
+    const Eigen::AlignedBox3d before = boundsOn(event.visit - 1, event.instance),
+                              after = boundsOn(event.visit, event.new_instance);
+    EXPECT_LT((before.sizes() - after.sizes()).norm(), 0.01);
+    const double distance = (before.center() - after.center()).head<2>().norm();
+    EXPECT_GT(distance, 1.4);
+    EXPECT_LT(distance, 6.1);
+    EXPECT_TRUE(
+        site->visits[event.visit].objects[static_cast<std::size_t>(event.new_instance)].box.isApprox(after, 0.01));
+  }
+}
+
+TEST_F(SiteVisits, CutsTheUpperPart) {
+  for (const SiteEvent& event : site->events) {
+    if (event.kind != SiteEventKind::Cut) continue;
+    const double before = boundsOn(event.visit - 1, event.instance).max().z(),
+                 after = boundsOn(event.visit, event.instance).max().z();
+    EXPECT_GT(before - after, 0.4);
+    EXPECT_NEAR(event.gone.max().z(), before, 0.01);
+    EXPECT_NEAR(event.gone.min().z(), after, 0.3);
+  }
+}
+
+TEST_F(SiteVisits, IsAFunctionOfTheCampus) {
+  const VisitedSite again = visitSite(*campus, 3);
+  ASSERT_EQ(again.events.size(), site->events.size());
+  for (std::size_t i = 0; i < again.events.size(); ++i) {
+    EXPECT_EQ(again.events[i].instance, site->events[i].instance);
+    EXPECT_EQ(again.events[i].new_instance, site->events[i].new_instance);
+  }
+  for (std::size_t visit = 0; visit < 3; ++visit)
+    EXPECT_EQ(again.visits[visit].meshes.size(), site->visits[visit].meshes.size());
+}
+
+}  // namespace
+}  // namespace cluxel::simulation
