@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// When a thing was there: the interval of scans that speaks for it, from votes of rays that hit it or saw through it.
+#pragma once
+
+#include <bitset>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "base/content_hash.hpp"
+
+namespace cluxel::perception {
+
+/// Places on a thing: at most so many are compared with rays.
+inline constexpr std::size_t kMaxPlaces = 256;
+using PlaceSet = std::bitset<kMaxPlaces>;
+
+/// What one timed scan says about a thing: the places where rays ended, and those that they saw through.
+struct ScanVotes {
+  double time_s = 0;
+  ContentHash scan;
+  PlaceSet hits, seen_through;
+};
+
+struct PresenceParams {
+  /// Chance that a ray ends at a place of a thing that is gone, because something else stands there now.
+  double hit_when_gone = 0.05;
+  /// A thing is gone, or not yet there, when the log-odds of "there" are at most the negative of this ...
+  double decided = 6;
+  /// ... and this share of the places that were ever hit is seen through and not hit.
+  double min_share = 0.2;
+};
+
+/// The interval of time in which a thing was there, as far as rays tell.
+struct Presence {
+  double first_seen_s = 0, last_seen_s = 0;  ///< scans that hit it
+  std::optional<double> seen_empty_s;        ///< the last scan before that saw through it, when it was not yet there
+  std::optional<double> seen_through_s;      ///< the first scan after that saw through it, when it is gone
+};
+
+/// The share of hits among the votes of scans that hit the thing at all, within [0.3, 0.98]: near 1 for a car, lower
+/// for a crown that lets rays through.
+double shareOfHits(std::span<const ScanVotes> votes);
+
+/// Log-odds of "there": a hit counts log(p / h), a place seen through log((1 - p) / (1 - h)), with p the share of hits
+/// and h `hit_when_gone`.
+double logOddsOfPresence(std::span<const ScanVotes> votes, double share_of_hits, const PresenceParams& params);
+
+/// What is known of a thing from all scans.
+struct Visibility {
+  double share_of_hits = 0;  ///< shareOfHits()
+  std::size_t places = 0;    ///< that some scan hit
+};
+Visibility visibilityOf(std::span<const ScanVotes> votes);
+
+/// Whether some scans show that the thing was not there.
+bool showAbsence(std::span<const ScanVotes> votes, const Visibility& thing, const PresenceParams& params);
+
+/// The interval with the largest sum of log-odds; before or after it the thing was not there when showAbsence() holds
+/// of those scans. `votes` are sorted by time, then by scan. Absent when no scan speaks for it.
+std::optional<Presence> presenceOf(std::span<const ScanVotes> votes, const Visibility& thing,
+                                   const PresenceParams& params);
+
+/// The state of a thing at the end of some scans.
+enum class PresenceState : std::uint8_t { Present, Absent, NotObserved };
+std::string_view nameOf(PresenceState state);  ///< "not observed"
+
+PresenceState stateAfter(std::span<const ScanVotes> votes, const Visibility& thing, const PresenceParams& params);
+
+}  // namespace cluxel::perception

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// When a thing was there: against all intervals, and on histories of which the answer is plain.
+#include "perception/visibility/presence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace cluxel::perception {
+namespace {
+
+ScanVotes votes(double time_s, std::size_t hits, std::size_t seen_through) {
+  ScanVotes scan;
+  scan.time_s = time_s;
+  for (std::size_t i = 0; i < hits; ++i) scan.hits.set(i);
+  for (std::size_t i = 0; i < seen_through; ++i) scan.seen_through.set(hits + i);
+  return scan;
+}
+
+PresenceState stateOf(const std::vector<ScanVotes>& history) {
+  return stateAfter(history, visibilityOf(history), {});
+}
+
+TEST(Presence, IsTheIntervalOfLargestSum) {
+  std::mt19937 random(11);
+  for (int round = 0; round < 300; ++round) {
+    std::vector<ScanVotes> history;
+    const std::size_t count = 1 + random() % 9;
+    for (std::size_t i = 0; i < count; ++i)
+      history.push_back(votes(static_cast<double>(i), random() % 3 == 0 ? random() % 20 : 0, random() % 30));
+    const Visibility thing = visibilityOf(history);
+    double best = 0;
+    for (std::size_t begin = 0; begin < count; ++begin)
+      for (std::size_t end = begin + 1; end <= count; ++end)
+        best =
+            std::max(best, logOddsOfPresence(std::span(history).subspan(begin, end - begin), thing.share_of_hits, {}));
+    const auto presence = presenceOf(history, thing, {});
+    ASSERT_EQ(presence.has_value(), best > 0);
+    if (!presence) continue;
+    const auto begin = static_cast<std::size_t>(presence->first_seen_s);
+    const auto end = static_cast<std::size_t>(presence->last_seen_s) + 1;
+    EXPECT_NEAR(logOddsOfPresence(std::span(history).subspan(begin, end - begin), thing.share_of_hits, {}), best, 1e-9);
+    EXPECT_TRUE(history[begin].hits.any());
+    EXPECT_TRUE(history[end - 1].hits.any());
+  }
+}
+
+TEST(Presence, SeesACarLeaveAndArrive) {
+  const std::vector<ScanVotes> left{votes(1, 50, 2), votes(2, 60, 0), votes(3, 0, 40), votes(4, 0, 50)};
+  const auto gone = presenceOf(left, visibilityOf(left), {});
+  ASSERT_TRUE(gone.has_value());
+  EXPECT_EQ(gone->last_seen_s, 2);
+  EXPECT_EQ(gone->seen_through_s, 3);
+  EXPECT_FALSE(gone->seen_empty_s.has_value());
+  EXPECT_EQ(stateOf(left), PresenceState::Absent);
+  const std::vector<ScanVotes> arrived{votes(1, 0, 40), votes(2, 0, 30), votes(3, 50, 1)};
+  const auto come = presenceOf(arrived, visibilityOf(arrived), {});
+  ASSERT_TRUE(come.has_value());
+  EXPECT_EQ(come->seen_empty_s, 2);
+  EXPECT_EQ(come->first_seen_s, 3);
+  EXPECT_EQ(stateOf(arrived), PresenceState::Present);
+}
+
+TEST(Presence, KeepsWhatOnlyAFarScanSeesThroughAtTheEdge) {
+  std::vector<ScanVotes> tree;
+  for (int i = 0; i < 5; ++i) tree.push_back(votes(i, 120, 60));
+  tree.push_back(votes(5, 0, 12));  // 12 places of 120
+  EXPECT_EQ(stateOf(tree), PresenceState::Present);
+}
+
+TEST(Presence, IsNotObservedWithoutEvidence) {
+  const std::vector<ScanVotes> before{votes(1, 50, 2)};
+  EXPECT_EQ(stateAfter({}, visibilityOf(before), {}), PresenceState::NotObserved);
+  const std::vector<ScanVotes> few{votes(2, 0, 1)};
+  EXPECT_EQ(stateAfter(few, visibilityOf(before), {}), PresenceState::NotObserved);
+  const std::vector<ScanVotes> many{votes(2, 0, 30)};
+  EXPECT_EQ(stateAfter(many, visibilityOf(before), {}), PresenceState::Absent);
+}
+
+TEST(Presence, NeedsMoreEvidenceThatAThingRaysOftenMissIsGone) {
+  const std::vector<ScanVotes> solid{votes(1, 20, 0)}, thin{votes(1, 8, 12), votes(2, 8, 12)};
+  const std::vector<ScanVotes> later{votes(3, 0, 5)};
+  EXPECT_EQ(stateAfter(later, visibilityOf(solid), {}), PresenceState::Absent);
+  EXPECT_EQ(stateAfter(later, visibilityOf(thin), {}), PresenceState::NotObserved);
+}
+
+}  // namespace
+}  // namespace cluxel::perception

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Verdicts of rays about places, against all rays one by one.
+#include "perception/visibility/ray_bundle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace cluxel::perception {
+namespace {
+
+/// The verdict from all rays, without an index.
+PlaceVerdict verdictOfAll(const std::vector<Eigen::Vector3f>& ends, const Eigen::Vector3d& origin,
+                          const Eigen::Vector3d& place_map, const RayParams& params) {
+  const Eigen::Vector3d place = place_map - origin;
+  int hitting = 0, passing = 0;
+  for (const Eigen::Vector3f& each : ends) {
+    const Eigen::Vector3d end = each.cast<double>();
+    const double range = end.norm(), along = place.dot(end) / range;
+    if (along <= 0 || place.squaredNorm() - along * along > params.near_m * params.near_m) continue;
+    hitting += std::abs(range - along) <= params.hit_m ? 1 : 0;
+    passing += range >= along + params.behind_m ? 1 : 0;
+  }
+  if (hitting + passing == 0) return {};
+  const bool is_sparse = hitting + passing < params.min_rays;
+  if (hitting > 0) return {RayVerdict::Hit, is_sparse};
+  return {is_sparse ? RayVerdict::FewPassed : RayVerdict::SeenThrough, is_sparse};
+}
+
+Eigen::Vector3d randomDirection(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  return Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
+}
+
+TEST(RayBundle, AgreesWithAllRaysOneByOne) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> range(1, 12), unit(-1, 1);
+  const Eigen::Vector3d origin(100, -50, 3);
+  std::vector<Eigen::Vector3f> ends;
+  for (int i = 0; i < 30'000; ++i) ends.push_back((range(random) * randomDirection(random)).cast<float>());
+  // Poles of the grid of directions, where columns are narrow, and the seam of the azimuth.
+  for (const Eigen::Vector3d& special :
+       {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(-1, 0, 0)})
+    for (int i = 0; i < 2'000; ++i)
+      ends.push_back((range(random) * (special + 0.05 * randomDirection(random)).normalized()).cast<float>());
+  const RayBundle bundle(origin, ends);
+  std::array<int, 4> seen{};
+  for (int i = 0; i < 3'000; ++i) {
+    Eigen::Vector3d direction = randomDirection(random);
+    if (i % 4 == 1)
+      direction = Eigen::Vector3d(0.03 * unit(random), 0.03 * unit(random), i % 8 == 1 ? 1 : -1).normalized();
+    if (i % 4 == 2) direction = Eigen::Vector3d(-1, 0.02 * unit(random), 0.02 * unit(random)).normalized();
+    const Eigen::Vector3d place = origin + range(random) * direction;
+    const PlaceVerdict expected = verdictOfAll(ends, origin, place, {}), got = bundle.verdictAt(place, {});
+    ASSERT_EQ(got.verdict, expected.verdict) << i;
+    ASSERT_EQ(got.is_sparse, expected.is_sparse) << i;
+    ++seen[static_cast<std::size_t>(got.verdict)];
+  }
+  for (const int count : seen) EXPECT_GT(count, 20);
+}
+
+/// A wall 10 m ahead, as a sensor at `origin` sees it, with rays every `step_m` on the wall.
+std::vector<Eigen::Vector3f> wallAhead(double step_m) {
+  std::vector<Eigen::Vector3f> ends;
+  for (double y = -1; y <= 1; y += step_m)
+    for (double z = -1; z <= 1; z += step_m) ends.emplace_back(10, y, z);
+  return ends;
+}
+
+TEST(RayBundle, TellsWhatIsHitHiddenAndSeenThrough) {
+  const RayBundle bundle(Eigen::Vector3d::Zero(), wallAhead(0.05));
+  EXPECT_EQ(bundle.verdictAt({10, 0, 0}, {}).verdict, RayVerdict::Hit);
+  EXPECT_EQ(bundle.verdictAt({5, 0, 0}, {}).verdict, RayVerdict::SeenThrough);
+  EXPECT_EQ(bundle.verdictAt({15, 0, 0}, {}).verdict, RayVerdict::NotCovered) << "hidden by the wall";
+  EXPECT_EQ(bundle.verdictAt({5, 4, 0}, {}).verdict, RayVerdict::NotCovered) << "no ray goes there";
+  EXPECT_EQ(bundle.verdictAt({-5, 0, 0}, {}).verdict, RayVerdict::NotCovered) << "behind the sensor";
+  EXPECT_EQ(bundle.verdictAt({9.7, 0, 0}, {}).verdict, RayVerdict::NotCovered) << "too near the wall to tell";
+}
+
+TEST(RayBundle, DoesNotConcludeFromFewRays) {
+  const RayBundle bundle(Eigen::Vector3d::Zero(), wallAhead(0.5));
+  const PlaceVerdict place = bundle.verdictAt({5, 0, 0}, {});
+  EXPECT_EQ(place.verdict, RayVerdict::FewPassed);
+  EXPECT_TRUE(place.is_sparse);
+}
+
+TEST(RayBundle, TakesRaysWithOwnOriginsTogetherWhereTheyStartTogether) {
+  scan::Scan scan;
+  scan.T_map_sensor = Eigen::Translation3d(7, 0, 0) * Eigen::Isometry3d::Identity();
+  for (int i = 0; i < 40; ++i) {
+    const auto at = static_cast<float>(i);
+    scan.points.x.push_back(at), scan.points.y.push_back(5), scan.points.z.push_back(0);
+    scan.points.origin.emplace_back(i < 20 ? 0.001F * at : 3, 0, 0);
+  }
+  std::vector<Eigen::Vector3d> origins;
+  forEachRayBundle(scan, [&](const RayBundle& bundle) { origins.push_back(bundle.origin()); });
+  ASSERT_EQ(origins.size(), 2);
+  EXPECT_TRUE(origins[0].isApprox(Eigen::Vector3d(7, 0, 0)));
+  EXPECT_TRUE(origins[1].isApprox(Eigen::Vector3d(10, 0, 0)));
+  scan.points.origin.clear();
+  forEachRayBundle(scan, [](const RayBundle&) { FAIL() << "a scan without pose has no origin"; });
+}
+
+}  // namespace
+}  // namespace cluxel::perception
