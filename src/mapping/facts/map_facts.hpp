@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "mapping/cloud.hpp"
@@ -10,6 +11,7 @@
 #include "mapping/facts/object_geometry.hpp"
 #include "mapping/map_inputs.hpp"
 #include "perception/segments/scene.hpp"
+#include "perception/visibility/presence.hpp"
 #include "rules/decide/semantic_object.hpp"
 
 namespace cluxel::mapping {
@@ -26,6 +28,8 @@ struct ObservedMap {
   const perception::Scene& scene;
   const rules::ReasoningResult& reasoning;
   const std::map<std::pair<std::uint32_t, scan::ScanId>, Sighting>& sightings;
+  /// By object; empty when presence is not asked for.
+  const std::vector<std::optional<perception::Presence>>& presence;
 };
 
 void addObservedFacts(const ObservedMap& map, FactSink& facts);

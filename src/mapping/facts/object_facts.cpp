@@ -82,6 +82,10 @@ const Cloud* cloudOf(const std::vector<Cloud>& clouds, const scan::ScanId& id) {
   return nullptr;
 }
 
+void addTime(rdf::TermId subject, const std::string& property, double time_s, FactSink& facts) {
+  facts.literal(subject, property, dateTimeText(time_s), rdf::vocabulary::xsd("dateTime"));
+}
+
 /// One object as seen in one cloud: where, when, how much.
 void addObservation(const ObservedMap& map, std::uint32_t object, const scan::ScanId& scan, const Sighting& sighting,
                     FactSink& facts) {
@@ -95,8 +99,7 @@ void addObservation(const ObservedMap& map, std::uint32_t object, const scan::Sc
   facts.count(subject, "pointCount", sighting.point_count);
   addPosition(subject, sighting.sum / static_cast<double>(sighting.point_count), facts);
   const Cloud* cloud = cloudOf(map.clouds, scan);
-  if (cloud != nullptr && cloud->time_s)
-    facts.literal(subject, sosa + "resultTime", dateTimeText(*cloud->time_s), rdf::vocabulary::xsd("dateTime"));
+  if (cloud != nullptr && cloud->time_s) addTime(subject, sosa + "resultTime", *cloud->time_s, facts);
 }
 
 void addObservations(const ObservedMap& map, FactSink& facts) {
@@ -107,6 +110,19 @@ void addObservations(const ObservedMap& map, FactSink& facts) {
   }
   for (std::size_t i = 0; i < views.size(); ++i)
     facts.count(facts.iri(rdf::iriOfObject(map.reasoning.objects[i].id)), "viewCount", views[i]);
+}
+
+/// When rays first and last ended at an object, and when others saw through its place.
+void addPresence(const ObservedMap& map, FactSink& facts) {
+  for (std::size_t i = 0; i < map.presence.size(); ++i) {
+    if (!map.presence[i]) continue;
+    const perception::Presence& presence = *map.presence[i];
+    const rdf::TermId subject = facts.iri(rdf::iriOfObject(map.reasoning.objects[i].id));
+    addTime(subject, "firstSeen", presence.first_seen_s, facts);
+    addTime(subject, "lastSeen", presence.last_seen_s, facts);
+    if (presence.seen_empty_s) addTime(subject, "seenEmpty", *presence.seen_empty_s, facts);
+    if (presence.seen_through_s) addTime(subject, "seenThrough", *presence.seen_through_s, facts);
+  }
 }
 
 void addNeighbours(const ObservedMap& map, FactSink& facts) {
@@ -141,6 +157,7 @@ void addBounds(rdf::TermId subject, const Eigen::Vector3d& min, const Eigen::Vec
 void addObjectFacts(const ObservedMap& map, FactSink& facts) {
   for (const rules::SemanticObject& object : map.reasoning.objects) addObject(map, object, facts);
   addObservations(map, facts);
+  addPresence(map, facts);
   addNeighbours(map, facts);
 }
 

@@ -6,6 +6,7 @@
 #include "mapping/build/scan_store.hpp"
 #include "mapping/facts/map_facts.hpp"
 #include "mapping/facts/map_oracle.hpp"
+#include "mapping/facts/presence_votes.hpp"
 #include "mapping/facts/sparql_rules.hpp"
 #include "mapping/object_store.hpp"
 #include "rdf/io/rdf_io.hpp"
@@ -49,7 +50,7 @@ void writeObjectsSoFar(rdf::WriteTransaction& transaction, const MapInputs& inpu
                        std::span<const rules::SemanticObject> objects) {
   const rules::ReasoningResult so_far{{objects.begin(), objects.end()}, {}};
   const auto sightings = sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(so_far, scene.cluxels.size()));
-  writeObserved(transaction, {inputs, clouds, scene, so_far, sightings});
+  writeObserved(transaction, {inputs, clouds, scene, so_far, sightings, {}});
   inferClosure(transaction);
 }
 
@@ -85,7 +86,9 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   rules::ReasoningResult result = reason(scene, parsed.rules, {&oracle});
   sink.progress("objects", result.objects.size(), result.objects.size());
   const auto sightings = sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(result, scene.cluxels.size()));
-  writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings});
+  const auto votes = presenceVotes(
+      scene, result.objects, clouds, [&](const Cloud& cloud) { return storedScan(transaction, cloud.id); }, 1);
+  writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings, presenceOfObjects(votes)});
   inferFacts(transaction, parsed.inputs, sink);
   storeObjects(transaction, result.objects);
   sink.progress("facts", 1, 1);
