@@ -51,6 +51,7 @@ void addCommands(CLI::App& app, Session& session) {
   addEvaluate(app, session);
   addExport(app, session);
   addWays(app, session);
+  addChanges(app, session);
   addServe(app, session);
   addView(app, session);
   addUpkeep(app, session);

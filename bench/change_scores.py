@@ -1,0 +1,147 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Scores `cluxel changes MAP --json` against the truth of a generated campus with two visits.
+
+Usage: change_scores.py CHANGES.json TRUTH_FOLDER [--list]
+
+Events. A truth event is something that is gone ("left", "cut", and the old place of "moved" and "replaced") or new
+("arrived", and the new place of "moved" and "replaced"). It counts when both visits measure, or would
+measure if it stood there, at least 20 points on it. A reported event matches one of the same kind when the boxes, padded by 0.1 m, overlap by an intersection over
+union of 0.2, or the centre of the smaller one lies within the other; the best pairs first, one to one. A further report whose centre
+lies within the box of a true event, padded by 0.5 m, is a piece of it: neither true nor false.
+
+States. For each object of the truth the reported object whose box overlaps it most (intersection over union of at least
+0.2) gives the state in the last visit: present, absent or not observed. In the truth an object is not observed when the
+visit measures, or would measure, no point on it, and of no certain state below 20 points.
+"""
+import csv
+import json
+import sys
+
+PAD_M = 0.1
+MIN_SEEN, NOT_SEEN = 20, 1
+
+
+def box_of(row, prefix=""):
+    return [[float(row[f"{prefix}{axis}{end}"]) for axis in "xyz"] for end in ("min", "max")]
+
+
+def overlap(a, b):
+    """Intersection over union of padded boxes; 1 when the centre of the smaller lies in the other."""
+    share, sizes = 1.0, [1.0, 1.0]
+    for axis in range(3):
+        low = max(a[0][axis], b[0][axis]) - PAD_M
+        high = min(a[1][axis], b[1][axis]) + PAD_M
+        if high <= low:
+            return 0.0
+        share *= high - low
+        for i, box in enumerate((a, b)):
+            sizes[i] *= box[1][axis] - box[0][axis] + 2 * PAD_M
+    return share / (sum(sizes) - share)
+
+
+def holds_centre(a, b):
+    small, large = sorted((a, b), key=lambda box: sum(box[1][i] - box[0][i] for i in range(3)))
+    return all(large[0][i] - PAD_M <= (small[0][i] + small[1][i]) / 2 <= large[1][i] + PAD_M for i in range(3))
+
+
+def lies_within(small, large):
+    """The centre of the one lies in the other, padded by half a metre."""
+    return all(large[0][i] - 0.5 <= (small[0][i] + small[1][i]) / 2 <= large[1][i] + 0.5 for i in range(3))
+
+
+def match(reported, truth):
+    """Pairs (reported, truth) of numbers, best first, one to one."""
+    pairs = []
+    for i, (kind, box, _) in enumerate(reported):
+        for j, (true_kind, true_box, _) in enumerate(truth):
+            if kind != true_kind:
+                continue
+            iou = overlap(box, true_box)
+            if iou >= 0.2 or (iou > 0 and holds_centre(box, true_box)):
+                pairs.append((-iou, i, j))
+    left, right = {}, {}
+    for _, i, j in sorted(pairs):
+        if i not in left and j not in right:
+            left[i], right[j] = j, i
+    return left, right
+
+
+def reported_events(changes):
+    events = []
+    for change in changes["changes"]:
+        box = (change["box_m"]["min"], change["box_m"]["max"])
+        kind = "new" if change["change"] == "appeared" else "gone"
+        events.append((kind, box, change.get("class", "unnamed") + " " + change["change"]))
+        if "now" in change:
+            now = change["now"]["box_m"]
+            events.append(("new", (now["min"], now["max"]), change["now"].get("class", "unnamed") + " moved here"))
+    return events
+
+
+def true_events(folder):
+    """Events that both visits could see, and those that one of them could not."""
+    clear, unclear = [], []
+    for row in csv.DictReader(open(f"{folder}/events.csv")):
+        sides = []
+        if row["xmin"]:
+            sides.append(("gone", box_of(row), row["instance"], ""))
+        if row["new_xmin"]:
+            sides.append(("new", box_of(row, "new_"), row["new_instance"], "new_"))
+        for kind, box, instance, prefix in sides:
+            points = [int(row[f"{prefix}points_{when}"]) for when in ("before", "after")]
+            target = clear if min(points) >= MIN_SEEN else unclear
+            target.append((kind, box, f"{row['class']} {row['event']} {instance}"))
+    return clear, unclear
+
+
+def score_events(changes, folder, listing):
+    reported = reported_events(changes)
+    clear, unclear = true_events(folder)
+    left, right = match(reported, clear)
+    rest = [event for i, event in enumerate(reported) if i not in left]
+    rest = [event for i, event in enumerate(rest) if i not in match(rest, unclear)[0]]
+    pieces = [event for event in rest if any(event[0] == true[0] and lies_within(event[1], true[1]) for true in clear)]
+    false = [event for event in rest if event not in pieces]
+    if listing:
+        for event in false:
+            print("false ", event, file=sys.stderr)
+        for j, event in enumerate(clear):
+            if j not in right:
+                print("missed", event, file=sys.stderr)
+    return {"true": len(left), "pieces": len(pieces), "false": len(false), "missed": len(clear) - len(right), "unclear": len(unclear)}
+
+
+def score_states(changes, seen, boxes, present):
+    states = [(s["class"], (s["box_m"]["min"], s["box_m"]["max"]), s["after"]) for s in changes["states"]]
+    table = {}
+    for instance, box in boxes.items():
+        if (instance, "1") not in seen:
+            continue
+        best = max(states, key=lambda state: overlap(state[1], box), default=None)
+        if best is None or overlap(best[1], box) < 0.2:
+            continue
+        share = seen[instance, "1"]
+        if NOT_SEEN <= share < MIN_SEEN:
+            continue
+        truth = "not observed" if share < NOT_SEEN else "present" if present[instance, "1"] else "absent"
+        table[truth, best[2]] = table.get((truth, best[2]), 0) + 1
+    return table
+
+
+def main():
+    changes = json.load(open(sys.argv[1]))
+    folder = sys.argv[2]
+    seen, present, boxes = {}, {}, {}
+    for row in csv.DictReader(open(f"{folder}/visits.csv")):
+        key = row["instance"], row["visit"]
+        seen[key], present[key] = int(row["points"]), row["present"] == "1"
+    for row in csv.DictReader(open(f"{folder}/instances.csv")):
+        boxes[row["id"]] = box_of(row)
+    events = score_events(changes, folder, "--list" in sys.argv)
+    states = score_states(changes, seen, boxes, present)
+    print(json.dumps({"events": events, "states": {f"{t} -> {r}": n for (t, r), n in sorted(states.items())}}))
+
+
+if __name__ == "__main__":
+    main()

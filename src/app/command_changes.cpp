@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// `cluxel changes`: what vanished, appeared and moved between visits.
+#include "app/command.hpp"
+#include "app/unfinished_note.hpp"
+#include "mapping/facts/map_facts.hpp"
+#include "tasks/changes/site_changes.hpp"
+#include "tasks/ways/way_report.hpp"
+
+namespace cluxel::app {
+
+namespace {
+
+struct ChangesArguments {
+  fs::path map;
+  std::string since;
+  bool states = false, allow_unfinished = false;
+};
+
+void printStates(const mapping::MapReader& map, const tasks::SiteChanges& found) {
+  for (const tasks::ObjectStates& states : found.states)
+    std::printf("%-12s -> %-12s  %s\n", std::string(nameOf(states.before)).c_str(),
+                std::string(nameOf(states.after)).c_str(), tasks::thingName(map, states.object).c_str());
+}
+
+void printChanges(const mapping::MapReader& map, const tasks::SiteChanges& found) {
+  std::size_t unseen = 0, there = 0;
+  for (const tasks::ObjectStates& states : found.states) {
+    unseen += states.after == perception::PresenceState::NotObserved ? 1 : 0;
+    there += states.after == perception::PresenceState::Present ? 1 : 0;
+  }
+  std::printf("since %s: %zu changes; %zu objects are there, %zu were not observed again\n",
+              mapping::dateTimeText(found.since_s).c_str(), found.changes.size(), there, unseen);
+  for (const tasks::SiteChange& change : found.changes) {
+    std::printf("%-8s  %s", std::string(nameOf(change.kind)).c_str(), nameOf(map, change.thing).c_str());
+    if (change.now) std::printf(" by %.1f m, now %s", change.distance_m, nameOf(map, *change.now).c_str());
+    const Eigen::Vector3d at = change.thing.box.center();
+    std::printf(" at (%.1f, %.1f)\n", at.x(), at.y());
+  }
+}
+
+ExitCode changes(const ChangesArguments& arguments, Session& session) {
+  const mapping::MapReader map(arguments.map);
+  noteUnfinished(arguments.map, map.isFinished(), arguments.allow_unfinished, session);
+  std::optional<double> since_s;
+  if (!arguments.since.empty()) since_s = tasks::timeNamed(arguments.since);
+  const tasks::SiteChanges found = tasks::changesIn(map, since_s, session.threadCount());
+  if (session.json)
+    print(tasks::changesJson(map, found));
+  else if (arguments.states)
+    printStates(map, found);
+  else
+    printChanges(map, found);
+  return found.changes.empty() ? ExitCode::NoRows : ExitCode::Done;
+}
+
+}  // namespace
+
+void addChanges(CLI::App& app, Session& session) {
+  auto arguments = std::make_shared<ChangesArguments>();
+  CLI::App* command = app.add_subcommand("changes", "what vanished, appeared and moved between visits to a place");
+  command->add_option("map", arguments->map, "the map")->required()->check(named());
+  command->add_option(
+      "--since", arguments->since,
+      "scans from this time on are later: 2023-11-15T22:13:20Z, or seconds since 1970 [the last visit]");
+  command->add_flag("--states", arguments->states,
+                    "list every object: present, absent or not observed, before and after");
+  addAllowUnfinished(*command, arguments->allow_unfinished);
+  onRun(*command, session, [arguments, &session] { return changes(*arguments, session); });
+}
+
+}  // namespace cluxel::app

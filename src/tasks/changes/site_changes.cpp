@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+// States of objects follow from the votes of rays; moves are pairs of things that vanished and appeared.
+#include "tasks/changes/site_changes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+#include "cluxel/error.hpp"
+#include "mapping/facts/map_facts.hpp"
+#include "mapping/facts/object_geometry.hpp"
+#include "rdf/map_iris.hpp"
+#include "sparql/functions/calendar.hpp"
+#include "tasks/changes/changed_cluxels.hpp"
+#include "tasks/ways/way_report.hpp"
+
+namespace cluxel::tasks {
+
+namespace {
+
+using perception::PresenceState;
+using ChangeJson = nlohmann::ordered_json;
+
+constexpr double kPause_s = 1800;
+constexpr double kMaxMove_m = 10;
+constexpr double kSizeTolerance = 0.3;  ///< of a move, as a share of each side
+
+std::vector<double> scanTimes(const std::vector<mapping::Cloud>& clouds) {
+  std::vector<double> times_s;
+  for (const mapping::Cloud& cloud : clouds)
+    if (cloud.time_s && cloud.has_pose) times_s.push_back(*cloud.time_s);
+  std::sort(times_s.begin(), times_s.end());
+  return times_s;
+}
+
+double beginOfLastVisit(const std::vector<mapping::Cloud>& clouds) {
+  const std::vector<Visit> visits = visitsOf(clouds);
+  if (visits.empty())
+    throw Error(ErrorKind::InvalidArgument,
+                "no cloud of the map has a time and a pose, so nothing tells what came later: give times with the "
+                "scans (times.txt, or a manifest)");
+  if (visits.size() == 1)
+    throw Error(ErrorKind::InvalidArgument,
+                "all clouds were taken without a pause of half an hour: tell from when on they count as later, with "
+                "--since");
+  return visits.back().begin_s;
+}
+
+void requireBothSides(const std::vector<double>& times_s, double since_s) {
+  const auto after = std::lower_bound(times_s.begin(), times_s.end(), since_s);
+  if (after != times_s.begin() && after != times_s.end()) return;
+  const std::string known = times_s.empty() ? "no cloud has both"
+                                            : "they were taken from " + mapping::dateTimeText(times_s.front()) +
+                                                  " to " + mapping::dateTimeText(times_s.back());
+  throw Error(ErrorKind::InvalidArgument, "no cloud with time and pose lies " +
+                                              std::string(after == times_s.end() ? "at or after " : "before ") +
+                                              mapping::dateTimeText(since_s) + ": " + known);
+}
+
+bool areOfOneSize(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  constexpr double kSmall_m = 0.2;
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(a[axis] - b[axis]) > kSmall_m + kSizeTolerance * std::max(a[axis], b[axis])) return false;
+  return true;
+}
+
+std::string classOf(const mapping::MapReader& map, const ChangedThing& thing) {
+  return thing.object ? map.objects()[*thing.object].class_iri : std::string();
+}
+
+/// What vanished and what appeared.
+struct Differences {
+  std::vector<ChangedThing> gone, come;
+};
+
+/// Pairs what vanished with what appeared, nearest first.
+std::vector<SiteChange> withMoves(const mapping::MapReader& map, const Differences& all) {
+  const auto& [gone, come] = all;
+  std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
+  for (std::size_t i = 0; i < gone.size(); ++i)
+    for (std::size_t j = 0; j < come.size(); ++j) {
+      const double distance = (gone[i].box.center() - come[j].box.center()).norm();
+      const bool same_class = classOf(map, gone[i]) == classOf(map, come[j]);
+      if (same_class && distance <= kMaxMove_m && areOfOneSize(gone[i].box.sizes(), come[j].box.sizes()))
+        pairs.emplace_back(distance, i, j);
+    }
+  std::sort(pairs.begin(), pairs.end());
+  std::vector<bool> left(gone.size(), false), arrived(come.size(), false);
+  std::vector<SiteChange> changes;
+  for (const auto& [distance, i, j] : pairs) {
+    if (left[i] || arrived[j]) continue;
+    left[i] = arrived[j] = true;
+    changes.push_back({SiteChange::Kind::Moved, gone[i], come[j], distance});
+  }
+  for (std::size_t i = 0; i < gone.size(); ++i)
+    if (!left[i]) changes.push_back({SiteChange::Kind::Vanished, gone[i], std::nullopt, 0});
+  for (std::size_t j = 0; j < come.size(); ++j)
+    if (!arrived[j]) changes.push_back({SiteChange::Kind::Appeared, come[j], std::nullopt, 0});
+  std::stable_sort(changes.begin(), changes.end(),
+                   [](const SiteChange& a, const SiteChange& b) { return a.thing.cluxels < b.thing.cluxels; });
+  return changes;
+}
+
+/// The states of an object before and after.
+ObjectStates compare(std::uint32_t object, std::span<const perception::ScanVotes> all, double since_s) {
+  constexpr perception::PresenceParams kParams;
+  const auto later = std::find_if(all.begin(), all.end(), [&](const auto& vote) { return vote.time_s >= since_s; });
+  const auto before = all.first(static_cast<std::size_t>(later - all.begin())), after = all.subspan(before.size());
+  const perception::Visibility thing = perception::visibilityOf(all);
+  return {object, stateAfter(before, thing, kParams), stateAfter(after, thing, kParams),
+          logOddsOfPresence(before, thing.share_of_hits, kParams),
+          logOddsOfPresence(after, thing.share_of_hits, kParams)};
+}
+
+/// The objects of cluxels, and which cluxels may change: those of no ground.
+struct Owners {
+  std::vector<std::uint32_t> object;  ///< by cluxel, or kNoObject
+  std::vector<bool> may_change;
+};
+
+Owners ownersIn(const mapping::MapReader& map) {
+  const std::size_t count = map.scene().cluxels.size();
+  Owners owners{std::vector<std::uint32_t>(count, mapping::kNoObject), std::vector<bool>(count, true)};
+  for (std::uint32_t i = 0; i < map.objects().size(); ++i) {
+    const bool is_ground = map.objects()[i].class_iri == rdf::vocabulary::clx("Ground");
+    for (const std::uint32_t cluxel : mapping::cluxelsOf(map.objects()[i])) {
+      owners.object[cluxel] = i;
+      if (is_ground) owners.may_change[cluxel] = false;
+    }
+  }
+  return owners;
+}
+
+/// Names the cluster after the object that most of its cluxels belong to.
+ChangedThing thingOf(const mapping::MapReader& map, std::vector<std::uint32_t> cluster, const Owners& owners,
+                     const std::vector<std::size_t>& stable_of_object) {
+  ChangedThing thing;
+  std::map<std::uint32_t, std::size_t> votes;
+  const perception::SceneCluxels& cluxels = map.scene().cluxels;
+  for (const std::uint32_t cluxel : cluster) {
+    ++votes[owners.object[cluxel]];
+    thing.box.extend(cluxels.low_corner[cluxel]);
+    thing.box.extend(cluxels.low_corner[cluxel] + cluxels.extent[cluxel].cast<double>());
+  }
+  const auto most =
+      std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (most->first != mapping::kNoObject) {
+    thing.object = most->first;
+    thing.is_part = stable_of_object[most->first] > most->second;
+  }
+  thing.cluxels = std::move(cluster);
+  return thing;
+}
+
+Differences differencesIn(const mapping::MapReader& map, double since_s, unsigned threads) {
+  const Owners owners = ownersIn(map);
+  const CluxelFindings findings = findingsAt(map, since_s, owners.may_change, threads);
+  const std::vector<CluxelChange> changes = changesOf(findings, owners.object.size());
+  std::vector<std::size_t> stable_of_object(map.objects().size(), 0);
+  for (std::size_t i = 0; i < changes.size(); ++i)
+    if (changes[i] == CluxelChange::Stable && owners.object[i] != mapping::kNoObject)
+      ++stable_of_object[owners.object[i]];
+  Differences found;
+  for (const CluxelChange kind : {CluxelChange::Vanished, CluxelChange::Appeared})
+    for (auto& cluster : clustersOf(kind, changes, findings, map.scene().cluxels))
+      (kind == CluxelChange::Vanished ? found.gone : found.come)
+          .push_back(thingOf(map, std::move(cluster), owners, stable_of_object));
+  return found;
+}
+
+ChangeJson boxJson(const Eigen::AlignedBox3d& box) {
+  const auto rounded = [](const Eigen::Vector3d& v) {
+    return ChangeJson{std::round(v.x() * 1000) / 1000, std::round(v.y() * 1000) / 1000,
+                      std::round(v.z() * 1000) / 1000};
+  };
+  return {{"min", rounded(box.min())}, {"max", rounded(box.max())}};
+}
+
+ChangeJson objectJson(const mapping::MapReader& map, std::uint32_t number) {
+  const rules::SemanticObject& object = map.objects()[number];
+  return {{"object", rdf::iriOfObject(object.id)}, {"number", number}, {"class", mapping::localName(object.class_iri)}};
+}
+
+ChangeJson thingJson(const mapping::MapReader& map, const ChangedThing& thing) {
+  ChangeJson json = thing.object ? objectJson(map, *thing.object) : ChangeJson::object();
+  if (thing.object) json["part"] = thing.is_part;
+  json["cluxels"] = thing.cluxels.size();
+  json["box_m"] = boxJson(thing.box);
+  return json;
+}
+
+}  // namespace
+
+std::string_view nameOf(SiteChange::Kind kind) {
+  constexpr std::array<std::string_view, 3> kNames{"vanished", "appeared", "moved"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+std::vector<Visit> visitsOf(const std::vector<mapping::Cloud>& clouds) {
+  std::vector<Visit> visits;
+  for (const double time_s : scanTimes(clouds)) {
+    if (visits.empty() || time_s - visits.back().end_s > kPause_s) visits.push_back({time_s, time_s, 0});
+    visits.back().end_s = time_s;
+    ++visits.back().scans;
+  }
+  return visits;
+}
+
+SiteChanges changesIn(const mapping::MapReader& map, std::optional<double> since_s, unsigned threads) {
+  const std::vector<mapping::Cloud> clouds = map.clouds();
+  SiteChanges found;
+  found.since_s = since_s ? *since_s : beginOfLastVisit(clouds);
+  requireBothSides(scanTimes(clouds), found.since_s);
+  const auto votes = presenceVotes(
+      map.scene(), map.objects(), clouds, [&](const mapping::Cloud& cloud) { return map.scanOf(cloud.id); }, threads);
+  for (std::uint32_t i = 0; i < votes.size(); ++i)
+    if (!votes[i].places.empty()) found.states.push_back(compare(i, votes[i].votes, found.since_s));
+  found.changes = withMoves(map, differencesIn(map, found.since_s, threads));
+  return found;
+}
+
+std::string nameOf(const mapping::MapReader& map, const ChangedThing& thing) {
+  return (thing.is_part ? "part of " : "") + thingName(map, thing.object.value_or(kUnnamedThing));
+}
+
+double timeNamed(const std::string& text) {
+  double seconds = 0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+  if (fault == std::errc() && end == text.data() + text.size()) return seconds;
+  auto time = sparql::parseCalendar(sparql::CalendarKind::DateTime, text);
+  if (!time) time = sparql::parseCalendar(sparql::CalendarKind::Date, text);
+  if (!time)
+    throw Error(ErrorKind::InvalidArgument,
+                "'" + text + "' is no time: write 2023-11-15T22:13:20Z, 2023-11-15, or seconds since 1970");
+  return time->timeline().toDouble();
+}
+
+std::string changesJson(const mapping::MapReader& map, const SiteChanges& found) {
+  ChangeJson json{{"since", mapping::dateTimeText(found.since_s)},
+                  {"changes", ChangeJson::array()},
+                  {"states", ChangeJson::array()}};
+  for (const SiteChange& change : found.changes) {
+    ChangeJson entry = thingJson(map, change.thing);
+    entry["change"] = nameOf(change.kind);
+    if (change.now) {
+      entry["now"] = thingJson(map, *change.now);
+      entry["distance"] = std::round(change.distance_m * 1000) / 1000;
+    }
+    json["changes"].push_back(std::move(entry));
+  }
+  for (const ObjectStates& states : found.states) {
+    ChangeJson entry = objectJson(map, states.object);
+    const auto geometry = mapping::geometryOf(map.scene().cluxels, mapping::cluxelsOf(map.objects()[states.object]));
+    entry["box_m"] = boxJson(Eigen::AlignedBox3d(geometry.min, geometry.max));
+    entry["before"] = nameOf(states.before);
+    entry["after"] = nameOf(states.after);
+    entry["log_odds_before"] = std::round(states.log_odds_before * 100) / 100;
+    entry["log_odds_after"] = std::round(states.log_odds_after * 100) / 100;
+    json["states"].push_back(std::move(entry));
+  }
+  return json.dump(1) + "\n";
+}
+
+}  // namespace cluxel::tasks

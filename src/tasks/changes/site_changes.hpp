@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// What changed at a place between two times: what vanished, appeared or moved, and what was not observed again.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapping/facts/presence_votes.hpp"
+#include "mapping/map_reader.hpp"
+
+namespace cluxel::tasks {
+
+/// Scans taken without a pause of half an hour.
+struct Visit {
+  double begin_s = 0, end_s = 0;  ///< times of its first and last scan
+  std::size_t scans = 0;
+};
+
+/// The visits of the clouds with a time and a pose, in the order of time.
+std::vector<Visit> visitsOf(const std::vector<mapping::Cloud>& clouds);
+
+struct ObjectStates {
+  std::uint32_t object = 0;  ///< number in MapReader::objects()
+  perception::PresenceState before = perception::PresenceState::NotObserved,
+                            after = perception::PresenceState::NotObserved;
+  double log_odds_before = 0, log_odds_after = 0;  ///< of "there"
+};
+
+/// Connected cluxels that vanished or appeared together.
+struct ChangedThing {
+  std::vector<std::uint32_t> cluxels;   ///< numbers in the scene, ascending
+  std::optional<std::uint32_t> object;  ///< that most of them belong to; absent when most belong to none
+  bool is_part = false;                 ///< more of that object is there before and after than changed
+  Eigen::AlignedBox3d box;              ///< [m, map]
+};
+
+struct SiteChange {
+  enum class Kind { Vanished, Appeared, Moved };
+  Kind kind = Kind::Vanished;
+  ChangedThing thing;               ///< what vanished or appeared; of Moved what was there before
+  std::optional<ChangedThing> now;  ///< of Moved: what is there now
+  double distance_m = 0;            ///< of Moved
+};
+std::string_view nameOf(SiteChange::Kind kind);  ///< "vanished"
+
+struct SiteChanges {
+  double since_s = 0;                ///< scans from this time on are "after"
+  std::vector<ObjectStates> states;  ///< of each object but ground, by number
+  std::vector<SiteChange> changes;   ///< by first cluxel
+};
+
+/// Compares the scans before `since_s` (default: the begin of the last visit) with those from it on. What vanished are
+/// clusters of cluxels that rays hit before and see through afterwards; what appeared, the other way round. Something
+/// of one class and nearly one size that vanished and appeared within 10 m has moved; nearest pairs first. Throws Error
+/// (InvalidArgument) when one side has no scan with time and pose.
+SiteChanges changesIn(const mapping::MapReader& map, std::optional<double> since_s, unsigned threads);
+
+/// "StreetSign object/0123456789ab", or "part of ...", or "something unnamed".
+std::string nameOf(const mapping::MapReader& map, const ChangedThing& thing);
+
+/// Seconds since 1970 of "2023-11-15T22:13:20Z", "2023-11-15" or a number of seconds. Throws Error (InvalidArgument).
+double timeNamed(const std::string& text);
+
+std::string changesJson(const mapping::MapReader& map, const SiteChanges& changes);
+
+}  // namespace cluxel::tasks

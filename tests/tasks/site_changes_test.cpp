@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// What changed between two visits to a generated campus, against the truth of its events.
+#include "tasks/changes/site_changes.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/small_campus.hpp"
+#include "scan/formats/scan_writer.hpp"
+#include "simulation/laser/campus_writer.hpp"
+#include "sparql/query_engine.hpp"
+
+namespace cluxel::tasks {
+namespace {
+
+namespace fs = std::filesystem;
+using mapping::silence;
+
+struct TrueEvent {
+  bool is_new = false;
+  std::string kind;
+  Eigen::Vector3d centre;
+  int points = 0;  ///< that the visit with less of them measures there
+};
+
+std::vector<std::string> cellsOf(const std::string& line) {
+  std::vector<std::string> cells;
+  std::stringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  cells.resize(21);
+  return cells;
+}
+
+class SiteChangesTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder = new rdf::ScratchFolder();
+    simulation::CampusParams params{.seed = 51, .stops = 4, .size_m = 50, .points_per_stop = 60'000};
+    params.visits = 2;
+    params.pose_error_m = 0.03;
+    writeCampus(buildCampus(params), scans(), 2, silence());
+    build(scans(), mapFile());
+    map = new mapping::MapReader(mapFile());
+    found = new SiteChanges(changesIn(*map, std::nullopt, 1));
+  }
+  static void TearDownTestSuite() {
+    delete found;
+    delete map;
+    delete folder;
+  }
+
+  static fs::path scans() { return folder->path() / "scans"; }
+  static fs::path mapFile() { return folder->path() / "map.clx"; }
+  static void build(const fs::path& from, const fs::path& to) {
+    buildMap(scan::ScanSet::open({from}, {}, silence()), mapping::shippedInputs(), to, {}, silence());
+  }
+
+  /// Events of which both visits measure 60 points or more.
+  static std::vector<TrueEvent> clearEvents() {
+    std::ifstream file(scans() / "truth" / "events.csv");
+    std::vector<TrueEvent> events;
+    std::string line;
+    std::getline(file, line);
+    while (std::getline(file, line)) {
+      const auto cells = cellsOf(line);
+      for (const bool is_new : {false, true}) {
+        const std::size_t box = is_new ? 11 : 5, points = is_new ? 19 : 17;
+        if (cells[box].empty()) continue;
+        TrueEvent event{is_new, cells[1], {}, std::min(std::stoi(cells[points]), std::stoi(cells[points + 1]))};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          event.centre[static_cast<Eigen::Index>(axis)] =
+              0.5 * (std::stod(cells[box + axis]) + std::stod(cells[box + 3 + axis]));
+        if (event.points >= 60) events.push_back(event);
+      }
+    }
+    return events;
+  }
+
+  /// Boxes of what vanished and what appeared.
+  static std::vector<std::pair<bool, Eigen::AlignedBox3d>> reported(const SiteChanges& changes) {
+    std::vector<std::pair<bool, Eigen::AlignedBox3d>> boxes;
+    for (const SiteChange& change : changes.changes) {
+      boxes.emplace_back(change.kind == SiteChange::Kind::Appeared, change.thing.box);
+      if (change.now) boxes.emplace_back(true, change.now->box);
+    }
+    return boxes;
+  }
+
+  static inline rdf::ScratchFolder* folder = nullptr;
+  static inline mapping::MapReader* map = nullptr;
+  static inline SiteChanges* found = nullptr;
+};
+
+TEST_F(SiteChangesTest, FindsWhatLeftArrivedAndMoved) {
+  std::size_t count = 0;
+  for (const TrueEvent& event : clearEvents()) {
+    if (event.kind == "replaced" || event.kind == "cut") continue;
+    ++count;
+    const auto boxes = reported(*found);
+    EXPECT_TRUE(std::any_of(
+        boxes.begin(), boxes.end(),
+        [&](const auto& box) { return box.first == event.is_new && box.second.exteriorDistance(event.centre) < 0.5; }))
+        << event.kind << " at " << event.centre.transpose();
+  }
+  EXPECT_GE(count, 4);
+}
+
+TEST_F(SiteChangesTest, VisitsThatChangePlacesChangeTheSigns) {
+  // The later visit becomes the earlier one: what vanished has appeared.
+  const fs::path swapped = folder->path() / "swapped";
+  fs::copy(scans(), swapped, fs::copy_options::recursive);
+  std::vector<double> times_s;
+  for (int i = 0; i < 8; ++i) times_s.push_back(1.7e9 + 60 * i + (i < 4 ? 86400 : 0));
+  scan::writeTimes(times_s, swapped / "times.txt");
+  build(swapped, folder->path() / "swapped.clx");
+  const mapping::MapReader other(folder->path() / "swapped.clx");
+  const SiteChanges changes = changesIn(other, std::nullopt, 2);
+  const auto before = reported(*found), after = reported(changes);
+  ASSERT_EQ(before.size(), after.size());
+  std::multiset<std::pair<bool, double>> expected, got;
+  for (const auto& [is_new, box] : before) expected.emplace(!is_new, box.volume());
+  for (const auto& [is_new, box] : after) got.emplace(is_new, box.volume());
+  EXPECT_EQ(got, expected);
+}
+
+TEST_F(SiteChangesTest, MostThingsAreThereBeforeAndAfter) {
+  std::size_t stable = 0;
+  for (const ObjectStates& states : found->states)
+    stable += states.before == perception::PresenceState::Present && states.after == perception::PresenceState::Present;
+  EXPECT_GT(2 * stable, found->states.size());
+}
+
+TEST_F(SiteChangesTest, AbsentObjectsSayInRdfWhenTheyWereSeenThrough) {
+  const std::string query =
+      "PREFIX clx: <https://w3id.org/cluxel/ontology#> "
+      "SELECT ?o ?last ?through WHERE { ?o clx:lastSeen ?last ; clx:seenThrough ?through FILTER(?through > ?last) }";
+  const sparql::ResultTable table = sparql::PreparedQuery(map->quads(), query, {}).evaluate().table;
+  std::set<std::string> gone;
+  for (std::size_t row = 0; row < table.row_count; ++row) gone.insert(table.at(row, 0)->text);
+  std::size_t absent = 0;
+  for (const ObjectStates& states : found->states) {
+    if (states.before != perception::PresenceState::Present || states.after != perception::PresenceState::Absent)
+      continue;
+    ++absent;
+    EXPECT_EQ(gone.count("https://w3id.org/cluxel/map/object/" + map->objects()[states.object].id.hex()), 1);
+  }
+  EXPECT_GE(absent, 1);
+}
+
+TEST_F(SiteChangesTest, RefusesOneSidedTimes) {
+  const auto message = [&](double since_s) {
+    try {
+      changesIn(*map, since_s, 1);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(message(1.6e9), ::testing::HasSubstr("no cloud with time and pose lies before"));
+  EXPECT_THAT(message(1.8e9), ::testing::HasSubstr("no cloud with time and pose lies at or after"));
+  EXPECT_EQ(visitsOf(map->clouds()).size(), 2);
+}
+
+TEST(TimeNamed, ReadsDatesAndSeconds) {
+  EXPECT_DOUBLE_EQ(timeNamed("2023-11-14T22:13:20Z"), 1.7e9);
+  EXPECT_DOUBLE_EQ(timeNamed("1700000000.5"), 1700000000.5);
+  EXPECT_DOUBLE_EQ(timeNamed("1970-01-02"), 86400);
+  EXPECT_THROW(timeNamed("yesterday"), Error);
+}
+
+}  // namespace
+}  // namespace cluxel::tasks
