@@ -3,6 +3,7 @@
 """Scores `cluxel changes MAP --json` against the truth of a generated campus with two visits.
 
 Usage: change_scores.py CHANGES.json TRUTH_FOLDER [--list]
+       change_scores.py --sum SCORES...
 
 Events. A truth event is something that is gone ("left", "cut", and the old place of "moved" and "replaced") or new
 ("arrived", and the new place of "moved" and "replaced"). It counts when both visits measure, or would
@@ -129,7 +130,29 @@ def score_states(changes, seen, boxes, present):
     return table
 
 
+def sum_up(files):
+    """One table over several campuses."""
+    events, states = {}, {}
+    for file in files:
+        scores = json.load(open(file))
+        for total, part in ((events, scores["events"]), (states, scores["states"])):
+            for key, count in part.items():
+                total[key] = total.get(key, 0) + count
+    true, false, missed = (events[key] for key in ("true", "false", "missed"))
+    print(f"| campuses | {len(files)} |\n|---|---|")
+    print(f"| events found, false, missed | {true}, {false}, {missed} |")
+    print(f"| pieces of true events; events too little seen | {events['pieces']}; {events['unclear']} |")
+    print(f"| precision, recall | {true / (true + false):.3f}, {true / (true + missed):.3f} |")
+    print(f"| F1 | {2 * true / (2 * true + false + missed):.3f} |")
+    names = ("present", "absent", "not observed")
+    print("\n| truth \\ reported | " + " | ".join(names) + " |\n|---|---|---|---|")
+    for truth in names:
+        print(f"| {truth} | " + " | ".join(str(states.get(f"{truth} -> {name}", 0)) for name in names) + " |")
+
+
 def main():
+    if sys.argv[1] == "--sum":
+        return sum_up(sys.argv[2:])
     changes = json.load(open(sys.argv[1]))
     folder = sys.argv[2]
     seen, present, boxes = {}, {}, {}

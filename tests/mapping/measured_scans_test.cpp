@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <iomanip>
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -60,12 +61,13 @@ class MeasuredScans : public testing::Test {
   static inline MapInputs* inputs = nullptr;
 };
 
-/// The lines of a text that do not state a time.
-std::string withoutTimes(const std::string& text) {
+/// The lines of a text with "T" for each time, sorted.
+std::multiset<std::string> withoutTimes(const std::string& text) {
+  static const std::regex time("\"[-0-9T:.Z]*\"\\^\\^<http://www.w3.org/2001/XMLSchema#dateTime>");
   std::istringstream lines(text);
-  std::string rest;
+  std::multiset<std::string> rest;
   for (std::string line; std::getline(lines, line);)
-    if (line.find("resultTime") == std::string::npos) rest += line + '\n';
+    rest.insert(line.find("dateTime") == std::string::npos ? line : std::regex_replace(line, time, "T"));
   return rest;
 }
 

@@ -44,8 +44,8 @@ double beginOfLastVisit(const std::vector<mapping::Cloud>& clouds) {
                 "scans (times.txt, or a manifest)");
   if (visits.size() == 1)
     throw Error(ErrorKind::InvalidArgument,
-                "all clouds were taken without a pause of half an hour: tell from when on they count as later, with "
-                "--since");
+                "all clouds were taken without a pause of half an hour: tell from when on they count as "
+                "later");
   return visits.back().begin_s;
 }
 
