@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Thinning sorts the points by voxel and keeps, per voxel, those with the smallest lots.
+// Thinning sorts the points by voxel and keeps, per voxel, those with the smallest ranks.
 #include "perception/clustering/tile_points.hpp"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ class VoxelKeys {
 /// The concatenated points of all parts, each with its index into the scans.
 struct Pool {
   std::vector<float> x, y, z, intensity;
-  std::vector<std::uint32_t> scan, point, lot;
+  std::vector<std::uint32_t> scan, point, rank;
 };
 
 /// The finaliser of SplitMix64.
@@ -41,7 +41,7 @@ std::uint64_t mixedBits(std::uint64_t value) {
 
 /// A hash of the measured values of a point, in the sensor frame: a pose, a time or the map's origin does not change
 /// it.
-std::uint32_t lotOf(const scan::ScanPoints& points, std::size_t i) {
+std::uint32_t rankOf(const scan::ScanPoints& points, std::size_t i) {
   const auto two = [](float high, float low) {
     return std::uint64_t{std::bit_cast<std::uint32_t>(high)} << 32U | std::bit_cast<std::uint32_t>(low);
   };
@@ -58,9 +58,9 @@ void keepSome(std::vector<std::uint32_t>& items, const Pool& pool, std::size_t k
   std::sort(items.begin(), items.end(), by_name);
   items.erase(std::unique(items.begin(), items.end(), [&](auto a, auto b) { return name(a) == name(b); }), items.end());
   if (items.size() <= keep) return;
-  const auto lot = [&](std::uint32_t i) { return std::pair(pool.lot[i], name(i)); };
+  const auto rank = [&](std::uint32_t i) { return std::pair(pool.rank[i], name(i)); };
   std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(keep), items.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return lot(a) < lot(b); });
+                   [&](std::uint32_t a, std::uint32_t b) { return rank(a) < rank(b); });
   items.resize(keep);
   std::sort(items.begin(), items.end(), by_name);
 }
@@ -104,7 +104,7 @@ TilePoints thinPool(const TileKey& key, std::vector<scan::ScanId> scans, const P
           pick(pool.intensity, kept),
           pick(pool.scan, kept),
           pick(pool.point, kept),
-          pick(pool.lot, kept)};
+          pick(pool.rank, kept)};
 }
 
 /// Appends a part's coordinates; intensity is filled with 0 where a part has none and another has.
@@ -114,7 +114,7 @@ void appendCoordinates(Pool& pool, const Part& part, bool with_intensity) {
   pool.y.insert(pool.y.end(), part.y.begin(), part.y.end());
   pool.z.insert(pool.z.end(), part.z.begin(), part.z.end());
   pool.point.insert(pool.point.end(), part.point.begin(), part.point.end());
-  pool.lot.insert(pool.lot.end(), part.lot.begin(), part.lot.end());
+  pool.rank.insert(pool.rank.end(), part.rank.begin(), part.rank.end());
   if (!with_intensity) return;
   pool.intensity.insert(pool.intensity.end(), part.intensity.begin(), part.intensity.end());
   pool.intensity.resize(pool.x.size(), 0.0F);
@@ -191,7 +191,7 @@ std::map<TileKey, ScanSegment> splitScan(const scan::Scan& scan) {
     segment->z.push_back(p.z());
     if (!points.intensity.empty()) segment->intensity.push_back(points.intensity[i]);
     segment->point.push_back(static_cast<std::uint32_t>(i));
-    segment->lot.push_back(lotOf(points, i));
+    segment->rank.push_back(rankOf(points, i));
   }
   return segments;
 }
