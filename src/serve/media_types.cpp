@@ -31,14 +31,14 @@ std::string_view nextPart(std::string_view& text, char separator) {
   return trimmed(part);
 }
 
-std::optional<std::string> parameterOf(std::string_view content_type, std::string_view wanted) {
+std::optional<std::string> parameterOf(std::string_view content_type, std::string_view parameter) {
   nextPart(content_type, ';');
   while (!content_type.empty()) {
     std::string_view value = nextPart(content_type, ';');
     const std::string name = lowerCase(nextPart(value, '='));
     value = trimmed(value);
     if (value.size() > 1 && value.front() == '"' && value.back() == '"') value = value.substr(1, value.size() - 2);
-    if (name == wanted) return lowerCase(value);
+    if (name == parameter) return lowerCase(value);
   }
   return std::nullopt;
 }

@@ -69,7 +69,8 @@ HttpResponse runQuery(const ServedMap& map, const HttpRequest& request, const Op
   sparql::QueryOptions options = queryOptions(limits);
   options.default_graphs = valuesOf(operation.parameters, "default-graph-uri");
   options.named_graphs = valuesOf(operation.parameters, "named-graph-uri");
-  return answerQuery(map.quads(), *operation.query, options, {}, wantedOf(request, operation.parameters), limits);
+  return answerQuery(map.quads(), *operation.query, options, {}, formatRequestOf(request, operation.parameters),
+                     limits);
 }
 
 /// The protocol forbids its own graph parameters beside USING.
@@ -113,8 +114,8 @@ void requireToken(const HttpRequest& request, const std::string& token) {
   const std::string sent = request.header("authorization");
   constexpr std::string_view scheme = "bearer ";
   const bool is_bearer =
-      sent.size() > scheme.size() && std::equal(scheme.begin(), scheme.end(), sent.begin(), [](char wanted, char c) {
-        return c == wanted || (c >= 'A' && c <= 'Z' && c - 'A' + 'a' == wanted);
+      sent.size() > scheme.size() && std::equal(scheme.begin(), scheme.end(), sent.begin(), [](char requested, char c) {
+        return c == requested || (c >= 'A' && c <= 'Z' && c - 'A' + 'a' == requested);
       });
   if (is_bearer && isEqual(std::string_view(sent).substr(scheme.size()), token)) return;
   throw Refusal(401,
@@ -132,7 +133,7 @@ HttpResponse answerSparql(ServedMap& map, const HttpRequest& request, const Targ
   }
   if (operation.query) return runQuery(map, request, operation, options.request);
   return answerResult(serviceDescription(map.quads(), endpoint, !options.token.empty()),
-                      wantedOf(request, target.parameters), options.request);
+                      formatRequestOf(request, target.parameters), options.request);
 }
 
 }  // namespace cluxel::serve

@@ -49,11 +49,11 @@ void splitAt(std::string_view text, char separator, const Visit& visit) {
 }
 
 template <typename Number>
-Number readNumber(std::string_view name, std::string_view text, const char* wanted) {
+Number readNumber(std::string_view name, std::string_view text, const char* expected) {
   Number value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (text.empty() || error != std::errc() || end != text.data() + text.size())
-    throw Refusal(400, "parameter " + std::string(name) + ": write " + wanted + ", not '" + std::string(text) + "'");
+    throw Refusal(400, "parameter " + std::string(name) + ": write " + expected + ", not '" + std::string(text) + "'");
   return value;
 }
 
