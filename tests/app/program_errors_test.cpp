@@ -99,7 +99,7 @@ TEST_F(Program, WhatIsMissingOrOutOfRangeIsNamedAndHelpIsPointedTo) {
       {"build " + campus(), "--output"},
       {"build -o " + fresh(), "scans"},
       {"query", "source"},
-      {"explain " + map(), "thing"},
+      {"explain " + map(), "object"},
       {"evaluate " + map(), "--truth"},
       {"train " + campus() + " -o " + fresh(), "--truth"},
       {"query " + map() + " objects --deadline soon", "--deadline"},
