@@ -10,7 +10,7 @@
 #include "scan/formats/parsed_scan.hpp"
 #include "scan/formats/text_scanner.hpp"
 #include "scan/truth/truth.hpp"
-#include "scan/truth/truth_text.hpp"
+#include "scan/truth/truth_parsers.hpp"
 
 namespace cluxel::scan {
 
