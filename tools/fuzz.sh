@@ -9,8 +9,8 @@ export LSAN_OPTIONS="suppressions=$PWD/tests/leaks.supp:print_suppressions=0" UB
 start_inputs() {  # start_inputs TARGET
   case "$1" in
     rules_*) echo rules ;;
-    *) [ ! -d "tests/fuzz/seeds/$1" ] || echo "tests/fuzz/seeds/$1" ;;
   esac
+  [ ! -d "tests/fuzz/seeds/$1" ] || echo "tests/fuzz/seeds/$1"
 }
 
 install_base
