@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a page holds of a map is the map: points, quads, objects and reasons are read back from the page's text.
+// Points, quads, objects and reasons that are read back from a page equal those of its map.
 #include "tasks/view/view_page.hpp"
 
 #include <gmock/gmock.h>

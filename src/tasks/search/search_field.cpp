@@ -30,7 +30,7 @@ SearchField fieldOf(const GridFrame& frame, const std::vector<std::uint8_t>& see
   double anywhere = 1;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const std::vector<std::uint32_t> cells = cellsOf(frame, places[i]);
-    if (cells.empty()) continue;  // its share is anywhere
+    if (cells.empty()) continue;  // its probability stays with the places that are not named
     const double share = places[i].probability / static_cast<double>(cells.size());
     anywhere -= places[i].probability;
     for (const std::uint32_t cell : cells) {
