@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/ascii.hpp"
 #include "base/nearest_name.hpp"
 #include "serve/answer_body.hpp"
 #include "serve/refusal.hpp"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/ascii.hpp"
 #include "mapping/build/map_update.hpp"
 #include "serve/answer_body.hpp"
 #include "serve/media_types.hpp"
@@ -113,10 +114,7 @@ void requireToken(const HttpRequest& request, const std::string& token) {
   if (token.empty()) throw Refusal(403, "this service takes no updates: it was started without a token");
   const std::string sent = request.header("authorization");
   constexpr std::string_view scheme = "bearer ";
-  const bool is_bearer =
-      sent.size() > scheme.size() && std::equal(scheme.begin(), scheme.end(), sent.begin(), [](char requested, char c) {
-        return c == requested || (c >= 'A' && c <= 'Z' && c - 'A' + 'a' == requested);
-      });
+  const bool is_bearer = sent.size() > scheme.size() && lowerCase(sent).starts_with(scheme);
   if (is_bearer && isEqual(std::string_view(sent).substr(scheme.size()), token)) return;
   throw Refusal(401,
                 is_bearer ? "the token is not the one of this service"

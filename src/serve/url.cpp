@@ -125,18 +125,4 @@ void requireKnown(const Parameters& parameters, const std::vector<std::string>& 
   }
 }
 
-std::string percentEncoded(std::string_view text) {
-  constexpr std::string_view digits = "0123456789ABCDEF", plain = "-._~";
-  std::string encoded;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool is_alphanumeric = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-    if (is_alphanumeric || plain.find(c) != std::string_view::npos)
-      encoded += c;
-    else
-      encoded.append({'%', digits[byte >> 4U], digits[byte & 15U]});
-  }
-  return encoded;
-}
-
 }  // namespace cluxel::serve

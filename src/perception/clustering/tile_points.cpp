@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "base/mixed_bits.hpp"
 #include "cluxel/error.hpp"
 #include "perception/clustering/fast_floor.hpp"
 #include "perception/clustering/radix_order.hpp"
@@ -32,23 +33,15 @@ struct Pool {
   std::vector<std::uint32_t> scan, point, rank;
 };
 
-/// The finaliser of SplitMix64.
-std::uint64_t mixedBits(std::uint64_t value) {
-  value = (value ^ (value >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-  value = (value ^ (value >> 27U)) * 0x94d049bb133111ebULL;
-  return value ^ (value >> 31U);
-}
-
 /// A hash of the measured values of a point, in the sensor frame: a pose, a time or the map's origin does not change
 /// it.
 std::uint32_t rankOf(const scan::ScanPoints& points, std::size_t i) {
   const auto two = [](float high, float low) {
     return std::uint64_t{std::bit_cast<std::uint32_t>(high)} << 32U | std::bit_cast<std::uint32_t>(low);
   };
-  constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15ULL;
   const float intensity = points.intensity.empty() ? 0.0F : points.intensity[i];
-  const std::uint64_t plane = mixedBits(two(points.x[i], points.y[i]) + kStep);
-  return static_cast<std::uint32_t>(mixedBits(plane + kStep + two(points.z[i], intensity)) >> 32U);
+  const std::uint64_t plane = mixedBits(two(points.x[i], points.y[i]) + kSplitMixStep);
+  return static_cast<std::uint32_t>(mixedBits(plane + kSplitMixStep + two(points.z[i], intensity)) >> 32U);
 }
 
 /// Reduces one voxel's items to the kept ones, in the order (scan, point).
