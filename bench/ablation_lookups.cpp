@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Optimisations of the quad store: the page directory against LMDB cursors, and lookups announced in batches.
+// Optimisations of the quad store: the page directory against LMDB cursors, and lookups prefetched in batches.
 #include <lmdb.h>
 #include <stdlib.h>
 

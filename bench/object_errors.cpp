@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Why objects are missed or wrong: reasons anew over the scenes of finished maps, with any rules, and sorts every true
-// object that has no partner, and every found one that has none, by cause. The tool with which rules are improved.
+// object that has no partner, and every found one that has none, by cause. Used to improve rules.
 // Usage: object_errors [-v] [--ontology FOLDER] RULES TRUTH MAP... [TRUTH=MAP]...
 #include <algorithm>
 #include <chrono>
@@ -313,7 +313,7 @@ class Errors {
   const Options& options_;
   std::optional<tasks::TruthSource> truth_;
   std::vector<std::string> names_;
-  std::vector<std::size_t> class_of_;  ///< of the objects of the map in hand
+  std::vector<std::size_t> class_of_;  ///< of the objects of the current map
   std::vector<tasks::ObjectScore> by_points_, by_box_;
   std::map<std::pair<std::size_t, std::size_t>, double> by_class_;
   std::map<std::string, int> missed_, wrong_, sides_;

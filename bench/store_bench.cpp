@@ -242,7 +242,7 @@ void termTexts(benchmark::State& state) {
 }
 BENCHMARK(termTexts)->Unit(benchmark::kMicrosecond);
 
-/// One new triple a commit, with the disk's word for it.
+/// One new triple a commit, each synced to the disk.
 void commitOne(benchmark::State& state) {
   const fs::path file = scratch() / "commit.clx";
   load(file);

@@ -9,7 +9,7 @@
 
 namespace cluxel {
 
-/// Receives progress and messages. Called from one thread at a time. The default swallows everything.
+/// Receives progress and messages. Called from one thread at a time. The default ignores everything.
 class CLUXEL_API ProgressSink {
  public:
   virtual ~ProgressSink() = default;

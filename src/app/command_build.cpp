@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel build`: scans in, one map file out.
 #include "app/command.hpp"
-#include "app/scan_options.hpp"
+#include "app/shared_options.hpp"
 #include "mapping/build/map_builder.hpp"
 
 namespace cluxel::app {

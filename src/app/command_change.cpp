@@ -4,7 +4,7 @@
 
 #include "app/change_report.hpp"
 #include "app/command.hpp"
-#include "app/scan_options.hpp"
+#include "app/shared_options.hpp"
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/change/map_change.hpp"

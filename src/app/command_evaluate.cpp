@@ -3,7 +3,7 @@
 #include <charconv>
 
 #include "app/command.hpp"
-#include "app/unfinished_note.hpp"
+#include "app/map_condition.hpp"
 #include "cluxel/error.hpp"
 #include "tasks/evaluation.hpp"
 

@@ -2,6 +2,7 @@
 // `cluxel explain`: the tests that led to a decision, why it was no other, and the smallest change that would reverse
 // it.
 #include "app/command.hpp"
+#include "app/map_condition.hpp"
 #include "tasks/explanation.hpp"
 
 namespace cluxel::app {
@@ -11,6 +12,7 @@ namespace {
 struct ExplainOptions {
   fs::path map;
   std::string name;
+  bool allow_unfinished = false;
 };
 
 }  // namespace
@@ -20,11 +22,14 @@ void addExplain(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("explain", "show why an object or primitive has its class");
   command->add_option("map", options->map, "a map")->required();
   command
-      ->add_option("thing", options->name,
+      ->add_option("object", options->name,
                    "an object or primitive: its IRI, the first digits of its hash, or an object's number (17, #17)")
       ->required();
+  addAllowUnfinished(*command, options->allow_unfinished);
   onRun(*command, session, [options, &session] {
-    print(tasks::explainThing(mapping::MapReader(options->map), options->name, session.json));
+    const mapping::MapReader map(options->map);
+    noteUnfinished(options->map, map.isFinished(), options->allow_unfinished, session);
+    print(tasks::explainThing(map, options->name, session.json));
     return ExitCode::Done;
   });
 }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel export`: a map in other formats.
 #include "app/command.hpp"
-#include "app/plain_store.hpp"
-#include "app/unfinished_note.hpp"
+#include "app/map_condition.hpp"
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "rdf/store/map_check.hpp"

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "app/command.hpp"
-#include "app/plain_store.hpp"
-#include "app/scan_options.hpp"
+#include "app/map_condition.hpp"
+#include "app/shared_options.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/map_reader.hpp"
 #include "rdf/store/map_check.hpp"
@@ -152,6 +152,7 @@ ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Sessi
         std::printf("  cloud %s  %llu points  %s%s\n", cloud.id.hex().c_str(),
                     static_cast<unsigned long long>(cloud.point_count), cloud.source.c_str(),
                     cloud.has_pose ? "" : "  no pose");
+    if (!inputs.crs.empty()) std::printf("coordinate system: %s\n", inputs.crs.c_str());
     std::printf("built with %s\n", describeFiles(inputs).c_str());
     return ExitCode::Done;
   }
@@ -160,6 +161,7 @@ ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Sessi
             {"points", summary.points},      {"objects", summary.objects},
             {"quads", summary.quads},        {"objects_by_class", summary.objects_by_class}};
   if (options.clouds) json["cloud_list"] = cloudsJson(map.clouds());
+  if (!inputs.crs.empty()) json["crs"] = inputs.crs;
   json["input_files"] = inputFilesJson(inputs);
   printJson(json);
   return ExitCode::Done;

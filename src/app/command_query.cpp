@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/budget_options.hpp"
 #include "app/command.hpp"
+#include "app/map_condition.hpp"
 #include "app/named_sources.hpp"
+#include "app/shared_options.hpp"
 #include "app/spool.hpp"
-#include "app/unfinished_note.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/map_state.hpp"
 #include "sparql/results/result_writer.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel update`: changes to the operator's statements by SPARQL Update.
-#include "app/budget_options.hpp"
 #include "app/command.hpp"
 #include "app/named_sources.hpp"
+#include "app/shared_options.hpp"
 #include "base/file_bytes.hpp"
 #include "mapping/build/map_update.hpp"
 #include "rdf/io/rdf_io.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "app/command.hpp"
-#include "app/unfinished_note.hpp"
+#include "app/map_condition.hpp"
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "rdf/store/map_check.hpp"

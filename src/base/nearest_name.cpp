@@ -6,18 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/ascii.hpp"
+
 namespace cluxel {
-
-namespace {
-
-std::string lowerCase(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
-}
-
-}  // namespace
 
 std::size_t editDistance(std::string_view a, std::string_view b) {
   const std::size_t columns = b.size() + 1;

@@ -114,15 +114,19 @@ MapInputs storedInputs(const rdf::ReadTransaction& transaction) {
   }
 }
 
-MapInputs requireFinishedInputs(const rdf::ReadTransaction& transaction, const std::filesystem::path& file) {
+bool requireFinished(const std::filesystem::path& file, const rdf::ReadTransaction& transaction) {
   const auto state = storedState(transaction);
-  if (!state)
-    throw Error(ErrorKind::InvalidArgument, file.string() + ": holds no map that a build has made; build one first");
-  if (!state->is_finished)
+  if (state && !state->is_finished)
     throw Error(ErrorKind::InvalidArgument,
                 file.string() + ": its build is unfinished; repeat the build command first");
+  return state.has_value();
+}
+
+MapInputs requireFinishedInputs(const rdf::ReadTransaction& transaction, const std::filesystem::path& file) {
+  if (!requireFinished(file, transaction))
+    throw Error(ErrorKind::InvalidArgument, file.string() + ": holds no map that a build has made; build one first");
   MapInputs inputs = storedInputs(transaction);
-  if (inputs.hash().hex() != state->inputs_hash)
+  if (inputs.hash().hex() != storedState(transaction)->inputs_hash)
     throw Error(
         ErrorKind::InvalidArgument,
         file.string() + ": was made by another version of Cluxel, whose stages give other results; build it anew");

@@ -21,6 +21,9 @@ void storeState(rdf::WriteTransaction& transaction, const MapState& state);
 /// Absent before the first commit of a build.
 std::optional<MapState> storedState(const rdf::ReadTransaction& transaction);
 
+/// True for a map, false for a store that no build has made. Throws Error (InvalidArgument) when a build is unfinished.
+bool requireFinished(const std::filesystem::path& file, const rdf::ReadTransaction& transaction);
+
 void storeInputs(rdf::WriteTransaction& transaction, const MapInputs& inputs);
 MapInputs storedInputs(const rdf::ReadTransaction& transaction);
 /// The inputs of a map that can be changed. Throws Error (InvalidArgument), naming `file`, for a store that no build

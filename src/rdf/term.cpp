@@ -7,19 +7,13 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/ascii.hpp"
 #include "rdf/iri.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel {
 
 namespace {
-
-std::string lowerCase(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return lower;
-}
 
 void appendHex(std::string& out, unsigned char byte) {
   constexpr std::string_view digits = "0123456789ABCDEF";

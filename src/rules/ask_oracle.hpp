@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one seam between reasoning and SPARQL: how `ask:` tests are checked and answered. The mapping module implements
+// The interface between reasoning and SPARQL: how `ask:` tests are checked and answered. The mapping module implements
 // it.
 #pragma once
 

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <fstream>
 
+#include "base/ascii.hpp"
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "scan/formats/pcd_format.hpp"
@@ -23,10 +24,7 @@ constexpr const char* kKnownFormats =
     ".xyz_label_conf, and the folders of KITTI odometry and Freiburg/Behley";
 
 std::string lowerExtension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return extension;
+  return lowerCase(path.extension().string());
 }
 
 bool isScanOfPlainFolder(const fs::path& path) {

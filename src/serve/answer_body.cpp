@@ -44,24 +44,24 @@ const std::vector<ResultOffer>& offersFor(bool is_graph) {
   return is_graph ? graphs : rows;
 }
 
-Wanted wantedOf(const HttpRequest& request, const Parameters& parameters) {
+FormatRequest formatRequestOf(const HttpRequest& request, const Parameters& parameters) {
   return {request.header("accept"), valueOf(parameters, "format").value_or("")};
 }
 
-const ResultOffer& chooseOffer(const Wanted& wanted, bool is_graph) {
+const ResultOffer& chooseOffer(const FormatRequest& requested, bool is_graph) {
   const std::vector<ResultOffer>& offers = offersFor(is_graph);
-  if (!wanted.format.empty()) {
+  if (!requested.format.empty()) {
     const auto named = std::find_if(offers.begin(), offers.end(),
-                                    [&](const ResultOffer& offer) { return offer.name == wanted.format; });
+                                    [&](const ResultOffer& offer) { return offer.name == requested.format; });
     if (named != offers.end()) return *named;
-    throw Refusal(400, "format '" + wanted.format + "': known here are " +
+    throw Refusal(400, "format '" + requested.format + "': known here are " +
                            (is_graph ? "turtle, ntriples, text" : "json, xml, csv, tsv, table"));
   }
   std::vector<std::string> types;
   types.reserve(offers.size());
   for (const ResultOffer& offer : offers) types.push_back(offer.media_type);
-  if (const auto chosen = negotiate(wanted.accept, types)) return offers[*chosen];
-  throw Refusal(406, "Accept: " + wanted.accept + ": this result can be had as " + listOf(offers));
+  if (const auto chosen = negotiate(requested.accept, types)) return offers[*chosen];
+  throw Refusal(406, "Accept: " + requested.accept + ": this result can be had as " + listOf(offers));
 }
 
 void LimitedBody::add(std::string_view piece) {
@@ -80,7 +80,7 @@ sparql::QueryOptions queryOptions(const RequestLimits& limits) {
 }
 
 HttpResponse answerQuery(const rdf::QuadReader& reader, const std::string& text, const sparql::QueryOptions& options,
-                         const std::vector<sparql::Binding>& bindings, const Wanted& wanted,
+                         const std::vector<sparql::Binding>& bindings, const FormatRequest& requested,
                          const RequestLimits& limits) {
   std::vector<std::string> names;
   names.reserve(bindings.size());
@@ -88,15 +88,16 @@ HttpResponse answerQuery(const rdf::QuadReader& reader, const std::string& text,
   sparql::PreparedQuery prepared(reader, text, options, names);
   using Form = sparql::ast::QueryForm;
   const bool is_graph = prepared.form() == Form::Construct || prepared.form() == Form::Describe;
-  const ResultOffer& offer = chooseOffer(wanted, is_graph);
+  const ResultOffer& offer = chooseOffer(requested, is_graph);
   LimitedBody body(limits.max_answer_bytes);
   const auto writer = makeResultWriter(offer.format, [&body](std::string_view piece) { body.add(piece); });
   prepared.run(*writer, bindings);
   return responseWith(body, offer);
 }
 
-HttpResponse answerResult(const sparql::QueryResult& result, const Wanted& wanted, const RequestLimits& limits) {
-  const ResultOffer& offer = chooseOffer(wanted, result.kind == sparql::QueryResult::Kind::Graph);
+HttpResponse answerResult(const sparql::QueryResult& result, const FormatRequest& requested,
+                          const RequestLimits& limits) {
+  const ResultOffer& offer = chooseOffer(requested, result.kind == sparql::QueryResult::Kind::Graph);
   LimitedBody body(limits.max_answer_bytes);
   const auto writer = makeResultWriter(offer.format, [&body](std::string_view piece) { body.add(piece); });
   replay(result, *writer);

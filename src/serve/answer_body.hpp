@@ -23,12 +23,12 @@ struct ResultOffer {
 const std::vector<ResultOffer>& offersFor(bool is_graph);
 
 /// What the client wants: the parameter `format`, else the header Accept.
-struct Wanted {
+struct FormatRequest {
   std::string accept, format;
 };
-Wanted wantedOf(const HttpRequest& request, const Parameters& parameters);
+FormatRequest formatRequestOf(const HttpRequest& request, const Parameters& parameters);
 /// Throws Refusal (406) when the client takes none, and (400) for an unknown format.
-const ResultOffer& chooseOffer(const Wanted& wanted, bool is_graph);
+const ResultOffer& chooseOffer(const FormatRequest& requested, bool is_graph);
 
 /// A body that grows up to a limit; add() throws Error (BudgetExceeded) beyond it.
 class LimitedBody {
@@ -47,9 +47,10 @@ sparql::QueryOptions queryOptions(const RequestLimits& limits);
 
 /// Runs a query with its parameters bound.
 HttpResponse answerQuery(const rdf::QuadReader& reader, const std::string& text, const sparql::QueryOptions& options,
-                         const std::vector<sparql::Binding>& bindings, const Wanted& wanted,
+                         const std::vector<sparql::Binding>& bindings, const FormatRequest& requested,
                          const RequestLimits& limits);
 /// Writes a result that is there already.
-HttpResponse answerResult(const sparql::QueryResult& result, const Wanted& wanted, const RequestLimits& limits);
+HttpResponse answerResult(const sparql::QueryResult& result, const FormatRequest& requested,
+                          const RequestLimits& limits);
 
 }  // namespace cluxel::serve

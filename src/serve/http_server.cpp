@@ -9,6 +9,7 @@
 #include <atomic>
 #include <mutex>
 
+#include "base/ascii.hpp"
 #include "cluxel/error.hpp"
 #include "serve/http_stream.hpp"
 #include "serve/http_threads.hpp"
@@ -22,16 +23,9 @@ namespace {
 /// The connection that this thread serves.
 thread_local HttpStream* current_stream = nullptr;
 
-std::string lowerName(const std::string& name) {
-  std::string lower = name;
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
-}
-
 HttpRequest requestOf(const httplib::Request& parsed, std::string body) {
   HttpRequest request{parsed.method, parsed.target, {}, std::move(body), parsed.remote_addr};
-  for (const auto& [name, value] : parsed.headers) request.headers.emplace_back(lowerName(name), value);
+  for (const auto& [name, value] : parsed.headers) request.headers.emplace_back(lowerCase(name), value);
   return request;
 }
 

@@ -49,7 +49,7 @@ class HttpStream : public httplib::Stream {
   std::array<char, 16384> buffer_{};
   std::size_t begin_ = 0, end_ = 0;
   std::size_t header_bytes_ = 0;
-  std::size_t escape_at_ = 0;  ///< place in the escape of a question mark that is being passed on
+  std::size_t escape_at_ = 0;  ///< bytes already passed on of "%3F", which replaces a second question mark
   bool is_header_ = true, is_request_line_ = true, has_query_ = false, must_close_ = false;
   Fault fault_ = Fault::None;
   Clock::time_point begun_, deadline_;

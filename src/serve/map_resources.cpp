@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/ascii.hpp"
 #include "base/nearest_name.hpp"
 #include "serve/answer_body.hpp"
 #include "serve/refusal.hpp"
@@ -87,7 +88,7 @@ HttpResponse answerQuestion(const ServedMap& map, const ResourceRequest& asked,
   for (const auto& [parameter, value] : asked.target.parameters)
     if (parameter != "format") given.push_back(parameter + "=" + value);
   return answerQuery(map.quads(), question.text, queryOptions(asked.limits), bindingsFor(question, given),
-                     wantedOf(asked.request, asked.target.parameters), asked.limits);
+                     formatRequestOf(asked.request, asked.target.parameters), asked.limits);
 }
 
 HttpResponse answerGraph(const ServedMap& map, const ResourceRequest& asked) {
@@ -103,7 +104,7 @@ HttpResponse answerGraph(const ServedMap& map, const ResourceRequest& asked) {
     options.default_graphs = {*graph};
   }
   return answerQuery(snapshot, "CONSTRUCT { ?s ?p ?o } WHERE { ?s ?p ?o }", options, {},
-                     wantedOf(asked.request, parameters), asked.limits);
+                     formatRequestOf(asked.request, parameters), asked.limits);
 }
 
 }  // namespace cluxel::serve

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/ascii.hpp"
 #include "base/nearest_name.hpp"
 #include "serve/map_resources.hpp"
 #include "serve/refusal.hpp"
@@ -26,10 +27,7 @@ bool isMapResource(const std::string& segment) {
 std::string hostNameOf(const std::string& host) {
   const std::size_t bracket = host.find(']');
   const std::size_t colon = host.find(':', bracket == std::string::npos ? 0 : bracket);
-  std::string name = host.substr(0, colon);
-  for (char& c : name)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return name;
+  return lowerCase(host.substr(0, colon));
 }
 
 void requireMethod(const HttpRequest& request, bool may_post) {
@@ -42,8 +40,7 @@ void requireMethod(const HttpRequest& request, bool may_post) {
 std::string urlHostOf(const HttpRequest& request) {
   const std::string host = request.header("host");
   const bool is_plain = !host.empty() && std::all_of(host.begin(), host.end(), [](char c) {
-    const bool is_alphanumeric = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-    return is_alphanumeric || std::string_view(".-:[]").find(c) != std::string_view::npos;
+    return isAsciiAlphanumeric(c) || std::string_view(".-:[]").find(c) != std::string_view::npos;
   });
   return is_plain ? host : "localhost";
 }

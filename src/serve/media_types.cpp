@@ -5,23 +5,11 @@
 #include <algorithm>
 #include <charconv>
 
+#include "base/ascii.hpp"
+
 namespace cluxel::serve {
 
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blanks = " \t\r\n";
-  const std::size_t begin = text.find_first_not_of(blanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
-}
-
-std::string lowerCase(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
-}
 
 /// The next part before `separator`, which is cut off `text`.
 std::string_view nextPart(std::string_view& text, char separator) {
@@ -31,14 +19,14 @@ std::string_view nextPart(std::string_view& text, char separator) {
   return trimmed(part);
 }
 
-std::optional<std::string> parameterOf(std::string_view content_type, std::string_view wanted) {
+std::optional<std::string> parameterOf(std::string_view content_type, std::string_view parameter) {
   nextPart(content_type, ';');
   while (!content_type.empty()) {
     std::string_view value = nextPart(content_type, ';');
     const std::string name = lowerCase(nextPart(value, '='));
     value = trimmed(value);
     if (value.size() > 1 && value.front() == '"' && value.back() == '"') value = value.substr(1, value.size() - 2);
-    if (name == wanted) return lowerCase(value);
+    if (name == parameter) return lowerCase(value);
   }
   return std::nullopt;
 }

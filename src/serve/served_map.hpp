@@ -35,7 +35,7 @@ class ServedMap {
   void withReader(const std::function<void(const mapping::MapReader&)>& use);
   /// Drops what withReader() keeps of a commit that is not the newest any more.
   void releaseOldCommit();
-  /// The same, be it the newest or not: before a write.
+  /// Drops what withReader() keeps, whatever its commit: called before a write.
   void release();
 
  private:

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/ascii.hpp"
 #include "mapping/build/map_update.hpp"
 #include "serve/answer_body.hpp"
 #include "serve/media_types.hpp"
@@ -69,7 +70,8 @@ HttpResponse runQuery(const ServedMap& map, const HttpRequest& request, const Op
   sparql::QueryOptions options = queryOptions(limits);
   options.default_graphs = valuesOf(operation.parameters, "default-graph-uri");
   options.named_graphs = valuesOf(operation.parameters, "named-graph-uri");
-  return answerQuery(map.quads(), *operation.query, options, {}, wantedOf(request, operation.parameters), limits);
+  return answerQuery(map.quads(), *operation.query, options, {}, formatRequestOf(request, operation.parameters),
+                     limits);
 }
 
 /// The protocol forbids its own graph parameters beside USING.
@@ -112,10 +114,7 @@ void requireToken(const HttpRequest& request, const std::string& token) {
   if (token.empty()) throw Refusal(403, "this service takes no updates: it was started without a token");
   const std::string sent = request.header("authorization");
   constexpr std::string_view scheme = "bearer ";
-  const bool is_bearer =
-      sent.size() > scheme.size() && std::equal(scheme.begin(), scheme.end(), sent.begin(), [](char wanted, char c) {
-        return c == wanted || (c >= 'A' && c <= 'Z' && c - 'A' + 'a' == wanted);
-      });
+  const bool is_bearer = sent.size() > scheme.size() && lowerCase(sent).starts_with(scheme);
   if (is_bearer && isEqual(std::string_view(sent).substr(scheme.size()), token)) return;
   throw Refusal(401,
                 is_bearer ? "the token is not the one of this service"
@@ -132,7 +131,7 @@ HttpResponse answerSparql(ServedMap& map, const HttpRequest& request, const Targ
   }
   if (operation.query) return runQuery(map, request, operation, options.request);
   return answerResult(serviceDescription(map.quads(), endpoint, !options.token.empty()),
-                      wantedOf(request, target.parameters), options.request);
+                      formatRequestOf(request, target.parameters), options.request);
 }
 
 }  // namespace cluxel::serve

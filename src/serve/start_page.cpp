@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "base/ascii.hpp"
 #include "serve/url.hpp"
 
 namespace cluxel::serve {

@@ -49,11 +49,11 @@ void splitAt(std::string_view text, char separator, const Visit& visit) {
 }
 
 template <typename Number>
-Number readNumber(std::string_view name, std::string_view text, const char* wanted) {
+Number readNumber(std::string_view name, std::string_view text, const char* expected) {
   Number value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (text.empty() || error != std::errc() || end != text.data() + text.size())
-    throw Refusal(400, "parameter " + std::string(name) + ": write " + wanted + ", not '" + std::string(text) + "'");
+    throw Refusal(400, "parameter " + std::string(name) + ": write " + expected + ", not '" + std::string(text) + "'");
   return value;
 }
 
@@ -123,20 +123,6 @@ void requireKnown(const Parameters& parameters, const std::vector<std::string>& 
     const std::string hint = suggestion(name, known);
     throw Refusal(400, "there is no parameter '" + name + "' here" + (hint.empty() ? "" : "; " + hint));
   }
-}
-
-std::string percentEncoded(std::string_view text) {
-  constexpr std::string_view digits = "0123456789ABCDEF", plain = "-._~";
-  std::string encoded;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool is_alphanumeric = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-    if (is_alphanumeric || plain.find(c) != std::string_view::npos)
-      encoded += c;
-    else
-      encoded.append({'%', digits[byte >> 4U], digits[byte & 15U]});
-  }
-  return encoded;
 }
 
 }  // namespace cluxel::serve

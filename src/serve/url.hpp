@@ -38,7 +38,4 @@ std::vector<double> numbersIn(std::string_view name, std::string_view text);
 /// Throws Refusal (400) for a parameter that is not among `known`.
 void requireKnown(const Parameters& parameters, const std::vector<std::string>& known);
 
-/// `text` as one segment of a path or one value of a query.
-std::string percentEncoded(std::string_view text);
-
 }  // namespace cluxel::serve

@@ -6,9 +6,16 @@
 #include <optional>
 
 #include "tasks/evaluation.hpp"
-#include "tasks/wilson_interval.hpp"
 
 namespace cluxel::tasks {
+
+struct ShareInterval {
+  double low = 0, high = 1;
+};
+
+/// Wilson's 95 % interval of the share `hits` of `total` (E. B. Wilson, JASA 22, 1927); 0 to 1 for a total of 0. Half
+/// numbers are allowed, as for F1, which is a share of the mean of true and found objects.
+ShareInterval wilsonInterval(double hits, double total);
 
 /// A share; empty where the total is 0.
 using Share = std::optional<double>;

@@ -57,9 +57,9 @@ void ObjectMatching::addWithoutTruth(std::uint32_t object) {
 
 std::int32_t ObjectMatching::bestInstance(std::uint32_t object) const {
   std::int32_t best = -1;
-  std::uint64_t most = 0;
+  std::uint64_t max_shared = 0;
   for (auto it = shared_.lower_bound({object, -1}); it != shared_.end() && it->first.first == object; ++it)
-    if (it->second > most) most = it->second, best = it->first.second;
+    if (it->second > max_shared) max_shared = it->second, best = it->first.second;
   return best;
 }
 
@@ -73,13 +73,13 @@ bool ObjectMatching::countsAsAnswer(std::uint32_t object) const {
 }
 
 template <typename Iou>
-std::vector<ObjectScore> ObjectMatching::score(double least, const Iou& iou) const {
+std::vector<ObjectScore> ObjectMatching::score(double min_iou, const Iou& iou) const {
   std::vector<Candidate> candidates;
   for (const auto& [pair, count] : shared_) {
     const auto& [object, instance] = pair;
     if (truth_.at(instance).class_number != found_[object].class_number) continue;
     const double value = iou(found_[object], truth_.at(instance), count);
-    if (value >= least) candidates.push_back({value, instance, object});
+    if (value >= min_iou) candidates.push_back({value, instance, object});
   }
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     return std::tie(b.iou, a.instance, a.object) < std::tie(a.iou, b.instance, b.object);
@@ -149,18 +149,18 @@ void ObjectMatching::countAnswers(const PointSet& truth, const std::map<std::uin
                                   const EvaluationParams& params, KindAnswers& answers) const {
   const std::size_t none = names_.size() + 1;
   std::size_t found = none, called = none;
-  std::uint64_t most = 0, in_none = truth.count;
+  std::uint64_t max_shared = 0, in_none = truth.count;
   for (const auto& [object, shared] : takers) {
     const PointSet& taker = found_[object];
     const std::uint64_t whole = taker.count + truth.count - shared;
     if (static_cast<double>(shared) >= params.point_iou * static_cast<double>(whole)) found = taker.class_number;
-    if (shared > most) most = shared, called = taker.class_number;
+    if (shared > max_shared) max_shared = shared, called = taker.class_number;
     in_none -= shared;
   }
   for (auto* counts : {&answers.found, &answers.called, &answers.boxed}) counts->resize(none + 1);
   ++answers.truth;
   ++answers.found[found];
-  ++answers.called[in_none > most ? none : called];
+  ++answers.called[in_none > max_shared ? none : called];
   ++answers.boxed[boxedClass(truth, takers, params)];
 }
 

@@ -50,7 +50,7 @@ class ObjectMatching {
     std::uint32_t object = 0;
   };
   template <typename Iou>
-  std::vector<ObjectScore> score(double least, const Iou& iou) const;
+  std::vector<ObjectScore> score(double min_iou, const Iou& iou) const;
   /// The instance that shares the most points with the object, of any class; -1 when none does.
   std::int32_t bestInstance(std::uint32_t object) const;
   bool countsAsAnswer(std::uint32_t object) const;

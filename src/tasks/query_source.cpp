@@ -176,7 +176,8 @@ std::vector<sparql::Binding> bindingsFor(const Question& question, const std::ve
     const QueryParameter& parameter = question.parameters[at];
     const std::string value = text.substr(cut + 1);
     if (isNumber(parameter.default_value) && !isNumber(value))
-      refuse(text, "a number is wanted [" + parameter.unit + "], with a point, for example " + parameter.default_value);
+      refuse(text,
+             "a number is expected [" + parameter.unit + "], with a point, for example " + parameter.default_value);
     bindings[at].second = termOf(value);
   }
   return bindings;

@@ -99,7 +99,7 @@ TEST_F(Program, WhatIsMissingOrOutOfRangeIsNamedAndHelpIsPointedTo) {
       {"build " + campus(), "--output"},
       {"build -o " + fresh(), "scans"},
       {"query", "source"},
-      {"explain " + map(), "thing"},
+      {"explain " + map(), "object"},
       {"evaluate " + map(), "--truth"},
       {"train " + campus() + " -o " + fresh(), "--truth"},
       {"query " + map() + " objects --deadline soon", "--deadline"},
@@ -149,7 +149,7 @@ TEST_F(Program, WrongChoicesOfOneCommandAreErrorsOfUsage) {
   expectError(run("export " + map()), 2, "--format");
   expectError(run("query " + map() + " objects -e 'ASK {}'"), 2, "not both");
   expectError(run("query " + map() + " objects --param far=1"), 2, "has no parameters");
-  expectError(run("query " + map() + " near_point --param radius=far"), 2, "a number is wanted [m]");
+  expectError(run("query " + map() + " near_point --param radius=far"), 2, "a number is expected [m]");
   expectError(run("query " + map() + " near_point --param raduis=3"), 2, "did you mean 'radius'?");
   expectError(run("query " + map() + " objects --format turtle"), 2, "choose table");
   expectError(run("explain " + map() + " abc"), 2, "four digits");

@@ -79,8 +79,9 @@ TEST_F(Program, AnswersFromAnUnfinishedMapComeWithANote) {
   const Outcome build = run("build " + path("cut_campus").string() + " -o " + map + " --batch-points 1");
   ASSERT_EQ(build.code, 4) << build.err;
   ASSERT_TRUE(fs::exists(map));
-  for (const std::string& command : {"query " + map + " -e 'SELECT * { ?s a ?c } LIMIT 1'",
-                                     "export " + map + " --canonical", "evaluate " + map + " --truth campus"}) {
+  for (const std::string& command :
+       {"query " + map + " -e 'SELECT * { ?s a ?c } LIMIT 1'", "export " + map + " --canonical",
+        "explain " + map + " 0", "evaluate " + map + " --truth campus"}) {
     const Outcome told = run(command), silent = run(command + " --allow-unfinished");
     EXPECT_EQ(told.code, 0) << command << told.err;
     EXPECT_NE(told.err.find("the build of this map is unfinished"), std::string::npos) << command << told.err;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a label map.
-#include "scan/truth/label_map_text.hpp"
+#include "scan/truth/truth_parsers.hpp"
 #include "scan_reader_fuzzing.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

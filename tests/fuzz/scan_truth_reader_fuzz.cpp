@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a truth file, plain or gzip, and as a table of instances.
-#include "scan/truth/truth_text.hpp"
+#include "scan/truth/truth_parsers.hpp"
 #include "scan_reader_fuzzing.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/ascii.hpp"
 #include "serve/media_types.hpp"
 #include "serve/refusal.hpp"
 #include "serve/start_page.hpp"
@@ -13,6 +14,7 @@
 namespace {
 
 using namespace cluxel::serve;
+using cluxel::percentEncoded;
 
 void require(bool holds) {
   if (!holds) std::abort();

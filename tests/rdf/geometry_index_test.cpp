@@ -97,9 +97,9 @@ TEST(GeometryIndex, GivesGeometriesByAscendingDistance) {
   std::size_t count = 0;
   while (nearest.next(found)) {
     const Point& point = map.points().at(std::string(reader.viewOf(found.literal).text));
-    EXPECT_GE(found.at_least, before);
-    EXPECT_NEAR(found.at_least, std::hypot(point.x - 500, point.y - 500), 0.01);
-    before = found.at_least;
+    EXPECT_GE(found.min_distance, before);
+    EXPECT_NEAR(found.min_distance, std::hypot(point.x - 500, point.y - 500), 0.01);
+    before = found.min_distance;
     ++count;
   }
   EXPECT_EQ(count, map.points().size());

@@ -48,7 +48,7 @@ class SharedMap : public MapFile {
   }
 };
 
-/// Two ends of a conversation with a child process.
+/// Pipes to and from a child process.
 struct Talk {
   int to_child[2], to_parent[2];
   char byte = 'x';

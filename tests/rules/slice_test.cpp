@@ -91,9 +91,9 @@ TEST(SliceTests, MeasureWhatAPlainCountOverTheCluxelsDoes) {
     const double from = between(0, 4), to = from + between(0.05, 5);
     const std::string slice = "{ slice: { from: " + metres(from) + ", to: " + metres(to) + " }, attribute: ";
     const auto inside = cluxelsBetween(built.scene, 0, std::stod(metres(from)), std::stod(metres(to)));
-    auto measured = [&](const std::string& attribute, const std::string& least) {
+    auto measured = [&](const std::string& attribute, const std::string& minimum) {
       const ReasoningResult result =
-          reason(built.scene, rulesWith(slice + attribute + ", op: \">=\", value: " + least + " }"));
+          reason(built.scene, rulesWith(slice + attribute + ", op: \">=\", value: " + minimum + " }"));
       const DecisionStep step = firstStep(result);
       EXPECT_EQ(step.passed, step.measured && *step.measured >= *step.threshold);
       EXPECT_EQ(result.objects.size(), step.passed ? 1U : 0U);

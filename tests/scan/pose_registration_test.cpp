@@ -29,7 +29,7 @@ Poses drifting(const Poses& truth, const Eigen::Isometry3d& error) {
   return given;
 }
 
-TEST(PoseRegistration, MendsPosesThatDrift) {
+TEST(PoseRegistration, RefinesPosesThatDrift) {
   const ScratchFolder folder;
   const Poses truth = straightDrive(4);
   const Drive drive =

@@ -7,8 +7,7 @@
 #include <random>
 
 #include "scan/scan_fixture.hpp"
-#include "scan/truth/label_map_text.hpp"
-#include "scan/truth/truth_text.hpp"
+#include "scan/truth/truth_parsers.hpp"
 
 namespace cluxel::scan {
 namespace {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // URLs, forms and media types.
 #include "serve/url.hpp"
+#include "base/ascii.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
+#include "base/ascii.hpp"
 #include "serve/media_types.hpp"
 #include "serve/refusal.hpp"
 #include "serve/served_map.hpp"

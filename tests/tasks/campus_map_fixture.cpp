@@ -67,10 +67,10 @@ CampusMap::CampusMap()
       map_(builtMap(campus_, file_)),
       truth_(truthObjects(campus_)) {}
 
-std::vector<TruthObject> CampusMap::truthOf(const std::string& class_name, std::size_t least_points) const {
+std::vector<TruthObject> CampusMap::truthOf(const std::string& class_name, std::size_t min_points) const {
   std::vector<TruthObject> found;
   for (const TruthObject& object : truth_)
-    if (object.class_name == class_name && object.points >= least_points) found.push_back(object);
+    if (object.class_name == class_name && object.points >= min_points) found.push_back(object);
   return found;
 }
 

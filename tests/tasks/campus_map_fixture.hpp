@@ -37,7 +37,7 @@ class CampusMap {
   const SmallCampus& campus() const { return campus_; }
   const std::filesystem::path& file() const { return file_; }
   const std::vector<TruthObject>& truth() const { return truth_; }
-  std::vector<TruthObject> truthOf(const std::string& class_name, std::size_t least_points) const;
+  std::vector<TruthObject> truthOf(const std::string& class_name, std::size_t min_points) const;
   /// The boxes that the RDF says the objects have [m, map], by hash: another way from the points to a file.
   std::map<std::string, Eigen::AlignedBox3d> boxesInRdf() const;
   /// The answer of queries/NAME.rq, with parameters as NAME=VALUE.

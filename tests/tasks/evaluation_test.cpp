@@ -7,9 +7,9 @@
 #include <array>
 
 #include "rdf/vocabulary.hpp"
+#include "tasks/evaluation_shares.hpp"
 #include "tasks/object_matching.hpp"
 #include "tasks/truth_class.hpp"
-#include "tasks/wilson_interval.hpp"
 
 namespace cluxel::tasks {
 

@@ -89,7 +89,7 @@ TEST_F(Questions, ParametersTakeTheGivenValueOrTheDefault) {
   EXPECT_EQ(given[1].second, Term::iri("https://example.org/x"));
 }
 
-TEST_F(Questions, ANumberIsWantedWhereTheDefaultIsOne) {
+TEST_F(Questions, ANumberIsExpectedWhereTheDefaultIsOne) {
   const Question question = read("#! parameter: far [m] = 5 x\n#! parameter: name [text] = oak y\nASK { }\n");
   EXPECT_EQ(bindingsFor(question, {"name=hello"})[1].second, Term::literal("hello"));
   EXPECT_EQ(bindingsFor(question, {"far=-1e3"})[0].second,
@@ -100,7 +100,7 @@ TEST_F(Questions, ANumberIsWantedWhereTheDefaultIsOne) {
       FAIL() << text;
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::InvalidArgument);
-      EXPECT_NE(std::string(error.what()).find("a number is wanted [m]"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("a number is expected [m]"), std::string::npos) << error.what();
     }
   }
 }

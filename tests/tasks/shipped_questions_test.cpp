@@ -56,10 +56,10 @@ void expectAscending(const ResultTable& rows, const std::string& column, double 
 }
 
 /// Every number of the column is there and within these bounds.
-void expectWithin(const ResultTable& rows, const std::string& column, double least, double most) {
+void expectWithin(const ResultTable& rows, const std::string& column, double min, double max) {
   for (std::size_t i = 0; i < rows.row_count; ++i) {
-    EXPECT_GE(numberAt(rows, i, column), least) << column << " of row " << i;
-    EXPECT_LE(numberAt(rows, i, column), most) << column << " of row " << i;
+    EXPECT_GE(numberAt(rows, i, column), min) << column << " of row " << i;
+    EXPECT_LE(numberAt(rows, i, column), max) << column << " of row " << i;
   }
 }
 

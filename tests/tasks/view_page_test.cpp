@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a page holds of a map is the map: points, quads, objects and reasons are read back from the page's text.
+// Points, quads, objects and reasons that are read back from a page equal those of its map.
 #include "tasks/view/view_page.hpp"
 
 #include <gmock/gmock.h>
@@ -120,18 +120,18 @@ std::vector<PagePoint> pagePoints(const std::string& page) {
 
 TEST(CampusMapPage, HoldsEveryPointInItsPlaceWithItsObject) {
   const MapReader& map = CampusMap::shared().map();
-  std::vector<PagePoint> wanted;
+  std::vector<PagePoint> expected;
   for (const Cloud& cloud : map.clouds()) {
     const ScanPoints points = map.pointsOf(cloud.id);
     const PointAnswers answers = map.answersFor(cloud);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Eigen::Vector3d p = toMap(cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
       const std::int64_t object = answers.object[i] == kNoObjectOfPoint ? 0 : answers.object[i] + 1;
-      wanted.push_back({inQuanta(p.x()), inQuanta(p.y()), inQuanta(p.z()), object});
+      expected.push_back({inQuanta(p.x()), inQuanta(p.y()), inQuanta(p.z()), object});
     }
   }
-  std::sort(wanted.begin(), wanted.end());
-  EXPECT_EQ(pagePoints(wholePage()), wanted);
+  std::sort(expected.begin(), expected.end());
+  EXPECT_EQ(pagePoints(wholePage()), expected);
 }
 
 TEST(CampusMapPage, HoldsTheQuadsOfAllGraphsButHistory) {
@@ -157,11 +157,11 @@ TEST(CampusMapPage, HoldsTheQuadsOfAllGraphsButHistory) {
     }
   }
   std::sort(lines.begin(), lines.end());
-  std::vector<std::string> wanted;
+  std::vector<std::string> expected;
   writeSortedNQuads(
-      CampusMap::shared().map().quads(), [&](std::string_view line) { wanted.emplace_back(line); },
+      CampusMap::shared().map().quads(), [&](std::string_view line) { expected.emplace_back(line); },
       [](const Quad& quad) { return quad.graph.text != vocabulary::kGraphHistory; });
-  EXPECT_EQ(lines, wanted);
+  EXPECT_EQ(lines, expected);
 }
 
 TEST(CampusMapPage, HoldsTheExplanationThatTheObjectHas) {
@@ -174,9 +174,9 @@ TEST(CampusMapPage, HoldsTheExplanationThatTheObjectHas) {
   std::set<std::string> told;
   for (std::size_t i = 0; i < reasons.size(); ++i) {
     if (!told.insert(map.objects()[i].class_iri).second) continue;
-    ViewDocument wanted = ViewDocument::parse(explainThing(map, "#" + std::to_string(i), true));
-    wanted.erase("number");
-    EXPECT_EQ(ViewDocument::parse(reasons[i]), wanted);
+    ViewDocument expected = ViewDocument::parse(explainThing(map, "#" + std::to_string(i), true));
+    expected.erase("number");
+    EXPECT_EQ(ViewDocument::parse(reasons[i]), expected);
   }
 }
 
@@ -185,12 +185,12 @@ TEST(CampusMapPage, IsTheSameForTheSameMap) {
 }
 
 TEST(CampusMapPage, OfALargeMapHoldsAnEvenSample) {
-  const std::uint64_t all = pagePoints(wholePage()).size(), wanted = all / 4;
+  const std::uint64_t all = pagePoints(wholePage()).size(), expected = all / 4;
   ViewReport report;
-  const std::string page = pageOf({.name = "campus", .max_points = wanted, .reasons = false}, &report);
+  const std::string page = pageOf({.name = "campus", .max_points = expected, .reasons = false}, &report);
   EXPECT_EQ(report.points_in_map, all);
   EXPECT_EQ(report.points, pagePoints(page).size());
-  EXPECT_NEAR(static_cast<double>(report.points), static_cast<double>(wanted), 0.03 * static_cast<double>(wanted));
+  EXPECT_NEAR(static_cast<double>(report.points), static_cast<double>(expected), 0.03 * static_cast<double>(expected));
   EXPECT_EQ(blockOf(page, "reasons-0"), "");
   std::vector<PagePoint> beyond;
   const std::vector<PagePoint> some = pagePoints(page), whole = pagePoints(wholePage());

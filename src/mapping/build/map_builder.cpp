@@ -138,6 +138,7 @@ BuildReport buildMap(const scan::ScanSet& scans, const MapInputs& inputs, const 
   complete.map_origin = scans.mapOrigin();
   complete.crs = scans.crs();
   sink.note(describeFiles(complete));
+  if (!complete.crs.empty()) sink.note("coordinate system of the map: " + complete.crs);
   const ParsedInputs parsed = parseInputs(complete);
   WorkFile work(file, complete.hash().hex(), params.force);
   if (!params.refine_poses) noteDoubtfulPoses(scans, params.threads, sink);

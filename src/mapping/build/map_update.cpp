@@ -22,14 +22,6 @@ void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink) {
   inferFacts(transaction, parsed.inputs, sink);
 }
 
-bool requireFinished(const std::filesystem::path& file, const rdf::ReadTransaction& transaction) {
-  const auto state = storedState(transaction);
-  if (state && !state->is_finished)
-    throw Error(ErrorKind::InvalidArgument,
-                file.string() + ": its build is unfinished; repeat the build command first");
-  return state.has_value();
-}
-
 sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::string& update,
                                const sparql::UpdateOptions& options, ProgressSink& sink) {
   const auto start = std::chrono::steady_clock::now();

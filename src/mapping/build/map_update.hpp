@@ -17,8 +17,6 @@ namespace cluxel::mapping {
 sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::string& update,
                                const sparql::UpdateOptions& options, ProgressSink& sink);
 
-/// True for a map, false for a store that no build has made. Throws Error (InvalidArgument) when a build is unfinished.
-bool requireFinished(const std::filesystem::path& file, const rdf::ReadTransaction& transaction);
 /// Computes again what follows from the operator's statements of a map.
 void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink);
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Thinning sorts the points by voxel and keeps, per voxel, those with the smallest lots.
+// Thinning sorts the points by voxel and keeps, per voxel, those with the smallest ranks.
 #include "perception/clustering/tile_points.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
+#include "base/mixed_bits.hpp"
 #include "cluxel/error.hpp"
 #include "perception/clustering/fast_floor.hpp"
 #include "perception/clustering/radix_order.hpp"
@@ -29,26 +30,18 @@ class VoxelKeys {
 /// The concatenated points of all parts, each with its index into the scans.
 struct Pool {
   std::vector<float> x, y, z, intensity;
-  std::vector<std::uint32_t> scan, point, lot;
+  std::vector<std::uint32_t> scan, point, rank;
 };
-
-/// The finaliser of SplitMix64.
-std::uint64_t mixedBits(std::uint64_t value) {
-  value = (value ^ (value >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-  value = (value ^ (value >> 27U)) * 0x94d049bb133111ebULL;
-  return value ^ (value >> 31U);
-}
 
 /// A hash of the measured values of a point, in the sensor frame: a pose, a time or the map's origin does not change
 /// it.
-std::uint32_t lotOf(const scan::ScanPoints& points, std::size_t i) {
+std::uint32_t rankOf(const scan::ScanPoints& points, std::size_t i) {
   const auto two = [](float high, float low) {
     return std::uint64_t{std::bit_cast<std::uint32_t>(high)} << 32U | std::bit_cast<std::uint32_t>(low);
   };
-  constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15ULL;
   const float intensity = points.intensity.empty() ? 0.0F : points.intensity[i];
-  const std::uint64_t plane = mixedBits(two(points.x[i], points.y[i]) + kStep);
-  return static_cast<std::uint32_t>(mixedBits(plane + kStep + two(points.z[i], intensity)) >> 32U);
+  const std::uint64_t plane = mixedBits(two(points.x[i], points.y[i]) + kSplitMixStep);
+  return static_cast<std::uint32_t>(mixedBits(plane + kSplitMixStep + two(points.z[i], intensity)) >> 32U);
 }
 
 /// Reduces one voxel's items to the kept ones, in the order (scan, point).
@@ -58,9 +51,9 @@ void keepSome(std::vector<std::uint32_t>& items, const Pool& pool, std::size_t k
   std::sort(items.begin(), items.end(), by_name);
   items.erase(std::unique(items.begin(), items.end(), [&](auto a, auto b) { return name(a) == name(b); }), items.end());
   if (items.size() <= keep) return;
-  const auto lot = [&](std::uint32_t i) { return std::pair(pool.lot[i], name(i)); };
+  const auto rank = [&](std::uint32_t i) { return std::pair(pool.rank[i], name(i)); };
   std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(keep), items.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return lot(a) < lot(b); });
+                   [&](std::uint32_t a, std::uint32_t b) { return rank(a) < rank(b); });
   items.resize(keep);
   std::sort(items.begin(), items.end(), by_name);
 }
@@ -104,7 +97,7 @@ TilePoints thinPool(const TileKey& key, std::vector<scan::ScanId> scans, const P
           pick(pool.intensity, kept),
           pick(pool.scan, kept),
           pick(pool.point, kept),
-          pick(pool.lot, kept)};
+          pick(pool.rank, kept)};
 }
 
 /// Appends a part's coordinates; intensity is filled with 0 where a part has none and another has.
@@ -114,7 +107,7 @@ void appendCoordinates(Pool& pool, const Part& part, bool with_intensity) {
   pool.y.insert(pool.y.end(), part.y.begin(), part.y.end());
   pool.z.insert(pool.z.end(), part.z.begin(), part.z.end());
   pool.point.insert(pool.point.end(), part.point.begin(), part.point.end());
-  pool.lot.insert(pool.lot.end(), part.lot.begin(), part.lot.end());
+  pool.rank.insert(pool.rank.end(), part.rank.begin(), part.rank.end());
   if (!with_intensity) return;
   pool.intensity.insert(pool.intensity.end(), part.intensity.begin(), part.intensity.end());
   pool.intensity.resize(pool.x.size(), 0.0F);
@@ -191,7 +184,7 @@ std::map<TileKey, ScanSegment> splitScan(const scan::Scan& scan) {
     segment->z.push_back(p.z());
     if (!points.intensity.empty()) segment->intensity.push_back(points.intensity[i]);
     segment->point.push_back(static_cast<std::uint32_t>(i));
-    segment->lot.push_back(lotOf(points, i));
+    segment->rank.push_back(rankOf(points, i));
   }
   return segments;
 }

@@ -37,7 +37,7 @@ struct ScanSegment {
   scan::ScanId scan;
   std::vector<float> x, y, z, intensity;
   std::vector<std::uint32_t> point;  ///< index in the scan
-  std::vector<std::uint32_t> lot;    ///< hash of what was measured: the rank by which points are kept
+  std::vector<std::uint32_t> rank;   ///< hash of what was measured: the rank by which points are kept
 
   std::size_t size() const { return x.size(); }
 };
@@ -50,7 +50,7 @@ struct TilePoints {
   std::vector<float> x, y, z, intensity;
   std::vector<std::uint32_t> scan;   ///< index into `scans`
   std::vector<std::uint32_t> point;  ///< index in that scan
-  std::vector<std::uint32_t> lot;    ///< as in ScanSegment
+  std::vector<std::uint32_t> rank;   ///< as in ScanSegment
 
   std::size_t size() const { return x.size(); }
   Eigen::Vector3f at(std::size_t i) const { return {x[i], y[i], z[i]}; }
@@ -63,7 +63,7 @@ Eigen::Vector3f localPoint(const TileKey& key, const Eigen::Vector3d& p_map);
 /// large. Cost: about 20 ns a point.
 std::map<TileKey, ScanSegment> splitScan(const scan::Scan& scan);
 
-/// Keeps in each voxel the `keep` points with the smallest lots (ties: by scan id and point): the choice depends on
+/// Keeps in each voxel the `keep` points with the smallest ranks (ties: by scan id and point): the choice depends on
 /// what was measured, neither on times, the order of the segments nor earlier thinning. Segments must be of tile `key`
 /// and of different scans.
 TilePoints thin(const TileKey& key, std::span<const ScanSegment* const> segments, const ThinParams& params);

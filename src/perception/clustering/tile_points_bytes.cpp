@@ -19,7 +19,7 @@ void putPoints(TileWriter& writer, const Part& part) {
   writer.put(part.z);
   writer.put(part.intensity);
   writer.put(part.point);
-  writer.put(part.lot);
+  writer.put(part.rank);
 }
 
 template <typename Part>
@@ -29,7 +29,7 @@ void getPoints(TileReader& reader, Part& part) {
   part.z = reader.getMany<float>(part.x.size());
   part.intensity = reader.getMany<float>(part.x.size(), true);
   part.point = reader.getMany<std::uint32_t>(part.x.size());
-  part.lot = reader.getMany<std::uint32_t>(part.x.size());
+  part.rank = reader.getMany<std::uint32_t>(part.x.size());
   reader.require(isInTile(part.x) && isInTile(part.y) && allWithin(part.z, kMaxHeight_m),
                  "has points outside its tile");
 }

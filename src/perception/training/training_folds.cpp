@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/mixed_bits.hpp"
 #include "base/parallel.hpp"
-#include "perception/training/hashed_share.hpp"
 
 namespace cluxel::perception {
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "base/mixed_bits.hpp"
 #include "base/parallel.hpp"
 #include "perception/training/feature_bins.hpp"
-#include "perception/training/hashed_share.hpp"
 
 namespace cluxel::perception {
 

@@ -9,8 +9,8 @@
 #include <optional>
 #include <utility>
 
+#include "base/mixed_bits.hpp"
 #include "perception/training/depth_image.hpp"
-#include "perception/training/hashed_share.hpp"
 
 namespace cluxel::perception {
 

@@ -2,8 +2,8 @@
 // Copies of a place: the points visible to another sensor, and thinning by hash.
 #include "perception/training/virtual_sensor.hpp"
 
+#include "base/mixed_bits.hpp"
 #include "perception/training/depth_image.hpp"
-#include "perception/training/hashed_share.hpp"
 
 namespace cluxel::perception {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/ascii.hpp"
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "rdf/io/rdf_io.hpp"
@@ -30,30 +31,10 @@ constexpr std::array<FormatName, 20> kNames = {{
     {"xml", RdfFormat::RdfXml},         {"application/rdf+xml", RdfFormat::RdfXml},
 }};
 
-std::string percentEncoded(std::string_view path) {
-  constexpr std::string_view kept = "/-._~";
-  constexpr std::string_view digits = "0123456789ABCDEF";
-  std::string encoded;
-  for (const char c : path) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    if (plain || kept.find(c) != std::string_view::npos) {
-      encoded += c;
-    } else {
-      encoded += '%';
-      encoded += digits[byte >> 4U];
-      encoded += digits[byte & 15U];
-    }
-  }
-  return encoded;
-}
-
 }  // namespace
 
 std::optional<RdfFormat> rdfFormatNamed(std::string_view name) {
-  std::string lower(name);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  const std::string lower = lowerCase(name);
   const auto found = std::find_if(kNames.begin(), kNames.end(), [&](const FormatName& f) { return f.name == lower; });
   return found == kNames.end() ? std::nullopt : std::optional(found->format);
 }
@@ -68,7 +49,7 @@ RdfSource readRdfSource(const std::filesystem::path& file, const Term& graph) {
   if (!format)
     throw InputError({.file = file.string()}, "is of no known RDF format",
                      "known endings: .ttl .nt .nq .trig .rdf .owl .xml");
-  const std::string base = "file://" + percentEncoded(std::filesystem::absolute(file).lexically_normal().string());
+  const std::string base = "file://" + percentEncoded(std::filesystem::absolute(file).lexically_normal().string(), "/");
   return {readFile(file), file.string(), *format, base, graph};
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/ascii.hpp"
 #include "base/utf8.hpp"
 #include "cluxel/error.hpp"
 
@@ -19,7 +20,7 @@ constexpr std::size_t kMaxTagBytes = 255;
 }
 
 bool isTagByte(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+  return isAsciiAlphanumeric(c) || c == '-';
 }
 
 void refuseLongTags(const RdfSource& source) {

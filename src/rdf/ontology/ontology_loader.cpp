@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "base/ascii.hpp"
 #include "base/nearest_name.hpp"
 #include "base/shown_line.hpp"
 #include "rdf/ontology/ontology.hpp"
@@ -27,7 +28,7 @@ std::string localName(std::string_view iri) {
 }
 
 bool isNameByte(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  return isAsciiAlphanumeric(c) || c == '_' || c == '-';
 }
 
 /// Searches a name in the source text, because raptor does not report the locations of statements.

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 
+#include "base/ascii.hpp"
 #include "base/utf8.hpp"
 #include "rdf/redland/redland_calls.hpp"
 
@@ -65,8 +66,7 @@ int close(librdf_storage* storage) {
 
 bool isPlain(std::string_view text, std::string_view more) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [more](char c) {
-    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'), digit = c >= '0' && c <= '9';
-    return letter || digit || static_cast<unsigned char>(c) >= 0x80 || more.find(c) != std::string_view::npos;
+    return isAsciiAlphanumeric(c) || static_cast<unsigned char>(c) >= 0x80 || more.find(c) != std::string_view::npos;
   });
 }
 

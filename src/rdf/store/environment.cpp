@@ -214,19 +214,11 @@ std::shared_ptr<Environment> Environment::open(const fs::path& file, OpenMode mo
 }
 
 std::shared_ptr<Environment> Environment::temporary() {
-  std::string folder = (fs::temp_directory_path() / "cluxel-XXXXXX").string();
-  if (::mkdtemp(folder.data()) == nullptr) failStore(folder, errno, "make a temporary map");
-  const fs::path file = fs::path(folder) / "temporary.clx";
-  std::error_code ignored;
-  try {
-    auto environment = openOnce(file, OpenMode::Create, MDB_NOSYNC);
-    environment->loseName();
-    fs::remove_all(folder, ignored);  // the open descriptors keep the data until the environment is closed
-    return environment;
-  } catch (...) {
-    fs::remove_all(folder, ignored);
-    throw;
-  }
+  const TemporaryFolder folder;
+  if (folder.path().empty()) failStore(fs::temp_directory_path(), errno, "make a temporary map");
+  auto environment = openOnce(folder.path() / "temporary.clx", OpenMode::Create, MDB_NOSYNC);
+  environment->loseName();
+  return environment;
 }
 
 LmdbEnvironment::LmdbEnvironment(fs::path file, EnvHandle handle, int data_lock, bool can_write)

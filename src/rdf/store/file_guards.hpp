@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Preparations before LMDB opens a file: safe descriptors, file identity, and the locks of processes.
+// Preparations before LMDB opens a file: safe descriptors, temporary folders, file identity, and the locks of
+// processes.
 #pragma once
 
 #include <sys/types.h>
@@ -29,6 +30,21 @@ class Descriptor {
 
  private:
   int number_;
+};
+
+/// A new folder that only this user can open, in the system's temporary folder. It is removed with its content; open
+/// descriptors keep the data.
+class TemporaryFolder {
+ public:
+  /// When the folder cannot be made, path() is empty and errno says why.
+  TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder();
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
 };
 
 struct FileIdentity {

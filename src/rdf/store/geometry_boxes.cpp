@@ -166,8 +166,8 @@ std::pair<std::size_t, std::size_t> PackedTree::below(std::size_t n, std::size_t
   return {first, std::min(first + kFanOut, levels_[n - 1].size())};
 }
 
-void PackedTree::meeting(const FlatBox& wanted, std::vector<TermId>& found) const {
-  if (levels_.empty() || !levels_.back()[0].meets(wanted)) return;
+void PackedTree::meeting(const FlatBox& query_box, std::vector<TermId>& found) const {
+  if (levels_.empty() || !levels_.back()[0].meets(query_box)) return;
   std::vector<std::pair<std::size_t, std::size_t>> open = {{levels_.size() - 1, 0}};  // boxes that meet it
   while (!open.empty()) {
     const auto [n, box] = open.back();
@@ -178,7 +178,7 @@ void PackedTree::meeting(const FlatBox& wanted, std::vector<TermId>& found) cons
     }
     const auto [first, last] = below(n, box);
     for (std::size_t i = first; i < last; ++i) {
-      if (levels_[n - 1][i].meets(wanted)) open.emplace_back(n - 1, i);
+      if (levels_[n - 1][i].meets(query_box)) open.emplace_back(n - 1, i);
     }
   }
 }

@@ -55,7 +55,7 @@ class PackedTree {
   std::span<const FlatBox> level(std::size_t n) const { return levels_[n]; }
   /// The range of boxes of level n - 1 below a box of level n.
   std::pair<std::size_t, std::size_t> below(std::size_t n, std::size_t box) const;
-  void meeting(const FlatBox& wanted, std::vector<TermId>& found) const;
+  void meeting(const FlatBox& query_box, std::vector<TermId>& found) const;
   /// All entries, for packing them anew with others.
   void appendTo(GeometryEntries& entries) const;
 

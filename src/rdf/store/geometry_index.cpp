@@ -101,9 +101,9 @@ void GeometryIndex::open(std::string_view bytes) {
   loose_.insert(loose_.end(), trees_.back().loose().begin(), trees_.back().loose().end());
 }
 
-std::vector<TermId> GeometryIndex::meeting(const FlatBox& wanted) const {
+std::vector<TermId> GeometryIndex::meeting(const FlatBox& query_box) const {
   std::vector<TermId> found = loose_;
-  for (const PackedTree& tree : trees_) tree.meeting(wanted, found);
+  for (const PackedTree& tree : trees_) tree.meeting(query_box, found);
   std::sort(found.begin(), found.end());
   return found;
 }

@@ -20,8 +20,8 @@ class GeometryIndex {
   GeometryIndex(const GeometryIndex&) = delete;
   GeometryIndex& operator=(const GeometryIndex&) = delete;
 
-  /// The literals whose boxes meet `wanted`, and the loose ones; ascending.
-  std::vector<TermId> meeting(const FlatBox& wanted) const;
+  /// The literals whose boxes meet `query_box`, and the loose ones; ascending.
+  std::vector<TermId> meeting(const FlatBox& query_box) const;
   std::size_t size() const { return boxed_ + loose_.size(); }
   /// The literals without a box, ascending.
   const std::vector<TermId>& loose() const { return loose_; }
@@ -45,7 +45,7 @@ class NearestGeometries {
 
   struct Found {
     TermId literal = kNoTerm;
-    double at_least = 0;  ///< the distance is not less
+    double min_distance = 0;  ///< a lower bound of the distance
   };
   bool next(Found& found);
 

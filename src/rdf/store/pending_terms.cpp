@@ -4,11 +4,11 @@
 
 namespace cluxel::rdf {
 
-std::optional<TermId> PendingTerms::find(const TermHash& hash, std::string_view wanted) const {
+std::optional<TermId> PendingTerms::find(const TermHash& hash, std::string_view bytes) const {
   if (slots_.empty()) return std::nullopt;
   for (std::size_t i = hash.high & (slots_.size() - 1); slots_[i] != 0; i = (i + 1) & (slots_.size() - 1)) {
     const Entry& entry = entries_[slots_[i] - 1];
-    if (entry.hash == hash && record(entry) == wanted) return entry.id;
+    if (entry.hash == hash && record(entry) == bytes) return entry.id;
   }
   return std::nullopt;
 }

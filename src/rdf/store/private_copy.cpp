@@ -48,29 +48,16 @@ int copyBytes(int from, int to) {
 }  // namespace
 
 PrivateCopy::PrivateCopy(const fs::path& map, int descriptor) {
-  std::string folder = (fs::temp_directory_path() / "cluxel-XXXXXX").string();
-  if (::mkdtemp(folder.data()) == nullptr) failCopy(map, fs::temp_directory_path(), errno);
-  folder_ = folder;
-  file_ = folder_ / "copy.clx";
+  if (folder_.path().empty()) failCopy(map, fs::temp_directory_path(), errno);
+  file_ = folder_.path() / "copy.clx";
   copy_ = Descriptor(::open(file_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
   int code = copy_.get() < 0 ? errno : 0;
-  try {
-    if (code == 0) {
-      lockAgainstWriters(descriptor, WriteLock::Copying, map);
-      code = copyBytes(descriptor, copy_.get());
-      ::flock(descriptor, LOCK_UN);
-    }
-    if (code != 0) failCopy(map, folder_, code);
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-    throw;
+  if (code == 0) {
+    lockAgainstWriters(descriptor, WriteLock::Copying, map);
+    code = copyBytes(descriptor, copy_.get());
+    ::flock(descriptor, LOCK_UN);
   }
-}
-
-PrivateCopy::~PrivateCopy() {
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
+  if (code != 0) failCopy(map, folder_.path(), code);
 }
 
 }  // namespace cluxel::rdf

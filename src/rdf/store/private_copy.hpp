@@ -8,22 +8,19 @@
 
 namespace cluxel::rdf {
 
-/// The copy in a folder that only this user can open. The folder is removed with this object; open descriptors keep
-/// the data.
+/// The copy in a temporary folder, which is removed with this object.
 class PrivateCopy {
  public:
   /// Copies the last commit of `map`, open as `descriptor`, while no process writes. Throws MapBusy when a writer does
   /// not end within 1.5 s; Error (StoreUnavailable) when the temporary folder has no room.
   PrivateCopy(const std::filesystem::path& map, int descriptor);
-  PrivateCopy(const PrivateCopy&) = delete;
-  PrivateCopy& operator=(const PrivateCopy&) = delete;
-  ~PrivateCopy();
 
   const std::filesystem::path& file() const { return file_; }
   Descriptor takeDescriptor() { return std::move(copy_); }
 
  private:
-  std::filesystem::path folder_, file_;
+  TemporaryFolder folder_;
+  std::filesystem::path file_;
   Descriptor copy_;
 };
 

@@ -114,8 +114,8 @@ Term QuadReader::termOf(TermId id) const {
 const DecodedValue& QuadReader::valueOf(TermId id) const {
   static const DecodedValue none;
   if (id == kNoTerm) return none;
-  const auto decode = [this](TermId wanted) {
-    TermRecord record = decodeTerm(impl_->record(wanted));
+  const auto decode = [this](TermId term) {
+    TermRecord record = decodeTerm(impl_->record(term));
     if (record.value.type == DecodedValue::Type::Decimal) addExactDigits(record.text, record.value);
     return record.value;
   };

@@ -77,12 +77,12 @@ class Absorbing {
   void weighSpec(std::size_t number, const AbsorbSpec& spec, const Candidate& whole,
                  std::map<FragmentIndex, Claim>& best) const {
     const ObjectInMaking& object = state_.objects[number];
-    auto wanted = [&](FragmentIndex fragment) {
+    auto is_eligible = [&](FragmentIndex fragment) {
       if (state_.fragments[fragment].owner != kFree) return false;
       const scan::PrimitiveLabel label = state_.fragments.labelOf(fragment);
       return spec.labels.empty() || std::find(spec.labels.begin(), spec.labels.end(), label) != spec.labels.end();
     };
-    for (FragmentIndex fragment : findPassing(state_, *object.rule, spec.when, "it", object.bindings, wanted)) {
+    for (FragmentIndex fragment : findPassing(state_, *object.rule, spec.when, "it", object.bindings, is_eligible)) {
       const Candidate it = state_.fragments.candidateOf({fragment});
       Claim claim{fragment, number, &spec, measurePair(state_, PairMeasure::AdjacentFraction, it, whole), 0};
       if (claim.share == 0) claim.gap = measurePair(state_, PairMeasure::Gap, it, whole, 5.0);

@@ -50,7 +50,7 @@ void addNear(const ReasoningState& state, const Condition& tie, const Candidate&
 
 std::vector<FragmentIndex> tiedFragments(const ReasoningState& state, const std::vector<Condition>& conditions,
                                          const std::string& name, const Bindings& bindings,
-                                         const std::function<bool(FragmentIndex)>& wanted) {
+                                         const std::function<bool(FragmentIndex)>& is_eligible) {
   std::vector<FragmentIndex> found;
   const auto tie =
       std::find_if(conditions.begin(), conditions.end(), [&](const Condition& c) { return looksNearby(c, name); });
@@ -64,18 +64,19 @@ std::vector<FragmentIndex> tiedFragments(const ReasoningState& state, const std:
     addNear(state, *tie, anchor, found);
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
-  std::erase_if(found, [&](FragmentIndex fragment) { return !wanted(fragment); });
+  std::erase_if(found, [&](FragmentIndex fragment) { return !is_eligible(fragment); });
   std::sort(found.begin(), found.end(), [&](FragmentIndex a, FragmentIndex b) { return state.fragments.before(a, b); });
   return found;
 }
 
 std::vector<FragmentIndex> findPassing(const ReasoningState& state, const Rule& rule,
                                        const std::vector<Condition>& conditions, const std::string& name,
-                                       const Bindings& bindings, const std::function<bool(FragmentIndex)>& wanted) {
+                                       const Bindings& bindings,
+                                       const std::function<bool(FragmentIndex)>& is_eligible) {
   std::vector<FragmentIndex> passing;
   Bindings with_fragment = bindings;
   with_fragment.candidates.emplace_back(name, Candidate{});
-  for (FragmentIndex fragment : tiedFragments(state, conditions, name, bindings, wanted)) {
+  for (FragmentIndex fragment : tiedFragments(state, conditions, name, bindings, is_eligible)) {
     with_fragment.candidates.back().second = state.fragments.candidateOf({fragment});
     if (ConditionEvaluator(state, rule, with_fragment).allHold(conditions)) passing.push_back(fragment);
   }

@@ -10,16 +10,16 @@
 namespace cluxel::rules {
 
 /// A superset of the fragments that pass `conditions` when bound to `name`, in canonical order, restricted to those for
-/// which `wanted` holds. It is looked up by the first condition that relates `name` to a bound candidate; empty when
-/// there is none.
+/// which `is_eligible` holds. It is looked up by the first condition that relates `name` to a bound candidate; empty
+/// when there is none.
 std::vector<FragmentIndex> tiedFragments(const ReasoningState& state, const std::vector<Condition>& conditions,
                                          const std::string& name, const Bindings& bindings,
-                                         const std::function<bool(FragmentIndex)>& wanted);
+                                         const std::function<bool(FragmentIndex)>& is_eligible);
 
 /// The fragments that pass all `conditions`, in canonical order.
 std::vector<FragmentIndex> findPassing(const ReasoningState& state, const Rule& rule,
                                        const std::vector<Condition>& conditions, const std::string& name,
-                                       const Bindings& bindings, const std::function<bool(FragmentIndex)>& wanted);
+                                       const Bindings& bindings, const std::function<bool(FragmentIndex)>& is_eligible);
 
 /// The fragment selected by `choice`, or all of them for Choice::All. `fragments` must not be empty. Ties go to the
 /// first in canonical order.

@@ -11,7 +11,7 @@ namespace cluxel::rules {
 namespace {
 
 /// A candidate without rivals is rejected when the evidence leaves it a chance below one in twenty.
-constexpr double kLeastLogOdds = -3;
+constexpr double kMinLogOdds = -3;
 
 class RuleRun {
  public:
@@ -49,7 +49,7 @@ class RuleRun {
   std::optional<Decision> decide(const std::vector<FragmentIndex>& group, bool& grown) {
     Verdict verdict = judge(state_, rule_, group);
     if (verdict.accept != nullptr && state_.context.onCandidate) state_.context.onCandidate(state_, rule_, verdict);
-    if (verdict.accept != nullptr && verdict.decision.log_odds <= kLeastLogOdds) {
+    if (verdict.accept != nullptr && verdict.decision.log_odds <= kMinLogOdds) {
       verdict.decision.accepted = false;
       verdict.decision.reason = "the evidence speaks against it";
       return std::move(verdict.decision);

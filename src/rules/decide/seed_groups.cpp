@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 
+#include "base/disjoint_sets.hpp"
 #include "rules/decide/condition_eval.hpp"
 
 namespace cluxel::rules {
@@ -83,25 +84,21 @@ class Linking {
 class Joining {
  public:
   Joining(const ReasoningState& state, const Rule& rule, const std::vector<FragmentIndex>& members)
-      : state_(state), rule_(rule), members_(members), root_(members.size()), held_(members.size()) {
-    std::iota(root_.begin(), root_.end(), 0);
+      : state_(state), rule_(rule), members_(members), sets_(members.size()), held_(members.size()) {
     for (std::size_t i = 0; i < members.size(); ++i) held_[i] = {members[i]};
   }
 
   std::vector<std::vector<FragmentIndex>> groups(const std::vector<Link>& links) {
-    for (const Link& link : links) join(find(link.a), find(link.b));
+    for (const Link& link : links) join(setOf(link.a), setOf(link.b));
     std::vector<std::vector<FragmentIndex>> groups;
     for (std::size_t i = 0; i < members_.size(); ++i)
-      if (root_[i] == i) groups.push_back(std::move(held_[i]));
+      if (setOf(i) == i) groups.push_back(std::move(held_[i]));
     return groups;
   }
 
  private:
-  std::size_t find(std::size_t i) {
-    while (root_[i] != i) i = root_[i] = root_[root_[i]];
-    return i;
-  }
-  void join(std::size_t a, std::size_t b) {
+  std::uint32_t setOf(std::size_t i) { return sets_.find(static_cast<std::uint32_t>(i)); }
+  void join(std::uint32_t a, std::uint32_t b) {
     if (a == b) return;
     std::vector<FragmentIndex> both = held_[a];
     both.insert(both.end(), held_[b].begin(), held_[b].end());
@@ -110,13 +107,13 @@ class Joining {
     const auto [keep, drop] = std::minmax(a, b);
     held_[keep] = std::move(both);
     held_[drop].clear();
-    root_[drop] = keep;
+    sets_.join(keep, drop);
   }
 
   const ReasoningState& state_;
   const Rule& rule_;
   const std::vector<FragmentIndex>& members_;
-  std::vector<std::size_t> root_;
+  DisjointSets sets_;
   std::vector<std::vector<FragmentIndex>> held_;
 };
 

@@ -2,14 +2,14 @@
 // Reads the queries of `ask:`: adds prefixes, finds the bound names used as variables, and checks the syntax.
 #include "rules/language/rule_reading.hpp"
 
+#include "base/ascii.hpp"
+
 namespace cluxel::rules {
 
 namespace {
 
 bool mentions(const std::string& query, const std::string& name) {
-  auto isWordCharacter = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-  };
+  auto isWordCharacter = [](char c) { return isAsciiAlphanumeric(c) || c == '_'; };
   for (std::size_t at = query.find(name); at != std::string::npos; at = query.find(name, at + 1)) {
     const bool variable = at > 0 && (query[at - 1] == '?' || query[at - 1] == '$');
     const std::size_t end = at + name.size();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/ascii.hpp"
 #include "base/nearest_name.hpp"
 #include "rules/language/rule_reading.hpp"
 
@@ -67,9 +68,8 @@ void readLabel(const YamlNode& node, std::vector<scan::PrimitiveLabel>& labels, 
 }
 
 bool isWord(const std::string& text) {
-  auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  return !text.empty() && text.size() <= 64 && letter(text[0]) &&
-         std::all_of(text.begin(), text.end(), [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; });
+  return !text.empty() && text.size() <= 64 && isAsciiLetter(text[0]) &&
+         std::all_of(text.begin(), text.end(), [](char c) { return isAsciiAlphanumeric(c) || c == '_'; });
 }
 
 std::string shortName(const std::string& iri, const RuleReading& reading) {

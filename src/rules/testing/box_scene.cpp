@@ -49,8 +49,8 @@ void fill(const BoxPrimitive& box, std::size_t number, std::uint32_t& next, std:
     for (int y = 0; y < cells[1]; ++y)
       for (int z = 0; z < cells[2]; ++z) {
         const Eigen::Vector3d p = Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5).cwiseProduct(step) - box.size / 2;
-        const Eigen::Vector3d turned(c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z());
-        const Eigen::Vector3d center = box.center + turned;
+        const Eigen::Vector3d rotated(c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z());
+        const Eigen::Vector3d center = box.center + rotated;
         seedlings.push_back({{perception::tileOf(center), next++}, center, extent.cast<float>(), number});
       }
 }
@@ -155,8 +155,8 @@ class Builder {
     for (const auto& [name, share] : boxOf(i).adjacency) left -= share;
     for (perception::PrimitiveIndex other = 0; other < scene().primitives.size(); ++other) {
       if (other == i) continue;
-      const auto wanted = boxOf(i).adjacency.find(boxOf(other).name);
-      if (wanted != boxOf(i).adjacency.end()) addEdges(i, other, wanted->second);
+      const auto requested = boxOf(i).adjacency.find(boxOf(other).name);
+      if (requested != boxOf(i).adjacency.end()) addEdges(i, other, requested->second);
     }
     const auto stranger = largestStranger(i);
     if (left > 1e-9 && stranger) addEdges(i, *stranger, left);
@@ -172,8 +172,8 @@ class Builder {
   void addEdges(perception::PrimitiveIndex i, perception::PrimitiveIndex other, double share) {
     const auto& mine = scene().primitives[i].cluxels;
     const auto& theirs = scene().primitives[other].cluxels;
-    const std::size_t wanted = static_cast<std::size_t>(std::lround(share * kImposedEdges));
-    for (std::size_t e = 0; e < wanted && e < mine.size() * theirs.size(); ++e)
+    const std::size_t edge_count = static_cast<std::size_t>(std::lround(share * kImposedEdges));
+    for (std::size_t e = 0; e < edge_count && e < mine.size() * theirs.size(); ++e)
       addEdge(mine[e % mine.size()], theirs[(e / mine.size()) % theirs.size()]);
   }
   std::optional<perception::PrimitiveIndex> largestStranger(perception::PrimitiveIndex i) {

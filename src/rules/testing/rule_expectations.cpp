@@ -186,10 +186,10 @@ class Checking {
   }
 
   void checkGolden(const GoldenObjects& golden) {
-    nlohmann::json wanted;
+    nlohmann::json expected;
     try {
-      wanted = nlohmann::json::parse(readFile(golden.file)).at("objects");
-      for (const auto& object : wanted) readBounds(object);
+      expected = nlohmann::json::parse(readFile(golden.file)).at("objects");
+      for (const auto& object : expected) readBounds(object);
     } catch (const nlohmann::json::exception& fault) {
       throw InputError({golden.file.string(), 0, 0, std::nullopt},
                        std::string("not a file of golden objects: ") + fault.what(),
@@ -198,13 +198,13 @@ class Checking {
     std::vector<bool> used(result_.objects.size(), false);
     std::set<std::string> classes;
     std::size_t matched = 0, made = 0;
-    for (const auto& object : wanted) {
+    for (const auto& object : expected) {
       classes.insert(object.at("class").get<std::string>());
       matched += matchGolden(object, golden.iou, used) ? 1 : 0;
     }
     for (const SemanticObject& object : result_.objects) made += classes.count(rules_.shorten(object.class_iri));
     const double precision = made == 0 ? 0 : static_cast<double>(matched) / static_cast<double>(made);
-    const double recall = wanted.empty() ? 0 : static_cast<double>(matched) / static_cast<double>(wanted.size());
+    const double recall = expected.empty() ? 0 : static_cast<double>(matched) / static_cast<double>(expected.size());
     if (precision < golden.min_precision)
       fail("precision " + std::to_string(precision) + " is below " + std::to_string(golden.min_precision));
     if (recall < golden.min_recall)

@@ -2,6 +2,8 @@
 // The report of a rule test run as text, JSON and JUnit XML.
 #include <nlohmann/json.hpp>
 
+#include "sparql/results/term_text.hpp"
+
 #include "rules/testing/rule_test.hpp"
 
 namespace cluxel::rules {
@@ -26,18 +28,7 @@ std::string_view nameOf(RuleTestOutcome outcome) {
 
 std::string xmlEscaped(std::string_view text) {
   std::string escaped;
-  for (char c : text) {
-    if (c == '&')
-      escaped += "&amp;";
-    else if (c == '<')
-      escaped += "&lt;";
-    else if (c == '>')
-      escaped += "&gt;";
-    else if (c == '"')
-      escaped += "&quot;";
-    else if (static_cast<unsigned char>(c) >= 0x20 || c == '\n' || c == '\t')
-      escaped += c;
-  }
+  sparql::appendXmlText(escaped, text);
   return escaped;
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/ascii.hpp"
 #include "scan/formats/little_endian.hpp"
 #include "scan/formats/text_scanner.hpp"
 
@@ -42,9 +43,7 @@ struct RankedRole {
 
 /// The rank follows the order of kNamedRoles; a name with CloudCompare's prefix comes after the same name without.
 RankedRole rankedRoleOf(std::string_view name) {
-  std::string lower(name);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const std::string lower = lowerCase(name);
   std::string_view bare = lower;
   const bool prefixed = bare.starts_with("scalar_");
   if (prefixed) bare.remove_prefix(7);

@@ -38,8 +38,8 @@ void assignByTime(const std::vector<LayoutScan*>& scans, const PoseList& list, c
   }
 }
 
-/// `what` lines of `file` must fit the scans: one for each, or, when names are frame numbers, at least so
-/// many.
+/// Throws InputError when the number of lines does not fit the scans. Each scan needs one line; where file names are
+/// frame numbers, there must be a line for the highest frame.
 void checkCounts(const std::vector<LayoutScan*>& scans, std::size_t lines, const char* what, const std::string& file,
                  bool frames_are_numbers) {
   for (const LayoutScan* scan : scans)

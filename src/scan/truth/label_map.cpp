@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <charconv>
 
+#include "base/ascii.hpp"
 #include "base/file_bytes.hpp"
 #include "base/nearest_name.hpp"
 #include "base/yaml/yaml_tree.hpp"
-#include "scan/truth/label_map_text.hpp"
 #include "scan/truth/truth.hpp"
+#include "scan/truth/truth_parsers.hpp"
 
 namespace cluxel::scan {
 
@@ -18,10 +19,8 @@ const std::vector<std::string> kLabelKeys{"name", "primitive", "object", "part",
 const std::vector<std::string> kNearKeys{"label", "within", "object"};
 
 bool isLocalName(std::string_view name) {
-  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
-  return !name.empty() && letter(name.front()) &&
-         std::all_of(name.begin(), name.end(), [&](char c) { return letter(c) || digit(c) || c == '_' || c == '-'; });
+  return !name.empty() && isAsciiLetter(name.front()) &&
+         std::all_of(name.begin(), name.end(), [](char c) { return isAsciiAlphanumeric(c) || c == '_' || c == '-'; });
 }
 
 class LabelMapReader {

@@ -10,7 +10,7 @@
 #include "scan/formats/parsed_scan.hpp"
 #include "scan/formats/text_scanner.hpp"
 #include "scan/truth/truth.hpp"
-#include "scan/truth/truth_text.hpp"
+#include "scan/truth/truth_parsers.hpp"
 
 namespace cluxel::scan {
 
@@ -21,13 +21,13 @@ namespace {
 /// The longest line that means something: "4 126 2147483647\r\n", and room for blanks and comments.
 constexpr std::size_t kBytesPerPoint = 64;
 
-/// A whole number from -1 to `most`.
-std::int32_t codeOf(TextScanner& scanner, const char* what, std::int32_t most) {
+/// A whole number from -1 to `max_code`.
+std::int32_t codeOf(TextScanner& scanner, const char* what, std::int32_t max_code) {
   const std::string_view word = scanner.word(what);
   std::int32_t value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || value < -1 || value > most)
-    scanner.refuse(std::string(what) + " must be a whole number from -1 to " + std::to_string(most) + ": '" +
+  if (error != std::errc() || end != word.data() + word.size() || value < -1 || value > max_code)
+    scanner.refuse(std::string(what) + " must be a whole number from -1 to " + std::to_string(max_code) + ": '" +
                    std::string(word.substr(0, 40)) + "'");
   return value;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "base/ascii.hpp"
 #include "base/convex_hull.hpp"
 #include "simulation/site/campus_site.hpp"
 
@@ -67,9 +68,8 @@ std::string joinCounts(const Counts& counts, const char* separator, const NameOf
 std::string snakeCase(const std::string& name) {
   std::string snake;
   for (const char letter : name) {
-    const bool capital = letter >= 'A' && letter <= 'Z';
-    if (capital && !snake.empty()) snake += '_';
-    snake += capital ? static_cast<char>(letter - 'A' + 'a') : letter;
+    if (lowerAscii(letter) != letter && !snake.empty()) snake += '_';
+    snake += lowerAscii(letter);
   }
   return snake;
 }

@@ -1,29 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random numbers of the campus: splitmix64 streams keyed by purpose, identical with every standard library.
+// Random numbers of the campus: SplitMix64 streams keyed by purpose, identical with every standard library.
 #pragma once
 
 #include <cstdint>
 #include <initializer_list>
 
-namespace cluxel::simulation {
+#include "base/mixed_bits.hpp"
 
-/// Scrambles 64 bits (the finaliser of splitmix64, Steele, Lea, Flood 2014).
-inline std::uint64_t scramble(std::uint64_t bits) {
-  bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebULL;
-  return bits ^ (bits >> 31);
-}
+namespace cluxel::simulation {
 
 /// One stream of random numbers.
 class CampusRandom {
  public:
   /// Streams with different keys are unrelated; the same keys give the same stream.
   CampusRandom(std::initializer_list<std::uint64_t> keys) {
-    for (const std::uint64_t key : keys) state_ = scramble(state_ + 0x9e3779b97f4a7c15ULL + scramble(key + 1));
+    for (const std::uint64_t key : keys) state_ = mixedBits(state_ + kSplitMixStep + mixedBits(key + 1));
   }
-  std::uint64_t next() { return scramble(state_ += 0x9e3779b97f4a7c15ULL); }
+  std::uint64_t next() { return mixedBits(state_ += kSplitMixStep); }
   /// In [0, 1).
-  double uniform() { return static_cast<double>(next() >> 11) * 0x1.0p-53; }
+  double uniform() { return uniformShare(next()); }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   /// In [0, count).
   int below(int count) { return static_cast<int>(uniform() * count); }

@@ -34,9 +34,9 @@ class BoxTree {
   void pack();
   void clear();
 
-  /// Calls `take(row)` for every box that meets `wanted`.
+  /// Calls `take(row)` for every box that meets `query_box`.
   template <typename Take>
-  void search(const Box& wanted, const Take& take) const {
+  void search(const Box& query_box, const Take& take) const {
     if (nodes_.empty()) return;
     std::array<std::uint32_t, kMaxDepth> open{};
     std::size_t count = 0;
@@ -44,14 +44,14 @@ class BoxTree {
     while (count > 0) {
       const std::uint32_t at = open[--count];
       const Node& node = nodes_[at];
-      if (!meets(node_bounds_, at, wanted)) continue;
+      if (!meets(node_bounds_, at, query_box)) continue;
       if (node.right != 0) {
         open[count++] = node.right;
         open[count++] = at + 1;
         continue;
       }
       for (std::uint32_t i = node.first; i < node.last; ++i) {
-        if (meets(bounds_, i, wanted)) take(rows_[i]);
+        if (meets(bounds_, i, query_box)) take(rows_[i]);
       }
     }
   }
@@ -90,10 +90,10 @@ class BoxTree {
     bool is_row;
   };
 
-  bool meets(const std::vector<Interval>& bounds, std::size_t at, const Box& wanted) const {
+  bool meets(const std::vector<Interval>& bounds, std::size_t at, const Box& query_box) const {
     const Interval* own = bounds.data() + at * dimensions_;
     for (std::size_t i = 0; i < dimensions_; ++i) {
-      if (!own[i].meets(wanted[i])) return false;
+      if (!own[i].meets(query_box[i])) return false;
     }
     return true;
   }

@@ -50,9 +50,9 @@ double NearestOthers::reach(const Value& place, const Box2& box, Runtime& runtim
   BoxTree::Box from;
   from[0] = {box.min_x, box.max_x};
   from[1] = {box.min_y, box.max_y};
-  tree_.nearest(from, [&](std::uint32_t row, double at_least) {
+  tree_.nearest(from, [&](std::uint32_t row, double min_distance) {
     const double enough = needs_two ? second.distance : best.distance;
-    if (at_least > enough) return false;
+    if (min_distance > enough) return false;
     const Other& other = others_[row];
     runtime.guard.work(1);
     const std::array<Value, 2> arguments = {place, runtime.terms.valueOf(other.geometry)};

@@ -88,9 +88,9 @@ bool mayPrecede(const Value& value, const OrderKey& last, bool descending, const
   return descending ? order >= 0 : order <= 0;
 }
 
-bool mayPrecede(double least, const OrderKey& last) {
-  const std::uint32_t rank = orderRankOf(Value::ofDouble(least));
-  return rank < last.rank || (rank == last.rank && sortable(least) <= last.bits);
+bool mayPrecede(double lower_bound, const OrderKey& last) {
+  const std::uint32_t rank = orderRankOf(Value::ofDouble(lower_bound));
+  return rank < last.rank || (rank == last.rank && sortable(lower_bound) <= last.bits);
 }
 
 }  // namespace cluxel::sparql

@@ -25,8 +25,8 @@ std::strong_ordering compareKeys(const OrderKey& a, const OrderKey& b, const Que
 
 /// False when a value sorts after `last` for sure; decided without interning it.
 bool mayPrecede(const Value& value, const OrderKey& last, bool descending, const QueryTerms& terms);
-/// False when all numbers from `least` on sort after `last`.
-bool mayPrecede(double least, const OrderKey& last);
+/// False when all numbers from `lower_bound` on sort after `last`.
+bool mayPrecede(double lower_bound, const OrderKey& last);
 
 /// The keys of one ORDER BY expression. If all texts share a prefix, as IRIs of one namespace do, the bits are taken
 /// from the part after it.

@@ -2,6 +2,7 @@
 // Looks up terms and values of a query and assigns ids to computed terms.
 #include "sparql/exec/query_terms.hpp"
 
+#include "base/ascii.hpp"
 #include "cluxel/error.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/functions/datatype.hpp"

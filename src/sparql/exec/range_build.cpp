@@ -79,12 +79,12 @@ Known RangeBuild::place(const ValueId* row, Runtime& runtime, BoxTree::Box& box)
 }
 
 void RangeBuild::narrow(const RangeTest& test, const KnownNumber& bound, const Box2& place,
-                        BoxTree::Box& wanted) const {
+                        BoxTree::Box& query_box) const {
   const bool is_geometry = test.kind == RangeTest::Kind::Near;
   const std::size_t axis = axisOf(test.slot, is_geometry);
   if (axis == BoxTree::kMaxDimensions) return;
-  const auto cut = [&wanted](std::size_t at, double low, double high) {
-    wanted[at] = {std::max(wanted[at].low, low), std::min(wanted[at].high, high)};
+  const auto cut = [&query_box](std::size_t at, double low, double high) {
+    query_box[at] = {std::max(query_box[at].low, low), std::min(query_box[at].high, high)};
   };
   constexpr double kFar = std::numeric_limits<double>::infinity();
   if (is_geometry) {

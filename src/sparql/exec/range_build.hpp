@@ -24,8 +24,8 @@ class RangeBuild {
   /// Rows without a place in the tree: every test may be true for them.
   const std::vector<std::uint32_t>& loose() const { return loose_; }
 
-  /// Narrows `wanted`, a box of the tree, to what a test allows.
-  void narrow(const RangeTest& test, const KnownNumber& bound, const Box2& place, BoxTree::Box& wanted) const;
+  /// Narrows `query_box`, a box of the tree, to what a test allows.
+  void narrow(const RangeTest& test, const KnownNumber& bound, const Box2& place, BoxTree::Box& query_box) const;
   /// The axis of a slot in the tree; that of x for a geometry. The number of dimensions if it has none.
   std::size_t axisOf(Slot slot, bool is_geometry) const;
 

@@ -9,7 +9,7 @@
 namespace cluxel::sparql {
 namespace {
 
-/// Of a change that waits for the writer's flush, and its place in the lists.
+/// Memory that a change occupies until the writer's flush: the quad, and its entry in the lists.
 constexpr std::size_t kBytesOfPending = 64;
 
 std::optional<rdf::QuadIds> storedIds(const rdf::QuadReader& reader, const Quad& quad) {

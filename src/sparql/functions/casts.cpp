@@ -2,6 +2,7 @@
 // Casts between XML Schema datatypes: the table of SPARQL 1.1 section 17.5, extended to the other supported types.
 #include <cmath>
 
+#include "base/ascii.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/functions/datatype.hpp"
 #include "sparql/functions/functions.hpp"

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "base/ascii.hpp"
 #include "base/utf8.hpp"
 #include "sparql/functions/function_bodies.hpp"
 
@@ -80,19 +81,7 @@ Value lcaseFunction(Arguments arguments, FunctionContext& context) {
 
 Value encodeForUriFunction(Arguments arguments, FunctionContext& context) {
   if (!arguments[0].isStringLike()) return {};
-  constexpr std::string_view kHex = "0123456789ABCDEF";
-  std::string out;
-  for (const char c : context.terms.textOf(arguments[0])) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
-                       c == '_' || c == '.' || c == '~';
-    if (plain) {
-      out += c;
-    } else {
-      out += {'%', kHex[byte >> 4], kHex[byte & 15]};
-    }
-  }
-  return Value::string(std::move(out));
+  return Value::string(percentEncoded(context.terms.textOf(arguments[0])));
 }
 
 Value containsFunction(Arguments arguments, FunctionContext& context) {

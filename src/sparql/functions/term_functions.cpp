@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 
+#include "base/ascii.hpp"
 #include "base/content_hash.hpp"
 #include "rdf/iri.hpp"
 #include "rdf/vocabulary.hpp"
@@ -16,12 +17,6 @@ namespace cluxel::sparql {
 namespace {
 
 using Type = Value::Type;
-
-std::string lowerAscii(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return text;
-}
 
 std::string randomUuid(FunctionContext& context) {
   const std::uint64_t high = (context.random() & ~0xF000ull) | 0x4000ull;
@@ -39,13 +34,11 @@ bool isLanguageTag(std::string_view tag) {
   std::size_t length = 0;
   bool first = true;
   for (const char c : tag) {
-    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-    const bool digit = c >= '0' && c <= '9';
     if (c == '-') {
       if (length == 0) return false;
       length = 0;
       first = false;
-    } else if (!(letter || (digit && !first)) || ++length > 8) {
+    } else if (!(isAsciiLetter(c) || (isAsciiDigit(c) && !first)) || ++length > 8) {
       return false;
     }
   }
@@ -72,8 +65,8 @@ Value langFunction(Arguments arguments, FunctionContext& context) {
 
 Value langMatchesFunction(Arguments arguments, FunctionContext& context) {
   if (arguments[0].type != Type::String || arguments[1].type != Type::String) return {};
-  const std::string tag = lowerAscii(context.terms.textOf(arguments[0]));
-  const std::string range = lowerAscii(context.terms.textOf(arguments[1]));
+  const std::string tag = lowerCase(context.terms.textOf(arguments[0]));
+  const std::string range = lowerCase(context.terms.textOf(arguments[1]));
   if (range == "*") return Value::boolean(!tag.empty());
   return Value::boolean(tag == range || (!range.empty() && tag.starts_with(range + "-")));
 }
@@ -113,7 +106,7 @@ Value strUuidFunction(Arguments, FunctionContext& context) {
 
 Value strLangFunction(Arguments arguments, FunctionContext& context) {
   if (arguments[0].type != Type::String || arguments[1].type != Type::String) return {};
-  const std::string tag = lowerAscii(context.terms.textOf(arguments[1]));
+  const std::string tag = lowerCase(context.terms.textOf(arguments[1]));
   if (!isLanguageTag(tag)) return {};
   return Value::langString(context.terms.textOf(arguments[0]), tag);
 }

@@ -102,7 +102,5 @@ std::optional<double> parseDouble(std::string_view text);
 std::optional<float> parseFloat(std::string_view text);
 /// Parses the lexical form of xsd:boolean.
 std::optional<bool> parseBoolean(std::string_view text);
-/// Strips XML white space at both ends.
-std::string_view trimmed(std::string_view text);
 
 }  // namespace cluxel::sparql

@@ -137,14 +137,14 @@ void Planner::addClosest(const State& state, const Waiting& waiting, const Parts
   Waiting nodes = waiting;
   if (auto nearest = find(state.certain, build)) {
     join.nearest = std::move(nearest);
-  } else if (auto turned = find(build, state.certain)) {
-    join.nearest = std::move(turned);
-    join.is_turned = true;
+  } else if (auto reversed = find(build, state.certain)) {
+    join.nearest = std::move(reversed);
+    join.is_reversed = true;
     std::erase_if(nodes = parts.joined,
                   [&](const Node* node) { return std::find(waiting.begin(), waiting.end(), node) != waiting.end(); });
   }
   if (!join.nearest) return;
-  Parts others = taken(nodes, parts, join.is_turned ? state.certain : build);
+  Parts others = taken(nodes, parts, join.is_reversed ? state.certain : build);
   join.nearest->others = joinParts(unit(), others).top;
 }
 

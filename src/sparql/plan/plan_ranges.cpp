@@ -156,25 +156,25 @@ Planner::RangeSides Planner::sidesOf(const State& state, const Waiting& componen
 
 /// Collects tests of the component by the rows so far; if there are none, of the rows so far by the component.
 void Planner::addTests(const State& state, const RangeSides& sides, const Parts& parts, RangeJoin& join) {
-  std::vector<RangeTest> turned;
+  std::vector<RangeTest> reversed;
   const auto add = [&](const Expr& condition, const JoinSides& slots, std::vector<RangeTest>& tests) {
     for (RangeTest& test : rangeTestsOf(condition, slots, terms_))
       if (readsRow(test)) tests.push_back(std::move(test));
   };
-  const bool may_turn = !state.is_input;
+  const bool may_reverse = !state.is_input;
   for (std::size_t i = 0; i < parts.filters.size(); ++i) {
     if (join.used[i]) continue;
     const Expr condition = expanded(parts.filters[i], sides.binds);
     add(condition, {sides.given, sides.other}, join.tests);
-    if (may_turn) add(condition, {sides.given_by_other, state.certain}, turned);
+    if (may_reverse) add(condition, {sides.given_by_other, state.certain}, reversed);
     if (join.nearest) continue;
     join.nearest = nearestOf(condition, state.certain, sides.other, sides.outside);
-    if (join.nearest || !may_turn) continue;
+    if (join.nearest || !may_reverse) continue;
     join.nearest = nearestOf(condition, sides.other, state.certain, sides.outside);
-    join.is_turned = join.nearest.has_value();
+    join.is_reversed = join.nearest.has_value();
   }
-  if (join.tests.empty() && !join.nearest && !turned.empty()) join.is_turned = true;
-  if (join.is_turned) join.tests = std::move(turned);
+  if (join.tests.empty() && !join.nearest && !reversed.empty()) join.is_reversed = true;
+  if (join.is_reversed) join.tests = std::move(reversed);
 }
 
 /// Some nodes of a group as a group of their own, with the filters that read their slots only.
@@ -188,7 +188,7 @@ Planner::Parts Planner::taken(const Waiting& nodes, const Parts& parts, const Sl
 }
 
 Planner::State Planner::finishRange(State state, RangeJoin join) {
-  if (join.is_turned) std::swap(state, join.other);
+  if (join.is_reversed) std::swap(state, join.other);
   const double candidates = std::max(kCandidates, join.other.rows * kShareKept);
   const double rows = state.rows * std::min(join.other.rows, candidates);
   state.top =
@@ -204,7 +204,7 @@ Planner::State Planner::finishRange(State state, RangeJoin join) {
 /// the component. Its patterns then look the candidates up.
 std::optional<Planner::State> Planner::joinByIndex(State& state, const RangeJoin& join, const Waiting& component) {
   const auto near = std::find_if(join.tests.begin(), join.tests.end(), isDistance);
-  if (near == join.tests.end() || join.nearest || join.is_turned) return std::nullopt;
+  if (near == join.tests.end() || join.nearest || join.is_reversed) return std::nullopt;
   const bool is_object = std::any_of(component.begin(), component.end(), [&](const Node* part) {
     return part->kind == Node::Kind::Triple && !part->triple.path && part->triple.object.slot == near->slot;
   });

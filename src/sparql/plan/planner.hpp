@@ -121,8 +121,8 @@ class Planner {
     State other;
     std::vector<RangeTest> tests;
     std::optional<NearestTest> nearest;
-    bool is_turned = false;  ///< the tests limit the rows so far by the component
-    std::vector<bool> used;  ///< the filters, after those within the component
+    bool is_reversed = false;  ///< the tests limit the rows so far by the component
+    std::vector<bool> used;    ///< the filters, after those within the component
   };
   std::optional<State> joinByRange(State& state, Waiting& waiting, const Parts& parts, std::vector<bool>& used);
   bool blowsUp(const State& state, const Waiting& waiting);

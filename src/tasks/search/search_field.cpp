@@ -26,17 +26,17 @@ SearchField fieldOf(const GridFrame& frame, const std::vector<std::uint8_t>& see
                     const std::vector<PlaceEvidence>& places, const SearchParams& params) {
   constexpr double rounding = 1e-9;
   SearchField field{frame, std::vector<double>(frame.size(), 0.0), std::vector<std::uint8_t>(frame.size(), kAnywhere)};
-  std::vector<double> most(frame.size(), 0.0);
+  std::vector<double> largest_share(frame.size(), 0.0);
   double anywhere = 1;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const std::vector<std::uint32_t> cells = cellsOf(frame, places[i]);
-    if (cells.empty()) continue;  // its share is anywhere
-    const double each = places[i].probability / static_cast<double>(cells.size());
+    if (cells.empty()) continue;  // its probability stays with the places that are not named
+    const double share = places[i].probability / static_cast<double>(cells.size());
     anywhere -= places[i].probability;
     for (const std::uint32_t cell : cells) {
-      field.probability[cell] += each;
-      if (each <= most[cell]) continue;
-      most[cell] = each;
+      field.probability[cell] += share;
+      if (share <= largest_share[cell]) continue;
+      largest_share[cell] = share;
       field.reason[cell] = static_cast<std::uint8_t>(i);
     }
   }
@@ -46,7 +46,7 @@ SearchField fieldOf(const GridFrame& frame, const std::vector<std::uint8_t>& see
   const double rest = std::max(0.0, anywhere) / static_cast<double>(frame.size());
   double sum = 0;
   for (std::uint32_t cell = 0; cell < frame.size(); ++cell) {
-    if (rest > most[cell]) field.reason[cell] = kAnywhere;
+    if (rest > largest_share[cell]) field.reason[cell] = kAnywhere;
     field.probability[cell] = (field.probability[cell] + rest) * (seen[cell] != 0 ? 1 - params.detection : 1.0);
     sum += field.probability[cell];
   }

@@ -45,9 +45,9 @@ std::uint8_t takeView(SearchField& field, std::uint32_t cell, double view_m) {
     by_reason[field.reason[seen]] += field.probability[seen];
     field.probability[seen] = 0;
   });
-  const auto most = std::max_element(by_reason.begin(), by_reason.end(),
-                                     [](const auto& a, const auto& b) { return a.second < b.second; });
-  return most == by_reason.end() ? kAnywhere : most->first;
+  const auto largest = std::max_element(by_reason.begin(), by_reason.end(),
+                                        [](const auto& a, const auto& b) { return a.second < b.second; });
+  return largest == by_reason.end() ? kAnywhere : largest->first;
 }
 
 }  // namespace
@@ -67,7 +67,7 @@ std::vector<SearchStop> tourOf(const PassableGrid& grid, const SearchField& fiel
       if (!std::isfinite(walk_m[cell]) || (params.budget_m > 0 && total_m + walk_m[cell] > params.budget_m)) continue;
       const double probability = probabilityInView(left, cell, search.view_m);
       const double value = probability / (walk_m[cell] + params.settle_m);
-      if (probability < params.least_probability || value <= best_value) continue;
+      if (probability < params.min_probability || value <= best_value) continue;
       best_value = value;
       best = {cell, walk_m[cell], total_m + walk_m[cell], probability, so_far + probability, kAnywhere};
     }

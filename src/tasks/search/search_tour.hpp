@@ -23,8 +23,8 @@ struct SearchStop {
 struct TourParams {
   double budget_m = 0;  ///< length of the whole walk; 0: no limit
   std::size_t max_stops = 10;
-  double least_probability = 0.002;  ///< a stop with less ends the tour
-  double settle_m = 5;               ///< what a stop costs beside the walk
+  double min_probability = 0.002;  ///< a stop with less ends the tour
+  double settle_m = 5;             ///< what a stop costs beside the walk
 };
 
 /// Greedy: the next stop is the one with most new probability within view for each metre of walk and settling. Stops

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "base/mixed_bits.hpp"
 #include "tasks/view/page_blocks.hpp"
 
 namespace cluxel::tasks {
@@ -26,13 +27,6 @@ struct ViewPoint {
 
 using ViewTileKey = std::pair<std::int64_t, std::int64_t>;
 using ViewTileMap = std::map<ViewTileKey, std::vector<ViewPoint>>;
-
-/// A bijection that mixes all bits (the finaliser of SplitMix64).
-std::uint64_t mixed(std::uint64_t value) {
-  value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  value = (value ^ (value >> 27)) * 0x94d049bb133111ebULL;
-  return value ^ (value >> 31);
-}
 
 /// Level 0 holds a 64th of the points, level 1 together with it a 16th, level 2 a quarter.
 std::uint8_t levelOf(std::uint64_t hash) {
@@ -56,7 +50,7 @@ class CloudReader {
     const scan::ScanPoints points = map_.pointsOf(cloud.id);
     const mapping::PointAnswers answers = map_.answersFor(cloud);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const std::uint64_t hash = mixed((static_cast<std::uint64_t>(number) << 40U) + i);
+      const std::uint64_t hash = mixedBits((static_cast<std::uint64_t>(number) << 40U) + i);
       if ((hash >> 32U) >= kept_) continue;
       const Eigen::Vector3d p = scan::toMap(cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
       ViewPoint point = placed(p);

@@ -20,7 +20,7 @@ inline constexpr std::size_t kViewLevels = 4;
 /// One square of the map seen from above. Points of a level are a uniform sample, so that the first levels alone show
 /// the whole tile coarsely.
 struct PointTile {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< corner with the least coordinates [m, map]
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< corner with the minimum coordinates [m, map]
   Eigen::Vector3d size = Eigen::Vector3d::Zero();    ///< of the box around its points, from the origin [m]
   double z_quantum_m = kViewQuantum_m;
   std::array<std::uint32_t, kViewLevels> points_to{};  ///< the number of points up to and with each level

@@ -57,7 +57,7 @@ std::vector<float> distancesFrom(const PassableGrid& grid, const std::vector<Rou
 std::optional<Route> otherRoute(const PassableGrid& grid, std::uint32_t start, std::uint32_t goal,
                                 const std::vector<Route>& known) {
   constexpr float beside_m = 2;
-  constexpr double most_shared = 0.7;
+  constexpr double max_shared = 0.7;
   const std::vector<float> distance = distancesFrom(grid, known);
   PassableGrid dearer = grid;
   for (std::size_t cell = 0; cell < distance.size(); ++cell)
@@ -65,7 +65,7 @@ std::optional<Route> otherRoute(const PassableGrid& grid, std::uint32_t start, s
   std::vector<std::uint32_t> cells = wayTo(cheapestWays(dearer, start, {.goal = goal}), goal);
   const auto shared =
       std::count_if(cells.begin(), cells.end(), [&](std::uint32_t cell) { return distance[cell] < beside_m; });
-  if (cells.empty() || static_cast<double>(shared) > most_shared * static_cast<double>(cells.size()))
+  if (cells.empty() || static_cast<double>(shared) > max_shared * static_cast<double>(cells.size()))
     return std::nullopt;
   return routeOf(grid, std::move(cells));
 }

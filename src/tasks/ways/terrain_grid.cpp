@@ -138,9 +138,9 @@ TerrainGrid terrainOf(const mapping::MapReader& map, const TerrainParams& params
   fillGround(map.stages(), grid);
   LowPoints low{std::vector<float>(size, 0.0F), std::vector<std::uint32_t>(size, 0)};
   std::vector<CellThing> found = thingsOf(map, params, grid, low);
-  constexpr std::uint32_t least_points = 3;
+  constexpr std::uint32_t min_points = 3;
   for (std::size_t cell = 0; cell < size; ++cell)
-    if (low.count[cell] >= least_points) grid.height[cell] += low.sum[cell] / static_cast<float>(low.count[cell]);
+    if (low.count[cell] >= min_points) grid.height[cell] += low.sum[cell] / static_cast<float>(low.count[cell]);
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
   grid.first_thing.assign(size + 1, 0);

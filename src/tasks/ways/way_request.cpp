@@ -22,11 +22,12 @@ class ObjectSelector {
   void mark(const std::string& name, std::vector<bool>& marked) const {
     const bool is_mobility = name == "Movable" || name == "Static";
     const std::string iri = is_mobility ? std::string() : classNamed(ontology_, name);
-    const rdf::Mobility wanted = name == "Movable" ? rdf::Mobility::Movable : rdf::Mobility::Static;
+    const rdf::Mobility mobility = name == "Movable" ? rdf::Mobility::Movable : rdf::Mobility::Static;
     for (std::size_t i = 0; i < map_.objects().size(); ++i) {
       const std::string& class_iri = map_.objects()[i].class_iri;
       const rdf::OntologyClass* known = ontology_.find(class_iri);
-      const bool is_meant = is_mobility ? known != nullptr && known->mobility == wanted : ontology_.isA(class_iri, iri);
+      const bool is_meant =
+          is_mobility ? known != nullptr && known->mobility == mobility : ontology_.isA(class_iri, iri);
       if (is_meant) marked[i] = true;
     }
   }
@@ -83,7 +84,7 @@ PassableGrid passableIn(const mapping::MapReader& map, const WayRequest& request
 }
 
 Eigen::Vector2d placeNamed(const mapping::MapReader& map, const std::string& text) {
-  constexpr std::size_t least_digits = 4;
+  constexpr std::size_t min_digits = 4;
   const std::size_t comma = text.find(',');
   if (comma != std::string::npos) {
     const auto x = wholeNumber(std::string_view(text).substr(0, comma));
@@ -95,7 +96,7 @@ Eigen::Vector2d placeNamed(const mapping::MapReader& map, const std::string& tex
   std::vector<std::string> found;
   for (std::size_t i = 0; i < map.objects().size(); ++i) {
     const ContentHash& id = map.objects()[i].id;
-    if (text == "#" + std::to_string(i) || (digits.size() >= least_digits && id.hex().starts_with(digits)))
+    if (text == "#" + std::to_string(i) || (digits.size() >= min_digits && id.hex().starts_with(digits)))
       found.push_back(rdf::iriOfObject(id));
   }
   if (found.size() == 1) return centroidOf(map, found.front());

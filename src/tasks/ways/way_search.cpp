@@ -82,7 +82,7 @@ class GraphOfCells {
 /// Ends the search when the goal's cost is known.
 struct GoalReached {};
 struct StopAtGoal : boost::default_dijkstra_visitor {
-  explicit StopAtGoal(std::uint32_t wanted) : goal(wanted) {}
+  explicit StopAtGoal(std::uint32_t goal_cell) : goal(goal_cell) {}
   void examine_vertex(std::uint32_t vertex, const WayGraph&) const {
     if (vertex == goal) throw GoalReached();
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One texel for each object: its colour, and in alpha whether it is hidden, dimmed, plain or lit. Texel 0 stands for
-// points without an object. An answer lights up by changing texels; no point is touched.
+// points without an object. An answer is highlighted by changing texels; the points stay as they are.
 import * as THREE from 'three';
 import type { MapModel, MapObject } from '../data/model';
 

@@ -60,9 +60,9 @@ class NearestSourceOperator : public Operator {
  private:
   using Candidate = std::pair<std::uint32_t, ValueId>;  ///< row of rows_, geometry
   struct Next {
-    double at_least;
+    double min_distance;
     std::size_t stream;
-    bool operator<(const Next& other) const { return at_least > other.at_least; }
+    bool operator<(const Next& other) const { return min_distance > other.min_distance; }
   };
   struct Stream {
     std::uint32_t row;
@@ -101,7 +101,7 @@ class NearestSourceOperator : public Operator {
 
   void advance(std::size_t stream) {
     Stream& one = streams_[stream];
-    if (one.geometries.next(one.found)) queue_.push({one.found.at_least, stream});
+    if (one.geometries.next(one.found)) queue_.push({one.found.min_distance, stream});
   }
 
   /// The objects of the predicate that are not geometries, which the index does not hold. Kept for the commit.
@@ -133,7 +133,7 @@ class NearestSourceOperator : public Operator {
   bool nextChunk() {
     std::vector<Candidate> candidates;
     while (given_ < first_.size() && candidates.size() < kLastChunk) candidates.push_back(first_[given_++]);
-    if (candidates.empty() && !queue_.empty() && is_enough_ && is_enough_(queue_.top().at_least)) return false;
+    if (candidates.empty() && !queue_.empty() && is_enough_ && is_enough_(queue_.top().min_distance)) return false;
     while (candidates.size() < chunk_rows_ && given_ == first_.size() && !queue_.empty()) {
       const Next next = queue_.top();
       queue_.pop();

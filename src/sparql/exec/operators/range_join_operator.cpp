@@ -78,9 +78,9 @@ class RangeJoinOperator : public UnaryOperator {
   void search() {
     found_.clear();
     next_ = 0;
-    BoxTree::Box wanted;
-    if (!limit(wanted)) return;
-    build_.tree().search(wanted, [this](std::uint32_t row) { found_.push_back(row); });
+    BoxTree::Box query_box;
+    if (!limit(query_box)) return;
+    build_.tree().search(query_box, [this](std::uint32_t row) { found_.push_back(row); });
     std::sort(found_.begin(), found_.end());
     const auto middle = static_cast<std::ptrdiff_t>(found_.size());
     found_.insert(found_.end(), build_.loose().begin(), build_.loose().end());
@@ -89,7 +89,7 @@ class RangeJoinOperator : public UnaryOperator {
   }
 
   /// False when no row passes the tests.
-  bool limit(BoxTree::Box& wanted) {
+  bool limit(BoxTree::Box& query_box) {
     Evaluator evaluator(runtime());
     for (const RangeTest& test : tests_) {
       const KnownNumber bound = evaluated(test.bound, in_, current_, evaluator);
@@ -97,19 +97,19 @@ class RangeJoinOperator : public UnaryOperator {
       KnownBox place{Known::Value, {}};
       if (test.place) place = boxOf(evaluator.value(*test.place, in_, current_), runtime().functions);
       if (place.known == Known::Error) return false;
-      if (bound.known == Known::Value && place.known == Known::Value) build_.narrow(test, bound, place.box, wanted);
+      if (bound.known == Known::Value && place.known == Known::Value) build_.narrow(test, bound, place.box, query_box);
     }
-    if (nearest_) limitToNearest(wanted, evaluator);
+    if (nearest_) limitToNearest(query_box, evaluator);
     return true;
   }
 
-  void limitToNearest(BoxTree::Box& wanted, Evaluator& evaluator) {
+  void limitToNearest(BoxTree::Box& query_box, Evaluator& evaluator) {
     const NearestTest& test = nearest_->test();
     const Value place = evaluator.value(test.place, in_, current_);
     const KnownBox box = boxOf(place, runtime().functions);
     if (box.known != Known::Value) return;
     const RangeTest near{RangeTest::Kind::Near, test.slot, {}, test.place};
-    build_.narrow(near, {Known::Value, nearest_->reach(place, box.box, runtime())}, box.box, wanted);
+    build_.narrow(near, {Known::Value, nearest_->reach(place, box.box, runtime())}, box.box, query_box);
   }
 
   void take(Batch& out) {

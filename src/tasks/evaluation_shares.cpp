@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Half numbers need no other formula: the share and the number of examples are real numbers in it.
-#include "tasks/wilson_interval.hpp"
+#include "tasks/evaluation_shares.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Truth files and their table of instances, from memory.
+// Parsers of truth files and label maps, on text in memory.
 #pragma once
 
 #include <string>
@@ -9,6 +9,9 @@
 #include "scan/truth/truth.hpp"
 
 namespace cluxel::scan {
+
+/// Throws InputError with every fault, each with file:line:col.
+LabelMapContent parseLabelMap(std::string_view text, const std::string& file);
 
 /// Lines `primitive object instance`, plain or gzip. Throws InputError naming file and line.
 PointTruth parseTruth(std::string_view bytes, const std::string& file, std::size_t point_count);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The note about unfinished maps.
-#include "app/unfinished_note.hpp"
+// Reads the state that a build leaves in a map.
+#include "app/map_condition.hpp"
+
+#include "mapping/map_state.hpp"
+#include "rdf/store/environment.hpp"
 
 namespace cluxel::app {
 
@@ -13,6 +16,14 @@ void noteUnfinished(const fs::path& map, bool is_finished, bool is_allowed, Sess
   session.console.note(map.string() +
                        ": warning: the build of this map is unfinished, so the answers are those of some of its scans; "
                        "repeat the command build to finish it, or write --allow-unfinished");
+}
+
+std::optional<rdf::QuadReader> storeWithoutScans(const fs::path& file) {
+  const rdf::ReadTransaction transaction = rdf::Environment::open(file, rdf::OpenMode::ReadOnly)->read();
+  if (mapping::storedState(transaction)) return std::nullopt;
+  rdf::QuadReader quads(transaction);
+  if (quads.size() == 0) return std::nullopt;
+  return quads;
 }
 
 }  // namespace cluxel::app

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands that answer from a map say when its build is unfinished.
+// What commands check before they answer from a file: whether it is a map, and whether its build is finished.
 #pragma once
 
+#include <optional>
+
 #include "app/command.hpp"
+#include "rdf/store/quad_store.hpp"
 
 namespace cluxel::app {
 
@@ -11,5 +14,9 @@ void addAllowUnfinished(CLI::App& command, bool& is_allowed);
 
 /// Notes on stderr that the answers are those of the scans so far, unless that is allowed.
 void noteUnfinished(const fs::path& map, bool is_finished, bool is_allowed, Session& session);
+
+/// The quads of a store that no build has made; absent for a map, and for a store without quads (its first build never
+/// committed).
+std::optional<rdf::QuadReader> storeWithoutScans(const fs::path& file);
 
 }  // namespace cluxel::app

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Options that several commands have: how scans are read, and what a query may use.
+#pragma once
+
+#include <cstdint>
+
+#include "app/command.hpp"
+#include "scan/scan_set.hpp"
+#include "sparql/query_engine.hpp"
+
+namespace cluxel::app {
+
+struct ScanOptions {
+  fs::path poses;
+  scan::InputFrame frame;
+
+  /// As ScanSet::open() takes them, with the names of the options in its messages.
+  scan::ScanSetParams params() const;
+};
+
+/// Adds --poses, --units and --up to a command. `options` must outlive it.
+void addScanOptions(CLI::App& command, ScanOptions& options);
+
+struct BudgetOptions {
+  double deadline_s = 0;  ///< 0: none
+  std::uint64_t max_memory_mib = 0;
+
+  void applyTo(sparql::QueryBudget& budget) const;
+};
+
+/// Adds --deadline and --max-memory to a command. `options` must outlive it.
+void addBudget(CLI::App& command, BudgetOptions& options);
+
+}  // namespace cluxel::app
