@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel changes`: what vanished, appeared and moved between visits.
 #include "app/command.hpp"
-#include "app/unfinished_note.hpp"
+#include "app/map_condition.hpp"
 #include "mapping/facts/map_facts.hpp"
 #include "tasks/changes/site_changes.hpp"
 #include "tasks/ways/way_report.hpp"

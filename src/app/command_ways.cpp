@@ -114,6 +114,7 @@ ExitCode search(const WayArguments& arguments, tasks::SearchRequest request, Ses
 void addWayOptions(CLI::App& command, WayArguments& arguments) {
   tasks::WayRequest& request = arguments.request;
   command.add_option("--without", request.without, "a class, Movable or Static: these objects are taken to be gone");
+  command.add_flag("--with-gone", request.with_gone, "objects that later scans saw through are there all the same");
   command.add_option("--max-slope", request.params.max_slope, "rise over run [0.12]")->check(CLI::Range(0.0, 10.0));
   command.add_option("--max-step", request.params.max_step_m, "height of a kerb that is passed [m, 0.06]")
       ->check(CLI::Range(0.0, 2.0));

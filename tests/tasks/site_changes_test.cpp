@@ -15,6 +15,7 @@
 #include "scan/formats/scan_writer.hpp"
 #include "simulation/laser/campus_writer.hpp"
 #include "sparql/query_engine.hpp"
+#include "tasks/ways/route.hpp"
 
 namespace cluxel::tasks {
 namespace {
@@ -151,6 +152,24 @@ TEST_F(SiteChangesTest, AbsentObjectsSayInRdfWhenTheyWereSeenThrough) {
     EXPECT_EQ(gone.count("https://w3id.org/cluxel/map/object/" + map->objects()[states.object].id.hex()), 1);
   }
   EXPECT_GE(absent, 1);
+}
+
+TEST_F(SiteChangesTest, WhatIsGoneClosesNoWay) {
+  WayRequest with_gone;
+  with_gone.with_gone = true;
+  const PassableGrid now = passableIn(*map, {}), ever = passableIn(*map, with_gone);
+  std::set<std::uint32_t> gone;
+  for (const ObjectStates& states : found->states)
+    if (states.after == perception::PresenceState::Absent) gone.insert(states.object);
+  std::size_t opened = 0;
+  for (std::uint32_t cell = 0; cell < now.closure.size(); ++cell) {
+    if (now.closure[cell] == Closure::Thing) {
+      EXPECT_EQ(ever.closure[cell], Closure::Thing);
+      EXPECT_EQ(gone.count(now.blocker[cell]), 0);
+    }
+    opened += now.closure[cell] != Closure::Thing && ever.closure[cell] == Closure::Thing ? 1 : 0;
+  }
+  EXPECT_GT(opened, 3);
 }
 
 TEST_F(SiteChangesTest, RefusesOneSidedTimes) {

@@ -69,7 +69,7 @@ class Visits {
 
   void addVisit(const Campus& base, std::size_t visit) {
     Campus next = site_.visits.back();
-    next.params.seed = scramble(seed_ + visit);  // other noise than on the visits before
+    next.params.seed = mixedBits(seed_ + visit);  // other noise than on the visits before
     const std::size_t known = next.objects.size();
     for (std::size_t i = 0; i < known; ++i) {
       const auto instance = static_cast<std::int32_t>(i);

@@ -37,6 +37,19 @@ class ObjectSelector {
   rdf::OntologyView ontology_;
 };
 
+/// Marks the objects of which the map says that later scans saw through their place.
+void markGone(const mapping::MapReader& map, std::vector<bool>& marked) {
+  const rdf::QuadReader& quads = map.quads();
+  rdf::QuadPattern pattern;
+  pattern.p = quads.idOf(Term::iri(rdf::vocabulary::clx("seenThrough")));
+  if (!pattern.p) return;
+  for (std::size_t i = 0; i < map.objects().size(); ++i) {
+    pattern.s = quads.idOf(Term::iri(rdf::iriOfObject(map.objects()[i].id)));
+    rdf::QuadIds quad;
+    if (pattern.s && quads.scan(pattern).next(quad)) marked[i] = true;
+  }
+}
+
 std::optional<double> wholeNumber(std::string_view text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -76,6 +89,7 @@ PassableGrid passableIn(const mapping::MapReader& map, const WayRequest& request
   const ObjectSelector selector(map);
   std::vector<bool> is_left_out(map.objects().size(), false), near;
   for (const std::string& name : request.without) selector.mark(name, is_left_out);
+  if (!request.with_gone) markGone(map, is_left_out);
   if (!request.near.empty()) {
     near.assign(map.objects().size(), false);
     selector.mark(request.near, near);
