@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the program takes its data from, and what it says of maps whose build is unfinished.
+#include <fstream>
+
 #include "app/program_fixture.hpp"
 
 namespace cluxel::app {
@@ -60,6 +62,17 @@ TEST_F(Program, BuildAndInfoNameTheDataHomeAndTheFiles) {
   const std::string json = run("info --json " + path("named.clx").string()).out;
   EXPECT_NE(json.find("\"home\": \"" + home), std::string::npos) << json;
   EXPECT_NE(json.find(home + "/rules/20_avenues.rq"), std::string::npos) << json;
+}
+
+TEST_F(Program, BuildAndInfoNameTheCoordinateSystem) {
+  const fs::path manifest = path("georeferenced.yaml"), map = path("georeferenced.clx");
+  std::ofstream(manifest) << "map_origin: [456000, 5412000, 0]\ncrs: EPSG:25832\nscans:\n  - "
+                          << path("campus/scan_000.pcd").string() << "\n";
+  const Outcome build = run("build " + manifest.string() + " -o " + map.string());
+  ASSERT_EQ(build.code, 0) << build.err;
+  EXPECT_NE(build.err.find("coordinate system of the map: EPSG:25832"), std::string::npos) << build.err;
+  EXPECT_NE(run("info " + map.string()).out.find("coordinate system: EPSG:25832"), std::string::npos);
+  EXPECT_NE(run("info --json " + map.string()).out.find("\"crs\": \"EPSG:25832\""), std::string::npos);
 }
 
 /// The first scan is committed before the second one is found to be cut.
