@@ -81,7 +81,8 @@ void addExport(CLI::App& app, Session& session);
 void addView(CLI::App& app, Session& session);
 void addEvaluate(CLI::App& app, Session& session);
 void addChange(CLI::App& app, Session& session);  ///< extend, retract, repose, merge
-void addWays(CLI::App& app, Session& session);    ///< route, reach, costmap, search
+void addWatch(CLI::App& app, Session& session);
+void addWays(CLI::App& app, Session& session);  ///< route, reach, costmap, search
 void addChanges(CLI::App& app, Session& session);
 void addServe(CLI::App& app, Session& session);
 void addUpkeep(CLI::App& app, Session& session);  ///< doctor, compact

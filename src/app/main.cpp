@@ -40,6 +40,7 @@ void addCommands(CLI::App& app, Session& session) {
   addRegister(app, session);
   addBuild(app, session);
   addChange(app, session);
+  addWatch(app, session);
   addQuery(app, session);
   addUpdate(app, session);
   addLoad(app, session);

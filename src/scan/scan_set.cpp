@@ -338,6 +338,13 @@ ScanSet ScanSet::posed(const std::vector<PosedScan>& scans) const {
   return set;
 }
 
+ScanSet ScanSet::only(const std::vector<std::size_t>& scans) const {
+  ScanSet set(*this);
+  set.files_.clear();
+  for (const std::size_t index : scans) set.files_.push_back(files_.at(index));
+  return set;
+}
+
 LoadedScan ScanSet::read(std::size_t index) const {
   return loadScan(files_.at(index));
 }

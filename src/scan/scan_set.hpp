@@ -72,6 +72,9 @@ class ScanSet {
   /// Only these scans, in this order, with these poses.
   ScanSet posed(const std::vector<PosedScan>& scans) const;
 
+  /// Only these scans, in this order.
+  ScanSet only(const std::vector<std::size_t>& scans) const;
+
   std::size_t size() const { return files_.size(); }
   const ScanFile& file(std::size_t index) const { return files_.at(index); }
   /// Reads scan `index` completely and gives it its id. Throws InputError; never returns an empty or partly read scan.

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// `cluxel watch`: a map grows as scans arrive in a folder.
+#include <csignal>
+
+#include "app/command.hpp"
+#include "app/shared_options.hpp"
+#include "mapping/change/folder_watch.hpp"
+
+namespace cluxel::app {
+
+namespace {
+
+volatile std::sig_atomic_t is_stop_asked = 0;
+
+struct WatchOptions {
+  fs::path folder, map;
+  ScanOptions scans;
+  mapping::MapInputFiles files;
+  mapping::WatchParams params;
+};
+
+void report(const WatchOptions& options, std::size_t added, std::size_t scans, std::size_t objects, bool as_json) {
+  if (as_json)
+    printJson(Json{{"map", options.map.string()}, {"added", added}, {"scans", scans}, {"objects", objects}});
+  else
+    std::printf("%s: %zu new, %zu scans, %zu objects\n", options.map.c_str(), added, scans, objects);
+  std::fflush(stdout);
+}
+
+ExitCode watch(const WatchOptions& options, Session& session) {
+  mapping::WatchParams params = options.params;
+  params.threads = session.threadCount();
+  params.scans = options.scans.params();
+  mapping::WatchCallbacks callbacks;
+  callbacks.inputs = [&] { return readMapInputs(options.files, session.dataHome()); };
+  callbacks.committed = [&](std::size_t added, std::size_t scans, std::size_t objects) {
+    report(options, added, scans, objects, session.json);
+  };
+  callbacks.is_stopped = [] { return is_stop_asked != 0; };
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { is_stop_asked = 1; });
+  const std::size_t added = watchFolder(options.folder, options.map, params, callbacks, session.console);
+  return added == 0 ? ExitCode::NoRows : ExitCode::Done;
+}
+
+}  // namespace
+
+void addWatch(CLI::App& app, Session& session) {
+  auto options = std::make_shared<WatchOptions>();
+  CLI::App* command = app.add_subcommand("watch", "extend a map by the scans that arrive in a folder");
+  command->add_option("folder", options->folder, "the folder in which scans arrive")->required()->check(named());
+  command->add_option("-o,--output", options->map, "the map; it is made when it is not there")
+      ->required()
+      ->check(named());
+  addScanOptions(*command, options->scans);
+  command->add_option("--interval", options->params.interval_s, "between two looks at the folder [s, 1]")
+      ->check(CLI::Range(0.05, 3600.0));
+  command->add_option("--idle", options->params.idle_s, "end when nothing arrived for so long [s]; 0: never")
+      ->check(CLI::Range(0.0, 1e6));
+  command->add_option("--model", options->files.model, "of a new map: a trained model, a name in models/ or a file");
+  command->add_option("--rules", options->files.rules, "of a new map: rule files instead of rules/outdoor.rules.yaml");
+  onRun(*command, session, [options, &session] { return watch(*options, session); });
+}
+
+}  // namespace cluxel::app

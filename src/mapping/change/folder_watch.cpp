@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// Polls a folder. A file that is still being written has another size or time at the next look.
+#include "mapping/change/folder_watch.hpp"
+
+#include <chrono>
+#include <map>
+#include <thread>
+
+#include "cluxel/error.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct FileState {
+  std::uintmax_t size = 0;
+  fs::file_time_type changed;
+  bool operator==(const FileState&) const = default;
+};
+using FolderState = std::map<fs::path, FileState>;
+
+/// Files that vanish while they are looked at are left out.
+FolderState stateOf(const fs::path& folder) {
+  FolderState state;
+  std::error_code gone;
+  for (fs::recursive_directory_iterator entry(folder, gone), end; entry != end; entry.increment(gone)) {
+    if (gone || !entry->is_regular_file(gone)) continue;
+    const FileState file{entry->file_size(gone), entry->last_write_time(gone)};
+    if (!gone) state.emplace(entry->path(), file);
+  }
+  return state;
+}
+
+class Watch {
+ public:
+  Watch(const fs::path& folder, const fs::path& map, const WatchParams& params, const WatchCallbacks& callbacks,
+        ProgressSink& sink)
+      : folder_(folder), map_(map), params_(params), callbacks_(callbacks), sink_(sink) {}
+
+  std::size_t run() {
+    using Clock = std::chrono::steady_clock;
+    auto last_arrival = Clock::now();
+    FolderState before;
+    while (!callbacks_.is_stopped()) {
+      const FolderState now = stateOf(folder_);
+      if (look(before, now)) last_arrival = Clock::now();
+      before = now;
+      const std::chrono::duration<double> idle = Clock::now() - last_arrival;
+      if (params_.idle_s > 0 && idle.count() >= params_.idle_s) break;
+      std::this_thread::sleep_for(std::chrono::duration<double>(params_.interval_s));
+    }
+    return added_;
+  }
+
+ private:
+  /// True when scans were added.
+  bool look(const FolderState& before, const FolderState& now) {
+    if (now.empty()) return false;
+    std::optional<scan::ScanSet> scans;
+    try {
+      scans = scan::ScanSet::open({folder_}, params_.scans, quiet_);
+    } catch (const Error& fault) {
+      if (before == now && last_fault_ != fault.what()) sink_.note(last_fault_ = fault.what());
+      return false;
+    }
+    std::vector<std::size_t> fresh;
+    for (std::size_t i = 0; i < scans->size(); ++i) {
+      const auto file = now.find(scans->file(i).path), earlier = before.find(scans->file(i).path);
+      const bool is_still = file != now.end() && earlier != before.end() && earlier->second == file->second;
+      if (is_still && !isDone(*file)) fresh.push_back(i);
+    }
+    const bool added = !fresh.empty() && add(*scans, fresh);
+    for (const std::size_t i : fresh) done_[scans->file(i).path] = now.at(scans->file(i).path);
+    return added;
+  }
+
+  bool isDone(const FolderState::value_type& file) const {
+    const auto done = done_.find(file.first);
+    return done != done_.end() && done->second == file.second;
+  }
+
+  /// Adds scans in one commit, or, when one of them cannot be read, one by one.
+  bool add(const scan::ScanSet& scans, const std::vector<std::size_t>& fresh) {
+    try {
+      commit(scans.only(fresh));
+      return true;
+    } catch (const InputError& fault) {
+      if (fresh.size() == 1) {
+        sink_.note(std::string(fault.what()) + "; it is tried again when the file changes");
+        return false;
+      }
+    }
+    bool any = false;
+    for (const std::size_t i : fresh) any = add(scans, {i}) || any;
+    return any;
+  }
+
+  void commit(const scan::ScanSet& scans) {
+    if (!fs::exists(map_)) {
+      const BuildReport report = buildMap(scans, callbacks_.inputs(), map_, {.threads = params_.threads}, sink_);
+      return tell(report.scans, report.scans, report.objects);
+    }
+    const ChangeReport report = extendMap(map_, scans, {.threads = params_.threads}, sink_);
+    if (report.has_changes) tell(report.scans_added, report.scans, report.after.size());
+  }
+
+  void tell(std::size_t added, std::size_t scans, std::size_t objects) {
+    added_ += added;
+    if (callbacks_.committed) callbacks_.committed(added, scans, objects);
+  }
+
+  const fs::path &folder_, &map_;
+  const WatchParams& params_;
+  const WatchCallbacks& callbacks_;
+  ProgressSink& sink_;
+  ProgressSink quiet_;  ///< opening a set notes the same at each look
+  FolderState done_;    ///< scans that were added, or could not be read, as they were then
+  std::string last_fault_;
+  std::size_t added_ = 0;
+};
+
+}  // namespace
+
+std::size_t watchFolder(const fs::path& folder, const fs::path& map, const WatchParams& params,
+                        const WatchCallbacks& callbacks, ProgressSink& sink) {
+  if (!fs::is_directory(folder))
+    throw Error(ErrorKind::InvalidArgument, folder.string() + " is no folder: name the folder in which scans arrive");
+  return Watch(folder, map, params, callbacks, sink).run();
+}
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Extends a map by the scans that arrive in a folder.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "mapping/build/map_builder.hpp"
+#include "mapping/change/map_change.hpp"
+
+namespace cluxel::mapping {
+
+struct WatchParams {
+  unsigned threads = 1;
+  double interval_s = 1;  ///< between two looks at the folder
+  double idle_s = 0;      ///< end when nothing arrived for so long; 0: never
+  scan::ScanSetParams scans = {};
+};
+
+struct WatchCallbacks {
+  std::function<MapInputs()> inputs;  ///< for the build, when there is no map yet
+  /// After each commit: scans that were added, scans and objects of the map.
+  std::function<void(std::size_t added, std::size_t scans, std::size_t objects)> committed;
+  std::function<bool()> is_stopped = [] { return false; };  ///< asked at each look
+};
+
+/// Looks at `folder` again and again. Scans whose files have not changed since the last look are added to the map in
+/// one commit, which is then the exact map of all scans so far; the first ones build it when it is not there. Until a
+/// folder can be read as a set of scans (a pose is still missing), it waits. A fault that stays for two looks is a
+/// note, and so is a scan that cannot be read, which is tried again when its file changes. Throws Error for faults of
+/// the map. Returns the number of scans that were added.
+std::size_t watchFolder(const std::filesystem::path& folder, const std::filesystem::path& map,
+                        const WatchParams& params, const WatchCallbacks& callbacks, ProgressSink& sink);
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// A map that grows while scans arrive is the map that a build from all of them gives.
+#include "mapping/change/folder_watch.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/small_campus.hpp"
+
+namespace cluxel::mapping {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Notes : public ProgressSink {
+ public:
+  void note(std::string_view message) override { all.emplace_back(message); }
+  std::vector<std::string> all;
+};
+
+class FolderWatch : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    campus = new SmallCampus({.seed = 8, .stops = 3, .size_m = 45, .points_per_stop = 1000});
+    inputs = new MapInputs(shippedInputs());
+  }
+  static void TearDownTestSuite() {
+    delete campus;
+    delete inputs;
+  }
+
+  FolderWatch() { fs::create_directory(scans()); }
+  fs::path scans() const { return folder.path() / "scans"; }
+  fs::path map() const { return folder.path() / "map.clx"; }
+
+  /// Writes the file in two steps, as a slow recorder does.
+  void arrive(std::size_t number) const {
+    const std::string bytes = readFile(campus->files()[number]);
+    const fs::path file = scans() / campus->files()[number].filename();
+    writeFile(file, bytes.substr(0, bytes.size() / 2));
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    writeFile(file, bytes);
+  }
+
+  /// Watches until `count` scans are in the map; `each` runs after each commit.
+  std::size_t watch(std::size_t count, const std::function<void(std::size_t)>& each) {
+    WatchCallbacks callbacks;
+    std::size_t in_map = 0;
+    callbacks.inputs = [] { return *inputs; };
+    callbacks.committed = [&](std::size_t, std::size_t total, std::size_t) { each(in_map = total); };
+    callbacks.is_stopped = [&] { return in_map >= count; };
+    return watchFolder(scans(), map(), {.threads = 1, .interval_s = 0.05, .idle_s = 120}, callbacks, notes);
+  }
+
+  rdf::ScratchFolder folder;
+  Notes notes;
+  static inline SmallCampus* campus = nullptr;
+  static inline MapInputs* inputs = nullptr;
+};
+
+TEST_F(FolderWatch, GrowsTheMapToTheOneOfAllScans) {
+  arrive(0);
+  std::vector<std::size_t> totals;
+  const std::size_t added = watch(3, [&](std::size_t total) {
+    totals.push_back(total);
+    if (total < 3) arrive(total);
+  });
+  EXPECT_EQ(added, 3);
+  EXPECT_THAT(totals, ::testing::ElementsAre(1, 2, 3));
+  EXPECT_TRUE(canonicalText(map()) == builtText(campus->files(), *inputs));
+}
+
+TEST_F(FolderWatch, TakesOnlyWhatIsNewAfterARestart) {
+  arrive(0);
+  watch(1, [](std::size_t) {});
+  arrive(1);
+  std::vector<std::size_t> totals;
+  EXPECT_EQ(watch(2, [&](std::size_t total) { totals.push_back(total); }), 1);
+  EXPECT_THAT(totals, ::testing::ElementsAre(2));
+}
+
+TEST_F(FolderWatch, NotesAScanThatCannotBeReadAndGoesOn) {
+  arrive(0);
+  const std::string bytes = readFile(campus->files()[1]);
+  writeFile(scans() / "broken.pcd", bytes.substr(0, bytes.size() / 2));
+  watch(1, [](std::size_t) {});
+  arrive(2);
+  watch(2, [](std::size_t) {});
+  EXPECT_THAT(notes.all, ::testing::Contains(::testing::HasSubstr("broken.pcd")));
+}
+
+TEST_F(FolderWatch, EndsWhenNothingArrives) {
+  WatchCallbacks callbacks;
+  callbacks.inputs = [] { return *inputs; };
+  EXPECT_EQ(watchFolder(scans(), map(), {.threads = 1, .interval_s = 0.05, .idle_s = 0.2}, callbacks, notes), 0);
+  EXPECT_FALSE(fs::exists(map()));
+  EXPECT_THROW(watchFolder(scans() / "nowhere", map(), {}, callbacks, notes), Error);
+}
+
+}  // namespace
+}  // namespace cluxel::mapping
