@@ -14,6 +14,7 @@ lies within the box of a true event, padded by 0.5 m, is a piece of it: neither 
 States. For each object of the truth the reported object whose box overlaps it most (intersection over union of at least
 0.2) gives the state in the last visit: present, absent or not observed. In the truth an object is not observed when the
 visit measures, or would measure, no point on it, and of no certain state below 20 points.
+Lamps that were replaced are left out: another pole stands in the same place.
 """
 import csv
 import json
@@ -162,6 +163,10 @@ def main():
     for row in csv.DictReader(open(f"{folder}/instances.csv")):
         boxes[row["id"]] = box_of(row)
     events = score_events(changes, folder, "--list" in sys.argv)
+    for row in csv.DictReader(open(f"{folder}/events.csv")):
+        if row["event"] == "replaced":
+            boxes.pop(row["instance"], None)
+            boxes.pop(row["new_instance"], None)
     states = score_states(changes, seen, boxes, present)
     print(json.dumps({"events": events, "states": {f"{t} -> {r}": n for (t, r), n in sorted(states.items())}}))
 

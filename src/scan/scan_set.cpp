@@ -326,22 +326,19 @@ ScanSet ScanSet::open(const std::vector<fs::path>& inputs, const ScanSetParams& 
   return set;
 }
 
-ScanSet ScanSet::posed(const std::vector<PosedScan>& scans) const {
-  ScanSet set(*this);
-  set.files_.clear();
-  for (const PosedScan& scan : scans) {
-    ScanFile file = files_.at(scan.index);
-    file.T_map_sensor = scan.T_map_sensor;
-    file.has_pose = true;
-    set.files_.push_back(std::move(file));
-  }
-  return set;
-}
-
 ScanSet ScanSet::only(const std::vector<std::size_t>& scans) const {
   ScanSet set(*this);
   set.files_.clear();
   for (const std::size_t index : scans) set.files_.push_back(files_.at(index));
+  return set;
+}
+
+ScanSet ScanSet::posed(const std::vector<PosedScan>& scans) const {
+  std::vector<std::size_t> indices;
+  for (const PosedScan& scan : scans) indices.push_back(scan.index);
+  ScanSet set = only(indices);
+  for (std::size_t i = 0; i < scans.size(); ++i)
+    set.files_[i].T_map_sensor = scans[i].T_map_sensor, set.files_[i].has_pose = true;
   return set;
 }
 
