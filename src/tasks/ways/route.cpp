@@ -183,6 +183,7 @@ std::vector<ReachedObject> objectsWithin(const TerrainGrid& terrain, const std::
     }
   }
   std::vector<ReachedObject> reached;
+  reached.reserve(shortest.size());
   for (const auto& [object, length_m] : shortest) reached.push_back({object, length_m});
   std::stable_sort(reached.begin(), reached.end(), [](const auto& a, const auto& b) { return a.walk_m < b.walk_m; });
   return reached;
