@@ -2,6 +2,7 @@
 // `cluxel explain`: the tests that led to a decision, why it was no other, and the smallest change that would reverse
 // it.
 #include "app/command.hpp"
+#include "cluxel/error.hpp"
 #include "tasks/explanation.hpp"
 
 namespace cluxel::app {
@@ -10,8 +11,23 @@ namespace {
 
 struct ExplainOptions {
   fs::path map;
-  std::string name;
+  std::string name, why_not;
+  bool dot = false;
 };
+
+ExitCode explainOne(const ExplainOptions& options, const Session& session) {
+  if (options.dot && session.json) throw Error(ErrorKind::InvalidArgument, "--dot and --json: choose one of them");
+  const mapping::MapReader map(options.map);
+  if (options.dot) {
+    print(tasks::explanationGraph(map, options.name, options.why_not));
+  } else {
+    const tasks::ExplanationTexts texts = options.why_not.empty()
+                                              ? tasks::explainThing(map, options.name)
+                                              : tasks::explainWhyNot(map, options.name, options.why_not);
+    print(session.json ? texts.json : texts.text);
+  }
+  return ExitCode::Done;
+}
 
 }  // namespace
 
@@ -23,10 +39,9 @@ void addExplain(CLI::App& app, Session& session) {
       ->add_option("thing", options->name,
                    "an object or primitive: its IRI, the first digits of its hash, or an object's number (17, #17)")
       ->required();
-  onRun(*command, session, [options, &session] {
-    print(tasks::explainThing(mapping::MapReader(options->map), options->name, session.json));
-    return ExitCode::Done;
-  });
+  command->add_option("--why-not", options->why_not, "how near the rules of this class come to it, and what they miss");
+  command->add_flag("--dot", options->dot, "the rule's tree as a Graphviz graph, the way through it in bold");
+  onRun(*command, session, [options, &session] { return explainOne(*options, session); });
 }
 
 }  // namespace cluxel::app
