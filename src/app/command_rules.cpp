@@ -107,7 +107,9 @@ ExitCode check(const RulesOptions& options, const Session& session) {
 /// The scene of a map, or what the pipeline makes of a cloud with the model.
 perception::Scene sceneFor(const rules::SceneRequest& request, const RulesOptions& options, Session& session) {
   if (request.kind == rules::SceneRequest::Kind::Map) return mapping::MapReader(request.path).scene();
-  const mapping::NamedText model = mapping::readMapInputs({.model = options.inputs.model}, session.dataHome()).model;
+  mapping::MapInputFiles files;
+  files.model = options.inputs.model;
+  const mapping::NamedText model = mapping::readMapInputs(files, session.dataHome()).model;
   const scan::ScanSet scans = scan::ScanSet::open({request.path}, {}, session.console);
   std::vector<scan::Scan> loaded;
   for (std::size_t i = 0; i < scans.size(); ++i) loaded.push_back(scans.load(i));
