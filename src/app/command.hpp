@@ -75,7 +75,8 @@ void addDump(CLI::App& app, Session& session);
 void addUpdate(CLI::App& app, Session& session);
 void addTasks(CLI::App& app, Session& session);
 void addRules(CLI::App& app, Session& session);
-void addRuleFit(CLI::App& rules, Session& session);  ///< a subcommand of `rules`
+void addRuleFit(CLI::App& rules, Session& session);    ///< a subcommand of `rules`
+void addRuleTrial(CLI::App& rules, Session& session);  ///< subcommands of `rules`
 void addExplain(CLI::App& app, Session& session);
 void addExport(CLI::App& app, Session& session);
 void addView(CLI::App& app, Session& session);

@@ -3,6 +3,7 @@
 // it.
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
+#include "cluxel/error.hpp"
 #include "tasks/explanation.hpp"
 
 namespace cluxel::app {
@@ -11,9 +12,24 @@ namespace {
 
 struct ExplainOptions {
   fs::path map;
-  std::string name;
-  bool allow_unfinished = false;
+  std::string name, why_not;
+  bool dot = false, allow_unfinished = false;
 };
+
+ExitCode explainOne(const ExplainOptions& options, Session& session) {
+  if (options.dot && session.json) throw Error(ErrorKind::InvalidArgument, "--dot and --json: choose one of them");
+  const mapping::MapReader map(options.map);
+  noteUnfinished(options.map, map.isFinished(), options.allow_unfinished, session);
+  if (options.dot) {
+    print(tasks::explanationGraph(map, options.name, options.why_not));
+  } else {
+    const tasks::ExplanationTexts texts = options.why_not.empty()
+                                              ? tasks::explainThing(map, options.name)
+                                              : tasks::explainWhyNot(map, options.name, options.why_not);
+    print(session.json ? texts.json : texts.text);
+  }
+  return ExitCode::Done;
+}
 
 }  // namespace
 
@@ -26,12 +42,9 @@ void addExplain(CLI::App& app, Session& session) {
                    "an object or primitive: its IRI, the first digits of its hash, or an object's number (17, #17)")
       ->required();
   addAllowUnfinished(*command, options->allow_unfinished);
-  onRun(*command, session, [options, &session] {
-    const mapping::MapReader map(options->map);
-    noteUnfinished(options->map, map.isFinished(), options->allow_unfinished, session);
-    print(tasks::explainThing(map, options->name, session.json));
-    return ExitCode::Done;
-  });
+  command->add_option("--why-not", options->why_not, "how near the rules of this class come to it, and what they miss");
+  command->add_flag("--dot", options->dot, "the rule's tree as a Graphviz graph, the way through it in bold");
+  onRun(*command, session, [options, &session] { return explainOne(*options, session); });
 }
 
 }  // namespace cluxel::app

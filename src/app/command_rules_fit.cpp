@@ -82,6 +82,7 @@ void printFit(const std::vector<tasks::FittedRule>& fitted, Session& session) {
   for (const tasks::FittedRule& rule : fitted) {
     Json entry{{"rule", rule.rule_id}, {"right", rule.right}, {"wrong", rule.wrong}, {"changes", Json::array()}};
     if (!rule.refusal.empty()) entry["refusal"] = rule.refusal;
+    if (rule.kept > 0) entry["kept"] = rule.kept;
     if (rule.is_fitted) entry["loss_before"] = rule.loss_before, entry["loss_after"] = rule.loss_after;
     for (const tasks::FittedNumber& number : rule.changes)
       entry["changes"].push_back({{"line", number.at.line},
@@ -98,6 +99,9 @@ void printFit(const std::vector<tasks::FittedRule>& fitted, Session& session) {
     std::snprintf(losses, sizeof losses, "log loss on places left out %.3f -> %.3f", rule.loss_before, rule.loss_after);
     text += rule.is_fitted ? std::string(losses) : "unchanged";
     if (!rule.refusal.empty()) text += ": " + rule.refusal;
+    if (rule.kept > 0)
+      text += "; " + std::to_string(rule.kept) +
+              " numbers stay, because other rules use their definition too: write them out to fit them";
     for (const tasks::FittedNumber& number : rule.changes) text += "\n  " + shown(number);
     print(text);
   }

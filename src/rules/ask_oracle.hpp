@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace cluxel::rules {
 
@@ -20,8 +21,10 @@ struct QueryFault {
   std::string message;
 };
 
-/// Checks a query while rules are loaded, without a map; absent when there is no fault.
-using QueryCheck = std::function<std::optional<QueryFault>(const std::string& query)>;
+/// Checks a query while rules are loaded, without a map; absent when there is no fault. `bound`: the variables that get
+/// a value before it is asked.
+using QueryCheck =
+    std::function<std::optional<QueryFault>(const std::string& query, const std::vector<std::string>& bound)>;
 
 /// Answers the `ask:` tests from the map and the ontology. The reasoning stage calls it from one thread.
 class AskOracle {

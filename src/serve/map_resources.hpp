@@ -41,6 +41,9 @@ HttpResponse answerQuestion(const ServedMap& map, const ResourceRequest& asked,
 HttpResponse answerTaskList();
 /// Runs route, reach or search; the parameters are those of the request.
 HttpResponse answerTask(ServedMap& map, const ResourceRequest& asked, const std::string& name);
+/// POST: tries the rules of the body on the map, which stays as it is, and tells what would change. Needs the token,
+/// because reasoning takes as long as it takes.
+HttpResponse answerRuleTrial(ServedMap& map, const ResourceRequest& asked, const std::string& token);
 /// One graph in Turtle or N-Triples (SPARQL 1.1 Graph Store HTTP Protocol, reading): parameter graph=IRI, or default.
 HttpResponse answerGraph(const ServedMap& map, const ResourceRequest& asked);
 

@@ -17,7 +17,7 @@ namespace cluxel::serve {
 namespace {
 
 /// The first segments of resources of a map.
-const std::array<std::string, 6> kMapResources{"sparql", "graph", "objects", "questions", "tasks", "page"};
+const std::array<std::string, 7> kMapResources{"sparql", "graph", "objects", "questions", "tasks", "page", "rules"};
 
 bool isMapResource(const std::string& segment) {
   return std::find(kMapResources.begin(), kMapResources.end(), segment) != kMapResources.end();
@@ -134,8 +134,11 @@ MapService::Route MapService::routeOf(const Target& target) {
 }
 
 HttpResponse MapService::answerRoute(const Route& route, const HttpRequest& request, const Target& target) {
+  const bool is_trial = route.map != nullptr && route.segments == std::vector<std::string>{"rules", "trial"};
   const bool may_post = route.map != nullptr && route.segments == std::vector<std::string>{"sparql"};
-  requireMethod(request, may_post);
+  if (is_trial && request.method != "POST")
+    throw Refusal(405, request.method + " is not allowed here; send rules by POST", {{"Allow", "POST"}});
+  requireMethod(request, may_post || is_trial);
   const WorkSlots::Slot slot = slots_.take();
   return route.map == nullptr ? answerOwn(route) : answerMap(route, request, target);
 }
@@ -184,6 +187,7 @@ HttpResponse MapService::answerMap(const Route& route, const HttpRequest& reques
   }
   if (path.size() == 2 && first == "objects") return answerObject(map, asked, second);
   if (path.size() == 2 && first == "questions") return answerQuestion(map, asked, questions_, second);
+  if (path.size() == 2 && first == "rules" && second == "trial") return answerRuleTrial(map, asked, options_.token);
   if (path.size() == 2 && first == "tasks") return answerTask(map, asked, second);
   if (path.size() == 3 && first == "objects" && third == "explanation") return answerExplanation(map, asked, second);
   if (path.size() == 3 && first == "objects" && third == "points") return answerPoints(map, asked, second);

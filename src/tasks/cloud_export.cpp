@@ -14,21 +14,19 @@ namespace cluxel::tasks {
 
 namespace {
 
-using Colour = std::array<std::uint8_t, 3>;
-
-constexpr Colour kGrey{128, 128, 128};
+constexpr PointColour kGrey{128, 128, 128};
 
 /// "#rrggbb", else grey.
-Colour colourOf(std::string_view text) {
-  Colour colour = kGrey;
+PointColour colourOf(std::string_view text) {
+  PointColour colour = kGrey;
   if (text.size() != 7 || text[0] != '#') return colour;
   for (std::size_t i = 0; i < 3; ++i) std::from_chars(text.data() + 1 + 2 * i, text.data() + 3 + 2 * i, colour[i], 16);
   return colour;
 }
 
-std::vector<Colour> coloursOf(const mapping::MapReader& map) {
+std::vector<PointColour> coloursOf(const mapping::MapReader& map) {
   const rdf::OntologyView ontology = ontologyViewOf(map.quads());
-  std::vector<Colour> colours;
+  std::vector<PointColour> colours;
   for (const rules::SemanticObject& object : map.objects()) {
     const rdf::OntologyClass* known = ontology.find(object.class_iri);
     colours.push_back(known == nullptr ? kGrey : colourOf(known->color));
@@ -50,8 +48,7 @@ void append(std::string& bytes, const T& value) {
 
 }  // namespace
 
-void writeColouredPly(const mapping::MapReader& map, const ByteSink& out) {
-  const std::vector<Colour> colours = coloursOf(map);
+void writeColouredPly(const mapping::MapReader& map, const ColourOfPoint& colourOfPoint, const ByteSink& out) {
   std::uint64_t total = 0;
   for (const mapping::Cloud& cloud : map.clouds()) total += cloud.point_count;
   out(headerFor(total));
@@ -63,12 +60,22 @@ void writeColouredPly(const mapping::MapReader& map, const ByteSink& out) {
       const Eigen::Vector3d p = scan::toMap(cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
       append(bytes, p.x()), append(bytes, p.y()), append(bytes, p.z());
       const bool has_object = answers.object[i] != mapping::kNoObjectOfPoint;
-      append(bytes, has_object ? colours[answers.object[i]] : kGrey);
+      append(bytes, colourOfPoint(answers.cluxel[i], answers.object[i]));
       append(bytes, static_cast<float>(answers.label[i]));
       append(bytes, has_object ? static_cast<float>(answers.object[i]) : -1.0F);
     }
     out(bytes);
   }
+}
+
+void writeColouredPly(const mapping::MapReader& map, const ByteSink& out) {
+  const std::vector<PointColour> colours = coloursOf(map);
+  writeColouredPly(
+      map,
+      [&](std::uint32_t /*cluxel*/, std::uint32_t object) {
+        return object == mapping::kNoObjectOfPoint ? kGrey : colours[object];
+      },
+      out);
 }
 
 }  // namespace cluxel::tasks

@@ -7,9 +7,12 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/nearest_name.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/facts/ask_replay.hpp"
 #include "rules/explain/explain.hpp"
+#include "rules/explain/path_tree.hpp"
+#include "rules/explain/why_not.hpp"
 #include "rules/language/rule_loader.hpp"
 
 namespace cluxel::tasks {
@@ -25,7 +28,7 @@ rules::RuleSet rulesOf(const mapping::MapInputs& inputs) {
 }
 
 /// Names rule files relative to the folder of the first: the map holds the paths of the machine that built it.
-void shortenFiles(rules::Explanation& explanation, const mapping::MapInputs& inputs) {
+void shortenFiles(rules::Decision& decision, const mapping::MapInputs& inputs) {
   if (inputs.rules.empty()) return;
   const std::filesystem::path folder = std::filesystem::path(inputs.rules.front().name).parent_path();
   const auto shorten = [&](std::string& name) {
@@ -33,10 +36,26 @@ void shortenFiles(rules::Explanation& explanation, const mapping::MapInputs& inp
     const bool is_below = !relative.empty() && *relative.begin() != "..";
     name = (is_below ? relative : file.filename()).string();
   };
-  for (rules::ExplainedDecision& explained : explanation.decisions) {
-    for (rules::DecisionStep& step : explained.decision.path) shorten(step.file);
-    for (rules::EvidenceStep& step : explained.decision.evidence) shorten(step.file);
+  for (rules::DecisionStep& step : decision.path) shorten(step.file);
+  for (rules::EvidenceStep& step : decision.evidence) shorten(step.file);
+}
+
+void shortenFiles(rules::Explanation& explanation, const mapping::MapInputs& inputs) {
+  for (rules::ExplainedDecision& explained : explanation.decisions) shortenFiles(explained.decision, inputs);
+}
+
+/// "clx:Tree", "Tree" or an IRI as the IRI of a class.
+std::string classNamed(const rules::RuleSet& rules, const std::string& written) {
+  const std::string name =
+      written.starts_with('<') && written.ends_with('>') ? written.substr(1, written.size() - 2) : written;
+  std::vector<std::string> known;
+  for (const rules::ClassEntry& entry : rules.catalogue.classes) {
+    const std::string local = mapping::localName(entry.iri);
+    if (name == entry.iri || name == local || name == rules.shorten(entry.iri)) return entry.iri;
+    known.push_back(local);
   }
+  const std::string hint = suggestion(name, known);
+  throw Error(ErrorKind::NotFound, "the ontology knows no class '" + name + "'" + (hint.empty() ? "" : "; " + hint));
 }
 
 /// The name without what tables and other formats write around it: <IRI>, map:object/HEX.
@@ -123,7 +142,70 @@ rules::Explanation explanationOf(const mapping::MapReader& map, const Named& nam
   return explain(scene, rules, context, *object, result.decisions.at(object->decision));
 }
 
+struct WhyNotOfThing {
+  rules::WhyNot why;
+  std::string headline;
+};
+
+WhyNotOfThing whyNotOf(const mapping::MapReader& map, const rules::RuleSet& rules, const mapping::MapInputs& inputs,
+                       const std::string& written, const std::string& class_name) {
+  const Named named = find(map, plainName(written));
+  const std::string class_iri = classNamed(rules, class_name);
+  mapping::AskReplay oracle(map);
+  const rules::ReasoningContext context{.oracle = &oracle};
+  const rules::ReasoningResult made = reason(map.scene(), rules, context);
+  const rules::SemanticObject* owner = nullptr;
+  for (const rules::SemanticObject& object : made.objects) {
+    const bool is_it = named.object && object.id == map.objects()[*named.object].id;
+    const auto holds = [&](const rules::ObjectPart& part) {
+      return named.primitive && std::binary_search(part.primitives.begin(), part.primitives.end(), *named.primitive);
+    };
+    if (is_it || std::any_of(object.parts.begin(), object.parts.end(), holds)) owner = &object;
+  }
+  std::vector<perception::PrimitiveIndex> primitives;
+  if (named.primitive) primitives = {static_cast<perception::PrimitiveIndex>(*named.primitive)};
+  if (named.object && owner != nullptr)
+    for (const rules::ObjectPart& part : owner->parts)
+      primitives.insert(primitives.end(), part.primitives.begin(), part.primitives.end());
+  std::sort(primitives.begin(), primitives.end());
+  primitives.erase(std::unique(primitives.begin(), primitives.end()), primitives.end());
+  WhyNotOfThing thing{whyNot(map.scene(), rules, context, made, owner, primitives, class_iri), ""};
+  thing.headline = owner == nullptr ? "belongs to no object: unknown"
+                                    : "belongs to " + rules.shorten(owner->class_iri) + " " + owner->id.hex() +
+                                          ", by rule " + owner->rule_id;
+  for (rules::RuleVerdict& verdict : thing.why.rules) shortenFiles(verdict.decision, inputs);
+  return thing;
+}
+
 }  // namespace
+
+ExplanationTexts explainWhyNot(const mapping::MapReader& map, const std::string& name, const std::string& class_name) {
+  const mapping::MapInputs inputs = map.inputs();
+  const rules::RuleSet rules = rulesOf(inputs);
+  const WhyNotOfThing thing = whyNotOf(map, rules, inputs, name, class_name);
+  return {thing.headline + "\n" + textOf(thing.why, rules), jsonOf(thing.why, rules)};
+}
+
+std::string explanationGraph(const mapping::MapReader& map, const std::string& name, const std::string& class_name) {
+  const mapping::MapInputs inputs = map.inputs();
+  const rules::RuleSet rules = rulesOf(inputs);
+  const auto graphOf = [&](const rules::Decision& decision) { return dotOf(*rules.find(decision.rule_id), decision); };
+  if (!class_name.empty()) {
+    const WhyNotOfThing thing = whyNotOf(map, rules, inputs, name, class_name);
+    const auto judged = std::find_if(thing.why.rules.begin(), thing.why.rules.end(),
+                                     [](const auto& verdict) { return verdict.nearness <= rules::Nearness::Rejected; });
+    if (judged == thing.why.rules.end())
+      throw Error(ErrorKind::NotFound,
+                  "no rule of class '" + class_name + "' looked at '" + name + "': leave --dot out to see why");
+    return graphOf(judged->decision);
+  }
+  const rules::Explanation explanation = explanationOf(map, find(map, plainName(name)), rules);
+  const rules::Decision* told = nullptr;
+  for (const rules::ExplainedDecision& explained : explanation.decisions)
+    if (told == nullptr || explained.decision.accepted) told = &explained.decision;
+  if (told == nullptr) throw Error(ErrorKind::NotFound, "no rule decided about '" + name + "'");
+  return graphOf(*told);
+}
 
 ExplanationTexts explainThing(const mapping::MapReader& map, const std::string& written) {
   const Named named = find(map, plainName(written));

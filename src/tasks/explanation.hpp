@@ -20,6 +20,12 @@ struct ExplanationTexts {
 /// clouds and footprints hold it. Runs the map's own rules again on its scene. Files of rules are named relative to the
 /// folder of the first. Throws Error (NotFound) when nothing or more than one resource has the name.
 ExplanationTexts explainThing(const mapping::MapReader& map, const std::string& name);
+/// Why the thing is not of a class ("StreetSign", "clx:StreetSign" or an IRI): how near each rule of the class comes to
+/// it. Runs the rules twice. Throws Error (NotFound) for a class that the ontology does not know, too.
+ExplanationTexts explainWhyNot(const mapping::MapReader& map, const std::string& name, const std::string& class_name);
+/// The tree of the rule that decided about the thing as a Graphviz graph, its path in bold; with a class, of the rule
+/// of that class that comes nearest.
+std::string explanationGraph(const mapping::MapReader& map, const std::string& name, const std::string& class_name);
 /// One of the two: JSON instead of prose with `as_json`.
 std::string explainThing(const mapping::MapReader& map, const std::string& name, bool as_json);
 

@@ -39,7 +39,9 @@ TEST_F(Program, WhatIsNoMapIsExitCodeFiveInEveryCommandThatNeedsOne) {
   writeFile(text, std::string(20'000, 'x'));
   for (const std::string& arguments :
        std::vector<std::string>{"info " + text, "query " + text + " -e 'ASK {}'", "update " + text + " -e 'CLEAR ALL'",
-                                "explain " + text + " 1234", "evaluate " + text + " --truth " + campus() + "/truth",
+                                "explain " + text + " 1234", "rules try " + text + " outdoor.rules.yaml",
+                                "rules diff " + text + " outdoor.rules.yaml outdoor.rules.yaml",
+                                "evaluate " + text + " --truth " + campus() + "/truth",
                                 "export " + text + " --canonical", "view " + text + " -o " + fresh(), "compact " + text,
                                 "query " + campus() + " -e 'ASK {}'", "compact " + campus(), "doctor " + campus()}) {
     SCOPED_TRACE(arguments);
@@ -49,22 +51,62 @@ TEST_F(Program, WhatIsNoMapIsExitCodeFiveInEveryCommandThatNeedsOne) {
 }
 
 TEST_F(Program, AnyOtherInputThatIsNotThereIsExitCodeFourInEveryCommand) {
-  for (const std::string& arguments :
-       std::vector<std::string>{"info absent-input", "build absent-input -o " + fresh(),
-                                "build " + campus() + " -o " + fresh() + " --poses absent-input",
-                                "build " + campus() + " -o " + fresh() + " --model absent-input",
-                                "build " + campus() + " -o " + fresh() + " --rules absent-input",
-                                "build " + campus() + " -o " + fresh() + " --sparql-rules absent-input",
-                                "build " + campus() + " -o " + fresh() + " --ontology absent-input",
-                                "query absent-input.ttl -e 'ASK {}'", "query " + map() + " absent-input.rq",
-                                "update " + map() + " absent-input.ru", "evaluate " + map() + " --truth absent-input",
-                                "rules check absent-input", "rules check --ontology absent-input",
-                                "rules test absent-input", "train absent-input --truth campus -o " + fresh(),
-                                "train " + campus() + " --truth absent-input -o " + fresh()}) {
+  for (const std::string& arguments : std::vector<std::string>{
+           "info absent-input", "build absent-input -o " + fresh(),
+           "build " + campus() + " -o " + fresh() + " --poses absent-input",
+           "build " + campus() + " -o " + fresh() + " --model absent-input",
+           "build " + campus() + " -o " + fresh() + " --rules absent-input",
+           "build " + campus() + " -o " + fresh() + " --sparql-rules absent-input",
+           "build " + campus() + " -o " + fresh() + " --ontology absent-input", "query absent-input.ttl -e 'ASK {}'",
+           "query " + map() + " absent-input.rq", "update " + map() + " absent-input.ru",
+           "evaluate " + map() + " --truth absent-input", "rules check absent-input",
+           "rules check --ontology absent-input", "rules test absent-input", "rules try " + map() + " absent-input",
+           "rules diff " + map() + " outdoor.rules.yaml absent-input",
+           "train absent-input --truth campus -o " + fresh(),
+           "train " + campus() + " --truth absent-input -o " + fresh()}) {
     SCOPED_TRACE(arguments);
     expectError(run(arguments), 4, "absent-input");
     EXPECT_FALSE(fs::exists(fresh()));
   }
+}
+
+TEST_F(Program, TryingRulesTellsByItsExitCodeWhetherSomethingDiffers) {
+  const Outcome same = run("rules try " + map() + " outdoor.rules.yaml");
+  EXPECT_EQ(same.code, 0) << same.out << same.err;
+  EXPECT_NE(same.out.find("no difference"), std::string::npos);
+  writeFile(path("other.rules.yaml"),
+            "apiVersion: cluxel.rules/v1\ninclude: [ " + (test::sourceFolder() / "rules/outdoor.rules.yaml").string() +
+                " ]\noverride:\n  rules:\n    - { id: ground/patches, tree: { reject: off } }\n");
+  const std::string before = readFile(map());
+  const Outcome other = run("rules diff " + map() + " outdoor.rules.yaml " + path("other.rules.yaml").string() +
+                            " --json --ply " + path("changes.ply").string());
+  EXPECT_EQ(other.code, 1) << other.out << other.err;
+  EXPECT_NE(other.out.find("\"Ground\""), std::string::npos);
+  EXPECT_TRUE(readFile(path("changes.ply")).starts_with("ply\n"));
+  EXPECT_EQ(readFile(map()), before) << "the map is not changed";
+  expectError(run("rules try " + map() + " outdoor.rules.yaml --ply " + map()), 2, "is a map");
+}
+
+TEST_F(Program, CheckingRulesLooksIntoQueries) {
+  writeFile(path("bad.rq"),
+            "PREFIX clx: <https://w3id.org/cluxel/ontology#>\nCONSTRUCT { ?x a clx:Tree } WHERE { ?x a clx:Tre }\n");
+  const Outcome outcome = run("rules check " + path("bad.rq").string());
+  EXPECT_EQ(outcome.code, 4);
+  EXPECT_NE(outcome.out.find("bad.rq:2:"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("did you mean 'Tree'?"), std::string::npos);
+  writeFile(path("tab.rules.yaml"), "apiVersion: cluxel.rules/v1\nrules:\n\t- id: a\n");
+  EXPECT_NE(run("rules check " + path("tab.rules.yaml").string()).out.find("indent with spaces"), std::string::npos);
+  writeFile(path("brace.rules.yaml"), "apiVersion: cluxel.rules/v1\nprefixes: { clx: \"urn:x#\"\norder: [clx:Tree]\n");
+  EXPECT_NE(run("rules check " + path("brace.rules.yaml").string()).out.find("is not closed"), std::string::npos);
+}
+
+TEST_F(Program, ExplainsWhyNotAndDrawsTrees) {
+  const Outcome why = run("explain " + map() + " '#0' --why-not Tree");
+  EXPECT_EQ(why.code, 0) << why.err;
+  EXPECT_NE(why.out.find("why not clx:Tree:"), std::string::npos);
+  EXPECT_TRUE(run("explain " + map() + " '#0' --dot").out.starts_with("digraph"));
+  expectError(run("explain " + map() + " '#0' --why-not Tre"), 3, "Tree");
+  expectError(run("explain " + map() + " '#0' --dot --json"), 2, "--dot");
 }
 
 TEST_F(Program, APageNeedsAnOutputThatIsNoMap) {

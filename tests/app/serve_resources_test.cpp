@@ -182,5 +182,25 @@ TEST_F(ServeCommand, UpdatesNeedTheTokenAndReachTheOperatorsGraphOnly) {
   EXPECT_EQ(served.post("/sparql", type, "LOAD <file:///etc/passwd>", right).status, 400);
 }
 
+TEST_F(ServeCommand, TriesPostedRulesForThoseWhoHaveTheToken) {
+  const std::string own = "apiVersion: cluxel.rules/v1\ninclude: [ outdoor.rules.yaml ]\n", type = "application/yaml";
+  EXPECT_EQ(shared().post("/rules/trial", type, own).status, 403) << "started without a token";
+  fs::copy_file(path("map.clx"), path("tried.clx"), fs::copy_options::overwrite_existing);
+  writeFile(path("token"), "0123456789abcdef0123\n");
+  const Served served = serve("--token-file " + path("token").string(), "tried.clx");
+  const std::string right = "Authorization: Bearer 0123456789abcdef0123\r\n";
+  EXPECT_EQ(served.post("/rules/trial", type, own).status, 401);
+  EXPECT_EQ(served.get("/rules/trial").status, 405);
+  EXPECT_EQ(served.post("/rules/trial", "application/json", own, right).status, 415);
+  const ServeJson same = jsonOf(served.post("/rules/trial", type, own, right));
+  EXPECT_TRUE(same.at("changes").empty()) << same;
+  const std::string without = own + "override:\n  rules:\n    - { id: ground/patches, tree: { reject: off } }\n";
+  const ServeJson other = jsonOf(served.post("/rules/trial", type, without, right));
+  EXPECT_FALSE(other.at("changes").empty());
+  const Reply faulty = served.post("/rules/trial", type, own + "rules: 7\n", right);
+  EXPECT_EQ(faulty.status, 400);
+  EXPECT_NE(faulty.body.find("posted.rules.yaml:3"), std::string::npos) << faulty.body;
+}
+
 }  // namespace
 }  // namespace cluxel::app

@@ -8,6 +8,7 @@
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "rules/reasoning_fixture.hpp"
+#include "rules/testing/rule_mutation.hpp"
 #include "rules/testing/rule_test.hpp"
 #include "test_paths.hpp"
 
@@ -158,6 +159,66 @@ TEST_F(RuleTestFolder, WritesJsonAndJunit) {
   EXPECT_EQ(json.at("leaves").size(), 2U);
   const std::string xml = junitOf(report, "rules <1>");
   EXPECT_THAT(xml, ::testing::HasSubstr("<testsuite name=\"rules &lt;1&gt;\" tests=\"1\" failures=\"1\""));
+}
+
+TEST_F(RuleTestFolder, CountsBothWaysOutOfEachBranch) {
+  const RuleTestReport report = run(binTest("{ count: { clx:SmallObject: 1 } }"));
+  ASSERT_EQ(report.branches.size(), 2U);
+  EXPECT_EQ(report.branches[0].way, "yes");
+  EXPECT_EQ(report.branches[0].hits, 1U);
+  EXPECT_EQ(report.branches[1].hits, 0U);
+}
+
+TEST_F(RuleTestFolder, CoversTheRulesOfItsFilesAndNotOfThoseTheyInclude) {
+  writeFile(folder_ / "mine.rules.yaml", R"(apiVersion: cluxel.rules/v1
+include: [ bin.rules.yaml ]
+rules:
+  - id: bin/two
+    class: clx:SmallObject
+    seed: { label: column }
+    tree: { accept: { confidence: 0.7 } }
+)");
+  writeFile(folder_ / "mine.rules-test.yaml", "apiVersion: cluxel.rules.test/v1\nrules: [ mine.rules.yaml ]\ntests:\n" +
+                                                  binTest("{ count: { clx:SmallObject: 1 } }"));
+  const RuleTestReport report = runRuleTests(folder_ / "mine.rules-test.yaml", outdoorCatalogue());
+  ASSERT_EQ(report.leaves.size(), 1U);
+  EXPECT_EQ(report.leaves[0].rule_id, "bin/two");
+}
+
+TEST_F(RuleTestFolder, NoticesTheMutantsThatItsTestsTellApart) {
+  const std::string low = binTest("{ count: { clx:SmallObject: 1 } }");
+  run(low);
+  const auto file = folder_ / "bin.rules-test.yaml";
+  const RuleMutationReport one = mutateRules(file, outdoorCatalogue(), {}, 1);
+  // A bin of 0.9 m: halving 1 m, turning the comparison and exchanging the leaves is noticed, doubling is not.
+  ASSERT_EQ(one.mutants.size(), 4U);
+  EXPECT_EQ(one.killed(), 3U) << textOf(one);
+  EXPECT_THAT(textOf(one), ::testing::HasSubstr("threshold doubled"));
+  std::string high = binTest("{ count: { clx:SmallObject: 0 } }");
+  high.replace(high.find("0.5], size: [1, 1, 0.9]"), 23, "0.75], size: [1, 1, 1.5]");
+  high.replace(high.find("a bin"), 5, "a box");
+  run(low + high);
+  const RuleMutationReport both = mutateRules(file, outdoorCatalogue(), {}, 2);
+  EXPECT_EQ(both.score(), 1) << textOf(both);
+  EXPECT_TRUE(both.untouchedRules().empty());
+  EXPECT_EQ(nlohmann::json::parse(jsonOf(both)).at("killed"), 4);
+}
+
+TEST_F(RuleTestFolder, ListsRulesThatNoMutantTouches) {
+  run("  - name: nothing\n    primitives: { b: { label: scatter, box: { center: [0, 0, 0.5], size: [1, 1, 0.9] } } }\n"
+      "    expect: { count: { clx:SmallObject: 0 } }\n");
+  const RuleMutationReport report = mutateRules(folder_ / "bin.rules-test.yaml", outdoorCatalogue(), {}, 1);
+  EXPECT_EQ(report.untouchedRules(), std::vector<std::string>{"bin/one"});
+  EXPECT_EQ(report.score(), 0);
+}
+
+TEST_F(RuleTestFolder, WritesGoldenFilesThatThenPass) {
+  const std::string golden = binTest("{ golden: objects.json, min_precision: 1, min_recall: 1 }");
+  EXPECT_FALSE(run(golden).passed());
+  const auto written = updateGolden(folder_ / "bin.rules-test.yaml", outdoorCatalogue());
+  ASSERT_EQ(written.size(), 1U);
+  EXPECT_TRUE(run(golden).passed());
+  EXPECT_EQ(filesOfRuleTests(folder_ / "bin.rules-test.yaml", outdoorCatalogue()).size(), 2U);
 }
 
 }  // namespace

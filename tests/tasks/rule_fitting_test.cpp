@@ -117,6 +117,39 @@ TEST(RuleFitting, WritesNumbersAndKeepsTheRestOfTheText) {
   EXPECT_LT(again.rules[0].evidence[1].weight, -1);
 }
 
+/// The rule of kText with its evidence as a definition, used by a second rule or not.
+rules::RuleSet ruleSetWithDefinition(bool used_twice) {
+  std::string text = kText;
+  const std::string list =
+      "\n      - { attribute: height, curve: { 1 m: 0, 3 m: 0 } }     # high ones\n      - { when: { "
+      "attribute: roughness, op: \">=\", value: 5 cm }, weight: 0 }\n";
+  const std::size_t at = text.find("                              # what speaks for it" + list);
+  text.replace(at, ("                              # what speaks for it" + list).size(), " { use: looks }\n");
+  text.insert(text.find("rules:\n"), "define:\n    looks:" + list);
+  std::string second = text.substr(text.find("  - id: tree/any"));
+  second.replace(second.find("tree/any"), 8, "tree/two");
+  rules::ClassCatalogue catalogue;
+  catalogue.classes.push_back({"https://w3id.org/cluxel/ontology#Tree", {}, {}});
+  return loadRuleTexts(std::vector{rules::RuleSource{"tree.yaml", used_twice ? text + second : text}}, 1, catalogue, {})
+      .require();
+}
+
+TEST(RuleFitting, FitsANumberOfADefinitionAsIfItWereWrittenOut) {
+  const auto plain = fitEvidence(ruleSet(), examples(2000), {}),
+             defined = fitEvidence(ruleSetWithDefinition(false), examples(2000), {});
+  ASSERT_EQ(plain[0].changes.size(), defined[0].changes.size());
+  for (std::size_t i = 0; i < plain[0].changes.size(); ++i)
+    EXPECT_EQ(plain[0].changes[i].after, defined[0].changes[i].after);
+  EXPECT_EQ(defined[0].kept, 0U);
+}
+
+TEST(RuleFitting, KeepsTheNumbersOfADefinitionThatAnotherRuleUses) {
+  const auto fitted = fitEvidence(ruleSetWithDefinition(true), examples(2000), {});
+  EXPECT_EQ(fitted[0].kept, 3U);
+  ASSERT_EQ(fitted[0].changes.size(), 1U) << "its own confidence";
+  EXPECT_EQ(fitted[0].changes[0].what, "confidence");
+}
+
 TEST(RuleFitting, RefusesATextThatIsNotTheOneThatWasRead) {
   FittedNumber number;
   number.at = {.file = "a", .line = 1, .column = 1};

@@ -28,6 +28,26 @@ SourceLocation placeOf(const std::string& file, const YAML::Mark& mark) {
   return location;
 }
 
+/// The line with this number, from 0.
+std::string_view lineOf(std::string_view text, int number) {
+  for (; number > 0 && !text.empty(); --number) {
+    const std::size_t end = text.find('\n');
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
+  return text.substr(0, text.find('\n'));
+}
+
+/// Tabs and brackets are the faults that the parser names least well.
+std::string hintFor(std::string_view text, const YAML::Exception& fault) {
+  const std::string_view line = lineOf(text, fault.mark.line);
+  if (line.substr(0, line.find_first_not_of(" \t")).find('\t') != std::string_view::npos)
+    return "the line begins with a tab: indent with spaces";
+  const auto opened = std::count(text.begin(), text.end(), '{') + std::count(text.begin(), text.end(), '[');
+  const auto closed = std::count(text.begin(), text.end(), '}') + std::count(text.begin(), text.end(), ']');
+  if (fault.msg.find("flow") == std::string::npos || opened == closed) return {};
+  return opened > closed ? "a { or [ is not closed, here or before" : "a } or ] closes nothing, here or before";
+}
+
 class TreeBuilder : public YAML::EventHandler {
  public:
   TreeBuilder(const std::string& file, FaultList& faults) : file_(file), faults_(faults) {}
@@ -138,7 +158,7 @@ std::optional<YamlNode> parseYaml(const std::string& file, std::string_view text
       if (parser.HandleNextDocument(ignored)) faults.error({.file = file}, "more than one YAML document in a file");
     }
   } catch (const YAML::Exception& fault) {
-    faults.error(placeOf(file, fault.mark), "this is no YAML: " + fault.msg);
+    faults.error(placeOf(file, fault.mark), "this is no YAML: " + fault.msg, hintFor(text, fault));
     return std::nullopt;
   } catch (const InputError& fault) {
     for (const Diagnostic& diagnostic : fault.diagnostics()) faults.error(diagnostic.location, diagnostic.message);

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "cluxel/error.hpp"
+#include "mapping/facts/query_names.hpp"
+#include "sparql/syntax/parser.hpp"
 
 namespace cluxel::mapping {
 
@@ -43,8 +45,21 @@ std::optional<rules::QueryFault> faultOf(const std::string& query, const rdf::Qu
 
 rules::RuleLoadOptions withCheckedQueries() {
   const std::shared_ptr<rdf::Environment> scratch = rdf::Environment::temporary();
-  return {
-      .check_query = [scratch](const std::string& query) { return faultOf(query, rdf::QuadReader(scratch->read())); }};
+  return {.check_query = [scratch](const std::string& query, const std::vector<std::string>& /*bound*/) {
+    return faultOf(query, rdf::QuadReader(scratch->read()));
+  }};
+}
+
+rules::RuleLoadOptions withCheckedQueries(const rdf::OntologyView& ontology) {
+  const rules::QueryCheck form = withCheckedQueries().check_query;
+  return {.check_query = [form, ontology](const std::string& query,
+                                          const std::vector<std::string>& bound) -> std::optional<rules::QueryFault> {
+    if (auto fault = form(query, bound)) return fault;
+    const sparql::ast::Query parsed = sparql::parseQuery(query);
+    const std::vector<QueryNameFault> faults = faultsOfNames(parsed, ontology, bound);
+    if (faults.empty()) return std::nullopt;
+    return rules::QueryFault{faults.front().at, faults.front().message};
+  }};
 }
 
 void MapOracle::objectsSoFar(std::span<const rules::SemanticObject> objects) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "rdf/ontology/ontology.hpp"
 #include "rdf/store/quad_store.hpp"
 #include "rules/ask_oracle.hpp"
 #include "rules/decide/semantic_object.hpp"
@@ -20,6 +21,9 @@ namespace cluxel::mapping {
 /// Options that report faulty queries of `ask:` when rules are loaded, and queries whose answer would not follow from
 /// the map alone.
 rules::RuleLoadOptions withCheckedQueries();
+/// The same, and queries that name classes or properties that the ontology does not know, or look in a FILTER at what
+/// nothing binds.
+rules::RuleLoadOptions withCheckedQueries(const rdf::OntologyView& ontology);
 
 class MapOracle : public rules::AskOracle {
  public:

@@ -10,6 +10,7 @@
 #include "rules/decide/competition.hpp"
 #include "rules/decide/crown_gathering.hpp"
 #include "rules/decide/finished_objects.hpp"
+#include "rules/decide/reasoning_strata.hpp"
 #include "rules/decide/rule_run.hpp"
 #include "rules/decide/shared_splitting.hpp"
 
@@ -56,17 +57,19 @@ void decideTogether(ReasoningState& state, const std::vector<std::string>& strat
 
 }  // namespace
 
+void decideStratum(ReasoningState& state, const std::vector<std::string>& stratum) {
+  const std::size_t first = state.objects.size();
+  if (stratum.size() == 1)
+    runInTurn(state, stratum.front(), false);
+  else
+    decideTogether(state, stratum);
+  absorbMisfits(state, first, false);
+  if (state.context.oracle != nullptr) state.context.oracle->objectsSoFar(finishedObjects(state));
+}
+
 ReasoningResult reason(const perception::Scene& scene, const RuleSet& rules, const ReasoningContext& context) {
   ReasoningState state(scene, rules, context);
-  for (const std::vector<std::string>& stratum : rules.strata) {
-    const std::size_t first = state.objects.size();
-    if (stratum.size() == 1)
-      runInTurn(state, stratum.front(), false);
-    else
-      decideTogether(state, stratum);
-    absorbMisfits(state, first, false);
-    if (context.oracle != nullptr) context.oracle->objectsSoFar(finishedObjects(state));
-  }
+  for (const std::vector<std::string>& stratum : rules.strata) decideStratum(state, stratum);
   absorbMisfits(state, 0, true);
   return {finishedObjects(state), std::move(state.decisions)};
 }

@@ -8,6 +8,8 @@
 
 #include "rdf/map_iris.hpp"
 #include "rules/explain/explain.hpp"
+#include "rules/explain/path_tree.hpp"
+#include "rules/explain/why_not.hpp"
 
 namespace cluxel::rules {
 
@@ -40,11 +42,37 @@ std::string measuredText(const DecisionStep& step) {
   return text + ")";
 }
 
-std::string pathText(const Decision& decision, const std::string& indent) {
+std::string stepText(const DecisionStep& step, const std::string& indent) {
+  return indent + (step.passed ? "yes  " : "no   ") + step.test + measuredText(step) + "   [" + step.file + ":" +
+         std::to_string(step.line) + "]\n";
+}
+
+std::string_view nameOf(PathNode::Kind kind) {
+  static constexpr std::array<std::string_view, 6> kNames{"all", "any", "not", "test", "find", "skipped"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+/// Joined tests stand below the word that joins them.
+std::string nodeText(const PathNode& node, const Decision& decision, const std::string& indent) {
+  if (node.step) return stepText(decision.path[*node.step], indent);
+  if (node.kind == PathNode::Kind::Skipped) return indent + "     a query that could not change the outcome\n";
+  std::string text = indent + (node.passed ? "yes  " : "no   ") + std::string(nameOf(node.kind)) + " of:\n";
+  for (const PathNode& operand : node.operands) text += nodeText(operand, decision, indent + "  ");
+  return text;
+}
+
+std::string pathText(const Decision& decision, const Rule* rule, const std::string& indent) {
   std::string text;
-  for (const DecisionStep& step : decision.path)
-    text += indent + (step.passed ? "yes  " : "no   ") + step.test + measuredText(step) + "   [" + step.file + ":" +
-            std::to_string(step.line) + "]\n";
+  if (rule == nullptr)
+    for (const DecisionStep& step : decision.path) text += stepText(step, indent);
+  else
+    for (const WalkedPath& walked : walkedPath(*rule, decision)) {
+      // The tests of an `all` stand for themselves.
+      if (walked.tests.kind == PathNode::Kind::All)
+        for (const PathNode& operand : walked.tests.operands) text += nodeText(operand, decision, indent);
+      else
+        text += nodeText(walked.tests, decision, indent);
+    }
   return text;
 }
 
@@ -107,6 +135,24 @@ nlohmann::ordered_json stepJson(const DecisionStep& step) {
   return json;
 }
 
+nlohmann::ordered_json nodeJson(const PathNode& node) {
+  nlohmann::ordered_json json{{"kind", std::string(nameOf(node.kind))}, {"passed", node.passed}};
+  if (node.step) json["step"] = *node.step;
+  for (const PathNode& operand : node.operands) json["operands"].push_back(nodeJson(operand));
+  return json;
+}
+
+/// The walked nodes; `step` counts in "path".
+nlohmann::ordered_json treeJson(const Rule& rule, const Decision& decision) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const WalkedPath& walked : walkedPath(rule, decision)) {
+    nlohmann::ordered_json entry = nodeJson(walked.tests);
+    entry["line"] = rule.nodes[walked.node].at.line;
+    json.push_back(std::move(entry));
+  }
+  return json;
+}
+
 nlohmann::ordered_json counterfactualJson(const Counterfactual& point) {
   nlohmann::ordered_json json{{"accepted", point.accepted}, {"outcome", point.outcome}};
   for (const NeededChange& change : point.changes)
@@ -151,7 +197,7 @@ std::string textOf(const Explanation& explanation, const RuleSet& rules, const p
       if (first) text += accepted ? "\nwhy:\n" : "\nwhy nothing else:\n";
       first = false;
       text += "  " + rules.shorten(explained.class_iri) + " (" + decision.rule_id + "): " + decision.reason + "\n";
-      text += pathText(decision, "    ");
+      text += pathText(decision, rules.find(decision.rule_id), "    ");
       text += evidenceText(decision, rules, "    ");
       if (!decision.hint.empty()) text += "    see also rule " + decision.hint + "\n";
       if (explained.counterfactual) text += counterfactualText(*explained.counterfactual, "    ");
@@ -176,10 +222,58 @@ std::string jsonOf(const Explanation& explanation, const RuleSet& rules, const p
                                     {"accepted", explained.decision.accepted},
                                     {"reason", explained.decision.reason}};
     for (const DecisionStep& step : explained.decision.path) decision["path"].push_back(stepJson(step));
+    if (const Rule* rule = rules.find(explained.decision.rule_id))
+      decision["tree"] = treeJson(*rule, explained.decision);
     addEvidence(explained.decision, rules, decision);
     if (!explained.decision.hint.empty()) decision["hint"] = explained.decision.hint;
     if (explained.counterfactual) decision["least_change"] = counterfactualJson(*explained.counterfactual);
     json["decisions"].push_back(std::move(decision));
+  }
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+std::string textOf(const WhyNot& why, const RuleSet& rules) {
+  std::string text = "\nwhy not " + rules.shorten(why.class_iri) + ":\n";
+  if (why.rules.empty()) text += "  no rule makes this class\n";
+  for (const RuleVerdict& verdict : why.rules) {
+    const Decision& decision = verdict.decision;
+    text += "  " + decision.rule_id + ": " + std::string(nameOf(verdict.nearness));
+    if (verdict.nearness != Nearness::Accepted)
+      text += ": " + decision.reason;
+    else if (verdict.winner)
+      text += " with log-odds " + signedNumber(decision.log_odds) + ", but " +
+              rules.shorten(verdict.winner->class_iri) + " (" + verdict.winner->rule_id + ") has " +
+              signedNumber(verdict.winner->log_odds) +
+              (verdict.behind >= 0 ? ": " + number(verdict.behind) + " behind" : " and came first");
+    text += "\n";
+    // The nearest is told in full, the others by what they lack.
+    const bool is_seed = verdict.nearness <= Nearness::Rejected;
+    if (&verdict == &why.rules.front() || verdict.nearness == Nearness::Accepted)
+      text += pathText(decision, is_seed ? rules.find(decision.rule_id) : nullptr, "    ") +
+              evidenceText(decision, rules, "    ");
+    if (verdict.counterfactual) text += counterfactualText(*verdict.counterfactual, "    ");
+  }
+  return text;
+}
+
+std::string jsonOf(const WhyNot& why, const RuleSet& rules) {
+  nlohmann::ordered_json json{{"class", rules.shorten(why.class_iri)}, {"rules", nlohmann::ordered_json::array()}};
+  for (const RuleVerdict& verdict : why.rules) {
+    nlohmann::ordered_json entry{{"rule", verdict.decision.rule_id},
+                                 {"class", rules.shorten(verdict.class_iri)},
+                                 {"outcome", std::string(nameOf(verdict.nearness))},
+                                 {"reason", verdict.decision.reason}};
+    for (const DecisionStep& step : verdict.decision.path) entry["path"].push_back(stepJson(step));
+    if (verdict.nearness <= Nearness::Rejected)
+      entry["tree"] = treeJson(*rules.find(verdict.decision.rule_id), verdict.decision);
+    addEvidence(verdict.decision, rules, entry);
+    if (verdict.counterfactual) entry["least_change"] = counterfactualJson(*verdict.counterfactual);
+    if (verdict.winner)
+      entry["winner"] = {{"class", rules.shorten(verdict.winner->class_iri)},
+                         {"rule", verdict.winner->rule_id},
+                         {"log_odds", verdict.winner->log_odds},
+                         {"behind", verdict.behind}};
+    json["rules"].push_back(std::move(entry));
   }
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }

@@ -5,6 +5,7 @@
 
 #include "base/nearest_name.hpp"
 #include "rules/decide/pair_measures.hpp"
+#include "rules/language/condition_text.hpp"
 #include "rules/language/condition_words.hpp"
 #include "rules/language/rule_reading.hpp"
 
@@ -322,7 +323,9 @@ class ConditionReader {
 }  // namespace
 
 std::optional<Condition> readCondition(const YamlNode& node, const NameScope& scope, RuleReading& reading) {
-  return ConditionReader(node, scope, reading).read();
+  if (!node.isScalar()) return ConditionReader(node, scope, reading).read();
+  const auto meant = conditionOfText(node, reading.faults);
+  return meant ? ConditionReader(*meant, scope, reading).read() : std::nullopt;
 }
 
 std::optional<Condition> readMeasure(const YamlNode& node, const NameScope& scope, RuleReading& reading) {

@@ -2,6 +2,7 @@
 // Reads `evidence:` lists: curves, bells and tests that add log-odds to a candidate.
 #include <algorithm>
 
+#include "rules/language/condition_text.hpp"
 #include "rules/language/rule_reading.hpp"
 
 namespace cluxel::rules {
@@ -41,7 +42,7 @@ class EvidenceReader {
       count += node_.find(key) != nullptr ? 1 : 0;
     if (count != 1)
       faults_.error(node_.at, "a line of evidence measures one thing",
-                    "give it one of: attribute, gap_to, axis_distance_to, adjacent_fraction_to");
+                    "give it one of: measure, attribute, gap_to, axis_distance_to, adjacent_fraction_to");
   }
 
   void readTest(const YamlNode& when) {
@@ -107,6 +108,22 @@ class EvidenceReader {
   EvidenceLine line_;
 };
 
+/// `measure: roughness of whole from 1 m to 2 m` as the keys that it is short for.
+YamlNode withMeasureWrittenOut(const YamlNode& line, FaultList& faults) {
+  const YamlNode* text = line.find("measure");
+  if (text == nullptr || !text->isScalar()) return line;
+  const auto meant = measureOfText(*text, faults);
+  YamlNode written = line;
+  const auto place =
+      std::find_if(written.keys.begin(), written.keys.end(), [](const YamlNode& key) { return key.text == "measure"; });
+  written.items.erase(written.items.begin() + (place - written.keys.begin()));
+  written.keys.erase(place);
+  if (!meant) return written;
+  written.keys.insert(written.keys.end(), meant->keys.begin(), meant->keys.end());
+  written.items.insert(written.items.end(), meant->items.begin(), meant->items.end());
+  return written;
+}
+
 }  // namespace
 
 std::vector<EvidenceLine> readEvidence(const YamlNode& node, const NameScope& scope, RuleReading& reading) {
@@ -117,8 +134,10 @@ std::vector<EvidenceLine> readEvidence(const YamlNode& node, const NameScope& sc
   }
   NameScope with_whole = scope;
   with_whole.names.emplace_back(kWholeCandidate);
-  for (const YamlNode& item : node.items)
+  for (const YamlNode& written : node.items) {
+    const YamlNode item = withMeasureWrittenOut(written, reading.faults);
     if (auto line = EvidenceReader(item, with_whole, reading).read()) lines.push_back(std::move(*line));
+  }
   return lines;
 }
 

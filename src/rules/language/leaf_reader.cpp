@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/nearest_name.hpp"
+#include "rules/language/condition_text.hpp"
 #include "rules/language/rule_reading.hpp"
 
 namespace cluxel::rules {
@@ -88,12 +89,25 @@ class AcceptReader {
     if (leaf_.confidence.low > leaf_.confidence.high) faults_.error(node.at, "'from' is greater than 'to'");
     const YamlNode* over = requireKey(node, "over", "confidence", faults_);
     if (over == nullptr) return;
-    if (over->isMap()) return readRamp(*over);
+    if (over->isMap() || over->isScalar()) return readRamp(*over);
     if (!over->isSequence()) faults_.error(over->at, "'over' takes one ramp or a list of them");
     for (const YamlNode& item : over->items) readRamp(item);
   }
 
+  /// "height of trunk between 1 m and 3 m" is short for the mapping.
+  void readRampText(const YamlNode& text) {
+    auto meant = conditionOfText(text, faults_);
+    const YamlNode* op = meant ? meant->find("op") : nullptr;
+    if (!meant) return;
+    if (op == nullptr || op->text != "between")
+      return faults_.error(text.at, "'over' needs a range", "write 'height of trunk between 1 m and 3 m'");
+    meant->keys.erase(meant->keys.begin() + (op - meant->items.data()));
+    meant->items.erase(meant->items.begin() + (op - meant->items.data()));
+    readRamp(*meant);
+  }
+
   void readRamp(const YamlNode& node) {
+    if (node.isScalar()) return readRampText(node);
     if (!checkKeys(node, "ramp", faults_)) return;
     ConfidenceRamp ramp;
     ramp.of = rule_.seed.name;

@@ -33,7 +33,7 @@ void readQuery(const YamlNode& node, const NameScope& scope, RuleReading& readin
     reading.faults.error(node.at, "the query asks about nothing that is bound here",
                          "use a bound name as a variable: ?" + condition.of);
   if (!reading.options.check_query) return;
-  if (const auto fault = reading.options.check_query(condition.query))
+  if (const auto fault = reading.options.check_query(condition.query, condition.query_names))
     reading.faults.error(node.at, "the query is faulty: " + fault->message,
                          fault->offset >= prologue ? "at '" + condition.query.substr(fault->offset, 20) + "'" : "");
 }

@@ -44,10 +44,12 @@ std::vector<std::string> conditionKeys() {
 
 const std::vector<RuleKeyTable>& ruleKeyTables() {
   static const std::vector<RuleKeyTable> tables{
-      {"file", {"apiVersion", "ruleset", "include", "prefixes", "constants", "order", "nothing", "rules", "override"}},
+      {"file",
+       {"apiVersion", "ruleset", "include", "prefixes", "constants", "define", "order", "nothing", "rules",
+        "override"}},
       {"ruleset", {"name", "version", "description"}},
       {"order", {"insert", "before", "after", "beside"}},
-      {"override", {"constants", "rules", "remove"}},
+      {"override", {"constants", "define", "rules", "remove"}},
       {"rule", {"id", "class", "description", "seed", "group", "leftovers", "evidence", "tree"}},
       {"seed", {"label", "label_in", "as", "slice", "where"}},
       {"slice", {"from", "to"}},
@@ -60,8 +62,8 @@ const std::vector<RuleKeyTable>& ruleKeyTables() {
       {"confidence", {"from", "to", "over"}},
       {"ramp", {"of", "attribute", "min", "max"}},
       {"evidence",
-       {"of", "attribute", "slice", "relative_to", "gap_to", "horizontal_gap_to", "vertical_gap_to", "axis_distance_to",
-        "adjacent_fraction_to", "when", "curve", "about", "spread", "weight", "missing"}},
+       {"measure", "of", "attribute", "slice", "relative_to", "gap_to", "horizontal_gap_to", "vertical_gap_to",
+        "axis_distance_to", "adjacent_fraction_to", "when", "curve", "about", "spread", "weight", "missing"}},
       {"absorb", {"from", "when", "max_fraction_of_points", "into", "late"}},
       {"absorb_from", {"label", "label_in"}},
       {"split", {"shared", "from", "reach", "jump", "start", "clearance", "gather"}},

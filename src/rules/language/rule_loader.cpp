@@ -7,6 +7,7 @@
 
 #include "base/file_bytes.hpp"
 #include "base/nearest_name.hpp"
+#include "rules/language/rule_definitions.hpp"
 #include "rules/language/rule_reading.hpp"
 #include "rules/language/rule_sources.hpp"
 
@@ -159,6 +160,7 @@ LoadedRules load(const std::vector<std::string>& roots, const FindSource& findSo
                  const RuleLoadOptions& options) {
   FaultList faults;
   GatheredRules gathered = gatherRules(roots, findSource, faults);
+  expandDefinitions(gathered, faults);
   RuleReading reading{catalogue, options, faults};
   readNames(gathered, reading);
   RuleSet rules;

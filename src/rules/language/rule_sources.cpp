@@ -62,6 +62,7 @@ class Gatherer {
     readHead(root);
     addEntries(root.find("prefixes"), "prefixes", result_.prefixes, true);
     addEntries(root.find("constants"), "constants", result_.constants, false);
+    addEntries(root.find("define"), "define", result_.definitions, false);
     addEntries(root.find("nothing"), "nothing", result_.nothing, false);
     if (const YamlNode* order = root.find("order")) readOrder(*order, root.find("include") != nullptr);
     if (const YamlNode* rules = root.find("rules")) addRules(*rules);
@@ -173,7 +174,9 @@ class Gatherer {
 
   void readOverride(const YamlNode& overrides) {
     if (!checkKeys(overrides, "override", faults_)) return;
-    if (const YamlNode* constants = overrides.find("constants")) overrideConstants(*constants);
+    if (const YamlNode* constants = overrides.find("constants"))
+      overrideEntries(*constants, "constant", result_.constants);
+    if (const YamlNode* define = overrides.find("define")) overrideEntries(*define, "definition", result_.definitions);
     for (const YamlNode& rule : listUnder(overrides, "rules", "rules", faults_)) overrideRule(rule);
     for (const YamlNode& id : listUnder(overrides, "remove", "ids of rules", faults_)) {
       YamlNode* rule = knownRule(id, id.text);
@@ -181,18 +184,19 @@ class Gatherer {
     }
   }
 
-  void overrideConstants(const YamlNode& constants) {
-    if (!constants.isMap() && !constants.isNull()) return faults_.error(constants.at, "'constants' must be a mapping");
-    for (std::size_t i = 0; i < constants.items.size(); ++i) {
-      const YamlNode& key = constants.keys[i];
-      const auto earlier = std::find_if(result_.constants.begin(), result_.constants.end(),
-                                        [&](const auto& entry) { return entry.first.text == key.text; });
+  void overrideEntries(const YamlNode& changes, const std::string& what,
+                       std::vector<std::pair<YamlNode, YamlNode>>& entries) {
+    if (!changes.isMap() && !changes.isNull()) return faults_.error(changes.at, "'" + what + "s' must be a mapping");
+    for (std::size_t i = 0; i < changes.items.size(); ++i) {
+      const YamlNode& key = changes.keys[i];
+      const auto earlier =
+          std::find_if(entries.begin(), entries.end(), [&](const auto& entry) { return entry.first.text == key.text; });
       std::vector<std::string> known;
-      for (const auto& entry : result_.constants) known.push_back(entry.first.text);
-      if (earlier == result_.constants.end())
-        faults_.error(key.at, "there is no constant '" + key.text + "' to override", suggestion(key.text, known));
+      for (const auto& entry : entries) known.push_back(entry.first.text);
+      if (earlier == entries.end())
+        faults_.error(key.at, "there is no " + what + " '" + key.text + "' to override", suggestion(key.text, known));
       else
-        *earlier = {key, constants.items[i]};
+        *earlier = {key, changes.items[i]};
     }
   }
 

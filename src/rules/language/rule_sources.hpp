@@ -17,6 +17,7 @@ namespace cluxel::rules {
 struct GatheredRules {
   std::string name, version, description;
   std::vector<std::pair<YamlNode, YamlNode>> prefixes, constants;  ///< key, value
+  std::vector<std::pair<YamlNode, YamlNode>> definitions;          ///< name, what `use` puts in its place
   std::vector<std::vector<YamlNode>> order;                        ///< strata of class names
   std::vector<std::pair<YamlNode, YamlNode>> nothing;              ///< label, log-odds
   std::vector<YamlNode> rules;

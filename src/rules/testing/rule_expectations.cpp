@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares the result of reasoning with the expectations of a test.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -12,6 +13,21 @@
 namespace cluxel::rules {
 
 namespace {
+
+struct Bounds {
+  Eigen::Vector3d min, max;
+};
+
+Bounds boundsOf(const SemanticObject& object, const perception::Scene& scene) {
+  Bounds bounds{Eigen::Vector3d::Constant(1e300), Eigen::Vector3d::Constant(-1e300)};
+  for (const ObjectPart& part : object.parts)
+    for (std::uint32_t cluxel : part.cluxels) {
+      const Eigen::Vector3d half = scene.cluxels.extent[cluxel].cast<double>() / 2;
+      bounds.min = bounds.min.cwiseMin(scene.cluxels.center[cluxel] - half);
+      bounds.max = bounds.max.cwiseMax(scene.cluxels.center[cluxel] + half);
+    }
+  return bounds;
+}
 
 class Checking {
  public:
@@ -162,21 +178,6 @@ class Checking {
          "', but it said: " + (seen.empty() ? "nothing, it was not asked" : seen));
   }
 
-  struct Bounds {
-    Eigen::Vector3d min, max;
-  };
-
-  Bounds boundsOf(const SemanticObject& object) const {
-    Bounds bounds{Eigen::Vector3d::Constant(1e300), Eigen::Vector3d::Constant(-1e300)};
-    for (const ObjectPart& part : object.parts)
-      for (std::uint32_t cluxel : part.cluxels) {
-        const Eigen::Vector3d half = scene_.cluxels.extent[cluxel].cast<double>() / 2;
-        bounds.min = bounds.min.cwiseMin(scene_.cluxels.center[cluxel] - half);
-        bounds.max = bounds.max.cwiseMax(scene_.cluxels.center[cluxel] + half);
-      }
-    return bounds;
-  }
-
   /// Boxes padded by 0.1 m, because thin signs have no volume.
   static double overlap(Bounds a, Bounds b) {
     const Eigen::Vector3d pad = Eigen::Vector3d::Constant(0.1);
@@ -225,7 +226,7 @@ class Checking {
     double best_overlap = iou;
     for (std::size_t i = 0; i < used.size(); ++i) {
       if (used[i] || rules_.shorten(result_.objects[i].class_iri) != object.at("class").get<std::string>()) continue;
-      const double mine = overlap(boundsOf(result_.objects[i]), readBounds(object));
+      const double mine = overlap(boundsOf(result_.objects[i], scene_), readBounds(object));
       if (mine < best_overlap) continue;
       best_overlap = mine;
       best = i;
@@ -251,6 +252,21 @@ std::vector<std::string> unmetExpectations(const Expectation& expect, const Rule
                                            const perception::Scene& scene, const std::vector<std::string>& names,
                                            const ReasoningResult& result) {
   return Checking(rules, scene, names, result).check(expect);
+}
+
+std::string goldenText(const RuleSet& rules, const perception::Scene& scene, const ReasoningResult& result) {
+  nlohmann::ordered_json json{{"objects", nlohmann::ordered_json::array()}};
+  const auto corner = [](const Eigen::Vector3d& p) {
+    nlohmann::ordered_json numbers = nlohmann::ordered_json::array();
+    for (const double value : {p.x(), p.y(), p.z()}) numbers.push_back(std::round(value * 1000) / 1000);
+    return numbers;
+  };
+  for (const SemanticObject& object : result.objects) {
+    const Bounds bounds = boundsOf(object, scene);
+    json["objects"].push_back(
+        {{"class", rules.shorten(object.class_iri)}, {"min", corner(bounds.min)}, {"max", corner(bounds.max)}});
+  }
+  return json.dump(1) + "\n";
 }
 
 }  // namespace cluxel::rules

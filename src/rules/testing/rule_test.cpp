@@ -4,27 +4,48 @@
 
 #include <algorithm>
 
+#include "base/file_bytes.hpp"
+#include "rules/explain/path_tree.hpp"
 #include "rules/testing/rule_test_file.hpp"
 
 namespace cluxel::rules {
 
 namespace {
 
-std::vector<LeafCoverage> leavesOf(const RuleSet& rules) {
+std::vector<LeafCoverage> leavesOf(const RuleTestFile& file) {
   std::vector<LeafCoverage> leaves;
-  for (const Rule& rule : rules.rules)
-    for (const TreeNode& node : rule.nodes) {
+  for (const Rule& rule : file.rules.rules)
+    for (NodeIndex i = 0; i < rule.nodes.size() && file.isAtHand(rule); ++i) {
+      const TreeNode& node = rule.nodes[i];
       if (const auto* reject = std::get_if<RejectLeaf>(&node.what))
-        leaves.push_back({rule.id, node.at, reject->reason});
-      if (std::holds_alternative<AcceptLeaf>(node.what)) leaves.push_back({rule.id, node.at, "accept"});
+        leaves.push_back({rule.id, i, node.at, reject->reason});
+      if (std::holds_alternative<AcceptLeaf>(node.what)) leaves.push_back({rule.id, i, node.at, "accept"});
     }
   return leaves;
+}
+
+std::vector<BranchCoverage> branchesOf(const RuleTestFile& file) {
+  std::vector<BranchCoverage> branches;
+  for (const Rule& rule : file.rules.rules)
+    for (NodeIndex i = 0; i < rule.nodes.size() && file.isAtHand(rule); ++i) {
+      const TreeNode& node = rule.nodes[i];
+      const auto add = [&](const char* way, NodeIndex to) { branches.push_back({rule.id, i, node.at, way, to, 0}); };
+      if (const auto* branch = std::get_if<BranchNode>(&node.what)) add("yes", branch->yes), add("no", branch->no);
+      if (const auto* find = std::get_if<FindNode>(&node.what))
+        add("found", find->found), add("missing", find->missing);
+    }
+  return branches;
+}
+
+perception::Scene sceneOf(const SceneRequest& request, const RuleTestOptions& options) {
+  return options.scenes(request);
 }
 
 class TestRun {
  public:
   TestRun(const RuleTestFile& file, const RuleTestOptions& options) : file_(file), options_(options) {
-    report_.leaves = leavesOf(file.rules);
+    report_.leaves = leavesOf(file);
+    report_.branches = branchesOf(file);
     report_.warnings = file.warnings;
   }
 
@@ -60,7 +81,7 @@ class TestRun {
   std::vector<std::string> failuresOf(const RuleTest& test) {
     BuiltBoxScene built;
     if (test.scene)
-      built.scene = options_.scenes(*test.scene);
+      built.scene = sceneOf(*test.scene, options_);
     else
       built = sceneOfBoxes(test.boxes);
     ReasoningContext context;
@@ -72,11 +93,14 @@ class TestRun {
 
   void countLeaf(const Decision& decision) {
     const Rule* rule = file_.rules.find(decision.rule_id);
-    const SourceLocation& at = rule->nodes[decision.leaf].at;
     for (LeafCoverage& leaf : report_.leaves)
-      if (leaf.rule_id == decision.rule_id && leaf.at.file == at.file && leaf.at.line == at.line &&
-          leaf.at.column == at.column)
-        ++leaf.hits;
+      if (leaf.rule_id == decision.rule_id && leaf.node == decision.leaf) ++leaf.hits;
+    for (const WalkedPath& walked : walkedPath(*rule, decision)) {
+      const bool found = walked.tests.kind == PathNode::Kind::Find;
+      const std::string way = walked.tests.passed ? (found ? "found" : "yes") : (found ? "missing" : "no");
+      for (BranchCoverage& branch : report_.branches)
+        if (branch.rule_id == decision.rule_id && branch.node == walked.node && branch.way == way) ++branch.hits;
+    }
   }
 
   const RuleTestFile& file_;
@@ -99,6 +123,30 @@ RuleTestReport runRuleTests(const std::filesystem::path& file, const ClassCatalo
                             const RuleTestOptions& options) {
   const RuleTestFile tests = readRuleTestFile(file, catalogue, options.load);
   return TestRun(tests, options).run();
+}
+
+std::vector<std::filesystem::path> updateGolden(const std::filesystem::path& file, const ClassCatalogue& catalogue,
+                                                const RuleTestOptions& options) {
+  const RuleTestFile tests = readRuleTestFile(file, catalogue, options.load);
+  std::vector<std::filesystem::path> written;
+  for (const RuleTest& test : tests.tests) {
+    const bool chosen = !options.only || test.name.find(*options.only) != std::string::npos;
+    if (!test.expect.golden || !chosen || (test.scene && !options.scenes)) continue;
+    const perception::Scene scene = test.scene ? sceneOf(*test.scene, options) : sceneOfBoxes(test.boxes).scene;
+    ReasoningContext context;
+    context.oracle = options.oracle;
+    writeFile(test.expect.golden->file, goldenText(tests.rules, scene, reason(scene, tests.rules, context)));
+    written.push_back(test.expect.golden->file);
+  }
+  return written;
+}
+
+std::vector<std::filesystem::path> filesOfRuleTests(const std::filesystem::path& file, const ClassCatalogue& catalogue,
+                                                    const RuleLoadOptions& options) {
+  std::vector<std::filesystem::path> files{file};
+  for (const RuleSource& source : readRuleTestFile(file, catalogue, options).rules.sources)
+    files.emplace_back(source.name);
+  return files;
 }
 
 }  // namespace cluxel::rules

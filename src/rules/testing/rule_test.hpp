@@ -41,14 +41,27 @@ struct RuleTestResult {
 /// One leaf of one rule, and how many seeds ended in it.
 struct LeafCoverage {
   std::string rule_id;
+  NodeIndex node = 0;
   SourceLocation at;
   std::string leaf;  ///< "accept" or the reason of a reject
   std::size_t hits = 0;
 };
 
+/// One way out of a node, and how many seeds took it.
+struct BranchCoverage {
+  std::string rule_id;
+  NodeIndex node = 0;
+  SourceLocation at;
+  std::string way;  ///< "yes", "no", "found" or "missing"
+  NodeIndex to = 0;
+  std::size_t hits = 0;
+};
+
+/// Covers the rules of the files that the test file names, not of those that they include.
 struct RuleTestReport {
   std::vector<RuleTestResult> results;
-  std::vector<LeafCoverage> leaves;  ///< in the order of the rules
+  std::vector<LeafCoverage> leaves;      ///< in the order of the rules
+  std::vector<BranchCoverage> branches;  ///< in the order of the rules
   std::vector<Diagnostic> warnings;
 
   std::size_t count(RuleTestOutcome outcome) const;
@@ -60,7 +73,15 @@ struct RuleTestReport {
 RuleTestReport runRuleTests(const std::filesystem::path& file, const ClassCatalogue& catalogue,
                             const RuleTestOptions& options = {});
 
-/// One line per test, then the leaves that no test reached, then the counts.
+/// Writes the objects that come out now into the golden files of the tests, and says which files it wrote. Throws as
+/// runRuleTests() does.
+std::vector<std::filesystem::path> updateGolden(const std::filesystem::path& file, const ClassCatalogue& catalogue,
+                                                const RuleTestOptions& options = {});
+/// The test file, its rule files and those that they include: what a change of the outcome can come from.
+std::vector<std::filesystem::path> filesOfRuleTests(const std::filesystem::path& file, const ClassCatalogue& catalogue,
+                                                    const RuleLoadOptions& options = {});
+
+/// One line per test, then the leaves and branches that no test reached, then the counts.
 std::string textOf(const RuleTestReport& report);
 std::string jsonOf(const RuleTestReport& report);
 /// One <testsuite> element.

@@ -2,6 +2,7 @@
 // A rule test file as plain values.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -54,11 +55,17 @@ struct RuleTestFile {
   RuleSet rules;
   std::vector<RuleTest> tests;
   std::vector<Diagnostic> warnings;
+  std::vector<std::string> roots;  ///< the rule files that it names
+
+  bool isAtHand(const Rule& rule) const { return std::find(roots.begin(), roots.end(), rule.at.file) != roots.end(); }
 };
 
 /// Throws InputError with all faults of the file and of the rule files it names.
 RuleTestFile readRuleTestFile(const std::filesystem::path& file, const ClassCatalogue& catalogue,
                               const RuleLoadOptions& options);
+
+/// The objects as a golden file holds them.
+std::string goldenText(const RuleSet& rules, const perception::Scene& scene, const ReasoningResult& result);
 
 /// The expectations that are not met, one line each.
 std::vector<std::string> unmetExpectations(const Expectation& expect, const RuleSet& rules,

@@ -298,6 +298,7 @@ RuleTestFile readRuleTestFile(const std::filesystem::path& file, const ClassCata
   LoadedRules loaded = loadRules(paths, catalogue, options);
   RuleTestFile tests;
   tests.warnings = loaded.diagnostics;
+  for (const std::filesystem::path& path : paths) tests.roots.push_back(path.lexically_normal().string());
   tests.rules = std::move(loaded).require();
   RuleReading reading{catalogue, options, faults};
   reading.prefixes = tests.rules.prefixes;

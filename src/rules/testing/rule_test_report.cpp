@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The report of a rule test run as text, JSON and JUnit XML.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "sparql/results/term_text.hpp"
@@ -38,10 +39,18 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-std::size_t reached(const RuleTestReport& report) {
+template <typename Covered>
+std::size_t reached(const std::vector<Covered>& all) {
   std::size_t count = 0;
-  for (const LeafCoverage& leaf : report.leaves) count += leaf.hits > 0 ? 1 : 0;
+  for (const Covered& one : all) count += one.hits > 0 ? 1 : 0;
   return count;
+}
+
+/// A branch to a leaf is told as the leaf.
+bool leadsToLeaf(const BranchCoverage& branch, const RuleTestReport& report) {
+  return std::any_of(report.leaves.begin(), report.leaves.end(), [&](const LeafCoverage& leaf) {
+    return leaf.rule_id == branch.rule_id && leaf.node == branch.to;
+  });
 }
 
 }  // namespace
@@ -55,11 +64,16 @@ std::string textOf(const RuleTestReport& report) {
   }
   for (const LeafCoverage& leaf : report.leaves)
     if (leaf.hits == 0) text += "no test reaches " + toString(leaf.at) + ": " + leaf.rule_id + ", " + leaf.leaf + "\n";
+  for (const BranchCoverage& branch : report.branches)
+    if (branch.hits == 0 && !leadsToLeaf(branch, report))
+      text += "no test takes '" + branch.way + "' of " + toString(branch.at) + ": " + branch.rule_id + "\n";
   text += std::to_string(report.count(RuleTestOutcome::Passed)) + " passed, " +
           std::to_string(report.count(RuleTestOutcome::Failed) + report.count(RuleTestOutcome::UnexpectedPass)) +
           " failed, " + std::to_string(report.count(RuleTestOutcome::KnownFailure)) + " known failures, " +
-          std::to_string(report.count(RuleTestOutcome::Skipped)) + " skipped; " + std::to_string(reached(report)) +
-          " of " + std::to_string(report.leaves.size()) + " leaves reached\n";
+          std::to_string(report.count(RuleTestOutcome::Skipped)) + " skipped; " +
+          std::to_string(reached(report.leaves)) + " of " + std::to_string(report.leaves.size()) + " leaves and " +
+          std::to_string(reached(report.branches)) + " of " + std::to_string(report.branches.size()) +
+          " branches reached\n";
   return text;
 }
 
@@ -77,6 +91,12 @@ std::string jsonOf(const RuleTestReport& report) {
                               {"file", leaf.at.file},
                               {"line", leaf.at.line},
                               {"hits", leaf.hits}});
+  for (const BranchCoverage& branch : report.branches)
+    json["branches"].push_back({{"rule", branch.rule_id},
+                                {"way", branch.way},
+                                {"file", branch.at.file},
+                                {"line", branch.at.line},
+                                {"hits", branch.hits}});
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 

@@ -30,8 +30,9 @@ struct FittedNumber {
 struct FittedRule {
   std::string rule_id;
   std::size_t right = 0, wrong = 0;
-  std::string refusal;                     ///< why nothing was learned; else empty
-  bool is_fitted = false;                  ///< some numbers were estimated
+  std::string refusal;     ///< why nothing was learned; else empty
+  bool is_fitted = false;  ///< some numbers were estimated
+  std::size_t kept = 0;    ///< numbers left as they are, because definitions share them with other rules
   double loss_before = 0, loss_after = 0;  ///< mean log loss on places left out of the fit, in turn
   std::vector<FittedNumber> changes;
 };
@@ -39,7 +40,9 @@ struct FittedRule {
 /// Where some truth names a class, maps with other truths say nothing of it: what they call a small object may be a
 /// person. A rule with fewer than `min_examples` candidates, or of a class with fewer right
 /// ones, stays as it is. One with fewer right or wrong ones gets another confidence only.
-/// One entry for each rule that proposed a candidate, in the order of the rule set. Deterministic for a seed.
+/// Leaves of a rule that use one definition are fitted together. A number of a definition that several rules use is
+/// kept as it is: what is best for one may be wrong for another. One entry for each rule that proposed a candidate, in
+/// the order of the rule set. Deterministic for a seed.
 std::vector<FittedRule> fitEvidence(const rules::RuleSet& rules, const std::vector<CandidateExample>& examples,
                                     const EvidenceFitParams& params);
 

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Names in queries that cannot match anything: classes and properties that the ontology does not know, and variables of
+// a FILTER that nothing binds.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cluxel/error.hpp"
+
+#include "rdf/ontology/ontology.hpp"
+#include "sparql/syntax/ast.hpp"
+
+namespace cluxel::mapping {
+
+struct QueryNameFault {
+  sparql::ast::SourceOffset at = 0;  ///< in Query::text
+  std::string message;               ///< with "did you mean"
+};
+
+/// `bound`: variables that have a value before the query runs. Only names of Cluxel's own vocabulary are looked up. In
+/// the order of the text.
+std::vector<QueryNameFault> faultsOfNames(const sparql::ast::Query& query, const rdf::OntologyView& ontology,
+                                          std::span<const std::string> bound = {});
+
+/// The faults of a SPARQL rule with their places. Throws InputError when it cannot be parsed.
+std::vector<Diagnostic> checkRuleNames(const std::string& name, const std::string& text,
+                                       const rdf::OntologyView& ontology);
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Why a thing is not of a certain class: the rule of that class that comes nearest, and what is missing.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rules/explain/explain.hpp"
+
+namespace cluxel::rules {
+
+/// How a rule of the class fared. Better ones have smaller values.
+enum class Nearness : std::uint8_t {
+  Accepted,    ///< its tree accepts: other classes were stronger, or came first
+  Changeable,  ///< the measured values of one branch would have to change
+  Rejected,    ///< a branch rejects that no measured value turns
+  NoSeed,      ///< the tests of a seed fail
+  OtherLabel,  ///< the rule begins with primitives of another label
+};
+std::string_view nameOf(Nearness nearness);
+
+struct RuleVerdict {
+  Nearness nearness = Nearness::OtherLabel;
+  std::string class_iri;
+  Decision decision;
+  std::optional<Counterfactual> counterfactual;  ///< what turns it to accepted, or to a seed
+  std::optional<RivalNote> winner;               ///< of Accepted: who took the thing
+  double behind = 0;                             ///< log-odds that it lost by; below 0 when it only came later
+};
+
+struct WhyNot {
+  std::string class_iri;
+  std::vector<RuleVerdict> rules;  ///< the nearest first
+};
+
+/// Judges the primitives of a thing by the rules of the class, as if no other class had taken them before. `made` are
+/// the objects and decisions of the same scene, rules and context; `owner` is the thing, when it is an object.
+WhyNot whyNot(const perception::Scene& scene, const RuleSet& rules, const ReasoningContext& context,
+              const ReasoningResult& made, const SemanticObject* owner,
+              const std::vector<perception::PrimitiveIndex>& primitives, const std::string& class_iri);
+
+std::string textOf(const WhyNot& why, const RuleSet& rules);
+std::string jsonOf(const WhyNot& why, const RuleSet& rules);
+
+}  // namespace cluxel::rules
