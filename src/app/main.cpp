@@ -44,6 +44,7 @@ void addCommands(CLI::App& app, Session& session) {
   addUpdate(app, session);
   addLoad(app, session);
   addDump(app, session);
+  addAsk(app, session);
   addTasks(app, session);
   addExplain(app, session);
   addRules(app, session);
@@ -51,6 +52,7 @@ void addCommands(CLI::App& app, Session& session) {
   addEvaluate(app, session);
   addExport(app, session);
   addWays(app, session);
+  addInventory(app, session);
   addServe(app, session);
   addView(app, session);
   addUpkeep(app, session);

@@ -75,7 +75,7 @@ TEST_F(Program, APageNeedsAnOutputThatIsNoMap) {
 TEST_F(Program, AnUnknownCommandIsNamedWithTheNearestAndTheList) {
   expectError(run("qeury x"), 2, "there is no command 'qeury'; did you mean 'query'?");
   expectError(run("qeury x"), 2,
-              "info, simulate, register, build, extend, retract, repose, merge, query, update, load, dump, tasks, "
+              "info, simulate, register, build, extend, retract, repose, merge, query, update, load, dump, ask, tasks, "
               "explain, rules, "
               "train, evaluate, export, route, reach, costmap, search, serve, view, compact, doctor");
   expectError(run("rules tset"), 2, "rules: there is no command 'tset'; did you mean 'test'?");
