@@ -67,27 +67,6 @@ TEST(QuestionsOfACampus, TheInventoryHasTheSizesOfTheGenerator) {
   }
 }
 
-TEST(QuestionsOfACampus, SidewalksBeginAtKerbsOfTheGenerator) {
-  const MapReader& map = CampusMap::shared().map();
-  std::vector<Eigen::Vector2d> kerbs;
-  for (const CampusMesh& mesh : trueCampus().meshes)
-    if (mesh.label == SurfaceLabel::Kerb)
-      for (const Eigen::Vector3f& p : mesh.vertices) kerbs.push_back(p.head<2>().cast<double>());
-  const std::vector<InventoryItem> walks = sidewalksOf(terrainOf(map));
-  ASSERT_FALSE(walks.empty());
-  double at_kerbs_m = 0, all_m = 0;
-  for (const InventoryItem& walk : walks) {
-    double nearest = 1e300;
-    for (const Eigen::Vector2d& kerb : kerbs) nearest = std::min(nearest, (kerb - walk.at).norm());
-    all_m += walk.length_m;
-    at_kerbs_m += nearest < 1 ? walk.length_m : 0;
-    EXPECT_GT(walk.width_m, 0);
-    EXPECT_LE(walk.width_m, KerbParams{}.widest_m);
-  }
-  std::printf("sidewalks (generated): %.0f of %.0f m begin within 1 m of a true kerb\n", at_kerbs_m, all_m);
-  EXPECT_GT(at_kerbs_m, 0.5 * all_m);
-}
-
 TEST(QuestionsOfACampus, ARegisterOfTheMapItselfMatchesWhole) {
   const MapReader& map = CampusMap::shared().map();
   const ScratchFolder folder;

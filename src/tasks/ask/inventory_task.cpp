@@ -29,15 +29,15 @@ TaskCell namedCell(const std::string& text) {
 
 const std::vector<QueryColumn>& inventoryColumns() {
   static const std::vector<QueryColumn> columns{
-      {"kind", "text", "class of the object, ParkingRow, or Sidewalk: free ground above a kerb"},
-      {"object", "IRI", "the object; absent for rows and sidewalks"},
+      {"kind", "text", "class of the object, or ParkingRow"},
+      {"object", "IRI", "the object; absent for rows"},
       {"street", "text", "the nearest street; absent where none is known"},
       {"x", "m", "position in the map frame; of a tree its trunk"},
       {"y", "m", "position in the map frame"},
       {"height", "m", "top above the local ground"},
       {"crown", "m", "diameter of the circle that is as large as the crown from above"},
-      {"width", "m", "of a row, or from the kerb to the first thing, at most 6"},
-      {"length", "m", "of a row or sidewalk"},
+      {"width", "m", "of a row"},
+      {"length", "m", "of a row"},
       {"count", "1", "vehicles of a row"}};
   return columns;
 }
@@ -53,10 +53,9 @@ InventoryParams inventoryParams(const TaskValues& values) {
   if (kinds.empty()) return params;
   const auto takeKind = [&](const char* name) { return std::find(kinds.begin(), kinds.end(), name) != kinds.end(); };
   params.with_rows = takeKind("ParkingRow");
-  params.with_sidewalks = takeKind("Sidewalk");
   params.classes.clear();
   for (const std::string& kind : kinds)
-    if (kind != "ParkingRow" && kind != "Sidewalk") params.classes.push_back(kind);
+    if (kind != "ParkingRow") params.classes.push_back(kind);
   return params;
 }
 
@@ -118,7 +117,7 @@ TaskAnswer inventoryAnswer(const mapping::MapReader& map, const InventoryParams&
 TaskAnswer registerAnswer(const mapping::MapReader& map, const InventoryParams& params,
                           const std::vector<RegisterEntry>& entries, const RegisterParams& comparison) {
   InventoryParams objects = params;
-  objects.with_rows = objects.with_sidewalks = false;
+  objects.with_rows = false;
   const std::vector<InventoryItem> items = inventoryOf(map, objects);
   TaskAnswer answer{{{"status", "text", "matched, missing in the map, not observed, not in the register"},
                      {"entry", "text", "id in the register"},
@@ -151,9 +150,9 @@ TaskAnswer registerAnswer(const mapping::MapReader& map, const InventoryParams& 
 std::vector<Task> surveyTasks() {
   Task inventory;
   inventory.name = "inventory";
-  inventory.title = "Which signs, lamps, trees, parked vehicles and sidewalks are there, and how large are they?";
+  inventory.title = "Which signs, lamps, trees and parked vehicles are there, and how large are they?";
   inventory.parameters = {
-      {"kind", "", "", "a class, ParkingRow or Sidewalk; without it all that a town lists", Kind::Class, false, true}};
+      {"kind", "", "", "a class, or ParkingRow; without it all that a town lists", Kind::Class, false, true}};
   inventory.columns = inventoryColumns();
   inventory.run = [](const TaskContext& context, const TaskValues& values) {
     return inventoryAnswer(context.map, inventoryParams(values));

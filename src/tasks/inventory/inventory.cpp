@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "base/convex_hull.hpp"
 #include "base/disjoint_sets.hpp"
@@ -149,8 +150,6 @@ std::vector<InventoryItem> inventoryOf(const mapping::MapReader& map, const Inve
   std::stable_sort(items.begin(), items.end(), [](const auto& a, const auto& b) { return a.kind < b.kind; });
   std::vector<InventoryItem> derived;
   if (params.with_rows) derived = parkingRows(map, ontology, params);
-  if (params.with_sidewalks)
-    for (InventoryItem& item : sidewalksOf(terrainOf(map))) derived.push_back(std::move(item));
   std::stable_sort(derived.begin(), derived.end(), [](const auto& a, const auto& b) {
     return std::tuple(a.kind, a.at.x(), a.at.y()) < std::tuple(b.kind, b.at.x(), b.at.y());
   });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a town keeps lists of: signs, lamps and trees with their sizes, rows of parked vehicles, ground beside kerbs.
+// What a town keeps lists of: signs, lamps and trees with their sizes, rows of parked vehicles.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "mapping/map_reader.hpp"
-#include "tasks/ways/terrain_grid.hpp"
 
 namespace cluxel::tasks {
 
@@ -17,15 +16,15 @@ inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
 /// One entry. Sizes that its kind has not are kNotMeasured.
 struct InventoryItem {
-  std::string kind;                              ///< local name of the class, "ParkingRow" or "Sidewalk"
-  std::string object;                            ///< IRI; empty for what several objects or the ground make
+  std::string kind;                              ///< local name of the class, or "ParkingRow"
+  std::string object;                            ///< IRI; empty for what several objects make
   std::string street;                            ///< name of the nearest street; empty: none is known near it
   Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< [m, map]; of a tree its trunk
   double height_m = kNotMeasured;                ///< top above the local ground
   double crown_m = kNotMeasured;                 ///< diameter of the circle that is as large as the crown from above
   double width_m = kNotMeasured, length_m = kNotMeasured;
   std::size_t count = 1;                   ///< vehicles of a row
-  std::vector<Eigen::Vector2d> line = {};  ///< of rows and sidewalks [m, map]
+  std::vector<Eigen::Vector2d> line = {};  ///< of rows [m, map]
 };
 
 /// A street by its name and course [m, map].
@@ -40,19 +39,11 @@ struct InventoryParams {
   double row_gap_m = 9;         ///< between the middles of neighbours in a row of vehicles
   double row_turn_rad = 0.35;   ///< between their headings
   std::size_t least_in_row = 3;
-  bool with_rows = true, with_sidewalks = true;
+  bool with_rows = true;
 };
 
-/// Objects first, by class and IRI, then rows and sidewalks by place. Throws Error (NotFound) for an unknown class.
+/// Objects first, by class and IRI, then rows by place. Throws Error (NotFound) for an unknown class.
 std::vector<InventoryItem> inventoryOf(const mapping::MapReader& map, const InventoryParams& params,
                                        const std::vector<Street>& streets = {});
-
-/// Stretches of ground on the high side of kerbs, from the kerb to what stands there, at most `widest_m` wide.
-struct KerbParams {
-  double least_step_m = 0.07, highest_step_m = 0.25;  ///< of a kerb
-  double widest_m = 6, stretch_m = 10;
-  std::size_t least_cells = 8;  ///< of a stretch
-};
-std::vector<InventoryItem> sidewalksOf(const TerrainGrid& terrain, const KerbParams& params = {});
 
 }  // namespace cluxel::tasks
