@@ -73,6 +73,7 @@ void addQuery(CLI::App& app, Session& session);
 void addLoad(CLI::App& app, Session& session);
 void addDump(CLI::App& app, Session& session);
 void addUpdate(CLI::App& app, Session& session);
+void addAsk(CLI::App& app, Session& session);
 void addTasks(CLI::App& app, Session& session);
 void addRules(CLI::App& app, Session& session);
 void addRuleFit(CLI::App& rules, Session& session);    ///< a subcommand of `rules`
@@ -85,6 +86,7 @@ void addChange(CLI::App& app, Session& session);  ///< extend, retract, repose, 
 void addWatch(CLI::App& app, Session& session);
 void addWays(CLI::App& app, Session& session);  ///< route, reach, costmap, search
 void addChanges(CLI::App& app, Session& session);
+void addInventory(CLI::App& app, Session& session);
 void addServe(CLI::App& app, Session& session);
 void addUpkeep(CLI::App& app, Session& session);  ///< doctor, compact
 void addDocumentation(CLI::App& app);             ///< hidden: the man page and shell completion

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `cluxel query` and `cluxel tasks`: questions in SPARQL.
+// `cluxel query`: questions in SPARQL.
 #include <algorithm>
 #include <cmath>
 
@@ -134,36 +134,6 @@ ExitCode query(const QueryArguments& arguments, Session& session) {
   return counter.exitCode();
 }
 
-Json questionJson(const tasks::Question& question) {
-  Json json{{"file", question.file.filename().string()},
-            {"title", question.title},
-            {"parameters", Json::array()},
-            {"columns", Json::array()}};
-  for (const tasks::QueryParameter& p : question.parameters)
-    json["parameters"].push_back({{"name", p.name}, {"unit", p.unit}, {"default", p.default_value}, {"help", p.help}});
-  for (const tasks::QueryColumn& c : question.columns)
-    json["columns"].push_back({{"name", c.name}, {"unit", c.unit}, {"help", c.help}});
-  return json;
-}
-
-ExitCode listTasks(const Session& session) {
-  Json all = Json::array();
-  for (const tasks::Question& question : tasks::shippedQuestions(session.dataHome())) {
-    if (session.json) {
-      all.push_back(questionJson(question));
-      continue;
-    }
-    std::printf("%s\n  %s\n", question.file.filename().c_str(), question.title.c_str());
-    for (const tasks::QueryParameter& p : question.parameters)
-      std::printf("  --param %s=%s  [%s] %s\n", p.name.c_str(), p.default_value.c_str(), p.unit.c_str(),
-                  p.help.c_str());
-    for (const tasks::QueryColumn& c : question.columns)
-      std::printf("    ?%s [%s] %s\n", c.name.c_str(), c.unit.c_str(), c.help.c_str());
-  }
-  if (session.json) printJson(all);
-  return ExitCode::Done;
-}
-
 }  // namespace
 
 void addQuery(CLI::App& app, Session& session) {
@@ -189,11 +159,6 @@ void addQuery(CLI::App& app, Session& session) {
   command->add_flag("--check", options->check, "only check the syntax");
   addAllowUnfinished(*command, options->allow_unfinished);
   onRun(*command, session, [options, &session] { return query(*options, session); });
-}
-
-void addTasks(CLI::App& app, Session& session) {
-  CLI::App* command = app.add_subcommand("tasks", "list the shipped questions with parameters and columns");
-  onRun(*command, session, [&session] { return listTasks(session); });
 }
 
 }  // namespace cluxel::app

@@ -2,12 +2,14 @@
 // `cluxel route`, `cluxel reach`, `cluxel costmap` and `cluxel search`: ways over a map's ground.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "rdf/store/map_check.hpp"
+#include "tasks/search/place_learning.hpp"
 #include "tasks/search/search_tour.hpp"
 #include "tasks/ways/cost_map.hpp"
 #include "tasks/ways/way_report.hpp"
@@ -132,12 +134,53 @@ void addWalkOptions(CLI::App& command, WayArguments& arguments) {
       ->check(CLI::Range(0.0, 20.0));
 }
 
+ExitCode learnPlaces(const std::vector<fs::path>& maps, const fs::path& output, Session& session) {
+  tasks::PlaceLearner learner;
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    session.console.progress("counting", i, maps.size());
+    learner.add(mapping::MapReader(maps[i]));
+  }
+  session.console.progress("counting", maps.size(), maps.size());
+  const std::vector<tasks::LearnedPlace> places = learner.learn();
+  writeFile(output, placesTurtle(places, learner.maps()));
+  std::set<std::string> classes;
+  for (const tasks::LearnedPlace& place : places) classes.insert(place.class_iri);
+  if (session.json)
+    printJson(Json{{"maps", maps.size()}, {"places", places.size()}, {"classes", classes.size()}});
+  else
+    std::printf("%s: %zu usual places of %zu classes; maps: %zu\n", output.c_str(), places.size(), classes.size(),
+                maps.size());
+  return ExitCode::Done;
+}
+
+CLI::App* addSearchLearn(CLI::App& search, Session& session) {
+  auto maps = std::make_shared<std::vector<fs::path>>();
+  auto output = std::make_shared<fs::path>();
+  CLI::App* command =
+      search.add_subcommand("learn", "learn usual places of classes by counting in maps; for `search --places`");
+  command->add_option("maps", *maps, "maps to count in")->required();
+  command->add_option("-o,--output", *output, "the Turtle file to write")->required()->check(named());
+  onRun(*command, session, [maps, output, &session] { return learnPlaces(*maps, *output, session); });
+  return command;
+}
+
+void requireGiven(bool is_given, const char* name) {
+  if (!is_given)
+    throw Error(ErrorKind::InvalidArgument,
+                std::string("search: ") + name + " is required; 'cluxel search --help' tells");
+}
+
 void addSearch(CLI::App& app, Session& session) {
   auto options = std::make_shared<WayArguments>();
   auto request = std::make_shared<tasks::SearchRequest>();
   CLI::App* command = app.add_subcommand("search", "tell where to look first for objects of a class");
-  command->add_option("map", options->map, "a map")->required();
-  command->add_option("--for", request->class_name, "the class to look for")->required();
+  const CLI::App* learn = addSearchLearn(*command, session);
+  command->add_option("map", options->map, "a map");
+  command->add_option("--for", request->class_name, "the class to look for");
+  command->add_option("--places", request->places, "usual places as `search learn` writes them; else the ontology's")
+      ->check(CLI::ExistingFile);
+  command->add_flag("--unobserved", options->request.params.crosses_unobserved,
+                    "ground that was not observed may be walked");
   command->add_option("--from", request->from, "X,Y or an object; else where the last scan was taken");
   command->add_option("--budget", request->tour.budget_m, "how long the walk may be [m]")->check(above0());
   command->add_option("--stops", request->tour.max_stops, "at most so many stops [10]")->check(CLI::Range(1, 100));
@@ -150,7 +193,12 @@ void addSearch(CLI::App& app, Session& session) {
   command->add_option("--width", options->request.params.width_m, "free width that is needed [m, 0.6]")
       ->check(CLI::Range(0.0, 20.0));
   addWayOptions(*command, *options);
-  onRun(*command, session, [options, request, &session] { return search(*options, *request, session); });
+  onRun(*command, session, [options, request, learn, &session] {
+    if (learn->parsed()) return session.exit_code;
+    requireGiven(!options->map.empty(), "map");
+    requireGiven(!request->class_name.empty(), "--for");
+    return search(*options, *request, session);
+  });
 }
 
 }  // namespace

@@ -45,6 +45,7 @@ void addCommands(CLI::App& app, Session& session) {
   addUpdate(app, session);
   addLoad(app, session);
   addDump(app, session);
+  addAsk(app, session);
   addTasks(app, session);
   addExplain(app, session);
   addRules(app, session);
@@ -52,6 +53,7 @@ void addCommands(CLI::App& app, Session& session) {
   addEvaluate(app, session);
   addExport(app, session);
   addWays(app, session);
+  addInventory(app, session);
   addChanges(app, session);
   addServe(app, session);
   addView(app, session);

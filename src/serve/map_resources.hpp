@@ -37,10 +37,12 @@ HttpResponse answerQuestionList(const std::vector<tasks::Question>& questions);
 /// Runs a shipped question; its parameters are those of the request.
 HttpResponse answerQuestion(const ServedMap& map, const ResourceRequest& asked,
                             const std::vector<tasks::Question>& questions, const std::string& name);
-/// The tasks with their parameters.
-HttpResponse answerTaskList();
-/// Runs route, reach or search; the parameters are those of the request.
-HttpResponse answerTask(ServedMap& map, const ResourceRequest& asked, const std::string& name);
+/// The table of tasks as JSON: names, parameters with kinds, units, defaults and ranges, columns.
+HttpResponse answerTaskList(const std::vector<tasks::Question>& questions);
+/// Runs a task; the parameters are those of the request, beside format (json, geojson, csv, table), frame (degrees,
+/// local) and why (true, false).
+HttpResponse answerTask(ServedMap& map, const ResourceRequest& asked, const std::vector<tasks::Question>& questions,
+                        const std::string& name);
 /// POST: tries the rules of the body on the map, which stays as it is, and tells what would change. Needs the token,
 /// because reasoning takes as long as it takes.
 HttpResponse answerRuleTrial(ServedMap& map, const ResourceRequest& asked, const std::string& token);

@@ -182,13 +182,13 @@ HttpResponse MapService::answerMap(const Route& route, const HttpRequest& reques
     if (first == "graph") return answerGraph(map, asked);
     if (first == "objects") return answerObjects(map, asked);
     if (first == "questions") return answerQuestionList(questions_);
-    if (first == "tasks") return answerTaskList();
+    if (first == "tasks") return answerTaskList(questions_);
     if (first == "page") return pageOf(map);
   }
   if (path.size() == 2 && first == "objects") return answerObject(map, asked, second);
   if (path.size() == 2 && first == "questions") return answerQuestion(map, asked, questions_, second);
   if (path.size() == 2 && first == "rules" && second == "trial") return answerRuleTrial(map, asked, options_.token);
-  if (path.size() == 2 && first == "tasks") return answerTask(map, asked, second);
+  if (path.size() == 2 && first == "tasks") return answerTask(map, asked, questions_, second);
   if (path.size() == 3 && first == "objects" && third == "explanation") return answerExplanation(map, asked, second);
   if (path.size() == 3 && first == "objects" && third == "points") return answerPoints(map, asked, second);
   throw Refusal(404, "a map has no such resource; /maps/NAME/page lists what there is");

@@ -21,7 +21,7 @@ constexpr std::array<Link, 8> kLinks{{{"/page", "points, objects and questions a
                                       {"/objects", "objects (JSON): class, bbox, limit, offset"},
                                       {"/questions", "shipped questions (JSON)"},
                                       {"/questions/count_by_class?format=table", "objects of each class (text)"},
-                                      {"/tasks", "tasks: route, reach, search (JSON)"},
+                                      {"/tasks", "tasks with their parameters (JSON); /tasks/NAME runs one"},
                                       {"/sparql", "SPARQL 1.1 endpoint; without a query its Service Description"},
                                       {"/graph?default", "all facts (Turtle)"}}};
 

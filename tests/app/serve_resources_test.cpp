@@ -100,21 +100,26 @@ TEST_F(ServeCommand, ShippedQuestionsAnswerAsTheCommandQuery) {
             run("query " + path("map.clx").string() + " near_point.rq --param radius=25 --param x=3 --format csv").out);
 }
 
-TEST_F(ServeCommand, TasksAnswerAsTheirCommands) {
-  EXPECT_EQ(jsonOf(shared().get("/tasks")).at("tasks").size(), 3U);
+TEST_F(ServeCommand, TasksAnswerAsTheCommandAsk) {
+  EXPECT_EQ(jsonOf(shared().get("/tasks")).at("tasks"), ServeJson::parse(run("tasks --json").out));
   const std::string map = path("map.clx").string();
-  EXPECT_EQ(shared().get("/tasks/search?for=StreetSign&from=0,0&budget=40").body,
-            run("search " + map + " --for StreetSign --from 0,0 --budget 40 --json").out);
-  EXPECT_EQ(shared().get("/tasks/reach?from=0,0&minutes=0.2&without=Movable").body,
-            run("reach " + map + " 0,0 --minutes 0.2 --without Movable --json").out);
-  const ServeJson place = jsonOf(shared().get("/tasks/search?for=StreetSign&from=0,0")).at("stops").at(0).at("at");
-  const std::string to = std::to_string(place[0].get<double>()) + "," + std::to_string(place[1].get<double>());
-  EXPECT_EQ(shared().get("/tasks/route?from=0,0&to=" + to).body, run("route " + map + " 0,0 --json -- " + to).out);
-  EXPECT_EQ(shared().get("/tasks/route?from=0,0").status, 400);
-  EXPECT_EQ(shared().get("/tasks/route?from=0,0&to=1e9,0").status, 404);
-  EXPECT_EQ(shared().get("/tasks/route?from=0,0&to=1,1&width=-1").status, 400);
-  EXPECT_EQ(shared().get("/tasks/search?for=StreetSing").status, 404);
-  EXPECT_EQ(shared().get("/tasks/serch").status, 404);
+  const std::vector<std::pair<std::string, std::string>> same{
+      {"search?for=StreetSign&from=0,0&budget=40", "search for=StreetSign from=0,0 budget=40 --json"},
+      {"search?for=StreetSign&from=0,0&why=true&format=table", "search for=StreetSign from=0,0 --why"},
+      {"reach?from=0,0&minutes=0.2&without=Movable", "reach from=0,0 minutes=0.2 without=Movable --json"},
+      {"near_point?radius=5&format=csv", "near_point radius=5 --format csv"},
+      {"costmap?format=geojson&frame=local", "costmap --geojson --local"}};
+  for (const auto& [resource, command] : same)
+    EXPECT_EQ(shared().get("/tasks/" + resource).body, run("ask " + map + " " + command).out) << resource;
+  const ServeJson stop = jsonOf(shared().get("/tasks/search?for=StreetSign&from=0,0")).at("rows").at(0);
+  const std::string to = std::to_string(stop["x"].get<double>()) + "," + std::to_string(stop["y"].get<double>());
+  EXPECT_EQ(shared().get("/tasks/route?from=0,0&to=" + to).body,
+            run("ask " + map + " route from=0,0 to=" + to + " --json").out);
+  for (const char* faulty : {"route?from=0,0", "route?from=0,0&to=1,1&width=-1", "route?from=0,0&to=1,1&wdth=1",
+                             "costmap?format=xml", "costmap?frame=moon", "costmap?why=maybe", "search?for="})
+    EXPECT_EQ(shared().get(std::string("/tasks/") + faulty).status, 400) << faulty;
+  for (const char* unknown : {"route?from=0,0&to=1e9,0", "search?for=StreetSing", "serch"})
+    EXPECT_EQ(shared().get(std::string("/tasks/") + unknown).status, 404) << unknown;
 }
 
 TEST_F(ServeCommand, SeveralMapsAreToldApartByName) {

@@ -29,31 +29,60 @@ PassableGrid plain(const GridFrame& frame) {
   return passableOf(terrain, {}, {}, {});
 }
 
+SightGrid openSight(const GridFrame& frame) {
+  return {frame, std::vector<std::uint8_t>(frame.size(), 0)};
+}
+
+std::vector<float> nothingKnown(const GridFrame& frame) {
+  return std::vector<float>(frame.size(), 0.0F);
+}
+
 TEST(SearchField, SpreadsEachPlaceAndTheRest) {
   const GridFrame frame{0, 0, 1, 5, 4};
-  const SearchField field =
-      fieldOf(frame, std::vector<std::uint8_t>(frame.size(), 0), {evidence(frame, 0, 1, 0.6)}, {});
+  const SearchField field = fieldOf(frame, nothingKnown(frame), {evidence(frame, 0, 1, 0.6)});
   EXPECT_NEAR(std::accumulate(field.probability.begin(), field.probability.end(), 0.0), 1, 1e-12);
   EXPECT_NEAR(field.probability[frame.index(0, 0)], 0.6 / 3 + 0.4 / 20, 1e-12);
   EXPECT_NEAR(field.probability[frame.index(1, 0)], 0.6 / 3 + 0.4 / 20, 1e-12);
   EXPECT_NEAR(field.probability[frame.index(4, 3)], 0.4 / 20, 1e-12);
   EXPECT_EQ(field.reason[frame.index(0, 1)], 0);
   EXPECT_EQ(field.reason[frame.index(4, 3)], kAnywhere);
-  const SearchField nothing =
-      fieldOf(frame, std::vector<std::uint8_t>(frame.size(), 0), {evidence(frame, 99, 1, 0.6)}, {});
+  const SearchField nothing = fieldOf(frame, nothingKnown(frame), {evidence(frame, 99, 1, 0.6)});
   for (const double value : nothing.probability) EXPECT_NEAR(value, 1.0 / 20, 1e-12);
-  EXPECT_THROW(fieldOf(frame, nothing.reason, {evidence(frame, 0, 1, 0.6), evidence(frame, 1, 1, 0.6)}, {}), Error);
+  EXPECT_THROW(fieldOf(frame, nothingKnown(frame), {evidence(frame, 0, 1, 0.6), evidence(frame, 1, 1, 0.6)}), Error);
 }
 
-TEST(SearchField, WhatWasSeenHoldsOnlyWhatWasOverlooked) {
+TEST(SearchField, WhatTheMapKnowsHoldsOnlyWhatWasOverlooked) {
   const GridFrame frame{0, 0, 1, 4, 1};
-  SearchParams params;
-  params.detection = 0.75;
-  const SearchField field = fieldOf(frame, {1, 0, 0, 1}, {}, params);
+  const SearchField field = fieldOf(frame, {0.75F, 0, 0, 0.75F}, {});
   EXPECT_NEAR(field.probability[0] / field.probability[1], 0.25, 1e-12);
-  params.detection = 1;
-  EXPECT_EQ(fieldOf(frame, {1, 0, 0, 1}, {}, params).probability[3], 0);
-  EXPECT_EQ(fieldOf(frame, {1, 1, 1, 1}, {}, params).probability[0], 0) << "all was seen, and nothing is overlooked";
+  EXPECT_EQ(fieldOf(frame, {1, 0, 0, 1}, {}).probability[3], 0);
+  EXPECT_EQ(fieldOf(frame, {1, 1, 1, 1}, {}).probability[0], 0) << "all was seen, and nothing is overlooked";
+}
+
+TEST(SightGrid, WithoutObstaclesEveryCellOfTheDiscIsSeen) {
+  const GridFrame frame{0, 0, 0.5, 40, 30};
+  for (const double view_m : {0.4, 1.0, 3.3, 7.0}) {
+    const std::uint32_t from = frame.index(20, 14);
+    std::vector<std::uint32_t> disc;
+    for (std::uint32_t cell = 0; cell < frame.size(); ++cell)
+      if ((frame.centreOf(cell) - frame.centreOf(from)).norm() <= view_m) disc.push_back(cell);
+    EXPECT_EQ(visibleFrom(openSight(frame), from, view_m), disc) << view_m;
+  }
+}
+
+TEST(SightGrid, AWallHidesWhatIsBehindItAndNothingElse) {
+  const GridFrame frame{0, 0, 1, 21, 21};
+  SightGrid sight = openSight(frame);
+  for (int x = 0; x < frame.columns; ++x) sight.opaque[frame.index(x, 12)] = 1;
+  std::size_t before = 0;
+  for (const std::uint32_t cell : visibleFrom(sight, frame.index(10, 10), 8)) {
+    EXPECT_LE(frame.rowOf(cell), 12);
+    before += frame.rowOf(cell) < 12 ? 1 : 0;
+  }
+  std::size_t expected = 0;
+  for (std::uint32_t cell = 0; cell < frame.size(); ++cell)
+    expected += frame.rowOf(cell) < 12 && std::hypot(frame.columnOf(cell) - 10, frame.rowOf(cell) - 10) <= 8 ? 1 : 0;
+  EXPECT_EQ(before, expected);
 }
 
 TEST(SearchTour, EachStopIsTheBestOfAllCellsForItsWalk) {
@@ -61,12 +90,13 @@ TEST(SearchTour, EachStopIsTheBestOfAllCellsForItsWalk) {
   for (int round = 0; round < 20; ++round) {
     const GridFrame frame{0, 0, 1, 9, 8};
     const PassableGrid grid = plain(frame);
-    SearchField field = fieldOf(frame, std::vector<std::uint8_t>(frame.size(), 0), {}, {});
+    SearchField field = fieldOf(frame, nothingKnown(frame), {});
     for (double& value : field.probability) value = static_cast<double>(random() % 100) / 10000;
     SearchParams search;
     search.view_m = 2;  // stops on every cell
-    const TourParams params{.budget_m = 15, .max_stops = 4, .min_probability = 0, .settle_m = 3};
-    const auto stops = tourOf(grid, field, {0.5, 0.5}, search, params);
+    const TourParams params{
+        .budget_m = 15, .max_stops = 4, .min_probability = 0, .settle_m = 3, .looks_on_way = false};
+    const auto stops = tourOf(grid, openSight(frame), field, {0.5, 0.5}, search, params);
     ASSERT_FALSE(stops.empty());
     std::uint32_t at = 0;
     double total_m = 0, so_far = 0;

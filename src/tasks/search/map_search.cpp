@@ -9,41 +9,12 @@
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/query_engine.hpp"
+#include "tasks/query_source.hpp"
 #include "tasks/search/search_tour.hpp"
 
 namespace cluxel::tasks {
 
 namespace {
-
-double numberIn(const sparql::ResultTable& table, std::size_t row, std::size_t column) {
-  const Term* term = table.at(row, column);
-  return term == nullptr ? std::nan("") : std::strtod(term->text.c_str(), nullptr);
-}
-
-/// Cells where something of a class is: what stands in them, and the positions of what rules derive.
-std::vector<std::uint8_t> cellsWith(const mapping::MapReader& map, const TerrainGrid& terrain,
-                                    const rdf::OntologyView& ontology, const std::string& class_iri) {
-  std::vector<std::uint8_t> marked(terrain.frame.size(), 0);
-  for (std::uint32_t cell = 0; cell < terrain.frame.size(); ++cell)
-    for (const std::uint32_t thing : terrain.thingsIn(cell))
-      if (thing != kUnnamedThing && ontology.isA(map.objects()[thing].class_iri, class_iri)) marked[cell] = 1;
-  const std::string query = "PREFIX clx: <" + std::string(rdf::vocabulary::kClx) + "> SELECT ?x ?y { ?o a <" +
-                            class_iri + "> ; clx:x ?x ; clx:y ?y }";
-  const sparql::ResultTable places = sparql::evaluateQuery(map.quads(), query).table;
-  for (std::size_t row = 0; row < places.row_count; ++row)
-    if (const auto cell = terrain.frame.cellAt({numberIn(places, row, 0), numberIn(places, row, 1)})) marked[*cell] = 1;
-  return marked;
-}
-
-/// Where the sensor stood at last.
-Eigen::Vector2d lastStop(const mapping::MapReader& map) {
-  const std::vector<mapping::Cloud> clouds = map.clouds();
-  if (clouds.empty()) throw Error(ErrorKind::NotFound, "the map holds no scans; name the start of the search");
-  const auto last = std::max_element(clouds.begin(), clouds.end(), [](const auto& a, const auto& b) {
-    return std::pair(a.time_s.value_or(-1e300), a.source) < std::pair(b.time_s.value_or(-1e300), b.source);
-  });
-  return last->T_map_sensor.translation().head<2>();
-}
 
 std::vector<KnownObject> knownOf(const mapping::MapReader& map, const rdf::OntologyView& ontology,
                                  const std::string& class_iri, const Eigen::Vector2d& from) {
@@ -62,23 +33,50 @@ double shown(double value) {
 
 }  // namespace
 
+Eigen::Vector2d lastStop(const mapping::MapReader& map) {
+  const std::vector<mapping::Cloud> clouds = map.clouds();
+  if (clouds.empty()) throw Error(ErrorKind::NotFound, "the map holds no scans; name the start of the search");
+  const auto last = std::max_element(clouds.begin(), clouds.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.time_s.value_or(-1e300), a.source) < std::pair(b.time_s.value_or(-1e300), b.source);
+  });
+  return last->T_map_sensor.translation().head<2>();
+}
+
+std::vector<rdf::UsualPlace> usualPlacesOf(const rdf::OntologyView& ontology, const std::string& class_iri,
+                                           const std::filesystem::path& file) {
+  if (file.empty()) return ontology.find(class_iri)->places;
+  const QuerySource source = openQuerySource(file);
+  const std::string query = "PREFIX clx: <" + std::string(rdf::vocabulary::kClx) +
+                            "> SELECT ?near ?within ?share { ?place clx:usualFor <" + class_iri +
+                            "> ; clx:nearClass ?near ; clx:within ?within ; clx:probability ?share } "
+                            "ORDER BY DESC(?share) ?near ?within";
+  const sparql::ResultTable table = sparql::evaluateQuery(source.reader(), query).table;
+  std::vector<rdf::UsualPlace> places;
+  for (std::size_t row = 0; row < table.row_count; ++row)
+    places.push_back({classNamed(ontology, table.at(row, 0)->text),
+                      std::strtod(table.at(row, 1)->text.c_str(), nullptr),
+                      std::strtod(table.at(row, 2)->text.c_str(), nullptr)});
+  if (places.empty())
+    throw Error(ErrorKind::InvalidArgument, file.string() + ": no usual place of " + mapping::localName(class_iri) +
+                                                " is in it; learn from maps that hold such objects");
+  return places;
+}
+
 SearchAnswer searchFor(const mapping::MapReader& map, const SearchRequest& request) {
   const rdf::OntologyView ontology = ontologyViewOf(map.quads());
   const std::string class_iri = classNamed(ontology, request.class_name);
   const Eigen::Vector2d from = request.from.empty() ? lastStop(map) : placeNamed(map, request.from);
   const TerrainGrid terrain = terrainOf(map, request.ways.terrain);
-  const PassableGrid grid = passableIn(map, request.ways);
+  const PassableGrid grid = passableIn(map, terrain, request.ways);
   SearchAnswer answer;
   answer.frame = grid.frame;
   answer.known = knownOf(map, ontology, class_iri, from);
-  std::vector<PlaceEvidence> places;
-  for (const rdf::UsualPlace& place : ontology.find(class_iri)->places) {
-    const std::string name = mapping::localName(place.near_class);
-    places.push_back({name, place.within_m, place.probability, cellsWith(map, terrain, ontology, place.near_class)});
-    answer.reasons.push_back(name);
-  }
-  const SearchField field = fieldOf(grid.frame, terrain.seen, places, request.search);
-  answer.stops = tourOf(grid, field, from, request.search, request.tour);
+  answer.places = usualPlacesOf(ontology, class_iri, request.places);
+  const std::vector<PlaceEvidence> places = evidenceOf(map, terrain, ontology, answer.places);
+  for (const PlaceEvidence& place : places) answer.reasons.push_back(place.near_class);
+  const SightGrid sight = sightOf(map, terrain, request.search.eye_m);
+  const SearchField field = fieldOf(grid.frame, knownShare(map, terrain, sight, request.search), places);
+  answer.stops = tourOf(grid, sight, field, from, request.search, request.tour);
   return answer;
 }
 

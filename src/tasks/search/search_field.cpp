@@ -3,8 +3,11 @@
 #include "tasks/search/search_field.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "cluxel/error.hpp"
+#include "rdf/vocabulary.hpp"
+#include "sparql/query_engine.hpp"
 #include "tasks/ways/passable_grid.hpp"
 
 namespace cluxel::tasks {
@@ -20,10 +23,58 @@ std::vector<std::uint32_t> cellsOf(const GridFrame& frame, const PlaceEvidence& 
   return cells;
 }
 
+double numberIn(const sparql::ResultTable& table, std::size_t row, std::size_t column) {
+  const Term* term = table.at(row, column);
+  return term == nullptr ? std::nan("") : std::strtod(term->text.c_str(), nullptr);
+}
+
 }  // namespace
 
-SearchField fieldOf(const GridFrame& frame, const std::vector<std::uint8_t>& seen,
-                    const std::vector<PlaceEvidence>& places, const SearchParams& params) {
+std::vector<std::uint8_t> cellsWith(const mapping::MapReader& map, const TerrainGrid& terrain,
+                                    const rdf::OntologyView& ontology, const std::string& class_iri) {
+  std::vector<std::uint8_t> marked(terrain.frame.size(), 0);
+  for (std::uint32_t cell = 0; cell < terrain.frame.size(); ++cell)
+    for (const std::uint32_t thing : terrain.thingsIn(cell))
+      if (thing != kUnnamedThing && ontology.isA(map.objects()[thing].class_iri, class_iri)) marked[cell] = 1;
+  const std::string query = "PREFIX clx: <" + std::string(rdf::vocabulary::kClx) + "> SELECT ?x ?y { ?o a <" +
+                            class_iri + "> ; clx:x ?x ; clx:y ?y }";
+  const sparql::ResultTable places = sparql::evaluateQuery(map.quads(), query).table;
+  for (std::size_t row = 0; row < places.row_count; ++row)
+    if (const auto cell = terrain.frame.cellAt({numberIn(places, row, 0), numberIn(places, row, 1)})) marked[*cell] = 1;
+  return marked;
+}
+
+std::vector<PlaceEvidence> evidenceOf(const mapping::MapReader& map, const TerrainGrid& terrain,
+                                      const rdf::OntologyView& ontology, const std::vector<rdf::UsualPlace>& places) {
+  std::vector<PlaceEvidence> evidence;
+  for (const rdf::UsualPlace& place : places)
+    evidence.push_back({mapping::localName(place.near_class), place.within_m, place.probability,
+                        cellsWith(map, terrain, ontology, place.near_class)});
+  return evidence;
+}
+
+std::vector<float> knownShare(const mapping::MapReader& map, const TerrainGrid& terrain, const SightGrid& sight,
+                              const SearchParams& params) {
+  const GridFrame& frame = sight.frame;
+  std::vector<float> known(frame.size(), 0.0F);
+  const double far_m = params.view_m * std::max(1.0, params.fade);
+  for (const mapping::Cloud& cloud : map.clouds()) {
+    for (std::uint32_t cell = 0; !cloud.has_pose && cell < frame.size(); ++cell)
+      if (terrain.seen[cell] != 0) known[cell] = static_cast<float>(params.detection);
+    const Eigen::Vector2d stop = cloud.T_map_sensor.translation().head<2>();
+    const auto at = frame.cellAt(stop);
+    if (!cloud.has_pose || !at) continue;
+    for (const std::uint32_t cell : visibleFrom(sight, *at, far_m)) {
+      const double distance_m = (frame.centreOf(cell) - stop).norm();
+      const double share = std::clamp((far_m - distance_m) / std::max(1e-9, far_m - params.view_m), 0.0, 1.0);
+      const double here = params.detection * (distance_m <= params.view_m ? 1.0 : share);
+      known[cell] = std::max(known[cell], static_cast<float>(here));
+    }
+  }
+  return known;
+}
+
+SearchField fieldOf(const GridFrame& frame, const std::vector<float>& known, const std::vector<PlaceEvidence>& places) {
   constexpr double rounding = 1e-9;
   SearchField field{frame, std::vector<double>(frame.size(), 0.0), std::vector<std::uint8_t>(frame.size(), kAnywhere)};
   std::vector<double> largest_share(frame.size(), 0.0);
@@ -47,7 +98,7 @@ SearchField fieldOf(const GridFrame& frame, const std::vector<std::uint8_t>& see
   double sum = 0;
   for (std::uint32_t cell = 0; cell < frame.size(); ++cell) {
     if (rest > largest_share[cell]) field.reason[cell] = kAnywhere;
-    field.probability[cell] = (field.probability[cell] + rest) * (seen[cell] != 0 ? 1 - params.detection : 1.0);
+    field.probability[cell] = (field.probability[cell] + rest) * (1 - static_cast<double>(known[cell]));
     sum += field.probability[cell];
   }
   for (double& value : field.probability) value = sum > 0 ? value / sum : 0;

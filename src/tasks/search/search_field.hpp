@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "tasks/ways/terrain_grid.hpp"
+#include "rdf/ontology/ontology.hpp"
+#include "tasks/search/sight_grid.hpp"
 
 namespace cluxel::tasks {
 
@@ -18,8 +19,10 @@ struct PlaceEvidence {
 };
 
 struct SearchParams {
-  double detection = 0.8;  ///< share of the objects of the class that the map knows where ground was seen
+  double detection = 0.8;  ///< share of the objects of the class that the map knows within view of a scan
   double view_m = 10;      ///< how far an object is recognised from a stop
+  double fade = 3;         ///< at so many times view_m from a scan, the map knows nothing any more
+  double eye_m = 1.2;      ///< what is higher hides what is behind it
 };
 
 /// The number of a place in reasons, or this: anywhere.
@@ -31,10 +34,22 @@ struct SearchField {
   std::vector<std::uint8_t> reason;  ///< the place that says most about the cell, or kAnywhere
 };
 
+/// Cells where something of a class is: what stands in them, and the positions of what rules derive.
+std::vector<std::uint8_t> cellsWith(const mapping::MapReader& map, const TerrainGrid& terrain,
+                                    const rdf::OntologyView& ontology, const std::string& class_iri);
+/// The usual places as they are in the map.
+std::vector<PlaceEvidence> evidenceOf(const mapping::MapReader& map, const TerrainGrid& terrain,
+                                      const rdf::OntologyView& ontology, const std::vector<rdf::UsualPlace>& places);
+
+/// Per cell, the probability that the map knows an object of the class that is there: `detection` within view_m of a
+/// scan that sees the cell, from there falling to 0 at fade times view_m. Scans without a pose count where ground was
+/// measured.
+std::vector<float> knownShare(const mapping::MapReader& map, const TerrainGrid& terrain, const SightGrid& sight,
+                              const SearchParams& params);
+
 /// The probability of each place is spread evenly over the cells within its distance of the things that are there, the
-/// rest over all cells. Where ground was seen only what was overlooked can be. Throws Error (InvalidArgument) for
-/// places whose probabilities sum to more than 1.
-SearchField fieldOf(const GridFrame& frame, const std::vector<std::uint8_t>& seen,
-                    const std::vector<PlaceEvidence>& places, const SearchParams& params);
+/// rest over all cells; then a cell keeps the share that the map does not know. `known`: per cell, as knownShare().
+/// Throws Error (InvalidArgument) for places whose probabilities sum to more than 1.
+SearchField fieldOf(const GridFrame& frame, const std::vector<float>& known, const std::vector<PlaceEvidence>& places);
 
 }  // namespace cluxel::tasks

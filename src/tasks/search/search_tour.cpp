@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "tasks/ways/way_search.hpp"
 
@@ -12,22 +13,98 @@ namespace cluxel::tasks {
 
 namespace {
 
-/// The cells within view of a cell.
-template <typename Visit>
-void visitView(const GridFrame& frame, std::uint32_t cell, double view_m, const Visit& visit) {
-  const int reach = static_cast<int>(std::floor(view_m / frame.cell_m));
-  for (int dy = -reach; dy <= reach; ++dy)
-    for (int dx = -reach; dx <= reach; ++dx) {
-      const int x = frame.columnOf(cell) + dx, y = frame.rowOf(cell) + dy;
-      if (frame.holds(x, y) && std::hypot(dx, dy) * frame.cell_m <= view_m) visit(frame.index(x, y));
-    }
-}
+/// Candidates for stops with the probability in sight of each. Taking a view out never raises another one, so that the
+/// last value that was computed bounds the present one.
+class StopCandidates {
+ public:
+  StopCandidates(const SightGrid& sight, SearchField field, double view_m, std::vector<std::uint32_t> cells)
+      : sight_(sight), field_(std::move(field)), view_m_(view_m), cells_(std::move(cells)) {
+    bound_.assign(cells_.size(), 1.0);
+  }
 
-double probabilityInView(const SearchField& field, std::uint32_t cell, double view_m) {
-  double sum = 0;
-  visitView(field.frame, cell, view_m, [&](std::uint32_t seen) { sum += field.probability[seen]; });
-  return sum;
-}
+  /// The reachable stop of most probability for each metre; none when all have less than the least.
+  std::optional<SearchStop> best(const CheapestWays& ways, double total_m, const TourParams& params) {
+    std::optional<SearchStop> best;
+    double best_value = 0;
+    for (const std::size_t i : leading(ways, total_m, params)) {
+      const double walk = ways.cost[cells_[i]];
+      const double probability = params.looks_on_way ? sumOver(inSightOnWay(ways, cells_[i])) : bound_[i];
+      const double value = probability / (walk + params.settle_m);
+      if (value <= best_value) continue;
+      best_value = value;
+      best = SearchStop{cells_[i], walk, total_m + walk, probability, 0, kAnywhere, {}};
+    }
+    return best;
+  }
+
+  /// Takes what is seen on the way to a stop and from it out of the field, and fills in where it came from.
+  void take(SearchStop& stop, const CheapestWays& ways, const TourParams& params) {
+    std::map<std::uint8_t, double> by_reason;
+    for (const std::uint32_t cell :
+         params.looks_on_way ? inSightOnWay(ways, stop.cell) : visibleFrom(sight_, stop.cell, view_m_)) {
+      by_reason[field_.reason[cell]] += field_.probability[cell];
+      field_.probability[cell] = 0;
+    }
+    for (const auto& [reason, probability] : by_reason)
+      if (probability > 0) stop.shares.emplace_back(reason, probability);
+    std::stable_sort(stop.shares.begin(), stop.shares.end(),
+                     [](const auto& a, const auto& b) { return a.second > b.second; });
+    if (!stop.shares.empty()) stop.reason = stop.shares.front().first;
+  }
+
+ private:
+  static constexpr std::size_t kLeading = 16;
+
+  /// The candidates with most in sight from the stop alone for each metre, best first, ties by number; one or kLeading.
+  std::vector<std::size_t> leading(const CheapestWays& ways, double total_m, const TourParams& params) {
+    const std::size_t wanted = params.looks_on_way ? kLeading : 1;
+    const auto value = [&](std::size_t i) { return bound_[i] / (ways.cost[cells_[i]] + params.settle_m); };
+    const auto isBetter = [&](std::size_t a, std::size_t b) {
+      return std::pair(-value(a), a) < std::pair(-value(b), b);
+    };
+    std::vector<std::size_t> order, found;
+    for (std::size_t i = 0; i < cells_.size(); ++i)
+      if (std::isfinite(ways.cost[cells_[i]]) && bound_[i] > 0 && bound_[i] >= params.min_probability &&
+          (params.budget_m == 0 || total_m + ways.cost[cells_[i]] <= params.budget_m))
+        order.push_back(i);
+    std::sort(order.begin(), order.end(), isBetter);
+    for (const std::size_t i : order) {
+      if (found.size() == wanted && value(i) < value(found.back())) break;
+      bound_[i] = sumOver(visibleFrom(sight_, cells_[i], view_m_));
+      if (bound_[i] == 0 || bound_[i] < params.min_probability) continue;
+      found.insert(std::upper_bound(found.begin(), found.end(), i, isBetter), i);
+      if (found.size() > wanted) found.pop_back();
+    }
+    return found;
+  }
+
+  /// The cells in sight from a stop and, every half view, from the way to it; ascending.
+  std::vector<std::uint32_t> inSightOnWay(const CheapestWays& ways, std::uint32_t stop) const {
+    std::vector<std::uint32_t> seen = visibleFrom(sight_, stop, view_m_);
+    double looked_at_m = ways.cost[stop];
+    for (std::uint32_t cell = stop; ways.before[cell] != cell; cell = ways.before[cell]) {
+      if (looked_at_m - ways.cost[cell] < view_m_ / 2) continue;
+      looked_at_m = ways.cost[cell];
+      const std::vector<std::uint32_t> here = visibleFrom(sight_, cell, view_m_);
+      seen.insert(seen.end(), here.begin(), here.end());
+    }
+    std::sort(seen.begin(), seen.end());
+    seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+    return seen;
+  }
+
+  double sumOver(const std::vector<std::uint32_t>& cells) const {
+    double sum = 0;
+    for (const std::uint32_t cell : cells) sum += field_.probability[cell];
+    return sum;
+  }
+
+  const SightGrid& sight_;
+  SearchField field_;
+  double view_m_;
+  std::vector<std::uint32_t> cells_;
+  std::vector<double> bound_;  ///< parallel to cells_
+};
 
 std::vector<std::uint32_t> candidatesOf(const PassableGrid& grid, std::uint32_t start, double view_m) {
   const int pitch = std::max(1, static_cast<int>(view_m / 2 / grid.frame.cell_m));
@@ -38,45 +115,24 @@ std::vector<std::uint32_t> candidatesOf(const PassableGrid& grid, std::uint32_t 
   return cells;
 }
 
-/// Takes what is seen from a stop out of the field; returns the place that most of it came from.
-std::uint8_t takeView(SearchField& field, std::uint32_t cell, double view_m) {
-  std::map<std::uint8_t, double> by_reason;
-  visitView(field.frame, cell, view_m, [&](std::uint32_t seen) {
-    by_reason[field.reason[seen]] += field.probability[seen];
-    field.probability[seen] = 0;
-  });
-  const auto largest = std::max_element(by_reason.begin(), by_reason.end(),
-                                        [](const auto& a, const auto& b) { return a.second < b.second; });
-  return largest == by_reason.end() ? kAnywhere : largest->first;
-}
-
 }  // namespace
 
-std::vector<SearchStop> tourOf(const PassableGrid& grid, const SearchField& field, const Eigen::Vector2d& from,
-                               const SearchParams& search, const TourParams& params) {
-  SearchField left = field;
+std::vector<SearchStop> tourOf(const PassableGrid& grid, const SightGrid& sight, const SearchField& field,
+                               const Eigen::Vector2d& from, const SearchParams& search, const TourParams& params) {
   std::uint32_t at = openCellNear(grid, from);
-  const std::vector<std::uint32_t> candidates = candidatesOf(grid, at, search.view_m);
+  StopCandidates candidates(sight, field, search.view_m, candidatesOf(grid, at, search.view_m));
   std::vector<SearchStop> stops;
   double total_m = 0, so_far = 0;
   while (stops.size() < params.max_stops) {
-    const std::vector<double> walk_m = cheapestWays(grid, at, {.is_priced = false}).cost;
-    SearchStop best;
-    double best_value = 0;
-    for (const std::uint32_t cell : candidates) {
-      if (!std::isfinite(walk_m[cell]) || (params.budget_m > 0 && total_m + walk_m[cell] > params.budget_m)) continue;
-      const double probability = probabilityInView(left, cell, search.view_m);
-      const double value = probability / (walk_m[cell] + params.settle_m);
-      if (probability < params.min_probability || value <= best_value) continue;
-      best_value = value;
-      best = {cell, walk_m[cell], total_m + walk_m[cell], probability, so_far + probability, kAnywhere};
-    }
-    if (best_value == 0) break;
-    best.reason = takeView(left, best.cell, search.view_m);
-    total_m = best.total_m;
-    so_far = best.so_far;
-    at = best.cell;
-    stops.push_back(best);
+    const CheapestWays ways = cheapestWays(grid, at, {.is_priced = false});
+    std::optional<SearchStop> best = candidates.best(ways, total_m, params);
+    if (!best) break;
+    candidates.take(*best, ways, params);
+    total_m = best->total_m;
+    so_far += best->probability;
+    best->so_far = so_far;
+    at = best->cell;
+    stops.push_back(std::move(*best));
   }
   return stops;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -13,29 +14,33 @@ namespace cluxel::tasks {
 
 struct SearchStop {
   std::uint32_t cell = 0;
-  double walk_m = 0;                ///< from the stop before, by the cheapest way
-  double total_m = 0;               ///< from the start
-  double probability = 0;           ///< that the object is first seen from here
-  double so_far = 0;                ///< that it is seen from here or before
-  std::uint8_t reason = kAnywhere;  ///< the place that most of the probability comes from
+  double walk_m = 0;                                         ///< from the stop before, by the cheapest way
+  double total_m = 0;                                        ///< from the start
+  double probability = 0;                                    ///< that the object is first seen from here, or on the way here
+  double so_far = 0;                                         ///< that it is seen from here or before
+  std::uint8_t reason = kAnywhere;                           ///< the place that most of the probability comes from
+  std::vector<std::pair<std::uint8_t, double>> shares = {};  ///< of the probability, by place, largest first
 };
 
 struct TourParams {
   double budget_m = 0;  ///< length of the whole walk; 0: no limit
   std::size_t max_stops = 10;
   double min_probability = 0.002;  ///< a stop with less ends the tour
-  double settle_m = 5;             ///< what a stop costs beside the walk
+  double settle_m = 5;               ///< what a stop costs beside the walk
+  bool looks_on_way = true;          ///< what is in sight of the way counts too
 };
 
-/// Greedy: the next stop is the one with most new probability within view for each metre of walk and settling. Stops
-/// are open cells of a lattice of half the view, and the start. What stands between a stop and a cell is not regarded.
-std::vector<SearchStop> tourOf(const PassableGrid& grid, const SearchField& field, const Eigen::Vector2d& from,
-                               const SearchParams& search, const TourParams& params);
+/// Greedy: the next stop is the one with most new probability in sight for each metre of walk and settling. Stops are
+/// open cells of a lattice of half the view, and the start. With `looks_on_way` the 16 stops with most in sight are
+/// compared by what is in sight on the way, too.
+std::vector<SearchStop> tourOf(const PassableGrid& grid, const SightGrid& sight, const SearchField& field,
+                               const Eigen::Vector2d& from, const SearchParams& search, const TourParams& params);
 
 /// A search in a map.
 struct SearchRequest {
-  std::string class_name;  ///< what to look for: local name, clx:name or IRI
-  std::string from;        ///< as placeNamed(); empty: the position of the last scan
+  std::string class_name;             ///< what to look for: local name, clx:name or IRI
+  std::string from;                   ///< as placeNamed(); empty: the position of the last scan
+  std::filesystem::path places = {};  ///< Turtle with usual places instead of the ontology's; empty: the ontology's
   WayRequest ways = {};
   SearchParams search = {};
   TourParams tour = {};
@@ -50,9 +55,16 @@ struct SearchAnswer {
   GridFrame frame;
   std::vector<KnownObject> known;  ///< objects of the class that the map holds, nearest first
   std::vector<SearchStop> stops;
-  std::vector<std::string> reasons;  ///< local names of near classes, by SearchStop::reason
+  std::vector<std::string> reasons;     ///< local names of near classes, by SearchStop::reason
+  std::vector<rdf::UsualPlace> places;  ///< parallel to reasons
 };
 
+/// Where the sensor stood at last. Throws Error (NotFound) for a map without scans.
+Eigen::Vector2d lastStop(const mapping::MapReader& map);
+/// The usual places of a class in a Turtle file, as `search learn` writes it; those of the ontology without a file.
+/// Throws Error (InvalidArgument) for a file that says nothing about the class.
+std::vector<rdf::UsualPlace> usualPlacesOf(const rdf::OntologyView& ontology, const std::string& class_iri,
+                                           const std::filesystem::path& file);
 /// Throws Error (NotFound) for an unknown class or a start without open ground.
 SearchAnswer searchFor(const mapping::MapReader& map, const SearchRequest& request);
 std::string searchJson(const mapping::MapReader& map, const SearchAnswer& answer);

@@ -88,7 +88,7 @@ void closeCells(const TerrainGrid& terrain, const WayParams& params, const std::
     grid.clearance_m[cell] = static_cast<float>(nearest.distance[cell] * grid.frame.cell_m);
     if (is_thing[cell] != 0) {
       grid.closure[cell] = Closure::Thing;
-    } else if (terrain.seen[cell] == 0) {
+    } else if (terrain.seen[cell] == 0 && !params.crosses_unobserved) {
       grid.closure[cell] = Closure::Unobserved;
     } else if (grid.slope[cell] > params.max_slope) {
       grid.closure[cell] = Closure::TooSteep;
@@ -111,6 +111,7 @@ void priceCells(const TerrainGrid& terrain, const WayParams& params, const std::
   for (std::uint32_t cell = 0; cell < grid.frame.size(); ++cell) {
     double factor = 1 + slope_weight * grid.slope[cell];
     factor += crowded_weight * std::max(0.0, 1 - static_cast<double>(grid.clearance_m[cell]) / roomy_m);
+    if (terrain.seen[cell] == 0) factor *= params.unobserved_factor;
     const bool is_far = !near.empty() && nearest.distance[cell] * grid.frame.cell_m > params.near_m;
     grid.factor[cell] = static_cast<float>(is_far ? factor * params.far_factor : factor);
   }

@@ -12,11 +12,13 @@ namespace cluxel::tasks {
 enum class Closure : std::uint8_t { Open, Unobserved, Thing, TooSteep, TooNarrow };
 
 struct WayParams {
-  double width_m = 0.6;      ///< free width that is needed
-  double max_slope = 0.12;   ///< rise over run
-  double max_step_m = 0.06;  ///< height difference between neighbouring cells
-  double near_m = 8;         ///< how far `near` things may be without extra cost
-  double far_factor = 3;     ///< cost of a metre that is farther from them
+  double width_m = 0.6;             ///< free width that is needed
+  double max_slope = 0.12;          ///< rise over run
+  double max_step_m = 0.06;         ///< height difference between neighbouring cells
+  bool crosses_unobserved = false;  ///< ground that was not observed is open, at unobserved_factor
+  double unobserved_factor = 1.5;   ///< cost of a metre there
+  double near_m = 8;                ///< how far `near` things may be without extra cost
+  double far_factor = 3;            ///< cost of a metre that is farther from them
 };
 
 struct PassableGrid {

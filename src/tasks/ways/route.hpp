@@ -23,6 +23,8 @@ struct WayRequest {
 
 /// Throws Error (NotFound) for a class that the map's ontology does not know.
 PassableGrid passableIn(const mapping::MapReader& map, const WayRequest& request);
+/// The same with a terrain that is there already.
+PassableGrid passableIn(const mapping::MapReader& map, const TerrainGrid& terrain, const WayRequest& request);
 
 /// "X,Y" in metres of the map frame, or an object: its IRI, at least four digits of its hash, or "#17". Throws Error
 /// (InvalidArgument, NotFound).

@@ -23,6 +23,23 @@ using perception::TileKey;
 
 constexpr std::uint64_t kMaxCells = 200'000'000;
 
+GridFrame boundedFrame(const GridFrame& frame, double columns, double rows) {
+  if (!(columns * rows <= static_cast<double>(kMaxCells)))
+    throw Error(ErrorKind::BudgetExceeded, "the extent is too large for a grid of cells of " +
+                                               std::to_string(frame.cell_m) + " m; choose larger cells");
+  GridFrame bounded = frame;
+  bounded.columns = static_cast<int>(columns);
+  bounded.rows = static_cast<int>(rows);
+  return bounded;
+}
+
+/// Cells begin at multiples of their edge.
+GridFrame frameOfArea(const Eigen::AlignedBox2d& area, double cell_m) {
+  const Eigen::Vector2d low = (area.min() / cell_m).array().floor() * cell_m;
+  const Eigen::Vector2d count = ((area.max() - low) / cell_m).array().ceil();
+  return boundedFrame({low.x(), low.y(), cell_m, 0, 0}, std::max(1.0, count.x()), std::max(1.0, count.y()));
+}
+
 GridFrame frameOf(const mapping::TileStages& stages, double cell_m) {
   if (stages.ground().empty()) throw Error(ErrorKind::NotFound, "the map has no ground: it holds no points");
   TileKey low = stages.ground().begin()->first, high = low;
@@ -33,12 +50,7 @@ GridFrame frameOf(const mapping::TileStages& stages, double cell_m) {
   GridFrame frame{low.x * kTileSize_m, low.y * kTileSize_m, cell_m, 0, 0};
   const double columns = std::ceil((high.x - low.x + 1) * kTileSize_m / cell_m);
   const double rows = std::ceil((high.y - low.y + 1) * kTileSize_m / cell_m);
-  if (columns * rows > static_cast<double>(kMaxCells))
-    throw Error(ErrorKind::BudgetExceeded, "the map's extent is too large for a grid of cells of " +
-                                               std::to_string(cell_m) + " m; choose larger cells");
-  frame.columns = static_cast<int>(columns);
-  frame.rows = static_cast<int>(rows);
-  return frame;
+  return boundedFrame(frame, columns, rows);
 }
 
 /// Heights of the ground surface, and where it was measured.
@@ -49,10 +61,11 @@ void fillGround(const mapping::TileStages& stages, TerrainGrid& grid) {
   for (const auto& [key, tile] : stages.ground()) {
     const auto ring = ringIn(stages.ground(), key);
     const Eigen::Vector3d corner = cornerOf(key);
-    const auto first = *frame.cellAt({corner.x() + frame.cell_m / 2, corner.y() + frame.cell_m / 2});
+    const int first_column = static_cast<int>(std::round((corner.x() - frame.min_x) / frame.cell_m));
+    const int first_row = static_cast<int>(std::round((corner.y() - frame.min_y) / frame.cell_m));
     const int count = static_cast<int>(std::round(kTileSize_m / frame.cell_m));
     for (int i = 0; i < count * count; ++i) {
-      const int column = frame.columnOf(first) + i % count, row = frame.rowOf(first) + i / count;
+      const int column = first_column + i % count, row = first_row + i / count;
       if (!frame.holds(column, row)) continue;
       const std::uint32_t cell = frame.index(column, row);
       const Eigen::Vector2d local = frame.centreOf(cell) - corner.head<2>();
@@ -131,7 +144,7 @@ std::optional<std::uint32_t> GridFrame::cellAt(const Eigen::Vector2d& p_map) con
 
 TerrainGrid terrainOf(const mapping::MapReader& map, const TerrainParams& params) {
   TerrainGrid grid;
-  grid.frame = frameOf(map.stages(), params.cell_m);
+  grid.frame = params.area ? frameOfArea(*params.area, params.cell_m) : frameOf(map.stages(), params.cell_m);
   const std::size_t size = grid.frame.size();
   grid.height.assign(size, 0.0F);
   grid.seen.assign(size, 0);

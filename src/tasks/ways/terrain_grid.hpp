@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -49,6 +50,8 @@ struct TerrainParams {
   double cell_m = 0.25;
   double lowest_m = 0.20;   ///< things below this height above the ground are steps, not obstacles
   double highest_m = 2.00;  ///< things above it are passed under
+  /// The part of the map frame that the grid covers [m, map]; absent: all tiles of the map. It may reach beyond them.
+  std::optional<Eigen::AlignedBox2d> area = std::nullopt;
 };
 inline constexpr double kSeenReach_m = 1.0;
 

@@ -42,17 +42,6 @@ const char* kindName(Barrier::Kind kind) {
   return "";
 }
 
-/// Corners of a way: cells between which the direction stays are left out.
-std::vector<Eigen::Vector2d> cornersOf(const GridFrame& frame, const std::vector<std::uint32_t>& cells) {
-  std::vector<Eigen::Vector2d> corners;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const bool is_inner = i > 0 && i + 1 < cells.size();
-    if (is_inner && cells[i] - cells[i - 1] == cells[i + 1] - cells[i]) continue;
-    corners.push_back(frame.centreOf(cells[i]));
-  }
-  return corners;
-}
-
 WayJson numbersOf(const Route& route) {
   WayJson json{{"length", rounded3(route.length_m)},
                {"cost", rounded3(route.cost)},
@@ -74,6 +63,16 @@ WayJson barrierJson(const mapping::MapReader& map, const Barrier& barrier) {
 }
 
 }  // namespace
+
+std::vector<Eigen::Vector2d> cornersOf(const GridFrame& frame, const std::vector<std::uint32_t>& cells) {
+  std::vector<Eigen::Vector2d> corners;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const bool is_inner = i > 0 && i + 1 < cells.size();
+    if (is_inner && cells[i] - cells[i - 1] == cells[i + 1] - cells[i]) continue;
+    corners.push_back(frame.centreOf(cells[i]));
+  }
+  return corners;
+}
 
 std::string thingName(const mapping::MapReader& map, std::uint32_t thing) {
   if (thing == kUnnamedThing) return "something unnamed";

@@ -86,6 +86,10 @@ std::string classNamed(const rdf::OntologyView& ontology, const std::string& nam
 }
 
 PassableGrid passableIn(const mapping::MapReader& map, const WayRequest& request) {
+  return passableIn(map, terrainOf(map, request.terrain), request);
+}
+
+PassableGrid passableIn(const mapping::MapReader& map, const TerrainGrid& terrain, const WayRequest& request) {
   const ObjectSelector selector(map);
   std::vector<bool> is_left_out(map.objects().size(), false), near;
   for (const std::string& name : request.without) selector.mark(name, is_left_out);
@@ -94,7 +98,7 @@ PassableGrid passableIn(const mapping::MapReader& map, const WayRequest& request
     near.assign(map.objects().size(), false);
     selector.mark(request.near, near);
   }
-  return passableOf(terrainOf(map, request.terrain), request.params, is_left_out, near);
+  return passableOf(terrain, request.params, is_left_out, near);
 }
 
 Eigen::Vector2d placeNamed(const mapping::MapReader& map, const std::string& text) {

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// Inventory, register and next views as rows.
+#include "tasks/ask/inventory_task.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "rdf/map_iris.hpp"
+#include "tasks/ask/task_table.hpp"
+#include "tasks/search/next_view.hpp"
+#include "tasks/ways/way_report.hpp"
+
+namespace cluxel::tasks {
+
+namespace {
+
+using Kind = TaskParameter::Kind;
+
+TaskCell measuredCell(double value) {
+  return std::isnan(value) ? TaskCell() : TaskCell(value);
+}
+
+TaskCell namedCell(const std::string& text) {
+  return text.empty() ? TaskCell() : TaskCell(text);
+}
+
+const std::vector<QueryColumn>& inventoryColumns() {
+  static const std::vector<QueryColumn> columns{
+      {"kind", "text", "class of the object, or ParkingRow"},
+      {"object", "IRI", "the object; absent for rows"},
+      {"street", "text", "the nearest street; absent where none is known"},
+      {"x", "m", "position in the map frame; of a tree its trunk"},
+      {"y", "m", "position in the map frame"},
+      {"height", "m", "top above the local ground"},
+      {"crown", "m", "diameter of the circle that is as large as the crown from above"},
+      {"width", "m", "of a row"},
+      {"length", "m", "of a row"},
+      {"count", "1", "vehicles of a row"}};
+  return columns;
+}
+
+TaskShape shapeOfItem(const InventoryItem& item) {
+  if (item.line.size() > 1) return {TaskShape::Kind::Line, item.line};
+  return {TaskShape::Kind::Point, {item.at}};
+}
+
+InventoryParams inventoryParams(const TaskValues& values) {
+  InventoryParams params;
+  const std::vector<std::string> kinds = values.all("kind");
+  if (kinds.empty()) return params;
+  const auto takeKind = [&](const char* name) { return std::find(kinds.begin(), kinds.end(), name) != kinds.end(); };
+  params.with_rows = takeKind("ParkingRow");
+  params.classes.clear();
+  for (const std::string& kind : kinds)
+    if (kind != "ParkingRow") params.classes.push_back(kind);
+  return params;
+}
+
+TaskAnswer runNextView(const TaskContext& context, const TaskValues& values) {
+  const mapping::MapReader& map = context.map;
+  NextViewRequest request;
+  request.from = values.text("from");
+  request.is_doubtful = values.flag("doubtful");
+  request.below = values.number("below");
+  request.view_m = values.number("view");
+  request.ways.params.width_m = values.number("width");
+  request.ways.params.max_step_m = values.number("maxStep");
+  request.tour.max_stops = values.whole("stops");
+  request.tour.budget_m = values.number("budget");
+  const NextViewAnswer found = nextViews(map, request);
+  TaskAnswer answer;
+  for (std::size_t i = 0; i < found.views.size(); ++i) {
+    const NextView& view = found.views[i];
+    const Eigen::Vector2d at = found.frame.centreOf(view.stop.cell);
+    answer.rows.push_back({{static_cast<double>(i + 1), at.x(), at.y(), view.stop.walk_m, view.stop.total_m,
+                            view.area_m2, static_cast<double>(view.objects.size()), view.stop.so_far},
+                           {TaskShape::Kind::Point, {at}}});
+    if (!context.with_reasons) continue;
+    std::array<char, 96> line{};
+    std::snprintf(line.data(), line.size(), "%.1f m2 that was not observed comes into sight", view.area_m2);
+    answer.rows.back().why.emplace_back(line.data());
+    for (const std::uint32_t object : view.objects) {
+      std::snprintf(line.data(), line.size(), ", confidence %.2f", map.objects()[object].confidence);
+      answer.rows.back().why.push_back("doubtful: " + thingName(map, object) + line.data());
+    }
+  }
+  std::array<char, 128> note{};
+  std::snprintf(note.data(), note.size(), "%.0f m2 not observed, %zu doubtful objects", found.unobserved_m2,
+                found.doubtful);
+  answer.notes.emplace_back(note.data());
+  return answer;
+}
+
+}  // namespace
+
+TaskAnswer inventoryAnswer(const mapping::MapReader& map, const InventoryParams& params,
+                           const std::vector<Street>& streets) {
+  TaskAnswer answer{inventoryColumns(), {}};
+  std::map<std::string, std::size_t> counts;
+  for (const InventoryItem& item : inventoryOf(map, params, streets)) {
+    ++counts[item.kind];
+    const TaskCell count = item.kind == "ParkingRow" ? TaskCell(static_cast<double>(item.count)) : TaskCell();
+    answer.rows.push_back({{item.kind, namedCell(item.object), namedCell(item.street), item.at.x(), item.at.y(),
+                            measuredCell(item.height_m), measuredCell(item.crown_m), measuredCell(item.width_m),
+                            measuredCell(item.length_m), count},
+                           shapeOfItem(item)});
+  }
+  std::string note;
+  for (const auto& [kind, count] : counts) note += (note.empty() ? "" : ", ") + std::to_string(count) + " " + kind;
+  if (!note.empty()) answer.notes.push_back(note);
+  return answer;
+}
+
+TaskAnswer registerAnswer(const mapping::MapReader& map, const InventoryParams& params,
+                          const std::vector<RegisterEntry>& entries, const RegisterParams& comparison) {
+  InventoryParams objects = params;
+  objects.with_rows = false;
+  const std::vector<InventoryItem> items = inventoryOf(map, objects);
+  TaskAnswer answer{{{"status", "text", "matched, missing in the map, not observed, not in the register"},
+                     {"entry", "text", "id in the register"},
+                     {"object", "IRI", "in the map"},
+                     {"kind", "text", "class"},
+                     {"x", "m", "position in the map frame: the register's where it has one"},
+                     {"y", "m", "position in the map frame"},
+                     {"distance", "m", "between entry and object"},
+                     {"heightDifference", "m", "the map's height less the register's"}},
+                    {}};
+  std::map<std::string, std::size_t> counts;
+  for (const RegisterRow& row : compareWith(entries, items, observedPlaces(map, entries, comparison), comparison)) {
+    const RegisterEntry* entry = row.entry ? &entries[*row.entry] : nullptr;
+    const InventoryItem* item = row.item ? &items[*row.item] : nullptr;
+    const Eigen::Vector2d at = entry != nullptr ? entry->at : item->at;
+    const bool has_heights = entry != nullptr && item != nullptr && entry->height_m;
+    ++counts[nameOf(row.status)];
+    answer.rows.push_back({{std::string(nameOf(row.status)), entry != nullptr ? namedCell(entry->id) : TaskCell(),
+                            item != nullptr ? namedCell(item->object) : TaskCell(),
+                            entry != nullptr ? entry->kind : item->kind, at.x(), at.y(), measuredCell(row.distance_m),
+                            has_heights ? measuredCell(item->height_m - *entry->height_m) : TaskCell()},
+                           {TaskShape::Kind::Point, {at}}});
+  }
+  std::string note;
+  for (const auto& [status, count] : counts) note += (note.empty() ? "" : ", ") + std::to_string(count) + " " + status;
+  answer.notes.push_back(note);
+  return answer;
+}
+
+std::vector<Task> surveyTasks() {
+  Task inventory;
+  inventory.name = "inventory";
+  inventory.title = "Which signs, lamps, trees and parked vehicles are there, and how large are they?";
+  inventory.parameters = {
+      {"kind", "", "", "a class, or ParkingRow; without it all that a town lists", Kind::Class, false, true}};
+  inventory.columns = inventoryColumns();
+  inventory.run = [](const TaskContext& context, const TaskValues& values) {
+    return inventoryAnswer(context.map, inventoryParams(values));
+  };
+  Task view;
+  view.name = "next-view";
+  view.title = "Where should I stand next to see most of what was not observed, or to settle doubtful objects?";
+  view.parameters = {
+      {"from", "m", "", "X,Y or an object; without it where the last scan was taken", Kind::Place},
+      {"doubtful", "", "false", "true: look at doubtful objects", Kind::Flag},
+      {"below", "1", "0.7", "an object of less confidence is doubtful", Kind::Number, false, false, 0, 1},
+      {"view", "m", "15", "how far one sees well enough", Kind::Number, false, false, 1, 100},
+      {"stops", "1", "5", "at most so many", Kind::WholeNumber, false, false, 1, 100},
+      {"budget", "m", "0", "how long the walk may be; 0: no limit", Kind::Number, false, false, 0, 1e6},
+      {"width", "m", "0.6", "free width that is needed", Kind::Number, false, false, 0, 20},
+      {"maxStep", "m", "0.15", "height of a kerb that is passed", Kind::Number, false, false, 0, 2}};
+  view.columns = {{"stop", "1", "number in the walk"},
+                  {"x", "m", "position in the map frame"},
+                  {"y", "m", "position in the map frame"},
+                  {"walk", "m", "from the stop before"},
+                  {"total", "m", "from the start"},
+                  {"area", "m2", "that was not observed and comes into sight"},
+                  {"objects", "1", "doubtful objects that come into sight"},
+                  {"soFar", "1", "share of what is to be seen that is in sight from here or before"}};
+  view.has_reasons = true;
+  view.run = runNextView;
+  return {inventory, view};
+}
+
+}  // namespace cluxel::tasks

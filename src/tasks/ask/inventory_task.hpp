@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// The inventory as an answer, alone or beside a register.
+#pragma once
+
+#include "tasks/ask/task_answer.hpp"
+#include "tasks/inventory/register.hpp"
+
+namespace cluxel::tasks {
+
+/// With the columns of the task `inventory`.
+TaskAnswer inventoryAnswer(const mapping::MapReader& map, const InventoryParams& params,
+                           const std::vector<Street>& streets = {});
+/// A row for each entry of the register and for each thing that is not in it.
+TaskAnswer registerAnswer(const mapping::MapReader& map, const InventoryParams& params,
+                          const std::vector<RegisterEntry>& entries, const RegisterParams& comparison);
+
+}  // namespace cluxel::tasks

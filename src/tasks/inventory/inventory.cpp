@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// Measures objects, and joins vehicles to rows.
+#include "tasks/inventory/inventory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+#include "base/convex_hull.hpp"
+#include "base/disjoint_sets.hpp"
+#include "mapping/facts/object_geometry.hpp"
+#include "rdf/map_iris.hpp"
+#include "rdf/ontology/ontology.hpp"
+#include "rdf/vocabulary.hpp"
+#include "tasks/ways/route.hpp"
+
+namespace cluxel::tasks {
+
+namespace {
+
+double hullArea(const std::vector<Eigen::Vector2d>& hull) {
+  double twice = 0;
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const Eigen::Vector2d &a = hull[i], &b = hull[(i + 1) % hull.size()];
+    twice += a.x() * b.y() - a.y() * b.x();
+  }
+  return std::abs(twice) / 2;
+}
+
+/// The cluxels of the parts of a class; all of the object's when it has no such part.
+std::vector<std::uint32_t> partCluxels(const rules::SemanticObject& object, const std::string& part_class) {
+  std::vector<std::uint32_t> members;
+  for (const rules::ObjectPart& part : object.parts)
+    if (part.part_class == part_class) members.insert(members.end(), part.cluxels.begin(), part.cluxels.end());
+  return members.empty() ? mapping::cluxelsOf(object) : members;
+}
+
+double crownDiameter(const rules::SemanticObject& tree, const perception::SceneCluxels& cluxels) {
+  std::vector<Eigen::Vector2d> corners;
+  for (const std::uint32_t c : partCluxels(tree, rdf::vocabulary::clx("TreeTop"))) {
+    const Eigen::Vector2d low = cluxels.low_corner[c].head<2>();
+    const Eigen::Vector2d high = low + cluxels.extent[c].head<2>().cast<double>();
+    corners.insert(corners.end(), {low, {high.x(), low.y()}, {low.x(), high.y()}, high});
+  }
+  return 2 * std::sqrt(hullArea(convexHull(std::move(corners))) / std::numbers::pi);
+}
+
+InventoryItem measuredItem(const mapping::MapReader& map, const rules::SemanticObject& object) {
+  const perception::SceneCluxels& cluxels = map.scene().cluxels;
+  InventoryItem item;
+  item.kind = mapping::localName(object.class_iri);
+  item.object = rdf::iriOfObject(object.id);
+  item.height_m = mapping::geometryOf(cluxels, mapping::cluxelsOf(object)).top_m;
+  item.at = mapping::geometryOf(cluxels, partCluxels(object, rdf::vocabulary::clx("TreeTrunk"))).centroid.head<2>();
+  if (item.kind == "Tree") item.crown_m = crownDiameter(object, cluxels);
+  return item;
+}
+
+double distanceToCourse(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& course) {
+  double nearest = course.empty() ? 1e300 : (p - course.front()).norm();
+  for (std::size_t i = 1; i < course.size(); ++i) {
+    const Eigen::Vector2d along = course[i] - course[i - 1];
+    const double share = std::clamp((p - course[i - 1]).dot(along) / std::max(1e-12, along.squaredNorm()), 0.0, 1.0);
+    nearest = std::min(nearest, (course[i - 1] + share * along - p).norm());
+  }
+  return nearest;
+}
+
+std::string streetOf(const Eigen::Vector2d& p, const std::vector<Street>& streets, double within_m) {
+  std::string name;
+  double nearest = within_m;
+  for (const Street& street : streets) {
+    const double distance = distanceToCourse(p, street.course);
+    if (distance > nearest || (distance == nearest && !name.empty())) continue;
+    nearest = distance;
+    name = street.name;
+  }
+  return name;
+}
+
+struct ParkedVehicle {
+  Eigen::Vector2d at;
+  double heading_rad = 0, length_m = 0, width_m = 0;
+};
+
+/// The angle between two directions without sense, in [0, pi/2].
+double turnBetween(double a_rad, double b_rad) {
+  const double turn = std::abs(std::remainder(a_rad - b_rad, std::numbers::pi));
+  return turn;
+}
+
+InventoryItem rowOf(std::vector<ParkedVehicle> vehicles) {
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (const ParkedVehicle& vehicle : vehicles) middle += vehicle.at / static_cast<double>(vehicles.size());
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  for (const ParkedVehicle& vehicle : vehicles) spread += (vehicle.at - middle) * (vehicle.at - middle).transpose();
+  const double angle = 0.5 * std::atan2(2 * spread(0, 1), spread(0, 0) - spread(1, 1));
+  const Eigen::Vector2d along(std::cos(angle), std::sin(angle));
+  std::sort(vehicles.begin(), vehicles.end(),
+            [&](const auto& a, const auto& b) { return a.at.dot(along) < b.at.dot(along); });
+  InventoryItem row;
+  row.kind = "ParkingRow";
+  row.at = middle;
+  row.count = vehicles.size();
+  for (const ParkedVehicle& vehicle : vehicles) row.line.push_back(vehicle.at);
+  row.length_m = (vehicles.back().at - vehicles.front().at).dot(along);
+  row.width_m = 0;
+  for (const ParkedVehicle& vehicle : vehicles) {
+    const bool is_along = turnBetween(vehicle.heading_rad, angle) < std::numbers::pi / 4;
+    row.width_m = std::max(row.width_m, is_along ? vehicle.width_m : vehicle.length_m);
+  }
+  return row;
+}
+
+std::vector<InventoryItem> parkingRows(const mapping::MapReader& map, const rdf::OntologyView& ontology,
+                                       const InventoryParams& params) {
+  std::vector<ParkedVehicle> vehicles;
+  for (const rules::SemanticObject& object : map.objects()) {
+    if (!ontology.isA(object.class_iri, rdf::vocabulary::clx("Vehicle"))) continue;
+    const auto box = mapping::geometryOf(map.scene().cluxels, mapping::cluxelsOf(object)).box;
+    vehicles.push_back({box.center.head<2>(), box.yaw_rad, box.size.x(), box.size.y()});
+  }
+  DisjointSets rows(vehicles.size());
+  for (std::uint32_t a = 0; a < vehicles.size(); ++a)
+    for (std::uint32_t b = a + 1; b < vehicles.size(); ++b)
+      if ((vehicles[a].at - vehicles[b].at).norm() <= params.row_gap_m &&
+          turnBetween(vehicles[a].heading_rad, vehicles[b].heading_rad) <= params.row_turn_rad)
+        rows.join(a, b);
+  std::vector<std::vector<ParkedVehicle>> members(vehicles.size());
+  for (std::uint32_t i = 0; i < vehicles.size(); ++i) members[rows.find(i)].push_back(vehicles[i]);
+  std::vector<InventoryItem> found;
+  for (std::vector<ParkedVehicle>& row : members)
+    if (row.size() >= params.least_in_row) found.push_back(rowOf(std::move(row)));
+  return found;
+}
+
+}  // namespace
+
+std::vector<InventoryItem> inventoryOf(const mapping::MapReader& map, const InventoryParams& params,
+                                       const std::vector<Street>& streets) {
+  const rdf::OntologyView ontology = ontologyViewOf(map.quads());
+  std::vector<std::string> wanted;
+  for (const std::string& name : params.classes) wanted.push_back(classNamed(ontology, name));
+  std::vector<InventoryItem> items;
+  for (const rules::SemanticObject& object : map.objects())
+    if (std::any_of(wanted.begin(), wanted.end(),
+                    [&](const std::string& iri) { return ontology.isA(object.class_iri, iri); }))
+      items.push_back(measuredItem(map, object));
+  std::stable_sort(items.begin(), items.end(), [](const auto& a, const auto& b) { return a.kind < b.kind; });
+  std::vector<InventoryItem> derived;
+  if (params.with_rows) derived = parkingRows(map, ontology, params);
+  std::stable_sort(derived.begin(), derived.end(), [](const auto& a, const auto& b) {
+    return std::tuple(a.kind, a.at.x(), a.at.y()) < std::tuple(b.kind, b.at.x(), b.at.y());
+  });
+  items.insert(items.end(), derived.begin(), derived.end());
+  for (InventoryItem& item : items) item.street = streetOf(item.at, streets, params.street_within_m);
+  return items;
+}
+
+}  // namespace cluxel::tasks

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a town keeps lists of: signs, lamps and trees with their sizes, rows of parked vehicles.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "mapping/map_reader.hpp"
+
+namespace cluxel::tasks {
+
+inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+
+/// One entry. Sizes that its kind has not are kNotMeasured.
+struct InventoryItem {
+  std::string kind;                              ///< local name of the class, or "ParkingRow"
+  std::string object;                            ///< IRI; empty for what several objects make
+  std::string street;                            ///< name of the nearest street; empty: none is known near it
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< [m, map]; of a tree its trunk
+  double height_m = kNotMeasured;                ///< top above the local ground
+  double crown_m = kNotMeasured;                 ///< diameter of the circle that is as large as the crown from above
+  double width_m = kNotMeasured, length_m = kNotMeasured;
+  std::size_t count = 1;                   ///< vehicles of a row
+  std::vector<Eigen::Vector2d> line = {};  ///< of rows [m, map]
+};
+
+/// A street by its name and course [m, map].
+struct Street {
+  std::string name;
+  std::vector<Eigen::Vector2d> course;
+};
+
+struct InventoryParams {
+  std::vector<std::string> classes{"StreetSign", "StreetLamp", "TrafficLight", "UtilityPole", "Tree"};
+  double street_within_m = 25;  ///< what is farther from all streets belongs to none
+  double row_gap_m = 9;         ///< between the middles of neighbours in a row of vehicles
+  double row_turn_rad = 0.35;   ///< between their headings
+  std::size_t least_in_row = 3;
+  bool with_rows = true;
+};
+
+/// Objects first, by class and IRI, then rows by place. Throws Error (NotFound) for an unknown class.
+std::vector<InventoryItem> inventoryOf(const mapping::MapReader& map, const InventoryParams& params,
+                                       const std::vector<Street>& streets = {});
+
+}  // namespace cluxel::tasks

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// Makes the field of what is to be seen, and counts what each stop adds.
+#include "tasks/search/next_view.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "rdf/ontology/ontology.hpp"
+#include "rdf/vocabulary.hpp"
+
+namespace cluxel::tasks {
+
+namespace {
+
+/// Doubtful objects that are things one can stand before.
+std::vector<bool> doubtfulAmong(const mapping::MapReader& map, double below) {
+  const rdf::OntologyView ontology = ontologyViewOf(map.quads());
+  std::vector<bool> is_doubtful;
+  for (const rules::SemanticObject& object : map.objects())
+    is_doubtful.push_back(object.confidence < below &&
+                          !ontology.isA(object.class_iri, rdf::vocabulary::clx("Surface")));
+  return is_doubtful;
+}
+
+SearchField unobservedField(const TerrainGrid& terrain) {
+  SearchField field{terrain.frame, {}, std::vector<std::uint8_t>(terrain.frame.size(), kAnywhere)};
+  for (const std::uint8_t seen : terrain.seen) field.probability.push_back(seen != 0 ? 0.0 : 1.0);
+  return field;
+}
+
+SearchField doubtfulField(const mapping::MapReader& map, const TerrainGrid& terrain,
+                          const std::vector<bool>& is_doubtful) {
+  std::vector<std::size_t> cells(map.objects().size(), 0);
+  for (const std::uint32_t thing : terrain.things)
+    if (thing != kUnnamedThing) ++cells[thing];
+  SearchField field{terrain.frame, std::vector<double>(terrain.frame.size(), 0.0),
+                    std::vector<std::uint8_t>(terrain.frame.size(), kAnywhere)};
+  for (std::uint32_t cell = 0; cell < terrain.frame.size(); ++cell)
+    for (const std::uint32_t thing : terrain.thingsIn(cell))
+      if (thing != kUnnamedThing && is_doubtful[thing])
+        field.probability[cell] += (1 - map.objects()[thing].confidence) / static_cast<double>(cells[thing]);
+  return field;
+}
+
+void normalise(SearchField& field) {
+  const double sum = std::accumulate(field.probability.begin(), field.probability.end(), 0.0);
+  for (double& value : field.probability) value = sum > 0 ? value / sum : 0;
+}
+
+}  // namespace
+
+NextViewAnswer nextViews(const mapping::MapReader& map, const NextViewRequest& request) {
+  const Eigen::Vector2d from = request.from.empty() ? lastStop(map) : placeNamed(map, request.from);
+  const TerrainGrid terrain = terrainOf(map, request.ways.terrain);
+  const PassableGrid grid = passableIn(map, terrain, request.ways);
+  SearchParams search;
+  search.view_m = request.view_m;
+  const SightGrid sight = sightOf(map, terrain, search.eye_m);
+  std::vector<bool> is_doubtful = doubtfulAmong(map, request.below);
+  NextViewAnswer answer;
+  answer.frame = grid.frame;
+  const double cell_m2 = grid.frame.cell_m * grid.frame.cell_m;
+  answer.unobserved_m2 = static_cast<double>(std::count(terrain.seen.begin(), terrain.seen.end(), 0)) * cell_m2;
+  answer.doubtful = static_cast<std::size_t>(std::count(is_doubtful.begin(), is_doubtful.end(), true));
+  SearchField field = request.is_doubtful ? doubtfulField(map, terrain, is_doubtful) : unobservedField(terrain);
+  normalise(field);
+  std::vector<bool> is_seen(terrain.frame.size(), false);
+  for (SearchStop& stop : tourOf(grid, sight, field, from, search, request.tour)) {
+    NextView view{std::move(stop), 0, {}};
+    for (const std::uint32_t cell : visibleFrom(sight, view.stop.cell, search.view_m)) {
+      if (terrain.seen[cell] == 0 && !is_seen[cell]) view.area_m2 += cell_m2;
+      is_seen[cell] = true;
+      for (const std::uint32_t thing : terrain.thingsIn(cell))
+        if (thing != kUnnamedThing && is_doubtful[thing]) {
+          is_doubtful[thing] = false;
+          view.objects.push_back(thing);
+        }
+    }
+    answer.views.push_back(std::move(view));
+  }
+  return answer;
+}
+
+}  // namespace cluxel::tasks

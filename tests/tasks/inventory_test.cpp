@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// The inventory of a generated campus against the truth of its generator, registers, and next views.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "tasks/ask/inventory_task.hpp"
+#include "tasks/campus_map_fixture.hpp"
+#include "tasks/search/next_view.hpp"
+#include "tasks/search/place_learning.hpp"
+
+namespace cluxel::tasks {
+namespace {
+
+/// The campus of CampusMap, made again for its truth.
+const Campus& trueCampus() {
+  static const Campus campus = buildCampus({.seed = 3, .stops = 4, .size_m = 60, .points_per_stop = 40'000});
+  return campus;
+}
+
+struct SizeErrors {
+  std::size_t truth = 0, found = 0;
+  std::vector<double> height_m, crown_share;
+};
+
+SizeErrors errorsOf(const std::string& kind, const std::vector<InventoryItem>& items) {
+  constexpr double same_m = 1.5;
+  SizeErrors errors;
+  for (const CampusObject& object : trueCampus().objects) {
+    if (object.class_number < 0 || truthClassNames()[static_cast<std::size_t>(object.class_number)] != kind) continue;
+    ++errors.truth;
+    const InventoryItem* nearest = nullptr;
+    double distance = same_m;
+    for (const InventoryItem& item : items) {
+      const double here = (item.at - object.position.head<2>()).norm();
+      if (item.kind != kind || here > distance) continue;
+      distance = here;
+      nearest = &item;
+    }
+    if (nearest == nullptr) continue;
+    ++errors.found;
+    errors.height_m.push_back(std::abs(nearest->height_m - (object.box.max().z() - object.position.z())));
+    if (kind == "Tree") errors.crown_share.push_back(std::abs(nearest->crown_m / (2 * object.reach_m) - 1));
+  }
+  return errors;
+}
+
+double medianOfErrors(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values.empty() ? 1e300 : values[values.size() / 2];
+}
+
+TEST(QuestionsOfACampus, TheInventoryHasTheSizesOfTheGenerator) {
+  const std::vector<InventoryItem> items = inventoryOf(CampusMap::shared().map(), {});
+  const std::map<std::string, std::size_t> least_found{{"StreetSign", 4}, {"StreetLamp", 5}, {"Tree", 12}};
+  for (const auto& [kind, least] : least_found) {
+    const SizeErrors errors = errorsOf(kind, items);
+    std::printf("%s (generated): %zu of %zu found; median error of heights %.2f m", kind.c_str(), errors.found,
+                errors.truth, medianOfErrors(errors.height_m));
+    if (kind == "Tree") std::printf(", of crowns %.0f %%", medianOfErrors(errors.crown_share) * 100);
+    std::printf("\n");
+    EXPECT_GE(errors.found, least) << kind;
+    EXPECT_LT(medianOfErrors(errors.height_m), 0.3) << kind;
+    EXPECT_TRUE(kind != "Tree" || medianOfErrors(errors.crown_share) < 0.25);
+  }
+}
+
+TEST(QuestionsOfACampus, ARegisterOfTheMapItselfMatchesWhole) {
+  const MapReader& map = CampusMap::shared().map();
+  const ScratchFolder folder;
+  const std::filesystem::path file = folder.path() / "register.csv";
+  std::vector<InventoryItem> items;
+  for (const InventoryItem& item : inventoryOf(map, {}))
+    if (!item.object.empty()) items.push_back(item);
+  ASSERT_GE(items.size(), 10U);
+  std::string text = "id,class,x,y,height\n";
+  for (std::size_t i = 1; i < items.size(); ++i)  // the first is not in it
+    text += "no " + std::to_string(i) + "," + items[i].kind + "," + std::to_string(items[i].at.x()) + "," +
+            std::to_string(items[i].at.y()) + "," + std::to_string(items[i].height_m - 0.5) + "\n";
+  text += "far,StreetSign,5000,5000,\nnear,UtilityPole," + std::to_string(items[1].at.x() + 4) + "," +
+          std::to_string(items[1].at.y()) + ",\n";
+  writeFile(file, text);
+  const auto entries = readRegister(file, map.inputs());
+  ASSERT_EQ(entries.size(), items.size() + 1);
+  const auto rows = compareWith(entries, items, std::vector<bool>(entries.size(), false), {.within_m = 1});
+  std::map<RegisterStatus, std::size_t> counts;
+  for (const RegisterRow& row : rows) ++counts[row.status];
+  EXPECT_EQ(counts[RegisterStatus::Matched], items.size() - 1);
+  EXPECT_EQ(counts[RegisterStatus::NotInRegister], 1U);
+  EXPECT_EQ(counts[RegisterStatus::NotObserved], 2U);
+  const std::vector<bool> is_observed = observedPlaces(map, entries, {});
+  EXPECT_FALSE(is_observed[items.size() - 1]) << "5 km away";
+  EXPECT_GT(std::count(is_observed.begin(), is_observed.end(), true), 5);
+  const TaskAnswer answer = registerAnswer(map, {}, entries, {.within_m = 1});
+  EXPECT_EQ(std::get<std::string>(answer.rows[0].cells[0]), "matched");
+  EXPECT_NEAR(std::get<double>(answer.rows[0].cells[7]), 0.5, 1e-3);
+}
+
+TEST(Register, FaultsNameTheirLine) {
+  const ScratchFolder folder;
+  const auto refusal = [&](const std::string& name, const std::string& text) -> std::string {
+    writeFile(folder.path() / name, text);
+    try {
+      readRegister(folder.path() / name, {});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "read";
+  };
+  EXPECT_EQ(refusal("good.csv", "class,x,y\nTree,1,2\r\n\n\"Tree\",3,4\n"), "read");
+  EXPECT_NE(refusal("head.csv", "class,easting\n").find(":1:1"), std::string::npos);
+  EXPECT_NE(refusal("number.csv", "class,x,y\nTree,1,2\nTree,1;2,3\n").find(":3:1"), std::string::npos);
+  EXPECT_NE(refusal("degrees.csv", "class,lon,lat\nTree,8,50\n").find("coordinate system"), std::string::npos);
+  EXPECT_NE(refusal("x.geojson", "[1]").find("FeatureCollection"), std::string::npos);
+  EXPECT_NE(refusal("y.geojson", R"({"frame":"m","features":[{"properties":{"class":"Tree"}}]})").find("feature 1"),
+            std::string::npos);
+  EXPECT_EQ(refusal("z.geojson", R"({"frame":"m","features":[{"properties":{"class":"Tree"},
+            "geometry":{"type":"Point","coordinates":[1,2]}}]})"),
+            "read");
+  EXPECT_NE(refusal("register.txt", "x").find("NAME.csv"), std::string::npos);
+}
+
+TEST(Register, PairsAreOneToOneAndNearestFirst) {
+  InventoryItem a, b;
+  a.kind = b.kind = "Tree";
+  a.object = "a";
+  b.object = "b";
+  a.at = {0, 0};
+  b.at = {1.5, 0};
+  const std::vector<RegisterEntry> entries{{"1", "Tree", {1, 0}, {}}, {"2", "Tree", {0.9, 0}, {}}};
+  const auto rows = compareWith(entries, {a, b}, {true, true}, {.within_m = 3});
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0].item, 1U);
+  EXPECT_EQ(rows[1].item, 0U);
+}
+
+TEST(QuestionsOfACampus, NextViewsSeeWhatIsNotObservedOnceAndInOrder) {
+  const MapReader& map = CampusMap::shared().map();
+  NextViewRequest request;
+  request.tour.max_stops = 4;
+  const NextViewAnswer answer = nextViews(map, request);
+  ASSERT_GE(answer.views.size(), 2U);
+  double area_m2 = 0, so_far = 0;
+  for (const NextView& view : answer.views) {
+    EXPECT_GT(view.area_m2, 0);
+    EXPECT_GT(view.stop.so_far, so_far);
+    so_far = view.stop.so_far;
+    area_m2 += view.area_m2;
+  }
+  EXPECT_LE(area_m2, answer.unobserved_m2);
+  request.is_doubtful = true;
+  request.below = 0.9;
+  std::vector<std::uint32_t> seen;
+  for (const NextView& view : nextViews(map, request).views)
+    for (const std::uint32_t object : view.objects) {
+      EXPECT_LT(map.objects()[object].confidence, 0.9);
+      seen.push_back(object);
+    }
+  EXPECT_FALSE(seen.empty());
+  std::sort(seen.begin(), seen.end());
+  EXPECT_EQ(std::adjacent_find(seen.begin(), seen.end()), seen.end()) << "an object counts once";
+}
+
+TEST(QuestionsOfACampus, LearnedPlacesAreCountsThatTheOntologyCanRead) {
+  const MapReader& map = CampusMap::shared().map();
+  PlaceLearner learner;
+  learner.add(map);
+  const std::vector<LearnedPlace> places = learner.learn();
+  ASSERT_FALSE(places.empty());
+  std::map<std::string, double> sums;
+  for (const LearnedPlace& place : places) {
+    sums[place.class_iri] += place.probability;
+    EXPECT_LE(place.near, place.objects);
+    EXPECT_GE(place.probability, 0.03);
+    std::size_t objects = 0;
+    for (const rules::SemanticObject& object : map.objects()) objects += object.class_iri == place.class_iri ? 1 : 0;
+    EXPECT_EQ(place.objects, objects);
+  }
+  for (const auto& [class_iri, sum] : sums) EXPECT_LE(sum, 1 + 1e-9) << class_iri;
+  const ScratchFolder folder;
+  writeFile(folder.path() / "places.ttl", placesTurtle(places, 1));
+  const rdf::OntologyView ontology = ontologyViewOf(map.quads());
+  const auto read = usualPlacesOf(ontology, places[0].class_iri, folder.path() / "places.ttl");
+  EXPECT_EQ(read[0].near_class, places[0].near_class);
+  EXPECT_NEAR(read[0].probability, places[0].probability, 1e-4);
+}
+
+}  // namespace
+}  // namespace cluxel::tasks
