@@ -65,6 +65,7 @@ class Absorbing {
         if (now(spec)) weighSpec(i, spec, whole, best);
     }
     std::vector<Claim> claims;
+    claims.reserve(best.size());
     for (const auto& [fragment, claim] : best) claims.push_back(claim);
     std::sort(claims.begin(), claims.end(), [this](const Claim& a, const Claim& b) {
       if (a.share != b.share) return a.share > b.share;
