@@ -196,7 +196,7 @@ std::string explanationGraph(const mapping::MapReader& map, const std::string& n
                                      [](const auto& verdict) { return verdict.nearness <= rules::Nearness::Rejected; });
     if (judged == thing.why.rules.end())
       throw Error(ErrorKind::NotFound,
-                  "no rule of class '" + class_name + "' looked at '" + name + "': leave --dot out to see why");
+                  "no rule of class '" + class_name + "' looked at '" + name + "': ask for the text to see why");
     return graphOf(judged->decision);
   }
   const rules::Explanation explanation = explanationOf(map, find(map, plainName(name)), rules);

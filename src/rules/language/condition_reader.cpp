@@ -323,8 +323,7 @@ class ConditionReader {
 }  // namespace
 
 std::optional<Condition> readCondition(const YamlNode& node, const NameScope& scope, RuleReading& reading) {
-  if (!node.isScalar()) return ConditionReader(node, scope, reading).read();
-  const auto meant = conditionOfText(node, reading.faults);
+  const auto meant = node.isScalar() ? conditionOfText(node, reading.faults) : std::optional(node);
   return meant ? ConditionReader(*meant, scope, reading).read() : std::nullopt;
 }
 
