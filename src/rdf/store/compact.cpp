@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copies a map table by table in key order, which fills all pages and leaves none free.
 #include "cluxel/error.hpp"
+#include "rdf/store/check/map_structure.hpp"
 #include "rdf/store/lmdb_environment.hpp"
 #include "rdf/store/lock_file.hpp"
-#include "rdf/store/map_structure.hpp"
 #include "rdf/store/store_snapshot.hpp"
 
 namespace cluxel::rdf {

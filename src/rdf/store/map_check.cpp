@@ -8,10 +8,10 @@
 #include <cerrno>
 
 #include "cluxel/error.hpp"
+#include "rdf/store/check/map_file_head.hpp"
+#include "rdf/store/check/map_structure.hpp"
 #include "rdf/store/file_guards.hpp"
 #include "rdf/store/lmdb_environment.hpp"
-#include "rdf/store/map_file_head.hpp"
-#include "rdf/store/map_structure.hpp"
 #include "rdf/store/quad_reader_impl.hpp"
 #include "rdf/store/store_snapshot.hpp"
 #include "rdf/store/term_record.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "cluxel/error.hpp"
-#include "rdf/store/map_file_head.hpp"
+#include "rdf/store/check/map_file_head.hpp"
 #include "rdf/store/term_record.hpp"
 
 namespace cluxel::rdf {

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "cluxel/error.hpp"
+#include "rdf/store/check/map_file_head.hpp"
 #include "rdf/store/lmdb_environment.hpp"
-#include "rdf/store/map_file_head.hpp"
 
 namespace cluxel::rdf {
 

@@ -9,11 +9,11 @@
 #include <stdexcept>
 
 #include "cluxel/error.hpp"
+#include "rdf/store/check/map_structure.hpp"
 #include "rdf/store/file_guards.hpp"
 #include "rdf/store/lmdb_environment.hpp"
 #include "rdf/store/map_check.hpp"
 #include "rdf/store/map_replacement.hpp"
-#include "rdf/store/map_structure.hpp"
 #include "rdf/store/store_snapshot.hpp"
 #include "rdf/store/value_cache.hpp"
 

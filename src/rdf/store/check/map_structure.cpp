@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Walks the B-trees of a commit on a mapping of its own, with every number checked before it is used.
-#include "rdf/store/map_structure.hpp"
+#include "rdf/store/check/map_structure.hpp"
 
 #include <sys/mman.h>
 
@@ -12,8 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "rdf/store/check/map_file_head.hpp"
 #include "rdf/store/lmdb_environment.hpp"
-#include "rdf/store/map_file_head.hpp"
 
 namespace cluxel::rdf {
 

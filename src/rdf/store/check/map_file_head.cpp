@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads and checks the meta pages with bounded reads.
-#include "rdf/store/map_file_head.hpp"
+#include "rdf/store/check/map_file_head.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
