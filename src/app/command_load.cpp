@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "app/command.hpp"
-#include "base/file_bytes.hpp"
+#include "base/file_pieces.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/rdf_loading.hpp"
 #include "rdf/io/rdf_io.hpp"
@@ -48,9 +48,7 @@ ExitCode dump(const DumpOptions& options) {
   if (fs::is_regular_file(options.output, ignored) && rdf::looksLikeMap(options.output))
     throw Error(ErrorKind::StoreUnavailable,
                 options.output.string() + ": is a map or store, which the dump would replace; name another file");
-  std::string bytes;
-  writeStoredNQuads(quads, graph, [&bytes](std::string_view line) { bytes.append(line); });
-  writeFile(options.output, bytes);
+  writeFileInPieces(options.output, [&](const auto& take) { writeStoredNQuads(quads, graph, take); });
   return ExitCode::Done;
 }
 

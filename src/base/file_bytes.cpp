@@ -13,6 +13,7 @@
 #include <memory>
 #include <utility>
 
+#include "base/file_pieces.hpp"
 #include "cluxel/error.hpp"
 
 namespace cluxel {
@@ -145,17 +146,33 @@ std::string readFile(const fs::path& path) {
 }
 
 void writeFile(const fs::path& path, std::string_view bytes) {
+  writeFileInPieces(path, [bytes](const auto& take) { take(bytes); });
+}
+
+void writeFileInPieces(const fs::path& path,
+                       const std::function<void(const std::function<void(std::string_view)>& take)>& fill) {
+  constexpr std::size_t kBufferBytes = std::size_t{1} << 18U;
   WrittenFile file(path);
-  if (isSpecial(path)) {
-    file.openInPlace();
-    file.write(bytes);
-    return file.close();
-  }
+  const bool is_special = isSpecial(path);
   const fs::path target = withoutLinks(path);
-  file.openBeside(target);
-  file.write(bytes);
+  if (is_special)
+    file.openInPlace();
+  else
+    file.openBeside(target);
+  std::string buffer;
+  fill([&](std::string_view piece) {
+    if (buffer.size() + piece.size() > kBufferBytes) {
+      file.write(buffer);
+      buffer.clear();
+    }
+    if (piece.size() >= kBufferBytes)
+      file.write(piece);
+    else
+      buffer.append(piece);
+  });
+  file.write(buffer);
   file.close();
-  file.moveTo(target);
+  if (!is_special) file.moveTo(target);
 }
 
 }  // namespace cluxel

@@ -24,6 +24,7 @@ void withLmdb(const fs::path& file, const Work& work) {
   MDB_txn* transaction = nullptr;
   MDB_dbi main = 0;
   ASSERT_EQ(mdb_env_create(&environment), 0);
+  ASSERT_EQ(mdb_env_set_maxdbs(environment, 8), 0);
   ASSERT_EQ(mdb_env_open(environment, file.c_str(), MDB_NOSUBDIR, 0666), 0);
   ASSERT_EQ(mdb_txn_begin(environment, nullptr, 0, &transaction), 0);
   ASSERT_EQ(mdb_dbi_open(transaction, nullptr, 0, &main), 0);
@@ -56,8 +57,81 @@ TEST_F(MapFile, RefusesANewerFormatAndForeignLmdbFiles) {
   EXPECT_THAT(refusal(), HasSubstr("not a Cluxel map"));
   fs::remove(file_);
   create().reset();
-  withLmdb(file_, [](MDB_txn* transaction, MDB_dbi main) { putText(transaction, main, "cluxel-format", "2"); });
-  EXPECT_THAT(refusal(), HasSubstr("newer format (2; this program reads 1)"));
+  withLmdb(file_, [](MDB_txn* transaction, MDB_dbi main) { putText(transaction, main, "cluxel-format", "3"); });
+  EXPECT_THAT(refusal(), HasSubstr("newer format (3; this program reads 2)"));
+}
+
+/// Removes what the second format added: the sums of quads and terms.
+void makeFirstFormat(MDB_txn* transaction, MDB_dbi main) {
+  putText(transaction, main, "cluxel-format", "1");
+  MDB_dbi blocks = 0;
+  ASSERT_EQ(mdb_dbi_open(transaction, "blocks", 0, &blocks), 0);
+  const std::string of_terms = std::string("term sums") + std::string(5, '\0');
+  for (const auto& [table, name] :
+       {std::pair(main, std::string("cluxel-sums")), std::pair(main, std::string("cluxel-keys:term sums")),
+        std::pair(blocks, of_terms)}) {
+    MDB_val key{name.size(), const_cast<char*>(name.data())};
+    ASSERT_EQ(mdb_del(transaction, table, &key, nullptr), 0) << name;
+  }
+}
+
+TEST_F(MapFile, OfTheFirstFormatIsReadAndGetsSumsWithItsNextCommit) {
+  const auto added = [](Environment& environment, int first, int last) {
+    WriteTransaction transaction = environment.write();
+    QuadWriter writer(transaction);
+    for (int i = first; i < last; ++i)
+      writer.add({Term::iri("s" + std::to_string(i)), Term::iri("p"), Term::integer(i), Term::iri("")});
+    writer.flush();
+    transaction.commit();
+  };
+  added(*create(), 0, 500);
+  withLmdb(file_, [](MDB_txn* transaction, MDB_dbi main) { makeFirstFormat(transaction, main); });
+  EXPECT_EQ(QuadReader(open(OpenMode::ReadOnly)->read()).size(), 500U);
+  EXPECT_TRUE(checkMap(file_).sound());
+  const fs::path compacted = folder_.path() / "compacted.clx";
+  open(OpenMode::ReadOnly)->compactTo(compacted);
+  EXPECT_TRUE(checkMap(compacted).sound());
+  added(*open(), 500, 600);
+  EXPECT_TRUE(checkMap(file_).sound());
+  withLmdb(file_, [](MDB_txn* transaction, MDB_dbi main) {
+    MDB_val key{11, const_cast<char*>("cluxel-sums")};
+    ASSERT_EQ(mdb_del(transaction, main, &key, nullptr), 0);
+  });
+  EXPECT_THROW(QuadReader(open(OpenMode::ReadOnly)->read()).size(), Error) << "no longer of the first format";
+}
+
+TEST_F(MapFile, TellsChangedQuadsAndTermsWhenTheyAreRead) {
+  {
+    const auto environment = create();
+    WriteTransaction transaction = environment->write();
+    QuadWriter writer(transaction);
+    for (int i = 0; i < 2'000; ++i)
+      writer.add({Term::iri("subject" + std::to_string(i)), Term::iri("p"), Term::integer(i), Term::iri("")});
+    writer.flush();
+    transaction.commit();
+  }
+  const std::string bytes = readFile(file_);
+  std::string damaged = bytes;
+  damaged[damaged.find("subject1500")] = 'S';
+  std::ofstream(file_, std::ios::binary) << damaged;
+  {
+    const QuadReader reader(open(OpenMode::ReadOnly)->read());
+    EXPECT_EQ(reader.termOf(1).text, "subject0") << "terms that are whole can be read";
+    EXPECT_EQ(reader.size(), 2'000U);
+    EXPECT_TRUE(reader.idOf(Term::iri("subject20")).has_value());
+    EXPECT_THROW(for (TermId id = 1; id <= reader.termCount(); ++id) reader.termOf(id), Error);
+    EXPECT_THROW(open(OpenMode::ReadWrite)->write(), Error) << "a writer verifies all";
+  }
+  damaged = bytes;
+  const std::array<std::uint8_t, 8> quad = {0, 0, 3, 233, 0, 0, 0, 2};  // subject 1001, predicate 2
+  const std::size_t at = damaged.find(std::string(reinterpret_cast<const char*>(quad.data()), quad.size()));
+  ASSERT_NE(at, std::string::npos);
+  damaged[at + 3] = static_cast<char>(234);
+  std::ofstream(file_, std::ios::binary) << damaged;
+  const QuadReader reader(open(OpenMode::ReadOnly)->read());
+  EXPECT_EQ(reader.termOf(1).text, "subject0");
+  EXPECT_THROW(reader.scan({}, QuadOrder::Spog), Error);
+  EXPECT_NO_THROW(reader.scan({}, QuadOrder::Posg)) << "an index that is whole can be read";
 }
 
 TEST_F(MapFile, RefusesAFileThatIsCutShort) {
@@ -112,7 +186,7 @@ TEST_F(MapFile, IsFoundSoundOrDamagedAsAWhole) {
   const MapCheck sound = checkMap(file_);
   EXPECT_THAT(sound.faults, ElementsAre());
   EXPECT_EQ(sound.quads, 2'999U);
-  EXPECT_EQ(sound.blocks, 1U);
+  EXPECT_EQ(sound.blocks, 2U);               // with one of the sums of terms
   EXPECT_EQ(sound.terms, 700U + 2'999 + 2);  // subjects, numbers, the predicate and xsd:integer
   const std::string bytes = readFile(file_);
   std::mt19937 random(11);

@@ -8,7 +8,9 @@
 #include <random>
 #include <set>
 
+#include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
+#include "rdf/scratch_folder.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::rdf {
@@ -204,6 +206,64 @@ TEST(RdfWriter, WritesReadableTurtle) {
   EXPECT_EQ(text,
             "@prefix clx: <https://w3id.org/cluxel/ontology#> .\n\n"
             "clx:Tree a clx:Thing ;\n    clx:height 2.5, 3 ;\n    clx:p clx:q .\n");
+}
+
+/// The statements of a source, and its faults after them.
+std::vector<std::string> statementsOf(const RdfSource& source) {
+  std::vector<std::string> all;
+  try {
+    parseRdf(source, [&](const Quad& quad) { all.push_back(toNQuads(quad)); });
+  } catch (const Error& error) {
+    all.emplace_back(error.what());
+  }
+  return all;
+}
+
+/// Texts of several pieces with statements, strings and comments across their borders, and faults in late lines.
+TEST(RdfPieces, OfAFileGiveWhatTheTextGives) {
+  const ScratchFolder folder;
+  const std::string long_text(300'000, 'x');
+  std::string text_of_turtle = "\xEF\xBB\xBF@prefix e: <http://e/> .\n", lines = "\xEF\xBB\xBF";
+  for (int i = 0; i < 9'000; ++i) {
+    const std::string n = std::to_string(i);
+    text_of_turtle +=
+        "# it's \"" + n + "\ne:s" + n + " e:p \"\"\"a . b\n\n# " + n + "\"\"\" , _:b" + n + " ;\n e:q ( 1 _:b3 ) .\n";
+    lines += "<http://e/s" + n + "> <http://e/p> _:b" + std::to_string(i % 7) + " .\n";
+  }
+  lines += "<http://e/long> <http://e/p> \"" + long_text + "\" .\n";
+  const std::string late_fault = lines + "<http://e/a> <http://e/b> .\n<http://e/a> <http://e/b> _:b1 .\n";
+  const std::string bad_bytes = lines + "<http://e/a> <http://e/b> \"\xFF\" .\n";
+  for (const auto& [name, text] : {std::pair<std::string, std::string>{"a.ttl", text_of_turtle},
+                                   {"b.trig", text_of_turtle},
+                                   {"c.nt", lines},
+                                   {"d.nq", lines},
+                                   {"e.nt", late_fault},
+                                   {"f.nq", bad_bytes},
+                                   {"g.ttl", text_of_turtle + "e:a e:b .\n"},
+                                   {"h.nt", ""}}) {
+    const std::filesystem::path file = folder.path() / name;
+    writeFile(file, text);
+    const RdfSource in_memory = readRdfSource(file);
+    const std::vector<std::string> from_file = statementsOf(openRdfSource(file)), from_text = statementsOf(in_memory);
+    if (name < "e") {
+      EXPECT_EQ(from_file, from_text) << name;
+    } else if (!text.empty()) {
+      EXPECT_EQ(from_file.back(), from_text.back()) << name << ": the message, after the statements read so far";
+    }
+  }
+  EXPECT_THAT(statementsOf(openRdfSource(folder.path() / "e.nt")).back(), testing::HasSubstr("e.nt:9002"));
+  EXPECT_THAT(statementsOf(openRdfSource(folder.path() / "f.nq")).back(), testing::HasSubstr("f.nq:9002"));
+  EXPECT_EQ(statementsOf(openRdfSource(folder.path() / "a.ttl")).size(), 9'000U * 7);
+}
+
+/// libxml2 refuses to look ahead over more than 10 MB.
+TEST(RdfPieces, LetLongXmlBeRead) {
+  std::string xml = "<rdf:RDF xmlns:rdf='http://www.w3.org/1999/02/22-rdf-syntax-ns#' xmlns:e='http://e/'>\n";
+  for (int i = 0; i < 150'000; ++i)
+    xml += "<rdf:Description rdf:about='http://e/s" + std::to_string(i) + "'><e:p>" + std::to_string(i) +
+           "</e:p></rdf:Description>\n";
+  const auto all = statementsOf({xml + "</rdf:RDF>\n", "x.rdf", RdfFormat::RdfXml, "http://b/", Term::iri("")});
+  EXPECT_EQ(all.size(), 150'000U) << all.back();
 }
 
 }  // namespace

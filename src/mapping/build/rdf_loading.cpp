@@ -52,7 +52,7 @@ void requireOperatorGraph(const fs::path& store, const fs::path& file, const std
 
 std::uint64_t loadFile(const fs::path& store, const fs::path& file, const RdfLoadParams& params, bool is_map,
                        rdf::QuadWriter& writer) {
-  rdf::RdfSource source = rdf::readRdfSource(file, Term::iri(params.graph));
+  rdf::RdfSource source = rdf::openRdfSource(file, Term::iri(params.graph));
   if (!params.base_iri.empty()) source.base_iri = params.base_iri;
   if (!is_map) return loadRdf(source, writer);
   std::uint64_t count = 0;

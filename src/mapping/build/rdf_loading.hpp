@@ -24,7 +24,7 @@ struct RdfLoadReport {
 /// Adds the statements of RDF files in one commit; named graphs keep their names. A store that does not exist is made,
 /// and removed again after an error. In a map only graph `operator` may be written, and what follows from it is
 /// inferred. Throws InputError with all faults of a file, Error (InvalidArgument) for another graph of a map. Memory:
-/// that of the largest file and some 200 MB.
+/// some 200 MB, and for RDF/XML that of the file.
 RdfLoadReport loadRdfFiles(const std::filesystem::path& store, const std::vector<std::filesystem::path>& files,
                            const RdfLoadParams& params, ProgressSink& sink);
 

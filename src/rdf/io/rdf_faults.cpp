@@ -50,12 +50,20 @@ void RdfFaults::add(std::size_t line, std::size_t column, std::string_view raw_m
   }
   Diagnostic diagnostic;
   diagnostic.message = without_place_.empty() ? message : std::exchange(without_place_, {});
-  diagnostic.source_line = shownLine(source_.text, line);
+  diagnostic.source_line = lineNumbered(line);
   diagnostic.location = {.file = source_.name, .line = line, .column = column};
-  if (column == 0) diagnostic.location.column = columnOf(lineOf(source_.text, line), diagnostic.message);
+  if (column == 0) diagnostic.location.column = columnOf(diagnostic.source_line, diagnostic.message);
   const bool follows = std::any_of(diagnostics_.begin(), diagnostics_.end(),
                                    [&](const Diagnostic& earlier) { return earlier.location.line == line; });
   if (!follows) diagnostics_.push_back(std::move(diagnostic));
+}
+
+std::string RdfFaults::lineNumbered(std::size_t line) const {
+  if (line >= piece_.first_line) {
+    std::string found = shownLine(piece_.text, static_cast<std::size_t>(line - piece_.first_line + 1));
+    if (!found.empty()) return found;
+  }
+  return text_.line(line);
 }
 
 void RdfFaults::throwIfAny() const {

@@ -31,6 +31,16 @@ constexpr std::array<FormatName, 20> kNames = {{
     {"xml", RdfFormat::RdfXml},         {"application/rdf+xml", RdfFormat::RdfXml},
 }};
 
+/// A source without its text.
+RdfSource namedSource(const std::filesystem::path& file, const Term& graph) {
+  const std::optional<RdfFormat> format = rdfFormatOf(file);
+  if (!format)
+    throw InputError({.file = file.string()}, "is of no known RDF format",
+                     "known endings: .ttl .nt .nq .trig .rdf .owl .xml");
+  const std::string base = "file://" + percentEncoded(std::filesystem::absolute(file).lexically_normal().string(), "/");
+  return {.text = {}, .name = file.string(), .format = *format, .base_iri = base, .graph = graph};
+}
+
 }  // namespace
 
 std::optional<RdfFormat> rdfFormatNamed(std::string_view name) {
@@ -45,12 +55,19 @@ std::optional<RdfFormat> rdfFormatOf(const std::filesystem::path& file) {
 }
 
 RdfSource readRdfSource(const std::filesystem::path& file, const Term& graph) {
-  const std::optional<RdfFormat> format = rdfFormatOf(file);
-  if (!format)
-    throw InputError({.file = file.string()}, "is of no known RDF format",
-                     "known endings: .ttl .nt .nq .trig .rdf .owl .xml");
-  const std::string base = "file://" + percentEncoded(std::filesystem::absolute(file).lexically_normal().string(), "/");
-  return {readFile(file), file.string(), *format, base, graph};
+  RdfSource source = namedSource(file, graph);
+  source.text = readFile(file);
+  return source;
+}
+
+RdfSource openRdfSource(const std::filesystem::path& file, const Term& graph) {
+  RdfSource source = namedSource(file, graph);
+  std::error_code ignored;
+  if (source.format != RdfFormat::RdfXml && std::filesystem::is_regular_file(file, ignored))
+    source.file = file;
+  else
+    source.text = readFile(file);
+  return source;
 }
 
 const RdfPrefixes& commonPrefixes() {

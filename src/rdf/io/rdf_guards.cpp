@@ -15,47 +15,50 @@ namespace {
 // Raptor keeps the length of a language tag in one byte and reads beyond the tag when it is longer.
 constexpr std::size_t kMaxTagBytes = 255;
 
-[[noreturn]] void refuse(const RdfSource& source, std::size_t at, const char* what, const char* remedy = "") {
-  throw InputError(locate(source.name, source.text, at), what, remedy);
+[[noreturn]] void refuse(const RdfSource& source, const RdfPiece& piece, std::size_t at, const char* what,
+                         const char* remedy = "") {
+  SourceLocation location = locate(source.name, piece.text, at);
+  location.line += static_cast<std::size_t>(piece.first_line - 1);
+  throw InputError(std::move(location), what, remedy);
 }
 
 bool isTagByte(char c) {
   return isAsciiAlphanumeric(c) || c == '-';
 }
 
-void refuseLongTags(const RdfSource& source) {
-  const std::string& text = source.text;
-  for (std::size_t at = text.find('@'); at != std::string::npos; at = text.find('@', at + 1)) {
+void refuseLongTags(const RdfSource& source, const RdfPiece& piece) {
+  const std::string_view text = piece.text;
+  for (std::size_t at = text.find('@'); at != std::string_view::npos; at = text.find('@', at + 1)) {
     std::size_t length = 0;
     while (at + 1 + length < text.size() && isTagByte(text[at + 1 + length])) ++length;
-    if (length > kMaxTagBytes) refuse(source, at, "the language tag is longer than 255 bytes");
+    if (length > kMaxTagBytes) refuse(source, piece, at, "the language tag is longer than 255 bytes");
   }
 }
 
 /// In RDF/XML the tag is an attribute; entities and declared default values could hide its length.
-void refuseLongXmlTags(const RdfSource& source) {
-  const std::string& text = source.text;
-  if (const std::size_t at = text.find("<!ATTLIST"); at != std::string::npos)
-    refuse(source, at, "declared attributes are not supported", "write the attributes out");
-  for (std::size_t at = text.find("xml:lang"); at != std::string::npos; at = text.find("xml:lang", at + 1)) {
+void refuseLongXmlTags(const RdfSource& source, const RdfPiece& piece) {
+  const std::string_view text = piece.text;
+  if (const std::size_t at = text.find("<!ATTLIST"); at != std::string_view::npos)
+    refuse(source, piece, at, "declared attributes are not supported", "write the attributes out");
+  for (std::size_t at = text.find("xml:lang"); at != std::string_view::npos; at = text.find("xml:lang", at + 1)) {
     const std::size_t open = text.find_first_of("'\"", at);
-    if (open == std::string::npos) return;
+    if (open == std::string_view::npos) return;
     const std::size_t close = std::min(text.find(text[open], open + 1), text.size());
-    const std::string_view tag = std::string_view(text).substr(open + 1, close - open - 1);
+    const std::string_view tag = text.substr(open + 1, close - open - 1);
     if (tag.size() > kMaxTagBytes || tag.find('&') != std::string_view::npos)
-      refuse(source, at, "the language tag is longer than 255 bytes, or is made with entities");
+      refuse(source, piece, at, "the language tag is longer than 255 bytes, or is made with entities");
   }
 }
 
 }  // namespace
 
-void refuseHostileText(const RdfSource& source) {
-  if (source.format == RdfFormat::RdfXml) return refuseLongXmlTags(source);  // XML declares its encoding
-  if (const auto offset = firstInvalidUtf8(source.text))
-    refuse(source, *offset, "is not UTF-8", "save the file in UTF-8");
-  if (const std::size_t zero = source.text.find('\0'); zero != std::string::npos)
-    refuse(source, zero, "holds a zero byte, which no RDF text has");
-  refuseLongTags(source);
+void refuseHostileText(const RdfSource& source, const RdfPiece& piece) {
+  if (source.format == RdfFormat::RdfXml) return refuseLongXmlTags(source, piece);  // XML declares its encoding
+  if (const auto offset = firstInvalidUtf8(piece.text))
+    refuse(source, piece, *offset, "is not UTF-8", "save the file in UTF-8");
+  if (const std::size_t zero = piece.text.find('\0'); zero != std::string_view::npos)
+    refuse(source, piece, zero, "holds a zero byte, which no RDF text has");
+  refuseLongTags(source, piece);
 }
 
 }  // namespace cluxel::rdf

@@ -2,11 +2,12 @@
 // Refuses texts that crash raptor.
 #pragma once
 
-#include "rdf/io/rdf_io.hpp"
+#include "rdf/io/rdf_text.hpp"
 
 namespace cluxel::rdf {
 
-/// Throws InputError with the location of invalid UTF-8, a zero byte, or input that is known to crash raptor 2.0.15.
-void refuseHostileText(const RdfSource& source);
+/// Throws InputError with the location of invalid UTF-8, a zero byte, or input that is known to crash raptor 2.0.15. Of
+/// XML, which is kept in memory, the whole text is one piece.
+void refuseHostileText(const RdfSource& source, const RdfPiece& piece);
 
 }  // namespace cluxel::rdf

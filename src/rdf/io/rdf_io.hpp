@@ -28,12 +28,16 @@ struct RdfSource {
   std::string text;
   std::string name;  ///< the file name in messages
   RdfFormat format = RdfFormat::Turtle;
-  std::string base_iri;        ///< for relative IRIs; if empty, a relative IRI is an error
-  Term graph = Term::iri("");  ///< the graph of statements without one
+  std::string base_iri;             ///< for relative IRIs; if empty, a relative IRI is an error
+  Term graph = Term::iri("");       ///< the graph of statements without one
+  std::filesystem::path file = {};  ///< read in pieces instead of `text`, which is then empty
 };
 
 /// Reads a file as a source whose base IRI is its file: IRI. InputError when the extension is unknown.
 RdfSource readRdfSource(const std::filesystem::path& file, const Term& graph = Term::iri(""));
+/// As above, but a regular file is not read now: it is parsed in pieces, so that memory does not grow with it. XML is
+/// read into memory all the same.
+RdfSource openRdfSource(const std::filesystem::path& file, const Term& graph = Term::iri(""));
 
 /// Calls `take` for every quad, in document order. Blank node labels are derived from a hash of text, base and graph:
 /// equal sources give equal labels, different sources disjoint ones. Throws one InputError with all faults as

@@ -7,12 +7,11 @@
 #include <memory>
 #include <unordered_map>
 
-#include "base/content_hash.hpp"
-#include "base/utf8.hpp"
 #include "cluxel/error.hpp"
 #include "rdf/io/rdf_faults.hpp"
 #include "rdf/io/rdf_guards.hpp"
 #include "rdf/io/rdf_io.hpp"
+#include "rdf/io/rdf_text.hpp"
 
 namespace cluxel::rdf {
 
@@ -67,20 +66,18 @@ const char* parserName(RdfFormat format) {
 /// Labels "b<hash of source>_<n>", where n counts blank nodes in document order.
 class BlankLabels {
  public:
-  explicit BlankLabels(const RdfSource& source) {
-    ContentHasher hasher;
-    hasher.addText(source.text).addText(source.base_iri).addText(toNTriples(source.graph));
-    prefix_ = "b" + hasher.finish().hex().substr(0, 12) + "_";
-  }
+  explicit BlankLabels(const RdfSource& source) : source_(source) {}
 
   const std::string& labelOf(std::string_view written) {
     const auto [entry, is_new] = labels_.try_emplace(std::string(written));
+    if (is_new && prefix_.empty()) prefix_ = "b" + RdfText(source_).hash() + "_";
     if (is_new) entry->second = prefix_ + std::to_string(labels_.size());
     return entry->second;
   }
 
  private:
-  std::string prefix_;
+  const RdfSource& source_;
+  std::string prefix_;  ///< made for the first label: it takes a pass over the text
   std::unordered_map<std::string, std::string> labels_;
 };
 
@@ -120,12 +117,14 @@ class Reading {
   void note(const raptor_log_message& message) {
     if (message.level < RAPTOR_LOG_LEVEL_ERROR || failure_) return;
     const raptor_locator* at = message.locator;
-    faults_.add(at == nullptr || at->line < 0 ? 0 : static_cast<std::size_t>(at->line),
+    faults_.add(at == nullptr || at->line < 0 ? 0 : static_cast<std::size_t>(at->line) + lines_before_,
                 at == nullptr || at->column < 0 ? 0 : static_cast<std::size_t>(at->column), message.text);
   }
 
   void fill(Term& term, const raptor_term& from);
   Term iriOf(raptor_uri* uri) const;
+  void start();
+  bool feed(const RdfPiece& piece);
 
   const RdfSource& source_;
   const std::function<void(const Quad&)>& take_;
@@ -133,6 +132,10 @@ class Reading {
   RdfFaults faults_;
   Quad quad_;
   std::exception_ptr failure_;
+  std::size_t lines_before_ = 0;  ///< that an earlier parser has read
+  bool is_finished_ = false;      ///< the parser has got an end, or met a fault that ends it
+  Raptor<raptor_world> world_;
+  Raptor<raptor_uri> base_;
   Raptor<raptor_parser> parser_;
 };
 
@@ -167,24 +170,42 @@ void Reading::fill(Term& term, const raptor_term& from) {
     term = Term::literal(lexical);
 }
 
-void Reading::run() {
-  const Raptor<raptor_world> world(raptor_new_world());
-  if (!world || raptor_world_open(world.get()) != 0) throw std::bad_alloc();
-  raptor_world_set_log_handler(world.get(), this, &Reading::onMessage);
-  raptor_world_set_generate_bnodeid_parameters(world.get(), const_cast<char*>(kGeneratedPrefix), 1);
-  parser_.reset(raptor_new_parser(world.get(), parserName(source_.format)));
+void Reading::start() {
+  parser_.reset(raptor_new_parser(world_.get(), parserName(source_.format)));
   if (!parser_) throw std::bad_alloc();
   raptor_parser_set_statement_handler(parser_.get(), this, &Reading::onStatement);
   raptor_parser_set_option(parser_.get(), RAPTOR_OPTION_NO_NET, nullptr, 1);
   raptor_parser_set_option(parser_.get(), RAPTOR_OPTION_NO_FILE, nullptr, 1);
+  raptor_parser_parse_start(parser_.get(), base_.get());
+}
+
+/// False when no more pieces are wanted.
+bool Reading::feed(const RdfPiece& piece) {
+  if (source_.format != RdfFormat::RdfXml) refuseHostileText(source_, piece);
+  faults_.enter(piece);
+  // Raptor's parser of lines takes time for every line it ever read when it gets another piece: a new one does not.
+  const bool is_of_lines = source_.format == RdfFormat::NTriples || source_.format == RdfFormat::NQuads;
+  if (is_of_lines && piece.first_line > 1) {
+    lines_before_ = static_cast<std::size_t>(piece.first_line - 1);
+    start();
+  }
+  const int code =
+      raptor_parser_parse_chunk(parser_.get(), raptorBytes(piece.text), piece.text.size(), is_of_lines ? 1 : 0);
+  is_finished_ = is_of_lines || code != 0;
+  return !failure_ && (is_of_lines || code == 0);
+}
+
+void Reading::run() {
+  world_.reset(raptor_new_world());
+  if (!world_ || raptor_world_open(world_.get()) != 0) throw std::bad_alloc();
+  raptor_world_set_log_handler(world_.get(), this, &Reading::onMessage);
+  raptor_world_set_generate_bnodeid_parameters(world_.get(), const_cast<char*>(kGeneratedPrefix), 1);
   const std::string base = source_.base_iri.empty() ? std::string("invalid:/") : source_.base_iri;
-  const Raptor<raptor_uri> uri(raptor_new_uri(world.get(), raptorBytes(base)));
-  if (!uri) throw InputError({.file = source_.name}, "the base IRI '" + base + "' is malformed");
-  raptor_parser_parse_start(parser_.get(), uri.get());
-  // Raptor accepts a byte order mark in XML only.
-  const std::string_view text =
-      source_.format == RdfFormat::RdfXml ? std::string_view(source_.text) : withoutByteOrderMark(source_.text);
-  raptor_parser_parse_chunk(parser_.get(), raptorBytes(text), text.size(), 1);
+  base_.reset(raptor_new_uri(world_.get(), raptorBytes(base)));
+  if (!base_) throw InputError({.file = source_.name}, "the base IRI '" + base + "' is malformed");
+  start();
+  RdfText(source_).forEachPiece([this](const RdfPiece& piece) { return feed(piece); });
+  if (!failure_ && !is_finished_) raptor_parser_parse_chunk(parser_.get(), nullptr, 0, 1);
   parser_.reset();
   if (failure_) std::rethrow_exception(failure_);
   faults_.throwIfAny();
@@ -193,7 +214,7 @@ void Reading::run() {
 }  // namespace
 
 void parseRdf(const RdfSource& source, const std::function<void(const Quad&)>& take) {
-  refuseHostileText(source);
+  if (source.format == RdfFormat::RdfXml) refuseHostileText(source, {source.text});
   Reading(source, take).run();
 }
 

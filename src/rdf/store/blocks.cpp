@@ -34,7 +34,9 @@ std::uint64_t checksumOf(std::string_view full_key, std::string_view bytes) {
   return XXH3_64bits_withSeed(bytes.data(), bytes.size(), XXH3_64bits(full_key.data(), full_key.size()));
 }
 
-std::string_view verified(std::string_view full_key, std::string_view stored, const std::filesystem::path& file) {
+}  // namespace
+
+std::string_view verifiedBlock(std::string_view full_key, std::string_view stored, const std::filesystem::path& file) {
   BlockHead head{};
   if (stored.size() >= sizeof head) std::memcpy(&head, stored.data(), sizeof head);
   const std::string_view bytes = stored.substr(std::min(stored.size(), sizeof head));
@@ -46,19 +48,22 @@ std::string_view verified(std::string_view full_key, std::string_view stored, co
   return bytes;
 }
 
-}  // namespace
-
-std::optional<std::string_view> ReadTransaction::block(std::string_view table, std::string_view key) const {
+std::optional<std::string_view> readBlock(ReadTransaction::Impl& transaction, std::string_view table,
+                                          std::string_view key) {
   const std::string full = fullKey(table, key);
   MDB_val stored_key = toVal(full);
   MDB_val stored;
-  const int code = mdb_get(impl_->live(), impl_->table(Table::Blocks), &stored_key, &stored);
+  const int code = mdb_get(transaction.live(), transaction.table(Table::Blocks), &stored_key, &stored);
   if (code == MDB_NOTFOUND) {
-    impl_->block_keys.verify(*impl_, table);
+    transaction.block_keys.verify(transaction, table);
     return std::nullopt;
   }
-  impl_->check(code, "read a block");
-  return verified(full, toView(stored), impl_->environment->file());
+  transaction.check(code, "read a block");
+  return verifiedBlock(full, toView(stored), transaction.environment->file());
+}
+
+std::optional<std::string_view> ReadTransaction::block(std::string_view table, std::string_view key) const {
+  return readBlock(*impl_, table, key);
 }
 
 void ReadTransaction::forEachBlock(
@@ -75,7 +80,7 @@ void ReadTransaction::forEachBlock(
   for (; code == MDB_SUCCESS; code = mdb_cursor_get(raw, &key, &stored, MDB_NEXT)) {
     const std::string_view full = toView(key);
     if (!full.starts_with(first)) return;
-    visit(full.substr(table.size() + 1), verified(full, toView(stored), impl_->environment->file()));
+    visit(full.substr(table.size() + 1), verifiedBlock(full, toView(stored), impl_->environment->file()));
   }
   if (code != MDB_NOTFOUND) impl_->check(code, "read the blocks");
 }

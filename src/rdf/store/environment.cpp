@@ -13,10 +13,11 @@
 
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
+#include "rdf/store/check/map_file_head.hpp"
+#include "rdf/store/check/map_structure.hpp"
 #include "rdf/store/file_guards.hpp"
 #include "rdf/store/lmdb_environment.hpp"
 #include "rdf/store/lock_file.hpp"
-#include "rdf/store/map_file_check.hpp"
 #include "rdf/store/map_replacement.hpp"
 #include "rdf/store/private_copy.hpp"
 #include "rdf/store/store_snapshot.hpp"
@@ -112,18 +113,18 @@ EnvHandle openLmdbFor(const fs::path& file, std::uint64_t file_size, OpenMode mo
   return openLmdb(file, file_size, MDB_RDONLY | MDB_NOLOCK);
 }
 
-/// Checks the structure of the current commit while a read transaction pins its pages.
+/// Checks what LMDB reads of the current commit while a read transaction pins its pages.
 void checkUnderSnapshot(MDB_env* handle, int descriptor, const fs::path& file) {
   MDB_txn* raw = nullptr;
   checkLmdb(mdb_txn_begin(handle, nullptr, MDB_RDONLY, &raw), file, "read the map");
   const TxnHandle transaction(raw);
-  checkMapStructure(descriptor, file, mdb_txn_id(raw));
+  checkMapStructure(descriptor, file, mdb_txn_id(raw), MapScope::Reading);
 }
 
 /// The environment of a file that LMDB has opened.
 std::shared_ptr<LmdbEnvironment> environmentOf(const fs::path& file, EnvHandle handle, Descriptor& descriptor,
                                                const MapFileHead& head, bool can_write, bool may_initialise) {
-  if (head.file_size != 0 && needsStructureCheck(head)) checkUnderSnapshot(handle.get(), descriptor.get(), file);
+  if (head.file_size != 0) checkUnderSnapshot(handle.get(), descriptor.get(), file);
   auto environment = std::make_shared<LmdbEnvironment>(file, std::move(handle), descriptor.release(), can_write);
   if (may_initialise) environment->allowWriting();
   environment->openTables();
@@ -227,6 +228,12 @@ LmdbEnvironment::LmdbEnvironment(fs::path file, EnvHandle handle, int data_lock,
       data_lock_(data_lock),
       can_write_(can_write),
       values_(std::make_unique<ValueCache>()) {}
+
+std::uint64_t LmdbEnvironment::fileSize() const {
+  struct stat status {};
+  if (::fstat(data_lock_, &status) != 0) failStore(file_, errno, "examine the map");
+  return static_cast<std::uint64_t>(status.st_size);
+}
 
 LmdbEnvironment::~LmdbEnvironment() {
   struct stat status {};

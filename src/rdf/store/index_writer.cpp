@@ -25,9 +25,11 @@ class IndexCursor {
 
   void append(Key128 number) { put(number, MDB_APPENDDUP); }
 
-  void insert(Key128 number) {
+  /// False when the key was there.
+  bool insert(Key128 number) {
     const int code = tryPut(number, MDB_NODUPDATA);
     if (code != MDB_KEYEXIST) transaction_.check(code, "write an index");
+    return code != MDB_KEYEXIST;
   }
 
   /// The last key, if any.
@@ -70,7 +72,7 @@ std::vector<Key128> allKeys(ReadTransaction::Impl& transaction, Table index) {
   return keys;
 }
 
-void writeAnew(ReadTransaction::Impl& transaction, Table index, const IndexChange& change) {
+void writeAnew(ReadTransaction::Impl& transaction, Table index, const IndexChange& change, EntrySum* sum) {
   const std::vector<Key128> old = allKeys(transaction, index);
   std::vector<Key128> kept;
   kept.reserve(old.size());
@@ -80,36 +82,46 @@ void writeAnew(ReadTransaction::Impl& transaction, Table index, const IndexChang
   std::set_union(kept.begin(), kept.end(), change.added.begin(), change.added.end(), std::back_inserter(merged));
   transaction.check(mdb_drop(transaction.live(), transaction.table(index), 0), "write an index");
   IndexCursor cursor(transaction, index);
-  for (const Key128 key : merged) cursor.append(key);
+  if (sum != nullptr) *sum = {};
+  for (const Key128 key : merged) {
+    cursor.append(key);
+    if (sum != nullptr) sum->add(key);
+  }
 }
 
 /// Uses mdb_del only: loops of mdb_cursor_del over duplicates corrupt the file in LMDB 0.9.24.
-void removeSingly(ReadTransaction::Impl& transaction, Table index, const std::vector<Key128>& removed) {
+void removeSingly(ReadTransaction::Impl& transaction, Table index, const std::vector<Key128>& removed, EntrySum* sum) {
   for (const Key128 number : removed) {
     QuadKey bytes = toKey(number);
     MDB_val key = toVal(kIndexKey);
     MDB_val value{sizeof bytes, bytes.bytes.data()};
     const int code = mdb_del(transaction.live(), transaction.table(index), &key, &value);
-    if (code != MDB_NOTFOUND) transaction.check(code, "write an index");
+    if (code == MDB_NOTFOUND) continue;
+    transaction.check(code, "write an index");
+    if (sum != nullptr) sum->remove(number);
   }
 }
 
-void addSingly(ReadTransaction::Impl& transaction, Table index, const std::vector<Key128>& added) {
+void addSingly(ReadTransaction::Impl& transaction, Table index, const std::vector<Key128>& added, EntrySum* sum) {
   IndexCursor cursor(transaction, index);
   const std::optional<Key128> last = cursor.last();
   const auto beyond = last ? std::upper_bound(added.begin(), added.end(), *last) : added.begin();
-  for (auto key = added.begin(); key != beyond; ++key) cursor.insert(*key);
-  for (auto key = beyond; key != added.end(); ++key) cursor.append(*key);
+  for (auto key = added.begin(); key != beyond; ++key)
+    if (cursor.insert(*key) && sum != nullptr) sum->add(*key);
+  for (auto key = beyond; key != added.end(); ++key) {
+    cursor.append(*key);
+    if (sum != nullptr) sum->add(*key);
+  }
 }
 
 }  // namespace
 
-void applyTo(ReadTransaction::Impl& transaction, Table index, const IndexChange& change) {
+void applyTo(ReadTransaction::Impl& transaction, Table index, const IndexChange& change, EntrySum* sum) {
   const std::uint64_t changes = change.added.size() + change.removed.size();
   const std::uint64_t entries = entriesOf(transaction, index);
-  if (entries > 0 && changes * kPutCost > entries + 1000) return writeAnew(transaction, index, change);
-  removeSingly(transaction, index, change.removed);
-  addSingly(transaction, index, change.added);
+  if (entries > 0 && changes * kPutCost > entries + 1000) return writeAnew(transaction, index, change, sum);
+  removeSingly(transaction, index, change.removed, sum);
+  addSingly(transaction, index, change.added, sum);
 }
 
 }  // namespace cluxel::rdf

@@ -16,6 +16,7 @@ struct IndexChange {
 
 /// Applies the change: appends keys after the last one, puts single keys, and rewrites the index by a merge when the
 /// change is large. Adding an existing key or removing a missing one has no effect.
-void applyTo(ReadTransaction::Impl& transaction, Table index, const IndexChange& change);
+/// `sum`, if any, follows what really changes.
+void applyTo(ReadTransaction::Impl& transaction, Table index, const IndexChange& change, EntrySum* sum);
 
 }  // namespace cluxel::rdf

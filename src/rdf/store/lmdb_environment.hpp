@@ -11,6 +11,7 @@
 #include "rdf/store/block_keys.hpp"
 #include "rdf/store/environment.hpp"
 #include "rdf/store/lmdb_handles.hpp"
+#include "rdf/store/store_sums.hpp"
 
 namespace cluxel::rdf {
 
@@ -47,6 +48,7 @@ class LmdbEnvironment final : public Environment {
   const std::filesystem::path& file() const override { return file_; }
   void compactTo(const std::filesystem::path& target) const override;
 
+  std::uint64_t fileSize() const;  ///< at this moment
   MDB_env* handle() const { return handle_.get(); }
   MDB_dbi mainTable() const { return main_; }  ///< LMDB's table of tables, with the records of the format
   MDB_dbi table(Table table) const { return tables_[static_cast<std::size_t>(table)]; }
@@ -57,6 +59,14 @@ class LmdbEnvironment final : public Environment {
   void allowWriting();
   /// From now on the file may be renamed or removed.
   void loseName() { has_name_ = false; }
+  /// True for a map that was written before its quads and terms had sums; it gets them with the next commit.
+  bool isOfFirstFormat() const { return first_format_; }
+  /// True for the last commit of this process: what it read was verified, so what it wrote need not be.
+  bool wrote(std::size_t transaction_id) const { return own_commit_ == transaction_id; }
+  void noteCommit(std::size_t transaction_id) {
+    own_commit_ = transaction_id;
+    first_format_ = false;
+  }
   bool canWrite() const { return can_write_; }
   void check(int code, std::string_view doing) const { checkLmdb(code, file_, doing); }
   void enterWriting();
@@ -67,13 +77,17 @@ class LmdbEnvironment final : public Environment {
  private:
   void lockAgainstProcesses();
   void requireName();
-  void createTables(MDB_txn* transaction);
+  void createTables(ReadTransaction::Impl& transaction);
+  void verifyForWriting(std::size_t commit);
+  void startSums(WriteTransaction& transaction, std::size_t commit);
 
   std::filesystem::path file_;
   EnvHandle handle_;
   int data_lock_;
   bool can_write_, has_name_ = true;
   std::atomic<bool> writing_allowed_{false};
+  std::atomic<bool> first_format_{false}, verified_{false};  ///< verified_: writers may trust the file
+  std::atomic<std::size_t> own_commit_{0};
   std::array<MDB_dbi, kTableCount> tables_{};
   MDB_dbi main_ = 0;
   std::unique_ptr<ValueCache> values_;
@@ -93,6 +107,7 @@ struct ReadTransaction::Impl {
   std::uint64_t committed_terms = 0;  ///< in a write transaction: the number of terms before it
   std::uint64_t generation = 0;       ///< incremented with each change in a write transaction
   BlockKeys block_keys;
+  StoreSums sums;                           ///< of a write transaction
   std::shared_ptr<StoreSnapshot> snapshot;  ///< created on first use, for this generation
   std::uint64_t snapshot_generation = 0;
 
@@ -105,5 +120,14 @@ struct ReadTransaction::Impl {
   MDB_txn* live() const;  ///< throws when the transaction has ended
   void end();
 };
+
+/// Adds the sums that a map of the first format lacks.
+void makeSums(WriteTransaction& transaction);
+
+/// As ReadTransaction::block().
+std::optional<std::string_view> readBlock(ReadTransaction::Impl& transaction, std::string_view table,
+                                          std::string_view key);
+/// The bytes of a stored block under "table, zero byte, key". Throws Error when its checksum is wrong.
+std::string_view verifiedBlock(std::string_view full_key, std::string_view stored, const std::filesystem::path& file);
 
 }  // namespace cluxel::rdf

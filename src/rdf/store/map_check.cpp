@@ -8,8 +8,10 @@
 #include <cerrno>
 
 #include "cluxel/error.hpp"
+#include "rdf/store/check/map_file_head.hpp"
+#include "rdf/store/check/map_structure.hpp"
+#include "rdf/store/file_guards.hpp"
 #include "rdf/store/lmdb_environment.hpp"
-#include "rdf/store/map_file_check.hpp"
 #include "rdf/store/quad_reader_impl.hpp"
 #include "rdf/store/store_snapshot.hpp"
 #include "rdf/store/term_record.hpp"
@@ -21,16 +23,19 @@ namespace {
 constexpr std::size_t kMaxFaults = 40;
 
 void checkStructure(const std::filesystem::path& file) {
-  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) failStore(file, errno, "open the map");
-  try {
-    const MapFileHead head = readMapFileHead(descriptor, file);
-    if (head.file_size > 0) checkMapStructure(descriptor, file, head.transaction);
-  } catch (...) {
-    ::close(descriptor);
-    throw;
+  const Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (descriptor.get() < 0) failStore(file, errno, "open the map");
+  constexpr int kAttempts = 5;
+  for (int attempt = 1;; ++attempt) {
+    const MapFileHead head = readMapFileHead(descriptor.get(), file);
+    try {
+      if (head.file_size > 0) checkMapStructure(descriptor.get(), file, head.transaction, MapScope::Whole);
+      return;
+    } catch (const Error&) {
+      // No reader pins the pages: a writer may have reused them meanwhile.
+      if (attempt == kAttempts || readMapFileHead(descriptor.get(), file).transaction == head.transaction) throw;
+    }
   }
-  ::close(descriptor);
 }
 
 /// A 64-bit hash of a quad. The sum over an index is independent of its order and identifies the set of quads.
@@ -159,7 +164,12 @@ MapCheck checkMap(const std::filesystem::path& file) {
     broken.faults.emplace_back(error.what());
     return broken;
   }
-  return Check(*Environment::open(file, OpenMode::ReadOnly)).run();
+  const auto environment = Environment::open(file, OpenMode::ReadOnly);
+  try {
+    return Check(*environment).run();
+  } catch (const Error& error) {
+    return {.faults = {error.what()}};
+  }
 }
 
 }  // namespace cluxel::rdf

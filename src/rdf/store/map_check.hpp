@@ -9,8 +9,9 @@
 
 namespace cluxel::rdf {
 
-/// Version of the layout of a map file. A map of another version is not opened.
-inline constexpr int kMapFormat = 1;
+/// Version of the layout of a map file. A map of version 1 is read too, and becomes one of version 2
+/// with the next commit; of a later one none is opened.
+inline constexpr int kMapFormat = 2;
 
 struct MapCheck {
   std::uint64_t blocks = 0, terms = 0, quads = 0;  ///< numbers of checked items

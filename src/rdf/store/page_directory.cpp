@@ -99,6 +99,8 @@ PageDirectory::PageDirectory(const PageMap& map, const Tree& table) {
   max_keys_ = (map.page_size - kHeaderSize) / sizeof(QuadKey);
   const std::uint8_t* root = map.page(table.root);
   if ((header(root).flags & kLeaf) == 0 || lmdb_page::entryCount(root) != 1) failOnIndex();
+  const std::size_t at = load<std::uint16_t>(root + kHeaderSize);
+  if (at + 8 > map.page_size) failOnIndex();
   const Node node(root, 0);
   const std::size_t room = static_cast<std::size_t>(root + map.page_size - node.data());
   if (node.data() > root + map.page_size || node.dataSize() > room) failOnIndex();

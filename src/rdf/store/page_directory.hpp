@@ -65,6 +65,8 @@ class PageDirectory {
     const QuadKey* keys = pages_[i];
     return {keys, single_ ? 1 : entryCount(keys)};
   }
+  /// No key of page `i` is less, and all keys of earlier pages are.
+  Key128 lower(std::size_t i) const { return lower_[i]; }
   Position begin() const { return {}; }
   Position end() const { return {pages_.size(), 0}; }
   /// The first key not less than `key`.

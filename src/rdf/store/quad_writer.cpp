@@ -94,6 +94,7 @@ TermId QuadWriter::Impl::internIri(const Term& term) {
 
 void QuadWriter::Impl::flushTerms() {
   IndexChange hashes;
+  TermSumWriter sums(transaction);
   TermId first = kNoTerm;
   for (const PendingTerms::Entry& entry : terms.entries()) {
     if (!entry.is_new) continue;
@@ -104,10 +105,12 @@ void QuadWriter::Impl::flushTerms() {
     const int code = mdb_put(state().live(), state().table(Table::Terms), &key, &value, MDB_APPEND);
     if (code == MDB_KEYEXIST) throw std::logic_error("two quad writers write in one transaction at once");
     state().check(code, "write a term");
-    hashes.added.push_back((Key128{entry.hash.high} << 64U) | (Key128{entry.hash.low} << 32U) | id);
+    hashes.added.push_back(keyOfTerm(entry.hash, id));
+    sums.add(entry.hash, id);
   }
+  sums.store();
   std::sort(hashes.added.begin(), hashes.added.end());
-  applyTo(state(), Table::TermHashes, hashes);
+  applyTo(state(), Table::TermHashes, hashes, &state().sums.term_hashes);
   if (first != kNoTerm) flushGeometries(first, next_id - 1);
   terms.clear();
   next_id = kNoTerm;
@@ -139,7 +142,7 @@ void QuadWriter::Impl::flushQuads() {
       std::sort(change.added.begin(), change.added.end());
       std::sort(change.removed.begin(), change.removed.end());
     }
-    applyTo(state(), tableOf(order), change);
+    applyTo(state(), tableOf(order), change, order == QuadOrder::Spog ? &state().sums.quads : nullptr);
   }
   changes.clear();
 }

@@ -8,6 +8,8 @@
 #include <string>
 
 #include "cluxel/error.hpp"
+#include "rdf/store/check/map_file_head.hpp"
+#include "rdf/store/term_record.hpp"
 
 namespace cluxel::rdf {
 
@@ -37,7 +39,8 @@ PageMap mapAround(const void* inside, const ReadTransaction::Impl& transaction) 
   if (number > info.me_last_pgno) return {};
   const std::uint8_t* base = page - number * page_size;
   if (load<Meta>(base + kHeaderSize).magic != kMagic) return {};
-  return {base, page_size, info.me_last_pgno + 1};
+  // The file may be shorter than its head states: free pages at its end are not written, and a file may be cut short.
+  return {base, page_size, std::min(info.me_last_pgno + 1, transaction.environment->fileSize() / page_size)};
 }
 
 }  // namespace
@@ -55,6 +58,30 @@ StoreSnapshot::StoreSnapshot(const ReadTransaction::Impl& transaction)
     trees_[i] = load<Tree>(static_cast<const std::uint8_t*>(record.mv_data));
     if (i == 0) map_ = mapAround(record.mv_data, transaction);
   }
+  const std::size_t commit = mdb_txn_id(transaction.live());
+  if (!transaction.environment->wrote(commit)) sums_ = storedSums(transaction, commit);
+  if (sums_) requireCounts(transaction.environment->file());
+}
+
+void StoreSnapshot::requireCounts(const std::filesystem::path& file) const {
+  for (std::size_t i = static_cast<std::size_t>(Table::Terms); i < kTableCount; ++i) {
+    const bool of_quads = i >= static_cast<std::size_t>(Table::Spog);
+    if (trees_[i].entries != (of_quads ? sums_->quads : sums_->term_hashes).count)
+      refuseDamaged(file, std::string("table ") + kTableNames[i] + " has another number of entries than was written");
+  }
+}
+
+void StoreSnapshot::verifyIndex(Table index, const std::filesystem::path& file) const {
+  const auto i = static_cast<std::size_t>(index);
+  if (sums_ && sumOf(directories_[i], index, file) != (index == Table::TermHashes ? sums_->term_hashes : sums_->quads))
+    refuseDamaged(file, std::string("index ") + kTableNames[i] + " differs from its checksum");
+}
+
+void StoreSnapshot::verify(ReadTransaction::Impl& transaction) {
+  for (const Table index : {Table::TermHashes, Table::Spog, Table::Posg, Table::Ospg, Table::Gspo})
+    directory(index, transaction);
+  for (std::uint64_t id = 1; id <= term_count_; id = (id / kTermsOfSum + 1) * kTermsOfSum)
+    record(static_cast<TermId>(id), transaction);
 }
 
 const PageDirectory& StoreSnapshot::directory(Table index, const ReadTransaction::Impl& transaction) {
@@ -62,12 +89,13 @@ const PageDirectory& StoreSnapshot::directory(Table index, const ReadTransaction
   std::call_once(made_[i], [&] {
     if (map_.base != nullptr) {
       directories_[i] = PageDirectory(map_, trees_[i]);
-      return;
+    } else {
+      MDB_cursor* raw = nullptr;
+      transaction.check(mdb_cursor_open(transaction.live(), transaction.table(index), &raw), "read an index");
+      const CursorHandle cursor(raw);
+      directories_[i] = PageDirectory(raw);
     }
-    MDB_cursor* raw = nullptr;
-    transaction.check(mdb_cursor_open(transaction.live(), transaction.table(index), &raw), "read an index");
-    const CursorHandle cursor(raw);
-    directories_[i] = PageDirectory(raw);
+    verifyIndex(index, transaction.environment->file());
   });
   return directories_[i];
 }
@@ -83,7 +111,7 @@ void StoreSnapshot::expectRecords(std::span<const TermId> ids) {
   if (map_.base != nullptr) terms().expect(ids);
 }
 
-std::string_view StoreSnapshot::record(TermId id, const ReadTransaction::Impl& transaction) {
+std::string_view StoreSnapshot::storedRecord(TermId id, const ReadTransaction::Impl& transaction) {
   std::string_view bytes;
   if (map_.base != nullptr) {
     bytes = terms().record(id);
@@ -94,10 +122,38 @@ std::string_view StoreSnapshot::record(TermId id, const ReadTransaction::Impl& t
     if (code != MDB_NOTFOUND) transaction.check(code, "read a term");
     if (code == MDB_SUCCESS) bytes = toView(data);
   }
-  if (bytes.empty())
-    throw Error(ErrorKind::StoreUnavailable, transaction.environment->file().string() +
-                                                 ": the map is damaged: there is no term " + std::to_string(id));
+  if (bytes.empty()) refuseDamaged(transaction.environment->file(), "there is no term " + std::to_string(id));
   return bytes;
+}
+
+std::string_view StoreSnapshot::record(TermId id, ReadTransaction::Impl& transaction) {
+  if (sums_ && id <= term_count_) {
+    requireSums(transaction);
+    const TermId number = id / kTermsOfSum;
+    if (!term_sums_verified_[number].load(std::memory_order_relaxed)) verifyTerms(number, transaction);
+  }
+  return storedRecord(id, transaction);
+}
+
+void StoreSnapshot::requireSums(ReadTransaction::Impl& transaction) {
+  std::call_once(term_sums_read_, [&] {
+    term_sums_ = storedTermSums(transaction, term_count_);
+    term_sums_verified_ = std::vector<std::atomic<bool>>(term_sums_.size());
+  });
+}
+
+void StoreSnapshot::verifyTerms(TermId number, const ReadTransaction::Impl& transaction) {
+  const std::uint64_t first = std::uint64_t{number} * kTermsOfSum;
+  const std::uint64_t last = std::min(first + kTermsOfSum - 1, term_count_);
+  std::uint64_t sum = 0;
+  for (std::uint64_t id = std::max<std::uint64_t>(1, first); id <= last; ++id) {
+    const auto term = static_cast<TermId>(id);
+    sum += hashOfKey(keyOfTerm(hashOfRecord(storedRecord(term, transaction)), term));
+  }
+  if (sum != term_sums_[number])
+    refuseDamaged(transaction.environment->file(), "the terms from " + std::to_string(first) + " to " +
+                                                       std::to_string(last) + " differ from their checksum");
+  term_sums_verified_[number].store(true, std::memory_order_relaxed);
 }
 
 std::optional<QuadReader::PredicateStatistics> StoreSnapshot::knownStatistics(TermId predicate) {

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "rdf/store/lmdb_environment.hpp"
 #include "rdf/store/page_directory.hpp"
@@ -23,12 +25,16 @@ class StoreSnapshot {
 
   std::uint64_t size() const { return size_; }
   std::uint64_t termCount() const { return term_count_; }
-  /// The directory of an index; `transaction` must see the same state as this snapshot. Thread-safe.
+  /// The directory of an index; `transaction` must see the same state as this snapshot. The first call compares the
+  /// index with its sum, unless this process wrote the commit. Thread-safe.
   const PageDirectory& directory(Table index, const ReadTransaction::Impl& transaction);
-  /// The record of a term; throws Error for an unknown id. Thread-safe.
-  std::string_view record(TermId id, const ReadTransaction::Impl& transaction);
+  /// The record of a term; throws Error for an unknown id. Of each 64 terms the first one that is read compares all
+  /// with their sum. Thread-safe.
+  std::string_view record(TermId id, ReadTransaction::Impl& transaction);
   /// Prefetches the records of terms. Thread-safe.
   void expectRecords(std::span<const TermId> ids);
+  /// Compares all indexes and terms with their sums.
+  void verify(ReadTransaction::Impl& transaction);
 
   std::optional<QuadReader::PredicateStatistics> knownStatistics(TermId predicate);
   void keepStatistics(TermId predicate, const QuadReader::PredicateStatistics& statistics);
@@ -36,14 +42,23 @@ class StoreSnapshot {
   void keep(const std::string& name, std::shared_ptr<const void> made);
 
  private:
+  void requireCounts(const std::filesystem::path& file) const;
+  void verifyIndex(Table index, const std::filesystem::path& file) const;
+  std::string_view storedRecord(TermId id, const ReadTransaction::Impl& transaction);
+  void requireSums(ReadTransaction::Impl& transaction);
+  void verifyTerms(TermId number, const ReadTransaction::Impl& transaction);
+
   std::uint64_t size_ = 0, term_count_ = 0;
-  PageMap map_;  ///< without a base address, pages are read through cursors
+  std::optional<StoreSums> sums_;  ///< none where nothing is compared: own commits, write transactions, format 1
+  PageMap map_;                    ///< without a base address, pages are read through cursors
   std::array<lmdb_page::Tree, kTableCount> trees_{};
   std::array<std::once_flag, kTableCount> made_;
   std::array<PageDirectory, kTableCount> directories_;
   const TermDirectory& terms();
-  std::once_flag terms_made_;
+  std::once_flag terms_made_, term_sums_read_;
   std::unique_ptr<TermDirectory> terms_;
+  std::vector<std::uint64_t> term_sums_;
+  std::vector<std::atomic<bool>> term_sums_verified_;
   std::mutex statistics_mutex_;
   std::map<TermId, QuadReader::PredicateStatistics> statistics_;
   std::mutex kept_mutex_;

@@ -42,7 +42,8 @@ void TermDirectory::indexIds() {
 }
 
 void TermDirectory::addLeaf(TermId first, PageNumber number) {
-  if (number > std::numeric_limits<std::uint32_t>::max()) failOnDictionary();
+  if (number > std::numeric_limits<std::uint32_t>::max() || (!leaves_.empty() && first <= leaves_.back().first))
+    failOnDictionary();
   leaves_.push_back({first, static_cast<std::uint32_t>(number)});
 }
 
@@ -86,6 +87,7 @@ std::string_view TermDirectory::record(TermId id) const {
   const std::uint8_t* data = node.data();
   const std::size_t size = node.dataSize();
   if ((node.flags() & kBigData) != 0) {
+    if (data + sizeof(PageNumber) > page + map_.page_size) failOnDictionary();
     const PageNumber first_page = load<PageNumber>(data);
     map_.page(first_page + (kHeaderSize + size - 1) / map_.page_size);
     data = map_.page(first_page) + kHeaderSize;

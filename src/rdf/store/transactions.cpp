@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "cluxel/error.hpp"
+#include "rdf/store/check/map_structure.hpp"
 #include "rdf/store/file_guards.hpp"
 #include "rdf/store/lmdb_environment.hpp"
 #include "rdf/store/map_check.hpp"
@@ -23,26 +24,51 @@ namespace {
 constexpr std::string_view kFormatKey = "cluxel-format";
 constexpr int kFormat = kMapFormat;
 
-void checkFormat(const std::string& text, const std::filesystem::path& file) {
+/// The first format has no sums of quads and terms; the next commit adds them.
+constexpr int kFirstFormat = 1;
+
+int checkedFormat(const std::string& text, const std::filesystem::path& file) {
   int format = 0;
-  std::from_chars(text.data(), text.data() + text.size(), format);
-  if (format == kFormat) return;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), format);
+  if (read.ec != std::errc() || read.ptr != text.data() + text.size()) format = 0;
+  if (format == kFormat || format == kFirstFormat) return format;
   const std::string what = format > kFormat ? "is a map of a newer format (" + text + "; this program reads " +
                                                   std::to_string(kFormat) + "); use a newer Cluxel"
                                             : "is a map of an unknown format; build it again";
   throw Error(ErrorKind::StoreUnavailable, file.string() + ": " + what);
 }
 
-}  // namespace
-
-void LmdbEnvironment::createTables(MDB_txn* transaction) {
-  for (std::size_t i = 0; i < kTableCount; ++i)
-    check(mdb_dbi_open(transaction, kTableNames[i], tableFlags(static_cast<Table>(i)) | MDB_CREATE, &tables_[i]),
-          "make the map's tables");
+void writeFormat(const ReadTransaction::Impl& transaction) {
   const std::string format = std::to_string(kFormat);
   MDB_val key = toVal(kFormatKey);
   MDB_val value = toVal(format);
-  check(mdb_put(transaction, main_, &key, &value, 0), "make the map's tables");
+  transaction.check(mdb_put(transaction.live(), transaction.environment->mainTable(), &key, &value, 0),
+                    "write the format");
+}
+
+}  // namespace
+
+void makeSums(WriteTransaction& transaction) {
+  ReadTransaction::Impl& state = transaction.impl();
+  StoreSnapshot& snapshot = snapshotOf(state);
+  const std::filesystem::path& file = state.environment->file();
+  state.sums.quads = sumOf(snapshot.directory(Table::Spog, state), Table::Spog, file);
+  state.sums.term_hashes = sumOf(snapshot.directory(Table::TermHashes, state), Table::TermHashes, file);
+  TermSumWriter terms(transaction);
+  for (std::uint64_t id = 1; id <= snapshot.termCount(); ++id) {
+    const auto term = static_cast<TermId>(id);
+    terms.add(hashOfRecord(snapshot.record(term, state)), term);
+  }
+  terms.store();
+  writeFormat(state);
+}
+
+void LmdbEnvironment::createTables(ReadTransaction::Impl& transaction) {
+  for (std::size_t i = 0; i < kTableCount; ++i)
+    check(mdb_dbi_open(transaction.live(), kTableNames[i], tableFlags(static_cast<Table>(i)) | MDB_CREATE, &tables_[i]),
+          "make the map's tables");
+  writeFormat(transaction);
+  ++transaction.generation;
 }
 
 void LmdbEnvironment::openTables() {
@@ -54,7 +80,7 @@ void LmdbEnvironment::openTables() {
   MDB_val value;
   const int found = mdb_get(raw, main_, &key, &value);
   if (found == MDB_SUCCESS) {
-    checkFormat(std::string(toView(value)), file_);
+    first_format_ = checkedFormat(std::string(toView(value)), file_) == kFirstFormat;
     for (std::size_t i = 0; i < kTableCount; ++i)
       check(mdb_dbi_open(raw, kTableNames[i], tableFlags(static_cast<Table>(i)), &tables_[i]), "read the map's tables");
     check(mdb_txn_commit(transaction.release()), "read the map's tables");
@@ -68,8 +94,9 @@ void LmdbEnvironment::openTables() {
     throw Error(ErrorKind::StoreUnavailable, file_.string() + ": is an LMDB file, but not a Cluxel map");
   if (!writing_allowed_)
     throw Error(ErrorKind::StoreUnavailable, file_.string() + ": holds no map yet; build it first");
+  verified_ = true;  // there is nothing yet
   WriteTransaction first = write();
-  createTables(first.impl().txn);
+  createTables(first.impl());
   first.commit();
 }
 
@@ -129,9 +156,28 @@ WriteTransaction LmdbEnvironment::write() {
   const int code = mdb_txn_begin(handle(), nullptr, 0, &impl->txn);
   if (code != MDB_SUCCESS) impl->end();
   check(code, "write the map");
+  const std::size_t base = mdb_txn_id(impl->txn) - 1;
   MDB_stat terms;
   if (mdb_stat(impl->txn, table(Table::Terms), &terms) == MDB_SUCCESS) impl->committed_terms = terms.ms_entries;
-  return WriteTransaction(std::move(impl));
+  WriteTransaction transaction(std::move(impl));
+  if (!verified_) verifyForWriting(base);
+  if (base > 0) startSums(transaction, base);
+  return transaction;
+}
+
+/// A writer trusts every page, and what it writes carries the sums on.
+void LmdbEnvironment::verifyForWriting(std::size_t commit) {
+  checkMapStructure(data_lock_, file_, commit, MapScope::Whole);
+  const ReadTransaction current = read();
+  snapshotOf(current.impl()).verify(current.impl());
+  verified_ = true;
+}
+
+void LmdbEnvironment::startSums(WriteTransaction& transaction, std::size_t commit) {
+  if (const auto sums = storedSums(transaction.impl(), commit))
+    transaction.impl().sums = *sums;
+  else
+    makeSums(transaction);
 }
 
 std::shared_ptr<StoreSnapshot> LmdbEnvironment::snapshot(
@@ -163,8 +209,14 @@ MDB_txn* ReadTransaction::Impl::live() const {
 void WriteTransaction::commit() {
   Impl& state = impl();
   state.live();
-  state.block_keys.store(state);
+  const std::size_t id = mdb_txn_id(state.txn);
+  if (state.generation > 0) {
+    state.block_keys.store(state);
+    state.sums.transaction = id;
+    storeSums(state, state.sums);
+  }
   const int code = mdb_txn_commit(std::exchange(state.txn, nullptr));
+  if (code == MDB_SUCCESS && state.generation > 0) state.environment->noteCommit(id);
   state.end();
   state.check(code, "write the map");
 }

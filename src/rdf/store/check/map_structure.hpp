@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Checks the pages of a map file: LMDB trusts them, and ends the program on numbers that a damaged file states.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+namespace cluxel::rdf {
+
+enum class MapScope : std::uint8_t {
+  Reading,  ///< what LMDB itself reads for a reader: the tables' records, the blocks' keys, the list of free pages
+  Whole,    ///< every page but the contents of values and of index leaves; needed before a write
+};
+
+/// Visits the pages reachable from the meta page of commit `transaction`, which a read transaction pins. Throws Error
+/// (StoreUnavailable) at the first page that is malformed, lies outside the file, is reached twice, or is listed as
+/// free, and when a table holds more or less than its record states. Never reads outside the file. Cost of Reading: one
+/// step per block; of Whole: one per block, per term, per page of an index, and per value of more than half a page.
+void checkMapStructure(int descriptor, const std::filesystem::path& file, std::uint64_t transaction, MapScope scope);
+
+}  // namespace cluxel::rdf
