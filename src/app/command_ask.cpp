@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel ask`, `cluxel tasks` and `cluxel inventory`: the tasks that a map answers by name.
 #include "app/command.hpp"
-#include "app/unfinished_note.hpp"
+#include "app/map_condition.hpp"
 #include "cluxel/error.hpp"
 #include "tasks/ask/inventory_task.hpp"
 #include "tasks/ask/task_table.hpp"
