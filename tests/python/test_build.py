@@ -49,7 +49,7 @@ def test_a_finished_map_is_replaced_only_on_demand(campus, tmp_path):
 def test_own_rules_are_used(campus, tmp_path):
     rules = tmp_path / "low.rules.yaml"
     text = (SOURCE / "rules" / "outdoor.rules.yaml").read_text()
-    rules.write_text(text.replace("max: 4.6 m", "max: 2.5 m"))  # the highest top of a street sign
+    rules.write_text(text.replace("top between 1.2 m and 4.6 m", "top between 1.2 m and 2.5 m"))  # the highest top of a street sign
     built = campus.build(tmp_path / "map.clx", rules=str(rules))
     run("--home", SOURCE, "build", campus.scans, "-o", tmp_path / "program.clx", "--model", "campus", "--rules", rules)
     assert canonical(built.file, tmp_path) == canonical(tmp_path / "program.clx", tmp_path)

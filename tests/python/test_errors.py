@@ -46,13 +46,13 @@ def test_a_faulty_query_is_named_with_line_and_column(campus_map):
 def test_all_faults_of_a_file_are_reported(campus, tmp_path):
     rules = tmp_path / "town.rules.yaml"
     text = (SOURCE / "rules" / "outdoor.rules.yaml").read_text()
-    rules.write_text(text.replace("attribute: top", "attribute: topp"))
+    rules.write_text(text.replace("top <=", "topp <="))
     with pytest.raises(cluxel.FaultyInputError) as raised:
         campus.build(tmp_path / "map.clx", rules=[rules])
     error = raised.value
     assert len(error.diagnostics) > 1 and error.file == str(rules) and error.line == error.diagnostics[0].line > 1
     assert {fault.line for fault in error.diagnostics} == {
-        number for number, line in enumerate(rules.read_text().split("\n"), 1) if "attribute: topp" in line}
+        number for number, line in enumerate(rules.read_text().split("\n"), 1) if "topp <=" in line}
     assert error.hint is not None and "top" in error.hint
 
 

@@ -94,8 +94,7 @@ TEST(SearchTour, EachStopIsTheBestOfAllCellsForItsWalk) {
     for (double& value : field.probability) value = static_cast<double>(random() % 100) / 10000;
     SearchParams search;
     search.view_m = 2;  // stops on every cell
-    const TourParams params{
-        .budget_m = 15, .max_stops = 4, .min_probability = 0, .settle_m = 3, .looks_on_way = false};
+    const TourParams params{.budget_m = 15, .max_stops = 4, .min_probability = 0, .settle_m = 3, .looks_on_way = false};
     const auto stops = tourOf(grid, openSight(frame), field, {0.5, 0.5}, search, params);
     ASSERT_FALSE(stops.empty());
     std::uint32_t at = 0;

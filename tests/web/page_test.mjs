@@ -13,7 +13,7 @@ import {
 const folder = process.env.CLUXEL_PAGES, program = process.env.CLUXEL_PROGRAM;
 const map = join(folder, 'campus.clx'), html = join(folder, 'campus.html');
 const cluxel = (...args) => execFileSync(program, args, { encoding: 'utf8', maxBuffer: 1e9 });
-const questions = JSON.parse(cluxel('tasks', '--json'));
+const questions = JSON.parse(cluxel('tasks', '--json')).filter((task) => task.file);
 let open;
 
 before(startBrowser);

@@ -14,11 +14,11 @@ namespace cluxel::tasks {
 
 struct SearchStop {
   std::uint32_t cell = 0;
-  double walk_m = 0;                                         ///< from the stop before, by the cheapest way
-  double total_m = 0;                                        ///< from the start
-  double probability = 0;                                    ///< that the object is first seen from here, or on the way here
-  double so_far = 0;                                         ///< that it is seen from here or before
-  std::uint8_t reason = kAnywhere;                           ///< the place that most of the probability comes from
+  double walk_m = 0;                ///< from the stop before, by the cheapest way
+  double total_m = 0;               ///< from the start
+  double probability = 0;           ///< that the object is first seen from here, or on the way here
+  double so_far = 0;                ///< that it is seen from here or before
+  std::uint8_t reason = kAnywhere;  ///< the place that most of the probability comes from
   std::vector<std::pair<std::uint8_t, double>> shares = {};  ///< of the probability, by place, largest first
 };
 
@@ -26,8 +26,8 @@ struct TourParams {
   double budget_m = 0;  ///< length of the whole walk; 0: no limit
   std::size_t max_stops = 10;
   double min_probability = 0.002;  ///< a stop with less ends the tour
-  double settle_m = 5;               ///< what a stop costs beside the walk
-  bool looks_on_way = true;          ///< what is in sight of the way counts too
+  double settle_m = 5;             ///< what a stop costs beside the walk
+  bool looks_on_way = true;        ///< what is in sight of the way counts too
 };
 
 /// Greedy: the next stop is the one with most new probability in sight for each metre of walk and settling. Stops are
