@@ -119,11 +119,14 @@ TEST_F(DamagedMap, GivesTheSameAnswerOrAnError) {
                       << readFile(path("stderr"));
     }
   }
+  int same = 0;
   for (const auto& [name, tally] : tallies) {
     std::printf("%-18s same %4d, refused %4d, killed %4d, different %4d\n", name.c_str(), tally.same, tally.refused,
                 tally.killed, tally.differs);
-    EXPECT_GT(tally.same, 0) << name << ": not every byte is in use";
+    same += tally.same;
   }
+  EXPECT_GT(same, 0) << "no question reads every byte";
+  EXPECT_GT(tallies["doctor"].refused, 0) << "doctor reads most of them";
 }
 
 }  // namespace
