@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "ablation.hpp"
-#include "rdf/store/environment.hpp"
+#include "rdf/file/environment.hpp"
 #include "rdf/store/quad_store.hpp"
 
 namespace cluxel::bench {

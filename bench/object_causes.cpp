@@ -16,8 +16,8 @@
 #include "mapping/map_reader.hpp"
 #include "rules/decide/reason.hpp"
 #include "rules/language/rule_loader.hpp"
-#include "tasks/truth_class.hpp"
-#include "tasks/truth_source.hpp"
+#include "tasks/evaluation/truth_class.hpp"
+#include "tasks/evaluation/truth_source.hpp"
 
 namespace {
 

@@ -19,9 +19,9 @@
 #include "rules/decide/reason.hpp"
 #include "rules/language/rule_loader.hpp"
 #include "scan/truth/truth.hpp"
-#include "tasks/object_matching.hpp"
-#include "tasks/truth_class.hpp"
-#include "tasks/truth_source.hpp"
+#include "tasks/evaluation/object_matching.hpp"
+#include "tasks/evaluation/truth_class.hpp"
+#include "tasks/evaluation/truth_source.hpp"
 
 namespace {
 

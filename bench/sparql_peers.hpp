@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "rdf/store/environment.hpp"
+#include "rdf/file/environment.hpp"
 
 namespace cluxel::bench {
 

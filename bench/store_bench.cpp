@@ -10,8 +10,8 @@
 #include <random>
 #include <string>
 
+#include "rdf/file/environment.hpp"
 #include "rdf/io/rdf_io.hpp"
-#include "rdf/store/environment.hpp"
 #include "rdf/store/quad_store.hpp"
 
 namespace {

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "app/console/progress_line.hpp"
 #include "app/exit_code.hpp"
-#include "app/progress_line.hpp"
 #include "base/data_home.hpp"
 #include "cluxel/progress.hpp"
 

@@ -9,9 +9,9 @@
 #include <new>
 
 #include "app/command.hpp"
-#include "app/remedy_hint.hpp"
-#include "app/usage_fault.hpp"
-#include "app/version_text.hpp"
+#include "app/console/remedy_hint.hpp"
+#include "app/console/usage_fault.hpp"
+#include "app/help/version_text.hpp"
 #include "cluxel/error.hpp"
 
 namespace {

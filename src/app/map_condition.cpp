@@ -3,7 +3,7 @@
 #include "app/map_condition.hpp"
 
 #include "mapping/map_state.hpp"
-#include "rdf/store/environment.hpp"
+#include "rdf/file/environment.hpp"
 
 namespace cluxel::app {
 

@@ -13,7 +13,7 @@
 #include "mapping/map_inputs.hpp"
 #include "perception/segments/scene.hpp"
 #include "rdf/store/quad_store.hpp"
-#include "rules/decide/semantic_object.hpp"
+#include "rules/objects/semantic_object.hpp"
 
 namespace cluxel::mapping {
 

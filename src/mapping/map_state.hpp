@@ -7,7 +7,7 @@
 #include <string>
 
 #include "mapping/map_inputs.hpp"
-#include "rdf/store/environment.hpp"
+#include "rdf/file/environment.hpp"
 
 namespace cluxel::mapping {
 

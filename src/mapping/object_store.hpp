@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "rdf/store/environment.hpp"
-#include "rules/decide/semantic_object.hpp"
+#include "rdf/file/environment.hpp"
+#include "rules/objects/semantic_object.hpp"
 
 namespace cluxel::mapping {
 

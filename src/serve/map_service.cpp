@@ -7,10 +7,10 @@
 
 #include "base/ascii.hpp"
 #include "base/nearest_name.hpp"
-#include "serve/map_resources.hpp"
-#include "serve/refusal.hpp"
-#include "serve/sparql_endpoint.hpp"
-#include "serve/start_page.hpp"
+#include "serve/http/refusal.hpp"
+#include "serve/resources/map_resources.hpp"
+#include "serve/resources/sparql_endpoint.hpp"
+#include "serve/resources/start_page.hpp"
 
 namespace cluxel::serve {
 

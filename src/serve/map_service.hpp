@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "base/data_home.hpp"
-#include "serve/http_message.hpp"
-#include "serve/rate_limit.hpp"
+#include "serve/http/http_message.hpp"
+#include "serve/http/rate_limit.hpp"
+#include "serve/http/url.hpp"
+#include "serve/http/work_slots.hpp"
 #include "serve/served_map.hpp"
 #include "serve/service_options.hpp"
-#include "serve/url.hpp"
-#include "serve/work_slots.hpp"
 #include "tasks/query_source.hpp"
 
 namespace cluxel::serve {

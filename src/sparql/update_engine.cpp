@@ -7,9 +7,9 @@
 #include <random>
 
 #include "base/content_hash.hpp"
-#include "sparql/exec/stored_changes.hpp"
 #include "sparql/syntax/parser.hpp"
 #include "sparql/syntax/source_text.hpp"
+#include "sparql/update/stored_changes.hpp"
 
 namespace cluxel::sparql {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "rdf/store/environment.hpp"
+#include "rdf/file/environment.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/query_engine.hpp"
 

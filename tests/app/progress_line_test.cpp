@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The line that shows the progress of long work.
-#include "app/progress_line.hpp"
+#include "app/console/progress_line.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "edited_bytes.hpp"
-#include "rdf/store/map_check.hpp"
+#include "rdf/file/map_check.hpp"
 #include "rdf/store/quad_store.hpp"
 
 namespace {

@@ -6,10 +6,10 @@
 #include <string_view>
 
 #include "base/ascii.hpp"
-#include "serve/media_types.hpp"
-#include "serve/refusal.hpp"
-#include "serve/start_page.hpp"
-#include "serve/url.hpp"
+#include "serve/http/media_types.hpp"
+#include "serve/http/refusal.hpp"
+#include "serve/http/url.hpp"
+#include "serve/resources/start_page.hpp"
 
 namespace {
 

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "serve/http_stream.hpp"
+#include "serve/http/http_stream.hpp"
 
 namespace {
 

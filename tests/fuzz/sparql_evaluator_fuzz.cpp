@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "cluxel/error.hpp"
-#include "rdf/store/environment.hpp"
+#include "rdf/file/environment.hpp"
 #include "rdf/store/quad_store.hpp"
 #include "sparql/query_engine.hpp"
 #include "sparql/update_engine.hpp"

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "cluxel/error.hpp"
-#include "sparql/results_reader_fixture.hpp"
+#include "sparql/support/results_reader_fixture.hpp"
 #include "sparql/syntax/parser.hpp"
 
 namespace {

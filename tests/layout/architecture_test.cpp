@@ -104,7 +104,7 @@ TEST(Architecture, NamesFilesAndFunctionsThatExist) {
 TEST(Architecture, WhatSeveralModulesNeedIsWrittenOnce) {
   const std::map<std::string, std::set<std::string>> homes{
       {"- 'A' + 'a'", {"base/ascii.hpp"}},         {"0x94d049bb133111eb", {"base/mixed_bits.hpp"}},
-      {"mkdtemp", {"rdf/store/file_guards.cpp"}},  {"its build is unfinished", {"mapping/map_state.cpp"}},
+      {"mkdtemp", {"rdf/file/file_guards.cpp"}},   {"its build is unfinished", {"mapping/map_state.cpp"}},
       {"<yaml-cpp/", {"base/yaml/yaml_tree.cpp"}},
   };
   for (const auto& [text, expected] : homes) {

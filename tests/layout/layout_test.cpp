@@ -108,7 +108,7 @@ TEST(Layout, AModuleIsANamespace) {
 }
 
 TEST(Layout, AFolderHoldsFewEnoughFilesToBeSeenAtOnce) {
-  constexpr std::size_t kMaxFiles = 52;  // some 25 units of header and source
+  constexpr std::size_t kMaxFiles = 30;
   std::map<fs::path, std::size_t> count;
   for (const fs::path& file : sourcesBelow({"src", "include"})) ++count[file.parent_path()];
   for (const auto& [folder, files] : count) EXPECT_LE(files, kMaxFiles) << folder << " wants subfolders";

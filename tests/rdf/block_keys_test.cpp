@@ -3,8 +3,8 @@
 #include <fstream>
 
 #include "base/file_bytes.hpp"
+#include "rdf/file/map_check.hpp"
 #include "rdf/map_file_fixture.hpp"
-#include "rdf/store/map_check.hpp"
 
 namespace cluxel::rdf {
 namespace {

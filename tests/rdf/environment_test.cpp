@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests of opening maps, of blocks, transactions, snapshots and compact copies.
-#include "rdf/store/environment.hpp"
+#include "rdf/file/environment.hpp"
 
 #include <atomic>
 #include <map>

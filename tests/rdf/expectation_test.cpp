@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "rdf/store/environment.hpp"
+#include "rdf/file/environment.hpp"
 #include "rdf/store/quad_store.hpp"
 #include "rdf/vocabulary.hpp"
 

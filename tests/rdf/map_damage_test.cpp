@@ -6,8 +6,8 @@
 #include <random>
 
 #include "base/file_bytes.hpp"
+#include "rdf/file/map_check.hpp"
 #include "rdf/map_file_fixture.hpp"
-#include "rdf/store/map_check.hpp"
 #include "rdf/store/quad_store.hpp"
 
 namespace cluxel::rdf {

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "cluxel/error.hpp"
+#include "rdf/file/environment.hpp"
 #include "rdf/scratch_folder.hpp"
-#include "rdf/store/environment.hpp"
 
 namespace cluxel::rdf {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests of replacing a map while other processes read it, open it or wait to write; of closed streams and full disks.
-#include "rdf/store/map_replacement.hpp"
+#include "rdf/file/map_replacement.hpp"
 
 #include <sched.h>
 #include <sys/mount.h>

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "base/parallel.hpp"
-#include "rdf/store/environment.hpp"
+#include "rdf/file/environment.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::rdf {

@@ -9,7 +9,7 @@
 #include <limits>
 #include <random>
 
-#include "rdf/store/literal_value.hpp"
+#include "rdf/terms/literal_value.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::rdf {

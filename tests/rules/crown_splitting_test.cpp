@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Splitting crowns: against brute force, and where straight-line distance would be wrong.
-#include "rules/decide/crown_splitting.hpp"
+#include "rules/objects/crown_splitting.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "rules/box_world.hpp"
-#include "rules/decide/evidence.hpp"
 #include "rules/explain/explain.hpp"
+#include "rules/propose/evidence.hpp"
 
 namespace cluxel::testing {
 

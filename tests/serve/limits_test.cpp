@@ -7,9 +7,9 @@
 #include <thread>
 #include <vector>
 
-#include "serve/rate_limit.hpp"
-#include "serve/refusal.hpp"
-#include "serve/work_slots.hpp"
+#include "serve/http/rate_limit.hpp"
+#include "serve/http/refusal.hpp"
+#include "serve/http/work_slots.hpp"
 
 namespace cluxel::serve {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // URLs, forms and media types.
-#include "serve/url.hpp"
+#include "serve/http/url.hpp"
 #include "base/ascii.hpp"
 
 #include <gtest/gtest.h>
@@ -8,10 +8,10 @@
 #include <random>
 
 #include "base/ascii.hpp"
-#include "serve/media_types.hpp"
-#include "serve/refusal.hpp"
+#include "serve/http/media_types.hpp"
+#include "serve/http/refusal.hpp"
+#include "serve/resources/start_page.hpp"
 #include "serve/served_map.hpp"
-#include "serve/start_page.hpp"
 
 namespace cluxel::serve {
 namespace {

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "rdf/vocabulary.hpp"
-#include "sparql/store_fixture.hpp"
+#include "sparql/support/store_fixture.hpp"
 
 namespace cluxel::test {
 

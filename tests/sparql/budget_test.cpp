@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "cluxel/error.hpp"
-#include "sparql/store_fixture.hpp"
+#include "sparql/support/store_fixture.hpp"
 #include "sparql/update_engine.hpp"
 
 namespace cluxel::test {

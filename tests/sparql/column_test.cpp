@@ -11,8 +11,8 @@
 
 #include "cluxel/error.hpp"
 #include "rdf/vocabulary.hpp"
-#include "sparql/exec/subject_column.hpp"
-#include "sparql/store_fixture.hpp"
+#include "sparql/exec/spatial/subject_column.hpp"
+#include "sparql/support/store_fixture.hpp"
 
 namespace cluxel::test {
 

@@ -5,7 +5,7 @@
 
 #include "rdf/io/rdf_io.hpp"
 #include "rdf/vocabulary.hpp"
-#include "sparql/store_fixture.hpp"
+#include "sparql/support/store_fixture.hpp"
 
 namespace cluxel::test {
 

@@ -8,9 +8,9 @@
 #include <cstdlib>
 #include <map>
 
-#include "sparql/differential_fixture.hpp"
-#include "sparql/generated_map_fixture.hpp"
-#include "sparql/query_generator_fixture.hpp"
+#include "sparql/support/differential_fixture.hpp"
+#include "sparql/support/generated_map_fixture.hpp"
+#include "sparql/support/query_generator_fixture.hpp"
 
 namespace cluxel::sparql {
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "cluxel/error.hpp"
-#include "sparql/store_fixture.hpp"
+#include "sparql/support/store_fixture.hpp"
 
 namespace cluxel::test {
 

@@ -8,9 +8,9 @@
 #include <random>
 
 #include "rdf/vocabulary.hpp"
-#include "sparql/functions/geometry.hpp"
-#include "sparql/functions/proj_reference_system.hpp"
-#include "sparql/store_fixture.hpp"
+#include "sparql/geometry/geometry.hpp"
+#include "sparql/geometry/proj_reference_system.hpp"
+#include "sparql/support/store_fixture.hpp"
 
 namespace cluxel::test {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "sparql/functions/geometry.hpp"
-#include "sparql/store_fixture.hpp"
+#include "sparql/geometry/geometry.hpp"
+#include "sparql/support/store_fixture.hpp"
 
 namespace cluxel::test {
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <set>
 
-#include "sparql/store_fixture.hpp"
+#include "sparql/support/store_fixture.hpp"
 
 namespace cluxel::test {
 

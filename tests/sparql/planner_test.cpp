@@ -7,7 +7,7 @@
 #include <random>
 
 #include "cluxel/error.hpp"
-#include "sparql/store_fixture.hpp"
+#include "sparql/support/store_fixture.hpp"
 
 namespace cluxel::test {
 

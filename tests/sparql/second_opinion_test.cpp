@@ -8,8 +8,8 @@
 
 #include "base/file_bytes.hpp"
 #include "rdf/vocabulary.hpp"
-#include "sparql/differential_fixture.hpp"
-#include "sparql/generated_map_fixture.hpp"
+#include "sparql/support/differential_fixture.hpp"
+#include "sparql/support/generated_map_fixture.hpp"
 #include "test_paths.hpp"
 
 namespace cluxel::sparql {

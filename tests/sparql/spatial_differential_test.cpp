@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <map>
 
-#include "sparql/spatial_query_fixture.hpp"
-#include "sparql/store_fixture.hpp"
+#include "sparql/support/spatial_query_fixture.hpp"
+#include "sparql/support/store_fixture.hpp"
 
 namespace cluxel::test {
 

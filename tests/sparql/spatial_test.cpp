@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "sparql/store_fixture.hpp"
+#include "sparql/support/store_fixture.hpp"
 #include "sparql/update_engine.hpp"
 
 namespace cluxel::test {

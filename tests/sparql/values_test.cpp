@@ -8,11 +8,11 @@
 #include <cmath>
 #include <random>
 
-#include "sparql/arithmetic_fixture.hpp"
-#include "sparql/functions/calendar.hpp"
-#include "sparql/functions/decimal.hpp"
-#include "sparql/functions/value.hpp"
-#include "sparql/store_fixture.hpp"
+#include "sparql/support/arithmetic_fixture.hpp"
+#include "sparql/support/store_fixture.hpp"
+#include "sparql/values/calendar.hpp"
+#include "sparql/values/decimal.hpp"
+#include "sparql/values/value.hpp"
 
 namespace cluxel::sparql {
 

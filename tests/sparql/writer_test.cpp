@@ -6,9 +6,9 @@
 
 #include "cluxel/error.hpp"
 #include "rdf/vocabulary.hpp"
-#include "sparql/result_comparison_fixture.hpp"
 #include "sparql/results/result_writer.hpp"
-#include "sparql/results_reader_fixture.hpp"
+#include "sparql/support/result_comparison_fixture.hpp"
+#include "sparql/support/results_reader_fixture.hpp"
 
 namespace cluxel::sparql {
 

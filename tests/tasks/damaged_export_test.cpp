@@ -8,8 +8,8 @@
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/small_campus.hpp"
-#include "rdf/store/lmdb_page.hpp"
-#include "tasks/map_export.hpp"
+#include "rdf/file/lmdb_page.hpp"
+#include "tasks/export/map_export.hpp"
 
 namespace cluxel::tasks {
 

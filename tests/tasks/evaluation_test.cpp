@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scores compared with values counted by hand.
-#include "tasks/evaluation.hpp"
+#include "tasks/evaluation/evaluation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
 #include "rdf/vocabulary.hpp"
-#include "tasks/evaluation_shares.hpp"
-#include "tasks/object_matching.hpp"
-#include "tasks/truth_class.hpp"
+#include "tasks/evaluation/evaluation_shares.hpp"
+#include "tasks/evaluation/object_matching.hpp"
+#include "tasks/evaluation/truth_class.hpp"
 
 namespace cluxel::tasks {
 

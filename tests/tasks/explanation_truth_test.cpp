@@ -7,12 +7,12 @@
 
 #include "cluxel/error.hpp"
 #include "mapping/facts/ask_replay.hpp"
-#include "rules/decide/condition_eval.hpp"
 #include "rules/decide/reasoning_state.hpp"
 #include "rules/explain/path_tree.hpp"
 #include "rules/explain/why_not.hpp"
 #include "rules/language/rule_loader.hpp"
 #include "rules/language/rule_reading.hpp"
+#include "rules/propose/condition_eval.hpp"
 #include "tasks/campus_map_fixture.hpp"
 #include "tasks/explanation.hpp"
 

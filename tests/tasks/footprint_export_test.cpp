@@ -11,8 +11,8 @@
 #include "cluxel/error.hpp"
 #include "rdf/map_iris.hpp"
 #include "tasks/campus_map_fixture.hpp"
-#include "tasks/map_export.hpp"
-#include "tasks/proj_geo_reference.hpp"
+#include "tasks/export/map_export.hpp"
+#include "tasks/export/proj_geo_reference.hpp"
 #include "test_paths.hpp"
 
 namespace cluxel::tasks {

@@ -10,7 +10,7 @@
 
 #include "base/file_bytes.hpp"
 #include "tasks/campus_map_fixture.hpp"
-#include "tasks/evaluation.hpp"
+#include "tasks/evaluation/evaluation.hpp"
 #include "test_paths.hpp"
 
 namespace cluxel::tasks {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every export is read back by a parser and compared with the map.
-#include "tasks/map_export.hpp"
+#include "tasks/export/map_export.hpp"
 
 #include <gtest/gtest.h>
 

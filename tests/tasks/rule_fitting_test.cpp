@@ -6,8 +6,8 @@
 #include <random>
 
 #include "cluxel/error.hpp"
-#include "rules/decide/evidence.hpp"
 #include "rules/language/rule_loader.hpp"
+#include "rules/propose/evidence.hpp"
 #include "tasks/rule_fitting/evidence_fit.hpp"
 #include "tasks/rule_fitting/round_number.hpp"
 #include "tasks/rule_fitting/rule_text_edit.hpp"

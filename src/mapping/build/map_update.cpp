@@ -7,7 +7,7 @@
 #include "cluxel/error.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/map_state.hpp"
-#include "rdf/store/map_replacement.hpp"
+#include "rdf/file/map_replacement.hpp"
 
 namespace cluxel::mapping {
 

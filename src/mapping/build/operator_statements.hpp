@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "rdf/store/environment.hpp"
+#include "rdf/file/environment.hpp"
 #include "rdf/store/quad_store.hpp"
 
 namespace cluxel::mapping {

@@ -5,8 +5,8 @@
 #include "cluxel/error.hpp"
 #include "mapping/build/map_update.hpp"
 #include "mapping/map_state.hpp"
+#include "rdf/file/map_replacement.hpp"
 #include "rdf/io/rdf_io.hpp"
-#include "rdf/store/map_replacement.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::mapping {

@@ -7,7 +7,7 @@
 
 #include "mapping/cloud.hpp"
 #include "perception/tile.hpp"
-#include "rdf/store/environment.hpp"
+#include "rdf/file/environment.hpp"
 #include "scan/scan.hpp"
 
 namespace cluxel::mapping {

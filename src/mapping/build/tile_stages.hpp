@@ -7,7 +7,7 @@
 #include "cluxel/progress.hpp"
 #include "mapping/map_inputs.hpp"
 #include "perception/pipeline.hpp"
-#include "rdf/store/environment.hpp"
+#include "rdf/file/environment.hpp"
 
 namespace cluxel::mapping {
 

@@ -6,7 +6,7 @@
 #include "cluxel/error.hpp"
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/map_tables.hpp"
-#include "rdf/store/map_replacement.hpp"
+#include "rdf/file/map_replacement.hpp"
 #include "rdf/store/quad_store.hpp"
 
 namespace cluxel::mapping {

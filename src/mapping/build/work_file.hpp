@@ -10,7 +10,7 @@
 #include "cluxel/progress.hpp"
 #include "mapping/build/build_lock.hpp"
 #include "mapping/map_state.hpp"
-#include "rdf/store/environment.hpp"
+#include "rdf/file/environment.hpp"
 
 namespace cluxel::mapping {
 

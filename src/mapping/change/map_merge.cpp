@@ -10,7 +10,7 @@
 #include "mapping/change/scan_additions.hpp"
 #include "mapping/map_reader.hpp"
 #include "mapping/map_state.hpp"
-#include "rdf/store/map_replacement.hpp"
+#include "rdf/file/map_replacement.hpp"
 
 namespace cluxel::mapping {
 

@@ -8,7 +8,7 @@
 
 #include "base/content_hash.hpp"
 #include "perception/segments/scene.hpp"
-#include "rules/decide/semantic_object.hpp"
+#include "rules/objects/semantic_object.hpp"
 
 namespace cluxel::mapping {
 

@@ -12,7 +12,7 @@
 #include "mapping/map_inputs.hpp"
 #include "perception/segments/scene.hpp"
 #include "perception/visibility/presence.hpp"
-#include "rules/decide/semantic_object.hpp"
+#include "rules/objects/semantic_object.hpp"
 
 namespace cluxel::mapping {
 

@@ -8,7 +8,7 @@
 #include "mapping/change/object_changes.hpp"
 #include "mapping/cloud.hpp"
 #include "mapping/map_inputs.hpp"
-#include "rdf/store/environment.hpp"
+#include "rdf/file/environment.hpp"
 
 namespace cluxel::mapping {
 

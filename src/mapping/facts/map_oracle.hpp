@@ -12,8 +12,8 @@
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/store/quad_store.hpp"
 #include "rules/ask_oracle.hpp"
-#include "rules/decide/semantic_object.hpp"
 #include "rules/language/rule_loader.hpp"
+#include "rules/objects/semantic_object.hpp"
 #include "sparql/query_engine.hpp"
 
 namespace cluxel::mapping {

@@ -8,7 +8,7 @@
 #include "perception/clustering/cluxel_tile.hpp"
 #include "perception/clustering/tile_points.hpp"
 #include "perception/segments/scene.hpp"
-#include "rules/decide/semantic_object.hpp"
+#include "rules/objects/semantic_object.hpp"
 
 namespace cluxel::mapping {
 

@@ -10,9 +10,9 @@
 #include "mapping/cloud.hpp"
 #include "mapping/map_inputs.hpp"
 #include "perception/segments/scene.hpp"
-#include "rdf/store/environment.hpp"
-#include "rules/decide/semantic_object.hpp"
+#include "rdf/file/environment.hpp"
 #include "rules/language/rule_set.hpp"
+#include "rules/objects/semantic_object.hpp"
 
 namespace cluxel::mapping {
 

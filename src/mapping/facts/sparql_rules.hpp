@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mapping/map_inputs.hpp"
-#include "rdf/store/environment.hpp"
+#include "rdf/file/environment.hpp"
 
 namespace cluxel::mapping {
 

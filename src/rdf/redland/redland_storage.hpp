@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "rdf/store/environment.hpp"
+#include "rdf/file/environment.hpp"
 
 struct librdf_world_s;
 struct librdf_storage_s;

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "rdf/store/lmdb_environment.hpp"
-#include "rdf/store/page_directory.hpp"
+#include "rdf/file/lmdb_environment.hpp"
+#include "rdf/file/page_directory.hpp"
 
 namespace cluxel::rdf {
 

@@ -6,11 +6,11 @@
 #include <array>
 
 #include "rdf/store/geometry_index.hpp"
-#include "rdf/store/literal_value.hpp"
 #include "rdf/store/quad_cursor.hpp"
 #include "rdf/store/quad_reader_impl.hpp"
-#include "rdf/store/term_record.hpp"
-#include "rdf/store/value_cache.hpp"
+#include "rdf/terms/literal_value.hpp"
+#include "rdf/terms/term_record.hpp"
+#include "rdf/terms/value_cache.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::rdf {

@@ -4,7 +4,7 @@
 
 #include <unordered_map>
 
-#include "rdf/store/page_directory.hpp"
+#include "rdf/file/page_directory.hpp"
 #include "rdf/store/quad_store.hpp"
 #include "rdf/store/store_snapshot.hpp"
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "cluxel/term.hpp"
-#include "rdf/store/environment.hpp"
+#include "rdf/file/environment.hpp"
 
 namespace cluxel::rdf {
 

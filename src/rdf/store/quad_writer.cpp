@@ -9,9 +9,9 @@
 #include "cluxel/error.hpp"
 #include "rdf/store/geometry_index.hpp"
 #include "rdf/store/index_writer.hpp"
-#include "rdf/store/pending_terms.hpp"
 #include "rdf/store/quad_reader_impl.hpp"
 #include "rdf/store/quad_store.hpp"
+#include "rdf/terms/pending_terms.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::rdf {

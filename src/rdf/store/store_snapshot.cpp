@@ -8,8 +8,8 @@
 #include <string>
 
 #include "cluxel/error.hpp"
-#include "rdf/store/check/map_file_head.hpp"
-#include "rdf/store/term_record.hpp"
+#include "rdf/file/check/map_file_head.hpp"
+#include "rdf/terms/term_record.hpp"
 
 namespace cluxel::rdf {
 

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "rdf/store/lmdb_environment.hpp"
-#include "rdf/store/page_directory.hpp"
+#include "rdf/file/lmdb_environment.hpp"
+#include "rdf/file/page_directory.hpp"
 #include "rdf/store/quad_store.hpp"
-#include "rdf/store/term_directory.hpp"
+#include "rdf/terms/term_directory.hpp"
 
 namespace cluxel::rdf {
 

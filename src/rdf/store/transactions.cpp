@@ -9,13 +9,13 @@
 #include <stdexcept>
 
 #include "cluxel/error.hpp"
-#include "rdf/store/check/map_structure.hpp"
-#include "rdf/store/file_guards.hpp"
-#include "rdf/store/lmdb_environment.hpp"
-#include "rdf/store/map_check.hpp"
-#include "rdf/store/map_replacement.hpp"
+#include "rdf/file/check/map_structure.hpp"
+#include "rdf/file/file_guards.hpp"
+#include "rdf/file/lmdb_environment.hpp"
+#include "rdf/file/map_check.hpp"
+#include "rdf/file/map_replacement.hpp"
 #include "rdf/store/store_snapshot.hpp"
-#include "rdf/store/value_cache.hpp"
+#include "rdf/terms/value_cache.hpp"
 
 namespace cluxel::rdf {
 

@@ -8,9 +8,9 @@
 #include <set>
 
 #include "rules/decide/decision_record.hpp"
-#include "rules/decide/object_making.hpp"
 #include "rules/decide/rivals.hpp"
-#include "rules/decide/seed_groups.hpp"
+#include "rules/objects/object_making.hpp"
+#include "rules/objects/seed_groups.hpp"
 
 namespace cluxel::rules {
 

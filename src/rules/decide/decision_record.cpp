@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "rules/decide/evidence.hpp"
+#include "rules/propose/evidence.hpp"
 
 namespace cluxel::rules {
 

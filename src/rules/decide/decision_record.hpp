@@ -2,7 +2,7 @@
 // Describes what a rule decided about a candidate, with the path through its tree and its evidence.
 #pragma once
 
-#include "rules/decide/tree_walk.hpp"
+#include "rules/propose/tree_walk.hpp"
 
 namespace cluxel::rules {
 

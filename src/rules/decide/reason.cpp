@@ -6,13 +6,13 @@
 
 #include <algorithm>
 
-#include "rules/decide/absorbing.hpp"
 #include "rules/decide/competition.hpp"
-#include "rules/decide/crown_gathering.hpp"
-#include "rules/decide/finished_objects.hpp"
 #include "rules/decide/reasoning_strata.hpp"
 #include "rules/decide/rule_run.hpp"
-#include "rules/decide/shared_splitting.hpp"
+#include "rules/objects/absorbing.hpp"
+#include "rules/objects/crown_gathering.hpp"
+#include "rules/objects/finished_objects.hpp"
+#include "rules/objects/shared_splitting.hpp"
 
 namespace cluxel::rules {
 

@@ -7,8 +7,8 @@
 
 #include "perception/segments/scene.hpp"
 #include "rules/ask_oracle.hpp"
-#include "rules/decide/semantic_object.hpp"
 #include "rules/language/rule_set.hpp"
+#include "rules/objects/semantic_object.hpp"
 
 namespace cluxel::rules {
 

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "rules/decide/cluxel_grid.hpp"
-#include "rules/decide/fragment_table.hpp"
 #include "rules/decide/reason.hpp"
+#include "rules/propose/cluxel_grid.hpp"
+#include "rules/propose/fragment_table.hpp"
 
 namespace cluxel::rules {
 

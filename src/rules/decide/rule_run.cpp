@@ -3,8 +3,8 @@
 #include "rules/decide/rule_run.hpp"
 
 #include "rules/decide/decision_record.hpp"
-#include "rules/decide/object_making.hpp"
-#include "rules/decide/seed_groups.hpp"
+#include "rules/objects/object_making.hpp"
+#include "rules/objects/seed_groups.hpp"
 
 namespace cluxel::rules {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "rules/decide/semantic_object.hpp"
 #include "rules/language/rule_set.hpp"
+#include "rules/objects/semantic_object.hpp"
 
 namespace cluxel::rules {
 

@@ -6,8 +6,8 @@
 #include <array>
 #include <limits>
 
-#include "rules/decide/consideration.hpp"
 #include "rules/explain/counterfactuals.hpp"
+#include "rules/propose/consideration.hpp"
 
 namespace cluxel::rules {
 

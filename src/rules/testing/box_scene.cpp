@@ -7,8 +7,8 @@
 #include <numeric>
 #include <set>
 
-#include "rules/decide/candidate.hpp"
-#include "rules/decide/cluxel_grid.hpp"
+#include "rules/propose/candidate.hpp"
+#include "rules/propose/cluxel_grid.hpp"
 
 namespace cluxel::rules {
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "base/file_bytes.hpp"
-#include "rules/decide/condition_eval.hpp"
+#include "rules/propose/condition_eval.hpp"
 #include "rules/testing/rule_test_file.hpp"
 
 namespace cluxel::rules {

@@ -3,8 +3,8 @@
 #include <array>
 
 #include "sparql/exec/runtime.hpp"
-#include "sparql/functions/comparison.hpp"
 #include "sparql/functions/functions.hpp"
+#include "sparql/values/comparison.hpp"
 
 namespace cluxel::sparql {
 namespace {

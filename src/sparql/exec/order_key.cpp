@@ -6,7 +6,7 @@
 #include <bit>
 #include <cmath>
 
-#include "sparql/functions/comparison.hpp"
+#include "sparql/values/comparison.hpp"
 
 namespace cluxel::sparql {
 namespace {

@@ -5,7 +5,7 @@
 #include "base/ascii.hpp"
 #include "cluxel/error.hpp"
 #include "rdf/vocabulary.hpp"
-#include "sparql/functions/datatype.hpp"
+#include "sparql/values/datatype.hpp"
 
 namespace cluxel::sparql {
 namespace {

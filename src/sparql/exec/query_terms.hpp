@@ -7,8 +7,8 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "sparql/functions/value.hpp"
 #include "sparql/results/result_table.hpp"
+#include "sparql/values/value.hpp"
 
 namespace cluxel::sparql {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sparql/functions/comparison.hpp"
 #include "sparql/functions/functions.hpp"
+#include "sparql/values/comparison.hpp"
 
 namespace cluxel::sparql {
 

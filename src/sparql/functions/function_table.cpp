@@ -4,8 +4,8 @@
 
 #include "rdf/vocabulary.hpp"
 #include "sparql/functions/function_bodies.hpp"
-#include "sparql/functions/geometry.hpp"
 #include "sparql/functions/regex_cache.hpp"
+#include "sparql/geometry/geometry.hpp"
 
 namespace cluxel::sparql {
 namespace {

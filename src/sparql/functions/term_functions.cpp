@@ -8,10 +8,10 @@
 #include "base/content_hash.hpp"
 #include "rdf/iri.hpp"
 #include "rdf/vocabulary.hpp"
-#include "sparql/functions/comparison.hpp"
-#include "sparql/functions/datatype.hpp"
 #include "sparql/functions/function_bodies.hpp"
 #include "sparql/syntax/iri_resolution.hpp"
+#include "sparql/values/comparison.hpp"
+#include "sparql/values/datatype.hpp"
 
 namespace cluxel::sparql {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sparql/exec/subject_column.hpp"
+#include "sparql/exec/spatial/subject_column.hpp"
 #include "sparql/plan/pattern_access.hpp"
 #include "sparql/plan/planner.hpp"
 

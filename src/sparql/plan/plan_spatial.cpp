@@ -5,7 +5,7 @@
 
 #include "rdf/store/geometry_index.hpp"
 #include "rdf/vocabulary.hpp"
-#include "sparql/functions/geometry.hpp"
+#include "sparql/geometry/geometry.hpp"
 #include "sparql/plan/planner.hpp"
 #include "sparql/plan/range_finder.hpp"
 

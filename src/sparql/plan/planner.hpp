@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "sparql/exec/nearest_others.hpp"
 #include "sparql/exec/operators/operators.hpp"
+#include "sparql/exec/spatial/nearest_others.hpp"
 #include "sparql/plan/cardinality.hpp"
 #include "sparql/plan/pattern_access.hpp"
 #include "sparql/plan/range_finder.hpp"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "sparql/exec/range_test.hpp"
+#include "sparql/exec/spatial/range_test.hpp"
 
 namespace cluxel::sparql {
 

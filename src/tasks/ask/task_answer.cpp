@@ -10,7 +10,7 @@
 
 #include "base/utf8.hpp"
 #include "rdf/vocabulary.hpp"
-#include "tasks/footprint_export.hpp"
+#include "tasks/export/footprint_export.hpp"
 
 namespace cluxel::tasks {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "mapping/map_reader.hpp"
-#include "tasks/map_export.hpp"
+#include "tasks/export/map_export.hpp"
 #include "tasks/query_source.hpp"
 
 namespace cluxel::tasks {

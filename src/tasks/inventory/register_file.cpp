@@ -9,8 +9,8 @@
 #include "base/nearest_name.hpp"
 #include "base/utf8.hpp"
 #include "cluxel/error.hpp"
+#include "tasks/export/proj_geo_reference.hpp"
 #include "tasks/inventory/register.hpp"
-#include "tasks/proj_geo_reference.hpp"
 
 namespace cluxel::tasks {
 

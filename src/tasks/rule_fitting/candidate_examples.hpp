@@ -8,7 +8,7 @@
 
 #include "mapping/map_reader.hpp"
 #include "rules/language/rule_set.hpp"
-#include "tasks/truth_source.hpp"
+#include "tasks/evaluation/truth_source.hpp"
 
 namespace cluxel::tasks {
 

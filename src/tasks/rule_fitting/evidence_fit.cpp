@@ -9,7 +9,7 @@
 #include <set>
 
 #include "perception/training/lbfgs_minimise.hpp"
-#include "rules/decide/evidence.hpp"
+#include "rules/propose/evidence.hpp"
 #include "tasks/rule_fitting/evidence_design.hpp"
 #include "tasks/rule_fitting/round_number.hpp"
 

@@ -12,7 +12,7 @@
 
 #include "mapping/map_reader.hpp"
 #include "rules/language/rule_set.hpp"
-#include "tasks/map_export.hpp"
+#include "tasks/export/map_export.hpp"
 
 namespace cluxel::tasks {
 

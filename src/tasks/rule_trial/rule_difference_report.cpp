@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "tasks/cloud_export.hpp"
+#include "tasks/export/cloud_export.hpp"
 #include "tasks/rule_trial/rule_difference.hpp"
 
 namespace cluxel::tasks {

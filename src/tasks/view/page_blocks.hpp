@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "tasks/map_export.hpp"
+#include "tasks/export/map_export.hpp"
 
 namespace cluxel::tasks {
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rdf/map_iris.hpp"
-#include "tasks/footprint_export.hpp"
+#include "tasks/export/footprint_export.hpp"
 
 namespace cluxel::tasks {
 

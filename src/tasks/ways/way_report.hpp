@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tasks/map_export.hpp"
+#include "tasks/export/map_export.hpp"
 #include "tasks/ways/route.hpp"
 
 namespace cluxel::tasks {

@@ -4,7 +4,7 @@
 
 #include "rdf/store/geometry_index.hpp"
 #include "sparql/exec/operators/operators.hpp"
-#include "sparql/exec/range_test.hpp"
+#include "sparql/exec/spatial/range_test.hpp"
 
 namespace cluxel::sparql {
 namespace {

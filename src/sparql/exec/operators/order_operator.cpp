@@ -6,7 +6,7 @@
 #include "sparql/exec/order_key.hpp"
 #include "sparql/exec/row_table.hpp"
 #include "sparql/exec/values_ahead.hpp"
-#include "sparql/functions/comparison.hpp"
+#include "sparql/values/comparison.hpp"
 
 namespace cluxel::sparql {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "sparql/exec/operators/operators.hpp"
-#include "sparql/exec/subject_column.hpp"
+#include "sparql/exec/spatial/subject_column.hpp"
 #include "sparql/plan/pattern_access.hpp"
 
 namespace cluxel::sparql {

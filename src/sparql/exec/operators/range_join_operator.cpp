@@ -2,8 +2,8 @@
 // The range join: pairs each row with the rows of the build side that pass tests on numbers and distances.
 #include <algorithm>
 
-#include "sparql/exec/nearest_others.hpp"
-#include "sparql/exec/range_build.hpp"
+#include "sparql/exec/spatial/nearest_others.hpp"
+#include "sparql/exec/spatial/range_build.hpp"
 
 namespace cluxel::sparql {
 namespace {

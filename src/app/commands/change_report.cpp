@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// Objects are counted by class, and listed in JSON.
+#include "app/commands/change_report.hpp"
+
+#include <map>
+
+#include "mapping/map_reader.hpp"
+
+namespace cluxel::app {
+
+namespace {
+
+using mapping::ChangeReport;
+using mapping::DerivedObject;
+using mapping::ObjectMembers;
+
+std::map<ContentHash, std::string> classesOf(const std::vector<ObjectMembers>& objects) {
+  std::map<ContentHash, std::string> classes;
+  for (const ObjectMembers& object : objects) classes.emplace(object.id, mapping::localName(object.class_iri));
+  return classes;
+}
+
+/// ": 3 Tree, 1 Bush".
+template <typename Objects, typename Id>
+std::string byClass(const Objects& objects, const std::map<ContentHash, std::string>& classes, const Id& id) {
+  std::map<std::string, std::size_t> counts;
+  for (const auto& object : objects) ++counts[classes.at(id(object))];
+  std::string text;
+  for (const auto& [name, count] : counts) text += (text.empty() ? ": " : ", ") + std::to_string(count) + " " + name;
+  return text;
+}
+
+Json objectsJson(const std::vector<ContentHash>& objects, const std::map<ContentHash, std::string>& classes) {
+  Json json = Json::array();
+  for (const ContentHash& id : objects) json.push_back({{"object", id.hex()}, {"class", classes.at(id)}});
+  return json;
+}
+
+Json objectsJson(const std::vector<DerivedObject>& objects, const std::map<ContentHash, std::string>& after,
+                 const std::map<ContentHash, std::string>& before) {
+  Json json = Json::array();
+  for (const DerivedObject& object : objects) {
+    Json from = Json::array();
+    for (const ContentHash& id : object.from) from.push_back({{"object", id.hex()}, {"class", before.at(id)}});
+    json.push_back({{"object", object.id.hex()}, {"class", after.at(object.id)}, {"from", from}});
+  }
+  return json;
+}
+
+void printJsonReport(const fs::path& map, const ChangeReport& report, bool dry_run) {
+  const auto before = classesOf(report.before), after = classesOf(report.after);
+  printJson(Json{{"map", map.string()},
+                 {"dry_run", dry_run},
+                 {"has_changes", report.has_changes},
+                 {"scans_added", report.scans_added},
+                 {"scans_already_there", report.scans_already_there},
+                 {"scans_removed", report.scans_removed},
+                 {"scans_moved", report.scans_moved},
+                 {"tiles_touched", report.tiles_touched},
+                 {"tiles_changed", report.tiles_changed},
+                 {"scans", report.scans},
+                 {"tiles", report.tiles},
+                 {"objects",
+                  {{"unchanged", report.objects.unchanged},
+                   {"added", objectsJson(report.objects.added, after)},
+                   {"gone", objectsJson(report.objects.gone, before)},
+                   {"changed", objectsJson(report.objects.changed, after, before)},
+                   {"split", objectsJson(report.objects.split, after, before)},
+                   {"joined", objectsJson(report.objects.joined, after, before)}}}});
+}
+
+}  // namespace
+
+void addChangeOptions(CLI::App& command, mapping::ChangeParams& params, bool in_batches) {
+  command.add_flag("--dry-run", params.dry_run, "tell what would change, and write nothing");
+  if (in_batches)
+    command.add_option("--batch-points", params.batch_points, "commit when a batch of scans has this many points")
+        ->check(above0());
+}
+
+void printChange(const fs::path& map, const ChangeReport& report, const mapping::ChangeParams& params,
+                 const Session& session) {
+  if (session.json) return printJsonReport(map, report, params.dry_run);
+  if (!report.has_changes) {
+    std::printf("%s: nothing changes%s\n", map.c_str(), report.scans_already_there > 0 ? "; all scans are there" : "");
+    return;
+  }
+  const auto before = classesOf(report.before), after = classesOf(report.after);
+  const mapping::ObjectChanges& objects = report.objects;
+  const auto own = [](const ContentHash& id) { return id; };
+  const auto derived = [](const DerivedObject& object) { return object.id; };
+  std::printf("%s%s: %zu scans added, %zu removed, %zu moved; %zu of %zu tiles computed anew\n", map.c_str(),
+              params.dry_run ? " (dry run, nothing written)" : "", report.scans_added, report.scans_removed,
+              report.scans_moved, report.tiles_changed, report.tiles);
+  std::printf("objects: %zu unchanged\n", objects.unchanged);
+  std::printf("  %zu added%s\n", objects.added.size(), byClass(objects.added, after, own).c_str());
+  std::printf("  %zu gone%s\n", objects.gone.size(), byClass(objects.gone, before, own).c_str());
+  std::printf("  %zu changed%s\n", objects.changed.size(), byClass(objects.changed, after, derived).c_str());
+  std::printf("  %zu from splits%s\n", objects.split.size(), byClass(objects.split, after, derived).c_str());
+  std::printf("  %zu joined%s\n", objects.joined.size(), byClass(objects.joined, after, derived).c_str());
+}
+
+}  // namespace cluxel::app

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// `cluxel export`: a map in other formats.
+#include "app/command.hpp"
+#include "app/map_condition.hpp"
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "rdf/file/map_check.hpp"
+#include "tasks/export/map_export.hpp"
+
+namespace cluxel::app {
+
+namespace {
+
+struct ExportOptions {
+  fs::path map, output;
+  std::string format;
+  bool canonical = false, local = false, allow_unfinished = false;
+};
+
+tasks::ExportFormat formatOf(const ExportOptions& options) {
+  if (options.canonical) return tasks::ExportFormat::Canonical;
+  std::string name = options.format;
+  if (name.empty() && options.output.has_extension()) name = options.output.extension().string().substr(1);
+  if (const auto format = tasks::exportFormatOf(name)) return *format;
+  throw Error(ErrorKind::InvalidArgument, "export: unknown format '" + name +
+                                              "'; write --format turtle, nquads, canonical, ply or "
+                                              "geojson, or an output file that ends in .ttl, .nq, .ply or .geojson");
+}
+
+/// A map can take days to build, and `-o MAP` is easily written by mistake.
+void refuseToReplaceAMap(const fs::path& output) {
+  std::error_code ignored;
+  if (fs::is_regular_file(output, ignored) && rdf::looksLikeMap(output))
+    throw Error(ErrorKind::StoreUnavailable,
+                output.string() + ": is a map, which the export would replace; name another file");
+}
+
+}  // namespace
+
+void addExport(CLI::App& app, Session& session) {
+  auto options = std::make_shared<ExportOptions>();
+  CLI::App* command = app.add_subcommand("export", "write a map as RDF, a coloured cloud or footprints");
+  command->add_option("map", options->map, "a map")->required();
+  command->add_option("-o,--output", options->output, "the file to write; else stdout")->check(named());
+  command->add_option("--format", options->format,
+                      "turtle, nquads, canonical, ply, geojson; else by the file's ending");
+  command->add_flag("--canonical", options->canonical, "sorted N-Quads without history: equal bytes mean equal maps");
+  command->add_flag("--local", options->local, "geojson in metres of the map frame, not in longitude and latitude");
+  addAllowUnfinished(*command, options->allow_unfinished);
+  onRun(*command, session, [options, &session] {
+    const tasks::ExportFormat format = formatOf(*options);
+    refuseToReplaceAMap(options->output);
+    std::string bytes;
+    const bool to_stdout = options->output.empty();
+    const auto write = [&](std::string_view piece) {
+      if (to_stdout)
+        std::fwrite(piece.data(), 1, piece.size(), stdout);
+      else
+        bytes.append(piece);
+    };
+    if (const auto store = storeWithoutScans(options->map); store && isRdf(format)) {
+      exportQuads(*store, format, write);
+    } else {
+      const mapping::MapReader map(options->map);
+      noteUnfinished(options->map, map.isFinished(), options->allow_unfinished, session);
+      exportMap(map, format, write, options->local ? tasks::ExportFrame::Local : tasks::ExportFrame::LongitudeLatitude);
+    }
+    if (!to_stdout) writeFile(options->output, bytes);
+    return ExitCode::Done;
+  });
+}
+
+}  // namespace cluxel::app

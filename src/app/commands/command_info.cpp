@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+// `cluxel info`: the contents of scans or of a map.
+#include <algorithm>
+
+#include "app/command.hpp"
+#include "app/map_condition.hpp"
+#include "app/shared_options.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/map_reader.hpp"
+#include "rdf/file/map_check.hpp"
+#include "scan/scan_summary.hpp"
+
+namespace cluxel::app {
+
+namespace {
+
+struct InfoOptions {
+  std::vector<fs::path> inputs;
+  ScanOptions scans;
+  bool clouds = false;
+};
+
+Json boxJson(const Eigen::AlignedBox3d& box) {
+  if (box.isEmpty()) return nullptr;
+  return {{"min", {box.min().x(), box.min().y(), box.min().z()}},
+          {"max", {box.max().x(), box.max().y(), box.max().z()}}};
+}
+
+Json labelsJson(const std::map<std::uint32_t, std::size_t>& labels) {
+  Json json = Json::object();
+  for (const auto& [label, count] : labels) json[std::to_string(label)] = count;
+  return json;
+}
+
+Json scanJson(const scan::ScanSummary& scan) {
+  Json json{{"source", scan.source},
+            {"format", nameOf(scan.format)},
+            {"id", scan.id.hex()},
+            {"points", scan.point_count},
+            {"extent_map_m", boxJson(scan.extent_map_m)},
+            {"has_pose", scan.has_pose},
+            {"has_intensity", scan.has_intensity},
+            {"labels", labelsJson(scan.points_by_label)}};
+  json["frame"] = scan.has_pose ? "sensor, posed in map" : "map";
+  if (scan.time_s) json["time_s"] = *scan.time_s;
+  return json;
+}
+
+std::string sizeText(const Eigen::AlignedBox3d& box) {
+  if (box.isEmpty()) return "-";
+  char text[128];
+  std::snprintf(text, sizeof text, "%.1f x %.1f x %.1f m", box.sizes().x(), box.sizes().y(), box.sizes().z());
+  return text;
+}
+
+void printScans(const scan::ScanSetSummary& summary) {
+  for (const scan::ScanSummary& scan : summary.scans) {
+    std::printf("%s  %s  %zu points  %s  %s%s%s\n", scan.source.c_str(), nameOf(scan.format), scan.point_count,
+                sizeText(scan.extent_map_m).c_str(), scan.has_pose ? "posed" : "no pose: in the map frame",
+                scan.has_intensity ? "  intensity" : "", scan.points_by_label.empty() ? "" : "  labels");
+  }
+  std::printf("%zu scans, %zu points, extent %s\n", summary.scans.size(), summary.point_count,
+              sizeText(summary.extent_map_m).c_str());
+  if (!summary.crs.empty()) std::printf("coordinate system: %s\n", summary.crs.c_str());
+  if (summary.points_by_label.empty()) return;
+  std::printf("labels:");
+  for (const auto& [label, count] : summary.points_by_label) std::printf(" %u:%zu", label, count);
+  std::printf("\n");
+}
+
+ExitCode infoOfScans(const InfoOptions& options, Session& session) {
+  const scan::ScanSet scans = scan::ScanSet::open(options.inputs, options.scans.params(), session.console);
+  const scan::ScanSetSummary summary = summarize(scans, session.threadCount());
+  for (const std::string& note : summary.notes) session.console.note(note);
+  if (!session.json) {
+    printScans(summary);
+    return ExitCode::Done;
+  }
+  Json json{{"scans", Json::array()},
+            {"points", summary.point_count},
+            {"extent_map_m", boxJson(summary.extent_map_m)},
+            {"labels", labelsJson(summary.points_by_label)}};
+  if (!summary.crs.empty()) json["crs"] = summary.crs;
+  for (const scan::ScanSummary& scan : summary.scans) json["scans"].push_back(scanJson(scan));
+  printJson(json);
+  return ExitCode::Done;
+}
+
+Json namesJson(const std::vector<mapping::NamedText>& texts) {
+  Json json = Json::array();
+  for (const mapping::NamedText& text : texts) json.push_back(text.name);
+  return json;
+}
+
+Json inputFilesJson(const mapping::MapInputs& inputs) {
+  return {{"home", inputs.home},
+          {"ontology", namesJson(inputs.ontology)},
+          {"rules", namesJson(inputs.rules)},
+          {"sparql_rules", namesJson(inputs.sparql_rules)},
+          {"model", inputs.model.name}};
+}
+
+/// By its content; by the ending of its name too, so that a damaged or absent map is reported as such.
+bool isMap(const fs::path& input) {
+  return input.extension() == ".clx" || rdf::looksLikeMap(input);
+}
+
+Json cloudsJson(const std::vector<mapping::Cloud>& clouds) {
+  Json json = Json::array();
+  for (const mapping::Cloud& cloud : clouds) {
+    Json entry{{"id", cloud.id.hex()},
+               {"source", cloud.source},
+               {"points", cloud.point_count},
+               {"has_pose", cloud.has_pose},
+               {"extent_map_m", boxJson({cloud.min, cloud.max})}};
+    if (cloud.time_s) entry["time_s"] = *cloud.time_s;
+    json.push_back(std::move(entry));
+  }
+  return json;
+}
+
+ExitCode infoOfStore(const fs::path& file, const rdf::QuadReader& quads, const Session& session) {
+  Json graphs = Json::object();
+  for (const rdf::TermId graph : quads.graphs())
+    graphs[graph == rdf::kNoTerm ? "" : quads.termOf(graph).text] =
+        quads.count({.s = {}, .p = {}, .o = {}, .g = graph});
+  if (session.json) {
+    printJson(Json{{"file", file.string()}, {"quads", quads.size()}, {"terms", quads.termCount()}, {"graphs", graphs}});
+    return ExitCode::Done;
+  }
+  std::printf("%s: store without scans, %llu quads, %zu graphs\n", file.c_str(),
+              static_cast<unsigned long long>(quads.size()), graphs.size());
+  for (const auto& [name, count] : graphs.items())
+    std::printf("  %10llu  %s\n", count.get<unsigned long long>(),
+                name.empty() ? "the unnamed graph" : ("<" + name + ">").c_str());
+  return ExitCode::Done;
+}
+
+ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Session& session) {
+  if (const auto store = storeWithoutScans(file)) return infoOfStore(file, *store, session);
+  const mapping::MapReader map(file);
+  const mapping::MapSummary summary = map.summary();
+  const mapping::MapInputs inputs = map.inputs();
+  if (!session.json) {
+    std::printf("%s: %s map, %zu clouds, %llu points, %zu objects, %llu quads\n", file.c_str(),
+                summary.is_finished ? "finished" : "unfinished", summary.clouds,
+                static_cast<unsigned long long>(summary.points), summary.objects,
+                static_cast<unsigned long long>(summary.quads));
+    for (const auto& [name, count] : summary.objects_by_class) std::printf("  %-14s %zu\n", name.c_str(), count);
+    if (options.clouds)
+      for (const mapping::Cloud& cloud : map.clouds())
+        std::printf("  cloud %s  %llu points  %s%s\n", cloud.id.hex().c_str(),
+                    static_cast<unsigned long long>(cloud.point_count), cloud.source.c_str(),
+                    cloud.has_pose ? "" : "  no pose");
+    if (!inputs.crs.empty()) std::printf("coordinate system: %s\n", inputs.crs.c_str());
+    std::printf("built with %s\n", describeFiles(inputs).c_str());
+    return ExitCode::Done;
+  }
+  Json json{{"file", file.string()},         {"finished", summary.is_finished},
+            {"inputs", summary.inputs_hash}, {"clouds", summary.clouds},
+            {"points", summary.points},      {"objects", summary.objects},
+            {"quads", summary.quads},        {"objects_by_class", summary.objects_by_class}};
+  if (options.clouds) json["cloud_list"] = cloudsJson(map.clouds());
+  if (!inputs.crs.empty()) json["crs"] = inputs.crs;
+  json["input_files"] = inputFilesJson(inputs);
+  printJson(json);
+  return ExitCode::Done;
+}
+
+}  // namespace
+
+void addInfo(CLI::App& app, Session& session) {
+  auto options = std::make_shared<InfoOptions>();
+  CLI::App* command = app.add_subcommand("info", "show what scans or a map contain");
+  command->add_option("input", options->inputs, "a map, or files, folders and manifests of scans")->required();
+  addScanOptions(*command, options->scans);
+  command->add_flag("--clouds", options->clouds, "list the clouds of a map, with their ids");
+  onRun(*command, session, [options, &session] {
+    const auto map = std::find_if(options->inputs.begin(), options->inputs.end(), isMap);
+    if (map == options->inputs.end()) return infoOfScans(*options, session);
+    if (options->inputs.size() == 1) return infoOfMap(*options, *map, session);
+    throw Error(ErrorKind::InvalidArgument,
+                map->string() + ": is a map; give it alone, because a map and scans are not summarised together");
+  });
+}
+
+}  // namespace cluxel::app

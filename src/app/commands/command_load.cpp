@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// `cluxel load` and `cluxel dump`: RDF files into a store, and out of it.
+#include <cstdio>
+
+#include "app/command.hpp"
+#include "base/file_pieces.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/build/rdf_loading.hpp"
+#include "rdf/file/environment.hpp"
+#include "rdf/file/map_check.hpp"
+#include "rdf/io/rdf_io.hpp"
+
+namespace cluxel::app {
+
+namespace {
+
+struct LoadOptions {
+  fs::path store;
+  std::vector<fs::path> files;
+  mapping::RdfLoadParams params;
+};
+
+struct DumpOptions {
+  fs::path store, output;
+  std::string graph;
+  bool one_graph = false;
+};
+
+ExitCode load(const LoadOptions& options, Session& session) {
+  const mapping::RdfLoadReport report =
+      mapping::loadRdfFiles(options.store, options.files, options.params, session.console);
+  if (session.json)
+    printJson(Json{{"statements", report.statements}, {"added", report.added}});
+  else
+    std::printf("%llu statements read, %llu of them new\n", static_cast<unsigned long long>(report.statements),
+                static_cast<unsigned long long>(report.added));
+  return ExitCode::Done;
+}
+
+ExitCode dump(const DumpOptions& options) {
+  const rdf::QuadReader quads(rdf::Environment::open(options.store, rdf::OpenMode::ReadOnly)->read());
+  const auto graph = options.one_graph ? std::optional(Term::iri(options.graph)) : std::nullopt;
+  if (options.output.empty()) {
+    writeStoredNQuads(quads, graph, [](std::string_view line) { std::fwrite(line.data(), 1, line.size(), stdout); });
+    return ExitCode::Done;
+  }
+  std::error_code ignored;
+  if (fs::is_regular_file(options.output, ignored) && rdf::looksLikeMap(options.output))
+    throw Error(ErrorKind::StoreUnavailable,
+                options.output.string() + ": is a map or store, which the dump would replace; name another file");
+  writeFileInPieces(options.output, [&](const auto& take) { writeStoredNQuads(quads, graph, take); });
+  return ExitCode::Done;
+}
+
+}  // namespace
+
+void addLoad(CLI::App& app, Session& session) {
+  auto options = std::make_shared<LoadOptions>();
+  CLI::App* command = app.add_subcommand("load", "load RDF files into a store, or into graph operator of a map");
+  command->add_option("store", options->store, "a store, which is made when it is absent, or a map")->required();
+  command->add_option("files", options->files, "RDF files (.ttl .nt .nq .trig .rdf)")->required();
+  command->add_option("--graph", options->params.graph, "IRI of the graph of statements that name none")
+      ->check(named());
+  command->add_option("--base", options->params.base_iri, "base IRI of relative IRIs; else the file's own")
+      ->check(named());
+  onRun(*command, session, [options, &session] { return load(*options, session); });
+}
+
+void addDump(CLI::App& app, Session& session) {
+  auto options = std::make_shared<DumpOptions>();
+  CLI::App* command = app.add_subcommand("dump", "write all quads of a map or store as N-Quads, in the store's order");
+  command->add_option("store", options->store, "a map or store")->required();
+  command->add_option("-o,--output", options->output, "the file to write; else stdout")->check(named());
+  CLI::Option* graph = command->add_option("--graph", options->graph,
+                                           "only this graph, as N-Triples; an empty IRI is the unnamed graph");
+  onRun(*command, session, [options, graph, &session] {
+    (void)session;
+    options->one_graph = graph->count() > 0;
+    return dump(*options);
+  });
+}
+
+}  // namespace cluxel::app

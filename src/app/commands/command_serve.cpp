@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+// `cluxel serve`: maps over HTTP, until SIGINT or SIGTERM.
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <csignal>
+#include <ctime>
+#include <future>
+#include <mutex>
+
+#include "app/command.hpp"
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "serve/http/http_server.hpp"
+#include "serve/map_service.hpp"
+#include "tasks/view/view_page.hpp"
+
+namespace cluxel::app {
+
+namespace {
+
+struct ServeArguments {
+  std::vector<std::string> maps, origins;
+  std::string host = "127.0.0.1";
+  int port = 8080;
+  fs::path token_file, log;
+  double deadline_s = 30, rate = 0;
+  std::uint64_t max_rows = 0, max_memory_mib = 1024, max_answer_mib = 256, max_request_kib = 1024;
+  std::size_t running = 0, queue = 128, connections = 256;
+  bool quiet = false;
+};
+
+/// Lines of requests, to a file or to stderr.
+class AccessLines {
+ public:
+  explicit AccessLines(const ServeArguments& arguments) {
+    if (arguments.quiet) return;
+    file_ = arguments.log.empty() ? stderr : std::fopen(arguments.log.c_str(), "ae");
+    if (file_ == nullptr)
+      throw Error(ErrorKind::StoreUnavailable, arguments.log.string() + ": the access log cannot be written");
+  }
+  ~AccessLines() {
+    if (file_ != nullptr && file_ != stderr) std::fclose(file_);
+  }
+  AccessLines(const AccessLines&) = delete;
+  AccessLines& operator=(const AccessLines&) = delete;
+
+  void write(const serve::AccessEntry& entry) {
+    if (file_ == nullptr) return;
+    constexpr std::size_t max_target = 2000;
+    std::string target = entry.target.substr(0, max_target);
+    for (char& c : target)
+      if (static_cast<unsigned char>(c) <= ' ' || c == '"' || c == '\x7f') c = '?';
+    const std::lock_guard lock(mutex_);
+    std::fprintf(file_, "%s %s \"%s %s\" %d %zu %.1f ms\n", now().c_str(), entry.client.c_str(), entry.method.c_str(),
+                 target.c_str(), entry.status, entry.bytes, entry.seconds * 1000);
+    std::fflush(file_);
+  }
+
+ private:
+  static std::string now() {
+    const std::time_t seconds = std::time(nullptr);
+    std::tm utc{};
+    ::gmtime_r(&seconds, &utc);
+    std::array<char, 32> text{};
+    std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+    return text.data();
+  }
+  std::FILE* file_ = nullptr;
+  std::mutex mutex_;
+};
+
+std::string tokenIn(const fs::path& file) {
+  constexpr std::size_t min_length = 16;
+  if (file.empty()) return {};
+  std::string token = readFile(file);
+  while (!token.empty() && std::isspace(static_cast<unsigned char>(token.back())) != 0) token.pop_back();
+  const bool is_plain = std::all_of(token.begin(), token.end(), [](unsigned char c) { return c > ' ' && c < 0x7f; });
+  if (token.size() < min_length || !is_plain)
+    throw Error(ErrorKind::FaultyInput, file.string() +
+                                            ": a token has at least 16 visible ASCII characters on one line; "
+                                            "'openssl rand -hex 32' prints one");
+  return token;
+}
+
+/// The page of `cluxel view`; none where the checkout has not made its program yet.
+std::function<std::string(const mapping::MapReader&, const std::string&)> pageMaker(const DataHome& home) {
+  std::string program;
+  try {
+    program = tasks::viewTemplate(home);
+  } catch (const Error&) {
+    return {};
+  }
+  return [program, questions = tasks::shippedQuestions(home)](const mapping::MapReader& map, const std::string& name) {
+    tasks::ViewOptions options;
+    options.name = name;
+    std::string page;
+    writeViewPage(map, program, questions, options, [&page](std::string_view piece) { page.append(piece); });
+    return page;
+  };
+}
+
+bool isLoopback(const std::string& host) {
+  return host == "localhost" || host == "::1" || host.starts_with("127.");
+}
+
+serve::ServiceOptions serviceOptions(const ServeArguments& arguments, const Session& session) {
+  serve::ServiceOptions options;
+  options.request.deadline = std::chrono::milliseconds(static_cast<std::int64_t>(arguments.deadline_s * 1000));
+  options.request.max_rows = arguments.max_rows;
+  options.request.max_memory_bytes = arguments.max_memory_mib << 20U;
+  options.request.max_answer_bytes = arguments.max_answer_mib << 20U;
+  options.load.running = arguments.running > 0 ? arguments.running : session.threadCount();
+  options.load.waiting = arguments.queue;
+  options.load.per_second = arguments.rate;
+  options.token = tokenIn(arguments.token_file);
+  options.allowed_origins = arguments.origins;
+  options.page = pageMaker(session.dataHome());
+  if (isLoopback(arguments.host)) options.host_names = {"localhost", "127.0.0.1", "[::1]", arguments.host};
+  return options;
+}
+
+serve::HttpOptions httpOptions(const ServeArguments& arguments) {
+  serve::HttpOptions options;
+  options.host = arguments.host;
+  options.port = arguments.port;
+  options.max_connections = arguments.connections;
+  options.max_body_bytes = arguments.max_request_kib << 10U;
+  return options;
+}
+
+/// SIGINT and SIGTERM, blocked in all threads that start later. When it is destroyed they act as before: a second
+/// signal then ends the program at once.
+class StopSignals {
+ public:
+  StopSignals() {
+    sigemptyset(&set_);
+    sigaddset(&set_, SIGINT);
+    sigaddset(&set_, SIGTERM);
+    ::pthread_sigmask(SIG_BLOCK, &set_, &before_);
+  }
+  ~StopSignals() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  StopSignals(const StopSignals&) = delete;
+  StopSignals& operator=(const StopSignals&) = delete;
+
+  /// True when one came within a second.
+  bool arrived() const {
+    const timespec second{1, 0};
+    return ::sigtimedwait(&set_, nullptr, &second) > 0;
+  }
+
+ private:
+  sigset_t set_{}, before_{};
+};
+
+void announce(const serve::HttpServer& server, const ServeArguments& arguments, Session& session) {
+  const bool is_v6 = arguments.host.find(':') != std::string::npos;
+  const std::string url =
+      "http://" + (is_v6 ? "[" + arguments.host + "]" : arguments.host) + ":" + std::to_string(server.port()) + "/";
+  if (session.json)
+    printJson(Json{{"url", url}, {"port", server.port()}});
+  else
+    print(url);
+  std::fflush(stdout);
+  if (!isLoopback(arguments.host))
+    session.console.note("the service can be reached from other machines; what it answers is not encrypted");
+}
+
+ExitCode serveMaps(const ServeArguments& arguments, Session& session) {
+  AccessLines lines(arguments);
+  serve::MapService service(serve::mapArgumentsOf(arguments.maps), session.dataHome(),
+                            serviceOptions(arguments, session));
+  auto signals = std::make_unique<StopSignals>();
+  serve::HttpServer server(
+      httpOptions(arguments), [&service](const serve::HttpRequest& request) { return service.handle(request); },
+      [&lines](const serve::AccessEntry& entry) { lines.write(entry); });
+  announce(server, arguments, session);
+  const std::future<void> served = std::async(std::launch::async, [&server] { server.run(); });
+  const auto hasEnded = [&served](int wait_ms) {
+    return served.wait_for(std::chrono::milliseconds(wait_ms)) == std::future_status::ready;
+  };
+  while (!signals->arrived() && !hasEnded(0)) service.tidy();
+  signals.reset();
+  do server.stop();
+  while (!hasEnded(50));
+  return ExitCode::Done;
+}
+
+}  // namespace
+
+void addServe(CLI::App& app, Session& session) {
+  auto options = std::make_shared<ServeArguments>();
+  CLI::App* command = app.add_subcommand("serve", "answer SPARQL and JSON requests over HTTP");
+  command->add_option("maps", options->maps, "maps, each FILE or NAME=FILE")->required();
+  command
+      ->add_option("--host", options->host,
+                   "the address to listen on; others than 127.0.0.1 are reached from other machines")
+      ->check(named());
+  command->add_option("--port", options->port, "the port to listen on; 0: a free one")->check(CLI::Range(0, 65535));
+  command->add_option("--token-file", options->token_file,
+                      "a file with the token that permits updates; without it none are taken");
+  command->add_option("--cors", options->origins, "an origin whose web pages may read answers, or *: all");
+  command->add_option("--log", options->log, "a file to append the access log to, instead of stderr");
+  command->add_flag("--quiet", options->quiet, "no access log");
+  command->add_option("--deadline", options->deadline_s, "seconds after which a query is given up")
+      ->check(CLI::Range(0.001, 1e9));
+  command->add_option("--max-rows", options->max_rows, "rows above which a query is given up")->check(above0());
+  command->add_option("--max-memory", options->max_memory_mib, "MiB above which a query is given up")
+      ->check(CLI::Range(1, 1 << 24));
+  command->add_option("--max-answer", options->max_answer_mib, "MiB above which an answer is given up")
+      ->check(CLI::Range(1, 1 << 24));
+  command->add_option("--max-request", options->max_request_kib, "KiB above which the body of a request is refused")
+      ->check(CLI::Range(1, 1 << 24));
+  command->add_option("--rate", options->rate, "requests a second of one client above which it is refused")
+      ->check(above0());
+  command->add_option("--running", options->running, "requests that compute at once; default: --threads")
+      ->check(CLI::Range(1, 1024));
+  command->add_option("--queue", options->queue, "requests that wait for their turn; more are refused")
+      ->check(CLI::Range(0, 1 << 16));
+  command->add_option("--connections", options->connections, "open connections; more are refused")
+      ->check(CLI::Range(1, 900));
+  onRun(*command, session, [options, &session] { return serveMaps(*options, session); });
+}
+
+}  // namespace cluxel::app

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// `cluxel doctor` and `cluxel compact`: the integrity and size of a map file.
+#include "app/command.hpp"
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/build/build_lock.hpp"
+#include "rdf/file/environment.hpp"
+#include "rdf/file/map_check.hpp"
+#include "rdf/file/map_replacement.hpp"
+
+namespace cluxel::app {
+
+namespace {
+
+struct UpkeepOptions {
+  fs::path map, output;
+};
+
+/// Locks out other writers: what they commit while the file is replaced would be lost.
+void compactInPlace(const fs::path& map) {
+  const fs::path file = withoutLinks(map), target = file.string() + ".compact";
+  const mapping::BuildLock no_build(file);
+  const auto environment = rdf::Environment::open(file, rdf::OpenMode::ReadWrite);
+  const rdf::WriteTransaction no_other_writer = environment->write();
+  std::error_code ignored;
+  fs::remove(target, ignored);  // left by a killed run
+  environment->compactTo(target);
+  try {
+    rdf::replaceMapFile(target, file);
+  } catch (...) {
+    fs::remove(target, ignored);
+    throw;
+  }
+}
+
+ExitCode compact(const UpkeepOptions& options, const Session& session) {
+  std::error_code no_such_file;
+  const auto before = fs::file_size(options.map, no_such_file);
+  if (options.output.empty())
+    compactInPlace(options.map);
+  else
+    rdf::Environment::open(options.map, rdf::OpenMode::ReadOnly)->compactTo(options.output);
+  const auto after = fs::file_size(options.output.empty() ? options.map : options.output);
+  const fs::path& written = options.output.empty() ? options.map : options.output;
+  if (session.json)
+    printJson(Json{{"file", written.string()}, {"bytes_before", before}, {"bytes_after", after}});
+  else
+    std::printf("%s: %ju bytes before, %ju after\n", written.c_str(), static_cast<std::uintmax_t>(before),
+                static_cast<std::uintmax_t>(after));
+  return ExitCode::Done;
+}
+
+ExitCode doctor(const UpkeepOptions& options, const Session& session) {
+  const rdf::MapCheck check = rdf::checkMap(options.map);
+  if (session.json) {
+    printJson(Json{{"blocks", check.blocks}, {"terms", check.terms}, {"quads", check.quads}, {"faults", check.faults}});
+  } else {
+    for (const std::string& fault : check.faults) std::printf("%s\n", fault.c_str());
+    std::printf("%llu blocks, %llu terms, %llu quads, %zu faults\n", static_cast<unsigned long long>(check.blocks),
+                static_cast<unsigned long long>(check.terms), static_cast<unsigned long long>(check.quads),
+                check.faults.size());
+  }
+  return check.faults.empty() ? ExitCode::Done : ExitCode::NegativeFinding;
+}
+
+}  // namespace
+
+void addUpkeep(CLI::App& app, Session& session) {
+  auto options = std::make_shared<UpkeepOptions>();
+  CLI::App* command = app.add_subcommand("compact", "rewrite a map without free space");
+  command->add_option("map", options->map, "a map")->required();
+  command->add_option("-o,--output", options->output, "the file to write; else the map itself is replaced")
+      ->check(named());
+  onRun(*command, session, [options, &session] { return compact(*options, session); });
+  CLI::App* checking = app.add_subcommand("doctor", "verify the checksums and indexes of a map");
+  checking->add_option("map", options->map, "a map")->required();
+  onRun(*checking, session, [options, &session] { return doctor(*options, session); });
+}
+
+}  // namespace cluxel::app

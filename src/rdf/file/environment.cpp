@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+// Opens maps: the process-wide table of open environments, and the checks before LMDB maps a file.
+#include "rdf/file/environment.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <map>
+
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "rdf/file/check/map_file_head.hpp"
+#include "rdf/file/check/map_structure.hpp"
+#include "rdf/file/file_guards.hpp"
+#include "rdf/file/lmdb_environment.hpp"
+#include "rdf/file/lock_file.hpp"
+#include "rdf/file/map_replacement.hpp"
+#include "rdf/file/private_copy.hpp"
+#include "rdf/store/store_snapshot.hpp"
+#include "rdf/terms/value_cache.hpp"
+
+namespace cluxel::rdf {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr unsigned kMaxReaders = 510;
+constexpr std::size_t kSmallestMap = std::size_t{1} << 28U;
+#if defined(__has_feature)
+#define CLUXEL_THREAD_SANITIZER __has_feature(thread_sanitizer)
+#elif defined(__SANITIZE_THREAD__)
+#define CLUXEL_THREAD_SANITIZER 1
+#else
+#define CLUXEL_THREAD_SANITIZER 0
+#endif
+#if CLUXEL_THREAD_SANITIZER
+constexpr std::size_t kMaxMapBytes = std::size_t{1} << 34U;  // ThreadSanitizer reserves most of the address space
+#else
+constexpr std::size_t kMaxMapBytes = std::size_t{1} << 40U;
+#endif
+
+/// The open environments of this process. LMDB's POSIX locks are lost when a process opens a file twice.
+struct OpenEnvironments {
+  std::recursive_mutex
+      mutex;  ///< recursive, because an environment that fails to open is destroyed while the table is locked
+  std::condition_variable_any closed;
+  std::map<FileIdentity, std::weak_ptr<LmdbEnvironment>> entries;
+  /// Private copies, by the file that was copied; the number is the commit.
+  std::map<FileIdentity, std::pair<std::uint64_t, std::weak_ptr<LmdbEnvironment>>> copies;
+};
+
+OpenEnvironments& openEnvironments() {
+  static OpenEnvironments table;
+  return table;
+}
+
+int openFile(const fs::path& file, OpenMode mode, bool& can_write) {
+  std::error_code ignored;
+  if (const fs::file_status status = fs::status(file, ignored);
+      fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status))
+    throw Error(ErrorKind::StoreUnavailable, file.string() + ": is a pipe or a device, a map was expected");
+  const int creation = mode == OpenMode::Create ? O_CREAT | O_EXCL : 0;
+  can_write = true;
+  int descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC | creation, 0666);
+  if (descriptor < 0 && mode == OpenMode::ReadOnly && (errno == EACCES || errno == EROFS || errno == EPERM)) {
+    can_write = false;
+    descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  }
+  if (descriptor >= 0) return descriptor;
+  if (errno == EEXIST)
+    throw Error(ErrorKind::StoreUnavailable, file.string() + ": exists already; choose another name or remove it");
+  if (errno == EISDIR) throw Error(ErrorKind::StoreUnavailable, file.string() + ": is a folder, a map was expected");
+  failStore(file, errno, mode == OpenMode::Create ? "create the map" : "open the map");
+}
+
+/// Reserves as much address space as possible, so that a map does not outgrow its mapping.
+EnvHandle openLmdb(const fs::path& file, std::uint64_t file_size, unsigned flags) {
+  int code = 0;
+  for (std::size_t map_size = kMaxMapBytes; map_size >= kSmallestMap && map_size > file_size; map_size /= 2) {
+    MDB_env* raw = nullptr;
+    checkLmdb(mdb_env_create(&raw), file, "open the map");
+    EnvHandle handle(raw);
+    mdb_env_set_maxreaders(raw, kMaxReaders);
+    mdb_env_set_maxdbs(raw, kTableCount);
+    mdb_env_set_mapsize(raw, map_size);
+    code = mdb_env_open(raw, file.c_str(), flags | MDB_NOSUBDIR | MDB_NOTLS, 0666);
+    if (code == MDB_SUCCESS) return handle;
+    if (code != ENOMEM && code != EINVAL) break;  // EINVAL: Valgrind's limit
+  }
+  failStore(file, code, "open the map");
+}
+
+/// How this process may use a file.
+struct Access {
+  bool can_write = true;       ///< may write the file
+  bool holds_writers = false;  ///< has no lock file, but the writers' lock until it closes the file
+};
+
+/// None when the process cannot register as a reader: it then needs a copy of its own.
+EnvHandle openLmdbFor(const fs::path& file, std::uint64_t file_size, OpenMode mode, Access& access, int descriptor,
+                      unsigned extra) {
+  const LockFile lock = prepareLockFile(file, descriptor, access.can_write);
+  if (lock.state == LockFileState::Usable) return openLmdb(file, file_size, access.can_write ? extra : MDB_RDONLY);
+  if (mode != OpenMode::ReadOnly) failLockFile(file, lock);
+  if (lock.state == LockFileState::Refused) return nullptr;
+  lockAgainstWriters(descriptor, WriteLock::Copying, file);
+  access = {.can_write = false, .holds_writers = true};
+  return openLmdb(file, file_size, MDB_RDONLY | MDB_NOLOCK);
+}
+
+/// Checks what LMDB reads of the current commit while a read transaction pins its pages.
+void checkUnderSnapshot(MDB_env* handle, int descriptor, const fs::path& file) {
+  MDB_txn* raw = nullptr;
+  checkLmdb(mdb_txn_begin(handle, nullptr, MDB_RDONLY, &raw), file, "read the map");
+  const TxnHandle transaction(raw);
+  checkMapStructure(descriptor, file, mdb_txn_id(raw), MapScope::Reading);
+}
+
+/// The environment of a file that LMDB has opened.
+std::shared_ptr<LmdbEnvironment> environmentOf(const fs::path& file, EnvHandle handle, Descriptor& descriptor,
+                                               const MapFileHead& head, bool can_write, bool may_initialise) {
+  if (head.file_size != 0) checkUnderSnapshot(handle.get(), descriptor.get(), file);
+  auto environment = std::make_shared<LmdbEnvironment>(file, std::move(handle), descriptor.release(), can_write);
+  if (may_initialise) environment->allowWriting();
+  environment->openTables();
+  return environment;
+}
+
+/// An environment on a private copy of the map, or the one that was made of the same commit before.
+std::shared_ptr<LmdbEnvironment> openCopy(const fs::path& file, const Descriptor& descriptor) {
+  OpenEnvironments& table = openEnvironments();
+  auto& [commit, known] = table.copies[identityOf(descriptor.get(), file)];
+  if (auto open = known.lock(); open && commit == readMapFileHead(descriptor.get(), file).transaction) return open;
+  PrivateCopy copy(file, descriptor.get());
+  Descriptor bytes = copy.takeDescriptor();
+  const MapFileHead head = readMapFileHead(bytes.get(), file);
+  EnvHandle handle = openLmdb(copy.file(), head.file_size, MDB_RDONLY | MDB_NOLOCK);
+  auto environment = environmentOf(file, std::move(handle), bytes, head, false, false);
+  environment->loseName();
+  known = environment;
+  commit = head.transaction;
+  return environment;
+}
+
+/// An opened environment and whether others of this process may share it.
+struct Opened {
+  std::shared_ptr<LmdbEnvironment> environment;
+  bool is_shared = true;
+};
+
+/// No environment when the file was replaced while it was being opened.
+Opened openNew(const fs::path& file, Descriptor& descriptor, bool can_write, OpenMode mode, unsigned extra_flags) {
+  const bool may_initialise = mode != OpenMode::ReadOnly;
+  const MapFileHead head = readMapFileHead(descriptor.get(), file);
+  if (head.file_size == 0 && !may_initialise)
+    throw Error(ErrorKind::StoreUnavailable, file.string() + ": is empty, a map was expected");
+  Access access{.can_write = can_write};
+  EnvHandle handle;
+  {
+    const NameLock lock(descriptor.get(), NameLock::Kind::Opening);  // LMDB opens the file again by its name
+    if (!isNamed(identityOf(descriptor.get(), file), file)) return {};
+    handle = openLmdbFor(file, head.file_size, mode, access, descriptor.get(), extra_flags);
+  }
+  if (!handle) return {openCopy(file, descriptor), false};
+  return {environmentOf(file, std::move(handle), descriptor, head, access.can_write, may_initialise),
+          !access.holds_writers};
+}
+
+/// The environment from the process-wide table, or a new one; none when the file was replaced meanwhile.
+std::shared_ptr<LmdbEnvironment> openAs(const fs::path& file, OpenMode mode, bool can_write, Descriptor& descriptor,
+                                        unsigned extra_flags) {
+  const FileIdentity identity = identityOf(descriptor.get(), file);
+  OpenEnvironments& table = openEnvironments();
+  std::unique_lock lock(table.mutex);
+  for (auto entry = table.entries.find(identity); entry != table.entries.end(); entry = table.entries.find(identity)) {
+    if (auto open = entry->second.lock()) {
+      if (mode != OpenMode::ReadOnly) open->allowWriting();
+      return open;
+    }
+    table.closed.wait(lock);  // another thread is closing it
+  }
+  const Opened opened = openNew(file, descriptor, can_write, mode, extra_flags);
+  if (opened.environment && opened.is_shared) table.entries[identity] = opened.environment;
+  return opened.environment;
+}
+
+std::shared_ptr<LmdbEnvironment> openOnce(const fs::path& file, OpenMode mode, unsigned extra_flags) {
+  const LowDescriptors low;
+  constexpr int kMaxReplacements = 100;
+  for (int attempt = 0; attempt < kMaxReplacements; ++attempt) {
+    bool can_write = false;
+    Descriptor descriptor(openFile(file, mode, can_write));
+    try {
+      if (auto environment = openAs(file, mode, can_write, descriptor, extra_flags)) return environment;
+    } catch (...) {
+      std::error_code ignored;
+      if (mode == OpenMode::Create)
+        for (const fs::path& made : {file, lockFileOf(file)}) fs::remove(made, ignored);
+      throw;
+    }
+  }
+  throw MapReplaced(file);
+}
+
+}  // namespace
+
+std::shared_ptr<Environment> Environment::open(const fs::path& file, OpenMode mode) {
+  // A symbolic link and its target must share one lock file.
+  return openOnce(withoutLinks(fs::absolute(file)), mode, 0);
+}
+
+std::shared_ptr<Environment> Environment::temporary() {
+  const TemporaryFolder folder;
+  if (folder.path().empty()) failStore(fs::temp_directory_path(), errno, "make a temporary map");
+  auto environment = openOnce(folder.path() / "temporary.clx", OpenMode::Create, MDB_NOSYNC);
+  environment->loseName();
+  return environment;
+}
+
+LmdbEnvironment::LmdbEnvironment(fs::path file, EnvHandle handle, int data_lock, bool can_write)
+    : file_(std::move(file)),
+      handle_(std::move(handle)),
+      data_lock_(data_lock),
+      can_write_(can_write),
+      values_(std::make_unique<ValueCache>()) {}
+
+std::uint64_t LmdbEnvironment::fileSize() const {
+  struct stat status {};
+  if (::fstat(data_lock_, &status) != 0) failStore(file_, errno, "examine the map");
+  return static_cast<std::uint64_t>(status.st_size);
+}
+
+LmdbEnvironment::~LmdbEnvironment() {
+  struct stat status {};
+  const bool known = ::fstat(data_lock_, &status) == 0;
+  OpenEnvironments& table = openEnvironments();
+  // The table stays locked until LMDB has closed the file, so that no thread opens it in between.
+  const std::lock_guard lock(table.mutex);
+  handle_.reset();
+  ::close(data_lock_);
+  if (!known) return;
+  const auto entry = table.entries.find({status.st_dev, status.st_ino});
+  if (entry != table.entries.end() && entry->second.expired()) table.entries.erase(entry);
+  table.closed.notify_all();
+}
+
+}  // namespace cluxel::rdf

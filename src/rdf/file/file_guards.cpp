@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// File descriptors and file locks.
+#include "rdf/file/file_guards.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <string>
+#include <thread>
+
+#include "rdf/file/lmdb_handles.hpp"
+#include "rdf/file/map_replacement.hpp"
+
+namespace cluxel::rdf {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr auto kLockPatience = std::chrono::milliseconds(1500);
+constexpr auto kLockPause = std::chrono::milliseconds(10);
+/// A byte offset that is locked but never written; LMDB itself takes no lock on the map file.
+constexpr off_t kNameByte = off_t{1} << 61;
+
+void lockNameByte(int descriptor, short kind) {
+  struct flock range {};
+  range.l_type = kind;
+  range.l_whence = SEEK_SET;
+  range.l_start = kNameByte;
+  range.l_len = 1;
+  while (::fcntl(descriptor, F_OFD_SETLKW, &range) != 0 && errno == EINTR) {
+  }
+}
+
+}  // namespace
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (fs::temp_directory_path() / "cluxel-XXXXXX").string();
+  if (::mkdtemp(name.data()) != nullptr) path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  if (!path_.empty()) fs::remove_all(path_, ignored);
+}
+
+FileIdentity identityOf(int descriptor, const fs::path& file) {
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0) failStore(file, errno, "examine the file");
+  return {status.st_dev, status.st_ino};
+}
+
+bool isNamed(const FileIdentity& identity, const fs::path& file) {
+  struct stat status {};
+  return ::stat(file.c_str(), &status) == 0 && FileIdentity{status.st_dev, status.st_ino} == identity;
+}
+
+LowDescriptors::LowDescriptors() {
+  for (int& taken : taken_) {
+    taken = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+    if (taken <= STDERR_FILENO) continue;
+    ::close(taken);
+    taken = -1;
+    return;
+  }
+}
+
+LowDescriptors::~LowDescriptors() {
+  for (const int taken : taken_)
+    if (taken >= 0) ::close(taken);
+}
+
+NameLock::NameLock(int descriptor, Kind kind) : descriptor_(descriptor) {
+  lockNameByte(descriptor_, kind == Kind::Opening ? F_RDLCK : F_WRLCK);
+}
+
+NameLock::~NameLock() {
+  lockNameByte(descriptor_, F_UNLCK);
+}
+
+void lockAgainstWriters(int descriptor, WriteLock kind, const fs::path& file) {
+  const int operation = kind == WriteLock::Writing ? LOCK_EX : LOCK_SH;
+  const auto deadline = std::chrono::steady_clock::now() + kLockPatience;
+  while (::flock(descriptor, operation | LOCK_NB) != 0) {
+    if (errno != EWOULDBLOCK && errno != EINTR) failStore(file, errno, "lock the map");
+    if (std::chrono::steady_clock::now() > deadline) throw MapBusy(file);
+    std::this_thread::sleep_for(kLockPause);
+  }
+}
+
+}  // namespace cluxel::rdf

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// The LMDB environment and the state of transactions.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "rdf/file/block_keys.hpp"
+#include "rdf/file/environment.hpp"
+#include "rdf/file/lmdb_handles.hpp"
+#include "rdf/file/store_sums.hpp"
+
+namespace cluxel::rdf {
+
+class StoreSnapshot;
+class ValueCache;
+
+/// The LMDB databases of a map file. An index is one constant key with sorted 16-byte values.
+enum class Table : std::uint8_t { Blocks, Terms, TermHashes, Spog, Posg, Ospg, Gspo };
+inline constexpr std::size_t kTableCount = 7;
+inline constexpr std::array<const char*, kTableCount> kTableNames = {"blocks", "terms", "hashes", "spog",
+                                                                     "posg",   "ospg",  "gspo"};
+
+constexpr unsigned tableFlags(Table table) {
+  switch (table) {
+    case Table::Blocks:
+      return 0;
+    case Table::Terms:
+      return MDB_INTEGERKEY;
+    default:
+      return MDB_DUPSORT | MDB_DUPFIXED;
+  }
+}
+
+class LmdbEnvironment final : public Environment {
+ public:
+  /// `data_lock` is the file descriptor that holds the writer's lock; the environment takes ownership.
+  LmdbEnvironment(std::filesystem::path file, EnvHandle handle, int data_lock, bool can_write);
+  ~LmdbEnvironment() override;
+  LmdbEnvironment(const LmdbEnvironment&) = delete;
+  LmdbEnvironment& operator=(const LmdbEnvironment&) = delete;
+
+  ReadTransaction read() const override;
+  WriteTransaction write() override;
+  const std::filesystem::path& file() const override { return file_; }
+  void compactTo(const std::filesystem::path& target) const override;
+
+  std::uint64_t fileSize() const;  ///< at this moment
+  MDB_env* handle() const { return handle_.get(); }
+  MDB_dbi mainTable() const { return main_; }  ///< LMDB's table of tables, with the records of the format
+  MDB_dbi table(Table table) const { return tables_[static_cast<std::size_t>(table)]; }
+  ValueCache& values() const { return *values_; }
+  /// The shared snapshot of commit `transaction_id`; `make` creates it on first use.
+  std::shared_ptr<StoreSnapshot> snapshot(std::size_t transaction_id,
+                                          const std::function<std::shared_ptr<StoreSnapshot>()>& make) const;
+  void allowWriting();
+  /// From now on the file may be renamed or removed.
+  void loseName() { has_name_ = false; }
+  /// True for a map that was written before its quads and terms had sums; it gets them with the next commit.
+  bool isOfFirstFormat() const { return first_format_; }
+  /// True for the last commit of this process: what it read was verified, so what it wrote need not be.
+  bool wrote(std::size_t transaction_id) const { return own_commit_ == transaction_id; }
+  void noteCommit(std::size_t transaction_id) {
+    own_commit_ = transaction_id;
+    first_format_ = false;
+  }
+  bool canWrite() const { return can_write_; }
+  void check(int code, std::string_view doing) const { checkLmdb(code, file_, doing); }
+  void enterWriting();
+  void leaveWriting();
+  /// Creates the databases of a new file or opens existing ones, and checks the format.
+  void openTables();
+
+ private:
+  void lockAgainstProcesses();
+  void requireName();
+  void createTables(ReadTransaction::Impl& transaction);
+  void verifyForWriting(std::size_t commit);
+  void startSums(WriteTransaction& transaction, std::size_t commit);
+
+  std::filesystem::path file_;
+  EnvHandle handle_;
+  int data_lock_;
+  bool can_write_, has_name_ = true;
+  std::atomic<bool> writing_allowed_{false};
+  std::atomic<bool> first_format_{false}, verified_{false};  ///< verified_: writers may trust the file
+  std::atomic<std::size_t> own_commit_{0};
+  std::array<MDB_dbi, kTableCount> tables_{};
+  MDB_dbi main_ = 0;
+  std::unique_ptr<ValueCache> values_;
+  mutable std::mutex snapshot_mutex_;
+  mutable std::size_t snapshot_transaction_ = 0;
+  mutable std::shared_ptr<StoreSnapshot> snapshot_;
+  std::mutex writer_mutex_;
+  std::condition_variable writer_left_;
+  bool writer_active_ = false;
+  std::thread::id writer_thread_;
+};
+
+struct ReadTransaction::Impl {
+  std::shared_ptr<LmdbEnvironment> environment;
+  MDB_txn* txn = nullptr;
+  bool writing = false;
+  std::uint64_t committed_terms = 0;  ///< in a write transaction: the number of terms before it
+  std::uint64_t generation = 0;       ///< incremented with each change in a write transaction
+  BlockKeys block_keys;
+  StoreSums sums;                           ///< of a write transaction
+  std::shared_ptr<StoreSnapshot> snapshot;  ///< created on first use, for this generation
+  std::uint64_t snapshot_generation = 0;
+
+  Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl();
+  MDB_dbi table(Table which) const { return environment->table(which); }
+  void check(int code, std::string_view doing) const { environment->check(code, doing); }
+  MDB_txn* live() const;  ///< throws when the transaction has ended
+  void end();
+};
+
+/// Adds the sums that a map of the first format lacks.
+void makeSums(WriteTransaction& transaction);
+
+/// As ReadTransaction::block().
+std::optional<std::string_view> readBlock(ReadTransaction::Impl& transaction, std::string_view table,
+                                          std::string_view key);
+/// The bytes of a stored block under "table, zero byte, key". Throws Error when its checksum is wrong.
+std::string_view verifiedBlock(std::string_view full_key, std::string_view stored, const std::filesystem::path& file);
+
+}  // namespace cluxel::rdf

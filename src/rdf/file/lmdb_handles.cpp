@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Error messages for LMDB's and the system's error codes.
+#include "rdf/file/lmdb_handles.hpp"
+
+#include <cerrno>
+#include <string>
+
+#include "cluxel/error.hpp"
+
+namespace cluxel::rdf {
+
+namespace {
+
+constexpr std::string_view kDamaged =
+    "the map is damaged; run `cluxel doctor` for the location, restore a copy or build it again";
+
+std::string explain(int code, std::string_view doing) {
+  const std::string attempt = "cannot " + std::string(doing) + ": ";
+  switch (code) {
+    case MDB_INVALID:
+      return "is not a Cluxel map";
+    case MDB_VERSION_MISMATCH:
+      return "was written by another data format of LMDB; `cluxel export` it with its program";
+    case MDB_CORRUPTED:
+    case MDB_PAGE_NOTFOUND:
+    case MDB_PANIC:
+      return attempt + std::string(kDamaged);
+    case MDB_MAP_FULL:
+    case MDB_MAP_RESIZED:
+    case ENOMEM:
+      return attempt + "no address space is left; raise the limit (ulimit -v)";
+    case MDB_READERS_FULL:
+      return attempt + "too many readers are at work; wait for some to end";
+    case EIO:  // LMDB reports a short write as EIO
+    case ENOSPC:
+    case EFBIG:
+    case EDQUOT:
+      return attempt +
+             "no space is left on the disk, or the disk fails; the map keeps its last commit: free some "
+             "space and run again";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return attempt + "permission denied; check the rights of the file and its folder";
+    case ENOENT:
+      return attempt + "there is no such file";
+    default:
+      return attempt + mdb_strerror(code);
+  }
+}
+
+}  // namespace
+
+void failStore(const std::filesystem::path& file, int code, std::string_view doing) {
+  throw Error(ErrorKind::StoreUnavailable, file.string() + ": " + explain(code, doing));
+}
+
+}  // namespace cluxel::rdf

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Atomic replacement of a map file, and protection of writers from writing to a replaced file.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+
+#include "cluxel/error.hpp"
+#include "rdf/file/environment.hpp"
+
+namespace cluxel::rdf {
+
+/// Another process is writing to the map, or copying it.
+class MapBusy : public Error {
+ public:
+  explicit MapBusy(const std::filesystem::path& map);
+};
+
+/// The file was replaced or removed since it was opened; writes to it would be lost.
+class MapReplaced : public Error {
+ public:
+  explicit MapReplaced(const std::filesystem::path& map);
+};
+
+/// A write transaction on the file that is now called `map`; reopens it when it was replaced during the wait. Throws
+/// MapBusy when another process still holds the lock after `patience` (at least 1.5 s).
+WriteTransaction writeMap(const std::filesystem::path& map, std::chrono::milliseconds patience = {});
+
+/// Renames `fresh`, which has no writer, to `map`. If `map` exists, the caller must hold a write transaction on it.
+/// Readers of the old file continue; no process opens one map with the lock file of the other; the name refers to a
+/// complete map at all times. Throws Error naming both files and leaves `fresh` in place.
+void replaceMapFile(const std::filesystem::path& fresh, const std::filesystem::path& map);
+
+}  // namespace cluxel::rdf

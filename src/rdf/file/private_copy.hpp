@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// A copy of a map for a reader that cannot register in the lock file: without that, a writer reuses the pages it reads.
+#pragma once
+
+#include <filesystem>
+
+#include "rdf/file/file_guards.hpp"
+
+namespace cluxel::rdf {
+
+/// The copy in a temporary folder, which is removed with this object.
+class PrivateCopy {
+ public:
+  /// Copies the last commit of `map`, open as `descriptor`, while no process writes. Throws MapBusy when a writer does
+  /// not end within 1.5 s; Error (StoreUnavailable) when the temporary folder has no room.
+  PrivateCopy(const std::filesystem::path& map, int descriptor);
+
+  const std::filesystem::path& file() const { return file_; }
+  Descriptor takeDescriptor() { return std::move(copy_); }
+
+ private:
+  TemporaryFolder folder_;
+  std::filesystem::path file_;
+  Descriptor copy_;
+};
+
+}  // namespace cluxel::rdf

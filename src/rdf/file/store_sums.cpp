@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads and writes the sums of quads and terms.
+#include "rdf/file/store_sums.hpp"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+#include "cluxel/error.hpp"
+#include "rdf/file/check/map_file_head.hpp"
+#include "rdf/file/lmdb_environment.hpp"
+
+namespace cluxel::rdf {
+
+namespace {
+
+constexpr std::string_view kSumsKey = "cluxel-sums", kTermSumTable = "term sums";
+/// A block of sums is short enough to lie within a page.
+constexpr TermId kSumsOfBlock = 128;
+
+struct SumsRecord {
+  StoreSums sums;
+  std::uint64_t checksum;
+};
+
+std::uint64_t checksumOf(const StoreSums& sums) {
+  return XXH3_64bits(&sums, sizeof sums);
+}
+
+std::string keyOfSums(TermId block) {
+  const TermId big_endian = __builtin_bswap32(block);
+  return {reinterpret_cast<const char*>(&big_endian), sizeof big_endian};
+}
+
+std::vector<std::uint64_t> sumsOfBlock(ReadTransaction::Impl& transaction, TermId block) {
+  std::vector<std::uint64_t> sums;
+  if (const auto bytes = readBlock(transaction, kTermSumTable, keyOfSums(block))) {
+    sums.resize(bytes->size() / sizeof(std::uint64_t));
+    std::memcpy(sums.data(), bytes->data(), sums.size() * sizeof(std::uint64_t));
+  }
+  return sums;
+}
+
+/// A key of an index, its ids in the order s, p, o, g.
+template <Table kIndex>
+Key128 inOrderOfSpog(Key128 key) {
+  const auto id = [key](unsigned place) { return Key128{static_cast<TermId>(key >> (32 * (3 - place)))}; };
+  const auto joined = [](Key128 s, Key128 p, Key128 o, Key128 g) { return s << 96U | p << 64U | o << 32U | g; };
+  if constexpr (kIndex == Table::Posg) return joined(id(2), id(0), id(1), id(3));
+  if constexpr (kIndex == Table::Ospg) return joined(id(1), id(2), id(0), id(3));
+  if constexpr (kIndex == Table::Gspo) return joined(id(1), id(2), id(3), id(0));
+  return key;
+}
+
+template <Table kIndex>
+EntrySum sumOfIndex(const PageDirectory& directory, const std::filesystem::path& file) {
+  EntrySum sum;
+  Key128 last = 0;
+  for (std::size_t i = 0; i < directory.pageCount(); ++i) {
+    const std::span<const QuadKey> keys = directory.page(i);
+    bool in_order = !keys.empty() && toNumber(keys.front()) >= directory.lower(i) &&
+                    (i == 0 || (last < directory.lower(i) && last < toNumber(keys.front())));
+    if (in_order) last = toNumber(keys.front()) - 1;
+    for (const QuadKey& key : keys) {
+      const Key128 number = toNumber(key);
+      in_order = in_order && number > last;
+      last = number;
+      sum.hash += hashOfKey(inOrderOfSpog<kIndex>(number));
+    }
+    sum.count += keys.size();
+    if (!in_order)
+      refuseDamaged(file, std::string("the keys of index ") + kTableNames[static_cast<std::size_t>(kIndex)] +
+                              " are out of order");
+  }
+  return sum;
+}
+
+}  // namespace
+
+EntrySum sumOf(const PageDirectory& directory, Table index, const std::filesystem::path& file) {
+  switch (index) {
+    case Table::Posg:
+      return sumOfIndex<Table::Posg>(directory, file);
+    case Table::Ospg:
+      return sumOfIndex<Table::Ospg>(directory, file);
+    case Table::Gspo:
+      return sumOfIndex<Table::Gspo>(directory, file);
+    default:
+      return sumOfIndex<Table::Spog>(directory, file);
+  }
+}
+
+std::optional<StoreSums> storedSums(const ReadTransaction::Impl& transaction, std::uint64_t commit) {
+  const std::filesystem::path& file = transaction.environment->file();
+  MDB_val key = toVal(kSumsKey);
+  MDB_val value;
+  const int code = mdb_get(transaction.live(), transaction.environment->mainTable(), &key, &value);
+  if (code == MDB_NOTFOUND && transaction.environment->isOfFirstFormat()) return std::nullopt;
+  if (code == MDB_NOTFOUND) refuseDamaged(file, "the sums of its quads are missing");
+  transaction.check(code, "read the sums of quads");
+  SumsRecord record{};
+  if (value.mv_size == sizeof record) std::memcpy(&record, value.mv_data, sizeof record);
+  if (value.mv_size != sizeof record || record.checksum != checksumOf(record.sums))
+    refuseDamaged(file, "the sums of its quads have a wrong checksum");
+  if (record.sums.transaction != commit) refuseDamaged(file, "the sums of its quads are those of another commit");
+  return record.sums;
+}
+
+void storeSums(const ReadTransaction::Impl& transaction, const StoreSums& sums) {
+  SumsRecord record{sums, checksumOf(sums)};
+  MDB_val key = toVal(kSumsKey);
+  MDB_val value{sizeof record, &record};
+  transaction.check(mdb_put(transaction.live(), transaction.environment->mainTable(), &key, &value, 0),
+                    "write the sums of quads");
+}
+
+void TermSumWriter::add(const TermHash& hash, TermId id) {
+  sums_[id / kTermsOfSum] += hashOfKey(keyOfTerm(hash, id));
+}
+
+void TermSumWriter::store() {
+  for (auto first = sums_.begin(); first != sums_.end();) {
+    const TermId block = first->first / kSumsOfBlock;
+    std::vector<std::uint64_t> sums = sumsOfBlock(transaction_.impl(), block);
+    for (; first != sums_.end() && first->first / kSumsOfBlock == block; ++first) {
+      const std::size_t place = first->first % kSumsOfBlock;
+      if (sums.size() <= place) sums.resize(place + 1);
+      sums[place] += first->second;
+    }
+    transaction_.putBlock(kTermSumTable, keyOfSums(block),
+                          {reinterpret_cast<const char*>(sums.data()), sums.size() * sizeof(std::uint64_t)});
+  }
+  sums_.clear();
+}
+
+std::vector<std::uint64_t> storedTermSums(ReadTransaction::Impl& transaction, std::uint64_t terms) {
+  const std::size_t wanted = terms / kTermsOfSum + 1;
+  std::vector<std::uint64_t> sums;
+  sums.reserve(wanted);
+  for (TermId block = 0; sums.size() < wanted && terms > 0; ++block) {
+    const std::vector<std::uint64_t> more = sumsOfBlock(transaction, block);
+    if (more.size() != std::min<std::size_t>(kSumsOfBlock, wanted - sums.size()))
+      refuseDamaged(transaction.environment->file(), "some of the sums of its terms are missing");
+    sums.insert(sums.end(), more.begin(), more.end());
+  }
+  return sums;
+}
+
+}  // namespace cluxel::rdf

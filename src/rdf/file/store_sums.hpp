@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// The number and a hash of all quads, of all entries of the index of terms, and of each 64 terms. They tell a changed
+// bit from a whole map, and change with every insertion and removal at the cost of one hash.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "rdf/file/page_directory.hpp"
+#include "rdf/store/quad_store.hpp"
+#include "rdf/terms/term_record.hpp"
+
+namespace cluxel::rdf {
+
+enum class Table : std::uint8_t;
+
+/// A folded product of both halves: any changed bit changes about half of the result.
+inline std::uint64_t hashOfKey(Key128 key) {
+  const std::uint64_t high = static_cast<std::uint64_t>(key >> 64U) ^ 0x9E3779B97F4A7C15U;
+  const std::uint64_t low = static_cast<std::uint64_t>(key) ^ 0xD1B54A32D192ED03U;
+  const Key128 product = static_cast<Key128>(high) * low;
+  return static_cast<std::uint64_t>(product >> 64U) ^ static_cast<std::uint64_t>(product) ^ (high + (low << 1U));
+}
+
+/// Independent of the order of keys; hashes add up modulo 2^64.
+struct EntrySum {
+  std::uint64_t count = 0, hash = 0;
+  bool operator==(const EntrySum&) const = default;
+  void add(Key128 key) {
+    ++count;
+    hash += hashOfKey(key);
+  }
+  void remove(Key128 key) {
+    --count;
+    hash -= hashOfKey(key);
+  }
+};
+
+/// The record of a commit in the main database.
+struct StoreSums {
+  std::uint64_t transaction = 0;  ///< the commit that wrote it
+  EntrySum quads;                 ///< of each index, keys in the order s, p, o, g
+  EntrySum term_hashes;
+  bool operator==(const StoreSums&) const = default;
+};
+
+/// None in a map of format 1. Throws Error (StoreUnavailable) when the record is damaged or of another commit than
+/// `commit`.
+std::optional<StoreSums> storedSums(const ReadTransaction::Impl& transaction, std::uint64_t commit);
+void storeSums(const ReadTransaction::Impl& transaction, const StoreSums& sums);
+
+/// The sum of an index, with the keys of quads in the order s, p, o, g. Throws Error (StoreUnavailable) when keys are
+/// out of order. Cost: 2 ns a key.
+EntrySum sumOf(const PageDirectory& directory, Table index, const std::filesystem::path& file);
+
+/// The key of a term in its sum.
+inline Key128 keyOfTerm(const TermHash& hash, TermId id) {
+  return (Key128{hash.high} << 64U) | (Key128{hash.low} << 32U) | id;
+}
+
+inline constexpr TermId kTermsOfSum = 64;
+
+/// Sums of terms of a write transaction, for terms whose ids ascend.
+class TermSumWriter {
+ public:
+  explicit TermSumWriter(WriteTransaction& transaction) : transaction_(transaction) {}
+  void add(const TermHash& hash, TermId id);
+  void store();
+
+ private:
+  WriteTransaction& transaction_;
+  std::map<TermId, std::uint64_t> sums_;  ///< of new terms, by the number of their 64
+};
+
+/// The stored sums of all terms up to `terms`. Throws Error (StoreUnavailable) when some are missing.
+std::vector<std::uint64_t> storedTermSums(ReadTransaction::Impl& transaction, std::uint64_t terms);
+
+}  // namespace cluxel::rdf

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// All claims are compared before any is granted: the result is independent of arrival order.
+#include "rules/objects/absorbing.hpp"
+
+#include <algorithm>
+
+#include "rules/propose/fragment_search.hpp"
+#include "rules/propose/pair_measures.hpp"
+
+namespace cluxel::rules {
+
+namespace {
+
+constexpr int kRounds = 3;  // fragments next to an absorbed one may follow, but not in an unbounded chain
+
+struct Claim {
+  FragmentIndex fragment = 0;
+  std::size_t object = 0;
+  const AbsorbSpec* spec = nullptr;
+  double share = 0, gap = 0;
+};
+
+class Absorbing {
+ public:
+  Absorbing(ReasoningState& state, std::size_t first, bool late) : state_(state), first_(first), late_(late) {
+    for (std::size_t i = first; i < state.objects.size(); ++i) budget_.push_back(pointsOf(state.objects[i]));
+    absorbed_.resize(budget_.size(), 0);
+  }
+
+  void run() {
+    for (int round = 0; round < kRounds; ++round)
+      if (!grant(weigh())) break;
+  }
+
+ private:
+  double pointsOf(const ObjectInMaking& object) const {
+    double points = 0;
+    for (FragmentIndex fragment : state_.fragmentsOf(object)) points += state_.fragments.shapeOf(fragment).points;
+    return points;
+  }
+
+  /// The first member in canonical order identifies an object independently of its number.
+  FragmentIndex firstMember(std::size_t object) const {
+    const auto fragments = state_.fragmentsOf(state_.objects[object]);
+    return *std::min_element(fragments.begin(), fragments.end(),
+                             [this](FragmentIndex a, FragmentIndex b) { return state_.fragments.before(a, b); });
+  }
+
+  bool isBetter(const Claim& a, const Claim& b) const {
+    if (a.share != b.share) return a.share > b.share;
+    if (a.gap != b.gap) return a.gap < b.gap;
+    return a.object != b.object && state_.fragments.before(firstMember(a.object), firstMember(b.object));
+  }
+
+  std::vector<Claim> weigh() {
+    std::map<FragmentIndex, Claim> best;
+    for (std::size_t i = first_; i < state_.objects.size(); ++i) {
+      ObjectInMaking& object = state_.objects[i];
+      const auto now = [this](const AbsorbSpec& spec) { return spec.late == late_; };
+      if (std::none_of(object.leaf->absorb.begin(), object.leaf->absorb.end(), now)) continue;
+      if (state_.fragmentsOf(object).empty()) continue;
+      state_.renewBindings(object);
+      const Candidate whole = state_.fragments.extentOf(state_.fragmentsOf(object));
+      for (const AbsorbSpec& spec : object.leaf->absorb)
+        if (now(spec)) weighSpec(i, spec, whole, best);
+    }
+    std::vector<Claim> claims;
+    claims.reserve(best.size());
+    for (const auto& [fragment, claim] : best) claims.push_back(claim);
+    std::sort(claims.begin(), claims.end(), [this](const Claim& a, const Claim& b) {
+      if (a.share != b.share) return a.share > b.share;
+      if (a.gap != b.gap) return a.gap < b.gap;
+      return state_.fragments.before(a.fragment, b.fragment);
+    });
+    return claims;
+  }
+
+  void weighSpec(std::size_t number, const AbsorbSpec& spec, const Candidate& whole,
+                 std::map<FragmentIndex, Claim>& best) const {
+    const ObjectInMaking& object = state_.objects[number];
+    auto is_eligible = [&](FragmentIndex fragment) {
+      if (state_.fragments[fragment].owner != kFree) return false;
+      const scan::PrimitiveLabel label = state_.fragments.labelOf(fragment);
+      return spec.labels.empty() || std::find(spec.labels.begin(), spec.labels.end(), label) != spec.labels.end();
+    };
+    for (FragmentIndex fragment : findPassing(state_, *object.rule, spec.when, "it", object.bindings, is_eligible)) {
+      const Candidate it = state_.fragments.candidateOf({fragment});
+      Claim claim{fragment, number, &spec, measurePair(state_, PairMeasure::AdjacentFraction, it, whole), 0};
+      if (claim.share == 0) claim.gap = measurePair(state_, PairMeasure::Gap, it, whole, 5.0);
+      const auto [entry, fresh] = best.try_emplace(fragment, claim);
+      if (!fresh && isBetter(claim, entry->second)) entry->second = claim;
+    }
+  }
+
+  bool grant(const std::vector<Claim>& claims) {
+    bool any = false;
+    for (const Claim& claim : claims) {
+      ObjectInMaking& object = state_.objects[claim.object];
+      const double points = state_.fragments.shapeOf(claim.fragment).points;
+      double& so_far = absorbed_[claim.object - first_];
+      if (so_far + points > claim.spec->max_fraction_of_points * budget_[claim.object - first_]) continue;
+      so_far += points;
+      state_.fragments.setOwner(claim.fragment, static_cast<OwnerIndex>(claim.object));
+      addTo(object, claim);
+      any = true;
+    }
+    return any;
+  }
+
+  void addTo(ObjectInMaking& object, const Claim& claim) {
+    for (PartInMaking& part : object.parts) {
+      if (part.name != claim.spec->into) continue;
+      part.fragments.push_back(claim.fragment);
+      part.is_outdated = true;
+      return;
+    }
+    object.parts.front().fragments.push_back(claim.fragment);
+  }
+
+  ReasoningState& state_;
+  std::size_t first_;
+  bool late_;
+  std::vector<double> budget_, absorbed_;
+};
+
+}  // namespace
+
+void absorbMisfits(ReasoningState& state, std::size_t first, bool late) {
+  Absorbing(state, first, late).run();
+}
+
+}  // namespace cluxel::rules

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+// All fragments are collected before any is assigned in a round: the result is independent of their order.
+#include "rules/objects/crown_gathering.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "rules/objects/crown_splitting.hpp"
+
+namespace cluxel::rules {
+
+namespace {
+
+class Gathering {
+ public:
+  Gathering(ReasoningState& state, const std::string& class_iri) : state_(state) {
+    for (OwnerIndex owner = 0; owner < state.objects.size(); ++owner) {
+      const ObjectInMaking& object = state.objects[owner];
+      if (object.rule->class_iri != class_iri || !object.leaf->splitting || !object.leaf->splitting->gather) continue;
+      if (const PartInMaking* from = partOf(object, object.leaf->splitting->from)) add(owner, *from);
+    }
+    std::sort(gatherers_.begin(), gatherers_.end(), [this](const Gatherer& a, const Gatherer& b) {
+      return a.owner != b.owner && state_.fragments.before(a.first_fragment, b.first_fragment);
+    });
+    of_owner_.resize(state.objects.size());
+    for (std::size_t g = 0; g < gatherers_.size(); ++g) {
+      of_owner_[gatherers_[g].owner].push_back(g);
+      for (const scan::PrimitiveLabel label : gatherers_[g].labels) {
+        const GatherSpec& spec = *gatherers_[g].spec->gather;
+        const Demand demand{label, spec.above_m, spec.within_m};
+        if (std::find(demands_.begin(), demands_.end(), demand) == demands_.end()) demands_.push_back(demand);
+      }
+    }
+  }
+
+  void run() {
+    if (gatherers_.empty()) return;
+    for (FragmentIndex fragment = 0; fragment < state_.fragments.size(); ++fragment) lookAround(fragment);
+    while (true) {
+      const std::vector<ReachedFragment> in_reach = reached();
+      std::vector<FragmentIndex> given;
+      const auto before = static_cast<FragmentIndex>(state_.fragments.size());
+      for (const ReachedFragment& found : in_reach) hand(found, given);
+      if (given.empty()) break;
+      for (FragmentIndex made = before; made < state_.fragments.size(); ++made) lookAround(made);
+      for (const FragmentIndex fragment : given) spreadFrom(fragment);
+    }
+    for (const Gatherer& gatherer : gatherers_) renew(gatherer);
+  }
+
+ private:
+  struct Gatherer {
+    OwnerIndex owner = 0;
+    FragmentIndex first_fragment = 0;  ///< the first of its `from` in canonical order
+    const SplittingSpec* spec = nullptr;
+    Eigen::Vector2d top = Eigen::Vector2d::Zero();
+    std::vector<scan::PrimitiveLabel> labels;  ///< of the split crown
+  };
+  /// What some gatherer takes: fragments of a label, at or above a height, within a distance.
+  struct Demand {
+    scan::PrimitiveLabel label;
+    double above_m = 0, within_m = 0;
+    bool operator==(const Demand&) const = default;
+  };
+  struct ReachedFragment {
+    FragmentIndex fragment = 0;
+    std::map<std::size_t, double> near;  ///< number in gatherers_ → gap to its object [m]
+  };
+
+  static const PartInMaking* partOf(const ObjectInMaking& object, const std::string& name) {
+    for (const PartInMaking& part : object.parts)
+      if (part.name == name && !part.fragments.empty()) return &part;
+    return nullptr;
+  }
+
+  void add(OwnerIndex owner, const PartInMaking& from) {
+    Gatherer gatherer{owner, from.fragments.front(), &*state_.objects[owner].leaf->splitting, {}, {}};
+    for (FragmentIndex fragment : from.fragments)
+      if (state_.fragments.before(fragment, gatherer.first_fragment)) gatherer.first_fragment = fragment;
+    Candidate foot;
+    foot.fragments = from.fragments;
+    gatherer.top = topOf(state_.scene.cluxels, state_.fragments.cluxelsOf(foot));
+    if (const PartInMaking* crown = partOf(state_.objects[owner], gatherer.spec->part))
+      for (FragmentIndex fragment : crown->fragments) gatherer.labels.push_back(state_.fragments.labelOf(fragment));
+    gatherers_.push_back(std::move(gatherer));
+  }
+
+  bool mayTake(const Gatherer& gatherer, FragmentIndex fragment) const {
+    return state_.fragments.shapeOf(fragment)[perception::Attribute::Bottom] >= gatherer.spec->gather->above_m &&
+           std::find(gatherer.labels.begin(), gatherer.labels.end(), state_.fragments.labelOf(fragment)) !=
+               gatherer.labels.end();
+  }
+
+  bool isFree(FragmentIndex fragment) const {
+    return state_.fragments[fragment].alive && state_.fragments[fragment].owner == kFree;
+  }
+
+  /// The gatherers of the object that owns the cluxel; null when there are none.
+  const std::vector<std::size_t>* gatherersAt(std::uint32_t cluxel) const {
+    const OwnerIndex owner = state_.fragments[state_.fragments.fragmentOf(cluxel)].owner;
+    return owner < of_owner_.size() && !of_owner_[owner].empty() ? &of_owner_[owner] : nullptr;
+  }
+
+  /// The largest distance at which some gatherer may take the fragment [m]; 0 when none may.
+  double widestFor(FragmentIndex fragment) const {
+    double widest = 0;
+    const double bottom = state_.fragments.shapeOf(fragment)[perception::Attribute::Bottom];
+    for (const Demand& demand : demands_)
+      if (demand.label == state_.fragments.labelOf(fragment) && bottom >= demand.above_m)
+        widest = std::max(widest, demand.within_m);
+    return widest;
+  }
+
+  /// Notes which gatherers are near a free fragment.
+  void lookAround(FragmentIndex fragment) {
+    if (!isFree(fragment)) return;
+    const double widest = widestFor(fragment);
+    if (widest == 0) return;
+    for (std::uint32_t cluxel : state_.fragments[fragment].cluxels)
+      state_.grid.near(cluxel, widest, [&](std::uint32_t other) {
+        if (const auto* numbers = gatherersAt(other))
+          for (std::size_t g : *numbers) consider(g, fragment, cluxel, other);
+      });
+  }
+
+  /// Notes which free fragments are near one that an object has just got.
+  void spreadFrom(FragmentIndex fragment) {
+    const auto& numbers = of_owner_[state_.fragments[fragment].owner];
+    double widest = 0;
+    for (std::size_t g : numbers) widest = std::max(widest, gatherers_[g].spec->gather->within_m);
+    for (std::uint32_t cluxel : state_.fragments[fragment].cluxels)
+      state_.grid.near(cluxel, widest, [&](std::uint32_t other) {
+        const FragmentIndex theirs = state_.fragments.fragmentOf(other);
+        if (!isFree(theirs)) return;
+        for (std::size_t g : numbers) consider(g, theirs, other, cluxel);
+      });
+  }
+
+  void consider(std::size_t number, FragmentIndex fragment, std::uint32_t cluxel, std::uint32_t other) {
+    const Gatherer& gatherer = gatherers_[number];
+    if (!mayTake(gatherer, fragment)) return;
+    const double gap = gapBetween(state_.scene.cluxels, cluxel, other).gap();
+    if (gap > gatherer.spec->gather->within_m) return;
+    double& smallest = near_[fragment].try_emplace(number, gap).first->second;
+    smallest = std::min(smallest, gap);
+  }
+
+  /// The free fragments within reach of a gatherer in the current state, in canonical order.
+  std::vector<ReachedFragment> reached() const {
+    std::vector<ReachedFragment> in_reach;
+    for (const auto& [fragment, near] : near_)
+      if (isFree(fragment)) in_reach.push_back({fragment, near});
+    std::sort(in_reach.begin(), in_reach.end(), [this](const ReachedFragment& a, const ReachedFragment& b) {
+      return a.fragment != b.fragment && state_.fragments.before(a.fragment, b.fragment);
+    });
+    return in_reach;
+  }
+
+  /// Cuts the fragment among the gatherers that are near and reach it. Adds the fragments that were given away to
+  /// `given`.
+  void hand(const ReachedFragment& found, std::vector<FragmentIndex>& given) {
+    std::map<std::size_t, std::vector<std::uint32_t>> parts;  // by gatherer
+    std::vector<std::uint32_t> rest;
+    for (std::uint32_t cluxel : state_.fragments[found.fragment].cluxels) {
+      const auto taker = nearestOf(found, cluxel);
+      (taker ? parts[*taker] : rest).push_back(cluxel);
+    }
+    if (parts.empty()) return;
+    std::vector<std::vector<std::uint32_t>> kept;
+    for (auto& [taker, cluxels] : parts) kept.push_back(std::move(cluxels));
+    for (auto& bunch : connectedBunches(state_.scene.cluxels, rest)) kept.push_back(std::move(bunch));
+    const auto made = state_.fragments.cut(found.fragment, std::move(kept));
+    std::size_t next = 0;
+    for (const auto& [taker, cluxels] : parts) {
+      given.push_back(made[next]);
+      give(made[next++], gatherers_[taker], found.near.at(taker));
+    }
+  }
+
+  /// Of the gatherers that are near the fragment and reach the cluxel, the one with the nearest top in plan view.
+  std::optional<std::size_t> nearestOf(const ReachedFragment& found, std::uint32_t cluxel) const {
+    double nearest = std::numeric_limits<double>::infinity();
+    std::optional<std::size_t> taker;
+    for (const auto& [number, gap] : found.near) {
+      const double distance = (state_.scene.cluxels.center[cluxel].head<2>() - gatherers_[number].top).norm();
+      if (distance <= gatherers_[number].spec->reach_m && distance < nearest) nearest = distance, taker = number;
+    }
+    return taker;
+  }
+
+  void give(FragmentIndex fragment, const Gatherer& gatherer, double gap_m) {
+    state_.fragments.setOwner(fragment, gatherer.owner);
+    ObjectInMaking& object = state_.objects[gatherer.owner];
+    for (PartInMaking& part : object.parts)
+      if (part.name == gatherer.spec->part) part.fragments.push_back(fragment);
+    record(fragment, gatherer, gap_m);
+  }
+
+  /// Adds a decision, so that `explain` can report why the primitive belongs to the object.
+  void record(FragmentIndex fragment, const Gatherer& gatherer, double gap_m) {
+    const ObjectInMaking& object = state_.objects[gatherer.owner];
+    const SplittingSpec& spec = *gatherer.spec;
+    Decision decision;
+    decision.rule_id = object.rule->id;
+    decision.seed = state_.fragments[fragment].primitive;
+    decision.seeds = {decision.seed};
+    decision.accepted = true;
+    decision.leaf = state_.decisions[object.decision].leaf;
+    decision.reason = "gathered into " + spec.part + " of the " + state_.rules.shorten(object.rule->class_iri) +
+                      " whose " + spec.from + " is nearest in plan view";
+    DecisionStep step;
+    step.rule_id = object.rule->id;
+    step.test = "gap to the object <= gather's `within`";
+    step.file = spec.at.file;
+    step.line = spec.at.line;
+    step.measured = gap_m;
+    step.threshold = spec.gather->within_m;
+    step.unit = "m";
+    step.passed = true;
+    decision.path.push_back(std::move(step));
+    state_.decisions.push_back(std::move(decision));
+  }
+
+  void renew(const Gatherer& gatherer) {
+    for (PartInMaking& part : state_.objects[gatherer.owner].parts)
+      if (part.name == gatherer.spec->part) part.is_outdated = true;
+  }
+
+  ReasoningState& state_;
+  std::vector<Gatherer> gatherers_;
+  std::vector<std::vector<std::size_t>> of_owner_;               ///< numbers in gatherers_
+  std::vector<Demand> demands_;                                  ///< each once
+  std::map<FragmentIndex, std::map<std::size_t, double>> near_;  ///< see ReachedFragment::near
+};
+
+}  // namespace
+
+void gatherFragments(ReasoningState& state, const std::string& class_iri) {
+  Gathering(state, class_iri).run();
+}
+
+}  // namespace cluxel::rules

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+// Multi-source Dijkstra (Boost.Graph): all trunks are sources, the vertices are the cluxels of the crown.
+#include "rules/objects/crown_splitting.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/graph/dijkstra_shortest_paths_no_color_map.hpp>
+#include <boost/property_map/function_property_map.hpp>
+#include <cmath>
+#include <compare>
+#include <limits>
+
+#include "rules/propose/cluxel_grid.hpp"
+
+namespace cluxel::rules {
+
+namespace {
+
+constexpr double kJumpPenalty = 2.0;
+constexpr double kTop_m = 0.5;
+constexpr double kRounding_m = 1e-6;  // half diagonals are rounded to floats
+
+/// Crown cluxels in cells as wide as the largest allowed jump. Finds pairs across gaps that no edge of the cluxel graph
+/// bridges.
+class JumpGrid {
+ public:
+  struct Entry {
+    Eigen::Vector3d centre;
+    double half_m = 0;   ///< half of the box's diagonal
+    std::size_t at = 0;  ///< number in the crown
+  };
+
+  JumpGrid(const perception::SceneCluxels& all, std::span<const std::uint32_t> crown, double centres_m)
+      : cell_m_(std::max(centres_m, 0.05)) {
+    std::vector<std::pair<Cell, std::size_t>> order;
+    for (std::size_t i = 0; i < crown.size(); ++i) order.emplace_back(cellOf(all.center[crown[i]]), i);
+    std::sort(order.begin(), order.end());
+    for (const auto& [cell, i] : order) {
+      if (cells_.empty() || cells_.back().first != cell) cells_.emplace_back(cell, entries_.size());
+      entries_.push_back({all.center[crown[i]], static_cast<double>(all.extent[crown[i]].norm()) / 2, i});
+    }
+  }
+
+  template <typename Visit>
+  void near(const Eigen::Vector3d& p, const Visit& visit) const {
+    const Cell centre = cellOf(p);
+    for (int dx = -1; dx <= 1; ++dx)
+      for (int dy = -1; dy <= 1; ++dy) {
+        const Cell first{centre[0] + dx, centre[1] + dy, centre[2] - 1}, last{first[0], first[1], centre[2] + 1};
+        auto cell = std::lower_bound(cells_.begin(), cells_.end(), std::pair(first, std::size_t{0}));
+        for (; cell != cells_.end() && cell->first <= last; ++cell) {
+          const std::size_t end = cell + 1 == cells_.end() ? entries_.size() : (cell + 1)->second;
+          for (std::size_t i = cell->second; i < end; ++i) visit(entries_[i]);
+        }
+      }
+  }
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+  Cell cellOf(const Eigen::Vector3d& p) const {
+    return {static_cast<std::int64_t>(std::floor(p.x() / cell_m_)),
+            static_cast<std::int64_t>(std::floor(p.y() / cell_m_)),
+            static_cast<std::int64_t>(std::floor(p.z() / cell_m_))};
+  }
+  double cell_m_;
+  std::vector<std::pair<Cell, std::size_t>> cells_;  ///< with the first of their entries, ascending
+  std::vector<Entry> entries_;
+};
+
+/// Length of a path and the number of its source. Shorter paths come first; of equal ones, the smaller source number.
+struct Way {
+  double length = 0;
+  std::uint32_t source = 0;
+  auto operator<=>(const Way&) const = default;
+};
+constexpr Way kNoWay{std::numeric_limits<double>::infinity(), kNoSource};
+
+Way onward(const Way& so_far, const Way& step) {
+  return {so_far.length + step.length, step.source};
+}
+
+/// The crown as an incidence graph for Boost.Graph, with one extra vertex from which all trunks are reached. Out-edges
+/// are computed on demand: clearance, reach and jump differ by source, so they depend on the path found so far.
+class CrownGraph {
+ public:
+  struct Edge {
+    std::size_t from = 0, to = 0;
+    Way step;
+  };
+  using vertex_descriptor = std::size_t;
+  using edge_descriptor = Edge;
+  using out_edge_iterator = std::vector<Edge>::const_iterator;
+  using degree_size_type = std::size_t;
+  using directed_category = boost::directed_tag;
+  using edge_parallel_category = boost::allow_parallel_edge_tag;
+  using traversal_category = boost::incidence_graph_tag;
+
+  CrownGraph(const perception::SceneCluxels& all, std::span<const std::uint32_t> crown,
+             std::span<const CrownSource> sources)
+      : all_(all),
+        crown_(crown),
+        sources_(sources),
+        grid_(all, crown, longestJump(all, crown, sources)),
+        best_(crown.size() + 1, kNoWay) {
+    for (const CrownSource& source : sources) tops_.push_back(topOf(all, source.trunk));
+    best_[start()] = {};
+  }
+
+  std::size_t start() const { return crown_.size(); }
+  /// Shortest known path to each vertex; the search updates it.
+  std::vector<Way>& best() { return best_; }
+
+  /// Valid until the next call.
+  const std::vector<Edge>& edgesFrom(std::size_t at) const {
+    edges_.clear();
+    from_ = at;
+    if (at != start())
+      stepFrom(crown_[at], best_[at]);
+    else
+      for (std::uint32_t s = 0; s < sources_.size(); ++s) leave(s);
+    return edges_;
+  }
+
+ private:
+  /// Upper bound of the distance between the centres of two cluxels whose boxes are one jump apart.
+  static double longestJump(const perception::SceneCluxels& all, std::span<const std::uint32_t> crown,
+                            std::span<const CrownSource> sources) {
+    double longest = 0, widest = 0;
+    for (std::uint32_t cluxel : crown) widest = std::max(widest, static_cast<double>(all.extent[cluxel].norm()));
+    for (const CrownSource& source : sources) {
+      longest = std::max(longest, source.jump_m);
+      for (std::uint32_t cluxel : source.trunk)
+        widest = std::max(widest, static_cast<double>(all.extent[cluxel].norm()));
+    }
+    return longest + widest;
+  }
+
+  /// Paths start at the trunk's cluxels above the clearance, or at its highest ones when none is above it.
+  void leave(std::uint32_t s) const {
+    const CrownSource& source = sources_[s];
+    std::vector<std::uint32_t> from;
+    double highest = -std::numeric_limits<double>::infinity();
+    for (std::uint32_t cluxel : source.trunk) {
+      highest = std::max(highest, all_.center[cluxel].z());
+      if (static_cast<double>(all_.height_above_ground[cluxel]) >= source.clearance_m) from.push_back(cluxel);
+    }
+    if (from.empty())
+      for (std::uint32_t cluxel : source.trunk)
+        if (all_.center[cluxel].z() >= highest - kTop_m) from.push_back(cluxel);
+    for (std::uint32_t cluxel : from) stepFrom(cluxel, {0, s});
+    if (source.start_m > source.jump_m) leapFrom(from, s);
+  }
+
+  /// Edges from the trunk to crown cluxels that are farther than a jump but within start_m.
+  void leapFrom(const std::vector<std::uint32_t>& from, std::uint32_t s) const {
+    for (std::size_t to = 0; to < crown_.size(); ++to) {
+      if (isBeyond(to, s)) continue;
+      double shortest = std::numeric_limits<double>::infinity();
+      for (std::uint32_t cluxel : from)
+        if (const double distance = (all_.center[crown_[to]] - all_.center[cluxel]).norm();
+            distance < shortest && gapBetween(all_, cluxel, crown_[to]).gap() <= sources_[s].start_m)
+          shortest = distance;
+      if (std::isfinite(shortest)) addEdge(to, {kJumpPenalty * shortest, s});
+    }
+  }
+
+  /// Edges of the cluxel graph and jumps over gaps. Vertices that already have a shorter path are skipped.
+  void stepFrom(std::uint32_t cluxel, const Way& so_far) const {
+    const Eigen::Vector3d& from = all_.center[cluxel];
+    for (std::uint32_t neighbour : all_.neighbours(cluxel)) {
+      const auto place = std::lower_bound(crown_.begin(), crown_.end(), neighbour);
+      if (place == crown_.end() || *place != neighbour) continue;
+      const auto to = static_cast<std::size_t>(place - crown_.begin());
+      if (best_[to] > so_far) addEdge(to, {(all_.center[neighbour] - from).norm(), so_far.source});
+    }
+    const double jump = sources_[so_far.source].jump_m;
+    const double reach = jump + static_cast<double>(all_.extent[cluxel].norm()) / 2 + kRounding_m;
+    grid_.near(from, [&](const JumpGrid::Entry& other) {
+      // Most pairs are too far apart, or have a shorter path: both are known before the gap is measured.
+      const double square = (other.centre - from).squaredNorm();
+      if (square > (reach + other.half_m) * (reach + other.half_m)) return;
+      const Way step{kJumpPenalty * (other.centre - from).norm(), so_far.source};
+      if (best_[other.at] > onward(so_far, step) && gapBetween(all_, cluxel, crown_[other.at]).gap() <= jump)
+        addEdge(other.at, step);
+    });
+  }
+
+  void addEdge(std::size_t to, const Way& step) const {
+    const CrownSource& source = sources_[step.source];
+    if (static_cast<double>(all_.height_above_ground[crown_[to]]) < source.clearance_m || isBeyond(to, step.source))
+      return;
+    if (source.may_take && !source.may_take(crown_[to])) return;
+    edges_.push_back({from_, to, step});
+  }
+
+  bool isBeyond(std::size_t to, std::uint32_t s) const {
+    return (all_.center[crown_[to]].head<2>() - tops_[s]).norm() > sources_[s].reach_m;
+  }
+
+  const perception::SceneCluxels& all_;
+  std::span<const std::uint32_t> crown_;
+  std::span<const CrownSource> sources_;
+  JumpGrid grid_;
+  std::vector<Eigen::Vector2d> tops_;
+  std::vector<Way> best_;
+  mutable std::vector<Edge> edges_;  ///< of the vertex from_
+  mutable std::size_t from_ = 0;
+};
+
+// The free functions of Boost.Graph's IncidenceGraph concept, found by argument-dependent lookup.
+std::size_t source(const CrownGraph::Edge& edge, const CrownGraph&) {
+  return edge.from;
+}
+std::size_t target(const CrownGraph::Edge& edge, const CrownGraph&) {
+  return edge.to;
+}
+std::pair<CrownGraph::out_edge_iterator, CrownGraph::out_edge_iterator> out_edges(std::size_t at,
+                                                                                  const CrownGraph& graph) {
+  const auto& edges = graph.edgesFrom(at);
+  return {edges.begin(), edges.end()};
+}
+
+}  // namespace
+
+Eigen::Vector2d topOf(const perception::SceneCluxels& all, std::span<const std::uint32_t> trunk) {
+  double highest = -std::numeric_limits<double>::infinity();
+  for (std::uint32_t cluxel : trunk) highest = std::max(highest, all.center[cluxel].z());
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double count = 0;
+  for (std::uint32_t cluxel : trunk)
+    if (all.center[cluxel].z() >= highest - kTop_m) {
+      sum += all.center[cluxel].head<2>();
+      count += 1;
+    }
+  return count == 0 ? sum : Eigen::Vector2d(sum / count);
+}
+
+std::vector<std::uint32_t> splitCrown(const perception::SceneCluxels& all, std::span<const std::uint32_t> crown,
+                                      std::span<const CrownSource> sources) {
+  CrownGraph graph(all, crown, sources);
+  const auto places = boost::typed_identity_property_map<std::size_t>();
+  boost::dijkstra_shortest_paths_no_color_map_no_init(
+      graph, graph.start(), boost::dummy_property_map(),
+      boost::make_iterator_property_map(graph.best().begin(), places),
+      boost::make_function_property_map<CrownGraph::Edge, Way>([](const CrownGraph::Edge& edge) { return edge.step; }),
+      places, std::less<>(), onward, kNoWay, Way(), boost::dijkstra_visitor<>());
+  std::vector<std::uint32_t> taken;
+  for (std::size_t at = 0; at < crown.size(); ++at) taken.push_back(graph.best()[at].source);
+  return taken;
+}
+
+}  // namespace cluxel::rules

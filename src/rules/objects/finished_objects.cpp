@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Turns objects in making into results: parts with primitives and cluxels, and ids.
+#include "rules/objects/finished_objects.hpp"
+
+#include <algorithm>
+
+namespace cluxel::rules {
+
+namespace {
+
+std::vector<ObjectPart> finishedParts(const ReasoningState& state, const ObjectInMaking& object) {
+  std::vector<ObjectPart> parts;
+  for (const PartInMaking& making : object.parts) {
+    if (making.fragments.empty()) continue;
+    auto part = std::find_if(parts.begin(), parts.end(),
+                             [&](const ObjectPart& known) { return known.part_class == making.part_class; });
+    if (part == parts.end()) part = parts.insert(parts.end(), ObjectPart{making.part_class, {}, {}});
+    for (FragmentIndex fragment : making.fragments) {
+      part->primitives.push_back(state.fragments[fragment].primitive);
+      const auto& cluxels = state.fragments[fragment].cluxels;
+      part->cluxels.insert(part->cluxels.end(), cluxels.begin(), cluxels.end());
+    }
+  }
+  for (ObjectPart& part : parts) {
+    std::sort(part.primitives.begin(), part.primitives.end());
+    part.primitives.erase(std::unique(part.primitives.begin(), part.primitives.end()), part.primitives.end());
+    std::sort(part.cluxels.begin(), part.cluxels.end());
+  }
+  std::sort(parts.begin(), parts.end(),
+            [](const ObjectPart& a, const ObjectPart& b) { return a.part_class < b.part_class; });
+  return parts;
+}
+
+/// Hash of the class and of the members' seed points: independent of everything else in the scene.
+ContentHash idOf(const perception::Scene& scene, const SemanticObject& object) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> members;
+  for (const ObjectPart& part : object.parts)
+    for (const std::uint32_t cluxel : part.cluxels)
+      members.emplace_back(scene.cluxels.seed[cluxel].scan, scene.cluxels.seed[cluxel].point);
+  std::sort(members.begin(), members.end());
+  ContentHasher hasher;
+  hasher.addText(object.class_iri);
+  for (const auto& [scan, point] : members) hasher.add(scene.cluxels.scans[scan]).add(point);
+  return hasher.finish();
+}
+
+}  // namespace
+
+std::vector<SemanticObject> finishedObjects(const ReasoningState& state) {
+  std::vector<SemanticObject> objects;
+  for (const ObjectInMaking& making : state.objects) {
+    SemanticObject object;
+    object.class_iri = making.rule->class_iri;
+    object.confidence = making.confidence;
+    object.rule_id = making.rule->id;
+    object.decision = making.decision;
+    object.parts = finishedParts(state, making);
+    if (object.parts.empty()) continue;
+    object.id = idOf(state.scene, object);
+    objects.push_back(std::move(object));
+  }
+  std::sort(objects.begin(), objects.end(),
+            [](const SemanticObject& a, const SemanticObject& b) { return a.id < b.id; });
+  return objects;
+}
+
+}  // namespace cluxel::rules

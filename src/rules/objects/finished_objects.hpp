@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// The objects made so far, as values.
+#pragma once
+
+#include <vector>
+
+#include "rules/decide/reasoning_state.hpp"
+#include "rules/objects/semantic_object.hpp"
+
+namespace cluxel::rules {
+
+/// Objects that own at least one cluxel, sorted by id.
+std::vector<SemanticObject> finishedObjects(const ReasoningState& state);
+
+}  // namespace cluxel::rules

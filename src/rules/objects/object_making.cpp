@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Gives accepted candidates their fragments.
+#include "rules/objects/object_making.hpp"
+
+#include <algorithm>
+
+namespace cluxel::rules {
+
+void joinRelated(ReasoningState& state, const Rule& rule, OwnerIndex related,
+                 const std::pair<std::string, std::string>& as, const std::vector<FragmentIndex>& group) {
+  ObjectInMaking& object = state.objects[related];
+  auto part = std::find_if(object.parts.begin(), object.parts.end(),
+                           [&as](const PartInMaking& known) { return known.part_class == as.second; });
+  if (part == object.parts.end() && as.second == rule.class_iri) part = object.parts.begin();
+  if (part == object.parts.end()) part = object.parts.insert(part, PartInMaking{as.first, as.second, {}, false});
+  for (FragmentIndex fragment : group) {
+    state.fragments.setOwner(fragment, related);
+    part->fragments.push_back(fragment);
+  }
+  part->is_outdated = true;
+}
+
+void makeObject(ReasoningState& state, const Rule& rule, const AcceptLeaf& accept, Bindings bindings) {
+  const auto number = static_cast<OwnerIndex>(state.objects.size());
+  ObjectInMaking object;
+  object.rule = &rule;
+  object.leaf = &accept;
+  object.confidence = state.decisions.back().probability;
+  object.decision = state.decisions.size() - 1;
+  for (const auto& [name, part_class] : accept.parts) {
+    PartInMaking part{name, part_class, {}, false};
+    const bool shared = accept.splitting && accept.splitting->part == name;
+    for (FragmentIndex fragment : bindings.at(name).fragments) {
+      const OwnerIndex owner = state.fragments[fragment].owner;
+      if (shared && (owner == kFree || owner == kShared)) {
+        state.fragments.setOwner(fragment, kShared);
+        state.claims[fragment].push_back(number);
+      } else if (owner == kFree) {
+        state.fragments.setOwner(fragment, number);
+        part.fragments.push_back(fragment);
+      }
+    }
+    object.parts.push_back(std::move(part));
+  }
+  object.bindings = std::move(bindings);
+  state.objects.push_back(std::move(object));
+}
+
+}  // namespace cluxel::rules

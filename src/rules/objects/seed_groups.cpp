@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+// Groups are joined along links, shortest first, as long as the limits hold: the result is independent of fragment
+// order.
+#include "rules/objects/seed_groups.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "base/disjoint_sets.hpp"
+#include "rules/propose/condition_eval.hpp"
+
+namespace cluxel::rules {
+
+namespace {
+
+bool isIn(const std::vector<scan::PrimitiveLabel>& labels, scan::PrimitiveLabel label) {
+  return std::find(labels.begin(), labels.end(), label) != labels.end();
+}
+
+bool passes(const ReasoningState& state, const Rule& rule, const std::vector<Condition>& conditions,
+            Candidate candidate) {
+  if (conditions.empty()) return true;
+  Bindings bindings;
+  bindings.candidates.emplace_back(rule.seed.name, std::move(candidate));
+  return ConditionEvaluator(state, rule, bindings).allHold(conditions);
+}
+
+struct Link {
+  double gap = 0;
+  std::size_t a = 0, b = 0;  ///< positions among the members, a < b
+};
+
+/// Finds the pairs of members that the group's tolerances link, shortest gap first.
+class Linking {
+ public:
+  Linking(const ReasoningState& state, const GroupSpec& group, const std::vector<FragmentIndex>& members)
+      : state_(state), group_(group), members_(members) {
+    place_.assign(state.fragments.size(), kNowhere);
+    for (std::size_t i = 0; i < members.size(); ++i) place_[members[i]] = i;
+  }
+
+  std::vector<Link> links() {
+    const double reach = std::max(group_.near_m.value_or(0), group_.horizontal_m.value_or(0));
+    for (std::size_t i = 0; i < members_.size(); ++i)
+      for (std::uint32_t cluxel : state_.fragments[members_[i]].cluxels) {
+        if (group_.near_m || group_.horizontal_m)
+          state_.grid.near(cluxel, reach, [&](std::uint32_t other) { consider(i, cluxel, other); });
+        if (group_.adjacent)
+          for (std::uint32_t other : state_.scene.cluxels.neighbours(cluxel)) link(i, other, 0);
+      }
+    std::vector<Link> links;
+    for (const auto& [pair, gap] : best_) links.push_back({gap, pair.first, pair.second});
+    std::stable_sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.gap < b.gap; });
+    return links;
+  }
+
+ private:
+  void consider(std::size_t mine, std::uint32_t cluxel, std::uint32_t other) {
+    const std::size_t theirs = place_[state_.fragments.fragmentOf(other)];
+    if (theirs == kNowhere || theirs <= mine) return;
+    const CluxelGap gap = gapBetween(state_.scene.cluxels, cluxel, other);
+    const bool near = group_.near_m && gap.gap() <= *group_.near_m;
+    const bool stacked =
+        group_.horizontal_m && gap.horizontal <= *group_.horizontal_m && gap.vertical <= *group_.vertical_m;
+    if (near || stacked) link(mine, other, gap.gap());
+  }
+  void link(std::size_t mine, std::uint32_t other, double gap) {
+    const std::size_t theirs = place_[state_.fragments.fragmentOf(other)];
+    if (theirs == kNowhere || theirs <= mine) return;
+    const auto [entry, fresh] = best_.try_emplace({mine, theirs}, gap);
+    if (!fresh) entry->second = std::min(entry->second, gap);
+  }
+
+  const ReasoningState& state_;
+  const GroupSpec& group_;
+  const std::vector<FragmentIndex>& members_;
+  static constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> place_;  // per fragment
+  std::map<std::pair<std::size_t, std::size_t>, double> best_;
+};
+
+/// Joins members along links (union-find), skipping joins that would violate a limit.
+class Joining {
+ public:
+  Joining(const ReasoningState& state, const Rule& rule, const std::vector<FragmentIndex>& members)
+      : state_(state), rule_(rule), members_(members), sets_(members.size()), held_(members.size()) {
+    for (std::size_t i = 0; i < members.size(); ++i) held_[i] = {members[i]};
+  }
+
+  std::vector<std::vector<FragmentIndex>> groups(const std::vector<Link>& links) {
+    for (const Link& link : links) join(setOf(link.a), setOf(link.b));
+    std::vector<std::vector<FragmentIndex>> groups;
+    for (std::size_t i = 0; i < members_.size(); ++i)
+      if (setOf(i) == i) groups.push_back(std::move(held_[i]));
+    return groups;
+  }
+
+ private:
+  std::uint32_t setOf(std::size_t i) { return sets_.find(static_cast<std::uint32_t>(i)); }
+  void join(std::uint32_t a, std::uint32_t b) {
+    if (a == b) return;
+    std::vector<FragmentIndex> both = held_[a];
+    both.insert(both.end(), held_[b].begin(), held_[b].end());
+    const auto& limits = rule_.group->limits;
+    if (!limits.empty() && !passes(state_, rule_, limits, state_.fragments.candidateOf(both))) return;
+    const auto [keep, drop] = std::minmax(a, b);
+    held_[keep] = std::move(both);
+    held_[drop].clear();
+    sets_.join(keep, drop);
+  }
+
+  const ReasoningState& state_;
+  const Rule& rule_;
+  const std::vector<FragmentIndex>& members_;
+  DisjointSets sets_;
+  std::vector<std::vector<FragmentIndex>> held_;
+};
+
+/// Free fragments that may be members of a group, in canonical order.
+std::vector<FragmentIndex> members(const ReasoningState& state, const Rule& rule,
+                                   const std::vector<FragmentIndex>& slices) {
+  std::vector<FragmentIndex> found;
+  auto consider = [&](FragmentIndex fragment) {
+    if (!state.fragments[fragment].alive || state.fragments[fragment].owner != kFree) return;
+    const scan::PrimitiveLabel label = state.fragments.labelOf(fragment);
+    if (!isIn(rule.seed.labels, label) && !(rule.group && isIn(rule.group->labels, label))) return;
+    // For sliced seeds the conditions were tested on the whole fragment before it was cut.
+    if (rule.seed.slice || passes(state, rule, rule.seed.where, state.fragments.candidateOf({fragment})))
+      found.push_back(fragment);
+  };
+  if (rule.seed.slice)
+    for (FragmentIndex fragment : slices) consider(fragment);
+  else
+    for (FragmentIndex fragment = 0; fragment < state.fragments.size(); ++fragment) consider(fragment);
+  std::sort(found.begin(), found.end(), [&](FragmentIndex a, FragmentIndex b) { return state.fragments.before(a, b); });
+  return found;
+}
+
+}  // namespace
+
+SliceScope::SliceScope(ReasoningState& state, const Rule& rule) : state_(state) {
+  if (!rule.seed.slice) return;
+  const FragmentIndex count = static_cast<FragmentIndex>(state.fragments.size());
+  for (FragmentIndex fragment = 0; fragment < count; ++fragment) {
+    const Fragment& whole = state.fragments[fragment];
+    if (!whole.alive || whole.owner != kFree || !isIn(rule.seed.labels, state.fragments.labelOf(fragment))) continue;
+    if (!passes(state, rule, rule.seed.where, state.fragments.candidateOf({fragment}))) continue;
+    std::vector<std::uint32_t> inside, outside;
+    for (std::uint32_t cluxel : whole.cluxels)
+      (isWithin(state.scene.cluxels, cluxel, *rule.seed.slice) ? inside : outside).push_back(cluxel);
+    if (inside.empty()) continue;
+    auto parts = connectedBunches(state.scene.cluxels, inside);
+    const bool has_rest = !outside.empty();
+    if (has_rest) parts.insert(parts.begin(), std::move(outside));
+    std::vector<FragmentIndex> made = state.fragments.cut(fragment, std::move(parts));
+    slices_.insert(slices_.end(), made.begin() + (has_rest ? 1 : 0), made.end());
+    if (has_rest)
+      cuts_.push_back({made.front(), {made.begin() + 1, made.end()}});
+    else
+      cuts_.push_back({std::nullopt, made});
+  }
+  std::sort(slices_.begin(), slices_.end(),
+            [&](FragmentIndex a, FragmentIndex b) { return state.fragments.before(a, b); });
+}
+
+void SliceScope::putBack() {
+  auto isFree = [this](FragmentIndex fragment) {
+    return state_.fragments[fragment].alive && state_.fragments[fragment].owner == kFree;
+  };
+  for (Cut& cut : cuts_) {
+    std::optional<FragmentIndex> home = cut.rest;
+    for (FragmentIndex slice : cut.slices) {
+      if (!isFree(slice)) continue;
+      if (home)
+        state_.fragments.join(*home, slice);
+      else
+        home = slice;
+    }
+  }
+  cuts_.clear();
+}
+
+std::vector<std::vector<FragmentIndex>> seedGroups(const ReasoningState& state, const Rule& rule,
+                                                   const std::vector<FragmentIndex>& slices) {
+  const std::vector<FragmentIndex> pool = members(state, rule, slices);
+  std::vector<std::vector<FragmentIndex>> groups;
+  if (rule.group)
+    groups = Joining(state, rule, pool).groups(Linking(state, *rule.group, pool).links());
+  else
+    for (FragmentIndex fragment : pool) groups.push_back({fragment});
+  std::erase_if(groups, [&](const auto& group) {
+    return std::none_of(group.begin(), group.end(), [&](FragmentIndex fragment) {
+      return isIn(rule.seed.labels, state.fragments.labelOf(fragment));
+    });
+  });
+  auto points = [&](const auto& group) {
+    double sum = 0;
+    for (FragmentIndex fragment : group) sum += state.fragments.shapeOf(fragment).points;
+    return sum;
+  };
+  for (auto& group : groups)
+    std::sort(group.begin(), group.end(),
+              [&](FragmentIndex a, FragmentIndex b) { return state.fragments.before(a, b); });
+  std::sort(groups.begin(), groups.end(), [&](const auto& a, const auto& b) {
+    const double points_a = points(a), points_b = points(b);
+    return points_a != points_b ? points_a > points_b : state.fragments.before(a.front(), b.front());
+  });
+  return groups;
+}
+
+}  // namespace cluxel::rules

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+// One small function per kind of condition.
+#include "rules/propose/condition_eval.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "rdf/map_iris.hpp"
+#include "rules/propose/pair_measures.hpp"
+
+namespace cluxel::rules {
+
+namespace {
+
+constexpr double kGroundTolerance_m = 0.30;  // the tolerance of touches_ground in relationInfos()
+
+std::string_view stepUnit(const Condition& condition) {
+  if (condition.kind == Condition::Kind::Attribute) {
+    const perception::Dimension dimension =
+        perception::attributeInfos()[static_cast<std::size_t>(condition.attribute)].dimension;
+    return dimension == perception::Dimension::Angle ? "rad" : unitOf(dimension);
+  }
+  return condition.kind == Condition::Kind::Pair && condition.measure == PairMeasure::AdjacentFraction ? "" : "m";
+}
+
+/// For an interval, the bound nearer to the value: the one a small change would cross.
+double nearerThreshold(const Condition& condition, double value, double threshold) {
+  const bool upper = condition.upper && std::abs(value - condition.upper->value) < std::abs(value - threshold);
+  return upper ? condition.upper->value : threshold;
+}
+
+}  // namespace
+
+bool compare(const Condition& condition, double value, double threshold) {
+  switch (condition.comparison) {
+    case Comparison::Less:
+      return value < threshold;
+    case Comparison::LessEqual:
+      return value <= threshold;
+    case Comparison::Greater:
+      return value > threshold;
+    case Comparison::GreaterEqual:
+      return value >= threshold;
+    case Comparison::Equal:
+      return value == threshold;
+    case Comparison::NotEqual:
+      return value != threshold;
+    case Comparison::Between:
+      return value >= threshold && value <= condition.upper->value;
+    case Comparison::Outside:
+      break;
+  }
+  return value < threshold || value > condition.upper->value;
+}
+
+bool ConditionEvaluator::holds(const Condition& condition, std::vector<DecisionStep>* steps) {
+  using Kind = Condition::Kind;
+  if (condition.kind == Kind::All || condition.kind == Kind::Any) {
+    const bool all = condition.kind == Kind::All;
+    bool outcome = all;
+    for (const Condition& operand : condition.operands) {
+      // Queries are expensive: skip one whose answer cannot change the outcome.
+      if (operand.kind == Kind::Ask && outcome != all) continue;
+      const bool passed = holds(operand, steps);
+      outcome = all ? outcome && passed : outcome || passed;
+      if (steps == nullptr && outcome != all) break;
+    }
+    return outcome;
+  }
+  if (condition.kind == Kind::Not && !condition.operands.front().operands.empty())
+    return !holds(condition.operands.front(), steps);
+  DecisionStep step;
+  const bool negative = condition.kind == Kind::Not;
+  const bool passed = holdsElementary(negative ? condition.operands.front() : condition, step) != negative;
+  if (steps == nullptr) return passed;
+  step.rule_id = rule_.id;
+  step.test = describe(condition);
+  step.file = condition.at.file;
+  step.line = condition.at.line;
+  step.passed = passed;
+  steps->push_back(std::move(step));
+  return passed;
+}
+
+bool ConditionEvaluator::allHold(const std::vector<Condition>& conditions) {
+  // Stored attributes are tested first, because measuring costs time; the outcome is the same.
+  const auto isCheap = [](const Condition& c) {
+    return c.kind == Condition::Kind::Attribute && !c.slice && !c.ratio_slice;
+  };
+  return std::all_of(conditions.begin(), conditions.end(),
+                     [&](const Condition& c) { return !isCheap(c) || holds(c); }) &&
+         std::all_of(conditions.begin(), conditions.end(), [&](const Condition& c) { return isCheap(c) || holds(c); });
+}
+
+bool ConditionEvaluator::holdsElementary(const Condition& condition, DecisionStep& step) {
+  using Kind = Condition::Kind;
+  const Candidate& subject = bindings_.at(condition.of);
+  switch (condition.kind) {
+    case Kind::Attribute:
+      return holdsAttribute(condition, step);
+    case Kind::Pair:
+      return holdsPair(condition, step);
+    case Kind::Relation:
+      return holdsRelation(condition, step);
+    case Kind::Ask:
+      return holdsAsk(condition);
+    case Kind::Label:
+      return std::all_of(subject.fragments.begin(), subject.fragments.end(), [&](FragmentIndex fragment) {
+        return std::find(condition.labels.begin(), condition.labels.end(), state_.fragments.labelOf(fragment)) !=
+               condition.labels.end();
+      });
+    case Kind::Class:
+      return std::any_of(subject.fragments.begin(), subject.fragments.end(),
+                         [&](FragmentIndex fragment) { return state_.belongsTo(fragment, condition.class_iri); });
+    default:
+      return holds(condition);
+  }
+}
+
+bool ConditionEvaluator::holdsAttribute(const Condition& condition, DecisionStep& step) {
+  const auto value = measured(condition.of, condition.slice, condition.attribute);
+  std::optional<double> threshold;
+  if (!condition.ratio_attribute)
+    threshold = condition.value->value;
+  else if (const auto other = measured(condition.ratio_of, condition.ratio_slice, *condition.ratio_attribute))
+    threshold = condition.ratio * *other;
+  step.measured = value;
+  step.unit = stepUnit(condition);
+  if (!value || !threshold) return false;  // the slice is empty
+  step.threshold = nearerThreshold(condition, *value, *threshold);
+  return compare(condition, *value, *threshold);
+}
+
+std::optional<double> ConditionEvaluator::measured(const std::string& of, const std::optional<SliceSpec>& slice,
+                                                   perception::Attribute attribute) const {
+  const Candidate& candidate = bindings_.at(of);
+  if (!slice) return candidate.shape[attribute];
+  const std::optional<Shape> shape = state_.fragments.shapeOfSlice(candidate, *slice);
+  return shape ? std::optional((*shape)[attribute]) : std::nullopt;
+}
+
+std::optional<double> ConditionEvaluator::measure(const Condition& condition, double reach) {
+  if (condition.kind == Condition::Kind::Attribute) {
+    const auto value = measured(condition.of, condition.slice, condition.attribute);
+    if (!value || !condition.ratio_attribute) return value;
+    const auto other = measured(condition.ratio_of, condition.ratio_slice, *condition.ratio_attribute);
+    return other && *other > 0 ? std::optional(*value / *other) : std::nullopt;
+  }
+  const bool share = condition.measure == PairMeasure::AdjacentFraction;
+  const double limit = share ? 0.5 : std::min(reach, kMaxMeasure_m - kMeasureMargin_m) + kMeasureMargin_m;
+  const double none = share ? 0 : reach;
+  double value = none;
+  if (condition.target->kind == Target::Kind::Name)
+    value =
+        measurePair(state_, condition.measure, bindings_.at(condition.of), bindings_.at(condition.target->name), limit);
+  else if (const auto nearest = nearestTarget(condition, limit))
+    value = nearest->second;
+  return std::isfinite(value) ? value : none;
+}
+
+std::string ConditionEvaluator::unitOf(const Condition& condition) {
+  if (condition.ratio_attribute) return "";
+  return std::string(stepUnit(condition));
+}
+
+bool ConditionEvaluator::fits(FragmentIndex fragment, const Target& target) const {
+  if (!target.labels.empty()) {
+    const scan::PrimitiveLabel label = state_.fragments.labelOf(fragment);
+    if (std::find(target.labels.begin(), target.labels.end(), label) == target.labels.end()) return false;
+  }
+  return target.kind != Target::Kind::Object || state_.belongsTo(fragment, target.object_class);
+}
+
+void ConditionEvaluator::remember(FragmentIndex fragment, const Target& target) {
+  if (target.kind != Target::Kind::Object) return;
+  const OwnerIndex owner = state_.fragments[fragment].owner;
+  if (owner < state_.objects.size()) related_ = owner;
+}
+
+std::optional<std::pair<FragmentIndex, double>> ConditionEvaluator::nearestTarget(const Condition& condition,
+                                                                                  double limit_m) {
+  const Candidate& subject = bindings_.at(condition.of);
+  std::optional<std::pair<FragmentIndex, double>> best;
+  for (perception::PrimitiveIndex primitive : state_.grid.primitivesNear(state_.fragments.cluxelsOf(subject), limit_m))
+    for (FragmentIndex fragment : state_.fragments.fragmentsOf(primitive)) {
+      if (!fits(fragment, *condition.target) ||
+          std::binary_search(subject.fragments.begin(), subject.fragments.end(), fragment))
+        continue;
+      const double measure =
+          measurePair(state_, condition.measure, subject, state_.fragments.candidateOf({fragment}), limit_m);
+      const bool share = condition.measure == PairMeasure::AdjacentFraction;
+      const bool better = !best || (share ? measure > best->second : measure < best->second) ||
+                          (measure == best->second && state_.fragments.before(fragment, best->first));
+      if (better) best = {fragment, measure};
+    }
+  return best;
+}
+
+bool ConditionEvaluator::holdsPair(const Condition& condition, DecisionStep& step) {
+  const double threshold = condition.value->value;
+  const bool share = condition.measure == PairMeasure::AdjacentFraction;
+  double measured = share ? 0 : std::numeric_limits<double>::infinity();
+  const double limit =
+      share ? 0.5 : std::max(threshold, condition.upper ? condition.upper->value : 0) + kMeasureMargin_m;
+  if (condition.target->kind == Target::Kind::Name) {
+    measured =
+        measurePair(state_, condition.measure, bindings_.at(condition.of), bindings_.at(condition.target->name), limit);
+  } else if (const auto nearest = nearestTarget(condition, limit)) {
+    measured = nearest->second;
+    if (compare(condition, measured, threshold)) remember(nearest->first, *condition.target);
+  }
+  if (std::isfinite(measured)) step.measured = measured;
+  step.threshold = nearerThreshold(condition, measured, threshold);
+  step.unit = stepUnit(condition);
+  return compare(condition, measured, threshold);
+}
+
+bool ConditionEvaluator::holdsRelation(const Condition& condition, DecisionStep& step) {
+  const Candidate& subject = bindings_.at(condition.of);
+  if (condition.value) {
+    step.threshold = condition.value->value;
+    step.unit = "m";
+  }
+  if (condition.relation == perception::RelationKind::TouchesGround) {
+    step.measured = subject.shape[perception::Attribute::Bottom];
+    step.threshold = condition.value ? condition.value->value : kGroundTolerance_m;
+    step.unit = "m";
+    return *step.measured <= *step.threshold;
+  }
+  std::optional<std::pair<FragmentIndex, double>> best;
+  if (condition.target->kind == Target::Kind::Name) {
+    const auto measure = relationMeasure(state_, condition.relation, subject, bindings_.at(condition.target->name));
+    if (measure) best = {subject.fragments.front(), *measure};
+  } else {
+    for (const auto& [fragment, measure] : relatedFragments(state_, condition.relation, subject)) {
+      if (!fits(fragment, *condition.target)) continue;
+      const bool better = !best || measure < best->second ||
+                          (measure == best->second && state_.fragments.before(fragment, best->first));
+      if (better) best = {fragment, measure};
+    }
+  }
+  if (!best) return false;
+  step.measured = best->second;
+  const bool passed = !condition.value || best->second <= condition.value->value;
+  if (passed && condition.target->kind != Target::Kind::Name) remember(best->first, *condition.target);
+  return passed;
+}
+
+bool ConditionEvaluator::holdsAsk(const Condition& condition) {
+  if (state_.context.oracle == nullptr)
+    throw Error(ErrorKind::FaultyInput, toString(condition.at) + ": rule '" + rule_.id +
+                                            "' asks the map, but there is no map to ask here; build or open one");
+  std::map<std::string, std::string> bindings;
+  for (const std::string& name : condition.query_names) {
+    const Candidate& candidate = bindings_.at(name);
+    const auto largest =
+        std::max_element(candidate.fragments.begin(), candidate.fragments.end(), [&](FragmentIndex a, FragmentIndex b) {
+          const double points_a = state_.fragments.shapeOf(a).points, points_b = state_.fragments.shapeOf(b).points;
+          return points_a != points_b ? points_a < points_b : state_.fragments.before(b, a);
+        });
+    bindings[name] = rdf::iriOfPrimitive(state_.scene.primitives[state_.fragments[*largest].primitive].id);
+  }
+  try {
+    return state_.context.oracle->ask(condition.query, bindings);
+  } catch (const InputError& fault) {
+    throw InputError(condition.at,
+                     "the query of rule '" + rule_.id + "' is faulty: " + fault.diagnostics().front().message,
+                     fault.diagnostics().front().hint);
+  }
+}
+
+}  // namespace cluxel::rules

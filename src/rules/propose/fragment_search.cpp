@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// Candidates are looked up through relations, adjacency or the grid, so that a `find` costs what is near it and not the
+// whole scene.
+#include "rules/propose/fragment_search.hpp"
+
+#include <algorithm>
+
+#include "rules/propose/condition_eval.hpp"
+#include "rules/propose/pair_measures.hpp"
+
+namespace cluxel::rules {
+
+namespace {
+
+void addFragments(const ReasoningState& state, perception::PrimitiveIndex primitive,
+                  std::vector<FragmentIndex>& found) {
+  const auto& fragments = state.fragments.fragmentsOf(primitive);
+  found.insert(found.end(), fragments.begin(), fragments.end());
+}
+
+void addRelated(const ReasoningState& state, perception::RelationKind kind, const Candidate& anchor,
+                std::vector<FragmentIndex>& found) {
+  for (FragmentIndex fragment : anchor.fragments) {
+    const perception::PrimitiveIndex primitive = state.fragments[fragment].primitive;
+    addFragments(state, primitive, found);
+    for (std::uint32_t number : state.relations_to[primitive])
+      if (state.scene.relations[number].kind == kind) addFragments(state, state.scene.relations[number].from, found);
+  }
+}
+
+void addAdjacent(const ReasoningState& state, const Candidate& anchor, std::vector<FragmentIndex>& found) {
+  for (FragmentIndex fragment : anchor.fragments)
+    for (std::uint32_t cluxel : state.fragments[fragment].cluxels)
+      for (std::uint32_t neighbour : state.scene.cluxels.neighbours(cluxel)) {
+        const FragmentIndex other = state.fragments.fragmentOf(neighbour);
+        if (found.empty() || found.back() != other) found.push_back(other);
+      }
+}
+
+void addNear(const ReasoningState& state, const Condition& tie, const Candidate& anchor,
+             std::vector<FragmentIndex>& found) {
+  const double within = tie.upper ? tie.upper->value : tie.value->value;
+  // The axis distance is measured from the centroid, which may be far from the nearest cluxel.
+  const double reach = within + (tie.measure == PairMeasure::AxisDistance ? 5.0 : 0.0);
+  for (perception::PrimitiveIndex primitive : state.grid.primitivesNear(state.fragments.cluxelsOf(anchor), reach))
+    addFragments(state, primitive, found);
+}
+
+}  // namespace
+
+std::vector<FragmentIndex> tiedFragments(const ReasoningState& state, const std::vector<Condition>& conditions,
+                                         const std::string& name, const Bindings& bindings,
+                                         const std::function<bool(FragmentIndex)>& is_eligible) {
+  std::vector<FragmentIndex> found;
+  const auto tie =
+      std::find_if(conditions.begin(), conditions.end(), [&](const Condition& c) { return looksNearby(c, name); });
+  if (tie == conditions.end()) return found;
+  const Candidate& anchor = bindings.at(tie->target->name);
+  if (tie->kind == Condition::Kind::Relation)
+    addRelated(state, tie->relation, anchor, found);
+  else if (tie->measure == PairMeasure::AdjacentFraction)
+    addAdjacent(state, anchor, found);
+  else
+    addNear(state, *tie, anchor, found);
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  std::erase_if(found, [&](FragmentIndex fragment) { return !is_eligible(fragment); });
+  std::sort(found.begin(), found.end(), [&](FragmentIndex a, FragmentIndex b) { return state.fragments.before(a, b); });
+  return found;
+}
+
+std::vector<FragmentIndex> findPassing(const ReasoningState& state, const Rule& rule,
+                                       const std::vector<Condition>& conditions, const std::string& name,
+                                       const Bindings& bindings,
+                                       const std::function<bool(FragmentIndex)>& is_eligible) {
+  std::vector<FragmentIndex> passing;
+  Bindings with_fragment = bindings;
+  with_fragment.candidates.emplace_back(name, Candidate{});
+  for (FragmentIndex fragment : tiedFragments(state, conditions, name, bindings, is_eligible)) {
+    with_fragment.candidates.back().second = state.fragments.candidateOf({fragment});
+    if (ConditionEvaluator(state, rule, with_fragment).allHold(conditions)) passing.push_back(fragment);
+  }
+  return passing;
+}
+
+std::vector<FragmentIndex> choose(const ReasoningState& state, Choice choice,
+                                  const std::vector<FragmentIndex>& fragments, const Candidate* nearest_to) {
+  if (choice == Choice::All) return fragments;
+  auto value = [&](FragmentIndex fragment) {
+    const Shape& shape = state.fragments.shapeOf(fragment);
+    switch (choice) {
+      case Choice::MostPoints:
+        return shape.points;
+      case Choice::Highest:
+        return shape[perception::Attribute::Top];
+      case Choice::Lowest:
+        return -shape[perception::Attribute::Bottom];
+      case Choice::Nearest:
+        return nearest_to == nullptr
+                   ? 0.0
+                   : -measurePair(state, PairMeasure::Gap, state.fragments.candidateOf({fragment}), *nearest_to);
+      case Choice::MostAdjacent:
+        return nearest_to == nullptr ? 0.0
+                                     : measurePair(state, PairMeasure::AdjacentFraction,
+                                                   state.fragments.candidateOf({fragment}), *nearest_to);
+      default:
+        return shape[perception::Attribute::Volume];
+    }
+  };
+  FragmentIndex best = fragments.front();
+  double best_value = value(best);
+  for (FragmentIndex fragment : fragments) {
+    const double mine = value(fragment);
+    if (mine > best_value || (mine == best_value && fragment != best && state.fragments.before(fragment, best))) {
+      best = fragment;
+      best_value = mine;
+    }
+  }
+  return {best};
+}
+
+}  // namespace cluxel::rules

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// Invariant: the fragments that are alive partition the cluxels of the scene. Objects are disjoint because fragments
+// are.
+#include "rules/propose/fragment_table.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+
+namespace cluxel::rules {
+
+FragmentTable::FragmentTable(const perception::Scene& scene)
+    : scene_(scene),
+      fragments_of_primitive_(scene.primitives.size()),
+      fragment_of_cluxel_(scene.cluxels.size(), kFree) {
+  for (perception::PrimitiveIndex i = 0; i < scene.primitives.size(); ++i) {
+    Fragment fragment;
+    fragment.primitive = i;
+    fragment.cluxels = scene.primitives[i].cluxels;
+    add(std::move(fragment));
+  }
+}
+
+FragmentIndex FragmentTable::add(Fragment fragment) {
+  const auto index = static_cast<FragmentIndex>(fragments_.size());
+  for (std::uint32_t cluxel : fragment.cluxels) fragment_of_cluxel_[cluxel] = index;
+  fragments_of_primitive_[fragment.primitive].push_back(index);
+  fragments_.push_back(std::move(fragment));
+  shapes_.emplace_back();
+  measure(index);
+  return index;
+}
+
+void FragmentTable::measure(FragmentIndex index) {
+  const Fragment& fragment = fragments_[index];
+  const perception::Primitive& primitive = scene_.primitives[fragment.primitive];
+  const bool whole = fragment.cluxels.size() == primitive.cluxels.size();
+  const std::array<perception::PrimitiveIndex, 1> members{fragment.primitive};
+  shapes_[index] =
+      whole ? shapeOfPrimitive(primitive, scene_.cluxels) : shapeOfCluxels(scene_, fragment.cluxels, members, {});
+}
+
+std::vector<FragmentIndex> FragmentTable::cut(FragmentIndex index, std::vector<std::vector<std::uint32_t>> parts) {
+  assert(fragments_[index].alive);
+  const perception::PrimitiveIndex primitive = fragments_[index].primitive;
+  fragments_[index].alive = false;
+  std::erase(fragments_of_primitive_[primitive], index);
+  std::vector<FragmentIndex> made;
+  for (auto& cluxels : parts) {
+    if (cluxels.empty()) continue;
+    Fragment fragment;
+    fragment.primitive = primitive;
+    fragment.cluxels = std::move(cluxels);
+    made.push_back(add(std::move(fragment)));
+  }
+  return made;
+}
+
+void FragmentTable::join(FragmentIndex index, FragmentIndex other) {
+  assert(index != other && fragments_[index].alive && fragments_[other].alive);
+  Fragment& fragment = fragments_[index];
+  std::vector<std::uint32_t> merged;
+  std::merge(fragment.cluxels.begin(), fragment.cluxels.end(), fragments_[other].cluxels.begin(),
+             fragments_[other].cluxels.end(), std::back_inserter(merged));
+  fragment.cluxels = std::move(merged);
+  for (std::uint32_t cluxel : fragments_[other].cluxels) fragment_of_cluxel_[cluxel] = index;
+  fragments_[other].alive = false;
+  std::erase(fragments_of_primitive_[fragment.primitive], other);
+  measure(index);
+}
+
+bool FragmentTable::before(FragmentIndex a, FragmentIndex b) const {
+  const Fragment& first = fragments_[a];
+  const Fragment& second = fragments_[b];
+  if (first.primitive != second.primitive)
+    return scene_.primitives[first.primitive].id < scene_.primitives[second.primitive].id;
+  return first.cluxels < second.cluxels;
+}
+
+Candidate FragmentTable::candidateOf(std::vector<FragmentIndex> fragments) const {
+  Candidate candidate;
+  std::sort(fragments.begin(), fragments.end());
+  fragments.erase(std::unique(fragments.begin(), fragments.end()), fragments.end());
+  candidate.fragments = std::move(fragments);
+  if (candidate.fragments.size() == 1) {
+    candidate.shape = shapes_[candidate.fragments.front()];
+    return candidate;
+  }
+  candidate.shape = shapeOf(candidate, cluxelsOf(candidate));
+  return candidate;
+}
+
+Candidate FragmentTable::extentOf(std::vector<FragmentIndex> fragments) const {
+  Candidate candidate;
+  std::sort(fragments.begin(), fragments.end());
+  fragments.erase(std::unique(fragments.begin(), fragments.end()), fragments.end());
+  candidate.fragments = std::move(fragments);
+  Shape& shape = candidate.shape;
+  shape.min = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  shape.max = -shape.min;
+  double cluxels = 0;
+  for (const FragmentIndex fragment : candidate.fragments) {
+    shape.min = shape.min.cwiseMin(shapes_[fragment].min);
+    shape.max = shape.max.cwiseMax(shapes_[fragment].max);
+    cluxels += static_cast<double>(fragments_[fragment].cluxels.size());
+  }
+  shape.attributes[static_cast<std::size_t>(perception::Attribute::CluxelCount)] = cluxels;
+  return candidate;
+}
+
+/// The shape of `cluxels` (ascending), which are some or all of the candidate's.
+Shape FragmentTable::shapeOf(const Candidate& candidate, std::span<const std::uint32_t> cluxels) const {
+  std::vector<FragmentIndex> ordered = candidate.fragments;
+  std::sort(ordered.begin(), ordered.end(), [this](FragmentIndex a, FragmentIndex b) { return before(a, b); });
+  auto isHere = [&](std::uint32_t cluxel) { return std::binary_search(cluxels.begin(), cluxels.end(), cluxel); };
+  std::vector<perception::PrimitiveIndex> members, whole;
+  for (FragmentIndex fragment : ordered) {
+    const std::vector<std::uint32_t>& own = fragments_[fragment].cluxels;
+    if (std::none_of(own.begin(), own.end(), isHere)) continue;
+    const perception::PrimitiveIndex primitive = fragments_[fragment].primitive;
+    if (std::find(members.begin(), members.end(), primitive) == members.end()) members.push_back(primitive);
+    const bool is_whole = own.size() == scene_.primitives[primitive].cluxels.size();
+    if (is_whole && std::all_of(own.begin(), own.end(), isHere)) whole.push_back(primitive);
+  }
+  return shapeOfCluxels(scene_, cluxels, members, whole);
+}
+
+std::optional<Shape> FragmentTable::shapeOfSlice(const Candidate& candidate, const SliceSpec& slice) const {
+  std::vector<std::uint32_t> cluxels = cluxelsOf(candidate);
+  const std::size_t all = cluxels.size();
+  std::erase_if(cluxels, [&](std::uint32_t cluxel) { return !isWithin(scene_.cluxels, cluxel, slice); });
+  if (cluxels.empty()) return std::nullopt;
+  return cluxels.size() == all ? candidate.shape : shapeOf(candidate, cluxels);
+}
+
+std::vector<std::uint32_t> FragmentTable::cluxelsOf(const Candidate& candidate) const {
+  std::vector<std::uint32_t> cluxels;
+  for (FragmentIndex fragment : candidate.fragments)
+    cluxels.insert(cluxels.end(), fragments_[fragment].cluxels.begin(), fragments_[fragment].cluxels.end());
+  std::sort(cluxels.begin(), cluxels.end());
+  return cluxels;
+}
+
+bool isWithin(const perception::SceneCluxels& all, std::uint32_t cluxel, const SliceSpec& slice) {
+  const double height = static_cast<double>(all.height_above_ground[cluxel]);
+  return height >= slice.from_m && height <= slice.to_m;
+}
+
+std::vector<std::vector<std::uint32_t>> connectedBunches(const perception::SceneCluxels& all,
+                                                         std::span<const std::uint32_t> cluxels) {
+  std::vector<std::vector<std::uint32_t>> bunches;
+  std::vector<bool> seen(cluxels.size(), false);
+  auto place = [&](std::uint32_t cluxel) {
+    const auto found = std::lower_bound(cluxels.begin(), cluxels.end(), cluxel);
+    const bool here = found != cluxels.end() && *found == cluxel;
+    return here ? static_cast<std::size_t>(found - cluxels.begin()) : cluxels.size();
+  };
+  for (std::size_t start = 0; start < cluxels.size(); ++start) {
+    if (seen[start]) continue;
+    std::vector<std::uint32_t> bunch{cluxels[start]};
+    seen[start] = true;
+    for (std::size_t next = 0; next < bunch.size(); ++next)
+      for (std::uint32_t neighbour : all.neighbours(bunch[next])) {
+        const std::size_t at = place(neighbour);
+        if (at == cluxels.size() || seen[at]) continue;
+        seen[at] = true;
+        bunch.push_back(neighbour);
+      }
+    std::sort(bunch.begin(), bunch.end());
+    bunches.push_back(std::move(bunch));
+  }
+  return bunches;
+}
+
+}  // namespace cluxel::rules

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs cpp-httplib's parser on streams of its own, and hands requests to the handler as values.
+#include "serve/http/http_server.hpp"
+
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <mutex>
+
+#include "base/ascii.hpp"
+#include "cluxel/error.hpp"
+#include "serve/http/http_stream.hpp"
+#include "serve/http/http_threads.hpp"
+#include "serve/http/media_types.hpp"
+#include "serve/http/refusal.hpp"
+
+namespace cluxel::serve {
+
+namespace {
+
+/// The connection that this thread serves.
+thread_local HttpStream* current_stream = nullptr;
+
+HttpRequest requestOf(const httplib::Request& parsed, std::string body) {
+  HttpRequest request{parsed.method, parsed.target, {}, std::move(body), parsed.remote_addr};
+  for (const auto& [name, value] : parsed.headers) request.headers.emplace_back(lowerCase(name), value);
+  return request;
+}
+
+void fill(httplib::Response& out, HttpResponse response) {
+  out.status = response.status;
+  for (const auto& [name, value] : response.headers) out.set_header(name, value);
+  if (!response.content_type.empty()) out.set_header("Content-Type", response.content_type);
+  out.body = std::move(response.body);
+}
+
+bool hasBody(const httplib::Request& request) {
+  const std::string length = request.get_header_value("Content-Length");
+  return request.has_header("Transfer-Encoding") || !(length.empty() || length == "0");
+}
+
+/// Messages of what is refused before a handler sees it.
+std::string messageOf(int status, HttpStream::Fault fault) {
+  if (fault == HttpStream::Fault::HeaderTooLarge) return "the headers of the request are too large";
+  if (fault == HttpStream::Fault::TooSlow) return "the request did not arrive in time";
+  if (status == 413) return "the body of the request is too large; the server allows less";
+  if (status == 414) return "the URL is too long; send the query by POST";
+  return status == 400 ? "this is no well-formed HTTP request" : "the request cannot be answered";
+}
+
+int statusOf(int status, HttpStream::Fault fault) {
+  if (fault == HttpStream::Fault::HeaderTooLarge) return 431;
+  return fault == HttpStream::Fault::TooSlow ? 408 : status;
+}
+
+constexpr const char* kTooManyConnections =
+    "HTTP/1.1 503 Service Unavailable\r\nRetry-After: 1\r\nConnection: close\r\nContent-Type: text/plain; "
+    "charset=utf-8\r\nContent-Length: 52\r\n\r\nthe server has too many connections; ask again soon\n";
+
+}  // namespace
+
+struct HttpServer::Impl : httplib::Server {
+  Impl(const HttpOptions& given, HttpHandler to_handle, AccessLog to_log)
+      : options(given), handler(std::move(to_handle)), log(std::move(to_log)), stop_event(::eventfd(0, EFD_CLOEXEC)) {
+    new_task_queue = [this] { return new HttpThreads(options.max_connections); };
+    set_payload_max_length(options.max_body_bytes);
+    set_keep_alive_max_count(kKeepAliveRequests);
+    set_keep_alive_timeout(std::chrono::duration_cast<std::chrono::seconds>(options.idle_time).count());
+    set_pre_routing_handler([this](const auto& in, auto& out) { return answerWithoutBody(in, out); });
+    Post(R"([\s\S]*)", [this](const auto& in, auto& out, const auto& reader) { answerWithBody(in, out, reader); });
+    set_error_handler([](const httplib::Request&, httplib::Response& out) { explain(out); });
+    set_logger([this](const auto& in, const auto& out) { record(in, out); });
+    // Without SO_REUSEPORT: two servers must not share a port unnoticed.
+    set_socket_options([](socket_t sock) {
+      const int yes = 1;
+      ::setsockopt(sock, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    });
+    bind();
+  }
+  ~Impl() override { ::close(stop_event); }
+
+  void bind() {
+    port = options.port == 0 ? bind_to_any_port(options.host) : options.port;
+    const bool is_bound = options.port == 0 ? port > 0 : bind_to_port(options.host, options.port);
+    if (!is_bound)
+      throw Error(ErrorKind::InvalidArgument, "the server cannot listen on " + options.host + " port " +
+                                                  std::to_string(options.port) +
+                                                  ": another program uses it, or the address is not of this machine; "
+                                                  "choose another port");
+    ::listen(svr_sock_, kBacklog);  // cpp-httplib's queue of five connections is short
+  }
+
+  HandlerResponse answerWithoutBody(const httplib::Request& in, httplib::Response& out) {
+    if (in.method == "POST" && !in.is_multipart_form_data() && !in.has_header("Content-Encoding"))
+      return HandlerResponse::Unhandled;
+    if (hasBody(in)) endAfter(out);
+    if (in.method == "POST")
+      fill(out, textResponse(415, "a form of several parts or a compressed body is not taken; send the text as it is"));
+    else
+      fill(out, handler(requestOf(in, {})));
+    return HandlerResponse::Handled;
+  }
+
+  void answerWithBody(const httplib::Request& in, httplib::Response& out, const httplib::ContentReader& reader) {
+    std::string body;
+    const bool is_read = reader([&](const char* bytes, std::size_t count) {
+      if (body.size() + count > options.max_body_bytes) {
+        out.status = 413;
+        return false;
+      }
+      body.append(bytes, count);
+      return true;
+    });
+    if (is_read) return fill(out, handler(requestOf(in, std::move(body))));
+    endAfter(out);
+    if (out.status < 400) out.status = 400;
+  }
+
+  /// Of responses that cpp-httplib makes itself.
+  static void explain(httplib::Response& out) {
+    if (!out.body.empty()) return;
+    const HttpStream::Fault fault = current_stream->fault();
+    endAfter(out);
+    fill(out, textResponse(statusOf(out.status, fault), messageOf(out.status, fault)));
+  }
+
+  void record(const httplib::Request& in, const httplib::Response& out) const {
+    if (!log) return;
+    std::string client = in.remote_addr;
+    int ignored = 0;
+    if (client.empty()) current_stream->get_remote_ip_and_port(client, ignored);
+    log({client, in.method, in.target, out.status, out.body.size(), current_stream->secondsSinceBegin()});
+  }
+
+  bool process_and_close_socket(socket_t sock) override {
+    HttpStream stream(sock, stop_event, options);
+    current_stream = &stream;
+    if (HttpThreads::isRefused()) {
+      stream.closeAfterResponse();
+      stream.write(kTooManyConnections, std::char_traits<char>::length(kTooManyConnections));
+    } else {
+      serveRequests(stream);
+    }
+    stream.close();
+    current_stream = nullptr;
+    return true;
+  }
+
+  void serveRequests(HttpStream& stream) {
+    while (stream.awaitRequest()) {
+      bool is_closed = false;
+      const bool is_last = is_stopping;
+      const auto begin_body = [&stream](httplib::Request& request) {
+        request.ranges.clear();  // ranges of one answer could ask for it many times over
+        stream.beginBody();
+      };
+      const bool is_answered = process_request(stream, is_last, is_closed, begin_body);
+      if (!is_answered || is_closed || is_last || stream.mustClose()) return;
+    }
+  }
+
+  /// cpp-httplib's stop() may be called once, and only while it listens.
+  void stopListening() {
+    const std::lock_guard lock(stop_mutex);
+    if (is_running() && svr_sock_ != INVALID_SOCKET) httplib::Server::stop();
+  }
+
+  /// The connection ends after the response.
+  static void endAfter(httplib::Response& out) {
+    current_stream->closeAfterResponse();
+    out.set_header("Connection", "close");
+  }
+
+  static constexpr int kBacklog = 512;
+  static constexpr std::size_t kKeepAliveRequests = 1'000'000;  ///< what responses announce
+  HttpOptions options;
+  HttpHandler handler;
+  AccessLog log;
+  int stop_event;
+  int port = 0;
+  std::atomic<bool> is_stopping = false;
+  std::mutex stop_mutex;
+};
+
+HttpServer::HttpServer(const HttpOptions& options, HttpHandler handler, AccessLog log)
+    : impl_(std::make_unique<Impl>(options, std::move(handler), std::move(log))) {}
+HttpServer::~HttpServer() = default;
+
+int HttpServer::port() const {
+  return impl_->port;
+}
+
+void HttpServer::run() {
+  if (!impl_->is_stopping) impl_->listen_after_bind();
+}
+
+void HttpServer::stop() {
+  impl_->is_stopping = true;
+  const std::uint64_t one = 1;
+  [[maybe_unused]] const ssize_t written = ::write(impl_->stop_event, &one, sizeof one);
+  impl_->stopListening();
+}
+
+}  // namespace cluxel::serve

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether the confidence of an object is the share of such objects whose class is right.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "rules/objects/semantic_object.hpp"
+
+namespace cluxel::tasks {
+
+/// Objects whose confidence lies within one tenth.
+struct CalibrationBin {
+  std::uint64_t objects = 0, right = 0;
+  double confidence_sum = 0;
+};
+
+/// A class is right when most of the object's points with truth are of this class.
+struct Calibration {
+  std::array<CalibrationBin, 10> bins = {};
+
+  void add(double confidence, bool is_right);
+  void add(const Calibration& other);
+  std::uint64_t objects() const;
+  /// The expected calibration error: the mean over objects of |mean confidence - share that is right| of their bin; 0
+  /// without objects (Naeini, Cooper, Hauskrecht, AAAI 2015).
+  double expectedError() const;
+};
+
+/// Counts the true classes of each object's points.
+class ClassVotes {
+ public:
+  explicit ClassVotes(std::size_t object_count) : votes_(object_count) {}
+  void add(std::uint32_t object, std::size_t truth_class) { ++votes_[object][truth_class]; }
+  /// Of the objects with points of known truth whose class is one of `class_count` and not `left_out`.
+  Calibration calibrationOf(const std::vector<rules::SemanticObject>& objects,
+                            const std::vector<std::size_t>& class_of_object, std::size_t class_count,
+                            std::size_t left_out) const;
+
+ private:
+  std::vector<std::map<std::size_t, std::uint64_t>> votes_;
+};
+
+}  // namespace cluxel::tasks

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Chooses the writer; RDF is written by module rdf.
+#include "tasks/export/map_export.hpp"
+
+#include <algorithm>
+
+#include "rdf/io/rdf_io.hpp"
+#include "rdf/vocabulary.hpp"
+#include "tasks/export/cloud_export.hpp"
+#include "tasks/export/footprint_export.hpp"
+
+namespace cluxel::tasks {
+
+std::optional<ExportFormat> exportFormatOf(std::string_view name) {
+  if (name == "turtle" || name == "ttl") return ExportFormat::Turtle;
+  if (name == "nquads" || name == "nq") return ExportFormat::NQuads;
+  if (name == "canonical") return ExportFormat::Canonical;
+  if (name == "ply") return ExportFormat::Ply;
+  if (name == "geojson" || name == "json") return ExportFormat::GeoJson;
+  return std::nullopt;
+}
+
+bool isRdf(ExportFormat format) {
+  return format == ExportFormat::Turtle || format == ExportFormat::NQuads || format == ExportFormat::Canonical;
+}
+
+void exportQuads(const rdf::QuadReader& quads, ExportFormat format, const ByteSink& out) {
+  if (format == ExportFormat::Turtle) return writeTurtle(quads, std::nullopt, out);
+  if (format == ExportFormat::NQuads) return writeSortedNQuads(quads, out);
+  writeSortedNQuads(quads, out, [](const Quad& quad) { return quad.graph.text != rdf::vocabulary::kGraphHistory; });
+}
+
+void exportMap(const mapping::MapReader& map, ExportFormat format, const ByteSink& out, ExportFrame frame) {
+  switch (format) {
+    case ExportFormat::Turtle:
+    case ExportFormat::NQuads:
+    case ExportFormat::Canonical:
+      return exportQuads(map.quads(), format, out);
+    case ExportFormat::Ply:
+      return writeColouredPly(map, out);
+    case ExportFormat::GeoJson:
+      return writeFootprints(map, frame, out);
+  }
+}
+
+}  // namespace cluxel::tasks
