@@ -21,6 +21,17 @@ PresenceState stateOf(const std::vector<ScanVotes>& history) {
   return stateAfter(history, visibilityOf(history), {});
 }
 
+TEST(Presence, ScansOfOneTimeSpeakTogether) {
+  std::vector<ScanVotes> history;
+  addVotes(history, votes(1, 0, 40));
+  addVotes(history, votes(1, 10, 0));
+  addVotes(history, votes(2, 0, 5));
+  ASSERT_EQ(history.size(), 2);
+  EXPECT_EQ(history[0].hits.count(), 10);
+  EXPECT_EQ(history[0].seen_through.count(), 30);  // what one of them hit, no other saw through
+  EXPECT_EQ(history[1].time_s, 2);
+}
+
 TEST(Presence, IsTheIntervalOfLargestSum) {
   std::mt19937 random(11);
   for (int round = 0; round < 300; ++round) {

@@ -11,6 +11,7 @@
 
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
+#include "mapping/change/map_change.hpp"
 #include "mapping/small_campus.hpp"
 #include "scan/formats/scan_writer.hpp"
 #include "simulation/laser/campus_writer.hpp"
@@ -36,6 +37,17 @@ std::vector<std::string> cellsOf(const std::string& line) {
   for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
   cells.resize(21);
   return cells;
+}
+
+void keepFirstLines(const fs::path& file, std::size_t count) {
+  std::ifstream in(file);
+  std::string kept, line;
+  while (count > 0 && std::getline(in, line)) {
+    kept += line + "\n";
+    if (!line.starts_with('#')) --count;
+  }
+  in.close();
+  std::ofstream(file) << kept;
 }
 
 class SiteChangesTest : public ::testing::Test {
@@ -170,6 +182,17 @@ TEST_F(SiteChangesTest, WhatIsGoneClosesNoWay) {
     opened += now.closure[cell] != Closure::Thing && ever.closure[cell] == Closure::Thing ? 1 : 0;
   }
   EXPECT_GT(opened, 3);
+}
+
+TEST_F(SiteChangesTest, ExtendingByTheSecondVisitGivesTheMapOfBoth) {
+  const fs::path first = folder->path() / "first", grown = folder->path() / "grown.clx";
+  fs::copy(scans(), first, fs::copy_options::recursive);
+  for (int i = 4; i < 8; ++i) fs::remove(first / ("scan_00" + std::to_string(i) + ".pcd"));
+  keepFirstLines(first / "poses.txt", 4);
+  keepFirstLines(first / "times.txt", 4);
+  build(first, grown);
+  mapping::extendMap(grown, scan::ScanSet::open({scans()}, {}, silence()), {}, silence());
+  EXPECT_EQ(mapping::canonicalText(grown), mapping::canonicalText(mapFile()));
 }
 
 TEST_F(SiteChangesTest, RefusesOneSidedTimes) {

@@ -50,7 +50,6 @@ void vote(const perception::RayBundle& bundle, const std::vector<Eigen::Vector3d
     if (verdict == RayVerdict::Hit) votes.hits.set(i);
     if (verdict == RayVerdict::SeenThrough) votes.seen_through.set(i);
   }
-  votes.seen_through &= ~votes.hits;
 }
 
 std::vector<const Cloud*> timedClouds(const std::vector<Cloud>& clouds) {
@@ -78,14 +77,14 @@ std::vector<ObjectVotes> presenceVotes(const perception::Scene& scene, std::span
     spheres[i] = sphereAround(result[i].places);
   }
   for (const Cloud* cloud : timed) {
-    std::vector<perception::ScanVotes> of_scan(objects.size(), {*cloud->time_s, cloud->id, {}, {}});
+    std::vector<perception::ScanVotes> of_scan(objects.size(), {*cloud->time_s, {}, {}});
     perception::forEachRayBundle(load(*cloud), [&](const perception::RayBundle& bundle) {
       parallelFor(objects.size(), threads, [&](std::size_t i) {
         if (!result[i].places.empty()) vote(bundle, result[i].places, spheres[i], of_scan[i]);
       });
     });
     for (std::size_t i = 0; i < objects.size(); ++i)
-      if ((of_scan[i].hits | of_scan[i].seen_through).any()) result[i].votes.push_back(of_scan[i]);
+      if ((of_scan[i].hits | of_scan[i].seen_through).any()) perception::addVotes(result[i].votes, of_scan[i]);
   }
   return result;
 }

@@ -10,18 +10,18 @@
 #include "perception/segments/scene.hpp"
 #include "perception/visibility/presence.hpp"
 #include "perception/visibility/ray_bundle.hpp"
-#include "rules/decide/semantic_object.hpp"
+#include "rules/objects/semantic_object.hpp"
 
 namespace cluxel::mapping {
 
 struct ObjectVotes {
   std::vector<Eigen::Vector3d> places;       ///< that rays are compared with [m, map]; none of ground
-  std::vector<perception::ScanVotes> votes;  ///< of scans that say something, sorted by time, then by scan
+  std::vector<perception::ScanVotes> votes;  ///< of the times at which a scan says something, ascending
 };
 
 /// The votes for each object. Rays are compared with up to 256 cluxels of an object, at least 0.3 m above the ground
 /// where it has such. Ground gets no votes, nor does anything when fewer than two clouds have a time and a pose. `load`
-/// gives a cloud's scan. Cost: some 60 ns a ray of the timed scans, and a microsecond for each cluxel compared and scan
+/// gives a cloud's scan. Cost: linear in the rays of the timed scans, and in the cluxels compared times the scans
 /// within range.
 std::vector<ObjectVotes> presenceVotes(const perception::Scene& scene, std::span<const rules::SemanticObject> objects,
                                        const std::vector<Cloud>& clouds,

@@ -16,6 +16,16 @@ double count(const PlaceSet& places) {
 
 }  // namespace
 
+void addVotes(std::vector<ScanVotes>& votes, const ScanVotes& scan) {
+  if (votes.empty() || votes.back().time_s != scan.time_s) {
+    votes.push_back(scan);
+  } else {
+    votes.back().hits |= scan.hits;
+    votes.back().seen_through |= scan.seen_through;
+  }
+  votes.back().seen_through &= ~votes.back().hits;
+}
+
 double shareOfHits(std::span<const ScanVotes> votes) {
   double hits = 0, covered = 0;
   for (const ScanVotes& vote : votes)

@@ -7,8 +7,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
-
-#include "base/content_hash.hpp"
+#include <vector>
 
 namespace cluxel::perception {
 
@@ -16,12 +15,15 @@ namespace cluxel::perception {
 inline constexpr std::size_t kMaxPlaces = 256;
 using PlaceSet = std::bitset<kMaxPlaces>;
 
-/// What one timed scan says about a thing: the places where rays ended, and those that they saw through.
+/// What the scans of one time say about a thing: the places where rays ended, and those that they saw through.
 struct ScanVotes {
   double time_s = 0;
-  ContentHash scan;
-  PlaceSet hits, seen_through;
+  PlaceSet hits, seen_through;  ///< no place is in both
 };
+
+/// Adds what a scan says to votes sorted by time. Scans of one time speak together: a place that one of them hit is
+/// hit.
+void addVotes(std::vector<ScanVotes>& votes, const ScanVotes& scan);
 
 struct PresenceParams {
   /// Chance that a ray ends at a place of a thing that is gone, because something else stands there now.
@@ -58,7 +60,7 @@ Visibility visibilityOf(std::span<const ScanVotes> votes);
 bool showAbsence(std::span<const ScanVotes> votes, const Visibility& thing, const PresenceParams& params);
 
 /// The interval with the largest sum of log-odds; before or after it the thing was not there when showAbsence() holds
-/// of those scans. `votes` are sorted by time, then by scan. Absent when no scan speaks for it.
+/// of those scans. `votes` are sorted by time, one element a time. Absent when no scan speaks for it.
 std::optional<Presence> presenceOf(std::span<const ScanVotes> votes, const Visibility& thing,
                                    const PresenceParams& params);
 

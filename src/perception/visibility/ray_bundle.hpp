@@ -35,7 +35,7 @@ struct RayParams {
 
 class RayBundle {
  public:
-  /// `ends` are the ends of the rays relative to `origin_map` [m]. Cost: about 50 ns a ray.
+  /// `ends` are the ends of the rays relative to `origin_map` [m]. Cost: linear in the rays.
   RayBundle(const Eigen::Vector3d& origin_map, std::vector<Eigen::Vector3f> ends);
 
   const Eigen::Vector3d& origin() const { return origin_; }

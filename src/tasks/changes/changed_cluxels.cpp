@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
+#include "perception/visibility/presence.hpp"
 #include "perception/visibility/ray_bundle.hpp"
 
 namespace cluxel::tasks {
@@ -55,7 +56,8 @@ class Clustering {
 
  private:
   static constexpr std::size_t kMinCluxels = 5, kMany = 10;
-  static constexpr double kMinShare = 0.75, kMinShareOfMany = 0.5, kDecided = 6, kHitWhenGone = 0.05, kThin_m = 0.3;
+  static constexpr double kMinShare = 0.75, kMinShareOfMany = 0.5, kThin_m = 0.3;
+  static constexpr perception::PresenceParams kPresence{};
 
   /// Whether most of the decided neighbours changed like the cluxel.
   bool agrees(std::uint32_t cluxel) const {
@@ -137,10 +139,10 @@ class Clustering {
   }
 
   bool isSureFromFewRays(const Cluster& cluster, const Cluster& around) const {
-    const double each = std::log((1 - sparseHits(cluster, around)) / (1 - kHitWhenGone));
+    const double each = std::log((1 - sparseHits(cluster, around)) / (1 - kPresence.hit_when_gone));
     double log_odds = 0;
     for (const std::uint32_t cluxel : cluster) log_odds += std::min(each, 0.0) * findingsAt(cluxel, false)->passed;
-    return log_odds <= -kDecided;
+    return log_odds <= -kPresence.decided;
   }
 
   CluxelChange kind_;

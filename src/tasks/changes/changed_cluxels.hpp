@@ -25,7 +25,7 @@ struct CluxelFindings {
 };
 
 /// Compares the rays of the timed scans before `since_s`, and of those from it on, with the cluxels in `wanted`. Cost:
-/// about half a microsecond for each cluxel and scan within its range.
+/// the wanted cluxels times the scans within their range.
 CluxelFindings findingsAt(const mapping::MapReader& map, double since_s, const std::vector<bool>& wanted,
                           unsigned threads);
 
@@ -38,12 +38,13 @@ enum class CluxelChange : std::uint8_t {
 /// By cluxel of the scene.
 std::vector<CluxelChange> changesOf(const CluxelFindings& findings, std::size_t cluxel_count);
 
-/// Connected clusters of cluxels that changed alike, each ascending, in the order of their first cluxel. They are left
-/// out when the rays may have missed a thing that is still there: when of the decided cluxels in and around a cluster
-/// fewer than 70 % changed like it, or when the log-odds of "there" are above -6. A place that several rays saw through
-/// counts log(0.2 / 0.95). One that few rays passed counts log((1 - p) / 0.95); p is the share of hits among such
-/// places of the cluster and around it while the thing was there, with a prior that takes things less than 0.3 m wide
-/// for easily missed.
+/// Connected clusters of five or more cluxels that changed alike, each ascending, in the order of their first cluxel. A
+/// cluster is left out when the rays may have missed a thing that is still there. It stays when, of the decided cluxels
+/// in and around it, enough changed like it, and enough of its cluxels were seen through by several rays of one scan:
+/// 75 % and 5 cluxels, or 50 % and 10 cluxels. A cluster of 10 or more cluxels that is at least 0.3 m wide, with 75 %,
+/// also stays when few rays passed it often enough: each scan that few rays passed counts log((1 - p) / 0.95), where p
+/// is the share of hits among such scans in and around the cluster while the thing was there; the sum must be -6 or
+/// less.
 std::vector<std::vector<std::uint32_t>> clustersOf(CluxelChange kind, const std::vector<CluxelChange>& changes,
                                                    const CluxelFindings& findings,
                                                    const perception::SceneCluxels& cluxels);

@@ -13,7 +13,7 @@
 #include "mapping/facts/map_facts.hpp"
 #include "mapping/facts/object_geometry.hpp"
 #include "rdf/map_iris.hpp"
-#include "sparql/functions/calendar.hpp"
+#include "sparql/values/calendar.hpp"
 #include "tasks/changes/changed_cluxels.hpp"
 #include "tasks/ways/way_report.hpp"
 
