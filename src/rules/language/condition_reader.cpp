@@ -4,10 +4,10 @@
 #include <algorithm>
 
 #include "base/nearest_name.hpp"
-#include "rules/decide/pair_measures.hpp"
 #include "rules/language/condition_text.hpp"
 #include "rules/language/condition_words.hpp"
 #include "rules/language/rule_reading.hpp"
+#include "rules/propose/pair_measures.hpp"
 
 namespace cluxel::rules {
 

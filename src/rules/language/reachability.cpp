@@ -57,28 +57,6 @@ perception::Attribute canonical(perception::Attribute attribute) {
   return attribute;
 }
 
-Comparison negated(Comparison comparison) {
-  switch (comparison) {
-    case Comparison::Less:
-      return Comparison::GreaterEqual;
-    case Comparison::LessEqual:
-      return Comparison::Greater;
-    case Comparison::Greater:
-      return Comparison::LessEqual;
-    case Comparison::GreaterEqual:
-      return Comparison::Less;
-    case Comparison::Equal:
-      return Comparison::NotEqual;
-    case Comparison::NotEqual:
-      return Comparison::Equal;
-    case Comparison::Between:
-      return Comparison::Outside;
-    case Comparison::Outside:
-      break;
-  }
-  return Comparison::Between;
-}
-
 /// What the tests on the path imply about the bound candidates.
 class Knowledge {
  public:

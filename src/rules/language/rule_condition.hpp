@@ -78,6 +78,8 @@ std::string describe(const Condition& condition);
 /// of adjacency, or a distance with an upper bound.
 bool looksNearby(const Condition& condition, std::string_view subject);
 std::string_view symbolOf(Comparison comparison);
+/// The comparison that holds where the given one does not: `>=` of `<`.
+Comparison negated(Comparison comparison);
 std::string_view nameOf(PairMeasure measure);
 /// "m", "m2", "m3", "deg", or empty.
 std::string_view unitOf(perception::Dimension dimension);

@@ -72,6 +72,28 @@ bool looksNearby(const Condition& c, std::string_view subject) {
          c.comparison == Comparison::Between;
 }
 
+Comparison negated(Comparison comparison) {
+  switch (comparison) {
+    case Comparison::Less:
+      return Comparison::GreaterEqual;
+    case Comparison::LessEqual:
+      return Comparison::Greater;
+    case Comparison::Greater:
+      return Comparison::LessEqual;
+    case Comparison::GreaterEqual:
+      return Comparison::Less;
+    case Comparison::Equal:
+      return Comparison::NotEqual;
+    case Comparison::NotEqual:
+      return Comparison::Equal;
+    case Comparison::Between:
+      return Comparison::Outside;
+    case Comparison::Outside:
+      break;
+  }
+  return Comparison::Between;
+}
+
 std::string_view symbolOf(Comparison comparison) {
   switch (comparison) {
     case Comparison::Less:

@@ -37,28 +37,6 @@ void forEachEvidence(RuleLike& rule, const See& see) {
       for (auto& line : accept->evidence) see(line, std::optional(i));
 }
 
-Comparison turned(Comparison comparison) {
-  switch (comparison) {
-    case Comparison::Less:
-      return Comparison::GreaterEqual;
-    case Comparison::LessEqual:
-      return Comparison::Greater;
-    case Comparison::Greater:
-      return Comparison::LessEqual;
-    case Comparison::GreaterEqual:
-      return Comparison::Less;
-    case Comparison::Equal:
-      return Comparison::NotEqual;
-    case Comparison::NotEqual:
-      return Comparison::Equal;
-    case Comparison::Between:
-      return Comparison::Outside;
-    case Comparison::Outside:
-      break;
-  }
-  return Comparison::Between;
-}
-
 class MutantMaker {
  public:
   explicit MutantMaker(const Rule& rule) : rule_(rule) {}
@@ -99,7 +77,7 @@ class MutantMaker {
           inCopy(number, [](Condition& c) { c.kind = c.kind == Kind::All ? Kind::Any : Kind::All; }));
     if (condition.kind != Kind::Attribute && condition.kind != Kind::Pair) return;
     add(condition.at, words + ": comparison turned round", node,
-        inCopy(number, [](Condition& c) { c.comparison = turned(c.comparison); }));
+        inCopy(number, [](Condition& c) { c.comparison = negated(c.comparison); }));
     for (const double factor : {0.5, 2.0}) {
       const std::string done = factor < 1 ? "halved" : "doubled";
       if (condition.ratio_attribute) {
