@@ -7,6 +7,7 @@
 
 #include "rules/box_world.hpp"
 #include "rules/explain/explain.hpp"
+#include "rules/explain/path_tree.hpp"
 
 namespace cluxel::testing {
 
@@ -15,8 +16,8 @@ using namespace perception;
 using namespace rules;
 namespace {
 
-RuleSet gatheringRules(const std::string& gather) {
-  return rulesOf("[clx:Tree]", R"(
+RuleSet gatheringRules(const std::string& gather, const std::string& order = "[clx:Tree]") {
+  return rulesOf(order, R"(
   - id: tree/any
     class: clx:Tree
     seed: { label: column, as: trunk }
@@ -27,7 +28,7 @@ RuleSet gatheringRules(const std::string& gather) {
           parts: { trunk: clx:TreeTrunk, top: clx:TreeTop }
           confidence: 0.9
           split: { shared: top, from: trunk, reach: 6 m, jump: 0.5 m)" +
-                                   gather + R"( }
+                            gather + R"( }
       missing: { reject: no crown }
 )");
 }
@@ -71,6 +72,12 @@ TEST(CrownGathering, CutsAFragmentBetweenTwoTreesAtTheMiddle) {
   }
 }
 
+TEST(CrownGathering, HappensInAStratumThatBeginsWithAnotherClass) {
+  const BuiltBoxScene built = sceneOfBoxes(twoTrees());
+  EXPECT_EQ(inWords(built, reason(built.scene, gatheringRules(kGather, "[[clx:UtilityPole, clx:Tree]]"))),
+            inWords(built, reason(built.scene, gatheringRules(kGather))));
+}
+
 TEST(CrownGathering, HappensOnlyWhereTheRuleAsksForIt) {
   const BuiltBoxScene built = sceneOfBoxes(twoTrees());
   EXPECT_THAT(inWords(built, reason(built.scene, gatheringRules(""))),
@@ -111,6 +118,9 @@ TEST(CrownGathering, IsToldByExplain) {
   const std::string text = textOf(explain(built.scene, rules, {}, beam), rules, built.scene);
   EXPECT_THAT(text, ::testing::HasSubstr("gathered into top of the clx:Tree whose trunk is nearest in plan view"));
   EXPECT_THAT(text, ::testing::HasSubstr("gap to the object <= gather's `within` (measured"));
+  const ReasoningResult result = reason(built.scene, rules);
+  for (const Decision& decision : result.decisions)
+    EXPECT_EQ(walkedPath(rules.rules.front(), decision).empty(), decision.is_gathered);
 }
 
 }  // namespace

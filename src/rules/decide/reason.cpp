@@ -25,9 +25,8 @@ bool shares(const Rule& rule) {
   });
 }
 
-/// Splits the primitives shared by objects of a class, then gathers the free fragments beside them.
+/// Splits the primitives shared by objects, then gathers the free fragments beside those of a class.
 void splitAll(ReasoningState& state, const std::string& class_iri) {
-  if (state.claims.empty()) return;
   splitShared(state);
   gatherFragments(state, class_iri);
 }

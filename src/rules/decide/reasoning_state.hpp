@@ -38,7 +38,8 @@ struct ObjectInMaking {
   double confidence = 0;
   std::size_t decision = 0;
   std::vector<PartInMaking> parts;
-  Bindings bindings;  ///< needed by absorbing; see ReasoningState::renewBindings
+  Bindings bindings;        ///< needed by absorbing; see ReasoningState::renewBindings
+  bool may_gather = false;  ///< its share of a crown was split from that of others, and it gathered nothing since
 };
 
 struct ReasoningState {

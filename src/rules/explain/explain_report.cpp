@@ -63,7 +63,7 @@ std::string nodeText(const PathNode& node, const Decision& decision, const std::
 
 std::string pathText(const Decision& decision, const Rule* rule, const std::string& indent) {
   std::string text;
-  if (rule == nullptr)
+  if (rule == nullptr || decision.is_gathered)
     for (const DecisionStep& step : decision.path) text += stepText(step, indent);
   else
     for (const WalkedPath& walked : walkedPath(*rule, decision)) {

@@ -107,7 +107,7 @@ std::string edgeText(NodeIndex from, NodeIndex to, const char* label, const std:
 }  // namespace
 
 std::vector<WalkedPath> walkedPath(const Rule& rule, const Decision& decision) {
-  return PathTreeReader(rule, decision).read();
+  return decision.is_gathered ? std::vector<WalkedPath>() : PathTreeReader(rule, decision).read();
 }
 
 std::string dotOf(const Rule& rule, const Decision& decision) {

@@ -26,7 +26,7 @@ struct WalkedPath {
 };
 
 /// The nodes of the tree from its root to the leaf, read from the steps alone: it throws std::out_of_range when the
-/// steps are not those of the rule.
+/// steps are not those of the rule. None for what was gathered.
 std::vector<WalkedPath> walkedPath(const Rule& rule, const Decision& decision);
 
 /// The rule's tree as a Graphviz graph. What the decision went through is drawn bold.

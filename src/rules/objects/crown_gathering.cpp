@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "rules/objects/crown_splitting.hpp"
 
@@ -17,8 +18,9 @@ class Gathering {
  public:
   Gathering(ReasoningState& state, const std::string& class_iri) : state_(state) {
     for (OwnerIndex owner = 0; owner < state.objects.size(); ++owner) {
-      const ObjectInMaking& object = state.objects[owner];
-      if (object.rule->class_iri != class_iri || !object.leaf->splitting || !object.leaf->splitting->gather) continue;
+      ObjectInMaking& object = state.objects[owner];
+      if (object.rule->class_iri != class_iri || !std::exchange(object.may_gather, false)) continue;
+      if (!object.leaf->splitting->gather) continue;
       if (const PartInMaking* from = partOf(object, object.leaf->splitting->from)) add(owner, *from);
     }
     std::sort(gatherers_.begin(), gatherers_.end(), [this](const Gatherer& a, const Gatherer& b) {
@@ -206,7 +208,7 @@ class Gathering {
     decision.rule_id = object.rule->id;
     decision.seed = state_.fragments[fragment].primitive;
     decision.seeds = {decision.seed};
-    decision.accepted = true;
+    decision.accepted = decision.is_gathered = true;
     decision.leaf = state_.decisions[object.decision].leaf;
     decision.reason = "gathered into " + spec.part + " of the " + state_.rules.shorten(object.rule->class_iri) +
                       " whose " + spec.from + " is nearest in plan view";

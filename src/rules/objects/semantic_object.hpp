@@ -64,8 +64,9 @@ struct Decision {
   perception::PrimitiveIndex seed = 0;            ///< the one with most points, when several were grouped
   std::vector<perception::PrimitiveIndex> seeds;  ///< all of them, ascending
   bool accepted = false;
-  std::size_t leaf = 0;  ///< its number in Rule::nodes
-  std::string reason;    ///< the reason of the leaf, or what was accepted
+  bool is_gathered = false;  ///< it was gathered into an object: `path` holds the gap, and no tree was walked
+  std::size_t leaf = 0;      ///< its number in Rule::nodes
+  std::string reason;        ///< the reason of the leaf, or what was accepted
   std::vector<DecisionStep> path;
   double log_odds = 0;                 ///< sum of the evidence; of accept leaves only
   double probability = 0;              ///< of these log-odds; without evidence the leaf's confidence as written

@@ -102,6 +102,7 @@ class SharedSplitting {
 
   /// Drops fragments that were cut.
   void renew(ObjectInMaking& object) {
+    object.may_gather = true;
     for (PartInMaking& part : object.parts) {
       std::erase_if(part.fragments, [this](FragmentIndex fragment) { return !state_.fragments[fragment].alive; });
       part.is_outdated = true;
