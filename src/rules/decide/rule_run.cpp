@@ -3,6 +3,7 @@
 #include "rules/decide/rule_run.hpp"
 
 #include "rules/decide/decision_record.hpp"
+#include "rules/decide/rule_reach.hpp"
 #include "rules/objects/object_making.hpp"
 #include "rules/objects/seed_groups.hpp"
 
@@ -15,63 +16,100 @@ constexpr double kMinLogOdds = -3;
 
 class RuleRun {
  public:
-  RuleRun(ReasoningState& state, const Rule& rule) : state_(state), rule_(rule) {}
+  RuleRun(ReasoningState& state, const Rule& rule)
+      : state_(state), rule_(rule), reach_(reachOf(rule, state.grid)), changes_(reach_.value_or(0)) {}
 
   void run() {
     SliceScope scope(state_, rule_);
-    auto open = seedGroups(state_, rule_, scope.slices());
+    std::vector<Open> open;
+    for (std::vector<FragmentIndex>& group : seedGroups(state_, rule_, scope.slices()))
+      open.push_back({std::move(group)});
     // An object that grows may come near a seed that was rejected before: retry rejected seeds until no object grows.
     for (bool grown = true; grown && !open.empty();) {
       grown = false;
-      std::vector<std::vector<FragmentIndex>> rejected;
-      std::vector<Decision> rejections;
-      for (auto& group : open) {
-        std::erase_if(group, [this](FragmentIndex fragment) { return !isFree(fragment); });
-        if (group.empty()) continue;
-        auto rejection = decide(group, grown);
-        if (!rejection) continue;
-        rejections.push_back(std::move(*rejection));
-        rejected.push_back(std::move(group));
+      std::vector<Open> rejected;
+      for (Open& seed : open) {
+        std::erase_if(seed.group, [this](FragmentIndex fragment) { return !isFree(fragment); });
+        if (seed.group.empty()) continue;
+        if (!isSettled(seed) && !decide(seed, grown)) continue;
+        rejected.push_back(std::move(seed));
       }
-      if (!grown) std::move(rejections.begin(), rejections.end(), std::back_inserter(state_.decisions));
-      open = grown ? std::move(rejected) : std::vector<std::vector<FragmentIndex>>{};
+      open = std::move(rejected);
     }
+    for (Open& seed : open) state_.decisions.push_back(std::move(*seed.rejection));
     scope.putBack();
   }
 
  private:
+  /// A group of seeds, and the last rejection.
+  struct Open {
+    std::vector<FragmentIndex> group;
+    std::optional<Decision> rejection = std::nullopt;
+    std::uint32_t changes = 0;  ///< that were known then
+    std::size_t judged = 0;     ///< fragments of the group then
+  };
+
   bool isFree(FragmentIndex fragment) const {
     return state_.fragments[fragment].alive && state_.fragments[fragment].owner == kFree;
   }
 
-  /// Decides about one group. Records an acceptance or a final rejection and returns nothing; returns a rejection that
-  /// may be retried. Sets `grown` when the group joined an existing object.
-  std::optional<Decision> decide(const std::vector<FragmentIndex>& group, bool& grown) {
-    Verdict verdict = judge(state_, rule_, group);
+  Eigen::AlignedBox2d boxOf(const std::vector<FragmentIndex>& group) const {
+    Eigen::AlignedBox2d box;
+    for (FragmentIndex fragment : group) {
+      const Shape& shape = state_.fragments.shapeOf(fragment);
+      box.extend(Eigen::Vector2d(shape.min.head<2>()));
+      box.extend(Eigen::Vector2d(shape.max.head<2>()));
+    }
+    return box;
+  }
+
+  /// Whether judging again would give the same rejection.
+  bool isSettled(const Open& seed) const {
+    return reach_ && seed.rejection && seed.judged == seed.group.size() &&
+           !changes_.anyNear(boxOf(seed.group), seed.changes);
+  }
+
+  /// Decides about one group. Records an acceptance or a final rejection and returns false; returns true for a
+  /// rejection that may be retried. Sets `grown` when the group joined an existing object.
+  bool decide(Open& seed, bool& grown) {
+    Verdict verdict = judge(state_, rule_, seed.group);
     if (verdict.accept != nullptr && state_.context.onCandidate) state_.context.onCandidate(state_, rule_, verdict);
     if (verdict.accept != nullptr && verdict.decision.log_odds <= kMinLogOdds) {
       verdict.decision.accepted = false;
       verdict.decision.reason = "the evidence speaks against it";
-      return std::move(verdict.decision);
+      verdict.accept = nullptr;
+      verdict.leaves_unknown = false;
     }
-    if (verdict.accept == nullptr) {
-      if (!verdict.leaves_unknown) return std::move(verdict.decision);
-      for (FragmentIndex fragment : group) state_.fragments.setOwner(fragment, kUnknown);
-      state_.decisions.push_back(std::move(verdict.decision));
-      return std::nullopt;
+    if (verdict.accept != nullptr) {
+      accept(verdict, seed.group, grown);
+      return false;
     }
+    if (!verdict.leaves_unknown) {
+      seed.rejection = std::move(verdict.decision);
+      seed.changes = changes_.count();
+      seed.judged = seed.group.size();
+      return true;
+    }
+    for (FragmentIndex fragment : seed.group) state_.fragments.setOwner(fragment, kUnknown);
     state_.decisions.push_back(std::move(verdict.decision));
+    return false;
+  }
+
+  void accept(Verdict& verdict, const std::vector<FragmentIndex>& group, bool& grown) {
+    state_.decisions.push_back(std::move(verdict.decision));
+    changes_.add(boxOf(group));
     if (verdict.accept->merge_into_related && verdict.related) {
       joinRelated(state_, rule_, *verdict.related, verdict.accept->parts.front(), group);
       grown = true;
     } else {
       makeObject(state_, rule_, *verdict.accept, std::move(verdict.bindings));
     }
-    return std::nullopt;
   }
 
   ReasoningState& state_;
   const Rule& rule_;
+  std::optional<double> reach_;
+  NearbyChanges changes_;
 };
 
 }  // namespace

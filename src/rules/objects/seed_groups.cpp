@@ -44,8 +44,11 @@ class Linking {
     const double reach = std::max(group_.near_m.value_or(0), group_.horizontal_m.value_or(0));
     for (std::size_t i = 0; i < members_.size(); ++i)
       for (std::uint32_t cluxel : state_.fragments[members_[i]].cluxels) {
-        if (group_.near_m || group_.horizontal_m)
-          state_.grid.near(cluxel, reach, [&](std::uint32_t other) { consider(i, cluxel, other); });
+        const auto look = [&](std::uint32_t other) { consider(i, cluxel, other); };
+        if (group_.horizontal_m)
+          state_.grid.nearInPlan(cluxel, reach, look);
+        else if (group_.near_m)
+          state_.grid.near(cluxel, reach, look);
         if (group_.adjacent)
           for (std::uint32_t other : state_.scene.cluxels.neighbours(cluxel)) link(i, other, 0);
       }
@@ -170,13 +173,14 @@ void SliceScope::putBack() {
   };
   for (Cut& cut : cuts_) {
     std::optional<FragmentIndex> home = cut.rest;
-    for (FragmentIndex slice : cut.slices) {
-      if (!isFree(slice)) continue;
-      if (home)
-        state_.fragments.join(*home, slice);
-      else
-        home = slice;
+    std::vector<FragmentIndex> free_slices;
+    for (FragmentIndex slice : cut.slices)
+      if (isFree(slice)) free_slices.push_back(slice);
+    if (!home && !free_slices.empty()) {
+      home = free_slices.front();
+      free_slices.erase(free_slices.begin());
     }
+    if (home) state_.fragments.join(*home, free_slices);
   }
   cuts_.clear();
 }

@@ -9,31 +9,47 @@
 namespace cluxel::rules {
 
 CluxelGrid::CluxelGrid(const perception::SceneCluxels& all) : all_(all) {
-  std::vector<Cell> entries;
-  entries.reserve(all.size());
+  if (all.size() > 0) origin_ = all.center[all.size() / 2];
+  struct Placed {
+    std::int32_t x, y;
+    Entry entry;
+  };
+  std::vector<Placed> placed;
+  placed.reserve(all.size());
+  float farthest = 0;
   for (std::uint32_t i = 0; i < all.size(); ++i) {
-    entries.push_back({cellOf(all.center[i].x()), cellOf(all.center[i].y()), i});
-    margin_m_ = std::max(margin_m_, static_cast<double>(std::max(all.extent[i].x(), all.extent[i].y())) / 2);
+    placed.push_back({cellOf(all.center[i].x()), cellOf(all.center[i].y()), entryOf(i)});
+    const Entry& entry = placed.back().entry;
+    margin_m_ = std::max(margin_m_, static_cast<double>(entry.half.head<2>().maxCoeff()));
+    tallest_half_m_ = std::max(tallest_half_m_, entry.half.z());
+    farthest = std::max(farthest, entry.centre.cwiseAbs().maxCoeff());
   }
-  std::sort(entries.begin(), entries.end(),
-            [](const Cell& a, const Cell& b) { return std::tie(a.x, a.y, a.first) < std::tie(b.x, b.y, b.first); });
-  cluxels_.reserve(entries.size());
-  for (const Cell& entry : entries) {
-    if (cells_.empty() || cells_.back().x != entry.x || cells_.back().y != entry.y)
-      cells_.push_back({entry.x, entry.y, static_cast<std::uint32_t>(cluxels_.size())});
-    cluxels_.push_back(entry.first);
+  rounding_m_ = 1e-4F + 8 * std::numeric_limits<float>::epsilon() * farthest;
+  std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
+    return std::tuple(a.x, a.y, a.entry.centre.z(), a.entry.cluxel) <
+           std::tuple(b.x, b.y, b.entry.centre.z(), b.entry.cluxel);
+  });
+  entries_.reserve(placed.size());
+  for (const Placed& one : placed) {
+    if (columns_.empty() || columns_.back().first != one.x) columns_.emplace_back(one.x, cells_.size());
+    if (cells_.empty() || cells_.back().x != one.x || cells_.back().y != one.y)
+      cells_.push_back({one.x, one.y, static_cast<std::uint32_t>(entries_.size())});
+    entries_.push_back(one.entry);
   }
   constexpr std::int32_t kBeyond = std::numeric_limits<std::int32_t>::max();
-  cells_.push_back({kBeyond, kBeyond, static_cast<std::uint32_t>(cluxels_.size())});
+  columns_.emplace_back(kBeyond, cells_.size());
+  cells_.push_back({kBeyond, kBeyond, static_cast<std::uint32_t>(entries_.size())});
 }
 
 std::pair<std::uint32_t, std::uint32_t> CluxelGrid::row(std::int32_t x, std::int32_t low_y, std::int32_t high_y) const {
-  auto cell = std::lower_bound(
-      cells_.begin(), cells_.end() - 1, std::pair(x, low_y),
-      [](const Cell& c, const auto& at) { return std::tie(c.x, c.y) < std::tie(at.first, at.second); });
-  const std::uint32_t first = cell->first;
-  while (cell->x == x && cell->y <= high_y) ++cell;
-  return {first, cell->first};
+  const auto column = std::lower_bound(columns_.begin(), columns_.end() - 1, std::pair(x, std::uint32_t{0}));
+  if (column->first != x) return {0, 0};
+  const auto begin = cells_.begin(), end = begin + std::next(column)->second;
+  const auto first =
+      std::lower_bound(begin + column->second, end, low_y, [](const Cell& cell, std::int32_t y) { return cell.y < y; });
+  auto last = first;
+  while (last != end && last->y <= high_y) ++last;
+  return {static_cast<std::uint32_t>(first - begin), static_cast<std::uint32_t>(last - begin)};
 }
 
 std::vector<perception::PrimitiveIndex> CluxelGrid::primitivesNear(std::span<const std::uint32_t> cluxels,
@@ -48,9 +64,11 @@ std::vector<perception::PrimitiveIndex> CluxelGrid::primitivesNear(std::span<con
   const auto reach = static_cast<std::int32_t>(std::ceil((distance_m + 2 * margin_m_) / kCell_m));
   for (const auto& [cx, cy] : done)
     for (std::int32_t x = cx - reach; x <= cx + reach; ++x) {
-      const auto [first, last] = row(x, cy - reach, cy + reach);
-      for (std::uint32_t i = first; i < last; ++i)
-        if (found.empty() || found.back() != all_.primitive[cluxels_[i]]) found.push_back(all_.primitive[cluxels_[i]]);
+      const auto [cell, end] = row(x, cy - reach, cy + reach);
+      for (std::uint32_t i = cells_[cell].first; i < cells_[end].first; ++i) {
+        const perception::PrimitiveIndex primitive = all_.primitive[entries_[i].cluxel];
+        if (found.empty() || found.back() != primitive) found.push_back(primitive);
+      }
     }
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());

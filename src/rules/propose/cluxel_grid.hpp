@@ -28,18 +28,19 @@ class CluxelGrid {
  public:
   explicit CluxelGrid(const perception::SceneCluxels& all);
 
-  /// Calls `visit` for every cluxel whose box may be within `distance_m` of the box of `cluxel`, in plan view.
+  /// Calls `visit` for every cluxel whose box is within `distance_m` of the box of `cluxel`, and for some that are a
+  /// rounding error farther away.
   template <typename Visit>
   void near(std::uint32_t cluxel, double distance_m, const Visit& visit) const {
-    const Eigen::Vector3d& centre = all_.center[cluxel];
-    const double own = static_cast<double>(all_.extent[cluxel].head<2>().maxCoeff()) / 2;
-    const double reach = distance_m + margin_m_ + own;
-    const std::int32_t low_y = cellOf(centre.y() - reach), high_y = cellOf(centre.y() + reach);
-    for (std::int32_t x = cellOf(centre.x() - reach); x <= cellOf(centre.x() + reach); ++x) {
-      const auto [first, last] = row(x, low_y, high_y);
-      for (std::uint32_t i = first; i < last; ++i) visit(cluxels_[i]);
-    }
+    search(cluxel, distance_m, true, visit);
   }
+  /// The same with distances in plan view.
+  template <typename Visit>
+  void nearInPlan(std::uint32_t cluxel, double distance_m, const Visit& visit) const {
+    search(cluxel, distance_m, false, visit);
+  }
+  /// Cells up to this far beyond a distance are looked at by primitivesNear() [m].
+  double slack_m() const { return 2 * margin_m_ + 2 * kCell_m; }
   /// The primitives with a cluxel whose box may be within `distance_m` of one of `cluxels`; ascending.
   std::vector<perception::PrimitiveIndex> primitivesNear(std::span<const std::uint32_t> cluxels,
                                                          double distance_m) const;
@@ -48,19 +49,67 @@ class CluxelGrid {
   static constexpr double kCell_m = 1.0;
   struct Cell {
     std::int32_t x, y;
-    std::uint32_t first;  ///< its first place in cluxels_; the next cell's first is its end
+    std::uint32_t first;  ///< its first place in entries_; the next cell's first is its end
   };
+  /// A cluxel's box, relative to origin_: in single precision most cluxels are told to be too far away.
+  struct Entry {
+    Eigen::Vector3f centre, half;
+    std::uint32_t cluxel = 0;
+  };
+  Entry entryOf(std::uint32_t cluxel) const {
+    return {(all_.center[cluxel] - origin_).cast<float>(), all_.extent[cluxel] / 2, cluxel};
+  }
+
+  template <typename Visit>
+  void search(std::uint32_t cluxel, double distance_m, bool with_height, const Visit& visit) const {
+    const Entry here = entryOf(cluxel);
+    const Eigen::Vector3d& centre = all_.center[cluxel];
+    const double reach = distance_m + margin_m_ + static_cast<double>(here.half.head<2>().maxCoeff());
+    const float limit = static_cast<float>(distance_m) + rounding_m_, square = limit * limit;
+    const float far_z = limit + here.half.z() + tallest_half_m_;
+    forEachCell(centre.head<2>(), reach, [&](std::uint32_t i, std::uint32_t last) {
+      if (with_height) i = firstAbove(i, last, here.centre.z() - far_z);
+      for (; i < last; ++i) {
+        const Entry& other = entries_[i];
+        Eigen::Vector3f apart = ((other.centre - here.centre).cwiseAbs() - other.half - here.half).cwiseMax(0);
+        if (with_height && other.centre.z() > here.centre.z() + far_z) break;
+        if (!with_height) apart.z() = 0;
+        if (apart.squaredNorm() <= square) visit(other.cluxel);
+      }
+    });
+  }
+
+  /// Calls `visit(first, last)` with the entries of each cell that is within `reach` in plan view.
+  template <typename Visit>
+  void forEachCell(const Eigen::Vector2d& centre, double reach, const Visit& visit) const {
+    const std::int32_t low_y = cellOf(centre.y() - reach), high_y = cellOf(centre.y() + reach);
+    for (std::int32_t x = cellOf(centre.x() - reach); x <= cellOf(centre.x() + reach); ++x) {
+      const auto [cell, end] = row(x, low_y, high_y);
+      for (std::uint32_t i = cell; i < end; ++i) visit(cells_[i].first, cells_[i + 1].first);
+    }
+  }
+  /// The first of the entries of a cell that are no lower than `z`.
+  std::uint32_t firstAbove(std::uint32_t first, std::uint32_t last, float z) const {
+    const auto begin = entries_.begin();
+    const auto found = std::lower_bound(begin + first, begin + last, z,
+                                        [](const Entry& entry, float low) { return entry.centre.z() < low; });
+    return static_cast<std::uint32_t>(found - begin);
+  }
 
   static std::int32_t cellOf(double coordinate_m) {
     return static_cast<std::int32_t>(std::floor(coordinate_m / kCell_m));
   }
-  /// The range in cluxels_ of the cells (x, low_y) to (x, high_y).
+  /// The range in cells_ of the cells (x, low_y) to (x, high_y).
   std::pair<std::uint32_t, std::uint32_t> row(std::int32_t x, std::int32_t low_y, std::int32_t high_y) const;
 
   const perception::SceneCluxels& all_;
-  double margin_m_ = 0;                 ///< half of the largest cluxel box in plan view
-  std::vector<Cell> cells_;             ///< ordered by x, then y; the last one is a sentinel
-  std::vector<std::uint32_t> cluxels_;  ///< by cell, then ascending
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();             ///< [m, map]
+  float rounding_m_ = 0;                                         ///< bound of the error of distances between entries
+  double margin_m_ = 0;                                          ///< half of the largest cluxel box in plan view
+  float tallest_half_m_ = 0;                                     ///< half of the highest box
+  std::vector<Cell> cells_;                                      ///< ordered by x, then y; the last one is a sentinel
+  std::vector<std::pair<std::int32_t, std::uint32_t>> columns_;  ///< x, and the first of its cells; then a sentinel
+  std::vector<Entry> entries_;                                   ///< by cell, then by height
 };
 
 }  // namespace cluxel::rules

@@ -32,11 +32,6 @@ double onCurve(const std::vector<EvidenceLine::Knot>& knots, double value) {
   return knots.back().log_odds;
 }
 
-/// The largest value that a line tells from larger ones.
-double reachOf(const EvidenceLine& line) {
-  return line.kind == EvidenceLine::Kind::Curve ? line.knots.back().at : line.about + 4 * line.spread;
-}
-
 class Weighing {
  public:
   Weighing(const ReasoningState& state, const Rule& rule, const Bindings& bindings)
@@ -103,6 +98,10 @@ Bindings withWhole(const ReasoningState& state, const AcceptLeaf& accept, const 
 }
 
 }  // namespace
+
+double reachOf(const EvidenceLine& line) {
+  return line.kind == EvidenceLine::Kind::Curve ? line.knots.back().at : line.about + 4 * line.spread;
+}
 
 double logOdds(double probability) {
   const double p = std::clamp(probability, 0.0001, 0.9999);

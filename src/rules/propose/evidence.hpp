@@ -8,6 +8,9 @@
 
 namespace cluxel::rules {
 
+/// The largest value that a line tells from larger ones.
+double reachOf(const EvidenceLine& line);
+
 /// log(p / (1 - p)); `p` is kept within 0.0001 of 0 and 1.
 double logOdds(double probability);
 double probabilityOf(double log_odds);

@@ -56,16 +56,18 @@ std::vector<FragmentIndex> FragmentTable::cut(FragmentIndex index, std::vector<s
   return made;
 }
 
-void FragmentTable::join(FragmentIndex index, FragmentIndex other) {
-  assert(index != other && fragments_[index].alive && fragments_[other].alive);
+void FragmentTable::join(FragmentIndex index, const std::vector<FragmentIndex>& others) {
+  if (others.empty()) return;
   Fragment& fragment = fragments_[index];
-  std::vector<std::uint32_t> merged;
-  std::merge(fragment.cluxels.begin(), fragment.cluxels.end(), fragments_[other].cluxels.begin(),
-             fragments_[other].cluxels.end(), std::back_inserter(merged));
-  fragment.cluxels = std::move(merged);
-  for (std::uint32_t cluxel : fragments_[other].cluxels) fragment_of_cluxel_[cluxel] = index;
-  fragments_[other].alive = false;
-  std::erase(fragments_of_primitive_[fragment.primitive], other);
+  for (const FragmentIndex other : others) {
+    assert(index != other && fragment.alive && fragments_[other].alive);
+    const std::vector<std::uint32_t>& more = fragments_[other].cluxels;
+    fragment.cluxels.insert(fragment.cluxels.end(), more.begin(), more.end());
+    for (std::uint32_t cluxel : more) fragment_of_cluxel_[cluxel] = index;
+    fragments_[other].alive = false;
+    std::erase(fragments_of_primitive_[fragment.primitive], other);
+  }
+  std::sort(fragment.cluxels.begin(), fragment.cluxels.end());
   measure(index);
 }
 

@@ -43,8 +43,8 @@ class FragmentTable {
   void setOwner(FragmentIndex fragment, OwnerIndex owner) { fragments_[fragment].owner = owner; }
   /// Replaces a fragment by new, free ones. `parts` is a partition of its cluxels, each part ascending.
   std::vector<FragmentIndex> cut(FragmentIndex fragment, std::vector<std::vector<std::uint32_t>> parts);
-  /// Adds the cluxels of `other` (of the same primitive) to `fragment`, which keeps its owner.
-  void join(FragmentIndex fragment, FragmentIndex other);
+  /// Adds the cluxels of `others` (of the same primitive) to `fragment`, which keeps its owner.
+  void join(FragmentIndex fragment, const std::vector<FragmentIndex>& others);
 
   /// Canonical order: by primitive id, then by cluxels. Independent of the order of primitives in the scene.
   bool before(FragmentIndex a, FragmentIndex b) const;

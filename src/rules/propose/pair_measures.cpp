@@ -31,12 +31,17 @@ double smallestGap(const ReasoningState& state, const Candidate& a, const Candid
   const double farthest = std::min(limit_m, kMaxMeasure_m);
   for (double reach = std::min(1.0, farthest);; reach = std::min(reach * 4, farthest)) {
     double best = std::numeric_limits<double>::infinity();
-    for (std::uint32_t cluxel : cluxels)
-      state.grid.near(cluxel, reach, [&](std::uint32_t other) {
+    for (std::uint32_t cluxel : cluxels) {
+      const auto look = [&](std::uint32_t other) {
         if (!contains(many, state.fragments.fragmentOf(other))) return;
         const CluxelGap gap = gapBetween(state.scene.cluxels, cluxel, other);
         best = std::min(best, horizontal ? gap.horizontal : gap.gap());
-      });
+      };
+      if (horizontal)
+        state.grid.nearInPlan(cluxel, std::min(reach, best), look);
+      else
+        state.grid.near(cluxel, std::min(reach, best), look);
+    }
     if (best <= reach || reach >= farthest) return best;
   }
 }
