@@ -35,20 +35,31 @@ ReasoningState::ReasoningState(const perception::Scene& scene_, const RuleSet& r
   for (std::uint32_t i = 0; i < scene.relations.size(); ++i) relations_to[scene.relations[i].to].push_back(i);
   std::vector<std::string> classes = rules.order;
   for (const ClassEntry& entry : rules.catalogue.classes) classes.push_back(entry.iri);
-  for (const std::string& made : rules.order)
-    for (const std::string& ancestor : classes)
-      if (rules.catalogue.isA(made, ancestor)) is_a.emplace(made, ancestor);
+  for (std::size_t i = 0; i < rules.order.size(); ++i)
+    for (const std::string& ancestor : classes) {
+      if (!rules.catalogue.isA(rules.order[i], ancestor)) continue;
+      std::vector<bool>& below = classes_below[ancestor];
+      below.resize(rules.order.size(), false);
+      below[i] = true;
+    }
 }
 
-bool ReasoningState::classIsA(const std::string& class_iri, const std::string& ancestor) const {
-  return is_a.count({class_iri, ancestor}) > 0;
+const std::vector<bool>* ReasoningState::classesBelow(std::string_view class_iri) const {
+  const auto found = classes_below.find(class_iri);
+  return found == classes_below.end() ? nullptr : &found->second;
+}
+
+bool ReasoningState::belongsToAny(FragmentIndex fragment, const std::vector<bool>* classes) const {
+  if (classes == nullptr) return false;
+  const OwnerIndex owner = fragments[fragment].owner;
+  if (owner < objects.size()) return (*classes)[objects[owner].class_number];
+  if (owner != kShared) return false;
+  const auto claim = claims.find(fragment);
+  return claim != claims.end() && (*classes)[objects[claim->second.front()].class_number];
 }
 
 bool ReasoningState::belongsTo(FragmentIndex fragment, const std::string& class_iri) const {
-  const OwnerIndex owner = fragments[fragment].owner;
-  if (owner < objects.size()) return classIsA(objects[owner].rule->class_iri, class_iri);
-  const auto claim = claims.find(fragment);
-  return claim != claims.end() && classIsA(objects[claim->second.front()].rule->class_iri, class_iri);
+  return belongsToAny(fragment, classesBelow(class_iri));
 }
 
 std::vector<FragmentIndex> ReasoningState::fragmentsOf(const ObjectInMaking& object) const {

@@ -4,8 +4,8 @@
 
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -34,6 +34,7 @@ struct PartInMaking {
 
 struct ObjectInMaking {
   const Rule* rule = nullptr;
+  std::size_t class_number = 0;  ///< in RuleSet::order
   const AcceptLeaf* leaf = nullptr;
   double confidence = 0;
   std::size_t decision = 0;
@@ -55,10 +56,14 @@ struct ReasoningState {
   std::vector<Decision> decisions;
   /// For each primitive the relations that lead to it, as numbers in scene.relations.
   std::vector<std::vector<std::uint32_t>> relations_to;
-  std::set<std::pair<std::string, std::string>> is_a;  ///< pairs (class, ancestor) of the classes in the rule order
+  /// For each class the classes of the rule order that are it or below it, by their place there.
+  std::map<std::string, std::vector<bool>, std::less<>> classes_below;
 
   bool belongsTo(FragmentIndex fragment, const std::string& class_iri) const;
-  bool classIsA(const std::string& class_iri, const std::string& ancestor) const;
+  /// Null when no class of the rule order is `class_iri` or below it. Valid as long as the state.
+  const std::vector<bool>* classesBelow(std::string_view class_iri) const;
+  /// The same as belongsTo() with the classes looked up before; `classes` may be null.
+  bool belongsToAny(FragmentIndex fragment, const std::vector<bool>* classes) const;
   /// The fragments of an object, ascending.
   std::vector<FragmentIndex> fragmentsOf(const ObjectInMaking& object) const;
   /// Measures the bound candidates of parts whose fragments changed. Objects grow by many fragments, and measuring

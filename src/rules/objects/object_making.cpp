@@ -24,6 +24,8 @@ void makeObject(ReasoningState& state, const Rule& rule, const AcceptLeaf& accep
   const auto number = static_cast<OwnerIndex>(state.objects.size());
   ObjectInMaking object;
   object.rule = &rule;
+  const std::vector<std::string>& order = state.rules.order;
+  object.class_number = static_cast<std::size_t>(std::find(order.begin(), order.end(), rule.class_iri) - order.begin());
   object.leaf = &accept;
   object.confidence = state.decisions.back().probability;
   object.decision = state.decisions.size() - 1;

@@ -9,25 +9,23 @@
 namespace cluxel::rules {
 
 CluxelGrid::CluxelGrid(const perception::SceneCluxels& all) : all_(all) {
-  if (all.size() > 0) origin_ = all.center[all.size() / 2];
+  if (all.size() > 0) origin_z_ = all.center[all.size() / 2].z();
   struct Placed {
     std::int32_t x, y;
     Entry entry;
   };
   std::vector<Placed> placed;
   placed.reserve(all.size());
-  float farthest = 0;
+  float highest = 0;
   for (std::uint32_t i = 0; i < all.size(); ++i) {
-    placed.push_back({cellOf(all.center[i].x()), cellOf(all.center[i].y()), entryOf(i)});
-    const Entry& entry = placed.back().entry;
-    margin_m_ = std::max(margin_m_, static_cast<double>(entry.half.head<2>().maxCoeff()));
-    tallest_half_m_ = std::max(tallest_half_m_, entry.half.z());
-    farthest = std::max(farthest, entry.centre.cwiseAbs().maxCoeff());
+    placed.push_back({cellOf(all.center[i].x()), cellOf(all.center[i].y()), {heightOf(i), i}});
+    margin_m_ = std::max(margin_m_, static_cast<double>(all.extent[i].head<2>().maxCoeff()) / 2);
+    tallest_half_m_ = std::max(tallest_half_m_, all.extent[i].z() / 2);
+    highest = std::max(highest, std::abs(placed.back().entry.z));
   }
-  rounding_m_ = 1e-4F + 8 * std::numeric_limits<float>::epsilon() * farthest;
+  rounding_m_ = 1e-4F + 8 * std::numeric_limits<float>::epsilon() * highest;
   std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
-    return std::tuple(a.x, a.y, a.entry.centre.z(), a.entry.cluxel) <
-           std::tuple(b.x, b.y, b.entry.centre.z(), b.entry.cluxel);
+    return std::tuple(a.x, a.y, a.entry.z, a.entry.cluxel) < std::tuple(b.x, b.y, b.entry.z, b.entry.cluxel);
   });
   entries_.reserve(placed.size());
   for (const Placed& one : placed) {

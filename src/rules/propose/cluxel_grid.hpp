@@ -28,8 +28,7 @@ class CluxelGrid {
  public:
   explicit CluxelGrid(const perception::SceneCluxels& all);
 
-  /// Calls `visit` for every cluxel whose box is within `distance_m` of the box of `cluxel`, and for some that are a
-  /// rounding error farther away.
+  /// Calls `visit` for every cluxel whose box may be within `distance_m` of the box of `cluxel`.
   template <typename Visit>
   void near(std::uint32_t cluxel, double distance_m, const Visit& visit) const {
     search(cluxel, distance_m, true, visit);
@@ -51,31 +50,21 @@ class CluxelGrid {
     std::int32_t x, y;
     std::uint32_t first;  ///< its first place in entries_; the next cell's first is its end
   };
-  /// A cluxel's box, relative to origin_: in single precision most cluxels are told to be too far away.
   struct Entry {
-    Eigen::Vector3f centre, half;
+    float z = 0;  ///< of the centre, above origin_z_
     std::uint32_t cluxel = 0;
   };
-  Entry entryOf(std::uint32_t cluxel) const {
-    return {(all_.center[cluxel] - origin_).cast<float>(), all_.extent[cluxel] / 2, cluxel};
-  }
+  float heightOf(std::uint32_t cluxel) const { return static_cast<float>(all_.center[cluxel].z() - origin_z_); }
 
   template <typename Visit>
   void search(std::uint32_t cluxel, double distance_m, bool with_height, const Visit& visit) const {
-    const Entry here = entryOf(cluxel);
     const Eigen::Vector3d& centre = all_.center[cluxel];
-    const double reach = distance_m + margin_m_ + static_cast<double>(here.half.head<2>().maxCoeff());
-    const float limit = static_cast<float>(distance_m) + rounding_m_, square = limit * limit;
-    const float far_z = limit + here.half.z() + tallest_half_m_;
+    const Eigen::Vector3f half = all_.extent[cluxel] / 2;
+    const float z = heightOf(cluxel), far_z = static_cast<float>(distance_m) + half.z() + tallest_half_m_ + rounding_m_;
+    const double reach = distance_m + margin_m_ + static_cast<double>(half.head<2>().maxCoeff());
     forEachCell(centre.head<2>(), reach, [&](std::uint32_t i, std::uint32_t last) {
-      if (with_height) i = firstAbove(i, last, here.centre.z() - far_z);
-      for (; i < last; ++i) {
-        const Entry& other = entries_[i];
-        Eigen::Vector3f apart = ((other.centre - here.centre).cwiseAbs() - other.half - here.half).cwiseMax(0);
-        if (with_height && other.centre.z() > here.centre.z() + far_z) break;
-        if (!with_height) apart.z() = 0;
-        if (apart.squaredNorm() <= square) visit(other.cluxel);
-      }
+      if (with_height && entries_[i].z < z - far_z) i = firstAbove(i, last, z - far_z);
+      for (; i < last && !(with_height && entries_[i].z > z + far_z); ++i) visit(entries_[i].cluxel);
     });
   }
 
@@ -91,8 +80,8 @@ class CluxelGrid {
   /// The first of the entries of a cell that are no lower than `z`.
   std::uint32_t firstAbove(std::uint32_t first, std::uint32_t last, float z) const {
     const auto begin = entries_.begin();
-    const auto found = std::lower_bound(begin + first, begin + last, z,
-                                        [](const Entry& entry, float low) { return entry.centre.z() < low; });
+    const auto found =
+        std::lower_bound(begin + first, begin + last, z, [](const Entry& entry, float low) { return entry.z < low; });
     return static_cast<std::uint32_t>(found - begin);
   }
 
@@ -103,8 +92,8 @@ class CluxelGrid {
   std::pair<std::uint32_t, std::uint32_t> row(std::int32_t x, std::int32_t low_y, std::int32_t high_y) const;
 
   const perception::SceneCluxels& all_;
-  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();             ///< [m, map]
-  float rounding_m_ = 0;                                         ///< bound of the error of distances between entries
+  double origin_z_ = 0;                                          ///< [m, map]
+  float rounding_m_ = 0;                                         ///< bound of the error of heights
   double margin_m_ = 0;                                          ///< half of the largest cluxel box in plan view
   float tallest_half_m_ = 0;                                     ///< half of the highest box
   std::vector<Cell> cells_;                                      ///< ordered by x, then y; the last one is a sentinel

@@ -13,6 +13,9 @@ namespace cluxel::rules {
 
 namespace {
 
+/// Subjects of more cluxels are compared with one target after the other.
+constexpr double kMaxScanned = 500;
+
 constexpr double kGroundTolerance_m = 0.30;  // the tolerance of touches_ground in relationInfos()
 
 std::string_view stepUnit(const Condition& condition) {
@@ -154,7 +157,7 @@ std::optional<double> ConditionEvaluator::measure(const Condition& condition, do
   if (condition.target->kind == Target::Kind::Name)
     value =
         measurePair(state_, condition.measure, bindings_.at(condition.of), bindings_.at(condition.target->name), limit);
-  else if (const auto nearest = nearestTarget(condition, limit))
+  else if (const auto nearest = nearestTarget(condition, limit, false))
     value = nearest->second;
   return std::isfinite(value) ? value : none;
 }
@@ -164,12 +167,14 @@ std::string ConditionEvaluator::unitOf(const Condition& condition) {
   return std::string(stepUnit(condition));
 }
 
+bool ConditionEvaluator::hasLabel(FragmentIndex fragment, const Target& target) const {
+  return target.labels.empty() || std::find(target.labels.begin(), target.labels.end(),
+                                            state_.fragments.labelOf(fragment)) != target.labels.end();
+}
+
 bool ConditionEvaluator::fits(FragmentIndex fragment, const Target& target) const {
-  if (!target.labels.empty()) {
-    const scan::PrimitiveLabel label = state_.fragments.labelOf(fragment);
-    if (std::find(target.labels.begin(), target.labels.end(), label) == target.labels.end()) return false;
-  }
-  return target.kind != Target::Kind::Object || state_.belongsTo(fragment, target.object_class);
+  return hasLabel(fragment, target) &&
+         (target.kind != Target::Kind::Object || state_.belongsTo(fragment, target.object_class));
 }
 
 void ConditionEvaluator::remember(FragmentIndex fragment, const Target& target) {
@@ -179,8 +184,11 @@ void ConditionEvaluator::remember(FragmentIndex fragment, const Target& target) 
 }
 
 std::optional<std::pair<FragmentIndex, double>> ConditionEvaluator::nearestTarget(const Condition& condition,
-                                                                                  double limit_m) {
+                                                                                  double limit_m, bool far) {
   const Candidate& subject = bindings_.at(condition.of);
+  if (condition.measure == PairMeasure::Gap && condition.target->kind == Target::Kind::Object && !far &&
+      subject.shape[perception::Attribute::CluxelCount] <= kMaxScanned)
+    return nearestObject(*condition.target, subject, limit_m);
   std::optional<std::pair<FragmentIndex, double>> best;
   for (perception::PrimitiveIndex primitive : state_.grid.primitivesNear(state_.fragments.cluxelsOf(subject), limit_m))
     for (FragmentIndex fragment : state_.fragments.fragmentsOf(primitive)) {
@@ -197,6 +205,26 @@ std::optional<std::pair<FragmentIndex, double>> ConditionEvaluator::nearestTarge
   return best;
 }
 
+std::optional<std::pair<FragmentIndex, double>> ConditionEvaluator::nearestObject(const Target& target,
+                                                                                  const Candidate& subject,
+                                                                                  double limit_m) const {
+  const std::vector<bool>* classes = state_.classesBelow(target.object_class);
+  if (classes == nullptr) return std::nullopt;
+  std::optional<std::pair<FragmentIndex, double>> best;
+  for (const FragmentIndex mine : subject.fragments)
+    for (const std::uint32_t cluxel : state_.fragments[mine].cluxels)
+      state_.grid.near(cluxel, limit_m, [&](std::uint32_t other) {
+        const FragmentIndex fragment = state_.fragments.fragmentOf(other);
+        if (!state_.belongsToAny(fragment, classes) || !hasLabel(fragment, target) ||
+            std::binary_search(subject.fragments.begin(), subject.fragments.end(), fragment))
+          return;
+        const double gap = gapBetween(state_.scene.cluxels, cluxel, other).gap();
+        if (gap > limit_m || (best && gap > best->second)) return;
+        if (!best || gap < best->second || state_.fragments.before(fragment, best->first)) best = {fragment, gap};
+      });
+  return best;
+}
+
 bool ConditionEvaluator::holdsPair(const Condition& condition, DecisionStep& step) {
   const double threshold = condition.value->value;
   const bool share = condition.measure == PairMeasure::AdjacentFraction;
@@ -206,7 +234,7 @@ bool ConditionEvaluator::holdsPair(const Condition& condition, DecisionStep& ste
   if (condition.target->kind == Target::Kind::Name) {
     measured =
         measurePair(state_, condition.measure, bindings_.at(condition.of), bindings_.at(condition.target->name), limit);
-  } else if (const auto nearest = nearestTarget(condition, limit)) {
+  } else if (const auto nearest = nearestTarget(condition, limit, compare(condition, measured, threshold))) {
     measured = nearest->second;
     if (compare(condition, measured, threshold)) remember(nearest->first, *condition.target);
   }

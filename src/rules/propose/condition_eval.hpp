@@ -37,8 +37,14 @@ class ConditionEvaluator {
   bool holdsPair(const Condition& condition, DecisionStep& step);
   bool holdsRelation(const Condition& condition, DecisionStep& step);
   bool holdsAsk(const Condition& condition);
+  bool hasLabel(FragmentIndex fragment, const Target& target) const;
   bool fits(FragmentIndex fragment, const Target& target) const;
-  std::optional<std::pair<FragmentIndex, double>> nearestTarget(const Condition& condition, double limit_m);
+  /// The fragment that fits the target and has the smallest measure, or the largest share. `far`: also when that is
+  /// infinite.
+  std::optional<std::pair<FragmentIndex, double>> nearestTarget(const Condition& condition, double limit_m, bool far);
+  /// The same for gaps to objects, looked up around the subject's cluxels.
+  std::optional<std::pair<FragmentIndex, double>> nearestObject(const Target& target, const Candidate& subject,
+                                                                double limit_m) const;
   void remember(FragmentIndex fragment, const Target& target);
 
   const ReasoningState& state_;

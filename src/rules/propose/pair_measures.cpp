@@ -42,7 +42,8 @@ double smallestGap(const ReasoningState& state, const Candidate& a, const Candid
       else
         state.grid.near(cluxel, std::min(reach, best), look);
     }
-    if (best <= reach || reach >= farthest) return best;
+    if (best <= reach) return best;
+    if (reach >= farthest) return std::numeric_limits<double>::infinity();
   }
 }
 
