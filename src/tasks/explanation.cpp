@@ -133,13 +133,11 @@ rules::Explanation explanationOf(const mapping::MapReader& map, const Named& nam
   mapping::AskReplay oracle(map);
   const rules::ReasoningContext context{.oracle = &oracle};
   if (named.primitive) return explain(scene, rules, context, static_cast<perception::PrimitiveIndex>(*named.primitive));
-  const ContentHash id = map.objects()[*named.object].id;
-  const rules::ReasoningResult result = reason(scene, rules, context);
-  const auto object = std::find_if(result.objects.begin(), result.objects.end(),
-                                   [&](const rules::SemanticObject& candidate) { return candidate.id == id; });
-  if (object == result.objects.end())
-    throw Error(ErrorKind::NotFound, "the map's rules make no object '" + id.hex() + "' any more");
-  return explain(scene, rules, context, *object, result.decisions.at(object->decision));
+  const rules::SemanticObject& object = map.objects()[*named.object];
+  std::optional<rules::Explanation> explanation = explain(scene, rules, context, object);
+  if (!explanation)
+    throw Error(ErrorKind::NotFound, "the map's rules make no object '" + object.id.hex() + "' any more");
+  return std::move(*explanation);
 }
 
 struct WhyNotOfThing {

@@ -44,9 +44,10 @@ struct Explanation {
 Explanation explain(const perception::Scene& scene, const RuleSet& rules, const ReasoningContext& context,
                     perception::PrimitiveIndex primitive);
 
-/// The same for the seed primitive of an object.
-Explanation explain(const perception::Scene& scene, const RuleSet& rules, const ReasoningContext& context,
-                    const SemanticObject& object, const Decision& decision);
+/// The same for the seed primitive of an object that an earlier run made: its id and parts are read. Absent when the
+/// rules do not make it.
+std::optional<Explanation> explain(const perception::Scene& scene, const RuleSet& rules,
+                                   const ReasoningContext& context, const SemanticObject& known);
 
 /// The same for all objects of `result`, which reason() gave for the same scene, rules and context: one explanation for
 /// each, in their order. Cost: one run of the stage with a probe at every object.

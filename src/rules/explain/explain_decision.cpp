@@ -75,12 +75,18 @@ Explanation explain(const perception::Scene& scene, const RuleSet& rules, const 
                        owner == result.objects.end() ? nullptr : &*owner, result, rules);
 }
 
-Explanation explain(const perception::Scene& scene, const RuleSet& rules, const ReasoningContext& context,
-                    const SemanticObject& object, const Decision& decision) {
-  Explanation explanation = explain(scene, rules, context, decision.seed);
-  const bool same = explanation.object && explanation.object->id == object.id;
-  if (!same && owns(object, decision.seed)) explanation.object = object;
-  return explanation;
+std::optional<Explanation> explain(const perception::Scene& scene, const RuleSet& rules,
+                                   const ReasoningContext& context, const SemanticObject& known) {
+  ReasoningContext probing = context;
+  for (const ObjectPart& part : known.parts)
+    probing.probes.insert(probing.probes.end(), part.primitives.begin(), part.primitives.end());
+  std::sort(probing.probes.begin(), probing.probes.end());
+  const ReasoningResult result = reason(scene, rules, probing);
+  const auto object = std::find_if(result.objects.begin(), result.objects.end(),
+                                   [&](const SemanticObject& made) { return made.id == known.id; });
+  if (object == result.objects.end()) return std::nullopt;
+  const perception::PrimitiveIndex seed = result.decisions.at(object->decision).seed;
+  return explanationOf(seed, decisionsAbout({seed}, result).at(seed), &*object, result, rules);
 }
 
 std::vector<Explanation> explainAll(const perception::Scene& scene, const RuleSet& rules,
