@@ -102,7 +102,7 @@ class MapBuild {
     stages_.update(transaction, touched, params_.threads, sink_);
     stages_.loadAll(transaction);
     if (is_last) work_.takeOverStatements(transaction, params_.drop_statements, sink_);
-    const SemanticLayer layer = writeSemanticLayer(transaction, parsed_, stages_, sink_);
+    const SemanticLayer layer = writeSemanticLayer(transaction, parsed_, stages_, params_.threads, sink_);
     const std::vector<Cloud> clouds = storedClouds(transaction);
     storeInputs(transaction, parsed_.inputs);
     state_ = MapState{is_last, parsed_.inputs.hash().hex()};

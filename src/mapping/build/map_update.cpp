@@ -16,7 +16,7 @@ void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink) {
   if (parsed.rules.asks_map) {
     TileStages stages(parsed.model, parsed.inputs.params);
     stages.loadAll(transaction);
-    writeSemanticLayer(transaction, parsed, stages, sink);
+    writeSemanticLayer(transaction, parsed, stages, 1, sink);
     return;
   }
   inferFacts(transaction, parsed.inputs, sink);

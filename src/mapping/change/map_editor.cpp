@@ -89,7 +89,7 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
   changed_.insert(changed.begin(), changed.end());
   all_tiles_ = false;
   stages_->loadAll(transaction);
-  const SemanticLayer layer = writeSemanticLayer(transaction, parsed_, *stages_, sink_);
+  const SemanticLayer layer = writeSemanticLayer(transaction, parsed_, *stages_, params_.threads, sink_);
   inputs_hash_ = parsed_.inputs.hash().hex();
   storeInputs(transaction, parsed_.inputs);
   storeState(transaction, MapState{true, inputs_hash_});

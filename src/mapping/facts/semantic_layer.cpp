@@ -75,7 +75,7 @@ void inferFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, Pro
 }
 
 SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const ParsedInputs& parsed,
-                                 const TileStages& stages, ProgressSink& sink) {
+                                 const TileStages& stages, unsigned threads, ProgressSink& sink) {
   writeOntology(transaction, parsed.inputs);
   perception::Scene scene = stages.scene();
   sink.progress("scene", scene.primitives.size(), scene.primitives.size());
@@ -83,11 +83,11 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   MapOracle oracle(transaction, [&](std::span<const rules::SemanticObject> objects) {
     writeObjectsSoFar(transaction, parsed.inputs, clouds, scene, stages, objects);
   });
-  rules::ReasoningResult result = reason(scene, parsed.rules, {&oracle});
+  rules::ReasoningResult result = reason(scene, parsed.rules, {.oracle = &oracle, .threads = threads});
   sink.progress("objects", result.objects.size(), result.objects.size());
   const auto sightings = sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(result, scene.cluxels.size()));
   const auto votes = presenceVotes(
-      scene, result.objects, clouds, [&](const Cloud& cloud) { return storedScan(transaction, cloud.id); }, 1);
+      scene, result.objects, clouds, [&](const Cloud& cloud) { return storedScan(transaction, cloud.id); }, threads);
   writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings, presenceOfObjects(votes)});
   inferFacts(transaction, parsed.inputs, sink);
   storeObjects(transaction, result.objects);

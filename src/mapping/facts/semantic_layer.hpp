@@ -44,6 +44,6 @@ struct SemanticLayer {
 /// Computes objects and facts of the stages' outputs and stores them. The graphs ontology, observed and inferred are
 /// then a function of these outputs and the inputs.
 SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const ParsedInputs& parsed,
-                                 const TileStages& stages, ProgressSink& sink);
+                                 const TileStages& stages, unsigned threads, ProgressSink& sink);
 
 }  // namespace cluxel::mapping

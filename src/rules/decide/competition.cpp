@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/parallel.hpp"
 #include "rules/decide/decision_record.hpp"
 #include "rules/decide/rivals.hpp"
 #include "rules/objects/object_making.hpp"
@@ -48,10 +49,15 @@ class Competition {
  private:
   std::vector<Proposal> propose() {
     std::vector<Proposal> proposals;
-    for (const Rule* rule : rules_)
-      for (std::vector<FragmentIndex>& group : seedGroups(state_, *rule, {})) {
-        if (rejected_.count({rule, group}) > 0) continue;
-        Verdict verdict = judge(state_, *rule, group);
+    for (const Rule* rule : rules_) {
+      std::vector<std::vector<FragmentIndex>> groups = seedGroups(state_, *rule, {});
+      std::erase_if(groups, [&](const auto& group) { return rejected_.count({rule, group}) > 0; });
+      std::vector<Verdict> verdicts(groups.size());
+      parallelFor(groups.size(), state_.threads(),
+                  [&](std::size_t i) { verdicts[i] = judge(state_, *rule, groups[i]); });
+      for (std::size_t i = 0; i < groups.size(); ++i) {
+        Verdict& verdict = verdicts[i];
+        std::vector<FragmentIndex>& group = groups[i];
         if (verdict.accept != nullptr) {
           if (state_.context.onCandidate && lost_.count({rule, group}) == 0)
             state_.context.onCandidate(state_, *rule, verdict);
@@ -62,6 +68,7 @@ class Competition {
         if (verdict.leaves_unknown) unknown_.push_back(group);
         rejected_.emplace(rule, std::move(group));
       }
+    }
     return proposals;
   }
 

@@ -25,6 +25,7 @@ struct ReasoningContext {
   /// Ascending. Decisions about these primitives also report what would have changed them (Decision::flips).
   std::vector<perception::PrimitiveIndex> probes = {};
   CandidateObserver onCandidate = {};
+  unsigned threads = 1;  ///< the result is the same for every number
 };
 
 /// Groups the primitives of a scene into objects, class by class in the order of the rule set. The objects' cluxels are

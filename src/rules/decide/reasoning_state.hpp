@@ -59,6 +59,8 @@ struct ReasoningState {
   /// For each class the classes of the rule order that are it or below it, by their place there.
   std::map<std::string, std::vector<bool>, std::less<>> classes_below;
 
+  /// Threads for what only reads the state. Queries are asked from one thread.
+  unsigned threads() const { return rules.asks_map ? 1 : context.threads; }
   bool belongsTo(FragmentIndex fragment, const std::string& class_iri) const;
   /// Null when no class of the rule order is `class_iri` or below it. Valid as long as the state.
   const std::vector<bool>* classesBelow(std::string_view class_iri) const;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/parallel.hpp"
 #include "rules/propose/fragment_search.hpp"
 #include "rules/propose/pair_measures.hpp"
 
@@ -53,17 +54,14 @@ class Absorbing {
   }
 
   std::vector<Claim> weigh() {
+    std::vector<std::vector<Claim>> claims_of(state_.objects.size() - first_);
+    parallelFor(claims_of.size(), state_.threads(), [&](std::size_t i) { claims_of[i] = claimsOf(first_ + i); });
     std::map<FragmentIndex, Claim> best;
-    for (std::size_t i = first_; i < state_.objects.size(); ++i) {
-      ObjectInMaking& object = state_.objects[i];
-      const auto now = [this](const AbsorbSpec& spec) { return spec.late == late_; };
-      if (std::none_of(object.leaf->absorb.begin(), object.leaf->absorb.end(), now)) continue;
-      if (state_.fragmentsOf(object).empty()) continue;
-      state_.renewBindings(object);
-      const Candidate whole = state_.fragments.extentOf(state_.fragmentsOf(object));
-      for (const AbsorbSpec& spec : object.leaf->absorb)
-        if (now(spec)) weighSpec(i, spec, whole, best);
-    }
+    for (const std::vector<Claim>& of_object : claims_of)
+      for (const Claim& claim : of_object) {
+        const auto [entry, fresh] = best.try_emplace(claim.fragment, claim);
+        if (!fresh && isBetter(claim, entry->second)) entry->second = claim;
+      }
     std::vector<Claim> claims;
     claims.reserve(best.size());
     for (const auto& [fragment, claim] : best) claims.push_back(claim);
@@ -75,8 +73,20 @@ class Absorbing {
     return claims;
   }
 
-  void weighSpec(std::size_t number, const AbsorbSpec& spec, const Candidate& whole,
-                 std::map<FragmentIndex, Claim>& best) const {
+  std::vector<Claim> claimsOf(std::size_t number) {
+    ObjectInMaking& object = state_.objects[number];
+    const auto now = [this](const AbsorbSpec& spec) { return spec.late == late_; };
+    std::vector<Claim> claims;
+    if (std::none_of(object.leaf->absorb.begin(), object.leaf->absorb.end(), now)) return claims;
+    if (state_.fragmentsOf(object).empty()) return claims;
+    state_.renewBindings(object);
+    const Candidate whole = state_.fragments.extentOf(state_.fragmentsOf(object));
+    for (const AbsorbSpec& spec : object.leaf->absorb)
+      if (now(spec)) weighSpec(number, spec, whole, claims);
+    return claims;
+  }
+
+  void weighSpec(std::size_t number, const AbsorbSpec& spec, const Candidate& whole, std::vector<Claim>& claims) const {
     const ObjectInMaking& object = state_.objects[number];
     auto is_eligible = [&](FragmentIndex fragment) {
       if (state_.fragments[fragment].owner != kFree) return false;
@@ -87,8 +97,7 @@ class Absorbing {
       const Candidate it = state_.fragments.candidateOf({fragment});
       Claim claim{fragment, number, &spec, measurePair(state_, PairMeasure::AdjacentFraction, it, whole), 0};
       if (claim.share == 0) claim.gap = measurePair(state_, PairMeasure::Gap, it, whole, 5.0);
-      const auto [entry, fresh] = best.try_emplace(fragment, claim);
-      if (!fresh && isBetter(claim, entry->second)) entry->second = claim;
+      claims.push_back(claim);
     }
   }
 

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/disjoint_sets.hpp"
+#include "base/parallel.hpp"
 #include "rules/propose/condition_eval.hpp"
 
 namespace cluxel::rules {
@@ -40,38 +41,51 @@ class Linking {
     for (std::size_t i = 0; i < members.size(); ++i) place_[members[i]] = i;
   }
 
-  std::vector<Link> links() {
-    const double reach = std::max(group_.near_m.value_or(0), group_.horizontal_m.value_or(0));
-    for (std::size_t i = 0; i < members_.size(); ++i)
-      for (std::uint32_t cluxel : state_.fragments[members_[i]].cluxels) {
-        const auto look = [&](std::uint32_t other) { consider(i, cluxel, other); };
-        if (group_.horizontal_m)
-          state_.grid.nearInPlan(cluxel, reach, look);
-        else if (group_.near_m)
-          state_.grid.near(cluxel, reach, look);
-        if (group_.adjacent)
-          for (std::uint32_t other : state_.scene.cluxels.neighbours(cluxel)) link(i, other, 0);
-      }
+  std::vector<Link> links() const {
+    constexpr std::size_t kChunk = 64;
+    std::vector<std::vector<Link>> of_chunk((members_.size() + kChunk - 1) / kChunk);
+    parallelFor(of_chunk.size(), state_.threads(), [&](std::size_t chunk) {
+      const std::size_t end = std::min(members_.size(), (chunk + 1) * kChunk);
+      for (std::size_t i = chunk * kChunk; i < end; ++i)
+        for (const auto& [theirs, gap] : linksOf(i)) of_chunk[chunk].push_back({gap, i, theirs});
+    });
     std::vector<Link> links;
-    for (const auto& [pair, gap] : best_) links.push_back({gap, pair.first, pair.second});
+    for (const std::vector<Link>& some : of_chunk) links.insert(links.end(), some.begin(), some.end());
     std::stable_sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.gap < b.gap; });
     return links;
   }
 
  private:
-  void consider(std::size_t mine, std::uint32_t cluxel, std::uint32_t other) {
+  /// By position: the members after `mine` that a link leads to, with the gap.
+  using Gaps = std::map<std::size_t, double>;
+
+  Gaps linksOf(std::size_t mine) const {
+    const double reach = std::max(group_.near_m.value_or(0), group_.horizontal_m.value_or(0));
+    Gaps gaps;
+    for (std::uint32_t cluxel : state_.fragments[members_[mine]].cluxels) {
+      const auto look = [&](std::uint32_t other) { consider(mine, cluxel, other, gaps); };
+      if (group_.horizontal_m)
+        state_.grid.nearInPlan(cluxel, reach, look);
+      else if (group_.near_m)
+        state_.grid.near(cluxel, reach, look);
+      if (group_.adjacent)
+        for (std::uint32_t other : state_.scene.cluxels.neighbours(cluxel)) link(mine, other, 0, gaps);
+    }
+    return gaps;
+  }
+  void consider(std::size_t mine, std::uint32_t cluxel, std::uint32_t other, Gaps& gaps) const {
     const std::size_t theirs = place_[state_.fragments.fragmentOf(other)];
     if (theirs == kNowhere || theirs <= mine) return;
     const CluxelGap gap = gapBetween(state_.scene.cluxels, cluxel, other);
     const bool near = group_.near_m && gap.gap() <= *group_.near_m;
     const bool stacked =
         group_.horizontal_m && gap.horizontal <= *group_.horizontal_m && gap.vertical <= *group_.vertical_m;
-    if (near || stacked) link(mine, other, gap.gap());
+    if (near || stacked) link(mine, other, gap.gap(), gaps);
   }
-  void link(std::size_t mine, std::uint32_t other, double gap) {
+  void link(std::size_t mine, std::uint32_t other, double gap, Gaps& gaps) const {
     const std::size_t theirs = place_[state_.fragments.fragmentOf(other)];
     if (theirs == kNowhere || theirs <= mine) return;
-    const auto [entry, fresh] = best_.try_emplace({mine, theirs}, gap);
+    const auto [entry, fresh] = gaps.try_emplace(theirs, gap);
     if (!fresh) entry->second = std::min(entry->second, gap);
   }
 
@@ -80,7 +94,6 @@ class Linking {
   const std::vector<FragmentIndex>& members_;
   static constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
   std::vector<std::size_t> place_;  // per fragment
-  std::map<std::pair<std::size_t, std::size_t>, double> best_;
 };
 
 /// Joins members along links (union-find), skipping joins that would violate a limit.
