@@ -143,6 +143,7 @@ void Planner::noteEnough(const Node& group, const std::vector<Expr>& having) {
   constexpr std::int64_t kMost = 1000;
   if (!spatial_plans_ || query_.is_volatile || !group.grouped_by_keys) return;
   for (const Expr& condition : having) {
+    if (condition.kind == Expr::Kind::And) noteEnough(group, condition.arguments);
     const auto bound = greatestCount(condition);
     if (!bound || bound->count < 0 || bound->count >= kMost) continue;
     const auto counts = [&](const AggregateSpec& spec) {
