@@ -5,4 +5,4 @@ source "$(dirname "$0")/common.sh"
 
 install_base
 build release w3c_runner
-exec build/release/tests/sparql/w3c/w3c_runner "$@"
+exec build/release/tests/sparql/w3c_runner "$@"

@@ -82,6 +82,36 @@ TEST(AskingRules, SeeByHowManyCloudsAnObjectWasSeenAndItsObservations) {
   EXPECT_EQ(MapReader(map).summary().objects_by_class.count("SmallObject"), 1U);
 }
 
+TEST(OperatorStatements, AreRefusedWhereTheirInferenceExceedsTheBudget) {
+  const ScratchFolder folder;
+  const auto map = buildPark(folder.path());
+  const std::string before = canonicalText(map);
+  std::string chain =
+      kPrefixes + "PREFIX owl: <http://www.w3.org/2002/07/owl#> INSERT DATA { ex:next a owl:TransitiveProperty . ";
+  for (int i = 0; i < 400; ++i) chain += "ex:n" + std::to_string(i) + " ex:next ex:n" + std::to_string(i + 1) + " . ";
+  chain += "}";
+  for (const bool by_time : {false, true}) {
+    UpdateOptions options;
+    if (by_time) {
+      // Time passes with the calls: the update itself makes a few, the inference many.
+      options.query.budget.poll = [calls = 0]() mutable {
+        if (++calls > 20) throw Error(ErrorKind::BudgetExceeded, "inferred for too long");
+      };
+    } else {
+      options.query.budget.max_memory_bytes = 10'000'000;
+    }
+    try {
+      updateMap(map, chain, options, silence());
+      FAIL() << "no error: 80,000 facts follow";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::BudgetExceeded);
+      EXPECT_NE(std::string(error.what()).find("inferred"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(canonicalText(map), before);
+  }
+  EXPECT_EQ(updateMap(map, chain, {}, silence()).inserted, 401U);
+}
+
 TEST(OperatorStatements, OfAFaultyUpdateLeaveTheMapAsItWas) {
   const ScratchFolder folder;
   const auto map = buildPark(folder.path());

@@ -2,19 +2,25 @@
 // Tests of the stored spatial index: after any commits it finds what a look at every literal finds.
 #include "rdf/store/geometry_index.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <functional>
 #include <map>
 #include <random>
 
 #include "cluxel/error.hpp"
+#include "rdf/file/map_check.hpp"
 #include "rdf/scratch_folder.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::rdf {
 namespace {
+
+using testing::HasSubstr;
 
 const std::string kWkt = std::string(vocabulary::kGeo) + "wktLiteral";
 
@@ -143,6 +149,75 @@ TEST(GeometryIndex, IsRefusedWhenItsBytesAreMalformed) {
   transaction.putBlock("geometries", "run 1", "no tree");
   transaction.commit();
   EXPECT_THROW(map.reader().geometries(), Error);
+}
+
+TEST(GeometryIndex, IsComparedWithTheMapBoxByBox) {
+  const ScratchFolder folder;
+  const auto file = folder.path() / "map.clx";
+  std::mt19937 random(13);
+  {
+    PointMap map(Environment::open(file, OpenMode::Create));
+    for (const int count : {300, 20, 3}) map.add(count, random);
+    map.write(Term::literal("POINT EMPTY", kWkt));
+    map.write(Term::literal("POINT(7 7)"));
+  }
+  EXPECT_TRUE(checkMap(file).sound()) << checkMap(file).faults[0];
+  struct Run {
+    std::string key;
+    GeometryEntries entries;
+  };
+  // Each change is written with right checksums, as a fault of the program would be.
+  const auto changed = [&](const std::function<std::string(const Run&)>& bytes) {
+    const auto copy = folder.path() / "copy.clx";
+    std::filesystem::copy_file(file, copy, std::filesystem::copy_options::overwrite_existing);
+    {
+      const auto environment = Environment::open(copy, OpenMode::ReadWrite);
+      WriteTransaction transaction = environment->write();
+      Run run;
+      transaction.forEachBlock("geometries", "run", [&](std::string_view key, std::string_view value) {
+        std::vector<std::uint32_t> words(value.size() / 4);
+        std::memcpy(words.data(), value.data(), value.size());
+        const PackedTree tree({reinterpret_cast<const char*>(words.data()), value.size()});
+        if (tree.size() > run.entries.boxed.size()) {
+          run = {std::string(key), {}};
+          tree.appendTo(run.entries);
+        }
+      });
+      transaction.putBlock("geometries", run.key, bytes(run));
+      transaction.commit();
+    }
+    const MapCheck check = checkMap(copy);
+    return check.sound() ? std::string("sound") : check.faults[0];
+  };
+  const auto packed = [](GeometryEntries entries) { return packedTree(entries); };
+  EXPECT_EQ(changed([&](const Run& run) { return packed(run.entries); }), "sound");
+  EXPECT_THAT(changed([&](const Run& run) {
+                GeometryEntries entries = run.entries;
+                entries.boxed.pop_back();
+                return packed(entries);
+              }),
+              HasSubstr("wrong count"));
+  EXPECT_THAT(changed([&](const Run& run) {
+                GeometryEntries entries = run.entries;
+                entries.boxed[5].box.max_x += 1;
+                return packed(entries);
+              }),
+              HasSubstr("not those of the"));
+  EXPECT_THAT(changed([&](const Run& run) {
+                GeometryEntries entries = run.entries;
+                std::swap(entries.boxed[5].literal, entries.boxed[6].literal);
+                return packed(entries);
+              }),
+              HasSubstr("not those of the"));
+  EXPECT_THAT(changed([&](const Run& run) {
+                std::string bytes = packed(run.entries);
+                const FlatBox nowhere{0, 0, 0, 0};  // in place of the root
+                std::memcpy(bytes.data() + bytes.size() - 4 * (run.entries.boxed.size() + run.entries.loose.size()) -
+                                sizeof(FlatBox),
+                            &nowhere, sizeof nowhere);
+                return bytes;
+              }),
+              HasSubstr("do not fit those below"));
 }
 
 TEST(GeometryIndex, IsCopiedByCompaction) {

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "cluxel/error.hpp"
+#include "sparql/exec/spatial/box_tree.hpp"
 #include "sparql/support/store_fixture.hpp"
 #include "sparql/update_engine.hpp"
 
@@ -64,6 +65,55 @@ TEST(Budgets, CoverLongTextsWithinABatch) {
   const auto start = std::chrono::steady_clock::now();
   expectOverBudget(store, "SELECT (SUM(STRLEN(UCASE(" + long_text + "))) AS ?n) { ?a :next ?b }", options);
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2)) << "all rows take some 30 s";
+}
+
+TEST(Budgets, CoverLongListsOfValues) {
+  const SmallStore store = numberedChain(3);
+  std::string rows;
+  for (int i = 0; i < 200'000; ++i) rows += "(\"v" + std::to_string(i) + "\" " + std::to_string(i) + ") ";
+  // Called while the query is parsed, and again while its values become terms.
+  int calls = 0;
+  QueryOptions options;
+  options.budget.poll = [&calls] { ++calls; };
+  const QuadReader reader = store.reader();
+  const PreparedQuery small(reader, kPrefixes + "SELECT * { ?a :next ?v VALUES (?v ?i) { (1 2) } }", options);
+  calls = 0;
+  const PreparedQuery large(reader, kPrefixes + "SELECT * { ?a :next ?v VALUES (?v ?i) { " + rows + "} }", options);
+  const int tokens = 4 * 200'000 / 4096;
+  EXPECT_GT(calls, tokens + 20);
+}
+
+TEST(Budgets, HoldAComputedTextOnceAsATerm) {
+  const SmallStore store = numberedChain(40);
+  const std::string text = "CONCAT(\"" + std::string(1'000'000, 'x') + "\", STR(?a))";
+  const std::string query = "SELECT ?a (" + text + " AS ?t) { ?a :next ?b }";
+  QueryOptions options;
+  options.budget.max_memory_bytes = 52'000'000;
+  EXPECT_EQ(store.rows(query, options).size(), 40U) << "40 texts of 1 MB, and some copies of the last";
+  options.budget.max_memory_bytes = 35'000'000;
+  expectOverBudget(store, query, options);
+}
+
+TEST(Budgets, CoverThePackingOfTrees) {
+  const Guard unlimited;
+  Guard small;
+  small.start({.max_memory_bytes = 1'000'000});
+  Guard polled;
+  int calls = 0;
+  polled.start({.poll = [&calls] { ++calls; }});
+  calls = 0;
+  BoxTree tree;
+  for (std::uint32_t i = 0; i < 100'000; ++i) {
+    const double x = i * 7919U % 100'000U;
+    tree.add({Interval{x, x + 1}, Interval{0, x}}, i);
+  }
+  EXPECT_THROW(tree.pack(small), Error);
+  tree.pack(polled);
+  EXPECT_GT(calls, 20);
+  std::size_t found = 0;
+  BoxTree::Box all;
+  tree.search(all, [&found](std::uint32_t) { ++found; });
+  EXPECT_EQ(found, 100'000U);
 }
 
 TEST(Budgets, CoverSorting) {

@@ -110,7 +110,7 @@ TEST(Guard, EndsByMemoryInJoinsSortsGroupsAndAnswers) {
 TEST(Guard, CountsTermsThatAreComputedAnywhereAndRowsOfCountDistinct) {
   const SmallStore store = chain(3000);
   QueryOptions options;
-  options.budget.max_memory_bytes = 400'000;
+  options.budget.max_memory_bytes = 200'000;
   const std::string longer = "CONCAT(STR(?a), \"" + std::string(200, 'x') + "\")";
   expectRefused(store, "SELECT ?a { ?a :next ?b } ORDER BY " + longer + " LIMIT 1", options);
   expectRefused(store, "SELECT (COUNT(*) AS ?n) { ?a :next ?b FILTER(STRDT(" + longer + ", :type) != 1) }", options);

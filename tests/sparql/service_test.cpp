@@ -127,11 +127,13 @@ TEST_F(Services, CountInEveryRunOfAPreparedQuery) {
     });
     ASSERT_GT(least, 4U);
     PreparedQuery enough(mine, text, with(least));
-    // The service needs less than the whole run, so preparing succeeds.
-    PreparedQuery too_little(mine, text, with(least - 1));
-    for (int run = 0; run < 3; ++run) {
-      EXPECT_EQ(enough.evaluate().table.row_count, 4U) << run;
-      EXPECT_THROW(too_little.evaluate(), Error) << run;
+    for (int run = 0; run < 3; ++run) EXPECT_EQ(enough.evaluate().table.row_count, 4U) << run;
+    try {
+      PreparedQuery too_little(mine, text, with(least - 1));
+      for (int run = 0; run < 3; ++run) EXPECT_THROW(too_little.evaluate(), Error) << run;
+    } catch (const Error&) {
+      // The service may need more memory for its own run than the query for the rows.
+      EXPECT_EQ(what, &QueryBudget::max_memory_bytes) << "preparing succeeds";
     }
   }
 }

@@ -231,6 +231,51 @@ TEST(NearestByMinimum, IsTheNearestOfThoseThatShareAVariable) {
   EXPECT_EQ(store.rows(query), store.rows(query, plain()));
 }
 
+/// The rows of the plan with and without spatial steps, which must agree; and whether the plan stops at enough rows.
+bool stopsEarly(const SmallStore& store, const std::string& query) {
+  QueryOptions plain;
+  plain.spatial_plans = false;
+  EXPECT_EQ(store.rows(query), store.rows(query, plain)) << query;
+  const QuadReader reader = store.reader();
+  return PreparedQuery(reader, kPrefixes + query).explain().find(", the nearest ") != std::string::npos;
+}
+
+TEST(NearestByCount, IsUsedOnlyWhereEveryPairOfAGroupIsCounted) {
+  SmallStore store;
+  std::vector<Quad> quads;
+  std::mt19937 random(3);
+  const auto iri = [](const std::string& name) { return Term::iri("http://example.org/" + name); };
+  for (int i = 0; i < 90; ++i) {
+    const Term thing = iri("n" + std::to_string(i));
+    quads.push_back({thing, iri("kind"), Term::literal(std::to_string(i % 3)), Term::iri("")});
+    for (int j = 0; j <= i % 2; ++j)
+      quads.push_back(
+          {thing, Term::iri("http://www.opengis.net/ont/geosparql#asWKT"),
+           Term::literal("POINT(" + std::to_string(random() % 50) + " " + std::to_string(random() % 50) + ")",
+                         kWktDatatype),
+           Term::iri("")});
+  }
+  store.load(quads);
+  const std::string pairs = "?a :kind \"0\" ; geo:asWKT ?ga . ?b :kind \"1\" ; geo:asWKT ?gb . ",
+                    others =
+                        "?c :kind \"1\" ; geo:asWKT ?gc . FILTER(geof:distance(?ga, ?gc) <= geof:distance(?ga, ?gb)) ",
+                    all = "SELECT ?a ?b { " + pairs + others + "} GROUP BY ?a ?b ";
+  EXPECT_TRUE(stopsEarly(store, all + "HAVING(COUNT(?c) <= 3)"));
+  EXPECT_TRUE(stopsEarly(store, all + "HAVING(4 > COUNT(*))"));
+  EXPECT_TRUE(stopsEarly(store, all + "HAVING(COUNT(?c) = 2 && MAX(STR(?gc)) != \"\")"));
+  EXPECT_TRUE(stopsEarly(store, "SELECT ?a ?b (COUNT(?c) AS ?n) (MAX(geof:distance(?ga, ?gc)) AS ?d) { " + pairs +
+                                    others + "} GROUP BY ?a ?b HAVING(COUNT(?c) < 5)"));
+  EXPECT_TRUE(stopsEarly(
+      store, "SELECT ?a ?b { " + pairs + "OPTIONAL { " + others + "} } GROUP BY ?a ?b HAVING(COUNT(?c) < 3)"));
+  EXPECT_FALSE(stopsEarly(store, all + "HAVING(COUNT(DISTINCT ?c) <= 3)")) << "the pairs of one thing count once";
+  EXPECT_FALSE(stopsEarly(store, all + "HAVING(COUNT(?c) >= 3)"));
+  EXPECT_FALSE(stopsEarly(store, all + "HAVING(COUNT(?c) < 3 || MAX(?gc) = MIN(?gc))"));
+  EXPECT_FALSE(stopsEarly(store, "SELECT ?a ?c { " + pairs + others + "} GROUP BY ?a ?c HAVING(COUNT(?b) < 9)"));
+  EXPECT_FALSE(stopsEarly(
+      store, "SELECT ?a { " + pairs + others +
+                 "FILTER EXISTS { ?c geo:asWKT ?gd FILTER(?gd != ?gb) } } GROUP BY ?a ?b HAVING(COUNT(*) < 3)"));
+}
+
 TEST(OrderWithLimit, ComputesColumnsOfKeptRowsOnlyAndBreaksTiesByThem) {
   std::string turtle;
   for (int i = 0; i < 2000; ++i)

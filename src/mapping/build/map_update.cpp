@@ -10,21 +10,41 @@
 #include "rdf/file/map_replacement.hpp"
 
 namespace cluxel::mapping {
+namespace {
 
-void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink) {
+using Clock = std::chrono::steady_clock;
+
+/// What the inference after an update may use: the update's deadline, and as much memory as the update itself.
+rdf::InferenceCheck checkOf(const sparql::QueryBudget& budget, Clock::time_point start) {
+  return [budget, start](std::size_t bytes) {
+    const auto refuse = [](const std::string& what) {
+      throw Error(ErrorKind::BudgetExceeded, "update: its budget of " + what +
+                                                 " is exceeded by what had to be inferred; nothing was changed. Raise "
+                                                 "the budget, or state less at once");
+    };
+    if (budget.poll) budget.poll();
+    if (budget.deadline && Clock::now() - start > *budget.deadline) refuse("time");
+    if (budget.max_memory_bytes != 0 && bytes > budget.max_memory_bytes) refuse("memory");
+  };
+}
+
+}  // namespace
+
+void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink, const rdf::InferenceCheck& check) {
   const ParsedInputs parsed = parseInputs(storedInputs(transaction));
   if (parsed.rules.asks_map) {
     TileStages stages(parsed.model, parsed.inputs.params);
     stages.loadAll(transaction);
-    writeSemanticLayer(transaction, parsed, stages, 1, sink);
+    if (check) check(0);
+    writeSemanticLayer(transaction, parsed, stages, 1, sink, check);
     return;
   }
-  inferFacts(transaction, parsed.inputs, sink);
+  inferFacts(transaction, parsed.inputs, sink, check);
 }
 
 sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::string& update,
                                const sparql::UpdateOptions& options, ProgressSink& sink) {
-  const auto start = std::chrono::steady_clock::now();
+  const rdf::InferenceCheck check = checkOf(options.query.budget, Clock::now());
   rdf::WriteTransaction transaction = rdf::writeMap(file);
   const bool is_map = requireFinished(file, transaction);
   if (is_map && options.any_graph_writable)
@@ -32,11 +52,10 @@ sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::str
                                                 ": is a map, of which only the operator's statements may be "
                                                 "written; a store that no build has made is open");
   const sparql::UpdateReport report = runUpdate(transaction, update, options);
-  if (is_map && report.inserted + report.deleted > 0) inferAfterUpdate(transaction, sink);
-  const auto& deadline = options.query.budget.deadline;
-  if (deadline && std::chrono::steady_clock::now() - start > *deadline)
-    throw Error(ErrorKind::BudgetExceeded,
-                "update: its budget of time is exceeded by what had to be inferred; nothing was changed");
+  if (is_map && report.inserted + report.deleted > 0) {
+    inferAfterUpdate(transaction, sink, check);
+    check(0);
+  }
   transaction.commit();
   for (const Diagnostic& warning : report.warnings) sink.note(format(warning));
   return report;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cluxel/progress.hpp"
+#include "rdf/ontology/ontology.hpp"
 #include "sparql/update_engine.hpp"
 
 namespace cluxel::mapping {
@@ -13,11 +14,11 @@ namespace cluxel::mapping {
 /// Runs a SPARQL Update on a map or another quad file. In a map, graph `inferred` is computed again, SPARQL rules
 /// included; when its rules use `ask:`, the objects are computed again too, because answers may have changed. Commits
 /// everything or nothing. Throws as runUpdate(); Error (InvalidArgument) when a build of the map is unfinished,
-/// or all graphs of a map are to be writable. The deadline is checked once more before the commit.
+/// or all graphs of a map are to be writable. The deadline and the budget of memory cover the inference.
 sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::string& update,
                                const sparql::UpdateOptions& options, ProgressSink& sink);
 
 /// Computes again what follows from the operator's statements of a map.
-void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink);
+void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink, const rdf::InferenceCheck& check = {});
 
 }  // namespace cluxel::mapping

@@ -66,30 +66,34 @@ ParsedInputs parseInputs(const MapInputs& inputs) {
   return parsed;
 }
 
-void inferFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, ProgressSink& sink) {
-  for (const std::string& axiom : inferClosure(transaction).ignored)
+void inferFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, ProgressSink& sink,
+                const rdf::InferenceCheck& check) {
+  for (const std::string& axiom : inferClosure(transaction, check).ignored)
     sink.note("warning: nothing is inferred from " + axiom +
               ": rdf:type, rdfs:subClassOf, rdfs:subPropertyOf and owl:inverseOf keep their meaning; remove the "
               "statement, or use properties of your own");
-  runSparqlRules(transaction, inputs.sparql_rules);
+  runSparqlRules(transaction, inputs.sparql_rules, check);
 }
 
 SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const ParsedInputs& parsed,
-                                 const TileStages& stages, unsigned threads, ProgressSink& sink) {
+                                 const TileStages& stages, unsigned threads, ProgressSink& sink,
+                                 const rdf::InferenceCheck& check) {
   writeOntology(transaction, parsed.inputs);
   perception::Scene scene = stages.scene();
   sink.progress("scene", scene.primitives.size(), scene.primitives.size());
   const std::vector<Cloud> clouds = storedClouds(transaction);
   MapOracle oracle(transaction, [&](std::span<const rules::SemanticObject> objects) {
+    if (check) check(0);
     writeObjectsSoFar(transaction, parsed.inputs, clouds, scene, stages, objects);
   });
   rules::ReasoningResult result = reason(scene, parsed.rules, {.oracle = &oracle, .threads = threads});
+  if (check) check(0);
   sink.progress("objects", result.objects.size(), result.objects.size());
   const auto sightings = sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(result, scene.cluxels.size()));
   const auto votes = presenceVotes(
       scene, result.objects, clouds, [&](const Cloud& cloud) { return storedScan(transaction, cloud.id); }, threads);
   writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings, presenceOfObjects(votes)});
-  inferFacts(transaction, parsed.inputs, sink);
+  inferFacts(transaction, parsed.inputs, sink, check);
   storeObjects(transaction, result.objects);
   sink.progress("facts", 1, 1);
   return {std::move(scene), std::move(result.objects)};

@@ -11,6 +11,7 @@
 #include "mapping/map_inputs.hpp"
 #include "perception/segments/scene.hpp"
 #include "rdf/file/environment.hpp"
+#include "rdf/ontology/ontology.hpp"
 #include "rules/language/rule_set.hpp"
 #include "rules/objects/semantic_object.hpp"
 
@@ -34,7 +35,8 @@ void writeObjectsSoFar(rdf::WriteTransaction& transaction, const MapInputs& inpu
                        std::span<const rules::SemanticObject> objects);
 
 /// Makes graph inferred hold the closure and what SPARQL rules derive. Notes axioms that are ignored.
-void inferFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, ProgressSink& sink);
+void inferFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, ProgressSink& sink,
+                const rdf::InferenceCheck& check = {});
 
 struct SemanticLayer {
   perception::Scene scene;
@@ -44,6 +46,7 @@ struct SemanticLayer {
 /// Computes objects and facts of the stages' outputs and stores them. The graphs ontology, observed and inferred are
 /// then a function of these outputs and the inputs.
 SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const ParsedInputs& parsed,
-                                 const TileStages& stages, unsigned threads, ProgressSink& sink);
+                                 const TileStages& stages, unsigned threads, ProgressSink& sink,
+                                 const rdf::InferenceCheck& check = {});
 
 }  // namespace cluxel::mapping

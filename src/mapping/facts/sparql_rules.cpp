@@ -73,13 +73,17 @@ void addDerivation(rdf::QuadWriter& writer, const Quad& fact, const NamedText& r
 }
 
 /// Evaluates one rule once; false when it derived nothing new.
-bool deriveOnce(rdf::WriteTransaction& transaction, const NamedText& rule) {
+bool deriveOnce(rdf::WriteTransaction& transaction, const NamedText& rule, const rdf::InferenceCheck& check) {
   const rdf::QuadReader reader{static_cast<const rdf::ReadTransaction&>(transaction)};
-  sparql::PreparedQuery query(reader, rule.text, ruleOptions(rule));
+  sparql::QueryOptions options = ruleOptions(rule);
+  if (check) options.budget.poll = [&check] { check(0); };
+  sparql::PreparedQuery query(reader, rule.text, options);
   requireConstruct(query, rule);
   std::vector<Quad> fresh;
   for (Quad& fact : query.evaluate().graph)
     if (!isKnown(reader, fact)) fresh.push_back(std::move(fact));
+  constexpr std::size_t kBytesOfDerivedFact = 2000;  // six quads with their terms
+  if (check) check(fresh.size() * kBytesOfDerivedFact);
   rdf::QuadWriter writer(transaction);
   for (Quad& fact : fresh) {
     fact.graph = Term::iri(rdf::vocabulary::kGraphInferred);
@@ -101,12 +105,13 @@ void checkSparqlRules(const std::vector<NamedText>& rules) {
   }
 }
 
-void runSparqlRules(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules) {
+void runSparqlRules(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules,
+                    const rdf::InferenceCheck& check) {
   constexpr int kMaxRounds = 1000;
   for (const NamedText& rule : rules) {
     int round = 0;
-    while (deriveOnce(transaction, rule)) {
-      extendClosure(transaction);
+    while (deriveOnce(transaction, rule, check)) {
+      extendClosure(transaction, check);
       if (++round == kMaxRounds)
         throw InputError({.file = rule.name}, "derives new facts without end",
                          "a rule may not make new objects out of objects that it made itself");

@@ -6,6 +6,7 @@
 
 #include "mapping/map_inputs.hpp"
 #include "rdf/file/environment.hpp"
+#include "rdf/ontology/ontology.hpp"
 
 namespace cluxel::mapping {
 
@@ -15,6 +16,7 @@ void checkSparqlRules(const std::vector<NamedText>& rules);
 /// Evaluates the rules in order. Each rule is a stratum: it sees the facts of earlier rules and its own, and is
 /// repeated until it derives nothing new. Expects the closure to be complete and keeps it so. Each derived fact names
 /// its rule by a clx:Derivation.
-void runSparqlRules(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules);
+void runSparqlRules(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules,
+                    const rdf::InferenceCheck& check = {});
 
 }  // namespace cluxel::mapping

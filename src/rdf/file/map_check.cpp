@@ -12,6 +12,7 @@
 #include "rdf/file/check/map_structure.hpp"
 #include "rdf/file/file_guards.hpp"
 #include "rdf/file/lmdb_environment.hpp"
+#include "rdf/store/geometry_index.hpp"
 #include "rdf/store/quad_reader_impl.hpp"
 #include "rdf/store/store_snapshot.hpp"
 #include "rdf/terms/term_record.hpp"
@@ -55,6 +56,9 @@ class Check {
     guarded([&] { checkBlocks(); });
     guarded([&] { checkBlockKeys(); });
     guarded([&] { checkTerms(); });
+    guarded([&] {
+      for (std::string& what : faultsOfGeometryIndex(reader_, transaction_)) fault(std::move(what));
+    });
     for (const QuadOrder order : {QuadOrder::Spog, QuadOrder::Posg, QuadOrder::Ospg, QuadOrder::Gspo})
       guarded([&] { checkIndex(order); });
     return std::move(result_);

@@ -20,8 +20,8 @@ struct MapCheck {
 };
 
 /// Verifies the structure of all pages, the checksum of every block, every term and its entry in the hash index, and
-/// that the four indexes contain the same quads of known terms. Does not crash on a damaged file. Throws Error
-/// (StoreUnavailable) when there is no map. Cost: reads the whole file.
+/// that the four indexes contain the same quads of known terms, and the index of geometries those of the map. Does not
+/// crash on a damaged file. Throws Error (StoreUnavailable) when there is no map. Cost: reads the whole file.
 MapCheck checkMap(const std::filesystem::path& file);
 
 /// True when the file begins with an LMDB meta page. Cost: one page read.

@@ -312,7 +312,7 @@ class Closure {
 }  // namespace
 
 ClosureLimits ClosureLimits::of(const QuadReader& reader) {
-  return {5'000'000 + 4 * reader.size(), 200'000'000 + 100 * reader.size()};
+  return {5'000'000 + 4 * reader.size(), 200'000'000 + 100 * reader.size(), {}};
 }
 
 EntailedQuads closureOf(const QuadReader& reader, TermId target, std::span<const TermId> sources,

@@ -20,9 +20,13 @@ class ClosureBounds {
   }
   void addStep(TermId property) {
     if (++steps_ > limits_.max_steps) fail(property, "more than " + std::to_string(limits_.max_steps) + " steps");
+    if (steps_ % kStepsBetweenChecks == 0 && limits_.check) limits_.check(facts_ * kBytesOfFact);
   }
 
  private:
+  static constexpr std::uint64_t kStepsBetweenChecks = 4096;
+  /// In the list and the set of a property, in the lists that are compared with the store, and in the store's pages.
+  static constexpr std::size_t kBytesOfFact = 200;
   [[noreturn]] void fail(TermId property, const std::string& what) const {
     throw Error(ErrorKind::BudgetExceeded,
                 "the closure was ended because it takes " + what + ", at the last of " +

@@ -33,13 +33,19 @@ std::vector<QuadIds> quadsOf(const QuadReader& reader, TermId graph) {
   return quads;
 }
 
+ClosureLimits limitsOf(const QuadReader& reader, const InferenceCheck& check) {
+  ClosureLimits limits = ClosureLimits::of(reader);
+  limits.check = check;
+  return limits;
+}
+
 }  // namespace
 
-ClosureChange inferClosure(WriteTransaction& transaction) {
+ClosureChange inferClosure(WriteTransaction& transaction, const InferenceCheck& check) {
   QuadWriter writer(transaction);
   const GraphIds graphs = internGraphs(writer);
   const QuadReader reader(transaction);
-  EntailedQuads entailed = closureOf(reader, graphs.inferred, graphs.stated, ClosureLimits::of(reader));
+  EntailedQuads entailed = closureOf(reader, graphs.inferred, graphs.stated, limitsOf(reader, check));
   const std::vector<QuadIds>& target = entailed.quads;
   const std::vector<QuadIds> present = quadsOf(reader, graphs.inferred);
   std::vector<QuadIds> added;
@@ -52,12 +58,12 @@ ClosureChange inferClosure(WriteTransaction& transaction) {
   return {added.size(), removed.size(), std::move(entailed.ignored)};
 }
 
-ClosureChange extendClosure(WriteTransaction& transaction) {
+ClosureChange extendClosure(WriteTransaction& transaction, const InferenceCheck& check) {
   QuadWriter writer(transaction);
   GraphIds graphs = internGraphs(writer);
   graphs.stated.push_back(graphs.inferred);
   const QuadReader reader(transaction);
-  EntailedQuads entailed = closureOf(reader, graphs.inferred, graphs.stated, ClosureLimits::of(reader));
+  EntailedQuads entailed = closureOf(reader, graphs.inferred, graphs.stated, limitsOf(reader, check));
   for (const QuadIds& quad : entailed.quads) writer.add(quad);
   writer.flush();
   return {entailed.quads.size(), 0, std::move(entailed.ignored)};

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -69,10 +70,14 @@ OntologyView ontologyViewOf(std::span<const RdfSource> sources);
 /// an error the transaction must be dropped. Does not flush.
 void loadOntology(std::span<const RdfSource> sources, QuadWriter& writer);
 
+/// Called every few thousand steps of an inference with the memory that it holds. What it throws ends the inference.
+using InferenceCheck = std::function<void(std::size_t bytes)>;
+
 /// How far a closure may go. A transitive property can make as many facts as there are pairs of things.
 struct ClosureLimits {
   std::uint64_t max_facts = 0;  ///< derived
   std::uint64_t max_steps = 0;  ///< facts and edges looked at
+  InferenceCheck check = {};
   /// Five million facts and four for each quad of the store; 200 million steps and 100 for each quad.
   static ClosureLimits of(const QuadReader& reader);
 };
@@ -98,9 +103,9 @@ struct ClosureChange {
 };
 /// Replaces the graph `inferred` by the closure of ontology, observed and operator. Writes only the differences, and
 /// flushes.
-ClosureChange inferClosure(WriteTransaction& transaction);
+ClosureChange inferClosure(WriteTransaction& transaction, const InferenceCheck& check = {});
 /// Adds to the graph `inferred` the closure of ontology, observed, operator and inferred itself, and keeps the facts
 /// that rules have written there. Flushes.
-ClosureChange extendClosure(WriteTransaction& transaction);
+ClosureChange extendClosure(WriteTransaction& transaction, const InferenceCheck& check = {});
 
 }  // namespace cluxel::rdf

@@ -183,6 +183,16 @@ void PackedTree::meeting(const FlatBox& query_box, std::vector<TermId>& found) c
   }
 }
 
+bool PackedTree::isTight() const {
+  for (std::size_t n = 1; n < levels_.size(); ++n) {
+    for (std::size_t box = 0; box < levels_[n].size(); ++box) {
+      const auto [first, last] = below(n, box);
+      if (covering(levels_[n - 1].subspan(first, last - first)) != levels_[n][box]) return false;
+    }
+  }
+  return true;
+}
+
 void PackedTree::appendTo(GeometryEntries& entries) const {
   for (std::size_t i = 0; i < literals_.size(); ++i) entries.boxed.push_back({levels_[0][i], literals_[i]});
   entries.loose.insert(entries.loose.end(), loose_.begin(), loose_.end());

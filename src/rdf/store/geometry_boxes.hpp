@@ -21,6 +21,7 @@ struct FlatBox {
   bool meets(const FlatBox& other) const {
     return min_x <= other.max_x && other.min_x <= max_x && min_y <= other.max_y && other.min_y <= max_y;
   }
+  bool operator==(const FlatBox&) const = default;
   /// The distance of two boxes; 0 when they meet.
   double distanceTo(const FlatBox& other) const;
 };
@@ -58,6 +59,8 @@ class PackedTree {
   void meeting(const FlatBox& query_box, std::vector<TermId>& found) const;
   /// All entries, for packing them anew with others.
   void appendTo(GeometryEntries& entries) const;
+  /// True when every box above the lowest level is the least that covers those below it.
+  bool isTight() const;
 
  private:
   std::span<const TermId> literals_, loose_;

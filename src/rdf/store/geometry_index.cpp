@@ -141,6 +141,51 @@ bool NearestGeometries::next(Found& found) {
   return false;
 }
 
+namespace {
+
+/// The entries by literal, so that two lists can be compared.
+std::vector<GeometryEntries::Boxed> byLiteral(std::vector<GeometryEntries::Boxed> boxed) {
+  std::sort(boxed.begin(), boxed.end(), [](const auto& a, const auto& b) { return a.literal < b.literal; });
+  return boxed;
+}
+
+bool areSame(const GeometryEntries& a, const GeometryEntries& b) {
+  const auto isSame = [](const GeometryEntries::Boxed& one, const GeometryEntries::Boxed& other) {
+    return one.literal == other.literal && one.box == other.box;
+  };
+  const auto left = byLiteral(a.boxed), right = byLiteral(b.boxed);
+  std::vector<TermId> loose_left = a.loose, loose_right = b.loose;
+  std::sort(loose_left.begin(), loose_left.end());
+  std::sort(loose_right.begin(), loose_right.end());
+  return std::equal(left.begin(), left.end(), right.begin(), right.end(), isSame) && loose_left == loose_right;
+}
+
+}  // namespace
+
+std::vector<std::string> faultsOfGeometryIndex(const QuadReader& reader, const ReadTransaction& transaction) {
+  const IndexHead head = storedHead(transaction);
+  std::vector<std::string> faults;
+  if (head.covered > reader.termCount()) {
+    faults.push_back("the index of geometries names more terms than there are");
+    return faults;
+  }
+  GeometryEntries stored, expected;
+  for (const StoredRun& run : head.runs) {
+    const std::vector<std::uint32_t> words = copied(requireRun(transaction, run.number));
+    const PackedTree tree({reinterpret_cast<const char*>(words.data()), words.size() * sizeof(std::uint32_t)});
+    const std::string name = "part " + std::to_string(run.number) + " of the index of geometries";
+    if (tree.size() + tree.loose().size() != run.literals) faults.push_back(name + " has a wrong count");
+    if (!tree.isTight()) faults.push_back(name + " has boxes that do not fit those below them");
+    tree.appendTo(stored);
+  }
+  addTerms(reader, 1, head.covered, expected);
+  if (!areSame(stored, expected))
+    faults.push_back("the index of geometries holds " + std::to_string(stored.size()) +
+                     " entries that are not those of the " + std::to_string(expected.size()) +
+                     " geometries of the map");
+  return faults;
+}
+
 void extendGeometryIndex(WriteTransaction& transaction, const QuadReader& reader, GeometryEntries made, TermId first,
                          TermId last) {
   IndexHead head = storedHead(transaction);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "rdf/store/geometry_boxes.hpp"
@@ -61,6 +62,11 @@ class NearestGeometries {
   FlatBox from_;
   std::vector<Open> open_;  ///< a heap
 };
+
+/// Compares the stored index with the literals of the dictionary, box by box. What is wrong, in words for a person; at
+/// most some faults of each tree. Literals after the last indexed term are no fault: they are indexed when needed.
+/// Throws Error (StoreUnavailable) on damaged blocks. Cost: reads every term.
+std::vector<std::string> faultsOfGeometryIndex(const QuadReader& reader, const ReadTransaction& transaction);
 
 /// Adds the literals among the terms `first` to `last`, which `made` holds, to the stored index; and those before
 /// `first` that it lacks. Cost: each literal is written again about log2(n) times in the life of a map.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cluxel/error.hpp"
+#include "sparql/exec/guard.hpp"
 #include "sparql/syntax/mentions.hpp"
 #include "sparql/syntax/source_text.hpp"
 
@@ -266,6 +267,7 @@ NodePtr AlgebraBuilder::values(const ast::InlineData& data, Scope& scope) {
   for (const auto& row : data.rows) {
     std::vector<ValueId> ids;
     for (const auto& term : row) ids.push_back(term ? terms_.intern(*term) : kUnbound);
+    if (options_.guard != nullptr) options_.guard->spend(row.size() * sizeof(Term));
     node->rows.push_back(std::move(ids));
   }
   node->annotate();

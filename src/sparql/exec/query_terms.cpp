@@ -25,6 +25,26 @@ const Term& termAt(const std::deque<Term>& computed, ValueId id) {
 /// Of a hash table's node with what it points to.
 constexpr std::size_t kBytesOfNode = 64;
 
+std::size_t hashOfTerm(const Term& term) {
+  const std::hash<std::string> hash;
+  return hash(term.text) * 31 + hash(term.datatype) * 17 + hash(term.language) + static_cast<std::size_t>(term.kind);
+}
+
+/// Texts that do not fit into their strings.
+std::size_t bytesOfTexts(const Term& term) {
+  const auto outside = [](const std::string& text) { return text.capacity() < 16 ? 0 : text.capacity(); };
+  return outside(term.text) + outside(term.datatype) + outside(term.language);
+}
+
+/// The type of a term whose value is its text: it needs no copy of it.
+std::optional<Value::Type> typeOfText(const rdf::TermView& term) {
+  if (term.kind == TermKind::Iri) return Value::Type::Iri;
+  if (term.kind == TermKind::BlankNode) return Value::Type::Blank;
+  if (!term.language.empty()) return Value::Type::LangString;
+  const DatatypeInfo* info = findDatatype(term.datatype);
+  return info != nullptr && info->type == Value::Type::String ? std::optional(info->type) : std::nullopt;
+}
+
 Value withId(Value value, ValueId id) {
   value.id = id;
   return value;
@@ -32,9 +52,10 @@ Value withId(Value value, ValueId id) {
 
 }  // namespace
 
-std::size_t QueryTerms::TermHash::operator()(const Term& term) const {
-  const std::hash<std::string> hash;
-  return hash(term.text) * 31 + hash(term.datatype) * 17 + hash(term.language) + static_cast<std::size_t>(term.kind);
+bool QueryTerms::isSame(ValueId id, const Term& term) const {
+  const rdf::TermView own = view(id);
+  return own.kind == term.kind && own.text == term.text && own.datatype == term.datatype &&
+         own.language == term.language;
 }
 
 Value QueryTerms::valueOf(ValueId id) const {
@@ -77,6 +98,7 @@ Value QueryTerms::valueOfStored(ValueId id) const {
   const auto known = decoded_.find(id);
   if (known != decoded_.end()) return known->second;
   const rdf::TermView seen = view(id);
+  if (const auto type = typeOfText(seen)) return value.type = *type, value;
   value = withId(valueOfTerm(seen.kind, seen.text, seen.datatype, seen.language), id);
   decoded_.emplace(id, value);
   computed_bytes_ += sizeof(Value) + kBytesOfNode;
@@ -91,9 +113,10 @@ Term QueryTerms::termOf(ValueId id) const {
   return id >= kFirstComputed ? termAt(computed_, id) : reader_.termOf(id);
 }
 
-ValueId QueryTerms::intern(const Term& term) {
-  const auto known = id_of_.find(term);
-  if (known != id_of_.end()) return known->second;
+ValueId QueryTerms::intern(Term term) {
+  const std::size_t hash = hashOfTerm(term);
+  const auto known = known_.find(Sought{hash, term});
+  if (known != known_.end()) return known->id;
   ValueId id = kUnbound;
   if (const auto stored = reader_.idOf(term)) {
     id = *stored;
@@ -101,10 +124,11 @@ ValueId QueryTerms::intern(const Term& term) {
     if (computed_.size() >= kFirstComputed - 1)
       throw Error(ErrorKind::BudgetExceeded, "query: too many computed terms");
     id = kFirstComputed + static_cast<ValueId>(computed_.size());
-    computed_.push_back(term);
-    computed_bytes_ += sizeof(Term) * 3 + term.text.size() * 2 + term.datatype.size() * 2;
+    computed_bytes_ += sizeof(Term) + bytesOfTexts(term);
+    computed_.push_back(std::move(term));
   }
-  id_of_.emplace(term, id);
+  known_.insert({hash, id});
+  computed_bytes_ += kBytesOfNode;
   return id;
 }
 
@@ -158,7 +182,8 @@ void QueryTerms::rewind(std::size_t mark) {
   if (computed_.size() == mark) return;
   const ValueId first = kFirstComputed + static_cast<ValueId>(mark);
   while (computed_.size() > mark) {
-    id_of_.erase(computed_.back());
+    const auto last = known_.find(Sought{hashOfTerm(computed_.back()), computed_.back()});
+    known_.erase(last);
     computed_.pop_back();
   }
   computed_bytes_ = 0;

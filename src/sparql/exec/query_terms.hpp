@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "sparql/results/result_table.hpp"
 #include "sparql/values/value.hpp"
@@ -28,7 +29,7 @@ class QueryTerms : public TermLookup {
   /// Prefetches for valueOf().
   void expectValues(std::span<const ValueId> ids) const { reader_.expectValues(ids); }
   Term termOf(ValueId id) const;
-  ValueId intern(const Term& term);
+  ValueId intern(Term term);
   /// The id of a value; kUnbound for an error value.
   ValueId intern(const Value& value);
 
@@ -51,16 +52,35 @@ class QueryTerms : public TermLookup {
   void rewind(std::size_t mark);
 
  private:
-  struct TermHash {
-    std::size_t operator()(const Term& term) const;
+  /// A term that has an id; its text is found by the id.
+  struct Known {
+    std::size_t hash;
+    ValueId id;
   };
+  struct Sought {
+    std::size_t hash;
+    const Term& term;
+  };
+  struct KnownHash {
+    using is_transparent = void;
+    std::size_t operator()(const Known& known) const { return known.hash; }
+    std::size_t operator()(const Sought& sought) const { return sought.hash; }
+  };
+  struct KnownEqual {
+    using is_transparent = void;
+    bool operator()(const Known& a, const Known& b) const { return a.id == b.id; }
+    bool operator()(const Known& a, const Sought& b) const { return a.hash == b.hash && terms->isSame(a.id, b.term); }
+    bool operator()(const Sought& a, const Known& b) const { return (*this)(b, a); }
+    const QueryTerms* terms;
+  };
+  bool isSame(ValueId id, const Term& term) const;
   Value valueOfStored(ValueId id) const;
 
   const rdf::QuadReader& reader_;
   std::deque<Term> computed_;
   mutable std::unordered_map<ValueId, Value> decoded_;  ///< values that are decoded from text
-  std::unordered_map<Term, ValueId, TermHash> id_of_;
-  mutable std::size_t computed_bytes_ = 0;  ///< of computed_, id_of_ and decoded_
+  std::unordered_set<Known, KnownHash, KnownEqual> known_{0, KnownHash{}, KnownEqual{this}};
+  mutable std::size_t computed_bytes_ = 0;  ///< of computed_, known_ and decoded_
 };
 
 }  // namespace cluxel::sparql

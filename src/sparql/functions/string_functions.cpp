@@ -53,12 +53,17 @@ Value testTexts(Arguments arguments, FunctionContext& context, Test test) {
 }  // namespace
 
 Value concatFunction(Arguments arguments, FunctionContext& context) {
-  std::string text;
+  std::string text, scratch;
   bool same_language = !arguments.empty();
+  std::size_t bytes = 0;
   for (const Value& value : arguments) {
     if (!value.isStringLike()) return {};
-    text += context.terms.textOf(value);
-    requireTextSize(text.size());
+    bytes += context.terms.textOf(value, scratch).size();
+    requireTextSize(bytes);
+  }
+  text.reserve(bytes);
+  for (const Value& value : arguments) {
+    text += context.terms.textOf(value, scratch);
     same_language = same_language && value.type == Type::LangString &&
                     context.terms.languageOf(value) == context.terms.languageOf(arguments[0]);
   }

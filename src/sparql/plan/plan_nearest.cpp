@@ -63,6 +63,26 @@ bool isSubject(const Node& node, Slot slot) {
                                                       [&](const NodePtr& child) { return isSubject(*child, slot); });
 }
 
+/// A condition that a slot is at most `count`.
+struct CountBound {
+  Slot slot;
+  std::int64_t count;
+};
+
+std::optional<CountBound> greatestCount(const Expr& condition) {
+  using Kind = Expr::Kind;
+  if (condition.arguments.size() != 2) return std::nullopt;
+  const bool is_turned = condition.arguments[0].kind == Kind::Constant;
+  const Expr &slot = condition.arguments[is_turned ? 1 : 0], &number = condition.arguments[is_turned ? 0 : 1];
+  const bool is_integer = number.kind == Kind::Constant && number.constant.type == Value::Type::Integer;
+  if (slot.kind != Kind::Slot || !is_integer || number.constant.payload) return std::nullopt;
+  const std::int64_t value = number.constant.integer;
+  if (condition.kind == Kind::Equal) return CountBound{slot.slot, value};
+  if (condition.kind == (is_turned ? Kind::Greater : Kind::Less)) return CountBound{slot.slot, value - 1};
+  if (condition.kind == (is_turned ? Kind::GreaterEqual : Kind::LessEqual)) return CountBound{slot.slot, value};
+  return std::nullopt;
+}
+
 }  // namespace
 
 /// `probe` and `build` are the slots of the two geometries; `outside` all slots outside the pattern. Conditions of the
@@ -116,6 +136,27 @@ std::optional<Planner::Closest> Planner::closestOf(const Node& group) {
   Closest closest{*aggregate.argument, {}};
   for (const Slot key : group.slots) closest.keys.add(key);
   return closest;
+}
+
+/// Notes how many rows of a group are enough to know that HAVING refuses it: COUNT(?x) < 3 does so from three rows on.
+void Planner::noteEnough(const Node& group, const std::vector<Expr>& having) {
+  constexpr std::int64_t kMost = 1000;
+  if (!spatial_plans_ || query_.is_volatile || !group.grouped_by_keys) return;
+  for (const Expr& condition : having) {
+    if (condition.kind == Expr::Kind::And) noteEnough(group, condition.arguments);
+    const auto bound = greatestCount(condition);
+    if (!bound || bound->count < 0 || bound->count >= kMost) continue;
+    const auto counts = [&](const AggregateSpec& spec) {
+      const bool is_simple = !spec.argument || spec.argument->kind == Expr::Kind::Slot;
+      return spec.result == bound->slot && spec.function == ast::AggregateFunction::Count && !spec.distinct &&
+             is_simple;
+    };
+    const auto spec = std::find_if(group.aggregates.begin(), group.aggregates.end(), counts);
+    if (spec == group.aggregates.end()) continue;
+    const Slot counted = spec->argument ? spec->argument->slot : kNoSlot;
+    enough_[&group] = {static_cast<std::uint64_t>(bound->count) + 1, group.slots, counted, {}};
+    return;
+  }
 }
 
 /// Limits a join to the nearest geometries of one side, if nothing but the two sides decides which rows there are.

@@ -126,6 +126,8 @@ Planner::State Planner::group(const Node& node) {
     if (aggregate.argument) expressions.push_back(&*aggregate.argument);
   }
   auto exists = planExists(state, expressions);
+  const auto enough = enough_.find(&node);
+  if (enough != enough_.end() && exists.empty()) state.top->stopAfter(enough->second);
   State grouped;
   const std::vector<Slot> keys = mergedSlots(node.slots, {});
   grouped.top =

@@ -97,6 +97,7 @@ void Planner::takeFilters(const Node& node, const SlotSet& rest, const SlotSet& 
     parts.joined.push_back(&node);
     return;
   }
+  if (child.kind == Node::Kind::Group) noteEnough(child, node.conditions);
   takeApart(child, rest, after, parts);
   for (const Expr& condition : node.conditions) {
     if (bindsByFilter(condition, child, parts)) continue;

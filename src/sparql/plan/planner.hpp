@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -101,6 +102,7 @@ class Planner {
   std::optional<State> nearestFirst(const Node& body, Slot geometry, const Expr& place, std::uint64_t max_rows);
   State nearestSource(State around, Parts& parts, NearestScan scan, double rows);
   State group(const Node& node);
+  void noteEnough(const Node& group, const std::vector<Expr>& having);
   State graphLoop(const Node& node);
   State values(const Node& node);
 
@@ -158,8 +160,9 @@ class Planner {
   double needed_rows_ = kAllRows;  ///< from a LIMIT around the next group
   SlotSet unsure_parameters_;      ///< parameters that may be unbound
   bool spatial_plans_;
-  std::optional<Closest> closest_;  ///< from a MIN around the next group
-  std::vector<NodePtr> made_;       ///< nodes that estimates are kept for
+  std::optional<Closest> closest_;            ///< from a MIN around the next group
+  std::map<const Node*, EnoughRows> enough_;  ///< of groups whose counts HAVING bounds
+  std::vector<NodePtr> made_;                 ///< nodes that estimates are kept for
 };
 
 }  // namespace cluxel::sparql

@@ -11,6 +11,15 @@ namespace {
 
 /// Memory that a change occupies until the writer's flush: the quad, and its entry in the lists.
 constexpr std::size_t kBytesOfPending = 64;
+/// Texts that the writer collects before they go to the store's pages.
+constexpr std::size_t kPendingTexts = std::size_t{16} << 20U;
+
+/// Shorter ones are part of kBytesOfPending.
+constexpr std::size_t kLongTexts = 4096;
+
+std::size_t bytesOfTexts(const Quad& quad) {
+  return quad.subject.text.size() + quad.predicate.text.size() + quad.object.text.size();
+}
 
 std::optional<rdf::QuadIds> storedIds(const rdf::QuadReader& reader, const Quad& quad) {
   const auto s = reader.idOf(quad.subject), p = reader.idOf(quad.predicate), o = reader.idOf(quad.object);
@@ -64,9 +73,16 @@ ChangeCounts applyChanges(const rdf::QuadReader& reader, rdf::QuadWriter& writer
     writer.remove(removed[i]);
     ++counts.deleted;
   }
+  std::size_t pending = 0;
   for (const ChangedQuad& change : changes.inserted) {
     guard.work(1);
+    const std::size_t bytes = bytesOfTexts(change.quad);
+    if (bytes >= kLongTexts) guard.charge(bytes);  // the pages are held until the commit
+    pending += bytes;
     writer.add(change.quad);
+    if (pending < kPendingTexts) continue;
+    writer.flush();
+    pending = 0;
   }
   writer.flush();
   counts.inserted = reader.size() + counts.deleted - before;

@@ -97,13 +97,13 @@ std::optional<Term> ModifyRun::filled(const ast::PatternTerm& place, const Batch
 void ModifyRun::instantiate(const std::vector<ast::QuadTemplate>& templates, const Batch& batch, std::size_t row,
                             Blanks& blanks, Guard& guard, std::vector<ChangedQuad>& out) {
   for (const ast::QuadTemplate& quad : templates) {
-    const auto s = filled(quad.subject, batch, row, blanks), p = filled(quad.predicate, batch, row, blanks);
-    const auto o = filled(quad.object, batch, row, blanks);
-    const auto g = quad.graph ? filled(*quad.graph, batch, row, blanks) : std::optional<Term>(default_graph);
+    auto s = filled(quad.subject, batch, row, blanks), p = filled(quad.predicate, batch, row, blanks);
+    auto o = filled(quad.object, batch, row, blanks);
+    auto g = quad.graph ? filled(*quad.graph, batch, row, blanks) : std::optional<Term>(default_graph);
     if (!s || !p || !o || !g || s->kind == TermKind::Literal || p->kind != TermKind::Iri || g->kind != TermKind::Iri)
       continue;
     if (out.size() == out.capacity()) guard.requireRoomFor(out.size() * sizeof(ChangedQuad));
-    out.push_back({{*s, *p, *o, *g}, quad.graph || modify_.with});
+    out.push_back({{std::move(*s), std::move(*p), std::move(*o), std::move(*g)}, quad.graph || modify_.with});
     guard.work(1);
     guard.charge(bytesOf(out.back()));
   }

@@ -196,6 +196,36 @@ SpatialQuery SpatialQueryMaker::nearestByMinimum() {
           })};
 }
 
+/// The k nearest of each geometry: fewer than k are nearer, or at most k are as near.
+SpatialQuery SpatialQueryMaker::nearestByCount() {
+  const int i = upTo(3), k = upTo(3), most = 1 + upTo(4);
+  std::vector<std::string> parts = thing("a", i), inner = thing("c", k);
+  for (const std::string& part : thing("b", k)) parts.push_back(part);
+  const bool is_optional = upTo(2) == 0;
+  inner.push_back(is_optional ? "FILTER(geof:distance(?ga, ?gc) < geof:distance(?ga, ?gb))"
+                              : "FILTER(geof:distance(?gb, ?ga) >= geof:distance(?ga, ?gc))");
+  if (!is_optional) parts.insert(parts.end(), inner.begin(), inner.end());
+  const std::string count = upTo(3) > 0 || is_optional ? "COUNT(?c)" : "COUNT(*)";
+  const std::string number = std::to_string(most), next = std::to_string(most + 1);
+  const std::string strict[] = {count + " < " + number, number + " > " + count},
+                    loose[] = {count + " <= " + number, count + " < " + next};
+  const std::string having = is_optional ? strict[upTo(2)] : loose[upTo(2)];
+  const std::string text = shuffled(parts) + (is_optional ? "OPTIONAL { " + shuffled(inner) + "} " : "");
+  const auto nearer = [&](const Patch& from, double distance) {
+    int pairs = 0;
+    for (const Thing& c : town_.things)
+      for (const Patch& patch : c.patches)
+        pairs += c.kind == k && (is_optional ? from.distanceTo(patch) < distance : from.distanceTo(patch) <= distance);
+    return pairs;
+  };
+  std::vector<std::string> rows = pairs(i, k, [&](const Thing&, const Patch& p, const Thing&, const Patch& q) {
+    const int pairs = nearer(p, p.distanceTo(q));
+    return is_optional ? pairs < most : pairs <= most;
+  });
+  return {"nearest by count", "SELECT DISTINCT ?a ?b { " + text + "} GROUP BY ?a ?b ?ga ?gb HAVING(" + having + ")",
+          rows};
+}
+
 SpatialQuery SpatialQueryMaker::lonely() {
   const double d = limit();
   const int i = upTo(3), k = upTo(3);
@@ -273,8 +303,9 @@ SpatialQuery SpatialQueryMaker::next() {
       &SpatialQueryMaker::pairWithin,        &SpatialQueryMaker::pairRelated,      &SpatialQueryMaker::boundThing,
       &SpatialQueryMaker::placesOfValues,    &SpatialQueryMaker::oneOfPlaces,      &SpatialQueryMaker::nearestFirst,
       &SpatialQueryMaker::nearestByAbsence,  &SpatialQueryMaker::nearestByMinimum, &SpatialQueryMaker::lonely,
-      &SpatialQueryMaker::optionalNeighbour, &SpatialQueryMaker::numberBand,       &SpatialQueryMaker::boxesOfNumbers};
-  return (this->*kMakers[upTo(12)])();
+      &SpatialQueryMaker::optionalNeighbour, &SpatialQueryMaker::numberBand,       &SpatialQueryMaker::boxesOfNumbers,
+      &SpatialQueryMaker::nearestByCount};
+  return (this->*kMakers[upTo(13)])();
 }
 
 }  // namespace cluxel::test

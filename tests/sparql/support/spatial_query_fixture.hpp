@@ -70,6 +70,7 @@ class SpatialQueryMaker {
   SpatialQuery oneOfPlaces();
   SpatialQuery nearestByAbsence();
   SpatialQuery nearestByMinimum();
+  SpatialQuery nearestByCount();
   SpatialQuery lonely();
   SpatialQuery optionalNeighbour();
   SpatialQuery numberBand();

@@ -19,6 +19,7 @@ class LeftJoinOperator : public UnaryOperator {
     slots_ = mergedSlots(slots_, without(optional_.top->slots(), optional_.origin));
   }
   std::string label(const PlanNames&) const override { return "optional"; }
+  void stopAfter(EnoughRows enough) override { optional_.top->stopAfter(std::move(enough)); }
 
  protected:
   void reopen(bool fresh) override {

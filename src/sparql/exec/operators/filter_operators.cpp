@@ -21,6 +21,11 @@ class FilterOperator : public RowFilter {
     }
     return text;
   }
+  void stopAfter(EnoughRows enough) override {
+    if (!exists_.empty()) return;
+    enough.conditions.insert(enough.conditions.end(), conditions_.begin(), conditions_.end());
+    child_->stopAfter(std::move(enough));
+  }
 
  protected:
   void reopen(bool fresh) override {

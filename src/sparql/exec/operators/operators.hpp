@@ -24,6 +24,15 @@ struct PlanNames {
   const QueryTerms& terms;
 };
 
+/// What a group needs whose HAVING refuses counts of `count` and more: at most so many of the rows that continue one
+/// row of a join and pass the conditions.
+struct EnoughRows {
+  std::uint64_t count = 0;
+  std::vector<Slot> keys;        ///< of the group
+  Slot counted = kNoSlot;        ///< kNoSlot: the rows
+  std::vector<Expr> conditions;  ///< of the filters between the join and the group
+};
+
 class Operator {
  public:
   virtual ~Operator() = default;
@@ -49,6 +58,9 @@ class Operator {
   /// For an operator that gives rows by ascending distance: it ends when `is_enough(distance)` says that rows of this
   /// distance and more are not needed.
   virtual void stopWhen(std::function<bool(double)> /*is_enough*/) {}
+
+  /// For a join by distance: it may leave out rows that are not needed.
+  virtual void stopAfter(EnoughRows /*enough*/) {}
 
   /// The slots that may be bound, ascending.
   const std::vector<Slot>& slots() const { return slots_; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The range join: pairs each row with the rows of the build side that pass tests on numbers and distances.
 #include <algorithm>
+#include <limits>
 
 #include "sparql/exec/spatial/nearest_others.hpp"
 #include "sparql/exec/spatial/range_build.hpp"
@@ -28,7 +29,22 @@ class RangeJoinOperator : public UnaryOperator {
     if (nearest_)
       text += "  ?" + names.query.slot_names[nearest_->test().slot] + " nearest to " +
               describe(nearest_->test().place, names.query, names.terms);
+    if (enough_) text += ", the nearest " + std::to_string(enough_->count);
     return text;
+  }
+  void stopAfter(EnoughRows enough) override {
+    const auto isAdded = [this](Slot slot) {
+      return std::any_of(added_.begin(), added_.end(), [slot](const auto& added) { return added.first == slot; });
+    };
+    // Each row of the child must belong to one group, and each pair with it must be counted.
+    if (nearest_ || std::any_of(enough.keys.begin(), enough.keys.end(), isAdded)) return;
+    if (enough.counted != kNoSlot && !isAdded(enough.counted)) return;
+    for (std::size_t i = 0; i < tests_.size(); ++i) {
+      if (tests_[i].kind != RangeTest::Kind::Near || !tests_[i].place || !build_.isNearestBy(tests_[i].slot)) continue;
+      enough_ = std::move(enough);
+      near_ = i;
+      return;
+    }
   }
 
  protected:
@@ -37,6 +53,7 @@ class RangeJoinOperator : public UnaryOperator {
     build_.reopen(runtime(), fresh);
     if (nearest_) nearest_->reopen(runtime(), fresh);
     in_.columns.resize(runtime().slot_count);
+    pair_ = Batch(runtime().slot_count);
     in_.rows = row_ = next_ = 0;
     found_.clear();
   }
@@ -79,13 +96,48 @@ class RangeJoinOperator : public UnaryOperator {
     found_.clear();
     next_ = 0;
     BoxTree::Box query_box;
+    has_place_ = false;
     if (!limit(query_box)) return;
+    if (has_place_) return searchNearest();
     build_.tree().search(query_box, [this](std::uint32_t row) { found_.push_back(row); });
     std::sort(found_.begin(), found_.end());
     const auto middle = static_cast<std::ptrdiff_t>(found_.size());
     found_.insert(found_.end(), build_.loose().begin(), build_.loose().end());
     std::inplace_merge(found_.begin(), found_.begin() + middle, found_.end());
     runtime().guard.work(1 + found_.size() / 8);
+  }
+
+  /// Fills found_ with as many rows that pass the conditions as are needed, the nearest first.
+  void searchNearest() {
+    Evaluator evaluator(runtime());
+    std::size_t looked_at = 0;
+    const auto isEnough = [&](std::uint32_t row) {
+      ++looked_at;
+      if (isNeeded(row, evaluator)) found_.push_back(row);
+      return found_.size() >= enough_->count;
+    };
+    if (!std::any_of(build_.loose().begin(), build_.loose().end(), isEnough)) {
+      BoxTree::Box from;
+      from[0] = {place_.min_x, place_.max_x};
+      from[1] = {place_.min_y, place_.max_y};
+      const double farthest = farthestOf(place_, reach_);
+      build_.tree().nearest(
+          from, [&](std::uint32_t row, double min_distance) { return min_distance <= farthest && !isEnough(row); });
+    }
+    std::sort(found_.begin(), found_.end());
+    runtime().guard.work(1 + looked_at / 8);
+  }
+
+  bool isNeeded(std::uint32_t row, Evaluator& evaluator) {
+    const ValueId* built = build_.table().row(row);
+    for (const auto& [slot, column] : shared_) {
+      if (in_.at(slot, current_) != built[column]) return false;
+    }
+    pair_.rows = 1;
+    for (const Slot slot : child_->slots()) pair_.columns[slot].assign(1, in_.at(slot, current_));
+    for (const auto& [slot, column] : added_) pair_.columns[slot].assign(1, built[column]);
+    return std::all_of(enough_->conditions.begin(), enough_->conditions.end(),
+                       [&](const Expr& condition) { return evaluator.truth(condition, pair_, 0).value_or(false); });
   }
 
   /// False when no row passes the tests.
@@ -98,6 +150,11 @@ class RangeJoinOperator : public UnaryOperator {
       if (test.place) place = boxOf(evaluator.value(*test.place, in_, current_), runtime().functions);
       if (place.known == Known::Error) return false;
       if (bound.known == Known::Value && place.known == Known::Value) build_.narrow(test, bound, place.box, query_box);
+      if (!enough_ || &test != &tests_[near_] || place.known != Known::Value) continue;
+      has_place_ = true;
+      place_ = place.box;
+      constexpr double kFar = std::numeric_limits<double>::infinity();
+      reach_ = bound.known == Known::Value ? bound.number + bound.error : kFar;
     }
     if (nearest_) limitToNearest(query_box, evaluator);
     return true;
@@ -143,6 +200,12 @@ class RangeJoinOperator : public UnaryOperator {
   Batch in_;
   std::size_t row_ = 0, current_ = 0, next_ = 0;
   std::vector<std::uint32_t> found_, from_, matched_;
+  std::optional<EnoughRows> enough_;
+  std::size_t near_ = 0;    ///< the test by which rows come nearest first
+  bool has_place_ = false;  ///< the current row has a place for it
+  Box2 place_;              ///< then its box,
+  double reach_ = 0;        ///< and the greatest distance
+  Batch pair_;              ///< one row, for the conditions
 };
 
 }  // namespace

@@ -30,11 +30,12 @@ void BoxTree::clear() {
   rows_.clear();
 }
 
-void BoxTree::pack() {
+void BoxTree::pack(const Guard& guard) {
   if (rows_.empty()) return;
+  guard.requireRoomFor(3 * bytes());
   std::vector<std::uint32_t> order(rows_.size());
   std::iota(order.begin(), order.end(), 0U);
-  packed(0, static_cast<std::uint32_t>(rows_.size()), order);
+  packed(0, static_cast<std::uint32_t>(rows_.size()), order, guard);
   std::vector<Interval> bounds(bounds_.size());
   std::vector<std::uint32_t> rows(rows_.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -70,7 +71,10 @@ std::size_t BoxTree::widest(std::size_t node) const {
   return best;
 }
 
-std::uint32_t BoxTree::packed(std::uint32_t first, std::uint32_t last, std::vector<std::uint32_t>& order) {
+std::uint32_t BoxTree::packed(std::uint32_t first, std::uint32_t last, std::vector<std::uint32_t>& order,
+                              const Guard& guard) {
+  constexpr std::uint32_t kRowsOfCheck = 4096;
+  if (last - first > kRowsOfCheck) guard.checkTime();
   const auto self = static_cast<std::uint32_t>(nodes_.size());
   nodes_.push_back({first, last, 0});
   appendBounds(first, last, order);
@@ -83,8 +87,8 @@ std::uint32_t BoxTree::packed(std::uint32_t first, std::uint32_t last, std::vect
   const std::uint32_t middle = first + (last - first) / 2;
   std::nth_element(order.begin() + first, order.begin() + middle, order.begin() + last,
                    [&](std::uint32_t a, std::uint32_t b) { return centre(a) < centre(b); });
-  packed(first, middle, order);
-  nodes_[self].right = packed(middle, last, order);
+  packed(first, middle, order, guard);
+  nodes_[self].right = packed(middle, last, order, guard);
   return self;
 }
 

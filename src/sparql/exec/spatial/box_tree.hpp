@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "sparql/exec/guard.hpp"
+
 namespace cluxel::sparql {
 
 /// A closed interval; by default the whole axis.
@@ -30,8 +32,9 @@ class BoxTree {
 
   /// Adds a box under a row number. No bound may be NaN.
   void add(const Box& box, std::uint32_t row);
-  /// Packs the tree: after the last add(), before the first search.
-  void pack();
+  /// Packs the tree: after the last add(), before the first search. Throws Error (BudgetExceeded) beyond the guard's
+  /// deadline, and when its memory does not fit.
+  void pack(const Guard& guard);
   void clear();
 
   /// Calls `take(row)` for every box that meets `query_box`.
@@ -100,7 +103,7 @@ class BoxTree {
   double distance(const std::vector<Interval>& bounds, std::size_t at, const Box& from) const;
   static void push(std::vector<Open>& open, const Open& entry);
   static Open pop(std::vector<Open>& open);
-  std::uint32_t packed(std::uint32_t first, std::uint32_t last, std::vector<std::uint32_t>& order);
+  std::uint32_t packed(std::uint32_t first, std::uint32_t last, std::vector<std::uint32_t>& order, const Guard& guard);
   void appendBounds(std::uint32_t first, std::uint32_t last, const std::vector<std::uint32_t>& order);
   std::size_t widest(std::size_t node) const;
 

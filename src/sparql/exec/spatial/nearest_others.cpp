@@ -23,6 +23,7 @@ void NearestOthers::make(Runtime& runtime) {
   is_made_ = true;
   Batch batch(runtime.slot_count);
   while (test_.others->next(batch)) {
+    runtime.guard.requireRoomFor(2 * (tree_.bytes() + others_.capacity() * sizeof(Other)));
     for (std::size_t row = 0; row < batch.rows; ++row) {
       const ValueId geometry = batch.at(test_.other, row);
       const KnownBox known = boxOf(runtime.terms.valueOf(geometry), runtime.functions);
@@ -34,7 +35,7 @@ void NearestOthers::make(Runtime& runtime) {
       others_.push_back({geometry, test_.distinguished == kNoSlot ? kUnbound : batch.at(test_.distinguished, row)});
     }
   }
-  tree_.pack();
+  tree_.pack(runtime.guard);
   charged_ = tree_.bytes() + others_.capacity() * sizeof(Other);
   runtime.guard.charge(charged_);
 }

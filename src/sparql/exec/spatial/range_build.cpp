@@ -44,6 +44,7 @@ void RangeBuild::reopen(Runtime& runtime, bool fresh) {
 void RangeBuild::make(Runtime& runtime) {
   if (is_made_) return;
   is_made_ = true;
+  constexpr std::uint32_t kRowsOfCheck = 4096;
   Batch batch(runtime.slot_count);
   while (source_->next(batch)) table_.append(batch, runtime.guard);
   for (std::uint32_t row = 0; row < table_.rows(); ++row) {
@@ -52,8 +53,9 @@ void RangeBuild::make(Runtime& runtime) {
     if (known == Known::Value) tree_.add(box, row);
     if (known == Known::Nothing || (known == Known::Error && !strict_)) loose_.push_back(row);
     runtime.guard.work(1);
+    if (row % kRowsOfCheck == 0) runtime.guard.requireRoomFor(2 * tree_.bytes());
   }
-  tree_.pack();
+  tree_.pack(runtime.guard);
   charged_ = tree_.bytes() + loose_.capacity() * sizeof(std::uint32_t);
   runtime.guard.charge(charged_);
 }

@@ -28,6 +28,8 @@ class RangeBuild {
   void narrow(const RangeTest& test, const KnownNumber& bound, const Box2& place, BoxTree::Box& query_box) const;
   /// The axis of a slot in the tree; that of x for a geometry. The number of dimensions if it has none.
   std::size_t axisOf(Slot slot, bool is_geometry) const;
+  /// True for the geometry by which the tree gives the nearest rows.
+  bool isNearestBy(Slot slot) const { return axisOf(slot, true) == 0; }
 
  private:
   struct Key {

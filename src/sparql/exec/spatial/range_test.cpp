@@ -35,9 +35,13 @@ KnownBox boxOf(const Value& value, FunctionContext& functions) {
   return {has_box ? Known::Value : Known::Nothing, box};
 }
 
-Box2 widened(const Box2& box, double by_m) {
+double farthestOf(const Box2& box, double by_m) {
   const double size = std::max({std::abs(box.min_x), std::abs(box.min_y), std::abs(box.max_x), std::abs(box.max_y)});
-  const double margin = std::max(by_m, 0.0) * (1 + 1e-9) + 1e-6 + size * 1e-9;
+  return std::max(by_m, 0.0) * (1 + 1e-9) + 1e-6 + size * 1e-9;
+}
+
+Box2 widened(const Box2& box, double by_m) {
+  const double margin = farthestOf(box, by_m);
   return {box.min_x - margin, box.min_y - margin, box.max_x + margin, box.max_y + margin};
 }
 

@@ -62,6 +62,8 @@ KnownBox boxOf(const Value& value, FunctionContext& functions);
 
 /// The box of all that is at most `by_m` metres away; grows by more than the rounding of the functions.
 Box2 widened(const Box2& box, double by_m);
+/// `by_m` with a margin for rounding: boxes beyond it are farther than `by_m` from `box`.
+double farthestOf(const Box2& box, double by_m);
 
 /// The relative rounding of xsd:float arithmetic, and of all other arithmetic, with a margin.
 inline constexpr double kFloatRounding = 1e-6, kRounding = 1e-12;
