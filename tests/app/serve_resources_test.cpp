@@ -68,6 +68,10 @@ TEST_F(ServeCommand, AnObjectIsExplainedAsByTheCommandExplain) {
   const std::string explain = "explain " + path("map.clx").string() + " object/" + id;
   EXPECT_EQ(shared().get("/objects/" + id + "/explanation").body, run(explain + " --json").out);
   EXPECT_EQ(shared().get("/objects/" + id + "/explanation", "Accept: text/plain\r\n").body, run(explain).out);
+  const std::string why_not = "/objects/" + id + "/explanation?whyNot=";
+  EXPECT_EQ(shared().get(why_not + "StreetLamp").body, run(explain + " --why-not StreetLamp --json").out);
+  EXPECT_EQ(shared().get(why_not + "Spaceship").status, 404);
+  EXPECT_EQ(shared().get("/objects/" + id + "/explanation?whynot=Tree").status, 400);
   EXPECT_EQ(shared().get("/objects/ffffffffffff").status, 404);
   EXPECT_EQ(shared().get("/objects/a").status, 400);
 }

@@ -52,8 +52,9 @@ ExitCode view(const ViewArguments& arguments, Session& session) {
   const DataHome home = session.dataHome();
   const std::string page = tasks::viewTemplate(home);
   noteUnfinished(arguments.map, map.isFinished(), arguments.allow_unfinished, session);
-  const tasks::ViewOptions options{arguments.map.stem().string(), arguments.max_points, arguments.max_quads,
-                                   !arguments.without_reasons};
+  const tasks::ViewOptions options{
+      arguments.map.stem().string(), arguments.max_points, arguments.max_quads, !arguments.without_reasons, false,
+      session.threadCount()};
   std::string bytes;
   const tasks::ViewReport report = writeViewPage(map, page, tasks::shippedQuestions(home), options,
                                                  [&bytes](std::string_view piece) { bytes.append(piece); });

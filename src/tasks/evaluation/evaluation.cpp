@@ -196,7 +196,7 @@ double ObjectScore::f1() const {
 std::vector<PrecisionRecall> MapEvaluation::precisionRecallOf(std::size_t class_number) const {
   const std::uint64_t truth = by_points.at(class_number).truth;
   std::map<double, std::pair<std::uint64_t, std::uint64_t>, std::greater<>> counts;  // answers and right ones
-  for (const JudgedObject& object : judged) {
+  for (const JudgedAnswer& object : judged) {
     if (object.class_number != class_number) continue;
     auto& [answers, right] = counts[object.confidence];
     ++answers;
@@ -245,7 +245,7 @@ MapEvaluation evaluateMap(const mapping::MapReader& map, const TruthSource& sour
   evaluation.by_points = visit.matching.scoreByPoints(params);
   evaluation.matched_whole = visit.matching.matchedWhole(params);
   evaluation.judged = visit.matching.judgedByPoints(params);
-  for (JudgedObject& judged : evaluation.judged) judged.confidence = map.objects()[judged.object].confidence;
+  for (JudgedAnswer& judged : evaluation.judged) judged.confidence = map.objects()[judged.object].confidence;
   evaluation.kinds = visit.matching.answersByKind(visit.kinds, params);
   const auto ground = std::find(classes.names.begin(), classes.names.end(), "Ground") - classes.names.begin();
   evaluation.calibration = visit.votes.calibrationOf(map.objects(), visit.class_of_object, classes.names.size(),

@@ -59,7 +59,7 @@ struct KindAnswers {
 };
 
 /// An object of the map that counts as right or wrong.
-struct JudgedObject {
+struct JudgedAnswer {
   std::uint32_t object = 0;      ///< number in the map
   std::size_t class_number = 0;  ///< in the truth's class names
   double confidence = 0;
@@ -86,7 +86,7 @@ struct MapEvaluation {
   /// True objects whose partner by points is one also when its points without truth count as outside; equal to those
   /// of `by_points` where every point has truth.
   std::uint64_t matched_whole = 0;
-  std::vector<JudgedObject> judged = {};
+  std::vector<JudgedAnswer> judged = {};
   Calibration calibration = {};  ///< of all objects but Ground
   CrownPairScore crown_pairs = {};
 

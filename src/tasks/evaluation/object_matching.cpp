@@ -124,9 +124,9 @@ std::vector<ObjectScore> ObjectMatching::scoreByPoints(const EvaluationParams& p
   return score(params.point_iou, pointIou);
 }
 
-std::vector<JudgedObject> ObjectMatching::judgedByPoints(const EvaluationParams& params) const {
+std::vector<JudgedAnswer> ObjectMatching::judgedByPoints(const EvaluationParams& params) const {
   const Partners partners = match(params.point_iou, pointIou);
-  std::vector<JudgedObject> judged;
+  std::vector<JudgedAnswer> judged;
   for (std::uint32_t object = 0; object < found_.size(); ++object)
     if (found_[object].class_number < names_.size() && countsAsAnswer(object))
       judged.push_back({object, found_[object].class_number, 0, partners.objects.contains(object)});

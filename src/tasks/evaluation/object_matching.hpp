@@ -39,7 +39,7 @@ class ObjectMatching {
   std::vector<ObjectScore> scoreByBox(const EvaluationParams& params) const;
   std::vector<ObjectScore> scoreByPoints(const EvaluationParams& params) const;
   /// The objects that count as right or wrong, without their confidence.
-  std::vector<JudgedObject> judgedByPoints(const EvaluationParams& params) const;
+  std::vector<JudgedAnswer> judgedByPoints(const EvaluationParams& params) const;
   /// What true objects are called, by the kind of each instance. Ambiguous instances do not count.
   std::vector<KindAnswers> answersByKind(const std::map<std::int32_t, std::string>& kinds,
                                          const EvaluationParams& params) const;

@@ -90,7 +90,7 @@ PlotFigure objectsFigure(const MapFigures& figures) {
 PlotFigure heightsFigure(const MapFigures& figures) {
   PlotFigure figure{"heights",
                     "Heights by class",
-                    "Heights of the boxes of objects in metres. Box: the middle half of the objects; light line in it: "
+                    "Heights of the boxes of objects in metres. Box: the middle half of the objects; line across it: "
                     "the median; line: from the least to the greatest.",
                     spreadChart("Heights by class", "m", figures.heights),
                     "Heights in metres",

@@ -31,7 +31,8 @@ text.strong { fill: var(--ground); }
 details { margin: .5rem 0 0; overflow-x: auto; } summary { color: var(--faint); cursor: pointer; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; margin: .5rem 0; }
 caption { color: var(--faint); text-align: left; } th, td { border-bottom: 1px solid var(--line);
-  padding: .15rem .7rem; text-align: right; } th:first-child { text-align: left; } th { font-weight: 600; }
+  padding: .15rem .7rem; text-align: right; white-space: nowrap; }
+th:first-child { text-align: left; } th { font-weight: 600; }
 )";
 
 std::string tableMarkup(const PlotTable& table, const std::string& name) {
