@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the page shows, in one place: panels change it and are told of changes.
-import type { MapObject } from './data/model';
+import type { Extent, MapObject } from './data/model';
 import type { ColourMode } from './scene/materials';
 import type { Rgb } from './scene/palette';
 
@@ -14,6 +14,8 @@ export interface Mark {
   /** x, y and, if it is known, z [m, map]. */
   place: number[];
   path?: number[][];
+  /** Boxes to draw, by their corners [m, map]. */
+  boxes?: Extent[];
 }
 
 export interface PageState {

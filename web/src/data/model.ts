@@ -43,7 +43,7 @@ export interface Task { name: string; title: string; reasons: boolean; file?: st
 export interface RuleFile { name: string; text: string; root: boolean }
 /** Scans taken without a long pause; times in seconds since 1970. */
 export interface Visit { begin: number; end: number; scans: number }
-interface Extent { min: number[]; max: number[] }
+export interface Extent { min: number[]; max: number[] }
 interface ChangedThing { object?: string; number?: number; class?: string; part?: boolean; box_m: Extent }
 export interface SiteChange extends ChangedThing { change: 'vanished' | 'appeared' | 'moved'; now?: ChangedThing; distance?: number }
 type Presence = 'present' | 'absent' | 'not observed';

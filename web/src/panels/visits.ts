@@ -71,7 +71,7 @@ export class VisitPanel {
     for (const states of unseen) tints.set(states.number, KINDS.unobserved.colour);
     for (const change of found.changes)
       for (const thing of [change, change.now])
-        if (thing?.number !== undefined) tints.set(thing.number, KINDS[change.change].colour);
+        if (thing?.number !== undefined && !thing.part) tints.set(thing.number, KINDS[change.change].colour);
     this.isShowing = true;
     this.store.set('lit', null);
     this.store.set('tints', tints);
@@ -117,7 +117,8 @@ export class VisitPanel {
 
 function markOf(change: SiteChange, number: number): Mark {
   const place = middleOf(change), path = change.now ? [place, middleOf(change.now)] : undefined;
-  return { text: String(number + 1), title: `${change.change} ${localName(change.object ?? OBJECT).slice(0, 8)}`, place, path };
+  return { text: String(number + 1), title: `${change.change} ${localName(change.object ?? OBJECT).slice(0, 8)}`, place, path,
+           boxes: [change.box_m, ...(change.now ? [change.now.box_m] : [])] };
 }
 
 function swatch(colour: Rgb): HTMLElement {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ways of marks as lines over the points, a little above the ground.
+// The ways of marks as lines over the points, a little above the ground; and their boxes.
 import * as THREE from 'three';
 import type { Store } from '../state';
+import { BoxLines } from './boxes';
 import type { GroundHeights } from './ground';
 import type { Viewer } from './viewer';
 
@@ -10,9 +11,11 @@ const ABOVE_GROUND_M = 0.3;
 
 export class MarkPaths {
   private readonly lines = new THREE.Group();
+  private readonly boxes: BoxLines;
 
   constructor(private readonly viewer: Viewer, private readonly store: Store, private readonly ground: GroundHeights) {
-    viewer.overlay.add(this.lines);
+    this.boxes = new BoxLines(viewer.origin, 0.9, true);
+    viewer.overlay.add(this.lines, this.boxes.lines);
     store.on(['marks'], () => this.rebuild());
   }
 
@@ -27,6 +30,10 @@ export class MarkPaths {
       line.frustumCulled = false;
       this.lines.add(line);
     });
+    this.boxes.set(this.store.state.marks.flatMap((mark) => mark.boxes ?? []).map(({ min, max }) => ({ color: COLOURS[0], box: {
+      x: 0.5 * (min[0] + max[0]), y: 0.5 * (min[1] + max[1]), z: 0.5 * (min[2] + max[2]),
+      length: max[0] - min[0], width: max[1] - min[1], height: max[2] - min[2], yaw: 0,
+    } })));
     this.viewer.refreshOverlay();
   }
 }
