@@ -191,6 +191,14 @@ TEST_F(ServeCommand, UpdatesNeedTheTokenAndReachTheOperatorsGraphOnly) {
   EXPECT_EQ(served.post("/sparql", type, "LOAD <file:///etc/passwd>", right).status, 400);
 }
 
+TEST_F(ServeCommand, LargeAnswersAreSentWithoutCompression) {
+  const Reply plain = shared().get("/graph?default"),
+              packed = shared().get("/graph?default", "Accept-Encoding: br, gzip\r\n");
+  ASSERT_GT(plain.body.size(), std::size_t{1} << 20U);
+  EXPECT_EQ(packed.header("Content-Encoding"), "");
+  EXPECT_EQ(packed.body, plain.body);
+}
+
 TEST_F(ServeCommand, TriesPostedRulesForThoseWhoHaveTheToken) {
   const std::string own = "apiVersion: cluxel.rules/v1\ninclude: [ outdoor.rules.yaml ]\n", type = "application/yaml";
   EXPECT_EQ(shared().post("/rules/trial", type, own).status, 403) << "started without a token";

@@ -31,7 +31,7 @@ export async function openPage(file, { hash = '', width = 1200, height = 800, da
   page.on('request', (request) => {
     if (!/^(blob|data):/.test(request.url()) && !request.url().startsWith(own)) faults.push(`request: ${request.url()}`);
   });
-  await page.goto(`${isServed ? file : `file://${file}`}${hash}`);
+  await page.goto(`${isServed ? file : `file://${file}`}${hash}`, { timeout: 120_000 });
   await page.waitForFunction(() => window.cluxelPage && document.querySelector('.reading')?.hidden, null, { timeout: 120_000 });
   await drawn(page);
   return { page, faults, close: () => context.close() };

@@ -12,7 +12,10 @@ const page_address = `${process.env.CLUXEL_SERVICE.trim()}page`, token = readFil
 const cluxel = (...args) => execFileSync(program, args, { encoding: 'utf8', maxBuffer: 1e9 });
 let open;
 
-before(startBrowser);
+before(async () => {
+  await (await fetch(page_address)).arrayBuffer();  // the service makes the page for the first request
+  await startBrowser();
+});
 after(stopBrowser);
 beforeEach(async () => { open = await openPage(page_address); });
 afterEach(async () => {
