@@ -56,7 +56,7 @@ export class RulePanel {
     const { service } = this;
     if (!service) return null;
     return el('div', { class: 'field' }, el('label', { for: 'token' }, 'Token of the service'),
-              el('input', { type: 'password', id: 'token', autocomplete: 'off', oninput: (event: Event) => {
+              el('input', { type: 'text', id: 'token', class: 'secret', autocomplete: 'off', spellcheck: 'false', oninput: (event: Event) => {
                 service.token = (event.target as HTMLInputElement).value;
                 if (this.isChanged) this.schedule();
               } }));

@@ -12,6 +12,8 @@ import { AnswerTable, RowObjects } from './table';
 import { TaskForm } from './task_form';
 
 const DECIMAL = 'http://www.w3.org/2001/XMLSchema#decimal';
+type Values = [string, string][];
+const LOCAL: Values = [['frame', 'local']];
 const IRI = /^https?:\/\/\S+$/;
 
 export class TaskPanel {
@@ -67,14 +69,13 @@ export class TaskPanel {
     this.clear();
     if (missing.length > 0) return this.fault(`${missing.map((one) => `${one.name}: ${one.help}`).join('\n')}`);
     if (!this.service) return this.showCommand(task);
-    const query = new URLSearchParams(this.form.values());
+    const values = this.form.values();
     this.run.disabled = true;
     this.element.setAttribute('aria-busy', 'true');
     this.status.textContent = 'Asking…';
     try {
-      const path = `tasks/${encodeURIComponent(task.name)}?${query}`;
-      const answer = await this.service.json<TaskAnswer>(`${path}${query.size > 0 ? '&' : ''}${task.reasons ? 'why=true' : ''}`);
-      if (this.task === task) this.show(task, answer, path);
+      const answer = await this.service.json<TaskAnswer>(requestOf(task, values, task.reasons ? [['why', 'true']] : []));
+      if (this.task === task) this.show(task, answer, values);
     } catch (fault) {
       this.fault(fault instanceof Error ? fault.message : String(fault));
     }
@@ -95,7 +96,7 @@ export class TaskPanel {
     this.reasons.replaceChildren(el('code', { class: 'statement' }, ['cluxel ask MAP', task.name, ...values].join(' ')));
   }
 
-  private show(task: Task, answer: TaskAnswer, path: string): void {
+  private show(task: Task, answer: TaskAnswer, values: Values): void {
     const rows = rowsOf(answer), finder = new RowObjects(this.model, new Map());
     const objectsOfRow = rows.rows.map((row) => finder.ofRow(row).slice(0, 1));
     const marks = answer.rows.map((row, i) => this.markOf(row.geometry, objectsOfRow[i], i));
@@ -105,7 +106,7 @@ export class TaskPanel {
     const question: Question = { file: task.name, title: task.title, text: '', parameters: [], columns: answer.columns };
     this.marksOfRow = marks;
     this.table.show(rows, question, objectsOfRow, marks.map(Boolean));
-    this.showActions(task, path);
+    this.showActions(task, values);
     this.showReasons(answer);
     const objects = [...new Set(objectsOfRow.flat())];
     this.store.set('marks', marks.filter((mark): mark is Mark => mark !== null && mark.text !== ''));
@@ -136,9 +137,9 @@ export class TaskPanel {
     }
   }
 
-  private showActions(task: Task, path: string): void {
+  private showActions(task: Task, values: Values): void {
     const get = (format: string, ending: string, type: string) => async () => {
-      const text = await this.service!.text(`${path}&format=${format}${format === 'geojson' ? '&frame=local' : ''}`);
+      const text = await this.service!.text(requestOf(task, values, [['format', format], ...(format === 'geojson' ? LOCAL : [])]));
       save(`${task.name}.${ending}`, type, text);
     };
     const button = (text: string, act: () => void) => el('button', { type: 'button', class: 'plain', onclick: act }, icon('down'), text);
@@ -154,6 +155,11 @@ export class TaskPanel {
     this.reasons.replaceChildren(el('details', {}, el('summary', {}, 'Why?'), ...told.map(({ row, why }) =>
       el('div', {}, el('b', {}, `Row ${row}`), el('ul', {}, ...why.map((line) => el('li', {}, line)))))));
   }
+}
+
+function requestOf(task: Task, values: Values, more: Values): string {
+  const query = new URLSearchParams([...values, ...more]).toString();
+  return `tasks/${encodeURIComponent(task.name)}${query && '?'}${query}`;
 }
 
 /** Cells of a task as terms: what the table shows is the same for questions and tasks. */
