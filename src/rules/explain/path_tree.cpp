@@ -13,16 +13,17 @@ class PathTreeReader {
  public:
   PathTreeReader(const Rule& rule, const Decision& decision) : rule_(rule), decision_(decision) {}
 
+  /// Empty when the steps are not those of a walk, as of a primitive that was gathered into an object.
   std::vector<WalkedPath> read() {
     std::vector<WalkedPath> walked;
     NodeIndex at = 0;
-    while (true) {
+    while (is_walk_) {
       const TreeNode& node = rule_.nodes.at(at);
       if (const auto* branch = std::get_if<BranchNode>(&node.what)) {
         walked.push_back({at, treeOf(branch->condition)});
         at = walked.back().tests.passed ? branch->yes : branch->no;
       } else if (const auto* find = std::get_if<FindNode>(&node.what)) {
-        PathNode tests = stepNode();
+        PathNode tests = stepNode("finds " + find->name + ":");
         tests.kind = PathNode::Kind::Find;
         walked.push_back({at, std::move(tests)});
         at = walked.back().tests.passed ? find->found : find->missing;
@@ -30,11 +31,16 @@ class PathTreeReader {
         return walked;
       }
     }
+    return {};
   }
 
  private:
-  PathNode stepNode() {
+  /// `test`: how the text of the step begins.
+  PathNode stepNode(const std::string& test) {
     PathNode node;
+    const std::vector<DecisionStep>& path = decision_.path;
+    is_walk_ = is_walk_ && at_ < path.size() && path[at_].test.starts_with(test);
+    if (!is_walk_) return node;
     node.step = at_;
     node.passed = decision_.path.at(at_++).passed;
     return node;
@@ -43,7 +49,8 @@ class PathTreeReader {
   PathNode treeOf(const Condition& condition) {
     using Kind = Condition::Kind;
     if (condition.kind == Kind::All || condition.kind == Kind::Any) return joinedNode(condition);
-    if (condition.kind != Kind::Not || condition.operands.front().operands.empty()) return stepNode();
+    if (condition.kind != Kind::Not || condition.operands.front().operands.empty())
+      return stepNode(describe(condition));
     PathNode node;
     node.kind = PathNode::Kind::Not;
     node.operands = {treeOf(condition.operands.front())};
@@ -72,6 +79,7 @@ class PathTreeReader {
   const Rule& rule_;
   const Decision& decision_;
   std::size_t at_ = 0;
+  bool is_walk_ = true;
 };
 
 std::string dotText(const std::string& text) {

@@ -25,8 +25,8 @@ struct WalkedPath {
   PathNode tests;
 };
 
-/// The nodes of the tree from its root to the leaf, read from the steps alone: it throws std::out_of_range when the
-/// steps are not those of the rule.
+/// The nodes of the tree from its root to the leaf, read from the steps alone. Empty when the steps are not those of a
+/// walk through the tree, as of a primitive that was gathered into an object.
 std::vector<WalkedPath> walkedPath(const Rule& rule, const Decision& decision);
 
 /// The rule's tree as a Graphviz graph. What the decision went through is drawn bold.
