@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes a picture of a page: page_pictures.mjs PAGE.html PICTURE.jpg [QUESTION.rq [ROW]] [dark] [home]. With a question,
-// its answer is lit; with a row, its object is selected; home: the whole map is shown then.
+// Takes a picture of a page: page_pictures.mjs PAGE.html PICTURE.jpg [QUESTION.rq [ROW]] [dark] [home] [visits]. With a
+// question, its answer is lit; with a row, its object is selected; home: the whole map is shown then; visits: what the last
+// visit found changed, from above.
 import { createRequire } from 'node:module';
 
 const { chromium } = createRequire(new URL('../web/package.json', import.meta.url))('playwright-core');
 const [file, picture, ...rest] = process.argv.slice(2);
-const words = new Set(['dark', 'home']), dark = rest.includes('dark');
+const words = new Set(['dark', 'home', 'visits']), dark = rest.includes('dark');
 const [question, row] = rest.filter((word) => !words.has(word));
 
 const browser = await chromium.launch({
@@ -23,6 +24,15 @@ if (question) {
 if (row) {
   await page.click(`.answer tbody tr:nth-child(${row})`);
   await page.waitForSelector('.why');
+}
+if (rest.includes('visits')) {
+  await page.click('#tab-visits');
+  await page.$eval('#visit', (slider) => {
+    slider.value = slider.max;
+    slider.dispatchEvent(new Event('input'));
+  });
+  await page.waitForSelector('.visit-kinds');
+  await page.keyboard.press('t');
 }
 if (rest.includes('home')) await page.keyboard.press('h');
 await page.waitForTimeout(300);

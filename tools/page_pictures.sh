@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Takes the README's pictures of the page into docs/images: of the generated campus, and of two real scans where
+# Takes the pictures of the page into docs/images: of the generated campus, of two visits to one, and of two real scans where
 # ../shared/data/small_gicp holds them. Needs Chromium and ./run web.
 source "$(dirname "$0")/common.sh"
 
@@ -13,6 +13,12 @@ mkdir -p "$work"
 [ -f "$work/campus.clx" ] || { "$cluxel" simulate "$work/scans" --seed 7 && "$cluxel" build "$work/scans" -o "$work/campus.clx"; }
 "$cluxel" view "$work/campus.clx" -o "$work/campus.html"
 node tools/page_pictures.mjs "$work/campus.html" docs/images/page_campus.jpg street_signs.rq 1 dark home
+[ -f "$work/visits.clx" ] || {
+  "$cluxel" simulate "$work/visits" --visits 2 --stops 3 --size 60 --points-per-stop 40000 &&
+    "$cluxel" build "$work/visits" -o "$work/visits.clx"
+}
+"$cluxel" view "$work/visits.clx" -o "$work/visits.html"
+node tools/page_pictures.mjs "$work/visits.html" docs/images/page_visits.jpg visits
 [ -f "$real/T_target_source.txt" ] || exit 0
 if [ ! -f "$work/real.clx" ]; then   # two scans, the first posed in the frame of the second
   mkdir -p "$work/real"

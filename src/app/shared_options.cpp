@@ -7,6 +7,9 @@
 #include <map>
 #include <string>
 
+#include "cluxel/error.hpp"
+#include "rdf/file/map_check.hpp"
+
 namespace cluxel::app {
 
 scan::ScanSetParams ScanOptions::params() const {
@@ -46,6 +49,17 @@ void addBudget(CLI::App& command, BudgetOptions& options) {
       ->check(above0());
   command.add_option("--max-memory", options.max_memory_mib, "MiB above which the command fails with exit code 6")
       ->check(above0());
+}
+
+void addHtmlFile(CLI::App& command, fs::path& file) {
+  command.add_option("--html", file, "write figures as one HTML file, too")->check(named());
+}
+
+void refuseToReplaceMap(const fs::path& output) {
+  std::error_code ignored;
+  if (fs::is_regular_file(output, ignored) && rdf::looksLikeMap(output))
+    throw Error(ErrorKind::StoreUnavailable,
+                output.string() + ": is a map, which the page would replace; name another file");
 }
 
 }  // namespace cluxel::app

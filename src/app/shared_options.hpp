@@ -31,4 +31,10 @@ struct BudgetOptions {
 /// Adds --deadline and --max-memory to a command. `options` must outlive it.
 void addBudget(CLI::App& command, BudgetOptions& options);
 
+/// Adds --html: a file for figures beside what the command prints.
+void addHtmlFile(CLI::App& command, fs::path& file);
+
+/// Throws Error (StoreUnavailable) when `output` is a map.
+void refuseToReplaceMap(const fs::path& output);
+
 }  // namespace cluxel::app

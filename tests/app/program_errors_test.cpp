@@ -300,5 +300,12 @@ TEST_F(Program, FaultsOfDamagedScansNameFileAndByte) {
   EXPECT_FALSE(fs::exists(fresh()));
 }
 
+TEST_F(Program, FiguresAreOfMapsAndReplaceNone) {
+  const std::string own = path("map.clx").string();
+  expectError(run("info " + campus() + " --html " + path("f.html").string()), 2, "--html needs a map");
+  expectError(run("info " + own + " --html " + own), 5, "name another file");
+  EXPECT_EQ(run("info " + own).code, 0) << "the map is as it was";
+}
+
 }  // namespace
 }  // namespace cluxel::app

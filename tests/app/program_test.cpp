@@ -192,5 +192,26 @@ TEST_F(Program, DoctorAndExportAgreeThatTheMapIsWhole) {
   EXPECT_EQ(run("export --canonical " + path("small.clx").string()).out, once.out);
 }
 
+TEST_F(Program, InfoAndEvaluateWriteFiguresBesideWhatTheyPrint) {
+  const std::string map = path("map.clx").string(), truth = path("campus/truth").string();
+  const std::string figures = path("figures.html").string();
+  const Outcome plain = run("info " + map), drawn = run("info " + map + " --html " + figures);
+  EXPECT_EQ(drawn.code, 0) << drawn.err;
+  EXPECT_EQ(drawn.out, plain.out);
+  const Json info = Json::parse(run("info " + map + " --json").out);
+  const std::string page = readFile(figures);
+  for (const auto& [name, heights] : info.at("heights_by_class").items()) {
+    EXPECT_EQ(heights.at("objects"), info.at("objects_by_class").at(name));
+    EXPECT_NE(page.find("<th scope=\"row\">" + name + "</th><td>" + heights.at("objects").dump() + "</td>"),
+              std::string::npos)
+        << name;
+  }
+  ASSERT_EQ(info.at("runs").size(), 1U);
+  EXPECT_EQ(info.at("runs")[0].at("operation"), "build");
+  EXPECT_EQ(info.at("runs")[0].at("scans"), info.at("clouds"));
+  EXPECT_EQ(run("evaluate " + map + " --truth " + truth + " --html " + figures).code, 0);
+  EXPECT_NE(readFile(figures).find("id=\"calibration\""), std::string::npos);
+}
+
 }  // namespace
 }  // namespace cluxel::app

@@ -68,6 +68,10 @@ TEST_F(ServeCommand, AnObjectIsExplainedAsByTheCommandExplain) {
   const std::string explain = "explain " + path("map.clx").string() + " object/" + id;
   EXPECT_EQ(shared().get("/objects/" + id + "/explanation").body, run(explain + " --json").out);
   EXPECT_EQ(shared().get("/objects/" + id + "/explanation", "Accept: text/plain\r\n").body, run(explain).out);
+  const std::string why_not = "/objects/" + id + "/explanation?whyNot=";
+  EXPECT_EQ(shared().get(why_not + "StreetLamp").body, run(explain + " --why-not StreetLamp --json").out);
+  EXPECT_EQ(shared().get(why_not + "Spaceship").status, 404);
+  EXPECT_EQ(shared().get("/objects/" + id + "/explanation?whynot=Tree").status, 400);
   EXPECT_EQ(shared().get("/objects/ffffffffffff").status, 404);
   EXPECT_EQ(shared().get("/objects/a").status, 400);
 }
@@ -185,6 +189,14 @@ TEST_F(ServeCommand, UpdatesNeedTheTokenAndReachTheOperatorsGraphOnly) {
           .status,
       400);
   EXPECT_EQ(served.post("/sparql", type, "LOAD <file:///etc/passwd>", right).status, 400);
+}
+
+TEST_F(ServeCommand, LargeAnswersAreSentWithoutCompression) {
+  const Reply plain = shared().get("/graph?default"),
+              packed = shared().get("/graph?default", "Accept-Encoding: br, gzip\r\n");
+  ASSERT_GT(plain.body.size(), std::size_t{1} << 20U);
+  EXPECT_EQ(packed.header("Content-Encoding"), "");
+  EXPECT_EQ(packed.body, plain.body);
 }
 
 TEST_F(ServeCommand, TriesPostedRulesForThoseWhoHaveTheToken) {

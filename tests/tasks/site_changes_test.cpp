@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
@@ -16,6 +17,9 @@
 #include "scan/formats/scan_writer.hpp"
 #include "simulation/laser/campus_writer.hpp"
 #include "sparql/query_engine.hpp"
+#include "tasks/ask/task_table.hpp"
+#include "tasks/view/view_page.hpp"
+#include "tasks/view/view_values.hpp"
 #include "tasks/ways/route.hpp"
 
 namespace cluxel::tasks {
@@ -122,6 +126,45 @@ TEST_F(SiteChangesTest, FindsWhatLeftArrivedAndMoved) {
         << event.kind << " at " << event.centre.transpose();
   }
   EXPECT_GE(count, 4);
+}
+
+TEST_F(SiteChangesTest, TheTaskAnswersWithTheChangesAndTheirPlaces) {
+  const std::vector<Task> tasks = tasksOf({});
+  const Task& task = taskNamed(tasks, "changes");
+  const TaskAnswer plain = task.run({*map, false, {}}, TaskValues(task.parameters, {}));
+  ASSERT_EQ(plain.rows.size(), found->changes.size());
+  for (std::size_t i = 0; i < plain.rows.size(); ++i) {
+    const SiteChange& change = found->changes[i];
+    const TaskRow& row = plain.rows[i];
+    ASSERT_EQ(row.cells.size(), task.columns.size());
+    EXPECT_EQ(std::get<std::string>(row.cells[0]), nameOf(change.kind));
+    EXPECT_EQ(std::holds_alternative<std::string>(row.cells[1]), change.thing.object.has_value());
+    EXPECT_EQ(row.shape.places.size(), change.now ? 2U : 1U);
+    const Eigen::Vector2d from = change.thing.box.center().head<2>();
+    EXPECT_EQ(row.shape.places.front(), from);
+    if (!change.now) continue;
+    EXPECT_NEAR((row.shape.places[1] - from).norm(), std::get<double>(row.cells[7]), 1.0);
+  }
+  const TaskAnswer all =
+      task.run({*map, true, {}},
+               TaskValues(task.parameters, {{"unobserved", "true"}, {"since", std::to_string(found->since_s)}}));
+  const auto unseen = std::count_if(found->states.begin(), found->states.end(), [](const ObjectStates& states) {
+    return states.after == perception::PresenceState::NotObserved;
+  });
+  EXPECT_GT(unseen, 0);
+  EXPECT_EQ(all.rows.size(), plain.rows.size() + static_cast<std::size_t>(unseen));
+  for (std::size_t i = plain.rows.size(); i < all.rows.size(); ++i) EXPECT_FALSE(all.rows[i].why.empty());
+}
+
+TEST_F(SiteChangesTest, ThePageHoldsTheChangesOfEachLaterVisit) {
+  std::string page;
+  writeViewPage(*map, "<html><!--map data--></html>", {}, {.name = "m", .reasons = false},
+                [&](std::string_view piece) { page.append(piece); });
+  EXPECT_NE(page.find("id=\"changes\""), std::string::npos);
+  const auto visits = visitsOf(map->clouds());
+  ASSERT_EQ(visits.size(), 2U);
+  EXPECT_EQ(nlohmann::json::parse(visitChangesJson(*map, 2)),
+            nlohmann::json::array({nlohmann::json::parse(changesJson(*map, *found))}));
 }
 
 TEST_F(SiteChangesTest, VisitsThatChangePlacesChangeTheSigns) {

@@ -89,6 +89,7 @@ TEST(QuestionsOfACampus, EveryTaskAnswersInEveryFormatWithTheSameRows) {
   std::size_t with_reasons = 0;
   for (const Task& task : allTasks()) {
     SCOPED_TRACE(task.name);
+    if (task.name == "changes") continue;  // needs two visits: SiteChangesTest
     TaskAnswer answer = task.run({map, true, {}}, TaskValues(task.parameters, requiredOf(task)));
     if (answer.columns.empty()) answer.columns = task.columns;
     ASSERT_EQ(answer.columns.size(), task.columns.size());

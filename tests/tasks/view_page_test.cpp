@@ -13,6 +13,7 @@
 #include "cluxel/error.hpp"
 #include "rdf/io/rdf_io.hpp"
 #include "rdf/vocabulary.hpp"
+#include "tasks/ask/task_table.hpp"
 #include "tasks/campus_map_fixture.hpp"
 #include "tasks/explanation.hpp"
 #include "tasks/view/page_blocks.hpp"
@@ -214,6 +215,30 @@ TEST(CampusMapPage, LetsNoTextOfTheMapBecomeMarkup) {
   EXPECT_THAT(page, Not(HasSubstr("alert")));
   EXPECT_EQ(ViewDocument::parse(blockOf(page, "map")).at("name"), "</script><script>alert(1)</script>");
   EXPECT_TRUE(page.starts_with("<html><head></head><script type=") && page.ends_with("<body>end</body></html>"));
+}
+
+TEST(CampusMapPage, MayAskTheServiceThatItComesFromAndOtherwiseNobody) {
+  const std::string policy = "default-src 'none'; script-src 'x'";
+  const auto page = [&](bool is_served) {
+    std::string text;
+    writeViewPage(CampusMap::shared().map(), policy + kEmptyPage, {},
+                  {.name = "m", .reasons = false, .is_served = is_served},
+                  [&text](std::string_view piece) { text.append(piece); });
+    return text;
+  };
+  EXPECT_TRUE(page(false).starts_with(policy));
+  EXPECT_TRUE(page(true).starts_with("default-src 'none'; connect-src 'self'; script-src 'x'"));
+  EXPECT_EQ(ViewDocument::parse(blockOf(page(true), "map")).at("served"), true);
+  EXPECT_EQ(ViewDocument::parse(blockOf(page(false), "map")).at("served"), false);
+}
+
+TEST(CampusMapPage, HoldsTheTasksAndTheRulesOfTheMap) {
+  const ViewDocument map = ViewDocument::parse(blockOf(wholePage(), "map"));
+  const auto questions = shippedQuestions(DataHome(test::sourceFolder()));
+  EXPECT_EQ(map.at("tasks"), ViewDocument::parse(taskListJson(tasksOf(questions))));
+  const auto inputs = CampusMap::shared().map().inputs();
+  ASSERT_EQ(map.at("rules").size(), inputs.rules.size());
+  for (std::size_t i = 0; i < inputs.rules.size(); ++i) EXPECT_EQ(map.at("rules")[i].at("text"), inputs.rules[i].text);
 }
 
 TEST(CampusMapPage, NeedsThePagesProgram) {

@@ -18,16 +18,20 @@ export async function stopBrowser() {
   await browser?.close();
 }
 
-/** Opens a file as `file://…#hash` and waits until all points are drawn. */
+/**
+ * Opens a file as `file://…#hash`, or a page of the service at the address `file`, and waits until all points are drawn.
+ * A file may ask nobody, a page its service.
+ */
 export async function openPage(file, { hash = '', width = 1200, height = 800, dark = false } = {}) {
-  const context = await browser.newContext({ viewport: { width, height }, colorScheme: dark ? 'dark' : 'light', offline: true });
+  const isServed = file.startsWith('http:'), own = isServed ? new URL(file).origin : 'file:';
+  const context = await browser.newContext({ viewport: { width, height }, colorScheme: dark ? 'dark' : 'light', offline: !isServed });
   const page = await context.newPage(), faults = [];
   page.on('console', (message) => faults.push(`console ${message.type()}: ${message.text()}`));
   page.on('pageerror', (error) => faults.push(`error: ${error.message}`));
   page.on('request', (request) => {
-    if (!/^(file|blob|data):/.test(request.url())) faults.push(`request: ${request.url()}`);
+    if (!/^(blob|data):/.test(request.url()) && !request.url().startsWith(own)) faults.push(`request: ${request.url()}`);
   });
-  await page.goto(`file://${file}${hash}`);
+  await page.goto(`${isServed ? file : `file://${file}`}${hash}`, { timeout: 120_000 });
   await page.waitForFunction(() => window.cluxelPage && document.querySelector('.reading')?.hidden, null, { timeout: 120_000 });
   await drawn(page);
   return { page, faults, close: () => context.close() };

@@ -29,4 +29,19 @@ grep -q wasRun markup.ttl || { printf 'page_test: the label of trees was not fou
 tree=$("$cluxel" query '<b>markup.clx' trees.rq --format csv | sed -n 2p | cut -d, -f1)
 "$cluxel" update '<b>markup.clx' -e "INSERT DATA { <$tree> <http://www.w3.org/2000/01/rdf-schema#label> \"\"\"<img src=x onerror=\"window.wasRun=1\">\"\"\" }" >/dev/null
 "$cluxel" view '<b>markup.clx' -o markup.html
-node --test "$source_dir/tests/web/page_test.mjs"
+
+# Two visits, between which things change.
+"$cluxel" simulate visits --visits 2 --stops 3 --size 60 --points-per-stop 40000 >/dev/null 2>&1
+"$cluxel" build visits -o visits.clx 2>/dev/null
+"$cluxel" view visits.clx -o visits.html
+
+# The campus with a service, which may change it.
+cp campus.clx served.clx
+printf '0123456789abcdef0123\n' >token
+"$cluxel" serve served.clx --port 0 --token-file token >url 2>access.log &
+service=$!
+trap 'kill "$service"' EXIT
+until [ -s url ] || ! kill -0 "$service"; do sleep 0.1; done
+CLUXEL_SERVICE=$(cat url)
+export CLUXEL_SERVICE
+for file in "$source_dir"/tests/web/*_test.mjs; do node --test "$file"; done

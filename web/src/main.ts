@@ -2,13 +2,20 @@
 // Puts the page together: reads the map, shows the view, then the points tile by tile.
 import { Address } from './address';
 import { MapModel, type MapObject } from './data/model';
+import { Service } from './data/service';
 import { counted, el } from './dom';
 import { AskPanel } from './panels/ask';
 import { ObjectCard } from './panels/card';
 import { Help } from './panels/help';
 import { Legend } from './panels/legend';
+import { RulePanel } from './panels/rules';
+import { Tabs } from './panels/tabs';
+import { TaskPanel } from './panels/tasks';
 import { Toolbar } from './panels/toolbar';
+import { VisitPanel } from './panels/visits';
 import { readTile } from './scene/cloud_tiles';
+import { GroundHeights } from './scene/ground';
+import { MarkPaths } from './scene/mark_paths';
 import { Measure } from './scene/measure';
 import { Picking } from './scene/picking';
 import { Pins } from './scene/pins';
@@ -24,7 +31,7 @@ const CLICK_REACH = 5;
 function initialStore(): Store {
   const isDark = matchMedia('(prefers-color-scheme: dark)').matches;
   return new Store({
-    selected: null, lit: null, colourMode: 'class', hiddenClasses: new Set(), boxes: false, sensorPath: false,
+    selected: null, lit: null, marks: [], tints: null, ruleLine: null, colourMode: 'class', hiddenClasses: new Set(), boxes: false, sensorPath: false,
     measuring: false, slice: null, scans: null, theme: isDark ? 'dark' : 'light',
   });
 }
@@ -78,13 +85,21 @@ async function open(app: HTMLElement): Promise<void> {
   const viewer = new Viewer(host, model), stage = new Stage(viewer, model, store);
   viewer.renderer.domElement.setAttribute('aria-label', 'Points of the map in 3D. Arrow keys move the view.');
   viewer.controls.listenToKeyEvents(viewer.renderer.domElement);
-  const address = new Address(viewer, store, model), goTo = (object: MapObject) => stage.goTo(object.box);
-  const ask = new AskPanel(model, engine, store, address, goTo), card = new ObjectCard(model, engine, store, new Portrait(viewer), goTo);
-  const help = new Help(model), toolbar = new Toolbar(stage, store, () => help.show(toolbar.commands), () => ask.focus());
-  side.append(ask.element);
+  const service = Service.of(model), address = new Address(viewer, store, model), goTo = (object: MapObject) => stage.goTo(object.box);
+  const ask = new AskPanel(model, engine, store, address, goTo), card = new ObjectCard(model, engine, service, store, new Portrait(viewer), goTo);
+  const ground = new GroundHeights(viewer, model);
+  const tasks = new TaskPanel(model, service, store, stage, ground), visits = new VisitPanel(model, store, stage);
+  const rules = new RulePanel(model, service, store, stage);
+  const tabs = new Tabs([{ id: 'questions', label: 'Questions', element: ask.element }, { id: 'tasks', label: 'Tasks', element: tasks.element },
+                         { id: 'visits', label: 'Visits', element: visits.element }, { id: 'rules', label: 'Rules', element: rules.element }]);
+  const help = new Help(model), toolbar = new Toolbar(stage, store, () => help.show(toolbar.commands), () => { tabs.show('questions'); ask.focus(); });
+  store.on(['ruleLine'], () => tabs.show('rules'));
+  store.on(['lit'], (state) => { if (state.lit) store.set('tints', null); });
+  side.append(tabs.element, ask.element, tasks.element, visits.element, rules.element);
   host.append(new Legend(model, store, viewer.palette).element, toolbar.element);
   app.append(card.element, help.element);
   new Pins(viewer, store);
+  new MarkPaths(viewer, store, ground);
   listenToClicks(viewer, new Picking(viewer, model), store, new Measure(viewer, store));
   const restored = address.restore();
   if (!restored.hasCamera) stage.home();

@@ -1,15 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the page shows, in one place: panels change it and are told of changes.
-import type { MapObject } from './data/model';
+import type { Extent, MapObject } from './data/model';
 import type { ColourMode } from './scene/materials';
+import type { Rgb } from './scene/palette';
 
 /** The objects of an answer, in the order of its rows. */
 export interface Lit { objects: MapObject[]; ranked: boolean }
+
+/** A place that is marked over the view, with a way that leads there. */
+export interface Mark {
+  text: string;
+  title: string;
+  /** x, y and, if it is known, z [m, map]. */
+  place: number[];
+  path?: number[][];
+  /** Boxes to draw, by their corners [m, map]. */
+  boxes?: Extent[];
+}
 
 export interface PageState {
   selected: MapObject | null;
   /** null: nothing is asked, all objects are plain. */
   lit: Lit | null;
+  marks: Mark[];
+  /** Colours of objects by number in place of the colour mode's; the others are dimmed. null: none. */
+  tints: Map<number, Rgb> | null;
+  /** A line of a rule file that a person wants to see. */
+  ruleLine: { file: string; line: number } | null;
   colourMode: ColourMode;
   /** IRIs; '' stands for points without an object. */
   hiddenClasses: Set<string>;

@@ -4,8 +4,11 @@
 
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
+#include "app/shared_options.hpp"
+#include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "tasks/evaluation/evaluation.hpp"
+#include "tasks/plots/evaluation_plots.hpp"
 
 namespace cluxel::app {
 
@@ -13,7 +16,7 @@ namespace {
 
 struct EvaluateOptions {
   std::vector<fs::path> maps;
-  fs::path truth;
+  fs::path truth, html;
   double min_oa = 0, min_macro_f1 = 0;
   std::vector<std::string> min_recall;  ///< CLASS=share
   bool allow_unfinished = false;
@@ -71,6 +74,13 @@ tasks::MapEvaluation evaluateAll(const EvaluateOptions& options, Session& sessio
   return *sum;
 }
 
+void writeEvaluationFigures(const tasks::MapEvaluation& evaluation, const EvaluateOptions& options) {
+  std::vector<std::string> names;
+  for (const fs::path& map : options.maps) names.push_back(map.filename().string());
+  refuseToReplaceMap(options.html);
+  writeFile(options.html, tasks::plotPage(tasks::evaluationPlots(evaluation, names)));
+}
+
 }  // namespace
 
 void addEvaluate(CLI::App& app, Session& session) {
@@ -86,11 +96,13 @@ void addEvaluate(CLI::App& app, Session& session) {
   command->add_option("--min-macro-f1", options->min_macro_f1, "exit 1 when the macro F1 of objects by point is below")
       ->check(share());
   command->add_option("--min-recall", options->min_recall, "CLASS=SHARE: exit 1 when the recall by point is below");
+  addHtmlFile(*command, options->html);
   addAllowUnfinished(*command, options->allow_unfinished);
   onRun(*command, session, [options, &session] {
     for (const std::string& bar : options->min_recall) barOf(bar);
     const tasks::MapEvaluation evaluation = evaluateAll(*options, session);
     const bool meets = meetsBars(evaluation, *options);  // before printing: an unknown class is a usage error
+    if (!options->html.empty()) writeEvaluationFigures(evaluation, *options);
     print(session.json ? toJson(evaluation) : toText(evaluation));
     return meets ? ExitCode::Done : ExitCode::NegativeFinding;
   });

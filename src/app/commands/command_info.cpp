@@ -5,10 +5,12 @@
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
 #include "app/shared_options.hpp"
+#include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/map_reader.hpp"
 #include "rdf/file/map_check.hpp"
 #include "scan/scan_summary.hpp"
+#include "tasks/plots/map_plots.hpp"
 
 namespace cluxel::app {
 
@@ -17,6 +19,7 @@ namespace {
 struct InfoOptions {
   std::vector<fs::path> inputs;
   ScanOptions scans;
+  fs::path html;
   bool clouds = false;
 };
 
@@ -68,7 +71,13 @@ void printScans(const scan::ScanSetSummary& summary) {
   std::printf("\n");
 }
 
+void refuseFigures(const InfoOptions& options, const std::string& what) {
+  if (!options.html.empty())
+    throw Error(ErrorKind::InvalidArgument, what + ", which has no figures; --html needs a map with objects");
+}
+
 ExitCode infoOfScans(const InfoOptions& options, Session& session) {
+  refuseFigures(options, options.inputs.front().string() + ": is not a map");
   const scan::ScanSet scans = scan::ScanSet::open(options.inputs, options.scans.params(), session.console);
   const scan::ScanSetSummary summary = summarize(scans, session.threadCount());
   for (const std::string& note : summary.notes) session.console.note(note);
@@ -119,6 +128,33 @@ Json cloudsJson(const std::vector<mapping::Cloud>& clouds) {
   return json;
 }
 
+Json heightsJson(const std::vector<tasks::PlotSpread>& heights) {
+  Json json = Json::object();
+  for (const tasks::PlotSpread& spread : heights)
+    json[spread.label] = {{"objects", spread.count}, {"least", spread.least},          {"lower_quartile", spread.lower},
+                          {"median", spread.middle}, {"upper_quartile", spread.upper}, {"greatest", spread.most}};
+  return json;
+}
+
+Json runsJson(const std::vector<tasks::MapRun>& runs) {
+  Json json = Json::array();
+  for (const tasks::MapRun& run : runs) {
+    Json stages = Json::array();
+    for (const auto& [name, seconds] : run.stages) stages.push_back({{"stage", name}, {"seconds", seconds}});
+    json.push_back({{"operation", run.operation},
+                    {"started", run.started},
+                    {"seconds", run.seconds},
+                    {"scans", run.scans},
+                    {"stages", std::move(stages)}});
+  }
+  return json;
+}
+
+void writeMapFigures(const InfoOptions& options, const fs::path& map, const tasks::MapFigures& figures) {
+  refuseToReplaceMap(options.html);
+  writeFile(options.html, tasks::plotPage(tasks::mapPlots(figures, map.stem().string())));
+}
+
 ExitCode infoOfStore(const fs::path& file, const rdf::QuadReader& quads, const Session& session) {
   Json graphs = Json::object();
   for (const rdf::TermId graph : quads.graphs())
@@ -137,10 +173,16 @@ ExitCode infoOfStore(const fs::path& file, const rdf::QuadReader& quads, const S
 }
 
 ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Session& session) {
-  if (const auto store = storeWithoutScans(file)) return infoOfStore(file, *store, session);
+  if (const auto store = storeWithoutScans(file)) {
+    refuseFigures(options, file.string() + ": is a store without scans");
+    return infoOfStore(file, *store, session);
+  }
   const mapping::MapReader map(file);
   const mapping::MapSummary summary = map.summary();
   const mapping::MapInputs inputs = map.inputs();
+  std::optional<tasks::MapFigures> figures;
+  if (session.json || !options.html.empty()) figures = tasks::mapFigures(map);
+  if (!options.html.empty()) writeMapFigures(options, file, *figures);
   if (!session.json) {
     std::printf("%s: %s map, %zu clouds, %llu points, %zu objects, %llu quads\n", file.c_str(),
                 summary.is_finished ? "finished" : "unfinished", summary.clouds,
@@ -163,6 +205,8 @@ ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Sessi
   if (options.clouds) json["cloud_list"] = cloudsJson(map.clouds());
   if (!inputs.crs.empty()) json["crs"] = inputs.crs;
   json["input_files"] = inputFilesJson(inputs);
+  json["heights_by_class"] = heightsJson(figures->heights);
+  json["runs"] = runsJson(figures->runs);
   printJson(json);
   return ExitCode::Done;
 }
@@ -175,6 +219,7 @@ void addInfo(CLI::App& app, Session& session) {
   command->add_option("input", options->inputs, "a map, or files, folders and manifests of scans")->required();
   addScanOptions(*command, options->scans);
   command->add_flag("--clouds", options->clouds, "list the clouds of a map, with their ids");
+  addHtmlFile(*command, options->html);
   onRun(*command, session, [options, &session] {
     const auto map = std::find_if(options->inputs.begin(), options->inputs.end(), isMap);
     if (map == options->inputs.end()) return infoOfScans(*options, session);

@@ -94,6 +94,7 @@ std::function<std::string(const mapping::MapReader&, const std::string&)> pageMa
   return [program, questions = tasks::shippedQuestions(home)](const mapping::MapReader& map, const std::string& name) {
     tasks::ViewOptions options;
     options.name = name;
+    options.is_served = true;
     std::string page;
     writeViewPage(map, program, questions, options, [&page](std::string_view piece) { page.append(piece); });
     return page;

@@ -5,9 +5,8 @@
 
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
+#include "app/shared_options.hpp"
 #include "base/file_bytes.hpp"
-#include "cluxel/error.hpp"
-#include "rdf/file/map_check.hpp"
 #include "tasks/view/view_page.hpp"
 
 namespace cluxel::app {
@@ -20,13 +19,6 @@ struct ViewArguments {
   std::uint64_t max_quads = tasks::ViewOptions{}.max_quads;
   bool without_reasons = false, allow_unfinished = false;
 };
-
-void refuseToReplaceMapByPage(const fs::path& output) {
-  std::error_code ignored;
-  if (fs::is_regular_file(output, ignored) && rdf::looksLikeMap(output))
-    throw Error(ErrorKind::StoreUnavailable,
-                output.string() + ": is a map, which the page would replace; name another file");
-}
 
 double megabytes(std::uint64_t bytes) {
   return std::round(static_cast<double>(bytes) / 1e5) / 10;
@@ -55,13 +47,14 @@ std::string reportText(const fs::path& output, const tasks::ViewReport& report) 
 }
 
 ExitCode view(const ViewArguments& arguments, Session& session) {
-  refuseToReplaceMapByPage(arguments.output);
+  refuseToReplaceMap(arguments.output);
   const mapping::MapReader map(arguments.map);
   const DataHome home = session.dataHome();
   const std::string page = tasks::viewTemplate(home);
   noteUnfinished(arguments.map, map.isFinished(), arguments.allow_unfinished, session);
-  const tasks::ViewOptions options{arguments.map.stem().string(), arguments.max_points, arguments.max_quads,
-                                   !arguments.without_reasons};
+  const tasks::ViewOptions options{
+      arguments.map.stem().string(), arguments.max_points, arguments.max_quads, !arguments.without_reasons, false,
+      session.threadCount()};
   std::string bytes;
   const tasks::ViewReport report = writeViewPage(map, page, tasks::shippedQuestions(home), options,
                                                  [&bytes](std::string_view piece) { bytes.append(piece); });

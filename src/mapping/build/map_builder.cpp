@@ -9,6 +9,7 @@
 #include "cluxel/error.hpp"
 #include "mapping/build/build_poses.hpp"
 #include "mapping/build/scan_store.hpp"
+#include "mapping/build/stage_clock.hpp"
 #include "mapping/build/work_file.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/facts/semantic_layer.hpp"
@@ -79,6 +80,7 @@ class MapBuild {
   /// Adds scans from `first` on until the batch is full, and commits; returns the first scan of the next batch.
   std::size_t addBatch(std::size_t first) {
     const double started_s = nowSeconds();
+    StageClock clock(sink_);
     rdf::WriteTransaction transaction = work_.environment().write();
     requireOwn(transaction);
     TileSet touched;
@@ -92,22 +94,24 @@ class MapBuild {
       report_.scans_already_there += tiles.empty() ? 1 : 0;
       batch_points += tiles.empty() ? 0 : scan.points.size();
       touched = unionOf(std::move(touched), tiles);
-      sink_.progress("scans", next + 1, scans_.size());
+      clock.progress("scans", next + 1, scans_.size());
     }
-    if (!touched.empty() || next == scans_.size()) commitBatch(transaction, touched, next == scans_.size(), started_s);
+    if (!touched.empty() || next == scans_.size())
+      commitBatch(transaction, touched, next == scans_.size(), started_s, clock);
     return next;
   }
 
-  void commitBatch(rdf::WriteTransaction& transaction, const TileSet& touched, bool is_last, double started_s) {
-    stages_.update(transaction, touched, params_.threads, sink_);
+  void commitBatch(rdf::WriteTransaction& transaction, const TileSet& touched, bool is_last, double started_s,
+                   StageClock& clock) {
+    stages_.update(transaction, touched, params_.threads, clock);
     stages_.loadAll(transaction);
     if (is_last) work_.takeOverStatements(transaction, params_.drop_statements, sink_);
-    const SemanticLayer layer = writeSemanticLayer(transaction, parsed_, stages_, params_.threads, sink_);
+    const SemanticLayer layer = writeSemanticLayer(transaction, parsed_, stages_, params_.threads, clock);
     const std::vector<Cloud> clouds = storedClouds(transaction);
     storeInputs(transaction, parsed_.inputs);
     state_ = MapState{is_last, parsed_.inputs.hash().hex()};
     storeState(transaction, *state_);
-    addActivity(transaction, {"build", started_s, nowSeconds()}, clouds, parsed_.inputs);
+    addActivity(transaction, {"build", started_s, nowSeconds(), clock.seconds()}, clouds, parsed_.inputs);
     transaction.commit();
     report_.scans = clouds.size();
     report_.points = 0;

@@ -7,6 +7,7 @@
 
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
+#include "mapping/build/stage_clock.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/object_store.hpp"
@@ -82,19 +83,20 @@ rdf::WriteTransaction MapEditor::begin() {
 void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& operation, const TileSet& touched,
                        const std::vector<Cloud>& scans) {
   const double started_s = secondsNow();
+  StageClock clock(sink_);
   if (!stages_) stages_.emplace(parsed_.model, parsed_.inputs.params);
   touched_.insert(touched.begin(), touched.end());
-  const TileSet changed = all_tiles_ ? stages_->updateAll(transaction, params_.threads, sink_)
-                                     : stages_->update(transaction, touched, params_.threads, sink_);
+  const TileSet changed = all_tiles_ ? stages_->updateAll(transaction, params_.threads, clock)
+                                     : stages_->update(transaction, touched, params_.threads, clock);
   changed_.insert(changed.begin(), changed.end());
   all_tiles_ = false;
   stages_->loadAll(transaction);
-  const SemanticLayer layer = writeSemanticLayer(transaction, parsed_, *stages_, params_.threads, sink_);
+  const SemanticLayer layer = writeSemanticLayer(transaction, parsed_, *stages_, params_.threads, clock);
   inputs_hash_ = parsed_.inputs.hash().hex();
   storeInputs(transaction, parsed_.inputs);
   storeState(transaction, MapState{true, inputs_hash_});
   report(transaction, layer);
-  const Activity activity{operation, started_s, secondsNow()};
+  const Activity activity{operation, started_s, secondsNow(), clock.seconds()};
   const ObjectChanges changes = compareObjects(*present_, report_.after);
   addLineage(transaction, addActivity(transaction, activity, scans, parsed_.inputs), changes);
   present_ = report_.after;

@@ -2,6 +2,8 @@
 // Build runs as PROV activities.
 #include "mapping/facts/map_history.hpp"
 
+#include <array>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "mapping/facts/map_facts.hpp"
@@ -16,6 +18,13 @@ namespace {
 Term nameText(const std::string& name) {
   using Json = nlohmann::json;
   return Term::literal(Json::parse(Json(name).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>());
+}
+
+/// To a millisecond.
+Term secondsLiteral(double seconds) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3f", seconds);
+  return Term::literal(text.data(), rdf::vocabulary::xsd("decimal"));
 }
 
 std::string prov(std::string_view local) {
@@ -43,6 +52,12 @@ std::string addActivity(rdf::WriteTransaction& transaction, const Activity& run,
   add(activity, rdf::vocabulary::clx("operation"), Term::literal(run.operation));
   add(activity, rdf::vocabulary::clx("inputsHash"), Term::literal(inputs.hash().hex()));
   add(activity, rdf::vocabulary::clx("modelFile"), nameText(inputs.model.name));
+  for (std::size_t i = 0; i < run.stage_s.size(); ++i) {
+    const Term stage = Term::iri(activity.text + "/stage/" + std::to_string(i));
+    add(activity, rdf::vocabulary::clx("hasStage"), stage);
+    add(stage, rdf::vocabulary::rdfs("label"), Term::literal(run.stage_s[i].first));
+    add(stage, rdf::vocabulary::clx("seconds"), secondsLiteral(run.stage_s[i].second));
+  }
   for (const Cloud& cloud : clouds) {
     const Term subject = Term::iri(rdf::iriOfCloud(cloud.id));
     add(activity, prov("used"), subject);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mapping/change/object_changes.hpp"
@@ -16,6 +17,7 @@ namespace cluxel::mapping {
 struct Activity {
   std::string operation;  ///< "build", "extend"
   double started_s = 0, ended_s = 0;
+  std::vector<std::pair<std::string, double>> stage_s = {};  ///< seconds by stage
 };
 
 /// Adds an activity that used `clouds` and `inputs`. Returns its IRI.

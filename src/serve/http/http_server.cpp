@@ -6,7 +6,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
+#include <memory>
 #include <mutex>
 
 #include "base/ascii.hpp"
@@ -29,9 +31,20 @@ HttpRequest requestOf(const httplib::Request& parsed, std::string body) {
   return request;
 }
 
+/// cpp-httplib compresses texts as well as it can, which takes seconds for each MiB. Larger bodies are sent as they
+/// are.
+constexpr std::size_t kMostCompressed = std::size_t{1} << 20U;
+
 void fill(httplib::Response& out, HttpResponse response) {
   out.status = response.status;
   for (const auto& [name, value] : response.headers) out.set_header(name, value);
+  if (response.body.size() > kMostCompressed) {
+    const auto body = std::make_shared<const std::string>(std::move(response.body));
+    return out.set_content_provider(body->size(), response.content_type,
+                                    [body](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+                                      return sink.write(body->data() + offset, length);
+                                    });
+  }
   if (!response.content_type.empty()) out.set_header("Content-Type", response.content_type);
   out.body = std::move(response.body);
 }
@@ -131,7 +144,8 @@ struct HttpServer::Impl : httplib::Server {
     std::string client = in.remote_addr;
     int ignored = 0;
     if (client.empty()) current_stream->get_remote_ip_and_port(client, ignored);
-    log({client, in.method, in.target, out.status, out.body.size(), current_stream->secondsSinceBegin()});
+    log({client, in.method, in.target, out.status, std::max(out.body.size(), out.content_length_),
+         current_stream->secondsSinceBegin()});
   }
 
   bool process_and_close_socket(socket_t sock) override {

@@ -131,9 +131,13 @@ HttpResponse answerObject(const ServedMap& map, const ResourceRequest& asked, co
 HttpResponse answerExplanation(ServedMap& map, const ResourceRequest& asked, const std::string& id) {
   const auto chosen = negotiate(asked.request.header("accept"), {"application/json", "text/plain"});
   if (!chosen) throw Refusal(406, "an explanation can be had as application/json or text/plain");
+  requireKnown(asked.target.parameters, {"whyNot"});
+  const std::optional<std::string> why_not = valueOf(asked.target.parameters, "whyNot");
   tasks::ExplanationTexts texts;
-  map.withReader(
-      [&](const mapping::MapReader& reader) { texts = tasks::explainThing(reader, currentObject(reader, id).iri); });
+  map.withReader([&](const mapping::MapReader& reader) {
+    const std::string iri = currentObject(reader, id).iri;
+    texts = why_not ? tasks::explainWhyNot(reader, iri, *why_not) : tasks::explainThing(reader, iri);
+  });
   HttpResponse response{200, "application/json", texts.json + "\n", {}};
   if (*chosen == 1) response = textResponse(200, texts.text);
   response.headers.emplace_back("Vary", "Accept");

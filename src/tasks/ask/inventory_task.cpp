@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Inventory, register and next views as rows.
+// Inventory, register, next views and changes between visits as rows.
 #include "tasks/ask/inventory_task.hpp"
 
 #include <algorithm>
@@ -7,9 +7,13 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <optional>
 
+#include "mapping/facts/map_facts.hpp"
+#include "mapping/facts/object_geometry.hpp"
 #include "rdf/map_iris.hpp"
 #include "tasks/ask/task_table.hpp"
+#include "tasks/changes/site_changes.hpp"
 #include "tasks/search/next_view.hpp"
 #include "tasks/ways/way_report.hpp"
 
@@ -92,6 +96,94 @@ TaskAnswer runNextView(const TaskContext& context, const TaskValues& values) {
                 found.doubtful);
   answer.notes.emplace_back(note.data());
   return answer;
+}
+
+TaskCell objectCell(const mapping::MapReader& map, const ChangedThing& thing) {
+  return thing.object ? TaskCell(rdf::iriOfObject(map.objects()[*thing.object].id)) : TaskCell();
+}
+
+TaskCell classCell(const mapping::MapReader& map, const ChangedThing& thing) {
+  return thing.object ? TaskCell(mapping::localName(map.objects()[*thing.object].class_iri)) : TaskCell();
+}
+
+TaskRow changeRow(const mapping::MapReader& map, const SiteChange& change) {
+  const Eigen::Vector2d at = change.thing.box.center().head<2>();
+  const TaskCell part = change.thing.object ? TaskCell(change.thing.is_part ? "part" : "whole") : TaskCell();
+  TaskRow row{{std::string(nameOf(change.kind)), objectCell(map, change.thing), classCell(map, change.thing), part,
+               at.x(), at.y(), TaskCell(), TaskCell()},
+              {TaskShape::Kind::Point, {at}}};
+  if (change.now) {
+    row.cells[6] = objectCell(map, *change.now), row.cells[7] = change.distance_m;
+    row.shape = {TaskShape::Kind::Line, {at, change.now->box.center().head<2>()}};
+  }
+  return row;
+}
+
+/// How sure it is that the object was there before and is there now.
+std::string presenceLine(const ObjectStates& states) {
+  std::array<char, 128> line{};
+  std::snprintf(line.data(), line.size(), "before: %s (log-odds %.1f), since: %s (%.1f)",
+                std::string(nameOf(states.before)).c_str(), states.log_odds_before,
+                std::string(nameOf(states.after)).c_str(), states.log_odds_after);
+  return line.data();
+}
+
+TaskRow unobservedRow(const mapping::MapReader& map, const ObjectStates& states) {
+  const rules::SemanticObject& object = map.objects()[states.object];
+  const Eigen::Vector2d at = mapping::geometryOf(map.scene().cluxels, mapping::cluxelsOf(object)).box.center.head<2>();
+  return {{std::string("not observed"), rdf::iriOfObject(object.id), mapping::localName(object.class_iri),
+           std::string("whole"), at.x(), at.y(), TaskCell(), TaskCell()},
+          {TaskShape::Kind::Point, {at}}};
+}
+
+TaskAnswer runChanges(const TaskContext& context, const TaskValues& values) {
+  const mapping::MapReader& map = context.map;
+  std::optional<double> since_s;
+  if (values.has("since")) since_s = timeNamed(values.text("since"));
+  const SiteChanges found = changesIn(map, since_s, 1);
+  std::map<std::uint32_t, const ObjectStates*> states_of;
+  for (const ObjectStates& states : found.states) states_of[states.object] = &states;
+  TaskAnswer answer;
+  for (const SiteChange& change : found.changes) {
+    answer.rows.push_back(changeRow(map, change));
+    const auto states = change.thing.object ? states_of.find(*change.thing.object) : states_of.end();
+    if (context.with_reasons && states != states_of.end())
+      answer.rows.back().why.push_back(presenceLine(*states->second));
+  }
+  std::size_t unseen = 0, there = 0;
+  for (const ObjectStates& states : found.states) {
+    there += states.after == perception::PresenceState::Present ? 1 : 0;
+    if (states.after != perception::PresenceState::NotObserved) continue;
+    ++unseen;
+    if (!values.flag("unobserved")) continue;
+    answer.rows.push_back(unobservedRow(map, states));
+    if (context.with_reasons) answer.rows.back().why.push_back(presenceLine(states));
+  }
+  answer.notes.push_back("since " + mapping::dateTimeText(found.since_s) + ": " + std::to_string(found.changes.size()) +
+                         " changes; " + std::to_string(there) + " objects are there, " + std::to_string(unseen) +
+                         " were not observed again");
+  return answer;
+}
+
+Task changesTask() {
+  Task task;
+  task.name = "changes";
+  task.title = "What vanished, appeared or moved between visits?";
+  task.parameters = {{"since", "", "",
+                      "scans from this time on are later: 2023-11-15T22:13:20Z, or seconds since 1970; "
+                      "without it the begin of the last visit"},
+                     {"unobserved", "", "false", "true: with the objects that were not observed again", Kind::Flag}};
+  task.columns = {{"change", "text", "vanished, appeared, moved, not observed"},
+                  {"object", "IRI", "that most of it belongs to; absent when most belongs to none"},
+                  {"class", "text", "of the object"},
+                  {"extent", "text", "part or whole of the object"},
+                  {"x", "m", "position in the map frame; of what moved, before"},
+                  {"y", "m", "position in the map frame"},
+                  {"now", "IRI", "of what moved: the object that is there now"},
+                  {"distance", "m", "of what moved"}};
+  task.has_reasons = true;
+  task.run = runChanges;
+  return task;
 }
 
 }  // namespace
@@ -179,7 +271,7 @@ std::vector<Task> surveyTasks() {
                   {"soFar", "1", "share of what is to be seen that is in sight from here or before"}};
   view.has_reasons = true;
   view.run = runNextView;
-  return {inventory, view};
+  return {inventory, view, changesTask()};
 }
 
 }  // namespace cluxel::tasks

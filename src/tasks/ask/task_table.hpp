@@ -68,7 +68,7 @@ std::string taskListJson(std::span<const Task> tasks);
 
 /// The parts of the table.
 std::vector<Task> wayTasks();
-std::vector<Task> surveyTasks();  ///< inventory and next-view
+std::vector<Task> surveyTasks();  ///< inventory, next-view, changes
 Task questionTask(const Question& question);
 
 }  // namespace cluxel::tasks

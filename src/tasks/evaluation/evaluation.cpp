@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <numeric>
 
@@ -192,12 +193,32 @@ double ObjectScore::f1() const {
   return harmonic(precision(), recall());
 }
 
+std::vector<PrecisionRecall> MapEvaluation::precisionRecallOf(std::size_t class_number) const {
+  const std::uint64_t truth = by_points.at(class_number).truth;
+  std::map<double, std::pair<std::uint64_t, std::uint64_t>, std::greater<>> counts;  // answers and right ones
+  for (const JudgedAnswer& object : judged) {
+    if (object.class_number != class_number) continue;
+    auto& [answers, right] = counts[object.confidence];
+    ++answers;
+    right += object.is_right ? 1 : 0;
+  }
+  std::vector<PrecisionRecall> curve;
+  if (truth == 0) return curve;
+  std::uint64_t answers = 0, right = 0;
+  for (const auto& [confidence, at] : counts) {
+    answers += at.first, right += at.second;
+    curve.push_back({confidence, answers, right, ratio(right, answers), ratio(right, truth)});
+  }
+  return curve;
+}
+
 void MapEvaluation::add(const MapEvaluation& other) {
   primitives.add(other.primitives);
   objects.add(other.objects);
   has_instances |= other.has_instances;
   covers_all &= other.covers_all;
   matched_whole += other.matched_whole;
+  judged.insert(judged.end(), other.judged.begin(), other.judged.end());
   calibration.add(other.calibration);
   crown_pairs.pairs += other.crown_pairs.pairs;
   crown_pairs.parted += other.crown_pairs.parted;
@@ -223,6 +244,8 @@ MapEvaluation evaluateMap(const mapping::MapReader& map, const TruthSource& sour
   evaluation.by_box = visit.matching.scoreByBox(params);
   evaluation.by_points = visit.matching.scoreByPoints(params);
   evaluation.matched_whole = visit.matching.matchedWhole(params);
+  evaluation.judged = visit.matching.judgedByPoints(params);
+  for (JudgedAnswer& judged : evaluation.judged) judged.confidence = map.objects()[judged.object].confidence;
   evaluation.kinds = visit.matching.answersByKind(visit.kinds, params);
   const auto ground = std::find(classes.names.begin(), classes.names.end(), "Ground") - classes.names.begin();
   evaluation.calibration = visit.votes.calibrationOf(map.objects(), visit.class_of_object, classes.names.size(),

@@ -58,6 +58,21 @@ struct KindAnswers {
   std::vector<std::uint64_t> boxed;   ///< class of the object with an IoU of boxes of 0.8 or more; none: there is none
 };
 
+/// An object of the map that counts as right or wrong.
+struct JudgedAnswer {
+  std::uint32_t object = 0;      ///< number in the map
+  std::size_t class_number = 0;  ///< in the truth's class names
+  double confidence = 0;
+  bool is_right = false;  ///< it has a partner by points
+};
+
+/// Precision and recall of the objects of one class whose confidence is at least `confidence`.
+struct PrecisionRecall {
+  double confidence = 0;
+  std::uint64_t answers = 0, right = 0;
+  double precision = 0, recall = 0;
+};
+
 struct MapEvaluation {
   ConfusionMatrix primitives, objects;  ///< by point
   bool has_instances = false;
@@ -71,9 +86,12 @@ struct MapEvaluation {
   /// True objects whose partner by points is one also when its points without truth count as outside; equal to those
   /// of `by_points` where every point has truth.
   std::uint64_t matched_whole = 0;
+  std::vector<JudgedAnswer> judged = {};
   Calibration calibration = {};  ///< of all objects but Ground
   CrownPairScore crown_pairs = {};
 
+  /// For each confidence of an object of class `by_points[class_number]`, descending. Empty without true objects.
+  std::vector<PrecisionRecall> precisionRecallOf(std::size_t class_number) const;
   /// Adds another map's evaluation against the same truth classes.
   void add(const MapEvaluation& other);
 };

@@ -60,6 +60,21 @@ EvaluationJson objectJson(const std::vector<ObjectScore>& scores) {
   return json;
 }
 
+EvaluationJson curvesJson(const MapEvaluation& evaluation) {
+  EvaluationJson json = EvaluationJson::array();
+  for (std::size_t i = 0; i < evaluation.by_points.size(); ++i) {
+    EvaluationJson points = EvaluationJson::array();
+    for (const PrecisionRecall& point : evaluation.precisionRecallOf(i))
+      points.push_back({{"confidence", point.confidence},
+                        {"answers", point.answers},
+                        {"right", point.right},
+                        {"precision", point.precision},
+                        {"recall", point.recall}});
+    if (!points.empty()) json.push_back({{"class", evaluation.by_points[i].name}, {"points", std::move(points)}});
+  }
+  return json;
+}
+
 /// Only classes that occur.
 EvaluationJson answersJson(const std::vector<std::uint64_t>& counts, const std::vector<std::string>& names) {
   EvaluationJson json = EvaluationJson::object();
@@ -94,6 +109,7 @@ std::string toJson(const MapEvaluation& evaluation) {
   if (evaluation.has_instances) {
     json["coverage"] = evaluation.covers_all ? "all" : "some";
     json["objects_by_point_set"] = objectJson(evaluation.by_points);
+    json["precision_recall"] = curvesJson(evaluation);
     json["objects_by_box"] = objectJson(evaluation.by_box);
     json["objects_by_kind"] = kindJson(evaluation);
     json["matched_whole"] = evaluation.matched_whole;

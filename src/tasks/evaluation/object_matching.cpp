@@ -3,7 +3,6 @@
 #include "tasks/evaluation/object_matching.hpp"
 
 #include <algorithm>
-#include <set>
 #include <tuple>
 
 namespace cluxel::tasks {
@@ -18,6 +17,10 @@ double boxIou(Eigen::AlignedBox3d a, Eigen::AlignedBox3d b, double padding_m) {
   const Eigen::AlignedBox3d common = a.intersection(b);
   const double shared = common.isEmpty() ? 0.0 : common.volume();
   return shared / (a.volume() + b.volume() - shared);
+}
+
+double pointIou(const PointSet& found, const PointSet& truth, std::uint64_t shared) {
+  return static_cast<double>(shared) / static_cast<double>(found.count + truth.count - shared);
 }
 
 }  // namespace
@@ -73,7 +76,7 @@ bool ObjectMatching::countsAsAnswer(std::uint32_t object) const {
 }
 
 template <typename Iou>
-std::vector<ObjectScore> ObjectMatching::score(double min_iou, const Iou& iou) const {
+ObjectMatching::Partners ObjectMatching::match(double min_iou, const Iou& iou) const {
   std::vector<Candidate> candidates;
   for (const auto& [pair, count] : shared_) {
     const auto& [object, instance] = pair;
@@ -84,13 +87,18 @@ std::vector<ObjectScore> ObjectMatching::score(double min_iou, const Iou& iou) c
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     return std::tie(b.iou, a.instance, a.object) < std::tie(a.iou, b.instance, b.object);
   });
-  std::set<std::int32_t> matched_truth;
-  std::set<std::uint32_t> matched_objects;
+  Partners partners;
   for (const Candidate& candidate : candidates) {
-    if (matched_truth.contains(candidate.instance) || matched_objects.contains(candidate.object)) continue;
-    matched_truth.insert(candidate.instance);
-    matched_objects.insert(candidate.object);
+    if (partners.instances.contains(candidate.instance) || partners.objects.contains(candidate.object)) continue;
+    partners.instances.insert(candidate.instance);
+    partners.objects.insert(candidate.object);
   }
+  return partners;
+}
+
+template <typename Iou>
+std::vector<ObjectScore> ObjectMatching::score(double min_iou, const Iou& iou) const {
+  const auto [matched_truth, matched_objects] = match(min_iou, iou);
   std::vector<ObjectScore> scores(names_.size());
   for (std::size_t i = 0; i < names_.size(); ++i) scores[i].name = names_[i];
   for (const auto& [instance, truth] : truth_) {
@@ -113,9 +121,16 @@ std::vector<ObjectScore> ObjectMatching::scoreByBox(const EvaluationParams& para
 }
 
 std::vector<ObjectScore> ObjectMatching::scoreByPoints(const EvaluationParams& params) const {
-  return score(params.point_iou, [](const PointSet& found, const PointSet& truth, std::uint64_t shared) {
-    return static_cast<double>(shared) / static_cast<double>(found.count + truth.count - shared);
-  });
+  return score(params.point_iou, pointIou);
+}
+
+std::vector<JudgedAnswer> ObjectMatching::judgedByPoints(const EvaluationParams& params) const {
+  const Partners partners = match(params.point_iou, pointIou);
+  std::vector<JudgedAnswer> judged;
+  for (std::uint32_t object = 0; object < found_.size(); ++object)
+    if (found_[object].class_number < names_.size() && countsAsAnswer(object))
+      judged.push_back({object, found_[object].class_number, 0, partners.objects.contains(object)});
+  return judged;
 }
 
 std::uint64_t ObjectMatching::matchedWhole(const EvaluationParams& params) const {

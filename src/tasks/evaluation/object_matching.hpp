@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,6 +38,8 @@ class ObjectMatching {
   bool hasInstances() const { return !truth_.empty(); }
   std::vector<ObjectScore> scoreByBox(const EvaluationParams& params) const;
   std::vector<ObjectScore> scoreByPoints(const EvaluationParams& params) const;
+  /// The objects that count as right or wrong, without their confidence.
+  std::vector<JudgedAnswer> judgedByPoints(const EvaluationParams& params) const;
   /// What true objects are called, by the kind of each instance. Ambiguous instances do not count.
   std::vector<KindAnswers> answersByKind(const std::map<std::int32_t, std::string>& kinds,
                                          const EvaluationParams& params) const;
@@ -49,6 +52,12 @@ class ObjectMatching {
     std::int32_t instance = 0;
     std::uint32_t object = 0;
   };
+  struct Partners {
+    std::set<std::int32_t> instances;
+    std::set<std::uint32_t> objects;
+  };
+  template <typename Iou>
+  Partners match(double min_iou, const Iou& iou) const;
   template <typename Iou>
   std::vector<ObjectScore> score(double min_iou, const Iou& iou) const;
   /// The instance that shares the most points with the object, of any class; -1 when none does.

@@ -37,12 +37,22 @@ void writeData(const mapping::MapReader& map, const std::vector<Question>& quest
   report.objects = map.objects().size();
   report.quads = quads.quad_count;
   report.quads_left_out = quads.left_out;
-  report.object_bytes = writeBlock("map", mapValuesJson(map, tiles, quads.left_out, options.name, questions), out) +
-                        writeBlock("objects", objectValuesJson(map), out);
+  report.object_bytes = writeBlock("map", mapValuesJson(map, tiles, quads.left_out, options, questions), out) +
+                        writeBlock("objects", objectValuesJson(map), out) +
+                        writeBlock("changes", visitChangesJson(map, options.threads), out);
   for (std::size_t i = 0; i < tiles.tiles.size(); ++i)
     report.point_bytes += writeBlock("tile-" + std::to_string(i), tiles.tiles[i].planes, out);
   report.quad_bytes = writeBlock("terms", quads.terms, out) + writeBlock("quads", quads.quads, out);
   if (options.reasons) report.object_bytes += writeReasons(map, out);
+}
+
+/// What stands before the data. The policy of the page allows no connection; a served page may ask its service.
+std::string headOf(const std::string& page, std::size_t mark, bool is_served) {
+  constexpr std::string_view kPolicy = "default-src 'none'; ";
+  std::string head = page.substr(0, mark);
+  const std::size_t place = is_served ? head.find(kPolicy) : std::string::npos;
+  if (place != std::string::npos) head.insert(place + kPolicy.size(), "connect-src 'self'; ");
+  return head;
 }
 
 }  // namespace
@@ -65,7 +75,7 @@ ViewReport writeViewPage(const mapping::MapReader& map, const std::string& page,
                                             "' for the map's data; './run web' in the checkout makes it anew");
   ViewReport report;
   report.program_bytes = page.size() - kDataMark.size();
-  out(std::string_view(page).substr(0, mark));
+  out(headOf(page, mark, options.is_served));
   writeData(map, questions, options, out, report);
   out(std::string_view(page).substr(mark + kDataMark.size()));
   return report;

@@ -17,6 +17,8 @@ struct ViewOptions {
   std::uint64_t max_points = 5'000'000;  ///< a larger map is shown by a uniform sample, and the page says so
   std::uint64_t max_quads = 2'000'000;   ///< a larger map is held without the quads about primitives
   bool reasons = true;                   ///< with the explanation of every object
+  bool is_served = false;                ///< the page may ask the service that it comes from
+  unsigned threads = 1;                  ///< for the changes between visits
 };
 
 /// What a page was made of.

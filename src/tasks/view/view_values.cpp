@@ -7,6 +7,8 @@
 
 #include "mapping/facts/object_geometry.hpp"
 #include "rdf/ontology/ontology.hpp"
+#include "tasks/ask/task_table.hpp"
+#include "tasks/changes/site_changes.hpp"
 
 namespace cluxel::tasks {
 
@@ -61,6 +63,23 @@ ViewJson questionsJson(const std::vector<Question>& questions) {
   return all;
 }
 
+/// The files that are loaded first; what they include is found by the service.
+ViewJson rulesJson(const mapping::MapInputs& inputs) {
+  ViewJson all = ViewJson::array();
+  for (std::size_t i = 0; i < inputs.rules.size(); ++i)
+    all.push_back({{"name", std::filesystem::path(inputs.rules[i].name).filename().string()},
+                   {"text", inputs.rules[i].text},
+                   {"root", i < inputs.rule_roots}});
+  return all;
+}
+
+ViewJson visitsJson(const mapping::MapReader& map) {
+  ViewJson all = ViewJson::array();
+  for (const Visit& visit : visitsOf(map.clouds()))
+    all.push_back({{"begin", visit.begin_s}, {"end", visit.end_s}, {"scans", visit.scans}});
+  return all;
+}
+
 ViewJson propertiesJson(const rdf::OntologyView& ontology) {
   ViewJson all = ViewJson::array();
   for (const rdf::OntologyProperty& property : ontology.properties)
@@ -99,9 +118,10 @@ ViewJson partsJson(const rules::SemanticObject& object, const perception::SceneC
 }  // namespace
 
 std::string mapValuesJson(const mapping::MapReader& map, const PointTiles& tiles, std::uint64_t quads_left_out,
-                          const std::string& name, const std::vector<Question>& questions) {
+                          const ViewOptions& options, const std::vector<Question>& questions) {
   const mapping::MapInputs inputs = map.inputs();
-  ViewJson json{{"name", name},
+  ViewJson json{{"name", options.name},
+                {"served", options.is_served},
                 {"finished", map.isFinished()},
                 {"crs", inputs.crs},
                 {"origin", vectorJson(inputs.map_origin)},
@@ -116,8 +136,19 @@ std::string mapValuesJson(const mapping::MapReader& map, const PointTiles& tiles
   json["clouds"] = cloudsJson(map);
   json["tiles"] = tilesJson(tiles);
   json["questions"] = questionsJson(questions);
+  json["tasks"] = ViewJson::parse(taskListJson(tasksOf(questions)));
+  json["rules"] = rulesJson(inputs);
+  json["visits"] = visitsJson(map);
   json["properties"] = propertiesJson(ontologyViewOf(map.quads()));
   return json.dump(-1, ' ', false, ViewJson::error_handler_t::replace);
+}
+
+std::string visitChangesJson(const mapping::MapReader& map, unsigned threads) {
+  const std::vector<Visit> visits = visitsOf(map.clouds());
+  std::string all = "[";
+  for (std::size_t i = 1; i < visits.size(); ++i)
+    all += (i > 1 ? "," : "") + changesJson(map, changesIn(map, visits[i].begin_s, threads));
+  return all + "]";
 }
 
 std::string objectValuesJson(const mapping::MapReader& map) {

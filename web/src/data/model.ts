@@ -34,11 +34,28 @@ export interface Parameter { name: string; unit: string; value: string; help: st
 export interface Column { name: string; unit: string; help: string }
 export interface Question { file: string; title: string; text: string; parameters: Parameter[]; columns: Column[] }
 export interface Property { iri: string; label: string; unit: string }
+/** A parameter of a task; kinds are those of cluxel tasks. */
+export interface TaskParameter {
+  name: string; kind: 'number' | 'whole number' | 'class' | 'place' | 'text' | 'flag'; unit: string; help: string;
+  default?: string; required?: boolean; repeated?: boolean; min?: number; max?: number;
+}
+export interface Task { name: string; title: string; reasons: boolean; file?: string; parameters: TaskParameter[]; columns: Column[] }
+export interface RuleFile { name: string; text: string; root: boolean }
+/** Scans taken without a long pause; times in seconds since 1970. */
+export interface Visit { begin: number; end: number; scans: number }
+export interface Extent { min: number[]; max: number[] }
+interface ChangedThing { object?: string; number?: number; class?: string; part?: boolean; box_m: Extent }
+export interface SiteChange extends ChangedThing { change: 'vanished' | 'appeared' | 'moved'; now?: ChangedThing; distance?: number }
+type Presence = 'present' | 'absent' | 'not observed';
+export interface ObjectStates { object: string; number: number; before: Presence; after: Presence }
+/** What the scans since the begin of a visit show against those before it. */
+export interface VisitChanges { since: string; changes: SiteChange[]; states: ObjectStates[] }
 interface MapValues {
-  name: string; finished: boolean; crs: string; origin: number[];
+  name: string; served: boolean; finished: boolean; crs: string; origin: number[];
   points: number; pointsInMap: number; quadsLeftOut: number;
   quantum: number; lowestHeight: number; heightStep: number; intensity: number[];
   labels: string[]; clouds: Cloud[]; tiles: TileInfo[]; questions: Question[]; properties: Property[];
+  tasks: Task[]; rules: RuleFile[]; visits: Visit[];
 }
 interface ObjectValues {
   classes: ClassInfo[];
@@ -79,6 +96,7 @@ export class MapModel {
   /** Classes that objects have, most frequent first. */
   readonly shownClasses: { info: ClassInfo; count: number }[];
   private readonly byIri = new Map<string, MapObject>();
+  private visitChanges: Promise<VisitChanges[]> | undefined;
   private readonly reasonBlocks = new Map<number, Promise<Reasons[]>>();
 
   static async read(): Promise<MapModel> {
@@ -125,6 +143,12 @@ export class MapModel {
     return this.objects.filter((object) => object.class.iri === iri || object.class.ancestors.includes(iri));
   }
 
+  /** By visit but the first. */
+  changes(): Promise<VisitChanges[]> {
+    this.visitChanges ??= blockJson<VisitChanges[]>('changes');
+    return this.visitChanges;
+  }
+
   get hasReasons(): boolean {
     return hasBlock('reasons-0');
   }
@@ -140,6 +164,11 @@ export class MapModel {
     }
     return (await block)[object.number % REASONS_IN_BLOCK];
   }
+}
+
+/** The middle of a thing that changed. */
+export function middleOf(thing: ChangedThing): [number, number, number] {
+  return [0, 1, 2].map((axis) => 0.5 * (thing.box_m.min[axis] + thing.box_m.max[axis])) as [number, number, number];
 }
 
 /** "Street sign 6b9130b2": the name of an object for people. */

@@ -169,6 +169,8 @@ export class AskPanel {
     this.status.textContent = [`${counted(rows.rows.length)} ${rows.rows.length === 1 ? 'row' : 'rows'}`, time,
                                placeless > 0 && `${counted(placeless)} without a place in the map`].filter(Boolean).join(' · ');
     this.table.show(rows, question, objectsOfRow);
+    this.store.set('marks', []);
+    this.store.set('tints', null);
     this.showActions(rows, objectsOfRow, question);
     const isRanked = RANKED.test(question?.text ?? this.editor.text) && objectsOfRow.every((found) => found.length <= 1);
     this.store.set('lit', objects.length > 0 ? { objects, ranked: isRanked } : null);

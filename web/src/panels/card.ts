@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The card of the selected object: attributes with units, parts, scans that saw it, and reasons.
 import { capitalised, CLX, type MapModel, type MapObject } from '../data/model';
+import type { Service } from '../data/service';
 import { counted, el, iconButton, rounded } from '../dom';
 import type { Answer, Rows } from '../sparql/answers';
 import type { Portrait } from '../scene/portrait';
@@ -8,15 +9,22 @@ import type { Engine } from '../sparql/engine';
 import type { Store } from '../state';
 import { shortened } from './editor';
 import { reasonsView } from './reasons';
+import { statementForm } from './statement';
+import { WhyNotQuestion } from './why_not';
 
-const LABEL = 'http://www.w3.org/2000/01/rdf-schema#label';
+/** What the history says of an object; files do not hold it. */
+const LINEAGE = (iri: string) => `PREFIX prov: <http://www.w3.org/ns/prov#> PREFIX clx: <${CLX}>
+  SELECT ?from ?operation ?time { GRAPH <https://w3id.org/cluxel/graph/history> { <${iri}> prov:wasDerivedFrom ?from
+    OPTIONAL { <${iri}> prov:wasGeneratedBy ?run . ?run clx:operation ?operation ; prov:endedAtTime ?time } } } ORDER BY ?time ?from`;
+interface LineageJson { results: { bindings: Record<'from' | 'operation' | 'time', { value: string } | undefined>[] } }
 
 export class ObjectCard {
   readonly element = el('aside', { class: 'card', hidden: true, 'aria-label': 'Selected object', tabindex: -1 });
 
   private picture = el('canvas');
 
-  constructor(private readonly model: MapModel, private readonly engine: Engine, private readonly store: Store,
+  constructor(private readonly model: MapModel, private readonly engine: Engine,
+              private readonly service: Service | undefined, private readonly store: Store,
               private readonly portrait: Portrait, private readonly goTo: (object: MapObject) => void) {
     store.on(['selected'], (state) => this.show(state.selected));
   }
@@ -38,7 +46,7 @@ export class ObjectCard {
                                  el('details', { ontoggle: (event: Event) => {
                                    if ((event.target as HTMLDetailsElement).open) void this.fillFacts(object, facts);
                                  } }, el('summary', {}, 'All facts and observations'), facts),
-                                 this.correction(object));
+                                 this.lineage(object), statementForm(object, this.model, this.service));
     this.element.scrollTop = 0;
     void this.fillReasons(object, reasons);
   }
@@ -80,8 +88,26 @@ export class ObjectCard {
   private async fillReasons(object: MapObject, host: HTMLElement): Promise<void> {
     const reasons = await this.model.reasonsOf(object);
     if (this.store.state.selected !== object) return;
-    host.replaceWith(reasons ? reasonsView(reasons, this.model)
+    host.replaceWith(reasons ? reasonsView(reasons, this.model, new WhyNotQuestion(this.model, this.service, object).element, this.store)
                              : el('p', { class: 'note' }, 'This page was written without reasons: cluxel explain gives them.'));
+  }
+
+  private lineage(object: MapObject): HTMLElement {
+    const host = el('div', { class: 'lineage-list' });
+    const fill = async () => {
+      if (host.childElementCount > 0) return;
+      if (!this.service) {
+        host.append(el('p', { class: 'note' }, 'The history is not in this file: cluxel serve shows it here.'));
+        return;
+      }
+      const told = await this.service.json<LineageJson>(`sparql?format=json&query=${encodeURIComponent(LINEAGE(object.iri))}`);
+      const rows = told.results.bindings;
+      host.append(rows.length === 0 ? el('p', { class: 'note' }, 'It was made by the build, and no change has touched it.')
+        : el('ul', { class: 'plain-list' }, ...rows.map((row) => el('li', { title: row.from?.value },
+            `from ${shortened(row.from?.value ?? '').slice(0, 24)}`, el('small', {}, `${row.operation?.value ?? ''} ${row.time?.value.slice(0, 16) ?? ''}`)))));
+    };
+    return el('details', { class: 'lineage', ontoggle: (event: Event) => { if ((event.target as HTMLDetailsElement).open) void fill(); } },
+              el('summary', {}, 'Lineage'), host);
   }
 
   private async fillFacts(object: MapObject, host: HTMLElement): Promise<void> {
@@ -110,24 +136,5 @@ export class ObjectCard {
                 el('td', { title: value.value }, (value.kind === 'iri' ? shortened(value.value) : value.value) + unit));
     });
     return el('section', {}, el('h3', {}, 'Facts'), el('table', { class: 'fact-table' }, el('tbody', {}, ...rows)));
-  }
-
-  /** A statement for cluxel update, to copy: the file cannot change the map. */
-  private correction(object: MapObject): HTMLElement {
-    const text = el('input', { type: 'text', id: 'remark', placeholder: 'the old one by the gate', autocomplete: 'off',
-                               oninput: () => { code.textContent = statement(); } });
-    const statement = () => {
-      const said = JSON.stringify(text.value || 'what you know of it');
-      return `INSERT DATA { <${object.iri}> <${LABEL}> ${said}@en }`;
-    };
-    const code = el('code', { class: 'statement' }, statement());
-    const copy = el('button', { type: 'button', class: 'plain', onclick: () => {
-      void navigator.clipboard?.writeText(code.textContent ?? '').then(() => { copy.textContent = 'Copied'; }, () => {
-        getSelection()?.selectAllChildren(code);
-      });
-    } }, 'Copy');
-    return el('details', {}, el('summary', {}, 'Say something about it'),
-              el('label', { for: 'remark', class: 'label' }, 'Remark'), text,
-              el('p', { class: 'note' }, 'Run this with cluxel update MAP -e: it goes into the graph of operators.'), code, copy);
   }
 }

@@ -17,7 +17,7 @@ export class Help {
     const keys = commands.map(({ key, label }) => el('tr', {}, el('th', { scope: 'row' }, el('kbd', {}, key.toUpperCase())), el('td', {}, label)));
     this.element.replaceChildren(
       el('header', {}, el('h2', {}, 'Help'), close),
-      el('p', {}, `${this.model.values.name}: ${counted(this.model.values.pointsInMap)} points from ${counted(this.model.values.clouds.length)} scans, ${counted(this.model.objects.length)} objects. This file holds all of it and asks no server.`),
+      el('p', {}, `${this.model.values.name}: ${counted(this.model.values.pointsInMap)} points from ${counted(this.model.values.clouds.length)} scans, ${counted(this.model.objects.length)} objects. ${this.model.values.served ? 'Its service answers tasks, tries rules and takes statements.' : 'This file holds all of it and asks no server.'}`),
       el('p', {}, 'Drag turns the view, the right button or Shift moves it, the wheel zooms. A click on a point selects its object. With the view focused, arrow keys move it.'),
       el('table', { class: 'keys' }, el('tbody', {}, ...keys,
          el('tr', {}, el('th', { scope: 'row' }, el('kbd', {}, 'Ctrl Enter')), el('td', {}, 'Ask the question in the editor')),

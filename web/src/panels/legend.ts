@@ -8,7 +8,7 @@ import type { Store } from '../state';
 
 const NAMES: Record<ColourMode, string> = {
   class: 'Class', certainty: 'Certainty', height: 'Height above ground', intensity: 'Intensity', scan: 'Scan',
-  primitive: 'Primitive label', distinct: 'Class, for all colour sight',
+  primitive: 'Primitive label', coverage: 'Coverage by scans', distinct: 'Class, for all colour sight',
 };
 const PRIMITIVE_COLOURS = ['#b8a380', '#c75c47', '#fabd29', '#4078d9', '#409957'];
 
@@ -34,7 +34,7 @@ export class Legend {
   private isUseful(mode: ColourMode): boolean {
     const { intensity, clouds } = this.model.values;
     if (mode === 'intensity') return intensity[1] > intensity[0];
-    return mode !== 'scan' || clouds.length > 1;
+    return (mode !== 'scan' && mode !== 'coverage') || clouds.length > 1;
   }
 
   private classRows(): HTMLElement[] {
@@ -114,6 +114,7 @@ export class Legend {
     if (mode === 'height') return bar('bar-ramp', '0 m', '12 m');
     if (mode === 'intensity') return bar('bar-ramp', rounded(intensity[0], 2), rounded(intensity[1], 2));
     if (mode === 'scan') return bar('bar-ramp', 'first scan', 'last scan');
+    if (mode === 'coverage') return bar('bar-ramp', 'seen by 1 scan', '8 or more');
     if (mode !== 'primitive') return [];
     return [el('ul', { class: 'labels' }, ...this.model.values.labels.map((label, i) =>
       el('li', {}, el('span', { class: 'swatch', style: `background:${PRIMITIVE_COLOURS[i]}` }), label.replaceAll('_', ' '))))];

@@ -2,6 +2,7 @@
 // Why an object has its class, and why not another: the tests of the rules with measured values and margins.
 import { capitalised, CLX, type EvidenceLine, type MapModel, type Reasons, type Step, type Verdict } from '../data/model';
 import { el, rounded } from '../dom';
+import type { Store } from '../state';
 
 function withUnit(value: number, unit: string): string {
   return `${rounded(value)}${unit ? ` ${unit === 'deg' ? '°' : unit}` : ''}`;
@@ -22,14 +23,22 @@ function readable(text: string, model: MapModel): string {
   return text.replace(/\bclx:(\w+)/g, (_, name: string) => model.classOf(CLX + name).label).replaceAll('_', ' ');
 }
 
-function stepRow(step: Step): HTMLElement {
+/** The line of the rule file; a button where the panel of rules can show it. */
+function placeOf(step: Step, store?: Store): HTMLElement {
+  const text = `${step.file}:${step.line}`;
+  if (!store) return el('small', { class: 'place' }, text);
+  return el('button', { type: 'button', class: 'place', title: 'Show this line of the rules',
+                        onclick: () => store.set('ruleLine', { file: step.file, line: step.line }) }, text);
+}
+
+function stepRow(step: Step, store?: Store): HTMLElement {
   const measured = step.measured === undefined ? '' : `measured ${withUnit(step.measured, step.unit)}`;
   const margin = step.margin === undefined ? '' : `margin ${withUnit(step.margin, step.unit)}`;
   return el('li', { class: step.passed ? 'step yes' : 'step no' },
             el('span', { class: 'mark', role: 'img', 'aria-label': step.passed ? 'holds' : 'does not hold' }, step.passed ? '✓' : '✗'),
             el('span', { class: 'step-text' }, step.test.replaceAll('_', ' '),
                (measured || margin) && el('small', {}, [measured, margin].filter(Boolean).join(', ')), gauge(step),
-               el('small', { class: 'place' }, `${step.file}:${step.line}`)));
+               placeOf(step, store)));
 }
 
 function leastChange(verdict: Verdict, model: MapModel): HTMLElement | null {
@@ -63,22 +72,22 @@ function evidenceView(verdict: Verdict, model: MapModel): HTMLElement | null {
               `${rival.won ? 'Stronger' : 'Weaker'} rival: ${readable(rival.class, model)} by ${rival.rule}, log-odds ${signed(rival.log_odds)}`)));
 }
 
-function verdictBody(verdict: Verdict, model: MapModel): Node[] {
-  const steps = (verdict.path ?? []).map(stepRow);
+export function verdictBody(verdict: Verdict, model: MapModel, store?: Store): Node[] {
+  const steps = (verdict.path ?? []).map((step) => stepRow(step, store));
   return [el('p', { class: 'verdict' }, capitalised(readable(verdict.reason, model)), el('small', {}, ` rule ${verdict.rule}`)),
           evidenceView(verdict, model), el('ul', { class: 'steps' }, ...steps), leastChange(verdict, model)].filter((node): node is HTMLElement => node !== null);
 }
 
-export function reasonsView(reasons: Reasons, model: MapModel): HTMLElement {
+export function reasonsView(reasons: Reasons, model: MapModel, question: HTMLElement, store: Store): HTMLElement {
   const labelOf = (name: string) => capitalised(model.classOf(name.replace(/^clx:/, CLX)).label);
   const all = reasons.decisions ?? [], accepted = all.filter((verdict) => verdict.accepted);
   const rejected = all.filter((verdict) => !verdict.accepted);
   return el('div', { class: 'reasons' },
             reasons.note && el('p', { class: 'note' }, capitalised(reasons.note), '.'),
             ...accepted.map((verdict) => el('details', { open: true, class: 'why' },
-                                            el('summary', {}, `Why ${labelOf(verdict.class)}?`), ...verdictBody(verdict, model))),
+                                            el('summary', {}, `Why ${labelOf(verdict.class)}?`), ...verdictBody(verdict, model, store))),
             rejected.length > 0 && el('h3', {}, 'Why nothing else?'),
             ...rejected.map((verdict) => el('details', { class: 'why-not' },
                                             el('summary', {}, `Not ${labelOf(verdict.class)}`, el('small', {}, ` ${readable(verdict.reason, model)}`)),
-                                            ...verdictBody(verdict, model))));
+                                            ...verdictBody(verdict, model, store))), question);
 }

@@ -41,11 +41,15 @@ export class AnswerTable {
   readonly element = el('div', { class: 'answer' });
   private body = el('tbody');
   private objectsOfRow: MapObject[][] = [];
+  /** Rows with a place of their own. */
+  private isPlaced: boolean[] = [];
 
   constructor(private readonly model: MapModel, private readonly events: TableEvents) {}
 
-  show(answer: Rows, question: Question | undefined, objectsOfRow: MapObject[][]): void {
+  show(answer: Rows, question: Question | undefined, objectsOfRow: MapObject[][],
+       isPlaced: boolean[] = []): void {
     this.objectsOfRow = objectsOfRow;
+    this.isPlaced = isPlaced;
     this.body = el('tbody');
     const heads = answer.variables.map((name) => {
       const column = question?.columns.find((candidate) => candidate.name === name);
@@ -81,7 +85,7 @@ export class AnswerTable {
 
   private rowOf(cells: (RdfTerm | null)[], number: number): HTMLTableRowElement {
     const objects = this.objectsOfRow[number], choose = () => this.events.choose(objects, number);
-    const isLive = objects.length > 0;
+    const isLive = objects.length > 0 || Boolean(this.isPlaced[number]);
     return el('tr', {
       class: isLive ? 'live' : 'still', tabindex: isLive ? 0 : undefined, 'aria-selected': 'false',
       title: isLive ? undefined : 'This row names nothing that has a place in the map.',

@@ -67,6 +67,10 @@ export class Toolbar {
   private escape(): void {
     if (this.store.state.measuring) this.store.set('measuring', false);
     else if (this.store.state.selected) this.store.set('selected', null);
-    else this.store.set('lit', null);
+    else {
+      this.store.set('lit', null);
+      this.store.set('marks', []);
+      this.store.set('tints', null);
+    }
   }
 }

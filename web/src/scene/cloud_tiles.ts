@@ -4,8 +4,9 @@ import * as THREE from 'three';
 import { blockBytes } from '../data/blocks';
 import type { MapModel, TileInfo } from '../data/model';
 
-/** Bytes of a vertex: x, y, z, cloud (2 each), object (4), intensity, height, label, unused (1 each). */
+/** Bytes of a vertex: x, y, z, cloud (2 each), object (4), intensity, height, label, coverage (1 each). */
 const STRIDE = 16;
+const COVERAGE_CELL_M = 0.5;
 
 export interface Tile {
   info: TileInfo;
@@ -37,6 +38,20 @@ function vertexBuffer(planes: Uint8Array, count: number): ArrayBuffer {
   return buffer;
 }
 
+/** Enters into each point how many scans have a point within its column of half a metre. */
+function addCoverage(buffer: ArrayBuffer, count: number, quantum: number, clouds: number): void {
+  const shorts = new Uint16Array(buffer), bytes = new Uint8Array(buffer), scans = new Map<number, Set<number>>();
+  if (clouds < 2) return;
+  const cellOf = (i: number) => Math.floor((shorts[8 * i] * quantum) / COVERAGE_CELL_M) * 65536 +
+                                Math.floor((shorts[8 * i + 1] * quantum) / COVERAGE_CELL_M);
+  for (let i = 0; i < count; ++i) {
+    const cell = cellOf(i), known = scans.get(cell);
+    if (known) known.add(shorts[8 * i + 3]);
+    else scans.set(cell, new Set([shorts[8 * i + 3]]));
+  }
+  for (let i = 0; i < count; ++i) bytes[16 * i + 15] = Math.min(255, scans.get(cellOf(i))!.size);
+}
+
 function geometryOf(buffer: ArrayBuffer, info: TileInfo, quantum: number): THREE.BufferGeometry {
   const geometry = new THREE.BufferGeometry();
   const shorts = new THREE.InterleavedBuffer(new Uint16Array(buffer), STRIDE / 2);
@@ -45,7 +60,7 @@ function geometryOf(buffer: ArrayBuffer, info: TileInfo, quantum: number): THREE
   geometry.setAttribute('position', new THREE.InterleavedBufferAttribute(shorts, 3, 0));
   geometry.setAttribute('cloud', new THREE.InterleavedBufferAttribute(shorts, 1, 3));
   geometry.setAttribute('object', new THREE.InterleavedBufferAttribute(words, 1, 2));
-  geometry.setAttribute('measures', new THREE.InterleavedBufferAttribute(bytes, 3, 12));
+  geometry.setAttribute('measures', new THREE.InterleavedBufferAttribute(bytes, 4, 12));
   const size = new THREE.Vector3(info.size[0] / quantum, info.size[1] / quantum, info.size[2] / info.zQuantum);
   geometry.boundingBox = new THREE.Box3(new THREE.Vector3(), size);
   geometry.boundingSphere = geometry.boundingBox.getBoundingSphere(new THREE.Sphere());
@@ -60,6 +75,7 @@ export async function readTile(model: MapModel, number: number, origin: THREE.Ve
   const planes = await blockBytes(`tile-${number}`);
   if (planes.length !== 14 * count) throw new Error(`Tile ${number} of this page is damaged. Write it anew.`);
   const buffer = vertexBuffer(planes, count);
+  addCoverage(buffer, count, quantum, model.values.clouds.length);
   const points = new THREE.Points(geometryOf(buffer, info, quantum), material);
   points.position.set(info.origin[0], info.origin[1], info.origin[2]).sub(origin);
   points.scale.set(quantum, quantum, info.zQuantum);

@@ -6,7 +6,7 @@ import * as THREE from 'three';
  * How points are coloured. Class, certainty and distinct (classes in colours that all kinds of sight tell apart) come from
  * the palette, the others from measures of the point. The shader knows them by their place.
  */
-export const COLOUR_MODES = ['class', 'certainty', 'height', 'intensity', 'scan', 'primitive', 'distinct'] as const;
+export const COLOUR_MODES = ['class', 'certainty', 'height', 'intensity', 'scan', 'primitive', 'distinct', 'coverage'] as const;
 export type ColourMode = (typeof COLOUR_MODES)[number];
 
 export interface PointUniforms {
@@ -41,7 +41,7 @@ const COMMON = /* glsl */ `
   uniform int only;
   in uint object;
   in float cloud;
-  in vec3 measures;
+  in vec4 measures;
   vec4 texelOf(uint number) {
     int n = int(number), width = int(paletteWidth);
     return texelFetch(palette, ivec2(n % width, n / width), 0);
@@ -85,6 +85,7 @@ const POINT_VERTEX = /* glsl */ `
     if (mode == 2) colour = ramp((measures.y - heightRange.x) / (heightRange.y - heightRange.x));
     if (mode == 3) colour = ramp(measures.x / 255.0);
     if (mode == 4) colour = ramp(clouds < 1.5 ? 0.5 : cloud / (clouds - 1.0));
+    if (mode == 7) colour = ramp((measures.w - 1.0) / 7.0);
     if (mode == 5) colour = labelColour(measures.z);
     if (texel.a < 0.5 && only == 0) colour = mix(colour, dimmed, 0.82);
     if ((texel.a < 0.1 && only == 0) || isCut()) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);

@@ -38,6 +38,7 @@ export class Palette {
   private scheme: Scheme = 'class';
   private hiddenClasses = new Set<string>();
   private lit: Set<number> | null = null;
+  private tints: Map<number, Rgb> | null = null;
 
   constructor(private readonly model: MapModel) {
     // Ground is a backdrop: grey leaves the colours to things that stand on it.
@@ -60,10 +61,11 @@ export class Palette {
    * `lit`: these objects are lit and the others dimmed; null: all are plain. `hiddenClasses`: IRIs; '' stands for points
    * without an object.
    */
-  show(look: { scheme: Scheme; lit: MapObject[] | null; hiddenClasses: Set<string> }): void {
+  show(look: { scheme: Scheme; lit: MapObject[] | null; hiddenClasses: Set<string>; tints: Map<number, Rgb> | null }): void {
     this.scheme = look.scheme;
     this.hiddenClasses = new Set(look.hiddenClasses);
     this.lit = look.lit && new Set(look.lit.map((object) => object.number));
+    this.tints = look.tints;
     this.refresh();
   }
 
@@ -78,12 +80,13 @@ export class Palette {
   }
 
   private refresh(): void {
-    const other = this.lit ? DIMMED : PLAIN;
+    const other = this.lit || this.tints ? DIMMED : PLAIN;
     this.set(0, NO_OBJECT, this.hiddenClasses.has('') ? HIDDEN : other);
     for (const object of this.model.objects) {
       const colour = this.scheme === 'certainty' ? certaintyColour(object.confidence) : this.classColour(object.class.iri);
-      const state = this.isHidden(object) ? HIDDEN : this.lit?.has(object.number) ? LIT : other;
-      this.set(object.number + 1, colour, state);
+      const tint = this.tints?.get(object.number), isLit = this.tints ? tint !== undefined : this.lit?.has(object.number);
+      const state = this.isHidden(object) ? HIDDEN : isLit ? LIT : other;
+      this.set(object.number + 1, tint ?? colour, state);
     }
     this.texture.needsUpdate = true;
   }

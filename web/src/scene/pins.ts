@@ -3,7 +3,7 @@
 import * as THREE from 'three';
 import { el } from '../dom';
 import { nameOf, type MapObject } from '../data/model';
-import type { Store } from '../state';
+import type { Mark, Store } from '../state';
 import type { Viewer } from './viewer';
 
 const MOST_PINS = 60;
@@ -16,7 +16,7 @@ export class Pins {
 
   constructor(private readonly viewer: Viewer, private readonly store: Store) {
     viewer.host.append(this.layer);
-    store.on(['lit', 'selected'], () => this.rebuild());
+    store.on(['lit', 'selected', 'marks'], () => this.rebuild());
     viewer.onMove.push(() => this.place());
     viewer.onFrame.push(() => this.place());
   }
@@ -28,6 +28,7 @@ export class Pins {
       lit.objects.slice(0, MOST_PINS).forEach((object, i) => {
         if (object !== selected) this.add(object, String(i + 1), 'pin');
       });
+    for (const mark of this.store.state.marks.slice(0, MOST_PINS)) this.addMark(mark);
     if (selected) this.add(selected, nameOf(selected), 'pin pin-selected');
     this.layer.replaceChildren(...this.pins.map((pin) => pin.element));
     this.place();
@@ -39,6 +40,11 @@ export class Pins {
     const element = el('button', { type: 'button', class: style, tabindex: -1, title: nameOf(object),
                                    onclick: () => this.store.set('selected', object) }, text);
     this.pins.push({ element, place });
+  }
+
+  private addMark({ text, title, place: [x, y, z] }: Mark): void {
+    const place = new THREE.Vector3(x, y, z ?? this.viewer.origin.z).sub(this.viewer.origin);
+    this.pins.push({ element: el('span', { class: 'pin pin-mark', title }, text), place });
   }
 
   private place(): void {

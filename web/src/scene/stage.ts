@@ -25,7 +25,7 @@ export class Stage {
     this.sensorPath = pathOf(model, viewer.origin);
     viewer.overlay.add(this.objectBoxes.lines, this.selectionBehind.lines, this.selection.lines, this.sensorPath);
     store.on(['theme'], () => this.showTheme());
-    store.on(['lit', 'hiddenClasses', 'colourMode', 'slice', 'scans'], () => this.showPoints());
+    store.on(['lit', 'tints', 'hiddenClasses', 'colourMode', 'slice', 'scans'], () => this.showPoints());
     store.on(['lit', 'hiddenClasses', 'boxes', 'selected', 'theme'], () => this.showBoxes());
     store.on(['sensorPath'], () => this.showBoxes());
     this.showTheme();
@@ -50,6 +50,11 @@ export class Stage {
     const direction = camera.position.clone().sub(controls.target).normalize();
     direction.z = Math.max(direction.z, 0.35);
     this.look(center, direction, Math.max(13, 2.8 * Math.hypot(box.length, box.width, box.height)));
+  }
+
+  /** Moves near a place of the map. */
+  goToPlace(place: number[]): void {
+    this.goTo({ x: place[0], y: place[1], z: place[2], length: 4, width: 4, height: 2, yaw: 0 });
   }
 
   look(target: THREE.Vector3, direction: THREE.Vector3, distance: number): void {
@@ -90,10 +95,10 @@ export class Stage {
   }
 
   private showPoints(): void {
-    const { lit, hiddenClasses, colourMode, slice, scans } = this.store.state, { palette, uniforms } = this.viewer;
+    const { lit, tints, hiddenClasses, colourMode, slice, scans } = this.store.state, { palette, uniforms } = this.viewer;
     const scheme = colourMode === 'certainty' || colourMode === 'distinct' ? colourMode : 'class';
-    palette.show({ scheme, lit: lit && lit.objects, hiddenClasses });
-    uniforms.mode.value = COLOUR_MODES.indexOf(colourMode);
+    palette.show({ scheme, lit: lit && lit.objects, hiddenClasses, tints });
+    uniforms.mode.value = COLOUR_MODES.indexOf(tints ? 'class' : colourMode);
     const { lowestHeight, heightStep } = this.model.values;
     const byteOf = (height: number) => (height - lowestHeight) / heightStep;
     uniforms.slice.value.set(slice ? byteOf(slice[0]) : 0, slice && slice[1] < 29 ? byteOf(slice[1]) : 255);

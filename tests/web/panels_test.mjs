@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// Visits, tasks, rules and "why not" of a file that has no service: what it answers by itself, and what it says otherwise.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, afterEach, before, beforeEach, test } from 'node:test';
+import { askNamed, openPage, settled, startBrowser, states, stopBrowser } from './browser.mjs';
+
+const folder = process.env.CLUXEL_PAGES, program = process.env.CLUXEL_PROGRAM;
+const map = join(folder, 'visits.clx'), html = join(folder, 'visits.html');
+const cluxel = (...args) => execFileSync(program, args, { encoding: 'utf8', maxBuffer: 1e9 });
+const changes = JSON.parse(cluxel('changes', map, '--json'));
+let open;
+
+before(startBrowser);
+after(stopBrowser);
+beforeEach(async () => { open = await openPage(html); });
+afterEach(async () => {
+  assert.deepEqual(open.faults, [], 'nothing on the console, no error, no request');
+  await open.close();
+});
+
+const state = (page, name) => page.evaluate((key) => {
+  const value = window.cluxelPage.store.state[key];
+  return value instanceof Map ? [...value] : value;
+}, name);
+
+async function toVisit(page, number) {
+  await page.$eval('#visit', (slider, value) => {
+    slider.value = value;
+    slider.dispatchEvent(new Event('input'));
+  }, String(number));
+  if (number > 0) await page.waitForSelector('.visit-kinds');
+}
+
+test('the slider over visits shows what cluxel changes finds', async () => {
+  const { page } = open;
+  await page.click('#tab-visits');
+  assert.equal(await state(page, 'tints'), null);
+  await toVisit(page, 1);
+  assert.ok(changes.changes.length > 0);
+  const count = (kind) => page.textContent(`.visit-kinds [data-kind="${kind}"] b`).then(Number);
+  for (const kind of ['appeared', 'vanished', 'moved'])
+    assert.equal(await count(kind), changes.changes.filter((change) => change.change === kind).length, kind);
+  const unseen = changes.states.filter((one) => one.after === 'not observed');
+  assert.equal(await count('unobserved'), unseen.length);
+  assert.equal(await page.locator('ol.change-list li').count(), changes.changes.length);
+  assert.equal(await page.locator('.pin-mark').count(), changes.changes.length);
+  const whole = changes.changes.flatMap((change) => [change, change.now]).filter((thing) => thing?.number !== undefined && !thing.part);
+  const wanted = new Set([...whole, ...unseen].map((thing) => thing.number));
+  const lit = (await states(page)).flatMap((now, number) => (now === 'lit' ? [number] : []));
+  assert.deepEqual(new Set(lit), wanted);
+});
+
+test('a change in the list is gone to, and the first visit clears all', async () => {
+  const { page } = open;
+  await page.click('#tab-visits');
+  await toVisit(page, 1);
+  const first = changes.changes.findIndex((change) => change.number !== undefined);
+  await page.click(`ol.change-list li:nth-child(${first + 1}) button`);
+  assert.equal(await page.evaluate(() => window.cluxelPage.store.state.selected.number), changes.changes[first].number);
+  await toVisit(page, 0);
+  assert.equal(await state(page, 'tints'), null);
+  assert.equal(await page.locator('.pin-mark').count(), 0);
+  assert.equal(await page.locator('.change-list').count(), 0);
+});
+
+test('the points of one visit are shown alone', async () => {
+  const { page } = open;
+  await page.click('#tab-visits');
+  await toVisit(page, 1);
+  await page.check('#visit-points');
+  const visits = await page.evaluate(() => window.cluxelPage.model.values.visits.map((visit) => visit.scans));
+  assert.deepEqual(await state(page, 'scans'), [visits[0], visits[0] + visits[1] - 1]);
+  await toVisit(page, 0);
+  assert.equal(await state(page, 'scans'), null);
+});
+
+test('an answer takes the place of the colours of a visit', async () => {
+  const { page } = open;
+  await page.click('#tab-visits');
+  await toVisit(page, 1);
+  await page.click('#tab-questions');
+  await askNamed(page, 'trees.rq');
+  assert.equal(await state(page, 'tints'), null);
+  assert.equal(await page.inputValue('#visit'), '0');
+  const trees = await page.evaluate(() => window.cluxelPage.model.objectsOfClass('https://w3id.org/cluxel/ontology#Tree').length);
+  assert.equal((await states(page)).filter((now) => now === 'lit').length, trees);
+});
+
+test('without a service a task tells its command, which answers', async () => {
+  const { page } = open;
+  await page.click('#tab-tasks');
+  const names = await page.$$eval('[data-task]', (buttons) => buttons.map((button) => button.dataset.task));
+  const wanted = JSON.parse(cluxel('tasks', '--json')).filter((task) => !task.file).map((task) => task.name);
+  assert.deepEqual(names, wanted);
+  await page.click('[data-task=search]');
+  assert.match(await page.textContent('.tasks .status'), /cluxel serve/);
+  await page.click('.tasks .primary');
+  assert.match(await page.textContent('.tasks .status.fault'), /^for: /, 'what is required is named');
+  await page.fill('#task-for', 'StreetSign');
+  await page.fill('#task-stops', '2');
+  await page.click('.tasks .primary');
+  const command = await page.textContent('.tasks code');
+  assert.equal(command, 'cluxel ask MAP search for=StreetSign stops=2');
+  assert.match(cluxel(...command.split(' ').slice(1).map((word) => (word === 'MAP' ? map : word))), /stop/);
+});
+
+test('without a service rules are shown and may be saved, and the page says so', async () => {
+  const { page } = open;
+  await page.click('#tab-rules');
+  assert.match(await page.textContent('.rules .status'), /no service/);
+  const text = await page.inputValue('#rule-text');
+  assert.equal(text, readFileSync(join(process.env.CLUXEL_SOURCE, 'rules', 'outdoor.rules.yaml'), 'utf8'));
+  await page.fill('#rule-text', `${text}# changed\n`);
+  await page.waitForTimeout(900);
+  assert.ok(await page.isEnabled('.rules .row button'));
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('text=Save as a file')]);
+  assert.match(cluxel('rules', 'check', await download.path()), /./, 'the saved file is a rule file');
+});
+
+test('a tested line of the reasons opens the rule file there', async () => {
+  const { page } = open;
+  await askNamed(page, 'trees.rq');
+  await page.click('.answer tbody tr.live:first-child');
+  await page.waitForSelector('.why button.place');
+  const [file, line] = (await page.textContent('.why button.place')).split(':');
+  await page.click('.why button.place');
+  assert.ok(await page.isVisible('#rule-text'));
+  const marked = await page.$eval('#rule-text', (area) => area.value.slice(area.selectionStart, area.selectionEnd));
+  const text = await page.evaluate((name) => window.cluxelPage.model.values.rules.find((rule) => name.endsWith(rule.name)).text, file);
+  assert.equal(marked, text.split('\n')[Number(line) - 1]);
+});
+
+test('the card tells why an object is not of another class, or how to ask', async () => {
+  const { page } = open;
+  await askNamed(page, 'trees.rq');
+  await page.click('.answer tbody tr.live:first-child');
+  await page.waitForSelector('#why-not');
+  const id = await page.evaluate(() => window.cluxelPage.store.state.selected.id);
+  const rejected = JSON.parse(cluxel('explain', map, id, '--json')).decisions.filter((one) => !one.accepted).map((one) => one.class.replace('clx:', ''));
+  for (const name of await page.$$eval('#why-not option', (options) => options.map((option) => option.value).filter(Boolean))) {
+    await page.selectOption('#why-not', name);
+    await page.waitForFunction(() => document.querySelector('.why-not-answer').childElementCount > 0);
+    const told = rejected.filter((one) => one === name).length;
+    assert.equal(await page.locator('.why-not-answer .why-not').count(), told, name);
+    if (told === 0) assert.ok((await page.textContent('.why-not-answer code')).endsWith(`--why-not ${name}`));
+  }
+});
+
+test('a statement about the class is accepted by cluxel update', async () => {
+  const { page } = open;
+  await askNamed(page, 'trees.rq');
+  await page.click('.answer tbody tr.live:first-child');
+  await page.click('text=Wrong class, or something to say?');
+  await page.selectOption('#right-class', 'https://w3id.org/cluxel/ontology#StreetLamp');
+  await page.fill('#remark', 'a "lamp" \\ <b>');
+  const statement = await page.textContent('.correction .statement');
+  const tried = join(folder, 'stated.clx');
+  execFileSync('cp', [map, tried]);
+  cluxel('update', tried, '-e', statement);
+  const id = await page.evaluate(() => window.cluxelPage.store.state.selected.iri);
+  const told = cluxel('query', tried, '-e', `SELECT ?label { GRAPH ?g { <${id}> a <https://w3id.org/cluxel/ontology#StreetLamp> ; <http://www.w3.org/2000/01/rdf-schema#label> ?label } }`, '--format', 'json');
+  assert.deepEqual(JSON.parse(told).results.bindings.map((row) => row.label.value), ['a "lamp" \\ <b>']);
+});
+
+test('coverage counts the scans in the column of each point', async () => {
+  const { page } = open;
+  await page.selectOption('#colour-mode', 'coverage');
+  await settled(page);
+  const wrong = await page.evaluate(() => {
+    const { model, viewer } = window.cluxelPage, { quantum } = model.values;
+    let faults = 0, most = 0;
+    for (const tile of viewer.tiles.slice(0, 4)) {
+      const points = tile.levels.at(-1), shorts = new Uint16Array(tile.buffer), bytes = new Uint8Array(tile.buffer);
+      const column = (i) => [0, 1].map((axis) => Math.floor((shorts[8 * i + axis] * quantum) / 0.5)).join();
+      for (let i = 0; i < points; i += 97) {
+        const scans = new Set();
+        for (let k = 0; k < points; ++k) if (column(k) === column(i)) scans.add(shorts[8 * k + 3]);
+        faults += scans.size === bytes[16 * i + 15] ? 0 : 1;
+        most = Math.max(most, scans.size);
+      }
+    }
+    return { faults, most };
+  });
+  assert.equal(wrong.faults, 0);
+  assert.ok(wrong.most > 1);
+});
+
+test('tabs are walked through by arrow keys and have names', async () => {
+  const { page } = open;
+  await page.focus('#tab-questions');
+  for (const id of ['tasks', 'visits', 'rules', 'questions']) {
+    await page.keyboard.press('ArrowRight');
+    assert.equal(await page.evaluate(() => document.activeElement.id), `tab-${id}`);
+    assert.ok(await page.isVisible(`#panel-${id}`));
+    assert.equal(await page.locator('[role=tabpanel]:not([hidden])').count(), 1);
+  }
+  const nameless = await page.evaluate(() => [...document.querySelectorAll('.panel button, .panel input, .panel select, .panel textarea')]
+    .filter((control) => !(control.getAttribute('aria-label') || control.textContent.trim() || control.labels?.[0]?.textContent.trim()))
+    .map((control) => control.outerHTML));
+  assert.deepEqual(nameless, []);
+});
+
+test('a narrow screen holds every panel', async () => {
+  await open.close();
+  open = await openPage(html, { width: 390, height: 780 });
+  for (const id of ['tasks', 'visits', 'rules', 'questions']) {
+    await open.page.click(`#tab-${id}`);
+    if (id === 'visits') await toVisit(open.page, 1);
+    const { wide, tall } = await open.page.evaluate(() => ({ wide: document.documentElement.scrollWidth, tall: document.documentElement.scrollHeight }));
+    assert.ok(wide <= 390 && tall <= 780, `${id}: ${wide} x ${tall}`);
+  }
+});
