@@ -278,7 +278,7 @@ void addApply(CLI::App& rules, Session& session) {
 
 void addRules(CLI::App& app, Session& session) {
   auto options = std::make_shared<RulesOptions>();
-  CLI::App* rules = app.add_subcommand("rules", "check, test, try, compare, fit and apply rules");
+  CLI::App* rules = app.add_subcommand("rules", "check, test, try, compare, fit, teach, describe and apply rules");
   rules->require_subcommand(1);
   CLI::App* checking = rules->add_subcommand("check", "report every fault with file, line and column");
   checking->add_option("files", options->files, "rule files, and SPARQL rules (*.rq); else rules/outdoor.rules.yaml");
@@ -299,6 +299,8 @@ void addRules(CLI::App& app, Session& session) {
   addApply(*rules, session);
   addRuleTrial(*rules, session);
   addRuleFit(*rules, session);
+  addRuleTeaching(*rules, session);
+  addRuleReference(*rules, session);
 }
 
 }  // namespace cluxel::app
