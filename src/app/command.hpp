@@ -76,8 +76,10 @@ void addUpdate(CLI::App& app, Session& session);
 void addAsk(CLI::App& app, Session& session);
 void addTasks(CLI::App& app, Session& session);
 void addRules(CLI::App& app, Session& session);
-void addRuleFit(CLI::App& rules, Session& session);    ///< a subcommand of `rules`
-void addRuleTrial(CLI::App& rules, Session& session);  ///< subcommands of `rules`
+void addRuleFit(CLI::App& rules, Session& session);        ///< a subcommand of `rules`
+void addRuleTrial(CLI::App& rules, Session& session);      ///< subcommands of `rules`
+void addRuleTeaching(CLI::App& rules, Session& session);   ///< a subcommand of `rules`
+void addRuleReference(CLI::App& rules, Session& session);  ///< a subcommand of `rules`
 void addExplain(CLI::App& app, Session& session);
 void addExport(CLI::App& app, Session& session);
 void addView(CLI::App& app, Session& session);

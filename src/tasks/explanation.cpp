@@ -44,20 +44,6 @@ void shortenFiles(rules::Explanation& explanation, const mapping::MapInputs& inp
   for (rules::ExplainedDecision& explained : explanation.decisions) shortenFiles(explained.decision, inputs);
 }
 
-/// "clx:Tree", "Tree" or an IRI as the IRI of a class.
-std::string classNamed(const rules::RuleSet& rules, const std::string& written) {
-  const std::string name =
-      written.starts_with('<') && written.ends_with('>') ? written.substr(1, written.size() - 2) : written;
-  std::vector<std::string> known;
-  for (const rules::ClassEntry& entry : rules.catalogue.classes) {
-    const std::string local = mapping::localName(entry.iri);
-    if (name == entry.iri || name == local || name == rules.shorten(entry.iri)) return entry.iri;
-    known.push_back(local);
-  }
-  const std::string hint = suggestion(name, known);
-  throw Error(ErrorKind::NotFound, "the ontology knows no class '" + name + "'" + (hint.empty() ? "" : "; " + hint));
-}
-
 /// The name without what tables and other formats write around it: <IRI>, map:object/HEX.
 std::string plainName(const std::string& written) {
   std::string_view name = written;
@@ -176,6 +162,25 @@ WhyNotOfThing whyNotOf(const mapping::MapReader& map, const rules::RuleSet& rule
 }
 
 }  // namespace
+
+std::string classNamed(const rules::RuleSet& rules, const std::string& written) {
+  const std::string name =
+      written.starts_with('<') && written.ends_with('>') ? written.substr(1, written.size() - 2) : written;
+  std::vector<std::string> known;
+  for (const rules::ClassEntry& entry : rules.catalogue.classes) {
+    const std::string local = mapping::localName(entry.iri);
+    if (name == entry.iri || name == local || name == rules.shorten(entry.iri)) return entry.iri;
+    known.push_back(local);
+  }
+  const std::string hint = suggestion(name, known);
+  throw Error(ErrorKind::NotFound, "the ontology knows no class '" + name + "'" + (hint.empty() ? "" : "; " + hint));
+}
+
+std::size_t objectNamed(const mapping::MapReader& map, const std::string& name) {
+  const Named named = find(map, name);
+  if (!named.object) throw Error(ErrorKind::NotFound, "'" + name + "' names a primitive, not an object");
+  return *named.object;
+}
 
 ExplanationTexts explainWhyNot(const mapping::MapReader& map, const std::string& name, const std::string& class_name) {
   const mapping::MapInputs inputs = map.inputs();

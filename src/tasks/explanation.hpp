@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mapping/map_reader.hpp"
+#include "rules/language/rule_set.hpp"
 
 namespace cluxel::tasks {
 
@@ -20,6 +21,11 @@ struct ExplanationTexts {
 /// clouds and footprints hold it. Runs the map's own rules again on its scene. Files of rules are named relative to the
 /// folder of the first. Throws Error (NotFound) when nothing or more than one resource has the name.
 ExplanationTexts explainThing(const mapping::MapReader& map, const std::string& name);
+/// The number in MapReader::objects() of the object that has the name. Throws Error (NotFound) when there is none.
+std::size_t objectNamed(const mapping::MapReader& map, const std::string& name);
+/// The IRI of the class that is written as "Tree", "clx:Tree" or an IRI. Throws Error (NotFound) when there is none.
+std::string classNamed(const rules::RuleSet& rules, const std::string& written);
+
 /// Why the thing is not of a class ("StreetSign", "clx:StreetSign" or an IRI): how near each rule of the class comes to
 /// it. Runs the rules twice. Throws Error (NotFound) for a class that the ontology does not know, too.
 ExplanationTexts explainWhyNot(const mapping::MapReader& map, const std::string& name, const std::string& class_name);

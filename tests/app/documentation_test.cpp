@@ -72,7 +72,7 @@ TEST_F(Documentation, BashCompletesCommandsAndOptions) {
   using Words = std::vector<std::string>;
   EXPECT_EQ(completed("cluxel qu"), Words{"query"});
   EXPECT_EQ(completed("cluxel ''").size(), kCommands.size());
-  EXPECT_EQ(completed("cluxel rules ''"), (Words{"check", "test", "apply", "try", "diff", "fit"}));
+  EXPECT_EQ(completed("cluxel rules ''"), (Words{"check", "test", "apply", "try", "diff", "fit", "teach", "doc"}));
   EXPECT_EQ(completed("cluxel build --batch"), Words{"--batch-points"});
   EXPECT_EQ(completed("cluxel rules test --ju"), Words{"--junit"});
   EXPECT_EQ(completed("cluxel --home query bui"), Words{"build"}) << "the word behind --home is a folder";

@@ -119,6 +119,23 @@ TEST_F(RuleTestFolder, ReportsFaultsOfTheTestFileAllAtOnce) {
   }
 }
 
+TEST_F(RuleTestFolder, TakesTheBoxesOfAnEarlierTestAndChangesThem) {
+  const std::string one = binTest("{ count: { clx:SmallObject: 1 } }");
+  const auto like = [&](const std::string& primitives, const std::string& expect) {
+    return run(one + "  - name: another\n    like: a bin\n    primitives: " + primitives + "\n    expect: " + expect +
+               "\n");
+  };
+  EXPECT_TRUE(like("{ b: { attributes: { height: 2 m } } }", "{ count: { clx:SmallObject: 0 } }").passed());
+  EXPECT_TRUE(
+      like("{ b: { box: { center: [0, 0, 2], size: [1, 1, 3] } } }", "{ count: { clx:SmallObject: 0 } }").passed());
+  EXPECT_TRUE(like("{ c: { label: small_structure, box: { center: [5, 0, 0.5], size: [1, 1, 0.9] } } }",
+                   "{ count: { clx:SmallObject: 2 } }")
+                  .passed());
+  EXPECT_THROW(like("{ c: { attributes: { height: 2 m } } }", "{ exactly: true }"), InputError) << "c has no box";
+  EXPECT_THROW(run("  - name: first\n    like: a bin\n    expect: { exactly: true }\n" + one), InputError)
+      << "only earlier tests can be taken";
+}
+
 TEST_F(RuleTestFolder, RefusesExpectationsThatWouldDoNothing) {
   for (const char* expect :
        {"{ not: clx:SmallObject }", "{ exactly: true, not: clx:SmallObject }", "{ count: 3 }", "{ reasons: b }",

@@ -142,7 +142,8 @@ TEST(SliceTests, CompareTheUpperPartOfAGroupWithItsFoot) {
   const Explanation wide = explain(sign(0.6).scene, rules, {}, 0);
   EXPECT_TRUE(wide.object.has_value());
   const DecisionStep& step = wide.decisions.at(0).decision.path.at(0);
-  EXPECT_EQ(step.test, "horizontal_extent of pole from 1.5 to 3 m >= 2 x horizontal_extent of pole from 0 to 1.2 m");
+  EXPECT_EQ(step.test,
+            "horizontal_extent of pole from 1.5 m to 3 m >= 2 x horizontal_extent of pole from 0 m to 1.2 m");
   EXPECT_NEAR(step.measured.value(), 0.6, 1e-6);
   EXPECT_NEAR(step.threshold.value(), 0.2, 1e-6);
   const Explanation narrow = explain(sign(0.15).scene, rules, {}, 0);

@@ -2,6 +2,7 @@
 // `cluxel rules`: checks rule files, runs their tests, and applies rules to a map. command_rules_fit.cpp fits them.
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <thread>
 
 #include "app/command.hpp"
@@ -198,38 +199,43 @@ ExitCode runTests(const RulesOptions& options, Session& session) {
   return passed ? ExitCode::Done : ExitCode::NegativeFinding;
 }
 
-/// When the files that a run depends on were last written.
-std::vector<fs::file_time_type> timesOf(const RulesOptions& options, const Session& session) {
-  const DataHome home = session.dataHome();
-  std::vector<fs::path> files = testFiles(options, home);
+bool isRuleFile(const fs::path& file) {
+  return file.extension() == ".yaml" || file.extension() == ".yml";
+}
+
+/// When the files that a run of `tests` depends on were last written.
+std::map<fs::path, fs::file_time_type> timesOf(const std::vector<fs::path>& tests, const RulesOptions& options,
+                                               const Session& session) {
+  std::vector<fs::path> files = tests;
+  std::error_code ignored;
   try {
-    const rules::ClassCatalogue catalogue = catalogueFor(options, home);
-    for (const fs::path& file : testFiles(options, home))
+    const rules::ClassCatalogue catalogue = catalogueFor(options, session.dataHome());
+    for (const fs::path& file : tests)
       for (const fs::path& more : filesOfRuleTests(file, catalogue)) files.push_back(more);
   } catch (const Error&) {
-    // A faulty file is among those that are known, or beside them: the folder tells.
-    for (const fs::path& file : testFiles(options, home))
-      for (const auto& entry : fs::directory_iterator(fs::absolute(file).parent_path())) files.push_back(entry.path());
+    // A file that is faulty or gone is among those that are known, or beside them: the folder tells.
+    for (const fs::path& file : tests)
+      for (const auto& entry : fs::directory_iterator(fs::absolute(file).parent_path(), ignored))
+        if (isRuleFile(entry.path())) files.push_back(entry.path());
   }
-  std::vector<fs::file_time_type> times;
-  for (const fs::path& file : files) {
-    std::error_code ignored;
-    times.push_back(fs::last_write_time(file, ignored));
-  }
+  std::map<fs::path, fs::file_time_type> times;
+  for (const fs::path& file : files) times[file] = fs::last_write_time(file, ignored);
   return times;
 }
 
-/// Runs the tests again whenever one of their files changes, until the program is stopped.
+/// Runs the tests again whenever one of their files changes, until the program is stopped. Editors replace a file by
+/// renaming another: it may be gone for a moment.
 [[noreturn]] void watch(const RulesOptions& options, Session& session) {
+  const std::vector<fs::path> tests = testFiles(options, session.dataHome());
   while (true) {
-    const auto times = timesOf(options, session);
+    const auto times = timesOf(tests, options, session);
     try {
       options.mutate ? mutate(options, session) : runTests(options, session);
     } catch (const Error& fault) {
       print(fault.what());
     }
     std::fflush(stdout);
-    while (timesOf(options, session) == times) std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    while (timesOf(tests, options, session) == times) std::this_thread::sleep_for(std::chrono::milliseconds(300));
   }
 }
 
@@ -278,7 +284,7 @@ void addApply(CLI::App& rules, Session& session) {
 
 void addRules(CLI::App& app, Session& session) {
   auto options = std::make_shared<RulesOptions>();
-  CLI::App* rules = app.add_subcommand("rules", "check, test, try, compare, fit and apply rules");
+  CLI::App* rules = app.add_subcommand("rules", "check, test, try, compare, fit, teach, describe and apply rules");
   rules->require_subcommand(1);
   CLI::App* checking = rules->add_subcommand("check", "report every fault with file, line and column");
   checking->add_option("files", options->files, "rule files, and SPARQL rules (*.rq); else rules/outdoor.rules.yaml");
@@ -299,6 +305,8 @@ void addRules(CLI::App& app, Session& session) {
   addApply(*rules, session);
   addRuleTrial(*rules, session);
   addRuleFit(*rules, session);
+  addRuleTeaching(*rules, session);
+  addRuleReference(*rules, session);
 }
 
 }  // namespace cluxel::app

@@ -80,7 +80,7 @@ const std::vector<RuleKeyTable>& ruleTestKeyTables() {
       {"test file", {"apiVersion", "rules", "defaults", "tests"}},
       {"defaults", {"ground"}},
       {"ground", {"z"}},
-      {"test", {"name", "todo", "primitives", "adjacency", "cloud", "map", "expect"}},
+      {"test", {"name", "todo", "like", "primitives", "adjacency", "cloud", "map", "expect"}},
       {"primitive", {"label", "box", "attributes"}},
       {"box", {"center", "size", "yaw"}},
       {"expect", {"objects", "exactly", "not", "count", "reasons", "golden", "iou", "min_precision", "min_recall"}},

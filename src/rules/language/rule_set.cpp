@@ -33,11 +33,11 @@ std::string shortNumber(double value) {
   return text;
 }
 
-/// "height of pole", "height of pole from 0 to 1.2 m".
+/// "height of pole", "height of pole from 0 m to 1.2 m".
 std::string describeMeasured(perception::Attribute attribute, const std::string& of,
                              const std::optional<SliceSpec>& slice) {
   std::string text = std::string(perception::attributeInfos()[static_cast<std::size_t>(attribute)].name) + " of " + of;
-  if (slice) text += " from " + shortNumber(slice->from_m) + " to " + shortNumber(slice->to_m) + " m";
+  if (slice) text += " from " + shortNumber(slice->from_m) + " m to " + shortNumber(slice->to_m) + " m";
   return text;
 }
 

@@ -26,7 +26,7 @@ class TestReader {
     std::vector<RuleTest> tests;
     if (list != nullptr)
       for (const YamlNode& node : list->items)
-        if (checkKeys(node, "test", faults_)) tests.push_back(readTest(node));
+        if (checkKeys(node, "test", faults_)) tests.push_back(readTest(node, tests));
     return tests;
   }
 
@@ -39,7 +39,7 @@ class TestReader {
       if (const auto length = readQuantity(*z, perception::Dimension::Length, reading_)) ground_z_m_ = length->value;
   }
 
-  RuleTest readTest(const YamlNode& node) {
+  RuleTest readTest(const YamlNode& node, const std::vector<RuleTest>& earlier) {
     RuleTest test;
     test.at = node.at;
     test.boxes.ground_z_m = ground_z_m_;
@@ -47,34 +47,59 @@ class TestReader {
       test.name = readText(*name, "a name", faults_).value_or("");
     if (const YamlNode* todo = node.find("todo")) test.todo = readFlag(*todo, faults_).value_or(false);
     std::size_t fixtures = 0;
-    if (const YamlNode* primitives = node.find("primitives")) readPrimitives(*primitives, test.boxes), ++fixtures;
+    const YamlNode* like = node.find("like");
+    if (like != nullptr) test.boxes = sceneLike(*like, earlier), ++fixtures;
+    if (const YamlNode* primitives = node.find("primitives")) {
+      readPrimitives(*primitives, test.boxes);
+      if (like == nullptr) ++fixtures;
+    }
     for (const auto& [key, kind] : {std::pair{"cloud", SceneRequest::Kind::Cloud}, {"map", SceneRequest::Kind::Map}})
       if (const YamlNode* path = node.find(key)) {
         ++fixtures;
         if (const auto text = readText(*path, "a file", faults_)) test.scene = SceneRequest{kind, folder_ / *text};
       }
-    if (fixtures != 1) faults_.error(node.at, "a test needs exactly one of: primitives, cloud, map");
+    if (fixtures != 1) faults_.error(node.at, "a test needs exactly one of: primitives, like, cloud, map");
     if (const YamlNode* adjacency = node.find("adjacency")) readAdjacency(*adjacency, test.boxes);
     if (const YamlNode* expect = requireKey(node, "expect", "test", faults_)) readExpect(*expect, test);
     return test;
+  }
+
+  /// The boxes of an earlier test.
+  BoxScene sceneLike(const YamlNode& name, const std::vector<RuleTest>& earlier) {
+    std::vector<std::string> known;
+    for (const RuleTest& test : earlier) {
+      if (name.isScalar() && test.name == name.text && !test.scene) return test.boxes;
+      known.push_back(test.name);
+    }
+    faults_.error(name.at, "no test of boxes above has the name '" + name.text + "'", suggestion(name.text, known));
+    return {};
   }
 
   void readPrimitives(const YamlNode& node, BoxScene& boxes) {
     if (!node.isMap()) return faults_.error(node.at, "'primitives' maps names to boxes");
     for (std::size_t i = 0; i < node.items.size(); ++i) {
       if (!checkKeys(node.items[i], "primitive", faults_)) continue;
+      const std::string& name = node.keys[i].text;
+      const auto same = std::find_if(boxes.boxes.begin(), boxes.boxes.end(),
+                                     [&](const BoxPrimitive& known) { return known.name == name; });
+      if (same != boxes.boxes.end()) {
+        changePrimitive(node.items[i], *same);
+        continue;
+      }
       BoxPrimitive primitive;
-      primitive.name = node.keys[i].text;
-      readPrimitive(node.items[i], primitive);
+      primitive.name = name;
+      for (const char* key : {"label", "box"}) requireKey(node.items[i], key, "primitive", faults_);
+      changePrimitive(node.items[i], primitive);
       boxes.boxes.push_back(std::move(primitive));
     }
   }
 
-  void readPrimitive(const YamlNode& node, BoxPrimitive& primitive) {
-    requireKey(node, "label", "primitive", faults_);
-    const auto labels = readLabels(node, reading_);
+  /// The keys given replace what is known of the primitive.
+  void changePrimitive(const YamlNode& node, BoxPrimitive& primitive) {
+    const auto labels =
+        node.find("label") == nullptr ? std::vector<scan::PrimitiveLabel>{} : readLabels(node, reading_);
     if (!labels.empty()) primitive.label = labels.front();
-    const YamlNode* box = requireKey(node, "box", "primitive", faults_);
+    const YamlNode* box = node.find("box");
     if (box != nullptr && checkKeys(*box, "box", faults_)) {
       primitive.center = readTriple(*box, "center");
       primitive.size = readTriple(*box, "size");

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every line that explains an accepted candidate holds when it is evaluated again: attributes, slices,
+// pairs, relations, finds and evidence. Measures come from brute force over all cluxels, not from the rules' own code.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "rules/box_world.hpp"
+#include "rules/decide/decision_record.hpp"
+#include "rules/propose/condition_eval.hpp"
+#include "rules/testing/rule_test_file.hpp"
+#include "test_paths.hpp"
+
+namespace cluxel::testing {
+
+using namespace scan;
+using namespace perception;
+using namespace rules;
+namespace {
+
+constexpr double kSame = 1e-6;         // of SI units and log-odds
+constexpr double kShareReach_m = 0.5;  // in plan view: shares of edges count for things within it
+
+struct Counts {
+  std::size_t attributes = 0, slices = 0, pairs = 0, relations = 0, labels = 0, finds = 0, evidence = 0;
+};
+
+std::vector<FragmentIndex> aliveOthers(const ReasoningState& state, const Candidate& subject) {
+  std::vector<FragmentIndex> others;
+  for (PrimitiveIndex i = 0; i < state.scene.primitives.size(); ++i)
+    for (FragmentIndex fragment : state.fragments.fragmentsOf(i))
+      if (!std::binary_search(subject.fragments.begin(), subject.fragments.end(), fragment)) others.push_back(fragment);
+  return others;
+}
+
+/// Measures by comparing everything with everything.
+class BruteForce {
+ public:
+  BruteForce(const ReasoningState& state, const Bindings& bindings) : state_(state), bindings_(bindings) {}
+
+  std::optional<double> attribute(const std::string& of, const std::optional<SliceSpec>& slice, Attribute which) const {
+    const Candidate& candidate = bindings_.at(of);
+    if (!slice) return candidate.shape[which];
+    const SceneCluxels& all = state_.scene.cluxels;
+    std::vector<std::uint32_t> inside;
+    for (std::uint32_t cluxel = 0; cluxel < all.size(); ++cluxel) {
+      const double height = all.center[cluxel].z() - state_.scene.primitives[all.primitive[cluxel]].ground_z;
+      const bool mine = std::binary_search(candidate.fragments.begin(), candidate.fragments.end(),
+                                           state_.fragments.fragmentOf(cluxel));
+      if (mine && height >= slice->from_m && height <= slice->to_m) inside.push_back(cluxel);
+    }
+    if (inside.empty()) return std::nullopt;
+    if (inside.size() == state_.fragments.cluxelsOf(candidate).size()) return candidate.shape[which];
+    return extentOf(inside, which);
+  }
+
+  /// Of pairs: the smallest measure to the target (the largest share); absent when there is none.
+  std::optional<double> pair(const Condition& condition) const {
+    const Candidate& subject = bindings_.at(condition.of);
+    if (condition.target->kind == Target::Kind::Name)
+      return measure(condition.measure, subject, bindings_.at(condition.target->name));
+    const bool share = condition.measure == PairMeasure::AdjacentFraction;
+    std::optional<double> best = share ? std::optional(0.0) : std::nullopt;
+    for (FragmentIndex other : aliveOthers(state_, subject)) {
+      if (!isTarget(other, *condition.target)) continue;
+      const Candidate candidate = state_.fragments.candidateOf({other});
+      if (share && measure(PairMeasure::HorizontalGap, subject, candidate) > kShareReach_m) continue;
+      const double value = measure(condition.measure, subject, candidate);
+      if (!best || (share ? value > *best : value < *best)) best = value;
+    }
+    return best;
+  }
+
+  std::optional<double> relation(const Condition& condition) const {
+    const Candidate& subject = bindings_.at(condition.of);
+    if (condition.relation == RelationKind::TouchesGround) return subject.shape[Attribute::Bottom];
+    std::optional<double> best;
+    for (const Relation& relation : state_.scene.relations) {
+      if (relation.kind != condition.relation || !consistsOf(subject, relation.from)) continue;
+      for (FragmentIndex other : state_.fragments.fragmentsOf(relation.to))
+        if (!std::binary_search(subject.fragments.begin(), subject.fragments.end(), other) &&
+            isTarget(other, *condition.target) && (!best || relation.measure < *best))
+          best = relation.measure;
+    }
+    return best;
+  }
+
+ private:
+  bool consistsOf(const Candidate& candidate, PrimitiveIndex primitive) const {
+    return std::any_of(candidate.fragments.begin(), candidate.fragments.end(),
+                       [&](FragmentIndex mine) { return state_.fragments[mine].primitive == primitive; });
+  }
+
+  bool isTarget(FragmentIndex fragment, const Target& target) const {
+    if (target.kind == Target::Kind::Name) {
+      const auto& named = bindings_.at(target.name).fragments;
+      return std::find(named.begin(), named.end(), fragment) != named.end();
+    }
+    if (target.kind == Target::Kind::Labels)
+      return std::find(target.labels.begin(), target.labels.end(), state_.fragments.labelOf(fragment)) !=
+             target.labels.end();
+    const OwnerIndex owner = state_.fragments[fragment].owner;
+    return owner < state_.objects.size() &&
+           state_.rules.catalogue.isA(state_.objects[owner].rule->class_iri, target.object_class);
+  }
+
+  std::optional<double> extentOf(const std::vector<std::uint32_t>& cluxels, Attribute which) const {
+    const SceneCluxels& all = state_.scene.cluxels;
+    double low = 1e300, high = -1e300, points = 0;
+    for (std::uint32_t cluxel : cluxels) {
+      low = std::min(low, all.center[cluxel].z() - all.extent[cluxel].cast<double>().z() / 2);
+      high = std::max(high, all.center[cluxel].z() + all.extent[cluxel].cast<double>().z() / 2);
+      points += all.point_count[cluxel];
+    }
+    if (which == Attribute::Height) return high - low;
+    if (which == Attribute::PointCount) return points;
+    if (which == Attribute::CluxelCount) return static_cast<double>(cluxels.size());
+    return std::nullopt;
+  }
+
+  double measure(PairMeasure which, const Candidate& a, const Candidate& b) const {
+    const SceneCluxels& all = state_.scene.cluxels;
+    if (which == PairMeasure::VerticalGap)
+      return std::max({0.0, a.shape.min.z() - b.shape.max.z(), b.shape.min.z() - a.shape.max.z()});
+    if (which == PairMeasure::AxisDistance) {
+      const Eigen::Vector3d between = a.shape.centroid - b.shape.centroid;
+      if (b.shape.axis.z() <= 0.7) return between.head<2>().norm();
+      return (between - b.shape.axis * (between.z() / b.shape.axis.z())).head<2>().norm();
+    }
+    const auto mine = state_.fragments.cluxelsOf(a), theirs = state_.fragments.cluxelsOf(b);
+    if (which == PairMeasure::AdjacentFraction) {
+      double outward = 0, to_b = 0;
+      for (std::uint32_t cluxel : mine)
+        for (std::uint32_t neighbour : all.neighbours(cluxel)) {
+          if (std::binary_search(mine.begin(), mine.end(), neighbour)) continue;
+          ++outward;
+          to_b += std::binary_search(theirs.begin(), theirs.end(), neighbour) ? 1 : 0;
+        }
+      return outward == 0 ? 0 : to_b / outward;
+    }
+    double best = 1e300;
+    for (std::uint32_t i : mine)
+      for (std::uint32_t j : theirs) {
+        const Eigen::Vector3d apart =
+            ((all.center[i] - all.center[j]).cwiseAbs() - (all.extent[i] + all.extent[j]).cast<double>() / 2)
+                .cwiseMax(0);
+        best = std::min(best, which == PairMeasure::HorizontalGap ? apart.head<2>().norm() : apart.norm());
+      }
+    return best;
+  }
+
+  const ReasoningState& state_;
+  const Bindings& bindings_;
+};
+
+/// What was said of one accepted candidate, against brute force.
+class LinesOfACandidate {
+ public:
+  LinesOfACandidate(const ReasoningState& state, const Rule& rule, const Verdict& verdict, Counts& counts)
+      : state_(state), rule_(rule), verdict_(verdict), counts_(counts), brute_(state, verdict.bindings) {}
+
+  void check() {
+    for (const DecisionStep& step : verdict_.decision.path)
+      if (!step.test.starts_with("finds ")) checkStep(step);
+    for (const TreeNode& node : rule_.nodes)
+      if (const auto* find = std::get_if<FindNode>(&node.what)) checkFind(*find);
+    checkEvidence();
+  }
+
+ private:
+  static void collect(const Condition& condition, std::vector<const Condition*>& all) {
+    const bool negative = condition.kind == Condition::Kind::Not && condition.operands.front().operands.empty();
+    if (condition.operands.empty() || negative) all.push_back(&condition);
+    if (!negative)
+      for (const Condition& operand : condition.operands) collect(operand, all);
+  }
+
+  /// The test of the rule's tree that has these words.
+  const Condition* conditionOf(const DecisionStep& step) const {
+    std::vector<const Condition*> all;
+    for (const TreeNode& node : rule_.nodes)
+      if (const auto* branch = std::get_if<BranchNode>(&node.what)) collect(branch->condition, all);
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Condition* condition) {
+      return describe(*condition) == step.test && condition->at.line == step.line;
+    });
+    return found == all.end() ? nullptr : *found;
+  }
+
+  void checkStep(const DecisionStep& step) {
+    const Condition* condition = conditionOf(step);
+    if (condition == nullptr) {
+      ADD_FAILURE() << rule_.id << ": '" << step.test << "' is no test of the rule";
+      return;
+    }
+    const bool negative = condition->kind == Condition::Kind::Not;
+    const Condition& inner = negative ? condition->operands.front() : *condition;
+    if (const auto holds = evaluate(inner, step.measured)) {
+      EXPECT_EQ(*holds != negative, step.passed) << rule_.id << ": " << step.test;
+    }
+  }
+
+  void expectTold(const Condition& condition, std::optional<double> value, std::optional<double> told) const {
+    if (told) {
+      EXPECT_NEAR(value.value_or(-1), *told, kSame) << rule_.id << ": " << describe(condition);
+    }
+  }
+
+  /// Absent for what brute force cannot measure: the shape of a slice.
+  std::optional<bool> evaluate(const Condition& condition, std::optional<double> told) {
+    using Kind = Condition::Kind;
+    if (condition.kind == Kind::Label) {
+      ++counts_.labels;
+      const auto& fragments = verdict_.bindings.at(condition.of).fragments;
+      return std::all_of(fragments.begin(), fragments.end(), [&](FragmentIndex fragment) {
+        return std::find(condition.labels.begin(), condition.labels.end(), state_.fragments.labelOf(fragment)) !=
+               condition.labels.end();
+      });
+    }
+    if (condition.kind == Kind::Attribute) return evaluateAttribute(condition, told);
+    if (condition.kind == Kind::Pair) {
+      ++counts_.pairs;
+      const auto value = brute_.pair(condition);
+      expectTold(condition, value, told);
+      if (!value)
+        return condition.comparison == Comparison::GreaterEqual || condition.comparison == Comparison::Greater;
+      return compare(condition, *value, condition.value->value);
+    }
+    if (condition.kind == Kind::Relation) {
+      ++counts_.relations;
+      const auto value = brute_.relation(condition);
+      expectTold(condition, value, told);
+      return value && (!condition.value || *value <= condition.value->value);
+    }
+    ADD_FAILURE() << "no brute force for " << describe(condition);
+    return std::nullopt;
+  }
+
+  std::optional<bool> evaluateAttribute(const Condition& condition, std::optional<double> told) {
+    const auto value = brute_.attribute(condition.of, condition.slice, condition.attribute);
+    const bool measurable = value || !condition.slice;
+    if (measurable) expectTold(condition, value, told);
+    if (!measurable && !told) return std::nullopt;
+    const double measured = value ? *value : *told;  // the extent of a slice is taken from the rules' own measure
+    double threshold = condition.value ? condition.value->value : 0;
+    if (condition.ratio_attribute) {
+      const auto other = brute_.attribute(condition.ratio_of, condition.ratio_slice, *condition.ratio_attribute);
+      if (!other) return std::nullopt;
+      threshold = condition.ratio * *other;
+    }
+    ++(condition.slice ? counts_.slices : counts_.attributes);
+    return compare(condition, measured, threshold);
+  }
+
+  /// What was found passes each condition by itself, when it is one fragment.
+  void checkFind(const FindNode& find) {
+    const auto found = std::find_if(verdict_.bindings.candidates.begin(), verdict_.bindings.candidates.end(),
+                                    [&](const auto& bound) { return bound.first == find.name; });
+    if (found == verdict_.bindings.candidates.end() || found->second.fragments.size() != 1) return;
+    ++counts_.finds;
+    for (const Condition& condition : find.where)
+      if (condition.operands.empty()) {
+        const auto holds = evaluate(condition, std::nullopt);
+        EXPECT_TRUE(holds.value_or(true)) << rule_.id << ": " << find.name << " with " << describe(condition);
+      }
+  }
+
+  void checkEvidence() {
+    const Decision& decision = verdict_.decision;
+    std::vector<const EvidenceLine*> lines;
+    for (const auto* list : {&rule_.evidence, &verdict_.accept->evidence})
+      for (const EvidenceLine& line : *list) lines.push_back(&line);
+    ASSERT_EQ(decision.evidence.size(), lines.size() + 1) << rule_.id;
+    double sum = std::log(*decision.evidence[0].measured / (1 - *decision.evidence[0].measured));
+    EXPECT_NEAR(decision.evidence[0].log_odds, sum, kSame);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const EvidenceStep& step = decision.evidence[i + 1];
+      EXPECT_EQ(step.line, lines[i]->at.line);
+      EXPECT_NEAR(step.log_odds, addedBy(*lines[i], step), kSame) << rule_.id << ": " << step.text;
+      sum += step.log_odds;
+      ++counts_.evidence;
+    }
+    EXPECT_NEAR(decision.log_odds, sum, kSame) << rule_.id;
+    EXPECT_NEAR(decision.probability, 1 / (1 + std::exp(-sum)), kSame) << rule_.id;
+  }
+
+  static double addedBy(const EvidenceLine& line, const EvidenceStep& step) {
+    if (line.kind == EvidenceLine::Kind::Test) return step.holds.value_or(false) ? line.weight : 0;
+    if (!step.measured) return line.missing;
+    double added = line.knots.front().log_odds;
+    for (std::size_t i = 1; i < line.knots.size(); ++i) {
+      const auto &from = line.knots[i - 1], &to = line.knots[i];
+      const double share = std::clamp((*step.measured - from.at) / (to.at - from.at), 0.0, 1.0);
+      added += share * (to.log_odds - from.log_odds);
+    }
+    return added;
+  }
+
+  const ReasoningState& state_;
+  const Rule& rule_;
+  const Verdict& verdict_;
+  Counts& counts_;
+  BruteForce brute_;
+};
+
+TEST(ExplanationLines, HoldWhenEvaluatedAgainByBruteForce) {
+  const RuleTestFile file =
+      readRuleTestFile(test::sourceFolder() / "rules/outdoor.rules-test.yaml", outdoorCatalogue(), {});
+  std::vector<BoxScene> scenes{streetOfBoxes()};
+  for (const RuleTest& test : file.tests)
+    if (!test.scene) scenes.push_back(test.boxes);
+  Counts counts;
+  for (const BoxScene& boxes : scenes) {
+    const BuiltBoxScene built = sceneOfBoxes(boxes);
+    ReasoningContext context;
+    context.onCandidate = [&](const ReasoningState& state, const Rule& rule, const Verdict& verdict) {
+      if (!rule.seed.slice) LinesOfACandidate(state, rule, verdict, counts).check();
+    };
+    reason(built.scene, file.rules, context);
+  }
+  EXPECT_GT(counts.attributes, 1000U);
+  EXPECT_GT(counts.slices, 20U);
+  EXPECT_GT(counts.pairs, 50U);
+  EXPECT_GT(counts.relations, 3U);
+  EXPECT_GT(counts.labels, 5U);
+  EXPECT_GT(counts.finds, 30U);
+  EXPECT_GT(counts.evidence, 500U);
+}
+
+}  // namespace
+}  // namespace cluxel::testing

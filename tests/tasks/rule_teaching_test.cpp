@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// A lesson changes the object that it is about and nothing else, or says so; its test passes; its cuts separate.
+#include <gmock/gmock.h>
+
+#include <random>
+#include <set>
+
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/facts/ask_replay.hpp"
+#include "rules/testing/rule_test.hpp"
+#include "tasks/campus_map_fixture.hpp"
+#include "tasks/rule_reference/rule_reference.hpp"
+#include "tasks/rule_teaching/lesson.hpp"
+#include "tasks/rule_teaching/separating_cuts.hpp"
+
+namespace cluxel::tasks {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::set<ContentHash> idsOf(const std::vector<SemanticObject>& objects) {
+  std::set<ContentHash> ids;
+  for (const SemanticObject& object : objects) ids.insert(object.id);
+  return ids;
+}
+
+std::vector<ContentHash> missingIn(const std::set<ContentHash>& some, const std::set<ContentHash>& all) {
+  std::vector<ContentHash> missing;
+  std::set_difference(some.begin(), some.end(), all.begin(), all.end(), std::back_inserter(missing));
+  return missing;
+}
+
+bool testOfCasePasses(const MapReader& map, const Lesson& lesson, const std::filesystem::path& folder) {
+  const MapInputs inputs = map.inputs();
+  for (const NamedText& own : inputs.rules) writeFile(folder / std::filesystem::path(own.name).filename(), own.text);
+  writeFile(folder / "taught.rules.yaml", lesson.rules);
+  writeFile(folder / "taught.rules-test.yaml", lesson.test);
+  return runRuleTests(folder / "taught.rules-test.yaml", classCatalogueOf(inputs.ontology)).passed();
+}
+
+TEST(RuleTeaching, ChangesTheObjectAndNothingElseOrSaysSo) {
+  const MapReader& map = CampusMap::shared().map();
+  const ScratchFolder folder;
+  const std::set<ContentHash> before = idsOf(map.objects());
+  std::size_t taught = 0, clean = 0, refused = 0, tested = 0;
+  for (std::size_t i = 0; i < map.objects().size() && taught < 6; i += 5) {
+    const bool is_sign = localName(map.objects()[i].class_iri) == "StreetSign";
+    Lesson lesson;
+    try {
+      lesson = teach(map, {"#" + std::to_string(i), is_sign ? "Pole" : "StreetSign", {}, "taught.rules.yaml"});
+    } catch (const Error& fault) {
+      EXPECT_EQ(fault.kind(), ErrorKind::InvalidArgument) << fault.what();
+      ++refused;
+      continue;
+    }
+    ++taught;
+    EXPECT_LE(lesson.conditions.size(), 2U);
+    AskReplay oracle(map);
+    const RuleSet rules = rulesForMap(map, "taught.rules.yaml", lesson.rules);
+    const ReasoningResult result = reason(map.scene(), rules, {.oracle = &oracle});
+    const auto made = std::find_if(result.objects.begin(), result.objects.end(),
+                                   [](const SemanticObject& object) { return object.rule_id.starts_with("taught/"); });
+    ASSERT_NE(made, result.objects.end());
+    EXPECT_EQ(localName(made->class_iri), lesson.class_name);
+    const std::set<ContentHash> after = idsOf(result.objects);
+    const bool only_it = missingIn(before, after) == std::vector{map.objects()[i].id} &&
+                         missingIn(after, before) == std::vector{made->id};
+    if (lesson.changesNothingElse()) {
+      EXPECT_TRUE(only_it) << "object " << i << " as " << textOf(lesson);
+      ++clean;
+    }
+    tested += testOfCasePasses(map, lesson, folder.path()) ? 1 : 0;
+    EXPECT_THAT(textOf(lesson),
+                HasSubstr(lesson.changesNothingElse() ? "nothing else changes" : "other things change"));
+  }
+  EXPECT_GE(taught, 3U);
+  EXPECT_GE(clean, 1U);
+  EXPECT_GE(2 * tested, taught) << "the test of a case fails where its neighbours matter, not in general";
+}
+
+TEST(RuleTeaching, RefusesWhatTheObjectIsAlready) {
+  const MapReader& map = CampusMap::shared().map();
+  const std::string own = localName(map.objects()[0].class_iri);
+  EXPECT_THROW(teach(map, {"#0", own, {}, "taught.rules.yaml"}), Error);
+  EXPECT_THROW(teach(map, {"#0", "Tre", {}, "taught.rules.yaml"}), Error);
+}
+
+AttributeValues valuesOf(double height, double roughness) {
+  AttributeValues values{};
+  values[static_cast<std::size_t>(Attribute::Height)] = height;
+  values[static_cast<std::size_t>(Attribute::Roughness)] = roughness;
+  return values;
+}
+
+TEST(SeparatingCuts, HoldForTheWantedAndForNoOther) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::size_t separated = 0, refused = 0;
+  for (int round = 0; round < 300; ++round) {
+    std::vector<AttributeValues> wanted, others;
+    for (int i = 0; i < 1 + round % 2; ++i) wanted.push_back(valuesOf(unit(random), unit(random)));
+    for (int i = 0; i < 1 + round % 12; ++i) others.push_back(valuesOf(unit(random), unit(random)));
+    const auto cuts = separatingCuts(wanted, others);
+    ++(cuts ? separated : refused);
+    if (!cuts) continue;
+    EXPECT_LE(cuts->size(), 2U);
+    const auto passes = [&](const AttributeValues& values) {
+      return std::all_of(cuts->begin(), cuts->end(), [&](const AttributeCut& cut) { return cut.holds(values); });
+    };
+    EXPECT_TRUE(std::all_of(wanted.begin(), wanted.end(), passes));
+    EXPECT_TRUE(std::none_of(others.begin(), others.end(), passes));
+  }
+  EXPECT_GT(separated, 50U);
+  EXPECT_GT(refused, 10U);
+}
+
+TEST(SeparatingCuts, UseOneTestWhereOneIsEnough) {
+  const std::vector wanted{valuesOf(3, 0.5)}, others{valuesOf(1, 0.4), valuesOf(1.5, 0.6), valuesOf(0.5, 0.5)};
+  const auto cuts = separatingCuts(wanted, others);
+  ASSERT_TRUE(cuts.has_value());
+  ASSERT_EQ(cuts->size(), 1U);
+  EXPECT_EQ(conditionText(cuts->front()), "height >= 2 m");
+  EXPECT_FALSE(separatingCuts(std::vector{valuesOf(1, 0.4)}, std::vector{valuesOf(1, 0.4), valuesOf(2, 0.5)}));
+}
+
+TEST(RuleReference, HasEveryAttributeRelationAndRuleAndMeasuresClasses) {
+  const MapReader& map = CampusMap::shared().map();
+  const RuleSet rules =
+      rulesForMap(map, "rules.yaml", "apiVersion: cluxel.rules/v1\ninclude: [ outdoor.rules.yaml ]\n");
+  MeasuredClasses measured;
+  measured.add(map);
+  const std::string text = referenceOf(rules, measured);
+  for (const AttributeInfo& info : attributeInfos())
+    EXPECT_THAT(text, HasSubstr("| `" + std::string(info.name) + "` |"));
+  for (const RelationInfo& info : relationInfos()) EXPECT_THAT(text, HasSubstr("| `" + std::string(info.name) + "` |"));
+  for (const Rule& rule : rules.rules) EXPECT_THAT(text, HasSubstr("#### " + rule.id + "\n"));
+  std::size_t objects = 0;
+  for (const auto& [name, values] : measured.values()) objects += values.size();
+  EXPECT_EQ(objects, map.objects().size());
+}
+
+TEST(RuleReference, QuantilesAreThoseOfSortedValues) {
+  EXPECT_DOUBLE_EQ(quantileOf({3, 1, 2}, 0.5), 2);
+  EXPECT_DOUBLE_EQ(quantileOf({4}, 0.95), 4);
+  EXPECT_DOUBLE_EQ(quantileOf({0, 10}, 0.05), 0.5);
+}
+
+}  // namespace
+}  // namespace cluxel::tasks
