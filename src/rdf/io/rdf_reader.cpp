@@ -205,6 +205,7 @@ void Reading::run() {
   if (!base_) throw InputError({.file = source_.name}, "the base IRI '" + base + "' is malformed");
   start();
   RdfText(source_).forEachPiece([this](const RdfPiece& piece) { return feed(piece); });
+  faults_.enter({});  // the text of the last piece is gone
   if (!failure_ && !is_finished_) raptor_parser_parse_chunk(parser_.get(), nullptr, 0, 1);
   parser_.reset();
   if (failure_) std::rethrow_exception(failure_);
