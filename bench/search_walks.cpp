@@ -64,7 +64,7 @@ bool Walker::walkTo(std::uint32_t goal, const Enough& isEnough, const tasks::Che
     if (way.empty()) return false;
     for (std::size_t i = 1; i < way.size(); ++i) {
       if (world_.closure()[way[i]] != tasks::Closure::Open) {  // seen when one stands before it
-        belief_.closure[way[i]] = tasks::Closure::Thing;
+        belief_.closure[way[i]] = tasks::Closure::Obstacle;
         break;
       }
       length_m_ += (world_.frame().centreOf(way[i]) - world_.frame().centreOf(at_)).norm();

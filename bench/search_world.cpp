@@ -101,11 +101,11 @@ void SearchWorld::rasterise() {
           const auto cell = frame_.cellAt(p.head<2>());
           if (!cell) return;
           const double above = p.z() - static_cast<double>(height_[*cell]);
-          if (above > lowest_m && above < highest_m) closure_[*cell] = Closure::Thing;
+          if (above > lowest_m && above < highest_m) closure_[*cell] = Closure::Obstacle;
           if (std::abs(above - params_.eye_m) < eye_band_m && mesh.transparency < 0.5F) sight_.opaque[*cell] = 1;
         });
   for (std::uint32_t cell = 0; cell < frame_.size(); ++cell)
-    if (!isInSite(frame_.centreOf(cell))) closure_[cell] = Closure::Thing;
+    if (!isInSite(frame_.centreOf(cell))) closure_[cell] = Closure::Obstacle;
 }
 
 tasks::TerrainGrid SearchWorld::terrain() const {
@@ -124,7 +124,7 @@ tasks::PassableGrid SearchWorld::belief() const {
   params.max_step_m = 1;
   tasks::PassableGrid grid = passableOf(terrain(), params, std::vector<bool>(map_->objects().size(), false), {});
   for (std::uint32_t cell = 0; cell < frame_.size(); ++cell)
-    if (!isInSite(frame_.centreOf(cell))) grid.closure[cell] = Closure::Thing;
+    if (!isInSite(frame_.centreOf(cell))) grid.closure[cell] = Closure::Obstacle;
   return grid;
 }
 

@@ -218,11 +218,11 @@ TEST_F(SiteChangesTest, WhatIsGoneClosesNoWay) {
     if (states.after == perception::PresenceState::Absent) gone.insert(states.object);
   std::size_t opened = 0;
   for (std::uint32_t cell = 0; cell < now.closure.size(); ++cell) {
-    if (now.closure[cell] == Closure::Thing) {
-      EXPECT_EQ(ever.closure[cell], Closure::Thing);
+    if (now.closure[cell] == Closure::Obstacle) {
+      EXPECT_EQ(ever.closure[cell], Closure::Obstacle);
       EXPECT_EQ(gone.count(now.blocker[cell]), 0);
     }
-    opened += now.closure[cell] != Closure::Thing && ever.closure[cell] == Closure::Thing ? 1 : 0;
+    opened += now.closure[cell] != Closure::Obstacle && ever.closure[cell] == Closure::Obstacle ? 1 : 0;
   }
   EXPECT_GT(opened, 3);
 }

@@ -118,7 +118,7 @@ TEST(PassableGrid, ClosesThingsNarrowPlacesAndWhatWasNotObserved) {
   const TerrainGrid terrain = terrainFrom({"...?", ".#..", "...."});
   const PassableGrid wide = passable(terrain, 2.5), thin = passable(terrain), gone = passable(terrain, 2.5, true);
   const std::uint32_t thing = wide.frame.index(1, 1), beside = wide.frame.index(2, 1), dark = wide.frame.index(3, 2);
-  EXPECT_EQ(thin.closure[thing], Closure::Thing);
+  EXPECT_EQ(thin.closure[thing], Closure::Obstacle);
   EXPECT_EQ(thin.closure[beside], Closure::Open);
   EXPECT_EQ(wide.closure[beside], Closure::TooNarrow);
   EXPECT_EQ(wide.blocker[beside], 0U);
@@ -162,7 +162,7 @@ TEST(Routes, GoAroundAndTellWhatIsInTheWay) {
   const RouteAnswer closed = findRoutes(wall, {3.5, 2.5}, {3.5, 0.5}, 2);
   EXPECT_TRUE(closed.routes.empty());
   ASSERT_EQ(closed.barriers.size(), 1U);
-  EXPECT_EQ(closed.barriers[0].kind, Barrier::Kind::Thing);
+  EXPECT_EQ(closed.barriers[0].kind, Barrier::Kind::Obstacle);
   EXPECT_EQ(closed.barriers[0].thing, 0U);
   EXPECT_EQ(findRoutes(passable(terrainFrom({".......", "#######", "......."}), 0, true), {3.5, 2.5}, {3.5, 0.5}, 1)
                 .routes.size(),

@@ -87,7 +87,7 @@ void closeCells(const TerrainGrid& terrain, const WayParams& params, const std::
   for (std::uint32_t cell = 0; cell < size; ++cell) {
     grid.clearance_m[cell] = static_cast<float>(nearest.distance[cell] * grid.frame.cell_m);
     if (is_thing[cell] != 0) {
-      grid.closure[cell] = Closure::Thing;
+      grid.closure[cell] = Closure::Obstacle;
     } else if (terrain.seen[cell] == 0 && !params.crosses_unobserved) {
       grid.closure[cell] = Closure::Unobserved;
     } else if (grid.slope[cell] > params.max_slope) {

@@ -9,7 +9,7 @@
 
 namespace cluxel::tasks {
 
-enum class Closure : std::uint8_t { Open, Unobserved, Thing, TooSteep, TooNarrow };
+enum class Closure : std::uint8_t { Open, Unobserved, Obstacle, TooSteep, TooNarrow };
 
 struct WayParams {
   double width_m = 0.6;             ///< free width that is needed
@@ -24,7 +24,7 @@ struct WayParams {
 struct PassableGrid {
   GridFrame frame;
   std::vector<Closure> closure;
-  std::vector<std::uint32_t> blocker;  ///< of Thing and TooNarrow: the thing, as in TerrainGrid
+  std::vector<std::uint32_t> blocker;  ///< of Obstacle and TooNarrow: the object, as in TerrainGrid
   std::vector<float> factor;           ///< cost of a metre, at least 1
   std::vector<float> clearance_m;      ///< from the cell's centre to the nearest thing's cell
   std::vector<float> height, slope;

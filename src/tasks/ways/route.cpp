@@ -83,7 +83,7 @@ std::optional<Barrier> barrierAt(const PassableGrid& grid, std::uint32_t before,
   if (closure == Closure::Unobserved) barrier.kind = Barrier::Kind::Unobserved;
   if (closure == Closure::TooSteep) barrier.kind = Barrier::Kind::TooSteep;
   if (closure == Closure::TooNarrow) barrier.kind = Barrier::Kind::TooNarrow;
-  if (closure == Closure::Thing || closure == Closure::TooNarrow) barrier.thing = grid.blocker[cell];
+  if (closure == Closure::Obstacle || closure == Closure::TooNarrow) barrier.thing = grid.blocker[cell];
   barrier.measured = closure == Closure::TooSteep    ? static_cast<double>(grid.slope[cell])
                      : closure == Closure::TooNarrow ? 2 * static_cast<double>(grid.clearance_m[cell])
                                                      : 0.0;

@@ -47,9 +47,9 @@ struct Route {
 
 /// A stretch of closed cells on the way that crosses the fewest of them.
 struct Barrier {
-  enum class Kind : std::uint8_t { Unobserved, Thing, TooSteep, TooNarrow, Step };
-  Kind kind = Kind::Thing;
-  std::uint32_t thing = kUnnamedThing;           ///< of Thing and TooNarrow
+  enum class Kind : std::uint8_t { Unobserved, Obstacle, TooSteep, TooNarrow, Step };
+  Kind kind = Kind::Obstacle;
+  std::uint32_t thing = kUnnamedThing;           ///< of Obstacle and TooNarrow
   Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< where the stretch begins [m, map]
   double length_m = 0;
   double measured = 0;  ///< slope, free width [m] or height of the step [m]

@@ -30,7 +30,7 @@ const char* kindName(Barrier::Kind kind) {
   switch (kind) {
     case Barrier::Kind::Unobserved:
       return "unobserved";
-    case Barrier::Kind::Thing:
+    case Barrier::Kind::Obstacle:
       return "thing";
     case Barrier::Kind::TooSteep:
       return "too steep";
@@ -87,7 +87,7 @@ std::string barrierText(const mapping::MapReader& map, const Barrier& barrier) {
     case Barrier::Kind::Unobserved:
       text = "ground that was not observed";
       break;
-    case Barrier::Kind::Thing:
+    case Barrier::Kind::Obstacle:
       text = thingName(map, barrier.thing);
       break;
     case Barrier::Kind::TooSteep:
