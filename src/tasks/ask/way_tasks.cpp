@@ -181,8 +181,9 @@ TaskAnswer runCostMap(const TaskContext& context, const TaskValues& values) {
   TaskAnswer answer;
   const double cell_m2 = grid.frame.cell_m * grid.frame.cell_m;
   for (const auto& [closure, name] :
-       {std::pair(Closure::Open, "free"), std::pair(Closure::Obstacle, "thing"), std::pair(Closure::TooSteep, "too steep"),
-        std::pair(Closure::TooNarrow, "too narrow"), std::pair(Closure::Unobserved, "unobserved")}) {
+       {std::pair(Closure::Open, "free"), std::pair(Closure::Obstacle, "thing"),
+        std::pair(Closure::TooSteep, "too steep"), std::pair(Closure::TooNarrow, "too narrow"),
+        std::pair(Closure::Unobserved, "unobserved")}) {
     std::vector<std::uint8_t> marked;
     for (const Closure cell : grid.closure) marked.push_back(cell == closure ? 1 : 0);
     const auto count = std::count(marked.begin(), marked.end(), 1);

@@ -144,8 +144,9 @@ PlotReport evaluationPlots(const MapEvaluation& evaluation, const std::vector<st
                     classFigure("classes-primitives", "Primitives, by point", evaluation.primitives)};
   if (evaluation.has_instances) {
     report.figures.push_back(
-        objectFigure("objects-by-points", "Objects found, half of the points shared", evaluation.by_points));
-    report.figures.push_back(objectFigure("objects-by-box", "Objects found, boxes alike to 80 %", evaluation.by_box));
+        objectFigure("objects-by-points", "Objects found, point sets with IoU of at least 0.5", evaluation.by_points));
+    report.figures.push_back(
+        objectFigure("objects-by-box", "Objects found, boxes with IoU of at least 0.8", evaluation.by_box));
     report.figures.push_back(curveFigure(evaluation));
   }
   report.figures.push_back(calibrationFigure(evaluation.calibration));

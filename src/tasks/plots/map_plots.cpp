@@ -91,7 +91,7 @@ PlotFigure heightsFigure(const MapFigures& figures) {
   PlotFigure figure{"heights",
                     "Heights by class",
                     "Heights of the boxes of objects in metres. Box: the middle half of the objects; line across it: "
-                    "the median; line: from the least to the greatest.",
+                    "the median; line: from the smallest to the largest.",
                     spreadChart("Heights by class", "m", figures.heights),
                     "Heights in metres",
                     {{"class", "objects", "least", "lower quartile", "median", "upper quartile", "greatest"}, {}}};
@@ -107,8 +107,9 @@ PlotFigure runFigure(const MapRun& run, std::size_t number) {
   const std::string name = run.operation + " of " + run.started;
   PlotFigure figure{"run-" + std::to_string(number),
                     "Time of " + name,
-                    "Seconds by stage; the whole run took " + plotNumber(run.seconds) + " s, with " +
-                        std::to_string(run.scans) + " scans.",
+                    "The whole run took " + plotNumber(run.seconds) + " s, with " + std::to_string(run.scans) +
+                        " scans. " +
+                        (run.stages.empty() ? "The map does not hold the times of its stages." : "Seconds by stage."),
                     "",
                     "Seconds by stage of " + name,
                     {{"stage", "seconds"}, {}}};

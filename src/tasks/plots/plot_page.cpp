@@ -52,7 +52,7 @@ std::string tableMarkup(const PlotTable& table, const std::string& name) {
 }
 
 std::string figureMarkup(const PlotFigure& figure) {
-  const std::string table = tableMarkup(figure.table, figure.table_name);
+  const std::string table = figure.table.rows.empty() ? "" : tableMarkup(figure.table, figure.table_name);
   const std::string drawing =
       figure.svg.empty() ? "" : markupElement("figure", {}, markupElement("div", {{"class", "figure"}}, figure.svg));
   const std::string numbers =
