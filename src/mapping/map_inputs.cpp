@@ -62,6 +62,12 @@ void addTexts(ContentHasher& hasher, const std::vector<NamedText>& texts) {
 
 }  // namespace
 
+fs::path nameWithin(const fs::path& folder, const fs::path& file) {
+  const fs::path relative = file.lexically_normal().lexically_relative(folder.lexically_normal());
+  const bool is_below = !relative.empty() && std::find(relative.begin(), relative.end(), "..") == relative.end();
+  return is_below ? relative : file.filename();
+}
+
 void describe(MapParams& params, perception::ParameterVisitor& visitor) {
   describe(params.labelling, visitor);
   describe(params.component, visitor);

@@ -28,6 +28,9 @@ namespace cluxel::mapping {
 inline constexpr std::uint32_t kStagesVersion = 4;
 
 /// An authored file as stored in a map.
+/// The name of a file relative to a folder; of a file outside of it the last part.
+std::filesystem::path nameWithin(const std::filesystem::path& folder, const std::filesystem::path& file);
+
 struct NamedText {
   std::string name;  ///< file name, for messages
   std::string text;

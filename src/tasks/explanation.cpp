@@ -31,11 +31,7 @@ rules::RuleSet rulesOf(const mapping::MapInputs& inputs) {
 void shortenFiles(rules::Decision& decision, const mapping::MapInputs& inputs) {
   if (inputs.rules.empty()) return;
   const std::filesystem::path folder = std::filesystem::path(inputs.rules.front().name).parent_path();
-  const auto shorten = [&](std::string& name) {
-    const std::filesystem::path file(name), relative = file.lexically_relative(folder);
-    const bool is_below = !relative.empty() && *relative.begin() != "..";
-    name = (is_below ? relative : file.filename()).string();
-  };
+  const auto shorten = [&](std::string& name) { name = mapping::nameWithin(folder, name).string(); };
   for (rules::DecisionStep& step : decision.path) shorten(step.file);
   for (rules::EvidenceStep& step : decision.evidence) shorten(step.file);
 }

@@ -29,9 +29,7 @@ std::vector<std::pair<fs::path, std::string>> includedFiles(const mapping::MapRe
   const mapping::MapInputs inputs = map.inputs();
   for (const mapping::NamedText& own : inputs.rules) {
     const fs::path base = fs::path(inputs.rules.front().name).parent_path();
-    const fs::path relative = fs::path(own.name).lexically_relative(base);
-    const bool is_below = !relative.empty() && *relative.begin() != "..";
-    files.emplace_back(folder / (is_below ? relative : fs::path(own.name).filename()), own.text);
+    files.emplace_back(folder / mapping::nameWithin(base, own.name), own.text);
   }
   return files;
 }

@@ -36,6 +36,7 @@ Reach reachOf(const Condition& condition, const CluxelGrid& grid, double limit_m
     case Kind::Class:
       return 0;
     case Kind::Pair:
+      if (condition.measure == PairMeasure::VerticalGap) return std::nullopt;
       return std::min(limit_m, kMaxMeasure_m) + kMeasureMargin_m + grid.slack_m();
     case Kind::Relation:
       if (condition.relation == perception::RelationKind::TouchesGround) return 0;

@@ -12,7 +12,7 @@
 
 namespace cluxel::rules {
 
-/// The distance in plan view from a seed beyond which ownership does not matter to a rule's decision about it [m].
+/// The distance in plan view from a seed's primitives beyond which ownership does not matter to a rule's decision [m].
 /// Absent when no bound follows from the rule's text.
 std::optional<double> reachOf(const Rule& rule, const CluxelGrid& grid);
 

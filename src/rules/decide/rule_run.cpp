@@ -56,9 +56,10 @@ class RuleRun {
   Eigen::AlignedBox2d boxOf(const std::vector<FragmentIndex>& group) const {
     Eigen::AlignedBox2d box;
     for (FragmentIndex fragment : group) {
-      const Shape& shape = state_.fragments.shapeOf(fragment);
-      box.extend(Eigen::Vector2d(shape.min.head<2>()));
-      box.extend(Eigen::Vector2d(shape.max.head<2>()));
+      // Relations lead from whole primitives to whole primitives.
+      const perception::Primitive& primitive = state_.scene.primitives[state_.fragments[fragment].primitive];
+      box.extend(Eigen::Vector2d(primitive.min.head<2>()));
+      box.extend(Eigen::Vector2d(primitive.max.head<2>()));
     }
     return box;
   }

@@ -37,7 +37,7 @@ class Teaching {
     for (const AttributeCut& cut : lesson_.cuts) lesson.conditions.push_back(conditionText(cut));
     lesson.rules = rulesThatTakeTheCase();
     lesson.guarded = lesson_.guarded;
-    lesson.test = testText(map_, lesson_);
+    lesson.test = testText(map_, rules_, lesson_);
     lesson.difference = trialOf(map_, rulesForMap(map_, request_.rule_file, lesson.rules));
     return lesson;
   }

@@ -129,9 +129,7 @@ std::string includingText(const mapping::MapReader& map, const std::string& body
   const std::filesystem::path folder =
       inputs.rules.empty() ? "" : std::filesystem::path(inputs.rules.front().name).parent_path();
   for (std::size_t i = 0; i < inputs.rule_roots && i < inputs.rules.size(); ++i) {
-    const std::filesystem::path file(inputs.rules[i].name), relative = file.lexically_relative(folder);
-    const bool is_below = !relative.empty() && *relative.begin() != "..";
-    files += (files.empty() ? "" : ", ") + scalarText((is_below ? relative : file.filename()).string());
+    files += (files.empty() ? "" : ", ") + scalarText(mapping::nameWithin(folder, inputs.rules[i].name).string());
   }
   return "apiVersion: cluxel.rules/v1\ninclude: [ " + files + " ]\n" + body;
 }
@@ -160,7 +158,7 @@ std::string ruleText(const mapping::MapReader& map, const rules::RuleSet& rules,
   return includingText(map, body);
 }
 
-std::string testText(const mapping::MapReader& map, const LessonCase& lesson) {
+std::string testText(const mapping::MapReader& map, const rules::RuleSet& rules, const LessonCase& lesson) {
   const perception::Scene& scene = map.scene();
   const Eigen::Vector3d at(scene.primitives[lesson.seeds.front()].box.center.x(),
                            scene.primitives[lesson.seeds.front()].box.center.y(),
@@ -180,9 +178,8 @@ std::string testText(const mapping::MapReader& map, const LessonCase& lesson) {
             ", yaw: " + numberText(primitive.box.yaw_rad * 180 / std::numbers::pi) +
             " deg },\n            attributes: { " + attributesText(primitive) + " } }\n";
   }
-  const std::string class_name = mapping::localName(lesson.class_iri);
-  return text + "    expect: { objects: [ { class: clx:" + class_name + ", primitives: [" + names +
-         "], rule: " + lesson.rule_id + " } ] }\n";
+  return text + "    expect: { objects: [ { class: " + scalarText(rules.shorten(lesson.class_iri)) + ", primitives: [" +
+         names + "], rule: " + lesson.rule_id + " } ] }\n";
 }
 
 }  // namespace cluxel::tasks

@@ -26,6 +26,6 @@ std::string includingText(const mapping::MapReader& map, const std::string& body
 /// The rule file of the lesson. Throws Error when a rule to be guarded cannot be found in the map's rule files.
 std::string ruleText(const mapping::MapReader& map, const rules::RuleSet& rules, LessonCase& lesson);
 /// The test file: the seeds as boxes with all their attributes.
-std::string testText(const mapping::MapReader& map, const LessonCase& lesson);
+std::string testText(const mapping::MapReader& map, const rules::RuleSet& rules, const LessonCase& lesson);
 
 }  // namespace cluxel::tasks

@@ -154,9 +154,7 @@ rules::RuleSet rulesForMap(const mapping::MapReader& map, const std::string& nam
     // Messages must not show the folders of the machine that built the map.
     const std::filesystem::path folder = std::filesystem::path(inputs.rules.front().name).parent_path();
     for (const mapping::NamedText& own : inputs.rules) {
-      const std::filesystem::path file(own.name), relative = file.lexically_relative(folder);
-      const bool is_below = !relative.empty() && *relative.begin() != "..";
-      sources.push_back({(is_below ? relative : file.filename()).string(), own.text});
+      sources.push_back({mapping::nameWithin(folder, own.name).string(), own.text});
     }
   }
   return loadRuleTexts(sources, 1, classCatalogueOf(inputs.ontology), mapping::withCheckedQueries()).require();

@@ -18,8 +18,11 @@ export class WhyNotQuestion {
     this.element = el('div', { class: 'why-not-question' }, el('label', { for: 'why-not', class: 'label' }, 'Why is it not a …?'), select, this.answer);
   }
 
+  private asked = 0;
+
   private async ask(name: string): Promise<void> {
     this.answer.replaceChildren();
+    ++this.asked;
     if (!name) return;
     if (this.service) return this.askService(name);
     const verdicts = ((await this.model.reasonsOf(this.object))?.decisions ?? []).filter((verdict) =>
@@ -30,12 +33,15 @@ export class WhyNotQuestion {
   }
 
   private async askService(name: string): Promise<void> {
+    const asked = ++this.asked;  // a late answer to an earlier question is dropped
     this.answer.replaceChildren(el('p', { class: 'note' }, 'Asking…'));
     try {
       const told = await this.service!.json<WhyNot>(`objects/${this.object.id}/explanation?whyNot=${encodeURIComponent(name)}`);
+      if (asked !== this.asked) return;
       if (told.rules.length > 0) this.show(told.rules);
       else this.answer.replaceChildren(el('p', { class: 'note' }, 'No rule makes this class.'));
     } catch (fault) {
+      if (asked !== this.asked) return;
       this.answer.replaceChildren(el('p', { class: 'note fault' }, fault instanceof Error ? fault.message : String(fault)));
     }
   }

@@ -19,7 +19,10 @@ class LeftJoinOperator : public UnaryOperator {
     slots_ = mergedSlots(slots_, without(optional_.top->slots(), optional_.origin));
   }
   std::string label(const PlanNames&) const override { return "optional"; }
-  void stopAfter(EnoughRows enough) override { optional_.top->stopAfter(std::move(enough)); }
+  void stopAfter(EnoughRows enough) override {
+    // Filters above see rows without a match too: whether there is one must not follow from them.
+    if (enough.conditions.empty()) optional_.top->stopAfter(std::move(enough));
+  }
 
  protected:
   void reopen(bool fresh) override {

@@ -110,11 +110,15 @@ class RangeJoinOperator : public UnaryOperator {
   /// Fills found_ with as many rows that pass the conditions as are needed, the nearest first.
   void searchNearest() {
     Evaluator evaluator(runtime());
-    std::size_t looked_at = 0;
+    std::uint64_t counted = 0;
     const auto isEnough = [&](std::uint32_t row) {
-      ++looked_at;
-      if (isNeeded(row, evaluator)) found_.push_back(row);
-      return found_.size() >= enough_->count;
+      runtime().guard.work(1);
+      if (!isNeeded(row, evaluator)) return false;
+      found_.push_back(row);
+      // COUNT of a variable passes over rows that do not bind it.
+      const bool counts = enough_->counted == kNoSlot || pair_.at(enough_->counted, 0) != kUnbound;
+      counted += counts ? 1 : 0;
+      return counted >= enough_->count;
     };
     if (!std::any_of(build_.loose().begin(), build_.loose().end(), isEnough)) {
       BoxTree::Box from;
@@ -125,7 +129,6 @@ class RangeJoinOperator : public UnaryOperator {
           from, [&](std::uint32_t row, double min_distance) { return min_distance <= farthest && !isEnough(row); });
     }
     std::sort(found_.begin(), found_.end());
-    runtime().guard.work(1 + looked_at / 8);
   }
 
   bool isNeeded(std::uint32_t row, Evaluator& evaluator) {
