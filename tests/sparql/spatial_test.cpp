@@ -267,6 +267,14 @@ TEST(NearestByCount, IsUsedOnlyWhereEveryPairOfAGroupIsCounted) {
                                     others + "} GROUP BY ?a ?b HAVING(COUNT(?c) < 5)"));
   EXPECT_TRUE(stopsEarly(
       store, "SELECT ?a ?b { " + pairs + "OPTIONAL { " + others + "} } GROUP BY ?a ?b HAVING(COUNT(?c) < 3)"));
+  EXPECT_FALSE(stopsEarly(store, "SELECT ?a ?b { " + pairs + "OPTIONAL { " + others +
+                                     "} FILTER(!BOUND(?c) || ?c != ?b) } GROUP BY ?a ?b HAVING(COUNT(?c) < 3)"))
+      << "a filter above an OPTIONAL sees what has no match";
+  const std::string some_labels =
+      "?c geo:asWKT ?gc . { SELECT ?c ?l { ?c :kind \"1\" OPTIONAL { ?c :kind ?l FILTER(STR(?c) < "
+      "\"http://example.org/n5\") } } } FILTER(geof:distance(?ga, ?gc) <= geof:distance(?ga, ?gb)) ";
+  stopsEarly(store,
+             "SELECT ?a ?b (COUNT(?l) AS ?n) { " + pairs + some_labels + "} GROUP BY ?a ?b HAVING(COUNT(?l) < 3)");
   EXPECT_FALSE(stopsEarly(store, all + "HAVING(COUNT(DISTINCT ?c) <= 3)")) << "the pairs of one thing count once";
   EXPECT_FALSE(stopsEarly(store, all + "HAVING(COUNT(?c) >= 3)"));
   EXPECT_FALSE(stopsEarly(store, all + "HAVING(COUNT(?c) < 3 || MAX(?gc) = MIN(?gc))"));
