@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reach adds up what each kind of condition looks at.
+// The reach of a rule is the largest distance at which one of its conditions looks.
 #include "rules/decide/rule_reach.hpp"
 
 #include <algorithm>
