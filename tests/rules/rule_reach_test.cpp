@@ -35,6 +35,33 @@ TEST(CluxelGrid, FindsAllCluxelsWithinADistance) {
     }
 }
 
+TEST(RuleReach, CoversWhatATestLooksAt) {
+  const Scene scene = sceneOfBoxes(streetOfBoxes()).scene;
+  const CluxelGrid grid(scene.cluxels);
+  const auto reach = [&](const std::string& test) {
+    const RuleSet rules = rulesOf("[clx:Bush]", R"(
+  - id: bush/any
+    class: clx:Bush
+    seed: { label: scatter, as: leaves }
+    tree:
+      test: )" + test + R"(
+      yes: { accept: { part: clx:Bush, confidence: 0.9 } }
+      no: { reject: other }
+)");
+    return reachOf(rules.rules.front(), grid);
+  };
+  EXPECT_EQ(reach("height >= 2 m"), 0.0);
+  EXPECT_GE(reach("gap to clx:Bush <= 3 m"), 3.5) << "gaps are told up to half a metre beyond the limit";
+  EXPECT_GE(reach("touches clx:Bush"), 1.0);
+  EXPECT_EQ(reach("vertical_gap to clx:Bush <= 3 m"), std::nullopt) << "it holds at any distance in plan view";
+  const RuleSet shipped = outdoorRules();
+  for (const Rule& rule : shipped.rules) {
+    const bool finds = std::any_of(rule.nodes.begin(), rule.nodes.end(),
+                                   [](const TreeNode& node) { return std::holds_alternative<FindNode>(node.what); });
+    EXPECT_TRUE(!finds || !reachOf(rule, grid)) << rule.id << " looks around what it finds";
+  }
+}
+
 TEST(NearbyChanges, TellsOfEveryChangeWithinReach) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> place(-60, 60), size(0, 9);

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/file_bytes.hpp"
+#include "base/quantile.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/facts/ask_replay.hpp"
 #include "rules/testing/rule_test.hpp"
@@ -141,9 +142,9 @@ TEST(RuleReference, HasEveryAttributeRelationAndRuleAndMeasuresClasses) {
 }
 
 TEST(RuleReference, QuantilesAreThoseOfSortedValues) {
-  EXPECT_DOUBLE_EQ(quantileOf({3, 1, 2}, 0.5), 2);
-  EXPECT_DOUBLE_EQ(quantileOf({4}, 0.95), 4);
-  EXPECT_DOUBLE_EQ(quantileOf({0, 10}, 0.05), 0.5);
+  EXPECT_DOUBLE_EQ(quantileOf(std::vector<double>{1, 2, 3}, 0.5), 2);
+  EXPECT_DOUBLE_EQ(quantileOf(std::vector<double>{4}, 0.95), 4);
+  EXPECT_DOUBLE_EQ(quantileOf(std::vector<double>{0, 10}, 0.05), 0.5);
 }
 
 }  // namespace

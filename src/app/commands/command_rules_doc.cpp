@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel rules doc`: the reference of attributes, relations, measures and rules.
 #include "app/command.hpp"
+#include "app/shared_options.hpp"
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/facts/map_oracle.hpp"
 #include "mapping/map_inputs.hpp"
-#include "rdf/file/map_check.hpp"
 #include "rules/language/rule_loader.hpp"
 #include "tasks/rule_reference/rule_reference.hpp"
 
@@ -19,6 +19,7 @@ struct ReferenceOptions {
 };
 
 ExitCode writeReference(const ReferenceOptions& options, const Session& session) {
+  refuseToReplaceMap(options.out);
   const DataHome home = session.dataHome();
   std::vector<fs::path> files;
   for (const fs::path& file : options.files) files.push_back(home.locate("rules", file));
@@ -28,12 +29,8 @@ ExitCode writeReference(const ReferenceOptions& options, const Session& session)
   tasks::MeasuredClasses measured;
   for (const fs::path& file : options.maps) measured.add(mapping::MapReader(file));
   const std::string text = referenceOf(rules, measured);
-  std::error_code ignored;
   if (options.out.empty())
     print(text);
-  else if (fs::is_regular_file(options.out, ignored) && rdf::looksLikeMap(options.out))
-    throw Error(ErrorKind::InvalidArgument,
-                options.out.string() + " is a map, which would be replaced; name another file");
   else
     writeFile(options.out, text);
   return ExitCode::Done;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/quantile.hpp"
 #include "tasks/plots/plot_drawing.hpp"
 
 namespace cluxel::tasks {
@@ -83,14 +84,9 @@ PlotSpread spreadOf(const std::string& label, std::vector<double> values) {
   PlotSpread spread{label, values.size()};
   if (values.empty()) return spread;
   std::sort(values.begin(), values.end());
-  const auto at = [&](double share) {
-    const double place = share * static_cast<double>(values.size() - 1);
-    const auto below = static_cast<std::size_t>(place);
-    const double above = values[std::min(below + 1, values.size() - 1)];
-    return values[below] + (place - static_cast<double>(below)) * (above - values[below]);
-  };
   spread.least = values.front(), spread.most = values.back();
-  spread.lower = at(0.25), spread.middle = at(0.5), spread.upper = at(0.75);
+  spread.lower = quantileOf(values, 0.25), spread.middle = quantileOf(values, 0.5);
+  spread.upper = quantileOf(values, 0.75);
   return spread;
 }
 

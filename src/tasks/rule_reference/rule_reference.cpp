@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "base/quantile.hpp"
 #include "rules/propose/candidate.hpp"
 
 namespace cluxel::tasks {
@@ -119,6 +120,7 @@ std::string tableOf(const std::vector<Measures>& objects) {
       if (const double value = object[static_cast<std::size_t>(info.attribute)]; std::isfinite(value))
         values.push_back(value);
     if (values.empty()) continue;
+    std::sort(values.begin(), values.end());
     text += "| `" + std::string(info.name) + "` | " + unitText(info.dimension) + " |";
     for (const double share : {0.05, 0.5, 0.95})
       text += " " + numberText(quantileOf(values, share), info.dimension) + " |";
@@ -148,14 +150,6 @@ void MeasuredClasses::add(const mapping::MapReader& map) {
     values_[mapping::localName(object.class_iri)].push_back(
         rules::shapeOfCluxels(scene, cluxels, all, whole).attributes);
   }
-}
-
-double quantileOf(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  const double place = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, values.size() - 1);
-  return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
 std::string referenceOf(const rules::RuleSet& rules, const MeasuredClasses& measured) {

@@ -28,9 +28,6 @@ class MeasuredClasses {
   std::map<std::string, std::vector<std::array<double, perception::kAttributeCount>>> values_;
 };
 
-/// The value below which a share of the values lies, interpolated between neighbours. `values` must not be empty.
-double quantileOf(std::vector<double> values, double share);
-
 /// Attributes, relations and measures; the rules in the order of the strata with their trees in words; and, when maps
 /// were measured, the 5 %, 50 % and 95 % quantiles of each attribute by class.
 std::string referenceOf(const rules::RuleSet& rules, const MeasuredClasses& measured);
