@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Monotone chain for the hull. The smallest box tries the direction of every side.
+// Monotone chain for the hull, after points well inside an octagon of extreme points are dropped (Akl and Toussaint
+// 1978). The smallest box tries the direction of every side.
 #include "base/convex_hull.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "base/steady_angle.hpp"
 
@@ -13,9 +16,16 @@ namespace cluxel {
 
 namespace {
 
-bool lessXy(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-}
+/// Inside by less than this counts as on the border, so that rounding drops no corner [m].
+constexpr double kInside_m = 1e-6;
+/// Fewer points are sorted faster than filtered.
+constexpr std::size_t kMinFiltered = 24;
+
+struct LessXy {
+  bool operator()(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const {
+    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
+  }
+};
 
 double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
@@ -30,6 +40,30 @@ void appendChain(Iterator begin, Iterator end, std::vector<Eigen::Vector2d>& hul
     hull.push_back(*point);
   }
   hull.pop_back();
+}
+
+/// Drops the points inside the octagon whose corners are the extreme points in eight directions.
+void dropInner(std::vector<Eigen::Vector2d>& points) {
+  // Counter-clockwise, as the corners of a hull.
+  const std::array<Eigen::Vector2d, 8> directions{
+      {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
+  std::array<Eigen::Vector2d, 8> corner;
+  std::array<double, 8> farthest;
+  farthest.fill(-std::numeric_limits<double>::infinity());
+  for (const Eigen::Vector2d& point : points)
+    for (std::size_t i = 0; i < 8; ++i)
+      if (const double far = point.dot(directions[i]); far > farthest[i]) farthest[i] = far, corner[i] = point;
+  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> sides;  // start, and the unit vector along it
+  for (std::size_t i = 0; i < 8; ++i)
+    if (const Eigen::Vector2d side = corner[(i + 1) % 8] - corner[i]; side.norm() > kInside_m)
+      sides.emplace_back(corner[i], side.normalized());
+  if (sides.size() < 3) return;
+  std::erase_if(points, [&](const Eigen::Vector2d& point) {
+    return std::all_of(sides.begin(), sides.end(), [&](const auto& side) {
+      const Eigen::Vector2d to = point - side.first;
+      return side.second.x() * to.y() - side.second.y() * to.x() > kInside_m;
+    });
+  });
 }
 
 /// The corners of the box along a direction, in the frame of that direction.
@@ -71,7 +105,8 @@ FootprintBox longSideFirst(const AlignedBox& aligned) {
 }  // namespace
 
 std::vector<Eigen::Vector2d> convexHull(std::vector<Eigen::Vector2d> points) {
-  std::sort(points.begin(), points.end(), lessXy);
+  if (points.size() >= kMinFiltered) dropInner(points);
+  std::sort(points.begin(), points.end(), LessXy());
   points.erase(std::unique(points.begin(), points.end()), points.end());
   if (points.size() < 3) return points;
   std::vector<Eigen::Vector2d> hull;

@@ -56,6 +56,37 @@ TEST(ConvexHull, HasTheEdgesThatBruteForceFinds) {
   }
 }
 
+/// Points in a box, in a disc, on a circle and along a line, far from the origin: what lies inside is dropped first.
+Points cloudOf(std::mt19937& random, int kind) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  Points points;
+  while (points.size() < 400) {
+    Eigen::Vector2d p(unit(random), unit(random));
+    if (kind == 1 && p.norm() > 1) continue;
+    if (kind == 2) p.normalize();
+    if (kind == 3) p.y() = 0.3 * p.x() + 1e-9 * p.y();
+    points.push_back(Eigen::Vector2d(443000, 4477000) + 8 * p);
+  }
+  return points;
+}
+
+TEST(ConvexHull, OfManyPointsHasAllOfThemInside) {
+  std::mt19937 random(9);
+  for (int round = 0; round < 40; ++round) {
+    const Points points = cloudOf(random, round % 4);
+    const Points hull = convexHull(points);
+    ASSERT_GE(hull.size(), 2U) << "round " << round;
+    for (std::size_t i = 0; i < hull.size(); ++i) {
+      const Eigen::Vector2d side = (hull[(i + 1) % hull.size()] - hull[i]).normalized();
+      for (const Eigen::Vector2d& p : points)
+        ASSERT_GT(side.x() * (p - hull[i]).y() - side.y() * (p - hull[i]).x(), -2e-9) << "round " << round;
+    }
+    if (round % 4 == 2) {
+      EXPECT_EQ(hull.size(), points.size()) << "every point of a circle is a corner";
+    }
+  }
+}
+
 TEST(ConvexHull, TakesFewAndEqualAndCollinearPoints) {
   EXPECT_TRUE(convexHull({}).empty());
   EXPECT_EQ(convexHull({{1, 2}, {1, 2}, {1, 2}}), (Points{{1, 2}}));
