@@ -3,12 +3,12 @@
 #include "rules/objects/crown_splitting.hpp"
 
 #include <algorithm>
-#include <array>
 #include <boost/graph/dijkstra_shortest_paths_no_color_map.hpp>
 #include <boost/property_map/function_property_map.hpp>
 #include <cmath>
 #include <compare>
 #include <limits>
+#include <tuple>
 
 #include "rules/propose/cluxel_grid.hpp"
 
@@ -20,8 +20,8 @@ constexpr double kJumpPenalty = 2.0;
 constexpr double kTop_m = 0.5;
 constexpr double kRounding_m = 1e-6;  // half diagonals are rounded to floats
 
-/// Crown cluxels in cells as wide as the largest allowed jump. Finds pairs across gaps that no edge of the cluxel graph
-/// bridges.
+/// Crown cluxels that the search has not settled yet, in columns ordered by height. Finds pairs across gaps that no
+/// edge of the cluxel graph bridges.
 class JumpGrid {
  public:
   struct Entry {
@@ -30,40 +30,66 @@ class JumpGrid {
     std::size_t at = 0;  ///< number in the crown
   };
 
+  /// `centres_m` is the largest distance of centres that is looked for.
   JumpGrid(const perception::SceneCluxels& all, std::span<const std::uint32_t> crown, double centres_m)
-      : cell_m_(std::max(centres_m, 0.05)) {
-    std::vector<std::pair<Cell, std::size_t>> order;
-    for (std::size_t i = 0; i < crown.size(); ++i) order.emplace_back(cellOf(all.center[crown[i]]), i);
+      : reach_m_(centres_m), cell_m_(std::max(centres_m / 2, 0.05)) {
+    std::vector<std::tuple<std::int64_t, std::int64_t, double, std::size_t>> order;
+    order.reserve(crown.size());
+    for (std::size_t i = 0; i < crown.size(); ++i) {
+      const Eigen::Vector3d& centre = all.center[crown[i]];
+      order.emplace_back(cellOf(centre.x()), cellOf(centre.y()), centre.z(), i);
+    }
     std::sort(order.begin(), order.end());
-    for (const auto& [cell, i] : order) {
-      if (cells_.empty() || cells_.back().first != cell) cells_.emplace_back(cell, entries_.size());
+    entries_.reserve(order.size());
+    for (const auto& [x, y, z, i] : order) {
+      const auto next = static_cast<std::uint32_t>(entries_.size());
+      if (columns_.empty() || columns_.back().x != x || columns_.back().y != y) columns_.push_back({x, y, next, next});
+      columns_.back().end = next + 1;
       entries_.push_back({all.center[crown[i]], static_cast<double>(all.extent[crown[i]].norm()) / 2, i});
     }
   }
 
+  /// Calls `visit` for every cluxel whose centre may be within the distance.
   template <typename Visit>
   void near(const Eigen::Vector3d& p, const Visit& visit) const {
-    const Cell centre = cellOf(p);
-    for (int dx = -1; dx <= 1; ++dx)
-      for (int dy = -1; dy <= 1; ++dy) {
-        const Cell first{centre[0] + dx, centre[1] + dy, centre[2] - 1}, last{first[0], first[1], centre[2] + 1};
-        auto cell = std::lower_bound(cells_.begin(), cells_.end(), std::pair(first, std::size_t{0}));
-        for (; cell != cells_.end() && cell->first <= last; ++cell) {
-          const std::size_t end = cell + 1 == cells_.end() ? entries_.size() : (cell + 1)->second;
-          for (std::size_t i = cell->second; i < end; ++i) visit(entries_[i]);
-        }
-      }
+    const std::int64_t last_y = cellOf(p.y() + reach_m_);
+    for (std::int64_t x = cellOf(p.x() - reach_m_); x <= cellOf(p.x() + reach_m_); ++x)
+      for (auto column = firstColumn(x, cellOf(p.y() - reach_m_));
+           column != columns_.end() && column->x == x && column->y <= last_y; ++column)
+        for (auto entry = firstAbove(*column, p.z() - reach_m_);
+             entry != entries_.begin() + column->end && entry->centre.z() <= p.z() + reach_m_; ++entry)
+          visit(*entry);
+  }
+
+  void remove(const Eigen::Vector3d& centre, std::size_t at) {
+    const std::int64_t x = cellOf(centre.x()), y = cellOf(centre.y());
+    Column& column = columns_[static_cast<std::size_t>(firstColumn(x, y) - columns_.begin())];
+    const auto begin = entries_.begin() + column.begin, end = entries_.begin() + column.end;
+    const auto entry = std::find_if(begin, end, [at](const Entry& known) { return known.at == at; });
+    std::move(entry + 1, end, entry);
+    --column.end;
   }
 
  private:
-  using Cell = std::array<std::int64_t, 3>;
-  Cell cellOf(const Eigen::Vector3d& p) const {
-    return {static_cast<std::int64_t>(std::floor(p.x() / cell_m_)),
-            static_cast<std::int64_t>(std::floor(p.y() / cell_m_)),
-            static_cast<std::int64_t>(std::floor(p.z() / cell_m_))};
+  struct Column {
+    std::int64_t x = 0, y = 0;
+    std::uint32_t begin = 0, end = 0;  ///< in entries_
+  };
+
+  std::int64_t cellOf(double coordinate_m) const {
+    return static_cast<std::int64_t>(std::floor(coordinate_m / cell_m_));
   }
-  double cell_m_;
-  std::vector<std::pair<Cell, std::size_t>> cells_;  ///< with the first of their entries, ascending
+  std::vector<Column>::const_iterator firstColumn(std::int64_t x, std::int64_t y) const {
+    return std::lower_bound(columns_.begin(), columns_.end(), std::pair(x, y),
+                            [](const Column& column, const auto& xy) { return std::pair(column.x, column.y) < xy; });
+  }
+  std::vector<Entry>::const_iterator firstAbove(const Column& column, double z) const {
+    return std::lower_bound(entries_.begin() + column.begin, entries_.begin() + column.end, z,
+                            [](const Entry& entry, double low) { return entry.centre.z() < low; });
+  }
+
+  double reach_m_, cell_m_;
+  std::vector<Column> columns_;  ///< ordered by x, then y
   std::vector<Entry> entries_;
 };
 
@@ -101,7 +127,9 @@ class CrownGraph {
         crown_(crown),
         sources_(sources),
         grid_(all, crown, longestJump(all, crown, sources)),
+        place_(all.size(), kNowhere),
         best_(crown.size() + 1, kNoWay) {
+    for (std::size_t i = 0; i < crown.size(); ++i) place_[crown[i]] = static_cast<std::uint32_t>(i);
     for (const CrownSource& source : sources) tops_.push_back(topOf(all, source.trunk));
     best_[start()] = {};
   }
@@ -110,14 +138,17 @@ class CrownGraph {
   /// Shortest known path to each vertex; the search updates it.
   std::vector<Way>& best() { return best_; }
 
-  /// Valid until the next call.
+  /// Valid until the next call. The search asks once for each vertex, when its shortest path is known: no path through
+  /// it is looked for later.
   const std::vector<Edge>& edgesFrom(std::size_t at) const {
     edges_.clear();
     from_ = at;
-    if (at != start())
+    if (at != start()) {
+      grid_.remove(all_.center[crown_[at]], at);
       stepFrom(crown_[at], best_[at]);
-    else
+    } else {
       for (std::uint32_t s = 0; s < sources_.size(); ++s) leave(s);
+    }
     return edges_;
   }
 
@@ -168,10 +199,8 @@ class CrownGraph {
   void stepFrom(std::uint32_t cluxel, const Way& so_far) const {
     const Eigen::Vector3d& from = all_.center[cluxel];
     for (std::uint32_t neighbour : all_.neighbours(cluxel)) {
-      const auto place = std::lower_bound(crown_.begin(), crown_.end(), neighbour);
-      if (place == crown_.end() || *place != neighbour) continue;
-      const auto to = static_cast<std::size_t>(place - crown_.begin());
-      if (best_[to] > so_far) addEdge(to, {(all_.center[neighbour] - from).norm(), so_far.source});
+      const std::size_t to = place_[neighbour];
+      if (to != kNowhere && best_[to] > so_far) addEdge(to, {(all_.center[neighbour] - from).norm(), so_far.source});
     }
     const double jump = sources_[so_far.source].jump_m;
     const double reach = jump + static_cast<double>(all_.extent[cluxel].norm()) / 2 + kRounding_m;
@@ -200,7 +229,9 @@ class CrownGraph {
   const perception::SceneCluxels& all_;
   std::span<const std::uint32_t> crown_;
   std::span<const CrownSource> sources_;
-  JumpGrid grid_;
+  mutable JumpGrid grid_;
+  static constexpr std::uint32_t kNowhere = 0xFFFFFFFFU;
+  std::vector<std::uint32_t> place_;  ///< in the crown, by cluxel
   std::vector<Eigen::Vector2d> tops_;
   std::vector<Way> best_;
   mutable std::vector<Edge> edges_;  ///< of the vertex from_
