@@ -63,7 +63,8 @@ void decideStratum(ReasoningState& state, const std::vector<std::string>& stratu
   else
     decideTogether(state, stratum);
   absorbMisfits(state, first, false);
-  if (state.context.oracle != nullptr) state.context.oracle->objectsSoFar(finishedObjects(state));
+  if (state.context.oracle != nullptr && state.rules.asks_map)
+    state.context.oracle->objectsSoFar(finishedObjects(state));
 }
 
 ReasoningResult reason(const perception::Scene& scene, const RuleSet& rules, const ReasoningContext& context) {
