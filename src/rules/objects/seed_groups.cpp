@@ -4,6 +4,7 @@
 #include "rules/objects/seed_groups.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <numeric>
 
@@ -100,29 +101,55 @@ class Linking {
 class Joining {
  public:
   Joining(const ReasoningState& state, const Rule& rule, const std::vector<FragmentIndex>& members)
-      : state_(state), rule_(rule), members_(members), sets_(members.size()), held_(members.size()) {
-    for (std::size_t i = 0; i < members.size(); ++i) held_[i] = {members[i]};
+      : state_(state),
+        rule_(rule),
+        members_(members),
+        sets_(members.size()),
+        held_(members.size()),
+        by_outline_(std::all_of(limits().begin(), limits().end(), [](const Condition& limit) {
+          return limit.kind == Condition::Kind::Attribute && !limit.slice && limit.ratio_of.empty() &&
+                 isOfOutline(limit.attribute);
+        })) {
+    for (std::size_t i = 0; i < members.size(); ++i) held_[i].fragments = {members[i]};
+    if (limits().empty() || !by_outline_) return;
+    for (std::size_t i = 0; i < members.size(); ++i) held_[i].outline = state.fragments.outlineOf(members[i]);
   }
 
   std::vector<std::vector<FragmentIndex>> groups(const std::vector<Link>& links) {
     for (const Link& link : links) join(setOf(link.a), setOf(link.b));
     std::vector<std::vector<FragmentIndex>> groups;
     for (std::size_t i = 0; i < members_.size(); ++i)
-      if (setOf(i) == i) groups.push_back(std::move(held_[i]));
+      if (setOf(i) == i) groups.push_back(std::move(held_[i].fragments));
     return groups;
   }
 
  private:
+  struct Group {
+    std::vector<FragmentIndex> fragments;
+    Outline outline;  ///< kept where all limits follow from it
+  };
+
+  const std::vector<Condition>& limits() const { return rule_.group->limits; }
   std::uint32_t setOf(std::size_t i) { return sets_.find(static_cast<std::uint32_t>(i)); }
+
   void join(std::uint32_t a, std::uint32_t b) {
     if (a == b) return;
-    std::vector<FragmentIndex> both = held_[a];
-    both.insert(both.end(), held_[b].begin(), held_[b].end());
-    const auto& limits = rule_.group->limits;
-    if (!limits.empty() && !passes(state_, rule_, limits, state_.fragments.candidateOf(both))) return;
+    Group both;
+    both.fragments = held_[a].fragments;
+    both.fragments.insert(both.fragments.end(), held_[b].fragments.begin(), held_[b].fragments.end());
+    if (!limits().empty()) {
+      Candidate candidate;
+      if (by_outline_) {
+        both.outline = unionOf(std::array<const Outline*, 2>{&held_[a].outline, &held_[b].outline});
+        setAttributes(both.outline, candidate.shape);
+      } else {
+        candidate = state_.fragments.candidateOf(both.fragments);
+      }
+      if (!passes(state_, rule_, limits(), std::move(candidate))) return;
+    }
     const auto [keep, drop] = std::minmax(a, b);
     held_[keep] = std::move(both);
-    held_[drop].clear();
+    held_[drop] = {};
     sets_.join(keep, drop);
   }
 
@@ -130,7 +157,8 @@ class Joining {
   const Rule& rule_;
   const std::vector<FragmentIndex>& members_;
   DisjointSets sets_;
-  std::vector<std::vector<FragmentIndex>> held_;
+  std::vector<Group> held_;
+  bool by_outline_;
 };
 
 /// Free fragments that may be members of a group, in canonical order.

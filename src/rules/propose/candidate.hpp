@@ -26,6 +26,8 @@ struct Shape {
   double operator[](perception::Attribute attribute) const { return attributes[static_cast<std::size_t>(attribute)]; }
 };
 
+struct Outline;
+
 struct Candidate {
   std::vector<FragmentIndex> fragments;  ///< ascending
   Shape shape;
@@ -41,5 +43,9 @@ Shape shapeOfPrimitive(const perception::Primitive& primitive, const perception:
 Shape shapeOfCluxels(const perception::Scene& scene, std::span<const std::uint32_t> cluxels,
                      std::span<const perception::PrimitiveIndex> members,
                      std::span<const perception::PrimitiveIndex> whole);
+/// The same when the outline of `cluxels` is known.
+Shape shapeOfCluxels(const perception::Scene& scene, std::span<const std::uint32_t> cluxels,
+                     std::span<const perception::PrimitiveIndex> members,
+                     std::span<const perception::PrimitiveIndex> whole, const Outline& outline);
 
 }  // namespace cluxel::rules

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures sets of cluxels: moments, the smallest upright box, heights above ground, footprint.
+// Measures sets of cluxels: moments, heights above ground, footprint.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
-#include "base/convex_hull.hpp"
 #include "base/steady_angle.hpp"
 #include "perception/segments/component_tile.hpp"
-#include "rules/propose/candidate.hpp"
+#include "rules/propose/outline.hpp"
 
 namespace cluxel::rules {
 
@@ -17,45 +16,80 @@ namespace {
 
 using Point2 = Eigen::Vector2d;
 
-std::vector<Point2> footprintCorners(const perception::SceneCluxels& all, std::span<const std::uint32_t> cluxels) {
-  std::vector<Point2> corners;
-  corners.reserve(4 * cluxels.size());
-  for (std::uint32_t i : cluxels) {
-    const Point2 centre = all.center[i].head<2>();
-    const Point2 half = all.extent[i].head<2>().cast<double>() / 2;
-    for (double sx : {-1.0, 1.0})
-      for (double sy : {-1.0, 1.0}) corners.emplace_back(centre.x() + sx * half.x(), centre.y() + sy * half.y());
+/// The cells of the footprint that a cluxel's box covers: columns and rows, ends included.
+struct CellRange {
+  std::int64_t first_x = 0, first_y = 0, last_x = 0, last_y = 0;
+};
+
+CellRange cellsOf(const perception::SceneCluxels& all, std::uint32_t cluxel) {
+  const Point2 half = all.extent[cluxel].head<2>().cast<double>() / 2;
+  const Point2 low = (all.center[cluxel].head<2>() - half) / perception::kFootprintCell_m;
+  const Point2 high = (all.center[cluxel].head<2>() + half) / perception::kFootprintCell_m;
+  CellRange range{static_cast<std::int64_t>(std::floor(low.x())), static_cast<std::int64_t>(std::floor(low.y()))};
+  // A cluxel is at most one ball wide, so that these ranges are short; the bound of 40 guards against broken input.
+  range.last_x = std::min(range.first_x + 40, static_cast<std::int64_t>(std::floor(high.x())));
+  range.last_y = std::min(range.first_y + 40, static_cast<std::int64_t>(std::floor(high.y())));
+  return range;
+}
+
+/// How many different cells the ranges cover: by a bitmap, or by sorting where the set is wide and thin.
+std::size_t countCells(const std::vector<CellRange>& ranges) {
+  CellRange all = ranges.front();
+  for (const CellRange& range : ranges) {
+    all.first_x = std::min(all.first_x, range.first_x), all.first_y = std::min(all.first_y, range.first_y);
+    all.last_x = std::max(all.last_x, range.last_x), all.last_y = std::max(all.last_y, range.last_y);
   }
-  return corners;
+  const auto columns = static_cast<std::size_t>(all.last_x - all.first_x + 1);
+  const auto rows = static_cast<std::size_t>(all.last_y - all.first_y + 1);
+  constexpr std::size_t kMaxCellsOfRange = 1000;
+  if (columns / kMaxCellsOfRange > ranges.size() || rows > kMaxCellsOfRange * ranges.size() / columns) {
+    std::vector<std::pair<std::int64_t, std::int64_t>> cells;
+    for (const CellRange& range : ranges)
+      for (std::int64_t x = range.first_x; x <= range.last_x; ++x)
+        for (std::int64_t y = range.first_y; y <= range.last_y; ++y) cells.emplace_back(x, y);
+    std::sort(cells.begin(), cells.end());
+    return static_cast<std::size_t>(std::unique(cells.begin(), cells.end()) - cells.begin());
+  }
+  std::vector<bool> covered(columns * rows, false);
+  std::size_t count = 0;
+  for (const CellRange& range : ranges)
+    for (std::int64_t x = range.first_x; x <= range.last_x; ++x)
+      for (std::int64_t y = range.first_y; y <= range.last_y; ++y) {
+        auto cell =
+            covered[static_cast<std::size_t>(x - all.first_x) * rows + static_cast<std::size_t>(y - all.first_y)];
+        count += cell ? 0 : 1;
+        cell = true;
+      }
+  return count;
 }
 
 double footprintArea(const perception::SceneCluxels& all, std::span<const std::uint32_t> cluxels) {
-  std::vector<std::pair<std::int64_t, std::int64_t>> cells;
-  for (std::uint32_t i : cluxels) {
-    const Point2 half = all.extent[i].head<2>().cast<double>() / 2;
-    const Point2 low = (all.center[i].head<2>() - half) / perception::kFootprintCell_m;
-    const Point2 high = (all.center[i].head<2>() + half) / perception::kFootprintCell_m;
-    // A cluxel is at most one ball wide, so that these ranges are short; the bound of 40 guards against broken input.
-    const auto first_x = static_cast<std::int64_t>(std::floor(low.x()));
-    const auto first_y = static_cast<std::int64_t>(std::floor(low.y()));
-    const auto last_x = std::min(first_x + 40, static_cast<std::int64_t>(std::floor(high.x())));
-    const auto last_y = std::min(first_y + 40, static_cast<std::int64_t>(std::floor(high.y())));
-    for (std::int64_t x = first_x; x <= last_x; ++x)
-      for (std::int64_t y = first_y; y <= last_y; ++y) cells.emplace_back(x, y);
-  }
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  return static_cast<double>(cells.size()) * perception::kFootprintCell_m * perception::kFootprintCell_m;
+  std::vector<CellRange> ranges;
+  ranges.reserve(cluxels.size());
+  for (const std::uint32_t i : cluxels) ranges.push_back(cellsOf(all, i));
+  return static_cast<double>(countCells(ranges)) * perception::kFootprintCell_m * perception::kFootprintCell_m;
 }
 
-/// The value below which half of the weight lies.
+/// The value below which half of the weight lies. Weights are whole numbers, so that their sums are exact. Expected
+/// cost O(n).
 double weightedMedian(std::vector<std::pair<double, double>> values) {
-  std::sort(values.begin(), values.end());
-  double total = 0, sum = 0;
+  if (values.empty()) return 0;
+  double total = 0, below = 0;
   for (const auto& [value, weight] : values) total += weight;
-  for (const auto& [value, weight] : values)
-    if ((sum += weight) >= total / 2) return value;
-  return values.empty() ? 0 : values.back().first;
+  auto first = values.begin(), last = values.end();
+  while (last - first > 1) {
+    const auto middle = first + (last - first) / 2;
+    std::nth_element(first, middle, last);
+    double left = 0;
+    for (auto at = first; at != middle; ++at) left += at->second;
+    if (below + left >= total / 2) {
+      last = middle;
+    } else {
+      below += left;
+      first = middle;
+    }
+  }
+  return first->first;
 }
 
 /// Points as their number, mean and covariance.
@@ -84,14 +118,15 @@ class Measuring {
  public:
   /// `whole` are the primitives all of whose cluxels are among `cluxels`.
   Measuring(const perception::Scene& scene, std::span<const std::uint32_t> cluxels,
-            std::span<const perception::PrimitiveIndex> whole)
-      : scene_(scene), all_(scene.cluxels), cluxels_(cluxels), whole_(whole) {}
+            std::span<const perception::PrimitiveIndex> whole, const Outline& outline)
+      : scene_(scene), all_(scene.cluxels), cluxels_(cluxels), whole_(whole), outline_(outline) {}
 
   Shape measure() {
     if (cluxels_.empty()) return shape_;
-    boundsAndMean();
-    upright();
-    heights();
+    setAttributes(outline_, shape_);
+    means();
+    at(perception::Attribute::FootprintArea) = footprintArea(all_, cluxels_);
+    at(perception::Attribute::FreeHeightBelow) = medianHeight();
     moments();
     return shape_;
   }
@@ -100,13 +135,8 @@ class Measuring {
   double& at(perception::Attribute attribute) { return shape_.attributes[static_cast<std::size_t>(attribute)]; }
   double weight(std::uint32_t cluxel) const { return std::max<double>(1, all_.point_count[cluxel]); }
 
-  void boundsAndMean() {
-    shape_.min = Eigen::Vector3d::Constant(1e300);
-    shape_.max = -shape_.min;
+  void means() {
     for (std::uint32_t i : cluxels_) {
-      const Eigen::Vector3d half = all_.extent[i].cast<double>() / 2;
-      shape_.min = shape_.min.cwiseMin(all_.center[i] - half);
-      shape_.max = shape_.max.cwiseMax(all_.center[i] + half);
       shape_.centroid += weight(i) * all_.center[i];
       shape_.points += weight(i);
       const auto label = static_cast<std::size_t>(all_.label[i]);
@@ -115,33 +145,13 @@ class Measuring {
     shape_.centroid /= shape_.points;
     at(perception::Attribute::Probability) /= shape_.points;
     at(perception::Attribute::PointCount) = shape_.points;
-    at(perception::Attribute::CluxelCount) = static_cast<double>(cluxels_.size());
   }
 
-  void upright() {
-    const FootprintBox box = smallestBox(convexHull(footprintCorners(all_, cluxels_)));
-    const double length = box.length_m, width = box.width_m;
-    at(perception::Attribute::HorizontalExtent) = at(perception::Attribute::Length) = length;
-    at(perception::Attribute::HorizontalThickness) = at(perception::Attribute::Width) = width;
-    at(perception::Attribute::Height) = shape_.max.z() - shape_.min.z();
-    at(perception::Attribute::Volume) = length * width * at(perception::Attribute::Height);
-    at(perception::Attribute::FootprintArea) = footprintArea(all_, cluxels_);
-  }
-
-  void heights() {
-    double bottom = 1e300, top = -1e300;
+  double medianHeight() const {
     std::vector<std::pair<double, double>> above;
-    for (std::uint32_t i : cluxels_) {
-      const double height = static_cast<double>(all_.height_above_ground[i]);
-      const double half = static_cast<double>(all_.extent[i].z()) / 2;
-      bottom = std::min(bottom, height - half);
-      top = std::max(top, height + half);
-      above.emplace_back(height, weight(i));
-    }
-    at(perception::Attribute::Bottom) = bottom;
-    at(perception::Attribute::Top) = top;
-    at(perception::Attribute::ElevationSpan) = top - bottom;
-    at(perception::Attribute::FreeHeightBelow) = weightedMedian(std::move(above));
+    above.reserve(cluxels_.size());
+    for (std::uint32_t i : cluxels_) above.emplace_back(all_.height_above_ground[i], weight(i));
+    return weightedMedian(std::move(above));
   }
 
   /// Whole primitives with their own moments; other cluxels with those of a uniformly filled box.
@@ -195,6 +205,7 @@ class Measuring {
   const perception::SceneCluxels& all_;
   std::span<const std::uint32_t> cluxels_;
   std::span<const perception::PrimitiveIndex> whole_;
+  const Outline& outline_;
   Shape shape_;
 };
 
@@ -239,10 +250,16 @@ Shape shapeOfPrimitive(const perception::Primitive& primitive, const perception:
 
 Shape shapeOfCluxels(const perception::Scene& scene, std::span<const std::uint32_t> cluxels,
                      std::span<const perception::PrimitiveIndex> members,
-                     std::span<const perception::PrimitiveIndex> whole) {
-  Shape shape = Measuring(scene, cluxels, whole).measure();
+                     std::span<const perception::PrimitiveIndex> whole, const Outline& outline) {
+  Shape shape = Measuring(scene, cluxels, whole, outline).measure();
   takeFromMembers(scene, members, shape);
   return shape;
+}
+
+Shape shapeOfCluxels(const perception::Scene& scene, std::span<const std::uint32_t> cluxels,
+                     std::span<const perception::PrimitiveIndex> members,
+                     std::span<const perception::PrimitiveIndex> whole) {
+  return shapeOfCluxels(scene, cluxels, members, whole, outlineOf(scene.cluxels, cluxels));
 }
 
 }  // namespace cluxel::rules

@@ -27,6 +27,7 @@ FragmentIndex FragmentTable::add(Fragment fragment) {
   fragments_of_primitive_[fragment.primitive].push_back(index);
   fragments_.push_back(std::move(fragment));
   shapes_.emplace_back();
+  outlines_.emplace_back();
   measure(index);
   return index;
 }
@@ -34,10 +35,15 @@ FragmentIndex FragmentTable::add(Fragment fragment) {
 void FragmentTable::measure(FragmentIndex index) {
   const Fragment& fragment = fragments_[index];
   const perception::Primitive& primitive = scene_.primitives[fragment.primitive];
-  const bool whole = fragment.cluxels.size() == primitive.cluxels.size();
   const std::array<perception::PrimitiveIndex, 1> members{fragment.primitive};
-  shapes_[index] =
-      whole ? shapeOfPrimitive(primitive, scene_.cluxels) : shapeOfCluxels(scene_, fragment.cluxels, members, {});
+  outlines_[index] = rules::outlineOf(scene_.cluxels, fragment.cluxels);
+  shapes_[index] = isWhole(index) ? shapeOfPrimitive(primitive, scene_.cluxels)
+                                  : shapeOfCluxels(scene_, fragment.cluxels, members, {}, outlines_[index]);
+}
+
+bool FragmentTable::isWhole(FragmentIndex index) const {
+  const Fragment& fragment = fragments_[index];
+  return fragment.cluxels.size() == scene_.primitives[fragment.primitive].cluxels.size();
 }
 
 std::vector<FragmentIndex> FragmentTable::cut(FragmentIndex index, std::vector<std::vector<std::uint32_t>> parts) {
@@ -88,7 +94,7 @@ Candidate FragmentTable::candidateOf(std::vector<FragmentIndex> fragments) const
     candidate.shape = shapes_[candidate.fragments.front()];
     return candidate;
   }
-  candidate.shape = shapeOf(candidate, cluxelsOf(candidate));
+  candidate.shape = shapeOfAll(candidate);
   return candidate;
 }
 
@@ -110,19 +116,34 @@ Candidate FragmentTable::extentOf(std::vector<FragmentIndex> fragments) const {
   return candidate;
 }
 
-/// The shape of `cluxels` (ascending), which are some or all of the candidate's.
-Shape FragmentTable::shapeOf(const Candidate& candidate, std::span<const std::uint32_t> cluxels) const {
+std::vector<FragmentIndex> FragmentTable::inCanonicalOrder(const Candidate& candidate) const {
   std::vector<FragmentIndex> ordered = candidate.fragments;
   std::sort(ordered.begin(), ordered.end(), [this](FragmentIndex a, FragmentIndex b) { return before(a, b); });
+  return ordered;
+}
+
+Shape FragmentTable::shapeOfAll(const Candidate& candidate) const {
+  std::vector<perception::PrimitiveIndex> members, whole;
+  std::vector<const Outline*> outlines;
+  for (const FragmentIndex fragment : inCanonicalOrder(candidate)) {
+    const perception::PrimitiveIndex primitive = fragments_[fragment].primitive;
+    // Fragments of one primitive are neighbours in canonical order.
+    if (members.empty() || members.back() != primitive) members.push_back(primitive);
+    if (isWhole(fragment)) whole.push_back(primitive);
+    outlines.push_back(&outlines_[fragment]);
+  }
+  return shapeOfCluxels(scene_, cluxelsOf(candidate), members, whole, unionOf(outlines));
+}
+
+Shape FragmentTable::shapeOfSome(const Candidate& candidate, std::span<const std::uint32_t> cluxels) const {
   auto isHere = [&](std::uint32_t cluxel) { return std::binary_search(cluxels.begin(), cluxels.end(), cluxel); };
   std::vector<perception::PrimitiveIndex> members, whole;
-  for (FragmentIndex fragment : ordered) {
+  for (const FragmentIndex fragment : inCanonicalOrder(candidate)) {
     const std::vector<std::uint32_t>& own = fragments_[fragment].cluxels;
     if (std::none_of(own.begin(), own.end(), isHere)) continue;
     const perception::PrimitiveIndex primitive = fragments_[fragment].primitive;
-    if (std::find(members.begin(), members.end(), primitive) == members.end()) members.push_back(primitive);
-    const bool is_whole = own.size() == scene_.primitives[primitive].cluxels.size();
-    if (is_whole && std::all_of(own.begin(), own.end(), isHere)) whole.push_back(primitive);
+    if (members.empty() || members.back() != primitive) members.push_back(primitive);
+    if (isWhole(fragment) && std::all_of(own.begin(), own.end(), isHere)) whole.push_back(primitive);
   }
   return shapeOfCluxels(scene_, cluxels, members, whole);
 }
@@ -132,7 +153,7 @@ std::optional<Shape> FragmentTable::shapeOfSlice(const Candidate& candidate, con
   const std::size_t all = cluxels.size();
   std::erase_if(cluxels, [&](std::uint32_t cluxel) { return !isWithin(scene_.cluxels, cluxel, slice); });
   if (cluxels.empty()) return std::nullopt;
-  return cluxels.size() == all ? candidate.shape : shapeOf(candidate, cluxels);
+  return cluxels.size() == all ? candidate.shape : shapeOfSome(candidate, cluxels);
 }
 
 std::vector<std::uint32_t> FragmentTable::cluxelsOf(const Candidate& candidate) const {

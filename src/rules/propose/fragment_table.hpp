@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "rules/language/rule_condition.hpp"
-#include "rules/propose/candidate.hpp"
+#include "rules/propose/outline.hpp"
 
 namespace cluxel::rules {
 
@@ -57,15 +57,21 @@ class FragmentTable {
   /// All cluxels of a candidate, ascending.
   std::vector<std::uint32_t> cluxelsOf(const Candidate& candidate) const;
   const Shape& shapeOf(FragmentIndex fragment) const { return shapes_[fragment]; }
+  const Outline& outlineOf(FragmentIndex fragment) const { return outlines_[fragment]; }
 
  private:
-  Shape shapeOf(const Candidate& candidate, std::span<const std::uint32_t> cluxels) const;
+  Shape shapeOfAll(const Candidate& candidate) const;
+  /// The shape of `cluxels` (ascending), which are some of the candidate's.
+  Shape shapeOfSome(const Candidate& candidate, std::span<const std::uint32_t> cluxels) const;
+  std::vector<FragmentIndex> inCanonicalOrder(const Candidate& candidate) const;
+  bool isWhole(FragmentIndex fragment) const;
   FragmentIndex add(Fragment fragment);
   void measure(FragmentIndex fragment);
 
   const perception::Scene& scene_;
   std::vector<Fragment> fragments_;
   std::vector<Shape> shapes_;
+  std::vector<Outline> outlines_;
   std::vector<std::vector<FragmentIndex>> fragments_of_primitive_;
   std::vector<FragmentIndex> fragment_of_cluxel_;
 };
