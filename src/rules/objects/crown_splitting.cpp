@@ -30,9 +30,11 @@ class JumpGrid {
     std::size_t at = 0;  ///< number in the crown
   };
 
-  /// `centres_m` is the largest distance of centres that is looked for.
-  JumpGrid(const perception::SceneCluxels& all, std::span<const std::uint32_t> crown, double centres_m)
-      : reach_m_(centres_m), cell_m_(std::max(centres_m / 2, 0.05)) {
+  /// `jump_m` is the largest gap that is looked for.
+  JumpGrid(const perception::SceneCluxels& all, std::span<const std::uint32_t> crown, double jump_m) {
+    for (const std::uint32_t cluxel : crown)
+      widest_half_m_ = std::max(widest_half_m_, static_cast<double>(all.extent[cluxel].norm()) / 2);
+    cell_m_ = std::max(jump_m / 2 + widest_half_m_, 0.05);
     std::vector<std::tuple<std::int64_t, std::int64_t, double, std::size_t>> order;
     order.reserve(crown.size());
     for (std::size_t i = 0; i < crown.size(); ++i) {
@@ -49,15 +51,16 @@ class JumpGrid {
     }
   }
 
-  /// Calls `visit` for every cluxel whose centre may be within the distance.
+  /// Calls `visit` for every cluxel of which half of the diagonal may reach to within `distance_m` of the point.
   template <typename Visit>
-  void near(const Eigen::Vector3d& p, const Visit& visit) const {
-    const std::int64_t last_y = cellOf(p.y() + reach_m_);
-    for (std::int64_t x = cellOf(p.x() - reach_m_); x <= cellOf(p.x() + reach_m_); ++x)
-      for (auto column = firstColumn(x, cellOf(p.y() - reach_m_));
+  void near(const Eigen::Vector3d& p, double distance_m, const Visit& visit) const {
+    const double reach = distance_m + widest_half_m_;
+    const std::int64_t last_y = cellOf(p.y() + reach);
+    for (std::int64_t x = cellOf(p.x() - reach); x <= cellOf(p.x() + reach); ++x)
+      for (auto column = firstColumn(x, cellOf(p.y() - reach));
            column != columns_.end() && column->x == x && column->y <= last_y; ++column)
-        for (auto entry = firstAbove(*column, p.z() - reach_m_);
-             entry != entries_.begin() + column->end && entry->centre.z() <= p.z() + reach_m_; ++entry)
+        for (auto entry = firstAbove(*column, p.z() - reach);
+             entry != entries_.begin() + column->end && entry->centre.z() <= p.z() + reach; ++entry)
           visit(*entry);
   }
 
@@ -88,7 +91,7 @@ class JumpGrid {
                             [](const Entry& entry, double low) { return entry.centre.z() < low; });
   }
 
-  double reach_m_, cell_m_;
+  double widest_half_m_ = 0, cell_m_ = 0;
   std::vector<Column> columns_;  ///< ordered by x, then y
   std::vector<Entry> entries_;
 };
@@ -126,7 +129,7 @@ class CrownGraph {
       : all_(all),
         crown_(crown),
         sources_(sources),
-        grid_(all, crown, longestJump(all, crown, sources)),
+        grid_(all, crown, longestJump(sources)),
         place_(all.size(), kNowhere),
         best_(crown.size() + 1, kNoWay) {
     for (std::size_t i = 0; i < crown.size(); ++i) place_[crown[i]] = static_cast<std::uint32_t>(i);
@@ -153,17 +156,10 @@ class CrownGraph {
   }
 
  private:
-  /// Upper bound of the distance between the centres of two cluxels whose boxes are one jump apart.
-  static double longestJump(const perception::SceneCluxels& all, std::span<const std::uint32_t> crown,
-                            std::span<const CrownSource> sources) {
-    double longest = 0, widest = 0;
-    for (std::uint32_t cluxel : crown) widest = std::max(widest, static_cast<double>(all.extent[cluxel].norm()));
-    for (const CrownSource& source : sources) {
-      longest = std::max(longest, source.jump_m);
-      for (std::uint32_t cluxel : source.trunk)
-        widest = std::max(widest, static_cast<double>(all.extent[cluxel].norm()));
-    }
-    return longest + widest;
+  static double longestJump(std::span<const CrownSource> sources) {
+    double longest = 0;
+    for (const CrownSource& source : sources) longest = std::max(longest, source.jump_m);
+    return longest;
   }
 
   /// Paths start at the trunk's cluxels above the clearance, or at its highest ones when none is above it.
@@ -204,7 +200,7 @@ class CrownGraph {
     }
     const double jump = sources_[so_far.source].jump_m;
     const double reach = jump + static_cast<double>(all_.extent[cluxel].norm()) / 2 + kRounding_m;
-    grid_.near(from, [&](const JumpGrid::Entry& other) {
+    grid_.near(from, reach, [&](const JumpGrid::Entry& other) {
       // Most pairs are too far apart, or have a shorter path: both are known before the gap is measured.
       const double square = (other.centre - from).squaredNorm();
       if (square > (reach + other.half_m) * (reach + other.half_m)) return;
