@@ -100,6 +100,9 @@ scan::Scan MapReader::scanOf(const scan::ScanId& cloud) const {
 const std::vector<rules::SemanticObject>& MapReader::objects() const {
   return impl_->readObjects();
 }
+std::vector<std::uint64_t> MapReader::decisionDigests() const {
+  return storedDigests(impl_->transaction);
+}
 const rdf::QuadReader& MapReader::quads() const {
   return impl_->quads;
 }

@@ -52,6 +52,8 @@ class MapReader {
   scan::Scan scanOf(const scan::ScanId& cloud) const;
   /// The objects, sorted by id; cluxel numbers refer to scene().
   const std::vector<rules::SemanticObject>& objects() const;
+  /// Digests of the decisions about each of the scene's primitives; empty for a map that has none.
+  std::vector<std::uint64_t> decisionDigests() const;
   /// The scene, assembled from the stored tiles by the first call.
   const perception::Scene& scene() const;
   /// The stored outputs of the stages, read by the first call.

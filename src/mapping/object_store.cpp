@@ -13,7 +13,7 @@ namespace cluxel::mapping {
 namespace {
 
 using Json = nlohmann::json;
-constexpr std::string_view kObjectsKey = "objects";
+constexpr std::string_view kObjectsKey = "objects", kDigestsKey = "decisions";
 
 Json numbersJson(const std::vector<std::uint32_t>& numbers) {
   std::vector<std::uint8_t> bytes(numbers.size() * sizeof(std::uint32_t));
@@ -75,6 +75,19 @@ std::vector<rules::SemanticObject> storedObjects(const rdf::ReadTransaction& tra
                 std::string("the map's objects are damaged (") + fault.what() + "); build the map anew");
   }
   return objects;
+}
+
+void storeDigests(rdf::WriteTransaction& transaction, const std::vector<std::uint64_t>& digests) {
+  transaction.putBlock(tables::kMeta, kDigestsKey,
+                       {reinterpret_cast<const char*>(digests.data()), digests.size() * sizeof(std::uint64_t)});
+}
+
+std::vector<std::uint64_t> storedDigests(const rdf::ReadTransaction& transaction) {
+  const auto bytes = transaction.block(tables::kMeta, kDigestsKey);
+  if (!bytes) return {};
+  std::vector<std::uint64_t> digests(bytes->size() / sizeof(std::uint64_t));
+  if (!digests.empty()) std::memcpy(digests.data(), bytes->data(), digests.size() * sizeof(std::uint64_t));
+  return digests;
 }
 
 }  // namespace cluxel::mapping

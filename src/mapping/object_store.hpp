@@ -2,6 +2,7 @@
 // The object layer in the map file: objects, parts and their cluxels.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "rdf/file/environment.hpp"
@@ -11,5 +12,11 @@ namespace cluxel::mapping {
 
 void storeObjects(rdf::WriteTransaction& transaction, const std::vector<rules::SemanticObject>& objects);
 std::vector<rules::SemanticObject> storedObjects(const rdf::ReadTransaction& transaction);
+
+/// Digests of what was decided about each primitive, in the order of the scene's primitives
+/// (rules::decisionDigests()).
+void storeDigests(rdf::WriteTransaction& transaction, const std::vector<std::uint64_t>& digests);
+/// Empty for a map of a version that had none.
+std::vector<std::uint64_t> storedDigests(const rdf::ReadTransaction& transaction);
 
 }  // namespace cluxel::mapping

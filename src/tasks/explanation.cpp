@@ -110,16 +110,29 @@ Named find(const mapping::MapReader& map, const std::string& name) {
   return named;
 }
 
-rules::Explanation explanationOf(const mapping::MapReader& map, const Named& named, const rules::RuleSet& rules) {
+/// An explanation, with the part of the scene that its numbers refer to when it is not the whole.
+struct Explained {
+  rules::Explanation explanation;
+  std::optional<perception::Scene> part;
+
+  const perception::Scene& sceneOf(const mapping::MapReader& map) const { return part ? *part : map.scene(); }
+};
+
+Explained explanationOf(const mapping::MapReader& map, const Named& named, const rules::RuleSet& rules) {
   const perception::Scene& scene = map.scene();
+  const rules::SemanticObject* object = named.primitive ? nullptr : &map.objects()[*named.object];
+  const auto primitives = named.primitive ? std::vector{static_cast<perception::PrimitiveIndex>(*named.primitive)}
+                                          : rules::primitivesOf(*object);
+  const std::vector<std::uint64_t> digests = map.decisionDigests();
+  if (auto near = explainInPart(scene, rules, {digests, map.objects()}, primitives, object))
+    return {std::move(near->explanation), std::move(near->part)};
   mapping::AskReplay oracle(map);
   const rules::ReasoningContext context{.oracle = &oracle};
-  if (named.primitive) return explain(scene, rules, context, static_cast<perception::PrimitiveIndex>(*named.primitive));
-  const rules::SemanticObject& object = map.objects()[*named.object];
-  std::optional<rules::Explanation> explanation = explain(scene, rules, context, object);
+  if (object == nullptr) return {explain(scene, rules, context, primitives.front()), std::nullopt};
+  std::optional<rules::Explanation> explanation = explain(scene, rules, context, *object);
   if (!explanation)
-    throw Error(ErrorKind::NotFound, "the map's rules make no object '" + object.id.hex() + "' any more");
-  return std::move(*explanation);
+    throw Error(ErrorKind::NotFound, "the map's rules make no object '" + object->id.hex() + "' any more");
+  return {std::move(*explanation), std::nullopt};
 }
 
 struct WhyNotOfThing {
@@ -144,11 +157,7 @@ WhyNotOfThing whyNotOf(const mapping::MapReader& map, const rules::RuleSet& rule
   }
   std::vector<perception::PrimitiveIndex> primitives;
   if (named.primitive) primitives = {static_cast<perception::PrimitiveIndex>(*named.primitive)};
-  if (named.object && owner != nullptr)
-    for (const rules::ObjectPart& part : owner->parts)
-      primitives.insert(primitives.end(), part.primitives.begin(), part.primitives.end());
-  std::sort(primitives.begin(), primitives.end());
-  primitives.erase(std::unique(primitives.begin(), primitives.end()), primitives.end());
+  if (named.object && owner != nullptr) primitives = rules::primitivesOf(*owner);
   WhyNotOfThing thing{whyNot(map.scene(), rules, context, made, owner, primitives, class_iri), ""};
   thing.headline = owner == nullptr ? "belongs to no object: unknown"
                                     : "belongs to " + rules.shorten(owner->class_iri) + " " + owner->id.hex() +
@@ -198,7 +207,7 @@ std::string explanationGraph(const mapping::MapReader& map, const std::string& n
                   "no rule of class '" + class_name + "' looked at '" + name + "': ask for the text to see why");
     return graphOf(judged->decision);
   }
-  const rules::Explanation explanation = explanationOf(map, find(map, plainName(name)), rules);
+  const rules::Explanation explanation = explanationOf(map, find(map, plainName(name)), rules).explanation;
   const rules::Decision* told = nullptr;
   for (const rules::ExplainedDecision& explained : explanation.decisions)
     if (told == nullptr || explained.decision.accepted) told = &explained.decision;
@@ -210,10 +219,11 @@ ExplanationTexts explainThing(const mapping::MapReader& map, const std::string& 
   const Named named = find(map, plainName(written));
   const mapping::MapInputs inputs = map.inputs();
   const rules::RuleSet rules = rulesOf(inputs);
-  rules::Explanation explanation = explanationOf(map, named, rules);
-  shortenFiles(explanation, inputs);
-  auto json = nlohmann::ordered_json::parse(jsonOf(explanation, rules, map.scene()));
-  std::string text = textOf(explanation, rules, map.scene());
+  Explained explained = explanationOf(map, named, rules);
+  shortenFiles(explained.explanation, inputs);
+  const perception::Scene& scene = explained.sceneOf(map);
+  auto json = nlohmann::ordered_json::parse(jsonOf(explained.explanation, rules, scene));
+  std::string text = textOf(explained.explanation, rules, scene);
   if (named.object) {
     json["number"] = *named.object;
     text = "object #" + std::to_string(*named.object) + "\n" + text;

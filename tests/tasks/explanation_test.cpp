@@ -10,6 +10,8 @@
 #include "mapping/asking_rules.hpp"
 #include "rdf/map_iris.hpp"
 #include "rules/decide/reason.hpp"
+#include "rules/explain/explain.hpp"
+#include "rules/language/rule_loader.hpp"
 #include "tasks/campus_map_fixture.hpp"
 #include "test_paths.hpp"
 
@@ -39,6 +41,27 @@ TEST(Explanation, NamesRuleAndClassOfObjects) {
     EXPECT_TRUE(json.is_object());
   }
   EXPECT_GE(told.size(), 5U);
+}
+
+TEST(Explanation, FromAPartOfTheMapIsThatOfTheWhole) {
+  const MapReader& map = CampusMap::shared().map();
+  const MapInputs inputs = map.inputs();
+  std::vector<RuleSource> sources;
+  for (const NamedText& text : inputs.rules) sources.push_back({text.name, text.text});
+  const RuleSet rules = loadRuleTexts(sources, inputs.rule_roots, classCatalogueOf(inputs.ontology)).require();
+  const std::vector<std::uint64_t> digests = map.decisionDigests();
+  ASSERT_EQ(digests.size(), map.scene().primitives.size());
+  std::size_t in_part = 0;
+  for (std::size_t i = 0; i < map.objects().size(); i += 4) {
+    const SemanticObject& object = map.objects()[i];
+    const auto near = explainInPart(map.scene(), rules, {digests, map.objects()}, primitivesOf(object), &object);
+    if (!near) continue;
+    ++in_part;
+    const auto whole = explain(map.scene(), rules, {}, object);
+    ASSERT_TRUE(whole.has_value());
+    EXPECT_EQ(textOf(near->explanation, rules, near->part), textOf(*whole, rules, map.scene())) << "object " << i;
+  }
+  EXPECT_GE(in_part, 5U);
 }
 
 TEST(Explanation, TakesTheNumberOfAnObjectAndSaysIt) {

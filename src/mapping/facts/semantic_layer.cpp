@@ -13,6 +13,7 @@
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
 #include "rules/decide/reason.hpp"
+#include "rules/explain/decision_digests.hpp"
 #include "rules/language/rule_loader.hpp"
 
 namespace cluxel::mapping {
@@ -95,6 +96,7 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings, presenceOfObjects(votes)});
   inferFacts(transaction, parsed.inputs, sink, check);
   storeObjects(transaction, result.objects);
+  storeDigests(transaction, rules::decisionDigests(scene, result));
   sink.progress("facts", 1, 1);
   return {std::move(scene), std::move(result.objects)};
 }

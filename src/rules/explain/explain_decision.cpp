@@ -64,29 +64,44 @@ Explanation explanationOf(perception::PrimitiveIndex primitive, const std::vecto
 
 }  // namespace
 
-Explanation explain(const perception::Scene& scene, const RuleSet& rules, const ReasoningContext& context,
-                    perception::PrimitiveIndex primitive) {
-  ReasoningContext probing = context;
-  probing.probes = {primitive};
-  const ReasoningResult result = reason(scene, rules, probing);
+std::optional<Explanation> explanationIn(const ReasoningResult& result, const RuleSet& rules,
+                                         perception::PrimitiveIndex primitive) {
   const auto owner = std::find_if(result.objects.begin(), result.objects.end(),
                                   [primitive](const SemanticObject& object) { return owns(object, primitive); });
   return explanationOf(primitive, decisionsAbout({primitive}, result).at(primitive),
                        owner == result.objects.end() ? nullptr : &*owner, result, rules);
 }
 
+std::optional<Explanation> explanationIn(const ReasoningResult& result, const RuleSet& rules,
+                                         const ContentHash& object) {
+  const auto made = std::find_if(result.objects.begin(), result.objects.end(),
+                                 [&](const SemanticObject& candidate) { return candidate.id == object; });
+  if (made == result.objects.end()) return std::nullopt;
+  const perception::PrimitiveIndex seed = result.decisions.at(made->decision).seed;
+  return explanationOf(seed, decisionsAbout({seed}, result).at(seed), &*made, result, rules);
+}
+
+std::vector<perception::PrimitiveIndex> primitivesOf(const SemanticObject& object) {
+  std::vector<perception::PrimitiveIndex> primitives;
+  for (const ObjectPart& part : object.parts)
+    primitives.insert(primitives.end(), part.primitives.begin(), part.primitives.end());
+  std::sort(primitives.begin(), primitives.end());
+  primitives.erase(std::unique(primitives.begin(), primitives.end()), primitives.end());
+  return primitives;
+}
+
+Explanation explain(const perception::Scene& scene, const RuleSet& rules, const ReasoningContext& context,
+                    perception::PrimitiveIndex primitive) {
+  ReasoningContext probing = context;
+  probing.probes = {primitive};
+  return *explanationIn(reason(scene, rules, probing), rules, primitive);
+}
+
 std::optional<Explanation> explain(const perception::Scene& scene, const RuleSet& rules,
                                    const ReasoningContext& context, const SemanticObject& known) {
   ReasoningContext probing = context;
-  for (const ObjectPart& part : known.parts)
-    probing.probes.insert(probing.probes.end(), part.primitives.begin(), part.primitives.end());
-  std::sort(probing.probes.begin(), probing.probes.end());
-  const ReasoningResult result = reason(scene, rules, probing);
-  const auto object = std::find_if(result.objects.begin(), result.objects.end(),
-                                   [&](const SemanticObject& made) { return made.id == known.id; });
-  if (object == result.objects.end()) return std::nullopt;
-  const perception::PrimitiveIndex seed = result.decisions.at(object->decision).seed;
-  return explanationOf(seed, decisionsAbout({seed}, result).at(seed), &*object, result, rules);
+  probing.probes = primitivesOf(known);
+  return explanationIn(reason(scene, rules, probing), rules, known.id);
 }
 
 std::vector<Explanation> explainAll(const perception::Scene& scene, const RuleSet& rules,

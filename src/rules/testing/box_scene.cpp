@@ -116,6 +116,7 @@ class Builder {
       cluxels.seed.push_back({0, seedling.name.index});
       cluxels.center.push_back(seedling.center);
       cluxels.extent.push_back(seedling.extent);
+      cluxels.low_corner.push_back(cluxels.center.back() - cluxels.extent.back().cast<double>() / 2);
       cluxels.point_count.push_back(10);
       cluxels.primitive.push_back(primitive);
       cluxels.label.push_back(label);

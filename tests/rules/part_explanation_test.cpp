@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// An explanation from a part of the scene is the one from the whole, or there is none.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "perception/segments/scene_part.hpp"
+#include "rules/box_world.hpp"
+#include "rules/explain/decision_digests.hpp"
+#include "rules/explain/explain.hpp"
+
+namespace cluxel::testing {
+
+using namespace scan;
+using namespace perception;
+using namespace rules;
+namespace {
+
+/// Four streets one behind the other.
+BoxScene longStreet() {
+  BoxScene all;
+  for (int i = 0; i < 4; ++i)
+    for (BoxPrimitive made : streetOfBoxes().boxes) {
+      made.name += std::to_string(i);
+      made.center.x() += 80 * i;
+      all.boxes.push_back(made);
+    }
+  return all;
+}
+
+struct StreetRun {
+  Scene scene = sceneOfBoxes(longStreet()).scene;
+  RuleSet rules = outdoorRules();
+  ReasoningResult result = reason(scene, rules);
+  std::vector<std::uint64_t> digests = decisionDigests(scene, result);
+  WholeRun whole() const { return {digests, result.objects}; }
+};
+
+TEST(PartExplanation, IsThatOfTheWholeSceneForObjectsAndPrimitives) {
+  const StreetRun street;
+  std::size_t in_part = 0, asked = 0;
+  for (const SemanticObject& object : street.result.objects) {
+    ++asked;
+    const auto near = explainInPart(street.scene, street.rules, street.whole(), primitivesOf(object), &object);
+    if (!near) continue;
+    ++in_part;
+    EXPECT_LT(near->part.cluxels.size(), street.scene.cluxels.size());
+    const auto whole = explain(street.scene, street.rules, {}, object);
+    ASSERT_TRUE(whole.has_value());
+    EXPECT_EQ(textOf(near->explanation, street.rules, near->part), textOf(*whole, street.rules, street.scene));
+    EXPECT_EQ(jsonOf(near->explanation, street.rules, near->part), jsonOf(*whole, street.rules, street.scene));
+  }
+  for (PrimitiveIndex i = 0; i < street.scene.primitives.size(); i += 3) {
+    ++asked;
+    const auto near = explainInPart(street.scene, street.rules, street.whole(), {i}, nullptr);
+    if (!near) continue;
+    ++in_part;
+    EXPECT_EQ(textOf(near->explanation, street.rules, near->part),
+              textOf(explain(street.scene, street.rules, {}, i), street.rules, street.scene));
+  }
+  EXPECT_GE(4 * in_part, 3 * asked) << "most things are explained from a part";
+}
+
+TEST(PartExplanation, IsRefusedWhereTheWholeRunDecidedOtherwise) {
+  StreetRun street;
+  const SemanticObject& object = street.result.objects.front();
+  const std::vector<PrimitiveIndex> primitives = primitivesOf(object);
+  ASSERT_TRUE(explainInPart(street.scene, street.rules, street.whole(), primitives, &object));
+  street.digests[primitives.front()] ^= 1U;
+  EXPECT_FALSE(explainInPart(street.scene, street.rules, street.whole(), primitives, &object));
+  street.digests.pop_back();
+  EXPECT_FALSE(explainInPart(street.scene, street.rules, street.whole(), primitives, &object)) << "of another scene";
+}
+
+TEST(DecisionDigests, TellWhatWasMeasuredAndNotHowThingsAreNumbered) {
+  const StreetRun street;
+  ReasoningResult other = street.result;
+  const auto measured = std::find_if(other.decisions.begin(), other.decisions.end(), [](const Decision& decision) {
+    return !decision.path.empty() && decision.path.front().measured.has_value();
+  });
+  ASSERT_NE(measured, other.decisions.end());
+  *measured->path.front().measured += 1e-9;
+  const std::vector<std::uint64_t> changed = decisionDigests(street.scene, other);
+  for (PrimitiveIndex i = 0; i < street.digests.size(); ++i) {
+    const bool is_seed = std::binary_search(measured->seeds.begin(), measured->seeds.end(), i);
+    EXPECT_EQ(changed[i] != street.digests[i], is_seed) << "primitive " << i;
+  }
+  // All primitives but the first: the others get new numbers.
+  std::vector<PrimitiveIndex> kept(street.scene.primitives.size() - 1);
+  std::iota(kept.begin(), kept.end(), 1U);
+  const Scene part = partOf(street.scene, kept);
+  const std::vector<std::uint64_t> digests = decisionDigests(part, reason(part, street.rules));
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < kept.size(); ++i) same += digests[i] == street.digests[kept[i]] ? 1 : 0;
+  EXPECT_GE(4 * same, 3 * kept.size());
+}
+
+TEST(ScenePart, HoldsTheKeptPrimitivesAsTheyAre) {
+  const Scene scene = sceneOfBoxes(streetOfBoxes()).scene;
+  std::vector<PrimitiveIndex> kept;
+  for (PrimitiveIndex i = 1; i < scene.primitives.size(); i += 2) kept.push_back(i);
+  const Scene part = partOf(scene, kept);
+  ASSERT_EQ(part.primitives.size(), kept.size());
+  std::size_t cluxels = 0, edges = 0, relations = 0;
+  std::vector<std::uint32_t> old_number;
+  for (std::uint32_t i = 0; i < scene.cluxels.size(); ++i)
+    if (std::binary_search(kept.begin(), kept.end(), scene.cluxels.primitive[i])) old_number.push_back(i);
+  ASSERT_EQ(part.cluxels.size(), old_number.size());
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    EXPECT_EQ(part.primitives[i].id, scene.primitives[kept[i]].id);
+    EXPECT_EQ(part.primitives[i].attributes, scene.primitives[kept[i]].attributes);
+    for (const std::uint32_t cluxel : part.primitives[i].cluxels) {
+      EXPECT_EQ(part.cluxels.primitive[cluxel], i);
+      EXPECT_EQ(part.cluxels.name[cluxel], scene.cluxels.name[old_number[cluxel]]);
+      EXPECT_EQ(part.cluxels.center[cluxel], scene.cluxels.center[old_number[cluxel]]);
+    }
+    cluxels += part.primitives[i].cluxels.size();
+    for (const Relation& relation : scene.relationsOf(kept[i]))
+      relations += std::binary_search(kept.begin(), kept.end(), relation.to) ? 1 : 0;
+    for (const Relation& relation : part.relationsOf(static_cast<PrimitiveIndex>(i))) {
+      Relation old = relation;
+      old.from = kept[relation.from], old.to = kept[relation.to];
+      const auto all = scene.relationsOf(old.from);
+      EXPECT_NE(std::find(all.begin(), all.end(), old), all.end());
+    }
+  }
+  EXPECT_EQ(cluxels, part.cluxels.size());
+  EXPECT_EQ(relations, part.relations.size());
+  for (std::uint32_t i = 0; i < part.cluxels.size(); ++i) {
+    for (const std::uint32_t neighbour : scene.cluxels.neighbours(old_number[i]))
+      edges += std::binary_search(old_number.begin(), old_number.end(), neighbour) ? 1 : 0;
+    for (const std::uint32_t neighbour : part.cluxels.neighbours(i)) {
+      const auto all = scene.cluxels.neighbours(old_number[i]);
+      EXPECT_NE(std::find(all.begin(), all.end(), old_number[neighbour]), all.end());
+    }
+  }
+  EXPECT_EQ(edges, part.cluxels.edge_target.size());
+}
+
+}  // namespace
+}  // namespace cluxel::testing
