@@ -2,6 +2,7 @@
 // `cluxel changes`: what vanished, appeared and moved between visits.
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
+#include "base/utc_time.hpp"
 #include "mapping/facts/map_facts.hpp"
 #include "tasks/changes/site_changes.hpp"
 #include "tasks/ways/way_report.hpp"
@@ -29,7 +30,7 @@ void printChanges(const mapping::MapReader& map, const tasks::SiteChanges& found
     there += states.after == perception::PresenceState::Present ? 1 : 0;
   }
   std::printf("since %s: %zu changes; %zu objects are there, %zu were not observed again\n",
-              mapping::dateTimeText(found.since_s).c_str(), found.changes.size(), there, unseen);
+              dateTimeText(found.since_s).c_str(), found.changes.size(), there, unseen);
   for (const tasks::SiteChange& change : found.changes) {
     std::printf("%-8s  %s", std::string(nameOf(change.kind)).c_str(), nameOf(map, change.thing).c_str());
     if (change.now) std::printf(" by %.1f m, now %s", change.distance_m, nameOf(map, *change.now).c_str());

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel serve`: maps over HTTP, until SIGINT or SIGTERM.
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <csignal>
-#include <ctime>
+#include <chrono>
 #include <future>
 #include <mutex>
 
 #include "app/command.hpp"
+#include "app/stop_signals.hpp"
 #include "base/file_bytes.hpp"
+#include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "serve/http/http_server.hpp"
 #include "serve/map_service.hpp"
@@ -59,12 +59,8 @@ class AccessLines {
 
  private:
   static std::string now() {
-    const std::time_t seconds = std::time(nullptr);
-    std::tm utc{};
-    ::gmtime_r(&seconds, &utc);
-    std::array<char, 32> text{};
-    std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
-    return text.data();
+    const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
+    return dateTimeText(std::chrono::duration<double>(since_1970).count());
   }
   std::FILE* file_ = nullptr;
   std::mutex mutex_;
@@ -130,30 +126,6 @@ serve::HttpOptions httpOptions(const ServeArguments& arguments) {
   return options;
 }
 
-/// SIGINT and SIGTERM, blocked in all threads that start later. When it is destroyed they act as before: a second
-/// signal then ends the program at once.
-class StopSignals {
- public:
-  StopSignals() {
-    sigemptyset(&set_);
-    sigaddset(&set_, SIGINT);
-    sigaddset(&set_, SIGTERM);
-    ::pthread_sigmask(SIG_BLOCK, &set_, &before_);
-  }
-  ~StopSignals() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  StopSignals(const StopSignals&) = delete;
-  StopSignals& operator=(const StopSignals&) = delete;
-
-  /// True when one came within a second.
-  bool arrived() const {
-    const timespec second{1, 0};
-    return ::sigtimedwait(&set_, nullptr, &second) > 0;
-  }
-
- private:
-  sigset_t set_{}, before_{};
-};
-
 void announce(const serve::HttpServer& server, const ServeArguments& arguments, Session& session) {
   const bool is_v6 = arguments.host.find(':') != std::string::npos;
   const std::string url =
@@ -180,7 +152,7 @@ ExitCode serveMaps(const ServeArguments& arguments, Session& session) {
   const auto hasEnded = [&served](int wait_ms) {
     return served.wait_for(std::chrono::milliseconds(wait_ms)) == std::future_status::ready;
   };
-  while (!signals->arrived() && !hasEnded(0)) service.tidy();
+  while (!signals->arrived(std::chrono::seconds(1)) && !hasEnded(0)) service.tidy();
   signals.reset();
   do server.stop();
   while (!hasEnded(50));

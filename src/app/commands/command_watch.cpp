@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel watch`: a map grows as scans arrive in a folder.
-#include <csignal>
-
 #include "app/command.hpp"
 #include "app/shared_options.hpp"
+#include "app/stop_signals.hpp"
 #include "mapping/change/folder_watch.hpp"
 
 namespace cluxel::app {
 
 namespace {
-
-volatile std::sig_atomic_t is_stop_asked = 0;
 
 struct WatchOptions {
   fs::path folder, map;
@@ -36,8 +33,9 @@ ExitCode watch(const WatchOptions& options, Session& session) {
   callbacks.committed = [&](std::size_t added, std::size_t scans, std::size_t objects) {
     report(options, added, scans, objects, session.json);
   };
-  callbacks.is_stopped = [] { return is_stop_asked != 0; };
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { is_stop_asked = 1; });
+  const StopSignals signals;
+  bool is_stopped = false;
+  callbacks.is_stopped = [&] { return is_stopped = is_stopped || signals.arrived(); };
   const std::size_t added = watchFolder(options.folder, options.map, params, callbacks, session.console);
   return added == 0 ? ExitCode::NoRows : ExitCode::Done;
 }

@@ -34,7 +34,4 @@ struct ObservedMap {
 
 void addObservedFacts(const ObservedMap& map, FactSink& facts);
 
-/// xsd:dateTime in UTC of seconds since 1970.
-std::string dateTimeText(double time_s);
-
 }  // namespace cluxel::mapping

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "base/utc_time.hpp"
 #include "mapping/facts/map_facts.hpp"
 #include "rdf/map_iris.hpp"
 #include "rdf/store/quad_store.hpp"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/utc_time.hpp"
 #include "rdf/map_iris.hpp"
 
 namespace cluxel::mapping {

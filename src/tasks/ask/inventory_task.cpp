@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 
+#include "base/utc_time.hpp"
 #include "mapping/facts/map_facts.hpp"
 #include "mapping/facts/object_geometry.hpp"
 #include "rdf/map_iris.hpp"
@@ -159,7 +160,7 @@ TaskAnswer runChanges(const TaskContext& context, const TaskValues& values) {
     answer.rows.push_back(unobservedRow(map, states));
     if (context.with_reasons) answer.rows.back().why.push_back(presenceLine(states));
   }
-  answer.notes.push_back("since " + mapping::dateTimeText(found.since_s) + ": " + std::to_string(found.changes.size()) +
+  answer.notes.push_back("since " + dateTimeText(found.since_s) + ": " + std::to_string(found.changes.size()) +
                          " changes; " + std::to_string(there) + " objects are there, " + std::to_string(unseen) +
                          " were not observed again");
   return answer;

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/facts/map_facts.hpp"
 #include "mapping/facts/object_geometry.hpp"
@@ -52,12 +53,12 @@ double beginOfLastVisit(const std::vector<mapping::Cloud>& clouds) {
 void requireBothSides(const std::vector<double>& times_s, double since_s) {
   const auto after = std::lower_bound(times_s.begin(), times_s.end(), since_s);
   if (after != times_s.begin() && after != times_s.end()) return;
-  const std::string known = times_s.empty() ? "no cloud has both"
-                                            : "they were taken from " + mapping::dateTimeText(times_s.front()) +
-                                                  " to " + mapping::dateTimeText(times_s.back());
+  const std::string known =
+      times_s.empty() ? "no cloud has both"
+                      : "they were taken from " + dateTimeText(times_s.front()) + " to " + dateTimeText(times_s.back());
   throw Error(ErrorKind::InvalidArgument, "no cloud with time and pose lies " +
                                               std::string(after == times_s.end() ? "at or after " : "before ") +
-                                              mapping::dateTimeText(since_s) + ": " + known);
+                                              dateTimeText(since_s) + ": " + known);
 }
 
 bool areOfOneSize(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -239,9 +240,8 @@ double timeNamed(const std::string& text) {
 }
 
 std::string changesJson(const mapping::MapReader& map, const SiteChanges& found) {
-  ChangeJson json{{"since", mapping::dateTimeText(found.since_s)},
-                  {"changes", ChangeJson::array()},
-                  {"states", ChangeJson::array()}};
+  ChangeJson json{
+      {"since", dateTimeText(found.since_s)}, {"changes", ChangeJson::array()}, {"states", ChangeJson::array()}};
   for (const SiteChange& change : found.changes) {
     ChangeJson entry = thingJson(map, change.thing);
     entry["change"] = nameOf(change.kind);
