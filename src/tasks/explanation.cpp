@@ -10,7 +10,7 @@
 #include "base/nearest_name.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/facts/ask_replay.hpp"
-#include "rules/explain/explain.hpp"
+#include "rules/explain/part_run.hpp"
 #include "rules/explain/path_tree.hpp"
 #include "rules/explain/why_not.hpp"
 #include "rules/language/rule_loader.hpp"
@@ -110,26 +110,36 @@ Named find(const mapping::MapReader& map, const std::string& name) {
   return named;
 }
 
+std::vector<perception::PrimitiveIndex> primitivesOf(const mapping::MapReader& map, const Named& named) {
+  if (named.primitive) return {static_cast<perception::PrimitiveIndex>(*named.primitive)};
+  return primitivesOf(map.objects()[*named.object]);
+}
+
+std::optional<rules::PartRun> partAround(const mapping::MapReader& map, const Named& named, const rules::RuleSet& rules,
+                                         double min_margin_m) {
+  const std::vector<std::uint64_t> digests = map.decisionDigests();
+  return runInPart(map.scene(), rules, {digests, map.objects()}, primitivesOf(map, named), min_margin_m);
+}
+
 /// An explanation, with the part of the scene that its numbers refer to when it is not the whole.
 struct Explained {
   rules::Explanation explanation;
-  std::optional<perception::Scene> part;
+  std::optional<rules::PartRun> run;
 
-  const perception::Scene& sceneOf(const mapping::MapReader& map) const { return part ? *part : map.scene(); }
+  const perception::Scene& sceneOf(const mapping::MapReader& map) const { return run ? run->part : map.scene(); }
 };
 
 Explained explanationOf(const mapping::MapReader& map, const Named& named, const rules::RuleSet& rules) {
-  const perception::Scene& scene = map.scene();
   const rules::SemanticObject* object = named.primitive ? nullptr : &map.objects()[*named.object];
-  const auto primitives = named.primitive ? std::vector{static_cast<perception::PrimitiveIndex>(*named.primitive)}
-                                          : rules::primitivesOf(*object);
-  const std::vector<std::uint64_t> digests = map.decisionDigests();
-  if (auto near = explainInPart(scene, rules, {digests, map.objects()}, primitives, object))
-    return {std::move(near->explanation), std::move(near->part)};
+  if (auto run = partAround(map, named, rules, 0)) {
+    auto explanation = object == nullptr ? explanationIn(run->result, rules, run->primitives.front())
+                                         : explanationIn(run->result, rules, object->id);
+    if (explanation) return {std::move(*explanation), std::move(run)};
+  }
   mapping::AskReplay oracle(map);
   const rules::ReasoningContext context{.oracle = &oracle};
-  if (object == nullptr) return {explain(scene, rules, context, primitives.front()), std::nullopt};
-  std::optional<rules::Explanation> explanation = explain(scene, rules, context, *object);
+  if (object == nullptr) return {explain(map.scene(), rules, context, primitivesOf(map, named).front()), std::nullopt};
+  std::optional<rules::Explanation> explanation = explain(map.scene(), rules, context, *object);
   if (!explanation)
     throw Error(ErrorKind::NotFound, "the map's rules make no object '" + object->id.hex() + "' any more");
   return {std::move(*explanation), std::nullopt};
@@ -140,25 +150,33 @@ struct WhyNotOfThing {
   std::string headline;
 };
 
+/// The object that is named, or that owns the named primitive; null when there is none. `primitives` are the named
+/// ones by their numbers in the run that made `objects`.
+const rules::SemanticObject* ownerOf(const std::vector<rules::SemanticObject>& objects,
+                                     const std::vector<perception::PrimitiveIndex>& primitives,
+                                     const std::optional<ContentHash>& id) {
+  const rules::SemanticObject* owner = nullptr;
+  for (const rules::SemanticObject& object : objects) {
+    const auto owned = rules::primitivesOf(object);
+    if (id ? object.id == *id : std::binary_search(owned.begin(), owned.end(), primitives.front())) owner = &object;
+  }
+  return owner;
+}
+
 WhyNotOfThing whyNotOf(const mapping::MapReader& map, const rules::RuleSet& rules, const mapping::MapInputs& inputs,
                        const std::string& written, const std::string& class_name) {
+  constexpr double kMinMargin_m = 30;  // without the thing its neighbours may go to other objects, and so on
   const Named named = find(map, plainName(written));
   const std::string class_iri = classNamed(rules, class_name);
+  const auto id = named.object ? std::optional(map.objects()[*named.object].id) : std::nullopt;
   mapping::AskReplay oracle(map);
   const rules::ReasoningContext context{.oracle = &oracle};
-  const rules::ReasoningResult made = reason(map.scene(), rules, context);
-  const rules::SemanticObject* owner = nullptr;
-  for (const rules::SemanticObject& object : made.objects) {
-    const bool is_it = named.object && object.id == map.objects()[*named.object].id;
-    const auto holds = [&](const rules::ObjectPart& part) {
-      return named.primitive && std::binary_search(part.primitives.begin(), part.primitives.end(), *named.primitive);
-    };
-    if (is_it || std::any_of(object.parts.begin(), object.parts.end(), holds)) owner = &object;
-  }
-  std::vector<perception::PrimitiveIndex> primitives;
-  if (named.primitive) primitives = {static_cast<perception::PrimitiveIndex>(*named.primitive)};
-  if (named.object && owner != nullptr) primitives = rules::primitivesOf(*owner);
-  WhyNotOfThing thing{whyNot(map.scene(), rules, context, made, owner, primitives, class_iri), ""};
+  std::optional<rules::PartRun> run = partAround(map, named, rules, kMinMargin_m);
+  const perception::Scene& scene = run ? run->part : map.scene();
+  const std::vector<perception::PrimitiveIndex> primitives = run ? run->primitives : primitivesOf(map, named);
+  const rules::ReasoningResult made = run ? std::move(run->result) : reason(scene, rules, context);
+  const rules::SemanticObject* owner = ownerOf(made.objects, primitives, id);
+  WhyNotOfThing thing{whyNot(scene, rules, context, made, owner, primitives, class_iri), ""};
   thing.headline = owner == nullptr ? "belongs to no object: unknown"
                                     : "belongs to " + rules.shorten(owner->class_iri) + " " + owner->id.hex() +
                                           ", by rule " + owner->rule_id;

@@ -18,8 +18,8 @@ struct ExplanationTexts {
 
 /// Explains an object or a primitive. `name` is its IRI (also in <> or as map:…), "object/…" or "primitive/…", the
 /// first digits of its hash (four or more), or an object's number in MapReader::objects() ("17" or "#17"), as exported
-/// clouds and footprints hold it. Runs the map's own rules again on its scene. Files of rules are named relative to the
-/// folder of the first. Throws Error (NotFound) when nothing or more than one resource has the name.
+/// clouds and footprints hold it. Runs the map's own rules again on what lies around it. Files of rules are named
+/// relative to the folder of the first. Throws Error (NotFound) when nothing or more than one resource has the name.
 ExplanationTexts explainThing(const mapping::MapReader& map, const std::string& name);
 /// The number in MapReader::objects() of the object that has the name. Throws Error (NotFound) when there is none.
 std::size_t objectNamed(const mapping::MapReader& map, const std::string& name);

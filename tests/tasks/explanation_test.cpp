@@ -10,7 +10,7 @@
 #include "mapping/asking_rules.hpp"
 #include "rdf/map_iris.hpp"
 #include "rules/decide/reason.hpp"
-#include "rules/explain/explain.hpp"
+#include "rules/explain/part_run.hpp"
 #include "rules/language/rule_loader.hpp"
 #include "tasks/campus_map_fixture.hpp"
 #include "test_paths.hpp"
@@ -54,12 +54,13 @@ TEST(Explanation, FromAPartOfTheMapIsThatOfTheWhole) {
   std::size_t in_part = 0;
   for (std::size_t i = 0; i < map.objects().size(); i += 4) {
     const SemanticObject& object = map.objects()[i];
-    const auto near = explainInPart(map.scene(), rules, {digests, map.objects()}, primitivesOf(object), &object);
-    if (!near) continue;
+    const auto run = runInPart(map.scene(), rules, {digests, map.objects()}, primitivesOf(object));
+    if (!run) continue;
     ++in_part;
+    const auto near = explanationIn(run->result, rules, object.id);
     const auto whole = explain(map.scene(), rules, {}, object);
-    ASSERT_TRUE(whole.has_value());
-    EXPECT_EQ(textOf(near->explanation, rules, near->part), textOf(*whole, rules, map.scene())) << "object " << i;
+    ASSERT_TRUE(near && whole);
+    EXPECT_EQ(textOf(*near, rules, run->part), textOf(*whole, rules, map.scene())) << "object " << i;
   }
   EXPECT_GE(in_part, 5U);
 }

@@ -57,27 +57,6 @@ std::optional<Explanation> explanationIn(const ReasoningResult& result, const Ru
 /// The primitives of an object, ascending.
 std::vector<perception::PrimitiveIndex> primitivesOf(const SemanticObject& object);
 
-/// An explanation and the part of the scene that its numbers refer to.
-struct PartExplanation {
-  perception::Scene part;
-  Explanation explanation;
-};
-
-/// What the run over a whole scene left.
-struct WholeRun {
-  const std::vector<std::uint64_t>& digests;  ///< decisionDigests()
-  const std::vector<SemanticObject>& objects;
-};
-
-/// The same by running the stage on what lies around: a primitive, or the object `known` when it is given. Parts of
-/// growing size are tried. One counts when the digests of the primitives explained are those of the whole run, and what
-/// lies within 5 m around them went to the same rules. Absent when no part does that is clearly smaller than the scene,
-/// or when the rules ask the map.
-std::optional<PartExplanation> explainInPart(const perception::Scene& scene, const RuleSet& rules,
-                                             const WholeRun& whole,
-                                             const std::vector<perception::PrimitiveIndex>& primitives,
-                                             const SemanticObject* known);
-
 /// The same for all objects of `result`, which reason() gave for the same scene, rules and context: one explanation for
 /// each, in their order. Cost: one run of the stage with a probe at every object.
 std::vector<Explanation> explainAll(const perception::Scene& scene, const RuleSet& rules,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An explanation from a part of the scene is the one from the whole, or there is none.
+// What a run over a part of the scene tells is what the whole run tells, or it is refused.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +8,8 @@
 #include "perception/segments/scene_part.hpp"
 #include "rules/box_world.hpp"
 #include "rules/explain/decision_digests.hpp"
-#include "rules/explain/explain.hpp"
+#include "rules/explain/part_run.hpp"
+#include "rules/explain/why_not.hpp"
 
 namespace cluxel::testing {
 
@@ -37,40 +38,62 @@ struct StreetRun {
   WholeRun whole() const { return {digests, result.objects}; }
 };
 
-TEST(PartExplanation, IsThatOfTheWholeSceneForObjectsAndPrimitives) {
+TEST(PartRun, ExplainsObjectsAndPrimitivesAsTheWholeRunDoes) {
   const StreetRun street;
   std::size_t in_part = 0, asked = 0;
   for (const SemanticObject& object : street.result.objects) {
     ++asked;
-    const auto near = explainInPart(street.scene, street.rules, street.whole(), primitivesOf(object), &object);
-    if (!near) continue;
+    const auto run = runInPart(street.scene, street.rules, street.whole(), primitivesOf(object));
+    if (!run) continue;
     ++in_part;
-    EXPECT_LT(near->part.cluxels.size(), street.scene.cluxels.size());
+    EXPECT_LT(run->part.cluxels.size(), street.scene.cluxels.size());
+    const auto near = explanationIn(run->result, street.rules, object.id);
     const auto whole = explain(street.scene, street.rules, {}, object);
-    ASSERT_TRUE(whole.has_value());
-    EXPECT_EQ(textOf(near->explanation, street.rules, near->part), textOf(*whole, street.rules, street.scene));
-    EXPECT_EQ(jsonOf(near->explanation, street.rules, near->part), jsonOf(*whole, street.rules, street.scene));
+    ASSERT_TRUE(near && whole);
+    EXPECT_EQ(textOf(*near, street.rules, run->part), textOf(*whole, street.rules, street.scene));
+    EXPECT_EQ(jsonOf(*near, street.rules, run->part), jsonOf(*whole, street.rules, street.scene));
   }
   for (PrimitiveIndex i = 0; i < street.scene.primitives.size(); i += 3) {
     ++asked;
-    const auto near = explainInPart(street.scene, street.rules, street.whole(), {i}, nullptr);
-    if (!near) continue;
+    const auto run = runInPart(street.scene, street.rules, street.whole(), {i});
+    if (!run) continue;
     ++in_part;
-    EXPECT_EQ(textOf(near->explanation, street.rules, near->part),
+    const auto near = explanationIn(run->result, street.rules, run->primitives.front());
+    ASSERT_TRUE(near);
+    EXPECT_EQ(textOf(*near, street.rules, run->part),
               textOf(explain(street.scene, street.rules, {}, i), street.rules, street.scene));
   }
   EXPECT_GE(4 * in_part, 3 * asked) << "most things are explained from a part";
 }
 
-TEST(PartExplanation, IsRefusedWhereTheWholeRunDecidedOtherwise) {
+TEST(PartRun, SaysWhyNotAsTheWholeRunDoes) {
+  const StreetRun street;
+  std::size_t in_part = 0;
+  for (std::size_t i = 0; i < street.result.objects.size(); i += 3)
+    for (const char* class_name : {"StreetSign", "Tree"}) {
+      const SemanticObject& object = street.result.objects[i];
+      const auto primitives = primitivesOf(object);
+      const auto run = runInPart(street.scene, street.rules, street.whole(), primitives, 30);
+      if (!run) continue;
+      ++in_part;
+      const auto own = std::find_if(run->result.objects.begin(), run->result.objects.end(),
+                                    [&](const SemanticObject& made) { return made.id == object.id; });
+      ASSERT_NE(own, run->result.objects.end());
+      const WhyNot near = whyNot(run->part, street.rules, {}, run->result, &*own, run->primitives, clx(class_name));
+      const WhyNot whole = whyNot(street.scene, street.rules, {}, street.result, &object, primitives, clx(class_name));
+      EXPECT_EQ(textOf(near, street.rules), textOf(whole, street.rules)) << object.class_iri << " " << class_name;
+    }
+  EXPECT_GE(2 * in_part, street.result.objects.size() / 3);
+}
+
+TEST(PartRun, IsRefusedWhereTheWholeRunDecidedOtherwise) {
   StreetRun street;
-  const SemanticObject& object = street.result.objects.front();
-  const std::vector<PrimitiveIndex> primitives = primitivesOf(object);
-  ASSERT_TRUE(explainInPart(street.scene, street.rules, street.whole(), primitives, &object));
+  const std::vector<PrimitiveIndex> primitives = primitivesOf(street.result.objects.front());
+  ASSERT_TRUE(runInPart(street.scene, street.rules, street.whole(), primitives));
   street.digests[primitives.front()] ^= 1U;
-  EXPECT_FALSE(explainInPart(street.scene, street.rules, street.whole(), primitives, &object));
+  EXPECT_FALSE(runInPart(street.scene, street.rules, street.whole(), primitives));
   street.digests.pop_back();
-  EXPECT_FALSE(explainInPart(street.scene, street.rules, street.whole(), primitives, &object)) << "of another scene";
+  EXPECT_FALSE(runInPart(street.scene, street.rules, street.whole(), primitives)) << "of another scene";
 }
 
 TEST(DecisionDigests, TellWhatWasMeasuredAndNotHowThingsAreNumbered) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Explains from a part of the scene, checked against the digests of the whole run.
+// Runs the rules over a part of the scene, checked against the digests of the whole run.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 
 #include "perception/segments/scene_part.hpp"
 #include "rules/explain/decision_digests.hpp"
-#include "rules/explain/explain.hpp"
+#include "rules/explain/part_run.hpp"
 
 namespace cluxel::rules {
 
@@ -96,25 +96,19 @@ class PartSearch {
 
 }  // namespace
 
-std::optional<PartExplanation> explainInPart(const perception::Scene& scene, const RuleSet& rules,
-                                             const WholeRun& whole,
-                                             const std::vector<perception::PrimitiveIndex>& primitives,
-                                             const SemanticObject* known) {
+std::optional<PartRun> runInPart(const perception::Scene& scene, const RuleSet& rules, const WholeRun& whole,
+                                 const std::vector<perception::PrimitiveIndex>& primitives, double min_margin_m) {
   if (rules.asks_map || whole.digests.size() != scene.primitives.size() || primitives.empty()) return std::nullopt;
   const PartSearch search(scene, whole, primitives);
   for (const double margin_m : kMargins_m) {
+    if (margin_m < min_margin_m) continue;
     const std::vector<perception::PrimitiveIndex> kept = search.within(margin_m);
     if (kept.empty()) return std::nullopt;
-    PartExplanation made{partOf(scene, kept), {}};
+    PartRun run{partOf(scene, kept), search.numbersIn(kept), {}};
     ReasoningContext probing;
-    probing.probes = search.numbersIn(kept);
-    const ReasoningResult result = reason(made.part, rules, probing);
-    if (!search.agrees(kept, made.part, result)) continue;
-    auto explanation = known == nullptr ? explanationIn(result, rules, probing.probes.front())
-                                        : explanationIn(result, rules, known->id);
-    if (!explanation) continue;
-    made.explanation = std::move(*explanation);
-    return made;
+    probing.probes = run.primitives;
+    run.result = reason(run.part, rules, probing);
+    if (search.agrees(kept, run.part, run.result)) return run;
   }
   return std::nullopt;
 }

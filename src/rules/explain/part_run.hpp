@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The reasoning stage over what lies around a thing, with the outcome of the run over the whole scene.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "rules/explain/explain.hpp"
+
+namespace cluxel::rules {
+
+/// What the run over a whole scene left.
+struct WholeRun {
+  const std::vector<std::uint64_t>& digests;  ///< decisionDigests()
+  const std::vector<SemanticObject>& objects;
+};
+
+/// A run with probes at some primitives. All numbers refer to the part.
+struct PartRun {
+  perception::Scene part;
+  std::vector<perception::PrimitiveIndex> primitives;  ///< the probed ones
+  ReasoningResult result;
+};
+
+/// Tries parts of growing size, from all primitives within `min_margin_m` on. One counts when the digests of
+/// `primitives` (ascending) are those of the whole run, and what lies within 5 m around them went to the same rules.
+/// Absent when no part does that is clearly smaller than the scene, or when the rules ask the map.
+std::optional<PartRun> runInPart(const perception::Scene& scene, const RuleSet& rules, const WholeRun& whole,
+                                 const std::vector<perception::PrimitiveIndex>& primitives, double min_margin_m = 0);
+
+}  // namespace cluxel::rules
