@@ -103,6 +103,9 @@ const std::vector<rules::SemanticObject>& MapReader::objects() const {
 const rdf::QuadReader& MapReader::quads() const {
   return impl_->quads;
 }
+std::vector<rdf::LayerSize> MapReader::layers() const {
+  return rdf::layerSizes(impl_->transaction);
+}
 MapInputs MapReader::inputs() const {
   return impl_->readInputs();
 }
