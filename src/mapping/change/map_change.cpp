@@ -77,16 +77,16 @@ ChangeReport retractScans(const fs::path& file, const std::vector<scan::ScanId>&
   requireOnce(scans);
   MapEditor editor(file, params, sink);
   rdf::WriteTransaction transaction = editor.begin();
-  TileSet touched;
+  PointChanges changes;
   std::vector<Cloud> removed;
   for (const scan::ScanId& id : scans) {
     if (const auto cloud = storedCloud(transaction, id)) removed.push_back(*cloud);
-    touched = unionOf(std::move(touched), removeScan(transaction, id));
+    changes.anew = unionOf(std::move(changes.anew), removeScan(transaction, id));
     sink.progress("scans", ++editor.result().scans_removed, scans.size());
   }
   if (storedClouds(transaction).empty())
     throw Error(ErrorKind::InvalidArgument, file.string() + ": no scan would be left; remove the file instead");
-  if (!scans.empty()) editor.commit(transaction, "retract", touched, removed);
+  if (!scans.empty()) editor.commit(transaction, "retract", std::move(changes), removed);
   return std::move(editor.result());
 }
 
@@ -97,7 +97,7 @@ ChangeReport moveScans(const fs::path& file, const std::vector<ScanPose>& poses,
   requireOnce(named);
   MapEditor editor(file, params, sink);
   rdf::WriteTransaction transaction = editor.begin();
-  TileSet touched;
+  PointChanges changes;
   std::vector<Cloud> moved;
   for (const ScanPose& pose : poses) {
     scan::Scan scan = storedScan(transaction, pose.scan);
@@ -105,12 +105,12 @@ ChangeReport moveScans(const fs::path& file, const std::vector<ScanPose>& poses,
     if (scan.has_pose && scan.T_map_sensor.matrix() == pose.T_map_sensor.matrix()) continue;
     scan.T_map_sensor = pose.T_map_sensor;
     scan.has_pose = true;
-    touched = unionOf(std::move(touched), removeScan(transaction, scan.id));
-    touched = unionOf(std::move(touched), storeScan(transaction, scan));
+    changes.anew = unionOf(std::move(changes.anew), removeScan(transaction, scan.id));
+    for (const auto& [tile, segment] : storeScan(transaction, scan)) changes.anew.insert(tile);
     moved.push_back(*storedCloud(transaction, scan.id));
   }
   editor.result().scans_moved = moved.size();
-  if (!moved.empty()) editor.commit(transaction, "repose", touched, moved);
+  if (!moved.empty()) editor.commit(transaction, "repose", std::move(changes), moved);
   return std::move(editor.result());
 }
 
