@@ -11,6 +11,7 @@
 #include "mapping/build/scan_store.hpp"
 #include "mapping/build/stage_clock.hpp"
 #include "mapping/build/work_file.hpp"
+#include "mapping/change/map_compaction.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/map_state.hpp"
@@ -133,10 +134,8 @@ class MapBuild {
   BuildReport report_;
 };
 
-}  // namespace
-
-BuildReport buildMap(const scan::ScanSet& scans, const MapInputs& inputs, const fs::path& file,
-                     const BuildParams& params, ProgressSink& sink) {
+BuildReport built(const scan::ScanSet& scans, const MapInputs& inputs, const fs::path& file, const BuildParams& params,
+                  ProgressSink& sink) {
   if (scans.size() == 0) throw Error(ErrorKind::InvalidArgument, "there is no scan to build a map from");
   MapInputs complete = inputs;
   complete.map_origin = scans.mapOrigin();
@@ -149,6 +148,15 @@ BuildReport buildMap(const scan::ScanSet& scans, const MapInputs& inputs, const 
   const scan::ScanSet posed = params.refine_poses ? withRefinedPoses(scans, params.threads, sink) : scans;
   const BuildReport report = MapBuild(posed, parsed, work, params, sink).run();
   work.finish();
+  return report;
+}
+
+}  // namespace
+
+BuildReport buildMap(const scan::ScanSet& scans, const MapInputs& inputs, const fs::path& file,
+                     const BuildParams& params, ProgressSink& sink) {
+  const BuildReport report = built(scans, inputs, file, params, sink);
+  compactIfSparse(file, sink);  // each batch leaves the outputs of the one before
   return report;
 }
 

@@ -14,6 +14,7 @@ namespace cluxel::rdf {
 namespace {
 
 constexpr MDB_dbi kFreePages = 0;  // LMDB's own table of free pages
+constexpr const char* kFreePagesName = "free pages";
 constexpr std::uint64_t kNodeHead = 8, kNodeSlot = 2;
 
 /// Calls `visit` with each entry of a table, without reading long values.
@@ -98,7 +99,7 @@ class LayerCount {
     const std::uint64_t all = std::min<std::uint64_t>(state_.environment->fileSize(), (info.me_last_pgno + 1) * page_);
     const std::uint64_t other = all - std::min(all, known);
     layers_.push_back({"other pages", other / page_, other});
-    layers_.push_back({"free pages", free, free * page_});
+    layers_.push_back({kFreePagesName, free, free * page_});
   }
 
   ReadTransaction::Impl& state_;
@@ -106,7 +107,22 @@ class LayerCount {
   std::vector<LayerSize> layers_;
 };
 
+bool isIndex(const std::string& name) {
+  return std::any_of(kTableNames.begin(), kTableNames.end(),
+                     [&](const char* table) { return name == table && name != "blocks" && name != "terms"; });
+}
+
 }  // namespace
+
+std::uint64_t freeableBytes(const std::vector<LayerSize>& layers) {
+  std::uint64_t bytes = 0;
+  for (const LayerSize& layer : layers) {
+    const std::uint64_t needed = layer.entries * sizeof(QuadKey);
+    if (isIndex(layer.name)) bytes += layer.file_bytes - std::min(layer.file_bytes, needed);
+    if (layer.name == kFreePagesName) bytes += layer.file_bytes;
+  }
+  return bytes;
+}
 
 std::vector<LayerSize> layerSizes(const ReadTransaction& transaction) {
   return LayerCount(transaction).run();

@@ -22,4 +22,7 @@ struct LayerSize {
 /// read, and the indexes are compared with their sums.
 std::vector<LayerSize> layerSizes(const ReadTransaction& transaction);
 
+/// The bytes that a rewrite of the file would free: free pages, and the space that the pages of indexes leave.
+std::uint64_t freeableBytes(const std::vector<LayerSize>& layers);
+
 }  // namespace cluxel::rdf
