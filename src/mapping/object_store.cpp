@@ -72,11 +72,11 @@ std::vector<rules::SemanticObject> storedObjects(const rdf::ReadTransaction& tra
   if (!bytes) return objects;
   try {
     const auto unpacked = unpackedBytes(*bytes);
-    if (!unpacked) throw std::invalid_argument("they cannot be unpacked, or are of an earlier version of cluxel");
+    if (!unpacked) throw std::invalid_argument("not in the form in which this version of cluxel writes them");
     for (const Json& object : Json::from_cbor(unpacked->view())) objects.push_back(objectFrom(object));
   } catch (const std::exception& fault) {
     throw Error(ErrorKind::StoreUnavailable,
-                std::string("the map's objects are damaged (") + fault.what() + "); build the map anew");
+                std::string("the map's objects cannot be read (") + fault.what() + "); build the map anew");
   }
   return objects;
 }
