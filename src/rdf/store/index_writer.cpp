@@ -11,9 +11,8 @@ namespace {
 // Every index stores its entries as MDB_DUPFIXED duplicates of this key.
 constexpr std::string_view kIndexKey = "q";
 
-// The cost of a single put, in keys written by appending. In the first commit of a file an index is rather rewritten:
-// its pages are then full, and nothing that was committed is left behind as free pages.
-constexpr std::uint64_t kPutCost = 4, kFirstPutCost = 64;
+// The cost of a single put, in keys written by appending.
+constexpr std::uint64_t kPutCost = 4;
 
 /// A write cursor on one index.
 class IndexCursor {
@@ -120,8 +119,7 @@ void addSingly(ReadTransaction::Impl& transaction, Table index, const std::vecto
 void applyTo(ReadTransaction::Impl& transaction, Table index, const IndexChange& change, EntrySum* sum) {
   const std::uint64_t changes = change.added.size() + change.removed.size();
   const std::uint64_t entries = entriesOf(transaction, index);
-  const std::uint64_t put_cost = transaction.committed_terms == 0 ? kFirstPutCost : kPutCost;
-  if (entries > 0 && changes * put_cost > entries + 1000) return writeAnew(transaction, index, change, sum);
+  if (entries > 0 && changes * kPutCost > entries + 1000) return writeAnew(transaction, index, change, sum);
   removeSingly(transaction, index, change.removed, sum);
   addSingly(transaction, index, change.added, sum);
 }
