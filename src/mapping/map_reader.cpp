@@ -106,6 +106,9 @@ std::vector<std::uint64_t> MapReader::decisionDigests() const {
 const rdf::QuadReader& MapReader::quads() const {
   return impl_->quads;
 }
+std::vector<rdf::LayerSize> MapReader::layers() const {
+  return rdf::layerSizes(impl_->transaction);
+}
 MapInputs MapReader::inputs() const {
   return impl_->readInputs();
 }

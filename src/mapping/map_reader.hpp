@@ -12,6 +12,7 @@
 #include "mapping/cloud.hpp"
 #include "mapping/map_inputs.hpp"
 #include "perception/segments/scene.hpp"
+#include "rdf/file/layer_sizes.hpp"
 #include "rdf/store/quad_store.hpp"
 #include "rules/objects/semantic_object.hpp"
 
@@ -60,6 +61,8 @@ class MapReader {
   const TileStages& stages() const;
   PointAnswers answersFor(const Cloud& cloud) const;
   const rdf::QuadReader& quads() const;
+  /// The bytes of the file by table. Cost and errors as for rdf::layerSizes().
+  std::vector<rdf::LayerSize> layers() const;
   MapInputs inputs() const;
 
  private:

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Objects as one CBOR block; cluxel lists as binary strings of 32-bit numbers.
+// Objects as one packed CBOR block; lists of cluxels as planes of their differences.
 #include "mapping/object_store.hpp"
 
-#include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "base/zstd_packing.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/map_tables.hpp"
 
@@ -16,15 +16,16 @@ using Json = nlohmann::json;
 constexpr std::string_view kObjectsKey = "objects", kDigestsKey = "decisions";
 
 Json numbersJson(const std::vector<std::uint32_t>& numbers) {
-  std::vector<std::uint8_t> bytes(numbers.size() * sizeof(std::uint32_t));
-  if (!bytes.empty()) std::memcpy(bytes.data(), numbers.data(), bytes.size());
-  return Json::binary(std::move(bytes));
+  std::string planes;
+  appendPlanes(planes, differencesOf(numbers).data(), numbers.size(), sizeof(std::uint32_t));
+  return Json::binary({planes.begin(), planes.end()});
 }
 
 std::vector<std::uint32_t> numbersFrom(const Json& json) {
   const auto& bytes = json.get_binary();
   std::vector<std::uint32_t> numbers(bytes.size() / sizeof(std::uint32_t));
-  if (!numbers.empty()) std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(std::uint32_t));
+  readPlanes(reinterpret_cast<const char*>(bytes.data()), numbers.data(), numbers.size(), sizeof(std::uint32_t));
+  sumUp(numbers);
   return numbers;
 }
 
@@ -61,7 +62,8 @@ void storeObjects(rdf::WriteTransaction& transaction, const std::vector<rules::S
   Json json = Json::array();
   for (const rules::SemanticObject& object : objects) json.push_back(objectJson(object));
   const auto bytes = Json::to_cbor(json);
-  transaction.putBlock(tables::kMeta, kObjectsKey, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  transaction.putBlock(tables::kMeta, kObjectsKey,
+                       packedBytes({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
 }
 
 std::vector<rules::SemanticObject> storedObjects(const rdf::ReadTransaction& transaction) {
@@ -69,10 +71,12 @@ std::vector<rules::SemanticObject> storedObjects(const rdf::ReadTransaction& tra
   const auto bytes = transaction.block(tables::kMeta, kObjectsKey);
   if (!bytes) return objects;
   try {
-    for (const Json& object : Json::from_cbor(*bytes)) objects.push_back(objectFrom(object));
+    const auto unpacked = unpackedBytes(*bytes);
+    if (!unpacked) throw std::invalid_argument("not in the form in which this version of cluxel writes them");
+    for (const Json& object : Json::from_cbor(unpacked->view())) objects.push_back(objectFrom(object));
   } catch (const std::exception& fault) {
     throw Error(ErrorKind::StoreUnavailable,
-                std::string("the map's objects are damaged (") + fault.what() + "); build the map anew");
+                std::string("the map's objects cannot be read (") + fault.what() + "); build the map anew");
   }
   return objects;
 }

@@ -39,23 +39,31 @@ class Run {
   }
   void toContacts(const TileLabeller& labeller, const SceneParams& params) {
     label(labeller, params.labelling);  // features to primitive labels, by the CRF (paper 3.1)
-    joinComponents(params.component);   // intersecting cluxels of one label to components
-    findContacts(params);               // components that are near each other
+    if (options_.store != nullptr) dropRowsAndVolumes();
+    joinComponents(params.component);  // intersecting cluxels of one label to components
+    findContacts(params);              // components that are near each other
   }
   const TileSet& changed() const { return changed_; }
 
  private:
   void thin(TileSegments segments) {
-    for (const auto& [key, parts] : segments)
+    TileSet grown;
+    for (const auto& [key, parts] : segments) {
       if (parts.empty()) emptied_.insert(key);
+      if (!options_.anew.contains(key)) grown.insert(key);
+    }
+    loadFor(keysOf(segments));  // before the points change on which other outputs rest
     changed_points_ = update(Stage::Points, out_.points, keysOf(segments), [&](const TileKey& key) {
       std::vector<const ScanSegment*> parts;
       for (const ScanSegment& segment : segments.at(key)) parts.push_back(&segment);
-      return perception::thin(key, parts, params_.thin);
+      TilePoints fresh = perception::thin(key, parts, params_.thin);
+      const auto present = out_.points.find(key);
+      if (!grown.contains(key) || present == out_.points.end()) return fresh;
+      return perception::thin(key, std::array<const TilePoints*, 2>{&present->second, &fresh}, params_.thin);
     });
     tiles_ = options_.store != nullptr ? options_.store->tiles() : keysOf(out_.points);
     if (options_.compute_all) changed_points_ = unionOf(std::move(changed_points_), tiles_);
-    if (options_.store != nullptr) loadAround(changed_points_);
+    loadAround(changed_points_);
   }
 
   void cluster() {
@@ -101,11 +109,49 @@ class Run {
 
   TileSet around(const TileSet& changed) const { return withRing(changed, tiles_); }
 
-  /// Reads what the stages after the points may read: a change of points reaches contacts up to five tiles away, and
-  /// these read the sixth.
+  /// Reads what the stages after the points may read: a change of points reaches labels up to four tiles away, and
+  /// contacts five. Labels read rows of the fifth, which are computed from volumes of the sixth, and these from points
+  /// of the seventh.
   void loadAround(TileSet tiles) {
-    for (int ring = 0; ring < 6; ++ring) tiles = around(tiles);
-    options_.store->load(tiles, out_);
+    for (int ring = 0; ring < 7; ++ring) tiles = around(tiles);
+    loadFor(tiles);
+  }
+
+  void loadFor(const TileSet& tiles) {
+    if (options_.store != nullptr && !options_.compute_all) options_.store->load(tiles, out_);
+  }
+
+  /// What is not stored is computed again before a stage reads it.
+  template <typename Tile>
+  void prepare(const std::map<TileKey, Tile>& /*stage*/, const TileSet& /*keys*/) {}
+  void prepare(const std::map<TileKey, FeatureTile>& /*stage*/, const TileSet& keys) { addVolumesOf(around(keys)); }
+  void prepare(const std::map<TileKey, LabelTile>& /*stage*/, const TileSet& keys) { addRowsOf(around(keys)); }
+
+  void addVolumesOf(const TileSet& keys) {
+    std::vector<CluxelTile*> without;
+    for (const TileKey& key : keys)
+      if (CluxelTile& tile = out_.cluxels.at(key); !tile.hasVolumes()) without.push_back(&tile);
+    parallelFor(without.size(), options_.threads, [&](std::size_t i) {
+      addVolumes(ringIn(out_.points, without[i]->key), params_.clustering, *without[i]);
+    });
+  }
+
+  void addRowsOf(const TileSet& keys) {
+    TileSet without;
+    for (const TileKey& key : keys)
+      if (!out_.features.at(key).hasRows()) without.insert(key);
+    addVolumesOf(around(without));
+    const std::vector<TileKey> each(without.begin(), without.end());
+    parallelFor(each.size(), options_.threads, [&](std::size_t i) {
+      out_.features.at(each[i]) =
+          perception::computeFeatures(ringIn(out_.cluxels, each[i]), ringIn(out_.ground, each[i]), params_.features);
+    });
+  }
+
+  /// They are not stored; later runs compute them again where they need them.
+  void dropRowsAndVolumes() {
+    for (auto& [key, tile] : out_.features) tile.dropRows();
+    for (auto& [key, tile] : out_.cluxels) dropVolumes(tile);
   }
 
   /// Computes the `dirty` tiles of one stage; returns those whose output differs from the stored one.
@@ -118,6 +164,7 @@ class Run {
     constexpr std::size_t kChunk = 64;  // bounds the bytes that wait for the store
     TileSet changed = emptied_;
     eraseEmptied(stage, tiles);
+    prepare(tiles, {keys.begin(), keys.end()});
     for (std::size_t first = 0; first < keys.size(); first += kChunk) {
       const auto chunk = std::span(keys).subspan(first, std::min(kChunk, keys.size() - first));
       changed.merge(updateChunk(stage, tiles, chunk, compute));

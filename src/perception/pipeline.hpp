@@ -30,7 +30,7 @@ struct SceneParams {
   RelationParams relation;
 };
 
-/// Points of scans by tile, the input of the first stage. A tile without segments has lost its points.
+/// Points of scans by tile, the input of the first stage.
 using TileSegments = std::map<TileKey, std::vector<ScanSegment>>;
 
 /// Cuts scans into tiles. Errors and cost as for splitScan().
@@ -43,7 +43,7 @@ class OutputStore {
   /// All tiles with points: with those of the new segments, without those that lost their points.
   virtual TileSet tiles() const = 0;
   /// Reads the stored outputs of `tiles` into `outputs`, except those that are there. Contacts may be left out: no
-  /// stage reads them.
+  /// stage reads them. So may volumes of cluxels and rows of features: they are computed again where they are needed.
   virtual void load(const TileSet& tiles, TileOutputs& outputs) = 0;
   /// Stores one output; false when the stored bytes are the same.
   virtual bool store(Stage stage, const TileKey& key, std::string_view bytes) = 0;
@@ -65,11 +65,13 @@ struct RunOptions {
   OutputStore* store = nullptr;       ///< without a store every tile is computed and kept in memory only
   StageObserver* observer = nullptr;  ///< may be absent
   bool compute_all = false;           ///< every stage computes all tiles: the model or settings changed
+  /// Tiles of which `segments` holds all points; one without segments has lost its points. In other tiles the segments
+  /// are added to the points that are there. With a store, `outputs` must hold what was there of tiles that lost scans.
+  TileSet anew = {};
 };
 
-/// Runs all stages: brings `outputs` and the store up to date after segments came in or went. With a store, `segments`
-/// must hold all segments of each tile of which a segment changed. `outputs` then holds what was read or computed.
-/// Returns the tiles of which an output of some stage changed.
+/// Runs all stages: brings `outputs` and the store up to date after segments came in or went. `outputs` then holds what
+/// was read or computed, without volumes and rows. Returns the tiles of which an output of some stage changed.
 TileSet runStages(TileSegments segments, const TileLabeller& labeller, const SceneParams& params, TileOutputs& outputs,
                   const RunOptions& run);
 

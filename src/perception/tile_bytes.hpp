@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stage outputs as bytes: kind, version, then flat little-endian arrays. Reading checks every length.
+// Stage outputs as bytes: kind, version, tile, then arrays in little space. Reading checks every length.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,6 +13,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "base/zstd_packing.hpp"
 #include "cluxel/error.hpp"
 #include "perception/tile.hpp"
 
@@ -28,10 +29,9 @@ class TileWriter {
  public:
   /// `kind` is four letters; `version` changes with the layout.
   TileWriter(std::string_view kind, std::uint32_t version, const TileKey& key) {
-    bytes_.append(kind.substr(0, 4));
-    put(version);
-    put(key.x);
-    put(key.y);
+    head_.append(kind.substr(0, 4));
+    for (const std::uint32_t number : {version, static_cast<std::uint32_t>(key.x), static_cast<std::uint32_t>(key.y)})
+      head_.append(reinterpret_cast<const char*>(&number), sizeof number);
   }
   template <typename T>
   void put(const T& value) {
@@ -42,12 +42,23 @@ class TileWriter {
   void put(const std::vector<T>& values) {
     static_assert(kFlat<T>);
     put(static_cast<std::uint64_t>(values.size()));
-    if (!values.empty()) bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+    appendPlanes(bytes_, values.data(), values.size(), sizeof(T));
   }
-  std::string take() { return std::move(bytes_); }
+  /// For numbers that are near the one before.
+  void putSteps(const std::vector<std::uint32_t>& values) { put(differencesOf(values)); }
+  /// What is computed again when it is needed is not stored. Its digest is, so that a change of it changes the bytes.
+  template <typename T>
+  void leaveOut(const std::vector<T>& values) {
+    static_assert(kFlat<T>);
+    const std::uint64_t count = values.size();
+    left_out_.add(&count, sizeof count);
+    left_out_.add(values.data(), values.size() * sizeof(T));
+  }
+  std::string take() { return head_ + left_out_.finish() + packedBytes(bytes_); }
 
  private:
-  std::string bytes_;
+  std::string head_, bytes_;
+  FastDigest left_out_;
 };
 
 class TileReader {
@@ -58,6 +69,11 @@ class TileReader {
     if (get<std::uint32_t>() != version) failOther();
     key_.x = get<std::int32_t>();
     key_.y = get<std::int32_t>();
+    if (rest_.size() < kDigestBytes) fail("is cut short");
+    auto unpacked = unpackedBytes(rest_.substr(kDigestBytes));
+    if (!unpacked) fail("cannot be unpacked");
+    unpacked_ = *std::move(unpacked);
+    rest_ = unpacked_.view();
   }
   const TileKey& key() const { return key_; }
 
@@ -76,8 +92,19 @@ class TileReader {
     const auto count = get<std::uint64_t>();
     if (count > rest_.size() / sizeof(T)) fail("is cut short");
     std::vector<T> values(count);
-    if (count > 0) std::memcpy(static_cast<void*>(values.data()), rest_.data(), count * sizeof(T));
+    readPlanes(rest_.data(), values.data(), count, sizeof(T));
     rest_.remove_prefix(count * sizeof(T));
+    return values;
+  }
+  /// What putSteps() wrote.
+  std::vector<std::uint32_t> getSteps() {
+    auto values = getMany<std::uint32_t>();
+    sumUp(values);
+    return values;
+  }
+  std::vector<std::uint32_t> getSteps(std::size_t count) {
+    auto values = getSteps();
+    if (values.size() != count) fail("has arrays of different lengths");
     return values;
   }
   /// An array that must have a certain length, or may be absent when `optional`.
@@ -104,6 +131,8 @@ class TileReader {
                     " is of another version of cluxel, which writes it in another form; build the map anew");
   }
 
+  static constexpr std::size_t kDigestBytes = 16;
+  UnpackedBytes unpacked_;
   std::string_view rest_, kind_;
   TileKey key_;
 };

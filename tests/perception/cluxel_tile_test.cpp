@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -187,15 +189,43 @@ TEST(CluxelTile, SettingsOutsideTheirRangeAreRefusedByName) {
   EXPECT_NE(hashOf(ClusterParams{}), hashOf(paperClustering()));
 }
 
-TEST(CluxelTile, BytesComeBackAndDamagedOnesAreRefused) {
+TEST(CluxelTile, ComesBackFromItsPointsBitForBit) {
+  for (const ClusterParams& params : {ClusterParams{}, paperClustering()}) {
+    auto tiles = streetTiles(18);
+    for (auto& [key, points] : tiles) {
+      points.intensity.resize(points.size());
+      for (std::size_t i = 0; i < points.size(); ++i) points.intensity[i] = static_cast<float>(i % 7);
+    }
+    for (const auto& [key, points] : tiles) {
+      const std::string bytes = toBytes(clusterTile(ringIn(tiles, key), params));
+      CluxelTile tile = cluxelTileFromBytes(bytes, points);
+      EXPECT_FALSE(tile.hasVolumes());
+      EXPECT_NE(toBytes(tile), bytes) << "volumes are missing";
+      addVolumes(ringIn(tiles, key), params, tile);
+      EXPECT_EQ(toBytes(tile), bytes);
+      dropVolumes(tile);
+      EXPECT_FALSE(tile.hasVolumes());
+    }
+  }
+}
+
+TEST(CluxelTile, DamagedBytesAndThoseOfOtherPointsAreRefused) {
   const auto tiles = streetTiles(18);
-  const std::string bytes = toBytes(clusterTile(ringIn(tiles, tiles.begin()->first), {}));
-  EXPECT_EQ(toBytes(cluxelTileFromBytes(bytes)), bytes);
+  const TilePoints& points = tiles.begin()->second;
+  const CluxelTile tile = clusterTile(ringIn(tiles, tiles.begin()->first), {});
+  const std::string bytes = toBytes(tile);
   for (std::size_t size = 0; size < bytes.size(); size += 1 + bytes.size() / 97)
-    EXPECT_THROW(cluxelTileFromBytes(bytes.substr(0, size)), Error);
-  std::string wrong = bytes;
-  wrong[16 + 8 + 3] = '\x7f';  // a seed far beyond the points
-  EXPECT_THROW(cluxelTileFromBytes(wrong), Error);
+    EXPECT_THROW(cluxelTileFromBytes(bytes.substr(0, size), points), Error);
+  TilePoints fewer = points;
+  fewer.x.pop_back();
+  EXPECT_THROW(cluxelTileFromBytes(bytes, fewer), Error);
+  for (const auto& damage : {std::function<void(CluxelTile&)>([](CluxelTile& of) { of.seed[3] = 1U << 30U; }),
+                             std::function<void(CluxelTile&)>([](CluxelTile& of) { of.point_cluxel[3] = 1U << 30U; }),
+                             std::function<void(CluxelTile&)>([](CluxelTile& of) { of.seed[3] = of.seed[4]; })}) {
+    CluxelTile wrong = tile;
+    damage(wrong);
+    EXPECT_THROW(cluxelTileFromBytes(toBytes(wrong), points), Error);
+  }
 }
 
 }  // namespace

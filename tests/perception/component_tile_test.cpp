@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/zstd_packing.hpp"
 #include "cluxel/error.hpp"
 
 #include <limits>
@@ -255,12 +256,13 @@ TEST(ComponentBytes, AreReadBackOrRefused) {
   for (std::size_t size = 0; size < bytes.size(); ++size)
     EXPECT_THROW(componentTileFromBytes(bytes.substr(0, size)), Error);
   EXPECT_THROW(componentTileFromBytes(bytes + "x"), Error);
-  std::string odd = bytes;
-  const std::size_t corner = odd.find(std::string(reinterpret_cast<const char*>(tile.hull.data()), sizeof(float) * 2));
-  ASSERT_NE(corner, std::string::npos);
-  odd[corner - 8] = 3;  // the count of numbers
-  odd.insert(corner, sizeof(float), '\0');
-  EXPECT_THROW(componentTileFromBytes(odd), Error);
+  constexpr std::size_t kHead = 32;  // kind, version, tile, digest
+  std::string odd(unpackedBytes(std::string_view(bytes).substr(kHead))->view());
+  const std::size_t numbers = odd.find(std::string("\0\0\0\0\xC0\x20\x3F\x40", 8));
+  ASSERT_NE(numbers, std::string::npos) << "1.5 and 2.5, bytes of equal weight side by side";
+  odd[numbers - 8] = 3;  // the count of numbers
+  odd.insert(numbers, sizeof(float), '\0');
+  EXPECT_THROW(componentTileFromBytes(bytes.substr(0, kHead) + packedBytes(odd)), Error);
 }
 
 /// Each block is valid by itself; only the combination is inconsistent.

@@ -101,10 +101,10 @@ TEST(FeatureTile, BytesOfAnotherVersionAreNotCalledDamaged) {
   FeatureTile tile;
   tile.edge_offset = tile.edge_row_offset = {0};
   std::string bytes = toBytes(tile);
-  EXPECT_NO_THROW(featureTileFromBytes(bytes));
+  EXPECT_NO_THROW(featureTileFromBytes(bytes, {}));
   ++bytes[4];
   try {
-    featureTileFromBytes(bytes);
+    featureTileFromBytes(bytes, {});
     FAIL() << "read";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("FEAT is of another version"), std::string::npos) << error.what();
@@ -182,12 +182,35 @@ TEST(FeatureTile, IntensityIsZeroWhereAScanHasNone) {
   EXPECT_EQ(values(), std::set<float>{0.25F});
 }
 
-TEST(FeatureTile, BytesComeBackAndDamagedOnesAreRefused) {
+TEST(FeatureTile, TheGraphComesBackAndRowsAreComputedAgainBitForBit) {
   const TileOutputs tiles = street(40);
-  const std::string bytes = toBytes(tiles.features.begin()->second);
-  EXPECT_EQ(toBytes(featureTileFromBytes(bytes)), bytes);
+  for (const auto& [key, whole] : tiles.features) {
+    const FeatureTile graph = featureTileFromBytes(toBytes(whole), tiles.cluxels.at(key));
+    EXPECT_EQ(graph.center, whole.center);
+    EXPECT_EQ(graph.point_count, whole.point_count);
+    EXPECT_EQ(graph.edge_offset, whole.edge_offset);
+    EXPECT_EQ(graph.edge_target, whole.edge_target);
+    EXPECT_EQ(graph.edge_row_offset, whole.edge_row_offset);
+    EXPECT_FALSE(graph.hasRows());
+    EXPECT_NE(toBytes(graph), toBytes(whole)) << "rows are missing";
+    EXPECT_EQ(toBytes(computeFeatures(ringIn(tiles.cluxels, key), ringIn(tiles.ground, key), {})), toBytes(whole));
+  }
+}
+
+TEST(FeatureTile, DamagedBytesAndThoseOfOtherCluxelsAreRefused) {
+  const TileOutputs tiles = street(40);
+  const auto& [key, tile] = *tiles.features.begin();
+  const CluxelTile& cluxels = tiles.cluxels.at(key);
+  const std::string bytes = toBytes(tile);
   for (std::size_t size = 0; size < bytes.size(); size += 1 + bytes.size() / 97)
-    EXPECT_THROW(featureTileFromBytes(bytes.substr(0, size)), Error);
+    EXPECT_THROW(featureTileFromBytes(bytes.substr(0, size), cluxels), Error);
+  EXPECT_THROW(featureTileFromBytes(bytes, {}), Error);
+  FeatureTile wrong = tile;
+  const auto own = std::find_if(wrong.edge_target.begin(), wrong.edge_target.end(),
+                                [](RingIndex target) { return target.ring == kRingCentre && target.index > 0; });
+  ASSERT_NE(own, wrong.edge_target.end());
+  own->index = (1U << 28U) - 1;
+  EXPECT_THROW(featureTileFromBytes(toBytes(wrong), cluxels), Error);
 }
 
 }  // namespace

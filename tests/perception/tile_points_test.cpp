@@ -31,6 +31,15 @@ std::vector<Scan> crowdedScans(std::uint32_t seed) {
   return splitAtRandom(CloudMaker(seed).plane(20000, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0.2}).points(), 5, seed);
 }
 
+/// The bytes of a tile that was read from `bytes` and filled from the scans.
+std::string filled(const std::string& bytes, const std::vector<Scan>& scans) {
+  TilePoints tile = tilePointsFromBytes(bytes);
+  PointsFromScans from_scans;
+  from_scans.add(tile);
+  for (const Scan& scan : scans) from_scans.fill(scan);
+  return toBytes(tile);
+}
+
 TEST(TilePoints, EveryPointOfAScanLiesInExactlyOneSegmentAndNearItsMapPlace) {
   Scan scan = scanOf(streetPoints(1));
   scan.T_map_sensor.translate(Eigen::Vector3d(1000.3, -2000.7, 50));
@@ -59,7 +68,9 @@ TEST(TilePoints, PointsJustBelowZeroStayInTheirTile) {
   std::size_t points = 0;
   for (const auto& [key, segment] : splitScan(scan)) {
     points += segment.size();
-    EXPECT_EQ(toBytes(scanSegmentFromBytes(toBytes(segment))), toBytes(segment)) << key.x << ' ' << key.y;
+    EXPECT_EQ(filled(toBytes(thin(key, std::array{&segment}, {})), {scan}),
+              toBytes(thin(key, std::array{&segment}, {})))
+        << key.x << ' ' << key.y;
     for (std::size_t i = 0; i < segment.size(); ++i) {
       EXPECT_LT(segment.x[i], static_cast<float>(kTileSize_m));
       EXPECT_LT(segment.y[i], static_cast<float>(kTileSize_m));
@@ -154,14 +165,48 @@ TEST(TilePoints, EveryPointFindsARepresentativeAndAKeptPointFindsItself) {
     }
 }
 
-TEST(TilePoints, BytesComeBackAndDamagedOnesAreRefused) {
+TEST(TilePoints, ComeBackFromTheirScansBitForBit) {
+  auto scans = crowdedScans(7);
+  scans[1].T_map_sensor.translate(Eigen::Vector3d(0.3, -0.7, 5));
+  scans[1].T_map_sensor.rotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d(0.1, 0.2, 1).normalized()));
+  for (const bool with_intensity : {false, true}) {
+    if (with_intensity) scans[2].points.intensity.assign(scans[2].points.size(), 0.7F);
+    for (Scan& scan : scans) scan.id = contentIdOf(scan);
+    for (const auto& [key, tile] : tilesOf(scans, {})) {
+      const std::string bytes = toBytes(tile);
+      EXPECT_EQ(filled(bytes, scans), bytes);
+      EXPECT_NE(filled(bytes, {scans[0], scans[1]}), bytes) << "the others are missing";
+    }
+  }
+}
+
+TEST(TilePoints, OfOtherScansThanTheyNameAreRefused) {
+  auto scans = crowdedScans(7);
+  const std::string bytes = toBytes(tilesOf(scans, {}).begin()->second);
+  Scan moved = scans[0], shorter = scans[0];
+  moved.T_map_sensor.translate(Eigen::Vector3d(16, 0, 0));
+  EXPECT_THROW(filled(bytes, {moved}), Error);
+  for (auto* values : {&shorter.points.x, &shorter.points.y, &shorter.points.z}) values->resize(1);
+  EXPECT_THROW(filled(bytes, {shorter}), Error);
+  moved.T_map_sensor.translation().x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(filled(bytes, {moved}), Error);
+}
+
+TEST(TilePoints, DamagedBytesAreRefused) {
   const auto tiles = tilesOf(crowdedScans(7), {});
   const std::string bytes = toBytes(tiles.begin()->second);
-  EXPECT_EQ(toBytes(tilePointsFromBytes(bytes)), bytes);
   for (std::size_t size = 0; size < bytes.size(); size += 1 + bytes.size() / 97)
     EXPECT_THROW(tilePointsFromBytes(bytes.substr(0, size)), Error);
   EXPECT_THROW(tilePointsFromBytes(bytes + "x"), Error);
-  EXPECT_THROW(scanSegmentFromBytes(bytes), Error);
+}
+
+TEST(TilePoints, AChangedCoordinateChangesTheBytesThoughItIsNotStored) {
+  const auto tiles = tilesOf(crowdedScans(7), {});
+  TilePoints tile = tiles.begin()->second;
+  const std::string bytes = toBytes(tile);
+  tile.z[3] = std::nextafter(tile.z[3], 100.0F);
+  EXPECT_NE(toBytes(tile), bytes);
+  EXPECT_EQ(toBytes(tile).size(), bytes.size());
 }
 
 }  // namespace

@@ -57,8 +57,8 @@ TEST_F(MapFile, RefusesANewerFormatAndForeignLmdbFiles) {
   EXPECT_THAT(refusal(), HasSubstr("not a Cluxel map"));
   fs::remove(file_);
   create().reset();
-  withLmdb(file_, [](MDB_txn* transaction, MDB_dbi main) { putText(transaction, main, "cluxel-format", "3"); });
-  EXPECT_THAT(refusal(), HasSubstr("newer format (3; this program reads 2)"));
+  withLmdb(file_, [](MDB_txn* transaction, MDB_dbi main) { putText(transaction, main, "cluxel-format", "4"); });
+  EXPECT_THAT(refusal(), HasSubstr("newer format (4; this program reads 3)"));
 }
 
 /// Removes what the second format added: the sums of quads and terms.

@@ -28,8 +28,8 @@ struct Bytes {
 
 bool isBlockKey(std::string_view key) {
   const std::string_view table = key.substr(0, key.find('\0'));
-  return table.size() < key.size() && (table == "meta" || table == "scans" || table == "scan_points" ||
-                                       table == "segments" || table.starts_with("stage_"));
+  return table.size() < key.size() &&
+         (table == "meta" || table == "scans" || table == "scan_points" || table.starts_with("stage_"));
 }
 
 /// Where the blocks lie: whole pages with their keys, and the pages of long values.

@@ -20,7 +20,7 @@ struct InfoOptions {
   std::vector<fs::path> inputs;
   ScanOptions scans;
   fs::path html;
-  bool clouds = false;
+  bool clouds = false, layers = false;
 };
 
 Json boxJson(const Eigen::AlignedBox3d& box) {
@@ -128,6 +128,26 @@ Json cloudsJson(const std::vector<mapping::Cloud>& clouds) {
   return json;
 }
 
+Json layersJson(const std::vector<rdf::LayerSize>& layers) {
+  Json json = Json::array();
+  for (const rdf::LayerSize& layer : layers)
+    json.push_back({{"name", layer.name}, {"entries", layer.entries}, {"bytes", layer.file_bytes}});
+  return json;
+}
+
+void printLayers(const std::vector<rdf::LayerSize>& layers, std::uint64_t points) {
+  const auto row = [points](const std::string& name, const std::string& entries, std::uint64_t bytes) {
+    std::printf("  layer %-18s %10s entries %12ju bytes %8.2f a point\n", name.c_str(), entries.c_str(),
+                static_cast<std::uintmax_t>(bytes), static_cast<double>(bytes) / static_cast<double>(points));
+  };
+  std::uint64_t all = 0;
+  for (const rdf::LayerSize& layer : layers) {
+    row(layer.name, std::to_string(layer.entries), layer.file_bytes);
+    all += layer.file_bytes;
+  }
+  row("all", "", all);
+}
+
 Json heightsJson(const std::vector<tasks::PlotSpread>& heights) {
   Json json = Json::object();
   for (const tasks::PlotSpread& spread : heights)
@@ -194,6 +214,7 @@ ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Sessi
         std::printf("  cloud %s  %llu points  %s%s\n", cloud.id.hex().c_str(),
                     static_cast<unsigned long long>(cloud.point_count), cloud.source.c_str(),
                     cloud.has_pose ? "" : "  no pose");
+    if (options.layers) printLayers(map.layers(), summary.points);
     if (!inputs.crs.empty()) std::printf("coordinate system: %s\n", inputs.crs.c_str());
     std::printf("built with %s\n", describeFiles(inputs).c_str());
     return ExitCode::Done;
@@ -203,6 +224,7 @@ ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Sessi
             {"points", summary.points},      {"objects", summary.objects},
             {"quads", summary.quads},        {"objects_by_class", summary.objects_by_class}};
   if (options.clouds) json["cloud_list"] = cloudsJson(map.clouds());
+  if (options.layers) json["layers"] = layersJson(map.layers());
   if (!inputs.crs.empty()) json["crs"] = inputs.crs;
   json["input_files"] = inputFilesJson(inputs);
   json["heights_by_class"] = heightsJson(figures->heights);
@@ -219,6 +241,7 @@ void addInfo(CLI::App& app, Session& session) {
   command->add_option("input", options->inputs, "a map, or files, folders and manifests of scans")->required();
   addScanOptions(*command, options->scans);
   command->add_flag("--clouds", options->clouds, "list the clouds of a map, with their ids");
+  command->add_flag("--layers", options->layers, "list the tables of a map with their bytes");
   addHtmlFile(*command, options->html);
   onRun(*command, session, [options, &session] {
     const auto map = std::find_if(options->inputs.begin(), options->inputs.end(), isMap);

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel doctor` and `cluxel compact`: the integrity and size of a map file.
 #include "app/command.hpp"
-#include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
-#include "mapping/build/build_lock.hpp"
+#include "mapping/change/map_compaction.hpp"
 #include "rdf/file/environment.hpp"
 #include "rdf/file/map_check.hpp"
-#include "rdf/file/map_replacement.hpp"
 
 namespace cluxel::app {
 
@@ -16,28 +14,11 @@ struct UpkeepOptions {
   fs::path map, output;
 };
 
-/// Locks out other writers: what they commit while the file is replaced would be lost.
-void compactInPlace(const fs::path& map) {
-  const fs::path file = withoutLinks(map), target = file.string() + ".compact";
-  const mapping::BuildLock no_build(file);
-  const auto environment = rdf::Environment::open(file, rdf::OpenMode::ReadWrite);
-  const rdf::WriteTransaction no_other_writer = environment->write();
-  std::error_code ignored;
-  fs::remove(target, ignored);  // left by a killed run
-  environment->compactTo(target);
-  try {
-    rdf::replaceMapFile(target, file);
-  } catch (...) {
-    fs::remove(target, ignored);
-    throw;
-  }
-}
-
 ExitCode compact(const UpkeepOptions& options, const Session& session) {
   std::error_code no_such_file;
   const auto before = fs::file_size(options.map, no_such_file);
   if (options.output.empty())
-    compactInPlace(options.map);
+    mapping::compactMap(options.map);
   else
     rdf::Environment::open(options.map, rdf::OpenMode::ReadOnly)->compactTo(options.output);
   const auto after = fs::file_size(options.output.empty() ? options.map : options.output);

@@ -11,6 +11,7 @@
 #include "mapping/build/scan_store.hpp"
 #include "mapping/build/stage_clock.hpp"
 #include "mapping/build/work_file.hpp"
+#include "mapping/change/map_compaction.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/map_state.hpp"
@@ -83,27 +84,27 @@ class MapBuild {
     StageClock clock(sink_);
     rdf::WriteTransaction transaction = work_.environment().write();
     requireOwn(transaction);
-    TileSet touched;
+    PointChanges changes;
     std::uint64_t batch_points = 0;
     std::size_t next = first;
     for (; next < scans_.size() && batch_points < params_.batch_points; ++next) {
       const scan::LoadedScan loaded = scans_.read(next);
       const scan::Scan& scan = loaded.scan;
       for (const std::string& note : reading_notes_.add(loaded.reading)) sink_.note(note);
-      const TileSet tiles = storeScan(transaction, scan);
-      report_.scans_already_there += tiles.empty() ? 1 : 0;
-      batch_points += tiles.empty() ? 0 : scan.points.size();
-      touched = unionOf(std::move(touched), tiles);
+      auto segments = storeScan(transaction, scan);
+      report_.scans_already_there += segments.empty() ? 1 : 0;
+      batch_points += segments.empty() ? 0 : scan.points.size();
+      changes.add(std::move(segments));
       clock.progress("scans", next + 1, scans_.size());
     }
-    if (!touched.empty() || next == scans_.size())
-      commitBatch(transaction, touched, next == scans_.size(), started_s, clock);
+    if (!changes.empty() || next == scans_.size())
+      commitBatch(transaction, std::move(changes), next == scans_.size(), started_s, clock);
     return next;
   }
 
-  void commitBatch(rdf::WriteTransaction& transaction, const TileSet& touched, bool is_last, double started_s,
+  void commitBatch(rdf::WriteTransaction& transaction, PointChanges changes, bool is_last, double started_s,
                    StageClock& clock) {
-    stages_.update(transaction, touched, params_.threads, clock);
+    stages_.update(transaction, std::move(changes), params_.threads, clock);
     stages_.loadAll(transaction);
     if (is_last) work_.takeOverStatements(transaction, params_.drop_statements, sink_);
     const SemanticLayer layer = writeSemanticLayer(transaction, parsed_, stages_, params_.threads, clock);
@@ -133,10 +134,8 @@ class MapBuild {
   BuildReport report_;
 };
 
-}  // namespace
-
-BuildReport buildMap(const scan::ScanSet& scans, const MapInputs& inputs, const fs::path& file,
-                     const BuildParams& params, ProgressSink& sink) {
+BuildReport built(const scan::ScanSet& scans, const MapInputs& inputs, const fs::path& file, const BuildParams& params,
+                  ProgressSink& sink) {
   if (scans.size() == 0) throw Error(ErrorKind::InvalidArgument, "there is no scan to build a map from");
   MapInputs complete = inputs;
   complete.map_origin = scans.mapOrigin();
@@ -149,6 +148,15 @@ BuildReport buildMap(const scan::ScanSet& scans, const MapInputs& inputs, const 
   const scan::ScanSet posed = params.refine_poses ? withRefinedPoses(scans, params.threads, sink) : scans;
   const BuildReport report = MapBuild(posed, parsed, work, params, sink).run();
   work.finish();
+  return report;
+}
+
+}  // namespace
+
+BuildReport buildMap(const scan::ScanSet& scans, const MapInputs& inputs, const fs::path& file,
+                     const BuildParams& params, ProgressSink& sink) {
+  const BuildReport report = built(scans, inputs, file, params, sink);
+  compactIfSparse(file, sink);  // each batch leaves the outputs of the one before
   return report;
 }
 

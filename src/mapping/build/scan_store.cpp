@@ -3,10 +3,10 @@
 #include "mapping/build/scan_store.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "cluxel/error.hpp"
+#include "mapping/build/packed_points.hpp"
 #include "mapping/build/scan_plausibility.hpp"
 #include "mapping/map_tables.hpp"
 #include "perception/clustering/tile_points.hpp"
@@ -60,36 +60,6 @@ Cloud cloudFromBytes(const scan::ScanId& id, std::string_view bytes) {
   }
 }
 
-template <typename T>
-void append(std::string& bytes, const std::vector<T>& values) {
-  const std::uint64_t count = values.size();
-  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
-  if (count > 0) bytes.append(reinterpret_cast<const char*>(values.data()), count * sizeof(T));
-}
-
-template <typename T>
-std::vector<T> takeArray(std::string_view& bytes) {
-  const auto damaged = [] {
-    return Error(ErrorKind::StoreUnavailable, "points of a cloud are damaged; build the map anew");
-  };
-  std::uint64_t count = 0;
-  if (bytes.size() < sizeof count) throw damaged();
-  std::memcpy(&count, bytes.data(), sizeof count);
-  bytes.remove_prefix(sizeof count);
-  if (count > bytes.size() / sizeof(T)) throw damaged();
-  std::vector<T> values(count);
-  if (count > 0) std::memcpy(static_cast<void*>(values.data()), bytes.data(), count * sizeof(T));
-  bytes.remove_prefix(count * sizeof(T));
-  return values;
-}
-
-std::string toBytes(const scan::ScanPoints& points) {
-  std::string bytes;
-  append(bytes, points.x), append(bytes, points.y), append(bytes, points.z);
-  append(bytes, points.intensity), append(bytes, points.label), append(bytes, points.origin);
-  return bytes;
-}
-
 Cloud cloudOf(const scan::Scan& scan) {
   Cloud cloud{scan.id, scan.source, scan.time_s, scan.T_map_sensor, scan.has_pose, scan.points.size(), {}, {}};
   cloud.min.setConstant(1e300), cloud.max.setConstant(-1e300);
@@ -101,17 +71,19 @@ Cloud cloudOf(const scan::Scan& scan) {
   return cloud;
 }
 
-void putTiles(rdf::WriteTransaction& transaction, const TileSet& tiles) {
-  std::string bytes;
-  for (const perception::TileKey& tile : tiles) bytes += tables::keyOf(tile);
-  transaction.putBlock(tables::kMeta, kTilesKey, bytes);
-}
-
 /// The later one does not depend on the order of the scans. An absent time compares as earlier.
 void keepLaterTime(rdf::WriteTransaction& transaction, Cloud there, std::optional<double> time_s) {
   if (time_s <= there.time_s) return;
   there.time_s = time_s;
   transaction.putBlock(tables::kScans, tables::keyOf(there.id), toBytes(there));
+}
+
+/// Whether points of the cloud can lie in one of the tiles, by its bounds.
+bool mayTouch(const Cloud& cloud, const TileSet& tiles) {
+  const perception::TileKey low = perception::tileOf(cloud.min), high = perception::tileOf(cloud.max);
+  return std::any_of(tiles.begin(), tiles.end(), [&](const perception::TileKey& tile) {
+    return tile.x >= low.x && tile.x <= high.x && tile.y >= low.y && tile.y <= high.y;
+  });
 }
 
 /// The years that xsd:dateTime writes with four digits.
@@ -125,6 +97,16 @@ void requireTime(const scan::Scan& scan) {
 
 }  // namespace
 
+TileSet PointChanges::tiles() const {
+  TileSet all = anew;
+  for (const auto& [tile, segments] : added) all.insert(tile);
+  return all;
+}
+
+void PointChanges::add(std::map<perception::TileKey, perception::ScanSegment> segments) {
+  for (auto& [tile, segment] : segments) added[tile].push_back(std::move(segment));
+}
+
 TileSet storedTiles(const rdf::ReadTransaction& transaction) {
   TileSet tiles;
   const auto bytes = transaction.block(tables::kMeta, kTilesKey);
@@ -133,7 +115,14 @@ TileSet storedTiles(const rdf::ReadTransaction& transaction) {
   return tiles;
 }
 
-TileSet storeScan(rdf::WriteTransaction& transaction, const scan::Scan& scan) {
+void storeTiles(rdf::WriteTransaction& transaction, const TileSet& tiles) {
+  std::string bytes;
+  for (const perception::TileKey& tile : tiles) bytes += tables::keyOf(tile);
+  transaction.putBlock(tables::kMeta, kTilesKey, bytes);
+}
+
+std::map<perception::TileKey, perception::ScanSegment> storeScan(rdf::WriteTransaction& transaction,
+                                                                 const scan::Scan& scan) {
   requireTime(scan);
   if (auto there = storedCloud(transaction, scan.id)) {
     // Sensor positions are stored only for scans with a pose, so a scan given with and without one would make the map
@@ -150,36 +139,31 @@ TileSet storeScan(rdf::WriteTransaction& transaction, const scan::Scan& scan) {
     throw InputError({.file = scan.source}, "is the same scan as '" + there->source + "', " + how,
                      "give each scan once; to correct its pose, move the scan in the map");
   }
-  TileSet tiles;
-  const auto segments = perception::splitScan(scan);
+  auto segments = perception::splitScan(scan);
   requirePlausible(scan, segments);
-  for (const auto& [tile, segment] : segments) {
-    transaction.putBlock(tables::kSegments, tables::keyOf(tile) + tables::keyOf(scan.id), toBytes(segment));
-    tiles.insert(tile);
-  }
-  transaction.putBlock(tables::kScanPoints, tables::keyOf(scan.id), toBytes(scan.points));
+  transaction.putBlock(tables::kScanPoints, tables::keyOf(scan.id), packedPoints(scan.points));
   transaction.putBlock(tables::kScans, tables::keyOf(scan.id), toBytes(cloudOf(scan)));
-  putTiles(transaction, unionOf(storedTiles(transaction), tiles));
-  return tiles;
+  return segments;
 }
 
 TileSet removeScan(rdf::WriteTransaction& transaction, const scan::ScanId& id) {
-  const scan::Scan scan = storedScan(transaction, id);
-  TileSet touched, emptied;
-  for (const auto& [tile, segment] : perception::splitScan(scan)) {
-    transaction.eraseBlock(tables::kSegments, tables::keyOf(tile) + tables::keyOf(id));
-    touched.insert(tile);
-    bool is_empty = true;
-    transaction.forEachBlock(tables::kSegments, tables::keyOf(tile),
-                             [&](std::string_view, std::string_view) { is_empty = false; });
-    if (is_empty) emptied.insert(tile);
-  }
+  TileSet touched;
+  for (const auto& [tile, segment] : perception::splitScan(storedScan(transaction, id))) touched.insert(tile);
   transaction.eraseBlock(tables::kScanPoints, tables::keyOf(id));
   transaction.eraseBlock(tables::kScans, tables::keyOf(id));
-  TileSet left = storedTiles(transaction);
-  for (const perception::TileKey& tile : emptied) left.erase(tile);
-  putTiles(transaction, left);
   return touched;
+}
+
+perception::TileSegments storedSegments(const rdf::ReadTransaction& transaction, const TileSet& tiles) {
+  perception::TileSegments segments;
+  for (const perception::TileKey& tile : tiles) segments[tile];
+  if (tiles.empty()) return segments;
+  for (const Cloud& cloud : storedClouds(transaction)) {
+    if (!mayTouch(cloud, tiles)) continue;
+    for (auto& [tile, segment] : perception::splitScan(storedScan(transaction, cloud.id)))
+      if (const auto found = segments.find(tile); found != segments.end()) found->second.push_back(std::move(segment));
+  }
+  return segments;
 }
 
 scan::Scan storedScan(const rdf::ReadTransaction& transaction, const scan::ScanId& id) {
@@ -213,13 +197,7 @@ scan::ScanPoints storedPoints(const rdf::ReadTransaction& transaction, const sca
   const auto block = transaction.block(tables::kScanPoints, tables::keyOf(id));
   if (!block)
     throw Error(ErrorKind::StoreUnavailable, "cloud " + id.hex() + " has no points in the map; build it anew");
-  std::string_view bytes = *block;
-  scan::ScanPoints points;
-  points.x = takeArray<float>(bytes), points.y = takeArray<float>(bytes), points.z = takeArray<float>(bytes);
-  points.intensity = takeArray<float>(bytes);
-  points.label = takeArray<std::uint32_t>(bytes);
-  points.origin = takeArray<Eigen::Vector3f>(bytes);
-  return points;
+  return unpackedPoints(*block);
 }
 
 }  // namespace cluxel::mapping

@@ -2,11 +2,12 @@
 // The cloud layer: scans with points and poses in the map file, cut into segments per tile.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
 #include "mapping/cloud.hpp"
-#include "perception/tile.hpp"
+#include "perception/pipeline.hpp"
 #include "rdf/file/environment.hpp"
 #include "scan/scan.hpp"
 
@@ -14,19 +15,34 @@ namespace cluxel::mapping {
 
 using TileSet = perception::TileSet;
 
-/// Stores a scan and its segments; returns the tiles it touches. A scan that was measured alike and has the same pose
-/// is the same cloud: nothing is stored but the later of the two times (a time is later than none). The same scan with
-/// another pose, or with a pose where there was none, is an InputError.
-TileSet storeScan(rdf::WriteTransaction& transaction, const scan::Scan& scan);
+/// What changed of the points of tiles, for TileStages::update().
+struct PointChanges {
+  perception::TileSegments added;
+  TileSet anew;  ///< tiles that lost points or got them at other places
 
-/// Removes a scan with its segments; returns the tiles it touched. Throws Error (NotFound) when there is none.
+  bool empty() const { return added.empty() && anew.empty(); }
+  TileSet tiles() const;
+  void add(std::map<perception::TileKey, perception::ScanSegment> segments);
+};
+
+/// Stores a scan; returns its points by tile. A scan that was measured alike and has the same pose is the same cloud:
+/// nothing is stored but the later of the two times (a time is later than none), and nothing is returned. The same scan
+/// with another pose, or with a pose where there was none, is an InputError.
+std::map<perception::TileKey, perception::ScanSegment> storeScan(rdf::WriteTransaction& transaction,
+                                                                 const scan::Scan& scan);
+
+/// Removes a scan; returns the tiles that it touched. Throws Error (NotFound) when there is none.
 TileSet removeScan(rdf::WriteTransaction& transaction, const scan::ScanId& id);
+
+/// All points of the tiles, from the stored scans. A tile in which no scan has points has no segments.
+perception::TileSegments storedSegments(const rdf::ReadTransaction& transaction, const TileSet& tiles);
 
 /// A stored scan as it was given. Throws Error (NotFound) when there is none.
 scan::Scan storedScan(const rdf::ReadTransaction& transaction, const scan::ScanId& id);
 
-/// All tiles that hold points of some scan.
+/// All tiles that hold points of some scan, as of the last run of the stages.
 TileSet storedTiles(const rdf::ReadTransaction& transaction);
+void storeTiles(rdf::WriteTransaction& transaction, const TileSet& tiles);
 
 /// The clouds of the map, ascending by id.
 std::vector<Cloud> storedClouds(const rdf::ReadTransaction& transaction);

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "mapping/build/scan_store.hpp"
+#include "cluxel/error.hpp"
 #include "mapping/map_tables.hpp"
 
 namespace cluxel::mapping {
@@ -21,45 +21,95 @@ std::string_view tableOf(Stage stage) {
   return kTables[static_cast<std::size_t>(stage)];
 }
 
-/// Calls `visit(stage, tiles, decoder)` for each stage whose outputs other stages read.
-template <typename Visit>
-void forEachReadStage(perception::TileOutputs& outputs, const Visit& visit) {
-  visit(Stage::Points, outputs.points, perception::tilePointsFromBytes);
-  visit(Stage::Cluxels, outputs.cluxels, perception::cluxelTileFromBytes);
-  visit(Stage::Ground, outputs.ground, perception::groundTileFromBytes);
-  visit(Stage::Features, outputs.features, perception::featureTileFromBytes);
-  visit(Stage::Labels, outputs.labels, perception::labelTileFromBytes);
-  visit(Stage::Components, outputs.components, perception::componentTileFromBytes);
-}
+/// Reads stored outputs; what is computed from other outputs comes after them.
+class OutputReader {
+ public:
+  OutputReader(const rdf::ReadTransaction& transaction, perception::TileOutputs& outputs)
+      : transaction_(transaction), out_(outputs) {}
+
+  /// Outputs of the stages that other stages read, of the tiles that are not there.
+  void read(const TileSet& keys) {
+    perception::PointsFromScans from_scans;
+    each(Stage::Points, keys, out_.points, [&](const TileKey& key, std::string_view bytes) {
+      from_scans.add(out_.points.emplace(key, perception::tilePointsFromBytes(bytes)).first->second);
+    });
+    fill(from_scans);
+    each(Stage::Cluxels, keys, out_.cluxels, [&](const TileKey& key, std::string_view bytes) {
+      out_.cluxels.emplace(key, perception::cluxelTileFromBytes(bytes, required(out_.points, key)));
+    });
+    each(Stage::Features, keys, out_.features, [&](const TileKey& key, std::string_view bytes) {
+      out_.features.emplace(key, perception::featureTileFromBytes(bytes, required(out_.cluxels, key)));
+    });
+    plain(Stage::Ground, keys, out_.ground, perception::groundTileFromBytes);
+    plain(Stage::Labels, keys, out_.labels, perception::labelTileFromBytes);
+    plain(Stage::Components, keys, out_.components, perception::componentTileFromBytes);
+  }
+
+  void readContacts(const TileSet& keys) {
+    plain(Stage::Contacts, keys, out_.contacts, perception::contactTileFromBytes);
+  }
+
+ private:
+  template <typename Tiles, typename Visit>
+  void each(Stage stage, const TileSet& keys, const Tiles& tiles, const Visit& visit) {
+    for (const TileKey& key : keys) {
+      if (tiles.contains(key)) continue;
+      if (const auto bytes = transaction_.block(tableOf(stage), tables::keyOf(key))) visit(key, *bytes);
+    }
+  }
+
+  template <typename Tiles, typename Decode>
+  void plain(Stage stage, const TileSet& keys, Tiles& tiles, const Decode& decode) {
+    each(stage, keys, tiles, [&](const TileKey& key, std::string_view bytes) { tiles.emplace(key, decode(bytes)); });
+  }
+
+  template <typename Tiles>
+  static const typename Tiles::mapped_type& required(const Tiles& tiles, const TileKey& key) {
+    if (const auto found = tiles.find(key); found != tiles.end()) return found->second;
+    throw Error(ErrorKind::StoreUnavailable, "a stored tile lacks a block; the map is damaged, build it anew");
+  }
+
+  void fill(const perception::PointsFromScans& tiles) {
+    for (const scan::ScanId& id : tiles.scans()) {
+      if (!storedCloud(transaction_, id))
+        throw Error(ErrorKind::StoreUnavailable,
+                    "a stored tile names scan " + id.hex() + ", which is not there; the map is damaged, build it anew");
+      tiles.fill(storedScan(transaction_, id));
+    }
+  }
+
+  const rdf::ReadTransaction& transaction_;
+  perception::TileOutputs& out_;
+};
 
 /// Outputs in the tables of one write transaction.
 class MapOutputStore final : public perception::OutputStore {
  public:
-  explicit MapOutputStore(rdf::WriteTransaction& transaction) : transaction_(transaction) {}
+  explicit MapOutputStore(rdf::WriteTransaction& transaction)
+      : transaction_(transaction), tiles_(storedTiles(transaction)) {}
 
-  TileSet tiles() const override { return storedTiles(transaction_); }
+  TileSet tiles() const override { return tiles_; }
 
   void load(const TileSet& keys, perception::TileOutputs& outputs) override {
-    forEachReadStage(outputs, [&](Stage stage, auto& tiles, const auto& decode) {
-      for (const TileKey& key : keys) {
-        if (tiles.contains(key)) continue;
-        if (const auto bytes = transaction_.block(tableOf(stage), tables::keyOf(key)))
-          tiles.emplace(key, decode(*bytes));
-      }
-    });
+    OutputReader(transaction_, outputs).read(keys);
   }
 
   bool store(Stage stage, const TileKey& key, std::string_view bytes) override {
     const std::string block_key = tables::keyOf(key);
+    if (stage == Stage::Points) tiles_.insert(key);
     if (const auto old = transaction_.block(tableOf(stage), block_key); old && *old == bytes) return false;
     transaction_.putBlock(tableOf(stage), block_key, bytes);
     return true;
   }
 
-  void erase(Stage stage, const TileKey& key) override { transaction_.eraseBlock(tableOf(stage), tables::keyOf(key)); }
+  void erase(Stage stage, const TileKey& key) override {
+    if (stage == Stage::Points) tiles_.erase(key);
+    transaction_.eraseBlock(tableOf(stage), tables::keyOf(key));
+  }
 
  private:
   rdf::WriteTransaction& transaction_;
+  TileSet tiles_;
 };
 
 class StageProgress final : public perception::StageObserver {
@@ -73,45 +123,41 @@ class StageProgress final : public perception::StageObserver {
   ProgressSink& sink_;
 };
 
-perception::TileSegments storedSegments(const rdf::ReadTransaction& transaction, const TileSet& tiles) {
-  perception::TileSegments segments;
-  for (const TileKey& tile : tiles) {
-    auto& of_tile = segments[tile];  // stays empty when the last scan in it was removed
-    transaction.forEachBlock(tables::kSegments, tables::keyOf(tile), [&](std::string_view, std::string_view bytes) {
-      of_tile.push_back(perception::scanSegmentFromBytes(bytes));
-    });
-  }
-  return segments;
-}
-
 }  // namespace
 
-TileSet TileStages::update(rdf::WriteTransaction& transaction, const TileSet& touched, unsigned threads,
+TileSet TileStages::update(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads,
                            ProgressSink& sink) {
-  return run(transaction, touched, threads, false, sink);
+  return run(transaction, std::move(changes), threads, false, sink);
 }
 
-TileSet TileStages::updateAll(rdf::WriteTransaction& transaction, unsigned threads, ProgressSink& sink) {
-  return run(transaction, storedTiles(transaction), threads, true, sink);
+TileSet TileStages::updateAll(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads,
+                              ProgressSink& sink) {
+  changes.anew = unionOf(changes.tiles(), storedTiles(transaction));
+  return run(transaction, std::move(changes), threads, true, sink);
 }
 
-TileSet TileStages::run(rdf::WriteTransaction& transaction, const TileSet& touched, unsigned threads, bool compute_all,
+TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads, bool compute_all,
                         ProgressSink& sink) {
   MapOutputStore store(transaction);
   StageProgress progress(sink);
-  return runStages(storedSegments(transaction, touched), labeller_, params_, outputs_,
-                   {.threads = threads, .store = &store, .observer = &progress, .compute_all = compute_all});
+  // The scans are stored already: all points of these tiles are read, also those that were added.
+  for (auto& [tile, segments] : storedSegments(transaction, changes.anew))
+    changes.added.insert_or_assign(tile, std::move(segments));
+  const TileSet changed = runStages(std::move(changes.added), labeller_, params_, outputs_,
+                                    {.threads = threads,
+                                     .store = &store,
+                                     .observer = &progress,
+                                     .compute_all = compute_all,
+                                     .anew = std::move(changes.anew)});
+  storeTiles(transaction, store.tiles());
+  return changed;
 }
 
 void TileStages::loadAll(const rdf::ReadTransaction& transaction) {
-  const auto load = [&](Stage stage, auto& tiles, const auto& decode) {
-    transaction.forEachBlock(tableOf(stage), "", [&](std::string_view key, std::string_view bytes) {
-      const TileKey tile = tables::tileOfKey(key);
-      if (!tiles.contains(tile)) tiles.emplace(tile, decode(bytes));
-    });
-  };
-  forEachReadStage(outputs_, load);
-  load(Stage::Contacts, outputs_.contacts, perception::contactTileFromBytes);
+  const TileSet tiles = storedTiles(transaction);
+  OutputReader reader(transaction, outputs_);
+  reader.read(tiles);
+  reader.readContacts(tiles);
 }
 
 }  // namespace cluxel::mapping

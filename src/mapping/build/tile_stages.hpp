@@ -5,6 +5,7 @@
 #include <map>
 
 #include "cluxel/progress.hpp"
+#include "mapping/build/scan_store.hpp"
 #include "mapping/map_inputs.hpp"
 #include "perception/pipeline.hpp"
 #include "rdf/file/environment.hpp"
@@ -17,13 +18,13 @@ class TileStages {
   TileStages(const perception::LabelModel& model, const MapParams& params)
       : params_{params.labelling, params.component, params.contact, params.relation}, labeller_(model) {}
 
-  /// Brings every stage up to date after segments of the tiles `touched` were stored or removed. Returns the tiles of
-  /// which an output changed.
-  perception::TileSet update(rdf::WriteTransaction& transaction, const perception::TileSet& touched, unsigned threads,
+  /// Brings every stage up to date after scans were stored or removed. Returns the tiles of which an output changed.
+  perception::TileSet update(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads,
                              ProgressSink& sink);
   /// Computes all stages of all tiles: the model or the settings changed. Returns the tiles of which an output changed.
-  perception::TileSet updateAll(rdf::WriteTransaction& transaction, unsigned threads, ProgressSink& sink);
-  /// Decodes all stored outputs.
+  perception::TileSet updateAll(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads,
+                                ProgressSink& sink);
+  /// Decodes all stored outputs. Points are taken from the scans, and what is measured of cluxels from the points.
   void loadAll(const rdf::ReadTransaction& transaction);
   /// The scene of what is loaded.
   perception::Scene scene() const { return assembleScene(outputs_, params_.relation); }
@@ -33,8 +34,8 @@ class TileStages {
   const std::map<perception::TileKey, perception::GroundTile>& ground() const { return outputs_.ground; }
 
  private:
-  perception::TileSet run(rdf::WriteTransaction& transaction, const perception::TileSet& touched, unsigned threads,
-                          bool compute_all, ProgressSink& sink);
+  perception::TileSet run(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads, bool compute_all,
+                          ProgressSink& sink);
 
   perception::SceneParams params_;
   perception::TileLabeller labeller_;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "cluxel/error.hpp"
+#include "mapping/change/map_compaction.hpp"
 #include "mapping/change/scan_additions.hpp"
 #include "mapping/map_state.hpp"
 
@@ -47,8 +48,9 @@ void requireFrame(const MapInputs& map, const scan::ScanSet& scans) {
                 "the outer ones; name map_origin in a manifest");
 }
 
-ChangeReport extendMap(const fs::path& file, const scan::ScanSet& scans, const ChangeParams& params,
-                       ProgressSink& sink) {
+namespace {
+
+ChangeReport addedTo(const fs::path& file, const scan::ScanSet& scans, const ChangeParams& params, ProgressSink& sink) {
   if (scans.size() == 0) throw Error(ErrorKind::InvalidArgument, "there is no scan to add");
   MapEditor editor(file, params, sink);
   requireFrame(editor.inputs().inputs, scans);
@@ -72,32 +74,32 @@ ChangeReport extendMap(const fs::path& file, const scan::ScanSet& scans, const C
   return std::move(editor.result());
 }
 
-ChangeReport retractScans(const fs::path& file, const std::vector<scan::ScanId>& scans, const ChangeParams& params,
-                          ProgressSink& sink) {
+ChangeReport removedFrom(const fs::path& file, const std::vector<scan::ScanId>& scans, const ChangeParams& params,
+                         ProgressSink& sink) {
   requireOnce(scans);
   MapEditor editor(file, params, sink);
   rdf::WriteTransaction transaction = editor.begin();
-  TileSet touched;
+  PointChanges changes;
   std::vector<Cloud> removed;
   for (const scan::ScanId& id : scans) {
     if (const auto cloud = storedCloud(transaction, id)) removed.push_back(*cloud);
-    touched = unionOf(std::move(touched), removeScan(transaction, id));
+    changes.anew = unionOf(std::move(changes.anew), removeScan(transaction, id));
     sink.progress("scans", ++editor.result().scans_removed, scans.size());
   }
   if (storedClouds(transaction).empty())
     throw Error(ErrorKind::InvalidArgument, file.string() + ": no scan would be left; remove the file instead");
-  if (!scans.empty()) editor.commit(transaction, "retract", touched, removed);
+  if (!scans.empty()) editor.commit(transaction, "retract", std::move(changes), removed);
   return std::move(editor.result());
 }
 
-ChangeReport moveScans(const fs::path& file, const std::vector<ScanPose>& poses, const ChangeParams& params,
-                       ProgressSink& sink) {
+ChangeReport movedIn(const fs::path& file, const std::vector<ScanPose>& poses, const ChangeParams& params,
+                     ProgressSink& sink) {
   std::vector<scan::ScanId> named;
   for (const ScanPose& pose : poses) named.push_back(pose.scan);
   requireOnce(named);
   MapEditor editor(file, params, sink);
   rdf::WriteTransaction transaction = editor.begin();
-  TileSet touched;
+  PointChanges changes;
   std::vector<Cloud> moved;
   for (const ScanPose& pose : poses) {
     scan::Scan scan = storedScan(transaction, pose.scan);
@@ -105,17 +107,17 @@ ChangeReport moveScans(const fs::path& file, const std::vector<ScanPose>& poses,
     if (scan.has_pose && scan.T_map_sensor.matrix() == pose.T_map_sensor.matrix()) continue;
     scan.T_map_sensor = pose.T_map_sensor;
     scan.has_pose = true;
-    touched = unionOf(std::move(touched), removeScan(transaction, scan.id));
-    touched = unionOf(std::move(touched), storeScan(transaction, scan));
+    changes.anew = unionOf(std::move(changes.anew), removeScan(transaction, scan.id));
+    for (const auto& [tile, segment] : storeScan(transaction, scan)) changes.anew.insert(tile);
     moved.push_back(*storedCloud(transaction, scan.id));
   }
   editor.result().scans_moved = moved.size();
-  if (!moved.empty()) editor.commit(transaction, "repose", touched, moved);
+  if (!moved.empty()) editor.commit(transaction, "repose", std::move(changes), moved);
   return std::move(editor.result());
 }
 
-ChangeReport applyInputs(const fs::path& file, const std::function<MapInputs(MapInputs)>& change,
-                         const ChangeParams& params, ProgressSink& sink) {
+ChangeReport appliedTo(const fs::path& file, const std::function<MapInputs(MapInputs)>& change,
+                       const ChangeParams& params, ProgressSink& sink) {
   MapEditor editor(file, params, sink);
   MapInputs inputs = change(editor.inputs().inputs);
   inputs.map_origin = editor.inputs().inputs.map_origin;
@@ -125,6 +127,34 @@ ChangeReport applyInputs(const fs::path& file, const std::function<MapInputs(Map
   rdf::WriteTransaction transaction = editor.begin();
   editor.commit(transaction, "rules apply", {}, {});
   return std::move(editor.result());
+}
+
+/// Frees the space that a committed change has left.
+ChangeReport compacted(ChangeReport report, const fs::path& file, const ChangeParams& params, ProgressSink& sink) {
+  if (report.has_changes && !params.dry_run) compactIfSparse(file, sink);
+  return report;
+}
+
+}  // namespace
+
+ChangeReport extendMap(const fs::path& file, const scan::ScanSet& scans, const ChangeParams& params,
+                       ProgressSink& sink) {
+  return compacted(addedTo(file, scans, params, sink), file, params, sink);
+}
+
+ChangeReport retractScans(const fs::path& file, const std::vector<scan::ScanId>& scans, const ChangeParams& params,
+                          ProgressSink& sink) {
+  return compacted(removedFrom(file, scans, params, sink), file, params, sink);
+}
+
+ChangeReport moveScans(const fs::path& file, const std::vector<ScanPose>& poses, const ChangeParams& params,
+                       ProgressSink& sink) {
+  return compacted(movedIn(file, poses, params, sink), file, params, sink);
+}
+
+ChangeReport applyInputs(const fs::path& file, const std::function<MapInputs(MapInputs)>& change,
+                         const ChangeParams& params, ProgressSink& sink) {
+  return compacted(appliedTo(file, change, params, sink), file, params, sink);
 }
 
 std::vector<scan::ScanId> cloudsNamed(const fs::path& file, std::span<const std::string> names) {

@@ -80,14 +80,14 @@ rdf::WriteTransaction MapEditor::begin() {
   return transaction;
 }
 
-void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& operation, const TileSet& touched,
+void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& operation, PointChanges changes,
                        const std::vector<Cloud>& scans) {
   const double started_s = secondsNow();
   StageClock clock(sink_);
   if (!stages_) stages_.emplace(parsed_.model, parsed_.inputs.params);
-  touched_.insert(touched.begin(), touched.end());
-  const TileSet changed = all_tiles_ ? stages_->updateAll(transaction, params_.threads, clock)
-                                     : stages_->update(transaction, touched, params_.threads, clock);
+  touched_ = unionOf(std::move(touched_), changes.tiles());
+  const TileSet changed = all_tiles_ ? stages_->updateAll(transaction, std::move(changes), params_.threads, clock)
+                                     : stages_->update(transaction, std::move(changes), params_.threads, clock);
   changed_.insert(changed.begin(), changed.end());
   all_tiles_ = false;
   stages_->loadAll(transaction);
@@ -97,8 +97,8 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
   storeState(transaction, MapState{true, inputs_hash_});
   report(transaction, layer);
   const Activity activity{operation, started_s, secondsNow(), clock.seconds()};
-  const ObjectChanges changes = compareObjects(*present_, report_.after);
-  addLineage(transaction, addActivity(transaction, activity, scans, parsed_.inputs), changes);
+  const ObjectChanges lineage = compareObjects(*present_, report_.after);
+  addLineage(transaction, addActivity(transaction, activity, scans, parsed_.inputs), lineage);
   present_ = report_.after;
   if (!params_.dry_run) transaction.commit();
 }

@@ -46,9 +46,9 @@ class MapEditor {
   void setInputs(ParsedInputs inputs);
 
   rdf::WriteTransaction begin();
-  /// Brings all layers up to date after segments of `touched` changed, and commits unless this is a dry run.
-  /// `operation` names the change in the history ("extend"), and `scans` those it was about.
-  void commit(rdf::WriteTransaction& transaction, const std::string& operation, const TileSet& touched,
+  /// Brings all layers up to date after points changed, and commits unless this is a dry run. `operation` names the
+  /// change in the history ("extend"), and `scans` those it was about.
+  void commit(rdf::WriteTransaction& transaction, const std::string& operation, PointChanges changes,
               const std::vector<Cloud>& scans);
 
   ChangeReport& result() { return report_; }

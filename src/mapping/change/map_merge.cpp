@@ -7,6 +7,7 @@
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/operator_statements.hpp"
+#include "mapping/change/map_compaction.hpp"
 #include "mapping/change/scan_additions.hpp"
 #include "mapping/map_reader.hpp"
 #include "mapping/map_state.hpp"
@@ -182,7 +183,9 @@ class Merge {
 
 ChangeReport mergeMaps(const std::vector<MapToMerge>& maps, const fs::path& target, const MergeParams& params,
                        ProgressSink& sink) {
-  return Merge(maps, target, params, sink).run();
+  ChangeReport report = Merge(maps, target, params, sink).run();
+  if (!params.change.dry_run) compactIfSparse(target, sink);
+  return report;
 }
 
 }  // namespace cluxel::mapping

@@ -7,8 +7,8 @@ namespace cluxel::mapping {
 void ScanAdditions::add(const scan::Scan& scan) {
   if (!transaction_) transaction_.emplace(editor_.begin());
   const std::optional<Cloud> known = storedCloud(*transaction_, scan.id);
-  const TileSet tiles = storeScan(*transaction_, scan);
-  if (tiles.empty()) {
+  auto segments = storeScan(*transaction_, scan);
+  if (segments.empty()) {
     ++editor_.result().scans_already_there;
     // The scan's time may be later than the one that was known.
     has_other_changes_ = has_other_changes_ || storedCloud(*transaction_, scan.id)->time_s != known->time_s;
@@ -16,7 +16,7 @@ void ScanAdditions::add(const scan::Scan& scan) {
   }
   added_.push_back(*storedCloud(*transaction_, scan.id));
   points_ += scan.points.size();
-  touched_ = unionOf(std::move(touched_), tiles);
+  changes_.add(std::move(segments));
   if (!editor_.params().dry_run && points_ >= editor_.params().batch_points) finish();
 }
 
@@ -28,9 +28,9 @@ rdf::WriteTransaction& ScanAdditions::transaction() {
 
 void ScanAdditions::finish() {
   editor_.result().scans_added += added_.size();
-  if (!added_.empty() || has_other_changes_) editor_.commit(*transaction_, operation_, touched_, added_);
+  if (!added_.empty() || has_other_changes_) editor_.commit(*transaction_, operation_, std::move(changes_), added_);
   transaction_.reset();
-  touched_.clear();
+  changes_ = {};
   added_.clear();
   points_ = 0;
   has_other_changes_ = false;

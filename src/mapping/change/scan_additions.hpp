@@ -27,7 +27,7 @@ class ScanAdditions {
   MapEditor& editor_;
   std::string operation_;
   std::optional<rdf::WriteTransaction> transaction_;  ///< of the open batch
-  TileSet touched_;
+  PointChanges changes_;
   std::vector<Cloud> added_;
   std::uint64_t points_ = 0;
   bool has_other_changes_ = false;

@@ -114,6 +114,11 @@ void measureIntensity(const TilePoints& points, CluxelTile& tile) {
   }
 }
 
+PointGrid wideGrid(const Ring<TilePoints>& ring, const ClusterParams& params) {
+  const double largest_m = std::max(params.radius_m, params.max_reach_m);
+  return gridOf(ring, largest_m, largest_m);
+}
+
 }  // namespace
 
 void describe(ClusterParams& params, ParameterVisitor& visitor) {
@@ -125,19 +130,33 @@ void describe(ClusterParams& params, ParameterVisitor& visitor) {
                 params.target_points);
 }
 
+void measureOwn(const TilePoints& points, CluxelTile& tile) {
+  measureOwnPoints(points, tile);
+  measureIntensity(points, tile);
+  tile.stacks = stacksOf(points);
+}
+
 CluxelTile clusterTile(const Ring<TilePoints>& ring, const ClusterParams& params) {
   const TilePoints& points = *ring[kRingCentre];
-  const double largest_m = std::max(params.radius_m, params.max_reach_m);
   const PointGrid cells = gridOf(ring, params.radius_m, params.radius_m);
   CluxelTile tile;
   tile.key = points.key;
   tile.point_cluxel.resize(points.size());
   assignPoints(cells, static_cast<float>(params.radius_m), tile);
-  measureOwnPoints(points, tile);
-  measureIntensity(points, tile);
-  measureVolumes(cells, gridOf(ring, largest_m, largest_m), points, params, tile);
-  tile.stacks = stacksOf(points);
+  measureOwn(points, tile);
+  measureVolumes(cells, wideGrid(ring, params), points, params, tile);
   return tile;
+}
+
+void addVolumes(const Ring<TilePoints>& ring, const ClusterParams& params, CluxelTile& tile) {
+  measureVolumes(gridOf(ring, params.radius_m, params.radius_m), wideGrid(ring, params), *ring[kRingCentre], params,
+                 tile);
+}
+
+void dropVolumes(CluxelTile& tile) {
+  for (auto* corners : {&tile.volume_min, &tile.volume_max}) *corners = {};
+  tile.ball = {};
+  tile.reach = {};
 }
 
 }  // namespace cluxel::perception

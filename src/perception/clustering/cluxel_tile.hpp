@@ -57,6 +57,8 @@ struct CluxelTile {
   std::vector<CellStack> stacks;                           ///< kStacksPerTile squared, row by row in y
 
   std::size_t size() const { return seed.size(); }
+  /// False for a tile that was read: volumes, balls and reaches are not stored. Only features need them.
+  bool hasVolumes() const { return reach.size() == size(); }
 };
 
 /// "A point joins the earliest seed within the radius, or becomes a seed", in canonical order (cell of radius_m, then
@@ -64,8 +66,16 @@ struct CluxelTile {
 /// Cost: about 200 ns a point.
 CluxelTile clusterTile(const Ring<TilePoints>& ring, const ClusterParams& params);
 
+/// Computes volumes, balls and reaches of the centre tile's cluxels again, with the same bits. Cost: about half of
+/// clusterTile().
+void addVolumes(const Ring<TilePoints>& ring, const ClusterParams& params, CluxelTile& tile);
+/// Gives up volumes, balls and reaches.
+void dropVolumes(CluxelTile& tile);
+
+/// Stores seeds, and the cluxel of each point.
 std::string toBytes(const CluxelTile& tile);
-/// Throws Error (StoreUnavailable) when the bytes are damaged or of another kind.
-CluxelTile cluxelTileFromBytes(std::string_view bytes);
+/// Cluxels without volumes; moments, boxes and stacks are computed from `points`, those of the tile. Throws Error
+/// (StoreUnavailable) when the bytes are damaged, of another kind or of other points.
+CluxelTile cluxelTileFromBytes(std::string_view bytes, const TilePoints& points);
 
 }  // namespace cluxel::perception

@@ -13,6 +13,9 @@ namespace cluxel::perception {
 void measureVolumes(const PointGrid& cells, const PointGrid& wide_cells, const TilePoints& points,
                     const ClusterParams& params, CluxelTile& tile);
 
+/// Moments, boxes, intensities and stacks of the points of each cluxel, from `seed` and `point_cluxel`.
+void measureOwn(const TilePoints& points, CluxelTile& tile);
+
 /// The contents of each cell stack of the tile.
 std::vector<CellStack> stacksOf(const TilePoints& points);
 

@@ -134,6 +134,12 @@ InputError unusablePoint(const scan::Scan& scan, std::size_t point) {
                     "coordinates may reach 10000 km, heights 20 km; check the pose, or give the manifest a map origin");
 }
 
+Error strayPoint(const scan::Scan& scan, std::uint32_t point) {
+  return Error(ErrorKind::StoreUnavailable, "a tile names point " + std::to_string(point) + " of scan " +
+                                                scan.id.hex() +
+                                                ", which is not there; the map is damaged, build it anew");
+}
+
 /// As floats relative to a tile's corner.
 Eigen::Vector3f relativeTo(const Eigen::Vector3d& corner, const Eigen::Vector3d& p_map) {
   const Eigen::Vector3d p = p_map - corner;
@@ -218,6 +224,38 @@ TilePoints thin(const TileKey& key, std::span<const TilePoints* const> parts, co
     for (const auto scan : part->scan) pool.scan.push_back(placeOf(scans, part->scans[scan]));
   }
   return thinPool(key, std::move(scans), pool, params);
+}
+
+void PointsFromScans::add(TilePoints& tile) {
+  std::vector<Part> parts(tile.scans.size(), Part{&tile, {}});
+  for (std::uint32_t i = 0; i < tile.size(); ++i) parts[tile.scan[i]].points.push_back(i);
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    if (!parts[k].points.empty()) parts_[tile.scans[k]].push_back(std::move(parts[k]));
+}
+
+std::vector<scan::ScanId> PointsFromScans::scans() const {
+  std::vector<scan::ScanId> ids;
+  for (const auto& [id, parts] : parts_) ids.push_back(id);
+  return ids;
+}
+
+void PointsFromScans::fill(const scan::Scan& scan) const {
+  const scan::ScanPoints& points = scan.points;
+  const auto found = parts_.find(scan.id);
+  if (found == parts_.end()) return;
+  for (const auto& [tile, own] : found->second) {
+    const Eigen::Vector3d corner = cornerOf(tile->key);
+    for (const std::uint32_t i : own) {
+      const std::uint32_t at = tile->point[i];
+      if (at >= points.size()) throw strayPoint(scan, at);
+      const Eigen::Vector3d p_map = scan::toMap(scan.T_map_sensor, {points.x[at], points.y[at], points.z[at]});
+      if (!liesAt(corner, p_map) || !isUsable(p_map)) throw strayPoint(scan, at);
+      const Eigen::Vector3f p = relativeTo(corner, p_map);
+      tile->x[i] = p.x(), tile->y[i] = p.y(), tile->z[i] = p.z();
+      if (!tile->intensity.empty()) tile->intensity[i] = points.intensity.empty() ? 0.0F : points.intensity[at];
+      tile->rank[i] = rankOf(points, at);
+    }
+  }
 }
 
 RepresentativeFinder::RepresentativeFinder(const TilePoints& points, const ThinParams& params)

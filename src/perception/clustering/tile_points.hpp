@@ -87,10 +87,30 @@ class RepresentativeFinder {
   std::vector<std::uint64_t> voxel_;  ///< per point, ascending
 };
 
+/// Stores which points of which scans they are.
 std::string toBytes(const TilePoints& tile);
-/// Throws Error (StoreUnavailable) when the bytes are damaged or of another kind.
+/// Names of points; coordinates, intensities and ranks are 0 until PointsFromScans has filled them in. Throws Error
+/// (StoreUnavailable) when the bytes are damaged or of another kind.
 TilePoints tilePointsFromBytes(std::string_view bytes);
-std::string toBytes(const ScanSegment& segment);
-ScanSegment scanSegmentFromBytes(std::string_view bytes);
+
+/// Fills tiles that were read with the measured values, from one scan after the other.
+class PointsFromScans {
+ public:
+  /// `tile` must stay where it is.
+  void add(TilePoints& tile);
+  /// The scans whose points are needed.
+  std::vector<scan::ScanId> scans() const;
+  /// Sets the values of all points of `scan`, with the bits that splitScan() gives them. Throws Error
+  /// (StoreUnavailable) when a tile names a point that is not in the scan, or not in the tile. Cost: about 30 ns a
+  /// point.
+  void fill(const scan::Scan& scan) const;
+
+ private:
+  struct Part {
+    TilePoints* tile;
+    std::vector<std::uint32_t> points;  ///< indices in the tile
+  };
+  std::map<scan::ScanId, std::vector<Part>> parts_;
+};
 
 }  // namespace cluxel::perception

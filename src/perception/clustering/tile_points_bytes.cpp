@@ -1,75 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stored form of scan segments and tile points.
+// Stored form of tile points: only their names; everything else follows from the scans.
 #include "perception/clustering/tile_points.hpp"
 #include "perception/tile_bytes.hpp"
 
 namespace cluxel::perception {
-namespace {
-
-bool isInTile(const std::vector<float>& values) {
-  for (const float value : values)
-    if (!(value >= 0.0F && value < static_cast<float>(kTileSize_m))) return false;
-  return true;
-}
-
-template <typename Part>
-void putPoints(TileWriter& writer, const Part& part) {
-  writer.put(part.x);
-  writer.put(part.y);
-  writer.put(part.z);
-  writer.put(part.intensity);
-  writer.put(part.point);
-  writer.put(part.rank);
-}
-
-template <typename Part>
-void getPoints(TileReader& reader, Part& part) {
-  part.x = reader.getMany<float>();
-  part.y = reader.getMany<float>(part.x.size());
-  part.z = reader.getMany<float>(part.x.size());
-  part.intensity = reader.getMany<float>(part.x.size(), true);
-  part.point = reader.getMany<std::uint32_t>(part.x.size());
-  part.rank = reader.getMany<std::uint32_t>(part.x.size());
-  reader.require(isInTile(part.x) && isInTile(part.y) && allWithin(part.z, kMaxHeight_m),
-                 "has points outside its tile");
-}
-
-}  // namespace
-
-std::string toBytes(const ScanSegment& segment) {
-  TileWriter writer("SEGM", 2, segment.key);
-  writer.put(std::vector<scan::ScanId>{segment.scan});
-  putPoints(writer, segment);
-  return writer.take();
-}
-
-ScanSegment scanSegmentFromBytes(std::string_view bytes) {
-  TileReader reader(bytes, "SEGM", 2);
-  ScanSegment segment;
-  segment.key = reader.key();
-  segment.scan = reader.getMany<scan::ScanId>(1).front();
-  getPoints(reader, segment);
-  reader.finish();
-  return segment;
-}
 
 std::string toBytes(const TilePoints& tile) {
-  TileWriter writer("PNTS", 2, tile.key);
+  TileWriter writer("PNTS", 3, tile.key);
   writer.put(tile.scans);
-  putPoints(writer, tile);
   writer.put(tile.scan);
+  writer.putSteps(tile.point);
+  writer.put(static_cast<std::uint8_t>(tile.intensity.empty() ? 0 : 1));
+  writer.leaveOut(tile.x);
+  writer.leaveOut(tile.y);
+  writer.leaveOut(tile.z);
+  writer.leaveOut(tile.intensity);
+  writer.leaveOut(tile.rank);
   return writer.take();
 }
 
 TilePoints tilePointsFromBytes(std::string_view bytes) {
-  TileReader reader(bytes, "PNTS", 2);
+  TileReader reader(bytes, "PNTS", 3);
   TilePoints tile;
   tile.key = reader.key();
   tile.scans = reader.getMany<scan::ScanId>();
-  getPoints(reader, tile);
-  tile.scan = reader.getMany<std::uint32_t>(tile.x.size());
+  tile.scan = reader.getMany<std::uint32_t>();
+  tile.point = reader.getSteps(tile.scan.size());
+  const auto has_intensity = reader.get<std::uint8_t>();
+  reader.require(has_intensity <= 1, "has an impossible flag");
   reader.require(allBelow(tile.scan, tile.scans.size()), "names a scan that it does not list");
   reader.finish();
+  for (auto* values : {&tile.x, &tile.y, &tile.z}) values->resize(tile.point.size());
+  tile.intensity.resize(has_intensity * tile.point.size());
+  tile.rank.resize(tile.point.size());
   return tile;
 }
 

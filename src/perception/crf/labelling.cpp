@@ -54,14 +54,14 @@ LabelTile TileLabeller::label(const Ring<FeatureTile>& ring, const LabellingPara
 }
 
 std::string toBytes(const LabelTile& tile) {
-  TileWriter writer("LABL", 1, tile.key);
+  TileWriter writer("LABL", 2, tile.key);
   writer.put(tile.label);
   writer.put(tile.probability);
   return writer.take();
 }
 
 LabelTile labelTileFromBytes(std::string_view bytes) {
-  TileReader reader(bytes, "LABL", 1);
+  TileReader reader(bytes, "LABL", 2);
   LabelTile tile;
   tile.key = reader.key();
   tile.label = reader.getMany<std::uint8_t>();

@@ -3,7 +3,6 @@
 #include "perception/features/feature_tile.hpp"
 
 #include "perception/features/feature_groups.hpp"
-#include "perception/tile_bytes.hpp"
 
 namespace cluxel::perception {
 namespace {
@@ -36,19 +35,6 @@ std::vector<EigenShape> ballShapes(const Ring<CluxelTile>& ring, const RingCluxe
     if (cluxels.near[c]) four.add(c, covarianceOf(ring[cluxels.name[c].ring]->ball[cluxels.name[c].index]), keep);
   four.finish(keep);
   return shapes;
-}
-
-/// The first edge row of each cluxel; not stored, since it follows from the targets.
-std::vector<std::uint32_t> edgeRowOffsets(const FeatureTile& tile) {
-  std::vector<std::uint32_t> offsets{0};
-  offsets.reserve(tile.size() + 1);
-  for (std::uint32_t c = 0; c < tile.size(); ++c) {
-    std::uint32_t rows = offsets.back();
-    for (std::uint32_t e = tile.edge_offset[c]; e < tile.edge_offset[c + 1]; ++e)
-      rows += FeatureTile::hasRow(c, tile.edge_target[e]) ? 1U : 0U;
-    offsets.push_back(rows);
-  }
-  return offsets;
 }
 
 }  // namespace
@@ -88,6 +74,13 @@ FeatureLayout featureLayout(const FeatureParams& params) {
   return layout;
 }
 
+void putCluxels(const CluxelTile& cluxels, FeatureTile& tile) {
+  for (const auto& moments : cluxels.own) {
+    tile.center.push_back(moments.mean);
+    tile.point_count.push_back(static_cast<std::uint32_t>(moments.count));
+  }
+}
+
 FeatureTile computeFeatures(const Ring<CluxelTile>& cluxels, const Ring<GroundTile>& ground,
                             const FeatureParams& params) {
   const CluxelTile& own = *cluxels[kRingCentre];
@@ -97,10 +90,7 @@ FeatureTile computeFeatures(const Ring<CluxelTile>& cluxels, const Ring<GroundTi
   const FeatureInput input{cluxels, ground, gathered, graph, ball};
   FeatureTile tile;
   tile.key = own.key;
-  for (const auto& moments : own.own) {
-    tile.center.push_back(moments.mean);
-    tile.point_count.push_back(static_cast<std::uint32_t>(moments.count));
-  }
+  putCluxels(own, tile);
   FeatureRows rows(own.size(), featureLayout(params).columns.size());
   std::size_t column = supportColumns(params).size();
   fillSupportFeatures(input, params, 0, rows);
@@ -127,43 +117,6 @@ void fillIntensityFeatures(const FeatureInput& input, std::size_t column, Featur
     out[1] = own.intensity_deviation[c];
     out[2] = 1.0F;
   }
-}
-
-std::string toBytes(const FeatureTile& tile) {
-  TileWriter writer("FEAT", 2, tile.key);
-  writer.put(tile.center);
-  writer.put(tile.point_count);
-  writer.put(tile.features);
-  writer.put(tile.edge_offset);
-  writer.put(tile.edge_target);
-  writer.put(tile.edge_features);
-  return writer.take();
-}
-
-FeatureTile featureTileFromBytes(std::string_view bytes) {
-  TileReader reader(bytes, "FEAT", 2);
-  FeatureTile tile;
-  tile.key = reader.key();
-  tile.center = reader.getMany<Eigen::Vector3f>();
-  const std::size_t size = tile.size();
-  tile.point_count = reader.getMany<std::uint32_t>(size);
-  tile.features = reader.getMany<float>();
-  tile.edge_offset = reader.getMany<std::uint32_t>(size + 1);
-  tile.edge_target = reader.getMany<RingIndex>();
-  tile.edge_features = reader.getMany<float>();
-  const std::size_t edges = tile.edge_target.size();
-  reader.require(isOffsets(tile.edge_offset, edges), "has edges that do not belong to a cluxel");
-  reader.require(size == 0 ? tile.features.empty() : tile.features.size() % size == 0, "has rows of different lengths");
-  for (const auto& target : tile.edge_target)
-    reader.require(target.ring < 9 && (target.ring != kRingCentre || target.index < size),
-                   "has an edge that leads nowhere");
-  tile.edge_row_offset = edgeRowOffsets(tile);
-  const std::size_t rows = tile.edge_row_offset.back();
-  reader.require(rows == 0 ? tile.edge_features.empty() : tile.edge_features.size() % rows == 0,
-                 "has edge rows of different lengths");
-  reader.require(allWithin(tile.center, kMaxHeight_m), "has a centre that is not a number");
-  reader.finish();
-  return tile;
 }
 
 }  // namespace cluxel::perception

@@ -110,14 +110,14 @@ double groundHeightAt(const Ring<GroundTile>& ring, double x_local, double y_loc
 }
 
 std::string toBytes(const GroundTile& tile) {
-  TileWriter writer("GRND", 1, tile.key);
+  TileWriter writer("GRND", 2, tile.key);
   writer.put(tile.height);
   writer.put(tile.source);
   return writer.take();
 }
 
 GroundTile groundTileFromBytes(std::string_view bytes) {
-  TileReader reader(bytes, "GRND", 1);
+  TileReader reader(bytes, "GRND", 2);
   constexpr auto kCells = static_cast<std::size_t>(kStacksPerTile) * kStacksPerTile;
   GroundTile tile{reader.key(), reader.getMany<float>(kCells), reader.getMany<GroundSource>(kCells)};
   reader.require(allWithin(tile.height, 2 * kMaxHeight_m), "has a ground height that is not a number");

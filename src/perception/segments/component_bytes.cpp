@@ -33,7 +33,7 @@ std::vector<Eigen::Vector2f> pairs(const std::vector<float>& values) {
 }  // namespace
 
 std::string toBytes(const ComponentTile& tile) {
-  TileWriter writer("CMPT", 1, tile.key);
+  TileWriter writer("CMPT", 2, tile.key);
   writer.put(tile.component_of);
   writer.put(tile.components);
   writer.put(tile.cell_offset);
@@ -46,7 +46,7 @@ std::string toBytes(const ComponentTile& tile) {
 }
 
 ComponentTile componentTileFromBytes(std::string_view bytes) {
-  TileReader reader(bytes, "CMPT", 1);
+  TileReader reader(bytes, "CMPT", 2);
   ComponentTile tile;
   tile.key = reader.key();
   tile.component_of = reader.getMany<std::uint32_t>();
@@ -71,13 +71,13 @@ ComponentTile componentTileFromBytes(std::string_view bytes) {
 }
 
 std::string toBytes(const ContactTile& tile) {
-  TileWriter writer("CNTC", 1, tile.key);
+  TileWriter writer("CNTC", 2, tile.key);
   writer.put(tile.contacts);
   return writer.take();
 }
 
 ContactTile contactTileFromBytes(std::string_view bytes) {
-  TileReader reader(bytes, "CNTC", 1);
+  TileReader reader(bytes, "CNTC", 2);
   ContactTile tile;
   tile.key = reader.key();
   tile.contacts = reader.getMany<Contact>();

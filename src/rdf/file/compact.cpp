@@ -29,7 +29,7 @@ void copyTable(const ReadTransaction::Impl& from, const ReadTransaction::Impl& t
   if (code != MDB_NOTFOUND) from.check(code, "read a table");
 }
 
-/// The sums of block keys; tables, which stand in the same database, have their own copies.
+/// The format and the sums of block keys; tables, which stand in the same database, have their own copies.
 void copyMainRecords(const ReadTransaction::Impl& from, const ReadTransaction::Impl& to) {
   MDB_cursor* raw = nullptr;
   from.check(mdb_cursor_open(from.live(), from.environment->mainTable(), &raw), "read a table");
@@ -38,7 +38,7 @@ void copyMainRecords(const ReadTransaction::Impl& from, const ReadTransaction::I
   MDB_val value;
   for (int code = mdb_cursor_get(raw, &key, &value, MDB_FIRST); code == MDB_SUCCESS;
        code = mdb_cursor_get(raw, &key, &value, MDB_NEXT))
-    if (toView(key).starts_with("cluxel-keys:"))
+    if (toView(key).starts_with("cluxel-keys:") || toView(key) == "cluxel-format")
       to.check(mdb_put(to.live(), to.environment->mainTable(), &key, &value, 0), "write a table");
 }
 

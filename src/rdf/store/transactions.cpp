@@ -24,22 +24,22 @@ namespace {
 constexpr std::string_view kFormatKey = "cluxel-format";
 constexpr int kFormat = kMapFormat;
 
-/// The first format has no sums of quads and terms; the next commit adds them.
-constexpr int kFirstFormat = 1;
+/// The first format has no sums of quads and terms; the next commit adds them, which makes it the second.
+constexpr int kFirstFormat = 1, kFormatWithSums = 2;
 
 int checkedFormat(const std::string& text, const std::filesystem::path& file) {
   int format = 0;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), format);
   if (read.ec != std::errc() || read.ptr != text.data() + text.size()) format = 0;
-  if (format == kFormat || format == kFirstFormat) return format;
+  if (format >= kFirstFormat && format <= kFormat) return format;
   const std::string what = format > kFormat ? "is a map of a newer format (" + text + "; this program reads " +
                                                   std::to_string(kFormat) + "); use a newer Cluxel"
                                             : "is a map of an unknown format; build it again";
   throw Error(ErrorKind::StoreUnavailable, file.string() + ": " + what);
 }
 
-void writeFormat(const ReadTransaction::Impl& transaction) {
-  const std::string format = std::to_string(kFormat);
+void writeFormat(const ReadTransaction::Impl& transaction, int version) {
+  const std::string format = std::to_string(version);
   MDB_val key = toVal(kFormatKey);
   MDB_val value = toVal(format);
   transaction.check(mdb_put(transaction.live(), transaction.environment->mainTable(), &key, &value, 0),
@@ -60,14 +60,14 @@ void makeSums(WriteTransaction& transaction) {
     terms.add(hashOfRecord(snapshot.record(term, state)), term);
   }
   terms.store();
-  writeFormat(state);
+  writeFormat(state, kFormatWithSums);
 }
 
 void LmdbEnvironment::createTables(ReadTransaction::Impl& transaction) {
   for (std::size_t i = 0; i < kTableCount; ++i)
     check(mdb_dbi_open(transaction.live(), kTableNames[i], tableFlags(static_cast<Table>(i)) | MDB_CREATE, &tables_[i]),
           "make the map's tables");
-  writeFormat(transaction);
+  writeFormat(transaction, kFormat);
   ++transaction.generation;
 }
 

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Coordinates are differences between points in the order in which they were measured: neighbours are near each other.
+#include "mapping/build/packed_points.hpp"
+
+#include <cstring>
+
+#include "base/zstd_packing.hpp"
+#include "cluxel/error.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+constexpr std::string_view kKind = "SCAN";
+constexpr char kVersion = 3;
+
+void putCount(std::string& bytes, std::uint64_t count) {
+  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
+}
+
+template <typename T>
+void putPlanes(std::string& bytes, const std::vector<T>& values) {
+  putCount(bytes, values.size());
+  appendPlanes(bytes, values.data(), values.size(), sizeof(T));
+}
+
+std::vector<float> flat(const std::vector<Eigen::Vector3f>& places, int axis) {
+  std::vector<float> values;
+  values.reserve(places.size());
+  for (const Eigen::Vector3f& place : places) values.push_back(place[axis]);
+  return values;
+}
+
+Error damagedPoints() {
+  return Error(ErrorKind::StoreUnavailable, "points of a cloud are damaged; build the map anew");
+}
+
+template <typename T>
+std::vector<T> takePlanes(std::string_view& bytes) {
+  std::uint64_t count = 0;
+  if (bytes.size() < sizeof count) throw damagedPoints();
+  std::memcpy(&count, bytes.data(), sizeof count);
+  bytes.remove_prefix(sizeof count);
+  if (count > bytes.size() / sizeof(T)) throw damagedPoints();
+  std::vector<T> values(count);
+  readPlanes(bytes.data(), values.data(), count, sizeof(T));
+  bytes.remove_prefix(count * sizeof(T));
+  return values;
+}
+
+std::vector<float> takeSteps(std::string_view& bytes) {
+  std::vector<float> values;
+  sumUp(takePlanes<std::uint32_t>(bytes), values);
+  return values;
+}
+
+void requireLengths(const scan::ScanPoints& points) {
+  const std::size_t count = points.size();
+  const auto fits = [count](std::size_t size) { return size == 0 || size == count; };
+  if (points.y.size() != count || points.z.size() != count || !fits(points.intensity.size()) ||
+      !fits(points.label.size()) || !fits(points.origin.size()))
+    throw damagedPoints();
+}
+
+}  // namespace
+
+std::string packedPoints(const scan::ScanPoints& points) {
+  std::string bytes;
+  for (const auto* values : {&points.x, &points.y, &points.z, &points.intensity})
+    putPlanes(bytes, differencesOf(*values));
+  putPlanes(bytes, points.label);
+  for (int axis = 0; axis < 3; ++axis) putPlanes(bytes, differencesOf(flat(points.origin, axis)));
+  return std::string(kKind) + kVersion + packedBytes(bytes);
+}
+
+scan::ScanPoints unpackedPoints(std::string_view packed) {
+  if (!packed.starts_with(kKind) || packed.size() <= kKind.size() || packed[kKind.size()] != kVersion)
+    throw Error(ErrorKind::StoreUnavailable,
+                "points of a cloud are stored in the form of another version of cluxel; build the map anew");
+  const auto unpacked = unpackedBytes(packed.substr(kKind.size() + 1));
+  if (!unpacked) throw damagedPoints();
+  std::string_view bytes = unpacked->view();
+  scan::ScanPoints points;
+  for (auto* values : {&points.x, &points.y, &points.z, &points.intensity}) *values = takeSteps(bytes);
+  points.label = takePlanes<std::uint32_t>(bytes);
+  const std::vector<float> x = takeSteps(bytes), y = takeSteps(bytes), z = takeSteps(bytes);
+  if (y.size() != x.size() || z.size() != x.size() || !bytes.empty()) throw damagedPoints();
+  for (std::size_t i = 0; i < x.size(); ++i) points.origin.emplace_back(x[i], y[i], z[i]);
+  requireLengths(points);
+  return points;
+}
+
+}  // namespace cluxel::mapping

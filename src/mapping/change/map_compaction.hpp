@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// A map without free space: after a change that left much of it, and on request.
+#pragma once
+
+#include <filesystem>
+
+#include "cluxel/progress.hpp"
+
+namespace cluxel::mapping {
+
+/// Rewrites a map without free pages and half-filled ones, and replaces it by a rename. Readers go on with the old
+/// file. Takes the build lock; other writers wait or are refused. Throws Error (StoreUnavailable) when the map is
+/// damaged or cannot be written; it is then as before.
+void compactMap(const std::filesystem::path& map);
+
+/// Compacts a map when that frees more than a twentieth of it, and more than a mebibyte. So the cost follows the
+/// changes that left the space. Where it fails, the map stays larger, and a note tells why.
+void compactIfSparse(const std::filesystem::path& map, ProgressSink& sink);
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// How the bytes of a map file are divided among its tables.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "rdf/file/environment.hpp"
+
+namespace cluxel::rdf {
+
+struct LayerSize {
+  std::string name;              ///< of a block table, "terms", "hashes", an index, "other pages" or "free pages"
+  std::uint64_t entries = 0;     ///< blocks, terms, quads; pages in the last two rows
+  std::uint64_t file_bytes = 0;  ///< with the heads of entries, and whole pages where an entry has its own
+  bool operator==(const LayerSize&) const = default;
+};
+
+/// The block tables by name, then the tables of the RDF, then pages that no entry fills and pages that are free. The
+/// sum of `file_bytes` is the size of the part of the file that the commit knows. Cost: the keys of all blocks are
+/// read, and the indexes are compared with their sums.
+std::vector<LayerSize> layerSizes(const ReadTransaction& transaction);
+
+/// The bytes that a rewrite of the file would free: free pages, and the space that the pages of indexes leave.
+std::uint64_t freeableBytes(const std::vector<LayerSize>& layers);
+
+}  // namespace cluxel::rdf

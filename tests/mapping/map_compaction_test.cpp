@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// A map is rewritten exactly when that frees much of it, and stays the same map.
+#include "mapping/change/map_compaction.hpp"
+
+#include <gtest/gtest.h>
+
+#include "base/file_bytes.hpp"
+#include "mapping/map_tables.hpp"
+#include "mapping/small_campus.hpp"
+
+namespace cluxel::mapping {
+namespace {
+
+namespace fs = std::filesystem;
+
+class MapCompaction : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder = new ScratchFolder();
+    const SmallCampus campus({.seed = 4, .stops = 2, .size_m = 45, .points_per_stop = 3'000});
+    buildMap(scansOf(campus.files()), shippedInputs(), folder->path() / "built.clx", {}, silence());
+  }
+  static void TearDownTestSuite() { delete folder; }
+
+  fs::path copy() const {
+    const fs::path map = folder->path() / "copy.clx";
+    fs::remove(map.string() + "-lock");
+    fs::copy_file(folder->path() / "built.clx", map, fs::copy_options::overwrite_existing);
+    return map;
+  }
+  /// Leaves free pages: the bytes are written in one commit and erased in the next.
+  static void leaveFree(const fs::path& map, std::size_t bytes) {
+    const auto environment = Environment::open(map, OpenMode::ReadWrite);
+    for (const bool is_there : {true, false}) {
+      WriteTransaction transaction = environment->write();
+      if (is_there)
+        transaction.putBlock(tables::kTexts, "much", std::string(bytes, 'x'));
+      else
+        transaction.eraseBlock(tables::kTexts, "much");
+      transaction.commit();
+    }
+  }
+
+  inline static ScratchFolder* folder = nullptr;
+};
+
+TEST_F(MapCompaction, FollowsMuchFreeSpaceAndKeepsTheMap) {
+  const fs::path map = copy();
+  const std::string facts = canonicalText(map);
+  const auto before = fs::file_size(map);
+  leaveFree(map, 8'000'000);
+  EXPECT_GT(fs::file_size(map), before + 7'000'000);
+  compactIfSparse(map, silence());
+  EXPECT_LT(fs::file_size(map), before + 100'000);
+  EXPECT_TRUE(canonicalText(map) == facts);
+  EXPECT_FALSE(fs::exists(map.string() + ".compact"));
+}
+
+TEST_F(MapCompaction, LeavesAMapAloneThatHasLittleFreeSpace) {
+  const fs::path map = copy();
+  leaveFree(map, 500'000);
+  const std::string bytes = readFile(map);
+  compactIfSparse(map, silence());
+  EXPECT_TRUE(readFile(map) == bytes);
+}
+
+TEST_F(MapCompaction, ThatFailsLeavesTheMapAndTellsWhy) {
+  struct Notes : ProgressSink {
+    void note(std::string_view text) override { all += text; }
+    std::string all;
+  } notes;
+  const fs::path map = copy();
+  leaveFree(map, 8'000'000);
+  const std::string bytes = readFile(map);
+  fs::create_directories(map.string() + ".compact/in the way");
+  compactIfSparse(map, notes);
+  fs::remove_all(map.string() + ".compact");
+  EXPECT_TRUE(readFile(map) == bytes);
+  EXPECT_NE(notes.all.find("is whole, but takes more space"), std::string::npos) << notes.all;
+}
+
+TEST_F(MapCompaction, FillsThePagesOfIndexes) {
+  const fs::path map = copy();
+  compactMap(map);
+  const auto layers = MapReader(map).layers();
+  EXPECT_LT(freeableBytes(layers), 12U * 4096);
+  const auto spog = std::find_if(layers.begin(), layers.end(), [](const auto& layer) { return layer.name == "spog"; });
+  ASSERT_NE(spog, layers.end());
+  EXPECT_GE(spog->file_bytes, spog->entries * 16);
+}
+
+}  // namespace
+}  // namespace cluxel::mapping
