@@ -48,6 +48,7 @@ void dropInner(std::vector<Eigen::Vector2d>& points) {
   const std::array<Eigen::Vector2d, 8> directions{
       {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
   std::array<Eigen::Vector2d, 8> corner;
+  corner.fill(points.front());
   std::array<double, 8> farthest;
   farthest.fill(-std::numeric_limits<double>::infinity());
   for (const Eigen::Vector2d& point : points)

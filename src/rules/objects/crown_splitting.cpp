@@ -69,6 +69,7 @@ class JumpGrid {
     Column& column = columns_[static_cast<std::size_t>(firstColumn(x, y) - columns_.begin())];
     const auto begin = entries_.begin() + column.begin, end = entries_.begin() + column.end;
     const auto entry = std::find_if(begin, end, [at](const Entry& known) { return known.at == at; });
+    if (entry == end) return;
     std::move(entry + 1, end, entry);
     --column.end;
   }
