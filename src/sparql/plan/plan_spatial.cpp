@@ -116,7 +116,7 @@ void Planner::searchBySpace(const Expr& condition, const Node& child, Parts& par
   if (static_cast<double>(found.size()) > kWorthUsing * static_cast<double>(index->size())) return;
   NodePtr values = makeNode(Node::Kind::Values, condition.at);
   values->slots = {search->slot};
-  for (const rdf::TermId id : found) values->rows.push_back({id});
+  values->rows = {found.size(), found};
   values->note =
       "R-tree, " + std::to_string(found.size()) + " of " + std::to_string(index->size()) + " boxes meet the filter's:";
   values->annotate();

@@ -197,7 +197,7 @@ struct ExistsPlan {
 OperatorPtr makeFilter(OperatorPtr child, std::vector<Expr> conditions, std::vector<ExistsPlan> exists);
 OperatorPtr makeExtend(OperatorPtr child, std::vector<std::pair<Slot, Expr>> columns, std::vector<ExistsPlan> exists);
 /// `note` is the origin of the rows in plans, unless they come from a VALUES of the query.
-OperatorPtr makeValues(std::vector<Slot> slots, std::vector<std::vector<ValueId>> rows, std::string note = {});
+OperatorPtr makeValues(std::vector<Slot> slots, IdRows rows, std::string note = {});
 OperatorPtr makeGraphNames(OperatorPtr child, const GraphPlace& graph);
 /// Runs `body` once per named graph, with the graph as the parameter `slot`.
 OperatorPtr makeGraphLoop(OperatorPtr body, Slot slot);
