@@ -16,7 +16,7 @@ using Clock = std::chrono::steady_clock;
 
 /// What the inference after an update may use: the update's deadline, and as much memory as the update itself.
 rdf::InferenceCheck checkOf(const sparql::QueryBudget& budget, Clock::time_point start) {
-  return [budget, start](std::size_t bytes) {
+  const auto held = [budget, start](std::size_t bytes) {
     const auto refuse = [](const std::string& what) {
       throw Error(ErrorKind::BudgetExceeded, "update: its budget of " + what +
                                                  " is exceeded by what had to be inferred; nothing was changed. Raise "
@@ -26,6 +26,7 @@ rdf::InferenceCheck checkOf(const sparql::QueryBudget& budget, Clock::time_point
     if (budget.deadline && Clock::now() - start > *budget.deadline) refuse("time");
     if (budget.max_memory_bytes != 0 && bytes > budget.max_memory_bytes) refuse("memory");
   };
+  return {held, budget.max_memory_bytes};
 }
 
 }  // namespace
