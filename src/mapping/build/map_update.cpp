@@ -8,6 +8,7 @@
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/map_state.hpp"
 #include "rdf/file/map_replacement.hpp"
+#include "rdf/store/flush_poll.hpp"
 
 namespace cluxel::mapping {
 namespace {
@@ -54,6 +55,7 @@ sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::str
                                                 "written; a store that no build has made is open");
   const sparql::UpdateReport report = runUpdate(transaction, update, options);
   if (is_map && report.inserted + report.deleted > 0) {
+    const rdf::FlushPoll poll(transaction, [&check] { check(0); });
     inferAfterUpdate(transaction, sink, check);
     check(0);
   }
