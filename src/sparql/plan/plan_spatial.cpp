@@ -49,7 +49,7 @@ std::optional<Search> searchBy(const RangeTest& test, const QueryTerms& terms) {
   if (literal.datatype != std::string(rdf::vocabulary::kGeo) + "wktLiteral") return std::nullopt;
   const auto geometry = parseWkt(literal.text);
   if (!geometry || namesReferenceSystem(*geometry)) return std::nullopt;
-  const Box2 box = boundsOf(*geometry);
+  const Box2 box = planeBoxOf(*geometry);
   if (!std::isfinite(box.min_x) || !std::isfinite(by_m)) return std::nullopt;
   const Box2 wide = widened(box, by_m);
   return Search{test.slot, {rdf::FlatBox::around(wide.min_x, wide.min_y, wide.max_x, wide.max_y)}};
