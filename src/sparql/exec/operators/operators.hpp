@@ -30,6 +30,7 @@ struct EnoughRows {
   std::uint64_t count = 0;
   std::vector<Slot> keys;        ///< of the group
   Slot counted = kNoSlot;        ///< kNoSlot: the rows
+  bool distinct = false;         ///< each value counts once
   std::vector<Expr> conditions;  ///< of the filters between the join and the group
 };
 

@@ -2,6 +2,7 @@
 // The range join: pairs each row with the rows of the build side that pass tests on numbers and distances.
 #include <algorithm>
 #include <limits>
+#include <unordered_set>
 
 #include "sparql/exec/spatial/nearest_others.hpp"
 #include "sparql/exec/spatial/range_build.hpp"
@@ -107,13 +108,16 @@ class RangeJoinOperator : public UnaryOperator {
   void searchNearest() {
     Evaluator evaluator(runtime());
     std::uint64_t counted = 0;
+    counted_.clear();
     const auto isEnough = [&](std::uint32_t row) {
       runtime().guard.work(1);
       if (!isNeeded(row, evaluator)) return false;
       found_.push_back(row);
       // COUNT of a variable passes over rows that do not bind it.
-      const bool counts = enough_->counted == kNoSlot || pair_.at(enough_->counted, 0) != kUnbound;
-      counted += counts ? 1 : 0;
+      const ValueId value = enough_->counted == kNoSlot ? kUnbound : pair_.at(enough_->counted, 0);
+      const bool counts = enough_->counted == kNoSlot || value != kUnbound;
+      const bool is_new = !enough_->distinct || counted_.insert(value).second;
+      counted += counts && is_new ? 1 : 0;
       return counted >= enough_->count;
     };
     if (!std::any_of(build_.loose().begin(), build_.loose().end(), isEnough)) {
@@ -204,6 +208,7 @@ class RangeJoinOperator : public UnaryOperator {
   std::optional<KnownBox> place_;  ///< of the current row for it, if it has one,
   double reach_ = 0;               ///< and the greatest distance
   Batch pair_;                     ///< one row, for the conditions
+  std::unordered_set<ValueId> counted_;
 };
 
 }  // namespace
