@@ -7,6 +7,7 @@
 #include <random>
 
 #include "base/content_hash.hpp"
+#include "rdf/store/flush_poll.hpp"
 #include "sparql/syntax/parser.hpp"
 #include "sparql/syntax/source_text.hpp"
 #include "sparql/update/stored_changes.hpp"
@@ -71,7 +72,7 @@ class UpdateRun {
   Term targetGraph(const ast::GraphTarget& target) const {
     return target.kind == ast::GraphTarget::Kind::Default ? defaultGraph() : target.graph;
   }
-  void checkRemovable(const rdf::QuadReader& reader, const std::vector<ChangedQuad>& removals) const;
+  void checkRemovable(const rdf::QuadReader& reader, const std::vector<ChangedQuad>& removals);
   void apply(const rdf::QuadReader& reader, const Changes& changes);
   void clearTarget(const ast::GraphTarget& target);
   std::vector<Quad> quadsOf(const Term& graph);
@@ -236,9 +237,9 @@ void UpdateRun::perform(const ast::DataUpdate& data) {
   apply(reader, changes);
 }
 
-void UpdateRun::checkRemovable(const rdf::QuadReader& reader, const std::vector<ChangedQuad>& removals) const {
+void UpdateRun::checkRemovable(const rdf::QuadReader& reader, const std::vector<ChangedQuad>& removals) {
   if (options_.any_graph_writable || options_.query.default_graph == DefaultGraph::Unnamed) return;
-  const auto locked = lockedTriples(reader, removals, options_.writable_graphs);
+  const auto locked = lockedTriples(reader, removals, options_.writable_graphs, guard_);
   if (!locked) return;
   const Quad& first = locked->first;
   fail(std::to_string(locked->count) + " of the " + std::to_string(locked->of) +
@@ -287,6 +288,7 @@ UpdateReport runUpdate(rdf::WriteTransaction& transaction, std::string_view text
   guard.start(options.query.budget);
   parse_options.count = [&guard](std::size_t tokens) { guard.chargeForTokens(tokens); };
   const ast::Update update = parseUpdate(text, parse_options);
+  const rdf::FlushPoll poll(transaction, [&guard] { guard.checkTime(); });
   return UpdateRun(transaction, update, options, guard).run();
 }
 

@@ -234,6 +234,26 @@ TEST(SparqlRulesCheck, TheShippedRulesPass) {
   EXPECT_NO_THROW(checkSparqlRules(shippedRules()));
 }
 
+TEST_F(SparqlRules, KeepTheBudgetOfMemoryOfTheUpdateThatTheyFollow) {
+  for (int i = 1; i <= 30; ++i) addTree(i);
+  const NamedText rule{"texts.rq",
+                       kQueryPrefixes +
+                           "CONSTRUCT { ?a clx:near ?a } WHERE { { SELECT ?a (COUNT(DISTINCT ?t) AS ?n) { "
+                           "?a a clx:Tree . ?b a clx:Tree . ?c a clx:Tree "
+                           "BIND(CONCAT(STR(?a), STR(?b), STR(?c)) AS ?t) } GROUP BY ?a } FILTER(?n < 0) }"};
+  const auto run = [&](std::uint64_t max_memory_bytes) {
+    runSparqlRules(transaction, {rule}, {.held = [](std::size_t) {}, .max_memory_bytes = max_memory_bytes});
+  };
+  EXPECT_NO_THROW(run(64'000'000));
+  EXPECT_NO_THROW(run(0)) << "no limit";
+  try {
+    run(1'000'000);
+    FAIL() << "27,000 texts of 70 bytes do not fit";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::BudgetExceeded) << error.what();
+  }
+}
+
 TEST_F(SparqlRules, ARuleWithoutEndIsAnError) {
   addTree(1);
   try {

@@ -8,6 +8,7 @@
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/map_state.hpp"
 #include "rdf/file/map_replacement.hpp"
+#include "rdf/store/flush_poll.hpp"
 
 namespace cluxel::mapping {
 namespace {
@@ -16,7 +17,7 @@ using Clock = std::chrono::steady_clock;
 
 /// What the inference after an update may use: the update's deadline, and as much memory as the update itself.
 rdf::InferenceCheck checkOf(const sparql::QueryBudget& budget, Clock::time_point start) {
-  return [budget, start](std::size_t bytes) {
+  const auto held = [budget, start](std::size_t bytes) {
     const auto refuse = [](const std::string& what) {
       throw Error(ErrorKind::BudgetExceeded, "update: its budget of " + what +
                                                  " is exceeded by what had to be inferred; nothing was changed. Raise "
@@ -26,6 +27,7 @@ rdf::InferenceCheck checkOf(const sparql::QueryBudget& budget, Clock::time_point
     if (budget.deadline && Clock::now() - start > *budget.deadline) refuse("time");
     if (budget.max_memory_bytes != 0 && bytes > budget.max_memory_bytes) refuse("memory");
   };
+  return {held, budget.max_memory_bytes};
 }
 
 }  // namespace
@@ -53,6 +55,7 @@ sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::str
                                                 "written; a store that no build has made is open");
   const sparql::UpdateReport report = runUpdate(transaction, update, options);
   if (is_map && report.inserted + report.deleted > 0) {
+    const rdf::FlushPoll poll(transaction, [&check] { check(0); });
     inferAfterUpdate(transaction, sink, check);
     check(0);
   }

@@ -76,7 +76,10 @@ void addDerivation(rdf::QuadWriter& writer, const Quad& fact, const NamedText& r
 bool deriveOnce(rdf::WriteTransaction& transaction, const NamedText& rule, const rdf::InferenceCheck& check) {
   const rdf::QuadReader reader{static_cast<const rdf::ReadTransaction&>(transaction)};
   sparql::QueryOptions options = ruleOptions(rule);
-  if (check) options.budget.poll = [&check] { check(0); };
+  if (check) {
+    options.budget.poll = [&check] { check(0); };
+    options.budget.max_memory_bytes = check.max_memory_bytes;
+  }
   sparql::PreparedQuery query(reader, rule.text, options);
   requireConstruct(query, rule);
   std::vector<Quad> fresh;

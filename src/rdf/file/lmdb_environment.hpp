@@ -110,6 +110,7 @@ struct ReadTransaction::Impl {
   StoreSums sums;                           ///< of a write transaction
   std::shared_ptr<StoreSnapshot> snapshot;  ///< created on first use, for this generation
   std::uint64_t snapshot_generation = 0;
+  std::function<void()> flush_poll;  ///< of a FlushPoll
 
   Impl() = default;
   Impl(const Impl&) = delete;

@@ -70,8 +70,15 @@ OntologyView ontologyViewOf(std::span<const RdfSource> sources);
 /// an error the transaction must be dropped. Does not flush.
 void loadOntology(std::span<const RdfSource> sources, QuadWriter& writer);
 
-/// Called every few thousand steps of an inference with the memory that it holds. What it throws ends the inference.
-using InferenceCheck = std::function<void(std::size_t bytes)>;
+/// The limits of an inference by whoever asked for it; none when it is empty.
+struct InferenceCheck {
+  /// Called every few thousand steps with the memory that the inference holds. What it throws ends the inference.
+  std::function<void(std::size_t bytes)> held = {};
+  std::uint64_t max_memory_bytes = 0;  ///< of the queries of rules; 0: unlimited
+
+  explicit operator bool() const { return static_cast<bool>(held); }
+  void operator()(std::size_t bytes) const { held(bytes); }
+};
 
 /// How far a closure may go. A transitive property can make as many facts as there are pairs of things.
 struct ClosureLimits {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "rdf/store/flush_poll.hpp"
+
 namespace cluxel::rdf {
 
 namespace {
@@ -56,6 +58,23 @@ class IndexCursor {
   CursorHandle cursor_;
 };
 
+/// Calls the poll of a FlushPoll once in a while.
+class EntryPoll {
+ public:
+  explicit EntryPoll(const ReadTransaction::Impl& transaction) : poll_(transaction.flush_poll) {}
+  void count(std::size_t entries) {
+    constexpr std::size_t kEntriesBetweenPolls = 4096;
+    entries_ += entries;
+    if (entries_ < kEntriesBetweenPolls) return;
+    entries_ = 0;
+    if (poll_) poll_();
+  }
+
+ private:
+  const std::function<void()>& poll_;
+  std::size_t entries_ = 0;
+};
+
 std::uint64_t entriesOf(const ReadTransaction::Impl& transaction, Table index) {
   MDB_stat stat;
   transaction.check(mdb_stat(transaction.live(), transaction.table(index), &stat), "read an index");
@@ -67,8 +86,11 @@ std::vector<Key128> allKeys(ReadTransaction::Impl& transaction, Table index) {
   const PageDirectory directory(cursor.get());
   std::vector<Key128> keys;
   keys.reserve(entriesOf(transaction, index));
-  for (std::size_t i = 0; i < directory.pageCount(); ++i)
+  EntryPoll poll(transaction);
+  for (std::size_t i = 0; i < directory.pageCount(); ++i) {
     for (const QuadKey& key : directory.page(i)) keys.push_back(toNumber(key));
+    poll.count(directory.page(i).size());
+  }
   return keys;
 }
 
@@ -83,7 +105,9 @@ void writeAnew(ReadTransaction::Impl& transaction, Table index, const IndexChang
   transaction.check(mdb_drop(transaction.live(), transaction.table(index), 0), "write an index");
   IndexCursor cursor(transaction, index);
   if (sum != nullptr) *sum = {};
+  EntryPoll poll(transaction);
   for (const Key128 key : merged) {
+    poll.count(1);
     cursor.append(key);
     if (sum != nullptr) sum->add(key);
   }
@@ -91,7 +115,9 @@ void writeAnew(ReadTransaction::Impl& transaction, Table index, const IndexChang
 
 /// Uses mdb_del only: loops of mdb_cursor_del over duplicates corrupt the file in LMDB 0.9.24.
 void removeSingly(ReadTransaction::Impl& transaction, Table index, const std::vector<Key128>& removed, EntrySum* sum) {
+  EntryPoll poll(transaction);
   for (const Key128 number : removed) {
+    poll.count(1);
     QuadKey bytes = toKey(number);
     MDB_val key = toVal(kIndexKey);
     MDB_val value{sizeof bytes, bytes.bytes.data()};
@@ -106,9 +132,13 @@ void addSingly(ReadTransaction::Impl& transaction, Table index, const std::vecto
   IndexCursor cursor(transaction, index);
   const std::optional<Key128> last = cursor.last();
   const auto beyond = last ? std::upper_bound(added.begin(), added.end(), *last) : added.begin();
-  for (auto key = added.begin(); key != beyond; ++key)
+  EntryPoll poll(transaction);
+  for (auto key = added.begin(); key != beyond; ++key) {
+    poll.count(1);
     if (cursor.insert(*key) && sum != nullptr) sum->add(*key);
+  }
   for (auto key = beyond; key != added.end(); ++key) {
+    poll.count(1);
     cursor.append(*key);
     if (sum != nullptr) sum->add(*key);
   }
@@ -122,6 +152,14 @@ void applyTo(ReadTransaction::Impl& transaction, Table index, const IndexChange&
   if (entries > 0 && changes * kPutCost > entries + 1000) return writeAnew(transaction, index, change, sum);
   removeSingly(transaction, index, change.removed, sum);
   addSingly(transaction, index, change.added, sum);
+}
+
+FlushPoll::FlushPoll(const ReadTransaction& transaction, std::function<void()> poll) : transaction_(transaction) {
+  transaction_.impl().flush_poll = std::move(poll);
+}
+
+FlushPoll::~FlushPoll() {
+  transaction_.impl().flush_poll = {};
 }
 
 }  // namespace cluxel::rdf

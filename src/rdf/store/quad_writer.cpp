@@ -96,8 +96,10 @@ void QuadWriter::Impl::flushTerms() {
   IndexChange hashes;
   TermSumWriter sums(transaction);
   TermId first = kNoTerm;
+  constexpr TermId kTermsBetweenPolls = 4096;
   for (const PendingTerms::Entry& entry : terms.entries()) {
     if (!entry.is_new) continue;
+    if (entry.id % kTermsBetweenPolls == 0 && state().flush_poll) state().flush_poll();
     TermId id = entry.id;
     if (first == kNoTerm) first = id;
     MDB_val key{sizeof id, &id};

@@ -129,9 +129,9 @@ void annotateTriple(Node& node) {
 void annotateValues(Node& node) {
   for (std::size_t column = 0; column < node.slots.size(); ++column) {
     bool all = true, any = false;
-    for (const auto& row : node.rows) {
-      all = all && row[column] != kUnbound;
-      any = any || row[column] != kUnbound;
+    for (std::size_t cell = column; cell < node.rows.cells.size(); cell += node.slots.size()) {
+      all = all && node.rows.cells[cell] != kUnbound;
+      any = any || node.rows.cells[cell] != kUnbound;
     }
     if (any) node.possible.add(node.slots[column]);
     if (any && all) node.certain.add(node.slots[column]);

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -129,6 +130,17 @@ struct SortKey {
   bool descending = false;
 };
 
+/// Rows of ids, one after the other.
+struct IdRows {
+  std::size_t count = 0;
+  std::vector<ValueId> cells;  ///< row by row, one for each column; a table without columns may have rows
+
+  void add(std::span<const ValueId> row) {
+    cells.insert(cells.end(), row.begin(), row.end());
+    ++count;
+  }
+};
+
 struct Node {
   enum class Kind : std::uint8_t {
     Unit,        ///< one empty solution
@@ -158,7 +170,7 @@ struct Node {
   Slot slot = kNoSlot;
   std::optional<Expr> expression;
   std::vector<Slot> slots;
-  std::vector<std::vector<ValueId>> rows;
+  IdRows rows;
   std::string note;  ///< Values: origin of the rows, shown in plans; empty for rows of the query text
   std::vector<AggregateSpec> aggregates;
   bool grouped_by_keys = false;  ///< explicit GROUP BY: empty input gives no group

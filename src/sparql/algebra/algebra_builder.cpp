@@ -264,11 +264,11 @@ NodePtr AlgebraBuilder::graphPattern(const ast::GraphPattern& pattern, Scope& sc
 NodePtr AlgebraBuilder::values(const ast::InlineData& data, Scope& scope) {
   NodePtr node = makeNode(Node::Kind::Values);
   for (const ast::VariableIndex variable : data.variables) node->slots.push_back(slotOf(variable, scope));
-  for (const auto& row : data.rows) {
-    std::vector<ValueId> ids;
-    for (const auto& term : row) ids.push_back(term ? terms_.intern(*term) : kUnbound);
-    if (options_.guard != nullptr) options_.guard->spend(row.size() * sizeof(Term));
-    node->rows.push_back(std::move(ids));
+  node->rows.count = data.row_count;
+  node->rows.cells.reserve(data.cells.size());
+  for (const std::optional<Term>& term : data.cells) {
+    node->rows.cells.push_back(term ? terms_.intern(*term) : kUnbound);
+    if (options_.guard != nullptr) options_.guard->spend(sizeof(Term));
   }
   node->annotate();
   return node;

@@ -14,26 +14,20 @@ const TextPayload* textPayload(const Value& value) {
   return value.payload ? std::get_if<TextPayload>(value.payload.get()) : nullptr;
 }
 
-/// Ids may come from damaged indexes of the store.
-const Term& termAt(const std::deque<Term>& computed, ValueId id) {
-  const std::size_t place = id - kFirstComputed;
-  if (place < computed.size()) return computed[place];
-  throw Error(ErrorKind::StoreUnavailable, "the map is damaged: an index names term " + std::to_string(id) +
-                                               ", which does not exist; run `cluxel doctor` for the location");
-}
-
-/// Of a hash table's node with what it points to.
+/// Of a node of a hash table of the standard library.
 constexpr std::size_t kBytesOfNode = 64;
 
-std::size_t hashOfTerm(const Term& term) {
-  const std::hash<std::string> hash;
+/// Of an entry of IdTable, which is at least a quarter full when it is large.
+constexpr std::size_t kBytesOfKnown = 64;
+
+std::size_t hashOfTerm(const rdf::TermView& term) {
+  const std::hash<std::string_view> hash;
   return hash(term.text) * 31 + hash(term.datatype) * 17 + hash(term.language) + static_cast<std::size_t>(term.kind);
 }
 
-/// Texts that do not fit into their strings.
-std::size_t bytesOfTexts(const Term& term) {
-  const auto outside = [](const std::string& text) { return text.capacity() < 16 ? 0 : text.capacity(); };
-  return outside(term.text) + outside(term.datatype) + outside(term.language);
+/// A text that does not fit into its string.
+std::size_t bytesOutside(const std::string& text) {
+  return text.capacity() < 16 ? 0 : text.capacity();
 }
 
 /// The type of a term whose value is its text: it needs no copy of it.
@@ -51,6 +45,21 @@ Value withId(Value value, ValueId id) {
 }
 
 }  // namespace
+
+/// Ids may come from damaged indexes of the store.
+const QueryTerms::Computed& QueryTerms::computedAt(ValueId id) const {
+  const std::size_t place = id - kFirstComputed;
+  if (place < computed_.size()) return computed_[place];
+  throw Error(ErrorKind::StoreUnavailable, "the map is damaged: an index names term " + std::to_string(id) +
+                                               ", which does not exist; run `cluxel doctor` for the location");
+}
+
+const std::string* QueryTerms::heldOnce(std::string& name) {
+  static const std::string none;
+  if (name.empty()) return &none;
+  if (last_name_ == nullptr || *last_name_ != name) last_name_ = &*names_.insert(std::move(name)).first;
+  return last_name_;
+}
 
 bool QueryTerms::isSame(ValueId id, const Term& term) const {
   const rdf::TermView own = view(id);
@@ -106,17 +115,17 @@ Value QueryTerms::valueOfStored(ValueId id) const {
 }
 
 rdf::TermView QueryTerms::view(ResultId id) const {
-  return id >= kFirstComputed ? rdf::TermView::of(termAt(computed_, id)) : reader_.viewOf(id);
+  return id >= kFirstComputed ? viewOf(computedAt(id)) : reader_.viewOf(id);
 }
 
 Term QueryTerms::termOf(ValueId id) const {
-  return id >= kFirstComputed ? termAt(computed_, id) : reader_.termOf(id);
+  return id >= kFirstComputed ? viewOf(computedAt(id)).toTerm() : reader_.termOf(id);
 }
 
 ValueId QueryTerms::intern(Term term) {
-  const std::size_t hash = hashOfTerm(term);
-  const auto known = known_.find(Sought{hash, term});
-  if (known != known_.end()) return known->id;
+  const std::size_t hash = hashOfTerm(rdf::TermView::of(term));
+  const ValueId known = known_.find(hash, [&](ValueId id) { return isSame(id, term); });
+  if (known != kUnbound) return known;
   ValueId id = kUnbound;
   if (const auto stored = reader_.idOf(term)) {
     id = *stored;
@@ -124,11 +133,12 @@ ValueId QueryTerms::intern(Term term) {
     if (computed_.size() >= kFirstComputed - 1)
       throw Error(ErrorKind::BudgetExceeded, "query: too many computed terms");
     id = kFirstComputed + static_cast<ValueId>(computed_.size());
-    computed_bytes_ += sizeof(Term) + bytesOfTexts(term);
-    computed_.push_back(std::move(term));
+    const std::string *datatype = heldOnce(term.datatype), *language = heldOnce(term.language);
+    computed_.push_back({term.kind, std::move(term.text), datatype, language});
+    computed_bytes_ += sizeof(Computed) + bytesOutside(computed_.back().text);
   }
-  known_.insert({hash, id});
-  computed_bytes_ += kBytesOfNode;
+  if (id != kUnbound) known_.insert(hash, id);
+  computed_bytes_ += kBytesOfKnown;
   return id;
 }
 
@@ -182,8 +192,8 @@ void QueryTerms::rewind(std::size_t mark) {
   if (computed_.size() == mark) return;
   const ValueId first = kFirstComputed + static_cast<ValueId>(mark);
   while (computed_.size() > mark) {
-    const auto last = known_.find(Sought{hashOfTerm(computed_.back()), computed_.back()});
-    known_.erase(last);
+    const ValueId last = kFirstComputed + static_cast<ValueId>(computed_.size() - 1);
+    known_.erase(hashOfTerm(viewOf(computed_.back())), last);
     computed_.pop_back();
   }
   computed_bytes_ = 0;

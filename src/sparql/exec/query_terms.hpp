@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "sparql/exec/id_table.hpp"
 #include "sparql/results/result_table.hpp"
 #include "sparql/values/value.hpp"
 
@@ -52,34 +53,24 @@ class QueryTerms : public TermLookup {
   void rewind(std::size_t mark);
 
  private:
-  /// A term that has an id; its text is found by the id.
-  struct Known {
-    std::size_t hash;
-    ValueId id;
+  /// A computed term. Datatypes and languages are held once.
+  struct Computed {
+    TermKind kind;
+    std::string text;
+    const std::string *datatype, *language;
   };
-  struct Sought {
-    std::size_t hash;
-    const Term& term;
-  };
-  struct KnownHash {
-    using is_transparent = void;
-    std::size_t operator()(const Known& known) const { return known.hash; }
-    std::size_t operator()(const Sought& sought) const { return sought.hash; }
-  };
-  struct KnownEqual {
-    using is_transparent = void;
-    bool operator()(const Known& a, const Known& b) const { return a.id == b.id; }
-    bool operator()(const Known& a, const Sought& b) const { return a.hash == b.hash && terms->isSame(a.id, b.term); }
-    bool operator()(const Sought& a, const Known& b) const { return (*this)(b, a); }
-    const QueryTerms* terms;
-  };
+  static rdf::TermView viewOf(const Computed& term) { return {term.kind, term.text, *term.datatype, *term.language}; }
+  const Computed& computedAt(ValueId id) const;
+  const std::string* heldOnce(std::string& name);
   bool isSame(ValueId id, const Term& term) const;
   Value valueOfStored(ValueId id) const;
 
   const rdf::QuadReader& reader_;
-  std::deque<Term> computed_;
+  std::deque<Computed> computed_;
+  std::unordered_set<std::string> names_;  ///< the datatypes and languages of computed_
+  const std::string* last_name_ = nullptr;
   mutable std::unordered_map<ValueId, Value> decoded_;  ///< values that are decoded from text
-  std::unordered_set<Known, KnownHash, KnownEqual> known_{0, KnownHash{}, KnownEqual{this}};
+  IdTable known_;
   mutable std::size_t computed_bytes_ = 0;  ///< of computed_, known_ and decoded_
 };
 

@@ -59,14 +59,14 @@ NodePtr AlgebraBuilder::answered(const ast::ServicePattern& service, const rdf::
   const std::uint32_t number = service_count_++;
   Batch batch(runtime.slot_count);
   for (plan->open(runtime, true); plan->next(batch);) {
-    const std::size_t kept = batch.rows * (sizeof(node->rows[0]) + theirs.size() * sizeof(ValueId));
+    const std::size_t kept = batch.rows * theirs.size() * sizeof(ValueId);
     runtime.guard.charge(kept);
     held += kept;
     for (std::size_t row = 0; row < batch.rows; ++row) {
-      std::vector<ValueId>& ids = node->rows.emplace_back();
+      ++node->rows.count;
       for (const Slot slot : theirs) {
         const ValueId id = batch.at(slot, row);
-        ids.push_back(id == kUnbound ? kUnbound : terms_.intern(foreign(terms.termOf(id), number)));
+        node->rows.cells.push_back(id == kUnbound ? kUnbound : terms_.intern(foreign(terms.termOf(id), number)));
       }
     }
   }

@@ -17,17 +17,14 @@ const std::string& wktDatatype() {
   return iri;
 }
 
-std::string shownSystem(const Geometry& geometry) {
-  return systemOf(geometry).empty() ? "none (the map frame)" : systemOf(geometry);
+std::string shownSystem(const std::string& name) {
+  return name.empty() ? "none (the map frame)" : name;
 }
 
 /// False, with a note, for geometries of different systems: they are not converted.
 bool haveOneSystem(const Geometry& a, const Geometry& b, FunctionContext& context) {
   if (systemOf(a) == systemOf(b)) return true;
-  std::string first = shownSystem(a), second = shownSystem(b);
-  if (second < first) std::swap(first, second);
-  context.note("geometries of different coordinate systems are not related to each other: " + first + " and " + second +
-               "; write both in one system");
+  noteDifferentSystems(systemOf(a), systemOf(b), context);
   return false;
 }
 
@@ -59,6 +56,13 @@ Value relate(Arguments arguments, FunctionContext& context, Test test) {
 }
 
 }  // namespace
+
+void noteDifferentSystems(const std::string& a, const std::string& b, FunctionContext& context) {
+  std::string first = shownSystem(a), second = shownSystem(b);
+  if (second < first) std::swap(first, second);
+  context.note("geometries of different coordinate systems are not related to each other: " + first + " and " + second +
+               "; write both in one system");
+}
 
 std::shared_ptr<const Geometry> geometryOf(const Value& value, FunctionContext& context) {
   if (value.type != Type::Other) return nullptr;

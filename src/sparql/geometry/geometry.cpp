@@ -14,6 +14,7 @@
 #include "rdf/wkt_reader.hpp"
 #include "sparql/geometry/geometry_parts.hpp"
 #include "sparql/geometry/proj_reference_system.hpp"
+#include "sparql/geometry/search_frame.hpp"
 #include "sparql/values/value.hpp"
 
 namespace cluxel::sparql {
@@ -112,12 +113,8 @@ std::shared_ptr<const Geometry> parseWkt(std::string_view text) {
   return geometry;
 }
 
-namespace {
-
-constexpr double kFar = std::numeric_limits<double>::infinity();
-
-/// Minima above maxima for an empty geometry.
-Box2 planeBox(const Geometry& geometry) {
+Box2 planeBoxOf(const Geometry& geometry) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
   Box2 box{kFar, kFar, -kFar, -kFar};
   const auto grow = [&box](const Point& point) {
     box = {std::min(box.min_x, point.x()), std::min(box.min_y, point.y()), std::max(box.max_x, point.x()),
@@ -129,10 +126,8 @@ Box2 planeBox(const Geometry& geometry) {
   return box;
 }
 
-}  // namespace
-
 std::optional<std::string> envelopeWkt(const Geometry& geometry) {
-  const Box2 box = planeBox(geometry);
+  const Box2 box = planeBoxOf(geometry);
   if (box.min_x > box.max_x) return std::nullopt;
   const auto corner = [](double x, double y) {
     std::array<char, 64> buffer{};
@@ -144,10 +139,6 @@ std::optional<std::string> envelopeWkt(const Geometry& geometry) {
   return (geometry.crs.empty() ? "" : geometry.crs + " ") + "POLYGON((" + corner(box.min_x, box.min_y) + ", " +
          corner(box.max_x, box.min_y) + ", " + corner(box.max_x, box.max_y) + ", " + corner(box.min_x, box.max_y) +
          ", " + corner(box.min_x, box.min_y) + "))";
-}
-
-Box2 boundsOf(const Geometry& geometry) {
-  return geometry.crs.empty() ? planeBox(geometry) : Box2{-kFar, -kFar, kFar, kFar};
 }
 
 const std::string& systemOf(const Geometry& geometry) {
@@ -198,6 +189,11 @@ bool touches(const Geometry& a, const Geometry& b) {
   return any && !overlap;
 }
 
+struct GeometryCache::NumberedFrame {
+  std::string name;
+  SearchFrame frame;
+};
+
 GeometryCache::GeometryCache() = default;
 GeometryCache::~GeometryCache() = default;
 
@@ -222,6 +218,22 @@ const ReferenceSystem& GeometryCache::system(const std::string& name) {
   auto& known = systems_[name];
   if (!known) known = std::make_unique<const ReferenceSystem>(referenceSystem(name));
   return *known;
+}
+
+std::optional<SearchBox> GeometryCache::searchBox(const Geometry& geometry) {
+  if (geometry.crs.empty()) return SearchBox{planeBoxOf(geometry), SearchBox::kMapFrame};
+  auto known = std::find_if(frames_.begin(), frames_.end(),
+                            [&](const NumberedFrame& numbered) { return numbered.name == geometry.crs; });
+  if (known == frames_.end())
+    known = frames_.insert(frames_.end(), NumberedFrame{geometry.crs, SearchFrame(system(geometry.crs))});
+  const auto box = known->frame.boxOf(geometry);
+  if (!box) return std::nullopt;
+  return SearchBox{*box, static_cast<std::uint32_t>(known - frames_.begin() + 1)};
+}
+
+const std::string& GeometryCache::systemName(std::uint32_t number) const {
+  static const std::string map_frame;
+  return number == SearchBox::kMapFrame ? map_frame : frames_.at(number - 1).name;
 }
 
 }  // namespace cluxel::sparql

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <vector>
 
 namespace cluxel::sparql {
 
@@ -16,6 +17,7 @@ struct Geometry;
 struct FunctionContext;
 struct Value;
 struct ReferenceSystem;
+class SearchFrame;
 
 /// Coordinates as written: metres of the map frame, unless the geometry names a system.
 struct Box2 {
@@ -27,13 +29,14 @@ struct Box2 {
 std::shared_ptr<const Geometry> parseWkt(std::string_view text);
 /// The bounding box as a WKT polygon in the same CRS; absent for an empty geometry.
 std::optional<std::string> envelopeWkt(const Geometry& geometry);
-/// For searches in the map frame. Infinite for an empty geometry and for one in a named system, where boxes of numbers
-/// do not tell distances in metres.
-Box2 boundsOf(const Geometry& geometry);
+/// Of the coordinates as written; the minima of an empty geometry are above its maxima.
+Box2 planeBoxOf(const Geometry& geometry);
 /// True when the literal begins with the IRI of a reference system.
 bool namesReferenceSystem(const Geometry& geometry);
 /// Null for a value that is not a well-formed geo:wktLiteral.
 std::shared_ptr<const Geometry> geometryOf(const Value& value, FunctionContext& context);
+/// Notes that geometries of two systems, which are named as in systemOf(), have no distance and no relation.
+void noteDifferentSystems(const std::string& a, const std::string& b, FunctionContext& context);
 /// The system that the literal names, in angle brackets; empty for the map frame.
 const std::string& systemOf(const Geometry& geometry);
 /// The literal has Z or M coordinates, which measuring leaves out.
@@ -47,6 +50,13 @@ bool intersects(const Geometry& a, const Geometry& b);
 bool within(const Geometry& a, const Geometry& b);
 bool touches(const Geometry& a, const Geometry& b);
 
+/// Where a search looks for a geometry: its box in metres, in the plane of its coordinate system.
+struct SearchBox {
+  static constexpr std::uint32_t kMapFrame = 0;
+  Box2 box;
+  std::uint32_t system = kMapFrame;  ///< a number that equal systems share within a query
+};
+
 /// A cache of parsed geometries of a query; null for malformed ones.
 class GeometryCache {
  public:
@@ -58,11 +68,17 @@ class GeometryCache {
   /// By the text of a computed literal, whose id may change its meaning between runs.
   std::shared_ptr<const Geometry> find(std::string_view text);
   const ReferenceSystem& system(const std::string& name);
+  /// Absent where no box tells the distances of a geometry.
+  std::optional<SearchBox> searchBox(const Geometry& geometry);
+  /// The name of a system by its number; empty for the map frame.
+  const std::string& systemName(std::uint32_t number) const;
 
  private:
   std::map<std::string, std::shared_ptr<const Geometry>, std::less<>> parsed_;
   std::unordered_map<std::uint32_t, std::shared_ptr<const Geometry>> stored_;
   std::map<std::string, std::unique_ptr<const ReferenceSystem>> systems_;
+  struct NumberedFrame;
+  std::vector<NumberedFrame> frames_;  ///< number n is at n - 1
 };
 
 }  // namespace cluxel::sparql

@@ -108,7 +108,7 @@ double Cardinality::rows(const Node& node) {
     case Node::Kind::Filter:
       return rows(*node.children[0]) * std::pow(kFilterKeeps, static_cast<double>(node.conditions.size()));
     case Node::Kind::Values:
-      return static_cast<double>(node.rows.size());
+      return static_cast<double>(node.rows.count);
     case Node::Kind::Group:
       return node.grouped_by_keys ? std::max(1.0, std::sqrt(rows(*node.children[0])) * 4) : 1;
     case Node::Kind::Slice: {

@@ -148,13 +148,13 @@ void Planner::noteEnough(const Node& group, const std::vector<Expr>& having) {
     if (!bound || bound->count < 0 || bound->count >= kMost) continue;
     const auto counts = [&](const AggregateSpec& spec) {
       const bool is_simple = !spec.argument || spec.argument->kind == Expr::Kind::Slot;
-      return spec.result == bound->slot && spec.function == ast::AggregateFunction::Count && !spec.distinct &&
-             is_simple;
+      return spec.result == bound->slot && spec.function == ast::AggregateFunction::Count && is_simple &&
+             (spec.argument || !spec.distinct);
     };
     const auto spec = std::find_if(group.aggregates.begin(), group.aggregates.end(), counts);
     if (spec == group.aggregates.end()) continue;
     const Slot counted = spec->argument ? spec->argument->slot : kNoSlot;
-    enough_[&group] = {static_cast<std::uint64_t>(bound->count) + 1, group.slots, counted, {}};
+    enough_[&group] = {static_cast<std::uint64_t>(bound->count) + 1, group.slots, counted, spec->distinct, {}};
     return;
   }
 }

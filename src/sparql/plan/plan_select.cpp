@@ -44,7 +44,7 @@ Planner::State Planner::values(const Node& node) {
   state.certain = node.certain;
   state.possible = node.possible;
   state.is_unit = false;
-  setRows(state, static_cast<double>(node.rows.size()));
+  setRows(state, static_cast<double>(node.rows.count));
   if (parameters_.empty()) return state;
   return hashJoin(unit(), std::move(state));
 }

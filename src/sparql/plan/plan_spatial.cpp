@@ -49,7 +49,7 @@ std::optional<Search> searchBy(const RangeTest& test, const QueryTerms& terms) {
   if (literal.datatype != std::string(rdf::vocabulary::kGeo) + "wktLiteral") return std::nullopt;
   const auto geometry = parseWkt(literal.text);
   if (!geometry || namesReferenceSystem(*geometry)) return std::nullopt;
-  const Box2 box = boundsOf(*geometry);
+  const Box2 box = planeBoxOf(*geometry);
   if (!std::isfinite(box.min_x) || !std::isfinite(by_m)) return std::nullopt;
   const Box2 wide = widened(box, by_m);
   return Search{test.slot, {rdf::FlatBox::around(wide.min_x, wide.min_y, wide.max_x, wide.max_y)}};
@@ -116,7 +116,7 @@ void Planner::searchBySpace(const Expr& condition, const Node& child, Parts& par
   if (static_cast<double>(found.size()) > kWorthUsing * static_cast<double>(index->size())) return;
   NodePtr values = makeNode(Node::Kind::Values, condition.at);
   values->slots = {search->slot};
-  for (const rdf::TermId id : found) values->rows.push_back({id});
+  values->rows = {found.size(), found};
   values->note =
       "R-tree, " + std::to_string(found.size()) + " of " + std::to_string(index->size()) + " boxes meet the filter's:";
   values->annotate();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 #include <utility>
 
 namespace cluxel::sparql {
@@ -116,14 +117,14 @@ bool Planner::bindsByFilter(const Expr& condition, const Node& child, Parts& par
   if (slot.kind != Expr::Kind::Slot || !child.certain.has(slot.slot)) return false;
   NodePtr values = makeNode(Node::Kind::Values, condition.at);
   values->slots = {slot.slot};
+  std::unordered_set<ValueId> known;
   for (std::size_t i = 0; i < condition.arguments.size(); ++i) {
     if (i == variable) continue;
     const Expr& constant = condition.arguments[i];
     if (constant.kind != Expr::Kind::Constant || constant.constant.type != Value::Type::Iri) return false;
-    const std::vector<ValueId> row = {constant.constant.id};
-    if (std::find(values->rows.begin(), values->rows.end(), row) == values->rows.end()) values->rows.push_back(row);
+    if (known.insert(constant.constant.id).second) values->rows.add({&constant.constant.id, 1});
   }
-  if (values->rows.empty()) return false;
+  if (values->rows.count == 0) return false;
   values->annotate();
   parts.joined.push_back(values.get());
   parts.made.push_back(std::move(values));

@@ -63,10 +63,11 @@ struct Bind {
   VariableIndex variable = 0;
 };
 
-/// VALUES: each row has one entry per variable; an absent entry is UNDEF.
+/// VALUES, with all rows in one list, because there may be a million.
 struct InlineData {
   std::vector<VariableIndex> variables;
-  std::vector<std::vector<std::optional<Term>>> rows;
+  std::size_t row_count = 0;
+  std::vector<std::optional<Term>> cells;  ///< row by row, one for each variable; an absent one is UNDEF
 };
 
 struct Select;

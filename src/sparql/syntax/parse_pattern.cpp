@@ -156,9 +156,10 @@ ast::InlineData SparqlParser::inlineData() {
   expect(Kind::LeftBrace, "'{' and the values");
   while (!is(Kind::RightBrace)) {
     if (several)
-      data.rows.push_back(inlineRow(data.variables.size()));
+      inlineRow(data);
     else
-      data.rows.push_back({inlineValue()});
+      data.cells.push_back(inlineValue());
+    ++data.row_count;
   }
   advance();
   return data;
@@ -180,19 +181,18 @@ std::vector<ast::VariableIndex> SparqlParser::inlineVariables() {
   return variables;
 }
 
-std::vector<std::optional<Term>> SparqlParser::inlineRow(std::size_t width) {
-  std::vector<std::optional<Term>> row;
-  row.reserve(width);
+void SparqlParser::inlineRow(ast::InlineData& data) {
+  const std::size_t width = data.variables.size(), first = data.cells.size();
   const ast::SourceOffset at = here();
   if (!take(Kind::Nil)) {
     expect(Kind::LeftParen, "'(' and a row of values, or '}'");
-    while (!is(Kind::RightParen)) row.push_back(inlineValue());
+    while (!is(Kind::RightParen)) data.cells.push_back(inlineValue());
     advance();
   }
-  if (row.size() != width)
-    fail(at, "this row has " + std::to_string(row.size()) + " values for " + std::to_string(width) + " variables",
+  const std::size_t count = data.cells.size() - first;
+  if (count != width)
+    fail(at, "this row has " + std::to_string(count) + " values for " + std::to_string(width) + " variables",
          "write UNDEF where a row has no value");
-  return row;
 }
 
 std::optional<Term> SparqlParser::inlineValue() {

@@ -156,7 +156,7 @@ class SparqlParser {
   ast::PatternElement bind(VariableSet& visible);
   ast::InlineData inlineData();
   std::vector<ast::VariableIndex> inlineVariables();
-  std::vector<std::optional<Term>> inlineRow(std::size_t width);
+  void inlineRow(ast::InlineData& data);
   std::optional<Term> inlineValue();
   void addVisible(const ast::InlineData& data, VariableSet& visible) const;
   void addVisible(const ast::PatternTerm& term, VariableSet& visible) const;

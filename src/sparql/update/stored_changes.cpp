@@ -61,6 +61,7 @@ ChangeCounts applyChanges(const rdf::QuadReader& reader, rdf::QuadWriter& writer
   guard.charge(changes.inserted.size() * kBytesOfPending);
   std::vector<bool> stays(removed.size(), false);
   for (const ChangedQuad& change : changes.inserted) {
+    guard.work(1);
     const auto stored = storedIds(reader, change.quad);
     if (!stored) continue;
     const auto at = std::lower_bound(removed.begin(), removed.end(), *stored);
@@ -90,7 +91,7 @@ ChangeCounts applyChanges(const rdf::QuadReader& reader, rdf::QuadWriter& writer
 }
 
 std::optional<LockedTriples> lockedTriples(const rdf::QuadReader& reader, std::span<const ChangedQuad> removals,
-                                           const std::vector<std::string>& writable_graphs) {
+                                           const std::vector<std::string>& writable_graphs, Guard& guard) {
   std::vector<rdf::TermId> open;
   if (const auto history = reader.idOf(Term::iri(rdf::vocabulary::kGraphHistory))) open.push_back(*history);
   for (const std::string& graph : writable_graphs)
@@ -100,6 +101,7 @@ std::optional<LockedTriples> lockedTriples(const rdf::QuadReader& reader, std::s
       open.push_back(*id);
   LockedTriples locked;
   for (const ChangedQuad& removal : removals) {
+    guard.work(1);
     if (removal.names_graph) continue;
     const auto graph = lockedGraph(reader, removal.quad, open);
     if (!graph) continue;

@@ -28,6 +28,6 @@ struct LockedTriples {
   Quad first;                     ///< with the graph that holds it
 };
 std::optional<LockedTriples> lockedTriples(const rdf::QuadReader& reader, std::span<const ChangedQuad> removals,
-                                           const std::vector<std::string>& writable_graphs);
+                                           const std::vector<std::string>& writable_graphs, Guard& guard);
 
 }  // namespace cluxel::sparql

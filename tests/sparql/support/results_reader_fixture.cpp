@@ -120,9 +120,9 @@ Term tsvTerm(const std::string& cell, const std::string& file) {
   SparqlParseOptions options;
   options.file = file;
   const ast::Query query = parseQuery("ASK {} VALUES ?term {\n" + cell + "\n}", options);
-  const auto& rows = query.select.values->rows;
-  if (rows.size() != 1 || !rows[0][0]) throw InputError({.file = file}, "the cell '" + cell + "' is not one term");
-  return *rows[0][0];
+  const auto& cells = query.select.values->cells;
+  if (cells.size() != 1 || !cells[0]) throw InputError({.file = file}, "the cell '" + cell + "' is not one term");
+  return *cells[0];
 }
 
 QueryResult readCsvResults(std::string_view text, const std::string& file) {

@@ -205,18 +205,22 @@ SpatialQuery SpatialQueryMaker::nearestByCount() {
   inner.push_back(is_optional ? "FILTER(geof:distance(?ga, ?gc) < geof:distance(?ga, ?gb))"
                               : "FILTER(geof:distance(?gb, ?ga) >= geof:distance(?ga, ?gc))");
   if (!is_optional) parts.insert(parts.end(), inner.begin(), inner.end());
-  const std::string count = upTo(3) > 0 || is_optional ? "COUNT(?c)" : "COUNT(*)";
+  const bool is_distinct = upTo(3) == 0;
+  const std::string count = is_distinct ? "COUNT(DISTINCT ?c)" : upTo(3) > 0 || is_optional ? "COUNT(?c)" : "COUNT(*)";
   const std::string number = std::to_string(most), next = std::to_string(most + 1);
   const std::string strict[] = {count + " < " + number, number + " > " + count},
                     loose[] = {count + " <= " + number, count + " < " + next};
   const std::string having = is_optional ? strict[upTo(2)] : loose[upTo(2)];
   const std::string text = shuffled(parts) + (is_optional ? "OPTIONAL { " + shuffled(inner) + "} " : "");
   const auto nearer = [&](const Patch& from, double distance) {
-    int pairs = 0;
-    for (const Thing& c : town_.things)
+    int things = 0, pairs = 0;
+    for (const Thing& c : town_.things) {
+      const int before = pairs;
       for (const Patch& patch : c.patches)
         pairs += c.kind == k && (is_optional ? from.distanceTo(patch) < distance : from.distanceTo(patch) <= distance);
-    return pairs;
+      things += pairs > before ? 1 : 0;
+    }
+    return is_distinct ? things : pairs;
   };
   std::vector<std::string> rows = pairs(i, k, [&](const Thing&, const Patch& p, const Thing&, const Patch& q) {
     const int pairs = nearer(p, p.distanceTo(q));

@@ -51,12 +51,12 @@ namespace {
 
 class ValuesOperator : public Operator {
  public:
-  ValuesOperator(std::vector<Slot> slots, std::vector<std::vector<ValueId>> rows, std::string note)
+  ValuesOperator(std::vector<Slot> slots, IdRows rows, std::string note)
       : columns_(std::move(slots)), rows_(std::move(rows)), note_(std::move(note)) {
     slots_ = mergedSlots(columns_, {});
   }
   std::string label(const PlanNames& names) const override {
-    if (note_.empty()) return "VALUES, " + std::to_string(rows_.size()) + " rows";
+    if (note_.empty()) return "VALUES, " + std::to_string(rows_.count) + " rows";
     std::string text = note_;
     for (const Slot slot : columns_) text += " ?" + names.query.slot_names[slot];
     return text;
@@ -65,10 +65,11 @@ class ValuesOperator : public Operator {
  protected:
   void reopen(bool) override { next_ = 0; }
   bool produce(Batch& out) override {
-    out.rows = std::min(rows_.size() - next_, std::size_t{kLastTarget});
+    out.rows = std::min(rows_.count - next_, std::size_t{kLastTarget});
     for (std::size_t column = 0; column < columns_.size(); ++column) {
       auto& target = out.columns[columns_[column]];
-      for (std::size_t row = 0; row < out.rows; ++row) target.push_back(rows_[next_ + row][column]);
+      for (std::size_t row = 0; row < out.rows; ++row)
+        target.push_back(rows_.cells[(next_ + row) * columns_.size() + column]);
     }
     next_ += out.rows;
     return out.rows > 0;
@@ -76,7 +77,7 @@ class ValuesOperator : public Operator {
 
  private:
   std::vector<Slot> columns_;
-  std::vector<std::vector<ValueId>> rows_;
+  IdRows rows_;
   std::string note_;
   std::size_t next_ = 0;
 };
@@ -177,7 +178,7 @@ class GraphNamesOperator : public UnaryOperator {
 
 }  // namespace
 
-OperatorPtr makeValues(std::vector<Slot> slots, std::vector<std::vector<ValueId>> rows, std::string note) {
+OperatorPtr makeValues(std::vector<Slot> slots, IdRows rows, std::string note) {
   return std::make_unique<ValuesOperator>(std::move(slots), std::move(rows), std::move(note));
 }
 OperatorPtr makeProject(OperatorPtr child, const std::vector<Slot>& slots) {

@@ -59,7 +59,7 @@ class NearLookupOperator : public UnaryOperator {
     runtime().guard.work(1);
     Evaluator evaluator(runtime());
     const KnownNumber bound = evaluated(test_.bound, in_, current_, evaluator);
-    const KnownBox place = boxOf(evaluator.value(*test_.place, in_, current_), runtime().functions);
+    const KnownBox place = mapBoxOf(evaluator.value(*test_.place, in_, current_), runtime().functions);
     if (bound.known == Known::Error || place.known == Known::Error) return;
     Box2 box = widened(place.box, bound.number + bound.error);
     constexpr double kFar = std::numeric_limits<double>::infinity();

@@ -87,7 +87,7 @@ class NearestSourceOperator : public Operator {
     padColumns(rows_, places_->slots());
     for (const ValueId id : strange) first_.emplace_back(place_row, id);
     Evaluator evaluator(runtime());
-    const KnownBox place = boxOf(evaluator.value(scan_.place, in, row), runtime().functions);
+    const KnownBox place = mapBoxOf(evaluator.value(scan_.place, in, row), runtime().functions);
     if (place.known != Known::Value) {
       constexpr float kFar = std::numeric_limits<float>::infinity();
       for (const rdf::TermId id : index_->meeting({-kFar, -kFar, kFar, kFar})) first_.emplace_back(place_row, id);

@@ -30,6 +30,7 @@ struct EnoughRows {
   std::uint64_t count = 0;
   std::vector<Slot> keys;        ///< of the group
   Slot counted = kNoSlot;        ///< kNoSlot: the rows
+  bool distinct = false;         ///< each value counts once
   std::vector<Expr> conditions;  ///< of the filters between the join and the group
 };
 
@@ -197,7 +198,7 @@ struct ExistsPlan {
 OperatorPtr makeFilter(OperatorPtr child, std::vector<Expr> conditions, std::vector<ExistsPlan> exists);
 OperatorPtr makeExtend(OperatorPtr child, std::vector<std::pair<Slot, Expr>> columns, std::vector<ExistsPlan> exists);
 /// `note` is the origin of the rows in plans, unless they come from a VALUES of the query.
-OperatorPtr makeValues(std::vector<Slot> slots, std::vector<std::vector<ValueId>> rows, std::string note = {});
+OperatorPtr makeValues(std::vector<Slot> slots, IdRows rows, std::string note = {});
 OperatorPtr makeGraphNames(OperatorPtr child, const GraphPlace& graph);
 /// Runs `body` once per named graph, with the graph as the parameter `slot`.
 OperatorPtr makeGraphLoop(OperatorPtr body, Slot slot);

@@ -2,6 +2,7 @@
 // The range join: pairs each row with the rows of the build side that pass tests on numbers and distances.
 #include <algorithm>
 #include <limits>
+#include <unordered_set>
 
 #include "sparql/exec/spatial/nearest_others.hpp"
 #include "sparql/exec/spatial/range_build.hpp"
@@ -95,15 +96,11 @@ class RangeJoinOperator : public UnaryOperator {
   void search() {
     found_.clear();
     next_ = 0;
-    BoxTree::Box query_box;
-    has_place_ = false;
-    if (!limit(query_box)) return;
-    if (has_place_) return searchNearest();
-    build_.tree().search(query_box, [this](std::uint32_t row) { found_.push_back(row); });
-    std::sort(found_.begin(), found_.end());
-    const auto middle = static_cast<std::ptrdiff_t>(found_.size());
-    found_.insert(found_.end(), build_.loose().begin(), build_.loose().end());
-    std::inplace_merge(found_.begin(), found_.begin() + middle, found_.end());
+    RangeBuild::Search search;
+    place_.reset();
+    if (!limit(search)) return;
+    if (place_) return searchNearest();
+    build_.find(search, found_, runtime().functions);
     runtime().guard.work(1 + found_.size() / 8);
   }
 
@@ -111,22 +108,26 @@ class RangeJoinOperator : public UnaryOperator {
   void searchNearest() {
     Evaluator evaluator(runtime());
     std::uint64_t counted = 0;
+    counted_.clear();
     const auto isEnough = [&](std::uint32_t row) {
       runtime().guard.work(1);
       if (!isNeeded(row, evaluator)) return false;
       found_.push_back(row);
       // COUNT of a variable passes over rows that do not bind it.
-      const bool counts = enough_->counted == kNoSlot || pair_.at(enough_->counted, 0) != kUnbound;
-      counted += counts ? 1 : 0;
+      const ValueId value = enough_->counted == kNoSlot ? kUnbound : pair_.at(enough_->counted, 0);
+      const bool counts = enough_->counted == kNoSlot || value != kUnbound;
+      const bool is_new = !enough_->distinct || counted_.insert(value).second;
+      counted += counts && is_new ? 1 : 0;
       return counted >= enough_->count;
     };
     if (!std::any_of(build_.loose().begin(), build_.loose().end(), isEnough)) {
       BoxTree::Box from;
-      from[0] = {place_.min_x, place_.max_x};
-      from[1] = {place_.min_y, place_.max_y};
-      const double farthest = farthestOf(place_, reach_);
-      build_.tree().nearest(
-          from, [&](std::uint32_t row, double min_distance) { return min_distance <= farthest && !isEnough(row); });
+      from[0] = {place_->box.min_x, place_->box.max_x};
+      from[1] = {place_->box.min_y, place_->box.max_y};
+      const double farthest = farthestOf(place_->box, reach_);
+      build_.treeOf(place_->system, runtime().functions).nearest(from, [&](std::uint32_t row, double min_distance) {
+        return min_distance <= farthest && !isEnough(row);
+      });
     }
     std::sort(found_.begin(), found_.end());
   }
@@ -144,7 +145,7 @@ class RangeJoinOperator : public UnaryOperator {
   }
 
   /// False when no row passes the tests.
-  bool limit(BoxTree::Box& query_box) {
+  bool limit(RangeBuild::Search& search) {
     Evaluator evaluator(runtime());
     for (const RangeTest& test : tests_) {
       const KnownNumber bound = evaluated(test.bound, in_, current_, evaluator);
@@ -152,24 +153,23 @@ class RangeJoinOperator : public UnaryOperator {
       KnownBox place{Known::Value, {}};
       if (test.place) place = boxOf(evaluator.value(*test.place, in_, current_), runtime().functions);
       if (place.known == Known::Error) return false;
-      if (bound.known == Known::Value && place.known == Known::Value) build_.narrow(test, bound, place.box, query_box);
+      if (bound.known == Known::Value && place.known == Known::Value) build_.narrow(test, bound, place, search);
       if (!enough_ || &test != &tests_[near_] || place.known != Known::Value) continue;
-      has_place_ = true;
-      place_ = place.box;
+      place_ = place;
       constexpr double kFar = std::numeric_limits<double>::infinity();
       reach_ = bound.known == Known::Value ? bound.number + bound.error : kFar;
     }
-    if (nearest_) limitToNearest(query_box, evaluator);
+    if (nearest_) limitToNearest(search, evaluator);
     return true;
   }
 
-  void limitToNearest(BoxTree::Box& query_box, Evaluator& evaluator) {
+  void limitToNearest(RangeBuild::Search& search, Evaluator& evaluator) {
     const NearestTest& test = nearest_->test();
     const Value place = evaluator.value(test.place, in_, current_);
     const KnownBox box = boxOf(place, runtime().functions);
     if (box.known != Known::Value) return;
     const RangeTest near{RangeTest::Kind::Near, test.slot, {}, test.place};
-    build_.narrow(near, {Known::Value, nearest_->reach(place, box.box, runtime())}, box.box, query_box);
+    build_.narrow(near, {Known::Value, nearest_->reach(place, box, runtime())}, box, search);
   }
 
   void take(Batch& out) {
@@ -204,11 +204,11 @@ class RangeJoinOperator : public UnaryOperator {
   std::size_t row_ = 0, current_ = 0, next_ = 0;
   std::vector<std::uint32_t> found_, from_, matched_;
   std::optional<EnoughRows> enough_;
-  std::size_t near_ = 0;    ///< the test by which rows come nearest first
-  bool has_place_ = false;  ///< the current row has a place for it
-  Box2 place_;              ///< then its box,
-  double reach_ = 0;        ///< and the greatest distance
-  Batch pair_;              ///< one row, for the conditions
+  std::size_t near_ = 0;           ///< the test by which rows come nearest first
+  std::optional<KnownBox> place_;  ///< of the current row for it, if it has one,
+  double reach_ = 0;               ///< and the greatest distance
+  Batch pair_;                     ///< one row, for the conditions
+  std::unordered_set<ValueId> counted_;
 };
 
 }  // namespace

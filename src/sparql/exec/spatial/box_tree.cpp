@@ -111,4 +111,15 @@ BoxTree::Open BoxTree::pop(std::vector<Open>& open) {
   return next;
 }
 
+BoxTree& treeOf(std::uint32_t system, SystemTrees& trees, std::size_t dimensions) {
+  while (trees.size() <= system) trees.emplace_back(dimensions);
+  return trees[system];
+}
+
+std::size_t bytesOf(const SystemTrees& trees) {
+  std::size_t bytes = 0;
+  for (const BoxTree& tree : trees) bytes += tree.bytes();
+  return bytes;
+}
+
 }  // namespace cluxel::sparql

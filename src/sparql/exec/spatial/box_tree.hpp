@@ -113,4 +113,9 @@ class BoxTree {
   std::vector<std::uint32_t> rows_;
 };
 
+/// Trees by the numbers of coordinate systems.
+using SystemTrees = std::vector<BoxTree>;
+BoxTree& treeOf(std::uint32_t system, SystemTrees& trees, std::size_t dimensions);
+std::size_t bytesOf(const SystemTrees& trees);
+
 }  // namespace cluxel::sparql

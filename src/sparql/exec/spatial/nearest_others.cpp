@@ -13,7 +13,7 @@ void NearestOthers::reopen(Runtime& runtime, bool fresh) {
   runtime.guard.release(charged_);
   charged_ = 0;
   others_.clear();
-  tree_.clear();
+  trees_.clear();
   is_made_ = false;
   test_.others->open(runtime, fresh);
 }
@@ -23,7 +23,7 @@ void NearestOthers::make(Runtime& runtime) {
   is_made_ = true;
   Batch batch(runtime.slot_count);
   while (test_.others->next(batch)) {
-    runtime.guard.requireRoomFor(2 * (tree_.bytes() + others_.capacity() * sizeof(Other)));
+    runtime.guard.requireRoomFor(2 * (bytesOf(trees_) + others_.capacity() * sizeof(Other)));
     for (std::size_t row = 0; row < batch.rows; ++row) {
       const ValueId geometry = batch.at(test_.other, row);
       const KnownBox known = boxOf(runtime.terms.valueOf(geometry), runtime.functions);
@@ -31,17 +31,19 @@ void NearestOthers::make(Runtime& runtime) {
       BoxTree::Box box;
       box[0] = {known.box.min_x, known.box.max_x};
       box[1] = {known.box.min_y, known.box.max_y};
-      tree_.add(box, static_cast<std::uint32_t>(others_.size()));
+      treeOf(known.system, trees_, 2).add(box, static_cast<std::uint32_t>(others_.size()));
       others_.push_back({geometry, test_.distinguished == kNoSlot ? kUnbound : batch.at(test_.distinguished, row)});
     }
   }
-  tree_.pack(runtime.guard);
-  charged_ = tree_.bytes() + others_.capacity() * sizeof(Other);
+  for (BoxTree& tree : trees_) tree.pack(runtime.guard);
+  charged_ = bytesOf(trees_) + others_.capacity() * sizeof(Other);
   runtime.guard.charge(charged_);
 }
 
-double NearestOthers::reach(const Value& place, const Box2& box, Runtime& runtime) const {
+double NearestOthers::reach(const Value& place, const KnownBox& known, Runtime& runtime) const {
   constexpr double kFar = std::numeric_limits<double>::infinity();
+  if (known.system >= trees_.size()) return kFar;
+  const Box2& box = known.box;
   struct Best {
     double distance = kFar;
     ValueId thing = kUnbound;
@@ -51,7 +53,7 @@ double NearestOthers::reach(const Value& place, const Box2& box, Runtime& runtim
   BoxTree::Box from;
   from[0] = {box.min_x, box.max_x};
   from[1] = {box.min_y, box.max_y};
-  tree_.nearest(from, [&](std::uint32_t row, double min_distance) {
+  trees_[known.system].nearest(from, [&](std::uint32_t row, double min_distance) {
     const double enough = needs_two ? second.distance : best.distance;
     if (min_distance > enough) return false;
     const Other& other = others_[row];

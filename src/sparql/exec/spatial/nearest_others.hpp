@@ -27,7 +27,7 @@ class NearestOthers {
   void reopen(Runtime& runtime, bool fresh);
   void make(Runtime& runtime);
   /// No geometry that is farther away than this can be the nearest one. Infinite if there are no others.
-  double reach(const Value& place, const Box2& box, Runtime& runtime) const;
+  double reach(const Value& place, const KnownBox& known, Runtime& runtime) const;
 
  private:
   struct Other {
@@ -35,7 +35,7 @@ class NearestOthers {
   };
   NearestTest test_;
   std::vector<Other> others_;
-  BoxTree tree_;
+  SystemTrees trees_;
   std::size_t charged_ = 0;
   bool is_made_ = false;
 };

@@ -2,6 +2,7 @@
 // The build side of a range join: its rows in a box tree over the numbers and geometries that the tests limit.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "sparql/exec/operators/operators.hpp"
@@ -20,12 +21,20 @@ class RangeBuild {
   void make(Runtime& runtime);
   const Operator& source() const { return *source_; }
   const RowTable& table() const { return table_; }
-  const BoxTree& tree() const { return tree_; }
-  /// Rows without a place in the tree: every test may be true for them.
+  /// Rows without a place in a tree: every test may be true for them.
   const std::vector<std::uint32_t>& loose() const { return loose_; }
 
-  /// Narrows `query_box`, a box of the tree, to what a test allows.
-  void narrow(const RangeTest& test, const KnownNumber& bound, const Box2& place, BoxTree::Box& query_box) const;
+  /// What the tests allow for one row.
+  struct Search {
+    BoxTree::Box box;                          ///< of a tree
+    std::optional<std::uint32_t> system = {};  ///< of the place of the row, if it is known
+  };
+  /// Narrows the search to what a test allows.
+  void narrow(const RangeTest& test, const KnownNumber& bound, const KnownBox& place, Search& search) const;
+  /// The rows that may pass the tests, ascending. Notes where rows of other coordinate systems are left out.
+  void find(const Search& search, std::vector<std::uint32_t>& found, FunctionContext& functions);
+  /// The tree of the rows of one coordinate system.
+  const BoxTree& treeOf(std::uint32_t system, FunctionContext& functions);
   /// The axis of a slot in the tree; that of x for a geometry. The number of dimensions if it has none.
   std::size_t axisOf(Slot slot, bool is_geometry) const;
   /// True for the geometry by which the tree gives the nearest rows.
@@ -37,12 +46,15 @@ class RangeBuild {
     bool is_geometry;
     std::size_t axis, column;
   };
-  Known place(const ValueId* row, Runtime& runtime, BoxTree::Box& box);
+  Known place(const ValueId* row, Runtime& runtime, Search& placed);
+  void noteOthers(std::uint32_t system, FunctionContext& functions);
 
   OperatorPtr source_;
   RowTable table_;
   std::vector<Key> keys_;
-  BoxTree tree_;
+  std::size_t dimensions_ = 0;
+  SystemTrees trees_;  ///< by the system of the first geometry of a row
+  std::vector<bool> noted_;
   std::vector<std::uint32_t> loose_;
   std::size_t charged_ = 0;
   bool strict_, is_made_ = false, has_floats_ = false;

@@ -27,12 +27,20 @@ KnownNumber evaluated(const RowSum& sum, const Batch& batch, std::size_t row, Ev
 KnownBox boxOf(const Value& value, FunctionContext& functions) {
   const auto geometry = geometryOf(value, functions);
   if (!geometry) return {Known::Error, {}};
-  const Box2 box = boundsOf(*geometry);
+  const auto found = functions.geometries->searchBox(*geometry);
+  if (!found) return {Known::Nothing, {}};
+  const Box2& box = found->box;
   // Distances of larger coordinates overflow.
   constexpr double kFarthest = 1e150;
   const bool has_box = std::max(-box.min_x, box.max_x) < kFarthest && std::max(-box.min_y, box.max_y) < kFarthest &&
-                       box.min_x <= box.max_x && !namesReferenceSystem(*geometry);
-  return {has_box ? Known::Value : Known::Nothing, box};
+                       box.min_x <= box.max_x;
+  return {has_box ? Known::Value : Known::Nothing, box, found->system};
+}
+
+KnownBox mapBoxOf(const Value& value, FunctionContext& functions) {
+  KnownBox found = boxOf(value, functions);
+  if (found.known == Known::Value && found.system != SearchBox::kMapFrame) found.known = Known::Nothing;
+  return found;
 }
 
 double farthestOf(const Box2& box, double by_m) {

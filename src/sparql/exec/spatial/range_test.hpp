@@ -55,10 +55,13 @@ KnownNumber evaluated(const RowSum& sum, const Batch& batch, std::size_t row, Ev
 struct KnownBox {
   Known known = Known::Nothing;
   Box2 box;
+  std::uint32_t system = SearchBox::kMapFrame;  ///< boxes of different systems say nothing about each other
 };
-/// The box of a geometry. Nothing for geometries that are empty or name a reference system: their measures do not
-/// follow from their coordinates. Error for values that are not geometries.
+/// The box of a geometry. Nothing for geometries that are empty or have no SearchBox. Error for values that are not
+/// geometries.
 KnownBox boxOf(const Value& value, FunctionContext& functions);
+/// For the stored index, which holds boxes of the map frame: Nothing for geometries of other systems.
+KnownBox mapBoxOf(const Value& value, FunctionContext& functions);
 
 /// The box of all that is at most `by_m` metres away; grows by more than the rounding of the functions.
 Box2 widened(const Box2& box, double by_m);
