@@ -254,6 +254,17 @@ TEST(ClassVotes, CallAClassRightThatMostPointsHave) {
   EXPECT_EQ(bin.right, 1U);
 }
 
+TEST(ClassVotes, LeaveOutObjectsThatTheTruthHardlyCovers) {
+  std::vector<SemanticObject> objects(2);
+  for (SemanticObject& object : objects) object.confidence = 0.95;
+  ClassVotes votes(objects.size());
+  for (std::uint32_t object : {0U, 1U})
+    for (int i = 0; i < 3; ++i) votes.add(object, 0);
+  for (int i = 0; i < 3; ++i) votes.addWithoutTruth(0);
+  for (int i = 0; i < 4; ++i) votes.addWithoutTruth(1);
+  EXPECT_EQ(votes.calibrationOf(objects, {0, 0}, 1, 1).objects(), 1U);
+}
+
 TEST(CrownPairs, ArePartedWhenTwoObjectsHaveMostOfThem) {
   // Trees in a row, 3 m apart, with crowns of 3 m: each touches the next. The last stands 1 m from its neighbour.
   const auto rowOfTrees = [](const std::vector<std::uint32_t>& object_of_tree) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <set>
 
 #include "base/file_bytes.hpp"
 #include "tasks/campus_map_fixture.hpp"
@@ -191,6 +192,19 @@ TEST(TruthSource, PrefersALabelMapOfTheHomeToAFolderOfItsName) {
   EXPECT_EQ(locateTruth("elsewhere", home), "elsewhere");
   EXPECT_EQ(locateTruth("./oakland", home), "./oakland");
   std::filesystem::current_path(before);
+}
+
+TEST(TruthSource, MeansTheClassesThatItsLabelsStandFor) {
+  const DataHome home(test::sourceFolder());
+  const TruthClasses merged = TruthSource::open(locateTruth("nuscenes", home), home).classes();
+  EXPECT_EQ(merged.meant, (std::set<std::string>{"Ground", "StaticOrPlant", "Person", "Vehicle"}));
+  // Vegetation may be a tree or a bush there, a trunk is a tree's.
+  const TruthClasses kitti = TruthSource::open(locateTruth("semantickitti", home), home).classes();
+  EXPECT_TRUE(kitti.meant.contains("Tree"));
+  EXPECT_FALSE(kitti.meant.contains("Bush"));
+  const ScratchFolder folder;
+  const TruthClasses files = TruthSource::open(folder.path(), home).classes();
+  EXPECT_EQ(files.meant, std::set<std::string>(files.names.begin(), files.names.end()));
 }
 
 TEST(MapEvaluation, RefusesOneTruthFileForTwoScans) {

@@ -42,6 +42,9 @@ Calibration ClassVotes::calibrationOf(const std::vector<rules::SemanticObject>& 
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const std::size_t own = class_of_object[i];
     if (votes_[i].empty() || own >= class_count || own == left_out) continue;
+    std::uint64_t with_truth = 0;
+    for (const auto& [truth_class, count] : votes_[i]) with_truth += count;
+    if (with_truth < without_truth_[i]) continue;
     const auto most_voted = std::max_element(votes_[i].begin(), votes_[i].end(),
                                              [](const auto& a, const auto& b) { return a.second < b.second; });
     calibration.add(objects[i].confidence, most_voted->first == own);

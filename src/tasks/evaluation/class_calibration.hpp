@@ -32,15 +32,18 @@ struct Calibration {
 /// Counts the true classes of each object's points.
 class ClassVotes {
  public:
-  explicit ClassVotes(std::size_t object_count) : votes_(object_count) {}
+  explicit ClassVotes(std::size_t object_count) : votes_(object_count), without_truth_(object_count, 0) {}
   void add(std::uint32_t object, std::size_t truth_class) { ++votes_[object][truth_class]; }
-  /// Of the objects with points of known truth whose class is one of `class_count` and not `left_out`.
+  void addWithoutTruth(std::uint32_t object) { ++without_truth_[object]; }
+  /// Of the objects whose class is one of `class_count` and not `left_out`, and that have as many points with truth as
+  /// without: a few stray points of a neighbour do not tell what a bush is that the truth has no class for.
   Calibration calibrationOf(const std::vector<rules::SemanticObject>& objects,
                             const std::vector<std::size_t>& class_of_object, std::size_t class_count,
                             std::size_t left_out) const;
 
  private:
   std::vector<std::map<std::size_t, std::uint64_t>> votes_;
+  std::vector<std::uint64_t> without_truth_;
 };
 
 }  // namespace cluxel::tasks

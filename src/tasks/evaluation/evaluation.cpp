@@ -73,6 +73,7 @@ struct PointVisit {
         evaluation.primitives.add(static_cast<std::size_t>(truth.primitive[i]), answers.label[i]);
       if (truth.object_class[i] < 0) {
         matching.addWithoutTruth(answers.object[i]);
+        if (answers.object[i] != mapping::kNoObjectOfPoint) votes.addWithoutTruth(answers.object[i]);
         continue;
       }
       const std::int32_t instance = truth.instance[i] < 0 ? -1 : first + truth.instance[i];

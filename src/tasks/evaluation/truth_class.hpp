@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ namespace cluxel::tasks {
 struct TruthClasses {
   std::vector<std::string> names;
   std::map<std::string, std::string> counts_as = {};  ///< to one of `names`; goes before the class's own name
+  std::set<std::string> meant = {};                   ///< those of `names` that some label or truth file can mean
 };
 
 /// Per object the number of its class among the truth's. A class counts as what `counts_as` says, else as itself. When

@@ -33,7 +33,13 @@ std::optional<fs::path> TruthSource::fileOf(const scan::Scan& scan) const {
 }
 
 TruthClasses TruthSource::classes() const {
-  return {truthClassNames(labels_), labels_.countsAs()};
+  TruthClasses classes{truthClassNames(labels_), labels_.countsAs()};
+  if (!folder_.empty()) classes.meant.insert(classes.names.begin(), classes.names.end());
+  for (const auto& [id, meaning] : labels_.entries()) {
+    if (meaning.object_class) classes.meant.insert(*meaning.object_class);
+    if (meaning.near) classes.meant.insert(meaning.near->object_class);
+  }
+  return classes;
 }
 
 std::string TruthSource::nameOfLabel(std::uint32_t label) const {

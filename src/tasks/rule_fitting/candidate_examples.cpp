@@ -113,9 +113,7 @@ class ExampleCollector {
   /// Whether the truth tells this class, or one below it, from others.
   bool hasWordFor(const std::string& class_iri) const {
     return std::any_of(rules_.catalogue.classes.begin(), rules_.catalogue.classes.end(), [&](const auto& entry) {
-      return rules_.catalogue.isA(entry.iri, class_iri) &&
-             std::find(classes_.names.begin(), classes_.names.end(), mapping::localName(entry.iri)) !=
-                 classes_.names.end();
+      return rules_.catalogue.isA(entry.iri, class_iri) && classes_.meant.contains(mapping::localName(entry.iri));
     });
   }
 
