@@ -22,8 +22,8 @@ TEST_F(Program, BuildsAMapAndTellsSoInJson) {
   EXPECT_EQ(info.at("finished"), true);
   EXPECT_EQ(info.at("objects"), report.at("objects"));
   std::uintmax_t bytes = 0;
-  for (const Json& layer : Json::parse(run("info " + path("map.clx").string() + " --layers --json").out).at("layers"))
-    bytes += layer.at("bytes").get<std::uintmax_t>();
+  const Json layers = Json::parse(run("info " + path("map.clx").string() + " --layers --json").out);
+  for (const Json& layer : layers.at("layers")) bytes += layer.at("bytes").get<std::uintmax_t>();
   EXPECT_EQ(bytes, fs::file_size(path("map.clx"))) << "every byte belongs to a layer";
   EXPECT_NE(run("info " + path("map.clx").string() + " --layers").out.find("layer scan_points"), std::string::npos);
   EXPECT_EQ(Json::parse(run("info " + path("campus").string() + " --json").out).at("scans").size(), 2U);
