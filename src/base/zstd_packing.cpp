@@ -7,7 +7,8 @@
 #include <zstd.h>
 
 #include <bit>
-#include <stdexcept>
+
+#include "cluxel/error.hpp"
 
 namespace cluxel {
 
@@ -53,15 +54,16 @@ void joinWords(const char* planes, std::size_t count, char* items) {
 std::string packedBytes(std::string_view bytes) {
   std::string packed(ZSTD_compressBound(bytes.size()), '\0');
   const std::size_t size = ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), kLevel);
-  if (ZSTD_isError(size) != 0) throw std::runtime_error(ZSTD_getErrorName(size));
+  if (ZSTD_isError(size) != 0)
+    throw Error(ErrorKind::StoreUnavailable, std::string("zstd: ") + ZSTD_getErrorName(size));
   packed.resize(size);
   return packed;
 }
 
-std::optional<UnpackedBytes> unpackedBytes(std::string_view packed) {
+std::optional<UnpackedBytes> unpackedBytes(std::string_view packed, std::uint64_t max_bytes) {
   const unsigned long long stated = ZSTD_getFrameContentSize(packed.data(), packed.size());
   if (stated == ZSTD_CONTENTSIZE_UNKNOWN || stated == ZSTD_CONTENTSIZE_ERROR) return std::nullopt;
-  if (stated / kMaxRatio > packed.size()) return std::nullopt;
+  if (stated > max_bytes || stated / kMaxRatio > packed.size()) return std::nullopt;
   if (ZSTD_findFrameCompressedSize(packed.data(), packed.size()) != packed.size()) return std::nullopt;
   UnpackedBytes bytes{std::make_unique_for_overwrite<char[]>(stated), stated};
   const std::size_t size = ZSTD_decompress(bytes.data.get(), stated, packed.data(), packed.size());

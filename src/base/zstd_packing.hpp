@@ -25,8 +25,8 @@ struct UnpackedBytes {
   std::string_view view() const { return {data.get(), size}; }
 };
 /// What packedBytes() made `packed` from; none when it is damaged. A frame that states more bytes than its length can
-/// hold is refused before memory is asked for.
-std::optional<UnpackedBytes> unpackedBytes(std::string_view packed);
+/// hold, or more than `max_bytes`, is refused before memory is asked for.
+std::optional<UnpackedBytes> unpackedBytes(std::string_view packed, std::uint64_t max_bytes);
 
 /// Appends the first byte of each item, then the second of each, and so on.
 void appendPlanes(std::string& bytes, const void* items, std::size_t count, std::size_t item_bytes);

@@ -14,6 +14,8 @@ namespace {
 
 using Json = nlohmann::json;
 constexpr std::string_view kObjectsKey = "objects", kDigestsKey = "decisions";
+/// The numbers of a billion cluxels.
+constexpr std::uint64_t kMaxObjectBytes = std::uint64_t{1} << 32U;
 
 Json numbersJson(const std::vector<std::uint32_t>& numbers) {
   std::string planes;
@@ -71,7 +73,7 @@ std::vector<rules::SemanticObject> storedObjects(const rdf::ReadTransaction& tra
   const auto bytes = transaction.block(tables::kMeta, kObjectsKey);
   if (!bytes) return objects;
   try {
-    const auto unpacked = unpackedBytes(*bytes);
+    const auto unpacked = unpackedBytes(*bytes, kMaxObjectBytes);
     if (!unpacked) throw std::invalid_argument("not in the form in which this version of cluxel writes them");
     for (const Json& object : Json::from_cbor(unpacked->view())) objects.push_back(objectFrom(object));
   } catch (const std::exception& fault) {

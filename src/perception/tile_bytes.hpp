@@ -61,6 +61,9 @@ class TileWriter {
   FastDigest left_out_;
 };
 
+/// More than any tile of 16 m holds after thinning: 2^25 points at 32 bytes.
+inline constexpr std::uint64_t kMaxTileBytes = std::uint64_t{1} << 30U;
+
 class TileReader {
  public:
   TileReader(std::string_view bytes, std::string_view kind, std::uint32_t version) : rest_(bytes), kind_(kind) {
@@ -70,7 +73,7 @@ class TileReader {
     key_.x = get<std::int32_t>();
     key_.y = get<std::int32_t>();
     if (rest_.size() < kDigestBytes) fail("is cut short");
-    auto unpacked = unpackedBytes(rest_.substr(kDigestBytes));
+    auto unpacked = unpackedBytes(rest_.substr(kDigestBytes), kMaxTileBytes);
     if (!unpacked) fail("cannot be unpacked");
     unpacked_ = *std::move(unpacked);
     rest_ = unpacked_.view();

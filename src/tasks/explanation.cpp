@@ -115,10 +115,10 @@ std::vector<perception::PrimitiveIndex> primitivesOf(const mapping::MapReader& m
   return primitivesOf(map.objects()[*named.object]);
 }
 
-std::optional<rules::PartRun> partAround(const mapping::MapReader& map, const Named& named, const rules::RuleSet& rules,
-                                         double min_margin_m) {
+std::optional<rules::PartRun> partAround(const mapping::MapReader& map, const Named& named,
+                                         const rules::RuleSet& rules) {
   const std::vector<std::uint64_t> digests = map.decisionDigests();
-  return runInPart(map.scene(), rules, {digests, map.objects()}, primitivesOf(map, named), min_margin_m);
+  return runInPart(map.scene(), rules, {digests, map.objects()}, primitivesOf(map, named));
 }
 
 /// An explanation, with the part of the scene that its numbers refer to when it is not the whole.
@@ -131,7 +131,7 @@ struct Explained {
 
 Explained explanationOf(const mapping::MapReader& map, const Named& named, const rules::RuleSet& rules) {
   const rules::SemanticObject* object = named.primitive ? nullptr : &map.objects()[*named.object];
-  if (auto run = partAround(map, named, rules, 0)) {
+  if (auto run = partAround(map, named, rules)) {
     auto explanation = object == nullptr ? explanationIn(run->result, rules, run->primitives.front())
                                          : explanationIn(run->result, rules, object->id);
     if (explanation) return {std::move(*explanation), std::move(run)};
@@ -165,16 +165,14 @@ const rules::SemanticObject* ownerOf(const std::vector<rules::SemanticObject>& o
 
 WhyNotOfThing whyNotOf(const mapping::MapReader& map, const rules::RuleSet& rules, const mapping::MapInputs& inputs,
                        const std::string& written, const std::string& class_name) {
-  constexpr double kMinMargin_m = 30;  // without the thing its neighbours may go to other objects, and so on
   const Named named = find(map, plainName(written));
   const std::string class_iri = classNamed(rules, class_name);
   const auto id = named.object ? std::optional(map.objects()[*named.object].id) : std::nullopt;
   mapping::AskReplay oracle(map);
   const rules::ReasoningContext context{.oracle = &oracle};
-  std::optional<rules::PartRun> run = partAround(map, named, rules, kMinMargin_m);
-  const perception::Scene& scene = run ? run->part : map.scene();
-  const std::vector<perception::PrimitiveIndex> primitives = run ? run->primitives : primitivesOf(map, named);
-  const rules::ReasoningResult made = run ? std::move(run->result) : reason(scene, rules, context);
+  const perception::Scene& scene = map.scene();
+  const std::vector<perception::PrimitiveIndex> primitives = primitivesOf(map, named);
+  const rules::ReasoningResult made = reason(scene, rules, context);
   const rules::SemanticObject* owner = ownerOf(made.objects, primitives, id);
   WhyNotOfThing thing{whyNot(scene, rules, context, made, owner, primitives, class_iri), ""};
   thing.headline = owner == nullptr ? "belongs to no object: unknown"

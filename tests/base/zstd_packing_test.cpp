@@ -18,11 +18,13 @@ std::string randomBytes(std::size_t size, std::mt19937& random) {
   return bytes;
 }
 
+constexpr std::uint64_t kNoLimit = std::uint64_t{1} << 40U;
+
 TEST(Packing, GivesBackWhatWasPacked) {
   std::mt19937 random(1);
   for (const std::size_t size : {0U, 1U, 100U, 200'000U}) {
     for (const std::string& bytes : {randomBytes(size, random), std::string(size, 'a')}) {
-      const auto back = unpackedBytes(packedBytes(bytes));
+      const auto back = unpackedBytes(packedBytes(bytes), kNoLimit);
       ASSERT_TRUE(back.has_value());
       EXPECT_TRUE(back->view() == bytes) << size;
     }
@@ -34,9 +36,9 @@ TEST(Packing, RefusesWhatIsCutShortOrLonger) {
   std::mt19937 random(2);
   const std::string packed = packedBytes(randomBytes(300, random) + std::string(5'000, 'x'));
   for (std::size_t size = 0; size < packed.size(); ++size)
-    EXPECT_FALSE(unpackedBytes(packed.substr(0, size)).has_value()) << size;
-  EXPECT_FALSE(unpackedBytes(packed + "x").has_value());
-  EXPECT_FALSE(unpackedBytes(packed + packed).has_value()) << "two frames";
+    EXPECT_FALSE(unpackedBytes(packed.substr(0, size), kNoLimit).has_value()) << size;
+  EXPECT_FALSE(unpackedBytes(packed + "x", kNoLimit).has_value());
+  EXPECT_FALSE(unpackedBytes(packed + packed, kNoLimit).has_value()) << "two frames";
 }
 
 TEST(Packing, AFlippedBitGivesNothingOrBytesOfTheStatedNumber) {
@@ -46,7 +48,7 @@ TEST(Packing, AFlippedBitGivesNothingOrBytesOfTheStatedNumber) {
     for (unsigned bit = 0; bit < 8; ++bit) {
       std::string damaged = packed;
       damaged[at] = static_cast<char>(damaged[at] ^ (1U << bit));
-      const auto back = unpackedBytes(damaged);
+      const auto back = unpackedBytes(damaged, kNoLimit);
       EXPECT_LT(back ? back->size : 0, std::size_t{1} << 26U) << at << ' ' << bit;
     }
 }
@@ -56,8 +58,14 @@ TEST(Packing, RefusesAFrameThatStatesMoreThanItCanHold) {
   for (const std::uint64_t size : {std::uint64_t{1} << 40U, std::uint64_t{1} << 62U, ~std::uint64_t{1}}) {
     std::string damaged = frame;
     damaged.append(reinterpret_cast<const char*>(&size), sizeof size);
-    EXPECT_FALSE(unpackedBytes(damaged + std::string(100, '\0')).has_value()) << size;
+    EXPECT_FALSE(unpackedBytes(damaged + std::string(100, '\0'), kNoLimit).has_value()) << size;
   }
+}
+
+TEST(Packing, RefusesMoreThanTheReaderExpects) {
+  const std::string packed = packedBytes(std::string(100'000, 'a'));
+  EXPECT_TRUE(unpackedBytes(packed, 100'000).has_value());
+  EXPECT_FALSE(unpackedBytes(packed, 99'999).has_value());
 }
 
 TEST(Packing, PlanesAreTheBytesOfEqualWeight) {

@@ -88,7 +88,8 @@ std::string roundTrip(std::size_t kind, std::string_view bytes) {
 std::string editedInside(const std::string& valid, std::string_view edits) {
   const std::string_view all = valid;
   return valid.substr(0, kHead) +
-         packedBytes(fuzz::edited(std::string(unpackedBytes(all.substr(kHead))->view()), edits));
+         packedBytes(
+             fuzz::edited(std::string(unpackedBytes(all.substr(kHead), std::uint64_t{1} << 30U)->view()), edits));
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ TEST(PackedPoints, KeepEveryBit) {
   for (const std::size_t count : {0U, 1U, 2U, 5'000U})
     for (const bool with_all : {false, true}) {
       const ScanPoints points = randomPoints(count, 7, with_all);
-      EXPECT_TRUE(bitsOf(unpackedPoints(packedPoints(points))) == bitsOf(points)) << count;
+      EXPECT_TRUE(bitsOf(unpackedPoints(packedPoints(points), points.size())) == bitsOf(points)) << count;
     }
 }
 
@@ -72,11 +72,11 @@ TEST(PackedPoints, OfAScanTakeLessThanTwoThirds) {
 TEST(PackedPoints, DamagedOnesAreRefused) {
   const std::string packed = packedPoints(randomPoints(300, 8, true));
   for (std::size_t size = 0; size < packed.size(); size += 1 + packed.size() / 97)
-    EXPECT_NE(errorOf([&] { unpackedPoints(packed.substr(0, size)); }), "none") << size;
-  EXPECT_THAT(errorOf([&] { unpackedPoints(packed + "x"); }), HasSubstr("damaged"));
+    EXPECT_NE(errorOf([&] { unpackedPoints(packed.substr(0, size), 1'000); }), "none") << size;
+  EXPECT_THAT(errorOf([&] { unpackedPoints(packed + "x", 1'000); }), HasSubstr("damaged"));
   ScanPoints uneven = randomPoints(300, 9, false);
   uneven.y.pop_back();
-  EXPECT_THAT(errorOf([&] { unpackedPoints(packedPoints(uneven)); }), HasSubstr("damaged"));
+  EXPECT_THAT(errorOf([&] { unpackedPoints(packedPoints(uneven), 1'000); }), HasSubstr("damaged"));
 }
 
 /// What the second format of maps wrote: a length before each array, and kinds with an earlier version.

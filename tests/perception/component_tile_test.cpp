@@ -257,7 +257,7 @@ TEST(ComponentBytes, AreReadBackOrRefused) {
     EXPECT_THROW(componentTileFromBytes(bytes.substr(0, size)), Error);
   EXPECT_THROW(componentTileFromBytes(bytes + "x"), Error);
   constexpr std::size_t kHead = 32;  // kind, version, tile, digest
-  std::string odd(unpackedBytes(std::string_view(bytes).substr(kHead))->view());
+  std::string odd(unpackedBytes(std::string_view(bytes).substr(kHead), std::uint64_t{1} << 30U)->view());
   const std::size_t numbers = odd.find(std::string("\0\0\0\0\xC0\x20\x3F\x40", 8));
   ASSERT_NE(numbers, std::string::npos) << "1.5 and 2.5, bytes of equal weight side by side";
   odd[numbers - 8] = 3;  // the count of numbers

@@ -73,11 +73,12 @@ std::string packedPoints(const scan::ScanPoints& points) {
   return std::string(kKind) + kVersion + packedBytes(bytes);
 }
 
-scan::ScanPoints unpackedPoints(std::string_view packed) {
+scan::ScanPoints unpackedPoints(std::string_view packed, std::uint64_t stated_points) {
+  constexpr std::uint64_t kMaxPointBytes = 64, kMaxHeadBytes = 1024;
   if (!packed.starts_with(kKind) || packed.size() <= kKind.size() || packed[kKind.size()] != kVersion)
     throw Error(ErrorKind::StoreUnavailable,
                 "points of a cloud are stored in the form of another version of cluxel; build the map anew");
-  const auto unpacked = unpackedBytes(packed.substr(kKind.size() + 1));
+  const auto unpacked = unpackedBytes(packed.substr(kKind.size() + 1), stated_points * kMaxPointBytes + kMaxHeadBytes);
   if (!unpacked) throw damagedPoints();
   std::string_view bytes = unpacked->view();
   scan::ScanPoints points;

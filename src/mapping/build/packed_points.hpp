@@ -2,6 +2,7 @@
 // Points of a scan in little space, with the bits that were measured.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -11,7 +12,8 @@ namespace cluxel::mapping {
 
 /// Cost: about 50 ns a point; unpacking about 15 ns.
 std::string packedPoints(const scan::ScanPoints& points);
-/// Throws Error (StoreUnavailable) for other bytes than packedPoints() writes.
-scan::ScanPoints unpackedPoints(std::string_view packed);
+/// Throws Error (StoreUnavailable) for other bytes than packedPoints() writes, and for many more than `points` points,
+/// before memory is asked for.
+scan::ScanPoints unpackedPoints(std::string_view packed, std::uint64_t points);
 
 }  // namespace cluxel::mapping

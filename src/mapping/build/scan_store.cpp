@@ -197,7 +197,8 @@ scan::ScanPoints storedPoints(const rdf::ReadTransaction& transaction, const sca
   const auto block = transaction.block(tables::kScanPoints, tables::keyOf(id));
   if (!block)
     throw Error(ErrorKind::StoreUnavailable, "cloud " + id.hex() + " has no points in the map; build it anew");
-  return unpackedPoints(*block);
+  const auto cloud = storedCloud(transaction, id);
+  return unpackedPoints(*block, cloud ? cloud->point_count : 0);
 }
 
 }  // namespace cluxel::mapping

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cloud layer: scans with points and poses in the map file, cut into segments per tile.
+// The cloud layer: scans with points and poses in the map file; tiles get segments cut from them.
 #pragma once
 
 #include <map>

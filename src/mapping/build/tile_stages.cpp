@@ -31,14 +31,14 @@ class OutputReader {
   void read(const TileSet& keys) {
     perception::PointsFromScans from_scans;
     each(Stage::Points, keys, out_.points, [&](const TileKey& key, std::string_view bytes) {
-      from_scans.add(out_.points.emplace(key, perception::tilePointsFromBytes(bytes)).first->second);
+      from_scans.add(out_.points.emplace(key, checked(key, perception::tilePointsFromBytes(bytes))).first->second);
     });
     fill(from_scans);
     each(Stage::Cluxels, keys, out_.cluxels, [&](const TileKey& key, std::string_view bytes) {
-      out_.cluxels.emplace(key, perception::cluxelTileFromBytes(bytes, required(out_.points, key)));
+      out_.cluxels.emplace(key, checked(key, perception::cluxelTileFromBytes(bytes, required(out_.points, key))));
     });
     each(Stage::Features, keys, out_.features, [&](const TileKey& key, std::string_view bytes) {
-      out_.features.emplace(key, perception::featureTileFromBytes(bytes, required(out_.cluxels, key)));
+      out_.features.emplace(key, checked(key, perception::featureTileFromBytes(bytes, required(out_.cluxels, key))));
     });
     plain(Stage::Ground, keys, out_.ground, perception::groundTileFromBytes);
     plain(Stage::Labels, keys, out_.labels, perception::labelTileFromBytes);
@@ -60,7 +60,16 @@ class OutputReader {
 
   template <typename Tiles, typename Decode>
   void plain(Stage stage, const TileSet& keys, Tiles& tiles, const Decode& decode) {
-    each(stage, keys, tiles, [&](const TileKey& key, std::string_view bytes) { tiles.emplace(key, decode(bytes)); });
+    each(stage, keys, tiles,
+         [&](const TileKey& key, std::string_view bytes) { tiles.emplace(key, checked(key, decode(bytes))); });
+  }
+
+  /// A block names its tile, which later stages look up.
+  template <typename Tile>
+  static Tile checked(const TileKey& key, Tile tile) {
+    if (tile.key == key) return tile;
+    throw Error(ErrorKind::StoreUnavailable,
+                "a stored tile has the block of another; the map is damaged, build it anew");
   }
 
   template <typename Tiles>

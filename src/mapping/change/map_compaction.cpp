@@ -2,11 +2,18 @@
 // Counts what a rewrite would free, and rewrites the map beside itself.
 #include "mapping/change/map_compaction.hpp"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/build_lock.hpp"
 #include "rdf/file/environment.hpp"
 #include "rdf/file/layer_sizes.hpp"
+#include "rdf/file/lock_file.hpp"
 #include "rdf/file/map_replacement.hpp"
 
 namespace cluxel::mapping {
@@ -15,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uint64_t kLargestShare = 20;  // a twentieth
+constexpr std::uint64_t kSparseDivisor = 20;  // more than a twentieth is free
 constexpr std::uint64_t kSmallestGain = std::uint64_t{1} << 20U;
 
 bool isSparse(const fs::path& map) {
@@ -24,34 +31,64 @@ bool isSparse(const fs::path& map) {
   const std::uint64_t gain = rdf::freeableBytes(layers);
   std::uint64_t all = 0;
   for (const rdf::LayerSize& layer : layers) all += layer.file_bytes;
-  return gain > kSmallestGain && gain * kLargestShare > all;
+  return gain > kSmallestGain && gain * kSparseDivisor > all;
+}
+
+struct stat statusOf(const fs::path& file) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0)
+    throw Error(ErrorKind::StoreUnavailable, file.string() + ": " + std::strerror(errno));
+  return status;
+}
+
+/// The copy goes to the owner and the group of the map, which would otherwise lose it to whoever compacts it.
+void keepOwner(const fs::path& copy, const fs::path& map) {
+  const struct stat own = statusOf(copy), old = statusOf(map);
+  if (own.st_uid == old.st_uid && own.st_gid == old.st_gid) return;
+  if (::chown(copy.c_str(), old.st_uid, old.st_gid) != 0)
+    throw Error(ErrorKind::StoreUnavailable,
+                map.string() + ": belongs to another user or group, who would lose it; let its owner compact it");
+}
+
+void removeCopy(const fs::path& copy) {
+  std::error_code ignored;
+  fs::remove(copy, ignored);
+  fs::remove(rdf::lockFileOf(copy), ignored);
+}
+
+fs::path copyOf(const fs::path& map) {
+  return withoutLinks(map).string() + ".compact";
 }
 
 }  // namespace
 
 /// Locks out other writers: what they commit while the file is replaced would be lost.
 void compactMap(const fs::path& map) {
-  const fs::path file = withoutLinks(map), target = file.string() + ".compact";
+  const fs::path file = withoutLinks(map), copy = copyOf(map);
   const BuildLock no_build(file);
   const auto environment = rdf::Environment::open(file, rdf::OpenMode::ReadWrite);
   const rdf::WriteTransaction no_other_writer = environment->write();
-  std::error_code ignored;
-  fs::remove(target, ignored);  // left by a killed run
-  environment->compactTo(target);
+  removeCopy(copy);  // left by a killed run
   try {
-    rdf::replaceMapFile(target, file);
+    environment->compactTo(copy);
+    keepOwner(copy, file);
+    rdf::replaceMapFile(copy, file);
   } catch (...) {
-    fs::remove(target, ignored);
+    removeCopy(copy);
     throw;
   }
 }
 
 void compactIfSparse(const fs::path& map, ProgressSink& sink) {
   try {
-    if (isSparse(map)) compactMap(map);
-  } catch (const Error& error) {
-    sink.note(map.string() +
-              ": is whole, but takes more space than it needs, because it could not be rewritten: " + error.what());
+    if (!fs::exists(copyOf(map)) && !isSparse(map)) return;
+    if (statusOf(map).st_nlink > 1)
+      throw Error(ErrorKind::StoreUnavailable, "it has another name (a hard link), which would keep the old file");
+    if (fs::space(withoutLinks(map).parent_path()).available < fs::file_size(map))
+      throw Error(ErrorKind::StoreUnavailable, "there is no room beside it for a copy");
+    compactMap(map);
+  } catch (const std::exception& error) {
+    sink.note(map.string() + ": the change is written, but its free space stays in the file: " + error.what());
   }
 }
 

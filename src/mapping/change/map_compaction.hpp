@@ -9,8 +9,8 @@
 namespace cluxel::mapping {
 
 /// Rewrites a map without free pages and half-filled ones, and replaces it by a rename. Readers go on with the old
-/// file. Takes the build lock; other writers wait or are refused. Throws Error (StoreUnavailable) when the map is
-/// damaged or cannot be written; it is then as before.
+/// file. The new file has the owner, group and rights of the old one. Takes the build lock; other writers wait or are
+/// refused. Throws Error (StoreUnavailable) when the map is damaged or cannot be written; it is then as before.
 void compactMap(const std::filesystem::path& map);
 
 /// Compacts a map when that frees more than a twentieth of it, and more than a mebibyte. So the cost follows the

@@ -64,13 +64,17 @@ bool toTargets(StoredEdges& edges) {
   constexpr std::uint32_t kMaxIndex = (std::uint32_t{1} << 28U) - 1;
   const auto cluxels = static_cast<std::uint32_t>(edges.count.size());
   LastTargets last;
+  if (edges.ring.size() > kMaxIndex) return false;
   std::size_t at = 0;
   for (std::uint32_t c = 0; c < cluxels; ++c) {
     last[kRingCentre] = c;
+    std::pair<std::uint32_t, std::uint32_t> before;  // ring and target of the edge before, which is smaller
     for (std::uint32_t i = 0; i < edges.count[c]; ++i, ++at) {
       if (at == edges.ring.size() || edges.ring[at] >= 9) return false;
       const std::uint32_t ring = edges.ring[at], target = last[ring] + unzigzag(edges.step[at]);
       if (target > kMaxIndex || (ring == kRingCentre && (target <= c || target >= cluxels))) return false;
+      if (i > 0 && std::pair(ring, target) <= before) return false;
+      before = {ring, target};
       edges.step[at] = last[ring] = target;
     }
   }

@@ -60,21 +60,20 @@ class PartSearch {
     return kept;
   }
 
-  /// Whether the run over the part took the decisions of the whole run about what is explained, and gave what lies
-  /// around it to the same rules. The digests around it may differ: the ground reaches far beyond every part.
+  /// Whether the run over the part took the decisions of the whole run about what is explained and about the seeds of
+  /// the objects that own it, and gave what touches the box around it to the same rules. The digests there may differ:
+  /// the ground reaches far beyond every part.
   bool agrees(const std::vector<perception::PrimitiveIndex>& kept, const perception::Scene& part,
               const ReasoningResult& result) const {
     const std::vector<std::uint64_t> found = decisionDigests(part, result);
     const auto owners = ownersOf(result.objects, kept.size());
     const Box checked = grown(box_, kChecked_m);
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-      if (std::binary_search(primitives_.begin(), primitives_.end(), kept[i])) {
-        if (found[i] != digests_[kept[i]]) return false;
-      } else if (checked.contains(boxOf(scene_.primitives[kept[i]])) && owners[i] != owners_[kept[i]]) {
-        return false;
-      }
-    }
-    return true;
+    const std::vector<perception::PrimitiveIndex> told = toldAbout(numbersIn(kept), result);
+    return std::all_of(told.begin(), told.end(), [&](auto i) { return found[i] == digests_[kept[i]]; }) &&
+           std::all_of(owners.begin(), owners.end(), [&](const std::vector<std::string>& rules) {
+             const auto i = static_cast<std::size_t>(&rules - owners.data());
+             return rules == owners_[kept[i]] || !checked.intersects(boxOf(scene_.primitives[kept[i]]));
+           });
   }
 
   /// The explained primitives by their numbers in the part.
@@ -87,6 +86,19 @@ class PartSearch {
   }
 
  private:
+  /// Those that are explained, and the seeds of their owners' decisions: an explanation tells these too.
+  static std::vector<perception::PrimitiveIndex> toldAbout(std::vector<perception::PrimitiveIndex> explained,
+                                                           const ReasoningResult& result) {
+    std::vector<perception::PrimitiveIndex> told = explained;
+    for (const SemanticObject& object : result.objects) {
+      const std::vector<perception::PrimitiveIndex> own = primitivesOf(object);
+      const std::vector<perception::PrimitiveIndex>& seeds = result.decisions[object.decision].seeds;
+      if (std::find_first_of(own.begin(), own.end(), explained.begin(), explained.end()) != own.end())
+        told.insert(told.end(), seeds.begin(), seeds.end());
+    }
+    return told;
+  }
+
   const perception::Scene& scene_;
   const std::vector<std::uint64_t>& digests_;
   std::vector<std::vector<std::string>> owners_;
@@ -97,11 +109,10 @@ class PartSearch {
 }  // namespace
 
 std::optional<PartRun> runInPart(const perception::Scene& scene, const RuleSet& rules, const WholeRun& whole,
-                                 const std::vector<perception::PrimitiveIndex>& primitives, double min_margin_m) {
+                                 const std::vector<perception::PrimitiveIndex>& primitives) {
   if (rules.asks_map || whole.digests.size() != scene.primitives.size() || primitives.empty()) return std::nullopt;
   const PartSearch search(scene, whole, primitives);
   for (const double margin_m : kMargins_m) {
-    if (margin_m < min_margin_m) continue;
     const std::vector<perception::PrimitiveIndex> kept = search.within(margin_m);
     if (kept.empty()) return std::nullopt;
     PartRun run{partOf(scene, kept), search.numbersIn(kept), {}};

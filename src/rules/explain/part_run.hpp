@@ -22,10 +22,11 @@ struct PartRun {
   ReasoningResult result;
 };
 
-/// Tries parts of growing size, from all primitives within `min_margin_m` on. One counts when the digests of
-/// `primitives` (ascending) are those of the whole run, and what lies within 5 m around them went to the same rules.
-/// Absent when no part does that is clearly smaller than the scene, or when the rules ask the map.
+/// Tries parts of growing size. One counts when the digests of `primitives` (ascending), and of the seeds of the
+/// objects that own them, are those of the whole run, and what touches the box of 5 m around them went to the same
+/// rules. A counterfactual may still read what lies farther away. Absent when no part counts that is clearly smaller
+/// than the scene, or when the rules ask the map.
 std::optional<PartRun> runInPart(const perception::Scene& scene, const RuleSet& rules, const WholeRun& whole,
-                                 const std::vector<perception::PrimitiveIndex>& primitives, double min_margin_m = 0);
+                                 const std::vector<perception::PrimitiveIndex>& primitives);
 
 }  // namespace cluxel::rules

@@ -57,8 +57,10 @@ const QueryTerms::Computed& QueryTerms::computedAt(ValueId id) const {
 const std::string* QueryTerms::heldOnce(std::string& name) {
   static const std::string none;
   if (name.empty()) return &none;
-  if (last_name_ == nullptr || *last_name_ != name) last_name_ = &*names_.insert(std::move(name)).first;
-  return last_name_;
+  if (last_name_ != nullptr && *last_name_ == name) return last_name_;
+  const auto [held, is_new] = names_.insert(std::move(name));
+  if (is_new) computed_bytes_ += kBytesOfNode + sizeof(std::string) + bytesOutside(*held);
+  return last_name_ = &*held;
 }
 
 bool QueryTerms::isSame(ValueId id, const Term& term) const {

@@ -71,7 +71,7 @@ class QueryTerms : public TermLookup {
   const std::string* last_name_ = nullptr;
   mutable std::unordered_map<ValueId, Value> decoded_;  ///< values that are decoded from text
   IdTable known_;
-  mutable std::size_t computed_bytes_ = 0;  ///< of computed_, known_ and decoded_
+  mutable std::size_t computed_bytes_ = 0;  ///< of computed_, names_, known_ and decoded_
 };
 
 }  // namespace cluxel::sparql
