@@ -26,22 +26,24 @@ Box grown(const Box& box, double by_m) {
   return {Eigen::Vector2d(box.min().array() - by_m), Eigen::Vector2d(box.max().array() + by_m)};
 }
 
-/// For each primitive the rules of the objects that own some of it, ascending.
-std::vector<std::vector<std::string>> ownersOf(const std::vector<SemanticObject>& objects, std::size_t primitives) {
-  std::vector<std::vector<std::string>> owners(primitives);
+/// For each cluxel the rule of the object that owns it; null for none.
+std::vector<const Rule*> rulesOfCluxels(const std::vector<SemanticObject>& objects, const RuleSet& rules,
+                                        std::size_t cluxels) {
+  std::vector<const Rule*> owners(cluxels, nullptr);
   for (const SemanticObject& object : objects)
-    for (const perception::PrimitiveIndex primitive : primitivesOf(object)) owners[primitive].push_back(object.rule_id);
-  for (std::vector<std::string>& rules : owners) std::sort(rules.begin(), rules.end());
+    for (const ObjectPart& part : object.parts)
+      for (const std::uint32_t cluxel : part.cluxels) owners[cluxel] = rules.find(object.rule_id);
   return owners;
 }
 
 class PartSearch {
  public:
-  PartSearch(const perception::Scene& scene, const WholeRun& whole,
+  PartSearch(const perception::Scene& scene, const RuleSet& rules, const WholeRun& whole,
              const std::vector<perception::PrimitiveIndex>& primitives)
       : scene_(scene),
+        rules_(rules),
         digests_(whole.digests),
-        owners_(ownersOf(whole.objects, scene.primitives.size())),
+        owners_(rulesOfCluxels(whole.objects, rules, scene.cluxels.size())),
         primitives_(primitives) {
     for (const perception::PrimitiveIndex primitive : primitives) box_.extend(boxOf(scene.primitives[primitive]));
   }
@@ -61,19 +63,14 @@ class PartSearch {
   }
 
   /// Whether the run over the part took the decisions of the whole run about what is explained and about the seeds of
-  /// the objects that own it, and gave what touches the box around it to the same rules. The digests there may differ:
-  /// the ground reaches far beyond every part.
+  /// the objects that own it, and gave every cluxel around it to the same rule. The digests there may differ: the
+  /// ground reaches far beyond every part.
   bool agrees(const std::vector<perception::PrimitiveIndex>& kept, const perception::Scene& part,
               const ReasoningResult& result) const {
     const std::vector<std::uint64_t> found = decisionDigests(part, result);
-    const auto owners = ownersOf(result.objects, kept.size());
-    const Box checked = grown(box_, kChecked_m);
     const std::vector<perception::PrimitiveIndex> told = toldAbout(numbersIn(kept), result);
     return std::all_of(told.begin(), told.end(), [&](auto i) { return found[i] == digests_[kept[i]]; }) &&
-           std::all_of(owners.begin(), owners.end(), [&](const std::vector<std::string>& rules) {
-             const auto i = static_cast<std::size_t>(&rules - owners.data());
-             return rules == owners_[kept[i]] || !checked.intersects(boxOf(scene_.primitives[kept[i]]));
-           });
+           hasSameOwners(kept, part, result);
   }
 
   /// The explained primitives by their numbers in the part.
@@ -99,9 +96,24 @@ class PartSearch {
     return told;
   }
 
+  bool hasSameOwners(const std::vector<perception::PrimitiveIndex>& kept, const perception::Scene& part,
+                     const ReasoningResult& result) const {
+    const std::vector<const Rule*> owners = rulesOfCluxels(result.objects, rules_, part.cluxels.size());
+    const Box checked = grown(box_, kChecked_m);
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      const std::vector<std::uint32_t>&here = part.primitives[i].cluxels, &there = scene_.primitives[kept[i]].cluxels;
+      for (std::size_t c = 0; c < here.size(); ++c)
+        if (owners[here[c]] != owners_[there[c]] &&
+            checked.contains(Eigen::Vector2d(part.cluxels.center[here[c]].head<2>())))
+          return false;
+    }
+    return true;
+  }
+
   const perception::Scene& scene_;
+  const RuleSet& rules_;
   const std::vector<std::uint64_t>& digests_;
-  std::vector<std::vector<std::string>> owners_;
+  std::vector<const Rule*> owners_;  ///< by cluxel of the whole scene
   const std::vector<perception::PrimitiveIndex>& primitives_;
   Box box_;
 };
@@ -111,7 +123,7 @@ class PartSearch {
 std::optional<PartRun> runInPart(const perception::Scene& scene, const RuleSet& rules, const WholeRun& whole,
                                  const std::vector<perception::PrimitiveIndex>& primitives) {
   if (rules.asks_map || whole.digests.size() != scene.primitives.size() || primitives.empty()) return std::nullopt;
-  const PartSearch search(scene, whole, primitives);
+  const PartSearch search(scene, rules, whole, primitives);
   for (const double margin_m : kMargins_m) {
     const std::vector<perception::PrimitiveIndex> kept = search.within(margin_m);
     if (kept.empty()) return std::nullopt;

@@ -23,8 +23,8 @@ struct PartRun {
 };
 
 /// Tries parts of growing size. One counts when the digests of `primitives` (ascending), and of the seeds of the
-/// objects that own them, are those of the whole run, and what touches the box of 5 m around them went to the same
-/// rules. A counterfactual may still read what lies farther away. Absent when no part counts that is clearly smaller
+/// objects that own them, are those of the whole run, and when every cluxel within 5 m around them went to the same
+/// rule. A counterfactual may still read what lies farther away. Absent when no part counts that is clearly smaller
 /// than the scene, or when the rules ask the map.
 std::optional<PartRun> runInPart(const perception::Scene& scene, const RuleSet& rules, const WholeRun& whole,
                                  const std::vector<perception::PrimitiveIndex>& primitives);
