@@ -29,6 +29,7 @@ void GraphResult::add(ValueId subject, ValueId predicate, ValueId object) {
 }
 
 void GraphResult::construct(const Batch& batch) {
+  runtime_.guard.requireRoomFor(triples_.growthFor(batch.rows * query_.construct_template.size()));
   for (std::size_t row = 0; row < batch.rows; ++row) {
     std::map<std::string, ValueId> blanks;
     for (const ast::TriplePattern& pattern : query_.construct_template) {
