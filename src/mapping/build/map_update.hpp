@@ -14,8 +14,8 @@ namespace cluxel::mapping {
 /// Runs a SPARQL Update on a map or another quad file. In a map, graph `inferred` is computed again, SPARQL rules
 /// included; when its rules use `ask:`, the objects are computed again too, because answers may have changed. Commits
 /// everything or nothing. Throws as runUpdate(); Error (InvalidArgument) when a build of the map is unfinished,
-/// or all graphs of a map are to be writable. The deadline covers what is inferred; the budget of memory covers the
-/// closure and derived facts, but not the queries of rules.
+/// or all graphs of a map are to be writable. Deadline and budget of memory cover what is inferred, the
+/// queries of SPARQL rules included.
 sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::string& update,
                                const sparql::UpdateOptions& options, ProgressSink& sink);
 

@@ -12,8 +12,8 @@ namespace cluxel::mapping {
 
 /// Cost: about 50 ns a point; unpacking about 15 ns.
 std::string packedPoints(const scan::ScanPoints& points);
-/// Throws Error (StoreUnavailable) for other bytes than packedPoints() writes, and for many more than `points` points,
+/// Throws Error (StoreUnavailable) for other bytes than packedPoints() writes, and for many more points than stated,
 /// before memory is asked for.
-scan::ScanPoints unpackedPoints(std::string_view packed, std::uint64_t points);
+scan::ScanPoints unpackedPoints(std::string_view packed, std::uint64_t stated_points);
 
 }  // namespace cluxel::mapping

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs the rules over a part of the scene, checked against the digests of the whole run.
+#include "rules/explain/part_run.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 
 #include "perception/segments/scene_part.hpp"
 #include "rules/explain/decision_digests.hpp"
-#include "rules/explain/part_run.hpp"
 
 namespace cluxel::rules {
 
@@ -30,9 +31,11 @@ Box grown(const Box& box, double by_m) {
 std::vector<const Rule*> rulesOfCluxels(const std::vector<SemanticObject>& objects, const RuleSet& rules,
                                         std::size_t cluxels) {
   std::vector<const Rule*> owners(cluxels, nullptr);
-  for (const SemanticObject& object : objects)
+  for (const SemanticObject& object : objects) {
+    const Rule* rule = rules.find(object.rule_id);
     for (const ObjectPart& part : object.parts)
-      for (const std::uint32_t cluxel : part.cluxels) owners[cluxel] = rules.find(object.rule_id);
+      for (const std::uint32_t cluxel : part.cluxels) owners[cluxel] = rule;
+  }
   return owners;
 }
 
@@ -84,7 +87,7 @@ class PartSearch {
 
  private:
   /// Those that are explained, and the seeds of their owners' decisions: an explanation tells these too.
-  static std::vector<perception::PrimitiveIndex> toldAbout(std::vector<perception::PrimitiveIndex> explained,
+  static std::vector<perception::PrimitiveIndex> toldAbout(const std::vector<perception::PrimitiveIndex>& explained,
                                                            const ReasoningResult& result) {
     std::vector<perception::PrimitiveIndex> told = explained;
     for (const SemanticObject& object : result.objects) {
