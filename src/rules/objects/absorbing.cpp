@@ -26,6 +26,8 @@ class Absorbing {
   Absorbing(ReasoningState& state, std::size_t first, bool late) : state_(state), first_(first), late_(late) {
     for (std::size_t i = first; i < state.objects.size(); ++i) budget_.push_back(pointsOf(state.objects[i]));
     absorbed_.resize(budget_.size(), 0);
+    claims_of_.resize(budget_.size());
+    is_outdated_.resize(budget_.size(), 1);
   }
 
   void run() {
@@ -54,10 +56,9 @@ class Absorbing {
   }
 
   std::vector<Claim> weigh() {
-    std::vector<std::vector<Claim>> claims_of(state_.objects.size() - first_);
-    parallelFor(claims_of.size(), state_.threads(), [&](std::size_t i) { claims_of[i] = claimsOf(first_ + i); });
+    parallelFor(claims_of_.size(), state_.threads(), [&](std::size_t i) { renewClaims(i); });
     std::map<FragmentIndex, Claim> best;
-    for (const std::vector<Claim>& of_object : claims_of)
+    for (const std::vector<Claim>& of_object : claims_of_)
       for (const Claim& claim : of_object) {
         const auto [entry, fresh] = best.try_emplace(claim.fragment, claim);
         if (!fresh && isBetter(claim, entry->second)) entry->second = claim;
@@ -71,6 +72,30 @@ class Absorbing {
       return state_.fragments.before(a.fragment, b.fragment);
     });
     return claims;
+  }
+
+  /// An object that did not grow claims what it claimed before, as far as nobody has got it.
+  void renewClaims(std::size_t i) {
+    if (is_outdated_[i] != 0) {
+      claims_of_[i] = claimsOf(first_ + i);
+      is_outdated_[i] = looksAtObjects(state_.objects[first_ + i]) ? 1 : 0;
+    } else {
+      std::erase_if(claims_of_[i],
+                    [this](const Claim& claim) { return state_.fragments[claim.fragment].owner != kFree; });
+    }
+  }
+
+  /// Whether growing objects may change what the object claims.
+  static bool looksAtObjects(const ObjectInMaking& object) {
+    const auto looks = [](const Condition& condition) { return looksAtOthers(condition); };
+    return std::any_of(object.leaf->absorb.begin(), object.leaf->absorb.end(),
+                       [&](const AbsorbSpec& spec) { return std::any_of(spec.when.begin(), spec.when.end(), looks); });
+  }
+  static bool looksAtOthers(const Condition& condition) {
+    using Kind = Condition::Kind;
+    if (condition.kind == Kind::Ask || condition.kind == Kind::Class) return true;
+    if (condition.target && condition.target->kind != Target::Kind::Name) return true;
+    return std::any_of(condition.operands.begin(), condition.operands.end(), looksAtOthers);
   }
 
   std::vector<Claim> claimsOf(std::size_t number) {
@@ -111,6 +136,7 @@ class Absorbing {
       so_far += points;
       state_.fragments.setOwner(claim.fragment, static_cast<OwnerIndex>(claim.object));
       addTo(object, claim);
+      is_outdated_[claim.object - first_] = 1;
       any = true;
     }
     return any;
@@ -130,6 +156,8 @@ class Absorbing {
   std::size_t first_;
   bool late_;
   std::vector<double> budget_, absorbed_;
+  std::vector<std::vector<Claim>> claims_of_;  ///< by object from first_ on
+  std::vector<char> is_outdated_;              ///< whether claims_of_ has to be found anew; bytes, written in parallel
 };
 
 }  // namespace

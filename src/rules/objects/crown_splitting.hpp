@@ -23,10 +23,10 @@ inline constexpr std::uint32_t kNoSource = 0xFFFFFFFFU;
 
 /// For each cluxel of `crown` (ascending), the number of its source, or kNoSource. Paths follow the cluxel graph with
 /// metric edge lengths. Gaps up to jump_m (from the trunk: start_m) are bridged at twice their length. No path goes
-/// beyond reach_m around the trunk's top in plan view. Ties go to the source with the smaller number. Cost O(n log n)
-/// in the crown's edges.
+/// beyond reach_m around the trunk's top in plan view. Ties go to the source with the smaller number, whatever the
+/// number of threads. Cost O(n log n) in the crown's edges.
 std::vector<std::uint32_t> splitCrown(const perception::SceneCluxels& all, std::span<const std::uint32_t> crown,
-                                      std::span<const CrownSource> sources);
+                                      std::span<const CrownSource> sources, unsigned threads = 1);
 
 /// Position of a trunk's top in plan view: the mean of its highest half metre [m, map].
 Eigen::Vector2d topOf(const perception::SceneCluxels& all, std::span<const std::uint32_t> trunk);

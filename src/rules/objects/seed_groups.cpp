@@ -5,11 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
-#include <numeric>
 
 #include "base/disjoint_sets.hpp"
-#include "base/parallel.hpp"
+#include "rules/objects/seed_links.hpp"
 #include "rules/propose/condition_eval.hpp"
 
 namespace cluxel::rules {
@@ -27,75 +25,6 @@ bool passes(const ReasoningState& state, const Rule& rule, const std::vector<Con
   bindings.candidates.emplace_back(rule.seed.name, std::move(candidate));
   return ConditionEvaluator(state, rule, bindings).allHold(conditions);
 }
-
-struct Link {
-  double gap = 0;
-  std::size_t a = 0, b = 0;  ///< positions among the members, a < b
-};
-
-/// Finds the pairs of members that the group's tolerances link, shortest gap first.
-class Linking {
- public:
-  Linking(const ReasoningState& state, const GroupSpec& group, const std::vector<FragmentIndex>& members)
-      : state_(state), group_(group), members_(members) {
-    place_.assign(state.fragments.size(), kNowhere);
-    for (std::size_t i = 0; i < members.size(); ++i) place_[members[i]] = i;
-  }
-
-  std::vector<Link> links() const {
-    constexpr std::size_t kChunk = 64;
-    std::vector<std::vector<Link>> of_chunk((members_.size() + kChunk - 1) / kChunk);
-    parallelFor(of_chunk.size(), state_.threads(), [&](std::size_t chunk) {
-      const std::size_t end = std::min(members_.size(), (chunk + 1) * kChunk);
-      for (std::size_t i = chunk * kChunk; i < end; ++i)
-        for (const auto& [theirs, gap] : linksOf(i)) of_chunk[chunk].push_back({gap, i, theirs});
-    });
-    std::vector<Link> links;
-    for (const std::vector<Link>& some : of_chunk) links.insert(links.end(), some.begin(), some.end());
-    std::stable_sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.gap < b.gap; });
-    return links;
-  }
-
- private:
-  /// By position: the members after `mine` that a link leads to, with the gap.
-  using Gaps = std::map<std::size_t, double>;
-
-  Gaps linksOf(std::size_t mine) const {
-    const double reach = std::max(group_.near_m.value_or(0), group_.horizontal_m.value_or(0));
-    Gaps gaps;
-    for (std::uint32_t cluxel : state_.fragments[members_[mine]].cluxels) {
-      const auto look = [&](std::uint32_t other) { consider(mine, cluxel, other, gaps); };
-      if (group_.horizontal_m)
-        state_.grid.nearInPlan(cluxel, reach, look);
-      else if (group_.near_m)
-        state_.grid.near(cluxel, reach, look);
-      if (group_.adjacent)
-        for (std::uint32_t other : state_.scene.cluxels.neighbours(cluxel)) link(mine, other, 0, gaps);
-    }
-    return gaps;
-  }
-  void consider(std::size_t mine, std::uint32_t cluxel, std::uint32_t other, Gaps& gaps) const {
-    const std::size_t theirs = place_[state_.fragments.fragmentOf(other)];
-    if (theirs == kNowhere || theirs <= mine) return;
-    const CluxelGap gap = gapBetween(state_.scene.cluxels, cluxel, other);
-    const bool near = group_.near_m && gap.gap() <= *group_.near_m;
-    const bool stacked =
-        group_.horizontal_m && gap.horizontal <= *group_.horizontal_m && gap.vertical <= *group_.vertical_m;
-    if (near || stacked) link(mine, other, gap.gap(), gaps);
-  }
-  void link(std::size_t mine, std::uint32_t other, double gap, Gaps& gaps) const {
-    const std::size_t theirs = place_[state_.fragments.fragmentOf(other)];
-    if (theirs == kNowhere || theirs <= mine) return;
-    const auto [entry, fresh] = gaps.try_emplace(theirs, gap);
-    if (!fresh) entry->second = std::min(entry->second, gap);
-  }
-
-  const ReasoningState& state_;
-  const GroupSpec& group_;
-  const std::vector<FragmentIndex>& members_;
-  static constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> place_;  // per fragment
-};
 
 /// Joins members along links (union-find), skipping joins that would violate a limit.
 class Joining {
@@ -115,8 +44,8 @@ class Joining {
     for (std::size_t i = 0; i < members.size(); ++i) held_[i].outline = state.fragments.outlineOf(members[i]);
   }
 
-  std::vector<std::vector<FragmentIndex>> groups(const std::vector<Link>& links) {
-    for (const Link& link : links) join(setOf(link.a), setOf(link.b));
+  std::vector<std::vector<FragmentIndex>> groups(const std::vector<SeedLink>& links) {
+    for (const SeedLink& link : links) join(setOf(link.a), setOf(link.b));
     std::vector<std::vector<FragmentIndex>> groups;
     for (std::size_t i = 0; i < members_.size(); ++i)
       if (setOf(i) == i) groups.push_back(std::move(held_[i].fragments));
@@ -231,7 +160,7 @@ std::vector<std::vector<FragmentIndex>> seedGroups(const ReasoningState& state, 
   const std::vector<FragmentIndex> pool = members(state, rule, slices);
   std::vector<std::vector<FragmentIndex>> groups;
   if (rule.group)
-    groups = Joining(state, rule, pool).groups(Linking(state, *rule.group, pool).links());
+    groups = Joining(state, rule, pool).groups(seedLinks(state, *rule.group, pool));
   else
     for (FragmentIndex fragment : pool) groups.push_back({fragment});
   std::erase_if(groups, [&](const auto& group) {

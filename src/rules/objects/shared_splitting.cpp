@@ -20,8 +20,10 @@ class SharedSplitting {
     for (const auto& [fragment, owners] : state_.claims)
       crown_.insert(crown_.end(), state_.fragments[fragment].cluxels.begin(), state_.fragments[fragment].cluxels.end());
     std::sort(crown_.begin(), crown_.end());
+    owners_of_.resize(state_.fragments.size(), nullptr);
+    for (const auto& [fragment, owners] : state_.claims) owners_of_[fragment] = &owners;
     const auto sources = makeSources();
-    taken_ = splitCrown(state_.scene.cluxels, crown_, sources);
+    taken_ = splitCrown(state_.scene.cluxels, crown_, sources, state_.threads());
     const auto claims = std::move(state_.claims);
     state_.claims.clear();
     for (const auto& [fragment, owners] : claims) cutFragment(fragment);
@@ -66,9 +68,8 @@ class SharedSplitting {
       source.start_m = spec.start_m;
       source.clearance_m = spec.clearance_m;
       source.may_take = [this, owner](std::uint32_t cluxel) {
-        const auto claim = state_.claims.find(state_.fragments.fragmentOf(cluxel));
-        return claim != state_.claims.end() &&
-               std::find(claim->second.begin(), claim->second.end(), owner) != claim->second.end();
+        const std::vector<OwnerIndex>* owners = owners_of_[state_.fragments.fragmentOf(cluxel)];
+        return owners != nullptr && std::find(owners->begin(), owners->end(), owner) != owners->end();
       };
       sources.push_back(std::move(source));
     }
@@ -112,6 +113,7 @@ class SharedSplitting {
   ReasoningState& state_;
   std::vector<OwnerIndex> claimants_;
   std::vector<std::uint32_t> crown_, taken_;
+  std::vector<const std::vector<OwnerIndex>*> owners_of_;  ///< by fragment; null where none claims it
 };
 
 }  // namespace
