@@ -272,31 +272,5 @@ TEST_F(MapChange, WhatCannotBeDoneIsRefusedAndChangesNothing) {
   expectExact({{0, 0}});
 }
 
-ContentHash idNamed(const std::string& name) {
-  return ContentHasher().addText(name).finish();
-}
-
-TEST(ObjectChanges, TellAddedGoneChangedSplitAndJoined) {
-  const auto object = [](const std::string& name, std::vector<std::uint64_t> seeds) {
-    return ObjectMembers{idNamed(name), "Tree", std::move(seeds)};
-  };
-  const std::vector<ObjectMembers> before{object("same", {1, 2, 3}),    object("grows", {10, 11}),
-                                          object("vanishes", {20, 21}), object("two", {30, 31, 32, 33}),
-                                          object("left", {40, 41}),     object("right", {50, 51})};
-  const std::vector<ObjectMembers> after{object("same", {1, 2, 3}), object("grown", {10, 11, 12, 13, 14, 15}),
-                                         object("new", {60}),       object("half1", {30, 31}),
-                                         object("half2", {32, 33}), object("one", {40, 41, 50, 51})};
-  const ObjectChanges changes = compareObjects(before, after);
-  EXPECT_EQ(changes.unchanged, 1U);
-  EXPECT_EQ(changes.added, std::vector{idNamed("new")});
-  EXPECT_EQ(changes.gone, std::vector{idNamed("vanishes")});
-  ASSERT_EQ(changes.changed.size(), 1U);
-  EXPECT_EQ(changes.changed.front().id, idNamed("grown"));
-  EXPECT_EQ(changes.changed.front().from, std::vector{idNamed("grows")});
-  EXPECT_EQ(changes.split.size(), 2U);
-  ASSERT_EQ(changes.joined.size(), 1U);
-  EXPECT_EQ(changes.joined.front().from.size(), 2U);
-}
-
 }  // namespace
 }  // namespace cluxel::mapping

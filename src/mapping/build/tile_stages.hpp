@@ -28,6 +28,8 @@ class TileStages {
   void loadAll(const rdf::ReadTransaction& transaction);
   /// The scene of what is loaded.
   perception::Scene scene() const { return assembleScene(outputs_, params_.relation); }
+  /// The seeds of the scene's cluxels.
+  perception::SceneSeeds seeds() const { return seedsOf(outputs_); }
 
   const std::map<perception::TileKey, perception::TilePoints>& points() const { return outputs_.points; }
   const std::map<perception::TileKey, perception::CluxelTile>& cluxels() const { return outputs_.cluxels; }

@@ -50,12 +50,14 @@ void MapEditor::readBefore(const rdf::ReadTransaction& transaction) {
     stages_.emplace(parsed_.model, parsed_.inputs.params);
     stages_->loadAll(transaction);
   }
-  const perception::Scene scene = stages_->scene();
-  report_.before = report_.after = membersOf(storedObjects(transaction), scene.cluxels);
-  report_.objects = compareObjects(report_.before, report_.after);
+  const perception::SceneSeeds seeds = stages_->seeds();
+  report_.before = report_.after = membersOf(storedObjects(transaction), seeds);
+  report_.objects.unchanged = report_.after.size();
+  own_before_ = report_.before.size();
   report_.scans = storedClouds(transaction).size();
   report_.tiles = stages_->points().size();
-  report_.cluxels = scene.cluxels.size(), report_.primitives = scene.primitives.size();
+  report_.cluxels = seeds.seed.size();
+  report_.primitives = storedDigests(transaction).size();  // there is one for each primitive
 }
 
 void MapEditor::setInputs(ParsedInputs inputs) {
@@ -97,7 +99,10 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
   storeState(transaction, MapState{true, inputs_hash_});
   report(transaction, layer);
   const Activity activity{operation, started_s, secondsNow(), clock.seconds()};
-  const ObjectChanges lineage = compareObjects(*present_, report_.after);
+  const ObjectChanges lineage = compareStates(*present_, report_.after);
+  const bool is_all = !has_committed_ && report_.before.size() == own_before_;
+  report_.objects = is_all ? lineage : compareObjects(report_.before, report_.after);
+  has_committed_ = true;
   addLineage(transaction, addActivity(transaction, activity, scans, parsed_.inputs), lineage);
   present_ = report_.after;
   if (!params_.dry_run) transaction.commit();
@@ -112,7 +117,6 @@ void MapEditor::report(const rdf::ReadTransaction& transaction, const SemanticLa
   report_.cluxels = layer.scene.cluxels.size();
   report_.primitives = layer.scene.primitives.size();
   report_.after = membersOf(layer.objects, layer.scene.cluxels);
-  report_.objects = compareObjects(report_.before, report_.after);
 }
 
 }  // namespace cluxel::mapping

@@ -69,6 +69,8 @@ class MapEditor {
   std::optional<TileStages> stages_;
   TileSet touched_, changed_;                          ///< in all commits
   std::optional<std::vector<ObjectMembers>> present_;  ///< the objects of the last commit
+  std::size_t own_before_ = 0;                         ///< objects of this map in report_.before; a merge adds others
+  bool has_committed_ = false;
   ChangeReport report_;
 };
 

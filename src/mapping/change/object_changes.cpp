@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <unordered_map>
 
@@ -52,15 +53,15 @@ void sortById(std::vector<DerivedObject>& objects) {
 }  // namespace
 
 std::vector<ObjectMembers> membersOf(const std::vector<rules::SemanticObject>& objects,
-                                     const perception::SceneCluxels& cluxels) {
+                                     const perception::SceneSeeds& seeds) {
   std::vector<ObjectMembers> all;
   all.reserve(objects.size());
   for (const rules::SemanticObject& object : objects) {
     ObjectMembers members{object.id, object.class_iri, {}};
     for (const rules::ObjectPart& part : object.parts)
       for (const std::uint32_t cluxel : part.cluxels) {
-        const auto& seed = cluxels.seed[cluxel];
-        members.seeds.push_back(keyOfSeed(cluxels.scans[seed.scan], seed.point));
+        const perception::SeedName& seed = seeds.seed[cluxel];
+        members.seeds.push_back(keyOfSeed(seeds.scans[seed.scan], seed.point));
       }
     std::sort(members.seeds.begin(), members.seeds.end());
     all.push_back(std::move(members));
@@ -93,6 +94,16 @@ ObjectChanges compareObjects(const std::vector<ObjectMembers>& before, const std
   std::sort(changes.added.begin(), changes.added.end());
   std::sort(changes.gone.begin(), changes.gone.end());
   for (auto* list : {&changes.changed, &changes.split, &changes.joined}) sortById(*list);
+  return changes;
+}
+
+ObjectChanges compareStates(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after) {
+  const auto byId = [](const ObjectMembers& a, const ObjectMembers& b) { return a.id < b.id; };
+  std::vector<ObjectMembers> only_before, only_after;
+  std::set_difference(before.begin(), before.end(), after.begin(), after.end(), std::back_inserter(only_before), byId);
+  std::set_difference(after.begin(), after.end(), before.begin(), before.end(), std::back_inserter(only_after), byId);
+  ObjectChanges changes = compareObjects(only_before, only_after);
+  changes.unchanged = after.size() - only_after.size();
   return changes;
 }
 

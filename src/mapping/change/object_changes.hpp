@@ -20,7 +20,7 @@ struct ObjectMembers {
 };
 
 std::vector<ObjectMembers> membersOf(const std::vector<rules::SemanticObject>& objects,
-                                     const perception::SceneCluxels& cluxels);
+                                     const perception::SceneSeeds& seeds);
 
 /// The objects that an object was derived from.
 struct DerivedObject {
@@ -39,7 +39,11 @@ struct ObjectChanges {
 };
 
 /// Compares the objects before and after a change. An object goes on in another when that holds at least half of its
-/// seed points, or the other way round. Lists are sorted by id. Cost O(n log n) in the members.
+/// seed points, or the other way round. Lists are sorted by id. `before` may hold the objects of several maps, in which
+/// members occur twice. Cost O(n log n) in the members.
 ObjectChanges compareObjects(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after);
+/// The same for the objects of one map before and after, which have no common members. Both sorted by id. Cost
+/// O(n log n) in the members of those that differ.
+ObjectChanges compareStates(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after);
 
 }  // namespace cluxel::mapping

@@ -52,11 +52,15 @@ struct SeedName {
   std::uint32_t scan = 0, point = 0;
 };
 
+/// The seed points of the cluxels of a scene.
+struct SceneSeeds {
+  std::vector<SeedName> seed;      ///< identifies a cluxel independently of the other points of its tile
+  std::vector<ContentHash> scans;  ///< ids of the scans of `seed`, ascending
+};
+
 /// Cluxels of the whole scene as a structure of arrays, sorted by tile and number, with their graph in CSR form.
-struct SceneCluxels {
+struct SceneCluxels : SceneSeeds {
   std::vector<CluxelName> name;
-  std::vector<SeedName> seed;               ///< identifies a cluxel independently of the other points of its tile
-  std::vector<ContentHash> scans;           ///< ids of the scans of `seed`, ascending
   std::vector<Eigen::Vector3d> center;      ///< mean of own points [m, map]
   std::vector<Eigen::Vector3f> extent;      ///< size of the box around own points [m]
   std::vector<Eigen::Vector3d> low_corner;  ///< of that box [m, map]

@@ -117,23 +117,26 @@ void appendEdges(const TileOutputs& tiles, const TileKey& key, const TileNumberi
   }
 }
 
-void appendCluxels(const TileOutputs& tiles, const TileKey& key, const TileNumbering& numbering, SceneCluxels& all) {
-  const CluxelTile& cluxels = tiles.cluxels.at(key);
-  const LabelTile& labels = tiles.labels.at(key);
-  const TilePoints& points = tiles.points.at(key);
+void appendSeeds(const CluxelTile& cluxels, const TilePoints& points, SceneSeeds& all) {
   std::vector<std::uint32_t> scan_number;  // the scene's number of each of the tile's scans
   for (const ContentHash& scan : points.scans)
     scan_number.push_back(
         static_cast<std::uint32_t>(std::lower_bound(all.scans.begin(), all.scans.end(), scan) - all.scans.begin()));
+  appendEach(all.seed, cluxels.size(), [&](auto c) {
+    const std::uint32_t seed = cluxels.seed[c];
+    return SeedName{scan_number[points.scan[seed]], points.point[seed]};
+  });
+}
+
+void appendCluxels(const TileOutputs& tiles, const TileKey& key, const TileNumbering& numbering, SceneCluxels& all) {
+  const CluxelTile& cluxels = tiles.cluxels.at(key);
+  const LabelTile& labels = tiles.labels.at(key);
   const auto ground = ringIn(tiles.ground, key);
   const Eigen::Vector3d corner = cornerOf(key);
   const std::size_t count = cluxels.size();
   const auto centre = [&](auto c) -> const Eigen::Vector3f& { return cluxels.own[c].mean; };
   appendEach(all.name, count, [&](auto c) { return CluxelName{key, c}; });
-  appendEach(all.seed, count, [&](auto c) {
-    const std::uint32_t seed = cluxels.seed[c];
-    return SeedName{scan_number[points.scan[seed]], points.point[seed]};
-  });
+  appendSeeds(cluxels, tiles.points.at(key), all);
   appendEach(all.center, count, [&](auto c) -> Eigen::Vector3d { return corner + centre(c).template cast<double>(); });
   appendEach(all.extent, count, [&](auto c) -> Eigen::Vector3f { return cluxels.box_max[c] - cluxels.box_min[c]; });
   appendEach(all.low_corner, count,
@@ -262,6 +265,13 @@ void describe(RelationParams& params, ParameterVisitor& visitor) {
   visitor.real({"relation.ground", "m", 0, 5, "largest height above the ground of what touches it"}, params.ground_m);
   visitor.real({"relation.inside", "1", 0, 1, "least share of a box that lies inside"}, params.inside_share);
   visitor.real({"relation.parallel", "rad", 0, 1.5708, "largest angle of parallel things"}, params.parallel_rad);
+}
+
+SceneSeeds seedsOf(const TileOutputs& tiles) {
+  SceneSeeds seeds;
+  seeds.scans = scansOf(tiles);
+  for (const auto& [key, tile] : tiles.cluxels) appendSeeds(tile, tiles.points.at(key), seeds);
+  return seeds;
 }
 
 Scene assembleScene(const TileOutputs& tiles, const RelationParams& params) {

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// What became of objects: by hand, and the two ways to compare against each other.
+#include "mapping/change/object_changes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+namespace cluxel::mapping {
+
+namespace {
+
+ContentHash idNamed(const std::string& name) {
+  return ContentHasher().addText(name).finish();
+}
+
+TEST(ObjectChanges, TellAddedGoneChangedSplitAndJoined) {
+  const auto object = [](const std::string& name, std::vector<std::uint64_t> seeds) {
+    return ObjectMembers{idNamed(name), "Tree", std::move(seeds)};
+  };
+  const std::vector<ObjectMembers> before{object("same", {1, 2, 3}),    object("grows", {10, 11}),
+                                          object("vanishes", {20, 21}), object("two", {30, 31, 32, 33}),
+                                          object("left", {40, 41}),     object("right", {50, 51})};
+  const std::vector<ObjectMembers> after{object("same", {1, 2, 3}), object("grown", {10, 11, 12, 13, 14, 15}),
+                                         object("new", {60}),       object("half1", {30, 31}),
+                                         object("half2", {32, 33}), object("one", {40, 41, 50, 51})};
+  const ObjectChanges changes = compareObjects(before, after);
+  EXPECT_EQ(changes.unchanged, 1U);
+  EXPECT_EQ(changes.added, std::vector{idNamed("new")});
+  EXPECT_EQ(changes.gone, std::vector{idNamed("vanishes")});
+  ASSERT_EQ(changes.changed.size(), 1U);
+  EXPECT_EQ(changes.changed.front().id, idNamed("grown"));
+  EXPECT_EQ(changes.changed.front().from, std::vector{idNamed("grows")});
+  EXPECT_EQ(changes.split.size(), 2U);
+  ASSERT_EQ(changes.joined.size(), 1U);
+  EXPECT_EQ(changes.joined.front().from.size(), 2U);
+}
+
+TEST(ObjectChanges, OfTwoStatesOfOneMapNeedOnlyWhatDiffers) {
+  std::mt19937 random(4);
+  const auto stateOf = [&](std::vector<std::uint64_t> seeds) {
+    std::shuffle(seeds.begin(), seeds.end(), random);
+    std::vector<ObjectMembers> objects;
+    for (std::size_t first = 0; first < seeds.size();) {
+      const std::size_t count = std::min<std::size_t>(1 + random() % 6, seeds.size() - first);
+      ObjectMembers object{{},
+                           "Tree",
+                           {seeds.begin() + static_cast<std::ptrdiff_t>(first),
+                            seeds.begin() + static_cast<std::ptrdiff_t>(first + count)}};
+      std::sort(object.seeds.begin(), object.seeds.end());
+      ContentHasher hasher;
+      for (const std::uint64_t seed : object.seeds) hasher.add(seed);
+      object.id = hasher.finish();
+      objects.push_back(std::move(object));
+      first += count;
+    }
+    return objects;
+  };
+  const auto sorted = [](std::vector<ObjectMembers> objects) {
+    std::sort(objects.begin(), objects.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+    return objects;
+  };
+  for (int round = 0; round < 50; ++round) {
+    std::vector<std::uint64_t> few(30), fewer(20), same(40);
+    std::iota(few.begin(), few.end(), 1U), std::iota(fewer.begin(), fewer.end(), 5U),
+        std::iota(same.begin(), same.end(), 100U);
+    std::vector<ObjectMembers> before = stateOf(few), after = stateOf(fewer);
+    for (const ObjectMembers& object : stateOf(same)) before.push_back(object), after.push_back(object);
+    before = sorted(before), after = sorted(after);
+    const ObjectChanges expected = compareObjects(before, after), found = compareStates(before, after);
+    const auto listed = [](const std::vector<DerivedObject>& objects) {
+      std::vector<std::pair<ContentHash, std::vector<ContentHash>>> list;
+      for (const DerivedObject& object : objects) list.emplace_back(object.id, object.from);
+      return list;
+    };
+    EXPECT_GE(found.unchanged, 7U);
+    EXPECT_EQ(found.unchanged, expected.unchanged);
+    EXPECT_EQ(found.added, expected.added);
+    EXPECT_EQ(found.gone, expected.gone);
+    EXPECT_EQ(listed(found.changed), listed(expected.changed));
+    EXPECT_EQ(listed(found.split), listed(expected.split));
+    EXPECT_EQ(listed(found.joined), listed(expected.joined));
+  }
+}
+
+}  // namespace
+}  // namespace cluxel::mapping
