@@ -20,6 +20,10 @@ struct Cloud {
   bool has_pose = false;
   std::uint64_t point_count = 0;
   Eigen::Vector3d min = Eigen::Vector3d::Zero(), max = Eigen::Vector3d::Zero();  ///< bounds of its points [m, map]
+  /// Bounds of its rays, from their origins to the points [m, map]. Endless in maps of versions that did not store
+  /// them.
+  Eigen::AlignedBox3d rays{Eigen::Vector3d(Eigen::Vector3d::Constant(-1e300)),
+                           Eigen::Vector3d(Eigen::Vector3d::Constant(1e300))};
 };
 
 }  // namespace cluxel::mapping

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <fstream>
 #include <map>
 #include <random>
@@ -12,6 +13,7 @@
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/map_update.hpp"
+#include "mapping/facts/stored_presence.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/small_campus.hpp"
 #include "sparql/query_engine.hpp"
@@ -30,7 +32,13 @@ class MapChange : public testing::Test {
   static void SetUpTestSuite() {
     campus = new SmallCampus({.seed = 5, .stops = kScans, .size_m = 45, .points_per_stop = 1200});
     inputs = new MapInputs(shippedInputs());
-    scans = new ScanSet(scansOf(campus->files()));
+    const ScratchFolder manifest;  // gives the scans times, so that objects have a presence
+    std::ofstream text(manifest.path() / "scans.yaml");
+    text << "scans:\n";
+    for (std::size_t i = 0; i < kScans; ++i)
+      text << "  - {path: " << campus->files()[i].string() << ", time_s: " << 1600000000 + 1000 * i << "}\n";
+    text.close();
+    scans = new ScanSet(scansOf({manifest.path() / "scans.yaml"}));
     for (std::size_t i = 0; i < scans->size(); ++i) ids.push_back(scans->load(i).id);
   }
   static void TearDownTestSuite() {
@@ -235,7 +243,10 @@ TEST_F(MapChange, ALaterTimeOfAKnownScanIsKept) {
   const ChangeReport report = extendMap(map(), again, {}, silence());
   EXPECT_EQ(report.scans_already_there, 1U);
   EXPECT_TRUE(report.has_changes);
-  const ScanSet both = scansOf({campus->files()[0], folder.path() / "later.yaml"});
+  std::ofstream(folder.path() / "both.yaml")
+      << "scans:\n  - {path: " << campus->files()[0].string()
+      << ", time_s: 1600000000}\n  - {path: " << campus->files()[1].string() << ", time_s: 1700000000.5}\n";
+  const ScanSet both = scansOf({folder.path() / "both.yaml"});
   buildMap(both, *inputs, folder.path() / "other.clx", {}, silence());
   EXPECT_TRUE(canonicalText(map()) == canonicalText(folder.path() / "other.clx"));
 }
@@ -251,6 +262,34 @@ TEST_F(MapChange, LineageLeadsFromCommitToCommit) {
       reader.quads(), R"(PREFIX prov: <http://www.w3.org/ns/prov#> PREFIX clx: <https://w3id.org/cluxel/ontology#>
     ASK { GRAPH <https://w3id.org/cluxel/graph/history> { ?a prov:wasInvalidatedBy ?x, ?y FILTER(?x != ?y) } })");
   EXPECT_FALSE(gone.boolean) << "an object goes once";
+}
+
+TEST_F(MapChange, PresenceIsComputedOnlyWhereRaysOrObjectsDiffer) {
+  build({{0, 0}, {1, 0}, {2, 0}, {3, 0}});
+  const MapReader map(this->map());
+  const auto environment = Environment::open(this->map(), OpenMode::ReadWrite);
+  WriteTransaction transaction = environment->write();
+  std::vector<Cloud> clouds = map.clouds();
+  const auto known = updatePresence(transaction, map.scene(), map.objects(), clouds, 1);
+  EXPECT_EQ(known.computed, 0U);
+  clouds.front().time_s = 1700000000;
+  const auto changed = updatePresence(transaction, map.scene(), map.objects(), clouds, 2);
+  EXPECT_GT(changed.computed, 0U);
+  transaction.eraseBlock(tables::kMeta, "presence");
+  const auto anew = updatePresence(transaction, map.scene(), map.objects(), clouds, 1);
+  EXPECT_GT(anew.computed, changed.computed - 1);
+  const auto timesOf = [](const PresenceUpdate& update) {
+    std::vector<std::array<std::optional<double>, 4>> times;
+    for (const auto& presence : update.presence) {
+      times.emplace_back();
+      if (presence)
+        times.back() = {presence->first_seen_s, presence->last_seen_s, presence->seen_empty_s,
+                        presence->seen_through_s};
+    }
+    return times;
+  };
+  EXPECT_EQ(timesOf(changed), timesOf(anew));
+  EXPECT_NE(timesOf(changed), timesOf(known));
 }
 
 TEST_F(MapChange, WhatCannotBeDoneIsRefusedAndChangesNothing) {

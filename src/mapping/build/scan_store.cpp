@@ -35,6 +35,7 @@ std::string toBytes(const Cloud& cloud) {
   Json json{{"source", cloud.source},      {"pose", numbersOf(cloud.T_map_sensor)}, {"has_pose", cloud.has_pose},
             {"points", cloud.point_count}, {"min", vectorJson(cloud.min)},          {"max", vectorJson(cloud.max)}};
   if (cloud.time_s) json["time_s"] = *cloud.time_s;
+  json["rays"] = Json::array({vectorJson(cloud.rays.min()), vectorJson(cloud.rays.max())});
   const auto bytes = Json::to_cbor(json);
   return {bytes.begin(), bytes.end()};
 }
@@ -52,6 +53,7 @@ Cloud cloudFromBytes(const scan::ScanId& id, std::string_view bytes) {
     cloud.point_count = json.at("points");
     cloud.min = vectorFrom(json.at("min"));
     cloud.max = vectorFrom(json.at("max"));
+    if (json.contains("rays")) cloud.rays = {vectorFrom(json["rays"].at(0)), vectorFrom(json["rays"].at(1))};
     if (json.contains("time_s")) cloud.time_s = json.at("time_s").get<double>();
     return cloud;
   } catch (const std::exception& fault) {
@@ -61,13 +63,16 @@ Cloud cloudFromBytes(const scan::ScanId& id, std::string_view bytes) {
 }
 
 Cloud cloudOf(const scan::Scan& scan) {
-  Cloud cloud{scan.id, scan.source, scan.time_s, scan.T_map_sensor, scan.has_pose, scan.points.size(), {}, {}};
+  Cloud cloud{scan.id, scan.source, scan.time_s, scan.T_map_sensor, scan.has_pose, scan.points.size(), {}, {}, {}};
   cloud.min.setConstant(1e300), cloud.max.setConstant(-1e300);
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     const Eigen::Vector3d p = scan::toMap(scan.T_map_sensor, {scan.points.x[i], scan.points.y[i], scan.points.z[i]});
     cloud.min = cloud.min.cwiseMin(p);
     cloud.max = cloud.max.cwiseMax(p);
   }
+  cloud.rays = {cloud.min, cloud.max};
+  cloud.rays.extend(Eigen::Vector3d(scan.T_map_sensor.translation()));
+  for (const auto& origin : scan.points.origin) cloud.rays.extend(scan::toMap(scan.T_map_sensor, origin));
   return cloud;
 }
 

@@ -15,18 +15,8 @@ namespace {
 using perception::RayVerdict;
 
 constexpr float kClearOfGround_m = 0.3F;
-
-/// Rays that graze the ground beside a low place end near it: such places are left out where there are others.
-std::vector<Eigen::Vector3d> placesOn(const perception::SceneCluxels& cluxels, const rules::SemanticObject& object) {
-  std::vector<std::uint32_t> members = cluxelsOf(object);
-  std::vector<std::uint32_t> clear = members;
-  std::erase_if(clear, [&](std::uint32_t c) { return cluxels.height_above_ground[c] < kClearOfGround_m; });
-  if (!clear.empty()) members = std::move(clear);
-  std::vector<Eigen::Vector3d> places;
-  const std::size_t step = (members.size() + perception::kMaxPlaces - 1) / perception::kMaxPlaces;
-  for (std::size_t i = 0; i < members.size(); i += step) places.push_back(cluxels.center[members[i]]);
-  return places;
-}
+/// More than the distances at which a ray concerns a place (RayParams).
+constexpr double kAroundRays_m = 1;
 
 struct Sphere {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -52,6 +42,8 @@ void vote(const perception::RayBundle& bundle, const std::vector<Eigen::Vector3d
   }
 }
 
+}  // namespace
+
 std::vector<const Cloud*> timedClouds(const std::vector<Cloud>& clouds) {
   std::vector<const Cloud*> timed;
   for (const Cloud& cloud : clouds)
@@ -62,7 +54,26 @@ std::vector<const Cloud*> timedClouds(const std::vector<Cloud>& clouds) {
   return timed;
 }
 
-}  // namespace
+/// Rays that graze the ground beside a low place end near it: such places are left out where there are others.
+std::vector<Eigen::Vector3d> placesOn(const perception::Scene& scene, const rules::SemanticObject& object) {
+  const perception::SceneCluxels& cluxels = scene.cluxels;
+  if (object.class_iri == rdf::vocabulary::clx("Ground")) return {};
+  std::vector<std::uint32_t> members = cluxelsOf(object);
+  std::vector<std::uint32_t> clear = members;
+  std::erase_if(clear, [&](std::uint32_t c) { return cluxels.height_above_ground[c] < kClearOfGround_m; });
+  if (!clear.empty()) members = std::move(clear);
+  std::vector<Eigen::Vector3d> places;
+  const std::size_t step = (members.size() + perception::kMaxPlaces - 1) / perception::kMaxPlaces;
+  for (std::size_t i = 0; i < members.size(); i += step) places.push_back(cluxels.center[members[i]]);
+  return places;
+}
+
+bool mayPass(const Cloud& cloud, const std::vector<Eigen::Vector3d>& places) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& place : places) box.extend(place);
+  const Eigen::Vector3d around = Eigen::Vector3d::Constant(kAroundRays_m);
+  return cloud.rays.intersects(Eigen::AlignedBox3d(box.min() - around, box.max() + around));
+}
 
 std::vector<ObjectVotes> presenceVotes(const perception::Scene& scene, std::span<const rules::SemanticObject> objects,
                                        const std::vector<Cloud>& clouds,
@@ -72,11 +83,14 @@ std::vector<ObjectVotes> presenceVotes(const perception::Scene& scene, std::span
   if (timed.size() < 2) return result;
   std::vector<Sphere> spheres(objects.size());
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (objects[i].class_iri == rdf::vocabulary::clx("Ground")) continue;
-    result[i].places = placesOn(scene.cluxels, objects[i]);
+    result[i].places = placesOn(scene, objects[i]);
     spheres[i] = sphereAround(result[i].places);
   }
   for (const Cloud* cloud : timed) {
+    const auto isPassed = [&](const ObjectVotes& object) {
+      return !object.places.empty() && mayPass(*cloud, object.places);
+    };
+    if (std::none_of(result.begin(), result.end(), isPassed)) continue;
     std::vector<perception::ScanVotes> of_scan(objects.size(), {*cloud->time_s, {}, {}});
     perception::forEachRayBundle(load(*cloud), [&](const perception::RayBundle& bundle) {
       parallelFor(objects.size(), threads, [&](std::size_t i) {

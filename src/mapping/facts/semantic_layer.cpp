@@ -6,8 +6,8 @@
 #include "mapping/build/scan_store.hpp"
 #include "mapping/facts/map_facts.hpp"
 #include "mapping/facts/map_oracle.hpp"
-#include "mapping/facts/presence_votes.hpp"
 #include "mapping/facts/sparql_rules.hpp"
+#include "mapping/facts/stored_presence.hpp"
 #include "mapping/object_store.hpp"
 #include "rdf/io/rdf_io.hpp"
 #include "rdf/ontology/ontology.hpp"
@@ -91,9 +91,8 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   if (check) check(0);
   sink.progress("objects", result.objects.size(), result.objects.size());
   const auto sightings = sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(result, scene.cluxels.size()));
-  const auto votes = presenceVotes(
-      scene, result.objects, clouds, [&](const Cloud& cloud) { return storedScan(transaction, cloud.id); }, threads);
-  writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings, presenceOfObjects(votes)});
+  const auto presence = updatePresence(transaction, scene, result.objects, clouds, threads).presence;
+  writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings, presence});
   inferFacts(transaction, parsed.inputs, sink, check);
   storeObjects(transaction, result.objects);
   storeDigests(transaction, rules::decisionDigests(scene, result));
