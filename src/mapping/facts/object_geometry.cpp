@@ -80,47 +80,61 @@ namespace {
 
 using ObjectPair = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Cluxels of objects in one voxel.
-struct Voxel {
+struct Bounds {
+  Eigen::Vector3d low, high;
+};
+
+Bounds boundsOf(const perception::SceneCluxels& cluxels, std::uint32_t c) {
+  return {cluxels.low_corner[c], cluxels.low_corner[c] + cluxels.extent[c].cast<double>()};
+}
+
+double gapOf(const Bounds& a, const Bounds& b) {
+  return (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0.0).norm();
+}
+
+/// The cluxels of one object in one voxel.
+struct Piece {
+  std::uint32_t object = 0;
+  Bounds bounds;
   std::vector<std::uint32_t> cluxels;
-  std::set<std::uint32_t> objects;
 };
 using VoxelKey = std::array<int, 3>;
+using Voxel = std::vector<Piece>;
 
-double gapOf(const perception::SceneCluxels& cluxels, std::uint32_t a, std::uint32_t b) {
-  const Eigen::Vector3d high_a = cluxels.low_corner[a] + cluxels.extent[a].cast<double>();
-  const Eigen::Vector3d high_b = cluxels.low_corner[b] + cluxels.extent[b].cast<double>();
-  return (cluxels.low_corner[a] - high_b).cwiseMax(cluxels.low_corner[b] - high_a).cwiseMax(0.0).norm();
+void addTo(Voxel& voxel, std::uint32_t object, std::uint32_t cluxel, const Bounds& bounds) {
+  auto piece = std::find_if(voxel.begin(), voxel.end(), [&](const Piece& known) { return known.object == object; });
+  if (piece == voxel.end()) piece = voxel.insert(voxel.end(), {object, bounds, {}});
+  piece->bounds = {piece->bounds.low.cwiseMin(bounds.low), piece->bounds.high.cwiseMax(bounds.high)};
+  piece->cluxels.push_back(cluxel);
 }
 
 class NearPairs {
  public:
-  NearPairs(const perception::SceneCluxels& cluxels, const std::vector<std::uint32_t>& object_of_cluxel,
-            double largest_m)
-      : cluxels_(cluxels), object_of_(object_of_cluxel), largest_m_(largest_m) {}
+  NearPairs(const perception::SceneCluxels& cluxels, double largest_m) : cluxels_(cluxels), largest_m_(largest_m) {}
 
-  /// Compares the cluxels of two voxels, unless all their pairs of objects are known.
+  /// Compares the pieces of two voxels, unless their objects are known to be near.
   void compare(const Voxel& a, const Voxel& b) {
-    if (!hasUnknownPair(a, b)) return;
-    for (const std::uint32_t c : a.cluxels)
-      for (const std::uint32_t d : b.cluxels) {
-        if (object_of_[c] == object_of_[d]) continue;
-        const ObjectPair pair = std::minmax(object_of_[c], object_of_[d]);
-        if (!pairs_.contains(pair) && gapOf(cluxels_, c, d) <= largest_m_) pairs_.insert(pair);
+    for (const Piece& x : a)
+      for (const Piece& y : b) {
+        if (x.object == y.object || gapOf(x.bounds, y.bounds) > largest_m_) continue;
+        const ObjectPair pair = std::minmax(x.object, y.object);
+        if (!pairs_.contains(pair) && areNear(x, y)) pairs_.insert(pair);
       }
   }
   std::vector<ObjectPair> sorted() const { return {pairs_.begin(), pairs_.end()}; }
 
  private:
-  bool hasUnknownPair(const Voxel& a, const Voxel& b) const {
-    for (const std::uint32_t x : a.objects)
-      for (const std::uint32_t y : b.objects)
-        if (x != y && !pairs_.contains(ObjectPair(std::minmax(x, y)))) return true;
+  bool areNear(const Piece& x, const Piece& y) const {
+    for (const std::uint32_t c : x.cluxels) {
+      const Bounds mine = boundsOf(cluxels_, c);
+      if (gapOf(mine, y.bounds) > largest_m_) continue;
+      for (const std::uint32_t d : y.cluxels)
+        if (gapOf(mine, boundsOf(cluxels_, d)) <= largest_m_) return true;
+    }
     return false;
   }
 
   const perception::SceneCluxels& cluxels_;
-  const std::vector<std::uint32_t>& object_of_;
   double largest_m_;
   std::set<ObjectPair> pairs_;
 };
@@ -140,10 +154,9 @@ std::vector<ObjectPair> nearObjects(const perception::SceneCluxels& cluxels,
     VoxelKey key;
     for (int axis = 0; axis < 3; ++axis)
       key[static_cast<std::size_t>(axis)] = static_cast<int>(std::floor(cluxels.center[c][axis] / edge));
-    voxels[key].cluxels.push_back(c);
-    voxels[key].objects.insert(object);
+    addTo(voxels[key], object, c, boundsOf(cluxels, c));
   }
-  NearPairs pairs(cluxels, object_of_cluxel, largest_m);
+  NearPairs pairs(cluxels, largest_m);
   for (const auto& [key, voxel] : voxels)
     for (int i = 13; i < 27; ++i) {
       const auto found = voxels.find({key[0] + i / 9 - 1, key[1] + i / 3 % 3 - 1, key[2] + i % 3 - 1});
