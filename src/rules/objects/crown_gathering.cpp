@@ -3,12 +3,9 @@
 #include "rules/objects/crown_gathering.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
-#include <span>
-#include <unordered_set>
 #include <utility>
 
 #include "rules/objects/crown_splitting.hpp"
@@ -16,39 +13,6 @@
 namespace cluxel::rules {
 
 namespace {
-
-/// Plan cells of 1 m within a distance of cluxels.
-class CellsAround {
- public:
-  CellsAround(const perception::SceneCluxels& all, double distance_m)
-      : all_(all), reach_(static_cast<std::int32_t>(std::floor(distance_m)) + 1) {}
-
-  void add(std::span<const std::uint32_t> cluxels) {
-    for (const std::uint32_t cluxel : cluxels) {
-      const auto [x, y] = cellOf(cluxel);
-      if (!occupied_.insert(keyOf(x, y)).second) continue;
-      for (std::int32_t dx = -reach_; dx <= reach_; ++dx)
-        for (std::int32_t dy = -reach_; dy <= reach_; ++dy) around_.insert(keyOf(x + dx, y + dy));
-    }
-  }
-  bool hold(std::uint32_t cluxel) const {
-    const auto [x, y] = cellOf(cluxel);
-    return around_.contains(keyOf(x, y));
-  }
-
- private:
-  std::pair<std::int32_t, std::int32_t> cellOf(std::uint32_t cluxel) const {
-    const Eigen::Vector3d& centre = all_.center[cluxel];
-    return {static_cast<std::int32_t>(std::floor(centre.x())), static_cast<std::int32_t>(std::floor(centre.y()))};
-  }
-  static std::uint64_t keyOf(std::int32_t x, std::int32_t y) {
-    return std::uint64_t{static_cast<std::uint32_t>(x)} << 32U | static_cast<std::uint32_t>(y);
-  }
-
-  const perception::SceneCluxels& all_;
-  std::int32_t reach_;
-  std::unordered_set<std::uint64_t> occupied_, around_;
-};
 
 class Gathering {
  public:
@@ -75,20 +39,15 @@ class Gathering {
 
   void run() {
     if (gatherers_.empty()) return;
-    double widest = 0;
-    for (const Demand& demand : demands_) widest = std::max(widest, demand.within_m);
-    around_.emplace(state_.scene.cluxels, widest + state_.grid.slack_m());
-    for (const Gatherer& gatherer : gatherers_)
-      for (const FragmentIndex fragment : state_.fragmentsOf(state_.objects[gatherer.owner]))
-        around_->add(state_.fragments[fragment].cluxels);
-    for (FragmentIndex fragment = 0; fragment < state_.fragments.size(); ++fragment) lookAround(fragment);
+    const CluxelGrid theirs(state_.scene.cluxels, cluxelsOfGatherers());
+    for (FragmentIndex fragment = 0; fragment < state_.fragments.size(); ++fragment) lookAround(fragment, theirs);
     while (true) {
       const std::vector<ReachedFragment> in_reach = reached();
       std::vector<FragmentIndex> given;
       const auto before = static_cast<FragmentIndex>(state_.fragments.size());
       for (const ReachedFragment& found : in_reach) hand(found, given);
       if (given.empty()) break;
-      for (FragmentIndex made = before; made < state_.fragments.size(); ++made) lookAround(made);
+      for (FragmentIndex made = before; made < state_.fragments.size(); ++made) lookAround(made, state_.grid);
       for (const FragmentIndex fragment : given) spreadFrom(fragment);
     }
     for (const Gatherer& gatherer : gatherers_) renew(gatherer);
@@ -157,18 +116,26 @@ class Gathering {
     return widest;
   }
 
-  /// Notes which gatherers are near a free fragment.
-  void lookAround(FragmentIndex fragment) {
+  std::vector<std::uint32_t> cluxelsOfGatherers() const {
+    std::vector<std::uint32_t> all;
+    for (const Gatherer& gatherer : gatherers_)
+      for (const FragmentIndex fragment : state_.fragmentsOf(state_.objects[gatherer.owner])) {
+        const std::vector<std::uint32_t>& cluxels = state_.fragments[fragment].cluxels;
+        all.insert(all.end(), cluxels.begin(), cluxels.end());
+      }
+    return all;
+  }
+
+  /// Notes which gatherers are near a free fragment. The grid holds all of their cluxels.
+  void lookAround(FragmentIndex fragment, const CluxelGrid& grid) {
     if (!isFree(fragment)) return;
     const double widest = widestFor(fragment);
     if (widest == 0) return;
-    for (std::uint32_t cluxel : state_.fragments[fragment].cluxels) {
-      if (!around_->hold(cluxel)) continue;
-      state_.grid.near(cluxel, widest, [&](std::uint32_t other) {
+    for (std::uint32_t cluxel : state_.fragments[fragment].cluxels)
+      grid.near(cluxel, widest, [&](std::uint32_t other) {
         if (const auto* numbers = gatherersAt(other))
           for (std::size_t g : *numbers) consider(g, fragment, cluxel, other);
       });
-    }
   }
 
   /// Notes which free fragments are near one that an object has just got.
@@ -238,7 +205,6 @@ class Gathering {
 
   void give(FragmentIndex fragment, const Gatherer& gatherer, double gap_m) {
     state_.fragments.setOwner(fragment, gatherer.owner);
-    around_->add(state_.fragments[fragment].cluxels);
     ObjectInMaking& object = state_.objects[gatherer.owner];
     for (PartInMaking& part : object.parts)
       if (part.name == gatherer.spec->part) part.fragments.push_back(fragment);
@@ -279,7 +245,6 @@ class Gathering {
   std::vector<Gatherer> gatherers_;
   std::vector<std::vector<std::size_t>> of_owner_;               ///< numbers in gatherers_
   std::vector<Demand> demands_;                                  ///< each once
-  std::optional<CellsAround> around_;                            ///< of the objects that gather
   std::map<FragmentIndex, std::map<std::size_t, double>> near_;  ///< see ReachedFragment::near
 };
 

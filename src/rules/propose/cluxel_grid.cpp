@@ -4,20 +4,33 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <tuple>
 
 namespace cluxel::rules {
 
-CluxelGrid::CluxelGrid(const perception::SceneCluxels& all) : all_(all) {
+namespace {
+
+std::vector<std::uint32_t> numbersTo(std::size_t count) {
+  std::vector<std::uint32_t> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), 0U);
+  return numbers;
+}
+
+}  // namespace
+
+CluxelGrid::CluxelGrid(const perception::SceneCluxels& all) : CluxelGrid(all, numbersTo(all.size())) {}
+
+CluxelGrid::CluxelGrid(const perception::SceneCluxels& all, std::span<const std::uint32_t> some) : all_(all) {
   if (all.size() > 0) origin_z_ = all.center[all.size() / 2].z();
   struct Placed {
     std::int32_t x, y;
     Entry entry;
   };
   std::vector<Placed> placed;
-  placed.reserve(all.size());
+  placed.reserve(some.size());
   float highest = 0;
-  for (std::uint32_t i = 0; i < all.size(); ++i) {
+  for (const std::uint32_t i : some) {
     placed.push_back({cellOf(all.center[i].x()), cellOf(all.center[i].y()), {heightOf(i), i}});
     margin_m_ = std::max(margin_m_, static_cast<double>(all.extent[i].head<2>().maxCoeff()) / 2);
     tallest_half_m_ = std::max(tallest_half_m_, all.extent[i].z() / 2);

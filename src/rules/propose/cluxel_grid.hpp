@@ -27,6 +27,8 @@ inline CluxelGap gapBetween(const perception::SceneCluxels& all, std::uint32_t a
 class CluxelGrid {
  public:
   explicit CluxelGrid(const perception::SceneCluxels& all);
+  /// A grid over some of them. Any cluxel may be asked about.
+  CluxelGrid(const perception::SceneCluxels& all, std::span<const std::uint32_t> some);
 
   /// Calls `visit` for every cluxel whose box may be within `distance_m` of the box of `cluxel`.
   template <typename Visit>
