@@ -268,6 +268,7 @@ void describe(RelationParams& params, ParameterVisitor& visitor) {
 }
 
 SceneSeeds seedsOf(const TileOutputs& tiles) {
+  checkFit(tiles);
   SceneSeeds seeds;
   seeds.scans = scansOf(tiles);
   for (const auto& [key, tile] : tiles.cluxels) appendSeeds(tile, tiles.points.at(key), seeds);
