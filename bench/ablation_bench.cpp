@@ -24,7 +24,7 @@ double medianOf(std::vector<double> values) {
   return *middle;
 }
 
-/// Prints one row per side; `gain` is the part of the stage's time that the plain side would add.
+/// Prints one row per side, with the share of the stage's time that it would add to the side in use.
 void measure(const bench::Comparison& comparison, int rounds) {
   const std::size_t count = comparison.sides.size();
   std::vector<std::vector<double>> seconds(count);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "ablation.hpp"
@@ -14,6 +15,7 @@
 #include "perception/clustering/radix_order.hpp"
 #include "perception/crf/pair_cost_table.hpp"
 #include "perception/crf/tree_scoring.hpp"
+#include "perception/features/cluxel_graph.hpp"
 #include "perception/features/eigen_shape.hpp"
 #include "perception/pipeline.hpp"
 
@@ -124,12 +126,45 @@ std::size_t eigenDirect(const std::vector<Covariance>& sets) {
   return steep;
 }
 
+/// As many sets as the features of one tile solve, and alike: the balls of own and near cluxels, 1-rings and 2-rings of
+/// own ones, and one for each occupied grid cell of two sizes.
+void collectSets(const Ring<CluxelTile>& ring, std::vector<Covariance>& sets) {
+  const RingCluxels cluxels = gatherCluxels(ring);
+  const RingGraph graph = intersectionGraph(cluxels);
+  const auto ballOf = [&](std::uint32_t c) {
+    return covarianceOf(ring[cluxels.name[c].ring]->ball[cluxels.name[c].index]);
+  };
+  for (std::uint32_t c = 0; c < cluxels.size(); ++c)
+    if (cluxels.near[c]) sets.push_back(ballOf(c));
+  for (std::uint32_t c = cluxels.own_begin; c < cluxels.own_end; ++c) {
+    MomentSum ring1, ring2;
+    const auto add = [&](std::uint32_t other, MomentSum& sum) {
+      const Eigen::Vector3f d = cluxels.center[other] - cluxels.center[c];
+      sum.add(d.x(), d.y(), d.z());
+    };
+    add(c, ring1);
+    add(c, ring2);
+    for (const std::uint32_t first : graph.neighbours(c)) {
+      add(first, ring1);
+      for (const std::uint32_t second : graph.neighbours(first)) add(second, ring2);
+    }
+    sets.push_back(covarianceOf(ring1));
+    sets.push_back(covarianceOf(ring2));
+  }
+  for (const float cell_m : {0.5F, 1.0F}) {
+    std::set<std::array<int, 3>> cells;
+    for (std::uint32_t c = cluxels.own_begin; c < cluxels.own_end; ++c) {
+      const Eigen::Vector3i cell = (cluxels.center[c] / cell_m).array().floor().cast<int>();
+      if (cells.insert({cell.x(), cell.y(), cell.z()}).second) sets.push_back(ballOf(c));
+    }
+  }
+}
+
 Comparison eigenComparison(const StageRun& run) {
   std::vector<Covariance> found;
-  for (const auto& [key, tile] : run.outputs.cluxels)
-    for (const Moments& ball : tile.ball) found.push_back(covarianceOf(ball));
+  for (const auto& [key, tile] : run.outputs.cluxels) collectSets(ringIn(run.outputs.cluxels, key), found);
   const auto& sets = kept(std::move(found));
-  return {"eigenvectors of the balls of all cluxels",
+  return {"eigenvectors of all sets of the features",
           "features",
           run.seconds.at(Stage::Features),
           {{"four at once", [&] { return fourAtOnce(sets); }},

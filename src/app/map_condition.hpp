@@ -15,8 +15,8 @@ void addAllowUnfinished(CLI::App& command, bool& is_allowed);
 /// Notes on stderr that the answers are those of the scans so far, unless that is allowed.
 void noteUnfinished(const fs::path& map, bool is_finished, bool is_allowed, Session& session);
 
-/// The quads of a store that no build has made; absent for a map, and for a store without quads (its first build never
-/// committed).
+/// Reads a store that was filled without a build. Absent for a map, and for a store without quads, which is left when
+/// the first build of a map was killed before its first commit.
 std::optional<rdf::QuadReader> storeWithoutScans(const fs::path& file);
 
 }  // namespace cluxel::app

@@ -19,8 +19,9 @@ class DataHome {
 
   /// `root/relative`. Throws Error (FaultyInput) with the path and the remedy when it does not exist.
   std::filesystem::path locate(const std::filesystem::path& relative) const;
-  /// What a user means by `name`: a file, or a path with a folder in it, as it stands; else `root/folder/name`; else an
-  /// entry of the working directory. A folder there never hides a name of the data home.
+  /// Finds what a user calls `name`. In this order: an existing file or a path that has a folder in it;
+  /// `root/folder/name`; an entry of the working directory. So a folder of the working directory never hides a name of
+  /// the data home.
   std::filesystem::path locate(const std::string& folder, const std::filesystem::path& name) const;
   const std::filesystem::path& root() const { return root_; }
 

@@ -33,6 +33,26 @@ void appendPlanes(std::string& bytes, const void* items, std::size_t count, std:
 /// Reads what appendPlanes() appended: count * item_bytes bytes.
 void readPlanes(const char* planes, void* items, std::size_t count, std::size_t item_bytes);
 
+/// Appends the number of values, then their planes. `T` may be copied as bytes.
+template <typename T>
+void appendArray(std::string& bytes, const std::vector<T>& values) {
+  const std::uint64_t count = values.size();
+  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
+  appendPlanes(bytes, values.data(), values.size(), sizeof(T));
+}
+/// Removes from the front of `bytes` what appendArray() appended; none when they are cut short.
+template <typename T>
+std::optional<std::vector<T>> takeArray(std::string_view& bytes) {
+  std::uint64_t count = 0;
+  if (bytes.size() < sizeof count) return std::nullopt;
+  std::memcpy(&count, bytes.data(), sizeof count);
+  if (count > (bytes.size() - sizeof count) / sizeof(T)) return std::nullopt;
+  std::vector<T> values(count);
+  readPlanes(bytes.data() + sizeof count, values.data(), count, sizeof(T));
+  bytes.remove_prefix(sizeof count + count * sizeof(T));
+  return values;
+}
+
 /// Small numbers for small differences of either sign.
 constexpr std::uint32_t zigzag(std::uint32_t difference) {
   return (difference << 1U) ^ (0U - (difference >> 31U));

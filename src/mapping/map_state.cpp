@@ -26,11 +26,18 @@ class ParameterWriter : public perception::ParameterVisitor {
 class ParameterReader : public perception::ParameterVisitor {
  public:
   explicit ParameterReader(const Json& json) : json_(json) {}
-  void real(const perception::ParameterInfo& info, double& value) override { value = json_.at(std::string(info.name)); }
-  void whole(const perception::ParameterInfo& info, int& value) override { value = json_.at(std::string(info.name)); }
-  void flag(const perception::ParameterInfo& info, bool& value) override { value = json_.at(std::string(info.name)); }
+  void real(const perception::ParameterInfo& info, double& value) override { value = take(info); }
+  void whole(const perception::ParameterInfo& info, int& value) override { value = take(info); }
+  void flag(const perception::ParameterInfo& info, bool& value) override { value = take(info); }
 
  private:
+  const Json& take(const perception::ParameterInfo& info) const {
+    const auto found = json_.find(std::string(info.name));
+    if (found == json_.end())
+      throw Error(ErrorKind::StoreUnavailable, "the map has no setting " + std::string(info.name) +
+                                                   ": another version of cluxel wrote it; build the map anew");
+    return *found;
+  }
   const Json& json_;
 };
 
@@ -109,6 +116,8 @@ MapInputs storedInputs(const rdf::ReadTransaction& transaction) {
       inputs.map_origin[axis] = json.at("map_origin").at(static_cast<std::size_t>(axis));
     inputs.crs = json.at("crs");
     return inputs;
+  } catch (const Error&) {
+    throw;
   } catch (const std::exception& fault) {
     reportDamage(fault.what());
   }

@@ -41,8 +41,7 @@ class TileWriter {
   template <typename T>
   void put(const std::vector<T>& values) {
     static_assert(kFlat<T>);
-    put(static_cast<std::uint64_t>(values.size()));
-    appendPlanes(bytes_, values.data(), values.size(), sizeof(T));
+    appendArray(bytes_, values);
   }
   /// For numbers that are near the one before.
   void putSteps(const std::vector<std::uint32_t>& values) { put(differencesOf(values)); }
@@ -92,12 +91,9 @@ class TileReader {
   template <typename T>
   std::vector<T> getMany() {
     static_assert(kFlat<T>);
-    const auto count = get<std::uint64_t>();
-    if (count > rest_.size() / sizeof(T)) fail("is cut short");
-    std::vector<T> values(count);
-    readPlanes(rest_.data(), values.data(), count, sizeof(T));
-    rest_.remove_prefix(count * sizeof(T));
-    return values;
+    auto values = takeArray<T>(rest_);
+    if (!values) fail("is cut short");
+    return *std::move(values);
   }
   /// What putSteps() wrote.
   std::vector<std::uint32_t> getSteps() {

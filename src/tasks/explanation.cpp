@@ -132,8 +132,11 @@ struct Explained {
 Explained explanationOf(const mapping::MapReader& map, const Named& named, const rules::RuleSet& rules) {
   const rules::SemanticObject* object = named.primitive ? nullptr : &map.objects()[*named.object];
   if (auto run = partAround(map, named, rules)) {
-    auto explanation = object == nullptr ? explanationIn(run->result, rules, run->primitives.front())
-                                         : explanationIn(run->result, rules, object->id);
+    std::optional<rules::Explanation> explanation;
+    if (object == nullptr)
+      explanation = explanationIn(run->result, rules, run->primitives.front());
+    else
+      explanation = explanationIn(run->result, rules, object->id);
     if (explanation) return {std::move(*explanation), std::move(run)};
   }
   mapping::AskReplay oracle(map);

@@ -101,6 +101,30 @@ TEST(Architecture, NamesFilesAndFunctionsThatExist) {
   EXPECT_GT(names, 10U);
 }
 
+/// Module → parts, from the table in docs/architecture.md.
+std::map<std::string, std::set<std::string>> partsInTheTable() {
+  std::map<std::string, std::set<std::string>> table;
+  const std::string text = textOf(root() / "docs/architecture.md");
+  const std::regex row(R"(\n\| (\w+) \| [^|\n]* \|([^|\n]*)\| `)"), word(R"(\w+)");
+  for (std::sregex_iterator it(text.begin(), text.end(), row), end; it != end; ++it) {
+    const std::string parts = (*it)[2];
+    auto& listed = table[(*it)[1]];
+    for (std::sregex_iterator part(parts.begin(), parts.end(), word); part != end; ++part) listed.insert(part->str());
+  }
+  return table;
+}
+
+TEST(Architecture, ListsTheModulesAndTheirPartsAsTheFoldersAre) {
+  std::map<std::string, std::set<std::string>> folders;
+  for (const auto& module : fs::directory_iterator(root() / "src")) {
+    if (!module.is_directory() || module.path().filename() == "redland_module") continue;  // a plugin, told in the text
+    auto& parts = folders[module.path().filename()];
+    for (const auto& part : fs::directory_iterator(module))
+      if (part.is_directory()) parts.insert(part.path().filename());
+  }
+  EXPECT_EQ(partsInTheTable(), folders);
+}
+
 TEST(Architecture, WhatSeveralModulesNeedIsWrittenOnce) {
   const std::map<std::string, std::set<std::string>> homes{
       {"- 'A' + 'a'", {"base/ascii.hpp"}},         {"0x94d049bb133111eb", {"base/mixed_bits.hpp"}},

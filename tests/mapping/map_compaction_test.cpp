@@ -58,6 +58,16 @@ TEST_F(MapCompaction, FollowsMuchFreeSpaceAndKeepsTheMap) {
   EXPECT_FALSE(fs::exists(map.string() + ".compact"));
 }
 
+TEST_F(MapCompaction, TakesANameWithoutFolder) {
+  const fs::path map = copy(), before_here = fs::current_path();
+  const auto before = fs::file_size(map);
+  leaveFree(map, 8'000'000);
+  fs::current_path(folder->path());
+  compactIfSparse(map.filename(), silence());
+  fs::current_path(before_here);
+  EXPECT_LT(fs::file_size(map), before + 100'000);
+}
+
 TEST_F(MapCompaction, KeepsOwnerGroupAndRights) {
   if (::geteuid() != 0) GTEST_SKIP() << "only root may give files away";
   constexpr uid_t kOther = 65534;

@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "cluxel/error.hpp"
@@ -113,6 +114,24 @@ TEST(StoredTiles, ThatNameAScanWhichIsNotThereAreRefused) {
   removeScan(transaction, storedClouds(transaction).at(0).id);
   transaction.commit();
   EXPECT_THAT(errorOf([&] { MapReader(map).scene(); }), HasSubstr("which is not there; the map is damaged"));
+}
+
+TEST(StoredInputs, ThatLackASettingAreOfAnotherVersion) {
+  const SmallCampus campus({.seed = 3, .stops = 2, .size_m = 45, .points_per_stop = 1'500});
+  const ScratchFolder folder;
+  const fs::path map = folder.path() / "map.clx";
+  buildMap(scansOf(campus.files()), shippedInputs(), map, {}, silence());
+  const ScanId id = MapReader(map).clouds().at(0).id;
+  WriteTransaction transaction = Environment::open(map, OpenMode::ReadWrite)->write();
+  auto inputs = nlohmann::json::from_cbor(*transaction.block(tables::kMeta, "inputs"));
+  auto& params = inputs.at("params");
+  const std::string setting = params.begin().key();
+  params.erase(setting);
+  const auto bytes = nlohmann::json::to_cbor(inputs);
+  transaction.putBlock(tables::kMeta, "inputs", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  transaction.commit();
+  EXPECT_THAT(errorOf([&] { retractScans(map, {id}, {}, silence()); }),
+              HasSubstr("no setting " + setting + ": another version of cluxel wrote it"));
 }
 
 }  // namespace

@@ -184,7 +184,7 @@ TEST(CluxelTile, SettingsOutsideTheirRangeAreRefusedByName) {
     FAIL() << "took a negative radius";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::InvalidArgument);
-    EXPECT_NE(std::string(error.what()).find("cover.radius"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("clustering.radius"), std::string::npos);
   }
   EXPECT_NE(hashOf(ClusterParams{}), hashOf(paperClustering()));
 }

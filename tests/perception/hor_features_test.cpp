@@ -156,8 +156,8 @@ TEST(Features, HaveTheirPhysicalMeaning) {
   EXPECT_GT(value(2, "shape.ring2_linearity"), 0.8);
   EXPECT_GT(value(3, "shape.ring2_scattering"), 0.25);
   EXPECT_LT(value(0, "hor.to_level"), 0.15);
-  EXPECT_GT(value(2, "metric.column_1m5_run_below"), 1.0);
-  EXPECT_NEAR(value(2, "metric.column_1m5_top"), 4.0, 0.3);
+  EXPECT_GT(value(2, "metric.stack_1m5_run_below"), 1.0);
+  EXPECT_NEAR(value(2, "metric.stack_1m5_top"), 4.0, 0.3);
 }
 
 TEST(Features, AreInvariantToSmallMovesAndToYaw) {

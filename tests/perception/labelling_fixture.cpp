@@ -21,7 +21,8 @@ float uniform(std::mt19937& random) {
   return static_cast<float>(random() % 10000U) / 10000.0F;
 }
 
-/// An edge to the cluxel at (x, y) of the row of two tiles; its first features are small where labels change.
+/// Adds an edge from the cluxel at (from_x, from_y) to the one at (x, y); coordinates count through both tiles. Its
+/// first features are small where the labels of its ends differ.
 void addEdge(FeatureTile& tile, int from_x, int from_y, int x, int y, std::size_t columns) {
   if (x < 0 || x >= 2 * kSide || y < 0 || y >= kSide) return;
   const int tile_x = x / kSide;

@@ -127,7 +127,7 @@ TEST(LabelModel, RefusesFaultyTextNamingTheFile) {
                                         replaced(text, "\"leaves\":[", "\"leaves\":[1,"),
                                         replaced(text, "\"knots\":[[", "\"knots\":[[0,0,0],["),
                                         replaced(text, "vertical_plane", "vertical"),
-                                        replaced(text, "\"cover.radius\":", "\"cover.radius\":-"),
+                                        replaced(text, "\"clustering.radius\":", "\"clustering.radius\":-"),
                                         replaced(text, "\"slope\":", "\"slope\":3e37,\"was\":"),
                                         replaced(text, "\"bias\":[", "\"bias\":[3e37,3e37,3e37,3e37,3e37],\"was\":["),
                                         replaced(text, "\"degree_power\":", "\"degree_power\":-1e30,\"was\":"),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When a thing was there: against all intervals, and on histories of which the answer is plain.
+// When a thing was there: compared with a search over all intervals, and on histories with an obvious answer.
 #include "perception/visibility/presence.hpp"
 
 #include <gtest/gtest.h>

@@ -42,6 +42,14 @@ BuiltBoxScene poleOf(double height) {
   return sceneOfBoxes(scene);
 }
 
+TEST(Explaining, PutsTheArticleThatIsSpoken) {
+  EXPECT_EQ(withArticle("Tree"), "a Tree");
+  EXPECT_EQ(withArticle("Avenue"), "an Avenue");
+  EXPECT_EQ(withArticle("Umbrella"), "an Umbrella");
+  EXPECT_EQ(withArticle("UtilityPole"), "a UtilityPole");
+  EXPECT_EQ(withArticle("column"), "a column");
+}
+
 TEST(Explaining, GivesTheWayWithMeasuresThresholdsAndMargins) {
   const BuiltBoxScene built = poleOf(5);
   const RuleSet rules = poleRules();

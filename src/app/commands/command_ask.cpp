@@ -157,12 +157,14 @@ void addInventory(CLI::App& app, Session& session) {
   auto options = std::make_shared<InventoryArguments>();
   CLI::App* command = app.add_subcommand("inventory", "list signs, lamps, trees and parked vehicles");
   command->add_option("map", options->map, "a map")->required();
-  command->add_option("--kind", options->kinds, "a class, or ParkingRow; else all that a town lists");
+  command->add_option("--kind", options->kinds,
+                      "a class, or ParkingRow; else street furniture, trees and parked vehicles");
   command->add_option("--streets", options->streets, "GeoJSON lines with names: each thing gets its nearest street")
       ->check(CLI::ExistingFile);
   command->add_option("--register", options->register_file, "CSV or GeoJSON of what should be there: compare with it")
       ->check(CLI::ExistingFile);
-  command->add_option("--within", options->comparison.within_m, "an entry and its object are so near [m, 3]")
+  command
+      ->add_option("--within", options->comparison.within_m, "largest distance between an entry and its object [m, 3]")
       ->check(above0());
   command->add_option("--view", options->comparison.view_m, "a place is observed from within this distance [m, 25]")
       ->check(above0());

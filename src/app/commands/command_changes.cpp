@@ -58,7 +58,7 @@ ExitCode changes(const ChangesArguments& arguments, Session& session) {
 
 void addChanges(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<ChangesArguments>();
-  CLI::App* command = app.add_subcommand("changes", "what vanished, appeared and moved between visits to a place");
+  CLI::App* command = app.add_subcommand("changes", "list what vanished, appeared and moved between visits to a place");
   command->add_option("map", arguments->map, "the map")->required()->check(named());
   command->add_option(
       "--since", arguments->since,

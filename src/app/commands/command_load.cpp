@@ -59,8 +59,7 @@ void addLoad(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("load", "load RDF files into a store, or into graph operator of a map");
   command->add_option("store", options->store, "a store, which is made when it is absent, or a map")->required();
   command->add_option("files", options->files, "RDF files (.ttl .nt .nq .trig .rdf)")->required();
-  command->add_option("--graph", options->params.graph, "IRI of the graph of statements that name none")
-      ->check(named());
+  command->add_option("--graph", options->params.graph, "graph for statements that name no graph")->check(named());
   command->add_option("--base", options->params.base_iri, "base IRI of relative IRIs; else the file's own")
       ->check(named());
   onRun(*command, session, [options, &session] { return load(*options, session); });

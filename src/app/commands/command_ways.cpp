@@ -115,12 +115,12 @@ ExitCode search(const WayArguments& arguments, tasks::SearchRequest request, Ses
 /// Options of all ways.
 void addWayOptions(CLI::App& command, WayArguments& arguments) {
   tasks::WayRequest& request = arguments.request;
-  command.add_option("--without", request.without, "a class, Movable or Static: these objects are taken to be gone");
-  command.add_flag("--with-gone", request.with_gone, "objects that later scans saw through are there all the same");
+  command.add_option("--without", request.without, "a class, Movable or Static: leave these objects out");
+  command.add_flag("--with-gone", request.with_gone, "keep objects that later scans show to be gone");
   command.add_option("--max-slope", request.params.max_slope, "rise over run [0.12]")->check(CLI::Range(0.0, 10.0));
   command.add_option("--max-step", request.params.max_step_m, "height of a kerb that is passed [m, 0.06]")
       ->check(CLI::Range(0.0, 2.0));
-  command.add_option("--height", request.terrain.highest_m, "things above this are passed under [m, 2]")
+  command.add_option("--height", request.terrain.highest_m, "clearance: what hangs higher is no obstacle [m, 2]")
       ->check(CLI::Range(0.3, 20.0));
   command.add_option("--cell", request.terrain.cell_m, "edge of a cell [m, 0.25]")
       ->check(CLI::IsMember({0.125, 0.25, 0.5, 1.0}));
@@ -183,12 +183,12 @@ void addSearch(CLI::App& app, Session& session) {
                     "ground that was not observed may be walked");
   command->add_option("--from", request->from, "X,Y or an object; else where the last scan was taken");
   command->add_option("--budget", request->tour.budget_m, "how long the walk may be [m]")->check(above0());
-  command->add_option("--stops", request->tour.max_stops, "at most so many stops [10]")->check(CLI::Range(1, 100));
+  command->add_option("--stops", request->tour.max_stops, "largest number of stops [10]")->check(CLI::Range(1, 100));
   command->add_option("--view", request->search.view_m, "how far an object is recognised [m, 10]")
       ->check(CLI::Range(1.0, 100.0));
   command
       ->add_option("--detection", request->search.detection,
-                   "share of the class that the map knows where ground was seen [0.8]")
+                   "share of the class's objects within view of a scan that are in the map [0.8]")
       ->check(share());
   command->add_option("--width", options->request.params.width_m, "free width that is needed [m, 0.6]")
       ->check(CLI::Range(0.0, 20.0));

@@ -2,8 +2,6 @@
 // Coordinates are differences between points in the order in which they were measured: neighbours are near each other.
 #include "mapping/build/packed_points.hpp"
 
-#include <cstring>
-
 #include "base/zstd_packing.hpp"
 #include "cluxel/error.hpp"
 
@@ -13,16 +11,6 @@ namespace {
 
 constexpr std::string_view kKind = "SCAN";
 constexpr char kVersion = 3;
-
-void putCount(std::string& bytes, std::uint64_t count) {
-  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
-}
-
-template <typename T>
-void putPlanes(std::string& bytes, const std::vector<T>& values) {
-  putCount(bytes, values.size());
-  appendPlanes(bytes, values.data(), values.size(), sizeof(T));
-}
 
 std::vector<float> flat(const std::vector<Eigen::Vector3f>& places, int axis) {
   std::vector<float> values;
@@ -36,21 +24,15 @@ Error damagedPoints() {
 }
 
 template <typename T>
-std::vector<T> takePlanes(std::string_view& bytes) {
-  std::uint64_t count = 0;
-  if (bytes.size() < sizeof count) throw damagedPoints();
-  std::memcpy(&count, bytes.data(), sizeof count);
-  bytes.remove_prefix(sizeof count);
-  if (count > bytes.size() / sizeof(T)) throw damagedPoints();
-  std::vector<T> values(count);
-  readPlanes(bytes.data(), values.data(), count, sizeof(T));
-  bytes.remove_prefix(count * sizeof(T));
-  return values;
+std::vector<T> takeValues(std::string_view& bytes) {
+  auto values = takeArray<T>(bytes);
+  if (!values) throw damagedPoints();
+  return *std::move(values);
 }
 
 std::vector<float> takeSteps(std::string_view& bytes) {
   std::vector<float> values;
-  sumUp(takePlanes<std::uint32_t>(bytes), values);
+  sumUp(takeValues<std::uint32_t>(bytes), values);
   return values;
 }
 
@@ -67,9 +49,9 @@ void requireLengths(const scan::ScanPoints& points) {
 std::string packedPoints(const scan::ScanPoints& points) {
   std::string bytes;
   for (const auto* values : {&points.x, &points.y, &points.z, &points.intensity})
-    putPlanes(bytes, differencesOf(*values));
-  putPlanes(bytes, points.label);
-  for (int axis = 0; axis < 3; ++axis) putPlanes(bytes, differencesOf(flat(points.origin, axis)));
+    appendArray(bytes, differencesOf(*values));
+  appendArray(bytes, points.label);
+  for (int axis = 0; axis < 3; ++axis) appendArray(bytes, differencesOf(flat(points.origin, axis)));
   return std::string(kKind) + kVersion + packedBytes(bytes);
 }
 
@@ -83,7 +65,7 @@ scan::ScanPoints unpackedPoints(std::string_view packed, std::uint64_t stated_po
   std::string_view bytes = unpacked->view();
   scan::ScanPoints points;
   for (auto* values : {&points.x, &points.y, &points.z, &points.intensity}) *values = takeSteps(bytes);
-  points.label = takePlanes<std::uint32_t>(bytes);
+  points.label = takeValues<std::uint32_t>(bytes);
   const std::vector<float> x = takeSteps(bytes), y = takeSteps(bytes), z = takeSteps(bytes);
   if (y.size() != x.size() || z.size() != x.size() || !bytes.empty()) throw damagedPoints();
   for (std::size_t i = 0; i < x.size(); ++i) points.origin.emplace_back(x[i], y[i], z[i]);

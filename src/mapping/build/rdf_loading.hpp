@@ -13,7 +13,7 @@
 namespace cluxel::mapping {
 
 struct RdfLoadParams {
-  std::string graph = {};     ///< IRI of the graph of statements that name none; in a map graph `operator`
+  std::string graph = {};     ///< graph for statements that name no graph; default in a map: `operator`
   std::string base_iri = {};  ///< for relative IRIs; else the IRI of each file
 };
 

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// An update of the old map may be running when the new one is finished.
+/// How long a finished build waits for an update of the old map to end.
 constexpr auto kPatience = std::chrono::minutes(10);
 
 struct Found {

@@ -122,11 +122,11 @@ PointGrid wideGrid(const Ring<TilePoints>& ring, const ClusterParams& params) {
 }  // namespace
 
 void describe(ClusterParams& params, ParameterVisitor& visitor) {
-  visitor.real({"cover.radius", "m", 0.05, 1.0, "a point joins the earliest seed within this distance"},
+  visitor.real({"clustering.radius", "m", 0.05, 1.0, "a point joins the earliest seed within this distance"},
                params.radius_m);
-  visitor.real({"cover.largest_reach", "m", 0.05, kMaxReach_m, "how far volumes of sparse cluxels may grow"},
+  visitor.real({"clustering.max_reach", "m", 0.05, kMaxReach_m, "how far volumes of sparse cluxels may grow"},
                params.max_reach_m);
-  visitor.whole({"cover.wanted_points", "1", 1, 1000, "a volume grows until it holds this many points"},
+  visitor.whole({"clustering.target_points", "1", 1, 1000, "a volume grows until it holds this many points"},
                 params.target_points);
 }
 

@@ -14,7 +14,7 @@
 
 namespace cluxel::perception {
 
-inline constexpr int kModelVersion = 1;
+inline constexpr int kModelVersion = 2;
 
 /// From the CRF's marginals to probabilities and a label: p = softmax(slope * log(marginal) + offset), and the label is
 /// the largest p * favour: for a good macro F1, a rare label is chosen at less than the largest probability.

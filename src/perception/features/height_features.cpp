@@ -152,10 +152,10 @@ const Profile& occupied(const Profile& narrow, const Profile& wider) {
 
 std::vector<std::string> heightColumns() {
   std::vector<std::string> names{"metric.height_above_ground"};
-  for (const char* column : {"metric.column_0m5_", "metric.column_1m5_"})
+  for (const char* stack : {"metric.stack_0m5_", "metric.stack_1m5_"})
     for (const char* name : {"run_below", "run_above", "filled_below", "filled_above", "top", "bottom"})
-      names.push_back(std::string(column) + name);
-  names.insert(names.end(), {"metric.column_3m5_top", "metric.column_3m5_bottom", "metric.column_3m5_occupied"});
+      names.push_back(std::string(stack) + name);
+  names.insert(names.end(), {"metric.stack_3m5_top", "metric.stack_3m5_bottom", "metric.stack_3m5_occupied"});
   return names;
 }
 

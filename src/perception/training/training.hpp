@@ -40,8 +40,8 @@ struct TrainParams {
   bool overlap_correction = true;  ///< overlapping supports and high degrees reduce edge weights
   double pair_l2 = 3.0;
   /// Prefixes of columns that must not be used, since they depend on the sensor's height or density.
-  std::vector<std::string> without_columns = {"metric.density",        "metric.extent",     "metric.column_0m5_top",
-                                              "metric.column_1m5_top", "metric.column_3m5", "metric.wide1m5_members",
+  std::vector<std::string> without_columns = {"metric.density",       "metric.extent",    "metric.stack_0m5_top",
+                                              "metric.stack_1m5_top", "metric.stack_3m5", "metric.wide1m5_members",
                                               "metric.wide3m_members"};
   LabellingParams labelling;
 };

@@ -24,13 +24,13 @@ struct KeySum {
 /// The key sums of one transaction. They are stored in the main database, one record a table.
 class BlockKeys {
  public:
-  /// Before a write transaction adds or removes a block.
+  /// To be called before a write transaction adds or removes a block.
   void noteAdded(const ReadTransaction::Impl& transaction, std::string_view table, std::string_view full_key);
   void noteRemoved(const ReadTransaction::Impl& transaction, std::string_view table, std::string_view full_key);
   /// Writes the sums that have changed.
   void store(const ReadTransaction::Impl& transaction) const;
-  /// Compares the keys of a table with its sum, and finds each of them by a search. Does so once a transaction, and not
-  /// for a table that the transaction has changed, nor for a map without sums (of an earlier version). Throws Error
+  /// Compares the keys of a table with its sum, and looks up each key. Done once in a transaction. Skipped for tables
+  /// that the transaction has changed, and for maps of earlier versions, which have no sums. Throws Error
   /// (StoreUnavailable). Cost: about 1 us a key.
   void verify(const ReadTransaction::Impl& transaction, std::string_view table);
   /// The tables that have a sum.

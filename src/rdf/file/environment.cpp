@@ -101,7 +101,7 @@ struct Access {
   bool holds_writers = false;  ///< has no lock file, but the writers' lock until it closes the file
 };
 
-/// None when the process cannot register as a reader: it then needs a copy of its own.
+/// Null when the process cannot register as a reader; the caller then reads a private copy of the file.
 EnvHandle openLmdbFor(const fs::path& file, std::uint64_t file_size, OpenMode mode, Access& access, int descriptor,
                       unsigned extra) {
   const LockFile lock = prepareLockFile(file, descriptor, access.can_write);

@@ -59,7 +59,7 @@ class PackedTree {
   void meeting(const FlatBox& query_box, std::vector<TermId>& found) const;
   /// All entries, for packing them anew with others.
   void appendTo(GeometryEntries& entries) const;
-  /// True when every box above the lowest level is the least that covers those below it.
+  /// True when every box above the lowest level is the bounding box of its children.
   bool isTight() const;
 
  private:

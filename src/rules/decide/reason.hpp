@@ -20,7 +20,7 @@ struct Verdict;
 using CandidateObserver = std::function<void(const ReasoningState&, const Rule&, const Verdict&)>;
 
 struct ReasoningContext {
-  /// Needed by rule sets with `ask:`; without it such a test is an Error.
+  /// Answers `ask:` tests. May be null for rule sets without them; else such a test throws Error.
   AskOracle* oracle = nullptr;
   /// Ascending. Decisions about these primitives also report what would have changed them (Decision::flips).
   std::vector<perception::PrimitiveIndex> probes = {};

@@ -41,12 +41,12 @@ class RuleRun {
   }
 
  private:
-  /// A group of seeds, and the last rejection.
+  /// A group of seeds that may be judged again, with its last rejection.
   struct Open {
     std::vector<FragmentIndex> group;
     std::optional<Decision> rejection = std::nullopt;
-    std::uint32_t changes = 0;  ///< that were known then
-    std::size_t judged = 0;     ///< fragments of the group then
+    std::uint32_t changes = 0;  ///< of the state, when it was rejected
+    std::size_t judged = 0;     ///< fragments of the group when it was rejected
   };
 
   bool isFree(FragmentIndex fragment) const {

@@ -48,9 +48,9 @@ Explanation explain(const perception::Scene& scene, const RuleSet& rules, const 
 std::optional<Explanation> explain(const perception::Scene& scene, const RuleSet& rules,
                                    const ReasoningContext& context, const SemanticObject& known);
 
-/// What a run with probes tells about a primitive, and about an object: absent when the run did not make it.
-std::optional<Explanation> explanationIn(const ReasoningResult& result, const RuleSet& rules,
-                                         perception::PrimitiveIndex primitive);
+/// What a run with a probe at the primitive tells about it.
+Explanation explanationIn(const ReasoningResult& result, const RuleSet& rules, perception::PrimitiveIndex primitive);
+/// What a run with probes tells about an object; absent when the run did not make it.
 std::optional<Explanation> explanationIn(const ReasoningResult& result, const RuleSet& rules,
                                          const ContentHash& object);
 

@@ -64,8 +64,7 @@ Explanation explanationOf(perception::PrimitiveIndex primitive, const std::vecto
 
 }  // namespace
 
-std::optional<Explanation> explanationIn(const ReasoningResult& result, const RuleSet& rules,
-                                         perception::PrimitiveIndex primitive) {
+Explanation explanationIn(const ReasoningResult& result, const RuleSet& rules, perception::PrimitiveIndex primitive) {
   const auto owner = std::find_if(result.objects.begin(), result.objects.end(),
                                   [primitive](const SemanticObject& object) { return owns(object, primitive); });
   return explanationOf(primitive, decisionsAbout({primitive}, result).at(primitive),
@@ -94,7 +93,7 @@ Explanation explain(const perception::Scene& scene, const RuleSet& rules, const 
                     perception::PrimitiveIndex primitive) {
   ReasoningContext probing = context;
   probing.probes = {primitive};
-  return *explanationIn(reason(scene, rules, probing), rules, primitive);
+  return explanationIn(reason(scene, rules, probing), rules, primitive);
 }
 
 std::optional<Explanation> explain(const perception::Scene& scene, const RuleSet& rules,

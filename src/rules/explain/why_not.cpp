@@ -98,7 +98,7 @@ WhyNot whyNot(const perception::Scene& scene, const RuleSet& rules, const Reason
   std::stable_sort(why.rules.begin(), why.rules.end(), [](const RuleVerdict& a, const RuleVerdict& b) {
     return std::pair(a.nearness, costOfVerdict(a)) < std::pair(b.nearness, costOfVerdict(b));
   });
-  // Of the verdicts of one rule about several primitives the nearest is told.
+  // A rule may have judged several primitives: only its nearest verdict is kept.
   std::vector<RuleVerdict> best;
   for (RuleVerdict& verdict : why.rules)
     if (std::none_of(best.begin(), best.end(),

@@ -14,7 +14,7 @@ namespace cluxel::rules {
 enum class Nearness : std::uint8_t {
   Accepted,    ///< its tree accepts: other classes were stronger, or came first
   Changeable,  ///< the measured values of one branch would have to change
-  Rejected,    ///< a branch rejects that no measured value turns
+  Rejected,    ///< a branch rejects, and no change of a measured value would reverse it
   NoSeed,      ///< the tests of a seed fail
   OtherLabel,  ///< the rule begins with primitives of another label
 };
@@ -24,7 +24,7 @@ struct RuleVerdict {
   Nearness nearness = Nearness::OtherLabel;
   std::string class_iri;
   Decision decision;
-  std::optional<Counterfactual> counterfactual;  ///< what turns it to accepted, or to a seed
+  std::optional<Counterfactual> counterfactual;  ///< what would make it accept, or make the primitive a seed
   std::optional<RivalNote> winner;               ///< of Accepted: who took the thing
   double behind = 0;                             ///< log-odds that it lost by; below 0 when it only came later
 };

@@ -72,6 +72,8 @@ struct Condition {
   std::vector<Condition> operands;           ///< of All, Any, Not
 };
 
+/// "a Tree", "an Avenue": a class or label with its article.
+std::string withArticle(std::string_view name);
 /// In words, for explanations: "height of pole >= 6 m".
 std::string describe(const Condition& condition);
 /// True when the condition relates `subject` to a bound name closely enough to look up candidates: a relation, a share

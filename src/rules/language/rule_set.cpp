@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "base/ascii.hpp"
+
 namespace cluxel::rules {
 
 namespace {
@@ -21,8 +23,8 @@ std::string localName(const std::string& iri) {
 
 std::string describeTarget(const Target& target) {
   if (target.kind == Target::Kind::Name) return target.name;
-  if (target.kind == Target::Kind::Labels) return "a " + labelList(target.labels);
-  return "a " + localName(target.object_class);
+  if (target.kind == Target::Kind::Labels) return withArticle(labelList(target.labels));
+  return withArticle(localName(target.object_class));
 }
 
 /// "2.5" for 2.500000.
@@ -61,6 +63,15 @@ std::string describeAll(const Condition& condition) {
 }
 
 }  // namespace
+
+std::string withArticle(std::string_view name) {
+  const auto is_vowel = [&](std::size_t i) {
+    return i < name.size() && std::string_view("aeiou").find(lowerAscii(name[i])) != std::string_view::npos;
+  };
+  // "Utility" and "Usual" begin with the sound of "you": a vowel, a consonant, a vowel.
+  const bool is_you = !name.empty() && lowerAscii(name[0]) == 'u' && !is_vowel(1) && is_vowel(2);
+  return (is_vowel(0) && !is_you ? "an " : "a ") + std::string(name);
+}
 
 bool looksNearby(const Condition& c, std::string_view subject) {
   if (c.of != subject || !c.target || c.target->kind != Target::Kind::Name) return false;
@@ -148,7 +159,7 @@ std::string describe(const Condition& condition) {
     case Kind::Label:
       return condition.of + " is labelled " + labelList(condition.labels);
     case Kind::Class:
-      return condition.of + " belongs to a " + localName(condition.class_iri);
+      return condition.of + " belongs to " + withArticle(localName(condition.class_iri));
     case Kind::Ask: {
       const std::size_t body = condition.query.rfind("PREFIX ");
       const std::size_t start = body == std::string::npos ? 0 : condition.query.find('\n', body) + 1;

@@ -55,7 +55,7 @@ class Joining {
  private:
   struct Group {
     std::vector<FragmentIndex> fragments;
-    Outline outline;  ///< kept where all limits follow from it
+    Outline outline;  ///< maintained only when all limits can be tested on it
   };
 
   const std::vector<Condition>& limits() const { return rule_.group->limits; }

@@ -48,7 +48,7 @@ class Considering {
     const auto label = state_.scene.primitives[primitive].label;
     said.has_label = std::find(rule.seed.labels.begin(), rule.seed.labels.end(), label) != rule.seed.labels.end();
     said.decision.reason =
-        said.has_label ? "it is no seed of the rule" : "the rule does not begin with a " + std::string(nameOf(label));
+        said.has_label ? "it is no seed of the rule" : "the rule does not begin with " + withArticle(nameOf(label));
     Bindings bindings;
     bindings.candidates.emplace_back(rule.seed.name,
                                      state_.fragments.candidateOf(state_.fragments.fragmentsOf(primitive)));

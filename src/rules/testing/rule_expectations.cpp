@@ -40,7 +40,7 @@ class Checking {
     for (std::size_t i = 0; i < expect.objects.size(); ++i) checkObject(expect.objects[i], i);
     if (expect.exactly) checkNoOther(expect.objects.size());
     for (const std::string& iri : expect.absent)
-      if (countOf(iri) > 0) fail("a " + rules_.shorten(iri) + " came out, which must not: " + describeObjects(iri));
+      if (countOf(iri) > 0) fail(rules_.shorten(iri) + " must not come out, but did: " + describeObjects(iri));
     for (const auto& [iri, count] : expect.count)
       if (countOf(iri) != count)
         fail("expected " + std::to_string(count) + " " + rules_.shorten(iri) + ", but " + std::to_string(countOf(iri)) +

@@ -104,9 +104,9 @@ class Registration {
     return constraintOf(pair, T, said);
   }
 
-  /// Points to planes from a first guess, for where generalised ICP stalls: its line search now and then finds no step
-  /// in the noise of its floats. Wide tolerances first: the few surfaces that tell of a shift are those with large
-  /// gaps.
+  /// Point-to-plane ICP from a first guess, for pairs where generalised ICP stalls because rounding of its floats hides
+  /// the next step of its line search. The first rounds have a wide tolerance, since the few surfaces that reveal a
+  /// shift are those with large gaps.
   Eigen::Isometry3d laidOnPlanes(const SurfaceCloud& target, const SurfaceCloud& source, Eigen::Isometry3d T) const {
     constexpr int kMaxRounds = 12;
     constexpr double kSettled_m = 0.001;

@@ -69,7 +69,7 @@ struct PointTruth {
 /// UtilityPole, Vehicle, SmallObject.
 const std::vector<std::string>& truthClassNames();
 
-/// These, then what else the label map names, in the order of its ids. Throws Error for more than 127 of them.
+/// The classes above, then the other classes of the label map in the order of its ids. Throws Error for more than 127.
 std::vector<std::string> truthClassNames(const LabelMap& map);
 
 /// Truth from the scan's own labels through a label map, without instances.

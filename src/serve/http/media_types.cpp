@@ -45,7 +45,7 @@ struct MediaRange {
   }
 };
 
-/// None when the text is no media range; its other elements count all the same.
+/// One element of an Accept header. None when it is malformed; the caller then skips this element only.
 std::optional<MediaRange> rangeOf(std::string_view text) {
   MediaRange range;
   const std::string type = mediaTypeOf(text);

@@ -12,7 +12,7 @@ namespace cluxel::serve {
 /// Without scripts; names are text, never markup.
 HttpResponse startPage(const std::vector<std::string>& map_names);
 
-/// `text` with the characters that mean something in HTML written as entities.
+/// Escapes `text` for HTML.
 std::string htmlText(std::string_view text);
 
 }  // namespace cluxel::serve

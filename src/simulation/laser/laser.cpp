@@ -21,7 +21,8 @@ constexpr double kLowest_rad = -50 * kDegree, kHighest_rad = 55 * kDegree;
 constexpr double kLowestRing_rad = -24.8 * kDegree, kHighestRing_rad = 2 * kDegree;
 constexpr std::size_t kRings = 64;
 
-/// A full turn as columns (pan) of rays (tilt): with the same angular step both ways, or in rings.
+/// A full turn as columns (pan) of rays (tilt). The tilts have the step of the pan, or are those of a spinning laser's
+/// rings.
 struct RayGrid {
   std::size_t columns = 0, rows = 0;
   LaserKind kind;

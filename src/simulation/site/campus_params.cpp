@@ -22,7 +22,7 @@ const std::array<CampusParamInfo, 12>& campusParamInfos() {
       {"points-per-stop", &P::points_per_stop, "1", 1000, 2e6, "returns per scan"},
       {"range-sigma", &P::range_sigma_m, "m", 0, 0.2, "standard deviation of the range noise"},
       {"max-range", &P::max_range_m, "m", 5, 300, "farthest return"},
-      {"miss-probability", &P::miss_probability, "1", 0, 0.5, "share of rays lost for no reason"},
+      {"miss-probability", &P::miss_probability, "1", 0, 0.5, "share of rays that are lost at random"},
       {"mixed-pixel-probability", &P::mixed_pixel_probability, "1", 0, 1,
        "share of rays on depth edges that mix both ranges"},
       {"beam-radius", &P::beam_radius_rad, "rad", 0, 0.02, "half the divergence of the beam"},

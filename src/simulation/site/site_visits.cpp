@@ -164,7 +164,8 @@ class Visits {
     return made;
   }
 
-  /// A lamp gives way to one as the nearest lamp of another kind. The lower pole stays the same for all who look.
+  /// Replaces a lamp by a copy of the nearest lamp of another kind. Both poles look alike up to the lower one's top, so
+  /// the event states from which height they differ.
   void replace(Campus& next, std::int32_t instance, std::size_t visit) {
     const CampusObject old = next.objects[static_cast<std::size_t>(instance)];
     std::optional<std::int32_t> model;

@@ -32,7 +32,7 @@ class IdTable {
   void erase(std::size_t hash, ValueId id) {
     std::size_t hole = placeOf(hash);
     while (entries_[hole].id != id) hole = next(hole);
-    // Later entries of the run move up, but not before their own places.
+    // Backward-shift deletion: later entries of the run fill the hole, but none moves before the place of its hash.
     for (std::size_t at = next(hole); entries_[at].id != kUnbound; at = next(at)) {
       const std::size_t way = (at - placeOf(entries_[at].hash)) & mask();
       if (way < ((at - hole) & mask())) continue;

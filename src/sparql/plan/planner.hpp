@@ -61,7 +61,7 @@ class Planner {
     std::vector<Expr> filters;
     std::vector<NodePtr> made;       ///< owns nodes created by the planner
     SlotSet constant;                ///< slots with the same value in all parts
-    std::optional<Closest> closest;  ///< what is asked of the rows
+    std::optional<Closest> closest;  ///< set when only the nearest rows are wanted
     double needed_rows = kAllRows;   ///< number of rows of the first part that will be consumed
   };
 

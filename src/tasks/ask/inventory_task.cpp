@@ -244,8 +244,8 @@ std::vector<Task> surveyTasks() {
   Task inventory;
   inventory.name = "inventory";
   inventory.title = "Which signs, lamps, trees and parked vehicles are there, and how large are they?";
-  inventory.parameters = {
-      {"kind", "", "", "a class, or ParkingRow; without it all that a town lists", Kind::Class, false, true}};
+  inventory.parameters = {{"kind", "", "", "a class, or ParkingRow; else street furniture, trees and parked vehicles",
+                           Kind::Class, false, true}};
   inventory.columns = inventoryColumns();
   inventory.run = [](const TaskContext& context, const TaskValues& values) {
     return inventoryAnswer(context.map, inventoryParams(values));

@@ -31,8 +31,7 @@ TaskParameter place(const char* name, bool is_required, const char* help) {
 
 /// What all ways take.
 std::vector<TaskParameter> withWayParameters(std::vector<TaskParameter> own, bool with_width = true) {
-  own.push_back(
-      {"without", "", "", "a class, Movable or Static: these objects are taken to be gone", Kind::Class, false, true});
+  own.push_back({"without", "", "", "a class, Movable or Static: leave these objects out", Kind::Class, false, true});
   if (with_width) own.push_back(number("width", "m", "0.6", "free width that is needed", 0, 20));
   own.push_back(number("maxSlope", "1", "0.12", "rise over run", 0, 10));
   own.push_back(number("maxStep", "m", "0.06", "height of a kerb that is passed", 0, 2));
@@ -232,27 +231,28 @@ Task reachTask() {
 }
 
 Task searchTask() {
-  return {"search",
-          "Where should I look first for objects of a class?",
-          withWayParameters(
-              {{"for", "", "", "the class", Kind::Class, true},
-               place("from", false, "X,Y or an object; without it where the last scan was taken"),
-               number("budget", "m", "0", "how long the walk may be; 0: no limit", 0, 1e6),
-               whole("stops", "10", "at most so many", 1, 100),
-               number("view", "m", "10", "how far an object is recognised", 1, 100),
-               number("detection", "1", "0.8", "share of the class that the map knows within view of a scan", 0, 1),
-               {"unobserved", "", "false", "true: ground that was not observed may be walked", Kind::Flag}}),
-          {{"stop", "1", "number in the tour"},
-           {"x", "m", "position in the map frame"},
-           {"y", "m", "position in the map frame"},
-           {"walk", "m", "from the stop before"},
-           {"total", "m", "from the start"},
-           {"probability", "1", "that the object is first seen from here"},
-           {"soFar", "1", "that it is seen from here or before"},
-           {"near", "text", "the class of the usual place that most of it comes from; absent: anywhere"}},
-          true,
-          {},
-          runSearch};
+  return {
+      "search",
+      "Where should I look first for objects of a class?",
+      withWayParameters({{"for", "", "", "the class", Kind::Class, true},
+                         place("from", false, "X,Y or an object; without it where the last scan was taken"),
+                         number("budget", "m", "0", "how long the walk may be; 0: no limit", 0, 1e6),
+                         whole("stops", "10", "at most so many", 1, 100),
+                         number("view", "m", "10", "how far an object is recognised", 1, 100),
+                         number("detection", "1", "0.8",
+                                "share of the class's objects within view of a scan that are in the map", 0, 1),
+                         {"unobserved", "", "false", "true: ground that was not observed may be walked", Kind::Flag}}),
+      {{"stop", "1", "number in the tour"},
+       {"x", "m", "position in the map frame"},
+       {"y", "m", "position in the map frame"},
+       {"walk", "m", "from the stop before"},
+       {"total", "m", "from the start"},
+       {"probability", "1", "that the object is first seen from here"},
+       {"soFar", "1", "that it is seen from here or before"},
+       {"near", "text", "the class of the usual place that most of it comes from; absent: anywhere"}},
+      true,
+      {},
+      runSearch};
 }
 
 Task costMapTask() {

@@ -12,8 +12,9 @@ namespace cluxel::tasks {
 /// What the rays of a group of scans found at a cluxel.
 struct RayFindings {
   bool is_hit = false;
-  bool is_seen_through = false;              ///< by several rays of one scan
-  std::uint8_t sparse_hits = 0, passed = 0;  ///< scans of which so few rays came near that they may miss a thin thing
+  bool is_seen_through = false;  ///< by several rays of one scan
+  /// Scans with so few rays near the place that they may have missed a thin thing: those that hit, those that passed.
+  std::uint8_t sparse_hits = 0, passed = 0;
 
   /// Rays passed the place, and none ended there.
   bool isEmpty() const { return !is_hit && (is_seen_through || passed > 0); }

@@ -38,7 +38,7 @@ class ObjectMatching {
   bool hasInstances() const { return !truth_.empty(); }
   std::vector<ObjectScore> scoreByBox(const EvaluationParams& params) const;
   std::vector<ObjectScore> scoreByPoints(const EvaluationParams& params) const;
-  /// The objects that count as right or wrong, without their confidence.
+  /// The objects that count, each with right or wrong; the confidence is not filled in.
   std::vector<JudgedAnswer> judgedByPoints(const EvaluationParams& params) const;
   /// What true objects are called, by the kind of each instance. Ambiguous instances do not count.
   std::vector<KindAnswers> answersByKind(const std::map<std::int32_t, std::string>& kinds,
@@ -63,7 +63,7 @@ class ObjectMatching {
   /// The instance that shares the most points with the object, of any class; -1 when none does.
   std::int32_t bestInstance(std::uint32_t object) const;
   bool countsAsAnswer(std::uint32_t object) const;
-  /// The class of the object whose box is that of the true object, or names_.size() + 1.
+  /// The class of the object whose box matches that of the true object; names_.size() + 1 when there is none.
   std::size_t boxedClass(const PointSet& truth, const std::map<std::uint32_t, std::uint64_t>& takers,
                          const EvaluationParams& params) const;
   /// Enters one true object into the counts of its kind.

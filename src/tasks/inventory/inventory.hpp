@@ -14,10 +14,10 @@ namespace cluxel::tasks {
 
 inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-/// One entry. Sizes that its kind has not are kNotMeasured.
+/// One entry. Sizes that do not apply to its kind are kNotMeasured.
 struct InventoryItem {
   std::string kind;                              ///< local name of the class, or "ParkingRow"
-  std::string object;                            ///< IRI; empty for what several objects make
+  std::string object;                            ///< IRI; empty for an entry that consists of several objects
   std::string street;                            ///< name of the nearest street; empty: none is known near it
   Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< [m, map]; of a tree its trunk
   double height_m = kNotMeasured;                ///< top above the local ground

@@ -18,7 +18,7 @@ std::string matrixChart(const std::string& name, const PlotMatrix& matrix);
 struct PlotBar {
   std::string label;
   double value = 0;
-  std::string text;  ///< behind the bar
+  std::string text;  ///< printed after the bar
 };
 std::string barChart(const std::string& name, const std::vector<PlotBar>& bars);
 

@@ -97,8 +97,8 @@ class ExampleCollector {
 
   enum class Match : std::uint8_t { Named, Counted, None, Unknown };
 
-  /// Named: the truth's class is the candidate's or below it. Counted: it is what the candidate's class counts as.
-  /// Unknown: the truth has no class for it.
+  /// How a candidate's class fits the true one. Named: the true class is the candidate's or a subclass. Counted: the
+  /// evaluation counts the candidate's class as the true one. Unknown: the truth has no such class.
   Match matchOf(const std::string& class_iri, const std::string& truth_class) const {
     const auto truth_entry =
         std::find_if(rules_.catalogue.classes.begin(), rules_.catalogue.classes.end(),

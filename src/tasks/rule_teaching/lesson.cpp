@@ -52,7 +52,8 @@ class Teaching {
 
   void findSeeds() {
     if (object().class_iri == lesson_.class_iri)
-      throw Error(ErrorKind::InvalidArgument, "the object is a " + mapping::localName(lesson_.class_iri) + " already");
+      throw Error(ErrorKind::InvalidArgument,
+                  "the object is " + rules::withArticle(mapping::localName(lesson_.class_iri)) + " already");
     const rules::ReasoningResult result = resultOf(rules_);
     const auto same = std::find_if(result.objects.begin(), result.objects.end(),
                                    [&](const rules::SemanticObject& other) { return other.id == object().id; });
@@ -96,7 +97,7 @@ class Teaching {
                     " other things of its label; confirm fewer objects, or write a rule that looks at its neighbours");
   }
 
-  /// Those of the objects that must not change.
+  /// The primitives of the objects that must not change.
   std::set<perception::PrimitiveIndex> keptPrimitives() const {
     std::set<perception::PrimitiveIndex> kept;
     for (const std::string& name : request_.confirmed)
@@ -106,7 +107,7 @@ class Teaching {
     return kept;
   }
 
-  /// The rule of `result` that took most points of the case.
+  /// The object of `result` that took most points of the case.
   const rules::SemanticObject* takerIn(const rules::ReasoningResult& result) const {
     const rules::SemanticObject* best = nullptr;
     double most = 0;
@@ -157,7 +158,7 @@ Lesson teach(const mapping::MapReader& map, const LessonRequest& request) {
 }
 
 std::string textOf(const Lesson& lesson) {
-  std::string text = "a " + lesson.class_name + ", no " + lesson.before + ", is what has";
+  std::string text = rules::withArticle(lesson.class_name) + ", no " + lesson.before + ", is what has";
   for (const std::string& condition : lesson.conditions)
     text += (&condition == &lesson.conditions.front() ? " " : " and ") + condition;
   text += lesson.conditions.empty() ? " its label\n" : "\n";

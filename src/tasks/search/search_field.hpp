@@ -21,8 +21,8 @@ struct PlaceEvidence {
 struct SearchParams {
   double detection = 0.8;  ///< share of the objects of the class that the map knows within view of a scan
   double view_m = 10;      ///< how far an object is recognised from a stop
-  double fade = 3;         ///< at so many times view_m from a scan, the map knows nothing any more
-  double eye_m = 1.2;      ///< what is higher hides what is behind it
+  double fade = 3;         ///< beyond this many times view_m from all scans, the map knows nothing
+  double eye_m = 1.2;      ///< height of the camera: higher obstacles hide what is behind them
 };
 
 /// The number of a place in reasons, or this: anywhere.

@@ -22,7 +22,7 @@ class StopCandidates {
     bound_.assign(cells_.size(), 1.0);
   }
 
-  /// The reachable stop of most probability for each metre; none when all have less than the least.
+  /// The reachable stop with the highest probability per metre of walk; none when all are below the minimum.
   std::optional<SearchStop> best(const CheapestWays& ways, double total_m, const TourParams& params) {
     std::optional<SearchStop> best;
     double best_value = 0;

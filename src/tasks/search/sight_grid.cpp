@@ -11,7 +11,7 @@ namespace cluxel::tasks {
 
 namespace {
 
-/// Marks the cells of a square around a cell that rays from its middle reach.
+/// Marks the cells that are visible from the middle of a cell, within a square around it.
 class SightRays {
  public:
   SightRays(const SightGrid& sight, std::uint32_t cell, double view_m)

@@ -14,8 +14,8 @@ namespace cluxel::tasks {
 std::string gzipped(std::string_view bytes);
 std::string base64(std::string_view bytes);
 
-/// Writes one data element with the id `name`. What it holds is letters, digits, "+", "/" and "=": nothing in a map can
-/// end the element or begin another one. Returns the number of bytes written. `name` is one of the program's own.
+/// Writes one data element with the id `name`, which the program chooses. The content is base64, so that nothing in a
+/// map can end the element or begin another one. Returns the number of bytes written.
 std::uint64_t writeBlock(const std::string& name, std::string_view bytes, const ByteSink& out);
 
 /// The values as planes: the lowest bytes of all values, then the next higher ones. gzip finds more in planes.

@@ -34,7 +34,7 @@ struct PassableGrid {
   bool isStepOpen(std::uint32_t a, std::uint32_t b) const;
 };
 
-/// `is_left_out`: per object, true when it is taken to be gone. `near`: objects that the way should stay near; empty:
+/// `is_left_out`: per object, true when it is to be left out. `near`: objects that the way should stay near; empty:
 /// none.
 PassableGrid passableOf(const TerrainGrid& terrain, const WayParams& params, const std::vector<bool>& is_left_out,
                         const std::vector<bool>& near);

@@ -16,7 +16,7 @@ namespace cluxel::tasks {
 struct WayRequest {
   WayParams params = {};
   TerrainParams terrain = {};
-  std::vector<std::string> without;  ///< objects that are taken to be gone
+  std::vector<std::string> without;  ///< objects to leave out
   bool with_gone = false;            ///< objects that later scans saw through (clx:seenThrough) are there all the same
   std::string near;                  ///< the way should stay near objects of this class; empty: none
 };

@@ -49,7 +49,7 @@ struct TerrainGrid {
 struct TerrainParams {
   double cell_m = 0.25;
   double lowest_m = 0.20;   ///< things below this height above the ground are steps, not obstacles
-  double highest_m = 2.00;  ///< things above it are passed under
+  double highest_m = 2.00;  ///< clearance: what hangs higher is no obstacle
   /// The part of the map frame that the grid covers [m, map]; absent: all tiles of the map. It may reach beyond them.
   std::optional<Eigen::AlignedBox2d> area = std::nullopt;
 };

@@ -205,8 +205,8 @@ class RangeJoinOperator : public UnaryOperator {
   std::vector<std::uint32_t> found_, from_, matched_;
   std::optional<EnoughRows> enough_;
   std::size_t near_ = 0;           ///< the test by which rows come nearest first
-  std::optional<KnownBox> place_;  ///< of the current row for it, if it has one,
-  double reach_ = 0;               ///< and the greatest distance
+  std::optional<KnownBox> place_;  ///< the current row's box for that test, if it has one
+  double reach_ = 0;               ///< the largest distance that still counts for that test
   Batch pair_;                     ///< one row, for the conditions
   std::unordered_set<ValueId> counted_;
 };

@@ -128,7 +128,8 @@ const BoxTree& RangeBuild::treeOf(std::uint32_t system, FunctionContext& functio
   return sparql::treeOf(system, trees_, dimensions_);
 }
 
-/// The functions note it where they are called; here they are not.
+/// Warns of geometries in different reference systems. A spatial function would warn when it is called, but a range
+/// join does not call it for such pairs.
 void RangeBuild::noteOthers(std::uint32_t system, FunctionContext& functions) {
   if (noted_.size() <= system) noted_.resize(system + 1, false);
   if (noted_[system]) return;
