@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "rules/box_world.hpp"
+#include "rules/explain/explain.hpp"
 #include "rules/propose/cluxel_grid.hpp"
 
 namespace cluxel::testing {
@@ -82,6 +83,48 @@ TEST(NearbyChanges, TellsOfEveryChangeWithinReach) {
     spared += changes.anyNear(asked, known) ? 0 : 1;
   }
   EXPECT_GT(spared, 20);
+}
+
+/// Bushes low enough to be accepted, high ones that need a bush beside them, and a rule that lets bushes grow.
+RuleSet rulesOfHighAndLowBushes() {
+  return rulesOf("[clx:Bush]", R"(
+  - id: bush/any
+    class: clx:Bush
+    seed: { label: scatter, as: leaves }
+    tree:
+      test: top <= 1 m
+      yes: { accept: { part: clx:Bush, confidence: 0.9 } }
+      no:
+        test: top <= 3 m
+        yes:
+          test: gap to clx:Bush <= 1 m
+          yes: { accept: { part: clx:Bush, confidence: 0.8 } }
+          no: { reject: no bush beside it }
+        no:
+          test: gap to clx:Bush <= 1 m
+          yes: { accept: { part: clx:Bush, merge_into: related, confidence: 0.8 } }
+          no: { reject: too high }
+)");
+}
+
+TEST(RuleReach, ASeedIsRetriedWhateverHappensFarAway) {
+  const auto bushesOf = [](bool grows_far_away) {
+    BoxScene boxes;
+    // The larger seed is decided first, before the bush beside it exists.
+    boxes.boxes.push_back(box("high", kScatter, {0, 0, 1}, {2, 2, 2}));
+    boxes.boxes.push_back(box("low", kScatter, {1.7, 0, 0.4}, {0.8, 0.8, 0.8}));
+    boxes.boxes.push_back(box("far low", kScatter, {90, 0, 0.5}, {3, 3, 0.9}));
+    boxes.boxes.push_back(box("far high", kScatter, {grows_far_away ? 92.2 : 99.0, 0, 2}, {0.8, 0.8, 4}));
+    const BuiltBoxScene built = sceneOfBoxes(boxes);
+    const ReasoningResult result = reason(built.scene, rulesOfHighAndLowBushes());
+    std::set<std::string> near;
+    for (const SemanticObject& object : result.objects)
+      for (const PrimitiveIndex primitive : primitivesOf(object))
+        if (!built.names[primitive].starts_with("far")) near.insert(built.names[primitive]);
+    return near;
+  };
+  EXPECT_EQ(bushesOf(true), (std::set<std::string>{"high", "low"}));
+  EXPECT_EQ(bushesOf(false), bushesOf(true));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decides about the seeds of a rule by decreasing size, and retries rejected ones while objects grow.
+// Decides about the seeds of a rule by decreasing size, and retries rejected ones after others were accepted.
 #include "rules/decide/rule_run.hpp"
 
 #include "rules/decide/decision_record.hpp"
@@ -24,14 +24,15 @@ class RuleRun {
     std::vector<Open> open;
     for (std::vector<FragmentIndex>& group : seedGroups(state_, rule_, scope.slices()))
       open.push_back({std::move(group)});
-    // An object that grows may come near a seed that was rejected before: retry rejected seeds until no object grows.
-    for (bool grown = true; grown && !open.empty();) {
-      grown = false;
+    // A new or a larger object may be near a seed that was rejected before: retry rejected seeds until none is
+    // accepted. What happens far away must not decide whether a seed is retried.
+    for (bool accepted = true; accepted && !open.empty();) {
+      accepted = false;
       std::vector<Open> rejected;
       for (Open& seed : open) {
         std::erase_if(seed.group, [this](FragmentIndex fragment) { return !isFree(fragment); });
         if (seed.group.empty()) continue;
-        if (!isSettled(seed) && !decide(seed, grown)) continue;
+        if (!isSettled(seed) && !decide(seed, accepted)) continue;
         rejected.push_back(std::move(seed));
       }
       open = std::move(rejected);
@@ -71,8 +72,8 @@ class RuleRun {
   }
 
   /// Decides about one group. Records an acceptance or a final rejection and returns false; returns true for a
-  /// rejection that may be retried. Sets `grown` when the group joined an existing object.
-  bool decide(Open& seed, bool& grown) {
+  /// rejection that may be retried. Sets `accepted` when an object was made or grew.
+  bool decide(Open& seed, bool& accepted) {
     Verdict verdict = judge(state_, rule_, seed.group);
     if (verdict.accept != nullptr && state_.context.onCandidate) state_.context.onCandidate(state_, rule_, verdict);
     if (verdict.accept != nullptr && verdict.decision.log_odds <= kMinLogOdds) {
@@ -82,7 +83,8 @@ class RuleRun {
       verdict.leaves_unknown = false;
     }
     if (verdict.accept != nullptr) {
-      accept(verdict, seed.group, grown);
+      accept(verdict, seed.group);
+      accepted = true;
       return false;
     }
     if (!verdict.leaves_unknown) {
@@ -96,12 +98,11 @@ class RuleRun {
     return false;
   }
 
-  void accept(Verdict& verdict, const std::vector<FragmentIndex>& group, bool& grown) {
+  void accept(Verdict& verdict, const std::vector<FragmentIndex>& group) {
     state_.decisions.push_back(std::move(verdict.decision));
     changes_.add(boxOf(group));
     if (verdict.accept->merge_into_related && verdict.related) {
       joinRelated(state_, rule_, *verdict.related, verdict.accept->parts.front(), group);
-      grown = true;
     } else {
       makeObject(state_, rule_, *verdict.accept, std::move(verdict.bindings));
     }
