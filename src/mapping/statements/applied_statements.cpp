@@ -65,7 +65,8 @@ class Application {
         ignored_(objects_.size(), false) {}
 
   AppliedStatements run(const std::vector<Statement>& statements) {
-    for (const Statement& statement : statements) result_.outcomes.push_back({statement, {}, {}, {}, false});
+    for (const Statement& statement : statements)
+      result_.outcomes.push_back({statement, StatementEffect::Dormant, std::nullopt, "", false});
     owner_of_.resize(statements.size());
     for (std::size_t i = 0; i < statements.size(); ++i) look(i);
     for (std::size_t i = 0; i < statements.size(); ++i) takeIgnored(i);
