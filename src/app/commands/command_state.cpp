@@ -106,7 +106,8 @@ ExitCode change(const StateOptions& options, Session& session) {
     if (!options.region.empty())
       edit.added.push_back(
           {StatementKind::IgnoreRegion, "", {}, {}, regionAnchor(map.clouds(), cornersOf(options.region))});
-    for (const std::string& name : options.withdrawn) edit.withdrawn.push_back(mapping::statementNamed(map.quads(), name));
+    for (const std::string& name : options.withdrawn)
+      edit.withdrawn.push_back(mapping::statementNamed(map.quads(), name));
   }
   mapping::ChangeParams params = options.change;
   params.threads = session.threadCount();
