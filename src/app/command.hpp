@@ -70,6 +70,7 @@ void addRegister(CLI::App& app, Session& session);
 void addBuild(CLI::App& app, Session& session);
 void addTrain(CLI::App& app, Session& session);
 void addQuery(CLI::App& app, Session& session);
+void addState(CLI::App& app, Session& session);
 void addLoad(CLI::App& app, Session& session);
 void addDump(CLI::App& app, Session& session);
 void addUpdate(CLI::App& app, Session& session);

@@ -42,6 +42,7 @@ void addCommands(CLI::App& app, Session& session) {
   addChange(app, session);
   addWatch(app, session);
   addQuery(app, session);
+  addState(app, session);
   addUpdate(app, session);
   addLoad(app, session);
   addDump(app, session);

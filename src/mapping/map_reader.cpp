@@ -2,7 +2,9 @@
 // All reads of a MapReader use one snapshot of the file.
 #include "mapping/map_reader.hpp"
 
+#include <algorithm>
 #include <optional>
+#include <set>
 
 #include "cluxel/error.hpp"
 #include "mapping/build/scan_store.hpp"
@@ -10,6 +12,7 @@
 #include "mapping/facts/object_geometry.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/object_store.hpp"
+#include "mapping/statements/statement_facts.hpp"
 
 namespace cluxel::mapping {
 
@@ -23,6 +26,7 @@ struct MapReader::Impl {
   std::optional<TileStages> stages;
   std::optional<perception::Scene> scene;
   std::optional<std::vector<rules::SemanticObject>> objects;
+  std::optional<std::vector<OverruledObject>> overruled;
   std::vector<std::uint32_t> object_of_cluxel;
   std::map<perception::TileKey, std::uint32_t> first_cluxel;
 
@@ -100,6 +104,30 @@ scan::Scan MapReader::scanOf(const scan::ScanId& cloud) const {
 const std::vector<rules::SemanticObject>& MapReader::objects() const {
   return impl_->readObjects();
 }
+const std::vector<OverruledObject>& MapReader::overruled() const {
+  if (!impl_->overruled) impl_->overruled = storedOverruled(impl_->transaction);
+  return *impl_->overruled;
+}
+
+const rules::SemanticObject& MapReader::byRules(const rules::SemanticObject& object) const {
+  for (const OverruledObject& changed : overruled())
+    if (changed.now == object.id) return changed.by_rules;
+  return object;
+}
+
+std::vector<rules::SemanticObject> MapReader::objectsByRules() const {
+  std::set<ContentHash> stated;
+  std::vector<rules::SemanticObject> all;
+  for (const OverruledObject& changed : overruled()) {
+    if (changed.now) stated.insert(*changed.now);
+    all.push_back(changed.by_rules);
+  }
+  for (const rules::SemanticObject& object : objects())
+    if (!stated.contains(object.id)) all.push_back(object);
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  return all;
+}
+
 std::vector<std::uint64_t> MapReader::decisionDigests() const {
   return storedDigests(impl_->transaction);
 }

@@ -19,6 +19,7 @@
 namespace cluxel::mapping {
 
 class TileStages;
+struct OverruledObject;
 
 struct MapSummary {
   bool is_finished = false;
@@ -53,6 +54,12 @@ class MapReader {
   scan::Scan scanOf(const scan::ScanId& cloud) const;
   /// The objects, sorted by id; cluxel numbers refer to scene().
   const std::vector<rules::SemanticObject>& objects() const;
+  /// Those that operator statements changed or removed, as the rules made them.
+  const std::vector<OverruledObject>& overruled() const;
+  /// The object as the rules made it: itself where nothing was stated.
+  const rules::SemanticObject& byRules(const rules::SemanticObject& object) const;
+  /// The objects as the rules made them, sorted by id.
+  std::vector<rules::SemanticObject> objectsByRules() const;
   /// Digests of the decisions about each of the scene's primitives; empty for a map that has none.
   std::vector<std::uint64_t> decisionDigests() const;
   /// The scene, assembled from the stored tiles by the first call.

@@ -13,7 +13,7 @@ namespace cluxel::mapping {
 namespace {
 
 using Json = nlohmann::json;
-constexpr std::string_view kObjectsKey = "objects", kDigestsKey = "decisions";
+constexpr std::string_view kObjectsKey = "objects", kByRulesKey = "objects by rules", kDigestsKey = "decisions";
 /// The numbers of a billion cluxels.
 constexpr std::uint64_t kMaxObjectBytes = std::uint64_t{1} << 32U;
 
@@ -58,19 +58,17 @@ rules::SemanticObject objectFrom(const Json& json) {
   return object;
 }
 
-}  // namespace
-
-void storeObjects(rdf::WriteTransaction& transaction, const std::vector<rules::SemanticObject>& objects) {
+void storeUnder(rdf::WriteTransaction& transaction, std::string_view key,
+                const std::vector<rules::SemanticObject>& objects) {
   Json json = Json::array();
   for (const rules::SemanticObject& object : objects) json.push_back(objectJson(object));
   const auto bytes = Json::to_cbor(json);
-  transaction.putBlock(tables::kMeta, kObjectsKey,
-                       packedBytes({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
+  transaction.putBlock(tables::kMeta, key, packedBytes({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
 }
 
-std::vector<rules::SemanticObject> storedObjects(const rdf::ReadTransaction& transaction) {
+std::vector<rules::SemanticObject> storedUnder(const rdf::ReadTransaction& transaction, std::string_view key) {
   std::vector<rules::SemanticObject> objects;
-  const auto bytes = transaction.block(tables::kMeta, kObjectsKey);
+  const auto bytes = transaction.block(tables::kMeta, key);
   if (!bytes) return objects;
   try {
     const auto unpacked = unpackedBytes(*bytes, kMaxObjectBytes);
@@ -81,6 +79,25 @@ std::vector<rules::SemanticObject> storedObjects(const rdf::ReadTransaction& tra
                 std::string("the map's objects cannot be read (") + fault.what() + "); build the map anew");
   }
   return objects;
+}
+
+}  // namespace
+
+void storeObjects(rdf::WriteTransaction& transaction, const std::vector<rules::SemanticObject>& objects) {
+  storeUnder(transaction, kObjectsKey, objects);
+}
+std::vector<rules::SemanticObject> storedObjects(const rdf::ReadTransaction& transaction) {
+  return storedUnder(transaction, kObjectsKey);
+}
+
+void storeObjectsByRules(rdf::WriteTransaction& transaction, const std::vector<rules::SemanticObject>& objects) {
+  storeUnder(transaction, kByRulesKey, objects);
+}
+std::vector<rules::SemanticObject> storedObjectsByRules(const rdf::ReadTransaction& transaction) {
+  return storedUnder(transaction, kByRulesKey);
+}
+void eraseObjectsByRules(rdf::WriteTransaction& transaction) {
+  transaction.eraseBlock(tables::kMeta, kByRulesKey);
 }
 
 void storeDigests(rdf::WriteTransaction& transaction, const std::vector<std::uint64_t>& digests) {

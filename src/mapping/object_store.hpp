@@ -13,6 +13,11 @@ namespace cluxel::mapping {
 void storeObjects(rdf::WriteTransaction& transaction, const std::vector<rules::SemanticObject>& objects);
 std::vector<rules::SemanticObject> storedObjects(const rdf::ReadTransaction& transaction);
 
+/// Those that operator statements changed, as the rules made them.
+void storeObjectsByRules(rdf::WriteTransaction& transaction, const std::vector<rules::SemanticObject>& objects);
+std::vector<rules::SemanticObject> storedObjectsByRules(const rdf::ReadTransaction& transaction);
+void eraseObjectsByRules(rdf::WriteTransaction& transaction);
+
 /// Digests of what was decided about each primitive, in the order of the scene's primitives
 /// (rules::decisionDigests()).
 void storeDigests(rdf::WriteTransaction& transaction, const std::vector<std::uint64_t>& digests);

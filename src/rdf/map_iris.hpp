@@ -39,6 +39,14 @@ inline std::string iriOfObservation(const ContentHash& id) {
 inline std::string iriOfDerivation(const ContentHash& id) {
   return mapIri("derivation", id.hex());
 }
+/// What an operator stated.
+inline std::string iriOfStatement(const ContentHash& id) {
+  return mapIri("statement", id.hex());
+}
+/// What goes on under one name while its object gains and loses members.
+inline std::string iriOfThing(const ContentHash& id) {
+  return mapIri("thing", id.hex());
+}
 /// Of one build of the map.
 inline std::string iriOfActivity(const ContentHash& id) {
   return mapIri("activity", id.hex());

@@ -9,7 +9,10 @@
 
 #include "base/nearest_name.hpp"
 #include "cluxel/error.hpp"
+#include "mapping/change/map_things.hpp"
+#include "mapping/change/statement_change.hpp"
 #include "mapping/facts/ask_replay.hpp"
+#include "rdf/map_iris.hpp"
 #include "rules/explain/part_run.hpp"
 #include "rules/explain/path_tree.hpp"
 #include "rules/explain/why_not.hpp"
@@ -89,6 +92,17 @@ struct Named {
   std::optional<std::size_t> object, primitive;
 };
 
+std::optional<mapping::FormerName> formerName(const mapping::MapReader& map, const std::string& name) {
+  std::vector<ContentHash> present;
+  for (const rules::SemanticObject& object : map.objects()) present.push_back(object.id);
+  return mapping::objectByLineage(map.quads(), name, present);
+}
+
+std::size_t numberOf(const std::vector<rules::SemanticObject>& objects, const ContentHash& id) {
+  const auto found = std::find_if(objects.begin(), objects.end(), [&](const auto& object) { return object.id == id; });
+  return static_cast<std::size_t>(found - objects.begin());
+}
+
 Named find(const mapping::MapReader& map, const std::string& name) {
   Named named;
   named.object = objectNumber(name, map.objects().size());
@@ -101,6 +115,8 @@ Named find(const mapping::MapReader& map, const std::string& name) {
   // Four digits or more may be meant as a number too; a hash that begins so comes first, "#" makes it a number.
   if (!named.object && !named.primitive)
     if (const auto number = numberIn(name); number && *number < map.objects().size()) named.object = number;
+  if (!named.object && !named.primitive)
+    if (const auto former = formerName(map, name)) named.object = numberOf(map.objects(), former->object);
   if (named.object && named.primitive)
     throw Error(ErrorKind::NotFound, "'" + name + "' names an object and a primitive; write more digits, or object/" +
                                          name + " or primitive/" + name);
@@ -118,7 +134,31 @@ std::vector<perception::PrimitiveIndex> primitivesOf(const mapping::MapReader& m
 std::optional<rules::PartRun> partAround(const mapping::MapReader& map, const Named& named,
                                          const rules::RuleSet& rules) {
   const std::vector<std::uint64_t> digests = map.decisionDigests();
-  return runInPart(map.scene(), rules, {digests, map.objects()}, primitivesOf(map, named));
+  const std::vector<rules::SemanticObject> by_rules = map.objectsByRules();
+  return runInPart(map.scene(), rules, {digests, by_rules}, primitivesOf(map, named));
+}
+
+/// The object's thing, and what operators state about it.
+std::string historyOf(const mapping::MapReader& map, std::size_t number, nlohmann::ordered_json& json) {
+  const rules::SemanticObject& object = map.objects()[number];
+  const std::string thing = thingOf(mapping::storedThings(map.quads()), object.id).iri;
+  json["thing"] = thing;
+  std::string text = "thing/" + mapping::localName(thing) + "\n";
+  for (const mapping::KnownStatement& known : mapping::knownStatements(map.quads())) {
+    if (known.object != rdf::iriOfObject(object.id)) continue;
+    json["stated"].push_back({{"statement", known.statement.id().hex()},
+                              {"states", textOf(known.statement)},
+                              {"effect", known.effect},
+                              {"author", known.author},
+                              {"statedAt", known.stated_at},
+                              {"rulesSay", known.rules_class},
+                              {"contradictsRules", known.contradicts}});
+    text += "stated" + (known.author.empty() ? "" : " by " + known.author) +
+            (known.stated_at.empty() ? "" : " " + known.stated_at) + ": " + textOf(known.statement) + " (" +
+            known.effect + (known.contradicts ? ", against the rules" : "") + ")\n";
+  }
+  if (object.rule_id == mapping::kOperatorRule) text += "without the statement the rules decide:\n";
+  return text;
 }
 
 /// An explanation, with the part of the scene that its numbers refer to when it is not the whole.
@@ -130,7 +170,7 @@ struct Explained {
 };
 
 Explained explanationOf(const mapping::MapReader& map, const Named& named, const rules::RuleSet& rules) {
-  const rules::SemanticObject* object = named.primitive ? nullptr : &map.objects()[*named.object];
+  const rules::SemanticObject* object = named.primitive ? nullptr : &map.byRules(map.objects()[*named.object]);
   if (auto run = partAround(map, named, rules)) {
     std::optional<rules::Explanation> explanation;
     if (object == nullptr)
@@ -170,7 +210,7 @@ WhyNotOfThing whyNotOf(const mapping::MapReader& map, const rules::RuleSet& rule
                        const std::string& written, const std::string& class_name) {
   const Named named = find(map, plainName(written));
   const std::string class_iri = classNamed(rules, class_name);
-  const auto id = named.object ? std::optional(map.objects()[*named.object].id) : std::nullopt;
+  const auto id = named.object ? std::optional(map.byRules(map.objects()[*named.object]).id) : std::nullopt;
   mapping::AskReplay oracle(map);
   const rules::ReasoningContext context{.oracle = &oracle};
   const perception::Scene& scene = map.scene();
@@ -200,8 +240,24 @@ std::string classNamed(const rules::RuleSet& rules, const std::string& written) 
   throw Error(ErrorKind::NotFound, "the ontology knows no class '" + name + "'" + (hint.empty() ? "" : "; " + hint));
 }
 
+std::string classNamed(const rules::ClassCatalogue& classes, const std::string& written) {
+  rules::RuleSet rules;
+  rules.catalogue = classes;
+  rules.prefixes["clx"] = rdf::vocabulary::kClx;
+  return classNamed(rules, written);
+}
+
+std::string nameNote(const mapping::MapReader& map, const std::string& written) {
+  const std::string name = plainName(written);
+  const auto known = [&](const auto& items, const std::string& kind) { return findOne(items, kind, name).has_value(); };
+  if (name.size() < kMinDigits || name.starts_with('#') || known(map.objects(), "object")) return {};
+  if (known(map.scene().primitives, "primitive")) return {};
+  const auto former = formerName(map, name);
+  return former ? former->meaning + " is now object/" + former->object.hex() : "";
+}
+
 std::size_t objectNamed(const mapping::MapReader& map, const std::string& name) {
-  const Named named = find(map, name);
+  const Named named = find(map, plainName(name));
   if (!named.object) throw Error(ErrorKind::NotFound, "'" + name + "' names a primitive, not an object");
   return *named.object;
 }
@@ -245,7 +301,7 @@ ExplanationTexts explainThing(const mapping::MapReader& map, const std::string& 
   std::string text = textOf(explained.explanation, rules, scene);
   if (named.object) {
     json["number"] = *named.object;
-    text = "object #" + std::to_string(*named.object) + "\n" + text;
+    text = "object #" + std::to_string(*named.object) + "\n" + historyOf(map, *named.object, json) + text;
   }
   return {std::move(text), json.dump(2)};
 }
@@ -269,7 +325,7 @@ std::vector<std::string> explainObjects(const mapping::MapReader& map) {
   }
   std::vector<std::string> texts;
   texts.reserve(map.objects().size());
-  for (const rules::SemanticObject& object : map.objects()) texts.push_back(by_object[object.id]);
+  for (const rules::SemanticObject& object : map.objects()) texts.push_back(by_object[map.byRules(object).id]);
   return texts;
 }
 

@@ -23,8 +23,12 @@ struct ExplanationTexts {
 ExplanationTexts explainThing(const mapping::MapReader& map, const std::string& name);
 /// The number in MapReader::objects() of the object that has the name. Throws Error (NotFound) when there is none.
 std::size_t objectNamed(const mapping::MapReader& map, const std::string& name);
+/// "thing/HEX is now object/HEX" for a name that is not the object's own; empty otherwise.
+std::string nameNote(const mapping::MapReader& map, const std::string& name);
 /// The IRI of the class that is written as "Tree", "clx:Tree" or an IRI. Throws Error (NotFound) when there is none.
 std::string classNamed(const rules::RuleSet& rules, const std::string& written);
+/// The same with the local name, clx: or an IRI only.
+std::string classNamed(const rules::ClassCatalogue& classes, const std::string& written);
 
 /// Why the thing is not of a class ("StreetSign", "clx:StreetSign" or an IRI): how near each rule of the class comes to
 /// it. Runs the rules twice. Throws Error (NotFound) for a class that the ontology does not know, too.

@@ -7,10 +7,11 @@
 namespace cluxel::app {
 namespace {
 
-const std::vector<std::string> kCommands{
-    "info",  "simulate", "register", "build", "extend",   "retract", "repose",  "merge",   "query",  "update",
-    "tasks", "explain",  "rules",    "train", "evaluate", "export",  "serve",   "compact", "doctor", "route",
-    "reach", "costmap",  "search",   "view",  "load",     "dump",    "changes", "watch",   "ask",    "inventory"};
+const std::vector<std::string> kCommands{"info",     "simulate",  "register", "build",   "extend",  "retract", "repose",
+                                         "merge",    "query",     "update",   "tasks",   "explain", "rules",   "train",
+                                         "evaluate", "export",    "serve",    "compact", "doctor",  "route",   "reach",
+                                         "costmap",  "search",    "view",     "load",    "dump",    "changes", "watch",
+                                         "ask",      "inventory", "state"};
 
 bool hasTool(const std::string& tool) {
   return std::system(("command -v " + tool + " > /dev/null").c_str()) == 0;

@@ -22,11 +22,12 @@ std::string fresh() {
 
 TEST_F(Program, AMapThatIsNotThereIsExitCodeFiveInEveryCommand) {
   const std::string absent = path("absent.clx").string();
-  for (const std::string& arguments : std::vector<std::string>{
-           "info " + absent, "query " + absent + " -e 'ASK {}'", "update " + absent + " -e 'CLEAR ALL'",
-           "explain " + absent + " 1234", "evaluate " + absent + " --truth " + campus() + "/truth",
-           "export " + absent + " --canonical", "view " + absent + " -o " + fresh(), "compact " + absent,
-           "compact " + absent + " -o " + fresh(), "doctor " + absent}) {
+  for (const std::string& arguments :
+       std::vector<std::string>{"info " + absent, "query " + absent + " -e 'ASK {}'",
+                                "update " + absent + " -e 'CLEAR ALL'", "explain " + absent + " 1234",
+                                "state " + absent + " --list", "evaluate " + absent + " --truth " + campus() + "/truth",
+                                "export " + absent + " --canonical", "view " + absent + " -o " + fresh(),
+                                "compact " + absent, "compact " + absent + " -o " + fresh(), "doctor " + absent}) {
     SCOPED_TRACE(arguments);
     expectError(run(arguments), 5, "absent.clx");
     EXPECT_FALSE(fs::exists(absent));
@@ -37,13 +38,13 @@ TEST_F(Program, AMapThatIsNotThereIsExitCodeFiveInEveryCommand) {
 TEST_F(Program, WhatIsNoMapIsExitCodeFiveInEveryCommandThatNeedsOne) {
   const std::string text = path("no-map.clx").string();
   writeFile(text, std::string(20'000, 'x'));
-  for (const std::string& arguments :
-       std::vector<std::string>{"info " + text, "query " + text + " -e 'ASK {}'", "update " + text + " -e 'CLEAR ALL'",
-                                "explain " + text + " 1234", "rules try " + text + " outdoor.rules.yaml",
-                                "rules diff " + text + " outdoor.rules.yaml outdoor.rules.yaml",
-                                "evaluate " + text + " --truth " + campus() + "/truth",
-                                "export " + text + " --canonical", "view " + text + " -o " + fresh(), "compact " + text,
-                                "query " + campus() + " -e 'ASK {}'", "compact " + campus(), "doctor " + campus()}) {
+  for (const std::string& arguments : std::vector<std::string>{
+           "info " + text, "query " + text + " -e 'ASK {}'", "update " + text + " -e 'CLEAR ALL'",
+           "explain " + text + " 1234", "state " + text + " --list", "rules try " + text + " outdoor.rules.yaml",
+           "rules diff " + text + " outdoor.rules.yaml outdoor.rules.yaml",
+           "evaluate " + text + " --truth " + campus() + "/truth", "export " + text + " --canonical",
+           "view " + text + " -o " + fresh(), "compact " + text, "query " + campus() + " -e 'ASK {}'",
+           "compact " + campus(), "doctor " + campus()}) {
     SCOPED_TRACE(arguments);
     expectError(run(arguments), 5, "map");
   }

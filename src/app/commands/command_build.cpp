@@ -3,6 +3,7 @@
 #include "app/command.hpp"
 #include "app/shared_options.hpp"
 #include "mapping/build/map_builder.hpp"
+#include "rdf/io/rdf_io.hpp"
 
 namespace cluxel::app {
 
@@ -13,6 +14,7 @@ struct BuildOptions {
   fs::path output;
   ScanOptions scans;
   mapping::MapInputFiles files;
+  fs::path statements;
   mapping::BuildParams params;
 };
 
@@ -21,6 +23,9 @@ ExitCode build(const BuildOptions& options, Session& session) {
   const mapping::MapInputs inputs = readMapInputs(options.files, session.dataHome());
   mapping::BuildParams params = options.params;
   params.threads = session.threadCount();
+  if (!options.statements.empty())
+    rdf::parseRdf(rdf::readRdfSource(options.statements),
+                  [&params](const Quad& quad) { params.statements.push_back(quad); });
   const mapping::BuildReport report = buildMap(scans, inputs, options.output, params, session.console);
   if (session.json) {
     printJson(Json{{"map", options.output.string()},
@@ -56,6 +61,8 @@ void addBuild(CLI::App& app, Session& session) {
   command
       ->add_option("--batch-points", options->params.batch_points, "commit when a batch of scans has this many points")
       ->check(above0());
+  command->add_option("--statements", options->statements,
+                      "an RDF file of operator statements, as the command state exports them");
   CLI::Option* force =
       command->add_flag("--force", options->params.force, "replace a finished map; the operator's statements are kept");
   command

@@ -20,6 +20,7 @@ ExitCode explainOne(const ExplainOptions& options, Session& session) {
   if (options.dot && session.json) throw Error(ErrorKind::InvalidArgument, "--dot and --json: choose one of them");
   const mapping::MapReader map(options.map);
   noteUnfinished(options.map, map.isFinished(), options.allow_unfinished, session);
+  if (const std::string note = tasks::nameNote(map, options.name); !note.empty()) session.console.note(note);
   if (options.dot) {
     print(tasks::explanationGraph(map, options.name, options.why_not));
   } else {

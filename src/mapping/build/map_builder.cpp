@@ -6,12 +6,15 @@
 #include <optional>
 #include <set>
 
+#include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/build_poses.hpp"
+#include "mapping/build/operator_statements.hpp"
 #include "mapping/build/scan_store.hpp"
 #include "mapping/build/stage_clock.hpp"
 #include "mapping/build/work_file.hpp"
 #include "mapping/change/map_compaction.hpp"
+#include "mapping/change/map_things.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/map_state.hpp"
@@ -107,12 +110,16 @@ class MapBuild {
     stages_.update(transaction, std::move(changes), params_.threads, clock);
     stages_.loadAll(transaction);
     if (is_last) work_.takeOverStatements(transaction, params_.drop_statements, sink_);
+    if (is_last) addOperatorStatements(transaction, params_.statements);
     const SemanticLayer layer = writeSemanticLayer(transaction, parsed_, stages_, params_.threads, clock);
     const std::vector<Cloud> clouds = storedClouds(transaction);
+    if (const std::string note = summaryOf(layer.statements); !note.empty()) sink_.note(note);
     storeInputs(transaction, parsed_.inputs);
     state_ = MapState{is_last, parsed_.inputs.hash().hex()};
     storeState(transaction, *state_);
     addActivity(transaction, {"build", started_s, nowSeconds(), clock.seconds()}, clouds, parsed_.inputs);
+    if (is_last)
+      writeThings(transaction, dateTimeText(nowSeconds()), {}, membersOf(layer.objects, layer.scene.cluxels));
     transaction.commit();
     report_.scans = clouds.size();
     report_.points = 0;
@@ -143,6 +150,7 @@ BuildReport built(const scan::ScanSet& scans, const MapInputs& inputs, const fs:
   sink.note(describeFiles(complete));
   if (!complete.crs.empty()) sink.note("coordinate system of the map: " + complete.crs);
   const ParsedInputs parsed = parseInputs(complete);
+  statementsAmong(params.statements);  // throws for a faulty one before anything is written
   WorkFile work(file, complete.hash().hex(), params.force);
   if (!params.refine_poses) noteDoubtfulPoses(scans, params.threads, sink);
   const scan::ScanSet posed = params.refine_poses ? withRefinedPoses(scans, params.threads, sink) : scans;

@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <vector>
 
 #include "cluxel/progress.hpp"
+#include "cluxel/term.hpp"
 #include "mapping/map_inputs.hpp"
 #include "scan/scan_set.hpp"
 
@@ -17,7 +19,8 @@ struct BuildParams {
   std::uint64_t batch_points = 20'000'000;  ///< a batch of scans is committed when it holds this many points
   bool force = false;                       ///< replace a finished map
   bool refine_poses = false;  ///< register the scans first (registerPoses()); otherwise poses that do not fit are noted
-  bool drop_statements = false;  ///< with `force`: drop the operator's statements of the old map
+  bool drop_statements = false;       ///< with `force`: drop the operator's statements of the old map
+  std::vector<Quad> statements = {};  ///< of graph `operator`, added to those that are kept
 };
 
 struct BuildReport {

@@ -4,9 +4,13 @@
 
 #include <chrono>
 
+#include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
+#include "mapping/change/map_things.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/map_state.hpp"
+#include "mapping/object_store.hpp"
+#include "mapping/statements/stated_subjects.hpp"
 #include "rdf/file/map_replacement.hpp"
 #include "rdf/store/flush_poll.hpp"
 
@@ -34,11 +38,17 @@ rdf::InferenceCheck checkOf(const sparql::QueryBudget& budget, Clock::time_point
 
 void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink, const rdf::InferenceCheck& check) {
   const ParsedInputs parsed = parseInputs(storedInputs(transaction));
-  if (parsed.rules.asks_map) {
+  anchorStatedObjects(transaction, parsed, sink);
+  if (parsed.rules.asks_map || haveNewStatements(transaction)) {
     TileStages stages(parsed.model, parsed.inputs.params);
     stages.loadAll(transaction);
     if (check) check(0);
-    writeSemanticLayer(transaction, parsed, stages, 1, sink, check);
+    const std::vector<rules::SemanticObject> before = storedObjects(transaction);
+    const SemanticLayer layer = writeSemanticLayer(transaction, parsed, stages, 1, sink, check);
+    if (const std::string note = summaryOf(layer.statements); !note.empty()) sink.note(note);
+    const double now_s = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+    writeThings(transaction, dateTimeText(now_s), membersOf(before, layer.scene.cluxels),
+                membersOf(layer.objects, layer.scene.cluxels));
     return;
   }
   inferFacts(transaction, parsed.inputs, sink, check);

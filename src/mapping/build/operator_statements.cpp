@@ -30,6 +30,24 @@ std::uint64_t copyOperatorStatements(const rdf::QuadReader& from, rdf::WriteTran
   return count;
 }
 
+void addOperatorStatements(rdf::WriteTransaction& transaction, const std::vector<Quad>& quads) {
+  if (quads.empty()) return;
+  rdf::QuadWriter writer(transaction);
+  for (const Quad& quad : quads)
+    writer.add(Quad{quad.subject, quad.predicate, quad.object, Term::iri(rdf::vocabulary::kGraphOperator)});
+  writer.flush();
+}
+
+std::vector<Quad> operatorStatements(const rdf::QuadReader& reader) {
+  const auto graph = reader.idOf(Term::iri(rdf::vocabulary::kGraphOperator));
+  if (!graph) return {};
+  std::vector<Quad> quads;
+  rdf::QuadCursor cursor = reader.scan({.s = {}, .p = {}, .o = {}, .g = *graph});
+  for (rdf::QuadIds quad; cursor.next(quad);)
+    quads.push_back({reader.termOf(quad.s), reader.termOf(quad.p), reader.termOf(quad.o), reader.termOf(quad.g)});
+  return quads;
+}
+
 void clearOperatorStatements(rdf::WriteTransaction& transaction) {
   rdf::QuadWriter writer(transaction);
   writer.clearGraph(writer.intern(Term::iri(rdf::vocabulary::kGraphOperator)));

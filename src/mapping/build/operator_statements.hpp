@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "rdf/file/environment.hpp"
 #include "rdf/store/quad_store.hpp"
@@ -14,6 +15,10 @@ namespace cluxel::mapping {
 /// `blank_suffix`, which keeps those of several maps apart.
 std::uint64_t copyOperatorStatements(const rdf::QuadReader& from, rdf::WriteTransaction& into,
                                      const std::string& blank_suffix = {});
+/// Adds quads to graph `operator`, whatever their graph, and flushes.
+void addOperatorStatements(rdf::WriteTransaction& transaction, const std::vector<Quad>& quads);
+/// The quads of graph `operator`.
+std::vector<Quad> operatorStatements(const rdf::QuadReader& reader);
 /// Leaves graph `operator` empty.
 void clearOperatorStatements(rdf::WriteTransaction& transaction);
 

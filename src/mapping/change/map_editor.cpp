@@ -6,8 +6,10 @@
 #include <chrono>
 
 #include "base/file_bytes.hpp"
+#include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/stage_clock.hpp"
+#include "mapping/change/map_things.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/object_store.hpp"
@@ -104,7 +106,14 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
   report_.objects = is_all ? lineage : compareObjects(report_.before, report_.after);
   has_committed_ = true;
   addLineage(transaction, addActivity(transaction, activity, scans, parsed_.inputs), lineage);
+  if (!names_at_end_) writeThings(transaction, dateTimeText(activity.ended_s), *present_, report_.after);
   present_ = report_.after;
+  if (!params_.dry_run) transaction.commit();
+}
+
+void MapEditor::handOnNames() {
+  rdf::WriteTransaction transaction = begin();
+  writeThings(transaction, dateTimeText(secondsNow()), report_.before, report_.after);
   if (!params_.dry_run) transaction.commit();
 }
 
@@ -117,6 +126,8 @@ void MapEditor::report(const rdf::ReadTransaction& transaction, const SemanticLa
   report_.cluxels = layer.scene.cluxels.size();
   report_.primitives = layer.scene.primitives.size();
   report_.after = membersOf(layer.objects, layer.scene.cluxels);
+  report_.statements = layer.statements;
+  if (const std::string note = summaryOf(layer.statements); !note.empty()) sink_.note(note);
 }
 
 }  // namespace cluxel::mapping

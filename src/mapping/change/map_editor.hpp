@@ -32,6 +32,7 @@ struct ChangeReport {
   std::size_t scans = 0, tiles = 0, cluxels = 0, primitives = 0;  ///< of the map afterwards
   std::vector<ObjectMembers> before, after;                       ///< the objects
   ObjectChanges objects;
+  std::vector<StatementOutcome> statements;  ///< what became of the operator's
 };
 
 class MapEditor {
@@ -51,6 +52,11 @@ class MapEditor {
   void commit(rdf::WriteTransaction& transaction, const std::string& operation, PointChanges changes,
               const std::vector<Cloud>& scans);
 
+  /// Commits leave the names of things to handOnNames(), which takes them from all of result().before: those of several
+  /// maps may be there.
+  void nameAtEnd() { names_at_end_ = true; }
+  void handOnNames();
+
   ChangeReport& result() { return report_; }
   ProgressSink& sink() { return sink_; }
   const ChangeParams& params() const { return params_; }
@@ -65,7 +71,8 @@ class MapEditor {
   ProgressSink& sink_;
   ParsedInputs parsed_;
   std::string inputs_hash_;  ///< as stored in the file
-  bool all_tiles_ = false;   ///< the next commit computes every tile
+  bool names_at_end_ = false;
+  bool all_tiles_ = false;  ///< the next commit computes every tile
   std::optional<TileStages> stages_;
   TileSet touched_, changed_;                          ///< in all commits
   std::optional<std::vector<ObjectMembers>> present_;  ///< the objects of the last commit

@@ -8,6 +8,7 @@
 #include "cluxel/error.hpp"
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/map_compaction.hpp"
+#include "mapping/change/map_things.hpp"
 #include "mapping/change/scan_additions.hpp"
 #include "mapping/map_reader.hpp"
 #include "mapping/map_state.hpp"
@@ -121,9 +122,12 @@ class Merge {
                   maps_[base].file.string() + ": another program has changed it meanwhile; run the command again");
     editor.setInputs(parseInputs(inputsOfResult()));
     ScanAdditions additions(editor, "merge");
-    for (std::size_t i = 0; i < maps_.size(); ++i)
-      if (i != base)
-        copyOperatorStatements(readers_[i].quads(), additions.transaction(), "of" + std::to_string(i) + scansHash(i));
+    editor.nameAtEnd();
+    for (std::size_t i = 0; i < maps_.size(); ++i) {
+      if (i == base) continue;
+      copyOperatorStatements(readers_[i].quads(), additions.transaction(), "of" + std::to_string(i) + scansHash(i));
+      copyHistory(readers_[i].quads(), additions.transaction());
+    }
     for (std::size_t i = 0; i < maps_.size(); ++i) {
       if (i == base) continue;
       const auto other = membersOf(readers_[i].objects(), readers_[i].scene().cluxels);
@@ -131,6 +135,7 @@ class Merge {
       addScans(i, additions);
     }
     additions.finish();
+    editor.handOnNames();
     return std::move(editor.result());
   }
 

@@ -48,6 +48,10 @@ void FactSink::literal(rdf::TermId subject, std::string_view property_name, std:
   link(subject, property_name, writer_.intern(Term::literal(value, datatype)));
 }
 
+void FactSink::term(rdf::TermId subject, std::string_view property_name, const Term& value) {
+  link(subject, property_name, writer_.intern(value));
+}
+
 void FactSink::number(rdf::TermId subject, std::string_view property_name, double value) {
   literal(subject, property_name, decimalText(value, 3), rdf::vocabulary::xsd("decimal"));
 }

@@ -27,6 +27,7 @@ class FactSink {
   void type(rdf::TermId subject, std::string_view class_iri);
   void text(rdf::TermId subject, std::string_view property_name, std::string_view value);
   void literal(rdf::TermId subject, std::string_view property_name, std::string_view value, std::string_view datatype);
+  void term(rdf::TermId subject, std::string_view property_name, const Term& value);
   /// A length [m], area [m2] or ratio, rounded to 0.001.
   void number(rdf::TermId subject, std::string_view property_name, double value);
   void count(rdf::TermId subject, std::string_view property_name, std::uint64_t value);

@@ -9,6 +9,7 @@
 #include "mapping/facts/sparql_rules.hpp"
 #include "mapping/facts/stored_presence.hpp"
 #include "mapping/object_store.hpp"
+#include "mapping/statements/statement_facts.hpp"
 #include "rdf/io/rdf_io.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
@@ -27,11 +28,13 @@ std::vector<rules::RuleSource> ruleSources(const std::vector<NamedText>& texts) 
   return sources;
 }
 
-/// Makes the observed graph hold the facts of the scene and of `reasoning`.
-void writeObserved(rdf::WriteTransaction& transaction, const ObservedMap& map) {
+/// Makes the observed graph hold the facts of the scene, of `reasoning` and of statements.
+void writeObserved(rdf::WriteTransaction& transaction, const ObservedMap& map,
+                   const std::vector<StatementOutcome>& statements = {}) {
   rdf::QuadWriter writer(transaction);
   FactSink facts(writer, rdf::vocabulary::kGraphObserved);
   addObservedFacts(map, facts);
+  addStatementFacts(statements, facts);
   writer.flush();
   facts.writeTo(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction)));
   writer.flush();
@@ -89,15 +92,20 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   });
   rules::ReasoningResult result = reason(scene, parsed.rules, {.oracle = &oracle, .threads = threads});
   if (check) check(0);
+  const std::vector<std::uint64_t> digests = rules::decisionDigests(scene, result);
+  AppliedStatements stated = appliedStatements(transaction, stages, parsed.model.perception.thin, clouds, scene,
+                                               parsed.rules.catalogue, std::move(result.objects));
+  result.objects = std::move(stated.objects);
   sink.progress("objects", result.objects.size(), result.objects.size());
   const auto sightings = sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(result, scene.cluxels.size()));
   const auto presence = updatePresence(transaction, scene, result.objects, clouds, threads).presence;
-  writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings, presence});
+  writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings, presence}, stated.outcomes);
   inferFacts(transaction, parsed.inputs, sink, check);
   storeObjects(transaction, result.objects);
-  storeDigests(transaction, rules::decisionDigests(scene, result));
+  storeOverruled(transaction, stated.overruled);
+  storeDigests(transaction, digests);
   sink.progress("facts", 1, 1);
-  return {std::move(scene), std::move(result.objects)};
+  return {std::move(scene), std::move(result.objects), std::move(stated.outcomes)};
 }
 
 }  // namespace cluxel::mapping

@@ -9,6 +9,7 @@
 #include "mapping/build/tile_stages.hpp"
 #include "mapping/cloud.hpp"
 #include "mapping/map_inputs.hpp"
+#include "mapping/statements/applied_statements.hpp"
 #include "perception/segments/scene.hpp"
 #include "rdf/file/environment.hpp"
 #include "rdf/ontology/ontology.hpp"
@@ -41,6 +42,7 @@ void inferFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, Pro
 struct SemanticLayer {
   perception::Scene scene;
   std::vector<rules::SemanticObject> objects;  ///< sorted by id
+  std::vector<StatementOutcome> statements;    ///< what became of the operator's statements
 };
 
 /// Computes objects and facts of the stages' outputs and stores them. The graphs ontology, observed and inferred are

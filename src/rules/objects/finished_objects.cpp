@@ -31,7 +31,8 @@ std::vector<ObjectPart> finishedParts(const ReasoningState& state, const ObjectI
   return parts;
 }
 
-/// Hash of the class and of the members' seed points: independent of everything else in the scene.
+}  // namespace
+
 ContentHash idOf(const perception::Scene& scene, const SemanticObject& object) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> members;
   for (const ObjectPart& part : object.parts)
@@ -43,8 +44,6 @@ ContentHash idOf(const perception::Scene& scene, const SemanticObject& object) {
   for (const auto& [scan, point] : members) hasher.add(scene.cluxels.scans[scan]).add(point);
   return hasher.finish();
 }
-
-}  // namespace
 
 std::vector<SemanticObject> finishedObjects(const ReasoningState& state) {
   std::vector<SemanticObject> objects;

@@ -9,6 +9,9 @@
 
 namespace cluxel::rules {
 
+/// Hash of the class and of the members' seed points: independent of everything else in the scene.
+ContentHash idOf(const perception::Scene& scene, const SemanticObject& object);
+
 /// Objects that own at least one cluxel, sorted by id.
 std::vector<SemanticObject> finishedObjects(const ReasoningState& state);
 

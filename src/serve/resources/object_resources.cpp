@@ -8,6 +8,7 @@
 #include "api/object_query.hpp"
 #include "api/point_query.hpp"
 #include "cluxel/error.hpp"
+#include "mapping/change/map_things.hpp"
 #include "mapping/map_reader.hpp"
 #include "serve/http/media_types.hpp"
 #include "serve/http/refusal.hpp"
@@ -34,7 +35,18 @@ std::optional<std::size_t> numberIn(const std::string& id, std::size_t objects) 
   throw Refusal(404, "there is no object " + id + ": the map has " + std::to_string(objects) + ", numbered from 0");
 }
 
-const Object& objectNamed(const ObjectTable& table, const std::string& id) {
+/// The object that goes on under the name of a thing or of a former object.
+const Object* laterObject(const ObjectTable& table, const rdf::QuadReader& quads, const std::string& id) {
+  std::vector<ContentHash> present;
+  for (const Object& object : table.objects) present.push_back(ContentHash::fromHex(hashOf(object.iri)));
+  const auto former = mapping::objectByLineage(quads, id, present);
+  if (!former) return nullptr;
+  for (const Object& object : table.objects)
+    if (hashOf(object.iri) == former->object.hex()) return &object;
+  return nullptr;
+}
+
+const Object& objectNamed(const ObjectTable& table, const rdf::QuadReader& quads, const std::string& id) {
   if (const auto number = numberIn(id, table.objects.size())) return table.objects[*number];
   if (id.size() < kMinDigits)
     throw Refusal(400, "'" + id + "': write at least four digits of the object's hash, or # (as %23) and its number");
@@ -44,6 +56,7 @@ const Object& objectNamed(const ObjectTable& table, const std::string& id) {
     if (found != nullptr) throw Refusal(404, "'" + id + "' names more than one object; write more digits");
     found = &object;
   }
+  if (found == nullptr) found = laterObject(table, quads, id);
   if (found == nullptr) throw Refusal(404, "the map has no object '" + id + "'");
   return *found;
 }
@@ -92,7 +105,7 @@ HttpResponse jsonResponse(const ObjectJson& json, const RequestLimits& limits) {
 
 /// The object of the newest commit, which one reader then serves.
 Object currentObject(const mapping::MapReader& map, const std::string& id) {
-  return objectNamed(*objectsOf(map.quads()), id);
+  return objectNamed(*objectsOf(map.quads()), map.quads(), id);
 }
 
 std::string csvOf(const PointCloud& points, std::uint64_t max_bytes) {
@@ -125,7 +138,12 @@ HttpResponse answerObjects(const ServedMap& map, const ResourceRequest& asked) {
 }
 
 HttpResponse answerObject(const ServedMap& map, const ResourceRequest& asked, const std::string& id) {
-  return jsonResponse(objectJson(objectNamed(*objectsOf(map.quads()), id)), asked.limits);
+  const auto table = objectsOf(map.quads());
+  const Object& object = objectNamed(*table, map.quads(), id);
+  ObjectJson json = objectJson(object);
+  const auto things = mapping::storedThings(map.quads());
+  json["thing"] = thingOf(things, ContentHash::fromHex(hashOf(object.iri))).iri;
+  return jsonResponse(json, asked.limits);
 }
 
 HttpResponse answerExplanation(ServedMap& map, const ResourceRequest& asked, const std::string& id) {

@@ -144,7 +144,7 @@ RuleDifference differenceOf(const mapping::MapReader& map, const rules::RuleSet&
 }
 
 RuleDifference trialOf(const mapping::MapReader& map, const rules::RuleSet& rules) {
-  return ObjectComparison(map.scene(), map.objects(), objectsBy(map, rules)).compare();
+  return ObjectComparison(map.scene(), map.objectsByRules(), objectsBy(map, rules)).compare();
 }
 
 rules::RuleSet rulesForMap(const mapping::MapReader& map, const std::string& name, const std::string& text) {

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// `cluxel state`: what an operator states about objects and regions of a map.
+#include <cstdlib>
+
+#include "app/command.hpp"
+#include "app/commands/change_report.hpp"
+#include "app/commands/statement_list.hpp"
+#include "app/shared_options.hpp"
+#include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/build/operator_statements.hpp"
+#include "mapping/change/statement_change.hpp"
+#include "rdf/map_iris.hpp"
+#include "rules/language/rule_loader.hpp"
+#include "tasks/explanation.hpp"
+
+namespace cluxel::app {
+
+namespace {
+
+struct StateOptions {
+  fs::path map, export_file;
+  std::string object, is, is_not, label, note, author;
+  std::vector<double> region;
+  std::vector<std::string> withdrawn;
+  bool remove = false, list = false;
+  mapping::ChangeParams change;
+};
+
+using mapping::Statement;
+using mapping::StatementKind;
+
+void requireOneUse(const StateOptions& options) {
+  const bool about_object = !options.is.empty() || !options.is_not.empty() || options.remove ||
+                            !options.label.empty() || !options.note.empty();
+  if (about_object && options.object.empty())
+    throw Error(ErrorKind::InvalidArgument, "--is, --is-not, --remove, --label and --note need --object");
+  if (!about_object && !options.object.empty())
+    throw Error(ErrorKind::InvalidArgument,
+                "--object: what is it? Add --is CLASS, --is-not CLASS, --remove, --label TEXT or --note TEXT");
+  const int about_class = (options.is.empty() ? 0 : 1) + (options.is_not.empty() ? 0 : 1) + (options.remove ? 1 : 0);
+  if (about_class > 1) throw Error(ErrorKind::InvalidArgument, "--is, --is-not and --remove exclude each other");
+  const bool changes = about_object || !options.region.empty() || !options.withdrawn.empty();
+  if (!changes && !options.list && options.export_file.empty())
+    throw Error(ErrorKind::InvalidArgument,
+                "state: nothing to do; name --object, --ignore-region, --withdraw, --list or --export");
+  if (changes && (options.list || !options.export_file.empty()))
+    throw Error(ErrorKind::InvalidArgument, "--list and --export read the map; give them without a statement");
+}
+
+std::vector<Eigen::Vector2d> cornersOf(const std::vector<double>& numbers) {
+  if (numbers.size() == 4) {
+    const double x0 = numbers[0], y0 = numbers[1], x1 = numbers[2], y1 = numbers[3];
+    if (x0 == x1 || y0 == y1) throw Error(ErrorKind::InvalidArgument, "--ignore-region: the rectangle has no area");
+    return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
+  }
+  if (numbers.size() < 6 || numbers.size() % 2 != 0)
+    throw Error(ErrorKind::InvalidArgument,
+                "--ignore-region: write X0,Y0,X1,Y1 for a rectangle, or three corners X,Y or more, in metres");
+  std::vector<Eigen::Vector2d> corners;
+  for (std::size_t i = 0; i < numbers.size(); i += 2) corners.emplace_back(numbers[i], numbers[i + 1]);
+  return corners;
+}
+
+/// What is stated about the object, and the earlier statements about its class, which the new one replaces.
+void addAboutObject(const mapping::MapReader& map, const StateOptions& options, mapping::StatementEdit& edit,
+                    ProgressSink& sink) {
+  if (const std::string note = tasks::nameNote(map, options.object); !note.empty()) sink.note(note);
+  const rules::SemanticObject& object = map.objects()[tasks::objectNamed(map, options.object)];
+  const mapping::PointAnchor anchor = anchorOf(map.stages(), object);
+  const auto add = [&](StatementKind kind, const std::string& property, const Term& value) {
+    edit.added.push_back({kind, property, value, anchor, {}});
+  };
+  const auto classOf = [&](const std::string& name) {
+    return Term::iri(tasks::classNamed(classCatalogueOf(map.inputs().ontology), name));
+  };
+  if (!options.is.empty()) add(StatementKind::Is, "", classOf(options.is));
+  if (!options.is_not.empty()) add(StatementKind::IsNot, "", classOf(options.is_not));
+  if (options.remove) add(StatementKind::Remove, "", {});
+  const bool about_class = !edit.added.empty();
+  if (!options.label.empty()) add(StatementKind::Fact, rdf::vocabulary::rdfs("label"), Term::literal(options.label));
+  if (!options.note.empty()) add(StatementKind::Fact, rdf::vocabulary::rdfs("comment"), Term::literal(options.note));
+  if (!about_class) return;
+  for (const mapping::KnownStatement& known : mapping::knownStatements(map.quads())) {
+    const StatementKind kind = known.statement.kind;
+    const bool of_class = kind == StatementKind::Is || kind == StatementKind::IsNot;
+    if (!of_class || known.object != rdf::iriOfObject(object.id)) continue;
+    if (known.statement.id() == edit.added.front().id()) continue;
+    edit.withdrawn.push_back(known.statement.id());
+    sink.note("replaces the statement " + known.statement.id().hex() + ": " + textOf(known.statement));
+  }
+}
+
+std::string authorOf(const StateOptions& options) {
+  if (!options.author.empty()) return options.author;
+  const char* user = std::getenv("USER");
+  return user == nullptr ? "" : user;
+}
+
+ExitCode change(const StateOptions& options, Session& session) {
+  mapping::StatementEdit edit;
+  edit.author = authorOf(options);
+  {
+    const mapping::MapReader map(options.map);
+    if (!options.object.empty()) addAboutObject(map, options, edit, session.console);
+    if (!options.region.empty())
+      edit.added.push_back(
+          {StatementKind::IgnoreRegion, "", {}, {}, regionAnchor(map.clouds(), cornersOf(options.region))});
+    for (const std::string& name : options.withdrawn)
+      edit.withdrawn.push_back(mapping::statementNamed(map.quads(), name));
+  }
+  mapping::ChangeParams params = options.change;
+  params.threads = session.threadCount();
+  const mapping::ChangeReport report = changeStatements(options.map, edit, params, session.console);
+  if (!session.json)
+    for (const mapping::StatementOutcome& outcome : report.statements)
+      for (const Statement& added : edit.added)
+        if (added.id() == outcome.statement.id()) print(lineOf(outcome));
+  printChange(options.map, report, params, session);
+  return ExitCode::Done;
+}
+
+ExitCode exportStatements(const StateOptions& options, const mapping::MapReader& map) {
+  std::vector<std::string> lines;
+  for (const Quad& quad : mapping::operatorStatements(map.quads())) lines.push_back(toNQuads(quad));
+  std::sort(lines.begin(), lines.end());
+  std::string text;
+  for (const std::string& line : lines) text += line;
+  refuseToReplaceMap(options.export_file);
+  writeFile(options.export_file, text);
+  return ExitCode::Done;
+}
+
+ExitCode state(const StateOptions& options, Session& session) {
+  requireOneUse(options);
+  if (!options.list && options.export_file.empty()) return change(options, session);
+  const mapping::MapReader map(options.map);
+  if (!options.export_file.empty()) exportStatements(options, map);
+  if (options.list) printStatements(mapping::knownStatements(map.quads()), session);
+  return ExitCode::Done;
+}
+
+}  // namespace
+
+void addState(CLI::App& app, Session& session) {
+  auto options = std::make_shared<StateOptions>();
+  CLI::App* command = app.add_subcommand("state", "state what an object of a map is, or that there is none");
+  command->add_option("map", options->map, "a finished map")->required();
+  command->add_option("--object", options->object, "the object that is meant, as the command explain takes it");
+  command->add_option("--is", options->is, "the class that it has");
+  command->add_option("--is-not", options->is_not, "a class that it does not have");
+  command->add_flag("--remove,--ignore", options->remove, "it is no object");
+  command->add_option("--label", options->label, "its name (rdfs:label)");
+  command->add_option("--note", options->note, "a remark about it (rdfs:comment)");
+  command
+      ->add_option("--ignore-region", options->region,
+                   "X0,Y0,X1,Y1 or a polygon X,Y,X,Y,X,Y… [m, map]: what lies in it is no object")
+      ->delimiter(',');
+  command->add_option("--withdraw", options->withdrawn, "take back a statement: the first digits of its id");
+  command->add_option("--author", options->author, "who states it, for the history (default: the user's name)");
+  command->add_flag("--list", options->list, "list the statements with what became of them");
+  command->add_option("--export", options->export_file, "write the statements as N-Quads, for build --statements");
+  addChangeOptions(*command, options->change, false);
+  onRun(*command, session, [options, &session] { return state(*options, session); });
+}
+
+}  // namespace cluxel::app

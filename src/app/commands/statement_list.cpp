@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lists of statements; a statement against the rules says so.
+#include "app/commands/statement_list.hpp"
+
+#include "mapping/map_reader.hpp"
+#include "rdf/map_iris.hpp"
+
+namespace cluxel::app {
+
+namespace {
+
+using mapping::KnownStatement;
+
+std::string lineOfKnown(const KnownStatement& known) {
+  std::string line = known.statement.id().hex() + "  " + textOf(known.statement) + "  " + known.effect;
+  if (!known.object.empty()) line += " to object/" + mapping::localName(known.object);
+  if (known.contradicts) line += ", against the rules, which say " + mapping::localName(known.rules_class);
+  if (!known.author.empty()) line += "; by " + known.author;
+  if (!known.stated_at.empty()) line += (known.author.empty() ? "; " : " ") + known.stated_at;
+  return line;
+}
+
+}  // namespace
+
+std::string lineOf(const mapping::StatementOutcome& outcome) {
+  const std::string object = outcome.object ? rdf::iriOfObject(*outcome.object) : "";
+  return lineOfKnown({outcome.statement, std::string(nameOf(outcome.effect)), object, outcome.rules_class,
+                      outcome.contradicts, "", ""});
+}
+
+void printStatements(const std::vector<KnownStatement>& statements, const Session& session) {
+  if (!session.json) {
+    for (const KnownStatement& known : statements) print(lineOfKnown(known));
+    if (statements.empty()) print("no operator statements");
+    return;
+  }
+  Json json = Json::array();
+  for (const KnownStatement& known : statements) {
+    Json entry{{"id", known.statement.id().hex()}, {"states", textOf(known.statement)}, {"effect", known.effect}};
+    if (!known.object.empty()) entry["object"] = known.object;
+    if (!known.rules_class.empty()) entry["rules_say"] = known.rules_class;
+    entry["contradicts_rules"] = known.contradicts;
+    if (!known.author.empty()) entry["author"] = known.author;
+    if (!known.stated_at.empty()) entry["stated_at"] = known.stated_at;
+    json.push_back(std::move(entry));
+  }
+  printJson(Json{{"statements", std::move(json)}});
+}
+
+}  // namespace cluxel::app

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+// `object prov:specializationOf thing` for every object that there was; a thing has at most one present object.
+#include "mapping/change/map_things.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <set>
+#include <unordered_map>
+
+#include "rdf/map_iris.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+using rdf::vocabulary::kGraphHistory;
+using Things = std::map<ContentHash, std::vector<Thing>>;
+
+std::string provenance(std::string_view local) {
+  return std::string(rdf::vocabulary::kProv).append(local);
+}
+
+/// Visits the subjects and objects of a property in graph history.
+void forEachLink(const rdf::QuadReader& quads, std::string_view property,
+                 const std::function<void(const Term& subject, const Term& object)>& visit) {
+  const auto graph = quads.idOf(Term::iri(kGraphHistory)), predicate = quads.idOf(Term::iri(provenance(property)));
+  if (!graph || !predicate) return;
+  rdf::QuadCursor cursor = quads.scan({.s = {}, .p = *predicate, .o = {}, .g = *graph});
+  for (rdf::QuadIds quad; cursor.next(quad);) visit(quads.termOf(quad.s), quads.termOf(quad.o));
+}
+
+std::optional<ContentHash> hashIn(const std::string& iri, std::string_view kind) {
+  const std::string start = rdf::mapIri(kind, "");
+  if (!iri.starts_with(start) || iri.size() != start.size() + 32) return std::nullopt;
+  try {
+    return ContentHash::fromHex(std::string_view(iri).substr(start.size()));
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+}
+
+/// First times of all things that there ever were.
+std::map<std::string, std::string> timesOf(const rdf::QuadReader& quads) {
+  std::map<std::string, std::string> times;
+  forEachLink(quads, "generatedAtTime", [&](const Term& subject, const Term& time) {
+    if (!hashIn(subject.text, "thing")) return;
+    const auto [entry, is_new] = times.emplace(subject.text, time.text);
+    if (!is_new) entry->second = std::min(entry->second, time.text);
+  });
+  return times;
+}
+
+/// Objects before and after a change, matched by the seed points they share.
+struct Heirs {
+  std::vector<std::vector<std::size_t>> before_of;     ///< by object after: those whose name it inherits
+  std::vector<std::vector<std::size_t>> ancestors_of;  ///< by object after: all that went on in it
+  std::vector<bool> has_heir;                          ///< by object before
+};
+
+Heirs heirsOf(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after) {
+  std::unordered_map<std::uint64_t, std::size_t> owner;
+  for (std::size_t a = 0; a < after.size(); ++a)
+    for (const std::uint64_t seed : after[a].seeds) owner.emplace(seed, a);
+  Heirs heirs{std::vector<std::vector<std::size_t>>(after.size()), std::vector<std::vector<std::size_t>>(after.size()),
+              std::vector<bool>(before.size(), false)};
+  for (std::size_t b = 0; b < before.size(); ++b) {
+    std::map<std::size_t, std::size_t> shared;
+    for (const std::uint64_t seed : before[b].seeds)
+      if (const auto found = owner.find(seed); found != owner.end()) ++shared[found->second];
+    std::optional<std::size_t> heir;
+    for (const auto& [a, count] : shared) {
+      if (2 * count < std::min(before[b].seeds.size(), after[a].seeds.size())) continue;
+      heirs.ancestors_of[a].push_back(b);
+      if (!heir || count > shared[*heir] || (count == shared[*heir] && after[a].id < after[*heir].id)) heir = a;
+    }
+    if (heir) heirs.before_of[*heir].push_back(b);
+    heirs.has_heir[b] = heir.has_value();
+  }
+  return heirs;
+}
+
+class Naming {
+ public:
+  Naming(rdf::WriteTransaction& transaction, std::string time)
+      : reader_(static_cast<const rdf::ReadTransaction&>(transaction)),
+        writer_(transaction),
+        time_(std::move(time)),
+        things_(storedThings(reader_)),
+        times_(timesOf(reader_)) {}
+
+  void run(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after) {
+    const Heirs heirs = heirsOf(before, after);
+    std::vector<std::optional<Thing>> names(after.size());
+    for (std::size_t a = 0; a < after.size(); ++a) names[a] = inherited(before, heirs.before_of[a]);
+    for (const auto& name : names)
+      if (name) held_.insert(name->iri);
+    for (std::size_t a = 0; a < after.size(); ++a) {
+      if (names[a]) continue;
+      names[a] = returned(after[a].id);
+      if (names[a]) continue;
+      names[a] = named(after[a].id);
+      for (const std::size_t b : heirs.ancestors_of[a]) derive(names[a]->iri, thingOf(things_, before[b].id).iri);
+    }
+    for (std::size_t a = 0; a < after.size(); ++a) link(after[a].id, *names[a]);
+    for (std::size_t b = 0; b < before.size(); ++b)
+      if (const Thing thing = thingOf(things_, before[b].id); !held_.contains(thing.iri)) end(thing);
+    writer_.flush();
+  }
+
+ private:
+  void add(const std::string& subject, std::string_view property, const Term& object) {
+    writer_.add(Quad{Term::iri(subject), Term::iri(provenance(property)), object, Term::iri(kGraphHistory)});
+  }
+  void remove(const std::string& subject, std::string_view property, const Term& object) {
+    writer_.remove(rdf::QuadIds{writer_.intern(Term::iri(subject)), writer_.intern(Term::iri(provenance(property))),
+                                writer_.intern(object), writer_.intern(Term::iri(kGraphHistory))});
+  }
+  Term timeTerm() const { return Term::literal(time_, rdf::vocabulary::xsd("dateTime")); }
+  void derive(const std::string& thing, const std::string& from) {
+    if (thing != from) add(thing, "wasDerivedFrom", Term::iri(from));
+  }
+
+  /// The oldest of the names that meet in an object; the others end in it.
+  std::optional<Thing> inherited(const std::vector<ObjectMembers>& before, const std::vector<std::size_t>& from) {
+    std::vector<Thing> claims;
+    for (const std::size_t b : from) claims.push_back(thingOf(things_, before[b].id));
+    if (claims.empty()) return std::nullopt;
+    const Thing oldest = *std::min_element(claims.begin(), claims.end());
+    for (const Thing& claim : claims) derive(oldest.iri, claim.iri);
+    return oldest;
+  }
+
+  std::optional<Thing> returned(const ContentHash& object) {
+    const auto known = things_.find(object);
+    if (known == things_.end()) return std::nullopt;
+    for (const Thing& thing : known->second) {
+      if (!held_.insert(thing.iri).second) continue;
+      forEachLink(reader_, "invalidatedAtTime", [&](const Term& subject, const Term& time) {
+        if (subject.text == thing.iri) remove(thing.iri, "invalidatedAtTime", time);
+      });
+      return thing;
+    }
+    return std::nullopt;
+  }
+
+  Thing named(const ContentHash& object) {
+    std::string iri = rdf::iriOfThing(object);
+    for (std::uint32_t n = 1; times_.contains(iri) || held_.contains(iri); ++n)
+      iri = rdf::iriOfThing(ContentHasher().add(object).add(n).finish());
+    held_.insert(iri);
+    times_.emplace(iri, time_);
+    add(iri, "generatedAtTime", timeTerm());
+    return {iri, time_};
+  }
+
+  void link(const ContentHash& object, const Thing& thing) {
+    const std::string iri = rdf::iriOfObject(object);
+    bool is_linked = false;
+    if (const auto known = things_.find(object); known != things_.end())
+      for (const Thing& other : known->second) {
+        is_linked = is_linked || other.iri == thing.iri;
+        if (other.iri == thing.iri) continue;
+        remove(iri, "specializationOf", Term::iri(other.iri));
+        if (held_.contains(other.iri)) continue;
+        derive(thing.iri, other.iri);
+        end(other);
+      }
+    if (!is_linked) add(iri, "specializationOf", Term::iri(thing.iri));
+  }
+
+  void end(const Thing& thing) {
+    if (ended_.insert(thing.iri).second) add(thing.iri, "invalidatedAtTime", timeTerm());
+  }
+
+  rdf::QuadReader reader_;
+  rdf::QuadWriter writer_;
+  std::string time_;
+  Things things_;
+  std::map<std::string, std::string> times_;
+  std::set<std::string> held_;  ///< things that have an object after the change
+  std::set<std::string> ended_;
+};
+
+/// What a name may mean: a thing, or a former object.
+struct Meaning {
+  std::set<std::string> things;
+  std::string text;
+};
+
+Meaning meaningOf(const Things& things, const std::map<std::string, std::string>& times, const std::string& name) {
+  Meaning meaning;
+  const auto fits = [&](const std::string& kind, const std::string& hex) {
+    const std::string path = kind + "/" + hex;
+    return path.starts_with(name) || hex.starts_with(name) || name.ends_with("/map/" + path);
+  };
+  const auto localOf = [](const std::string& iri) { return iri.substr(iri.rfind('/') + 1); };
+  for (const auto& [iri, time] : times)
+    if (fits("thing", localOf(iri))) {
+      meaning.things.insert(iri);
+      meaning.text = "thing/" + localOf(iri);
+    }
+  for (const auto& [object, of_object] : things)
+    if (fits("object", object.hex())) {
+      meaning.things.insert(of_object.front().iri);
+      if (meaning.text.empty()) meaning.text = "former object/" + object.hex();
+    }
+  return meaning;
+}
+
+}  // namespace
+
+Things storedThings(const rdf::QuadReader& quads) {
+  const std::map<std::string, std::string> times = timesOf(quads);
+  Things things;
+  forEachLink(quads, "specializationOf", [&](const Term& subject, const Term& object) {
+    const auto id = hashIn(subject.text, "object");
+    if (!id || !hashIn(object.text, "thing")) return;
+    const auto time = times.find(object.text);
+    things[*id].push_back({object.text, time == times.end() ? "" : time->second});
+  });
+  for (auto& [id, of_object] : things) std::sort(of_object.begin(), of_object.end());
+  return things;
+}
+
+Thing thingOf(const Things& things, const ContentHash& object) {
+  const auto known = things.find(object);
+  return known == things.end() ? Thing{rdf::iriOfThing(object), ""} : known->second.front();
+}
+
+void writeThings(rdf::WriteTransaction& transaction, const std::string& time, const std::vector<ObjectMembers>& before,
+                 const std::vector<ObjectMembers>& after) {
+  Naming(transaction, time).run(before, after);
+}
+
+void copyHistory(const rdf::QuadReader& from, rdf::WriteTransaction& into) {
+  const auto graph = from.idOf(Term::iri(kGraphHistory));
+  if (!graph) return;
+  rdf::QuadWriter writer(into);
+  rdf::QuadCursor cursor = from.scan({.s = {}, .p = {}, .o = {}, .g = *graph});
+  for (rdf::QuadIds quad; cursor.next(quad);)
+    writer.add(Quad{from.termOf(quad.s), from.termOf(quad.p), from.termOf(quad.o), Term::iri(kGraphHistory)});
+  writer.flush();
+}
+
+std::optional<FormerName> objectByLineage(const rdf::QuadReader& quads, const std::string& name,
+                                          const std::vector<ContentHash>& present) {
+  const Things things = storedThings(quads);
+  const Meaning meaning = meaningOf(things, timesOf(quads), name);
+  std::map<std::string, ContentHash> object_of;
+  for (const ContentHash& object : present) object_of[thingOf(things, object).iri] = object;
+  std::multimap<std::string, std::string> later;
+  forEachLink(quads, "wasDerivedFrom", [&](const Term& thing, const Term& from) {
+    if (hashIn(thing.text, "thing")) later.emplace(from.text, thing.text);
+  });
+  std::set<ContentHash> found;
+  std::set<std::string> seen = meaning.things;
+  for (std::vector<std::string> open(seen.begin(), seen.end()); !open.empty();) {
+    const std::string thing = open.back();
+    open.pop_back();
+    if (const auto object = object_of.find(thing); object != object_of.end()) {
+      found.insert(object->second);
+      continue;  // its name stayed with it, whatever else came of it
+    }
+    const auto [begin, end] = later.equal_range(thing);
+    for (auto next = begin; next != end; ++next)
+      if (seen.insert(next->second).second) open.push_back(next->second);
+  }
+  if (found.size() != 1) return std::nullopt;
+  return FormerName{*found.begin(), meaning.text};
+}
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Things: names that stay while objects gain and lose members. They are history and stand in graph `history`, which
+// rules never see.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "mapping/change/object_changes.hpp"
+#include "rdf/file/environment.hpp"
+#include "rdf/store/quad_store.hpp"
+
+namespace cluxel::mapping {
+
+struct Thing {
+  std::string iri;
+  std::string since;  ///< xsd:dateTime of its first object; empty when nobody wrote it down
+  bool operator<(const Thing& other) const { return std::tie(since, iri) < std::tie(other.since, other.iri); }
+};
+
+/// The things of objects, present and former ones; the first of several is the name. An object of an older map has
+/// none: its thing is the one that its own hash names.
+std::map<ContentHash, std::vector<Thing>> storedThings(const rdf::QuadReader& quads);
+Thing thingOf(const std::map<ContentHash, std::vector<Thing>>& things, const ContentHash& object);
+
+/// Hands the names on from the objects before a change to those after it, and records splits, joins and ends. The part
+/// with most shared members keeps a name (ties: the smallest hash). A join keeps the older name, then the smaller. An
+/// object that comes back as it was gets its former name, if no other has it. A new thing is named by the hash of its
+/// first object. `time` is an xsd:dateTime.
+void writeThings(rdf::WriteTransaction& transaction, const std::string& time, const std::vector<ObjectMembers>& before,
+                 const std::vector<ObjectMembers>& after);
+
+/// Adds the history of another map: its activities, lineage and things.
+void copyHistory(const rdf::QuadReader& from, rdf::WriteTransaction& into);
+
+struct FormerName {
+  ContentHash object;   ///< the present object
+  std::string meaning;  ///< "was object/HEX" or "is thing/HEX", for people
+};
+/// The present object that goes on under the name of a thing or of a former object: an IRI, thing/HEX, object/HEX, or
+/// the first digits of a hash (four or more). Absent when there is none, or several. `present` are the objects that
+/// there are.
+std::optional<FormerName> objectByLineage(const rdf::QuadReader& quads, const std::string& name,
+                                          const std::vector<ContentHash>& present);
+
+}  // namespace cluxel::mapping

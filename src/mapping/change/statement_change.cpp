@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// Statements stand in graph `operator`; who stated them and when stands in graph `history`.
+#include "mapping/change/statement_change.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <set>
+
+#include "base/utc_time.hpp"
+#include "cluxel/error.hpp"
+#include "rdf/map_iris.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+using rdf::vocabulary::clx;
+
+constexpr std::size_t kStatementDigits = 4;
+constexpr std::array<std::string_view, 29> kComputed{"confidence",
+                                                     "rule",
+                                                     "x",
+                                                     "y",
+                                                     "z",
+                                                     "minX",
+                                                     "minY",
+                                                     "minZ",
+                                                     "maxX",
+                                                     "maxY",
+                                                     "maxZ",
+                                                     "height",
+                                                     "length",
+                                                     "width",
+                                                     "bottom",
+                                                     "top",
+                                                     "pointCount",
+                                                     "heading",
+                                                     "viewCount",
+                                                     "firstSeen",
+                                                     "lastSeen",
+                                                     "seenEmpty",
+                                                     "seenThrough",
+                                                     "hasPart",
+                                                     "hasPrimitive",
+                                                     "near",
+                                                     "appliesTo",
+                                                     "rulesSay",
+                                                     "statementEffect"};
+
+std::string dateTimeNow() {
+  return dateTimeText(std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count());
+}
+
+std::string provTerm(std::string_view local) {
+  return std::string(rdf::vocabulary::kProv).append(local);
+}
+
+/// The quads of one subject in a graph.
+std::vector<Quad> quadsAbout(const rdf::QuadReader& reader, const std::string& iri, std::string_view graph_iri) {
+  const auto subject = reader.idOf(Term::iri(iri)), graph = reader.idOf(Term::iri(graph_iri));
+  std::vector<Quad> quads;
+  if (!subject || !graph) return quads;
+  rdf::QuadCursor cursor = reader.scan({.s = *subject, .p = {}, .o = {}, .g = *graph});
+  for (rdf::QuadIds quad; cursor.next(quad);)
+    quads.push_back({reader.termOf(quad.s), reader.termOf(quad.p), reader.termOf(quad.o), reader.termOf(quad.g)});
+  return quads;
+}
+
+void requireKnown(const Statement& statement, const rules::ClassCatalogue& classes) {
+  if (statement.kind == StatementKind::Fact) requireStatable(statement.property);
+  const bool of_class = statement.kind == StatementKind::Is || statement.kind == StatementKind::IsNot;
+  if (of_class && classes.find(statement.value.text) == nullptr)
+    throw Error(ErrorKind::NotFound, "the map's ontology knows no class <" + statement.value.text + ">");
+}
+
+void removeQuads(rdf::QuadWriter& writer, const std::vector<Quad>& quads) {
+  for (const Quad& quad : quads)
+    writer.remove(rdf::QuadIds{writer.intern(quad.subject), writer.intern(quad.predicate), writer.intern(quad.object),
+                               writer.intern(quad.graph)});
+}
+
+/// Writes the statements and who made them. A statement that comes back has a new author and is not withdrawn.
+void writeStatements(rdf::WriteTransaction& transaction, const StatementEdit& edit) {
+  rdf::QuadWriter writer(transaction);
+  const rdf::QuadReader reader(static_cast<const rdf::ReadTransaction&>(transaction));
+  const Term history = Term::iri(rdf::vocabulary::kGraphHistory);
+  const Term now = Term::literal(dateTimeNow(), rdf::vocabulary::xsd("dateTime"));
+  const auto record = [&](const std::string& iri, const std::string& author, const std::string& time) {
+    if (!edit.author.empty()) writer.add(Quad{Term::iri(iri), Term::iri(author), Term::literal(edit.author), history});
+    writer.add(Quad{Term::iri(iri), Term::iri(time), now, history});
+  };
+  for (const ContentHash& id : edit.withdrawn) {
+    const std::string iri = rdf::iriOfStatement(id);
+    const auto quads = quadsAbout(reader, iri, rdf::vocabulary::kGraphOperator);
+    if (quads.empty()) throw Error(ErrorKind::NotFound, "the map has no operator statement " + id.hex());
+    removeQuads(writer, quads);
+    record(iri, clx("withdrawnBy"), provTerm("invalidatedAtTime"));
+  }
+  for (const Statement& statement : edit.added) {
+    const std::string iri = rdf::iriOfStatement(statement.id());
+    if (!quadsAbout(reader, iri, rdf::vocabulary::kGraphOperator).empty()) continue;
+    removeQuads(writer, quadsAbout(reader, iri, rdf::vocabulary::kGraphHistory));
+    for (const Quad& quad : quadsOf(statement)) writer.add(quad);
+    record(iri, clx("statedBy"), provTerm("generatedAtTime"));
+  }
+  writer.flush();
+}
+
+/// The middle of what a scan saw from.
+Eigen::Vector2d standOf(const Cloud& cloud) {
+  const Eigen::Vector3d middle = 0.5 * (cloud.min + cloud.max);
+  return (cloud.has_pose ? Eigen::Vector3d(cloud.T_map_sensor.translation()) : middle).head<2>();
+}
+
+}  // namespace
+
+void requireStatable(const std::string& property) {
+  const bool is_type = property == rdf::vocabulary::rdf("type");
+  const bool is_geometry = property.starts_with(rdf::vocabulary::kGeo) || property.starts_with(rdf::vocabulary::kSosa);
+  const bool is_computed =
+      std::any_of(kComputed.begin(), kComputed.end(), [&](std::string_view local) { return property == clx(local); });
+  if (is_type || is_geometry || is_computed)
+    throw Error(ErrorKind::InvalidArgument,
+                "<" + property + "> of an object is computed by the map; state its class, or another property");
+}
+
+ChangeReport changeStatements(const std::filesystem::path& file, const StatementEdit& edit, const ChangeParams& params,
+                              ProgressSink& sink) {
+  MapEditor editor(file, params, sink);
+  for (const Statement& statement : edit.added) requireKnown(statement, editor.inputs().rules.catalogue);
+  rdf::WriteTransaction transaction = editor.begin();
+  writeStatements(transaction, edit);
+  editor.commit(transaction, "state", {}, {});
+  return std::move(editor.result());
+}
+
+RegionAnchor regionAnchor(const std::vector<Cloud>& clouds, const std::vector<Eigen::Vector2d>& corners_map) {
+  if (corners_map.size() < 3) throw Error(ErrorKind::InvalidArgument, "a region needs at least three corners");
+  if (clouds.empty()) throw Error(ErrorKind::InvalidArgument, "the map has no scan to anchor a region to");
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& corner : corners_map) middle += corner / static_cast<double>(corners_map.size());
+  const Cloud& nearest = *std::min_element(clouds.begin(), clouds.end(), [&](const Cloud& a, const Cloud& b) {
+    return std::pair((standOf(a) - middle).squaredNorm(), a.id) < std::pair((standOf(b) - middle).squaredNorm(), b.id);
+  });
+  RegionAnchor region{nearest.id, {}};
+  const double height = nearest.T_map_sensor.translation().z();
+  for (const Eigen::Vector2d& corner : corners_map)
+    region.corners.emplace_back(nearest.T_map_sensor.inverse() * Eigen::Vector3d(corner.x(), corner.y(), height));
+  return region;
+}
+
+std::vector<KnownStatement> knownStatements(const rdf::QuadReader& quads) {
+  std::vector<KnownStatement> all;
+  for (const Statement& statement : storedStatements(quads)) {
+    KnownStatement known{statement, "", "", "", false, "", ""};
+    const std::string iri = rdf::iriOfStatement(statement.id());
+    for (const Quad& quad : quadsAbout(quads, iri, rdf::vocabulary::kGraphObserved)) {
+      if (quad.predicate.text == clx("statementEffect")) known.effect = quad.object.text;
+      if (quad.predicate.text == clx("appliesTo")) known.object = quad.object.text;
+      if (quad.predicate.text == clx("rulesSay")) known.rules_class = quad.object.text;
+      if (quad.predicate.text == clx("contradictsRules")) known.contradicts = quad.object.text == "true";
+    }
+    for (const Quad& quad : quadsAbout(quads, iri, rdf::vocabulary::kGraphHistory)) {
+      if (quad.predicate.text == clx("statedBy")) known.author = quad.object.text;
+      if (quad.predicate.text == provTerm("generatedAtTime")) known.stated_at = quad.object.text;
+    }
+    all.push_back(std::move(known));
+  }
+  return all;
+}
+
+ContentHash statementNamed(const rdf::QuadReader& quads, const std::string& name) {
+  const std::string digits = name.substr(name.rfind('/') + 1);
+  if (digits.size() < kStatementDigits)
+    throw Error(ErrorKind::InvalidArgument, "'" + name + "': write at least four digits of the statement's id");
+  std::set<ContentHash> fitting;
+  for (const Statement& statement : storedStatements(quads))
+    if (statement.id().hex().starts_with(digits)) fitting.insert(statement.id());
+  if (fitting.size() != 1)
+    throw Error(ErrorKind::NotFound, "'" + name + "' names " + (fitting.empty() ? "no" : "more than one") +
+                                         " operator statement of the map");
+  return *fitting.begin();
+}
+
+}  // namespace cluxel::mapping

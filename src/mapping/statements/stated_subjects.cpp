@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Object names change with their members; points do not.
+#include "mapping/statements/stated_subjects.hpp"
+
+#include <chrono>
+#include <set>
+
+#include "base/utc_time.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/build/operator_statements.hpp"
+#include "mapping/change/map_things.hpp"
+#include "mapping/change/statement_change.hpp"
+#include "mapping/object_store.hpp"
+#include "rdf/map_iris.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+bool namesObject(const Term& subject) {
+  return subject.kind == TermKind::Iri &&
+         (subject.text.starts_with(rdf::mapIri("object", "")) || subject.text.starts_with(rdf::mapIri("thing", "")));
+}
+
+/// The present object that an IRI means.
+class StatedObjects {
+ public:
+  StatedObjects(const rdf::ReadTransaction& transaction, const ParsedInputs& parsed)
+      : reader_(transaction), objects_(storedObjects(transaction)), stages_(parsed.model, parsed.inputs.params) {
+    stages_.loadAll(transaction);
+    for (const rules::SemanticObject& object : objects_) ids_.push_back(object.id);
+  }
+
+  std::optional<PointAnchor> anchorOfIri(const std::string& iri) const {
+    for (const rules::SemanticObject& object : objects_)
+      if (rdf::iriOfObject(object.id) == iri) return anchorOf(stages_, object);
+    const auto former = objectByLineage(reader_, iri, ids_);
+    if (!former) return std::nullopt;
+    for (const rules::SemanticObject& object : objects_)
+      if (object.id == former->object) return anchorOf(stages_, object);
+    return std::nullopt;
+  }
+
+ private:
+  rdf::QuadReader reader_;
+  std::vector<rules::SemanticObject> objects_;
+  std::vector<ContentHash> ids_;
+  TileStages stages_;
+};
+
+Statement statementOf(const Quad& quad, PointAnchor anchor, const rules::ClassCatalogue& classes) {
+  if (quad.predicate.text == rdf::vocabulary::rdf("type")) {
+    if (quad.object.kind != TermKind::Iri || classes.find(quad.object.text) == nullptr)
+      throw Error(ErrorKind::NotFound, "the map's ontology knows no class " + toNTriples(quad.object));
+    return {StatementKind::Is, "", quad.object, std::move(anchor), {}};
+  }
+  requireStatable(quad.predicate.text);
+  if (quad.object.kind == TermKind::BlankNode)
+    throw Error(ErrorKind::InvalidArgument,
+                "<" + quad.predicate.text + "> of an object is a blank node; state an IRI or a literal");
+  return {StatementKind::Fact, quad.predicate.text, quad.object, std::move(anchor), {}};
+}
+
+}  // namespace
+
+void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, ProgressSink& sink) {
+  std::vector<Quad> about_objects;
+  for (Quad& quad : operatorStatements(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction))))
+    if (namesObject(quad.subject)) about_objects.push_back(std::move(quad));
+  if (about_objects.empty()) return;
+  const StatedObjects objects(transaction, parsed);
+  rdf::QuadWriter writer(transaction);
+  const Term history = Term::iri(rdf::vocabulary::kGraphHistory);
+  const double now_s = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  const Term now = Term::literal(dateTimeText(now_s), rdf::vocabulary::xsd("dateTime"));
+  std::size_t anchored = 0;
+  for (const Quad& quad : about_objects) {
+    auto anchor = objects.anchorOfIri(quad.subject.text);
+    if (!anchor) continue;
+    const Statement statement = statementOf(quad, std::move(*anchor), parsed.rules.catalogue);
+    writer.remove(rdf::QuadIds{writer.intern(quad.subject), writer.intern(quad.predicate), writer.intern(quad.object),
+                               writer.intern(quad.graph)});
+    for (const Quad& stated : quadsOf(statement)) writer.add(stated);
+    writer.add(Quad{Term::iri(rdf::iriOfStatement(statement.id())),
+                    Term::iri(std::string(rdf::vocabulary::kProv) + "generatedAtTime"), now, history});
+    ++anchored;
+  }
+  writer.flush();
+  if (anchored > 0) sink.note(std::to_string(anchored) + " statements about objects are anchored to their points");
+}
+
+bool haveNewStatements(const rdf::ReadTransaction& transaction) {
+  const rdf::QuadReader reader(transaction);
+  std::set<std::string> stated, told;
+  for (const Statement& statement : storedStatements(reader)) stated.insert(rdf::iriOfStatement(statement.id()));
+  const auto effect = reader.idOf(Term::iri(rdf::vocabulary::clx("statementEffect")));
+  const auto observed = reader.idOf(Term::iri(rdf::vocabulary::kGraphObserved));
+  if (effect && observed) {
+    rdf::QuadCursor cursor = reader.scan({.s = {}, .p = *effect, .o = {}, .g = *observed});
+    for (rdf::QuadIds quad; cursor.next(quad);) told.insert(reader.termOf(quad.s).text);
+  }
+  return stated != told;
+}
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Turns what an update stated about an object into a statement that is anchored to the object's points.
+#pragma once
+
+#include "cluxel/progress.hpp"
+#include "mapping/facts/semantic_layer.hpp"
+#include "rdf/file/environment.hpp"
+
+namespace cluxel::mapping {
+
+/// Replaces quads of graph `operator` whose subject is an object of the map, a thing or a former object that goes on in
+/// one: `object a CLASS` becomes a statement of class, any other property a stated fact. Quads about objects that the
+/// map never had stay as they are. Notes how many there were. Throws Error: InvalidArgument for a property that the map
+/// computes itself, or a malformed statement; NotFound for a class that the ontology does not know.
+void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, ProgressSink& sink);
+
+/// Whether graph `operator` holds statements that the graph `observed` does not tell of, or the other way round.
+bool haveNewStatements(const rdf::ReadTransaction& transaction);
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Operator statements in the semantic layer: applied once the rules' result is known, told as facts, and stored.
+#pragma once
+
+#include <vector>
+
+#include "mapping/facts/fact_sink.hpp"
+#include "mapping/statements/applied_statements.hpp"
+#include "rdf/file/environment.hpp"
+
+namespace cluxel::mapping {
+
+/// Applies the statements of graph `operator` to the rules' objects. Nothing is read where there are none.
+AppliedStatements appliedStatements(const rdf::ReadTransaction& transaction, const TileStages& stages,
+                                    const perception::ThinParams& thin, const std::vector<Cloud>& clouds,
+                                    const perception::Scene& scene, const rules::ClassCatalogue& classes,
+                                    std::vector<rules::SemanticObject> by_rules);
+
+/// Which object each statement applies to, what the rules say of it, and the stated properties of objects.
+void addStatementFacts(const std::vector<StatementOutcome>& outcomes, FactSink& facts);
+
+/// The objects as the rules made them, where statements changed them.
+void storeOverruled(rdf::WriteTransaction& transaction, const std::vector<OverruledObject>& overruled);
+std::vector<OverruledObject> storedOverruled(const rdf::ReadTransaction& transaction);
+
+}  // namespace cluxel::mapping
