@@ -58,6 +58,16 @@ TEST_F(MapCompaction, FollowsMuchFreeSpaceAndKeepsTheMap) {
   EXPECT_FALSE(fs::exists(map.string() + ".compact"));
 }
 
+TEST_F(MapCompaction, WorksOnAMapOfTheWorkingFolder) {
+  const fs::path map = copy(), before = fs::current_path();
+  leaveFree(map, 8'000'000);
+  const auto sparse = fs::file_size(map);
+  fs::current_path(map.parent_path());
+  compactIfSparse(map.filename(), silence());
+  fs::current_path(before);
+  EXPECT_LT(fs::file_size(map), sparse - 7'000'000);
+}
+
 TEST_F(MapCompaction, KeepsOwnerGroupAndRights) {
   if (::geteuid() != 0) GTEST_SKIP() << "only root may give files away";
   constexpr uid_t kOther = 65534;

@@ -84,7 +84,7 @@ void compactIfSparse(const fs::path& map, ProgressSink& sink) {
     if (!fs::exists(copyOf(map)) && !isSparse(map)) return;
     if (statusOf(map).st_nlink > 1)
       throw Error(ErrorKind::StoreUnavailable, "it has another name (a hard link), which would keep the old file");
-    if (fs::space(withoutLinks(map).parent_path()).available < fs::file_size(map))
+    if (fs::space(fs::absolute(withoutLinks(map)).parent_path()).available < fs::file_size(map))
       throw Error(ErrorKind::StoreUnavailable, "there is no room beside it for a copy");
     compactMap(map);
   } catch (const std::exception& error) {
