@@ -2,7 +2,7 @@
 // The card of the selected object: attributes with units, parts, scans that saw it, and reasons.
 import { capitalised, CLX, type MapModel, type MapObject } from '../data/model';
 import type { Service } from '../data/service';
-import { counted, el, iconButton, rounded } from '../dom';
+import { counted, el, faultNote, iconButton, rounded, swatch } from '../dom';
 import type { Answer, Rows } from '../sparql/answers';
 import type { Portrait } from '../scene/portrait';
 import type { Engine } from '../sparql/engine';
@@ -54,7 +54,7 @@ export class ObjectCard {
   private head(object: MapObject): HTMLElement {
     const color = object.class.color || '#808080';
     return el('header', {},
-              el('span', { class: 'swatch large', style: `background:${color}` }),
+              swatch(color, 'large'),
               el('div', { class: 'titles' }, el('h2', {}, capitalised(object.class.label)),
                  el('code', { title: object.iri }, object.id.slice(0, 12))),
               iconButton('aim', 'Go to this object (F)', () => this.goTo(object)),
@@ -80,13 +80,19 @@ export class ObjectCard {
     if (object.parts.length === 0) return '';
     return el('section', {}, el('h3', {}, 'Parts'), el('ul', { class: 'parts' }, ...object.parts.map((part) => {
       const info = this.model.classOf(part.class);
-      return el('li', {}, el('span', { class: 'swatch', style: `background:${info.color || '#808080'}` }), capitalised(info.label),
+      return el('li', {}, swatch(info.color || '#808080'), capitalised(info.label),
                 el('small', {}, `${rounded(part.box.height, 2)} m high, ${rounded(part.box.width, 2)} m wide`));
     })));
   }
 
   private async fillReasons(object: MapObject, host: HTMLElement): Promise<void> {
-    const reasons = await this.model.reasonsOf(object);
+    let reasons;
+    try {
+      reasons = await this.model.reasonsOf(object);
+    } catch (fault) {
+      host.replaceChildren(faultNote(fault));
+      return;
+    }
     if (this.store.state.selected !== object) return;
     host.replaceWith(reasons ? reasonsView(reasons, this.model, new WhyNotQuestion(this.model, this.service, object).element, this.store)
                              : el('p', { class: 'note' }, 'This page was written without reasons: cluxel explain gives them.'));
@@ -113,10 +119,14 @@ export class ObjectCard {
   private async fillFacts(object: MapObject, host: HTMLElement): Promise<void> {
     if (host.childElementCount > 0) return;
     host.append(el('p', { class: 'note' }, 'Reading…'));
-    const facts = await this.engine.ask(`SELECT DISTINCT ?property ?value { <${object.iri}> ?property ?value } ORDER BY ?property ?value`);
-    const seen = await this.engine.ask(`PREFIX clx: <${CLX}> PREFIX sosa: <http://www.w3.org/ns/sosa/>
-      SELECT DISTINCT ?cloud ?points { ?o sosa:hasFeatureOfInterest <${object.iri}> ; clx:inCloud ?cloud ; clx:pointCount ?points } ORDER BY DESC(?points)`);
-    host.replaceChildren(this.observations(seen), this.factTable(facts));
+    try {
+      const facts = await this.engine.ask(`SELECT DISTINCT ?property ?value { <${object.iri}> ?property ?value } ORDER BY ?property ?value`);
+      const seen = await this.engine.ask(`PREFIX clx: <${CLX}> PREFIX sosa: <http://www.w3.org/ns/sosa/>
+        SELECT DISTINCT ?cloud ?points { ?o sosa:hasFeatureOfInterest <${object.iri}> ; clx:inCloud ?cloud ; clx:pointCount ?points } ORDER BY DESC(?points)`);
+      host.replaceChildren(this.observations(seen), this.factTable(facts));
+    } catch (fault) {
+      host.replaceChildren(faultNote(fault));
+    }
   }
 
   private observations(answer: Answer): HTMLElement {
