@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The card of the selected object: attributes with units, parts, scans that saw it, and reasons.
-import { capitalised, CLX, type MapModel, type MapObject } from '../data/model';
+import { type Ancestor, capitalised, CLX, type MapModel, type MapObject } from '../data/model';
 import type { Service } from '../data/service';
 import { counted, el, faultNote, iconButton, rounded, swatch } from '../dom';
 import type { Answer, Rows } from '../sparql/answers';
@@ -12,7 +12,7 @@ import { reasonsView } from './reasons';
 import { statementForm } from './statement';
 import { WhyNotQuestion } from './why_not';
 
-/** What the history says of an object; files do not hold it. */
+/** What the history says of an object now; a file holds what it said when it was written. */
 const LINEAGE = (iri: string) => `PREFIX prov: <http://www.w3.org/ns/prov#> PREFIX clx: <${CLX}>
   SELECT ?from ?operation ?time { GRAPH <https://w3id.org/cluxel/graph/history> { <${iri}> prov:wasDerivedFrom ?from
     OPTIONAL { <${iri}> prov:wasGeneratedBy ?run . ?run clx:operation ?operation ; prov:endedAtTime ?time } } } ORDER BY ?time ?from`;
@@ -102,18 +102,23 @@ export class ObjectCard {
     const host = el('div', { class: 'lineage-list' });
     const fill = async () => {
       if (host.childElementCount > 0) return;
-      if (!this.service) {
-        host.append(el('p', { class: 'note' }, 'The history is not in this file: cluxel serve shows it here.'));
-        return;
+      try {
+        const rows = this.service ? await this.askedLineage(this.service, object) : await this.model.lineageOf(object);
+        host.replaceChildren(rows.length === 0 ? el('p', { class: 'note' }, 'It was made by the build, and no change has touched it.')
+          : el('ul', { class: 'plain-list' }, ...rows.map((row) => el('li', { title: row.from },
+              `from ${shortened(row.from).slice(0, 24)}`, el('small', {}, `${row.operation} ${row.time.slice(0, 16)}`)))));
+      } catch (fault) {
+        host.replaceChildren(faultNote(fault));
       }
-      const told = await this.service.json<LineageJson>(`sparql?format=json&query=${encodeURIComponent(LINEAGE(object.iri))}`);
-      const rows = told.results.bindings;
-      host.append(rows.length === 0 ? el('p', { class: 'note' }, 'It was made by the build, and no change has touched it.')
-        : el('ul', { class: 'plain-list' }, ...rows.map((row) => el('li', { title: row.from?.value },
-            `from ${shortened(row.from?.value ?? '').slice(0, 24)}`, el('small', {}, `${row.operation?.value ?? ''} ${row.time?.value.slice(0, 16) ?? ''}`)))));
     };
     return el('details', { class: 'lineage', ontoggle: (event: Event) => { if ((event.target as HTMLDetailsElement).open) void fill(); } },
               el('summary', {}, 'Lineage'), host);
+  }
+
+  private async askedLineage(service: Service, object: MapObject): Promise<Ancestor[]> {
+    const told = await service.json<LineageJson>(`sparql?format=json&query=${encodeURIComponent(LINEAGE(object.iri))}`);
+    return told.results.bindings.map((row) => (
+      { from: row.from?.value ?? '', operation: row.operation?.value ?? '', time: row.time?.value ?? '' }));
   }
 
   private async fillFacts(object: MapObject, host: HTMLElement): Promise<void> {
