@@ -2,6 +2,7 @@
 // The shipped rules of places: parking rows and facade fronts, their areas, and that they follow changes of a map.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "mapping/change/map_change.hpp"
@@ -40,11 +41,13 @@ class PlaceRules : public testing::Test {
   void addType(const Term& subject, const std::string& name) {
     add(subject, vocabulary::rdf("type"), Term::iri(vocabulary::clx(name)));
   }
-  void addVehicle(const std::string& name, double x, double y, double heading_rad) {
+  void addVehicle(const std::string& name, double x, double y, double heading_rad, double length_m = 4) {
     const Term vehicle = thing(name), centroid = thing(name + "/centroid");
     const std::string geo(vocabulary::kGeo);
     addType(vehicle, "Vehicle");
     addNumber(vehicle, "heading", heading_rad);
+    addNumber(vehicle, "x", x), addNumber(vehicle, "y", y);
+    addNumber(vehicle, "length", length_m), addNumber(vehicle, "width", 0.4 * length_m);
     addBox(vehicle, x - 1, y - 1, x + 1, y + 1);
     add(vehicle, geo + "hasCentroid", centroid);
     add(centroid, geo + "asWKT",
@@ -75,33 +78,47 @@ class PlaceRules : public testing::Test {
   WriteTransaction transaction = environment->write();
 };
 
-TEST_F(PlaceRules, ThreeParallelVehiclesAreARowWhicheverWayTheyFace) {
-  addVehicle("a", 0, 0, 0.1);
-  addVehicle("b", 3, 0, 0.1 + std::numbers::pi);
-  addVehicle("c", 6, 0, 0.1 - std::numbers::pi);
-  addVehicle("d", 14.9, 0, std::numbers::pi - 0.1);  // 8.9 m from c, turned by 0.2
+TEST_F(PlaceRules, VehiclesInALineAreARowWhicheverWayTheyFace) {
+  constexpr double kHeading = 2.0;  // also beyond a quarter of a circle
+  const auto addInLine = [&](const std::string& name, double along, double across, double heading_rad) {
+    addVehicle(name, along * std::cos(kHeading) - across * std::sin(kHeading),
+               along * std::sin(kHeading) + across * std::cos(kHeading), heading_rad);
+  };
+  addInLine("a", 0, 0, kHeading);
+  addInLine("b", 6, 0.5, kHeading - std::numbers::pi);
+  addInLine("c", 12, 0, kHeading - 0.1);
+  addInLine("d", 20.9, 0, kHeading + 0.1 - std::numbers::pi);  // 8.9 m from c, turned by 0.2
+  addInLine("opposite", 6, 5.6, kHeading);
   derive();
   EXPECT_EQ(countOf("?row a clx:ParkingRow"), 1U);
   EXPECT_EQ(countOf("?row a clx:ParkingRow ; clx:hasMember ?vehicle"), 4U);
+  EXPECT_EQ(countOf("?row clx:hasMember <https://example.org/opposite>"), 0U);
 }
 
-TEST_F(PlaceRules, TwoVehiclesOrTurnedOrDistantOnesAreNoRow) {
+TEST_F(PlaceRules, VehiclesSideBySideAreARow) {
+  for (int i = 0; i < 3; ++i) addVehicle("bay" + std::to_string(i), 2.7 * i, 0.2 * i, 1.55);
+  derive();
+  EXPECT_EQ(countOf("?row a clx:ParkingRow ; clx:hasMember ?vehicle"), 3U);
+}
+
+TEST_F(PlaceRules, TwoVehiclesAndTurnedDistantOrSmallOnesAreNoRow) {
   addVehicle("a", 0, 0, 0);
-  addVehicle("b", 3, 0, 0);
-  addVehicle("turned", 6, 0, 0.4);
+  addVehicle("b", 6, 0, 0);
+  addVehicle("turned", 12, 0, 0.4);
   addVehicle("distant", -9.1, 0, 0);
+  addVehicle("cycle", 3, 0, 0, 1.8);
   derive();
   EXPECT_EQ(countOf("?a clx:parkedBeside ?b"), 2U);
   EXPECT_EQ(countOf("?row a clx:ParkingRow"), 0U);
 }
 
 TEST_F(PlaceRules, APlaceReachesAroundItsMembers) {
-  addVehicle("a", 0, 5, 0);
-  addVehicle("b", 3, 0, 0);
+  addVehicle("a", -6, 0, 0);
+  addVehicle("b", 0, 1, 0);
   addVehicle("c", 6, 0, 0);
   derive();
   EXPECT_EQ(countOf("?row a clx:ParkingRow ; geo:hasBoundingBox ?box . ?box a geo:Geometry ; geo:asWKT "
-                    "\"POLYGON ((-1.0 -1.0, 7.0 -1.0, 7.0 6.0, -1.0 6.0, -1.0 -1.0))\"^^geo:wktLiteral"),
+                    "\"POLYGON ((-7.0 -1.0, 7.0 -1.0, 7.0 2.0, -7.0 2.0, -7.0 -1.0))\"^^geo:wktLiteral"),
             1U);
 }
 
@@ -128,7 +145,7 @@ TEST(PlacesOfAMap, FollowScansThatComeAndGo) {
   EXPECT_TRUE(canonicalText(file) == whole);
   {
     const MapReader map(file);
-    EXPECT_GE(rowsIn(map.quads(), "?row a clx:ParkingRow ; geo:hasBoundingBox ?box"), 1U);
+    // Cars of so few scans make no row; the tests above have rows.
     EXPECT_GE(rowsIn(map.quads(), "?front a clx:FacadeFront ; geo:hasBoundingBox ?box"), 2U);
   }
   ScanSet scans = scansOf(files);
