@@ -35,6 +35,11 @@ tree=$("$cluxel" query '<b>markup.clx' trees.rq --format csv | sed -n 2p | cut -
 "$cluxel" build visits -o visits.clx 2>/dev/null
 "$cluxel" view visits.clx -o visits.html
 
+# A map that a change has touched.
+cp campus.clx changed.clx
+"$cluxel" retract changed.clx scan_002.pcd >/dev/null 2>&1
+"$cluxel" view changed.clx -o changed.html
+
 # The campus with a service, which may change it.
 cp campus.clx served.clx
 printf '0123456789abcdef0123\n' >token

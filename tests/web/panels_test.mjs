@@ -213,3 +213,26 @@ test('a narrow screen holds every panel', async () => {
     assert.ok(wide <= 390 && tall <= 780, `${id}: ${wide} x ${tall}`);
   }
 });
+
+test('a file tells the lineage of its objects', async () => {
+  const asked = `PREFIX prov: <http://www.w3.org/ns/prov#> PREFIX clx: <https://w3id.org/cluxel/ontology#>
+    SELECT ?object ?from { ?object a clx:Tree GRAPH <https://w3id.org/cluxel/graph/history> { ?object prov:wasDerivedFrom ?from } }`;
+  const rows = JSON.parse(cluxel('query', join(folder, 'changed.clx'), '-e', asked, '--format', 'json')).results.bindings;
+  assert.ok(rows.length > 0, 'the change touched a tree');
+  const object = rows[0].object.value, wanted = rows.filter((row) => row.object.value === object).map((row) => row.from.value);
+  const changed = await openPage(join(folder, 'changed.html'));
+  try {
+    await changed.page.evaluate((iri) => {
+      const { store, model } = window.cluxelPage;
+      store.set('selected', model.objectOf(iri));
+    }, object);
+    await changed.page.click('.lineage summary');
+    await changed.page.waitForSelector('.lineage-list li');
+    const told = await changed.page.$$eval('.lineage-list li', (items) => items.map((item) => item.title));
+    assert.deepEqual(told.sort(), wanted.sort());
+    assert.match(await changed.page.textContent('.lineage-list li small'), /retract/);
+    assert.deepEqual(changed.faults, []);
+  } finally {
+    await changed.close();
+  }
+});

@@ -53,6 +53,20 @@ export function iconButton(name: keyof typeof ICONS, label: string, act: () => v
             icon(name));
 }
 
+/** A small field of a colour, as CSS writes it. */
+export function swatch(colour: string, more = ''): HTMLElement {
+  return el('span', { class: `swatch ${more}`.trim(), style: `background:${colour}` });
+}
+
+/** What a person is told of a fault. */
+export function messageOf(fault: unknown): string {
+  return fault instanceof Error ? fault.message : String(fault);
+}
+
+export function faultNote(fault: unknown): HTMLElement {
+  return el('p', { class: 'note fault', role: 'alert' }, messageOf(fault));
+}
+
 const grouped = new Intl.NumberFormat('en', { maximumFractionDigits: 0 });
 
 /** 2102658 as "2,102,658". */

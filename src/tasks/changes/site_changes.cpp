@@ -172,6 +172,23 @@ Differences differencesIn(const mapping::MapReader& map, double since_s, unsigne
   return found;
 }
 
+using Votes = std::vector<mapping::ObjectVotes>;
+
+/// What the rays of all scans say of each object. It is the same for each moment that is asked about.
+Votes votesIn(const mapping::MapReader& map, const std::vector<mapping::Cloud>& clouds, unsigned threads) {
+  return presenceVotes(
+      map.scene(), map.objects(), clouds, [&](const mapping::Cloud& cloud) { return map.scanOf(cloud.id); }, threads);
+}
+
+SiteChanges changesAt(const mapping::MapReader& map, const Votes& votes, double since_s, unsigned threads) {
+  SiteChanges found;
+  found.since_s = since_s;
+  for (std::uint32_t i = 0; i < votes.size(); ++i)
+    if (!votes[i].places.empty()) found.states.push_back(compare(i, votes[i].votes, since_s));
+  found.changes = withMoves(map, differencesIn(map, since_s, threads));
+  return found;
+}
+
 ChangeJson boxJson(const Eigen::AlignedBox3d& box) {
   const auto rounded = [](const Eigen::Vector3d& v) {
     return ChangeJson{std::round(v.x() * 1000) / 1000, std::round(v.y() * 1000) / 1000,
@@ -212,14 +229,18 @@ std::vector<Visit> visitsOf(const std::vector<mapping::Cloud>& clouds) {
 
 SiteChanges changesIn(const mapping::MapReader& map, std::optional<double> since_s, unsigned threads) {
   const std::vector<mapping::Cloud> clouds = map.clouds();
-  SiteChanges found;
-  found.since_s = since_s ? *since_s : beginOfLastVisit(clouds);
-  requireBothSides(scanTimes(clouds), found.since_s);
-  const auto votes = presenceVotes(
-      map.scene(), map.objects(), clouds, [&](const mapping::Cloud& cloud) { return map.scanOf(cloud.id); }, threads);
-  for (std::uint32_t i = 0; i < votes.size(); ++i)
-    if (!votes[i].places.empty()) found.states.push_back(compare(i, votes[i].votes, found.since_s));
-  found.changes = withMoves(map, differencesIn(map, found.since_s, threads));
+  const double since = since_s ? *since_s : beginOfLastVisit(clouds);
+  requireBothSides(scanTimes(clouds), since);
+  return changesAt(map, votesIn(map, clouds, threads), since, threads);
+}
+
+std::vector<SiteChanges> changesOfVisits(const mapping::MapReader& map, unsigned threads) {
+  const std::vector<mapping::Cloud> clouds = map.clouds();
+  const std::vector<Visit> visits = visitsOf(clouds);
+  std::vector<SiteChanges> found;
+  if (visits.size() < 2) return found;
+  const Votes votes = votesIn(map, clouds, threads);
+  for (std::size_t i = 1; i < visits.size(); ++i) found.push_back(changesAt(map, votes, visits[i].begin_s, threads));
   return found;
 }
 

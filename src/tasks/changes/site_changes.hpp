@@ -57,6 +57,9 @@ struct SiteChanges {
 /// (InvalidArgument) when one side has no scan with time and pose.
 SiteChanges changesIn(const mapping::MapReader& map, std::optional<double> since_s, unsigned threads);
 
+/// changesIn for the begin of each visit but the first.
+std::vector<SiteChanges> changesOfVisits(const mapping::MapReader& map, unsigned threads);
+
 /// "StreetSign object/0123456789ab", or "part of ...", or "something unnamed".
 std::string nameOf(const mapping::MapReader& map, const ChangedThing& thing);
 

@@ -4,15 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <tuple>
 
 #include "base/convex_hull.hpp"
-#include "base/disjoint_sets.hpp"
 #include "mapping/facts/object_geometry.hpp"
 #include "rdf/map_iris.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
+#include "sparql/query_engine.hpp"
 #include "tasks/ways/route.hpp"
 
 namespace cluxel::tasks {
@@ -113,25 +114,25 @@ InventoryItem rowOf(std::vector<ParkedVehicle> vehicles) {
   return row;
 }
 
-std::vector<InventoryItem> parkingRows(const mapping::MapReader& map, const rdf::OntologyView& ontology,
-                                       const InventoryParams& params) {
-  std::vector<ParkedVehicle> vehicles;
-  for (const rules::SemanticObject& object : map.objects()) {
-    if (!ontology.isA(object.class_iri, rdf::vocabulary::clx("Vehicle"))) continue;
-    const auto box = mapping::geometryOf(map.scene().cluxels, mapping::cluxelsOf(object)).box;
-    vehicles.push_back({box.center.head<2>(), box.yaw_rad, box.size.x(), box.size.y()});
+/// The rows that the map's rules derived, and what stands in them.
+std::vector<InventoryItem> parkingRows(const mapping::MapReader& map) {
+  std::map<std::string, const rules::SemanticObject*> object_named;
+  for (const rules::SemanticObject& object : map.objects()) object_named[rdf::iriOfObject(object.id)] = &object;
+  const sparql::ResultTable members =
+      sparql::evaluateQuery(map.quads(),
+                            "PREFIX clx: <" + std::string(rdf::vocabulary::kClx) +
+                                "> SELECT ?row ?vehicle { ?row a clx:ParkingRow ; clx:hasMember ?vehicle } "
+                                "ORDER BY ?row ?vehicle")
+          .table;
+  std::map<std::string, std::vector<ParkedVehicle>> rows;
+  for (std::size_t i = 0; i < members.row_count; ++i) {
+    const auto known = object_named.find(members.at(i, 1)->text);
+    if (known == object_named.end()) continue;
+    const auto box = mapping::geometryOf(map.scene().cluxels, mapping::cluxelsOf(*known->second)).box;
+    rows[members.at(i, 0)->text].push_back({box.center.head<2>(), box.yaw_rad, box.size.x(), box.size.y()});
   }
-  DisjointSets rows(vehicles.size());
-  for (std::uint32_t a = 0; a < vehicles.size(); ++a)
-    for (std::uint32_t b = a + 1; b < vehicles.size(); ++b)
-      if ((vehicles[a].at - vehicles[b].at).norm() <= params.row_gap_m &&
-          turnBetween(vehicles[a].heading_rad, vehicles[b].heading_rad) <= params.row_turn_rad)
-        rows.join(a, b);
-  std::vector<std::vector<ParkedVehicle>> members(vehicles.size());
-  for (std::uint32_t i = 0; i < vehicles.size(); ++i) members[rows.find(i)].push_back(vehicles[i]);
   std::vector<InventoryItem> found;
-  for (std::vector<ParkedVehicle>& row : members)
-    if (row.size() >= params.least_in_row) found.push_back(rowOf(std::move(row)));
+  for (auto& [iri, vehicles] : rows) found.push_back(rowOf(std::move(vehicles)));
   return found;
 }
 
@@ -149,7 +150,7 @@ std::vector<InventoryItem> inventoryOf(const mapping::MapReader& map, const Inve
       items.push_back(measuredItem(map, object));
   std::stable_sort(items.begin(), items.end(), [](const auto& a, const auto& b) { return a.kind < b.kind; });
   std::vector<InventoryItem> derived;
-  if (params.with_rows) derived = parkingRows(map, ontology, params);
+  if (params.with_rows) derived = parkingRows(map);
   std::stable_sort(derived.begin(), derived.end(), [](const auto& a, const auto& b) {
     return std::tuple(a.kind, a.at.x(), a.at.y()) < std::tuple(b.kind, b.at.x(), b.at.y());
   });

@@ -36,10 +36,7 @@ struct Street {
 struct InventoryParams {
   std::vector<std::string> classes{"StreetSign", "StreetLamp", "TrafficLight", "UtilityPole", "Tree"};
   double street_within_m = 25;  ///< what is farther from all streets belongs to none
-  double row_gap_m = 9;         ///< between the middles of neighbours in a row of vehicles
-  double row_turn_rad = 0.35;   ///< between their headings
-  std::size_t least_in_row = 3;
-  bool with_rows = true;
+  bool with_rows = true;        ///< also the parking rows of the map's rules
 };
 
 /// Objects first, by class and IRI, then rows by place. Throws Error (NotFound) for an unknown class.

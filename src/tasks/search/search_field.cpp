@@ -36,8 +36,10 @@ std::vector<std::uint8_t> cellsWith(const mapping::MapReader& map, const Terrain
   for (std::uint32_t cell = 0; cell < terrain.frame.size(); ++cell)
     for (const std::uint32_t thing : terrain.thingsIn(cell))
       if (thing != kUnnamedThing && ontology.isA(map.objects()[thing].class_iri, class_iri)) marked[cell] = 1;
+  // A place stands where its members stand.
   const std::string query = "PREFIX clx: <" + std::string(rdf::vocabulary::kClx) + "> SELECT ?x ?y { ?o a <" +
-                            class_iri + "> ; clx:x ?x ; clx:y ?y }";
+                            class_iri + "> . { ?o clx:x ?x ; clx:y ?y } UNION { ?o clx:hasMember ?m . " +
+                            "?m clx:x ?x ; clx:y ?y } }";
   const sparql::ResultTable places = sparql::evaluateQuery(map.quads(), query).table;
   for (std::size_t row = 0; row < places.row_count; ++row)
     if (const auto cell = terrain.frame.cellAt({numberIn(places, row, 0), numberIn(places, row, 1)})) marked[*cell] = 1;

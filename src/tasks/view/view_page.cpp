@@ -39,7 +39,8 @@ void writeData(const mapping::MapReader& map, const std::vector<Question>& quest
   report.quads_left_out = quads.left_out;
   report.object_bytes = writeBlock("map", mapValuesJson(map, tiles, quads.left_out, options, questions), out) +
                         writeBlock("objects", objectValuesJson(map), out) +
-                        writeBlock("changes", visitChangesJson(map, options.threads), out);
+                        writeBlock("changes", visitChangesJson(map, options.threads), out) +
+                        writeBlock("lineage", lineageJson(map), out);
   for (std::size_t i = 0; i < tiles.tiles.size(); ++i)
     report.point_bytes += writeBlock("tile-" + std::to_string(i), tiles.tiles[i].planes, out);
   report.quad_bytes = writeBlock("terms", quads.terms, out) + writeBlock("quads", quads.quads, out);

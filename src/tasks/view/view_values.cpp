@@ -3,10 +3,14 @@
 #include "tasks/view/view_values.hpp"
 
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "mapping/facts/object_geometry.hpp"
+#include "rdf/map_iris.hpp"
 #include "rdf/ontology/ontology.hpp"
+#include "rdf/vocabulary.hpp"
+#include "sparql/query_engine.hpp"
 #include "tasks/ask/task_table.hpp"
 #include "tasks/changes/site_changes.hpp"
 
@@ -144,11 +148,32 @@ std::string mapValuesJson(const mapping::MapReader& map, const PointTiles& tiles
 }
 
 std::string visitChangesJson(const mapping::MapReader& map, unsigned threads) {
-  const std::vector<Visit> visits = visitsOf(map.clouds());
   std::string all = "[";
-  for (std::size_t i = 1; i < visits.size(); ++i)
-    all += (i > 1 ? "," : "") + changesJson(map, changesIn(map, visits[i].begin_s, threads));
+  for (const SiteChanges& changes : changesOfVisits(map, threads))
+    all += (all.size() > 1 ? "," : "") + changesJson(map, changes);
   return all + "]";
+}
+
+std::string lineageJson(const mapping::MapReader& map) {
+  std::map<std::string, std::string> number_of;
+  for (std::size_t i = 0; i < map.objects().size(); ++i)
+    number_of[rdf::iriOfObject(map.objects()[i].id)] = std::to_string(i);
+  const std::string query = "PREFIX prov: <http://www.w3.org/ns/prov#> PREFIX clx: <" +
+                            std::string(rdf::vocabulary::kClx) + "> SELECT ?object ?from ?operation ?time { GRAPH <" +
+                            std::string(rdf::vocabulary::kGraphHistory) +
+                            "> { ?object prov:wasDerivedFrom ?from OPTIONAL { ?object prov:wasGeneratedBy ?run . "
+                            "?run clx:operation ?operation ; prov:endedAtTime ?time } } } ORDER BY ?object ?time ?from";
+  const sparql::ResultTable table = sparql::evaluateQuery(map.quads(), query).table;
+  const auto textAt = [&](std::size_t row, std::size_t column) {
+    const Term* term = table.at(row, column);
+    return term == nullptr ? std::string() : term->text;
+  };
+  ViewJson json = ViewJson::object();
+  for (std::size_t row = 0; row < table.row_count; ++row)
+    if (const auto known = number_of.find(textAt(row, 0)); known != number_of.end())
+      json[known->second].push_back(
+          {{"from", textAt(row, 1)}, {"operation", textAt(row, 2)}, {"time", textAt(row, 3)}});
+  return json.dump(-1, ' ', false, ViewJson::error_handler_t::replace);
 }
 
 std::string objectValuesJson(const mapping::MapReader& map) {

@@ -19,6 +19,9 @@ std::string mapValuesJson(const mapping::MapReader& map, const PointTiles& tiles
 /// changesJson() for the begin of each visit but the first, as an array.
 std::string visitChangesJson(const mapping::MapReader& map, unsigned threads);
 
+/// What the history says that objects were made of, by number of the object; those that no change touched are absent.
+std::string lineageJson(const mapping::MapReader& map);
+
 /// Classes, and the objects in the order of MapReader::objects(): arrays side by side. A box is its centre, length,
 /// width, height [m, map] and the angle of its length [rad].
 std::string objectValuesJson(const mapping::MapReader& map);

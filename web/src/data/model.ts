@@ -50,6 +50,8 @@ type Presence = 'present' | 'absent' | 'not observed';
 export interface ObjectStates { object: string; number: number; before: Presence; after: Presence }
 /** What the scans since the begin of a visit show against those before it. */
 export interface VisitChanges { since: string; changes: SiteChange[]; states: ObjectStates[] }
+/** An earlier object that an object was made of, by which operation and when. */
+export interface Ancestor { from: string; operation: string; time: string }
 interface MapValues {
   name: string; served: boolean; finished: boolean; crs: string; origin: number[];
   points: number; pointsInMap: number; quadsLeftOut: number;
@@ -96,6 +98,7 @@ export class MapModel {
   /** Classes that objects have, most frequent first. */
   readonly shownClasses: { info: ClassInfo; count: number }[];
   private readonly byIri = new Map<string, MapObject>();
+  private lineage: Promise<Record<string, Ancestor[]>> | undefined;
   private visitChanges: Promise<VisitChanges[]> | undefined;
   private readonly reasonBlocks = new Map<number, Promise<Reasons[]>>();
 
@@ -147,6 +150,12 @@ export class MapModel {
   changes(): Promise<VisitChanges[]> {
     this.visitChanges ??= blockJson<VisitChanges[]>('changes');
     return this.visitChanges;
+  }
+
+  /** As the history of the map told when the page was written. */
+  async lineageOf(object: MapObject): Promise<Ancestor[]> {
+    this.lineage ??= blockJson<Record<string, Ancestor[]>>('lineage');
+    return (await this.lineage)[object.number] ?? [];
   }
 
   get hasReasons(): boolean {

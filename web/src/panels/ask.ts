@@ -2,7 +2,7 @@
 // The panel of questions: choose a shipped one or write SPARQL, run it, see rows, light up objects, take the answer away.
 import type { Address, AddressQuestion } from '../address';
 import { capitalised, type MapModel, type MapObject, type Question } from '../data/model';
-import { counted, el, icon } from '../dom';
+import { counted, el, icon, messageOf } from '../dom';
 import { csvOf, geoJsonOf, save } from '../downloads';
 import type { Answer, Rows } from '../sparql/answers';
 import type { Engine } from '../sparql/engine';
@@ -117,7 +117,7 @@ export class AskPanel {
       this.owners ??= await this.readOwners();
       this.show(await this.engine.ask(text), question);
     } catch (fault) {
-      this.showEngineFault(fault instanceof Error ? fault.message : String(fault));
+      this.showEngineFault(messageOf(fault));
     }
     this.busy(false);
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The card of the selected object: attributes with units, parts, scans that saw it, and reasons.
-import { capitalised, CLX, type MapModel, type MapObject } from '../data/model';
+import { type Ancestor, capitalised, CLX, type MapModel, type MapObject } from '../data/model';
 import type { Service } from '../data/service';
-import { counted, el, iconButton, rounded } from '../dom';
+import { counted, el, faultNote, iconButton, rounded, swatch } from '../dom';
 import type { Answer, Rows } from '../sparql/answers';
 import type { Portrait } from '../scene/portrait';
 import type { Engine } from '../sparql/engine';
@@ -12,7 +12,7 @@ import { reasonsView } from './reasons';
 import { statementForm } from './statement';
 import { WhyNotQuestion } from './why_not';
 
-/** What the history says of an object; files do not hold it. */
+/** What the history says of an object now; a file holds what it said when it was written. */
 const LINEAGE = (iri: string) => `PREFIX prov: <http://www.w3.org/ns/prov#> PREFIX clx: <${CLX}>
   SELECT ?from ?operation ?time { GRAPH <https://w3id.org/cluxel/graph/history> { <${iri}> prov:wasDerivedFrom ?from
     OPTIONAL { <${iri}> prov:wasGeneratedBy ?run . ?run clx:operation ?operation ; prov:endedAtTime ?time } } } ORDER BY ?time ?from`;
@@ -54,7 +54,7 @@ export class ObjectCard {
   private head(object: MapObject): HTMLElement {
     const color = object.class.color || '#808080';
     return el('header', {},
-              el('span', { class: 'swatch large', style: `background:${color}` }),
+              swatch(color, 'large'),
               el('div', { class: 'titles' }, el('h2', {}, capitalised(object.class.label)),
                  el('code', { title: object.iri }, object.id.slice(0, 12))),
               iconButton('aim', 'Go to this object (F)', () => this.goTo(object)),
@@ -80,13 +80,19 @@ export class ObjectCard {
     if (object.parts.length === 0) return '';
     return el('section', {}, el('h3', {}, 'Parts'), el('ul', { class: 'parts' }, ...object.parts.map((part) => {
       const info = this.model.classOf(part.class);
-      return el('li', {}, el('span', { class: 'swatch', style: `background:${info.color || '#808080'}` }), capitalised(info.label),
+      return el('li', {}, swatch(info.color || '#808080'), capitalised(info.label),
                 el('small', {}, `${rounded(part.box.height, 2)} m high, ${rounded(part.box.width, 2)} m wide`));
     })));
   }
 
   private async fillReasons(object: MapObject, host: HTMLElement): Promise<void> {
-    const reasons = await this.model.reasonsOf(object);
+    let reasons;
+    try {
+      reasons = await this.model.reasonsOf(object);
+    } catch (fault) {
+      host.replaceChildren(faultNote(fault));
+      return;
+    }
     if (this.store.state.selected !== object) return;
     host.replaceWith(reasons ? reasonsView(reasons, this.model, new WhyNotQuestion(this.model, this.service, object).element, this.store)
                              : el('p', { class: 'note' }, 'This page was written without reasons: cluxel explain gives them.'));
@@ -96,27 +102,36 @@ export class ObjectCard {
     const host = el('div', { class: 'lineage-list' });
     const fill = async () => {
       if (host.childElementCount > 0) return;
-      if (!this.service) {
-        host.append(el('p', { class: 'note' }, 'The history is not in this file: cluxel serve shows it here.'));
-        return;
+      try {
+        const rows = this.service ? await this.askedLineage(this.service, object) : await this.model.lineageOf(object);
+        host.replaceChildren(rows.length === 0 ? el('p', { class: 'note' }, 'It was made by the build, and no change has touched it.')
+          : el('ul', { class: 'plain-list' }, ...rows.map((row) => el('li', { title: row.from },
+              `from ${shortened(row.from).slice(0, 24)}`, el('small', {}, `${row.operation} ${row.time.slice(0, 16)}`)))));
+      } catch (fault) {
+        host.replaceChildren(faultNote(fault));
       }
-      const told = await this.service.json<LineageJson>(`sparql?format=json&query=${encodeURIComponent(LINEAGE(object.iri))}`);
-      const rows = told.results.bindings;
-      host.append(rows.length === 0 ? el('p', { class: 'note' }, 'It was made by the build, and no change has touched it.')
-        : el('ul', { class: 'plain-list' }, ...rows.map((row) => el('li', { title: row.from?.value },
-            `from ${shortened(row.from?.value ?? '').slice(0, 24)}`, el('small', {}, `${row.operation?.value ?? ''} ${row.time?.value.slice(0, 16) ?? ''}`)))));
     };
     return el('details', { class: 'lineage', ontoggle: (event: Event) => { if ((event.target as HTMLDetailsElement).open) void fill(); } },
               el('summary', {}, 'Lineage'), host);
   }
 
+  private async askedLineage(service: Service, object: MapObject): Promise<Ancestor[]> {
+    const told = await service.json<LineageJson>(`sparql?format=json&query=${encodeURIComponent(LINEAGE(object.iri))}`);
+    return told.results.bindings.map((row) => (
+      { from: row.from?.value ?? '', operation: row.operation?.value ?? '', time: row.time?.value ?? '' }));
+  }
+
   private async fillFacts(object: MapObject, host: HTMLElement): Promise<void> {
     if (host.childElementCount > 0) return;
     host.append(el('p', { class: 'note' }, 'Reading…'));
-    const facts = await this.engine.ask(`SELECT DISTINCT ?property ?value { <${object.iri}> ?property ?value } ORDER BY ?property ?value`);
-    const seen = await this.engine.ask(`PREFIX clx: <${CLX}> PREFIX sosa: <http://www.w3.org/ns/sosa/>
-      SELECT DISTINCT ?cloud ?points { ?o sosa:hasFeatureOfInterest <${object.iri}> ; clx:inCloud ?cloud ; clx:pointCount ?points } ORDER BY DESC(?points)`);
-    host.replaceChildren(this.observations(seen), this.factTable(facts));
+    try {
+      const facts = await this.engine.ask(`SELECT DISTINCT ?property ?value { <${object.iri}> ?property ?value } ORDER BY ?property ?value`);
+      const seen = await this.engine.ask(`PREFIX clx: <${CLX}> PREFIX sosa: <http://www.w3.org/ns/sosa/>
+        SELECT DISTINCT ?cloud ?points { ?o sosa:hasFeatureOfInterest <${object.iri}> ; clx:inCloud ?cloud ; clx:pointCount ?points } ORDER BY DESC(?points)`);
+      host.replaceChildren(this.observations(seen), this.factTable(facts));
+    } catch (fault) {
+      host.replaceChildren(faultNote(fault));
+    }
   }
 
   private observations(answer: Answer): HTMLElement {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the colours mean, which classes are shown, and which heights.
 import { capitalised, type MapModel } from '../data/model';
-import { counted, el, rounded } from '../dom';
+import { counted, el, rounded, swatch } from '../dom';
 import { COLOUR_MODES, type ColourMode } from '../scene/materials';
 import type { Palette } from '../scene/palette';
 import type { Store } from '../state';
@@ -52,7 +52,7 @@ export class Legend {
     const only = () => this.store.set('hiddenClasses', this.isOnly(iri) ? new Set() : this.allBut(iri));
     const box = el('input', { type: 'checkbox', checked: true, onchange: toggle, 'data-class': iri });
     return el('li', {}, el('label', { title: help || undefined }, box,
-                           el('span', { class: 'swatch', style: `background:${color}` }), el('span', { class: 'class-name' }, label)),
+                           swatch(color), el('span', { class: 'class-name' }, label)),
               el('span', { class: 'count' }, count),
               el('button', { type: 'button', class: 'only', onclick: only, 'aria-label': `Show only ${label}` }, 'only'));
   }
@@ -117,6 +117,6 @@ export class Legend {
     if (mode === 'coverage') return bar('bar-ramp', 'seen by 1 scan', '8 or more');
     if (mode !== 'primitive') return [];
     return [el('ul', { class: 'labels' }, ...this.model.values.labels.map((label, i) =>
-      el('li', {}, el('span', { class: 'swatch', style: `background:${PRIMITIVE_COLOURS[i]}` }), label.replaceAll('_', ' '))))];
+      el('li', {}, swatch(PRIMITIVE_COLOURS[i]), label.replaceAll('_', ' '))))];
   }
 }

@@ -3,9 +3,9 @@
 import { capitalised, CLX, type MapModel, type RuleFile } from '../data/model';
 import type { Service } from '../data/service';
 import type { Trial, TrialChange } from '../data/trial';
-import { counted, el, icon, rounded } from '../dom';
+import { counted, el, icon, messageOf, rounded, swatch } from '../dom';
 import { save } from '../downloads';
-import { rgbOf, type Rgb } from '../scene/palette';
+import { cssOf, rgbOf, type Rgb } from '../scene/palette';
 import type { Stage } from '../scene/stage';
 import type { Mark, Store } from '../state';
 
@@ -82,9 +82,15 @@ export class RulePanel {
       : 'This file has no service that tries rules. Save a changed text as FILE, and run: cluxel rules try MAP FILE';
   }
 
-  private forget(): void {
+  /** An answer that is still under way is for an earlier text. */
+  private dropAnswers(): void {
     window.clearTimeout(this.timer);
     ++this.asked;
+    this.element.setAttribute('aria-busy', 'false');
+  }
+
+  private forget(): void {
+    this.dropAnswers();
     this.trial = null;
     this.looks.hidden = true;
     this.list.replaceChildren();
@@ -103,7 +109,7 @@ export class RulePanel {
 
   private schedule(): void {
     this.reset.disabled = !this.isChanged;
-    window.clearTimeout(this.timer);
+    this.dropAnswers();
     if (!this.service) return;
     if (!this.isChanged) return this.open(this.file);
     this.timer = window.setTimeout(() => void this.ask(), PAUSE_MS);
@@ -116,10 +122,11 @@ export class RulePanel {
     this.status.textContent = 'Trying…';
     try {
       const trial = JSON.parse(await this.service!.post('rules/trial', 'application/yaml', this.text.value)) as Trial;
-      if (asked === this.asked) this.show(trial);
+      if (asked !== this.asked) return;
+      this.show(trial);
     } catch (fault) {
       if (asked !== this.asked) return;
-      this.status.textContent = fault instanceof Error ? fault.message : String(fault);
+      this.status.textContent = messageOf(fault);
       this.status.classList.add('fault');
     }
     this.element.setAttribute('aria-busy', 'false');
@@ -133,7 +140,7 @@ export class RulePanel {
     this.colour();
     const kinds = (Object.keys(KINDS) as TrialChange['kind'][]).filter((kind) => trial.counts[kind] > 0);
     this.list.replaceChildren(
-      el('ul', { class: 'labels' }, ...kinds.map((kind) => el('li', { 'data-kind': kind }, swatch(KINDS[kind].colour), `${KINDS[kind].label}: `,
+      el('ul', { class: 'labels' }, ...kinds.map((kind) => el('li', { 'data-kind': kind }, swatch(cssOf(KINDS[kind].colour)), `${KINDS[kind].label}: `,
                                                               el('b', {}, counted(trial.counts[kind]))))),
       el('ol', { class: 'change-list' }, ...trial.changes.slice(0, MOST_LINES).map((change) => el('li', {}, this.button(change)))),
       trial.changes.length > MOST_LINES ? el('p', { class: 'note' }, `${counted(trial.changes.length - MOST_LINES)} more`) : '');
@@ -146,7 +153,7 @@ export class RulePanel {
       const object = this.model.objectStartingWith(before?.id ?? '');
       if (object) this.store.set('selected', object);
       this.stage.goToPlace(place);
-    } }, swatch(KINDS[change.kind].colour), `${capitalised(from === to ? from : `${from} → ${to}`)}${confidence}`);
+    } }, swatch(cssOf(KINDS[change.kind].colour)), `${capitalised(from === to ? from : `${from} → ${to}`)}${confidence}`);
   }
 
   private classNamed(name: string) {
@@ -169,8 +176,4 @@ export class RulePanel {
     this.store.set('tints', trial.changes.length > 0 ? tints : null);
     this.store.set('marks', look === 'before' ? [] : marks);
   }
-}
-
-function swatch(colour: Rgb): HTMLElement {
-  return el('span', { class: 'swatch', style: `background:rgb(${colour.join(' ')})` });
 }

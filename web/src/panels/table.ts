@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rows of an answer. A row and the object that it names are one selection.
 import { capitalised, localName, type MapModel, type MapObject, type Question } from '../data/model';
-import { counted, el, rounded } from '../dom';
+import { counted, el, rounded, swatch } from '../dom';
 import type { RdfTerm, Rows } from '../sparql/answers';
 import { shortened } from './editor';
 
@@ -108,8 +108,7 @@ export class AnswerTable {
     if (term.kind === 'iri') {
       const object = this.model.objectOf(term.value);
       if (object) {
-        const swatch = el('span', { class: 'swatch', style: `background:${object.class.color || '#808080'}` });
-        return el('td', { title: term.value }, swatch, object.id.slice(0, 8));
+        return el('td', { title: term.value }, swatch(object.class.color || '#808080'), object.id.slice(0, 8));
       }
       const known = this.model.classes.get(term.value);
       return el('td', { title: term.value }, known ? capitalised(known.label) : shortIri(term.value));

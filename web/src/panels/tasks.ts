@@ -2,7 +2,7 @@
 // Tasks by name, with their parameters. The service answers them; a file shows the command that does.
 import { type MapModel, type MapObject, type Question, type Task } from '../data/model';
 import type { Service, TaskAnswer, TaskShape } from '../data/service';
-import { counted, el, icon } from '../dom';
+import { counted, el, icon, messageOf } from '../dom';
 import { save } from '../downloads';
 import type { GroundHeights } from '../scene/ground';
 import type { Stage } from '../scene/stage';
@@ -27,6 +27,7 @@ export class TaskPanel {
   private readonly buttons: HTMLButtonElement[];
   private readonly table: AnswerTable;
   private task: Task | undefined;
+  private asked = 0;
 
   constructor(private readonly model: MapModel, private readonly service: Service | undefined,
               private readonly store: Store, private readonly stage: Stage, private readonly ground: GroundHeights) {
@@ -52,7 +53,10 @@ export class TaskPanel {
     if (!this.service) this.status.textContent = 'This file answers the shipped questions by itself. Tasks need the service: cluxel serve MAP.';
   }
 
+  /** Also drops an answer that is still under way. */
   private clear(): void {
+    ++this.asked;
+    this.busy(false);
     this.table.clear();
     this.reasons.replaceChildren();
     this.actions.hidden = true;
@@ -69,18 +73,23 @@ export class TaskPanel {
     this.clear();
     if (missing.length > 0) return this.fault(`${missing.map((one) => `${one.name}: ${one.help}`).join('\n')}`);
     if (!this.service) return this.showCommand(task);
-    const values = this.form.values();
-    this.run.disabled = true;
-    this.element.setAttribute('aria-busy', 'true');
+    const values = this.form.values(), asked = this.asked;
+    this.busy(true);
     this.status.textContent = 'Asking…';
     try {
       const answer = await this.service.json<TaskAnswer>(requestOf(task, values, task.reasons ? [['why', 'true']] : []));
-      if (this.task === task) this.show(task, answer, values);
+      if (asked !== this.asked) return;
+      this.show(task, answer, values);
     } catch (fault) {
-      this.fault(fault instanceof Error ? fault.message : String(fault));
+      if (asked !== this.asked) return;
+      this.fault(messageOf(fault));
     }
-    this.run.disabled = false;
-    this.element.setAttribute('aria-busy', 'false');
+    this.busy(false);
+  }
+
+  private busy(on: boolean): void {
+    this.run.disabled = on;
+    this.element.setAttribute('aria-busy', String(on));
   }
 
   private fault(message: string): void {
@@ -139,8 +148,13 @@ export class TaskPanel {
 
   private showActions(task: Task, values: Values): void {
     const get = (format: string, ending: string, type: string) => async () => {
-      const text = await this.service!.text(requestOf(task, values, [['format', format], ...(format === 'geojson' ? LOCAL : [])]));
-      save(`${task.name}.${ending}`, type, text);
+      const asked = this.asked;
+      try {
+        save(`${task.name}.${ending}`, type, await this.service!.text(
+          requestOf(task, values, [['format', format], ...(format === 'geojson' ? LOCAL : [])])));
+      } catch (fault) {
+        if (asked === this.asked) this.fault(messageOf(fault));
+      }
     };
     const button = (text: string, act: () => void) => el('button', { type: 'button', class: 'plain', onclick: act }, icon('down'), text);
     this.actions.replaceChildren(button('CSV', get('csv', 'csv', 'text/csv')),

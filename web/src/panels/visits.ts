@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A slider over visits: what appeared, vanished, moved, and what was not observed again.
 import { capitalised, localName, middleOf, nameOf, OBJECT, type MapModel, type MapObject, type SiteChange, type VisitChanges } from '../data/model';
-import { counted, el, rounded } from '../dom';
-import type { Rgb } from '../scene/palette';
+import { counted, el, faultNote, rounded, swatch } from '../dom';
+import { cssOf, type Rgb } from '../scene/palette';
 import type { Stage } from '../scene/stage';
 import type { Mark, Store } from '../state';
 
@@ -62,8 +62,13 @@ export class VisitPanel {
       return this.reset();
     }
     this.name(`${number + 1} of ${visits.length}, ${timeText(visits[number].begin)}, ${counted(visits[number].scans)} scans`);
-    const found = (await this.model.changes())[number - 1];
-    if (Number(this.slider.value) === number) this.showChanges(found);
+    const isShown = () => Number(this.slider.value) === number;
+    try {
+      const found = (await this.model.changes())[number - 1];
+      if (isShown()) this.showChanges(found);
+    } catch (fault) {
+      if (isShown()) this.list.replaceChildren(faultNote(fault));
+    }
   }
 
   private showChanges(found: VisitChanges): void {
@@ -80,7 +85,7 @@ export class VisitPanel {
     const count = (kind: Kind) => (kind === 'unobserved' ? unseen.length : found.changes.filter((change) => change.change === kind).length);
     this.list.replaceChildren(
       el('ul', { class: 'labels visit-kinds' }, ...(Object.keys(KINDS) as Kind[]).map((kind) =>
-        el('li', { 'data-kind': kind }, swatch(KINDS[kind].colour), `${KINDS[kind].label}: `, el('b', {}, counted(count(kind)))))),
+        el('li', { 'data-kind': kind }, swatch(cssOf(KINDS[kind].colour)), `${KINDS[kind].label}: `, el('b', {}, counted(count(kind)))))),
       el('ol', { class: 'change-list' }, ...found.changes.map((change) => el('li', {}, this.button(change)))),
       unseen.length === 0 ? '' : el('details', {}, el('summary', {}, 'Not observed again'),
         el('ul', { class: 'change-list' }, ...unseen.map((states) => el('li', {}, this.objectButton(states.number))))));
@@ -91,7 +96,7 @@ export class VisitPanel {
     const name = object ? nameOf(object) : 'something without a name';
     const moved = change.distance === undefined ? '' : ` by ${rounded(change.distance, 1)} m`;
     return el('button', { type: 'button', class: 'plain', onclick: () => this.goTo(object, at) },
-              swatch(KINDS[change.change].colour),
+              swatch(cssOf(KINDS[change.change].colour)),
               `${capitalised(change.change)}${moved}: ${change.part ? 'part of ' : ''}${name} at ${rounded(at[0], 1)}, ${rounded(at[1], 1)}`);
   }
 
@@ -119,10 +124,6 @@ function markOf(change: SiteChange, number: number): Mark {
   const place = middleOf(change), path = change.now ? [place, middleOf(change.now)] : undefined;
   return { text: String(number + 1), title: `${change.change} ${localName(change.object ?? OBJECT).slice(0, 8)}`, place, path,
            boxes: [change.box_m, ...(change.now ? [change.now.box_m] : [])] };
-}
-
-function swatch(colour: Rgb): HTMLElement {
-  return el('span', { class: 'swatch', style: `background:rgb(${colour.join(' ')})` });
 }
 
 function timeText(seconds: number): string {

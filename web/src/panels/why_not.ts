@@ -2,7 +2,7 @@
 // Why an object has not a class that a person expects: the reasons in the page where a rule decided, else the service's.
 import { capitalised, localName, type MapModel, type MapObject, type Verdict } from '../data/model';
 import type { Service } from '../data/service';
-import { el } from '../dom';
+import { el, faultNote } from '../dom';
 import { verdictBody } from './reasons';
 
 interface WhyNot { class: string; rules: (Verdict & { outcome: string })[] }
@@ -42,7 +42,7 @@ export class WhyNotQuestion {
       else this.answer.replaceChildren(el('p', { class: 'note' }, 'No rule makes this class.'));
     } catch (fault) {
       if (asked !== this.asked) return;
-      this.answer.replaceChildren(el('p', { class: 'note fault' }, fault instanceof Error ? fault.message : String(fault)));
+      this.answer.replaceChildren(faultNote(fault));
     }
   }
 

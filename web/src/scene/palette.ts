@@ -15,6 +15,11 @@ export function rgbOf(hex: string): Rgb {
   return [value >> 16, (value >> 8) & 255, value & 255];
 }
 
+/** As CSS writes it. */
+export function cssOf(colour: Rgb): string {
+  return `rgb(${colour.join(' ')})`;
+}
+
 /** The colours of Okabe and Ito, which stay apart without red or green cones, for the most frequent classes. */
 export const DISTINCT: Rgb[] = [
   [0, 114, 178], [230, 159, 0], [0, 158, 115], [204, 121, 167], [86, 180, 233], [213, 94, 0], [240, 228, 66],
