@@ -32,30 +32,28 @@ class Competition {
   Competition(ReasoningState& state, std::span<const Rule* const> rules) : state_(state), rules_(rules) {}
 
   void run() {
-    decide(kLikely);
-    decide(-std::numeric_limits<double>::infinity());
+    double least = kLikely;
+    while (true) {
+      std::vector<Proposal> proposals = propose();
+      std::vector<Rival> rivals = rivalsOf(proposals, least);
+      std::vector<bool> wins = chooseAmongRivals(rivals);
+      if (!anyOf(wins) && least == kLikely) {
+        least = -std::numeric_limits<double>::infinity();
+        rivals = rivalsOf(proposals, least);
+        wins = chooseAmongRivals(rivals);
+      }
+      recordLosers(proposals, rivals, wins);
+      for (std::size_t i = 0; i < proposals.size(); ++i)
+        if (wins[i]) accept(proposals[i]);
+      if (!anyOf(wins)) break;
+    }
     for (const std::vector<FragmentIndex>& group : unknown_)
       for (FragmentIndex fragment : group)
         if (state_.fragments[fragment].owner == kFree) state_.fragments.setOwner(fragment, kUnknown);
   }
 
  private:
-  /// Rounds, until no candidate with at least these log-odds wins.
-  void decide(double least) {
-    while (true) {
-      std::vector<Proposal> proposals = propose();
-      const std::vector<Rival> rivals = rivalsOf(proposals, least);
-      const std::vector<bool> wins = chooseAmongRivals(rivals);
-      recordLosers(proposals, rivals, wins);
-      bool any = false;
-      for (std::size_t i = 0; i < proposals.size(); ++i) {
-        if (!wins[i]) continue;
-        accept(proposals[i]);
-        any = true;
-      }
-      if (!any) break;
-    }
-  }
+  static bool anyOf(const std::vector<bool>& wins) { return std::find(wins.begin(), wins.end(), true) != wins.end(); }
 
   std::vector<Proposal> propose() {
     std::vector<Proposal> proposals;
