@@ -4,7 +4,7 @@
 # of all others, applies the rules to the target's maps, and evaluates. bench/accuracy_tables.py OUT makes the tables.
 # Usage: bench/fit_left_out.sh CLUXEL DATA MAPS RULES OUT
 #   MAPS is a folder that bench/accuracy.sh filled (parts halves, sydney, nuscenes, kitti); its maps are changed.
-#   RULES is the rule file before the fit, with the lines of evidence at 0.
+#   RULES is the rule file before the fit: what bench/unfitted_rules.py writes.
 set -euo pipefail
 [ $# -eq 5 ] || { sed -n '5,7s/^# //p' "$0" >&2; exit 2; }
 program=$1 data=$2 maps=$3 rules=$4 out=$5

@@ -131,5 +131,61 @@ TEST(Evidence, LeavesWhatIsMoreLikelyNothing) {
   EXPECT_TRUE(reason(built.scene, strict).objects.empty());
 }
 
+TEST(Evidence, GainsNothingByTheNumberOfPieces) {
+  const std::string rules = R"(
+  - id: sign/any
+    class: clx:StreetSign
+    seed: { label: column, as: pole }
+    group: { near: 1 m }
+    tree:
+      test: { attribute: height, op: ">=", value: 1 m }
+      yes: { accept: { part: clx:SignPole, confidence: 0.2 } }
+      no: { reject: low }
+  - id: lamp/never
+    class: clx:StreetLamp
+    seed: { label: scatter }
+    tree:
+      test: { attribute: height, op: ">=", value: 90 m }
+      yes: { accept: { confidence: 0.3 } }
+      no: { reject: low }
+)";
+  BoxScene scene;
+  for (const double z : {0.5, 1.8, 3.1})
+    scene.boxes.push_back(box("p" + std::to_string(static_cast<int>(z)), kColumn, {0, 0, z}, {0.1, 0.1, 1}));
+  const BuiltBoxScene built = sceneOfBoxes(scene);
+  RuleSet set = rulesOf("[[clx:StreetSign, clx:StreetLamp]]", rules);
+  set.nothing.fill(-1);  // a chance of 0.27
+  EXPECT_TRUE(reason(built.scene, set).objects.empty()) << "three pieces are no likelier a sign than one";
+  set.nothing.fill(-1.5);
+  EXPECT_EQ(reason(built.scene, set).objects.size(), 1U);
+}
+
+TEST(Evidence, DecidesAboutWhatIsLikelyFirst) {
+  const std::string rules = R"(
+  - id: bush/any
+    class: clx:Bush
+    seed: { label: scatter, as: leaves }
+    group: { near: 1 m }
+    tree:
+      test: { attribute: height, op: ">=", value: 0.1 m }
+      yes: { accept: { confidence: 0.25 } }
+      no: { reject: low }
+  - id: vehicle/high
+    class: clx:Vehicle
+    seed: { label: scatter, as: body }
+    tree:
+      test: { attribute: height, op: ">=", value: 1.2 m }
+      yes: { accept: { confidence: 0.6 } }
+      no: { reject: low }
+)";
+  BoxScene scene;
+  scene.boxes = {box("high", kScatter, {0, 0, 0.75}, {2, 1, 1.5}), box("low", kScatter, {2, 0, 0.4}, {1, 1, 0.8})};
+  const BuiltBoxScene built = sceneOfBoxes(scene);
+  RuleSet set = rulesOf("[[clx:Bush, clx:Vehicle]]", rules);
+  set.nothing.fill(-2);
+  EXPECT_THAT(inWords(built, reason(built.scene, set)),
+              ::testing::ElementsAre("Bush{Bush: low}", "Vehicle{Vehicle: high}"));
+}
+
 }  // namespace
 }  // namespace cluxel::testing

@@ -86,6 +86,18 @@ class BruteForce {
     return best;
   }
 
+  /// The share of the cluxels' points whose fragment has one of the labels.
+  double labelShare(const Condition& condition) const {
+    double labelled = 0, all = 0;
+    for (std::uint32_t cluxel : state_.fragments.cluxelsOf(bindings_.at(condition.of))) {
+      const PrimitiveLabel label = state_.fragments.labelOf(state_.fragments.fragmentOf(cluxel));
+      const bool counts = std::find(condition.labels.begin(), condition.labels.end(), label) != condition.labels.end();
+      all += state_.scene.cluxels.point_count[cluxel];
+      labelled += counts ? state_.scene.cluxels.point_count[cluxel] : 0;
+    }
+    return labelled / all;
+  }
+
  private:
   bool consistsOf(const Candidate& candidate, PrimitiveIndex primitive) const {
     return std::any_of(candidate.fragments.begin(), candidate.fragments.end(),
@@ -212,6 +224,11 @@ class LinesOfACandidate {
     if (condition.kind == Kind::Label) {
       ++counts_.labels;
       const auto& fragments = verdict_.bindings.at(condition.of).fragments;
+      if (condition.value) {
+        const double share = brute_.labelShare(condition);
+        expectTold(condition, share, told);
+        return compare(condition, share, condition.value->value);
+      }
       return std::all_of(fragments.begin(), fragments.end(), [&](FragmentIndex fragment) {
         return std::find(condition.labels.begin(), condition.labels.end(), state_.fragments.labelOf(fragment)) !=
                condition.labels.end();

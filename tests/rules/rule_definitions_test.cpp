@@ -138,6 +138,9 @@ TEST(ConditionText, IsReadAsTheMappingThatItIsShortFor) {
       {"touches_ground within 0.2 m", "{ relation: touches_ground, within: 0.2 m }"},
       {"is column or scatter", "{ label_in: [column, scatter] }"},
       {"crown is scatter", "{ of: crown, label: scatter }"},
+      {"vertical_plane or column share of crown <= 0.6",
+       "{ of: crown, label_in: [vertical_plane, column], op: \"<=\", value: 0.6 }"},
+      {"column share > 50 %", "{ label: column, op: \">\", value: 50 % }"},
       {"not height > 1 m", "{ not: { attribute: height, op: \">\", value: 1 m } }"},
       {"normal_tilt <= 30 deg", "{ attribute: normal_tilt, op: \"<=\", value: 30 deg }"}};
   for (const auto& [text, mapping] : pairs) EXPECT_EQ(describe(readOne(text)), describe(readOne(mapping))) << text;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "base/parallel.hpp"
@@ -17,6 +18,9 @@ namespace cluxel::rules {
 
 namespace {
 
+/// A chance of one in three: what is likelier than that is decided first.
+constexpr double kLikely = -0.693147;
+
 struct Proposal {
   const Rule* rule = nullptr;
   Verdict verdict;
@@ -28,18 +32,20 @@ class Competition {
   Competition(ReasoningState& state, std::span<const Rule* const> rules) : state_(state), rules_(rules) {}
 
   void run() {
+    double least = kLikely;
     while (true) {
       std::vector<Proposal> proposals = propose();
-      const std::vector<Rival> rivals = rivalsOf(proposals);
-      const std::vector<bool> wins = chooseAmongRivals(rivals);
-      recordLosers(proposals, rivals, wins);
-      bool any = false;
-      for (std::size_t i = 0; i < proposals.size(); ++i) {
-        if (!wins[i]) continue;
-        accept(proposals[i]);
-        any = true;
+      std::vector<Rival> rivals = rivalsOf(proposals, least);
+      std::vector<bool> wins = chooseAmongRivals(rivals);
+      if (!anyOf(wins) && least == kLikely) {
+        least = -std::numeric_limits<double>::infinity();
+        rivals = rivalsOf(proposals, least);
+        wins = chooseAmongRivals(rivals);
       }
-      if (!any) break;
+      recordLosers(proposals, rivals, wins);
+      for (std::size_t i = 0; i < proposals.size(); ++i)
+        if (wins[i]) accept(proposals[i]);
+      if (!anyOf(wins)) break;
     }
     for (const std::vector<FragmentIndex>& group : unknown_)
       for (FragmentIndex fragment : group)
@@ -47,6 +53,8 @@ class Competition {
   }
 
  private:
+  static bool anyOf(const std::vector<bool>& wins) { return std::find(wins.begin(), wins.end(), true) != wins.end(); }
+
   std::vector<Proposal> propose() {
     std::vector<Proposal> proposals;
     for (const Rule* rule : rules_) {
@@ -72,14 +80,16 @@ class Competition {
     return proposals;
   }
 
-  std::vector<Rival> rivalsOf(const std::vector<Proposal>& proposals) const {
+  std::vector<Rival> rivalsOf(const std::vector<Proposal>& proposals, double least) const {
     std::vector<Rival> rivals;
     for (const Proposal& proposal : proposals) {
       const AcceptLeaf& accept = *proposal.verdict.accept;
       const Bindings& bindings = proposal.verdict.bindings;
       Rival rival;
-      const double score = proposal.verdict.decision.log_odds - logOddsOfNothing(state_, accept, bindings);
-      rival.score = std::llround(score * 1e6);
+      const LogOddsOfNothing nothing = logOddsOfNothing(state_, accept, bindings);
+      const double log_odds = proposal.verdict.decision.log_odds;
+      const bool may_win = log_odds >= least && log_odds > nothing.as_one;
+      rival.score = may_win ? std::llround((log_odds - nothing.sum) * 1e6) : 0;
       rival.share_class = static_cast<std::uint32_t>(
           std::find(state_.rules.order.begin(), state_.rules.order.end(), proposal.rule->class_iri) -
           state_.rules.order.begin());

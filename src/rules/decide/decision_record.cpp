@@ -98,15 +98,18 @@ Verdict judge(const ReasoningState& state, const Rule& rule, const std::vector<F
   return Judging(state, rule).about(group);
 }
 
-double logOddsOfNothing(const ReasoningState& state, const AcceptLeaf& accept, const Bindings& bindings) {
-  double sum = 0;
+LogOddsOfNothing logOddsOfNothing(const ReasoningState& state, const AcceptLeaf& accept, const Bindings& bindings) {
+  double sum = 0, weighted = 0, points = 0;
   for (const auto& [name, part_class] : accept.parts) {
     if (accept.splitting && accept.splitting->part == name) continue;
-    for (FragmentIndex fragment : bindings.at(name).fragments)
-      if (state.fragments[fragment].owner == kFree)
-        sum += state.rules.nothing[static_cast<std::size_t>(state.fragments.labelOf(fragment))];
+    for (FragmentIndex fragment : bindings.at(name).fragments) {
+      if (state.fragments[fragment].owner != kFree) continue;
+      const double of_label = state.rules.nothing[static_cast<std::size_t>(state.fragments.labelOf(fragment))];
+      const double own = state.fragments.shapeOf(fragment).points;
+      sum += of_label, weighted += own * of_label, points += own;
+    }
   }
-  return sum;
+  return {sum, points > 0 ? weighted / points : 0};
 }
 
 }  // namespace cluxel::rules

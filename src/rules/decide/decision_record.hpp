@@ -19,6 +19,10 @@ struct Verdict {
 Verdict judge(const ReasoningState& state, const Rule& rule, const std::vector<FragmentIndex>& group);
 
 /// The log-odds that the fragments which `accept` would own are no object at all.
-double logOddsOfNothing(const ReasoningState& state, const AcceptLeaf& accept, const Bindings& bindings);
+struct LogOddsOfNothing {
+  double sum = 0;     ///< each by itself
+  double as_one = 0;  ///< all together: their mean, weighted by points
+};
+LogOddsOfNothing logOddsOfNothing(const ReasoningState& state, const AcceptLeaf& accept, const Bindings& bindings);
 
 }  // namespace cluxel::rules

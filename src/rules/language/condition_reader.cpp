@@ -22,22 +22,15 @@ class ConditionReader {
   std::optional<Condition> read() {
     if (!checkKeys(node_, "condition", faults_)) return std::nullopt;
     const std::size_t faults_before = faults_.errorCount();
-    condition_.at = node_.at;
-    condition_.of = scope_.subject;
-    if (const YamlNode* of = node_.find("of"))
-      if (const auto name = readBoundName(*of, scope_, faults_)) condition_.of = *name;
+    readSubject();
     readKind();
-    if (faults_.errorCount() != faults_before) return std::nullopt;
-    return condition_;
+    return faults_.errorCount() == faults_before ? std::optional(condition_) : std::nullopt;
   }
 
   /// What is measured, without a comparison.
   std::optional<Condition> readMeasureOnly() {
     const std::size_t faults_before = faults_.errorCount();
-    condition_.at = node_.at;
-    condition_.of = scope_.subject;
-    if (const YamlNode* of = node_.find("of"))
-      if (const auto name = readBoundName(*of, scope_, faults_)) condition_.of = *name;
+    readSubject();
     for (const MeasureWord& measure : kMeasureWords)
       if (const YamlNode* target = node_.find(measure.key)) {
         condition_.kind = Condition::Kind::Pair;
@@ -45,11 +38,17 @@ class ConditionReader {
         condition_.target = readTarget(*target);
       }
     if (const YamlNode* attribute = node_.find("attribute")) readMeasuredAttribute(*attribute);
-    if (faults_.errorCount() != faults_before) return std::nullopt;
-    return condition_;
+    return faults_.errorCount() == faults_before ? std::optional(condition_) : std::nullopt;
   }
 
  private:
+  void readSubject() {
+    condition_.at = node_.at;
+    condition_.of = scope_.subject;
+    if (const YamlNode* of = node_.find("of"))
+      if (const auto name = readBoundName(*of, scope_, faults_)) condition_.of = *name;
+  }
+
   void readMeasuredAttribute(const YamlNode& value) {
     condition_.kind = Condition::Kind::Attribute;
     const auto attribute = readAttributeName(value);
@@ -297,9 +296,10 @@ class ConditionReader {
   }
 
   void readLabelTest() {
-    onlyWith({});
+    onlyWith({"op", "value", "min", "max"});
     condition_.kind = Condition::Kind::Label;
     condition_.labels = readLabels(node_, reading_);
+    if (node_.find("op") != nullptr) readComparison(perception::Dimension::Ratio);
   }
   void readClassTest(const YamlNode& value) {
     onlyWith({});

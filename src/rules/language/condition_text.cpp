@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A grammar of words: [not] MEASURE [of NAME] [from A to B] OPERATOR VALUE, relations, and labels. The result is the
-// mapping that people could have written, so that its checks and messages are those of all conditions.
+// A grammar of words: [not] MEASURE [of NAME] [from A to B] OPERATOR VALUE, relations, labels and their shares. The
+// result is the mapping that people could have written, so that its checks and messages are those of all conditions.
 #include "rules/language/condition_text.hpp"
 
 #include <algorithm>
@@ -60,6 +60,8 @@ class ConditionTextReader {
       addKey(map, key, readHere());
     } else if (isWord("is") || (!isOver(1) && words_[at_ + 1].text == "is")) {
       readLabels(map);
+    } else if (isLabelShare()) {
+      readLabelShare(map);
     } else if (isRelation(0) || isRelation(1)) {
       readRelation(map);
     } else if (isPair()) {
@@ -73,6 +75,11 @@ class ConditionTextReader {
   bool isOver(std::size_t ahead) const { return at_ + ahead >= words_.size(); }
   bool isWord(std::string_view word) const { return !isOver(0) && words_[at_].text == word; }
   bool isPair() const { return !isOver(0) && measureOf(words_[at_].text + "_to") != nullptr; }
+  /// `column or scatter share of NAME`.
+  bool isLabelShare() const {
+    return !isOver(1) && scan::primitiveLabelOf(words_[at_].text).has_value() &&
+           (words_[at_ + 1].text == "share" || words_[at_ + 1].text == "or");
+  }
   bool isRelation(std::size_t ahead) const {
     return !isOver(ahead) && perception::relationKindOf(words_[at_ + ahead].text).has_value();
   }
@@ -147,11 +154,23 @@ class ConditionTextReader {
     if (!isWord("is")) add(map, "of", take("a name"));
     expect("is");
     skip("labelled");
+    add(map, "label_in", takeLabels());
+  }
+
+  YamlNode takeLabels() {
     YamlNode labels = mapHere();
     labels.kind = YamlNode::Kind::Sequence;
     do labels.items.push_back(take("a label"));
     while (skip("or"));
+    return labels;
+  }
+
+  void readLabelShare(YamlNode& map) {
+    YamlNode labels = takeLabels();
+    expect("share");
+    readOf(map);
     add(map, "label_in", std::move(labels));
+    readComparison(map, false);
   }
 
   void readRelation(YamlNode& map) {

@@ -109,7 +109,7 @@ class Knowledge {
 
   std::optional<std::string> learnLabel(const Condition& condition, bool truth) {
     const auto known = labels_.find(condition.of);
-    if (known == labels_.end()) return std::nullopt;
+    if (known == labels_.end() || condition.value) return std::nullopt;  // a share says nothing about each label
     unsigned mask = 0;
     for (scan::PrimitiveLabel label : condition.labels) mask |= 1U << static_cast<unsigned>(label);
     known->second &= truth ? mask : ~mask;

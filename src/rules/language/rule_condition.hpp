@@ -65,7 +65,7 @@ struct Condition {
   std::optional<perception::Attribute> ratio_attribute;
   std::optional<SliceSpec> ratio_slice;
 
-  std::vector<scan::PrimitiveLabel> labels;  ///< of Label
+  std::vector<scan::PrimitiveLabel> labels;  ///< of Label; with `value`, the share of points that have one of them
   std::string class_iri;                     ///< of Class: the subject belongs to an object of that class
   std::string query;                         ///< of Ask: SPARQL with the rule set's prefixes
   std::vector<std::string> query_names;      ///< bound names that the query mentions as variables

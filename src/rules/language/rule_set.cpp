@@ -157,6 +157,8 @@ std::string describe(const Condition& condition) {
              (condition.target ? " " + describeTarget(*condition.target) : "") +
              (condition.value ? " within " + condition.value->text : "");
     case Kind::Label:
+      if (condition.value)
+        return labelList(condition.labels) + " share of " + condition.of + " " + describeThreshold(condition);
       return condition.of + " is labelled " + labelList(condition.labels);
     case Kind::Class:
       return condition.of + " belongs to " + withArticle(localName(condition.class_iri));

@@ -109,6 +109,7 @@ bool ConditionEvaluator::holdsElementary(const Condition& condition, DecisionSte
     case Kind::Ask:
       return holdsAsk(condition);
     case Kind::Label:
+      if (condition.value) return holdsLabelShare(condition, step);
       return std::all_of(subject.fragments.begin(), subject.fragments.end(), [&](FragmentIndex fragment) {
         return std::find(condition.labels.begin(), condition.labels.end(), state_.fragments.labelOf(fragment)) !=
                condition.labels.end();
@@ -133,6 +134,19 @@ bool ConditionEvaluator::holdsAttribute(const Condition& condition, DecisionStep
   if (!value || !threshold) return false;  // the slice is empty
   step.threshold = nearerThreshold(condition, *value, *threshold);
   return compare(condition, *value, *threshold);
+}
+
+bool ConditionEvaluator::holdsLabelShare(const Condition& condition, DecisionStep& step) {
+  double labelled = 0, all = 0;
+  for (FragmentIndex fragment : bindings_.at(condition.of).fragments) {
+    const double points = state_.fragments.shapeOf(fragment).points;
+    const auto& labels = condition.labels;
+    all += points;
+    if (std::find(labels.begin(), labels.end(), state_.fragments.labelOf(fragment)) != labels.end()) labelled += points;
+  }
+  step.measured = all > 0 ? labelled / all : 0;
+  step.threshold = nearerThreshold(condition, *step.measured, condition.value->value);
+  return compare(condition, *step.measured, condition.value->value);
 }
 
 std::optional<double> ConditionEvaluator::measured(const std::string& of, const std::optional<SliceSpec>& slice,

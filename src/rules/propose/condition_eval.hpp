@@ -34,6 +34,7 @@ class ConditionEvaluator {
   /// Absent when the candidate has no cluxel in the slice.
   std::optional<double> measured(const std::string& of, const std::optional<SliceSpec>& slice,
                                  perception::Attribute attribute) const;
+  bool holdsLabelShare(const Condition& condition, DecisionStep& step);
   bool holdsPair(const Condition& condition, DecisionStep& step);
   bool holdsRelation(const Condition& condition, DecisionStep& step);
   bool holdsAsk(const Condition& condition);
