@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
+#include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "rules/decide/decision_record.hpp"
 #include "rules/decide/rivals.hpp"
@@ -32,16 +32,10 @@ class Competition {
   Competition(ReasoningState& state, std::span<const Rule* const> rules) : state_(state), rules_(rules) {}
 
   void run() {
-    double least = kLikely;
     while (true) {
       std::vector<Proposal> proposals = propose();
-      std::vector<Rival> rivals = rivalsOf(proposals, least);
-      std::vector<bool> wins = chooseAmongRivals(rivals);
-      if (!anyOf(wins) && least == kLikely) {
-        least = -std::numeric_limits<double>::infinity();
-        rivals = rivalsOf(proposals, least);
-        wins = chooseAmongRivals(rivals);
-      }
+      const std::vector<Rival> rivals = rivalsOf(proposals);
+      const std::vector<bool> wins = chooseAmongRivals(rivals);
       recordLosers(proposals, rivals, wins);
       for (std::size_t i = 0; i < proposals.size(); ++i)
         if (wins[i]) accept(proposals[i]);
@@ -80,16 +74,17 @@ class Competition {
     return proposals;
   }
 
-  std::vector<Rival> rivalsOf(const std::vector<Proposal>& proposals, double least) const {
+  std::vector<Rival> rivalsOf(const std::vector<Proposal>& proposals) const {
     std::vector<Rival> rivals;
+    std::vector<char> is_likely;
     for (const Proposal& proposal : proposals) {
       const AcceptLeaf& accept = *proposal.verdict.accept;
       const Bindings& bindings = proposal.verdict.bindings;
       Rival rival;
       const LogOddsOfNothing nothing = logOddsOfNothing(state_, accept, bindings);
       const double log_odds = proposal.verdict.decision.log_odds;
-      const bool may_win = log_odds >= least && log_odds > nothing.as_one;
-      rival.score = may_win ? std::llround((log_odds - nothing.sum) * 1e6) : 0;
+      rival.score = log_odds > nothing.as_one ? std::llround((log_odds - nothing.sum) * 1e6) : 0;
+      is_likely.push_back(rival.score > 0 && log_odds >= kLikely ? 1 : 0);
       rival.share_class = static_cast<std::uint32_t>(
           std::find(state_.rules.order.begin(), state_.rules.order.end(), proposal.rule->class_iri) -
           state_.rules.order.begin());
@@ -105,7 +100,21 @@ class Competition {
       }
       rivals.push_back(std::move(rival));
     }
+    holdBackUnlikely(rivals, is_likely);
     return rivals;
+  }
+
+  /// In a group of rivals with a likely one, the others cannot win in this round.
+  static void holdBackUnlikely(std::vector<Rival>& rivals, const std::vector<char>& is_likely) {
+    const auto conflicts = conflictsOf(rivals);
+    DisjointSets groups(rivals.size());
+    for (std::uint32_t i = 0; i < rivals.size(); ++i)
+      for (const std::uint32_t other : conflicts[i]) groups.join(i, other);
+    std::vector<char> has_likely(rivals.size(), 0);
+    for (std::uint32_t i = 0; i < rivals.size(); ++i)
+      if (is_likely[i] != 0) has_likely[groups.find(i)] = 1;
+    for (std::uint32_t i = 0; i < rivals.size(); ++i)
+      if (is_likely[i] == 0 && has_likely[groups.find(i)] != 0) rivals[i].score = 0;
   }
 
   /// A candidate that lost says to whom. Only its first defeat is recorded.
