@@ -119,9 +119,9 @@ TEST_F(Program, AnUnknownCommandIsNamedWithTheNearestAndTheList) {
   expectError(run("qeury x"), 2, "there is no command 'qeury'; did you mean 'query'?");
   expectError(
       run("qeury x"), 2,
-      "info, simulate, register, build, extend, retract, repose, merge, watch, query, update, load, dump, ask, tasks, "
-      "explain, rules, "
-      "train, evaluate, export, route, reach, costmap, search, inventory, changes, serve, view, compact, doctor");
+      "info, simulate, register, build, extend, retract, repose, merge, watch, query, state, update, load, dump, ask, "
+      "tasks, explain, rules, train, evaluate, export, route, reach, costmap, search, inventory, changes, serve, view, "
+      "compact, doctor");
   expectError(run("rules tset"), 2, "rules: there is no command 'tset'; did you mean 'test'?");
   expectError(run("rules"), 2, "rules: a command is missing: check, test, apply");
   expectError(run(""), 2, "a command is missing: info");

@@ -119,7 +119,7 @@ TEST(LabelModel, RefusesFaultyTextNamingTheFile) {
                                         "[]",
                                         "{}",
                                         text.substr(0, text.size() / 2),
-                                        replaced(text, "\"version\":1", "\"version\":99"),
+                                        replaced(text, "\"version\":2", "\"version\":99"),
                                         replaced(text, "cluxel label model", "something else"),
                                         replaced(text, "\"slope\":", "\"slop\":"),
                                         replaced(text, "\"columns\":[", "\"columns\":[\"x\","),
