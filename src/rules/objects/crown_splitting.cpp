@@ -204,7 +204,8 @@ class GroupSearch {
 
   /// Jumps over gaps to the vertices of a ring. Those that have a shorter path are skipped.
   void jumpFrom(const Departure& departure, std::size_t ring) {
-    const auto& [ready_m, cluxel, way] = departure;
+    const std::uint32_t cluxel = departure.cluxel;
+    const Way& way = departure.way;
     const double jump = parts_.sources[way.source].jump_m, reach = reachOf(cluxel, way.source);
     double outer = reach + grid_.widestHalf_m();
     if (ring + 1 < kRings_m.size()) outer = std::min(outer, kRings_m[ring + 1]);
