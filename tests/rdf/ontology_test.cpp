@@ -302,18 +302,19 @@ TEST(Closure, TellsItsMemoryWhileItRunsAndEndsWhenThatIsRefused) {
   for (int i = 0; i < 200; ++i) chain += ":t" + std::to_string(i) + " clx:near :t" + std::to_string(i + 1) + " .\n";
   const Inference inference(chain);
   std::size_t calls = 0, most = 0;
-  inference.closure({50'000, 50'000'000, [&](std::size_t bytes) {
-                       ++calls;
-                       EXPECT_GE(bytes, most) << "it only grows";
-                       most = bytes;
-                     }});
+  const auto count = [&](std::size_t bytes) {
+    ++calls;
+    EXPECT_GE(bytes, most) << "it only grows";
+    most = bytes;
+  };
+  inference.closure({50'000, 50'000'000, {count}});
   EXPECT_GT(calls, 5U);
   EXPECT_GT(most, 20'000U * sizeof(QuadIds)) << "it holds some 20,000 facts";
   struct Refused {};
   const auto refuse = [](std::size_t bytes) {
     if (bytes > 1'000'000) throw Refused();
   };
-  EXPECT_THROW(inference.closure({50'000, 50'000'000, refuse}), Refused);
+  EXPECT_THROW(inference.closure({50'000, 50'000'000, {refuse}}), Refused);
 }
 
 TEST(Closure, EndsAtItsLimitsWithTheProperty) {

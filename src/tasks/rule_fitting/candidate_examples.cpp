@@ -42,11 +42,7 @@ class ExampleCollector {
  public:
   ExampleCollector(const mapping::MapReader& map, const TruthSource& truth, const rules::RuleSet& rules,
                    bool attributes)
-      : map_(map),
-        rules_(rules),
-        classes_(truth.classes()),
-        truth_(truthOfCluxels(map, truth)),
-        attributes_(attributes) {}
+      : rules_(rules), classes_(truth.classes()), truth_(truthOfCluxels(map, truth)), attributes_(attributes) {}
 
   void see(const rules::ReasoningState& state, const rules::Rule& rule, const rules::Verdict& verdict) {
     const auto cluxels = cluxelsOf(state, *verdict.accept, verdict.bindings);
@@ -155,7 +151,6 @@ class ExampleCollector {
       example.attributes.push_back({name + "." + std::string(info.name), shape[info.attribute]});
   }
 
-  const mapping::MapReader& map_;
   const rules::RuleSet& rules_;
   TruthClasses classes_;
   CluxelTruth truth_;
