@@ -188,6 +188,8 @@ INSTANTIATE_TEST_SUITE_P(
         FaultCase{"AlwaysPassingTest", "value: 20 m2", "value: -1 m2", 14, 11, "nothing can get here", "line 12"},
         FaultCase{"MergeWithoutARelation", "confidence: 0.98", "merge_into: related, confidence: 0.98", 13, 12,
                   "no relation to an object", ""},
+        FaultCase{"MergeIntoSomethingElse", "confidence: 0.98", "merge_into: nearest, confidence: 0.98", 13, 36,
+                  "'merge_into' takes 'related' or 'class'", ""},
         FaultCase{"AbsorbWithoutEvidence", "confidence: 0.9 }",
                   "confidence: 0.9, absorb: { from: { label: scatter }, into: trunk, when: [ { gap_to: top, op: \">\", "
                   "value: 1 m } ] } }",

@@ -2,6 +2,8 @@
 // Decides about the seeds of a rule by decreasing size, and retries rejected ones after others were accepted.
 #include "rules/decide/rule_run.hpp"
 
+#include <algorithm>
+
 #include "rules/decide/decision_record.hpp"
 #include "rules/decide/rule_reach.hpp"
 #include "rules/objects/object_making.hpp"
@@ -98,11 +100,21 @@ class RuleRun {
     return false;
   }
 
+  std::optional<OwnerIndex> objectToJoin(const Verdict& verdict) const {
+    if (verdict.accept->merge_into == MergeInto::Related) return verdict.related;
+    if (verdict.accept->merge_into == MergeInto::Nothing) return std::nullopt;
+    const auto first = std::find_if(state_.objects.begin(), state_.objects.end(), [&](const ObjectInMaking& object) {
+      return object.rule->class_iri == rule_.class_iri;
+    });
+    if (first == state_.objects.end()) return std::nullopt;
+    return static_cast<OwnerIndex>(first - state_.objects.begin());
+  }
+
   void accept(Verdict& verdict, const std::vector<FragmentIndex>& group) {
     state_.decisions.push_back(std::move(verdict.decision));
     changes_.add(boxOf(group));
-    if (verdict.accept->merge_into_related && verdict.related) {
-      joinRelated(state_, rule_, *verdict.related, verdict.accept->parts.front(), group);
+    if (const std::optional<OwnerIndex> object = objectToJoin(verdict)) {
+      joinRelated(state_, rule_, *object, verdict.accept->parts.front(), group);
     } else {
       makeObject(state_, rule_, *verdict.accept, std::move(verdict.bindings));
     }

@@ -22,14 +22,20 @@ class AcceptReader {
     if (const YamlNode* evidence = node_.find("evidence")) leaf_.evidence = readEvidence(*evidence, scope_, reading_);
     if (const YamlNode* absorb = node_.find("absorb")) readAbsorbs(*absorb);
     if (const YamlNode* split = node_.find("split")) readSplit(*split);
-    if (const YamlNode* merge = node_.find("merge_into")) {
-      leaf_.merge_into_related = merge->text == "related";
-      if (!leaf_.merge_into_related) faults_.error(merge->at, "'merge_into' takes only 'related'");
-    }
+    if (const YamlNode* merge = node_.find("merge_into")) readMerge(*merge);
     return leaf_;
   }
 
  private:
+  void readMerge(const YamlNode& merge) {
+    if (merge.text == "related")
+      leaf_.merge_into = MergeInto::Related;
+    else if (merge.text == "class")
+      leaf_.merge_into = MergeInto::Class;
+    else
+      faults_.error(merge.at, "'merge_into' takes 'related' or 'class'");
+  }
+
   void readParts() {
     const YamlNode* parts = node_.find("parts");
     const YamlNode* part = node_.find("part");

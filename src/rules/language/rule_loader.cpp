@@ -118,7 +118,7 @@ void checkMerges(const Rule& rule, NodeIndex index, bool related, FaultList& fau
     if (find->found != 0) checkMerges(rule, find->found, related, faults);
     if (find->missing != 0) checkMerges(rule, find->missing, related, faults);
   } else if (const auto* accept = std::get_if<AcceptLeaf>(&node.what);
-             accept != nullptr && accept->merge_into_related) {
+             accept != nullptr && accept->merge_into == MergeInto::Related) {
     if (!related)
       faults.error(node.at, "'merge_into: related', but no relation to an object was tested on the way",
                    "test: { relation: near, with: { object: clx:Building } }");

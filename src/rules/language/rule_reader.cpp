@@ -77,7 +77,7 @@ std::vector<std::string> namesIn(const Rule& rule) {
 bool joinsObjects(const Rule& rule) {
   return std::any_of(rule.nodes.begin(), rule.nodes.end(), [](const TreeNode& node) {
     const auto* accept = std::get_if<AcceptLeaf>(&node.what);
-    return accept != nullptr && accept->merge_into_related;
+    return accept != nullptr && accept->merge_into != MergeInto::Nothing;
   });
 }
 

@@ -118,6 +118,12 @@ struct SplittingSpec {
   std::optional<GatherSpec> gather;  ///< then also assigns free fragments of the same labels
 };
 
+enum class MergeInto : std::uint8_t {
+  Nothing,  ///< makes an object
+  Related,  ///< joins the object found by the last relation test that passed
+  Class,    ///< joins the one object of the rule's class; the first candidate makes it
+};
+
 struct AcceptLeaf {
   std::vector<std::pair<std::string, std::string>> parts;  ///< bound name -> part class IRI, in the order written
   Confidence confidence;                                   ///< before the evidence
@@ -125,7 +131,7 @@ struct AcceptLeaf {
   std::vector<EvidenceLine> evidence;  ///< beside the rule's own
   std::vector<AbsorbSpec> absorb;
   std::optional<SplittingSpec> splitting;
-  bool merge_into_related = false;  ///< joins the object found by the last relation test that passed
+  MergeInto merge_into = MergeInto::Nothing;
 };
 
 struct RejectLeaf {
