@@ -299,7 +299,9 @@ class ConditionReader {
     onlyWith({"op", "value", "min", "max"});
     condition_.kind = Condition::Kind::Label;
     condition_.labels = readLabels(node_, reading_);
-    if (node_.find("op") != nullptr) readComparison(perception::Dimension::Ratio);
+    const auto is_given = [this](const char* key) { return node_.find(key) != nullptr; };
+    if (is_given("op") || is_given("value") || is_given("min") || is_given("max"))
+      readComparison(perception::Dimension::Ratio);
   }
   void readClassTest(const YamlNode& value) {
     onlyWith({});
