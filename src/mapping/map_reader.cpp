@@ -49,9 +49,19 @@ struct MapReader::Impl {
     return *objects;
   }
 
+  /// The map's model was fit for the program that built it: a fault of it is no fault of its user.
+  perception::LabelModel storedModel() {
+    const NamedText& stored = readInputs().model;
+    try {
+      return perception::parseModel(stored.text, stored.name);
+    } catch (const InputError&) {
+      refuseOtherVersion(environment->file());
+    }
+  }
+
   const TileStages& readStages() {
     if (stages) return *stages;
-    model = perception::parseModel(readInputs().model.text, inputs->model.name);
+    model = storedModel();
     stages.emplace(*model, inputs->params);
     stages->loadAll(transaction);
     std::uint32_t next = 0;

@@ -135,11 +135,14 @@ MapInputs requireFinishedInputs(const rdf::ReadTransaction& transaction, const s
   if (!requireFinished(file, transaction))
     throw Error(ErrorKind::InvalidArgument, file.string() + ": holds no map that a build has made; build one first");
   MapInputs inputs = storedInputs(transaction);
-  if (inputs.hash().hex() != storedState(transaction)->inputs_hash)
-    throw Error(
-        ErrorKind::InvalidArgument,
-        file.string() + ": was made by another version of Cluxel, whose stages give other results; build it anew");
+  if (inputs.hash().hex() != storedState(transaction)->inputs_hash) refuseOtherVersion(file);
   return inputs;
+}
+
+void refuseOtherVersion(const std::filesystem::path& file) {
+  throw Error(
+      ErrorKind::InvalidArgument,
+      file.string() + ": was made by another version of Cluxel, whose stages give other results; build it anew");
 }
 
 }  // namespace cluxel::mapping

@@ -29,5 +29,7 @@ MapInputs storedInputs(const rdf::ReadTransaction& transaction);
 /// The inputs of a map that can be changed. Throws Error (InvalidArgument), naming `file`, for a store that no build
 /// has made, an unfinished map, and one of another version of the stages.
 MapInputs requireFinishedInputs(const rdf::ReadTransaction& transaction, const std::filesystem::path& file);
+/// Throws Error (InvalidArgument): the map's stored outputs do not fit this program.
+[[noreturn]] void refuseOtherVersion(const std::filesystem::path& file);
 
 }  // namespace cluxel::mapping

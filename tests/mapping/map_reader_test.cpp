@@ -10,6 +10,7 @@
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/facts/fact_sink.hpp"
+#include "mapping/map_state.hpp"
 #include "mapping/small_campus.hpp"
 #include "perception/crf/label_model.hpp"
 #include "perception/pipeline.hpp"
@@ -212,6 +213,30 @@ TEST(MapReaderErrors, RefuseWhatIsNoMapNamingTheFile) {
   }
   EXPECT_THROW(MapReader(folder.path() / "absent.clx"), Error);
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "absent.clx")) << "reading makes no file";
+}
+
+TEST_F(MapReading, OfAnEarlierModelSaysToBuildAnew) {
+  const auto earlier = folder->path() / "earlier.clx";
+  std::filesystem::copy_file(folder->path() / "map.clx", earlier);
+  {
+    const auto environment = Environment::open(earlier, OpenMode::ReadWrite);
+    MapInputs inputs = storedInputs(environment->read());
+    const std::string version = "\"version\":" + std::to_string(kModelVersion);
+    inputs.model.text.replace(inputs.model.text.find(version), version.size(), "\"version\":1");
+    WriteTransaction transaction = environment->write();
+    storeInputs(transaction, inputs);
+    transaction.commit();
+  }
+  const MapReader reader(earlier);
+  EXPECT_TRUE(reader.summary().is_finished) << "facts need no model";
+  try {
+    reader.scene();
+    FAIL() << "the model was read";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::InvalidArgument);
+    EXPECT_NE(std::string(error.what()).find("earlier.clx: was made by another version"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("build it anew"), std::string::npos) << error.what();
+  }
 }
 
 TEST(DecimalText, IsShortAndHasAPoint) {

@@ -97,6 +97,8 @@ INSTANTIATE_TEST_SUITE_P(
         FaultCase{"UnknownKeyOfARule", "    class: clx:Ground\n", "    class: clx:Ground\n    sed: x\n", 10, 5,
                   "unknown key 'sed' in 'rule'", "'seed'"},
         FaultCase{"UnknownKeyOfACondition", "value: 20 m2", "valu: 20 m2", 12, 52, "unknown key 'valu'", "'value'"},
+        FaultCase{"ShareOfALabelWithoutAnOperator", "attribute: footprint_area, op: \">=\", value: 20 m2",
+                  "label: horizontal_plane, value: 0.5", 12, 13, "needs the key 'op'", ""},
         FaultCase{"OtherVersion", "rules/v1", "rules/v7", 1, 13, "version 'cluxel.rules/v7'", "cluxel.rules/v1"},
         FaultCase{"RepeatedKey", "      no: { reject: too small }\n",
                   "      no: { reject: too small }\n      no: { reject: a roof }\n", 15, 7, "'no' stands here twice",

@@ -36,7 +36,8 @@ Json pairsJson(const PairModel& pairs) {
 }
 
 [[noreturn]] void refuse(const std::string& file, const std::string& what) {
-  throw InputError(SourceLocation{.file = file}, what, "train the model again");
+  throw InputError(SourceLocation{.file = file}, what,
+                   "train the model again, or take one that comes with this program");
 }
 
 void require(bool holds, const char* what) {

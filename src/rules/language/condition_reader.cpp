@@ -299,14 +299,14 @@ class ConditionReader {
     onlyWith({"op", "value", "min", "max"});
     condition_.kind = Condition::Kind::Label;
     condition_.labels = readLabels(node_, reading_);
-    if (node_.find("op") != nullptr) readComparison(perception::Dimension::Ratio);
+    const auto has = [this](const char* key) { return node_.find(key) != nullptr; };
+    if (has("op") || has("value") || has("min") || has("max")) readComparison(perception::Dimension::Ratio);
   }
   void readClassTest(const YamlNode& value) {
     onlyWith({});
     condition_.kind = Condition::Kind::Class;
     condition_.class_iri = readClass(value, reading_).value_or("");
   }
-
   void readAsk(const YamlNode& value) {
     onlyWith({});
     condition_.kind = Condition::Kind::Ask;
