@@ -187,5 +187,43 @@ TEST(Evidence, DecidesAboutWhatIsLikelyFirst) {
               ::testing::ElementsAre("Bush{Bush: low}", "Vehicle{Vehicle: high}"));
 }
 
+TEST(Evidence, RecordsNoDefeatOfWhatWasOnlyHeldBack) {
+  const std::string rules = R"(
+  - id: bush/any
+    class: clx:Bush
+    seed: { label: scatter, as: leaves }
+    group: { near: 1 m }
+    tree:
+      test: { attribute: height, op: ">=", value: 0.1 m }
+      yes: { accept: { confidence: 0.25 } }
+      no: { reject: low }
+  - id: vehicle/high
+    class: clx:Vehicle
+    seed: { label: scatter, as: body }
+    tree:
+      test: { attribute: height, op: ">=", value: 1.2 m }
+      yes: { accept: { confidence: 0.6 } }
+      no: { reject: low }
+  - id: person/low
+    class: clx:Person
+    seed: { label: scatter, as: body }
+    tree:
+      test: { attribute: height, op: "<=", value: 1 m }
+      yes: { accept: { confidence: 0.3 } }
+      no: { reject: high }
+)";
+  BoxScene scene;
+  scene.boxes = {box("high", kScatter, {0, 0, 0.75}, {2, 1, 1.5}), box("low", kScatter, {2, 0, 0.4}, {1, 1, 0.8})};
+  const BuiltBoxScene built = sceneOfBoxes(scene);
+  RuleSet set = rulesOf("[[clx:Bush, clx:Vehicle, clx:Person]]", rules);
+  set.nothing.fill(-2);
+  const ReasoningResult result = reason(built.scene, set);
+  EXPECT_THAT(inWords(built, result), ::testing::ElementsAre("Person{Person: low}", "Vehicle{Vehicle: high}"));
+  // The bush competes with both; the person waits for what becomes of it, and loses to nobody.
+  for (const Decision& decision : result.decisions) {
+    EXPECT_TRUE(decision.accepted || decision.rule_id != "person/low" || decision.reason == "high") << decision.reason;
+  }
+}
+
 }  // namespace
 }  // namespace cluxel::testing

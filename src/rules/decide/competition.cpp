@@ -114,10 +114,14 @@ class Competition {
     for (std::uint32_t i = 0; i < rivals.size(); ++i)
       if (is_likely[i] != 0) has_likely[groups.find(i)] = 1;
     for (std::uint32_t i = 0; i < rivals.size(); ++i)
-      if (is_likely[i] == 0 && has_likely[groups.find(i)] != 0) rivals[i].score = 0;
+      if (is_likely[i] == 0 && has_likely[groups.find(i)] != 0) {
+        rivals[i].is_held_back = rivals[i].score > 0;
+        rivals[i].score = 0;
+      }
   }
 
-  /// A candidate that lost says to whom. Only its first defeat is recorded.
+  /// A candidate that lost says to whom. Only its first defeat is recorded. One that was held back, and that no winner
+  /// touches, has lost to nobody: it is decided in a later round.
   void recordLosers(std::vector<Proposal>& proposals, const std::vector<Rival>& rivals, const std::vector<bool>& wins) {
     const auto conflicts = conflictsOf(rivals);
     for (std::size_t i = 0; i < proposals.size(); ++i) {
@@ -125,6 +129,7 @@ class Competition {
       for (std::uint32_t other : conflicts[i])
         decision.rivals.push_back({proposals[other].rule->id, proposals[other].rule->class_iri,
                                    proposals[other].verdict.decision.log_odds, bool{wins[other]}});
+      if (rivals[i].is_held_back && !lostTo(decision)) continue;
       if (wins[i] || !lost_.emplace(proposals[i].rule, proposals[i].group).second) continue;
       Decision record = decision;
       record.accepted = false;
@@ -133,10 +138,16 @@ class Competition {
     }
   }
 
-  std::string reasonOfDefeat(const Decision& decision) const {
+  /// The rival that won; null when none did.
+  static const RivalNote* lostTo(const Decision& decision) {
     const auto winner =
         std::find_if(decision.rivals.begin(), decision.rivals.end(), [](const RivalNote& note) { return note.won; });
-    if (winner == decision.rivals.end()) return "the evidence speaks against it";
+    return winner == decision.rivals.end() ? nullptr : &*winner;
+  }
+
+  std::string reasonOfDefeat(const Decision& decision) const {
+    const RivalNote* winner = lostTo(decision);
+    if (winner == nullptr) return "the evidence speaks against it";
     return "the evidence for " + state_.rules.shorten(winner->class_iri) + " is stronger";
   }
 
