@@ -18,6 +18,7 @@ ClassCatalogue outdoorCatalogue() {
       {"Building", {"Facade", "Roof"}},
       {"Tree", {"TreeTrunk", "TreeTop"}},
       {"UtilityPole", {"PoleMast", "PoleCrossarm"}},
+      {"Wire", {}},
       {"TrafficLight", {"TrafficLightPole", "TrafficLightHead"}},
       {"StreetLamp", {"LampPole", "LampHead"}},
       {"StreetSign", {"SignPole", "SignPlate"}},

@@ -92,8 +92,8 @@ TEST(RuleDifference, OfAConfidenceNamesTheObjectAndKeepsItsClass) {
     - id: ground/patches
       tree:
         test: footprint_area >= 4 m2
-        yes: { accept: { confidence: 0.5 } }
-        no: { accept: { confidence: 0.5 } }
+        yes: { accept: { merge_into: class, confidence: 0.5 } }
+        no: { accept: { merge_into: class, confidence: 0.5 } }
 )"));
   ASSERT_FALSE(difference.isEmpty());
   for (const ObjectChange& change : difference.changes) {
