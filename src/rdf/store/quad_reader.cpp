@@ -124,23 +124,9 @@ const DecodedValue& QuadReader::valueOf(TermId id) const {
   return found != impl_->own_values.end() ? found->second : impl_->own_values.emplace(id, decode(id)).first->second;
 }
 
-void QuadReader::expectViews(std::span<const TermId> ids) const {
-  if (!impl_->state().writing) impl_->snapshot().expectRecords(ids);
-}
-
 void QuadReader::expectValues(std::span<const TermId> ids) const {
-  constexpr std::size_t together = 64;
-  std::array<TermId, together> undecoded;
   const ValueCache& cache = impl_->state().environment->values();
-  for (; !ids.empty(); ids = ids.subspan(std::min(ids.size(), together))) {
-    const auto group = ids.first(std::min(ids.size(), together));
-    std::size_t count = 0;
-    for (const TermId id : group) cache.expect(id);
-    for (const TermId id : group) {
-      if (!cache.has(id)) undecoded[count++] = id;
-    }
-    if (count > 0) expectViews({undecoded.data(), count});
-  }
+  for (const TermId id : ids) cache.expect(id);
 }
 
 QuadOrder QuadReader::bestOrder(const QuadPattern& pattern) {

@@ -173,8 +173,7 @@ class QuadReader {
   Term termOf(TermId id) const;  ///< id 0, the unnamed default graph, is an IRI with empty text
   TermView viewOf(TermId id) const;
   const DecodedValue& valueOf(TermId id) const;  ///< O(1); the reference lives as long as the reader
-  /// Prefetches terms whose views or values are needed soon. A hint only; unknown ids are ignored.
-  void expectViews(std::span<const TermId> ids) const;
+  /// Prefetches decoded values that are needed soon. A hint only; unknown ids are ignored.
   void expectValues(std::span<const TermId> ids) const;
   /// The matching quads in the order of the index `order`. Bound positions that form a prefix of the order limit the
   /// range; the others are filtered.

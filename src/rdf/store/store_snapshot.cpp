@@ -107,10 +107,6 @@ const TermDirectory& StoreSnapshot::terms() {
   return *terms_;
 }
 
-void StoreSnapshot::expectRecords(std::span<const TermId> ids) {
-  if (map_.base != nullptr) terms().expect(ids);
-}
-
 std::string_view StoreSnapshot::storedRecord(TermId id, const ReadTransaction::Impl& transaction) {
   std::string_view bytes;
   if (map_.base != nullptr) {

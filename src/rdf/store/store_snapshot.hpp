@@ -31,8 +31,6 @@ class StoreSnapshot {
   /// The record of a term; throws Error for an unknown id. Of each 64 terms the first one that is read compares all
   /// with their sum. Thread-safe.
   std::string_view record(TermId id, ReadTransaction::Impl& transaction);
-  /// Prefetches the records of terms. Thread-safe.
-  void expectRecords(std::span<const TermId> ids);
   /// Compares all indexes and terms with their sums.
   void verify(ReadTransaction::Impl& transaction);
 

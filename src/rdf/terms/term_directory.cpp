@@ -97,32 +97,4 @@ std::string_view TermDirectory::record(TermId id) const {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-/// Software-pipelined prefetching: each step of all terms is prefetched before the next step uses it, so cache misses
-/// overlap.
-void TermDirectory::expect(std::span<const TermId> ids) const {
-  struct Place {
-    const std::uint8_t* page;
-    const std::uint8_t* offset;  ///< the entry of the page's offset table
-  };
-  std::array<Place, kTogether> places;
-  const auto fetchRecord = [](const Place& place) {
-    const std::uint8_t* node = place.page + load<std::uint16_t>(place.offset);
-    __builtin_prefetch(node);
-    __builtin_prefetch(node + 64);  // records are short but may cross a cache line
-  };
-  std::size_t count = 0;
-  for (const TermId id : ids) {
-    if (!has(id)) continue;
-    Place& place = places[count % kTogether];
-    if (count >= kTogether) fetchRecord(place);
-    ++count;
-    const std::size_t leaf = leafOf(id);
-    place.page = pageAt(leaf);
-    // In a damaged file the entry may lie beyond the page; record() checks this.
-    place.offset = std::min(offsetOf(place.page, id - leaves_[leaf].first), lastOffset(place.page));
-    __builtin_prefetch(place.offset);
-  }
-  for (std::size_t k = count - std::min(count, kTogether); k < count; ++k) fetchRecord(places[k % kTogether]);
-}
-
 }  // namespace cluxel::rdf

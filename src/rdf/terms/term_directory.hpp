@@ -20,9 +20,6 @@ class TermDirectory {
   TermDirectory(const PageMap& map, const lmdb_page::Tree& table);  ///< cost: one step per leaf page
   /// The record of `id`; empty when there is none.
   std::string_view record(TermId id) const;
-  /// Prefetches the records of many terms at once. A record needs four dependent reads, each of which is a cache miss
-  /// in a large map. A hint only.
-  void expect(std::span<const TermId> ids) const;
 
  private:
   struct Leaf {
@@ -39,7 +36,6 @@ class TermDirectory {
   }
   const std::uint8_t* pageAt(std::size_t leaf) const { return map_.base + leaves_[leaf].page * map_.page_size; }
 
-  static constexpr std::size_t kTogether = 32;  ///< terms per prefetch group
   static constexpr unsigned kStrideBits = 6;
   PageMap map_;
   TermId end_ = 1;  ///< one past the last id

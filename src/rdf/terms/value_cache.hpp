@@ -33,12 +33,6 @@ class ValueCache {
     const Slot* chunk = chunks_[id >> kChunkBits].load(std::memory_order_acquire);
     if (chunk != nullptr) __builtin_prefetch(&chunk[id & (kChunkSize - 1)]);
   }
-  /// True when get() would hit.
-  bool has(TermId id) const {
-    Slot* chunk = chunks_[id >> kChunkBits].load(std::memory_order_acquire);
-    if (chunk == nullptr) return false;
-    return std::atomic_ref<std::uint8_t>(chunk[id & (kChunkSize - 1)].state).load(std::memory_order_relaxed) == kReady;
-  }
 
  private:
   static constexpr unsigned kChunkBits = 16;

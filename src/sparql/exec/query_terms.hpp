@@ -26,7 +26,6 @@ class QueryTerms : public TermLookup {
   /// The text of a stored term is stable while the reader exists, that of a computed term until rewind(): sort keys
   /// point to it.
   rdf::TermView view(ResultId id) const override;
-  void expect(std::span<const ResultId> ids) const override { reader_.expectViews(ids); }
   /// Prefetches for valueOf().
   void expectValues(std::span<const ValueId> ids) const { reader_.expectValues(ids); }
   Term termOf(ValueId id) const;

@@ -112,27 +112,11 @@ class RowIndex {
   }
   std::uint32_t first(std::uint64_t hash) const { return heads_[bucketOf(hash)]; }
   std::uint32_t next(std::uint32_t row) const { return next_[row]; }
-  /// Prefetches the buckets of these hashes if the table exceeds the L1 cache.
-  void expect(std::span<const std::uint64_t> hashes, const RowTable& table) const {
-    if (heads_.size() < kLarge) return;
-    for (const std::uint64_t hash : hashes) __builtin_prefetch(&heads_[bucketOf(hash)]);
-    for (const std::uint64_t hash : hashes) {
-      const std::uint32_t row = first(hash);
-      if (row == kEnd) continue;
-      __builtin_prefetch(table.row(row));
-      __builtin_prefetch(&next_[row]);
-    }
-    for (const std::uint64_t hash : hashes) {
-      const std::uint32_t row = first(hash);
-      if (row != kEnd && next_[row] != kEnd) __builtin_prefetch(table.row(next_[row]));
-    }
-  }
   std::uint64_t hashOf(const ValueId* row) const {
     return hashOfKey(columns_.size(), [&](std::size_t i) { return row[columns_[i]]; });
   }
 
  private:
-  static constexpr std::size_t kLarge = 4096;
   std::size_t bucketOf(std::uint64_t hash) const { return (hash >> kRowHashShift) & (heads_.size() - 1); }
 
   std::vector<std::size_t> columns_;

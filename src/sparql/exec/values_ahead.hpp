@@ -10,10 +10,8 @@ namespace cluxel::sparql {
 
 class ValuesAhead {
  public:
-  /// Collects the slots whose values or texts the expression reads.
-  void add(const Expr& expression) { collect(expression, false); }
-  /// Also prefetches texts, for any expression.
-  void addTexts(const Expr& expression) { collect(expression, true); }
+  /// Collects the slots whose values the expression reads.
+  void add(const Expr& expression);
 
   /// Must be called before each row of a batch, in order.
   void before(std::size_t row, const Batch& batch, const QueryTerms& terms) {
@@ -22,10 +20,9 @@ class ValuesAhead {
 
  private:
   static constexpr std::size_t kTogether = 64, kFewRows = 4;
-  void collect(const Expr& expression, bool as_text);
   void expect(std::size_t row, const Batch& batch, const QueryTerms& terms) const;
 
-  std::vector<Slot> values_, texts_;
+  std::vector<Slot> slots_;
 };
 
 }  // namespace cluxel::sparql

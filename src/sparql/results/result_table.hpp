@@ -27,8 +27,6 @@ class TermLookup {
   virtual ~TermLookup() = default;
   /// `id` must not be 0. The view is valid until the next call of view().
   virtual rdf::TermView view(ResultId id) const = 0;
-  /// Prefetches the views of ids that are needed next; 0 is allowed. A hint only.
-  virtual void expect(std::span<const ResultId> /*ids*/) const {}
 };
 
 /// Receives one result. Call sequence: beginSolutions rows* end, or boolean end, or beginGraph triple* end.

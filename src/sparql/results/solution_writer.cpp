@@ -2,9 +2,6 @@
 // The row loop shared by the JSON, XML, CSV and TSV writers.
 #include "sparql/results/solution_writer.hpp"
 
-#include <algorithm>
-#include <array>
-
 namespace cluxel::sparql {
 
 SolutionWriter::SolutionWriter(TextSink out, AppendTerm append_term)
@@ -19,9 +16,7 @@ void SolutionWriter::beginSolutions(std::span<const std::string> variables, cons
 
 void SolutionWriter::rows(std::span<const ResultId> cells, std::size_t count) {
   const std::size_t width = variables_.size();
-  const std::size_t together = std::max<std::size_t>(kExpected / std::max<std::size_t>(width, 1), 1);
   for (std::size_t row = 0; row < count; ++row) {
-    if (row % together == 0) expect(cells.subspan(row * width, std::min(together, count - row) * width));
     beginRow();
     for (std::size_t column = 0; column < width; ++column) {
       const ResultId id = cells[row * width + column];
@@ -33,16 +28,6 @@ void SolutionWriter::rows(std::span<const ResultId> cells, std::size_t count) {
     endRow();
     buffer_.flushWhenFull();
   }
-}
-
-/// Prefetches the terms of the next rows whose text is not cached.
-void SolutionWriter::expect(std::span<const ResultId> cells) {
-  std::array<ResultId, kExpected> missing;
-  std::size_t count = 0;
-  for (const ResultId id : cells) {
-    if (id != 0 && cache_[id % kCached].id != id && count < kExpected) missing[count++] = id;
-  }
-  if (count > 1) terms_->expect({missing.data(), count});
 }
 
 void SolutionWriter::appendCell(ResultId id) {

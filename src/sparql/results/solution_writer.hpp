@@ -60,7 +60,6 @@ class SolutionWriter : public ResultSink {
 
  private:
   void appendCell(ResultId id);
-  void expect(std::span<const ResultId> cells);
 
   /// Direct-mapped by the low bits of the id.
   struct Cached {
@@ -68,7 +67,6 @@ class SolutionWriter : public ResultSink {
     std::string text;
   };
   static constexpr std::size_t kCached = 4096;
-  static constexpr std::size_t kExpected = 256;  ///< cells per prefetch batch
 
   AppendTerm append_term_;
   const TermLookup* terms_ = nullptr;

@@ -48,18 +48,10 @@ class BuildSide {
     return candidate;
   }
   std::uint32_t first(const Batch& probe, std::size_t row) const { return index_.first(hashOf(probe, row)); }
-  /// Prefetches hash buckets; must be called before first() for each row of a batch in order.
-  void expectFrom(const Batch& probe, std::size_t row) const {
-    if (row % kTogether != 0) return;
-    std::array<std::uint64_t, kTogether> hashes;
-    const std::size_t count = std::min(kTogether, probe.rows - row);
-    for (std::size_t k = 0; k < count; ++k) hashes[k] = hashOf(probe, row + k);
-    index_.expect({hashes.data(), count}, table_);
-  }
   std::uint32_t next(std::uint32_t row) const { return index_.next(row); }
 
  private:
-  static constexpr std::size_t kTogether = 64, kCounted = 256;  // rejected candidates count as work too
+  static constexpr std::size_t kCounted = 256;  // rejected candidates count as work too
   std::uint64_t hashOf(const Batch& probe, std::size_t row) const {
     return hashOfKey(keys_.size(), [&](std::size_t i) { return probe.at(keys_[i], row); });
   }
@@ -133,7 +125,6 @@ class HashJoinOperator : public UnaryOperator {
           row_ = 0;
         }
         current_ = row_++;
-        build_.expectFrom(in_, current_);
         candidate_ = build_.match(in_, current_, build_.first(in_, current_), runtime().guard);
         continue;
       }
@@ -201,7 +192,6 @@ class MinusOperator : public RowFilter {
   }
   void beginRun() override { build_.build(runtime()); }
   bool passes(const Batch& in, std::uint32_t row) override {
-    build_.expectFrom(in, row);
     std::uint64_t looked = 0;
     for (std::uint32_t found = build_.match(in, row, build_.first(in, row), runtime().guard); found != RowIndex::kEnd;
          found = build_.match(in, row, build_.next(found), runtime().guard)) {

@@ -100,8 +100,8 @@ class OrderOperator : public UnaryOperator {
       if (is_full_ && first.id == kUnbound &&
           !mayPrecede(first, fast_[(*max_rows_ - 1) * keys_.size()], keys_[0].descending, runtime().terms))
         continue;
-      addKey(0, first, row == 0);
-      for (std::size_t i = 1; i < keys_.size(); ++i) addKey(i, evaluator.value(keys_[i].expression, in, row), row == 0);
+      addKey(0, first);
+      for (std::size_t i = 1; i < keys_.size(); ++i) addKey(i, evaluator.value(keys_[i].expression, in, row));
       if (is_full_ && !beatsLast(in, row, before)) {
         fast_.resize(before);
       } else {
@@ -121,12 +121,11 @@ class OrderOperator : public UnaryOperator {
     return !mayPrecede(distance, fast_[(*max_rows_ - 1) * keys_.size()]);
   }
 
-  void addKey(std::size_t column, const Value& value, bool is_first) {
+  void addKey(std::size_t column, const Value& value) {
     const std::size_t width = keys_.size();
     const std::span<OrderKey> made = std::span(fast_).first(fast_.size() / width * width);
     const auto earlier = made.empty() ? made : made.subspan(column);
     fast_.push_back(columns_[column].add(value, runtime().terms, earlier, width));
-    if (is_first && fast_.back().text != nullptr) ahead_.addTexts(keys_[column].expression);
   }
 
   void sortAll() {
