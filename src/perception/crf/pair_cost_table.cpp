@@ -46,7 +46,7 @@ float PairCostTable::factorOf(std::uint32_t degrees) const {
 std::vector<PairCosts> PairCostTable::costsOf(std::span<const Edge> edges) const {
   const PairTable table{bias_.data(), knots_.data(), weights_.data(), columns_};
   std::vector<PairCosts> costs(edges.size());
-  std::vector<float> columns(columns_ * kPairEdges);
+  std::vector<float> columns(std::max<std::size_t>(columns_, 1) * kPairEdges);  // a model may have no columns
   std::array<float, kPairEdges> factors{};
   std::array<std::array<float, kPairEdges>, kLabelPairCount> found;
   for (std::size_t begin = 0; begin < edges.size(); begin += kPairEdges) {
