@@ -57,13 +57,25 @@ struct Heirs {
   std::vector<bool> has_heir;                          ///< by object before
 };
 
+/// An object that is there before and after has the same seeds, because its id is made of them, and nobody else has one
+/// of them. Only the others are matched seed by seed.
 Heirs heirsOf(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after) {
-  std::unordered_map<std::uint64_t, std::size_t> owner;
-  for (std::size_t a = 0; a < after.size(); ++a)
-    for (const std::uint64_t seed : after[a].seeds) owner.emplace(seed, a);
   Heirs heirs{std::vector<std::vector<std::size_t>>(after.size()), std::vector<std::vector<std::size_t>>(after.size()),
               std::vector<bool>(before.size(), false)};
+  std::map<ContentHash, std::size_t> before_by_id;
+  for (std::size_t b = 0; b < before.size(); ++b) before_by_id.emplace(before[b].id, b);
+  std::unordered_map<std::uint64_t, std::size_t> owner;
+  for (std::size_t a = 0; a < after.size(); ++a) {
+    const auto same = before_by_id.find(after[a].id);
+    if (same == before_by_id.end()) {
+      for (const std::uint64_t seed : after[a].seeds) owner.emplace(seed, a);
+      continue;
+    }
+    heirs.before_of[a] = heirs.ancestors_of[a] = {same->second};
+    heirs.has_heir[same->second] = true;
+  }
   for (std::size_t b = 0; b < before.size(); ++b) {
+    if (heirs.has_heir[b]) continue;
     std::map<std::size_t, std::size_t> shared;
     for (const std::uint64_t seed : before[b].seeds)
       if (const auto found = owner.find(seed); found != owner.end()) ++shared[found->second];
