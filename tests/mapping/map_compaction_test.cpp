@@ -58,6 +58,18 @@ TEST_F(MapCompaction, FollowsMuchFreeSpaceAndKeepsTheMap) {
   EXPECT_FALSE(fs::exists(map.string() + ".compact"));
 }
 
+TEST_F(MapCompaction, LeavesAsMuchFreeSpaceAsItIsAllowedTo) {
+  const fs::path map = copy();
+  const auto before = fs::file_size(map);
+  leaveFree(map, 8'000'000);
+  const auto sparse = fs::file_size(map);
+  const double free_share = static_cast<double>(sparse - before) / static_cast<double>(sparse);
+  compactIfSparse(map, silence(), free_share + 0.05);
+  EXPECT_EQ(fs::file_size(map), sparse);
+  compactIfSparse(map, silence(), free_share - 0.05);
+  EXPECT_LT(fs::file_size(map), before + 100'000);
+}
+
 TEST_F(MapCompaction, TakesANameWithoutFolder) {
   const fs::path map = copy(), before_here = fs::current_path();
   const auto before = fs::file_size(map);

@@ -129,9 +129,10 @@ ChangeReport appliedTo(const fs::path& file, const std::function<MapInputs(MapIn
   return std::move(editor.result());
 }
 
-/// Frees the space that a committed change has left.
-ChangeReport compacted(ChangeReport report, const fs::path& file, const ChangeParams& params, ProgressSink& sink) {
-  if (report.has_changes && !params.dry_run) compactIfSparse(file, sink);
+/// Frees the space that a committed change has left, where it is too much.
+ChangeReport compacted(ChangeReport report, const fs::path& file, const ChangeParams& params, ProgressSink& sink,
+                       double max_free_share = kMaxFreeShareOfChanged) {
+  if (report.has_changes && !params.dry_run) compactIfSparse(file, sink, max_free_share);
   return report;
 }
 
@@ -144,7 +145,7 @@ ChangeReport extendMap(const fs::path& file, const scan::ScanSet& scans, const C
 
 ChangeReport retractScans(const fs::path& file, const std::vector<scan::ScanId>& scans, const ChangeParams& params,
                           ProgressSink& sink) {
-  return compacted(removedFrom(file, scans, params, sink), file, params, sink);
+  return compacted(removedFrom(file, scans, params, sink), file, params, sink, kMaxFreeShare);
 }
 
 ChangeReport moveScans(const fs::path& file, const std::vector<ScanPose>& poses, const ChangeParams& params,

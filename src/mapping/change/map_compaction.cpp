@@ -22,16 +22,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uint64_t kSparseDivisor = 20;  // more than a twentieth is free
 constexpr std::uint64_t kSmallestGain = std::uint64_t{1} << 20U;
 
-bool isSparse(const fs::path& map) {
+bool isSparse(const fs::path& map, double max_free_share) {
   const auto environment = rdf::Environment::open(map, rdf::OpenMode::ReadOnly);
   const auto layers = rdf::layerSizes(environment->read());
   const std::uint64_t gain = rdf::freeableBytes(layers);
   std::uint64_t all = 0;
   for (const rdf::LayerSize& layer : layers) all += layer.file_bytes;
-  return gain > kSmallestGain && gain * kSparseDivisor > all;
+  return gain > kSmallestGain && static_cast<double>(gain) > max_free_share * static_cast<double>(all);
 }
 
 struct stat statusOf(const fs::path& file) {
@@ -79,9 +78,9 @@ void compactMap(const fs::path& map) {
   }
 }
 
-void compactIfSparse(const fs::path& map, ProgressSink& sink) {
+void compactIfSparse(const fs::path& map, ProgressSink& sink, double max_free_share) {
   try {
-    if (!fs::exists(copyOf(map)) && !isSparse(map)) return;
+    if (!fs::exists(copyOf(map)) && !isSparse(map, max_free_share)) return;
     if (statusOf(map).st_nlink > 1)
       throw Error(ErrorKind::StoreUnavailable, "it has another name (a hard link), which would keep the old file");
     if (fs::space(fs::absolute(withoutLinks(map)).parent_path()).available < fs::file_size(map))

@@ -13,8 +13,12 @@ namespace cluxel::mapping {
 /// refused. Throws Error (StoreUnavailable) when the map is damaged or cannot be written; it is then as before.
 void compactMap(const std::filesystem::path& map);
 
-/// Compacts a map when that frees more than a twentieth of it, and more than a mebibyte. So the cost follows the
+/// A finished map is made small, and what was retracted leaves the file. After other changes free pages may stay: the
+/// next change writes into them, and a rewrite after each would cost more than the change itself.
+inline constexpr double kMaxFreeShare = 0.05, kMaxFreeShareOfChanged = 0.25;
+
+/// Compacts a map when that frees more than this share of it, and more than a mebibyte. So the cost follows the
 /// changes that left the space. Where it fails, the map stays larger, and a note tells why.
-void compactIfSparse(const std::filesystem::path& map, ProgressSink& sink);
+void compactIfSparse(const std::filesystem::path& map, ProgressSink& sink, double max_free_share = kMaxFreeShare);
 
 }  // namespace cluxel::mapping
