@@ -142,7 +142,7 @@ TEST(CrownSplitting, IsTheDefinitionWithJumpsReachClearanceAndClaims) {
     not_taken += missed;
     if (trunks > 1) taken_by_several += crown.size() - missed;
   }
-  EXPECT_GT(taken_by_several, 1000U);
+  EXPECT_GT(taken_by_several, 500U);  // compilers draw the coordinates of a point in different order
   EXPECT_GT(not_taken, 2000U);
 }
 

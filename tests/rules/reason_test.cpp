@@ -207,7 +207,7 @@ TEST(Slices, FindTheStemOfATreeThatIsAllScatter) {
   BoxScene scene;
   scene.boxes = {box("ground", kGroundLabel, {0, 0, 0}, {20, 20, 0.1}),
                  box("stem", kScatter, {0, 0, 1.0}, {0.4, 0.4, 2.0}), box("crown", kScatter, {0, 0, 3.8}, {4, 4, 3.6})};
-  // One primitive: the stem's cluxels become the crown's.
+  // One primitive: the stem's cluxels become the crown's, but for one, because no primitive is empty.
   BuiltBoxScene built = sceneOfBoxes(scene);
   const auto number = [&](const std::string& name) {
     return static_cast<PrimitiveIndex>(std::find(built.names.begin(), built.names.end(), name) - built.names.begin());
@@ -215,10 +215,10 @@ TEST(Slices, FindTheStemOfATreeThatIsAllScatter) {
   Scene& all = built.scene;
   auto& crown = all.primitives[number("crown")];
   auto& stem = all.primitives[number("stem")];
-  for (std::uint32_t cluxel : stem.cluxels) all.cluxels.primitive[cluxel] = number("crown");
-  crown.cluxels.insert(crown.cluxels.end(), stem.cluxels.begin(), stem.cluxels.end());
+  for (std::size_t i = 1; i < stem.cluxels.size(); ++i) all.cluxels.primitive[stem.cluxels[i]] = number("crown");
+  crown.cluxels.insert(crown.cluxels.end(), stem.cluxels.begin() + 1, stem.cluxels.end());
   std::sort(crown.cluxels.begin(), crown.cluxels.end());
-  stem.cluxels.clear();
+  stem.cluxels.resize(1);
   stem.attributes = {};
   stem.label = PrimitiveLabel::HorizontalPlane;
   crown.min.z() = 0;
