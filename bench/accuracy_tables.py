@@ -184,15 +184,16 @@ def print_tables(files):
 
 
 def calibration(files):
-    """The expected calibration error of the sum, and the number of objects."""
+    """The expected calibration error of the sum, that of exact confidences by chance, and the number of objects."""
     bins = {}
     for evaluation in files:
         for i, row in enumerate(evaluation.get("calibration", {}).get("bins", [])):
-            into = bins.setdefault(i, [0, 0, 0.0])
-            for field, key in enumerate(("objects", "right", "confidence_sum")):
-                into[field] += row[key]
+            into = bins.setdefault(i, [0, 0, 0.0, 0.0])
+            for field, key in enumerate(("objects", "right", "confidence_sum", "variance_sum")):
+                into[field] += row.get(key, 0)
     objects = sum(values[0] for values in bins.values())
-    return ratio(sum(abs(total - right) for _, right, total in bins.values()), objects), objects
+    by_chance = sum(math.sqrt(2 / math.pi * values[3]) for values in bins.values())
+    return ratio(sum(abs(values[2] - values[1]) for values in bins.values()), objects), ratio(by_chance, objects), objects
 
 
 def box_confusion(files):
@@ -266,9 +267,9 @@ def bars_of(part, pattern):
 
 def all_bars(part, pattern, files):
     yield from bars_of(part, pattern)(files)
-    error, objects = calibration(files)
+    error, by_chance, objects = calibration(files)
     if part in EXPECTED_ERRORS and objects:
-        yield f"confidence, expected calibration error over {objects} objects (at most)", error, -EXPECTED_ERRORS[part], None
+        yield f"confidence, expected calibration error over {objects} objects, by chance {by_chance:.3f} (at most)", error, -EXPECTED_ERRORS[part], None
 
 
 def load(names):

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <random>
 
 #include "rdf/vocabulary.hpp"
 #include "tasks/evaluation/evaluation_shares.hpp"
@@ -240,6 +241,25 @@ TEST(Calibration, ErrorIsTheGapBetweenConfidenceAndWhatIsRight) {
   ends.add(1.0, true);
   ends.add(0.0, false);
   EXPECT_EQ(ends.expectedError(), 0);
+}
+
+TEST(Calibration, ErrorByChanceIsWhatExactConfidencesMeasure) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (const int objects : {60, 200, 1000}) {
+    double measured = 0, foretold = 0;
+    constexpr int kRounds = 400;
+    for (int round = 0; round < kRounds; ++round) {
+      Calibration calibration;
+      for (int i = 0; i < objects; ++i) {
+        const double confidence = share(random);
+        calibration.add(confidence, share(random) < confidence);
+      }
+      measured += calibration.expectedError() / kRounds;
+      foretold += calibration.errorByChance() / kRounds;
+    }
+    EXPECT_NEAR(foretold, measured, 0.05 * measured) << objects << " objects";
+  }
 }
 
 TEST(ClassVotes, CallAClassRightThatMostPointsHave) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace cluxel::tasks {
 
@@ -13,6 +14,7 @@ void Calibration::add(double confidence, bool is_right) {
   ++bin.objects;
   bin.right += is_right ? 1 : 0;
   bin.confidence_sum += share;
+  bin.variance_sum += share * (1 - share);
 }
 
 void Calibration::add(const Calibration& other) {
@@ -20,6 +22,7 @@ void Calibration::add(const Calibration& other) {
     bins[i].objects += other.bins[i].objects;
     bins[i].right += other.bins[i].right;
     bins[i].confidence_sum += other.bins[i].confidence_sum;
+    bins[i].variance_sum += other.bins[i].variance_sum;
   }
 }
 
@@ -32,6 +35,12 @@ std::uint64_t Calibration::objects() const {
 double Calibration::expectedError() const {
   double sum = 0;
   for (const CalibrationBin& bin : bins) sum += std::abs(bin.confidence_sum - static_cast<double>(bin.right));
+  return objects() == 0 ? 0 : sum / static_cast<double>(objects());
+}
+
+double Calibration::errorByChance() const {
+  double sum = 0;
+  for (const CalibrationBin& bin : bins) sum += std::sqrt(2 / std::numbers::pi * bin.variance_sum);
   return objects() == 0 ? 0 : sum / static_cast<double>(objects());
 }
 

@@ -15,6 +15,7 @@ namespace cluxel::tasks {
 struct CalibrationBin {
   std::uint64_t objects = 0, right = 0;
   double confidence_sum = 0;
+  double variance_sum = 0;  ///< of p (1 - p), p being the confidences
 };
 
 /// A class is right when most of the object's points with truth are of this class.
@@ -27,6 +28,9 @@ struct Calibration {
   /// The expected calibration error: the mean over objects of |mean confidence - share that is right| of their bin; 0
   /// without objects (Naeini, Cooper, Hauskrecht, AAAI 2015).
   double expectedError() const;
+  /// What expectedError() would measure on average if every confidence were exactly right: with few objects the share
+  /// that is right differs from it by chance. A normal approximation in each bin.
+  double errorByChance() const;
 };
 
 /// Counts the true classes of each object's points.

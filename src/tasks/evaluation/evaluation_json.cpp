@@ -97,8 +97,14 @@ EvaluationJson kindJson(const MapEvaluation& evaluation) {
 EvaluationJson calibrationJson(const Calibration& calibration) {
   EvaluationJson bins = EvaluationJson::array();
   for (const CalibrationBin& bin : calibration.bins)
-    bins.push_back({{"objects", bin.objects}, {"right", bin.right}, {"confidence_sum", bin.confidence_sum}});
-  return {{"expected_error", calibration.expectedError()}, {"objects", calibration.objects()}, {"bins", bins}};
+    bins.push_back({{"objects", bin.objects},
+                    {"right", bin.right},
+                    {"confidence_sum", bin.confidence_sum},
+                    {"variance_sum", bin.variance_sum}});
+  return {{"expected_error", calibration.expectedError()},
+          {"error_by_chance", calibration.errorByChance()},
+          {"objects", calibration.objects()},
+          {"bins", bins}};
 }
 
 }  // namespace

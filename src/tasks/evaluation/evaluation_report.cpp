@@ -113,9 +113,11 @@ std::string kindTable(const MapEvaluation& evaluation) {
 }
 
 std::string calibrationLine(const Calibration& calibration) {
-  char line[160];
-  std::snprintf(line, sizeof line, "Confidence of the class: expected calibration error %.3f over %llu objects\n",
-                calibration.expectedError(), static_cast<unsigned long long>(calibration.objects()));
+  char line[200];
+  std::snprintf(line, sizeof line,
+                "Confidence of the class: expected calibration error %.3f over %llu objects (by chance alone %.3f)\n",
+                calibration.expectedError(), static_cast<unsigned long long>(calibration.objects()),
+                calibration.errorByChance());
   return line;
 }
 

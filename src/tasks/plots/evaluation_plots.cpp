@@ -110,7 +110,8 @@ PlotFigure calibrationFigure(const Calibration& calibration) {
       "Calibration of the confidence",
       "Objects but ground in tenths of confidence: share whose class is right, over the mean confidence, "
       "with 95 % intervals (Wilson). On the dashed line confidence is right. Expected calibration error " +
-          plotNumber(calibration.expectedError()) + " over " + std::to_string(calibration.objects()) + " objects.",
+          plotNumber(calibration.expectedError()) + " over " + std::to_string(calibration.objects()) +
+          " objects; exact confidences would measure " + plotNumber(calibration.errorByChance()) + " by chance.",
       "",
       "Objects by tenth of confidence",
       {{"confidence", "objects", "right", "mean confidence", "share right"}, {}}};
