@@ -52,8 +52,27 @@ bool isKnown(const rdf::QuadReader& reader, const Quad& quad) {
   return false;
 }
 
+/// Adds quads to graph inferred, and notes them.
+class InferredWriter {
+ public:
+  explicit InferredWriter(rdf::WriteTransaction& transaction) : writer_(transaction) {}
+  void add(const Quad& quad) {
+    added_.push_back({writer_.intern(quad.subject), writer_.intern(quad.predicate), writer_.intern(quad.object),
+                      writer_.intern(quad.graph)});
+    writer_.add(added_.back());
+  }
+  std::vector<rdf::QuadIds> finish() {
+    writer_.flush();
+    return std::move(added_);
+  }
+
+ private:
+  rdf::QuadWriter writer_;
+  std::vector<rdf::QuadIds> added_;
+};
+
 /// Adds the resource that records the rule of a derived fact.
-void addDerivation(rdf::QuadWriter& writer, const Quad& fact, const NamedText& rule) {
+void addDerivation(InferredWriter& writer, const Quad& fact, const NamedText& rule) {
   const std::string name = ruleFileName(rule);
   const ContentHash id = ContentHasher()
                              .addText(name)
@@ -72,8 +91,9 @@ void addDerivation(rdf::QuadWriter& writer, const Quad& fact, const NamedText& r
   add(rdf::vocabulary::clx("rule"), Term::literal(name));
 }
 
-/// Evaluates one rule once; false when it derived nothing new.
-bool deriveOnce(rdf::WriteTransaction& transaction, const NamedText& rule, const rdf::InferenceCheck& check) {
+/// Evaluates one rule once, and tells what it added; nothing when it derived nothing new.
+std::vector<rdf::QuadIds> deriveOnce(rdf::WriteTransaction& transaction, const NamedText& rule,
+                                     const rdf::InferenceCheck& check) {
   const rdf::QuadReader reader{static_cast<const rdf::ReadTransaction&>(transaction)};
   sparql::QueryOptions options = ruleOptions(rule);
   if (check) {
@@ -87,14 +107,13 @@ bool deriveOnce(rdf::WriteTransaction& transaction, const NamedText& rule, const
     if (!isKnown(reader, fact)) fresh.push_back(std::move(fact));
   constexpr std::size_t kBytesOfDerivedFact = 2000;  // six quads with their terms
   if (check) check(fresh.size() * kBytesOfDerivedFact);
-  rdf::QuadWriter writer(transaction);
+  InferredWriter writer(transaction);
   for (Quad& fact : fresh) {
     fact.graph = Term::iri(rdf::vocabulary::kGraphInferred);
     writer.add(fact);
     addDerivation(writer, fact, rule);
   }
-  writer.flush();
-  return !fresh.empty();
+  return writer.finish();
 }
 
 }  // namespace
@@ -113,8 +132,10 @@ void runSparqlRules(rdf::WriteTransaction& transaction, const std::vector<NamedT
   constexpr int kMaxRounds = 1000;
   for (const NamedText& rule : rules) {
     int round = 0;
-    while (deriveOnce(transaction, rule, check)) {
-      extendClosure(transaction, check);
+    while (true) {
+      const std::vector<rdf::QuadIds> added = deriveOnce(transaction, rule, check);
+      if (added.empty()) break;
+      extendClosure(transaction, added, check);
       if (++round == kMaxRounds)
         throw InputError({.file = rule.name}, "derives new facts without end",
                          "a rule may not make new objects out of objects that it made itself");

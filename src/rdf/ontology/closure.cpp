@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <span>
 #include <unordered_set>
 
 #include "rdf/ontology/closure_bounds.hpp"
@@ -77,6 +78,12 @@ class Facts {
     if (derived != derived_.end()) forEachDerived(property, derived->second.round_before, visit);
   }
 
+  /// Makes stated facts new to the first round.
+  void setNew(std::span<const QuadIds> quads) {
+    for (const QuadIds& quad : quads) derived_[quad.p].pairs.push_back({quad.s, quad.o});
+    for (auto& [property, derived] : derived_) derived.stated = derived.round_start = derived.pairs.size();
+  }
+
   void beginRound() {
     for (auto& [property, derived] : derived_) {
       derived.round_before = derived.round_start;
@@ -98,7 +105,8 @@ class Facts {
   std::vector<QuadIds> derivedQuads(TermId graph) const {
     std::vector<QuadIds> quads;
     for (const auto& [property, derived] : derived_)
-      for (const Pair& pair : derived.pairs) quads.push_back({pair.subject, property, pair.object, graph});
+      for (const Pair& pair : std::span(derived.pairs).subspan(derived.stated))
+        quads.push_back({pair.subject, property, pair.object, graph});
     std::sort(quads.begin(), quads.end());
     return quads;
   }
@@ -109,9 +117,9 @@ class Facts {
 
  private:
   struct Derived {
-    std::vector<Pair> pairs;                  ///< in derivation order
+    std::vector<Pair> pairs;                  ///< in derivation order, after those of setNew()
     std::unordered_set<std::uint64_t> known;  ///< for membership tests; never iterated, so its order has no effect
-    std::size_t round_before = 0, round_start = 0;
+    std::size_t stated = 0, round_before = 0, round_start = 0;
   };
 
   static std::uint64_t key(TermId subject, TermId object) { return std::uint64_t{subject} << 32U | object; }
@@ -240,9 +248,10 @@ class Closure {
  public:
   Closure(Facts& facts, const Words& words) : facts_(facts), words_(words) {}
 
-  void run() {
+  /// `only_new`: the facts without those of Facts::setNew() are closed.
+  void run(bool only_new) {
     rules_ = readRules(facts_, words_);
-    for (bool only_new = false; round(only_new);) {
+    while (round(only_new)) {
       facts_.beginRound();
       OntologyRules rules = readRules(facts_, words_);
       only_new = rules == rules_;
@@ -316,12 +325,17 @@ ClosureLimits ClosureLimits::of(const QuadReader& reader) {
 }
 
 EntailedQuads closureOf(const QuadReader& reader, TermId target, std::span<const TermId> sources,
-                        const ClosureLimits& limits) {
+                        const ClosureLimits& limits, std::span<const QuadIds> fresh) {
   const Words words(reader);
   ClosureBounds bounds(reader, limits);
   Facts facts(reader, sources, bounds);
+  const bool only_new = !fresh.empty() && std::none_of(fresh.begin(), fresh.end(), [&](const QuadIds& quad) {
+    return quad.p == words.sub_class || quad.p == words.sub_property || quad.p == words.inverse ||
+           (quad.p == words.type && (quad.o == words.symmetric || quad.o == words.transitive));
+  });
+  if (only_new) facts.setNew(fresh);
   Closure closure(facts, words);
-  closure.run();
+  closure.run(only_new);
   EntailedQuads entailed{facts.derivedQuads(target), {}};
   for (const auto& [subject, predicate, object] : closure.ignored())
     entailed.ignored.push_back(toNTriples(reader.termOf(subject)) + ' ' + toNTriples(reader.termOf(predicate)) + ' ' +

@@ -58,12 +58,13 @@ ClosureChange inferClosure(WriteTransaction& transaction, const InferenceCheck& 
   return {added.size(), removed.size(), std::move(entailed.ignored)};
 }
 
-ClosureChange extendClosure(WriteTransaction& transaction, const InferenceCheck& check) {
+ClosureChange extendClosure(WriteTransaction& transaction, std::span<const QuadIds> fresh,
+                            const InferenceCheck& check) {
   QuadWriter writer(transaction);
   GraphIds graphs = internGraphs(writer);
   graphs.stated.push_back(graphs.inferred);
   const QuadReader reader(transaction);
-  EntailedQuads entailed = closureOf(reader, graphs.inferred, graphs.stated, limitsOf(reader, check));
+  EntailedQuads entailed = closureOf(reader, graphs.inferred, graphs.stated, limitsOf(reader, check), fresh);
   for (const QuadIds& quad : entailed.quads) writer.add(quad);
   writer.flush();
   return {entailed.quads.size(), 0, std::move(entailed.ignored)};

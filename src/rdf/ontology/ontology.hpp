@@ -101,8 +101,12 @@ struct EntailedQuads {
 /// rdfs:subPropertyOf or owl:inverseOf as subject or object are ignored: they would turn facts into schema. Cost:
 /// linear in the quads of rdf:type and of properties with implications. Throws Error (BudgetExceeded) beyond the
 /// limits.
+///
+/// `fresh`, when not empty: quads of the source graphs without which these were closed. Unless one of them is an axiom,
+/// only what follows from them is looked for, and the cost is that of the axioms, of `fresh` and what follows, and of
+/// the transitive properties among them.
 EntailedQuads closureOf(const QuadReader& reader, TermId target, std::span<const TermId> sources,
-                        const ClosureLimits& limits);
+                        const ClosureLimits& limits, std::span<const QuadIds> fresh = {});
 
 struct ClosureChange {
   std::uint64_t added = 0, removed = 0;   ///< quads
@@ -112,7 +116,8 @@ struct ClosureChange {
 /// flushes.
 ClosureChange inferClosure(WriteTransaction& transaction, const InferenceCheck& check = {});
 /// Adds to the graph `inferred` the closure of ontology, observed, operator and inferred itself, and keeps the facts
-/// that rules have written there. Flushes.
-ClosureChange extendClosure(WriteTransaction& transaction, const InferenceCheck& check = {});
+/// that rules have written there. `fresh`: what was added since these graphs were closed; empty: not known. Flushes.
+ClosureChange extendClosure(WriteTransaction& transaction, std::span<const QuadIds> fresh = {},
+                            const InferenceCheck& check = {});
 
 }  // namespace cluxel::rdf

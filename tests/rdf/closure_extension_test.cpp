@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Extending a closure by what was added gives the closure of everything.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "rdf/ontology/ontology.hpp"
+#include "rdf/store/quad_store.hpp"
+#include "rdf/vocabulary.hpp"
+
+namespace cluxel::rdf {
+
+namespace {
+
+using namespace vocabulary;
+
+std::string owlName(std::string_view local) {
+  return std::string(kOwl).append(local);
+}
+
+class RandomFacts {
+ public:
+  explicit RandomFacts(unsigned seed) : random_(seed) {}
+
+  Quad fact(std::string_view graph) {
+    if (below(4) == 0) return quad(thing(), rdf("type"), kind(), graph);
+    return quad(thing(), property(), thing(), graph);
+  }
+
+  Quad axiom(std::string_view graph) {
+    switch (below(6)) {
+      case 0:
+        return quad(kind(), rdfs("subClassOf"), kind(), graph);
+      case 1:
+        return quad(property(), owlName("inverseOf"), property(), graph);
+      case 2:
+        return quad(property(), rdf("type"), owlName("SymmetricProperty"), graph);
+      case 3:
+        return quad(property(), rdf("type"), owlName("TransitiveProperty"), graph);
+      case 4:  // a kind that makes properties symmetric
+        return quad(kind(), rdfs("subClassOf"), owlName("SymmetricProperty"), graph);
+      default:
+        return quad(property(), rdfs("subPropertyOf"), property(), graph);
+    }
+  }
+  /// A property that is said to be of a kind of things.
+  Quad kindOfProperty(std::string_view graph) { return quad(property(), rdf("type"), kind(), graph); }
+  std::size_t below(std::size_t end) { return random_() % end; }
+
+ private:
+  static Quad quad(const std::string& s, const std::string& p, const std::string& o, std::string_view graph) {
+    return {Term::iri(s), Term::iri(p), Term::iri(o), Term::iri(std::string(graph))};
+  }
+  std::string thing() { return "http://x/t" + std::to_string(below(25)); }
+  std::string property() { return "http://x/p" + std::to_string(below(6)); }
+  std::string kind() { return "http://x/k" + std::to_string(below(6)); }
+
+  std::mt19937 random_;
+};
+
+std::vector<QuadIds> addTo(WriteTransaction& transaction, const std::vector<Quad>& quads) {
+  std::vector<QuadIds> added;
+  QuadWriter writer(transaction);
+  for (const Quad& quad : quads) {
+    added.push_back({writer.intern(quad.subject), writer.intern(quad.predicate), writer.intern(quad.object),
+                     writer.intern(quad.graph)});
+    writer.add(added.back());
+  }
+  writer.flush();
+  return added;
+}
+
+std::vector<std::string> inferredBy(WriteTransaction& transaction) {
+  const QuadReader reader(transaction);
+  std::vector<std::string> facts;
+  QuadCursor cursor =
+      reader.scan({.s = {}, .p = {}, .o = {}, .g = *reader.idOf(Term::iri(std::string(kGraphInferred)))});
+  for (QuadIds quad; cursor.next(quad);)
+    facts.push_back(reader.termOf(quad.s).text + " " + reader.termOf(quad.p).text + " " + reader.termOf(quad.o).text);
+  std::sort(facts.begin(), facts.end());
+  return facts;
+}
+
+/// `new_axioms`: whether axioms are among what is added later.
+void expectSameExtension(unsigned seed, bool new_axioms) {
+  RandomFacts facts(seed);
+  std::vector<Quad> stated;
+  for (int i = 0; i < 8; ++i) stated.push_back(facts.axiom(kGraphOntology));
+  for (int i = 0; i < 60; ++i) stated.push_back(facts.fact(kGraphObserved));
+  const auto told = Environment::temporary(), untold = Environment::temporary();
+  WriteTransaction with = told->write(), without = untold->write();
+  for (WriteTransaction* transaction : {&with, &without}) {
+    addTo(*transaction, stated);
+    inferClosure(*transaction);
+  }
+  for (int step = 0; step < 4; ++step) {
+    std::vector<Quad> more;
+    for (std::size_t i = 0; i < 1 + facts.below(6); ++i) more.push_back(facts.fact(kGraphInferred));
+    if (new_axioms) more.push_back(facts.axiom(kGraphInferred));
+    if (new_axioms && step == 2) more.push_back(facts.kindOfProperty(kGraphInferred));
+    const std::vector<QuadIds> fresh = addTo(with, more);
+    addTo(without, more);
+    extendClosure(with, fresh);
+    extendClosure(without);
+    ASSERT_EQ(inferredBy(with), inferredBy(without)) << "seed " << seed << ", step " << step;
+  }
+}
+
+TEST(ClosureExtension, ByFactsIsTheWholeClosure) {
+  for (unsigned seed = 0; seed < 60; ++seed) expectSameExtension(seed, false);
+}
+
+TEST(ClosureExtension, ByAxiomsIsTheWholeClosure) {
+  for (unsigned seed = 100; seed < 160; ++seed) expectSameExtension(seed, true);
+}
+
+}  // namespace
+}  // namespace cluxel::rdf
