@@ -58,9 +58,11 @@ class Operator {
 
   /// For an operator that gives rows by ascending distance: it ends when `is_enough(distance)` says that rows of this
   /// distance and more are not needed.
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): operators that use it keep it
   virtual void stopWhen(std::function<bool(double)> /*is_enough*/) {}
 
   /// For a join by distance: it may leave out rows that are not needed.
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): operators that use it keep it
   virtual void stopAfter(EnoughRows /*enough*/) {}
 
   /// The slots that may be bound, ascending.
