@@ -67,6 +67,26 @@ TEST(QuestionsOfACampus, TheInventoryHasTheSizesOfTheGenerator) {
   }
 }
 
+TEST(QuestionsOfACampus, TheInventoryHasTheWidthsOfSidewalks) {
+  InventoryParams params{.classes = {}, .with_rows = false};
+  const std::vector<InventoryItem> items = inventoryOf(CampusMap::shared().map(), params);
+  constexpr double walk_m = 6.5 - 4.15;  // of the generator: from the kerb's stone to the outer edge
+  double length_m = 0;
+  for (const InventoryItem& item : items) {
+    EXPECT_EQ(item.kind, "Sidewalk");
+    EXPECT_NE(item.object, "");
+    ASSERT_GE(item.line.size(), 2U);
+    length_m += item.length_m;
+    if (item.length_m >= 8) {
+      EXPECT_NEAR(item.width_m, walk_m, 0.6);
+    }
+    std::printf("sidewalk (generated): %.1f m long, %.2f m wide\n", item.length_m, item.width_m);
+  }
+  EXPECT_GT(length_m, 8);
+  params.with_sidewalks = false;
+  EXPECT_TRUE(inventoryOf(CampusMap::shared().map(), params).empty());
+}
+
 TEST(QuestionsOfACampus, ARegisterOfTheMapItselfMatchesWhole) {
   const MapReader& map = CampusMap::shared().map();
   const ScratchFolder folder;

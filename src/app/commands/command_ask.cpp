@@ -110,10 +110,12 @@ tasks::InventoryParams paramsOf(const InventoryArguments& arguments) {
   tasks::InventoryParams params;
   if (arguments.kinds.empty()) return params;
   params.classes.clear();
-  params.with_rows = false;
+  params.with_rows = params.with_sidewalks = false;
   for (const std::string& kind : arguments.kinds) {
     if (kind == "ParkingRow")
       params.with_rows = true;
+    else if (kind == "Sidewalk")
+      params.with_sidewalks = true;
     else
       params.classes.push_back(kind);
   }
@@ -155,10 +157,10 @@ void addTasks(CLI::App& app, Session& session) {
 
 void addInventory(CLI::App& app, Session& session) {
   auto options = std::make_shared<InventoryArguments>();
-  CLI::App* command = app.add_subcommand("inventory", "list signs, lamps, trees and parked vehicles");
+  CLI::App* command = app.add_subcommand("inventory", "list signs, lamps, trees, parked vehicles and sidewalks");
   command->add_option("map", options->map, "a map")->required();
   command->add_option("--kind", options->kinds,
-                      "a class, or ParkingRow; else street furniture, trees and parked vehicles");
+                      "a class, ParkingRow or Sidewalk; else street furniture, trees and both");
   command->add_option("--streets", options->streets, "GeoJSON lines with names: each thing gets its nearest street")
       ->check(CLI::ExistingFile);
   command->add_option("--register", options->register_file, "CSV or GeoJSON of what should be there: compare with it")

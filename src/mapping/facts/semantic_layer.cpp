@@ -8,6 +8,7 @@
 #include "mapping/facts/map_oracle.hpp"
 #include "mapping/facts/sparql_rules.hpp"
 #include "mapping/facts/stored_presence.hpp"
+#include "mapping/facts/way_facts.hpp"
 #include "mapping/object_store.hpp"
 #include "mapping/statements/statement_facts.hpp"
 #include "rdf/io/rdf_io.hpp"
@@ -28,13 +29,14 @@ std::vector<rules::RuleSource> ruleSources(const std::vector<NamedText>& texts) 
   return sources;
 }
 
-/// Makes the observed graph hold the facts of the scene, of `reasoning` and of statements.
+/// Makes the observed graph hold the facts of the scene, of `reasoning`, of statements and of ways.
 void writeObserved(rdf::WriteTransaction& transaction, const ObservedMap& map,
-                   const std::vector<StatementOutcome>& statements = {}) {
+                   const std::vector<StatementOutcome>& statements = {}, const WayGraph& ways = {}) {
   rdf::QuadWriter writer(transaction);
   FactSink facts(writer, rdf::vocabulary::kGraphObserved);
   addObservedFacts(map, facts);
   addStatementFacts(statements, facts);
+  addWayFacts(ways, facts);
   writer.flush();
   facts.writeTo(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction)));
   writer.flush();
@@ -99,7 +101,8 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   sink.progress("objects", result.objects.size(), result.objects.size());
   const auto sightings = sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(result, scene.cluxels.size()));
   const auto presence = updatePresence(transaction, scene, result.objects, clouds, threads).presence;
-  writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings, presence}, stated.outcomes);
+  writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings, presence}, stated.outcomes,
+                waysOf(stages.points(), stages.ground()));
   inferFacts(transaction, parsed.inputs, sink, check);
   storeObjects(transaction, result.objects);
   storeOverruled(transaction, stated.overruled);

@@ -34,15 +34,15 @@ TaskCell namedCell(const std::string& text) {
 
 const std::vector<QueryColumn>& inventoryColumns() {
   static const std::vector<QueryColumn> columns{
-      {"kind", "text", "class of the object, or ParkingRow"},
-      {"object", "IRI", "the object; absent for rows"},
+      {"kind", "text", "class of the object, ParkingRow or Sidewalk"},
+      {"object", "IRI", "the object or way; absent for rows"},
       {"street", "text", "the nearest street; absent where none is known"},
       {"x", "m", "position in the map frame; of a tree its trunk"},
       {"y", "m", "position in the map frame"},
       {"height", "m", "top above the local ground"},
       {"crown", "m", "diameter of the circle that is as large as the crown from above"},
-      {"width", "m", "of a row"},
-      {"length", "m", "of a row"},
+      {"width", "m", "of a row; of a sidewalk the median across it"},
+      {"length", "m", "of a row or sidewalk"},
       {"count", "1", "vehicles of a row"}};
   return columns;
 }
@@ -58,9 +58,10 @@ InventoryParams inventoryParams(const TaskValues& values) {
   if (kinds.empty()) return params;
   const auto takeKind = [&](const char* name) { return std::find(kinds.begin(), kinds.end(), name) != kinds.end(); };
   params.with_rows = takeKind("ParkingRow");
+  params.with_sidewalks = takeKind("Sidewalk");
   params.classes.clear();
   for (const std::string& kind : kinds)
-    if (kind != "ParkingRow") params.classes.push_back(kind);
+    if (kind != "ParkingRow" && kind != "Sidewalk") params.classes.push_back(kind);
   return params;
 }
 
@@ -210,7 +211,7 @@ TaskAnswer inventoryAnswer(const mapping::MapReader& map, const InventoryParams&
 TaskAnswer registerAnswer(const mapping::MapReader& map, const InventoryParams& params,
                           const std::vector<RegisterEntry>& entries, const RegisterParams& comparison) {
   InventoryParams objects = params;
-  objects.with_rows = false;
+  objects.with_rows = objects.with_sidewalks = false;
   const std::vector<InventoryItem> items = inventoryOf(map, objects);
   TaskAnswer answer{{{"status", "text", "matched, missing in the map, not observed, not in the register"},
                      {"entry", "text", "id in the register"},
@@ -243,8 +244,8 @@ TaskAnswer registerAnswer(const mapping::MapReader& map, const InventoryParams& 
 std::vector<Task> surveyTasks() {
   Task inventory;
   inventory.name = "inventory";
-  inventory.title = "Which signs, lamps, trees and parked vehicles are there, and how large are they?";
-  inventory.parameters = {{"kind", "", "", "a class, or ParkingRow; else street furniture, trees and parked vehicles",
+  inventory.title = "Which signs, lamps, trees, parked vehicles and sidewalks are there, and how large are they?";
+  inventory.parameters = {{"kind", "", "", "a class, ParkingRow or Sidewalk; else street furniture, trees and both",
                            Kind::Class, false, true}};
   inventory.columns = inventoryColumns();
   inventory.run = [](const TaskContext& context, const TaskValues& values) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures objects, and joins vehicles to rows.
+// Measures objects, and lists rows of vehicles and sidewalks.
 #include "tasks/inventory/inventory.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <sstream>
 #include <tuple>
 
 #include "base/convex_hull.hpp"
@@ -136,6 +137,35 @@ std::vector<InventoryItem> parkingRows(const mapping::MapReader& map) {
   return found;
 }
 
+/// The sidewalks among the ways that the map holds.
+std::vector<InventoryItem> sidewalksOf(const mapping::MapReader& map) {
+  const sparql::ResultTable ways =
+      sparql::evaluateQuery(
+          map.quads(), "PREFIX clx: <" + std::string(rdf::vocabulary::kClx) + "> PREFIX geo: <" +
+                           std::string(rdf::vocabulary::kGeo) +
+                           "> SELECT ?way ?x ?y ?length ?width ?line { ?way a clx:Sidewalk ; clx:x ?x ; clx:y ?y ; "
+                           "clx:length ?length ; clx:width ?width ; geo:hasGeometry/geo:asWKT ?line } ORDER BY ?way")
+          .table;
+  std::vector<InventoryItem> found;
+  for (std::size_t i = 0; i < ways.row_count; ++i) {
+    const auto number = [&](std::size_t column) { return std::stod(ways.at(i, column)->text); };
+    InventoryItem& item = found.emplace_back();
+    item.kind = "Sidewalk";
+    item.object = ways.at(i, 0)->text;
+    item.at = {number(1), number(2)};
+    item.length_m = number(3);
+    item.width_m = number(4);
+    std::string line = ways.at(i, 5)->text;
+    for (char& c : line)
+      if (c == ',' || c == '(' || c == ')') c = ' ';
+    std::istringstream words(line);
+    std::string shape;
+    words >> shape;  // LINESTRING
+    for (Eigen::Vector2d p; words >> p.x() >> p.y();) item.line.push_back(p);
+  }
+  return found;
+}
+
 }  // namespace
 
 std::vector<InventoryItem> inventoryOf(const mapping::MapReader& map, const InventoryParams& params,
@@ -151,6 +181,10 @@ std::vector<InventoryItem> inventoryOf(const mapping::MapReader& map, const Inve
   std::stable_sort(items.begin(), items.end(), [](const auto& a, const auto& b) { return a.kind < b.kind; });
   std::vector<InventoryItem> derived;
   if (params.with_rows) derived = parkingRows(map);
+  if (params.with_sidewalks) {
+    const std::vector<InventoryItem> sidewalks = sidewalksOf(map);
+    derived.insert(derived.end(), sidewalks.begin(), sidewalks.end());
+  }
   std::stable_sort(derived.begin(), derived.end(), [](const auto& a, const auto& b) {
     return std::tuple(a.kind, a.at.x(), a.at.y()) < std::tuple(b.kind, b.at.x(), b.at.y());
   });

@@ -16,15 +16,15 @@ inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
 /// One entry. Sizes that do not apply to its kind are kNotMeasured.
 struct InventoryItem {
-  std::string kind;                              ///< local name of the class, or "ParkingRow"
-  std::string object;                            ///< IRI; empty for an entry that consists of several objects
+  std::string kind;                              ///< local name of the class
+  std::string object;                            ///< IRI of the object or way; empty for a row
   std::string street;                            ///< name of the nearest street; empty: none is known near it
   Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< [m, map]; of a tree its trunk
   double height_m = kNotMeasured;                ///< top above the local ground
   double crown_m = kNotMeasured;                 ///< diameter of the circle that is as large as the crown from above
   double width_m = kNotMeasured, length_m = kNotMeasured;
   std::size_t count = 1;                   ///< vehicles of a row
-  std::vector<Eigen::Vector2d> line = {};  ///< of rows [m, map]
+  std::vector<Eigen::Vector2d> line = {};  ///< of rows and ways [m, map]
 };
 
 /// A street by its name and course [m, map].
@@ -37,9 +37,10 @@ struct InventoryParams {
   std::vector<std::string> classes{"StreetSign", "StreetLamp", "TrafficLight", "UtilityPole", "Tree"};
   double street_within_m = 25;  ///< what is farther from all streets belongs to none
   bool with_rows = true;        ///< also the parking rows of the map's rules
+  bool with_sidewalks = true;   ///< also the ways that the rules call sidewalks
 };
 
-/// Objects first, by class and IRI, then rows by place. Throws Error (NotFound) for an unknown class.
+/// Objects first, by class and IRI, then rows and sidewalks by place. Throws Error (NotFound) for an unknown class.
 std::vector<InventoryItem> inventoryOf(const mapping::MapReader& map, const InventoryParams& params,
                                        const std::vector<Street>& streets = {});
 

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// A skeleton as lines between nodes, without short spurs.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mapping/ways/tile_cells.hpp"
+
+namespace cluxel::mapping {
+
+/// A line of neighbouring cells between two nodes; of a closed line they are one.
+struct SkeletonLine {
+  std::uint32_t from = 0, to = 0;    ///< numbers of nodes
+  std::vector<std::uint32_t> cells;  ///< without those of the nodes
+};
+
+struct SkeletonNetwork {
+  std::vector<std::uint32_t> nodes;  ///< the cell of each
+  std::vector<SkeletonLine> lines;
+  std::vector<std::uint32_t> line_ends;  ///< per node, how many ends of lines it has
+};
+
+/// Lines that end blindly and are shorter than the way is wide where they begin are left out, and junctions of which
+/// each lies within the other's width are one. `edge_distance2` as of squaredEdgeDistances().
+SkeletonNetwork networkOf(const TileCells& cells, const std::vector<std::uint8_t>& skeleton,
+                          const std::vector<std::uint16_t>& edge_distance2);
+
+}  // namespace cluxel::mapping
