@@ -19,6 +19,7 @@
 #include "rdf/ontology/ontology.hpp"
 #include "rules/language/rule_loader.hpp"
 #include "rules/testing/rule_mutation.hpp"
+#include "rules/testing/rule_pairs.hpp"
 #include "rules/testing/rule_test.hpp"
 #include "scan/scan_set.hpp"
 
@@ -31,7 +32,7 @@ struct RulesOptions {
   fs::path junit;
   std::string only;
   mapping::MapInputFiles inputs;
-  bool mutate = false, update_golden = false, watch = false;
+  bool mutate = false, update_golden = false, watch = false, pairs = false;
   double least_score = 0;
 };
 
@@ -79,6 +80,15 @@ std::vector<Diagnostic> checkSparqlRule(const fs::path& file, const rdf::Ontolog
   }
 }
 
+/// The faults of rule files; without errors, the pairs of rules that want the same thing too.
+std::vector<Diagnostic> checkTrees(const std::vector<fs::path>& files, const rdf::OntologyView& ontology, bool pairs) {
+  rules::LoadedRules loaded =
+      rules::loadRules(files, rules::catalogueOf(ontology), mapping::withCheckedQueries(ontology));
+  if (pairs && loaded.rules)
+    for (Diagnostic& pair : checkRulePairs(*loaded.rules)) loaded.diagnostics.push_back(std::move(pair));
+  return std::move(loaded.diagnostics);
+}
+
 ExitCode check(const RulesOptions& options, const Session& session) {
   const DataHome home = session.dataHome();
   const auto sources = mapping::ontologySources(ontologyFor(options, home));
@@ -93,8 +103,7 @@ ExitCode check(const RulesOptions& options, const Session& session) {
     for (Diagnostic& fault : checkSparqlRule(file, ontology)) faults.push_back(std::move(fault));
   }
   if (!trees.empty())
-    for (Diagnostic& fault : checkRules(trees, rules::catalogueOf(ontology), mapping::withCheckedQueries(ontology)))
-      faults.push_back(std::move(fault));
+    for (Diagnostic& fault : checkTrees(trees, ontology, options.pairs)) faults.push_back(std::move(fault));
   if (session.json) {
     Json json = Json::array();
     for (const Diagnostic& fault : faults) json.push_back(diagnosticJson(fault));
@@ -289,6 +298,8 @@ void addRules(CLI::App& app, Session& session) {
   CLI::App* checking = rules->add_subcommand("check", "report every fault with file, line and column");
   checking->add_option("files", options->files, "rule files, and SPARQL rules (*.rq); else rules/outdoor.rules.yaml");
   checking->add_option("--ontology", options->inputs.ontology, "ontology files beside ontology/*.ttl");
+  checking->add_flag("--pairs", options->pairs,
+                     "find rules that can both take one thing with nothing to decide between them, with a witness");
   CLI::App* testing = rules->add_subcommand("test", "run rule tests; exit 1 when one fails");
   testing->add_option("files", options->files, "test files; else rules/outdoor.rules-test.yaml");
   testing->add_option("--junit", options->junit, "write a JUnit report to this file");
