@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shipped rules of places: parking rows and facade fronts, their areas, and that they follow changes of a map.
+// The shipped rules of places: parking rows, facade fronts, kinds of ways and crossings, areas, and that they follow
+// changes of a map.
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "mapping/change/map_change.hpp"
@@ -64,6 +66,12 @@ class PlaceRules : public testing::Test {
     addBox(wall, 0, 0, length_m, 0.5);
     if (on_ground) add(wall, vocabulary::clx("touchesGround"), thing("ground"));
   }
+  void addWay(const std::string& name, double width_m, double lower, double higher, double length_m = 10) {
+    const Term way = thing(name);
+    addType(way, "Way");
+    addNumber(way, "width", width_m), addNumber(way, "length", length_m);
+    addNumber(way, "lowerBeside", lower), addNumber(way, "higherBeside", higher);
+  }
   /// The superclass as the closure of the ontology would give it.
   void derive() {
     add(Term::iri(vocabulary::clx("ParkingRow")), vocabulary::rdfs("subClassOf"), Term::iri(vocabulary::clx("Place")));
@@ -99,6 +107,31 @@ TEST_F(PlaceRules, VehiclesSideBySideAreARow) {
   for (int i = 0; i < 3; ++i) addVehicle("bay" + std::to_string(i), 2.7 * i, 0.2 * i, 1.55);
   derive();
   EXPECT_EQ(countOf("?row a clx:ParkingRow ; clx:hasMember ?vehicle"), 3U);
+}
+
+TEST_F(PlaceRules, AWayIsARoadASidewalkOrAPath) {
+  addWay("wide", 4.5, 0, 0);
+  addWay("belowKerb", 3, 0, 0.6);
+  addWay("aboveKerb", 4.4, 0.6, 0);
+  addWay("garden", 2.9, 0.4, 0.6);
+  derive();
+  const std::map<std::string, std::string> kinds{
+      {"wide", "Road"}, {"belowKerb", "Road"}, {"aboveKerb", "Sidewalk"}, {"garden", "Path"}};
+  for (const auto& [name, kind] : kinds)
+    for (const char* other : {"Road", "Sidewalk", "Path"})
+      EXPECT_EQ(countOf("<https://example.org/" + name + "> a clx:" + other), other == kind ? 1U : 0U) << name << other;
+}
+
+TEST_F(PlaceRules, ThreeWaysThatAreNoBaysMakeACrossing) {
+  for (const char* junction : {"crossing", "entrance"})
+    for (int i = 0; i < 3; ++i) {
+      const std::string way = junction + std::to_string(i);
+      addWay(way, 2, 0, 0, std::string(junction) == "entrance" && i == 0 ? 2.9 : 3.0);
+      add(thing(way), vocabulary::clx("connects"), thing(junction));
+    }
+  derive();
+  EXPECT_EQ(countOf("?place a clx:Crossing"), 1U);
+  EXPECT_EQ(countOf("<https://example.org/crossing> a clx:Crossing"), 1U);
 }
 
 TEST_F(PlaceRules, TwoVehiclesAndTurnedDistantOrSmallOnesAreNoRow) {

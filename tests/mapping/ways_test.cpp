@@ -162,13 +162,13 @@ std::string wayLines(const std::string& text) {
 }
 
 TEST(Ways, OfAChangedMapAreThoseOfABuildFromScratch) {
-  const SmallCampus campus({.seed = 7, .stops = 3, .size_m = 45, .points_per_stop = 30000});
+  const SmallCampus campus({.seed = 7, .stops = 3, .size_m = 45, .points_per_stop = 15000});
   const MapInputs inputs = shippedInputs();
   const auto& files = campus.files();
   const std::string whole = builtText(files, inputs), two = builtText({files[0], files[2]}, inputs);
   ASSERT_NE(wayLines(whole).find("LINESTRING"), std::string::npos);
   ASSERT_NE(wayLines(whole), wayLines(two));
-  EXPECT_EQ(builtText({files[2], files[0], files[1]}, inputs, {.threads = 2, .batch_points = 30000}), whole);
+  EXPECT_EQ(builtText({files[2], files[0], files[1]}, inputs, {.threads = 2, .batch_points = 15000}), whole);
 
   const ScratchFolder folder;
   const auto map = folder.path() / "map.clx";

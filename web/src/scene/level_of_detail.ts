@@ -7,7 +7,7 @@ import type { Tile } from './cloud_tiles';
 interface Job { tile: Tile; level: number; urgency: number }
 
 const SLOW_MS = 50, FAST_MS = 28;
-const LEAST_BUDGET = 30_000, LARGEST_BUDGET = 30_000_000;
+const LEAST_BUDGET = 15_000, LARGEST_BUDGET = 30_000_000;
 
 export class LevelOfDetail {
   private jobs: Job[] = [];
