@@ -113,7 +113,7 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
 
 void MapEditor::handOnNames() {
   rdf::WriteTransaction transaction = begin();
-  writeThings(transaction, dateTimeText(secondsNow()), report_.before, report_.after);
+  writeThings(transaction, dateTimeText(secondsNow()), report_.before, report_.after, ObjectsOf::SeveralMaps);
   if (!params_.dry_run) transaction.commit();
 }
 

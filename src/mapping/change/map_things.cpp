@@ -54,28 +54,32 @@ std::map<std::string, std::string> timesOf(const rdf::QuadReader& quads) {
 struct Heirs {
   std::vector<std::vector<std::size_t>> before_of;     ///< by object after: those whose name it inherits
   std::vector<std::vector<std::size_t>> ancestors_of;  ///< by object after: all that went on in it
-  std::vector<bool> has_heir;                          ///< by object before
 };
 
-/// An object that is there before and after has the same seeds, because its id is made of them, and nobody else has one
-/// of them. Only the others are matched seed by seed.
-Heirs heirsOf(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after) {
-  Heirs heirs{std::vector<std::vector<std::size_t>>(after.size()), std::vector<std::vector<std::size_t>>(after.size()),
-              std::vector<bool>(before.size(), false)};
-  std::map<ContentHash, std::size_t> before_by_id;
-  for (std::size_t b = 0; b < before.size(); ++b) before_by_id.emplace(before[b].id, b);
+/// The objects that are the same before and after, each with its number before. The objects of one map have no common
+/// members, so that these are nobody else's heirs. Those of several maps may have: none is given.
+std::map<ContentHash, std::size_t> sameObjects(const std::vector<ObjectMembers>& before,
+                                               const std::vector<ObjectMembers>& after, ObjectsOf objects_of) {
+  std::map<ContentHash, std::size_t> number_before, same;
+  if (objects_of == ObjectsOf::SeveralMaps) return same;
+  for (std::size_t b = 0; b < before.size(); ++b)
+    if (!before[b].seeds.empty()) number_before.emplace(before[b].id, b);
+  for (const ObjectMembers& object : after)
+    if (const auto found = number_before.find(object.id); found != number_before.end()) same.insert(*found);
+  return same;
+}
+
+Heirs heirsOf(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after, ObjectsOf objects_of) {
+  Heirs heirs{std::vector<std::vector<std::size_t>>(after.size()), std::vector<std::vector<std::size_t>>(after.size())};
+  const auto same = sameObjects(before, after, objects_of);
   std::unordered_map<std::uint64_t, std::size_t> owner;
-  for (std::size_t a = 0; a < after.size(); ++a) {
-    const auto same = before_by_id.find(after[a].id);
-    if (same == before_by_id.end()) {
+  for (std::size_t a = 0; a < after.size(); ++a)
+    if (const auto found = same.find(after[a].id); found != same.end())
+      heirs.before_of[a] = heirs.ancestors_of[a] = {found->second};
+    else
       for (const std::uint64_t seed : after[a].seeds) owner.emplace(seed, a);
-      continue;
-    }
-    heirs.before_of[a] = heirs.ancestors_of[a] = {same->second};
-    heirs.has_heir[same->second] = true;
-  }
   for (std::size_t b = 0; b < before.size(); ++b) {
-    if (heirs.has_heir[b]) continue;
+    if (same.contains(before[b].id)) continue;
     std::map<std::size_t, std::size_t> shared;
     for (const std::uint64_t seed : before[b].seeds)
       if (const auto found = owner.find(seed); found != owner.end()) ++shared[found->second];
@@ -86,7 +90,6 @@ Heirs heirsOf(const std::vector<ObjectMembers>& before, const std::vector<Object
       if (!heir || count > shared[*heir] || (count == shared[*heir] && after[a].id < after[*heir].id)) heir = a;
     }
     if (heir) heirs.before_of[*heir].push_back(b);
-    heirs.has_heir[b] = heir.has_value();
   }
   return heirs;
 }
@@ -100,8 +103,8 @@ class Naming {
         things_(storedThings(reader_)),
         times_(timesOf(reader_)) {}
 
-  void run(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after) {
-    const Heirs heirs = heirsOf(before, after);
+  void run(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after, ObjectsOf objects_of) {
+    const Heirs heirs = heirsOf(before, after, objects_of);
     std::vector<std::optional<Thing>> names(after.size());
     for (std::size_t a = 0; a < after.size(); ++a) names[a] = inherited(before, heirs.before_of[a]);
     for (const auto& name : names)
@@ -240,8 +243,8 @@ Thing thingOf(const Things& things, const ContentHash& object) {
 }
 
 void writeThings(rdf::WriteTransaction& transaction, const std::string& time, const std::vector<ObjectMembers>& before,
-                 const std::vector<ObjectMembers>& after) {
-  Naming(transaction, time).run(before, after);
+                 const std::vector<ObjectMembers>& after, ObjectsOf objects_of) {
+  Naming(transaction, time).run(before, after, objects_of);
 }
 
 void copyHistory(const rdf::QuadReader& from, rdf::WriteTransaction& into) {

@@ -26,12 +26,15 @@ struct Thing {
 std::map<ContentHash, std::vector<Thing>> storedThings(const rdf::QuadReader& quads);
 Thing thingOf(const std::map<ContentHash, std::vector<Thing>>& things, const ContentHash& object);
 
+/// Whose objects are compared: those of several maps may have common members.
+enum class ObjectsOf { OneMap, SeveralMaps };
+
 /// Hands the names on from the objects before a change to those after it, and records splits, joins and ends. The part
 /// with most shared members keeps a name (ties: the smallest hash). A join keeps the older name, then the smaller. An
 /// object that comes back as it was gets its former name, if no other has it. A new thing is named by the hash of its
-/// first object. `time` is an xsd:dateTime.
+/// first object. `time` is an xsd:dateTime. Cost: that of the members of objects that differ.
 void writeThings(rdf::WriteTransaction& transaction, const std::string& time, const std::vector<ObjectMembers>& before,
-                 const std::vector<ObjectMembers>& after);
+                 const std::vector<ObjectMembers>& after, ObjectsOf objects_of = ObjectsOf::OneMap);
 
 /// Adds the history of another map: its activities, lineage and things.
 void copyHistory(const rdf::QuadReader& from, rdf::WriteTransaction& into);
