@@ -7,7 +7,9 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "perception/segments/scene.hpp"
 #include "scan/scan.hpp"
 
 namespace cluxel::mapping {
@@ -24,6 +26,10 @@ struct Cloud {
   /// them.
   Eigen::AlignedBox3d rays{Eigen::Vector3d(Eigen::Vector3d::Constant(-1e300)),
                            Eigen::Vector3d(Eigen::Vector3d::Constant(1e300))};
+  std::optional<perception::SensorSight> sight;  ///< absent when the place of the sensor is unknown
 };
+
+/// The views of the clouds whose sensor's place is known.
+std::vector<perception::SceneView> viewsOf(const std::vector<Cloud>& clouds);
 
 }  // namespace cluxel::mapping

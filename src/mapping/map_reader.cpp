@@ -152,7 +152,7 @@ MapInputs MapReader::inputs() const {
 }
 
 const perception::Scene& MapReader::scene() const {
-  if (!impl_->scene) impl_->scene = impl_->readStages().scene();
+  if (!impl_->scene) impl_->scene = impl_->readStages().scene(clouds());
   return *impl_->scene;
 }
 

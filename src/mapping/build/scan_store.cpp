@@ -36,6 +36,11 @@ std::string toBytes(const Cloud& cloud) {
             {"points", cloud.point_count}, {"min", vectorJson(cloud.min)},          {"max", vectorJson(cloud.max)}};
   if (cloud.time_s) json["time_s"] = *cloud.time_s;
   json["rays"] = Json::array({vectorJson(cloud.rays.min()), vectorJson(cloud.rays.max())});
+  if (cloud.sight) json["sensor"] = vectorJson(cloud.sight->origin);
+  if (cloud.sight && cloud.sight->upper_edge) {
+    const perception::UpperEdge& edge = *cloud.sight->upper_edge;
+    json["upper_edge"] = vectorJson({edge.mean_rad, edge.cosine_rad, edge.sine_rad});
+  }
   const auto bytes = Json::to_cbor(json);
   return {bytes.begin(), bytes.end()};
 }
@@ -54,6 +59,11 @@ Cloud cloudFromBytes(const scan::ScanId& id, std::string_view bytes) {
     cloud.min = vectorFrom(json.at("min"));
     cloud.max = vectorFrom(json.at("max"));
     if (json.contains("rays")) cloud.rays = {vectorFrom(json["rays"].at(0)), vectorFrom(json["rays"].at(1))};
+    if (json.contains("sensor")) cloud.sight = perception::SensorSight{vectorFrom(json["sensor"]), std::nullopt};
+    if (cloud.sight && json.contains("upper_edge")) {
+      const Eigen::Vector3d edge = vectorFrom(json["upper_edge"]);
+      cloud.sight->upper_edge = perception::UpperEdge{edge[0], edge[1], edge[2]};
+    }
     if (json.contains("time_s")) cloud.time_s = json.at("time_s").get<double>();
     return cloud;
   } catch (const std::exception& fault) {
@@ -63,7 +73,16 @@ Cloud cloudFromBytes(const scan::ScanId& id, std::string_view bytes) {
 }
 
 Cloud cloudOf(const scan::Scan& scan) {
-  Cloud cloud{scan.id, scan.source, scan.time_s, scan.T_map_sensor, scan.has_pose, scan.points.size(), {}, {}, {}};
+  Cloud cloud{scan.id,
+              scan.source,
+              scan.time_s,
+              scan.T_map_sensor,
+              scan.has_pose,
+              scan.points.size(),
+              {},
+              {},
+              {},
+              perception::sensorSightOf(scan)};
   cloud.min.setConstant(1e300), cloud.max.setConstant(-1e300);
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     const Eigen::Vector3d p = scan::toMap(scan.T_map_sensor, {scan.points.x[i], scan.points.y[i], scan.points.z[i]});
@@ -101,6 +120,13 @@ void requireTime(const scan::Scan& scan) {
 }
 
 }  // namespace
+
+std::vector<perception::SceneView> viewsOf(const std::vector<Cloud>& clouds) {
+  std::vector<perception::SceneView> views;
+  for (const Cloud& cloud : clouds)
+    if (cloud.sight) views.push_back({cloud.id, cloud.T_map_sensor, *cloud.sight});
+  return views;
+}
 
 TileSet PointChanges::tiles() const {
   TileSet all = anew;

@@ -26,8 +26,10 @@ class TileStages {
                                 ProgressSink& sink);
   /// Decodes all stored outputs. Points are taken from the scans, and what is measured of cluxels from the points.
   void loadAll(const rdf::ReadTransaction& transaction);
-  /// The scene of what is loaded.
-  perception::Scene scene() const { return assembleScene(outputs_, params_.relation); }
+  /// The scene of what is loaded, seen from the clouds of the map.
+  perception::Scene scene(const std::vector<Cloud>& clouds) const {
+    return assembleScene(outputs_, params_.relation, viewsOf(clouds));
+  }
   /// The seeds of the scene's cluxels.
   perception::SceneSeeds seeds() const { return seedsOf(outputs_); }
 

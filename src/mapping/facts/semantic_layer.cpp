@@ -85,9 +85,9 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
                                  const TileStages& stages, unsigned threads, ProgressSink& sink,
                                  const rdf::InferenceCheck& check) {
   writeOntology(transaction, parsed.inputs);
-  perception::Scene scene = stages.scene();
-  sink.progress("scene", scene.primitives.size(), scene.primitives.size());
   const std::vector<Cloud> clouds = storedClouds(transaction);
+  perception::Scene scene = stages.scene(clouds);
+  sink.progress("scene", scene.primitives.size(), scene.primitives.size());
   MapOracle oracle(transaction, [&](std::span<const rules::SemanticObject> objects) {
     if (check) check(0);
     writeObjectsSoFar(transaction, parsed.inputs, clouds, scene, stages, objects);

@@ -18,6 +18,8 @@ class MergedComponent {
   void add(const ComponentTile& tile, std::size_t number);
   /// Fills the attributes, boxes, axes and probabilities of `primitive`.
   void describe(Primitive& primitive) const;
+  /// The scans with a point in it.
+  const std::set<scan::ScanId>& scans() const { return scans_; }
 
  private:
   struct CellHeight {

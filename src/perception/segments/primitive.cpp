@@ -45,4 +45,18 @@ std::optional<Attribute> attributeOf(std::string_view name) {
   return std::nullopt;
 }
 
+bool isOfAnEnd(Attribute attribute) {
+  switch (attribute) {
+    case Attribute::Top:
+    case Attribute::Bottom:
+    case Attribute::Height:
+    case Attribute::ElevationSpan:
+    case Attribute::Length:
+    case Attribute::HorizontalExtent:
+      return true;
+    default:
+      return false;
+  }
+}
+
 }  // namespace cluxel::perception

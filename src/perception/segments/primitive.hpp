@@ -57,6 +57,8 @@ struct AttributeInfo {
 /// One row per attribute, in the order of the enumeration.
 const std::array<AttributeInfo, kAttributeCount>& attributeInfos();
 std::optional<Attribute> attributeOf(std::string_view name);
+/// Whether it depends on where the thing ends: a scan that does not show the end measures too little.
+bool isOfAnEnd(Attribute attribute);
 
 /// An upright box. `yaw`: angle of its length axis from the map's x [rad, in [-pi/2, pi/2)].
 struct UprightBox {
@@ -85,7 +87,8 @@ struct Primitive {
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();                            ///< mean of its points [m, map]
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();                               ///< main axis, z >= 0
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();                             ///< best plane's normal, z >= 0
-  double ground_z = 0;  ///< height of the local ground under its centroid [m, map]
+  double ground_z = 0;               ///< height of the local ground under its centroid [m, map]
+  std::vector<std::uint32_t> views;  ///< numbers in Scene::views of the scans that saw it, ascending
 
   double operator[](Attribute attribute) const { return attributes[static_cast<std::size_t>(attribute)]; }
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "perception/segments/primitive.hpp"
+#include "perception/visibility/sensor_sight.hpp"
 
 namespace cluxel::perception {
 
@@ -78,8 +80,16 @@ struct SceneCluxels : SceneSeeds {
   }
 };
 
+/// A scan of which the place of the sensor is known.
+struct SceneView {
+  ContentHash scan;
+  Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
+  SensorSight sight;
+};
+
 struct Scene {
   SceneCluxels cluxels;
+  std::vector<SceneView> views;                ///< ascending by scan
   std::vector<Primitive> primitives;           ///< sorted by id
   std::vector<Relation> relations;             ///< sorted; symmetric ones are stored in both directions
   std::vector<std::uint32_t> relation_offset;  ///< per primitive, the first of its relations (`from`); size + 1 entries

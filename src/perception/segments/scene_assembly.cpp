@@ -206,6 +206,18 @@ std::vector<std::uint32_t> sortById(std::vector<Primitive>& primitives) {
   return rank;
 }
 
+/// The numbers in `views` of the scans; both are ascending.
+std::vector<std::uint32_t> viewsOf(const std::set<scan::ScanId>& scans, const std::vector<SceneView>& views) {
+  std::vector<std::uint32_t> numbers;
+  for (const scan::ScanId& scan : scans) {
+    const auto found = std::lower_bound(views.begin(), views.end(), scan,
+                                        [](const SceneView& view, const scan::ScanId& id) { return view.scan < id; });
+    if (found != views.end() && found->scan == scan)
+      numbers.push_back(static_cast<std::uint32_t>(found - views.begin()));
+  }
+  return numbers;
+}
+
 void fillPrimitives(const TileOutputs& tiles, const std::vector<std::uint32_t>& primitive_of, std::size_t count,
                     Scene& scene) {
   std::vector<MergedComponent> merged(count);
@@ -222,6 +234,7 @@ void fillPrimitives(const TileOutputs& tiles, const std::vector<std::uint32_t>& 
   }
   for (std::size_t i = 0; i < count; ++i) {
     merged[i].describe(scene.primitives[i]);
+    scene.primitives[i].views = viewsOf(merged[i].scans(), scene.views);
     scene.primitives[i].id = nameOf(scene.primitives[i], scene.cluxels);
   }
 }
@@ -275,9 +288,11 @@ SceneSeeds seedsOf(const TileOutputs& tiles) {
   return seeds;
 }
 
-Scene assembleScene(const TileOutputs& tiles, const RelationParams& params) {
+Scene assembleScene(const TileOutputs& tiles, const RelationParams& params, std::vector<SceneView> views) {
   checkFit(tiles);
   Scene scene;
+  std::sort(views.begin(), views.end(), [](const SceneView& a, const SceneView& b) { return a.scan < b.scan; });
+  scene.views = std::move(views);
   scene.cluxels = gatherCluxels(tiles);
   const TileNumbering components(tiles.components);
   std::vector<std::uint32_t> primitive_of = joinComponents(tiles, components);

@@ -34,9 +34,9 @@ struct TileOutputs {
   std::map<TileKey, ContactTile> contacts;
 };
 
-/// The scene of all tiles. All maps must have the same keys. Throws Error (StoreUnavailable) when outputs do not belong
-/// together. Cost: about 1 microsecond a cluxel.
-Scene assembleScene(const TileOutputs& tiles, const RelationParams& params);
+/// The scene of all tiles. All maps must have the same keys. `views`: of the scans whose sensor's place is known, in
+/// any order. Throws Error (StoreUnavailable) when outputs do not belong together. Cost: about 1 microsecond a cluxel.
+Scene assembleScene(const TileOutputs& tiles, const RelationParams& params, std::vector<SceneView> views = {});
 /// The seeds of its cluxels alone, with the same errors. Cost: about 50 ns a cluxel.
 SceneSeeds seedsOf(const TileOutputs& tiles);
 

@@ -56,6 +56,7 @@ Scene partOf(const Scene& scene, std::span<const PrimitiveIndex> kept) {
   const std::vector<std::uint32_t> cluxel_number = numbersOf(cluxels, scene.cluxels.size());
   const std::vector<std::uint32_t> primitive_number = numbersOf(kept, scene.primitives.size());
   Scene part;
+  part.views = scene.views;
   part.cluxels = cluxelsOf(scene.cluxels, cluxels, cluxel_number, primitive_number);
   for (const PrimitiveIndex primitive : kept) {
     Primitive& copy = part.primitives.emplace_back(scene.primitives[primitive]);

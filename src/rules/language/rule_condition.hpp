@@ -45,7 +45,18 @@ struct SliceSpec {
 };
 
 struct Condition {
-  enum class Kind : std::uint8_t { Attribute, Pair, Relation, Label, Class, Ask, All, Any, Not };
+  enum class Kind : std::uint8_t {
+    Attribute,
+    Pair,
+    Relation,
+    Label,
+    Class,
+    Ask,
+    All,
+    Any,
+    Not,
+    Unseen,  ///< the operand is neither true nor false, because no scan shows an end that it measures
+  };
   Kind kind = Kind::All;
   SourceLocation at;
   std::string of;  ///< bound name of the subject; never empty after loading
@@ -69,7 +80,7 @@ struct Condition {
   std::string class_iri;                     ///< of Class: the subject belongs to an object of that class
   std::string query;                         ///< of Ask: SPARQL with the rule set's prefixes
   std::vector<std::string> query_names;      ///< bound names that the query mentions as variables
-  std::vector<Condition> operands;           ///< of All, Any, Not
+  std::vector<Condition> operands;           ///< of All, Any, Not, Unseen
 };
 
 /// "a Tree", "an Avenue": a class or label with its article.

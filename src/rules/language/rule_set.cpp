@@ -172,6 +172,8 @@ std::string describe(const Condition& condition) {
       return describeAll(condition);
     case Kind::Not:
       return "not " + describe(condition.operands.front());
+    case Kind::Unseen:
+      return "unseen: " + describe(condition.operands.front());
   }
   return {};
 }

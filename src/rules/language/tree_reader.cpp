@@ -55,7 +55,7 @@ class TreeReader {
   }
 
   void onlyWith(const YamlNode& node, std::initializer_list<std::string_view> allowed) {
-    static constexpr std::array<std::string_view, 6> others{"yes", "no", "found", "missing", "hint", "leave"};
+    static constexpr std::array<std::string_view, 7> others{"yes", "no", "unseen", "found", "missing", "hint", "leave"};
     for (const YamlNode& key : node.keys) {
       const bool other = std::find(others.begin(), others.end(), key.text) != others.end();
       if (other && std::find(allowed.begin(), allowed.end(), key.text) == allowed.end())
@@ -69,7 +69,7 @@ class TreeReader {
   }
 
   void readBranch(const YamlNode& node, const std::string& kind, const NameScope& scope, NodeIndex index) {
-    onlyWith(node, {"yes", "no"});
+    onlyWith(node, {"yes", "no", "unseen"});
     BranchNode branch;
     const YamlNode* test = requireKey(node, kind, "node", faults_);
     if (test != nullptr) {
@@ -81,9 +81,34 @@ class TreeReader {
       if (auto condition = readCondition(kind == "test" ? *test : bare, scope, reading_))
         branch.condition = std::move(*condition);
     }
+    if (const YamlNode* unseen = node.find("unseen")) index = readUnseen(node, *unseen, branch.condition, scope, index);
     branch.yes = readBelow(node, "yes", scope);
     branch.no = readBelow(node, "no", scope);
     rule_.nodes[index].what = std::move(branch);
+  }
+
+  /// Makes the node ask first whether the test is unseen; returns the new node for the test itself.
+  NodeIndex readUnseen(const YamlNode& node, const YamlNode& below, const Condition& test, const NameScope& scope,
+                       NodeIndex index) {
+    if (!measuresAnEnd(test))
+      faults_.error(
+          node.keyNode("unseen")->at, "this test measures no end of a thing, so it is never unseen",
+          "tests of top, bottom, height, elevation_span, length and horizontal_extent can be, without 'slice'");
+    BranchNode first;
+    first.condition.kind = Condition::Kind::Unseen;
+    first.condition.at = test.at;
+    first.condition.of = test.of;
+    first.condition.operands = {test};
+    first.yes = read(below, scope);
+    first.no = rule_.nodes.size();
+    rule_.nodes.push_back({node.at, RejectLeaf{}});
+    rule_.nodes[index].what = std::move(first);
+    return rule_.nodes.size() - 1;
+  }
+
+  static bool measuresAnEnd(const Condition& test) {
+    if (test.kind == Condition::Kind::Attribute) return !test.slice && perception::isOfAnEnd(test.attribute);
+    return std::any_of(test.operands.begin(), test.operands.end(), measuresAnEnd);
   }
 
   void readFind(const YamlNode& node, const NameScope& scope, NodeIndex index) {

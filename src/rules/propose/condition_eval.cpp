@@ -8,6 +8,7 @@
 
 #include "rdf/map_iris.hpp"
 #include "rules/propose/pair_measures.hpp"
+#include "rules/propose/unseen_ends.hpp"
 
 namespace cluxel::rules {
 
@@ -98,6 +99,7 @@ bool ConditionEvaluator::allHold(const std::vector<Condition>& conditions) {
 
 bool ConditionEvaluator::holdsElementary(const Condition& condition, DecisionStep& step) {
   using Kind = Condition::Kind;
+  if (condition.kind == Kind::Unseen) return isUnseen(condition, step);
   const Candidate& subject = bindings_.at(condition.of);
   switch (condition.kind) {
     case Kind::Attribute:
@@ -134,6 +136,15 @@ bool ConditionEvaluator::holdsAttribute(const Condition& condition, DecisionStep
   if (!value || !threshold) return false;  // the slice is empty
   step.threshold = nearerThreshold(condition, *value, *threshold);
   return compare(condition, *value, *threshold);
+}
+
+bool ConditionEvaluator::isUnseen(const Condition& condition, DecisionStep& step) {
+  const Condition& test = condition.operands.front();
+  if (test.kind == Condition::Kind::Attribute) {
+    holdsAttribute(test, step);
+    step.threshold.reset();  // no other measured value would show the end
+  }
+  return truthOf(state_, bindings_, *this, test) == Truth::Unseen;
 }
 
 bool ConditionEvaluator::holdsLabelShare(const Condition& condition, DecisionStep& step) {

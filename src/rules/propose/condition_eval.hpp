@@ -31,6 +31,7 @@ class ConditionEvaluator {
  private:
   bool holdsElementary(const Condition& condition, DecisionStep& step);
   bool holdsAttribute(const Condition& condition, DecisionStep& step);
+  bool isUnseen(const Condition& condition, DecisionStep& step);
   /// Absent when the candidate has no cluxel in the slice.
   std::optional<double> measured(const std::string& of, const std::optional<SliceSpec>& slice,
                                  perception::Attribute attribute) const;

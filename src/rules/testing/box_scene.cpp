@@ -60,6 +60,7 @@ class Builder {
   explicit Builder(const BoxScene& boxes) : boxes_(boxes) {}
 
   BuiltBoxScene build() {
+    makeViews();
     makePrimitives();
     makeCluxels();
     joinCluxels();
@@ -71,6 +72,16 @@ class Builder {
  private:
   perception::Scene& scene() { return built_.scene; }
   const BoxPrimitive& boxOf(perception::PrimitiveIndex i) const { return boxes_.boxes[box_of_primitive_[i]]; }
+
+  void makeViews() {
+    for (std::size_t i = 0; i < boxes_.views.size(); ++i) {
+      perception::SceneView view;
+      view.scan = ContentHasher().add(i).finish();
+      view.T_map_sensor.translation() = boxes_.views[i].from;
+      if (boxes_.views[i].up_to_rad) view.sight.upper_edge = perception::UpperEdge{*boxes_.views[i].up_to_rad, 0, 0};
+      scene().views.push_back(view);
+    }
+  }
 
   static ContentHash idOf(const BoxPrimitive& box) {
     ContentHasher hasher;
@@ -92,6 +103,8 @@ class Builder {
     for (perception::PrimitiveIndex i = 0; i < count; ++i) {
       scene().primitives[i].id = ids[box_of_primitive_[i]];
       scene().primitives[i].label = boxOf(i).label;
+      scene().primitives[i].views.resize(boxes_.views.size());
+      std::iota(scene().primitives[i].views.begin(), scene().primitives[i].views.end(), 0U);
       built_.names.push_back(boxOf(i).name);
       primitive_of_box_[box_of_primitive_[i]] = i;
     }

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,9 +22,16 @@ struct BoxPrimitive {
   std::map<std::string, double> adjacency;  ///< other box → share of this box's outward edges that lead to it
 };
 
+/// A sensor that saw all boxes.
+struct BoxView {
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< [m]
+  std::optional<double> up_to_rad;  ///< elevation of the upper edge of its field of view; none: unlimited
+};
+
 struct BoxScene {
   std::vector<BoxPrimitive> boxes;
   double ground_z_m = 0;
+  std::vector<BoxView> views = {};
 };
 
 /// Primitives are sorted by id; `names[i]` is the box of primitive i. A cluxel's name depends on its box's name and its

@@ -6,10 +6,12 @@ namespace cluxel::rules {
 
 namespace {
 
-/// Calls see(condition, node) for the condition and its operands, outermost first.
+/// Calls see(condition, node) for the condition and its operands, outermost first. The operand of `unseen` is left out:
+/// it repeats the test of the node behind it.
 template <typename ConditionLike, typename See>
 void forEachPart(ConditionLike& condition, std::optional<NodeIndex> node, const See& see) {
   see(condition, node);
+  if (condition.kind == Condition::Kind::Unseen) return;
   for (auto& operand : condition.operands) forEachPart(operand, node, see);
 }
 

@@ -6,6 +6,7 @@
 #include "base/file_bytes.hpp"
 #include "base/nearest_name.hpp"
 #include "rules/language/rule_reading.hpp"
+#include "rules/testing/box_scene_reader.hpp"
 #include "rules/testing/rule_test_file.hpp"
 
 namespace cluxel::rules {
@@ -17,7 +18,7 @@ constexpr std::string_view kTestApiVersion = "cluxel.rules.test/v1";
 class TestReader {
  public:
   TestReader(std::filesystem::path folder, const RuleSet& rules, RuleReading& reading)
-      : folder_(std::move(folder)), rules_(rules), reading_(reading), faults_(reading.faults) {}
+      : folder_(std::move(folder)), rules_(rules), reading_(reading), faults_(reading.faults), boxes_(reading) {}
 
   std::vector<RuleTest> read(const YamlNode& root) {
     if (const YamlNode* defaults = root.find("defaults")) readDefaults(*defaults);
@@ -50,7 +51,7 @@ class TestReader {
     const YamlNode* like = node.find("like");
     if (like != nullptr) test.boxes = sceneLike(*like, earlier), ++fixtures;
     if (const YamlNode* primitives = node.find("primitives")) {
-      readPrimitives(*primitives, test.boxes);
+      boxes_.readPrimitives(*primitives, test.boxes);
       if (like == nullptr) ++fixtures;
     }
     for (const auto& [key, kind] : {std::pair{"cloud", SceneRequest::Kind::Cloud}, {"map", SceneRequest::Kind::Map}})
@@ -59,7 +60,8 @@ class TestReader {
         if (const auto text = readText(*path, "a file", faults_)) test.scene = SceneRequest{kind, folder_ / *text};
       }
     if (fixtures != 1) faults_.error(node.at, "a test needs exactly one of: primitives, like, cloud, map");
-    if (const YamlNode* adjacency = node.find("adjacency")) readAdjacency(*adjacency, test.boxes);
+    if (const YamlNode* views = node.find("views")) boxes_.readViews(*views, test.boxes);
+    if (const YamlNode* adjacency = node.find("adjacency")) boxes_.readAdjacency(*adjacency, test.boxes);
     if (const YamlNode* expect = requireKey(node, "expect", "test", faults_)) readExpect(*expect, test);
     return test;
   }
@@ -73,104 +75,6 @@ class TestReader {
     }
     faults_.error(name.at, "no test of boxes above has the name '" + name.text + "'", suggestion(name.text, known));
     return {};
-  }
-
-  void readPrimitives(const YamlNode& node, BoxScene& boxes) {
-    if (!node.isMap()) return faults_.error(node.at, "'primitives' maps names to boxes");
-    for (std::size_t i = 0; i < node.items.size(); ++i) {
-      if (!checkKeys(node.items[i], "primitive", faults_)) continue;
-      const std::string& name = node.keys[i].text;
-      const auto same = std::find_if(boxes.boxes.begin(), boxes.boxes.end(),
-                                     [&](const BoxPrimitive& known) { return known.name == name; });
-      if (same != boxes.boxes.end()) {
-        changePrimitive(node.items[i], *same);
-        continue;
-      }
-      BoxPrimitive primitive;
-      primitive.name = name;
-      for (const char* key : {"label", "box"}) requireKey(node.items[i], key, "primitive", faults_);
-      changePrimitive(node.items[i], primitive);
-      boxes.boxes.push_back(std::move(primitive));
-    }
-  }
-
-  /// The keys given replace what is known of the primitive.
-  void changePrimitive(const YamlNode& node, BoxPrimitive& primitive) {
-    const auto labels =
-        node.find("label") == nullptr ? std::vector<scan::PrimitiveLabel>{} : readLabels(node, reading_);
-    if (!labels.empty()) primitive.label = labels.front();
-    const YamlNode* box = node.find("box");
-    if (box != nullptr && checkKeys(*box, "box", faults_)) {
-      primitive.center = readTriple(*box, "center");
-      primitive.size = readTriple(*box, "size");
-      if (primitive.size.minCoeff() <= 0) faults_.error(box->at, "a box must have a size");
-      if (const YamlNode* yaw = box->find("yaw"))
-        if (const auto angle = readQuantity(*yaw, perception::Dimension::Angle, reading_))
-          primitive.yaw_rad = angle->value;
-    }
-    const YamlNode* attributes = node.find("attributes");
-    if (attributes == nullptr) return;
-    for (std::size_t i = 0; i < attributes->items.size() && attributes->isMap(); ++i)
-      readAttribute(attributes->keys[i], attributes->items[i], primitive);
-  }
-
-  void readAttribute(const YamlNode& key, const YamlNode& value, BoxPrimitive& primitive) {
-    const auto attribute = perception::attributeOf(key.text);
-    if (!attribute) {
-      std::vector<std::string> known;
-      for (const perception::AttributeInfo& info : perception::attributeInfos()) known.emplace_back(info.name);
-      return faults_.error(key.at, "unknown attribute '" + key.text + "'", suggestion(key.text, known));
-    }
-    const perception::Dimension dimension =
-        perception::attributeInfos()[static_cast<std::size_t>(*attribute)].dimension;
-    if (const auto quantity = readQuantity(value, dimension, reading_))
-      primitive.attributes[*attribute] = quantity->value;
-  }
-
-  /// Three numbers in metres.
-  Eigen::Vector3d readTriple(const YamlNode& box, std::string_view key) {
-    Eigen::Vector3d triple = Eigen::Vector3d::Ones();
-    const YamlNode* node = requireKey(box, key, "box", faults_);
-    if (node == nullptr) return triple;
-    if (!node->isSequence() || node->items.size() != 3) {
-      faults_.error(node->at, "three numbers are expected here, in metres: [x, y, z]");
-      return triple;
-    }
-    for (int i = 0; i < 3; ++i) {
-      const YamlNode& item = node->items[static_cast<std::size_t>(i)];
-      const auto number = item.isScalar() ? parseNumber(item.text) : std::nullopt;
-      if (number && std::abs(*number) < 1e5)
-        triple[i] = *number;
-      else
-        faults_.error(item.at, "a number of metres is expected here");
-    }
-    return triple;
-  }
-
-  void readAdjacency(const YamlNode& node, BoxScene& boxes) {
-    if (!node.isMap()) return faults_.error(node.at, "'adjacency' maps names to shares: { b: { c: 0.8 } }");
-    for (std::size_t i = 0; i < node.items.size(); ++i) {
-      const auto box = std::find_if(boxes.boxes.begin(), boxes.boxes.end(),
-                                    [&](const BoxPrimitive& known) { return known.name == node.keys[i].text; });
-      if (box == boxes.boxes.end() || !node.items[i].isMap()) {
-        faults_.error(node.keys[i].at, "'" + node.keys[i].text + "' is no primitive of this test", "{ b: { c: 0.8 } }");
-        continue;
-      }
-      for (std::size_t j = 0; j < node.items[i].items.size(); ++j) {
-        checkPrimitive(node.items[i].keys[j], boxes);
-        const auto share = readQuantity(node.items[i].items[j], perception::Dimension::Ratio, reading_);
-        if (share && (share->value < 0 || share->value > 1))
-          faults_.error(node.items[i].items[j].at, "a share lies between 0 and 1");
-        if (share) box->adjacency[node.items[i].keys[j].text] = share->value;
-      }
-    }
-  }
-
-  void checkPrimitive(const YamlNode& name, const BoxScene& boxes) {
-    std::vector<std::string> known;
-    for (const BoxPrimitive& box : boxes.boxes) known.push_back(box.name);
-    if (!name.isScalar() || std::find(known.begin(), known.end(), name.text) == known.end())
-      faults_.error(name.at, "no primitive '" + name.text + "' in this test", suggestion(name.text, known));
   }
 
   void readExpect(const YamlNode& node, RuleTest& test) {
@@ -222,7 +126,7 @@ class TestReader {
     auto readNames = [&](const YamlNode& list, const std::string& part) {
       if (!list.isSequence()) faults_.error(list.at, "a list of primitives is expected here");
       for (const YamlNode& name : list.items) {
-        checkPrimitive(name, boxes);
+        boxes_.checkPrimitive(name, boxes);
         object.parts[part].push_back(name.text);
       }
     };
@@ -261,7 +165,7 @@ class TestReader {
     ExpectedReason reason;
     reason.at = node.at;
     if (const YamlNode* primitive = requireKey(node, "primitive", "expected reason", faults_)) {
-      checkPrimitive(*primitive, test.boxes);
+      boxes_.checkPrimitive(*primitive, test.boxes);
       reason.primitive = primitive->text;
     }
     if (const YamlNode* rule = requireKey(node, "rule", "expected reason", faults_)) reason.rule_id = readRuleId(*rule);
@@ -292,6 +196,7 @@ class TestReader {
   const RuleSet& rules_;
   RuleReading& reading_;
   FaultList& faults_;
+  BoxSceneReader boxes_;
   double ground_z_m_ = 0;
 };
 
