@@ -30,7 +30,12 @@ std::vector<BranchCoverage> branchesOf(const RuleTestFile& file) {
     for (NodeIndex i = 0; i < rule.nodes.size() && file.isAtHand(rule); ++i) {
       const TreeNode& node = rule.nodes[i];
       const auto add = [&](const char* way, NodeIndex to) { branches.push_back({rule.id, i, node.at, way, to, 0}); };
-      if (const auto* branch = std::get_if<BranchNode>(&node.what)) add("yes", branch->yes), add("no", branch->no);
+      if (const auto* branch = std::get_if<BranchNode>(&node.what)) {
+        if (branch->condition.kind == Condition::Kind::Unseen)
+          add("unseen", branch->yes);
+        else
+          add("yes", branch->yes), add("no", branch->no);
+      }
       if (const auto* find = std::get_if<FindNode>(&node.what))
         add("found", find->found), add("missing", find->missing);
     }
