@@ -9,6 +9,7 @@
 #include "rules/box_world.hpp"
 #include "rules/decide/decision_record.hpp"
 #include "rules/propose/condition_eval.hpp"
+#include "rules/propose/unseen_ends.hpp"
 #include "rules/testing/rule_test_file.hpp"
 #include "test_paths.hpp"
 
@@ -23,7 +24,7 @@ constexpr double kSame = 1e-6;         // of SI units and log-odds
 constexpr double kShareReach_m = 0.5;  // in plan view: shares of edges count for things within it
 
 struct Counts {
-  std::size_t attributes = 0, slices = 0, pairs = 0, relations = 0, labels = 0, finds = 0, evidence = 0;
+  std::size_t unseen = 0, attributes = 0, slices = 0, pairs = 0, relations = 0, labels = 0, finds = 0, evidence = 0;
 };
 
 std::vector<FragmentIndex> aliveOthers(const ReasoningState& state, const Candidate& subject) {
@@ -183,8 +184,9 @@ class LinesOfACandidate {
  private:
   static void collect(const Condition& condition, std::vector<const Condition*>& all) {
     const bool negative = condition.kind == Condition::Kind::Not && condition.operands.front().operands.empty();
-    if (condition.operands.empty() || negative) all.push_back(&condition);
-    if (!negative)
+    const bool single = negative || condition.operands.empty() || condition.kind == Condition::Kind::Unseen;
+    if (single) all.push_back(&condition);
+    if (!single)
       for (const Condition& operand : condition.operands) collect(operand, all);
   }
 
@@ -234,7 +236,8 @@ class LinesOfACandidate {
                condition.labels.end();
       });
     }
-    if (condition.kind == Kind::Attribute) return evaluateAttribute(condition, told);
+    if (condition.kind == Kind::Attribute) return evaluateAttribute(condition, told, 0);
+    if (condition.kind == Kind::Unseen) return evaluateUnseen(condition.operands.front());
     if (condition.kind == Kind::Pair) {
       ++counts_.pairs;
       const auto value = brute_.pair(condition);
@@ -253,7 +256,56 @@ class LinesOfACandidate {
     return std::nullopt;
   }
 
-  std::optional<bool> evaluateAttribute(const Condition& condition, std::optional<double> told) {
+  /// Unseen: things that go on farther at their unseen ends would be judged otherwise.
+  std::optional<bool> evaluateUnseen(const Condition& test) {
+    std::optional<bool> as_measured;
+    for (const double farther_m : {0.0, 0.1, 0.5, 1.0, 2.0, 4.0, 8.0, 100.0}) {
+      const std::optional<bool> holds = evaluateExtended(test, farther_m);
+      if (!holds) return std::nullopt;
+      if (!as_measured) as_measured = holds;
+      if (*holds == *as_measured) continue;
+      ++counts_.unseen;
+      return true;
+    }
+    return false;
+  }
+
+  std::optional<bool> evaluateExtended(const Condition& condition, double farther_m) {
+    using Kind = Condition::Kind;
+    if (condition.kind == Kind::Attribute)
+      return evaluateAttribute(condition, std::nullopt, isUnseen(condition) ? farther_m : 0);
+    if (condition.kind != Kind::All && condition.kind != Kind::Any && condition.kind != Kind::Not)
+      return evaluate(condition, std::nullopt);
+    bool all = true, any = false;
+    for (const Condition& operand : condition.operands) {
+      const std::optional<bool> holds = evaluateExtended(operand, farther_m);
+      if (!holds) return std::nullopt;
+      all = all && *holds, any = any || *holds;
+    }
+    return condition.kind == Kind::All ? all : condition.kind == Kind::Any ? any : !all;
+  }
+
+  /// Tops by brute force: every view's edge is less than 0.4 degrees above the highest cluxel.
+  bool isUnseen(const Condition& condition) const {
+    if (condition.slice || !isOfAnEnd(condition.attribute)) return false;
+    const Candidate& candidate = verdict_.bindings.at(condition.of);
+    if (condition.attribute != Attribute::Top) return isEndUnseen(state_, candidate, condition.attribute);
+    const SceneCluxels& all = state_.scene.cluxels;
+    bool unseen = !state_.scene.views.empty();
+    for (const SceneView& view : state_.scene.views) {
+      double highest = -1e9;
+      for (std::uint32_t cluxel : state_.fragments.cluxelsOf(candidate)) {
+        const Eigen::Vector3d from = all.center[cluxel] - view.T_map_sensor.translation();
+        const double top = from.z() + static_cast<double>(all.extent[cluxel].z()) / 2;
+        if (all.center[cluxel].z() + static_cast<double>(all.extent[cluxel].z()) / 2 > candidate.shape.max.z() - 0.01)
+          highest = std::max(highest, std::atan(top / std::hypot(from.x(), from.y())));
+      }
+      unseen = unseen && view.sight.upper_edge && view.sight.upper_edge->mean_rad - highest < 0.4 * 3.14159265 / 180;
+    }
+    return unseen;
+  }
+
+  std::optional<bool> evaluateAttribute(const Condition& condition, std::optional<double> told, double farther_m) {
     const auto value = brute_.attribute(condition.of, condition.slice, condition.attribute);
     const bool measurable = value || !condition.slice;
     if (measurable) expectTold(condition, value, told);
@@ -266,7 +318,8 @@ class LinesOfACandidate {
       threshold = condition.ratio * *other;
     }
     ++(condition.slice ? counts_.slices : counts_.attributes);
-    return compare(condition, measured, threshold);
+    return compare(condition, condition.attribute == Attribute::Bottom ? measured - farther_m : measured + farther_m,
+                   threshold);
   }
 
   /// What was found passes each condition by itself, when it is one fragment.
@@ -335,6 +388,7 @@ TEST(ExplanationLines, HoldWhenEvaluatedAgainByBruteForce) {
     };
     reason(built.scene, file.rules, context);
   }
+  EXPECT_GT(counts.unseen, 3U);
   EXPECT_GT(counts.attributes, 1000U);
   EXPECT_GT(counts.slices, 20U);
   EXPECT_GT(counts.pairs, 50U);

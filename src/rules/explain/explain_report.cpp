@@ -61,12 +61,19 @@ std::string nodeText(const PathNode& node, const Decision& decision, const std::
   return text;
 }
 
+/// The node asks whether an end is unseen, and it is not: nothing to tell.
+bool isOfSeenEnds(const Rule& rule, const WalkedPath& walked) {
+  const auto* branch = std::get_if<BranchNode>(&rule.nodes[walked.node].what);
+  return branch != nullptr && branch->condition.kind == Condition::Kind::Unseen && !walked.tests.passed;
+}
+
 std::string pathText(const Decision& decision, const Rule* rule, const std::string& indent) {
   std::string text;
   if (rule == nullptr || decision.is_gathered)
     for (const DecisionStep& step : decision.path) text += stepText(step, indent);
   else
     for (const WalkedPath& walked : walkedPath(*rule, decision)) {
+      if (isOfSeenEnds(*rule, walked)) continue;
       // The tests of an `all` stand for themselves.
       if (walked.tests.kind == PathNode::Kind::All)
         for (const PathNode& operand : walked.tests.operands) text += nodeText(operand, decision, indent);
@@ -146,6 +153,7 @@ nlohmann::ordered_json nodeJson(const PathNode& node) {
 nlohmann::ordered_json treeJson(const Rule& rule, const Decision& decision) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const WalkedPath& walked : walkedPath(rule, decision)) {
+    if (isOfSeenEnds(rule, walked)) continue;
     nlohmann::ordered_json entry = nodeJson(walked.tests);
     entry["line"] = rule.nodes[walked.node].at.line;
     json.push_back(std::move(entry));

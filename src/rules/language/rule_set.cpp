@@ -143,6 +143,16 @@ std::string_view nameOf(PairMeasure measure) {
   return "adjacent_fraction";
 }
 
+/// The tests of ends in a condition, without the others.
+std::string describeEnds(const Condition& condition) {
+  if (condition.kind == Condition::Kind::Attribute)
+    return !condition.slice && perception::isOfAnEnd(condition.attribute) ? describe(condition) : "";
+  std::string text;
+  for (const Condition& operand : condition.operands)
+    if (const std::string part = describeEnds(operand); !part.empty()) text += (text.empty() ? "" : ", ") + part;
+  return text;
+}
+
 std::string describe(const Condition& condition) {
   using Kind = Condition::Kind;
   switch (condition.kind) {
@@ -173,7 +183,7 @@ std::string describe(const Condition& condition) {
     case Kind::Not:
       return "not " + describe(condition.operands.front());
     case Kind::Unseen:
-      return "unseen: " + describe(condition.operands.front());
+      return "unseen: " + describeEnds(condition.operands.front());
   }
   return {};
 }

@@ -71,6 +71,7 @@ class TreeReader {
   void readBranch(const YamlNode& node, const std::string& kind, const NameScope& scope, NodeIndex index) {
     onlyWith(node, {"yes", "no", "unseen"});
     BranchNode branch;
+    const std::size_t faults_before = faults_.errorCount();
     const YamlNode* test = requireKey(node, kind, "node", faults_);
     if (test != nullptr) {
       YamlNode bare;
@@ -81,7 +82,10 @@ class TreeReader {
       if (auto condition = readCondition(kind == "test" ? *test : bare, scope, reading_))
         branch.condition = std::move(*condition);
     }
-    if (const YamlNode* unseen = node.find("unseen")) index = readUnseen(node, *unseen, branch.condition, scope, index);
+    if (const YamlNode* unseen = node.find("unseen")) {
+      if (faults_.errorCount() == faults_before) requireAnEnd(branch.condition, node.keyNode("unseen")->at);
+      index = readUnseen(node, *unseen, branch.condition, scope, index);
+    }
     branch.yes = readBelow(node, "yes", scope);
     branch.no = readBelow(node, "no", scope);
     rule_.nodes[index].what = std::move(branch);
@@ -90,10 +94,6 @@ class TreeReader {
   /// Makes the node ask first whether the test is unseen; returns the new node for the test itself.
   NodeIndex readUnseen(const YamlNode& node, const YamlNode& below, const Condition& test, const NameScope& scope,
                        NodeIndex index) {
-    if (!measuresAnEnd(test))
-      faults_.error(
-          node.keyNode("unseen")->at, "this test measures no end of a thing, so it is never unseen",
-          "tests of top, bottom, height, elevation_span, length and horizontal_extent can be, without 'slice'");
     BranchNode first;
     first.condition.kind = Condition::Kind::Unseen;
     first.condition.at = test.at;
@@ -104,6 +104,13 @@ class TreeReader {
     rule_.nodes.push_back({node.at, RejectLeaf{}});
     rule_.nodes[index].what = std::move(first);
     return rule_.nodes.size() - 1;
+  }
+
+  void requireAnEnd(const Condition& test, const SourceLocation& at) {
+    if (!measuresAnEnd(test))
+      faults_.error(
+          at, "this test measures no end of a thing, so it is never unseen",
+          "tests of top, bottom, height, elevation_span, length and horizontal_extent can be, without 'slice'");
   }
 
   static bool measuresAnEnd(const Condition& test) {
