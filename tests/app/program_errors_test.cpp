@@ -60,7 +60,7 @@ TEST_F(Program, AnyOtherInputThatIsNotThereIsExitCodeFourInEveryCommand) {
            "build " + campus() + " -o " + fresh() + " --sparql-rules absent-input",
            "build " + campus() + " -o " + fresh() + " --ontology absent-input", "query absent-input.ttl -e 'ASK {}'",
            "query " + map() + " absent-input.rq", "update " + map() + " absent-input.ru",
-           "evaluate " + map() + " --truth absent-input", "rules check absent-input",
+           "evaluate " + map() + " --truth absent-input", "rules check absent-input", "rules check --map absent-input",
            "rules check --ontology absent-input", "rules test absent-input", "rules try " + map() + " absent-input",
            "rules diff " + map() + " outdoor.rules.yaml absent-input",
            "train absent-input --truth campus -o " + fresh(),

@@ -10,6 +10,7 @@
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/change/map_change.hpp"
+#include "mapping/facts/ask_replay.hpp"
 #include "mapping/facts/map_oracle.hpp"
 #include "mapping/facts/query_names.hpp"
 #include "mapping/facts/sparql_rules.hpp"
@@ -21,6 +22,7 @@
 #include "rules/testing/rule_mutation.hpp"
 #include "rules/testing/rule_pairs.hpp"
 #include "rules/testing/rule_test.hpp"
+#include "rules/testing/threshold_noise.hpp"
 #include "scan/scan_set.hpp"
 
 namespace cluxel::app {
@@ -29,7 +31,7 @@ namespace {
 
 struct RulesOptions {
   std::vector<fs::path> files;
-  fs::path junit;
+  fs::path junit, map;
   std::string only;
   mapping::MapInputFiles inputs;
   bool mutate = false, update_golden = false, watch = false, pairs = false;
@@ -80,16 +82,24 @@ std::vector<Diagnostic> checkSparqlRule(const fs::path& file, const rdf::Ontolog
   }
 }
 
-/// The faults of rule files; without errors, the pairs of rules that want the same thing too.
-std::vector<Diagnostic> checkTrees(const std::vector<fs::path>& files, const rdf::OntologyView& ontology, bool pairs) {
+/// The faults of rule files; without errors, what `options` asks for too: pairs of rules that want the same thing, and
+/// thresholds that are decided by noise in a map.
+std::vector<Diagnostic> checkTrees(const std::vector<fs::path>& files, const rdf::OntologyView& ontology,
+                                   const RulesOptions& options, unsigned threads) {
   rules::LoadedRules loaded =
       rules::loadRules(files, rules::catalogueOf(ontology), mapping::withCheckedQueries(ontology));
-  if (pairs && loaded.rules)
+  if (options.pairs && loaded.rules)
     for (Diagnostic& pair : checkRulePairs(*loaded.rules)) loaded.diagnostics.push_back(std::move(pair));
+  if (!options.map.empty() && loaded.rules) {
+    const mapping::MapReader map(options.map);
+    mapping::AskReplay oracle(map);
+    const auto noisy = thresholdsWithinNoise(map.scene(), *loaded.rules, {.oracle = &oracle, .threads = threads});
+    for (Diagnostic& warning : warningsOf(noisy)) loaded.diagnostics.push_back(std::move(warning));
+  }
   return std::move(loaded.diagnostics);
 }
 
-ExitCode check(const RulesOptions& options, const Session& session) {
+ExitCode check(const RulesOptions& options, Session& session) {
   const DataHome home = session.dataHome();
   const auto sources = mapping::ontologySources(ontologyFor(options, home));
   const rdf::OntologyView ontology = rdf::ontologyViewOf(sources);
@@ -103,7 +113,8 @@ ExitCode check(const RulesOptions& options, const Session& session) {
     for (Diagnostic& fault : checkSparqlRule(file, ontology)) faults.push_back(std::move(fault));
   }
   if (!trees.empty())
-    for (Diagnostic& fault : checkTrees(trees, ontology, options.pairs)) faults.push_back(std::move(fault));
+    for (Diagnostic& fault : checkTrees(trees, ontology, options, session.threadCount()))
+      faults.push_back(std::move(fault));
   if (session.json) {
     Json json = Json::array();
     for (const Diagnostic& fault : faults) json.push_back(diagnosticJson(fault));
@@ -300,6 +311,8 @@ void addRules(CLI::App& app, Session& session) {
   checking->add_option("--ontology", options->inputs.ontology, "ontology files beside ontology/*.ttl");
   checking->add_flag("--pairs", options->pairs,
                      "find rules that can both take one thing with nothing to decide between them, with a witness");
+  checking->add_option("--map", options->map,
+                       "find thresholds within whose noise a tenth or more of this map's things lie");
   CLI::App* testing = rules->add_subcommand("test", "run rule tests; exit 1 when one fails");
   testing->add_option("files", options->files, "test files; else rules/outdoor.rules-test.yaml");
   testing->add_option("--junit", options->junit, "write a JUnit report to this file");
