@@ -8,10 +8,10 @@ import sys
 
 # By rule, in the order of its leaves; "a-b" is a ramp. Leaves that are not named keep theirs.
 CONFIDENCES = {
-    "building/facades": ["0.60-0.96"], "building/roof": ["0.75"], "building/fragments": ["0.85", "0.75"],
+    "building/facades": ["0.60-0.96", "0.60"], "building/roof": ["0.75"], "building/fragments": ["0.85", "0.75"],
     "utility_pole/mast": ["0.88"], "tree/trunk-and-top": ["0.70-0.97"], "tree/trunk-below-top": ["0.70"],
-    "tree/trunk-alone": ["0.50"], "tree/large-top-alone": ["0.45-0.75"], "tree/crown-fragments": ["0.80"],
-    "tree/top-alone": ["0.45-0.75"], "street_lamp/pole": ["0.2-0.6", "0.1-0.25"], "street_lamp/head": ["0.80", "0.55"],
+    "tree/trunk-alone": ["0.50", "0.50"], "tree/large-top-alone": ["0.45-0.75"], "tree/crown-fragments": ["0.80"],
+    "tree/top-alone": ["0.45-0.75", "0.60"], "street_lamp/pole": ["0.2-0.6", "0.1-0.25"], "street_lamp/head": ["0.80", "0.55"],
     "street_sign/pole-and-plate": ["0.75-0.95", "0.60"], "vehicle/car": ["0.88", "0.65"], "vehicle/any": ["0.50"],
     "vehicle/lorry": ["0.60"], "person/upright": ["0.60"], "bush/low-scatter": ["0.55-0.92"],
     "small_object/rest": ["0.60"],

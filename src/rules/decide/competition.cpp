@@ -61,7 +61,7 @@ class Competition {
         Verdict& verdict = verdicts[i];
         std::vector<FragmentIndex>& group = groups[i];
         if (verdict.accept != nullptr) {
-          if (state_.context.onCandidate && lost_.count({rule, group}) == 0)
+          if (state_.context.onCandidate && !state_.is_first_of_two_rounds && lost_.count({rule, group}) == 0)
             state_.context.onCandidate(state_, *rule, verdict);
           proposals.push_back({rule, std::move(verdict), std::move(group)});
           continue;

@@ -42,13 +42,36 @@ void runInTurn(ReasoningState& state, const std::string& class_iri, bool leftove
   splitAll(state, class_iri);
 }
 
+bool asksRivals(const Rule& rule) {
+  const auto among = [](const std::vector<EvidenceLine>& lines) {
+    return std::any_of(lines.begin(), lines.end(), [](const EvidenceLine& line) { return line.asks_rivals; });
+  };
+  return among(rule.evidence) || std::any_of(rule.nodes.begin(), rule.nodes.end(), [&](const TreeNode& node) {
+           const auto* accept = std::get_if<AcceptLeaf>(&node.what);
+           return accept != nullptr && among(accept->evidence);
+         });
+}
+
+/// The stratum is decided twice. Evidence that asks for rivals counts in the second round only, and reads who won the
+/// first; so no decision waits for another.
+std::shared_ptr<const FirstWinners> winnersOfFirstRound(const ReasoningState& state,
+                                                        const std::vector<const Rule*>& proposing) {
+  ReasoningState round = state;
+  round.is_first_of_two_rounds = true;
+  compete(round, proposing);
+  return std::make_shared<const FirstWinners>(round, state.objects.size());
+}
+
 void decideTogether(ReasoningState& state, const std::vector<std::string>& stratum) {
   std::vector<const Rule*> proposing;
   for (const std::string& class_iri : stratum)
     for (const Rule& rule : state.rules.rules)
       if (rule.class_iri == class_iri && !rule.leftovers) proposing.push_back(&rule);
   const std::size_t first = state.objects.size();
+  if (std::any_of(proposing.begin(), proposing.end(), [](const Rule* rule) { return asksRivals(*rule); }))
+    state.first_winners = winnersOfFirstRound(state, proposing);
   compete(state, proposing);
+  state.first_winners.reset();
   for (const std::string& class_iri : stratum) splitAll(state, class_iri);
   absorbMisfits(state, first, false);
   for (const std::string& class_iri : stratum) runInTurn(state, class_iri, true);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 
 #include "rules/decide/reason.hpp"
 #include "rules/propose/cluxel_grid.hpp"
+#include "rules/propose/first_winners.hpp"
 #include "rules/propose/fragment_table.hpp"
 
 namespace cluxel::rules {
@@ -58,6 +60,9 @@ struct ReasoningState {
   std::vector<std::vector<std::uint32_t>> relations_to;
   /// For each class the classes of the rule order that are it or below it, by their place there.
   std::map<std::string, std::vector<bool>, std::less<>> classes_below;
+  /// What won the first round of the stratum; null in the first round, and where no evidence asks for it.
+  std::shared_ptr<const FirstWinners> first_winners;
+  bool is_first_of_two_rounds = false;  ///< its outcome is only read by the second round
 
   /// Threads for what only reads the state. Queries are asked from one thread.
   unsigned threads() const { return rules.asks_map ? 1 : context.threads; }

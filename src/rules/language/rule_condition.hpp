@@ -81,6 +81,7 @@ struct Condition {
   std::string query;                         ///< of Ask: SPARQL with the rule set's prefixes
   std::vector<std::string> query_names;      ///< bound names that the query mentions as variables
   std::vector<Condition> operands;           ///< of All, Any, Not, Unseen
+  bool asks_rivals = false;                  ///< of Pair: the target are objects that won the first round
 };
 
 /// "a Tree", "an Avenue": a class or label with its article.

@@ -52,6 +52,45 @@ void readNothing(const GatheredRules& gathered, RuleReading& reading, RuleSet& r
   }
 }
 
+/// Whether the class is decided in the rule's own stratum, in competition with it.
+bool isOfRival(const std::string& object_class, const Rule& rule, const RuleSet& rules) {
+  if (object_class.empty() || rule.leftovers) return false;
+  const auto own = std::find_if(rules.strata.begin(), rules.strata.end(), [&](const auto& stratum) {
+    return std::find(stratum.begin(), stratum.end(), rule.class_iri) != stratum.end();
+  });
+  return own != rules.strata.end() && own->size() > 1 &&
+         std::any_of(own->begin(), own->end(), [&](const auto& iri) { return rules.catalogue.isA(iri, object_class); });
+}
+
+/// Marks what looks at objects of rivals; true when there is any.
+bool markRivals(Condition& condition, const Rule& rule, const RuleSet& rules, FaultList& faults) {
+  bool any = false;
+  const std::string& object_class = condition.target ? condition.target->object_class : condition.class_iri;
+  if (isOfRival(object_class, rule, rules)) {
+    any = condition.asks_rivals = true;
+    const bool is_gap = condition.kind == Condition::Kind::Pair &&
+                        (condition.measure == PairMeasure::Gap || condition.measure == PairMeasure::HorizontalGap);
+    if (!is_gap)
+      faults.error(condition.at,
+                   rules.shorten(object_class) + " is decided together with " + rules.shorten(rule.class_iri) +
+                       ": evidence may measure the gap to it only",
+                   "write it as 'gap_to' or 'horizontal_gap_to'");
+  }
+  for (Condition& operand : condition.operands) any = markRivals(operand, rule, rules, faults) || any;
+  return any;
+}
+
+void markRivals(RuleSet& rules, FaultList& faults) {
+  for (Rule& rule : rules.rules) {
+    const auto mark = [&](std::vector<EvidenceLine>& lines) {
+      for (EvidenceLine& line : lines) line.asks_rivals = markRivals(line.measure, rule, rules, faults);
+    };
+    mark(rule.evidence);
+    for (TreeNode& node : rule.nodes)
+      if (auto* accept = std::get_if<AcceptLeaf>(&node.what)) mark(accept->evidence);
+  }
+}
+
 /// A condition may only refer to objects of its own class or of classes in earlier strata. Those of its own stratum are
 /// decided at the same time.
 void checkEarlier(const std::string& object_class, const SourceLocation& at, const Rule& rule, const RuleSet& rules,
@@ -77,8 +116,9 @@ void checkEarlier(const std::string& object_class, const SourceLocation& at, con
 }
 
 void checkCondition(const Condition& condition, const Rule& rule, const RuleSet& rules, FaultList& faults) {
-  if (condition.target) checkEarlier(condition.target->object_class, condition.at, rule, rules, faults);
-  checkEarlier(condition.class_iri, condition.at, rule, rules, faults);
+  if (condition.target && !condition.asks_rivals)
+    checkEarlier(condition.target->object_class, condition.at, rule, rules, faults);
+  if (!condition.asks_rivals) checkEarlier(condition.class_iri, condition.at, rule, rules, faults);
   for (const Condition& operand : condition.operands) checkCondition(operand, rule, rules, faults);
 }
 
@@ -184,6 +224,7 @@ LoadedRules load(const std::vector<std::string>& roots, const FindSource& findSo
     faults.error(at, "there are no rules in it");
   }
   rules.asks_map = reading.asks_map;
+  markRivals(rules, faults);
   checkTogether(gathered, reading, rules, faults);
   rules.sources = std::move(gathered.sources);
   LoadedRules loaded;

@@ -192,7 +192,8 @@ std::string describe(const EvidenceLine& line) {
   const Condition& measure = line.measure;
   if (line.kind == EvidenceLine::Kind::Test) return describe(measure);
   if (measure.kind == Condition::Kind::Pair)
-    return std::string(nameOf(measure.measure)) + " of " + measure.of + " to " + describeTarget(*measure.target);
+    return std::string(nameOf(measure.measure)) + " of " + measure.of + " to " + describeTarget(*measure.target) +
+           (line.asks_rivals ? " of the first round" : "");
   std::string text = describeMeasured(measure.attribute, measure.of, measure.slice);
   if (measure.ratio_attribute)
     text += " relative to " + describeMeasured(*measure.ratio_attribute, measure.ratio_of, measure.ratio_slice);

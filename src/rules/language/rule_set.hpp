@@ -90,6 +90,9 @@ struct EvidenceLine {
   double weight = 0;  ///< of Bell and Test
   SourceLocation weight_at;
   double missing = 0;  ///< log-odds when the value cannot be measured: nothing is bound to the name, an empty slice
+  /// It looks at objects of classes that compete with the rule's: it counts in the second round only, and reads the
+  /// winners of the first.
+  bool asks_rivals = false;
 };
 
 struct AbsorbSpec {

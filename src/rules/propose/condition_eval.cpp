@@ -178,6 +178,7 @@ std::optional<double> ConditionEvaluator::measure(const Condition& condition, do
   const bool share = condition.measure == PairMeasure::AdjacentFraction;
   const double limit = share ? 0.5 : std::min(reach, kMaxMeasure_m - kMeasureMargin_m) + kMeasureMargin_m;
   const double none = share ? 0 : reach;
+  if (condition.asks_rivals) return gapToRivals(condition, limit).value_or(none);
   double value = none;
   if (condition.target->kind == Target::Kind::Name)
     value =
@@ -185,6 +186,13 @@ std::optional<double> ConditionEvaluator::measure(const Condition& condition, do
   else if (const auto nearest = nearestTarget(condition, limit, false))
     value = nearest->second;
   return std::isfinite(value) ? value : none;
+}
+
+std::optional<double> ConditionEvaluator::gapToRivals(const Condition& condition, double limit_m) const {
+  const std::vector<bool>* classes = state_.classesBelow(condition.target->object_class);
+  if (classes == nullptr || state_.first_winners == nullptr) return std::nullopt;
+  return state_.first_winners->nearestGap(state_, bindings_.at(condition.of), *classes,
+                                          condition.measure == PairMeasure::HorizontalGap, limit_m);
 }
 
 std::string ConditionEvaluator::unitOf(const Condition& condition) {
@@ -256,7 +264,9 @@ bool ConditionEvaluator::holdsPair(const Condition& condition, DecisionStep& ste
   double measured = share ? 0 : std::numeric_limits<double>::infinity();
   const double limit =
       share ? 0.5 : std::max(threshold, condition.upper ? condition.upper->value : 0) + kMeasureMargin_m;
-  if (condition.target->kind == Target::Kind::Name) {
+  if (condition.asks_rivals) {
+    measured = gapToRivals(condition, limit).value_or(measured);
+  } else if (condition.target->kind == Target::Kind::Name) {
     measured =
         measurePair(state_, condition.measure, bindings_.at(condition.of), bindings_.at(condition.target->name), limit);
   } else if (const auto nearest = nearestTarget(condition, limit, compare(condition, measured, threshold))) {

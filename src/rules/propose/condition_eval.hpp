@@ -47,6 +47,8 @@ class ConditionEvaluator {
   /// The same for gaps to objects, looked up around the subject's cluxels.
   std::optional<std::pair<FragmentIndex, double>> nearestObject(const Target& target, const Candidate& subject,
                                                                 double limit_m) const;
+  /// The smallest gap to an object of the target's class that won the first round.
+  std::optional<double> gapToRivals(const Condition& condition, double limit_m) const;
   void remember(FragmentIndex fragment, const Target& target);
 
   const ReasoningState& state_;

@@ -35,13 +35,14 @@ double onCurve(const std::vector<EvidenceLine::Knot>& knots, double value) {
 class Weighing {
  public:
   Weighing(const ReasoningState& state, const Rule& rule, const Bindings& bindings)
-      : bindings_(bindings), evaluator_(state, rule, bindings) {}
+      : state_(state), bindings_(bindings), evaluator_(state, rule, bindings) {}
 
   EvidenceStep of(const EvidenceLine& line) {
     EvidenceStep step;
     step.text = describe(line);
     step.file = line.at.file;
     step.line = line.at.line;
+    if (line.asks_rivals && state_.first_winners == nullptr) return step;
     step.log_odds = line.missing;
     if (isBound(line.measure)) measure(line, step);
     return step;
@@ -69,6 +70,7 @@ class Weighing {
     step.log_odds = logOddsOf(line, *value);
   }
 
+  const ReasoningState& state_;
   const Bindings& bindings_;
   ConditionEvaluator evaluator_;
 };
