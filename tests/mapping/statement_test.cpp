@@ -186,7 +186,7 @@ TEST_F(Statements, LieDormantWhileTheirScansAreAwayAndWakeUp) {
   EXPECT_TRUE(canonicalText(map()) == before);
 }
 
-TEST_F(Statements, OfSeveralAboutOneObjectOneCounts) {
+TEST_F(Statements, OfSeveralThatContradictEachOtherOneCounts) {
   build({{0, 0}, {1, 0}});
   {
     const MapReader reader(map());
@@ -196,7 +196,40 @@ TEST_F(Statements, OfSeveralAboutOneObjectOneCounts) {
   }
   std::multiset<std::string> effects;
   for (const KnownStatement& known : knownStatements(MapReader(map()).quads())) effects.insert(known.effect);
-  EXPECT_EQ(effects, (std::multiset<std::string>{"applied", "overruled", "overruled"}));
+  EXPECT_EQ(effects, (std::multiset<std::string>{"applied", "applied", "overruled"}))
+      << "'is not' a third class contradicts neither";
+}
+
+TEST_F(Statements, ThatAThingIsNotOneClassAndNotAnotherHoldTogether) {
+  build({{0, 0}, {1, 0}});
+  std::string rules_class;
+  std::vector<Statement> statements;
+  {
+    const MapReader reader(map());
+    const rules::SemanticObject thing = thingIn(reader);
+    rules_class = localName(thing.class_iri);
+    for (const char* local : {"TrafficLight", "StreetSign", "Person", "UtilityPole", "Wire"})
+      statements.push_back(about(reader, thing, StatementKind::IsNot, local));
+    statements.push_back(about(reader, thing, StatementKind::IsNot, rules_class));
+  }
+  const ChangeReport report = state(statements);
+  EXPECT_EQ(report.objects.gone.size(), 1U) << "it is not what the rules say, whatever else it is not";
+  for (const StatementOutcome& outcome : report.statements) {
+    EXPECT_EQ(outcome.effect, StatementEffect::Applied);
+    EXPECT_EQ(outcome.contradicts, localName(outcome.statement.value.text) == rules_class);
+  }
+  EXPECT_TRUE(canonicalText(map()) == fromScratch(map(), {{0, 0}, {1, 0}}));
+}
+
+TEST_F(Statements, AreNotMadeAndWithdrawnAtOnce) {
+  build({{0, 0}, {1, 0}});
+  const Statement statement = [&] {
+    const MapReader reader(map());
+    return about(reader, thingIn(reader), StatementKind::Is, "StreetSign");
+  }();
+  state({statement});
+  EXPECT_THROW(state({statement}, {statement.id()}), Error);
+  EXPECT_EQ(knownStatements(MapReader(map()).quads()).size(), 1U);
 }
 
 TEST_F(Statements, AboutAnObjectInAnUpdateAreAnchored) {

@@ -7,6 +7,7 @@
 #include "app/commands/statement_list.hpp"
 #include "app/shared_options.hpp"
 #include "base/file_bytes.hpp"
+#include "base/utf8.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/statement_change.hpp"
@@ -60,6 +61,16 @@ std::vector<Eigen::Vector2d> cornersOf(const std::vector<double>& numbers) {
   std::vector<Eigen::Vector2d> corners;
   for (std::size_t i = 0; i < numbers.size(); i += 2) corners.emplace_back(numbers[i], numbers[i + 1]);
   return corners;
+}
+
+/// Texts that go into the map.
+CLI::Validator validText() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        if (text.empty()) return std::string("the text is empty");
+        return firstInvalidUtf8(text) ? std::string("the text is not UTF-8") : std::string();
+      },
+      "");
 }
 
 /// What is stated about the object, and the earlier statements about its class, which the new one replaces.
@@ -150,14 +161,15 @@ void addState(CLI::App& app, Session& session) {
   command->add_option("--is", options->is, "the class that it has");
   command->add_option("--is-not", options->is_not, "a class that it does not have");
   command->add_flag("--remove,--ignore", options->remove, "it is no object");
-  command->add_option("--label", options->label, "its name (rdfs:label)");
-  command->add_option("--note", options->note, "a remark about it (rdfs:comment)");
+  command->add_option("--label", options->label, "its name (rdfs:label)")->check(validText());
+  command->add_option("--note", options->note, "a remark about it (rdfs:comment)")->check(validText());
   command
       ->add_option("--ignore-region", options->region,
                    "X0,Y0,X1,Y1 or a polygon X,Y,X,Y,X,Y… [m, map]: what lies in it is no object")
       ->delimiter(',');
   command->add_option("--withdraw", options->withdrawn, "take back a statement: the first digits of its id");
-  command->add_option("--author", options->author, "who states it, for the history (default: the user's name)");
+  command->add_option("--author", options->author, "who states it, for the history (default: the user's name)")
+      ->check(validText());
   command->add_flag("--list", options->list, "list the statements with what became of them");
   command->add_option("--export", options->export_file, "write the statements as N-Quads, for build --statements");
   addChangeOptions(*command, options->change, false);

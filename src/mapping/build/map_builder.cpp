@@ -18,6 +18,7 @@
 #include "mapping/facts/map_history.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/map_state.hpp"
+#include "mapping/statements/stated_values.hpp"
 #include "rdf/store/quad_store.hpp"
 
 namespace cluxel::mapping {
@@ -150,7 +151,9 @@ BuildReport built(const scan::ScanSet& scans, const MapInputs& inputs, const fs:
   sink.note(describeFiles(complete));
   if (!complete.crs.empty()) sink.note("coordinate system of the map: " + complete.crs);
   const ParsedInputs parsed = parseInputs(complete);
-  statementsAmong(params.statements);  // throws for a faulty one before anything is written
+  // A faulty statement is refused before anything is written.
+  for (const Statement& statement : statementsAmong(params.statements))
+    requireStatable(statement, parsed.rules.catalogue);
   WorkFile work(file, complete.hash().hex(), params.force);
   if (!params.refine_poses) noteDoubtfulPoses(scans, params.threads, sink);
   const scan::ScanSet posed = params.refine_poses ? withRefinedPoses(scans, params.threads, sink) : scans;

@@ -9,6 +9,7 @@
 
 #include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
+#include "mapping/statements/stated_values.hpp"
 #include "rdf/map_iris.hpp"
 
 namespace cluxel::mapping {
@@ -18,35 +19,6 @@ namespace {
 using rdf::vocabulary::clx;
 
 constexpr std::size_t kStatementDigits = 4;
-constexpr std::array<std::string_view, 29> kComputed{"confidence",
-                                                     "rule",
-                                                     "x",
-                                                     "y",
-                                                     "z",
-                                                     "minX",
-                                                     "minY",
-                                                     "minZ",
-                                                     "maxX",
-                                                     "maxY",
-                                                     "maxZ",
-                                                     "height",
-                                                     "length",
-                                                     "width",
-                                                     "bottom",
-                                                     "top",
-                                                     "pointCount",
-                                                     "heading",
-                                                     "viewCount",
-                                                     "firstSeen",
-                                                     "lastSeen",
-                                                     "seenEmpty",
-                                                     "seenThrough",
-                                                     "hasPart",
-                                                     "hasPrimitive",
-                                                     "near",
-                                                     "appliesTo",
-                                                     "rulesSay",
-                                                     "statementEffect"};
 
 std::string dateTimeNow() {
   return dateTimeText(std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count());
@@ -65,13 +37,6 @@ std::vector<Quad> quadsAbout(const rdf::QuadReader& reader, const std::string& i
   for (rdf::QuadIds quad; cursor.next(quad);)
     quads.push_back({reader.termOf(quad.s), reader.termOf(quad.p), reader.termOf(quad.o), reader.termOf(quad.g)});
   return quads;
-}
-
-void requireKnown(const Statement& statement, const rules::ClassCatalogue& classes) {
-  if (statement.kind == StatementKind::Fact) requireStatable(statement.property);
-  const bool of_class = statement.kind == StatementKind::Is || statement.kind == StatementKind::IsNot;
-  if (of_class && classes.find(statement.value.text) == nullptr)
-    throw Error(ErrorKind::NotFound, "the map's ontology knows no class <" + statement.value.text + ">");
 }
 
 void removeQuads(rdf::QuadWriter& writer, const std::vector<Quad>& quads) {
@@ -115,20 +80,15 @@ Eigen::Vector2d standOf(const Cloud& cloud) {
 
 }  // namespace
 
-void requireStatable(const std::string& property) {
-  const bool is_type = property == rdf::vocabulary::rdf("type");
-  const bool is_geometry = property.starts_with(rdf::vocabulary::kGeo) || property.starts_with(rdf::vocabulary::kSosa);
-  const bool is_computed =
-      std::any_of(kComputed.begin(), kComputed.end(), [&](std::string_view local) { return property == clx(local); });
-  if (is_type || is_geometry || is_computed)
-    throw Error(ErrorKind::InvalidArgument,
-                "<" + property + "> of an object is computed by the map; state its class, or another property");
-}
-
 ChangeReport changeStatements(const std::filesystem::path& file, const StatementEdit& edit, const ChangeParams& params,
                               ProgressSink& sink) {
   MapEditor editor(file, params, sink);
-  for (const Statement& statement : edit.added) requireKnown(statement, editor.inputs().rules.catalogue);
+  for (const Statement& statement : edit.added) {
+    requireStatable(statement, editor.inputs().rules.catalogue);
+    if (std::find(edit.withdrawn.begin(), edit.withdrawn.end(), statement.id()) != edit.withdrawn.end())
+      throw Error(ErrorKind::InvalidArgument,
+                  "the statement " + statement.id().hex() + " is both made and withdrawn; do one of them");
+  }
   rdf::WriteTransaction transaction = editor.begin();
   writeStatements(transaction, edit);
   editor.commit(transaction, "state", {}, {});

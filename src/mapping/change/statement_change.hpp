@@ -25,9 +25,6 @@ struct StatementEdit {
 ChangeReport changeStatements(const std::filesystem::path& file, const StatementEdit& edit, const ChangeParams& params,
                               ProgressSink& sink);
 
-/// Throws Error (InvalidArgument) for a property of objects that the map computes itself.
-void requireStatable(const std::string& property);
-
 /// A region of the map frame, anchored to the scan whose sensor stood nearest to its middle (ties: the smallest id; a
 /// scan without a pose counts by the middle of its points). Throws Error (InvalidArgument) for fewer than three corners
 /// or a map without scans.

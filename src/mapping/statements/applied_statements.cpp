@@ -61,7 +61,7 @@ class Application {
         owners_(owners),
         clouds_(clouds),
         object_of_cluxel_(objectOfCluxel({objects_, {}}, scene.cluxels.size())),
-        class_statement_(objects_.size()),
+        class_statements_(objects_.size()),
         ignored_(objects_.size(), false) {}
 
   AppliedStatements run(const std::vector<Statement>& statements) {
@@ -69,6 +69,7 @@ class Application {
       result_.outcomes.push_back({statement, StatementEffect::Dormant, std::nullopt, "", false});
     owner_of_.resize(statements.size());
     for (std::size_t i = 0; i < statements.size(); ++i) look(i);
+    for (std::vector<std::size_t>& stated : class_statements_) keepCompatible(stated);
     for (std::size_t i = 0; i < statements.size(); ++i) takeIgnored(i);
     for (std::uint32_t i = 0; i < objects_.size(); ++i) finish(i);
     for (std::size_t i = 0; i < statements.size(); ++i) nameObject(i);
@@ -97,7 +98,7 @@ class Application {
     return owner;
   }
 
-  /// Finds what a statement about an object is about, and which of several about its class counts.
+  /// Finds what a statement about an object is about.
   void look(std::size_t number) {
     StatementOutcome& outcome = result_.outcomes[number];
     const Statement& statement = outcome.statement;
@@ -108,15 +109,33 @@ class Application {
     if (object == kNoObject) return;
     outcome.effect = StatementEffect::Applied;
     outcome.rules_class = objects_[object].class_iri;
-    if (!isOfClass(statement)) return;
-    auto& leading = class_statement_[object];
-    if (!leading) {
-      leading = number;
-      return;
+    if (isOfClass(statement)) class_statements_[object].push_back(number);
+  }
+
+  bool areCompatible(const Statement& a, const Statement& b) const {
+    if (a.kind == StatementKind::IsNot && b.kind == StatementKind::Is) return areCompatible(b, a);
+    if (a.kind == StatementKind::Is && b.kind == StatementKind::IsNot) return !classes_.isA(a.value.text, b.value.text);
+    if (a.kind == StatementKind::IsNot || b.kind == StatementKind::IsNot) return true;
+    return a.kind == b.kind && a.value.text == b.value.text;
+  }
+
+  /// Of the statements about an object's class, those with more points count first, then those with the smaller id. One
+  /// that contradicts such a statement is overruled.
+  void keepCompatible(std::vector<std::size_t>& stated) {
+    std::stable_sort(stated.begin(), stated.end(), [this](std::size_t a, std::size_t b) {
+      return owner_of_[a].points > owner_of_[b].points;  // statements are sorted by id
+    });
+    std::vector<std::size_t> kept;
+    for (const std::size_t number : stated) {
+      const bool counts = std::all_of(kept.begin(), kept.end(), [&](std::size_t other) {
+        return areCompatible(result_.outcomes[number].statement, result_.outcomes[other].statement);
+      });
+      if (counts)
+        kept.push_back(number);
+      else
+        result_.outcomes[number].effect = StatementEffect::Overruled;
     }
-    const bool comes_first = owner_of_[number].points > owner_of_[*leading].points;  // statements are sorted by id
-    result_.outcomes[comes_first ? *leading : number].effect = StatementEffect::Overruled;
-    if (comes_first) leading = number;
+    stated = std::move(kept);
   }
 
   void takeIgnored(std::size_t number) {
@@ -129,7 +148,7 @@ class Application {
     std::vector<Eigen::Vector2d> polygon;
     for (const Eigen::Vector3d& corner : region.corners) polygon.emplace_back((cloud->T_map_sensor * corner).head<2>());
     for (std::uint32_t i = 0; i < objects_.size(); ++i) {
-      if (class_statement_[i] || !liesIn(polygon, objects_[i])) continue;
+      if (!class_statements_[i].empty() || !liesIn(polygon, objects_[i])) continue;
       ignored_[i] = true;
       outcome.effect = StatementEffect::Applied;
     }
@@ -147,21 +166,26 @@ class Application {
 
   void finish(std::uint32_t i) {
     if (ignored_[i]) return overrule(i, std::nullopt);
-    if (!class_statement_[i]) {
+    std::optional<std::string> stated_class;
+    bool is_removed = false;
+    for (const std::size_t number : class_statements_[i]) {
+      StatementOutcome& outcome = result_.outcomes[number];
+      const Statement& statement = outcome.statement;
+      if (statement.kind == StatementKind::Is) {
+        stated_class = statement.value.text;
+        outcome.contradicts = objects_[i].class_iri != *stated_class;
+      } else {
+        outcome.contradicts =
+            statement.kind == StatementKind::Remove || classes_.isA(objects_[i].class_iri, statement.value.text);
+        is_removed = is_removed || outcome.contradicts;
+      }
+    }
+    if (stated_class)
+      overrule(i, withClass(objects_[i], *stated_class, scene_, classes_));
+    else if (is_removed)
+      overrule(i, std::nullopt);
+    else
       result_.objects.push_back(objects_[i]);
-      return;
-    }
-    StatementOutcome& outcome = result_.outcomes[*class_statement_[i]];
-    const Statement& statement = outcome.statement;
-    const bool agrees =
-        statement.kind == StatementKind::IsNot && !classes_.isA(objects_[i].class_iri, statement.value.text);
-    if (agrees) {
-      result_.objects.push_back(objects_[i]);  // the rules say the same
-      return;
-    }
-    const bool stays = statement.kind == StatementKind::Is;
-    outcome.contradicts = !stays || objects_[i].class_iri != statement.value.text;
-    overrule(i, stays ? std::optional(withClass(objects_[i], statement.value.text, scene_, classes_)) : std::nullopt);
   }
 
   void overrule(std::uint32_t i, const std::optional<SemanticObject>& now) {
@@ -189,8 +213,8 @@ class Application {
   PointOwners& owners_;
   const std::vector<Cloud>& clouds_;
   std::vector<std::uint32_t> object_of_cluxel_;
-  std::vector<Owner> owner_of_;                              ///< by statement
-  std::vector<std::optional<std::size_t>> class_statement_;  ///< by object: the statement that decides its class
+  std::vector<Owner> owner_of_;                             ///< by statement
+  std::vector<std::vector<std::size_t>> class_statements_;  ///< by object: the statements about its class that count
   std::vector<bool> ignored_;
   std::map<std::uint32_t, ContentHash> renamed_;  ///< overruled objects; zero: removed
   AppliedStatements result_;

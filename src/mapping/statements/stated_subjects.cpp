@@ -11,6 +11,7 @@
 #include "mapping/change/map_things.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/object_store.hpp"
+#include "mapping/statements/stated_values.hpp"
 #include "rdf/map_iris.hpp"
 
 namespace cluxel::mapping {
@@ -49,16 +50,16 @@ class StatedObjects {
 };
 
 Statement statementOf(const Quad& quad, PointAnchor anchor, const rules::ClassCatalogue& classes) {
-  if (quad.predicate.text == rdf::vocabulary::rdf("type")) {
-    if (quad.object.kind != TermKind::Iri || classes.find(quad.object.text) == nullptr)
-      throw Error(ErrorKind::NotFound, "the map's ontology knows no class " + toNTriples(quad.object));
-    return {StatementKind::Is, "", quad.object, std::move(anchor), {}};
-  }
-  requireStatable(quad.predicate.text);
-  if (quad.object.kind == TermKind::BlankNode)
-    throw Error(ErrorKind::InvalidArgument,
-                "<" + quad.predicate.text + "> of an object is a blank node; state an IRI or a literal");
-  return {StatementKind::Fact, quad.predicate.text, quad.object, std::move(anchor), {}};
+  const bool is_type = quad.predicate.text == rdf::vocabulary::rdf("type");
+  if (is_type && quad.object.kind != TermKind::Iri)
+    throw Error(ErrorKind::NotFound, "the map's ontology knows no class " + toNTriples(quad.object));
+  Statement statement{is_type ? StatementKind::Is : StatementKind::Fact,
+                      is_type ? "" : quad.predicate.text,
+                      quad.object,
+                      std::move(anchor),
+                      {}};
+  requireStatable(statement, classes);
+  return statement;
 }
 
 }  // namespace

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// Checked wherever statements come in: from the command `state`, from updates, and from files.
+#include "mapping/statements/stated_values.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/utf8.hpp"
+#include "cluxel/error.hpp"
+#include "rdf/vocabulary.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+using rdf::vocabulary::clx;
+
+constexpr std::array<std::string_view, 29> kComputed{"confidence",
+                                                     "rule",
+                                                     "x",
+                                                     "y",
+                                                     "z",
+                                                     "minX",
+                                                     "minY",
+                                                     "minZ",
+                                                     "maxX",
+                                                     "maxY",
+                                                     "maxZ",
+                                                     "height",
+                                                     "length",
+                                                     "width",
+                                                     "bottom",
+                                                     "top",
+                                                     "pointCount",
+                                                     "heading",
+                                                     "viewCount",
+                                                     "firstSeen",
+                                                     "lastSeen",
+                                                     "seenEmpty",
+                                                     "seenThrough",
+                                                     "hasPart",
+                                                     "hasPrimitive",
+                                                     "near",
+                                                     "appliesTo",
+                                                     "rulesSay",
+                                                     "statementEffect"};
+
+/// Classes of what is no object.
+constexpr std::array<std::string_view, 7> kOtherThings{"Part",        "Place", "Primitive", "Cluxel",
+                                                       "Observation", "Cloud", "Map"};
+/// Classes that say no more than that it is an object.
+constexpr std::array<std::string_view, 2> kAnyObject{"SpatialThing", "Object"};
+
+constexpr double kMinArea_m2 = 1e-4, kMaxCorner_m = 1e6;
+
+void requireClass(const std::string& iri, const rules::ClassCatalogue& classes) {
+  if (classes.find(iri) == nullptr) throw Error(ErrorKind::NotFound, "the map's ontology knows no class <" + iri + ">");
+  const bool is_other = std::any_of(kOtherThings.begin(), kOtherThings.end(),
+                                    [&](std::string_view local) { return classes.isA(iri, clx(local)); });
+  const bool is_any =
+      std::any_of(kAnyObject.begin(), kAnyObject.end(), [&](std::string_view local) { return iri == clx(local); });
+  if (is_other || is_any)
+    throw Error(ErrorKind::InvalidArgument, "<" + iri + "> is no class of objects" +
+                                                (is_any ? " that tells them apart" : "") +
+                                                "; state one such as clx:Tree or clx:StreetSign");
+}
+
+void requireRegion(const RegionAnchor& region) {
+  double twice_area = 0;
+  for (std::size_t i = 0; i < region.corners.size(); ++i) {
+    const Eigen::Vector3d &a = region.corners[i], &b = region.corners[(i + 1) % region.corners.size()];
+    if (!a.allFinite() || a.cwiseAbs().maxCoeff() > kMaxCorner_m)
+      throw Error(ErrorKind::InvalidArgument,
+                  "a corner of the region is no number, or farther than 1000 km from its scan; give metres of the map");
+    twice_area += a.x() * b.y() - b.x() * a.y();
+  }
+  if (!(std::abs(twice_area) / 2 >= kMinArea_m2))
+    throw Error(ErrorKind::InvalidArgument, "the region has no area; give its corners in their order along the border");
+}
+
+}  // namespace
+
+void requireStatable(const std::string& property) {
+  const bool is_type = property == rdf::vocabulary::rdf("type");
+  const bool is_geometry = property.starts_with(rdf::vocabulary::kGeo) || property.starts_with(rdf::vocabulary::kSosa);
+  const bool is_computed =
+      std::any_of(kComputed.begin(), kComputed.end(), [&](std::string_view local) { return property == clx(local); });
+  if (is_type || is_geometry || is_computed)
+    throw Error(ErrorKind::InvalidArgument,
+                "<" + property + "> of an object is computed by the map; state its class, or another property");
+}
+
+void requireStatable(const Statement& statement, const rules::ClassCatalogue& classes) {
+  switch (statement.kind) {
+    case StatementKind::Is:
+    case StatementKind::IsNot:
+      return requireClass(statement.value.text, classes);
+    case StatementKind::IgnoreRegion:
+      return requireRegion(statement.region);
+    case StatementKind::Remove:
+      return;
+    case StatementKind::Fact:
+      break;
+  }
+  requireStatable(statement.property);
+  if (statement.value.kind == TermKind::BlankNode)
+    throw Error(ErrorKind::InvalidArgument,
+                "<" + statement.property + "> of an object is a blank node; state an IRI or a literal");
+  if (firstInvalidUtf8(statement.value.text))
+    throw Error(ErrorKind::InvalidArgument, "the value of <" + statement.property + "> is not UTF-8");
+}
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// What may be stated about objects.
+#pragma once
+
+#include "mapping/statements/statement.hpp"
+#include "rules/language/class_catalogue.hpp"
+
+namespace cluxel::mapping {
+
+/// Throws Error (InvalidArgument) for a property that the map computes, such as clx:height.
+void requireStatable(const std::string& property);
+
+/// The same for a fact about such a property, a fact whose value is a blank node or no UTF-8, a class that is none of
+/// objects (a part, a place, a cluxel), and a region without area or with a corner farther than 1000 km from its scan.
+/// Throws Error (NotFound) for a class that the ontology does not know.
+void requireStatable(const Statement& statement, const rules::ClassCatalogue& classes);
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// What may be stated about objects, wherever a statement comes from.
+#include "mapping/statements/stated_values.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "cluxel/error.hpp"
+#include "mapping/small_campus.hpp"
+#include "rdf/vocabulary.hpp"
+
+namespace cluxel::mapping {
+namespace {
+
+using rdf::vocabulary::clx;
+using testing::HasSubstr;
+
+const rules::ClassCatalogue& classes() {
+  static const rules::ClassCatalogue catalogue = classCatalogueOf(shippedInputs().ontology);
+  return catalogue;
+}
+
+std::string faultOf(const Statement& statement) {
+  try {
+    requireStatable(statement, classes());
+    return "";
+  } catch (const Error& fault) {
+    return fault.what();
+  }
+}
+
+Statement ofClass(const std::string& iri) {
+  return {StatementKind::Is, "", Term::iri(iri), {}, {}};
+}
+Statement fact(const std::string& property, const Term& value) {
+  return {StatementKind::Fact, property, value, {}, {}};
+}
+Statement region(const std::vector<Eigen::Vector3d>& corners) {
+  return {StatementKind::IgnoreRegion, "", {}, {}, {ContentHash(), corners}};
+}
+
+TEST(StatedValues, AreClassesOfObjects) {
+  for (const char* local : {"Tree", "StreetSign", "Structure", "Ground"})
+    EXPECT_EQ(faultOf(ofClass(clx(local))), "") << local;
+  for (const char* local : {"TreeTrunk", "Cluxel", "Road", "Avenue", "Column", "Cloud"})
+    EXPECT_THAT(faultOf(ofClass(clx(local))), HasSubstr("is no class of objects")) << local;
+  EXPECT_THAT(faultOf(ofClass(clx("Object"))), HasSubstr("tells them apart"));
+  EXPECT_THAT(faultOf(ofClass(clx("Unicorn"))), HasSubstr("knows no class"));
+  EXPECT_THAT(faultOf({StatementKind::IsNot, "", Term::iri(clx("TreeTrunk")), {}, {}}),
+              HasSubstr("no class of objects"));
+}
+
+TEST(StatedValues, AreNoFactsThatTheMapComputes) {
+  EXPECT_EQ(faultOf(fact("http://example.org/owner", Term::literal("the city"))), "");
+  EXPECT_THAT(faultOf(fact(clx("height"), Term::literal("3"))), HasSubstr("is computed by the map"));
+  EXPECT_THAT(faultOf(fact("http://example.org/owner", Term::blank("b"))), HasSubstr("blank node"));
+  EXPECT_THAT(faultOf(fact("http://example.org/owner", Term::literal("\xff"))), HasSubstr("not UTF-8"));
+}
+
+TEST(StatedValues, AreRegionsWithAnArea) {
+  EXPECT_EQ(faultOf(region({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}})), "");
+  EXPECT_EQ(faultOf(region({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}})), "") << "in either direction";
+  for (const auto& corners : std::vector<std::vector<Eigen::Vector3d>>{{{0, 0, 0}, {1, 1, 0}, {2, 2, 0}},
+                                                                       {{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 2, 0}},
+                                                                       {{3, 3, 0}, {3, 3, 0}, {3, 3, 0}}})
+    EXPECT_THAT(faultOf(region(corners)), HasSubstr("has no area"));
+  for (const double far : {1e300, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THAT(faultOf(region({{far, 0, 0}, {1, 0, 0}, {1, 1, 0}})), HasSubstr("corner of the region"));
+}
+
+}  // namespace
+}  // namespace cluxel::mapping
