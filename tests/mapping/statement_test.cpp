@@ -221,6 +221,50 @@ TEST_F(Statements, ThatAThingIsNotOneClassAndNotAnotherHoldTogether) {
   EXPECT_TRUE(canonicalText(map()) == fromScratch(map(), {{0, 0}, {1, 0}}));
 }
 
+/// The terms of our namespace in all graphs of a map.
+std::set<std::string> termsUsedIn(const fs::path& file) {
+  std::set<std::string> terms;
+  const MapReader reader(file);
+  rdf::QuadCursor cursor = reader.quads().scan({});
+  for (rdf::QuadIds quad; cursor.next(quad);)
+    for (const rdf::TermId id : {quad.p, quad.o}) {
+      const Term term = reader.quads().termOf(id);
+      if (term.kind == TermKind::Iri && term.text.starts_with(rdf::vocabulary::kClx)) terms.insert(term.text);
+    }
+  return terms;
+}
+
+TEST_F(Statements, UseTermsThatTheOntologyDeclares) {
+  build({{0, 0}, {1, 0}});
+  std::vector<Statement> statements;
+  ContentHash first;
+  {
+    const MapReader reader(map());
+    const rules::SemanticObject thing = thingIn(reader);
+    statements = {about(reader, thing, StatementKind::Is, "StreetSign"),
+                  about(reader, thing, StatementKind::IsNot, "Person"),
+                  {StatementKind::Fact,
+                   rdf::vocabulary::rdfs("label"),
+                   Term::literal("gate"),
+                   anchorOf(reader.stages(), thing),
+                   {}},
+                  {StatementKind::IgnoreRegion, "", {}, {}, regionAnchor(reader.clouds(), {{0, 0}, {1, 0}, {1, 1}})}};
+  }
+  state(statements);
+  state({}, {statements[1].id()});
+  const MapReader reader(map());
+  const rdf::QuadReader& quads = reader.quads();
+  const auto ontology = quads.idOf(Term::iri(rdf::vocabulary::kGraphOntology));
+  std::size_t declared = 0;
+  for (const std::string& term : termsUsedIn(map())) {
+    rdf::QuadCursor cursor = quads.scan({.s = quads.idOf(Term::iri(term)), .p = {}, .o = {}, .g = ontology});
+    rdf::QuadIds quad;
+    EXPECT_TRUE(cursor.next(quad)) << term;
+    ++declared;
+  }
+  EXPECT_GT(declared, 60U);
+}
+
 TEST_F(Statements, AreNotMadeAndWithdrawnAtOnce) {
   build({{0, 0}, {1, 0}});
   const Statement statement = [&] {
