@@ -8,7 +8,9 @@
 #include "base/file_bytes.hpp"
 #include "base/quantile.hpp"
 #include "cluxel/error.hpp"
+#include "mapping/change/statement_change.hpp"
 #include "mapping/facts/ask_replay.hpp"
+#include "rdf/vocabulary.hpp"
 #include "rules/testing/rule_test.hpp"
 #include "tasks/campus_map_fixture.hpp"
 #include "tasks/rule_reference/rule_reference.hpp"
@@ -85,6 +87,35 @@ TEST(RuleTeaching, RefusesWhatTheObjectIsAlready) {
   const std::string own = localName(map.objects()[0].class_iri);
   EXPECT_THROW(teach(map, {"#0", own, {}, "taught.rules.yaml"}), Error);
   EXPECT_THROW(teach(map, {"#0", "Tre", {}, "taught.rules.yaml"}), Error);
+}
+
+TEST(RuleTeaching, LearnsWhatAnOperatorStated) {
+  const MapReader& before = CampusMap::shared().map();
+  const auto lessonFor = [](const MapReader& map, const std::string& object) -> std::optional<Lesson> {
+    try {
+      return teach(map, {object, "StreetSign", {}, "taught.rules.yaml"});
+    } catch (const Error&) {
+      return std::nullopt;
+    }
+  };
+  std::size_t number = 0;
+  std::optional<Lesson> expected;
+  for (; !expected && number < before.objects().size(); ++number)
+    if (localName(before.objects()[number].class_iri) != "StreetSign")
+      expected = lessonFor(before, "#" + std::to_string(number));
+  ASSERT_TRUE(expected);
+  const SemanticObject& thing = before.objects()[number - 1];
+  const ScratchFolder folder;
+  const auto file = folder.path() / "stated.clx";
+  std::filesystem::copy_file(CampusMap::shared().file(), file);
+  const Statement sign{
+      StatementKind::Is, "", Term::iri(rdf::vocabulary::clx("StreetSign")), anchorOf(before.stages(), thing), {}};
+  const ChangeReport report = changeStatements(file, {{sign}, {}, ""}, {}, silence());
+  ASSERT_EQ(report.statements.size(), 1U);
+  const std::optional<Lesson> lesson = lessonFor(MapReader(file), report.statements[0].object->hex());
+  ASSERT_TRUE(lesson);
+  EXPECT_EQ(lesson->conditions, expected->conditions);
+  EXPECT_EQ(lesson->before, expected->before);
 }
 
 AttributeValues valuesOf(double height, double roughness) {

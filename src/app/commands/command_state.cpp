@@ -11,6 +11,7 @@
 #include "cluxel/error.hpp"
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/statement_change.hpp"
+#include "mapping/facts/semantic_layer.hpp"
 #include "rdf/map_iris.hpp"
 #include "rules/language/rule_loader.hpp"
 #include "tasks/explanation.hpp"
@@ -73,6 +74,25 @@ CLI::Validator validText() {
       "");
 }
 
+/// The ground of a map is one object: what is said of its class would hold for all of it.
+void refuseWholeClass(const mapping::MapReader& map, const rules::SemanticObject& object) {
+  const rules::RuleSet rules = mapping::parseInputs(map.inputs()).rules;
+  const rules::Rule* rule = rules.find(object.rule_id);
+  const bool is_merged = rule != nullptr && std::any_of(rule->nodes.begin(), rule->nodes.end(), [](const auto& node) {
+                           const auto* accept = std::get_if<rules::AcceptLeaf>(&node.what);
+                           return accept != nullptr && accept->merge_into == rules::MergeInto::Class;
+                         });
+  if (!is_merged) return;
+  std::size_t primitives = 0;
+  for (const rules::ObjectPart& part : object.parts) primitives += part.primitives.size();
+  throw Error(
+      ErrorKind::InvalidArgument,
+      "object/" + object.id.hex() + " is all " + rules.shorten(object.class_iri) + " of the map, " +
+          std::to_string(primitives) +
+          " primitives in one object: --is, --is-not and --remove would change all of it; --label and --note are "
+          "possible");
+}
+
 /// What is stated about the object, and the earlier statements about its class, which the new one replaces.
 void addAboutObject(const mapping::MapReader& map, const StateOptions& options, mapping::StatementEdit& edit,
                     ProgressSink& sink) {
@@ -92,6 +112,7 @@ void addAboutObject(const mapping::MapReader& map, const StateOptions& options, 
   if (!options.label.empty()) add(StatementKind::Fact, rdf::vocabulary::rdfs("label"), Term::literal(options.label));
   if (!options.note.empty()) add(StatementKind::Fact, rdf::vocabulary::rdfs("comment"), Term::literal(options.note));
   if (!about_class) return;
+  refuseWholeClass(map, object);
   for (const mapping::KnownStatement& known : mapping::knownStatements(map.quads())) {
     const StatementKind kind = known.statement.kind;
     const bool of_class = kind == StatementKind::Is || kind == StatementKind::IsNot;

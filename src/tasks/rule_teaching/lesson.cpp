@@ -43,7 +43,8 @@ class Teaching {
   }
 
  private:
-  const rules::SemanticObject& object() const { return map_.objects()[lesson_.object]; }
+  /// As the rules decide it, whatever an operator stated.
+  const rules::SemanticObject& object() const { return map_.byRules(map_.objects()[lesson_.object]); }
 
   rules::ReasoningResult resultOf(const rules::RuleSet& rules) const {
     mapping::AskReplay oracle(map_);
@@ -103,7 +104,7 @@ class Teaching {
     for (const std::string& name : request_.confirmed)
       kept.merge(primitivesOf(map_.objects()[objectNamed(map_, name)]));
     for (const rules::SemanticObject& other : map_.objects())
-      if (request_.confirmed.empty() && other.id != object().id) kept.merge(primitivesOf(other));
+      if (request_.confirmed.empty() && map_.byRules(other).id != object().id) kept.merge(primitivesOf(other));
     return kept;
   }
 

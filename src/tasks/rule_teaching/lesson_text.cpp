@@ -136,7 +136,7 @@ std::string includingText(const mapping::MapReader& map, const std::string& body
 
 std::string ruleText(const mapping::MapReader& map, const rules::RuleSet& rules, LessonCase& lesson) {
   const perception::Scene& scene = map.scene();
-  const rules::SemanticObject& object = map.objects()[lesson.object];
+  const rules::SemanticObject& object = map.byRules(map.objects()[lesson.object]);
   const std::string class_name = rules.shorten(lesson.class_iri);
   lesson.rule_id = "taught/" + lowerCase(mapping::localName(lesson.class_iri)) + "-" +
                    scene.primitives[lesson.seeds.front()].id.hex().substr(0, 8);

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// `cluxel state`: what it takes, and what it refuses with nothing lost.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/program_fixture.hpp"
+
+namespace cluxel::app {
+namespace {
+
+using testing::HasSubstr;
+
+class StateCommand : public Program {
+ protected:
+  void SetUp() override { fs::copy_file(path("map.clx"), map(), fs::copy_options::overwrite_existing); }
+
+  static fs::path map() { return path("stated.clx"); }
+  static Outcome state(const std::string& arguments) { return run("state " + map().string() + " " + arguments); }
+  /// The id of an object of the class.
+  static std::string one(const std::string& local) {
+    const Outcome found = query(
+        "stated.clx",
+        "PREFIX clx: <https://w3id.org/cluxel/ontology#> SELECT ?x { ?x a clx:" + local + " } ORDER BY ?x LIMIT 1",
+        "--format csv");
+    const std::size_t at = found.out.rfind("object/");
+    return at == std::string::npos ? "" : found.out.substr(at + 7, 32);
+  }
+  static std::size_t listed() { return nlohmann::json::parse(state("--list --json").out).at("statements").size(); }
+};
+
+TEST_F(StateCommand, TakesAClassANameAndARemark) {
+  const std::string tree = one("Tree");
+  ASSERT_EQ(tree.size(), 32u);
+  const Outcome stated = state("--object " + tree + " --is clx:StreetLamp --label \"north gate\" --note seen");
+  EXPECT_EQ(stated.code, 0) << stated.err;
+  EXPECT_EQ(listed(), 3u);
+}
+
+TEST_F(StateCommand, RefusesWhatCannotBeMeant) {
+  const std::string tree = "--object " + one("Tree");
+  expectError(state(tree + " --is clx:TreeTrunk"), 2, "is no class of objects");
+  expectError(state(tree + " --is clx:Object"), 2, "tells them apart");
+  expectError(state(tree + " --is clx:Unicorn"), 3, "knows no class");
+  expectError(state(tree + " --label \"\""), 2, "the text is empty");
+  expectError(state(tree + " --note \"\xff\""), 2, "the text is not UTF-8");
+  expectError(state("--ignore-region 0,0,1,1,2,2"), 2, "has no area");
+  expectError(state("--ignore-region nan,0,1,1"), 2, "corner of the region");
+  EXPECT_EQ(listed(), 0u);
+}
+
+TEST_F(StateCommand, RefusesToTakeAllGroundAway) {
+  const std::string ground = "--object " + one("Ground");
+  for (const char* statement : {" --remove", " --is-not clx:Ground", " --is clx:Building"})
+    expectError(state(ground + statement), 2, "is all clx:Ground of the map");
+  EXPECT_EQ(state(ground + " --label yard").code, 0);
+}
+
+TEST_F(StateCommand, DoesNotMakeAndWithdrawTheSameStatement) {
+  const std::string tree = one("Tree");
+  ASSERT_EQ(state("--object " + tree + " --is clx:StreetLamp").code, 0);
+  const std::string id = nlohmann::json::parse(state("--list --json").out).at("statements")[0].at("id");
+  expectError(state("--object " + one("StreetLamp") + " --is clx:StreetLamp --withdraw " + id), 2, "do one of them");
+  EXPECT_EQ(listed(), 1u);
+}
+
+}  // namespace
+}  // namespace cluxel::app
