@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far one walks until 80 % of the objects of a class are found, on generated campuses whose map holds 30 % of the
+// Length of the walk until 80 % of the objects of a class are found, on generated campuses whose map holds 30 % of the
 // scans: search_bench [CLASS] [CAMPUSES] [judge|choose] [PLACES.ttl]. Without PLACES, usual places are learned on the
 // campuses for choosing. Exit code 1 when the search with these places walks farther than the best sweep.
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ways to look for the targets of a campus: Cluxel's search, two sweeps, and the tour of one who knows.
+// Ways to look for the targets of a campus: Cluxel's search, two sweeps, and the shortest tour to known targets.
 #pragma once
 
 #include <cstdint>

@@ -81,7 +81,7 @@ Map merge(const std::vector<std::filesystem::path>& maps, const std::filesystem:
 }
 
 void bindValues(py::module_& module) {
-  py::class_<ObjectChange>(module, "ObjectChange", "An object that is not what it was.")
+  py::class_<ObjectChange>(module, "ObjectChange", "An object that a change added, removed or altered.")
       .def_property_readonly(
           "kind", [](const ObjectChange& change) { return nameOf(change.kind); },
           "'added', 'gone', 'changed', 'split' or 'joined'.")

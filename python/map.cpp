@@ -114,7 +114,7 @@ std::vector<Object> objectsOf(const Map& map, const std::optional<std::string>& 
 }
 
 void bindSummary(py::module_& module) {
-  namedTuple(module, "UpdateCounts", "inserted deleted", "Numbers of quads that came and went by an update.");
+  namedTuple(module, "UpdateCounts", "inserted deleted", "How many quads an update inserted and deleted.");
   py::class_<MapSummary>(module, "MapSummary", "What a map holds.")
       .def_readonly("is_finished", &MapSummary::is_finished, "False: its build was interrupted.")
       .def_readonly("inputs_hash", &MapSummary::inputs_hash, "Hash of ontology, rules, model and parameters.")
@@ -137,7 +137,7 @@ constexpr const char* kBuildDoc =
     "poses: file of the scans' poses (KITTI 3x4, TUM or 4x4 text); None: beside the scans.\n"
     "model, rules, sparql_rules, ontology: None: the shipped ones. Names may be those of the data folder.\n"
     "home: the data folder; None: CLUXEL_HOME, else that of the installation.\n"
-    "threads: 0: one a processor; the map does not depend on it.\n"
+    "threads: 0: one per processor; the map does not depend on it.\n"
     "batch_points: scans are committed in batches of about this many points.\n"
     "drop_statements: with force, drops the operator's statements. refine_poses: registers the scans first.\n"
     "progress: called as progress(stage: str, done: int, total: int). note: called as note(message: str).\n"

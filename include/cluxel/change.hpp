@@ -13,7 +13,7 @@ namespace cluxel {
 
 struct ChangeOptions {
   std::filesystem::path poses;              ///< poses of added scans, as in BuildOptions
-  unsigned threads = 0;                     ///< 0: one a processor; the map does not depend on it
+  unsigned threads = 0;                     ///< 0: one per processor; the map does not depend on it
   std::uint64_t batch_points = 20'000'000;  ///< scans are added in batches of about this many points; at least 1
   bool dry_run = false;                     ///< compute what would change, and write nothing
 };
@@ -26,7 +26,7 @@ struct CloudPose {
 
 enum class ChangeKind : std::uint8_t { Added, Gone, Changed, Split, Joined };
 
-/// An object that is not what it was.
+/// An object that a change added, removed or altered.
 struct ObjectChange {
   ChangeKind kind = ChangeKind::Changed;
   std::string iri;                        ///< of Gone: the IRI that it had

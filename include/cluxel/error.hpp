@@ -61,7 +61,7 @@ enum class ErrorKind : std::uint8_t {
 /// What the caller can do about an error, where one setting of the call helps. A program names its option for it.
 enum class Remedy : std::uint8_t {
   None,
-  ReplaceMap,    ///< build with BuildParams::force
+  ReplaceMap,    ///< build with BuildOptions::force
   NameHome,      ///< name the folder that holds ontology, rules, queries, models and labels
   NamePoses,     ///< name the file of poses
   NameTruth,     ///< name a folder of truth files

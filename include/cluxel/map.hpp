@@ -33,7 +33,7 @@ struct BuildOptions {
   /// The folder with ontology, rules, queries, models and labels. Empty: the variable CLUXEL_HOME, else share/cluxel of
   /// the installation of this library, else the checkout it was built in.
   std::filesystem::path home;
-  unsigned threads = 0;                     ///< 0: one a processor; the map does not depend on it
+  unsigned threads = 0;                     ///< 0: one per processor; the map does not depend on it
   std::uint64_t batch_points = 20'000'000;  ///< scans are committed in batches of about this many points; at least 1
   bool force = false;                       ///< replace a finished map; the operator's statements are kept
   bool drop_statements = false;             ///< with `force`: drop the operator's statements too
@@ -53,7 +53,7 @@ struct QueryOptions {
   std::function<void()> poll;
 };
 
-/// Quads that came and went by an update.
+/// How many quads an update inserted and deleted.
 struct UpdateCounts {
   std::uint64_t inserted = 0, deleted = 0;
 };

@@ -19,8 +19,8 @@ namespace cluxel::app {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Progress and notes on stderr. Progress is one line that changes on a terminal; elsewhere a line now and then, and
-/// none for short work.
+/// Progress and notes on stderr. On a terminal, progress is one line that is rewritten. Elsewhere a line is printed
+/// now and then; short work prints none.
 class Console : public ProgressSink {
  public:
   Console();

@@ -26,7 +26,7 @@ struct CommandEntry {
 
 CommandEntry commandTableOf(const CLI::App& app);
 
-/// The program and all commands below it, each before its own.
+/// The program and all commands below it. Each stands before its subcommands.
 std::vector<const CommandEntry*> flattened(const CommandEntry& program);
 
 }  // namespace cluxel::app

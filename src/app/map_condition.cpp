@@ -8,7 +8,7 @@
 namespace cluxel::app {
 
 void addAllowUnfinished(CLI::App& command, bool& is_allowed) {
-  command.add_flag("--allow-unfinished", is_allowed, "no note when the build of the map is unfinished");
+  command.add_flag("--allow-unfinished", is_allowed, "do not warn when the build of the map is unfinished");
 }
 
 void noteUnfinished(const fs::path& map, bool is_finished, bool is_allowed, Session& session) {

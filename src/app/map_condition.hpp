@@ -12,7 +12,7 @@ namespace cluxel::app {
 /// Adds --allow-unfinished.
 void addAllowUnfinished(CLI::App& command, bool& is_allowed);
 
-/// Notes on stderr that the answers are those of the scans so far, unless that is allowed.
+/// Warns on stderr when the build is unfinished, so that answers cover only the scans so far, unless that is allowed.
 void noteUnfinished(const fs::path& map, bool is_finished, bool is_allowed, Session& session);
 
 /// Reads a store that was filled without a build. Absent for a map, and for a store without quads, which is left when

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Questions and files that a command line names for SPARQL commands.
+// Opens the queries and files that a command line names for SPARQL commands.
 #pragma once
 
 #include <map>
@@ -11,17 +11,17 @@
 
 namespace cluxel::app {
 
-/// The question in a file (by path, or by name in queries/) or in a text; Error (Usage) for none or both.
+/// The query in a file (by path, or by name in queries/) or in a text; Error (InvalidArgument) for none or both.
 tasks::Question questionFrom(const fs::path& file, const std::string& text, const Session& session);
 
-/// `IRI=FILE` texts of an option; Error (Usage) for a text of another form.
+/// `IRI=FILE` texts of an option; Error (InvalidArgument) for a text of another form.
 std::map<std::string, fs::path> namedFiles(const std::string& option, const std::vector<std::string>& texts);
 
 /// The same, each opened: a map, or an RDF file in a store of its own.
 class NamedSources {
  public:
   NamedSources(const std::string& option, const std::vector<std::string>& texts);
-  /// Valid while this lives.
+  /// Valid for the lifetime of this object.
   std::map<std::string, const rdf::QuadReader*> readers() const;
 
  private:

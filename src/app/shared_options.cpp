@@ -52,7 +52,7 @@ void addBudget(CLI::App& command, BudgetOptions& options) {
 }
 
 void addHtmlFile(CLI::App& command, fs::path& file) {
-  command.add_option("--html", file, "write figures as one HTML file, too")->check(named());
+  command.add_option("--html", file, "also write figures, as one HTML file")->check(named());
 }
 
 void refuseToReplaceMap(const fs::path& output) {

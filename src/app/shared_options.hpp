@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options that several commands have: how scans are read, and what a query may use.
+// Options that several commands have: how scans are read, and the limits of a query.
 #pragma once
 
 #include <cstdint>

@@ -22,7 +22,7 @@ class StopSignals {
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
 
-  /// True when one came, now or within `wait`. It is told once.
+  /// True when a signal has arrived or arrives within `wait`. Each signal is reported once.
   bool arrived(std::chrono::seconds wait = std::chrono::seconds(0)) const {
     const timespec limit{wait.count(), 0};
     return ::sigtimedwait(&set_, nullptr, &limit) > 0;

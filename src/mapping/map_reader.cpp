@@ -49,7 +49,9 @@ struct MapReader::Impl {
     return *objects;
   }
 
-  /// The map's model was fit for the program that built it: a fault of it is no fault of its user.
+  /// The program that built the map accepted this model. A fault now means that another version of Cluxel built the
+  /// map,
+  /// not that the user gave a faulty model.
   perception::LabelModel storedModel() {
     const NamedText& stored = readInputs().model;
     try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which characters an IRI may hold.
+// Which characters an IRI may hold, and whether its path may need resolution.
 #pragma once
 
 #include <algorithm>
@@ -15,6 +15,12 @@ constexpr bool isForbiddenInIri(char c) {
 
 constexpr bool hasIriCharactersOnly(std::string_view iri) {
   return std::none_of(iri.begin(), iri.end(), isForbiddenInIri);
+}
+
+/// False when resolution by RFC 3986 cannot change the path of an absolute IRI: it holds no segment "." or "..".
+inline bool mayHoldDotSegments(std::string_view iri) {
+  return iri.find("/./") != std::string_view::npos || iri.find("/../") != std::string_view::npos ||
+         iri.ends_with("/.") || iri.ends_with("/..");
 }
 
 }  // namespace cluxel::rdf

@@ -35,7 +35,7 @@ struct Scan {
   std::optional<double> time_s;  ///< seconds since the epoch of the recording
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
   bool has_pose = false;  ///< false: points are taken as given in the map frame, no sensor origin
-  std::string source;     ///< the file it came from, for people
+  std::string source;     ///< the file it was read from, for messages
   ScanId id;              ///< contentIdOf(*this)
 };
 

@@ -60,7 +60,7 @@ void MapService::tidy() {
     try {
       map->releaseOldCommit();
     } catch (const std::exception&) {
-      map->release();  // the file is gone or being replaced; requests will tell
+      map->release();  // the file is gone or being replaced; the next request reports it
     }
   }
 }
@@ -106,7 +106,7 @@ HttpResponse MapService::preflight(const HttpRequest& request) const {
 
 void MapService::allowOrigin(const HttpRequest& request, HttpResponse& response) const {
   const auto& allowed = options_.allowed_origins;
-  if (allowed.empty()) {  // what preflight() says is of no use without an allowed origin
+  if (allowed.empty()) {  // without an allowed origin the headers of preflight() have no use
     std::erase_if(response.headers, [](const auto& header) { return header.first.starts_with("Access-Control-"); });
     return;
   }

@@ -37,7 +37,7 @@ class MapService {
 
   /// Never throws.
   HttpResponse handle(const HttpRequest& request);
-  /// Lets go of old commits, so that writers can use their pages again. To be called now and then.
+  /// Releases old commits, so that writers can reuse their pages. To be called now and then.
   void tidy();
 
  private:

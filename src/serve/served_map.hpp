@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One map that is served: its name in paths, snapshots of it, and its objects as a table that a commit keeps.
+// One map that is served: its name in paths, snapshots of it, and its objects as a table that is cached per commit.
 #pragma once
 
 #include <filesystem>

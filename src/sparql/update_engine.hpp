@@ -25,7 +25,7 @@ struct UpdateOptions {
 };
 
 struct UpdateReport {
-  /// Quads that came and went, summed over the operations; one that an operation deletes and inserts counts for
+  /// Inserted and deleted quads, summed over the operations; one that an operation deletes and inserts counts for
   /// neither.
   std::uint64_t inserted = 0, deleted = 0;
   std::vector<Diagnostic> warnings = {};  ///< unknown functions, and constant patterns that are no regular expressions

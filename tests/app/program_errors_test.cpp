@@ -22,12 +22,12 @@ std::string fresh() {
 
 TEST_F(Program, AMapThatIsNotThereIsExitCodeFiveInEveryCommand) {
   const std::string absent = path("absent.clx").string();
-  for (const std::string& arguments :
-       std::vector<std::string>{"info " + absent, "query " + absent + " -e 'ASK {}'",
-                                "update " + absent + " -e 'CLEAR ALL'", "explain " + absent + " 1234",
-                                "state " + absent + " --list", "evaluate " + absent + " --truth " + campus() + "/truth",
-                                "export " + absent + " --canonical", "view " + absent + " -o " + fresh(),
-                                "compact " + absent, "compact " + absent + " -o " + fresh(), "doctor " + absent}) {
+  for (const std::string& arguments : std::vector<std::string>{
+           "info " + absent, "query " + absent + " -e 'ASK {}'", "update " + absent + " -e 'CLEAR ALL'",
+           "explain " + absent + " 1234", "state " + absent + " --list",
+           "evaluate " + absent + " --truth " + campus() + "/truth", "export " + absent + " --canonical",
+           "view " + absent + " -o " + fresh(), "compact " + absent, "compact " + absent + " -o " + fresh(),
+           "doctor " + absent, "rules check --map " + absent}) {
     SCOPED_TRACE(arguments);
     expectError(run(arguments), 5, "absent.clx");
     EXPECT_FALSE(fs::exists(absent));
@@ -60,7 +60,7 @@ TEST_F(Program, AnyOtherInputThatIsNotThereIsExitCodeFourInEveryCommand) {
            "build " + campus() + " -o " + fresh() + " --sparql-rules absent-input",
            "build " + campus() + " -o " + fresh() + " --ontology absent-input", "query absent-input.ttl -e 'ASK {}'",
            "query " + map() + " absent-input.rq", "update " + map() + " absent-input.ru",
-           "evaluate " + map() + " --truth absent-input", "rules check absent-input", "rules check --map absent-input",
+           "evaluate " + map() + " --truth absent-input", "rules check absent-input",
            "rules check --ontology absent-input", "rules test absent-input", "rules try " + map() + " absent-input",
            "rules diff " + map() + " outdoor.rules.yaml absent-input",
            "train absent-input --truth campus -o " + fresh(),

@@ -155,7 +155,7 @@ TEST(ConditionText, PointsAtTheWordThatIsWrong) {
       {"height between 1 m", "'and' is missing"},
       {"gap clx:Tree <= 1 m", "'to' is missing"},
       {"is", "a label is missing"},
-      {"height >= 1 m and", "nothing can stand behind the condition"},
+      {"height >= 1 m and", "the condition must end here"},
       {"touches clx:Twig", "the ontology knows no class 'clx:Twig'"}};
   for (const auto& [text, message] : faults) {
     const auto loaded = loadDefined("  tall: [ " + text + " ]\n", kUser);

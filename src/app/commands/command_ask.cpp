@@ -26,7 +26,8 @@ void addAnswerOutput(CLI::App& command, AnswerOutput& output) {
   command.add_option("--format", output.format, "table, csv, json, geojson")
       ->check(CLI::IsMember({"table", "csv", "json", "geojson"}));
   command.add_flag("--geojson", output.geojson, "the same as --format geojson");
-  command.add_flag("--local", output.local, "geojson in metres of the map frame, not in longitude and latitude");
+  command.add_flag("--local", output.local,
+                   "write GeoJSON in metres of the map frame instead of longitude and latitude");
 }
 
 /// Prints, and tells whether the answer is "no" or has no rows.
@@ -140,12 +141,12 @@ ExitCode inventory(const InventoryArguments& arguments, Session& session) {
 
 void addAsk(CLI::App& app, Session& session) {
   auto options = std::make_shared<AskArguments>();
-  CLI::App* command = app.add_subcommand("ask", "have a map answer one of its tasks");
+  CLI::App* command = app.add_subcommand("ask", "run a task on a map, such as route, search or inventory");
   command->add_option("map", options->map, "a map")->required();
-  command->add_option("task", options->task, "a name that `cluxel tasks` lists")->required();
+  command->add_option("task", options->task, "name of the task; `cluxel tasks` lists all")->required();
   command->add_option("values", options->values, "NAME=VALUE for parameters of the task");
   addAnswerOutput(*command, options->output);
-  command->add_flag("--why", options->why, "the reasons of each row, where the task gives them");
+  command->add_flag("--why", options->why, "print the reasons of each row, where the task gives them");
   addAllowUnfinished(*command, options->allow_unfinished);
   onRun(*command, session, [options, &session] { return ask(*options, session); });
 }
@@ -160,15 +161,21 @@ void addInventory(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("inventory", "list signs, lamps, trees, parked vehicles and sidewalks");
   command->add_option("map", options->map, "a map")->required();
   command->add_option("--kind", options->kinds,
-                      "a class, ParkingRow or Sidewalk; else street furniture, trees and both");
-  command->add_option("--streets", options->streets, "GeoJSON lines with names: each thing gets its nearest street")
+                      "a class, ParkingRow or Sidewalk; default: street furniture, trees and both of these");
+  command
+      ->add_option("--streets", options->streets,
+                   "GeoJSON lines with names: each entry gets the name of its nearest street")
       ->check(CLI::ExistingFile);
-  command->add_option("--register", options->register_file, "CSV or GeoJSON of what should be there: compare with it")
+  command
+      ->add_option("--register", options->register_file,
+                   "CSV or GeoJSON of the objects that should be there: compare the map with it")
       ->check(CLI::ExistingFile);
   command
       ->add_option("--within", options->comparison.within_m, "largest distance between an entry and its object [m, 3]")
       ->check(above0());
-  command->add_option("--view", options->comparison.view_m, "a place is observed from within this distance [m, 25]")
+  command
+      ->add_option("--view", options->comparison.view_m,
+                   "a place counts as observed when a scan sees it from within this distance [m, 25]")
       ->check(above0());
   addAnswerOutput(*command, options->output);
   addAllowUnfinished(*command, options->allow_unfinished);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `cluxel build`: scans in, one map file out.
+// `cluxel build`: makes one map file from scans.
 #include "app/command.hpp"
 #include "app/shared_options.hpp"
 #include "mapping/build/map_builder.hpp"

@@ -40,7 +40,7 @@ ExitCode retract(const ChangeOptions& options, Session& session) {
   return ExitCode::Done;
 }
 
-/// The clouds of the map, which all scans must be, with the poses that the set gives them.
+/// The clouds of the map with the poses that the set gives them. Every scan of the set must be a cloud of the map.
 std::vector<mapping::ScanPose> posesOf(const scan::ScanSet& scans, const fs::path& map, ProgressSink& sink) {
   const mapping::MapReader reader(map);
   requireFrame(reader.inputs(), scans);

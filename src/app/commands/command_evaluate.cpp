@@ -91,11 +91,14 @@ void addEvaluate(CLI::App& app, Session& session) {
       ->add_option("--truth", options->truth,
                    "a folder of truth files, or a label map: oakland, semantickitti, sydney, nuscenes, campus")
       ->required();
-  command->add_option("--min-oa", options->min_oa, "exit 1 when the overall accuracy of objects by point is below")
+  command->add_option("--min-oa", options->min_oa, "exit 1 when the overall accuracy of objects by point is below this")
       ->check(share());
-  command->add_option("--min-macro-f1", options->min_macro_f1, "exit 1 when the macro F1 of objects by point is below")
+  command
+      ->add_option("--min-macro-f1", options->min_macro_f1,
+                   "exit 1 when the macro F1 of objects by point is below this")
       ->check(share());
-  command->add_option("--min-recall", options->min_recall, "CLASS=SHARE: exit 1 when the recall by point is below");
+  command->add_option("--min-recall", options->min_recall,
+                      "CLASS=SHARE: exit 1 when the recall of the class by point is below this");
   addHtmlFile(*command, options->html);
   addAllowUnfinished(*command, options->allow_unfinished);
   onRun(*command, session, [options, &session] {

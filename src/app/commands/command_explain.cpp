@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `cluxel explain`: the tests that led to a decision, why it was no other, and the smallest change that would reverse
-// it.
+// `cluxel explain`: the tests that led to a decision, why other classes were rejected, and the smallest change that
+// would reverse the decision.
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
 #include "cluxel/error.hpp"
@@ -43,8 +43,10 @@ void addExplain(CLI::App& app, Session& session) {
                    "an object or primitive: its IRI, the first digits of its hash, or an object's number (17, #17)")
       ->required();
   addAllowUnfinished(*command, options->allow_unfinished);
-  command->add_option("--why-not", options->why_not, "how near the rules of this class come to it, and what they miss");
-  command->add_flag("--dot", options->dot, "the rule's tree as a Graphviz graph, the way through it in bold");
+  command->add_option("--why-not", options->why_not,
+                      "how near the rules of this class come to accepting it, and which tests fail");
+  command->add_flag("--dot", options->dot,
+                    "print the rule's tree as a Graphviz graph, with the path of the decision in bold");
   onRun(*command, session, [options, &session] { return explainOne(*options, session); });
 }
 

@@ -41,11 +41,12 @@ void addExport(CLI::App& app, Session& session) {
   auto options = std::make_shared<ExportOptions>();
   CLI::App* command = app.add_subcommand("export", "write a map as RDF, a coloured cloud or footprints");
   command->add_option("map", options->map, "a map")->required();
-  command->add_option("-o,--output", options->output, "the file to write; else stdout")->check(named());
+  command->add_option("-o,--output", options->output, "the file to write; default: stdout")->check(named());
   command->add_option("--format", options->format,
-                      "turtle, nquads, canonical, ply, geojson; else by the file's ending");
+                      "turtle, nquads, canonical, ply, geojson; default: by the file's ending");
   command->add_flag("--canonical", options->canonical, "sorted N-Quads without history: equal bytes mean equal maps");
-  command->add_flag("--local", options->local, "geojson in metres of the map frame, not in longitude and latitude");
+  command->add_flag("--local", options->local,
+                    "write GeoJSON in metres of the map frame instead of longitude and latitude");
   addAllowUnfinished(*command, options->allow_unfinished);
   onRun(*command, session, [options, &session] {
     const tasks::ExportFormat format = formatOf(*options);

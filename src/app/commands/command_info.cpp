@@ -109,7 +109,7 @@ Json inputFilesJson(const mapping::MapInputs& inputs) {
           {"model", inputs.model.name}};
 }
 
-/// By its content; by the ending of its name too, so that a damaged or absent map is reported as such.
+/// Decides by the content, and by the ending of the name, so that a damaged or absent map is reported as such.
 bool isMap(const fs::path& input) {
   return input.extension() == ".clx" || rdf::looksLikeMap(input);
 }

@@ -57,10 +57,11 @@ ExitCode dump(const DumpOptions& options) {
 void addLoad(CLI::App& app, Session& session) {
   auto options = std::make_shared<LoadOptions>();
   CLI::App* command = app.add_subcommand("load", "load RDF files into a store, or into graph operator of a map");
-  command->add_option("store", options->store, "a store, which is made when it is absent, or a map")->required();
+  command->add_option("store", options->store, "a map, or a store, which is created when it does not exist")
+      ->required();
   command->add_option("files", options->files, "RDF files (.ttl .nt .nq .trig .rdf)")->required();
   command->add_option("--graph", options->params.graph, "graph for statements that name no graph")->check(named());
-  command->add_option("--base", options->params.base_iri, "base IRI of relative IRIs; else the file's own")
+  command->add_option("--base", options->params.base_iri, "base IRI of relative IRIs; default: the file's own")
       ->check(named());
   onRun(*command, session, [options, &session] { return load(*options, session); });
 }
@@ -69,7 +70,7 @@ void addDump(CLI::App& app, Session& session) {
   auto options = std::make_shared<DumpOptions>();
   CLI::App* command = app.add_subcommand("dump", "write all quads of a map or store as N-Quads, in the store's order");
   command->add_option("store", options->store, "a map or store")->required();
-  command->add_option("-o,--output", options->output, "the file to write; else stdout")->check(named());
+  command->add_option("-o,--output", options->output, "the file to write; default: stdout")->check(named());
   CLI::Option* graph = command->add_option("--graph", options->graph,
                                            "only this graph, as N-Triples; an empty IRI is the unnamed graph");
   onRun(*command, session, [options, graph, &session] {

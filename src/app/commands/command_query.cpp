@@ -152,7 +152,7 @@ void addQuery(CLI::App& app, Session& session) {
   command->add_flag("--explain", options->explain,
                     "print the plan with estimated and actual rows on stderr; with --json as JSON in one line");
   command->add_flag("--why-empty", options->why_empty,
-                    "when there is no row, name the pattern that removed the last one");
+                    "when the answer has no row, name the pattern that removed the last one");
   command->add_flag("--strict", options->strict, "the default graph is the unnamed graph, not the union");
   command->add_flag("--no-prefixes", options->no_prefixes, "know only the prefixes that the query declares");
   command->add_option("--base", options->base_iri, "base IRI of relative IRIs");

@@ -69,7 +69,7 @@ std::size_t groupsIn(const scan::PoseRegistration& report) {
   return groups;
 }
 
-/// Pairs left out, by name; then each scan with its correction.
+/// Prints the pairs that were left out, by name; then each scan with its correction.
 void printReport(const scan::PoseRegistration& report, const scan::ScanSet& set, bool check) {
   const auto source = [&](std::size_t i) { return set.file(report.scans[i].index).path.string(); };
   std::size_t used = 0;

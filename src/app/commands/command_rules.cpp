@@ -82,8 +82,8 @@ std::vector<Diagnostic> checkSparqlRule(const fs::path& file, const rdf::Ontolog
   }
 }
 
-/// The faults of rule files; without errors, what `options` asks for too: pairs of rules that want the same thing, and
-/// thresholds that are decided by noise in a map.
+/// The faults of rule files. When there are no errors, also what `options` asks for: pairs of rules that claim the same
+/// thing, and thresholds that noise decides in a map.
 std::vector<Diagnostic> checkTrees(const std::vector<fs::path>& files, const rdf::OntologyView& ontology,
                                    const RulesOptions& options, unsigned threads) {
   rules::LoadedRules loaded =
@@ -144,7 +144,7 @@ std::vector<fs::path> testFiles(const RulesOptions& options, const DataHome& hom
   return files;
 }
 
-/// `--junit` takes the word behind it, which may be a test file when the report's name was forgotten.
+/// `--junit` takes the next word as its value. That is a test file when the report's name was forgotten.
 void refuseToReplaceTests(const fs::path& junit) {
   if (junit.extension() == ".yaml" || junit.extension() == ".yml")
     throw Error(
@@ -233,7 +233,7 @@ std::map<fs::path, fs::file_time_type> timesOf(const std::vector<fs::path>& test
     for (const fs::path& file : tests)
       for (const fs::path& more : filesOfRuleTests(file, catalogue)) files.push_back(more);
   } catch (const Error&) {
-    // A file that is faulty or gone is among those that are known, or beside them: the folder tells.
+    // The list of files cannot be read from a faulty test file. All rule files of its folder are watched instead.
     for (const fs::path& file : tests)
       for (const auto& entry : fs::directory_iterator(fs::absolute(file).parent_path(), ignored))
         if (isRuleFile(entry.path())) files.push_back(entry.path());
@@ -244,7 +244,7 @@ std::map<fs::path, fs::file_time_type> timesOf(const std::vector<fs::path>& test
 }
 
 /// Runs the tests again whenever one of their files changes, until the program is stopped. Editors replace a file by
-/// renaming another: it may be gone for a moment.
+/// renaming another one over it, so that it may be absent for a moment.
 [[noreturn]] void watch(const RulesOptions& options, Session& session) {
   const std::vector<fs::path> tests = testFiles(options, session.dataHome());
   while (true) {
@@ -271,11 +271,11 @@ struct ApplyOptions {
   mapping::ChangeParams change;
 };
 
-/// The map's inputs with those replaced that are named.
+/// The map's inputs, with the named ones replaced.
 mapping::MapInputs inputsWith(const mapping::MapInputFiles& named, mapping::MapInputs inputs, const Session& session) {
   if (named.rules.empty() && named.sparql_rules.empty() && named.ontology.empty() && named.model.empty())
     throw Error(ErrorKind::InvalidArgument,
-                "name what is to be applied: --rules, --sparql-rules, --ontology or --model; the rest stays");
+                "name what to apply: --rules, --sparql-rules, --ontology or --model; the rest stays");
   return withNamedFiles(std::move(inputs), named, session.dataHome());
 }
 
@@ -289,7 +289,8 @@ ExitCode apply(const ApplyOptions& options, Session& session) {
 
 void addApply(CLI::App& rules, Session& session) {
   auto options = std::make_shared<ApplyOptions>();
-  CLI::App* applying = rules.add_subcommand("apply", "decide anew with other rules, ontology or model");
+  CLI::App* applying =
+      rules.add_subcommand("apply", "give a map other rules, another ontology or model, and recompute it");
   applying->add_option("map", options->map, "a finished map")->required();
   applying->add_option("--rules", options->files.rules, "rule files instead of the map's");
   applying->add_option("--sparql-rules", options->files.sparql_rules, "CONSTRUCT rules instead of the map's");
@@ -307,20 +308,21 @@ void addRules(CLI::App& app, Session& session) {
   CLI::App* rules = app.add_subcommand("rules", "check, test, try, compare, fit, teach, describe and apply rules");
   rules->require_subcommand(1);
   CLI::App* checking = rules->add_subcommand("check", "report every fault with file, line and column");
-  checking->add_option("files", options->files, "rule files, and SPARQL rules (*.rq); else rules/outdoor.rules.yaml");
+  checking->add_option("files", options->files,
+                       "rule files, and SPARQL rules (*.rq); default: rules/outdoor.rules.yaml");
   checking->add_option("--ontology", options->inputs.ontology, "ontology files beside ontology/*.ttl");
   checking->add_flag("--pairs", options->pairs,
-                     "find rules that can both take one thing with nothing to decide between them, with a witness");
+                     "find pairs of rules that can accept the same thing with equal evidence, and show an example");
   checking->add_option("--map", options->map,
-                       "find thresholds within whose noise a tenth or more of this map's things lie");
+                       "find thresholds that measurement noise decides for a tenth or more of this map's things");
   CLI::App* testing = rules->add_subcommand("test", "run rule tests; exit 1 when one fails");
-  testing->add_option("files", options->files, "test files; else rules/outdoor.rules-test.yaml");
+  testing->add_option("files", options->files, "test files; default: rules/outdoor.rules-test.yaml");
   testing->add_option("--junit", options->junit, "write a JUnit report to this file");
   testing->add_option("--only", options->only, "only tests whose name contains this text");
   testing->add_flag("--mutate", options->mutate,
-                    "put small errors into the rules and count those that the tests notice");
+                    "mutation test: put small errors into the rules, and count those that the tests find");
   testing->add_option("--least-score", options->least_score, "with --mutate: exit 1 below this share")->check(share());
-  testing->add_flag("--update-golden", options->update_golden, "write what comes out now into the golden files");
+  testing->add_flag("--update-golden", options->update_golden, "write the present results into the golden files");
   testing->add_flag("--watch", options->watch, "run again whenever a file of the tests changes, until stopped");
   testing->add_option("--model", options->inputs.model, "the model for tests on clouds");
   testing->add_option("--ontology", options->inputs.ontology, "ontology files beside ontology/*.ttl");

@@ -42,7 +42,7 @@ void addRuleReference(CLI::App& rules, Session& session) {
   auto options = std::make_shared<ReferenceOptions>();
   CLI::App* reference =
       rules.add_subcommand("doc", "write the reference of attributes, relations and rules (Markdown)");
-  reference->add_option("files", options->files, "rule files; else rules/outdoor.rules.yaml");
+  reference->add_option("files", options->files, "rule files; default: rules/outdoor.rules.yaml");
   reference->add_option("--maps", options->maps, "finished maps: their objects are measured by class");
   reference->add_option("-o,--out", options->out, "write it to this file instead of standard output")->check(named());
   onRun(*reference, session, [options, &session] { return writeReference(*options, session); });

@@ -139,18 +139,19 @@ ExitCode fit(const FitOptions& options, Session& session) {
 
 void addRuleFit(CLI::App& rules, Session& session) {
   auto options = std::make_shared<FitOptions>();
-  CLI::App* fitting = rules.add_subcommand("fit", "learn the numbers of evidence from maps with truth");
+  CLI::App* fitting = rules.add_subcommand("fit", "fit the numbers of the rules' evidence to maps with truth");
   fitting->add_option("maps", options->maps, "finished maps, or folders of them")->required();
   fitting->add_option("--truth", options->truth, "a label map in labels/ or a folder of truth files")->required();
   fitting->add_option("--also", options->also, "more maps with another truth: TRUTH=MAP or TRUTH=FOLDER");
   fitting->add_option("--keep", options->keep, "the id of a rule that stays as it is");
-  fitting->add_option("--rules", options->rules, "the rule file; else rules/outdoor.rules.yaml");
+  fitting->add_option("--rules", options->rules, "the rule file; default: rules/outdoor.rules.yaml");
   fitting->add_option("-o,--out", options->out, "write the rule file with the new numbers here");
   fitting->add_option("--min-examples", options->params.min_examples,
-                      "right and wrong candidates that a rule needs (default 10)");
+                      "smallest number of right and of wrong candidates for fitting a rule (default 10)");
   fitting->add_option("--interval", options->params.interval,
                       "change a number when this share of the resamples excludes the old one (default 0.8)");
-  fitting->add_option("--ridge", options->params.ridge, "pull of log-odds towards 0 (default 4)");
+  fitting->add_option("--ridge", options->params.ridge,
+                      "strength with which the ridge pulls log-odds towards 0 (default 4)");
   fitting->add_option("--ontology", options->inputs.ontology, "ontology files instead of ontology/*.ttl");
   onRun(*fitting, session, [options, &session] { return fit(*options, session); });
 }

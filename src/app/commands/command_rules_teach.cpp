@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `cluxel rules teach`: an exception for one object of a map, with a test that keeps it.
+// `cluxel rules teach`: writes an exception for one object of a map, and a rule test of it.
 #include "app/command.hpp"
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
@@ -75,11 +75,9 @@ void addRuleTeaching(CLI::App& rules, Session& session) {
   teaching->add_option("map", options->map, "a finished map, which stays as it is")->required();
   teaching->add_option("object", options->lesson.object, "the object: its number, or the first digits of its hash")
       ->required();
-  teaching->add_option("--is", options->lesson.class_name, "the class that it has in truth")
-      ->required()
-      ->check(named());
+  teaching->add_option("--is", options->lesson.class_name, "its true class")->required()->check(named());
   teaching->add_option("--confirmed", options->lesson.confirmed,
-                       "objects that are right and must not change; else all others of the map");
+                       "objects that are right and must not change; default: all others of the map");
   teaching->add_option("-o,--out", options->out, "the new rule file; its test gets the ending .rules-test.yaml")
       ->check(named())
       ->capture_default_str();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `cluxel rules try` and `cluxel rules diff`: what other rules would make of a map, which stays as it is.
+// `cluxel rules try` and `cluxel rules diff`: what would change in a map under other rules. The map is not changed.
 #include "app/command.hpp"
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
@@ -54,12 +54,12 @@ ExitCode compareRules(const TrialOptions& options, Session& session) {
 void addRuleTrial(CLI::App& rules, Session& session) {
   auto tried = std::make_shared<TrialOptions>(), compared = std::make_shared<TrialOptions>();
   CLI::App* trying =
-      rules.add_subcommand("try", "what would change if the map had other rules; exit 1 when something does");
+      rules.add_subcommand("try", "show what would change if the map had other rules; exit 1 when something would");
   trying->add_option("map", tried->map, "a finished map, which stays as it is")->required();
   trying->add_option("rules", tried->after, "the other rules")->required();
   trying->add_option("--ply", tried->ply, "write the points, coloured by kind of change, to this file")->check(named());
   CLI::App* comparing =
-      rules.add_subcommand("diff", "what changes between two sets of rules on a map; exit 1 when something does");
+      rules.add_subcommand("diff", "show what differs between two sets of rules on a map; exit 1 when something does");
   comparing->add_option("map", compared->map, "a finished map, which stays as it is")->required();
   comparing->add_option("before", compared->before, "the rules before")->required();
   comparing->add_option("after", compared->after, "the rules after")->required();

@@ -79,7 +79,7 @@ std::string tokenIn(const fs::path& file) {
   return token;
 }
 
-/// The page of `cluxel view`; none where the checkout has not made its program yet.
+/// The page of `cluxel view`; absent when the page's program has not been built.
 std::function<std::string(const mapping::MapReader&, const std::string&)> pageMaker(const DataHome& home) {
   std::string program;
   try {
@@ -167,14 +167,14 @@ void addServe(CLI::App& app, Session& session) {
   command->add_option("maps", options->maps, "maps, each FILE or NAME=FILE")->required();
   command
       ->add_option("--host", options->host,
-                   "the address to listen on; others than 127.0.0.1 are reached from other machines")
+                   "the address to listen on; any other than 127.0.0.1 can be reached from other machines")
       ->check(named());
   command->add_option("--port", options->port, "the port to listen on; 0: a free one")->check(CLI::Range(0, 65535));
   command->add_option("--token-file", options->token_file,
-                      "a file with the token that permits updates; without it none are taken");
-  command->add_option("--cors", options->origins, "an origin whose web pages may read answers, or *: all");
+                      "a file with the token that permits updates; without it updates are refused");
+  command->add_option("--cors", options->origins, "an origin whose web pages may read answers; *: all origins");
   command->add_option("--log", options->log, "a file to append the access log to, instead of stderr");
-  command->add_flag("--quiet", options->quiet, "no access log");
+  command->add_flag("--quiet", options->quiet, "write no access log");
   command->add_option("--deadline", options->deadline_s, "seconds after which a query is given up")
       ->check(CLI::Range(0.001, 1e9));
   command->add_option("--max-rows", options->max_rows, "rows above which a query is given up")->check(above0());
@@ -184,11 +184,10 @@ void addServe(CLI::App& app, Session& session) {
       ->check(CLI::Range(1, 1 << 24));
   command->add_option("--max-request", options->max_request_kib, "KiB above which the body of a request is refused")
       ->check(CLI::Range(1, 1 << 24));
-  command->add_option("--rate", options->rate, "requests a second of one client above which it is refused")
-      ->check(above0());
-  command->add_option("--running", options->running, "requests that compute at once; default: --threads")
+  command->add_option("--rate", options->rate, "requests per second of one client; more are refused")->check(above0());
+  command->add_option("--running", options->running, "requests that are computed at the same time; default: --threads")
       ->check(CLI::Range(1, 1024));
-  command->add_option("--queue", options->queue, "requests that wait for their turn; more are refused")
+  command->add_option("--queue", options->queue, "requests that wait in the queue; more are refused")
       ->check(CLI::Range(0, 1 << 16));
   command->add_option("--connections", options->connections, "open connections; more are refused")
       ->check(CLI::Range(1, 900));

@@ -93,7 +93,7 @@ void refuseWholeClass(const mapping::MapReader& map, const rules::SemanticObject
           "possible");
 }
 
-/// What is stated about the object, and the earlier statements about its class, which the new one replaces.
+/// The new statement about the object, and the earlier statements about its class, which it replaces.
 void addAboutObject(const mapping::MapReader& map, const StateOptions& options, mapping::StatementEdit& edit,
                     ProgressSink& sink) {
   if (const std::string note = tasks::nameNote(map, options.object); !note.empty()) sink.note(note);
@@ -176,22 +176,23 @@ ExitCode state(const StateOptions& options, Session& session) {
 
 void addState(CLI::App& app, Session& session) {
   auto options = std::make_shared<StateOptions>();
-  CLI::App* command = app.add_subcommand("state", "state what an object of a map is, or that there is none");
+  CLI::App* command = app.add_subcommand("state", "state what an object of a map is, or that it is no object");
   command->add_option("map", options->map, "a finished map")->required();
-  command->add_option("--object", options->object, "the object that is meant, as the command explain takes it");
-  command->add_option("--is", options->is, "the class that it has");
-  command->add_option("--is-not", options->is_not, "a class that it does not have");
-  command->add_flag("--remove,--ignore", options->remove, "it is no object");
-  command->add_option("--label", options->label, "its name (rdfs:label)")->check(validText());
-  command->add_option("--note", options->note, "a remark about it (rdfs:comment)")->check(validText());
+  command->add_option("--object", options->object, "the object: its IRI, number or hash, as for `explain`");
+  command->add_option("--is", options->is, "state its class");
+  command->add_option("--is-not", options->is_not, "state a class that it does not have");
+  command->add_flag("--remove,--ignore", options->remove, "state that it is no object");
+  command->add_option("--label", options->label, "state its name (rdfs:label)")->check(validText());
+  command->add_option("--note", options->note, "add a remark about it (rdfs:comment)")->check(validText());
   command
       ->add_option("--ignore-region", options->region,
-                   "X0,Y0,X1,Y1 or a polygon X,Y,X,Y,X,Y… [m, map]: what lies in it is no object")
+                   "X0,Y0,X1,Y1 or a polygon X,Y,X,Y,X,Y… [m, map]: state that nothing in it is an object")
       ->delimiter(',');
   command->add_option("--withdraw", options->withdrawn, "take back a statement: the first digits of its id");
-  command->add_option("--author", options->author, "who states it, for the history (default: the user's name)")
+  command
+      ->add_option("--author", options->author, "author of the statement, for the history (default: the user's name)")
       ->check(validText());
-  command->add_flag("--list", options->list, "list the statements with what became of them");
+  command->add_flag("--list", options->list, "list the statements, and whether each was applied");
   command->add_option("--export", options->export_file, "write the statements as N-Quads, for build --statements");
   addChangeOptions(*command, options->change, false);
   onRun(*command, session, [options, &session] { return state(*options, session); });

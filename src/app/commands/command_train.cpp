@@ -83,8 +83,8 @@ void addTrain(CLI::App& app, Session& session) {
   command->add_option("--helper", options->helpers, "scans to train on that are never used for measuring");
   command->add_option("--helper-truth", options->helper_truths,
                       "truth of the helpers, as --truth: one for all, or one for each");
-  command->add_option("--name", options->name, "the model's name; else the folder's");
-  command->add_option("--data", options->data, "what the data are, for the model's card");
+  command->add_option("--name", options->name, "the model's name; default: that of the folder");
+  command->add_option("--data", options->data, "description of the data, for the model's card");
   command->add_option("--group-size", options->group_size, "consecutive places left out together in cross-validation")
       ->check(above0())
       ->capture_default_str();

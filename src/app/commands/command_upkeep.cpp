@@ -50,7 +50,7 @@ void addUpkeep(CLI::App& app, Session& session) {
   auto options = std::make_shared<UpkeepOptions>();
   CLI::App* command = app.add_subcommand("compact", "rewrite a map without free space");
   command->add_option("map", options->map, "a map")->required();
-  command->add_option("-o,--output", options->output, "the file to write; else the map itself is replaced")
+  command->add_option("-o,--output", options->output, "the file to write; default: the map itself is replaced")
       ->check(named());
   onRun(*command, session, [options, &session] { return compact(*options, session); });
   CLI::App* checking = app.add_subcommand("doctor", "verify the checksums and indexes of a map");

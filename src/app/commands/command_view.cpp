@@ -73,11 +73,15 @@ void addView(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("view", "write a map as one HTML page with points, questions and reasons");
   command->add_option("map", options->map, "a map")->required();
   command->add_option("-o,--output", options->output, "the page to write")->required()->check(named());
-  command->add_option("--max-points", options->max_points, "points to show; of a larger map an even sample is taken")
+  command
+      ->add_option("--max-points", options->max_points,
+                   "largest number of points to show; a larger map is sampled evenly")
       ->check(above0());
-  command->add_option("--max-quads", options->max_quads, "quads above which those about primitives are left out")
+  command
+      ->add_option("--max-quads", options->max_quads,
+                   "largest number of quads; above it, quads about primitives are left out")
       ->check(above0());
-  command->add_flag("--without-reasons", options->without_reasons, "leave out why objects are what they are");
+  command->add_flag("--without-reasons", options->without_reasons, "leave out the explanations of objects");
   addAllowUnfinished(*command, options->allow_unfinished);
   onRun(*command, session, [options, &session] { return view(*options, session); });
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `cluxel watch`: a map grows as scans arrive in a folder.
+// `cluxel watch`: extends a map by the scans that arrive in a folder.
 #include "app/command.hpp"
 #include "app/shared_options.hpp"
 #include "app/stop_signals.hpp"
@@ -46,16 +46,17 @@ void addWatch(CLI::App& app, Session& session) {
   auto options = std::make_shared<WatchOptions>();
   CLI::App* command = app.add_subcommand("watch", "extend a map by the scans that arrive in a folder");
   command->add_option("folder", options->folder, "the folder in which scans arrive")->required()->check(named());
-  command->add_option("-o,--output", options->map, "the map; it is made when it is not there")
+  command->add_option("-o,--output", options->map, "the map; it is created when it does not exist")
       ->required()
       ->check(named());
   addScanOptions(*command, options->scans);
-  command->add_option("--interval", options->params.interval_s, "between two looks at the folder [s, 1]")
+  command->add_option("--interval", options->params.interval_s, "time between two looks at the folder [s, 1]")
       ->check(CLI::Range(0.05, 3600.0));
-  command->add_option("--idle", options->params.idle_s, "end when nothing arrived for so long [s]; 0: never")
+  command->add_option("--idle", options->params.idle_s, "end when no scan has arrived for this time [s]; 0: never")
       ->check(CLI::Range(0.0, 1e6));
-  command->add_option("--model", options->files.model, "of a new map: a trained model, a name in models/ or a file");
-  command->add_option("--rules", options->files.rules, "of a new map: rule files instead of rules/outdoor.rules.yaml");
+  command->add_option("--model", options->files.model,
+                      "for a new map: a trained model, as a name in models/ or a file");
+  command->add_option("--rules", options->files.rules, "for a new map: rule files instead of rules/outdoor.rules.yaml");
   onRun(*command, session, [options, &session] { return watch(*options, session); });
 }
 

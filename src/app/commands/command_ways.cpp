@@ -85,7 +85,7 @@ ExitCode costMap(WayArguments arguments, Session& session) {
   if (arguments.output.extension() != ".pgm")
     throw Error(ErrorKind::InvalidArgument, "costmap: the output is an image; write -o NAME.pgm");
   const mapping::MapReader map = openMap(arguments, session);
-  arguments.request.params.width_m = 0;  // who drives adds the robot's width
+  arguments.request.params.width_m = 0;  // the navigation software of the robot adds its width
   const tasks::CostMap cost_map = costMapOf(passableIn(map, arguments.request), arguments.output.filename().string());
   writeFile(arguments.output, cost_map.image);
   writeFile(fs::path(arguments.output).replace_extension(".yaml"), cost_map.yaml);
@@ -117,12 +117,14 @@ void addWayOptions(CLI::App& command, WayArguments& arguments) {
   tasks::WayRequest& request = arguments.request;
   command.add_option("--without", request.without, "a class, Movable or Static: leave these objects out");
   command.add_flag("--with-gone", request.with_gone, "keep objects that later scans show to be gone");
-  command.add_option("--max-slope", request.params.max_slope, "rise over run [0.12]")->check(CLI::Range(0.0, 10.0));
-  command.add_option("--max-step", request.params.max_step_m, "height of a kerb that is passed [m, 0.06]")
+  command.add_option("--max-slope", request.params.max_slope, "largest slope, rise over run [0.12]")
+      ->check(CLI::Range(0.0, 10.0));
+  command.add_option("--max-step", request.params.max_step_m, "height of a kerb that can be crossed [m, 0.06]")
       ->check(CLI::Range(0.0, 2.0));
-  command.add_option("--height", request.terrain.highest_m, "clearance: what hangs higher is no obstacle [m, 2]")
+  command
+      .add_option("--height", request.terrain.highest_m, "clearance: objects that hang higher are no obstacles [m, 2]")
       ->check(CLI::Range(0.3, 20.0));
-  command.add_option("--cell", request.terrain.cell_m, "edge of a cell [m, 0.25]")
+  command.add_option("--cell", request.terrain.cell_m, "edge length of a grid cell [m, 0.25]")
       ->check(CLI::IsMember({0.125, 0.25, 0.5, 1.0}));
   addAllowUnfinished(command, arguments.allow_unfinished);
 }
@@ -157,7 +159,7 @@ CLI::App* addSearchLearn(CLI::App& search, Session& session) {
   auto maps = std::make_shared<std::vector<fs::path>>();
   auto output = std::make_shared<fs::path>();
   CLI::App* command =
-      search.add_subcommand("learn", "learn usual places of classes by counting in maps; for `search --places`");
+      search.add_subcommand("learn", "learn the usual places of classes by counting in maps, for `search --places`");
   command->add_option("maps", *maps, "maps to count in")->required();
   command->add_option("-o,--output", *output, "the Turtle file to write")->required()->check(named());
   onRun(*command, session, [maps, output, &session] { return learnPlaces(*maps, *output, session); });
@@ -167,28 +169,30 @@ CLI::App* addSearchLearn(CLI::App& search, Session& session) {
 void requireGiven(bool is_given, const char* name) {
   if (!is_given)
     throw Error(ErrorKind::InvalidArgument,
-                std::string("search: ") + name + " is required; 'cluxel search --help' tells");
+                std::string("search: ") + name + " is required; 'cluxel search --help' describes it");
 }
 
 void addSearch(CLI::App& app, Session& session) {
   auto options = std::make_shared<WayArguments>();
   auto request = std::make_shared<tasks::SearchRequest>();
-  CLI::App* command = app.add_subcommand("search", "tell where to look first for objects of a class");
+  CLI::App* command = app.add_subcommand("search", "plan a walk that finds objects of a class soon");
   const CLI::App* learn = addSearchLearn(*command, session);
   command->add_option("map", options->map, "a map");
   command->add_option("--for", request->class_name, "the class to look for");
-  command->add_option("--places", request->places, "usual places as `search learn` writes them; else the ontology's")
+  command
+      ->add_option("--places", request->places,
+                   "file of usual places that `search learn` wrote; default: those of the ontology")
       ->check(CLI::ExistingFile);
   command->add_flag("--unobserved", options->request.params.crosses_unobserved,
-                    "ground that was not observed may be walked");
-  command->add_option("--from", request->from, "X,Y or an object; else where the last scan was taken");
-  command->add_option("--budget", request->tour.budget_m, "how long the walk may be [m]")->check(above0());
+                    "the walk may cross ground that was not observed");
+  command->add_option("--from", request->from, "start: X,Y or an object; default: where the last scan was taken");
+  command->add_option("--budget", request->tour.budget_m, "largest length of the walk [m]")->check(above0());
   command->add_option("--stops", request->tour.max_stops, "largest number of stops [10]")->check(CLI::Range(1, 100));
-  command->add_option("--view", request->search.view_m, "how far an object is recognised [m, 10]")
+  command->add_option("--view", request->search.view_m, "distance within which an object is recognised [m, 10]")
       ->check(CLI::Range(1.0, 100.0));
   command
       ->add_option("--detection", request->search.detection,
-                   "share of the class's objects within view of a scan that are in the map [0.8]")
+                   "share of the objects of the class in view of a scan that the map holds [0.8]")
       ->check(share());
   command->add_option("--width", options->request.params.width_m, "free width that is needed [m, 0.6]")
       ->check(CLI::Range(0.0, 20.0));
@@ -205,24 +209,25 @@ void addSearch(CLI::App& app, Session& session) {
 
 void addWays(CLI::App& app, Session& session) {
   auto options = std::make_shared<WayArguments>();
-  CLI::App* route_command = app.add_subcommand("route", "find ways over the ground, or say what closes them");
+  CLI::App* route_command = app.add_subcommand("route", "find routes over the ground, or say what blocks them");
   addWalkOptions(*route_command, *options);
   route_command->add_option("to", options->to, "X,Y in metres of the map frame, or an object")->required();
   addWayOptions(*route_command, *options);
-  route_command->add_option("--near", options->request.near, "a class: the way stays near such objects");
+  route_command->add_option("--near", options->request.near, "a class: prefer routes near objects of this class");
   route_command->add_option("--alternatives", options->alternatives, "how many routes to look for [1]")
       ->check(CLI::Range(1, 9));
   route_command->add_option("--format", options->format, "geojson")->check(CLI::IsMember({"geojson"}));
   route_command->add_flag("--local", options->local,
-                          "geojson in metres of the map frame, not in longitude and latitude");
+                          "write GeoJSON in metres of the map frame instead of longitude and latitude");
   onRun(*route_command, session, [options, &session] { return route(*options, session); });
 
   auto reach_options = std::make_shared<WayArguments>();
-  CLI::App* reach_command = app.add_subcommand("reach", "list what is within some minutes' walk");
+  CLI::App* reach_command = app.add_subcommand("reach", "list the objects within a given time of walking");
   addWalkOptions(*reach_command, *reach_options);
   addWayOptions(*reach_command, *reach_options);
-  reach_command->add_option("--minutes", reach_options->minutes, "how long the walk may be [5]")->check(above0());
-  reach_command->add_option("--speed", reach_options->speed_m_s, "of the walk [m/s, 1.2]")->check(above0());
+  reach_command->add_option("--minutes", reach_options->minutes, "largest duration of the walk [min, 5]")
+      ->check(above0());
+  reach_command->add_option("--speed", reach_options->speed_m_s, "walking speed [m/s, 1.2]")->check(above0());
   onRun(*reach_command, session, [reach_options, &session] { return reach(*reach_options, session); });
 
   auto map_options = std::make_shared<WayArguments>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists of statements; a statement against the rules says so.
+// Lists statements. A statement that contradicts the rules is marked.
 #include "app/commands/statement_list.hpp"
 
 #include "mapping/map_reader.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The way of an answer to stdout: directly, or through a temporary file.
+// Writes an answer to stdout: directly, or through a temporary file.
 #pragma once
 
 #include <cstdio>

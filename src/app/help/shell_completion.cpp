@@ -22,7 +22,7 @@ std::string lastWord(const std::string& name) {
   return name.substr(name.rfind(' ') + 1);
 }
 
-/// Options of the program that take the word behind them, which then is no command: "--home|--threads".
+/// Options of the program that take the next word as their value, so that it is no command: "--home|--threads".
 std::string optionsWithValue(const CommandEntry& program) {
   std::string names;
   for (const OptionEntry& option : program.options)
@@ -31,7 +31,7 @@ std::string optionsWithValue(const CommandEntry& program) {
   return names;
 }
 
-/// Shell code, for bash and zsh: steps `command` from one command of the table to the next.
+/// Shell code, for bash and zsh: sets `command` to the subcommand that the next word of the line names.
 std::string steps(const CommandEntry& program, const std::string& word, const std::string& skip) {
   std::string code = "    case \"$command " + word + "\" in\n";
   for (const CommandEntry* entry : flattened(program))
@@ -46,7 +46,7 @@ std::string steps(const CommandEntry& program, const std::string& word, const st
 
 std::vector<OptionEntry> optionsAt(const CommandEntry& program, const CommandEntry& command) {
   std::vector<OptionEntry> options = command.options;
-  if (!command.name.empty())  // the program's own may stand behind the command
+  if (!command.name.empty())  // options of the program may follow the command
     for (const OptionEntry& option : program.options)
       if (option.names.back() != "--help" && option.names.back() != "--version") options.push_back(option);
   return options;

@@ -13,7 +13,7 @@ namespace cluxel::mapping {
 struct WatchParams {
   unsigned threads = 1;
   double interval_s = 1;  ///< between two looks at the folder
-  double idle_s = 0;      ///< end when nothing arrived for so long; 0: never
+  double idle_s = 0;      ///< end when no scan has arrived for this time; 0: never
   scan::ScanSetParams scans = {};
 };
 

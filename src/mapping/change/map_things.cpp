@@ -56,8 +56,9 @@ struct Heirs {
   std::vector<std::vector<std::size_t>> ancestors_of;  ///< by object after: all that went on in it
 };
 
-/// The objects that are the same before and after, each with its number before. The objects of one map have no common
-/// members, so that these are nobody else's heirs. Those of several maps may have: none is given.
+/// The objects that are the same before and after, each with its number before. Objects of one map have no common
+/// members, so that such an object has no other predecessor. Objects of several maps may share members: then the list
+/// is empty.
 std::map<ContentHash, std::size_t> sameObjects(const std::vector<ObjectMembers>& before,
                                                const std::vector<ObjectMembers>& after, ObjectsOf objects_of) {
   std::map<ContentHash, std::size_t> number_before, same;
@@ -274,7 +275,7 @@ std::optional<FormerName> objectByLineage(const rdf::QuadReader& quads, const st
     open.pop_back();
     if (const auto object = object_of.find(thing); object != object_of.end()) {
       found.insert(object->second);
-      continue;  // its name stayed with it, whatever else came of it
+      continue;  // the object kept its name; other successors do not matter
     }
     const auto [begin, end] = later.equal_range(thing);
     for (auto next = begin; next != end; ++next)

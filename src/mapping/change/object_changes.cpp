@@ -14,7 +14,7 @@ namespace {
 
 using Number = std::uint32_t;
 
-/// For each object the numbers of those on the other side that it goes on in.
+/// For each object, the numbers of its successors (or predecessors) on the other side.
 struct Succession {
   std::vector<std::vector<Number>> after_of, before_of;
 };

@@ -19,7 +19,7 @@ namespace {
 using MaybePresence = std::optional<perception::Presence>;
 
 constexpr std::string_view kKey = "presence";
-/// Of the way in which presence follows from rays. Another number makes all stored ones unknown.
+/// The version of the computation of presence from rays. A new number invalidates every stored presence.
 constexpr std::uint32_t kVersion = 1;
 
 /// A row of the stored table.

@@ -237,7 +237,7 @@ void dropSmallPatches(GroundCells& ground) {
       for (const std::uint32_t cell : patch) ground.even[cell] = 0;
 }
 
-/// Even ground ends at a step: the lower cell is none.
+/// Even ground ends at a step: the lower cell does not belong to it.
 void cutAtSteps(const EvenHeights& even, GroundCells& ground) {
   const auto has_height = [&](std::uint32_t cell) {
     return cell != kNoCell && even.distance2[cell] != EvenHeights::kNone;

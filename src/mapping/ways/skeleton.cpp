@@ -11,8 +11,8 @@ namespace cluxel::mapping {
 
 namespace {
 
-/// Whether the cell within these neighbours (bit i: kAroundCell[i] is inside) can go without joining or parting
-/// anything: Yokoi's connectivity number is one.
+/// Whether the cell within these neighbours (bit i: kAroundCell[i] is inside) can be removed without connecting or
+/// disconnecting other cells: Yokoi's connectivity number is one.
 bool isSimple(unsigned around) {
   const auto outside = [around](unsigned i) { return 1U - (around >> (i % 8) & 1U); };
   unsigned number = 0;

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "base/disjoint_sets.hpp"
+
 namespace cluxel::mapping {
 
 namespace {
@@ -120,35 +122,33 @@ class NetworkMaker {
     }
   }
 
-  /// Junctions that are nearer than the way is wide there become the one of them that is farthest from the edge.
+  /// Merges junctions that are nearer to each other than the way is wide there into the one farthest from the edge.
   void joinNodes() {
     countEnds();
-    std::vector<std::uint32_t> group(network_.nodes.size());
-    std::iota(group.begin(), group.end(), 0);
-    const auto root = [&](std::uint32_t node) {
-      while (group[node] != node) node = group[node];
-      return node;
-    };
+    DisjointSets groups(network_.nodes.size());
     const auto rank = [&](std::uint32_t node) {
       return std::tuple(-int{edge_distance2_[network_.nodes[node]]}, network_.nodes[node]);
     };
     for (const SkeletonLine& line : network_.lines) {
       if (network_.line_ends[line.from] < 3 || network_.line_ends[line.to] < 3 || line.from == line.to) continue;
       if (length_m(line) > std::max(clearance_m(line.from), clearance_m(line.to))) continue;
-      const std::uint32_t a = root(line.from), b = root(line.to);
-      if (a != b) group[rank(a) < rank(b) ? b : a] = rank(a) < rank(b) ? a : b;
+      groups.join(line.from, line.to);
     }
+    std::vector<std::uint32_t> farthest(network_.nodes.size());  // of each group, by its representative
+    std::iota(farthest.begin(), farthest.end(), 0);
+    for (std::uint32_t node = 0; node < network_.nodes.size(); ++node)
+      if (std::uint32_t& best = farthest[groups.find(node)]; rank(node) < rank(best)) best = node;
     for (SkeletonLine& line : network_.lines) {
       const bool was_loop = line.from == line.to;
       const double length = length_m(line), clearance = std::max(clearance_m(line.from), clearance_m(line.to));
-      line.from = root(line.from), line.to = root(line.to);
+      line.from = farthest[groups.find(line.from)], line.to = farthest[groups.find(line.to)];
       if (line.from == line.to && !was_loop && length <= clearance) line.cells.clear();
     }
     std::erase_if(network_.lines, [](const SkeletonLine& line) { return line.from == line.to && line.cells.empty(); });
   }
 
-  /// Takes away lines that end blindly within the width of their junction, short ones first; false without any. Two
-  /// lines of a junction stay.
+  /// Removes dead ends that lie within the width of their junction, shortest first. At least two lines of a junction
+  /// stay. Returns false when there was none.
   bool dropSpurs() {
     constexpr double widths = 1.5, beyond_m = 1;
     struct Spur {

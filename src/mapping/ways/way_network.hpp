@@ -21,8 +21,8 @@ struct SkeletonNetwork {
   std::vector<std::uint32_t> line_ends;  ///< per node, how many ends of lines it has
 };
 
-/// Lines that end blindly and are shorter than the way is wide where they begin are left out, and junctions of which
-/// each lies within the other's width are one. `edge_distance2` as of squaredEdgeDistances().
+/// Leaves out dead ends that are shorter than the way is wide at their start, and merges junctions of which each lies
+/// within the other's width. `edge_distance2` as of squaredEdgeDistances().
 SkeletonNetwork networkOf(const TileCells& cells, const std::vector<std::uint8_t>& skeleton,
                           const std::vector<std::uint16_t>& edge_distance2);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well labels fit the truth, counted by point: confusion, precision, recall, F1, and how honest probabilities are.
+// How well labels fit the truth, counted by point: confusion, precision, recall, F1, and calibration of probabilities.
 #pragma once
 
 #include <array>

@@ -12,6 +12,7 @@
 #include "rdf/io/rdf_guards.hpp"
 #include "rdf/io/rdf_io.hpp"
 #include "rdf/io/rdf_text.hpp"
+#include "rdf/iri.hpp"
 
 namespace cluxel::rdf {
 
@@ -40,11 +41,6 @@ std::string_view viewOf(raptor_uri* uri) {
   std::size_t size = 0;
   const unsigned char* text = raptor_uri_as_counted_string(uri, &size);
   return viewOf(text, size);
-}
-
-bool mayHoldDotSegments(std::string_view iri) {
-  return iri.find("/./") != std::string_view::npos || iri.find("/../") != std::string_view::npos ||
-         iri.ends_with("/.") || iri.ends_with("/..");
 }
 
 const char* parserName(RdfFormat format) {

@@ -104,7 +104,7 @@ class Competition {
     return rivals;
   }
 
-  /// In a group of rivals with a likely one, the others cannot win in this round.
+  /// When a group of rivals has a likely member, the unlikely ones cannot win in this round.
   static void holdBackUnlikely(std::vector<Rival>& rivals, const std::vector<char>& is_likely) {
     const auto conflicts = conflictsOf(rivals);
     DisjointSets groups(rivals.size());
@@ -120,7 +120,7 @@ class Competition {
       }
   }
 
-  /// A candidate that lost says to whom. Only its first defeat is recorded. One that was held back, and that no winner
+  /// Records which rival a losing candidate lost to; only its first defeat. One that was held back, and that no winner
   /// touches, has lost to nobody: it is decided in a later round.
   void recordLosers(std::vector<Proposal>& proposals, const std::vector<Rival>& rivals, const std::vector<bool>& wins) {
     const auto conflicts = conflictsOf(rivals);

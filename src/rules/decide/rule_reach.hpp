@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a rule looks, and whether something changed within that distance: what a rule rejected is judged again only
-// where it did.
+// How far a rule looks, and whether something changed within that distance. A rejected seed is judged again only when
+// something did.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -24,8 +24,8 @@ class NearbyChanges {
   void add(const Eigen::AlignedBox2d& box);
   /// The number of changes so far.
   std::uint32_t count() const { return count_; }
-  /// Whether something within reach of the box changed after the first `known` changes. It may say so of changes a few
-  /// metres beyond.
+  /// Whether something within reach of the box changed after the first `known` changes. May also be true for changes up
+  /// to a few metres beyond.
   bool anyNear(const Eigen::AlignedBox2d& box, std::uint32_t known) const;
 
  private:

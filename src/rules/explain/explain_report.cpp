@@ -61,7 +61,7 @@ std::string nodeText(const PathNode& node, const Decision& decision, const std::
   return text;
 }
 
-/// The node asks whether an end is unseen, and it is not: nothing to tell.
+/// The node tests whether an end is unseen, and it is not. Such a node is left out of the report.
 bool isOfSeenEnds(const Rule& rule, const WalkedPath& walked) {
   const auto* branch = std::get_if<BranchNode>(&rule.nodes[walked.node].what);
   return branch != nullptr && branch->condition.kind == Condition::Kind::Unseen && !walked.tests.passed;
@@ -74,7 +74,7 @@ std::string pathText(const Decision& decision, const Rule* rule, const std::stri
   else
     for (const WalkedPath& walked : walkedPath(*rule, decision)) {
       if (isOfSeenEnds(*rule, walked)) continue;
-      // The tests of an `all` stand for themselves.
+      // The tests of an `all` are listed without a heading.
       if (walked.tests.kind == PathNode::Kind::All)
         for (const PathNode& operand : walked.tests.operands) text += nodeText(operand, decision, indent);
       else
@@ -254,7 +254,7 @@ std::string textOf(const WhyNot& why, const RuleSet& rules) {
               signedNumber(verdict.winner->log_odds) +
               (verdict.behind >= 0 ? ": " + number(verdict.behind) + " behind" : " and came first");
     text += "\n";
-    // The nearest is told in full, the others by what they lack.
+    // The nearest rule is printed in full, the others by the tests that they fail.
     const bool is_seed = verdict.nearness <= Nearness::Rejected;
     if (&verdict == &why.rules.front() || verdict.nearness == Nearness::Accepted)
       text += pathText(decision, is_seed ? rules.find(decision.rule_id) : nullptr, "    ") +

@@ -47,7 +47,7 @@ class ConditionTextReader {
       readPair(condition);
     else
       readAttribute(condition);
-    if (!failed_ && at_ < words_.size()) fail("nothing can stand behind the condition");
+    if (!failed_ && at_ < words_.size()) fail("the condition must end here");
     return failed_ ? std::nullopt : std::optional(std::move(condition));
   }
 

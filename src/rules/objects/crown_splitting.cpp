@@ -178,7 +178,7 @@ class GroupSearch {
     });
   }
 
-  /// No shorter path leads to the vertex: it is looked for no more.
+  /// The shortest path to the vertex is known. The search for jumps leaves it out from now on.
   void settle(std::uint32_t at) {
     grid_.remove(all_.center[cluxels_[at]], at);
     depart(cluxels_[at], best_[at]);

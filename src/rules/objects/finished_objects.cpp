@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns objects in making into results: parts with primitives and cluxels, and ids.
+// Turns objects under construction into results: parts with primitives and cluxels, and ids.
 #include "rules/objects/finished_objects.hpp"
 
 #include <algorithm>

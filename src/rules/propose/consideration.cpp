@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The thing's fragments are marked as nobody's until the class has its turn; then its rules judge, and nothing is made.
+// Earlier classes cannot take the thing's fragments. At the turn of the class its rules judge them, and make no object.
 #include "rules/propose/consideration.hpp"
 
 #include <algorithm>

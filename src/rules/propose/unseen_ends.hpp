@@ -27,8 +27,9 @@ bool isEndUnseen(const ReasoningState& state, const Candidate& candidate, percep
 enum class Truth : std::uint8_t { No, Unseen, Yes };
 
 /// The answer to a test when ends may be unseen. A test of an attribute is unseen when a thing that goes on beyond its
-/// unseen end could change the answer: of a top measured at 3 m, `top >= 2 m` is true and `top <= 4 m` is unseen. Of
-/// `all` the least true operand counts, of `any` the most true one. Slices and all other tests are never unseen.
+/// unseen end could change the answer: of a top measured at 3 m, `top >= 2 m` is true and `top <= 4 m` is unseen. `all`
+/// and `any` follow Kleene's three-valued logic: the minimum and the maximum of the operands, where unseen lies between
+/// false and true. Slices and all other tests are never unseen.
 Truth truthOf(const ReasoningState& state, const Bindings& bindings, ConditionEvaluator& evaluator,
               const Condition& condition);
 

@@ -78,7 +78,7 @@ class MutantMaker {
       add(condition.at, words + ": all and any exchanged", node,
           inCopy(number, [](Condition& c) { c.kind = c.kind == Kind::All ? Kind::Any : Kind::All; }));
     if (condition.kind != Kind::Attribute && condition.kind != Kind::Pair) return;
-    add(condition.at, words + ": comparison turned round", node,
+    add(condition.at, words + ": comparison reversed", node,
         inCopy(number, [](Condition& c) { c.comparison = negated(c.comparison); }));
     for (const double factor : {0.5, 2.0}) {
       const std::string done = factor < 1 ? "halved" : "doubled";

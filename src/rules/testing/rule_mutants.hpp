@@ -12,7 +12,7 @@ namespace cluxel::rules {
 
 struct MutantOfRule {
   RuleMutant mutant;
-  std::optional<NodeIndex> node;     ///< only decisions that came by this node can differ
+  std::optional<NodeIndex> node;     ///< only decisions that passed this node can differ
   std::function<void(Rule&)> apply;  ///< to a copy of the rule
 };
 

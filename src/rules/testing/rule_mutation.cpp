@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs mutants against the tests whose decisions came by the mutated place.
+// Runs mutants against the tests whose decisions passed the mutated place.
 #include "rules/testing/rule_mutation.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace cluxel::rules {
 
 namespace {
 
-/// A test that passes with the rules as they are, and where its decisions came by.
+/// A test that passes with the rules as they are, and the nodes that its decisions passed.
 struct PassingTest {
   const RuleTest* test = nullptr;
   BuiltBoxScene built;

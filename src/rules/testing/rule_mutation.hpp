@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mutation of rules: what small errors in a rule would the tests notice?
+// Mutation testing of rules: which small errors in a rule would the tests find?
 #pragma once
 
 #include <filesystem>
@@ -28,10 +28,11 @@ struct RuleMutationReport {
   std::vector<std::string> untouchedRules() const;
 };
 
-/// Mutants: a threshold halved or doubled, a comparison turned round, `all` and `any` exchanged, a line of evidence
+/// Mutants: a threshold halved or doubled, a comparison reversed, `all` and `any` exchanged, a line of evidence
 /// without weight, yes and no (found and missing) of a node exchanged. An error in a definition is one mutant. Only
-/// rules of the files that the test file names, not of those that they include. Each mutant meets the tests that come
-/// to its rule and pass without it, until one fails. Deterministic. Cost: some milliseconds for each mutant and test.
+/// rules of the files that the test file names, not of those that they include. Each mutant runs against the tests that
+/// reach its rule and pass without it, until one fails. Deterministic. Cost: some milliseconds for each mutant and
+/// test.
 RuleMutationReport mutateRules(const std::filesystem::path& file, const ClassCatalogue& catalogue,
                                const RuleTestOptions& options, unsigned threads);
 

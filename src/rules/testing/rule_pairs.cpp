@@ -203,7 +203,7 @@ class PairCheck {
     return witness;
   }
 
-  /// What both paths imply; none when no thing can take both.
+  /// What both paths imply; absent when no thing can follow both.
   static std::optional<PathKnowledge> knowledgeOf(const JudgedRule& a, const AcceptPath& first, const JudgedRule& b,
                                                   const AcceptPath& second) {
     std::vector<scan::PrimitiveLabel> labels;
@@ -229,17 +229,18 @@ class PairCheck {
         std::snprintf(odds, sizeof odds, "%.2f and %.2f", witness->first, witness->second);
         return faults_.warning(b.rule.at,
                                "'" + a.rule.id + "' and '" + b.rule.id +
-                                   "' can both take one thing, and no evidence tells them apart: confidences " + odds,
+                                   "' can both take one thing, and no evidence decides between them: confidences " +
+                                   odds,
                                "both accept " + primitivesText(witness->box));
       }
   }
 
-  /// Whatever takes the path `second` takes the path `first`, too.
+  /// Every thing that follows the path `second` also follows the path `first`.
   static bool covers(const JudgedRule& a, const AcceptPath& first, const JudgedRule& b, const AcceptPath& second) {
     if (first.looks_around || first.leaf->merge_into == MergeInto::Related) return false;
     PathKnowledge knowledge;
     knowledge.setLabels(kThing, b.rule.seed.labels);
-    if (learnPath(knowledge, second)) return true;  // nothing takes it
+    if (learnPath(knowledge, second)) return true;  // no thing follows it
     const std::vector<scan::PrimitiveLabel> left = knowledge.labelsOf(kThing);
     const auto& labels = a.rule.seed.labels;
     return std::all_of(left.begin(), left.end(),

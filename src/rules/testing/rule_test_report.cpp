@@ -46,7 +46,7 @@ std::size_t reached(const std::vector<Covered>& all) {
   return count;
 }
 
-/// A branch to a leaf is told as the leaf.
+/// A branch to a leaf is reported as that leaf.
 bool leadsToLeaf(const BranchCoverage& branch, const RuleTestReport& report) {
   return std::any_of(report.leaves.begin(), report.leaves.end(), [&](const LeafCoverage& leaf) {
     return leaf.rule_id == branch.rule_id && leaf.node == branch.to;

@@ -159,7 +159,7 @@ std::vector<Diagnostic> warningsOf(const std::vector<NoisyThreshold>& thresholds
     warning.severity = Severity::Warning;
     warning.location = threshold.at;
     warning.message = threshold.rule_id + ": '" + threshold.test + "': " + std::to_string(threshold.near) + " of " +
-                      std::to_string(threshold.tested) + " things that come to it lie within the noise of " +
+                      std::to_string(threshold.tested) + " things that it tests lie within the noise of " +
                       shown(threshold);
     warnings.push_back(std::move(warning));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds thresholds that many things of a scene come so near to that noise decides on which side they lie.
+// Finds thresholds where measurement noise decides the outcome for many things of a scene.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,8 @@ namespace cluxel::rules {
 
 /// When a threshold is reported.
 struct NoiseParams {
-  double min_share = 0.1;      ///< of the tested things that lie within the noise of it
-  std::size_t min_tests = 20;  ///< and at least so many things were tested
+  double min_share = 0.1;      ///< smallest share of the tested things that lie within the noise of the threshold
+  std::size_t min_tests = 20;  ///< smallest number of tested things
 };
 
 /// A test of an attribute against a number, and what a scene's things measure there.

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/counted_progress.hpp"
+#include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "scan/registration/pair_evidence.hpp"
 #include "scan/registration/pose_graph.hpp"
@@ -177,14 +178,6 @@ std::vector<ScanPlace> placesOf(const RegistrationScans& scans, const Poses& pos
   return places;
 }
 
-/// Joins the groups of two scans; the smaller number names the group.
-void join(std::vector<RefinedScan>& scans, std::size_t a, std::size_t b) {
-  const std::size_t kept = std::min(scans[a].group, scans[b].group), gone = std::max(scans[a].group, scans[b].group);
-  if (kept == gone) return;
-  for (RefinedScan& scan : scans)
-    if (scan.group == gone) scan.group = kept;
-}
-
 /// The report, with scans in natural order of their paths.
 PoseRegistration reported(const RegistrationScans& scans, const Poses& poses, const std::vector<ScanPair>& pairs,
                           const std::vector<PairOutcome>& outcomes, const std::vector<PairEvidence>& before,
@@ -194,9 +187,9 @@ PoseRegistration reported(const RegistrationScans& scans, const Poses& poses, co
   for (const std::size_t i : scans.byPath()) {
     place[i] = report.scans.size();
     const Vector6d moved = smallMotion(scans.given[i].inverse() * poses[i]);
-    report.scans.push_back(
-        {scans.index[i], poses[i], moved.head<3>().norm(), moved.tail<3>().norm(), 0, report.scans.size()});
+    report.scans.push_back({scans.index[i], poses[i], moved.head<3>().norm(), moved.tail<3>().norm(), 0, 0});
   }
+  DisjointSets groups(report.scans.size());
   std::vector<double> residuals_before, residuals_after;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const std::size_t one = place[pairs[k].first], other = place[pairs[k].second];
@@ -204,10 +197,12 @@ PoseRegistration reported(const RegistrationScans& scans, const Poses& poses, co
     report.pairs.push_back({first, second, outcomes[k], after[k].overlap, before[k].residual_m, after[k].residual_m});
     if (outcomes[k] != PairOutcome::Used) continue;
     for (const std::size_t end : {first, second}) ++report.scans[end].pairs;
-    join(report.scans, first, second);
+    groups.join(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(second));
     residuals_before.push_back(before[k].residual_m);
     residuals_after.push_back(after[k].residual_m);
   }
+  for (std::size_t i = 0; i < report.scans.size(); ++i)
+    report.scans[i].group = groups.find(static_cast<std::uint32_t>(i));
   std::sort(report.pairs.begin(), report.pairs.end(),
             [](const auto& a, const auto& b) { return std::tie(a.first, a.second) < std::tie(b.first, b.second); });
   report.residual_before_m = medianOf(residuals_before);

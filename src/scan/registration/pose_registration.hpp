@@ -50,7 +50,7 @@ struct PoseRegistration {
   std::vector<PosedScan> poses() const;  ///< of the scans, in their order
 };
 
-/// Registers neighbouring scans by generalised ICP, then all poses together (docs/decisions/scan.md). The
+/// Registers neighbouring scans by generalised ICP, then all poses together (docs/decisions/0005-registration.md). The
 /// result is independent of the order of the scans and the number of threads. Directions that surfaces do not determine
 /// keep the given poses. Throws InputError for a scan without a pose, or given with two. Cost: some 0.6 s a scan on one
 /// core; the points of one scan a thread, and thinned points of all, are in memory.

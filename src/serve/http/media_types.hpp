@@ -10,7 +10,8 @@
 namespace cluxel::serve {
 
 /// The place in `offers` of the type that the header Accept values most; none when it takes none of them. The most
-/// specific range that matches an offer gives its quality. Of equals the first offer is taken; no header takes all.
+/// specific range that matches an offer gives its quality. Among equal ones the first offer is taken. An absent header
+/// accepts every type.
 std::optional<std::size_t> negotiate(std::string_view accept, const std::vector<std::string>& offers);
 
 /// The type alone, in lower case: "text/turtle" of "Text/Turtle; charset=utf-8".

@@ -34,7 +34,7 @@ std::size_t RateLimit::clientCount() const {
   return buckets_.size();
 }
 
-/// A full bucket says no more than none. When none is full, all clients start again.
+/// Drops full buckets: a client without a bucket gets a full one. Drops all when that leaves too many.
 void RateLimit::forgetFull(Clock::time_point now) {
   std::erase_if(buckets_, [&](const auto& entry) {
     return entry.second.tokens + per_second_ * secondsBetween(entry.second.filled, now) >= capacity();

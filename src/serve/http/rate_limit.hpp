@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// At most so many requests a second for each client.
+// Limits the number of requests per second of each client.
 #pragma once
 
 #include <chrono>

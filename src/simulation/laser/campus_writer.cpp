@@ -2,8 +2,6 @@
 // Scans are simulated and written one by one on each thread; tables are put together in the order of the scans.
 #include "simulation/laser/campus_writer.hpp"
 
-#include <zlib.h>
-
 #include <charconv>
 #include <cstdio>
 #include <set>
@@ -12,6 +10,7 @@
 
 #include "base/counted_progress.hpp"
 #include "base/file_bytes.hpp"
+#include "base/gzip_bytes.hpp"
 #include "base/parallel.hpp"
 #include "cluxel/error.hpp"
 #include "scan/formats/scan_writer.hpp"
@@ -25,24 +24,6 @@ namespace cluxel::simulation {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A gzip file of `text`, without a time in its header.
-std::string gzip(const std::string& text) {
-  z_stream stream{};
-  constexpr int kGzipWindow = 15 + 16, kMemory = 8;
-  if (deflateInit2(&stream, 6, Z_DEFLATED, kGzipWindow, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
-    throw Error(ErrorKind::StoreUnavailable, "zlib does not start, so truth files cannot be written");
-  std::string packed(deflateBound(&stream, text.size()), '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
-  stream.avail_in = static_cast<uInt>(text.size());
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_out = static_cast<uInt>(packed.size());
-  const int outcome = deflate(&stream, Z_FINISH);
-  packed.resize(stream.total_out);
-  deflateEnd(&stream);
-  if (outcome != Z_STREAM_END) throw Error(ErrorKind::StoreUnavailable, "zlib could not pack a truth file");
-  return packed;
-}
 
 std::string truthLines(const scan::PointTruth& truth) {
   std::string lines;
@@ -134,7 +115,7 @@ void writeScans(const Campus& campus, std::size_t visit, const fs::path& folder,
     written.points[first + stop] = simulated.scan.points.size();
     simulated.scan.T_map_sensor = stated[stop];
     writeScanFile(simulated.scan, folder / (stemOf(first + stop) + ".pcd"));
-    writeFile(folder / "truth" / (stemOf(first + stop) + ".truth.gz"), gzip(truthLines(simulated.truth)));
+    writeFile(folder / "truth" / (stemOf(first + stop) + ".truth.gz"), gzipped(truthLines(simulated.truth)));
     progress.step();
   });
   written.stated.insert(written.stated.end(), stated.begin(), stated.end());

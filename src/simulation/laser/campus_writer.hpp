@@ -23,7 +23,7 @@ struct CampusSummary {
 ///   truth/scan_000.truth.gz ... (`primitive object instance` per point), truth/instances.csv,
 ///   with more than one visit also truth/events.csv and truth/visits.csv.
 /// The bytes are the same for every number of threads. The folder is made when missing and must be empty,
-/// else Error (Usage); Error (StoreUnavailable) when the disk refuses.
+/// else Error (InvalidArgument); Error (StoreUnavailable) when the disk refuses.
 CampusSummary writeCampus(const Campus& campus, const std::filesystem::path& folder, unsigned threads,
                           ProgressSink& sink);
 

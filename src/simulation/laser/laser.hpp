@@ -50,7 +50,7 @@ class Laser {
   double meanStep_rad() const;
 
   /// One full turn at a stop: elevations from -50 to 55 degrees, with equal angular steps in pan and tilt,
-  /// chosen from a coarse preview turn so that about points_per_stop rays return. Throws Error (Usage) for a
+  /// chosen from a coarse preview turn so that about points_per_stop rays return. Throws Error (InvalidArgument) for a
   /// stop that is not there.
   SimulatedScan scanAt(std::size_t stop) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Truth about changes between visits, and about what each visit could see.
+// Truth about changes between visits, and about what each visit could measure.
 #pragma once
 
 #include <filesystem>

@@ -45,7 +45,7 @@ const std::array<CampusParamInfo, 12>& campusParamInfos();
 /// The maximum number of stops on the route of a campus of this size.
 std::size_t maxStops(double size_m, double stop_distance_m = CampusParams{}.stop_distance_m);
 
-/// Throws Error (Usage) naming the parameter, its range, and for too many stops the size that has room for
+/// Throws Error (InvalidArgument) naming the parameter, its range, and for too many stops the size that has room for
 /// them.
 void check(const CampusParams& params);
 

@@ -7,7 +7,7 @@
 #include "base/ascii.hpp"
 #include "base/content_hash.hpp"
 #include "rdf/iri.hpp"
-#include "rdf/vocabulary.hpp"
+#include "rdf/map_iris.hpp"
 #include "sparql/functions/function_bodies.hpp"
 #include "sparql/syntax/iri_resolution.hpp"
 #include "sparql/values/comparison.hpp"
@@ -149,7 +149,7 @@ Value newObjectFunction(Arguments arguments, FunctionContext& context) {
   ContentHasher hasher;
   hasher.addText("object").addText(class_iri);
   for (const std::string& member : members) hasher.addText(member);
-  return Value::iri(std::string(rdf::vocabulary::kMap) + "object/" + hasher.finish().hex());
+  return Value::iri(rdf::iriOfObject(hasher.finish()));
 }
 
 }  // namespace cluxel::sparql

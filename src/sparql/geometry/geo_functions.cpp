@@ -28,7 +28,7 @@ bool haveOneSystem(const Geometry& a, const Geometry& b, FunctionContext& contex
   return false;
 }
 
-/// In metres; absent, with a note, where nothing right can be said.
+/// In metres; absent, with a note, where no correct distance is known.
 std::optional<double> metresBetween(const Geometry& a, const Geometry& b, FunctionContext& context) {
   const std::string& name = systemOf(a);
   if (name.empty()) return distanceBetween(a, b);

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "rdf/iri.hpp"
 #include "sparql/syntax/character_class.hpp"
 
 namespace cluxel::sparql {
@@ -91,11 +92,6 @@ std::string mergedPath(const IriParts& base, std::string_view path) {
   return std::string(base.path.substr(0, slash == std::string_view::npos ? 0 : slash + 1)).append(path);
 }
 
-bool mayHoldDotSegments(std::string_view iri) {
-  return iri.find("/./") != std::string_view::npos || iri.find("/../") != std::string_view::npos ||
-         iri.ends_with("/.") || iri.ends_with("/..");
-}
-
 std::string recompose(const IriParts& parts, std::string_view path) {
   std::string iri(parts.scheme);
   iri += ':';
@@ -114,7 +110,7 @@ bool isAbsoluteIri(std::string_view iri) {
 
 std::string resolveIri(std::string_view reference, std::string_view base_iri) {
   if (isAbsoluteIri(reference)) {
-    if (!mayHoldDotSegments(reference)) return std::string(reference);
+    if (!rdf::mayHoldDotSegments(reference)) return std::string(reference);
     const IriParts parts = split(reference);
     return recompose(parts, parts.path.starts_with('/') ? withoutDotSegments(parts.path) : std::string(parts.path));
   }

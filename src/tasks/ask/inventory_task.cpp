@@ -176,7 +176,7 @@ Task changesTask() {
                       "without it the begin of the last visit"},
                      {"unobserved", "", "false", "true: with the objects that were not observed again", Kind::Flag}};
   task.columns = {{"change", "text", "vanished, appeared, moved, not observed"},
-                  {"object", "IRI", "that most of it belongs to; absent when most belongs to none"},
+                  {"object", "IRI", "the object that most of the change belongs to; absent when most belongs to none"},
                   {"class", "text", "of the object"},
                   {"extent", "text", "part or whole of the object"},
                   {"x", "m", "position in the map frame; of what moved, before"},
@@ -258,19 +258,19 @@ std::vector<Task> surveyTasks() {
       {"from", "m", "", "X,Y or an object; without it where the last scan was taken", Kind::Place},
       {"doubtful", "", "false", "true: look at doubtful objects", Kind::Flag},
       {"below", "1", "0.7", "an object of less confidence is doubtful", Kind::Number, false, false, 0, 1},
-      {"view", "m", "15", "how far one sees well enough", Kind::Number, false, false, 1, 100},
-      {"stops", "1", "5", "at most so many", Kind::WholeNumber, false, false, 1, 100},
-      {"budget", "m", "0", "how long the walk may be; 0: no limit", Kind::Number, false, false, 0, 1e6},
+      {"view", "m", "15", "distance within which a view is good enough", Kind::Number, false, false, 1, 100},
+      {"stops", "1", "5", "largest number of stops", Kind::WholeNumber, false, false, 1, 100},
+      {"budget", "m", "0", "largest length of the walk; 0: no limit", Kind::Number, false, false, 0, 1e6},
       {"width", "m", "0.6", "free width that is needed", Kind::Number, false, false, 0, 20},
-      {"maxStep", "m", "0.15", "height of a kerb that is passed", Kind::Number, false, false, 0, 2}};
-  view.columns = {{"stop", "1", "number in the walk"},
+      {"maxStep", "m", "0.15", "height of a kerb that can be crossed", Kind::Number, false, false, 0, 2}};
+  view.columns = {{"stop", "1", "number of the stop on the walk"},
                   {"x", "m", "position in the map frame"},
                   {"y", "m", "position in the map frame"},
                   {"walk", "m", "from the stop before"},
                   {"total", "m", "from the start"},
-                  {"area", "m2", "that was not observed and comes into sight"},
+                  {"area", "m2", "area that was not observed and comes into sight"},
                   {"objects", "1", "doubtful objects that come into sight"},
-                  {"soFar", "1", "share of what is to be seen that is in sight from here or before"}};
+                  {"soFar", "1", "share of everything to be seen that is in sight from here or from earlier stops"}};
   view.has_reasons = true;
   view.run = runNextView;
   return {inventory, view, changesTask()};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inventory as an answer, alone or beside a register.
+// The inventory as an answer, alone or compared with a register.
 #pragma once
 
 #include "tasks/ask/task_answer.hpp"

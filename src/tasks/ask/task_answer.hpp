@@ -23,7 +23,7 @@ using TaskCell = std::variant<std::monostate, double, std::string>;
 struct TaskShape {
   enum class Kind : std::uint8_t { None, Point, Line, Area };
   Kind kind = Kind::None;
-  /// Of Area: pairs of opposite corners of upright rectangles.
+  /// Of Area: pairs of opposite corners of axis-parallel rectangles.
   std::vector<Eigen::Vector2d> places = {};
 };
 

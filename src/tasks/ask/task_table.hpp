@@ -43,7 +43,7 @@ class TaskValues {
   NamedValues values_;
 };
 
-/// What all runs of tasks take beside their parameters.
+/// What every run of a task takes besides its parameters.
 struct TaskContext {
   const mapping::MapReader& map;
   bool with_reasons = false;
@@ -59,7 +59,7 @@ struct Task {
   std::function<TaskAnswer(const TaskContext&, const TaskValues&)> run;
 };
 
-/// All tasks: route, reach, search and their kind, then the shipped questions.
+/// All tasks: route, reach, search and the like, then the shipped questions.
 std::vector<Task> tasksOf(const std::vector<Question>& questions);
 /// By name; "-" and "_" are one, and a question may be written as its file. Throws Error (NotFound).
 const Task& taskNamed(std::span<const Task> tasks, const std::string& name);

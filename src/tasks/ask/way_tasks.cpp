@@ -29,12 +29,12 @@ TaskParameter place(const char* name, bool is_required, const char* help) {
   return {name, "m", "", help, Kind::Place, is_required};
 }
 
-/// What all ways take.
+/// The parameters that all ways have.
 std::vector<TaskParameter> withWayParameters(std::vector<TaskParameter> own, bool with_width = true) {
   own.push_back({"without", "", "", "a class, Movable or Static: leave these objects out", Kind::Class, false, true});
   if (with_width) own.push_back(number("width", "m", "0.6", "free width that is needed", 0, 20));
-  own.push_back(number("maxSlope", "1", "0.12", "rise over run", 0, 10));
-  own.push_back(number("maxStep", "m", "0.06", "height of a kerb that is passed", 0, 2));
+  own.push_back(number("maxSlope", "1", "0.12", "largest slope, rise over run", 0, 10));
+  own.push_back(number("maxStep", "m", "0.06", "height of a kerb that can be crossed", 0, 2));
   return own;
 }
 
@@ -145,7 +145,7 @@ TaskAnswer runSearch(const TaskContext& context, const TaskValues& values) {
   return answer;
 }
 
-/// Upright rectangles that cover the marked cells: runs of a row, joined with equal runs of the rows before.
+/// Axis-parallel rectangles that cover the marked cells: runs of a row, joined with equal runs of the rows before.
 std::vector<Eigen::Vector2d> rectanglesOf(const GridFrame& frame, const std::vector<std::uint8_t>& marked) {
   struct Run {
     int first, last, from_row, to_row;
@@ -200,12 +200,12 @@ Task routeTask() {
           withWayParameters({place("from", true, "X,Y or an object"),
                              place("to", true, "X,Y or an object"),
                              {"near", "", "", "a class: the way stays near such objects", Kind::Class},
-                             whole("alternatives", "1", "how many routes to look for", 1, 9)}),
+                             whole("alternatives", "1", "number of routes to look for", 1, 9)}),
           {{"route", "1", "number, best first"},
            {"length", "m", "of the way"},
            {"cost", "1", "a metre costs 1, more on slopes, beside things and far from what it should stay near"},
            {"climb", "m", "sum of all that goes up"},
-           {"steepest", "1", "rise over run"},
+           {"steepest", "1", "largest slope, rise over run"},
            {"highestStep", "m", "between neighbouring cells"},
            {"narrowest", "m", "free width at the narrowest place; absent without things"}},
           false,
@@ -217,8 +217,8 @@ Task reachTask() {
   return {"reach",
           "What is within some minutes' walk?",
           withWayParameters({place("from", true, "X,Y or an object"),
-                             number("minutes", "min", "5", "how long the walk may be", 0, 600),
-                             number("speed", "m/s", "1.2", "of the walk", 0.01, 100)}),
+                             number("minutes", "min", "5", "largest duration of the walk", 0, 600),
+                             number("speed", "m/s", "1.2", "walking speed", 0.01, 100)}),
           {{"object", "IRI", "what is reached"},
            {"class", "text", "its class"},
            {"x", "m", "position in the map frame"},
@@ -231,28 +231,28 @@ Task reachTask() {
 }
 
 Task searchTask() {
-  return {
-      "search",
-      "Where should I look first for objects of a class?",
-      withWayParameters({{"for", "", "", "the class", Kind::Class, true},
-                         place("from", false, "X,Y or an object; without it where the last scan was taken"),
-                         number("budget", "m", "0", "how long the walk may be; 0: no limit", 0, 1e6),
-                         whole("stops", "10", "at most so many", 1, 100),
-                         number("view", "m", "10", "how far an object is recognised", 1, 100),
-                         number("detection", "1", "0.8",
-                                "share of the class's objects within view of a scan that are in the map", 0, 1),
-                         {"unobserved", "", "false", "true: ground that was not observed may be walked", Kind::Flag}}),
-      {{"stop", "1", "number in the tour"},
-       {"x", "m", "position in the map frame"},
-       {"y", "m", "position in the map frame"},
-       {"walk", "m", "from the stop before"},
-       {"total", "m", "from the start"},
-       {"probability", "1", "that the object is first seen from here"},
-       {"soFar", "1", "that it is seen from here or before"},
-       {"near", "text", "the class of the usual place that most of it comes from; absent: anywhere"}},
-      true,
-      {},
-      runSearch};
+  return {"search",
+          "Where should I look first for objects of a class?",
+          withWayParameters(
+              {{"for", "", "", "the class", Kind::Class, true},
+               place("from", false, "X,Y or an object; without it where the last scan was taken"),
+               number("budget", "m", "0", "largest length of the walk; 0: no limit", 0, 1e6),
+               whole("stops", "10", "largest number of stops", 1, 100),
+               number("view", "m", "10", "distance within which an object is recognised", 1, 100),
+               number("detection", "1", "0.8", "share of the objects of the class in view of a scan that the map holds",
+                      0, 1),
+               {"unobserved", "", "false", "true: the walk may cross ground that was not observed", Kind::Flag}}),
+          {{"stop", "1", "number in the tour"},
+           {"x", "m", "position in the map frame"},
+           {"y", "m", "position in the map frame"},
+           {"walk", "m", "from the stop before"},
+           {"total", "m", "from the start"},
+           {"probability", "1", "probability that the object is first seen from here"},
+           {"soFar", "1", "probability that it is seen from here or from earlier stops"},
+           {"near", "text", "the class of the usual place that most of it comes from; absent: anywhere"}},
+          true,
+          {},
+          runSearch};
 }
 
 Task costMapTask() {

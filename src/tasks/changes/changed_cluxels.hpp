@@ -40,12 +40,12 @@ enum class CluxelChange : std::uint8_t {
 std::vector<CluxelChange> changesOf(const CluxelFindings& findings, std::size_t cluxel_count);
 
 /// Connected clusters of five or more cluxels that changed alike, each ascending, in the order of their first cluxel. A
-/// cluster is left out when the rays may have missed a thing that is still there. It stays when, of the decided cluxels
-/// in and around it, enough changed like it, and enough of its cluxels were seen through by several rays of one scan:
-/// 75 % and 5 cluxels, or 50 % and 10 cluxels. A cluster of 10 or more cluxels that is at least 0.3 m wide, with 75 %,
-/// also stays when few rays passed it often enough: each scan that few rays passed counts log((1 - p) / 0.95), where p
-/// is the share of hits among such scans in and around the cluster while the thing was there; the sum must be -6 or
-/// less.
+/// cluster is dropped when the rays may have missed a thing that is still there. Two conditions keep it:
+/// - Enough of the decided cluxels in and around it changed like it, and enough of its cluxels were seen through by
+///   several rays of one scan: 75 % and 5 cluxels, or 50 % and 10 cluxels.
+/// - It has 10 or more cluxels, is at least 0.3 m wide, 75 % changed like it, and enough scans with few rays passed it.
+///   Each such scan adds log((1 - p) / 0.95), where p is the share of hits among such scans in and around the cluster
+///   while the thing was there. The sum must be -6 or less.
 std::vector<std::vector<std::uint32_t>> clustersOf(CluxelChange kind, const std::vector<CluxelChange>& changes,
                                                    const CluxelFindings& findings,
                                                    const perception::SceneCluxels& cluxels);

@@ -39,8 +39,8 @@ struct ChangedThing {
 struct SiteChange {
   enum class Kind { Vanished, Appeared, Moved };
   Kind kind = Kind::Vanished;
-  ChangedThing thing;               ///< what vanished or appeared; of Moved what was there before
-  std::optional<ChangedThing> now;  ///< of Moved: what is there now
+  ChangedThing thing;               ///< what vanished or appeared; for Moved, what was there before
+  std::optional<ChangedThing> now;  ///< for Moved: what is there now
   double distance_m = 0;            ///< of Moved
 };
 std::string_view nameOf(SiteChange::Kind kind);  ///< "vanished"

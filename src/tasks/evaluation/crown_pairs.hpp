@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trees whose crowns touch: whether the map holds them apart.
+// Whether the map separates trees whose crowns touch.
 #pragma once
 
 #include <Eigen/Core>

@@ -123,7 +123,7 @@ std::string calibrationLine(const Calibration& calibration) {
 
 std::string crownLine(const CrownPairScore& score) {
   return "Trees whose crowns touch and whose trunks stand 2 m or more apart: " + std::to_string(score.parted) + " of " +
-         std::to_string(score.pairs) + " pairs are parted\n";
+         std::to_string(score.pairs) + " pairs are separated\n";
 }
 
 }  // namespace

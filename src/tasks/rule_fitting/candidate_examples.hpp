@@ -12,7 +12,7 @@
 
 namespace cluxel::tasks {
 
-/// What a candidate measures, beside its evidence: for tables.
+/// What is measured of a candidate besides its evidence: for tables.
 struct NamedValue {
   std::string name;
   double value = 0;

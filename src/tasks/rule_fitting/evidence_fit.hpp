@@ -37,12 +37,12 @@ struct FittedRule {
   std::vector<FittedNumber> changes;
 };
 
-/// Where some truth names a class, maps with other truths say nothing of it: what they call a small object may be a
-/// person. A rule with fewer than `min_examples` candidates, or of a class with fewer right
-/// ones, stays as it is. One with fewer right or wrong ones gets another confidence only.
+/// When the truth of some map names a class, maps whose truth does not are left out for that class: what they call a
+/// small object may be a person. A rule stays as it is when it has fewer than `min_examples` candidates, or its class
+/// has fewer right ones. When the rule has fewer right or wrong candidates, only its confidence is fitted.
 /// Leaves of a rule that use one definition are fitted together. A number of a definition that several rules use is
-/// kept as it is: what is best for one may be wrong for another. One entry for each rule that proposed a candidate, in
-/// the order of the rule set. Deterministic for a seed.
+/// kept as it is, because the best value for one rule may be wrong for another. One entry for each rule that proposed a
+/// candidate, in the order of the rule set. Deterministic for a seed.
 std::vector<FittedRule> fitEvidence(const rules::RuleSet& rules, const std::vector<CandidateExample>& examples,
                                     const EvidenceFitParams& params);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Singles the case out, writes the exception, and lets rules leave the case alone until the new one takes it.
+// Finds tests that only the case passes, writes the exception, and excludes the case from other rules until the
+// exception takes it.
 #include "tasks/rule_teaching/lesson.hpp"
 
 #include <algorithm>

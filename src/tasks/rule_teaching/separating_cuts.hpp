@@ -24,7 +24,7 @@ struct AttributeCut {
 };
 
 /// The least margin between the two sides, in units of the attribute's spread over all things (the range of its middle
-/// half or its standard deviation): a narrower one would tell noise apart.
+/// half or its standard deviation). With a narrower one, noise would decide.
 inline constexpr double kLeastSpread = 0.1;
 
 /// One cut, or else two, that all of `wanted` pass and none of `others` does: those with the widest margin, at round

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What other rules would make of a map, object by object. The map is not changed.
+// How the objects of a map would differ under other rules. The map is not changed.
 #pragma once
 
 #include <array>

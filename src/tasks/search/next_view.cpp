@@ -12,7 +12,7 @@ namespace cluxel::tasks {
 
 namespace {
 
-/// Doubtful objects that are things one can stand before.
+/// Objects of low confidence. Surfaces are left out: nobody looks at them from a stop.
 std::vector<bool> doubtfulAmong(const mapping::MapReader& map, double below) {
   const rdf::OntologyView ontology = ontologyViewOf(map.quads());
   std::vector<bool> is_doubtful;

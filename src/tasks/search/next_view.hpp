@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where to stand next: places from which most of what is not observed is in sight, or doubtful objects.
+// Where to stand next: places from which most unobserved ground, or most doubtful objects, are in sight.
 #pragma once
 
 #include "tasks/search/search_tour.hpp"

@@ -37,7 +37,7 @@ class StopCandidates {
     return best;
   }
 
-  /// Takes what is seen on the way to a stop and from it out of the field, and fills in where it came from.
+  /// Removes what is seen from a stop, and on the way to it, from the field. Records which places it came from.
   void take(SearchStop& stop, const CheapestWays& ways, const TourParams& params) {
     std::map<std::uint8_t, double> by_reason;
     for (const std::uint32_t cell :

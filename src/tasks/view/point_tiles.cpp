@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "base/mixed_bits.hpp"
-#include "tasks/view/page_blocks.hpp"
+#include "base/zstd_packing.hpp"
 
 namespace cluxel::tasks {
 
@@ -166,12 +166,14 @@ class TileWriter {
     return order;
   }
 
+  /// Appends the lowest bytes of a number of each point as planes: gzip compresses them better than whole numbers.
   template <typename Value>
   void plane(const std::vector<std::uint32_t>& order, std::size_t bytes_per_value, const Value& value) {
     std::vector<std::uint32_t> values;
     values.reserve(order.size());
     for (const std::uint32_t i : order) values.push_back(value(points_[i]));
-    appendPlanes(values, bytes_per_value, tile_.planes);
+    appendPlanes(tile_.planes, values.data(), values.size(), sizeof(std::uint32_t));
+    tile_.planes.resize(tile_.planes.size() - values.size() * (sizeof(std::uint32_t) - bytes_per_value));
   }
 
   const std::vector<ViewPoint>& points_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the page must know of a map beside points and quads, as JSON.
+// What the page needs of a map besides points and quads, as JSON.
 #pragma once
 
 #include <string>
@@ -19,7 +19,8 @@ std::string mapValuesJson(const mapping::MapReader& map, const PointTiles& tiles
 /// changesJson() for the begin of each visit but the first, as an array.
 std::string visitChangesJson(const mapping::MapReader& map, unsigned threads);
 
-/// What the history says that objects were made of, by number of the object; those that no change touched are absent.
+/// The objects that each object was derived from, as the history states it, by number of the object. Objects that no
+/// change touched are absent.
 std::string lineageJson(const mapping::MapReader& map);
 
 /// Classes, and the objects in the order of MapReader::objects(): arrays side by side. A box is its centre, length,

@@ -64,7 +64,7 @@ float gradient(const TerrainGrid& terrain, std::uint32_t cell, int dx, int dy, d
   return steps == 0 ? 0.0F : static_cast<float>(rise / (steps * frame.cell_m));
 }
 
-/// The thing of a cell that stays; none when it is free.
+/// The first thing of a cell that is not left out; absent when the cell is free.
 std::optional<std::uint32_t> thingLeft(const TerrainGrid& terrain, std::uint32_t cell,
                                        const std::vector<bool>& is_left_out) {
   for (const std::uint32_t thing : terrain.thingsIn(cell))

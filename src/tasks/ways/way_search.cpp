@@ -57,7 +57,7 @@ class GraphOfCells {
         if ((dx == 0 && dy == 0) || !frame.holds(x + dx, y + dy)) continue;
         const std::uint32_t to = frame.index(x + dx, y + dy);
         const bool is_diagonal = dx != 0 && dy != 0;
-        // Also a way across closed cells goes through them, not between two of them.
+        // A diagonal step needs both cells beside it, also on a way that may cross closed cells.
         if (!mayUse(to) || (is_diagonal && !(isOpen(frame.index(x + dx, y)) && isOpen(frame.index(x, y + dy)))))
           continue;
         if (!grid_.isStepOpen(from, to) && !rules_.closed_cost) continue;
@@ -109,7 +109,7 @@ CheapestWays cheapestWays(const PassableGrid& grid, std::uint32_t start, const S
                                        .distance_map(boost::make_iterator_property_map(cost.begin(), index))
                                        .predecessor_map(boost::make_iterator_property_map(before.begin(), index))
                                        .visitor(StopAtGoal(rules.goal ? cells.vertexOf(*rules.goal) : kNoVertex)));
-  } catch (const GoalReached&) {  // what is needed is known
+  } catch (const GoalReached&) {  // the search has what it needs
   }
   for (std::uint32_t vertex = 0; vertex < count; ++vertex) {
     // Boost's infinity is the largest number.

@@ -24,8 +24,8 @@ struct PlanNames {
   const QueryTerms& terms;
 };
 
-/// What a group needs whose HAVING refuses counts of `count` and more: at most so many of the rows that continue one
-/// row of a join and pass the conditions.
+/// For a group whose HAVING rejects counts of `count` and more: of the rows that continue one row of a join and pass
+/// the conditions, at most `count` are needed.
 struct EnoughRows {
   std::uint64_t count = 0;
   std::vector<Slot> keys;        ///< of the group
