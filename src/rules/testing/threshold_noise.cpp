@@ -161,6 +161,7 @@ std::vector<Diagnostic> warningsOf(const std::vector<NoisyThreshold>& thresholds
     warning.message = threshold.rule_id + ": '" + threshold.test + "': " + std::to_string(threshold.near) + " of " +
                       std::to_string(threshold.tested) + " things that it tests lie within the noise of " +
                       shown(threshold);
+    warning.hint = "let a curve of evidence judge the attribute, or test another one";
     warnings.push_back(std::move(warning));
   }
   return warnings;
