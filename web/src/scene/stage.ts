@@ -4,6 +4,7 @@ import * as THREE from 'three';
 import { capitalised, type Box, type MapModel, type MapObject } from '../data/model';
 import type { Store } from '../state';
 import { BoxLines } from './boxes';
+import type { GroundHeights } from './ground';
 import { COLOUR_MODES } from './materials';
 import type { Viewer } from './viewer';
 
@@ -18,7 +19,8 @@ export class Stage {
   private readonly selectionBehind: BoxLines;
   private readonly sensorPath: THREE.Group;
 
-  constructor(readonly viewer: Viewer, private readonly model: MapModel, private readonly store: Store) {
+  constructor(readonly viewer: Viewer, private readonly model: MapModel, private readonly store: Store,
+              private readonly ground: GroundHeights) {
     this.objectBoxes = new BoxLines(viewer.origin, 0.8);
     this.selection = new BoxLines(viewer.origin, 1);
     this.selectionBehind = new BoxLines(viewer.origin, 0.35, true);
@@ -52,9 +54,9 @@ export class Stage {
     this.look(center, direction, Math.max(13, 2.8 * Math.hypot(box.length, box.width, box.height)));
   }
 
-  /** Moves near a place of the map. */
-  goToPlace(place: number[]): void {
-    this.goTo({ x: place[0], y: place[1], z: place[2], length: 4, width: 4, height: 2, yaw: 0 });
+  /** Moves near a place of the map, on the ground where its height is not given. */
+  goToPlace([x, y, z]: number[]): void {
+    this.goTo({ x, y, z: z ?? this.ground.at(x, y), length: 4, width: 4, height: 2, yaw: 0 });
   }
 
   look(target: THREE.Vector3, direction: THREE.Vector3, distance: number): void {
