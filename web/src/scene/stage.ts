@@ -18,6 +18,8 @@ export class Stage {
   private readonly selection: BoxLines;
   private readonly selectionBehind: BoxLines;
   private readonly sensorPath: THREE.Group;
+  /** What the points are drawn by: when it changes, colours alone do not do. */
+  private drawn: unknown[] = [];
 
   constructor(readonly viewer: Viewer, private readonly model: MapModel, private readonly store: Store,
               private readonly ground: GroundHeights) {
@@ -100,13 +102,16 @@ export class Stage {
     const { lit, tints, hiddenClasses, colourMode, slice, scans } = this.store.state, { palette, uniforms } = this.viewer;
     const scheme = colourMode === 'certainty' || colourMode === 'distinct' ? colourMode : 'class';
     palette.show({ scheme, lit: lit && lit.objects, hiddenClasses, tints });
-    uniforms.mode.value = COLOUR_MODES.indexOf(tints ? 'class' : colourMode);
+    const mode = COLOUR_MODES.indexOf(tints ? 'class' : colourMode), drawn = [mode, slice, scans, hiddenClasses];
+    uniforms.mode.value = mode;
     const { lowestHeight, heightStep } = this.model.values;
     const byteOf = (height: number) => (height - lowestHeight) / heightStep;
     uniforms.slice.value.set(slice ? byteOf(slice[0]) : 0, slice && slice[1] < 29 ? byteOf(slice[1]) : 255);
     uniforms.scans.value.set(scans ? scans[0] : 0, scans ? scans[1] : 65535);
     uniforms.heightRange.value.set(byteOf(0), byteOf(12));
-    this.viewer.refresh();
+    if (drawn.some((value, i) => value !== this.drawn[i])) this.viewer.refresh();
+    else this.viewer.recolour();
+    this.drawn = drawn;
   }
 
   private showBoxes(): void {
