@@ -5,7 +5,7 @@ import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, afterEach, before, beforeEach, test } from 'node:test';
-import { ask, drawn, openPage, settled, startBrowser, stopBrowser } from './browser.mjs';
+import { ask, drawn, openPage, seenWithoutGreenCones, settled, startBrowser, stopBrowser } from './browser.mjs';
 
 const folder = process.env.CLUXEL_PAGES, program = process.env.CLUXEL_PROGRAM;
 const map = join(folder, 'campus.clx'), html = join(folder, 'campus.html');
@@ -105,6 +105,23 @@ test('a click on a line selects its place, whose card tells measures and rule', 
   assert.equal(await page.textContent('[aria-label="Selected place"] pre'), rule);
   await page.keyboard.press('Escape');
   assert.equal(await selectedPlace(page), null);
+});
+
+test('kinds of places stay apart for an eye without green cones', async () => {
+  await showPlaces(open.page);
+  await open.page.selectOption('#colour-mode', 'distinct');
+  const colours = await open.page.evaluate(() => {
+    const { lines } = window.cluxelPage, colour = lines.seen.geometry.getAttribute('instanceColorStart'), kinds = new Map();
+    lines.segments.forEach(({ place }, i) => kinds.set(place.info.label, [colour.getX(i), colour.getY(i), colour.getZ(i)].map((value) => Math.round(255 * value))));
+    return [...kinds.values()].slice(0, 7);
+  });
+  assert.ok(colours.length >= 3);
+  const seen = colours.map(seenWithoutGreenCones);
+  for (let i = 0; i < seen.length; ++i)
+    for (let k = 0; k < i; ++k) {
+      const apart = Math.hypot(...seen[i].map((value, axis) => value - seen[k][axis]));
+      assert.ok(apart > 12, `${colours[i]} and ${colours[k]}: ${apart}`);
+    }
 });
 
 test('places are walked through by keyboard, and an object takes the place of a place', async () => {

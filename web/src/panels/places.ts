@@ -3,6 +3,7 @@
 import { capitalised, type ClassInfo } from '../data/model';
 import type { Place, Places } from '../data/places';
 import { counted, el, faultNote, swatch } from '../dom';
+import { cssOf, DISTINCT } from '../scene/palette';
 import type { PlaceLines } from '../scene/place_lines';
 import type { Stage } from '../scene/stage';
 import type { Store } from '../state';
@@ -14,12 +15,18 @@ export class PlacePanel {
   readonly element = el('fieldset', { class: 'heights places', hidden: true });
   private found: Place[] = [];
   private readonly hidden = new Set<ClassInfo>();
+  /** With their places, most frequent first. */
+  private groups: [ClassInfo, Place[]][] = [];
 
   /** `ready`: when the ground is known. */
   constructor(private readonly places: Places, private readonly lines: PlaceLines,
               private readonly store: Store, private readonly stage: Stage, private readonly ready: Promise<void>) {
     store.on(['places'], () => void this.toggle());
     store.on(['place', 'theme'], () => this.draw());
+    store.on(['colourMode'], () => {
+      if (this.groups.length > 0) this.list();
+      this.draw();
+    });
     store.on(['place'], (state) => { if (state.place) store.set('places', true); });
   }
 
@@ -35,8 +42,9 @@ export class PlacePanel {
     try {
       await this.ready;
       this.found = [...(await this.places.all()).values()];
-      this.tell(this.found.length > 0 ? el('ul', { class: 'classes' }, ...this.rows())
-                                      : el('p', { class: 'note', role: 'status' }, 'The map holds none.'));
+      this.groups = groupsOf(this.found);
+      if (this.found.length > 0) this.list();
+      else this.tell(el('p', { class: 'note', role: 'status' }, 'The map holds none.'));
     } catch (fault) {
       this.tell(faultNote(fault));
     }
@@ -47,18 +55,21 @@ export class PlacePanel {
     this.element.replaceChildren(el('legend', {}, 'Ways and places'), content);
   }
 
-  private rows(): HTMLElement[] {
-    const groups = new Map<ClassInfo, Place[]>();
-    for (const place of this.found) groups.set(place.info, [...(groups.get(place.info) ?? []), place]);
-    const sorted = [...groups].sort(([a, some], [b, others]) => others.length - some.length || (a.label < b.label ? -1 : 1));
-    return sorted.map(([info, group]) => {
+  private list(): void {
+    this.tell(el('ul', { class: 'classes' }, ...this.groups.map(([info, group]) => {
       const next = el('button', { type: 'button', class: 'only', onclick: () => this.step(group), 'aria-label': `Go to the next ${info.label}` }, 'next');
-      const box = el('input', { type: 'checkbox', checked: true, onchange: () => this.hide(info, !box.checked) });
+      const box = el('input', { type: 'checkbox', checked: !this.hidden.has(info), onchange: () => this.hide(info, !box.checked) });
       return el('li', { 'data-class': info.iri },
-                el('label', { title: info.comment || undefined }, box, swatch(info.color || '#808080', `shape-${group[0].kind}`),
+                el('label', { title: info.comment || undefined }, box, swatch(this.colourOf(info), `shape-${group[0].kind}`),
                    el('span', { class: 'class-name' }, capitalised(info.label))),
                 el('span', { class: 'count' }, counted(group.length)), next);
-    });
+    })));
+  }
+
+  /** In the colours that all kinds of sight tell apart where those of the classes are in these. */
+  private colourOf(info: ClassInfo): string {
+    if (this.store.state.colourMode !== 'distinct') return info.color || '#808080';
+    return cssOf(DISTINCT[this.groups.findIndex(([other]) => other === info) % DISTINCT.length]);
   }
 
   private hide(info: ClassInfo, isHidden: boolean): void {
@@ -75,8 +86,14 @@ export class PlacePanel {
 
   private draw(): void {
     const { places, place, theme } = this.store.state;
-    this.lines.show(places ? this.found.filter(({ info }) => !this.hidden.has(info)) : [], places ? place : null, ({ info }) => info.color || '#808080', ACCENT[theme]);
+    this.lines.show(places ? this.found.filter(({ info }) => !this.hidden.has(info)) : [], places ? place : null, ({ info }) => this.colourOf(info), ACCENT[theme]);
   }
+}
+
+function groupsOf(places: Place[]): [ClassInfo, Place[]][] {
+  const groups = new Map<ClassInfo, Place[]>();
+  for (const place of places) groups.set(place.info, [...(groups.get(place.info) ?? []), place]);
+  return [...groups].sort(([a, some], [b, others]) => others.length - some.length || (a.label < b.label ? -1 : 1));
 }
 
 /** A corner of a line, else the middle; its height is the ground's. */
