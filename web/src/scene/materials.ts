@@ -112,7 +112,7 @@ const PEEK_FRAGMENT = /* glsl */ `
 `;
 
 /**
- * Colours of the objects, and eye-dome lighting: what stands before something farther away gets a dark edge, which shows
+ * Colours of the objects, and eye-dome lighting: what lies behind something nearer is dark along its edge, which shows
  * shape without normals.
  */
 const PICTURE_FRAGMENT = /* glsl */ `
@@ -150,9 +150,9 @@ const PICTURE_FRAGMENT = /* glsl */ `
   float nearnessAt(vec2 at) {
     return (planes.y + planes.x) - (texture(depths, at).x * 2.0 - 1.0) * (planes.y - planes.x);
   }
-  /** Farther neighbours count up to a limit: the edge of a thing before the sky is no darker than another. */
+  /** About log2 of own distance over the neighbour's: nearer neighbours count, up to a limit. */
   float dropTo(float own, vec2 offset) {
-    return clamp(1.443 - 1.443 * nearnessAt(place + offset * pixel) * own, 0.0, 0.06);
+    return clamp(1.443 * nearnessAt(place + offset * pixel) * own - 1.443, 0.0, 0.06);
   }
   void main() {
     float depth = texture(depths, place).x;
