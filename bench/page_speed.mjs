@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How fast a page is in headless Chromium with software rendering: page_speed.mjs PAGE.html. Prints JSON: time to the
-// first picture and to all points, frames while the camera turns, and from a change of the answer to the lit picture.
+// first picture and to all points, frames while the camera turns, from a change of the answer to the lit picture, and from a
+// click (its button is down for 80 ms) to the picture in which the object is selected.
 import { createRequire } from 'node:module';
 import { statSync } from 'node:fs';
 
@@ -55,6 +56,33 @@ const lit = await page.evaluate(async () => {
   }
   return times;
 });
+/** Clicks on places over the view; each other object that is hit counts. */
+const clicks = await page.evaluate(async () => {
+  const { viewer, store } = window.cluxelPage, canvas = viewer.renderer.domElement, gl = viewer.renderer.getContext(), times = [];
+  const pause = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
+  for (let i = 0; i < 120 && times.length < 40; ++i) {
+    const at = canvas.getBoundingClientRect(), chosen = store.state.selected;
+    const send = (type) => canvas.dispatchEvent(new PointerEvent(type, {
+      clientX: at.left + at.width * (0.3 + 0.65 * ((i * 0.618) % 1)), clientY: at.top + at.height * (0.15 + 0.8 * ((i * 0.382) % 1)),
+      button: 0, bubbles: true, pointerId: 1,
+    }));
+    send('pointerdown');
+    await pause(80);
+    const start = performance.now();
+    let shown;
+    const frame = new Promise((done) => { shown = done; });
+    viewer.onFrame.push(shown);
+    send('pointerup');
+    if (store.state.selected && store.state.selected !== chosen) {
+      await frame;
+      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+      times.push(performance.now() - start);
+    }
+    viewer.onFrame.splice(viewer.onFrame.indexOf(shown), 1);
+    await pause(300);
+  }
+  return times;
+});
 const quantile = (values, share) => Math.round(values.sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(share * values.length))]);
 const { points, objects, first, budget } = await page.evaluate(() => ({
   points: window.cluxelPage.model.values.points, objects: window.cluxelPage.model.objects.length,
@@ -64,5 +92,6 @@ console.log(JSON.stringify({
   megabytes: statSync(file).size / 1e6, points, objects, first_picture_ms: Math.round(first), all_points_ms: Math.round(complete),
   frame_median_ms: quantile(frames, 0.5), frame_p95_ms: quantile(frames, 0.95), points_a_frame: Math.round(budget),
   lit_median_ms: quantile(lit, 0.5), lit_p95_ms: quantile(lit, 0.95),
+  clicks: clicks.length, click_median_ms: quantile(clicks, 0.5), click_p95_ms: quantile(clicks, 0.95),
 }, null, 1));
 await browser.close();

@@ -77,6 +77,24 @@ test('the points of one visit are shown alone', async () => {
   assert.equal(await state(page, 'scans'), null);
 });
 
+test('a fault takes the colours of the visit before away', async () => {
+  const { page } = open;
+  await page.click('#tab-visits');
+  await toVisit(page, 1);
+  assert.notEqual(await state(page, 'tints'), null);
+  await page.evaluate(() => {
+    const { model } = window.cluxelPage;
+    model.visitChanges = Promise.reject(new Error('the changes are damaged'));
+    model.visitChanges.catch(() => {});
+    document.querySelector('#visit').dispatchEvent(new Event('input'));
+  });
+  await page.waitForSelector('.visits .fault');
+  assert.match(await page.textContent('.visits .fault'), /the changes are damaged/);
+  assert.equal(await state(page, 'tints'), null);
+  assert.deepEqual(await state(page, 'marks'), []);
+  assert.equal(await page.inputValue('#visit'), '1', 'the fault is that of the visit that the slider names');
+});
+
 test('an answer takes the place of the colours of a visit', async () => {
   const { page } = open;
   await page.click('#tab-visits');

@@ -44,6 +44,15 @@ test('a search is asked with its parameters, and its stops have numbered pins', 
   assert.deepEqual(await page.$$eval('.pin-mark', (pins) => pins.map((pin) => pin.textContent)), wanted.rows.map((_, i) => String(i + 1)));
   const places = await page.evaluate(() => window.cluxelPage.store.state.marks.map((mark) => mark.place.slice(0, 2)));
   assert.deepEqual(places, wanted.rows.map((row) => row.geometry.coordinates));
+  const paths = await page.evaluate(() => window.cluxelPage.store.state.marks.map((mark) => mark.path));
+  assert.deepEqual(paths, wanted.rows.map((row) => row.way));
+  paths.forEach((path, i) => {
+    if (!path) return;
+    assert.deepEqual(path.at(-1), wanted.rows[i].geometry.coordinates, 'the way ends at its stop');
+    const metres = path.slice(1).reduce((sum, corner, k) => sum + Math.hypot(corner[0] - path[k][0], corner[1] - path[k][1]), 0);
+    assert.ok(Math.abs(metres - wanted.rows[i].walk) < 0.01, `${metres} m drawn, ${wanted.rows[i].walk} m told`);
+  });
+  assert.ok(paths.some(Boolean), 'the tour is drawn');
   assert.ok(await page.locator('.task-reasons li').count() > 0, 'stops tell why');
 });
 

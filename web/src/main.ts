@@ -2,12 +2,15 @@
 // Puts the page together: reads the map, shows the view, then the points tile by tile.
 import { Address } from './address';
 import { MapModel, type MapObject } from './data/model';
+import { Places } from './data/places';
 import { Service } from './data/service';
 import { counted, el } from './dom';
 import { AskPanel } from './panels/ask';
 import { ObjectCard } from './panels/card';
 import { Help } from './panels/help';
 import { Legend } from './panels/legend';
+import { PlaceCard } from './panels/place_card';
+import { PlacePanel } from './panels/places';
 import { RulePanel } from './panels/rules';
 import { Tabs } from './panels/tabs';
 import { TaskPanel } from './panels/tasks';
@@ -18,6 +21,7 @@ import { GroundHeights } from './scene/ground';
 import { MarkPaths } from './scene/mark_paths';
 import { Measure } from './scene/measure';
 import { Picking } from './scene/picking';
+import { PlaceLines } from './scene/place_lines';
 import { Pins } from './scene/pins';
 import { Portrait } from './scene/portrait';
 import { Stage } from './scene/stage';
@@ -31,7 +35,7 @@ const CLICK_REACH = 5;
 function initialStore(): Store {
   const isDark = matchMedia('(prefers-color-scheme: dark)').matches;
   return new Store({
-    selected: null, lit: null, marks: [], tints: null, ruleLine: null, colourMode: 'class', hiddenClasses: new Set(), boxes: false, sensorPath: false,
+    selected: null, place: null, lit: null, marks: [], tints: null, ruleLine: null, colourMode: 'class', hiddenClasses: new Set(), boxes: false, places: false, sensorPath: false,
     measuring: false, slice: null, scans: null, theme: isDark ? 'dark' : 'light',
   });
 }
@@ -46,16 +50,18 @@ function titleBar(model: MapModel): HTMLElement {
             !finished && el('p', { class: 'note' }, 'The build of this map is not finished.'));
 }
 
-/** Clicks in the view select objects or measure. */
-function listenToClicks(viewer: Viewer, picking: Picking, store: Store, measure: Measure): void {
+/** Clicks in the view select objects or places, or measure. */
+function listenToClicks(viewer: Viewer, picking: Picking, places: PlaceLines, store: Store, measure: Measure): void {
   const canvas = viewer.renderer.domElement;
   let down = { x: 0, y: 0 };
   canvas.addEventListener('pointerdown', (event) => { down = { x: event.offsetX, y: event.offsetY }; });
   canvas.addEventListener('pointerup', (event) => {
     if (event.button !== 0 || Math.hypot(event.offsetX - down.x, event.offsetY - down.y) > CLICK_REACH) return;
     const pick = picking.at(event.offsetX, event.offsetY);
-    if (!store.state.measuring) store.set('selected', pick?.object ?? null);
-    else if (pick) measure.add(pick.place);
+    if (store.state.measuring) return pick && measure.add(pick.place);
+    const place = places.at(event.offsetX, event.offsetY, pick?.place) ?? null;
+    store.set('place', place);
+    store.set('selected', place ? null : pick?.object ?? null);
   });
 }
 
@@ -74,6 +80,7 @@ async function loadTiles(viewer: Viewer, model: MapModel, status: HTMLElement): 
 async function open(app: HTMLElement): Promise<void> {
   const model = await MapModel.read(), store = initialStore(), engine = new Engine();
   document.title = `${model.values.name} · Cluxel`;
+  let tilesRead = () => {};
   const host = el('main', { class: 'view', 'aria-label': 'Map in 3D' });
   const reading = el('p', { class: 'reading', role: 'status' });
   const side = el('div', { class: 'side' }, titleBar(model));
@@ -82,12 +89,11 @@ async function open(app: HTMLElement): Promise<void> {
   const showTheme = () => { document.documentElement.dataset.theme = store.state.theme; };
   store.on(['theme'], showTheme);
   showTheme();
-  const viewer = new Viewer(host, model), stage = new Stage(viewer, model, store);
+  const viewer = new Viewer(host, model), ground = new GroundHeights(viewer, model), stage = new Stage(viewer, model, store, ground);
   viewer.renderer.domElement.setAttribute('aria-label', 'Points of the map in 3D. Arrow keys move the view.');
   viewer.controls.listenToKeyEvents(viewer.renderer.domElement);
   const service = Service.of(model), address = new Address(viewer, store, model), goTo = (object: MapObject) => stage.goTo(object.box);
-  const ask = new AskPanel(model, engine, store, address, goTo), card = new ObjectCard(model, engine, service, store, new Portrait(viewer), goTo);
-  const ground = new GroundHeights(viewer, model);
+  const places = new Places(model, engine), ask = new AskPanel(model, engine, store, address, places, stage), card = new ObjectCard(model, engine, service, store, new Portrait(viewer), goTo);
   const tasks = new TaskPanel(model, service, store, stage, ground), visits = new VisitPanel(model, store, stage);
   const rules = new RulePanel(model, service, store, stage);
   const tabs = new Tabs([{ id: 'questions', label: 'Questions', element: ask.element }, { id: 'tasks', label: 'Tasks', element: tasks.element },
@@ -96,19 +102,25 @@ async function open(app: HTMLElement): Promise<void> {
   store.on(['ruleLine'], () => tabs.show('rules'));
   store.on(['lit'], (state) => { if (state.lit) store.set('tints', null); });
   side.append(tabs.element, ask.element, tasks.element, visits.element, rules.element);
-  host.append(new Legend(model, store, viewer.palette).element, toolbar.element);
-  app.append(card.element, help.element);
+  const lines = new PlaceLines(viewer, ground), allRead = new Promise<void>((done) => { tilesRead = done; });
+  const layer = new PlacePanel(places, lines, store, stage, allRead);
+  host.append(new Legend(model, store, viewer.palette, layer.element).element, toolbar.element);
+  app.append(card.element, new PlaceCard(model, places, store, stage).element, help.element);
+  store.on(['selected'], (state) => { if (state.selected) store.set('place', null); });
+  store.on(['place'], (state) => { if (state.place) store.set('selected', null); });
   new Pins(viewer, store);
   new MarkPaths(viewer, store, ground);
-  listenToClicks(viewer, new Picking(viewer, model), store, new Measure(viewer, store));
+  listenToClicks(viewer, new Picking(viewer, model), lines, store, new Measure(viewer, store));
   const restored = address.restore();
   if (!restored.hasCamera) stage.home();
   app.removeAttribute('aria-busy');
-  Object.assign(window, { cluxelPage: { model, store, viewer, stage, engine } });  // for tests and the curious
+  Object.assign(window, { cluxelPage: { model, store, viewer, stage, engine, lines } });  // for tests and the curious
   await loadTiles(viewer, model, reading);
+  tilesRead();
   card.redraw();
   ask.restore(restored.question);
   void engine.start();
+  if (restored.place) store.set('place', (await places.all()).get(restored.place) ?? null);
 }
 
 const app = document.getElementById('app')!;

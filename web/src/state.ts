@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the page shows, in one place: panels change it and are told of changes.
 import type { Extent, MapObject } from './data/model';
+import type { Place } from './data/places';
 import type { ColourMode } from './scene/materials';
 import type { Rgb } from './scene/palette';
 
@@ -20,6 +21,8 @@ export interface Mark {
 
 export interface PageState {
   selected: MapObject | null;
+  /** The selected place; an object and a place are never selected together. */
+  place: Place | null;
   /** null: nothing is asked, all objects are plain. */
   lit: Lit | null;
   marks: Mark[];
@@ -31,6 +34,8 @@ export interface PageState {
   /** IRIs; '' stands for points without an object. */
   hiddenClasses: Set<string>;
   boxes: boolean;
+  /** Ways, junctions, regions and the places that rules derive. */
+  places: boolean;
   sensorPath: boolean;
   measuring: boolean;
   /** Heights above the ground that are shown [m]; null: all. */

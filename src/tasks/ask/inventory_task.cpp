@@ -84,6 +84,7 @@ TaskAnswer runNextView(const TaskContext& context, const TaskValues& values) {
     answer.rows.push_back({{static_cast<double>(i + 1), at.x(), at.y(), view.stop.walk_m, view.stop.total_m,
                             view.area_m2, static_cast<double>(view.objects.size()), view.stop.so_far},
                            {TaskShape::Kind::Point, {at}}});
+    answer.rows.back().way = cornersOf(found.frame, view.stop.way);
     if (!context.with_reasons) continue;
     std::array<char, 96> line{};
     std::snprintf(line.data(), line.size(), "%.1f m2 that was not observed comes into sight", view.area_m2);

@@ -145,6 +145,7 @@ std::string jsonText(const mapping::MapReader& map, const TaskAnswer& answer) {
   for (const TaskRow& row : answer.rows) {
     AnswerJson entry = propertiesOfRow(answer, row);
     if (row.shape.kind != TaskShape::Kind::None) entry["geometry"] = geometryJson(row.shape, position);
+    if (row.way.size() > 1) entry["way"] = geometryJson({TaskShape::Kind::Line, row.way}, position)["coordinates"];
     json["rows"].push_back(std::move(entry));
   }
   return json.dump(2, ' ', false, AnswerJson::error_handler_t::replace) + "\n";

@@ -30,7 +30,8 @@ struct TaskShape {
 struct TaskRow {
   std::vector<TaskCell> cells;  ///< parallel to the columns
   TaskShape shape = {};
-  std::vector<std::string> why = {};  ///< reasons, a line each; only where they were asked for
+  std::vector<std::string> why = {};      ///< reasons, a line each; only where they were asked for
+  std::vector<Eigen::Vector2d> way = {};  ///< of a tour: from the row before to this one [m, map]
 };
 
 struct TaskAnswer {
@@ -45,8 +46,8 @@ enum class AnswerFormat : std::uint8_t { Table, Csv, Json, GeoJson };
 std::optional<AnswerFormat> answerFormatOf(std::string_view name);
 
 /// Table: columns with units, then notes; reasons are indented below their row. Csv: RFC 4180, with a header. Json:
-/// rows as objects, with geometry in metres of the map frame. GeoJson: a feature for each row that has a place, in
-/// `frame`; throws as writeFootprints(). All end with a line end.
+/// rows as objects, with geometry and way in metres of the map frame. GeoJson: a feature for each row that has a place,
+/// in `frame`; throws as writeFootprints(). All end with a line end.
 std::string answerText(const mapping::MapReader& map, const TaskAnswer& answer, AnswerFormat format,
                        ExportFrame frame = ExportFrame::LongitudeLatitude);
 

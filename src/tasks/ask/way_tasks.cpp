@@ -139,6 +139,7 @@ TaskAnswer runSearch(const TaskContext& context, const TaskValues& values) {
     answer.rows.push_back(
         {{static_cast<double>(i + 1), at.x(), at.y(), stop.walk_m, stop.total_m, stop.probability, stop.so_far, near},
          {TaskShape::Kind::Point, {at}}});
+    answer.rows.back().way = cornersOf(found.frame, stop.way);
     if (context.with_reasons) answer.rows.back().why = reasonsOfStop(found, stop, request.class_name);
   }
   answer.notes.push_back(std::to_string(found.known.size()) + " of class " + request.class_name + " known");

@@ -32,7 +32,7 @@ class StopCandidates {
       const double value = probability / (walk + params.settle_m);
       if (value <= best_value) continue;
       best_value = value;
-      best = SearchStop{cells_[i], walk, total_m + walk, probability, 0, kAnywhere, {}};
+      best = SearchStop{cells_[i], walk, total_m + walk, probability, 0, kAnywhere};
     }
     return best;
   }
@@ -128,6 +128,7 @@ std::vector<SearchStop> tourOf(const PassableGrid& grid, const SightGrid& sight,
     std::optional<SearchStop> best = candidates.best(ways, total_m, params);
     if (!best) break;
     candidates.take(*best, ways, params);
+    best->way = wayTo(ways, best->cell);
     total_m = best->total_m;
     so_far += best->probability;
     best->so_far = so_far;

@@ -20,6 +20,7 @@ struct SearchStop {
   double so_far = 0;                ///< that it is seen from here or before
   std::uint8_t reason = kAnywhere;  ///< the place that most of the probability comes from
   std::vector<std::pair<std::uint8_t, double>> shares = {};  ///< of the probability, by place, largest first
+  std::vector<std::uint32_t> way = {};                       ///< cells from the stop before, both included
 };
 
 struct TourParams {

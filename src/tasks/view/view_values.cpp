@@ -77,6 +77,14 @@ ViewJson rulesJson(const mapping::MapInputs& inputs) {
   return all;
 }
 
+/// SPARQL rules, in the order in which they run: their texts tell why a place is what it is.
+ViewJson sparqlRulesJson(const mapping::MapInputs& inputs) {
+  ViewJson all = ViewJson::array();
+  for (const mapping::NamedText& rule : inputs.sparql_rules)
+    all.push_back({{"name", std::filesystem::path(rule.name).filename().string()}, {"text", rule.text}});
+  return all;
+}
+
 ViewJson visitsJson(const mapping::MapReader& map) {
   ViewJson all = ViewJson::array();
   for (const Visit& visit : visitsOf(map.clouds()))
@@ -142,6 +150,7 @@ std::string mapValuesJson(const mapping::MapReader& map, const PointTiles& tiles
   json["questions"] = questionsJson(questions);
   json["tasks"] = ViewJson::parse(taskListJson(tasksOf(questions)));
   json["rules"] = rulesJson(inputs);
+  json["sparqlRules"] = sparqlRulesJson(inputs);
   json["visits"] = visitsJson(map);
   json["properties"] = propertiesJson(ontologyViewOf(map.quads()));
   return json.dump(-1, ' ', false, ViewJson::error_handler_t::replace);

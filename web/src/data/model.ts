@@ -3,7 +3,8 @@
 import { blockJson, blockText, hasBlock } from './blocks';
 
 export const CLX = 'https://w3id.org/cluxel/ontology#';
-export const OBJECT = 'https://w3id.org/cluxel/map/object/';
+export const MAP = 'https://w3id.org/cluxel/map/';
+export const OBJECT = `${MAP}object/`;
 const REASONS_IN_BLOCK = 64;
 
 export interface Box {
@@ -57,7 +58,7 @@ interface MapValues {
   points: number; pointsInMap: number; quadsLeftOut: number;
   quantum: number; lowestHeight: number; heightStep: number; intensity: number[];
   labels: string[]; clouds: Cloud[]; tiles: TileInfo[]; questions: Question[]; properties: Property[];
-  tasks: Task[]; rules: RuleFile[]; visits: Visit[];
+  tasks: Task[]; rules: RuleFile[]; sparqlRules: { name: string; text: string }[]; visits: Visit[];
 }
 interface ObjectValues {
   classes: ClassInfo[];

@@ -4,7 +4,7 @@ import type { MapModel } from './model';
 
 export interface TaskShape { type: 'Point' | 'LineString' | 'MultiPolygon'; coordinates: unknown }
 export interface TaskColumn { name: string; unit: string; help: string }
-export type TaskRow = Record<string, unknown> & { geometry?: TaskShape; why?: string[] };
+export type TaskRow = Record<string, unknown> & { geometry?: TaskShape; why?: string[]; way?: number[][] };
 export interface TaskAnswer { columns: TaskColumn[]; rows: TaskRow[]; notes: string[] }
 
 export class Service {

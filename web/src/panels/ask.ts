@@ -4,11 +4,14 @@ import type { Address, AddressQuestion } from '../address';
 import { capitalised, type MapModel, type MapObject, type Question } from '../data/model';
 import { counted, el, icon, messageOf } from '../dom';
 import { csvOf, geoJsonOf, save } from '../downloads';
-import type { Answer, Rows } from '../sparql/answers';
+import type { Place, Places } from '../data/places';
+import type { Stage } from '../scene/stage';
+import type { Answer, RdfTerm, Rows } from '../sparql/answers';
 import type { Engine } from '../sparql/engine';
 import { bodyOf, withValues } from '../sparql/questions';
 import type { Store } from '../state';
 import { Editor } from './editor';
+import { middleOfPlace } from './places';
 import { AnswerTable, RowObjects } from './table';
 
 const OWNERS = `PREFIX clx: <https://w3id.org/cluxel/ontology#> PREFIX sosa: <http://www.w3.org/ns/sosa/>
@@ -28,15 +31,17 @@ export class AskPanel {
   private readonly table: AnswerTable;
   private owners: Map<string, string> | undefined;
   private isWriting = false;
+  private placesOfRow: (Place | undefined)[] = [];
 
   constructor(private readonly model: MapModel, private readonly engine: Engine, private readonly store: Store,
-              private readonly address: Address, private readonly goTo: (object: MapObject) => void) {
+              private readonly address: Address, private readonly places: Places,
+              private readonly stage: Stage) {
     const { questions } = model.values;
     this.select = el('select', { id: 'question', onchange: () => this.choose(this.question) },
                      ...questions.map((question) => el('option', { value: question.file }, question.title || question.file)),
                      el('option', { value: '' }, 'A question of your own'));
     const host = el('div', { class: 'editor' });
-    this.table = new AnswerTable(model, { choose: (objects) => this.chooseObjects(objects) });
+    this.table = new AnswerTable(model, { choose: (objects, row) => this.chooseRow(objects, this.placesOfRow[row]) });
     this.element = el('section', { class: 'ask', 'aria-label': 'Questions' },
                       el('label', { for: 'question', class: 'label' }, 'Question'), this.select, this.parameters,
                       el('details', { class: 'sparql', ontoggle: () => this.editor.refresh() }, el('summary', {}, 'SPARQL'), host),
@@ -115,7 +120,8 @@ export class AskPanel {
     this.status.textContent = this.owners ? 'Asking…' : 'Loading the map into the SPARQL engine…';
     try {
       this.owners ??= await this.readOwners();
-      this.show(await this.engine.ask(text), question);
+      const answer = await this.engine.ask(text);
+      this.show(answer, question, await this.places.all());
     } catch (fault) {
       this.showEngineFault(messageOf(fault));
     }
@@ -152,7 +158,7 @@ export class AskPanel {
     queueMicrotask(() => this.status.classList.add('fault'));
   }
 
-  private show(answer: Answer, question: Question | undefined): void {
+  private show(answer: Answer, question: Question | undefined, places: Map<string, Place>): void {
     const time = `${Math.max(1, Math.round(answer.milliseconds))} ms`;
     if (answer.form === 'truth') {
       this.showFault(`${answer.value ? 'Yes' : 'No'} · ${time}`);
@@ -165,10 +171,12 @@ export class AskPanel {
     const finder = new RowObjects(this.model, this.owners ?? new Map());
     const objectsOfRow = rows.rows.map((row) => finder.ofRow(row));
     const objects = [...new Set(objectsOfRow.flat())];
-    const placeless = objectsOfRow.filter((found) => found.length === 0).length;
+    this.placesOfRow = rows.rows.map((row, i) => (objectsOfRow[i].length > 0 ? undefined : placeIn(row, places)));
+    const placeless = objectsOfRow.filter((found, i) => found.length === 0 && !this.placesOfRow[i]).length;
     this.status.textContent = [`${counted(rows.rows.length)} ${rows.rows.length === 1 ? 'row' : 'rows'}`, time,
                                placeless > 0 && `${counted(placeless)} without a place in the map`].filter(Boolean).join(' · ');
-    this.table.show(rows, question, objectsOfRow);
+    this.table.show(rows, question, objectsOfRow, this.placesOfRow.map(Boolean));
+    if (this.placesOfRow.some(Boolean)) this.store.set('places', true);
     this.store.set('marks', []);
     this.store.set('tints', null);
     this.showActions(rows, objectsOfRow, question);
@@ -197,13 +205,21 @@ export class AskPanel {
     this.address.setQuestion({});
   }
 
-  private chooseObjects(objects: MapObject[]): void {
+  private chooseRow(objects: MapObject[], place: Place | undefined): void {
+    if (place) {
+      this.store.set('place', place);
+      return this.stage.goToPlace(middleOfPlace(place));
+    }
     if (objects.length === 1) {
       this.store.set('selected', objects[0]);
-      this.goTo(objects[0]);
+      this.stage.goTo(objects[0].box);
     } else {
       this.store.set('lit', { objects, ranked: false });
     }
   }
 }
 
+/** The first place that a row names. */
+function placeIn(row: (RdfTerm | null)[], places: Map<string, Place>): Place | undefined {
+  return row.map((term) => (term?.kind === 'iri' ? places.get(term.value) : undefined)).find(Boolean);
+}

@@ -41,7 +41,7 @@ export class ObjectCard {
     const facts = el('div', { class: 'facts' }), reasons = el('div', { class: 'reasons' });
     const picture = el('canvas', { class: 'portrait', role: 'img', 'aria-label': `Points of ${object.class.label}` });
     this.picture = picture;
-    this.portrait.drawInto(picture, object);
+    this.drawSoon(picture, object);
     this.element.replaceChildren(this.head(object), picture, this.measures(object), this.parts(object), reasons,
                                  el('details', { ontoggle: (event: Event) => {
                                    if ((event.target as HTMLDetailsElement).open) void this.fillFacts(object, facts);
@@ -49,6 +49,12 @@ export class ObjectCard {
                                  this.lineage(object), statementForm(object, this.model, this.service));
     this.element.scrollTop = 0;
     void this.fillReasons(object, reasons);
+  }
+
+  /** After the view has shown the selection: reading a picture back waits for the graphics. */
+  private drawSoon(picture: HTMLCanvasElement, object: MapObject): void {
+    const draw = () => { if (this.picture === picture) this.portrait.drawInto(picture, object); };
+    requestAnimationFrame(() => requestAnimationFrame(draw));
   }
 
   private head(object: MapObject): HTMLElement {

@@ -18,7 +18,7 @@ export class Legend {
   private readonly list: HTMLElement;
 
   constructor(private readonly model: MapModel, private readonly store: Store,
-              private readonly palette: Palette) {
+              private readonly palette: Palette, places: HTMLElement) {
     const mode = el('select', { id: 'colour-mode', onchange: () => store.set('colourMode', mode.value as ColourMode) },
                     ...COLOUR_MODES.filter((name) => this.isUseful(name)).map((name) => el('option', { value: name }, NAMES[name])));
     this.list = el('ul', { class: 'classes' }, ...this.classRows());
@@ -26,7 +26,7 @@ export class Legend {
                       el('summary', {}, 'Legend'),
                       el('div', { class: 'legend-body' },
                          el('div', { class: 'field' }, el('label', { for: 'colour-mode' }, 'Colour by'), mode), this.scale,
-                         this.list, this.heights(), this.model.values.clouds.length > 1 && this.scans()));
+                         this.list, this.heights(), places, this.model.values.clouds.length > 1 && this.scans()));
     store.on(['colourMode', 'hiddenClasses'], () => this.show());
     this.show();
   }

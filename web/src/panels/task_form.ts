@@ -24,9 +24,24 @@ export class TaskForm {
       const input = this.element.querySelector<HTMLInputElement>(`[name="${parameter.name}"]`)!;
       const text = parameter.kind === 'flag' ? String(input.checked) : input.value.trim();
       if (text === '' || text === (parameter.default ?? (parameter.kind === 'flag' ? 'false' : ''))) return [];
-      const texts = parameter.repeated ? text.split(/[,\s]+/).filter(Boolean) : [text];
+      const texts = parameter.kind === 'class' ? this.classNames(text, parameter.repeated ?? false)
+        : parameter.repeated ? text.split(/[,\s]+/).filter(Boolean) : [text];
       return texts.map((one) => [parameter.name, one]);
     });
+  }
+
+  /** Several stand between commas or, without spaces in them, between spaces. */
+  private classNames(text: string, isRepeated: boolean): string[] {
+    if (!isRepeated) return [this.classNamed(text) ?? text];
+    return text.split(',').map((one) => one.trim()).filter(Boolean).flatMap((one) =>
+      this.classNamed(one) ?? one.split(/\s+/).map((word) => this.classNamed(word) ?? word));
+  }
+
+  /** "street sign" and "streetsign" as "StreetSign"; names that no class has are for the service to judge. */
+  private classNamed(text: string): string | undefined {
+    const plain = (name: string) => name.toLowerCase().replace(/\s+/g, '');
+    const named = [...this.model.classes.values()].find((info) => plain(localName(info.iri)) === plain(text) || plain(info.label) === plain(text));
+    return named && localName(named.iri);
   }
 
   /** What is required and empty. */

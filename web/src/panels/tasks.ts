@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tasks by name, with their parameters. The service answers them; a file shows the command that does.
 import { type MapModel, type MapObject, type Question, type Task } from '../data/model';
-import type { Service, TaskAnswer, TaskShape } from '../data/service';
+import type { Service, TaskAnswer, TaskRow } from '../data/service';
 import { counted, el, icon, messageOf } from '../dom';
 import { save } from '../downloads';
 import type { GroundHeights } from '../scene/ground';
@@ -108,7 +108,7 @@ export class TaskPanel {
   private show(task: Task, answer: TaskAnswer, values: Values): void {
     const rows = rowsOf(answer), finder = new RowObjects(this.model, new Map());
     const objectsOfRow = rows.rows.map((row) => finder.ofRow(row).slice(0, 1));
-    const marks = answer.rows.map((row, i) => this.markOf(row.geometry, objectsOfRow[i], i));
+    const marks = answer.rows.map((row, i) => this.markOf(row, objectsOfRow[i], i));
     const placeless = marks.filter((mark, i) => !mark && !answer.rows[i].geometry && objectsOfRow[i].length === 0).length;
     this.status.textContent = [`${counted(answer.rows.length)} ${answer.rows.length === 1 ? 'row' : 'rows'}`,
                                placeless > 0 && `${counted(placeless)} without a place in the map`, ...answer.notes].filter(Boolean).join(' · ');
@@ -125,11 +125,11 @@ export class TaskPanel {
   private marksOfRow: (Mark | null)[] = [];
 
   /** A number at the place of the row; rows of objects are lit instead, and have a mark only where they have a way. */
-  private markOf(shape: TaskShape | undefined, objects: MapObject[], row: number): Mark | null {
+  private markOf({ geometry: shape, way }: TaskRow, objects: MapObject[], row: number): Mark | null {
     const onGround = ([x, y]: number[]) => [x, y, this.ground.at(x, y)];
     if (shape?.type === 'Point') {
       const place = onGround(shape.coordinates as number[]);
-      return { text: objects.length > 0 ? '' : String(row + 1), title: `Row ${row + 1}`, place };
+      return { text: objects.length > 0 ? '' : String(row + 1), title: `Row ${row + 1}`, place, path: way };
     }
     if (shape?.type !== 'LineString') return null;
     const path = shape.coordinates as number[][];

@@ -67,8 +67,17 @@ export class VisitPanel {
       const found = (await this.model.changes())[number - 1];
       if (isShown()) this.showChanges(found);
     } catch (fault) {
-      if (isShown()) this.list.replaceChildren(faultNote(fault));
+      if (isShown()) this.showFault(fault);
     }
+  }
+
+  /** Nothing of another visit stays in the view. */
+  private showFault(fault: unknown): void {
+    this.isShowing = true;
+    this.store.set('marks', []);
+    this.store.set('tints', null);
+    this.isShowing = false;
+    this.list.replaceChildren(faultNote(fault));
   }
 
   private showChanges(found: VisitChanges): void {

@@ -86,8 +86,19 @@ export async function readTile(model: MapModel, number: number, origin: THREE.Ve
   return { info, number, points, center, levels: [0, ...info.pointsTo], buffer, spread };
 }
 
-/** The place of a point in the scene [m]. */
-export function pointAt(tile: Tile, vertex: number): THREE.Vector3 {
-  const shorts = new Uint16Array(tile.buffer, vertex * STRIDE, 3);
-  return new THREE.Vector3(shorts[0], shorts[1], shorts[2]).applyMatrix4(tile.points.matrixWorld);
+/** The point of an object (its number + 1; 0: of none) that is nearest to a place in the scene, within `reach` [m]. */
+export function pointNear(tile: Tile, object: number, place: THREE.Vector3, reach: number): THREE.Vector3 | undefined {
+  const toTile = tile.points.matrixWorld.clone().invert(), scale = new THREE.Vector3().setFromMatrixScale(tile.points.matrixWorld);
+  const wanted = place.clone().applyMatrix4(toTile), shorts = new Uint16Array(tile.buffer), words = new Uint32Array(tile.buffer);
+  const room = new THREE.Vector3(reach, reach, reach).divide(scale);
+  if (!tile.points.geometry.boundingBox!.clone().expandByVector(room).containsPoint(wanted)) return undefined;
+  let best = reach * reach, at = -1;
+  for (let i = 0; i < words.length / 4; ++i) {
+    if (words[4 * i + 2] !== object) continue;
+    const dx = (shorts[8 * i] - wanted.x) * scale.x, dy = (shorts[8 * i + 1] - wanted.y) * scale.y, dz = (shorts[8 * i + 2] - wanted.z) * scale.z;
+    const distance = dx * dx + dy * dy + dz * dz;
+    if (distance < best) [best, at] = [distance, i];
+  }
+  if (at < 0) return undefined;
+  return new THREE.Vector3(shorts[8 * at], shorts[8 * at + 1], shorts[8 * at + 2]).applyMatrix4(tile.points.matrixWorld);
 }

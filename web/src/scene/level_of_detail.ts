@@ -6,8 +6,9 @@ import type { Tile } from './cloud_tiles';
 
 interface Job { tile: Tile; level: number; urgency: number }
 
-const SLOW_MS = 50, FAST_MS = 28;
+const SLOW_MS = 40, FAST_MS = 28;
 const LEAST_BUDGET = 15_000, LARGEST_BUDGET = 30_000_000;
+const MOST_AROUND = 200_000;
 
 export class LevelOfDetail {
   private jobs: Job[] = [];
@@ -25,18 +26,16 @@ export class LevelOfDetail {
 
   /** Begins the picture anew with the tiles that the camera sees. */
   restart(tiles: readonly Tile[], camera: THREE.PerspectiveCamera): void {
-    const frustum = new THREE.Frustum().setFromProjectionMatrix(
-      new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse));
-    this.jobs = [];
-    for (const tile of tiles) {
-      if (!frustum.intersectsObject(tile.points)) continue;
-      const distance = Math.max(8, tile.center.distanceTo(camera.position));
-      for (let level = 0; level + 1 < tile.levels.length; ++level)
-        if (tile.levels[level + 1] > tile.levels[level])
-          this.jobs.push({ tile, level, urgency: distance * 2 ** level });
-    }
-    this.jobs.sort((a, b) => a.urgency - b.urgency);
+    const frustum = frustumOf(camera);
     this.next = 0;
+    this.jobs = tiles.flatMap((tile) => jobsOf(tile, frustum, camera)).sort((a, b) => a.urgency - b.urgency);
+  }
+
+  /** Goes on with the picture and one more tile. */
+  add(tile: Tile, camera: THREE.PerspectiveCamera): void {
+    const left = [...this.jobs.slice(this.next), ...jobsOf(tile, frustumOf(camera), camera)];
+    this.next = 0;
+    this.jobs = left.sort((a, b) => a.urgency - b.urgency);
   }
 
   /** Sets the draw ranges for one frame; all other tiles become invisible. Returns the number of points. */
@@ -54,10 +53,15 @@ export class LevelOfDetail {
     return points;
   }
 
-  /** All points of all tiles, for picking. */
-  static showAll(tiles: readonly Tile[]): void {
-    for (const tile of tiles) {
-      tile.points.geometry.setDrawRange(0, tile.levels[tile.levels.length - 1]);
+  /** The points around one object: coarser levels for a large one. All other tiles become invisible. */
+  static showAround(tiles: readonly Tile[], around: THREE.Box3): void {
+    const near = tiles.filter(({ points }) => points.geometry.boundingBox!.clone().applyMatrix4(points.matrixWorld).intersectsBox(around));
+    const pointsTo = (level: number) => near.reduce((sum, tile) => sum + tile.levels[level], 0);
+    let level = Math.max(1, ...near.map((tile) => tile.levels.length - 1));
+    while (level > 1 && pointsTo(level) > MOST_AROUND) --level;
+    for (const tile of tiles) tile.points.visible = false;
+    for (const tile of near) {
+      tile.points.geometry.setDrawRange(0, tile.levels[level]);
       tile.points.visible = true;
     }
   }
@@ -68,4 +72,18 @@ export class LevelOfDetail {
     if (milliseconds > SLOW_MS) this.budget = Math.max(LEAST_BUDGET, this.budget * 0.75);
     if (milliseconds < FAST_MS) this.budget = Math.min(LARGEST_BUDGET, this.budget * 1.2);
   }
+}
+
+function frustumOf(camera: THREE.PerspectiveCamera): THREE.Frustum {
+  return new THREE.Frustum().setFromProjectionMatrix(
+    new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse));
+}
+
+/** The levels of a tile that the camera sees. */
+function jobsOf(tile: Tile, frustum: THREE.Frustum, camera: THREE.PerspectiveCamera): Job[] {
+  if (!frustum.intersectsObject(tile.points)) return [];
+  const distance = Math.max(8, tile.center.distanceTo(camera.position)), jobs: Job[] = [];
+  for (let level = 0; level + 1 < tile.levels.length; ++level)
+    if (tile.levels[level + 1] > tile.levels[level]) jobs.push({ tile, level, urgency: distance * 2 ** level });
+  return jobs;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shaders: points coloured by their object or by a measure, points as numbers for picking, and the picture with shading.
+// Shaders: points as numbers of their objects with a measure, and the picture, which gives the numbers their colours: an
+// answer lights up, and a click finds its object, without drawing points anew.
 import * as THREE from 'three';
 
 /**
@@ -30,41 +31,103 @@ export interface PointUniforms {
   dimmed: THREE.IUniform<THREE.Color>;
 }
 
-/** What both vertex shaders share: the object's texel decides whether the point is seen; slices cut by height. */
-const COMMON = /* glsl */ `
-  precision highp float;
-  precision highp int;
+/** The texel of an object: its colour and state. */
+const TEXEL = /* glsl */ `
   uniform sampler2D palette;
   uniform float paletteWidth;
+  vec4 texelOf(uint number) {
+    int n = int(number), width = int(paletteWidth);
+    return texelFetch(palette, ivec2(n % width, n / width), 0);
+  }
+`;
+
+/** What the points have: the object's texel decides whether the point is seen; slices cut by height. */
+const POINT_INPUTS = /* glsl */ `
+  precision highp float;
+  precision highp int;
+  ${TEXEL}
   uniform float pixelsPerMetre, pixelRatio, spread;
   uniform vec2 slice, scans;
   uniform int only;
   in uint object;
   in float cloud;
   in vec4 measures;
-  vec4 texelOf(uint number) {
-    int n = int(number), width = int(paletteWidth);
-    return texelFetch(palette, ivec2(n % width, n / width), 0);
-  }
   bool isCut() {
     return measures.y < slice.x || measures.y > slice.y || cloud < scans.x || cloud > scans.y ||
            (only > 0 && int(object) != only);
   }
-  float sizeAt(float depth, bool isLit) {
-    float size = clamp(spread * pixelsPerMetre / max(depth, 0.1), 1.4, 6.5);
-    return (isLit ? size + 1.2 : size) * pixelRatio;
+  float sizeAt(float depth) {
+    return clamp(spread * pixelsPerMetre / max(depth, 0.1), 1.4, 6.5) * pixelRatio;
   }
 `;
 
+/** Writes the object's number + 1 and in alpha what the colour mode needs of the point, from 0 to 1. */
 const POINT_VERTEX = /* glsl */ `
-  ${COMMON}
+  ${POINT_INPUTS}
   uniform int mode;
   uniform float clouds, relief;
   uniform vec2 heightRange;
-  uniform vec3 dimmed;
-  out vec3 colour;
+  flat out vec4 mark;
+  const float PLAIN = 0.619;  // neither darker nor lighter, see the picture
+  void main() {
+    vec4 seen = modelViewMatrix * vec4(position, 1.0);
+    gl_Position = projectionMatrix * seen;
+    gl_PointSize = sizeAt(-seen.z);
+    uint number = object + 1u;
+    float measure = relief > 0.5 ? measures.x / 255.0 : PLAIN;
+    if (only == 0) {
+      if (mode == 2) measure = (measures.y - heightRange.x) / (heightRange.y - heightRange.x);
+      if (mode == 3) measure = measures.x / 255.0;
+      if (mode == 4) measure = clouds < 1.5 ? 0.5 : cloud / (clouds - 1.0);
+      if (mode == 5) measure = measures.z / 255.0;
+      if (mode == 7) measure = (measures.w - 1.0) / 7.0;
+    }
+    mark = vec4(uvec4(number & 255u, (number >> 8) & 255u, number >> 16, 0u)) / 255.0;
+    mark.a = clamp(measure, 0.0, 1.0);
+    if ((texelOf(object).a < 0.1 && only == 0) || isCut()) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  }
+`;
+
+const POINT_FRAGMENT = /* glsl */ `
+  precision highp float;
+  flat in vec4 mark;
+  out vec4 written;
+  void main() { written = mark; }
+`;
+
+/** The numbers and depths of a few pixels of the picture, as they are. */
+const PEEK_FRAGMENT = /* glsl */ `
+  precision highp float;
+  precision highp int;
+  uniform sampler2D marks, depths;
+  uniform vec2 corner;
+  out uvec4 written;
+  void main() {
+    ivec2 at = ivec2(corner) + ivec2(gl_FragCoord.xy), size = textureSize(marks, 0);
+    written = uvec4(0u);
+    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) return;
+    uvec3 bytes = uvec3(texelFetch(marks, at, 0).rgb * 255.0 + 0.5);
+    written = uvec4(bytes.r | (bytes.g << 8) | (bytes.b << 16), floatBitsToUint(texelFetch(depths, at, 0).x), 0u, 1u);
+  }
+`;
+
+/**
+ * Colours of the objects, and eye-dome lighting: what lies behind something nearer is dark along its edge, which shows
+ * shape without normals.
+ */
+const PICTURE_FRAGMENT = /* glsl */ `
+  precision highp float;
+  precision highp int;
+  ${TEXEL}
+  uniform sampler2D marks, depths;
+  uniform int mode;
+  uniform vec2 pixel, planes;
+  uniform vec3 background, dimmed;
+  uniform float strength;
+  uniform bool isFine;  // four more neighbours, when the picture rests
+  in vec2 place;
+  out vec4 written;
   vec3 ramp(float t) {  // dark blue, teal, green, yellow
-    t = clamp(t, 0.0, 1.0);
     vec3 a = vec3(0.27, 0.23, 0.52), b = vec3(0.17, 0.50, 0.56), c = vec3(0.33, 0.72, 0.43), d = vec3(0.98, 0.88, 0.25);
     return t < 0.33 ? mix(a, b, t / 0.33) : t < 0.66 ? mix(b, c, (t - 0.33) / 0.33) : mix(c, d, (t - 0.66) / 0.34);
   }
@@ -75,76 +138,27 @@ const POINT_VERTEX = /* glsl */ `
     if (label < 3.5) return vec3(0.25, 0.47, 0.85);
     return vec3(0.25, 0.60, 0.34);
   }
-  void main() {
-    vec4 texel = texelOf(object);
-    vec4 seen = modelViewMatrix * vec4(position, 1.0);
-    gl_Position = projectionMatrix * seen;
-    bool isLit = texel.a > 0.9;
-    gl_PointSize = sizeAt(-seen.z, isLit);
-    colour = texel.rgb * mix(1.0, 0.74 + 0.42 * measures.x / 255.0, relief);
-    if (mode == 2) colour = ramp((measures.y - heightRange.x) / (heightRange.y - heightRange.x));
-    if (mode == 3) colour = ramp(measures.x / 255.0);
-    if (mode == 4) colour = ramp(clouds < 1.5 ? 0.5 : cloud / (clouds - 1.0));
-    if (mode == 7) colour = ramp((measures.w - 1.0) / 7.0);
-    if (mode == 5) colour = labelColour(measures.z);
-    if (texel.a < 0.5 && only == 0) colour = mix(colour, dimmed, 0.82);
-    if ((texel.a < 0.1 && only == 0) || isCut()) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  vec3 colourOf(vec4 mark) {
+    uvec4 bytes = uvec4(mark * 255.0 + 0.5);
+    vec4 texel = texelOf((bytes.r | (bytes.g << 8) | (bytes.b << 16)) - 1u);
+    vec3 colour = texel.rgb * (0.74 + 0.42 * mark.a);
+    if (mode == 2 || mode == 3 || mode == 4 || mode == 7) colour = ramp(mark.a);
+    if (mode == 5) colour = labelColour(float(bytes.a));
+    return texel.a < 0.5 ? mix(colour, dimmed, 0.82) : colour;
   }
-`;
-
-const POINT_FRAGMENT = /* glsl */ `
-  precision mediump float;
-  in vec3 colour;
-  out vec4 written;
-  void main() { written = vec4(colour, 1.0); }
-`;
-
-const PICK_VERTEX = /* glsl */ `
-  ${COMMON}
-  flat out uint picked, vertex;
-  void main() {
-    vec4 texel = texelOf(object);
-    vec4 seen = modelViewMatrix * vec4(position, 1.0);
-    gl_Position = projectionMatrix * seen;
-    gl_PointSize = max(sizeAt(-seen.z, texel.a > 0.9), 3.0 * pixelRatio);
-    picked = object;
-    vertex = uint(gl_VertexID);
-    if (texel.a < 0.1 || isCut()) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  /** One over the distance, but for a factor. */
+  float nearnessAt(vec2 at) {
+    return (planes.y + planes.x) - (texture(depths, at).x * 2.0 - 1.0) * (planes.y - planes.x);
   }
-`;
-
-const PICK_FRAGMENT = /* glsl */ `
-  precision highp float;
-  precision highp int;
-  uniform int tile;
-  flat in uint picked, vertex;
-  out uvec4 written;
-  void main() { written = uvec4(picked, uint(tile) + 1u, vertex, 1u); }
-`;
-
-/** Eye-dome lighting: what stands before something farther away gets a dark edge, which shows shape without normals. */
-const PICTURE_FRAGMENT = /* glsl */ `
-  precision highp float;
-  uniform sampler2D colours, depths;
-  uniform vec2 pixel, planes;
-  uniform vec3 background;
-  uniform float strength;
-  uniform bool isFine;  // four more neighbours, when the picture rests
-  in vec2 place;
-  out vec4 written;
-  float distanceAt(vec2 at) {
-    float d = texture(depths, at).x * 2.0 - 1.0;
-    return log2(2.0 * planes.x * planes.y / (planes.y + planes.x - d * (planes.y - planes.x)));
-  }
-  /** Farther neighbours count up to a limit: the edge of a thing before the sky is no darker than another. */
+  /** About log2 of own distance over the neighbour's: nearer neighbours count, up to a limit. */
   float dropTo(float own, vec2 offset) {
-    return clamp(own - distanceAt(place + offset * pixel), 0.0, 0.06);
+    return clamp(1.443 * nearnessAt(place + offset * pixel) * own - 1.443, 0.0, 0.06);
   }
   void main() {
     float depth = texture(depths, place).x;
     gl_FragDepth = depth;
     if (depth >= 1.0) { written = vec4(background, 1.0); return; }
-    float own = distanceAt(place), drop = 0.0;
+    float own = 1.0 / nearnessAt(place), drop = 0.0;
     drop += dropTo(own, vec2(1.0, 0.0)) + dropTo(own, vec2(-1.0, 0.0));
     drop += dropTo(own, vec2(0.0, 1.0)) + dropTo(own, vec2(0.0, -1.0));
     if (isFine) {
@@ -153,7 +167,7 @@ const PICTURE_FRAGMENT = /* glsl */ `
     } else {
       drop *= 1.6;
     }
-    written = vec4(texture(colours, place).rgb * max(0.42, exp(-drop * strength)), 1.0);
+    written = vec4(colourOf(texture(marks, place)) * max(0.42, exp(-drop * strength)), 1.0);
   }
 `;
 
@@ -183,12 +197,16 @@ function shader(vertexShader: string, fragmentShader: string, uniforms: Record<s
 
 export const pointMaterial = (uniforms: PointUniforms) => shader(POINT_VERTEX, POINT_FRAGMENT, uniforms);
 
-export const pickMaterial = (uniforms: PointUniforms) =>
-  shader(PICK_VERTEX, PICK_FRAGMENT, { ...uniforms, tile: { value: 0 } });
+export function peekMaterial(): THREE.ShaderMaterial {
+  const material = shader(PICTURE_VERTEX, PEEK_FRAGMENT, { marks: { value: null }, depths: { value: null }, corner: { value: new THREE.Vector2() } });
+  material.depthTest = false;
+  return material;
+}
 
-export function pictureMaterial(): THREE.ShaderMaterial {
+/** Shares palette, mode and the colour of what is dimmed with the points. */
+export function pictureMaterial({ palette, paletteWidth, mode, dimmed }: PointUniforms): THREE.ShaderMaterial {
   const material = shader(PICTURE_VERTEX, PICTURE_FRAGMENT, {
-    colours: { value: null }, depths: { value: null }, pixel: { value: new THREE.Vector2() },
+    palette, paletteWidth, mode, dimmed, marks: { value: null }, depths: { value: null }, pixel: { value: new THREE.Vector2() },
     planes: { value: new THREE.Vector2() }, background: { value: new THREE.Color() }, strength: { value: 4.5 },
     isFine: { value: true },
   });

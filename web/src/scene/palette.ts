@@ -17,7 +17,7 @@ export function rgbOf(hex: string): Rgb {
 
 /** As CSS writes it. */
 export function cssOf(colour: Rgb): string {
-  return `rgb(${colour.join(' ')})`;
+  return `rgb(${colour.join(', ')})`;
 }
 
 /** The colours of Okabe and Ito, which stay apart without red or green cones, for the most frequent classes. */
@@ -80,6 +80,11 @@ export class Palette {
     return rgbOf(this.model.classes.get(iri)?.color ?? '');
   }
 
+  /** The colour of an object in the scheme that is shown, without tints. */
+  colourOf(object: MapObject): Rgb {
+    return this.scheme === 'certainty' ? certaintyColour(object.confidence) : this.classColour(object.class.iri);
+  }
+
   isHidden(object: MapObject): boolean {
     return this.hiddenClasses.has(object.class.iri);
   }
@@ -88,7 +93,7 @@ export class Palette {
     const other = this.lit || this.tints ? DIMMED : PLAIN;
     this.set(0, NO_OBJECT, this.hiddenClasses.has('') ? HIDDEN : other);
     for (const object of this.model.objects) {
-      const colour = this.scheme === 'certainty' ? certaintyColour(object.confidence) : this.classColour(object.class.iri);
+      const colour = this.colourOf(object);
       const tint = this.tints?.get(object.number), isLit = this.tints ? tint !== undefined : this.lit?.has(object.number);
       const state = this.isHidden(object) ? HIDDEN : isLit ? LIT : other;
       this.set(object.number + 1, tint ?? colour, state);

@@ -1,82 +1,76 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which point is under the pointer: the points around it are drawn as numbers into a few pixels.
+// Which point is under the pointer: the picture holds the numbers of objects, so a few of its pixels are read.
 import * as THREE from 'three';
 import type { MapModel, MapObject } from '../data/model';
-import { pointAt } from './cloud_tiles';
-import { LevelOfDetail } from './level_of_detail';
-import { pickMaterial } from './materials';
+import { pointNear } from './cloud_tiles';
+import { peekMaterial } from './materials';
 import type { Viewer } from './viewer';
 
 const SIZE = 9;
+/** A stored point lies this near to the place that is seen [m]: points are drawn as squares. */
+const REACH_M = 0.6;
 
 export interface Pick {
   object: MapObject | undefined;
-  /** In the scene [m]. */
+  /** Of the stored point, in the scene [m]. */
   place: THREE.Vector3;
 }
+
+interface Hit { object: number; place: THREE.Vector3 }
 
 export class Picking {
   private readonly target = new THREE.WebGLRenderTarget(SIZE, SIZE, {
     format: THREE.RGBAIntegerFormat, type: THREE.UnsignedIntType, internalFormat: 'RGBA32UI',
-    minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter, depthBuffer: true,
+    minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter, depthBuffer: false,
   });
-  private readonly material: THREE.ShaderMaterial;
-  private readonly camera = new THREE.PerspectiveCamera();
+  private readonly material = peekMaterial();
+  private readonly scene = new THREE.Scene();
+  private readonly camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 1);
 
   constructor(private readonly viewer: Viewer, private readonly model: MapModel) {
-    this.material = pickMaterial(viewer.uniforms);
+    const plane = new THREE.Mesh(new THREE.PlaneGeometry(2, 2), this.material);
+    plane.frustumCulled = false;
+    this.scene.add(plane);
   }
 
   /** `x` and `y` in CSS pixels from the canvas's corner. */
   at(x: number, y: number): Pick | undefined {
-    const nearest = this.nearestOf(this.drawn(x, y));
-    if (!nearest) return undefined;
-    const tile = this.viewer.tiles.find((candidate) => candidate.number === nearest.tile);
-    if (!tile) return undefined;
-    return { object: this.model.objects[nearest.object - 1], place: pointAt(tile, nearest.vertex) };
+    const hit = this.hitAt(x, y);
+    if (!hit) return undefined;
+    return { object: this.model.objects[hit.object - 1], place: this.storedPoint(hit) ?? hit.place };
   }
 
-  private drawn(x: number, y: number): Uint32Array {
-    const { renderer, cloud, tiles, host, uniforms } = this.viewer;
-    const ratio = uniforms.pixelRatio.value, half = (SIZE - 1) / 2;
-    this.camera.copy(this.viewer.camera);
-    this.camera.setViewOffset(host.clientWidth * ratio, host.clientHeight * ratio, Math.floor(x * ratio) - half,
-                              Math.floor(y * ratio) - half, SIZE, SIZE);
-    this.camera.updateMatrixWorld();
-    LevelOfDetail.showAll(tiles);
-    const restore: (() => void)[] = [];
-    for (const tile of tiles) {
-      const forPicture = tile.points.onBeforeRender;
-      restore.push(() => {
-        tile.points.material = this.viewer.material;
-        tile.points.onBeforeRender = forPicture;
-      });
-      tile.points.material = this.material;
-      tile.points.onBeforeRender = () => {
-        this.material.uniforms.tile.value = tile.number;
-        uniforms.spread.value = tile.spread;
-        this.material.uniformsNeedUpdate = true;
-      };
+  /** What is seen nearest to the middle of the pixels around a place. */
+  private hitAt(x: number, y: number): Hit | undefined {
+    const { picture, uniforms, camera } = this.viewer, ratio = uniforms.pixelRatio.value, half = (SIZE - 1) / 2;
+    const corner = [Math.floor(x * ratio) - half, picture.height - 1 - Math.floor(y * ratio) - half];
+    const pixels = this.pixelsFrom(corner), depths = new Float32Array(pixels.buffer);
+    let best = Infinity, at = -1;
+    for (let i = 0; i < SIZE * SIZE; ++i) {
+      if (pixels[4 * i] === 0) continue;
+      const distance = ((i % SIZE) - half) ** 2 + (Math.floor(i / SIZE) - half) ** 2;
+      if (distance < best) [best, at] = [distance, i];
     }
+    if (at < 0) return undefined;
+    const column = corner[0] + (at % SIZE) + 0.5, row = corner[1] + Math.floor(at / SIZE) + 0.5;
+    const place = new THREE.Vector3((2 * column) / picture.width - 1, (2 * row) / picture.height - 1, 2 * depths[4 * at + 1] - 1);
+    return { object: pixels[4 * at] - 1, place: place.unproject(camera) };
+  }
+
+  private pixelsFrom([column, row]: number[]): Uint32Array {
+    const { renderer, picture } = this.viewer, { uniforms } = this.material, pixels = new Uint32Array(4 * SIZE * SIZE);
+    uniforms.marks.value = picture.texture;
+    uniforms.depths.value = picture.depthTexture;
+    (uniforms.corner.value as THREE.Vector2).set(column, row);
     renderer.setRenderTarget(this.target);
-    renderer.clear();
-    renderer.render(cloud, this.camera);
-    for (const call of restore) call();
-    const pixels = new Uint32Array(4 * SIZE * SIZE), gl = renderer.getContext() as WebGL2RenderingContext;
-    gl.readPixels(0, 0, SIZE, SIZE, gl.RGBA_INTEGER, gl.UNSIGNED_INT, pixels);
+    renderer.render(this.scene, this.camera);
+    renderer.readRenderTargetPixels(this.target, 0, 0, SIZE, SIZE, pixels);
     renderer.setRenderTarget(null);
     return pixels;
   }
 
-  /** The hit nearest to the middle. */
-  private nearestOf(pixels: Uint32Array): { object: number; tile: number; vertex: number } | undefined {
-    const half = (SIZE - 1) / 2;
-    let best = Infinity, at = -1;
-    for (let i = 0; i < SIZE * SIZE; ++i) {
-      if (pixels[4 * i + 1] === 0) continue;
-      const distance = ((i % SIZE) - half) ** 2 + (Math.floor(i / SIZE) - half) ** 2;
-      if (distance < best) [best, at] = [distance, i];
-    }
-    return at < 0 ? undefined : { object: pixels[4 * at], tile: pixels[4 * at + 1] - 1, vertex: pixels[4 * at + 2] };
+  private storedPoint({ object, place }: Hit): THREE.Vector3 | undefined {
+    const near = this.viewer.tiles.map((tile) => pointNear(tile, object, place, REACH_M)).filter((found) => found !== undefined);
+    return near.sort((a, b) => a.distanceTo(place) - b.distanceTo(place))[0];
   }
 }

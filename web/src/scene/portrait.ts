@@ -20,6 +20,7 @@ export class Portrait {
     canvas.width = WIDTH;
     canvas.height = HEIGHT;
     const context = canvas.getContext('2d'), pixels = this.pixelsOf(object);
+    this.colour(pixels, object);
     if (!context) return;
     const image = context.createImageData(WIDTH, HEIGHT);
     for (let row = 0; row < HEIGHT; ++row)   // the first row of a texture is the lowest
@@ -30,7 +31,7 @@ export class Portrait {
   private pixelsOf(object: MapObject): Uint8Array {
     const { renderer, cloud, tiles, uniforms } = this.viewer, pixels = new Uint8Array(4 * WIDTH * HEIGHT);
     this.aim(object);
-    LevelOfDetail.showAll(tiles);
+    LevelOfDetail.showAround(tiles, this.boundsOf(object));
     const before = { only: uniforms.only.value, perMetre: uniforms.pixelsPerMetre.value };
     uniforms.only.value = object.number + 1;
     uniforms.pixelsPerMetre.value = 80;
@@ -43,6 +44,21 @@ export class Portrait {
     uniforms.pixelsPerMetre.value = before.perMetre;
     renderer.setRenderTarget(null);
     return pixels;
+  }
+
+  /** Marks of points become the colour of the object, shaded by intensity; the rest is clear. */
+  private colour(pixels: Uint8Array, object: MapObject): void {
+    const colour = this.viewer.palette.colourOf(object);
+    for (let i = 0; i < pixels.length; i += 4) {
+      const isPoint = pixels[i] + pixels[i + 1] + pixels[i + 2] > 0, shade = 0.74 + (0.42 * pixels[i + 3]) / 255;
+      for (const axis of [0, 1, 2]) pixels[i + axis] = isPoint ? Math.min(255, colour[axis] * shade) : 0;
+      pixels[i + 3] = isPoint ? 255 : 0;
+    }
+  }
+
+  private boundsOf({ box }: MapObject): THREE.Box3 {
+    const half = 0.5 * Math.hypot(box.length, box.width), center = new THREE.Vector3(box.x, box.y, box.z).sub(this.viewer.origin);
+    return new THREE.Box3().setFromCenterAndSize(center, new THREE.Vector3(2 * half, 2 * half, box.height));
   }
 
   /** From the side on which the object is longer, a little from above. */

@@ -4,6 +4,7 @@ import * as THREE from 'three';
 import { capitalised, type Box, type MapModel, type MapObject } from '../data/model';
 import type { Store } from '../state';
 import { BoxLines } from './boxes';
+import type { GroundHeights } from './ground';
 import { COLOUR_MODES } from './materials';
 import type { Viewer } from './viewer';
 
@@ -17,8 +18,11 @@ export class Stage {
   private readonly selection: BoxLines;
   private readonly selectionBehind: BoxLines;
   private readonly sensorPath: THREE.Group;
+  /** What the points are drawn by: when it changes, colours alone do not do. */
+  private drawn: unknown[] = [];
 
-  constructor(readonly viewer: Viewer, private readonly model: MapModel, private readonly store: Store) {
+  constructor(readonly viewer: Viewer, private readonly model: MapModel, private readonly store: Store,
+              private readonly ground: GroundHeights) {
     this.objectBoxes = new BoxLines(viewer.origin, 0.8);
     this.selection = new BoxLines(viewer.origin, 1);
     this.selectionBehind = new BoxLines(viewer.origin, 0.35, true);
@@ -52,9 +56,9 @@ export class Stage {
     this.look(center, direction, Math.max(13, 2.8 * Math.hypot(box.length, box.width, box.height)));
   }
 
-  /** Moves near a place of the map. */
-  goToPlace(place: number[]): void {
-    this.goTo({ x: place[0], y: place[1], z: place[2], length: 4, width: 4, height: 2, yaw: 0 });
+  /** Moves near a place of the map, on the ground where its height is not given. */
+  goToPlace([x, y, z]: number[]): void {
+    this.goTo({ x, y, z: z ?? this.ground.at(x, y), length: 4, width: 4, height: 2, yaw: 0 });
   }
 
   look(target: THREE.Vector3, direction: THREE.Vector3, distance: number): void {
@@ -98,13 +102,16 @@ export class Stage {
     const { lit, tints, hiddenClasses, colourMode, slice, scans } = this.store.state, { palette, uniforms } = this.viewer;
     const scheme = colourMode === 'certainty' || colourMode === 'distinct' ? colourMode : 'class';
     palette.show({ scheme, lit: lit && lit.objects, hiddenClasses, tints });
-    uniforms.mode.value = COLOUR_MODES.indexOf(tints ? 'class' : colourMode);
+    const mode = COLOUR_MODES.indexOf(tints ? 'class' : colourMode), drawn = [mode, slice, scans, hiddenClasses];
+    uniforms.mode.value = mode;
     const { lowestHeight, heightStep } = this.model.values;
     const byteOf = (height: number) => (height - lowestHeight) / heightStep;
     uniforms.slice.value.set(slice ? byteOf(slice[0]) : 0, slice && slice[1] < 29 ? byteOf(slice[1]) : 255);
     uniforms.scans.value.set(scans ? scans[0] : 0, scans ? scans[1] : 65535);
     uniforms.heightRange.value.set(byteOf(0), byteOf(12));
-    this.viewer.refresh();
+    if (drawn.some((value, i) => value !== this.drawn[i])) this.viewer.refresh();
+    else this.viewer.recolour();
+    this.drawn = drawn;
   }
 
   private showBoxes(): void {

@@ -9,6 +9,8 @@ import { pictureMaterial, pointMaterial, pointUniforms } from './materials';
 import { Palette } from './palette';
 
 const NEAR_M = 0.3, FAR_M = 3000, FIELD_OF_VIEW_DEG = 50;
+/** While points are added, the picture is shown this often: the time between goes to points. */
+const SHOWN_EVERY_MS = 120;
 
 export class Viewer {
   readonly renderer: THREE.WebGLRenderer;
@@ -29,16 +31,20 @@ export class Viewer {
   onMove: (() => void)[] = [];
   /** Since the page was opened [ms]; 0 before. */
   firstPicture = 0;
-  private readonly picture: THREE.WebGLRenderTarget;
-  private readonly shading = pictureMaterial();
+  /** Numbers of objects by pixel, with depth. */
+  readonly picture: THREE.WebGLRenderTarget;
+  private readonly shading = pictureMaterial(this.uniforms);
   private readonly shadingScene = new THREE.Scene();
   private readonly shadingCamera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 1);
+  /** While a button is down no points are added: a click finds the graphics free. */
+  private isHeld = false;
   private isStale = true;
-  private overlayIsStale = true;
+  private isShadingStale = true;
   private lastFrame = 0;
   private lastPoints = 0;
-  /** The last frame was drawn in haste: one more follows with full shading. */
-  private wasMoving = false;
+  /** False after a picture in haste: one with full shading follows. */
+  private isShownFine = false;
+  private lastShown = 0;
   private fence: WebGLSync | null = null;
 
   constructor(readonly host: HTMLElement, model: MapModel) {
@@ -70,6 +76,8 @@ export class Viewer {
     this.controls.maxDistance = 1500;
     this.controls.screenSpacePanning = false;
     this.controls.addEventListener('change', () => this.moved());
+    canvas.addEventListener('pointerdown', () => { this.isHeld = true; });
+    for (const end of ['pointerup', 'pointercancel']) window.addEventListener(end, () => { this.isHeld = false; });
     new ResizeObserver(() => this.resize()).observe(host);
     this.resize();
     this.renderer.setAnimationLoop((time) => this.frame(time));
@@ -82,23 +90,28 @@ export class Viewer {
       this.material.uniformsNeedUpdate = true;
     };
     this.cloud.add(tile.points);
-    this.refresh();
+    if (!this.isStale) this.detail.add(tile, this.camera);
   }
 
-  /** Draws the points anew: colours or the camera have changed. */
+  /** Draws the points anew: the camera has changed, or which points are shown. */
   refresh(): void {
     this.isStale = true;
   }
 
+  /** Shows the same points in other colours. */
+  recolour(): void {
+    this.isShadingStale = true;
+  }
+
   /** Draws the lines anew over the same points. */
   refreshOverlay(): void {
-    this.overlayIsStale = true;
+    this.isShadingStale = true;
   }
 
   setBackground(background: string, dimmed: string): void {
     (this.shading.uniforms.background.value as THREE.Color).set(background);
     this.uniforms.dimmed.value.set(dimmed);
-    this.refresh();
+    this.recolour();
   }
 
   moved(): void {
@@ -108,7 +121,7 @@ export class Viewer {
 
   /** True when every visible point is drawn. */
   get isComplete(): boolean {
-    return !this.isStale && !this.wasMoving && this.detail.isDone && this.fence === null;
+    return !this.isStale && !this.isShadingStale && this.isShownFine && this.detail.isDone && this.fence === null;
   }
 
   private resize(): void {
@@ -124,28 +137,40 @@ export class Viewer {
     this.moved();
   }
 
+  /** Changed colours and lines are shown before further points: who waits for them sees them first. */
   private frame(time: number): void {
     if (!this.isFrameFinished(time)) return;
-    const isMoving = this.isStale;
-    if (this.isStale) {
-      this.isStale = false;
-      this.camera.updateMatrixWorld();
-      this.detail.restart(this.tiles, this.camera);
-      this.renderer.setRenderTarget(this.picture);
-      this.renderer.clear();
-      this.wasMoving = true;
-    } else if (this.detail.isDone && !this.overlayIsStale && !this.wasMoving) {
-      return;
-    } else {
-      this.wasMoving = false;
-    }
-    this.overlayIsStale = false;
-    this.lastPoints = this.detail.prepareFrame(this.tiles);
+    const isNew = this.isStale, drawsPoints = isNew || (!this.detail.isDone && !this.isShadingStale);
+    if (!drawsPoints && !this.isShadingStale && this.isShownFine) return;
+    if (this.isHeld && !isNew && !this.isShadingStale) return;
+    if (isNew) this.beginPicture();
+    this.lastPoints = drawsPoints ? this.drawPoints() : 0;
     this.lastFrame = time;
+    if (isNew || !drawsPoints || this.detail.isDone || time - this.lastShown > SHOWN_EVERY_MS) this.show(time, isNew);
+    this.setFence();
+  }
+
+  private beginPicture(): void {
+    this.isStale = false;
+    this.camera.updateMatrixWorld();
+    this.detail.restart(this.tiles, this.camera);
+    this.renderer.setRenderTarget(this.picture);
+    this.renderer.clear();
+  }
+
+  /** Adds points to the picture; returns how many. */
+  private drawPoints(): number {
+    const points = this.detail.prepareFrame(this.tiles);
     this.renderer.setRenderTarget(this.picture);
     this.renderer.render(this.cloud, this.camera);
-    this.present(!isMoving);
-    this.setFence();
+    return points;
+  }
+
+  private show(time: number, isNew: boolean): void {
+    this.isShownFine = !isNew && this.detail.isDone;
+    this.isShadingStale = false;
+    this.lastShown = time;
+    this.present(this.isShownFine);
     if (this.lastPoints > 0) this.firstPicture ||= performance.now();
     for (const call of this.onFrame) call();
   }
@@ -174,7 +199,7 @@ export class Viewer {
   private present(isFine: boolean): void {
     const uniforms = this.shading.uniforms;
     uniforms.isFine.value = isFine;
-    uniforms.colours.value = this.picture.texture;
+    uniforms.marks.value = this.picture.texture;
     uniforms.depths.value = this.picture.depthTexture;
     (uniforms.pixel.value as THREE.Vector2).set(1 / this.picture.width, 1 / this.picture.height);
     (uniforms.planes.value as THREE.Vector2).set(NEAR_M, FAR_M);
