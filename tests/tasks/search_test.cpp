@@ -114,6 +114,13 @@ TEST(SearchTour, EachStopIsTheBestOfAllCellsForItsWalk) {
       total_m += walk_m[stop.cell];
       so_far += stop.probability;
       EXPECT_NEAR(stop.total_m, total_m, 1e-9);
+      ASSERT_FALSE(stop.way.empty());
+      EXPECT_EQ(stop.way.front(), at);
+      EXPECT_EQ(stop.way.back(), stop.cell);
+      double along_m = 0;
+      for (std::size_t i = 1; i < stop.way.size(); ++i)
+        along_m += (frame.centreOf(stop.way[i]) - frame.centreOf(stop.way[i - 1])).norm();
+      EXPECT_NEAR(along_m, stop.walk_m, 1e-9);
       EXPECT_NEAR(stop.so_far, so_far, 1e-12);
       EXPECT_LE(total_m, params.budget_m);
       for (std::uint32_t other = 0; other < frame.size(); ++other)
