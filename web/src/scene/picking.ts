@@ -47,7 +47,7 @@ export class Picking {
     const pixels = this.pixelsFrom(corner), depths = new Float32Array(pixels.buffer);
     let best = Infinity, at = -1;
     for (let i = 0; i < SIZE * SIZE; ++i) {
-      if (pixels[4 * i] === 0) continue;
+      if (pixels[4 * i] === 0 || this.isHidden(pixels[4 * i] - 1)) continue;
       const distance = ((i % SIZE) - half) ** 2 + (Math.floor(i / SIZE) - half) ** 2;
       if (distance < best) [best, at] = [distance, i];
     }
@@ -55,6 +55,11 @@ export class Picking {
     const column = corner[0] + (at % SIZE) + 0.5, row = corner[1] + Math.floor(at / SIZE) + 0.5;
     const place = new THREE.Vector3((2 * column) / picture.width - 1, (2 * row) / picture.height - 1, 2 * depths[4 * at + 1] - 1);
     return { object: pixels[4 * at] - 1, place: place.unproject(camera) };
+  }
+
+  /** The picture may still show what was hidden a moment ago. */
+  private isHidden(number: number): boolean {
+    return this.viewer.palette.isHiddenAt(this.model.objects[number - 1]);
   }
 
   private pixelsFrom([column, row]: number[]): Uint32Array {
