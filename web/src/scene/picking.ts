@@ -4,6 +4,7 @@ import * as THREE from 'three';
 import type { MapModel, MapObject } from '../data/model';
 import { pointNear } from './cloud_tiles';
 import { peekMaterial } from './materials';
+import type { Store } from '../state';
 import type { Viewer } from './viewer';
 
 const SIZE = 9;
@@ -27,7 +28,7 @@ export class Picking {
   private readonly scene = new THREE.Scene();
   private readonly camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 1);
 
-  constructor(private readonly viewer: Viewer, private readonly model: MapModel) {
+  constructor(private readonly viewer: Viewer, private readonly model: MapModel, private readonly store: Store) {
     const plane = new THREE.Mesh(new THREE.PlaneGeometry(2, 2), this.material);
     plane.frustumCulled = false;
     this.scene.add(plane);
@@ -47,7 +48,7 @@ export class Picking {
     const pixels = this.pixelsFrom(corner), depths = new Float32Array(pixels.buffer);
     let best = Infinity, at = -1;
     for (let i = 0; i < SIZE * SIZE; ++i) {
-      if (pixels[4 * i] === 0) continue;
+      if (pixels[4 * i] === 0 || this.isHidden(pixels[4 * i] - 1)) continue;
       const distance = ((i % SIZE) - half) ** 2 + (Math.floor(i / SIZE) - half) ** 2;
       if (distance < best) [best, at] = [distance, i];
     }
@@ -55,6 +56,12 @@ export class Picking {
     const column = corner[0] + (at % SIZE) + 0.5, row = corner[1] + Math.floor(at / SIZE) + 0.5;
     const place = new THREE.Vector3((2 * column) / picture.width - 1, (2 * row) / picture.height - 1, 2 * depths[4 * at + 1] - 1);
     return { object: pixels[4 * at] - 1, place: place.unproject(camera) };
+  }
+
+  /** True of what was hidden after the picture was drawn. `object`: number + 1. */
+  private isHidden(object: number): boolean {
+    const { palette } = this.viewer, known = this.model.objects[object - 1];
+    return known ? palette.isHidden(known) : this.store.state.hiddenClasses.has('');
   }
 
   private pixelsFrom([column, row]: number[]): Uint32Array {
