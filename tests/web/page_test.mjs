@@ -168,6 +168,10 @@ test('sliders cut heights and scans', async () => {
 test('the card shows the points of its object alone', async () => {
   await askNamed(open.page, 'trees.rq');
   await open.page.click(firstRow);
+  await open.page.waitForFunction(() => {
+    const canvas = document.querySelector('.portrait'), { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    return data.some((value) => value > 0);
+  });
   const picture = await open.page.$eval('.portrait', (canvas) => {
     const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height), colours = new Map();
     for (let i = 0; i < data.length; i += 4)

@@ -110,7 +110,7 @@ async function open(app: HTMLElement): Promise<void> {
   store.on(['place'], (state) => { if (state.place) store.set('selected', null); });
   new Pins(viewer, store);
   new MarkPaths(viewer, store, ground);
-  listenToClicks(viewer, new Picking(viewer, model), lines, store, new Measure(viewer, store));
+  listenToClicks(viewer, new Picking(viewer, model, store), lines, store, new Measure(viewer, store));
   const restored = address.restore();
   if (!restored.hasCamera) stage.home();
   app.removeAttribute('aria-busy');

@@ -89,11 +89,6 @@ export class Palette {
     return this.hiddenClasses.has(object.class.iri);
   }
 
-  /** The same of what is seen at a point; undefined: the point is of no object. */
-  isHiddenAt(object: MapObject | undefined): boolean {
-    return object ? this.isHidden(object) : this.hiddenClasses.has('');
-  }
-
   private refresh(): void {
     const other = this.lit || this.tints ? DIMMED : PLAIN;
     this.set(0, NO_OBJECT, this.hiddenClasses.has('') ? HIDDEN : other);

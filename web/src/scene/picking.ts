@@ -4,6 +4,7 @@ import * as THREE from 'three';
 import type { MapModel, MapObject } from '../data/model';
 import { pointNear } from './cloud_tiles';
 import { peekMaterial } from './materials';
+import type { Store } from '../state';
 import type { Viewer } from './viewer';
 
 const SIZE = 9;
@@ -27,7 +28,7 @@ export class Picking {
   private readonly scene = new THREE.Scene();
   private readonly camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 1);
 
-  constructor(private readonly viewer: Viewer, private readonly model: MapModel) {
+  constructor(private readonly viewer: Viewer, private readonly model: MapModel, private readonly store: Store) {
     const plane = new THREE.Mesh(new THREE.PlaneGeometry(2, 2), this.material);
     plane.frustumCulled = false;
     this.scene.add(plane);
@@ -57,9 +58,10 @@ export class Picking {
     return { object: pixels[4 * at] - 1, place: place.unproject(camera) };
   }
 
-  /** The picture may still show what was hidden a moment ago. */
-  private isHidden(number: number): boolean {
-    return this.viewer.palette.isHiddenAt(this.model.objects[number - 1]);
+  /** True of what was hidden after the picture was drawn. `object`: number + 1. */
+  private isHidden(object: number): boolean {
+    const { palette } = this.viewer, known = this.model.objects[object - 1];
+    return known ? palette.isHidden(known) : this.store.state.hiddenClasses.has('');
   }
 
   private pixelsFrom([column, row]: number[]): Uint32Array {
