@@ -72,8 +72,8 @@ TEST(ThresholdNoise, IsToldInTheUnitOfTheAttribute) {
   const auto warnings = warningsOf(noisyIn("test: top >= 3 m"));
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].severity, Severity::Warning);
-  EXPECT_THAT(warnings[0].message, ::testing::MatchesRegex("pole: 'top of seed >= 3 m': [0-9]+ of 41 things that come "
-                                                           "to it lie within the noise of 0\\.[0-9]+ m"));
+  EXPECT_THAT(warnings[0].message, ::testing::MatchesRegex("pole: 'top of seed >= 3 m': [0-9]+ of 41 things that it "
+                                                           "tests lie within the noise of 0\\.[0-9]+ m"));
 }
 
 }  // namespace
