@@ -5,10 +5,10 @@
 #include <map>
 
 #include "api/answer_data.hpp"
-#include "base/nearest_name.hpp"
-#include "cluxel/error.hpp"
+#include "rdf/iri.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/query_engine.hpp"
+#include "tasks/ways/route.hpp"
 
 namespace cluxel {
 
@@ -43,7 +43,7 @@ Extent extentOf(const Answer::Row& row) {
 
 std::string labelOf(const rdf::OntologyView& ontology, const std::string& class_iri) {
   const rdf::OntologyClass* found = ontology.find(class_iri);
-  return found == nullptr ? class_iri.substr(class_iri.find_last_of("#/") + 1) : found->label();
+  return found == nullptr ? rdf::localName(class_iri) : found->label();
 }
 
 std::map<std::string, std::vector<ObjectPart>> partsByObject(const rdf::QuadReader& reader,
@@ -85,25 +85,13 @@ std::vector<Object> objectsOf(const rdf::QuadReader& reader, const rdf::Ontology
 
 }  // namespace
 
-std::string classIriOf(const rdf::OntologyView& ontology, std::string_view written) {
-  std::string_view local = written;
-  if (local.starts_with("clx:")) local.remove_prefix(4);
-  for (const std::string& iri : {std::string(written), rdf::vocabulary::clx(local)})
-    if (ontology.find(iri) != nullptr) return iri;
-  std::vector<std::string> known;
-  for (const std::string& iri : ontology.classNames()) known.push_back(iri.substr(iri.find_last_of("#/") + 1));
-  const std::string hint = suggestion(local, known);
-  throw Error(ErrorKind::NotFound,
-              "the map's ontology has no class '" + std::string(written) + "'" + (hint.empty() ? "" : "; " + hint));
-}
-
 std::vector<Object> objectsOf(const rdf::QuadReader& reader) {
   return objectsOf(reader, ontologyViewOf(reader));
 }
 
 std::vector<Object> objectsOf(const rdf::QuadReader& reader, std::string_view class_name) {
   const rdf::OntologyView ontology = ontologyViewOf(reader);
-  const std::string class_iri = classIriOf(ontology, class_name);
+  const std::string class_iri = tasks::classNamed(ontology, std::string(class_name));
   std::vector<Object> objects = objectsOf(reader, ontology);
   std::erase_if(objects, [&](const Object& object) { return !ontology.isA(object.class_iri, class_iri); });
   return objects;

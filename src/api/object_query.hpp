@@ -16,7 +16,5 @@ namespace cluxel {
 std::vector<Object> objectsOf(const rdf::QuadReader& reader);
 /// Those of a class or its subclasses. Throws Error (NotFound) for a class that the ontology does not know.
 std::vector<Object> objectsOf(const rdf::QuadReader& reader, std::string_view class_name);
-/// The IRI of a class written "Tree", "clx:Tree" or in full. Throws Error (NotFound) as above.
-std::string classIriOf(const rdf::OntologyView& ontology, std::string_view written);
 
 }  // namespace cluxel

@@ -13,6 +13,7 @@
 #include "mapping/map_state.hpp"
 #include "mapping/object_store.hpp"
 #include "mapping/statements/statement_facts.hpp"
+#include "rdf/iri.hpp"
 
 namespace cluxel::mapping {
 
@@ -82,8 +83,7 @@ MapReader::~MapReader() = default;
 MapReader::MapReader(MapReader&&) noexcept = default;
 
 std::string localName(std::string_view iri) {
-  const std::size_t cut = iri.find_last_of("#/");
-  return std::string(cut == std::string_view::npos ? iri : iri.substr(cut + 1));
+  return rdf::localName(iri);
 }
 
 MapSummary MapReader::summary() const {

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/zstd_packing.hpp"
+#include "base/packing/zstd_packing.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/map_tables.hpp"
 

@@ -13,7 +13,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "base/zstd_packing.hpp"
+#include "base/packing/zstd_packing.hpp"
 #include "cluxel/error.hpp"
 #include "perception/tile.hpp"
 

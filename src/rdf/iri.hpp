@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which characters an IRI may hold, and whether its path may need resolution.
+// The characters, the path and the local name of IRIs.
 #pragma once
 
 #include <algorithm>
+#include <string>
 #include <string_view>
 
 namespace cluxel::rdf {
@@ -21,6 +22,11 @@ constexpr bool hasIriCharactersOnly(std::string_view iri) {
 inline bool mayHoldDotSegments(std::string_view iri) {
   return iri.find("/./") != std::string_view::npos || iri.find("/../") != std::string_view::npos ||
          iri.ends_with("/.") || iri.ends_with("/..");
+}
+
+/// "Tree" of "https://w3id.org/cluxel/ontology#Tree": what follows the last '#' or '/'.
+inline std::string localName(std::string_view iri) {
+  return std::string(iri.substr(iri.find_last_of("#/") + 1));
 }
 
 }  // namespace cluxel::rdf

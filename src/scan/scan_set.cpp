@@ -291,10 +291,10 @@ class ScanGatherer {
     if (stated.is_geographic)
       sink_->note(path.string() + ": warning: its coordinates are degrees (" + stated.crs +
                   "); a map needs metres: project the file first");
-    else if (stated.unit && *stated.unit != params_->frame.unit)
-      sink_->note(path.string() + ": warning: the unit of its coordinate system is " +
-                  std::string(nameOf(*stated.unit)) + ", but its coordinates are read as " +
-                  std::string(nameOf(params_->frame.unit)) + "; " + params_->remedies.unit);
+    else if (const auto unit = unitOf(stated); unit && *unit != params_->frame.unit)
+      sink_->note(path.string() + ": warning: the unit of its coordinate system is " + std::string(nameOf(*unit)) +
+                  ", but its coordinates are read as " + std::string(nameOf(params_->frame.unit)) + "; " +
+                  params_->remedies.unit);
   }
 
   const ScanSetParams* params_;

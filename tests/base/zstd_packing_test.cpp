@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What was packed comes back bit for bit; what is damaged is refused before much memory is asked for.
-#include "base/zstd_packing.hpp"
+#include "base/packing/zstd_packing.hpp"
 
 #include <gtest/gtest.h>
 

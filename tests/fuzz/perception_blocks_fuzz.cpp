@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "base/zstd_packing.hpp"
+#include "base/packing/zstd_packing.hpp"
 #include "edited_bytes.hpp"
 #include "perception/crf/labelling.hpp"
 #include "perception/pipeline.hpp"

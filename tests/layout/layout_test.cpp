@@ -152,7 +152,8 @@ TEST(Layout, ThePythonModuleSeesTheInstalledInterfaceOnly) {
 }
 
 /// The files that may include a heavy package: names that begin with `name`, and at most `max_files` of them. Redland's
-/// tables of C callbacks need two modules (docs/decisions.md). PROJ places maps (tasks) and measures (sparql).
+/// tables of C callbacks need two modules (docs/decisions.md). PROJ places maps (tasks) and describes coordinate
+/// systems (base).
 struct Wall {
   std::string name;
   std::size_t max_files;

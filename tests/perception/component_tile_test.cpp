@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/zstd_packing.hpp"
+#include "base/packing/zstd_packing.hpp"
 #include "cluxel/error.hpp"
 
 #include <limits>

@@ -123,6 +123,15 @@ TEST(LasCrs, IsReadFromGeoTiffKeys) {
   EXPECT_THAT(crsFromGeoKeys(geoKeys(32767, 9001)).fault, HasSubstr("no EPSG code"));
 }
 
+TEST(LasCrs, HasTheUnitOfItsCodeWhenTheFileStatesNone) {
+  const LasCrs feet = crsFromGeoKeys(geoKeys(2263, 0));
+  EXPECT_EQ(feet.unit, std::nullopt);
+  EXPECT_EQ(unitOf(feet), LengthUnit::UsSurveyFoot);
+  EXPECT_EQ(unitOf(crsFromGeoKeys(geoKeys(25832, 0))), LengthUnit::Metre);
+  EXPECT_EQ(unitOf(crsFromGeoKeys(geoKeys(25832, 9002))), LengthUnit::Foot) << "what the file states comes first";
+  EXPECT_EQ(unitOf(crsFromGeoKeys(geoKeys(60000, 0))), std::nullopt) << "PROJ knows no such code";
+}
+
 TEST(LasCrs, IsReadFromWkt) {
   const std::string geographic =
       R"(GEOGCS["NAD83",DATUM["d",SPHEROID["s",6378137,298.2]],UNIT["degree",0.0174532925],AUTHORITY["EPSG","4269"]])";
@@ -167,6 +176,9 @@ TEST(LasCrs, BecomesTheSystemOfTheSetAndAForeignUnitIsNoted) {
   EXPECT_EQ(set.crs(), "EPSG:2249");
   EXPECT_EQ(summarize(set).crs, "EPSG:2249");
   EXPECT_THAT(notes.notes, Contains(HasSubstr("the unit of its coordinate system is us-ft, but")));
+  NoteKeeper by_code;
+  ScanSet::open({folder.write("c.las", lasWithKeys(geoKeys(2263, 0)))}, {}, by_code);
+  EXPECT_THAT(by_code.notes, Contains(HasSubstr("the unit of its coordinate system is us-ft, but")));
   EXPECT_EQ(ScanSet::open({file}, {.poses = {}, .frame = {LengthUnit::UsSurveyFoot}}, notes).crs(), "")
       << "converted coordinates are not those of the system";
   const auto other = folder.write("b.las", lasWithKeys(geoKeys(25832, 9001)));

@@ -7,9 +7,9 @@
 #include <array>
 #include <random>
 
+#include "base/proj_reference_system.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/geometry/geometry.hpp"
-#include "sparql/geometry/proj_reference_system.hpp"
 #include "sparql/support/store_fixture.hpp"
 
 namespace cluxel::test {

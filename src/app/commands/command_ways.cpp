@@ -214,7 +214,7 @@ void addWays(CLI::App& app, Session& session) {
   route_command->add_option("to", options->to, "X,Y in metres of the map frame, or an object")->required();
   addWayOptions(*route_command, *options);
   route_command->add_option("--near", options->request.near, "a class: prefer routes near objects of this class");
-  route_command->add_option("--alternatives", options->alternatives, "how many routes to look for [1]")
+  route_command->add_option("--alternatives", options->alternatives, "number of routes to look for [1]")
       ->check(CLI::Range(1, 9));
   route_command->add_option("--format", options->format, "geojson")->check(CLI::IsMember({"geojson"}));
   route_command->add_flag("--local", options->local,

@@ -2,7 +2,7 @@
 // Coordinates are differences between points in the order in which they were measured: neighbours are near each other.
 #include "mapping/build/packed_points.hpp"
 
-#include "base/zstd_packing.hpp"
+#include "base/packing/zstd_packing.hpp"
 #include "cluxel/error.hpp"
 
 namespace cluxel::mapping {

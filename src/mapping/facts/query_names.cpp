@@ -7,6 +7,7 @@
 
 #include "base/nearest_name.hpp"
 #include "base/yaml/fault_list.hpp"
+#include "rdf/iri.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/syntax/parser.hpp"
 
@@ -34,7 +35,6 @@ class QueryNameCheck {
   }
 
  private:
-  static std::string localOf(const std::string& iri) { return iri.substr(iri.find_last_of("#/") + 1); }
   static bool isOwn(const ast::PatternTerm& term) {
     return !term.isVariable() && term.term().kind == TermKind::Iri &&
            term.term().text.starts_with(rdf::vocabulary::kClx);
@@ -44,9 +44,10 @@ class QueryNameCheck {
     if (!isOwn(term) || std::find(known.begin(), known.end(), term.term().text) != known.end()) return;
     std::vector<std::string> names;
     for (const std::string& iri : known)
-      if (iri.starts_with(rdf::vocabulary::kClx)) names.push_back(localOf(iri));
-    const std::string hint = suggestion(localOf(term.term().text), names);
-    faults_.push_back({term.at, "the ontology knows no " + std::string(what) + " clx:" + localOf(term.term().text) +
+      if (iri.starts_with(rdf::vocabulary::kClx)) names.push_back(rdf::localName(iri));
+    const std::string hint = suggestion(rdf::localName(term.term().text), names);
+    faults_.push_back({term.at, "the ontology knows no " + std::string(what) +
+                                    " clx:" + rdf::localName(term.term().text) +
                                     (hint.empty() || names.size() > 400 ? "" : "; " + hint)});
   }
 

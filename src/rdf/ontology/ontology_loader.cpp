@@ -8,6 +8,7 @@
 #include "base/ascii.hpp"
 #include "base/nearest_name.hpp"
 #include "base/shown_line.hpp"
+#include "rdf/iri.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
 
@@ -22,10 +23,6 @@ struct Statement {
   Quad quad;
   std::size_t source = 0;
 };
-
-std::string localName(std::string_view iri) {
-  return std::string(iri.substr(iri.find_last_of("#/") + 1));
-}
 
 bool isNameByte(char c) {
   return isAsciiAlphanumeric(c) || c == '_' || c == '-';

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "rdf/iri.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
 
@@ -158,7 +159,7 @@ std::vector<OntologyProperty> readProperties(const GraphReader& graph) {
 std::string OntologyClass::label(std::string_view language) const {
   for (const std::string_view tag : {language, std::string_view("en"), std::string_view("")})
     if (const auto found = labels.find(std::string(tag)); found != labels.end()) return found->second;
-  return iri.substr(iri.find_last_of("#/") + 1);
+  return localName(iri);
 }
 
 const OntologyClass* OntologyView::find(std::string_view iri) const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/ascii.hpp"
+#include "rdf/iri.hpp"
 
 namespace cluxel::rules {
 
@@ -16,15 +17,10 @@ std::string labelList(const std::vector<scan::PrimitiveLabel>& labels) {
   return text;
 }
 
-std::string localName(const std::string& iri) {
-  const std::size_t end = iri.find_last_of("#/");
-  return end == std::string::npos ? iri : iri.substr(end + 1);
-}
-
 std::string describeTarget(const Target& target) {
   if (target.kind == Target::Kind::Name) return target.name;
   if (target.kind == Target::Kind::Labels) return withArticle(labelList(target.labels));
-  return withArticle(localName(target.object_class));
+  return withArticle(rdf::localName(target.object_class));
 }
 
 /// "2.5" for 2.500000.
@@ -171,7 +167,7 @@ std::string describe(const Condition& condition) {
         return labelList(condition.labels) + " share of " + condition.of + " " + describeThreshold(condition);
       return condition.of + " is labelled " + labelList(condition.labels);
     case Kind::Class:
-      return condition.of + " belongs to " + withArticle(localName(condition.class_iri));
+      return condition.of + " belongs to " + withArticle(rdf::localName(condition.class_iri));
     case Kind::Ask: {
       const std::size_t body = condition.query.rfind("PREFIX ");
       const std::size_t start = body == std::string::npos ? 0 : condition.query.find('\n', body) + 1;

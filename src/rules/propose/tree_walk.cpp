@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "rdf/iri.hpp"
 #include "rules/propose/condition_eval.hpp"
 #include "rules/propose/fragment_search.hpp"
 
@@ -15,8 +16,7 @@ std::string describeFind(const FindNode& find) {
   std::string text = "finds " + find.name + ":";
   for (std::size_t i = 0; i < find.labels.size(); ++i)
     text += (i == 0 ? " " : " or ") + std::string(nameOf(find.labels[i]));
-  if (!find.object_class.empty())
-    text += " of " + withArticle(find.object_class.substr(find.object_class.find_last_of("#/") + 1));
+  if (!find.object_class.empty()) text += " of " + withArticle(rdf::localName(find.object_class));
   for (const Condition& condition : find.where) text += ", " + describe(condition);
   return text;
 }

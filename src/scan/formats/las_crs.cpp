@@ -10,6 +10,7 @@
 #include <fstream>
 #include <map>
 
+#include "base/proj_reference_system.hpp"
 #include "scan/formats/little_endian.hpp"
 
 namespace cluxel::scan {
@@ -96,7 +97,7 @@ std::string unquoted(std::string_view text) {
   return plain;
 }
 
-/// The unit of one metre length `metres_per_unit`, when it is a known one.
+/// The unit of `metres_per_unit` metres, when it is a known one.
 std::optional<LengthUnit> unitOf(double metres_per_unit) {
   for (const LengthUnit unit :
        {LengthUnit::UsSurveyFoot, LengthUnit::Foot, LengthUnit::Metre, LengthUnit::Centimetre, LengthUnit::Millimetre})
@@ -121,6 +122,13 @@ std::optional<LengthUnit> unitOfNode(std::string_view node) {
 }
 
 }  // namespace
+
+std::optional<LengthUnit> unitOf(const LasCrs& stated) {
+  if (stated.unit || stated.crs.empty()) return stated.unit;
+  const ReferenceSystem system = referenceSystem(stated.crs);
+  if (system.kind != ReferenceSystem::Kind::Projected) return std::nullopt;
+  return unitOf(system.metres_per_unit);
+}
 
 LasCrs crsFromGeoKeys(std::string_view record) {
   constexpr std::uint16_t kModelType = 1024, kGeographic = 2048, kProjected = 3072, kLinearUnit = 3076;

@@ -14,10 +14,13 @@ namespace cluxel::scan {
 
 struct LasCrs {
   std::string crs;                 ///< "EPSG:25832", else the WKT; empty when it cannot be read
-  std::optional<LengthUnit> unit;  ///< of the horizontal axes, when the file names it
+  std::optional<LengthUnit> unit;  ///< of the horizontal axes, when the file states it
   bool is_geographic = false;      ///< the axes are degrees
   std::string fault;               ///< why `crs` is empty
 };
+
+/// The unit that the file states, else that of its coordinate system as PROJ knows it; absent when neither is known.
+std::optional<LengthUnit> unitOf(const LasCrs& stated);
 
 /// The statement of a file; absent when it makes none, or is no LAS file (its reader says so). Reads only the records
 /// before and after the points.

@@ -16,6 +16,7 @@
 #include "serve/resources/map_resources.hpp"
 #include "serve/resources/object_json.hpp"
 #include "tasks/explanation.hpp"
+#include "tasks/ways/route.hpp"
 
 namespace cluxel::serve {
 
@@ -89,7 +90,7 @@ Box boxOf(const Parameters& parameters) {
 std::vector<const Object*> selected(const ObjectTable& table, const Parameters& parameters) {
   const Box box = boxOf(parameters);
   const auto class_name = valueOf(parameters, "class");
-  const std::string class_iri = class_name ? classIriOf(table.ontology, *class_name) : std::string();
+  const std::string class_iri = class_name ? tasks::classNamed(table.ontology, *class_name) : std::string();
   std::vector<const Object*> objects;
   for (const Object& object : table.objects)
     if (box.meets(object) && (!class_name || table.ontology.isA(object.class_iri, class_iri)))

@@ -10,7 +10,7 @@
 
 #include "base/counted_progress.hpp"
 #include "base/file_bytes.hpp"
-#include "base/gzip_bytes.hpp"
+#include "base/packing/gzip_bytes.hpp"
 #include "base/parallel.hpp"
 #include "cluxel/error.hpp"
 #include "scan/formats/scan_writer.hpp"

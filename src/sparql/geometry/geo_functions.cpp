@@ -2,10 +2,10 @@
 // GeoSPARQL functions on WKT literals in the map's metric frame, or in one named system.
 #include <cmath>
 
+#include "base/proj_reference_system.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/functions/function_bodies.hpp"
 #include "sparql/geometry/geometry.hpp"
-#include "sparql/geometry/proj_reference_system.hpp"
 
 namespace cluxel::sparql {
 namespace {

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/proj_reference_system.hpp"
 #include "sparql/geometry/geometry_parts.hpp"
-#include "sparql/geometry/proj_reference_system.hpp"
 
 namespace cluxel::sparql {
 namespace {

@@ -11,9 +11,9 @@
 #include <charconv>
 #include <limits>
 
+#include "base/proj_reference_system.hpp"
 #include "rdf/wkt_reader.hpp"
 #include "sparql/geometry/geometry_parts.hpp"
-#include "sparql/geometry/proj_reference_system.hpp"
 #include "sparql/geometry/search_frame.hpp"
 #include "sparql/values/value.hpp"
 

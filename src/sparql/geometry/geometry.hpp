@@ -11,12 +11,13 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/proj_reference_system.hpp"
+
 namespace cluxel::sparql {
 
 struct Geometry;
 struct FunctionContext;
 struct Value;
-struct ReferenceSystem;
 class SearchFrame;
 
 /// Coordinates as written: metres of the map frame, unless the geometry names a system.

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "base/proj_reference_system.hpp"
 #include "sparql/geometry/geometry.hpp"
-#include "sparql/geometry/proj_reference_system.hpp"
 
 namespace cluxel::sparql {
 

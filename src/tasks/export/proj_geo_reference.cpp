@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "base/proj_reference_system.hpp"
 #include "cluxel/error.hpp"
 
 namespace cluxel::tasks {
@@ -32,14 +33,9 @@ ProjObject horizontalPart(PJ_CONTEXT* context, ProjObject crs) {
   return crs;
 }
 
-bool isProjectedInMetres(PJ_CONTEXT* context, const PJ* crs) {
-  if (proj_get_type(crs) != PJ_TYPE_PROJECTED_CRS) return false;
-  const ProjObject axes(proj_crs_get_coordinate_system(context, crs));
-  double metres_per_unit = 0;
-  return axes &&
-         proj_cs_get_axis_info(context, axes.get(), 0, nullptr, nullptr, nullptr, &metres_per_unit, nullptr, nullptr,
-                               nullptr) == 1 &&
-         metres_per_unit == 1;
+bool isProjectedInMetres(const std::string& crs) {
+  const ReferenceSystem system = referenceSystem(crs);
+  return system.kind == ReferenceSystem::Kind::Projected && system.metres_per_unit == 1;
 }
 
 }  // namespace
@@ -59,7 +55,7 @@ GeoReference::GeoReference(const std::string& crs, const Eigen::Vector3d& map_or
   const std::string name = crs.starts_with("+proj") ? crs + " +type=crs" : crs;
   const ProjObject source = horizontalPart(context, ProjObject(proj_create(context, name.c_str())));
   if (!source) refuse(crs, "is unknown to PROJ");
-  if (!isProjectedInMetres(context, source.get())) refuse(crs, "is not a projected one in metres");
+  if (!isProjectedInMetres(name)) refuse(crs, "is not a projected one in metres");
   const ProjObject target(proj_create(context, "OGC:CRS84"));
   const ProjObject direct(target ? proj_create_crs_to_crs_from_pj(context, source.get(), target.get(), nullptr, nullptr)
                                  : nullptr);

@@ -2,7 +2,7 @@
 // Blocks as base64 of gzip.
 #include "tasks/view/page_blocks.hpp"
 
-#include "base/gzip_bytes.hpp"
+#include "base/packing/gzip_bytes.hpp"
 
 namespace cluxel::tasks {
 

@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "base/mixed_bits.hpp"
-#include "base/zstd_packing.hpp"
+#include "base/packing/zstd_packing.hpp"
 
 namespace cluxel::tasks {
 

@@ -20,14 +20,14 @@ export function statementForm(object: MapObject, model: MapModel, service: Servi
   } }, 'Copy');
   const saveIt = service && el('button', { type: 'button', class: 'plain', onclick: () => {
     service.post('sparql', 'application/sparql-update', code.textContent ?? '').then(
-      () => { said.textContent = 'Saved in the graph of operators.'; },
+      () => { said.textContent = 'Saved as an operator statement.'; },
       (fault: Error) => { said.textContent = fault.message; });
   } }, 'Save in the map');
   show();
   return el('details', { class: 'correction' }, el('summary', {}, 'Wrong class, or something to say?'),
             el('label', { for: 'right-class', class: 'label' }, 'It is a'), kind,
             el('label', { for: 'remark', class: 'label' }, 'Remark'), text,
-            el('p', { class: 'note' }, 'Run this with cluxel update MAP -e: it goes into the graph of operators. Questions see it; the rules do not.'),
+            el('p', { class: 'note' }, 'Run this with cluxel update MAP -e. It becomes an operator statement about the object: queries see it, and the rules decide as before.'),
             code, el('div', { class: 'row' }, copy, saveIt), said,
             service && el('p', { class: 'note' }, 'To save, the service needs its token: it stands in the panel Rules.'));
 }

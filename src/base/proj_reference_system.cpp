@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Asks PROJ, which knows the IRIs and URNs of OGC and EPSG.
-#include "sparql/geometry/proj_reference_system.hpp"
+// Asks PROJ, which knows the IRIs, URNs and codes of OGC and EPSG.
+#include "base/proj_reference_system.hpp"
 
 #include <proj.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <string_view>
 
-namespace cluxel::sparql {
+namespace cluxel {
 namespace {
 
 struct DropContext {
@@ -68,14 +68,14 @@ ReferenceSystem described(PJ_CONTEXT* context, const PJ* crs) {
 
 }  // namespace
 
-ReferenceSystem referenceSystem(const std::string& iri) {
-  std::string_view name = iri;
-  if (name.starts_with('<')) name.remove_prefix(1);
-  if (name.ends_with('>')) name.remove_suffix(1);
+ReferenceSystem referenceSystem(const std::string& name) {
+  std::string_view bare = name;
+  if (bare.starts_with('<')) bare.remove_prefix(1);
+  if (bare.ends_with('>')) bare.remove_suffix(1);
   const std::unique_ptr<PJ_CONTEXT, DropContext> context(proj_context_create());
   proj_log_level(context.get(), PJ_LOG_NONE);  // the library never prints
-  const Object crs = horizontal(context.get(), Object(proj_create(context.get(), std::string(name).c_str())));
+  const Object crs = horizontal(context.get(), Object(proj_create(context.get(), std::string(bare).c_str())));
   return crs ? described(context.get(), crs.get()) : ReferenceSystem{};
 }
 
-}  // namespace cluxel::sparql
+}  // namespace cluxel

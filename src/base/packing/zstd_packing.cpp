@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The loops over planes and differences, and the calls of zstd and xxHash.
-#include "base/zstd_packing.hpp"
+#include "base/packing/zstd_packing.hpp"
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>

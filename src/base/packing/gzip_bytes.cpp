@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // gzip by zlib, in one call.
-#include "base/gzip_bytes.hpp"
+#include "base/packing/gzip_bytes.hpp"
 
 #include <zlib.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a measurement must know about the coordinate reference system that a WKT literal names.
+// What is known of a coordinate reference system: its kind, its unit and its ellipsoid.
 #pragma once
 
 #include <string>
 
-namespace cluxel::sparql {
+namespace cluxel {
 
 struct ReferenceSystem {
   enum class Kind {
@@ -20,7 +20,8 @@ struct ReferenceSystem {
   double inverse_flattening = 0;  ///< 0: a sphere
 };
 
-/// Looks a system up by its IRI, which may stand in angle brackets. Cost: some milliseconds.
-ReferenceSystem referenceSystem(const std::string& iri);
+/// Looks a system up by its name: an IRI, which may stand in angle brackets, "EPSG:25832", WKT or a PROJ string. Cost:
+/// some milliseconds.
+ReferenceSystem referenceSystem(const std::string& name);
 
-}  // namespace cluxel::sparql
+}  // namespace cluxel
