@@ -19,7 +19,7 @@ export class Portrait {
   drawInto(canvas: HTMLCanvasElement, object: MapObject): void {
     canvas.width = WIDTH;
     canvas.height = HEIGHT;
-    const context = canvas.getContext('2d'), pixels = this.pixelsOf(object);
+    const context = canvas.getContext('2d', { willReadFrequently: true }), pixels = this.pixelsOf(object);
     this.colour(pixels, object);
     if (!context) return;
     const image = context.createImageData(WIDTH, HEIGHT);
