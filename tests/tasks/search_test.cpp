@@ -6,7 +6,11 @@
 #include <numeric>
 #include <random>
 
+#include "mapping/ways/ways.hpp"
+#include "rdf/ontology/ontology.hpp"
+#include "rdf/vocabulary.hpp"
 #include "tasks/campus_map_fixture.hpp"
+#include "tasks/search/search_field.hpp"
 #include "tasks/search/search_tour.hpp"
 #include "tasks/ways/way_search.hpp"
 
@@ -143,6 +147,35 @@ TEST(WaysOfACampus, ASearchListsWhatIsKnownAndWhereToLook) {
   EXPECT_LE(answer.stops.back().so_far, 1 + 1e-9);
   request.class_name = "StreetLam";
   EXPECT_THROW(searchFor(map, request), Error);
+}
+
+/// Cells on the line of a way, found by another way than the program's: distances of all cells to its segments.
+TEST(SearchField, FindsAWayWhereverItRuns) {
+  const MapReader& map = CampusMap::shared().map();
+  const TerrainGrid terrain = terrainOf(map);
+  const rdf::OntologyView ontology = rdf::ontologyViewOf(ontologySources(map.inputs().ontology));
+  const auto marked = cellsWith(map, terrain, ontology, rdf::vocabulary::clx("Way"));
+  const WayGraph ways = waysOf(map.stages().points(), map.stages().ground());
+  ASSERT_FALSE(ways.ways.empty());
+  std::size_t on_line = 0;
+  for (std::uint32_t cell = 0; cell < terrain.frame.size(); ++cell) {
+    double nearest = 1e300;
+    for (const Way& way : ways.ways)
+      for (std::size_t i = 1; i < way.line.size(); ++i) {
+        const Eigen::Vector2d a = way.line[i - 1].head<2>(), b = way.line[i].head<2>(),
+                              p = terrain.frame.centreOf(cell);
+        const double along = std::clamp((p - a).dot(b - a) / std::max(1e-12, (b - a).squaredNorm()), 0.0, 1.0);
+        nearest = std::min(nearest, (a + along * (b - a) - p).norm());
+      }
+    if (nearest < 0.2 * terrain.frame.cell_m) {
+      ++on_line;
+      EXPECT_EQ(marked[cell], 1) << "the line runs through the middle of cell " << cell;
+    }
+    if (nearest > 0.8 * terrain.frame.cell_m) {
+      EXPECT_EQ(marked[cell], 0);
+    }
+  }
+  EXPECT_GT(on_line, 20U);
 }
 
 }  // namespace

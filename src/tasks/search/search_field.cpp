@@ -7,6 +7,7 @@
 
 #include "cluxel/error.hpp"
 #include "rdf/vocabulary.hpp"
+#include "rdf/wkt_reader.hpp"
 #include "sparql/query_engine.hpp"
 #include "tasks/ways/passable_grid.hpp"
 
@@ -28,6 +29,25 @@ double numberIn(const sparql::ResultTable& table, std::size_t row, std::size_t c
   return term == nullptr ? std::nan("") : std::strtod(term->text.c_str(), nullptr);
 }
 
+std::string linesQuery(const std::string& class_iri) {
+  return "PREFIX geo: <" + std::string(rdf::vocabulary::kGeo) + "> SELECT ?wkt { ?way a <" + class_iri +
+         "> ; geo:hasGeometry/geo:asWKT ?wkt }";
+}
+
+/// Marks the cells along the lines of a geometry: a way is near wherever it runs.
+void markLines(const GridFrame& frame, std::string_view wkt, std::vector<std::uint8_t>& marked) {
+  const auto text = rdf::splitWkt(wkt);
+  const auto shape = text ? rdf::readWkt(text->shape) : std::nullopt;
+  if (!shape) return;
+  for (const rdf::WktPath& line : shape->lines)
+    for (std::size_t i = 1; i < line.size(); ++i) {
+      const Eigen::Vector2d from(line[i - 1].first, line[i - 1].second), to(line[i].first, line[i].second);
+      const double steps = std::max(1.0, std::ceil(2 * (to - from).norm() / frame.cell_m));
+      for (double step = 0; step <= steps; ++step)
+        if (const auto cell = frame.cellAt(from + step / steps * (to - from))) marked[*cell] = 1;
+    }
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> cellsWith(const mapping::MapReader& map, const TerrainGrid& terrain,
@@ -43,6 +63,9 @@ std::vector<std::uint8_t> cellsWith(const mapping::MapReader& map, const Terrain
   const sparql::ResultTable places = sparql::evaluateQuery(map.quads(), query).table;
   for (std::size_t row = 0; row < places.row_count; ++row)
     if (const auto cell = terrain.frame.cellAt({numberIn(places, row, 0), numberIn(places, row, 1)})) marked[*cell] = 1;
+  const sparql::ResultTable lines = sparql::evaluateQuery(map.quads(), linesQuery(class_iri)).table;
+  for (std::size_t row = 0; row < lines.row_count; ++row)
+    if (const Term* wkt = lines.at(row, 0)) markLines(terrain.frame, wkt->text, marked);
   return marked;
 }
 
