@@ -40,8 +40,8 @@ TEST_F(Program, WhatIsNoMapIsExitCodeFiveInEveryCommandThatNeedsOne) {
   writeFile(text, std::string(20'000, 'x'));
   for (const std::string& arguments : std::vector<std::string>{
            "info " + text, "query " + text + " -e 'ASK {}'", "update " + text + " -e 'CLEAR ALL'",
-           "explain " + text + " 1234", "state " + text + " --list", "rules try " + text + " outdoor.rules.yaml",
-           "rules diff " + text + " outdoor.rules.yaml outdoor.rules.yaml",
+           "explain " + text + " 1234", "state " + text + " --list", "rules check --map " + text,
+           "rules try " + text + " outdoor.rules.yaml", "rules diff " + text + " outdoor.rules.yaml outdoor.rules.yaml",
            "evaluate " + text + " --truth " + campus() + "/truth", "export " + text + " --canonical",
            "view " + text + " -o " + fresh(), "compact " + text, "query " + campus() + " -e 'ASK {}'",
            "compact " + campus(), "doctor " + campus()}) {
