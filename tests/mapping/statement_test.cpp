@@ -15,6 +15,7 @@
 #include "mapping/change/map_merge.hpp"
 #include "mapping/change/map_things.hpp"
 #include "mapping/change/statement_change.hpp"
+#include "mapping/facts/object_geometry.hpp"
 #include "mapping/small_campus.hpp"
 #include "rdf/map_iris.hpp"
 
@@ -263,6 +264,25 @@ TEST_F(Statements, UseTermsThatTheOntologyDeclares) {
     ++declared;
   }
   EXPECT_GT(declared, 60U);
+}
+
+TEST_F(Statements, ThatARegionHoldsNothingSayWhereTheRulesDisagree) {
+  build({{0, 0}, {1, 0}});
+  std::vector<Eigen::Vector2d> corners;
+  std::vector<Cloud> clouds;
+  {
+    const MapReader reader(map());
+    const UprightBox box = geometryOf(reader.scene().cluxels, cluxelsOf(thingIn(reader))).box;
+    const double half = 0.5 * box.size.head<2>().norm() + 0.5;
+    for (const auto& [x, y] : {std::pair(-half, -half), {half, -half}, {half, half}, {-half, half}})
+      corners.emplace_back(box.center.x() + x, box.center.y() + y);
+    clouds = reader.clouds();
+  }
+  const ChangeReport report = state({{StatementKind::IgnoreRegion, "", {}, {}, regionAnchor(clouds, corners)}});
+  ASSERT_EQ(report.statements.size(), 1U);
+  EXPECT_EQ(report.statements[0].effect, StatementEffect::Applied);
+  EXPECT_TRUE(report.statements[0].contradicts);
+  EXPECT_GE(report.objects.gone.size(), 1U);
 }
 
 TEST_F(Statements, AreNotMadeAndWithdrawnAtOnce) {

@@ -151,6 +151,7 @@ class Application {
       if (!class_statements_[i].empty() || !liesIn(polygon, objects_[i])) continue;
       ignored_[i] = true;
       outcome.effect = StatementEffect::Applied;
+      outcome.contradicts = true;
     }
   }
 
@@ -243,7 +244,9 @@ std::string summaryOf(const std::vector<StatementOutcome>& outcomes) {
     against += outcome.contradicts ? 1 : 0;
   }
   std::string text = "operator statements: " + std::to_string(counts[0]) + " applied";
-  if (counts[1] > 0) text += ", " + std::to_string(counts[1]) + " dormant (nothing of the map owns their points)";
+  if (counts[1] > 0)
+    text += ", " + std::to_string(counts[1]) +
+            " dormant (their points belong to no object, or the ontology lacks their class)";
   if (counts[2] > 0) text += ", " + std::to_string(counts[2]) + " overruled by others about the same object";
   if (against > 0) text += "; " + std::to_string(against) + " against what the rules decide";
   return text;
