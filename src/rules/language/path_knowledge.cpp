@@ -36,6 +36,26 @@ AttributeInterval naturalRange(perception::Attribute attribute) {
   return range;
 }
 
+/// Whether no share of points, which lies between 0 and 1, passes the comparison.
+bool isImpossibleShare(Comparison comparison, double value, double upper) {
+  switch (comparison) {
+    case Comparison::Less:
+      return value <= 0;
+    case Comparison::LessEqual:
+      return value < 0;
+    case Comparison::Greater:
+      return value >= 1;
+    case Comparison::GreaterEqual:
+      return value > 1;
+    case Comparison::Equal:
+      return value < 0 || value > 1;
+    case Comparison::Between:
+      return upper < 0 || value > 1;
+    default:
+      return false;
+  }
+}
+
 }  // namespace
 
 bool AttributeInterval::contains(double value) const {
@@ -114,8 +134,14 @@ std::optional<std::string> PathKnowledge::learnJoined(const std::vector<Conditio
 }
 
 std::optional<std::string> PathKnowledge::learnLabel(const Condition& condition, bool truth) {
+  if (condition.value) {  // a share says nothing about each label
+    const Comparison comparison = truth ? condition.comparison : negated(condition.comparison);
+    const double value = condition.value->value;
+    if (!isImpossibleShare(comparison, value, condition.upper ? condition.upper->value : value)) return std::nullopt;
+    return (truth ? "'" : "not '") + describe(condition) + "' cannot be: a share lies between 0 and 1";
+  }
   const auto known = labels_.find(condition.of);
-  if (known == labels_.end() || condition.value) return std::nullopt;  // a share says nothing about each label
+  if (known == labels_.end()) return std::nullopt;
   unsigned mask = 0;
   for (scan::PrimitiveLabel label : condition.labels) mask |= 1U << static_cast<unsigned>(label);
   known->second &= truth ? mask : ~mask;
