@@ -72,6 +72,12 @@ class PlaceRules : public testing::Test {
     addNumber(way, "width", width_m), addNumber(way, "length", length_m);
     addNumber(way, "lowerBeside", lower), addNumber(way, "higherBeside", higher);
   }
+  void addBarrier(const std::string& name, double porosity, int rays, double width_m) {
+    const Term barrier = thing(name);
+    addType(barrier, "Barrier");
+    addNumber(barrier, "porosity", porosity), addNumber(barrier, "width", width_m);
+    add(barrier, vocabulary::clx("rayCount"), Term::literal(std::to_string(rays), vocabulary::xsd("integer")));
+  }
   /// The superclass as the closure of the ontology would give it.
   void derive() {
     add(Term::iri(vocabulary::clx("ParkingRow")), vocabulary::rdfs("subClassOf"), Term::iri(vocabulary::clx("Place")));
@@ -120,6 +126,20 @@ TEST_F(PlaceRules, AWayIsARoadASidewalkOrAPath) {
   for (const auto& [name, kind] : kinds)
     for (const char* other : {"Road", "Sidewalk", "Path"})
       EXPECT_EQ(countOf("<https://example.org/" + name + "> a clx:" + other), other == kind ? 1U : 0U) << name << other;
+}
+
+TEST_F(PlaceRules, ABarrierThatRaysGoThroughIsAFenceAndASolidThickOneAWall) {
+  addBarrier("pickets", 0.3, 200, 0.2);
+  addBarrier("masonry", 0.01, 400, 0.3);
+  addBarrier("hedge", 0.3, 200, 1.2);
+  addBarrier("boards of one side", 0, 400, 0.1);
+  addBarrier("seen by few rays", 0.3, 19, 0.2);
+  addBarrier("part of both", 0.06, 400, 0.3);
+  derive();
+  EXPECT_EQ(countOf("?b a clx:Fence"), 1);
+  EXPECT_EQ(countOf("<https://example.org/pickets> a clx:Fence"), 1);
+  EXPECT_EQ(countOf("?b a clx:Wall"), 1);
+  EXPECT_EQ(countOf("<https://example.org/masonry> a clx:Wall"), 1);
 }
 
 TEST_F(PlaceRules, ThreeWaysThatAreNoBaysMakeACrossing) {

@@ -112,6 +112,30 @@ TEST(Ways, AKerbPartsASidewalkFromItsRoad) {
   EXPECT_NE(walk.region, road.region) << "a kerb is a step";
 }
 
+TEST(Ways, AStepAtTheEdgeOfARoadIsAKerb) {
+  MadeGround made;
+  const auto smooth = [](double x, double y) { return 0.02 * x + (y < 1 ? 0.0 : 0.12); };
+  const auto height = [&](double x, double y) { return smooth(x, y) + (y > -7 && y < 3.5 ? 0 : grassAt(x, y)); };
+  for (int y = -1; y <= 0; ++y)
+    for (int x = -1; x <= 0; ++x) made.addTile({x, y}, height, smooth);
+  const WayGraph graph = made.ways();
+  ASSERT_EQ(graph.kerbs.size(), 1U);
+  EXPECT_NEAR(graph.kerbs[0].length_m, 32, 2);
+  EXPECT_NEAR(graph.kerbs[0].rise_m, 0.12, 0.02);
+  for (const Eigen::Vector3d& p : graph.kerbs[0].line) EXPECT_NEAR(p.y(), 1, 0.25);
+}
+
+TEST(Ways, ABankBesideARoadIsNoKerb) {
+  MadeGround made;
+  const auto smooth = [](double, double y) { return std::clamp(y - 1, 0.0, 4.0) * 0.25; };
+  const auto height = [&](double x, double y) { return smooth(x, y) + (y > -7 && y < 1 ? 0 : grassAt(x, y)); };
+  for (int y = -1; y <= 0; ++y)
+    for (int x = -1; x <= 0; ++x) made.addTile({x, y}, height, smooth);
+  const WayGraph graph = made.ways();
+  EXPECT_EQ(graph.ways.size(), 1U);
+  EXPECT_TRUE(graph.kerbs.empty());
+}
+
 TEST(Ways, GrassAloneMakesNoWayButARegion) {
   const WayGraph graph = madeOf([](double, double) { return false; }).ways();
   EXPECT_TRUE(graph.ways.empty());

@@ -103,5 +103,39 @@ TEST(RayBundle, TakesRaysWithOwnOriginsTogetherWhereTheyStartTogether) {
   forEachRayBundle(scan, [](const RayBundle&) { FAIL() << "a scan without pose has no origin"; });
 }
 
+/// Rays from the origin to a plane x = 5 m with bars 4 cm wide every 16 cm, and to a wall at x = 9 m where there is
+/// none.
+RayBundle raysAtBars(bool is_solid) {
+  std::vector<Eigen::Vector3f> ends;
+  for (int row = -20; row <= 20; ++row)
+    for (int column = -200; column <= 200; ++column) {
+      const double y = column * 0.02, z = row * 0.05;  // at x = 5
+      const bool is_bar = is_solid || ((column % 8) + 8) % 8 < 2;
+      const double x = is_bar ? 5 : 9;
+      ends.emplace_back(static_cast<float>(x), static_cast<float>(y * x / 5), static_cast<float>(z * x / 5));
+    }
+  return {Eigen::Vector3d(0, 0, 0), ends};
+}
+
+RayCounts countsOn(const RayBundle& rays) {
+  RayCounts sum;
+  for (int i = -15; i <= 15; ++i) {
+    const RayCounts counts = rays.countsAt({5, i * 0.2, 0.3}, {.near_m = 0.10, .behind_m = 0.50});
+    sum.ended += counts.ended, sum.passed += counts.passed;
+  }
+  return sum;
+}
+
+TEST(RayBundle, CountsRaysThatGoThroughAFence) {
+  const RayCounts counts = countsOn(raysAtBars(false));
+  EXPECT_NEAR(static_cast<double>(counts.passed) / static_cast<double>(counts.passed + counts.ended), 0.75, 0.05);
+}
+
+TEST(RayBundle, CountsNoneThroughAWall) {
+  const RayCounts counts = countsOn(raysAtBars(true));
+  EXPECT_GT(counts.ended, 500U);
+  EXPECT_EQ(counts.passed, 0U);
+}
+
 }  // namespace
 }  // namespace cluxel::perception

@@ -15,6 +15,7 @@ struct AskReplay::Impl {
   const MapReader& map;
   MapInputs inputs;
   std::vector<Cloud> clouds;
+  WayGraph ways;
   std::vector<rules::SemanticObject> objects;  ///< the objects decided so far
   std::shared_ptr<rdf::Environment> scratch;
   std::optional<rdf::WriteTransaction> transaction;
@@ -26,12 +27,13 @@ struct AskReplay::Impl {
     if (oracle) return *oracle;
     inputs = map.inputs();
     clouds = map.clouds();
+    ways = waysOf(map.stages().points(), map.stages().ground());
     scratch = rdf::Environment::temporary();
     transaction.emplace(scratch->write());
     writeOntology(*transaction, inputs);
     copyOperatorStatements(map.quads(), *transaction);
     oracle.emplace(*transaction, [this](std::span<const rules::SemanticObject> so_far) {
-      writeObjectsSoFar(*transaction, inputs, clouds, map.scene(), map.stages(), so_far);
+      writeObjectsSoFar(*transaction, inputs, clouds, map.scene(), map.stages(), ways, so_far);
     });
     oracle->objectsSoFar(objects);
     return *oracle;

@@ -12,6 +12,7 @@
 #include "mapping/map_inputs.hpp"
 #include "perception/segments/scene.hpp"
 #include "perception/visibility/presence.hpp"
+#include "perception/visibility/ray_bundle.hpp"
 #include "rules/objects/semantic_object.hpp"
 
 namespace cluxel::mapping {
@@ -30,6 +31,8 @@ struct ObservedMap {
   const std::map<std::pair<std::uint32_t, scan::ScanId>, Sighting>& sightings;
   /// By object; empty when presence is not asked for.
   const std::vector<std::optional<perception::Presence>>& presence;
+  /// By object; empty when rays are not asked for.
+  const std::vector<std::optional<perception::RayCounts>>& passed_rays;
 };
 
 void addObservedFacts(const ObservedMap& map, FactSink& facts);

@@ -126,6 +126,17 @@ void addPresence(const ObservedMap& map, FactSink& facts) {
   }
 }
 
+/// The share of rays that went through an object.
+void addPassedRays(const ObservedMap& map, FactSink& facts) {
+  for (std::size_t i = 0; i < map.passed_rays.size(); ++i) {
+    if (!map.passed_rays[i]) continue;
+    const auto& [ended, passed] = *map.passed_rays[i];
+    const rdf::TermId subject = facts.iri(rdf::iriOfObject(map.reasoning.objects[i].id));
+    facts.number(subject, "porosity", static_cast<double>(passed) / static_cast<double>(ended + passed));
+    facts.count(subject, "rayCount", ended + passed);
+  }
+}
+
 void addNeighbours(const ObservedMap& map, FactSink& facts) {
   const auto& objects = map.reasoning.objects;
   std::vector<bool> is_ground;
@@ -159,6 +170,7 @@ void addObjectFacts(const ObservedMap& map, FactSink& facts) {
   for (const rules::SemanticObject& object : map.reasoning.objects) addObject(map, object, facts);
   addObservations(map, facts);
   addPresence(map, facts);
+  addPassedRays(map, facts);
   addNeighbours(map, facts);
 }
 

@@ -6,6 +6,7 @@
 #include "mapping/build/scan_store.hpp"
 #include "mapping/facts/map_facts.hpp"
 #include "mapping/facts/map_oracle.hpp"
+#include "mapping/facts/passed_rays.hpp"
 #include "mapping/facts/sparql_rules.hpp"
 #include "mapping/facts/stored_presence.hpp"
 #include "mapping/facts/way_facts.hpp"
@@ -52,11 +53,11 @@ void writeOntology(rdf::WriteTransaction& transaction, const MapInputs& inputs) 
 }
 
 void writeObjectsSoFar(rdf::WriteTransaction& transaction, const MapInputs& inputs, const std::vector<Cloud>& clouds,
-                       const perception::Scene& scene, const TileStages& stages,
+                       const perception::Scene& scene, const TileStages& stages, const WayGraph& ways,
                        std::span<const rules::SemanticObject> objects) {
   const rules::ReasoningResult so_far{{objects.begin(), objects.end()}, {}};
   const auto sightings = sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(so_far, scene.cluxels.size()));
-  writeObserved(transaction, {inputs, clouds, scene, so_far, sightings, {}});
+  writeObserved(transaction, {inputs, clouds, scene, so_far, sightings, {}, {}}, {}, ways);
   inferClosure(transaction);
 }
 
@@ -88,9 +89,10 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   const std::vector<Cloud> clouds = storedClouds(transaction);
   perception::Scene scene = stages.scene(clouds);
   sink.progress("scene", scene.primitives.size(), scene.primitives.size());
+  const WayGraph ways = waysOf(stages.points(), stages.ground());
   MapOracle oracle(transaction, [&](std::span<const rules::SemanticObject> objects) {
     if (check) check(0);
-    writeObjectsSoFar(transaction, parsed.inputs, clouds, scene, stages, objects);
+    writeObjectsSoFar(transaction, parsed.inputs, clouds, scene, stages, ways, objects);
   });
   rules::ReasoningResult result = reason(scene, parsed.rules, {.oracle = &oracle, .threads = threads});
   if (check) check(0);
@@ -101,8 +103,14 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   sink.progress("objects", result.objects.size(), result.objects.size());
   const auto sightings = sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(result, scene.cluxels.size()));
   const auto presence = updatePresence(transaction, scene, result.objects, clouds, threads).presence;
-  writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings, presence}, stated.outcomes,
-                waysOf(stages.points(), stages.ground()));
+  const auto passed_rays = updatePassedRays(
+      transaction, scene, result.objects, clouds,
+      [&](const rules::SemanticObject& object) {
+        return parsed.rules.catalogue.isA(object.class_iri, rdf::vocabulary::clx("Barrier"));
+      },
+      threads);
+  writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings, presence, passed_rays}, stated.outcomes,
+                ways);
   inferFacts(transaction, parsed.inputs, sink, check);
   storeObjects(transaction, result.objects);
   storeOverruled(transaction, stated.overruled);

@@ -10,6 +10,7 @@
 #include "mapping/cloud.hpp"
 #include "mapping/map_inputs.hpp"
 #include "mapping/statements/applied_statements.hpp"
+#include "mapping/ways/ways.hpp"
 #include "perception/segments/scene.hpp"
 #include "rdf/file/environment.hpp"
 #include "rdf/ontology/ontology.hpp"
@@ -32,7 +33,7 @@ void writeOntology(rdf::WriteTransaction& transaction, const MapInputs& inputs);
 /// Replaces the graphs observed and inferred by what a query of the reasoning stage may see: the scene and `objects`,
 /// those of the classes decided so far.
 void writeObjectsSoFar(rdf::WriteTransaction& transaction, const MapInputs& inputs, const std::vector<Cloud>& clouds,
-                       const perception::Scene& scene, const TileStages& stages,
+                       const perception::Scene& scene, const TileStages& stages, const WayGraph& ways,
                        std::span<const rules::SemanticObject> objects);
 
 /// Makes graph inferred hold the closure and what SPARQL rules derive. Notes axioms that are ignored.

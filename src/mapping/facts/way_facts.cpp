@@ -13,9 +13,9 @@ std::string placeText(double x, double y) {
   return decimalText(x, 3) + " " + decimalText(y, 3);
 }
 
-std::string lineText(const Way& way) {
+std::string lineText(const std::vector<Eigen::Vector3d>& line) {
   std::string text = "LINESTRING (";
-  for (const Eigen::Vector3d& p : way.line) text += (&p == way.line.data() ? "" : ", ") + placeText(p.x(), p.y());
+  for (const Eigen::Vector3d& p : line) text += (&p == line.data() ? "" : ", ") + placeText(p.x(), p.y());
   return text + ")";
 }
 
@@ -38,9 +38,26 @@ void addShape(rdf::TermId subject, const std::string& iri, std::string_view prop
   facts.literal(node, geo + "asWKT", wkt, geo + "wktLiteral");
 }
 
+void addLine(rdf::TermId subject, const std::string& iri, const std::vector<Eigen::Vector3d>& line, FactSink& facts) {
+  Eigen::Vector3d min = line.front(), max = min;
+  for (const Eigen::Vector3d& p : line) min = min.cwiseMin(p), max = max.cwiseMax(p);
+  addBounds(subject, min, max, facts);
+  addPosition(subject, line[line.size() / 2], facts);
+  addShape(subject, iri, "hasGeometry", lineText(line), facts);
+}
+
+void addKerb(const Kerb& kerb, FactSink& facts) {
+  const std::string iri = iriOf("kerb", lineText(kerb.line));
+  const rdf::TermId subject = facts.iri(iri);
+  facts.type(subject, rdf::vocabulary::clx("Kerb"));
+  facts.number(subject, "length", kerb.length_m);
+  facts.number(subject, "height", kerb.rise_m);
+  addLine(subject, iri, kerb.line, facts);
+}
+
 void addWay(const Way& way, const std::vector<rdf::TermId>& junctions, const std::vector<rdf::TermId>& regions,
             FactSink& facts) {
-  const std::string line = lineText(way), iri = iriOf("way", line);
+  const std::string line = lineText(way.line), iri = iriOf("way", line);
   const rdf::TermId subject = facts.iri(iri);
   facts.type(subject, rdf::vocabulary::clx("Way"));
   facts.number(subject, "length", way.length_m);
@@ -49,11 +66,7 @@ void addWay(const Way& way, const std::vector<rdf::TermId>& junctions, const std
   facts.number(subject, "slope", way.steepest);
   facts.number(subject, "lowerBeside", way.lower_beside);
   facts.number(subject, "higherBeside", way.higher_beside);
-  Eigen::Vector3d min = way.line.front(), max = min;
-  for (const Eigen::Vector3d& p : way.line) min = min.cwiseMin(p), max = max.cwiseMax(p);
-  addBounds(subject, min, max, facts);
-  addPosition(subject, way.line[way.line.size() / 2], facts);
-  addShape(subject, iri, "hasGeometry", line, facts);
+  addLine(subject, iri, way.line, facts);
   if (way.region != kNoPlace) facts.link(subject, "inRegion", regions[way.region]);
   for (const std::size_t junction : way.junctions) facts.link(subject, "connects", junctions[junction]);
 }
@@ -77,6 +90,7 @@ void addWayFacts(const WayGraph& graph, FactSink& facts) {
     addShape(subject, iri, "hasCentroid", "POINT (" + place + ")", facts);
   }
   for (const Way& way : graph.ways) addWay(way, junctions, regions, facts);
+  for (const Kerb& kerb : graph.kerbs) addKerb(kerb, facts);
 }
 
 }  // namespace cluxel::mapping

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <optional>
 
+#include "mapping/ways/cell_line.hpp"
 #include "mapping/ways/even_ground.hpp"
+#include "mapping/ways/kerbs.hpp"
 #include "mapping/ways/skeleton.hpp"
 #include "mapping/ways/way_network.hpp"
 
@@ -14,7 +16,6 @@ namespace cluxel::mapping {
 
 namespace {
 
-constexpr int kSmoothing = 4;               // cells on each side
 constexpr std::uint16_t kEndDistance2 = 6;  // 0.6 m from the edge
 constexpr double kMarchStep_m = 0.125, kFarthestSide_m = 12;
 
@@ -27,13 +28,13 @@ struct SideView {
 class WayMeasure {
  public:
   WayMeasure(const GroundCells& ground, std::vector<std::uint32_t> cells) : ground_(ground), cells_(std::move(cells)) {
-    for (std::size_t i = 0; i < cells_.size(); ++i) middle_.push_back(smoothed(i));
+    middle_ = smoothedLine(ground_, cells_);
   }
 
   Way measured(const std::vector<Eigen::Vector2d>& junctions, const std::vector<double>& reach_m) const {
     Way way;
-    way.line = simplified();
-    for (std::size_t i = 1; i < way.line.size(); ++i) way.length_m += (way.line[i] - way.line[i - 1]).head<2>().norm();
+    way.line = simplifiedLine(middle_);
+    way.length_m = lengthOf(way.line);
     const auto is_free = [&](std::size_t i) {
       for (std::size_t j = 0; j < junctions.size(); ++j)
         if ((ground_.cells.centreOf(cells_[i]) - junctions[j]).norm() < reach_m[j]) return false;
@@ -64,19 +65,9 @@ class WayMeasure {
   }
 
  private:
-  Eigen::Vector3d smoothed(std::size_t i) const {
-    const std::size_t half = std::min({static_cast<std::size_t>(kSmoothing), i, cells_.size() - 1 - i});
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (std::size_t j = i - half; j <= i + half; ++j) {
-      const Eigen::Vector2d centre = ground_.cells.centreOf(cells_[j]);
-      sum += Eigen::Vector3d(centre.x(), centre.y(), ground_.height[cells_[j]]);
-    }
-    return sum / static_cast<double>(2 * half + 1);
-  }
-
   SideView side(std::size_t i, int sign) const {
-    const std::size_t before = i - std::min<std::size_t>(i, kSmoothing);
-    const std::size_t after = std::min(i + kSmoothing, middle_.size() - 1);
+    const std::size_t before = i - std::min(i, kSmoothedCells);
+    const std::size_t after = std::min(i + kSmoothedCells, middle_.size() - 1);
     Eigen::Vector2d along = (middle_[after] - middle_[before]).head<2>();
     if (along.norm() == 0) along = {1, 0};
     const Eigen::Vector2d across = Eigen::Vector2d(-along.y(), along.x()) / along.norm() * sign;
@@ -111,35 +102,6 @@ class WayMeasure {
         steepest = std::max(steepest, std::abs(way.z()) / way.head<2>().norm());
       }
     return steepest;
-  }
-
-  /// The smoothed line by Douglas and Peucker's method.
-  std::vector<Eigen::Vector3d> simplified() const {
-    constexpr double tolerance_m = 0.15;
-    std::vector<std::size_t> kept{0};
-    std::vector<std::size_t> open{middle_.size() - 1};
-    while (!open.empty()) {
-      const std::size_t from = kept.back(), to = open.back();
-      std::size_t farthest = from;
-      double most = tolerance_m;
-      for (std::size_t i = from + 1; i < to; ++i)
-        if (const double d = toChord(i, from, to); d > most) most = d, farthest = i;
-      if (farthest != from) {
-        open.push_back(farthest);
-      } else {
-        kept.push_back(to);
-        open.pop_back();
-      }
-    }
-    std::vector<Eigen::Vector3d> line;
-    for (const std::size_t i : kept) line.push_back(middle_[i]);
-    return line;
-  }
-  double toChord(std::size_t i, std::size_t from, std::size_t to) const {
-    const Eigen::Vector2d a = middle_[from].head<2>(), p = middle_[i].head<2>() - a, d = middle_[to].head<2>() - a;
-    const double square = d.squaredNorm();
-    if (square == 0) return p.norm();
-    return (p - d * std::clamp(p.dot(d) / square, 0.0, 1.0)).norm();
   }
 
   const GroundCells& ground_;
@@ -187,6 +149,7 @@ WayGraph waysOf(const std::map<perception::TileKey, perception::TilePoints>& poi
   WayGraph graph;
   const GroundCells ground = groundCellsOf(points, ground_tiles);
   const TileCells& cells = ground.cells;
+  graph.kerbs = kerbsOf(ground);
   const std::vector<std::uint32_t> region_of = addRegions(ground, graph);
   const auto distance2 = squaredEdgeDistances(cells, ground.even);
   const SkeletonNetwork network = networkOf(cells, skeletonOf(cells, distance2, kEndDistance2), distance2);

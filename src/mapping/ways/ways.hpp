@@ -37,15 +37,24 @@ struct Region {
   double area_m2 = 0;
 };
 
+/// A line along which the ground beside a way rises or falls at once.
+struct Kerb {
+  std::vector<Eigen::Vector3d> line;  ///< [m, map]
+  double length_m = 0;
+  double rise_m = 0;  ///< median of its step, positive
+};
+
 /// Each list is in an order that does not depend on other tiles.
 struct WayGraph {
   std::vector<Way> ways;
   std::vector<Junction> junctions;
   std::vector<Region> regions;
+  std::vector<Kerb> kerbs;
 };
 
 inline constexpr double kLeastRegion_m2 = 20;
 inline constexpr double kLeastWay_m = 3;     ///< shorter lines without a junction are no ways
+inline constexpr double kLeastKerb_m = 2;    ///< shorter steps are no kerbs
 inline constexpr double kKerbSeen_m = 0.08;  ///< beside a way: the edge of a lawn is lower
 inline constexpr double kKerbHigh_m = 0.25;  ///< what is higher is no kerb
 

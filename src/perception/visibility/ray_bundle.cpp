@@ -54,7 +54,7 @@ RayBundle::RayBundle(const Eigen::Vector3d& origin_map, std::vector<Eigen::Vecto
   for (std::size_t i = 0; i < ends.size(); ++i) rays_[next[cell[i]]++] = ends[i];
 }
 
-PlaceVerdict RayBundle::verdictAt(const Eigen::Vector3d& place_map, const RayParams& params) const {
+RayCounts RayBundle::countsAt(const Eigen::Vector3d& place_map, const RayParams& params) const {
   const Eigen::Vector3d place = place_map - origin_;
   const double distance_m = place.norm();
   if (distance_m < kMinRange_m || distance_m > max_range_m_ + params.hit_m) return {};
@@ -66,7 +66,7 @@ PlaceVerdict RayBundle::verdictAt(const Eigen::Vector3d& place_map, const RayPar
   const double half_width = narrowest * std::numbers::pi > half_angle ? half_angle / narrowest : std::numbers::pi;
   const int low_column = columnOf(direction.azimuth - half_width);
   const int columns = std::min(columnOf(direction.azimuth + half_width) - low_column + 1, kColumns);
-  int hitting = 0, passing = 0;
+  RayCounts counts;
   for (int row = low_row; row <= high_row; ++row)
     for (int column = low_column; column < low_column + columns; ++column) {
       const std::size_t cell = cellOf(row, column);
@@ -75,13 +75,18 @@ PlaceVerdict RayBundle::verdictAt(const Eigen::Vector3d& place_map, const RayPar
         const double range_m = end.norm(), along_m = place.dot(end) / range_m;
         const double aside_squared = place.squaredNorm() - along_m * along_m;
         if (along_m <= 0 || aside_squared > params.near_m * params.near_m) continue;
-        if (std::abs(range_m - along_m) <= params.hit_m) ++hitting;
-        if (range_m >= along_m + params.behind_m) ++passing;
+        if (std::abs(range_m - along_m) <= params.hit_m) ++counts.ended;
+        if (range_m >= along_m + params.behind_m) ++counts.passed;
       }
     }
-  if (hitting + passing == 0) return {};
-  const bool is_sparse = hitting + passing < params.min_rays;
-  if (hitting > 0) return {RayVerdict::Hit, is_sparse};
+  return counts;
+}
+
+PlaceVerdict RayBundle::verdictAt(const Eigen::Vector3d& place_map, const RayParams& params) const {
+  const RayCounts counts = countsAt(place_map, params);
+  if (counts.ended + counts.passed == 0) return {};
+  const bool is_sparse = counts.ended + counts.passed < static_cast<std::uint64_t>(params.min_rays);
+  if (counts.ended > 0) return {RayVerdict::Hit, is_sparse};
   return {is_sparse ? RayVerdict::FewPassed : RayVerdict::SeenThrough, is_sparse};
 }
 

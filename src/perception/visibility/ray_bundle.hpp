@@ -33,6 +33,12 @@ struct RayParams {
   int min_rays = 3;
 };
 
+/// Rays near a place that were not stopped before it.
+struct RayCounts {
+  std::uint64_t ended = 0;   ///< within RayParams::hit_m of it
+  std::uint64_t passed = 0;  ///< at least RayParams::behind_m behind it
+};
+
 class RayBundle {
  public:
   /// `ends` are the ends of the rays relative to `origin_map` [m]. Cost: linear in the rays.
@@ -41,6 +47,8 @@ class RayBundle {
   const Eigen::Vector3d& origin() const { return origin_; }
   double maxRange_m() const { return max_range_m_; }
   /// Cost: the rays within `near_m` of the direction to the place.
+  RayCounts countsAt(const Eigen::Vector3d& place_map, const RayParams& params) const;
+  /// What countsAt() means.
   PlaceVerdict verdictAt(const Eigen::Vector3d& place_map, const RayParams& params) const;
 
  private:

@@ -3,7 +3,7 @@
 import { capitalised, type ClassInfo } from '../data/model';
 import type { Place, Places } from '../data/places';
 import { counted, el, faultNote, swatch } from '../dom';
-import { cssOf, DISTINCT } from '../scene/palette';
+import { cssOf, distinctColour } from '../scene/palette';
 import type { PlaceLines } from '../scene/place_lines';
 import type { Stage } from '../scene/stage';
 import type { Store } from '../state';
@@ -69,7 +69,7 @@ export class PlacePanel {
   /** In the colours that all kinds of sight tell apart where those of the classes are in these. */
   private colourOf(info: ClassInfo): string {
     if (this.store.state.colourMode !== 'distinct') return info.color || '#808080';
-    return cssOf(DISTINCT[this.groups.findIndex(([other]) => other === info) % DISTINCT.length]);
+    return cssOf(distinctColour(this.groups.findIndex(([other]) => other === info)));
   }
 
   private hide(info: ClassInfo, isHidden: boolean): void {

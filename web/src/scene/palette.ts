@@ -34,6 +34,12 @@ export function certaintyColour(confidence: number): Rgb {
 }
 
 /** What the colours of objects tell. */
+/** The i-th of colours that all kinds of sight tell apart: the list again, darker, after its end. */
+export function distinctColour(i: number): Rgb {
+  const shade = 1 - 0.45 * Math.floor(i / DISTINCT.length);
+  return DISTINCT[i % DISTINCT.length].map((value) => Math.round(value * shade)) as Rgb;
+}
+
 export type Scheme = 'class' | 'certainty' | 'distinct';
 
 export class Palette {
@@ -49,8 +55,7 @@ export class Palette {
     // Ground is a backdrop: grey leaves the colours to things that stand on it.
     const things = model.shownClasses.filter(({ info }) => !info.iri.endsWith('#Ground'));
     things.forEach(({ info }, i) => {
-      const shade = 1 - 0.45 * Math.floor(i / DISTINCT.length);
-      this.distinct.set(info.iri, DISTINCT[i % DISTINCT.length].map((value) => Math.round(value * shade)) as Rgb);
+      this.distinct.set(info.iri, distinctColour(i));
     });
     const height = Math.max(1, Math.ceil((model.objects.length + 1) / WIDTH));
     this.data = new Uint8Array(WIDTH * height * 4);

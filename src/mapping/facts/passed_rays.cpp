@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stored counts are found by a hash of all that they follow from.
+#include "mapping/facts/passed_rays.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <utility>
+
+#include "base/content_hash.hpp"
+#include "base/parallel.hpp"
+#include "mapping/build/scan_store.hpp"
+#include "mapping/facts/presence_votes.hpp"
+#include "mapping/map_tables.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+constexpr std::string_view kCountsKey = "passed_rays";
+/// The version of the computation. A new number invalidates all stored counts.
+constexpr std::uint32_t kCountsVersion = 1;
+constexpr float kInside_m = 0.30F;
+constexpr double kEdgeCell_m = 0.5;
+constexpr std::size_t kMaxInnerPlaces = 512;
+
+/// Rays within a decimetre of a place: gaps between bars are not much wider.
+constexpr perception::RayParams kThroughParams{.near_m = 0.10, .behind_m = 0.50};
+
+/// A row of the stored table.
+struct CountsRow {
+  ContentHash cause;
+  std::uint64_t ended = 0, passed = 0;
+};
+static_assert(sizeof(CountsRow) == 32);
+
+std::map<ContentHash, perception::RayCounts> storedCounts(const rdf::ReadTransaction& transaction) {
+  std::map<ContentHash, perception::RayCounts> known;
+  const auto bytes = transaction.block(tables::kMeta, kCountsKey);
+  for (std::size_t at = 0; bytes && at + sizeof(CountsRow) <= bytes->size(); at += sizeof(CountsRow)) {
+    CountsRow row;
+    std::memcpy(&row, bytes->data() + at, sizeof row);
+    known.emplace(row.cause, perception::RayCounts{row.ended, row.passed});
+  }
+  return known;
+}
+
+/// The hash of what a cloud's rays say: its points are named by its id.
+ContentHash raysHash(const Cloud& cloud) {
+  const Eigen::Matrix4d pose = cloud.T_map_sensor.matrix();
+  return ContentHasher().add(cloud.id).add(cloud.has_pose).addBytes(pose.data(), sizeof(double) * 16).finish();
+}
+
+/// A barrier and what its counts follow from.
+struct RayTarget {
+  std::size_t object = 0;
+  std::vector<Eigen::Vector3d> places;
+  ContentHash cause;
+  perception::RayCounts counts;
+};
+
+void countRays(const rdf::ReadTransaction& transaction, const std::vector<Cloud>& clouds,
+               const std::vector<RayTarget*>& targets, unsigned threads) {
+  for (const Cloud& cloud : clouds) {
+    std::vector<RayTarget*> passed;
+    std::copy_if(targets.begin(), targets.end(), std::back_inserter(passed),
+                 [&](const RayTarget* target) { return mayPass(cloud, target->places); });
+    if (passed.empty()) continue;
+    perception::forEachRayBundle(storedScan(transaction, cloud.id), [&](const perception::RayBundle& bundle) {
+      parallelFor(passed.size(), threads, [&](std::size_t i) {
+        for (const Eigen::Vector3d& place : passed[i]->places) {
+          const perception::RayCounts counts = bundle.countsAt(place, kThroughParams);
+          passed[i]->counts.ended += counts.ended;
+          passed[i]->counts.passed += counts.passed;
+        }
+      });
+    });
+  }
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> placesWithin(const perception::Scene& scene, const rules::SemanticObject& object) {
+  const perception::SceneCluxels& cluxels = scene.cluxels;
+  const auto cell_of = [&](std::uint32_t c) {
+    return std::pair(static_cast<std::int64_t>(std::floor(cluxels.center[c].x() / kEdgeCell_m)),
+                     static_cast<std::int64_t>(std::floor(cluxels.center[c].y() / kEdgeCell_m)));
+  };
+  const std::vector<std::uint32_t> members = cluxelsOf(object);
+  std::map<std::pair<std::int64_t, std::int64_t>, float> edge;  // height above ground of the highest cluxel
+  for (const std::uint32_t c : members) {
+    const auto [x, y] = cell_of(c);
+    for (int dx = -1; dx <= 1; ++dx)
+      for (int dy = -1; dy <= 1; ++dy) {
+        float& high = edge.emplace(std::pair(x + dx, y + dy), 0.0F).first->second;
+        high = std::max(high, cluxels.height_above_ground[c]);
+      }
+  }
+  std::vector<std::uint32_t> inner;
+  for (const std::uint32_t c : members) {
+    const float height = cluxels.height_above_ground[c];
+    if (height >= kInside_m && height <= edge.at(cell_of(c)) - kInside_m) inner.push_back(c);
+  }
+  std::vector<Eigen::Vector3d> places;
+  const std::size_t step = (inner.size() + kMaxInnerPlaces - 1) / kMaxInnerPlaces;
+  for (std::size_t i = 0; i < inner.size(); i += step) places.push_back(cluxels.center[inner[i]]);
+  return places;
+}
+
+std::vector<std::optional<perception::RayCounts>> updatePassedRays(rdf::WriteTransaction& transaction,
+                                                                   const perception::Scene& scene,
+                                                                   std::span<const rules::SemanticObject> objects,
+                                                                   const std::vector<Cloud>& clouds,
+                                                                   const CountsRays& counts_rays, unsigned threads) {
+  std::vector<ContentHash> hashes;
+  for (const Cloud& cloud : clouds) hashes.push_back(raysHash(cloud));
+  std::vector<RayTarget> targets;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (!counts_rays(objects[i])) continue;
+    RayTarget target{i, placesWithin(scene, objects[i]), {}, {}};
+    if (target.places.empty()) continue;
+    std::vector<ContentHash> passing;  // in an order that does not follow that of the clouds
+    for (std::size_t c = 0; c < clouds.size(); ++c)
+      if (mayPass(clouds[c], target.places)) passing.push_back(hashes[c]);
+    std::sort(passing.begin(), passing.end());
+    ContentHasher hasher;
+    hasher.add(kCountsVersion).addBytes(target.places.data(), target.places.size() * sizeof(Eigen::Vector3d));
+    for (const ContentHash& hash : passing) hasher.add(hash);
+    target.cause = hasher.finish();
+    targets.push_back(std::move(target));
+  }
+  const std::map<ContentHash, perception::RayCounts> known = storedCounts(transaction);
+  std::vector<RayTarget*> unknown;
+  for (RayTarget& target : targets) {
+    const auto found = known.find(target.cause);
+    if (found == known.end())
+      unknown.push_back(&target);
+    else
+      target.counts = found->second;
+  }
+  countRays(transaction, clouds, unknown, threads);
+  std::vector<std::optional<perception::RayCounts>> result(objects.size());
+  std::vector<CountsRow> rows;
+  for (const RayTarget& target : targets) {
+    rows.push_back({target.cause, target.counts.ended, target.counts.passed});
+    if (target.counts.ended + target.counts.passed > 0) result[target.object] = target.counts;
+  }
+  if (rows.empty())
+    transaction.eraseBlock(tables::kMeta, kCountsKey);
+  else
+    transaction.putBlock(tables::kMeta, kCountsKey,
+                         {reinterpret_cast<const char*>(rows.data()), rows.size() * sizeof(CountsRow)});
+  return result;
+}
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// How many rays of the laser went through each barrier: many through a fence, none through a wall.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mapping/cloud.hpp"
+#include "perception/segments/scene.hpp"
+#include "perception/visibility/ray_bundle.hpp"
+#include "rdf/file/environment.hpp"
+#include "rules/objects/semantic_object.hpp"
+
+namespace cluxel::mapping {
+
+/// Says which objects rays are counted for.
+using CountsRays = std::function<bool(const rules::SemanticObject&)>;
+
+/// Places inside the outline of an object [m, map]: at least 0.3 m above the ground, and as far below its top edge
+/// there. Rays over the edge are not meant.
+std::vector<Eigen::Vector3d> placesWithin(const perception::Scene& scene, const rules::SemanticObject& object);
+
+/// For each object that `counts_rays` names and that rays reached, how many ended at its inner places or passed them.
+/// A function of these places and of the scans whose rays may pass them; where both are those of the stored counts,
+/// these are taken. Stores the outcome. Cost: linear in the rays of the scans that may pass a new place.
+std::vector<std::optional<perception::RayCounts>> updatePassedRays(rdf::WriteTransaction& transaction,
+                                                                   const perception::Scene& scene,
+                                                                   std::span<const rules::SemanticObject> objects,
+                                                                   const std::vector<Cloud>& clouds,
+                                                                   const CountsRays& counts_rays, unsigned threads);
+
+}  // namespace cluxel::mapping
