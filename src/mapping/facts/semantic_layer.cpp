@@ -88,8 +88,8 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   writeOntology(transaction, parsed.inputs);
   const std::vector<Cloud> clouds = storedClouds(transaction);
   perception::Scene scene = stages.scene(clouds);
-  sink.progress("scene", scene.primitives.size(), scene.primitives.size());
   const WayGraph ways = waysOf(stages.points(), stages.ground());
+  sink.progress("scene", scene.primitives.size(), scene.primitives.size());
   MapOracle oracle(transaction, [&](std::span<const rules::SemanticObject> objects) {
     if (check) check(0);
     writeObjectsSoFar(transaction, parsed.inputs, clouds, scene, stages, ways, objects);

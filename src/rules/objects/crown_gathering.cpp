@@ -14,6 +14,8 @@ namespace cluxel::rules {
 
 namespace {
 
+constexpr double kGapRounding_m = 1e-9;
+
 class Gathering {
  public:
   Gathering(ReasoningState& state, const std::string& class_iri) : state_(state) {
@@ -59,7 +61,14 @@ class Gathering {
     FragmentIndex first_fragment = 0;  ///< the first of its `from` in canonical order
     const SplittingSpec* spec = nullptr;
     Eigen::Vector2d top = Eigen::Vector2d::Zero();
+    Eigen::AlignedBox3d bounds = {};           ///< of the boxes of the object's cluxels
     std::vector<scan::PrimitiveLabel> labels;  ///< of the split crown
+  };
+  /// A gatherer and its smallest gap to a fragment so far; at first the largest that counts.
+  struct Nearing {
+    std::size_t gatherer = 0;
+    double gap_m = 0;
+    bool is_near = false;
   };
   /// What some gatherer takes: fragments of a label, at or above a height, within a distance.
   struct Demand {
@@ -79,7 +88,7 @@ class Gathering {
   }
 
   void add(OwnerIndex owner, const PartInMaking& from) {
-    Gatherer gatherer{owner, from.fragments.front(), &*state_.objects[owner].leaf->splitting, {}, {}};
+    Gatherer gatherer{owner, from.fragments.front(), &*state_.objects[owner].leaf->splitting, {}, {}, {}};
     for (FragmentIndex fragment : from.fragments)
       if (state_.fragments.before(fragment, gatherer.first_fragment)) gatherer.first_fragment = fragment;
     Candidate foot;
@@ -87,6 +96,8 @@ class Gathering {
     gatherer.top = topOf(state_.scene.cluxels, state_.fragments.cluxelsOf(foot));
     if (const PartInMaking* crown = partOf(state_.objects[owner], gatherer.spec->part))
       for (FragmentIndex fragment : crown->fragments) gatherer.labels.push_back(state_.fragments.labelOf(fragment));
+    for (const FragmentIndex fragment : state_.fragmentsOf(state_.objects[owner]))
+      gatherer.bounds.extend(boundsOf(fragment));
     gatherers_.push_back(std::move(gatherer));
   }
 
@@ -126,16 +137,58 @@ class Gathering {
     return all;
   }
 
-  /// Notes which gatherers are near a free fragment. The grid holds all of their cluxels.
+  /// Notes which gatherers are near a free fragment. The grid holds all of their cluxels. The search narrows to the
+  /// largest of the gaps that are known so far: most fragments touch what they are near.
   void lookAround(FragmentIndex fragment, const CluxelGrid& grid) {
-    if (!isFree(fragment)) return;
-    const double widest = widestFor(fragment);
-    if (widest == 0) return;
-    for (std::uint32_t cluxel : state_.fragments[fragment].cluxels)
-      grid.near(cluxel, widest, [&](std::uint32_t other) {
-        if (const auto* numbers = gatherersAt(other))
-          for (std::size_t g : *numbers) consider(g, fragment, cluxel, other);
+    if (!isFree(fragment) || widestFor(fragment) == 0) return;
+    std::vector<Nearing> nearing = possibleFor(fragment);
+    const auto widest = [&nearing] {
+      double gap = -1;
+      for (const Nearing& one : nearing) gap = std::max(gap, one.gap_m);
+      return gap;
+    };
+    double search_m = widest();
+    for (const std::uint32_t cluxel : state_.fragments[fragment].cluxels) {
+      if (search_m <= 0) break;
+      bool has_changed = false;
+      grid.near(cluxel, search_m, [&](std::uint32_t other) {
+        const auto* numbers = gatherersAt(other);
+        if (numbers == nullptr) return;
+        const double gap = gapBetween(state_.scene.cluxels, cluxel, other).gap();
+        for (Nearing& one : nearing)
+          if (std::binary_search(numbers->begin(), numbers->end(), one.gatherer) &&
+              (gap < one.gap_m || (gap == one.gap_m && !one.is_near)))
+            one.gap_m = gap, one.is_near = has_changed = true;
       });
+      if (has_changed) search_m = widest();
+    }
+    for (const Nearing& one : nearing)
+      if (one.is_near) note(fragment, one.gatherer, one.gap_m);
+  }
+
+  /// The gatherers that may take the fragment and whose bounds are near its own.
+  std::vector<Nearing> possibleFor(FragmentIndex fragment) const {
+    const Eigen::AlignedBox3d bounds = boundsOf(fragment);
+    std::vector<Nearing> possible;
+    for (std::size_t g = 0; g < gatherers_.size(); ++g) {
+      const double within = gatherers_[g].spec->gather->within_m;
+      if (gatherers_[g].bounds.squaredExteriorDistance(bounds) <=
+              (within + kGapRounding_m) * (within + kGapRounding_m) &&
+          mayTake(gatherers_[g], fragment))
+        possible.push_back({g, within, false});
+    }
+    return possible;
+  }
+
+  Eigen::AlignedBox3d boundsOf(FragmentIndex fragment) const {
+    const perception::SceneCluxels& all = state_.scene.cluxels;
+    Eigen::AlignedBox3d bounds;
+    for (const std::uint32_t cluxel : state_.fragments[fragment].cluxels) {
+      const Eigen::Vector3d half = all.extent[cluxel].cast<double>() / 2;
+      bounds.extend(all.center[cluxel] - half);
+      bounds.extend(all.center[cluxel] + half);
+    }
+    return bounds;
   }
 
   /// Notes which free fragments are near one that an object has just got.
@@ -143,7 +196,9 @@ class Gathering {
     const auto& numbers = of_owner_[state_.fragments[fragment].owner];
     double widest = 0;
     for (std::size_t g : numbers) widest = std::max(widest, gatherers_[g].spec->gather->within_m);
-    for (std::uint32_t cluxel : state_.fragments[fragment].cluxels)
+    const std::vector<std::uint32_t>& cluxels = state_.fragments[fragment].cluxels;
+    if (!hasTakers(cluxels, widest, numbers)) return;
+    for (std::uint32_t cluxel : cluxels)
       state_.grid.near(cluxel, widest, [&](std::uint32_t other) {
         const FragmentIndex theirs = state_.fragments.fragmentOf(other);
         if (!isFree(theirs)) return;
@@ -151,13 +206,27 @@ class Gathering {
       });
   }
 
+  /// Whether one of the gatherers may take some free fragment near the cluxels.
+  bool hasTakers(const std::vector<std::uint32_t>& cluxels, double within_m,
+                 const std::vector<std::size_t>& numbers) const {
+    for (const perception::PrimitiveIndex primitive : state_.grid.primitivesNear(cluxels, within_m))
+      for (const FragmentIndex other : state_.fragments.fragmentsOf(primitive))
+        if (isFree(other) &&
+            std::any_of(numbers.begin(), numbers.end(), [&](std::size_t g) { return mayTake(gatherers_[g], other); }))
+          return true;
+    return false;
+  }
+
   void consider(std::size_t number, FragmentIndex fragment, std::uint32_t cluxel, std::uint32_t other) {
     const Gatherer& gatherer = gatherers_[number];
     if (!mayTake(gatherer, fragment)) return;
     const double gap = gapBetween(state_.scene.cluxels, cluxel, other).gap();
-    if (gap > gatherer.spec->gather->within_m) return;
-    double& smallest = near_[fragment].try_emplace(number, gap).first->second;
-    smallest = std::min(smallest, gap);
+    if (gap <= gatherer.spec->gather->within_m) note(fragment, number, gap);
+  }
+
+  void note(FragmentIndex fragment, std::size_t number, double gap_m) {
+    double& smallest = near_[fragment].try_emplace(number, gap_m).first->second;
+    smallest = std::min(smallest, gap_m);
   }
 
   /// The free fragments within reach of a gatherer in the current state, in canonical order.
@@ -205,6 +274,7 @@ class Gathering {
 
   void give(FragmentIndex fragment, const Gatherer& gatherer, double gap_m) {
     state_.fragments.setOwner(fragment, gatherer.owner);
+    for (const std::size_t g : of_owner_[gatherer.owner]) gatherers_[g].bounds.extend(boundsOf(fragment));
     ObjectInMaking& object = state_.objects[gatherer.owner];
     for (PartInMaking& part : object.parts)
       if (part.name == gatherer.spec->part) part.fragments.push_back(fragment);

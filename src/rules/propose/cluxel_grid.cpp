@@ -19,7 +19,9 @@ std::vector<std::uint32_t> numbersTo(std::size_t count) {
 
 }  // namespace
 
-CluxelGrid::CluxelGrid(const perception::SceneCluxels& all) : CluxelGrid(all, numbersTo(all.size())) {}
+CluxelGrid::CluxelGrid(const perception::SceneCluxels& all) : CluxelGrid(all, numbersTo(all.size())) {
+  listPrimitives();
+}
 
 CluxelGrid::CluxelGrid(const perception::SceneCluxels& all, std::span<const std::uint32_t> some) : all_(all) {
   if (all.size() > 0) origin_z_ = all.center[all.size() / 2].z();
@@ -52,6 +54,18 @@ CluxelGrid::CluxelGrid(const perception::SceneCluxels& all, std::span<const std:
   cells_.push_back({kBeyond, kBeyond, static_cast<std::uint32_t>(entries_.size())});
 }
 
+void CluxelGrid::listPrimitives() {
+  for (std::size_t cell = 0; cell + 1 < cells_.size(); ++cell) {
+    const auto first = static_cast<std::ptrdiff_t>(primitives_.size());
+    first_primitive_.push_back(static_cast<std::uint32_t>(first));
+    for (std::uint32_t i = cells_[cell].first; i < cells_[cell + 1].first; ++i)
+      primitives_.push_back(all_.primitive[entries_[i].cluxel]);
+    std::sort(primitives_.begin() + first, primitives_.end());
+    primitives_.erase(std::unique(primitives_.begin() + first, primitives_.end()), primitives_.end());
+  }
+  first_primitive_.push_back(static_cast<std::uint32_t>(primitives_.size()));
+}
+
 std::pair<std::uint32_t, std::uint32_t> CluxelGrid::row(std::int32_t x, std::int32_t low_y, std::int32_t high_y) const {
   const auto column = std::lower_bound(columns_.begin(), columns_.end() - 1, std::pair(x, std::uint32_t{0}));
   if (column->first != x) return {0, 0};
@@ -76,10 +90,8 @@ std::vector<perception::PrimitiveIndex> CluxelGrid::primitivesNear(std::span<con
   for (const auto& [cx, cy] : done)
     for (std::int32_t x = cx - reach; x <= cx + reach; ++x) {
       const auto [cell, end] = row(x, cy - reach, cy + reach);
-      for (std::uint32_t i = cells_[cell].first; i < cells_[end].first; ++i) {
-        const perception::PrimitiveIndex primitive = all_.primitive[entries_[i].cluxel];
-        if (found.empty() || found.back() != primitive) found.push_back(primitive);
-      }
+      found.insert(found.end(), primitives_.begin() + first_primitive_[cell],
+                   primitives_.begin() + first_primitive_[end]);
     }
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());

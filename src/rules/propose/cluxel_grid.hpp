@@ -27,7 +27,7 @@ inline CluxelGap gapBetween(const perception::SceneCluxels& all, std::uint32_t a
 class CluxelGrid {
  public:
   explicit CluxelGrid(const perception::SceneCluxels& all);
-  /// A grid over some of them. Any cluxel may be asked about.
+  /// A grid over some of them, without primitivesNear(). Any cluxel may be asked about.
   CluxelGrid(const perception::SceneCluxels& all, std::span<const std::uint32_t> some);
 
   /// Calls `visit` for every cluxel whose box may be within `distance_m` of the box of `cluxel`.
@@ -87,6 +87,7 @@ class CluxelGrid {
     return static_cast<std::uint32_t>(found - begin);
   }
 
+  void listPrimitives();
   static std::int32_t cellOf(double coordinate_m) {
     return static_cast<std::int32_t>(std::floor(coordinate_m / kCell_m));
   }
@@ -101,6 +102,8 @@ class CluxelGrid {
   std::vector<Cell> cells_;                                      ///< ordered by x, then y; the last one is a sentinel
   std::vector<std::pair<std::int32_t, std::uint32_t>> columns_;  ///< x, and the first of its cells; then a sentinel
   std::vector<Entry> entries_;                                   ///< by cell, then by height
+  std::vector<std::uint32_t> first_primitive_;                   ///< of each cell, in primitives_
+  std::vector<perception::PrimitiveIndex> primitives_;           ///< of each cell, each once
 };
 
 }  // namespace cluxel::rules

@@ -246,7 +246,7 @@ std::optional<std::pair<FragmentIndex, double>> ConditionEvaluator::nearestObjec
   std::optional<std::pair<FragmentIndex, double>> best;
   for (const FragmentIndex mine : subject.fragments)
     for (const std::uint32_t cluxel : state_.fragments[mine].cluxels)
-      state_.grid.near(cluxel, limit_m, [&](std::uint32_t other) {
+      state_.grid.near(cluxel, best ? best->second : limit_m, [&](std::uint32_t other) {
         const FragmentIndex fragment = state_.fragments.fragmentOf(other);
         if (!state_.belongsToAny(fragment, classes) || !hasLabel(fragment, target) ||
             std::binary_search(subject.fragments.begin(), subject.fragments.end(), fragment))

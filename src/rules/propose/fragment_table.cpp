@@ -160,7 +160,7 @@ std::vector<std::uint32_t> FragmentTable::cluxelsOf(const Candidate& candidate) 
   std::vector<std::uint32_t> cluxels;
   for (FragmentIndex fragment : candidate.fragments)
     cluxels.insert(cluxels.end(), fragments_[fragment].cluxels.begin(), fragments_[fragment].cluxels.end());
-  std::sort(cluxels.begin(), cluxels.end());
+  if (!std::is_sorted(cluxels.begin(), cluxels.end())) std::sort(cluxels.begin(), cluxels.end());
   return cluxels;
 }
 

@@ -9,6 +9,8 @@ namespace cluxel::rules {
 
 namespace {
 
+/// Bounds of whole primitives may be tighter than their cluxels' boxes by less than this [m].
+constexpr double kBoundsMargin_m = 1.0;
 constexpr double kTouchTolerance_m = 0.20, kNearTolerance_m = 1.0;  // of relationInfos()
 
 bool contains(const Candidate& candidate, FragmentIndex fragment) {
@@ -19,6 +21,14 @@ double boundsGap(const Candidate& a, const Candidate& b, bool horizontal) {
   Eigen::Vector3d apart = (a.shape.min - b.shape.max).cwiseMax(b.shape.min - a.shape.max).cwiseMax(0);
   if (horizontal) apart.z() = 0;
   return apart.norm();
+}
+
+/// Whether the gap in plan view between a cluxel and anything within the bounds is surely larger than `distance_m`.
+bool isBeyond(const perception::SceneCluxels& all, std::uint32_t cluxel, const Shape& bounds, double distance_m) {
+  const Eigen::Vector2d centre = all.center[cluxel].head<2>();
+  const double half = static_cast<double>(all.extent[cluxel].head<2>().norm()) / 2;
+  const Eigen::Vector2d apart = (bounds.min.head<2>() - centre).cwiseMax(centre - bounds.max.head<2>()).cwiseMax(0);
+  return apart.norm() > distance_m + half + kBoundsMargin_m;
 }
 
 /// Smallest gap between cluxels. The search radius grows step by step because most pairs are close.
@@ -32,6 +42,7 @@ double smallestGap(const ReasoningState& state, const Candidate& a, const Candid
   for (double reach = std::min(1.0, farthest);; reach = std::min(reach * 4, farthest)) {
     double best = std::numeric_limits<double>::infinity();
     for (std::uint32_t cluxel : cluxels) {
+      if (isBeyond(state.scene.cluxels, cluxel, many.shape, std::min(reach, best))) continue;
       const auto look = [&](std::uint32_t other) {
         if (!contains(many, state.fragments.fragmentOf(other))) return;
         const CluxelGap gap = gapBetween(state.scene.cluxels, cluxel, other);
@@ -121,9 +132,8 @@ double measurePair(const ReasoningState& state, PairMeasure measure, const Candi
       break;
   }
   const bool horizontal = measure == PairMeasure::HorizontalGap;
-  // The bounding boxes reject most pairs. The margin covers whole primitives, whose bounds may be tighter than their
-  // cluxels' boxes.
-  if (boundsGap(a, b, horizontal) > limit_m + 1.0) return std::numeric_limits<double>::infinity();
+  // The bounding boxes reject most pairs.
+  if (boundsGap(a, b, horizontal) > limit_m + kBoundsMargin_m) return std::numeric_limits<double>::infinity();
   return smallestGap(state, a, b, horizontal, limit_m);
 }
 
