@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <utility>
 
 #include "base/content_hash.hpp"
 #include "base/parallel.hpp"
-#include "mapping/build/scan_store.hpp"
 #include "mapping/facts/presence_votes.hpp"
 #include "mapping/map_tables.hpp"
 
@@ -52,33 +52,6 @@ ContentHash raysHash(const Cloud& cloud) {
   return ContentHasher().add(cloud.id).add(cloud.has_pose).addBytes(pose.data(), sizeof(double) * 16).finish();
 }
 
-/// A barrier and what its counts follow from.
-struct RayTarget {
-  std::size_t object = 0;
-  std::vector<Eigen::Vector3d> places;
-  ContentHash cause;
-  perception::RayCounts counts;
-};
-
-void countRays(const rdf::ReadTransaction& transaction, const std::vector<Cloud>& clouds,
-               const std::vector<RayTarget*>& targets, unsigned threads) {
-  for (const Cloud& cloud : clouds) {
-    std::vector<RayTarget*> passed;
-    std::copy_if(targets.begin(), targets.end(), std::back_inserter(passed),
-                 [&](const RayTarget* target) { return mayPass(cloud, target->places); });
-    if (passed.empty()) continue;
-    perception::forEachRayBundle(storedScan(transaction, cloud.id), [&](const perception::RayBundle& bundle) {
-      parallelFor(passed.size(), threads, [&](std::size_t i) {
-        for (const Eigen::Vector3d& place : passed[i]->places) {
-          const perception::RayCounts counts = bundle.countsAt(place, kThroughParams);
-          passed[i]->counts.ended += counts.ended;
-          passed[i]->counts.passed += counts.passed;
-        }
-      });
-    });
-  }
-}
-
 }  // namespace
 
 std::vector<Eigen::Vector3d> placesWithin(const perception::Scene& scene, const rules::SemanticObject& object) {
@@ -108,17 +81,15 @@ std::vector<Eigen::Vector3d> placesWithin(const perception::Scene& scene, const 
   return places;
 }
 
-std::vector<std::optional<perception::RayCounts>> updatePassedRays(rdf::WriteTransaction& transaction,
-                                                                   const perception::Scene& scene,
-                                                                   std::span<const rules::SemanticObject> objects,
-                                                                   const std::vector<Cloud>& clouds,
-                                                                   const CountsRays& counts_rays, unsigned threads) {
+PassedRaysUpdate::PassedRaysUpdate(const rdf::ReadTransaction& transaction, const perception::Scene& scene,
+                                   std::span<const rules::SemanticObject> objects, const std::vector<Cloud>& clouds,
+                                   const CountsRays& counts_rays, unsigned threads)
+    : threads_(threads), object_count_(objects.size()) {
   std::vector<ContentHash> hashes;
   for (const Cloud& cloud : clouds) hashes.push_back(raysHash(cloud));
-  std::vector<RayTarget> targets;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     if (!counts_rays(objects[i])) continue;
-    RayTarget target{i, placesWithin(scene, objects[i]), {}, {}};
+    Target target{i, placesWithin(scene, objects[i]), {}, {}};
     if (target.places.empty()) continue;
     std::vector<ContentHash> passing;  // in an order that does not follow that of the clouds
     for (std::size_t c = 0; c < clouds.size(); ++c)
@@ -128,21 +99,40 @@ std::vector<std::optional<perception::RayCounts>> updatePassedRays(rdf::WriteTra
     hasher.add(kCountsVersion).addBytes(target.places.data(), target.places.size() * sizeof(Eigen::Vector3d));
     for (const ContentHash& hash : passing) hasher.add(hash);
     target.cause = hasher.finish();
-    targets.push_back(std::move(target));
+    targets_.push_back(std::move(target));
   }
   const std::map<ContentHash, perception::RayCounts> known = storedCounts(transaction);
-  std::vector<RayTarget*> unknown;
-  for (RayTarget& target : targets) {
-    const auto found = known.find(target.cause);
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    const auto found = known.find(targets_[i].cause);
     if (found == known.end())
-      unknown.push_back(&target);
+      unknown_.push_back(i);
     else
-      target.counts = found->second;
+      targets_[i].counts = found->second;
   }
-  countRays(transaction, clouds, unknown, threads);
-  std::vector<std::optional<perception::RayCounts>> result(objects.size());
+}
+
+bool PassedRaysUpdate::wants(const Cloud& cloud) {
+  passed_.clear();
+  std::copy_if(unknown_.begin(), unknown_.end(), std::back_inserter(passed_),
+               [&](std::size_t i) { return mayPass(cloud, targets_[i].places); });
+  return !passed_.empty();
+}
+
+void PassedRaysUpdate::look(const perception::RayBundle& bundle) {
+  parallelFor(passed_.size(), threads_, [&](std::size_t i) {
+    Target& target = targets_[passed_[i]];
+    for (const Eigen::Vector3d& place : target.places) {
+      const perception::RayCounts counts = bundle.countsAt(place, kThroughParams);
+      target.counts.ended += counts.ended;
+      target.counts.passed += counts.passed;
+    }
+  });
+}
+
+std::vector<std::optional<perception::RayCounts>> PassedRaysUpdate::finish(rdf::WriteTransaction& transaction) const {
+  std::vector<std::optional<perception::RayCounts>> result(object_count_);
   std::vector<CountsRow> rows;
-  for (const RayTarget& target : targets) {
+  for (const Target& target : targets_) {
     rows.push_back({target.cause, target.counts.ended, target.counts.passed});
     if (target.counts.ended + target.counts.passed > 0) result[target.object] = target.counts;
   }

@@ -7,9 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "base/content_hash.hpp"
 #include "mapping/cloud.hpp"
+#include "mapping/facts/ray_pass.hpp"
 #include "perception/segments/scene.hpp"
-#include "perception/visibility/ray_bundle.hpp"
 #include "rdf/file/environment.hpp"
 #include "rules/objects/semantic_object.hpp"
 
@@ -24,11 +25,30 @@ std::vector<Eigen::Vector3d> placesWithin(const perception::Scene& scene, const 
 
 /// For each object that `counts_rays` names and that rays reached, how many ended at its inner places or passed them.
 /// A function of these places and of the scans whose rays may pass them; where both are those of the stored counts,
-/// these are taken. Stores the outcome. Cost: linear in the rays of the scans that may pass a new place.
-std::vector<std::optional<perception::RayCounts>> updatePassedRays(rdf::WriteTransaction& transaction,
-                                                                   const perception::Scene& scene,
-                                                                   std::span<const rules::SemanticObject> objects,
-                                                                   const std::vector<Cloud>& clouds,
-                                                                   const CountsRays& counts_rays, unsigned threads);
+/// these are taken. Cost: linear in the rays of the scans that may pass a new place.
+class PassedRaysUpdate : public RayObserver {
+ public:
+  PassedRaysUpdate(const rdf::ReadTransaction& transaction, const perception::Scene& scene,
+                   std::span<const rules::SemanticObject> objects, const std::vector<Cloud>& clouds,
+                   const CountsRays& counts_rays, unsigned threads);
+  bool wants(const Cloud& cloud) override;
+  void look(const perception::RayBundle& bundle) override;
+  /// The counts by object, after all rays were seen. Stores the outcome.
+  std::vector<std::optional<perception::RayCounts>> finish(rdf::WriteTransaction& transaction) const;
+
+ private:
+  /// A barrier and what its counts follow from.
+  struct Target {
+    std::size_t object = 0;
+    std::vector<Eigen::Vector3d> places;
+    ContentHash cause;
+    perception::RayCounts counts;
+  };
+
+  unsigned threads_;
+  std::size_t object_count_;
+  std::vector<Target> targets_;
+  std::vector<std::size_t> unknown_, passed_;  ///< numbers of targets; passed_ by the scan at hand
+};
 
 }  // namespace cluxel::mapping

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scans are loaded one after the other; objects vote in parallel.
+// Objects vote in parallel about one scan after the other.
 #include "mapping/facts/presence_votes.hpp"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "base/parallel.hpp"
 #include "mapping/facts/object_geometry.hpp"
@@ -18,41 +20,7 @@ constexpr float kClearOfGround_m = 0.3F;
 /// More than the distances at which a ray concerns a place (RayParams).
 constexpr double kAroundRays_m = 1;
 
-struct Sphere {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  double radius_m = 0;
-};
-
-Sphere sphereAround(const std::vector<Eigen::Vector3d>& places) {
-  Sphere sphere;
-  for (const Eigen::Vector3d& place : places) sphere.centre += place / static_cast<double>(places.size());
-  for (const Eigen::Vector3d& place : places)
-    sphere.radius_m = std::max(sphere.radius_m, (place - sphere.centre).norm());
-  return sphere;
-}
-
-void vote(const perception::RayBundle& bundle, const std::vector<Eigen::Vector3d>& places, const Sphere& sphere,
-          perception::ScanVotes& votes) {
-  constexpr perception::RayParams kParams;
-  if ((sphere.centre - bundle.origin()).norm() > bundle.maxRange_m() + sphere.radius_m + kParams.hit_m) return;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const RayVerdict verdict = bundle.verdictAt(places[i], kParams).verdict;
-    if (verdict == RayVerdict::Hit) votes.hits.set(i);
-    if (verdict == RayVerdict::SeenThrough) votes.seen_through.set(i);
-  }
-}
-
 }  // namespace
-
-std::vector<const Cloud*> timedClouds(const std::vector<Cloud>& clouds) {
-  std::vector<const Cloud*> timed;
-  for (const Cloud& cloud : clouds)
-    if (cloud.time_s && cloud.has_pose) timed.push_back(&cloud);
-  std::sort(timed.begin(), timed.end(), [](const Cloud* a, const Cloud* b) {
-    return std::pair(*a->time_s, a->id.hex()) < std::pair(*b->time_s, b->id.hex());
-  });
-  return timed;
-}
 
 /// Rays that graze the ground beside a low place end near it: such places are left out where there are others.
 std::vector<Eigen::Vector3d> placesOn(const perception::Scene& scene, const rules::SemanticObject& object) {
@@ -75,32 +43,66 @@ bool mayPass(const Cloud& cloud, const std::vector<Eigen::Vector3d>& places) {
   return cloud.rays.intersects(Eigen::AlignedBox3d(box.min() - around, box.max() + around));
 }
 
+PresenceVoting::Sphere PresenceVoting::sphereAround(const std::vector<Eigen::Vector3d>& places) {
+  Sphere sphere;
+  for (const Eigen::Vector3d& place : places) sphere.centre += place / static_cast<double>(places.size());
+  for (const Eigen::Vector3d& place : places)
+    sphere.radius_m = std::max(sphere.radius_m, (place - sphere.centre).norm());
+  return sphere;
+}
+
+PresenceVoting::PresenceVoting(const perception::Scene& scene, std::span<const rules::SemanticObject> objects,
+                               const std::vector<Cloud>& clouds, unsigned threads)
+    : is_told_(timedClouds(clouds).size() >= 2), threads_(threads), votes_(objects.size()), spheres_(objects.size()) {
+  if (!is_told_) return;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    votes_[i].places = placesOn(scene, objects[i]);
+    spheres_[i] = sphereAround(votes_[i].places);
+  }
+}
+
+bool PresenceVoting::wants(const Cloud& cloud) {
+  closeScan();
+  if (!is_told_ || !cloud.time_s || !cloud.has_pose) return false;
+  const auto is_passed = [&](const ObjectVotes& object) {
+    return !object.places.empty() && mayPass(cloud, object.places);
+  };
+  if (std::none_of(votes_.begin(), votes_.end(), is_passed)) return false;
+  of_scan_.assign(votes_.size(), {*cloud.time_s, {}, {}});
+  return true;
+}
+
+void PresenceVoting::look(const perception::RayBundle& bundle) {
+  constexpr perception::RayParams kParams;
+  parallelFor(votes_.size(), threads_, [&](std::size_t i) {
+    const std::vector<Eigen::Vector3d>& places = votes_[i].places;
+    const double range_m = bundle.maxRange_m() + spheres_[i].radius_m + kParams.hit_m;
+    if (places.empty() || (spheres_[i].centre - bundle.origin()).norm() > range_m) return;
+    for (std::size_t place = 0; place < places.size(); ++place) {
+      const RayVerdict verdict = bundle.verdictAt(places[place], kParams).verdict;
+      if (verdict == RayVerdict::Hit) of_scan_[i].hits.set(place);
+      if (verdict == RayVerdict::SeenThrough) of_scan_[i].seen_through.set(place);
+    }
+  });
+}
+
+void PresenceVoting::closeScan() {
+  for (std::size_t i = 0; i < of_scan_.size(); ++i)
+    if ((of_scan_[i].hits | of_scan_[i].seen_through).any()) perception::addVotes(votes_[i].votes, of_scan_[i]);
+  of_scan_.clear();
+}
+
+std::vector<ObjectVotes> PresenceVoting::finish() {
+  closeScan();
+  return std::move(votes_);
+}
+
 std::vector<ObjectVotes> presenceVotes(const perception::Scene& scene, std::span<const rules::SemanticObject> objects,
                                        const std::vector<Cloud>& clouds,
                                        const std::function<scan::Scan(const Cloud&)>& load, unsigned threads) {
-  std::vector<ObjectVotes> result(objects.size());
-  const std::vector<const Cloud*> timed = timedClouds(clouds);
-  if (timed.size() < 2) return result;
-  std::vector<Sphere> spheres(objects.size());
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    result[i].places = placesOn(scene, objects[i]);
-    spheres[i] = sphereAround(result[i].places);
-  }
-  for (const Cloud* cloud : timed) {
-    const auto isPassed = [&](const ObjectVotes& object) {
-      return !object.places.empty() && mayPass(*cloud, object.places);
-    };
-    if (std::none_of(result.begin(), result.end(), isPassed)) continue;
-    std::vector<perception::ScanVotes> of_scan(objects.size(), {*cloud->time_s, {}, {}});
-    perception::forEachRayBundle(load(*cloud), [&](const perception::RayBundle& bundle) {
-      parallelFor(objects.size(), threads, [&](std::size_t i) {
-        if (!result[i].places.empty()) vote(bundle, result[i].places, spheres[i], of_scan[i]);
-      });
-    });
-    for (std::size_t i = 0; i < objects.size(); ++i)
-      if ((of_scan[i].hits | of_scan[i].seen_through).any()) perception::addVotes(result[i].votes, of_scan[i]);
-  }
-  return result;
+  PresenceVoting voting(scene, objects, clouds, threads);
+  passRays(clouds, std::array<RayObserver*, 1>{&voting}, load);
+  return voting.finish();
 }
 
 std::vector<std::optional<perception::Presence>> presenceOfObjects(const std::vector<ObjectVotes>& votes) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mapping/cloud.hpp"
+#include "mapping/facts/ray_pass.hpp"
 #include "perception/segments/scene.hpp"
 #include "perception/visibility/presence.hpp"
 #include "perception/visibility/ray_bundle.hpp"
@@ -19,20 +20,42 @@ struct ObjectVotes {
   std::vector<perception::ScanVotes> votes;  ///< of the times at which a scan says something, ascending
 };
 
-/// What presence follows from, beside the places on the object themselves: the clouds with a time and a pose, ascending
-/// by time. Fewer than two tell nothing.
-std::vector<const Cloud*> timedClouds(const std::vector<Cloud>& clouds);
-
 /// The places on an object that rays are compared with [m, map]; none of ground.
 std::vector<Eigen::Vector3d> placesOn(const perception::Scene& scene, const rules::SemanticObject& object);
 
 /// Whether rays of the cloud may pass a place or end there.
 bool mayPass(const Cloud& cloud, const std::vector<Eigen::Vector3d>& places);
 
-/// The votes for each object. Rays are compared with up to 256 cluxels of an object, at least 0.3 m above the ground
-/// where it has such. Ground gets no votes, nor does anything when fewer than two clouds have a time and a pose. `load`
-/// gives a cloud's scan. Cost: linear in the rays of the timed scans that may pass some object, and in the cluxels
-/// compared times the scans within range.
+/// Collects the votes for each object. Rays are compared with up to 256 cluxels of an object, at least 0.3 m above the
+/// ground where it has such. Ground gets no votes, nor does anything when fewer than two clouds have a time and a pose.
+/// Cost: linear in the rays of the timed scans that may pass some object, and in the cluxels compared times the scans
+/// within range.
+class PresenceVoting : public RayObserver {
+ public:
+  /// `objects` are not kept.
+  PresenceVoting(const perception::Scene& scene, std::span<const rules::SemanticObject> objects,
+                 const std::vector<Cloud>& clouds, unsigned threads);
+  bool wants(const Cloud& cloud) override;
+  void look(const perception::RayBundle& bundle) override;
+  /// The votes; the collection is empty afterwards.
+  std::vector<ObjectVotes> finish();
+
+ private:
+  struct Sphere {
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    double radius_m = 0;
+  };
+  static Sphere sphereAround(const std::vector<Eigen::Vector3d>& places);
+  void closeScan();
+
+  bool is_told_ = false;  ///< two clouds or more have a time and a pose
+  unsigned threads_;
+  std::vector<ObjectVotes> votes_;
+  std::vector<Sphere> spheres_;
+  std::vector<perception::ScanVotes> of_scan_;  ///< empty before the first scan
+};
+
+/// The votes for each object, from all clouds. `load` gives a cloud's scan.
 std::vector<ObjectVotes> presenceVotes(const perception::Scene& scene, std::span<const rules::SemanticObject> objects,
                                        const std::vector<Cloud>& clouds,
                                        const std::function<scan::Scan(const Cloud&)>& load, unsigned threads);

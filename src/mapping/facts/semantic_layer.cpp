@@ -102,13 +102,16 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   result.objects = std::move(stated.objects);
   sink.progress("objects", result.objects.size(), result.objects.size());
   const auto sightings = sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(result, scene.cluxels.size()));
-  const auto presence = updatePresence(transaction, scene, result.objects, clouds, threads).presence;
-  const auto passed_rays = updatePassedRays(
-      transaction, scene, result.objects, clouds,
-      [&](const rules::SemanticObject& object) {
-        return parsed.rules.catalogue.isA(object.class_iri, rdf::vocabulary::clx("Barrier"));
-      },
-      threads);
+  const auto counts_rays = [&](const rules::SemanticObject& object) {
+    return parsed.rules.catalogue.isA(object.class_iri, rdf::vocabulary::clx("Barrier"));
+  };
+  PresenceUpdate presence_update(transaction, scene, result.objects, clouds, threads);
+  PassedRaysUpdate rays_update(transaction, scene, result.objects, clouds, counts_rays, threads);
+  std::vector<RayObserver*> observers{&rays_update};
+  if (presence_update.observer() != nullptr) observers.push_back(presence_update.observer());
+  passRays(clouds, observers, [&](const Cloud& cloud) { return storedScan(transaction, cloud.id); });
+  const auto presence = presence_update.finish(transaction);
+  const auto passed_rays = rays_update.finish(transaction);
   writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings, presence, passed_rays}, stated.outcomes,
                 ways);
   inferFacts(transaction, parsed.inputs, sink, check);

@@ -8,8 +8,6 @@
 #include <string>
 
 #include "base/content_hash.hpp"
-#include "mapping/build/scan_store.hpp"
-#include "mapping/facts/presence_votes.hpp"
 #include "mapping/map_tables.hpp"
 
 namespace cluxel::mapping {
@@ -66,21 +64,16 @@ ContentHash hashOf(const Cloud& cloud) {
 
 }  // namespace
 
-PresenceUpdate updatePresence(rdf::WriteTransaction& transaction, const perception::Scene& scene,
-                              std::span<const rules::SemanticObject> objects, const std::vector<Cloud>& clouds,
-                              unsigned threads) {
-  PresenceUpdate update;
-  update.presence.resize(objects.size());
+PresenceUpdate::PresenceUpdate(const rdf::ReadTransaction& transaction, const perception::Scene& scene,
+                               std::span<const rules::SemanticObject> objects, const std::vector<Cloud>& clouds,
+                               unsigned threads)
+    : causes_(objects.size()), presence_(objects.size()) {
   const std::vector<const Cloud*> timed = timedClouds(clouds);
-  if (timed.size() < 2) {
-    transaction.eraseBlock(tables::kMeta, kKey);
-    return update;
-  }
+  is_told_ = timed.size() >= 2;
+  if (!is_told_) return;
   std::vector<ContentHash> cloud_hash;
   for (const Cloud* cloud : timed) cloud_hash.push_back(hashOf(*cloud));
   const std::map<ContentHash, MaybePresence> known = storedPresence(transaction);
-  std::vector<Row> rows(objects.size());
-  std::vector<std::size_t> unknown;
   std::vector<rules::SemanticObject> asked;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const std::vector<Eigen::Vector3d> places = placesOn(scene, objects[i]);
@@ -88,21 +81,30 @@ PresenceUpdate updatePresence(rdf::WriteTransaction& transaction, const percepti
     hasher.add(kVersion).addBytes(places.data(), places.size() * sizeof(Eigen::Vector3d));
     for (std::size_t c = 0; c < timed.size() && !places.empty(); ++c)
       if (mayPass(*timed[c], places)) hasher.add(cloud_hash[c]);
-    rows[i].cause = hasher.finish();
-    if (const auto found = known.find(rows[i].cause); found != known.end()) {
-      update.presence[i] = found->second;
+    causes_[i] = hasher.finish();
+    if (const auto found = known.find(causes_[i]); found != known.end()) {
+      presence_[i] = found->second;
     } else if (!places.empty()) {
-      unknown.push_back(i);
+      unknown_.push_back(i);
       asked.push_back(objects[i]);
     }
   }
-  const auto load = [&](const Cloud& cloud) { return storedScan(transaction, cloud.id); };
-  const std::vector<MaybePresence> computed = presenceOfObjects(presenceVotes(scene, asked, clouds, load, threads));
-  for (std::size_t u = 0; u < unknown.size(); ++u) update.presence[unknown[u]] = computed[u];
-  update.computed = unknown.size();
-  for (std::size_t i = 0; i < objects.size(); ++i) rows[i] = rowOf(rows[i].cause, update.presence[i]);
+  if (!asked.empty()) voting_.emplace(scene, asked, clouds, threads);
+}
+
+std::vector<MaybePresence> PresenceUpdate::finish(rdf::WriteTransaction& transaction) {
+  if (!is_told_) {
+    transaction.eraseBlock(tables::kMeta, kKey);
+    return std::move(presence_);
+  }
+  if (voting_) {
+    const std::vector<MaybePresence> computed = presenceOfObjects(voting_->finish());
+    for (std::size_t u = 0; u < unknown_.size(); ++u) presence_[unknown_[u]] = computed[u];
+  }
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < presence_.size(); ++i) rows.push_back(rowOf(causes_[i], presence_[i]));
   transaction.putBlock(tables::kMeta, kKey, {reinterpret_cast<const char*>(rows.data()), rows.size() * sizeof(Row)});
-  return update;
+  return std::move(presence_);
 }
 
 }  // namespace cluxel::mapping

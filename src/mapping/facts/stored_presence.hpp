@@ -6,7 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "base/content_hash.hpp"
 #include "mapping/cloud.hpp"
+#include "mapping/facts/presence_votes.hpp"
 #include "perception/segments/scene.hpp"
 #include "perception/visibility/presence.hpp"
 #include "rdf/file/environment.hpp"
@@ -14,14 +16,24 @@
 
 namespace cluxel::mapping {
 
-struct PresenceUpdate {
-  std::vector<std::optional<perception::Presence>> presence;  ///< of each object
-  std::size_t computed = 0;                                   ///< objects of which it was not known
+/// Presence is a function of places on an object and of the clouds whose rays may pass it: where both are those of the
+/// stored presence, that is taken.
+class PresenceUpdate {
+ public:
+  PresenceUpdate(const rdf::ReadTransaction& transaction, const perception::Scene& scene,
+                 std::span<const rules::SemanticObject> objects, const std::vector<Cloud>& clouds, unsigned threads);
+  /// Looks at rays for the objects of which presence is not known; null when there are none.
+  RayObserver* observer() { return voting_ ? &*voting_ : nullptr; }
+  std::size_t unknownCount() const { return unknown_.size(); }
+  /// When each object was there, after the observer has seen all rays. Stores the outcome.
+  std::vector<std::optional<perception::Presence>> finish(rdf::WriteTransaction& transaction);
+
+ private:
+  bool is_told_ = false;                                       ///< two clouds or more have a time and a pose
+  std::vector<ContentHash> causes_;                            ///< of each object
+  std::vector<std::optional<perception::Presence>> presence_;  ///< of each object
+  std::vector<std::size_t> unknown_;                           ///< numbers of objects
+  std::optional<PresenceVoting> voting_;
 };
-/// When each object was there. Presence is a function of places on the object and of the clouds whose rays may pass it:
-/// where both are those of the stored presence, that is taken. Stores the outcome.
-PresenceUpdate updatePresence(rdf::WriteTransaction& transaction, const perception::Scene& scene,
-                              std::span<const rules::SemanticObject> objects, const std::vector<Cloud>& clouds,
-                              unsigned threads);
 
 }  // namespace cluxel::mapping
