@@ -81,6 +81,16 @@ TEST(RuleFitting, ChangesNothingWhereFewerThanTenSpeak) {
   EXPECT_TRUE(fitted[0].changes.empty());
 }
 
+TEST(RuleFitting, IsNotSureOfAFewThatWereAllRight) {
+  std::vector<CandidateExample> all_right = examples(27);
+  for (CandidateExample& example : all_right) example.is_right = true;
+  const auto fitted = fitEvidence(ruleSet(), all_right, {});
+  ASSERT_EQ(fitted.size(), 1U);
+  ASSERT_EQ(fitted[0].changes.size(), 1U);
+  EXPECT_TRUE(fitted[0].changes[0].is_share);
+  EXPECT_NEAR(fitted[0].changes[0].after, 28.0 / 29.0, 0.02);
+}
+
 TEST(RuleFitting, GivesTheSameNumbersTwice) {
   const auto a = fitEvidence(ruleSet(), examples(300), {}), b = fitEvidence(ruleSet(), examples(300), {});
   ASSERT_EQ(a[0].changes.size(), b[0].changes.size());

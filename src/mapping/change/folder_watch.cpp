@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "cluxel/error.hpp"
+#include "mapping/change/map_compaction.hpp"
 
 namespace cluxel::mapping {
 
@@ -51,6 +52,7 @@ class Watch {
       if (params_.idle_s > 0 && idle.count() >= params_.idle_s) break;
       std::this_thread::sleep_for(std::chrono::duration<double>(params_.interval_s));
     }
+    if (added_ > 0) compactIfSparse(map_, sink_, kMaxFreeShareOfChanged);
     return added_;
   }
 
@@ -102,7 +104,8 @@ class Watch {
       const BuildReport report = buildMap(scans, callbacks_.inputs(), map_, {.threads = params_.threads}, sink_);
       return tell(report.scans, report.scans, report.objects);
     }
-    const ChangeReport report = extendMap(map_, scans, {.threads = params_.threads}, sink_);
+    // The next commit writes into the space that this one leaves.
+    const ChangeReport report = extendMap(map_, scans, {.threads = params_.threads, .may_compact = false}, sink_);
     if (report.has_changes) tell(report.scans_added, report.scans, report.after.size());
   }
 

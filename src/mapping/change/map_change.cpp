@@ -132,7 +132,7 @@ ChangeReport appliedTo(const fs::path& file, const std::function<MapInputs(MapIn
 /// Frees the space that a committed change has left, where it is too much.
 ChangeReport compacted(ChangeReport report, const fs::path& file, const ChangeParams& params, ProgressSink& sink,
                        double max_free_share = kMaxFreeShareOfChanged) {
-  if (report.has_changes && !params.dry_run) compactIfSparse(file, sink, max_free_share);
+  if (report.has_changes && !params.dry_run && params.may_compact) compactIfSparse(file, sink, max_free_share);
   return report;
 }
 

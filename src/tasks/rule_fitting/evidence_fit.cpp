@@ -27,6 +27,7 @@ struct Sample {
   double offset = 0;  ///< log-odds of the leaf's confidence
   bool is_right = false;
   std::string place;
+  bool is_imagined = false;  ///< see RuleFit::addSuccession()
 };
 
 double logOddsAt(const Sample& sample, std::span<const double> x) {
@@ -85,6 +86,7 @@ class RuleFit {
     if (std::min(fitted.right, fitted.wrong) < params_.min_examples) {
       fitted.refusal = few + " right or wrong candidates: only its confidence is fitted";
       keepShiftOnly();
+      addSuccession();
     }
     resample();
     scoreLeftOut(fitted);
@@ -106,6 +108,22 @@ class RuleFit {
     only_shift_ = true;
   }
 
+  /// Laplace's rule of succession: one more right candidate and one more wrong one. Of 27 that were all right follows a
+  /// confidence of 28 in 29, not of 1.
+  void addSuccession() {
+    const bool may_shift = std::any_of(samples_.begin(), samples_.end(), [](const Sample& sample) {
+      return !sample.row.empty() && sample.row.front().first == 0;
+    });
+    if (!may_shift) return;
+    Sample imagined{{{0, 1.0}}, 0, true, {}, true};
+    const auto current = startingPoint();
+    for (const Sample& sample : samples_)
+      imagined.offset += logOddsAt(sample, current) / static_cast<double>(samples_.size());
+    samples_.push_back(imagined);
+    imagined.is_right = false;
+    samples_.push_back(imagined);
+  }
+
   /// Fits to places drawn with replacement.
   void resample() {
     std::mt19937_64 random(params_.seed);
@@ -120,7 +138,7 @@ class RuleFit {
     std::vector<double> weights;
     for (const Sample& sample : samples_) {
       const auto found = drawn.find(sample.place);
-      weights.push_back(found == drawn.end() ? 0 : found->second);
+      weights.push_back(sample.is_imagined ? 1 : found == drawn.end() ? 0 : found->second);
     }
     return weights;
   }
