@@ -17,7 +17,8 @@ namespace cluxel::serve {
 namespace {
 
 /// The first segments of resources of a map.
-const std::array<std::string, 7> kMapResources{"sparql", "graph", "objects", "questions", "tasks", "page", "rules"};
+const std::array<std::string, 8> kMapResources{"sparql", "graph", "objects", "questions",
+                                               "tasks",  "page",  "rules",   "tiles"};
 
 bool isMapResource(const std::string& segment) {
   return std::find(kMapResources.begin(), kMapResources.end(), segment) != kMapResources.end();
@@ -190,6 +191,7 @@ HttpResponse MapService::answerMap(const Route& route, const HttpRequest& reques
   if (path.size() == 2 && first == "rules" && second == "trial") return answerRuleTrial(map, asked, options_.token);
   if (path.size() == 2 && first == "tasks") return answerTask(map, asked, questions_, second);
   if (path.size() == 3 && first == "objects" && third == "explanation") return answerExplanation(map, asked, second);
+  if (path.size() == 3 && first == "tiles") return answerPointTile(map, asked, second, third);
   if (path.size() == 3 && first == "objects" && third == "points") return answerPoints(map, asked, second);
   throw Refusal(404, "a map has no such resource; /maps/NAME/page lists what there is");
 }

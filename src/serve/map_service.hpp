@@ -28,6 +28,7 @@ namespace cluxel::serve {
 ///   /maps/NAME/objects[/ID[/explanation|/points]]
 ///   /maps/NAME/questions[/QUESTION]
 ///   /maps/NAME/tasks[/TASK]
+///   /maps/NAME/tiles/X/Y                 all points of a tile of the page
 ///   /maps/NAME/rules/trial               what posted rules would change
 /// When one map is served, what follows /maps/NAME may stand alone: /sparql.
 class MapService {

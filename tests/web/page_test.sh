@@ -46,7 +46,12 @@ printf '0123456789abcdef0123\n' >token
 "$cluxel" serve served.clx --port 0 --token-file token >url 2>access.log &
 service=$!
 trap 'kill "$service"' EXIT
+# The same with a page that holds a tenth of the points.
+"$cluxel" serve campus.clx --port 0 --page-points 12000 --quiet >sample.url &
+sample_service=$!
+trap 'kill "$service" "$sample_service"' EXIT
 until [ -s url ] || ! kill -0 "$service"; do sleep 0.1; done
-CLUXEL_SERVICE=$(cat url)
-export CLUXEL_SERVICE
+until [ -s sample.url ] || ! kill -0 "$sample_service"; do sleep 0.1; done
+CLUXEL_SERVICE=$(cat url) CLUXEL_SAMPLE_SERVICE=$(cat sample.url)
+export CLUXEL_SERVICE CLUXEL_SAMPLE_SERVICE
 for file in "$source_dir"/tests/web/*_test.mjs; do node --test "$file"; done

@@ -17,6 +17,7 @@ import { TaskPanel } from './panels/tasks';
 import { Toolbar } from './panels/toolbar';
 import { VisitPanel } from './panels/visits';
 import { readTile } from './scene/cloud_tiles';
+import { FullTiles } from './scene/full_tiles';
 import { GroundHeights } from './scene/ground';
 import { MarkPaths } from './scene/mark_paths';
 import { Measure } from './scene/measure';
@@ -45,7 +46,7 @@ function titleBar(model: MapModel): HTMLElement {
   const shown = points < pointsInMap ? `${counted(points)} of ${counted(pointsInMap)}` : counted(points);
   return el('header', { class: 'title' },
             el('h1', {}, name), el('p', {}, `${counted(model.objects.length)} objects · ${shown} points · ${counted(clouds.length)} scans`),
-            points < pointsInMap && el('p', { class: 'note' }, 'Thinned to an even sample; questions see the whole map.'),
+            points < pointsInMap && el('p', { class: 'note thinned' }, 'Thinned to an even sample; questions see the whole map.'),
             quadsLeftOut > 0 && el('p', { class: 'note' }, `Questions see all but ${counted(quadsLeftOut)} facts about primitives; cluxel query sees all.`),
             !finished && el('p', { class: 'note' }, 'The build of this map is not finished.'));
 }
@@ -75,6 +76,19 @@ async function loadTiles(viewer: Viewer, model: MapModel, status: HTMLElement): 
     status.textContent = `Reading points: ${i + 1} of ${order.length} tiles`;
     status.hidden = i + 1 === order.length;
   }
+}
+
+/** A served page gets all points near the camera. */
+function completeTiles(viewer: Viewer, model: MapModel, service: Service): void {
+  const { points, pointsInMap } = model.values, note = document.querySelector('.thinned');
+  if (points === pointsInMap || !note) return;
+  const full = new FullTiles(viewer, model, service);
+  note.textContent = 'An even sample; near the camera all points are shown. Questions see the whole map.';
+  full.onChange = (more, fault) => {
+    note.textContent = fault ? `An even sample; not all points near the camera could be read: ${fault}`
+                             : `An even sample, and ${counted(more)} more points near the camera. Questions see the whole map.`;
+  };
+  full.soon();
 }
 
 async function open(app: HTMLElement): Promise<void> {
@@ -117,6 +131,7 @@ async function open(app: HTMLElement): Promise<void> {
   Object.assign(window, { cluxelPage: { model, store, viewer, stage, engine, lines } });  // for tests and the curious
   await loadTiles(viewer, model, reading);
   tilesRead();
+  if (service) completeTiles(viewer, model, service);
   card.redraw();
   ask.restore(restored.question);
   void engine.start();

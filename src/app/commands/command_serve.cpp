@@ -26,6 +26,7 @@ struct ServeArguments {
   fs::path token_file, log;
   double deadline_s = 30, rate = 0;
   std::uint64_t max_rows = 0, max_memory_mib = 1024, max_answer_mib = 256, max_request_kib = 1024;
+  std::uint64_t page_points = 5'000'000;
   std::size_t running = 0, queue = 128, connections = 256;
   bool quiet = false;
 };
@@ -80,17 +81,20 @@ std::string tokenIn(const fs::path& file) {
 }
 
 /// The page of `cluxel view`; absent when the page's program has not been built.
-std::function<std::string(const mapping::MapReader&, const std::string&)> pageMaker(const DataHome& home) {
+std::function<std::string(const mapping::MapReader&, const std::string&)> pageMaker(const DataHome& home,
+                                                                                    std::uint64_t max_points) {
   std::string program;
   try {
     program = tasks::viewTemplate(home);
   } catch (const Error&) {
     return {};
   }
-  return [program, questions = tasks::shippedQuestions(home)](const mapping::MapReader& map, const std::string& name) {
+  return [program, max_points, questions = tasks::shippedQuestions(home)](const mapping::MapReader& map,
+                                                                          const std::string& name) {
     tasks::ViewOptions options;
     options.name = name;
     options.is_served = true;
+    options.max_points = max_points;
     std::string page;
     writeViewPage(map, program, questions, options, [&page](std::string_view piece) { page.append(piece); });
     return page;
@@ -112,7 +116,7 @@ serve::ServiceOptions serviceOptions(const ServeArguments& arguments, const Sess
   options.load.per_second = arguments.rate;
   options.token = tokenIn(arguments.token_file);
   options.allowed_origins = arguments.origins;
-  options.page = pageMaker(session.dataHome());
+  options.page = pageMaker(session.dataHome(), arguments.page_points);
   if (isLoopback(arguments.host)) options.host_names = {"localhost", "127.0.0.1", "[::1]", arguments.host};
   return options;
 }
@@ -180,6 +184,10 @@ void addServe(CLI::App& app, Session& session) {
   command->add_option("--max-rows", options->max_rows, "rows above which a query is given up")->check(above0());
   command->add_option("--max-memory", options->max_memory_mib, "MiB above which a query is given up")
       ->check(CLI::Range(1, 1 << 24));
+  command
+      ->add_option("--page-points", options->page_points,
+                   "points of a map's page; those that it leaves out come when the camera is near")
+      ->check(above0());
   command->add_option("--max-answer", options->max_answer_mib, "MiB above which an answer is given up")
       ->check(CLI::Range(1, 1 << 24));
   command->add_option("--max-request", options->max_request_kib, "KiB above which the body of a request is refused")

@@ -32,6 +32,10 @@ HttpResponse answerExplanation(ServedMap& map, const ResourceRequest& asked, con
 /// JSON with one array a column, or CSV.
 HttpResponse answerPoints(ServedMap& map, const ResourceRequest& asked, const std::string& id);
 
+/// All points of one tile of 16 m for the page: a line of JSON, then planes of bytes (tasks/view/point_tiles.hpp).
+/// Parameters: state, as the page has it, and intensity=LOW,HIGH. 409 when the map has another state.
+HttpResponse answerPointTile(ServedMap& map, const ResourceRequest& asked, const std::string& x, const std::string& y);
+
 /// The shipped questions with parameters and columns.
 HttpResponse answerQuestionList(const std::vector<tasks::Question>& questions);
 /// Runs a shipped question; its parameters are those of the request.

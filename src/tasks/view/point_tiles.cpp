@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <tuple>
 
+#include "base/content_hash.hpp"
 #include "base/mixed_bits.hpp"
 #include "base/packing/zstd_packing.hpp"
 
@@ -25,7 +27,6 @@ struct ViewPoint {
   std::uint8_t height = 0, label = 0, level = 0;
 };
 
-using ViewTileKey = std::pair<std::int64_t, std::int64_t>;
 using ViewTileMap = std::map<ViewTileKey, std::vector<ViewPoint>>;
 
 /// Level 0 holds a 64th of the points, level 1 together with it a 16th, level 2 a quarter.
@@ -191,6 +192,66 @@ std::vector<mapping::Cloud> cloudsByTime(const mapping::MapReader& map) {
     return std::tie(a.time_s, a.id) < std::tie(b.time_s, b.id);
   });
   return clouds;
+}
+
+std::string tileStateOf(const mapping::MapReader& map) {
+  ContentHasher hasher;
+  for (const mapping::Cloud& cloud : cloudsByTime(map)) {
+    const Eigen::Matrix4d pose = cloud.T_map_sensor.matrix();
+    hasher.add(cloud.id).addBytes(pose.data(), sizeof(double) * 16);
+  }
+  for (const rules::SemanticObject& object : map.objects()) hasher.add(object.id);
+  return hasher.finish().hex();
+}
+
+struct PointTileSource::CloudPoints {
+  ViewTileMap tiles;
+  std::size_t count = 0;
+};
+
+PointTileSource::PointTileSource(const mapping::MapReader& map)
+    : state_(tileStateOf(map)), clouds_(cloudsByTime(map)) {}
+PointTileSource::~PointTileSource() = default;
+PointTileSource::PointTileSource(PointTileSource&&) noexcept = default;
+
+const PointTileSource::CloudPoints& PointTileSource::pointsOf(const mapping::MapReader& map, std::size_t cloud) {
+  if (const auto found = kept_.find(cloud); found != kept_.end()) return *found->second;
+  constexpr std::size_t most_kept = 4'000'000;  // points of some 24 bytes
+  while (!order_.empty() && kept_points_ + clouds_[cloud].point_count > most_kept) {
+    kept_points_ -= kept_.at(order_.front())->count;
+    kept_.erase(order_.front());
+    order_.pop_front();
+  }
+  auto points = std::make_unique<CloudPoints>();
+  CloudReader(map, 1.0, points->tiles).read(clouds_[cloud], static_cast<std::uint16_t>(cloud & 0xffffU));
+  for (const auto& [key, of_tile] : points->tiles) points->count += of_tile.size();
+  kept_points_ += points->count;
+  order_.push_back(cloud);
+  return *(kept_[cloud] = std::move(points));
+}
+
+std::optional<PointTile> PointTileSource::tile(const mapping::MapReader& map, const ViewTileKey& key,
+                                               const std::array<double, 2>& intensity) {
+  const double x = static_cast<double>(key.first) * kViewTile_m, y = static_cast<double>(key.second) * kViewTile_m;
+  std::vector<ViewPoint> points;
+  for (std::size_t i = 0; i < clouds_.size(); ++i) {
+    const mapping::Cloud& cloud = clouds_[i];
+    if (cloud.max.x() < x || cloud.min.x() > x + kViewTile_m || cloud.max.y() < y || cloud.min.y() > y + kViewTile_m)
+      continue;
+    const ViewTileMap& of_cloud = pointsOf(map, i).tiles;
+    if (const auto found = of_cloud.find(key); found != of_cloud.end())
+      points.insert(points.end(), found->second.begin(), found->second.end());
+  }
+  if (points.empty()) return std::nullopt;
+  return TileWriter(key, points, intensity).written();
+}
+
+std::string tileBytes(const PointTile& tile) {
+  const nlohmann::ordered_json head{{"origin", {tile.origin.x(), tile.origin.y(), tile.origin.z()}},
+                                    {"size", {tile.size.x(), tile.size.y(), tile.size.z()}},
+                                    {"zQuantum", tile.z_quantum_m},
+                                    {"pointsTo", tile.points_to}};
+  return head.dump() + "\n" + tile.planes;
 }
 
 PointTiles pointTilesOf(const mapping::MapReader& map, std::uint64_t max_points) {

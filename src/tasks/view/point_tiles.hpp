@@ -5,7 +5,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mapping/map_reader.hpp"
@@ -29,6 +34,9 @@ struct PointTile {
   std::string planes;
 };
 
+/// Place of a tile among those of its size: its corner is at (x, y) * kViewTile_m.
+using ViewTileKey = std::pair<std::int64_t, std::int64_t>;
+
 struct PointTiles {
   std::vector<PointTile> tiles;                 ///< by x, then y
   std::array<double, 2> intensity{};            ///< the values of bytes 0 and 255; equal when there are none
@@ -37,6 +45,37 @@ struct PointTiles {
 
 /// The clouds of the map by time, those without a time first: their places are the numbers of clouds in the page.
 std::vector<mapping::Cloud> cloudsByTime(const mapping::MapReader& map);
+
+/// Names what the numbers of objects and clouds in tiles refer to: a hash of the map's clouds, their poses and objects.
+std::string tileStateOf(const mapping::MapReader& map);
+
+/// All points of single tiles. Keeps the points of some clouds, since neighbouring tiles are wanted one after the
+/// other. For one state of a map.
+class PointTileSource {
+ public:
+  explicit PointTileSource(const mapping::MapReader& map);
+  ~PointTileSource();
+  PointTileSource(PointTileSource&&) noexcept;
+
+  const std::string& state() const { return state_; }
+  /// Absent when no point lies there. `intensity` are the values of bytes 0 and 255. `map` is the one of the
+  /// constructor, or another reader of its state. Cost: the points of the clouds that reach the tile.
+  std::optional<PointTile> tile(const mapping::MapReader& map, const ViewTileKey& key,
+                                const std::array<double, 2>& intensity);
+
+ private:
+  struct CloudPoints;
+  const CloudPoints& pointsOf(const mapping::MapReader& map, std::size_t cloud);
+
+  std::string state_;
+  std::vector<mapping::Cloud> clouds_;  ///< by time
+  std::map<std::size_t, std::unique_ptr<CloudPoints>> kept_;
+  std::deque<std::size_t> order_;  ///< of kept_, the longest kept first
+  std::size_t kept_points_ = 0;
+};
+
+/// A line of JSON (origin, size, zQuantum, pointsTo), then the planes.
+std::string tileBytes(const PointTile& tile);
 
 /// At most about `max_points` points: of a larger map a uniform sample, the same for the same map.
 PointTiles pointTilesOf(const mapping::MapReader& map, std::uint64_t max_points);

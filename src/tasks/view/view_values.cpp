@@ -144,6 +144,7 @@ std::string mapValuesJson(const mapping::MapReader& map, const PointTiles& tiles
                 {"lowestHeight", kLowestHeight_m},
                 {"heightStep", kHeightStep_m},
                 {"intensity", tiles.intensity}};
+  if (options.is_served) json["tileState"] = tileStateOf(map);
   json["labels"] = scan::kPrimitiveLabelNames;
   json["clouds"] = cloudsJson(map);
   json["tiles"] = tilesJson(tiles);

@@ -18,10 +18,17 @@ export class Service {
 
   /** `path` is relative to the map: "tasks/route?from=0,0". */
   async text(path: string, init: RequestInit = {}): Promise<string> {
+    return (await this.answer(path, init)).text();
+  }
+
+  async bytes(path: string): Promise<Uint8Array<ArrayBuffer>> {
+    return new Uint8Array(await (await this.answer(path, {})).arrayBuffer());
+  }
+
+  private async answer(path: string, init: RequestInit): Promise<Response> {
     const response = await fetch(new URL(path, location.href.replace(/[?#].*$/s, '')), init);
-    const text = await response.text();
-    if (!response.ok) throw new Error(text.trim() || `The service answered ${response.status}.`);
-    return text;
+    if (!response.ok) throw new Error((await response.text()).trim() || `The service answered ${response.status}.`);
+    return response;
   }
 
   async json<T>(path: string, init: RequestInit = {}): Promise<T> {

@@ -3,10 +3,13 @@
 import * as THREE from 'three';
 import { blockBytes } from '../data/blocks';
 import type { MapModel, TileInfo } from '../data/model';
+import type { Service } from '../data/service';
 
 /** Bytes of a vertex: x, y, z, cloud (2 each), object (4), intensity, height, label, coverage (1 each). */
 const STRIDE = 16;
 const COVERAGE_CELL_M = 0.5;
+/** Edge of a tile seen from above [m]. */
+const TILE_M = 16;
 
 export interface Tile {
   info: TileInfo;
@@ -67,12 +70,26 @@ function geometryOf(buffer: ArrayBuffer, info: TileInfo, quantum: number): THREE
   return geometry;
 }
 
-/** Reads tile `number`. `origin` is the place in the map that the scene has as its zero. */
+/** Reads tile `number` of the page. `origin` is the place in the map that the scene has as its zero. */
 export async function readTile(model: MapModel, number: number, origin: THREE.Vector3, material: THREE.Material):
     Promise<Tile> {
-  const info = model.values.tiles[number], quantum = model.values.quantum;
-  const count = info.pointsTo[info.pointsTo.length - 1];
-  const planes = await blockBytes(`tile-${number}`);
+  return tileOf(model, number, model.values.tiles[number], await blockBytes(`tile-${number}`), origin, material);
+}
+
+/** Tile `number` with all of its points, from the service. */
+export async function fetchTile(model: MapModel, service: Service, number: number, origin: THREE.Vector3, material: THREE.Material):
+    Promise<Tile> {
+  const { tiles, tileState, intensity } = model.values, corner = tiles[number].origin;
+  const place = [corner[0], corner[1]].map((value) => Math.round(value / TILE_M)).join('/');
+  const bytes = await service.bytes(`tiles/${place}?state=${tileState}&intensity=${intensity.join(',')}`);
+  const end = bytes.indexOf(10);
+  const info = JSON.parse(new TextDecoder().decode(bytes.subarray(0, end))) as TileInfo;
+  return tileOf(model, number, info, bytes.subarray(end + 1), origin, material);
+}
+
+function tileOf(model: MapModel, number: number, info: TileInfo, planes: Uint8Array, origin: THREE.Vector3,
+                material: THREE.Material): Tile {
+  const quantum = model.values.quantum, count = info.pointsTo[info.pointsTo.length - 1];
   if (planes.length !== 14 * count) throw new Error(`Tile ${number} of this page is damaged. Write it anew.`);
   const buffer = vertexBuffer(planes, count);
   addCoverage(buffer, count, quantum, model.values.clouds.length);

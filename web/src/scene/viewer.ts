@@ -85,12 +85,24 @@ export class Viewer {
 
   addTile(tile: Tile): void {
     this.tiles.push(tile);
+    this.place(tile);
+    if (!this.isStale) this.detail.add(tile, this.camera);
+  }
+
+  /** Shows a tile in place of another one with more or fewer of the same points. */
+  replaceTile(old: Tile, tile: Tile): void {
+    this.tiles[this.tiles.indexOf(old)] = tile;
+    this.cloud.remove(old.points);
+    this.place(tile);
+    this.refresh();
+  }
+
+  private place(tile: Tile): void {
     tile.points.onBeforeRender = () => {
       this.uniforms.spread.value = tile.spread;
       this.material.uniformsNeedUpdate = true;
     };
     this.cloud.add(tile.points);
-    if (!this.isStale) this.detail.add(tile, this.camera);
   }
 
   /** Draws the points anew: the camera has changed, or which points are shown. */
