@@ -49,6 +49,16 @@ void Walker::look() {
   looked_at_m_ = length_m_;
 }
 
+bool Walker::doubtMap() {
+  bool any = false;
+  for (std::uint32_t cell = 0; cell < nearest_.size(); ++cell)
+    if (std::isinf(nearest_[cell]) && belief_.closure[cell] != tasks::Closure::Open && world_.isInSite(cell)) {
+      belief_.closure[cell] = tasks::Closure::Open;
+      any = true;
+    }
+  return any;
+}
+
 std::vector<std::uint32_t> Walker::takeSeen() {
   std::sort(seen_.begin(), seen_.end());
   seen_.erase(std::unique(seen_.begin(), seen_.end()), seen_.end());
@@ -81,31 +91,41 @@ bool Walker::walkTo(std::uint32_t goal, const Enough& isEnough, const tasks::Che
   return true;
 }
 
+/// What was looked at from within the view is done with. When nothing is left, what hides is sought from half as far.
 double searchLength(const SearchWorld& world, const std::vector<rdf::UsualPlace>& places) {
-  constexpr double missed = 0.1;  // a place that was looked at may still hide something
   const tasks::TerrainGrid terrain = world.terrain();
   const rdf::OntologyView ontology = ontologyViewOf(world.map().quads());
   Walker walker(world);
   tasks::SearchParams search;
   search.view_m = world.params().view_m;
   search.eye_m = world.params().eye_m;
-  tasks::SearchField field = fieldOf(world.frame(), knownShare(world.map(), terrain, walker.sight(), search),
-                                     evidenceOf(world.map(), terrain, ontology, places));
+  const tasks::SearchField prior = fieldOf(world.frame(), knownShare(world.map(), terrain, walker.sight(), search),
+                                           evidenceOf(world.map(), terrain, ontology, places));
+  tasks::SearchField field = prior;
   tasks::TourParams tour;
   tour.max_stops = 1;
   tour.min_probability = 0;
   while (!walker.isDone() && walker.length_m() < kLongest_m) {
-    for (const std::uint32_t cell : walker.takeSeen()) field.probability[cell] *= missed;
+    for (const std::uint32_t cell : walker.takeSeen())
+      if (walker.nearest()[cell] <= search.view_m) field.probability[cell] = 0;
     const auto stops =
         tourOf(walker.belief(), walker.sight(), field, world.frame().centreOf(walker.at()), search, tour);
-    if (stops.empty()) return kInfinite;
+    if (stops.empty() || !(stops[0].probability > 0)) {
+      if (walker.doubtMap()) continue;  // the map enclosed the walker
+      search.view_m /= 2;
+      if (search.view_m < world.params().cell_m) return kInfinite;
+      field = prior;
+      for (std::uint32_t cell = 0; cell < field.probability.size(); ++cell)
+        if (walker.nearest()[cell] <= search.view_m) field.probability[cell] = 0;
+      continue;
+    }
     const std::uint32_t goal = stops[0].cell;
     if (goal == walker.at()) walker.look();
-    if (!walker.walkTo(goal, [] { return false; }))  // no way leads there
-      for (const std::uint32_t cell : visibleFrom(walker.sight(), goal, search.view_m))
-        field.probability[cell] *= missed;
+    walker.walkTo(goal, [] { return false; });
+    // What was expected in sight and is not, or where no way leads, cannot be seen from here.
+    for (const std::uint32_t cell : visibleFrom(walker.sight(), goal, search.view_m)) field.probability[cell] = 0;
   }
-  return walker.length_m();
+  return walker.isDone() ? walker.length_m() : kInfinite;
 }
 
 double frontierLength(const SearchWorld& world, bool spares_known) {
@@ -134,7 +154,7 @@ double frontierLength(const SearchWorld& world, bool spares_known) {
     if (best == kInfinite) {  // all was looked at: what was spared, then nearer
       const bool has_spared = std::count(is_later.begin(), is_later.end(), 1) > 0;
       std::fill(is_later.begin(), is_later.end(), std::uint8_t{0});
-      if (!has_spared) near_m /= 2;
+      if (!has_spared && !walker.doubtMap()) near_m /= 2;
       continue;
     }
     if (!walker.walkTo(
@@ -149,6 +169,7 @@ double lanesLength(const SearchWorld& world) {
   const tasks::GridFrame& frame = world.frame();
   double apart_m = 1.8 * world.params().view_m;
   for (int round = 0; round < 4 && !walker.isDone(); ++round, apart_m /= 2) {
+    if (round > 0) walker.doubtMap();
     const int pitch = std::max(1, static_cast<int>(apart_m / frame.cell_m)), step = static_cast<int>(5 / frame.cell_m);
     bool is_backwards = false;
     for (int row = pitch / 2; row < frame.rows && !walker.isDone(); row += pitch, is_backwards = !is_backwards)

@@ -30,6 +30,9 @@ class Walker {
   /// Cells that were in sight since this was called last, ascending.
   std::vector<std::uint32_t> takeSeen();
   void look();
+  /// Takes for open what the map calls closed and was not looked at: the map may be wrong. False when there is nothing
+  /// left to doubt.
+  bool doubtMap();
   bool isFound(std::size_t target) const { return is_found_[target]; }
   const SearchWorld& world() const { return world_; }
 

@@ -47,6 +47,7 @@ class SearchWorld {
   tasks::PassableGrid belief() const;
   tasks::TerrainGrid terrain() const;
   Eigen::Vector2d start() const;
+  bool isInSite(std::uint32_t cell) const { return isInSite(frame_.centreOf(cell)); }
 
  private:
   void rasterise();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "mapping/change/map_change.hpp"
 #include "tasks/ask/inventory_task.hpp"
 #include "tasks/campus_map_fixture.hpp"
 #include "tasks/search/next_view.hpp"
@@ -85,6 +86,25 @@ TEST(QuestionsOfACampus, TheInventoryHasTheWidthsOfSidewalks) {
   EXPECT_GT(length_m, 8);
   params.with_sidewalks = false;
   EXPECT_TRUE(inventoryOf(CampusMap::shared().map(), params).empty());
+}
+
+TEST(QuestionsOfACampus, TheInventoryTellsWhichRulesOfPlacesAreMissing) {
+  const auto notes = [](const MapReader& map) {
+    std::string all;
+    for (const std::string& note : inventoryAnswer(map, {.classes = {}}, {}).notes) all += note + "\n";
+    return all;
+  };
+  EXPECT_EQ(notes(CampusMap::shared().map()).find("not listed"), std::string::npos);
+  const ScratchFolder folder;
+  const auto file = folder.path() / "bare.clx";
+  std::filesystem::copy_file(CampusMap::shared().file(), file);
+  ProgressSink silence;
+  const auto without = [](MapInputs inputs) {
+    inputs.sparql_rules.clear();
+    return inputs;
+  };
+  applyInputs(file, without, {}, silence);
+  EXPECT_NE(notes(MapReader(file)).find("parking rows and sidewalks are not listed"), std::string::npos);
 }
 
 TEST(QuestionsOfACampus, ARegisterOfTheMapItselfMatchesWhole) {

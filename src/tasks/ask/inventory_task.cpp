@@ -191,6 +191,26 @@ Task changesTask() {
 
 }  // namespace
 
+namespace {
+
+/// Tells of places that are asked for and that none of the map's SPARQL rules makes.
+std::optional<std::string> noteOfMissingRules(const mapping::MapReader& map, const InventoryParams& params) {
+  const mapping::MapInputs inputs = map.inputs();
+  const auto is_made = [&](const char* class_name) {
+    return std::any_of(inputs.sparql_rules.begin(), inputs.sparql_rules.end(),
+                       [&](const mapping::NamedText& rule) { return rule.text.find(class_name) != std::string::npos; });
+  };
+  std::string missing;
+  if (params.with_rows && !is_made("ParkingRow")) missing = "parking rows";
+  if (params.with_sidewalks && !is_made("Sidewalk")) missing += missing.empty() ? "sidewalks" : " and sidewalks";
+  if (missing.empty()) return std::nullopt;
+  return missing +
+         " are not listed: the map was built without SPARQL rules that make them; apply the rule files of "
+         "rules/ that end in .rq to the map";
+}
+
+}  // namespace
+
 TaskAnswer inventoryAnswer(const mapping::MapReader& map, const InventoryParams& params,
                            const std::vector<Street>& streets) {
   TaskAnswer answer{inventoryColumns(), {}};
@@ -206,6 +226,7 @@ TaskAnswer inventoryAnswer(const mapping::MapReader& map, const InventoryParams&
   std::string note;
   for (const auto& [kind, count] : counts) note += (note.empty() ? "" : ", ") + std::to_string(count) + " " + kind;
   if (!note.empty()) answer.notes.push_back(note);
+  if (const auto missing = noteOfMissingRules(map, params)) answer.notes.push_back(*missing);
   return answer;
 }
 
