@@ -2,10 +2,8 @@
 // Object names change with their members; points do not.
 #include "mapping/statements/stated_subjects.hpp"
 
-#include <chrono>
 #include <set>
 
-#include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/map_things.hpp"
@@ -71,9 +69,6 @@ void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs&
   if (about_objects.empty()) return;
   const StatedObjects objects(transaction, parsed);
   rdf::QuadWriter writer(transaction);
-  const Term history = Term::iri(rdf::vocabulary::kGraphHistory);
-  const double now_s = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-  const Term now = Term::literal(dateTimeText(now_s), rdf::vocabulary::xsd("dateTime"));
   std::size_t anchored = 0;
   for (const Quad& quad : about_objects) {
     auto anchor = objects.anchorOfIri(quad.subject.text);
@@ -82,25 +77,30 @@ void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs&
     writer.remove(rdf::QuadIds{writer.intern(quad.subject), writer.intern(quad.predicate), writer.intern(quad.object),
                                writer.intern(quad.graph)});
     for (const Quad& stated : quadsOf(statement)) writer.add(stated);
-    writer.add(Quad{Term::iri(rdf::iriOfStatement(statement.id())),
-                    Term::iri(std::string(rdf::vocabulary::kProv) + "generatedAtTime"), now, history});
     ++anchored;
   }
   writer.flush();
   if (anchored > 0) sink.note(std::to_string(anchored) + " statements about objects are anchored to their points");
 }
 
-bool haveNewStatements(const rdf::ReadTransaction& transaction) {
+NewStatements newStatements(const rdf::ReadTransaction& transaction) {
   const rdf::QuadReader reader(transaction);
-  std::set<std::string> stated, told;
-  for (const Statement& statement : storedStatements(reader)) stated.insert(rdf::iriOfStatement(statement.id()));
+  std::set<std::string> told, stated;
   const auto effect = reader.idOf(Term::iri(rdf::vocabulary::clx("statementEffect")));
   const auto observed = reader.idOf(Term::iri(rdf::vocabulary::kGraphObserved));
   if (effect && observed) {
     rdf::QuadCursor cursor = reader.scan({.s = {}, .p = *effect, .o = {}, .g = *observed});
     for (rdf::QuadIds quad; cursor.next(quad);) told.insert(reader.termOf(quad.s).text);
   }
-  return stated != told;
+  NewStatements news;
+  for (Statement& statement : storedStatements(reader)) {
+    const std::string iri = rdf::iriOfStatement(statement.id());
+    stated.insert(iri);
+    if (!told.contains(iri)) news.made.push_back(std::move(statement));
+  }
+  for (const std::string& iri : told)
+    if (!stated.contains(iri)) news.withdrawn.push_back(ContentHash::fromHex(iri.substr(iri.rfind('/') + 1)));
+  return news;
 }
 
 }  // namespace cluxel::mapping
