@@ -3,6 +3,7 @@
 #include "mapping/statements/stated_subjects.hpp"
 
 #include <set>
+#include <unordered_map>
 
 #include "cluxel/error.hpp"
 #include "mapping/build/operator_statements.hpp"
@@ -25,26 +26,32 @@ bool namesObject(const Term& subject) {
 class StatedObjects {
  public:
   StatedObjects(const rdf::ReadTransaction& transaction, const ParsedInputs& parsed)
-      : reader_(transaction), objects_(storedObjects(transaction)), stages_(parsed.model, parsed.inputs.params) {
+      : objects_(storedObjects(transaction)),
+        stages_(parsed.model, parsed.inputs.params),
+        lineage_(rdf::QuadReader(transaction), idsOf(objects_)) {
     stages_.loadAll(transaction);
-    for (const rules::SemanticObject& object : objects_) ids_.push_back(object.id);
+    for (std::size_t i = 0; i < objects_.size(); ++i) number_of_[rdf::iriOfObject(objects_[i].id)] = i;
   }
 
   std::optional<PointAnchor> anchorOfIri(const std::string& iri) const {
-    for (const rules::SemanticObject& object : objects_)
-      if (rdf::iriOfObject(object.id) == iri) return anchorOf(stages_, object);
-    const auto former = objectByLineage(reader_, iri, ids_);
-    if (!former) return std::nullopt;
-    for (const rules::SemanticObject& object : objects_)
-      if (object.id == former->object) return anchorOf(stages_, object);
-    return std::nullopt;
+    auto number = number_of_.find(iri);
+    if (number == number_of_.end())
+      if (const auto former = lineage_.find(iri)) number = number_of_.find(rdf::iriOfObject(former->object));
+    if (number == number_of_.end()) return std::nullopt;
+    return anchorOf(stages_, objects_[number->second]);
   }
 
  private:
-  rdf::QuadReader reader_;
+  static std::vector<ContentHash> idsOf(const std::vector<rules::SemanticObject>& objects) {
+    std::vector<ContentHash> ids;
+    for (const rules::SemanticObject& object : objects) ids.push_back(object.id);
+    return ids;
+  }
+
   std::vector<rules::SemanticObject> objects_;
-  std::vector<ContentHash> ids_;
   TileStages stages_;
+  Lineage lineage_;
+  std::unordered_map<std::string, std::size_t> number_of_;
 };
 
 Statement statementOf(const Quad& quad, PointAnchor anchor, const rules::ClassCatalogue& classes) {
