@@ -144,15 +144,14 @@ class ChangeSequence {
 
   /// Some statement about an object or a region of the map.
   Statement some(const MapReader& reader) {
-    if (oneIn(6)) {
+    std::vector<const rules::SemanticObject*> things;
+    for (const rules::SemanticObject& object : reader.objects())
+      if (object.class_iri != vocabulary::clx("Ground")) things.push_back(&object);
+    if (things.empty() || oneIn(6)) {
       const Eigen::Vector3d at = reader.clouds()[below(reader.clouds().size())].T_map_sensor.translation();
       const double x = at.x() + static_cast<double>(below(20)), y = at.y() + static_cast<double>(below(20));
       return {StatementKind::IgnoreRegion, "", {}, {}, regionAnchor(reader.clouds(), {{x, y}, {x + 6, y}, {x, y + 6}})};
     }
-    std::vector<const rules::SemanticObject*> things;
-    for (const rules::SemanticObject& object : reader.objects())
-      if (object.class_iri != vocabulary::clx("Ground")) things.push_back(&object);
-    if (things.empty()) throw std::runtime_error("the campus has nothing but ground");
     const rules::SemanticObject& thing = *things[below(things.size())];
     const PointAnchor anchor = anchorOf(reader.stages(), thing);
     static const std::vector<std::string> classes{"Tree", "StreetSign", "Pole", "Vehicle", "StreetFurniture"};
