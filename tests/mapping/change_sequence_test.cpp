@@ -309,7 +309,7 @@ TEST(ChangeSequences, GiveTheMapOfABuildFromTheInputsAfterEachOperation) {
   const std::vector<MapInputs> inputs{shipped, replaced(shipped, "bush_top: 1.7 m", "bush_top: 1.2 m"),
                                       replaced(shipped, "group: { near: 1.5 m }", "group: { near: 0.2 m }")};
   std::size_t stated = 0, applied = 0;
-  for (unsigned seed = 0; seed < (is_long ? 5 : 1); ++seed) {
+  for (unsigned seed = 0; seed < (is_long ? 6 : 1); ++seed) {
     ChangeSequence sequence(seed, scans, inputs);
     for (int i = 0; i < (is_long ? 50 : 8) && !testing::Test::HasFailure(); ++i) {
       const std::string operation = sequence.step();
