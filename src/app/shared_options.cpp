@@ -59,7 +59,7 @@ void refuseToReplaceMap(const fs::path& output) {
   std::error_code ignored;
   if (fs::is_regular_file(output, ignored) && rdf::looksLikeMap(output))
     throw Error(ErrorKind::StoreUnavailable,
-                output.string() + ": is a map, which the page would replace; name another file");
+                output.string() + ": is a map, which the output would replace; name another file");
 }
 
 }  // namespace cluxel::app

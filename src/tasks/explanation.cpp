@@ -95,7 +95,7 @@ struct Named {
 std::optional<mapping::FormerName> formerName(const mapping::MapReader& map, const std::string& name) {
   std::vector<ContentHash> present;
   for (const rules::SemanticObject& object : map.objects()) present.push_back(object.id);
-  return mapping::objectByLineage(map.quads(), name, present);
+  return mapping::Lineage(map.quads(), present).find(name);
 }
 
 std::size_t numberOf(const std::vector<rules::SemanticObject>& objects, const ContentHash& id) {

@@ -135,6 +135,7 @@ TEST_F(Program, AnUnknownOptionIsNamedWithTheNearest) {
   expectError(run("query --frmat=csv"), 2, "'--frmat'");
   expectError(run("doctor " + map() + " --jsn"), 2, "did you mean '--json'?");
   expectError(run("tasks --thread 2"), 2, "did you mean '--threads'?");
+  expectError(run("--json doctor " + map()), 2, "the option '--json' belongs after the command");
   expectError(run("doctor " + map() + " another.clx"), 2, "doctor: 'another.clx' is one argument too many");
 }
 

@@ -31,7 +31,7 @@ class ThingNames : public testing::Test {
   std::optional<FormerName> found(const std::string& name) const {
     std::vector<ContentHash> ids;
     for (const ObjectMembers& object : present) ids.push_back(object.id);
-    return objectByLineage(QuadReader(environment->read()), name, ids);
+    return Lineage(QuadReader(environment->read()), ids).find(name);
   }
 
   ScratchFolder folder;
@@ -47,6 +47,9 @@ TEST_F(ThingNames, StayWhenAnObjectGainsAndLosesMembers) {
   const auto former = found("object/" + hashOf("small").hex());
   ASSERT_TRUE(former);
   EXPECT_EQ(former->object, hashOf("grown"));
+  EXPECT_EQ(found(rdf::iriOfObject(hashOf("small")))->object, hashOf("grown"));
+  EXPECT_EQ(found(rdf::iriOfThing(hashOf("small")))->object, hashOf("grown"));
+  EXPECT_FALSE(found(rdf::iriOfObject(hashOf("unknown"))));
   change({thingMembers("small", {1, 2})});
   EXPECT_EQ(nameOfObject("small"), rdf::iriOfThing(hashOf("small")));
 }

@@ -123,6 +123,18 @@ TEST(RdfReader, RefusesBytesThatAreNotUtf8NamingThePlace) {
   EXPECT_EQ(toString(faults[0].location), "test.ttl:2:5");
 }
 
+TEST(RdfReader, RefusesEscapesOfWhatIsNoCharacter) {
+  for (const std::string escape : {"\\u0000", "\\U00000000", "\\uD800", "\\udfff", "\\U0000DC00", "\\uD83D\\uDE00"})
+    for (const std::string& text : {"<a:a> <a:b>\n  \"x" + escape + "y\" .", "<a:a>\n<a:b" + escape + "> <a:c> ."}) {
+      const auto faults = faultsOf(turtle(text));
+      ASSERT_EQ(faults.size(), 1U) << text;
+      EXPECT_EQ(faults[0].location.line, 2U) << text;
+    }
+  const auto quads = parse(turtle("<a:a> <a:b> \"\\\\u0000 \\\\\\u0041 \\U0001F600\" ."));
+  ASSERT_EQ(quads.size(), 1U);
+  EXPECT_EQ(quads[0].object.text, "\\u0000 \\A \xF0\x9F\x98\x80");
+}
+
 TEST(RdfReader, RefusesLanguageTagsThatRaptorWouldReadBeyond) {
   const auto faults = faultsOf(turtle("<a> <b>\n  \"x\"@en-" + std::string(300, 'a') + " ."));
   ASSERT_EQ(faults.size(), 1U);

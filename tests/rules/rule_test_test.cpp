@@ -186,6 +186,32 @@ TEST_F(RuleTestFolder, CountsBothWaysOutOfEachBranch) {
   EXPECT_EQ(report.branches[1].hits, 0U);
 }
 
+TEST_F(RuleTestFolder, CountsTheWayOfEndsThatNoScanShows) {
+  writeFile(folder_ / "bin.rules.yaml", R"(apiVersion: cluxel.rules/v1
+prefixes: { clx: "https://w3id.org/cluxel/ontology#" }
+order: [clx:SmallObject]
+rules:
+  - id: bin/one
+    class: clx:SmallObject
+    seed: { label: small_structure }
+    tree:
+      test: height <= 1 m
+      yes: { accept: { confidence: 0.7 } }
+      unseen:
+        test: width <= 1 m
+        yes: { accept: { confidence: 0.5 } }
+        no: { reject: too wide }
+      no: { reject: too high }
+)");
+  const auto hitsOfUnseen = [&](const std::string& view) {
+    for (const BranchCoverage& branch : run(binTest("{ count: { clx:SmallObject: 1 } }", view)).branches)
+      if (branch.way == "unseen") return static_cast<int>(branch.hits);
+    return -1;
+  };
+  EXPECT_EQ(hitsOfUnseen("    views: [ { from: [-10, 0, 2], up_to: -5.8 deg } ]\n"), 1);
+  EXPECT_EQ(hitsOfUnseen("    views: [ { from: [-10, 0, 2], up_to: 8 deg } ]\n"), 0);
+}
+
 TEST_F(RuleTestFolder, CoversTheRulesOfItsFilesAndNotOfThoseTheyInclude) {
   writeFile(folder_ / "mine.rules.yaml", R"(apiVersion: cluxel.rules/v1
 include: [ bin.rules.yaml ]

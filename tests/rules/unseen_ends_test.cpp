@@ -79,6 +79,13 @@ TEST(UnseenEnd, IsSeenAsSoonAsOneScanShowsIt) {
   EXPECT_EQ(reasonOf(poleSeen(2.35, {}), rules), "too low") << "nothing is known of any sensor";
 }
 
+TEST(UnseenEnd, IsSeenWhereAScanOfUnknownPlaceSawMoreThanTheOthersCan) {
+  const RuleSet rules = rulesOfPoles("top between 1 m and 6 m");
+  EXPECT_EQ(reasonOf(poleSeen(5, {kUpToTwoDegrees}), rules), "accepted") << "the known field of view ends at 2.35 m";
+  const BoxView cut{{0, 1, 2}, 17 * kDegree_rad};  // 5.06 m high at 10 m
+  EXPECT_EQ(reasonOf(poleSeen(5, {kUpToTwoDegrees, cut}), rules), "its top was not seen");
+}
+
 TEST(UnseenEnd, OfAllTheLeastTrueCountsAndOfAnyTheMostTrue) {
   const BoxScene boxes = poleSeen(2.35, {kUpToTwoDegrees});
   const auto reasonWith = [&](const std::string& condition) {

@@ -2,6 +2,8 @@
 // CLI11 only says that an argument was not expected; this names the nearest expected one.
 #include "app/console/usage_fault.hpp"
 
+#include <algorithm>
+
 #include <vector>
 
 #include "base/nearest_name.hpp"
@@ -58,7 +60,10 @@ std::string didYouMean(const std::string& name, const Names& known) {
 std::string unexpected(const std::string& argument, const Reached& reached) {
   if (argument.starts_with('-')) {
     const std::string option = argument.substr(0, argument.find('='));
-    return "there is no option '" + option + "'" + didYouMean(option, optionsOf(*reached.command));
+    const Names known = optionsOf(*reached.command);
+    if (std::find(known.begin(), known.end(), option) != known.end())
+      return "the option '" + option + "' belongs after the command: 'cluxel " + reached.name + " ... " + option + "'";
+    return "there is no option '" + option + "'" + didYouMean(option, known);
   }
   const Names commands = commandsOf(*reached.command);
   if (commands.empty()) return "'" + argument + "' is one argument too many";

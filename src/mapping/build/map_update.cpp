@@ -11,6 +11,8 @@
 #include "mapping/map_state.hpp"
 #include "mapping/object_store.hpp"
 #include "mapping/statements/stated_subjects.hpp"
+#include "mapping/statements/stated_values.hpp"
+#include "mapping/statements/statement_history.hpp"
 #include "rdf/file/map_replacement.hpp"
 #include "rdf/store/flush_poll.hpp"
 
@@ -34,12 +36,25 @@ rdf::InferenceCheck checkOf(const sparql::QueryBudget& budget, Clock::time_point
   return {held, budget.max_memory_bytes};
 }
 
+/// Checks and records statements that the update made or withdrew as quads. False when there are none.
+bool takeNewStatements(rdf::WriteTransaction& transaction, const rules::ClassCatalogue& classes) {
+  const NewStatements news = newStatements(transaction);
+  std::vector<ContentHash> made;
+  for (const Statement& statement : news.made) {
+    requireStatable(statement, classes);
+    made.push_back(statement.id());
+  }
+  recordStatements(transaction, made, news.withdrawn);
+  return !made.empty() || !news.withdrawn.empty();
+}
+
 }  // namespace
 
 void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink, const rdf::InferenceCheck& check) {
   const ParsedInputs parsed = parseInputs(storedInputs(transaction));
   anchorStatedObjects(transaction, parsed, sink);
-  if (parsed.rules.asks_map || haveNewStatements(transaction)) {
+  const bool has_news = takeNewStatements(transaction, parsed.rules.catalogue);
+  if (parsed.rules.asks_map || has_news) {
     TileStages stages(parsed.model, parsed.inputs.params);
     stages.loadAll(transaction);
     if (check) check(0);

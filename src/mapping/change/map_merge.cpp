@@ -12,6 +12,7 @@
 #include "mapping/change/scan_additions.hpp"
 #include "mapping/map_reader.hpp"
 #include "mapping/map_state.hpp"
+#include "mapping/statements/statement_history.hpp"
 #include "rdf/file/map_replacement.hpp"
 
 namespace cluxel::mapping {
@@ -128,6 +129,7 @@ class Merge {
       copyOperatorStatements(readers_[i].quads(), additions.transaction(), "of" + std::to_string(i) + scansHash(i));
       copyHistory(readers_[i].quads(), additions.transaction());
     }
+    leaveOutWithdrawn(additions);
     for (std::size_t i = 0; i < maps_.size(); ++i) {
       if (i == base) continue;
       const auto other = membersOf(readers_[i].objects(), readers_[i].scene().cluxels);
@@ -137,6 +139,20 @@ class Merge {
     additions.finish();
     editor.handOnNames();
     return std::move(editor.result());
+  }
+
+  /// An older copy of a map does not bring back what was withdrawn since.
+  void leaveOutWithdrawn(ScanAdditions& additions) {
+    std::vector<const rdf::QuadReader*> maps;
+    for (const MapReader& reader : readers_) maps.push_back(&reader.quads());
+    const std::vector<ContentHash> withdrawn = withdrawnAmong(maps);
+    for (const ContentHash& id : withdrawn) eraseStatement(additions.transaction(), id);
+    if (withdrawn.empty()) return;
+    std::vector<std::string> ids;
+    for (const ContentHash& id : withdrawn) ids.push_back(id.hex());
+    sink_.note(std::to_string(ids.size()) +
+               " operator statements are left out, because one of the maps has withdrawn " + "them: " + joined(ids) +
+               "; state them again to have them");
   }
 
   /// Names a map by its scans, in digits.

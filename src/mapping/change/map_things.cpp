@@ -151,12 +151,21 @@ class Naming {
     if (known == things_.end()) return std::nullopt;
     for (const Thing& thing : known->second) {
       if (!held_.insert(thing.iri).second) continue;
-      forEachLink(reader_, "invalidatedAtTime", [&](const Term& subject, const Term& time) {
-        if (subject.text == thing.iri) remove(thing.iri, "invalidatedAtTime", time);
-      });
+      const auto [begin, end] = ends().equal_range(thing.iri);
+      for (auto time = begin; time != end; ++time) remove(thing.iri, "invalidatedAtTime", time->second);
       return thing;
     }
     return std::nullopt;
+  }
+
+  /// The recorded ends of things.
+  const std::multimap<std::string, Term>& ends() {
+    if (!ends_) {
+      ends_.emplace();
+      forEachLink(reader_, "invalidatedAtTime",
+                  [&](const Term& subject, const Term& time) { ends_->emplace(subject.text, time); });
+    }
+    return *ends_;
   }
 
   Thing named(const ContentHash& object) {
@@ -195,33 +204,8 @@ class Naming {
   std::map<std::string, std::string> times_;
   std::set<std::string> held_;  ///< things that have an object after the change
   std::set<std::string> ended_;
+  std::optional<std::multimap<std::string, Term>> ends_;  ///< read when it is needed
 };
-
-/// What a name may mean: a thing, or a former object.
-struct Meaning {
-  std::set<std::string> things;
-  std::string text;
-};
-
-Meaning meaningOf(const Things& things, const std::map<std::string, std::string>& times, const std::string& name) {
-  Meaning meaning;
-  const auto fits = [&](const std::string& kind, const std::string& hex) {
-    const std::string path = kind + "/" + hex;
-    return path.starts_with(name) || hex.starts_with(name) || name.ends_with("/map/" + path);
-  };
-  const auto localOf = [](const std::string& iri) { return iri.substr(iri.rfind('/') + 1); };
-  for (const auto& [iri, time] : times)
-    if (fits("thing", localOf(iri))) {
-      meaning.things.insert(iri);
-      meaning.text = "thing/" + localOf(iri);
-    }
-  for (const auto& [object, of_object] : things)
-    if (fits("object", object.hex())) {
-      meaning.things.insert(of_object.front().iri);
-      if (meaning.text.empty()) meaning.text = "former object/" + object.hex();
-    }
-  return meaning;
-}
 
 }  // namespace
 
@@ -258,26 +242,56 @@ void copyHistory(const rdf::QuadReader& from, rdf::WriteTransaction& into) {
   writer.flush();
 }
 
-std::optional<FormerName> objectByLineage(const rdf::QuadReader& quads, const std::string& name,
-                                          const std::vector<ContentHash>& present) {
-  const Things things = storedThings(quads);
-  const Meaning meaning = meaningOf(things, timesOf(quads), name);
-  std::map<std::string, ContentHash> object_of;
-  for (const ContentHash& object : present) object_of[thingOf(things, object).iri] = object;
-  std::multimap<std::string, std::string> later;
+Lineage::Lineage(const rdf::QuadReader& quads, const std::vector<ContentHash>& present)
+    : things_(storedThings(quads)), times_(timesOf(quads)) {
+  for (const ContentHash& object : present) object_of_[thingOf(things_, object).iri] = object;
   forEachLink(quads, "wasDerivedFrom", [&](const Term& thing, const Term& from) {
-    if (hashIn(thing.text, "thing")) later.emplace(from.text, thing.text);
+    if (hashIn(thing.text, "thing")) later_.emplace(from.text, thing.text);
   });
+}
+
+Lineage::Meaning Lineage::meaningOf(const std::string& name) const {
+  const auto localOf = [](const std::string& iri) { return iri.substr(iri.rfind('/') + 1); };
+  Meaning meaning;
+  const auto addThing = [&](const std::string& iri) {
+    meaning.things.insert(iri);
+    meaning.text = "thing/" + localOf(iri);
+  };
+  const auto addObject = [&](const ContentHash& object, const std::vector<Thing>& of_object) {
+    meaning.things.insert(of_object.front().iri);
+    if (meaning.text.empty()) meaning.text = "former object/" + object.hex();
+  };
+  if (const auto object = hashIn(name, "object")) {
+    if (const auto known = things_.find(*object); known != things_.end()) addObject(*object, known->second);
+    return meaning;
+  }
+  if (hashIn(name, "thing")) {
+    if (times_.contains(name)) addThing(name);
+    return meaning;
+  }
+  const auto fits = [&](const std::string& kind, const std::string& hex) {
+    const std::string path = kind + "/" + hex;
+    return path.starts_with(name) || hex.starts_with(name) || name.ends_with("/map/" + path);
+  };
+  for (const auto& [iri, time] : times_)
+    if (fits("thing", localOf(iri))) addThing(iri);
+  for (const auto& [object, of_object] : things_)
+    if (fits("object", object.hex())) addObject(object, of_object);
+  return meaning;
+}
+
+std::optional<FormerName> Lineage::find(const std::string& name) const {
+  const Meaning meaning = meaningOf(name);
   std::set<ContentHash> found;
   std::set<std::string> seen = meaning.things;
   for (std::vector<std::string> open(seen.begin(), seen.end()); !open.empty();) {
     const std::string thing = open.back();
     open.pop_back();
-    if (const auto object = object_of.find(thing); object != object_of.end()) {
+    if (const auto object = object_of_.find(thing); object != object_of_.end()) {
       found.insert(object->second);
       continue;  // the object kept its name; other successors do not matter
     }
-    const auto [begin, end] = later.equal_range(thing);
+    const auto [begin, end] = later_.equal_range(thing);
     for (auto next = begin; next != end; ++next)
       if (seen.insert(next->second).second) open.push_back(next->second);
   }

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -43,10 +44,29 @@ struct FormerName {
   ContentHash object;   ///< the present object
   std::string meaning;  ///< "was object/HEX" or "is thing/HEX", for people
 };
-/// The present object that goes on under the name of a thing or of a former object: an IRI, thing/HEX, object/HEX, or
-/// the first digits of a hash (four or more). Absent when there is none, or several. `present` are the objects that
-/// there are.
-std::optional<FormerName> objectByLineage(const rdf::QuadReader& quads, const std::string& name,
-                                          const std::vector<ContentHash>& present);
+/// What went on in what, read once for many names.
+class Lineage {
+ public:
+  /// `present` are the objects that there are.
+  Lineage(const rdf::QuadReader& quads, const std::vector<ContentHash>& present);
+
+  /// The present object that goes on under the name of a thing or of a former object: an IRI, thing/HEX, object/HEX, or
+  /// the first digits of a hash (four or more). Absent when there is none, or several. Cost of an IRI: that of its own
+  /// lineage; of digits: all things.
+  std::optional<FormerName> find(const std::string& name) const;
+
+ private:
+  /// What a name may mean: a thing, or a former object.
+  struct Meaning {
+    std::set<std::string> things;
+    std::string text;
+  };
+  Meaning meaningOf(const std::string& name) const;
+
+  std::map<ContentHash, std::vector<Thing>> things_;
+  std::map<std::string, std::string> times_;       ///< of all things
+  std::map<std::string, ContentHash> object_of_;   ///< present ones, by thing
+  std::multimap<std::string, std::string> later_;  ///< thing → thing that was derived from it
+};
 
 }  // namespace cluxel::mapping

@@ -3,13 +3,11 @@
 #include "mapping/change/statement_change.hpp"
 
 #include <algorithm>
-#include <array>
-#include <chrono>
 #include <set>
 
-#include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/statements/stated_values.hpp"
+#include "mapping/statements/statement_history.hpp"
 #include "rdf/map_iris.hpp"
 
 namespace cluxel::mapping {
@@ -20,14 +18,6 @@ using rdf::vocabulary::clx;
 
 constexpr std::size_t kStatementDigits = 4;
 
-std::string dateTimeNow() {
-  return dateTimeText(std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count());
-}
-
-std::string provTerm(std::string_view local) {
-  return std::string(rdf::vocabulary::kProv).append(local);
-}
-
 /// The quads of one subject in a graph.
 std::vector<Quad> quadsAbout(const rdf::QuadReader& reader, const std::string& iri, std::string_view graph_iri) {
   const auto subject = reader.idOf(Term::iri(iri)), graph = reader.idOf(Term::iri(graph_iri));
@@ -37,39 +27,6 @@ std::vector<Quad> quadsAbout(const rdf::QuadReader& reader, const std::string& i
   for (rdf::QuadIds quad; cursor.next(quad);)
     quads.push_back({reader.termOf(quad.s), reader.termOf(quad.p), reader.termOf(quad.o), reader.termOf(quad.g)});
   return quads;
-}
-
-void removeQuads(rdf::QuadWriter& writer, const std::vector<Quad>& quads) {
-  for (const Quad& quad : quads)
-    writer.remove(rdf::QuadIds{writer.intern(quad.subject), writer.intern(quad.predicate), writer.intern(quad.object),
-                               writer.intern(quad.graph)});
-}
-
-/// Writes the statements and who made them. A statement that comes back has a new author and is not withdrawn.
-void writeStatements(rdf::WriteTransaction& transaction, const StatementEdit& edit) {
-  rdf::QuadWriter writer(transaction);
-  const rdf::QuadReader reader(static_cast<const rdf::ReadTransaction&>(transaction));
-  const Term history = Term::iri(rdf::vocabulary::kGraphHistory);
-  const Term now = Term::literal(dateTimeNow(), rdf::vocabulary::xsd("dateTime"));
-  const auto record = [&](const std::string& iri, const std::string& author, const std::string& time) {
-    if (!edit.author.empty()) writer.add(Quad{Term::iri(iri), Term::iri(author), Term::literal(edit.author), history});
-    writer.add(Quad{Term::iri(iri), Term::iri(time), now, history});
-  };
-  for (const ContentHash& id : edit.withdrawn) {
-    const std::string iri = rdf::iriOfStatement(id);
-    const auto quads = quadsAbout(reader, iri, rdf::vocabulary::kGraphOperator);
-    if (quads.empty()) throw Error(ErrorKind::NotFound, "the map has no operator statement " + id.hex());
-    removeQuads(writer, quads);
-    record(iri, clx("withdrawnBy"), provTerm("invalidatedAtTime"));
-  }
-  for (const Statement& statement : edit.added) {
-    const std::string iri = rdf::iriOfStatement(statement.id());
-    if (!quadsAbout(reader, iri, rdf::vocabulary::kGraphOperator).empty()) continue;
-    removeQuads(writer, quadsAbout(reader, iri, rdf::vocabulary::kGraphHistory));
-    for (const Quad& quad : quadsOf(statement)) writer.add(quad);
-    record(iri, clx("statedBy"), provTerm("generatedAtTime"));
-  }
-  writer.flush();
 }
 
 /// The middle of what a scan saw from.
@@ -90,7 +47,9 @@ ChangeReport changeStatements(const std::filesystem::path& file, const Statement
                   "the statement " + statement.id().hex() + " is both made and withdrawn; do one of them");
   }
   rdf::WriteTransaction transaction = editor.begin();
-  writeStatements(transaction, edit);
+  for (const ContentHash& id : std::set<ContentHash>(edit.withdrawn.begin(), edit.withdrawn.end()))
+    withdrawStatement(transaction, id, edit.author);
+  for (const Statement& statement : edit.added) addStatement(transaction, statement, edit.author);
   editor.commit(transaction, "state", {}, {});
   return std::move(editor.result());
 }
@@ -121,10 +80,8 @@ std::vector<KnownStatement> knownStatements(const rdf::QuadReader& quads) {
       if (quad.predicate.text == clx("rulesSay")) known.rules_class = quad.object.text;
       if (quad.predicate.text == clx("contradictsRules")) known.contradicts = quad.object.text == "true";
     }
-    for (const Quad& quad : quadsAbout(quads, iri, rdf::vocabulary::kGraphHistory)) {
-      if (quad.predicate.text == clx("statedBy")) known.author = quad.object.text;
-      if (quad.predicate.text == provTerm("generatedAtTime")) known.stated_at = quad.object.text;
-    }
+    const StatementRecord record = recordOf(quads, statement.id());
+    known.author = record.author, known.stated_at = record.stated_at;
     all.push_back(std::move(known));
   }
   return all;

@@ -2,10 +2,9 @@
 // Object names change with their members; points do not.
 #include "mapping/statements/stated_subjects.hpp"
 
-#include <chrono>
 #include <set>
+#include <unordered_map>
 
-#include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/map_things.hpp"
@@ -27,26 +26,32 @@ bool namesObject(const Term& subject) {
 class StatedObjects {
  public:
   StatedObjects(const rdf::ReadTransaction& transaction, const ParsedInputs& parsed)
-      : reader_(transaction), objects_(storedObjects(transaction)), stages_(parsed.model, parsed.inputs.params) {
+      : objects_(storedObjects(transaction)),
+        stages_(parsed.model, parsed.inputs.params),
+        lineage_(rdf::QuadReader(transaction), idsOf(objects_)) {
     stages_.loadAll(transaction);
-    for (const rules::SemanticObject& object : objects_) ids_.push_back(object.id);
+    for (std::size_t i = 0; i < objects_.size(); ++i) number_of_[rdf::iriOfObject(objects_[i].id)] = i;
   }
 
   std::optional<PointAnchor> anchorOfIri(const std::string& iri) const {
-    for (const rules::SemanticObject& object : objects_)
-      if (rdf::iriOfObject(object.id) == iri) return anchorOf(stages_, object);
-    const auto former = objectByLineage(reader_, iri, ids_);
-    if (!former) return std::nullopt;
-    for (const rules::SemanticObject& object : objects_)
-      if (object.id == former->object) return anchorOf(stages_, object);
-    return std::nullopt;
+    auto number = number_of_.find(iri);
+    if (number == number_of_.end())
+      if (const auto former = lineage_.find(iri)) number = number_of_.find(rdf::iriOfObject(former->object));
+    if (number == number_of_.end()) return std::nullopt;
+    return anchorOf(stages_, objects_[number->second]);
   }
 
  private:
-  rdf::QuadReader reader_;
+  static std::vector<ContentHash> idsOf(const std::vector<rules::SemanticObject>& objects) {
+    std::vector<ContentHash> ids;
+    for (const rules::SemanticObject& object : objects) ids.push_back(object.id);
+    return ids;
+  }
+
   std::vector<rules::SemanticObject> objects_;
-  std::vector<ContentHash> ids_;
   TileStages stages_;
+  Lineage lineage_;
+  std::unordered_map<std::string, std::size_t> number_of_;
 };
 
 Statement statementOf(const Quad& quad, PointAnchor anchor, const rules::ClassCatalogue& classes) {
@@ -71,9 +76,6 @@ void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs&
   if (about_objects.empty()) return;
   const StatedObjects objects(transaction, parsed);
   rdf::QuadWriter writer(transaction);
-  const Term history = Term::iri(rdf::vocabulary::kGraphHistory);
-  const double now_s = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-  const Term now = Term::literal(dateTimeText(now_s), rdf::vocabulary::xsd("dateTime"));
   std::size_t anchored = 0;
   for (const Quad& quad : about_objects) {
     auto anchor = objects.anchorOfIri(quad.subject.text);
@@ -82,25 +84,30 @@ void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs&
     writer.remove(rdf::QuadIds{writer.intern(quad.subject), writer.intern(quad.predicate), writer.intern(quad.object),
                                writer.intern(quad.graph)});
     for (const Quad& stated : quadsOf(statement)) writer.add(stated);
-    writer.add(Quad{Term::iri(rdf::iriOfStatement(statement.id())),
-                    Term::iri(std::string(rdf::vocabulary::kProv) + "generatedAtTime"), now, history});
     ++anchored;
   }
   writer.flush();
   if (anchored > 0) sink.note(std::to_string(anchored) + " statements about objects are anchored to their points");
 }
 
-bool haveNewStatements(const rdf::ReadTransaction& transaction) {
+NewStatements newStatements(const rdf::ReadTransaction& transaction) {
   const rdf::QuadReader reader(transaction);
-  std::set<std::string> stated, told;
-  for (const Statement& statement : storedStatements(reader)) stated.insert(rdf::iriOfStatement(statement.id()));
+  std::set<std::string> told, stated;
   const auto effect = reader.idOf(Term::iri(rdf::vocabulary::clx("statementEffect")));
   const auto observed = reader.idOf(Term::iri(rdf::vocabulary::kGraphObserved));
   if (effect && observed) {
     rdf::QuadCursor cursor = reader.scan({.s = {}, .p = *effect, .o = {}, .g = *observed});
     for (rdf::QuadIds quad; cursor.next(quad);) told.insert(reader.termOf(quad.s).text);
   }
-  return stated != told;
+  NewStatements news;
+  for (Statement& statement : storedStatements(reader)) {
+    const std::string iri = rdf::iriOfStatement(statement.id());
+    stated.insert(iri);
+    if (!told.contains(iri)) news.made.push_back(std::move(statement));
+  }
+  for (const std::string& iri : told)
+    if (!stated.contains(iri)) news.withdrawn.push_back(ContentHash::fromHex(iri.substr(iri.rfind('/') + 1)));
+  return news;
 }
 
 }  // namespace cluxel::mapping

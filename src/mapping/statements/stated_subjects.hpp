@@ -14,7 +14,11 @@ namespace cluxel::mapping {
 /// computes itself, or a malformed statement; NotFound for a class that the ontology does not know.
 void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, ProgressSink& sink);
 
-/// Whether graph `operator` holds statements that the graph `observed` does not tell of, or the other way round.
-bool haveNewStatements(const rdf::ReadTransaction& transaction);
+/// What changed since the graph `observed` was written.
+struct NewStatements {
+  std::vector<Statement> made;         ///< of graph `operator`, that `observed` does not tell of
+  std::vector<ContentHash> withdrawn;  ///< that `observed` tells of, and graph `operator` no longer has
+};
+NewStatements newStatements(const rdf::ReadTransaction& transaction);
 
 }  // namespace cluxel::mapping

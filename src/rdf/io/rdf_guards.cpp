@@ -3,6 +3,9 @@
 #include "rdf/io/rdf_guards.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <optional>
 
 #include "base/ascii.hpp"
 #include "base/utf8.hpp"
@@ -35,6 +38,29 @@ void refuseLongTags(const RdfSource& source, const RdfPiece& piece) {
   }
 }
 
+/// The value of so many hexadecimal digits; absent when they are not there.
+std::optional<std::uint32_t> hexAt(std::string_view text, std::size_t at, std::size_t digits) {
+  std::uint32_t value = 0;
+  const std::string_view number = text.substr(std::min(at, text.size()), digits);
+  const auto [end, fault] = std::from_chars(number.data(), number.data() + number.size(), value, 16);
+  if (number.size() != digits || fault != std::errc() || end != number.data() + digits) return std::nullopt;
+  return value;
+}
+
+/// Raptor ends a text at an escaped zero, and makes bytes that are not UTF-8 of escaped surrogates.
+void refuseEscapes(const RdfSource& source, const RdfPiece& piece) {
+  const std::string_view text = piece.text;
+  for (std::size_t at = text.find('\\'); at != std::string_view::npos; at = text.find('\\', at + 2)) {
+    if (at + 1 == text.size()) return;
+    const char kind = text[at + 1];
+    if (kind != 'u' && kind != 'U') continue;
+    const auto code_point = hexAt(text, at + 2, kind == 'u' ? 4 : 8);
+    if (code_point == 0U) refuse(source, piece, at, "zero is no character of a text", "leave it out");
+    if (code_point && *code_point >= 0xD800 && *code_point <= 0xDFFF)
+      refuse(source, piece, at, "a surrogate is no character", "write the character itself, or \\U and eight digits");
+  }
+}
+
 /// In RDF/XML the tag is an attribute; entities and declared default values could hide its length.
 void refuseLongXmlTags(const RdfSource& source, const RdfPiece& piece) {
   const std::string_view text = piece.text;
@@ -59,6 +85,7 @@ void refuseHostileText(const RdfSource& source, const RdfPiece& piece) {
   if (const std::size_t zero = piece.text.find('\0'); zero != std::string_view::npos)
     refuse(source, piece, zero, "holds a zero byte, which no RDF text has");
   refuseLongTags(source, piece);
+  refuseEscapes(source, piece);
 }
 
 }  // namespace cluxel::rdf

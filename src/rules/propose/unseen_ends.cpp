@@ -33,7 +33,13 @@ class EndSight {
     if (views_.empty()) return false;
     double top = -std::numeric_limits<double>::infinity();
     for (const std::uint32_t cluxel : cluxels_) top = std::max(top, highOf(cluxel));
-    return std::all_of(views_.begin(), views_.end(), [&](std::uint32_t view) { return cutsOff(viewOf(view), top); });
+    bool is_cut = false;
+    for (const std::uint32_t view : views_) {
+      const TopInView in_view = topIn(viewOf(view), top);
+      if (in_view == TopInView::Shown) return false;
+      is_cut = is_cut || in_view == TopInView::Cut;
+    }
+    return is_cut;
   }
 
   bool isBottomUnseen() const {
@@ -65,16 +71,24 @@ class EndSight {
   double highOf(std::uint32_t cluxel) const { return all_.center[cluxel].z() + halfHeight(cluxel); }
   double lowOf(std::uint32_t cluxel) const { return all_.center[cluxel].z() - halfHeight(cluxel); }
 
-  /// Whether one of the highest cluxels reaches the upper edge of the scan's field of view.
-  bool cutsOff(const perception::SceneView& view, double top) const {
-    if (!view.sight.upper_edge) return false;
-    return std::any_of(cluxels_.begin(), cluxels_.end(), [&](std::uint32_t cluxel) {
-      if (highOf(cluxel) < top - kTopBand_m) return false;
-      Eigen::Vector3d end = all_.center[cluxel];
-      end.z() = highOf(cluxel);
-      const Eigen::Vector3d direction = view.T_map_sensor.inverse(Eigen::Isometry) * end - view.sight.origin;
-      return perception::elevationOf_rad(direction) >= view.sight.upper_edge->elevationAt_rad(direction) - kEdge_rad;
-    });
+  /// Where the highest cluxels lie in a scan's field of view. What lies above all of it was seen by another scan.
+  enum class TopInView : std::uint8_t { Shown, Cut, Above };
+  TopInView topIn(const perception::SceneView& view, double top) const {
+    if (!view.sight.upper_edge) return TopInView::Shown;
+    const Eigen::Isometry3d T_sensor_map = view.T_map_sensor.inverse(Eigen::Isometry);
+    const auto aboveEdge = [&](std::uint32_t cluxel, double z) {
+      Eigen::Vector3d place = all_.center[cluxel];
+      place.z() = z;
+      const Eigen::Vector3d direction = T_sensor_map * place - view.sight.origin;
+      return perception::elevationOf_rad(direction) - view.sight.upper_edge->elevationAt_rad(direction);
+    };
+    TopInView found = TopInView::Shown;
+    for (const std::uint32_t cluxel : cluxels_) {
+      if (highOf(cluxel) < top - kTopBand_m || aboveEdge(cluxel, highOf(cluxel)) < -kEdge_rad) continue;
+      if (aboveEdge(cluxel, lowOf(cluxel)) <= kEdge_rad) return TopInView::Cut;
+      found = TopInView::Above;
+    }
+    return found;
   }
 
   /// The direction in plan view in which the cluxels extend most.

@@ -16,11 +16,12 @@ inline constexpr double kBeyond_m = 0.15;
 
 /// Whether the real attribute may be larger (or for `bottom` lower) than what was measured, because no scan that saw
 /// the candidate shows the end:
-/// - `top`: every scan's field of view ends there;
+/// - `top`: no scan's field of view reaches beyond it, and one ends there;
 /// - `bottom`: in every scan something hides the place below it, and it is more than 0.3 m above the ground;
 /// - `height`, `elevation_span`: either of them;
 /// - `length`, `horizontal_extent`: in every scan something hides the place beyond one of its two ends.
-/// Scans of which the place of the sensor is unknown say nothing; without others every end counts as seen.
+/// Scans of which the place of the sensor is unknown say nothing; without others every end counts as seen. A top that
+/// lies above all known fields of view was seen by such a scan.
 /// Cost: the cluxels of the candidate; for what is hidden also those around it, for each scan.
 bool isEndUnseen(const ReasoningState& state, const Candidate& candidate, perception::Attribute attribute);
 

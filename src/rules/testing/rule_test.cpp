@@ -46,6 +46,13 @@ perception::Scene sceneOf(const SceneRequest& request, const RuleTestOptions& op
   return options.scenes(request);
 }
 
+std::string_view wayOf(const Rule& rule, const WalkedPath& walked) {
+  if (walked.tests.kind == PathNode::Kind::Find) return walked.tests.passed ? "found" : "missing";
+  if (!walked.tests.passed) return "no";
+  const auto* branch = std::get_if<BranchNode>(&rule.nodes[walked.node].what);
+  return branch != nullptr && branch->condition.kind == Condition::Kind::Unseen ? "unseen" : "yes";
+}
+
 class TestRun {
  public:
   TestRun(const RuleTestFile& file, const RuleTestOptions& options) : file_(file), options_(options) {
@@ -101,8 +108,7 @@ class TestRun {
     for (LeafCoverage& leaf : report_.leaves)
       if (leaf.rule_id == decision.rule_id && leaf.node == decision.leaf) ++leaf.hits;
     for (const WalkedPath& walked : walkedPath(*rule, decision)) {
-      const bool found = walked.tests.kind == PathNode::Kind::Find;
-      const std::string way = walked.tests.passed ? (found ? "found" : "yes") : (found ? "missing" : "no");
+      const std::string_view way = wayOf(*rule, walked);
       for (BranchCoverage& branch : report_.branches)
         if (branch.rule_id == decision.rule_id && branch.node == walked.node && branch.way == way) ++branch.hits;
     }

@@ -40,7 +40,7 @@ std::optional<std::size_t> numberIn(const std::string& id, std::size_t objects) 
 const Object* laterObject(const ObjectTable& table, const rdf::QuadReader& quads, const std::string& id) {
   std::vector<ContentHash> present;
   for (const Object& object : table.objects) present.push_back(ContentHash::fromHex(hashOf(object.iri)));
-  const auto former = mapping::objectByLineage(quads, id, present);
+  const auto former = mapping::Lineage(quads, present).find(id);
   if (!former) return nullptr;
   for (const Object& object : table.objects)
     if (hashOf(object.iri) == former->object.hex()) return &object;

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// Times are xsd:dateTime in UTC with six digits of a second, so that their texts sort as the times do.
+#include "mapping/statements/statement_history.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <set>
+
+#include "base/utc_time.hpp"
+#include "cluxel/error.hpp"
+#include "rdf/map_iris.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+using rdf::vocabulary::clx;
+
+std::string provenance(std::string_view local) {
+  return std::string(rdf::vocabulary::kProv).append(local);
+}
+
+std::vector<Quad> quadsAbout(const rdf::QuadReader& reader, const ContentHash& id, std::string_view graph_iri) {
+  const auto subject = reader.idOf(Term::iri(rdf::iriOfStatement(id))), graph = reader.idOf(Term::iri(graph_iri));
+  std::vector<Quad> quads;
+  if (!subject || !graph) return quads;
+  rdf::QuadCursor cursor = reader.scan({.s = *subject, .p = {}, .o = {}, .g = *graph});
+  for (rdf::QuadIds quad; cursor.next(quad);)
+    quads.push_back({reader.termOf(quad.s), reader.termOf(quad.p), reader.termOf(quad.o), reader.termOf(quad.g)});
+  return quads;
+}
+
+/// Quads about statements, written together.
+class StatementWriter {
+ public:
+  explicit StatementWriter(rdf::WriteTransaction& transaction)
+      : reader_(static_cast<const rdf::ReadTransaction&>(transaction)), writer_(transaction) {
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    now_ = Term::literal(dateTimeText(std::chrono::duration<double>(now).count()), rdf::vocabulary::xsd("dateTime"));
+  }
+
+  bool has(const ContentHash& id) const { return !quadsAbout(reader_, id, rdf::vocabulary::kGraphOperator).empty(); }
+  void add(const Quad& quad) { writer_.add(quad); }
+  void remove(const ContentHash& id, std::string_view graph_iri) {
+    for (const Quad& quad : quadsAbout(reader_, id, graph_iri))
+      writer_.remove(rdf::QuadIds{writer_.intern(quad.subject), writer_.intern(quad.predicate),
+                                  writer_.intern(quad.object), writer_.intern(quad.graph)});
+  }
+  void recordMade(const ContentHash& id, const std::string& author) {
+    remove(id, rdf::vocabulary::kGraphHistory);
+    record(id, clx("statedBy"), author, "generatedAtTime");
+  }
+  void recordWithdrawn(const ContentHash& id, const std::string& author) {
+    record(id, clx("withdrawnBy"), author, "invalidatedAtTime");
+  }
+  void flush() { writer_.flush(); }
+
+ private:
+  void record(const ContentHash& id, const std::string& by, const std::string& author, std::string_view time) {
+    const Term subject = Term::iri(rdf::iriOfStatement(id)), graph = Term::iri(rdf::vocabulary::kGraphHistory);
+    if (!author.empty()) writer_.add(Quad{subject, Term::iri(by), Term::literal(author), graph});
+    writer_.add(Quad{subject, Term::iri(provenance(time)), now_, graph});
+  }
+
+  rdf::QuadReader reader_;
+  rdf::QuadWriter writer_;
+  Term now_;
+};
+
+/// The last of the times of each statement in the history of the maps.
+std::map<std::string, std::string> lastTimes(std::span<const rdf::QuadReader* const> maps, std::string_view property) {
+  const std::string statements = rdf::mapIri("statement", "");
+  std::map<std::string, std::string> last;
+  for (const rdf::QuadReader* map : maps) {
+    const auto predicate = map->idOf(Term::iri(provenance(property)));
+    const auto history = map->idOf(Term::iri(rdf::vocabulary::kGraphHistory));
+    if (!predicate || !history) continue;
+    rdf::QuadCursor cursor = map->scan({.s = {}, .p = *predicate, .o = {}, .g = *history});
+    for (rdf::QuadIds quad; cursor.next(quad);) {
+      const std::string subject = map->termOf(quad.s).text;
+      if (!subject.starts_with(statements)) continue;
+      std::string& time = last[subject];
+      time = std::max(time, map->termOf(quad.o).text);
+    }
+  }
+  return last;
+}
+
+}  // namespace
+
+void addStatement(rdf::WriteTransaction& transaction, const Statement& statement, const std::string& author) {
+  StatementWriter writer(transaction);
+  if (writer.has(statement.id())) return;
+  for (const Quad& quad : quadsOf(statement)) writer.add(quad);
+  writer.recordMade(statement.id(), author);
+  writer.flush();
+}
+
+void withdrawStatement(rdf::WriteTransaction& transaction, const ContentHash& id, const std::string& author) {
+  StatementWriter writer(transaction);
+  if (!writer.has(id)) throw Error(ErrorKind::NotFound, "the map has no operator statement " + id.hex());
+  writer.remove(id, rdf::vocabulary::kGraphOperator);
+  writer.recordWithdrawn(id, author);
+  writer.flush();
+}
+
+void eraseStatement(rdf::WriteTransaction& transaction, const ContentHash& id) {
+  StatementWriter writer(transaction);
+  writer.remove(id, rdf::vocabulary::kGraphOperator);
+  writer.flush();
+}
+
+void recordStatements(rdf::WriteTransaction& transaction, const std::vector<ContentHash>& made,
+                      const std::vector<ContentHash>& withdrawn) {
+  StatementWriter writer(transaction);
+  for (const ContentHash& id : made) writer.recordMade(id, "");
+  for (const ContentHash& id : withdrawn) writer.recordWithdrawn(id, "");
+  writer.flush();
+}
+
+std::vector<ContentHash> withdrawnAmong(std::span<const rdf::QuadReader* const> maps) {
+  const auto made = lastTimes(maps, "generatedAtTime"), withdrawn = lastTimes(maps, "invalidatedAtTime");
+  std::set<ContentHash> ids;
+  for (const rdf::QuadReader* map : maps)
+    for (const Statement& statement : storedStatements(*map)) {
+      const std::string iri = rdf::iriOfStatement(statement.id());
+      const auto end = withdrawn.find(iri);
+      if (end == withdrawn.end()) continue;
+      const auto begin = made.find(iri);
+      if (begin == made.end() || begin->second < end->second) ids.insert(statement.id());
+    }
+  return {ids.begin(), ids.end()};
+}
+
+StatementRecord recordOf(const rdf::QuadReader& quads, const ContentHash& id) {
+  StatementRecord record;
+  std::set<std::string> authors;
+  for (const Quad& quad : quadsAbout(quads, id, rdf::vocabulary::kGraphHistory)) {
+    if (quad.predicate.text == clx("statedBy")) authors.insert(quad.object.text);
+    if (quad.predicate.text == provenance("generatedAtTime"))
+      record.stated_at = std::max(record.stated_at, quad.object.text);
+  }
+  for (const std::string& author : authors) record.author += (record.author.empty() ? "" : ", ") + author;
+  return record;
+}
+
+}  // namespace cluxel::mapping

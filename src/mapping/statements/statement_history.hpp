@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who made and withdrew statements, and when. It stands in graph `history`.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mapping/statements/statement.hpp"
+#include "rdf/file/environment.hpp"
+#include "rdf/store/quad_store.hpp"
+
+namespace cluxel::mapping {
+
+/// Adds a statement that is not there. What the history knew of an earlier one with the same content is forgotten.
+void addStatement(rdf::WriteTransaction& transaction, const Statement& statement, const std::string& author);
+/// Removes a statement, and records when. Throws Error (NotFound) for one that is not there.
+void withdrawStatement(rdf::WriteTransaction& transaction, const ContentHash& id, const std::string& author);
+/// Removes a statement that another map has withdrawn, whose history tells when.
+void eraseStatement(rdf::WriteTransaction& transaction, const ContentHash& id);
+
+/// Records statements that quads of graph `operator` made or withdrew, without an author.
+void recordStatements(rdf::WriteTransaction& transaction, const std::vector<ContentHash>& made,
+                      const std::vector<ContentHash>& withdrawn);
+
+/// Those statements of maps that one of the maps has withdrawn after any of them made it, ascending. A statement whose
+/// time nobody recorded was made before every withdrawal. Its result is independent of the order of the maps.
+std::vector<ContentHash> withdrawnAmong(std::span<const rdf::QuadReader* const> maps);
+
+/// What the history of a map knows of a statement.
+struct StatementRecord {
+  std::string author;     ///< all of them, when the history of several maps names several
+  std::string stated_at;  ///< the last time; xsd:dateTime
+};
+StatementRecord recordOf(const rdf::QuadReader& quads, const ContentHash& id);
+
+}  // namespace cluxel::mapping

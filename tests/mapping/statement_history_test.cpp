@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// What was withdrawn stays withdrawn, whichever copies of a map are merged; quads are held to the same rules.
+#include "mapping/statements/statement_history.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cluxel/error.hpp"
+#include "mapping/build/map_update.hpp"
+#include "mapping/build/operator_statements.hpp"
+#include "mapping/change/map_merge.hpp"
+#include "mapping/change/statement_change.hpp"
+#include "mapping/small_campus.hpp"
+#include "rdf/map_iris.hpp"
+
+namespace cluxel::mapping {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::UnorderedElementsAre;
+
+class Notes : public ProgressSink {
+ public:
+  void note(std::string_view text) override { all.append(text).append("\n"); }
+  std::string all;
+};
+
+class StatementHistory : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    campus = new SmallCampus({.seed = 6, .stops = 2, .size_m = 45, .points_per_stop = 1200});
+    inputs = new MapInputs(shippedInputs());
+    built = new ScratchFolder;
+    buildMap(scansOf(campus->files()), *inputs, built->path() / "map.clx", {}, silence());
+  }
+  static void TearDownTestSuite() {
+    delete campus;
+    delete inputs;
+    delete built;
+  }
+  void SetUp() override { fs::copy_file(built->path() / "map.clx", map()); }
+
+  fs::path map(const std::string& name = "map.clx") const { return folder.path() / name; }
+  fs::path copied(const std::string& name) const {
+    fs::copy_file(map(), map(name), fs::copy_options::overwrite_existing);
+    return map(name);
+  }
+  Statement about(std::size_t number, StatementKind kind, const std::string& local) const {
+    const MapReader reader(map());
+    std::vector<const rules::SemanticObject*> things;
+    for (const rules::SemanticObject& object : reader.objects())
+      if (object.class_iri != vocabulary::clx("Ground")) things.push_back(&object);
+    return {kind, "", Term::iri(vocabulary::clx(local)), anchorOf(reader.stages(), *things.at(number)), {}};
+  }
+  static void state(const fs::path& file, const std::vector<Statement>& made,
+                    const std::vector<ContentHash>& withdrawn = {}, const std::string& author = "anna") {
+    changeStatements(file, {made, withdrawn, author}, {}, silence());
+  }
+  static std::vector<ContentHash> statementsOf(const fs::path& file) {
+    std::vector<ContentHash> ids;
+    for (const Statement& statement : storedStatements(MapReader(file).quads())) ids.push_back(statement.id());
+    return ids;
+  }
+  /// Merges both ways, and expects the same map of both.
+  fs::path merged(const fs::path& a, const fs::path& b, Notes& notes) const {
+    mergeMaps({{b}, {a}}, map("other"), {.change = {}, .use = std::nullopt, .force = true}, silence());
+    mergeMaps({{a}, {b}}, map("merged"), {.change = {}, .use = std::nullopt, .force = true}, notes);
+    EXPECT_TRUE(canonicalText(map("merged")) == canonicalText(map("other"))) << "the order of the maps counts";
+    return map("merged");
+  }
+  static std::string deletionOf(const ContentHash& id) {
+    return "DELETE WHERE { GRAPH <" + std::string(vocabulary::kGraphOperator) + "> { <" + rdf::iriOfStatement(id) +
+           "> ?p ?o } }";
+  }
+
+  ScratchFolder folder;
+  inline static SmallCampus* campus = nullptr;
+  inline static MapInputs* inputs = nullptr;
+  inline static ScratchFolder* built = nullptr;
+};
+
+TEST_F(StatementHistory, AnOlderCopyDoesNotBringBackWhatWasWithdrawn) {
+  const Statement sign = about(0, StatementKind::Is, "StreetSign"), lamp = about(1, StatementKind::Is, "StreetLamp");
+  state(map(), {sign, lamp});
+  const fs::path older = copied("older");
+  state(map(), {}, {sign.id()});
+  Notes notes;
+  const fs::path both = merged(map(), older, notes);
+  EXPECT_THAT(statementsOf(both), UnorderedElementsAre(lamp.id()));
+  EXPECT_THAT(notes.all, HasSubstr("1 operator statements are left out"));
+  EXPECT_THAT(notes.all, HasSubstr(sign.id().hex()));
+  EXPECT_TRUE(canonicalText(both) == canonicalText(map()));
+  Notes again;
+  EXPECT_THAT(statementsOf(merged(copied("third"), older, again)), UnorderedElementsAre(lamp.id()));
+}
+
+TEST_F(StatementHistory, WhatWasStatedAgainAfterItsWithdrawalStays) {
+  const Statement sign = about(0, StatementKind::Is, "StreetSign");
+  state(map(), {sign});
+  const fs::path older = copied("older");
+  state(map(), {}, {sign.id()});
+  state(map(), {sign});
+  Notes notes;
+  EXPECT_THAT(statementsOf(merged(map(), older, notes)), UnorderedElementsAre(sign.id()));
+  const fs::path withdrawn = copied("withdrawn");
+  state(withdrawn, {}, {sign.id()});
+  state(older, {}, {sign.id()});
+  state(older, {sign});
+  EXPECT_THAT(statementsOf(merged(withdrawn, older, notes)), UnorderedElementsAre(sign.id()));
+  EXPECT_EQ(notes.all.find("left out"), std::string::npos);
+}
+
+TEST_F(StatementHistory, AnUpdateWithdrawsToo) {
+  const Statement sign = about(0, StatementKind::Is, "StreetSign");
+  state(map(), {sign});
+  const fs::path older = copied("older");
+  updateMap(map(), deletionOf(sign.id()), {}, silence());
+  Notes notes;
+  EXPECT_THAT(statementsOf(merged(map(), older, notes)), UnorderedElementsAre());
+}
+
+TEST_F(StatementHistory, NamesAllAuthorsOfAStatementOnce) {
+  const Statement sign = about(0, StatementKind::Is, "StreetSign");
+  const fs::path other = copied("other.clx");
+  state(map(), {sign}, {}, "bert");
+  state(other, {sign}, {}, "anna");
+  Notes notes;
+  const auto known = knownStatements(MapReader(merged(map(), other, notes)).quads());
+  ASSERT_EQ(known.size(), 1U);
+  EXPECT_EQ(known[0].author, "anna, bert");
+}
+
+TEST_F(StatementHistory, OfQuadsIsCheckedAsTheCommandChecksStatements) {
+  const Statement cluxel = about(0, StatementKind::Is, "Cluxel");
+  std::string quads;
+  for (const Quad& quad : quadsOf(cluxel))
+    quads += toNTriples(quad.subject) + " " + toNTriples(quad.predicate) + " " + toNTriples(quad.object) + " . ";
+  const std::string before = canonicalText(map());
+  try {
+    updateMap(map(), "INSERT DATA { " + quads + " }", {}, silence());
+    ADD_FAILURE() << "a statement was taken that `state` refuses";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("is no class of objects"));
+  }
+  EXPECT_TRUE(canonicalText(map()) == before);
+}
+
+TEST_F(StatementHistory, AWithdrawalThatIsNamedTwiceIsOne) {
+  const Statement sign = about(0, StatementKind::Is, "StreetSign");
+  state(map(), {sign});
+  state(map(), {}, {sign.id(), sign.id()});
+  EXPECT_TRUE(statementsOf(map()).empty());
+}
+
+}  // namespace
+}  // namespace cluxel::mapping
