@@ -91,45 +91,11 @@ bool Walker::walkTo(std::uint32_t goal, const Enough& isEnough, const tasks::Che
   return true;
 }
 
-/// What was looked at from within the view is done with. When nothing is left, what hides is sought from half as far.
-double searchLength(const SearchWorld& world, const std::vector<rdf::UsualPlace>& places) {
-  const tasks::TerrainGrid terrain = world.terrain();
-  const rdf::OntologyView ontology = ontologyViewOf(world.map().quads());
-  Walker walker(world);
-  tasks::SearchParams search;
-  search.view_m = world.params().view_m;
-  search.eye_m = world.params().eye_m;
-  const tasks::SearchField prior = fieldOf(world.frame(), knownShare(world.map(), terrain, walker.sight(), search),
-                                           evidenceOf(world.map(), terrain, ontology, places));
-  tasks::SearchField field = prior;
-  tasks::TourParams tour;
-  tour.max_stops = 1;
-  tour.min_probability = 0;
-  while (!walker.isDone() && walker.length_m() < kLongest_m) {
-    for (const std::uint32_t cell : walker.takeSeen())
-      if (walker.nearest()[cell] <= search.view_m) field.probability[cell] = 0;
-    const auto stops =
-        tourOf(walker.belief(), walker.sight(), field, world.frame().centreOf(walker.at()), search, tour);
-    if (stops.empty() || !(stops[0].probability > 0)) {
-      if (walker.doubtMap()) continue;  // the map enclosed the walker
-      search.view_m /= 2;
-      if (search.view_m < world.params().cell_m) return kInfinite;
-      field = prior;
-      for (std::uint32_t cell = 0; cell < field.probability.size(); ++cell)
-        if (walker.nearest()[cell] <= search.view_m) field.probability[cell] = 0;
-      continue;
-    }
-    const std::uint32_t goal = stops[0].cell;
-    if (goal == walker.at()) walker.look();
-    walker.walkTo(goal, [] { return false; });
-    // What was expected in sight and is not, or where no way leads, cannot be seen from here.
-    for (const std::uint32_t cell : visibleFrom(walker.sight(), goal, search.view_m)) field.probability[cell] = 0;
-  }
-  return walker.isDone() ? walker.length_m() : kInfinite;
-}
+namespace {
 
-double frontierLength(const SearchWorld& world, bool spares_known) {
-  Walker walker(world);
+/// Goes on to the nearest ground that was not looked at.
+double sweepLength(Walker& walker, bool spares_known) {
+  const SearchWorld& world = walker.world();
   const std::size_t size = world.frame().size();
   std::vector<std::uint8_t> is_later(size, 0);
   if (spares_known) {
@@ -162,6 +128,43 @@ double frontierLength(const SearchWorld& world, bool spares_known) {
       given_up[goal] = 1;
   }
   return walker.isDone() ? walker.length_m() : kInfinite;
+}
+
+}  // namespace
+
+/// When nothing likely is left, the walk goes on to the nearest ground that was not looked at.
+double searchLength(const SearchWorld& world, const std::vector<rdf::UsualPlace>& places) {
+  constexpr double missed = 0.1;         // a place that was looked at may still hide something
+  constexpr double nothing_left = 1e-3;  // of the probability of the whole site, at the best stop
+  const tasks::TerrainGrid terrain = world.terrain();
+  const rdf::OntologyView ontology = ontologyViewOf(world.map().quads());
+  Walker walker(world);
+  tasks::SearchParams search;
+  search.view_m = world.params().view_m;
+  search.eye_m = world.params().eye_m;
+  tasks::SearchField field = fieldOf(world.frame(), knownShare(world.map(), terrain, walker.sight(), search),
+                                     evidenceOf(world.map(), terrain, ontology, places));
+  tasks::TourParams tour;
+  tour.max_stops = 1;
+  tour.min_probability = 0;
+  while (!walker.isDone()) {
+    for (const std::uint32_t cell : walker.takeSeen()) field.probability[cell] *= missed;
+    const auto stops =
+        tourOf(walker.belief(), walker.sight(), field, world.frame().centreOf(walker.at()), search, tour);
+    if (stops.empty() && walker.doubtMap()) continue;  // the map encloses the walker
+    if (stops.empty() || stops[0].probability < nothing_left) return sweepLength(walker, false);
+    const std::uint32_t goal = stops[0].cell;
+    if (goal == walker.at()) walker.look();
+    if (!walker.walkTo(goal, [] { return false; }))  // no way leads there
+      for (const std::uint32_t cell : visibleFrom(walker.sight(), goal, search.view_m))
+        field.probability[cell] *= missed;
+  }
+  return walker.length_m();
+}
+
+double frontierLength(const SearchWorld& world, bool spares_known) {
+  Walker walker(world);
+  return sweepLength(walker, spares_known);
 }
 
 double lanesLength(const SearchWorld& world) {
