@@ -11,10 +11,13 @@ measure if it stood there, at least 20 points on it. A reported event matches on
 union of 0.2, or the centre of the smaller one lies within the other; the best pairs first, one to one. A further report whose centre
 lies within the box of a true event, padded by 0.5 m, is a piece of it: neither true nor false.
 
-States. For each object of the truth the reported object whose box overlaps it most (intersection over union of at least
+States. For each object of the truth the reported object, or changed part of an object, whose box overlaps it most (intersection over union of at least
 0.2) gives the state in the last visit: present, absent or not observed. In the truth an object is not observed when the
 visit measures, or would measure, no point on it, and of no certain state below 20 points.
+A changed part speaks for an object of the truth when they overlap by half. Bushes that were cut have a row of their own.
 Lamps that were replaced are left out: another pole stands in the same place.
+Of the objects that are not observed, those are counted that a report says to be gone: as a state, or as a change that
+matches their box.
 """
 import csv
 import json
@@ -114,12 +117,18 @@ def score_events(changes, folder, listing):
     return {"true": len(left), "pieces": len(pieces), "false": len(false), "missed": len(clear) - len(right), "unclear": len(unclear)}
 
 
-def score_states(changes, seen, boxes, present):
-    states = [(s["class"], (s["box_m"]["min"], s["box_m"]["max"]), s["after"]) for s in changes["states"]]
-    table = {}
+def score_states(changes, seen, boxes, present, cut):
+    """The table of states, and how many unobserved objects a report says to be gone."""
+    wholes, parts = (
+        [(s["class"], (s["box_m"]["min"], s["box_m"]["max"]), s["after"]) for s in changes.get(key, [])]
+        for key in ("states", "parts")
+    )
+    gone = [box for kind, box, _ in reported_events(changes) if kind == "gone"]
+    table, vanished = {}, 0
     for instance, box in boxes.items():
         if (instance, "1") not in seen:
             continue
+        states = wholes + [part for part in parts if overlap(part[1], box) >= 0.5]
         best = max(states, key=lambda state: overlap(state[1], box), default=None)
         if best is None or overlap(best[1], box) < 0.2:
             continue
@@ -127,8 +136,13 @@ def score_states(changes, seen, boxes, present):
         if NOT_SEEN <= share < MIN_SEEN:
             continue
         truth = "not observed" if share < NOT_SEEN else "present" if present[instance, "1"] else "absent"
+        if truth == "present" and instance in cut:
+            truth = "cut"
+        if truth == "not observed":
+            is_gone = any(overlap(other, box) >= 0.2 or (overlap(other, box) > 0 and holds_centre(other, box)) for other in gone)
+            vanished += 1 if is_gone or best[2] == "absent" else 0
         table[truth, best[2]] = table.get((truth, best[2]), 0) + 1
-    return table
+    return table, vanished
 
 
 def sum_up(files):
@@ -146,8 +160,10 @@ def sum_up(files):
     print(f"| precision, recall | {true / (true + false):.3f}, {true / (true + missed):.3f} |")
     print(f"| F1 | {2 * true / (2 * true + false + missed):.3f} |")
     names = ("present", "absent", "not observed")
+    unobserved = sum(states.get(f"not observed -> {name}", 0) for name in names)
+    print(f"| objects not observed; of them called gone | {unobserved}; {events['vanished']} |")
     print("\n| truth \\ reported | " + " | ".join(names) + " |\n|---|---|---|---|")
-    for truth in names:
+    for truth in names + ("cut",):
         print(f"| {truth} | " + " | ".join(str(states.get(f"{truth} -> {name}", 0)) for name in names) + " |")
 
 
@@ -163,11 +179,14 @@ def main():
     for row in csv.DictReader(open(f"{folder}/instances.csv")):
         boxes[row["id"]] = box_of(row)
     events = score_events(changes, folder, "--list" in sys.argv)
+    cut = set()
     for row in csv.DictReader(open(f"{folder}/events.csv")):
+        if row["event"] == "cut":
+            cut.add(row["instance"])
         if row["event"] == "replaced":
             boxes.pop(row["instance"], None)
             boxes.pop(row["new_instance"], None)
-    states = score_states(changes, seen, boxes, present)
+    states, events["vanished"] = score_states(changes, seen, boxes, present, cut)
     print(json.dumps({"events": events, "states": {f"{t} -> {r}": n for (t, r), n in sorted(states.items())}}))
 
 

@@ -50,12 +50,14 @@ void Walker::look() {
 }
 
 bool Walker::doubtMap() {
-  bool any = false;
-  for (std::uint32_t cell = 0; cell < nearest_.size(); ++cell)
-    if (std::isinf(nearest_[cell]) && belief_.closure[cell] != tasks::Closure::Open && world_.isInSite(cell)) {
-      belief_.closure[cell] = tasks::Closure::Open;
-      any = true;
-    }
+  bool any = std::isfinite(belief_.max_step_m);  // heights of the map, too
+  belief_.max_step_m = kInfinite;
+  for (std::uint32_t cell = 0; cell < nearest_.size(); ++cell) {
+    if (!world_.isInSite(cell)) continue;
+    const tasks::Closure now = std::isinf(nearest_[cell]) ? tasks::Closure::Open : world_.closure()[cell];
+    any = any || (belief_.closure[cell] != tasks::Closure::Open && now == tasks::Closure::Open);
+    belief_.closure[cell] = now;
+  }
   return any;
 }
 
@@ -63,6 +65,21 @@ std::vector<std::uint32_t> Walker::takeSeen() {
   std::sort(seen_.begin(), seen_.end());
   seen_.erase(std::unique(seen_.begin(), seen_.end()), seen_.end());
   return std::exchange(seen_, {});
+}
+
+/// Learns whether the next cell is closed, or on a diagonal step a cell beside it: between two of them no way leads
+/// back.
+bool Walker::isBlocked(std::uint32_t next) {
+  const auto columns = static_cast<std::uint32_t>(world_.frame().columns);
+  const std::uint32_t beside_x = at_ / columns * columns + next % columns,
+                      beside_y = next / columns * columns + at_ % columns;
+  bool is_blocked = false;
+  for (const std::uint32_t cell : {next, beside_x, beside_y}) {
+    if (cell == at_ || world_.closure()[cell] == tasks::Closure::Open) continue;
+    is_blocked = is_blocked || belief_.closure[cell] == tasks::Closure::Open || cell == next;
+    belief_.closure[cell] = tasks::Closure::Obstacle;
+  }
+  return is_blocked;
 }
 
 template <typename Enough>
@@ -73,10 +90,7 @@ bool Walker::walkTo(std::uint32_t goal, const Enough& isEnough, const tasks::Che
     ways = nullptr;
     if (way.empty()) return false;
     for (std::size_t i = 1; i < way.size(); ++i) {
-      if (world_.closure()[way[i]] != tasks::Closure::Open) {  // seen when one stands before it
-        belief_.closure[way[i]] = tasks::Closure::Obstacle;
-        break;
-      }
+      if (isBlocked(way[i])) break;  // seen when one stands before it
       length_m_ += (world_.frame().centreOf(way[i]) - world_.frame().centreOf(at_)).norm();
       at_ = way[i];
       if (length_m_ - looked_at_m_ < kLookEvery_m && i + 1 < way.size()) continue;

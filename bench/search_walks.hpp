@@ -30,13 +30,15 @@ class Walker {
   /// Cells that were in sight since this was called last, ascending.
   std::vector<std::uint32_t> takeSeen();
   void look();
-  /// Takes for open what the map calls closed and was not looked at: the map may be wrong. False when there is nothing
-  /// left to doubt.
+  /// Takes for open what the map calls closed or a step and was not looked at: the map may be wrong. False when there
+  /// is nothing left to doubt.
   bool doubtMap();
   bool isFound(std::size_t target) const { return is_found_[target]; }
   const SearchWorld& world() const { return world_; }
 
  private:
+  bool isBlocked(std::uint32_t next);
+
   const SearchWorld& world_;
   tasks::PassableGrid belief_;
   tasks::SightGrid sight_;

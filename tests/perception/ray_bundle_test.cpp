@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <random>
 
@@ -84,6 +85,66 @@ TEST(RayBundle, DoesNotConcludeFromFewRays) {
   const PlaceVerdict place = bundle.verdictAt({5, 0, 0}, {});
   EXPECT_EQ(place.verdict, RayVerdict::FewPassed);
   EXPECT_TRUE(place.is_sparse);
+}
+
+/// What a sensor 2 m above the ground sees with rays every `step` in both angles [rad]: the ground to 60 m, a wall 10 m
+/// behind it, 8 m high above the sensor, and before it nothing but the sky. `isKept` drops rays by their ends, and
+/// `isLost` by their directions.
+struct OpenPlace {
+  double pan_step = 0.006, tilt_step = 0.006;
+  std::function<bool(const Eigen::Vector3d&)> isKept = [](const Eigen::Vector3d&) { return true; };
+  std::function<bool(const Eigen::Vector3d&)> isLost = [](const Eigen::Vector3d&) { return false; };
+
+  RayBundle seen() const {
+    std::vector<Eigen::Vector3f> ends;
+    for (double tilt = -0.8; tilt < 0.9; tilt += tilt_step)
+      for (double pan = -std::numbers::pi; pan < std::numbers::pi; pan += pan_step) {
+        const Eigen::Vector3d way(std::cos(tilt) * std::cos(pan), std::cos(tilt) * std::sin(pan), std::sin(tilt));
+        double range_m = way.z() < 0 ? 2 / -way.z() : 1e9;
+        if (way.x() < 0 && 10 / -way.x() * way.z() < 8) range_m = std::min(range_m, 10 / -way.x());
+        if (range_m > 60 || isLost(way) || !isKept(range_m * way)) continue;
+        ends.push_back((range_m * way).cast<float>());
+      }
+    return RayBundle(Eigen::Vector3d::Zero(), ends);
+  }
+};
+
+/// Where the head of a lamp stood.
+const Eigen::Vector3d kHead(10, 0.3, 3);
+
+TEST(RayBundle, SeesThroughPlacesBeforeTheSky) {
+  const RayBundle bundle = OpenPlace().seen();
+  EXPECT_EQ(bundle.verdictAt(kHead, {}).verdict, RayVerdict::SeenThrough);
+  EXPECT_EQ(bundle.verdictAt({10, 0.3, 7}, {}).verdict, RayVerdict::SeenThrough);
+  EXPECT_EQ(bundle.verdictAt({10, 0.3, 9.5}, {}).verdict, RayVerdict::NotCovered) << "higher than all returns";
+}
+
+TEST(RayBundle, ConcludesNothingFromMissingReturnsOfScansThatWereThinnedOrCut) {
+  const auto verdictOf = [](const OpenPlace& place) { return place.seen().verdictAt(kHead, {}).verdict; };
+  std::mt19937 random(5);
+  EXPECT_EQ(verdictOf({.isKept = [&](const auto&) { return random() % 8 == 0; }}), RayVerdict::NotCovered);
+  EXPECT_EQ(verdictOf({.isKept = [](const auto& end) { return end.z() < 2; }}), RayVerdict::NotCovered) << "by height";
+  EXPECT_EQ(verdictOf({.isKept = [](const auto& end) { return end.norm() < 9; }}), RayVerdict::NotCovered)
+      << "by range";
+  EXPECT_EQ(verdictOf({.isKept = [](const auto& end) { return end.x() < 0; }}), RayVerdict::NotCovered) << "by azimuth";
+  EXPECT_EQ(verdictOf({.tilt_step = 0.04}), RayVerdict::NotCovered) << "rings far apart";
+  EXPECT_EQ(verdictOf({.pan_step = 0.04}), RayVerdict::NotCovered) << "columns far apart";
+}
+
+TEST(RayBundle, ConcludesNothingBehindWhatSwallowsRays) {
+  // A black van 5 m ahead, 4 m wide and up to 2.2 m above the sensor.
+  const auto meetsVan = [](const Eigen::Vector3d& way) {
+    return way.x() > 0 && std::abs(5 * way.y() / way.x()) < 2 && 5 * way.z() / way.x() < 2.2;
+  };
+  EXPECT_EQ(OpenPlace{.isLost = meetsVan}.seen().verdictAt(kHead, {}).verdict, RayVerdict::NotCovered);
+  // A wet road returns nothing beyond 6 m.
+  const auto slips = [](const Eigen::Vector3d& way) { return way.x() > 0 && way.z() < 0 && way.z() > -2.0 / 6; };
+  EXPECT_EQ(OpenPlace{.isLost = slips}.seen().verdictAt(kHead, {}).verdict, RayVerdict::NotCovered);
+  // A window in a wall tells nothing of what may stand behind it, nor does a place below the sensor.
+  const auto window = [](const Eigen::Vector3d& way) { return way.x() < -0.9 && std::abs(way.z()) < 0.2; };
+  EXPECT_EQ(OpenPlace{.isLost = window}.seen().verdictAt({-12, 0, 0.5}, {}).verdict, RayVerdict::NotCovered);
+  const auto puddle = [](const Eigen::Vector3d& way) { return way.x() > 0 && way.z() < -0.05 && way.z() > -0.5; };
+  EXPECT_EQ(OpenPlace{.isLost = puddle}.seen().verdictAt({10, 0, -1}, {}).verdict, RayVerdict::NotCovered);
 }
 
 TEST(RayBundle, TakesRaysWithOwnOriginsTogetherWhereTheyStartTogether) {

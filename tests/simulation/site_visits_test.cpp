@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "cluxel/error.hpp"
 #include "simulation/campus_fixture.hpp"
 
 namespace cluxel::simulation {
@@ -88,6 +89,21 @@ TEST_F(SiteVisits, CutsTheUpperPart) {
     EXPECT_NEAR(event.gone.max().z(), before, 0.01);
     EXPECT_NEAR(event.gone.min().z(), after, 0.3);
   }
+}
+
+TEST_F(SiteVisits, LaterVisitsMayHaveFewerStops) {
+  Campus few = *campus;
+  few.params.later_stops = 2;
+  const VisitedSite shorter = visitSite(few, 3);
+  ASSERT_EQ(shorter.visits[0].stops.size(), site->visits[0].stops.size());
+  for (const std::size_t visit : {1U, 2U}) {
+    const auto &all = site->visits[visit].stops, &kept = shorter.visits[visit].stops;
+    ASSERT_EQ(kept.size(), 2);
+    EXPECT_TRUE(kept[0].isApprox(all[all.size() / 4]));
+    EXPECT_TRUE(kept[1].isApprox(all[3 * all.size() / 4]));
+  }
+  few.params.later_stops = few.params.stops + 1;
+  EXPECT_THROW(check(few.params), Error);
 }
 
 TEST_F(SiteVisits, IsAFunctionOfTheCampus) {

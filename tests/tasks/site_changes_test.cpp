@@ -14,6 +14,7 @@
 #include "cluxel/error.hpp"
 #include "mapping/change/map_change.hpp"
 #include "mapping/small_campus.hpp"
+#include "rdf/vocabulary.hpp"
 #include "scan/formats/scan_writer.hpp"
 #include "simulation/laser/campus_writer.hpp"
 #include "sparql/query_engine.hpp"
@@ -236,6 +237,46 @@ TEST_F(SiteChangesTest, ExtendingByTheSecondVisitGivesTheMapOfBoth) {
   build(first, grown);
   mapping::extendMap(grown, scan::ScanSet::open({scans()}, {}, silence()), {}, silence());
   EXPECT_EQ(mapping::canonicalText(grown), mapping::canonicalText(mapFile()));
+}
+
+TEST_F(SiteChangesTest, OneLaterScanDoesNotTakeCrownsApart) {
+  simulation::CampusParams params{.seed = 51, .stops = 4, .size_m = 50, .points_per_stop = 60'000};
+  params.visits = 2;
+  params.later_stops = 1;
+  writeCampus(buildCampus(params), folder->path() / "few", 2, silence());
+  build(folder->path() / "few", folder->path() / "few.clx");
+  const mapping::MapReader few(folder->path() / "few.clx");
+  std::size_t crowns = 0;
+  const SiteChanges seen = changesIn(few, std::nullopt, 1);
+  for (const ObjectStates& states : seen.states)
+    crowns += few.objects()[states.object].class_iri == rdf::vocabulary::clx("Tree") ? 1 : 0;
+  EXPECT_GE(crowns, 3) << "the test needs trees";
+  for (const SiteChange& change : seen.changes) {
+    if (!change.thing.object) continue;
+    EXPECT_NE(few.objects()[*change.thing.object].class_iri, rdf::vocabulary::clx("Tree")) << nameOf(few, change.thing);
+  }
+}
+
+TEST(StatesOfParts, AreThoseThatTheWholeDoesNotTell) {
+  using perception::PresenceState;
+  const auto thing = [](std::optional<std::uint32_t> object) { return ChangedThing{{1, 2}, object, true, {}}; };
+  SiteChanges changes;
+  changes.states = {{0, PresenceState::Present, PresenceState::Present},
+                    {1, PresenceState::Present, PresenceState::Absent},
+                    {2, PresenceState::Absent, PresenceState::Present}};
+  changes.changes = {{SiteChange::Kind::Vanished, thing(0), std::nullopt, 0},
+                     {SiteChange::Kind::Vanished, thing(1), std::nullopt, 0},
+                     {SiteChange::Kind::Vanished, thing(std::nullopt), std::nullopt, 0},
+                     {SiteChange::Kind::Appeared, thing(2), std::nullopt, 0},
+                     {SiteChange::Kind::Moved, thing(1), thing(0), 2}};
+  const std::vector<PartStates> parts = statesOfParts(changes);
+  ASSERT_EQ(parts.size(), 2);
+  EXPECT_EQ(parts[0].part, &changes.changes[0].thing);
+  EXPECT_EQ(parts[0].before, PresenceState::Present);
+  EXPECT_EQ(parts[0].after, PresenceState::Absent);
+  EXPECT_EQ(parts[1].part, &*changes.changes[4].now);
+  EXPECT_EQ(parts[1].before, PresenceState::Absent);
+  EXPECT_EQ(parts[1].after, PresenceState::Present);
 }
 
 TEST_F(SiteChangesTest, RefusesOneSidedTimes) {

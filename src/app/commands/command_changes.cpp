@@ -17,10 +17,16 @@ struct ChangesArguments {
   bool states = false, allow_unfinished = false;
 };
 
+void printState(perception::PresenceState before, perception::PresenceState after, const std::string& thing) {
+  std::printf("%-12s -> %-12s  %s\n", std::string(nameOf(before)).c_str(), std::string(nameOf(after)).c_str(),
+              thing.c_str());
+}
+
 void printStates(const mapping::MapReader& map, const tasks::SiteChanges& found) {
   for (const tasks::ObjectStates& states : found.states)
-    std::printf("%-12s -> %-12s  %s\n", std::string(nameOf(states.before)).c_str(),
-                std::string(nameOf(states.after)).c_str(), tasks::thingName(map, states.object).c_str());
+    printState(states.before, states.after, tasks::thingName(map, states.object));
+  for (const tasks::PartStates& states : statesOfParts(found))
+    printState(states.before, states.after, "part of " + tasks::thingName(map, *states.part->object));
 }
 
 void printChanges(const mapping::MapReader& map, const tasks::SiteChanges& found) {
@@ -64,7 +70,7 @@ void addChanges(CLI::App& app, Session& session) {
       "--since", arguments->since,
       "scans from this time on are later: 2023-11-15T22:13:20Z, or seconds since 1970 [the last visit]");
   command->add_flag("--states", arguments->states,
-                    "list every object: present, absent or not observed, before and after");
+                    "list every object and changed part: present, absent or not observed, before and after");
   addAllowUnfinished(*command, arguments->allow_unfinished);
   onRun(*command, session, [arguments, &session] { return changes(*arguments, session); });
 }

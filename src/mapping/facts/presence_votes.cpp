@@ -64,10 +64,10 @@ PresenceVoting::PresenceVoting(const perception::Scene& scene, std::span<const r
 bool PresenceVoting::wants(const Cloud& cloud) {
   closeScan();
   if (!is_told_ || !cloud.time_s || !cloud.has_pose) return false;
-  const auto is_passed = [&](const ObjectVotes& object) {
-    return !object.places.empty() && mayPass(cloud, object.places);
-  };
-  if (std::none_of(votes_.begin(), votes_.end(), is_passed)) return false;
+  is_passed_.clear();
+  for (const ObjectVotes& object : votes_)
+    is_passed_.push_back(!object.places.empty() && mayPass(cloud, object.places) ? 1 : 0);
+  if (std::count(is_passed_.begin(), is_passed_.end(), 1) == 0) return false;
   of_scan_.assign(votes_.size(), {*cloud.time_s, {}, {}});
   return true;
 }
@@ -77,7 +77,7 @@ void PresenceVoting::look(const perception::RayBundle& bundle) {
   parallelFor(votes_.size(), threads_, [&](std::size_t i) {
     const std::vector<Eigen::Vector3d>& places = votes_[i].places;
     const double range_m = bundle.maxRange_m() + spheres_[i].radius_m + kParams.hit_m;
-    if (places.empty() || (spheres_[i].centre - bundle.origin()).norm() > range_m) return;
+    if (is_passed_[i] == 0 || (spheres_[i].centre - bundle.origin()).norm() > range_m) return;
     for (std::size_t place = 0; place < places.size(); ++place) {
       const RayVerdict verdict = bundle.verdictAt(places[place], kParams).verdict;
       if (verdict == RayVerdict::Hit) of_scan_[i].hits.set(place);

@@ -52,6 +52,7 @@ class PresenceVoting : public RayObserver {
   unsigned threads_;
   std::vector<ObjectVotes> votes_;
   std::vector<Sphere> spheres_;
+  std::vector<char> is_passed_;                 ///< by object, whether rays of the scan at hand may pass it
   std::vector<perception::ScanVotes> of_scan_;  ///< empty before the first scan
 };
 

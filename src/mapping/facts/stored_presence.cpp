@@ -18,7 +18,7 @@ using MaybePresence = std::optional<perception::Presence>;
 
 constexpr std::string_view kKey = "presence";
 /// The version of the computation of presence from rays. A new number invalidates every stored presence.
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 /// A row of the stored table.
 struct Row {

@@ -8,6 +8,8 @@
 #include <functional>
 #include <vector>
 
+#include "perception/visibility/direction_index.hpp"
+#include "perception/visibility/expected_returns.hpp"
 #include "scan/scan.hpp"
 
 namespace cluxel::perception {
@@ -16,7 +18,7 @@ namespace cluxel::perception {
 enum class RayVerdict : std::uint8_t {
   NotCovered,   ///< no ray came near, or all that did ended before it
   Hit,          ///< some ray ended there
-  SeenThrough,  ///< several rays passed it and ended behind it; none ended there
+  SeenThrough,  ///< several rays passed it and ended behind it, or into the sky; none ended there
   FewPassed,    ///< fewer did: not enough to tell that a thin thing is not there
 };
 
@@ -31,6 +33,8 @@ struct RayParams {
   double behind_m = 0.40;  ///< a ray sees through a place when it ends at least so far behind it
   /// So many rays must see through a place. Far from the sensor rays lie so far apart that they miss thin things.
   int min_rays = 3;
+  /// Where rays return from something, so many or more do near a place. Then a place where none returns is empty.
+  double min_missing = 4;
 };
 
 /// Rays near a place that were not stopped before it.
@@ -48,14 +52,20 @@ class RayBundle {
   double maxRange_m() const { return max_range_m_; }
   /// Cost: the rays within `near_m` of the direction to the place.
   RayCounts countsAt(const Eigen::Vector3d& place_map, const RayParams& params) const;
-  /// What countsAt() means.
+  /// A place above the sensor where no ray ends or passes is seen through when something there would return
+  /// `min_missing` rays (ExpectedReturns), and the three nearest rays below it reach as far. Else a missing return
+  /// tells nothing: the scan may be thinned or cut off, or a dark thing may stand before the place. Cost: the rays
+  /// within `near_m` of the direction to the place, and for places before the sky those below it.
   PlaceVerdict verdictAt(const Eigen::Vector3d& place_map, const RayParams& params) const;
 
  private:
+  /// Whether rays went by the place and into the sky, if no ray ended near it.
+  bool isBeforeSky(const Eigen::Vector3d& place, const RayParams& params) const;
+
   Eigen::Vector3d origin_;
   double max_range_m_ = 0;
-  std::vector<std::uint32_t> first_;   ///< of each cell of direction in rays_; cells row by row in elevation
-  std::vector<Eigen::Vector3f> rays_;  ///< ends relative to the origin, sorted by cell
+  DirectionIndex index_;
+  ExpectedReturns expected_;
 };
 
 /// Visits the rays of a scan, one bundle for each place of the sensor. Consecutive rays whose own origins lie within

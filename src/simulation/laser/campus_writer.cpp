@@ -122,6 +122,12 @@ void writeScans(const Campus& campus, std::size_t visit, const fs::path& folder,
   written.exact.insert(written.exact.end(), campus.stops.begin(), campus.stops.end());
 }
 
+std::size_t stopsOf(const VisitedSite& site) {
+  std::size_t stops = 0;
+  for (const Campus& campus : site.visits) stops += campus.stops.size();
+  return stops;
+}
+
 CampusSummary summaryOf(const Campus& campus, const Written& written) {
   CampusSummary summary;
   summary.scans = written.points.size();
@@ -142,7 +148,7 @@ CampusSummary writeCampus(const Campus& campus, const fs::path& folder, unsigned
   prepare(folder);
   const auto visits = static_cast<std::size_t>(campus.params.visits);
   const VisitedSite site = visits > 1 ? visitSite(campus, visits) : VisitedSite{{campus}, {}};
-  CountedProgress progress(sink, "scan", visits * campus.stops.size());
+  CountedProgress progress(sink, "scan", stopsOf(site));
   Written written;
   for (std::size_t visit = 0; visit < visits; ++visit)
     writeScans(site.visits[visit], visit, folder, threads, progress, written);

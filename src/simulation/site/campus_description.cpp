@@ -20,7 +20,8 @@ Json vectorJson(const Eigen::Vector3d& v) {
 /// identical.
 bool isAlwaysSaid(const CampusParamInfo& info) {
   return info.field != &CampusParams::stop_distance_m && info.field != &CampusParams::drift_m &&
-         info.field != &CampusParams::visits && info.field != &CampusParams::pose_error_m;
+         info.field != &CampusParams::visits && info.field != &CampusParams::later_stops &&
+         info.field != &CampusParams::pose_error_m;
 }
 
 Json parametersJson(const CampusParams& params) {

@@ -14,9 +14,9 @@ namespace {
 constexpr double kMaxSize_m = 400;
 }
 
-const std::array<CampusParamInfo, 12>& campusParamInfos() {
+const std::array<CampusParamInfo, 13>& campusParamInfos() {
   using P = CampusParams;
-  static const std::array<CampusParamInfo, 12> infos{{
+  static const std::array<CampusParamInfo, 13> infos{{
       {"stops", &P::stops, "1", 1, 1000, "scans along the route"},
       {"size", &P::size_m, "m", 45, kMaxSize_m, "edge of the square campus"},
       {"points-per-stop", &P::points_per_stop, "1", 1000, 2e6, "returns per scan"},
@@ -30,6 +30,7 @@ const std::array<CampusParamInfo, 12>& campusParamInfos() {
       {"drift", &P::drift_m, "m", 0, 1, "error that the stated poses gain from scan to scan"},
       {"visits", &P::visits, "1", 1, 9, "drives along the route, between which things change"},
       {"pose-error", &P::pose_error_m, "m", 0, 0.5, "deviation of the stated poses on later visits"},
+      {"later-stops", &P::later_stops, "1", 0, 1000, "scans of each later visit, spread over the route; 0: all"},
   }};
   return infos;
 }
@@ -66,6 +67,9 @@ void check(const CampusParams& params) {
   if (params.visits != std::floor(params.visits))
     throw Error(ErrorKind::InvalidArgument,
                 "the campus cannot have " + shortNumber(params.visits) + " visits: give a whole number");
+  if (params.later_stops != std::floor(params.later_stops) || params.later_stops > params.stops)
+    throw Error(ErrorKind::InvalidArgument, "later visits cannot have " + shortNumber(params.later_stops) +
+                                                " stops: give a whole number of at most " + shortNumber(params.stops));
   const auto stops = static_cast<std::size_t>(params.stops);
   if (stops <= maxStops(params.size_m, params.stop_distance_m)) return;
   double roomy_m = std::ceil(params.size_m);

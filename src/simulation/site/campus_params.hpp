@@ -27,6 +27,7 @@ struct CampusParams {
   double drift_m = 0;                    ///< error that the stated poses gain from scan to scan, mostly forwards
   double visits = 1;                     ///< drives along the route, a day after each other; things change in between
   double pose_error_m = 0;               ///< standard deviation of the errors of the stated poses on later visits
+  double later_stops = 0;                ///< stops of each later visit, spread over the route; 0: as many as the first
   LaserKind laser = LaserKind::PanTilt;
 };
 
@@ -40,7 +41,7 @@ struct CampusParamInfo {
 };
 
 /// One row per numeric parameter, except the seed, which has no range.
-const std::array<CampusParamInfo, 12>& campusParamInfos();
+const std::array<CampusParamInfo, 13>& campusParamInfos();
 
 /// The maximum number of stops on the route of a campus of this size.
 std::size_t maxStops(double size_m, double stop_distance_m = CampusParams{}.stop_distance_m);

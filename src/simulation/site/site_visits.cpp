@@ -209,7 +209,8 @@ class Visits {
     site_.events.push_back({SiteEventKind::Cut, visit, instance, instance, gone, {}});
   }
 
-  /// The stops of a later visit lie half a stop farther along the route, up to half a metre aside.
+  /// The stops of a later visit lie half a stop farther along the route, up to half a metre aside. With fewer of them,
+  /// each stands in the middle of an equal share of the route.
   std::vector<Eigen::Isometry3d> stopsOf(const Campus& base, std::size_t visit) const {
     std::vector<Eigen::Isometry3d> stops = base.stops;
     for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
@@ -221,7 +222,11 @@ class Visits {
       const double height = from.z() - terrain_.heightAt(from.x(), from.y());
       stops[i].translation() = Vector3d(to.x(), to.y(), terrain_.heightAt(to.x(), to.y()) + height);
     }
-    return stops;
+    const auto wanted = static_cast<std::size_t>(base.params.later_stops);
+    if (wanted == 0) return stops;
+    std::vector<Eigen::Isometry3d> kept;
+    for (std::size_t i = 0; i < wanted; ++i) kept.push_back(stops[(2 * i + 1) * stops.size() / (2 * wanted)]);
+    return kept;
   }
 
   std::uint64_t seed_;

@@ -29,6 +29,8 @@ void look(const perception::RayBundle& bundle, const perception::SceneCluxels& c
     for (std::size_t i = chunk * kChunk; i < end; ++i) {
       const perception::PlaceVerdict place = bundle.verdictAt(cluxels.center[numbers[i]], kParams);
       if (place.verdict == RayVerdict::Hit) found[i].is_hit = true;
+      if (place.verdict == RayVerdict::Hit) count(found[i].hits);
+      if (place.verdict == RayVerdict::SeenThrough) count(found[i].seen_through);
       if (place.verdict == RayVerdict::SeenThrough) found[i].is_seen_through = true;
       if (place.verdict == RayVerdict::Hit && place.is_sparse) count(found[i].sparse_hits);
       if (place.verdict == RayVerdict::FewPassed) count(found[i].passed);
@@ -56,6 +58,7 @@ class Clustering {
 
  private:
   static constexpr std::size_t kMinCluxels = 5, kMany = 10;
+  static constexpr double kShown = 3.5;  ///< log-odds of each cluxel of what is gone, on average
   static constexpr double kMinShare = 0.75, kMinShareOfMany = 0.5, kThin_m = 0.3;
   static constexpr perception::PresenceParams kPresence{};
 
@@ -118,6 +121,21 @@ class Clustering {
     return std::min(hits / (hits + passed), 0.95);
   }
 
+  /// Whether the thing lets so many rays through while it is there that scans without a hit do not show that it is
+  /// gone. Rays find gaps in a crown: one scan sees through many places of it.
+  bool isPermeable(const Cluster& cluster, const Cluster& around) const {
+    double hits = 2, seen_through = 0.1;
+    for (const std::uint32_t cluxel : around)
+      if (const RayFindings* there = findingsAt(cluxel, true)) hits += there->hits, seen_through += there->seen_through;
+    const double each = std::log(seen_through / (hits + seen_through) / (1 - kPresence.hit_when_gone));
+    double log_odds = 0;
+    for (const std::uint32_t cluxel : cluster) {
+      const RayFindings& gone = *findingsAt(cluxel, false);
+      log_odds += std::min(each, 0.0) * (gone.seen_through + gone.passed);
+    }
+    return log_odds > -kShown * static_cast<double>(cluster.size());
+  }
+
   /// The share of the decided cluxels in and around a cluster that changed like it.
   double shareAlike(const Cluster& around) const {
     double alike = 0, decided = 0;
@@ -133,6 +151,7 @@ class Clustering {
     for (const std::uint32_t cluxel : cluster) dense += findingsAt(cluxel, false)->is_seen_through ? 1 : 0;
     const Cluster around = withNeighbours(cluster);
     const double share = shareAlike(around);
+    if (isPermeable(cluster, around)) return false;
     if (dense >= kMinCluxels && share >= kMinShare) return true;
     if (dense >= kMany && share >= kMinShareOfMany) return true;
     return cluster.size() >= kMany && share >= kMinShare && !isThin(cluster) && isSureFromFewRays(cluster, around);

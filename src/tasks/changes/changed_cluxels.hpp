@@ -12,7 +12,8 @@ namespace cluxel::tasks {
 /// What the rays of a group of scans found at a cluxel.
 struct RayFindings {
   bool is_hit = false;
-  bool is_seen_through = false;  ///< by several rays of one scan
+  bool is_seen_through = false;             ///< by several rays of one scan
+  std::uint8_t hits = 0, seen_through = 0;  ///< scans that hit the place, scans of which several rays saw through it
   /// Scans with so few rays near the place that they may have missed a thin thing: those that hit, those that passed.
   std::uint8_t sparse_hits = 0, passed = 0;
 
@@ -40,7 +41,10 @@ enum class CluxelChange : std::uint8_t {
 std::vector<CluxelChange> changesOf(const CluxelFindings& findings, std::size_t cluxel_count);
 
 /// Connected clusters of five or more cluxels that changed alike, each ascending, in the order of their first cluxel. A
-/// cluster is dropped when the rays may have missed a thing that is still there. Two conditions keep it:
+/// cluster is dropped when the rays may have missed a thing that is still there. First, each scan that passed a cluxel
+/// adds log((1 - p) / 0.95), where p is the share of hits in and around the cluster while the thing was there: on
+/// average of its cluxels the sum must be -3.5 or less, so that a crown needs more scans than a car. Then two
+/// conditions keep it:
 /// - Enough of the decided cluxels in and around it changed like it, and enough of its cluxels were seen through by
 ///   several rays of one scan: 75 % and 5 cluxels, or 50 % and 10 cluxels.
 /// - It has 10 or more cluxels, is at least 0.3 m wide, 75 % changed like it, and enough scans with few rays passed it.

@@ -248,6 +248,28 @@ std::string nameOf(const mapping::MapReader& map, const ChangedThing& thing) {
   return (thing.is_part ? "part of " : "") + thingName(map, thing.object.value_or(kUnnamedThing));
 }
 
+std::vector<PartStates> statesOfParts(const SiteChanges& changes) {
+  std::map<std::uint32_t, const ObjectStates*> whole;
+  for (const ObjectStates& states : changes.states) whole[states.object] = &states;
+  std::vector<PartStates> parts;
+  const auto add = [&](const ChangedThing& thing, const PartStates& states) {
+    const auto object = thing.object ? whole.find(*thing.object) : whole.end();
+    if (object == whole.end()) return;
+    const bool is_same = states.after == PresenceState::Absent ? object->second->after == PresenceState::Absent
+                                                               : object->second->before == PresenceState::Absent;
+    if (!is_same) parts.push_back(states);
+  };
+  for (const SiteChange& change : changes.changes) {
+    if (change.kind != SiteChange::Kind::Appeared)
+      add(change.thing, {&change.thing, PresenceState::Present, PresenceState::Absent});
+    const ChangedThing* now = change.kind == SiteChange::Kind::Appeared ? &change.thing
+                              : change.now                              ? &*change.now
+                                                                        : nullptr;
+    if (now != nullptr) add(*now, {now, PresenceState::Absent, PresenceState::Present});
+  }
+  return parts;
+}
+
 double timeNamed(const std::string& text) {
   double seconds = 0;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), seconds);
@@ -281,6 +303,15 @@ std::string changesJson(const mapping::MapReader& map, const SiteChanges& found)
     entry["log_odds_before"] = std::round(states.log_odds_before * 100) / 100;
     entry["log_odds_after"] = std::round(states.log_odds_after * 100) / 100;
     json["states"].push_back(std::move(entry));
+  }
+  json["parts"] = ChangeJson::array();
+  for (const PartStates& states : statesOfParts(found)) {
+    ChangeJson entry = objectJson(map, *states.part->object);
+    entry["cluxels"] = states.part->cluxels.size();
+    entry["box_m"] = boxJson(states.part->box);
+    entry["before"] = nameOf(states.before);
+    entry["after"] = nameOf(states.after);
+    json["parts"].push_back(std::move(entry));
   }
   return json.dump(1) + "\n";
 }

@@ -63,6 +63,16 @@ std::vector<SiteChanges> changesOfVisits(const mapping::MapReader& map, unsigned
 /// "StreetSign object/0123456789ab", or "part of ...", or "something unnamed".
 std::string nameOf(const mapping::MapReader& map, const ChangedThing& thing);
 
+/// A part of an object that changed while the object as a whole did not: one bicycle of two that stood together.
+struct PartStates {
+  const ChangedThing* part = nullptr;  ///< of SiteChanges::changes; its object is known
+  perception::PresenceState before = perception::PresenceState::NotObserved,
+                            after = perception::PresenceState::NotObserved;
+};
+/// What vanished of objects whose state afterwards is another than absent, and what appeared of objects whose state
+/// before is another, in the order of the changes. `changes` must outlive the result.
+std::vector<PartStates> statesOfParts(const SiteChanges& changes);
+
 /// Seconds since 1970 of "2023-11-15T22:13:20Z", "2023-11-15" or a number of seconds. Throws Error (InvalidArgument).
 double timeNamed(const std::string& text);
 

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// Directions are sorted into cells of half a degree of azimuth and elevation by counting.
+#include "perception/visibility/direction_index.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace cluxel::perception {
+
+namespace {
+
+constexpr int kRows = 360, kColumns = 720;
+constexpr double kCell_rad = std::numbers::pi / kRows;
+
+struct Direction {
+  double azimuth = 0, elevation = 0;  ///< [rad]
+};
+
+Direction directionOf(const Eigen::Vector3d& v) {
+  return {std::atan2(v.y(), v.x()), std::atan2(v.z(), v.head<2>().norm())};
+}
+
+int rowOf(double elevation) {
+  return std::clamp(static_cast<int>((elevation + std::numbers::pi / 2) / kCell_rad), 0, kRows - 1);
+}
+
+int columnOf(double azimuth) {
+  return static_cast<int>(std::floor((azimuth + std::numbers::pi) / kCell_rad));
+}
+
+/// Columns wrap around.
+std::size_t cellOf(int row, int column) {
+  const int wrapped = ((column % kColumns) + kColumns) % kColumns;
+  return static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(wrapped);
+}
+
+}  // namespace
+
+DirectionIndex::DirectionIndex(std::vector<Eigen::Vector3f> ends)
+    : first_(static_cast<std::size_t>(kRows) * kColumns + 1, 0), rays_(ends.size()) {
+  std::vector<std::uint32_t> cell(ends.size());
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const Direction direction = directionOf(ends[i].cast<double>());
+    cell[i] = static_cast<std::uint32_t>(cellOf(rowOf(direction.elevation), columnOf(direction.azimuth)));
+    ++first_[cell[i] + 1];
+  }
+  for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+  for (std::size_t i = 0; i < ends.size(); ++i) rays_[next[cell[i]]++] = ends[i];
+}
+
+DirectionIndex::Window DirectionIndex::windowAround(const Eigen::Vector3d& place, double near_m) {
+  const Direction direction = directionOf(place);
+  const double half_angle = std::asin(std::min(1.0, near_m / place.norm()));
+  // A circle around the direction is wider in azimuth the nearer it is to the zenith.
+  const double narrowest = std::cos(std::min(std::abs(direction.elevation) + half_angle, std::numbers::pi / 2));
+  const double half_width = narrowest * std::numbers::pi > half_angle ? half_angle / narrowest : std::numbers::pi;
+  const int low_column = columnOf(direction.azimuth - half_width);
+  return {rowOf(direction.elevation - half_angle), rowOf(direction.elevation + half_angle), low_column,
+          std::min(columnOf(direction.azimuth + half_width) - low_column + 1, kColumns)};
+}
+
+std::span<const Eigen::Vector3f> DirectionIndex::raysIn(int row, int column) const {
+  const std::size_t cell = cellOf(row, column);
+  return std::span(rays_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
+}
+
+std::vector<Eigen::Vector3f> DirectionIndex::nearestBelow(const Eigen::Vector3d& place, double near_m,
+                                                          std::size_t count) const {
+  const Window window = windowAround(place, near_m);
+  std::vector<Eigen::Vector3f> found;
+  for (int row = window.low_row; row >= 0 && found.size() < count; --row)
+    for (int column = window.low_column; column < window.low_column + window.columns; ++column)
+      for (const Eigen::Vector3f& ray : raysIn(row, column)) {
+        // In the row of the place's own surroundings only what lies below counts.
+        if (static_cast<double>(ray.z()) * place.head<2>().norm() < place.z() * ray.head<2>().cast<double>().norm())
+          found.push_back(ray);
+      }
+  return found;
+}
+
+}  // namespace cluxel::perception

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// How many returns a scan gives where there is something: what makes a direction without return tell that nothing is
+// there.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "perception/visibility/direction_index.hpp"
+
+namespace cluxel::perception {
+
+/// For classes of range and elevation, how many rays end around a place where one ends. It follows from the returns
+/// alone: a scan that was thinned, cut off at a height or a range, or whose beams lie far apart, has few or none there.
+class ExpectedReturns {
+ public:
+  /// Counts rays within `near_m` of places. Cost: some milliseconds.
+  ExpectedReturns(const DirectionIndex& index, double near_m);
+
+  /// The rays that pass within `near_m` of a place when something is there, or behind it: the median over returns of
+  /// like range and elevation. Zero where fewer than 24 returns tell, or where hardly any goes higher at that range.
+  double around(const Eigen::Vector3d& place) const;
+
+ private:
+  std::vector<float> median_;   ///< by class of range and elevation
+  std::vector<float> highest_;  ///< by class of range: the elevation that returns of this range or more reach [rad]
+};
+
+}  // namespace cluxel::perception
