@@ -23,10 +23,7 @@ double farthestOf(const std::vector<Eigen::Vector3f>& ends) {
 }  // namespace
 
 RayBundle::RayBundle(const Eigen::Vector3d& origin_map, std::vector<Eigen::Vector3f> ends)
-    : origin_(origin_map),
-      max_range_m_(farthestOf(ends)),
-      index_(std::move(ends)),
-      expected_(index_, RayParams{}.near_m) {}
+    : origin_(origin_map), max_range_m_(farthestOf(ends)), index_(std::move(ends)) {}
 
 RayCounts RayBundle::countsAt(const Eigen::Vector3d& place_map, const RayParams& params) const {
   const Eigen::Vector3d place = place_map - origin_;
@@ -60,12 +57,13 @@ PlaceVerdict RayBundle::verdictAt(const Eigen::Vector3d& place_map, const RayPar
 }
 
 bool RayBundle::isBeforeSky(const Eigen::Vector3d& place, const RayParams& params) const {
-  if (expected_.around(place) < params.min_missing) return false;
+  if (place.z() <= 0) return false;  // below the sensor a ray without return was swallowed
   const std::vector<Eigen::Vector3f> below = index_.nearestBelow(place, params.near_m, kRaysBelow);
   const double reach_m = place.head<2>().norm() - params.hit_m;
-  return below.size() >= kRaysBelow && std::all_of(below.begin(), below.end(), [reach_m](const Eigen::Vector3f& end) {
-           return end.cast<double>().head<2>().norm() >= reach_m;
-         });
+  const auto reaches = [reach_m](const Eigen::Vector3f& end) { return end.cast<double>().head<2>().norm() >= reach_m; };
+  if (below.size() < kRaysBelow || !std::all_of(below.begin(), below.end(), reaches)) return false;
+  std::call_once(is_expected_known_, [this] { expected_.emplace(index_, RayParams{}.near_m); });
+  return expected_->around(place) >= params.min_missing;
 }
 
 void forEachRayBundle(const scan::Scan& scan, const std::function<void(const RayBundle&)>& visit) {

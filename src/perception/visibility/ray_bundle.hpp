@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
+#include <mutex>
+#include <optional>
 #include <vector>
 
 #include "perception/visibility/direction_index.hpp"
@@ -65,7 +67,8 @@ class RayBundle {
   Eigen::Vector3d origin_;
   double max_range_m_ = 0;
   DirectionIndex index_;
-  ExpectedReturns expected_;
+  mutable std::once_flag is_expected_known_;
+  mutable std::optional<ExpectedReturns> expected_;  ///< made when a place before the sky is asked about
 };
 
 /// Visits the rays of a scan, one bundle for each place of the sensor. Consecutive rays whose own origins lie within
