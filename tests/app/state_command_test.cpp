@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/program_fixture.hpp"
+#include "base/file_bytes.hpp"
 
 namespace cluxel::app {
 namespace {
@@ -35,6 +36,20 @@ TEST_F(StateCommand, TakesAClassANameAndARemark) {
   const Outcome stated = state("--object " + tree + " --is clx:StreetLamp --label \"north gate\" --note seen");
   EXPECT_EQ(stated.code, 0) << stated.err;
   EXPECT_EQ(listed(), 3u);
+}
+
+TEST_F(StateCommand, AFaultyFileOfStatementsIsNamedWithItsFault) {
+  ASSERT_EQ(state("--object " + one("Tree") + " --is clx:StreetLamp").code, 0);
+  const fs::path file = path("edited.nq");
+  ASSERT_EQ(state("--export " + file.string()).code, 0);
+  std::string text = readFile(file);
+  text.replace(text.find("ontology#StreetLamp"), 19, "ontology#StreetSign");
+  writeFile(file, text);
+  const Outcome refused =
+      run("build " + path("campus").string() + " -o " + path("edited.clx").string() + " --statements " + file.string());
+  expectError(refused, 4, file.string());
+  EXPECT_THAT(refused.err, HasSubstr("was edited"));
+  EXPECT_FALSE(fs::exists(path("edited.clx")));
 }
 
 TEST_F(StateCommand, RefusesWhatCannotBeMeant) {

@@ -2,7 +2,9 @@
 // `cluxel build`: makes one map file from scans.
 #include "app/command.hpp"
 #include "app/shared_options.hpp"
+#include "cluxel/error.hpp"
 #include "mapping/build/map_builder.hpp"
+#include "mapping/statements/statement.hpp"
 #include "rdf/io/rdf_io.hpp"
 
 namespace cluxel::app {
@@ -18,14 +20,23 @@ struct BuildOptions {
   mapping::BuildParams params;
 };
 
+std::vector<Quad> statementsIn(const fs::path& file) {
+  std::vector<Quad> quads;
+  rdf::parseRdf(rdf::readRdfSource(file), [&quads](const Quad& quad) { quads.push_back(quad); });
+  try {
+    mapping::statementsAmong(quads);
+  } catch (const Error& fault) {
+    throw InputError({.file = file.string()}, fault.what());
+  }
+  return quads;
+}
+
 ExitCode build(const BuildOptions& options, Session& session) {
   const scan::ScanSet scans = scan::ScanSet::open(options.inputs, options.scans.params(), session.console);
   const mapping::MapInputs inputs = readMapInputs(options.files, session.dataHome());
   mapping::BuildParams params = options.params;
   params.threads = session.threadCount();
-  if (!options.statements.empty())
-    rdf::parseRdf(rdf::readRdfSource(options.statements),
-                  [&params](const Quad& quad) { params.statements.push_back(quad); });
+  if (!options.statements.empty()) params.statements = statementsIn(options.statements);
   const mapping::BuildReport report = buildMap(scans, inputs, options.output, params, session.console);
   if (session.json) {
     printJson(Json{{"map", options.output.string()},

@@ -152,8 +152,13 @@ BuildReport built(const scan::ScanSet& scans, const MapInputs& inputs, const fs:
   if (!complete.crs.empty()) sink.note("coordinate system of the map: " + complete.crs);
   const ParsedInputs parsed = parseInputs(complete);
   // A faulty statement is refused before anything is written.
-  for (const Statement& statement : statementsAmong(params.statements))
-    requireStatable(statement, parsed.rules.catalogue);
+  for (const Statement& statement : statementsAmong(params.statements)) {
+    try {
+      requireStatable(statement, parsed.rules.catalogue);
+    } catch (const Error& fault) {
+      throw Error(ErrorKind::FaultyInput, "operator statement " + statement.id().hex() + ": " + fault.what());
+    }
+  }
   WorkFile work(file, complete.hash().hex(), params.force);
   if (!params.refine_poses) noteDoubtfulPoses(scans, params.threads, sink);
   const scan::ScanSet posed = params.refine_poses ? withRefinedPoses(scans, params.threads, sink) : scans;

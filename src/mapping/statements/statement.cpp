@@ -23,7 +23,8 @@ constexpr double kStep_m = 1e-4;  ///< of the corners of regions
 constexpr std::size_t kMinCorners = 3;
 
 [[noreturn]] void refuseStatement(const std::string& iri, const std::string& what) {
-  throw Error(ErrorKind::InvalidArgument, "operator statement <" + iri + "> " + what + "; withdraw it");
+  throw Error(ErrorKind::FaultyInput,
+              "operator statement <" + iri + "> " + what + "; leave it out, and state it of the object again");
 }
 
 /// "HEX 12 45": the scan, then its points.

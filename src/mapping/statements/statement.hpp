@@ -47,7 +47,7 @@ std::string textOf(const Statement& statement);
 
 /// The quads of a statement in graph `operator`.
 std::vector<Quad> quadsOf(const Statement& statement);
-/// The statements among quads of graph `operator`, ascending by id. Throws Error (InvalidArgument) naming the first
+/// The statements among quads of graph `operator`, ascending by id. Throws Error (FaultyInput) naming the first
 /// that is malformed.
 std::vector<Statement> statementsAmong(const std::vector<Quad>& quads);
 /// Those of graph `operator`.

@@ -17,7 +17,7 @@ namespace {
 
 using rdf::vocabulary::clx;
 
-std::string provenance(std::string_view local) {
+std::string statementTerm(std::string_view local) {
   return std::string(rdf::vocabulary::kProv).append(local);
 }
 
@@ -60,7 +60,7 @@ class StatementWriter {
   void record(const ContentHash& id, const std::string& by, const std::string& author, std::string_view time) {
     const Term subject = Term::iri(rdf::iriOfStatement(id)), graph = Term::iri(rdf::vocabulary::kGraphHistory);
     if (!author.empty()) writer_.add(Quad{subject, Term::iri(by), Term::literal(author), graph});
-    writer_.add(Quad{subject, Term::iri(provenance(time)), now_, graph});
+    writer_.add(Quad{subject, Term::iri(statementTerm(time)), now_, graph});
   }
 
   rdf::QuadReader reader_;
@@ -73,7 +73,7 @@ std::map<std::string, std::string> lastTimes(std::span<const rdf::QuadReader* co
   const std::string statements = rdf::mapIri("statement", "");
   std::map<std::string, std::string> last;
   for (const rdf::QuadReader* map : maps) {
-    const auto predicate = map->idOf(Term::iri(provenance(property)));
+    const auto predicate = map->idOf(Term::iri(statementTerm(property)));
     const auto history = map->idOf(Term::iri(rdf::vocabulary::kGraphHistory));
     if (!predicate || !history) continue;
     rdf::QuadCursor cursor = map->scan({.s = {}, .p = *predicate, .o = {}, .g = *history});
@@ -138,7 +138,7 @@ StatementRecord recordOf(const rdf::QuadReader& quads, const ContentHash& id) {
   std::set<std::string> authors;
   for (const Quad& quad : quadsAbout(quads, id, rdf::vocabulary::kGraphHistory)) {
     if (quad.predicate.text == clx("statedBy")) authors.insert(quad.object.text);
-    if (quad.predicate.text == provenance("generatedAtTime"))
+    if (quad.predicate.text == statementTerm("generatedAtTime"))
       record.stated_at = std::max(record.stated_at, quad.object.text);
   }
   for (const std::string& author : authors) record.author += (record.author.empty() ? "" : ", ") + author;
