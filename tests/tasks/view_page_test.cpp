@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -165,6 +166,23 @@ TEST(CampusMapPage, HoldsTheQuadsOfAllGraphsButHistory) {
   EXPECT_EQ(lines, expected);
 }
 
+/// The page's reasons have six digits and no margins.
+void expectShortened(const ViewDocument& shown, const ViewDocument& whole) {
+  if (whole.is_number_float()) {
+    const double value = whole.get<double>();
+    EXPECT_NEAR(shown.get<double>(), value, 5e-6 * std::abs(value));
+  } else if (whole.is_object()) {
+    EXPECT_EQ(shown.size(), whole.size() - whole.count("margin")) << whole;
+    for (const auto& [key, value] : whole.items())
+      if (key != "margin") expectShortened(shown.at(key), value);
+  } else if (whole.is_array()) {
+    ASSERT_EQ(shown.size(), whole.size());
+    for (std::size_t i = 0; i < whole.size(); ++i) expectShortened(shown[i], whole[i]);
+  } else {
+    EXPECT_EQ(shown, whole);
+  }
+}
+
 TEST(CampusMapPage, HoldsTheExplanationThatTheObjectHas) {
   const MapReader& map = CampusMap::shared().map();
   std::vector<std::string> reasons;
@@ -178,7 +196,7 @@ TEST(CampusMapPage, HoldsTheExplanationThatTheObjectHas) {
     ViewDocument expected = ViewDocument::parse(explainThing(map, "#" + std::to_string(i), true));
     expected.erase("number");
     expected.erase("thing");  // history, which a page does not tell
-    EXPECT_EQ(ViewDocument::parse(reasons[i]), expected);
+    expectShortened(ViewDocument::parse(reasons[i]), expected);
   }
 }
 

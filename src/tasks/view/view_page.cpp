@@ -2,6 +2,10 @@
 // Puts blocks of data where the page has its mark.
 #include "tasks/view/view_page.hpp"
 
+#include <charconv>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "tasks/explanation.hpp"
@@ -17,12 +21,36 @@ namespace {
 constexpr std::string_view kDataMark = "<!--map data-->";
 constexpr std::size_t kReasonsInBlock = 64;  // read one block for a click, not all
 
+double rounded(double value) {
+  constexpr int digits = 6;  // the page shows three
+  char text[32];
+  const std::to_chars_result end =
+      std::to_chars(std::begin(text), std::end(text), value, std::chars_format::general, digits);
+  std::from_chars(std::begin(text), end.ptr, value);
+  return value;
+}
+
+/// Rounds all numbers with a fraction, and leaves out margins, which the page computes: a third of the bytes.
+void shorten(nlohmann::ordered_json& json) {
+  if (json.is_number_float()) json = rounded(json.get<double>());
+  if (json.is_object()) json.erase("margin");
+  if (json.is_structured())
+    for (nlohmann::ordered_json& member : json) shorten(member);
+}
+
+std::string shortened(const std::string& reasons) {
+  auto json = nlohmann::ordered_json::parse(reasons);
+  shorten(json);
+  return json.dump();
+}
+
 std::uint64_t writeReasons(const mapping::MapReader& map, const ByteSink& out) {
   const std::vector<std::string> reasons = explainObjects(map);
   std::uint64_t written = 0;
   for (std::size_t i = 0; i < reasons.size(); i += kReasonsInBlock) {
     std::string lines;
-    for (std::size_t k = i; k < std::min(reasons.size(), i + kReasonsInBlock); ++k) lines += reasons[k] + "\n";
+    for (std::size_t k = i; k < std::min(reasons.size(), i + kReasonsInBlock); ++k)
+      lines += shortened(reasons[k]) + "\n";
     written += writeBlock("reasons-" + std::to_string(i / kReasonsInBlock), lines, out);
   }
   return written;

@@ -69,9 +69,9 @@ interface ObjectValues {
 
 export interface Step {
   test: string; passed: boolean; file: string; line: number; unit: string;
-  measured?: number; threshold?: number; margin?: number;
+  measured?: number; threshold?: number;
 }
-export interface Change { test: string; measured: number; threshold: number; margin: number; unit: string }
+export interface Change { test: string; measured: number; threshold: number; unit: string }
 export interface Verdict {
   class: string; rule: string; accepted: boolean; reason: string; path?: Step[]; hint?: string;
   least_change?: { accepted: boolean; outcome: string; changes: Change[] };

@@ -31,9 +31,14 @@ function placeOf(step: Step, store?: Store): HTMLElement {
                         onclick: () => store.set('ruleLine', { file: step.file, line: step.line }) }, text);
 }
 
+/** How far the measured value is from the threshold. */
+function marginText({ measured, threshold, unit }: Step): string {
+  return measured === undefined || threshold === undefined ? '' : `margin ${withUnit(Math.abs(measured - threshold), unit)}`;
+}
+
 function stepRow(step: Step, store?: Store): HTMLElement {
   const measured = step.measured === undefined ? '' : `measured ${withUnit(step.measured, step.unit)}`;
-  const margin = step.margin === undefined ? '' : `margin ${withUnit(step.margin, step.unit)}`;
+  const margin = marginText(step);
   return el('li', { class: step.passed ? 'step yes' : 'step no' },
             el('span', { class: 'mark', role: 'img', 'aria-label': step.passed ? 'holds' : 'does not hold' }, step.passed ? '✓' : '✗'),
             el('span', { class: 'step-text' }, step.test.replaceAll('_', ' '),
