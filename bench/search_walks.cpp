@@ -67,8 +67,7 @@ std::vector<std::uint32_t> Walker::takeSeen() {
   return std::exchange(seen_, {});
 }
 
-/// Learns whether the next cell is closed, or on a diagonal step a cell beside it: between two of them no way leads
-/// back.
+/// Learns whether the next cell is closed, or on a diagonal step a cell beside it: such a step has no way back.
 bool Walker::isBlocked(std::uint32_t next) {
   const auto columns = static_cast<std::uint32_t>(world_.frame().columns);
   const std::uint32_t beside_x = at_ / columns * columns + next % columns,
@@ -76,7 +75,7 @@ bool Walker::isBlocked(std::uint32_t next) {
   bool is_blocked = false;
   for (const std::uint32_t cell : {next, beside_x, beside_y}) {
     if (cell == at_ || world_.closure()[cell] == tasks::Closure::Open) continue;
-    is_blocked = is_blocked || belief_.closure[cell] == tasks::Closure::Open || cell == next;
+    is_blocked = true;
     belief_.closure[cell] = tasks::Closure::Obstacle;
   }
   return is_blocked;
