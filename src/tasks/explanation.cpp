@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/ascii.hpp"
 #include "base/nearest_name.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/change/map_things.hpp"
@@ -45,7 +46,7 @@ void shortenFiles(rules::Explanation& explanation, const mapping::MapInputs& inp
 
 /// The name without what tables and other formats write around it: <IRI>, map:object/HEX.
 std::string plainName(const std::string& written) {
-  std::string_view name = written;
+  std::string_view name = trimmed(written);  // lines of CSV end in CR LF
   if (name.starts_with('<') && name.ends_with('>')) name = name.substr(1, name.size() - 2);
   if (name.starts_with("map:")) name.remove_prefix(4);
   return std::string(name);

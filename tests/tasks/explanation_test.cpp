@@ -99,6 +99,7 @@ TEST(Explanation, TakesNamesAsAnswersToQueriesWriteThem) {
   EXPECT_EQ(explainThing(map, "map:object/" + hex, false), told) << "as in a table";
   EXPECT_EQ(explainThing(map, "<https://w3id.org/cluxel/map/object/" + hex + ">", false), told)
       << "as in TSV and Turtle";
+  EXPECT_EQ(explainThing(map, "https://w3id.org/cluxel/map/object/" + hex + "\r\n", false), told) << "a line of CSV";
 }
 
 TEST(Explanation, RefusesNamesOfNothingAndOfTooMuch) {

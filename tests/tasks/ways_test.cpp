@@ -6,6 +6,9 @@
 #include <limits>
 #include <random>
 
+#include "cluxel/error.hpp"
+#include "rdf/ontology/ontology.hpp"
+#include "rdf/vocabulary.hpp"
 #include "tasks/ways/cost_map.hpp"
 #include "tasks/ways/route.hpp"
 #include "tasks/ways/way_search.hpp"
@@ -212,6 +215,25 @@ TEST(Walks, EndAtTheirReachAndFindWhatStandsBeside) {
   EXPECT_EQ(reached[0].object, 0U);
   EXPECT_NEAR(reached[0].walk_m, 7, 1e-9);
   EXPECT_TRUE(objectsWithin(terrain, walkLengths(passable(terrain), {0.5, 1.5}, 3)).empty());
+}
+
+TEST(ClassNames, AreLocalNamesIrisOrLabelsOfOneClass) {
+  rdf::OntologyView view;
+  const auto add = [&](const char* name, std::map<std::string, std::string> labels) {
+    view.classes.emplace_back();
+    view.classes.back().iri = rdf::vocabulary::clx(name);
+    view.classes.back().labels = std::move(labels);
+  };
+  add("Bench", {{"en", "bench"}, {"de", "Bank"}});
+  add("Bureau", {{"de", "Bank"}});
+  add("StreetSign", {{"en", "street sign"}, {"de", "Straßenschild"}});
+  const std::string sign = rdf::vocabulary::clx("StreetSign");
+  for (const std::string& written :
+       {std::string("StreetSign"), std::string("clx:StreetSign"), "<" + sign + ">", sign, std::string("Street sign"),
+        std::string("street-sign "), std::string("Straßenschild")})
+    EXPECT_EQ(classNamed(view, written), sign) << written;
+  EXPECT_THROW(classNamed(view, "Bank"), Error) << "the label of two";
+  EXPECT_THROW(classNamed(view, "Schild"), Error);
 }
 
 TEST(CostMap, IsAnImageFromTheTopWithItsPlaceInYaml) {

@@ -133,8 +133,12 @@ const Task& taskNamed(std::span<const Task> tasks, const std::string& name) {
     if (plainTaskName(task.name) == plainTaskName(name)) return task;
     known.push_back(task.name);
   }
-  const std::string hint = suggestion(name, known);
-  throw Error(ErrorKind::NotFound, "there is no task '" + name + "'" + (hint.empty() ? "" : "; " + hint));
+  std::string hint = suggestion(name, known);
+  if (hint.empty()) {
+    hint = "the tasks are";
+    for (const std::string& other : known) hint += (&other == &known.front() ? " " : ", ") + other;
+  }
+  throw Error(ErrorKind::NotFound, "there is no task '" + name + "'; " + hint);
 }
 
 std::string taskListJson(std::span<const Task> tasks) {

@@ -32,8 +32,9 @@ Eigen::Vector2d placeNamed(const mapping::MapReader& map, const std::string& tex
 
 /// The open cell nearest to a place. Throws Error (NotFound) when there is none within 2 m.
 std::uint32_t openCellNear(const PassableGrid& grid, const Eigen::Vector2d& p_map);
-/// The IRI of a class written "Tree", "clx:Tree" or in full. Throws Error (NotFound).
-std::string classNamed(const rdf::OntologyView& ontology, const std::string& name);
+/// The IRI of a class written "StreetSign", "clx:StreetSign", in full, or by its label in some language ("street
+/// sign", whatever the case). Throws Error (NotFound) for an unknown class, and for a label of several.
+std::string classNamed(const rdf::OntologyView& ontology, const std::string& written);
 
 struct Route {
   std::vector<std::uint32_t> cells;

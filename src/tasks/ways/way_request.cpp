@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "base/ascii.hpp"
 #include "base/nearest_name.hpp"
 #include "cluxel/error.hpp"
 #include "rdf/map_iris.hpp"
@@ -72,17 +73,41 @@ Eigen::Vector2d centroidOf(const mapping::MapReader& map, const std::string& iri
   return place;
 }
 
+/// Without case, blanks and what joins words.
+std::string plainWords(std::string_view text) {
+  std::string plain = lowerCase(text);
+  plain.erase(std::remove_if(plain.begin(), plain.end(), [](char c) { return c == ' ' || c == '-' || c == '_'; }),
+              plain.end());
+  return plain;
+}
+
+/// The only class with the label, in any language; none when there are several.
+std::optional<std::string> classLabelled(const rdf::OntologyView& ontology, std::string_view text) {
+  std::optional<std::string> found;
+  for (const rdf::OntologyClass& known : ontology.classes) {
+    const bool is_meant = plainWords(mapping::localName(known.iri)) == plainWords(text) ||
+                          std::any_of(known.labels.begin(), known.labels.end(),
+                                      [&](const auto& label) { return plainWords(label.second) == plainWords(text); });
+    if (is_meant && found) return std::nullopt;
+    if (is_meant) found = known.iri;
+  }
+  return found;
+}
+
 }  // namespace
 
-std::string classNamed(const rdf::OntologyView& ontology, const std::string& name) {
-  const std::string local = name.starts_with("clx:") ? name.substr(4) : name;
-  for (const std::string& iri : {name, rdf::vocabulary::clx(local)})
+std::string classNamed(const rdf::OntologyView& ontology, const std::string& written) {
+  std::string_view name = trimmed(written);
+  if (name.starts_with('<') && name.ends_with('>')) name = name.substr(1, name.size() - 2);
+  const std::string local(name.starts_with("clx:") ? name.substr(4) : name);
+  for (const std::string& iri : {std::string(name), rdf::vocabulary::clx(local)})
     if (ontology.find(iri) != nullptr) return iri;
+  if (const auto labelled = classLabelled(ontology, name)) return *labelled;
   std::vector<std::string> known;
   for (const std::string& iri : ontology.classNames()) known.push_back(mapping::localName(iri));
   const std::string hint = suggestion(local, known);
   throw Error(ErrorKind::NotFound,
-              "the map's ontology has no class '" + name + "'" + (hint.empty() ? "" : "; " + hint));
+              "the map's ontology has no class '" + std::string(name) + "'" + (hint.empty() ? "" : "; " + hint));
 }
 
 PassableGrid passableIn(const mapping::MapReader& map, const WayRequest& request) {
