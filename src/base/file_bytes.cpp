@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
@@ -143,6 +144,17 @@ std::string readFile(const fs::path& path) {
   while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file.get())) bytes.append(buffer, count);
   if (std::ferror(file.get())) refuse(path, "cannot be read");
   return bytes;
+}
+
+std::vector<fs::path> filesIn(const fs::path& folder, const std::vector<std::string_view>& endings) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (std::any_of(endings.begin(), endings.end(), [&](std::string_view ending) { return name.ends_with(ending); }))
+      files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 void writeFile(const fs::path& path, std::string_view bytes) {

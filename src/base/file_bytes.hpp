@@ -5,11 +5,16 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace cluxel {
 
 /// The bytes of a file, or of /dev/stdin and /dev/fd/N; InputError when it cannot be read, or is no regular file.
 std::string readFile(const std::filesystem::path& path);
+
+/// The entries of a folder whose names end in one of `endings`, sorted.
+std::vector<std::filesystem::path> filesIn(const std::filesystem::path& folder,
+                                           const std::vector<std::string_view>& endings);
 
 /// Writes all of `bytes` or leaves the old file as it was; Error (StoreUnavailable) when the disk refuses. A link stays
 /// a link: the file that it leads to is replaced. What is no file (a pipe, a device) is written to in place.

@@ -17,14 +17,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::vector<fs::path> filesIn(const fs::path& folder, std::string_view ending) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.path().string().ends_with(ending)) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 std::vector<NamedText> readAll(const std::vector<fs::path>& files) {
   std::vector<NamedText> texts;
   texts.reserve(files.size());
@@ -34,7 +26,7 @@ std::vector<NamedText> readAll(const std::vector<fs::path>& files) {
 
 std::vector<fs::path> givenOr(const std::vector<fs::path>& given, const std::string& folder, std::string_view ending,
                               const DataHome& home) {
-  if (given.empty()) return filesIn(home.locate(folder), ending);
+  if (given.empty()) return filesIn(home.locate(folder), {ending});
   std::vector<fs::path> files;
   files.reserve(given.size());
   for (const fs::path& name : given) files.push_back(home.locate(folder, name));

@@ -13,6 +13,7 @@
 #include "mapping/change/map_things.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/facts/ask_replay.hpp"
+#include "mapping/statements/applied_statements.hpp"
 #include "rdf/map_iris.hpp"
 #include "rules/explain/part_run.hpp"
 #include "rules/explain/path_tree.hpp"
@@ -121,10 +122,12 @@ Named find(const mapping::MapReader& map, const std::string& name) {
   if (named.object && named.primitive)
     throw Error(ErrorKind::NotFound, "'" + name + "' names an object and a primitive; write more digits, or object/" +
                                          name + " or primitive/" + name);
-  if (!named.object && !named.primitive)
-    throw Error(ErrorKind::NotFound,
-                "nothing in the map is named '" + name + "'; the question objects.rq lists objects");
-  return named;
+  if (named.object || named.primitive) return named;
+  for (const mapping::OverruledObject& overruled : map.overruled())
+    if (!overruled.now && isNamed("object", overruled.by_rules.id, name))
+      throw Error(ErrorKind::NotFound, "object/" + overruled.by_rules.id.hex() +
+                                           " was removed by an operator statement; it is back once that is withdrawn");
+  throw Error(ErrorKind::NotFound, "nothing in the map is named '" + name + "'; the question objects.rq lists objects");
 }
 
 std::vector<perception::PrimitiveIndex> primitivesOf(const mapping::MapReader& map, const Named& named) {

@@ -145,12 +145,8 @@ Question readQuestion(const fs::path& file) {
 }
 
 std::vector<Question> shippedQuestions(const DataHome& home) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(home.locate("queries")))
-    if (entry.path().extension() == ".rq") files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
   std::vector<Question> questions;
-  for (const fs::path& file : files) questions.push_back(readQuestion(file));
+  for (const fs::path& file : filesIn(home.locate("queries"), {".rq"})) questions.push_back(readQuestion(file));
   return questions;
 }
 

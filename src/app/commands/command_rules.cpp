@@ -49,7 +49,14 @@ Json diagnosticJson(const Diagnostic& diagnostic) {
 
 std::vector<fs::path> ruleFiles(const RulesOptions& options, const DataHome& home) {
   std::vector<fs::path> files;
-  for (const fs::path& file : options.files) files.push_back(home.locate("rules", file));
+  for (const fs::path& name : options.files) {
+    if (fs::is_directory(name))
+      for (fs::path& file : filesIn(name, {".rules.yaml", ".rq"})) files.push_back(std::move(file));
+    else
+      files.push_back(home.locate("rules", name));
+  }
+  if (files.empty() && !options.files.empty())
+    throw Error(ErrorKind::InvalidArgument, options.files.front().string() + " holds no *.rules.yaml and no *.rq");
   if (files.empty()) files.push_back(home.locate("rules/outdoor.rules.yaml"));
   return files;
 }
@@ -309,7 +316,7 @@ void addRules(CLI::App& app, Session& session) {
   rules->require_subcommand(1);
   CLI::App* checking = rules->add_subcommand("check", "report every fault with file, line and column");
   checking->add_option("files", options->files,
-                       "rule files, and SPARQL rules (*.rq); default: rules/outdoor.rules.yaml");
+                       "rule files, SPARQL rules (*.rq), or folders of both; default: rules/outdoor.rules.yaml");
   checking->add_option("--ontology", options->inputs.ontology, "ontology files beside ontology/*.ttl");
   checking->add_flag("--pairs", options->pairs,
                      "find pairs of rules that can accept the same thing with equal evidence, and show an example");

@@ -34,10 +34,7 @@ struct TruthMaps {
 
 std::vector<fs::path> mapsIn(const fs::path& path) {
   if (!fs::is_directory(path)) return {path};
-  std::vector<fs::path> maps;
-  for (const auto& entry : fs::directory_iterator(path))
-    if (entry.path().extension() == ".clx") maps.push_back(entry.path());
-  std::sort(maps.begin(), maps.end());
+  const std::vector<fs::path> maps = filesIn(path, {".clx"});
   if (maps.empty()) throw Error(ErrorKind::InvalidArgument, path.string() + " holds no maps (*.clx)");
   return maps;
 }

@@ -3,10 +3,10 @@
 #include "app/console/usage_fault.hpp"
 
 #include <algorithm>
-
 #include <vector>
 
 #include "base/nearest_name.hpp"
+#include "tasks/ask/task_table.hpp"
 
 namespace cluxel::app {
 
@@ -67,6 +67,9 @@ std::string unexpected(const std::string& argument, const Reached& reached) {
   }
   const Names commands = commandsOf(*reached.command);
   if (commands.empty()) return "'" + argument + "' is one argument too many";
+  const auto tasks = tasks::tasksOf({});
+  const bool is_task = std::any_of(tasks.begin(), tasks.end(), [&](const auto& task) { return task.name == argument; });
+  if (is_task) return "'" + argument + "' is a task, no command: 'cluxel ask MAP " + argument + "'";
   return "there is no command '" + argument + "'" + didYouMean(argument, commands) +
          "\n  commands: " + listed(commands);
 }
