@@ -4,6 +4,9 @@
 set(CLUXEL_COMMIT "" CACHE STRING "Commit to print; empty: ask git")
 set(CLUXEL_BUILT_COMMIT "${CLUXEL_COMMIT}")
 if(EXISTS ${PROJECT_SOURCE_DIR}/.git)
+  if(EXISTS ${PROJECT_SOURCE_DIR}/.git/logs/HEAD)   # a new commit configures anew
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/.git/logs/HEAD)
+  endif()
   execute_process(COMMAND git log -1 --format=%h:%ct --abbrev=12 WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
     OUTPUT_VARIABLE head OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
   if(head MATCHES "^([0-9a-f]+):([0-9]+)$")

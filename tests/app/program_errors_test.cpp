@@ -99,6 +99,15 @@ TEST_F(Program, CheckingRulesLooksIntoQueries) {
   EXPECT_NE(run("rules check " + path("tab.rules.yaml").string()).out.find("indent with spaces"), std::string::npos);
   writeFile(path("brace.rules.yaml"), "apiVersion: cluxel.rules/v1\nprefixes: { clx: \"urn:x#\"\norder: [clx:Tree]\n");
   EXPECT_NE(run("rules check " + path("brace.rules.yaml").string()).out.find("is not closed"), std::string::npos);
+  // All rules of a folder, with the faults of each.
+  fs::create_directory(path("of_one"));
+  for (const char* name : {"bad.rq", "tab.rules.yaml"}) fs::copy_file(path(name), path("of_one") / name);
+  const Outcome folder = run("rules check " + path("of_one").string());
+  EXPECT_EQ(folder.code, 4);
+  for (const char* name : {"bad.rq", "tab.rules.yaml"})
+    EXPECT_NE(folder.out.find(name), std::string::npos) << folder.out;
+  fs::create_directory(path("of_none"));
+  expectError(run("rules check " + path("of_none").string()), 2, "holds no *.rules.yaml and no *.rq");
 }
 
 TEST_F(Program, ExplainsWhyNotAndDrawsTrees) {
@@ -126,6 +135,7 @@ TEST_F(Program, AnUnknownCommandIsNamedWithTheNearestAndTheList) {
   expectError(run("rules"), 2, "rules: a command is missing: check, test, apply");
   expectError(run(""), 2, "a command is missing: info");
   expectError(run("frobnicate"), 2, "there is no command 'frobnicate'\n");
+  expectError(run("next-view x"), 2, "'next-view' is a task, no command: 'cluxel ask MAP next-view'");
 }
 
 TEST_F(Program, AnUnknownOptionIsNamedWithTheNearest) {

@@ -64,6 +64,12 @@ TEST_F(StateCommand, RefusesWhatCannotBeMeant) {
   EXPECT_EQ(listed(), 0u);
 }
 
+TEST_F(StateCommand, OfARemovedObjectItIsToldWhyItIsGone) {
+  const std::string tree = one("Tree");
+  ASSERT_EQ(state("--object " + tree + " --is-not Tree").code, 0);
+  expectError(run("explain " + map().string() + " " + tree.substr(0, 8)), 3, "was removed by an operator statement");
+}
+
 TEST_F(StateCommand, RefusesToTakeAllGroundAway) {
   const std::string ground = "--object " + one("Ground");
   for (const char* statement : {" --remove", " --is-not clx:Ground", " --is clx:Building"})
