@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <functional>
 #include <set>
-#include <unordered_map>
 
+#include "mapping/change/common_members.hpp"
 #include "rdf/map_iris.hpp"
 
 namespace cluxel::mapping {
@@ -73,22 +73,26 @@ std::map<ContentHash, std::size_t> sameObjects(const std::vector<ObjectMembers>&
 Heirs heirsOf(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after, ObjectsOf objects_of) {
   Heirs heirs{std::vector<std::vector<std::size_t>>(after.size()), std::vector<std::vector<std::size_t>>(after.size())};
   const auto same = sameObjects(before, after, objects_of);
-  std::unordered_map<std::uint64_t, std::size_t> owner;
+  ObjectList others_before, others_after;
+  std::vector<std::size_t> number_before, number_after;
   for (std::size_t a = 0; a < after.size(); ++a)
     if (const auto found = same.find(after[a].id); found != same.end())
       heirs.before_of[a] = heirs.ancestors_of[a] = {found->second};
     else
-      for (const std::uint64_t seed : after[a].seeds) owner.emplace(seed, a);
-  for (std::size_t b = 0; b < before.size(); ++b) {
-    if (same.contains(before[b].id)) continue;
-    std::map<std::size_t, std::size_t> shared;
-    for (const std::uint64_t seed : before[b].seeds)
-      if (const auto found = owner.find(seed); found != owner.end()) ++shared[found->second];
+      others_after.push_back(&after[a]), number_after.push_back(a);
+  for (std::size_t b = 0; b < before.size(); ++b)
+    if (!same.contains(before[b].id)) others_before.push_back(&before[b]), number_before.push_back(b);
+  const auto common = commonMembers(others_before, others_after);
+  for (std::size_t i = 0; i < common.size(); ++i) {
+    const std::size_t b = number_before[i];
     std::optional<std::size_t> heir;
-    for (const auto& [a, count] : shared) {
+    std::size_t most = 0;
+    for (const auto& [other, count] : common[i]) {
+      const std::size_t a = number_after[other];
       if (2 * count < std::min(before[b].seeds.size(), after[a].seeds.size())) continue;
       heirs.ancestors_of[a].push_back(b);
-      if (!heir || count > shared[*heir] || (count == shared[*heir] && after[a].id < after[*heir].id)) heir = a;
+      if (heir && (count < most || (count == most && after[*heir].id < after[a].id))) continue;
+      heir = a, most = count;
     }
     if (heir) heirs.before_of[*heir].push_back(b);
   }

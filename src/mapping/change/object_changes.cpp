@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstring>
 #include <iterator>
-#include <map>
-#include <unordered_map>
+
+#include "mapping/change/common_members.hpp"
 
 namespace cluxel::mapping {
 
@@ -19,22 +19,16 @@ struct Succession {
   std::vector<std::vector<Number>> after_of, before_of;
 };
 
-Succession successionOf(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after) {
-  std::unordered_map<std::uint64_t, Number> owner;
-  for (Number a = 0; a < after.size(); ++a)
-    for (const std::uint64_t seed : after[a].seeds) owner.emplace(seed, a);
+Succession successionOf(const ObjectList& before, const ObjectList& after) {
   Succession succession{std::vector<std::vector<Number>>(before.size()),
                         std::vector<std::vector<Number>>(after.size())};
-  for (Number b = 0; b < before.size(); ++b) {
-    std::map<Number, std::size_t> shared;
-    for (const std::uint64_t seed : before[b].seeds)
-      if (const auto found = owner.find(seed); found != owner.end()) ++shared[found->second];
-    for (const auto& [a, count] : shared) {
-      if (2 * count < std::min(before[b].seeds.size(), after[a].seeds.size())) continue;
+  const auto common = commonMembers(before, after);
+  for (Number b = 0; b < before.size(); ++b)
+    for (const auto& [a, count] : common[b]) {
+      if (2 * count < std::min(before[b]->seeds.size(), after[a]->seeds.size())) continue;
       succession.after_of[b].push_back(a);
       succession.before_of[a].push_back(b);
     }
-  }
   return succession;
 }
 
@@ -58,30 +52,34 @@ std::vector<ObjectMembers> membersOf(const std::vector<rules::SemanticObject>& o
   all.reserve(objects.size());
   for (const rules::SemanticObject& object : objects) {
     ObjectMembers members{object.id, object.class_iri, {}};
+    std::size_t count = 0;
+    for (const rules::ObjectPart& part : object.parts) count += part.cluxels.size();
+    members.seeds.reserve(count);
     for (const rules::ObjectPart& part : object.parts)
       for (const std::uint32_t cluxel : part.cluxels) {
         const perception::SeedName& seed = seeds.seed[cluxel];
         members.seeds.push_back(keyOfSeed(seeds.scans[seed.scan], seed.point));
       }
-    std::sort(members.seeds.begin(), members.seeds.end());
     all.push_back(std::move(members));
   }
   return all;
 }
 
-ObjectChanges compareObjects(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after) {
+namespace {
+
+ObjectChanges changesBetween(const ObjectList& before, const ObjectList& after) {
   const Succession succession = successionOf(before, after);
   ObjectChanges changes;
   for (std::size_t b = 0; b < before.size(); ++b)
-    if (succession.after_of[b].empty()) changes.gone.push_back(before[b].id);
+    if (succession.after_of[b].empty()) changes.gone.push_back(before[b]->id);
   for (std::size_t a = 0; a < after.size(); ++a) {
     const auto& predecessors = succession.before_of[a];
     if (predecessors.empty()) {
-      changes.added.push_back(after[a].id);
+      changes.added.push_back(after[a]->id);
       continue;
     }
-    DerivedObject derived{after[a].id, {}};
-    for (const Number b : predecessors) derived.from.push_back(before[b].id);
+    DerivedObject derived{after[a]->id, {}};
+    for (const Number b : predecessors) derived.from.push_back(before[b]->id);
     if (std::find(derived.from.begin(), derived.from.end(), derived.id) != derived.from.end())
       ++changes.unchanged;
     else if (predecessors.size() > 1)
@@ -97,12 +95,21 @@ ObjectChanges compareObjects(const std::vector<ObjectMembers>& before, const std
   return changes;
 }
 
+}  // namespace
+
+ObjectChanges compareObjects(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after) {
+  return changesBetween(listOf(before), listOf(after));
+}
+
 ObjectChanges compareStates(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after) {
-  const auto byId = [](const ObjectMembers& a, const ObjectMembers& b) { return a.id < b.id; };
-  std::vector<ObjectMembers> only_before, only_after;
-  std::set_difference(before.begin(), before.end(), after.begin(), after.end(), std::back_inserter(only_before), byId);
-  std::set_difference(after.begin(), after.end(), before.begin(), before.end(), std::back_inserter(only_after), byId);
-  ObjectChanges changes = compareObjects(only_before, only_after);
+  const auto byId = [](const ObjectMembers* a, const ObjectMembers* b) { return a->id < b->id; };
+  const ObjectList all_before = listOf(before), all_after = listOf(after);
+  ObjectList only_before, only_after;
+  std::set_difference(all_before.begin(), all_before.end(), all_after.begin(), all_after.end(),
+                      std::back_inserter(only_before), byId);
+  std::set_difference(all_after.begin(), all_after.end(), all_before.begin(), all_before.end(),
+                      std::back_inserter(only_after), byId);
+  ObjectChanges changes = changesBetween(only_before, only_after);
   changes.unchanged = after.size() - only_after.size();
   return changes;
 }

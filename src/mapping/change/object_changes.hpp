@@ -16,7 +16,7 @@ namespace cluxel::mapping {
 struct ObjectMembers {
   ContentHash id;
   std::string class_iri;
-  std::vector<std::uint64_t> seeds;  ///< ascending hashes of (scan, point)
+  std::vector<std::uint64_t> seeds;  ///< hashes of (scan, point), in no order
 };
 
 std::vector<ObjectMembers> membersOf(const std::vector<rules::SemanticObject>& objects,
@@ -40,10 +40,10 @@ struct ObjectChanges {
 
 /// Compares the objects before and after a change. An object goes on in another when that holds at least half of its
 /// seed points, or the other way round. Lists are sorted by id. `before` may hold the objects of several maps, in which
-/// members occur twice. Cost O(n log n) in the members.
+/// members occur twice. Cost: linear in the members.
 ObjectChanges compareObjects(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after);
-/// The same for the objects of one map before and after, which have no common members. Both sorted by id. Cost
-/// O(n log n) in the members of those that differ.
+/// The same for the objects of one map before and after, which have no common members. Both sorted by id. Cost:
+/// linear in the members of those that differ.
 ObjectChanges compareStates(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after);
 
 }  // namespace cluxel::mapping

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Collects the facts of one graph as ids, then writes only the difference from the stored graph.
+// Collects the facts of one graph as ids, then writes only the difference from the stored graph. Facts that follow from
+// what they followed from before are neither computed nor compared.
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
 
+#include "mapping/facts/fact_units.hpp"
 #include "rdf/store/quad_store.hpp"
 
 namespace cluxel::mapping {
@@ -17,7 +21,15 @@ std::string decimalText(double value, int digits);
 
 class FactSink {
  public:
-  FactSink(rdf::QuadWriter& writer, std::string_view graph);
+  /// `known`: the units of the stored graph. Without them all facts are computed and compared.
+  FactSink(rdf::QuadWriter& writer, rdf::TermId graph, std::optional<std::vector<FactUnit>> known = std::nullopt);
+
+  /// Facts outside of a unit are about subjects of the unit, too.
+  void addToUnit(const ContentHash& unit) { added_to_.insert(unit); }
+  /// Begins the facts of a unit; `cause` is a hash of all that they follow from. False when the stored graph has them:
+  /// then none must be given. Only facts of the unit may be about its subjects, but for addToUnit().
+  bool beginUnit(const ContentHash& unit, const ContentHash& cause);
+  void endUnit();
 
   rdf::TermId iri(std::string_view value) { return writer_.intern(Term::iri(value)); }
   /// The property `local` of the ontology, or a full IRI when it holds a ':'.
@@ -32,15 +44,23 @@ class FactSink {
   void number(rdf::TermId subject, std::string_view property_name, double value);
   void count(rdf::TermId subject, std::string_view property_name, std::uint64_t value);
 
-  /// Makes the stored graph equal to the collected facts. `stored` reads the state before.
-  void writeTo(const rdf::QuadReader& stored);
-  std::size_t size() const { return facts_.size(); }
+  /// Makes the stored graph equal to the collected facts and those that it keeps. `stored` reads the state before.
+  /// Returns the units, ascending by id. The collection is spent afterwards.
+  std::vector<FactUnit> writeTo(const rdf::QuadReader& stored);
 
  private:
+  std::vector<rdf::QuadIds> storedToCompare(const rdf::QuadReader& stored) const;
+
   rdf::QuadWriter& writer_;
   rdf::TermId graph_;
   std::unordered_map<std::string, rdf::TermId> properties_;
-  std::vector<rdf::QuadIds> facts_;
+  std::vector<rdf::QuadIds> of_units_, others_;
+  std::size_t unit_begin_ = 0;  ///< in of_units_
+  bool in_unit_ = false;
+  std::optional<std::vector<FactUnit>> known_;
+  std::vector<bool> is_kept_;  ///< by number in known_
+  std::vector<FactUnit> units_;
+  std::set<ContentHash> added_to_;
 };
 
 }  // namespace cluxel::mapping

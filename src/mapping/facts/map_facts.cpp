@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Facts about clouds, primitives and relations; object_facts.cpp adds those about objects.
+// Facts about clouds, primitives and relations; object_facts.cpp adds those about objects. Each primitive is a unit of
+// facts with its relations to others.
 #include "mapping/facts/map_facts.hpp"
 
 #include <cmath>
+#include <set>
+#include <span>
 
 #include "base/utc_time.hpp"
 #include "mapping/facts/object_facts.hpp"
@@ -47,8 +50,7 @@ std::string className(scan::PrimitiveLabel label) {
   return name;
 }
 
-void addPrimitive(const perception::Primitive& primitive, FactSink& facts) {
-  const rdf::TermId subject = facts.iri(rdf::iriOfPrimitive(primitive.id));
+void addAttributes(const perception::Primitive& primitive, rdf::TermId subject, FactSink& facts) {
   facts.type(subject, rdf::vocabulary::clx(className(primitive.label)));
   addPosition(subject, primitive.centroid, facts);
   addBounds(subject, primitive.min, primitive.max, facts);
@@ -61,23 +63,56 @@ void addPrimitive(const perception::Primitive& primitive, FactSink& facts) {
   }
 }
 
-/// One ground patch per tile, so that relations to the ground stay local when a distant scan is added.
-rdf::TermId groundPatchUnder(const perception::Primitive& primitive, FactSink& facts) {
-  const perception::TileKey tile = perception::tileOf(primitive.centroid);
-  const rdf::TermId patch = facts.iri(rdf::iriOfGroundPatch(tile.x, tile.y));
-  facts.type(patch, rdf::vocabulary::clx("GroundPatch"));
-  return patch;
+bool isToGround(const perception::Relation& relation) {
+  return relation.kind == perception::RelationKind::TouchesGround;
 }
 
-void addRelations(const perception::Scene& scene, FactSink& facts) {
-  for (const perception::Relation& relation : scene.relations) {
-    const rdf::TermId from = facts.iri(rdf::iriOfPrimitive(scene.primitives[relation.from].id));
-    const std::string_view property = perception::relationInfos()[static_cast<std::size_t>(relation.kind)].property;
-    if (relation.kind != perception::RelationKind::TouchesGround)
-      facts.link(from, property, facts.iri(rdf::iriOfPrimitive(scene.primitives[relation.to].id)));
-    else if (relation.measure <= kTouchesGround_m)
-      facts.link(from, property, groundPatchUnder(scene.primitives[relation.from], facts));
-  }
+/// One ground patch per tile, so that relations to the ground stay local when a distant scan is added.
+std::string groundPatchUnder(const perception::Primitive& primitive) {
+  const perception::TileKey tile = perception::tileOf(primitive.centroid);
+  return rdf::iriOfGroundPatch(tile.x, tile.y);
+}
+
+void addRelation(const perception::Scene& scene, const perception::Relation& relation, rdf::TermId from,
+                 FactSink& facts) {
+  const std::string_view property = perception::relationInfos()[static_cast<std::size_t>(relation.kind)].property;
+  if (!isToGround(relation))
+    facts.link(from, property, facts.iri(rdf::iriOfPrimitive(scene.primitives[relation.to].id)));
+  else if (relation.measure <= kTouchesGround_m)
+    facts.link(from, property, facts.iri(groundPatchUnder(scene.primitives[relation.from])));
+}
+
+/// The hash of all that the facts of a primitive and of its relations follow from.
+ContentHash causeOf(const perception::Scene& scene, perception::PrimitiveIndex number) {
+  const perception::Primitive& primitive = scene.primitives[number];
+  ContentHasher hasher;
+  hasher.add(primitive.label).addSpan(std::span<const double>(primitive.attributes));
+  for (const Eigen::Vector3d* place : {&primitive.centroid, &primitive.min, &primitive.max})
+    hasher.addBytes(place->data(), 3 * sizeof(double));
+  for (const perception::Relation& relation : scene.relationsOf(number))
+    if (isToGround(relation))
+      hasher.add(relation.kind).add(relation.measure);
+    else
+      hasher.add(relation.kind).add(scene.primitives[relation.to].id);
+  return hasher.finish();
+}
+
+void addPrimitive(const perception::Scene& scene, perception::PrimitiveIndex number, FactSink& facts) {
+  const perception::Primitive& primitive = scene.primitives[number];
+  if (!facts.beginUnit(primitive.id, causeOf(scene, number))) return;
+  const rdf::TermId subject = facts.iri(rdf::iriOfPrimitive(primitive.id));
+  addAttributes(primitive, subject, facts);
+  for (const perception::Relation& relation : scene.relationsOf(number)) addRelation(scene, relation, subject, facts);
+  facts.endUnit();
+}
+
+/// Several primitives have the same patch, so that it belongs to none of them.
+void addGroundPatches(const perception::Scene& scene, FactSink& facts) {
+  std::set<std::string> patches;
+  for (const perception::Relation& relation : scene.relations)
+    if (isToGround(relation) && relation.measure <= kTouchesGround_m)
+      patches.insert(groundPatchUnder(scene.primitives[relation.from]));
+  for (const std::string& patch : patches) facts.type(facts.iri(patch), rdf::vocabulary::clx("GroundPatch"));
 }
 
 }  // namespace
@@ -85,8 +120,8 @@ void addRelations(const perception::Scene& scene, FactSink& facts) {
 void addObservedFacts(const ObservedMap& map, FactSink& facts) {
   addMap(map, facts);
   for (const Cloud& cloud : map.clouds) addCloud(cloud, facts);
-  for (const perception::Primitive& primitive : map.scene.primitives) addPrimitive(primitive, facts);
-  addRelations(map.scene, facts);
+  for (perception::PrimitiveIndex i = 0; i < map.scene.primitives.size(); ++i) addPrimitive(map.scene, i, facts);
+  addGroundPatches(map.scene, facts);
   addObjectFacts(map, facts);
 }
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Facts about objects: plain numbers, and GeoSPARQL, SOSA and PROV terms.
+// Facts about objects: plain numbers, and GeoSPARQL, SOSA and PROV terms. Each object is a unit of facts with its parts
+// and observations.
 #include "mapping/facts/object_facts.hpp"
 
 #include <cmath>
+#include <map>
 #include <optional>
+#include <span>
 
 #include "base/utc_time.hpp"
 #include "rdf/map_iris.hpp"
@@ -49,38 +52,83 @@ void addExtent(rdf::TermId subject, const ObjectGeometry& geometry, FactSink& fa
   facts.count(subject, "pointCount", geometry.point_count);
 }
 
-void addPart(const ObservedMap& map, const rules::SemanticObject& object, const rules::ObjectPart& part,
-             rdf::TermId owner, FactSink& facts) {
+/// All that the facts of an object follow from.
+struct ObjectView {
+  struct Seen {
+    scan::ScanId scan;
+    std::optional<double> time_s;
+    Sighting sighting;
+  };
+
+  const perception::Scene& scene;
+  const rules::SemanticObject& object;
+  ObjectGeometry geometry;
+  std::vector<std::optional<ObjectGeometry>> part_geometry;  ///< absent where a part is no resource of its own
+  std::vector<Seen> seen = {};
+  std::vector<ContentHash> near = {};  ///< ids of objects
+  std::optional<perception::Presence> presence = std::nullopt;
+  std::optional<perception::RayCounts> passed_rays = std::nullopt;
+};
+
+class CauseHasher {
+ public:
+  ContentHash hashOf(const ObjectView& view) {
+    hasher_.addText(view.object.class_iri).add(view.object.confidence).addText(view.object.rule_id);
+    add(view.geometry);
+    for (std::size_t i = 0; i < view.object.parts.size(); ++i) addPart(view, i);
+    hasher_.add(view.seen.size());
+    for (const ObjectView::Seen& seen : view.seen) {
+      hasher_.add(seen.scan).add(seen.sighting.point_count);
+      add(seen.sighting.sum);
+      add(seen.time_s);
+    }
+    hasher_.addSpan(std::span<const ContentHash>(view.near));
+    addRays(view);
+    return hasher_.finish();
+  }
+
+ private:
+  void add(const Eigen::Vector3d& place) { hasher_.addBytes(place.data(), 3 * sizeof(double)); }
+  void add(std::optional<double> value) { hasher_.add(value.has_value()).add(value.value_or(0)); }
+  void add(const ObjectGeometry& geometry) {
+    for (const Eigen::Vector3d* v :
+         {&geometry.box.center, &geometry.box.size, &geometry.min, &geometry.max, &geometry.centroid})
+      add(*v);
+    hasher_.add(geometry.box.yaw_rad).add(geometry.bottom_m).add(geometry.top_m).add(geometry.point_count);
+  }
+  void addPart(const ObjectView& view, std::size_t number) {
+    const rules::ObjectPart& part = view.object.parts[number];
+    hasher_.addText(part.part_class).add(part.primitives.size());
+    for (const perception::PrimitiveIndex primitive : part.primitives) hasher_.add(view.scene.primitives[primitive].id);
+    hasher_.add(view.part_geometry[number].has_value());
+    if (view.part_geometry[number]) add(*view.part_geometry[number]);
+  }
+  void addRays(const ObjectView& view) {
+    hasher_.add(view.presence.has_value()).add(view.passed_rays.has_value());
+    if (view.presence) {
+      hasher_.add(view.presence->first_seen_s).add(view.presence->last_seen_s);
+      add(view.presence->seen_empty_s);
+      add(view.presence->seen_through_s);
+    }
+    if (view.passed_rays) hasher_.add(view.passed_rays->ended).add(view.passed_rays->passed);
+  }
+
+  ContentHasher hasher_;
+};
+
+void addPart(const ObjectView& view, std::size_t number, rdf::TermId owner, FactSink& facts) {
+  const rules::ObjectPart& part = view.object.parts[number];
   for (const perception::PrimitiveIndex primitive : part.primitives)
-    facts.link(owner, "hasPrimitive", facts.iri(rdf::iriOfPrimitive(map.scene.primitives[primitive].id)));
-  if (part.part_class == object.class_iri || part.cluxels.empty()) return;
-  const ContentHash id = ContentHasher().add(object.id).addText(part.part_class).finish();
+    facts.link(owner, "hasPrimitive", facts.iri(rdf::iriOfPrimitive(view.scene.primitives[primitive].id)));
+  if (!view.part_geometry[number]) return;
+  const ContentHash id = ContentHasher().add(view.object.id).addText(part.part_class).finish();
   const rdf::TermId subject = facts.iri(rdf::iriOfPart(id));
   facts.link(owner, "hasPart", subject);
   facts.link(subject, "partOf", owner);
   facts.type(subject, part.part_class);
-  addExtent(subject, geometryOf(map.scene.cluxels, part.cluxels), facts);
+  addExtent(subject, *view.part_geometry[number], facts);
   for (const perception::PrimitiveIndex primitive : part.primitives)
-    facts.link(subject, "hasPrimitive", facts.iri(rdf::iriOfPrimitive(map.scene.primitives[primitive].id)));
-}
-
-void addObject(const ObservedMap& map, const rules::SemanticObject& object, FactSink& facts) {
-  const std::string iri = rdf::iriOfObject(object.id);
-  const rdf::TermId subject = facts.iri(iri);
-  const ObjectGeometry geometry = geometryOf(map.scene.cluxels, cluxelsOf(object));
-  facts.type(subject, object.class_iri);
-  facts.number(subject, "confidence", object.confidence);
-  facts.text(subject, "rule", object.rule_id);
-  addExtent(subject, geometry, facts);
-  facts.number(subject, "heading", geometry.box.yaw_rad);
-  addGeometry(subject, iri, geometry, facts);
-  for (const rules::ObjectPart& part : object.parts) addPart(map, object, part, subject, facts);
-}
-
-const Cloud* cloudOf(const std::vector<Cloud>& clouds, const scan::ScanId& id) {
-  for (const Cloud& cloud : clouds)
-    if (cloud.id == id) return &cloud;
-  return nullptr;
+    facts.link(subject, "hasPrimitive", facts.iri(rdf::iriOfPrimitive(view.scene.primitives[primitive].id)));
 }
 
 void addTime(rdf::TermId subject, const std::string& property, double time_s, FactSink& facts) {
@@ -88,67 +136,79 @@ void addTime(rdf::TermId subject, const std::string& property, double time_s, Fa
 }
 
 /// One object as seen in one cloud: where, when, how much.
-void addObservation(const ObservedMap& map, std::uint32_t object, const scan::ScanId& scan, const Sighting& sighting,
-                    FactSink& facts) {
+void addObservation(const ObjectView& view, const ObjectView::Seen& seen, rdf::TermId object, FactSink& facts) {
   const std::string sosa(rdf::vocabulary::kSosa);
-  const ContentHash& object_id = map.reasoning.objects[object].id;
-  const ContentHash id = ContentHasher().add(object_id).add(scan).finish();
+  const ContentHash id = ContentHasher().add(view.object.id).add(seen.scan).finish();
   const rdf::TermId subject = facts.iri(rdf::iriOfObservation(id));
   facts.type(subject, rdf::vocabulary::clx("Observation"));
-  facts.link(subject, sosa + "hasFeatureOfInterest", facts.iri(rdf::iriOfObject(object_id)));
-  facts.link(subject, "inCloud", facts.iri(rdf::iriOfCloud(scan)));
-  facts.count(subject, "pointCount", sighting.point_count);
-  addPosition(subject, sighting.sum / static_cast<double>(sighting.point_count), facts);
-  const Cloud* cloud = cloudOf(map.clouds, scan);
-  if (cloud != nullptr && cloud->time_s) addTime(subject, sosa + "resultTime", *cloud->time_s, facts);
-}
-
-void addObservations(const ObservedMap& map, FactSink& facts) {
-  std::vector<std::uint64_t> views(map.reasoning.objects.size(), 0);
-  for (const auto& [pair, sighting] : map.sightings) {
-    ++views[pair.first];
-    addObservation(map, pair.first, pair.second, sighting, facts);
-  }
-  for (std::size_t i = 0; i < views.size(); ++i)
-    facts.count(facts.iri(rdf::iriOfObject(map.reasoning.objects[i].id)), "viewCount", views[i]);
+  facts.link(subject, sosa + "hasFeatureOfInterest", object);
+  facts.link(subject, "inCloud", facts.iri(rdf::iriOfCloud(seen.scan)));
+  facts.count(subject, "pointCount", seen.sighting.point_count);
+  addPosition(subject, seen.sighting.sum / static_cast<double>(seen.sighting.point_count), facts);
+  if (seen.time_s) addTime(subject, sosa + "resultTime", *seen.time_s, facts);
 }
 
 /// When rays first and last ended at an object, and when others saw through its place.
-void addPresence(const ObservedMap& map, FactSink& facts) {
-  for (std::size_t i = 0; i < map.presence.size(); ++i) {
-    if (!map.presence[i]) continue;
-    const perception::Presence& presence = *map.presence[i];
-    const rdf::TermId subject = facts.iri(rdf::iriOfObject(map.reasoning.objects[i].id));
-    addTime(subject, "firstSeen", presence.first_seen_s, facts);
-    addTime(subject, "lastSeen", presence.last_seen_s, facts);
-    if (presence.seen_empty_s) addTime(subject, "seenEmpty", *presence.seen_empty_s, facts);
-    if (presence.seen_through_s) addTime(subject, "seenThrough", *presence.seen_through_s, facts);
-  }
+void addPresence(const perception::Presence& presence, rdf::TermId subject, FactSink& facts) {
+  addTime(subject, "firstSeen", presence.first_seen_s, facts);
+  addTime(subject, "lastSeen", presence.last_seen_s, facts);
+  if (presence.seen_empty_s) addTime(subject, "seenEmpty", *presence.seen_empty_s, facts);
+  if (presence.seen_through_s) addTime(subject, "seenThrough", *presence.seen_through_s, facts);
 }
 
 /// The share of rays that went through an object.
-void addPassedRays(const ObservedMap& map, FactSink& facts) {
-  for (std::size_t i = 0; i < map.passed_rays.size(); ++i) {
-    if (!map.passed_rays[i]) continue;
-    const auto& [ended, passed] = *map.passed_rays[i];
-    const rdf::TermId subject = facts.iri(rdf::iriOfObject(map.reasoning.objects[i].id));
-    facts.number(subject, "porosity", static_cast<double>(passed) / static_cast<double>(ended + passed));
-    facts.count(subject, "rayCount", ended + passed);
+void addPassedRays(const perception::RayCounts& rays, rdf::TermId subject, FactSink& facts) {
+  const auto& [ended, passed] = rays;
+  facts.number(subject, "porosity", static_cast<double>(passed) / static_cast<double>(ended + passed));
+  facts.count(subject, "rayCount", ended + passed);
+}
+
+void addObject(const ObjectView& view, FactSink& facts) {
+  const rules::SemanticObject& object = view.object;
+  if (!facts.beginUnit(object.id, CauseHasher().hashOf(view))) return;
+  const std::string iri = rdf::iriOfObject(object.id);
+  const rdf::TermId subject = facts.iri(iri);
+  facts.type(subject, object.class_iri);
+  facts.number(subject, "confidence", object.confidence);
+  facts.text(subject, "rule", object.rule_id);
+  addExtent(subject, view.geometry, facts);
+  facts.number(subject, "heading", view.geometry.box.yaw_rad);
+  addGeometry(subject, iri, view.geometry, facts);
+  for (std::size_t i = 0; i < object.parts.size(); ++i) addPart(view, i, subject, facts);
+  for (const ObjectView::Seen& seen : view.seen) addObservation(view, seen, subject, facts);
+  facts.count(subject, "viewCount", view.seen.size());
+  if (view.presence) addPresence(*view.presence, subject, facts);
+  if (view.passed_rays) addPassedRays(*view.passed_rays, subject, facts);
+  for (const ContentHash& other : view.near) facts.link(subject, "near", facts.iri(rdf::iriOfObject(other)));
+  facts.endUnit();
+}
+
+ObjectView viewOf(const perception::Scene& scene, const rules::SemanticObject& object) {
+  ObjectView view{scene, object, geometryOf(scene.cluxels, cluxelsOf(object)), {}};
+  for (const rules::ObjectPart& part : object.parts) {
+    const bool is_resource = part.part_class != object.class_iri && !part.cluxels.empty();
+    view.part_geometry.push_back(is_resource ? std::optional(geometryOf(scene.cluxels, part.cluxels)) : std::nullopt);
+  }
+  return view;
+}
+
+void addSightings(const ObservedMap& map, std::vector<ObjectView>& views) {
+  std::map<scan::ScanId, std::optional<double>> times;
+  for (const Cloud& cloud : map.clouds) times.emplace(cloud.id, cloud.time_s);
+  for (const auto& [pair, sighting] : map.sightings) {
+    const auto time = times.find(pair.second);
+    views[pair.first].seen.push_back({pair.second, time == times.end() ? std::nullopt : time->second, sighting});
   }
 }
 
-void addNeighbours(const ObservedMap& map, FactSink& facts) {
-  const auto& objects = map.reasoning.objects;
+void addNeighbours(const ObservedMap& map, std::vector<ObjectView>& views) {
   std::vector<bool> is_ground;
-  is_ground.reserve(objects.size());
-  for (const rules::SemanticObject& object : objects)
-    is_ground.push_back(object.class_iri == rdf::vocabulary::clx("Ground"));
+  is_ground.reserve(views.size());
+  for (const ObjectView& view : views) is_ground.push_back(view.object.class_iri == rdf::vocabulary::clx("Ground"));
   const auto object_of = objectOfCluxel(map.reasoning, map.scene.cluxels.size());
   for (const auto& [a, b] : nearObjects(map.scene.cluxels, object_of, is_ground, kNearObjects_m)) {
-    const rdf::TermId first = facts.iri(rdf::iriOfObject(objects[a].id)),
-                      second = facts.iri(rdf::iriOfObject(objects[b].id));
-    facts.link(first, "near", second);
-    facts.link(second, "near", first);
+    views[a].near.push_back(views[b].object.id);
+    views[b].near.push_back(views[a].object.id);
   }
 }
 
@@ -167,11 +227,14 @@ void addBounds(rdf::TermId subject, const Eigen::Vector3d& min, const Eigen::Vec
 }
 
 void addObjectFacts(const ObservedMap& map, FactSink& facts) {
-  for (const rules::SemanticObject& object : map.reasoning.objects) addObject(map, object, facts);
-  addObservations(map, facts);
-  addPresence(map, facts);
-  addPassedRays(map, facts);
-  addNeighbours(map, facts);
+  std::vector<ObjectView> views;
+  views.reserve(map.reasoning.objects.size());
+  for (const rules::SemanticObject& object : map.reasoning.objects) views.push_back(viewOf(map.scene, object));
+  addSightings(map, views);
+  addNeighbours(map, views);
+  for (std::size_t i = 0; i < map.presence.size(); ++i) views[i].presence = map.presence[i];
+  for (std::size_t i = 0; i < map.passed_rays.size(); ++i) views[i].passed_rays = map.passed_rays[i];
+  for (const ObjectView& view : views) addObject(view, facts);
 }
 
 }  // namespace cluxel::mapping

@@ -33,14 +33,19 @@ std::vector<rules::RuleSource> ruleSources(const std::vector<NamedText>& texts) 
 /// Makes the observed graph hold the facts of the scene, of `reasoning`, of statements and of ways.
 void writeObserved(rdf::WriteTransaction& transaction, const ObservedMap& map,
                    const std::vector<StatementOutcome>& statements = {}, const WayGraph& ways = {}) {
+  const auto reader = [&] { return rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction)); };
   rdf::QuadWriter writer(transaction);
-  FactSink facts(writer, rdf::vocabulary::kGraphObserved);
+  const rdf::TermId graph = writer.intern(Term::iri(rdf::vocabulary::kGraphObserved));
+  FactSink facts(writer, graph, storedFactUnits(transaction, reader(), graph));
+  for (const StatementOutcome& outcome : statements)
+    if (outcome.object) facts.addToUnit(*outcome.object);
   addObservedFacts(map, facts);
   addStatementFacts(statements, facts);
   addWayFacts(ways, facts);
   writer.flush();
-  facts.writeTo(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction)));
+  const std::vector<FactUnit> units = facts.writeTo(reader());
   writer.flush();
+  storeFactUnits(transaction, units, reader(), graph);
 }
 
 }  // namespace
