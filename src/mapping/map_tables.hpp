@@ -13,7 +13,7 @@
 namespace cluxel::mapping::tables {
 
 inline constexpr std::string_view kMeta =
-    "meta";  ///< "state", "inputs", "objects", "decisions", "presence", "passed_rays", "tiles", "facts"
+    "meta";  ///< "state", "inputs", "objects", "decisions", "splits", "presence", "passed_rays", "tiles", "facts"
 inline constexpr std::string_view kTexts = "texts";             ///< "ontology/0" ...: the inputs' texts
 inline constexpr std::string_view kScans = "scans";             ///< scan id → description
 inline constexpr std::string_view kScanPoints = "scan_points";  ///< scan id → points in the sensor frame

@@ -13,7 +13,8 @@ namespace cluxel::mapping {
 namespace {
 
 using Json = nlohmann::json;
-constexpr std::string_view kObjectsKey = "objects", kByRulesKey = "objects by rules", kDigestsKey = "decisions";
+constexpr std::string_view kObjectsKey = "objects", kByRulesKey = "objects by rules", kDigestsKey = "decisions",
+                           kSplitsKey = "splits";
 /// The numbers of a billion cluxels.
 constexpr std::uint64_t kMaxObjectBytes = std::uint64_t{1} << 32U;
 
@@ -103,6 +104,18 @@ void eraseObjectsByRules(rdf::WriteTransaction& transaction) {
 void storeDigests(rdf::WriteTransaction& transaction, const std::vector<std::uint64_t>& digests) {
   transaction.putBlock(tables::kMeta, kDigestsKey,
                        {reinterpret_cast<const char*>(digests.data()), digests.size() * sizeof(std::uint64_t)});
+}
+
+void storeSplits(rdf::WriteTransaction& transaction, const rules::KnownSplits& splits) {
+  if (splits.count() == 0)
+    transaction.eraseBlock(tables::kMeta, kSplitsKey);
+  else
+    transaction.putBlock(tables::kMeta, kSplitsKey, splits.stored());
+}
+
+rules::KnownSplits storedSplits(const rdf::ReadTransaction& transaction) {
+  const auto bytes = transaction.block(tables::kMeta, kSplitsKey);
+  return bytes ? rules::KnownSplits(*bytes) : rules::KnownSplits();
 }
 
 std::vector<std::uint64_t> storedDigests(const rdf::ReadTransaction& transaction) {

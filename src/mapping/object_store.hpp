@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "rdf/file/environment.hpp"
+#include "rules/objects/known_splits.hpp"
 #include "rules/objects/semantic_object.hpp"
 
 namespace cluxel::mapping {
@@ -23,5 +24,10 @@ void eraseObjectsByRules(rdf::WriteTransaction& transaction);
 void storeDigests(rdf::WriteTransaction& transaction, const std::vector<std::uint64_t>& digests);
 /// Empty for a map of a version that had none.
 std::vector<std::uint64_t> storedDigests(const rdf::ReadTransaction& transaction);
+
+/// What this run of reasoning came to about shared crowns, for the next one.
+void storeSplits(rdf::WriteTransaction& transaction, const rules::KnownSplits& splits);
+/// Knows nothing for a map of a version that had none.
+rules::KnownSplits storedSplits(const rdf::ReadTransaction& transaction);
 
 }  // namespace cluxel::mapping

@@ -9,6 +9,7 @@
 #include <random>
 #include <utility>
 
+#include "rules/cluxel_cloud.hpp"
 #include "rules/propose/cluxel_grid.hpp"
 
 namespace cluxel::testing {
@@ -17,23 +18,6 @@ using namespace scan;
 using namespace perception;
 using namespace rules;
 namespace {
-
-/// Cluxels at points, joined where they are closer than `edge_m`.
-SceneCluxels cloudOf(const std::vector<Eigen::Vector3d>& points, double edge_m) {
-  SceneCluxels cluxels;
-  cluxels.center = points;
-  cluxels.name.resize(points.size());
-  cluxels.extent.assign(points.size(), Eigen::Vector3f::Constant(0.1F));
-  cluxels.edge_offset.push_back(0);
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    cluxels.name[i].index = i;
-    cluxels.height_above_ground.push_back(static_cast<float>(points[i].z()));
-    for (std::uint32_t j = 0; j < points.size(); ++j)
-      if (i != j && (points[i] - points[j]).norm() <= edge_m) cluxels.edge_target.push_back(j);
-    cluxels.edge_offset.push_back(static_cast<std::uint32_t>(cluxels.edge_target.size()));
-  }
-  return cluxels;
-}
 
 /// Shortest paths by Bellman-Ford: relax all edges until nothing changes.
 std::vector<double> waysFrom(const SceneCluxels& all, std::uint32_t source, std::uint32_t first_crown) {

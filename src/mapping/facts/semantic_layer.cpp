@@ -99,7 +99,9 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
     if (check) check(0);
     writeObjectsSoFar(transaction, parsed.inputs, clouds, scene, stages, ways, objects);
   });
-  rules::ReasoningResult result = reason(scene, parsed.rules, {.oracle = &oracle, .threads = threads});
+  rules::KnownSplits splits = storedSplits(transaction);
+  rules::ReasoningResult result =
+      reason(scene, parsed.rules, {.oracle = &oracle, .threads = threads, .splits = &splits});
   if (check) check(0);
   const std::vector<std::uint64_t> digests = rules::decisionDigests(scene, result);
   AppliedStatements stated = appliedStatements(transaction, stages, parsed.model.perception.thin, clouds, scene,
@@ -123,6 +125,7 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   storeObjects(transaction, result.objects);
   storeOverruled(transaction, stated.overruled);
   storeDigests(transaction, digests);
+  storeSplits(transaction, splits);
   sink.progress("facts", 1, 1);
   return {std::move(scene), std::move(result.objects), std::move(stated.outcomes)};
 }

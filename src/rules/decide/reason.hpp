@@ -12,6 +12,7 @@
 
 namespace cluxel::rules {
 
+class KnownSplits;
 struct ReasoningState;
 struct Rule;
 struct Verdict;
@@ -25,7 +26,8 @@ struct ReasoningContext {
   /// Ascending. Decisions about these primitives also report what would have changed them (Decision::flips).
   std::vector<perception::PrimitiveIndex> probes = {};
   CandidateObserver onCandidate = {};
-  unsigned threads = 1;  ///< the result is the same for every number
+  unsigned threads = 1;           ///< the result is the same for every number
+  KnownSplits* splits = nullptr;  ///< saves work; the result is the same without
 };
 
 /// Groups the primitives of a scene into objects, class by class in the order of the rule set. The objects' cluxels are

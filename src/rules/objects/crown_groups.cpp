@@ -56,25 +56,27 @@ class SourceCells {
 std::vector<SourceGroup> groupsOf(const CrownParts& parts, std::span<const std::uint32_t> crown) {
   const SourceCells cells(parts);
   DisjointSets sets(parts.sources.size());
-  std::vector<std::uint32_t> some_taker(crown.size(), kNoSource);
-  for (std::size_t i = 0; i < crown.size(); ++i)
-    cells.forEachTaker(crown[i], [&](std::uint32_t source) {
-      if (some_taker[i] == kNoSource)
-        some_taker[i] = source;
-      else
-        sets.join(some_taker[i], source);
-    });
+  std::vector<std::uint32_t> takers, first(crown.size() + 1, 0);
+  for (std::size_t i = 0; i < crown.size(); ++i) {
+    cells.forEachTaker(crown[i], [&](std::uint32_t source) { takers.push_back(source); });
+    for (std::size_t t = first[i]; t < takers.size(); ++t) sets.join(takers[first[i]], takers[t]);
+    first[i + 1] = static_cast<std::uint32_t>(takers.size());
+  }
   const std::vector<std::uint32_t> number = sets.numbers();
   std::vector<SourceGroup> groups;
+  std::vector<std::uint32_t> place(number.size());  // of each source in its group
   for (std::uint32_t s = 0; s < number.size(); ++s) {
     if (number[s] == groups.size()) groups.emplace_back();
+    place[s] = static_cast<std::uint32_t>(groups[number[s]].sources.size());
     groups[number[s]].sources.push_back(s);
   }
   for (std::uint32_t i = 0; i < crown.size(); ++i) {
-    if (some_taker[i] == kNoSource) continue;
-    SourceGroup& group = groups[number[some_taker[i]]];
+    if (first[i] == first[i + 1]) continue;
+    SourceGroup& group = groups[number[takers[first[i]]]];
     group.cluxels.push_back(crown[i]);
     group.positions.push_back(i);
+    for (std::uint32_t t = first[i]; t < first[i + 1]; ++t) group.takers.push_back(place[takers[t]]);
+    group.takers.push_back(kNoSource);
   }
   return groups;
 }

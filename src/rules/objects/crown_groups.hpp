@@ -32,6 +32,13 @@ struct CrownParts {
 struct SourceGroup {
   std::vector<std::uint32_t> sources, cluxels;
   std::vector<std::uint32_t> positions;  ///< of the cluxels in the crown
+  /// For each of the cluxels the sources that may take it, by their places in `sources`, and then kNoSource.
+  std::vector<std::uint32_t> takers;
+};
+
+/// Where a cluxel is searched: the group of sources, and its number there.
+struct SearchPlace {
+  std::uint32_t group = kNoSource, at = 0;
 };
 
 /// Groups of which no two may take a common cluxel. Cost: linear in the crown and in the sources around its cluxels.

@@ -15,6 +15,7 @@
 #include "base/parallel.hpp"
 #include "rules/objects/crown_groups.hpp"
 #include "rules/objects/jump_grid.hpp"
+#include "rules/objects/known_splits.hpp"
 #include "rules/propose/cluxel_grid.hpp"
 
 namespace cluxel::rules {
@@ -32,11 +33,6 @@ struct Way {
   auto operator<=>(const Way&) const = default;
 };
 constexpr Way kNoWay{std::numeric_limits<double>::infinity(), kNoSource};
-
-/// Where a cluxel is searched: the group of sources, and its number there.
-struct SearchPlace {
-  std::uint32_t group = kNoSource, at = 0;
-};
 
 /// The search from one group of sources. Clearance, reach and jump differ by source, so the edges of a vertex depend on
 /// the source of its path.
@@ -241,6 +237,19 @@ class GroupSearch {
   std::array<std::deque<Departure>, kRings_m.size()> rings_;
 };
 
+/// The place of a source in its group; kNoSource for none.
+std::uint32_t placeIn(const SourceGroup& group, std::uint32_t source) {
+  if (source == kNoSource) return kNoSource;
+  const auto found = std::lower_bound(group.sources.begin(), group.sources.end(), source);
+  return static_cast<std::uint32_t>(found - group.sources.begin());
+}
+
+bool fits(const SplitOutcome& outcome, const SourceGroup& group) {
+  return outcome.size() == group.cluxels.size() &&
+         std::all_of(outcome.begin(), outcome.end(),
+                     [&](std::uint32_t source) { return source == kNoSource || source < group.sources.size(); });
+}
+
 }  // namespace
 
 Eigen::Vector2d topOf(const perception::SceneCluxels& all, std::span<const std::uint32_t> trunk) {
@@ -257,19 +266,42 @@ Eigen::Vector2d topOf(const perception::SceneCluxels& all, std::span<const std::
 }
 
 std::vector<std::uint32_t> splitCrown(const perception::SceneCluxels& all, std::span<const std::uint32_t> crown,
-                                      std::span<const CrownSource> sources, unsigned threads) {
+                                      std::span<const CrownSource> sources, unsigned threads, KnownSplits* known) {
   CrownParts parts{all, sources, {}};
   for (const CrownSource& source : sources) parts.tops.push_back(topOf(all, source.trunk));
   const std::vector<SourceGroup> groups = groupsOf(parts, crown);
   std::vector<SearchPlace> places(all.size());
   for (std::uint32_t g = 0; g < groups.size(); ++g)
     for (std::uint32_t i = 0; i < groups[g].cluxels.size(); ++i) places[groups[g].cluxels[i]] = {g, i};
-  std::vector<std::uint32_t> taken(crown.size(), kNoSource);
+  struct Split {
+    ContentHash cause;
+    SplitOutcome outcome;
+    bool is_reused = false;
+  };
+  std::vector<Split> splits(groups.size());
   parallelFor(groups.size(), threads, [&](std::size_t g) {
-    const auto& [its_sources, cluxels, positions] = groups[g];
-    const std::vector<Way> ways = GroupSearch(parts, static_cast<std::uint32_t>(g), its_sources, cluxels, places).run();
-    for (std::size_t i = 0; i < ways.size(); ++i) taken[positions[i]] = ways[i].source;
+    const SourceGroup& group = groups[g];
+    Split& split = splits[g];
+    const auto number = static_cast<std::uint32_t>(g);
+    if (known != nullptr) {
+      split.cause = causeOf(parts, group, number, places);
+      if (const SplitOutcome* earlier = known->find(split.cause); earlier != nullptr && fits(*earlier, group)) {
+        split.outcome = *earlier;
+        split.is_reused = true;
+        return;
+      }
+    }
+    for (const Way& way : GroupSearch(parts, number, group.sources, group.cluxels, places).run())
+      split.outcome.push_back(placeIn(group, way.source));
   });
+  std::vector<std::uint32_t> taken(crown.size(), kNoSource);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const SourceGroup& group = groups[g];
+    Split& split = splits[g];
+    for (std::size_t i = 0; i < group.cluxels.size(); ++i)
+      if (split.outcome[i] != kNoSource) taken[group.positions[i]] = group.sources[split.outcome[i]];
+    if (known != nullptr && !group.cluxels.empty()) known->note(split.cause, std::move(split.outcome), split.is_reused);
+  }
   return taken;
 }
 

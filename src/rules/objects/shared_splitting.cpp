@@ -23,7 +23,7 @@ class SharedSplitting {
     owners_of_.resize(state_.fragments.size(), nullptr);
     for (const auto& [fragment, owners] : state_.claims) owners_of_[fragment] = &owners;
     const auto sources = makeSources();
-    taken_ = splitCrown(state_.scene.cluxels, crown_, sources, state_.threads());
+    taken_ = splitCrown(state_.scene.cluxels, crown_, sources, state_.threads(), state_.context.splits);
     const auto claims = std::move(state_.claims);
     state_.claims.clear();
     for (const auto& [fragment, owners] : claims) cutFragment(fragment);
