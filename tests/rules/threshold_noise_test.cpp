@@ -25,7 +25,7 @@ BoxScene columnsOfManyHeights() {
   return boxes;
 }
 
-RuleSet rulesWith(const std::string& test) {
+RuleSet poleRule(const std::string& test) {
   return rulesOf("[clx:Pole]", R"(
   - id: pole
     class: clx:Pole
@@ -39,7 +39,7 @@ RuleSet rulesWith(const std::string& test) {
 
 std::vector<NoisyThreshold> noisyIn(const std::string& test, const NoiseParams& params = {}) {
   const BuiltBoxScene built = sceneOfBoxes(columnsOfManyHeights());
-  return thresholdsWithinNoise(built.scene, rulesWith(test), {}, params);
+  return thresholdsWithinNoise(built.scene, poleRule(test), {}, params);
 }
 
 TEST(ThresholdNoise, CountsTheThingsNearAThreshold) {
