@@ -38,7 +38,12 @@ class Watch {
  public:
   Watch(const fs::path& folder, const fs::path& map, const WatchParams& params, const WatchCallbacks& callbacks,
         ProgressSink& sink)
-      : folder_(folder), map_(map), params_(params), callbacks_(callbacks), sink_(sink) {}
+      : folder_(folder),
+        map_(map),
+        params_(params),
+        callbacks_(callbacks),
+        sink_(sink),
+        extension_(map, {.threads = params.threads}, sink) {}
 
   std::size_t run() {
     using Clock = std::chrono::steady_clock;
@@ -52,6 +57,7 @@ class Watch {
       if (params_.idle_s > 0 && idle.count() >= params_.idle_s) break;
       std::this_thread::sleep_for(std::chrono::duration<double>(params_.interval_s));
     }
+    extension_.close();
     if (added_ > 0) compactIfSparse(map_, sink_, kMaxFreeShareOfChanged);
     return added_;
   }
@@ -101,11 +107,11 @@ class Watch {
 
   void commit(const scan::ScanSet& scans) {
     if (!fs::exists(map_)) {
+      extension_.close();
       const BuildReport report = buildMap(scans, callbacks_.inputs(), map_, {.threads = params_.threads}, sink_);
       return tell(report.scans, report.scans, report.objects);
     }
-    // The next commit writes into the space that this one leaves.
-    const ChangeReport report = extendMap(map_, scans, {.threads = params_.threads, .may_compact = false}, sink_);
+    const ChangeReport report = extension_.add(scans);
     if (report.has_changes) tell(report.scans_added, report.scans, report.after.size());
   }
 
@@ -118,8 +124,9 @@ class Watch {
   const WatchParams& params_;
   const WatchCallbacks& callbacks_;
   ProgressSink& sink_;
-  ProgressSink quiet_;  ///< opening a set notes the same at each look
-  FolderState done_;    ///< scans that were added, or could not be read, as they were then
+  MapExtension extension_;  ///< the next commit writes into the space that one leaves
+  ProgressSink quiet_;      ///< opening a set notes the same at each look
+  FolderState done_;        ///< scans that were added, or could not be read, as they were then
   std::string last_fault_;
   std::size_t added_ = 0;
 };

@@ -50,9 +50,12 @@ void requireFrame(const MapInputs& map, const scan::ScanSet& scans) {
 
 namespace {
 
-ChangeReport addedTo(const fs::path& file, const scan::ScanSet& scans, const ChangeParams& params, ProgressSink& sink) {
+void requireScans(const scan::ScanSet& scans) {
   if (scans.size() == 0) throw Error(ErrorKind::InvalidArgument, "there is no scan to add");
-  MapEditor editor(file, params, sink);
+}
+
+ChangeReport addBy(MapEditor& editor, const scan::ScanSet& scans) {
+  ProgressSink& sink = editor.sink();
   requireFrame(editor.inputs().inputs, scans);
   ScanAdditions additions(editor, "extend");
   scan::ReadingNotes notes(scans.remedies());
@@ -65,13 +68,19 @@ ChangeReport addedTo(const fs::path& file, const scan::ScanSet& scans, const Cha
     }
     additions.finish();
   } catch (...) {
-    if (editor.result().scans_added > 0 && !params.dry_run)
+    if (editor.result().scans_added > 0 && !editor.params().dry_run)
       sink.note(std::to_string(editor.result().scans_added) +
                 " scans were added before the error; the same command goes on from there");
     throw;
   }
   for (const std::string& note : notes.totals()) sink.note(note);
   return std::move(editor.result());
+}
+
+ChangeReport addedTo(const fs::path& file, const scan::ScanSet& scans, const ChangeParams& params, ProgressSink& sink) {
+  requireScans(scans);
+  MapEditor editor(file, params, sink);
+  return addBy(editor, scans);
 }
 
 ChangeReport removedFrom(const fs::path& file, const std::vector<scan::ScanId>& scans, const ChangeParams& params,
@@ -141,6 +150,20 @@ ChangeReport compacted(ChangeReport report, const fs::path& file, const ChangePa
 ChangeReport extendMap(const fs::path& file, const scan::ScanSet& scans, const ChangeParams& params,
                        ProgressSink& sink) {
   return compacted(addedTo(file, scans, params, sink), file, params, sink);
+}
+
+ChangeReport MapExtension::add(const scan::ScanSet& scans) {
+  requireScans(scans);
+  try {
+    if (editor_ && !editor_->resume()) editor_.reset();
+    if (!editor_) editor_.emplace(file_, params_, sink_);
+    ChangeReport report = addBy(*editor_, scans);
+    editor_->rest();
+    return report;
+  } catch (...) {
+    editor_.reset();  // it may hold what was not committed
+    throw;
+  }
 }
 
 ChangeReport retractScans(const fs::path& file, const std::vector<scan::ScanId>& scans, const ChangeParams& params,

@@ -26,6 +26,24 @@ void requireFrame(const MapInputs& map, const scan::ScanSet& scans);
 ChangeReport extendMap(const std::filesystem::path& file, const scan::ScanSet& scans, const ChangeParams& params,
                        ProgressSink& sink);
 
+/// Extends a map again and again. What one extension has read and computed serves the next, unless another program has
+/// changed the map in between: then it is read anew. Between extensions other programs may change the map.
+class MapExtension {
+ public:
+  MapExtension(std::filesystem::path file, const ChangeParams& params, ProgressSink& sink)
+      : file_(std::move(file)), params_(params), sink_(sink) {}
+  /// As extendMap(), but never rewrites the file.
+  ChangeReport add(const scan::ScanSet& scans);
+  /// Lets go of the file.
+  void close() { editor_.reset(); }
+
+ private:
+  std::filesystem::path file_;
+  ChangeParams params_;
+  ProgressSink& sink_;
+  std::optional<MapEditor> editor_;
+};
+
 /// Removes scans. Throws Error: NotFound for an unknown scan, InvalidArgument when none would be left.
 ChangeReport retractScans(const std::filesystem::path& file, const std::vector<scan::ScanId>& scans,
                           const ChangeParams& params, ProgressSink& sink);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "base/file_bytes.hpp"
 #include "base/utc_time.hpp"
@@ -19,6 +20,9 @@ namespace cluxel::mapping {
 namespace fs = std::filesystem;
 
 namespace {
+
+/// A token in the cache of a commit tells whether the commit is still the newest.
+constexpr const char* kRestToken = "rest of a map editor";
 
 double secondsNow() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -40,7 +44,7 @@ bool reachTiles(const MapInputs& before, const MapInputs& after) {
 }  // namespace
 
 MapEditor::MapEditor(const fs::path& file, const ChangeParams& params, ProgressSink& sink)
-    : lock_(withoutLinks(file)), environment_(openForChange(withoutLinks(file))), params_(params), sink_(sink) {
+    : file_(withoutLinks(file)), lock_(file_), environment_(openForChange(file_)), params_(params), sink_(sink) {
   parsed_ = parseInputs(requireFinishedInputs(environment_->read(), file));
   inputs_hash_ = parsed_.inputs.hash().hex();
   readBefore(environment_->read());
@@ -115,6 +119,31 @@ void MapEditor::handOnNames() {
   rdf::WriteTransaction transaction = begin();
   writeThings(transaction, dateTimeText(secondsNow()), report_.before, report_.after, ObjectsOf::SeveralMaps);
   if (!params_.dry_run) transaction.commit();
+}
+
+/// A snapshot of the file that has the name now.
+rdf::QuadReader MapEditor::newest() const {
+  return rdf::QuadReader(openForChange(file_)->read());
+}
+
+void MapEditor::rest() {
+  rested_at_ = std::make_shared<int>();
+  newest().keep(kRestToken, rested_at_);
+  lock_.reset();
+}
+
+bool MapEditor::resume() {
+  if (!lock_) lock_.emplace(file_);
+  if (!rested_at_ || !present_ || newest().kept(kRestToken) != rested_at_) return false;
+  ChangeReport next;
+  next.scans = report_.scans, next.tiles = report_.tiles;
+  next.cluxels = report_.cluxels, next.primitives = report_.primitives;
+  next.objects.unchanged = own_before_ = present_->size();
+  next.before = next.after = *std::exchange(present_, std::nullopt);  // begin() sees whether an update came in between
+  touched_.clear(), changed_.clear();
+  has_committed_ = false;
+  report_ = std::move(next);
+  return true;
 }
 
 void MapEditor::report(const rdf::ReadTransaction& transaction, const SemanticLayer& layer) {

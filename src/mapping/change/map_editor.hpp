@@ -58,16 +58,25 @@ class MapEditor {
   void nameAtEnd() { names_at_end_ = true; }
   void handOnNames();
 
+  /// Ends a change and gives up the build lock; what was read and computed stays in memory for the next change.
+  void rest();
+  /// Begins another change, with a report of its own. False when the map is not in the state of rest() any more: then
+  /// this editor is of no use. Throws as the constructor when another program is changing the map.
+  bool resume();
+
   ChangeReport& result() { return report_; }
   ProgressSink& sink() { return sink_; }
   const ChangeParams& params() const { return params_; }
 
  private:
   void readBefore(const rdf::ReadTransaction& transaction);
+  rdf::QuadReader newest() const;
   void report(const rdf::ReadTransaction& transaction, const SemanticLayer& layer);
 
-  BuildLock lock_;
+  std::filesystem::path file_;
+  std::optional<BuildLock> lock_;
   std::shared_ptr<rdf::Environment> environment_;
+  std::shared_ptr<const void> rested_at_;  ///< names the commit that was the newest then
   const ChangeParams& params_;
   ProgressSink& sink_;
   ParsedInputs parsed_;
