@@ -13,8 +13,8 @@
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/map_update.hpp"
-#include "mapping/facts/stored_presence.hpp"
 #include "mapping/map_tables.hpp"
+#include "mapping/presence/stored_presence.hpp"
 #include "mapping/small_campus.hpp"
 #include "sparql/query_engine.hpp"
 

@@ -28,7 +28,7 @@ TEST(StoredSplits, ServeWhatAChangeLeftAsItWas) {
   };
 
   const KnownSplits before = stored(), same = reasonWith(before);
-  ASSERT_GT(same.count(), 2U);
+  ASSERT_GE(same.count(), 2U);
   EXPECT_EQ(same.reused(), same.count());
 
   extendMap(file, scansOf({files[3]}), {}, silence());

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "mapping/facts/presence_votes.hpp"
+#include "mapping/presence/presence_votes.hpp"
 #include "mapping/map_reader.hpp"
 
 namespace cluxel::tasks {

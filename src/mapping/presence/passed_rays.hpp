@@ -9,7 +9,7 @@
 
 #include "base/content_hash.hpp"
 #include "mapping/cloud.hpp"
-#include "mapping/facts/ray_pass.hpp"
+#include "mapping/presence/ray_pass.hpp"
 #include "perception/segments/scene.hpp"
 #include "rdf/file/environment.hpp"
 #include "rules/objects/semantic_object.hpp"

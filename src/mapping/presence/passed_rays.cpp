@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stored counts are found by a hash of all that they follow from.
-#include "mapping/facts/passed_rays.hpp"
+#include "mapping/presence/passed_rays.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +11,9 @@
 
 #include "base/content_hash.hpp"
 #include "base/parallel.hpp"
-#include "mapping/facts/presence_votes.hpp"
+#include "mapping/facts/object_geometry.hpp"
 #include "mapping/map_tables.hpp"
+#include "mapping/presence/presence_votes.hpp"
 
 namespace cluxel::mapping {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loads each scan once.
-#include "mapping/facts/ray_pass.hpp"
+#include "mapping/presence/ray_pass.hpp"
 
 #include <algorithm>
 #include <iterator>

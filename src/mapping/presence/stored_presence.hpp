@@ -8,7 +8,7 @@
 
 #include "base/content_hash.hpp"
 #include "mapping/cloud.hpp"
-#include "mapping/facts/presence_votes.hpp"
+#include "mapping/presence/presence_votes.hpp"
 #include "perception/segments/scene.hpp"
 #include "perception/visibility/presence.hpp"
 #include "rdf/file/environment.hpp"

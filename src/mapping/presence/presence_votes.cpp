@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Objects vote in parallel about one scan after the other.
-#include "mapping/facts/presence_votes.hpp"
+#include "mapping/presence/presence_votes.hpp"
 
 #include <algorithm>
 #include <array>

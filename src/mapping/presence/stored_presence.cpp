@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A stored presence is found by a hash of all that it follows from.
-#include "mapping/facts/stored_presence.hpp"
+#include "mapping/presence/stored_presence.hpp"
 
 #include <array>
 #include <cstring>

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "mapping/cloud.hpp"
-#include "mapping/facts/ray_pass.hpp"
+#include "mapping/presence/ray_pass.hpp"
 #include "perception/segments/scene.hpp"
 #include "perception/visibility/presence.hpp"
 #include "perception/visibility/ray_bundle.hpp"
