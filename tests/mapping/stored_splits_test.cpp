@@ -13,7 +13,7 @@ namespace {
 
 TEST(StoredSplits, ServeWhatAChangeLeftAsItWas) {
   // The last scan sees less than the whole campus.
-  const SmallCampus campus({.seed = 5, .stops = 4, .size_m = 90, .points_per_stop = 12000});
+  const SmallCampus campus({.seed = 6, .stops = 4, .size_m = 160, .points_per_stop = 20000, .max_range_m = 35});
   const auto& files = campus.files();
   const ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "campus.clx";

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "mapping/presence/presence_votes.hpp"
 #include "mapping/map_reader.hpp"
+#include "mapping/presence/presence_votes.hpp"
 
 namespace cluxel::tasks {
 
