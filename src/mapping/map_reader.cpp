@@ -66,13 +66,19 @@ struct MapReader::Impl {
     if (stages) return *stages;
     model = storedModel();
     stages.emplace(*model, inputs->params);
-    stages->loadAll(transaction);
+    stages->load(transaction);
     std::uint32_t next = 0;
-    for (const auto& [key, tile] : stages->cluxels()) {
+    for (const auto& [key, tile] : stages->summaries()) {
       first_cluxel.emplace(key, next);
       next += static_cast<std::uint32_t>(tile.size());
     }
     object_of_cluxel = objectOfCluxel({readObjects(), {}}, next);
+    return *stages;
+  }
+
+  const TileStages& readPoints() {
+    readStages();
+    stages->loadPoints(transaction);  // those that are not there
     return *stages;
   }
 };
@@ -161,9 +167,15 @@ const perception::Scene& MapReader::scene() const {
 const TileStages& MapReader::stages() const {
   return impl_->readStages();
 }
+const TileStages& MapReader::stagesWithPoints() const {
+  return impl_->readPoints();
+}
+WayGraph MapReader::ways() const {
+  return storedWays(impl_->transaction);
+}
 
 PointAnswers MapReader::answersFor(const Cloud& cloud) const {
-  const TileStages& stages = impl_->readStages();
+  const TileStages& stages = impl_->readPoints();
   const perception::Scene& all = scene();
   const perception::ThinParams& thin = impl_->model->perception.thin;
   const scan::ScanPoints points = pointsOf(cloud.id);

@@ -19,6 +19,7 @@
 namespace cluxel::mapping {
 
 class TileStages;
+struct WayGraph;
 struct OverruledObject;
 
 struct MapSummary {
@@ -64,8 +65,12 @@ class MapReader {
   std::vector<std::uint64_t> decisionDigests() const;
   /// The scene, assembled from the stored tiles by the first call.
   const perception::Scene& scene() const;
-  /// The stored outputs of the stages, read by the first call.
+  /// The stored outputs of the stages without points and cluxels, read by the first call.
   const TileStages& stages() const;
+  /// The same with points and cluxels, which take most of the time and memory.
+  const TileStages& stagesWithPoints() const;
+  /// Computed by each call. Cost: about 3 ms a tile.
+  WayGraph ways() const;
   PointAnswers answersFor(const Cloud& cloud) const;
   const rdf::QuadReader& quads() const;
   /// The bytes of the file by table. Cost and errors as for rdf::layerSizes().

@@ -22,6 +22,8 @@ inline constexpr std::string_view kCluxels = "stage_cluxels";
 inline constexpr std::string_view kGround = "stage_ground";
 inline constexpr std::string_view kFeatures = "stage_features";
 inline constexpr std::string_view kLabels = "stage_labels";
+inline constexpr std::string_view kSummaries = "stage_summaries";
+inline constexpr std::string_view kEven = "stage_even";
 inline constexpr std::string_view kComponents = "stage_components";
 inline constexpr std::string_view kContacts = "stage_contacts";
 

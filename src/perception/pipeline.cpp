@@ -40,8 +40,10 @@ class Run {
   void toContacts(const TileLabeller& labeller, const SceneParams& params) {
     label(labeller, params.labelling);  // features to primitive labels, by the CRF (paper 3.1)
     if (options_.store != nullptr) dropRowsAndVolumes();
-    joinComponents(params.component);  // intersecting cluxels of one label to components
-    findContacts(params);              // components that are near each other
+    summarise();                                // what the scene reads of points and cluxels
+    if (options_.store != nullptr) findEven();  // what ways read of points and ground
+    joinComponents(params.component);           // intersecting cluxels of one label to components
+    findContacts(params);                       // components that are near each other
   }
   const TileSet& changed() const { return changed_; }
 
@@ -52,7 +54,8 @@ class Run {
       if (parts.empty()) emptied_.insert(key);
       if (!options_.anew.contains(key)) grown.insert(key);
     }
-    loadFor(keysOf(segments));  // before the points change on which other outputs rest
+    loadFor(grown);  // before the points change on which other outputs rest
+    forget(options_.anew);
     changed_points_ = update(Stage::Points, out_.points, keysOf(segments), [&](const TileKey& key) {
       std::vector<const ScanSegment*> parts;
       for (const ScanSegment& segment : segments.at(key)) parts.push_back(&segment);
@@ -63,7 +66,18 @@ class Run {
     });
     tiles_ = options_.store != nullptr ? options_.store->tiles() : keysOf(out_.points);
     if (options_.compute_all) changed_points_ = unionOf(std::move(changed_points_), tiles_);
+    std::set_intersection(changed_points_.begin(), changed_points_.end(), options_.anew.begin(), options_.anew.end(),
+                          std::inserter(forgotten_, forgotten_.end()));
     loadAround(changed_points_);
+  }
+
+  /// Stored outputs of these tiles rest on points that are not there any more: stages do not read them.
+  void forget(const TileSet& keys) {
+    for (const TileKey& key : keys) {
+      out_.points.erase(key), out_.cluxels.erase(key), out_.ground.erase(key), out_.features.erase(key);
+      out_.labels.erase(key), out_.summaries.erase(key), out_.even.erase(key);
+      out_.components.erase(key), out_.contacts.erase(key);
+    }
   }
 
   void cluster() {
@@ -87,6 +101,16 @@ class Run {
   void label(const TileLabeller& labeller, const LabellingParams& params) {
     changed_labels_ = update(Stage::Labels, out_.labels, around(changed_features_),
                              [&](const TileKey& key) { return labeller.label(ringIn(out_.features, key), params); });
+  }
+
+  void summarise() {
+    update(Stage::Summaries, out_.summaries, unionOf(changed_points_, changed_cluxels_),
+           [&](const TileKey& key) { return summaryOf(out_.points.at(key), out_.cluxels.at(key)); });
+  }
+
+  void findEven() {
+    update(Stage::Even, out_.even, around(unionOf(changed_points_, changed_ground_)),
+           [&](const TileKey& key) { return evenGroundOf(ringIn(out_.points, key), ringIn(out_.ground, key)); });
   }
 
   void joinComponents(const ComponentParams& params) {
@@ -114,6 +138,7 @@ class Run {
   /// of the seventh.
   void loadAround(TileSet tiles) {
     for (int ring = 0; ring < 7; ++ring) tiles = around(tiles);
+    for (const TileKey& key : forgotten_) tiles.erase(key);
     loadFor(tiles);
   }
 
@@ -159,6 +184,7 @@ class Run {
   TileSet update(Stage stage, std::map<TileKey, Tile>& tiles, TileSet dirty, const Compute& compute) {
     const double start_s = processorSeconds();
     if (options_.compute_all) dirty = unionOf(std::move(dirty), changed_points_);
+    dirty.insert(forgotten_.begin(), forgotten_.end());
     std::vector<TileKey> keys;
     std::set_difference(dirty.begin(), dirty.end(), emptied_.begin(), emptied_.end(), std::back_inserter(keys));
     constexpr std::size_t kChunk = 64;  // bounds the bytes that wait for the store
@@ -204,16 +230,17 @@ class Run {
   TileOutputs& out_;
   const RunOptions& options_;
   TileSet tiles_;
-  TileSet emptied_;  ///< tiles that lost their points
-  TileSet changed_;  ///< in some stage
+  TileSet emptied_;    ///< tiles that lost their points
+  TileSet forgotten_;  ///< tiles whose stored outputs are not read; every stage computes them
+  TileSet changed_;    ///< in some stage
   TileSet changed_points_, changed_cluxels_, changed_ground_, changed_features_, changed_labels_, changed_components_;
 };
 
 }  // namespace
 
 std::string_view nameOf(Stage stage) {
-  constexpr std::array<std::string_view, kStageCount> kNames{"points", "cluxels",    "ground",  "features",
-                                                             "labels", "components", "contacts"};
+  constexpr std::array<std::string_view, kStageCount> kNames{"points",    "cluxels", "ground",     "features", "labels",
+                                                             "summaries", "even",    "components", "contacts"};
   return kNames[static_cast<std::size_t>(stage)];
 }
 

@@ -16,10 +16,10 @@
 namespace cluxel::perception {
 
 /// The stages that write one output per tile, in the order in which they run.
-enum class Stage : std::uint8_t { Points, Cluxels, Ground, Features, Labels, Components, Contacts };
-inline constexpr std::size_t kStageCount = 7;
+enum class Stage : std::uint8_t { Points, Cluxels, Ground, Features, Labels, Summaries, Even, Components, Contacts };
+inline constexpr std::size_t kStageCount = 9;
 
-/// "points", "cluxels", "ground", "features", "labels", "components", "contacts".
+/// "points", "cluxels", "ground", "features", "labels", "summaries", "even", "components", "contacts".
 std::string_view nameOf(Stage stage);
 
 /// Settings of the stages after the features. (Settings up to the features belong to the model.)
@@ -42,8 +42,9 @@ class OutputStore {
   virtual ~OutputStore() = default;
   /// All tiles with points: with those of the new segments, without those that lost their points.
   virtual TileSet tiles() const = 0;
-  /// Reads the stored outputs of `tiles` into `outputs`, except those that are there. Contacts may be left out: no
-  /// stage reads them. So may volumes of cluxels and rows of features: they are computed again where they are needed.
+  /// Reads the stored outputs of `tiles` into `outputs`, except those that are there. Summaries, even ground and
+  /// contacts may be left out: no stage reads them. So may volumes of cluxels and rows of features: they are computed
+  /// again where they are needed.
   virtual void load(const TileSet& tiles, TileOutputs& outputs) = 0;
   /// Stores one output; false when the stored bytes are the same.
   virtual bool store(Stage stage, const TileKey& key, std::string_view bytes) = 0;
@@ -66,7 +67,7 @@ struct RunOptions {
   StageObserver* observer = nullptr;  ///< may be absent
   bool compute_all = false;           ///< every stage computes all tiles: the model or settings changed
   /// Tiles of which `segments` holds all points; one without segments has lost its points. In other tiles the segments
-  /// are added to the points that are there. With a store, `outputs` must hold what was there of tiles that lost scans.
+  /// are added to the points that are there.
   TileSet anew = {};
 };
 

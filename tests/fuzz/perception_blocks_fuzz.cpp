@@ -17,7 +17,7 @@ namespace {
 using namespace cluxel;
 using namespace cluxel::scan;
 using namespace cluxel::perception;
-constexpr std::size_t kKinds = 7, kHead = 32;  // kind, version, tile, digest
+constexpr std::size_t kKinds = 9, kHead = 32;  // kind, version, tile, digest
 using Blocks = std::array<std::string, kKinds>;
 
 /// A floor with a wall and a pole, within one tile.
@@ -54,6 +54,8 @@ Blocks validBlocks() {
           toBytes(tiles.features.at(key)),
           toBytes(labels),
           toBytes(ComponentTile{}),
+          toBytes(summaryOf(tiles.points.at(key), tiles.cluxels.at(key))),
+          toBytes(evenGroundOf(ringIn(tiles.points, key), ringIn(tiles.ground, key))),
           toBytes(ContactTile{})};
 }
 
@@ -75,11 +77,15 @@ std::string roundTrip(std::size_t kind, std::string_view bytes) {
     case 2:
       return toBytes(groundTileFromBytes(bytes));
     case 3:
-      return toBytes(featureTileFromBytes(bytes, tiles.cluxels.begin()->second));
+      return toBytes(featureTileFromBytes(bytes, tiles.cluxels.begin()->second.size()));
     case 4:
       return toBytes(labelTileFromBytes(bytes));
     case 5:
       return toBytes(componentTileFromBytes(bytes));
+    case 6:
+      return toBytes(summaryTileFromBytes(bytes));
+    case 7:
+      return toBytes(evenTileFromBytes(bytes));
     default:
       return toBytes(contactTileFromBytes(bytes));
   }

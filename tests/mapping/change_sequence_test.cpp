@@ -153,7 +153,7 @@ class ChangeSequence {
       return {StatementKind::IgnoreRegion, "", {}, {}, regionAnchor(reader.clouds(), {{x, y}, {x + 6, y}, {x, y + 6}})};
     }
     const rules::SemanticObject& thing = *things[below(things.size())];
-    const PointAnchor anchor = anchorOf(reader.stages(), thing);
+    const PointAnchor anchor = anchorOf(reader.stagesWithPoints(), thing);
     static const std::vector<std::string> classes{"Tree", "StreetSign", "Pole", "Vehicle", "StreetFurniture"};
     const Term class_iri = Term::iri(vocabulary::clx(classes[below(classes.size())]));
     switch (below(4)) {
@@ -213,7 +213,7 @@ class ChangeSequence {
       const rules::SemanticObject& thing = reader.objects()[below(reader.objects().size())];
       const bool is_class = oneIn(2) && thing.class_iri != vocabulary::clx("Ground");
       object = rdf::iriOfObject(thing.id);
-      statement.points = anchorOf(reader.stages(), thing);
+      statement.points = anchorOf(reader.stagesWithPoints(), thing);
       statement.kind = is_class ? StatementKind::Is : StatementKind::Fact;
       statement.property = is_class ? "" : vocabulary::rdfs("comment");
       statement.value = is_class ? Term::iri(vocabulary::clx("UtilityPole")) : Term::literal("by update");

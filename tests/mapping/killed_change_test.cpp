@@ -137,7 +137,8 @@ class KilledChange : public testing::Test {
     const MapReader reader(map());
     for (const rules::SemanticObject& object : reader.objects())
       if (object.class_iri != vocabulary::clx("Ground") && object.class_iri != vocabulary::clx(local))
-        return {StatementKind::Is, "", Term::iri(vocabulary::clx(local)), anchorOf(reader.stages(), object), {}};
+        return {
+            StatementKind::Is, "", Term::iri(vocabulary::clx(local)), anchorOf(reader.stagesWithPoints(), object), {}};
     throw std::runtime_error("the campus has nothing but ground");
   }
   /// The map after a change of a copy.

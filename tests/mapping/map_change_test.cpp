@@ -77,7 +77,7 @@ class MapChange : public testing::Test {
     const auto environment = Environment::open(file, OpenMode::ReadOnly);
     const ReadTransaction transaction = environment->read();
     for (const auto table : {tables::kPoints, tables::kCluxels, tables::kGround, tables::kFeatures, tables::kLabels,
-                             tables::kComponents, tables::kContacts})
+                             tables::kSummaries, tables::kEven, tables::kComponents, tables::kContacts})
       transaction.forEachBlock(
           table, "", [&](std::string_view key, std::string_view bytes) { content.stages.append(key).append(bytes); });
     return content;

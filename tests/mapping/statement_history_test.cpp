@@ -51,7 +51,7 @@ class StatementHistory : public testing::Test {
     std::vector<const rules::SemanticObject*> things;
     for (const rules::SemanticObject& object : reader.objects())
       if (object.class_iri != vocabulary::clx("Ground")) things.push_back(&object);
-    return {kind, "", Term::iri(vocabulary::clx(local)), anchorOf(reader.stages(), *things.at(number)), {}};
+    return {kind, "", Term::iri(vocabulary::clx(local)), anchorOf(reader.stagesWithPoints(), *things.at(number)), {}};
   }
   static void state(const fs::path& file, const std::vector<Statement>& made,
                     const std::vector<ContentHash>& withdrawn = {}, const std::string& author = "anna") {

@@ -87,7 +87,7 @@ class Statements : public testing::Test {
   static Statement about(const MapReader& reader, const rules::SemanticObject& object, StatementKind kind,
                          const std::string& local = "") {
     const Term value = local.empty() ? Term{} : Term::iri(clxClass(local));
-    return {kind, "", value, anchorOf(reader.stages(), object), {}};
+    return {kind, "", value, anchorOf(reader.stagesWithPoints(), object), {}};
   }
   ChangeReport state(const std::vector<Statement>& added, const std::vector<ContentHash>& withdrawn = {}) const {
     return changeStatements(map(), {added, withdrawn, "anna"}, {}, silence());
@@ -247,7 +247,7 @@ TEST_F(Statements, UseTermsThatTheOntologyDeclares) {
                   {StatementKind::Fact,
                    rdf::vocabulary::rdfs("label"),
                    Term::literal("gate"),
-                   anchorOf(reader.stages(), thing),
+                   anchorOf(reader.stagesWithPoints(), thing),
                    {}},
                   {StatementKind::IgnoreRegion, "", {}, {}, regionAnchor(reader.clouds(), {{0, 0}, {1, 0}, {1, 1}})}};
   }

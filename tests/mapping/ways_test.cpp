@@ -55,7 +55,11 @@ struct MadeGround {
       cells.source.push_back(GroundSource::Measured);
     }
   }
-  WayGraph ways() const { return waysOf(points, ground); }
+  WayGraph ways() const {
+    std::vector<TileKey> keys;
+    for (const auto& [key, tile] : points) keys.push_back(key);
+    return waysOf(keys, [&](const TileKey& key) { return evenGroundOf(ringIn(points, key), ringIn(ground, key)); });
+  }
 };
 
 double slopeAt(double x, double) {

@@ -43,6 +43,8 @@ HandLabelled labelled(const std::vector<Scan>& scans, const LabelOf& label_of) {
     all.tiles.labels.emplace(key, std::move(tile));
   }
   for (const auto& [key, points] : all.tiles.points)
+    all.tiles.summaries.emplace(key, summaryOf(points, all.tiles.cluxels.at(key)));
+  for (const auto& [key, points] : all.tiles.points)
     all.tiles.components.emplace(key, componentsOf(points, all.tiles.cluxels.at(key), all.tiles.features.at(key),
                                                    all.tiles.labels.at(key), ringIn(all.tiles.ground, key), {}));
   for (const auto& [key, graph] : all.tiles.features)
@@ -289,6 +291,7 @@ TEST(Scene, RefusesBlocksThatDoNotBelongTogether) {
                  Error);
   }
   EXPECT_THROW(assembled([](HandLabelled& all) { all.tiles.contacts.erase(all.tiles.contacts.begin()); }), Error);
+  EXPECT_THROW(assembled([](HandLabelled& all) { all.tiles.summaries.erase(all.tiles.summaries.begin()); }), Error);
 }
 
 }  // namespace

@@ -108,8 +108,11 @@ TEST(RuleTeaching, LearnsWhatAnOperatorStated) {
   const ScratchFolder folder;
   const auto file = folder.path() / "stated.clx";
   std::filesystem::copy_file(CampusMap::shared().file(), file);
-  const Statement sign{
-      StatementKind::Is, "", Term::iri(rdf::vocabulary::clx("StreetSign")), anchorOf(before.stages(), thing), {}};
+  const Statement sign{StatementKind::Is,
+                       "",
+                       Term::iri(rdf::vocabulary::clx("StreetSign")),
+                       anchorOf(before.stagesWithPoints(), thing),
+                       {}};
   const ChangeReport report = changeStatements(file, {{sign}, {}, ""}, {}, silence());
   ASSERT_EQ(report.statements.size(), 1U);
   const std::optional<Lesson> lesson = lessonFor(MapReader(file), report.statements[0].object->hex());

@@ -155,7 +155,7 @@ TEST(SearchField, FindsAWayWhereverItRuns) {
   const TerrainGrid terrain = terrainOf(map);
   const rdf::OntologyView ontology = rdf::ontologyViewOf(ontologySources(map.inputs().ontology));
   const auto marked = cellsWith(map, terrain, ontology, rdf::vocabulary::clx("Way"));
-  const WayGraph ways = waysOf(map.stages().points(), map.stages().ground());
+  const WayGraph ways = map.ways();
   ASSERT_FALSE(ways.ways.empty());
   std::size_t on_line = 0;
   for (std::uint32_t cell = 0; cell < terrain.frame.size(); ++cell) {

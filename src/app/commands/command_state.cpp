@@ -98,7 +98,7 @@ void addAboutObject(const mapping::MapReader& map, const StateOptions& options, 
                     ProgressSink& sink) {
   if (const std::string note = tasks::nameNote(map, options.object); !note.empty()) sink.note(note);
   const rules::SemanticObject& object = map.objects()[tasks::objectNamed(map, options.object)];
-  const mapping::PointAnchor anchor = anchorOf(map.stages(), object);
+  const mapping::PointAnchor anchor = anchorOf(map.stagesWithPoints(), object);
   const auto add = [&](StatementKind kind, const std::string& property, const Term& value) {
     edit.added.push_back({kind, property, value, anchor, {}});
   };

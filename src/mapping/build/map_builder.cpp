@@ -109,7 +109,8 @@ class MapBuild {
   void commitBatch(rdf::WriteTransaction& transaction, PointChanges changes, bool is_last, double started_s,
                    StageClock& clock) {
     stages_.update(transaction, std::move(changes), params_.threads, clock);
-    stages_.loadAll(transaction);
+    stages_.dropPoints();
+    stages_.load(transaction);
     if (is_last) work_.takeOverStatements(transaction, params_.drop_statements, sink_);
     if (is_last) addOperatorStatements(transaction, params_.statements);
     const SemanticLayer layer = writeSemanticLayer(transaction, parsed_, stages_, params_.threads, clock);
@@ -125,7 +126,7 @@ class MapBuild {
     report_.scans = clouds.size();
     report_.points = 0;
     for (const Cloud& cloud : clouds) report_.points += cloud.point_count;
-    report_.tiles = stages_.points().size();
+    report_.tiles = stages_.summaries().size();
     report_.cluxels = layer.scene.cluxels.size(), report_.primitives = layer.scene.primitives.size();
     report_.objects = layer.objects.size();
     report_.quads = rdf::QuadReader(work_.environment().read()).size();

@@ -56,7 +56,7 @@ void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink, co
   const bool has_news = takeNewStatements(transaction, parsed.rules.catalogue);
   if (parsed.rules.asks_map || has_news) {
     TileStages stages(parsed.model, parsed.inputs.params);
-    stages.loadAll(transaction);
+    stages.load(transaction);
     if (check) check(0);
     const std::vector<rules::SemanticObject> before = storedObjects(transaction);
     const SemanticLayer layer = writeSemanticLayer(transaction, parsed, stages, 1, sink, check);

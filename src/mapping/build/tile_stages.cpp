@@ -16,9 +16,16 @@ using perception::TileKey;
 
 std::string_view tableOf(Stage stage) {
   constexpr std::array<std::string_view, perception::kStageCount> kTables{
-      tables::kPoints, tables::kCluxels,    tables::kGround,  tables::kFeatures,
-      tables::kLabels, tables::kComponents, tables::kContacts};
+      tables::kPoints,    tables::kCluxels, tables::kGround,     tables::kFeatures, tables::kLabels,
+      tables::kSummaries, tables::kEven,    tables::kComponents, tables::kContacts};
   return kTables[static_cast<std::size_t>(stage)];
+}
+
+/// A block names its tile, which later stages look up.
+template <typename Tile>
+Tile checked(const TileKey& key, Tile tile) {
+  if (tile.key == key) return tile;
+  throw Error(ErrorKind::StoreUnavailable, "a stored tile has the block of another; the map is damaged, build it anew");
 }
 
 /// Reads stored outputs; what is computed from other outputs comes after them.
@@ -29,6 +36,14 @@ class OutputReader {
 
   /// Outputs of the stages that other stages read, of the tiles that are not there.
   void read(const TileSet& keys) {
+    readPoints(keys);
+    each(Stage::Features, keys, out_.features, [&](const TileKey& key, std::string_view bytes) {
+      readFeatures(key, bytes, required(out_.cluxels, key).size());
+    });
+    readLabelled(keys);
+  }
+
+  void readPoints(const TileSet& keys) {
     perception::PointsFromScans from_scans;
     each(Stage::Points, keys, out_.points, [&](const TileKey& key, std::string_view bytes) {
       from_scans.add(out_.points.emplace(key, checked(key, perception::tilePointsFromBytes(bytes))).first->second);
@@ -37,19 +52,29 @@ class OutputReader {
     each(Stage::Cluxels, keys, out_.cluxels, [&](const TileKey& key, std::string_view bytes) {
       out_.cluxels.emplace(key, checked(key, perception::cluxelTileFromBytes(bytes, required(out_.points, key))));
     });
+  }
+
+  /// What the scene is assembled from.
+  void readForScene(const TileSet& keys) {
+    plain(Stage::Summaries, keys, out_.summaries, perception::summaryTileFromBytes);
     each(Stage::Features, keys, out_.features, [&](const TileKey& key, std::string_view bytes) {
-      out_.features.emplace(key, checked(key, perception::featureTileFromBytes(bytes, required(out_.cluxels, key))));
+      readFeatures(key, bytes, required(out_.summaries, key).size());
     });
+    readLabelled(keys);
+    plain(Stage::Contacts, keys, out_.contacts, perception::contactTileFromBytes);
+  }
+
+ private:
+  void readFeatures(const TileKey& key, std::string_view bytes, std::size_t cluxels) {
+    out_.features.emplace(key, checked(key, perception::featureTileFromBytes(bytes, cluxels)));
+  }
+
+  void readLabelled(const TileSet& keys) {
     plain(Stage::Ground, keys, out_.ground, perception::groundTileFromBytes);
     plain(Stage::Labels, keys, out_.labels, perception::labelTileFromBytes);
     plain(Stage::Components, keys, out_.components, perception::componentTileFromBytes);
   }
 
-  void readContacts(const TileSet& keys) {
-    plain(Stage::Contacts, keys, out_.contacts, perception::contactTileFromBytes);
-  }
-
- private:
   template <typename Tiles, typename Visit>
   void each(Stage stage, const TileSet& keys, const Tiles& tiles, const Visit& visit) {
     for (const TileKey& key : keys) {
@@ -62,14 +87,6 @@ class OutputReader {
   void plain(Stage stage, const TileSet& keys, Tiles& tiles, const Decode& decode) {
     each(stage, keys, tiles,
          [&](const TileKey& key, std::string_view bytes) { tiles.emplace(key, checked(key, decode(bytes))); });
-  }
-
-  /// A block names its tile, which later stages look up.
-  template <typename Tile>
-  static Tile checked(const TileKey& key, Tile tile) {
-    if (tile.key == key) return tile;
-    throw Error(ErrorKind::StoreUnavailable,
-                "a stored tile has the block of another; the map is damaged, build it anew");
   }
 
   template <typename Tiles>
@@ -159,14 +176,31 @@ TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes
                                      .compute_all = compute_all,
                                      .anew = std::move(changes.anew)});
   storeTiles(transaction, store.tiles());
+  outputs_.even.clear();  // ways read it from the map
   return changed;
 }
 
-void TileStages::loadAll(const rdf::ReadTransaction& transaction) {
+void TileStages::load(const rdf::ReadTransaction& transaction) {
+  OutputReader(transaction, outputs_).readForScene(storedTiles(transaction));
+}
+
+void TileStages::loadPoints(const rdf::ReadTransaction& transaction) {
+  OutputReader(transaction, outputs_).readPoints(storedTiles(transaction));
+}
+
+void TileStages::dropPoints() {
+  outputs_.points.clear();
+  outputs_.cluxels.clear();
+}
+
+WayGraph storedWays(const rdf::ReadTransaction& transaction) {
   const TileSet tiles = storedTiles(transaction);
-  OutputReader reader(transaction, outputs_);
-  reader.read(tiles);
-  reader.readContacts(tiles);
+  return waysOf({tiles.begin(), tiles.end()}, [&](const TileKey& key) {
+    const auto bytes = transaction.block(tables::kEven, tables::keyOf(key));
+    if (!bytes)
+      throw Error(ErrorKind::StoreUnavailable, "a stored tile lacks a block; the map is damaged, build it anew");
+    return checked(key, perception::evenTileFromBytes(*bytes));
+  });
 }
 
 }  // namespace cluxel::mapping

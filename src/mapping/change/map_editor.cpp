@@ -54,14 +54,14 @@ MapEditor::MapEditor(const fs::path& file, const ChangeParams& params, ProgressS
 void MapEditor::readBefore(const rdf::ReadTransaction& transaction) {
   if (!stages_) {
     stages_.emplace(parsed_.model, parsed_.inputs.params);
-    stages_->loadAll(transaction);
+    stages_->load(transaction);
   }
   const perception::SceneSeeds seeds = stages_->seeds();
   report_.before = report_.after = membersOf(storedObjects(transaction), seeds);
   report_.objects.unchanged = report_.after.size();
   own_before_ = report_.before.size();
   report_.scans = storedClouds(transaction).size();
-  report_.tiles = stages_->points().size();
+  report_.tiles = stages_->summaries().size();
   report_.cluxels = seeds.seed.size();
   report_.primitives = storedDigests(transaction).size();  // there is one for each primitive
 }
@@ -98,7 +98,7 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
                                      : stages_->update(transaction, std::move(changes), params_.threads, clock);
   changed_.insert(changed.begin(), changed.end());
   all_tiles_ = false;
-  stages_->loadAll(transaction);
+  stages_->load(transaction);
   const SemanticLayer layer = writeSemanticLayer(transaction, parsed_, *stages_, params_.threads, clock);
   inputs_hash_ = parsed_.inputs.hash().hex();
   storeInputs(transaction, parsed_.inputs);
@@ -151,7 +151,7 @@ void MapEditor::report(const rdf::ReadTransaction& transaction, const SemanticLa
   report_.tiles_touched = touched_.size();
   report_.tiles_changed = changed_.size();
   report_.scans = storedClouds(transaction).size();
-  report_.tiles = stages_->points().size();
+  report_.tiles = stages_->summaries().size();
   report_.cluxels = layer.scene.cluxels.size();
   report_.primitives = layer.scene.primitives.size();
   report_.after = membersOf(layer.objects, layer.scene.cluxels);

@@ -27,7 +27,7 @@ struct AskReplay::Impl {
     if (oracle) return *oracle;
     inputs = map.inputs();
     clouds = map.clouds();
-    ways = waysOf(map.stages().points(), map.stages().ground());
+    ways = map.ways();
     scratch = rdf::Environment::temporary();
     transaction.emplace(scratch->write());
     writeOntology(*transaction, inputs);

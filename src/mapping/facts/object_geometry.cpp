@@ -51,27 +51,28 @@ std::vector<std::uint32_t> objectOfCluxel(const rules::ReasoningResult& result, 
 }
 
 std::map<std::pair<std::uint32_t, scan::ScanId>, Sighting> sightingsOf(
-    const std::map<perception::TileKey, perception::TilePoints>& points,
-    const std::map<perception::TileKey, perception::CluxelTile>& cluxels,
+    const std::map<perception::TileKey, perception::SummaryTile>& tiles,
     const std::vector<std::uint32_t>& object_of_cluxel) {
   std::map<std::pair<std::uint32_t, scan::ScanId>, Sighting> sightings;
   std::uint32_t base = 0;
-  for (const auto& [key, tile] : points) {
-    const perception::CluxelTile& clustered = cluxels.at(key);
+  for (const auto& [key, tile] : tiles) {
+    const Eigen::Vector3d corner = cornerOf(key);
     std::map<std::pair<std::uint32_t, std::uint32_t>, Sighting> of_tile;
-    for (std::uint32_t i = 0; i < tile.size(); ++i) {
-      const std::uint32_t object = object_of_cluxel[base + clustered.point_cluxel[i]];
+    for (std::uint32_t c = 0; c < tile.size(); ++c) {
+      const std::uint32_t object = object_of_cluxel[base + c];
       if (object == kNoObject) continue;
-      Sighting& sighting = of_tile[{object, tile.scan[i]}];
-      ++sighting.point_count;
-      sighting.sum += cornerOf(key) + tile.at(i).cast<double>();
+      for (std::uint32_t view = tile.view_offset[c]; view < tile.view_offset[c + 1]; ++view) {
+        Sighting& sighting = of_tile[{object, tile.view_scan[view]}];
+        sighting.point_count += tile.view_point_count[view];
+        sighting.sum += tile.view_point_count[view] * (corner + tile.viewMean(c, view));
+      }
     }
     for (const auto& [pair, sighting] : of_tile) {
       Sighting& sum = sightings[{pair.first, tile.scans[pair.second]}];
       sum.point_count += sighting.point_count;
       sum.sum += sighting.sum;
     }
-    base += static_cast<std::uint32_t>(clustered.size());
+    base += static_cast<std::uint32_t>(tile.size());
   }
   return sightings;
 }

@@ -5,9 +5,8 @@
 #include <map>
 #include <vector>
 
-#include "perception/clustering/cluxel_tile.hpp"
-#include "perception/clustering/tile_points.hpp"
 #include "perception/segments/scene.hpp"
+#include "perception/segments/summary_tile.hpp"
 #include "rules/objects/semantic_object.hpp"
 
 namespace cluxel::mapping {
@@ -33,12 +32,11 @@ std::vector<std::uint32_t> objectOfCluxel(const rules::ReasoningResult& result, 
 /// The points of one object in one scan.
 struct Sighting {
   std::uint64_t point_count = 0;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  ///< of its points [m, map]
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  ///< of its points, those of a cluxel rounded by 1 mm [m, map]
 };
-/// By (object, scan). Points are summed tile by tile in canonical order.
+/// By (object, scan). `tiles`: all of the scene. Cluxels are summed tile by tile in their order.
 std::map<std::pair<std::uint32_t, scan::ScanId>, Sighting> sightingsOf(
-    const std::map<perception::TileKey, perception::TilePoints>& points,
-    const std::map<perception::TileKey, perception::CluxelTile>& cluxels,
+    const std::map<perception::TileKey, perception::SummaryTile>& tiles,
     const std::vector<std::uint32_t>& object_of_cluxel);
 
 /// Pairs of objects (a < b) with a gap below `largest_m` between their cluxels' boxes, sorted. Objects with `is_ground`

@@ -61,7 +61,7 @@ void writeObjectsSoFar(rdf::WriteTransaction& transaction, const MapInputs& inpu
                        const perception::Scene& scene, const TileStages& stages, const WayGraph& ways,
                        std::span<const rules::SemanticObject> objects) {
   const rules::ReasoningResult so_far{{objects.begin(), objects.end()}, {}};
-  const auto sightings = sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(so_far, scene.cluxels.size()));
+  const auto sightings = sightingsOf(stages.summaries(), objectOfCluxel(so_far, scene.cluxels.size()));
   writeObserved(transaction, {inputs, clouds, scene, so_far, sightings, {}, {}}, {}, ways);
   inferClosure(transaction);
 }
@@ -87,13 +87,12 @@ void inferFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, Pro
   runSparqlRules(transaction, inputs.sparql_rules, check);
 }
 
-SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const ParsedInputs& parsed,
-                                 const TileStages& stages, unsigned threads, ProgressSink& sink,
-                                 const rdf::InferenceCheck& check) {
+SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
+                                 unsigned threads, ProgressSink& sink, const rdf::InferenceCheck& check) {
   writeOntology(transaction, parsed.inputs);
   const std::vector<Cloud> clouds = storedClouds(transaction);
   perception::Scene scene = stages.scene(clouds);
-  const WayGraph ways = waysOf(stages.points(), stages.ground());
+  const WayGraph ways = storedWays(transaction);
   sink.progress("scene", scene.primitives.size(), scene.primitives.size());
   MapOracle oracle(transaction, [&](std::span<const rules::SemanticObject> objects) {
     if (check) check(0);
@@ -108,7 +107,7 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
                                                parsed.rules.catalogue, std::move(result.objects));
   result.objects = std::move(stated.objects);
   sink.progress("objects", result.objects.size(), result.objects.size());
-  const auto sightings = sightingsOf(stages.points(), stages.cluxels(), objectOfCluxel(result, scene.cluxels.size()));
+  const auto sightings = sightingsOf(stages.summaries(), objectOfCluxel(result, scene.cluxels.size()));
   const auto counts_rays = [&](const rules::SemanticObject& object) {
     return parsed.rules.catalogue.isA(object.class_iri, rdf::vocabulary::clx("Barrier"));
   };

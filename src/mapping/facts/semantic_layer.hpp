@@ -48,8 +48,7 @@ struct SemanticLayer {
 
 /// Computes objects and facts of the stages' outputs and stores them. The graphs ontology, observed and inferred are
 /// then a function of these outputs and the inputs.
-SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const ParsedInputs& parsed,
-                                 const TileStages& stages, unsigned threads, ProgressSink& sink,
-                                 const rdf::InferenceCheck& check = {});
+SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
+                                 unsigned threads, ProgressSink& sink, const rdf::InferenceCheck& check = {});
 
 }  // namespace cluxel::mapping

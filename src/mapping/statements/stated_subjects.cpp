@@ -29,7 +29,7 @@ class StatedObjects {
       : objects_(storedObjects(transaction)),
         stages_(parsed.model, parsed.inputs.params),
         lineage_(rdf::QuadReader(transaction), idsOf(objects_)) {
-    stages_.loadAll(transaction);
+    stages_.loadPoints(transaction);
     for (std::size_t i = 0; i < objects_.size(); ++i) number_of_[rdf::iriOfObject(objects_[i].id)] = i;
   }
 

@@ -15,12 +15,13 @@ constexpr std::string_view kNamesKey = "overruled names";
 
 }  // namespace
 
-AppliedStatements appliedStatements(const rdf::ReadTransaction& transaction, const TileStages& stages,
+AppliedStatements appliedStatements(const rdf::ReadTransaction& transaction, TileStages& stages,
                                     const perception::ThinParams& thin, const std::vector<Cloud>& clouds,
                                     const perception::Scene& scene, const rules::ClassCatalogue& classes,
                                     std::vector<rules::SemanticObject> by_rules) {
   const std::vector<Statement> statements = storedStatements(rdf::QuadReader(transaction));
   if (statements.empty()) return {std::move(by_rules), {}, {}};
+  stages.loadPoints(transaction);
   PointOwners owners(transaction, stages, thin, clouds);
   return applyStatements(statements, std::move(by_rules), scene, classes, owners, clouds);
 }

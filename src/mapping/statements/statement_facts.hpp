@@ -11,7 +11,7 @@
 namespace cluxel::mapping {
 
 /// Applies the statements of graph `operator` to the rules' objects. Nothing is read where there are none.
-AppliedStatements appliedStatements(const rdf::ReadTransaction& transaction, const TileStages& stages,
+AppliedStatements appliedStatements(const rdf::ReadTransaction& transaction, TileStages& stages,
                                     const perception::ThinParams& thin, const std::vector<Cloud>& clouds,
                                     const perception::Scene& scene, const rules::ClassCatalogue& classes,
                                     std::vector<rules::SemanticObject> by_rules);

@@ -3,12 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
+#include <functional>
 #include <vector>
 
 #include "mapping/ways/tile_cells.hpp"
-#include "perception/clustering/tile_points.hpp"
-#include "perception/features/ground_tile.hpp"
+#include "perception/features/even_tile.hpp"
 
 namespace cluxel::mapping {
 
@@ -16,23 +15,20 @@ struct GroundCells {
   TileCells cells;
   std::vector<float> height;           ///< of the ground [m, map]
   std::vector<std::uint8_t> measured;  ///< 1: a point of the ground lies in the cell
-  std::vector<std::uint8_t> thing;     ///< 1: something stands or hangs there, up to kThingTop_m
+  std::vector<std::uint8_t> thing;     ///< 1: something stands or hangs there, up to perception::kThingTop_m
   std::vector<std::uint8_t> even;      ///< 1: part of a way's surface
 };
 
-inline constexpr double kThingBottom_m = 0.2;  ///< above the ground: lower points are of the ground
-inline constexpr double kThingTop_m = 2.0;
-inline constexpr double kEvenSpread_m = 0.0025;  ///< of the ground about the plane of a window of 1.25 m
-inline constexpr double kLargestNoise_m = 0.03;  ///< of points about the means of cells
-inline constexpr double kEvenSlope = 0.2;        ///< rise over run of that plane
-inline constexpr double kKerbLow_m = 0.06;       ///< a difference in height that ends a way
-inline constexpr double kLeastEven_m2 = 10;      ///< smaller patches are dropped
-inline constexpr double kLargestGap_m2 = 12;     ///< smaller holes, which things and shadows leave, are closed
-inline constexpr double kLargestCut_m2 = 0.25;   ///< the same for holes that steps leave: no kerb is so short
+inline constexpr double kKerbLow_m = 0.06;      ///< a difference in height that ends a way
+inline constexpr double kLeastEven_m2 = 10;     ///< smaller patches are dropped
+inline constexpr double kLargestGap_m2 = 12;    ///< smaller holes, which things and shadows leave, are closed
+inline constexpr double kLargestCut_m2 = 0.25;  ///< the same for holes that steps leave: no kerb is so short
 
-/// Cost: about 30 ns a point, and 2 ms a tile.
-GroundCells groundCellsOf(const std::map<perception::TileKey, perception::TilePoints>& points,
-                          const std::map<perception::TileKey, perception::GroundTile>& ground);
+/// Gives a tile's output of the stage "even".
+using EvenTileSource = std::function<perception::EvenTile(const perception::TileKey&)>;
+
+/// `keys`: of all tiles, ascending. Cost: about 1 ms a tile.
+GroundCells groundCellsOf(std::vector<perception::TileKey> keys, const EvenTileSource& tileAt);
 
 /// Connected cells where `inside` is 1, over the four neighbours or all eight. Cells of a part are in the order in
 /// which they are found; parts are in the order of their first cells.

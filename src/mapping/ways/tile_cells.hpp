@@ -8,13 +8,13 @@
 #include <span>
 #include <vector>
 
-#include "perception/tile.hpp"
+#include "perception/features/even_tile.hpp"
 
 namespace cluxel::mapping {
 
-inline constexpr int kCellsPerTile = 64;
-inline constexpr double kWayCell_m = perception::kTileSize_m / kCellsPerTile;
-inline constexpr std::uint32_t kCellsOfTile = kCellsPerTile * kCellsPerTile;
+inline constexpr int kCellsPerTile = perception::kEvenCellsPerTile;
+inline constexpr double kWayCell_m = perception::kEvenCell_m;
+inline constexpr std::uint32_t kCellsOfTile = perception::kEvenCellsOfTile;
 inline constexpr std::uint32_t kNoCell = 0xffffffffU;
 
 /// Numbers the cells tile by tile, and row by row in a tile. The order of two cells does not depend on other tiles.

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "mapping/ways/cell_line.hpp"
-#include "mapping/ways/even_ground.hpp"
 #include "mapping/ways/kerbs.hpp"
 #include "mapping/ways/skeleton.hpp"
 #include "mapping/ways/way_network.hpp"
@@ -144,10 +143,9 @@ std::vector<std::uint32_t> addRegions(const GroundCells& ground, WayGraph& graph
 
 }  // namespace
 
-WayGraph waysOf(const std::map<perception::TileKey, perception::TilePoints>& points,
-                const std::map<perception::TileKey, perception::GroundTile>& ground_tiles) {
+WayGraph waysOf(std::vector<perception::TileKey> keys, const EvenTileSource& tileAt) {
   WayGraph graph;
-  const GroundCells ground = groundCellsOf(points, ground_tiles);
+  const GroundCells ground = groundCellsOf(std::move(keys), tileAt);
   const TileCells& cells = ground.cells;
   graph.kerbs = kerbsOf(ground);
   const std::vector<std::uint32_t> region_of = addRegions(ground, graph);

@@ -4,11 +4,9 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <map>
 #include <vector>
 
-#include "perception/clustering/tile_points.hpp"
-#include "perception/features/ground_tile.hpp"
+#include "mapping/ways/even_ground.hpp"
 
 namespace cluxel::mapping {
 
@@ -58,8 +56,7 @@ inline constexpr double kLeastKerb_m = 2;    ///< shorter steps are no kerbs
 inline constexpr double kKerbSeen_m = 0.08;  ///< beside a way: the edge of a lawn is lower
 inline constexpr double kKerbHigh_m = 0.25;  ///< what is higher is no kerb
 
-/// From the outputs of two stages. Cost: about 40 ns a point, and 4 ms a tile.
-WayGraph waysOf(const std::map<perception::TileKey, perception::TilePoints>& points,
-                const std::map<perception::TileKey, perception::GroundTile>& ground);
+/// `keys`: of all tiles, ascending. Cost: about 3 ms a tile.
+WayGraph waysOf(std::vector<perception::TileKey> keys, const EvenTileSource& tileAt);
 
 }  // namespace cluxel::mapping

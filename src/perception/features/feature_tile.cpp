@@ -74,13 +74,6 @@ FeatureLayout featureLayout(const FeatureParams& params) {
   return layout;
 }
 
-void putCluxels(const CluxelTile& cluxels, FeatureTile& tile) {
-  for (const auto& moments : cluxels.own) {
-    tile.center.push_back(moments.mean);
-    tile.point_count.push_back(static_cast<std::uint32_t>(moments.count));
-  }
-}
-
 FeatureTile computeFeatures(const Ring<CluxelTile>& cluxels, const Ring<GroundTile>& ground,
                             const FeatureParams& params) {
   const CluxelTile& own = *cluxels[kRingCentre];
@@ -90,7 +83,10 @@ FeatureTile computeFeatures(const Ring<CluxelTile>& cluxels, const Ring<GroundTi
   const FeatureInput input{cluxels, ground, gathered, graph, ball};
   FeatureTile tile;
   tile.key = own.key;
-  putCluxels(own, tile);
+  for (const auto& moments : own.own) {
+    tile.center.push_back(moments.mean);
+    tile.point_count.push_back(static_cast<std::uint32_t>(moments.count));
+  }
   FeatureRows rows(own.size(), featureLayout(params).columns.size());
   std::size_t column = supportColumns(params).size();
   fillSupportFeatures(input, params, 0, rows);

@@ -58,10 +58,10 @@ struct FeatureTile {
   std::vector<std::uint32_t> edge_row_offset;  ///< size() + 1: how many rows of edge features come before each cluxel's
   std::vector<float> edge_features;  ///< a row of edge columns for each edge that hasRow(), in the order of edges
 
-  std::size_t size() const { return center.size(); }
-  /// False for a tile that was read: rows are not stored. Only labelling needs them.
+  std::size_t size() const { return edge_offset.empty() ? 0 : edge_offset.size() - 1; }
+  /// False for a tile that was read: of it only the graph is stored. Only labelling needs the rest.
   bool hasRows() const { return size() == 0 || !features.empty(); }
-  void dropRows() { features = {}, edge_features = {}; }
+  void dropRows() { center = {}, point_count = {}, features = {}, edge_features = {}; }
   /// Edge features are symmetric: an edge between own cluxels has its row at the end with the smaller number, an edge
   /// to another tile has a row in either tile.
   static bool hasRow(std::uint32_t cluxel, RingIndex target) {
@@ -76,14 +76,11 @@ FeatureLayout featureLayout(const FeatureParams& params);
 FeatureTile computeFeatures(const Ring<CluxelTile>& cluxels, const Ring<GroundTile>& ground,
                             const FeatureParams& params);
 
-/// Sets centres and numbers of points.
-void putCluxels(const CluxelTile& cluxels, FeatureTile& tile);
-
 /// Stores the graph.
 std::string toBytes(const FeatureTile& tile);
-/// The graph without rows, and what follows from `cluxels`, those of the tile. Throws Error (StoreUnavailable) when the
-/// bytes are damaged, of another kind or of other cluxels.
-FeatureTile featureTileFromBytes(std::string_view bytes, const CluxelTile& cluxels);
+/// The graph without rows, of so many cluxels. Throws Error (StoreUnavailable) when the bytes are damaged, of another
+/// kind or of another number of cluxels.
+FeatureTile featureTileFromBytes(std::string_view bytes, std::size_t cluxel_count);
 
 /// Output of the labelling stage, per cluxel of the tile.
 struct LabelTile {

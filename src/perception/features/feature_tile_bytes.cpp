@@ -122,7 +122,7 @@ std::string toBytes(const FeatureTile& tile) {
   return writer.take();
 }
 
-FeatureTile featureTileFromBytes(std::string_view bytes, const CluxelTile& cluxels) {
+FeatureTile featureTileFromBytes(std::string_view bytes, std::size_t cluxel_count) {
   TileReader reader(bytes, "FEAT", 3);
   FeatureTile tile;
   tile.key = reader.key();
@@ -130,11 +130,10 @@ FeatureTile featureTileFromBytes(std::string_view bytes, const CluxelTile& cluxe
   edges.count = reader.getMany<std::uint32_t>();
   edges.ring = reader.getMany<std::uint8_t>();
   edges.step = reader.getMany<std::uint32_t>(edges.ring.size());
-  reader.require(edges.count.size() == cluxels.size(), "is of other cluxels");
+  reader.require(edges.count.size() == cluxel_count, "is of other cluxels");
   reader.require(toTargets(edges), "has an edge that leads nowhere");
   reader.finish();
   putEdges(edges, tile);
-  putCluxels(cluxels, tile);
   tile.edge_row_offset = edgeRowOffsets(tile);
   return tile;
 }

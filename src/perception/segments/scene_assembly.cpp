@@ -33,21 +33,20 @@ std::array<std::size_t, 9> sizesAround(const Tiles& tiles, const TileKey& key) {
   return sizes;
 }
 
-void checkLengths(const TileOutputs& tiles, const TileKey& key, const CluxelTile& cluxels) {
-  const bool all = tiles.points.contains(key) && tiles.features.contains(key) && tiles.ground.contains(key) &&
-                   tiles.labels.contains(key) && tiles.components.contains(key) && tiles.contacts.contains(key);
+void checkLengths(const TileOutputs& tiles, const TileKey& key, const SummaryTile& summary) {
+  const bool all = tiles.features.contains(key) && tiles.ground.contains(key) && tiles.labels.contains(key) &&
+                   tiles.components.contains(key) && tiles.contacts.contains(key);
   require(all, key, "a block is missing");
-  require(cluxels.point_cluxel.size() == tiles.points.at(key).size(), key, "its cluxels are of other points");
-  require(tiles.features.at(key).size() == cluxels.size(), key, "its features are of other cluxels");
-  require(tiles.labels.at(key).label.size() == cluxels.size(), key, "its labels are of other cluxels");
-  require(tiles.components.at(key).component_of.size() == cluxels.size(), key, "its components are of other cluxels");
+  require(tiles.features.at(key).size() == summary.size(), key, "its features are of other cluxels");
+  require(tiles.labels.at(key).label.size() == summary.size(), key, "its labels are of other cluxels");
+  require(tiles.components.at(key).component_of.size() == summary.size(), key, "its components are of other cluxels");
 }
 
 /// Checks that the outputs of each tile and its neighbours are consistent with each other.
 void checkFit(const TileOutputs& tiles) {
-  for (const auto& [key, cluxels] : tiles.cluxels) {
-    checkLengths(tiles, key, cluxels);
-    const auto ring_cluxels = sizesAround(tiles.cluxels, key), ring_components = sizesAround(tiles.components, key);
+  for (const auto& [key, summary] : tiles.summaries) {
+    checkLengths(tiles, key, summary);
+    const auto ring_cluxels = sizesAround(tiles.summaries, key), ring_components = sizesAround(tiles.components, key);
     const auto& edges = tiles.features.at(key).edge_target;
     require(
         std::all_of(edges.begin(), edges.end(), [&](const RingIndex& to) { return to.index < ring_cluxels[to.ring]; }),
@@ -59,7 +58,7 @@ void checkFit(const TileOutputs& tiles) {
     require(std::all_of(contacts.begin(), contacts.end(), is_there), key,
             "a contact is with a component that is not there");
   }
-  require(tiles.components.size() == tiles.cluxels.size() && tiles.contacts.size() == tiles.cluxels.size(), {},
+  require(tiles.components.size() == tiles.summaries.size() && tiles.contacts.size() == tiles.summaries.size(), {},
           "a block has no tile");
 }
 
@@ -105,7 +104,7 @@ void appendEdges(const TileOutputs& tiles, const TileKey& key, const TileNumberi
   const FeatureTile& graph = tiles.features.at(key);
   const auto ring = ringOf(key);
   std::array<std::uint32_t, 9> base{};
-  for (std::size_t r = 0; r < base.size(); ++r) base[r] = tiles.cluxels.contains(ring[r]) ? numbering.of(ring[r]) : 0;
+  for (std::size_t r = 0; r < base.size(); ++r) base[r] = tiles.summaries.contains(ring[r]) ? numbering.of(ring[r]) : 0;
   const auto first = static_cast<std::uint32_t>(all.edge_target.size());
   appendEach(all.edge_target, graph.edge_target.size(),
              [&](auto e) { return base[graph.edge_target[e].ring] + graph.edge_target[e].index; });
@@ -117,31 +116,30 @@ void appendEdges(const TileOutputs& tiles, const TileKey& key, const TileNumberi
   }
 }
 
-void appendSeeds(const CluxelTile& cluxels, const TilePoints& points, SceneSeeds& all) {
+void appendSeeds(const SummaryTile& cluxels, SceneSeeds& all) {
   std::vector<std::uint32_t> scan_number;  // the scene's number of each of the tile's scans
-  for (const ContentHash& scan : points.scans)
+  for (const ContentHash& scan : cluxels.scans)
     scan_number.push_back(
         static_cast<std::uint32_t>(std::lower_bound(all.scans.begin(), all.scans.end(), scan) - all.scans.begin()));
   appendEach(all.seed, cluxels.size(), [&](auto c) {
-    const std::uint32_t seed = cluxels.seed[c];
-    return SeedName{scan_number[points.scan[seed]], points.point[seed]};
+    return SeedName{scan_number[cluxels.seed_scan[c]], cluxels.seed_point[c]};
   });
 }
 
 void appendCluxels(const TileOutputs& tiles, const TileKey& key, const TileNumbering& numbering, SceneCluxels& all) {
-  const CluxelTile& cluxels = tiles.cluxels.at(key);
+  const SummaryTile& cluxels = tiles.summaries.at(key);
   const LabelTile& labels = tiles.labels.at(key);
   const auto ground = ringIn(tiles.ground, key);
   const Eigen::Vector3d corner = cornerOf(key);
   const std::size_t count = cluxels.size();
-  const auto centre = [&](auto c) -> const Eigen::Vector3f& { return cluxels.own[c].mean; };
+  const auto centre = [&](auto c) -> const Eigen::Vector3f& { return cluxels.mean[c]; };
   appendEach(all.name, count, [&](auto c) { return CluxelName{key, c}; });
-  appendSeeds(cluxels, tiles.points.at(key), all);
+  appendSeeds(cluxels, all);
   appendEach(all.center, count, [&](auto c) -> Eigen::Vector3d { return corner + centre(c).template cast<double>(); });
-  appendEach(all.extent, count, [&](auto c) -> Eigen::Vector3f { return cluxels.box_max[c] - cluxels.box_min[c]; });
+  appendEach(all.extent, count, [&](auto c) { return cluxels.size_m[c]; });
   appendEach(all.low_corner, count,
              [&](auto c) -> Eigen::Vector3d { return corner + cluxels.box_min[c].template cast<double>(); });
-  appendEach(all.point_count, count, [&](auto c) { return static_cast<std::uint32_t>(cluxels.own[c].count); });
+  appendEach(all.point_count, count, [&](auto c) { return cluxels.point_count[c]; });
   appendEach(all.label, count, [&](auto c) { return static_cast<scan::PrimitiveLabel>(labels.label[c]); });
   appendEach(all.probability, count, [&](auto c) { return labels.probability[c]; });
   appendEach(all.height_above_ground, count, [&](auto c) {
@@ -152,7 +150,7 @@ void appendCluxels(const TileOutputs& tiles, const TileKey& key, const TileNumbe
 
 std::vector<ContentHash> scansOf(const TileOutputs& tiles) {
   std::set<ContentHash> scans;
-  for (const auto& [key, points] : tiles.points) scans.insert(points.scans.begin(), points.scans.end());
+  for (const auto& [key, tile] : tiles.summaries) scans.insert(tile.scans.begin(), tile.scans.end());
   return {scans.begin(), scans.end()};
 }
 
@@ -165,14 +163,14 @@ void reserve(SceneCluxels& all, std::size_t cluxels, std::size_t edges) {
 }
 
 SceneCluxels gatherCluxels(const TileOutputs& tiles) {
-  const TileNumbering numbering(tiles.cluxels);
+  const TileNumbering numbering(tiles.summaries);
   SceneCluxels all;
   std::size_t edges = 0;
   for (const auto& [key, tile] : tiles.features) edges += tile.edge_target.size();
   reserve(all, numbering.total(), edges);
   all.scans = scansOf(tiles);
   all.edge_offset.push_back(0);
-  for (const auto& [key, tile] : tiles.cluxels) appendCluxels(tiles, key, numbering, all);
+  for (const auto& [key, tile] : tiles.summaries) appendCluxels(tiles, key, numbering, all);
   return all;
 }
 
@@ -284,7 +282,7 @@ SceneSeeds seedsOf(const TileOutputs& tiles) {
   checkFit(tiles);
   SceneSeeds seeds;
   seeds.scans = scansOf(tiles);
-  for (const auto& [key, tile] : tiles.cluxels) appendSeeds(tile, tiles.points.at(key), seeds);
+  for (const auto& [key, tile] : tiles.summaries) appendSeeds(tile, seeds);
   return seeds;
 }
 

@@ -4,10 +4,12 @@
 
 #include <map>
 
+#include "perception/features/even_tile.hpp"
 #include "perception/features/feature_tile.hpp"
 #include "perception/segments/component_tile.hpp"
 #include "perception/segments/contact_tile.hpp"
 #include "perception/segments/scene.hpp"
+#include "perception/segments/summary_tile.hpp"
 
 namespace cluxel::perception {
 
@@ -27,15 +29,18 @@ void describe(RelationParams& params, ParameterVisitor& visitor);
 struct TileOutputs {
   std::map<TileKey, TilePoints> points;
   std::map<TileKey, CluxelTile> cluxels;
+  std::map<TileKey, SummaryTile> summaries;
   std::map<TileKey, GroundTile> ground;
+  std::map<TileKey, EvenTile> even;
   std::map<TileKey, FeatureTile> features;
   std::map<TileKey, LabelTile> labels;
   std::map<TileKey, ComponentTile> components;
   std::map<TileKey, ContactTile> contacts;
 };
 
-/// The scene of all tiles. All maps must have the same keys. `views`: of the scans whose sensor's place is known, in
-/// any order. Throws Error (StoreUnavailable) when outputs do not belong together. Cost: about 1 microsecond a cluxel.
+/// The scene of all tiles, from their summaries and what is computed of them; points, cluxels and even ground are not
+/// read. The other maps must have the same keys. `views`: of the scans whose sensor's place is known, in any order.
+/// Throws Error (StoreUnavailable) when outputs do not belong together. Cost: about 1 microsecond a cluxel.
 Scene assembleScene(const TileOutputs& tiles, const RelationParams& params, std::vector<SceneView> views = {});
 /// The seeds of its cluxels alone, with the same errors. Cost: about 50 ns a cluxel.
 SceneSeeds seedsOf(const TileOutputs& tiles);

@@ -108,7 +108,7 @@ struct LowPoints {
 /// Visits the points of all tiles: low ones refine the ground, others become things.
 std::vector<CellThing> thingsOf(const mapping::MapReader& map, const TerrainParams& params, const TerrainGrid& grid,
                                 LowPoints& low) {
-  const mapping::TileStages& stages = map.stages();
+  const mapping::TileStages& stages = map.stagesWithPoints();
   const std::vector<bool> is_surface = surfacesAmong(map);
   const auto object_of = mapping::objectOfCluxel({map.objects(), {}}, map.scene().cluxels.size());
   std::vector<CellThing> found;
