@@ -34,6 +34,8 @@ double processorSeconds() {
 class Stopwatch final : public perception::StageObserver {
  public:
   void finished(perception::Stage stage, double cpu_s) override {
+    for (auto& [name, seconds] : times_)
+      if (name == nameOf(stage)) return void(seconds += cpu_s);
     times_.push_back({std::string(nameOf(stage)), cpu_s});
   }
   template <typename Work>

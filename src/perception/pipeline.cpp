@@ -6,6 +6,7 @@
 #include <array>
 #include <ctime>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -32,14 +33,12 @@ class Run {
       : params_(params), out_(outputs), options_(options) {}
 
   void toFeatures(TileSegments segments) {
-    thin(std::move(segments));  // bounds the points where scans pile up
-    cluster();                  // points to cluxels (paper 3.1)
-    findGround();               // lowest layers of cell stacks to a surface
-    computeFeatures();          // cluxels and their 2-ring to HOR and other features (paper 3.1)
+    toGround(std::move(segments));
+    update(Stage::Features, out_.features, dirtyFeatures(), [&](const TileKey& key) { return featuresOf(key); });
   }
-  void toContacts(const TileLabeller& labeller, const SceneParams& params) {
-    label(labeller, params.labelling);  // features to primitive labels, by the CRF (paper 3.1)
-    if (options_.store != nullptr) dropRowsAndVolumes();
+  void toContacts(TileSegments segments, const TileLabeller& labeller, const SceneParams& params) {
+    toGround(std::move(segments));
+    label(labeller, params.labelling);          // features to primitive labels, by the CRF (paper 3.1)
     summarise();                                // what the scene reads of points and cluxels
     if (options_.store != nullptr) findEven();  // what ways read of points and ground
     joinComponents(params.component);           // intersecting cluxels of one label to components
@@ -48,6 +47,12 @@ class Run {
   const TileSet& changed() const { return changed_; }
 
  private:
+  void toGround(TileSegments segments) {
+    thin(std::move(segments));  // bounds the points where scans pile up
+    cluster();                  // points to cluxels (paper 3.1)
+    findGround();               // lowest layers of cell stacks to a surface
+  }
+
   void thin(TileSegments segments) {
     TileSet grown;
     for (const auto& [key, parts] : segments) {
@@ -91,16 +96,44 @@ class Run {
                              [&](const TileKey& key) { return groundOf(ringIn(out_.cluxels, key), params_.ground); });
   }
 
-  void computeFeatures() {
-    const TileSet dirty = around(unionOf(changed_cluxels_, changed_ground_));
-    changed_features_ = update(Stage::Features, out_.features, dirty, [&](const TileKey& key) {
-      return perception::computeFeatures(ringIn(out_.cluxels, key), ringIn(out_.ground, key), params_.features);
-    });
+  TileSet dirtyFeatures() const { return around(unionOf(changed_cluxels_, changed_ground_)); }
+
+  /// Cluxels and their 2-ring to HOR and other features (paper 3.1).
+  FeatureTile featuresOf(const TileKey& key) const {
+    return computeFeatures(ringIn(out_.cluxels, key), ringIn(out_.ground, key), params_.features);
   }
 
+  /// Features and labels, in waves along x: rows of features take more memory than all else, and only the labels of
+  /// the tile and of its ring read them.
   void label(const TileLabeller& labeller, const LabellingParams& params) {
-    changed_labels_ = update(Stage::Labels, out_.labels, around(changed_features_),
-                             [&](const TileKey& key) { return labeller.label(ringIn(out_.features, key), params); });
+    const std::vector<TileKey> features = completed(dirtyFeatures());
+    const std::vector<TileKey> candidates = completed(around({features.begin(), features.end()}));
+    changed_features_ = changed_labels_ = emptied_;
+    eraseEmptied(Stage::Features, out_.features), eraseEmptied(Stage::Labels, out_.labels);
+    std::size_t done = 0, seen = 0;
+    while (done < features.size() || seen < candidates.size()) {
+      const std::size_t first = done;
+      while (done < features.size() && (done < first + kChunk || features[done].x == features[done - 1].x)) ++done;
+      changed_features_.merge(compute(Stage::Features, out_.features, features, first, done,
+                                      [&](const TileKey& key) { return featuresOf(key); }));
+      // Tiles up to this column have their features.
+      const std::int32_t column =
+          done < features.size() ? features[done].x - 1 : std::numeric_limits<std::int32_t>::max();
+      std::vector<TileKey> dirty;
+      for (; seen < candidates.size() && candidates[seen].x < column; ++seen)
+        if (readsChangedFeatures(candidates[seen])) dirty.push_back(candidates[seen]);
+      changed_labels_.merge(compute(Stage::Labels, out_.labels, dirty, 0, dirty.size(), [&](const TileKey& key) {
+        return labeller.label(ringIn(out_.features, key), params);
+      }));
+      if (options_.store != nullptr) dropRowsBefore(column - 1);
+    }
+    if (options_.store != nullptr) dropVolumesOfAll();
+  }
+
+  bool readsChangedFeatures(const TileKey& key) const {
+    if (options_.compute_all || forgotten_.contains(key)) return true;
+    const auto ring = ringOf(key);
+    return std::any_of(ring.begin(), ring.end(), [&](const TileKey& near) { return changed_features_.contains(near); });
   }
 
   void summarise() {
@@ -167,37 +200,53 @@ class Run {
       if (!out_.features.at(key).hasRows()) without.insert(key);
     addVolumesOf(around(without));
     const std::vector<TileKey> each(without.begin(), without.end());
-    parallelFor(each.size(), options_.threads, [&](std::size_t i) {
-      out_.features.at(each[i]) =
-          perception::computeFeatures(ringIn(out_.cluxels, each[i]), ringIn(out_.ground, each[i]), params_.features);
-    });
+    parallelFor(each.size(), options_.threads, [&](std::size_t i) { out_.features.at(each[i]) = featuresOf(each[i]); });
   }
 
   /// They are not stored; later runs compute them again where they need them.
-  void dropRowsAndVolumes() {
-    for (auto& [key, tile] : out_.features) tile.dropRows();
+  void dropRowsBefore(std::int32_t column) {
+    for (auto& [key, tile] : out_.features)
+      if (key.x < column) tile.dropRows();
+  }
+  void dropVolumesOfAll() {
     for (auto& [key, tile] : out_.cluxels) dropVolumes(tile);
+  }
+
+  /// The tiles that a stage computes when its inputs changed in `dirty`, ascending.
+  std::vector<TileKey> completed(TileSet dirty) const {
+    if (options_.compute_all) dirty.insert(changed_points_.begin(), changed_points_.end());
+    dirty.insert(forgotten_.begin(), forgotten_.end());
+    std::vector<TileKey> keys;
+    std::set_difference(dirty.begin(), dirty.end(), emptied_.begin(), emptied_.end(), std::back_inserter(keys));
+    return keys;
   }
 
   /// Computes the `dirty` tiles of one stage; returns those whose output differs from the stored one.
   template <typename Tile, typename Compute>
-  TileSet update(Stage stage, std::map<TileKey, Tile>& tiles, TileSet dirty, const Compute& compute) {
-    const double start_s = processorSeconds();
-    if (options_.compute_all) dirty = unionOf(std::move(dirty), changed_points_);
-    dirty.insert(forgotten_.begin(), forgotten_.end());
-    std::vector<TileKey> keys;
-    std::set_difference(dirty.begin(), dirty.end(), emptied_.begin(), emptied_.end(), std::back_inserter(keys));
-    constexpr std::size_t kChunk = 64;  // bounds the bytes that wait for the store
-    TileSet changed = emptied_;
+  TileSet update(Stage stage, std::map<TileKey, Tile>& tiles, TileSet dirty, const Compute& compute_tile) {
+    const std::vector<TileKey> keys = completed(std::move(dirty));
     eraseEmptied(stage, tiles);
-    prepare(tiles, {keys.begin(), keys.end()});
-    for (std::size_t first = 0; first < keys.size(); first += kChunk) {
-      const auto chunk = std::span(keys).subspan(first, std::min(kChunk, keys.size() - first));
-      changed.merge(updateChunk(stage, tiles, chunk, compute));
+    TileSet changed = compute(stage, tiles, keys, 0, keys.size(), compute_tile);
+    changed.insert(emptied_.begin(), emptied_.end());
+    return changed;
+  }
+
+  /// Computes the keys from `first` to `last` of those that the stage has to compute.
+  template <typename Tile, typename Compute>
+  TileSet compute(Stage stage, std::map<TileKey, Tile>& tiles, std::span<const TileKey> keys, std::size_t first,
+                  std::size_t last, const Compute& compute_tile) {
+    const double start_s = processorSeconds();
+    TileSet changed;
+    prepare(tiles,
+            {keys.begin() + static_cast<std::ptrdiff_t>(first), keys.begin() + static_cast<std::ptrdiff_t>(last)});
+    for (; first < last; first += std::min(kChunk, last - first)) {
+      const auto chunk = keys.subspan(first, std::min(kChunk, last - first));
+      changed.merge(updateChunk(stage, tiles, chunk, compute_tile));
       if (options_.observer != nullptr) options_.observer->progress(stage, first + chunk.size(), keys.size());
     }
     if (options_.observer != nullptr) options_.observer->finished(stage, processorSeconds() - start_s);
     changed_.insert(changed.begin(), changed.end());
+    changed_.insert(emptied_.begin(), emptied_.end());
     return changed;
   }
 
@@ -225,6 +274,8 @@ class Run {
     }
     return changed;
   }
+
+  static constexpr std::size_t kChunk = 32;  ///< tiles; bounds the bytes that wait for the store
 
   const PerceptionParams& params_;
   TileOutputs& out_;
@@ -254,8 +305,7 @@ TileSegments segmentsOf(std::span<const scan::Scan> scans) {
 TileSet runStages(TileSegments segments, const TileLabeller& labeller, const SceneParams& params, TileOutputs& outputs,
                   const RunOptions& options) {
   Run run(labeller.model().perception, outputs, options);
-  run.toFeatures(std::move(segments));
-  run.toContacts(labeller, params);
+  run.toContacts(std::move(segments), labeller, params);
   return run.changed();
 }
 

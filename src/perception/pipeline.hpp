@@ -57,7 +57,7 @@ class StageObserver {
  public:
   virtual ~StageObserver() = default;
   virtual void progress(Stage /*stage*/, std::size_t /*done*/, std::size_t /*total*/) {}
-  /// `cpu_s` is the processor time of the stage, all threads together.
+  /// `cpu_s` is the processor time of the stage since the last call, all threads together.
   virtual void finished(Stage /*stage*/, double /*cpu_s*/) {}
 };
 

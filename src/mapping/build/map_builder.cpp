@@ -5,6 +5,7 @@
 #include <chrono>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
@@ -89,7 +90,7 @@ class MapBuild {
     rdf::WriteTransaction transaction = work_.environment().write();
     requireOwn(transaction);
     PointChanges changes;
-    std::uint64_t batch_points = 0;
+    std::uint64_t batch_points = 0, part_points = 0;
     std::size_t next = first;
     for (; next < scans_.size() && batch_points < params_.batch_points; ++next) {
       const scan::LoadedScan loaded = scans_.read(next);
@@ -97,11 +98,16 @@ class MapBuild {
       for (const std::string& note : reading_notes_.add(loaded.reading)) sink_.note(note);
       auto segments = storeScan(transaction, scan);
       report_.scans_already_there += segments.empty() ? 1 : 0;
-      batch_points += segments.empty() ? 0 : scan.points.size();
+      const std::uint64_t added = segments.empty() ? 0 : scan.points.size();
+      batch_points += added, part_points += added;
       changes.add(std::move(segments));
       clock.progress("scans", next + 1, scans_.size());
+      if (part_points < kStagePoints) continue;
+      stages_.update(transaction, std::exchange(changes, {}), params_.threads, clock);
+      stages_.dropAll();
+      part_points = 0;
     }
-    if (!changes.empty() || next == scans_.size())
+    if (batch_points > 0 || next == scans_.size())
       commitBatch(transaction, std::move(changes), next == scans_.size(), started_s, clock);
     return next;
   }

@@ -13,6 +13,9 @@
 
 namespace cluxel::mapping {
 
+/// Batches with more points go through the stages in parts: their memory follows this number, not the batch.
+inline constexpr std::uint64_t kStagePoints = 6'000'000;
+
 /// `model` and `params` must outlive it.
 class TileStages {
  public:
@@ -32,6 +35,8 @@ class TileStages {
   void loadPoints(const rdf::ReadTransaction& transaction);
   /// Gives the memory of points and cluxels back.
   void dropPoints();
+  /// The same for all outputs; they are read again when they are needed.
+  void dropAll() { outputs_ = {}; }
   /// The scene of what is loaded, seen from the clouds of the map.
   perception::Scene scene(const std::vector<Cloud>& clouds) const {
     return assembleScene(outputs_, params_.relation, viewsOf(clouds));

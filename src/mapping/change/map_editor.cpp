@@ -88,16 +88,20 @@ rdf::WriteTransaction MapEditor::begin() {
   return transaction;
 }
 
+void MapEditor::update(rdf::WriteTransaction& transaction, PointChanges changes, ProgressSink& sink) {
+  if (!stages_) stages_.emplace(parsed_.model, parsed_.inputs.params);
+  touched_ = unionOf(std::move(touched_), changes.tiles());
+  const TileSet changed = all_tiles_ ? stages_->updateAll(transaction, std::move(changes), params_.threads, sink)
+                                     : stages_->update(transaction, std::move(changes), params_.threads, sink);
+  changed_.insert(changed.begin(), changed.end());
+  all_tiles_ = false;
+}
+
 void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& operation, PointChanges changes,
                        const std::vector<Cloud>& scans) {
   const double started_s = secondsNow();
   StageClock clock(sink_);
-  if (!stages_) stages_.emplace(parsed_.model, parsed_.inputs.params);
-  touched_ = unionOf(std::move(touched_), changes.tiles());
-  const TileSet changed = all_tiles_ ? stages_->updateAll(transaction, std::move(changes), params_.threads, clock)
-                                     : stages_->update(transaction, std::move(changes), params_.threads, clock);
-  changed_.insert(changed.begin(), changed.end());
-  all_tiles_ = false;
+  update(transaction, std::move(changes), clock);
   stages_->load(transaction);
   const SemanticLayer layer = writeSemanticLayer(transaction, parsed_, *stages_, params_.threads, clock);
   inputs_hash_ = parsed_.inputs.hash().hex();

@@ -48,6 +48,8 @@ class MapEditor {
   void setInputs(ParsedInputs inputs);
 
   rdf::WriteTransaction begin();
+  /// Brings the stages up to date after points changed, so that these can be given in several parts before commit().
+  void update(rdf::WriteTransaction& transaction, PointChanges changes, ProgressSink& sink);
   /// Brings all layers up to date after points changed, and commits unless this is a dry run. `operation` names the
   /// change in the history ("extend"), and `scans` those it was about.
   void commit(rdf::WriteTransaction& transaction, const std::string& operation, PointChanges changes,

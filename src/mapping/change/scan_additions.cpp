@@ -2,6 +2,8 @@
 // A batch is open from its first scan to its commit.
 #include "mapping/change/scan_additions.hpp"
 
+#include <utility>
+
 namespace cluxel::mapping {
 
 void ScanAdditions::add(const scan::Scan& scan) {
@@ -15,9 +17,12 @@ void ScanAdditions::add(const scan::Scan& scan) {
     return;
   }
   added_.push_back(*storedCloud(*transaction_, scan.id));
-  points_ += scan.points.size();
+  points_ += scan.points.size(), part_points_ += scan.points.size();
   changes_.add(std::move(segments));
-  if (!editor_.params().dry_run && points_ >= editor_.params().batch_points) finish();
+  if (!editor_.params().dry_run && points_ >= editor_.params().batch_points) return finish();
+  if (part_points_ < kStagePoints) return;
+  editor_.update(*transaction_, std::exchange(changes_, {}), editor_.sink());
+  part_points_ = 0;
 }
 
 rdf::WriteTransaction& ScanAdditions::transaction() {
@@ -32,7 +37,7 @@ void ScanAdditions::finish() {
   transaction_.reset();
   changes_ = {};
   added_.clear();
-  points_ = 0;
+  points_ = part_points_ = 0;
   has_other_changes_ = false;
 }
 

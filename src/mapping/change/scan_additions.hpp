@@ -29,7 +29,7 @@ class ScanAdditions {
   std::optional<rdf::WriteTransaction> transaction_;  ///< of the open batch
   PointChanges changes_;
   std::vector<Cloud> added_;
-  std::uint64_t points_ = 0;
+  std::uint64_t points_ = 0, part_points_ = 0;  ///< of the batch, and since the last update of the stages
   bool has_other_changes_ = false;
 };
 

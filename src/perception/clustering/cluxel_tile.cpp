@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 
+#include "base/free_memory.hpp"
 #include "perception/clustering/cluxel_volumes.hpp"
 #include "perception/clustering/point_grid.hpp"
 #include "perception/moments.hpp"
@@ -154,9 +155,7 @@ void addVolumes(const Ring<TilePoints>& ring, const ClusterParams& params, Cluxe
 }
 
 void dropVolumes(CluxelTile& tile) {
-  for (auto* corners : {&tile.volume_min, &tile.volume_max}) *corners = {};
-  tile.ball = {};
-  tile.reach = {};
+  freeMemory(tile.volume_min, tile.volume_max, tile.ball, tile.reach);
 }
 
 }  // namespace cluxel::perception

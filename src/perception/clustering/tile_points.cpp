@@ -192,6 +192,10 @@ std::map<TileKey, ScanSegment> splitScan(const scan::Scan& scan) {
     segment->point.push_back(static_cast<std::uint32_t>(i));
     segment->rank.push_back(rankOf(points, i));
   }
+  for (auto& [key, grown] : segments) {  // many scans wait for the first stage
+    for (auto* values : {&grown.x, &grown.y, &grown.z, &grown.intensity}) values->shrink_to_fit();
+    for (auto* values : {&grown.point, &grown.rank}) values->shrink_to_fit();
+  }
   return segments;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/content_hash.hpp"
+#include "base/free_memory.hpp"
 #include "perception/clustering/cluxel_tile.hpp"
 #include "perception/features/ground_tile.hpp"
 #include "perception/tile.hpp"
@@ -61,7 +62,7 @@ struct FeatureTile {
   std::size_t size() const { return edge_offset.empty() ? 0 : edge_offset.size() - 1; }
   /// False for a tile that was read: of it only the graph is stored. Only labelling needs the rest.
   bool hasRows() const { return size() == 0 || !features.empty(); }
-  void dropRows() { center = {}, point_count = {}, features = {}, edge_features = {}; }
+  void dropRows() { freeMemory(center, point_count, features, edge_features); }
   /// Edge features are symmetric: an edge between own cluxels has its row at the end with the smaller number, an edge
   /// to another tile has a row in either tile.
   static bool hasRow(std::uint32_t cluxel, RingIndex target) {
