@@ -100,7 +100,7 @@ TEST(StoredForms, OfEarlierVersionsAreRefusedInPlainWordsAndTheRdfIsStillRead) {
   EXPECT_THAT(errorOf(retract), HasSubstr("another version of cluxel"));
   const std::string tile = tables::keyOf(*storedTiles(environment->read()).begin());
   replace(tables::kPoints, tile, std::string("PNTS\2\0\0\0", 8) + std::string(40, '\0'));
-  EXPECT_THAT(errorOf([&] { MapReader(map).scene(); }), HasSubstr("PNTS is of another version of cluxel"));
+  EXPECT_THAT(errorOf([&] { MapReader(map).stagesWithPoints(); }), HasSubstr("PNTS is of another version of cluxel"));
   EXPECT_TRUE(canonicalText(map) == facts);
   EXPECT_GT(MapReader(map).summary().objects, 0U);
 }
@@ -113,7 +113,7 @@ TEST(StoredTiles, ThatNameAScanWhichIsNotThereAreRefused) {
   WriteTransaction transaction = Environment::open(map, OpenMode::ReadWrite)->write();
   removeScan(transaction, storedClouds(transaction).at(0).id);
   transaction.commit();
-  EXPECT_THAT(errorOf([&] { MapReader(map).scene(); }), HasSubstr("which is not there; the map is damaged"));
+  EXPECT_THAT(errorOf([&] { MapReader(map).stagesWithPoints(); }), HasSubstr("which is not there; the map is damaged"));
 }
 
 TEST(StoredInputs, ThatLackASettingAreOfAnotherVersion) {

@@ -56,6 +56,35 @@ TEST_F(MapFile, ErasesBlocksAndForgetsWhatWasNotCommitted) {
   EXPECT_EQ(environment->read().block("t", "a"), "1");
 }
 
+/// Regression: a block that became smaller within a transaction made the file look damaged to the next writer.
+TEST_F(MapFile, BlocksThatChangeSeveralTimesInATransactionLeaveASoundFile) {
+  std::mt19937 random(11);
+  std::map<std::string, std::string> blocks;
+  {
+    const auto environment = create();
+    for (int commit = 0; commit < 3; ++commit) {
+      WriteTransaction transaction = environment->write();
+      for (int i = 0; i < 400; ++i) {
+        const std::string key = "block" + std::to_string(random() % 40);
+        if (random() % 8 == 0) {
+          EXPECT_EQ(transaction.eraseBlock("t", key), blocks.erase(key) == 1);
+          continue;
+        }
+        const std::size_t size = random() % 3 == 0 ? random() % 200 : random() % 40'000;
+        blocks[key] = std::string(size, static_cast<char>('a' + i % 26));
+        transaction.putBlock("t", key, blocks[key]);
+      }
+      transaction.commit();
+    }
+  }
+  const auto environment = open(OpenMode::ReadWrite);
+  EXPECT_NO_THROW(environment->write()) << "the file is checked before a write";
+  const ReadTransaction transaction = environment->read();
+  std::map<std::string, std::string> found;
+  transaction.forEachBlock("t", "", [&](std::string_view key, std::string_view bytes) { found.emplace(key, bytes); });
+  EXPECT_TRUE(found == blocks);
+}
+
 TEST_F(MapFile, IsOneEnvironmentHoweverOftenAndByWhateverNameItIsOpened) {
   const auto environment = create();
   fs::create_symlink(file_, folder_.path() / "link.clx");
