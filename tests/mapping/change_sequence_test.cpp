@@ -65,7 +65,7 @@ class ChangeSequence {
   fs::path map() const { return folder_.path() / "map.clx"; }
   std::size_t below(std::size_t count) { return static_cast<std::size_t>(random_() % count); }
   bool oneIn(std::size_t count) { return below(count) == 0; }
-  ChangeParams params(bool dry_run = false) const { return {threads_, batch_points_, dry_run}; }
+  ChangeParams params(bool dry_run = false) const { return {threads_, batch_points_, dry_run, stage_points_}; }
 
   ScanSet scansAt(const Places& places) {
     std::vector<MixedScans::Place> chosen(places.begin(), places.end());
@@ -113,6 +113,7 @@ class ChangeSequence {
     if (added.empty()) return;
     if (oneIn(2)) added.insert(*there_.begin());  // is passed over
     batch_points_ = oneIn(2) ? 1 : 20'000'000;
+    stage_points_ = oneIn(2) ? 1 : 20'000'000;
     changed([&](const ChangeParams& params) { return extendMap(map(), scansAt(added), params, silence()); });
     there_.insert(added.begin(), added.end());
   }
@@ -292,7 +293,7 @@ class ChangeSequence {
   std::map<std::string, std::vector<Quad>> statements_;  ///< by subject
   std::size_t rules_ = 0, stated_ = 0, applied_ = 0;
   unsigned threads_ = 1;
-  std::uint64_t batch_points_ = 20'000'000;
+  std::uint64_t batch_points_ = 20'000'000, stage_points_ = 20'000'000;
 };
 
 MapInputs replaced(MapInputs inputs, const std::string& from, const std::string& to) {

@@ -74,10 +74,12 @@ TEST_F(MapBuilder, TwentyOrdersAndBatchingsOfTheScansGiveTheSameMap) {
   Files files = campus->files();
   for (int round = 0; round < 20; ++round) {
     std::shuffle(files.begin(), files.end(), random);
-    const BuildParams params{.threads = 1U + round % 2U, .batch_points = random() % 3 == 0 ? 1U : 20'000'000U};
+    const BuildParams params{.threads = 1U + round % 2U,
+                             .batch_points = random() % 3 == 0 ? 1U : 20'000'000U,
+                             .stage_points = random() % 2 == 0 ? 1U : 20'000'000U};
     ASSERT_EQ(builtText(files, *inputs, params), *expected)
         << "round " << round << ", first " << files[0] << ", " << params.threads << " threads, batch "
-        << params.batch_points;
+        << params.batch_points << ", parts of " << params.stage_points;
   }
 }
 

@@ -56,7 +56,7 @@ class MapBuild {
         params_(params),
         sink_(sink),
         state_(work.found()),
-        stages_(parsed.model, parsed.inputs.params) {}
+        stages_(parsed.model, parsed.inputs.params, Keep::Summaries) {}
 
   BuildReport run() {
     goOn();
@@ -102,7 +102,7 @@ class MapBuild {
       batch_points += added, part_points += added;
       changes.add(std::move(segments));
       clock.progress("scans", next + 1, scans_.size());
-      if (part_points < kStagePoints) continue;
+      if (part_points < params_.stage_points) continue;
       stages_.update(transaction, std::exchange(changes, {}), params_.threads, clock);
       stages_.dropAll();
       part_points = 0;

@@ -9,6 +9,7 @@
 
 #include "cluxel/progress.hpp"
 #include "cluxel/term.hpp"
+#include "mapping/build/tile_stages.hpp"
 #include "mapping/map_inputs.hpp"
 #include "scan/scan_set.hpp"
 
@@ -16,8 +17,9 @@ namespace cluxel::mapping {
 
 struct BuildParams {
   unsigned threads = 1;
-  std::uint64_t batch_points = 20'000'000;  ///< a batch of scans is committed when it holds this many points
-  bool force = false;                       ///< replace a finished map
+  std::uint64_t batch_points = 50'000'000;    ///< a batch of scans is committed when it holds this many points
+  std::uint64_t stage_points = kStagePoints;  ///< of a batch, as many go through the stages at once
+  bool force = false;                         ///< replace a finished map
   bool refine_poses = false;  ///< register the scans first (registerPoses()); otherwise poses that do not fit are noted
   bool drop_statements = false;       ///< with `force`: drop the operator's statements of the old map
   std::vector<Quad> statements = {};  ///< of graph `operator`, added to those that are kept

@@ -188,6 +188,16 @@ void TileStages::loadPoints(const rdf::ReadTransaction& transaction) {
   OutputReader(transaction, outputs_).readPoints(storedTiles(transaction));
 }
 
+perception::Scene TileStages::takeScene(const std::vector<Cloud>& clouds) {
+  perception::Scene assembled = scene(clouds);
+  if (keep_ == Keep::Summaries) {
+    perception::TileOutputs kept;
+    kept.summaries = std::move(outputs_.summaries);
+    outputs_ = std::move(kept);
+  }
+  return assembled;
+}
+
 void TileStages::dropPoints() {
   outputs_.points.clear();
   outputs_.cluxels.clear();

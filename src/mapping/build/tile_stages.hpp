@@ -16,11 +16,14 @@ namespace cluxel::mapping {
 /// Batches with more points go through the stages in parts: their memory follows this number, not the batch.
 inline constexpr std::uint64_t kStagePoints = 6'000'000;
 
+/// What TileStages keeps in memory when the scene is assembled.
+enum class Keep : std::uint8_t { Summaries, All };
+
 /// `model` and `params` must outlive it.
 class TileStages {
  public:
-  TileStages(const perception::LabelModel& model, const MapParams& params)
-      : params_{params.labelling, params.component, params.contact, params.relation}, labeller_(model) {}
+  TileStages(const perception::LabelModel& model, const MapParams& params, Keep keep = Keep::All)
+      : params_{params.labelling, params.component, params.contact, params.relation}, labeller_(model), keep_(keep) {}
 
   /// Brings every stage up to date after scans were stored or removed. Returns the tiles of which an output changed.
   perception::TileSet update(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads,
@@ -41,6 +44,8 @@ class TileStages {
   perception::Scene scene(const std::vector<Cloud>& clouds) const {
     return assembleScene(outputs_, params_.relation, viewsOf(clouds));
   }
+  /// The same, and gives memory back.
+  perception::Scene takeScene(const std::vector<Cloud>& clouds);
   /// The seeds of the scene's cluxels.
   perception::SceneSeeds seeds() const { return seedsOf(outputs_); }
 
@@ -56,6 +61,7 @@ class TileStages {
 
   perception::SceneParams params_;
   perception::TileLabeller labeller_;
+  Keep keep_;
   perception::TileOutputs outputs_;
 };
 

@@ -20,7 +20,7 @@ void ScanAdditions::add(const scan::Scan& scan) {
   points_ += scan.points.size(), part_points_ += scan.points.size();
   changes_.add(std::move(segments));
   if (!editor_.params().dry_run && points_ >= editor_.params().batch_points) return finish();
-  if (part_points_ < kStagePoints) return;
+  if (part_points_ < editor_.params().stage_points) return;
   editor_.update(*transaction_, std::exchange(changes_, {}), editor_.sink());
   part_points_ = 0;
 }

@@ -91,7 +91,7 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
                                  unsigned threads, ProgressSink& sink, const rdf::InferenceCheck& check) {
   writeOntology(transaction, parsed.inputs);
   const std::vector<Cloud> clouds = storedClouds(transaction);
-  perception::Scene scene = stages.scene(clouds);
+  perception::Scene scene = stages.takeScene(clouds);
   const WayGraph ways = storedWays(transaction);
   sink.progress("scene", scene.primitives.size(), scene.primitives.size());
   MapOracle oracle(transaction, [&](std::span<const rules::SemanticObject> objects) {
