@@ -95,8 +95,8 @@ void WriteTransaction::putBlock(std::string_view table, std::string_view key, st
     impl_->block_keys.noteAdded(*impl_, table, full);
   else
     impl_->check(there, "write a block");
-  // LMDB writes over a value of the same transaction and leaves it the pages that a longer one had: the table would then
-  // have more pages than its values need, which a check of the file takes for damage.
+  // LMDB writes over a value of the same transaction and leaves it the pages that a longer one had: the table would
+  // then have more pages than its values need, which a check of the file takes for damage.
   if (there == MDB_SUCCESS && stored.mv_size > sizeof head + bytes.size())
     impl_->check(mdb_del(impl_->live(), impl_->table(Table::Blocks), &stored_key, nullptr), "replace a block");
   stored = {sizeof head + bytes.size(), nullptr};
