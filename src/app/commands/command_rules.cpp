@@ -13,7 +13,7 @@
 #include "mapping/facts/ask_replay.hpp"
 #include "mapping/facts/map_oracle.hpp"
 #include "mapping/facts/query_names.hpp"
-#include "mapping/facts/sparql_rules.hpp"
+#include "mapping/inference/sparql_rules.hpp"
 #include "mapping/map_inputs.hpp"
 #include "mapping/map_reader.hpp"
 #include "perception/pipeline.hpp"

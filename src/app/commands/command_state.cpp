@@ -76,13 +76,8 @@ CLI::Validator validText() {
 
 /// The ground of a map is one object: what is said of its class would hold for all of it.
 void refuseWholeClass(const mapping::MapReader& map, const rules::SemanticObject& object) {
+  if (!object.is_class_wide) return;
   const rules::RuleSet rules = mapping::parseInputs(map.inputs()).rules;
-  const rules::Rule* rule = rules.find(object.rule_id);
-  const bool is_merged = rule != nullptr && std::any_of(rule->nodes.begin(), rule->nodes.end(), [](const auto& node) {
-                           const auto* accept = std::get_if<rules::AcceptLeaf>(&node.what);
-                           return accept != nullptr && accept->merge_into == rules::MergeInto::Class;
-                         });
-  if (!is_merged) return;
   std::size_t primitives = 0;
   for (const rules::ObjectPart& part : object.parts) primitives += part.primitives.size();
   throw Error(

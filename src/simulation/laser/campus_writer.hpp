@@ -16,6 +16,11 @@ namespace cluxel::simulation {
 struct CampusSummary {
   std::size_t scans = 0, points = 0, objects = 0;  ///< objects: those with at least one point
   std::array<std::size_t, 9> objects_of_class{};   ///< the same per number in truthClassNames()
+
+  void count(const CampusObject& object) {
+    ++objects;
+    ++objects_of_class[static_cast<std::size_t>(object.class_number)];
+  }
 };
 
 /// Scans the campus from every stop and writes

@@ -54,11 +54,12 @@ std::string number(double value) {
   return text;
 }
 
+/// "a:3+b:5"
 template <typename Counts, typename NameOf>
-std::string joinCounts(const Counts& counts, const char* separator, const NameOf& nameOf) {
+std::string joinCounts(const Counts& counts, const NameOf& nameOf) {
   std::string text;
   for (const auto& [key, count] : counts) {
-    if (!text.empty()) text += separator;
+    if (!text.empty()) text += '+';
     text += nameOf(key) + ":" + std::to_string(count);
   }
   return text;
@@ -95,33 +96,39 @@ InstanceSights sightsOf(const SimulatedScan& simulated) {
   return sights;
 }
 
-std::string instanceTable(const Campus& campus, const std::vector<InstanceSights>& sights,
-                          const std::vector<std::string>& scans) {
-  InstanceSights all;
-  std::map<std::int32_t, std::map<std::size_t, std::size_t>> points_in_scan;
-  for (std::size_t scan = 0; scan < sights.size(); ++scan)
-    for (const auto& [id, sight] : sights[scan]) {
-      merge(all[id], sight);
-      points_in_scan[id][scan] = sight.points;
-    }
-  std::string table =
-      "id,object,n,cx,cy,cz,xmin,ymin,zmin,xmax,ymax,zmax,height,extent_long,extent_short,chunks,"
-      "fine_labels,ambiguous,flags\n";
-  for (const auto& [id, sight] : all) {
-    const CampusObject& object = campus.objects[static_cast<std::size_t>(id)];
-    const FootprintBox extents = smallestBox(sight.outline);
-    const std::string reasons = reasonsAgainst(object, sight, extents);
-    table += std::to_string(id) + "," +
-             snakeCase(scan::truthClassNames()[static_cast<std::size_t>(object.class_number)]) + "," +
-             std::to_string(sight.points);
-    for (const Vector3d& corner :
-         {Vector3d(sight.sum / static_cast<double>(sight.points)), sight.box.min(), sight.box.max()})
-      for (int axis = 0; axis < 3; ++axis) table += "," + number(corner[axis]);
-    table += "," + number(sight.box.sizes().z()) + "," + number(extents.length_m) + "," + number(extents.width_m) +
-             "," + joinCounts(points_in_scan[id], "+", [&scans](std::size_t scan) { return scans[scan]; }) + "," +
-             joinCounts(sight.points_of_label, "+", [](std::uint32_t label) { return std::to_string(label); }) + "," +
-             (reasons.empty() ? "0" : "1") + "," + reasons + "\n";
+void SeenObjects::add(const InstanceSights& sights, const std::string& scan) {
+  for (const auto& [id, sight] : sights) {
+    SeenObject& object = objects_[id];
+    merge(object.sight, sight);
+    object.points_in_scan.emplace_back(scan, sight.points);
   }
+}
+
+std::string instanceHeader() {
+  return "id,object,n,cx,cy,cz,xmin,ymin,zmin,xmax,ymax,zmax,height,extent_long,extent_short,chunks,"
+         "fine_labels,ambiguous,flags\n";
+}
+
+std::string instanceRow(std::int32_t id, const CampusObject& object, const SeenObject& seen) {
+  const InstanceSight& sight = seen.sight;
+  const FootprintBox extents = smallestBox(sight.outline);
+  const std::string reasons = reasonsAgainst(object, sight, extents);
+  std::string row = std::to_string(id) + "," +
+                    snakeCase(scan::truthClassNames()[static_cast<std::size_t>(object.class_number)]) + "," +
+                    std::to_string(sight.points);
+  for (const Vector3d& corner :
+       {Vector3d(sight.sum / static_cast<double>(sight.points)), sight.box.min(), sight.box.max()})
+    for (int axis = 0; axis < 3; ++axis) row += "," + number(corner[axis]);
+  row += "," + number(sight.box.sizes().z()) + "," + number(extents.length_m) + "," + number(extents.width_m);
+  row += "," + joinCounts(seen.points_in_scan, [](const std::string& scan) { return scan; });
+  row += "," + joinCounts(sight.points_of_label, [](std::uint32_t label) { return std::to_string(label); });
+  return row + "," + (reasons.empty() ? "0" : "1") + "," + reasons + "\n";
+}
+
+std::string instanceTable(const Campus& campus, const SeenObjects& seen) {
+  std::string table = instanceHeader();
+  for (const auto& [id, object] : seen.all())
+    table += instanceRow(id, campus.objects[static_cast<std::size_t>(id)], object);
   return table;
 }
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "simulation/laser/laser.hpp"
@@ -24,10 +25,29 @@ using InstanceSights = std::map<std::int32_t, InstanceSight>;  ///< by instance 
 
 InstanceSights sightsOf(const SimulatedScan& scan);
 
-/// The table with the columns of `oakland3d_truth/instances.csv`: one row per object with a point; `scans`
-/// names the scan of each entry. Ambiguous objects are too
-/// occluded, too long or too sparsely sampled to score a map by them.
-std::string instanceTable(const Campus& campus, const std::vector<InstanceSights>& sights,
-                          const std::vector<std::string>& scans);
+/// What several scans saw of one object.
+struct SeenObject {
+  InstanceSight sight;
+  std::vector<std::pair<std::string, std::size_t>> points_in_scan;  ///< by the name of the scan, in the order added
+};
+
+/// Sights of all objects, collected scan by scan.
+class SeenObjects {
+ public:
+  void add(const InstanceSights& sights, const std::string& scan);
+  const std::map<std::int32_t, SeenObject>& all() const { return objects_; }
+  void forget(std::int32_t id) { objects_.erase(id); }
+
+ private:
+  std::map<std::int32_t, SeenObject> objects_;
+};
+
+/// The names of the columns, which are those of `oakland3d_truth/instances.csv`, and the row of one object. Ambiguous
+/// objects are too occluded, too long or too sparsely sampled to score a map by them.
+std::string instanceHeader();
+std::string instanceRow(std::int32_t id, const CampusObject& object, const SeenObject& seen);
+
+/// The table: one row per object with a point.
+std::string instanceTable(const Campus& campus, const SeenObjects& seen);
 
 }  // namespace cluxel::simulation

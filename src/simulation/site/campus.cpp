@@ -53,8 +53,12 @@ void noteCrownsAbove(CampusSite& site) {
 }  // namespace
 
 Campus buildCampus(const CampusParams& params) {
+  return buildCampus(params, campusFrameOf(params.seed));
+}
+
+Campus buildCampus(const CampusParams& params, const CampusFrame& frame) {
   check(params);
-  CampusSite site(params);
+  CampusSite site(params, frame);
   makeGround(site);
   layOutBuildings(site);
   plantAvenues(site);

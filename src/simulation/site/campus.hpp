@@ -67,11 +67,32 @@ struct Campus {
   std::vector<Eigen::Isometry3d> stops;  ///< T_map_sensor, about 1.2 m above the ground
 };
 
+/// What a campus does not choose itself when it is part of something larger.
+struct CampusFrame {
+  Terrain terrain;  ///< as it lies before the plan is turned
+  double heading_rad = 0;
+};
+
+/// The frame that follows from a seed.
+CampusFrame campusFrameOf(std::uint64_t seed);
+
 /// The campus that follows from `params`, on one thread. Cost: well below a second per hectare. Throws as
 /// check(CampusParams) does.
 Campus buildCampus(const CampusParams& params);
+/// The same in another frame: what stands on it follows from the seed of `params`.
+Campus buildCampus(const CampusParams& params, const CampusFrame& frame);
+
+/// Where a campus lies as a district of a city.
+struct DistrictPlace {
+  std::uint64_t city_seed = 0;
+  std::size_t number = 0, column = 0, row = 0;           ///< numbers run along rows, from 0
+  Eigen::Vector3d origin_map = Eigen::Vector3d::Zero();  ///< of the district's own frame [m, map]
+  std::int32_t first_instance = 0;                       ///< its objects are numbered from here
+};
 
 /// The text of campus.json: parameters, surfaces, and objects with class, kind, box, parts and traits.
 std::string describeCampus(const Campus& campus);
+/// The same for a district, with its place, in the frame of the city's map.
+std::string describeDistrict(const Campus& campus, const DistrictPlace& place);
 
 }  // namespace cluxel::simulation

@@ -10,9 +10,10 @@
 namespace cluxel::simulation {
 namespace {
 
+using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
 
-Json vectorJson(const Eigen::Vector3d& v) {
+Json vectorJson(const Vector3d& v) {
   return Json::array({v.x(), v.y(), v.z()});
 }
 
@@ -45,18 +46,24 @@ Json surfacesJson() {
   return surfaces;
 }
 
-Json objectsJson(const Campus& campus) {
+/// A place of the campus in the frame of the map. Without a district it is there already.
+Vector3d inMap(const Vector3d& place, const DistrictPlace* district) {
+  return district == nullptr ? place : Vector3d(place + district->origin_map);
+}
+
+Json objectsJson(const Campus& campus, const DistrictPlace* district) {
+  const std::size_t first = district == nullptr ? 0 : static_cast<std::size_t>(district->first_instance);
   std::map<std::int32_t, std::set<std::string>> surfaces_of;
   for (const CampusMesh& mesh : campus.meshes) surfaces_of[mesh.instance].insert(std::string(infoOf(mesh.label).name));
   Json objects = Json::array();
   for (std::size_t i = 0; i < campus.objects.size(); ++i) {
     const CampusObject& object = campus.objects[i];
-    Json json{{"instance", i},
+    Json json{{"instance", first + i},
               {"class", scan::truthClassNames()[static_cast<std::size_t>(object.class_number)]},
               {"kind", object.kind},
-              {"position_m", vectorJson(object.position)},
-              {"box_min_m", vectorJson(object.box.min())},
-              {"box_max_m", vectorJson(object.box.max())},
+              {"position_m", vectorJson(inMap(object.position, district))},
+              {"box_min_m", vectorJson(inMap(object.box.min(), district))},
+              {"box_max_m", vectorJson(inMap(object.box.max(), district))},
               {"surfaces", surfaces_of[static_cast<std::int32_t>(i)]}};
     if (!object.traits.empty()) json["traits"] = object.traits;
     objects.push_back(std::move(json));
@@ -64,18 +71,32 @@ Json objectsJson(const Campus& campus) {
   return objects;
 }
 
+std::string description(const Campus& campus, const DistrictPlace* district) {
+  Json stops = Json::array();
+  for (const auto& T_map_sensor : campus.stops)
+    stops.push_back(vectorJson(inMap(T_map_sensor.translation(), district)));
+  Json json{{"generated", true}, {"parameters", parametersJson(campus.params)}};
+  if (district != nullptr)
+    json["district"] = {{"city_seed", district->city_seed},
+                        {"number", district->number},
+                        {"column", district->column},
+                        {"row", district->row},
+                        {"origin_m", vectorJson(district->origin_map)}};
+  json["heading_rad"] = campus.heading_rad;
+  json["stops_m"] = stops;
+  json["surfaces"] = surfacesJson();
+  json["objects"] = objectsJson(campus, district);
+  return json.dump(1) + "\n";
+}
+
 }  // namespace
 
 std::string describeCampus(const Campus& campus) {
-  Json stops = Json::array();
-  for (const auto& T_map_sensor : campus.stops) stops.push_back(vectorJson(T_map_sensor.translation()));
-  const Json json{{"generated", true},
-                  {"parameters", parametersJson(campus.params)},
-                  {"heading_rad", campus.heading_rad},
-                  {"stops_m", stops},
-                  {"surfaces", surfacesJson()},
-                  {"objects", objectsJson(campus)}};
-  return json.dump(1) + "\n";
+  return description(campus, nullptr);
+}
+
+std::string describeDistrict(const Campus& campus, const DistrictPlace& place) {
+  return description(campus, &place);
 }
 
 }  // namespace cluxel::simulation

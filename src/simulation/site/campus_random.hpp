@@ -48,7 +48,8 @@ enum class RandomUse : std::uint64_t {
   Stop,
   Ray,
   Drift,
-  Visit
+  Visit,
+  District
 };
 
 inline CampusRandom streamOf(std::uint64_t seed, RandomUse use, std::uint64_t number = 0) {

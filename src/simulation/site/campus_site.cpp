@@ -37,9 +37,15 @@ Terrain terrainOf(std::uint64_t seed) {
 
 }  // namespace
 
-CampusSite::CampusSite(const CampusParams& params) : plan_(params.size_m) {
+CampusFrame campusFrameOf(std::uint64_t seed) {
+  const double heading = streamOf(seed, RandomUse::Placement, 0).uniform(-std::numbers::pi, std::numbers::pi);
+  return {.terrain = terrainOf(seed), .heading_rad = heading};
+}
+
+CampusSite::CampusSite(const CampusParams& params, const CampusFrame& frame)
+    : heading_rad_(frame.heading_rad), plan_(params.size_m) {
   campus_.params = params;
-  campus_.terrain = terrainOf(params.seed);
+  campus_.terrain = frame.terrain;
 }
 
 Vector3d CampusSite::onGround(const Vector2d& place) const {
@@ -128,7 +134,7 @@ void turn(Campus& campus, const Eigen::Isometry3d& T_map_plan) {
 }  // namespace
 
 Campus CampusSite::finish() && {
-  campus_.heading_rad = stream(RandomUse::Placement, 0).uniform(-std::numbers::pi, std::numbers::pi);
+  campus_.heading_rad = heading_rad_;
   turn(campus_, standing(Vector3d::Zero(), campus_.heading_rad));
   return std::move(campus_);
 }

@@ -37,7 +37,7 @@ CampusMesh surfaceOf(SurfaceLabel label, std::int32_t instance, const SurfaceLoo
 
 class CampusSite {
  public:
-  explicit CampusSite(const CampusParams& params);
+  CampusSite(const CampusParams& params, const CampusFrame& frame);
 
   const SitePlan& plan() const { return plan_; }
   const Campus& campus() const { return campus_; }
@@ -62,7 +62,7 @@ class CampusSite {
   void addSurface(CampusMesh surface);
   void addStop(const Eigen::Isometry3d& T_map_sensor) { campus_.stops.push_back(T_map_sensor); }
 
-  /// The campus, rotated by a heading that depends on the seed, so that its directions are not those of the map's axes.
+  /// The campus, rotated by the frame's heading, so that its directions are not those of the map's axes.
   Campus finish() &&;
 
  private:
@@ -73,6 +73,7 @@ class CampusSite {
   bool isFree(const Disc& disc) const;
 
   Campus campus_;
+  double heading_rad_;
   SitePlan plan_;
   std::vector<Disc> taken_;
   std::vector<Eigen::AlignedBox2d> reserved_;
