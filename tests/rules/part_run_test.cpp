@@ -7,7 +7,6 @@
 
 #include "perception/segments/scene_part.hpp"
 #include "rules/box_world.hpp"
-#include "rules/explain/decision_digests.hpp"
 #include "rules/explain/part_run.hpp"
 
 namespace cluxel::testing {
@@ -33,8 +32,8 @@ struct StreetRun {
   Scene scene = sceneOfBoxes(longStreet()).scene;
   RuleSet rules = outdoorRules();
   ReasoningResult result = reason(scene, rules);
-  std::vector<std::uint64_t> digests = decisionDigests(scene, result);
-  WholeRun whole() const { return {digests, result.objects}; }
+  std::vector<std::uint64_t> traces = result.traces;
+  WholeRun whole() const { return {traces, result.objects}; }
 };
 
 TEST(PartRun, ExplainsObjectsAndPrimitivesAsTheWholeRunDoes) {
@@ -98,10 +97,10 @@ TEST(PartRun, TellsOfAFoundCrownWhatTheWholeRunMeasuredAtItsTrunk) {
   const RuleSet rules = farLookingRules();
   const ReasoningResult result = reason(built.scene, rules);
   ASSERT_EQ(result.objects.size(), 12U);
-  const std::vector<std::uint64_t> digests = decisionDigests(built.scene, result);
+  const std::vector<std::uint64_t> traces = result.traces;
   std::size_t in_part = 0;
   for (PrimitiveIndex i = 0; i < built.scene.primitives.size(); ++i) {
-    const auto run = runInPart(built.scene, rules, {digests, result.objects}, {i});
+    const auto run = runInPart(built.scene, rules, {traces, result.objects}, {i});
     if (!run) continue;
     ++in_part;
     EXPECT_EQ(textOf(explanationIn(run->result, rules, run->primitives.front()), rules, run->part),
@@ -128,32 +127,29 @@ TEST(PartRun, IsRefusedWhereTheWholeRunDecidedOtherwise) {
   StreetRun street;
   const std::vector<PrimitiveIndex> primitives = primitivesOf(street.result.objects.front());
   ASSERT_TRUE(runInPart(street.scene, street.rules, street.whole(), primitives));
-  street.digests[primitives.front()] ^= 1U;
+  street.traces[primitives.front()] ^= 1U;
   EXPECT_FALSE(runInPart(street.scene, street.rules, street.whole(), primitives));
-  street.digests.pop_back();
+  street.traces.pop_back();
   EXPECT_FALSE(runInPart(street.scene, street.rules, street.whole(), primitives)) << "of another scene";
 }
 
-TEST(DecisionDigests, TellWhatWasMeasuredAndNotHowThingsAreNumbered) {
+TEST(DecisionTraces, TellWhatWasMeasuredAndNotHowThingsAreNumbered) {
   const StreetRun street;
-  ReasoningResult other = street.result;
-  const auto measured = std::find_if(other.decisions.begin(), other.decisions.end(), [](const Decision& decision) {
-    return !decision.path.empty() && decision.path.front().measured.has_value();
-  });
-  ASSERT_NE(measured, other.decisions.end());
-  *measured->path.front().measured += 1e-9;
-  const std::vector<std::uint64_t> changed = decisionDigests(street.scene, other);
-  for (PrimitiveIndex i = 0; i < street.digests.size(); ++i) {
-    const bool is_seed = std::binary_search(measured->seeds.begin(), measured->seeds.end(), i);
-    EXPECT_EQ(changed[i] != street.digests[i], is_seed) << "primitive " << i;
-  }
+  const auto measured =
+      std::find_if(street.result.decisions.begin(), street.result.decisions.end(), [](const Decision& decision) {
+        return !decision.path.empty() && decision.path.front().measured.value_or(0) != 0;
+      });
+  ASSERT_NE(measured, street.result.decisions.end());
+  Scene other = street.scene;
+  for (double& value : other.primitives[measured->seed].attributes) value *= 1 + 1e-9;
+  EXPECT_NE(reason(other, street.rules).traces[measured->seed], street.traces[measured->seed]);
   // All primitives but the first: the others get new numbers.
   std::vector<PrimitiveIndex> kept(street.scene.primitives.size() - 1);
   std::iota(kept.begin(), kept.end(), 1U);
   const Scene part = partOf(street.scene, kept);
-  const std::vector<std::uint64_t> digests = decisionDigests(part, reason(part, street.rules));
+  const std::vector<std::uint64_t> traces = reason(part, street.rules).traces;
   std::size_t same = 0;
-  for (std::size_t i = 0; i < kept.size(); ++i) same += digests[i] == street.digests[kept[i]] ? 1 : 0;
+  for (std::size_t i = 0; i < kept.size(); ++i) same += traces[i] == street.traces[kept[i]] ? 1 : 0;
   EXPECT_GE(4 * same, 3 * kept.size());
 }
 

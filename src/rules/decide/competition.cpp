@@ -32,21 +32,30 @@ class Competition {
   Competition(ReasoningState& state, std::span<const Rule* const> rules) : state_(state), rules_(rules) {}
 
   void run() {
-    while (true) {
+    state_.trace.enter(mixed(StepKind::Rivals, std::uint64_t{state_.is_first_of_two_rounds}));
+    for (std::uint64_t round = 1;; ++round) {
+      state_.trace.enterRound(round);
       std::vector<Proposal> proposals = propose();
-      const std::vector<Rival> rivals = rivalsOf(proposals);
+      std::vector<Rival> rivals = rivalsOf(proposals);
+      const Conflicts conflicts = conflictsOf(rivals);
+      const std::vector<std::uint32_t> group = groupsOf(conflicts);
+      holdBackUnlikely(rivals, group);
       const std::vector<bool> wins = chooseAmongRivals(rivals);
-      recordLosers(proposals, rivals, wins);
+      noteRivals(proposals, rivals, group, wins);
+      recordLosers(proposals, rivals, conflicts, wins);
       for (std::size_t i = 0; i < proposals.size(); ++i)
         if (wins[i]) accept(proposals[i]);
       if (!anyOf(wins)) break;
     }
+    state_.trace.enterRound(0);  // how many rounds there were may be due to what happened far away
     for (const std::vector<FragmentIndex>& group : unknown_)
       for (FragmentIndex fragment : group)
-        if (state_.fragments[fragment].owner == kFree) state_.fragments.setOwner(fragment, kUnknown);
+        if (state_.fragments[fragment].owner == kFree) state_.setOwner(fragment, kUnknown);
   }
 
  private:
+  using Conflicts = std::vector<std::vector<std::uint32_t>>;
+
   static bool anyOf(const std::vector<bool>& wins) { return std::find(wins.begin(), wins.end(), true) != wins.end(); }
 
   std::vector<Proposal> propose() {
@@ -60,6 +69,7 @@ class Competition {
       for (std::size_t i = 0; i < groups.size(); ++i) {
         Verdict& verdict = verdicts[i];
         std::vector<FragmentIndex>& group = groups[i];
+        noteJudged(*rule, group, verdict);
         if (verdict.accept != nullptr) {
           if (state_.context.onCandidate && !state_.is_first_of_two_rounds && lost_.count({rule, group}) == 0)
             state_.context.onCandidate(state_, *rule, verdict);
@@ -74,9 +84,15 @@ class Competition {
     return proposals;
   }
 
+  /// A candidate that loses is judged again in each round: noted is what is new.
+  void noteJudged(const Rule& rule, const std::vector<FragmentIndex>& group, const Verdict& verdict) {
+    state_.trace.keep(state_.trace.spanOf(verdict.members));
+    if (state_.trace.isNews(mixed(hashOf(rule.id), state_.fragments.hashOf(group)), verdict.trace))
+      state_.trace.noteStep(verdict.members, verdict.trace);
+  }
+
   std::vector<Rival> rivalsOf(const std::vector<Proposal>& proposals) const {
     std::vector<Rival> rivals;
-    std::vector<char> is_likely;
     for (const Proposal& proposal : proposals) {
       const AcceptLeaf& accept = *proposal.verdict.accept;
       const Bindings& bindings = proposal.verdict.bindings;
@@ -84,7 +100,7 @@ class Competition {
       const LogOddsOfNothing nothing = logOddsOfNothing(state_, accept, bindings);
       const double log_odds = proposal.verdict.decision.log_odds;
       rival.score = log_odds > nothing.as_one ? std::llround((log_odds - nothing.sum) * 1e6) : 0;
-      is_likely.push_back(rival.score > 0 && log_odds >= kLikely ? 1 : 0);
+      rival.is_likely = rival.score > 0 && log_odds >= kLikely;
       rival.share_class = static_cast<std::uint32_t>(
           std::find(state_.rules.order.begin(), state_.rules.order.end(), proposal.rule->class_iri) -
           state_.rules.order.begin());
@@ -100,30 +116,58 @@ class Competition {
       }
       rivals.push_back(std::move(rival));
     }
-    holdBackUnlikely(rivals, is_likely);
     return rivals;
   }
 
-  /// When a group of rivals has a likely member, the unlikely ones cannot win in this round.
-  static void holdBackUnlikely(std::vector<Rival>& rivals, const std::vector<char>& is_likely) {
-    const auto conflicts = conflictsOf(rivals);
-    DisjointSets groups(rivals.size());
-    for (std::uint32_t i = 0; i < rivals.size(); ++i)
+  /// For each rival the number of its group: rivals that conflict, directly or through others.
+  static std::vector<std::uint32_t> groupsOf(const Conflicts& conflicts) {
+    DisjointSets groups(conflicts.size());
+    for (std::uint32_t i = 0; i < conflicts.size(); ++i)
       for (const std::uint32_t other : conflicts[i]) groups.join(i, other);
+    return groups.numbers();
+  }
+
+  /// When a group of rivals has a likely member, the unlikely ones cannot win in this round.
+  static void holdBackUnlikely(std::vector<Rival>& rivals, const std::vector<std::uint32_t>& group) {
     std::vector<char> has_likely(rivals.size(), 0);
-    for (std::uint32_t i = 0; i < rivals.size(); ++i)
-      if (is_likely[i] != 0) has_likely[groups.find(i)] = 1;
-    for (std::uint32_t i = 0; i < rivals.size(); ++i)
-      if (is_likely[i] == 0 && has_likely[groups.find(i)] != 0) {
+    for (std::size_t i = 0; i < rivals.size(); ++i)
+      if (rivals[i].is_likely) has_likely[group[i]] = 1;
+    for (std::size_t i = 0; i < rivals.size(); ++i)
+      if (!rivals[i].is_likely && has_likely[group[i]] != 0) {
         rivals[i].is_held_back = rivals[i].score > 0;
         rivals[i].score = 0;
       }
   }
 
+  /// The settling of a group is one step of all primitives that its members bound.
+  void noteRivals(const std::vector<Proposal>& proposals, const std::vector<Rival>& rivals,
+                  const std::vector<std::uint32_t>& group, const std::vector<bool>& wins) {
+    struct Settled {
+      std::uint64_t trace = 0;
+      std::vector<perception::PrimitiveIndex> members;
+    };
+    std::vector<Settled> settled(proposals.size());
+    for (std::size_t i = 0; i < proposals.size(); ++i) {
+      Settled& of_group = settled[group[i]];
+      const auto score = static_cast<std::uint64_t>(rivals[i].score);
+      of_group.trace += mixed(mixed(proposals[i].verdict.trace, score), std::uint64_t{wins[i]});
+      const auto& members = proposals[i].verdict.members;
+      of_group.members.insert(of_group.members.end(), members.begin(), members.end());
+    }
+    for (Settled& of_group : settled) {
+      state_.trace.keep(state_.trace.spanOf(of_group.members));
+      const std::uint64_t trace = mixed(StepKind::Rivals, of_group.trace);
+      if (of_group.members.empty() || !state_.trace.isNews(trace, trace)) continue;
+      std::sort(of_group.members.begin(), of_group.members.end());
+      of_group.members.erase(std::unique(of_group.members.begin(), of_group.members.end()), of_group.members.end());
+      state_.trace.noteStep(of_group.members, trace);
+    }
+  }
+
   /// Records which rival a losing candidate lost to; only its first defeat. One that was held back, and that no winner
   /// touches, has lost to nobody: it is decided in a later round.
-  void recordLosers(std::vector<Proposal>& proposals, const std::vector<Rival>& rivals, const std::vector<bool>& wins) {
-    const auto conflicts = conflictsOf(rivals);
+  void recordLosers(std::vector<Proposal>& proposals, const std::vector<Rival>& rivals, const Conflicts& conflicts,
+                    const std::vector<bool>& wins) {
     for (std::size_t i = 0; i < proposals.size(); ++i) {
       Decision& decision = proposals[i].verdict.decision;
       for (std::uint32_t other : conflicts[i])
@@ -153,7 +197,7 @@ class Competition {
 
   void accept(Proposal& proposal) {
     state_.decisions.push_back(std::move(proposal.verdict.decision));
-    makeObject(state_, *proposal.rule, *proposal.verdict.accept, std::move(proposal.verdict.bindings));
+    makeObject(state_, *proposal.rule, std::move(proposal.verdict));
   }
 
   ReasoningState& state_;

@@ -10,6 +10,8 @@ namespace cluxel::rules {
 
 namespace {
 
+constexpr double kNotMeasured = -1e300;
+
 class Judging {
  public:
   Judging(const ReasoningState& state, const Rule& rule) : state_(state), rule_(rule) {}
@@ -22,23 +24,52 @@ class Judging {
     if (isProbed(verdict.decision)) verdict.decision.flips = flipsOf(seed, walk);
     verdict.decision.path = std::move(walk.path);
     verdict.decision.leaf = walk.leaf;
+    verdict.members = membersOf(walk.bindings);
+    describeOutcome(walk, verdict);
+    verdict.bindings = std::move(walk.bindings);
+    verdict.related = walk.related;
+    verdict.trace = traceOf(verdict);
+    return verdict;
+  }
+
+ private:
+  void describeOutcome(const WalkResult& walk, Verdict& verdict) const {
     const TreeNode& leaf = rule_.nodes[walk.leaf];
     if (const auto* reject = std::get_if<RejectLeaf>(&leaf.what)) {
       verdict.decision.reason = reject->reason;
       verdict.decision.hint = reject->hint;
       verdict.leaves_unknown = reject->leave_unknown;
-      return verdict;
+      return;
     }
     verdict.accept = &std::get<AcceptLeaf>(leaf.what);
     verdict.decision.accepted = true;
     verdict.decision.reason = describeAccept(*verdict.accept);
     weigh(state_, rule_, *verdict.accept, walk.bindings, verdict.decision);
-    verdict.bindings = std::move(walk.bindings);
-    verdict.related = walk.related;
-    return verdict;
   }
 
- private:
+  std::vector<perception::PrimitiveIndex> membersOf(const Bindings& bindings) const {
+    std::vector<perception::PrimitiveIndex> members;
+    for (const auto& [name, candidate] : bindings.candidates)
+      for (const FragmentIndex fragment : candidate.fragments) members.push_back(state_.fragments[fragment].primitive);
+    std::sort(members.begin(), members.end());
+    members.erase(std::unique(members.begin(), members.end()), members.end());
+    return members;
+  }
+
+  std::uint64_t traceOf(const Verdict& verdict) const {
+    const Decision& decision = verdict.decision;
+    std::uint64_t trace = mixed(hashOf(rule_.id), std::uint64_t{decision.leaf});
+    for (const auto& [name, candidate] : verdict.bindings.candidates)
+      trace = mixed(trace, state_.fragments.hashOf(candidate.fragments));
+    for (const DecisionStep& step : decision.path) {
+      trace = mixed(trace, std::uint64_t{step.passed});
+      trace = mixed(mixed(trace, step.measured.value_or(kNotMeasured)), step.threshold.value_or(kNotMeasured));
+    }
+    for (const EvidenceStep& step : decision.evidence)
+      trace = mixed(mixed(trace, step.measured.value_or(kNotMeasured)), step.log_odds);
+    return mixed(StepKind::Judged, trace);
+  }
+
   Decision describeSeed(const Candidate& seed) const {
     Decision decision;
     decision.rule_id = rule_.id;

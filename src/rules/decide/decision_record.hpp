@@ -9,10 +9,12 @@ namespace cluxel::rules {
 /// A walk through the tree of a rule together with its outcome.
 struct Verdict {
   Decision decision;
-  Bindings bindings;
+  Bindings bindings;  ///< what the walk bound
   std::optional<OwnerIndex> related;
-  const AcceptLeaf* accept = nullptr;  ///< absent for a rejection
-  bool leaves_unknown = false;         ///< a rejection after which no rule may take the seed
+  std::uint64_t trace = 0;                          ///< a hash of all of this
+  std::vector<perception::PrimitiveIndex> members;  ///< of what is bound, ascending
+  const AcceptLeaf* accept = nullptr;               ///< absent for a rejection
+  bool leaves_unknown = false;                      ///< a rejection after which no rule may take the seed
 };
 
 /// Walks the tree of the rule for a group of seeds and weighs the evidence when a leaf accepts.

@@ -54,11 +54,12 @@ bool asksRivals(const Rule& rule) {
 
 /// The stratum is decided twice. Evidence that asks for rivals counts in the second round only, and reads who won the
 /// first; so no decision waits for another.
-std::shared_ptr<const FirstWinners> winnersOfFirstRound(const ReasoningState& state,
+std::shared_ptr<const FirstWinners> winnersOfFirstRound(ReasoningState& state,
                                                         const std::vector<const Rule*>& proposing) {
   ReasoningState round = state;
   round.is_first_of_two_rounds = true;
   compete(round, proposing);
+  state.trace = std::move(round.trace);  // what it came to is read by the second round
   return std::make_shared<const FirstWinners>(round, state.objects.size());
 }
 
@@ -90,11 +91,43 @@ void decideStratum(ReasoningState& state, const std::vector<std::string>& stratu
     state.context.oracle->objectsSoFar(finishedObjects(state));
 }
 
+namespace {
+
+/// The trace of a primitive tells of the objects that own some of it.
+void noteObjects(ReasoningState& state, const std::vector<SemanticObject>& objects) {
+  state.trace.enter(mixed(StepKind::Finished, std::uint64_t{0}));
+  std::map<std::size_t, const ObjectInMaking*> made;  // by decision
+  for (const ObjectInMaking& object : state.objects) made.emplace(object.decision, &object);
+  std::vector<std::uint64_t> sums(state.scene.primitives.size(), 0);  // no order of objects enters
+  for (const SemanticObject& object : objects) {
+    const ObjectInMaking& making = *made.at(object.decision);
+    std::uint64_t trace = mixed(hashOf(object.class_iri), making.trace);
+    if (!making.isOfWholeClass())
+      trace =
+          mixed(mixed(mixed(trace, std::hash<ContentHash>()(object.id)), hashOf(object.rule_id)), object.confidence);
+    for (const ObjectPart& part : object.parts)
+      for (const perception::PrimitiveIndex primitive : part.primitives)
+        sums[primitive] += mixed(trace, hashOf(part.part_class));
+  }
+  for (perception::PrimitiveIndex i = 0; i < sums.size(); ++i) state.trace.note(i, sums[i]);
+}
+
+}  // namespace
+
+ReasoningResult finishedRun(ReasoningState& state) {
+  absorbMisfits(state, 0, true);
+  ReasoningResult result;
+  result.objects = finishedObjects(state);
+  noteObjects(state, result.objects);
+  result.decisions = std::move(state.decisions);
+  result.traces = state.trace.takeTraces();
+  return result;
+}
+
 ReasoningResult reason(const perception::Scene& scene, const RuleSet& rules, const ReasoningContext& context) {
   ReasoningState state(scene, rules, context);
   for (const std::vector<std::string>& stratum : rules.strata) decideStratum(state, stratum);
-  absorbMisfits(state, 0, true);
-  return {finishedObjects(state), std::move(state.decisions)};
+  return finishedRun(state);
 }
 
 }  // namespace cluxel::rules

@@ -30,7 +30,12 @@ bool Bindings::has(const std::string& name) const {
 }
 
 ReasoningState::ReasoningState(const perception::Scene& scene_, const RuleSet& rules_, const ReasoningContext& context_)
-    : scene(scene_), rules(rules_), context(context_), grid(scene_.cluxels), fragments(scene_) {
+    : scene(scene_),
+      rules(rules_),
+      context(context_),
+      grid(scene_.cluxels),
+      fragments(scene_),
+      trace(scene_.primitives.size()) {
   relations_to.resize(scene.primitives.size());
   for (std::uint32_t i = 0; i < scene.relations.size(); ++i) relations_to[scene.relations[i].to].push_back(i);
   std::vector<std::string> classes = rules.order;
@@ -60,6 +65,39 @@ bool ReasoningState::belongsToAny(FragmentIndex fragment, const std::vector<bool
 
 bool ReasoningState::belongsTo(FragmentIndex fragment, const std::string& class_iri) const {
   return belongsToAny(fragment, classesBelow(class_iri));
+}
+
+void ReasoningState::setOwner(FragmentIndex fragment, OwnerIndex owner) {
+  fragments.setOwner(fragment, owner);
+  const std::uint64_t state = owner < kUnknown ? 0 : std::uint64_t{owner};  // the object's own trace tells whose it is
+  trace.note(fragments[fragment].primitive, mixed(StepKind::Owned, mixed(state, fragments.hashOf(fragment))));
+}
+
+std::vector<FragmentIndex> ReasoningState::cut(FragmentIndex fragment, std::vector<std::vector<std::uint32_t>> parts) {
+  const std::uint64_t before = fragments.hashOf(fragment);
+  std::vector<FragmentIndex> made = fragments.cut(fragment, std::move(parts));
+  trace.note(fragments[fragment].primitive, mixed(StepKind::Cut, mixed(before, fragments.hashOf(made))));
+  return made;
+}
+
+void ReasoningState::join(FragmentIndex fragment, const std::vector<FragmentIndex>& others) {
+  if (others.empty()) return;
+  const std::uint64_t before = fragments.hashOf(fragment);
+  fragments.join(fragment, others);
+  trace.note(fragments[fragment].primitive, mixed(StepKind::Joined, mixed(before, fragments.hashOf(fragment))));
+}
+
+LayerSpan ReasoningState::layersOf(std::span<const FragmentIndex> some) const {
+  LayerSpan span;
+  if (trace.hasLayers())
+    for (const FragmentIndex fragment : some) span.add(trace.spanOf(fragments[fragment].primitive));
+  return span;
+}
+
+void ReasoningState::noteGrowth(ObjectInMaking& object, std::uint64_t what, const LayerSpan& layers) const {
+  if (object.isOfWholeClass()) return;
+  object.trace = mixed(object.trace, what);
+  object.layers.add(layers);
 }
 
 std::vector<FragmentIndex> ReasoningState::fragmentsOf(const ObjectInMaking& object) const {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "rules/decide/reason.hpp"
+#include "rules/decide/trace_recorder.hpp"
 #include "rules/propose/cluxel_grid.hpp"
 #include "rules/propose/first_winners.hpp"
 #include "rules/propose/fragment_table.hpp"
@@ -41,8 +42,15 @@ struct ObjectInMaking {
   double confidence = 0;
   std::size_t decision = 0;
   std::vector<PartInMaking> parts;
-  Bindings bindings;        ///< needed by absorbing; see ReasoningState::renewBindings
+  Bindings bindings;  ///< needed by absorbing; see ReasoningState::renewBindings
+  /// A hash of how it came about and grew. Of the one object of a class (`merge_into: class`) only the class's, and no
+  /// layers: it reaches through the whole map.
+  std::uint64_t trace = 0;
+  LayerSpan layers;         ///< of its primitives
   bool may_gather = false;  ///< its share of a crown was split from that of others, and it gathered nothing since
+
+  /// Whether it is the one object of its class.
+  bool isOfWholeClass() const { return leaf->merge_into == MergeInto::Class; }
 };
 
 struct ReasoningState {
@@ -53,6 +61,7 @@ struct ReasoningState {
   const ReasoningContext& context;
   CluxelGrid grid;
   FragmentTable fragments;
+  TraceRecorder trace;
   std::vector<ObjectInMaking> objects;
   std::map<FragmentIndex, std::vector<OwnerIndex>> claims;  ///< the objects that claim a shared fragment
   std::vector<Decision> decisions;
@@ -71,6 +80,15 @@ struct ReasoningState {
   const std::vector<bool>* classesBelow(std::string_view class_iri) const;
   /// The same as belongsTo() with the classes looked up before; `classes` may be null.
   bool belongsToAny(FragmentIndex fragment, const std::vector<bool>* classes) const;
+  /// Changes of fragments, which are noted in the trace of the primitive.
+  void setOwner(FragmentIndex fragment, OwnerIndex owner);
+  std::vector<FragmentIndex> cut(FragmentIndex fragment, std::vector<std::vector<std::uint32_t>> parts);
+  void join(FragmentIndex fragment, const std::vector<FragmentIndex>& others);
+  /// The layers of the fragments' primitives.
+  LayerSpan layersOf(std::span<const FragmentIndex> some) const;
+  /// Notes that a thing becomes part of an object, or was considered for it.
+  void noteGrowth(ObjectInMaking& object, std::uint64_t what, const LayerSpan& layers) const;
+
   /// The fragments of an object, ascending.
   std::vector<FragmentIndex> fragmentsOf(const ObjectInMaking& object) const;
   /// Measures the bound candidates of parts whose fragments changed. Objects grow by many fragments, and measuring

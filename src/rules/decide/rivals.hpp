@@ -14,6 +14,7 @@ struct Rival {
   std::vector<std::uint32_t> owned;   ///< items that no other candidate may have
   std::vector<std::uint32_t> shared;  ///< items that candidates of the same class may share
   std::uint32_t share_class = 0;
+  bool is_likely = false;     ///< it is decided before its unlikely rivals
   bool is_held_back = false;  ///< for this round, in which its score counts as 0
 };
 

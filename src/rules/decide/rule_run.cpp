@@ -22,24 +22,29 @@ class RuleRun {
       : state_(state), rule_(rule), reach_(reachOf(rule, state.grid)), changes_(reach_.value_or(0)) {}
 
   void run() {
+    state_.trace.enter(mixed(StepKind::Judged, hashOf(rule_.id)));
     SliceScope scope(state_, rule_);
     std::vector<Open> open;
     for (std::vector<FragmentIndex>& group : seedGroups(state_, rule_, scope.slices()))
       open.push_back({std::move(group)});
-    // A new or a larger object may be near a seed that was rejected before: retry rejected seeds until none is
-    // accepted. What happens far away must not decide whether a seed is retried.
-    for (bool accepted = true; accepted && !open.empty();) {
-      accepted = false;
+    // A new or a larger object may be near a seed that was rejected before, and what is left unknown cannot be found
+    // any more: retry rejected seeds until nothing changes. What happens far away must not decide whether a seed is
+    // retried.
+    std::uint64_t pass = 0;
+    for (bool changed = true; changed && !open.empty();) {
+      state_.trace.enterRound(++pass);
+      changed = false;
       std::vector<Open> rejected;
       for (Open& seed : open) {
         std::erase_if(seed.group, [this](FragmentIndex fragment) { return !isFree(fragment); });
         if (seed.group.empty()) continue;
-        if (!isSettled(seed) && !decide(seed, accepted)) continue;
+        if (!isSettled(seed) && !decide(seed, changed)) continue;
         rejected.push_back(std::move(seed));
       }
       open = std::move(rejected);
     }
     for (Open& seed : open) state_.decisions.push_back(std::move(*seed.rejection));
+    state_.trace.enterRound(0);  // how many passes there were may be due to what happened far away
     scope.putBack();
   }
 
@@ -74,9 +79,10 @@ class RuleRun {
   }
 
   /// Decides about one group. Records an acceptance or a final rejection and returns false; returns true for a
-  /// rejection that may be retried. Sets `accepted` when an object was made or grew.
-  bool decide(Open& seed, bool& accepted) {
+  /// rejection that may be retried. Sets `changed` when some fragment got another owner.
+  bool decide(Open& seed, bool& changed) {
     Verdict verdict = judge(state_, rule_, seed.group);
+    noteJudged(seed, verdict);
     if (verdict.accept != nullptr && state_.context.onCandidate) state_.context.onCandidate(state_, rule_, verdict);
     if (verdict.accept != nullptr && verdict.decision.log_odds <= kMinLogOdds) {
       verdict.decision.accepted = false;
@@ -85,8 +91,8 @@ class RuleRun {
       verdict.leaves_unknown = false;
     }
     if (verdict.accept != nullptr) {
-      accept(verdict, seed.group);
-      accepted = true;
+      accept(std::move(verdict), seed.group);
+      changed = true;
       return false;
     }
     if (!verdict.leaves_unknown) {
@@ -95,7 +101,8 @@ class RuleRun {
       seed.judged = seed.group.size();
       return true;
     }
-    for (FragmentIndex fragment : seed.group) state_.fragments.setOwner(fragment, kUnknown);
+    changed = true;
+    for (FragmentIndex fragment : seed.group) state_.setOwner(fragment, kUnknown);
     state_.decisions.push_back(std::move(verdict.decision));
     return false;
   }
@@ -110,13 +117,19 @@ class RuleRun {
     return static_cast<OwnerIndex>(first - state_.objects.begin());
   }
 
-  void accept(Verdict& verdict, const std::vector<FragmentIndex>& group) {
+  void noteJudged(const Open& seed, const Verdict& verdict) {
+    state_.trace.keep(state_.trace.spanOf(verdict.members));
+    if (state_.trace.isNews(state_.fragments.hashOf(seed.group), verdict.trace))
+      state_.trace.noteStep(verdict.members, verdict.trace);
+  }
+
+  void accept(Verdict verdict, const std::vector<FragmentIndex>& group) {
     state_.decisions.push_back(std::move(verdict.decision));
     changes_.add(boxOf(group));
     if (const std::optional<OwnerIndex> object = objectToJoin(verdict)) {
-      joinRelated(state_, rule_, *object, verdict.accept->parts.front(), group);
+      joinRelated(state_, rule_, *object, verdict, group);
     } else {
-      makeObject(state_, rule_, *verdict.accept, std::move(verdict.bindings));
+      makeObject(state_, rule_, std::move(verdict));
     }
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the rules over a part of the scene, checked against the digests of the whole run.
+// Runs the rules over a part of the scene, checked against the traces of the whole run.
 #include "rules/explain/part_run.hpp"
 
 #include <Eigen/Geometry>
@@ -7,7 +7,6 @@
 #include <array>
 
 #include "perception/segments/scene_part.hpp"
-#include "rules/explain/decision_digests.hpp"
 
 namespace cluxel::rules {
 
@@ -45,7 +44,7 @@ class PartSearch {
              const std::vector<perception::PrimitiveIndex>& primitives)
       : scene_(scene),
         rules_(rules),
-        digests_(whole.digests),
+        traces_(whole.traces),
         owners_(rulesOfCluxels(whole.objects, rules, scene.cluxels.size())),
         primitives_(primitives) {
     for (const perception::PrimitiveIndex primitive : primitives) box_.extend(boxOf(scene.primitives[primitive]));
@@ -66,13 +65,13 @@ class PartSearch {
   }
 
   /// Whether the run over the part took the decisions of the whole run about what is explained and about the seeds of
-  /// the objects that own it, and gave every cluxel around it to the same rule. The digests there may differ: the
+  /// the objects that own it, and gave every cluxel around it to the same rule. The traces there may differ: the
   /// ground reaches far beyond every part.
   bool agrees(const std::vector<perception::PrimitiveIndex>& kept, const perception::Scene& part,
               const ReasoningResult& result) const {
-    const std::vector<std::uint64_t> found = decisionDigests(part, result);
+    const std::vector<std::uint64_t>& found = result.traces;
     const std::vector<perception::PrimitiveIndex> told = toldAbout(numbersIn(kept), result);
-    return std::all_of(told.begin(), told.end(), [&](auto i) { return found[i] == digests_[kept[i]]; }) &&
+    return std::all_of(told.begin(), told.end(), [&](auto i) { return found[i] == traces_[kept[i]]; }) &&
            hasSameOwners(kept, part, result);
   }
 
@@ -115,7 +114,7 @@ class PartSearch {
 
   const perception::Scene& scene_;
   const RuleSet& rules_;
-  const std::vector<std::uint64_t>& digests_;
+  const std::vector<std::uint64_t>& traces_;
   std::vector<const Rule*> owners_;  ///< by cluxel of the whole scene
   const std::vector<perception::PrimitiveIndex>& primitives_;
   Box box_;
@@ -125,7 +124,7 @@ class PartSearch {
 
 std::optional<PartRun> runInPart(const perception::Scene& scene, const RuleSet& rules, const WholeRun& whole,
                                  const std::vector<perception::PrimitiveIndex>& primitives) {
-  if (rules.asks_map || whole.digests.size() != scene.primitives.size() || primitives.empty()) return std::nullopt;
+  if (rules.asks_map || whole.traces.size() != scene.primitives.size() || primitives.empty()) return std::nullopt;
   const PartSearch search(scene, rules, whole, primitives);
   for (const double margin_m : kMargins_m) {
     const std::vector<perception::PrimitiveIndex> kept = search.within(margin_m);

@@ -11,7 +11,7 @@ namespace cluxel::rules {
 
 /// What the run over a whole scene left.
 struct WholeRun {
-  const std::vector<std::uint64_t>& digests;  ///< decisionDigests()
+  const std::vector<std::uint64_t>& traces;  ///< ReasoningResult::traces
   const std::vector<SemanticObject>& objects;
 };
 
@@ -22,7 +22,7 @@ struct PartRun {
   ReasoningResult result;
 };
 
-/// Tries parts of growing size. One counts when the digests of `primitives` (ascending), and of the seeds of the
+/// Tries parts of growing size. One counts when the traces of `primitives` (ascending), and of the seeds of the
 /// objects that own them, are those of the whole run, and when every cluxel within 5 m around them went to the same
 /// rule. A counterfactual may still read what lies farther away. Absent when no part counts that is clearly smaller
 /// than the scene, or when the rules ask the map.

@@ -24,15 +24,23 @@ struct Claim {
 class Absorbing {
  public:
   Absorbing(ReasoningState& state, std::size_t first, bool late) : state_(state), first_(first), late_(late) {
-    for (std::size_t i = first; i < state.objects.size(); ++i) budget_.push_back(pointsOf(state.objects[i]));
+    for (std::size_t i = first; i < state.objects.size(); ++i) {
+      budget_.push_back(pointsOf(state.objects[i]));
+      traces_.push_back(state.objects[i].trace);
+    }
     absorbed_.resize(budget_.size(), 0);
     claims_of_.resize(budget_.size());
     is_outdated_.resize(budget_.size(), 1);
   }
 
   void run() {
-    for (int round = 0; round < kRounds; ++round)
-      if (!grant(weigh())) break;
+    state_.trace.enter(mixed(StepKind::Absorbed, std::uint64_t{late_}));
+    for (int round = 0; round < kRounds; ++round) {
+      state_.trace.enterRound(static_cast<std::uint64_t>(round));
+      const std::vector<Claim> claims = weigh();
+      keepSpans(claims);
+      if (!grant(claims)) break;
+    }
   }
 
  private:
@@ -57,9 +65,13 @@ class Absorbing {
 
   std::vector<Claim> weigh() {
     parallelFor(claims_of_.size(), state_.threads(), [&](std::size_t i) { renewClaims(i); });
+    contests_.clear();
     std::map<FragmentIndex, Claim> best;
     for (const std::vector<Claim>& of_object : claims_of_)
       for (const Claim& claim : of_object) {
+        Contest& contest = contests_[claim.fragment];
+        contest.trace += traceOf(claim);
+        contest.layers.add(state_.objects[claim.object].layers);
         const auto [entry, fresh] = best.try_emplace(claim.fragment, claim);
         if (!fresh && isBetter(claim, entry->second)) entry->second = claim;
       }
@@ -72,6 +84,39 @@ class Absorbing {
       return state_.fragments.before(a.fragment, b.fragment);
     });
     return claims;
+  }
+
+  std::uint64_t traceOf(const Claim& claim) const {
+    const std::uint64_t of_object = traces_[claim.object - first_];
+    const auto spec = static_cast<std::uint64_t>(claim.spec - state_.objects[claim.object].leaf->absorb.data());
+    return mixed(mixed(mixed(of_object, spec), claim.share), claim.gap);
+  }
+
+  /// All objects that claim a fragment decide about it; and about what an object gets, all that it may get decides,
+  /// because its budget is used up by it.
+  void keepSpans(const std::vector<Claim>& claims) {
+    if (!state_.trace.hasLayers()) return;
+    std::map<std::size_t, LayerSpan> of_object;
+    for (const Claim& claim : claims) {
+      LayerSpan span = state_.layersOf(std::span(&claim.fragment, 1));
+      LayerSpan& wanted = of_object.try_emplace(claim.object, state_.objects[claim.object].layers).first->second;
+      wanted.add(span);
+      span.add(contests_[claim.fragment].layers);
+      state_.trace.keep(span);
+    }
+    for (const auto& [object, span] : of_object) state_.trace.keep(span);
+  }
+
+  /// A claim that was refused for the same reasons before is not noted again.
+  void note(const Claim& claim, bool is_granted) {
+    const std::uint64_t fragment = state_.fragments.hashOf(claim.fragment);
+    const std::uint64_t trace = mixed(
+        StepKind::Absorbed, mixed(mixed(contests_[claim.fragment].trace, traceOf(claim)), std::uint64_t{is_granted}));
+    if (!state_.trace.isNews(fragment, trace)) return;
+    state_.trace.note(state_.fragments[claim.fragment].primitive, trace);
+    state_.noteGrowth(state_.objects[claim.object], mixed(fragment, trace),
+                      is_granted ? state_.layersOf(std::span(&claim.fragment, 1)) : LayerSpan{});
+    if (is_granted) granted_.push_back(claim.object);
   }
 
   /// An object that did not grow claims what it claimed before, as far as nobody has got it.
@@ -128,17 +173,23 @@ class Absorbing {
 
   bool grant(const std::vector<Claim>& claims) {
     bool any = false;
+    granted_.clear();
     for (const Claim& claim : claims) {
       ObjectInMaking& object = state_.objects[claim.object];
       const double points = state_.fragments.shapeOf(claim.fragment).points;
       double& so_far = absorbed_[claim.object - first_];
-      if (so_far + points > claim.spec->max_fraction_of_points * budget_[claim.object - first_]) continue;
+      if (so_far + points > claim.spec->max_fraction_of_points * budget_[claim.object - first_]) {
+        note(claim, false);
+        continue;
+      }
+      note(claim, true);
       so_far += points;
-      state_.fragments.setOwner(claim.fragment, static_cast<OwnerIndex>(claim.object));
+      state_.setOwner(claim.fragment, static_cast<OwnerIndex>(claim.object));
       addTo(object, claim);
       is_outdated_[claim.object - first_] = 1;
       any = true;
     }
+    for (const std::size_t object : granted_) traces_[object - first_] = state_.objects[object].trace;
     return any;
   }
 
@@ -155,7 +206,15 @@ class Absorbing {
   ReasoningState& state_;
   std::size_t first_;
   bool late_;
+  struct Contest {
+    std::uint64_t trace = 0;  ///< of all claims to the fragment
+    LayerSpan layers;         ///< of the objects that claim it
+  };
+
   std::vector<double> budget_, absorbed_;
+  std::vector<std::uint64_t> traces_;  ///< of the objects, when they grew last
+  std::map<FragmentIndex, Contest> contests_;
+  std::vector<std::size_t> granted_;           ///< the objects that grew in this round
   std::vector<std::vector<Claim>> claims_of_;  ///< by object from first_ on
   std::vector<char> is_outdated_;              ///< whether claims_of_ has to be found anew; bytes, written in parallel
 };

@@ -18,7 +18,7 @@ constexpr double kGapRounding_m = 1e-9;
 
 class Gathering {
  public:
-  Gathering(ReasoningState& state, const std::string& class_iri) : state_(state) {
+  Gathering(ReasoningState& state, const std::string& class_iri) : state_(state), class_iri_(class_iri) {
     for (OwnerIndex owner = 0; owner < state.objects.size(); ++owner) {
       ObjectInMaking& object = state.objects[owner];
       if (object.rule->class_iri != class_iri || !std::exchange(object.may_gather, false)) continue;
@@ -41,9 +41,11 @@ class Gathering {
 
   void run() {
     if (gatherers_.empty()) return;
+    state_.trace.enter(mixed(StepKind::Gathered, hashOf(class_iri_)));
     const CluxelGrid theirs(state_.scene.cluxels, cluxelsOfGatherers());
     for (FragmentIndex fragment = 0; fragment < state_.fragments.size(); ++fragment) lookAround(fragment, theirs);
-    while (true) {
+    for (std::uint64_t round = 1;; ++round) {
+      state_.trace.enterRound(round);
       const std::vector<ReachedFragment> in_reach = reached();
       std::vector<FragmentIndex> given;
       const auto before = static_cast<FragmentIndex>(state_.fragments.size());
@@ -60,6 +62,7 @@ class Gathering {
     OwnerIndex owner = 0;
     FragmentIndex first_fragment = 0;  ///< the first of its `from` in canonical order
     const SplittingSpec* spec = nullptr;
+    std::uint64_t trace = 0;  ///< of the object
     Eigen::Vector2d top = Eigen::Vector2d::Zero();
     Eigen::AlignedBox3d bounds = {};           ///< of the boxes of the object's cluxels
     std::vector<scan::PrimitiveLabel> labels;  ///< of the split crown
@@ -88,7 +91,8 @@ class Gathering {
   }
 
   void add(OwnerIndex owner, const PartInMaking& from) {
-    Gatherer gatherer{owner, from.fragments.front(), &*state_.objects[owner].leaf->splitting, {}, {}, {}};
+    const ObjectInMaking& object = state_.objects[owner];
+    Gatherer gatherer{owner, from.fragments.front(), &*object.leaf->splitting, object.trace, {}, {}, {}};
     for (FragmentIndex fragment : from.fragments)
       if (state_.fragments.before(fragment, gatherer.first_fragment)) gatherer.first_fragment = fragment;
     Candidate foot;
@@ -249,16 +253,30 @@ class Gathering {
       const auto taker = nearestOf(found, cluxel);
       (taker ? parts[*taker] : rest).push_back(cluxel);
     }
+    noteNear(found);
     if (parts.empty()) return;
     std::vector<std::vector<std::uint32_t>> kept;
     for (auto& [taker, cluxels] : parts) kept.push_back(std::move(cluxels));
     for (auto& bunch : connectedBunches(state_.scene.cluxels, rest)) kept.push_back(std::move(bunch));
-    const auto made = state_.fragments.cut(found.fragment, std::move(kept));
+    const auto made = state_.cut(found.fragment, std::move(kept));
     std::size_t next = 0;
     for (const auto& [taker, cluxels] : parts) {
       given.push_back(made[next]);
       give(made[next++], gatherers_[taker], found.near.at(taker));
     }
+  }
+
+  /// The gatherers that are near decide about the fragment, also when none reaches it.
+  void noteNear(const ReachedFragment& found) {
+    std::uint64_t trace = 0;
+    LayerSpan layers = state_.layersOf(std::span(&found.fragment, 1));
+    for (const auto& [number, gap] : found.near) {
+      trace += mixed(gatherers_[number].trace, gap);
+      layers.add(state_.objects[gatherers_[number].owner].layers);
+    }
+    state_.trace.keep(layers);
+    if (state_.trace.isNews(state_.fragments.hashOf(found.fragment), trace))
+      state_.trace.note(state_.fragments[found.fragment].primitive, mixed(StepKind::Gathered, trace));
   }
 
   /// Of the gatherers that are near the fragment and reach the cluxel, the one with the nearest top in plan view.
@@ -273,7 +291,9 @@ class Gathering {
   }
 
   void give(FragmentIndex fragment, const Gatherer& gatherer, double gap_m) {
-    state_.fragments.setOwner(fragment, gatherer.owner);
+    state_.setOwner(fragment, gatherer.owner);
+    state_.noteGrowth(state_.objects[gatherer.owner], mixed(state_.fragments.hashOf(fragment), gap_m),
+                      state_.layersOf(std::span(&fragment, 1)));
     for (const std::size_t g : of_owner_[gatherer.owner]) gatherers_[g].bounds.extend(boundsOf(fragment));
     ObjectInMaking& object = state_.objects[gatherer.owner];
     for (PartInMaking& part : object.parts)
@@ -312,6 +332,7 @@ class Gathering {
   }
 
   ReasoningState& state_;
+  const std::string& class_iri_;
   std::vector<Gatherer> gatherers_;
   std::vector<std::vector<std::size_t>> of_owner_;               ///< numbers in gatherers_
   std::vector<Demand> demands_;                                  ///< each once

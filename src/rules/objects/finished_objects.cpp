@@ -31,9 +31,31 @@ std::vector<ObjectPart> finishedParts(const ReasoningState& state, const ObjectI
   return parts;
 }
 
+/// An object of a whole class is told by the surest leaf of its class: which candidate came first depends on what lies
+/// far away.
+void tellByText(const RuleSet& rules, SemanticObject& object) {
+  double surest = -1;
+  for (const Rule& rule : rules.rules) {
+    if (rule.class_iri != object.class_iri) continue;
+    for (const TreeNode& node : rule.nodes) {
+      const auto* accept = std::get_if<AcceptLeaf>(&node.what);
+      if (accept == nullptr || accept->merge_into != MergeInto::Class || accept->confidence.high <= surest) continue;
+      surest = object.confidence = accept->confidence.high;
+      object.rule_id = rule.id;
+    }
+  }
+}
+
+/// Whether the leaf that made the object merges all that it accepts.
+bool isClassWide(const ReasoningState& state, const ObjectInMaking& object) {
+  const auto* accept = std::get_if<AcceptLeaf>(&object.rule->nodes[state.decisions[object.decision].leaf].what);
+  return accept != nullptr && accept->merge_into == MergeInto::Class;
+}
+
 }  // namespace
 
 ContentHash idOf(const perception::Scene& scene, const SemanticObject& object) {
+  if (object.is_class_wide) return ContentHasher().addText(object.class_iri).addText("class-wide").finish();
   std::vector<std::pair<std::uint32_t, std::uint32_t>> members;
   for (const ObjectPart& part : object.parts)
     for (const std::uint32_t cluxel : part.cluxels)
@@ -53,6 +75,8 @@ std::vector<SemanticObject> finishedObjects(const ReasoningState& state) {
     object.confidence = making.confidence;
     object.rule_id = making.rule->id;
     object.decision = making.decision;
+    object.is_class_wide = isClassWide(state, making);
+    if (object.is_class_wide) tellByText(state.rules, object);
     object.parts = finishedParts(state, making);
     if (object.parts.empty()) continue;
     object.id = idOf(state.scene, object);

@@ -9,7 +9,8 @@
 
 namespace cluxel::rules {
 
-/// Hash of the class and of the members' seed points: independent of everything else in the scene.
+/// Hash of the class and of the members' seed points: independent of everything else in the scene. A class-wide object
+/// is named by its class, so that its name stays when the map grows.
 ContentHash idOf(const perception::Scene& scene, const SemanticObject& object);
 
 /// Objects that own at least one cluxel, sorted by id.

@@ -6,21 +6,38 @@
 
 namespace cluxel::rules {
 
-void joinRelated(ReasoningState& state, const Rule& rule, OwnerIndex related,
-                 const std::pair<std::string, std::string>& as, const std::vector<FragmentIndex>& group) {
+namespace {
+
+/// Notes that the members of the verdict are now part of the object, and keeps the span of all of them.
+void noteMembers(ReasoningState& state, ObjectInMaking& object, const Verdict& verdict, const LayerSpan& added) {
+  LayerSpan span = object.layers;
+  span.add(state.trace.spanOf(verdict.members));
+  state.trace.keep(span);
+  state.noteGrowth(object, verdict.trace, added);
+  state.trace.noteStep(verdict.members, mixed(StepKind::Merged, mixed(object.trace, verdict.trace)));
+}
+
+}  // namespace
+
+void joinRelated(ReasoningState& state, const Rule& rule, OwnerIndex related, const Verdict& verdict,
+                 const std::vector<FragmentIndex>& group) {
+  const std::pair<std::string, std::string>& as = verdict.accept->parts.front();
   ObjectInMaking& object = state.objects[related];
   auto part = std::find_if(object.parts.begin(), object.parts.end(),
                            [&as](const PartInMaking& known) { return known.part_class == as.second; });
   if (part == object.parts.end() && as.second == rule.class_iri) part = object.parts.begin();
   if (part == object.parts.end()) part = object.parts.insert(part, PartInMaking{as.first, as.second, {}, false});
   for (FragmentIndex fragment : group) {
-    state.fragments.setOwner(fragment, related);
+    state.setOwner(fragment, related);
     part->fragments.push_back(fragment);
   }
+  noteMembers(state, object, verdict, state.layersOf(group));
   part->is_outdated = true;
 }
 
-void makeObject(ReasoningState& state, const Rule& rule, const AcceptLeaf& accept, Bindings bindings) {
+void makeObject(ReasoningState& state, const Rule& rule, Verdict verdict) {
+  const AcceptLeaf& accept = *verdict.accept;
+  Bindings& bindings = verdict.bindings;
   const auto number = static_cast<OwnerIndex>(state.objects.size());
   ObjectInMaking object;
   object.rule = &rule;
@@ -29,21 +46,25 @@ void makeObject(ReasoningState& state, const Rule& rule, const AcceptLeaf& accep
   object.leaf = &accept;
   object.confidence = state.decisions.back().probability;
   object.decision = state.decisions.size() - 1;
+  object.trace = hashOf(rule.class_iri);
+  LayerSpan layers;
   for (const auto& [name, part_class] : accept.parts) {
     PartInMaking part{name, part_class, {}, false};
     const bool shared = accept.splitting && accept.splitting->part == name;
     for (FragmentIndex fragment : bindings.at(name).fragments) {
       const OwnerIndex owner = state.fragments[fragment].owner;
       if (shared && (owner == kFree || owner == kShared)) {
-        state.fragments.setOwner(fragment, kShared);
+        state.setOwner(fragment, kShared);
         state.claims[fragment].push_back(number);
       } else if (owner == kFree) {
-        state.fragments.setOwner(fragment, number);
+        state.setOwner(fragment, number);
         part.fragments.push_back(fragment);
       }
     }
+    layers.add(state.layersOf(part.fragments));
     object.parts.push_back(std::move(part));
   }
+  noteMembers(state, object, verdict, layers);
   object.bindings = std::move(bindings);
   state.objects.push_back(std::move(object));
 }

@@ -29,7 +29,7 @@ bool passes(const ReasoningState& state, const Rule& rule, const std::vector<Con
 /// Joins members along links (union-find), skipping joins that would violate a limit.
 class Joining {
  public:
-  Joining(const ReasoningState& state, const Rule& rule, const std::vector<FragmentIndex>& members)
+  Joining(ReasoningState& state, const Rule& rule, const std::vector<FragmentIndex>& members)
       : state_(state),
         rule_(rule),
         members_(members),
@@ -39,7 +39,11 @@ class Joining {
           return limit.kind == Condition::Kind::Attribute && !limit.slice && limit.ratio_of.empty() &&
                  isOfOutline(limit.attribute);
         })) {
-    for (std::size_t i = 0; i < members.size(); ++i) held_[i].fragments = {members[i]};
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      held_[i].fragments = {members[i]};
+      held_[i].trace = state.fragments.hashOf(members[i]);
+      held_[i].layers = state.layersOf(held_[i].fragments);
+    }
     if (limits().empty() || !by_outline_) return;
     for (std::size_t i = 0; i < members.size(); ++i) held_[i].outline = state.fragments.outlineOf(members[i]);
   }
@@ -47,16 +51,36 @@ class Joining {
   std::vector<std::vector<FragmentIndex>> groups(const std::vector<SeedLink>& links) {
     for (const SeedLink& link : links) join(setOf(link.a), setOf(link.b));
     std::vector<std::vector<FragmentIndex>> groups;
-    for (std::size_t i = 0; i < members_.size(); ++i)
-      if (setOf(i) == i) groups.push_back(std::move(held_[i].fragments));
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+      if (setOf(i) != i) continue;
+      if (held_[i].is_linked) note(held_[i]);
+      groups.push_back(std::move(held_[i].fragments));
+    }
     return groups;
   }
 
  private:
   struct Group {
     std::vector<FragmentIndex> fragments;
-    Outline outline;  ///< maintained only when all limits can be tested on it
+    Outline outline;          ///< maintained only when all limits can be tested on it
+    std::uint64_t trace = 0;  ///< a hash of all joins and refusals that led to it
+    LayerSpan layers;
+    bool is_linked = false;
   };
+
+  /// While a group of earlier rounds has all that its trace tells of, it comes about again: no trace returns.
+  void note(const Group& group) {
+    const std::uint64_t trace = mixed(StepKind::Grouped, mixed(hashOf(rule_.id), group.trace));
+    if (!state_.trace.isNews(trace, trace)) return;
+    for (const FragmentIndex fragment : group.fragments) state_.trace.note(state_.fragments[fragment].primitive, trace);
+  }
+
+  /// Notes that the limits forbid to join the two.
+  void noteRefusal(Group& a, Group& b) {
+    const std::uint64_t of_a = a.trace;
+    a.trace = mixed(StepKind::Refused, mixed(a.trace, b.trace));
+    b.trace = mixed(StepKind::Refused, mixed(b.trace, of_a));
+  }
 
   const std::vector<Condition>& limits() const { return rule_.group->limits; }
   std::uint32_t setOf(std::size_t i) { return sets_.find(static_cast<std::uint32_t>(i)); }
@@ -64,6 +88,11 @@ class Joining {
   void join(std::uint32_t a, std::uint32_t b) {
     if (a == b) return;
     Group both;
+    both.layers = held_[a].layers;
+    both.layers.add(held_[b].layers);
+    state_.trace.keep(both.layers);
+    both.trace = mixed(StepKind::Joined, held_[a].trace + held_[b].trace);
+    held_[a].is_linked = held_[b].is_linked = both.is_linked = true;
     both.fragments = held_[a].fragments;
     both.fragments.insert(both.fragments.end(), held_[b].fragments.begin(), held_[b].fragments.end());
     if (!limits().empty()) {
@@ -74,7 +103,10 @@ class Joining {
       } else {
         candidate = state_.fragments.candidateOf(both.fragments);
       }
-      if (!passes(state_, rule_, limits(), std::move(candidate))) return;
+      if (!passes(state_, rule_, limits(), std::move(candidate))) {
+        noteRefusal(held_[a], held_[b]);
+        return;
+      }
     }
     const auto [keep, drop] = std::minmax(a, b);
     held_[keep] = std::move(both);
@@ -82,7 +114,7 @@ class Joining {
     sets_.join(keep, drop);
   }
 
-  const ReasoningState& state_;
+  ReasoningState& state_;
   const Rule& rule_;
   const std::vector<FragmentIndex>& members_;
   DisjointSets sets_;
@@ -126,7 +158,7 @@ SliceScope::SliceScope(ReasoningState& state, const Rule& rule) : state_(state) 
     auto parts = connectedBunches(state.scene.cluxels, inside);
     const bool has_rest = !outside.empty();
     if (has_rest) parts.insert(parts.begin(), std::move(outside));
-    std::vector<FragmentIndex> made = state.fragments.cut(fragment, std::move(parts));
+    std::vector<FragmentIndex> made = state.cut(fragment, std::move(parts));
     slices_.insert(slices_.end(), made.begin() + (has_rest ? 1 : 0), made.end());
     if (has_rest)
       cuts_.push_back({made.front(), {made.begin() + 1, made.end()}});
@@ -150,12 +182,12 @@ void SliceScope::putBack() {
       home = free_slices.front();
       free_slices.erase(free_slices.begin());
     }
-    if (home) state_.fragments.join(*home, free_slices);
+    if (home) state_.join(*home, free_slices);
   }
   cuts_.clear();
 }
 
-std::vector<std::vector<FragmentIndex>> seedGroups(const ReasoningState& state, const Rule& rule,
+std::vector<std::vector<FragmentIndex>> seedGroups(ReasoningState& state, const Rule& rule,
                                                    const std::vector<FragmentIndex>& slices) {
   const std::vector<FragmentIndex> pool = members(state, rule, slices);
   std::vector<std::vector<FragmentIndex>> groups;

@@ -30,8 +30,8 @@ class SliceScope {
 };
 
 /// The seed groups of a rule, by decreasing number of points, then in canonical order. For a rule with sliced seeds the
-/// members are `slices`.
-std::vector<std::vector<FragmentIndex>> seedGroups(const ReasoningState& state, const Rule& rule,
+/// members are `slices`. Of the state only the traces change.
+std::vector<std::vector<FragmentIndex>> seedGroups(ReasoningState& state, const Rule& rule,
                                                    const std::vector<FragmentIndex>& slices);
 
 }  // namespace cluxel::rules

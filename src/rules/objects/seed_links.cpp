@@ -17,7 +17,7 @@ namespace cluxel::rules {
 namespace {
 
 constexpr double kCell_m = 8;
-constexpr double kSlack_m = 1e-3;  ///< bounds and gaps are rounded differently
+constexpr double kBoundsSlack_m = 1e-3;  ///< bounds and gaps are rounded differently
 
 using Box = Eigen::AlignedBox3d;
 
@@ -67,7 +67,7 @@ class Linking {
         rank_(ranksOf(state, members)),
         place_(state.fragments.size(), kNowhere) {
     const double height = std::max(group.near_m.value_or(0), group.vertical_m.value_or(0));
-    around_ = Eigen::Vector3d(reach_m_, reach_m_, height).array() + kSlack_m;
+    around_ = Eigen::Vector3d(reach_m_, reach_m_, height).array() + kBoundsSlack_m;
     for (std::size_t i = 0; i < members.size(); ++i) place_[members[i]] = i;
   }
 

@@ -77,17 +77,22 @@ struct Decision {
 };
 
 struct SemanticObject {
-  ContentHash id;  ///< hash of class and sorted members
+  ContentHash id;  ///< hash of class and sorted members; of a class-wide object of the class alone
   std::string class_iri;
   double confidence = 0;
   std::string rule_id;
   std::vector<ObjectPart> parts;
-  std::size_t decision = 0;  ///< number in ReasoningResult::decisions
+  std::size_t decision = 0;    ///< number in ReasoningResult::decisions; of a stored object 0
+  bool is_class_wide = false;  ///< all of the map that is of its class (`merge_into: class`)
 };
 
 struct ReasoningResult {
   std::vector<SemanticObject> objects;  ///< sorted by id
   std::vector<Decision> decisions;      ///< accepted and rejected, in the order they were taken
+  /// For each primitive a hash of all steps that it took part in, with what they measured, and of the objects that own
+  /// some of it. Two runs with the same rules in which it has the same trace treated it alike. The trace depends on
+  /// what is around the primitive only, and not on how anything is numbered.
+  std::vector<std::uint64_t> traces = {};
 };
 
 }  // namespace cluxel::rules

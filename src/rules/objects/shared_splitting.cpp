@@ -3,7 +3,9 @@
 #include "rules/objects/shared_splitting.hpp"
 
 #include <algorithm>
+#include <set>
 
+#include "base/disjoint_sets.hpp"
 #include "rules/objects/crown_splitting.hpp"
 
 namespace cluxel::rules {
@@ -16,6 +18,8 @@ class SharedSplitting {
 
   void run() {
     if (state_.claims.empty()) return;
+    state_.trace.enter(mixed(StepKind::Split, std::uint64_t{0}));
+    noteClaims();
     orderClaimants();
     for (const auto& [fragment, owners] : state_.claims)
       crown_.insert(crown_.end(), state_.fragments[fragment].cluxels.begin(), state_.fragments[fragment].cluxels.end());
@@ -36,6 +40,34 @@ class SharedSplitting {
   const PartInMaking& partOf(OwnerIndex owner, const std::string& name) const {
     const auto& parts = state_.objects[owner].parts;
     return *std::find_if(parts.begin(), parts.end(), [&](const PartInMaking& part) { return part.name == name; });
+  }
+
+  /// What claims connect is split in one step, of which the trunks and the crowns are members.
+  void noteClaims() {
+    DisjointSets sets(state_.objects.size());
+    for (const auto& [fragment, owners] : state_.claims)
+      for (const OwnerIndex owner : owners) sets.join(owners.front(), owner);
+    struct Connected {
+      std::uint64_t trace = 0;
+      LayerSpan layers;
+    };
+    std::map<std::uint32_t, Connected> connected;
+    std::set<OwnerIndex> claimants;
+    for (const auto& [fragment, owners] : state_.claims) {
+      Connected& with = connected[sets.find(owners.front())];
+      for (const OwnerIndex owner : owners) {
+        if (claimants.insert(owner).second) with.trace += mixed(StepKind::Split, state_.objects[owner].trace);
+        with.trace += mixed(state_.fragments.hashOf(fragment), state_.objects[owner].trace);
+        with.layers.add(state_.objects[owner].layers);
+      }
+      with.layers.add(state_.layersOf(std::span(&fragment, 1)));
+    }
+    for (const auto& [fragment, owners] : state_.claims)
+      state_.trace.note(state_.fragments[fragment].primitive,
+                        mixed(StepKind::Split, connected[sets.find(owners.front())].trace));
+    for (const OwnerIndex owner : claimants)
+      state_.noteGrowth(state_.objects[owner], connected[sets.find(owner)].trace, {});
+    for (const auto& [root, with] : connected) state_.trace.keep(with.layers);
   }
 
   /// Sorts claimants by their trunks in canonical order, so that ties do not depend on the order of acceptance.
@@ -92,9 +124,11 @@ class SharedSplitting {
       kept.push_back(std::move(parts[s]));
     }
     for (auto& bunch : connectedBunches(state_.scene.cluxels, rest)) kept.push_back(std::move(bunch));
-    const auto made = state_.fragments.cut(fragment, std::move(kept));
+    const auto made = state_.cut(fragment, std::move(kept));
     for (std::size_t i = 0; i < owners.size(); ++i) {
-      state_.fragments.setOwner(made[i], owners[i]);
+      state_.setOwner(made[i], owners[i]);
+      state_.noteGrowth(state_.objects[owners[i]], state_.fragments.hashOf(made[i]),
+                        state_.layersOf(std::span(&made[i], 1)));
       auto& parts_of_owner = state_.objects[owners[i]].parts;
       for (PartInMaking& part : parts_of_owner)
         if (part.name == specOf(owners[i]).part) part.fragments.push_back(made[i]);

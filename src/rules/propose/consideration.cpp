@@ -20,8 +20,7 @@ class Considering {
 
   void setOwners(OwnerIndex owner) {
     for (const perception::PrimitiveIndex primitive : primitives_)
-      for (const FragmentIndex fragment : state_.fragments.fragmentsOf(primitive))
-        state_.fragments.setOwner(fragment, owner);
+      for (const FragmentIndex fragment : state_.fragments.fragmentsOf(primitive)) state_.setOwner(fragment, owner);
   }
 
   void by(const Rule& rule, std::vector<Consideration>& said) {

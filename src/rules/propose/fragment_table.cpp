@@ -7,6 +7,8 @@
 #include <cassert>
 #include <limits>
 
+#include "rules/decide/trace_recorder.hpp"
+
 namespace cluxel::rules {
 
 FragmentTable::FragmentTable(const perception::Scene& scene)
@@ -28,6 +30,7 @@ FragmentIndex FragmentTable::add(Fragment fragment) {
   fragments_.push_back(std::move(fragment));
   shapes_.emplace_back();
   outlines_.emplace_back();
+  hashes_.push_back(contentHashOf(fragments_.back()));
   measure(index);
   return index;
 }
@@ -39,6 +42,22 @@ void FragmentTable::measure(FragmentIndex index) {
   outlines_[index] = rules::outlineOf(scene_.cluxels, fragment.cluxels);
   shapes_[index] = isWhole(index) ? shapeOfPrimitive(primitive, scene_.cluxels)
                                   : shapeOfCluxels(scene_, fragment.cluxels, members, {}, outlines_[index]);
+}
+
+std::uint64_t FragmentTable::contentHashOf(const Fragment& fragment) const {
+  const perception::SceneSeeds& seeds = scene_.cluxels;
+  std::uint64_t sum = std::hash<ContentHash>()(scene_.primitives[fragment.primitive].id);
+  for (const std::uint32_t cluxel : fragment.cluxels) {
+    const perception::SeedName& seed = seeds.seed[cluxel];
+    sum += mixed(std::hash<ContentHash>()(seeds.scans[seed.scan]), std::uint64_t{seed.point});
+  }
+  return sum;
+}
+
+std::uint64_t FragmentTable::hashOf(std::span<const FragmentIndex> fragments) const {
+  std::uint64_t sum = 0;
+  for (const FragmentIndex fragment : fragments) sum += mixed(std::uint64_t{1}, hashes_[fragment]);
+  return sum;
 }
 
 bool FragmentTable::isWhole(FragmentIndex index) const {
@@ -74,6 +93,7 @@ void FragmentTable::join(FragmentIndex index, const std::vector<FragmentIndex>& 
     std::erase(fragments_of_primitive_[fragment.primitive], other);
   }
   std::sort(fragment.cluxels.begin(), fragment.cluxels.end());
+  hashes_[index] = contentHashOf(fragment);
   measure(index);
 }
 

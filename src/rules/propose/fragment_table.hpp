@@ -46,6 +46,11 @@ class FragmentTable {
   /// Adds the cluxels of `others` (of the same primitive) to `fragment`, which keeps its owner.
   void join(FragmentIndex fragment, const std::vector<FragmentIndex>& others);
 
+  /// A hash of the fragment's primitive and cluxels. It does not depend on any number of this scene.
+  std::uint64_t hashOf(FragmentIndex fragment) const { return hashes_[fragment]; }
+  /// The same of a set of fragments.
+  std::uint64_t hashOf(std::span<const FragmentIndex> fragments) const;
+
   /// Canonical order: by primitive id, then by cluxels. Independent of the order of primitives in the scene.
   bool before(FragmentIndex a, FragmentIndex b) const;
   /// The candidate made of these fragments.
@@ -67,11 +72,13 @@ class FragmentTable {
   bool isWhole(FragmentIndex fragment) const;
   FragmentIndex add(Fragment fragment);
   void measure(FragmentIndex fragment);
+  std::uint64_t contentHashOf(const Fragment& fragment) const;
 
   const perception::Scene& scene_;
   std::vector<Fragment> fragments_;
   std::vector<Shape> shapes_;
   std::vector<Outline> outlines_;
+  std::vector<std::uint64_t> hashes_;
   std::vector<std::vector<FragmentIndex>> fragments_of_primitive_;
   std::vector<FragmentIndex> fragment_of_cluxel_;
 };

@@ -124,9 +124,11 @@ class EndSight {
     const Eigen::Vector3d toward = (origin - place) / range;  // one metre in plan view
     const Eigen::Vector3d near = place + kOwnDepth_m * toward, far = place + std::min(range, kHiding_m) * toward;
     bool is_hidden = false;
-    state_.grid.nearInPlan(end, kHiding_m + kBeyond_m, [&](std::uint32_t other) {
-      is_hidden =
-          is_hidden || (meets(other, near, far) && !std::binary_search(cluxels_.begin(), cluxels_.end(), other));
+    // The grid shows also what is farther away, up to the width of the largest cluxel of the scene.
+    constexpr double kReach_m = kHiding_m + kBeyond_m;
+    state_.grid.nearInPlan(end, kReach_m, [&](std::uint32_t other) {
+      is_hidden = is_hidden || (meets(other, near, far) && gapBetween(all_, end, other).horizontal <= kReach_m &&
+                                !std::binary_search(cluxels_.begin(), cluxels_.end(), other));
     });
     return is_hidden;
   }

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// The reasoning stage around a change, with the outcome of the run over the whole scene. Decision 0092 has the proof.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "perception/segments/scene.hpp"
+#include "rules/decide/local_layers.hpp"
+#include "rules/decide/local_reach.hpp"
+#include "rules/decide/reason.hpp"
+
+namespace cluxel::rules {
+
+/// A part of a scene around a change. Vectors are by primitive of the window.
+struct LocalInput {
+  /// The primitives near the change, with the edges and relations among them; see perception::partOf().
+  const perception::Scene& window;
+  /// New, or anything that it consists of or is related to is not as in the run before.
+  std::vector<char> is_dirty;
+  /// Something within reach of it, or an edge or a relation of it, is not in the window: its outcome means nothing.
+  std::vector<char> is_open;
+  /// Where primitives were that are gone, or that were larger before. What is within reach of them counts as dirty.
+  std::vector<Eigen::AlignedBox2d> gone;
+  /// Of the run before (ReasoningResult::traces); absent for what is new.
+  std::vector<std::optional<std::uint64_t>> stored_trace;
+};
+
+/// What holds in the run over the whole new scene:
+/// - of primitives in layers up to `j` the traces, the decisions that have one of them as a seed, and the objects that
+///   have one of them as a member are those of `result`;
+/// - of all other primitives, and of objects without a member in these layers, they are those of the run before.
+/// An object of a whole class (`merge_into: class`) consists of the members that both runs gave it.
+struct LocalOutcome {
+  ReasoningResult result;
+  std::vector<std::uint32_t> layer;  ///< by primitive; see layersAround()
+  std::uint32_t j = 0;
+};
+
+/// The layers alone: a window in which some of the first layers are open is too small. Cost: some microseconds a
+/// cluxel.
+std::vector<std::uint32_t> layersIn(const LocalInput& input, const RuleSet& rules, const ReasoningContext& context,
+                                    double reach_m);
+
+/// Runs the rules over the window, and compares traces in some layers around the change with those stored. Absent when
+/// these layers are not within the window, when no layers agree, or when a step reaches across them: then a larger
+/// window may do. `reach_m` is that of localReach(). Several changes may be decided in windows of their own; each
+/// window marks all that is dirty in it. Without any change the outcome is empty. The rules must not ask the map.
+std::optional<LocalOutcome> decideLocally(const LocalInput& input, const RuleSet& rules,
+                                          const ReasoningContext& context, double reach_m);
+
+}  // namespace cluxel::rules
