@@ -48,10 +48,32 @@ class ContactCollector {
   std::uint32_t last_ = 0;
 };
 
+/// Whether most of a horizontal plane's footprint lies in the layer of the ground.
+bool isFloor(const ComponentTile& tile, std::size_t component, double ground_layer_m) {
+  if (tile.components[component].label != static_cast<std::uint32_t>(scan::PrimitiveLabel::HorizontalPlane))
+    return false;
+  const auto cells = tile.cellsOf(component);
+  const auto low = std::count_if(cells.begin(), cells.end(), [&](const FootprintCell& cell) {
+    return cell.highest < static_cast<float>(ground_layer_m);
+  });
+  return 2 * static_cast<std::size_t>(low) > cells.size();
+}
+
+/// For each tile of the ring, which of its components are floor.
+std::array<std::vector<char>, 9> floorsOf(const Ring<ComponentTile>& components, const ContactParams& params) {
+  std::array<std::vector<char>, 9> floors;
+  for (std::size_t ring = 0; ring < floors.size(); ++ring)
+    for (std::size_t c = 0; components[ring] != nullptr && c < components[ring]->size(); ++c)
+      floors[ring].push_back(isFloor(*components[ring], c, params.ground_layer_m) ? 1 : 0);
+  return floors;
+}
+
+/// The floor of a tile is a primitive of its own: one over the whole map would make every change a change of the map.
 void addEdges(const Ring<ComponentTile>& components, const Ring<CluxelTile>& cluxels, const FeatureTile& graph,
-              float largest_gap, ContactCollector& contacts) {
+              float largest_gap, const ContactParams& params, ContactCollector& contacts) {
   const CluxelTile& own = *cluxels[kRingCentre];
   const ComponentTile& own_components = *components[kRingCentre];
+  const auto is_floor = floorsOf(components, params);
   for (std::uint32_t a = 0; a < own.size(); ++a)
     for (std::uint32_t e = graph.edge_offset[a]; e < graph.edge_offset[a + 1]; ++e) {
       const std::size_t ring = graph.edge_target[e].ring;
@@ -59,6 +81,7 @@ void addEdges(const Ring<ComponentTile>& components, const Ring<CluxelTile>& clu
       const CluxelTile& other = *cluxels[ring];
       const std::uint32_t from = own_components.component_of[a], to = components[ring]->component_of[b];
       if (ring == kRingCentre && from == to) continue;
+      if (ring != kRingCentre && is_floor[kRingCentre][from] != 0 && is_floor[ring][to] != 0) continue;
       const Eigen::Vector3f shift = ringShift(static_cast<int>(ring));
       const float gap = gapBetween(own.box_min[a], own.box_max[a], other.box_min[b] + shift, other.box_max[b] + shift);
       const bool same_label = own_components.components[from].label == components[ring]->components[to].label;
@@ -223,7 +246,7 @@ void describe(ContactParams& params, ParameterVisitor& visitor) {
 ContactTile contactsOf(const Ring<ComponentTile>& components, const Ring<CluxelTile>& cluxels, const FeatureTile& graph,
                        const ComponentParams& component_params, const ContactParams& params) {
   ContactCollector contacts;
-  addEdges(components, cluxels, graph, static_cast<float>(component_params.max_gap_m), contacts);
+  addEdges(components, cluxels, graph, static_cast<float>(component_params.max_gap_m), params, contacts);
   addCells(CellGrid(components, params), params, contacts);
   ContactTile tile;
   tile.key = graph.key;

@@ -15,7 +15,7 @@ namespace cluxel::perception {
 /// Which pairs of components are recorded.
 struct ContactParams {
   double near_m = 1.0;          ///< pairs farther apart are not recorded
-  double ground_layer_m = 0.5;  ///< horizontal planes lower than this above the ground count as ground: not recorded
+  double ground_layer_m = 0.5;  ///< horizontal planes lower than this above the ground are floor: see contactsOf()
 };
 void describe(ContactParams& params, ParameterVisitor& visitor);
 
@@ -37,7 +37,8 @@ struct ContactTile {
   std::vector<Contact> contacts;
 };
 
-/// Cost: about 100 ns a point.
+/// The floor has no contacts but edges of the cluxel graph within its tile: it is a primitive for each tile. Cost:
+/// about 100 ns a point.
 ContactTile contactsOf(const Ring<ComponentTile>& components, const Ring<CluxelTile>& cluxels, const FeatureTile& graph,
                        const ComponentParams& component_params, const ContactParams& params);
 

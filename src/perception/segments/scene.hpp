@@ -68,6 +68,7 @@ struct SceneCluxels : SceneSeeds {
   std::vector<Eigen::Vector3d> low_corner;  ///< of that box [m, map]
   std::vector<std::uint32_t> point_count;
   std::vector<PrimitiveIndex> primitive;
+  std::vector<std::uint32_t> component;  ///< number in the tile's ComponentTile; empty but for assembled scenes
   std::vector<scan::PrimitiveLabel> label;
   std::vector<std::array<float, scan::kPrimitiveLabelCount>> probability;
   std::vector<float> height_above_ground;  ///< of the centre [m]

@@ -12,55 +12,11 @@
 #include "cluxel/error.hpp"
 #include "perception/segments/merged_component.hpp"
 #include "perception/segments/scene_relations.hpp"
+#include "perception/segments/tile_fit.hpp"
 
 namespace cluxel::perception {
 
 namespace {
-
-void require(bool holds, const TileKey& key, const char* what) {
-  if (holds) return;
-  throw Error(ErrorKind::StoreUnavailable, "stored blocks of tile (" + std::to_string(key.x) + ", " +
-                                               std::to_string(key.y) + ") do not belong together: " + what +
-                                               "; the map is damaged, build it anew");
-}
-
-/// The number of items in each tile of the ring; 0 where there is no tile.
-template <typename Tiles>
-std::array<std::size_t, 9> sizesAround(const Tiles& tiles, const TileKey& key) {
-  std::array<std::size_t, 9> sizes{};
-  const auto ring = ringIn(tiles, key);
-  for (std::size_t r = 0; r < sizes.size(); ++r) sizes[r] = ring[r] == nullptr ? 0 : ring[r]->size();
-  return sizes;
-}
-
-void checkLengths(const TileOutputs& tiles, const TileKey& key, const SummaryTile& summary) {
-  const bool all = tiles.features.contains(key) && tiles.ground.contains(key) && tiles.labels.contains(key) &&
-                   tiles.components.contains(key) && tiles.contacts.contains(key);
-  require(all, key, "a block is missing");
-  require(tiles.features.at(key).size() == summary.size(), key, "its features are of other cluxels");
-  require(tiles.labels.at(key).label.size() == summary.size(), key, "its labels are of other cluxels");
-  require(tiles.components.at(key).component_of.size() == summary.size(), key, "its components are of other cluxels");
-}
-
-/// Checks that the outputs of each tile and its neighbours are consistent with each other.
-void checkFit(const TileOutputs& tiles) {
-  for (const auto& [key, summary] : tiles.summaries) {
-    checkLengths(tiles, key, summary);
-    const auto ring_cluxels = sizesAround(tiles.summaries, key), ring_components = sizesAround(tiles.components, key);
-    const auto& edges = tiles.features.at(key).edge_target;
-    require(
-        std::all_of(edges.begin(), edges.end(), [&](const RingIndex& to) { return to.index < ring_cluxels[to.ring]; }),
-        key, "an edge leads to a cluxel that is not there");
-    const auto& contacts = tiles.contacts.at(key).contacts;
-    const auto is_there = [&](const Contact& contact) {
-      return contact.from < ring_components[kRingCentre] && contact.to < ring_components[contact.to_ring];
-    };
-    require(std::all_of(contacts.begin(), contacts.end(), is_there), key,
-            "a contact is with a component that is not there");
-  }
-  require(tiles.components.size() == tiles.summaries.size() && tiles.contacts.size() == tiles.summaries.size(), {},
-          "a block has no tile");
-}
 
 /// Consecutive numbers of items over all tiles, in key order.
 class TileNumbering {
@@ -80,16 +36,29 @@ class TileNumbering {
   std::uint32_t total_ = 0;
 };
 
-/// The primitive of every component, numbered in the order of first components.
-std::vector<std::uint32_t> joinComponents(const TileOutputs& tiles, const TileNumbering& components) {
+/// Components joined to primitives.
+struct JoinedComponents {
+  std::vector<std::uint32_t> primitive_of;  ///< by component, in the order of first components
+  std::vector<std::uint32_t> cut;           ///< components that go on in a tile that is not held
+};
+
+JoinedComponents joinComponents(const TileOutputs& tiles, const TileNumbering& components, const TileSet& elsewhere) {
+  JoinedComponents joined;
   DisjointSets sets(components.total());
   for (const auto& [key, tile] : tiles.contacts) {
     const auto ring = ringOf(key);
-    for (const Contact& contact : tile.contacts)
-      if (contact.linked_edges > 0)
-        sets.join(components.of(key) + contact.from, components.of(ring[contact.to_ring]) + contact.to);
+    const auto is_elsewhere = ringAmong(elsewhere, key);
+    for (const Contact& contact : tile.contacts) {
+      if (contact.linked_edges == 0) continue;
+      const std::uint32_t from = components.of(key) + contact.from;
+      if (is_elsewhere[contact.to_ring])
+        joined.cut.push_back(from);
+      else
+        sets.join(from, components.of(ring[contact.to_ring]) + contact.to);
+    }
   }
-  return sets.numbers();
+  joined.primitive_of = sets.numbers();
+  return joined;
 }
 
 /// Appends `of(i)` for each of `count` items. One field at a time is faster than all fields in turn.
@@ -100,16 +69,29 @@ void appendEach(std::vector<Value>& all, std::size_t count, const Of& of) {
   for (std::size_t i = 0; i < count; ++i) all[first + i] = of(static_cast<std::uint32_t>(i));
 }
 
-void appendEdges(const TileOutputs& tiles, const TileKey& key, const TileNumbering& numbering, SceneCluxels& all) {
-  const FeatureTile& graph = tiles.features.at(key);
+/// The edges of a tile that lead to a tile that is held.
+FeatureTile heldEdges(const FeatureTile& graph, const std::array<bool, 9>& is_elsewhere) {
+  FeatureTile held;
+  held.edge_offset.push_back(0);
+  for (std::uint32_t c = 0; c < graph.size(); ++c) {
+    for (std::uint32_t e = graph.edge_offset[c]; e < graph.edge_offset[c + 1]; ++e)
+      if (!is_elsewhere[graph.edge_target[e].ring]) held.edge_target.push_back(graph.edge_target[e]);
+    held.edge_offset.push_back(static_cast<std::uint32_t>(held.edge_target.size()));
+  }
+  return held;
+}
+
+void appendEdges(const FeatureTile& graph, const TileOutputs& tiles, const TileKey& key, const TileNumbering& numbering,
+                 SceneCluxels& all) {
   const auto ring = ringOf(key);
   std::array<std::uint32_t, 9> base{};
   for (std::size_t r = 0; r < base.size(); ++r) base[r] = tiles.summaries.contains(ring[r]) ? numbering.of(ring[r]) : 0;
   const auto first = static_cast<std::uint32_t>(all.edge_target.size());
   appendEach(all.edge_target, graph.edge_target.size(),
              [&](auto e) { return base[graph.edge_target[e].ring] + graph.edge_target[e].index; });
-  appendEach(all.edge_offset, graph.size(), [&](auto c) { return first + graph.edge_offset[c + 1]; });
-  for (std::uint32_t c = 0; c < graph.size(); ++c) {
+  const std::size_t count = graph.size();
+  appendEach(all.edge_offset, count, [&](auto c) { return first + graph.edge_offset[c + 1]; });
+  for (std::uint32_t c = 0; c < count; ++c) {
     const auto begin = all.edge_target.begin() + first + graph.edge_offset[c];
     const auto end = all.edge_target.begin() + first + graph.edge_offset[c + 1];
     if (!std::is_sorted(begin, end)) std::sort(begin, end);  // already sorted within a tile
@@ -126,7 +108,8 @@ void appendSeeds(const SummaryTile& cluxels, SceneSeeds& all) {
   });
 }
 
-void appendCluxels(const TileOutputs& tiles, const TileKey& key, const TileNumbering& numbering, SceneCluxels& all) {
+void appendCluxels(const TileOutputs& tiles, const TileKey& key, const TileNumbering& numbering,
+                   const TileSet& elsewhere, SceneCluxels& all) {
   const SummaryTile& cluxels = tiles.summaries.at(key);
   const LabelTile& labels = tiles.labels.at(key);
   const auto ground = ringIn(tiles.ground, key);
@@ -140,12 +123,16 @@ void appendCluxels(const TileOutputs& tiles, const TileKey& key, const TileNumbe
   appendEach(all.low_corner, count,
              [&](auto c) -> Eigen::Vector3d { return corner + cluxels.box_min[c].template cast<double>(); });
   appendEach(all.point_count, count, [&](auto c) { return cluxels.point_count[c]; });
+  appendEach(all.component, count, [&](auto c) { return tiles.components.at(key).component_of[c]; });
   appendEach(all.label, count, [&](auto c) { return static_cast<scan::PrimitiveLabel>(labels.label[c]); });
   appendEach(all.probability, count, [&](auto c) { return labels.probability[c]; });
   appendEach(all.height_above_ground, count, [&](auto c) {
     return static_cast<float>(centre(c).z() - groundHeightAt(ground, centre(c).x(), centre(c).y()));
   });
-  appendEdges(tiles, key, numbering, all);
+  const FeatureTile& graph = tiles.features.at(key);
+  const auto is_elsewhere = ringAmong(elsewhere, key);
+  const bool is_inside = std::none_of(is_elsewhere.begin(), is_elsewhere.end(), [](bool away) { return away; });
+  appendEdges(is_inside ? graph : heldEdges(graph, is_elsewhere), tiles, key, numbering, all);
 }
 
 std::vector<ContentHash> scansOf(const TileOutputs& tiles) {
@@ -157,12 +144,13 @@ std::vector<ContentHash> scansOf(const TileOutputs& tiles) {
 void reserve(SceneCluxels& all, std::size_t cluxels, std::size_t edges) {
   all.seed.reserve(cluxels);
   all.name.reserve(cluxels), all.center.reserve(cluxels), all.extent.reserve(cluxels), all.low_corner.reserve(cluxels);
-  all.point_count.reserve(cluxels), all.label.reserve(cluxels), all.probability.reserve(cluxels);
+  all.component.reserve(cluxels), all.point_count.reserve(cluxels), all.label.reserve(cluxels),
+      all.probability.reserve(cluxels);
   all.height_above_ground.reserve(cluxels), all.edge_offset.reserve(cluxels + 1);
   all.edge_target.reserve(edges);
 }
 
-SceneCluxels gatherCluxels(const TileOutputs& tiles) {
+SceneCluxels gatherCluxels(const TileOutputs& tiles, const TileSet& elsewhere) {
   const TileNumbering numbering(tiles.summaries);
   SceneCluxels all;
   std::size_t edges = 0;
@@ -170,7 +158,7 @@ SceneCluxels gatherCluxels(const TileOutputs& tiles) {
   reserve(all, numbering.total(), edges);
   all.scans = scansOf(tiles);
   all.edge_offset.push_back(0);
-  for (const auto& [key, tile] : tiles.summaries) appendCluxels(tiles, key, numbering, all);
+  for (const auto& [key, tile] : tiles.summaries) appendCluxels(tiles, key, numbering, elsewhere, all);
   return all;
 }
 
@@ -239,11 +227,13 @@ void fillPrimitives(const TileOutputs& tiles, const std::vector<std::uint32_t>& 
 
 /// All contacts between different primitives, summed in canonical order.
 std::vector<PrimitiveContact> mergeContacts(const TileOutputs& tiles, const TileNumbering& components,
-                                            const std::vector<std::uint32_t>& primitive_of) {
+                                            const std::vector<std::uint32_t>& primitive_of, const TileSet& elsewhere) {
   std::vector<PrimitiveContact> all;
   for (const auto& [key, tile] : tiles.contacts) {
     const auto ring = ringOf(key);
+    const auto is_elsewhere = ringAmong(elsewhere, key);
     for (const Contact& contact : tile.contacts) {
+      if (is_elsewhere[contact.to_ring]) continue;
       const std::uint32_t from = primitive_of[components.of(key) + contact.from];
       const std::uint32_t to = primitive_of[components.of(ring[contact.to_ring]) + contact.to];
       if (from != to)
@@ -279,31 +269,40 @@ void describe(RelationParams& params, ParameterVisitor& visitor) {
 }
 
 SceneSeeds seedsOf(const TileOutputs& tiles) {
-  checkFit(tiles);
+  checkFit(tiles, {});
   SceneSeeds seeds;
   seeds.scans = scansOf(tiles);
   for (const auto& [key, tile] : tiles.summaries) appendSeeds(tile, seeds);
   return seeds;
 }
 
-Scene assembleScene(const TileOutputs& tiles, const RelationParams& params, std::vector<SceneView> views) {
-  checkFit(tiles);
-  Scene scene;
+SceneWindow assembleWindow(const TileOutputs& tiles, const TileSet& elsewhere, const RelationParams& params,
+                           std::vector<SceneView> views) {
+  checkFit(tiles, elsewhere);
+  SceneWindow window;
+  Scene& scene = window.scene;
   std::sort(views.begin(), views.end(), [](const SceneView& a, const SceneView& b) { return a.scan < b.scan; });
   scene.views = std::move(views);
-  scene.cluxels = gatherCluxels(tiles);
+  scene.cluxels = gatherCluxels(tiles, elsewhere);
   const TileNumbering components(tiles.components);
-  std::vector<std::uint32_t> primitive_of = joinComponents(tiles, components);
+  JoinedComponents joined = joinComponents(tiles, components, elsewhere);
+  std::vector<std::uint32_t>& primitive_of = joined.primitive_of;
   const auto last = std::max_element(primitive_of.begin(), primitive_of.end());
   fillPrimitives(tiles, primitive_of, last == primitive_of.end() ? 0 : *last + 1, scene);
   const std::vector<std::uint32_t> rank = sortById(scene.primitives);
   for (std::uint32_t& primitive : primitive_of) primitive = rank[primitive];
+  window.is_cut.assign(scene.primitives.size(), 0);
+  for (const std::uint32_t component : joined.cut) window.is_cut[primitive_of[component]] = 1;
   scene.cluxels.primitive.resize(scene.cluxels.size());
   for (PrimitiveIndex i = 0; i < scene.primitives.size(); ++i)
     for (const std::uint32_t cluxel : scene.primitives[i].cluxels) scene.cluxels.primitive[cluxel] = i;
-  appendRelations(mergeContacts(tiles, components, primitive_of), params, scene);
+  appendRelations(mergeContacts(tiles, components, primitive_of, elsewhere), params, scene);
   indexRelations(scene);
-  return scene;
+  return window;
+}
+
+Scene assembleScene(const TileOutputs& tiles, const RelationParams& params, std::vector<SceneView> views) {
+  return assembleWindow(tiles, {}, params, std::move(views)).scene;
 }
 
 }  // namespace cluxel::perception

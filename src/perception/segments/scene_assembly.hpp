@@ -42,6 +42,17 @@ struct TileOutputs {
 /// read. The other maps must have the same keys. `views`: of the scans whose sensor's place is known, in any order.
 /// Throws Error (StoreUnavailable) when outputs do not belong together. Cost: about 1 microsecond a cluxel.
 Scene assembleScene(const TileOutputs& tiles, const RelationParams& params, std::vector<SceneView> views = {});
+
+/// The scene of some of a map's tiles.
+struct SceneWindow {
+  Scene scene;
+  std::vector<char> is_cut;  ///< by primitive: it goes on in a tile that is not held
+};
+/// The same for some tiles of a map. `elsewhere`: the map's other tiles, as far as they are next to those that are
+/// held; of them only the ground is read. Cut primitives have the ids and attributes of what is held of them.
+SceneWindow assembleWindow(const TileOutputs& tiles, const TileSet& elsewhere, const RelationParams& params,
+                           std::vector<SceneView> views = {});
+
 /// The seeds of its cluxels alone, with the same errors. Cost: about 50 ns a cluxel.
 SceneSeeds seedsOf(const TileOutputs& tiles);
 
