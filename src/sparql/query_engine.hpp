@@ -75,6 +75,8 @@ class PreparedQuery {
   /// Throws InputError with line, column and hint for a faulty query.
   PreparedQuery(const rdf::QuadReader& reader, std::string_view text, const QueryOptions& options = {},
                 const std::vector<std::string>& parameters = {});
+  /// The same of a query that is parsed already.
+  PreparedQuery(const rdf::QuadReader& reader, ast::Query query, const QueryOptions& options = {});
   PreparedQuery(PreparedQuery&&) noexcept;
   PreparedQuery& operator=(PreparedQuery&&) noexcept;
   ~PreparedQuery();

@@ -12,6 +12,7 @@
 #include "rdf/file/environment.hpp"
 #include "rdf/file/lmdb_handles.hpp"
 #include "rdf/file/store_sums.hpp"
+#include "rdf/store/quad_journal.hpp"
 
 namespace cluxel::rdf {
 
@@ -108,6 +109,7 @@ struct ReadTransaction::Impl {
   std::uint64_t generation = 0;       ///< incremented with each change in a write transaction
   BlockKeys block_keys;
   StoreSums sums;                           ///< of a write transaction
+  QuadJournal journal;                      ///< of a write transaction
   std::shared_ptr<StoreSnapshot> snapshot;  ///< created on first use, for this generation
   std::uint64_t snapshot_generation = 0;
   std::function<void()> flush_poll;  ///< of a FlushPoll

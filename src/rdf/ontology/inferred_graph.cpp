@@ -55,7 +55,7 @@ ClosureChange inferClosure(WriteTransaction& transaction, const InferenceCheck& 
   for (const QuadIds& quad : added) writer.add(quad);
   for (const QuadIds& quad : removed) writer.remove(quad);
   writer.flush();
-  return {added.size(), removed.size(), std::move(entailed.ignored)};
+  return {added.size(), removed.size(), std::move(entailed.ignored), {}};
 }
 
 ClosureChange extendClosure(WriteTransaction& transaction, std::span<const QuadIds> fresh,
@@ -67,7 +67,7 @@ ClosureChange extendClosure(WriteTransaction& transaction, std::span<const QuadI
   EntailedQuads entailed = closureOf(reader, graphs.inferred, graphs.stated, limitsOf(reader, check), fresh);
   for (const QuadIds& quad : entailed.quads) writer.add(quad);
   writer.flush();
-  return {entailed.quads.size(), 0, std::move(entailed.ignored)};
+  return {entailed.quads.size(), 0, std::move(entailed.ignored), std::move(entailed.quads)};
 }
 
 }  // namespace cluxel::rdf

@@ -111,6 +111,7 @@ EntailedQuads closureOf(const QuadReader& reader, TermId target, std::span<const
 struct ClosureChange {
   std::uint64_t added = 0, removed = 0;   ///< quads
   std::vector<std::string> ignored = {};  ///< as in EntailedQuads
+  std::vector<QuadIds> extension = {};    ///< of extendClosure(): the added quads
 };
 /// Replaces the graph `inferred` by the closure of ontology, observed and operator. Writes only the differences, and
 /// flushes.

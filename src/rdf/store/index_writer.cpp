@@ -75,7 +75,23 @@ class EntryPoll {
   std::size_t entries_ = 0;
 };
 
-std::uint64_t entriesOf(const ReadTransaction::Impl& transaction, Table index) {
+/// Tells the sum and the journal, as far as they are wanted, what has changed.
+struct ChangeNotes {
+  EntrySum* sum = nullptr;
+  QuadJournal* journal = nullptr;
+
+  void added(Key128 key) const {
+    if (sum != nullptr) sum->add(key);
+    if (journal != nullptr) journal->note(quadOf(key), true);
+  }
+  void removed(Key128 key) const {
+    if (sum != nullptr) sum->remove(key);
+    if (journal != nullptr) journal->note(quadOf(key), false);
+  }
+  static QuadIds quadOf(Key128 key) { return toQuad(toKey(key), QuadOrder::Spog); }
+};
+
+std::uint64_t keyCount(const ReadTransaction::Impl& transaction, Table index) {
   MDB_stat stat;
   transaction.check(mdb_stat(transaction.live(), transaction.table(index), &stat), "read an index");
   return stat.ms_entries;
@@ -85,7 +101,7 @@ std::vector<Key128> allKeys(ReadTransaction::Impl& transaction, Table index) {
   const IndexCursor cursor(transaction, index);
   const PageDirectory directory(cursor.get());
   std::vector<Key128> keys;
-  keys.reserve(entriesOf(transaction, index));
+  keys.reserve(keyCount(transaction, index));
   EntryPoll poll(transaction);
   for (std::size_t i = 0; i < directory.pageCount(); ++i) {
     for (const QuadKey& key : directory.page(i)) keys.push_back(toNumber(key));
@@ -94,7 +110,16 @@ std::vector<Key128> allKeys(ReadTransaction::Impl& transaction, Table index) {
   return keys;
 }
 
-void writeAnew(ReadTransaction::Impl& transaction, Table index, const IndexChange& change, EntrySum* sum) {
+void noteDifference(const std::vector<Key128>& old, const std::vector<Key128>& now, const ChangeNotes& notes) {
+  std::vector<Key128> keys;
+  std::set_difference(old.begin(), old.end(), now.begin(), now.end(), std::back_inserter(keys));
+  for (const Key128 key : keys) notes.removed(key);
+  keys.clear();
+  std::set_difference(now.begin(), now.end(), old.begin(), old.end(), std::back_inserter(keys));
+  for (const Key128 key : keys) notes.added(key);
+}
+
+void writeAnew(ReadTransaction::Impl& transaction, Table index, const IndexChange& change, const ChangeNotes& notes) {
   const std::vector<Key128> old = allKeys(transaction, index);
   std::vector<Key128> kept;
   kept.reserve(old.size());
@@ -104,17 +129,17 @@ void writeAnew(ReadTransaction::Impl& transaction, Table index, const IndexChang
   std::set_union(kept.begin(), kept.end(), change.added.begin(), change.added.end(), std::back_inserter(merged));
   transaction.check(mdb_drop(transaction.live(), transaction.table(index), 0), "write an index");
   IndexCursor cursor(transaction, index);
-  if (sum != nullptr) *sum = {};
   EntryPoll poll(transaction);
   for (const Key128 key : merged) {
     poll.count(1);
     cursor.append(key);
-    if (sum != nullptr) sum->add(key);
   }
+  if (notes.sum != nullptr || notes.journal != nullptr) noteDifference(old, merged, notes);
 }
 
 /// Uses mdb_del only: loops of mdb_cursor_del over duplicates corrupt the file in LMDB 0.9.24.
-void removeSingly(ReadTransaction::Impl& transaction, Table index, const std::vector<Key128>& removed, EntrySum* sum) {
+void removeSingly(ReadTransaction::Impl& transaction, Table index, const std::vector<Key128>& removed,
+                  const ChangeNotes& notes) {
   EntryPoll poll(transaction);
   for (const Key128 number : removed) {
     poll.count(1);
@@ -124,34 +149,37 @@ void removeSingly(ReadTransaction::Impl& transaction, Table index, const std::ve
     const int code = mdb_del(transaction.live(), transaction.table(index), &key, &value);
     if (code == MDB_NOTFOUND) continue;
     transaction.check(code, "write an index");
-    if (sum != nullptr) sum->remove(number);
+    notes.removed(number);
   }
 }
 
-void addSingly(ReadTransaction::Impl& transaction, Table index, const std::vector<Key128>& added, EntrySum* sum) {
+void addSingly(ReadTransaction::Impl& transaction, Table index, const std::vector<Key128>& added,
+               const ChangeNotes& notes) {
   IndexCursor cursor(transaction, index);
   const std::optional<Key128> last = cursor.last();
   const auto beyond = last ? std::upper_bound(added.begin(), added.end(), *last) : added.begin();
   EntryPoll poll(transaction);
   for (auto key = added.begin(); key != beyond; ++key) {
     poll.count(1);
-    if (cursor.insert(*key) && sum != nullptr) sum->add(*key);
+    if (cursor.insert(*key)) notes.added(*key);
   }
   for (auto key = beyond; key != added.end(); ++key) {
     poll.count(1);
     cursor.append(*key);
-    if (sum != nullptr) sum->add(*key);
+    notes.added(*key);
   }
 }
 
 }  // namespace
 
-void applyTo(ReadTransaction::Impl& transaction, Table index, const IndexChange& change, EntrySum* sum) {
+void applyTo(ReadTransaction::Impl& transaction, Table index, const IndexChange& change, EntrySum* sum,
+             QuadJournal* journal) {
+  const ChangeNotes notes{sum, journal};
   const std::uint64_t changes = change.added.size() + change.removed.size();
-  const std::uint64_t entries = entriesOf(transaction, index);
-  if (entries > 0 && changes * kPutCost > entries + 1000) return writeAnew(transaction, index, change, sum);
-  removeSingly(transaction, index, change.removed, sum);
-  addSingly(transaction, index, change.added, sum);
+  const std::uint64_t entries = keyCount(transaction, index);
+  if (entries > 0 && changes * kPutCost > entries + 1000) return writeAnew(transaction, index, change, notes);
+  removeSingly(transaction, index, change.removed, notes);
+  addSingly(transaction, index, change.added, notes);
 }
 
 FlushPoll::FlushPoll(const ReadTransaction& transaction, std::function<void()> poll) : transaction_(transaction) {

@@ -16,7 +16,8 @@ struct IndexChange {
 
 /// Applies the change: appends keys after the last one, puts single keys, and rewrites the index by a merge when the
 /// change is large. Adding an existing key or removing a missing one has no effect.
-/// `sum`, if any, follows what really changes.
-void applyTo(ReadTransaction::Impl& transaction, Table index, const IndexChange& change, EntrySum* sum);
+/// `sum` and `journal`, if any, follow what really changes; the journal takes keys in the order s, p, o, g.
+void applyTo(ReadTransaction::Impl& transaction, Table index, const IndexChange& change, EntrySum* sum,
+             QuadJournal* journal = nullptr);
 
 }  // namespace cluxel::rdf

@@ -144,7 +144,9 @@ void QuadWriter::Impl::flushQuads() {
       std::sort(change.added.begin(), change.added.end());
       std::sort(change.removed.begin(), change.removed.end());
     }
-    applyTo(state(), tableOf(order), change, order == QuadOrder::Spog ? &state().sums.quads : nullptr);
+    const bool is_first = order == QuadOrder::Spog;
+    applyTo(state(), tableOf(order), change, is_first ? &state().sums.quads : nullptr,
+            is_first ? &state().journal : nullptr);
   }
   changes.clear();
 }

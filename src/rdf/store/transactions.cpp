@@ -162,6 +162,7 @@ WriteTransaction LmdbEnvironment::write() {
   WriteTransaction transaction(std::move(impl));
   if (!verified_) verifyForWriting(base);
   if (base > 0) startSums(transaction, base);
+  restartJournal(transaction);
   return transaction;
 }
 

@@ -35,13 +35,13 @@ std::int64_t clockMicroseconds() {
 
 }  // namespace
 
-PreparedQuery::Impl::Impl(const rdf::QuadReader& quad_reader, std::string_view text, const QueryOptions& query_options,
+PreparedQuery::Impl::Impl(const rdf::QuadReader& quad_reader, const Parse& parse, const QueryOptions& query_options,
                           const std::vector<std::string>& parameters)
     : reader(quad_reader),
       options(query_options),
       preparing(started(query_options.budget)),
       terms(quad_reader),
-      query(parsed(text, query_options, preparing)),
+      query(parse(preparing)),
       dataset(datasetOf(query.dataset, options, reader)),
       functions(terms) {
   AlgebraOptions algebra_options;
@@ -68,6 +68,11 @@ PreparedQuery::Impl::Impl(const rdf::QuadReader& quad_reader, std::string_view t
   mark = terms.mark();
   used_before = preparing.usage();
 }
+
+PreparedQuery::Impl::Impl(const rdf::QuadReader& quad_reader, std::string_view text, const QueryOptions& query_options,
+                          const std::vector<std::string>& parameters)
+    : Impl(
+          quad_reader, [&](Guard& guard) { return parsed(text, query_options, guard); }, query_options, parameters) {}
 
 void PreparedQuery::Impl::setParameters(const std::vector<Binding>& bindings) {
   for (const auto& parameter : parameter_slots) {
@@ -161,6 +166,9 @@ const std::vector<std::pair<std::string, std::string>>& mapPrefixes() {
 PreparedQuery::PreparedQuery(const rdf::QuadReader& reader, std::string_view text, const QueryOptions& options,
                              const std::vector<std::string>& parameters)
     : impl_(std::make_unique<Impl>(reader, text, options, parameters)) {}
+PreparedQuery::PreparedQuery(const rdf::QuadReader& reader, ast::Query query, const QueryOptions& options)
+    : impl_(std::make_unique<Impl>(
+          reader, [&](Guard&) { return std::move(query); }, options, std::vector<std::string>())) {}
 PreparedQuery::PreparedQuery(PreparedQuery&&) noexcept = default;
 PreparedQuery& PreparedQuery::operator=(PreparedQuery&&) noexcept = default;
 PreparedQuery::~PreparedQuery() = default;

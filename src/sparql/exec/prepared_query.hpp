@@ -9,6 +9,10 @@
 namespace cluxel::sparql {
 
 struct PreparedQuery::Impl {
+  using Parse = std::function<ast::Query(Guard&)>;
+  Impl(const rdf::QuadReader& quad_reader, const Parse& parse, const QueryOptions& query_options,
+       const std::vector<std::string>& parameters);
+
   Impl(const rdf::QuadReader& quad_reader, std::string_view text, const QueryOptions& query_options,
        const std::vector<std::string>& parameters);
 

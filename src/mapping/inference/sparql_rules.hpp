@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "mapping/inference/inference_record.hpp"
 #include "mapping/map_inputs.hpp"
 #include "rdf/file/environment.hpp"
 #include "rdf/ontology/ontology.hpp"
@@ -15,8 +16,8 @@ void checkSparqlRules(const std::vector<NamedText>& rules);
 
 /// Evaluates the rules in order. Each rule is a stratum: it sees the facts of earlier rules and its own, and is
 /// repeated until it derives nothing new. Expects the closure to be complete and keeps it so. Each derived fact names
-/// its rule by a clx:Derivation.
-void runSparqlRules(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules,
-                    const rdf::InferenceCheck& check = {});
+/// its rule by a clx:Derivation. Returns what a later inference needs to follow changes.
+InferenceRecord runSparqlRules(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules,
+                               const rdf::InferenceCheck& check = {});
 
 }  // namespace cluxel::mapping

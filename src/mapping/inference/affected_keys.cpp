@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// A solution differs only when a fact that one of its patterns matches does. The pattern's variable gives the key, or
+// is led to it by a query over the facts of before and now together.
+#include "mapping/inference/affected_keys.hpp"
+
+#include <map>
+
+#include "mapping/inference/temporary_quads.hpp"
+
+namespace cluxel::mapping {
+
+/// Adds all ends of the path's steps that are connected with the fact by such steps, now or before.
+void AffectedKeys::addConnected(const rdf::Triple& fact, std::size_t read, std::set<rdf::TermId>& reached) const {
+  std::vector<rdf::TermId> open;
+  const auto reach = [&](rdf::TermId node) {
+    if (reached.insert(node).second) open.push_back(node);
+  };
+  reach(fact.s), reach(fact.o);
+  while (!open.empty()) {
+    const rdf::TermId node = open.back();
+    open.pop_back();
+    for (const rdf::TermId link : reads_.linksOf(read)) {
+      facts_.forEachObject(node, link, [&](rdf::TermId end, const rdf::FactState&) { reach(end); });
+      facts_.forEachSubject(link, node, [&](rdf::TermId end, const rdf::FactState&) { reach(end); });
+    }
+  }
+}
+
+/// Whether the pattern's subject leads to the key, rather than its object. None: it has no variable.
+std::optional<bool> AffectedKeys::goesBySubject(std::size_t read) const {
+  const ast::TriplePattern& triple = shape_.reads[read].triple;
+  const auto is_key = [&](const ast::PatternTerm& end) { return end.isVariable() && end.variable() == shape_.key; };
+  if (!triple.subject.isVariable() && !triple.object.isVariable()) return std::nullopt;
+  return is_key(triple.subject) || (triple.subject.isVariable() && !is_key(triple.object));
+}
+
+std::optional<std::vector<rdf::TermId>> AffectedKeys::of(const std::vector<rdf::Triple>& changed) const {
+  std::map<ast::VariableIndex, std::set<rdf::TermId>> values;
+  for (std::size_t read = 0; read < shape_.reads.size(); ++read) {
+    const ast::TriplePattern& triple = shape_.reads[read].triple;
+    const auto by_subject = goesBySubject(read);
+    std::set<rdf::TermId> ends;
+    for (const rdf::Triple& fact : changed) {
+      if (!reads_.matches(read, fact)) continue;
+      if (!by_subject) return std::nullopt;
+      if (triple.isPath())
+        addConnected(fact, read, ends);
+      else
+        ends.insert(*by_subject ? fact.s : fact.o);
+    }
+    if (!ends.empty()) values[(*by_subject ? triple.subject : triple.object).variable()].merge(ends);
+  }
+  std::vector<rdf::QuadIds> gone;
+  for (const rdf::Triple& fact : changed)
+    if (facts_.stageOf(fact) == rdf::kNever) gone.push_back({fact.s, fact.p, fact.o, inferred_});
+  std::set<rdf::TermId> keys = std::move(values[shape_.key]);
+  values.erase(shape_.key);
+  if (values.empty()) return std::vector<rdf::TermId>(keys.begin(), keys.end());
+  TemporaryQuads before(transaction_, std::move(gone), {});
+  const rdf::QuadReader reader{static_cast<const rdf::ReadTransaction&>(transaction_)};
+  for (const auto& [variable, ids] : values) {
+    ValuesOf some{variable, {}};
+    for (const rdf::TermId id : ids) some.terms.push_back(reader.termOf(id));
+    for (const rdf::TermId key : affectedKeys(reader, shape_, some, check_)) keys.insert(key);
+  }
+  before.end();
+  return std::vector<rdf::TermId>(keys.begin(), keys.end());
+}
+
+}  // namespace cluxel::mapping

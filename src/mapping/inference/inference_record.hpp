@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an inference stores beside its facts, so that the next one can follow a change of the map.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapping/inference/rule_evaluation.hpp"
+#include "rdf/store/quad_journal.hpp"
+
+namespace cluxel::mapping {
+
+struct InferenceRecord {
+  std::vector<std::vector<RuleOutput>> outputs;  ///< of each rule, sorted
+  std::vector<rdf::LateFact> late;               ///< sorted
+  std::string reason;  ///< why a change cannot be followed: a rule and what is wrong with it; empty when it can
+};
+
+/// Stores the record with a sum of all quads outside of the history as they are now.
+void storeInferenceRecord(rdf::WriteTransaction& transaction, const InferenceRecord& record,
+                          const std::vector<NamedText>& rules);
+/// The record that belongs to these rules and this sum of the quads, else none.
+std::optional<InferenceRecord> storedInferenceRecord(const rdf::ReadTransaction& transaction,
+                                                     const std::vector<NamedText>& rules, const rdf::EntrySum& sum);
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows of ids become facts as a CONSTRUCT makes them: without those that RDF does not allow.
+#include "mapping/inference/rule_evaluation.hpp"
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "base/content_hash.hpp"
+#include "rdf/map_iris.hpp"
+#include "rdf/vocabulary.hpp"
+#include "sparql/values/value.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+/// Collects rows, and the terms that a query has computed.
+class RowSink : public sparql::ResultSink {
+ public:
+  void beginSolutions(std::span<const std::string> variables, const sparql::TermLookup& terms) override {
+    width_ = variables.size();
+    terms_ = &terms;
+  }
+  void rows(std::span<const sparql::ResultId> cells, std::size_t) override {
+    cells_.insert(cells_.end(), cells.begin(), cells.end());
+    for (const sparql::ResultId id : cells)
+      if (id >= sparql::kFirstComputed && !computed_.contains(id)) computed_.emplace(id, terms_->view(id).toTerm());
+  }
+  void boolean(bool) override {}
+  void beginGraph() override {}
+  void triple(const rdf::TermView&, const rdf::TermView&, const rdf::TermView&) override {}
+  void end() override {}
+
+  std::size_t width() const { return width_; }
+  std::vector<sparql::ResultId>& cells() { return cells_; }
+  /// Gives computed terms ids of the store.
+  void intern(rdf::QuadWriter& writer) {
+    std::unordered_map<sparql::ResultId, rdf::TermId> ids;
+    for (const auto& [id, term] : computed_) ids.emplace(id, writer.intern(term));
+    for (sparql::ResultId& cell : cells_)
+      if (cell >= sparql::kFirstComputed) cell = ids.at(cell);
+    writer.flush();
+  }
+  std::size_t bytes() const {
+    constexpr std::size_t kBytesOfTerm = 200;
+    return cells_.size() * sizeof(sparql::ResultId) + computed_.size() * kBytesOfTerm;
+  }
+
+ private:
+  std::size_t width_ = 0;
+  const sparql::TermLookup* terms_ = nullptr;
+  std::vector<sparql::ResultId> cells_;
+  std::unordered_map<sparql::ResultId, Term> computed_;
+};
+
+/// Where the parts of a triple stand in a row, or their constant terms.
+struct TripleCells {
+  static constexpr std::size_t kConstant = static_cast<std::size_t>(-1);
+  std::array<std::size_t, 3> column{};
+  rdf::Triple constant;
+
+  rdf::Triple in(std::span<const sparql::ResultId> row) const {
+    const auto part = [&](std::size_t i, rdf::TermId id) { return column.at(i) == kConstant ? id : row[column.at(i)]; };
+    return {part(0, constant.s), part(1, constant.p), part(2, constant.o)};
+  }
+};
+
+class RowFacts {
+ public:
+  RowFacts(const ast::Query& query, rdf::QuadWriter& writer) : query_(query), writer_(writer) {}
+
+  TripleCells cellsOf(const ast::TriplePattern& triple) {
+    TripleCells cells;
+    place(triple.subject, cells.column[0], cells.constant.s);
+    place(triple.predicate, cells.column[1], cells.constant.p);
+    place(triple.object, cells.column[2], cells.constant.o);
+    return cells;
+  }
+
+ private:
+  void place(const ast::PatternTerm& part, std::size_t& column, rdf::TermId& constant) {
+    column = TripleCells::kConstant;
+    if (!part.isVariable()) {
+      constant = writer_.intern(part.term());
+      return;
+    }
+    const auto& columns = query_.select.projection;
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      if (columns[i].variable == part.variable()) column = i;
+  }
+
+  const ast::Query& query_;
+  rdf::QuadWriter& writer_;
+};
+
+bool isFact(const rdf::QuadReader& reader, const rdf::Triple& fact) {
+  return fact.s != rdf::kNoTerm && fact.p != rdf::kNoTerm && fact.o != rdf::kNoTerm &&
+         reader.viewOf(fact.s).kind != TermKind::Literal && reader.viewOf(fact.p).kind == TermKind::Iri;
+}
+
+}  // namespace
+
+sparql::QueryOptions ruleOptions(const NamedText& rule, const rdf::InferenceCheck& check) {
+  sparql::QueryOptions options;
+  options.refuse_volatile = true;
+  options.source_name = rule.name;
+  if (check) {
+    options.budget.poll = [check] { check(0); };
+    options.budget.max_memory_bytes = check.max_memory_bytes;
+  }
+  return options;
+}
+
+std::vector<RuleOutput> evaluateRule(rdf::WriteTransaction& transaction, const RuleShape& shape,
+                                     const rdf::InferenceCheck& check, const std::optional<ValuesOf>& keys,
+                                     const IsSeen& is_seen) {
+  const rdf::QuadReader reader{static_cast<const rdf::ReadTransaction&>(transaction)};
+  rdf::QuadWriter writer(transaction);
+  const ast::Query query = solutionsOf(shape, keys, static_cast<bool>(is_seen));
+  RowSink sink;
+  sparql::PreparedQuery(reader, query, ruleOptions(shape.rule, check)).run(sink);
+  if (check) check(sink.bytes());
+  RowFacts cells(query, writer);
+  std::vector<TripleCells> made, read;
+  for (const ast::TriplePattern& triple : shape.query.construct_template) made.push_back(cells.cellsOf(triple));
+  if (is_seen)
+    for (const ReadPattern& pattern : shape.reads) read.push_back(cells.cellsOf(pattern.triple));
+  sink.intern(writer);
+  const bool is_keyed = shape.following == RuleShape::Following::ByKey;
+  std::vector<RuleOutput> outputs;
+  for (std::size_t at = 0; sink.width() > 0 && at < sink.cells().size(); at += sink.width()) {
+    const auto row = std::span<const sparql::ResultId>(sink.cells()).subspan(at, sink.width());
+    if (!std::all_of(read.begin(), read.end(), [&](const TripleCells& triple) { return is_seen(triple.in(row)); }))
+      continue;
+    for (const TripleCells& triple : made) {
+      const rdf::Triple fact = triple.in(row);
+      if (isFact(reader, fact)) outputs.push_back({is_keyed ? row[0] : rdf::kNoTerm, fact});
+    }
+  }
+  std::sort(outputs.begin(), outputs.end());
+  outputs.erase(std::unique(outputs.begin(), outputs.end()), outputs.end());
+  return outputs;
+}
+
+std::vector<rdf::TermId> affectedKeys(const rdf::QuadReader& reader, const RuleShape& shape, const ValuesOf& values,
+                                      const rdf::InferenceCheck& check) {
+  RowSink sink;
+  sparql::PreparedQuery(reader, keysOf(shape, values), ruleOptions(shape.rule, check)).run(sink);
+  return sink.cells();
+}
+
+std::vector<rdf::Triple> derivationOf(const rdf::QuadReader& reader, rdf::QuadWriter& writer, const rdf::Triple& fact,
+                                      const NamedText& rule) {
+  const std::string name = ruleFileName(rule);
+  ContentHasher hasher;
+  hasher.addText(name);
+  for (const rdf::TermId part : {fact.s, fact.p, fact.o}) hasher.addText(toNTriples(reader.termOf(part)));
+  const rdf::TermId node = writer.intern(Term::iri(rdf::iriOfDerivation(hasher.finish())));
+  const auto iri = [&](const std::string& name) { return writer.intern(Term::iri(name)); };
+  return {{node, iri(rdf::vocabulary::rdf("type")), iri(rdf::vocabulary::clx("Derivation"))},
+          {node, iri(rdf::vocabulary::rdf("subject")), fact.s},
+          {node, iri(rdf::vocabulary::rdf("predicate")), fact.p},
+          {node, iri(rdf::vocabulary::rdf("object")), fact.o},
+          {node, iri(rdf::vocabulary::clx("rule")), writer.intern(Term::literal(name))}};
+}
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: Apache-2.0
+// Walks the syntax tree of a rule once, and makes restricted copies of it.
+#include "mapping/inference/rule_shape.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+
+#include "sparql/syntax/parser.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+using PathKind = ast::Path::Kind;
+
+bool hasExists(const ast::Expression& expression) {
+  if (expression.pattern) return true;
+  return std::any_of(expression.arguments.begin(), expression.arguments.end(), hasExists);
+}
+
+/// Replaces sequences and inverses by patterns with hidden variables between them.
+class PathExpansion {
+ public:
+  explicit PathExpansion(ast::VariableTable& variables) : variables_(variables) {}
+
+  void group(ast::GroupPattern& group) {
+    for (ast::PatternElement& element : group.elements) {
+      if (auto* block = std::get_if<ast::TriplesBlock>(&element.value)) triples(*block);
+      if (auto* inner = std::get_if<ast::GroupPattern>(&element.value)) this->group(*inner);
+      if (auto* optional = std::get_if<ast::OptionalPattern>(&element.value)) this->group(optional->group);
+      if (auto* minus = std::get_if<ast::MinusPattern>(&element.value)) this->group(minus->group);
+      if (auto* either = std::get_if<ast::UnionPattern>(&element.value))
+        for (ast::GroupPattern& branch : either->branches) this->group(branch);
+      if (auto* filter = std::get_if<ast::Filter>(&element.value)) expression(filter->condition);
+      if (auto* inner = std::get_if<ast::SubSelect>(&element.value)) {
+        auto select = std::make_shared<ast::Select>(*inner->select);
+        this->group(select->where);
+        inner->select = std::move(select);
+      }
+    }
+  }
+
+ private:
+  void expression(ast::Expression& expression) {
+    for (ast::Expression& argument : expression.arguments) this->expression(argument);
+    if (!expression.pattern) return;
+    auto pattern = std::make_shared<ast::GroupPattern>(*expression.pattern);
+    group(*pattern);
+    expression.pattern = std::move(pattern);
+  }
+
+  void triples(ast::TriplesBlock& block) {
+    std::vector<ast::TriplePattern> expanded;
+    for (const ast::TriplePattern& triple : block.triples) {
+      if (triple.isPath())
+        path(triple.subject, *triple.path, triple.object, expanded);
+      else
+        expanded.push_back(triple);
+    }
+    block.triples = std::move(expanded);
+  }
+
+  void path(const ast::PatternTerm& from, const ast::Path& path, const ast::PatternTerm& to,
+            std::vector<ast::TriplePattern>& expanded) {
+    if (path.kind == PathKind::Link) {
+      expanded.push_back({from, {path.iri, path.at}, nullptr, to});
+    } else if (path.kind == PathKind::Inverse) {
+      this->path(to, path.parts[0], from, expanded);
+    } else if (path.kind == PathKind::Sequence) {
+      ast::PatternTerm at = from;
+      for (std::size_t i = 0; i < path.parts.size(); ++i) {
+        const ast::PatternTerm next = i + 1 == path.parts.size() ? to : between(path.at);
+        this->path(at, path.parts[i], next, expanded);
+        at = next;
+      }
+    } else {
+      expanded.push_back({from, {}, std::make_shared<const ast::Path>(path), to});
+    }
+  }
+
+  ast::PatternTerm between(ast::SourceOffset at) {
+    variables_.push_back({"_:step" + std::to_string(variables_.size()), true});
+    return {static_cast<ast::VariableIndex>(variables_.size() - 1), at};
+  }
+
+  ast::VariableTable& variables_;
+};
+
+bool mayHaveNoStep(const ast::Path& path) {
+  return path.kind == PathKind::ZeroOrMore || path.kind == PathKind::ZeroOrOne ||
+         std::any_of(path.parts.begin(), path.parts.end(), mayHaveNoStep);
+}
+
+/// The properties that a path walks; false when they cannot be told.
+bool addLinks(const ast::Path& path, std::vector<Term>& links) {
+  if (path.kind == PathKind::NegatedSet) return false;
+  if (path.kind == PathKind::Link) links.push_back(path.iri);
+  return std::all_of(path.parts.begin(), path.parts.end(),
+                     [&](const ast::Path& part) { return addLinks(part, links); });
+}
+
+class ShapeWalk {
+ public:
+  explicit ShapeWalk(RuleShape& shape) : shape_(shape) {}
+
+  void run() {
+    PathExpansion(shape_.query.variables).group(shape_.query.select.where);
+    if (!shape_.query.dataset.empty()) return never("it names its graphs");
+    const ast::GroupPattern* body = bodyOf();
+    group(*(body != nullptr ? body : &shape_.query.select.where), body != nullptr);
+    if (body != nullptr) mentionKey(*body);
+  }
+
+ private:
+  void never(const std::string& reason) {
+    shape_.following = RuleShape::Following::Never;
+    shape_.reason = reason;
+  }
+  void asWhole(const std::string& reason) {
+    if (shape_.following != RuleShape::Following::ByKey) return;
+    shape_.following = RuleShape::Following::AsWhole;
+    shape_.reason = reason;
+  }
+
+  static const ast::SubSelect* subSelectIn(const ast::PatternElement& element) {
+    if (const auto* inner = std::get_if<ast::SubSelect>(&element.value)) return inner;
+    const auto* group = std::get_if<ast::GroupPattern>(&element.value);
+    return group != nullptr && group->elements.size() == 1 ? subSelectIn(group->elements.front()) : nullptr;
+  }
+
+  /// The group with the patterns: the whole WHERE clause, or that of its only sub-select. Null when the rule has
+  /// neither shape.
+  const ast::GroupPattern* bodyOf() {
+    const ast::Select& select = shape_.query.select;
+    const ast::SolutionModifiers& modifiers = select.modifiers;
+    if (select.grouped || select.values || modifiers.limit || modifiers.offset) {
+      asWhole("it groups, cuts or takes values outside of its patterns");
+      return nullptr;
+    }
+    const ast::SubSelect* grouped = nullptr;
+    for (const ast::PatternElement& element : select.where.elements)
+      if (const ast::SubSelect* inner = subSelectIn(element)) grouped = inner;
+    if (grouped == nullptr) return &select.where;
+    return isGroupedByKey(select.where, *grouped->select) ? &grouped->select->where : nullptr;
+  }
+
+  bool isGroupedByKey(const ast::GroupPattern& around, const ast::Select& inner) {
+    for (const ast::PatternElement& element : around.elements) {
+      const auto* filter = std::get_if<ast::Filter>(&element.value);
+      const bool is_computed =
+          std::holds_alternative<ast::Bind>(element.value) || (filter != nullptr && !hasExists(filter->condition));
+      if (is_computed || (subSelectIn(element) != nullptr && subSelectIn(element)->select.get() == &inner)) continue;
+      asWhole("it joins a sub-select with other patterns");
+      return false;
+    }
+    const auto& keys = inner.modifiers.group_by;
+    const bool is_keyed = inner.grouped && !keys.empty() && !keys.front().as &&
+                          keys.front().expression.kind == ast::Expression::Kind::Variable;
+    if (!is_keyed || inner.values || inner.modifiers.limit || inner.modifiers.offset) {
+      asWhole(inner.grouped && keys.empty() ? "it aggregates over the map"
+                                            : "its sub-select has no variable to group by");
+      return false;
+    }
+    if (std::any_of(inner.modifiers.having.begin(), inner.modifiers.having.end(), hasExists) ||
+        std::any_of(inner.projection.begin(), inner.projection.end(),
+                    [](const auto& column) { return column.expression && hasExists(*column.expression); })) {
+      asWhole("its sub-select asks EXISTS of groups");
+      return false;
+    }
+    shape_.is_grouped = true;
+    shape_.key = keys.front().expression.variable;
+    return true;
+  }
+
+  /// Chooses the key of a rule that does not group, and tells the patterns with the key from others.
+  void mentionKey(const ast::GroupPattern& body) {
+    std::vector<ast::VariableIndex> subjects;
+    for (const ast::PatternElement& element : body.elements)
+      if (const auto* block = std::get_if<ast::TriplesBlock>(&element.value))
+        for (const ast::TriplePattern& triple : block->triples)
+          for (const ast::PatternTerm* end : {&triple.subject, &triple.object})
+            if (end->isVariable()) subjects.push_back(end->variable());
+    if (!shape_.is_grouped && !subjects.empty()) shape_.key = subjects.front();
+    if (std::find(subjects.begin(), subjects.end(), shape_.key) == subjects.end())
+      return asWhole("no triple pattern holds the variable of its solutions in every one of them");
+    const auto is_key = [&](const ast::PatternTerm& end) { return end.isVariable() && end.variable() == shape_.key; };
+    for (ReadPattern& read : shape_.reads) {
+      read.has_key = is_key(read.triple.subject) || is_key(read.triple.object);
+      const bool has_variable = read.triple.subject.isVariable() || read.triple.object.isVariable();
+      if (!read.has_key && !(read.must_match && has_variable))
+        asWhole("what it excludes or may lack is not about ?" + shape_.query.variables[shape_.key].name);
+    }
+    shape_.is_plain = shape_.is_plain && !shape_.is_grouped;
+  }
+
+  void triples(const ast::TriplesBlock& block, bool must_match) {
+    for (const ast::TriplePattern& triple : block.triples) {
+      ReadPattern read;
+      read.triple = triple;
+      read.must_match = must_match;
+      if (triple.isPath()) {
+        shape_.is_plain = false;
+        if (!addLinks(*triple.path, read.links)) return never("a path of it walks any property");
+        if (mayHaveNoStep(*triple.path)) asWhole("a path of it may have no step");
+      } else if (triple.predicate.isVariable()) {
+        return never("a property of it is a variable");
+      }
+      shape_.reads.push_back(std::move(read));
+    }
+  }
+
+  void expression(const ast::Expression& expression) {
+    for (const ast::Expression& argument : expression.arguments) this->expression(argument);
+    if (!expression.pattern) return;
+    shape_.is_plain = false;
+    group(*expression.pattern, false);
+  }
+
+  void group(const ast::GroupPattern& pattern, bool must_match) {
+    for (const ast::PatternElement& element : pattern.elements) this->element(element, must_match);
+  }
+
+  void element(const ast::PatternElement& element, bool must_match) {
+    if (const auto* block = std::get_if<ast::TriplesBlock>(&element.value)) return triples(*block, must_match);
+    if (const auto* filter = std::get_if<ast::Filter>(&element.value)) return expression(filter->condition);
+    if (const auto* bind = std::get_if<ast::Bind>(&element.value)) {
+      if (hasExists(bind->expression)) asWhole("it binds the outcome of EXISTS");
+      return expression(bind->expression);
+    }
+    if (std::holds_alternative<ast::InlineData>(element.value)) return;
+    shape_.is_plain = false;
+    if (const auto* inner = std::get_if<ast::GroupPattern>(&element.value)) return group(*inner, must_match);
+    if (const auto* optional = std::get_if<ast::OptionalPattern>(&element.value)) return group(optional->group, false);
+    if (const auto* minus = std::get_if<ast::MinusPattern>(&element.value)) return group(minus->group, false);
+    if (const auto* either = std::get_if<ast::UnionPattern>(&element.value)) {
+      for (const ast::GroupPattern& branch : either->branches) group(branch, must_match);
+      return;
+    }
+    if (const auto* inner = std::get_if<ast::SubSelect>(&element.value)) {
+      asWhole("it has a sub-select within another pattern");
+      return group(inner->select->where, false);
+    }
+    never("it reads a graph or a service by name");
+  }
+
+  RuleShape& shape_;
+};
+
+ast::InlineData inlineData(const ValuesOf& values) {
+  ast::InlineData data;
+  data.variables = {values.variable};
+  data.row_count = values.terms.size();
+  data.cells.assign(values.terms.begin(), values.terms.end());
+  return data;
+}
+
+void restrictTo(ast::GroupPattern& group, const ValuesOf& values) {
+  group.elements.insert(group.elements.begin(), {inlineData(values), group.at});
+}
+
+/// Leaves out what can only remove solutions, or what they may lack.
+void relax(ast::GroupPattern& group) {
+  const auto is_restriction = [](const ast::PatternElement& element) {
+    return std::holds_alternative<ast::Filter>(element.value) ||
+           std::holds_alternative<ast::OptionalPattern>(element.value) ||
+           std::holds_alternative<ast::MinusPattern>(element.value) || std::holds_alternative<ast::Bind>(element.value);
+  };
+  std::erase_if(group.elements, is_restriction);
+  for (ast::PatternElement& element : group.elements) {
+    if (auto* inner = std::get_if<ast::GroupPattern>(&element.value)) relax(*inner);
+    if (auto* either = std::get_if<ast::UnionPattern>(&element.value))
+      for (ast::GroupPattern& branch : either->branches) relax(branch);
+  }
+}
+
+/// The sub-select with the patterns, to be changed in place.
+ast::Select& groupedSelect(ast::GroupPattern& where) {
+  for (ast::PatternElement& element : where.elements) {
+    if (auto* group = std::get_if<ast::GroupPattern>(&element.value)) return groupedSelect(*group);
+    if (auto* inner = std::get_if<ast::SubSelect>(&element.value)) {
+      auto copy = std::make_shared<ast::Select>(*inner->select);
+      ast::Select& select = *copy;
+      inner->select = std::move(copy);
+      return select;
+    }
+  }
+  throw std::logic_error("a rule that groups has no sub-select");
+}
+
+void project(ast::Select& select, ast::VariableIndex variable) {
+  const auto is_there = [&](const ast::Projection& column) { return column.variable == variable; };
+  if (std::none_of(select.projection.begin(), select.projection.end(), is_there))
+    select.projection.push_back({variable, std::nullopt, select.where.at});
+}
+
+ast::Query selectFrom(const RuleShape& shape) {
+  ast::Query query = shape.query;
+  query.form = ast::QueryForm::Select;
+  query.construct_template.clear();
+  query.select.duplicates = ast::Duplicates::Distinct;
+  query.select.projection.clear();
+  query.select.all = false;
+  return query;
+}
+
+}  // namespace
+
+RuleShape shapeOf(const NamedText& rule) {
+  sparql::SparqlParseOptions options;
+  options.file = rule.name;
+  RuleShape shape;
+  shape.rule = rule;
+  shape.query = sparql::parseQuery(rule.text, options);
+  shape.is_plain = true;
+  ShapeWalk(shape).run();
+  return shape;
+}
+
+ast::Query solutionsOf(const RuleShape& shape, const std::optional<ValuesOf>& keys, bool all) {
+  ast::Query query = selectFrom(shape);
+  const bool is_keyed = shape.following == RuleShape::Following::ByKey;
+  if (is_keyed) project(query.select, shape.key);
+  if (is_keyed && shape.is_grouped) project(groupedSelect(query.select.where), shape.key);
+  for (const ast::TriplePattern& triple : shape.query.construct_template)
+    for (const ast::PatternTerm* part : {&triple.subject, &triple.predicate, &triple.object})
+      if (part->isVariable()) project(query.select, part->variable());
+  if (all)
+    for (const ReadPattern& read : shape.reads)
+      for (const ast::PatternTerm* part : {&read.triple.subject, &read.triple.object})
+        if (part->isVariable()) project(query.select, part->variable());
+  if (keys) restrictTo(shape.is_grouped ? groupedSelect(query.select.where).where : query.select.where, *keys);
+  return query;
+}
+
+ast::Query keysOf(const RuleShape& shape, const ValuesOf& values) {
+  ast::Query query = selectFrom(shape);
+  if (shape.is_grouped) {
+    ast::GroupPattern body = groupedSelect(query.select.where).where;
+    query.select.where = std::move(body);
+  }
+  if (!shape.is_plain) relax(query.select.where);
+  project(query.select, shape.key);
+  restrictTo(query.select.where, values);
+  return query;
+}
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// How the facts of a SPARQL rule follow a change: what the rule reads, and the variable by whose values its solutions
+// can be evaluated apart.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapping/map_inputs.hpp"
+#include "sparql/syntax/ast.hpp"
+
+namespace cluxel::mapping {
+
+namespace ast = sparql::ast;
+
+/// A triple pattern of the WHERE clause, at any depth. Paths of sequences and inverses are patterns of their steps.
+struct ReadPattern {
+  ast::TriplePattern triple;
+  std::vector<Term> links;  ///< of a path: the properties that it walks
+  bool has_key = false;     ///< the key is its subject or its object
+  bool must_match = false;  ///< a solution has a triple for it, or for another branch of its UNION
+};
+
+struct RuleShape {
+  enum class Following {
+    ByKey,    ///< of a change, the solutions of the affected values of the key are evaluated
+    AsWhole,  ///< the rule is evaluated for the whole map
+    Never     ///< what it reads cannot be told: everything is inferred anew
+  };
+  NamedText rule;
+  ast::Query query;  ///< with paths taken apart
+  Following following = Following::ByKey;
+  std::string reason;          ///< why it is not followed by key
+  ast::VariableIndex key = 0;  ///< ByKey
+  bool is_grouped = false;     ///< the patterns stand in a sub-select that groups by the key
+  bool is_plain = false;       ///< only triple patterns, filters, BIND and VALUES: each row names its triples
+  std::vector<ReadPattern> reads;
+};
+
+/// Throws InputError when the rule cannot be parsed.
+RuleShape shapeOf(const NamedText& rule);
+
+/// Some values of a variable.
+struct ValuesOf {
+  ast::VariableIndex variable = 0;
+  std::vector<Term> terms;
+};
+
+/// SELECT of the variables that the template needs; ByKey: after the key. `keys`: only solutions with one of these.
+/// `all`: with all variables of the patterns of a plain rule.
+ast::Query solutionsOf(const RuleShape& shape, const std::optional<ValuesOf>& keys, bool all);
+/// SELECT of the keys of solutions in which a variable may have one of the values: a superset of them.
+ast::Query keysOf(const RuleShape& shape, const ValuesOf& values);
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// A rule is evaluated again until it derives nothing new.
+#include "mapping/inference/sparql_rules.hpp"
+
+#include <algorithm>
+
+#include "cluxel/error.hpp"
+#include "mapping/inference/read_test.hpp"
+#include "rdf/ontology/ontology.hpp"
+#include "rdf/ontology/schema.hpp"
+#include "rdf/store/quad_store.hpp"
+#include "rdf/vocabulary.hpp"
+#include "sparql/query_engine.hpp"
+#include "sparql/syntax/parser.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+void requireConstruct(const sparql::PreparedQuery& query, const NamedText& rule) {
+  if (query.form() != sparql::ast::QueryForm::Construct)
+    throw InputError({.file = rule.name}, "a SPARQL rule is a CONSTRUCT query");
+}
+
+/// A blank node in a template would get a new name in every run: two builds of one map would differ.
+void refuseBlankNodes(const NamedText& rule) {
+  sparql::SparqlParseOptions options;
+  options.file = rule.name;
+  const auto isBlank = [](const sparql::ast::PatternTerm& part) {
+    return !part.isVariable() && part.term().kind == TermKind::BlankNode;
+  };
+  for (const sparql::ast::TriplePattern& triple : parseQuery(rule.text, options).construct_template)
+    if (isBlank(triple.subject) || isBlank(triple.object))
+      throw InputError({.file = rule.name}, "the template of a SPARQL rule may not make a blank node",
+                       "name the new thing by clx:newObject(class, thing) in a BIND");
+}
+
+/// Whether some graph but history has the fact. History is not part of the map function.
+bool isKnown(const rdf::QuadReader& reader, const rdf::Triple& fact, rdf::TermId history) {
+  rdf::QuadCursor cursor = reader.scan({.s = fact.s, .p = fact.p, .o = fact.o, .g = {}}, rdf::QuadOrder::Spog);
+  for (rdf::QuadIds ids; cursor.next(ids);)
+    if (ids.g != history) return true;
+  return false;
+}
+
+std::vector<rdf::Triple> factsOf(const std::vector<RuleOutput>& outputs) {
+  std::vector<rdf::Triple> facts;
+  facts.reserve(outputs.size());
+  for (const RuleOutput& output : outputs) facts.push_back(output.fact);
+  std::sort(facts.begin(), facts.end());
+  facts.erase(std::unique(facts.begin(), facts.end()), facts.end());
+  return facts;
+}
+
+/// Runs the rules one after the other.
+class RuleRun {
+ public:
+  RuleRun(rdf::WriteTransaction& transaction, const rdf::InferenceCheck& check)
+      : transaction_(transaction),
+        check_(check),
+        reader_(static_cast<const rdf::ReadTransaction&>(transaction)),
+        words_(reader_) {
+    rdf::QuadWriter writer(transaction);
+    inferred_ = writer.intern(Term::iri(rdf::vocabulary::kGraphInferred));
+    writer.flush();
+    history_ = reader_.idOf(Term::iri(rdf::vocabulary::kGraphHistory)).value_or(rdf::kNoGraph);
+  }
+
+  void run(const NamedText& rule) {
+    constexpr int kMaxRounds = 1000;
+    const RuleShape shape = shapeOf(rule);
+    ++stage_;
+    for (int round = 0;; ++round) {
+      std::vector<RuleOutput> outputs = evaluateRule(transaction_, shape, check_);
+      const std::vector<rdf::QuadIds> added = derive(shape, factsOf(outputs));
+      if (round == 0) record_.outputs.push_back(std::move(outputs));
+      if (added.empty()) break;
+      if (round + 1 == kMaxRounds)
+        throw InputError({.file = rule.name}, "derives new facts without end",
+                         "a rule may not make new objects out of objects that it made itself");
+      if (!mayFeed(shape, added)) break;
+      doNotFollow(shape, shape.following == RuleShape::Following::Never ? shape.reason : "it reads what it derives");
+    }
+    if (shape.following == RuleShape::Following::Never) doNotFollow(shape, shape.reason);
+  }
+
+  InferenceRecord finish() {
+    if (!record_.reason.empty()) record_.outputs.assign(record_.outputs.size(), {}), record_.late.clear();
+    std::sort(record_.late.begin(), record_.late.end());
+    return std::move(record_);
+  }
+
+ private:
+  void doNotFollow(const RuleShape& shape, const std::string& reason) {
+    if (record_.reason.empty()) record_.reason = ruleFileName(shape.rule) + ": " + reason;
+  }
+
+  /// Whether the rule may find more after these quads. One whose patterns cannot be told may.
+  bool mayFeed(const RuleShape& shape, const std::vector<rdf::QuadIds>& added) const {
+    const ReadTest reads(reader_, shape);
+    return shape.following == RuleShape::Following::Never ||
+           std::any_of(added.begin(), added.end(), [&](const rdf::QuadIds& quad) {
+             return reads.matches({quad.s, quad.p, quad.o});
+           });
+  }
+
+  /// Adds the new ones among the facts, their derivations and what follows; returns all that was added.
+  std::vector<rdf::QuadIds> derive(const RuleShape& shape, const std::vector<rdf::Triple>& facts) {
+    std::vector<rdf::QuadIds> added;
+    rdf::QuadWriter writer(transaction_);
+    const auto add = [&](const rdf::Triple& fact) {
+      added.push_back({fact.s, fact.p, fact.o, inferred_});
+      writer.add(added.back());
+    };
+    std::vector<rdf::Triple> fresh;
+    for (const rdf::Triple& fact : facts)
+      if (!isKnown(reader_, fact, history_)) fresh.push_back(fact);
+    constexpr std::size_t kBytesOfDerivedFact = 2000;  // six quads with their terms
+    if (check_) check_(fresh.size() * kBytesOfDerivedFact);
+    for (const rdf::Triple& fact : fresh) {
+      add(fact);
+      for (const rdf::Triple& part : derivationOf(reader_, writer, fact, shape.rule))
+        if (!isKnown(reader_, part, history_)) add(part);
+    }
+    writer.flush();
+    if (added.empty()) return added;
+    for (const rdf::QuadIds& quad : added) noteLate(shape, quad, true);
+    for (const rdf::QuadIds& quad : extendClosure(transaction_, added, check_).extension) {
+      noteLate(shape, quad, false);
+      added.push_back(quad);
+    }
+    return added;
+  }
+
+  void noteLate(const RuleShape& shape, const rdf::QuadIds& quad, bool is_base) {
+    record_.late.push_back({{quad.s, quad.p, quad.o}, stage_, is_base});
+    if (words_.isAxiom(quad.p, quad.o)) doNotFollow(shape, "it derives axioms");
+  }
+
+  rdf::WriteTransaction& transaction_;
+  const rdf::InferenceCheck& check_;
+  rdf::QuadReader reader_;
+  rdf::SchemaWords words_;
+  rdf::TermId inferred_ = rdf::kNoTerm, history_ = rdf::kNoGraph;
+  rdf::Stage stage_ = 0;
+  InferenceRecord record_;
+};
+
+}  // namespace
+
+void checkSparqlRules(const std::vector<NamedText>& rules) {
+  const auto scratch = rdf::Environment::temporary();
+  const rdf::QuadReader reader(scratch->read());
+  for (const NamedText& rule : rules) {
+    requireConstruct(sparql::PreparedQuery(reader, rule.text, ruleOptions(rule)), rule);
+    refuseBlankNodes(rule);
+  }
+}
+
+InferenceRecord runSparqlRules(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules,
+                               const rdf::InferenceCheck& check) {
+  RuleRun run(transaction, check);
+  for (const NamedText& rule : rules) run.run(rule);
+  return run.finish();
+}
+
+}  // namespace cluxel::mapping
