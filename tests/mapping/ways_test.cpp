@@ -56,8 +56,8 @@ struct MadeGround {
     }
   }
   WayGraph ways() const {
-    std::vector<TileKey> keys;
-    for (const auto& [key, tile] : points) keys.push_back(key);
+    TileSet keys;
+    for (const auto& [key, tile] : points) keys.insert(key);
     return waysOf(keys, [&](const TileKey& key) { return evenGroundOf(ringIn(points, key), ringIn(ground, key)); });
   }
 };

@@ -17,14 +17,14 @@ double distanceToChord(const std::vector<Eigen::Vector3d>& line, std::size_t i, 
 
 }  // namespace
 
-std::vector<Eigen::Vector3d> smoothedLine(const GroundCells& ground, const std::vector<std::uint32_t>& chain) {
+std::vector<Eigen::Vector3d> smoothedLine(const LineGraph& graph, const std::vector<std::uint32_t>& chain) {
   std::vector<Eigen::Vector3d> line;
   for (std::size_t i = 0; i < chain.size(); ++i) {
     const std::size_t half = std::min({kSmoothedCells, i, chain.size() - 1 - i});
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (std::size_t j = i - half; j <= i + half; ++j) {
-      const Eigen::Vector2d centre = ground.cells.centreOf(chain[j]);
-      sum += Eigen::Vector3d(centre.x(), centre.y(), ground.height[chain[j]]);
+      const Eigen::Vector2d centre = centreOf(graph.place[chain[j]]);
+      sum += Eigen::Vector3d(centre.x(), centre.y(), graph.height[chain[j]]);
     }
     line.emplace_back(sum / static_cast<double>(2 * half + 1));
   }

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "mapping/ways/even_ground.hpp"
+#include "mapping/ways/line_graph.hpp"
 
 namespace cluxel::mapping {
 
@@ -13,7 +13,7 @@ inline constexpr std::size_t kSmoothedCells = 4;  ///< on each side of a cell
 inline constexpr double kLineTolerance_m = 0.15;  ///< of simplified lines
 
 /// The centres of the cells on the ground, each the mean of those around it on the chain [m, map].
-std::vector<Eigen::Vector3d> smoothedLine(const GroundCells& ground, const std::vector<std::uint32_t>& chain);
+std::vector<Eigen::Vector3d> smoothedLine(const LineGraph& graph, const std::vector<std::uint32_t>& chain);
 
 /// Some of the points of a line, from which no other is farther than kLineTolerance_m in plan view (Douglas and
 /// Peucker).

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The even cells of all tiles, and the patches that they make.
+// The even cells of some tiles, and the patches that they make.
 #include "mapping/ways/even_ground.hpp"
 
 #include <algorithm>
@@ -22,6 +22,35 @@ struct EvenHeights {
   std::vector<std::uint8_t> distance2;  ///< [cells], of that window; kNone: there is none
   static constexpr std::uint8_t kNone = perception::EvenTile::kNotEven;
 };
+
+/// Connected cells where `left` is 1, over the four neighbours or all eight, if they have at most an area and span at
+/// most kLongestPart columns and rows. Cells of a part are in the order in which they are found; parts are in the order
+/// of their first cells.
+std::vector<std::vector<std::uint32_t>> smallParts(const TileCells& cells, std::vector<std::uint8_t> left,
+                                                   bool over_corners, double largest_m2) {
+  std::vector<std::vector<std::uint32_t>> parts;
+  std::vector<std::uint32_t> part;
+  for (std::uint32_t start = 0; start < cells.size(); ++start) {
+    if (left[start] == 0) continue;
+    part.assign(1, start);
+    left[start] = 0;
+    CellPlace min = cells.placeOf(start), max = min;
+    for (std::size_t at = 0; at < part.size(); ++at) {
+      const CellPlace place = cells.placeOf(part[at]);
+      min = {std::min(min.x, place.x), std::min(min.y, place.y)};
+      max = {std::max(max.x, place.x), std::max(max.y, place.y)};
+      for (std::size_t way = 0; way < kAroundCell.size(); way += over_corners ? 1 : 2) {
+        const std::uint32_t near = cells.step(part[at], kAroundCell[way][0], kAroundCell[way][1]);
+        if (near == kNoCell || left[near] == 0) continue;
+        left[near] = 0;
+        part.push_back(near);
+      }
+    }
+    const bool is_short = std::max(max.x - min.x, max.y - min.y) < kLongestPart;
+    if (is_short && static_cast<double>(part.size()) * kCellArea_m2 <= largest_m2) parts.push_back(part);
+  }
+  return parts;
+}
 
 /// Whether the even cells around a hole lie in one plane: then it is a thing on even ground, or its shadow, and no kerb
 /// runs through it.
@@ -51,8 +80,7 @@ void closeHoles(const EvenHeights& even, double largest_m2, GroundCells& ground)
   const TileCells& cells = ground.cells;
   std::vector<std::uint8_t> rest(ground.even.size());
   for (std::uint32_t cell = 0; cell < cells.size(); ++cell) rest[cell] = ground.even[cell] == 0 ? 1 : 0;
-  for (const auto& hole : connectedCells(cells, rest, false)) {
-    if (static_cast<double>(hole.size()) * kCellArea_m2 > largest_m2) continue;
+  for (const auto& hole : smallParts(cells, std::move(rest), false, largest_m2)) {
     const bool is_open = std::any_of(hole.begin(), hole.end(), [&](std::uint32_t cell) {
       return cells.step(cell, 1, 0) == kNoCell || cells.step(cell, -1, 0) == kNoCell ||
              cells.step(cell, 0, 1) == kNoCell || cells.step(cell, 0, -1) == kNoCell;
@@ -78,7 +106,7 @@ void bridgeGaps(EvenHeights& even, GroundCells& ground) {
 }
 
 void dropSmallPatches(GroundCells& ground) {
-  for (const auto& patch : connectedCells(ground.cells, ground.even, true))
+  for (const auto& patch : smallParts(ground.cells, ground.even, true, kLeastEven_m2))
     if (static_cast<double>(patch.size()) * kCellArea_m2 < kLeastEven_m2)
       for (const std::uint32_t cell : patch) ground.even[cell] = 0;
 }
@@ -96,37 +124,32 @@ void cutAtSteps(const EvenHeights& even, GroundCells& ground) {
   }
 }
 
-}  // namespace
-
-std::vector<std::vector<std::uint32_t>> connectedCells(const TileCells& cells, const std::vector<std::uint8_t>& inside,
-                                                       bool over_corners) {
-  std::vector<std::vector<std::uint32_t>> parts;
-  std::vector<std::uint8_t> left = inside;
-  for (std::uint32_t start = 0; start < cells.size(); ++start) {
-    if (left[start] == 0) continue;
-    std::vector<std::uint32_t>& part = parts.emplace_back(1, start);
-    left[start] = 0;
-    for (std::size_t at = 0; at < part.size(); ++at)
-      for (std::size_t way = 0; way < kAroundCell.size(); way += over_corners ? 1 : 2) {
-        const std::uint32_t near = cells.step(part[at], kAroundCell[way][0], kAroundCell[way][1]);
-        if (near == kNoCell || left[near] == 0) continue;
-        left[near] = 0;
-        part.push_back(near);
-      }
-  }
-  return parts;
+/// Puts the tiles' arrays one after the other.
+template <typename Values>
+void append(const Values& values, Values& all) {
+  all.insert(all.end(), values.begin(), values.end());
 }
 
-GroundCells groundCellsOf(std::vector<TileKey> keys, const EvenTileSource& tileAt) {
-  GroundCells result{TileCells(std::move(keys)), {}, {}, {}, {}};
-  const std::uint32_t size = result.cells.size();
-  result.height.reserve(size), result.measured.reserve(size), result.thing.reserve(size), result.even.reserve(size);
+void appendGround(const perception::EvenTile& tile, GroundCells& ground) {
+  append(tile.height, ground.height), append(tile.measured, ground.measured), append(tile.thing, ground.thing);
+}
+
+GroundCells emptyGround(std::vector<TileKey> keys) {
+  GroundCells ground{TileCells(std::move(keys)), {}, {}, {}, {}};
+  const std::uint32_t size = ground.cells.size();
+  ground.height.reserve(size), ground.measured.reserve(size), ground.thing.reserve(size), ground.even.reserve(size);
+  return ground;
+}
+
+}  // namespace
+
+GroundCells surfaceOf(std::vector<TileKey> keys, const EvenTileSource& tileAt) {
+  GroundCells result = emptyGround(std::move(keys));
   EvenHeights even;
-  even.height.reserve(size), even.distance2.reserve(size);
-  const auto append = [](const auto& values, auto& all) { all.insert(all.end(), values.begin(), values.end()); };
+  even.height.reserve(result.cells.size()), even.distance2.reserve(result.cells.size());
   for (const TileKey& key : result.cells.keys()) {
     const perception::EvenTile tile = tileAt(key);
-    append(tile.height, result.height), append(tile.measured, result.measured), append(tile.thing, result.thing);
+    appendGround(tile, result);
     append(tile.even_height, even.height), append(tile.distance2, even.distance2);
   }
   for (const std::uint8_t distance2 : even.distance2) result.even.push_back(distance2 != EvenHeights::kNone ? 1 : 0);
@@ -135,6 +158,15 @@ GroundCells groundCellsOf(std::vector<TileKey> keys, const EvenTileSource& tileA
   cutAtSteps(even, result);
   closeHoles(even, kLargestCut_m2, result);
   dropSmallPatches(result);
+  return result;
+}
+
+GroundCells groundCellsOf(std::vector<TileKey> keys, const EvenTileSource& tileAt, const SurfaceTileSource& surfaceAt) {
+  GroundCells result = emptyGround(std::move(keys));
+  for (const TileKey& key : result.cells.keys()) {
+    appendGround(tileAt(key), result);
+    append(surfaceAt(key), result.even);
+  }
   return result;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which cells of the ground are even, as roads and paths are and grass is not.
+// Which cells of the ground are part of a way's surface, as roads and paths are and grass is not.
 #pragma once
 
 #include <cstdint>
@@ -19,20 +19,26 @@ struct GroundCells {
   std::vector<std::uint8_t> even;      ///< 1: part of a way's surface
 };
 
-inline constexpr double kKerbLow_m = 0.06;      ///< a difference in height that ends a way
-inline constexpr double kLeastEven_m2 = 10;     ///< smaller patches are dropped
-inline constexpr double kLargestGap_m2 = 12;    ///< smaller holes, which things and shadows leave, are closed
+inline constexpr double kKerbLow_m = 0.06;    ///< a difference in height that ends a way
+inline constexpr double kLeastEven_m2 = 10;   ///< smaller patches are dropped unless they are longer than kLongestPart
+inline constexpr double kLargestGap_m2 = 12;  ///< smaller holes, which things and shadows leave, are closed
+/// Holes that are closed and patches that are dropped span at most so many columns and rows [cells].
+inline constexpr int kLongestPart = 28;
 inline constexpr double kLargestCut_m2 = 0.25;  ///< the same for holes that steps leave: no kerb is so short
 
 /// Gives a tile's output of the stage "even".
 using EvenTileSource = std::function<perception::EvenTile(const perception::TileKey&)>;
 
-/// `keys`: of all tiles, ascending. Cost: about 1 ms a tile.
-GroundCells groundCellsOf(std::vector<perception::TileKey> keys, const EvenTileSource& tileAt);
+/// 1 for each cell of a tile that is part of a way's surface.
+using SurfaceTile = std::vector<std::uint8_t>;
+using SurfaceTileSource = std::function<SurfaceTile(const perception::TileKey&)>;
 
-/// Connected cells where `inside` is 1, over the four neighbours or all eight. Cells of a part are in the order in
-/// which they are found; parts are in the order of their first cells.
-std::vector<std::vector<std::uint32_t>> connectedCells(const TileCells& cells, const std::vector<std::uint8_t>& inside,
-                                                       bool over_corners);
+/// `even` of the result follows from the cells within 62: in tiles of which the whole ring is in `keys`, or in no map,
+/// it is that of the whole map. `keys` ascend. Cost: about 0.5 ms a tile.
+GroundCells surfaceOf(std::vector<perception::TileKey> keys, const EvenTileSource& tileAt);
+
+/// The same with known surfaces.
+GroundCells groundCellsOf(std::vector<perception::TileKey> keys, const EvenTileSource& tileAt,
+                          const SurfaceTileSource& surfaceAt);
 
 }  // namespace cluxel::mapping

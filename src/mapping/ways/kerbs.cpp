@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cells between the two levels are marked and thinned to lines.
+// Cells between the two levels are marked.
 #include "mapping/ways/kerbs.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "mapping/ways/cell_line.hpp"
-#include "mapping/ways/skeleton.hpp"
-#include "mapping/ways/way_network.hpp"
+#include "mapping/ways/ways.hpp"
 
 namespace cluxel::mapping {
 
@@ -26,7 +24,7 @@ class KerbSteps {
         for (const auto& [dx, dy] : kAroundCell) look(cell, dx, dy);
     closeGaps();
   }
-  const std::vector<float>& steps() const { return step_; }
+  std::vector<float> take() { return std::move(step_); }
 
  private:
   std::optional<double> levelAt(std::uint32_t cell) const {
@@ -65,31 +63,8 @@ class KerbSteps {
 
 }  // namespace
 
-std::vector<Kerb> kerbsOf(const GroundCells& ground) {
-  const TileCells& cells = ground.cells;
-  const KerbSteps found(ground);
-  std::vector<std::uint8_t> inside(cells.size());
-  std::transform(found.steps().begin(), found.steps().end(), inside.begin(), [](float step) { return step > 0; });
-  const auto distance2 = squaredEdgeDistances(cells, inside);
-  const SkeletonNetwork network = networkOf(cells, skeletonOf(cells, distance2, 1), distance2);
-  std::vector<Kerb> kerbs;
-  for (const SkeletonLine& line : network.lines) {
-    std::vector<std::uint32_t> chain{network.nodes[line.from]};
-    chain.insert(chain.end(), line.cells.begin(), line.cells.end());
-    chain.push_back(network.nodes[line.to]);
-    Kerb kerb;
-    kerb.line = simplifiedLine(smoothedLine(ground, chain));
-    kerb.length_m = lengthOf(kerb.line);
-    if (kerb.length_m < kLeastKerb_m) continue;
-    std::vector<double> steps;
-    for (const std::uint32_t cell : chain)
-      if (found.steps()[cell] > 0) steps.push_back(found.steps()[cell]);
-    if (steps.empty()) continue;
-    std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
-    kerb.rise_m = steps[steps.size() / 2];
-    kerbs.push_back(std::move(kerb));
-  }
-  return kerbs;
+std::vector<float> kerbSteps(const GroundCells& ground) {
+  return KerbSteps(ground).take();
 }
 
 }  // namespace cluxel::mapping

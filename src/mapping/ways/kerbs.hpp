@@ -5,12 +5,14 @@
 #include <vector>
 
 #include "mapping/ways/even_ground.hpp"
-#include "mapping/ways/ways.hpp"
 
 namespace cluxel::mapping {
 
-/// Where even ground ends and the measured ground half a metre farther lies 8 to 25 cm higher or lower, and both sides
-/// are level within half of that: a bank rises slowly. Lines of such cells of at least kLeastKerb_m.
-std::vector<Kerb> kerbsOf(const GroundCells& ground);
+inline constexpr int kKerbLevels = 8;  ///< of skeletonOf(): a kerb is not wider than twice as many cells
+
+/// The step at each cell that lies on a kerb [m], else 0. It lies where even ground ends and the measured ground half a
+/// metre farther lies 8 to 25 cm higher or lower, and both sides are level within half of that: a bank rises slowly. A
+/// cell's step follows from the cells within 4.
+std::vector<float> kerbSteps(const GroundCells& ground);
 
 }  // namespace cluxel::mapping

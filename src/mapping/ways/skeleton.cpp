@@ -1,24 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// Thinning in the order of the distance to the edge; ties in the order of the cells.
+// Thinning in the order of the distance to the edge, by the two colours of a chessboard.
 #include "mapping/ways/skeleton.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <functional>
-#include <queue>
+#include <cmath>
 
 namespace cluxel::mapping {
 
 namespace {
 
-/// Whether the cell within these neighbours (bit i: kAroundCell[i] is inside) can be removed without connecting or
+/// Whether a cell within these neighbours (bit i: kAroundCell[i] is inside) can be removed without connecting or
 /// disconnecting other cells: Yokoi's connectivity number is one.
-bool isSimple(unsigned around) {
+constexpr bool isSimple(unsigned around) {
   const auto outside = [around](unsigned i) { return 1U - (around >> (i % 8) & 1U); };
   unsigned number = 0;
   for (unsigned i = 0; i < 8; i += 2) number += outside(i) - outside(i) * outside(i + 1) * outside(i + 2);
   return number == 1;
 }
+
+constexpr auto kIsSimple = [] {
+  std::array<bool, 256> table{};
+  for (unsigned around = 0; around < table.size(); ++around) table[around] = isSimple(around);
+  return table;
+}();
 
 unsigned aroundCell(const TileCells& cells, const std::vector<std::uint8_t>& inside, std::uint32_t cell) {
   unsigned around = 0;
@@ -28,6 +34,72 @@ unsigned aroundCell(const TileCells& cells, const std::vector<std::uint8_t>& ins
   }
   return around;
 }
+
+/// Takes cells away in steps. In a step all cells of one colour of a chessboard are judged at once, of those that lie
+/// near enough to the edge: two neighbours of one colour touch at a corner only, and then neither changes whether the
+/// other may go. So patches stay connected as they are, and each step carries a change one cell farther, no more.
+class Thinning {
+ public:
+  Thinning(const TileCells& cells, const std::vector<std::uint16_t>& edge_distance2, int levels,
+           std::uint16_t end_distance2)
+      : cells_(cells),
+        edge_distance2_(edge_distance2),
+        end_distance2_(end_distance2),
+        waiting_(2 * static_cast<std::size_t>(levels)),
+        awaits_(edge_distance2.size(), kNoStep),
+        left_(edge_distance2.size()) {
+    for (std::size_t distance2 = 0; distance2 < level_of_.size(); ++distance2)
+      level_of_[distance2] = static_cast<std::uint8_t>(std::ceil(2 * std::sqrt(static_cast<double>(distance2))));
+  }
+
+  std::vector<std::uint8_t> run() {
+    for (std::uint32_t cell = 0; cell < cells_.size(); ++cell) left_[cell] = edge_distance2_[cell] != 0 ? 1 : 0;
+    constexpr std::uint16_t edge = 2;  // of cells that have a neighbour outside, over corners
+    for (std::uint32_t cell = 0; cell < cells_.size(); ++cell)
+      if (left_[cell] != 0 && edge_distance2_[cell] <= edge) await(cell, 0);
+    for (std::size_t step = 0; step < waiting_.size(); ++step) take(step);
+    return std::move(left_);
+  }
+
+ private:
+  /// Puts a cell on the list of the first step from `step` on that judges it. Each step goes half a cell deeper.
+  void await(std::uint32_t cell, std::size_t step) {
+    const std::size_t colour = (cell + cell / kCellsPerTile) % 2;
+    step = std::max(step, std::size_t{level_of_[edge_distance2_[cell]]} - 2);
+    step += (step + colour) % 2;
+    if (step >= waiting_.size() || awaits_[cell] == step) return;
+    awaits_[cell] = static_cast<std::uint8_t>(step);
+    waiting_[step].push_back(cell);
+  }
+
+  bool mayGo(std::uint32_t cell) const {
+    const unsigned around = aroundCell(cells_, left_, cell);
+    return kIsSimple[around] && !(std::has_single_bit(around) && edge_distance2_[cell] >= end_distance2_);
+  }
+
+  void take(std::size_t step) {
+    std::vector<std::uint32_t> gone;
+    for (const std::uint32_t cell : waiting_[step])
+      if (left_[cell] != 0 && mayGo(cell)) gone.push_back(cell);
+    for (const std::uint32_t cell : gone) left_[cell] = 0;
+    for (const std::uint32_t cell : gone)
+      for (const auto& [dx, dy] : kAroundCell)
+        if (const std::uint32_t near = cells_.step(cell, dx, dy); near != kNoCell && left_[near] != 0)
+          await(near, step + 1);
+    waiting_[step] = {};
+  }
+
+  static constexpr std::uint8_t kNoStep = 0xff;
+
+  const TileCells& cells_;
+  const std::vector<std::uint16_t>& edge_distance2_;
+  std::uint16_t end_distance2_;
+  std::array<std::uint8_t, kFarthestEdge * kFarthestEdge + 1>
+      level_of_{};                                   ///< half cells, rounded up, of each squared distance
+  std::vector<std::vector<std::uint32_t>> waiting_;  ///< the cells that each step judges
+  std::vector<std::uint8_t> awaits_;                 ///< the last list that has each cell
+  std::vector<std::uint8_t> left_;
+};
 
 }  // namespace
 
@@ -56,25 +128,8 @@ std::vector<std::uint16_t> squaredEdgeDistances(const TileCells& cells, const st
 }
 
 std::vector<std::uint8_t> skeletonOf(const TileCells& cells, const std::vector<std::uint16_t>& edge_distance2,
-                                     std::uint16_t end_distance2) {
-  std::vector<std::uint8_t> left(edge_distance2.size());
-  std::priority_queue<std::uint64_t, std::vector<std::uint64_t>, std::greater<>> open;
-  const auto push = [&](std::uint32_t cell) { open.push(std::uint64_t{edge_distance2[cell]} << 32U | cell); };
-  for (std::uint32_t cell = 0; cell < cells.size(); ++cell) left[cell] = edge_distance2[cell] != 0 ? 1 : 0;
-  for (std::uint32_t cell = 0; cell < cells.size(); ++cell)
-    if (left[cell] != 0 && aroundCell(cells, left, cell) != 0xffU) push(cell);
-  while (!open.empty()) {
-    const auto cell = static_cast<std::uint32_t>(open.top() & 0xffffffffU);
-    open.pop();
-    if (left[cell] == 0) continue;
-    const unsigned around = aroundCell(cells, left, cell);
-    const bool is_end = std::popcount(around) == 1 && edge_distance2[cell] >= end_distance2;
-    if (is_end || !isSimple(around)) continue;
-    left[cell] = 0;
-    for (unsigned i = 0; i < 8; ++i)
-      if ((around >> i & 1U) != 0) push(cells.step(cell, kAroundCell[i][0], kAroundCell[i][1]));
-  }
-  return left;
+                                     int levels, std::uint16_t end_distance2) {
+  return Thinning(cells, edge_distance2, levels, end_distance2).run();
 }
 
 }  // namespace cluxel::mapping

@@ -26,10 +26,4 @@ std::uint32_t TileCells::stepOut(std::uint32_t slot, int x, int y) const {
   return tile * kCellsOfTile + static_cast<std::uint32_t>(row * kCellsPerTile + column);
 }
 
-Eigen::Vector2d TileCells::centreOf(std::uint32_t cell) const {
-  const Eigen::Vector2d corner = perception::cornerOf(keys_[cell / kCellsOfTile]).head<2>();
-  const std::uint32_t local = cell % kCellsOfTile;
-  return corner + kWayCell_m * Eigen::Vector2d(local % kCellsPerTile + 0.5, local / kCellsPerTile + 0.5);
-}
-
 }  // namespace cluxel::mapping

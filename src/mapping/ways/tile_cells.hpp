@@ -17,6 +17,22 @@ inline constexpr double kWayCell_m = perception::kEvenCell_m;
 inline constexpr std::uint32_t kCellsOfTile = perception::kEvenCellsOfTile;
 inline constexpr std::uint32_t kNoCell = 0xffffffffU;
 
+/// Column and row of a cell of the map.
+struct CellPlace {
+  std::int64_t x = 0, y = 0;
+};
+
+/// `local`: the number of a cell in its tile, row by row.
+inline CellPlace placeOf(const perception::TileKey& tile, std::uint32_t local) {
+  return {std::int64_t{tile.x} * kCellsPerTile + local % kCellsPerTile,
+          std::int64_t{tile.y} * kCellsPerTile + local / kCellsPerTile};
+}
+
+/// [m, map]
+inline Eigen::Vector2d centreOf(const CellPlace& place) {
+  return kWayCell_m * Eigen::Vector2d(static_cast<double>(place.x) + 0.5, static_cast<double>(place.y) + 0.5);
+}
+
 /// Numbers the cells tile by tile, and row by row in a tile. The order of two cells does not depend on other tiles.
 class TileCells {
  public:
@@ -25,6 +41,8 @@ class TileCells {
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(keys_.size()) * kCellsOfTile; }
   std::span<const perception::TileKey> keys() const { return keys_; }
+  /// The number of a neighbour of a tile, in the order of ringOf(); kNoCell when there is none.
+  std::uint32_t ringTile(std::uint32_t slot, std::size_t ring) const { return ring_[slot][ring]; }
   /// The cell that lies `dx` columns and `dy` rows farther, at most a tile each; kNoCell outside the tiles.
   std::uint32_t step(std::uint32_t cell, int dx, int dy) const {
     const int x = static_cast<int>(cell % kCellsPerTile) + dx;
@@ -33,8 +51,12 @@ class TileCells {
       return cell - cell % kCellsOfTile + static_cast<std::uint32_t>(y * kCellsPerTile + x);
     return stepOut(cell / kCellsOfTile, x, y);
   }
+  /// Whole numbers over the whole map: those of neighbours differ by one.
+  CellPlace placeOf(std::uint32_t cell) const {
+    return cluxel::mapping::placeOf(keys_[cell / kCellsOfTile], cell % kCellsOfTile);
+  }
   /// [m, map]
-  Eigen::Vector2d centreOf(std::uint32_t cell) const;
+  Eigen::Vector2d centreOf(std::uint32_t cell) const { return cluxel::mapping::centreOf(placeOf(cell)); }
 
  private:
   std::uint32_t stepOut(std::uint32_t slot, int x, int y) const;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <tuple>
 
@@ -16,9 +15,7 @@ namespace {
 
 class NetworkMaker {
  public:
-  NetworkMaker(const TileCells& cells, const std::vector<std::uint8_t>& skeleton,
-               const std::vector<std::uint16_t>& edge_distance2)
-      : cells_(cells), skeleton_(skeleton), edge_distance2_(edge_distance2) {}
+  explicit NetworkMaker(const LineGraph& graph) : graph_(graph) {}
 
   SkeletonNetwork make() {
     findNodes();
@@ -31,41 +28,37 @@ class NetworkMaker {
   }
 
  private:
-  std::vector<std::uint32_t> neighbours(std::uint32_t cell) const {
-    std::vector<std::uint32_t> found;
-    for (const auto& [dx, dy] : kAroundCell)
-      if (const std::uint32_t near = cells_.step(cell, dx, dy); near != kNoCell && skeleton_[near] != 0)
-        found.push_back(near);
-    return found;
-  }
   double clearance_m(std::uint32_t node) const {
-    return kWayCell_m * std::sqrt(static_cast<double>(edge_distance2_[network_.nodes[node]]));
+    return kWayCell_m * std::sqrt(static_cast<double>(graph_.edge_distance2[network_.nodes[node]]));
   }
-  double length_m(const SkeletonLine& line) const {
-    std::vector<std::uint32_t> all{network_.nodes[line.from]};
-    all.insert(all.end(), line.cells.begin(), line.cells.end());
-    all.push_back(network_.nodes[line.to]);
+  void measure(SkeletonLine& line) const {
     double length = 0;
-    for (std::size_t i = 1; i < all.size(); ++i)
-      length += (cells_.centreOf(all[i]) - cells_.centreOf(all[i - 1])).norm();
-    return length;
+    std::uint32_t last = network_.nodes[line.from];
+    const auto go = [&](std::uint32_t cell) {
+      const CellPlace &a = graph_.place[last], &b = graph_.place[cell];
+      const auto dx = static_cast<double>(b.x - a.x), dy = static_cast<double>(b.y - a.y);
+      length += std::sqrt(dx * dx + dy * dy);
+      last = cell;
+    };
+    for (const std::uint32_t cell : line.cells) go(cell);
+    go(network_.nodes[line.to]);
+    line.length_m = kWayCell_m * length;
   }
 
   /// A node for each end and for each group of cells with three or more neighbours: its cell farthest from the edge.
   void findNodes() {
-    std::vector<std::uint8_t> branches(skeleton_.size(), 0);
-    for (std::uint32_t cell = 0; cell < cells_.size(); ++cell) {
-      if (skeleton_[cell] == 0) continue;
-      const std::size_t degree = neighbours(cell).size();
+    std::vector<std::uint8_t> branches(graph_.size(), 0);
+    for (std::uint32_t cell = 0; cell < graph_.size(); ++cell) {
+      const std::size_t degree = graph_.neighboursOf(cell).size();
       if (degree >= 3) branches[cell] = 1;
       if (degree == 1) addNode({cell});
     }
-    for (std::uint32_t cell = 0; cell < cells_.size(); ++cell) {
+    for (std::uint32_t cell = 0; cell < graph_.size(); ++cell) {
       if (branches[cell] == 0) continue;
       std::vector<std::uint32_t> group{cell};
       branches[cell] = 0;
       for (std::size_t at = 0; at < group.size(); ++at)
-        for (const std::uint32_t near : neighbours(group[at]))
+        for (const std::uint32_t near : graph_.neighboursOf(group[at]))
           if (branches[near] != 0) {
             branches[near] = 0;
             group.push_back(near);
@@ -73,38 +66,41 @@ class NetworkMaker {
       addNode(group);
     }
   }
-  void addNode(std::vector<std::uint32_t> group) {
+  void addNode(const std::vector<std::uint32_t>& group) {
     const auto number = static_cast<std::uint32_t>(network_.nodes.size());
     for (const std::uint32_t cell : group) node_of_[cell] = number;
     network_.nodes.push_back(*std::min_element(group.begin(), group.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return std::tuple(-int{edge_distance2_[a]}, a) < std::tuple(-int{edge_distance2_[b]}, b);
+      return std::tuple(-int{graph_.edge_distance2[a]}, a) < std::tuple(-int{graph_.edge_distance2[b]}, b);
     }));
   }
 
   void followLines() {
-    for (const auto& [start, node] : node_of_)
-      for (const std::uint32_t next : neighbours(start)) {
-        if (const auto other = node_of_.find(next); other != node_of_.end()) {
-          if (node < other->second) network_.lines.push_back({node, other->second, {}});
+    for (std::uint32_t start = 0; start < graph_.size(); ++start) {
+      const std::uint32_t node = node_of_[start];
+      if (node == kNoCell) continue;
+      for (const std::uint32_t next : graph_.neighboursOf(start))
+        if (const std::uint32_t other = node_of_[next]; other != kNoCell) {
+          if (node < other) network_.lines.push_back({node, other, {}});
         } else if (!passed_[next]) {
           follow(start, node, next);
         }
-      }
-    for (std::uint32_t cell = 0; cell < cells_.size(); ++cell)
-      if (skeleton_[cell] != 0 && !node_of_.contains(cell) && !passed_[cell] && neighbours(cell).size() == 2) {
+    }
+    for (std::uint32_t cell = 0; cell < graph_.size(); ++cell)
+      if (node_of_[cell] == kNoCell && !passed_[cell] && graph_.neighboursOf(cell).size() == 2) {
         addNode({cell});
-        follow(cell, node_of_[cell], neighbours(cell).front());
+        follow(cell, node_of_[cell], graph_.neighboursOf(cell).front());
       }
+    for (SkeletonLine& line : network_.lines) measure(line);
   }
   void follow(std::uint32_t before, std::uint32_t node, std::uint32_t cell) {
     SkeletonLine line{node, node, {}};
     for (;;) {
       passed_[cell] = true;
       line.cells.push_back(cell);
-      const auto ways = neighbours(cell);
+      const auto ways = graph_.neighboursOf(cell);
       const std::uint32_t next = ways[0] == before ? ways[1] : ways[0];
-      if (const auto end = node_of_.find(next); end != node_of_.end()) {
-        line.to = end->second;
+      if (node_of_[next] != kNoCell) {
+        line.to = node_of_[next];
         break;
       }
       before = cell;
@@ -127,11 +123,11 @@ class NetworkMaker {
     countEnds();
     DisjointSets groups(network_.nodes.size());
     const auto rank = [&](std::uint32_t node) {
-      return std::tuple(-int{edge_distance2_[network_.nodes[node]]}, network_.nodes[node]);
+      return std::tuple(-int{graph_.edge_distance2[network_.nodes[node]]}, network_.nodes[node]);
     };
     for (const SkeletonLine& line : network_.lines) {
       if (network_.line_ends[line.from] < 3 || network_.line_ends[line.to] < 3 || line.from == line.to) continue;
-      if (length_m(line) > std::max(clearance_m(line.from), clearance_m(line.to))) continue;
+      if (line.length_m > std::max(clearance_m(line.from), clearance_m(line.to))) continue;
       groups.join(line.from, line.to);
     }
     std::vector<std::uint32_t> farthest(network_.nodes.size());  // of each group, by its representative
@@ -140,9 +136,10 @@ class NetworkMaker {
       if (std::uint32_t& best = farthest[groups.find(node)]; rank(node) < rank(best)) best = node;
     for (SkeletonLine& line : network_.lines) {
       const bool was_loop = line.from == line.to;
-      const double length = length_m(line), clearance = std::max(clearance_m(line.from), clearance_m(line.to));
+      const double clearance = std::max(clearance_m(line.from), clearance_m(line.to));
       line.from = farthest[groups.find(line.from)], line.to = farthest[groups.find(line.to)];
-      if (line.from == line.to && !was_loop && length <= clearance) line.cells.clear();
+      if (line.from == line.to && !was_loop && line.length_m <= clearance) line.cells.clear();
+      measure(line);
     }
     std::erase_if(network_.lines, [](const SkeletonLine& line) { return line.from == line.to && line.cells.empty(); });
   }
@@ -163,9 +160,8 @@ class NetworkMaker {
       const bool ends_first = network_.line_ends[line.from] == 1, ends_last = network_.line_ends[line.to] == 1;
       const std::uint32_t junction = ends_first ? line.to : line.from;
       if (ends_first == ends_last || network_.line_ends[junction] < 3) continue;
-      const double length = length_m(line);
-      if (length > widths * clearance_m(junction) + beyond_m) continue;
-      spurs.push_back({length, network_.nodes[ends_first ? line.from : line.to], junction, i});
+      if (line.length_m > widths * clearance_m(junction) + beyond_m) continue;
+      spurs.push_back({line.length_m, network_.nodes[ends_first ? line.from : line.to], junction, i});
     }
     std::sort(spurs.begin(), spurs.end(), [](const Spur& a, const Spur& b) {
       return std::tuple(a.length_m, a.end_cell) < std::tuple(b.length_m, b.end_cell);
@@ -197,6 +193,7 @@ class NetworkMaker {
       first.cells.push_back(network_.nodes[node]);
       first.cells.insert(first.cells.end(), second.cells.begin(), second.cells.end());
       first.to = second.to;
+      first.length_m += second.length_m;
       gone[at[node][1]] = true;
       std::replace(at[first.to].begin(), at[first.to].end(), at[node][1], at[node][0]);
       at[node].clear();
@@ -214,19 +211,16 @@ class NetworkMaker {
     std::reverse(line.cells.begin(), line.cells.end());
   }
 
-  const TileCells& cells_;
-  const std::vector<std::uint8_t>& skeleton_;
-  const std::vector<std::uint16_t>& edge_distance2_;
-  std::map<std::uint32_t, std::uint32_t> node_of_;
-  std::vector<bool> passed_ = std::vector<bool>(skeleton_.size(), false);
+  const LineGraph& graph_;
+  std::vector<std::uint32_t> node_of_ = std::vector<std::uint32_t>(graph_.size(), kNoCell);
+  std::vector<bool> passed_ = std::vector<bool>(graph_.size(), false);
   SkeletonNetwork network_;
 };
 
 }  // namespace
 
-SkeletonNetwork networkOf(const TileCells& cells, const std::vector<std::uint8_t>& skeleton,
-                          const std::vector<std::uint16_t>& edge_distance2) {
-  return NetworkMaker(cells, skeleton, edge_distance2).make();
+SkeletonNetwork networkOf(const LineGraph& graph) {
+  return NetworkMaker(graph).make();
 }
 
 }  // namespace cluxel::mapping

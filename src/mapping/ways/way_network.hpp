@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mapping/ways/tile_cells.hpp"
+#include "mapping/ways/line_graph.hpp"
 
 namespace cluxel::mapping {
 
@@ -13,6 +13,7 @@ namespace cluxel::mapping {
 struct SkeletonLine {
   std::uint32_t from = 0, to = 0;    ///< numbers of nodes
   std::vector<std::uint32_t> cells;  ///< without those of the nodes
+  double length_m = 0;
 };
 
 struct SkeletonNetwork {
@@ -22,8 +23,7 @@ struct SkeletonNetwork {
 };
 
 /// Leaves out dead ends that are shorter than the way is wide at their start, and merges junctions of which each lies
-/// within the other's width. `edge_distance2` as of squaredEdgeDistances().
-SkeletonNetwork networkOf(const TileCells& cells, const std::vector<std::uint8_t>& skeleton,
-                          const std::vector<std::uint16_t>& edge_distance2);
+/// within the other's width.
+SkeletonNetwork networkOf(const LineGraph& graph);
 
 }  // namespace cluxel::mapping
