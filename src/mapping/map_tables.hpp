@@ -12,8 +12,8 @@
 
 namespace cluxel::mapping::tables {
 
-inline constexpr std::string_view kMeta =
-    "meta";  ///< "state", "inputs", "objects", "decisions", "splits", "presence", "passed_rays", "tiles", "facts"
+/// "inferred": what a later inference needs to follow changes.
+inline constexpr std::string_view kMeta = "meta";  ///< "state", "inputs", "semantic state", "splits", "tiles", "facts"
 inline constexpr std::string_view kTexts = "texts";             ///< "ontology/0" ...: the inputs' texts
 inline constexpr std::string_view kScans = "scans";             ///< scan id → description
 inline constexpr std::string_view kScanPoints = "scan_points";  ///< scan id → points in the sensor frame
@@ -26,6 +26,14 @@ inline constexpr std::string_view kSummaries = "stage_summaries";
 inline constexpr std::string_view kEven = "stage_even";
 inline constexpr std::string_view kComponents = "stage_components";
 inline constexpr std::string_view kContacts = "stage_contacts";
+inline constexpr std::string_view kTileLayers = "tile_layers";  ///< tile → its primitives and objects
+inline constexpr std::string_view kObjects = "objects";         ///< object id → its record
+inline constexpr std::string_view kWideTiles = "wide_tiles";    ///< tile → what it adds to class-wide objects
+inline constexpr std::string_view kPresence = "presence";       ///< object id → when it was there
+inline constexpr std::string_view kPassedRays = "passed_rays";  ///< object id → how many rays passed it
+inline constexpr std::string_view kFactUnits = "fact_units";    ///< what units of facts followed from
+inline constexpr std::string_view kSurfaces = "stage_surfaces";
+inline constexpr std::string_view kWays = "stage_ways";
 
 /// Keys sort by tile: big-endian with inverted sign bit.
 inline std::string keyOf(const perception::TileKey& tile) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Objects as one packed CBOR block; lists of cluxels as planes of their differences.
+// Objects by rules as one packed CBOR block; lists of cluxels as planes of their differences.
 #include "mapping/object_store.hpp"
 
 #include <nlohmann/json.hpp>
@@ -13,8 +13,7 @@ namespace cluxel::mapping {
 namespace {
 
 using Json = nlohmann::json;
-constexpr std::string_view kObjectsKey = "objects", kByRulesKey = "objects by rules", kDigestsKey = "decisions",
-                           kSplitsKey = "splits";
+constexpr std::string_view kByRulesKey = "objects by rules", kSplitsKey = "splits";
 /// The numbers of a billion cluxels.
 constexpr std::uint64_t kMaxObjectBytes = std::uint64_t{1} << 32U;
 
@@ -42,8 +41,8 @@ rules::ObjectPart partFrom(const Json& json) {
 }
 
 Json objectJson(const rules::SemanticObject& object) {
-  Json json{{"id", object.id.hex()},  {"class", object.class_iri},   {"confidence", object.confidence},
-            {"rule", object.rule_id}, {"decision", object.decision}, {"parts", Json::array()}};
+  Json json{{"id", object.id.hex()},  {"class", object.class_iri},          {"confidence", object.confidence},
+            {"rule", object.rule_id}, {"class_wide", object.is_class_wide}, {"parts", Json::array()}};
   for (const rules::ObjectPart& part : object.parts) json["parts"].push_back(partJson(part));
   return json;
 }
@@ -54,22 +53,23 @@ rules::SemanticObject objectFrom(const Json& json) {
   object.class_iri = json.at("class");
   object.confidence = json.at("confidence");
   object.rule_id = json.at("rule");
-  object.decision = json.at("decision");
+  object.is_class_wide = json.at("class_wide");
   for (const Json& part : json.at("parts")) object.parts.push_back(partFrom(part));
   return object;
 }
 
-void storeUnder(rdf::WriteTransaction& transaction, std::string_view key,
-                const std::vector<rules::SemanticObject>& objects) {
+}  // namespace
+
+void storeObjectsByRules(rdf::WriteTransaction& transaction, const std::vector<rules::SemanticObject>& objects) {
   Json json = Json::array();
   for (const rules::SemanticObject& object : objects) json.push_back(objectJson(object));
   const auto bytes = Json::to_cbor(json);
-  transaction.putBlock(tables::kMeta, key, packedBytes({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
+  transaction.putBlock(tables::kMeta, kByRulesKey,
+                       packedBytes({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
 }
-
-std::vector<rules::SemanticObject> storedUnder(const rdf::ReadTransaction& transaction, std::string_view key) {
+std::vector<rules::SemanticObject> storedObjectsByRules(const rdf::ReadTransaction& transaction) {
   std::vector<rules::SemanticObject> objects;
-  const auto bytes = transaction.block(tables::kMeta, key);
+  const auto bytes = transaction.block(tables::kMeta, kByRulesKey);
   if (!bytes) return objects;
   try {
     const auto unpacked = unpackedBytes(*bytes, kMaxObjectBytes);
@@ -81,29 +81,8 @@ std::vector<rules::SemanticObject> storedUnder(const rdf::ReadTransaction& trans
   }
   return objects;
 }
-
-}  // namespace
-
-void storeObjects(rdf::WriteTransaction& transaction, const std::vector<rules::SemanticObject>& objects) {
-  storeUnder(transaction, kObjectsKey, objects);
-}
-std::vector<rules::SemanticObject> storedObjects(const rdf::ReadTransaction& transaction) {
-  return storedUnder(transaction, kObjectsKey);
-}
-
-void storeObjectsByRules(rdf::WriteTransaction& transaction, const std::vector<rules::SemanticObject>& objects) {
-  storeUnder(transaction, kByRulesKey, objects);
-}
-std::vector<rules::SemanticObject> storedObjectsByRules(const rdf::ReadTransaction& transaction) {
-  return storedUnder(transaction, kByRulesKey);
-}
 void eraseObjectsByRules(rdf::WriteTransaction& transaction) {
   transaction.eraseBlock(tables::kMeta, kByRulesKey);
-}
-
-void storeDigests(rdf::WriteTransaction& transaction, const std::vector<std::uint64_t>& digests) {
-  transaction.putBlock(tables::kMeta, kDigestsKey,
-                       {reinterpret_cast<const char*>(digests.data()), digests.size() * sizeof(std::uint64_t)});
 }
 
 void storeSplits(rdf::WriteTransaction& transaction, const rules::KnownSplits& splits) {
@@ -116,14 +95,6 @@ void storeSplits(rdf::WriteTransaction& transaction, const rules::KnownSplits& s
 rules::KnownSplits storedSplits(const rdf::ReadTransaction& transaction) {
   const auto bytes = transaction.block(tables::kMeta, kSplitsKey);
   return bytes ? rules::KnownSplits(*bytes) : rules::KnownSplits();
-}
-
-std::vector<std::uint64_t> storedDigests(const rdf::ReadTransaction& transaction) {
-  const auto bytes = transaction.block(tables::kMeta, kDigestsKey);
-  if (!bytes) return {};
-  std::vector<std::uint64_t> digests(bytes->size() / sizeof(std::uint64_t));
-  if (!digests.empty()) std::memcpy(digests.data(), bytes->data(), digests.size() * sizeof(std::uint64_t));
-  return digests;
 }
 
 }  // namespace cluxel::mapping

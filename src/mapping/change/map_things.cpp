@@ -14,41 +14,6 @@ namespace cluxel::mapping {
 namespace {
 
 using rdf::vocabulary::kGraphHistory;
-using Things = std::map<ContentHash, std::vector<Thing>>;
-
-std::string provenance(std::string_view local) {
-  return std::string(rdf::vocabulary::kProv).append(local);
-}
-
-/// Visits the subjects and objects of a property in graph history.
-void forEachLink(const rdf::QuadReader& quads, std::string_view property,
-                 const std::function<void(const Term& subject, const Term& object)>& visit) {
-  const auto graph = quads.idOf(Term::iri(kGraphHistory)), predicate = quads.idOf(Term::iri(provenance(property)));
-  if (!graph || !predicate) return;
-  rdf::QuadCursor cursor = quads.scan({.s = {}, .p = *predicate, .o = {}, .g = *graph});
-  for (rdf::QuadIds quad; cursor.next(quad);) visit(quads.termOf(quad.s), quads.termOf(quad.o));
-}
-
-std::optional<ContentHash> hashIn(const std::string& iri, std::string_view kind) {
-  const std::string start = rdf::mapIri(kind, "");
-  if (!iri.starts_with(start) || iri.size() != start.size() + 32) return std::nullopt;
-  try {
-    return ContentHash::fromHex(std::string_view(iri).substr(start.size()));
-  } catch (const std::invalid_argument&) {
-    return std::nullopt;
-  }
-}
-
-/// First times of all things that there ever were.
-std::map<std::string, std::string> timesOf(const rdf::QuadReader& quads) {
-  std::map<std::string, std::string> times;
-  forEachLink(quads, "generatedAtTime", [&](const Term& subject, const Term& time) {
-    if (!hashIn(subject.text, "thing")) return;
-    const auto [entry, is_new] = times.emplace(subject.text, time.text);
-    if (!is_new) entry->second = std::min(entry->second, time.text);
-  });
-  return times;
-}
 
 /// Objects before and after a change, matched by the seed points they share.
 struct Heirs {
@@ -56,9 +21,9 @@ struct Heirs {
   std::vector<std::vector<std::size_t>> ancestors_of;  ///< by object after: all that went on in it
 };
 
-/// The objects that are the same before and after, each with its number before. Objects of one map have no common
-/// members, so that such an object has no other predecessor. Objects of several maps may share members: then the list
-/// is empty.
+/// The objects that have the same name before and after, each with its number before. Objects of one map have no common
+/// members, so that such an object has no other predecessor; one that is named by its class goes on whatever it gains.
+/// Objects of several maps may share members: then the list is empty.
 std::map<ContentHash, std::size_t> sameObjects(const std::vector<ObjectMembers>& before,
                                                const std::vector<ObjectMembers>& after, ObjectsOf objects_of) {
   std::map<ContentHash, std::size_t> number_before, same;
@@ -101,12 +66,12 @@ Heirs heirsOf(const std::vector<ObjectMembers>& before, const std::vector<Object
 
 class Naming {
  public:
-  Naming(rdf::WriteTransaction& transaction, std::string time)
+  Naming(rdf::WriteTransaction& transaction, std::string time, const GoesOn& goes_on)
       : reader_(static_cast<const rdf::ReadTransaction&>(transaction)),
+        stored_(reader_),
         writer_(transaction),
         time_(std::move(time)),
-        things_(storedThings(reader_)),
-        times_(timesOf(reader_)) {}
+        goes_on_(goes_on) {}
 
   void run(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after, ObjectsOf objects_of) {
     const Heirs heirs = heirsOf(before, after, objects_of);
@@ -119,11 +84,11 @@ class Naming {
       names[a] = returned(after[a].id);
       if (names[a]) continue;
       names[a] = named(after[a].id);
-      for (const std::size_t b : heirs.ancestors_of[a]) derive(names[a]->iri, thingOf(things_, before[b].id).iri);
+      for (const std::size_t b : heirs.ancestors_of[a]) derive(names[a]->iri, nameOf(before[b].id).iri);
     }
     for (std::size_t a = 0; a < after.size(); ++a) link(after[a].id, *names[a]);
     for (std::size_t b = 0; b < before.size(); ++b)
-      if (const Thing thing = thingOf(things_, before[b].id); !held_.contains(thing.iri)) end(thing);
+      if (const Thing thing = nameOf(before[b].id); !isHeld(thing.iri)) end(thing);
     writer_.flush();
   }
 
@@ -143,7 +108,7 @@ class Naming {
   /// The oldest of the names that meet in an object; the others end in it.
   std::optional<Thing> inherited(const std::vector<ObjectMembers>& before, const std::vector<std::size_t>& from) {
     std::vector<Thing> claims;
-    for (const std::size_t b : from) claims.push_back(thingOf(things_, before[b].id));
+    for (const std::size_t b : from) claims.push_back(nameOf(before[b].id));
     if (claims.empty()) return std::nullopt;
     const Thing oldest = *std::min_element(claims.begin(), claims.end());
     for (const Thing& claim : claims) derive(oldest.iri, claim.iri);
@@ -151,33 +116,39 @@ class Naming {
   }
 
   std::optional<Thing> returned(const ContentHash& object) {
-    const auto known = things_.find(object);
-    if (known == things_.end()) return std::nullopt;
-    for (const Thing& thing : known->second) {
-      if (!held_.insert(thing.iri).second) continue;
-      const auto [begin, end] = ends().equal_range(thing.iri);
-      for (auto time = begin; time != end; ++time) remove(thing.iri, "invalidatedAtTime", time->second);
+    for (const Thing& thing : thingsOf(object)) {
+      if (isHeld(thing.iri)) continue;
+      held_.insert(thing.iri);
+      for (const Term& time : stored_.endsOf(thing.iri)) remove(thing.iri, "invalidatedAtTime", time);
       return thing;
     }
     return std::nullopt;
   }
 
-  /// The recorded ends of things.
-  const std::multimap<std::string, Term>& ends() {
-    if (!ends_) {
-      ends_.emplace();
-      forEachLink(reader_, "invalidatedAtTime",
-                  [&](const Term& subject, const Term& time) { ends_->emplace(subject.text, time); });
-    }
-    return *ends_;
+  const std::vector<Thing>& thingsOf(const ContentHash& object) {
+    const auto [entry, is_new] = things_.try_emplace(object);
+    if (is_new) entry->second = stored_.thingsOf(object);
+    return entry->second;
+  }
+  Thing nameOf(const ContentHash& object) {
+    thingsOf(object);
+    return thingOf(things_, object);
+  }
+
+  /// Whether a thing has an object after the change.
+  bool isHeld(const std::string& thing) {
+    if (held_.contains(thing)) return true;
+    if (!goes_on_) return false;
+    const std::vector<ContentHash> objects = stored_.objectsOf(thing);
+    return std::any_of(objects.begin(), objects.end(),
+                       [&](const ContentHash& object) { return goes_on_(object) && nameOf(object).iri == thing; });
   }
 
   Thing named(const ContentHash& object) {
     std::string iri = rdf::iriOfThing(object);
-    for (std::uint32_t n = 1; times_.contains(iri) || held_.contains(iri); ++n)
+    for (std::uint32_t n = 1; stored_.since(iri) || isHeld(iri); ++n)
       iri = rdf::iriOfThing(ContentHasher().add(object).add(n).finish());
     held_.insert(iri);
-    times_.emplace(iri, time_);
     add(iri, "generatedAtTime", timeTerm());
     return {iri, time_};
   }
@@ -185,15 +156,14 @@ class Naming {
   void link(const ContentHash& object, const Thing& thing) {
     const std::string iri = rdf::iriOfObject(object);
     bool is_linked = false;
-    if (const auto known = things_.find(object); known != things_.end())
-      for (const Thing& other : known->second) {
-        is_linked = is_linked || other.iri == thing.iri;
-        if (other.iri == thing.iri) continue;
-        remove(iri, "specializationOf", Term::iri(other.iri));
-        if (held_.contains(other.iri)) continue;
-        derive(thing.iri, other.iri);
-        end(other);
-      }
+    for (const Thing& other : thingsOf(object)) {
+      is_linked = is_linked || other.iri == thing.iri;
+      if (other.iri == thing.iri) continue;
+      remove(iri, "specializationOf", Term::iri(other.iri));
+      if (isHeld(other.iri)) continue;
+      derive(thing.iri, other.iri);
+      end(other);
+    }
     if (!is_linked) add(iri, "specializationOf", Term::iri(thing.iri));
   }
 
@@ -201,39 +171,21 @@ class Naming {
     if (ended_.insert(thing.iri).second) add(thing.iri, "invalidatedAtTime", timeTerm());
   }
 
-  rdf::QuadReader reader_;
+  rdf::QuadReader reader_;  ///< sees the state before, since the writer flushes at the end
+  ThingLookup stored_;
   rdf::QuadWriter writer_;
   std::string time_;
-  Things things_;
-  std::map<std::string, std::string> times_;
-  std::set<std::string> held_;  ///< things that have an object after the change
+  const GoesOn& goes_on_;
+  Things things_;               ///< of the objects that were looked up
+  std::set<std::string> held_;  ///< things that an object of the change has after it
   std::set<std::string> ended_;
-  std::optional<std::multimap<std::string, Term>> ends_;  ///< read when it is needed
 };
 
 }  // namespace
 
-Things storedThings(const rdf::QuadReader& quads) {
-  const std::map<std::string, std::string> times = timesOf(quads);
-  Things things;
-  forEachLink(quads, "specializationOf", [&](const Term& subject, const Term& object) {
-    const auto id = hashIn(subject.text, "object");
-    if (!id || !hashIn(object.text, "thing")) return;
-    const auto time = times.find(object.text);
-    things[*id].push_back({object.text, time == times.end() ? "" : time->second});
-  });
-  for (auto& [id, of_object] : things) std::sort(of_object.begin(), of_object.end());
-  return things;
-}
-
-Thing thingOf(const Things& things, const ContentHash& object) {
-  const auto known = things.find(object);
-  return known == things.end() ? Thing{rdf::iriOfThing(object), ""} : known->second.front();
-}
-
 void writeThings(rdf::WriteTransaction& transaction, const std::string& time, const std::vector<ObjectMembers>& before,
-                 const std::vector<ObjectMembers>& after, ObjectsOf objects_of) {
-  Naming(transaction, time).run(before, after, objects_of);
+                 const std::vector<ObjectMembers>& after, ObjectsOf objects_of, const GoesOn& goes_on) {
+  Naming(transaction, time, goes_on).run(before, after, objects_of);
 }
 
 void copyHistory(const rdf::QuadReader& from, rdf::WriteTransaction& into) {
@@ -247,9 +199,9 @@ void copyHistory(const rdf::QuadReader& from, rdf::WriteTransaction& into) {
 }
 
 Lineage::Lineage(const rdf::QuadReader& quads, const std::vector<ContentHash>& present)
-    : things_(storedThings(quads)), times_(timesOf(quads)) {
+    : things_(storedThings(quads)), times_(timesOfThings(quads)) {
   for (const ContentHash& object : present) object_of_[thingOf(things_, object).iri] = object;
-  forEachLink(quads, "wasDerivedFrom", [&](const Term& thing, const Term& from) {
+  forEachHistoryLink(quads, "wasDerivedFrom", [&](const Term& thing, const Term& from) {
     if (hashIn(thing.text, "thing")) later_.emplace(from.text, thing.text);
   });
 }

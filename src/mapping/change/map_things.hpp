@@ -3,6 +3,7 @@
 // rules never see.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -11,31 +12,26 @@
 #include <vector>
 
 #include "mapping/change/object_changes.hpp"
+#include "mapping/change/thing_history.hpp"
 #include "rdf/file/environment.hpp"
 #include "rdf/store/quad_store.hpp"
 
 namespace cluxel::mapping {
 
-struct Thing {
-  std::string iri;
-  std::string since;  ///< xsd:dateTime of its first object; empty when nobody wrote it down
-  bool operator<(const Thing& other) const { return std::tie(since, iri) < std::tie(other.since, other.iri); }
-};
-
-/// The things of objects, present and former ones; the first of several is the name. An object of an older map has
-/// none: its thing is the one that its own hash names.
-std::map<ContentHash, std::vector<Thing>> storedThings(const rdf::QuadReader& quads);
-Thing thingOf(const std::map<ContentHash, std::vector<Thing>>& things, const ContentHash& object);
-
 /// Whose objects are compared: those of several maps may have common members.
 enum class ObjectsOf { OneMap, SeveralMaps };
+
+/// Tells of an object that is not given whether it was there before a change and is after it.
+using GoesOn = std::function<bool(const ContentHash& object)>;
 
 /// Hands the names on from the objects before a change to those after it, and records splits, joins and ends. The part
 /// with most shared members keeps a name (ties: the smallest hash). A join keeps the older name, then the smaller. An
 /// object that comes back as it was gets its former name, if no other has it. A new thing is named by the hash of its
-/// first object. `time` is an xsd:dateTime. Cost: that of the members of objects that differ.
+/// first object. `time` is an xsd:dateTime. Of one map, objects that are the same before and after need not be given
+/// when `goes_on` knows them. Cost: that of the objects given and of their history.
 void writeThings(rdf::WriteTransaction& transaction, const std::string& time, const std::vector<ObjectMembers>& before,
-                 const std::vector<ObjectMembers>& after, ObjectsOf objects_of = ObjectsOf::OneMap);
+                 const std::vector<ObjectMembers>& after, ObjectsOf objects_of = ObjectsOf::OneMap,
+                 const GoesOn& goes_on = {});
 
 /// Adds the history of another map: its activities, lineage and things.
 void copyHistory(const rdf::QuadReader& from, rdf::WriteTransaction& into);
@@ -63,7 +59,7 @@ class Lineage {
   };
   Meaning meaningOf(const std::string& name) const;
 
-  std::map<ContentHash, std::vector<Thing>> things_;
+  Things things_;
   std::map<std::string, std::string> times_;       ///< of all things
   std::map<std::string, ContentHash> object_of_;   ///< present ones, by thing
   std::multimap<std::string, std::string> later_;  ///< thing → thing that was derived from it

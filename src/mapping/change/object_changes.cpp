@@ -32,19 +32,19 @@ Succession successionOf(const ObjectList& before, const ObjectList& after) {
   return succession;
 }
 
-/// Scan ids are random bits already; the point number is spread over all bits by the golden ratio.
-std::uint64_t keyOfSeed(const ContentHash& scan, std::uint32_t point) {
-  std::uint64_t key = 0;
-  std::memcpy(&key, scan.bytes.data(), sizeof key);
-  return key ^ (static_cast<std::uint64_t>(point) + 1) * 0x9E3779B97F4A7C15ULL;
-}
-
 void sortById(std::vector<DerivedObject>& objects) {
   for (DerivedObject& object : objects) std::sort(object.from.begin(), object.from.end());
   std::sort(objects.begin(), objects.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
 }
 
 }  // namespace
+
+/// Scan ids are random bits already; the point number is spread over all bits by the golden ratio.
+std::uint64_t memberKey(const ContentHash& scan, std::uint32_t point) {
+  std::uint64_t key = 0;
+  std::memcpy(&key, scan.bytes.data(), sizeof key);
+  return key ^ (static_cast<std::uint64_t>(point) + 1) * 0x9E3779B97F4A7C15ULL;
+}
 
 std::vector<ObjectMembers> membersOf(const std::vector<rules::SemanticObject>& objects,
                                      const perception::SceneSeeds& seeds) {
@@ -58,7 +58,7 @@ std::vector<ObjectMembers> membersOf(const std::vector<rules::SemanticObject>& o
     for (const rules::ObjectPart& part : object.parts)
       for (const std::uint32_t cluxel : part.cluxels) {
         const perception::SeedName& seed = seeds.seed[cluxel];
-        members.seeds.push_back(keyOfSeed(seeds.scans[seed.scan], seed.point));
+        members.seeds.push_back(memberKey(seeds.scans[seed.scan], seed.point));
       }
     all.push_back(std::move(members));
   }
@@ -101,7 +101,8 @@ ObjectChanges compareObjects(const std::vector<ObjectMembers>& before, const std
   return changesBetween(listOf(before), listOf(after));
 }
 
-ObjectChanges compareStates(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after) {
+ObjectChanges compareStates(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after,
+                            std::size_t others) {
   const auto byId = [](const ObjectMembers* a, const ObjectMembers* b) { return a->id < b->id; };
   const ObjectList all_before = listOf(before), all_after = listOf(after);
   ObjectList only_before, only_after;
@@ -110,7 +111,7 @@ ObjectChanges compareStates(const std::vector<ObjectMembers>& before, const std:
   std::set_difference(all_after.begin(), all_after.end(), all_before.begin(), all_before.end(),
                       std::back_inserter(only_after), byId);
   ObjectChanges changes = changesBetween(only_before, only_after);
-  changes.unchanged = after.size() - only_after.size();
+  changes.unchanged = others + after.size() - only_after.size();
   return changes;
 }
 

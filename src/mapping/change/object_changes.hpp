@@ -19,6 +19,9 @@ struct ObjectMembers {
   std::vector<std::uint64_t> seeds;  ///< hashes of (scan, point), in no order
 };
 
+/// The hash of a seed point.
+std::uint64_t memberKey(const ContentHash& scan, std::uint32_t point);
+
 std::vector<ObjectMembers> membersOf(const std::vector<rules::SemanticObject>& objects,
                                      const perception::SceneSeeds& seeds);
 
@@ -42,8 +45,10 @@ struct ObjectChanges {
 /// seed points, or the other way round. Lists are sorted by id. `before` may hold the objects of several maps, in which
 /// members occur twice. Cost: linear in the members.
 ObjectChanges compareObjects(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after);
-/// The same for the objects of one map before and after, which have no common members. Both sorted by id. Cost:
-/// linear in the members of those that differ.
-ObjectChanges compareStates(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after);
+/// The same for the objects of one map before and after, which have no common members. Both sorted by id. An object
+/// with the same name before and after is unchanged; such objects need not be given, and `others` is the number of
+/// those that are not. Cost: linear in the members of those that differ.
+ObjectChanges compareStates(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after,
+                            std::size_t others = 0);
 
 }  // namespace cluxel::mapping

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "mapping/build/operator_statements.hpp"
+#include "mapping/build/way_tiles.hpp"
 #include "mapping/facts/map_oracle.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "rdf/ontology/ontology.hpp"

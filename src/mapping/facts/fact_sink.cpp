@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <span>
+#include <stdexcept>
 
+#include "perception/segments/scene.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::mapping {
@@ -31,26 +34,50 @@ std::vector<rdf::TermId> subjectsOf(std::span<const rdf::QuadIds> facts) {
   return subjects;
 }
 
-bool isBefore(const FactUnit& a, const FactUnit& b) {
-  return a.id < b.id;
+rdf::QuadReader readerOf(const rdf::WriteTransaction& transaction) {
+  return rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction));
+}
+
+unsigned bitOf(Facet facet) {
+  return 1U << static_cast<unsigned>(facet);
+}
+
+/// The facets of which a unit has facts, one bit each.
+unsigned facetsOf(const FactUnitKey& key) {
+  return key == FactUnitKey{} ? bitOf(Facet::Self) | bitOf(Facet::Relations) : bitOf(key.facet);
+}
+
+/// The relations that the store has terms for.
+std::vector<rdf::TermId> relationTerms(const rdf::QuadReader& quads) {
+  std::vector<rdf::TermId> terms;
+  for (const perception::RelationInfo& info : perception::relationInfos())
+    if (const auto term = quads.idOf(Term::iri(rdf::vocabulary::clx(info.property)))) terms.push_back(*term);
+  return terms;
 }
 
 }  // namespace
 
-FactSink::FactSink(rdf::QuadWriter& writer, rdf::TermId graph, std::optional<std::vector<FactUnit>> known)
-    : writer_(writer), graph_(graph), known_(std::move(known)), is_kept_(known_ ? known_->size() : 0) {}
+FactSink::FactSink(rdf::WriteTransaction& transaction, std::string_view graph, FactsOf facts_of)
+    : transaction_(transaction),
+      writer_(transaction),
+      graph_(writer_.intern(Term::iri(graph))),
+      is_collecting_(facts_of == FactsOf::Collected),
+      is_whole_(facts_of == FactsOf::TheGraph),
+      has_units_(facts_of != FactsOf::Collected && haveFactUnits(transaction, readerOf(transaction), graph_)),
+      replaces_others_(is_whole_) {
+  if (facts_of == FactsOf::SomeUnits && !has_units_)
+    throw std::logic_error("the graph has no units of which some could be replaced");
+}
 
-bool FactSink::beginUnit(const ContentHash& unit, const ContentHash& cause) {
-  const FactUnit asked{unit, added_to_.contains(unit) ? ContentHash{} : cause, {}};
-  if (known_ && !asked.cause.isZero()) {
-    const auto found = std::lower_bound(known_->begin(), known_->end(), asked, isBefore);
-    if (found != known_->end() && found->id == unit && found->cause == cause) {
-      is_kept_[static_cast<std::size_t>(found - known_->begin())] = true;
-      units_.push_back(*found);
-      return false;
+bool FactSink::beginUnit(const FactUnitKey& key, const ContentHash& cause) {
+  asked_.insert(key);
+  const ContentHash believed = added_to_.contains(key.id) ? ContentHash{} : cause;
+  if (has_units_)
+    if (auto stored = storedFactUnit(transaction_, key)) {
+      if (!believed.isZero() && stored->cause == believed) return false;
+      replaced_.push_back(*std::move(stored));
     }
-  }
-  units_.push_back(asked);
+  units_.push_back({key, believed, {}});
   unit_begin_ = of_units_.size();
   return in_unit_ = true;
 }
@@ -58,6 +85,15 @@ bool FactSink::beginUnit(const ContentHash& unit, const ContentHash& cause) {
 void FactSink::endUnit() {
   units_.back().subjects = subjectsOf(std::span(of_units_).subspan(unit_begin_));
   in_unit_ = false;
+}
+
+void FactSink::removeUnit(const FactUnitKey& key) {
+  if (is_collecting_) return;
+  asked_.insert(key);
+  auto stored = storedFactUnit(transaction_, key);
+  if (!stored) return;
+  replaced_.push_back(*std::move(stored));
+  removed_.push_back(key);
 }
 
 rdf::TermId FactSink::property(std::string_view name) {
@@ -98,41 +134,70 @@ void FactSink::count(rdf::TermId subject, std::string_view property_name, std::u
   link(subject, property_name, writer_.intern(Term::integer(static_cast<std::int64_t>(value))));
 }
 
+void FactSink::removeThoseNotAsked() {
+  for (const FactUnitKey& key : storedFactUnitKeys(transaction_))
+    if (!asked_.contains(key) && key != FactUnitKey{}) removeUnit(key);
+}
+
+void FactSink::takeOthers() {
+  if (auto stored = storedFactUnit(transaction_, {})) replaced_.push_back(*std::move(stored));
+  units_.push_back({{}, {}, subjectsOf(others_)});
+}
+
 /// The stored facts that may differ: all, or those of units that are not kept.
 std::vector<rdf::QuadIds> FactSink::storedToCompare(const rdf::QuadReader& stored) const {
   std::vector<rdf::QuadIds> facts;
-  const auto add = [&](const rdf::QuadPattern& pattern) {
-    rdf::QuadCursor cursor = stored.scan(pattern, rdf::QuadOrder::Gspo);
-    for (rdf::QuadIds quad; cursor.next(quad);) facts.push_back(quad);
-  };
-  if (!known_) {
-    add({.s = {}, .p = {}, .o = {}, .g = graph_});
-  } else {
-    std::vector<rdf::TermId> subjects;
-    for (std::size_t i = 0; i < known_->size(); ++i)
-      if (!is_kept_[i]) subjects.insert(subjects.end(), (*known_)[i].subjects.begin(), (*known_)[i].subjects.end());
-    std::sort(subjects.begin(), subjects.end());
-    subjects.erase(std::unique(subjects.begin(), subjects.end()), subjects.end());
-    for (const rdf::TermId subject : subjects) add({.s = subject, .p = {}, .o = {}, .g = graph_});
+  rdf::QuadIds quad;
+  if (!has_units_) {
+    rdf::QuadCursor cursor = stored.scan({.s = {}, .p = {}, .o = {}, .g = graph_}, rdf::QuadOrder::Gspo);
+    while (cursor.next(quad)) facts.push_back(quad);
+    return facts;
   }
-  std::sort(facts.begin(), facts.end());
+  std::map<rdf::TermId, unsigned> facets;  // of each subject
+  for (const FactUnit& unit : replaced_)
+    for (const rdf::TermId subject : unit.subjects) facets[subject] |= facetsOf(unit.key);
+  const std::vector<rdf::TermId> relations = relationTerms(stored);
+  for (const auto& [subject, bits] : facets) {
+    rdf::QuadCursor cursor = stored.scan({.s = subject, .p = {}, .o = {}, .g = graph_}, rdf::QuadOrder::Gspo);
+    while (cursor.next(quad)) {
+      const bool is_relation = std::find(relations.begin(), relations.end(), quad.p) != relations.end();
+      if ((bits & bitOf(is_relation ? Facet::Relations : Facet::Self)) != 0) facts.push_back(quad);
+    }
+  }
+  return facts;  // ascending, as subjects are
+}
+
+std::vector<rdf::QuadIds> FactSink::take() {
+  std::vector<rdf::QuadIds> facts = std::move(of_units_);
+  facts.insert(facts.end(), others_.begin(), others_.end());
   return facts;
 }
 
-std::vector<FactUnit> FactSink::writeTo(const rdf::QuadReader& stored) {
-  units_.push_back({{}, {}, subjectsOf(others_)});
-  std::sort(units_.begin(), units_.end(), isBefore);
+FactChange FactSink::writeDifference() {
   std::vector<rdf::QuadIds> facts = std::move(of_units_);
   facts.insert(facts.end(), others_.begin(), others_.end());
   std::sort(facts.begin(), facts.end());
   facts.erase(std::unique(facts.begin(), facts.end()), facts.end());
-  std::vector<rdf::QuadIds> gone, fresh;
-  const std::vector<rdf::QuadIds> old = storedToCompare(stored);
-  std::set_difference(old.begin(), old.end(), facts.begin(), facts.end(), std::back_inserter(gone));
-  std::set_difference(facts.begin(), facts.end(), old.begin(), old.end(), std::back_inserter(fresh));
-  for (const rdf::QuadIds& quad : gone) writer_.remove(quad);
-  for (const rdf::QuadIds& quad : fresh) writer_.add(quad);
-  return std::move(units_);
+  const std::vector<rdf::QuadIds> old = storedToCompare(readerOf(transaction_));
+  FactChange change;
+  std::set_difference(old.begin(), old.end(), facts.begin(), facts.end(), std::back_inserter(change.removed));
+  std::set_difference(facts.begin(), facts.end(), old.begin(), old.end(), std::back_inserter(change.added));
+  for (const rdf::QuadIds& quad : change.removed) writer_.remove(quad);
+  for (const rdf::QuadIds& quad : change.added) writer_.add(quad);
+  writer_.flush();
+  return change;
+}
+
+FactChange FactSink::finish() {
+  if (!replaces_others_ && !others_.empty()) throw std::logic_error("facts outside of the units that are replaced");
+  writer_.flush();
+  if (is_whole_) removeThoseNotAsked();
+  if (replaces_others_) takeOthers();
+  FactChange change = writeDifference();
+  for (const FactUnitKey& key : removed_) eraseFactUnit(transaction_, key);
+  for (const FactUnit& unit : units_) storeFactUnit(transaction_, unit);
+  stampFactUnits(transaction_, readerOf(transaction_), graph_);
+  return change;
 }
 
 }  // namespace cluxel::mapping

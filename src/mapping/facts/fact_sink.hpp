@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -19,17 +18,34 @@ namespace cluxel::mapping {
 /// A number as xsd:decimal text ("2.35"), rounded to `digits` decimal places.
 std::string decimalText(double value, int digits);
 
+/// Which facts a sink is given.
+enum class FactsOf : std::uint8_t {
+  TheGraph,   ///< all: what is not given is removed
+  SomeUnits,  ///< those of units that are begun; others stay as they are, and are not read
+  Collected,  ///< those that the caller wants, and writes: all units are asked for
+};
+
+/// What a sink changed, ascending.
+struct FactChange {
+  std::vector<rdf::QuadIds> added, removed;
+};
+
 class FactSink {
  public:
-  /// `known`: the units of the stored graph. Without them all facts are computed and compared.
-  FactSink(rdf::QuadWriter& writer, rdf::TermId graph, std::optional<std::vector<FactUnit>> known = std::nullopt);
+  /// SomeUnits asks for a graph with units (haveFactUnits()); throws std::logic_error otherwise.
+  FactSink(rdf::WriteTransaction& transaction, std::string_view graph, FactsOf facts_of = FactsOf::TheGraph);
 
-  /// Facts outside of a unit are about subjects of the unit, too.
-  void addToUnit(const ContentHash& unit) { added_to_.insert(unit); }
+  /// Facts outside of a unit are about subjects of the units of this id, too. When some units are given, those to which
+  /// such facts were or are added must be begun or removed with replaceOthers(), and not without.
+  void addToUnits(const ContentHash& id) { added_to_.insert(id); }
   /// Begins the facts of a unit; `cause` is a hash of all that they follow from. False when the stored graph has them:
-  /// then none must be given. Only facts of the unit may be about its subjects, but for addToUnit().
-  bool beginUnit(const ContentHash& unit, const ContentHash& cause);
+  /// then none must be given. Only facts of the unit may be of its facet about its subjects, but for addToUnits().
+  bool beginUnit(const FactUnitKey& key, const ContentHash& cause);
   void endUnit();
+  /// The graph must not have the facts of this unit.
+  void removeUnit(const FactUnitKey& key);
+  /// Of some units: facts outside of units are given as well.
+  void replaceOthers() { replaces_others_ = true; }
 
   rdf::TermId iri(std::string_view value) { return writer_.intern(Term::iri(value)); }
   /// The property `local` of the ontology, or a full IRI when it holds a ':'.
@@ -44,22 +60,30 @@ class FactSink {
   void number(rdf::TermId subject, std::string_view property_name, double value);
   void count(rdf::TermId subject, std::string_view property_name, std::uint64_t value);
 
-  /// Makes the stored graph equal to the collected facts and those that it keeps. `stored` reads the state before.
-  /// Returns the units, ascending by id. The collection is spent afterwards.
-  std::vector<FactUnit> writeTo(const rdf::QuadReader& stored);
+  /// Makes the stored graph and its units equal to what was given and what is kept. The sink is spent afterwards.
+  FactChange finish();
+  /// The facts of a sink that only collects them. Their terms wait for a flush of the writer.
+  std::vector<rdf::QuadIds> take();
+  rdf::QuadWriter& writer() { return writer_; }
 
  private:
+  void removeThoseNotAsked();
+  void takeOthers();
   std::vector<rdf::QuadIds> storedToCompare(const rdf::QuadReader& stored) const;
+  FactChange writeDifference();
 
-  rdf::QuadWriter& writer_;
+  rdf::WriteTransaction& transaction_;
+  rdf::QuadWriter writer_;
   rdf::TermId graph_;
+  bool is_collecting_, is_whole_, has_units_, replaces_others_;
   std::unordered_map<std::string, rdf::TermId> properties_;
   std::vector<rdf::QuadIds> of_units_, others_;
   std::size_t unit_begin_ = 0;  ///< in of_units_
   bool in_unit_ = false;
-  std::optional<std::vector<FactUnit>> known_;
-  std::vector<bool> is_kept_;  ///< by number in known_
-  std::vector<FactUnit> units_;
+  std::set<FactUnitKey> asked_;
+  std::vector<FactUnit> units_;       ///< to be stored
+  std::vector<FactUnit> replaced_;    ///< stored units of which the facts are compared
+  std::vector<FactUnitKey> removed_;  ///< stored units that are gone
   std::set<ContentHash> added_to_;
 };
 

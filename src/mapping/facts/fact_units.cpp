@@ -1,69 +1,86 @@
 // SPDX-License-Identifier: Apache-2.0
-// One block: the number of quads of the graph, then the units one after the other.
+// One block a unit, and the number of quads of the graph, which tells whether others have changed it.
 #include "mapping/facts/fact_units.hpp"
 
 #include <cstring>
 #include <string>
 #include <string_view>
 
+#include "cluxel/error.hpp"
 #include "mapping/map_tables.hpp"
 
 namespace cluxel::mapping {
 
 namespace {
 
-constexpr std::string_view kKey = "facts";
+constexpr std::string_view kStampKey = "facts";
+constexpr std::size_t kHashBytes = sizeof(ContentHash::bytes);
 
-template <typename Value>
-void append(std::string& bytes, const Value& value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+std::string keyOf(const FactUnitKey& key) {
+  return tables::keyOf(key.id) + static_cast<char>(key.facet);
 }
 
-/// Takes values from the front of the bytes; false when there are too few.
-template <typename Value>
-bool take(std::string_view& bytes, Value* values, std::size_t count = 1) {
-  if (bytes.size() / sizeof(Value) < count) return false;
-  if (count > 0) std::memcpy(values, bytes.data(), count * sizeof(Value));
-  bytes.remove_prefix(count * sizeof(Value));
-  return true;
+std::string stampOf(const rdf::QuadReader& quads, rdf::TermId graph) {
+  const std::uint64_t count = quads.count({.s = {}, .p = {}, .o = {}, .g = graph});
+  return {reinterpret_cast<const char*>(&count), sizeof count};
 }
 
-std::uint64_t quadsOf(const rdf::QuadReader& quads, rdf::TermId graph) {
-  return quads.count({.s = {}, .p = {}, .o = {}, .g = graph});
+[[noreturn]] void failDamaged() {
+  throw Error(ErrorKind::StoreUnavailable, "a stored unit of facts is cut short; the map is damaged, build it anew");
+}
+
+std::string bytesOf(const FactUnit& unit) {
+  std::string bytes = tables::keyOf(unit.cause);
+  bytes.append(reinterpret_cast<const char*>(unit.subjects.data()), unit.subjects.size() * sizeof(rdf::TermId));
+  return bytes;
+}
+
+FactUnit unitFrom(const FactUnitKey& key, std::string_view bytes) {
+  if (bytes.size() < kHashBytes || (bytes.size() - kHashBytes) % sizeof(rdf::TermId) != 0) failDamaged();
+  FactUnit unit{key, tables::hashOfKey(bytes), {}};
+  bytes.remove_prefix(kHashBytes);
+  unit.subjects.resize(bytes.size() / sizeof(rdf::TermId));
+  if (!bytes.empty()) std::memcpy(unit.subjects.data(), bytes.data(), bytes.size());
+  return unit;
 }
 
 }  // namespace
 
-std::optional<std::vector<FactUnit>> storedFactUnits(const rdf::ReadTransaction& transaction,
-                                                     const rdf::QuadReader& quads, rdf::TermId graph) {
-  const auto block = transaction.block(tables::kMeta, kKey);
-  if (!block) return std::nullopt;
-  std::string_view bytes = *block;
-  std::uint64_t quad_count = 0;
-  if (!take(bytes, &quad_count) || quad_count != quadsOf(quads, graph)) return std::nullopt;
-  std::vector<FactUnit> units;
-  while (!bytes.empty()) {
-    FactUnit& unit = units.emplace_back();
-    std::uint32_t subjects = 0;
-    if (!take(bytes, &unit.id) || !take(bytes, &unit.cause) || !take(bytes, &subjects)) return std::nullopt;
-    if (bytes.size() / sizeof(rdf::TermId) < subjects) return std::nullopt;
-    unit.subjects.resize(subjects);
-    take(bytes, unit.subjects.data(), subjects);
-  }
-  return units;
+bool haveFactUnits(const rdf::ReadTransaction& transaction, const rdf::QuadReader& quads, rdf::TermId graph) {
+  const auto stamp = transaction.block(tables::kMeta, kStampKey);
+  return stamp && *stamp == stampOf(quads, graph);
 }
 
-void storeFactUnits(rdf::WriteTransaction& transaction, const std::vector<FactUnit>& units,
-                    const rdf::QuadReader& quads, rdf::TermId graph) {
-  std::string bytes;
-  append(bytes, quadsOf(quads, graph));
-  for (const FactUnit& unit : units) {
-    append(bytes, unit.id);
-    append(bytes, unit.cause);
-    append(bytes, static_cast<std::uint32_t>(unit.subjects.size()));
-    bytes.append(reinterpret_cast<const char*>(unit.subjects.data()), unit.subjects.size() * sizeof(rdf::TermId));
-  }
-  transaction.putBlock(tables::kMeta, kKey, bytes);
+void stampFactUnits(rdf::WriteTransaction& transaction, const rdf::QuadReader& quads, rdf::TermId graph) {
+  transaction.putBlock(tables::kMeta, kStampKey, stampOf(quads, graph));
+}
+
+std::optional<FactUnit> storedFactUnit(const rdf::ReadTransaction& transaction, const FactUnitKey& key) {
+  const auto bytes = transaction.block(tables::kFactUnits, keyOf(key));
+  return bytes ? std::optional(unitFrom(key, *bytes)) : std::nullopt;
+}
+
+std::vector<FactUnitKey> storedFactUnitKeys(const rdf::ReadTransaction& transaction) {
+  std::vector<FactUnitKey> keys;
+  transaction.forEachBlock(tables::kFactUnits, "", [&](std::string_view key, std::string_view) {
+    if (key.size() != kHashBytes + 1) failDamaged();
+    keys.push_back({tables::hashOfKey(key), static_cast<Facet>(key.back())});
+  });
+  return keys;
+}
+
+void storeFactUnit(rdf::WriteTransaction& transaction, const FactUnit& unit) {
+  const std::string key = keyOf(unit.key), bytes = bytesOf(unit);
+  if (const auto old = transaction.block(tables::kFactUnits, key); old && *old == bytes) return;
+  transaction.putBlock(tables::kFactUnits, key, bytes);
+}
+
+void eraseFactUnit(rdf::WriteTransaction& transaction, const FactUnitKey& key) {
+  transaction.eraseBlock(tables::kFactUnits, keyOf(key));
+}
+
+void forgetFactUnits(rdf::WriteTransaction& transaction) {
+  transaction.eraseBlock(tables::kMeta, kStampKey);
 }
 
 }  // namespace cluxel::mapping

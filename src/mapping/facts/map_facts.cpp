@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Facts about clouds, primitives and relations; object_facts.cpp adds those about objects. Each primitive is a unit of
-// facts with its relations to others.
+// facts, and its relations to others are another.
 #include "mapping/facts/map_facts.hpp"
 
 #include <cmath>
@@ -28,15 +28,13 @@ void addMap(const ObservedMap& map, FactSink& facts) {
   for (const Cloud& cloud : map.clouds) facts.link(root, "hasCloud", facts.iri(rdf::iriOfCloud(cloud.id)));
 }
 
-void addCloud(const Cloud& cloud, FactSink& facts) {
-  const rdf::TermId subject = facts.iri(rdf::iriOfCloud(cloud.id));
-  facts.type(subject, rdf::vocabulary::clx("Cloud"));
-  facts.count(subject, "pointCount", cloud.point_count);
-  addBounds(subject, cloud.min, cloud.max, facts);
-  if (cloud.has_pose) addPosition(subject, cloud.T_map_sensor.translation(), facts);
-  if (cloud.time_s)
-    facts.literal(subject, std::string(rdf::vocabulary::kSosa) + "resultTime", dateTimeText(*cloud.time_s),
-                  rdf::vocabulary::xsd("dateTime"));
+ContentHash causeOf(const Cloud& cloud) {
+  const Eigen::Vector3d& place = cloud.T_map_sensor.translation();
+  ContentHasher hasher;
+  for (const Eigen::Vector3d* corner : {&cloud.min, &cloud.max}) hasher.addBytes(corner->data(), 3 * sizeof(double));
+  hasher.add(cloud.point_count).add(cloud.has_pose);
+  if (cloud.has_pose) hasher.add(place.x()).add(place.y()).add(place.z());
+  return hasher.add(cloud.time_s.has_value()).add(cloud.time_s.value_or(0)).finish();
 }
 
 /// "horizontal_plane" → "HorizontalPlane".
@@ -76,46 +74,96 @@ std::string groundPatchUnder(const perception::Primitive& primitive) {
 void addRelation(const perception::Scene& scene, const perception::Relation& relation, rdf::TermId from,
                  FactSink& facts) {
   const std::string_view property = perception::relationInfos()[static_cast<std::size_t>(relation.kind)].property;
-  if (!isToGround(relation))
-    facts.link(from, property, facts.iri(rdf::iriOfPrimitive(scene.primitives[relation.to].id)));
-  else if (relation.measure <= kTouchesGround_m)
-    facts.link(from, property, facts.iri(groundPatchUnder(scene.primitives[relation.from])));
+  const std::string to = isToGround(relation) ? groundPatchUnder(scene.primitives[relation.from])
+                                              : rdf::iriOfPrimitive(scene.primitives[relation.to].id);
+  facts.link(from, property, facts.iri(to));
 }
 
-/// The hash of all that the facts of a primitive and of its relations follow from.
-ContentHash causeOf(const perception::Scene& scene, perception::PrimitiveIndex number) {
-  const perception::Primitive& primitive = scene.primitives[number];
+/// The hash of all that the facts of a primitive itself follow from.
+ContentHash causeOf(const perception::Primitive& primitive) {
   ContentHasher hasher;
   hasher.add(primitive.label).addSpan(std::span<const double>(primitive.attributes));
   for (const Eigen::Vector3d* place : {&primitive.centroid, &primitive.min, &primitive.max})
     hasher.addBytes(place->data(), 3 * sizeof(double));
-  for (const perception::Relation& relation : scene.relationsOf(number))
-    if (isToGround(relation))
-      hasher.add(relation.kind).add(relation.measure);
-    else
-      hasher.add(relation.kind).add(scene.primitives[relation.to].id);
   return hasher.finish();
 }
 
-void addPrimitive(const perception::Scene& scene, perception::PrimitiveIndex number, FactSink& facts) {
-  const perception::Primitive& primitive = scene.primitives[number];
-  if (!facts.beginUnit(primitive.id, causeOf(scene, number))) return;
-  const rdf::TermId subject = facts.iri(rdf::iriOfPrimitive(primitive.id));
-  addAttributes(primitive, subject, facts);
-  for (const perception::Relation& relation : scene.relationsOf(number)) addRelation(scene, relation, subject, facts);
+/// The relations of a primitive that are facts.
+std::vector<perception::Relation> statedRelations(const perception::Scene& scene, perception::PrimitiveIndex number) {
+  std::vector<perception::Relation> stated;
+  for (const perception::Relation& relation : scene.relationsOf(number))
+    if (!isToGround(relation) || relation.measure <= kTouchesGround_m) stated.push_back(relation);
+  return stated;
+}
+
+/// The hash of all that the relations of a primitive follow from.
+ContentHash causeOf(const perception::Scene& scene, const std::vector<perception::Relation>& relations) {
+  ContentHasher hasher;
+  for (const perception::Relation& relation : relations) {
+    hasher.add(relation.kind);
+    if (isToGround(relation))
+      hasher.addText(groundPatchUnder(scene.primitives[relation.from]));
+    else
+      hasher.add(scene.primitives[relation.to].id);
+  }
+  return hasher.finish();
+}
+
+void addRelations(const perception::Scene& scene, perception::PrimitiveIndex number, FactSink& facts) {
+  const FactUnitKey key{scene.primitives[number].id, Facet::Relations};
+  const std::vector<perception::Relation> relations = statedRelations(scene, number);
+  if (relations.empty()) return facts.removeUnit(key);
+  if (!facts.beginUnit(key, causeOf(scene, relations))) return;
+  const rdf::TermId subject = facts.iri(rdf::iriOfPrimitive(key.id));
+  for (const perception::Relation& relation : relations) addRelation(scene, relation, subject, facts);
   facts.endUnit();
 }
 
-/// Several primitives have the same patch, so that it belongs to none of them.
+/// Several primitives have the same patch, so that it is a unit of its own.
 void addGroundPatches(const perception::Scene& scene, FactSink& facts) {
   std::set<std::string> patches;
   for (const perception::Relation& relation : scene.relations)
     if (isToGround(relation) && relation.measure <= kTouchesGround_m)
       patches.insert(groundPatchUnder(scene.primitives[relation.from]));
-  for (const std::string& patch : patches) facts.type(facts.iri(patch), rdf::vocabulary::clx("GroundPatch"));
+  for (const std::string& patch : patches) {
+    if (!facts.beginUnit(unitOfGroundPatch(patch), ContentHasher().addText("ground patch").finish())) continue;
+    facts.type(facts.iri(patch), rdf::vocabulary::clx("GroundPatch"));
+    facts.endUnit();
+  }
 }
 
 }  // namespace
+
+void addCloud(const Cloud& cloud, FactSink& facts) {
+  if (!facts.beginUnit({cloud.id, Facet::Self}, causeOf(cloud))) return;
+  const rdf::TermId subject = facts.iri(rdf::iriOfCloud(cloud.id));
+  facts.type(subject, rdf::vocabulary::clx("Cloud"));
+  facts.count(subject, "pointCount", cloud.point_count);
+  addBounds(subject, cloud.min, cloud.max, facts);
+  if (cloud.has_pose) addPosition(subject, cloud.T_map_sensor.translation(), facts);
+  if (cloud.time_s)
+    facts.literal(subject, std::string(rdf::vocabulary::kSosa) + "resultTime", dateTimeText(*cloud.time_s),
+                  rdf::vocabulary::xsd("dateTime"));
+  facts.endUnit();
+}
+
+void addPrimitive(const perception::Scene& scene, perception::PrimitiveIndex number, FactSink& facts) {
+  const perception::Primitive& primitive = scene.primitives[number];
+  addRelations(scene, number, facts);
+  if (!facts.beginUnit({primitive.id, Facet::Self}, causeOf(primitive))) return;
+  addAttributes(primitive, facts.iri(rdf::iriOfPrimitive(primitive.id)), facts);
+  facts.endUnit();
+}
+
+std::optional<std::string> touchedPatch(const perception::Scene& scene, perception::PrimitiveIndex number) {
+  for (const perception::Relation& relation : statedRelations(scene, number))
+    if (isToGround(relation)) return groundPatchUnder(scene.primitives[number]);
+  return std::nullopt;
+}
+
+FactUnitKey unitOfGroundPatch(std::string_view iri) {
+  return {ContentHasher().addText(iri).finish(), Facet::Self};
+}
 
 void addObservedFacts(const ObservedMap& map, FactSink& facts) {
   addMap(map, facts);

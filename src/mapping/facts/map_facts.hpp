@@ -4,11 +4,13 @@
 
 #include <map>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "mapping/cloud.hpp"
 #include "mapping/facts/fact_sink.hpp"
 #include "mapping/facts/object_geometry.hpp"
+#include "mapping/layers/wide_tile.hpp"
 #include "mapping/map_inputs.hpp"
 #include "perception/segments/scene.hpp"
 #include "perception/visibility/presence.hpp"
@@ -17,12 +19,10 @@
 
 namespace cluxel::mapping {
 
-/// Objects closer than this are clx:near each other [m].
-inline constexpr double kNearObjects_m = 1.0;
 /// A primitive lower than this above the ground touches it [m].
 inline constexpr double kTouchesGround_m = 0.30;
 
-/// The sources of the observed graph.
+/// The sources of the observed graph, of a whole map or of a window of it.
 struct ObservedMap {
   const MapInputs& inputs;
   const std::vector<Cloud>& clouds;
@@ -33,8 +33,20 @@ struct ObservedMap {
   const std::vector<std::optional<perception::Presence>>& presence;
   /// By object; empty when rays are not asked for.
   const std::vector<std::optional<perception::RayCounts>>& passed_rays;
+  /// By object: the ids of those that are near.
+  const std::vector<std::vector<ContentHash>>& near;
+  /// What the tiles add to class-wide objects.
+  const std::vector<WidePart>& wide;
 };
 
 void addObservedFacts(const ObservedMap& map, FactSink& facts);
+
+void addCloud(const Cloud& cloud, FactSink& facts);
+/// The facts of a primitive and its relations to others.
+void addPrimitive(const perception::Scene& scene, perception::PrimitiveIndex number, FactSink& facts);
+/// The ground patch that a primitive touches; absent when it touches none.
+std::optional<std::string> touchedPatch(const perception::Scene& scene, perception::PrimitiveIndex number);
+/// The unit of the facts of a ground patch.
+FactUnitKey unitOfGroundPatch(std::string_view iri);
 
 }  // namespace cluxel::mapping

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Facts about objects: plain numbers, and GeoSPARQL, SOSA and PROV terms. Each object is a unit of facts with its parts
-// and observations.
+// and observations; its neighbours are another.
 #include "mapping/facts/object_facts.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -52,7 +53,7 @@ void addExtent(rdf::TermId subject, const ObjectGeometry& geometry, FactSink& fa
   facts.count(subject, "pointCount", geometry.point_count);
 }
 
-/// All that the facts of an object follow from.
+/// All that the facts of an object follow from, but for those about its neighbours.
 struct ObjectView {
   struct Seen {
     scan::ScanId scan;
@@ -65,7 +66,6 @@ struct ObjectView {
   ObjectGeometry geometry;
   std::vector<std::optional<ObjectGeometry>> part_geometry;  ///< absent where a part is no resource of its own
   std::vector<Seen> seen = {};
-  std::vector<ContentHash> near = {};  ///< ids of objects
   std::optional<perception::Presence> presence = std::nullopt;
   std::optional<perception::RayCounts> passed_rays = std::nullopt;
 };
@@ -82,7 +82,6 @@ class CauseHasher {
       add(seen.sighting.sum);
       add(seen.time_s);
     }
-    hasher_.addSpan(std::span<const ContentHash>(view.near));
     addRays(view);
     return hasher_.finish();
   }
@@ -165,7 +164,7 @@ void addPassedRays(const perception::RayCounts& rays, rdf::TermId subject, FactS
 
 void addObject(const ObjectView& view, FactSink& facts) {
   const rules::SemanticObject& object = view.object;
-  if (!facts.beginUnit(object.id, CauseHasher().hashOf(view))) return;
+  if (!facts.beginUnit({object.id, Facet::Self}, CauseHasher().hashOf(view))) return;
   const std::string iri = rdf::iriOfObject(object.id);
   const rdf::TermId subject = facts.iri(iri);
   facts.type(subject, object.class_iri);
@@ -177,17 +176,53 @@ void addObject(const ObjectView& view, FactSink& facts) {
   for (std::size_t i = 0; i < object.parts.size(); ++i) addPart(view, i, subject, facts);
   for (const ObjectView::Seen& seen : view.seen) addObservation(view, seen, subject, facts);
   facts.count(subject, "viewCount", view.seen.size());
-  if (view.presence) addPresence(*view.presence, subject, facts);
-  if (view.passed_rays) addPassedRays(*view.passed_rays, subject, facts);
-  for (const ContentHash& other : view.near) facts.link(subject, "near", facts.iri(rdf::iriOfObject(other)));
+  addRayFacts(subject, view.presence, view.passed_rays, facts);
   facts.endUnit();
 }
 
-ObjectView viewOf(const perception::Scene& scene, const rules::SemanticObject& object) {
-  ObjectView view{scene, object, geometryOf(scene.cluxels, cluxelsOf(object)), {}};
+/// Apart from the object's own facts, which then do not follow from the names of its neighbours.
+void addNear(const rules::SemanticObject& object, std::vector<ContentHash> near, FactSink& facts) {
+  const FactUnitKey key{object.id, Facet::Relations};
+  if (near.empty()) return facts.removeUnit(key);
+  std::sort(near.begin(), near.end());
+  if (!facts.beginUnit(key, ContentHasher().addSpan(std::span<const ContentHash>(near)).finish())) return;
+  const rdf::TermId subject = facts.iri(rdf::iriOfObject(object.id));
+  for (const ContentHash& other : near) facts.link(subject, "near", facts.iri(rdf::iriOfObject(other)));
+  facts.endUnit();
+}
+
+/// Of a class-wide object the parts that `wide` has.
+std::vector<const WidePart*> widePartsOf(const ContentHash& object, const std::vector<WidePart>& wide) {
+  std::vector<const WidePart*> parts;
+  for (const WidePart& part : wide)
+    if (part.object == object) parts.push_back(&part);
+  return parts;
+}
+
+ObjectView wideViewOf(const ObservedMap& map, const rules::SemanticObject& object) {
+  WidePart whole;
+  std::map<std::string, ObjectGeometry> geometry;
+  for (const WidePart* part : widePartsOf(object.id, map.wide)) {
+    whole.add(*part);
+    geometry.emplace(part->part_class, geometryOf(part->sums));
+  }
+  ObjectView view{map.scene, object, geometryOf(std::move(whole.sums)), {}};
+  for (const rules::ObjectPart& part : object.parts) {
+    const auto own = geometry.find(part.part_class);
+    const bool is_resource = part.part_class != object.class_iri && own != geometry.end();
+    view.part_geometry.push_back(is_resource ? std::optional(own->second) : std::nullopt);
+  }
+  for (const auto& [scan, sighting] : whole.seen) view.seen.push_back({scan, std::nullopt, sighting});
+  return view;
+}
+
+ObjectView viewOf(const ObservedMap& map, const rules::SemanticObject& object) {
+  if (object.is_class_wide) return wideViewOf(map, object);
+  const perception::SceneCluxels& cluxels = map.scene.cluxels;
+  ObjectView view{map.scene, object, geometryOf(cluxels, cluxelsOf(object)), {}};
   for (const rules::ObjectPart& part : object.parts) {
     const bool is_resource = part.part_class != object.class_iri && !part.cluxels.empty();
-    view.part_geometry.push_back(is_resource ? std::optional(geometryOf(scene.cluxels, part.cluxels)) : std::nullopt);
+    view.part_geometry.push_back(is_resource ? std::optional(geometryOf(cluxels, part.cluxels)) : std::nullopt);
   }
   return view;
 }
@@ -195,24 +230,20 @@ ObjectView viewOf(const perception::Scene& scene, const rules::SemanticObject& o
 void addSightings(const ObservedMap& map, std::vector<ObjectView>& views) {
   std::map<scan::ScanId, std::optional<double>> times;
   for (const Cloud& cloud : map.clouds) times.emplace(cloud.id, cloud.time_s);
-  for (const auto& [pair, sighting] : map.sightings) {
-    const auto time = times.find(pair.second);
-    views[pair.first].seen.push_back({pair.second, time == times.end() ? std::nullopt : time->second, sighting});
-  }
-}
-
-void addNeighbours(const ObservedMap& map, std::vector<ObjectView>& views) {
-  std::vector<bool> is_ground;
-  is_ground.reserve(views.size());
-  for (const ObjectView& view : views) is_ground.push_back(view.object.class_iri == rdf::vocabulary::clx("Ground"));
-  const auto object_of = objectOfCluxel(map.reasoning, map.scene.cluxels.size());
-  for (const auto& [a, b] : nearObjects(map.scene.cluxels, object_of, is_ground, kNearObjects_m)) {
-    views[a].near.push_back(views[b].object.id);
-    views[b].near.push_back(views[a].object.id);
-  }
+  for (const auto& [pair, sighting] : map.sightings)
+    if (!views[pair.first].object.is_class_wide) views[pair.first].seen.push_back({pair.second, {}, sighting});
+  for (ObjectView& view : views)
+    for (ObjectView::Seen& seen : view.seen)
+      if (const auto time = times.find(seen.scan); time != times.end()) seen.time_s = time->second;
 }
 
 }  // namespace
+
+void addRayFacts(rdf::TermId subject, const std::optional<perception::Presence>& presence,
+                 const std::optional<perception::RayCounts>& passed_rays, FactSink& facts) {
+  if (presence) addPresence(*presence, subject, facts);
+  if (passed_rays) addPassedRays(*passed_rays, subject, facts);
+}
 
 void addPosition(rdf::TermId subject, const Eigen::Vector3d& p_map, FactSink& facts) {
   facts.number(subject, "x", p_map.x());
@@ -229,9 +260,9 @@ void addBounds(rdf::TermId subject, const Eigen::Vector3d& min, const Eigen::Vec
 void addObjectFacts(const ObservedMap& map, FactSink& facts) {
   std::vector<ObjectView> views;
   views.reserve(map.reasoning.objects.size());
-  for (const rules::SemanticObject& object : map.reasoning.objects) views.push_back(viewOf(map.scene, object));
+  for (const rules::SemanticObject& object : map.reasoning.objects) views.push_back(viewOf(map, object));
   addSightings(map, views);
-  addNeighbours(map, views);
+  for (std::size_t i = 0; i < map.near.size(); ++i) addNear(map.reasoning.objects[i], map.near[i], facts);
   for (std::size_t i = 0; i < map.presence.size(); ++i) views[i].presence = map.presence[i];
   for (std::size_t i = 0; i < map.passed_rays.size(); ++i) views[i].passed_rays = map.passed_rays[i];
   for (const ObjectView& view : views) addObject(view, facts);

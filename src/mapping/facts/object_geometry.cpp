@@ -7,32 +7,50 @@
 #include <set>
 
 #include "base/convex_hull.hpp"
+#include "rdf/vocabulary.hpp"
 
 namespace cluxel::mapping {
 
-ObjectGeometry geometryOf(const perception::SceneCluxels& cluxels, std::span<const std::uint32_t> members) {
-  ObjectGeometry geometry;
-  std::vector<Eigen::Vector2d> corners;
-  double bottom = 1e300, top = -1e300;
+void ExtentSums::add(const ExtentSums& other) {
+  min = min.cwiseMin(other.min), max = max.cwiseMax(other.max);
+  weighted_centre += other.weighted_centre;
+  point_count += other.point_count;
+  bottom_m = std::min(bottom_m, other.bottom_m), top_m = std::max(top_m, other.top_m);
+  corners.insert(corners.end(), other.corners.begin(), other.corners.end());
+}
+
+ExtentSums sumsOf(const perception::SceneCluxels& cluxels, std::span<const std::uint32_t> members) {
+  ExtentSums sums;
   for (const std::uint32_t c : members) {
     const Eigen::Vector3d low = cluxels.low_corner[c], high = low + cluxels.extent[c].cast<double>();
-    geometry.min = geometry.min.cwiseMin(low);
-    geometry.max = geometry.max.cwiseMax(high);
-    corners.insert(corners.end(), {low.head<2>(), {high.x(), low.y()}, {low.x(), high.y()}, high.head<2>()});
+    sums.min = sums.min.cwiseMin(low);
+    sums.max = sums.max.cwiseMax(high);
+    sums.corners.insert(sums.corners.end(), {low.head<2>(), {high.x(), low.y()}, {low.x(), high.y()}, high.head<2>()});
     const double ground = cluxels.center[c].z() - static_cast<double>(cluxels.height_above_ground[c]);
-    bottom = std::min(bottom, low.z() - ground);
-    top = std::max(top, high.z() - ground);
-    geometry.centroid += cluxels.point_count[c] * cluxels.center[c];
-    geometry.point_count += cluxels.point_count[c];
+    sums.bottom_m = std::min(sums.bottom_m, low.z() - ground);
+    sums.top_m = std::max(sums.top_m, high.z() - ground);
+    sums.weighted_centre += cluxels.point_count[c] * cluxels.center[c];
+    sums.point_count += cluxels.point_count[c];
   }
-  geometry.centroid /= static_cast<double>(std::max<std::uint64_t>(geometry.point_count, 1));
-  const FootprintBox box = smallestBox(convexHull(std::move(corners)));
+  return sums;
+}
+
+ObjectGeometry geometryOf(ExtentSums sums) {
+  ObjectGeometry geometry;
+  geometry.min = sums.min, geometry.max = sums.max;
+  geometry.point_count = sums.point_count;
+  geometry.centroid = sums.weighted_centre / static_cast<double>(std::max<std::uint64_t>(sums.point_count, 1));
+  const FootprintBox box = smallestBox(convexHull(std::move(sums.corners)));
   geometry.box.center << box.center, 0.5 * (geometry.min.z() + geometry.max.z());
   geometry.box.size << box.length_m, box.width_m, geometry.max.z() - geometry.min.z();
   geometry.box.yaw_rad = box.yaw_rad;
-  geometry.bottom_m = bottom;
-  geometry.top_m = top;
+  geometry.bottom_m = sums.bottom_m;
+  geometry.top_m = sums.top_m;
   return geometry;
+}
+
+ObjectGeometry geometryOf(const perception::SceneCluxels& cluxels, std::span<const std::uint32_t> members) {
+  return geometryOf(sumsOf(cluxels, members));
 }
 
 std::vector<std::uint32_t> cluxelsOf(const rules::SemanticObject& object) {
@@ -164,6 +182,21 @@ std::vector<ObjectPair> nearObjects(const perception::SceneCluxels& cluxels,
       if (found != voxels.end()) pairs.compare(voxel, found->second);
     }
   return pairs.sorted();
+}
+
+std::vector<std::vector<ContentHash>> nearOf(const std::vector<rules::SemanticObject>& objects,
+                                             const perception::SceneCluxels& cluxels,
+                                             const std::vector<std::uint32_t>& object_of_cluxel) {
+  std::vector<bool> is_ground;
+  is_ground.reserve(objects.size());
+  for (const rules::SemanticObject& object : objects)
+    is_ground.push_back(object.class_iri == rdf::vocabulary::clx("Ground"));
+  std::vector<std::vector<ContentHash>> near(objects.size());
+  for (const auto& [a, b] : nearObjects(cluxels, object_of_cluxel, is_ground, kNearObjects_m)) {
+    near[a].push_back(objects[b].id);
+    near[b].push_back(objects[a].id);
+  }
+  return near;
 }
 
 }  // namespace cluxel::mapping

@@ -19,6 +19,19 @@ struct ObjectGeometry {
   std::uint64_t point_count = 0;                       ///< points kept by thinning
 };
 
+/// Sums and extremes of some cluxels, which merge over tiles.
+struct ExtentSums {
+  Eigen::Vector3d min = Eigen::Vector3d::Constant(1e300), max = Eigen::Vector3d::Constant(-1e300);  ///< [m, map]
+  Eigen::Vector3d weighted_centre = Eigen::Vector3d::Zero();  ///< sum of centres times points [m, map]
+  std::uint64_t point_count = 0;
+  double bottom_m = 1e300, top_m = -1e300;  ///< above the local ground
+  std::vector<Eigen::Vector2d> corners;     ///< of the cluxels' boxes in plan view, or their hull [m, map]
+
+  void add(const ExtentSums& other);
+};
+ExtentSums sumsOf(const perception::SceneCluxels& cluxels, std::span<const std::uint32_t> members);
+ObjectGeometry geometryOf(ExtentSums sums);
+
 /// Geometry of a set of cluxels of the scene.
 ObjectGeometry geometryOf(const perception::SceneCluxels& cluxels, std::span<const std::uint32_t> members);
 
@@ -44,5 +57,11 @@ std::map<std::pair<std::uint32_t, scan::ScanId>, Sighting> sightingsOf(
 std::vector<std::pair<std::uint32_t, std::uint32_t>> nearObjects(const perception::SceneCluxels& cluxels,
                                                                  const std::vector<std::uint32_t>& object_of_cluxel,
                                                                  const std::vector<bool>& is_ground, double largest_m);
+
+/// For each object the ids of those that are near it; none of ground. Objects closer than kNearObjects_m are near.
+inline constexpr double kNearObjects_m = 1.0;
+std::vector<std::vector<ContentHash>> nearOf(const std::vector<rules::SemanticObject>& objects,
+                                             const perception::SceneCluxels& cluxels,
+                                             const std::vector<std::uint32_t>& object_of_cluxel);
 
 }  // namespace cluxel::mapping

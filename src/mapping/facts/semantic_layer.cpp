@@ -4,19 +4,22 @@
 
 #include "cluxel/error.hpp"
 #include "mapping/build/scan_store.hpp"
+#include "mapping/build/way_tiles.hpp"
 #include "mapping/facts/map_facts.hpp"
 #include "mapping/facts/map_oracle.hpp"
-#include "mapping/facts/sparql_rules.hpp"
 #include "mapping/facts/way_facts.hpp"
+#include "mapping/inference/infer_facts.hpp"
+#include "mapping/inference/sparql_rules.hpp"
+#include "mapping/layers/layer_update.hpp"
 #include "mapping/object_store.hpp"
 #include "mapping/presence/passed_rays.hpp"
 #include "mapping/presence/stored_presence.hpp"
 #include "mapping/statements/statement_facts.hpp"
+#include "perception/segments/primitive_inputs.hpp"
 #include "rdf/io/rdf_io.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
 #include "rules/decide/reason.hpp"
-#include "rules/explain/decision_digests.hpp"
 #include "rules/language/rule_loader.hpp"
 
 namespace cluxel::mapping {
@@ -33,19 +36,13 @@ std::vector<rules::RuleSource> ruleSources(const std::vector<NamedText>& texts) 
 /// Makes the observed graph hold the facts of the scene, of `reasoning`, of statements and of ways.
 void writeObserved(rdf::WriteTransaction& transaction, const ObservedMap& map,
                    const std::vector<StatementOutcome>& statements = {}, const WayGraph& ways = {}) {
-  const auto reader = [&] { return rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction)); };
-  rdf::QuadWriter writer(transaction);
-  const rdf::TermId graph = writer.intern(Term::iri(rdf::vocabulary::kGraphObserved));
-  FactSink facts(writer, graph, storedFactUnits(transaction, reader(), graph));
+  FactSink facts(transaction, rdf::vocabulary::kGraphObserved);
   for (const StatementOutcome& outcome : statements)
-    if (outcome.object) facts.addToUnit(*outcome.object);
+    if (outcome.object) facts.addToUnits(*outcome.object);
   addObservedFacts(map, facts);
   addStatementFacts(statements, facts);
   addWayFacts(ways, facts);
-  writer.flush();
-  const std::vector<FactUnit> units = facts.writeTo(reader());
-  writer.flush();
-  storeFactUnits(transaction, units, reader(), graph);
+  facts.finish();
 }
 
 }  // namespace
@@ -61,8 +58,13 @@ void writeObjectsSoFar(rdf::WriteTransaction& transaction, const MapInputs& inpu
                        const perception::Scene& scene, const TileStages& stages, const WayGraph& ways,
                        std::span<const rules::SemanticObject> objects) {
   const rules::ReasoningResult so_far{{objects.begin(), objects.end()}, {}};
-  const auto sightings = sightingsOf(stages.summaries(), objectOfCluxel(so_far, scene.cluxels.size()));
-  writeObserved(transaction, {inputs, clouds, scene, so_far, sightings, {}, {}}, {}, ways);
+  const std::vector<std::uint32_t> object_of = objectOfCluxel(so_far, scene.cluxels.size());
+  const auto sightings = sightingsOf(stages.summaries(), object_of);
+  const auto wide = mergedParts(wideTilesOf(scene, stages.summaries(), so_far.objects));
+  writeObserved(
+      transaction,
+      {inputs, clouds, scene, so_far, sightings, {}, {}, nearOf(so_far.objects, scene.cluxels, object_of), wide}, {},
+      ways);
   inferClosure(transaction);
 }
 
@@ -80,11 +82,7 @@ ParsedInputs parseInputs(const MapInputs& inputs) {
 
 void inferFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, ProgressSink& sink,
                 const rdf::InferenceCheck& check) {
-  for (const std::string& axiom : inferClosure(transaction, check).ignored)
-    sink.note("warning: nothing is inferred from " + axiom +
-              ": rdf:type, rdfs:subClassOf, rdfs:subPropertyOf and owl:inverseOf keep their meaning; remove the "
-              "statement, or use properties of your own");
-  runSparqlRules(transaction, inputs.sparql_rules, check);
+  inferAll(transaction, inputs.sparql_rules, sink, check);
 }
 
 SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
@@ -102,12 +100,13 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   rules::ReasoningResult result =
       reason(scene, parsed.rules, {.oracle = &oracle, .threads = threads, .splits = &splits});
   if (check) check(0);
-  const std::vector<std::uint64_t> digests = rules::decisionDigests(scene, result);
+  const std::vector<std::uint64_t> traces = result.traces, inputs = inputHashes(scene, stages.summaries());
   AppliedStatements stated = appliedStatements(transaction, stages, parsed.model.perception.thin, clouds, scene,
                                                parsed.rules.catalogue, std::move(result.objects));
   result.objects = std::move(stated.objects);
   sink.progress("objects", result.objects.size(), result.objects.size());
-  const auto sightings = sightingsOf(stages.summaries(), objectOfCluxel(result, scene.cluxels.size()));
+  const std::vector<std::uint32_t> object_of = objectOfCluxel(result, scene.cluxels.size());
+  const auto sightings = sightingsOf(stages.summaries(), object_of);
   const auto counts_rays = [&](const rules::SemanticObject& object) {
     return parsed.rules.catalogue.isA(object.class_iri, rdf::vocabulary::clx("Barrier"));
   };
@@ -116,14 +115,17 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   std::vector<RayObserver*> observers{&rays_update};
   if (presence_update.observer() != nullptr) observers.push_back(presence_update.observer());
   passRays(clouds, observers, [&](const Cloud& cloud) { return storedScan(transaction, cloud.id); });
-  const auto presence = presence_update.finish(transaction);
-  const auto passed_rays = rays_update.finish(transaction);
-  writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings, presence, passed_rays}, stated.outcomes,
-                ways);
+  const auto presence = presence_update.finish(transaction, Covered::All);
+  const auto passed_rays = rays_update.finish(transaction, Covered::All);
+  const std::vector<WideTile> wide_tiles = wideTilesOf(scene, stages.summaries(), result.objects);
+  const auto wide = mergedParts(wide_tiles);
+  const auto near = nearOf(result.objects, scene.cluxels, object_of);
+  writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings, presence, passed_rays, near, wide},
+                stated.outcomes, ways);
+  storeWideTiles(transaction, wide_tiles);
   inferFacts(transaction, parsed.inputs, sink, check);
-  storeObjects(transaction, result.objects);
+  storeLayers(transaction, {.scene = scene, .objects = result.objects, .traces = traces, .inputs = inputs});
   storeOverruled(transaction, stated.overruled);
-  storeDigests(transaction, digests);
   storeSplits(transaction, splits);
   sink.progress("facts", 1, 1);
   return {std::move(scene), std::move(result.objects), std::move(stated.outcomes)};

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Replaces some facts of a stored graph by others.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "rdf/store/quad_store.hpp"
+
+namespace cluxel::mapping {
+
+class FactPatch {
+ public:
+  FactPatch(const rdf::QuadReader& stored, rdf::TermId graph) : stored_(stored), graph_(graph) {}
+
+  /// The stored facts that fit are removed, as far as they are not given again. Parts that are absent fit all.
+  void replace(std::optional<rdf::TermId> subject, std::optional<rdf::TermId> property = {},
+               std::optional<rdf::TermId> object = {});
+  /// The stored objects, or subjects, of facts.
+  std::vector<rdf::TermId> objectsOf(rdf::TermId subject, rdf::TermId property) const;
+  std::vector<rdf::TermId> subjectsOf(rdf::TermId property, rdf::TermId object) const;
+  /// Keeps facts that fit, although replace() was called for them.
+  void keep(rdf::TermId subject, rdf::TermId property);
+
+  /// Writes the difference; `fresh` are the facts that are to be there.
+  void write(std::vector<rdf::QuadIds> fresh, rdf::QuadWriter& writer) const;
+
+ private:
+  const rdf::QuadReader& stored_;
+  rdf::TermId graph_;
+  std::set<rdf::QuadIds> old_;
+};
+
+}  // namespace cluxel::mapping
