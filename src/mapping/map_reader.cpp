@@ -9,9 +9,10 @@
 #include "cluxel/error.hpp"
 #include "mapping/build/scan_store.hpp"
 #include "mapping/build/tile_stages.hpp"
+#include "mapping/build/way_tiles.hpp"
 #include "mapping/facts/object_geometry.hpp"
+#include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_state.hpp"
-#include "mapping/object_store.hpp"
 #include "mapping/statements/statement_facts.hpp"
 #include "rdf/iri.hpp"
 
@@ -146,8 +147,8 @@ std::vector<rules::SemanticObject> MapReader::objectsByRules() const {
   return all;
 }
 
-std::vector<std::uint64_t> MapReader::decisionDigests() const {
-  return storedDigests(impl_->transaction);
+std::vector<std::uint64_t> MapReader::decisionTraces() const {
+  return storedTraces(impl_->transaction);
 }
 const rdf::QuadReader& MapReader::quads() const {
   return impl_->quads;

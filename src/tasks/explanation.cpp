@@ -137,9 +137,9 @@ std::vector<perception::PrimitiveIndex> primitivesOf(const mapping::MapReader& m
 
 std::optional<rules::PartRun> partAround(const mapping::MapReader& map, const Named& named,
                                          const rules::RuleSet& rules) {
-  const std::vector<std::uint64_t> digests = map.decisionDigests();
+  const std::vector<std::uint64_t> traces = map.decisionTraces();
   const std::vector<rules::SemanticObject> by_rules = map.objectsByRules();
-  return runInPart(map.scene(), rules, {digests, by_rules}, primitivesOf(map, named));
+  return runInPart(map.scene(), rules, {traces, by_rules}, primitivesOf(map, named));
 }
 
 /// The object's thing, and what operators state about it.

@@ -66,7 +66,9 @@ class ChangeSequence {
   fs::path map() const { return folder_.path() / "map.clx"; }
   std::size_t below(std::size_t count) { return static_cast<std::size_t>(random_() % count); }
   bool oneIn(std::size_t count) { return below(count) == 0; }
-  ChangeParams params(bool dry_run = false) const { return {threads_, batch_points_, dry_run, stage_points_}; }
+  ChangeParams params(bool dry_run = false) const {
+    return {threads_, batch_points_, dry_run, stage_points_, true, 1.0};  // windows of any size
+  }
 
   ScanSet scansAt(const Places& places) {
     std::vector<MixedScans::Place> chosen(places.begin(), places.end());

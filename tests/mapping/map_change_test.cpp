@@ -67,7 +67,7 @@ class MapChange : public testing::Test {
   fs::path map() const { return folder.path() / "map.clx"; }
   void build(const Poses& poses) const { buildMap(posed(poses), *inputs, map(), {.force = true}, silence()); }
 
-  /// The facts, and the stored outputs of the stages, whose digests cover also what is not stored.
+  /// The facts, and the stored outputs of the stages, whose traces cover also what is not stored.
   struct Content {
     std::string facts, stages;
     bool operator==(const Content&) const = default;
@@ -76,8 +76,9 @@ class MapChange : public testing::Test {
     Content content{canonicalText(file), ""};
     const auto environment = Environment::open(file, OpenMode::ReadOnly);
     const ReadTransaction transaction = environment->read();
-    for (const auto table : {tables::kPoints, tables::kCluxels, tables::kGround, tables::kFeatures, tables::kLabels,
-                             tables::kSummaries, tables::kEven, tables::kComponents, tables::kContacts})
+    for (const auto table :
+         {tables::kPoints, tables::kCluxels, tables::kGround, tables::kFeatures, tables::kLabels, tables::kSummaries,
+          tables::kEven, tables::kComponents, tables::kContacts, tables::kSurfaces, tables::kWays})
       transaction.forEachBlock(
           table, "", [&](std::string_view key, std::string_view bytes) { content.stages.append(key).append(bytes); });
     return content;
@@ -283,7 +284,7 @@ TEST_F(MapChange, PresenceIsComputedOnlyWhereRaysOrObjectsDiffer) {
     passRays(clouds, observers, [&](const Cloud& cloud) { return map.scanOf(cloud.id); });
     const std::size_t unknown = presence_update.unknownCount();
     Times times;
-    for (const auto& presence : presence_update.finish(transaction)) {
+    for (const auto& presence : presence_update.finish(transaction, Covered::All)) {
       times.emplace_back();
       if (presence)
         times.back() = {presence->first_seen_s, presence->last_seen_s, presence->seen_empty_s,
@@ -296,7 +297,7 @@ TEST_F(MapChange, PresenceIsComputedOnlyWhereRaysOrObjectsDiffer) {
   clouds.front().time_s = 1700000000;
   const auto [changed_unknown, changed] = update(2);
   EXPECT_GT(changed_unknown, 0U);
-  transaction.eraseBlock(tables::kMeta, "presence");
+  eraseRowsBut(transaction, tables::kPresence, {});
   const auto [anew_unknown, anew] = update(1);
   EXPECT_GE(anew_unknown, changed_unknown);
   EXPECT_EQ(changed, anew);

@@ -9,7 +9,7 @@
 
 #include "mapping/change/map_change.hpp"
 #include "mapping/facts/fact_sink.hpp"
-#include "mapping/facts/sparql_rules.hpp"
+#include "mapping/inference/sparql_rules.hpp"
 #include "mapping/small_campus.hpp"
 #include "rdf/store/quad_store.hpp"
 #include "sparql/query_engine.hpp"

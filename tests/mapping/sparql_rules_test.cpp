@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // CONSTRUCT rules: the derived facts, their derivations, and the rules that are refused.
-#include "mapping/facts/sparql_rules.hpp"
+#include "mapping/inference/sparql_rules.hpp"
 
 #include <gtest/gtest.h>
 

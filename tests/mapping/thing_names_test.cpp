@@ -2,6 +2,12 @@
 // Things keep their names while the objects behind them gain and lose members, split and join.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <random>
+#include <set>
+
 #include "mapping/change/map_things.hpp"
 #include "mapping/small_campus.hpp"
 #include "rdf/map_iris.hpp"
@@ -88,6 +94,100 @@ TEST_F(ThingNames, AreNeverGivenTwice) {
   change({thingMembers("first", {1, 2, 3, 4}), thingMembers("rest", {5, 6, 7, 8, 9})});
   EXPECT_EQ(nameOfObject("rest"), rdf::iriOfThing(hashOf("first"))) << "it shares most";
   EXPECT_NE(nameOfObject("first"), rdf::iriOfThing(hashOf("first")));
+}
+
+/// Objects whose members come and go at random; objects with the same members have the same name.
+class RandomObjects {
+ public:
+  /// The present objects, sorted by id: one that is named by its class, and others.
+  std::vector<ObjectMembers> objects() const {
+    std::map<int, std::vector<std::uint64_t>> members;
+    for (const auto& [member, owner] : owner_of_) members[owner].push_back(member);
+    std::vector<ObjectMembers> all;
+    for (const auto& [owner, own] : members) {
+      ContentHasher hasher;
+      for (const std::uint64_t member : own) hasher.add(member);
+      all.push_back({owner == 0 ? hashOf("ground") : hasher.finish(), "Tree", own});
+    }
+    std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+    return all;
+  }
+  void change(std::mt19937& random) {
+    if (!former_.empty() && random() % 4 == 0) {
+      owner_of_ = former_[random() % former_.size()];  // objects come back
+      return;
+    }
+    former_.push_back(owner_of_);
+    const auto owner = [&] { return static_cast<int>(random() % 6); };
+    switch (random() % 3) {
+      case 0:
+        return join(owner(), owner());
+      case 1:
+        return remove(owner());
+      default:
+        for (int i = 0; i < 8; ++i) owner_of_[random() % 40] = owner();
+    }
+  }
+
+ private:
+  void join(int from, int into) {
+    for (auto& [member, owner] : owner_of_) owner = owner == from ? into : owner;
+  }
+  void remove(int gone) {
+    std::erase_if(owner_of_, [&](const auto& entry) { return entry.second == gone; });
+  }
+
+  std::map<std::uint64_t, int> owner_of_;
+  std::vector<std::map<std::uint64_t, int>> former_;
+};
+
+std::vector<ObjectMembers> without(const std::vector<ObjectMembers>& objects, const std::set<ContentHash>& same) {
+  std::vector<ObjectMembers> others;
+  std::copy_if(objects.begin(), objects.end(), std::back_inserter(others),
+               [&](const ObjectMembers& object) { return !same.contains(object.id); });
+  return others;
+}
+
+std::string historyOf(const rdf::ReadTransaction& transaction) {
+  std::string text;
+  writeSortedNQuads(
+      QuadReader(transaction), [&](std::string_view piece) { text.append(piece); }, [](const Quad&) { return true; });
+  return text;
+}
+
+TEST(ThingNamesOfSomeObjects, AreThoseOfAllObjects) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    std::mt19937 random(seed);
+    const auto of_all = Environment::temporary(), of_some = Environment::temporary();
+    WriteTransaction all = of_all->write(), some = of_some->write();
+    RandomObjects world;
+    std::vector<ObjectMembers> before;
+    std::size_t given = 0, present = 0;
+    for (int round = 0; round < 60; ++round) {
+      world.change(random);
+      const std::vector<ObjectMembers> after = world.objects();
+      std::set<ContentHash> old, same;
+      for (const ObjectMembers& object : before) old.insert(object.id);
+      for (const ObjectMembers& object : after)
+        if (old.contains(object.id)) same.insert(object.id);
+      const std::string time = "2026-01-01T00:00:" + std::to_string(10 + round) + ".000000Z";
+      writeThings(all, time, before, after);
+      const auto changed_before = without(before, same), changed_after = without(after, same);
+      writeThings(some, time, changed_before, changed_after, ObjectsOf::OneMap,
+                  [&](const ContentHash& object) { return same.contains(object); });
+      ASSERT_EQ(historyOf(all), historyOf(some)) << "seed " << seed << ", round " << round;
+      const ObjectChanges expected = compareStates(before, after);
+      const ObjectChanges found = compareStates(changed_before, changed_after, same.size());
+      EXPECT_EQ(found.unchanged, expected.unchanged);
+      EXPECT_EQ(found.added, expected.added);
+      EXPECT_EQ(found.gone, expected.gone);
+      EXPECT_EQ(found.changed.size() + found.split.size() + found.joined.size(),
+                expected.changed.size() + expected.split.size() + expected.joined.size());
+      given += changed_after.size(), present += after.size();
+      before = after;
+    }
+    EXPECT_LT(given, present);
+  }
 }
 
 }  // namespace

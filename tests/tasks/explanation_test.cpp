@@ -49,12 +49,12 @@ TEST(Explanation, FromAPartOfTheMapIsThatOfTheWhole) {
   std::vector<RuleSource> sources;
   for (const NamedText& text : inputs.rules) sources.push_back({text.name, text.text});
   const RuleSet rules = loadRuleTexts(sources, inputs.rule_roots, classCatalogueOf(inputs.ontology)).require();
-  const std::vector<std::uint64_t> digests = map.decisionDigests();
-  ASSERT_EQ(digests.size(), map.scene().primitives.size());
+  const std::vector<std::uint64_t> traces = map.decisionTraces();
+  ASSERT_EQ(traces.size(), map.scene().primitives.size());
   std::size_t in_part = 0;
   for (std::size_t i = 0; i < map.objects().size(); i += 4) {
     const SemanticObject& object = map.objects()[i];
-    const auto run = runInPart(map.scene(), rules, {digests, map.objects()}, primitivesOf(object));
+    const auto run = runInPart(map.scene(), rules, {traces, map.objects()}, primitivesOf(object));
     if (!run) continue;
     ++in_part;
     const auto near = explanationIn(run->result, rules, object.id);

@@ -18,8 +18,10 @@
 #include "mapping/change/map_things.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/facts/semantic_layer.hpp"
+#include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/statements/stated_values.hpp"
+#include "mapping/window/semantic_update.hpp"
 #include "rdf/store/quad_store.hpp"
 
 namespace cluxel::mapping {
@@ -44,6 +46,13 @@ void requireScansOf(const WorkFile& work, const scan::ScanSet& scans, const std:
                   work.path().string() + ": holds an unfinished build of other scans ('" + cloud.source +
                       "' is not among those given); repeat that command to finish it, or remove the file");
   }
+}
+
+/// Objects without members: nothing was there before, so that they are compared with nothing.
+std::vector<ObjectMembers> namesOf(const std::vector<rules::SemanticObject>& objects) {
+  std::vector<ObjectMembers> names;
+  for (const rules::SemanticObject& object : objects) names.push_back({object.id, object.class_iri, {}});
+  return names;
 }
 
 class MapBuild {
@@ -116,25 +125,24 @@ class MapBuild {
                    StageClock& clock) {
     stages_.update(transaction, std::move(changes), params_.threads, clock);
     stages_.dropPoints();
-    stages_.load(transaction);
     if (is_last) work_.takeOverStatements(transaction, params_.drop_statements, sink_);
     if (is_last) addOperatorStatements(transaction, params_.statements);
-    const SemanticLayer layer = writeSemanticLayer(transaction, parsed_, stages_, params_.threads, clock);
+    const SemanticUpdate layers =
+        updateSemanticLayer(transaction, parsed_, stages_, ChangedInputs::Scans, {.threads = params_.threads}, clock);
     const std::vector<Cloud> clouds = storedClouds(transaction);
-    if (const std::string note = summaryOf(layer.statements); !note.empty()) sink_.note(note);
+    if (const std::string note = summaryOf(layers.statements); !note.empty()) sink_.note(note);
     storeInputs(transaction, parsed_.inputs);
     state_ = MapState{is_last, parsed_.inputs.hash().hex()};
     storeState(transaction, *state_);
     addActivity(transaction, {"build", started_s, nowSeconds(), clock.seconds()}, clouds, parsed_.inputs);
-    if (is_last)
-      writeThings(transaction, dateTimeText(nowSeconds()), {}, membersOf(layer.objects, layer.scene.cluxels));
+    if (is_last) writeThings(transaction, dateTimeText(nowSeconds()), {}, namesOf(storedObjects(transaction)));
     transaction.commit();
     report_.scans = clouds.size();
     report_.points = 0;
     for (const Cloud& cloud : clouds) report_.points += cloud.point_count;
-    report_.tiles = stages_.summaries().size();
-    report_.cluxels = layer.scene.cluxels.size(), report_.primitives = layer.scene.primitives.size();
-    report_.objects = layer.objects.size();
+    report_.tiles = storedTiles(work_.environment().read()).size();
+    report_.cluxels = layers.cluxels, report_.primitives = layers.primitives;
+    report_.objects = layers.objects;
     report_.quads = rdf::QuadReader(work_.environment().read()).size();
   }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// After the update, closure and SPARQL rules are computed again; the whole semantic layer only when rules use `ask:`.
+// After the update, closure and SPARQL rules are computed again; the whole semantic layer only when rules use `ask:`,
+// or when statements came or went.
 #include "mapping/build/map_update.hpp"
 
 #include <chrono>
@@ -9,10 +10,10 @@
 #include "mapping/change/map_things.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/map_state.hpp"
-#include "mapping/object_store.hpp"
 #include "mapping/statements/stated_subjects.hpp"
 #include "mapping/statements/stated_values.hpp"
 #include "mapping/statements/statement_history.hpp"
+#include "mapping/window/semantic_update.hpp"
 #include "rdf/file/map_replacement.hpp"
 #include "rdf/store/flush_poll.hpp"
 
@@ -56,14 +57,12 @@ void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink, co
   const bool has_news = takeNewStatements(transaction, parsed.rules.catalogue);
   if (parsed.rules.asks_map || has_news) {
     TileStages stages(parsed.model, parsed.inputs.params);
-    stages.load(transaction);
     if (check) check(0);
-    const std::vector<rules::SemanticObject> before = storedObjects(transaction);
-    const SemanticLayer layer = writeSemanticLayer(transaction, parsed, stages, 1, sink, check);
-    if (const std::string note = summaryOf(layer.statements); !note.empty()) sink.note(note);
+    const SemanticUpdate layers = updateSemanticLayer(transaction, parsed, stages, ChangedInputs::Any, {}, sink, check);
+    if (const std::string note = summaryOf(layers.statements); !note.empty()) sink.note(note);
     const double now_s = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-    writeThings(transaction, dateTimeText(now_s), membersOf(before, layer.scene.cluxels),
-                membersOf(layer.objects, layer.scene.cluxels));
+    writeThings(transaction, dateTimeText(now_s), layers.before, layers.after, ObjectsOf::OneMap,
+                keptBy(transaction, layers));
     return;
   }
   inferFacts(transaction, parsed.inputs, sink, check);

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "cluxel/error.hpp"
+#include "mapping/build/way_tiles.hpp"
 #include "mapping/map_tables.hpp"
 
 namespace cluxel::mapping {
@@ -64,13 +65,15 @@ class OutputReader {
     plain(Stage::Contacts, keys, out_.contacts, perception::contactTileFromBytes);
   }
 
+  void readGround(const TileSet& keys) { plain(Stage::Ground, keys, out_.ground, perception::groundTileFromBytes); }
+
  private:
   void readFeatures(const TileKey& key, std::string_view bytes, std::size_t cluxels) {
     out_.features.emplace(key, checked(key, perception::featureTileFromBytes(bytes, cluxels)));
   }
 
   void readLabelled(const TileSet& keys) {
-    plain(Stage::Ground, keys, out_.ground, perception::groundTileFromBytes);
+    readGround(keys);
     plain(Stage::Labels, keys, out_.labels, perception::labelTileFromBytes);
     plain(Stage::Components, keys, out_.components, perception::componentTileFromBytes);
   }
@@ -111,8 +114,8 @@ class OutputReader {
 /// Outputs in the tables of one write transaction.
 class MapOutputStore final : public perception::OutputStore {
  public:
-  explicit MapOutputStore(rdf::WriteTransaction& transaction)
-      : transaction_(transaction), tiles_(storedTiles(transaction)) {}
+  MapOutputStore(rdf::WriteTransaction& transaction, OutputChanges& changes)
+      : transaction_(transaction), tiles_(storedTiles(transaction)), changes_(changes) {}
 
   TileSet tiles() const override { return tiles_; }
 
@@ -123,19 +126,34 @@ class MapOutputStore final : public perception::OutputStore {
   bool store(Stage stage, const TileKey& key, std::string_view bytes) override {
     const std::string block_key = tables::keyOf(key);
     if (stage == Stage::Points) tiles_.insert(key);
-    if (const auto old = transaction_.block(tableOf(stage), block_key); old && *old == bytes) return false;
+    const auto old = transaction_.block(tableOf(stage), block_key);
+    if (old && *old == bytes) return false;
+    note(stage, key, old);
     transaction_.putBlock(tableOf(stage), block_key, bytes);
+    if (stage == Stage::Even) changed_even_.insert(key);
     return true;
   }
 
   void erase(Stage stage, const TileKey& key) override {
     if (stage == Stage::Points) tiles_.erase(key);
+    note(stage, key, transaction_.block(tableOf(stage), tables::keyOf(key)));
+    if (stage == Stage::Even) changed_even_.insert(key);
     transaction_.eraseBlock(tableOf(stage), tables::keyOf(key));
   }
 
+  /// Tiles of which the even ground changed, came or went.
+  const TileSet& changedEven() const { return changed_even_; }
+
  private:
+  void note(Stage stage, const TileKey& key, const std::optional<std::string_view>& old) {
+    changes_.tiles.insert(key);
+    if (stage == Stage::Summaries)
+      changes_.former_summaries.try_emplace(key, old ? std::optional(std::string(*old)) : std::nullopt);
+  }
+
   rdf::WriteTransaction& transaction_;
-  TileSet tiles_;
+  TileSet tiles_, changed_even_;
+  OutputChanges& changes_;
 };
 
 class StageProgress final : public perception::StageObserver {
@@ -164,7 +182,7 @@ TileSet TileStages::updateAll(rdf::WriteTransaction& transaction, PointChanges c
 
 TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads, bool compute_all,
                         ProgressSink& sink) {
-  MapOutputStore store(transaction);
+  MapOutputStore store(transaction, changes_);
   StageProgress progress(sink);
   // The scans are stored already: all points of these tiles are read, also those that were added.
   for (auto& [tile, segments] : storedSegments(transaction, changes.anew))
@@ -176,12 +194,26 @@ TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes
                                      .compute_all = compute_all,
                                      .anew = std::move(changes.anew)});
   storeTiles(transaction, store.tiles());
-  outputs_.even.clear();  // ways read it from the map
+  changes_.have_ways =
+      !updateWayTiles(transaction, store.changedEven(), outputs_.even, threads).empty() || changes_.have_ways;
+  outputs_.even.clear();
   return changed;
 }
 
 void TileStages::load(const rdf::ReadTransaction& transaction) {
   OutputReader(transaction, outputs_).readForScene(storedTiles(transaction));
+}
+
+void TileStages::hold(const rdf::ReadTransaction& transaction, const TileSet& tiles, const TileSet& around) {
+  const auto giveUpOthers = [&](auto& outputs) {
+    std::erase_if(outputs, [&](const auto& entry) { return !tiles.contains(entry.first); });
+  };
+  giveUpOthers(outputs_.summaries), giveUpOthers(outputs_.ground), giveUpOthers(outputs_.features);
+  giveUpOthers(outputs_.points), giveUpOthers(outputs_.cluxels);
+  giveUpOthers(outputs_.labels), giveUpOthers(outputs_.components), giveUpOthers(outputs_.contacts);
+  OutputReader reader(transaction, outputs_);
+  reader.readForScene(tiles);
+  reader.readGround(around);
 }
 
 void TileStages::loadPoints(const rdf::ReadTransaction& transaction) {
@@ -201,16 +233,6 @@ perception::Scene TileStages::takeScene(const std::vector<Cloud>& clouds) {
 void TileStages::dropPoints() {
   outputs_.points.clear();
   outputs_.cluxels.clear();
-}
-
-WayGraph storedWays(const rdf::ReadTransaction& transaction) {
-  const TileSet tiles = storedTiles(transaction);
-  return waysOf({tiles.begin(), tiles.end()}, [&](const TileKey& key) {
-    const auto bytes = transaction.block(tables::kEven, tables::keyOf(key));
-    if (!bytes)
-      throw Error(ErrorKind::StoreUnavailable, "a stored tile lacks a block; the map is damaged, build it anew");
-    return checked(key, perception::evenTileFromBytes(*bytes));
-  });
 }
 
 }  // namespace cluxel::mapping

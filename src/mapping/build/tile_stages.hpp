@@ -3,11 +3,13 @@
 #pragma once
 
 #include <map>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "cluxel/progress.hpp"
 #include "mapping/build/scan_store.hpp"
 #include "mapping/map_inputs.hpp"
-#include "mapping/ways/ways.hpp"
 #include "perception/pipeline.hpp"
 #include "rdf/file/environment.hpp"
 
@@ -18,6 +20,14 @@ inline constexpr std::uint64_t kStagePoints = 6'000'000;
 
 /// What TileStages keeps in memory when the scene is assembled.
 enum class Keep : std::uint8_t { Summaries, All };
+
+/// What changed in the stored outputs of tiles since it was begun.
+struct OutputChanges {
+  perception::TileSet tiles;  ///< of which an output changed, also those that are gone
+  /// The summaries that these tiles had before, as stored; absent where there were none.
+  std::map<perception::TileKey, std::optional<std::string>> former_summaries;
+  bool have_ways = false;  ///< what some tile contributes to ways changed
+};
 
 /// `model` and `params` must outlive it.
 class TileStages {
@@ -31,8 +41,13 @@ class TileStages {
   /// Computes all stages of all tiles: the model or the settings changed. Returns the tiles of which an output changed.
   perception::TileSet updateAll(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads,
                                 ProgressSink& sink);
+  /// All changes since the last call of this function.
+  OutputChanges takeChanges() { return std::exchange(changes_, {}); }
   /// Reads what the scene is assembled from, of all tiles. Cost: about 100 ns a cluxel.
   void load(const rdf::ReadTransaction& transaction);
+  /// The same for these tiles alone; others are given up. Of the tiles next to them the ground is read, too.
+  void hold(const rdf::ReadTransaction& transaction, const perception::TileSet& tiles,
+            const perception::TileSet& around);
   /// Reads the points of all tiles from the scans, and computes from them what is measured of cluxels. Cost: about
   /// 150 ns a point.
   void loadPoints(const rdf::ReadTransaction& transaction);
@@ -44,6 +59,10 @@ class TileStages {
   perception::Scene scene(const std::vector<Cloud>& clouds) const {
     return assembleScene(outputs_, params_.relation, viewsOf(clouds));
   }
+  /// The scene of the tiles that are held. `elsewhere`: other tiles of the map next to them.
+  perception::SceneWindow window(const perception::TileSet& elsewhere, const std::vector<Cloud>& clouds) const {
+    return assembleWindow(outputs_, elsewhere, params_.relation, viewsOf(clouds));
+  }
   /// The same, and gives memory back.
   perception::Scene takeScene(const std::vector<Cloud>& clouds);
   /// The seeds of the scene's cluxels.
@@ -54,6 +73,7 @@ class TileStages {
   const std::map<perception::TileKey, perception::CluxelTile>& cluxels() const { return outputs_.cluxels; }
   const std::map<perception::TileKey, perception::SummaryTile>& summaries() const { return outputs_.summaries; }
   const std::map<perception::TileKey, perception::GroundTile>& ground() const { return outputs_.ground; }
+  const std::map<perception::TileKey, perception::ComponentTile>& components() const { return outputs_.components; }
 
  private:
   perception::TileSet run(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads, bool compute_all,
@@ -63,9 +83,7 @@ class TileStages {
   perception::TileLabeller labeller_;
   Keep keep_;
   perception::TileOutputs outputs_;
+  OutputChanges changes_;
 };
-
-/// The ways of all tiles of a map, read tile by tile.
-WayGraph storedWays(const rdf::ReadTransaction& transaction);
 
 }  // namespace cluxel::mapping

@@ -112,7 +112,7 @@ class Watch {
       return tell(report.scans, report.scans, report.objects);
     }
     const ChangeReport report = extension_.add(scans);
-    if (report.has_changes) tell(report.scans_added, report.scans, report.after.size());
+    if (report.has_changes) tell(report.scans_added, report.scans, report.object_count);
   }
 
   void tell(std::size_t added, std::size_t scans, std::size_t objects) {

@@ -12,8 +12,9 @@
 #include "mapping/build/stage_clock.hpp"
 #include "mapping/change/map_things.hpp"
 #include "mapping/facts/map_history.hpp"
+#include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_state.hpp"
-#include "mapping/object_store.hpp"
+#include "mapping/window/semantic_state.hpp"
 
 namespace cluxel::mapping {
 
@@ -50,24 +51,24 @@ MapEditor::MapEditor(const fs::path& file, const ChangeParams& params, ProgressS
   readBefore(environment_->read());
 }
 
-/// Another process may change objects by an update until the first write transaction begins; the stages it leaves.
 void MapEditor::readBefore(const rdf::ReadTransaction& transaction) {
-  if (!stages_) {
-    stages_.emplace(parsed_.model, parsed_.inputs.params);
-    stages_->load(transaction);
-  }
-  const perception::SceneSeeds seeds = stages_->seeds();
-  report_.before = report_.after = membersOf(storedObjects(transaction), seeds);
-  report_.objects.unchanged = report_.after.size();
-  own_before_ = report_.before.size();
-  report_.scans = storedClouds(transaction).size();
-  report_.tiles = stages_->summaries().size();
-  report_.cluxels = seeds.seed.size();
-  report_.primitives = storedDigests(transaction).size();  // there is one for each primitive
+  const SemanticState state = storedSemanticState(transaction).value_or(SemanticState{});
+  report_.objects.unchanged = report_.object_count = state.objects;
+  report_.cluxels = state.cluxels, report_.primitives = state.primitives;
+  report_.scans = state.clouds.size();
+  report_.tiles = storedTiles(transaction).size();
+}
+
+/// Reads the tiles of the whole map.
+std::vector<ObjectMembers> MapEditor::allObjects(const rdf::ReadTransaction& transaction) const {
+  TileStages stages(parsed_.model, parsed_.inputs.params);
+  stages.load(transaction);
+  return membersOf(storedObjects(transaction), stages.seeds());
 }
 
 void MapEditor::setInputs(ParsedInputs inputs) {
   all_tiles_ = all_tiles_ || reachTiles(parsed_.inputs, inputs.inputs);
+  if (parsed_.inputs.hash() != inputs.inputs.hash()) changed_inputs_ = ChangedInputs::Any;
   stages_.reset();
   parsed_ = std::move(inputs);
 }
@@ -78,12 +79,10 @@ rdf::WriteTransaction MapEditor::begin() {
   if (!state || !state->is_finished || state->inputs_hash != inputs_hash_)
     throw Error(ErrorKind::StoreUnavailable,
                 environment_->file().string() + ": another program has changed it meanwhile; run the command again");
-  if (!present_) {
-    const std::vector<rules::SemanticObject> objects = storedObjects(transaction);
-    const bool is_same = std::equal(objects.begin(), objects.end(), report_.before.begin(), report_.before.end(),
-                                    [](const auto& now, const auto& before) { return now.id == before.id; });
-    if (!is_same) readBefore(transaction);  // an update came in between
-    present_ = report_.before;
+  if (!std::exchange(has_begun_, true)) readBefore(transaction);  // an update may have come in between
+  if (names_at_end_ && !std::exchange(has_own_before_, true)) {
+    const std::vector<ObjectMembers> own = allObjects(transaction);
+    report_.before.insert(report_.before.begin(), own.begin(), own.end());
   }
   return transaction;
 }
@@ -102,25 +101,40 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
   const double started_s = secondsNow();
   StageClock clock(sink_);
   update(transaction, std::move(changes), clock);
-  stages_->load(transaction);
-  const SemanticLayer layer = writeSemanticLayer(transaction, parsed_, *stages_, params_.threads, clock);
+  SemanticUpdate layers =
+      updateSemanticLayer(transaction, parsed_, *stages_, std::exchange(changed_inputs_, ChangedInputs::Scans),
+                          {params_.threads, params_.max_window_share}, clock);
   inputs_hash_ = parsed_.inputs.hash().hex();
   storeInputs(transaction, parsed_.inputs);
   storeState(transaction, MapState{true, inputs_hash_});
-  report(transaction, layer);
   const Activity activity{operation, started_s, secondsNow(), clock.seconds()};
-  const ObjectChanges lineage = compareStates(*present_, report_.after);
-  const bool is_all = !has_committed_ && report_.before.size() == own_before_;
-  report_.objects = is_all ? lineage : compareObjects(report_.before, report_.after);
-  has_committed_ = true;
-  addLineage(transaction, addActivity(transaction, activity, scans, parsed_.inputs), lineage);
-  if (!names_at_end_) writeThings(transaction, dateTimeText(activity.ended_s), *present_, report_.after);
-  present_ = report_.after;
+  addLineage(transaction, addActivity(transaction, activity, scans, parsed_.inputs),
+             compareStates(layers.before, layers.after));
+  if (!names_at_end_)
+    writeThings(transaction, dateTimeText(activity.ended_s), layers.before, layers.after, ObjectsOf::OneMap,
+                keptBy(transaction, layers));
+  report(transaction, layers);
+  note(std::move(layers));
   if (!params_.dry_run) transaction.commit();
+}
+
+/// What came and went again within the commits is no difference.
+void MapEditor::note(SemanticUpdate update) {
+  for (ObjectMembers& object : update.before)
+    if (fresh_.erase(object.id) == 0) gone_.emplace(object.id, std::move(object));
+  for (ObjectMembers& object : update.after)
+    if (gone_.erase(object.id) == 0) fresh_.emplace(object.id, std::move(object));
+  if (names_at_end_) return;
+  report_.before.clear(), report_.after.clear();
+  for (const auto& [id, object] : gone_) report_.before.push_back(object);
+  for (const auto& [id, object] : fresh_) report_.after.push_back(object);
+  report_.objects = compareStates(report_.before, report_.after, report_.object_count - report_.after.size());
 }
 
 void MapEditor::handOnNames() {
   rdf::WriteTransaction transaction = begin();
+  report_.after = allObjects(transaction);
+  report_.objects = compareObjects(report_.before, report_.after);
   writeThings(transaction, dateTimeText(secondsNow()), report_.before, report_.after, ObjectsOf::SeveralMaps);
   if (!params_.dry_run) transaction.commit();
 }
@@ -138,29 +152,23 @@ void MapEditor::rest() {
 
 bool MapEditor::resume() {
   if (!lock_) lock_.emplace(file_);
-  if (!rested_at_ || !present_ || newest().kept(kRestToken) != rested_at_) return false;
-  ChangeReport next;
-  next.scans = report_.scans, next.tiles = report_.tiles;
-  next.cluxels = report_.cluxels, next.primitives = report_.primitives;
-  next.objects.unchanged = own_before_ = present_->size();
-  next.before = next.after = *std::exchange(present_, std::nullopt);  // begin() sees whether an update came in between
+  if (!rested_at_ || newest().kept(kRestToken) != rested_at_) return false;
+  report_ = {};
+  has_begun_ = false;
+  readBefore(environment_->read());
   touched_.clear(), changed_.clear();
-  has_committed_ = false;
-  report_ = std::move(next);
+  gone_.clear(), fresh_.clear();
   return true;
 }
 
-void MapEditor::report(const rdf::ReadTransaction& transaction, const SemanticLayer& layer) {
+void MapEditor::report(const rdf::ReadTransaction& transaction, const SemanticUpdate& update) {
+  readBefore(transaction);
   report_.has_changes = true;
   report_.tiles_touched = touched_.size();
   report_.tiles_changed = changed_.size();
-  report_.scans = storedClouds(transaction).size();
-  report_.tiles = stages_->summaries().size();
-  report_.cluxels = layer.scene.cluxels.size();
-  report_.primitives = layer.scene.primitives.size();
-  report_.after = membersOf(layer.objects, layer.scene.cluxels);
-  report_.statements = layer.statements;
-  if (const std::string note = summaryOf(layer.statements); !note.empty()) sink_.note(note);
+  report_.statements = update.statements;
+  report_.local_commits += update.is_local ? 1 : 0;
+  if (const std::string note = summaryOf(update.statements); !note.empty()) sink_.note(note);
 }
 
 }  // namespace cluxel::mapping

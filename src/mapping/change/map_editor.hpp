@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,6 +16,7 @@
 #include "mapping/build/tile_stages.hpp"
 #include "mapping/change/object_changes.hpp"
 #include "mapping/facts/semantic_layer.hpp"
+#include "mapping/window/semantic_update.hpp"
 
 namespace cluxel::mapping {
 
@@ -24,17 +26,20 @@ struct ChangeParams {
   bool dry_run = false;                       ///< compute what would change, and write nothing
   std::uint64_t stage_points = kStagePoints;  ///< of a batch, as many go through the stages at once
   bool may_compact = true;                    ///< rewrite the map when the change leaves much free space
+  double max_window_share = UpdateParams{}.max_window_share;  ///< as in UpdateParams
 };
 
 struct ChangeReport {
   bool has_changes = false;  ///< something was committed, or would be without dry_run
   std::size_t scans_added = 0, scans_already_there = 0, scans_removed = 0, scans_moved = 0;
-  std::size_t tiles_touched = 0;                                  ///< a scan's points in them changed
-  std::size_t tiles_changed = 0;                                  ///< the output of some stage changed
-  std::size_t scans = 0, tiles = 0, cluxels = 0, primitives = 0;  ///< of the map afterwards
-  std::vector<ObjectMembers> before, after;                       ///< the objects
+  std::size_t tiles_touched = 0;  ///< a scan's points in them changed
+  std::size_t tiles_changed = 0;  ///< the output of some stage changed
+  std::size_t scans = 0, tiles = 0, cluxels = 0, primitives = 0, object_count = 0;  ///< of the map afterwards
+  /// The objects that differ; of a merge all objects of all maps, and all of the result.
+  std::vector<ObjectMembers> before, after;
   ObjectChanges objects;
   std::vector<StatementOutcome> statements;  ///< what became of the operator's
+  std::size_t local_commits = 0;             ///< of which objects and facts were computed around the change alone
 };
 
 class MapEditor {
@@ -73,8 +78,10 @@ class MapEditor {
 
  private:
   void readBefore(const rdf::ReadTransaction& transaction);
+  std::vector<ObjectMembers> allObjects(const rdf::ReadTransaction& transaction) const;
   rdf::QuadReader newest() const;
-  void report(const rdf::ReadTransaction& transaction, const SemanticLayer& layer);
+  void note(SemanticUpdate update);
+  void report(const rdf::ReadTransaction& transaction, const SemanticUpdate& update);
 
   std::filesystem::path file_;
   std::optional<BuildLock> lock_;
@@ -85,12 +92,13 @@ class MapEditor {
   ParsedInputs parsed_;
   std::string inputs_hash_;  ///< as stored in the file
   bool names_at_end_ = false;
-  bool all_tiles_ = false;  ///< the next commit computes every tile
+  bool has_own_before_ = false;                          ///< of a merge: report_.before holds the objects of this map
+  bool all_tiles_ = false;                               ///< the next commit computes every tile
+  ChangedInputs changed_inputs_ = ChangedInputs::Scans;  ///< since the last commit
   std::optional<TileStages> stages_;
   TileSet touched_, changed_;                          ///< in all commits
-  std::optional<std::vector<ObjectMembers>> present_;  ///< the objects of the last commit
-  std::size_t own_before_ = 0;                         ///< objects of this map in report_.before; a merge adds others
-  bool has_committed_ = false;
+  std::map<ContentHash, ObjectMembers> gone_, fresh_;  ///< objects that differ from those before the first commit
+  bool has_begun_ = false;
   ChangeReport report_;
 };
 

@@ -19,7 +19,6 @@ namespace cluxel::mapping {
 
 namespace {
 
-constexpr std::string_view kCountsKey = "passed_rays";
 /// The version of the computation. A new number invalidates all stored counts.
 constexpr std::uint32_t kCountsVersion = 1;
 constexpr float kInside_m = 0.30F;
@@ -36,15 +35,12 @@ struct CountsRow {
 };
 static_assert(sizeof(CountsRow) == 32);
 
-std::map<ContentHash, perception::RayCounts> storedCounts(const rdf::ReadTransaction& transaction) {
-  std::map<ContentHash, perception::RayCounts> known;
-  const auto bytes = transaction.block(tables::kMeta, kCountsKey);
-  for (std::size_t at = 0; bytes && at + sizeof(CountsRow) <= bytes->size(); at += sizeof(CountsRow)) {
-    CountsRow row;
-    std::memcpy(&row, bytes->data() + at, sizeof row);
-    known.emplace(row.cause, perception::RayCounts{row.ended, row.passed});
-  }
-  return known;
+std::optional<CountsRow> storedCounts(const rdf::ReadTransaction& transaction, const ContentHash& object) {
+  const auto bytes = transaction.block(tables::kPassedRays, tables::keyOf(object));
+  if (!bytes || bytes->size() != sizeof(CountsRow)) return std::nullopt;
+  CountsRow row;
+  std::memcpy(&row, bytes->data(), sizeof row);
+  return row;
 }
 
 /// The hash of what a cloud's rays say: its points are named by its id.
@@ -90,7 +86,7 @@ PassedRaysUpdate::PassedRaysUpdate(const rdf::ReadTransaction& transaction, cons
   for (const Cloud& cloud : clouds) hashes.push_back(raysHash(cloud));
   for (std::size_t i = 0; i < objects.size(); ++i) {
     if (!counts_rays(objects[i])) continue;
-    Target target{i, placesWithin(scene, objects[i]), {}, {}};
+    Target target{i, objects[i].id, placesWithin(scene, objects[i]), {}, {}};
     if (target.places.empty()) continue;
     std::vector<ContentHash> passing;  // in an order that does not follow that of the clouds
     for (std::size_t c = 0; c < clouds.size(); ++c)
@@ -102,13 +98,12 @@ PassedRaysUpdate::PassedRaysUpdate(const rdf::ReadTransaction& transaction, cons
     target.cause = hasher.finish();
     targets_.push_back(std::move(target));
   }
-  const std::map<ContentHash, perception::RayCounts> known = storedCounts(transaction);
   for (std::size_t i = 0; i < targets_.size(); ++i) {
-    const auto found = known.find(targets_[i].cause);
-    if (found == known.end())
-      unknown_.push_back(i);
+    const std::optional<CountsRow> known = storedCounts(transaction, targets_[i].id);
+    if (known && known->cause == targets_[i].cause)
+      targets_[i].counts = {known->ended, known->passed};
     else
-      targets_[i].counts = found->second;
+      unknown_.push_back(i);
   }
 }
 
@@ -130,18 +125,17 @@ void PassedRaysUpdate::look(const perception::RayBundle& bundle) {
   });
 }
 
-std::vector<std::optional<perception::RayCounts>> PassedRaysUpdate::finish(rdf::WriteTransaction& transaction) const {
+std::vector<std::optional<perception::RayCounts>> PassedRaysUpdate::finish(rdf::WriteTransaction& transaction,
+                                                                           Covered covered) const {
   std::vector<std::optional<perception::RayCounts>> result(object_count_);
-  std::vector<CountsRow> rows;
+  std::vector<ContentHash> counted;
   for (const Target& target : targets_) {
-    rows.push_back({target.cause, target.counts.ended, target.counts.passed});
+    const CountsRow row{target.cause, target.counts.ended, target.counts.passed};
+    putRow(transaction, tables::kPassedRays, target.id, {reinterpret_cast<const char*>(&row), sizeof row});
+    counted.push_back(target.id);
     if (target.counts.ended + target.counts.passed > 0) result[target.object] = target.counts;
   }
-  if (rows.empty())
-    transaction.eraseBlock(tables::kMeta, kCountsKey);
-  else
-    transaction.putBlock(tables::kMeta, kCountsKey,
-                         {reinterpret_cast<const char*>(rows.data()), rows.size() * sizeof(CountsRow)});
+  if (covered == Covered::All) eraseRowsBut(transaction, tables::kPassedRays, std::move(counted));
   return result;
 }
 

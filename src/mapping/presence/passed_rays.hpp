@@ -9,6 +9,7 @@
 
 #include "base/content_hash.hpp"
 #include "mapping/cloud.hpp"
+#include "mapping/presence/object_rows.hpp"
 #include "mapping/presence/ray_pass.hpp"
 #include "perception/segments/scene.hpp"
 #include "rdf/file/environment.hpp"
@@ -34,12 +35,13 @@ class PassedRaysUpdate : public RayObserver {
   bool wants(const Cloud& cloud) override;
   void look(const perception::RayBundle& bundle) override;
   /// The counts by object, after all rays were seen. Stores the outcome.
-  std::vector<std::optional<perception::RayCounts>> finish(rdf::WriteTransaction& transaction) const;
+  std::vector<std::optional<perception::RayCounts>> finish(rdf::WriteTransaction& transaction, Covered covered) const;
 
  private:
   /// A barrier and what its counts follow from.
   struct Target {
     std::size_t object = 0;
+    ContentHash id;
     std::vector<Eigen::Vector3d> places;
     ContentHash cause;
     perception::RayCounts counts;

@@ -37,10 +37,10 @@ std::vector<Eigen::Vector3d> placesOn(const perception::Scene& scene, const rule
 }
 
 bool mayPass(const Cloud& cloud, const std::vector<Eigen::Vector3d>& places) {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& place : places) box.extend(place);
   const Eigen::Vector3d around = Eigen::Vector3d::Constant(kAroundRays_m);
-  return cloud.rays.intersects(Eigen::AlignedBox3d(box.min() - around, box.max() + around));
+  const Eigen::AlignedBox3d reached(cloud.rays.min() - around, cloud.rays.max() + around);
+  return std::any_of(places.begin(), places.end(),
+                     [&](const Eigen::Vector3d& place) { return reached.contains(place); });
 }
 
 PresenceVoting::Sphere PresenceVoting::sphereAround(const std::vector<Eigen::Vector3d>& places) {

@@ -9,6 +9,7 @@
 
 #include "base/content_hash.hpp"
 #include "mapping/map_tables.hpp"
+#include "mapping/presence/object_rows.hpp"
 
 namespace cluxel::mapping {
 
@@ -16,9 +17,8 @@ namespace {
 
 using MaybePresence = std::optional<perception::Presence>;
 
-constexpr std::string_view kKey = "presence";
 /// The version of the computation of presence from rays. A new number invalidates every stored presence.
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 
 /// A row of the stored table.
 struct Row {
@@ -45,15 +45,12 @@ MaybePresence presenceFrom(const Row& row) {
   return presence;
 }
 
-std::map<ContentHash, MaybePresence> storedPresence(const rdf::ReadTransaction& transaction) {
-  std::map<ContentHash, MaybePresence> known;
-  const auto bytes = transaction.block(tables::kMeta, kKey);
-  for (std::size_t at = 0; bytes && at + sizeof(Row) <= bytes->size(); at += sizeof(Row)) {
-    Row row;
-    std::memcpy(&row, bytes->data() + at, sizeof row);
-    known.emplace(row.cause, presenceFrom(row));
-  }
-  return known;
+std::optional<Row> storedRow(const rdf::ReadTransaction& transaction, const ContentHash& object) {
+  const auto bytes = transaction.block(tables::kPresence, tables::keyOf(object));
+  if (!bytes || bytes->size() != sizeof(Row)) return std::nullopt;
+  Row row;
+  std::memcpy(&row, bytes->data(), sizeof row);
+  return row;
 }
 
 /// The hash of what a cloud's rays say: its points are named by its id.
@@ -68,12 +65,12 @@ PresenceUpdate::PresenceUpdate(const rdf::ReadTransaction& transaction, const pe
                                std::span<const rules::SemanticObject> objects, const std::vector<Cloud>& clouds,
                                unsigned threads)
     : causes_(objects.size()), presence_(objects.size()) {
+  for (const rules::SemanticObject& object : objects) ids_.push_back(object.id);
   const std::vector<const Cloud*> timed = timedClouds(clouds);
   is_told_ = timed.size() >= 2;
   if (!is_told_) return;
   std::vector<ContentHash> cloud_hash;
   for (const Cloud* cloud : timed) cloud_hash.push_back(hashOf(*cloud));
-  const std::map<ContentHash, MaybePresence> known = storedPresence(transaction);
   std::vector<rules::SemanticObject> asked;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const std::vector<Eigen::Vector3d> places = placesOn(scene, objects[i]);
@@ -82,8 +79,8 @@ PresenceUpdate::PresenceUpdate(const rdf::ReadTransaction& transaction, const pe
     for (std::size_t c = 0; c < timed.size() && !places.empty(); ++c)
       if (mayPass(*timed[c], places)) hasher.add(cloud_hash[c]);
     causes_[i] = hasher.finish();
-    if (const auto found = known.find(causes_[i]); found != known.end()) {
-      presence_[i] = found->second;
+    if (const auto row = storedRow(transaction, ids_[i]); row && row->cause == causes_[i]) {
+      presence_[i] = presenceFrom(*row);
     } else if (!places.empty()) {
       unknown_.push_back(i);
       asked.push_back(objects[i]);
@@ -92,18 +89,17 @@ PresenceUpdate::PresenceUpdate(const rdf::ReadTransaction& transaction, const pe
   if (!asked.empty()) voting_.emplace(scene, asked, clouds, threads);
 }
 
-std::vector<MaybePresence> PresenceUpdate::finish(rdf::WriteTransaction& transaction) {
-  if (!is_told_) {
-    transaction.eraseBlock(tables::kMeta, kKey);
-    return std::move(presence_);
-  }
+std::vector<MaybePresence> PresenceUpdate::finish(rdf::WriteTransaction& transaction, Covered covered) {
   if (voting_) {
     const std::vector<MaybePresence> computed = presenceOfObjects(voting_->finish());
     for (std::size_t u = 0; u < unknown_.size(); ++u) presence_[unknown_[u]] = computed[u];
   }
-  std::vector<Row> rows;
-  for (std::size_t i = 0; i < presence_.size(); ++i) rows.push_back(rowOf(causes_[i], presence_[i]));
-  transaction.putBlock(tables::kMeta, kKey, {reinterpret_cast<const char*>(rows.data()), rows.size() * sizeof(Row)});
+  if (covered == Covered::All)
+    eraseRowsBut(transaction, tables::kPresence, is_told_ ? ids_ : std::vector<ContentHash>{});
+  for (std::size_t i = 0; is_told_ && i < presence_.size(); ++i) {
+    const Row row = rowOf(causes_[i], presence_[i]);
+    putRow(transaction, tables::kPresence, ids_[i], {reinterpret_cast<const char*>(&row), sizeof row});
+  }
   return std::move(presence_);
 }
 

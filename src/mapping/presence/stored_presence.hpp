@@ -8,6 +8,7 @@
 
 #include "base/content_hash.hpp"
 #include "mapping/cloud.hpp"
+#include "mapping/presence/object_rows.hpp"
 #include "mapping/presence/presence_votes.hpp"
 #include "perception/segments/scene.hpp"
 #include "perception/visibility/presence.hpp"
@@ -26,11 +27,11 @@ class PresenceUpdate {
   RayObserver* observer() { return voting_ ? &*voting_ : nullptr; }
   std::size_t unknownCount() const { return unknown_.size(); }
   /// When each object was there, after the observer has seen all rays. Stores the outcome.
-  std::vector<std::optional<perception::Presence>> finish(rdf::WriteTransaction& transaction);
+  std::vector<std::optional<perception::Presence>> finish(rdf::WriteTransaction& transaction, Covered covered);
 
  private:
   bool is_told_ = false;                                       ///< two clouds or more have a time and a pose
-  std::vector<ContentHash> causes_;                            ///< of each object
+  std::vector<ContentHash> ids_, causes_;                      ///< of each object
   std::vector<std::optional<perception::Presence>> presence_;  ///< of each object
   std::vector<std::size_t> unknown_;                           ///< numbers of objects
   std::optional<PresenceVoting> voting_;

@@ -47,6 +47,7 @@ SemanticObject withClass(SemanticObject object, const std::string& class_iri, co
   object.class_iri = class_iri;
   object.confidence = 1;
   object.rule_id = kOperatorRule;
+  object.is_class_wide = false;
   object.id = idOf(scene, object);
   return object;
 }

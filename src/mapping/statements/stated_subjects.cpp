@@ -9,7 +9,7 @@
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/map_things.hpp"
 #include "mapping/change/statement_change.hpp"
-#include "mapping/object_store.hpp"
+#include "mapping/layers/stored_layers.hpp"
 #include "mapping/statements/stated_values.hpp"
 #include "rdf/map_iris.hpp"
 

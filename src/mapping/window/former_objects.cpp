@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Layers number cluxels as the summaries of the same commit do.
+#include "mapping/window/former_objects.hpp"
+
+#include "cluxel/error.hpp"
+#include "mapping/layers/stored_layers.hpp"
+#include "mapping/map_tables.hpp"
+
+namespace cluxel::mapping {
+
+void FormerObjects::add(const TileLayer& layer, const std::function<bool(const ContentHash&)>& is_wanted) {
+  const auto changed = changes_.former_summaries.find(layer.key);
+  if (changed == changes_.former_summaries.end()) {
+    const auto summary = stages_.summaries().find(layer.key);
+    if (summary == stages_.summaries().end())
+      throw Error(ErrorKind::StoreUnavailable, "a stored tile lacks a block; the map is damaged, build it anew");
+    addOf(layer, summary->second, is_wanted);
+  } else if (changed->second)
+    addOf(layer, perception::summaryTileFromBytes(*changed->second), is_wanted);
+}
+
+void FormerObjects::addOf(const TileLayer& layer, const perception::SummaryTile& summary,
+                          const std::function<bool(const ContentHash&)>& is_wanted) {
+  if (layer.size() != summary.size())
+    throw Error(ErrorKind::StoreUnavailable, "stored objects are of other cluxels; the map is damaged, build it anew");
+  std::vector<ObjectMembers*> of_share;
+  for (const TileLayer::Share& share : layer.shares) {
+    of_share.push_back(nullptr);
+    if (!is_wanted(share.object)) continue;
+    const auto [place, is_new] = objects_.try_emplace(share.object);
+    if (is_new) {
+      place->second.id = share.object;
+      if (const auto record = storedRecord(transaction_, share.object)) place->second.class_iri = record->class_iri;
+    }
+    of_share.back() = &place->second;
+  }
+  for (std::size_t c = 0; c < layer.size(); ++c)
+    if (const std::uint32_t share = layer.share_of_cluxel[c]; share != kNoShare && of_share[share] != nullptr)
+      of_share[share]->seeds.push_back(memberKey(summary.scans[summary.seed_scan[c]], summary.seed_point[c]));
+}
+
+std::vector<ObjectMembers> FormerObjects::take() {
+  std::vector<ObjectMembers> all;
+  for (auto& [id, members] : objects_) all.push_back(std::move(members));
+  return all;
+}
+
+std::vector<ObjectMembers> formerObjects(const rdf::ReadTransaction& transaction, const TileStages& stages,
+                                         const OutputChanges& changes) {
+  FormerObjects former(transaction, stages, changes);
+  transaction.forEachBlock(tables::kTileLayers, "", [&](std::string_view /*key*/, std::string_view bytes) {
+    former.add(tileLayerFromBytes(bytes), [](const ContentHash&) { return true; });
+  });
+  return former.take();
+}
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The members of objects as they were before a change.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "mapping/build/tile_stages.hpp"
+#include "mapping/change/object_changes.hpp"
+#include "mapping/layers/tile_layer.hpp"
+
+namespace cluxel::mapping {
+
+/// Collects members from the layers of tiles that are not written yet.
+class FormerObjects {
+ public:
+  /// `stages` holds the summaries of the tiles that did not change.
+  FormerObjects(const rdf::ReadTransaction& transaction, const TileStages& stages, const OutputChanges& changes)
+      : transaction_(transaction), stages_(stages), changes_(changes) {}
+
+  /// Adds the members that `layer` holds of the objects for which `is_wanted`.
+  void add(const TileLayer& layer, const std::function<bool(const ContentHash&)>& is_wanted);
+  /// Sorted by id.
+  std::vector<ObjectMembers> take();
+
+ private:
+  void addOf(const TileLayer& layer, const perception::SummaryTile& summary,
+             const std::function<bool(const ContentHash&)>& is_wanted);
+
+  const rdf::ReadTransaction& transaction_;
+  const TileStages& stages_;
+  const OutputChanges& changes_;
+  std::map<ContentHash, ObjectMembers> objects_;
+};
+
+/// All objects of the map before the change.
+std::vector<ObjectMembers> formerObjects(const rdf::ReadTransaction& transaction, const TileStages& stages,
+                                         const OutputChanges& changes);
+
+}  // namespace cluxel::mapping

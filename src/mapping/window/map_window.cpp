@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads the tiles around a change, and nothing else of the map.
+#include "mapping/window/map_window.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <unordered_map>
+
+#include "cluxel/error.hpp"
+#include "mapping/layers/stored_layers.hpp"
+#include "perception/segments/primitive_inputs.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+using perception::TileKey;
+using perception::TileSet;
+
+struct WindowTiles {
+  TileSet held, elsewhere;
+};
+
+/// Changed tiles may be gone: what lies around them counts.
+WindowTiles tilesAround(const TileSet& changed, const TileSet& more, int rings, const TileSet& map) {
+  WindowTiles tiles;
+  TileSet grown = changed;
+  for (int ring = 0; ring < rings; ++ring) {
+    TileSet next;
+    for (const TileKey& tile : grown)
+      for (const TileKey& near : perception::ringOf(tile)) next.insert(near);
+    grown = std::move(next);
+  }
+  std::set_intersection(grown.begin(), grown.end(), map.begin(), map.end(),
+                        std::inserter(tiles.held, tiles.held.end()));
+  for (const TileKey& tile : more)
+    if (map.contains(tile)) tiles.held.insert(tile);
+  for (const TileKey& near : perception::withRing(tiles.held, map))
+    if (!tiles.held.contains(near)) tiles.elsewhere.insert(near);
+  return tiles;
+}
+
+/// False when the map lacks the layer of a tile that was there before the change.
+bool readLayers(const rdf::ReadTransaction& transaction, const OutputChanges& changes, MapWindow& window) {
+  for (const TileKey& tile : window.tiles) {
+    std::optional<TileLayer> layer = storedLayer(transaction, tile);
+    const auto changed = changes.former_summaries.find(tile);
+    const bool is_new = changed != changes.former_summaries.end() && !changed->second;
+    if (!layer && !is_new) return false;
+    if (!layer) continue;
+    for (const TileLayer::PrimitiveHere& primitive : layer->primitives)
+      window.known.emplace(primitive.id, KnownPrimitive{primitive.input, primitive.trace});
+    window.layers.emplace(tile, std::move(*layer));
+  }
+  return true;
+}
+
+void requireFit(bool holds) {
+  if (!holds)
+    throw Error(
+        ErrorKind::StoreUnavailable,
+        "stored tiles and what was decided about them do not belong together; the map is damaged, build it anew");
+}
+
+/// Layers must be of the cluxels and components that the tiles had when they were written.
+void requireFit(const TileSet& held, const TileStages& stages, const OutputChanges& changes,
+                const std::map<TileKey, TileLayer>& layers) {
+  for (const TileKey& tile : held) requireFit(stages.summaries().contains(tile) && stages.components().contains(tile));
+  for (const auto& [tile, layer] : layers) {
+    const auto changed = changes.former_summaries.find(tile);
+    if (changed != changes.former_summaries.end())
+      requireFit(changed->second && perception::summaryTileFromBytes(*changed->second).size() == layer.size());
+    else
+      requireFit(held.contains(tile) && stages.summaries().at(tile).size() == layer.size());
+    if (!changes.tiles.contains(tile)) requireFit(stages.components().at(tile).size() == layer.primitives.size());
+  }
+}
+
+/// Calls `visit(hash, number)` for the seed of each cluxel of a tile.
+template <typename Visit>
+void forEachSeed(const perception::SummaryTile& tile, const Visit& visit) {
+  perception::SceneSeeds seeds;
+  seeds.scans = tile.scans;
+  for (std::size_t c = 0; c < tile.size(); ++c) seeds.seed.push_back({tile.seed_scan[c], tile.seed_point[c]});
+  const std::vector<std::uint64_t> hashes = perception::seedHashes(seeds);
+  for (std::uint32_t c = 0; c < hashes.size(); ++c) visit(hashes[c], c);
+}
+
+}  // namespace
+
+std::optional<MapWindow> windowAround(const rdf::ReadTransaction& transaction, TileStages& stages,
+                                      const OutputChanges& changes, const TileSet& more, int rings,
+                                      const std::vector<Cloud>& clouds, double max_share) {
+  const TileSet map = storedTiles(transaction);
+  WindowTiles tiles = tilesAround(changes.tiles, more, rings, map);
+  if (static_cast<double>(tiles.held.size()) > max_share * static_cast<double>(map.size())) return std::nullopt;
+  MapWindow window;
+  window.tiles = perception::unionOf(tiles.held, changes.tiles);
+  window.elsewhere = std::move(tiles.elsewhere);
+  if (!readLayers(transaction, changes, window)) return std::nullopt;
+  stages.hold(transaction, tiles.held, window.elsewhere);
+  requireFit(tiles.held, stages, changes, window.layers);
+  perception::SceneWindow scene = stages.window(window.elsewhere, clouds);
+  window.scene = std::move(scene.scene);
+  window.is_cut = std::move(scene.is_cut);
+  window.inputs = perception::inputHashes(window.scene, stages.summaries());
+  std::uint32_t first = 0;
+  for (const auto& [tile, summary] : stages.summaries()) {
+    window.first_cluxel.emplace(tile, first);
+    for (const perception::Component& component : stages.components().at(tile).components)
+      window.primitive_of_component[tile].push_back(window.scene.cluxels.primitive[first + component.first_cluxel]);
+    first += static_cast<std::uint32_t>(summary.size());
+  }
+  return window;
+}
+
+std::vector<std::uint32_t> formerNumbers(const MapWindow& window, const TileStages& stages,
+                                         const OutputChanges& changes) {
+  std::vector<std::uint32_t> former;
+  former.reserve(window.scene.cluxels.size());
+  for (const auto& [tile, summary] : stages.summaries()) {
+    const auto changed = changes.former_summaries.find(tile);
+    if (changed == changes.former_summaries.end()) {
+      for (std::uint32_t c = 0; c < summary.size(); ++c) former.push_back(c);
+      continue;
+    }
+    std::unordered_map<std::uint64_t, std::uint32_t> number;
+    if (changed->second)
+      forEachSeed(perception::summaryTileFromBytes(*changed->second),
+                  [&](std::uint64_t seed, std::uint32_t c) { number.emplace(seed, c); });
+    forEachSeed(summary, [&](std::uint64_t seed, std::uint32_t) {
+      const auto found = number.find(seed);
+      former.push_back(found == number.end() ? kNoFormer : found->second);
+    });
+  }
+  return former;
+}
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the layers above the tiles were last made of: the next change compares itself with it.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "mapping/cloud.hpp"
+#include "rdf/file/environment.hpp"
+
+namespace cluxel::mapping {
+
+/// A cloud as far as facts about objects follow from it.
+struct SeenCloud {
+  ContentHash id;
+  ContentHash content;  ///< hash of pose and bounds of rays
+  std::optional<double> time_s;
+  bool has_pose = false;
+  Eigen::AlignedBox3d rays;  ///< as in Cloud
+};
+
+struct SemanticState {
+  std::uint64_t cluxels = 0, primitives = 0, objects = 0;
+  bool has_statements = false;    ///< an operator stated something
+  std::vector<SeenCloud> clouds;  ///< ascending by id
+};
+
+void storeSemanticState(rdf::WriteTransaction& transaction, const SemanticState& state);
+/// Absent in a map of which these layers were never made.
+std::optional<SemanticState> storedSemanticState(const rdf::ReadTransaction& transaction);
+
+std::vector<SeenCloud> seenClouds(const std::vector<Cloud>& clouds);
+/// The bounds of the rays of clouds that came, went or changed: those of before and those of now.
+std::vector<Eigen::AlignedBox3d> changedRays(const std::vector<SeenCloud>& before, const std::vector<SeenCloud>& now);
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+// A window grows until it holds all that follows from the change; a change of most of the map is computed as a whole.
+#include "mapping/window/semantic_update.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "mapping/build/scan_store.hpp"
+#include "mapping/build/way_tiles.hpp"
+#include "mapping/layers/stored_layers.hpp"
+#include "mapping/window/former_objects.hpp"
+#include "mapping/window/kept_objects.hpp"
+#include "mapping/window/map_window.hpp"
+#include "mapping/window/semantic_state.hpp"
+#include "mapping/window/window_change.hpp"
+#include "mapping/window/window_decision.hpp"
+#include "mapping/window/window_facts.hpp"
+#include "mapping/window/window_layers.hpp"
+#include "rdf/store/quad_store.hpp"
+#include "rdf/vocabulary.hpp"
+#include "rules/decide/local_reach.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+using perception::TileKey;
+using perception::TileSet;
+
+constexpr int kRings = 1;  ///< of tiles around the changed ones that a window holds at least
+/// The number of layers around a change that have to lie in the window; more where that is not enough.
+constexpr std::array<std::uint32_t, 2> kDepths{5, 8};
+constexpr std::size_t kMaxAttempts = 12;
+
+/// Leaves out what is in both lists; both are sorted by id.
+void keepDifferent(std::vector<ObjectMembers>& before, std::vector<ObjectMembers>& after) {
+  std::set<ContentHash> ids_before, ids_after;
+  for (const ObjectMembers& object : before) ids_before.insert(object.id);
+  for (const ObjectMembers& object : after) ids_after.insert(object.id);
+  std::erase_if(before, [&](const ObjectMembers& object) { return ids_after.contains(object.id); });
+  std::erase_if(after, [&](const ObjectMembers& object) { return ids_before.contains(object.id); });
+}
+
+/// Tiles whose rectangle comes near a box.
+bool comesNear(const TileKey& tile, const Eigen::AlignedBox3d& box) {
+  const Eigen::Vector2d corner = perception::cornerOf(tile).head<2>();
+  const Eigen::AlignedBox2d own(corner, Eigen::Vector2d(corner.array() + perception::kTileSize_m));
+  constexpr double kAround_m = 1;
+  return own.exteriorDistance(Eigen::AlignedBox2d(Eigen::Vector2d(box.min().head<2>().array() - kAround_m),
+                                                  Eigen::Vector2d(box.max().head<2>().array() + kAround_m))) <= 0;
+}
+
+bool hasStatements(const rdf::ReadTransaction& transaction) {
+  const rdf::QuadReader quads(transaction);
+  const auto graph = quads.idOf(Term::iri(rdf::vocabulary::kGraphOperator));
+  return graph && quads.count({.s = {}, .p = {}, .o = {}, .g = *graph}) > 0;
+}
+
+class LocalUpdate {
+ public:
+  LocalUpdate(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
+              const OutputChanges& changes, const UpdateParams& params, ProgressSink& sink)
+      : transaction_(transaction), parsed_(parsed), stages_(stages), changes_(changes), params_(params), sink_(sink) {}
+
+  /// Absent when the whole map has to be computed; then nothing was written.
+  std::optional<SemanticUpdate> run() {
+    const std::optional<double> reach_m = rules::localReach(parsed_.rules).reach_m;
+    std::optional<SemanticState> before = storedSemanticState(transaction_);
+    if (!reach_m || *reach_m > perception::kTileSize_m || !before || before->has_statements ||
+        hasStatements(transaction_))
+      return std::nullopt;
+    clouds_ = storedClouds(transaction_);
+    before_ = *std::move(before);
+    now_ = {0, 0, 0, false, seenClouds(clouds_)};
+    if (isTold(before_.clouds) != isTold(now_.clouds) || hasOtherTimes()) return std::nullopt;
+    TileSet more = tilesOfPassedObjects();
+    for (std::size_t attempt = 0, depth = 0; attempt < kMaxAttempts && depth < kDepths.size(); ++attempt) {
+      const std::optional<MapWindow> window =
+          windowAround(transaction_, stages_, changes_, more, kRings, clouds_, params_.max_window_share);
+      if (!window) return std::nullopt;
+      const WindowChange change = changeIn(*window, changes_, *reach_m);
+      const TileSet beyond =
+          tilesBeyond(*window, change, changes_, transaction_, parsed_.rules, *reach_m, kDepths[depth]);
+      more.insert(beyond.begin(), beyond.end());
+      if (!beyond.empty()) continue;
+      sink_.progress("scene", window->scene.primitives.size(), window->scene.primitives.size());
+      const auto decision = decideIn(*window, change, transaction_, parsed_.rules, *reach_m, params_.threads);
+      ++depth;
+      if (!decision) continue;
+      const std::vector<std::uint32_t> former = formerNumbers(*window, stages_, changes_);
+      if (changesWideObjects(*window, *decision, former)) return std::nullopt;
+      return write(*window, change, *decision, former);
+    }
+    return std::nullopt;
+  }
+
+ private:
+  /// Facts about presence are told of objects when two clouds or more have a time and a pose.
+  static bool isTold(const std::vector<SeenCloud>& clouds) {
+    return std::count_if(clouds.begin(), clouds.end(),
+                         [](const SeenCloud& cloud) { return cloud.time_s && cloud.has_pose; }) >= 2;
+  }
+
+  /// Whether a cloud that stays has another time. Observations anywhere tell it.
+  bool hasOtherTimes() const {
+    std::map<ContentHash, std::optional<double>> times;
+    for (const SeenCloud& cloud : before_.clouds) times.emplace(cloud.id, cloud.time_s);
+    return std::any_of(now_.clouds.begin(), now_.clouds.end(), [&](const SeenCloud& cloud) {
+      const auto known = times.find(cloud.id);
+      return known != times.end() && known->second != cloud.time_s;
+    });
+  }
+
+  /// The tiles of all objects that rays of changed clouds may pass: when these objects were there is computed anew.
+  TileSet tilesOfPassedObjects() const {
+    const std::vector<Eigen::AlignedBox3d> boxes = changedRays(before_.clouds, now_.clouds);
+    TileSet tiles;
+    std::set<ContentHash> objects;
+    for (const TileKey& tile : storedTiles(transaction_)) {
+      if (std::none_of(boxes.begin(), boxes.end(), [&](const auto& box) { return comesNear(tile, box); })) continue;
+      if (const auto layer = storedLayer(transaction_, tile))
+        for (const TileLayer::Share& share : layer->shares) objects.insert(share.object);
+    }
+    for (const ContentHash& object : objects)
+      if (const auto record = storedRecord(transaction_, object); record && !record->is_class_wide)
+        tiles.insert(record->tiles.begin(), record->tiles.end());
+    return tiles;
+  }
+
+  /// Whether an object of a whole class comes or goes, or is not the ground, which alone has neither neighbours nor
+  /// facts from rays: such a change is told by the whole map.
+  bool changesWideObjects(const MapWindow& window, const WindowDecision& decision,
+                          const std::vector<std::uint32_t>& former) const {
+    for (const rules::SemanticObject& object : decision.objects)
+      if (object.is_class_wide && !storedRecord(transaction_, object.id)) return true;
+    const auto there = wideObjectsIn(transaction_, window, decision, former);
+    return std::any_of(there.begin(), there.end(), [&](const rules::SemanticObject& object) {
+      if (object.class_iri != rdf::vocabulary::clx("Ground")) return true;
+      const auto record = storedRecord(transaction_, object.id);
+      return object.parts.empty() && record &&
+             std::all_of(record->tiles.begin(), record->tiles.end(),
+                         [&](const TileKey& tile) { return window.tiles.contains(tile); });
+    });
+  }
+
+  SemanticUpdate write(const MapWindow& window, const WindowChange& change, const WindowDecision& decision,
+                       const std::vector<std::uint32_t>& former) {
+    SemanticUpdate update;
+    update.is_local = true;
+    FormerObjects members(transaction_, stages_, changes_);
+    for (const auto& [tile, layer] : window.layers)
+      members.add(layer, [&](const ContentHash& object) { return decision.replaced.contains(object); });
+    update.before = members.take();
+    std::vector<rules::SemanticObject> made = decision.objects;
+    std::erase_if(made, [](const rules::SemanticObject& object) { return object.is_class_wide; });
+    update.after = membersOf(made, window.scene.cluxels);
+    keepDifferent(update.before, update.after);
+    count(window, change, update);
+    const std::optional<WayGraph> ways = changes_.have_ways ? std::optional(storedWays(transaction_)) : std::nullopt;
+    sink_.progress("objects", update.after.size(), update.after.size());
+    writeWindowFacts(transaction_, {parsed_, stages_, clouds_, before_.clouds, window, change, decision, former,
+                                    ways ? &*ways : nullptr, params_.threads});
+    writeLayers(transaction_, window, decision, changes_, former);
+    inferFacts(transaction_, parsed_.inputs, sink_);
+    now_.objects = update.objects, now_.cluxels = update.cluxels, now_.primitives = update.primitives;
+    storeSemanticState(transaction_, now_);
+    sink_.progress("facts", 1, 1);
+    return update;
+  }
+
+  void count(const MapWindow& window, const WindowChange& change, SemanticUpdate& update) const {
+    update.objects = before_.objects + update.after.size() - update.before.size();
+    update.primitives = before_.primitives - change.gone.size();
+    for (std::size_t i = 0; i < window.scene.primitives.size(); ++i)
+      if (window.is_cut[i] == 0 && !window.known.contains(window.scene.primitives[i].id)) ++update.primitives;
+    update.cluxels = before_.cluxels;
+    for (const TileKey& tile : changes_.tiles) {
+      if (const auto layer = window.layers.find(tile); layer != window.layers.end())
+        update.cluxels -= layer->second.size();
+      if (const auto now = stages_.summaries().find(tile); now != stages_.summaries().end())
+        update.cluxels += now->second.size();
+    }
+  }
+
+  rdf::WriteTransaction& transaction_;
+  const ParsedInputs& parsed_;
+  TileStages& stages_;
+  const OutputChanges& changes_;
+  UpdateParams params_;
+  ProgressSink& sink_;
+  std::vector<Cloud> clouds_;
+  SemanticState before_, now_;
+};
+
+SemanticUpdate updateAll(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
+                         const OutputChanges& changes, const UpdateParams& params, ProgressSink& sink,
+                         const rdf::InferenceCheck& check) {
+  stages.load(transaction);
+  SemanticUpdate update;
+  update.before = formerObjects(transaction, stages, changes);
+  SemanticLayer layer = writeSemanticLayer(transaction, parsed, stages, params.threads, sink, check);
+  update.after = membersOf(layer.objects, layer.scene.cluxels);
+  update.objects = layer.objects.size();
+  update.cluxels = layer.scene.cluxels.size(), update.primitives = layer.scene.primitives.size();
+  update.statements = std::move(layer.statements);
+  keepDifferent(update.before, update.after);
+  storeSemanticState(transaction, {update.cluxels, update.primitives, update.objects, hasStatements(transaction),
+                                   seenClouds(storedClouds(transaction))});
+  return update;
+}
+
+}  // namespace
+
+GoesOn keptBy(const rdf::ReadTransaction& transaction, const SemanticUpdate& update) {
+  std::set<ContentHash> listed;
+  for (const ObjectMembers& object : update.after) listed.insert(object.id);
+  return [&transaction, listed = std::move(listed)](const ContentHash& object) {
+    return !listed.contains(object) && storedRecord(transaction, object).has_value();
+  };
+}
+
+SemanticUpdate updateSemanticLayer(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
+                                   ChangedInputs inputs, const UpdateParams& params, ProgressSink& sink,
+                                   const rdf::InferenceCheck& check) {
+  const OutputChanges changes = stages.takeChanges();
+  if (inputs == ChangedInputs::Scans)
+    if (auto update = LocalUpdate(transaction, parsed, stages, changes, params, sink).run()) return *std::move(update);
+  return updateAll(transaction, parsed, stages, changes, params, sink, check);
+}
+
+}  // namespace cluxel::mapping

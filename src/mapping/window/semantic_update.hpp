@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Brings the layers above the tiles up to date after tiles changed: around the change where that is enough, else over
+// the whole map. Both ways lead to the same map.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cluxel/progress.hpp"
+#include "mapping/build/tile_stages.hpp"
+#include "mapping/change/map_things.hpp"
+#include "mapping/change/object_changes.hpp"
+#include "mapping/facts/semantic_layer.hpp"
+
+namespace cluxel::mapping {
+
+struct SemanticUpdate {
+  bool is_local = false;                                   ///< computed around the change
+  std::vector<ObjectMembers> before, after;                ///< the objects that differ, sorted by id
+  std::uint64_t objects = 0, cluxels = 0, primitives = 0;  ///< of the map afterwards
+  std::vector<StatementOutcome> statements;
+};
+
+/// For writeThings(): of an object that the update does not list, whether it is there before and after.
+GoesOn keptBy(const rdf::ReadTransaction& transaction, const SemanticUpdate& update);
+
+/// What may have changed since the layers were made.
+enum class ChangedInputs : std::uint8_t {
+  Scans,  ///< scans and poses
+  Any,    ///< rules, ontology, model, settings or statements too
+};
+
+struct UpdateParams {
+  unsigned threads = 1;           ///< the result is the same for every number
+  double max_window_share = 0.6;  ///< of the tiles: what needs a larger window is computed over the whole map
+};
+
+/// Takes the changes of `stages`. Stores everything but inputs and history.
+SemanticUpdate updateSemanticLayer(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
+                                   ChangedInputs inputs, const UpdateParams& params, ProgressSink& sink,
+                                   const rdf::InferenceCheck& check = {});
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compares the primitives of a window with those that the map knew there.
+#include "mapping/window/window_change.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cluxel::mapping {
+
+namespace {
+
+using perception::PrimitiveIndex;
+using perception::TileKey;
+
+Eigen::AlignedBox2d boxOfTile(const TileKey& tile) {
+  const Eigen::Vector2d corner = perception::cornerOf(tile).head<2>();
+  return {corner, Eigen::Vector2d(corner.array() + perception::kTileSize_m)};
+}
+
+class WindowComparison {
+ public:
+  WindowComparison(const MapWindow& window, const OutputChanges& changes, double reach_m)
+      : window_(window), changes_(changes), reach_m_(reach_m) {}
+
+  WindowChange run() {
+    markOpen();
+    findGone();
+    markDirty();
+    markOpenDirty();
+    return std::move(result_);
+  }
+
+ private:
+  const perception::Scene& scene() const { return window_.scene; }
+
+  void markOpen() {
+    result_.is_open = window_.is_cut;
+    std::map<TileKey, std::vector<Eigen::AlignedBox2d>> outside;  // by held tile
+    const auto rings = static_cast<int>(std::ceil(reach_m_ / perception::kTileSize_m));
+    for (const TileKey& away : window_.elsewhere)
+      for (int dx = -rings; dx <= rings; ++dx)
+        for (int dy = -rings; dy <= rings; ++dy)
+          if (const TileKey near{away.x + dx, away.y + dy}; window_.first_cluxel.contains(near))
+            outside[near].push_back(boxOfTile(away));
+    const perception::SceneCluxels& all = scene().cluxels;
+    for (const auto& [tile, boxes] : outside)
+      for (std::uint32_t c = window_.first_cluxel.at(tile); c < all.size() && all.name[c].tile == tile; ++c) {
+        const Eigen::Vector2d low = all.low_corner[c].head<2>();
+        const Eigen::AlignedBox2d own(low, Eigen::Vector2d(low + all.extent[c].head<2>().cast<double>()));
+        if (std::any_of(boxes.begin(), boxes.end(),
+                        [&](const auto& box) { return box.exteriorDistance(own) <= reach_m_; }))
+          result_.is_open[all.primitive[c]] = 1;
+      }
+  }
+
+  bool isChanged(const TileKey& tile) const { return changes_.tiles.contains(tile); }
+
+  void markDirty() {
+    for (PrimitiveIndex i = 0; i < scene().primitives.size(); ++i) {
+      const auto known = window_.known.find(scene().primitives[i].id);
+      result_.is_dirty.push_back(known == window_.known.end() || known->second.input != window_.inputs[i] ? 1 : 0);
+    }
+  }
+
+  /// The window lacks edges of open primitives, and cut ones have names of their own: their hashes tell nothing. They
+  /// count as dirty where something in or beside them changed; then the window has to grow.
+  void markOpenDirty() {
+    const std::set<PrimitiveIndex> parted = partedByChange();
+    for (PrimitiveIndex i = 0; i < scene().primitives.size(); ++i)
+      if (result_.is_open[i] != 0)
+        result_.is_dirty[i] = isInChangedTile(i) || parted.contains(i) || isNearGone(i) ? 1 : 0;
+    std::vector<PrimitiveIndex> beside;
+    for (PrimitiveIndex i = 0; i < scene().primitives.size(); ++i) {
+      if (result_.is_open[i] == 0 || result_.is_dirty[i] != 0) continue;
+      const auto relations = scene().relationsOf(i);
+      if (std::any_of(relations.begin(), relations.end(), [&](const perception::Relation& relation) {
+            return relation.to != i && result_.is_dirty[relation.to] != 0;
+          }))
+        beside.push_back(i);
+    }
+    for (const PrimitiveIndex i : beside) result_.is_dirty[i] = 1;
+  }
+
+  bool isInChangedTile(PrimitiveIndex primitive) const {
+    const std::vector<std::uint32_t>& members = scene().primitives[primitive].cluxels;
+    return std::any_of(members.begin(), members.end(),
+                       [&](std::uint32_t c) { return isChanged(scene().cluxels.name[c].tile); });
+  }
+
+  bool isNearGone(PrimitiveIndex primitive) const {
+    constexpr double kBeside_m = 2;  // more than relations look
+    const perception::Primitive& own = scene().primitives[primitive];
+    const Eigen::AlignedBox2d box(Eigen::Vector2d(own.min.head<2>()), Eigen::Vector2d(own.max.head<2>()));
+    return std::any_of(result_.gone_boxes.begin(), result_.gone_boxes.end(),
+                       [&](const auto& gone) { return gone.exteriorDistance(box) <= kBeside_m; });
+  }
+
+  /// Cut primitives that were one with something in a changed tile.
+  std::set<PrimitiveIndex> partedByChange() const {
+    std::set<ContentHash> in_changed;
+    for (const auto& [tile, layer] : window_.layers)
+      if (isChanged(tile))
+        for (const TileLayer::PrimitiveHere& here : layer.primitives) in_changed.insert(here.id);
+    std::set<PrimitiveIndex> parted;
+    for (const auto& [tile, layer] : window_.layers) {
+      if (isChanged(tile)) continue;
+      const std::vector<PrimitiveIndex>& now = window_.primitive_of_component.at(tile);
+      for (std::size_t c = 0; c < now.size(); ++c)
+        if (window_.is_cut[now[c]] != 0 && in_changed.contains(layer.primitives[c].id)) parted.insert(now[c]);
+    }
+    return parted;
+  }
+
+  /// Primitives of before that go on as cut ones of the window: they pass through a tile that did not change.
+  std::set<ContentHash> formerOfCut() const {
+    std::set<ContentHash> ids;
+    for (const auto& [tile, layer] : window_.layers) {
+      if (isChanged(tile)) continue;
+      const std::vector<PrimitiveIndex>& now = window_.primitive_of_component.at(tile);
+      for (std::size_t c = 0; c < now.size(); ++c)
+        if (window_.is_cut[now[c]] != 0) ids.insert(layer.primitives[c].id);
+    }
+    return ids;
+  }
+
+  void findGone() {
+    std::set<ContentHash> present;
+    for (const perception::Primitive& primitive : scene().primitives) present.insert(primitive.id);
+    const std::set<ContentHash> cut = formerOfCut();
+    std::map<ContentHash, Eigen::AlignedBox2d> boxes;
+    for (const auto& [tile, layer] : window_.layers)
+      for (const TileLayer::PrimitiveHere& here : layer.primitives) {
+        if (present.contains(here.id) || cut.contains(here.id)) continue;
+        const Eigen::Vector2d corner = perception::cornerOf(tile).head<2>();
+        Eigen::AlignedBox2d& box = boxes[here.id];
+        box.extend(Eigen::Vector2d(corner + here.bounds.min().head<2>().cast<double>()));
+        box.extend(Eigen::Vector2d(corner + here.bounds.max().head<2>().cast<double>()));
+      }
+    for (const auto& [id, box] : boxes) {
+      result_.gone.insert(id);
+      result_.gone_boxes.push_back(box);
+    }
+  }
+
+  const MapWindow& window_;
+  const OutputChanges& changes_;
+  double reach_m_;
+  WindowChange result_;
+};
+
+}  // namespace
+
+WindowChange changeIn(const MapWindow& window, const OutputChanges& changes, double reach_m) {
+  return WindowComparison(window, changes, reach_m).run();
+}
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rules' local run tells how far the change reaches; former objects are found by the shares of the tiles.
+#include "mapping/window/window_decision.hpp"
+
+#include <algorithm>
+
+#include "mapping/layers/stored_layers.hpp"
+#include "rules/decide/local_run.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+using perception::PrimitiveIndex;
+using perception::TileKey;
+using perception::TileSet;
+
+rules::LocalInput inputOf(const MapWindow& window, const WindowChange& change) {
+  rules::LocalInput input{window.scene, change.is_dirty, change.is_open, change.gone_boxes, {}};
+  for (const perception::Primitive& primitive : window.scene.primitives) {
+    const auto known = window.known.find(primitive.id);
+    input.stored_trace.push_back(known == window.known.end() ? std::nullopt : std::optional(known->second.trace));
+  }
+  return input;
+}
+
+/// Follows primitives out of a window by the layers of the tiles outside.
+class Following {
+ public:
+  Following(const MapWindow& window, const rdf::ReadTransaction& transaction)
+      : window_(window), transaction_(transaction) {}
+
+  /// The tiles outside that hold a primitive which goes on from `tile`.
+  void follow(const ContentHash& primitive, const TileKey& tile, TileSet& found) {
+    std::vector<TileKey> open{tile};
+    TileSet seen{tile};
+    while (!open.empty()) {
+      const TileKey at = open.back();
+      open.pop_back();
+      for (const TileKey& near : perception::ringOf(at)) {
+        if (window_.first_cluxel.contains(near) || !seen.insert(near).second || !holds(near, primitive)) continue;
+        found.insert(near);
+        open.push_back(near);
+      }
+    }
+  }
+
+ private:
+  bool holds(const TileKey& tile, const ContentHash& primitive) {
+    const auto [place, is_new] = ids_.try_emplace(tile);
+    if (is_new)
+      if (const auto layer = storedLayer(transaction_, tile))
+        for (const TileLayer::PrimitiveHere& here : layer->primitives) place->second.insert(here.id);
+    return place->second.contains(primitive);
+  }
+
+  const MapWindow& window_;
+  const rdf::ReadTransaction& transaction_;
+  std::map<TileKey, std::set<ContentHash>> ids_;
+};
+
+class Deciding {
+ public:
+  Deciding(const MapWindow& window, const WindowChange& change, const rdf::ReadTransaction& transaction)
+      : window_(window), change_(change), transaction_(transaction) {
+    for (PrimitiveIndex i = 0; i < window.scene.primitives.size(); ++i)
+      number_.emplace(window.scene.primitives[i].id, i);
+  }
+
+  std::optional<WindowDecision> run(const rules::RuleSet& rules, double reach_m, unsigned threads) {
+    rules::ReasoningContext context;
+    context.threads = threads;
+    std::optional<rules::LocalOutcome> outcome =
+        rules::decideLocally(inputOf(window_, change_), rules, context, reach_m);
+    if (!outcome) return std::nullopt;
+    layer_ = std::move(outcome->layer);
+    last_ = outcome->j;
+    WindowDecision decision;
+    decision.traces = std::move(outcome->result.traces);
+    for (const std::uint32_t layer : layer_) decision.is_decided.push_back(layer <= last_ ? 1 : 0);
+    for (rules::SemanticObject& object : outcome->result.objects) {
+      if (!hasDecided(object, decision.is_decided)) continue;
+      if (!object.is_class_wide && !isSureAsAWhole(object)) return std::nullopt;
+      keepDecided(std::move(object), decision);
+    }
+    if (!findReplaced(decision)) return std::nullopt;
+    return decision;
+  }
+
+ private:
+  static bool hasDecided(const rules::SemanticObject& object, const std::vector<char>& is_decided) {
+    return std::any_of(object.parts.begin(), object.parts.end(), [&](const rules::ObjectPart& part) {
+      return std::any_of(part.primitives.begin(), part.primitives.end(),
+                         [&](PrimitiveIndex primitive) { return is_decided[primitive] != 0; });
+    });
+  }
+
+  bool isSureAsAWhole(const rules::SemanticObject& object) const {
+    return std::all_of(object.parts.begin(), object.parts.end(), [&](const rules::ObjectPart& part) {
+      return std::all_of(part.primitives.begin(), part.primitives.end(), [&](PrimitiveIndex primitive) {
+        return layer_[primitive] <= last_ + 2 && change_.is_open[primitive] == 0;
+      });
+    });
+  }
+
+  void keepDecided(rules::SemanticObject object, WindowDecision& decision) const {
+    if (object.is_class_wide)
+      for (rules::ObjectPart& part : object.parts) {
+        std::erase_if(part.primitives, [&](PrimitiveIndex primitive) { return decision.is_decided[primitive] == 0; });
+        std::erase_if(part.cluxels, [&](std::uint32_t cluxel) {
+          return decision.is_decided[window_.scene.cluxels.primitive[cluxel]] == 0;
+        });
+      }
+    decision.objects.push_back(std::move(object));
+  }
+
+  /// Whether the primitive is gone or decided anew; by the id that it had before.
+  bool isConcerned(const ContentHash& primitive, const WindowDecision& decision) const {
+    if (change_.gone.contains(primitive)) return true;
+    const auto now = number_.find(primitive);
+    return now != number_.end() && decision.is_decided[now->second] != 0;
+  }
+  /// Whether its outcome in this run is known to be that of a run over the whole map.
+  bool isSure(const ContentHash& primitive) const {
+    if (change_.gone.contains(primitive)) return true;
+    const auto now = number_.find(primitive);
+    return now != number_.end() && layer_[now->second] <= last_ + 2;
+  }
+
+  /// False when an object reaches out of what is sure.
+  bool findReplaced(WindowDecision& decision) const {
+    std::map<ContentHash, bool> is_sure;
+    std::set<ContentHash> concerned;
+    for (const auto& [tile, layer] : window_.layers)
+      for (const TileLayer::Share& share : layer.shares)
+        for (const std::uint32_t component : share.components) {
+          const ContentHash& primitive = layer.primitives[component].id;
+          if (isConcerned(primitive, decision)) concerned.insert(share.object);
+          bool& sure = is_sure.try_emplace(share.object, true).first->second;
+          sure = sure && isSure(primitive);
+        }
+    for (const ContentHash& id : concerned) {
+      const std::optional<ObjectRecord> record = storedRecord(transaction_, id);
+      if (!record) return false;
+      if (record->is_class_wide) continue;
+      const bool is_inside = std::all_of(record->tiles.begin(), record->tiles.end(),
+                                         [&](const auto& tile) { return window_.tiles.contains(tile); });
+      if (!is_inside || !is_sure.at(id)) return false;
+      decision.replaced.emplace(id, *record);
+    }
+    return true;
+  }
+
+  const MapWindow& window_;
+  const WindowChange& change_;
+  const rdf::ReadTransaction& transaction_;
+  std::map<ContentHash, PrimitiveIndex> number_;
+  std::vector<std::uint32_t> layer_;
+  std::uint32_t last_ = 0;  ///< the last layer that is decided anew
+};
+
+}  // namespace
+
+TileSet tilesBeyond(const MapWindow& window, const WindowChange& change, const OutputChanges& changes,
+                    const rdf::ReadTransaction& transaction, const rules::RuleSet& rules, double reach_m,
+                    std::uint32_t depth) {
+  const std::vector<std::uint32_t> layers = rules::layersIn(inputOf(window, change), rules, {}, reach_m);
+  const auto isShort = [&](PrimitiveIndex i) { return layers[i] < depth && change.is_open[i] != 0; };
+  Following following(window, transaction);
+  TileSet beyond;
+  for (const auto& [tile, layer] : window.layers) {
+    const auto now = window.primitive_of_component.find(tile);
+    if (now == window.primitive_of_component.end() || changes.tiles.contains(tile)) continue;
+    for (std::size_t c = 0; c < now->second.size() && c < layer.primitives.size(); ++c)
+      if (isShort(now->second[c]) && window.is_cut[now->second[c]] != 0)
+        following.follow(layer.primitives[c].id, tile, beyond);
+  }
+  const perception::SceneCluxels& all = window.scene.cluxels;
+  for (std::uint32_t c = 0; c < all.size(); ++c)
+    if (isShort(all.primitive[c]))
+      for (const TileKey& near : perception::ringOf(all.name[c].tile))
+        if (window.elsewhere.contains(near)) beyond.insert(near);
+  return beyond;
+}
+
+std::optional<WindowDecision> decideIn(const MapWindow& window, const WindowChange& change,
+                                       const rdf::ReadTransaction& transaction, const rules::RuleSet& rules,
+                                       double reach_m, unsigned threads) {
+  return Deciding(window, change, transaction).run(rules, reach_m, threads);
+}
+
+}  // namespace cluxel::mapping

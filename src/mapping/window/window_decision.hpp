@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the rules decide anew in a window, and which of the map's objects that replaces.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "mapping/layers/object_record.hpp"
+#include "mapping/window/map_window.hpp"
+#include "mapping/window/window_change.hpp"
+#include "rules/language/rule_set.hpp"
+#include "rules/objects/semantic_object.hpp"
+
+namespace cluxel::mapping {
+
+struct WindowDecision {
+  std::vector<char> is_decided;  ///< by primitive: owners and trace are those of this run, others stay as they were
+  std::vector<std::uint64_t> traces;  ///< by primitive, where it is decided
+  /// All that a decided primitive belongs to, sorted by id; of class-wide objects what lies in decided primitives.
+  std::vector<rules::SemanticObject> objects;
+  std::map<ContentHash, ObjectRecord> replaced;  ///< former objects of decided and gone primitives, none class-wide
+};
+
+/// The map's tiles beyond the window that hold, or lie within reach of, open primitives in the first `depth` layers
+/// around the change. None when the window is large enough to look for a seam there.
+perception::TileSet tilesBeyond(const MapWindow& window, const WindowChange& change, const OutputChanges& changes,
+                                const rdf::ReadTransaction& transaction, const rules::RuleSet& rules, double reach_m,
+                                std::uint32_t depth);
+
+/// Runs the rules in the window. Absent when the window is too small to tell what the change leads to.
+std::optional<WindowDecision> decideIn(const MapWindow& window, const WindowChange& change,
+                                       const rdf::ReadTransaction& transaction, const rules::RuleSet& rules,
+                                       double reach_m, unsigned threads);
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+// Only what a change concerns is looked up in the store.
+#include "mapping/window/window_facts.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "mapping/facts/fact_patch.hpp"
+#include "mapping/facts/map_facts.hpp"
+#include "mapping/facts/object_facts.hpp"
+#include "mapping/facts/way_facts.hpp"
+#include "mapping/layers/stored_layers.hpp"
+#include "mapping/layers/wide_tile.hpp"
+#include "mapping/window/kept_objects.hpp"
+#include "mapping/window/window_presence.hpp"
+#include "rdf/map_iris.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+using perception::PrimitiveIndex;
+
+class FactWriting {
+ public:
+  FactWriting(rdf::WriteTransaction& transaction, const WindowFacts& sources)
+      : transaction_(transaction),
+        sources_(sources),
+        scene_(sources.window.scene),
+        facts_(transaction, rdf::vocabulary::kGraphObserved, FactsOf::Collected),
+        graph_(facts_.iri(rdf::vocabulary::kGraphObserved)),
+        stored_(static_cast<const rdf::ReadTransaction&>(transaction)),
+        patch_(stored_, graph_) {
+    for (const rules::SemanticObject& object : sources.decision.objects)
+      (object.is_class_wide ? wide_ : made_).push_back(object);
+  }
+
+  void run() {
+    replaceClouds();
+    replacePrimitives();
+    replaceObjects();
+    replaceWideObjects();
+    if (sources_.ways != nullptr) replaceWays();
+    rdf::QuadWriter& writer = facts_.writer();
+    writer.flush();
+    patch_.write(facts_.take(), writer);
+    writer.flush();
+    renewPatches();
+  }
+
+ private:
+  rdf::TermId iri(const std::string& text) { return facts_.iri(text); }
+
+  void replaceClouds() {
+    std::map<ContentHash, ContentHash> before;
+    for (const SeenCloud& cloud : sources_.clouds_before) before.emplace(cloud.id, cloud.content);
+    const rdf::TermId root = iri(rdf::iriOfMapRoot()), has_cloud = facts_.property("hasCloud");
+    const auto forget = [&](const ContentHash& id) {
+      const rdf::TermId subject = iri(rdf::iriOfCloud(id));
+      patch_.replace(subject);
+      patch_.replace(root, has_cloud, subject);
+    };
+    std::map<ContentHash, ContentHash> now;
+    for (const SeenCloud& cloud : seenClouds(sources_.clouds)) now.emplace(cloud.id, cloud.content);
+    for (const auto& [id, content] : before)
+      if (!now.contains(id)) forget(id);
+    for (const Cloud& cloud : sources_.clouds) {
+      if (const auto known = before.find(cloud.id); known != before.end() && known->second == now.at(cloud.id))
+        continue;
+      forget(cloud.id);
+      addCloud(cloud, facts_);
+      facts_.link(root, "hasCloud", iri(rdf::iriOfCloud(cloud.id)));
+    }
+  }
+
+  void replacePrimitives() {
+    const rdf::TermId touches = facts_.property("touchesGround");
+    const auto forget = [&](const ContentHash& id) {
+      const rdf::TermId subject = iri(rdf::iriOfPrimitive(id));
+      for (const rdf::TermId patch : patch_.objectsOf(subject, touches)) touched_.insert(patch);
+      patch_.replace(subject);
+    };
+    for (const ContentHash& id : sources_.change.gone) forget(id);
+    for (PrimitiveIndex i = 0; i < scene_.primitives.size(); ++i) {
+      if (sources_.change.is_dirty[i] == 0 || sources_.decision.is_decided[i] == 0) continue;
+      forget(scene_.primitives[i].id);
+      addPrimitive(scene_, i, facts_);
+      if (const auto patch = touchedPatch(scene_, i)) touched_.insert(iri(*patch));
+    }
+  }
+
+  /// The subjects of an object's facts: itself, its parts, its geometry and its observations.
+  std::vector<rdf::TermId> subjectsOf(const ContentHash& object) {
+    const rdf::TermId subject = iri(rdf::iriOfObject(object));
+    std::vector<rdf::TermId> subjects{subject};
+    const std::string geo(rdf::vocabulary::kGeo), sosa(rdf::vocabulary::kSosa);
+    for (const std::string& property : {std::string("hasPart"), geo + "hasCentroid", geo + "hasBoundingBox"})
+      for (const rdf::TermId node : patch_.objectsOf(subject, facts_.property(property))) subjects.push_back(node);
+    for (const rdf::TermId node : patch_.subjectsOf(facts_.property(sosa + "hasFeatureOfInterest"), subject))
+      subjects.push_back(node);
+    return subjects;
+  }
+
+  void forgetObject(const ContentHash& object) {
+    for (const rdf::TermId subject : subjectsOf(object)) patch_.replace(subject);
+    patch_.replace({}, facts_.property("near"), iri(rdf::iriOfObject(object)));
+  }
+
+  void replaceObjects() {
+    for (const auto& [id, record] : sources_.decision.replaced) forgetObject(id);
+    const WindowPresence presence = updatePresenceIn(transaction_, sources_, made_);
+    const std::vector<std::vector<ContentHash>> near = nearOfMade();
+    rules::ReasoningResult result;
+    result.objects = made_;
+    const auto sightings = sightingsOf(sources_.stages.summaries(), objectOfCluxel(result, scene_.cluxels.size()));
+    addObjectFacts(
+        {sources_.parsed.inputs, sources_.clouds, scene_, result, sightings, presence.times, presence.rays, near, {}},
+        facts_);
+    for (std::size_t i = 0; i < made_.size(); ++i) {
+      forgetObject(made_[i].id);
+      for (const ContentHash& other : near[i])
+        facts_.link(iri(rdf::iriOfObject(other)), "near", iri(rdf::iriOfObject(made_[i].id)));
+    }
+    for (const KeptPresence& kept : presence.kept) {
+      const rdf::TermId subject = iri(rdf::iriOfObject(kept.object));
+      for (const std::string_view property : kRayProperties) patch_.replace(subject, facts_.property(property));
+      addRayFacts(subject, kept.times, kept.rays, facts_);
+    }
+  }
+
+  std::vector<std::vector<ContentHash>> nearOfMade() const {
+    const WindowOwners owners = ownersIn(sources_.window, sources_.decision, sources_.former);
+    std::vector<rules::SemanticObject> named;
+    for (const ContentHash& id : owners.objects) {
+      rules::SemanticObject& object = named.emplace_back();
+      object.id = id;
+      object.class_iri = classOf(id);
+    }
+    const auto near_all = nearOf(named, scene_.cluxels, owners.owner_of);
+    std::map<ContentHash, std::size_t> number;
+    for (std::size_t i = 0; i < named.size(); ++i) number.emplace(named[i].id, i);
+    std::vector<std::vector<ContentHash>> near;
+    for (const rules::SemanticObject& object : made_) near.push_back(near_all[number.at(object.id)]);
+    return near;
+  }
+
+  std::string classOf(const ContentHash& id) const {
+    for (const rules::SemanticObject& object : sources_.decision.objects)
+      if (object.id == id) return object.class_iri;
+    const auto record = storedRecord(transaction_, id);
+    return record ? record->class_iri : std::string();
+  }
+
+  /// Of class-wide objects the window holds a part: their primitives are exchanged one by one, and what is merged over
+  /// all tiles is made anew.
+  void replaceWideObjects() {
+    const std::vector<rules::SemanticObject> here =
+        wideObjectsIn(transaction_, sources_.window, sources_.decision, sources_.former);
+    replaceWideTiles(transaction_, wideTilesOf(scene_, sources_.stages.summaries(), here), sources_.window.tiles);
+    const std::vector<WidePart> parts = mergedParts(storedWideTiles(transaction_));
+    rules::ReasoningResult result;
+    for (const rules::SemanticObject& object : here) result.objects.push_back(wideFacts(object, parts));
+    const rdf::TermId has_primitive = facts_.property("hasPrimitive"), has_part = facts_.property("hasPart");
+    const std::vector<rdf::TermId> exchanged = exchangedPrimitives();
+    for (const rules::SemanticObject& object : result.objects) {
+      for (const rdf::TermId subject : subjectsOf(object.id)) {
+        patch_.replace(subject);
+        patch_.keep(subject, has_primitive);
+      }
+      std::vector<rdf::TermId> owners = patch_.objectsOf(iri(rdf::iriOfObject(object.id)), has_part);
+      owners.push_back(iri(rdf::iriOfObject(object.id)));
+      for (const rdf::TermId owner : owners)
+        for (const rdf::TermId primitive : exchanged) patch_.replace(owner, has_primitive, primitive);
+    }
+    addObjectFacts({sources_.parsed.inputs, sources_.clouds, scene_, result, {}, {}, {}, {}, parts}, facts_);
+  }
+
+  /// The object with those primitives of the window that are decided anew.
+  rules::SemanticObject wideFacts(const rules::SemanticObject& object, const std::vector<WidePart>& parts) const {
+    rules::SemanticObject told = object;
+    told.parts.clear();
+    for (const WidePart& wide : parts)
+      if (wide.object == object.id) told.parts.push_back({wide.part_class, {}, {}});
+    for (const rules::SemanticObject& decided : wide_)
+      for (const rules::ObjectPart& part : decided.parts)
+        for (rules::ObjectPart& own : told.parts)
+          if (decided.id == object.id && own.part_class == part.part_class) own.primitives = part.primitives;
+    return told;
+  }
+
+  std::vector<rdf::TermId> exchangedPrimitives() {
+    std::vector<rdf::TermId> exchanged;
+    for (const ContentHash& id : sources_.change.gone) exchanged.push_back(iri(rdf::iriOfPrimitive(id)));
+    for (PrimitiveIndex i = 0; i < scene_.primitives.size(); ++i)
+      if (sources_.decision.is_decided[i] != 0) exchanged.push_back(iri(rdf::iriOfPrimitive(scene_.primitives[i].id)));
+    return exchanged;
+  }
+
+  void replaceWays() {
+    const std::string geo(rdf::vocabulary::kGeo);
+    const rdf::TermId type = facts_.property(rdf::vocabulary::rdf("type"));
+    using Kind = std::pair<std::string_view, std::string_view>;  // class, and what IRIs name it
+    for (const auto& [name, kind] :
+         {Kind{"Way", "way"}, Kind{"Junction", "junction"}, Kind{"Region", "region"}, Kind{"Kerb", "kerb"}})
+      for (const rdf::TermId subject : patch_.subjectsOf(type, iri(rdf::vocabulary::clx(name)))) {
+        if (!stored_.termOf(subject).text.starts_with(rdf::mapIri(kind, ""))) continue;  // an object of that class
+        for (const std::string_view property : {"hasGeometry", "hasCentroid", "hasBoundingBox"})
+          for (const rdf::TermId node : patch_.objectsOf(subject, facts_.property(geo + std::string(property))))
+            patch_.replace(node);
+        patch_.replace(subject);
+      }
+    addWayFacts(*sources_.ways, facts_);
+  }
+
+  /// A ground patch is there as long as some primitive touches it.
+  void renewPatches() {
+    const rdf::QuadReader now(static_cast<const rdf::ReadTransaction&>(transaction_));
+    const rdf::TermId touches = facts_.property("touchesGround"), type = facts_.property(rdf::vocabulary::rdf("type"));
+    const rdf::TermId patch_class = iri(rdf::vocabulary::clx("GroundPatch"));
+    for (const rdf::TermId patch : touched_) {
+      rdf::QuadCursor cursor = now.scan({.s = {}, .p = touches, .o = patch, .g = graph_});
+      rdf::QuadIds quad;
+      if (cursor.next(quad))
+        facts_.writer().add(rdf::QuadIds{patch, type, patch_class, graph_});
+      else
+        facts_.writer().remove(rdf::QuadIds{patch, type, patch_class, graph_});
+    }
+    facts_.writer().flush();
+  }
+
+  rdf::WriteTransaction& transaction_;
+  const WindowFacts& sources_;
+  const perception::Scene& scene_;
+  FactSink facts_;
+  rdf::TermId graph_;
+  rdf::QuadReader stored_;
+  FactPatch patch_;
+  std::vector<rules::SemanticObject> made_, wide_;
+  std::set<rdf::TermId> touched_;  ///< ground patches
+};
+
+}  // namespace
+
+void writeWindowFacts(rdf::WriteTransaction& transaction, const WindowFacts& facts) {
+  FactWriting(transaction, facts).run();
+  forgetFactUnits(transaction);
+}
+
+}  // namespace cluxel::mapping

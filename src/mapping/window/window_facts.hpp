@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// The observed graph around a change: facts of what was decided anew replace those of what is gone.
+#pragma once
+
+#include <vector>
+
+#include "cluxel/progress.hpp"
+#include "mapping/cloud.hpp"
+#include "mapping/facts/semantic_layer.hpp"
+#include "mapping/window/map_window.hpp"
+#include "mapping/window/semantic_state.hpp"
+#include "mapping/window/window_change.hpp"
+#include "mapping/window/window_decision.hpp"
+
+namespace cluxel::mapping {
+
+/// What the facts around a change follow from.
+struct WindowFacts {
+  const ParsedInputs& parsed;
+  const TileStages& stages;
+  const std::vector<Cloud>& clouds;
+  const std::vector<SeenCloud>& clouds_before;
+  const MapWindow& window;
+  const WindowChange& change;
+  const WindowDecision& decision;
+  const std::vector<std::uint32_t>& former;  ///< formerNumbers()
+  const WayGraph* ways = nullptr;            ///< null when they are as before
+  unsigned threads = 1;
+};
+
+/// Makes graph observed, and what is kept about presence and class-wide objects, what a computation over the whole map
+/// would make. The layers of tiles must not be written yet.
+void writeWindowFacts(rdf::WriteTransaction& transaction, const WindowFacts& facts);
+
+}  // namespace cluxel::mapping

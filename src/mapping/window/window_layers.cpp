@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+// A layer is made anew from its former one, where that still holds, and from the decision.
+#include "mapping/window/window_layers.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+#include "mapping/layers/stored_layers.hpp"
+#include "mapping/map_tables.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+using perception::PrimitiveIndex;
+using perception::TileKey;
+using perception::TileSet;
+
+class LayerWriting {
+ public:
+  LayerWriting(rdf::WriteTransaction& transaction, const MapWindow& window, const WindowDecision& decision,
+               const OutputChanges& changes, const std::vector<std::uint32_t>& former)
+      : transaction_(transaction),
+        window_(window),
+        decision_(decision),
+        changes_(changes),
+        former_(former),
+        part_of_(window.scene.cluxels.size(), kNoShare) {
+    for (const rules::SemanticObject& object : decision.objects)
+      for (const rules::ObjectPart& part : object.parts) {
+        for (const std::uint32_t cluxel : part.cluxels) part_of_[cluxel] = static_cast<std::uint32_t>(parts_.size());
+        parts_.push_back({object.id, part.part_class});
+      }
+  }
+
+  void run() {
+    for (const TileKey& tile : window_.tiles) writeTile(tile);
+    writeRecords();
+  }
+
+ private:
+  struct Part {
+    ContentHash object;
+    std::string part_class;
+    auto operator<=>(const Part&) const = default;
+  };
+
+  const perception::SceneCluxels& cluxels() const { return window_.scene.cluxels; }
+
+  void writeTile(const TileKey& tile) {
+    const std::string key = tables::keyOf(tile);
+    const auto first = window_.first_cluxel.find(tile);
+    if (first == window_.first_cluxel.end()) {
+      transaction_.eraseBlock(tables::kTileLayers, key);
+      return;
+    }
+    const std::string bytes = toBytes(layerOf(tile, first->second));
+    if (const auto old = transaction_.block(tables::kTileLayers, key); old && *old == bytes) return;
+    transaction_.putBlock(tables::kTileLayers, key, bytes);
+  }
+
+  TileLayer layerOf(const TileKey& tile, std::uint32_t first) {
+    const auto known = window_.layers.find(tile);
+    const TileLayer* former = known == window_.layers.end() ? nullptr : &known->second;
+    TileLayer layer;
+    layer.key = tile;
+    addPrimitives(former, layer);
+    std::vector<std::optional<Part>> parts;
+    for (std::uint32_t c = first; c < cluxels().size() && cluxels().name[c].tile == tile; ++c)
+      parts.push_back(partOf(c, former));
+    addShares(parts, first, layer);
+    return layer;
+  }
+
+  void addPrimitives(const TileLayer* former, TileLayer& layer) const {
+    const bool is_changed = changes_.tiles.contains(layer.key);
+    const std::vector<PrimitiveIndex>& now = window_.primitive_of_component.at(layer.key);
+    for (std::size_t c = 0; c < now.size(); ++c) {
+      const ContentHash& id = window_.scene.primitives[now[c]].id;
+      if (!is_changed && decision_.is_decided[now[c]] == 0)
+        layer.primitives.push_back(former->primitives[c]);
+      else if (decision_.is_decided[now[c]] != 0)
+        layer.primitives.push_back({id, window_.inputs[now[c]], decision_.traces[now[c]], {}});
+      else
+        layer.primitives.push_back({id, window_.inputs[now[c]], window_.known.at(id).trace, {}});
+    }
+    measure(layer);
+  }
+
+  /// Bounds of the primitives that have none yet.
+  void measure(TileLayer& layer) const {
+    const Eigen::Vector3d corner = perception::cornerOf(layer.key);
+    std::vector<char> has_bounds;
+    for (const TileLayer::PrimitiveHere& here : layer.primitives) has_bounds.push_back(here.bounds.isEmpty() ? 0 : 1);
+    for (std::uint32_t c = window_.first_cluxel.at(layer.key);
+         c < cluxels().size() && cluxels().name[c].tile == layer.key; ++c) {
+      if (has_bounds[cluxels().component[c]] != 0) continue;
+      TileLayer::PrimitiveHere& here = layer.primitives[cluxels().component[c]];
+      const Eigen::Vector3f low = (cluxels().low_corner[c] - corner).cast<float>();
+      here.bounds.extend(low);
+      here.bounds.extend(Eigen::Vector3f(low + cluxels().extent[c]));
+    }
+  }
+
+  std::optional<Part> partOf(std::uint32_t cluxel, const TileLayer* former) const {
+    if (decision_.is_decided[cluxels().primitive[cluxel]] != 0) {
+      if (part_of_[cluxel] == kNoShare) return std::nullopt;
+      return parts_[part_of_[cluxel]];
+    }
+    if (former == nullptr || former_[cluxel] == kNoFormer) return std::nullopt;
+    const std::uint32_t share = former->share_of_cluxel[former_[cluxel]];
+    if (share == kNoShare) return std::nullopt;
+    return Part{former->shares[share].object, former->shares[share].part_class};
+  }
+
+  void addShares(const std::vector<std::optional<Part>>& parts, std::uint32_t first, TileLayer& layer) {
+    std::map<Part, std::set<std::uint32_t>> components;
+    for (std::uint32_t i = 0; i < parts.size(); ++i)
+      if (parts[i]) components[*parts[i]].insert(cluxels().component[first + i]);
+    std::map<Part, std::uint32_t> number;
+    for (const auto& [part, own] : components) {
+      number.emplace(part, static_cast<std::uint32_t>(layer.shares.size()));
+      layer.shares.push_back({part.object, part.part_class, {own.begin(), own.end()}});
+      tiles_of_[part.object].insert(layer.key);
+    }
+    for (const auto& part : parts) layer.share_of_cluxel.push_back(part ? number.at(*part) : kNoShare);
+  }
+
+  void writeRecords() {
+    for (const auto& [id, record] : decision_.replaced)
+      if (!tiles_of_.contains(id)) transaction_.eraseBlock(tables::kObjects, tables::keyOf(id));
+    for (const rules::SemanticObject& object : decision_.objects) {
+      if (object.is_class_wide) continue;
+      const TileSet& tiles = tiles_of_[object.id];
+      put({object.class_iri, object.rule_id, object.confidence, false, {tiles.begin(), tiles.end()}}, object.id);
+    }
+    for (const ContentHash& id : sharedBefore()) writeWideRecord(id);
+  }
+
+  std::set<ContentHash> sharedBefore() const {
+    std::set<ContentHash> shared;
+    for (const auto& [tile, layer] : window_.layers)
+      for (const TileLayer::Share& share : layer.shares) shared.insert(share.object);
+    for (const rules::SemanticObject& object : decision_.objects) shared.insert(object.id);
+    return shared;
+  }
+
+  /// Of a class-wide object the tiles in the window are exchanged.
+  void writeWideRecord(const ContentHash& id) {
+    std::optional<ObjectRecord> record = storedRecord(transaction_, id);
+    if (!record || !record->is_class_wide) return;
+    TileSet tiles = tiles_of_[id];
+    for (const TileKey& tile : record->tiles)
+      if (!window_.tiles.contains(tile)) tiles.insert(tile);
+    record->tiles.assign(tiles.begin(), tiles.end());
+    put(*record, id);
+  }
+
+  void put(const ObjectRecord& record, const ContentHash& id) {
+    transaction_.putBlock(tables::kObjects, tables::keyOf(id), toBytes(record));
+  }
+
+  rdf::WriteTransaction& transaction_;
+  const MapWindow& window_;
+  const WindowDecision& decision_;
+  const OutputChanges& changes_;
+  const std::vector<std::uint32_t>& former_;
+  std::vector<Part> parts_;
+  std::vector<std::uint32_t> part_of_;
+  std::map<ContentHash, TileSet> tiles_of_;  ///< of objects, within the window
+};
+
+}  // namespace
+
+void writeLayers(rdf::WriteTransaction& transaction, const MapWindow& window, const WindowDecision& decision,
+                 const OutputChanges& changes, const std::vector<std::uint32_t>& former) {
+  LayerWriting(transaction, window, decision, changes, former).run();
+}
+
+}  // namespace cluxel::mapping

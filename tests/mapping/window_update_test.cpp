@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Changes that are computed around what changed lead to the map, and to the stored state, of a build from nothing.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <random>
+
+#include "mapping/change/map_change.hpp"
+#include "mapping/map_tables.hpp"
+#include "mapping/small_campus.hpp"
+
+namespace cluxel::mapping {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Scans along a street: each sees little of what the others see.
+class StreetScans {
+ public:
+  explicit StreetScans(std::uint64_t seed)
+      : campus_({.seed = seed, .stops = 12, .size_m = 130, .points_per_stop = 7000, .max_range_m = 16}) {
+    for (const fs::path& file : campus_.files()) {
+      const ScanSet alone = scansOf({file});
+      ids_.push_back(alone.load(0).id);
+      poses_.push_back(alone.file(0).T_map_sensor);
+    }
+  }
+  std::size_t size() const { return ids_.size(); }
+  const ScanId& idOf(std::size_t scan) const { return ids_[scan]; }
+  /// Number 0 is the true pose.
+  Eigen::Isometry3d poseOf(std::size_t scan, int number) const {
+    Eigen::Isometry3d T = poses_[scan];
+    if (number == 1) T.pretranslate(Eigen::Vector3d(0.5, 0.25, 0));
+    return T;
+  }
+  ScanSet at(const std::map<std::size_t, int>& places, const fs::path& folder) const {
+    std::ofstream text(folder / "places.yaml");
+    text.precision(17);
+    text << "scans:\n";
+    for (const auto& [scan, number] : places) {
+      text << "  - {path: " << campus_.files()[scan].string() << ", time_s: " << 1600000000 + 1000 * scan
+           << ", pose: [";
+      const Eigen::Matrix4d T = poseOf(scan, number).matrix();
+      for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column)
+          text << (column > 0 ? ", " : row > 0 ? "], [" : "[") << T(row, column);
+      text << "]]}\n";
+    }
+    text.close();
+    return scansOf({folder / "places.yaml"});
+  }
+
+ private:
+  SmallCampus campus_;
+  std::vector<ScanId> ids_;
+  std::vector<Eigen::Isometry3d> poses_;
+};
+
+/// The blocks of the layers above the tiles.
+std::map<std::string, std::string> layerBlocks(const fs::path& file) {
+  std::map<std::string, std::string> blocks;
+  const auto environment = Environment::open(file, OpenMode::ReadOnly);
+  const ReadTransaction transaction = environment->read();
+  for (const std::string_view table :
+       {tables::kTileLayers, tables::kObjects, tables::kWideTiles, tables::kPresence, tables::kPassedRays})
+    transaction.forEachBlock(table, "", [&](std::string_view key, std::string_view bytes) {
+      blocks[std::string(table) + "/" + std::string(key)] = std::string(bytes);
+    });
+  return blocks;
+}
+
+class StreetChanges {
+ public:
+  StreetChanges(const StreetScans& scans, unsigned seed) : scans_(scans), random_(seed) {
+    for (std::size_t i = 0; i < scans.size(); ++i)
+      if (i % 3 != 0) there_[i] = 0;
+    build(map());
+  }
+
+  std::string step() {
+    const std::size_t scan = below(scans_.size());
+    if (!there_.contains(scan)) {
+      there_[scan] = static_cast<int>(below(2));
+      note(extendMap(map(), scans_.at({{scan, there_[scan]}}, folder_.path()), params(), silence()));
+      return "extend";
+    }
+    if (below(2) == 0 && there_.size() > 4) {
+      there_.erase(scan);
+      note(retractScans(map(), {scans_.idOf(scan)}, params(), silence()));
+      return "retract";
+    }
+    there_[scan] = 1 - there_[scan];
+    note(moveScans(map(), {{scans_.idOf(scan), scans_.poseOf(scan, there_[scan])}}, params(), silence()));
+    return "repose";
+  }
+
+  void expectBuildFromScratch(const std::string& after) {
+    const fs::path fresh = folder_.path() / "fresh.clx";
+    build(fresh);
+    EXPECT_TRUE(canonicalText(map()) == canonicalText(fresh)) << "after " << after;
+    EXPECT_TRUE(layerBlocks(map()) == layerBlocks(fresh)) << "after " << after;
+  }
+
+  std::size_t localCommits() const { return local_; }
+
+ private:
+  fs::path map() const { return folder_.path() / "map.clx"; }
+  std::size_t below(std::size_t count) { return static_cast<std::size_t>(random_() % count); }
+  ChangeParams params() { return {.threads = 1 + static_cast<unsigned>(below(2)), .max_window_share = 1}; }
+  void note(const ChangeReport& report) { local_ += report.local_commits; }
+  void build(const fs::path& file) {
+    buildMap(scans_.at(there_, folder_.path()), shippedInputs(), file, {.force = true}, silence());
+  }
+
+  const StreetScans& scans_;
+  std::mt19937 random_;
+  ScratchFolder folder_;
+  std::map<std::size_t, int> there_;  ///< scan → number of its pose
+  std::size_t local_ = 0;
+};
+
+TEST(WindowUpdate, GivesTheMapAndTheStoredStateOfABuild) {
+  const bool is_long = std::getenv("CLUXEL_LONG_TESTS") != nullptr;
+  const unsigned sequences = is_long ? 12 : 2, steps = is_long ? 12 : 5;
+  std::size_t local = 0;
+  for (unsigned seed = 1; seed <= sequences; ++seed) {
+    const StreetScans scans(20 + seed);
+    StreetChanges changes(scans, seed);
+    std::string done;
+    for (unsigned i = 0; i < steps; ++i) {
+      done += changes.step() + ", ";
+      changes.expectBuildFromScratch(done + "seed " + std::to_string(seed));
+      if (testing::Test::HasFailure()) return;
+    }
+    local += changes.localCommits();
+  }
+  EXPECT_GE(local, sequences * steps / 2) << "too few changes were computed around what changed";
+}
+
+}  // namespace
+}  // namespace cluxel::mapping
