@@ -12,10 +12,10 @@
 namespace cluxel {
 
 struct ChangeOptions {
-  std::filesystem::path poses;              ///< poses of added scans, as in BuildOptions
-  unsigned threads = 0;                     ///< 0: one per processor; the map does not depend on it
-  std::uint64_t batch_points = 50'000'000;  ///< scans are added in batches of about this many points; at least 1
-  bool dry_run = false;                     ///< compute what would change, and write nothing
+  std::filesystem::path poses;             ///< poses of added scans, as in BuildOptions
+  unsigned threads = 0;                    ///< 0: one per processor; the map does not depend on it
+  std::uint64_t batch_points = 6'000'000;  ///< scans are added in batches of about this many points; at least 1
+  bool dry_run = false;                    ///< compute what would change, and write nothing
 };
 
 /// Another pose of a scan that is in the map.

@@ -17,7 +17,7 @@ namespace cluxel::mapping {
 
 struct BuildParams {
   unsigned threads = 1;
-  std::uint64_t batch_points = 50'000'000;    ///< a batch of scans is committed when it holds this many points
+  std::uint64_t batch_points = 6'000'000;     ///< a batch of scans is committed when it holds this many points
   std::uint64_t stage_points = kStagePoints;  ///< of a batch, as many go through the stages at once
   bool force = false;                         ///< replace a finished map
   bool refine_poses = false;  ///< register the scans first (registerPoses()); otherwise poses that do not fit are noted

@@ -22,7 +22,7 @@ namespace cluxel::mapping {
 
 struct ChangeParams {
   unsigned threads = 1;
-  std::uint64_t batch_points = 50'000'000;    ///< scans are added in batches of about this many points
+  std::uint64_t batch_points = 6'000'000;     ///< scans are added in batches of about this many points
   bool dry_run = false;                       ///< compute what would change, and write nothing
   std::uint64_t stage_points = kStagePoints;  ///< of a batch, as many go through the stages at once
   bool may_compact = true;                    ///< rewrite the map when the change leaves much free space
