@@ -139,5 +139,17 @@ TEST(WindowUpdate, GivesTheMapAndTheStoredStateOfABuild) {
   EXPECT_GE(local, sequences * steps / 2) << "too few changes were computed around what changed";
 }
 
+TEST(WindowUpdate, TakesTheGroundOfAnAreaThatLosesItsOnlyScan) {
+  const StreetScans scans(31);
+  const ScratchFolder folder;
+  const fs::path map = folder.path() / "map.clx", fresh = folder.path() / "fresh.clx";
+  const std::size_t alone = scans.size() - 1;  // some 110 m from the others
+  buildMap(scans.at({{0, 0}, {1, 0}, {2, 0}, {alone, 0}}, folder.path()), shippedInputs(), map, {}, silence());
+  retractScans(map, {scans.idOf(alone)}, {.max_window_share = 1}, silence());
+  buildMap(scans.at({{0, 0}, {1, 0}, {2, 0}}, folder.path()), shippedInputs(), fresh, {}, silence());
+  EXPECT_TRUE(canonicalText(map) == canonicalText(fresh));
+  EXPECT_TRUE(layerBlocks(map) == layerBlocks(fresh));
+}
+
 }  // namespace
 }  // namespace cluxel::mapping
