@@ -71,7 +71,7 @@ class Composition {
     return objects_[found->second].parts;
   }
 
-  /// Adds the parts of objects that a tile holds; primitives get the numbers of first arrival for now.
+  /// Adds the parts of objects that a tile holds. Primitives are numbered as they arrive; rankPrimitives() sorts them.
   void add(const TileLayer& layer) {
     std::vector<std::uint32_t> primitive_of;
     for (const TileLayer::PrimitiveHere& primitive : layer.primitives)
