@@ -35,7 +35,9 @@ endforeach()
 
 # PCL for reading, writing and registering clouds: only the module scan sees its headers.
 find_package(PCL REQUIRED COMPONENTS common io kdtree search registration)
+# FLANN comes with PCL; its header needs LZ4 to save an index, which nothing does.
+find_library(CLUXEL_LZ4 lz4 REQUIRED)
 add_library(cluxel_pcl INTERFACE)
 target_include_directories(cluxel_pcl SYSTEM INTERFACE ${PCL_INCLUDE_DIRS})
 target_link_libraries(cluxel_pcl INTERFACE ${PCL_COMMON_LIBRARIES} ${PCL_IO_LIBRARIES} ${PCL_KDTREE_LIBRARIES}
-  ${PCL_SEARCH_LIBRARIES} ${PCL_REGISTRATION_LIBRARIES})
+  ${PCL_SEARCH_LIBRARIES} ${PCL_REGISTRATION_LIBRARIES} ${CLUXEL_LZ4})

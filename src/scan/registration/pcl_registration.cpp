@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// PCL's kd-tree and generalised ICP. Nothing of PCL leaves this file.
+// FLANN's kd-tree, which PCL brings along, and PCL's generalised ICP. Nothing of them leaves this file.
 #include "scan/registration/pcl_registration.hpp"
 
+#include <flann/flann.hpp>
 #include <pcl/registration/gicp.h>
 #include <pcl/search/kdtree.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <span>
 
 #include "scan/formats/pcl_clouds.hpp"
 
@@ -31,13 +33,13 @@ Eigen::Vector3d positionOf(const Point& point) {
   return {point.x, point.y, point.z};
 }
 
-Plane planeThrough(const Cloud& cloud, const pcl::Indices& indices) {
+Plane planeThrough(const Cloud& cloud, std::span<const std::size_t> indices) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const auto i : indices) mean += positionOf(cloud[static_cast<std::size_t>(i)]);
+  for (const std::size_t i : indices) mean += positionOf(cloud[i]);
   mean /= static_cast<double>(indices.size());
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const auto i : indices) {
-    const Eigen::Vector3d d = positionOf(cloud[static_cast<std::size_t>(i)]) - mean;
+  for (const std::size_t i : indices) {
+    const Eigen::Vector3d d = positionOf(cloud[i]) - mean;
     spread += d * d.transpose();
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
@@ -47,12 +49,38 @@ Plane planeThrough(const Cloud& cloud, const pcl::Indices& indices) {
   return {axes.eigenvectors().col(0), flatness};
 }
 
+/// The plane of each point through its nearest points. PCL's own search starts a team of OpenMP for each query, which
+/// takes longer than the query; FLANN answers all of them in one.
+std::vector<Plane> planesOf(const Cloud& cloud, std::vector<Eigen::Vector3f> points) {
+  constexpr int kLeafSize = 15;
+  const std::size_t count = std::min<std::size_t>(kNeighbours, points.size());
+  const flann::Matrix<float> rows(points.front().data(), points.size(), 3);
+  flann::KDTreeSingleIndex<flann::L2_Simple<float>> tree(rows, flann::KDTreeSingleIndexParams(kLeafSize));
+  tree.buildIndex();
+  std::vector<std::size_t> indices(points.size() * count);
+  std::vector<float> squared(indices.size());
+  flann::Matrix<std::size_t> found(indices.data(), points.size(), count);
+  flann::Matrix<float> distances(squared.data(), points.size(), count);
+  tree.knnSearch(rows, found, distances, count, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+  std::vector<Plane> planes;
+  planes.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    planes.push_back(planeThrough(cloud, std::span(indices).subspan(i * count, count)));
+  return planes;
+}
+
 }  // namespace
 
 struct SurfaceCloud::Parts {
   Cloud::Ptr cloud{new Cloud};
-  pcl::search::KdTree<Point>::Ptr tree{new pcl::search::KdTree<Point>};
   std::vector<Plane> planes;
+
+  /// The kd-tree of generalised ICP.
+  pcl::search::KdTree<Point>::Ptr tree() const {
+    const pcl::search::KdTree<Point>::Ptr made(new pcl::search::KdTree<Point>);
+    made->setInputCloud(cloud);
+    return made;
+  }
 
   /// The covariances of generalised ICP: thin along the normal, wide across.
   Gicp::MatricesVectorPtr covariances() const {
@@ -70,13 +98,7 @@ SurfaceCloud::SurfaceCloud(const std::vector<Eigen::Vector3f>& p_sensor)
   silencePcl();
   for (const Eigen::Vector3f& p : p_sensor) parts_->cloud->emplace_back(p.x(), p.y(), p.z());
   if (p_sensor.empty()) return;
-  parts_->tree->setInputCloud(parts_->cloud);
-  pcl::Indices indices;
-  std::vector<float> squared;
-  for (const Point& point : *parts_->cloud) {
-    parts_->tree->nearestKSearch(point, kNeighbours, indices, squared);
-    parts_->planes.push_back(planeThrough(*parts_->cloud, indices));
-  }
+  parts_->planes = planesOf(*parts_->cloud, p_sensor);
 }
 
 SurfaceCloud::~SurfaceCloud() = default;
@@ -100,8 +122,8 @@ std::optional<Eigen::Isometry3d> alignedByGicp(const SurfaceCloud& target, const
                                                const Eigen::Isometry3d& T_target_source, double reach_m) {
   if (std::min(target.size(), source.size()) < static_cast<std::size_t>(kNeighbours)) return std::nullopt;
   Gicp gicp;
-  gicp.setSearchMethodSource(source.parts().tree, true);
-  gicp.setSearchMethodTarget(target.parts().tree, true);
+  gicp.setSearchMethodSource(source.parts().tree(), true);
+  gicp.setSearchMethodTarget(target.parts().tree(), true);
   gicp.setInputSource(source.parts().cloud);
   gicp.setInputTarget(target.parts().cloud);
   gicp.setSourceCovariances(source.parts().covariances());
