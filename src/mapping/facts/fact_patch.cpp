@@ -26,8 +26,10 @@ std::vector<rdf::TermId> FactPatch::subjectsOf(rdf::TermId property, rdf::TermId
   return subjects;
 }
 
-void FactPatch::keep(rdf::TermId subject, rdf::TermId property) {
-  std::erase_if(old_, [&](const rdf::QuadIds& quad) { return quad.s == subject && quad.p == property; });
+void FactPatch::replaceBut(rdf::TermId subject, rdf::TermId kept_property) {
+  rdf::QuadCursor cursor = stored_.scan({.s = subject, .p = {}, .o = {}, .g = graph_});
+  for (rdf::QuadIds quad; cursor.next(quad);)
+    if (quad.p != kept_property) old_.insert(quad);
 }
 
 void FactPatch::write(std::vector<rdf::QuadIds> fresh, rdf::QuadWriter& writer) const {

@@ -17,11 +17,11 @@ class FactPatch {
   /// The stored facts that fit are removed, as far as they are not given again. Parts that are absent fit all.
   void replace(std::optional<rdf::TermId> subject, std::optional<rdf::TermId> property = {},
                std::optional<rdf::TermId> object = {});
+  /// All of a subject but those of one property.
+  void replaceBut(rdf::TermId subject, rdf::TermId kept_property);
   /// The stored objects, or subjects, of facts.
   std::vector<rdf::TermId> objectsOf(rdf::TermId subject, rdf::TermId property) const;
   std::vector<rdf::TermId> subjectsOf(rdf::TermId property, rdf::TermId object) const;
-  /// Keeps facts that fit, although replace() was called for them.
-  void keep(rdf::TermId subject, rdf::TermId property);
 
   /// Writes the difference; `fresh` are the facts that are to be there.
   void write(std::vector<rdf::QuadIds> fresh, rdf::QuadWriter& writer) const;

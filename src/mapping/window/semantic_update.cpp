@@ -79,12 +79,13 @@ class LocalUpdate {
           windowAround(transaction_, stages_, changes_, more, kRings, clouds_, params_.max_window_share);
       if (!window) return std::nullopt;
       const WindowChange change = changeIn(*window, changes_, *reach_m);
-      const TileSet beyond =
-          tilesBeyond(*window, change, changes_, transaction_, parsed_.rules, *reach_m, kDepths[depth]);
+      const rules::LocalInput input = localInputOf(*window, change);
+      rules::LocalRun rules_run(input, parsed_.rules, context(), *reach_m);
+      const TileSet beyond = tilesBeyond(*window, change, changes_, transaction_, rules_run.layers(), kDepths[depth]);
       more.insert(beyond.begin(), beyond.end());
       if (!beyond.empty()) continue;
       sink_.progress("scene", window->scene.primitives.size(), window->scene.primitives.size());
-      const auto decision = decideIn(*window, change, transaction_, parsed_.rules, *reach_m, params_.threads);
+      const auto decision = decideIn(*window, change, transaction_, rules_run);
       ++depth;
       if (!decision) continue;
       const std::vector<std::uint32_t> former = formerNumbers(*window, stages_, changes_);
@@ -95,6 +96,12 @@ class LocalUpdate {
   }
 
  private:
+  rules::ReasoningContext context() const {
+    rules::ReasoningContext context;
+    context.threads = params_.threads;
+    return context;
+  }
+
   /// Facts about presence are told of objects when two clouds or more have a time and a pose.
   static bool isTold(const std::vector<SeenCloud>& clouds) {
     return std::count_if(clouds.begin(), clouds.end(),

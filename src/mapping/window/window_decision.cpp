@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "mapping/layers/stored_layers.hpp"
-#include "rules/decide/local_run.hpp"
 
 namespace cluxel::mapping {
 
@@ -14,15 +13,6 @@ namespace {
 using perception::PrimitiveIndex;
 using perception::TileKey;
 using perception::TileSet;
-
-rules::LocalInput inputOf(const MapWindow& window, const WindowChange& change) {
-  rules::LocalInput input{window.scene, change.is_dirty, change.is_open, change.gone_boxes, {}};
-  for (const perception::Primitive& primitive : window.scene.primitives) {
-    const auto known = window.known.find(primitive.id);
-    input.stored_trace.push_back(known == window.known.end() ? std::nullopt : std::optional(known->second.trace));
-  }
-  return input;
-}
 
 /// Follows primitives out of a window by the layers of the tiles outside.
 class Following {
@@ -67,11 +57,7 @@ class Deciding {
       number_.emplace(window.scene.primitives[i].id, i);
   }
 
-  std::optional<WindowDecision> run(const rules::RuleSet& rules, double reach_m, unsigned threads) {
-    rules::ReasoningContext context;
-    context.threads = threads;
-    std::optional<rules::LocalOutcome> outcome =
-        rules::decideLocally(inputOf(window_, change_), rules, context, reach_m);
+  std::optional<WindowDecision> take(std::optional<rules::LocalOutcome> outcome) {
     if (!outcome) return std::nullopt;
     layer_ = std::move(outcome->layer);
     last_ = outcome->j;
@@ -161,10 +147,18 @@ class Deciding {
 
 }  // namespace
 
+rules::LocalInput localInputOf(const MapWindow& window, const WindowChange& change) {
+  rules::LocalInput input{window.scene, change.is_dirty, change.is_open, change.gone_boxes, {}};
+  for (const perception::Primitive& primitive : window.scene.primitives) {
+    const auto known = window.known.find(primitive.id);
+    input.stored_trace.push_back(known == window.known.end() ? std::nullopt : std::optional(known->second.trace));
+  }
+  return input;
+}
+
 TileSet tilesBeyond(const MapWindow& window, const WindowChange& change, const OutputChanges& changes,
-                    const rdf::ReadTransaction& transaction, const rules::RuleSet& rules, double reach_m,
+                    const rdf::ReadTransaction& transaction, const std::vector<std::uint32_t>& layers,
                     std::uint32_t depth) {
-  const std::vector<std::uint32_t> layers = rules::layersIn(inputOf(window, change), rules, {}, reach_m);
   const auto isShort = [&](PrimitiveIndex i) { return layers[i] < depth && change.is_open[i] != 0; };
   Following following(window, transaction);
   TileSet beyond;
@@ -184,9 +178,8 @@ TileSet tilesBeyond(const MapWindow& window, const WindowChange& change, const O
 }
 
 std::optional<WindowDecision> decideIn(const MapWindow& window, const WindowChange& change,
-                                       const rdf::ReadTransaction& transaction, const rules::RuleSet& rules,
-                                       double reach_m, unsigned threads) {
-  return Deciding(window, change, transaction).run(rules, reach_m, threads);
+                                       const rdf::ReadTransaction& transaction, rules::LocalRun& run) {
+  return Deciding(window, change, transaction).take(run.decide());
 }
 
 }  // namespace cluxel::mapping

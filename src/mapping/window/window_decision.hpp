@@ -11,7 +11,7 @@
 #include "mapping/layers/object_record.hpp"
 #include "mapping/window/map_window.hpp"
 #include "mapping/window/window_change.hpp"
-#include "rules/language/rule_set.hpp"
+#include "rules/decide/local_run.hpp"
 #include "rules/objects/semantic_object.hpp"
 
 namespace cluxel::mapping {
@@ -24,15 +24,17 @@ struct WindowDecision {
   std::map<ContentHash, ObjectRecord> replaced;  ///< former objects of decided and gone primitives, none class-wide
 };
 
+/// What the rules' run over the window starts from.
+rules::LocalInput localInputOf(const MapWindow& window, const WindowChange& change);
+
 /// The map's tiles beyond the window that hold, or lie within reach of, open primitives in the first `depth` layers
 /// around the change. None when the window is large enough to look for a seam there.
 perception::TileSet tilesBeyond(const MapWindow& window, const WindowChange& change, const OutputChanges& changes,
-                                const rdf::ReadTransaction& transaction, const rules::RuleSet& rules, double reach_m,
+                                const rdf::ReadTransaction& transaction, const std::vector<std::uint32_t>& layers,
                                 std::uint32_t depth);
 
-/// Runs the rules in the window. Absent when the window is too small to tell what the change leads to.
+/// Decides the window by a run over it. Absent when the window is too small to tell what the change leads to.
 std::optional<WindowDecision> decideIn(const MapWindow& window, const WindowChange& change,
-                                       const rdf::ReadTransaction& transaction, const rules::RuleSet& rules,
-                                       double reach_m, unsigned threads);
+                                       const rdf::ReadTransaction& transaction, rules::LocalRun& run);
 
 }  // namespace cluxel::mapping

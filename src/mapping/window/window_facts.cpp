@@ -164,10 +164,7 @@ class FactWriting {
     const rdf::TermId has_primitive = facts_.property("hasPrimitive"), has_part = facts_.property("hasPart");
     const std::vector<rdf::TermId> exchanged = exchangedPrimitives();
     for (const rules::SemanticObject& object : result.objects) {
-      for (const rdf::TermId subject : subjectsOf(object.id)) {
-        patch_.replace(subject);
-        patch_.keep(subject, has_primitive);
-      }
+      for (const rdf::TermId subject : subjectsOf(object.id)) patch_.replaceBut(subject, has_primitive);
       std::vector<rdf::TermId> owners = patch_.objectsOf(iri(rdf::iriOfObject(object.id)), has_part);
       owners.push_back(iri(rdf::iriOfObject(object.id)));
       for (const rdf::TermId owner : owners)

@@ -81,30 +81,36 @@ std::vector<std::uint32_t> decideLoneSeeds(const LocalInput& input, double reach
 
 }  // namespace
 
-std::vector<std::uint32_t> layersIn(const LocalInput& input, const RuleSet& rules, const ReasoningContext& context,
-                                    double reach_m) {
-  ReasoningState state(input.window, rules, context);
-  return decideLoneSeeds(input, reach_m, state);
+LocalRun::LocalRun(const LocalInput& input, const RuleSet& rules, const ReasoningContext& context, double reach_m)
+    : input_(input),
+      rules_(rules),
+      state_(std::make_unique<ReasoningState>(input.window, rules, context)),
+      layers_(decideLoneSeeds(input, reach_m, *state_)) {
+  assert(!rules.asks_map);
+}
+
+LocalRun::~LocalRun() = default;
+
+std::optional<LocalOutcome> LocalRun::decide() {
+  LocalOutcome outcome;
+  outcome.layer = layers_;
+  if (std::all_of(layers_.begin(), layers_.end(), [](std::uint32_t layer) { return layer == kNoLayer; }))
+    return outcome;
+  const SeamSearch seams(input_, layers_);
+  if (!seams.mayFind()) return std::nullopt;
+  state_->trace.useLayers(layers_);
+  const auto later = rules_.strata.begin() + static_cast<std::ptrdiff_t>(strataOfLoneSeeds(rules_));
+  std::for_each(later, rules_.strata.end(), [&](const auto& stratum) { decideStratum(*state_, stratum); });
+  outcome.result = finishedRun(*state_);
+  const std::optional<std::uint32_t> j = seams.find(outcome.result, state_->trace.spans());
+  if (!j) return std::nullopt;
+  outcome.j = *j;
+  return outcome;
 }
 
 std::optional<LocalOutcome> decideLocally(const LocalInput& input, const RuleSet& rules,
                                           const ReasoningContext& context, double reach_m) {
-  assert(!rules.asks_map);
-  LocalOutcome outcome;
-  ReasoningState state(input.window, rules, context);
-  const auto later = rules.strata.begin() + static_cast<std::ptrdiff_t>(strataOfLoneSeeds(rules));
-  outcome.layer = decideLoneSeeds(input, reach_m, state);
-  if (std::all_of(outcome.layer.begin(), outcome.layer.end(), [](std::uint32_t layer) { return layer == kNoLayer; }))
-    return outcome;
-  const SeamSearch seams(input, outcome.layer);
-  if (!seams.mayFind()) return std::nullopt;
-  state.trace.useLayers(outcome.layer);
-  std::for_each(later, rules.strata.end(), [&](const auto& stratum) { decideStratum(state, stratum); });
-  outcome.result = finishedRun(state);
-  const std::optional<std::uint32_t> j = seams.find(outcome.result, state.trace.spans());
-  if (!j) return std::nullopt;
-  outcome.j = *j;
-  return outcome;
+  return LocalRun(input, rules, context, reach_m).decide();
 }
 
 }  // namespace cluxel::rules

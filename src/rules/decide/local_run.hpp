@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -13,6 +14,8 @@
 #include "rules/decide/reason.hpp"
 
 namespace cluxel::rules {
+
+struct ReasoningState;
 
 /// A part of a scene around a change. Vectors are by primitive of the window.
 struct LocalInput {
@@ -39,15 +42,34 @@ struct LocalOutcome {
   std::uint32_t j = 0;
 };
 
-/// The layers alone: a window in which some of the first layers are open is too small. Cost: some microseconds a
-/// cluxel.
-std::vector<std::uint32_t> layersIn(const LocalInput& input, const RuleSet& rules, const ReasoningContext& context,
-                                    double reach_m);
+/// A run of the rules over a window, in two steps: the layers alone tell whether the window is large enough to try. The
+/// rules must not ask the map.
+class LocalRun {
+ public:
+  /// `input`, `rules` and the context must outlive the run. `reach_m` is that of localReach(). Cost: some microseconds
+  /// a cluxel.
+  LocalRun(const LocalInput& input, const RuleSet& rules, const ReasoningContext& context, double reach_m);
+  ~LocalRun();
+  LocalRun(const LocalRun&) = delete;
+  LocalRun& operator=(const LocalRun&) = delete;
 
-/// Runs the rules over the window, and compares traces in some layers around the change with those stored. Absent when
-/// these layers are not within the window, when no layers agree, or when a step reaches across them: then a larger
-/// window may do. `reach_m` is that of localReach(). Several changes may be decided in windows of their own; each
-/// window marks all that is dirty in it. Without any change the outcome is empty. The rules must not ask the map.
+  /// By primitive; see layersAround(). A window in which some of the first layers are open is too small.
+  const std::vector<std::uint32_t>& layers() const { return layers_; }
+
+  /// Runs the rules, and compares traces in some layers around the change with those stored. Absent when these layers
+  /// are not within the window, when no layers agree, or when a step reaches across them: then a larger window may do.
+  /// Several changes may be decided in windows of their own; each window marks all that is dirty in it. Without any
+  /// change the outcome is empty. To be called once.
+  std::optional<LocalOutcome> decide();
+
+ private:
+  const LocalInput& input_;
+  const RuleSet& rules_;
+  std::unique_ptr<ReasoningState> state_;
+  std::vector<std::uint32_t> layers_;
+};
+
+/// Both steps at once.
 std::optional<LocalOutcome> decideLocally(const LocalInput& input, const RuleSet& rules,
                                           const ReasoningContext& context, double reach_m);
 
