@@ -12,6 +12,7 @@
 #include "mapping/build/way_tiles.hpp"
 #include "mapping/facts/object_geometry.hpp"
 #include "mapping/layers/stored_layers.hpp"
+#include "mapping/map_part.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/statements/statement_facts.hpp"
 #include "rdf/iri.hpp"
@@ -28,6 +29,7 @@ struct MapReader::Impl {
   std::optional<TileStages> stages;
   std::optional<perception::Scene> scene;
   std::optional<std::vector<rules::SemanticObject>> objects;
+  std::optional<std::vector<ContentHash>> object_ids, primitive_ids;
   std::optional<std::vector<OverruledObject>> overruled;
   std::vector<std::uint32_t> object_of_cluxel;
   std::map<perception::TileKey, std::uint32_t> first_cluxel;
@@ -65,8 +67,8 @@ struct MapReader::Impl {
 
   const TileStages& readStages() {
     if (stages) return *stages;
-    model = storedModel();
-    stages.emplace(*model, inputs->params);
+    if (!model) model = storedModel();
+    stages.emplace(*model, readInputs().params);
     stages->load(transaction);
     std::uint32_t next = 0;
     for (const auto& [key, tile] : stages->summaries()) {
@@ -75,6 +77,14 @@ struct MapReader::Impl {
     }
     object_of_cluxel = objectOfCluxel({readObjects(), {}}, next);
     return *stages;
+  }
+
+  std::optional<MapPart> partAround(perception::TileSet tiles, int rings) {
+    const perception::TileSet map = storedTiles(transaction);
+    for (int ring = 0; ring < rings; ++ring) tiles = perception::withRing(tiles, map);
+    if (!model) model = storedModel();
+    TileStages here(*model, readInputs().params);
+    return partOfMap(transaction, here, tiles);
   }
 
   const TileStages& readPoints() {
@@ -101,8 +111,10 @@ MapSummary MapReader::summary() const {
     ++summary.clouds;
     summary.points += cloud.point_count;
   }
-  for (const rules::SemanticObject& object : objects()) ++summary.objects_by_class[localName(object.class_iri)];
-  summary.objects = objects().size();
+  forEachRecord(impl_->transaction, [&](const ContentHash&, const ObjectRecord& record) {
+    ++summary.objects_by_class[localName(record.class_iri)];
+    ++summary.objects;
+  });
   summary.quads = impl_->quads.size();
   return summary;
 }
@@ -120,6 +132,23 @@ scan::ScanPoints MapReader::pointsOf(const scan::ScanId& cloud) const {
 scan::Scan MapReader::scanOf(const scan::ScanId& cloud) const {
   return storedScan(impl_->transaction, cloud);
 }
+const std::vector<ContentHash>& MapReader::objectIds() const {
+  if (!impl_->object_ids) impl_->object_ids = storedObjectIds(impl_->transaction);
+  return *impl_->object_ids;
+}
+
+const std::vector<ContentHash>& MapReader::primitiveIds() const {
+  if (!impl_->primitive_ids) impl_->primitive_ids = storedPrimitives(impl_->transaction);
+  return *impl_->primitive_ids;
+}
+
+std::optional<MapPart> MapReader::partAroundObject(const ContentHash& object, int rings) const {
+  return impl_->partAround(tilesOfObject(impl_->transaction, object), rings);
+}
+std::optional<MapPart> MapReader::partAroundPrimitive(const ContentHash& primitive, int rings) const {
+  return impl_->partAround(tilesOfPrimitive(impl_->transaction, primitive), rings);
+}
+
 const std::vector<rules::SemanticObject>& MapReader::objects() const {
   return impl_->readObjects();
 }

@@ -20,6 +20,7 @@ namespace cluxel::mapping {
 
 class TileStages;
 struct WayGraph;
+struct MapPart;
 struct OverruledObject;
 
 struct MapSummary {
@@ -53,6 +54,12 @@ class MapReader {
   scan::ScanPoints pointsOf(const scan::ScanId& cloud) const;
   /// A cloud as the scan that it was given as.
   scan::Scan scanOf(const scan::ScanId& cloud) const;
+  /// The ids of objects(), and of the scene's primitives, ascending. Cost: some microseconds an object, or a tile.
+  const std::vector<ContentHash>& objectIds() const;
+  const std::vector<ContentHash>& primitiveIds() const;
+  /// The part of the map `rings` tiles around an object or a primitive. Absent as for partOfMap().
+  std::optional<MapPart> partAroundObject(const ContentHash& object, int rings) const;
+  std::optional<MapPart> partAroundPrimitive(const ContentHash& primitive, int rings) const;
   /// The objects, sorted by id; cluxel numbers refer to scene().
   const std::vector<rules::SemanticObject>& objects() const;
   /// Those that operator statements changed or removed, as the rules made them.

@@ -3,28 +3,26 @@
 #include "tasks/explanation.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "base/ascii.hpp"
 #include "base/nearest_name.hpp"
 #include "cluxel/error.hpp"
-#include "mapping/change/map_things.hpp"
 #include "mapping/change/statement_change.hpp"
+#include "mapping/change/thing_history.hpp"
 #include "mapping/facts/ask_replay.hpp"
+#include "mapping/map_part.hpp"
 #include "mapping/statements/applied_statements.hpp"
 #include "rdf/map_iris.hpp"
 #include "rules/explain/part_run.hpp"
 #include "rules/explain/path_tree.hpp"
 #include "rules/explain/why_not.hpp"
 #include "rules/language/rule_loader.hpp"
+#include "tasks/thing_names.hpp"
 
 namespace cluxel::tasks {
 
 namespace {
-
-constexpr std::size_t kMinDigits = 4;  ///< of a hash
 
 rules::RuleSet rulesOf(const mapping::MapInputs& inputs) {
   std::vector<rules::RuleSource> sources;
@@ -45,111 +43,63 @@ void shortenFiles(rules::Explanation& explanation, const mapping::MapInputs& inp
   for (rules::ExplainedDecision& explained : explanation.decisions) shortenFiles(explained.decision, inputs);
 }
 
-/// The name without what tables and other formats write around it: <IRI>, map:object/HEX.
-std::string plainName(const std::string& written) {
-  std::string_view name = trimmed(written);  // lines of CSV end in CR LF
-  if (name.starts_with('<') && name.ends_with('>')) name = name.substr(1, name.size() - 2);
-  if (name.starts_with("map:")) name.remove_prefix(4);
-  return std::string(name);
-}
-
-bool isNamed(const std::string& kind, const ContentHash& id, const std::string& name) {
-  const std::string hex = id.hex(), path = kind + "/" + hex;
-  return path.starts_with(name) || hex.starts_with(name) || name.ends_with("/map/" + path);
-}
-
-/// The place of the only item that has the name; none when there is none.
-template <typename Items>
-std::optional<std::size_t> findOne(const Items& items, const std::string& kind, const std::string& name) {
-  std::optional<std::size_t> found;
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    if (!isNamed(kind, items[i].id, name)) continue;
-    if (found) throw Error(ErrorKind::NotFound, "'" + name + "' names more than one " + kind + "; write more digits");
-    found = i;
-  }
-  return found;
-}
-
-std::optional<std::size_t> numberIn(std::string_view digits) {
-  std::size_t number = 0;
-  const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  const bool is_number = fault == std::errc() && end == digits.data() + digits.size();
-  return is_number ? std::optional(number) : std::nullopt;
-}
-
-/// "#17", or "17" where it is too short for a hash.
-std::optional<std::size_t> objectNumber(const std::string& name, std::size_t objects) {
-  const bool is_marked = name.starts_with('#');
-  if (!is_marked && name.size() >= kMinDigits) return std::nullopt;
-  const auto number = numberIn(std::string_view(name).substr(is_marked ? 1 : 0));
-  if (number && *number >= objects)
-    throw Error(ErrorKind::NotFound, "there is no object #" + std::to_string(*number) + ": the map has " +
-                                         std::to_string(objects) + " objects, numbered from 0");
-  if (!number && is_marked) throw Error(ErrorKind::InvalidArgument, "'" + name + "' is not the number of an object");
-  return number;
-}
-
-/// What a name means: one of these.
-struct Named {
-  std::optional<std::size_t> object, primitive;
-};
-
-std::optional<mapping::FormerName> formerName(const mapping::MapReader& map, const std::string& name) {
-  std::vector<ContentHash> present;
-  for (const rules::SemanticObject& object : map.objects()) present.push_back(object.id);
-  return mapping::Lineage(map.quads(), present).find(name);
-}
-
-std::size_t numberOf(const std::vector<rules::SemanticObject>& objects, const ContentHash& id) {
-  const auto found = std::find_if(objects.begin(), objects.end(), [&](const auto& object) { return object.id == id; });
-  return static_cast<std::size_t>(found - objects.begin());
-}
-
-Named find(const mapping::MapReader& map, const std::string& name) {
-  Named named;
-  named.object = objectNumber(name, map.objects().size());
-  if (named.object) return named;
-  if (name.size() < kMinDigits)
-    throw Error(ErrorKind::InvalidArgument,
-                "'" + name + "' is too short: write the number of an object, or at least four digits of a hash");
-  named.object = findOne(map.objects(), "object", name);
-  named.primitive = findOne(map.scene().primitives, "primitive", name);
-  // Four digits or more may be meant as a number too; a hash that begins so comes first, "#" makes it a number.
-  if (!named.object && !named.primitive)
-    if (const auto number = numberIn(name); number && *number < map.objects().size()) named.object = number;
-  if (!named.object && !named.primitive)
-    if (const auto former = formerName(map, name)) named.object = numberOf(map.objects(), former->object);
-  if (named.object && named.primitive)
-    throw Error(ErrorKind::NotFound, "'" + name + "' names an object and a primitive; write more digits, or object/" +
-                                         name + " or primitive/" + name);
-  if (named.object || named.primitive) return named;
+/// Part of a map: with the objects as the rules made them.
+mapping::MapPart byRules(const mapping::MapReader& map, mapping::MapPart part) {
   for (const mapping::OverruledObject& overruled : map.overruled())
-    if (!overruled.now && isNamed("object", overruled.by_rules.id, name))
-      throw Error(ErrorKind::NotFound, "object/" + overruled.by_rules.id.hex() +
-                                           " was removed by an operator statement; it is back once that is withdrawn");
-  throw Error(ErrorKind::NotFound, "nothing in the map is named '" + name + "'; the question objects.rq lists objects");
+    for (rules::SemanticObject& object : part.objects)
+      if (overruled.now == object.id) object.rule_id = overruled.by_rules.rule_id;
+  return part;
 }
 
-std::vector<perception::PrimitiveIndex> primitivesOf(const mapping::MapReader& map, const Named& named) {
-  if (named.primitive) return {static_cast<perception::PrimitiveIndex>(*named.primitive)};
-  return primitivesOf(map.objects()[*named.object]);
+std::optional<mapping::MapPart> partAround(const mapping::MapReader& map, const NamedThing& named, int rings) {
+  auto part =
+      named.primitive ? map.partAroundPrimitive(*named.primitive, rings) : map.partAroundObject(*named.object, rings);
+  return part ? std::optional(byRules(map, *std::move(part))) : std::nullopt;
 }
 
-std::optional<rules::PartRun> partAround(const mapping::MapReader& map, const Named& named,
-                                         const rules::RuleSet& rules) {
+std::vector<perception::PrimitiveIndex> primitivesIn(const perception::Scene& scene,
+                                                     const std::vector<rules::SemanticObject>& objects,
+                                                     const NamedThing& named) {
+  if (named.object)
+    for (const rules::SemanticObject& object : objects)
+      if (object.id == *named.object) return primitivesOf(object);
+  if (named.primitive)
+    for (perception::PrimitiveIndex i = 0; i < scene.primitives.size(); ++i)
+      if (scene.primitives[i].id == *named.primitive) return {i};
+  return {};
+}
+
+/// A run over a part of the map that decides about the thing as the run over the map did. Parts of some tiles are tried
+/// before the map is read as a whole.
+std::optional<rules::PartRun> runAround(const mapping::MapReader& map, const NamedThing& named,
+                                        const rules::RuleSet& rules) {
+  if (rules.asks_map) return std::nullopt;
+  for (const int rings : {1, 3}) {
+    const std::optional<mapping::MapPart> part = partAround(map, named, rings);
+    if (!part) break;
+    constexpr double kAll = 1;
+    if (auto run = runInPart(part->scene, rules, {part->traces, part->objects},
+                             primitivesIn(part->scene, part->objects, named), kAll))
+      return run;
+  }
   const std::vector<std::uint64_t> traces = map.decisionTraces();
   const std::vector<rules::SemanticObject> by_rules = map.objectsByRules();
-  return runInPart(map.scene(), rules, {traces, by_rules}, primitivesOf(map, named));
+  return runInPart(map.scene(), rules, {traces, by_rules}, primitivesIn(map.scene(), map.objects(), named));
+}
+
+bool isByOperator(const mapping::MapReader& map, const ContentHash& object) {
+  const auto& overruled = map.overruled();
+  return std::any_of(overruled.begin(), overruled.end(), [&](const auto& changed) { return changed.now == object; });
 }
 
 /// The object's thing, and what operators state about it.
-std::string historyOf(const mapping::MapReader& map, std::size_t number, nlohmann::ordered_json& json) {
-  const rules::SemanticObject& object = map.objects()[number];
-  const std::string thing = thingOf(mapping::storedThings(map.quads()), object.id).iri;
+std::string historyOf(const mapping::MapReader& map, const ContentHash& object, nlohmann::ordered_json& json) {
+  const std::vector<mapping::Thing> things = mapping::ThingLookup(map.quads()).thingsOf(object);
+  const std::string thing = things.empty() ? rdf::iriOfThing(object) : things.front().iri;
   json["thing"] = thing;
   std::string text = "thing/" + mapping::localName(thing) + "\n";
   for (const mapping::KnownStatement& known : mapping::knownStatements(map.quads())) {
-    if (known.object != rdf::iriOfObject(object.id)) continue;
+    if (known.object != rdf::iriOfObject(object)) continue;
     json["stated"].push_back({{"statement", known.statement.id().hex()},
                               {"states", textOf(known.statement)},
                               {"effect", known.effect},
@@ -161,7 +111,7 @@ std::string historyOf(const mapping::MapReader& map, std::size_t number, nlohman
             (known.stated_at.empty() ? "" : " " + known.stated_at) + ": " + textOf(known.statement) + " (" +
             known.effect + (known.contradicts ? ", against the rules" : "") + ")\n";
   }
-  if (object.rule_id == mapping::kOperatorRule) text += "without the statement the rules decide:\n";
+  if (isByOperator(map, object)) text += "without the statement the rules decide:\n";
   return text;
 }
 
@@ -173,19 +123,27 @@ struct Explained {
   const perception::Scene& sceneOf(const mapping::MapReader& map) const { return run ? run->part : map.scene(); }
 };
 
-Explained explanationOf(const mapping::MapReader& map, const Named& named, const rules::RuleSet& rules) {
-  const rules::SemanticObject* object = named.primitive ? nullptr : &map.byRules(map.objects()[*named.object]);
-  if (auto run = partAround(map, named, rules)) {
+/// The name that the rules gave to an object of the map.
+ContentHash idByRules(const mapping::MapReader& map, const ContentHash& object) {
+  for (const mapping::OverruledObject& overruled : map.overruled())
+    if (overruled.now == object) return overruled.by_rules.id;
+  return object;
+}
+
+Explained explanationOf(const mapping::MapReader& map, const NamedThing& named, const rules::RuleSet& rules) {
+  if (auto run = runAround(map, named, rules)) {
     std::optional<rules::Explanation> explanation;
-    if (object == nullptr)
-      explanation = explanationIn(run->result, rules, run->primitives.front());
+    if (named.object)
+      explanation = explanationIn(run->result, rules, idByRules(map, *named.object));
     else
-      explanation = explanationIn(run->result, rules, object->id);
+      explanation = explanationIn(run->result, rules, run->primitives.front());
     if (explanation) return {std::move(*explanation), std::move(run)};
   }
   mapping::AskReplay oracle(map);
   const rules::ReasoningContext context{.oracle = &oracle};
-  if (object == nullptr) return {explain(map.scene(), rules, context, primitivesOf(map, named).front()), std::nullopt};
+  if (!named.object)
+    return {explain(map.scene(), rules, context, primitivesIn(map.scene(), {}, named).front()), std::nullopt};
+  const rules::SemanticObject* object = &map.byRules(map.objects()[named.number]);
   std::optional<rules::Explanation> explanation = explain(map.scene(), rules, context, *object);
   if (!explanation)
     throw Error(ErrorKind::NotFound, "the map's rules make no object '" + object->id.hex() + "' any more");
@@ -212,13 +170,13 @@ const rules::SemanticObject* ownerOf(const std::vector<rules::SemanticObject>& o
 
 WhyNotOfThing whyNotOf(const mapping::MapReader& map, const rules::RuleSet& rules, const mapping::MapInputs& inputs,
                        const std::string& written, const std::string& class_name) {
-  const Named named = find(map, plainName(written));
+  const NamedThing named = thingNamed(map, written);
   const std::string class_iri = classNamed(rules, class_name);
-  const auto id = named.object ? std::optional(map.byRules(map.objects()[*named.object]).id) : std::nullopt;
+  const auto id = named.object ? std::optional(idByRules(map, *named.object)) : std::nullopt;
   mapping::AskReplay oracle(map);
   const rules::ReasoningContext context{.oracle = &oracle};
   const perception::Scene& scene = map.scene();
-  const std::vector<perception::PrimitiveIndex> primitives = primitivesOf(map, named);
+  const std::vector<perception::PrimitiveIndex> primitives = primitivesIn(scene, map.objects(), named);
   const rules::ReasoningResult made = reason(scene, rules, context);
   const rules::SemanticObject* owner = ownerOf(made.objects, primitives, id);
   WhyNotOfThing thing{whyNot(scene, rules, context, made, owner, primitives, class_iri), ""};
@@ -251,21 +209,6 @@ std::string classNamed(const rules::ClassCatalogue& classes, const std::string& 
   return classNamed(rules, written);
 }
 
-std::string nameNote(const mapping::MapReader& map, const std::string& written) {
-  const std::string name = plainName(written);
-  const auto known = [&](const auto& items, const std::string& kind) { return findOne(items, kind, name).has_value(); };
-  if (name.size() < kMinDigits || name.starts_with('#') || known(map.objects(), "object")) return {};
-  if (known(map.scene().primitives, "primitive")) return {};
-  const auto former = formerName(map, name);
-  return former ? former->meaning + " is now object/" + former->object.hex() : "";
-}
-
-std::size_t objectNamed(const mapping::MapReader& map, const std::string& name) {
-  const Named named = find(map, plainName(name));
-  if (!named.object) throw Error(ErrorKind::NotFound, "'" + name + "' names a primitive, not an object");
-  return *named.object;
-}
-
 ExplanationTexts explainWhyNot(const mapping::MapReader& map, const std::string& name, const std::string& class_name) {
   const mapping::MapInputs inputs = map.inputs();
   const rules::RuleSet rules = rulesOf(inputs);
@@ -286,7 +229,7 @@ std::string explanationGraph(const mapping::MapReader& map, const std::string& n
                   "no rule of class '" + class_name + "' looked at '" + name + "': ask for the text to see why");
     return graphOf(judged->decision);
   }
-  const rules::Explanation explanation = explanationOf(map, find(map, plainName(name)), rules).explanation;
+  const rules::Explanation explanation = explanationOf(map, thingNamed(map, name), rules).explanation;
   const rules::Decision* told = nullptr;
   for (const rules::ExplainedDecision& explained : explanation.decisions)
     if (told == nullptr || explained.decision.accepted) told = &explained.decision;
@@ -295,7 +238,7 @@ std::string explanationGraph(const mapping::MapReader& map, const std::string& n
 }
 
 ExplanationTexts explainThing(const mapping::MapReader& map, const std::string& written) {
-  const Named named = find(map, plainName(written));
+  const NamedThing named = thingNamed(map, written);
   const mapping::MapInputs inputs = map.inputs();
   const rules::RuleSet rules = rulesOf(inputs);
   Explained explained = explanationOf(map, named, rules);
@@ -304,8 +247,8 @@ ExplanationTexts explainThing(const mapping::MapReader& map, const std::string& 
   auto json = nlohmann::ordered_json::parse(jsonOf(explained.explanation, rules, scene));
   std::string text = textOf(explained.explanation, rules, scene);
   if (named.object) {
-    json["number"] = *named.object;
-    text = "object #" + std::to_string(*named.object) + "\n" + historyOf(map, *named.object, json) + text;
+    json["number"] = named.number;
+    text = "object #" + std::to_string(named.number) + "\n" + historyOf(map, *named.object, json) + text;
   }
   return {std::move(text), json.dump(2)};
 }

@@ -16,15 +16,10 @@ struct ExplanationTexts {
   std::string json;
 };
 
-/// Explains an object or a primitive. `name` is its IRI (also in <> or as map:…), "object/…" or "primitive/…", the
-/// first digits of its hash (four or more), or an object's number in MapReader::objects() ("17" or "#17"), as exported
-/// clouds and footprints hold it. Runs the map's own rules again on what lies around it. Files of rules are named
-/// relative to the folder of the first. Throws Error (NotFound) when nothing or more than one resource has the name.
+/// Explains an object or a primitive; `name` as for thingNamed(). Runs the map's own rules again on what lies around
+/// it, and reads no more of the map where that tells. Files of rules are named relative to the folder of the first.
+/// Throws Error (NotFound) when nothing or more than one resource has the name.
 ExplanationTexts explainThing(const mapping::MapReader& map, const std::string& name);
-/// The number in MapReader::objects() of the object that has the name. Throws Error (NotFound) when there is none.
-std::size_t objectNamed(const mapping::MapReader& map, const std::string& name);
-/// "thing/HEX is now object/HEX" for a name that is not the object's own; empty otherwise.
-std::string nameNote(const mapping::MapReader& map, const std::string& name);
 /// The IRI of the class that is written as "Tree", "clx:Tree" or an IRI. Throws Error (NotFound) when there is none.
 std::string classNamed(const rules::RuleSet& rules, const std::string& written);
 /// The same with the local name, clx: or an IRI only.

@@ -8,6 +8,7 @@
 
 #include "cluxel/error.hpp"
 #include "mapping/asking_rules.hpp"
+#include "mapping/map_part.hpp"
 #include "rdf/map_iris.hpp"
 #include "rules/decide/reason.hpp"
 #include "rules/explain/part_run.hpp"
@@ -61,6 +62,35 @@ TEST(Explanation, FromAPartOfTheMapIsThatOfTheWhole) {
     const auto whole = explain(map.scene(), rules, {}, object);
     ASSERT_TRUE(near && whole);
     EXPECT_EQ(textOf(*near, rules, run->part), textOf(*whole, rules, map.scene())) << "object " << i;
+  }
+  EXPECT_GE(in_part, 5U);
+}
+
+/// The text without the folder of the rules, which explainThing() leaves out.
+std::string withoutFolder(std::string text, const MapInputs& inputs) {
+  const std::string folder = std::filesystem::path(inputs.rules.front().name).parent_path().string() + "/";
+  for (std::size_t at = text.find(folder); at != std::string::npos; at = text.find(folder, at))
+    text.erase(at, folder.size());
+  return text;
+}
+
+TEST(Explanation, ReadsSomeTilesAndSaysWhatTheWholeMapSays) {
+  const SmallCampus campus({.seed = 5, .stops = 12, .size_m = 150, .points_per_stop = 7000, .max_range_m = 16});
+  const ScratchFolder folder;
+  buildMap(scansOf(campus.files()), shippedInputs(), folder.path() / "street.clx", {.threads = 2}, silence());
+  const MapReader map(folder.path() / "street.clx");
+  const MapInputs inputs = map.inputs();
+  std::vector<RuleSource> sources;
+  for (const NamedText& text : inputs.rules) sources.push_back({text.name, text.text});
+  const RuleSet rules = loadRuleTexts(sources, inputs.rule_roots, classCatalogueOf(inputs.ontology)).require();
+  std::size_t in_part = 0;
+  for (std::size_t i = 0; i < map.objects().size(); i += 7) {
+    const SemanticObject& object = map.objects()[i];
+    const auto whole = explain(map.scene(), rules, {}, object);
+    ASSERT_TRUE(whole);
+    const std::string expected = withoutFolder(textOf(*whole, rules, map.scene()), inputs);
+    EXPECT_TRUE(explainThing(map, object.id.hex(), false).ends_with(expected)) << "object " << i;
+    if (map.partAroundObject(object.id, 1)) ++in_part;
   }
   EXPECT_GE(in_part, 5U);
 }

@@ -5,6 +5,7 @@
 #include "app/map_condition.hpp"
 #include "cluxel/error.hpp"
 #include "tasks/explanation.hpp"
+#include "tasks/thing_names.hpp"
 
 namespace cluxel::app {
 

@@ -15,6 +15,7 @@
 #include "rdf/map_iris.hpp"
 #include "rules/language/rule_loader.hpp"
 #include "tasks/explanation.hpp"
+#include "tasks/thing_names.hpp"
 
 namespace cluxel::app {
 

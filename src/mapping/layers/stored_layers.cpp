@@ -31,34 +31,24 @@ TileLayer checkedLayer(const perception::TileKey& tile, std::string_view bytes) 
   return layer;
 }
 
-/// Visits the layers of all tiles in the order of keys.
-template <typename Visit>
-void forEachLayer(const rdf::ReadTransaction& transaction, const Visit& visit) {
-  refuseEarlierForm(transaction);
-  transaction.forEachBlock(tables::kTileLayers, "", [&](std::string_view key, std::string_view bytes) {
-    visit(checkedLayer(tables::tileOfKey(key), bytes));
-  });
-}
-
 class Composition {
  public:
   explicit Composition(const rdf::ReadTransaction& transaction) : transaction_(transaction) {}
 
   std::vector<rules::SemanticObject> run() {
     readRecords();
-    forEachLayer(transaction_, [this](const TileLayer& layer) { add(layer); });
+    forEachStoredLayer(transaction_, [this](const TileLayer& layer) { add(layer); });
     rankPrimitives();
     return std::move(objects_);
   }
 
  private:
   void readRecords() {
-    transaction_.forEachBlock(tables::kObjects, "", [this](std::string_view key, std::string_view bytes) {
-      ObjectRecord record = objectRecordFromBytes(bytes);
+    forEachRecord(transaction_, [this](const ContentHash& id, const ObjectRecord& record) {
       rules::SemanticObject& object = objects_.emplace_back();
-      object.id = tables::hashOfKey(key);
-      object.class_iri = std::move(record.class_iri);
-      object.rule_id = std::move(record.rule_id);
+      object.id = id;
+      object.class_iri = record.class_iri;
+      object.rule_id = record.rule_id;
       object.confidence = record.confidence;
       object.is_class_wide = record.is_class_wide;
       number_of_.emplace(object.id, objects_.size() - 1);
@@ -134,13 +124,47 @@ std::optional<ObjectRecord> storedRecord(const rdf::ReadTransaction& transaction
   return bytes ? std::optional(objectRecordFromBytes(*bytes)) : std::nullopt;
 }
 
+void forEachStoredLayer(const rdf::ReadTransaction& transaction, const std::function<void(const TileLayer&)>& visit) {
+  refuseEarlierForm(transaction);
+  transaction.forEachBlock(tables::kTileLayers, "", [&](std::string_view key, std::string_view bytes) {
+    visit(checkedLayer(tables::tileOfKey(key), bytes));
+  });
+}
+
+std::vector<ContentHash> storedObjectIds(const rdf::ReadTransaction& transaction) {
+  refuseEarlierForm(transaction);
+  std::vector<ContentHash> ids;
+  transaction.forEachBlock(tables::kObjects, "", [&](std::string_view key, std::string_view /*bytes*/) {
+    ids.push_back(tables::hashOfKey(key));
+  });
+  return ids;
+}
+
+void forEachRecord(const rdf::ReadTransaction& transaction,
+                   const std::function<void(const ContentHash&, const ObjectRecord&)>& visit) {
+  refuseEarlierForm(transaction);
+  transaction.forEachBlock(tables::kObjects, "", [&](std::string_view key, std::string_view bytes) {
+    visit(tables::hashOfKey(key), objectRecordFromBytes(bytes));
+  });
+}
+
 std::vector<rules::SemanticObject> storedObjects(const rdf::ReadTransaction& transaction) {
   return Composition(transaction).run();
 }
 
+std::vector<ContentHash> storedPrimitives(const rdf::ReadTransaction& transaction) {
+  std::vector<ContentHash> ids;
+  forEachStoredLayer(transaction, [&](const TileLayer& layer) {
+    for (const TileLayer::PrimitiveHere& primitive : layer.primitives) ids.push_back(primitive.id);
+  });
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
 std::vector<std::uint64_t> storedTraces(const rdf::ReadTransaction& transaction) {
   std::map<ContentHash, std::uint64_t> traces;
-  forEachLayer(transaction, [&](const TileLayer& layer) {
+  forEachStoredLayer(transaction, [&](const TileLayer& layer) {
     for (const TileLayer::PrimitiveHere& primitive : layer.primitives) traces.emplace(primitive.id, primitive.trace);
   });
   std::vector<std::uint64_t> in_order;

@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kChecked_m = 5;  ///< around what is explained
 constexpr std::array<double, 3> kMargins_m{12, 30, 75};
-constexpr double kMaxShare = 0.6;  ///< of the scene's cluxels: larger parts take as long as the whole
 
 using Box = Eigen::AlignedBox2d;
 
@@ -51,7 +50,7 @@ class PartSearch {
   }
 
   /// The primitives within the margin; empty when they are most of the scene.
-  std::vector<perception::PrimitiveIndex> within(double margin_m) const {
+  std::vector<perception::PrimitiveIndex> within(double margin_m, double max_share) const {
     std::vector<perception::PrimitiveIndex> kept;
     std::size_t cluxels = 0;
     const Box around = grown(box_, margin_m);
@@ -60,7 +59,7 @@ class PartSearch {
         kept.push_back(i);
         cluxels += scene_.primitives[i].cluxels.size();
       }
-    if (static_cast<double>(cluxels) > kMaxShare * static_cast<double>(scene_.cluxels.size())) kept.clear();
+    if (static_cast<double>(cluxels) > max_share * static_cast<double>(scene_.cluxels.size())) kept.clear();
     return kept;
   }
 
@@ -123,11 +122,11 @@ class PartSearch {
 }  // namespace
 
 std::optional<PartRun> runInPart(const perception::Scene& scene, const RuleSet& rules, const WholeRun& whole,
-                                 const std::vector<perception::PrimitiveIndex>& primitives) {
+                                 const std::vector<perception::PrimitiveIndex>& primitives, double max_share) {
   if (rules.asks_map || whole.traces.size() != scene.primitives.size() || primitives.empty()) return std::nullopt;
   const PartSearch search(scene, rules, whole, primitives);
   for (const double margin_m : kMargins_m) {
-    const std::vector<perception::PrimitiveIndex> kept = search.within(margin_m);
+    const std::vector<perception::PrimitiveIndex> kept = search.within(margin_m, max_share);
     if (kept.empty()) return std::nullopt;
     PartRun run{partOf(scene, kept), search.numbersIn(kept), {}};
     ReasoningContext probing;

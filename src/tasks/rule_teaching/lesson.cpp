@@ -13,6 +13,7 @@
 #include "rules/language/rule_loader.hpp"
 #include "tasks/explanation.hpp"
 #include "tasks/rule_teaching/lesson_text.hpp"
+#include "tasks/thing_names.hpp"
 
 namespace cluxel::tasks {
 

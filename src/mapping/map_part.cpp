@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// A window without a change.
+#include "mapping/map_part.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "mapping/build/scan_store.hpp"
+#include "mapping/layers/stored_layers.hpp"
+#include "mapping/window/map_window.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+constexpr double kMaxPartShare = 0.6;  ///< of the map's tiles
+
+using PartsByName = std::map<std::string, rules::ObjectPart>;
+
+/// What the layers of the tiles say of objects.
+std::vector<rules::SemanticObject> objectsIn(const rdf::ReadTransaction& transaction, const MapWindow& window) {
+  std::map<ContentHash, PartsByName> parts;
+  const perception::SceneCluxels& all = window.scene.cluxels;
+  for (const auto& [tile, layer] : window.layers) {
+    const std::uint32_t first = window.first_cluxel.at(tile);
+    for (std::uint32_t c = 0; c < layer.size(); ++c) {
+      if (layer.share_of_cluxel[c] == kNoShare) continue;
+      const TileLayer::Share& share = layer.shares[layer.share_of_cluxel[c]];
+      rules::ObjectPart& part = parts[share.object][share.part_class];
+      part.part_class = share.part_class;
+      part.cluxels.push_back(first + c);
+      part.primitives.push_back(all.primitive[first + c]);
+    }
+  }
+  std::vector<rules::SemanticObject> objects;
+  for (auto& [id, by_name] : parts) {
+    const std::optional<ObjectRecord> record = storedRecord(transaction, id);
+    if (!record) continue;
+    rules::SemanticObject& object = objects.emplace_back();
+    object.id = id, object.is_class_wide = record->is_class_wide;
+    object.class_iri = record->class_iri, object.rule_id = record->rule_id, object.confidence = record->confidence;
+    for (auto& [name, part] : by_name) {
+      std::sort(part.primitives.begin(), part.primitives.end());
+      part.primitives.erase(std::unique(part.primitives.begin(), part.primitives.end()), part.primitives.end());
+      object.parts.push_back(std::move(part));
+    }
+  }
+  return objects;
+}
+
+}  // namespace
+
+std::optional<MapPart> partOfMap(const rdf::ReadTransaction& transaction, TileStages& stages,
+                                 const perception::TileSet& tiles) {
+  if (tiles.empty()) return std::nullopt;
+  std::optional<MapWindow> window =
+      windowAround(transaction, stages, {}, tiles, 0, storedClouds(transaction), kMaxPartShare);
+  if (!window) return std::nullopt;
+  MapPart part;
+  part.objects = objectsIn(transaction, *window);
+  for (std::size_t i = 0; i < window->scene.primitives.size(); ++i) {
+    const auto known = window->known.find(window->scene.primitives[i].id);
+    part.traces.push_back(window->is_cut[i] != 0 || known == window->known.end() ? 0 : known->second.trace);
+  }
+  part.scene = std::move(window->scene);
+  return part;
+}
+
+perception::TileSet tilesOfObject(const rdf::ReadTransaction& transaction, const ContentHash& object) {
+  const std::optional<ObjectRecord> record = storedRecord(transaction, object);
+  if (!record) return {};
+  return {record->tiles.begin(), record->tiles.end()};
+}
+
+perception::TileSet tilesOfPrimitive(const rdf::ReadTransaction& transaction, const ContentHash& primitive) {
+  perception::TileSet tiles;
+  forEachStoredLayer(transaction, [&](const TileLayer& layer) {
+    for (const TileLayer::PrimitiveHere& here : layer.primitives)
+      if (here.id == primitive) tiles.insert(layer.key);
+  });
+  return tiles;
+}
+
+}  // namespace cluxel::mapping

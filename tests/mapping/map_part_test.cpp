@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// The part of a map that is read alone says what the whole map says of it.
+#include "mapping/map_part.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "mapping/small_campus.hpp"
+
+namespace cluxel::mapping {
+namespace {
+
+struct Whole {
+  std::map<ContentHash, std::uint64_t> trace_of;
+  std::map<ContentHash, const SemanticObject*> object_of;
+
+  explicit Whole(const MapReader& map) {
+    const std::vector<std::uint64_t> traces = map.decisionTraces();
+    for (std::size_t i = 0; i < traces.size(); ++i) trace_of[map.scene().primitives[i].id] = traces[i];
+    for (const SemanticObject& object : map.objects()) object_of[object.id] = &object;
+  }
+};
+
+/// Seeds of an object's cluxels by part class: numbers differ between scenes, seeds do not.
+std::map<std::string, std::multiset<std::pair<ContentHash, std::uint32_t>>> seedsOf(const Scene& scene,
+                                                                                    const SemanticObject& object) {
+  std::map<std::string, std::multiset<std::pair<ContentHash, std::uint32_t>>> seeds;
+  for (const ObjectPart& part : object.parts)
+    for (const std::uint32_t cluxel : part.cluxels) {
+      const auto [scan, point] = scene.cluxels.seed[cluxel];
+      seeds[part.part_class].emplace(scene.cluxels.scans[scan], point);
+    }
+  return seeds;
+}
+
+TEST(MapPart, HoldsWhatTheMapSaysOfItsTiles) {
+  const SmallCampus campus({.seed = 5, .stops = 12, .size_m = 150, .points_per_stop = 7000, .max_range_m = 16});
+  const ScratchFolder folder;
+  buildMap(scansOf(campus.files()), shippedInputs(), folder.path() / "street.clx", {}, silence());
+  const MapReader map(folder.path() / "street.clx");
+  const Whole whole(map);
+  std::size_t parts = 0, primitives = 0;
+  for (std::size_t i = 0; i < map.objects().size(); i += 5) {
+    const SemanticObject& object = map.objects()[i];
+    const auto part = map.partAroundObject(object.id, 1);
+    if (!part) continue;
+    ++parts;
+    EXPECT_LT(part->scene.cluxels.size(), map.scene().cluxels.size());
+    ASSERT_EQ(part->traces.size(), part->scene.primitives.size());
+    for (std::size_t k = 0; k < part->traces.size(); ++k) {
+      if (part->traces[k] == 0) continue;
+      EXPECT_EQ(part->traces[k], whole.trace_of.at(part->scene.primitives[k].id));
+      ++primitives;
+    }
+    const auto own = std::find_if(part->objects.begin(), part->objects.end(),
+                                  [&](const SemanticObject& here) { return here.id == object.id; });
+    ASSERT_NE(own, part->objects.end());
+    EXPECT_EQ(own->class_iri, object.class_iri);
+    EXPECT_EQ(own->rule_id, object.rule_id);
+    EXPECT_EQ(own->confidence, object.confidence);
+    EXPECT_EQ(seedsOf(part->scene, *own), seedsOf(map.scene(), object));
+  }
+  EXPECT_GE(parts, 8U);
+  EXPECT_GE(primitives, 100U);
+}
+
+TEST(MapPart, NamesObjectsAndPrimitivesAsTheMapDoes) {
+  const SmallCampus campus({.seed = 5, .stops = 3, .size_m = 60, .points_per_stop = 4000, .max_range_m = 16});
+  const ScratchFolder folder;
+  buildMap(scansOf(campus.files()), shippedInputs(), folder.path() / "street.clx", {}, silence());
+  const MapReader map(folder.path() / "street.clx");
+  ASSERT_EQ(map.objectIds().size(), map.objects().size());
+  for (std::size_t i = 0; i < map.objects().size(); ++i) EXPECT_EQ(map.objectIds()[i], map.objects()[i].id);
+  ASSERT_EQ(map.primitiveIds().size(), map.scene().primitives.size());
+  for (std::size_t i = 0; i < map.primitiveIds().size(); ++i)
+    EXPECT_EQ(map.primitiveIds()[i], map.scene().primitives[i].id);
+  EXPECT_EQ(map.summary().objects, map.objects().size());
+  EXPECT_FALSE(map.partAroundObject(ContentHash{}, 1)) << "there is no such object";
+}
+
+}  // namespace
+}  // namespace cluxel::mapping
