@@ -63,7 +63,7 @@ TEST(LocalRun, IsRefusedWhenAStepReachesAcrossAllThatAgrees) {
   const Window whole = windowOf(change, before, 100, reach_m);
   const auto outcome = decideLocally(whole.input(), rules, {}, reach_m);
   ASSERT_TRUE(outcome);
-  EXPECT_EQ(gluedOf(change, before, whole, *outcome, rules).objects.size(), 1U);
+  EXPECT_EQ(gluedOf(change, before, whole, *outcome, outcome->seams.front().first, rules).objects.size(), 1U);
 }
 
 TEST(LocalRun, IsEmptyWithoutAChange) {
@@ -99,7 +99,7 @@ TEST(LocalRun, IsRefusedWhereTheWindowOrTheTracesDoNotShowIt) {
   ASSERT_TRUE(outcome);
   const auto last = *std::max_element(outcome->layer.begin(), outcome->layer.end(),
                                       [](auto a, auto b) { return (a == kNoLayer ? 0 : a) < (b == kNoLayer ? 0 : b); });
-  EXPECT_GT(outcome->j, last);
+  EXPECT_GT(outcome->seams.front().first, last);
 }
 
 TEST(LocalReach, FollowsFromTheRulesOrIsRefusedWithTheReason) {

@@ -59,13 +59,16 @@ void checkStreet(const RuleSet& rules, const BoxScene& street, double length_m, 
       const auto outcome = decideLocally(window.input(), rules, {}, *reach.reach_m);
       if (!outcome) continue;
       ++outcomes.local;
-      outcomes.layers = std::max<std::size_t>(outcomes.layers, outcome->j);
-      const Glued glued = gluedOf(change, before, window, *outcome, rules);
+      outcomes.layers =
+          std::max<std::size_t>(outcomes.layers, outcome->seams.empty() ? 0 : outcome->seams.back().first);
       const KnownObjects expected = objectsIn(change.after, whole, rules);
       outcomes.changed += expected != objectsIn(change.before, before, rules) ? 1 : 0;
-      ASSERT_EQ(glued.objects, expected) << "change " << change_number << ", window " << around_m << ", j "
-                                         << outcome->j;
-      ASSERT_EQ(glued.traces, tracesOf(change.after, whole.traces));
+      for (const Seam& seam : outcome->seams) {
+        const Glued glued = gluedOf(change, before, window, *outcome, seam.first, rules);
+        ASSERT_EQ(glued.objects, expected)
+            << "change " << change_number << ", window " << around_m << ", j " << seam.first;
+        ASSERT_EQ(glued.traces, tracesOf(change.after, whole.traces));
+      }
       break;
     }
   }

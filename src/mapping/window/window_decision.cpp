@@ -57,23 +57,32 @@ class Deciding {
       number_.emplace(window.scene.primitives[i].id, i);
   }
 
+  /// Objects may reach across the nearest seam: then a farther one may do.
   std::optional<WindowDecision> take(std::optional<rules::LocalOutcome> outcome) {
     if (!outcome) return std::nullopt;
     layer_ = std::move(outcome->layer);
-    last_ = outcome->j;
+    if (outcome->seams.empty()) outcome->seams.push_back({0, 0});
+    for (const rules::Seam& seam : outcome->seams) {
+      seam_ = seam;
+      if (auto decision = takeUpToSeam(outcome->result)) return decision;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  std::optional<WindowDecision> takeUpToSeam(const rules::ReasoningResult& result) {
     WindowDecision decision;
-    decision.traces = std::move(outcome->result.traces);
-    for (const std::uint32_t layer : layer_) decision.is_decided.push_back(layer <= last_ ? 1 : 0);
-    for (rules::SemanticObject& object : outcome->result.objects) {
+    decision.traces = result.traces;
+    for (const std::uint32_t layer : layer_) decision.is_decided.push_back(layer <= seam_.first ? 1 : 0);
+    for (const rules::SemanticObject& object : result.objects) {
       if (!hasDecided(object, decision.is_decided)) continue;
       if (!object.is_class_wide && !isSureAsAWhole(object)) return std::nullopt;
-      keepDecided(std::move(object), decision);
+      keepDecided(object, decision);
     }
     if (!findReplaced(decision)) return std::nullopt;
     return decision;
   }
 
- private:
   static bool hasDecided(const rules::SemanticObject& object, const std::vector<char>& is_decided) {
     return std::any_of(object.parts.begin(), object.parts.end(), [&](const rules::ObjectPart& part) {
       return std::any_of(part.primitives.begin(), part.primitives.end(),
@@ -84,7 +93,7 @@ class Deciding {
   bool isSureAsAWhole(const rules::SemanticObject& object) const {
     return std::all_of(object.parts.begin(), object.parts.end(), [&](const rules::ObjectPart& part) {
       return std::all_of(part.primitives.begin(), part.primitives.end(), [&](PrimitiveIndex primitive) {
-        return layer_[primitive] <= last_ + 2 && change_.is_open[primitive] == 0;
+        return layer_[primitive] <= seam_.last && change_.is_open[primitive] == 0;
       });
     });
   }
@@ -110,7 +119,7 @@ class Deciding {
   bool isSure(const ContentHash& primitive) const {
     if (change_.gone.contains(primitive)) return true;
     const auto now = number_.find(primitive);
-    return now != number_.end() && layer_[now->second] <= last_ + 2;
+    return now != number_.end() && layer_[now->second] <= seam_.last;
   }
 
   /// False when an object reaches out of what is sure.
@@ -142,7 +151,7 @@ class Deciding {
   const rdf::ReadTransaction& transaction_;
   std::map<ContentHash, PrimitiveIndex> number_;
   std::vector<std::uint32_t> layer_;
-  std::uint32_t last_ = 0;  ///< the last layer that is decided anew
+  rules::Seam seam_;  ///< layers up to its first are decided anew; up to its last the outcome is known
 };
 
 }  // namespace

@@ -29,19 +29,20 @@ class SeamSearch {
   /// Whether the narrowest seam next to the change is in the window.
   bool mayFind() const { return first_open_ > kFirstSeam + kSeamWidth; }
 
-  /// The first layer of the nearest seam.
-  std::optional<std::uint32_t> find(const ReasoningResult& result, const std::set<LayerSpan>& wide_steps) const {
+  /// All seams, the nearest first.
+  std::vector<Seam> find(const ReasoningResult& result, const std::set<LayerSpan>& wide_steps) const {
     const std::vector<char> agrees = agreeingLayers(result.traces);
+    std::vector<Seam> seams;
     for (std::uint32_t j = kFirstSeam; j <= last_ + 1; ++j) {
       std::uint32_t end = j + kSeamWidth;
       for (const auto& [low, high] : wide_steps)
         if (low <= j) end = std::max(end, high == kNoLayer ? high : high + 1);
-      if (end >= first_open_) return std::nullopt;
+      if (end >= first_open_) break;
       if (std::all_of(agrees.begin() + j, agrees.begin() + std::min(end, last_ + 1) + 1,
                       [](char agreed) { return agreed != 0; }))
-        return j;
+        seams.push_back({j, end});
     }
-    return std::nullopt;
+    return seams;
   }
 
  private:
@@ -102,9 +103,8 @@ std::optional<LocalOutcome> LocalRun::decide() {
   const auto later = rules_.strata.begin() + static_cast<std::ptrdiff_t>(strataOfLoneSeeds(rules_));
   std::for_each(later, rules_.strata.end(), [&](const auto& stratum) { decideStratum(*state_, stratum); });
   outcome.result = finishedRun(*state_);
-  const std::optional<std::uint32_t> j = seams.find(outcome.result, state_->trace.spans());
-  if (!j) return std::nullopt;
-  outcome.j = *j;
+  outcome.seams = seams.find(outcome.result, state_->trace.spans());
+  if (outcome.seams.empty()) return std::nullopt;
   return outcome;
 }
 

@@ -31,7 +31,12 @@ struct LocalInput {
   std::vector<std::optional<std::uint64_t>> stored_trace;
 };
 
-/// What holds in the run over the whole new scene:
+/// Layers that the run over the window and the run before decided alike, and that no step spans.
+struct Seam {
+  std::uint32_t first = 0, last = 0;
+};
+
+/// What holds in the run over the whole new scene, for the nearest seam and each other one that begins at `j`:
 /// - of primitives in layers up to `j` the traces, the decisions that have one of them as a seed, and the objects that
 ///   have one of them as a member are those of `result`;
 /// - of all other primitives, and of objects without a member in these layers, they are those of the run before.
@@ -39,7 +44,7 @@ struct LocalInput {
 struct LocalOutcome {
   ReasoningResult result;
   std::vector<std::uint32_t> layer;  ///< by primitive; see layersAround()
-  std::uint32_t j = 0;
+  std::vector<Seam> seams;           ///< the nearest first; none when nothing changed
 };
 
 /// A run of the rules over a window, in two steps: the layers alone tell whether the window is large enough to try. The
