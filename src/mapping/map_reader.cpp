@@ -14,7 +14,7 @@
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_part.hpp"
 #include "mapping/map_state.hpp"
-#include "mapping/statements/statement_facts.hpp"
+#include "mapping/statements/overruled_objects.hpp"
 #include "rdf/iri.hpp"
 
 namespace cluxel::mapping {
@@ -67,8 +67,7 @@ struct MapReader::Impl {
 
   const TileStages& readStages() {
     if (stages) return *stages;
-    if (!model) model = storedModel();
-    stages.emplace(*model, readInputs().params);
+    stages.emplace(readModel(), readInputs().params);
     stages->load(transaction);
     std::uint32_t next = 0;
     for (const auto& [key, tile] : stages->summaries()) {
@@ -79,11 +78,15 @@ struct MapReader::Impl {
     return *stages;
   }
 
+  const perception::LabelModel& readModel() {
+    if (!model) model = storedModel();
+    return *model;
+  }
+
   std::optional<MapPart> partAround(perception::TileSet tiles, int rings) {
     const perception::TileSet map = storedTiles(transaction);
     for (int ring = 0; ring < rings; ++ring) tiles = perception::withRing(tiles, map);
-    if (!model) model = storedModel();
-    TileStages here(*model, readInputs().params);
+    TileStages here(readModel(), readInputs().params);
     return partOfMap(transaction, here, tiles);
   }
 
@@ -147,6 +150,16 @@ std::optional<MapPart> MapReader::partAroundObject(const ContentHash& object, in
 }
 std::optional<MapPart> MapReader::partAroundPrimitive(const ContentHash& primitive, int rings) const {
   return impl_->partAround(tilesOfPrimitive(impl_->transaction, primitive), rings);
+}
+
+bool MapReader::isClassWide(const ContentHash& object) const {
+  const std::optional<ObjectRecord> record = storedRecord(impl_->transaction, object);
+  return record && record->is_class_wide;
+}
+
+PointAnchor MapReader::anchorOf(const ContentHash& object) const {
+  TileStages here(impl_->readModel(), impl_->readInputs().params);
+  return anchorOfStored(impl_->transaction, here, object);
 }
 
 const std::vector<rules::SemanticObject>& MapReader::objects() const {

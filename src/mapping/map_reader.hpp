@@ -11,6 +11,7 @@
 
 #include "mapping/cloud.hpp"
 #include "mapping/map_inputs.hpp"
+#include "mapping/statements/statement.hpp"
 #include "perception/segments/scene.hpp"
 #include "rdf/file/layer_sizes.hpp"
 #include "rdf/store/quad_store.hpp"
@@ -60,6 +61,10 @@ class MapReader {
   /// The part of the map `rings` tiles around an object or a primitive. Absent as for partOfMap().
   std::optional<MapPart> partAroundObject(const ContentHash& object, int rings) const;
   std::optional<MapPart> partAroundPrimitive(const ContentHash& primitive, int rings) const;
+  /// Whether an object takes in all of its class, as the ground does. False when there is none.
+  bool isClassWide(const ContentHash& object) const;
+  /// The points that a statement about an object is anchored to. Cost: that of the object's tiles.
+  PointAnchor anchorOf(const ContentHash& object) const;
   /// The objects, sorted by id; cluxel numbers refer to scene().
   const std::vector<rules::SemanticObject>& objects() const;
   /// Those that operator statements changed or removed, as the rules made them.

@@ -32,6 +32,8 @@ inline constexpr std::string_view kWideTiles = "wide_tiles";    ///< tile → wh
 inline constexpr std::string_view kPresence = "presence";       ///< object id → when it was there
 inline constexpr std::string_view kPassedRays = "passed_rays";  ///< object id → how many rays passed it
 inline constexpr std::string_view kFactUnits = "fact_units";    ///< what units of facts followed from
+inline constexpr std::string_view kOverruled = "overruled";     ///< object id → an object that a statement changed
+inline constexpr std::string_view kStated = "stated";           ///< statement id → the tiles that it is about
 inline constexpr std::string_view kSurfaces = "stage_surfaces";
 inline constexpr std::string_view kWays = "stage_ways";
 

@@ -7,7 +7,7 @@
 #include "base/ascii.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/change/map_things.hpp"
-#include "mapping/statements/statement_facts.hpp"
+#include "mapping/statements/overruled_objects.hpp"
 
 namespace cluxel::tasks {
 

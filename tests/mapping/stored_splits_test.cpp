@@ -4,7 +4,7 @@
 
 #include "mapping/change/map_change.hpp"
 #include "mapping/facts/semantic_layer.hpp"
-#include "mapping/object_store.hpp"
+#include "mapping/splits_store.hpp"
 #include "mapping/small_campus.hpp"
 #include "rules/decide/reason.hpp"
 

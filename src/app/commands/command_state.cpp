@@ -76,9 +76,10 @@ CLI::Validator validText() {
 }
 
 /// The ground of a map is one object: what is said of its class would hold for all of it.
-void refuseWholeClass(const mapping::MapReader& map, const rules::SemanticObject& object) {
-  if (!object.is_class_wide) return;
+void refuseWholeClass(const mapping::MapReader& map, const ContentHash& id) {
+  if (!map.isClassWide(id)) return;
   const rules::RuleSet rules = mapping::parseInputs(map.inputs()).rules;
+  const rules::SemanticObject& object = map.objects()[tasks::objectNamed(map, id.hex())];
   std::size_t primitives = 0;
   for (const rules::ObjectPart& part : object.parts) primitives += part.primitives.size();
   throw Error(
@@ -93,8 +94,8 @@ void refuseWholeClass(const mapping::MapReader& map, const rules::SemanticObject
 void addAboutObject(const mapping::MapReader& map, const StateOptions& options, mapping::StatementEdit& edit,
                     ProgressSink& sink) {
   if (const std::string note = tasks::nameNote(map, options.object); !note.empty()) sink.note(note);
-  const rules::SemanticObject& object = map.objects()[tasks::objectNamed(map, options.object)];
-  const mapping::PointAnchor anchor = anchorOf(map.stagesWithPoints(), object);
+  const ContentHash object = map.objectIds()[tasks::objectNamed(map, options.object)];
+  const mapping::PointAnchor anchor = map.anchorOf(object);
   const auto add = [&](StatementKind kind, const std::string& property, const Term& value) {
     edit.added.push_back({kind, property, value, anchor, {}});
   };
@@ -112,7 +113,7 @@ void addAboutObject(const mapping::MapReader& map, const StateOptions& options, 
   for (const mapping::KnownStatement& known : mapping::knownStatements(map.quads())) {
     const StatementKind kind = known.statement.kind;
     const bool of_class = kind == StatementKind::Is || kind == StatementKind::IsNot;
-    if (!of_class || known.object != rdf::iriOfObject(object.id)) continue;
+    if (!of_class || known.object != rdf::iriOfObject(object)) continue;
     if (known.statement.id() == edit.added.front().id()) continue;
     edit.withdrawn.push_back(known.statement.id());
     sink.note("replaces the statement " + known.statement.id().hex() + ": " + textOf(known.statement));

@@ -217,7 +217,11 @@ void TileStages::hold(const rdf::ReadTransaction& transaction, const TileSet& ti
 }
 
 void TileStages::loadPoints(const rdf::ReadTransaction& transaction) {
-  OutputReader(transaction, outputs_).readPoints(storedTiles(transaction));
+  loadPoints(transaction, storedTiles(transaction));
+}
+
+void TileStages::loadPoints(const rdf::ReadTransaction& transaction, const TileSet& tiles) {
+  OutputReader(transaction, outputs_).readPoints(tiles);
 }
 
 perception::Scene TileStages::takeScene(const std::vector<Cloud>& clouds) {

@@ -51,6 +51,8 @@ class TileStages {
   /// Reads the points of all tiles from the scans, and computes from them what is measured of cluxels. Cost: about
   /// 150 ns a point.
   void loadPoints(const rdf::ReadTransaction& transaction);
+  /// The same of some tiles.
+  void loadPoints(const rdf::ReadTransaction& transaction, const perception::TileSet& tiles);
   /// Gives the memory of points and cluxels back.
   void dropPoints();
   /// The same for all outputs; they are read again when they are needed.
@@ -68,7 +70,7 @@ class TileStages {
   /// The seeds of the scene's cluxels.
   perception::SceneSeeds seeds() const { return seedsOf(outputs_); }
 
-  /// Of all tiles after loadPoints().
+  /// Of the tiles for which loadPoints() was called.
   const std::map<perception::TileKey, perception::TilePoints>& points() const { return outputs_.points; }
   const std::map<perception::TileKey, perception::CluxelTile>& cluxels() const { return outputs_.cluxels; }
   const std::map<perception::TileKey, perception::SummaryTile>& summaries() const { return outputs_.summaries; }

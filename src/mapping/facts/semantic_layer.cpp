@@ -11,10 +11,12 @@
 #include "mapping/inference/infer_facts.hpp"
 #include "mapping/inference/sparql_rules.hpp"
 #include "mapping/layers/layer_update.hpp"
-#include "mapping/object_store.hpp"
 #include "mapping/presence/passed_rays.hpp"
 #include "mapping/presence/stored_presence.hpp"
+#include "mapping/splits_store.hpp"
+#include "mapping/statements/overruled_objects.hpp"
 #include "mapping/statements/statement_facts.hpp"
+#include "mapping/statements/statement_places.hpp"
 #include "perception/segments/primitive_inputs.hpp"
 #include "rdf/io/rdf_io.hpp"
 #include "rdf/ontology/ontology.hpp"
@@ -125,7 +127,8 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   storeWideTiles(transaction, wide_tiles);
   inferFacts(transaction, parsed.inputs, sink, check);
   storeLayers(transaction, {.scene = scene, .objects = result.objects, .traces = traces, .inputs = inputs});
-  storeOverruled(transaction, stated.overruled);
+  storeOverruled(transaction, stated.overruled, scene);
+  storeStatementTiles(transaction, stated.tiles);
   storeSplits(transaction, splits);
   sink.progress("facts", 1, 1);
   return {std::move(scene), std::move(result.objects), std::move(stated.outcomes)};

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "mapping/facts/object_geometry.hpp"
+#include "mapping/statements/statement_places.hpp"
 #include "rules/objects/finished_objects.hpp"
 
 namespace cluxel::mapping {
@@ -142,12 +143,8 @@ class Application {
   void takeIgnored(std::size_t number) {
     StatementOutcome& outcome = result_.outcomes[number];
     if (outcome.statement.kind != StatementKind::IgnoreRegion) return;
-    const RegionAnchor& region = outcome.statement.region;
-    const auto cloud =
-        std::find_if(clouds_.begin(), clouds_.end(), [&](const Cloud& known) { return known.id == region.scan; });
-    if (cloud == clouds_.end()) return;
-    std::vector<Eigen::Vector2d> polygon;
-    for (const Eigen::Vector3d& corner : region.corners) polygon.emplace_back((cloud->T_map_sensor * corner).head<2>());
+    const std::vector<Eigen::Vector2d> polygon = cornersOf(outcome.statement.region, clouds_);
+    if (polygon.empty()) return;
     for (std::uint32_t i = 0; i < objects_.size(); ++i) {
       if (!class_statements_[i].empty() || !liesIn(polygon, objects_[i])) continue;
       ignored_[i] = true;
@@ -232,7 +229,7 @@ std::string_view nameOf(StatementEffect effect) {
 AppliedStatements applyStatements(const std::vector<Statement>& statements, std::vector<SemanticObject> objects,
                                   const perception::Scene& scene, const rules::ClassCatalogue& classes,
                                   PointOwners& owners, const std::vector<Cloud>& clouds) {
-  if (statements.empty()) return {std::move(objects), {}, {}};
+  if (statements.empty()) return {std::move(objects), {}, {}, {}};
   return Application(std::move(objects), scene, classes, owners, clouds).run(statements);
 }
 

@@ -39,9 +39,10 @@ struct OverruledObject {
 };
 
 struct AppliedStatements {
-  std::vector<rules::SemanticObject> objects;  ///< of the map, sorted by id
-  std::vector<OverruledObject> overruled;      ///< sorted by the rules' id
-  std::vector<StatementOutcome> outcomes;      ///< in the order of the statements
+  std::vector<rules::SemanticObject> objects;        ///< of the map, sorted by id
+  std::vector<OverruledObject> overruled;            ///< sorted by the rules' id
+  std::vector<StatementOutcome> outcomes;            ///< in the order of the statements
+  std::map<ContentHash, perception::TileSet> tiles;  ///< what each statement is about, by its id
 };
 
 /// A statement applies to the object that owns most of its anchored points (ties: the smallest id that the rules

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "cluxel/error.hpp"
+#include "mapping/layers/stored_layers.hpp"
+#include "mapping/map_part.hpp"
 
 namespace cluxel::mapping {
 
@@ -18,11 +20,12 @@ PointAnchor pointsOf(const TileStages& stages, const rules::SemanticObject& obje
   std::sort(members.begin(), members.end());
   PointAnchor points;
   std::uint32_t first = 0;
-  for (const auto& [key, tile] : stages.cluxels()) {
-    const auto last = first + static_cast<std::uint32_t>(tile.size());
+  for (const auto& [key, summary] : stages.summaries()) {
+    const auto last = first + static_cast<std::uint32_t>(summary.size());
     const auto begin = std::lower_bound(members.begin(), members.end(), first);
     if (begin != members.end() && *begin < last) {
       const perception::TilePoints& kept = stages.points().at(key);
+      const perception::CluxelTile& tile = stages.cluxels().at(key);
       for (std::size_t i = 0; i < kept.size(); ++i)
         if (std::binary_search(members.begin(), members.end(), first + tile.point_cluxel[i]))
           points[kept.scans[kept.scan[i]]].push_back(kept.point[i]);
@@ -59,11 +62,31 @@ PointAnchor anchorOf(const TileStages& stages, const rules::SemanticObject& obje
   return anchor;
 }
 
-PointOwners::PointOwners(const rdf::ReadTransaction& transaction, const TileStages& stages,
+PointAnchor anchorOfStored(const rdf::ReadTransaction& transaction, TileStages& stages, const ContentHash& object) {
+  const perception::TileSet tiles = tilesOfObject(transaction, object);
+  if (tiles.empty()) throw Error(ErrorKind::NotFound, "the map has no object " + object.hex());
+  stages.hold(transaction, tiles, {});
+  stages.loadPoints(transaction, tiles);
+  rules::SemanticObject here;
+  here.id = object;
+  rules::ObjectPart& part = here.parts.emplace_back();
+  std::uint32_t first = 0;
+  for (const perception::TileKey& tile : tiles) {
+    const std::optional<TileLayer> layer = storedLayer(transaction, tile);
+    if (!layer) continue;
+    for (std::uint32_t c = 0; c < layer->size(); ++c)
+      if (const std::uint32_t share = layer->share_of_cluxel[c]; share != kNoShare)
+        if (layer->shares[share].object == object) part.cluxels.push_back(first + c);
+    first += static_cast<std::uint32_t>(layer->size());
+  }
+  return anchorOf(stages, here);
+}
+
+PointOwners::PointOwners(const rdf::ReadTransaction& transaction, TileStages& stages,
                          const perception::ThinParams& thin, const std::vector<Cloud>& clouds)
     : transaction_(transaction), stages_(stages), thin_(thin), clouds_(clouds) {
   std::uint32_t next = 0;
-  for (const auto& [key, tile] : stages.cluxels()) {
+  for (const auto& [key, tile] : stages.summaries()) {
     first_cluxel_.emplace(key, next);
     next += static_cast<std::uint32_t>(tile.size());
   }
@@ -77,24 +100,36 @@ const PointOwners::Posed* PointOwners::posed(const scan::ScanId& id) {
   return nullptr;
 }
 
-std::vector<std::uint32_t> PointOwners::cluxelsOf(const PointAnchor& anchor) {
-  std::vector<std::uint32_t> cluxels;
+void PointOwners::forEachPoint(const PointAnchor& anchor, const std::function<void(const Eigen::Vector3d&)>& visit) {
   for (const auto& [id, points] : anchor) {
     const Posed* scan = posed(id);
     if (scan == nullptr) continue;
-    for (const std::uint32_t point : points) {
-      if (point >= scan->points.size()) continue;  // a statement that was written by hand
-      const Eigen::Vector3d p_map =
-          scan::toMap(scan->T_map_sensor, {scan->points.x[point], scan->points.y[point], scan->points.z[point]});
-      const perception::TileKey tile = perception::tileOf(p_map);
-      const auto first = first_cluxel_.find(tile);
-      if (first == first_cluxel_.end()) continue;
-      const auto finder = finders_.try_emplace(tile, stages_.points().at(tile), thin_).first;
-      const std::uint32_t kept = finder->second.find(perception::localPoint(tile, p_map));
-      if (kept != perception::RepresentativeFinder::kNone)
-        cluxels.push_back(first->second + stages_.cluxels().at(tile).point_cluxel[kept]);
-    }
+    for (const std::uint32_t point : points)
+      if (point < scan->points.size())  // a statement that was written by hand may name others
+        visit(scan::toMap(scan->T_map_sensor, {scan->points.x[point], scan->points.y[point], scan->points.z[point]}));
   }
+}
+
+perception::TileSet PointOwners::tilesOf(const PointAnchor& anchor) {
+  perception::TileSet tiles;
+  forEachPoint(anchor, [&](const Eigen::Vector3d& p_map) { tiles.insert(perception::tileOf(p_map)); });
+  return tiles;
+}
+
+std::vector<std::uint32_t> PointOwners::cluxelsOf(const PointAnchor& anchor) {
+  perception::TileSet tiles = tilesOf(anchor);
+  std::erase_if(tiles, [&](const perception::TileKey& tile) { return !first_cluxel_.contains(tile); });
+  stages_.loadPoints(transaction_, tiles);
+  std::vector<std::uint32_t> cluxels;
+  forEachPoint(anchor, [&](const Eigen::Vector3d& p_map) {
+    const perception::TileKey tile = perception::tileOf(p_map);
+    const auto first = first_cluxel_.find(tile);
+    if (first == first_cluxel_.end()) return;
+    const auto finder = finders_.try_emplace(tile, stages_.points().at(tile), thin_).first;
+    const std::uint32_t kept = finder->second.find(perception::localPoint(tile, p_map));
+    if (kept != perception::RepresentativeFinder::kNone)
+      cluxels.push_back(first->second + stages_.cluxels().at(tile).point_cluxel[kept]);
+  });
   return cluxels;
 }
 

@@ -3,7 +3,6 @@
 #include "mapping/statements/stated_subjects.hpp"
 
 #include <set>
-#include <unordered_map>
 
 #include "cluxel/error.hpp"
 #include "mapping/build/operator_statements.hpp"
@@ -26,32 +25,23 @@ bool namesObject(const Term& subject) {
 class StatedObjects {
  public:
   StatedObjects(const rdf::ReadTransaction& transaction, const ParsedInputs& parsed)
-      : objects_(storedObjects(transaction)),
+      : transaction_(transaction),
         stages_(parsed.model, parsed.inputs.params),
-        lineage_(rdf::QuadReader(transaction), idsOf(objects_)) {
-    stages_.loadPoints(transaction);
-    for (std::size_t i = 0; i < objects_.size(); ++i) number_of_[rdf::iriOfObject(objects_[i].id)] = i;
-  }
+        lineage_(rdf::QuadReader(transaction), storedObjectIds(transaction)) {}
 
-  std::optional<PointAnchor> anchorOfIri(const std::string& iri) const {
-    auto number = number_of_.find(iri);
-    if (number == number_of_.end())
-      if (const auto former = lineage_.find(iri)) number = number_of_.find(rdf::iriOfObject(former->object));
-    if (number == number_of_.end()) return std::nullopt;
-    return anchorOf(stages_, objects_[number->second]);
+  std::optional<PointAnchor> anchorOfIri(const std::string& iri) {
+    std::optional<ContentHash> object = hashIn(iri, "object");
+    if (!object || !storedRecord(transaction_, *object)) {
+      const auto former = lineage_.find(iri);
+      object = former ? std::optional(former->object) : std::nullopt;
+    }
+    return object ? std::optional(anchorOfStored(transaction_, stages_, *object)) : std::nullopt;
   }
 
  private:
-  static std::vector<ContentHash> idsOf(const std::vector<rules::SemanticObject>& objects) {
-    std::vector<ContentHash> ids;
-    for (const rules::SemanticObject& object : objects) ids.push_back(object.id);
-    return ids;
-  }
-
-  std::vector<rules::SemanticObject> objects_;
+  const rdf::ReadTransaction& transaction_;
   TileStages stages_;
   Lineage lineage_;
-  std::unordered_map<std::string, std::size_t> number_of_;
 };
 
 Statement statementOf(const Quad& quad, PointAnchor anchor, const rules::ClassCatalogue& classes) {
@@ -74,7 +64,7 @@ void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs&
   for (Quad& quad : operatorStatements(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction))))
     if (namesObject(quad.subject)) about_objects.push_back(std::move(quad));
   if (about_objects.empty()) return;
-  const StatedObjects objects(transaction, parsed);
+  StatedObjects objects(transaction, parsed);
   rdf::QuadWriter writer(transaction);
   std::size_t anchored = 0;
   for (const Quad& quad : about_objects) {

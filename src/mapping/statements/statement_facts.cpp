@@ -2,28 +2,25 @@
 // Facts go into graph `observed`: they follow from the statements and the scans.
 #include "mapping/statements/statement_facts.hpp"
 
-#include "cluxel/error.hpp"
-#include "mapping/map_tables.hpp"
-#include "mapping/object_store.hpp"
+#include "mapping/build/scan_store.hpp"
+#include "mapping/change/thing_history.hpp"
+#include "mapping/statements/statement_places.hpp"
 #include "rdf/map_iris.hpp"
 
 namespace cluxel::mapping {
-
-namespace {
-
-constexpr std::string_view kNamesKey = "overruled names";
-
-}  // namespace
 
 AppliedStatements appliedStatements(const rdf::ReadTransaction& transaction, TileStages& stages,
                                     const perception::ThinParams& thin, const std::vector<Cloud>& clouds,
                                     const perception::Scene& scene, const rules::ClassCatalogue& classes,
                                     std::vector<rules::SemanticObject> by_rules) {
   const std::vector<Statement> statements = storedStatements(rdf::QuadReader(transaction));
-  if (statements.empty()) return {std::move(by_rules), {}, {}};
-  stages.loadPoints(transaction);
+  if (statements.empty()) return {std::move(by_rules), {}, {}, {}};
   PointOwners owners(transaction, stages, thin, clouds);
-  return applyStatements(statements, std::move(by_rules), scene, classes, owners, clouds);
+  AppliedStatements applied = applyStatements(statements, std::move(by_rules), scene, classes, owners, clouds);
+  const perception::TileSet map = storedTiles(transaction);
+  for (const Statement& statement : statements)
+    applied.tiles.emplace(statement.id(), tilesOf(statement, owners, clouds, map));
+  return applied;
 }
 
 void addStatementFacts(const std::vector<StatementOutcome>& outcomes, FactSink& facts) {
@@ -40,36 +37,28 @@ void addStatementFacts(const std::vector<StatementOutcome>& outcomes, FactSink& 
   }
 }
 
-void storeOverruled(rdf::WriteTransaction& transaction, const std::vector<OverruledObject>& overruled) {
-  if (overruled.empty()) {
-    transaction.eraseBlock(tables::kMeta, kNamesKey);
-    eraseObjectsByRules(transaction);
-    return;
+std::vector<StatementOutcome> toldOutcomes(const rdf::QuadReader& quads) {
+  std::vector<StatementOutcome> outcomes;
+  for (const Statement& statement : storedStatements(quads)) {
+    StatementOutcome outcome{statement, StatementEffect::Dormant, std::nullopt, "", false};
+    const auto value = [&](const char* property) -> std::optional<std::string> {
+      const auto subject = quads.idOf(Term::iri(rdf::iriOfStatement(statement.id())));
+      const auto predicate = quads.idOf(Term::iri(rdf::vocabulary::clx(property)));
+      const auto graph = quads.idOf(Term::iri(rdf::vocabulary::kGraphObserved));
+      if (!subject || !predicate || !graph) return std::nullopt;
+      rdf::QuadCursor cursor = quads.scan({.s = *subject, .p = *predicate, .o = {}, .g = *graph});
+      rdf::QuadIds quad;
+      return cursor.next(quad) ? std::optional(quads.termOf(quad.o).text) : std::nullopt;
+    };
+    const std::string effect = value("statementEffect").value_or("");
+    for (const StatementEffect known : {StatementEffect::Applied, StatementEffect::Overruled})
+      if (effect == nameOf(known)) outcome.effect = known;
+    if (const auto object = value("appliesTo")) outcome.object = hashIn(*object, "object");
+    outcome.rules_class = value("rulesSay").value_or("");
+    outcome.contradicts = value("contradictsRules") == "true";
+    outcomes.push_back(std::move(outcome));
   }
-  std::vector<rules::SemanticObject> by_rules;
-  std::string names;
-  for (const OverruledObject& object : overruled) {
-    by_rules.push_back(object.by_rules);
-    names += tables::keyOf(object.now.value_or(ContentHash{}));
-  }
-  storeObjectsByRules(transaction, by_rules);
-  transaction.putBlock(tables::kMeta, kNamesKey, names);
-}
-
-std::vector<OverruledObject> storedOverruled(const rdf::ReadTransaction& transaction) {
-  const auto names = transaction.block(tables::kMeta, kNamesKey);
-  if (!names) return {};
-  constexpr std::size_t kBytes = sizeof(ContentHash::bytes);
-  const std::vector<rules::SemanticObject> by_rules = storedObjectsByRules(transaction);
-  if (names->size() != kBytes * by_rules.size())
-    throw Error(ErrorKind::StoreUnavailable,
-                "the map's objects that statements changed cannot be read; build the map anew");
-  std::vector<OverruledObject> overruled;
-  for (std::size_t i = 0; i < by_rules.size(); ++i) {
-    const ContentHash now = tables::hashOfKey(std::string_view(*names).substr(kBytes * i, kBytes));
-    overruled.push_back({by_rules[i], now.isZero() ? std::nullopt : std::optional(now)});
-  }
-  return overruled;
+  return outcomes;
 }
 
 }  // namespace cluxel::mapping

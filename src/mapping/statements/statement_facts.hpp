@@ -19,8 +19,7 @@ AppliedStatements appliedStatements(const rdf::ReadTransaction& transaction, Til
 /// Which object each statement applies to, what the rules say of it, and the stated properties of objects.
 void addStatementFacts(const std::vector<StatementOutcome>& outcomes, FactSink& facts);
 
-/// The objects as the rules made them, where statements changed them.
-void storeOverruled(rdf::WriteTransaction& transaction, const std::vector<OverruledObject>& overruled);
-std::vector<OverruledObject> storedOverruled(const rdf::ReadTransaction& transaction);
+/// What the facts of the map tell of all its statements.
+std::vector<StatementOutcome> toldOutcomes(const rdf::QuadReader& quads);
 
 }  // namespace cluxel::mapping

@@ -15,6 +15,7 @@ namespace cluxel::mapping {
 namespace {
 
 constexpr std::string_view kStateKey = "semantic state";
+constexpr std::size_t kHashBytes = sizeof(ContentHash::bytes);
 
 struct CloudRow {
   ContentHash id, content;
@@ -24,7 +25,7 @@ struct CloudRow {
 };
 static_assert(sizeof(CloudRow) == 96);
 struct StateCounts {
-  std::uint64_t cluxels = 0, primitives = 0, objects = 0, has_statements = 0;
+  std::uint64_t cluxels = 0, primitives = 0, objects = 0, statements = 0;
 };
 
 ContentHash contentOf(const Cloud& cloud) {
@@ -41,8 +42,9 @@ ContentHash contentOf(const Cloud& cloud) {
 }  // namespace
 
 void storeSemanticState(rdf::WriteTransaction& transaction, const SemanticState& state) {
-  const StateCounts counts{state.cluxels, state.primitives, state.objects, state.has_statements ? 1U : 0U};
+  const StateCounts counts{state.cluxels, state.primitives, state.objects, state.statements.size()};
   std::string bytes(reinterpret_cast<const char*>(&counts), sizeof counts);
+  for (const ContentHash& statement : state.statements) bytes += tables::keyOf(statement);
   for (const SeenCloud& cloud : state.clouds) {
     const Eigen::Vector3d low = cloud.rays.min(), high = cloud.rays.max();
     const CloudRow row{cloud.id,
@@ -56,15 +58,20 @@ void storeSemanticState(rdf::WriteTransaction& transaction, const SemanticState&
 }
 
 std::optional<SemanticState> storedSemanticState(const rdf::ReadTransaction& transaction) {
-  const auto bytes = transaction.block(tables::kMeta, kStateKey);
-  if (!bytes || bytes->size() < sizeof(StateCounts) || (bytes->size() - sizeof(StateCounts)) % sizeof(CloudRow) != 0)
-    return std::nullopt;
+  const auto stored = transaction.block(tables::kMeta, kStateKey);
+  if (!stored || stored->size() < sizeof(StateCounts)) return std::nullopt;
   StateCounts counts;
-  std::memcpy(&counts, bytes->data(), sizeof counts);
-  SemanticState state{counts.cluxels, counts.primitives, counts.objects, counts.has_statements != 0, {}};
-  for (std::size_t at = sizeof counts; at + sizeof(CloudRow) <= bytes->size(); at += sizeof(CloudRow)) {
+  std::memcpy(&counts, stored->data(), sizeof counts);
+  std::string_view bytes = stored->substr(sizeof counts);
+  if (counts.statements > bytes.size() / kHashBytes) return std::nullopt;
+  SemanticState state{counts.cluxels, counts.primitives, counts.objects, {}, {}};
+  for (std::uint64_t i = 0; i < counts.statements; ++i)
+    state.statements.push_back(tables::hashOfKey(bytes.substr(i * kHashBytes, kHashBytes)));
+  bytes.remove_prefix(counts.statements * kHashBytes);
+  if (bytes.size() % sizeof(CloudRow) != 0) return std::nullopt;
+  for (std::size_t at = 0; at < bytes.size(); at += sizeof(CloudRow)) {
     CloudRow row;
-    std::memcpy(&row, bytes->data() + at, sizeof row);
+    std::memcpy(&row, bytes.data() + at, sizeof row);
     const auto& [x0, y0, z0, x1, y1, z1] = row.rays;
     state.clouds.push_back({row.id,
                             row.content,

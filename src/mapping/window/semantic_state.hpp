@@ -23,8 +23,8 @@ struct SeenCloud {
 
 struct SemanticState {
   std::uint64_t cluxels = 0, primitives = 0, objects = 0;
-  bool has_statements = false;    ///< an operator stated something
-  std::vector<SeenCloud> clouds;  ///< ascending by id
+  std::vector<ContentHash> statements;  ///< of operators, ascending by id
+  std::vector<SeenCloud> clouds;        ///< ascending by id
 };
 
 void storeSemanticState(rdf::WriteTransaction& transaction, const SemanticState& state);

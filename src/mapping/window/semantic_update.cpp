@@ -8,6 +8,7 @@
 #include "mapping/build/scan_store.hpp"
 #include "mapping/build/way_tiles.hpp"
 #include "mapping/layers/stored_layers.hpp"
+#include "mapping/statements/statement_facts.hpp"
 #include "mapping/window/former_objects.hpp"
 #include "mapping/window/kept_objects.hpp"
 #include "mapping/window/map_window.hpp"
@@ -16,6 +17,7 @@
 #include "mapping/window/window_decision.hpp"
 #include "mapping/window/window_facts.hpp"
 #include "mapping/window/window_layers.hpp"
+#include "mapping/window/window_statements.hpp"
 #include "rdf/store/quad_store.hpp"
 #include "rdf/vocabulary.hpp"
 #include "rules/decide/local_reach.hpp"
@@ -29,8 +31,8 @@ using perception::TileSet;
 
 constexpr int kRings = 1;  ///< of tiles around the changed ones that a window holds at least
 /// The number of layers around a change that have to lie in the window; more where that is not enough.
-constexpr std::array<std::uint32_t, 2> kDepths{5, 8};
-constexpr std::size_t kMaxAttempts = 12;
+constexpr std::array<std::uint32_t, 4> kDepths{5, 8, 13, 21};
+constexpr std::size_t kMaxAttempts = 60;
 
 /// Leaves out what is in both lists; both are sorted by id.
 void keepDifferent(std::vector<ObjectMembers>& before, std::vector<ObjectMembers>& after) {
@@ -50,47 +52,48 @@ bool comesNear(const TileKey& tile, const Eigen::AlignedBox3d& box) {
                                                   Eigen::Vector2d(box.max().head<2>().array() + kAround_m))) <= 0;
 }
 
-bool hasStatements(const rdf::ReadTransaction& transaction) {
-  const rdf::QuadReader quads(transaction);
-  const auto graph = quads.idOf(Term::iri(rdf::vocabulary::kGraphOperator));
-  return graph && quads.count({.s = {}, .p = {}, .o = {}, .g = *graph}) > 0;
+std::vector<ContentHash> statementIds(const rdf::ReadTransaction& transaction) {
+  std::vector<ContentHash> ids;
+  for (const Statement& statement : storedStatements(rdf::QuadReader(transaction))) ids.push_back(statement.id());
+  return ids;
 }
 
 class LocalUpdate {
  public:
   LocalUpdate(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
-              const OutputChanges& changes, const UpdateParams& params, ProgressSink& sink)
+              OutputChanges& changes, const UpdateParams& params, ProgressSink& sink)
       : transaction_(transaction), parsed_(parsed), stages_(stages), changes_(changes), params_(params), sink_(sink) {}
 
   /// Absent when the whole map has to be computed; then nothing was written.
   std::optional<SemanticUpdate> run() {
     const std::optional<double> reach_m = rules::localReach(parsed_.rules).reach_m;
     std::optional<SemanticState> before = storedSemanticState(transaction_);
-    if (!reach_m || *reach_m > perception::kTileSize_m || !before || before->has_statements ||
-        hasStatements(transaction_))
-      return std::nullopt;
+    if (!reach_m || *reach_m > perception::kTileSize_m || !before) return std::nullopt;
     clouds_ = storedClouds(transaction_);
     before_ = *std::move(before);
-    now_ = {0, 0, 0, false, seenClouds(clouds_)};
+    now_ = {0, 0, 0, statementIds(transaction_), seenClouds(clouds_)};
     if (isTold(before_.clouds) != isTold(now_.clouds) || hasOtherTimes()) return std::nullopt;
+    WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, before_, now_);
     TileSet more = tilesOfPassedObjects();
-    for (std::size_t attempt = 0, depth = 0; attempt < kMaxAttempts && depth < kDepths.size(); ++attempt) {
+    for (std::size_t attempt = 0, depth = 0;
+         attempt < kMaxAttempts && depth < kDepths.size() && !statements.needsWholeMap(); ++attempt) {
+      changes_.tiles.insert(statements.tiles().begin(), statements.tiles().end());
       const std::optional<MapWindow> window =
           windowAround(transaction_, stages_, changes_, more, kRings, clouds_, params_.max_window_share);
       if (!window) return std::nullopt;
-      const WindowChange change = changeIn(*window, changes_, *reach_m);
+      const WindowChange change = changeIn(*window, changes_, statements.tiles(), *reach_m);
       const rules::LocalInput input = localInputOf(*window, change);
       rules::LocalRun rules_run(input, parsed_.rules, context(), *reach_m);
       const TileSet beyond = tilesBeyond(*window, change, changes_, transaction_, rules_run.layers(), kDepths[depth]);
       more.insert(beyond.begin(), beyond.end());
       if (!beyond.empty()) continue;
       sink_.progress("scene", window->scene.primitives.size(), window->scene.primitives.size());
-      const auto decision = decideIn(*window, change, transaction_, rules_run);
-      ++depth;
-      if (!decision) continue;
+      auto decision = decideIn(*window, change, transaction_, rules_run);
+      if (!decision) ++depth;
+      if (!decision || !statements.apply(*window, change, *decision)) continue;
       const std::vector<std::uint32_t> former = formerNumbers(*window, stages_, changes_);
       if (changesWideObjects(*window, *decision, former)) return std::nullopt;
-      return write(*window, change, *decision, former);
+      return write(*window, change, *decision, former, statements);
     }
     return std::nullopt;
   }
@@ -151,7 +154,7 @@ class LocalUpdate {
   }
 
   SemanticUpdate write(const MapWindow& window, const WindowChange& change, const WindowDecision& decision,
-                       const std::vector<std::uint32_t>& former) {
+                       const std::vector<std::uint32_t>& former, WindowStatements& statements) {
     SemanticUpdate update;
     update.is_local = true;
     FormerObjects members(transaction_, stages_, changes_);
@@ -166,8 +169,11 @@ class LocalUpdate {
     const std::optional<WayGraph> ways = changes_.have_ways ? std::optional(storedWays(transaction_)) : std::nullopt;
     sink_.progress("objects", update.after.size(), update.after.size());
     writeWindowFacts(transaction_, {parsed_, stages_, clouds_, before_.clouds, window, change, decision, former,
-                                    ways ? &*ways : nullptr, params_.threads});
+                                    statements, ways ? &*ways : nullptr, params_.threads});
     writeLayers(transaction_, window, decision, changes_, former);
+    statements.store(transaction_, window);
+    if (!now_.statements.empty())
+      update.statements = toldOutcomes(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction_)));
     inferFacts(transaction_, parsed_.inputs, sink_);
     now_.objects = update.objects, now_.cluxels = update.cluxels, now_.primitives = update.primitives;
     storeSemanticState(transaction_, now_);
@@ -192,7 +198,7 @@ class LocalUpdate {
   rdf::WriteTransaction& transaction_;
   const ParsedInputs& parsed_;
   TileStages& stages_;
-  const OutputChanges& changes_;
+  OutputChanges& changes_;  ///< gets the tiles in which statements change
   UpdateParams params_;
   ProgressSink& sink_;
   std::vector<Cloud> clouds_;
@@ -211,7 +217,7 @@ SemanticUpdate updateAll(rdf::WriteTransaction& transaction, const ParsedInputs&
   update.cluxels = layer.scene.cluxels.size(), update.primitives = layer.scene.primitives.size();
   update.statements = std::move(layer.statements);
   keepDifferent(update.before, update.after);
-  storeSemanticState(transaction, {update.cluxels, update.primitives, update.objects, hasStatements(transaction),
+  storeSemanticState(transaction, {update.cluxels, update.primitives, update.objects, statementIds(transaction),
                                    seenClouds(storedClouds(transaction))});
   return update;
 }
@@ -229,7 +235,7 @@ GoesOn keptBy(const rdf::ReadTransaction& transaction, const SemanticUpdate& upd
 SemanticUpdate updateSemanticLayer(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
                                    ChangedInputs inputs, const UpdateParams& params, ProgressSink& sink,
                                    const rdf::InferenceCheck& check) {
-  const OutputChanges changes = stages.takeChanges();
+  OutputChanges changes = stages.takeChanges();
   if (inputs == ChangedInputs::Scans)
     if (auto update = LocalUpdate(transaction, parsed, stages, changes, params, sink).run()) return *std::move(update);
   return updateAll(transaction, parsed, stages, changes, params, sink, check);

@@ -19,8 +19,9 @@ Eigen::AlignedBox2d boxOfTile(const TileKey& tile) {
 
 class WindowComparison {
  public:
-  WindowComparison(const MapWindow& window, const OutputChanges& changes, double reach_m)
-      : window_(window), changes_(changes), reach_m_(reach_m) {}
+  WindowComparison(const MapWindow& window, const OutputChanges& changes, const perception::TileSet& anew,
+                   double reach_m)
+      : window_(window), changes_(changes), anew_(anew), reach_m_(reach_m) {}
 
   WindowChange run() {
     markOpen();
@@ -60,6 +61,9 @@ class WindowComparison {
       const auto known = window_.known.find(scene().primitives[i].id);
       result_.is_dirty.push_back(known == window_.known.end() || known->second.input != window_.inputs[i] ? 1 : 0);
     }
+    for (const TileKey& tile : anew_)
+      if (const auto here = window_.primitive_of_component.find(tile); here != window_.primitive_of_component.end())
+        for (const PrimitiveIndex primitive : here->second) result_.is_dirty[primitive] = 1;
   }
 
   /// The window lacks edges of open primitives, and cut ones have names of their own: their hashes tell nothing. They
@@ -144,14 +148,16 @@ class WindowComparison {
 
   const MapWindow& window_;
   const OutputChanges& changes_;
+  const perception::TileSet& anew_;
   double reach_m_;
   WindowChange result_;
 };
 
 }  // namespace
 
-WindowChange changeIn(const MapWindow& window, const OutputChanges& changes, double reach_m) {
-  return WindowComparison(window, changes, reach_m).run();
+WindowChange changeIn(const MapWindow& window, const OutputChanges& changes, const perception::TileSet& anew,
+                      double reach_m) {
+  return WindowComparison(window, changes, anew, reach_m).run();
 }
 
 }  // namespace cluxel::mapping

@@ -18,7 +18,8 @@ struct WindowChange {
   std::vector<Eigen::AlignedBox2d> gone_boxes;  ///< where they were [m, map]
 };
 
-/// `reach_m`: how far decisions look.
-WindowChange changeIn(const MapWindow& window, const OutputChanges& changes, double reach_m);
+/// `anew`: changed tiles in which every primitive counts as dirty. `reach_m`: how far decisions look.
+WindowChange changeIn(const MapWindow& window, const OutputChanges& changes, const perception::TileSet& anew,
+                      double reach_m);
 
 }  // namespace cluxel::mapping

@@ -12,6 +12,7 @@
 #include "mapping/facts/way_facts.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/layers/wide_tile.hpp"
+#include "mapping/statements/statement_facts.hpp"
 #include "mapping/window/kept_objects.hpp"
 #include "mapping/window/window_presence.hpp"
 #include "rdf/map_iris.hpp"
@@ -41,6 +42,7 @@ class FactWriting {
     replacePrimitives();
     replaceObjects();
     replaceWideObjects();
+    replaceStatements();
     if (sources_.ways != nullptr) replaceWays();
     rdf::QuadWriter& writer = facts_.writer();
     writer.flush();
@@ -184,6 +186,11 @@ class FactWriting {
         for (rules::ObjectPart& own : told.parts)
           if (decided.id == object.id && own.part_class == part.part_class) own.primitives = part.primitives;
     return told;
+  }
+
+  void replaceStatements() {
+    for (const ContentHash& id : sources_.statements.exchanged()) patch_.replace(iri(rdf::iriOfStatement(id)));
+    addStatementFacts(sources_.statements.outcomes(), facts_);
   }
 
   std::vector<rdf::TermId> exchangedPrimitives() {

@@ -11,6 +11,7 @@
 #include "mapping/window/semantic_state.hpp"
 #include "mapping/window/window_change.hpp"
 #include "mapping/window/window_decision.hpp"
+#include "mapping/window/window_statements.hpp"
 
 namespace cluxel::mapping {
 
@@ -24,7 +25,8 @@ struct WindowFacts {
   const WindowChange& change;
   const WindowDecision& decision;
   const std::vector<std::uint32_t>& former;  ///< formerNumbers()
-  const WayGraph* ways = nullptr;            ///< null when they are as before
+  const WindowStatements& statements;
+  const WayGraph* ways = nullptr;  ///< null when they are as before
   unsigned threads = 1;
 };
 

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tiles are added until no statement and no changed object lies partly in what is decided anew.
+#include "mapping/window/window_statements.hpp"
+
+#include <algorithm>
+
+#include "mapping/build/scan_store.hpp"
+#include "mapping/facts/object_geometry.hpp"
+#include "mapping/layers/wide_tile.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+using perception::PrimitiveIndex;
+using perception::TileKey;
+using perception::TileSet;
+
+bool haveCommon(const TileSet& a, const TileSet& b) {
+  const TileSet &few = a.size() < b.size() ? a : b, &many = a.size() < b.size() ? b : a;
+  return std::any_of(few.begin(), few.end(), [&](const TileKey& tile) { return many.contains(tile); });
+}
+
+bool includes(const TileSet& all, const TileSet& some) {
+  return std::includes(all.begin(), all.end(), some.begin(), some.end());
+}
+
+TileSet tilesOfRecord(const OverruledRecord& record) {
+  TileSet tiles;
+  for (const OverruledRecord::Part& part : record.parts)
+    for (const auto& [tile, numbers] : part.cluxels) tiles.insert(tile);
+  return tiles;
+}
+
+std::set<ContentHash> changedClouds(const std::vector<SeenCloud>& before, const std::vector<SeenCloud>& now) {
+  std::map<ContentHash, ContentHash> contents;
+  for (const SeenCloud& cloud : before) contents.emplace(cloud.id, cloud.content);
+  std::set<ContentHash> changed;
+  for (const SeenCloud& cloud : now) {
+    const auto known = contents.find(cloud.id);
+    if (known == contents.end() || known->second != cloud.content) changed.insert(cloud.id);
+    if (known != contents.end()) contents.erase(known);
+  }
+  for (const auto& [gone, content] : contents) changed.insert(gone);
+  return changed;
+}
+
+bool isAnchoredTo(const Statement& statement, const std::set<ContentHash>& clouds) {
+  if (statement.kind == StatementKind::IgnoreRegion) return clouds.contains(statement.region.scan);
+  return std::any_of(statement.points.begin(), statement.points.end(),
+                     [&](const auto& points) { return clouds.contains(points.first); });
+}
+
+}  // namespace
+
+/// The cluxels of a window that are decided anew, or belong to an object that is.
+struct WindowStatements::Touched {
+  std::vector<char> is_touched;  ///< by cluxel
+  TileSet tiles;                 ///< with such cluxels
+
+  Touched(const MapWindow& window, const WindowDecision& decision) {
+    const perception::SceneCluxels& all = window.scene.cluxels;
+    for (const PrimitiveIndex primitive : all.primitive) is_touched.push_back(decision.is_decided[primitive]);
+    for (const rules::SemanticObject& object : decision.objects)
+      for (const rules::ObjectPart& part : object.parts)
+        for (const std::uint32_t cluxel : part.cluxels) is_touched[cluxel] = 1;
+    for (std::uint32_t c = 0; c < all.size(); ++c)
+      if (is_touched[c] != 0) tiles.insert(tiles.end(), all.name[c].tile);
+  }
+};
+
+WindowStatements::WindowStatements(const rdf::ReadTransaction& transaction, const ParsedInputs& parsed,
+                                   TileStages& stages, const std::vector<Cloud>& clouds, const OutputChanges& changes,
+                                   const SemanticState& before, const SemanticState& now)
+    : transaction_(transaction), parsed_(parsed), stages_(stages), clouds_(clouds) {
+  if (before.statements.empty() && now.statements.empty()) return;
+  statements_ = storedStatements(rdf::QuadReader(transaction));
+  for (const TileKey& tile : changes.tiles)
+    for (const TileKey& near : perception::ringOf(tile)) near_change_.insert(near);
+  records_ = overruledRecords(transaction);
+  const StatementTiles former = storedStatementTiles(transaction);
+  const TileSet map = perception::unionOf(storedTiles(transaction), changes.tiles);
+  const std::set<ContentHash> old(before.statements.begin(), before.statements.end());
+  const std::set<ContentHash> moved = changedClouds(before.clouds, now.clouds);
+  PointOwners owners(transaction, stages, parsed.model.perception.thin, clouds);
+  TileSet concerned;
+  for (const Statement& statement : statements_) {
+    const ContentHash id = statement.id();
+    const auto known = former.find(id);
+    const bool is_changed = !old.contains(id) || known == former.end() || isAnchoredTo(statement, moved);
+    const bool is_region = statement.kind == StatementKind::IgnoreRegion;
+    places_[id] = is_changed || is_region ? tilesOf(statement, owners, clouds, map) : known->second;
+    if (is_changed) concerned_.insert(id);
+    if (!is_changed && !haveCommon(places_[id], changes.tiles)) continue;
+    concerned.insert(places_[id].begin(), places_[id].end());
+    if (known != former.end()) concerned.insert(known->second.begin(), known->second.end());
+  }
+  for (const ContentHash& id : before.statements) {
+    if (places_.contains(id)) continue;
+    withdrawn_.push_back(id);
+    if (const auto known = former.find(id); known != former.end())
+      concerned.insert(known->second.begin(), known->second.end());
+  }
+  for (const OverruledRecord& record : records_)
+    if (const TileSet tiles = tilesOfRecord(record); haveCommon(tiles, changes.tiles))
+      concerned.insert(tiles.begin(), tiles.end());
+  grow(concerned);
+}
+
+/// Adds these tiles, and those of all statements and changed objects in them. False when all are there already.
+bool WindowStatements::grow(const TileSet& tiles) {
+  const std::size_t before = tiles_.size();
+  tiles_.insert(tiles.begin(), tiles.end());
+  for (std::size_t count = 0; count != tiles_.size();) {
+    count = tiles_.size();
+    for (const auto& [id, places] : places_)
+      if (haveCommon(places, tiles_)) {
+        concerned_.insert(id);
+        tiles_.insert(places.begin(), places.end());
+      }
+    for (const OverruledRecord& record : records_)
+      if (const TileSet own = tilesOfRecord(record); haveCommon(own, tiles_)) tiles_.insert(own.begin(), own.end());
+  }
+  return tiles_.size() > before;
+}
+
+/// Whether a statement or a changed object lies in what is decided, and in tiles that need not be.
+bool WindowStatements::concernsMixed(const MapWindow& window, const WindowChange& change,
+                                     const WindowDecision& decision, const Touched& touched) {
+  PointOwners owners(transaction_, stages_, parsed_.model.perception.thin, clouds_);
+  TileSet more;
+  for (const Statement& statement : statements_) {
+    const ContentHash id = statement.id();
+    if (concerned_.contains(id) || !haveCommon(places_[id], touched.tiles)) continue;
+    const std::vector<std::uint32_t> cluxels = owners.cluxelsOf(statement.points);
+    if (statement.kind == StatementKind::IgnoreRegion ||
+        std::any_of(cluxels.begin(), cluxels.end(), [&](auto cluxel) { return touched.is_touched[cluxel] != 0; }))
+      more.insert(places_[id].begin(), places_[id].end());
+  }
+  std::set<ContentHash> decided = change.gone;
+  for (PrimitiveIndex i = 0; i < decision.is_decided.size(); ++i)
+    if (decision.is_decided[i] != 0) decided.insert(window.scene.primitives[i].id);
+  erased_.clear();
+  for (const OverruledRecord& record : records_) {
+    const bool is_decided = std::any_of(record.parts.begin(), record.parts.end(), [&](const auto& part) {
+      return std::any_of(part.primitives.begin(), part.primitives.end(),
+                         [&](const ContentHash& primitive) { return decided.contains(primitive); });
+    });
+    if (!is_decided) continue;
+    erased_.insert(record.by_rules);
+    if (const TileSet own = tilesOfRecord(record); !includes(tiles_, own)) more.insert(own.begin(), own.end());
+  }
+  return !more.empty() && growOrGiveUp(more);
+}
+
+/// True in any case.
+bool WindowStatements::growOrGiveUp(const TileSet& tiles) {
+  if (!grow(tiles)) needs_whole_map_ = true;
+  return true;
+}
+
+bool WindowStatements::apply(const MapWindow& window, const WindowChange& change, WindowDecision& decision) {
+  if (statements_.empty() && records_.empty()) return true;
+  const Touched touched(window, decision);
+  if (concernsMixed(window, change, decision, touched)) return false;
+  std::vector<Statement> about;
+  std::copy_if(statements_.begin(), statements_.end(), std::back_inserter(about),
+               [&](const Statement& statement) { return concerned_.contains(statement.id()); });
+  if (std::any_of(about.begin(), about.end(),
+                  [&](const Statement& statement) { return mayTakeWideObject(statement, window); }))
+    needs_whole_map_ = true;
+  if (needs_whole_map_) return false;
+  PointOwners owners(transaction_, stages_, parsed_.model.perception.thin, clouds_);
+  applied_ = applyStatements(about, decision.objects, window.scene, parsed_.rules.catalogue, owners, clouds_);
+  if (!changesWholeObjects(window, decision)) return false;
+  decision.objects = std::move(applied_.objects);
+  return true;
+}
+
+/// Whether all of each object that a statement changes is decided anew, and none is of a whole class.
+bool WindowStatements::changesWholeObjects(const MapWindow& window, const WindowDecision& decision) {
+  const perception::SceneCluxels& all = window.scene.cluxels;
+  for (const rules::SemanticObject& object : decision.objects) {
+    if (!object.is_class_wide) continue;
+    const auto is_about = [&](const StatementOutcome& outcome) { return outcome.object == object.id; };
+    if (std::any_of(applied_.outcomes.begin(), applied_.outcomes.end(), is_about)) needs_whole_map_ = true;
+  }
+  TileSet more;
+  for (const OverruledObject& overruled : applied_.overruled) {
+    if (overruled.by_rules.is_class_wide) needs_whole_map_ = true;
+    const std::vector<std::uint32_t> members = cluxelsOf(overruled.by_rules);
+    if (std::all_of(members.begin(), members.end(),
+                    [&](auto cluxel) { return decision.is_decided[all.primitive[cluxel]] != 0; }))
+      continue;
+    for (const std::uint32_t cluxel : members) more.insert(all.name[cluxel].tile);
+  }
+  return !needs_whole_map_ && (more.empty() || !growOrGiveUp(more));
+}
+
+/// Whether most points of an object of a whole class may lie in a region. Of tiles near a change all points count
+/// against it; elsewhere such objects hold what they held before.
+bool WindowStatements::mayTakeWideObject(const Statement& region, const MapWindow& window) const {
+  if (region.kind != StatementKind::IgnoreRegion) return false;
+  const TileSet& inside = places_.at(region.id());
+  std::uint64_t unsure = 0;
+  const perception::SceneCluxels& all = window.scene.cluxels;
+  for (std::uint32_t c = 0; c < all.size(); ++c)
+    if (near_change_.contains(all.name[c].tile) && inside.contains(all.name[c].tile)) unsure += all.point_count[c];
+  struct Points {
+    std::uint64_t inside = 0, all = 0;
+  };
+  std::map<ContentHash, Points> points;
+  for (const WideTile& tile : storedWideTiles(transaction_)) {
+    if (near_change_.contains(tile.key)) continue;
+    for (const WidePart& part : tile.parts) {
+      Points& own = points[part.object];
+      own.all += part.sums.point_count;
+      if (inside.contains(tile.key)) own.inside += part.sums.point_count;
+    }
+  }
+  if (points.empty()) return true;
+  return std::any_of(points.begin(), points.end(),
+                     [&](const auto& object) { return 2 * (object.second.inside + unsure) > object.second.all; });
+}
+
+std::vector<ContentHash> WindowStatements::exchanged() const {
+  std::vector<ContentHash> ids = withdrawn_;
+  for (const StatementOutcome& outcome : applied_.outcomes) ids.push_back(outcome.statement.id());
+  return ids;
+}
+
+void WindowStatements::store(rdf::WriteTransaction& transaction, const MapWindow& window) {
+  for (const ContentHash& record : erased_) eraseOverruled(transaction, record);
+  for (const OverruledObject& overruled : applied_.overruled)
+    putOverruled(transaction, recordOf(overruled, window.scene));
+  storeStatementTiles(transaction, places_);
+}
+
+}  // namespace cluxel::mapping
