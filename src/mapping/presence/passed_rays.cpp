@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <iterator>
 #include <map>
 #include <utility>
 
@@ -81,7 +80,7 @@ std::vector<Eigen::Vector3d> placesWithin(const perception::Scene& scene, const 
 PassedRaysUpdate::PassedRaysUpdate(const rdf::ReadTransaction& transaction, const perception::Scene& scene,
                                    std::span<const rules::SemanticObject> objects, const std::vector<Cloud>& clouds,
                                    const CountsRays& counts_rays, unsigned threads)
-    : threads_(threads), object_count_(objects.size()) {
+    : RayObserver(threads), object_count_(objects.size()) {
   std::vector<ContentHash> hashes;
   for (const Cloud& cloud : clouds) hashes.push_back(raysHash(cloud));
   for (std::size_t i = 0; i < objects.size(); ++i) {
@@ -107,22 +106,46 @@ PassedRaysUpdate::PassedRaysUpdate(const rdf::ReadTransaction& transaction, cons
   }
 }
 
-bool PassedRaysUpdate::wants(const Cloud& cloud) {
-  passed_.clear();
-  std::copy_if(unknown_.begin(), unknown_.end(), std::back_inserter(passed_),
-               [&](std::size_t i) { return mayPass(cloud, targets_[i].places); });
-  return !passed_.empty();
+/// The counts of the targets that rays of a scan may pass.
+class PassedRaysUpdate::View : public ScanView {
+ public:
+  struct Counted {
+    std::size_t target = 0;
+    perception::RayCounts counts;
+  };
+
+  View(const std::vector<Target>& targets, std::vector<Counted> passed)
+      : targets_(targets), passed_(std::move(passed)) {}
+
+  void look(const perception::RayBundle& bundle, unsigned threads) override {
+    parallelFor(passed_.size(), threads, [&](std::size_t i) {
+      for (const Eigen::Vector3d& place : targets_[passed_[i].target].places)
+        passed_[i].counts += bundle.countsAt(place, kThroughParams);
+    });
+  }
+
+  const std::vector<Counted>& passed() const { return passed_; }
+
+ private:
+  const std::vector<Target>& targets_;
+  std::vector<Counted> passed_;
+};
+
+bool PassedRaysUpdate::wants(const Cloud& cloud) const {
+  return std::any_of(unknown_.begin(), unknown_.end(),
+                     [&](std::size_t i) { return mayPass(cloud, targets_[i].places); });
 }
 
-void PassedRaysUpdate::look(const perception::RayBundle& bundle) {
-  parallelFor(passed_.size(), threads_, [&](std::size_t i) {
-    Target& target = targets_[passed_[i]];
-    for (const Eigen::Vector3d& place : target.places) {
-      const perception::RayCounts counts = bundle.countsAt(place, kThroughParams);
-      target.counts.ended += counts.ended;
-      target.counts.passed += counts.passed;
-    }
-  });
+std::unique_ptr<ScanView> PassedRaysUpdate::view(const Cloud& cloud) const {
+  std::vector<View::Counted> passed;
+  for (const std::size_t i : unknown_)
+    if (mayPass(cloud, targets_[i].places)) passed.push_back({i, {}});
+  return std::make_unique<View>(targets_, std::move(passed));
+}
+
+void PassedRaysUpdate::take(const ScanView& seen) {
+  for (const View::Counted& counted : dynamic_cast<const View&>(seen).passed())
+    targets_[counted.target].counts += counted.counts;
 }
 
 std::vector<std::optional<perception::RayCounts>> PassedRaysUpdate::finish(rdf::WriteTransaction& transaction,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -32,8 +33,9 @@ class PassedRaysUpdate : public RayObserver {
   PassedRaysUpdate(const rdf::ReadTransaction& transaction, const perception::Scene& scene,
                    std::span<const rules::SemanticObject> objects, const std::vector<Cloud>& clouds,
                    const CountsRays& counts_rays, unsigned threads);
-  bool wants(const Cloud& cloud) override;
-  void look(const perception::RayBundle& bundle) override;
+  bool wants(const Cloud& cloud) const override;
+  std::unique_ptr<ScanView> view(const Cloud& cloud) const override;
+  void take(const ScanView& seen) override;
   /// The counts by object, after all rays were seen. Stores the outcome.
   std::vector<std::optional<perception::RayCounts>> finish(rdf::WriteTransaction& transaction, Covered covered) const;
 
@@ -47,10 +49,11 @@ class PassedRaysUpdate : public RayObserver {
     perception::RayCounts counts;
   };
 
-  unsigned threads_;
+  class View;
+
   std::size_t object_count_;
   std::vector<Target> targets_;
-  std::vector<std::size_t> unknown_, passed_;  ///< numbers of targets; passed_ by the scan at hand
+  std::vector<std::size_t> unknown_;  ///< numbers of targets
 };
 
 }  // namespace cluxel::mapping

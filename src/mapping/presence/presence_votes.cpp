@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Objects vote in parallel about one scan after the other.
+// Scans are looked at in parallel; their votes are added in the order of the scans.
 #include "mapping/presence/presence_votes.hpp"
 
 #include <algorithm>
@@ -53,7 +53,10 @@ PresenceVoting::Sphere PresenceVoting::sphereAround(const std::vector<Eigen::Vec
 
 PresenceVoting::PresenceVoting(const perception::Scene& scene, std::span<const rules::SemanticObject> objects,
                                const std::vector<Cloud>& clouds, unsigned threads)
-    : is_told_(timedClouds(clouds).size() >= 2), threads_(threads), votes_(objects.size()), spheres_(objects.size()) {
+    : RayObserver(threads),
+      is_told_(timedClouds(clouds).size() >= 2),
+      votes_(objects.size()),
+      spheres_(objects.size()) {
   if (!is_told_) return;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     votes_[i].places = placesOn(scene, objects[i]);
@@ -61,39 +64,57 @@ PresenceVoting::PresenceVoting(const perception::Scene& scene, std::span<const r
   }
 }
 
-bool PresenceVoting::wants(const Cloud& cloud) {
-  closeScan();
-  if (!is_told_ || !cloud.time_s || !cloud.has_pose) return false;
-  is_passed_.clear();
-  for (const ObjectVotes& object : votes_)
-    is_passed_.push_back(!object.places.empty() && mayPass(cloud, object.places) ? 1 : 0);
-  if (std::count(is_passed_.begin(), is_passed_.end(), 1) == 0) return false;
-  of_scan_.assign(votes_.size(), {*cloud.time_s, {}, {}});
-  return true;
+/// The votes of one scan for the objects that its rays may pass.
+class PresenceVoting::View : public ScanView {
+ public:
+  View(const PresenceVoting& voting, double time_s, std::vector<std::size_t> passed)
+      : voting_(voting), passed_(std::move(passed)), votes_(passed_.size(), {time_s, {}, {}}) {}
+
+  void look(const perception::RayBundle& bundle, unsigned threads) override {
+    constexpr perception::RayParams kParams;
+    parallelFor(passed_.size(), threads, [&](std::size_t i) {
+      const std::vector<Eigen::Vector3d>& places = voting_.votes_[passed_[i]].places;
+      const Sphere& sphere = voting_.spheres_[passed_[i]];
+      const double range_m = bundle.maxRange_m() + sphere.radius_m + kParams.hit_m;
+      if ((sphere.centre - bundle.origin()).norm() > range_m) return;
+      for (std::size_t place = 0; place < places.size(); ++place) {
+        const RayVerdict verdict = bundle.verdictAt(places[place], kParams).verdict;
+        if (verdict == RayVerdict::Hit) votes_[i].hits.set(place);
+        if (verdict == RayVerdict::SeenThrough) votes_[i].seen_through.set(place);
+      }
+    });
+  }
+
+  const std::vector<std::size_t>& passed() const { return passed_; }          ///< numbers of objects
+  const std::vector<perception::ScanVotes>& votes() const { return votes_; }  ///< for each of them
+
+ private:
+  const PresenceVoting& voting_;
+  std::vector<std::size_t> passed_;
+  std::vector<perception::ScanVotes> votes_;
+};
+
+bool PresenceVoting::wants(const Cloud& cloud) const {
+  return is_told_ && cloud.time_s && cloud.has_pose &&
+         std::any_of(votes_.begin(), votes_.end(),
+                     [&](const ObjectVotes& object) { return mayPass(cloud, object.places); });
 }
 
-void PresenceVoting::look(const perception::RayBundle& bundle) {
-  constexpr perception::RayParams kParams;
-  parallelFor(votes_.size(), threads_, [&](std::size_t i) {
-    const std::vector<Eigen::Vector3d>& places = votes_[i].places;
-    const double range_m = bundle.maxRange_m() + spheres_[i].radius_m + kParams.hit_m;
-    if (is_passed_[i] == 0 || (spheres_[i].centre - bundle.origin()).norm() > range_m) return;
-    for (std::size_t place = 0; place < places.size(); ++place) {
-      const RayVerdict verdict = bundle.verdictAt(places[place], kParams).verdict;
-      if (verdict == RayVerdict::Hit) of_scan_[i].hits.set(place);
-      if (verdict == RayVerdict::SeenThrough) of_scan_[i].seen_through.set(place);
-    }
-  });
+std::unique_ptr<ScanView> PresenceVoting::view(const Cloud& cloud) const {
+  std::vector<std::size_t> passed;
+  for (std::size_t i = 0; i < votes_.size(); ++i)
+    if (mayPass(cloud, votes_[i].places)) passed.push_back(i);
+  return std::make_unique<View>(*this, *cloud.time_s, std::move(passed));
 }
 
-void PresenceVoting::closeScan() {
-  for (std::size_t i = 0; i < of_scan_.size(); ++i)
-    if ((of_scan_[i].hits | of_scan_[i].seen_through).any()) perception::addVotes(votes_[i].votes, of_scan_[i]);
-  of_scan_.clear();
+void PresenceVoting::take(const ScanView& seen) {
+  const auto& view = dynamic_cast<const View&>(seen);
+  for (std::size_t i = 0; i < view.passed().size(); ++i)
+    if (const perception::ScanVotes& votes = view.votes()[i]; (votes.hits | votes.seen_through).any())
+      perception::addVotes(votes_[view.passed()[i]].votes, votes);
 }
 
 std::vector<ObjectVotes> PresenceVoting::finish() {
-  closeScan();
   return std::move(votes_);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -35,8 +36,9 @@ class PresenceVoting : public RayObserver {
   /// `objects` are not kept.
   PresenceVoting(const perception::Scene& scene, std::span<const rules::SemanticObject> objects,
                  const std::vector<Cloud>& clouds, unsigned threads);
-  bool wants(const Cloud& cloud) override;
-  void look(const perception::RayBundle& bundle) override;
+  bool wants(const Cloud& cloud) const override;
+  std::unique_ptr<ScanView> view(const Cloud& cloud) const override;
+  void take(const ScanView& seen) override;
   /// The votes; the collection is empty afterwards.
   std::vector<ObjectVotes> finish();
 
@@ -46,14 +48,11 @@ class PresenceVoting : public RayObserver {
     double radius_m = 0;
   };
   static Sphere sphereAround(const std::vector<Eigen::Vector3d>& places);
-  void closeScan();
+  class View;
 
   bool is_told_ = false;  ///< two clouds or more have a time and a pose
-  unsigned threads_;
   std::vector<ObjectVotes> votes_;
   std::vector<Sphere> spheres_;
-  std::vector<char> is_passed_;                 ///< by object, whether rays of the scan at hand may pass it
-  std::vector<perception::ScanVotes> of_scan_;  ///< empty before the first scan
 };
 
 /// The votes for each object, from all clouds. `load` gives a cloud's scan.

@@ -43,6 +43,11 @@ struct RayParams {
 struct RayCounts {
   std::uint64_t ended = 0;   ///< within RayParams::hit_m of it
   std::uint64_t passed = 0;  ///< at least RayParams::behind_m behind it
+
+  RayCounts& operator+=(const RayCounts& other) {
+    ended += other.ended, passed += other.passed;
+    return *this;
+  }
 };
 
 class RayBundle {
