@@ -48,7 +48,7 @@ int fewestBeside(const DirectionIndex& index, const Eigen::Vector3d& end, double
   return fewest;
 }
 
-float medianOf(std::vector<int> counts) {
+float middleOf(std::vector<int> counts) {
   const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
   std::nth_element(counts.begin(), middle, counts.end());
   return static_cast<float>(*middle);
@@ -65,30 +65,40 @@ float nearlyHighest(std::vector<float> elevations_rad) {
 }  // namespace
 
 ExpectedReturns::ExpectedReturns(const DirectionIndex& index, double near_m)
-    : median_(kRangeClasses * kElevationClasses, 0), highest_(kRangeClasses, 0) {
-  std::vector<std::vector<std::uint32_t>> members(median_.size());
+    : index_(index),
+      near_m_(near_m),
+      classes_(std::make_unique<Class[]>(kRangeClasses * kElevationClasses)),
+      highest_(kRangeClasses, 0) {
   std::vector<std::vector<float>> elevations_rad(kRangeClasses);
   for (std::uint32_t i = 0; i < index.rays().size(); ++i) {
     const Eigen::Vector3d end = index.rays()[i].cast<double>();
+    if (end.z() <= 0) continue;
     const std::size_t range_class = rangeClassOf(end.norm());
-    if (end.z() <= 0 || range_class >= kRangeClasses) continue;
+    if (range_class >= kRangeClasses) continue;
     const double elevation_rad = elevationOfRay_rad(end);
-    members[range_class * kElevationClasses + elevationClassOf(elevation_rad)].push_back(i);
+    classes_[range_class * kElevationClasses + elevationClassOf(elevation_rad)].rays.push_back(i);
     elevations_rad[range_class].push_back(static_cast<float>(elevation_rad));
-  }
-  for (std::size_t c = 0; c < members.size(); ++c) {
-    if (members[c].size() < kMinSamples) continue;
-    const std::size_t step = (members[c].size() + kMaxSamples - 1) / kMaxSamples;
-    std::vector<int> counts;
-    const double farthest_m = kFirstRange_m * std::pow(kRangeRatio, static_cast<double>(c / kElevationClasses + 1));
-    for (std::size_t i = 0; i < members[c].size(); i += step) {
-      const Eigen::Vector3d end = index.rays()[members[c][i]].cast<double>();
-      counts.push_back(fewestBeside(index, end, near_m * end.norm() / farthest_m));  // as seen of the farthest place
-    }
-    median_[c] = medianOf(std::move(counts));
   }
   for (std::size_t r = 0; r < kRangeClasses; ++r) highest_[r] = nearlyHighest(std::move(elevations_rad[r]));
   for (std::size_t r = kRangeClasses - 1; r-- > 0;) highest_[r] = std::max(highest_[r], highest_[r + 1]);
+}
+
+float ExpectedReturns::medianOf(std::size_t number) const {
+  Class& asked = classes_[number];
+  const std::size_t size = asked.rays.size();
+  if (size < kMinSamples) return 0;
+  std::call_once(asked.is_counted, [&] {
+    const std::size_t step = (size + kMaxSamples - 1) / kMaxSamples;
+    const double farthest_m =
+        kFirstRange_m * std::pow(kRangeRatio, static_cast<double>(number / kElevationClasses + 1));
+    std::vector<int> counts;
+    for (std::size_t i = 0; i < size; i += step) {
+      const Eigen::Vector3d end = index_.rays()[asked.rays[i]].cast<double>();
+      counts.push_back(fewestBeside(index_, end, near_m_ * end.norm() / farthest_m));  // as seen of the farthest place
+    }
+    asked.median = middleOf(std::move(counts));
+  });
+  return asked.median;
 }
 
 double ExpectedReturns::around(const Eigen::Vector3d& place) const {
@@ -96,7 +106,7 @@ double ExpectedReturns::around(const Eigen::Vector3d& place) const {
   if (place.z() <= 0 || range_class >= kRangeClasses) return 0;
   const double elevation_rad = elevationOfRay_rad(place);
   if (elevation_rad > static_cast<double>(highest_[range_class])) return 0;
-  return static_cast<double>(median_[range_class * kElevationClasses + elevationClassOf(elevation_rad)]);
+  return static_cast<double>(medianOf(range_class * kElevationClasses + elevationClassOf(elevation_rad)));
 }
 
 }  // namespace cluxel::perception

@@ -4,6 +4,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "perception/visibility/direction_index.hpp"
@@ -14,15 +18,26 @@ namespace cluxel::perception {
 /// alone: a scan that was thinned, cut off at a height or a range, or whose beams lie far apart, has few or none there.
 class ExpectedReturns {
  public:
-  /// Counts rays within `near_m` of places. Cost: some milliseconds.
+  /// Counts rays within `near_m` of places. `index` must outlive this. Cost: linear in the rays above the sensor.
   ExpectedReturns(const DirectionIndex& index, double near_m);
 
   /// The rays that pass within `near_m` of a place when something is there, or behind it: the median over returns of
   /// like range and elevation. Zero where fewer than 24 returns tell, or where hardly any goes higher at that range.
+  /// Cost: the first call for a class counts its rays, some ten microseconds.
   double around(const Eigen::Vector3d& place) const;
 
  private:
-  std::vector<float> median_;   ///< by class of range and elevation
+  /// The returns of one range and elevation.
+  struct Class {
+    std::vector<std::uint32_t> rays;  ///< by number
+    std::once_flag is_counted;
+    float median = 0;
+  };
+  float medianOf(std::size_t number) const;
+
+  const DirectionIndex& index_;
+  double near_m_;
+  std::unique_ptr<Class[]> classes_;  ///< by range and elevation; counted when one is asked about
   std::vector<float> highest_;  ///< by class of range: the elevation that returns of this range or more reach [rad]
 };
 
