@@ -12,7 +12,7 @@
 
 #include "ablation.hpp"
 #include "bench_scans.hpp"
-#include "perception/clustering/radix_order.hpp"
+#include "base/radix_order.hpp"
 #include "perception/crf/pair_cost_table.hpp"
 #include "perception/crf/tree_scoring.hpp"
 #include "perception/features/cluxel_graph.hpp"

@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "perception/clustering/fast_floor.hpp"
-#include "perception/clustering/radix_order.hpp"
+#include "base/radix_order.hpp"
 #include "perception/moments.hpp"
 #include "perception/simd_vector.hpp"
 

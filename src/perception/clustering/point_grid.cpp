@@ -2,7 +2,7 @@
 // Gathers points of the ring and sorts them by cell.
 #include "perception/clustering/point_grid.hpp"
 
-#include "perception/clustering/radix_order.hpp"
+#include "base/radix_order.hpp"
 #include "perception/simd_vector.hpp"
 
 namespace cluxel::perception {

@@ -9,7 +9,7 @@
 #include "base/mixed_bits.hpp"
 #include "cluxel/error.hpp"
 #include "perception/clustering/fast_floor.hpp"
-#include "perception/clustering/radix_order.hpp"
+#include "base/radix_order.hpp"
 
 namespace cluxel::perception {
 namespace {

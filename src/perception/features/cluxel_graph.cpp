@@ -10,7 +10,7 @@
 #include <limits>
 #include <span>
 
-#include "perception/clustering/radix_order.hpp"
+#include "base/radix_order.hpp"
 #include "perception/simd_vector.hpp"
 
 namespace cluxel::perception {

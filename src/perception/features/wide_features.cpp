@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "perception/clustering/point_grid.hpp"
-#include "perception/clustering/radix_order.hpp"
+#include "base/radix_order.hpp"
 #include "perception/features/feature_groups.hpp"
 
 namespace cluxel::perception {

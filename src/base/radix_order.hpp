@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace cluxel::perception {
+namespace cluxel {
 
 struct KeyedItem {
   std::uint64_t key = 0;
@@ -129,4 +129,4 @@ inline std::vector<std::uint32_t> orderOf(const std::vector<std::uint64_t>& keys
   return order;
 }
 
-}  // namespace cluxel::perception
+}  // namespace cluxel
