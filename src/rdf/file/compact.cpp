@@ -4,6 +4,8 @@
 #include "rdf/file/check/map_structure.hpp"
 #include "rdf/file/lmdb_environment.hpp"
 #include "rdf/file/lock_file.hpp"
+#include "rdf/file/page_directory.hpp"
+#include "rdf/store/index_writer.hpp"
 #include "rdf/store/store_snapshot.hpp"
 
 namespace cluxel::rdf {
@@ -12,21 +14,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void copyTable(const ReadTransaction::Impl& from, const ReadTransaction::Impl& to, Table table) {
+CursorHandle cursorOn(const ReadTransaction::Impl& state, Table table, const char* doing) {
   MDB_cursor* raw = nullptr;
-  from.check(mdb_cursor_open(from.live(), from.table(table), &raw), "read a table");
-  const CursorHandle source(raw);
-  to.check(mdb_cursor_open(to.live(), to.table(table), &raw), "write a table");
-  const CursorHandle target(raw);
-  const bool duplicates = table != Table::Blocks && table != Table::Terms;
+  state.check(mdb_cursor_open(state.live(), state.table(table), &raw), doing);
+  return CursorHandle(raw);
+}
+
+void copyTable(const ReadTransaction::Impl& from, const ReadTransaction::Impl& to, Table table) {
+  const CursorHandle source = cursorOn(from, table, "read a table"), target = cursorOn(to, table, "write a table");
   MDB_val key;
   MDB_val value;
   int code = mdb_cursor_get(source.get(), &key, &value, MDB_FIRST);
   for (; code == MDB_SUCCESS; code = mdb_cursor_get(source.get(), &key, &value, MDB_NEXT)) {
     if (table == Table::Blocks) verifiedBlock(toView(key), toView(value), from.environment->file());
-    to.check(mdb_cursor_put(target.get(), &key, &value, duplicates ? MDB_APPENDDUP : MDB_APPEND), "write a table");
+    to.check(mdb_cursor_put(target.get(), &key, &value, MDB_APPEND), "write a table");
   }
   if (code != MDB_NOTFOUND) from.check(code, "read a table");
+}
+
+void copyIndex(const ReadTransaction::Impl& from, const ReadTransaction::Impl& to, Table index) {
+  const CursorHandle source = cursorOn(from, index, "read an index"), target = cursorOn(to, index, "write an index");
+  const PageDirectory pages(source.get());
+  for (std::size_t i = 0; i < pages.pageCount(); ++i) appendKeys(to, target.get(), pages.page(i));
 }
 
 /// The format and the sums of block keys; tables, which stand in the same database, have their own copies.
@@ -44,7 +53,10 @@ void copyMainRecords(const ReadTransaction::Impl& from, const ReadTransaction::I
 
 void copyAll(const ReadTransaction& from, Environment& to) {
   WriteTransaction transaction = to.write();
-  for (std::size_t i = 0; i < kTableCount; ++i) copyTable(from.impl(), transaction.impl(), static_cast<Table>(i));
+  // The long blocks last: LMDB searches all pages of a transaction at each write.
+  for (const Table index : {Table::TermHashes, Table::Spog, Table::Posg, Table::Ospg, Table::Gspo})
+    copyIndex(from.impl(), transaction.impl(), index);
+  for (const Table table : {Table::Terms, Table::Blocks}) copyTable(from.impl(), transaction.impl(), table);
   copyMainRecords(from.impl(), transaction.impl());
   const std::size_t commit = mdb_txn_id(from.impl().live());
   if (const auto sums = storedSums(from.impl(), commit))

@@ -3,6 +3,8 @@
 #include "rdf/store/index_writer.hpp"
 
 #include <algorithm>
+#include <array>
+#include <span>
 
 #include "rdf/store/flush_poll.hpp"
 
@@ -16,6 +18,23 @@ constexpr std::string_view kIndexKey = "q";
 // The cost of a single put, in keys written by appending.
 constexpr std::uint64_t kPutCost = 4;
 
+/// Calls the poll of a FlushPoll once in a while.
+class EntryPoll {
+ public:
+  explicit EntryPoll(const ReadTransaction::Impl& transaction) : poll_(transaction.flush_poll) {}
+  void count(std::size_t entries) {
+    constexpr std::size_t kEntriesBetweenPolls = 4096;
+    entries_ += entries;
+    if (entries_ < kEntriesBetweenPolls) return;
+    entries_ = 0;
+    if (poll_) poll_();
+  }
+
+ private:
+  const std::function<void()>& poll_;
+  std::size_t entries_ = 0;
+};
+
 /// A write cursor on one index.
 class IndexCursor {
  public:
@@ -25,7 +44,17 @@ class IndexCursor {
     cursor_.reset(raw);
   }
 
-  void append(Key128 number) { put(number, MDB_APPENDDUP); }
+  /// Keys beyond the last one, ascending.
+  void append(std::span<const Key128> numbers, EntryPoll& poll) {
+    constexpr std::size_t kTogether = 256;
+    std::array<QuadKey, kTogether> keys;
+    for (std::size_t first = 0; first < numbers.size(); first += kTogether) {
+      const auto some = numbers.subspan(first, std::min(kTogether, numbers.size() - first));
+      poll.count(some.size());
+      std::transform(some.begin(), some.end(), keys.begin(), toKey);
+      appendKeys(transaction_, cursor_.get(), std::span(keys).first(some.size()));
+    }
+  }
 
   /// False when the key was there.
   bool insert(Key128 number) {
@@ -45,8 +74,6 @@ class IndexCursor {
   MDB_cursor* get() const { return cursor_.get(); }
 
  private:
-  void put(Key128 number, unsigned flags) { transaction_.check(tryPut(number, flags), "write an index"); }
-
   int tryPut(Key128 number, unsigned flags) {
     QuadKey bytes = toKey(number);
     MDB_val key = toVal(kIndexKey);
@@ -56,23 +83,6 @@ class IndexCursor {
 
   ReadTransaction::Impl& transaction_;
   CursorHandle cursor_;
-};
-
-/// Calls the poll of a FlushPoll once in a while.
-class EntryPoll {
- public:
-  explicit EntryPoll(const ReadTransaction::Impl& transaction) : poll_(transaction.flush_poll) {}
-  void count(std::size_t entries) {
-    constexpr std::size_t kEntriesBetweenPolls = 4096;
-    entries_ += entries;
-    if (entries_ < kEntriesBetweenPolls) return;
-    entries_ = 0;
-    if (poll_) poll_();
-  }
-
- private:
-  const std::function<void()>& poll_;
-  std::size_t entries_ = 0;
 };
 
 /// Tells the sum and the journal, as far as they are wanted, what has changed.
@@ -130,10 +140,7 @@ void writeAnew(ReadTransaction::Impl& transaction, Table index, const IndexChang
   transaction.check(mdb_drop(transaction.live(), transaction.table(index), 0), "write an index");
   IndexCursor cursor(transaction, index);
   EntryPoll poll(transaction);
-  for (const Key128 key : merged) {
-    poll.count(1);
-    cursor.append(key);
-  }
+  cursor.append(merged, poll);
   if (notes.sum != nullptr || notes.journal != nullptr) noteDifference(old, merged, notes);
 }
 
@@ -163,14 +170,20 @@ void addSingly(ReadTransaction::Impl& transaction, Table index, const std::vecto
     poll.count(1);
     if (cursor.insert(*key)) notes.added(*key);
   }
-  for (auto key = beyond; key != added.end(); ++key) {
-    poll.count(1);
-    cursor.append(*key);
-    notes.added(*key);
-  }
+  cursor.append(std::span(beyond, added.end()), poll);
+  for (auto key = beyond; key != added.end(); ++key) notes.added(*key);
 }
 
 }  // namespace
+
+/// LMDB looks up the index once for all of them. What it does within the index remains: half of the time of single
+/// puts.
+void appendKeys(const ReadTransaction::Impl& transaction, MDB_cursor* cursor, std::span<const QuadKey> keys) {
+  if (keys.empty()) return;
+  MDB_val key = toVal(kIndexKey);
+  std::array<MDB_val, 2> values{{{sizeof(QuadKey), const_cast<QuadKey*>(keys.data())}, {keys.size(), nullptr}}};
+  transaction.check(mdb_cursor_put(cursor, &key, values.data(), MDB_APPENDDUP | MDB_MULTIPLE), "write an index");
+}
 
 void applyTo(ReadTransaction::Impl& transaction, Table index, const IndexChange& change, EntrySum* sum,
              QuadJournal* journal) {

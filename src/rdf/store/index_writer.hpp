@@ -2,6 +2,7 @@
 // Applies sorted changes to one index of 16-byte keys.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "rdf/file/lmdb_environment.hpp"
@@ -13,6 +14,9 @@ namespace cluxel::rdf {
 struct IndexChange {
   std::vector<Key128> added, removed;
 };
+
+/// Appends ascending keys beyond the last one of an index. `cursor` is a cursor on it.
+void appendKeys(const ReadTransaction::Impl& transaction, MDB_cursor* cursor, std::span<const QuadKey> keys);
 
 /// Applies the change: appends keys after the last one, puts single keys, and rewrites the index by a merge when the
 /// change is large. Adding an existing key or removing a missing one has no effect.
