@@ -2,11 +2,14 @@
 // Adds scans to a map file in batches; each batch is one transaction from points to facts.
 #include "mapping/build/map_builder.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <deque>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "base/parallel.hpp"
 #include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/build_poses.hpp"
@@ -55,6 +58,11 @@ std::vector<ObjectMembers> namesOf(const std::vector<rules::SemanticObject>& obj
   return names;
 }
 
+struct ReadScan {
+  scan::ScanReading reading;
+  PreparedScan scan;
+};
+
 class MapBuild {
  public:
   MapBuild(const scan::ScanSet& scans, const ParsedInputs& parsed, WorkFile& work, const BuildParams& params,
@@ -102,12 +110,12 @@ class MapBuild {
     std::uint64_t batch_points = 0, part_points = 0;
     std::size_t next = first;
     for (; next < scans_.size() && batch_points < params_.batch_points; ++next) {
-      const scan::LoadedScan loaded = scans_.read(next);
-      const scan::Scan& scan = loaded.scan;
-      for (const std::string& note : reading_notes_.add(loaded.reading)) sink_.note(note);
-      auto segments = storeScan(transaction, scan);
+      ReadScan given = read(next);
+      for (const std::string& note : reading_notes_.add(given.reading)) sink_.note(note);
+      const std::uint64_t points = given.scan.cloud.point_count;
+      auto segments = storeScan(transaction, std::move(given.scan));
       report_.scans_already_there += segments.empty() ? 1 : 0;
-      const std::uint64_t added = segments.empty() ? 0 : scan.points.size();
+      const std::uint64_t added = segments.empty() ? 0 : points;
       batch_points += added, part_points += added;
       changes.add(std::move(segments));
       clock.progress("scans", next + 1, scans_.size());
@@ -119,6 +127,20 @@ class MapBuild {
     if (batch_points > 0 || next == scans_.size())
       commitBatch(transaction, std::move(changes), next == scans_.size(), started_s, clock);
     return next;
+  }
+
+  /// Reads a scan, and on other threads the next ones: one a thread.
+  ReadScan read(std::size_t number) {
+    if (ahead_.empty()) {
+      ahead_.resize(std::min<std::size_t>(std::max(params_.threads, 1U), scans_.size() - number));
+      parallelFor(ahead_.size(), params_.threads, [&](std::size_t i) {
+        const scan::LoadedScan loaded = scans_.read(number + i);
+        ahead_[i] = {loaded.reading, prepareScan(loaded.scan)};
+      });
+    }
+    ReadScan first = std::move(ahead_.front());
+    ahead_.pop_front();
+    return first;
   }
 
   void commitBatch(rdf::WriteTransaction& transaction, PointChanges changes, bool is_last, double started_s,
@@ -154,6 +176,7 @@ class MapBuild {
   scan::ReadingNotes reading_notes_{scans_.remedies()};
   std::optional<MapState> state_;  ///< the state in the file after the last commit
   TileStages stages_;
+  std::deque<ReadScan> ahead_;  ///< read before their turn
   BuildReport report_;
 };
 

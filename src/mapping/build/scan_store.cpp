@@ -72,17 +72,18 @@ Cloud cloudFromBytes(const scan::ScanId& id, std::string_view bytes) {
   }
 }
 
+/// What tells whether a scan is there, without a look at its points.
+Cloud unmeasuredCloud(const scan::Scan& scan) {
+  Cloud cloud;
+  cloud.id = scan.id, cloud.source = scan.source, cloud.time_s = scan.time_s;
+  cloud.T_map_sensor = scan.T_map_sensor, cloud.has_pose = scan.has_pose;
+  cloud.point_count = scan.points.size();
+  return cloud;
+}
+
 Cloud cloudOf(const scan::Scan& scan) {
-  Cloud cloud{scan.id,
-              scan.source,
-              scan.time_s,
-              scan.T_map_sensor,
-              scan.has_pose,
-              scan.points.size(),
-              {},
-              {},
-              {},
-              perception::sensorSightOf(scan)};
+  Cloud cloud = unmeasuredCloud(scan);
+  cloud.sight = perception::sensorSightOf(scan);
   cloud.min.setConstant(1e300), cloud.max.setConstant(-1e300);
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     const Eigen::Vector3d p = scan::toMap(scan.T_map_sensor, {scan.points.x[i], scan.points.y[i], scan.points.z[i]});
@@ -100,6 +101,23 @@ void keepLaterTime(rdf::WriteTransaction& transaction, Cloud there, std::optiona
   if (time_s <= there.time_s) return;
   there.time_s = time_s;
   transaction.putBlock(tables::kScans, tables::keyOf(there.id), toBytes(there));
+}
+
+/// Whether the map has the scan, which then gets the later of the two times. Refuses it with another pose: sensor
+/// positions are stored only for scans with a pose, so a scan given with and without one would make the map depend on
+/// arrival order.
+bool isThere(rdf::WriteTransaction& transaction, const Cloud& given) {
+  auto there = storedCloud(transaction, given.id);
+  if (!there) return false;
+  if (numbersOf(there->T_map_sensor) == numbersOf(given.T_map_sensor) && there->has_pose == given.has_pose) {
+    keepLaterTime(transaction, *std::move(there), given.time_s);
+    return true;
+  }
+  const std::string how = there->has_pose == given.has_pose ? "with another pose"
+                          : given.has_pose                  ? "now with a pose"
+                                                            : "now without a pose";
+  throw InputError({.file = given.source}, "is the same scan as '" + there->source + "', " + how,
+                   "give each scan once; to correct its pose, move the scan in the map");
 }
 
 /// Whether points of the cloud can lie in one of the tiles, by its bounds.
@@ -152,29 +170,28 @@ void storeTiles(rdf::WriteTransaction& transaction, const TileSet& tiles) {
   transaction.putBlock(tables::kMeta, kTilesKey, bytes);
 }
 
+PreparedScan prepareScan(const scan::Scan& scan) {
+  requireTime(scan);
+  PreparedScan prepared{cloudOf(scan), {}, perception::splitScan(scan)};
+  requirePlausible(scan, prepared.segments);
+  prepared.packed_points = packedPoints(scan.points);
+  return prepared;
+}
+
 std::map<perception::TileKey, perception::ScanSegment> storeScan(rdf::WriteTransaction& transaction,
                                                                  const scan::Scan& scan) {
   requireTime(scan);
-  if (auto there = storedCloud(transaction, scan.id)) {
-    // Sensor positions are stored only for scans with a pose, so a scan given with and without one would make the map
-    // depend on arrival order.
-    const bool same =
-        numbersOf(there->T_map_sensor) == numbersOf(scan.T_map_sensor) && there->has_pose == scan.has_pose;
-    if (same) {
-      keepLaterTime(transaction, *std::move(there), scan.time_s);
-      return {};
-    }
-    const std::string how = there->has_pose == scan.has_pose ? "with another pose"
-                            : scan.has_pose                  ? "now with a pose"
-                                                             : "now without a pose";
-    throw InputError({.file = scan.source}, "is the same scan as '" + there->source + "', " + how,
-                     "give each scan once; to correct its pose, move the scan in the map");
-  }
-  auto segments = perception::splitScan(scan);
-  requirePlausible(scan, segments);
-  transaction.putBlock(tables::kScanPoints, tables::keyOf(scan.id), packedPoints(scan.points));
-  transaction.putBlock(tables::kScans, tables::keyOf(scan.id), toBytes(cloudOf(scan)));
-  return segments;
+  if (isThere(transaction, unmeasuredCloud(scan))) return {};
+  return storeScan(transaction, prepareScan(scan));
+}
+
+std::map<perception::TileKey, perception::ScanSegment> storeScan(rdf::WriteTransaction& transaction,
+                                                                 PreparedScan scan) {
+  if (isThere(transaction, scan.cloud)) return {};
+  const std::string key = tables::keyOf(scan.cloud.id);
+  transaction.putBlock(tables::kScanPoints, key, scan.packed_points);
+  transaction.putBlock(tables::kScans, key, toBytes(scan.cloud));
+  return std::move(scan.segments);
 }
 
 TileSet removeScan(rdf::WriteTransaction& transaction, const scan::ScanId& id) {

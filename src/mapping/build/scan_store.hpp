@@ -4,6 +4,7 @@
 
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "mapping/cloud.hpp"
@@ -25,11 +26,23 @@ struct PointChanges {
   void add(std::map<perception::TileKey, perception::ScanSegment> segments);
 };
 
+/// All of a scan that is stored or goes through the stages. A function of the scan alone, so that scans can be prepared
+/// on several threads.
+struct PreparedScan {
+  Cloud cloud;
+  std::string packed_points;
+  std::map<perception::TileKey, perception::ScanSegment> segments;
+};
+
+/// Throws InputError for a scan that cannot be of a place (requirePlausible()), or whose time has no date.
+PreparedScan prepareScan(const scan::Scan& scan);
+
 /// Stores a scan; returns its points by tile. A scan that was measured alike and has the same pose is the same cloud:
 /// nothing is stored but the later of the two times (a time is later than none), and nothing is returned. The same scan
 /// with another pose, or with a pose where there was none, is an InputError.
 std::map<perception::TileKey, perception::ScanSegment> storeScan(rdf::WriteTransaction& transaction,
                                                                  const scan::Scan& scan);
+std::map<perception::TileKey, perception::ScanSegment> storeScan(rdf::WriteTransaction& transaction, PreparedScan scan);
 
 /// Removes a scan; returns the tiles that it touched. Throws Error (NotFound) when there is none.
 TileSet removeScan(rdf::WriteTransaction& transaction, const scan::ScanId& id);
