@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/parallel.hpp"
 #include "rules/objects/crown_splitting.hpp"
 
 namespace cluxel::rules {
@@ -43,7 +44,7 @@ class Gathering {
     if (gatherers_.empty()) return;
     state_.trace.enter(mixed(StepKind::Gathered, hashOf(class_iri_)));
     const CluxelGrid theirs(state_.scene.cluxels, cluxelsOfGatherers());
-    for (FragmentIndex fragment = 0; fragment < state_.fragments.size(); ++fragment) lookAround(fragment, theirs);
+    lookAround(0, theirs);
     for (std::uint64_t round = 1;; ++round) {
       state_.trace.enterRound(round);
       const std::vector<ReachedFragment> in_reach = reached();
@@ -51,7 +52,7 @@ class Gathering {
       const auto before = static_cast<FragmentIndex>(state_.fragments.size());
       for (const ReachedFragment& found : in_reach) hand(found, given);
       if (given.empty()) break;
-      for (FragmentIndex made = before; made < state_.fragments.size(); ++made) lookAround(made, state_.grid);
+      lookAround(before, state_.grid);
       for (const FragmentIndex fragment : given) spreadFrom(fragment);
     }
     for (const Gatherer& gatherer : gatherers_) renew(gatherer);
@@ -141,10 +142,20 @@ class Gathering {
     return all;
   }
 
-  /// Notes which gatherers are near a free fragment. The grid holds all of their cluxels. The search narrows to the
-  /// largest of the gaps that are known so far: most fragments touch what they are near.
-  void lookAround(FragmentIndex fragment, const CluxelGrid& grid) {
-    if (!isFree(fragment) || widestFor(fragment) == 0) return;
+  /// Notes which gatherers are near the free ones among the fragments from `first` on. The grid holds all of their
+  /// cluxels.
+  void lookAround(FragmentIndex first, const CluxelGrid& grid) {
+    std::vector<std::vector<Nearing>> near(state_.fragments.size() - first);
+    parallelFor(near.size(), state_.threads(),
+                [&](std::size_t i) { near[i] = nearTo(first + static_cast<FragmentIndex>(i), grid); });
+    for (std::size_t i = 0; i < near.size(); ++i)
+      for (const Nearing& one : near[i])
+        if (one.is_near) note(first + static_cast<FragmentIndex>(i), one.gatherer, one.gap_m);
+  }
+
+  /// The search narrows to the largest of the gaps that are known so far: most fragments touch what they are near.
+  std::vector<Nearing> nearTo(FragmentIndex fragment, const CluxelGrid& grid) const {
+    if (!isFree(fragment) || widestFor(fragment) == 0) return {};
     std::vector<Nearing> nearing = possibleFor(fragment);
     const auto widest = [&nearing] {
       double gap = -1;
@@ -166,8 +177,7 @@ class Gathering {
       });
       if (has_changed) search_m = widest();
     }
-    for (const Nearing& one : nearing)
-      if (one.is_near) note(fragment, one.gatherer, one.gap_m);
+    return nearing;
   }
 
   /// The gatherers that may take the fragment and whose bounds are near its own.
