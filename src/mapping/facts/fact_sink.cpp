@@ -97,12 +97,11 @@ void FactSink::removeUnit(const FactUnitKey& key) {
 }
 
 rdf::TermId FactSink::property(std::string_view name) {
-  const auto [place, is_new] = properties_.try_emplace(std::string(name), rdf::kNoTerm);
-  if (is_new) {
-    const bool is_full = name.find(':') != std::string_view::npos;
-    place->second = iri(is_full ? std::string(name) : rdf::vocabulary::clx(name));
-  }
-  return place->second;
+  if (const auto known = properties_.find(name); known != properties_.end()) return known->second;
+  const bool is_full = name.find(':') != std::string_view::npos;
+  const rdf::TermId id = iri(is_full ? std::string(name) : rdf::vocabulary::clx(name));
+  properties_.emplace(name, id);
+  return id;
 }
 
 void FactSink::link(rdf::TermId subject, std::string_view property_name, rdf::TermId object) {
@@ -127,7 +126,8 @@ void FactSink::term(rdf::TermId subject, std::string_view property_name, const T
 }
 
 void FactSink::number(rdf::TermId subject, std::string_view property_name, double value) {
-  literal(subject, property_name, decimalText(value, 3), rdf::vocabulary::xsd("decimal"));
+  decimal_.text = decimalText(value, 3);
+  link(subject, property_name, writer_.intern(decimal_));
 }
 
 void FactSink::count(rdf::TermId subject, std::string_view property_name, std::uint64_t value) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -12,6 +13,7 @@
 
 #include "mapping/facts/fact_units.hpp"
 #include "rdf/store/quad_store.hpp"
+#include "rdf/vocabulary.hpp"
 
 namespace cluxel::mapping {
 
@@ -76,7 +78,12 @@ class FactSink {
   rdf::QuadWriter writer_;
   rdf::TermId graph_;
   bool is_collecting_, is_whole_, has_units_, replaces_others_;
-  std::unordered_map<std::string, rdf::TermId> properties_;
+  /// Finds a name without a copy of it.
+  struct NameHash : std::hash<std::string_view> {
+    using is_transparent = void;
+  };
+  std::unordered_map<std::string, rdf::TermId, NameHash, std::equal_to<>> properties_;
+  Term decimal_ = Term::literal("", rdf::vocabulary::xsd("decimal"));  ///< the number at hand
   std::vector<rdf::QuadIds> of_units_, others_;
   std::size_t unit_begin_ = 0;  ///< in of_units_
   bool in_unit_ = false;
