@@ -162,10 +162,9 @@ class Gathering {
       for (const Nearing& one : nearing) gap = std::max(gap, one.gap_m);
       return gap;
     };
-    double search_m = widest();
     for (const std::uint32_t cluxel : state_.fragments[fragment].cluxels) {
+      const double search_m = widest();
       if (search_m <= 0) break;
-      bool has_changed = false;
       grid.near(cluxel, search_m, [&](std::uint32_t other) {
         const auto* numbers = gatherersAt(other);
         if (numbers == nullptr) return;
@@ -173,9 +172,8 @@ class Gathering {
         for (Nearing& one : nearing)
           if (std::binary_search(numbers->begin(), numbers->end(), one.gatherer) &&
               (gap < one.gap_m || (gap == one.gap_m && !one.is_near)))
-            one.gap_m = gap, one.is_near = has_changed = true;
+            one.gap_m = gap, one.is_near = true;
       });
-      if (has_changed) search_m = widest();
     }
     return nearing;
   }
@@ -195,14 +193,7 @@ class Gathering {
   }
 
   Eigen::AlignedBox3d boundsOf(FragmentIndex fragment) const {
-    const perception::SceneCluxels& all = state_.scene.cluxels;
-    Eigen::AlignedBox3d bounds;
-    for (const std::uint32_t cluxel : state_.fragments[fragment].cluxels) {
-      const Eigen::Vector3d half = all.extent[cluxel].cast<double>() / 2;
-      bounds.extend(all.center[cluxel] - half);
-      bounds.extend(all.center[cluxel] + half);
-    }
-    return bounds;
+    return boxAround(state_.scene.cluxels, state_.fragments[fragment].cluxels);
   }
 
   /// Notes which free fragments are near one that an object has just got.

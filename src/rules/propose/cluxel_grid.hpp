@@ -24,6 +24,17 @@ inline CluxelGap gapBetween(const perception::SceneCluxels& all, std::uint32_t a
   return {std::sqrt(apart.x() * apart.x() + apart.y() * apart.y()), apart.z()};
 }
 
+/// The box around the boxes of cluxels [m, map].
+inline Eigen::AlignedBox3d boxAround(const perception::SceneCluxels& all, std::span<const std::uint32_t> cluxels) {
+  Eigen::AlignedBox3d box;
+  for (const std::uint32_t cluxel : cluxels) {
+    const Eigen::Vector3d half = all.extent[cluxel].cast<double>() / 2;
+    box.extend(all.center[cluxel] - half);
+    box.extend(all.center[cluxel] + half);
+  }
+  return box;
+}
+
 class CluxelGrid {
  public:
   explicit CluxelGrid(const perception::SceneCluxels& all);
