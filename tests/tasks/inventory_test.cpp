@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/file_bytes.hpp"
 #include "mapping/change/map_change.hpp"
 #include "tasks/ask/inventory_task.hpp"
 #include "tasks/campus_map_fixture.hpp"

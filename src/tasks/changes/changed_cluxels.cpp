@@ -3,9 +3,12 @@
 #include "tasks/changes/changed_cluxels.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
 #include "base/parallel.hpp"
+#include "mapping/presence/ray_pass.hpp"
 #include "perception/visibility/presence.hpp"
 #include "perception/visibility/ray_bundle.hpp"
 
@@ -16,12 +19,14 @@ namespace {
 using perception::RayVerdict;
 using Cluster = std::vector<std::uint32_t>;
 
+constexpr std::size_t kScanBits = 64;  ///< of RayFindings::passed_scans
+
 void count(std::uint8_t& scans) {
   if (scans < 255) ++scans;
 }
 
 void look(const perception::RayBundle& bundle, const perception::SceneCluxels& cluxels, const Cluster& numbers,
-          unsigned threads, std::vector<RayFindings>& found) {
+          std::uint64_t scan_bit, unsigned threads, std::vector<RayFindings>& found) {
   constexpr std::size_t kChunk = 2048;
   constexpr perception::RayParams kParams;
   parallelFor((numbers.size() + kChunk - 1) / kChunk, threads, [&](std::size_t chunk) {
@@ -33,7 +38,7 @@ void look(const perception::RayBundle& bundle, const perception::SceneCluxels& c
       if (place.verdict == RayVerdict::SeenThrough) count(found[i].seen_through);
       if (place.verdict == RayVerdict::SeenThrough) found[i].is_seen_through = true;
       if (place.verdict == RayVerdict::Hit && place.is_sparse) count(found[i].sparse_hits);
-      if (place.verdict == RayVerdict::FewPassed) count(found[i].passed);
+      if (place.verdict == RayVerdict::FewPassed) count(found[i].passed), found[i].passed_scans |= scan_bit;
     }
   });
 }
@@ -59,6 +64,8 @@ class Clustering {
  private:
   static constexpr std::size_t kMinCluxels = 5, kMany = 10;
   static constexpr double kShown = 3.5;  ///< log-odds of each cluxel of what is gone, on average
+  /// Log-odds that one scan with few rays adds at most. Its rays miss a thing together when its pose is off.
+  static constexpr double kMostOfScan = 2;
   static constexpr double kMinShare = 0.75, kMinShareOfMany = 0.5, kThin_m = 0.3;
   static constexpr perception::PresenceParams kPresence{};
 
@@ -159,8 +166,12 @@ class Clustering {
 
   bool isSureFromFewRays(const Cluster& cluster, const Cluster& around) const {
     const double each = std::log((1 - sparseHits(cluster, around)) / (1 - kPresence.hit_when_gone));
+    std::array<double, kScanBits> of_scan{};
+    for (const std::uint32_t cluxel : cluster)
+      for (std::uint64_t rest = findingsAt(cluxel, false)->passed_scans; rest != 0; rest &= rest - 1)
+        of_scan[static_cast<std::size_t>(std::countr_zero(rest))] += std::min(each, 0.0);
     double log_odds = 0;
-    for (const std::uint32_t cluxel : cluster) log_odds += std::min(each, 0.0) * findingsAt(cluxel, false)->passed;
+    for (const double sum : of_scan) log_odds += std::max(sum, -kMostOfScan);
     return log_odds <= -kPresence.decided;
   }
 
@@ -178,11 +189,13 @@ CluxelFindings findingsAt(const mapping::MapReader& map, double since_s, const s
   for (std::uint32_t i = 0; i < wanted.size(); ++i)
     if (wanted[i]) findings.numbers.push_back(i);
   findings.before.resize(findings.numbers.size()), findings.after.resize(findings.numbers.size());
-  for (const mapping::Cloud& cloud : map.clouds()) {
-    if (!cloud.time_s || !cloud.has_pose) continue;
-    perception::forEachRayBundle(map.scanOf(cloud.id), [&](const perception::RayBundle& bundle) {
-      look(bundle, map.scene().cluxels, findings.numbers, threads,
-           *cloud.time_s < since_s ? findings.before : findings.after);
+  const std::vector<mapping::Cloud> clouds = map.clouds();
+  std::size_t number = 0;
+  for (const mapping::Cloud* cloud : mapping::timedClouds(clouds)) {
+    const std::uint64_t bit = std::uint64_t{1} << (number++ % kScanBits);
+    perception::forEachRayBundle(map.scanOf(cloud->id), [&](const perception::RayBundle& bundle) {
+      look(bundle, map.scene().cluxels, findings.numbers, bit, threads,
+           *cloud->time_s < since_s ? findings.before : findings.after);
     });
   }
   return findings;

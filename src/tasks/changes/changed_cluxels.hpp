@@ -16,6 +16,8 @@ struct RayFindings {
   std::uint8_t hits = 0, seen_through = 0;  ///< scans that hit the place, scans of which several rays saw through it
   /// Scans with so few rays near the place that they may have missed a thin thing: those that hit, those that passed.
   std::uint8_t sparse_hits = 0, passed = 0;
+  /// Those that passed, as bits: scans are numbered by time, modulo 64. Scans that share a bit count once.
+  std::uint64_t passed_scans = 0;
 
   /// Rays passed the place, and none ended there.
   bool isEmpty() const { return !is_hit && (is_seen_through || passed > 0); }
@@ -48,8 +50,9 @@ std::vector<CluxelChange> changesOf(const CluxelFindings& findings, std::size_t 
 /// - Enough of the decided cluxels in and around it changed like it, and enough of its cluxels were seen through by
 ///   several rays of one scan: 75 % and 5 cluxels, or 50 % and 10 cluxels.
 /// - It has 10 or more cluxels, is at least 0.3 m wide, 75 % changed like it, and enough scans with few rays passed it.
-///   Each such scan adds log((1 - p) / 0.95), where p is the share of hits among such scans in and around the cluster
-///   while the thing was there. The sum must be -6 or less.
+///   Each such scan adds log((1 - p) / 0.95) for each cluxel that it passed, where p is the share of hits among such
+///   scans in and around the cluster while the thing was there, but -2 at least: where the pose of a scan is off, its
+///   rays miss all of a thing together. The sum must be -6 or less, so that three scans are needed.
 std::vector<std::vector<std::uint32_t>> clustersOf(CluxelChange kind, const std::vector<CluxelChange>& changes,
                                                    const CluxelFindings& findings,
                                                    const perception::SceneCluxels& cluxels);
