@@ -139,11 +139,10 @@ bool Laser::reaches(const Eigen::Isometry3d& T_map_sensor, const Vector3d& place
          elevation <= (spins ? kHighestRing_rad : kHighest_rad);
 }
 
-double Laser::meanStep_rad() const {
-  const CampusParams& params = impl_->campus.params;
-  const bool spins = params.laser == LaserKind::Spinning;
+double Laser::meanStep_rad(std::size_t stop) const {
+  const bool spins = impl_->campus.params.laser == LaserKind::Spinning;
   const double height = spins ? kHighestRing_rad - kLowestRing_rad : kHighest_rad - kLowest_rad;
-  return std::sqrt(height * 2 * std::numbers::pi / params.points_per_stop);
+  return std::sqrt(height * 2 * std::numbers::pi / static_cast<double>(impl_->gridFor(stop).size()));
 }
 
 namespace {

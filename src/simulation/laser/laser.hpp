@@ -46,8 +46,9 @@ class Laser {
   /// Whether rays of a sensor with this pose may go there by their elevation and range.
   bool reaches(const Eigen::Isometry3d& T_map_sensor, const Eigen::Vector3d& place_map) const;
 
-  /// The angle between neighbouring rays, the same in both directions on average, when most rays return.
-  double meanStep_rad() const;
+  /// The angle between neighbouring rays of the scan at a stop, the same in both directions on average. Cost: that of
+  /// 6000 rays.
+  double meanStep_rad(std::size_t stop) const;
 
   /// One full turn at a stop: elevations from -50 to 55 degrees, with equal angular steps in pan and tilt,
   /// chosen from a coarse preview turn so that about points_per_stop rays return. Throws Error (InvalidArgument) for a

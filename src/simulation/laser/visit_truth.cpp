@@ -24,6 +24,8 @@ namespace {
 using Eigen::AlignedBox3d, Eigen::Vector3d;
 
 constexpr double kBehind_m = 0.05;  ///< a ray that ends this much before a surface counts as reaching it
+/// Rays in each direction for one of the laser: its own pass small things that others like them would meet.
+constexpr int kFiner = 3;
 
 /// The surfaces of each object, as it stood when it was first there.
 std::map<std::int32_t, std::vector<CampusMesh>> surfacesOfObjects(const VisitedSite& site) {
@@ -52,30 +54,55 @@ struct LoneObject {
   AlignedBox3d bounds;
 };
 
-/// The points within `part` that a visit measures on the object, or would if it stood there: rays at the mean angular
-/// steps of the laser through the object's bounds, from each stop.
-std::size_t pointsOn(const LoneObject& object, const AlignedBox3d& part, const Campus& campus, const Laser& scene) {
-  std::size_t points = 0;
-  const double step_rad = scene.meanStep_rad();
-  for (const Eigen::Isometry3d& T_map_sensor : campus.stops) {
-    const Vector3d origin = T_map_sensor.translation(), middle = object.bounds.center() - origin;
-    const double distance = middle.norm(), radius = 0.5 * object.bounds.sizes().norm();
-    const double half_angle = std::asin(std::min(0.99, radius / distance));
-    const Vector3d forward = middle.normalized(), right = forward.unitOrthogonal(), up = forward.cross(right);
-    const int steps = static_cast<int>(std::ceil(half_angle / step_rad));
-    for (int i = -steps; i <= steps; ++i)
-      for (int j = -steps; j <= steps; ++j) {
-        const Vector3d way = forward + std::tan(i * step_rad) * right + std::tan(j * step_rad) * up;
-        const Vector3d direction = way.normalized();
-        const auto hit = object.laser->cast(origin, direction);
-        if (!hit) continue;
-        const Vector3d place = origin + hit->range_m * direction;
-        if (!part.contains(place) || !scene.reaches(T_map_sensor, place)) continue;
-        const auto first = scene.cast(origin, direction);
-        points += first && first->range_m >= hit->range_m - kBehind_m ? 1 : 0;
-      }
+/// A visit: its campus and how densely the laser looks from each stop.
+struct VisitScene {
+  explicit VisitScene(const Campus& the_campus) : campus(the_campus), laser(the_campus) {
+    for (std::size_t stop = 0; stop < campus.stops.size(); ++stop) step_rad.push_back(laser.meanStep_rad(stop));
   }
-  return points;
+  VisitScene(const VisitScene&) = delete;
+
+  const Campus& campus;
+  Laser laser;
+  std::vector<double> step_rad;  ///< between rays, by stop
+};
+
+/// The rays within `part` that reach the object from a stop, or would if it stood there: `finer` by `finer` for each
+/// ray of the laser, in a grid through the object's bounds.
+std::size_t raysOn(const LoneObject& object, const AlignedBox3d& part, const VisitScene& visit, std::size_t stop,
+                   int finer) {
+  const Eigen::Isometry3d& T_map_sensor = visit.campus.stops[stop];
+  const double step_rad = visit.step_rad[stop] / finer;
+  const Vector3d origin = T_map_sensor.translation(), middle = object.bounds.center() - origin;
+  const double distance = middle.norm(), radius = 0.5 * object.bounds.sizes().norm();
+  const double half_angle = std::asin(std::min(0.99, radius / distance));
+  const Vector3d forward = middle.normalized(), right = forward.unitOrthogonal(), up = forward.cross(right);
+  const int steps = static_cast<int>(std::ceil(half_angle / step_rad));
+  std::size_t rays = 0;
+  for (int i = -steps; i <= steps; ++i)
+    for (int j = -steps; j <= steps; ++j) {
+      const Vector3d way = forward + std::tan(i * step_rad) * right + std::tan(j * step_rad) * up;
+      const Vector3d direction = way.normalized();
+      const auto hit = object.laser->cast(origin, direction);
+      if (!hit) continue;
+      const Vector3d place = origin + hit->range_m * direction;
+      if (!part.contains(place) || !visit.laser.reaches(T_map_sensor, place)) continue;
+      const auto first = visit.laser.cast(origin, direction);
+      rays += first && first->range_m >= hit->range_m - kBehind_m ? 1 : 0;
+    }
+  return rays;
+}
+
+/// The points within `part` that a visit measures on the object, or would if it stood there. Where they are few, a
+/// finer grid counts them: zero only when none of its rays reaches the object.
+std::size_t pointsOn(const LoneObject& object, const AlignedBox3d& part, const VisitScene& visit) {
+  const auto rays = [&](int finer) {
+    std::size_t sum = 0;
+    for (std::size_t stop = 0; stop < visit.step_rad.size(); ++stop) sum += raysOn(object, part, visit, stop, finer);
+    return sum;
+  };
+  constexpr std::size_t kFew = 50;
+  if (const std::size_t points = rays(1); points >= kFew) return points;
+  return (rays(kFiner) + kFiner * kFiner - 1) / (kFiner * kFiner);
 }
 
 bool isScored(const CampusObject& object) {
@@ -106,7 +133,7 @@ class TruthTables {
     for (const auto& [instance, meshes] : surfacesOfObjects(site))
       if (instance >= 0 && isScored(objects_[static_cast<std::size_t>(instance)]))
         lone_.emplace(instance, std::make_unique<LoneObject>(site.visits.front().params, meshes, boxOf(instance)));
-    for (const Campus& campus : site.visits) scenes_.push_back(std::make_unique<Laser>(campus));
+    for (const Campus& campus : site.visits) scenes_.push_back(std::make_unique<VisitScene>(campus));
   }
 
   std::string events() const {
@@ -152,7 +179,7 @@ class TruthTables {
   }
 
   std::size_t pointsIn(std::int32_t instance, const AlignedBox3d& part, std::size_t visit) const {
-    return pointsOn(*lone_.at(instance), padded(part), site_.visits[visit], *scenes_[visit]);
+    return pointsOn(*lone_.at(instance), padded(part), *scenes_[visit]);
   }
 
   /// Points on a part in the visit before an event and in its own; empty when there is no such part.
@@ -165,7 +192,7 @@ class TruthTables {
   const std::vector<CampusObject>& objects_;
   unsigned threads_;
   std::map<std::int32_t, std::unique_ptr<LoneObject>> lone_;
-  std::vector<std::unique_ptr<Laser>> scenes_;
+  std::vector<std::unique_ptr<VisitScene>> scenes_;
 };
 
 }  // namespace
