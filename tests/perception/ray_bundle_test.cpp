@@ -16,17 +16,19 @@ namespace {
 PlaceVerdict verdictOfAll(const std::vector<Eigen::Vector3f>& ends, const Eigen::Vector3d& origin,
                           const Eigen::Vector3d& place_map, const RayParams& params) {
   const Eigen::Vector3d place = place_map - origin;
-  int hitting = 0, passing = 0;
+  int hitting = 0, passing = 0, near = 0;
   for (const Eigen::Vector3f& each : ends) {
     const Eigen::Vector3d end = each.cast<double>();
     const double range = end.norm(), along = place.dot(end) / range;
     if (along <= 0 || place.squaredNorm() - along * along > params.near_m * params.near_m) continue;
+    ++near;
     hitting += std::abs(range - along) <= params.hit_m ? 1 : 0;
     passing += range >= along + params.behind_m ? 1 : 0;
   }
   if (hitting + passing == 0) return {};
   const bool is_sparse = hitting + passing < params.min_rays;
   if (hitting > 0) return {RayVerdict::Hit, is_sparse};
+  if (near - passing > passing) return {};
   return {is_sparse ? RayVerdict::FewPassed : RayVerdict::SeenThrough, is_sparse};
 }
 
@@ -78,6 +80,20 @@ TEST(RayBundle, TellsWhatIsHitHiddenAndSeenThrough) {
   EXPECT_EQ(bundle.verdictAt({5, 4, 0}, {}).verdict, RayVerdict::NotCovered) << "no ray goes there";
   EXPECT_EQ(bundle.verdictAt({-5, 0, 0}, {}).verdict, RayVerdict::NotCovered) << "behind the sensor";
   EXPECT_EQ(bundle.verdictAt({9.7, 0, 0}, {}).verdict, RayVerdict::NotCovered) << "too near the wall to tell";
+}
+
+TEST(RayBundle, ConcludesNothingAtTheEdgeOfWhatHidesAPlace) {
+  std::vector<Eigen::Vector3f> ends = wallAhead(0.05);
+  const auto endAtBoard = [&](double edge_y) {  // a board 2 m ahead: rays to the left of an edge on the wall
+    std::vector<Eigen::Vector3f> shortened = ends;
+    for (Eigen::Vector3f& end : shortened)
+      if (end.y() > edge_y) end *= 0.2F;
+    return RayBundle(Eigen::Vector3d::Zero(), shortened);
+  };
+  const Eigen::Vector3d place(5, 0, 0);
+  EXPECT_EQ(endAtBoard(0.12).verdictAt(place, {}).verdict, RayVerdict::SeenThrough);
+  EXPECT_EQ(endAtBoard(-0.12).verdictAt(place, {}).verdict, RayVerdict::NotCovered);
+  EXPECT_EQ(endAtBoard(-0.4).verdictAt(place, {}).verdict, RayVerdict::NotCovered);
 }
 
 TEST(RayBundle, DoesNotConcludeFromFewRays) {

@@ -50,6 +50,7 @@ PlaceVerdict RayBundle::verdictAt(const Eigen::Vector3d& place_map, const RayPar
   });
   const bool is_sparse = hitting + passing < params.min_rays;
   if (hitting > 0) return {RayVerdict::Hit, is_sparse};
+  if (passing > 0 && others > passing) return {};
   if (passing >= params.min_rays) return {RayVerdict::SeenThrough, false};
   if (others == 0 && isBeforeSky(place, params)) return {RayVerdict::SeenThrough, false};
   if (passing == 0) return {};

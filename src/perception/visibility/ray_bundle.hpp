@@ -18,7 +18,7 @@ namespace cluxel::perception {
 
 /// What the rays near a place say about it.
 enum class RayVerdict : std::uint8_t {
-  NotCovered,   ///< no ray came near, or all that did ended before it
+  NotCovered,   ///< no ray came near, or most that did ended before it: it lies at the edge of what hides it
   Hit,          ///< some ray ended there
   SeenThrough,  ///< several rays passed it and ended behind it, or into the sky; none ended there
   FewPassed,    ///< fewer did: not enough to tell that a thin thing is not there
