@@ -70,6 +70,14 @@ inline TileSet withRing(const TileSet& tiles, const TileSet& existing) {
   return all;
 }
 
+/// The tiles with all those around them, whether there is anything in them or not.
+inline TileSet grown(const TileSet& tiles) {
+  TileSet all;
+  for (const TileKey& tile : tiles)
+    for (const TileKey& near : ringOf(tile)) all.insert(near);
+  return all;
+}
+
 inline TileSet unionOf(TileSet a, const TileSet& b) {
   a.insert(b.begin(), b.end());
   return a;

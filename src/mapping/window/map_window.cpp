@@ -24,14 +24,9 @@ struct WindowTiles {
 /// Changed tiles may be gone: what lies around them counts.
 WindowTiles tilesAround(const TileSet& changed, const TileSet& more, int rings, const TileSet& map) {
   WindowTiles tiles;
-  TileSet grown = changed;
-  for (int ring = 0; ring < rings; ++ring) {
-    TileSet next;
-    for (const TileKey& tile : grown)
-      for (const TileKey& near : perception::ringOf(tile)) next.insert(near);
-    grown = std::move(next);
-  }
-  std::set_intersection(grown.begin(), grown.end(), map.begin(), map.end(),
+  TileSet around = changed;
+  for (int ring = 0; ring < rings; ++ring) around = perception::grown(around);
+  std::set_intersection(around.begin(), around.end(), map.begin(), map.end(),
                         std::inserter(tiles.held, tiles.held.end()));
   for (const TileKey& tile : more)
     if (map.contains(tile)) tiles.held.insert(tile);

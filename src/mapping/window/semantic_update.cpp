@@ -32,7 +32,8 @@ using perception::TileSet;
 constexpr int kRings = 1;  ///< of tiles around the changed ones that a window holds at least
 /// The number of layers around a change that have to lie in the window; more where that is not enough.
 constexpr std::array<std::uint32_t, 4> kDepths{5, 8, 13, 21};
-constexpr std::size_t kMaxAttempts = 60;
+constexpr std::size_t kMaxAttempts = 40;
+constexpr std::size_t kNarrowAttempts = 6;  ///< later ones add the tiles around, too: each attempt costs a window
 
 /// Leaves out what is in both lists; both are sorted by id.
 void keepDifferent(std::vector<ObjectMembers>& before, std::vector<ObjectMembers>& after) {
@@ -85,7 +86,7 @@ class LocalUpdate {
       const rules::LocalInput input = localInputOf(*window, change);
       rules::LocalRun rules_run(input, parsed_.rules, context(), *reach_m);
       const TileSet beyond = tilesBeyond(*window, change, changes_, transaction_, rules_run.layers(), kDepths[depth]);
-      more.insert(beyond.begin(), beyond.end());
+      more = perception::unionOf(std::move(more), attempt < kNarrowAttempts ? beyond : perception::grown(beyond));
       if (!beyond.empty()) continue;
       sink_.progress("scene", window->scene.primitives.size(), window->scene.primitives.size());
       auto decision = decideIn(*window, change, transaction_, rules_run);

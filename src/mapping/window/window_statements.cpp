@@ -75,8 +75,7 @@ WindowStatements::WindowStatements(const rdf::ReadTransaction& transaction, cons
     : transaction_(transaction), parsed_(parsed), stages_(stages), clouds_(clouds) {
   if (before.statements.empty() && now.statements.empty()) return;
   statements_ = storedStatements(rdf::QuadReader(transaction));
-  for (const TileKey& tile : changes.tiles)
-    for (const TileKey& near : perception::ringOf(tile)) near_change_.insert(near);
+  near_change_ = perception::grown(changes.tiles);
   records_ = overruledRecords(transaction);
   const StatementTiles former = storedStatementTiles(transaction);
   const TileSet map = perception::unionOf(storedTiles(transaction), changes.tiles);
