@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "ablation.hpp"
-#include "bench_scans.hpp"
 #include "base/radix_order.hpp"
+#include "bench_scans.hpp"
 #include "perception/crf/pair_cost_table.hpp"
 #include "perception/crf/tree_scoring.hpp"
 #include "perception/features/cluxel_graph.hpp"

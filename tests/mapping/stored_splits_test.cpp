@@ -4,8 +4,8 @@
 
 #include "mapping/change/map_change.hpp"
 #include "mapping/facts/semantic_layer.hpp"
-#include "mapping/splits_store.hpp"
 #include "mapping/small_campus.hpp"
+#include "mapping/splits_store.hpp"
 #include "rules/decide/reason.hpp"
 
 namespace cluxel::mapping {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <deque>
+#include <exception>
 #include <optional>
 #include <set>
 #include <utility>
@@ -61,6 +62,7 @@ std::vector<ObjectMembers> namesOf(const std::vector<rules::SemanticObject>& obj
 struct ReadScan {
   scan::ScanReading reading;
   PreparedScan scan;
+  std::exception_ptr fault;  ///< told when it is the scan's turn: batches before it are committed first
 };
 
 class MapBuild {
@@ -134,12 +136,17 @@ class MapBuild {
     if (ahead_.empty()) {
       ahead_.resize(std::min<std::size_t>(std::max(params_.threads, 1U), scans_.size() - number));
       parallelFor(ahead_.size(), params_.threads, [&](std::size_t i) {
-        const scan::LoadedScan loaded = scans_.read(number + i);
-        ahead_[i] = {loaded.reading, prepareScan(loaded.scan)};
+        try {
+          const scan::LoadedScan loaded = scans_.read(number + i);
+          ahead_[i] = {loaded.reading, prepareScan(loaded.scan), nullptr};
+        } catch (...) {
+          ahead_[i].fault = std::current_exception();
+        }
       });
     }
     ReadScan first = std::move(ahead_.front());
     ahead_.pop_front();
+    if (first.fault) std::rethrow_exception(first.fault);
     return first;
   }
 

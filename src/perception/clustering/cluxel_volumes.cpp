@@ -9,8 +9,8 @@
 #include <limits>
 #include <numeric>
 
-#include "perception/clustering/fast_floor.hpp"
 #include "base/radix_order.hpp"
+#include "perception/clustering/fast_floor.hpp"
 #include "perception/moments.hpp"
 #include "perception/simd_vector.hpp"
 

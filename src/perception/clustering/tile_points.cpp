@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "base/mixed_bits.hpp"
+#include "base/radix_order.hpp"
 #include "cluxel/error.hpp"
 #include "perception/clustering/fast_floor.hpp"
-#include "base/radix_order.hpp"
 
 namespace cluxel::perception {
 namespace {

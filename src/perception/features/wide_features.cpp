@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "perception/clustering/point_grid.hpp"
 #include "base/radix_order.hpp"
+#include "perception/clustering/point_grid.hpp"
 #include "perception/features/feature_groups.hpp"
 
 namespace cluxel::perception {

@@ -2,9 +2,9 @@
 // FLANN's kd-tree, which PCL brings along, and PCL's generalised ICP. Nothing of them leaves this file.
 #include "scan/registration/pcl_registration.hpp"
 
-#include <flann/flann.hpp>
 #include <pcl/registration/gicp.h>
 #include <pcl/search/kdtree.h>
+#include <flann/flann.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
