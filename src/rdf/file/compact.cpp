@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copies a map table by table in key order, which fills all pages and leaves none free.
+#include <optional>
+
 #include "cluxel/error.hpp"
 #include "rdf/file/check/map_structure.hpp"
 #include "rdf/file/lmdb_environment.hpp"
@@ -20,22 +22,61 @@ CursorHandle cursorOn(const ReadTransaction::Impl& state, Table table, const cha
   return CursorHandle(raw);
 }
 
-void copyTable(const ReadTransaction::Impl& from, const ReadTransaction::Impl& to, Table table) {
-  const CursorHandle source = cursorOn(from, table, "read a table"), target = cursorOn(to, table, "write a table");
+/// Commits now and then: LMDB keeps what a transaction has written in memory.
+class CopyTarget {
+ public:
+  explicit CopyTarget(Environment& to) : to_(to) { transaction_.emplace(to.write()); }
+
+  WriteTransaction& transaction() { return *transaction_; }
+  const ReadTransaction::Impl& impl() { return transaction_->impl(); }
+
+  /// Where the next keys of the table go, in ascending order. `bytes` are those that follow.
+  MDB_cursor* cursorFor(Table table, std::size_t bytes) {
+    constexpr std::size_t kMaxBytes = std::size_t{128} << 20U;
+    if (written_ > 0 && written_ + bytes > kMaxBytes) {
+      cursor_.reset();
+      ++transaction_->impl().generation;  // so that the commit writes its sums; those of the last one count
+      transaction_->commit();
+      transaction_.reset();
+      transaction_.emplace(to_.write());
+      written_ = 0;
+    }
+    if (!cursor_ || table != table_) cursor_ = cursorOn(impl(), table_ = table, "write a table");
+    written_ += bytes;
+    return cursor_.get();
+  }
+
+  void closeCursor() { cursor_.reset(); }
+
+ private:
+  Environment& to_;
+  std::optional<WriteTransaction> transaction_;
+  CursorHandle cursor_;  ///< closed before the transaction
+  Table table_ = Table::Terms;
+  std::size_t written_ = 0;
+};
+
+void copyTable(const ReadTransaction::Impl& from, CopyTarget& to, Table table) {
+  const CursorHandle source = cursorOn(from, table, "read a table");
   MDB_val key;
   MDB_val value;
   int code = mdb_cursor_get(source.get(), &key, &value, MDB_FIRST);
   for (; code == MDB_SUCCESS; code = mdb_cursor_get(source.get(), &key, &value, MDB_NEXT)) {
     if (table == Table::Blocks) verifiedBlock(toView(key), toView(value), from.environment->file());
-    to.check(mdb_cursor_put(target.get(), &key, &value, MDB_APPEND), "write a table");
+    MDB_cursor* target = to.cursorFor(table, key.mv_size + value.mv_size);
+    to.impl().check(mdb_cursor_put(target, &key, &value, MDB_APPEND), "write a table");
   }
   if (code != MDB_NOTFOUND) from.check(code, "read a table");
 }
 
-void copyIndex(const ReadTransaction::Impl& from, const ReadTransaction::Impl& to, Table index) {
-  const CursorHandle source = cursorOn(from, index, "read an index"), target = cursorOn(to, index, "write an index");
+void copyIndex(const ReadTransaction::Impl& from, CopyTarget& to, Table index) {
+  const CursorHandle source = cursorOn(from, index, "read an index");
   const PageDirectory pages(source.get());
-  for (std::size_t i = 0; i < pages.pageCount(); ++i) appendKeys(to, target.get(), pages.page(i));
+  for (std::size_t i = 0; i < pages.pageCount(); ++i) {
+    const auto keys = pages.page(i);
+    MDB_cursor* target = to.cursorFor(index, keys.size_bytes());
+    appendKeys(to.impl(), target, keys);
+  }
 }
 
 /// The format and the sums of block keys; tables, which stand in the same database, have their own copies.
@@ -52,11 +93,13 @@ void copyMainRecords(const ReadTransaction::Impl& from, const ReadTransaction::I
 }
 
 void copyAll(const ReadTransaction& from, Environment& to) {
-  WriteTransaction transaction = to.write();
-  // The long blocks last: LMDB searches all pages of a transaction at each write.
+  CopyTarget target(to);
   for (const Table index : {Table::TermHashes, Table::Spog, Table::Posg, Table::Ospg, Table::Gspo})
-    copyIndex(from.impl(), transaction.impl(), index);
-  for (const Table table : {Table::Terms, Table::Blocks}) copyTable(from.impl(), transaction.impl(), table);
+    copyIndex(from.impl(), target, index);
+  // The long blocks last: LMDB searches all pages of a transaction at each write.
+  for (const Table table : {Table::Terms, Table::Blocks}) copyTable(from.impl(), target, table);
+  target.closeCursor();
+  WriteTransaction& transaction = target.transaction();
   copyMainRecords(from.impl(), transaction.impl());
   const std::size_t commit = mdb_txn_id(from.impl().live());
   if (const auto sums = storedSums(from.impl(), commit))
