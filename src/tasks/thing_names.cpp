@@ -83,7 +83,10 @@ NamedThing find(const mapping::MapReader& map, const std::string& name) {
     throw Error(ErrorKind::InvalidArgument,
                 "'" + name + "' is too short: write the number of an object, or at least four digits of a hash");
   if (const auto number = findOne(objects, "object", name)) take(*number);
-  if (const auto number = findOne(map.primitiveIds(), "primitive", name)) named.primitive = map.primitiveIds()[*number];
+  const bool is_whole_hash = name.size() >= 2 * sizeof(ContentHash::bytes);  // names one thing
+  if (!named.object || !is_whole_hash)
+    if (const auto number = findOne(map.primitiveIds(), "primitive", name))
+      named.primitive = map.primitiveIds()[*number];
   // Four digits or more may be meant as a number too; a hash that begins so comes first, "#" makes it a number.
   if (!named.object && !named.primitive)
     if (const auto number = numberIn(name); number && *number < objects.size()) take(*number);
