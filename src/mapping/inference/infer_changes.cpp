@@ -243,9 +243,9 @@ void ChangeInference::finish() {
   record_.late = facts_.lateNow();
 }
 
-/// Following a quad costs as much as inferring anew from a hundred.
+/// Following a quad costs as much as inferring anew from some forty.
 bool isLarge(const rdf::WriteTransaction& transaction, const rdf::QuadDifference& change) {
-  constexpr std::uint64_t kFewQuads = 1000, kShare = 100;
+  constexpr std::uint64_t kFewQuads = 1000, kShare = 40;
   const rdf::QuadReader reader(static_cast<const rdf::ReadTransaction&>(transaction));
   return change.added.size() + change.removed.size() > kFewQuads + reader.size() / kShare;
 }
