@@ -232,7 +232,12 @@ void WindowStatements::store(rdf::WriteTransaction& transaction, const MapWindow
   for (const ContentHash& record : erased_) eraseOverruled(transaction, record);
   for (const OverruledObject& overruled : applied_.overruled)
     putOverruled(transaction, recordOf(overruled, window.scene));
-  storeStatementTiles(transaction, places_);
+  StatementTiles kept = places_;
+  const TileSet map = storedTiles(transaction);
+  for (const Statement& statement : statements_)
+    if (statement.kind == StatementKind::IgnoreRegion)  // of points all tiles are kept: a tile may come back
+      std::erase_if(kept[statement.id()], [&](const TileKey& tile) { return !map.contains(tile); });
+  storeStatementTiles(transaction, kept);
 }
 
 }  // namespace cluxel::mapping
