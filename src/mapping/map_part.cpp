@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A window without a change.
+// The part is the window of a change (mapping/window) in which nothing changed.
 #include "mapping/map_part.hpp"
 
 #include <algorithm>

@@ -106,9 +106,10 @@ WindowStatements::WindowStatements(const rdf::ReadTransaction& transaction, cons
   grow(concerned);
 }
 
-/// Adds these tiles, and those of all statements and changed objects in them. False when all are there already.
-bool WindowStatements::grow(const TileSet& tiles) {
-  const std::size_t before = tiles_.size();
+/// Adds these tiles, and those of all statements and changed objects in them. When they are there already, more tiles
+/// do not help.
+void WindowStatements::grow(const TileSet& tiles) {
+  if (!tiles.empty() && includes(tiles_, tiles)) needs_whole_map_ = true;
   tiles_.insert(tiles.begin(), tiles.end());
   for (std::size_t count = 0; count != tiles_.size();) {
     count = tiles_.size();
@@ -120,7 +121,6 @@ bool WindowStatements::grow(const TileSet& tiles) {
     for (const OverruledRecord& record : records_)
       if (const TileSet own = tilesOfRecord(record); haveCommon(own, tiles_)) tiles_.insert(own.begin(), own.end());
   }
-  return tiles_.size() > before;
 }
 
 /// Whether a statement or a changed object lies in what is decided, and in tiles that need not be.
@@ -149,13 +149,8 @@ bool WindowStatements::concernsMixed(const MapWindow& window, const WindowChange
     erased_.insert(record.by_rules);
     if (const TileSet own = tilesOfRecord(record); !includes(tiles_, own)) more.insert(own.begin(), own.end());
   }
-  return !more.empty() && growOrGiveUp(more);
-}
-
-/// True in any case.
-bool WindowStatements::growOrGiveUp(const TileSet& tiles) {
-  if (!grow(tiles)) needs_whole_map_ = true;
-  return true;
+  grow(more);
+  return !more.empty();
 }
 
 bool WindowStatements::apply(const MapWindow& window, const WindowChange& change, WindowDecision& decision) {
@@ -193,7 +188,8 @@ bool WindowStatements::changesWholeObjects(const MapWindow& window, const Window
       continue;
     for (const std::uint32_t cluxel : members) more.insert(all.name[cluxel].tile);
   }
-  return !needs_whole_map_ && (more.empty() || !growOrGiveUp(more));
+  grow(more);
+  return !needs_whole_map_ && more.empty();
 }
 
 /// Whether most points of an object of a whole class may lie in a region. Of tiles near a change all points count

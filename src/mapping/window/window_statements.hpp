@@ -43,8 +43,7 @@ class WindowStatements {
  private:
   struct Touched;
 
-  bool grow(const perception::TileSet& tiles);
-  bool growOrGiveUp(const perception::TileSet& tiles);
+  void grow(const perception::TileSet& tiles);
   bool concernsMixed(const MapWindow& window, const WindowChange& change, const WindowDecision& decision,
                      const Touched& touched);
   bool changesWholeObjects(const MapWindow& window, const WindowDecision& decision);
