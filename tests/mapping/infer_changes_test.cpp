@@ -60,6 +60,7 @@ class Universe {
   void addTree(std::size_t i) {
     type(thing("tree", i), "Tree");
     bounds(thing("tree", i), static_cast<double>(i));
+    number(thing("tree", i), "height", 5);  // inference has nothing to do with it
     for (const std::size_t other : {i + 1, i + 3})
       if (other < 9) add(thing("tree", i), "near", thing("tree", other));
   }

@@ -34,6 +34,22 @@ std::optional<bool> AffectedKeys::goesBySubject(std::size_t read) const {
   return is_key(triple.subject) || (triple.subject.isVariable() && !is_key(triple.object));
 }
 
+/// Whether the value has the types, and other constant objects, that each solution needs of the variable: before the
+/// change or now. False: no solution has or had this value.
+bool AffectedKeys::mayBind(ast::VariableIndex variable, rdf::TermId value) const {
+  for (std::size_t read = 0; read < shape_.reads.size(); ++read) {
+    const ReadPattern& pattern = shape_.reads[read];
+    const bool is_about = !pattern.triple.isPath() && pattern.triple.subject.isVariable() &&
+                          pattern.triple.subject.variable() == variable && !pattern.triple.object.isVariable();
+    if (pattern.need != ReadPattern::Need::Always || !is_about) continue;
+    const auto wanted = reads_.patternOf(read);
+    if (!wanted) return false;
+    const rdf::FactState state = facts_.stateOf({value, wanted->p, wanted->o});
+    if (state.before == rdf::kNever && state.now == rdf::kNever) return false;
+  }
+  return true;
+}
+
 std::optional<std::vector<rdf::TermId>> AffectedKeys::of(const std::vector<rdf::Triple>& changed) const {
   std::map<ast::VariableIndex, std::set<rdf::TermId>> values;
   for (std::size_t read = 0; read < shape_.reads.size(); ++read) {
@@ -48,7 +64,10 @@ std::optional<std::vector<rdf::TermId>> AffectedKeys::of(const std::vector<rdf::
       else
         ends.insert(*by_subject ? fact.s : fact.o);
     }
-    if (!ends.empty()) values[(*by_subject ? triple.subject : triple.object).variable()].merge(ends);
+    if (ends.empty()) continue;
+    const ast::VariableIndex variable = (*by_subject ? triple.subject : triple.object).variable();
+    std::erase_if(ends, [&](rdf::TermId end) { return !mayBind(variable, end); });
+    if (!ends.empty()) values[variable].merge(ends);
   }
   std::vector<rdf::QuadIds> gone;
   for (const rdf::Triple& fact : changed)

@@ -23,6 +23,7 @@ class AffectedKeys {
 
  private:
   std::optional<bool> goesBySubject(std::size_t read) const;
+  bool mayBind(ast::VariableIndex variable, rdf::TermId value) const;
   void addConnected(const rdf::Triple& fact, std::size_t read, std::set<rdf::TermId>& reached) const;
 
   rdf::WriteTransaction& transaction_;

@@ -45,6 +45,10 @@ bool ReadTest::matches(const rdf::Triple& fact) const {
   return false;
 }
 
+std::optional<rdf::Triple> ReadTest::patternOf(std::size_t read) const {
+  return patterns_[read].empty() ? std::nullopt : std::optional(patterns_[read].front());
+}
+
 std::vector<rdf::TermId> ReadTest::linksOf(std::size_t read) const {
   std::vector<rdf::TermId> links;
   for (const rdf::Triple& pattern : patterns_[read]) links.push_back(pattern.p);

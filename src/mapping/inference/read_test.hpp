@@ -2,6 +2,7 @@
 // Tells whether a fact matches a pattern of a rule.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "mapping/inference/rule_shape.hpp"
@@ -16,6 +17,8 @@ class ReadTest {
   bool matches(const rdf::Triple& fact) const;
   /// Whether the fact matches one pattern, by its number in RuleShape::reads.
   bool matches(std::size_t read, const rdf::Triple& fact) const;
+  /// What matches a pattern that is not a path, with kNoTerm for variables. None when the store lacks a term of it.
+  std::optional<rdf::Triple> patternOf(std::size_t read) const;
   /// The properties that the path of a pattern walks.
   std::vector<rdf::TermId> linksOf(std::size_t read) const;
 

@@ -149,6 +149,11 @@ std::vector<rdf::TermId> affectedKeys(const rdf::QuadReader& reader, const RuleS
   return sink.cells();
 }
 
+std::vector<std::string> propertiesOfDerivations() {
+  namespace words = rdf::vocabulary;
+  return {words::rdf("type"), words::rdf("subject"), words::rdf("predicate"), words::rdf("object"), words::clx("rule")};
+}
+
 std::vector<rdf::Triple> derivationOf(const rdf::QuadReader& reader, rdf::QuadWriter& writer, const rdf::Triple& fact,
                                       const NamedText& rule) {
   const std::string name = ruleFileName(rule);
@@ -156,12 +161,13 @@ std::vector<rdf::Triple> derivationOf(const rdf::QuadReader& reader, rdf::QuadWr
   hasher.addText(name);
   for (const rdf::TermId part : {fact.s, fact.p, fact.o}) hasher.addText(toNTriples(reader.termOf(part)));
   const rdf::TermId node = writer.intern(Term::iri(rdf::iriOfDerivation(hasher.finish())));
-  const auto iri = [&](const std::string& name) { return writer.intern(Term::iri(name)); };
-  return {{node, iri(rdf::vocabulary::rdf("type")), iri(rdf::vocabulary::clx("Derivation"))},
-          {node, iri(rdf::vocabulary::rdf("subject")), fact.s},
-          {node, iri(rdf::vocabulary::rdf("predicate")), fact.p},
-          {node, iri(rdf::vocabulary::rdf("object")), fact.o},
-          {node, iri(rdf::vocabulary::clx("rule")), writer.intern(Term::literal(name))}};
+  const auto word = [&](const std::string& iri) { return writer.intern(Term::iri(iri)); };
+  const auto properties = propertiesOfDerivations();
+  return {{node, word(properties[0]), word(rdf::vocabulary::clx("Derivation"))},
+          {node, word(properties[1]), fact.s},
+          {node, word(properties[2]), fact.p},
+          {node, word(properties[3]), fact.o},
+          {node, word(properties[4]), writer.intern(Term::literal(name))}};
 }
 
 }  // namespace cluxel::mapping

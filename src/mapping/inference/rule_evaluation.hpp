@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "mapping/inference/rule_shape.hpp"
@@ -37,6 +38,8 @@ std::vector<RuleOutput> evaluateRule(rdf::WriteTransaction& transaction, const R
 std::vector<rdf::TermId> affectedKeys(const rdf::QuadReader& reader, const RuleShape& shape, const ValuesOf& values,
                                       const rdf::InferenceCheck& check);
 
+/// The properties of the quads of derivationOf().
+std::vector<std::string> propertiesOfDerivations();
 /// The five quads of the resource that records the rule of a derived fact; new terms are added to the writer.
 std::vector<rdf::Triple> derivationOf(const rdf::QuadReader& reader, rdf::QuadWriter& writer, const rdf::Triple& fact,
                                       const NamedText& rule);

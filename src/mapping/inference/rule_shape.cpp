@@ -13,6 +13,7 @@ namespace cluxel::mapping {
 namespace {
 
 using PathKind = ast::Path::Kind;
+using Need = ReadPattern::Need;
 
 bool hasExists(const ast::Expression& expression) {
   if (expression.pattern) return true;
@@ -108,7 +109,7 @@ class ShapeWalk {
     PathExpansion(shape_.query.variables).group(shape_.query.select.where);
     if (!shape_.query.dataset.empty()) return never("it names its graphs");
     const ast::GroupPattern* body = bodyOf();
-    group(*(body != nullptr ? body : &shape_.query.select.where), body != nullptr);
+    group(*(body != nullptr ? body : &shape_.query.select.where), body != nullptr ? Need::Always : Need::No);
     if (body != nullptr) mentionKey(*body);
   }
 
@@ -188,17 +189,17 @@ class ShapeWalk {
     for (ReadPattern& read : shape_.reads) {
       read.has_key = is_key(read.triple.subject) || is_key(read.triple.object);
       const bool has_variable = read.triple.subject.isVariable() || read.triple.object.isVariable();
-      if (!read.has_key && !(read.must_match && has_variable))
+      if (!read.has_key && (read.need == Need::No || !has_variable))
         asWhole("what it excludes or may lack is not about ?" + shape_.query.variables[shape_.key].name);
     }
     shape_.is_plain = shape_.is_plain && !shape_.is_grouped;
   }
 
-  void triples(const ast::TriplesBlock& block, bool must_match) {
+  void triples(const ast::TriplesBlock& block, Need need) {
     for (const ast::TriplePattern& triple : block.triples) {
       ReadPattern read;
       read.triple = triple;
-      read.must_match = must_match;
+      read.need = need;
       if (triple.isPath()) {
         shape_.is_plain = false;
         if (!addLinks(*triple.path, read.links)) return never("a path of it walks any property");
@@ -214,15 +215,15 @@ class ShapeWalk {
     for (const ast::Expression& argument : expression.arguments) this->expression(argument);
     if (!expression.pattern) return;
     shape_.is_plain = false;
-    group(*expression.pattern, false);
+    group(*expression.pattern, Need::No);
   }
 
-  void group(const ast::GroupPattern& pattern, bool must_match) {
-    for (const ast::PatternElement& element : pattern.elements) this->element(element, must_match);
+  void group(const ast::GroupPattern& pattern, Need need) {
+    for (const ast::PatternElement& element : pattern.elements) this->element(element, need);
   }
 
-  void element(const ast::PatternElement& element, bool must_match) {
-    if (const auto* block = std::get_if<ast::TriplesBlock>(&element.value)) return triples(*block, must_match);
+  void element(const ast::PatternElement& element, Need need) {
+    if (const auto* block = std::get_if<ast::TriplesBlock>(&element.value)) return triples(*block, need);
     if (const auto* filter = std::get_if<ast::Filter>(&element.value)) return expression(filter->condition);
     if (const auto* bind = std::get_if<ast::Bind>(&element.value)) {
       if (hasExists(bind->expression)) asWhole("it binds the outcome of EXISTS");
@@ -230,16 +231,18 @@ class ShapeWalk {
     }
     if (std::holds_alternative<ast::InlineData>(element.value)) return;
     shape_.is_plain = false;
-    if (const auto* inner = std::get_if<ast::GroupPattern>(&element.value)) return group(*inner, must_match);
-    if (const auto* optional = std::get_if<ast::OptionalPattern>(&element.value)) return group(optional->group, false);
-    if (const auto* minus = std::get_if<ast::MinusPattern>(&element.value)) return group(minus->group, false);
+    if (const auto* inner = std::get_if<ast::GroupPattern>(&element.value)) return group(*inner, need);
+    if (const auto* optional = std::get_if<ast::OptionalPattern>(&element.value))
+      return group(optional->group, Need::No);
+    if (const auto* minus = std::get_if<ast::MinusPattern>(&element.value)) return group(minus->group, Need::No);
     if (const auto* either = std::get_if<ast::UnionPattern>(&element.value)) {
-      for (const ast::GroupPattern& branch : either->branches) group(branch, must_match);
+      for (const ast::GroupPattern& branch : either->branches)
+        group(branch, need == Need::Always ? Need::InABranch : need);
       return;
     }
     if (const auto* inner = std::get_if<ast::SubSelect>(&element.value)) {
       asWhole("it has a sub-select within another pattern");
-      return group(inner->select->where, false);
+      return group(inner->select->where, Need::No);
     }
     never("it reads a graph or a service by name");
   }

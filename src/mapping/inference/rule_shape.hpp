@@ -16,10 +16,15 @@ namespace ast = sparql::ast;
 
 /// A triple pattern of the WHERE clause, at any depth. Paths of sequences and inverses are patterns of their steps.
 struct ReadPattern {
+  enum class Need {
+    Always,     ///< each solution has a triple for it
+    InABranch,  ///< each solution has one for it, or for another branch of its UNION
+    No
+  };
   ast::TriplePattern triple;
   std::vector<Term> links;  ///< of a path: the properties that it walks
   bool has_key = false;     ///< the key is its subject or its object
-  bool must_match = false;  ///< a solution has a triple for it, or for another branch of its UNION
+  Need need = Need::No;
 };
 
 struct RuleShape {
