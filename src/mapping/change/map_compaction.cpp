@@ -26,11 +26,9 @@ constexpr std::uint64_t kSmallestGain = std::uint64_t{1} << 20U;
 
 bool isSparse(const fs::path& map, double max_free_share) {
   const auto environment = rdf::Environment::open(map, rdf::OpenMode::ReadOnly);
-  const auto layers = rdf::layerSizes(environment->read());
-  const std::uint64_t gain = rdf::freeableBytes(layers);
-  std::uint64_t all = 0;
-  for (const rdf::LayerSize& layer : layers) all += layer.file_bytes;
-  return gain > kSmallestGain && static_cast<double>(gain) > max_free_share * static_cast<double>(all);
+  const rdf::FreeSpace space = rdf::freeSpaceOf(environment->read());
+  return space.bytes > kSmallestGain &&
+         static_cast<double>(space.bytes) > max_free_share * static_cast<double>(space.file_bytes);
 }
 
 struct stat statusOf(const fs::path& file) {

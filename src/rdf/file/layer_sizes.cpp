@@ -39,6 +39,23 @@ std::uint64_t bytesOfEntry(std::uint64_t key, std::uint64_t value, std::uint64_t
   return kNodeHead + key + sizeof(lmdb_page::PageNumber) + kNodeSlot + pages * page;
 }
 
+std::uint64_t freePages(const ReadTransaction::Impl& state) {
+  std::uint64_t free = 0;
+  forEachEntry(state, kFreePages, [&](std::string_view, std::string_view value) {
+    std::size_t count = 0;
+    if (value.size() >= sizeof count) std::memcpy(&count, value.data(), sizeof count);
+    free += std::min(count, value.size() / sizeof count);
+  });
+  return free;
+}
+
+/// The part of the file that the commit knows.
+std::uint64_t fileBytes(const ReadTransaction::Impl& state, std::uint64_t page) {
+  MDB_envinfo info;
+  state.check(mdb_env_info(state.environment->handle(), &info), "read the map");
+  return std::min<std::uint64_t>(state.environment->fileSize(), (info.me_last_pgno + 1) * page);
+}
+
 class LayerCount {
  public:
   explicit LayerCount(const ReadTransaction& transaction) : state_(transaction.impl()) {
@@ -86,17 +103,9 @@ class LayerCount {
   }
 
   void addPages() {
-    MDB_envinfo info;
-    state_.check(mdb_env_info(state_.environment->handle(), &info), "read the map");
-    std::uint64_t free = 0;
-    forEachEntry(state_, kFreePages, [&](std::string_view, std::string_view value) {
-      std::size_t count = 0;
-      if (value.size() >= sizeof count) std::memcpy(&count, value.data(), sizeof count);
-      free += std::min(count, value.size() / sizeof count);
-    });
+    const std::uint64_t free = freePages(state_), all = fileBytes(state_, page_);
     std::uint64_t known = free * page_;
     for (const LayerSize& layer : layers_) known += layer.file_bytes;
-    const std::uint64_t all = std::min<std::uint64_t>(state_.environment->fileSize(), (info.me_last_pgno + 1) * page_);
     const std::uint64_t other = all - std::min(all, known);
     layers_.push_back({"other pages", other / page_, other});
     layers_.push_back({kFreePagesName, free, free * page_});
@@ -107,21 +116,22 @@ class LayerCount {
   std::vector<LayerSize> layers_;
 };
 
-bool isIndex(const std::string& name) {
-  return std::any_of(kTableNames.begin(), kTableNames.end(),
-                     [&](const char* table) { return name == table && name != "blocks" && name != "terms"; });
-}
-
 }  // namespace
 
-std::uint64_t freeableBytes(const std::vector<LayerSize>& layers) {
-  std::uint64_t bytes = 0;
-  for (const LayerSize& layer : layers) {
-    const std::uint64_t needed = layer.entries * sizeof(QuadKey);
-    if (isIndex(layer.name)) bytes += layer.file_bytes - std::min(layer.file_bytes, needed);
-    if (layer.name == kFreePagesName) bytes += layer.file_bytes;
+FreeSpace freeSpaceOf(const ReadTransaction& transaction) {
+  ReadTransaction::Impl& state = transaction.impl();
+  MDB_stat stat;
+  state.check(mdb_stat(state.live(), state.environment->mainTable(), &stat), "read the map");
+  const std::uint64_t page = stat.ms_psize;
+  FreeSpace space{freePages(state) * page, fileBytes(state, page)};
+  StoreSnapshot& snapshot = snapshotOf(state);
+  if (!snapshot.isMapped()) return space;  // then the pages of indexes are not known without reading them
+  for (const Table index : {Table::TermHashes, Table::Spog, Table::Posg, Table::Ospg, Table::Gspo}) {
+    state.check(mdb_stat(state.live(), state.table(index), &stat), "read the map");
+    const std::uint64_t used = snapshot.leafPages(index) * page, needed = stat.ms_entries * sizeof(QuadKey);
+    space.bytes += used - std::min(used, needed);
   }
-  return bytes;
+  return space;
 }
 
 std::vector<LayerSize> layerSizes(const ReadTransaction& transaction) {

@@ -22,7 +22,11 @@ struct LayerSize {
 /// read, and the indexes are compared with their sums.
 std::vector<LayerSize> layerSizes(const ReadTransaction& transaction);
 
-/// The bytes that a rewrite of the file would free: free pages, and the space that the pages of indexes leave.
-std::uint64_t freeableBytes(const std::vector<LayerSize>& layers);
+/// What a rewrite of the file would free: free pages, and the space that the pages of indexes leave. Cost: the list of
+/// free pages is read.
+struct FreeSpace {
+  std::uint64_t bytes = 0, file_bytes = 0;  ///< and the part of the file that the commit knows
+};
+FreeSpace freeSpaceOf(const ReadTransaction& transaction);
 
 }  // namespace cluxel::rdf

@@ -82,6 +82,26 @@ std::size_t pageOf(const std::vector<Key128>& lower, Key128 key) {
   return static_cast<std::size_t>(first - lower.data());
 }
 
+/// The only entry of an index: its keys are the duplicates of one key.
+Node indexNode(const PageMap& map, const Tree& table) {
+  const std::uint8_t* root = map.page(table.root);
+  if ((header(root).flags & kLeaf) == 0 || lmdb_page::entryCount(root) != 1) failOnIndex();
+  const std::size_t at = load<std::uint16_t>(root + kHeaderSize);
+  if (at + 8 > map.page_size) failOnIndex();
+  const Node node(root, 0);
+  const std::size_t room = static_cast<std::size_t>(root + map.page_size - node.data());
+  if (node.data() > root + map.page_size || node.dataSize() > room) failOnIndex();
+  return node;
+}
+
+/// The tree of the keys of an index that has pages of its own.
+Tree keyTreeOf(const Node& node, const PageMap& map) {
+  if (node.dataSize() != sizeof(Tree)) failOnIndex();
+  const Tree tree = load<Tree>(node.data());
+  if (tree.leaf_pages > map.page_count || tree.pad != sizeof(QuadKey)) failOnIndex();
+  return tree;
+}
+
 }  // namespace
 
 void failOutside(const char* part) {
@@ -94,16 +114,16 @@ const std::uint8_t* PageMap::page(PageNumber number) const {
   return base + number * page_size;
 }
 
+std::uint64_t leafPagesOf(const PageMap& map, const Tree& table) {
+  if (table.root == kNoPage) return 0;
+  const Node node = indexNode(map, table);
+  return (node.flags() & kSubData) == 0 ? 0 : keyTreeOf(node, map).leaf_pages;
+}
+
 PageDirectory::PageDirectory(const PageMap& map, const Tree& table) {
   if (table.root == kNoPage) return;
   max_keys_ = (map.page_size - kHeaderSize) / sizeof(QuadKey);
-  const std::uint8_t* root = map.page(table.root);
-  if ((header(root).flags & kLeaf) == 0 || lmdb_page::entryCount(root) != 1) failOnIndex();
-  const std::size_t at = load<std::uint16_t>(root + kHeaderSize);
-  if (at + 8 > map.page_size) failOnIndex();
-  const Node node(root, 0);
-  const std::size_t room = static_cast<std::size_t>(root + map.page_size - node.data());
-  if (node.data() > root + map.page_size || node.dataSize() > room) failOnIndex();
+  const Node node = indexNode(map, table);
   if ((node.flags() & kDupData) == 0) {
     if (node.dataSize() != sizeof(QuadKey)) failOnIndex();
     single_ = true;
@@ -114,9 +134,7 @@ PageDirectory::PageDirectory(const PageMap& map, const Tree& table) {
     max_keys_ = (node.dataSize() - kHeaderSize) / sizeof(QuadKey);
     addPage(0, node.data());
   } else {
-    const Tree tree = load<Tree>(node.data());
-    if (node.dataSize() != sizeof(Tree) || tree.leaf_pages > map.page_count || tree.pad != sizeof(QuadKey))
-      failOnIndex();
+    const Tree tree = keyTreeOf(node, map);
     lower_.reserve(tree.leaf_pages);
     pages_.reserve(tree.leaf_pages);
     collect(map, tree.root, 0, 0);

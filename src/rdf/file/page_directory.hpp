@@ -45,6 +45,10 @@ struct PageMap {
   const std::uint8_t* page(lmdb_page::PageNumber number) const;
 };
 
+/// The number of leaf pages of an index of a mapped commit, as its root states it; `table` is its root record. 0 for an
+/// index that lies within its root's page.
+std::uint64_t leafPagesOf(const PageMap& map, const lmdb_page::Tree& table);
+
 /// The leaf pages of one index in key order, at one commit or one state of a write transaction.
 class PageDirectory {
  public:

@@ -28,6 +28,9 @@ class StoreSnapshot {
   /// The directory of an index; `transaction` must see the same state as this snapshot. The first call compares the
   /// index with its sum, unless this process wrote the commit. Thread-safe.
   const PageDirectory& directory(Table index, const ReadTransaction::Impl& transaction);
+  /// The pages of an index, without a look at them. Only for committed states.
+  std::uint64_t leafPages(Table index) const { return leafPagesOf(map_, trees_[static_cast<std::size_t>(index)]); }
+  bool isMapped() const { return map_.base != nullptr; }
   /// The record of a term; throws Error for an unknown id. Of each 64 terms the first one that is read compares all
   /// with their sum. Thread-safe.
   std::string_view record(TermId id, ReadTransaction::Impl& transaction);
