@@ -36,7 +36,7 @@ std::optional<bool> AffectedKeys::goesBySubject(std::size_t read) const {
 
 /// Whether the value has the types, and other constant objects, that each solution needs of the variable: before the
 /// change or now. False: no solution has or had this value.
-bool AffectedKeys::mayBind(ast::VariableIndex variable, rdf::TermId value) const {
+bool AffectedKeys::hasConstants(ast::VariableIndex variable, rdf::TermId value) const {
   for (std::size_t read = 0; read < shape_.reads.size(); ++read) {
     const ReadPattern& pattern = shape_.reads[read];
     const bool is_about = !pattern.triple.isPath() && pattern.triple.subject.isVariable() &&
@@ -50,14 +50,41 @@ bool AffectedKeys::mayBind(ast::VariableIndex variable, rdf::TermId value) const
   return true;
 }
 
-std::optional<std::vector<rdf::TermId>> AffectedKeys::of(const std::vector<rdf::Triple>& changed) const {
+bool AffectedKeys::mayBind(ast::VariableIndex variable, rdf::TermId value) {
+  const auto [known, is_new] = may_bind_.try_emplace(std::uint64_t{variable} << 32U | value);
+  if (is_new) known->second = hasConstants(variable, value);
+  return known->second;
+}
+
+/// Whether a solution can have the fact for a pattern.
+bool AffectedKeys::mayMatch(std::size_t read, const rdf::Triple& fact) {
+  const ast::TriplePattern& triple = shape_.reads[read].triple;
+  if (!reads_.matches(read, fact)) return false;
+  if (triple.isPath()) return true;
+  return (!triple.subject.isVariable() || mayBind(triple.subject.variable(), fact.s)) &&
+         (!triple.object.isVariable() || mayBind(triple.object.variable(), fact.o));
+}
+
+/// Of the facts that have ceased to be, those that solutions had.
+std::vector<rdf::QuadIds> AffectedKeys::goneAmong(const std::vector<SeenChange>& changed) {
+  std::vector<rdf::QuadIds> gone;
+  for (const auto& [fact, is_fact] : changed)
+    for (std::size_t read = 0; !is_fact && read < shape_.reads.size(); ++read)
+      if (mayMatch(read, fact)) {
+        gone.push_back({fact.s, fact.p, fact.o, inferred_});
+        break;
+      }
+  return gone;
+}
+
+std::optional<std::vector<rdf::TermId>> AffectedKeys::of(const std::vector<SeenChange>& changed) {
   std::map<ast::VariableIndex, std::set<rdf::TermId>> values;
   for (std::size_t read = 0; read < shape_.reads.size(); ++read) {
     const ast::TriplePattern& triple = shape_.reads[read].triple;
     const auto by_subject = goesBySubject(read);
     std::set<rdf::TermId> ends;
-    for (const rdf::Triple& fact : changed) {
-      if (!reads_.matches(read, fact)) continue;
+    for (const auto& [fact, is_fact] : changed) {
+      if (!mayMatch(read, fact)) continue;
       if (!by_subject) return std::nullopt;
       if (triple.isPath())
         addConnected(fact, read, ends);
@@ -69,13 +96,10 @@ std::optional<std::vector<rdf::TermId>> AffectedKeys::of(const std::vector<rdf::
     std::erase_if(ends, [&](rdf::TermId end) { return !mayBind(variable, end); });
     if (!ends.empty()) values[variable].merge(ends);
   }
-  std::vector<rdf::QuadIds> gone;
-  for (const rdf::Triple& fact : changed)
-    if (facts_.stageOf(fact) == rdf::kNever) gone.push_back({fact.s, fact.p, fact.o, inferred_});
   std::set<rdf::TermId> keys = std::move(values[shape_.key]);
   values.erase(shape_.key);
   if (values.empty()) return std::vector<rdf::TermId>(keys.begin(), keys.end());
-  TemporaryQuads before(transaction_, std::move(gone), {});
+  TemporaryQuads before(transaction_, goneAmong(changed), {});
   const rdf::QuadReader reader{static_cast<const rdf::ReadTransaction&>(transaction_)};
   for (const auto& [variable, ids] : values) {
     ValuesOf some{variable, {}};

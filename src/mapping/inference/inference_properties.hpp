@@ -2,6 +2,7 @@
 // The properties that inference has to do with. Most facts that a scan changes are measurements of others.
 #pragma once
 
+#include <cstdint>
 #include <unordered_set>
 #include <vector>
 
@@ -10,23 +11,27 @@
 
 namespace cluxel::mapping {
 
+/// What inference does with the facts of a property.
+enum class PropertyUse : std::uint8_t {
+  None,     ///< a fact is known when it is stated, and nothing follows from it
+  Read,     ///< the same, but rules read it
+  Inferred  ///< the closure or a rule derives facts of it, or the closure derives others from them
+};
+
 class InferenceProperties {
  public:
   /// Expects that all shapes tell what their rules read.
   InferenceProperties(const rdf::QuadReader& reader, const rdf::SchemaWords& words, const rdf::Schema& schema,
                       const std::vector<RuleShape>& rules);
 
-  /// Whether the closure or a rule reads or derives facts of the property. Of another property, a fact is known when
-  /// it is stated, and nothing follows from it.
-  bool contains(rdf::TermId property) const { return has_all_ || ids_.contains(property); }
+  PropertyUse useOf(rdf::TermId property) const;
 
  private:
   void addAxioms(const rdf::SchemaWords& words, const rdf::Schema& schema);
   void addRule(const rdf::QuadReader& reader, const RuleShape& rule);
-  void add(const rdf::QuadReader& reader, const Term& property);
 
-  std::unordered_set<rdf::TermId> ids_;
-  bool has_all_ = false;
+  std::unordered_set<rdf::TermId> read_, inferred_;
+  bool all_inferred_ = false;
 };
 
 }  // namespace cluxel::mapping

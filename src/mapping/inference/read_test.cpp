@@ -32,6 +32,8 @@ ReadTest::ReadTest(const rdf::QuadReader& reader, const RuleShape& shape) {
                o = idOf(reader, read.triple.object);
     if (s && p && o) ids.push_back({*s, *p, *o});
   }
+  for (const auto& ids : patterns_)
+    for (const rdf::Triple& pattern : ids) properties_.insert(pattern.p);
 }
 
 bool ReadTest::matches(std::size_t read, const rdf::Triple& fact) const {

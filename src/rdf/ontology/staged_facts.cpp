@@ -8,7 +8,9 @@ namespace cluxel::rdf {
 
 StagedFacts::StagedFacts(const QuadReader& reader, const SchemaWords& words, std::vector<TermId> sources,
                          TermId inferred, std::vector<LateFact> late)
-    : reader_(reader), words_(words), sources_(std::move(sources)), inferred_(inferred), late_(std::move(late)) {}
+    : reader_(reader), words_(words), sources_(std::move(sources)), inferred_(inferred), late_(std::move(late)) {
+  for (const LateFact& fact : late_) late_of_[fact.fact.p].push_back(fact);
+}
 
 bool StagedFacts::isSource(TermId graph) const {
   return std::find(sources_.begin(), sources_.end(), graph) != sources_.end();
@@ -45,6 +47,7 @@ FactState StagedFacts::stateOf(const Triple& fact) const {
 }
 
 FactState& StagedFacts::insert(const Triple& fact, const FactState& state) {
+  changed_of_[fact.p].push_back(fact);
   objects_[key(fact.p, fact.s)].push_back(fact.o);
   subjects_[key(fact.p, fact.o)].push_back(fact.s);
   touches_schema_ = touches_schema_ || words_.isAxiom(fact.p, fact.o);
@@ -53,18 +56,22 @@ FactState& StagedFacts::insert(const Triple& fact, const FactState& state) {
 
 FactState& StagedFacts::change(const Triple& fact) {
   const auto found = changed_.find(fact);
-  return found != changed_.end() ? found->second : insert(fact, storedState(fact));
+  FactState& state = found != changed_.end() ? found->second : insert(fact, storedState(fact));
+  if (!state.is_waiting) waiting_.push_back(fact);
+  state.is_waiting = true;
+  return state;
 }
 
 void StagedFacts::restate(const Triple& fact, bool was_stated) {
   FactState& state = change(fact);
-  const FactState now = state;
   if (was_stated) {
     state.before = state.now = state.base = 0;
-  } else {
-    state = now.is_written ? inferredState(fact) : FactState{};
-    state.is_stated = now.is_stated;
+    return;
   }
+  const FactState now = state;
+  state = now.is_written ? inferredState(fact) : FactState{};
+  state.is_stated = now.is_stated;
+  state.is_waiting = true;
 }
 
 void StagedFacts::forEachObject(TermId subject, TermId property, const Visit& visit) const {
@@ -98,13 +105,16 @@ void StagedFacts::forEachSubject(TermId property, TermId object, const Visit& vi
 }
 
 void StagedFacts::write(QuadWriter& writer) {
-  for (auto& [fact, state] : changed_) {
+  for (const Triple& fact : waiting_) {
+    FactState& state = changed_.at(fact);
+    state.is_waiting = false;
     const bool is_wanted = state.now != kNever && !state.is_stated;
     if (is_wanted == state.is_written) continue;
     const QuadIds quad{fact.s, fact.p, fact.o, inferred_};
     is_wanted ? writer.add(quad) : writer.remove(quad);
     state.is_written = is_wanted;
   }
+  waiting_.clear();
   writer.flush();
 }
 

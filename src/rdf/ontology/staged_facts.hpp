@@ -45,6 +45,7 @@ struct FactState {
   Stage base = kNever;      ///< without the closure: 0 when it is stated, else the stage of the rule that derives it
   bool is_stated = false;   ///< now
   bool is_written = false;  ///< in graph `inferred` of the store
+  bool is_waiting = false;  ///< for StagedFacts::write(), which looks at it
 };
 
 class StagedFacts {
@@ -61,6 +62,7 @@ class StagedFacts {
   /// The state for changing it. Valid until the next call.
   FactState& change(const Triple& fact);
   const std::unordered_map<Triple, FactState, TripleHash>& changed() const { return changed_; }
+  const std::vector<Triple>& changedOf(TermId property) const { return of(changed_of_, property); }
   /// Whether a fact that is or was an axiom is among the changed ones: then the schema is another one.
   bool touchesSchema() const { return touches_schema_; }
 
@@ -71,13 +73,20 @@ class StagedFacts {
 
   /// Brings graph `inferred` of the store to the present state, and flushes.
   void write(QuadWriter& writer);
-  const std::vector<LateFact>& lateBefore() const { return late_; }
+  /// The facts of later stages before the change.
+  const std::vector<LateFact>& lateOf(TermId property) const { return of(late_of_, property); }
   /// The facts of later stages now; sorted.
   std::vector<LateFact> lateNow() const;
 
  private:
   using Ends = std::unordered_map<std::uint64_t, std::vector<TermId>>;
   static std::uint64_t key(TermId property, TermId end) { return std::uint64_t{property} << 32U | end; }
+  template <typename Fact>
+  static const std::vector<Fact>& of(const std::unordered_map<TermId, std::vector<Fact>>& facts, TermId property) {
+    static const std::vector<Fact> none;
+    const auto found = facts.find(property);
+    return found != facts.end() ? found->second : none;
+  }
   bool isSource(TermId graph) const;
   FactState storedState(const Triple& fact) const;
   FactState inferredState(const Triple& fact) const;
@@ -89,6 +98,9 @@ class StagedFacts {
   TermId inferred_;
   std::vector<LateFact> late_;
   std::unordered_map<Triple, FactState, TripleHash> changed_;
+  std::unordered_map<TermId, std::vector<Triple>> changed_of_;  ///< by property
+  std::unordered_map<TermId, std::vector<LateFact>> late_of_;
+  std::vector<Triple> waiting_;
   Ends objects_, subjects_;  ///< of changed facts
   bool touches_schema_ = false;
 };
