@@ -195,6 +195,10 @@ std::vector<std::uint64_t> MapReader::decisionTraces() const {
 const rdf::QuadReader& MapReader::quads() const {
   return impl_->quads;
 }
+const rdf::ReadTransaction& MapReader::transaction() const {
+  return impl_->transaction;
+}
+
 std::vector<rdf::LayerSize> MapReader::layers() const {
   return rdf::layerSizes(impl_->transaction);
 }

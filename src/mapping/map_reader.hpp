@@ -85,6 +85,8 @@ class MapReader {
   WayGraph ways() const;
   PointAnswers answersFor(const Cloud& cloud) const;
   const rdf::QuadReader& quads() const;
+  /// The snapshot that everything here is read from.
+  const rdf::ReadTransaction& transaction() const;
   /// The bytes of the file by table. Cost and errors as for rdf::layerSizes().
   std::vector<rdf::LayerSize> layers() const;
   MapInputs inputs() const;

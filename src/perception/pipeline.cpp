@@ -26,6 +26,22 @@ TileSet keysOf(const Tiles& tiles) {
   return keys;
 }
 
+/// Tiles for each stage.
+class StageTiles {
+ public:
+  TileSet& operator[](Stage stage) { return tiles_[static_cast<std::size_t>(stage)]; }
+  const TileSet& operator[](Stage stage) const { return tiles_[static_cast<std::size_t>(stage)]; }
+  void fill(const TileSet& tiles) { tiles_.fill(tiles); }
+
+ private:
+  std::array<TileSet, kStageCount> tiles_;
+};
+
+TileSet without(TileSet tiles, const TileSet& others) {
+  for (const TileKey& key : others) tiles.erase(key);
+  return tiles;
+}
+
 /// One run over the tiles. A stage computes the tiles of which an input changed, and hands on those whose output did.
 class Run {
  public:
@@ -34,7 +50,9 @@ class Run {
 
   void toFeatures(TileSegments segments) {
     toGround(std::move(segments));
-    update(Stage::Features, out_.features, dirtyFeatures(), [&](const TileKey& key) { return featuresOf(key); });
+    update(
+        Stage::Features, out_.features, [this](const StageTiles& changed) { return nearFeatures(changed); },
+        [this](const TileKey& key) { return featuresOf(key); });
   }
   void toContacts(TileSegments segments, const TileLabeller& labeller, const SceneParams& params) {
     toGround(std::move(segments));
@@ -44,7 +62,7 @@ class Run {
     joinComponents(params.component);           // intersecting cluxels of one label to components
     findContacts(params);                       // components that are near each other
   }
-  const TileSet& changed() const { return changed_; }
+  const TileSet& changed() const { return all_changed_; }
 
  private:
   void toGround(TileSegments segments) {
@@ -61,19 +79,26 @@ class Run {
     }
     loadFor(grown);  // before the points change on which other outputs rest
     forget(options_.anew);
-    changed_points_ = update(Stage::Points, out_.points, keysOf(segments), [&](const TileKey& key) {
-      std::vector<const ScanSegment*> parts;
-      for (const ScanSegment& segment : segments.at(key)) parts.push_back(&segment);
-      TilePoints fresh = perception::thin(key, parts, params_.thin);
-      const auto present = out_.points.find(key);
-      if (!grown.contains(key) || present == out_.points.end()) return fresh;
-      return perception::thin(key, std::array<const TilePoints*, 2>{&present->second, &fresh}, params_.thin);
-    });
+    const TileSet own = options_.donor != nullptr ? options_.store->tiles() : TileSet();
+    if (options_.donor != nullptr) lent_ = without(options_.donor->tiles(), own);
+    differing_.fill(own);
+    const TileSet with_segments = keysOf(segments);
+    update(
+        Stage::Points, out_.points, [&](const StageTiles&) { return with_segments; },
+        [&](const TileKey& key) {
+          std::vector<const ScanSegment*> parts;
+          for (const ScanSegment& segment : segments.at(key)) parts.push_back(&segment);
+          TilePoints fresh = perception::thin(key, parts, params_.thin);
+          const auto present = out_.points.find(key);
+          if (!grown.contains(key) || present == out_.points.end()) return fresh;
+          return perception::thin(key, std::array<const TilePoints*, 2>{&present->second, &fresh}, params_.thin);
+        });
     tiles_ = options_.store != nullptr ? options_.store->tiles() : keysOf(out_.points);
-    if (options_.compute_all) changed_points_ = unionOf(std::move(changed_points_), tiles_);
-    std::set_intersection(changed_points_.begin(), changed_points_.end(), options_.anew.begin(), options_.anew.end(),
+    TileSet& changed = changed_[Stage::Points];
+    if (options_.compute_all) changed = unionOf(std::move(changed), tiles_);
+    std::set_intersection(changed.begin(), changed.end(), options_.anew.begin(), options_.anew.end(),
                           std::inserter(forgotten_, forgotten_.end()));
-    loadAround(changed_points_);
+    loadAround(without(changed, lent_), own);
   }
 
   /// Stored outputs of these tiles rest on points that are not there any more: stages do not read them.
@@ -86,17 +111,20 @@ class Run {
   }
 
   void cluster() {
-    changed_cluxels_ = update(Stage::Cluxels, out_.cluxels, around(changed_points_), [&](const TileKey& key) {
-      return clusterTile(ringIn(out_.points, key), params_.clustering);
-    });
+    update(
+        Stage::Cluxels, out_.cluxels, [this](const StageTiles& changed) { return around(changed[Stage::Points]); },
+        [this](const TileKey& key) { return clusterTile(ringIn(out_.points, key), params_.clustering); });
   }
 
   void findGround() {
-    changed_ground_ = update(Stage::Ground, out_.ground, around(changed_cluxels_),
-                             [&](const TileKey& key) { return groundOf(ringIn(out_.cluxels, key), params_.ground); });
+    update(
+        Stage::Ground, out_.ground, [this](const StageTiles& changed) { return around(changed[Stage::Cluxels]); },
+        [this](const TileKey& key) { return groundOf(ringIn(out_.cluxels, key), params_.ground); });
   }
 
-  TileSet dirtyFeatures() const { return around(unionOf(changed_cluxels_, changed_ground_)); }
+  TileSet nearFeatures(const StageTiles& changed) const {
+    return around(unionOf(changed[Stage::Cluxels], changed[Stage::Ground]));
+  }
 
   /// Cluxels and their 2-ring to HOR and other features (paper 3.1).
   FeatureTile featuresOf(const TileKey& key) const {
@@ -106,59 +134,74 @@ class Run {
   /// Features and labels, in waves along x: rows of features take more memory than all else, and only the labels of
   /// the tile and of its ring read them.
   void label(const TileLabeller& labeller, const LabellingParams& params) {
-    const std::vector<TileKey> features = completed(dirtyFeatures());
-    const std::vector<TileKey> candidates = completed(around({features.begin(), features.end()}));
-    changed_features_ = changed_labels_ = emptied_;
+    const TileSet lent = without(lent_, nearFeatures(differing_));
+    const std::vector<TileKey> features = completed(without(nearFeatures(changed_), lent));
+    const std::vector<TileKey> candidates = completed(around(unionOf({features.begin(), features.end()}, lent)));
     eraseEmptied(Stage::Features, out_.features), eraseEmptied(Stage::Labels, out_.labels);
+    take(Stage::Features, lent);
     std::size_t done = 0, seen = 0;
     while (done < features.size() || seen < candidates.size()) {
       const std::size_t first = done;
       while (done < features.size() && (done < first + kChunk || features[done].x == features[done - 1].x)) ++done;
-      changed_features_.merge(compute(Stage::Features, out_.features, features, first, done,
-                                      [&](const TileKey& key) { return featuresOf(key); }));
+      compute(Stage::Features, out_.features, features, first, done,
+              [this](const TileKey& key) { return featuresOf(key); });
       // Tiles up to this column have their features.
       const std::int32_t column =
           done < features.size() ? features[done].x - 1 : std::numeric_limits<std::int32_t>::max();
       std::vector<TileKey> dirty;
-      for (; seen < candidates.size() && candidates[seen].x < column; ++seen)
-        if (readsChangedFeatures(candidates[seen])) dirty.push_back(candidates[seen]);
-      changed_labels_.merge(compute(Stage::Labels, out_.labels, dirty, 0, dirty.size(), [&](const TileKey& key) {
-        return labeller.label(ringIn(out_.features, key), params);
-      }));
+      TileSet taken;
+      for (; seen < candidates.size() && candidates[seen].x < column; ++seen) {
+        const TileKey& key = candidates[seen];
+        if (lent_.contains(key) && !readsFeatures(key, differing_))
+          taken.insert(key);
+        else if (options_.compute_all || forgotten_.contains(key) || readsFeatures(key, changed_))
+          dirty.push_back(key);
+      }
+      take(Stage::Labels, taken);
+      compute(Stage::Labels, out_.labels, dirty, 0, dirty.size(),
+              [&](const TileKey& key) { return labeller.label(ringIn(out_.features, key), params); });
       if (options_.store != nullptr) dropRowsBefore(column - 1);
     }
     if (options_.store != nullptr) dropVolumesOfAll();
   }
 
-  bool readsChangedFeatures(const TileKey& key) const {
-    if (options_.compute_all || forgotten_.contains(key)) return true;
+  static bool readsFeatures(const TileKey& key, const StageTiles& changed) {
     const auto ring = ringOf(key);
-    return std::any_of(ring.begin(), ring.end(), [&](const TileKey& near) { return changed_features_.contains(near); });
+    return std::any_of(ring.begin(), ring.end(),
+                       [&](const TileKey& near) { return changed[Stage::Features].contains(near); });
   }
 
   void summarise() {
-    update(Stage::Summaries, out_.summaries, unionOf(changed_points_, changed_cluxels_),
-           [&](const TileKey& key) { return summaryOf(out_.points.at(key), out_.cluxels.at(key)); });
+    update(
+        Stage::Summaries, out_.summaries,
+        [](const StageTiles& changed) { return unionOf(changed[Stage::Points], changed[Stage::Cluxels]); },
+        [this](const TileKey& key) { return summaryOf(out_.points.at(key), out_.cluxels.at(key)); });
   }
 
   void findEven() {
-    update(Stage::Even, out_.even, around(unionOf(changed_points_, changed_ground_)),
-           [&](const TileKey& key) { return evenGroundOf(ringIn(out_.points, key), ringIn(out_.ground, key)); });
+    update(
+        Stage::Even, out_.even,
+        [this](const StageTiles& changed) { return around(unionOf(changed[Stage::Points], changed[Stage::Ground])); },
+        [this](const TileKey& key) { return evenGroundOf(ringIn(out_.points, key), ringIn(out_.ground, key)); });
   }
 
   void joinComponents(const ComponentParams& params) {
-    const TileSet own =
-        unionOf(unionOf(changed_points_, changed_cluxels_), unionOf(changed_features_, changed_labels_));
-    const TileSet dirty = unionOf(own, around(changed_ground_));
-    changed_components_ = update(Stage::Components, out_.components, dirty, [&](const TileKey& key) {
+    const auto near = [this](const StageTiles& changed) {
+      const TileSet own = unionOf(unionOf(changed[Stage::Points], changed[Stage::Cluxels]),
+                                  unionOf(changed[Stage::Features], changed[Stage::Labels]));
+      return unionOf(own, around(changed[Stage::Ground]));
+    };
+    update(Stage::Components, out_.components, near, [&](const TileKey& key) {
       return componentsOf(out_.points.at(key), out_.cluxels.at(key), out_.features.at(key), out_.labels.at(key),
                           ringIn(out_.ground, key), params);
     });
   }
 
   void findContacts(const SceneParams& params) {
-    const TileSet dirty = unionOf(changed_features_, around(unionOf(changed_components_, changed_cluxels_)));
-    update(Stage::Contacts, out_.contacts, dirty, [&](const TileKey& key) {
+    const auto near = [this](const StageTiles& changed) {
+      return unionOf(changed[Stage::Features], around(unionOf(changed[Stage::Components], changed[Stage::Cluxels])));
+    };
+    update(Stage::Contacts, out_.contacts, near, [&](const TileKey& key) {
       return contactsOf(ringIn(out_.components, key), ringIn(out_.cluxels, key), out_.features.at(key),
                         params.component, params.contact);
     });
@@ -169,10 +212,21 @@ class Run {
   /// Reads what the stages after the points may read: a change of points reaches labels up to four tiles away, and
   /// contacts five. Labels read rows of the fifth, which are computed from volumes of the sixth, and these from points
   /// of the seventh.
-  void loadAround(TileSet tiles) {
-    for (int ring = 0; ring < 7; ++ring) tiles = around(tiles);
-    for (const TileKey& key : forgotten_) tiles.erase(key);
-    loadFor(tiles);
+  /// Of the donor's tiles only those are computed that are near others.
+  void loadAround(const TileSet& changed, const TileSet& own) {
+    const TileSet near_own = aroundFar(own), near_lent = aroundFar(lent_);
+    TileSet tiles = aroundFar(changed);
+    std::set_intersection(near_own.begin(), near_own.end(), near_lent.begin(), near_lent.end(),
+                          std::inserter(tiles, tiles.end()));
+    loadFor(without(without(tiles, forgotten_), lent_));
+    if (options_.donor == nullptr) return;
+    std::erase_if(tiles, [this](const TileKey& key) { return !lent_.contains(key); });
+    options_.donor->load(tiles, out_);
+  }
+
+  TileSet aroundFar(TileSet tiles) const {
+    for (int ring = 0; ring < 7 && !tiles.empty(); ++ring) tiles = around(tiles);
+    return tiles;
   }
 
   void loadFor(const TileSet& tiles) {
@@ -214,65 +268,73 @@ class Run {
 
   /// The tiles that a stage computes when its inputs changed in `dirty`, ascending.
   std::vector<TileKey> completed(TileSet dirty) const {
-    if (options_.compute_all) dirty.insert(changed_points_.begin(), changed_points_.end());
+    const TileSet& points = changed_[Stage::Points];
+    if (options_.compute_all) dirty.insert(points.begin(), points.end());
     dirty.insert(forgotten_.begin(), forgotten_.end());
     std::vector<TileKey> keys;
     std::set_difference(dirty.begin(), dirty.end(), emptied_.begin(), emptied_.end(), std::back_inserter(keys));
     return keys;
   }
 
-  /// Computes the `dirty` tiles of one stage; returns those whose output differs from the stored one.
-  template <typename Tile, typename Compute>
-  TileSet update(Stage stage, std::map<TileKey, Tile>& tiles, TileSet dirty, const Compute& compute_tile) {
-    const std::vector<TileKey> keys = completed(std::move(dirty));
+  /// Brings one stage up to date. `near`: the tiles that read an output that is among the changed ones.
+  template <typename Tile, typename Near, typename Compute>
+  void update(Stage stage, std::map<TileKey, Tile>& tiles, const Near& near, const Compute& compute_tile) {
+    const TileSet lent = without(lent_, near(differing_));
+    const std::vector<TileKey> keys = completed(without(near(changed_), lent));
     eraseEmptied(stage, tiles);
-    TileSet changed = compute(stage, tiles, keys, 0, keys.size(), compute_tile);
-    changed.insert(emptied_.begin(), emptied_.end());
-    return changed;
+    take(stage, lent);
+    compute(stage, tiles, keys, 0, keys.size(), compute_tile);
+  }
+
+  /// Takes outputs of the donor.
+  void take(Stage stage, const TileSet& keys) {
+    for (const TileKey& key : keys)
+      if (options_.store->store(stage, key, options_.donor->bytes(stage, key))) note(stage, key);
+  }
+
+  void note(Stage stage, const TileKey& changed) {
+    changed_[stage].insert(changed);
+    all_changed_.insert(changed);
   }
 
   /// Computes the keys from `first` to `last` of those that the stage has to compute.
   template <typename Tile, typename Compute>
-  TileSet compute(Stage stage, std::map<TileKey, Tile>& tiles, std::span<const TileKey> keys, std::size_t first,
-                  std::size_t last, const Compute& compute_tile) {
+  void compute(Stage stage, std::map<TileKey, Tile>& tiles, std::span<const TileKey> keys, std::size_t first,
+               std::size_t last, const Compute& compute_tile) {
     const double start_s = processorSeconds();
-    TileSet changed;
     prepare(tiles,
             {keys.begin() + static_cast<std::ptrdiff_t>(first), keys.begin() + static_cast<std::ptrdiff_t>(last)});
     for (; first < last; first += std::min(kChunk, last - first)) {
       const auto chunk = keys.subspan(first, std::min(kChunk, last - first));
-      changed.merge(updateChunk(stage, tiles, chunk, compute_tile));
+      updateChunk(stage, tiles, chunk, compute_tile);
       if (options_.observer != nullptr) options_.observer->progress(stage, first + chunk.size(), keys.size());
     }
     if (options_.observer != nullptr) options_.observer->finished(stage, processorSeconds() - start_s);
-    changed_.insert(changed.begin(), changed.end());
-    changed_.insert(emptied_.begin(), emptied_.end());
-    return changed;
   }
 
   template <typename Tile>
   void eraseEmptied(Stage stage, std::map<TileKey, Tile>& tiles) {
     for (const TileKey& key : emptied_) {
       tiles.erase(key);
+      note(stage, key);
       if (options_.store != nullptr) options_.store->erase(stage, key);
     }
   }
 
   template <typename Tile, typename Compute>
-  TileSet updateChunk(Stage stage, std::map<TileKey, Tile>& tiles, std::span<const TileKey> keys,
-                      const Compute& compute) {
+  void updateChunk(Stage stage, std::map<TileKey, Tile>& tiles, std::span<const TileKey> keys, const Compute& compute) {
     std::vector<Tile> outputs(keys.size());
     std::vector<std::string> bytes(keys.size());
     parallelFor(keys.size(), options_.threads, [&](std::size_t i) {
       outputs[i] = compute(keys[i]);
       if (options_.store != nullptr) bytes[i] = toBytes(outputs[i]);
     });
-    TileSet changed;
     for (std::size_t i = 0; i < keys.size(); ++i) {
       tiles.insert_or_assign(keys[i], std::move(outputs[i]));
-      if (options_.store == nullptr || options_.store->store(stage, keys[i], bytes[i])) changed.insert(keys[i]);
+      if (options_.store == nullptr || options_.store->store(stage, keys[i], bytes[i])) note(stage, keys[i]);
+      if (lent_.contains(keys[i]) && options_.donor->bytes(stage, keys[i]) != bytes[i])
+        differing_[stage].insert(keys[i]);
     }
-    return changed;
   }
 
   static constexpr std::size_t kChunk = 32;  ///< tiles; bounds the bytes that wait for the store
@@ -283,8 +345,10 @@ class Run {
   TileSet tiles_;
   TileSet emptied_;    ///< tiles that lost their points
   TileSet forgotten_;  ///< tiles whose stored outputs are not read; every stage computes them
-  TileSet changed_;    ///< in some stage
-  TileSet changed_points_, changed_cluxels_, changed_ground_, changed_features_, changed_labels_, changed_components_;
+  TileSet lent_;       ///< tiles that only the donor has
+  TileSet all_changed_;
+  StageTiles changed_;    ///< against the store
+  StageTiles differing_;  ///< against the donor
 };
 
 }  // namespace

@@ -52,6 +52,18 @@ class OutputStore {
   virtual void erase(Stage stage, const TileKey& key) = 0;
 };
 
+/// Outputs that another store keeps of the same stages, model and settings, of other scans. A tile whose inputs are the
+/// same in both has the same output, which is then taken instead of being computed.
+class OutputDonor {
+ public:
+  virtual ~OutputDonor() = default;
+  /// Where the run's store has no tile yet, the points are those of the donor, and `segments` has none.
+  virtual const TileSet& tiles() const = 0;
+  virtual std::string_view bytes(Stage stage, const TileKey& key) const = 0;
+  /// As OutputStore::load().
+  virtual void load(const TileSet& tiles, TileOutputs& outputs) const = 0;
+};
+
 /// Watches a run. Called from one thread.
 class StageObserver {
  public:
@@ -69,6 +81,7 @@ struct RunOptions {
   /// Tiles of which `segments` holds all points; one without segments has lost its points. In other tiles the segments
   /// are added to the points that are there.
   TileSet anew = {};
+  const OutputDonor* donor = nullptr;  ///< may be absent; expects a store, and compute_all to be false
 };
 
 /// Runs all stages: brings `outputs` and the store up to date after segments came in or went. `outputs` then holds what

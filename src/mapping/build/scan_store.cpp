@@ -149,6 +149,7 @@ std::vector<perception::SceneView> viewsOf(const std::vector<Cloud>& clouds) {
 TileSet PointChanges::tiles() const {
   TileSet all = anew;
   for (const auto& [tile, segments] : added) all.insert(tile);
+  if (copied != nullptr) all.merge(storedTiles(*copied));
   return all;
 }
 
@@ -192,6 +193,18 @@ std::map<perception::TileKey, perception::ScanSegment> storeScan(rdf::WriteTrans
   transaction.putBlock(tables::kScanPoints, key, scan.packed_points);
   transaction.putBlock(tables::kScans, key, toBytes(scan.cloud));
   return std::move(scan.segments);
+}
+
+bool copyScan(rdf::WriteTransaction& transaction, const rdf::ReadTransaction& other, const Cloud& cloud) {
+  if (isThere(transaction, cloud)) return false;
+  const std::string key = tables::keyOf(cloud.id);
+  for (const std::string_view table : {tables::kScanPoints, tables::kScans}) {
+    const auto block = other.block(table, key);
+    if (!block)
+      throw Error(ErrorKind::StoreUnavailable, "cloud " + cloud.id.hex() + " has no points in the map; build it anew");
+    transaction.putBlock(table, key, *block);
+  }
+  return true;
 }
 
 TileSet removeScan(rdf::WriteTransaction& transaction, const scan::ScanId& id) {

@@ -20,8 +20,10 @@ using TileSet = perception::TileSet;
 struct PointChanges {
   perception::TileSegments added;
   TileSet anew;  ///< tiles that lost points or got them at other places
+  /// A map with the same model and settings all of whose scans were copied: its tiles come to this map. In tiles that
+  /// both have, the points are anew.
+  const rdf::ReadTransaction* copied = nullptr;
 
-  bool empty() const { return added.empty() && anew.empty(); }
   TileSet tiles() const;
   void add(std::map<perception::TileKey, perception::ScanSegment> segments);
 };
@@ -43,6 +45,10 @@ PreparedScan prepareScan(const scan::Scan& scan);
 std::map<perception::TileKey, perception::ScanSegment> storeScan(rdf::WriteTransaction& transaction,
                                                                  const scan::Scan& scan);
 std::map<perception::TileKey, perception::ScanSegment> storeScan(rdf::WriteTransaction& transaction, PreparedScan scan);
+
+/// Copies a scan of another map as it is stored there. False, and the later of both times, when the scan is here.
+/// Errors as for storeScan().
+bool copyScan(rdf::WriteTransaction& transaction, const rdf::ReadTransaction& other, const Cloud& cloud);
 
 /// Removes a scan; returns the tiles that it touched. Throws Error (NotFound) when there is none.
 TileSet removeScan(rdf::WriteTransaction& transaction, const scan::ScanId& id);

@@ -156,6 +156,26 @@ class MapOutputStore final : public perception::OutputStore {
   OutputChanges& changes_;
 };
 
+/// Outputs that another map has stored.
+class OtherMap final : public perception::OutputDonor {
+ public:
+  explicit OtherMap(const rdf::ReadTransaction& transaction)
+      : transaction_(transaction), tiles_(storedTiles(transaction)) {}
+
+  const TileSet& tiles() const override { return tiles_; }
+  std::string_view bytes(Stage stage, const TileKey& key) const override {
+    if (const auto block = transaction_.block(tableOf(stage), tables::keyOf(key))) return *block;
+    throw Error(ErrorKind::StoreUnavailable, "a stored tile lacks a block; the map is damaged, build it anew");
+  }
+  void load(const TileSet& keys, perception::TileOutputs& outputs) const override {
+    OutputReader(transaction_, outputs).read(keys);
+  }
+
+ private:
+  const rdf::ReadTransaction& transaction_;
+  TileSet tiles_;
+};
+
 class StageProgress final : public perception::StageObserver {
  public:
   explicit StageProgress(ProgressSink& sink) : sink_(sink) {}
@@ -177,6 +197,7 @@ TileSet TileStages::update(rdf::WriteTransaction& transaction, PointChanges chan
 TileSet TileStages::updateAll(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads,
                               ProgressSink& sink) {
   changes.anew = unionOf(changes.tiles(), storedTiles(transaction));
+  changes.copied = nullptr;
   return run(transaction, std::move(changes), threads, true, sink);
 }
 
@@ -184,6 +205,8 @@ TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes
                         ProgressSink& sink) {
   MapOutputStore store(transaction, changes_);
   StageProgress progress(sink);
+  std::optional<OtherMap> donor;
+  if (changes.copied != nullptr) donor.emplace(*changes.copied);
   // The scans are stored already: all points of these tiles are read, also those that were added.
   for (auto& [tile, segments] : storedSegments(transaction, changes.anew))
     changes.added.insert_or_assign(tile, std::move(segments));
@@ -192,7 +215,8 @@ TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes
                                      .store = &store,
                                      .observer = &progress,
                                      .compute_all = compute_all,
-                                     .anew = std::move(changes.anew)});
+                                     .anew = std::move(changes.anew),
+                                     .donor = donor ? &*donor : nullptr});
   storeTiles(transaction, store.tiles());
   changes_.have_ways =
       !updateWayTiles(transaction, store.changedEven(), outputs_.even, threads).empty() || changes_.have_ways;

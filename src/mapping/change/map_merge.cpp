@@ -134,7 +134,7 @@ class Merge {
       if (i == base) continue;
       const auto other = membersOf(readers_[i].objects(), readers_[i].scene().cluxels);
       editor.result().before.insert(editor.result().before.end(), other.begin(), other.end());
-      addScans(i, additions);
+      addMap(i, additions);
     }
     additions.finish();
     editor.handOnNames();
@@ -167,6 +167,16 @@ class Merge {
     inputs.map_origin = readers_.front().inputs().map_origin;
     inputs.crs = readers_.front().inputs().crs;
     return inputs;
+  }
+
+  /// A map in the same frame whose tiles were computed alike lends them. It goes into one batch.
+  void addMap(std::size_t number, ScanAdditions& additions) {
+    const MapInputs own = inputsOfResult(), inputs = readers_[number].inputs();
+    const bool is_alike = maps_[number].T_first_map.matrix().isIdentity(0) && own.model.text == inputs.model.text &&
+                          perception::hashOf(own.params) == perception::hashOf(inputs.params);
+    if (!is_alike || readers_[number].summary().points > params_.change.batch_points)
+      return addScans(number, additions);
+    additions.copy(readers_[number].transaction());
   }
 
   void addScans(std::size_t number, ScanAdditions& additions) {

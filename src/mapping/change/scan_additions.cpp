@@ -2,6 +2,8 @@
 // A batch is open from its first scan to its commit.
 #include "mapping/change/scan_additions.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace cluxel::mapping {
@@ -16,13 +18,36 @@ void ScanAdditions::add(const scan::Scan& scan) {
     has_other_changes_ = has_other_changes_ || storedCloud(*transaction_, scan.id)->time_s != known->time_s;
     return;
   }
-  added_.push_back(*storedCloud(*transaction_, scan.id));
-  points_ += scan.points.size(), part_points_ += scan.points.size();
+  noteAdded(*storedCloud(*transaction_, scan.id));
   changes_.add(std::move(segments));
   if (!editor_.params().dry_run && points_ >= editor_.params().batch_points) return finish();
   if (part_points_ < editor_.params().stage_points) return;
   editor_.update(*transaction_, std::exchange(changes_, {}), editor_.sink());
   part_points_ = 0;
+}
+
+void ScanAdditions::noteAdded(const Cloud& cloud) {
+  added_.push_back(cloud);
+  points_ += cloud.point_count, part_points_ += cloud.point_count;
+}
+
+void ScanAdditions::copy(const rdf::ReadTransaction& other) {
+  transaction();
+  if (!changes_.added.empty()) editor_.update(*transaction_, std::exchange(changes_, {}), editor_.sink());
+  for (const Cloud& cloud : storedClouds(other)) {
+    if (copyScan(*transaction_, other, cloud))
+      noteAdded(cloud);
+    else
+      ++editor_.result().scans_already_there;
+  }
+  PointChanges changes;
+  changes.copied = &other;
+  const TileSet own = storedTiles(*transaction_), tiles = storedTiles(other);
+  std::set_intersection(own.begin(), own.end(), tiles.begin(), tiles.end(),
+                        std::inserter(changes.anew, changes.anew.end()));
+  editor_.update(*transaction_, std::move(changes), editor_.sink());
+  part_points_ = 0;
+  if (!editor_.params().dry_run && points_ >= editor_.params().batch_points) finish();
 }
 
 rdf::WriteTransaction& ScanAdditions::transaction() {

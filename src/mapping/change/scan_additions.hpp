@@ -18,12 +18,17 @@ class ScanAdditions {
   /// Stores a scan, and commits when the batch is full. A dry run has one batch, because what is not committed cannot
   /// be the base of another one.
   void add(const scan::Scan& scan);
+  /// Copies all scans and tiles of another map, in one batch. The other map must have the frame, the model and the
+  /// settings of this one.
+  void copy(const rdf::ReadTransaction& other);
   /// The transaction of the open batch, for other changes. The batch is then committed even without scans.
   rdf::WriteTransaction& transaction();
   /// Commits the last batch.
   void finish();
 
  private:
+  void noteAdded(const Cloud& cloud);
+
   MapEditor& editor_;
   std::string operation_;
   std::optional<rdf::WriteTransaction> transaction_;  ///< of the open batch
