@@ -41,20 +41,21 @@ PlaceVerdict RayBundle::verdictAt(const Eigen::Vector3d& place_map, const RayPar
   const Eigen::Vector3d place = place_map - origin_;
   const double distance_m = place.norm();
   if (distance_m < kMinRange_m || distance_m > max_range_m_ + params.hit_m) return {};
-  int hitting = 0, passing = 0, others = 0;
+  RayCounts rays;
+  std::uint64_t others = 0;
   index_.forEachNear(place, params.near_m, [&](double range_m, double along_m) {
     const bool is_hit = std::abs(range_m - along_m) <= params.hit_m, passes = range_m >= along_m + params.behind_m;
-    hitting += is_hit ? 1 : 0;
-    passing += passes ? 1 : 0;
+    rays.ended += is_hit ? 1 : 0;
+    rays.passed += passes ? 1 : 0;
     others += !is_hit && !passes ? 1 : 0;
   });
-  const bool is_sparse = hitting + passing < params.min_rays;
-  if (hitting > 0) return {RayVerdict::Hit, is_sparse};
-  if (passing > 0 && others > passing) return {};
-  if (passing >= params.min_rays) return {RayVerdict::SeenThrough, false};
-  if (others == 0 && isBeforeSky(place, params)) return {RayVerdict::SeenThrough, false};
-  if (passing == 0) return {};
-  return {RayVerdict::FewPassed, true};
+  const auto min_rays = static_cast<std::uint64_t>(params.min_rays);
+  if (rays.ended > 0) return {RayVerdict::Hit, rays.ended + rays.passed < min_rays, rays};
+  if (rays.passed > 0 && others > rays.passed) return {RayVerdict::NotCovered, false, rays};
+  if (rays.passed >= min_rays) return {RayVerdict::SeenThrough, false, rays};
+  if (others == 0 && isBeforeSky(place, params)) return {RayVerdict::SeenThrough, false, rays};
+  if (rays.passed == 0) return {};
+  return {RayVerdict::FewPassed, true, rays};
 }
 
 bool RayBundle::isBeforeSky(const Eigen::Vector3d& place, const RayParams& params) const {

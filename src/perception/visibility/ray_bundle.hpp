@@ -24,11 +24,6 @@ enum class RayVerdict : std::uint8_t {
   FewPassed,    ///< fewer did: not enough to tell that a thin thing is not there
 };
 
-struct PlaceVerdict {
-  RayVerdict verdict = RayVerdict::NotCovered;
-  bool is_sparse = false;  ///< fewer than RayParams::min_rays came near and were not stopped before
-};
-
 struct RayParams {
   double near_m = 0.15;    ///< a ray concerns a place when it passes within this distance of it
   double hit_m = 0.25;     ///< a ray hits a place when it ends within this distance before or behind it
@@ -48,6 +43,12 @@ struct RayCounts {
     ended += other.ended, passed += other.passed;
     return *this;
   }
+};
+
+struct PlaceVerdict {
+  RayVerdict verdict = RayVerdict::NotCovered;
+  bool is_sparse = false;  ///< fewer than RayParams::min_rays came near and were not stopped before
+  RayCounts rays{};  ///< near the place
 };
 
 class RayBundle {
