@@ -19,8 +19,6 @@ namespace {
 using perception::RayVerdict;
 using Cluster = std::vector<std::uint32_t>;
 
-constexpr std::size_t kScanBits = 64;  ///< of RayFindings::passed_scans
-
 void count(std::uint8_t& scans) {
   if (scans < 255) ++scans;
 }

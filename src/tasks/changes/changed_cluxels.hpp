@@ -2,12 +2,16 @@
 // Which cluxels vanished or appeared between two groups of scans, and the clusters that they form.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "mapping/map_reader.hpp"
 
 namespace cluxel::tasks {
+
+/// Scans are bits of a word, numbered by time, modulo this.
+inline constexpr std::size_t kScanBits = 64;
 
 /// What the rays of a group of scans found at a cluxel.
 struct RayFindings {
@@ -16,7 +20,7 @@ struct RayFindings {
   std::uint8_t hits = 0, seen_through = 0;  ///< scans that hit the place, scans of which several rays saw through it
   /// Scans with so few rays near the place that they may have missed a thin thing: those that hit, those that passed.
   std::uint8_t sparse_hits = 0, passed = 0;
-  /// Those that passed, as bits: scans are numbered by time, modulo 64. Scans that share a bit count once.
+  /// Those that passed, as bits. Scans that share a bit count once.
   std::uint64_t passed_scans = 0;
 
   /// Rays passed the place, and none ended there.

@@ -15,7 +15,6 @@
 #include "mapping/facts/object_geometry.hpp"
 #include "rdf/map_iris.hpp"
 #include "sparql/values/calendar.hpp"
-#include "tasks/changes/changed_cluxels.hpp"
 #include "tasks/ways/way_report.hpp"
 
 namespace cluxel::tasks {
@@ -72,13 +71,8 @@ std::string classOf(const mapping::MapReader& map, const ChangedThing& thing) {
   return thing.object ? map.objects()[*thing.object].class_iri : std::string();
 }
 
-/// What vanished and what appeared.
-struct Differences {
-  std::vector<ChangedThing> gone, come;
-};
-
 /// Pairs what vanished with what appeared, nearest first.
-std::vector<SiteChange> withMoves(const mapping::MapReader& map, const Differences& all) {
+std::vector<SiteChange> withMoves(const mapping::MapReader& map, const ChangedThings& all) {
   const auto& [gone, come] = all;
   std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
   for (std::size_t i = 0; i < gone.size(); ++i)
@@ -116,62 +110,6 @@ ObjectStates compare(std::uint32_t object, std::span<const perception::ScanVotes
           logOddsOfPresence(after, thing.share_of_hits, kParams)};
 }
 
-/// The objects of cluxels, and which cluxels may change: those of no ground.
-struct Owners {
-  std::vector<std::uint32_t> object;  ///< by cluxel, or kNoObject
-  std::vector<bool> may_change;
-};
-
-Owners ownersIn(const mapping::MapReader& map) {
-  const std::size_t count = map.scene().cluxels.size();
-  Owners owners{std::vector<std::uint32_t>(count, mapping::kNoObject), std::vector<bool>(count, true)};
-  for (std::uint32_t i = 0; i < map.objects().size(); ++i) {
-    const bool is_ground = map.objects()[i].class_iri == rdf::vocabulary::clx("Ground");
-    for (const std::uint32_t cluxel : mapping::cluxelsOf(map.objects()[i])) {
-      owners.object[cluxel] = i;
-      if (is_ground) owners.may_change[cluxel] = false;
-    }
-  }
-  return owners;
-}
-
-/// Names the cluster after the object that most of its cluxels belong to.
-ChangedThing thingOf(const mapping::MapReader& map, std::vector<std::uint32_t> cluster, const Owners& owners,
-                     const std::vector<std::size_t>& stable_of_object) {
-  ChangedThing thing;
-  std::map<std::uint32_t, std::size_t> votes;
-  const perception::SceneCluxels& cluxels = map.scene().cluxels;
-  for (const std::uint32_t cluxel : cluster) {
-    ++votes[owners.object[cluxel]];
-    thing.box.extend(cluxels.low_corner[cluxel]);
-    thing.box.extend(cluxels.low_corner[cluxel] + cluxels.extent[cluxel].cast<double>());
-  }
-  const auto most =
-      std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  if (most->first != mapping::kNoObject) {
-    thing.object = most->first;
-    thing.is_part = stable_of_object[most->first] > most->second;
-  }
-  thing.cluxels = std::move(cluster);
-  return thing;
-}
-
-Differences differencesIn(const mapping::MapReader& map, double since_s, unsigned threads) {
-  const Owners owners = ownersIn(map);
-  const CluxelFindings findings = findingsAt(map, since_s, owners.may_change, threads);
-  const std::vector<CluxelChange> changes = changesOf(findings, owners.object.size());
-  std::vector<std::size_t> stable_of_object(map.objects().size(), 0);
-  for (std::size_t i = 0; i < changes.size(); ++i)
-    if (changes[i] == CluxelChange::Stable && owners.object[i] != mapping::kNoObject)
-      ++stable_of_object[owners.object[i]];
-  Differences found;
-  for (const CluxelChange kind : {CluxelChange::Vanished, CluxelChange::Appeared})
-    for (auto& cluster : clustersOf(kind, changes, findings, map.scene().cluxels))
-      (kind == CluxelChange::Vanished ? found.gone : found.come)
-          .push_back(thingOf(map, std::move(cluster), owners, stable_of_object));
-  return found;
-}
-
 using Votes = std::vector<mapping::ObjectVotes>;
 
 /// What the rays of all scans say of each object. It is the same for each moment that is asked about.
@@ -185,7 +123,7 @@ SiteChanges changesAt(const mapping::MapReader& map, const Votes& votes, double 
   found.since_s = since_s;
   for (std::uint32_t i = 0; i < votes.size(); ++i)
     if (!votes[i].places.empty()) found.states.push_back(compare(i, votes[i].votes, since_s));
-  found.changes = withMoves(map, differencesIn(map, since_s, threads));
+  found.changes = withMoves(map, changedThings(map, since_s, threads));
   return found;
 }
 

@@ -9,6 +9,7 @@
 
 #include "mapping/map_reader.hpp"
 #include "mapping/presence/presence_votes.hpp"
+#include "tasks/changes/changed_things.hpp"
 
 namespace cluxel::tasks {
 
@@ -26,14 +27,6 @@ struct ObjectStates {
   perception::PresenceState before = perception::PresenceState::NotObserved,
                             after = perception::PresenceState::NotObserved;
   double log_odds_before = 0, log_odds_after = 0;  ///< of "there"
-};
-
-/// Connected cluxels that vanished or appeared together.
-struct ChangedThing {
-  std::vector<std::uint32_t> cluxels;   ///< numbers in the scene, ascending
-  std::optional<std::uint32_t> object;  ///< that most of them belong to; absent when most belong to none
-  bool is_part = false;                 ///< more of that object is there before and after than changed
-  Eigen::AlignedBox3d box;              ///< [m, map]
 };
 
 struct SiteChange {

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which groups of cells count as changed, by what the rays of both times found at them.
+#include "tasks/changes/changed_parts.hpp"
+
+#include <gtest/gtest.h>
+
+namespace cluxel::tasks {
+namespace {
+
+constexpr std::uint64_t bits(int scans) {
+  return (std::uint64_t{1} << scans) - 1;
+}
+
+/// One cluxel of each label.
+perception::SceneCluxels cluxelsOfEachLabel() {
+  perception::SceneCluxels cluxels;
+  for (std::size_t label = 0; label < scan::kPrimitiveLabelCount; ++label)
+    cluxels.label.push_back(static_cast<scan::PrimitiveLabel>(label));
+  return cluxels;
+}
+
+constexpr auto kStructure = static_cast<std::uint32_t>(scan::PrimitiveLabel::SmallStructure),
+               kFoliage = static_cast<std::uint32_t>(scan::PrimitiveLabel::Scatter);
+
+/// A disc of cells around a pole that stays.
+std::vector<PointCell> lampHead(std::uint32_t cluxel, int passing_scans) {
+  std::vector<PointCell> cells;
+  for (int x = -3; x <= 3; ++x)
+    for (int y = -3; y <= 3; ++y) {
+      PointCell cell{.place = {0.1 * x, 0.1 * y, 4}, .cluxel = cluxel, .scans = bits(5)};
+      if (x == 0 && y == 0) cell.is_shared = true;
+      cell.own = {.hit_scans = bits(5), .rays = {.ended = 10, .passed = 1}};
+      cell.other = {.through_scans = bits(passing_scans), .rays = {.passed = 10}};
+      cells.push_back(cell);
+    }
+  return cells;
+}
+
+std::size_t partsIn(const std::vector<PointCell>& cells) {
+  return changedParts(cells, cluxelsOfEachLabel()).size();
+}
+
+TEST(ChangedParts, AHeadAroundAPoleThatStaysIsFound) {
+  const auto parts = changedParts(lampHead(kStructure, 5), cluxelsOfEachLabel());
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_EQ(parts.front().size(), 48U);
+}
+
+TEST(ChangedParts, NothingFollowsWhereNoRayOfTheOtherTimePassed) {
+  EXPECT_EQ(partsIn(lampHead(kStructure, 0)), 0U);
+}
+
+TEST(ChangedParts, TwoScansThatPassedDoNotShowThatAPartIsGone) {
+  EXPECT_EQ(partsIn(lampHead(kStructure, 2)), 0U);
+}
+
+TEST(ChangedParts, AScanWithAPoorPoseDoesNotKeepAPartThatIsGone) {
+  std::vector<PointCell> cells = lampHead(kStructure, 5);
+  for (PointCell& cell : cells)
+    if (cell.place.x() > 0.15) cell.other.hit_scans = bits(1), cell.other.through_scans = bits(5) & ~bits(1);
+  EXPECT_EQ(partsIn(cells), 1U);
+}
+
+TEST(ChangedParts, APartThatHalfOfTheScansStillHitIsThere) {
+  std::vector<PointCell> cells = lampHead(kStructure, 6);
+  for (PointCell& cell : cells) cell.other.hit_scans = bits(3), cell.other.through_scans = bits(6) & ~bits(3);
+  EXPECT_EQ(partsIn(cells), 0U);
+}
+
+TEST(ChangedParts, AGapInACrownIsNotGone) {
+  // Some scans of the other time hit leaves in the gap, and some rays of its own time pass, too.
+  const auto crown = [](std::uint32_t cluxel) {
+    std::vector<PointCell> cells = lampHead(cluxel, 8);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      cells[i].own.through_scans = bits(8) & ~bits(5);
+      if (i % 3 == 0) cells[i].other.hit_scans = bits(1), cells[i].other.through_scans = bits(8) & ~bits(1);
+    }
+    return cells;
+  };
+  EXPECT_EQ(partsIn(crown(kFoliage)), 0U);
+  EXPECT_EQ(partsIn(crown(kStructure)), 1U);
+}
+
+TEST(ChangedParts, APartThatItsOwnScansMostlyMissTellsNothing) {
+  std::vector<PointCell> cells = lampHead(kStructure, 8);
+  for (PointCell& cell : cells) cell.own.through_scans = bits(12) & ~bits(5);
+  EXPECT_EQ(partsIn(cells), 0U);
+}
+
+}  // namespace
+}  // namespace cluxel::tasks
