@@ -48,7 +48,7 @@ struct RayCounts {
 struct PlaceVerdict {
   RayVerdict verdict = RayVerdict::NotCovered;
   bool is_sparse = false;  ///< fewer than RayParams::min_rays came near and were not stopped before
-  RayCounts rays{};  ///< near the place
+  RayCounts rays{};        ///< near the place
 };
 
 class RayBundle {
