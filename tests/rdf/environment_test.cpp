@@ -7,6 +7,8 @@
 #include <random>
 #include <thread>
 
+#include "rdf/file/lmdb_environment.hpp"
+#include "rdf/file/map_check.hpp"
 #include "rdf/map_file_fixture.hpp"
 #include "rdf/store/quad_store.hpp"
 
@@ -148,6 +150,30 @@ TEST_F(MapFile, LetsWritersOfOneProcessTakeTurns) {
 TEST_F(MapFile, IsNotMadeWhereAFileIs) {
   create().reset();
   EXPECT_THAT(refusal(OpenMode::Create), HasSubstr("exists already"));
+}
+
+/// A compaction commits after each 128 MiB.
+TEST_F(MapFile, CompactsALargeMapInSeveralCommits) {
+  constexpr int kBlocks = 300;
+  constexpr std::size_t kBlockBytes = std::size_t{1} << 20U;
+  const auto bytesOf = [](int block) { return std::string(kBlockBytes, static_cast<char>(block)); };
+  const fs::path target = folder_.path() / "compact.clx";
+  {
+    const auto environment = create();
+    WriteTransaction transaction = environment->write();
+    for (int i = 0; i < kBlocks; ++i) transaction.putBlock("t", std::to_string(i), bytesOf(i));
+    QuadWriter writer(transaction);
+    for (int i = 0; i < 5000; ++i) writer.add({Term::integer(i), Term::iri("p"), Term::iri("o"), Term::iri("")});
+    writer.flush();
+    transaction.commit();
+    environment->compactTo(target);
+  }
+  EXPECT_LT(fs::file_size(target), (kBlocks + 4) * kBlockBytes);
+  EXPECT_TRUE(checkMap(target).sound());
+  const ReadTransaction copy = Environment::open(target, OpenMode::ReadOnly)->read();
+  EXPECT_GT(mdb_txn_id(copy.impl().live()), 3U) << "the tables, two full commits and the rest";
+  EXPECT_EQ(QuadReader(copy).size(), 5000U);
+  for (int i = 0; i < kBlocks; ++i) ASSERT_EQ(copy.block("t", std::to_string(i)), bytesOf(i)) << i;
 }
 
 TEST_F(MapFile, CompactsIntoASmallerMapWithTheSameContents) {
