@@ -16,6 +16,7 @@
 
 namespace cluxel::rdf {
 
+class IndexDraft;
 class StoreSnapshot;
 class ValueCache;
 
@@ -113,12 +114,17 @@ struct ReadTransaction::Impl {
   std::shared_ptr<StoreSnapshot> snapshot;  ///< created on first use, for this generation
   std::uint64_t snapshot_generation = 0;
   std::function<void()> flush_poll;  ///< of a FlushPoll
+  unsigned threads = 1;              ///< for sorting and merging the changes of indexes
+  /// Of a write transaction: indexes of which most is new, written by commit(). Their tables hold what was there
+  /// before.
+  std::array<std::unique_ptr<IndexDraft>, kTableCount> drafts;
 
-  Impl() = default;
+  Impl();
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl();
   MDB_dbi table(Table which) const { return environment->table(which); }
+  IndexDraft* draftOf(Table index) const { return drafts[static_cast<std::size_t>(index)].get(); }
   void check(int code, std::string_view doing) const { environment->check(code, doing); }
   MDB_txn* live() const;  ///< throws when the transaction has ended
   void end();

@@ -186,6 +186,13 @@ PageDirectory::PageDirectory(MDB_cursor* cursor) {
   }
 }
 
+PageDirectory::PageDirectory(std::span<const std::uint8_t* const> pages, std::span<const Key128> first_keys)
+    : lower_(first_keys.begin(), first_keys.end()) {
+  if (!lower_.empty()) lower_.front() = 0;
+  pages_.reserve(pages.size());
+  for (const std::uint8_t* page : pages) pages_.push_back(keysAt(page + kHeaderSize));
+}
+
 PageDirectory::Position PageDirectory::within(std::size_t i, Key128 key) const {
   const std::span<const QuadKey> keys = page(i);
   if (keys.empty()) return {i + 1, 0};  // only in a damaged file

@@ -63,6 +63,8 @@ class PageDirectory {
   /// Built with an LMDB cursor, which also sees the dirty pages of a write transaction. Cost: reads the first key of
   /// each leaf page.
   explicit PageDirectory(MDB_cursor* cursor);
+  /// Of pages in memory with their first keys, ascending; none is empty. The pages must live as long.
+  PageDirectory(std::span<const std::uint8_t* const> pages, std::span<const Key128> first_keys);
 
   std::size_t pageCount() const { return pages_.size(); }
   std::span<const QuadKey> page(std::size_t i) const {

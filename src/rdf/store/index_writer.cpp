@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes an index by appending, by single puts, or by rewriting it.
+// Writes an index by appending, by single puts, or as a draft that is appended when the transaction commits.
 #include "rdf/store/index_writer.hpp"
 
 #include <algorithm>
 #include <array>
 #include <span>
 
+#include "base/parallel.hpp"
 #include "rdf/store/flush_poll.hpp"
+#include "rdf/store/index_draft.hpp"
 
 namespace cluxel::rdf {
 
@@ -17,6 +19,9 @@ constexpr std::string_view kIndexKey = "q";
 
 // The cost of a single put, in keys written by appending.
 constexpr std::uint64_t kPutCost = 4;
+
+// Of a draft, 64 MiB; larger indexes are changed in their tables.
+constexpr std::uint64_t kMaxDraftKeys = 4U << 20U;
 
 /// Calls the poll of a FlushPoll once in a while.
 class EntryPoll {
@@ -102,46 +107,112 @@ struct ChangeNotes {
 };
 
 std::uint64_t keyCount(const ReadTransaction::Impl& transaction, Table index) {
+  if (const IndexDraft* draft = transaction.draftOf(index)) return draft->size();
   MDB_stat stat;
   transaction.check(mdb_stat(transaction.live(), transaction.table(index), &stat), "read an index");
   return stat.ms_entries;
 }
 
-std::vector<Key128> allKeys(ReadTransaction::Impl& transaction, Table index) {
+std::unique_ptr<IndexDraft> draftFrom(ReadTransaction::Impl& transaction, Table index) {
   const IndexCursor cursor(transaction, index);
   const PageDirectory directory(cursor.get());
-  std::vector<Key128> keys;
-  keys.reserve(keyCount(transaction, index));
+  auto draft = std::make_unique<IndexDraft>();
   EntryPoll poll(transaction);
   for (std::size_t i = 0; i < directory.pageCount(); ++i) {
-    for (const QuadKey& key : directory.page(i)) keys.push_back(toNumber(key));
+    for (const QuadKey& key : directory.page(i)) draft->append(toNumber(key));
     poll.count(directory.page(i).size());
   }
-  return keys;
+  return draft;
 }
 
-void noteDifference(const std::vector<Key128>& old, const std::vector<Key128>& now, const ChangeNotes& notes) {
-  std::vector<Key128> keys;
-  std::set_difference(old.begin(), old.end(), now.begin(), now.end(), std::back_inserter(keys));
-  for (const Key128 key : keys) notes.removed(key);
-  keys.clear();
-  std::set_difference(now.begin(), now.end(), old.begin(), old.end(), std::back_inserter(keys));
-  for (const Key128 key : keys) notes.added(key);
+void writeDraft(ReadTransaction::Impl& transaction, Table index) {
+  const std::unique_ptr<IndexDraft> draft = std::move(transaction.drafts[static_cast<std::size_t>(index)]);
+  transaction.check(mdb_drop(transaction.live(), transaction.table(index), 0), "write an index");
+  const IndexCursor cursor(transaction, index);
+  EntryPoll poll(transaction);
+  for (std::size_t i = 0; i < draft->pageCount(); ++i) {
+    poll.count(draft->page(i).size());
+    appendKeys(transaction, cursor.get(), draft->page(i));
+  }
 }
 
+/// Whether the change goes to a draft, which is there then.
+bool isDrafted(ReadTransaction::Impl& transaction, Table index, std::uint64_t changes) {
+  const std::uint64_t entries = keyCount(transaction, index);
+  std::unique_ptr<IndexDraft>& draft = transaction.drafts[static_cast<std::size_t>(index)];
+  if (draft) {
+    if (entries + changes > kMaxDraftKeys) writeDraft(transaction, index);
+    return draft != nullptr;
+  }
+  if (changes * kPutCost <= entries + 1000 || entries + changes > kMaxDraftKeys) return false;
+  draft = draftFrom(transaction, index);
+  return true;
+}
+
+/// One pass over the keys before and the change.
+template <typename Keep>
+void merge(const IndexDraft& before, const IndexChange& change, const ChangeNotes& notes, EntryPoll& poll,
+           const Keep& keep) {
+  auto added = change.added.begin(), removed = change.removed.begin();
+  const auto add = [&] {
+    keep(*added);
+    notes.added(*added++);
+  };
+  for (std::size_t i = 0; i < before.pageCount(); ++i) {
+    poll.count(before.page(i).size());
+    for (const QuadKey& stored : before.page(i)) {
+      const Key128 key = toNumber(stored);
+      while (added != change.added.end() && *added < key) add();
+      if (added != change.added.end() && *added == key) ++added;
+      while (removed != change.removed.end() && *removed < key) ++removed;
+      if (removed != change.removed.end() && *removed == key)
+        notes.removed(key);
+      else
+        keep(key);
+    }
+  }
+  while (added != change.added.end()) {
+    poll.count(1);
+    add();
+  }
+}
+
+void changeDraft(ReadTransaction::Impl& transaction, Table index, const IndexChange& change, const ChangeNotes& notes) {
+  std::unique_ptr<IndexDraft>& draft = transaction.drafts[static_cast<std::size_t>(index)];
+  EntryPoll poll(transaction);
+  constexpr std::uint64_t kInsertCost = 32;  // in keys that are merged
+  if ((change.added.size() + change.removed.size()) * kInsertCost > draft->size()) {
+    auto merged = std::make_unique<IndexDraft>();
+    merge(*draft, change, notes, poll, [&](Key128 key) { merged->append(key); });
+    draft = std::move(merged);
+    return;
+  }
+  for (const Key128 key : change.removed) {
+    poll.count(1);
+    if (draft->remove(key)) notes.removed(key);
+  }
+  for (const Key128 key : change.added) {
+    poll.count(1);
+    if (draft->insert(key)) notes.added(key);
+  }
+}
+
+/// As the keys of a large index are too many for a draft.
 void writeAnew(ReadTransaction::Impl& transaction, Table index, const IndexChange& change, const ChangeNotes& notes) {
-  const std::vector<Key128> old = allKeys(transaction, index);
-  std::vector<Key128> kept;
-  kept.reserve(old.size());
-  std::set_difference(old.begin(), old.end(), change.removed.begin(), change.removed.end(), std::back_inserter(kept));
-  std::vector<Key128> merged;
-  merged.reserve(kept.size() + change.added.size());
-  std::set_union(kept.begin(), kept.end(), change.added.begin(), change.added.end(), std::back_inserter(merged));
+  const std::unique_ptr<IndexDraft> before = draftFrom(transaction, index);
   transaction.check(mdb_drop(transaction.live(), transaction.table(index), 0), "write an index");
   IndexCursor cursor(transaction, index);
-  EntryPoll poll(transaction);
-  cursor.append(merged, poll);
-  if (notes.sum != nullptr || notes.journal != nullptr) noteDifference(old, merged, notes);
+  EntryPoll poll(transaction), merged(transaction);
+  std::vector<Key128> some;
+  const auto append = [&] {
+    cursor.append(some, poll);
+    some.clear();
+  };
+  merge(*before, change, notes, merged, [&](Key128 key) {
+    some.push_back(key);
+    if (some.size() == 4096) append();
+  });
+  append();
 }
 
 /// Uses mdb_del only: loops of mdb_cursor_del over duplicates corrupt the file in LMDB 0.9.24.
@@ -185,14 +256,37 @@ void appendKeys(const ReadTransaction::Impl& transaction, MDB_cursor* cursor, st
   transaction.check(mdb_cursor_put(cursor, &key, values.data(), MDB_APPENDDUP | MDB_MULTIPLE), "write an index");
 }
 
-void applyTo(ReadTransaction::Impl& transaction, Table index, const IndexChange& change, EntrySum* sum,
-             QuadJournal* journal) {
-  const ChangeNotes notes{sum, journal};
-  const std::uint64_t changes = change.added.size() + change.removed.size();
-  const std::uint64_t entries = keyCount(transaction, index);
-  if (entries > 0 && changes * kPutCost > entries + 1000) return writeAnew(transaction, index, change, notes);
-  removeSingly(transaction, index, change.removed, notes);
-  addSingly(transaction, index, change.added, notes);
+namespace {
+
+void writeSingly(ReadTransaction::Impl& transaction, const IndexTask& task) {
+  const ChangeNotes notes{task.sum, task.journal};
+  const std::uint64_t changes = task.change.added.size() + task.change.removed.size();
+  const std::uint64_t entries = keyCount(transaction, task.index);
+  if (entries > 0 && changes * kPutCost > entries + 1000) return writeAnew(transaction, task.index, task.change, notes);
+  removeSingly(transaction, task.index, task.change.removed, notes);
+  addSingly(transaction, task.index, task.change.added, notes);
+}
+
+}  // namespace
+
+/// LMDB has one writer: only what happens in memory runs on several threads. A poll may be called by one thread only.
+void applyTo(ReadTransaction::Impl& transaction, std::span<IndexTask> tasks, std::size_t count,
+             const std::function<void(IndexTask&)>& make) {
+  std::vector<char> is_drafted;
+  for (const IndexTask& task : tasks) is_drafted.push_back(isDrafted(transaction, task.index, count) ? 1 : 0);
+  parallelFor(tasks.size(), transaction.flush_poll ? 1 : transaction.threads, [&](std::size_t i) {
+    make(tasks[i]);
+    if (is_drafted[i] == 0) return;
+    changeDraft(transaction, tasks[i].index, tasks[i].change, {tasks[i].sum, tasks[i].journal});
+    tasks[i].change = {};
+  });
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+    if (is_drafted[i] == 0) writeSingly(transaction, tasks[i]);
+}
+
+void writeDrafts(ReadTransaction::Impl& transaction) {
+  for (std::size_t i = 0; i < kTableCount; ++i)
+    if (transaction.drafts[i]) writeDraft(transaction, static_cast<Table>(i));
 }
 
 FlushPoll::FlushPoll(const ReadTransaction& transaction, std::function<void()> poll) : transaction_(transaction) {

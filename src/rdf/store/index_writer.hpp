@@ -2,6 +2,7 @@
 // Applies sorted changes to one index of 16-byte keys.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -18,10 +19,22 @@ struct IndexChange {
 /// Appends ascending keys beyond the last one of an index. `cursor` is a cursor on it.
 void appendKeys(const ReadTransaction::Impl& transaction, MDB_cursor* cursor, std::span<const QuadKey> keys);
 
-/// Applies the change: appends keys after the last one, puts single keys, and rewrites the index by a merge when the
-/// change is large. Adding an existing key or removing a missing one has no effect.
-/// `sum` and `journal`, if any, follow what really changes; the journal takes keys in the order s, p, o, g.
-void applyTo(ReadTransaction::Impl& transaction, Table index, const IndexChange& change, EntrySum* sum,
-             QuadJournal* journal = nullptr);
+/// A change of one index. `sum` and `journal`, if any, follow what really changes; the journal takes keys in the order
+/// s, p, o, g.
+struct IndexTask {
+  Table index;
+  IndexChange change;
+  EntrySum* sum = nullptr;
+  QuadJournal* journal = nullptr;
+};
+
+/// Applies a change of `count` keys to one index or more: by single puts, or to a draft when the change is large.
+/// Adding an existing key or removing a missing one has no effect. `make` fills in the change of a task; it runs on as
+/// many threads as the transaction may use, once for each task, as does what changes drafts.
+void applyTo(ReadTransaction::Impl& transaction, std::span<IndexTask> tasks, std::size_t count,
+             const std::function<void(IndexTask&)>& make);
+
+/// Writes the drafts of a transaction to their tables, which fills all pages.
+void writeDrafts(ReadTransaction::Impl& transaction);
 
 }  // namespace cluxel::rdf

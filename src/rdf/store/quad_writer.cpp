@@ -8,6 +8,7 @@
 
 #include "cluxel/error.hpp"
 #include "rdf/store/geometry_index.hpp"
+#include "rdf/store/index_orders.hpp"
 #include "rdf/store/index_writer.hpp"
 #include "rdf/store/quad_reader_impl.hpp"
 #include "rdf/store/quad_store.hpp"
@@ -64,6 +65,7 @@ struct QuadWriter::Impl {
   TermId internRecord(const Term& term);
   void flushTerms();
   void flushGeometries(TermId first, TermId last);
+  QuadDifference takeChanges();
   void flushQuads();
 };
 
@@ -93,7 +95,7 @@ TermId QuadWriter::Impl::internIri(const Term& term) {
 }
 
 void QuadWriter::Impl::flushTerms() {
-  IndexChange hashes;
+  std::vector<Key128> hashes;
   TermSumWriter sums(transaction);
   TermId first = kNoTerm;
   constexpr TermId kTermsBetweenPolls = 4096;
@@ -107,12 +109,15 @@ void QuadWriter::Impl::flushTerms() {
     const int code = mdb_put(state().live(), state().table(Table::Terms), &key, &value, MDB_APPEND);
     if (code == MDB_KEYEXIST) throw std::logic_error("two quad writers write in one transaction at once");
     state().check(code, "write a term");
-    hashes.added.push_back(keyOfTerm(entry.hash, id));
+    hashes.push_back(keyOfTerm(entry.hash, id));
     sums.add(entry.hash, id);
   }
   sums.store();
-  std::sort(hashes.added.begin(), hashes.added.end());
-  applyTo(state(), Table::TermHashes, hashes, &state().sums.term_hashes);
+  std::array<IndexTask, 1> index{{{Table::TermHashes, {}, &state().sums.term_hashes}}};
+  applyTo(state(), index, hashes.size(), [&hashes](IndexTask& task) {
+    std::sort(hashes.begin(), hashes.end());
+    task.change.added = std::move(hashes);
+  });
   if (first != kNoTerm) flushGeometries(first, next_id - 1);
   terms.clear();
   next_id = kNoTerm;
@@ -131,24 +136,32 @@ void QuadWriter::Impl::flushGeometries(TermId first, TermId last) {
   extendGeometryIndex(transaction, reader, std::move(made), first, last);
 }
 
-void QuadWriter::Impl::flushQuads() {
+/// The last word about each quad counts.
+QuadDifference QuadWriter::Impl::takeChanges() {
   const auto earlier = [](const QuadChange& a, const QuadChange& b) { return a.quad < b.quad; };
-  std::stable_sort(changes.begin(), changes.end(), earlier);
-  for (const QuadOrder order : {QuadOrder::Spog, QuadOrder::Posg, QuadOrder::Ospg, QuadOrder::Gspo}) {
-    IndexChange change;
-    for (std::size_t i = 0; i < changes.size(); ++i) {
-      const bool last_word = i + 1 == changes.size() || changes[i + 1].quad != changes[i].quad;
-      if (last_word) (changes[i].added ? change.added : change.removed).push_back(toNumber(changes[i].quad, order));
-    }
-    if (order != QuadOrder::Spog) {
-      std::sort(change.added.begin(), change.added.end());
-      std::sort(change.removed.begin(), change.removed.end());
-    }
-    const bool is_first = order == QuadOrder::Spog;
-    applyTo(state(), tableOf(order), change, is_first ? &state().sums.quads : nullptr,
-            is_first ? &state().journal : nullptr);
+  if (!std::is_sorted(changes.begin(), changes.end(), earlier))
+    std::stable_sort(changes.begin(), changes.end(), earlier);
+  QuadDifference difference;
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const bool last_word = i + 1 == changes.size() || changes[i + 1].quad != changes[i].quad;
+    if (last_word) (changes[i].added ? difference.added : difference.removed).push_back(changes[i].quad);
   }
   changes.clear();
+  return difference;
+}
+
+void QuadWriter::Impl::flushQuads() {
+  const QuadDifference difference = takeChanges();
+  // The longest first, so that no thread waits long.
+  constexpr std::array<QuadOrder, 4> kOrders{QuadOrder::Posg, QuadOrder::Ospg, QuadOrder::Gspo, QuadOrder::Spog};
+  std::array<IndexTask, 4> tasks;
+  for (std::size_t i = 0; i < tasks.size(); ++i) tasks[i].index = tableOf(kOrders[i]);
+  tasks.back().sum = &state().sums.quads;
+  tasks.back().journal = &state().journal;
+  applyTo(state(), tasks, difference.added.size() + difference.removed.size(), [&](IndexTask& task) {
+    const QuadOrder order = kOrders[static_cast<std::size_t>(&task - tasks.data())];
+    task.change = {keysOf(difference.added, order), keysOf(difference.removed, order)};
+  });
 }
 
 QuadWriter::QuadWriter(WriteTransaction& transaction) : impl_(std::make_unique<Impl>(transaction)) {}

@@ -9,6 +9,7 @@
 
 #include "cluxel/error.hpp"
 #include "rdf/file/check/map_file_head.hpp"
+#include "rdf/store/index_draft.hpp"
 #include "rdf/terms/term_record.hpp"
 
 namespace cluxel::rdf {
@@ -18,6 +19,7 @@ namespace {
 using namespace lmdb_page;
 
 std::uint64_t entriesOf(const ReadTransaction::Impl& transaction, Table table) {
+  if (const IndexDraft* draft = transaction.draftOf(table)) return draft->size();
   MDB_stat stat;
   transaction.check(mdb_stat(transaction.live(), transaction.table(table), &stat), "read the map");
   return stat.ms_entries;
@@ -89,6 +91,8 @@ const PageDirectory& StoreSnapshot::directory(Table index, const ReadTransaction
   std::call_once(made_[i], [&] {
     if (map_.base != nullptr) {
       directories_[i] = PageDirectory(map_, trees_[i]);
+    } else if (const IndexDraft* draft = transaction.draftOf(index)) {
+      directories_[i] = draft->directory();
     } else {
       MDB_cursor* raw = nullptr;
       transaction.check(mdb_cursor_open(transaction.live(), transaction.table(index), &raw), "read an index");

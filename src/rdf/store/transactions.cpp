@@ -14,6 +14,8 @@
 #include "rdf/file/lmdb_environment.hpp"
 #include "rdf/file/map_check.hpp"
 #include "rdf/file/map_replacement.hpp"
+#include "rdf/store/index_draft.hpp"
+#include "rdf/store/index_writer.hpp"
 #include "rdf/store/store_snapshot.hpp"
 #include "rdf/terms/value_cache.hpp"
 
@@ -193,11 +195,14 @@ std::shared_ptr<StoreSnapshot> LmdbEnvironment::snapshot(
   return made;
 }
 
+ReadTransaction::Impl::Impl() = default;
+
 ReadTransaction::Impl::~Impl() {
   end();
 }
 
 void ReadTransaction::Impl::end() {
+  for (auto& draft : drafts) draft.reset();
   if (txn != nullptr) mdb_txn_abort(std::exchange(txn, nullptr));
   if (std::exchange(writing, false)) environment->leaveWriting();
 }
@@ -207,10 +212,15 @@ MDB_txn* ReadTransaction::Impl::live() const {
   return txn;
 }
 
+void WriteTransaction::useThreads(unsigned threads) {
+  impl().threads = threads;
+}
+
 void WriteTransaction::commit() {
   Impl& state = impl();
   state.live();
   const std::size_t id = mdb_txn_id(state.txn);
+  writeDrafts(state);
   if (state.generation > 0) {
     state.block_keys.store(state);
     state.sums.transaction = id;
