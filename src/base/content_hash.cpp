@@ -12,12 +12,23 @@ namespace cluxel {
 
 static_assert(std::endian::native == std::endian::little, "numbers are hashed and stored as they lie in memory");
 
+namespace {
+
+/// Looked up once: that costs more than hashing a few numbers.
+const EVP_MD* sha256() {
+  static const std::unique_ptr<EVP_MD, decltype(&EVP_MD_free)> algorithm{EVP_MD_fetch(nullptr, "SHA256", nullptr),
+                                                                         &EVP_MD_free};
+  return algorithm.get();
+}
+
+}  // namespace
+
 struct ContentHasher::State {
   std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context{EVP_MD_CTX_new(), &EVP_MD_CTX_free};
 };
 
 ContentHasher::ContentHasher() : state_(std::make_unique<State>()) {
-  if (EVP_DigestInit_ex(state_->context.get(), EVP_sha256(), nullptr) != 1)
+  if (EVP_DigestInit_ex(state_->context.get(), sha256(), nullptr) != 1)
     throw std::runtime_error("OpenSSL offers no SHA-256");
 }
 ContentHasher::~ContentHasher() = default;

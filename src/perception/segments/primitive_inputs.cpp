@@ -8,6 +8,7 @@
 #include <array>
 #include <cstring>
 #include <type_traits>
+#include <utility>
 
 namespace cluxel::perception {
 
@@ -19,22 +20,19 @@ class Bytes {
   template <typename Value>
   requires std::is_trivially_copyable_v<Value>
   void add(const Value& value) {
-    const std::size_t at = bytes_.size();
-    bytes_.resize(at + sizeof value);
-    std::memcpy(bytes_.data() + at, &value, sizeof value);
+    if (size_ + sizeof value > bytes_.size()) bytes_.resize(2 * bytes_.size() + sizeof value);
+    std::memcpy(bytes_.data() + size_, &value, sizeof value);
+    size_ += sizeof value;
   }
   template <typename Vector>
   void addVector(const Vector& vector) {
     for (int axis = 0; axis < 3; ++axis) add(vector[axis]);
   }
-  std::uint64_t takeHash() {
-    const std::uint64_t hash = XXH3_64bits(bytes_.data(), bytes_.size());
-    bytes_.clear();
-    return hash;
-  }
+  std::uint64_t takeHash() { return XXH3_64bits(bytes_.data(), std::exchange(size_, 0)); }
 
  private:
   std::vector<char> bytes_;
+  std::size_t size_ = 0;  ///< of what was added
 };
 
 std::uint64_t hashOf(const SceneView& view, Bytes& bytes) {
