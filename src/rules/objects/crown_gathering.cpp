@@ -10,12 +10,11 @@
 
 #include "base/parallel.hpp"
 #include "rules/objects/crown_splitting.hpp"
+#include "rules/objects/fragment_gaps.hpp"
 
 namespace cluxel::rules {
 
 namespace {
-
-constexpr double kGapRounding_m = 1e-9;
 
 class Gathering {
  public:
@@ -153,18 +152,14 @@ class Gathering {
         if (one.is_near) note(first + static_cast<FragmentIndex>(i), one.gatherer, one.gap_m);
   }
 
-  /// The search narrows to the largest of the gaps that are known so far: most fragments touch what they are near.
+  /// The search narrows to the largest of the gaps that are known so far: most fragments touch what they are near. It
+  /// leaves out the cluxels that are farther from the bounds of a gatherer than some other one.
   std::vector<Nearing> nearTo(FragmentIndex fragment, const CluxelGrid& grid) const {
     if (!isFree(fragment) || widestFor(fragment) == 0) return {};
     std::vector<Nearing> nearing = possibleFor(fragment);
-    const auto widest = [&nearing] {
-      double gap = -1;
-      for (const Nearing& one : nearing) gap = std::max(gap, one.gap_m);
-      return gap;
-    };
     for (const std::uint32_t cluxel : state_.fragments[fragment].cluxels) {
-      const double search_m = widest();
-      if (search_m <= 0) break;
+      const double search_m = searchFrom(cluxel, nearing);
+      if (search_m <= 0) continue;
       grid.near(cluxel, search_m, [&](std::uint32_t other) {
         const auto* numbers = gatherersAt(other);
         if (numbers == nullptr) return;
@@ -178,55 +173,54 @@ class Gathering {
     return nearing;
   }
 
+  /// How far from a cluxel some gatherer may be nearer than it is known to be [m]; not positive when none can.
+  double searchFrom(std::uint32_t cluxel, const std::vector<Nearing>& nearing) const {
+    const Eigen::AlignedBox3d box = boxAround(state_.scene.cluxels, std::span(&cluxel, 1));
+    double search_m = -1;
+    for (const Nearing& one : nearing)
+      if (one.gap_m > search_m && isWithin(gatherers_[one.gatherer].bounds, box, one.gap_m)) search_m = one.gap_m;
+    return search_m;
+  }
+
   /// The gatherers that may take the fragment and whose bounds are near its own.
   std::vector<Nearing> possibleFor(FragmentIndex fragment) const {
     const Eigen::AlignedBox3d bounds = boundsOf(fragment);
     std::vector<Nearing> possible;
     for (std::size_t g = 0; g < gatherers_.size(); ++g) {
       const double within = gatherers_[g].spec->gather->within_m;
-      if (gatherers_[g].bounds.squaredExteriorDistance(bounds) <=
-              (within + kGapRounding_m) * (within + kGapRounding_m) &&
-          mayTake(gatherers_[g], fragment))
+      if (isWithin(gatherers_[g].bounds, bounds, within) && mayTake(gatherers_[g], fragment))
         possible.push_back({g, within, false});
     }
     return possible;
   }
 
-  Eigen::AlignedBox3d boundsOf(FragmentIndex fragment) const {
-    return boxAround(state_.scene.cluxels, state_.fragments[fragment].cluxels);
-  }
+  Eigen::AlignedBox3d boundsOf(FragmentIndex fragment) const { return rules::boundsOf(state_.fragments, fragment); }
 
   /// Notes which free fragments are near one that an object has just got.
   void spreadFrom(FragmentIndex fragment) {
     const auto& numbers = of_owner_[state_.fragments[fragment].owner];
     double widest = 0;
     for (std::size_t g : numbers) widest = std::max(widest, gatherers_[g].spec->gather->within_m);
-    const std::vector<std::uint32_t>& cluxels = state_.fragments[fragment].cluxels;
-    if (!hasTakers(cluxels, widest, numbers)) return;
-    for (std::uint32_t cluxel : cluxels)
-      state_.grid.near(cluxel, widest, [&](std::uint32_t other) {
-        const FragmentIndex theirs = state_.fragments.fragmentOf(other);
-        if (!isFree(theirs)) return;
-        for (std::size_t g : numbers) consider(g, theirs, other, cluxel);
-      });
+    std::vector<FragmentIndex> wanted = wantedNear(fragment, widest, numbers);
+    if (wanted.empty()) return;
+    for (const FragmentGap& to : gapsTo(state_, state_.fragments[fragment].cluxels, std::move(wanted), widest))
+      for (const std::size_t g : numbers)
+        if (to.gap_m <= gatherers_[g].spec->gather->within_m && mayTake(gatherers_[g], to.fragment))
+          note(to.fragment, g, to.gap_m);
   }
 
-  /// Whether one of the gatherers may take some free fragment near the cluxels.
-  bool hasTakers(const std::vector<std::uint32_t>& cluxels, double within_m,
-                 const std::vector<std::size_t>& numbers) const {
-    for (const perception::PrimitiveIndex primitive : state_.grid.primitivesNear(cluxels, within_m))
+  /// The free fragments near one that one of the gatherers may take.
+  std::vector<FragmentIndex> wantedNear(FragmentIndex fragment, double within_m,
+                                        const std::vector<std::size_t>& numbers) const {
+    const Eigen::AlignedBox3d bounds = boundsOf(fragment);
+    std::vector<FragmentIndex> wanted;
+    for (const perception::PrimitiveIndex primitive :
+         state_.grid.primitivesNear(state_.fragments[fragment].cluxels, within_m))
       for (const FragmentIndex other : state_.fragments.fragmentsOf(primitive))
-        if (isFree(other) &&
+        if (isFree(other) && isWithin(boundsOf(other), bounds, within_m) &&
             std::any_of(numbers.begin(), numbers.end(), [&](std::size_t g) { return mayTake(gatherers_[g], other); }))
-          return true;
-    return false;
-  }
-
-  void consider(std::size_t number, FragmentIndex fragment, std::uint32_t cluxel, std::uint32_t other) {
-    const Gatherer& gatherer = gatherers_[number];
-    if (!mayTake(gatherer, fragment)) return;
-    const double gap = gapBetween(state_.scene.cluxels, cluxel, other).gap();
-    if (gap <= gatherer.spec->gather->within_m) note(fragment, number, gap);
+          wanted.push_back(other);
+    return wanted;
   }
 
   void note(FragmentIndex fragment, std::size_t number, double gap_m) {

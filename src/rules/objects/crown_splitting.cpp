@@ -210,6 +210,7 @@ class GroupSearch {
       // Most pairs are too far apart, or have a shorter path: both are known before the gap is measured.
       const double square = (other.centre - from).squaredNorm();
       if (square > (reach + other.half_m) * (reach + other.half_m)) return;
+      if (best_[other.at].length < way.length) return;
       const Way longer{way.length + lengthOf(kJumpPenalty * (other.centre - from).norm()), way.source};
       if (best_[other.at] > longer && gapBetween(all_, cluxel, cluxels_[other.at]).gap() <= jump)
         offer(other.at, longer);

@@ -58,8 +58,9 @@ class JumpGrid {
   void remove(const Eigen::Vector3d& centre, std::uint32_t at) {
     const std::int64_t x = cellOf(centre.x()), y = cellOf(centre.y());
     Column& column = columns_[static_cast<std::size_t>(columnsFrom(x, y).first - columns_.cbegin())];
-    const auto begin = entries_.begin() + column.begin, end = entries_.begin() + column.end;
-    const auto entry = std::find_if(begin, end, [at](const Entry& known) { return known.at == at; });
+    const auto first = entries_.begin() + (firstAbove(column, centre.z()) - entries_.cbegin());
+    const auto end = entries_.begin() + column.end;
+    const auto entry = std::find_if(first, end, [at](const Entry& known) { return known.at == at; });
     if (entry == end) return;
     std::move(entry + 1, end, entry);
     --column.end;

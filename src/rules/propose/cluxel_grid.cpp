@@ -3,9 +3,10 @@
 #include "rules/propose/cluxel_grid.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <compare>
 #include <limits>
 #include <numeric>
-#include <tuple>
 
 namespace cluxel::rules {
 
@@ -17,6 +18,53 @@ std::vector<std::uint32_t> numbersTo(std::size_t count) {
   return numbers;
 }
 
+/// Unsigned numbers in the order of others: they compare fast.
+std::uint32_t rankOf(std::int32_t cell) {
+  return static_cast<std::uint32_t>(cell) ^ 0x8000'0000U;
+}
+std::uint32_t rankOf(float z) {
+  const auto bits = std::bit_cast<std::uint32_t>(z + 0.0F);  // no negative zero
+  return (bits >> 31U) != 0 ? ~bits : bits | 0x8000'0000U;
+}
+std::uint64_t joined(std::uint32_t high, std::uint32_t low) {
+  return std::uint64_t{high} << 32U | low;
+}
+
+/// The cell of a cluxel; its height and its number.
+using Placed = std::pair<std::uint64_t, std::uint64_t>;
+
+/// Cells of one x.
+struct CellRow {
+  std::int32_t x = 0, low_y = 0, high_y = 0;
+  auto operator<=>(const CellRow&) const = default;
+};
+
+/// Joins rows that overlap or follow each other. The rows are ascending.
+void joinRows(std::vector<CellRow>& rows) {
+  std::size_t count = 0;
+  for (const CellRow& row : rows) {
+    if (count > 0 && rows[count - 1].x == row.x && row.low_y <= rows[count - 1].high_y + 1)
+      rows[count - 1].high_y = std::max(rows[count - 1].high_y, row.high_y);
+    else
+      rows[count++] = row;
+  }
+  rows.resize(count);
+}
+
+/// The cells up to `reach` cells from some cells, each once.
+std::vector<CellRow> rowsAround(std::vector<CellRow> cells, std::int32_t reach) {
+  std::sort(cells.begin(), cells.end());
+  for (CellRow& cell : cells) cell.low_y -= reach, cell.high_y += reach;
+  joinRows(cells);
+  std::vector<CellRow> rows;
+  rows.reserve(cells.size() * static_cast<std::size_t>(2 * reach + 1));
+  for (const CellRow& cell : cells)
+    for (std::int32_t x = cell.x - reach; x <= cell.x + reach; ++x) rows.push_back({x, cell.low_y, cell.high_y});
+  std::sort(rows.begin(), rows.end());
+  joinRows(rows);
+  return rows;
+}
+
 }  // namespace
 
 CluxelGrid::CluxelGrid(const perception::SceneCluxels& all) : CluxelGrid(all, numbersTo(all.size())) {
@@ -25,29 +73,27 @@ CluxelGrid::CluxelGrid(const perception::SceneCluxels& all) : CluxelGrid(all, nu
 
 CluxelGrid::CluxelGrid(const perception::SceneCluxels& all, std::span<const std::uint32_t> some) : all_(all) {
   if (all.size() > 0) origin_z_ = all.center[all.size() / 2].z();
-  struct Placed {
-    std::int32_t x, y;
-    Entry entry;
-  };
   std::vector<Placed> placed;
   placed.reserve(some.size());
   float highest = 0;
   for (const std::uint32_t i : some) {
-    placed.push_back({cellOf(all.center[i].x()), cellOf(all.center[i].y()), {heightOf(i), i}});
+    const float z = heightOf(i);
+    placed.emplace_back(joined(rankOf(cellOf(all.center[i].x())), rankOf(cellOf(all.center[i].y()))),
+                        joined(rankOf(z), i));
     margin_m_ = std::max(margin_m_, static_cast<double>(all.extent[i].head<2>().maxCoeff()) / 2);
     tallest_half_m_ = std::max(tallest_half_m_, all.extent[i].z() / 2);
-    highest = std::max(highest, std::abs(placed.back().entry.z));
+    highest = std::max(highest, std::abs(z));
   }
   rounding_m_ = 1e-4F + 8 * std::numeric_limits<float>::epsilon() * highest;
-  std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
-    return std::tuple(a.x, a.y, a.entry.z, a.entry.cluxel) < std::tuple(b.x, b.y, b.entry.z, b.entry.cluxel);
-  });
+  std::sort(placed.begin(), placed.end());
   entries_.reserve(placed.size());
-  for (const Placed& one : placed) {
-    if (columns_.empty() || columns_.back().first != one.x) columns_.emplace_back(one.x, cells_.size());
-    if (cells_.empty() || cells_.back().x != one.x || cells_.back().y != one.y)
-      cells_.push_back({one.x, one.y, static_cast<std::uint32_t>(entries_.size())});
-    entries_.push_back(one.entry);
+  for (const auto& [cell, place] : placed) {
+    const auto cluxel = static_cast<std::uint32_t>(place);
+    const std::int32_t x = cellOf(all.center[cluxel].x()), y = cellOf(all.center[cluxel].y());
+    if (columns_.empty() || columns_.back().first != x) columns_.emplace_back(x, cells_.size());
+    if (cells_.empty() || cells_.back().x != x || cells_.back().y != y)
+      cells_.push_back({x, y, static_cast<std::uint32_t>(entries_.size())});
+    entries_.push_back({heightOf(cluxel), cluxel});
   }
   constexpr std::int32_t kBeyond = std::numeric_limits<std::int32_t>::max();
   columns_.emplace_back(kBeyond, cells_.size());
@@ -79,20 +125,19 @@ std::pair<std::uint32_t, std::uint32_t> CluxelGrid::row(std::int32_t x, std::int
 
 std::vector<perception::PrimitiveIndex> CluxelGrid::primitivesNear(std::span<const std::uint32_t> cluxels,
                                                                    double distance_m) const {
-  std::vector<perception::PrimitiveIndex> found;
-  std::vector<std::pair<std::int32_t, std::int32_t>> done;
-  // One look-up per occupied cell, with the cell itself as query box.
-  for (std::uint32_t cluxel : cluxels)
-    done.emplace_back(cellOf(all_.center[cluxel].x()), cellOf(all_.center[cluxel].y()));
-  std::sort(done.begin(), done.end());
-  done.erase(std::unique(done.begin(), done.end()), done.end());
+  std::vector<CellRow> occupied;
+  for (const std::uint32_t cluxel : cluxels) {
+    const CellRow cell{cellOf(all_.center[cluxel].x()), cellOf(all_.center[cluxel].y()),
+                       cellOf(all_.center[cluxel].y())};
+    if (occupied.empty() || occupied.back() != cell) occupied.push_back(cell);
+  }
   const auto reach = static_cast<std::int32_t>(std::ceil((distance_m + 2 * margin_m_) / kCell_m));
-  for (const auto& [cx, cy] : done)
-    for (std::int32_t x = cx - reach; x <= cx + reach; ++x) {
-      const auto [cell, end] = row(x, cy - reach, cy + reach);
-      found.insert(found.end(), primitives_.begin() + first_primitive_[cell],
-                   primitives_.begin() + first_primitive_[end]);
-    }
+  std::vector<perception::PrimitiveIndex> found;
+  for (const CellRow& around : rowsAround(std::move(occupied), reach)) {
+    const auto [cell, end] = row(around.x, around.low_y, around.high_y);
+    found.insert(found.end(), primitives_.begin() + first_primitive_[cell],
+                 primitives_.begin() + first_primitive_[end]);
+  }
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
   return found;
