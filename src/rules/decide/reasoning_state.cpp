@@ -34,8 +34,9 @@ ReasoningState::ReasoningState(const perception::Scene& scene_, const RuleSet& r
       rules(rules_),
       context(context_),
       grid(scene_.cluxels),
-      fragments(scene_),
-      trace(scene_.primitives.size()) {
+      fragments(scene_, context_.threads),
+      trace(scene_.primitives.size()),
+      texts(std::make_shared<const RuleTexts>(rules_)) {
   relations_to.resize(scene.primitives.size());
   for (std::uint32_t i = 0; i < scene.relations.size(); ++i) relations_to[scene.relations[i].to].push_back(i);
   std::vector<std::string> classes = rules.order;

@@ -15,6 +15,7 @@
 #include "rules/propose/cluxel_grid.hpp"
 #include "rules/propose/first_winners.hpp"
 #include "rules/propose/fragment_table.hpp"
+#include "rules/propose/rule_texts.hpp"
 
 namespace cluxel::rules {
 
@@ -71,7 +72,8 @@ struct ReasoningState {
   std::map<std::string, std::vector<bool>, std::less<>> classes_below;
   /// What won the first round of the stratum; null in the first round, and where no evidence asks for it.
   std::shared_ptr<const FirstWinners> first_winners;
-  bool is_first_of_two_rounds = false;  ///< its outcome is only read by the second round
+  std::shared_ptr<const RuleTexts> texts;  ///< shared by copies of the state
+  bool is_first_of_two_rounds = false;     ///< its outcome is only read by the second round
 
   /// Threads for what only reads the state. Queries are asked from one thread.
   unsigned threads() const { return rules.asks_map ? 1 : context.threads; }

@@ -79,7 +79,7 @@ bool ConditionEvaluator::holds(const Condition& condition, std::vector<DecisionS
   const bool passed = holdsElementary(negative ? condition.operands.front() : condition, step) != negative;
   if (steps == nullptr) return passed;
   step.rule_id = rule_.id;
-  step.test = describe(condition);
+  step.test = state_.texts->of(condition);
   step.file = condition.at.file;
   step.line = condition.at.line;
   step.passed = passed;

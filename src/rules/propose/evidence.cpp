@@ -39,7 +39,7 @@ class Weighing {
 
   EvidenceStep of(const EvidenceLine& line) {
     EvidenceStep step;
-    step.text = describe(line);
+    step.text = state_.texts->of(line);
     step.file = line.at.file;
     step.line = line.at.line;
     if (line.asks_rivals && state_.first_winners == nullptr) return step;

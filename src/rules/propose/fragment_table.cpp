@@ -7,20 +7,36 @@
 #include <cassert>
 #include <limits>
 
+#include "base/parallel.hpp"
 #include "rules/decide/trace_recorder.hpp"
 
 namespace cluxel::rules {
 
-FragmentTable::FragmentTable(const perception::Scene& scene)
+FragmentTable::FragmentTable(const perception::Scene& scene, unsigned threads)
     : scene_(scene),
+      fragments_(scene.primitives.size()),
+      shapes_(scene.primitives.size()),
+      outlines_(scene.primitives.size()),
+      hashes_(scene.primitives.size()),
       fragments_of_primitive_(scene.primitives.size()),
       fragment_of_cluxel_(scene.cluxels.size(), kFree) {
-  for (perception::PrimitiveIndex i = 0; i < scene.primitives.size(); ++i) {
-    Fragment fragment;
-    fragment.primitive = i;
-    fragment.cluxels = scene.primitives[i].cluxels;
-    add(std::move(fragment));
-  }
+  constexpr std::size_t kTogether = 64;
+  const std::size_t count = scene.primitives.size();
+  parallelFor((count + kTogether - 1) / kTogether, threads, [&](std::size_t chunk) {
+    const std::size_t end = std::min(count, (chunk + 1) * kTogether);
+    for (std::size_t i = chunk * kTogether; i < end; ++i) addWhole(static_cast<perception::PrimitiveIndex>(i));
+  });
+}
+
+/// The fragment that is the whole primitive.
+void FragmentTable::addWhole(perception::PrimitiveIndex primitive) {
+  Fragment& fragment = fragments_[primitive];
+  fragment.primitive = primitive;
+  fragment.cluxels = scene_.primitives[primitive].cluxels;
+  for (const std::uint32_t cluxel : fragment.cluxels) fragment_of_cluxel_[cluxel] = primitive;
+  fragments_of_primitive_[primitive] = {primitive};
+  hashes_[primitive] = contentHashOf(fragment);
+  measure(primitive);
 }
 
 FragmentIndex FragmentTable::add(Fragment fragment) {

@@ -27,7 +27,7 @@ struct Fragment {
 
 class FragmentTable {
  public:
-  explicit FragmentTable(const perception::Scene& scene);
+  explicit FragmentTable(const perception::Scene& scene, unsigned threads = 1);
 
   const Fragment& operator[](FragmentIndex fragment) const { return fragments_[fragment]; }
   std::size_t size() const { return fragments_.size(); }
@@ -70,6 +70,7 @@ class FragmentTable {
   Shape shapeOfSome(const Candidate& candidate, std::span<const std::uint32_t> cluxels) const;
   std::vector<FragmentIndex> inCanonicalOrder(const Candidate& candidate) const;
   bool isWhole(FragmentIndex fragment) const;
+  void addWhole(perception::PrimitiveIndex primitive);
   FragmentIndex add(Fragment fragment);
   void measure(FragmentIndex fragment);
   std::uint64_t contentHashOf(const Fragment& fragment) const;
