@@ -173,11 +173,23 @@ std::vector<rdf::QuadIds> FactSink::take() {
   return facts;
 }
 
-FactChange FactSink::writeDifference() {
+void FactSink::sortSoFar() {
+  std::sort(of_units_.begin(), of_units_.end());
+  sorted_ = of_units_.size();
+}
+
+std::vector<rdf::QuadIds> FactSink::takeSorted() {
   std::vector<rdf::QuadIds> facts = std::move(of_units_);
   facts.insert(facts.end(), others_.begin(), others_.end());
-  std::sort(facts.begin(), facts.end());
+  const auto rest = facts.begin() + static_cast<std::ptrdiff_t>(sorted_);
+  std::sort(rest, facts.end());
+  std::inplace_merge(facts.begin(), rest, facts.end());
   facts.erase(std::unique(facts.begin(), facts.end()), facts.end());
+  return facts;
+}
+
+FactChange FactSink::writeDifference() {
+  const std::vector<rdf::QuadIds> facts = takeSorted();
   const std::vector<rdf::QuadIds> old = storedToCompare(readerOf(transaction_));
   FactChange change;
   std::set_difference(old.begin(), old.end(), facts.begin(), facts.end(), std::back_inserter(change.removed));

@@ -62,6 +62,8 @@ class FactSink {
   void number(rdf::TermId subject, std::string_view property_name, double value);
   void count(rdf::TermId subject, std::string_view property_name, std::uint64_t value);
 
+  /// Sorts the facts of units that were given so far, which is left out later. No unit may be begun.
+  void sortSoFar();
   /// Makes the stored graph and its units equal to what was given and what is kept. The sink is spent afterwards.
   FactChange finish();
   /// The facts of a sink that only collects them. Their terms wait for a flush of the writer.
@@ -72,6 +74,7 @@ class FactSink {
   void removeThoseNotAsked();
   void takeOthers();
   std::vector<rdf::QuadIds> storedToCompare(const rdf::QuadReader& stored) const;
+  std::vector<rdf::QuadIds> takeSorted();
   FactChange writeDifference();
 
   rdf::WriteTransaction& transaction_;
@@ -86,6 +89,7 @@ class FactSink {
   Term decimal_ = Term::literal("", rdf::vocabulary::xsd("decimal"));  ///< the number at hand
   std::vector<rdf::QuadIds> of_units_, others_;
   std::size_t unit_begin_ = 0;  ///< in of_units_
+  std::size_t sorted_ = 0;      ///< of of_units_, from its begin
   bool in_unit_ = false;
   std::set<FactUnitKey> asked_;
   std::vector<FactUnit> units_;       ///< to be stored

@@ -15,17 +15,17 @@ namespace cluxel::mapping {
 
 namespace {
 
-void addMap(const ObservedMap& map, FactSink& facts) {
+void addMap(const MapInputs& inputs, const std::vector<Cloud>& clouds, FactSink& facts) {
   const rdf::TermId root = facts.iri(rdf::iriOfMapRoot());
   facts.type(root, rdf::vocabulary::clx("Map"));
   facts.text(root, "frame", "map");
-  if (!map.inputs.crs.empty()) facts.text(root, "crs", map.inputs.crs);
-  if (!map.inputs.map_origin.isZero()) {
-    facts.number(root, "originX", map.inputs.map_origin.x());
-    facts.number(root, "originY", map.inputs.map_origin.y());
-    facts.number(root, "originZ", map.inputs.map_origin.z());
+  if (!inputs.crs.empty()) facts.text(root, "crs", inputs.crs);
+  if (!inputs.map_origin.isZero()) {
+    facts.number(root, "originX", inputs.map_origin.x());
+    facts.number(root, "originY", inputs.map_origin.y());
+    facts.number(root, "originZ", inputs.map_origin.z());
   }
-  for (const Cloud& cloud : map.clouds) facts.link(root, "hasCloud", facts.iri(rdf::iriOfCloud(cloud.id)));
+  for (const Cloud& cloud : clouds) facts.link(root, "hasCloud", facts.iri(rdf::iriOfCloud(cloud.id)));
 }
 
 ContentHash causeOf(const Cloud& cloud) {
@@ -165,12 +165,12 @@ FactUnitKey unitOfGroundPatch(std::string_view iri) {
   return {ContentHasher().addText(iri).finish(), Facet::Self};
 }
 
-void addObservedFacts(const ObservedMap& map, FactSink& facts) {
-  addMap(map, facts);
-  for (const Cloud& cloud : map.clouds) addCloud(cloud, facts);
-  for (perception::PrimitiveIndex i = 0; i < map.scene.primitives.size(); ++i) addPrimitive(map.scene, i, facts);
-  addGroundPatches(map.scene, facts);
-  addObjectFacts(map, facts);
+void addSceneFacts(const MapInputs& inputs, const std::vector<Cloud>& clouds, const perception::Scene& scene,
+                   FactSink& facts) {
+  addMap(inputs, clouds, facts);
+  for (const Cloud& cloud : clouds) addCloud(cloud, facts);
+  for (perception::PrimitiveIndex i = 0; i < scene.primitives.size(); ++i) addPrimitive(scene, i, facts);
+  addGroundPatches(scene, facts);
 }
 
 }  // namespace cluxel::mapping

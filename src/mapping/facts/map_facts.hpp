@@ -39,7 +39,9 @@ struct ObservedMap {
   const std::vector<WidePart>& wide;
 };
 
-void addObservedFacts(const ObservedMap& map, FactSink& facts);
+/// The facts about the map, its clouds, its primitives and the ground that they touch.
+void addSceneFacts(const MapInputs& inputs, const std::vector<Cloud>& clouds, const perception::Scene& scene,
+                   FactSink& facts);
 
 void addCloud(const Cloud& cloud, FactSink& facts);
 /// The facts of a primitive and its relations to others.

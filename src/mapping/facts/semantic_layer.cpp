@@ -7,6 +7,8 @@
 #include "mapping/build/way_tiles.hpp"
 #include "mapping/facts/map_facts.hpp"
 #include "mapping/facts/map_oracle.hpp"
+#include "mapping/facts/object_facts.hpp"
+#include "mapping/facts/scene_facts.hpp"
 #include "mapping/facts/way_facts.hpp"
 #include "mapping/inference/infer_facts.hpp"
 #include "mapping/inference/sparql_rules.hpp"
@@ -17,7 +19,6 @@
 #include "mapping/statements/overruled_objects.hpp"
 #include "mapping/statements/statement_facts.hpp"
 #include "mapping/statements/statement_places.hpp"
-#include "perception/segments/primitive_inputs.hpp"
 #include "rdf/io/rdf_io.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
@@ -36,12 +37,13 @@ std::vector<rules::RuleSource> ruleSources(const std::vector<NamedText>& texts) 
 }
 
 /// Makes the observed graph hold the facts of the scene, of `reasoning`, of statements and of ways.
-void writeObserved(rdf::WriteTransaction& transaction, const ObservedMap& map,
-                   const std::vector<StatementOutcome>& statements = {}, const WayGraph& ways = {}) {
-  FactSink facts(transaction, rdf::vocabulary::kGraphObserved);
+void writeObserved(SceneFacts& of_scene, const ObservedMap& map, const std::vector<StatementOutcome>& statements,
+                   const WayGraph& ways) {
+  of_scene.collect();
+  FactSink& facts = of_scene.sink();
   for (const StatementOutcome& outcome : statements)
     if (outcome.object) facts.addToUnits(*outcome.object);
-  addObservedFacts(map, facts);
+  addObjectFacts(map, facts);
   addStatementFacts(statements, facts);
   addWayFacts(ways, facts);
   facts.finish();
@@ -63,10 +65,10 @@ void writeObjectsSoFar(rdf::WriteTransaction& transaction, const MapInputs& inpu
   const std::vector<std::uint32_t> object_of = objectOfCluxel(so_far, scene.cluxels.size());
   const auto sightings = sightingsOf(stages.summaries(), object_of);
   const auto wide = mergedParts(wideTilesOf(scene, stages.summaries(), so_far.objects));
+  SceneFacts facts(transaction, inputs, clouds, scene, stages.summaries());
   writeObserved(
-      transaction,
-      {inputs, clouds, scene, so_far, sightings, {}, {}, nearOf(so_far.objects, scene.cluxels, object_of), wide}, {},
-      ways);
+      facts, {inputs, clouds, scene, so_far, sightings, {}, {}, nearOf(so_far.objects, scene.cluxels, object_of), wide},
+      {}, ways);
   inferClosure(transaction);
 }
 
@@ -99,10 +101,13 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
     writeObjectsSoFar(transaction, parsed.inputs, clouds, scene, stages, ways, objects);
   });
   rules::KnownSplits splits = storedSplits(transaction);
+  SceneFacts facts(transaction, parsed.inputs, clouds, scene, stages.summaries());
+  if (threads > 1 && !parsed.rules.asks_map) facts.begin();
   rules::ReasoningResult result =
       reason(scene, parsed.rules, {.oracle = &oracle, .threads = threads, .splits = &splits});
+  facts.wait();
   if (check) check(0);
-  const std::vector<std::uint64_t> traces = result.traces, inputs = inputHashes(scene, stages.summaries());
+  const std::vector<std::uint64_t> traces = result.traces;
   AppliedStatements stated = appliedStatements(transaction, stages, parsed.model.perception.thin, clouds, scene,
                                                parsed.rules.catalogue, std::move(result.objects));
   result.objects = std::move(stated.objects);
@@ -122,11 +127,12 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   const std::vector<WideTile> wide_tiles = wideTilesOf(scene, stages.summaries(), result.objects);
   const auto wide = mergedParts(wide_tiles);
   const auto near = nearOf(result.objects, scene.cluxels, object_of);
-  writeObserved(transaction, {parsed.inputs, clouds, scene, result, sightings, presence, passed_rays, near, wide},
+  writeObserved(facts, {parsed.inputs, clouds, scene, result, sightings, presence, passed_rays, near, wide},
                 stated.outcomes, ways);
   storeWideTiles(transaction, wide_tiles);
   inferFacts(transaction, parsed.inputs, sink, check);
-  storeLayers(transaction, {.scene = scene, .objects = result.objects, .traces = traces, .inputs = inputs});
+  storeLayers(transaction,
+              {.scene = scene, .objects = result.objects, .traces = traces, .inputs = facts.inputHashes()});
   storeOverruled(transaction, stated.overruled, scene);
   storeStatementTiles(transaction, stated.tiles);
   storeSplits(transaction, splits);

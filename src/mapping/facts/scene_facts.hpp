@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// What follows from a scene alone, collected while its objects are decided.
+#pragma once
+
+#include <cstdint>
+#include <future>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "mapping/facts/fact_sink.hpp"
+#include "mapping/facts/map_facts.hpp"
+#include "perception/segments/summary_tile.hpp"
+
+namespace cluxel::mapping {
+
+/// The facts about clouds and primitives, and the hashes of what primitives follow from. The arguments of the
+/// constructor must live as long.
+class SceneFacts {
+ public:
+  SceneFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, const std::vector<Cloud>& clouds,
+             const perception::Scene& scene, const std::map<perception::TileKey, perception::SummaryTile>& summaries);
+
+  /// Collects them on a thread of its own. Nobody else may use the transaction until collect() has returned.
+  void begin();
+  /// Waits for the thread, if there is one.
+  void wait();
+  /// Collects them, unless a thread did.
+  void collect();
+
+  /// The sink of the observed graph; it has the facts when collect() has returned.
+  FactSink& sink() { return *sink_; }
+  const std::vector<std::uint64_t>& inputHashes() const { return input_hashes_; }
+
+ private:
+  void tell();
+
+  rdf::WriteTransaction& transaction_;
+  const MapInputs& inputs_;
+  const std::vector<Cloud>& clouds_;
+  const perception::Scene& scene_;
+  const std::map<perception::TileKey, perception::SummaryTile>& summaries_;
+  std::optional<FactSink> sink_;
+  std::vector<std::uint64_t> input_hashes_;
+  std::future<void> telling_;  ///< its destructor waits
+};
+
+}  // namespace cluxel::mapping
