@@ -107,6 +107,7 @@ class MapBuild {
     const double started_s = nowSeconds();
     StageClock clock(sink_);
     rdf::WriteTransaction transaction = work_.environment().write();
+    transaction.useThreads(params_.threads);
     requireOwn(transaction);
     PointChanges changes;
     std::uint64_t batch_points = 0, part_points = 0;
@@ -163,8 +164,10 @@ class MapBuild {
     storeInputs(transaction, parsed_.inputs);
     state_ = MapState{is_last, parsed_.inputs.hash().hex()};
     storeState(transaction, *state_);
-    addActivity(transaction, {"build", started_s, nowSeconds(), clock.seconds()}, clouds, parsed_.inputs);
     if (is_last) writeThings(transaction, dateTimeText(nowSeconds()), {}, namesOf(storedObjects(transaction)));
+    transaction.writeIndexes();
+    clock.progress("indexes", 1, 1);
+    addActivity(transaction, {"build", started_s, nowSeconds(), clock.seconds()}, clouds, parsed_.inputs);
     transaction.commit();
     report_.scans = clouds.size();
     report_.points = 0;

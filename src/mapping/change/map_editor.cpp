@@ -79,6 +79,7 @@ rdf::WriteTransaction MapEditor::begin() {
   if (!state || !state->is_finished || state->inputs_hash != inputs_hash_)
     throw Error(ErrorKind::StoreUnavailable,
                 environment_->file().string() + ": another program has changed it meanwhile; run the command again");
+  transaction.useThreads(params_.threads);
   if (!std::exchange(has_begun_, true)) readBefore(transaction);  // an update may have come in between
   if (names_at_end_ && !std::exchange(has_own_before_, true)) {
     const std::vector<ObjectMembers> own = allObjects(transaction);

@@ -60,6 +60,8 @@ class WriteTransaction : public ReadTransaction {
   bool eraseBlock(std::string_view table, std::string_view key);  ///< false when the block does not exist
   /// How many threads may sort and merge what is written; the outcome is the same. One, unless it is told.
   void useThreads(unsigned threads);
+  /// Writes the indexes that wait in memory, as commit() does. Expects that nothing is waiting for a flush.
+  void writeIndexes();
   void commit();
 };
 

@@ -216,6 +216,11 @@ void WriteTransaction::useThreads(unsigned threads) {
   impl().threads = threads;
 }
 
+void WriteTransaction::writeIndexes() {
+  writeDrafts(impl());
+  ++impl().generation;  // so that readers look for them in the file
+}
+
 void WriteTransaction::commit() {
   Impl& state = impl();
   state.live();
