@@ -4,43 +4,16 @@
 
 #include <algorithm>
 #include <array>
-#include <ctime>
 #include <iterator>
 #include <limits>
 #include <string>
 #include <utility>
 
 #include "base/parallel.hpp"
+#include "perception/stage_tiles.hpp"
 
 namespace cluxel::perception {
 namespace {
-
-double processorSeconds() {
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
-
-template <typename Tiles>
-TileSet keysOf(const Tiles& tiles) {
-  TileSet keys;
-  for (const auto& [key, tile] : tiles) keys.insert(keys.end(), key);
-  return keys;
-}
-
-/// Tiles for each stage.
-class StageTiles {
- public:
-  TileSet& operator[](Stage stage) { return tiles_[static_cast<std::size_t>(stage)]; }
-  const TileSet& operator[](Stage stage) const { return tiles_[static_cast<std::size_t>(stage)]; }
-  void fill(const TileSet& tiles) { tiles_.fill(tiles); }
-
- private:
-  std::array<TileSet, kStageCount> tiles_;
-};
-
-TileSet without(TileSet tiles, const TileSet& others) {
-  for (const TileKey& key : others) tiles.erase(key);
-  return tiles;
-}
 
 /// One run over the tiles. A stage computes the tiles of which an input changed, and hands on those whose output did.
 class Run {
@@ -347,24 +320,10 @@ class Run {
   TileSet forgotten_;  ///< tiles whose stored outputs are not read; every stage computes them
   TileSet lent_;       ///< tiles that only the donor has
   TileSet all_changed_;
-  StageTiles changed_;    ///< against the store
-  StageTiles differing_;  ///< against the donor
+  StageTiles changed_, differing_;  ///< against the store, and against the donor
 };
 
 }  // namespace
-
-std::string_view nameOf(Stage stage) {
-  constexpr std::array<std::string_view, kStageCount> kNames{"points",    "cluxels", "ground",     "features", "labels",
-                                                             "summaries", "even",    "components", "contacts"};
-  return kNames[static_cast<std::size_t>(stage)];
-}
-
-TileSegments segmentsOf(std::span<const scan::Scan> scans) {
-  TileSegments segments;
-  for (const scan::Scan& scan : scans)
-    for (auto& [key, segment] : splitScan(scan)) segments[key].push_back(std::move(segment));
-  return segments;
-}
 
 TileSet runStages(TileSegments segments, const TileLabeller& labeller, const SceneParams& params, TileOutputs& outputs,
                   const RunOptions& options) {

@@ -238,7 +238,6 @@ std::set<std::string> termsUsedIn(const fs::path& file) {
 TEST_F(Statements, UseTermsThatTheOntologyDeclares) {
   build({{0, 0}, {1, 0}});
   std::vector<Statement> statements;
-  ContentHash first;
   {
     const MapReader reader(map());
     const rules::SemanticObject thing = thingIn(reader);

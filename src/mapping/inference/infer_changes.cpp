@@ -32,25 +32,6 @@ using rdf::Triple;
 
 using Outputs = std::vector<RuleOutput>;
 
-/// Takes the outputs of some keys away and puts others in their place. Returns the facts of both.
-std::vector<Triple> replaceOutputs(Outputs& outputs, const std::optional<std::vector<rdf::TermId>>& keys,
-                                   const Outputs& now) {
-  const auto is_replaced = [&](const RuleOutput& output) {
-    return !keys || std::binary_search(keys->begin(), keys->end(), output.key);
-  };
-  std::vector<Triple> facts;
-  Outputs kept;
-  for (const RuleOutput& output : outputs)
-    if (is_replaced(output))
-      facts.push_back(output.fact);
-    else
-      kept.push_back(output);
-  for (const RuleOutput& output : now) facts.push_back(output.fact);
-  outputs.clear();
-  std::merge(kept.begin(), kept.end(), now.begin(), now.end(), std::back_inserter(outputs));
-  return facts;
-}
-
 bool isDerivation(std::string_view iri) {
   static const std::string some = rdf::iriOfDerivation({});
   return iri.starts_with(std::string_view(some).substr(0, some.rfind('/') + 1));

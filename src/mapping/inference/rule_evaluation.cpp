@@ -142,6 +142,25 @@ std::vector<RuleOutput> evaluateRule(rdf::WriteTransaction& transaction, const R
   return outputs;
 }
 
+std::vector<rdf::Triple> replaceOutputs(std::vector<RuleOutput>& outputs,
+                                        const std::optional<std::vector<rdf::TermId>>& keys,
+                                        const std::vector<RuleOutput>& now) {
+  const auto is_replaced = [&](const RuleOutput& output) {
+    return !keys || std::binary_search(keys->begin(), keys->end(), output.key);
+  };
+  std::vector<rdf::Triple> facts;
+  std::vector<RuleOutput> kept;
+  for (const RuleOutput& output : outputs)
+    if (is_replaced(output))
+      facts.push_back(output.fact);
+    else
+      kept.push_back(output);
+  for (const RuleOutput& output : now) facts.push_back(output.fact);
+  outputs.clear();
+  std::merge(kept.begin(), kept.end(), now.begin(), now.end(), std::back_inserter(outputs));
+  return facts;
+}
+
 std::vector<rdf::TermId> affectedKeys(const rdf::QuadReader& reader, const RuleShape& shape, const ValuesOf& values,
                                       const rdf::InferenceCheck& check) {
   RowSink sink;

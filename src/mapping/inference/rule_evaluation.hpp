@@ -34,6 +34,10 @@ using IsSeen = std::function<bool(const rdf::Triple& fact)>;
 std::vector<RuleOutput> evaluateRule(rdf::WriteTransaction& transaction, const RuleShape& shape,
                                      const rdf::InferenceCheck& check, const std::optional<ValuesOf>& keys = {},
                                      const IsSeen& is_seen = {});
+/// Takes the outputs of some keys, or all, away and puts others in their place. Returns the facts of both.
+std::vector<rdf::Triple> replaceOutputs(std::vector<RuleOutput>& outputs,
+                                        const std::optional<std::vector<rdf::TermId>>& keys,
+                                        const std::vector<RuleOutput>& now);
 /// The keys of a superset of the solutions in which the variable has one of the values.
 std::vector<rdf::TermId> affectedKeys(const rdf::QuadReader& reader, const RuleShape& shape, const ValuesOf& values,
                                       const rdf::InferenceCheck& check);

@@ -16,15 +16,14 @@ using PathKind = ast::Path::Kind;
 using Need = ReadPattern::Need;
 
 bool hasExists(const ast::Expression& expression) {
-  if (expression.pattern) return true;
-  return std::any_of(expression.arguments.begin(), expression.arguments.end(), hasExists);
+  return expression.pattern != nullptr ||
+         std::any_of(expression.arguments.begin(), expression.arguments.end(), hasExists);
 }
 
 /// Replaces sequences and inverses by patterns with hidden variables between them.
 class PathExpansion {
  public:
   explicit PathExpansion(ast::VariableTable& variables) : variables_(variables) {}
-
   void group(ast::GroupPattern& group) {
     for (ast::PatternElement& element : group.elements) {
       if (auto* block = std::get_if<ast::TriplesBlock>(&element.value)) triples(*block);
@@ -109,7 +108,7 @@ class ShapeWalk {
     PathExpansion(shape_.query.variables).group(shape_.query.select.where);
     if (!shape_.query.dataset.empty()) return never("it names its graphs");
     const ast::GroupPattern* body = bodyOf();
-    group(*(body != nullptr ? body : &shape_.query.select.where), body != nullptr ? Need::Always : Need::No);
+    group(body != nullptr ? *body : shape_.query.select.where, body != nullptr ? Need::Always : Need::No);
     if (body != nullptr) mentionKey(*body);
   }
 
@@ -236,8 +235,8 @@ class ShapeWalk {
       return group(optional->group, Need::No);
     if (const auto* minus = std::get_if<ast::MinusPattern>(&element.value)) return group(minus->group, Need::No);
     if (const auto* either = std::get_if<ast::UnionPattern>(&element.value)) {
-      for (const ast::GroupPattern& branch : either->branches)
-        group(branch, need == Need::Always ? Need::InABranch : need);
+      if (need == Need::Always) need = Need::InABranch;
+      for (const ast::GroupPattern& branch : either->branches) group(branch, need);
       return;
     }
     if (const auto* inner = std::get_if<ast::SubSelect>(&element.value)) {
