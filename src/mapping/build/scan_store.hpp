@@ -20,8 +20,8 @@ using TileSet = perception::TileSet;
 struct PointChanges {
   perception::TileSegments added;
   TileSet anew;  ///< tiles that lost points or got them at other places
-  /// A map with the same model and settings all of whose scans were copied: its tiles come to this map. In tiles that
-  /// both have, the points are anew.
+  /// Another map with the same model and settings. All its scans were copied to this map, and its tiles come with them.
+  /// Tiles that both maps have are in `anew`.
   const rdf::ReadTransaction* copied = nullptr;
 
   TileSet tiles() const;

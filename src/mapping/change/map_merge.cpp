@@ -169,7 +169,8 @@ class Merge {
     return inputs;
   }
 
-  /// A map in the same frame whose tiles were computed alike lends them. It goes into one batch.
+  /// Copies the scans and tiles of a map that has the frame, model and settings of the result and fits into one batch.
+  /// Of another map the scans are added one by one.
   void addMap(std::size_t number, ScanAdditions& additions) {
     const MapInputs own = inputsOfResult(), inputs = readers_[number].inputs();
     const bool is_alike = maps_[number].T_first_map.matrix().isIdentity(0) && own.model.text == inputs.model.text &&

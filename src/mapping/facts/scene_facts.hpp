@@ -21,7 +21,8 @@ class SceneFacts {
   SceneFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, const std::vector<Cloud>& clouds,
              const perception::Scene& scene, const std::map<perception::TileKey, perception::SummaryTile>& summaries);
 
-  /// Collects them on a thread of its own. Nobody else may use the transaction until collect() has returned.
+  /// Collects them on a thread of its own. Nobody else may use the transaction until wait() or collect()
+  /// has returned.
   void begin();
   /// Waits for the thread, if there is one.
   void wait();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The properties that inference has to do with. Most facts that a scan changes are measurements of others.
+// Which properties inference uses. Most facts that a scan changes are measurements, which inference does not use.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace cluxel::mapping {
 /// What inference does with the facts of a property.
 enum class PropertyUse : std::uint8_t {
   None,     ///< a fact is known when it is stated, and nothing follows from it
-  Read,     ///< the same, but rules read it
+  Read,     ///< a fact is known when it is stated, and rules read it
   Inferred  ///< the closure or a rule derives facts of it, or the closure derives others from them
 };
 
