@@ -7,6 +7,7 @@
 #include "rdf/file/lmdb_environment.hpp"
 #include "rdf/file/lock_file.hpp"
 #include "rdf/file/page_directory.hpp"
+#include "rdf/store/index_directories.hpp"
 #include "rdf/store/index_writer.hpp"
 #include "rdf/store/store_snapshot.hpp"
 
@@ -76,6 +77,7 @@ void copyIndex(const ReadTransaction::Impl& from, CopyTarget& to, Table index) {
     const auto keys = pages.page(i);
     MDB_cursor* target = to.cursorFor(index, keys.size_bytes());
     appendKeys(to.impl(), target, keys);
+    to.impl().directories->noteRewritten(index, 1);
   }
 }
 

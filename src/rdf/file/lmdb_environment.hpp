@@ -16,6 +16,7 @@
 
 namespace cluxel::rdf {
 
+class IndexDirectories;
 class IndexDraft;
 class StoreSnapshot;
 class ValueCache;
@@ -114,7 +115,8 @@ struct ReadTransaction::Impl {
   std::shared_ptr<StoreSnapshot> snapshot;  ///< created on first use, for this generation
   std::uint64_t snapshot_generation = 0;
   std::function<void()> flush_poll;  ///< of a FlushPoll
-  unsigned threads = 1;              ///< for sorting and merging the changes of indexes
+  std::unique_ptr<IndexDirectories> directories;
+  unsigned threads = 1;  ///< for sorting and merging the changes of indexes
   /// Of a write transaction: indexes of which most is new, written by commit(). Their tables hold what was there
   /// before.
   std::array<std::unique_ptr<IndexDraft>, kTableCount> drafts;

@@ -70,18 +70,6 @@ std::size_t maskOf(bool chosen) {
   return std::size_t{0} - static_cast<std::size_t>(chosen);
 }
 
-/// The index of the last entry of `lower` that is not greater than `key`, or 0.
-std::size_t pageOf(const std::vector<Key128>& lower, Key128 key) {
-  const Key128* first = lower.data();
-  std::size_t count = lower.size();
-  while (count > 1) {
-    const std::size_t half = count / 2;
-    first += first[half] <= key ? half : 0;
-    count -= half;
-  }
-  return static_cast<std::size_t>(first - lower.data());
-}
-
 /// The only entry of an index: its keys are the duplicates of one key.
 Node indexNode(const PageMap& map, const Tree& table) {
   const std::uint8_t* root = map.page(table.root);
@@ -193,6 +181,17 @@ PageDirectory::PageDirectory(std::span<const std::uint8_t* const> pages, std::sp
   for (const std::uint8_t* page : pages) pages_.push_back(keysAt(page + kHeaderSize));
 }
 
+std::size_t PageDirectory::pageOf(Key128 key) const {
+  const Key128* first = lower_.data();
+  std::size_t count = lower_.size();
+  while (count > 1) {
+    const std::size_t half = count / 2;
+    first += first[half] <= key ? half : 0;
+    count -= half;
+  }
+  return static_cast<std::size_t>(first - lower_.data());
+}
+
 PageDirectory::Position PageDirectory::within(std::size_t i, Key128 key) const {
   const std::span<const QuadKey> keys = page(i);
   if (keys.empty()) return {i + 1, 0};  // only in a damaged file
@@ -204,7 +203,7 @@ PageDirectory::Position PageDirectory::within(std::size_t i, Key128 key) const {
 
 PageDirectory::Position PageDirectory::lowerBound(Key128 key) const {
   if (pages_.empty()) return end();
-  return within(pageOf(lower_, key), key);
+  return within(pageOf(key), key);
 }
 
 PageDirectory::Position PageDirectory::lowerBound(Key128 key, Position hint) const {
@@ -225,7 +224,7 @@ void PageDirectory::lowerBounds(std::span<const Key128> keys, std::span<Position
 void PageDirectory::lowerBoundsOfGroup(std::span<const Key128> keys, std::span<Position> found) const {
   if (pages_.empty()) return std::fill(found.begin(), found.end(), end());
   const auto [min, max] = std::minmax_element(keys.begin(), keys.end());
-  const std::size_t first = pageOf(lower_, *min), last = pageOf(lower_, *max);
+  const std::size_t first = pageOf(*min), last = pageOf(*max);
   for (Position& position : found) position.page = first;
   for (std::size_t count = last - first + 1; count > 1; count -= count / 2) {
     const std::size_t half = count / 2;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "rdf/file/lmdb_handles.hpp"
@@ -35,6 +36,9 @@ inline QuadKey toKey(Key128 number) {
 
 /// The error for a part of the map (for example "an index") that points outside the file.
 [[noreturn]] void failOutside(const char* part);
+
+/// Every index stores its entries as MDB_DUPFIXED duplicates of this key.
+inline constexpr std::string_view kIndexKey = "q";
 
 /// The mapped file of a snapshot: pages by number.
 struct PageMap {
@@ -75,6 +79,8 @@ class PageDirectory {
   Key128 lower(std::size_t i) const { return lower_[i]; }
   Position begin() const { return {}; }
   Position end() const { return {pages_.size(), 0}; }
+  /// The last page whose lower bound is not greater than `key`, or 0. Expects a page.
+  std::size_t pageOf(Key128 key) const;
   /// The first key not less than `key`.
   Position lowerBound(Key128 key) const;
   /// As above; fast when the result is on the page of `hint` or the next.

@@ -8,14 +8,12 @@
 
 #include "base/parallel.hpp"
 #include "rdf/store/flush_poll.hpp"
+#include "rdf/store/index_directories.hpp"
 #include "rdf/store/index_draft.hpp"
 
 namespace cluxel::rdf {
 
 namespace {
-
-// Every index stores its entries as MDB_DUPFIXED duplicates of this key.
-constexpr std::string_view kIndexKey = "q";
 
 // The cost of a single put, in keys written by appending.
 constexpr std::uint64_t kPutCost = 4;
@@ -134,6 +132,7 @@ void writeDraft(ReadTransaction::Impl& transaction, Table index) {
     poll.count(draft->page(i).size());
     appendKeys(transaction, cursor.get(), draft->page(i));
   }
+  transaction.directories->noteRewritten(index, draft->pageCount());
 }
 
 /// Whether the change goes to a draft, which is there then.
@@ -146,6 +145,7 @@ bool isDrafted(ReadTransaction::Impl& transaction, Table index, std::uint64_t ch
   }
   if (changes * kPutCost <= entries + 1000 || entries + changes > kMaxDraftKeys) return false;
   draft = draftFrom(transaction, index);
+  transaction.directories->noteDrafted(index);
   return true;
 }
 
@@ -179,6 +179,7 @@ void merge(const IndexDraft& before, const IndexChange& change, const ChangeNote
 
 void changeDraft(ReadTransaction::Impl& transaction, Table index, const IndexChange& change, const ChangeNotes& notes) {
   std::unique_ptr<IndexDraft>& draft = transaction.drafts[static_cast<std::size_t>(index)];
+  transaction.directories->noteDrafted(index);
   EntryPoll poll(transaction);
   constexpr std::uint64_t kInsertCost = 32;  // in keys that are merged
   if ((change.added.size() + change.removed.size()) * kInsertCost > draft->size()) {
@@ -213,6 +214,7 @@ void writeAnew(ReadTransaction::Impl& transaction, Table index, const IndexChang
     if (some.size() == 4096) append();
   });
   append();
+  transaction.directories->noteRewritten(index, before->pageCount() + change.added.size());
 }
 
 /// Uses mdb_del only: loops of mdb_cursor_del over duplicates corrupt the file in LMDB 0.9.24.
@@ -265,6 +267,7 @@ void writeSingly(ReadTransaction::Impl& transaction, const IndexTask& task) {
   if (entries > 0 && changes * kPutCost > entries + 1000) return writeAnew(transaction, task.index, task.change, notes);
   removeSingly(transaction, task.index, task.change.removed, notes);
   addSingly(transaction, task.index, task.change.added, notes);
+  transaction.directories->noteKeys(task.index, transaction, task.change.added, task.change.removed);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "cluxel/error.hpp"
 #include "rdf/store/geometry_index.hpp"
+#include "rdf/store/index_directories.hpp"
 #include "rdf/store/index_orders.hpp"
 #include "rdf/store/index_writer.hpp"
 #include "rdf/store/quad_reader_impl.hpp"
@@ -113,6 +114,7 @@ void QuadWriter::Impl::flushTerms() {
     sums.add(entry.hash, id);
   }
   sums.store();
+  state().directories->noteTerms(hashes.size());
   std::array<IndexTask, 1> index{{{Table::TermHashes, {}, &state().sums.term_hashes}}};
   applyTo(state(), index, hashes.size(), [&hashes](IndexTask& task) {
     std::sort(hashes.begin(), hashes.end());

@@ -9,6 +9,7 @@
 
 #include "cluxel/error.hpp"
 #include "rdf/file/check/map_file_head.hpp"
+#include "rdf/store/index_directories.hpp"
 #include "rdf/store/index_draft.hpp"
 #include "rdf/terms/term_record.hpp"
 
@@ -75,7 +76,7 @@ void StoreSnapshot::requireCounts(const std::filesystem::path& file) const {
 
 void StoreSnapshot::verifyIndex(Table index, const std::filesystem::path& file) const {
   const auto i = static_cast<std::size_t>(index);
-  if (sums_ && sumOf(directories_[i], index, file) != (index == Table::TermHashes ? sums_->term_hashes : sums_->quads))
+  if (sums_ && sumOf(*directories_[i], index, file) != (index == Table::TermHashes ? sums_->term_hashes : sums_->quads))
     refuseDamaged(file, std::string("index ") + kTableNames[i] + " differs from its checksum");
 }
 
@@ -86,19 +87,12 @@ void StoreSnapshot::verify(ReadTransaction::Impl& transaction) {
     record(static_cast<TermId>(id), transaction);
 }
 
-const PageDirectory& StoreSnapshot::directory(Table index, const ReadTransaction::Impl& transaction) {
+std::shared_ptr<const PageDirectory> StoreSnapshot::sharedDirectory(Table index,
+                                                                    const ReadTransaction::Impl& transaction) {
   const auto i = static_cast<std::size_t>(index);
   std::call_once(made_[i], [&] {
-    if (map_.base != nullptr) {
-      directories_[i] = PageDirectory(map_, trees_[i]);
-    } else if (const IndexDraft* draft = transaction.draftOf(index)) {
-      directories_[i] = draft->directory();
-    } else {
-      MDB_cursor* raw = nullptr;
-      transaction.check(mdb_cursor_open(transaction.live(), transaction.table(index), &raw), "read an index");
-      const CursorHandle cursor(raw);
-      directories_[i] = PageDirectory(raw);
-    }
+    directories_[i] = map_.base != nullptr ? std::make_shared<const PageDirectory>(map_, trees_[i])
+                                           : transaction.directories->of(index, transaction);
     verifyIndex(index, transaction.environment->file());
   });
   return directories_[i];
@@ -178,13 +172,13 @@ void StoreSnapshot::keep(const std::string& name, std::shared_ptr<const void> ma
   kept_[name] = std::move(made);
 }
 
-StoreSnapshot& snapshotOf(ReadTransaction::Impl& transaction) {
-  if (transaction.snapshot && transaction.snapshot_generation == transaction.generation) return *transaction.snapshot;
+const std::shared_ptr<StoreSnapshot>& sharedSnapshotOf(ReadTransaction::Impl& transaction) {
+  if (transaction.snapshot && transaction.snapshot_generation == transaction.generation) return transaction.snapshot;
   const auto make = [&] { return std::make_shared<StoreSnapshot>(transaction); };
   transaction.snapshot =
       transaction.writing ? make() : transaction.environment->snapshot(mdb_txn_id(transaction.live()), make);
   transaction.snapshot_generation = transaction.generation;
-  return *transaction.snapshot;
+  return transaction.snapshot;
 }
 
 }  // namespace cluxel::rdf

@@ -27,10 +27,14 @@ class StoreSnapshot {
   std::uint64_t termCount() const { return term_count_; }
   /// The directory of an index; `transaction` must see the same state as this snapshot. The first call compares the
   /// index with its sum, unless this process wrote the commit. Thread-safe.
-  const PageDirectory& directory(Table index, const ReadTransaction::Impl& transaction);
+  std::shared_ptr<const PageDirectory> sharedDirectory(Table index, const ReadTransaction::Impl& transaction);
+  const PageDirectory& directory(Table index, const ReadTransaction::Impl& transaction) {
+    return *sharedDirectory(index, transaction);
+  }
   /// The pages of an index, without a look at them. Only for committed states.
   std::uint64_t leafPages(Table index) const { return leafPagesOf(map_, trees_[static_cast<std::size_t>(index)]); }
   bool isMapped() const { return map_.base != nullptr; }
+  const PageMap& map() const { return map_; }
   /// The record of a term; throws Error for an unknown id. Of each 64 terms the first one that is read compares all
   /// with their sum. Thread-safe.
   std::string_view record(TermId id, ReadTransaction::Impl& transaction);
@@ -54,7 +58,7 @@ class StoreSnapshot {
   PageMap map_;                    ///< without a base address, pages are read through cursors
   std::array<lmdb_page::Tree, kTableCount> trees_{};
   std::array<std::once_flag, kTableCount> made_;
-  std::array<PageDirectory, kTableCount> directories_;
+  std::array<std::shared_ptr<const PageDirectory>, kTableCount> directories_;
   const TermDirectory& terms();
   std::once_flag terms_made_, term_sums_read_;
   std::unique_ptr<TermDirectory> terms_;
@@ -67,6 +71,9 @@ class StoreSnapshot {
 };
 
 /// The snapshot of a transaction: shared among the readers of a commit, rebuilt after changes in a write transaction.
-StoreSnapshot& snapshotOf(ReadTransaction::Impl& transaction);
+const std::shared_ptr<StoreSnapshot>& sharedSnapshotOf(ReadTransaction::Impl& transaction);
+inline StoreSnapshot& snapshotOf(ReadTransaction::Impl& transaction) {
+  return *sharedSnapshotOf(transaction);
+}
 
 }  // namespace cluxel::rdf

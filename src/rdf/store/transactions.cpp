@@ -14,6 +14,7 @@
 #include "rdf/file/lmdb_environment.hpp"
 #include "rdf/file/map_check.hpp"
 #include "rdf/file/map_replacement.hpp"
+#include "rdf/store/index_directories.hpp"
 #include "rdf/store/index_draft.hpp"
 #include "rdf/store/index_writer.hpp"
 #include "rdf/store/store_snapshot.hpp"
@@ -163,7 +164,11 @@ WriteTransaction LmdbEnvironment::write() {
   if (mdb_stat(impl->txn, table(Table::Terms), &terms) == MDB_SUCCESS) impl->committed_terms = terms.ms_entries;
   WriteTransaction transaction(std::move(impl));
   if (!verified_) verifyForWriting(base);
-  if (base > 0) startSums(transaction, base);
+  if (base > 0) {
+    startSums(transaction, base);
+    const ReadTransaction current = read();
+    transaction.impl().directories->startFrom(sharedSnapshotOf(current.impl()));
+  }
   restartJournal(transaction);
   return transaction;
 }
@@ -195,7 +200,7 @@ std::shared_ptr<StoreSnapshot> LmdbEnvironment::snapshot(
   return made;
 }
 
-ReadTransaction::Impl::Impl() = default;
+ReadTransaction::Impl::Impl() : directories(std::make_unique<IndexDirectories>()) {}
 
 ReadTransaction::Impl::~Impl() {
   end();

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lists of pages stay right as long as LMDB leaves the pages that it wrote where they are.
+#include "rdf/store/index_directories.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "rdf/file/directory_update.hpp"
+#include "rdf/file/lmdb_environment.hpp"
+#include "rdf/store/index_draft.hpp"
+#include "rdf/store/store_snapshot.hpp"
+
+namespace cluxel::rdf {
+
+namespace {
+
+/// LMDB keeps up to 131,071 written pages in memory. When there are more, it writes some to the file and uses their
+/// memory for others, so that lists of pages are wrong.
+constexpr std::uint64_t kMaxDirtyPages = 100'000;
+
+std::size_t numberOf(Table index) {
+  return static_cast<std::size_t>(index);
+}
+
+CursorHandle cursorOn(Table index, const ReadTransaction::Impl& transaction) {
+  MDB_cursor* raw = nullptr;
+  transaction.check(mdb_cursor_open(transaction.live(), transaction.table(index), &raw), "read an index");
+  return CursorHandle(raw);
+}
+
+}  // namespace
+
+void IndexDirectories::startFrom(std::shared_ptr<StoreSnapshot> committed) {
+  if (committed->isMapped()) committed_ = std::move(committed);
+}
+
+bool IndexDirectories::mayMovePages() const {
+  std::uint64_t pages = other_pages_;
+  for (const Entry& entry : entries_) pages += 2 * entry.dirty_pages;  // with the pages above them
+  return pages > kMaxDirtyPages;
+}
+
+std::shared_ptr<const PageDirectory> IndexDirectories::of(Table index, const Transaction& transaction) {
+  Entry& entry = entries_[numberOf(index)];
+  const IndexDraft* draft = transaction.draftOf(index);
+  if (entry.directory && (draft != nullptr || entry.is_committed || !mayMovePages())) return entry.directory;
+  if (draft != nullptr)
+    entry.directory = std::make_shared<const PageDirectory>(draft->directory());
+  else if (committed_ && entry.is_committed)
+    entry.directory = committed_->sharedDirectory(index, transaction);
+  else
+    entry.directory = std::make_shared<const PageDirectory>(cursorOn(index, transaction).get());
+  return entry.directory;
+}
+
+void IndexDirectories::noteKeys(Table index, const Transaction& transaction, std::span<const Key128> added,
+                                std::span<const Key128> removed) {
+  if (added.empty() && removed.empty()) return;
+  Entry& entry = entries_[numberOf(index)];
+  if (committed_ && entry.is_committed) entry.directory = committed_->sharedDirectory(index, transaction);
+  entry.is_committed = false;
+  if (!committed_ || !entry.directory || mayMovePages()) return noteRewritten(index, added.size() + removed.size());
+  std::vector<Key128> changed;
+  changed.reserve(added.size() + removed.size());
+  std::merge(added.begin(), added.end(), removed.begin(), removed.end(), std::back_inserter(changed));
+  auto updated = updatedDirectory(*entry.directory, changed, committed_->map(), cursorOn(index, transaction).get());
+  if (!updated) return noteRewritten(index, changed.size());
+  entry.directory = std::make_shared<const PageDirectory>(std::move(updated->directory));
+  entry.dirty_pages = updated->dirty_pages;
+}
+
+void IndexDirectories::noteRewritten(Table index, std::uint64_t keys) {
+  Entry& entry = entries_[numberOf(index)];
+  entry.directory = nullptr;
+  entry.is_committed = false;
+  other_pages_ += keys;  // at most one page a key
+}
+
+}  // namespace cluxel::rdf

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page directories of a write transaction. Making one looks at every page of an index; a small change alters few.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "rdf/file/page_directory.hpp"
+
+namespace cluxel::rdf {
+
+class StoreSnapshot;
+enum class Table : std::uint8_t;
+
+/// A directory is that of the commit before until its index changes, and then follows the changes. Each call belongs to
+/// the transaction that owns this.
+class IndexDirectories {
+ public:
+  using Transaction = ReadTransaction::Impl;
+
+  /// With the commit before the transaction. Without this call, directories are made anew after each change.
+  void startFrom(std::shared_ptr<StoreSnapshot> committed);
+
+  /// Of the index as the transaction sees it. Several threads may ask for different indexes.
+  std::shared_ptr<const PageDirectory> of(Table index, const Transaction& transaction);
+
+  /// To be called after single keys were added or removed; both lists ascend.
+  void noteKeys(Table index, const Transaction& transaction, std::span<const Key128> added,
+                std::span<const Key128> removed);
+  /// To be called after an index was written anew, or moved to or from memory; `keys` in its table are new.
+  void noteRewritten(Table index, std::uint64_t keys);
+  void noteDrafted(Table index) { noteRewritten(index, 0); }
+  void noteBlock() { other_pages_ += 8; }
+  void noteTerms(std::uint64_t count) { other_pages_ += 2 * count; }
+
+ private:
+  struct Entry {
+    std::shared_ptr<const PageDirectory> directory;  ///< none: it has to be made
+    bool is_committed = true;                        ///< the index is as it was before the transaction
+    std::uint64_t dirty_pages = 0;                   ///< leaf pages that the transaction wrote
+  };
+  static constexpr std::size_t kTables = 7;
+
+  bool mayMovePages() const;
+
+  std::shared_ptr<StoreSnapshot> committed_;
+  std::array<Entry, kTables> entries_;
+  std::uint64_t other_pages_ = 0;  ///< written at most, outside of indexes whose directories are known
+};
+
+}  // namespace cluxel::rdf
