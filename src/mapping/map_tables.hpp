@@ -29,6 +29,7 @@ inline constexpr std::string_view kContacts = "stage_contacts";
 inline constexpr std::string_view kTileLayers = "tile_layers";  ///< tile → its primitives and objects
 inline constexpr std::string_view kObjects = "objects";         ///< object id → its record
 inline constexpr std::string_view kWideTiles = "wide_tiles";    ///< tile → what it adds to class-wide objects
+inline constexpr std::string_view kMargins = "rule_margins";    ///< tile → how far thresholds of rules may move
 inline constexpr std::string_view kPresence = "presence";       ///< object id → when it was there
 inline constexpr std::string_view kPassedRays = "passed_rays";  ///< object id → how many rays passed it
 inline constexpr std::string_view kFactUnits = "fact_units";    ///< what units of facts followed from

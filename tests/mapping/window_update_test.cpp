@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <random>
+#include <regex>
 
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/map_change.hpp"
@@ -131,6 +132,23 @@ class StreetChanges {
     return text;
   }
 
+  /// A threshold of the shipped rules is moved a little.
+  std::string moveAThreshold() {
+    static const std::regex kThreshold(
+        "(height|length|top|bottom|width|radius|roughness|linearity|extent|thickness)( of [a-z]+)? [<>]=? ([0-9.]+)");
+    const std::string before = inputs_.rules.front().text;
+    const std::vector<std::smatch> found(std::sregex_iterator(before.begin(), before.end(), kThreshold),
+                                         std::sregex_iterator());
+    const std::smatch& match = found[below(found.size())];
+    const double factor = std::array{0.95, 0.99, 0.999, 1.001, 1.01, 1.05}[below(6)];
+    inputs_.rules.front().text.replace(static_cast<std::size_t>(match.position(3)),
+                                       static_cast<std::size_t>(match.length(3)),
+                                       std::to_string(std::stod(match.str(3)) * factor));
+    note(applyInputs(
+        map(), [&](const MapInputs&) { return inputs_; }, params(), silence()));
+    return match.str() + " times " + std::to_string(factor);
+  }
+
   void expectBuildFromScratch(const std::string& after) {
     const fs::path fresh = folder_.path() / "fresh.clx";
     fs::remove(fresh);  // a map that is replaced hands on its statements
@@ -176,11 +194,12 @@ class StreetChanges {
   void build(const fs::path& file) {
     BuildParams params{.force = true};
     if (fs::exists(map())) params.statements = operatorStatements(MapReader(map()).quads());
-    buildMap(scans_.at(there_, folder_.path()), shippedInputs(), file, params, silence());
+    buildMap(scans_.at(there_, folder_.path()), inputs_, file, params, silence());
   }
 
   const StreetScans& scans_;
   std::mt19937 random_;
+  MapInputs inputs_ = shippedInputs();
   ScratchFolder folder_;
   std::map<std::size_t, int> there_;  ///< scan → number of its pose
   std::size_t local_ = 0;
@@ -215,6 +234,11 @@ TEST(WindowUpdate, GivesTheMapAndTheStoredStateOfABuild) {
 TEST(WindowUpdate, AppliesStatementsAsABuildDoes) {
   checkSequences(
       40, 7, [](StreetChanges& changes, unsigned i) { return i % 3 == 2 ? changes.step() : changes.stateSomething(); });
+}
+
+TEST(WindowUpdate, AppliesOtherThresholdsAsABuildDoes) {
+  checkSequences(
+      60, 8, [](StreetChanges& changes, unsigned i) { return i % 4 == 3 ? changes.step() : changes.moveAThreshold(); });
 }
 
 TEST(WindowUpdate, TakesTheGroundOfAnAreaThatLosesItsOnlyScan) {

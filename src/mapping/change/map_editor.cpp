@@ -42,6 +42,13 @@ bool reachTiles(const MapInputs& before, const MapInputs& after) {
   return with_new_tiles.hash() != before.hash();
 }
 
+ChangedInputs changeOf(const MapInputs& before, const MapInputs& after) {
+  MapInputs with_new_rules = before;
+  with_new_rules.rules = after.rules;
+  with_new_rules.rule_roots = after.rule_roots;
+  return with_new_rules.hash() == after.hash() ? ChangedInputs::Rules : ChangedInputs::Any;
+}
+
 }  // namespace
 
 MapEditor::MapEditor(const fs::path& file, const ChangeParams& params, ProgressSink& sink)
@@ -68,7 +75,8 @@ std::vector<ObjectMembers> MapEditor::allObjects(const rdf::ReadTransaction& tra
 
 void MapEditor::setInputs(ParsedInputs inputs) {
   all_tiles_ = all_tiles_ || reachTiles(parsed_.inputs, inputs.inputs);
-  if (parsed_.inputs.hash() != inputs.inputs.hash()) changed_inputs_ = ChangedInputs::Any;
+  if (parsed_.inputs.hash() != inputs.inputs.hash())
+    changed_inputs_ = std::max(changed_inputs_, changeOf(parsed_.inputs, inputs.inputs));
   stages_.reset();
   parsed_ = std::move(inputs);
 }

@@ -13,6 +13,7 @@
 #include "mapping/inference/infer_facts.hpp"
 #include "mapping/inference/sparql_rules.hpp"
 #include "mapping/layers/layer_update.hpp"
+#include "mapping/layers/rule_margins.hpp"
 #include "mapping/presence/passed_rays.hpp"
 #include "mapping/presence/stored_presence.hpp"
 #include "mapping/splits_store.hpp"
@@ -103,8 +104,9 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   rules::KnownSplits splits = storedSplits(transaction);
   SceneFacts facts(transaction, parsed.inputs, clouds, scene, stages.summaries());
   if (threads > 1 && !parsed.rules.asks_map) facts.begin();
+  rules::ThresholdMargins margins(scene, parsed.rules);
   rules::ReasoningResult result =
-      reason(scene, parsed.rules, {.oracle = &oracle, .threads = threads, .splits = &splits});
+      reason(scene, parsed.rules, {.oracle = &oracle, .threads = threads, .splits = &splits, .margins = &margins});
   facts.wait();
   if (check) check(0);
   const std::vector<std::uint64_t> traces = result.traces;
@@ -136,6 +138,7 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   storeOverruled(transaction, stated.overruled, scene);
   storeStatementTiles(transaction, stated.tiles);
   storeSplits(transaction, splits);
+  storeMargins(transaction, margins.found(), parsed.rules);
   sink.progress("facts", 1, 1);
   return {std::move(scene), std::move(result.objects), std::move(stated.outcomes)};
 }

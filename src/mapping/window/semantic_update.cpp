@@ -7,6 +7,7 @@
 
 #include "mapping/build/scan_store.hpp"
 #include "mapping/build/way_tiles.hpp"
+#include "mapping/layers/rule_margins.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/statements/statement_facts.hpp"
 #include "mapping/window/former_objects.hpp"
@@ -62,8 +63,14 @@ std::vector<ContentHash> statementIds(const rdf::ReadTransaction& transaction) {
 class LocalUpdate {
  public:
   LocalUpdate(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
-              OutputChanges& changes, const UpdateParams& params, ProgressSink& sink)
-      : transaction_(transaction), parsed_(parsed), stages_(stages), changes_(changes), params_(params), sink_(sink) {}
+              OutputChanges& changes, ChangedInputs inputs, const UpdateParams& params, ProgressSink& sink)
+      : transaction_(transaction),
+        parsed_(parsed),
+        stages_(stages),
+        changes_(changes),
+        inputs_(inputs),
+        params_(params),
+        sink_(sink) {}
 
   /// Absent when the whole map has to be computed; then nothing was written.
   std::optional<SemanticUpdate> run() {
@@ -74,6 +81,13 @@ class LocalUpdate {
     before_ = *std::move(before);
     now_ = {0, 0, 0, statementIds(transaction_), seenClouds(clouds_)};
     if (isTold(before_.clouds) != isTold(now_.clouds) || hasOtherTimes()) return std::nullopt;
+    if (inputs_ == ChangedInputs::Rules) {
+      const auto beyond = tilesBeyondMargins(transaction_, parsed_.rules);
+      if (!beyond) return std::nullopt;
+      decided_otherwise_ = *beyond;
+      changes_.tiles.insert(beyond->begin(), beyond->end());
+      if (changes_.tiles.empty()) return unchanged();
+    }
     WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, before_, now_);
     TileSet more = tilesOfPassedObjects();
     for (std::size_t attempt = 0, depth = 0;
@@ -82,9 +96,14 @@ class LocalUpdate {
       const std::optional<MapWindow> window =
           windowAround(transaction_, stages_, changes_, more, kRings, clouds_, params_.max_window_share);
       if (!window) return std::nullopt;
-      const WindowChange change = changeIn(*window, changes_, statements.tiles(), *reach_m);
+      const WindowChange change =
+          changeIn(*window, changes_, perception::unionOf(statements.tiles(), decided_otherwise_), *reach_m);
       const rules::LocalInput input = localInputOf(*window, change);
-      rules::LocalRun rules_run(input, parsed_.rules, context(), *reach_m);
+      rules::ThresholdMargins margins(window->scene, parsed_.rules);
+      rules::ReasoningContext context;
+      context.threads = params_.threads;
+      context.margins = &margins;
+      rules::LocalRun rules_run(input, parsed_.rules, context, *reach_m);
       const TileSet beyond = tilesBeyond(*window, change, changes_, transaction_, rules_run.layers(), kDepths[depth]);
       more = perception::unionOf(std::move(more), attempt < kNarrowAttempts ? beyond : perception::grown(beyond));
       if (!beyond.empty()) continue;
@@ -94,16 +113,22 @@ class LocalUpdate {
       if (!decision || !statements.apply(*window, change, *decision)) continue;
       const std::vector<std::uint32_t> former = formerNumbers(*window, stages_, changes_);
       if (changesWideObjects(*window, *decision, former)) return std::nullopt;
-      return write(*window, change, *decision, former, statements);
+      SemanticUpdate update = write(*window, change, *decision, former, statements);
+      updateMargins(transaction_, margins.found(), window->tiles, changes_.tiles);
+      return update;
     }
     return std::nullopt;
   }
 
  private:
-  rules::ReasoningContext context() const {
-    rules::ReasoningContext context;
-    context.threads = params_.threads;
-    return context;
+  /// The layers as they are: other thresholds that decide nothing otherwise.
+  SemanticUpdate unchanged() const {
+    SemanticUpdate update;
+    update.is_local = true;
+    update.objects = before_.objects, update.cluxels = before_.cluxels, update.primitives = before_.primitives;
+    if (!now_.statements.empty())
+      update.statements = toldOutcomes(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction_)));
+    return update;
   }
 
   /// Facts about presence are told of objects when two clouds or more have a time and a pose.
@@ -200,8 +225,10 @@ class LocalUpdate {
   const ParsedInputs& parsed_;
   TileStages& stages_;
   OutputChanges& changes_;  ///< gets the tiles in which statements change
+  ChangedInputs inputs_;
   UpdateParams params_;
   ProgressSink& sink_;
+  TileSet decided_otherwise_;  ///< tiles in which thresholds of the rules moved beyond what was measured
   std::vector<Cloud> clouds_;
   SemanticState before_, now_;
 };
@@ -237,8 +264,9 @@ SemanticUpdate updateSemanticLayer(rdf::WriteTransaction& transaction, const Par
                                    ChangedInputs inputs, const UpdateParams& params, ProgressSink& sink,
                                    const rdf::InferenceCheck& check) {
   OutputChanges changes = stages.takeChanges();
-  if (inputs == ChangedInputs::Scans)
-    if (auto update = LocalUpdate(transaction, parsed, stages, changes, params, sink).run()) return *std::move(update);
+  if (inputs != ChangedInputs::Any)
+    if (auto update = LocalUpdate(transaction, parsed, stages, changes, inputs, params, sink).run())
+      return *std::move(update);
   return updateAll(transaction, parsed, stages, changes, params, sink, check);
 }
 

@@ -27,7 +27,8 @@ GoesOn keptBy(const rdf::ReadTransaction& transaction, const SemanticUpdate& upd
 /// What may have changed since the layers were made.
 enum class ChangedInputs : std::uint8_t {
   Scans,  ///< scans and poses
-  Any,    ///< rules, ontology, model, settings or statements too
+  Rules,  ///< and the rules that decide about objects
+  Any,    ///< SPARQL rules, ontology, model, settings or statements too
 };
 
 struct UpdateParams {

@@ -63,7 +63,9 @@ class Judging {
       trace = mixed(trace, state_.fragments.hashOf(candidate.fragments));
     for (const DecisionStep& step : decision.path) {
       trace = mixed(trace, std::uint64_t{step.passed});
-      trace = mixed(mixed(trace, step.measured.value_or(kNotMeasured)), step.threshold.value_or(kNotMeasured));
+      trace = mixed(trace, step.measured.value_or(kNotMeasured));
+      // A threshold that is measured tells of what else was looked at; a constant one may change without a difference.
+      if (step.is_threshold_measured) trace = mixed(trace, step.threshold.value_or(kNotMeasured));
     }
     for (const EvidenceStep& step : decision.evidence)
       trace = mixed(mixed(trace, step.measured.value_or(kNotMeasured)), step.log_odds);

@@ -13,6 +13,7 @@
 namespace cluxel::rules {
 
 class KnownSplits;
+class ThresholdMargins;
 struct ReasoningState;
 struct Rule;
 struct Verdict;
@@ -26,8 +27,9 @@ struct ReasoningContext {
   /// Ascending. Decisions about these primitives also report what would have changed them (Decision::flips).
   std::vector<perception::PrimitiveIndex> probes = {};
   CandidateObserver onCandidate = {};
-  unsigned threads = 1;           ///< the result is the same for every number
-  KnownSplits* splits = nullptr;  ///< saves work; the result is the same without
+  unsigned threads = 1;                 ///< the result is the same for every number
+  KnownSplits* splits = nullptr;        ///< saves work; the result is the same without
+  ThresholdMargins* margins = nullptr;  ///< gets all tests of the run
 };
 
 /// Groups the primitives of a scene into objects, class by class in the order of the rule set. The objects' cluxels are

@@ -82,6 +82,7 @@ struct Condition {
   std::vector<std::string> query_names;      ///< bound names that the query mentions as variables
   std::vector<Condition> operands;           ///< of All, Any, Not, Unseen
   bool asks_rivals = false;                  ///< of Pair: the target are objects that won the first round
+  std::uint32_t threshold = 0;               ///< the number of `value` in RuleSet::thresholds, from 1; 0: none
 };
 
 /// "a Tree", "an Avenue": a class or label with its article.

@@ -10,6 +10,7 @@
 #include "rules/language/rule_definitions.hpp"
 #include "rules/language/rule_reading.hpp"
 #include "rules/language/rule_sources.hpp"
+#include "rules/language/rule_thresholds.hpp"
 
 namespace cluxel::rules {
 
@@ -227,6 +228,7 @@ LoadedRules load(const std::vector<std::string>& roots, const FindSource& findSo
   markRivals(rules, faults);
   checkTogether(gathered, reading, rules, faults);
   rules.sources = std::move(gathered.sources);
+  numberThresholds(rules);
   LoadedRules loaded;
   loaded.diagnostics = faults.sorted();
   if (faults.errorCount() == 0) loaded.rules = std::move(rules);

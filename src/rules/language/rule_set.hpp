@@ -163,6 +163,12 @@ struct Rule {
 /// In words, for explanations: "roughness of pole".
 std::string describe(const EvidenceLine& line);
 
+/// A constant that a measured number is compared with.
+struct PlainThreshold {
+  double value = 0;              ///< SI
+  bool is_met_by_equal = false;  ///< an equal number has the outcome of larger ones, else that of smaller ones
+};
+
 /// A file of a rule set, under the name by which it was included.
 struct RuleSource {
   std::string name;
@@ -180,6 +186,10 @@ struct RuleSet {
   bool asks_map = false;    ///< some condition is an `ask:`
   std::vector<RuleSource> sources;
   ClassCatalogue catalogue;  ///< the classes it was checked against
+  /// The thresholds that may change while all else stays, and a hash of all else that a run reads; see
+  /// numberThresholds().
+  std::vector<PlainThreshold> thresholds;
+  ContentHash structure;
   /// Hash of the sources' texts.
   ContentHash hash() const;
   const Rule* find(std::string_view id) const;

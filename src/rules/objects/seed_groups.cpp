@@ -100,6 +100,7 @@ class Joining {
       if (by_outline_) {
         both.outline = unionOf(std::array<const Outline*, 2>{&held_[a].outline, &held_[b].outline});
         setAttributes(both.outline, candidate.shape);
+        candidate.fragments = {both.fragments.front()};  // whose tile the tests belong to
       } else {
         candidate = state_.fragments.candidateOf(both.fragments);
       }

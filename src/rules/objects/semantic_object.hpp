@@ -27,6 +27,7 @@ struct DecisionStep {
   std::string file;  ///< where the test stands
   std::size_t line = 0;
   std::optional<double> measured, threshold;  ///< SI
+  bool is_threshold_measured = false;         ///< it is a ratio of another attribute
   std::string unit;
   bool passed = false;
 };

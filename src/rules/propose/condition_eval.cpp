@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "rdf/map_iris.hpp"
+#include "rules/decide/threshold_margins.hpp"
 #include "rules/propose/pair_measures.hpp"
 #include "rules/propose/unseen_ends.hpp"
 
@@ -132,10 +133,19 @@ bool ConditionEvaluator::holdsAttribute(const Condition& condition, DecisionStep
   else if (const auto other = measured(condition.ratio_of, condition.ratio_slice, *condition.ratio_attribute))
     threshold = condition.ratio * *other;
   step.measured = value;
+  step.is_threshold_measured = condition.ratio_attribute.has_value();
   step.unit = stepUnit(condition);
   if (!value || !threshold) return false;  // the slice is empty
+  noteTest(condition, *value);
   step.threshold = nearerThreshold(condition, *value, *threshold);
   return compare(condition, *value, *threshold);
+}
+
+void ConditionEvaluator::noteTest(const Condition& condition, double value) const {
+  if (condition.threshold == 0 || state_.context.margins == nullptr) return;
+  const std::vector<FragmentIndex>& fragments = bindings_.at(condition.of).fragments;
+  if (fragments.empty()) return state_.context.margins->noteEverywhere(condition, value);
+  state_.context.margins->note(state_.fragments[fragments.front()].primitive, condition, value);
 }
 
 bool ConditionEvaluator::isUnseen(const Condition& condition, DecisionStep& step) {
@@ -156,6 +166,7 @@ bool ConditionEvaluator::holdsLabelShare(const Condition& condition, DecisionSte
     if (std::find(labels.begin(), labels.end(), state_.fragments.labelOf(fragment)) != labels.end()) labelled += points;
   }
   step.measured = all > 0 ? labelled / all : 0;
+  noteTest(condition, *step.measured);
   step.threshold = nearerThreshold(condition, *step.measured, condition.value->value);
   return compare(condition, *step.measured, condition.value->value);
 }

@@ -32,6 +32,8 @@ class ConditionEvaluator {
   bool holdsElementary(const Condition& condition, DecisionStep& step);
   bool holdsAttribute(const Condition& condition, DecisionStep& step);
   bool isUnseen(const Condition& condition, DecisionStep& step);
+  /// Records that `value` of the subject is compared with the threshold.
+  void noteTest(const Condition& condition, double value) const;
   /// Absent when the candidate has no cluxel in the slice.
   std::optional<double> measured(const std::string& of, const std::optional<SliceSpec>& slice,
                                  perception::Attribute attribute) const;

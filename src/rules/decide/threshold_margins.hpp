@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far each threshold of the rules may move before some test of a run turns out otherwise, tile by tile.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "perception/segments/scene.hpp"
+#include "rules/language/rule_set.hpp"
+
+namespace cluxel::rules {
+
+/// The nearest numbers on both sides of a threshold that were compared with it. SI units.
+struct ThresholdMargin {
+  std::uint32_t threshold = 0;  ///< its number, from 1
+  double below = -std::numeric_limits<double>::infinity(), above = std::numeric_limits<double>::infinity();
+
+  /// Whether this value of the threshold gives all tests the outcomes that they had.
+  bool allows(const PlainThreshold& now) const {
+    return now.is_met_by_equal ? below < now.value && now.value <= above : below <= now.value && now.value < above;
+  }
+  /// Keeps what both allow; of the same threshold.
+  void narrow(const ThresholdMargin& other);
+  bool operator==(const ThresholdMargin&) const = default;
+};
+
+/// The margins of the thresholds that were compared with something in a tile, ascending by number.
+using TileMargins = std::map<perception::TileKey, std::vector<ThresholdMargin>>;
+
+/// Records the tests of a run. A test belongs to a tile of one of the primitives that it measures. While all of a
+/// tile's margins allow the thresholds of other rules of the same structure, a run with these rules makes no test of
+/// the tile turn out otherwise: what differs begins in the tiles where this does not hold. 16 bytes a tile and
+/// threshold.
+class ThresholdMargins {
+ public:
+  /// `rules` must outlive it.
+  ThresholdMargins(const perception::Scene& scene, const RuleSet& rules);
+
+  /// `value` of a thing that `primitive` is a part of was compared with the condition's threshold. Thread-safe.
+  void note(perception::PrimitiveIndex primitive, const Condition& condition, double value) {
+    noteAt(tile_of_[primitive], condition, value);
+  }
+
+  /// The same of a thing without primitives.
+  void noteEverywhere(const Condition& condition, double value) {
+    for (std::size_t tile = 0; tile < tiles_.size(); ++tile) noteAt(tile, condition, value);
+  }
+
+  TileMargins found() const;
+
+ private:
+  using Bounds = std::unique_ptr<std::atomic<double>[]>;
+
+  void noteAt(std::size_t tile, const Condition& condition, double value) {
+    const std::size_t number = condition.threshold - 1, place = tile * count_ + number;
+    const PlainThreshold& threshold = thresholds_[number];
+    if (value > threshold.value || (value == threshold.value && threshold.is_met_by_equal))
+      lower(above_[place], value);
+    else if (value <= threshold.value)  // neither holds for what is no number
+      raise(below_[place], value);
+  }
+  static void raise(std::atomic<double>& bound, double value) {
+    double now = bound.load(std::memory_order_relaxed);
+    while (value > now && !bound.compare_exchange_weak(now, value, std::memory_order_relaxed)) {
+    }
+  }
+  static void lower(std::atomic<double>& bound, double value) {
+    double now = bound.load(std::memory_order_relaxed);
+    while (value < now && !bound.compare_exchange_weak(now, value, std::memory_order_relaxed)) {
+    }
+  }
+
+  const std::vector<PlainThreshold>& thresholds_;
+  std::size_t count_;
+  std::vector<perception::TileKey> tiles_;  ///< ascending
+  std::vector<std::uint32_t> tile_of_;      ///< by primitive: the tile of its first cluxel
+  Bounds below_, above_;                    ///< by tile and threshold
+};
+
+/// The tiles in which `rules`, of the structure of those of the run, may make a test turn out otherwise.
+perception::TileSet tilesBeyond(const TileMargins& margins, const RuleSet& rules);
+
+}  // namespace cluxel::rules
