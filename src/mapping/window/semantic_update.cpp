@@ -167,8 +167,9 @@ class LocalUpdate {
     update.after = membersOf(made, window.scene.cluxels);
     keepDifferent(update.before, update.after);
     count(window, change, update);
-    const std::optional<WayGraph> ways = changes_.have_ways ? std::optional(storedWays(transaction_)) : std::nullopt;
     sink_.progress("objects", update.after.size(), update.after.size());
+    const bool have_ways = stages_.updateWays(transaction_, params_.threads);
+    const std::optional<WayGraph> ways = have_ways ? std::optional(storedWays(transaction_)) : std::nullopt;
     writeWindowFacts(transaction_, {parsed_, stages_, clouds_, before_.clouds, window, change, decision, former,
                                     statements, ways ? &*ways : nullptr, params_.threads});
     writeLayers(transaction_, window, decision, changes_, former);
