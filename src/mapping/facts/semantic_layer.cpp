@@ -119,7 +119,7 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   SceneFacts facts(transaction, parsed.inputs, clouds, scene, stages.summaries());
   if (is_beside) facts.begin(ways);
   rules::ReasoningResult result =
-      reason(scene, parsed.rules, {.oracle = &oracle, .threads = threads, .splits = &splits});
+      reason(scene, parsed.rules, {.oracle = &oracle, .threads = threads, .splits = &splits, .keeps_paths = false});
   facts.wait();
   if (check) check(0);
   const std::vector<std::uint64_t> traces = result.traces;

@@ -103,6 +103,7 @@ class LocalUpdate {
   rules::ReasoningContext context() const {
     rules::ReasoningContext context;
     context.threads = params_.threads;
+    context.keeps_paths = false;
     return context;
   }
 
