@@ -12,4 +12,10 @@ namespace cluxel {
 /// failing i is thrown again; no further piece begins after a failure.
 void parallelFor(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& work);
 
+/// The same, and calls `take(i)` on the calling thread in ascending order, each after its `work(i)` and while other
+/// pieces are worked on. At most `ahead` pieces, one or more, are begun and not taken: piece i may write where piece
+/// i - ahead has written. After a failure no further piece is taken.
+void parallelInOrder(std::size_t count, unsigned threads, std::size_t ahead,
+                     const std::function<void(std::size_t)>& work, const std::function<void(std::size_t)>& take);
+
 }  // namespace cluxel

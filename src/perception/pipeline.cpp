@@ -55,16 +55,15 @@ class Run {
     const TileSet own = options_.donor != nullptr ? options_.store->tiles() : TileSet();
     if (options_.donor != nullptr) lent_ = without(options_.donor->tiles(), own);
     differing_.fill(own);
-    const TileSet with_segments = keysOf(segments);
+    const TileSet with_segments = keysOf(segments), present = keysOf(out_.points);
     update(
         Stage::Points, out_.points, [&](const StageTiles&) { return with_segments; },
         [&](const TileKey& key) {
           std::vector<const ScanSegment*> parts;
           for (const ScanSegment& segment : segments.at(key)) parts.push_back(&segment);
           TilePoints fresh = perception::thin(key, parts, params_.thin);
-          const auto present = out_.points.find(key);
-          if (!grown.contains(key) || present == out_.points.end()) return fresh;
-          return perception::thin(key, std::array<const TilePoints*, 2>{&present->second, &fresh}, params_.thin);
+          if (!grown.contains(key) || !present.contains(key)) return fresh;
+          return perception::thin(key, std::array<const TilePoints*, 2>{&out_.points.at(key), &fresh}, params_.thin);
         });
     tiles_ = options_.store != nullptr ? options_.store->tiles() : keysOf(out_.points);
     TileSet& changed = changed_[Stage::Points];
@@ -115,7 +114,7 @@ class Run {
     std::size_t done = 0, seen = 0;
     while (done < features.size() || seen < candidates.size()) {
       const std::size_t first = done;
-      while (done < features.size() && (done < first + kChunk || features[done].x == features[done - 1].x)) ++done;
+      while (done < features.size() && (done < first + kAhead || features[done].x == features[done - 1].x)) ++done;
       compute(Stage::Features, out_.features, features, first, done,
               [this](const TileKey& key) { return featuresOf(key); });
       // Tiles up to this column have their features.
@@ -136,12 +135,6 @@ class Run {
       if (options_.store != nullptr) dropRowsBefore(column - 1);
     }
     if (options_.store != nullptr) dropVolumesOfAll();
-  }
-
-  static bool readsFeatures(const TileKey& key, const StageTiles& changed) {
-    const auto ring = ringOf(key);
-    return std::any_of(ring.begin(), ring.end(),
-                       [&](const TileKey& near) { return changed[Stage::Features].contains(near); });
   }
 
   void summarise() {
@@ -275,13 +268,11 @@ class Run {
   void compute(Stage stage, std::map<TileKey, Tile>& tiles, std::span<const TileKey> keys, std::size_t first,
                std::size_t last, const Compute& compute_tile) {
     const double start_s = processorSeconds();
-    prepare(tiles,
-            {keys.begin() + static_cast<std::ptrdiff_t>(first), keys.begin() + static_cast<std::ptrdiff_t>(last)});
-    for (; first < last; first += std::min(kChunk, last - first)) {
-      const auto chunk = keys.subspan(first, std::min(kChunk, last - first));
-      updateChunk(stage, tiles, chunk, compute_tile);
-      if (options_.observer != nullptr) options_.observer->progress(stage, first + chunk.size(), keys.size());
-    }
+    const auto wanted = keys.subspan(first, last - first);
+    prepare(tiles, {wanted.begin(), wanted.end()});
+    computeEach(stage, tiles, wanted, compute_tile, [&](std::size_t done) {
+      if (options_.observer != nullptr) options_.observer->progress(stage, first + done, keys.size());
+    });
     if (options_.observer != nullptr) options_.observer->finished(stage, processorSeconds() - start_s);
   }
 
@@ -294,23 +285,28 @@ class Run {
     }
   }
 
-  template <typename Tile, typename Compute>
-  void updateChunk(Stage stage, std::map<TileKey, Tile>& tiles, std::span<const TileKey> keys, const Compute& compute) {
-    std::vector<Tile> outputs(keys.size());
-    std::vector<std::string> bytes(keys.size());
-    parallelFor(keys.size(), options_.threads, [&](std::size_t i) {
-      outputs[i] = compute(keys[i]);
-      if (options_.store != nullptr) bytes[i] = toBytes(outputs[i]);
-    });
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-      tiles.insert_or_assign(keys[i], std::move(outputs[i]));
-      if (options_.store == nullptr || options_.store->store(stage, keys[i], bytes[i])) note(stage, keys[i]);
-      if (lent_.contains(keys[i]) && options_.donor->bytes(stage, keys[i]) != bytes[i])
-        differing_[stage].insert(keys[i]);
-    }
+  /// Outputs are stored while later ones are computed. Stages read no output of their own but that of the same tile.
+  template <typename Tile, typename Compute, typename Done>
+  void computeEach(Stage stage, std::map<TileKey, Tile>& tiles, std::span<const TileKey> keys, const Compute& compute,
+                   const Done& done) {
+    for (const TileKey& key : keys) tiles.try_emplace(key);  // a map with all keys may be searched while tiles change
+    std::vector<Tile> outputs(std::min(kAhead, keys.size()));
+    std::vector<std::string> bytes(outputs.size());
+    const auto take = [&](std::size_t i) {
+      const std::string stored = std::move(bytes[i % kAhead]);  // and gives the memory back
+      tiles.at(keys[i]) = std::move(outputs[i % kAhead]);
+      if (options_.store == nullptr || options_.store->store(stage, keys[i], stored)) note(stage, keys[i]);
+      if (lent_.contains(keys[i]) && options_.donor->bytes(stage, keys[i]) != stored) differing_[stage].insert(keys[i]);
+      done(i + 1);
+    };
+    const auto work = [&](std::size_t i) {
+      outputs[i % kAhead] = compute(keys[i]);
+      if (options_.store != nullptr) bytes[i % kAhead] = toBytes(outputs[i % kAhead]);
+    };
+    parallelInOrder(keys.size(), options_.threads, kAhead, work, take);
   }
 
-  static constexpr std::size_t kChunk = 32;  ///< tiles; bounds the bytes that wait for the store
+  static constexpr std::size_t kAhead = 32;  ///< tiles whose outputs may wait for the store
 
   const PerceptionParams& params_;
   TileOutputs& out_;

@@ -2,6 +2,7 @@
 // What a run of the stages needs beside them: sets of tiles, one for each stage, and the time of the processor.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <ctime>
 
@@ -29,6 +30,13 @@ class StageTiles {
  private:
   std::array<TileSet, kStageCount> tiles_;
 };
+
+/// Whether the features of the tile or of its ring are among the changed ones.
+inline bool readsFeatures(const TileKey& key, const StageTiles& changed) {
+  const auto ring = ringOf(key);
+  return std::any_of(ring.begin(), ring.end(),
+                     [&](const TileKey& near) { return changed[Stage::Features].contains(near); });
+}
 
 inline TileSet without(TileSet tiles, const TileSet& others) {
   for (const TileKey& key : others) tiles.erase(key);

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace cluxel {
@@ -47,6 +48,65 @@ TEST(ParallelFor, BeginsNoPieceAfterAFailure) {
                  std::runtime_error);
     EXPECT_LE(calls, threads);
   }
+}
+
+TEST(ParallelInOrder, TakesEveryPieceAfterItsWorkInAscendingOrder) {
+  for (const unsigned threads : {0U, 1U, 2U, 7U})
+    for (const std::size_t ahead : {1U, 2U, 5U})
+      for (const std::size_t count : {0U, 1U, 3U, 500U}) {
+        std::vector<std::atomic<int>> worked(count);
+        std::vector<std::size_t> taken;
+        const std::thread::id caller = std::this_thread::get_id();
+        parallelInOrder(
+            count, threads, ahead, [&](std::size_t i) { ++worked[i]; },
+            [&](std::size_t i) {
+              EXPECT_EQ(worked[i], 1) << i;
+              EXPECT_EQ(std::this_thread::get_id(), caller);
+              taken.push_back(i);
+            });
+        ASSERT_EQ(taken.size(), count);
+        for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(taken[i], i);
+      }
+}
+
+TEST(ParallelInOrder, BeginsNoPieceBeforeTheOneWhosePlaceItUsesWasTaken) {
+  for (const unsigned threads : {1U, 2U, 7U}) {
+    constexpr std::size_t kAhead = 3;
+    std::vector<std::atomic<std::size_t>> places(kAhead);
+    parallelInOrder(
+        300, threads, kAhead, [&](std::size_t i) { EXPECT_EQ(places[i % kAhead].exchange(i + 1), 0U); },
+        [&](std::size_t i) { EXPECT_EQ(places[i % kAhead].exchange(0), i + 1); });
+  }
+}
+
+TEST(ParallelInOrder, ThrowsTheErrorOfTheSmallestFailingPiece) {
+  for (const unsigned threads : {1U, 2U, 5U})
+    for (int repeat = 0; repeat < 20; ++repeat) {
+      std::string caught;
+      std::size_t taken = 0;
+      try {
+        parallelInOrder(
+            50, threads, 7,
+            [](std::size_t i) {
+              if (i % 10 == 3) throw std::runtime_error(std::to_string(i));
+            },
+            [&](std::size_t) { ++taken; });
+      } catch (const std::runtime_error& e) {
+        caught = e.what();
+      }
+      EXPECT_EQ(caught, "3");
+      EXPECT_LE(taken, 3U);
+    }
+}
+
+TEST(ParallelInOrder, EndsWhenTakingFails) {
+  for (const unsigned threads : {1U, 2U, 5U})
+    EXPECT_THROW(parallelInOrder(
+                     1000, threads, 4, [](std::size_t) {},
+                     [](std::size_t i) {
+                       if (i == 20) throw std::runtime_error("no");
+                     }),
+                 std::runtime_error);
 }
 
 }  // namespace

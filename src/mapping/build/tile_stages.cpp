@@ -218,10 +218,13 @@ TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes
                                      .anew = std::move(changes.anew),
                                      .donor = donor ? &*donor : nullptr});
   storeTiles(transaction, store.tiles());
-  changes_.have_ways =
-      !updateWayTiles(transaction, store.changedEven(), outputs_.even, threads).empty() || changes_.have_ways;
-  outputs_.even.clear();
+  changed_even_.insert(store.changedEven().begin(), store.changedEven().end());
+  even_ = std::exchange(outputs_.even, {});  // what is missing is read
   return changed;
+}
+
+bool TileStages::updateWays(rdf::WriteTransaction& transaction, unsigned threads) {
+  return !updateWayTiles(transaction, std::exchange(changed_even_, {}), std::exchange(even_, {}), threads).empty();
 }
 
 void TileStages::load(const rdf::ReadTransaction& transaction) {

@@ -26,7 +26,6 @@ struct OutputChanges {
   perception::TileSet tiles;  ///< of which an output changed, also those that are gone
   /// The summaries that these tiles had before, as stored; absent where there were none.
   std::map<perception::TileKey, std::optional<std::string>> former_summaries;
-  bool have_ways = false;  ///< what some tile contributes to ways changed
 };
 
 /// `model` and `params` must outlive it.
@@ -35,12 +34,16 @@ class TileStages {
   TileStages(const perception::LabelModel& model, const MapParams& params, Keep keep = Keep::All)
       : params_{params.labelling, params.component, params.contact, params.relation}, labeller_(model), keep_(keep) {}
 
-  /// Brings every stage up to date after scans were stored or removed. Returns the tiles of which an output changed.
+  /// Brings every stage but ways up to date after scans were stored or removed. Returns the tiles of which an output
+  /// changed.
   perception::TileSet update(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads,
                              ProgressSink& sink);
   /// Computes all stages of all tiles: the model or the settings changed. Returns the tiles of which an output changed.
   perception::TileSet updateAll(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads,
                                 ProgressSink& sink);
+  /// Brings the two stages of ways up to date after update() or updateAll(). Returns whether what some tile contributes
+  /// to ways changed since ways were read last. The scene may be taken meanwhile.
+  bool updateWays(rdf::WriteTransaction& transaction, unsigned threads);
   /// All changes since the last call of this function.
   OutputChanges takeChanges() { return std::exchange(changes_, {}); }
   /// Reads what the scene is assembled from, of all tiles. Cost: about 100 ns a cluxel.
@@ -56,7 +59,10 @@ class TileStages {
   /// Gives the memory of points and cluxels back.
   void dropPoints();
   /// The same for all outputs; they are read again when they are needed.
-  void dropAll() { outputs_ = {}; }
+  void dropAll() {
+    outputs_ = {};
+    even_.clear();
+  }
   /// The scene of what is loaded, seen from the clouds of the map.
   perception::Scene scene(const std::vector<Cloud>& clouds) const {
     return assembleScene(outputs_, params_.relation, viewsOf(clouds));
@@ -86,6 +92,9 @@ class TileStages {
   Keep keep_;
   perception::TileOutputs outputs_;
   OutputChanges changes_;
+  /// Tiles of which the even ground changed, came or went since the stages of ways were brought up to date.
+  perception::TileSet changed_even_;
+  std::map<perception::TileKey, perception::EvenTile> even_;  ///< of those that are at hand
 };
 
 }  // namespace cluxel::mapping

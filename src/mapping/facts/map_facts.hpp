@@ -37,6 +37,7 @@ struct ObservedMap {
   const std::vector<std::vector<ContentHash>>& near;
   /// What the tiles add to class-wide objects.
   const std::vector<WidePart>& wide;
+  unsigned threads = 1;
 };
 
 /// The facts about the map, its clouds, its primitives and the ground that they touch.

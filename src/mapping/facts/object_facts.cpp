@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 
+#include "base/parallel.hpp"
 #include "base/utc_time.hpp"
 #include "rdf/map_iris.hpp"
 
@@ -258,11 +259,14 @@ void addBounds(rdf::TermId subject, const Eigen::Vector3d& min, const Eigen::Vec
 }
 
 void addObjectFacts(const ObservedMap& map, FactSink& facts) {
+  const std::vector<rules::SemanticObject>& objects = map.reasoning.objects;
+  std::vector<std::optional<ObjectView>> found(objects.size());
+  parallelFor(objects.size(), map.threads, [&](std::size_t i) { found[i].emplace(viewOf(map, objects[i])); });
   std::vector<ObjectView> views;
-  views.reserve(map.reasoning.objects.size());
-  for (const rules::SemanticObject& object : map.reasoning.objects) views.push_back(viewOf(map, object));
+  views.reserve(objects.size());
+  for (std::optional<ObjectView>& view : found) views.push_back(*std::move(view));
   addSightings(map, views);
-  for (std::size_t i = 0; i < map.near.size(); ++i) addNear(map.reasoning.objects[i], map.near[i], facts);
+  for (std::size_t i = 0; i < map.near.size(); ++i) addNear(objects[i], map.near[i], facts);
   for (std::size_t i = 0; i < map.presence.size(); ++i) views[i].presence = map.presence[i];
   for (std::size_t i = 0; i < map.passed_rays.size(); ++i) views[i].passed_rays = map.passed_rays[i];
   for (const ObjectView& view : views) addObject(view, facts);

@@ -12,8 +12,11 @@ SceneFacts::SceneFacts(rdf::WriteTransaction& transaction, const MapInputs& inpu
                        const std::map<perception::TileKey, perception::SummaryTile>& summaries)
     : transaction_(transaction), inputs_(inputs), clouds_(clouds), scene_(scene), summaries_(summaries) {}
 
-void SceneFacts::begin() {
-  telling_ = std::async(std::launch::async, [this] { tell(); });
+void SceneFacts::begin(std::shared_future<WayGraph> ways) {
+  telling_ = std::async(std::launch::async, [this, ways = std::move(ways)] {
+    ways.wait();
+    tell();
+  });
 }
 
 void SceneFacts::wait() {

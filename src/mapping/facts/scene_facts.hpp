@@ -10,6 +10,7 @@
 
 #include "mapping/facts/fact_sink.hpp"
 #include "mapping/facts/map_facts.hpp"
+#include "mapping/ways/ways.hpp"
 #include "perception/segments/summary_tile.hpp"
 
 namespace cluxel::mapping {
@@ -21,9 +22,9 @@ class SceneFacts {
   SceneFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, const std::vector<Cloud>& clouds,
              const perception::Scene& scene, const std::map<perception::TileKey, perception::SummaryTile>& summaries);
 
-  /// Collects them on a thread of its own. Nobody else may use the transaction until wait() or collect()
-  /// has returned.
-  void begin();
+  /// Collects them on a thread of its own when the ways are there, which may be made meanwhile. Nobody else may use the
+  /// transaction until wait() or collect() has returned.
+  void begin(std::shared_future<WayGraph> ways);
   /// Waits for the thread, if there is one.
   void wait();
   /// Collects them, unless a thread did.

@@ -2,6 +2,9 @@
 // Ontology, rules, facts and closure, in the order of their dependencies.
 #include "mapping/facts/semantic_layer.hpp"
 
+#include <algorithm>
+#include <future>
+
 #include "cluxel/error.hpp"
 #include "mapping/build/scan_store.hpp"
 #include "mapping/build/way_tiles.hpp"
@@ -50,6 +53,17 @@ void writeObserved(SceneFacts& of_scene, const ObservedMap& map, const std::vect
   facts.finish();
 }
 
+/// The ways of the map. With `is_beside` another thread makes them, which alone uses the transaction until then.
+std::shared_future<WayGraph> beginWays(rdf::WriteTransaction& transaction, TileStages& stages, unsigned threads,
+                                       bool is_beside) {
+  std::shared_future<WayGraph> ways = std::async(is_beside ? std::launch::async : std::launch::deferred, [&, threads] {
+    stages.updateWays(transaction, std::max(1U, threads - 1));
+    return storedWays(transaction);
+  });
+  if (!is_beside) ways.wait();
+  return ways;
+}
+
 }  // namespace
 
 void writeOntology(rdf::WriteTransaction& transaction, const MapInputs& inputs) {
@@ -94,19 +108,21 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
                                  unsigned threads, ProgressSink& sink, const rdf::InferenceCheck& check) {
   writeOntology(transaction, parsed.inputs);
   const std::vector<Cloud> clouds = storedClouds(transaction);
+  rules::KnownSplits splits = storedSplits(transaction);
+  const bool is_beside = threads > 1 && !parsed.rules.asks_map;  // ways and facts of the scene need no objects
+  const std::shared_future<WayGraph> ways = beginWays(transaction, stages, threads, is_beside);
   perception::Scene scene = stages.takeScene(clouds);
-  const WayGraph ways = storedWays(transaction);
   sink.progress("scene", scene.primitives.size(), scene.primitives.size());
   MapOracle oracle(transaction, [&](std::span<const rules::SemanticObject> objects) {
     if (check) check(0);
-    writeObjectsSoFar(transaction, parsed.inputs, clouds, scene, stages, ways, objects);
+    writeObjectsSoFar(transaction, parsed.inputs, clouds, scene, stages, ways.get(), objects);
   });
-  rules::KnownSplits splits = storedSplits(transaction);
   SceneFacts facts(transaction, parsed.inputs, clouds, scene, stages.summaries());
-  if (threads > 1 && !parsed.rules.asks_map) facts.begin();
+  if (is_beside) facts.begin(ways);
   rules::ThresholdMargins margins(scene, parsed.rules);
   rules::ReasoningResult result =
-      reason(scene, parsed.rules, {.oracle = &oracle, .threads = threads, .splits = &splits, .margins = &margins});
+      reason(scene, parsed.rules,
+             {.oracle = &oracle, .threads = threads, .splits = &splits, .margins = &margins, .keeps_paths = false});
   facts.wait();
   if (check) check(0);
   const std::vector<std::uint64_t> traces = result.traces;
@@ -115,7 +131,9 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   result.objects = std::move(stated.objects);
   sink.progress("objects", result.objects.size(), result.objects.size());
   const std::vector<std::uint32_t> object_of = objectOfCluxel(result, scene.cluxels.size());
-  const auto sightings = sightingsOf(stages.summaries(), object_of);
+  const auto policy = threads > 1 ? std::launch::async : std::launch::deferred;
+  auto near = std::async(policy, [&] { return nearOf(result.objects, scene.cluxels, object_of); });
+  auto wide_tiles = std::async(policy, [&] { return wideTilesOf(scene, stages.summaries(), result.objects); });
   const auto counts_rays = [&](const rules::SemanticObject& object) {
     return parsed.rules.catalogue.isA(object.class_iri, rdf::vocabulary::clx("Barrier"));
   };
@@ -126,12 +144,13 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   passRays(clouds, observers, [&](const Cloud& cloud) { return storedScan(transaction, cloud.id); });
   const auto presence = presence_update.finish(transaction, Covered::All);
   const auto passed_rays = rays_update.finish(transaction, Covered::All);
-  const std::vector<WideTile> wide_tiles = wideTilesOf(scene, stages.summaries(), result.objects);
-  const auto wide = mergedParts(wide_tiles);
-  const auto near = nearOf(result.objects, scene.cluxels, object_of);
-  writeObserved(facts, {parsed.inputs, clouds, scene, result, sightings, presence, passed_rays, near, wide},
-                stated.outcomes, ways);
-  storeWideTiles(transaction, wide_tiles);
+  const auto sightings = sightingsOf(stages.summaries(), object_of);
+  const std::vector<WideTile> wide = wide_tiles.get();
+  writeObserved(
+      facts,
+      {parsed.inputs, clouds, scene, result, sightings, presence, passed_rays, near.get(), mergedParts(wide), threads},
+      stated.outcomes, ways.get());
+  storeWideTiles(transaction, wide);
   inferFacts(transaction, parsed.inputs, sink, check);
   storeLayers(transaction,
               {.scene = scene, .objects = result.objects, .traces = traces, .inputs = facts.inputHashes()});

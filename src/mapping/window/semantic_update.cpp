@@ -103,6 +103,7 @@ class LocalUpdate {
       rules::ReasoningContext context;
       context.threads = params_.threads;
       context.margins = &margins;
+      context.keeps_paths = false;
       rules::LocalRun rules_run(input, parsed_.rules, context, *reach_m);
       const TileSet beyond = tilesBeyond(*window, change, changes_, transaction_, rules_run.layers(), kDepths[depth]);
       more = perception::unionOf(std::move(more), attempt < kNarrowAttempts ? beyond : perception::grown(beyond));
@@ -192,8 +193,9 @@ class LocalUpdate {
     update.after = membersOf(made, window.scene.cluxels);
     keepDifferent(update.before, update.after);
     count(window, change, update);
-    const std::optional<WayGraph> ways = changes_.have_ways ? std::optional(storedWays(transaction_)) : std::nullopt;
     sink_.progress("objects", update.after.size(), update.after.size());
+    const bool have_ways = stages_.updateWays(transaction_, params_.threads);
+    const std::optional<WayGraph> ways = have_ways ? std::optional(storedWays(transaction_)) : std::nullopt;
     writeWindowFacts(transaction_, {parsed_, stages_, clouds_, before_.clouds, window, change, decision, former,
                                     statements, ways ? &*ways : nullptr, params_.threads});
     writeLayers(transaction_, window, decision, changes_, former);

@@ -177,7 +177,7 @@ class Competition {
       if (wins[i] || !lost_.emplace(proposals[i].rule, proposals[i].group).second) continue;
       Decision record = decision;
       record.accepted = false;
-      record.reason = reasonOfDefeat(decision);
+      if (state_.context.keeps_paths) record.reason = reasonOfDefeat(decision);
       state_.decisions.push_back(std::move(record));
     }
   }

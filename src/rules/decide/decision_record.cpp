@@ -29,6 +29,7 @@ class Judging {
     verdict.bindings = std::move(walk.bindings);
     verdict.related = walk.related;
     verdict.trace = traceOf(verdict);
+    if (!state_.context.keeps_paths) verdict.decision.path = {}, verdict.decision.evidence = {};
     return verdict;
   }
 
@@ -36,14 +37,16 @@ class Judging {
   void describeOutcome(const WalkResult& walk, Verdict& verdict) const {
     const TreeNode& leaf = rule_.nodes[walk.leaf];
     if (const auto* reject = std::get_if<RejectLeaf>(&leaf.what)) {
-      verdict.decision.reason = reject->reason;
-      verdict.decision.hint = reject->hint;
+      if (state_.context.keeps_paths) {
+        verdict.decision.reason = reject->reason;
+        verdict.decision.hint = reject->hint;
+      }
       verdict.leaves_unknown = reject->leave_unknown;
       return;
     }
     verdict.accept = &std::get<AcceptLeaf>(leaf.what);
     verdict.decision.accepted = true;
-    verdict.decision.reason = describeAccept(*verdict.accept);
+    if (state_.context.keeps_paths) verdict.decision.reason = describeAccept(*verdict.accept);
     weigh(state_, rule_, *verdict.accept, walk.bindings, verdict.decision);
   }
 

@@ -30,6 +30,9 @@ struct ReasoningContext {
   unsigned threads = 1;                 ///< the result is the same for every number
   KnownSplits* splits = nullptr;        ///< saves work; the result is the same without
   ThresholdMargins* margins = nullptr;  ///< gets all tests of the run
+  /// False when nobody reads how decisions were taken: then Decision has no path, evidence, reason or hint. All else is
+  /// the same, also the traces.
+  bool keeps_paths = true;
 };
 
 /// Groups the primitives of a scene into objects, class by class in the order of the rule set. The objects' cluxels are

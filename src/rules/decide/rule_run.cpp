@@ -86,7 +86,7 @@ class RuleRun {
     if (verdict.accept != nullptr && state_.context.onCandidate) state_.context.onCandidate(state_, rule_, verdict);
     if (verdict.accept != nullptr && verdict.decision.log_odds <= kMinLogOdds) {
       verdict.decision.accepted = false;
-      verdict.decision.reason = "the evidence speaks against it";
+      if (state_.context.keeps_paths) verdict.decision.reason = "the evidence speaks against it";
       verdict.accept = nullptr;
       verdict.leaves_unknown = false;
     }

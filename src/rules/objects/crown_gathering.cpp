@@ -306,6 +306,11 @@ class Gathering {
     decision.seeds = {decision.seed};
     decision.accepted = decision.is_gathered = true;
     decision.leaf = state_.decisions[object.decision].leaf;
+    if (state_.context.keeps_paths) describe(object, spec, gap_m, decision);
+    state_.decisions.push_back(std::move(decision));
+  }
+
+  void describe(const ObjectInMaking& object, const SplittingSpec& spec, double gap_m, Decision& decision) const {
     decision.reason = "gathered into " + spec.part + " of the " + state_.rules.shorten(object.rule->class_iri) +
                       " whose " + spec.from + " is nearest in plan view";
     DecisionStep step;
@@ -318,7 +323,6 @@ class Gathering {
     step.unit = "m";
     step.passed = true;
     decision.path.push_back(std::move(step));
-    state_.decisions.push_back(std::move(decision));
   }
 
   void renew(const Gatherer& gatherer) {

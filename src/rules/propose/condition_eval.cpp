@@ -79,9 +79,11 @@ bool ConditionEvaluator::holds(const Condition& condition, std::vector<DecisionS
   const bool negative = condition.kind == Kind::Not;
   const bool passed = holdsElementary(negative ? condition.operands.front() : condition, step) != negative;
   if (steps == nullptr) return passed;
-  step.rule_id = rule_.id;
-  step.test = state_.texts->of(condition);
-  step.file = condition.at.file;
+  if (state_.context.keeps_paths) {
+    step.rule_id = rule_.id;
+    step.test = state_.texts->of(condition);
+    step.file = condition.at.file;
+  }
   step.line = condition.at.line;
   step.passed = passed;
   steps->push_back(std::move(step));

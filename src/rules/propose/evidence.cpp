@@ -39,8 +39,10 @@ class Weighing {
 
   EvidenceStep of(const EvidenceLine& line) {
     EvidenceStep step;
-    step.text = state_.texts->of(line);
-    step.file = line.at.file;
+    if (state_.context.keeps_paths) {
+      step.text = state_.texts->of(line);
+      step.file = line.at.file;
+    }
     step.line = line.at.line;
     if (line.asks_rivals && state_.first_winners == nullptr) return step;
     step.log_odds = line.missing;
@@ -124,9 +126,11 @@ void weigh(const ReasoningState& state, const Rule& rule, const AcceptLeaf& acce
            Decision& decision) {
   const double confidence = std::clamp(confidenceOf(accept.confidence, bindings), 0.0, 1.0);
   EvidenceStep prior;
-  prior.text = "the rule's confidence";
   prior.measured = confidence;
-  prior.file = accept.confidence.high_at.file;
+  if (state.context.keeps_paths) {
+    prior.text = "the rule's confidence";
+    prior.file = accept.confidence.high_at.file;
+  }
   prior.line = accept.confidence.high_at.line;
   prior.log_odds = decision.log_odds = logOdds(confidence);
   decision.evidence = {std::move(prior)};

@@ -72,9 +72,11 @@ class Walk {
     const auto passing = findPassing(state_, rule_, find.where, find.name, result_.bindings,
                                      [&](FragmentIndex fragment) { return mayBind(find, fragment); });
     DecisionStep step;
-    step.rule_id = rule_.id;
-    step.test = describeFind(find);
-    step.file = rule_.nodes[at].at.file;
+    if (state_.context.keeps_paths) {
+      step.rule_id = rule_.id;
+      step.test = describeFind(find);
+      step.file = rule_.nodes[at].at.file;
+    }
     step.line = rule_.nodes[at].at.line;
     step.measured = static_cast<double>(passing.size());
     step.passed = !passing.empty();
