@@ -206,6 +206,10 @@ MapInputs MapReader::inputs() const {
   return impl_->readInputs();
 }
 
+const perception::LabelModel& MapReader::model() const {
+  return impl_->readModel();
+}
+
 const perception::Scene& MapReader::scene() const {
   if (!impl_->scene) impl_->scene = impl_->readStages().scene(clouds());
   return *impl_->scene;

@@ -90,6 +90,8 @@ class MapReader {
   /// The bytes of the file by table. Cost and errors as for rdf::layerSizes().
   std::vector<rdf::LayerSize> layers() const;
   MapInputs inputs() const;
+  /// Parsed by the first call.
+  const perception::LabelModel& model() const;
 
  private:
   struct Impl;

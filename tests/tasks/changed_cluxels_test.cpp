@@ -27,21 +27,17 @@ perception::SceneCluxels board() {
   return cluxels;
 }
 
-/// Scans that hit each cluxel before, and later ones of which few rays passed each.
-CluxelFindings passedBy(std::uint8_t scans, const perception::SceneCluxels& cluxels) {
-  CluxelFindings findings;
-  for (std::uint32_t i = 0; i < cluxels.size(); ++i) {
-    findings.numbers.push_back(i);
-    findings.before.push_back({.is_hit = true, .hits = 9, .sparse_hits = 9});
-    findings.after.push_back({.passed = scans, .passed_scans = (std::uint64_t{1} << scans) - 1});
-  }
-  return findings;
-}
-
+/// Scans hit each cluxel before, and few rays of later ones passed each.
 std::size_t vanishedAfter(std::uint8_t scans) {
-  const perception::SceneCluxels cluxels = board();
-  const CluxelFindings findings = passedBy(scans, cluxels);
-  return clustersOf(CluxelChange::Vanished, changesOf(findings, cluxels.size()), findings, cluxels).size();
+  ChangedCluxels all;
+  all.cluxels = board();
+  for (std::uint32_t i = 0; i < all.cluxels.size(); ++i) {
+    all.is_told.push_back(true);
+    all.before.push_back({.is_hit = true, .hits = 9, .sparse_hits = 9});
+    all.after.push_back({.passed = scans, .passed_scans = (std::uint64_t{1} << scans) - 1});
+    all.changes.push_back(changeOf(all.before.back(), all.after.back()));
+  }
+  return clustersOf(CluxelChange::Vanished, all).size();
 }
 
 TEST(ChangedCluxels, AThingThatNoLaterRayPassesIsNotGone) {

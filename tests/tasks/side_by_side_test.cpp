@@ -9,25 +9,21 @@
 namespace cluxel::tasks {
 namespace {
 
-constexpr auto kStructure = static_cast<std::uint32_t>(scan::PrimitiveLabel::SmallStructure),
-               kFoliage = static_cast<std::uint32_t>(scan::PrimitiveLabel::Scatter);
+constexpr bool kStructure = false, kFoliage = true;
 
-void addSheet(std::vector<PointCell>& cells, double at_m, double from_m, double to_m, std::uint32_t cluxel) {
+void addSheet(std::vector<PointCell>& cells, double at_m, double from_m, double to_m, bool is_foliage) {
   // Askew to the axes of the map.
   const Eigen::Vector3d along(0.8, 0.6, 0), across(-0.6, 0.8, 0);
   for (double s = from_m; s <= to_m; s += 0.1)
     for (double z = 0; z <= 1; z += 0.1)
-      cells.push_back({.place = at_m * across + s * along + z * Eigen::Vector3d::UnitZ(), .cluxel = cluxel});
+      cells.push_back({.place = at_m * across + s * along + z * Eigen::Vector3d::UnitZ(), .is_foliage = is_foliage});
 }
 
 std::vector<std::size_t> sizesAfterSplit(const std::vector<PointCell>& cells) {
-  perception::SceneCluxels cluxels;
-  for (std::size_t label = 0; label < scan::kPrimitiveLabelCount; ++label)
-    cluxels.label.push_back(static_cast<scan::PrimitiveLabel>(label));
-  CellGroup all(cells.size());
+  ChangeGroup all(cells.size());
   std::iota(all.begin(), all.end(), 0U);
   std::vector<std::size_t> sizes;
-  for (const CellGroup& part : sheetsOf(cells, cluxels, all)) sizes.push_back(part.size());
+  for (const ChangeGroup& part : sheetsOf(cells, all)) sizes.push_back(part.size());
   return sizes;
 }
 

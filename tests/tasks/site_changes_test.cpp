@@ -186,6 +186,22 @@ TEST_F(SiteChangesTest, VisitsThatChangePlacesChangeTheSigns) {
   EXPECT_EQ(got, expected);
 }
 
+TEST_F(SiteChangesTest, TheAnswerDoesNotDependOnHowTheMapIsCutIntoRegions) {
+  const std::string whole = changesJson(*map, *found);
+  ASSERT_FALSE(found->changes.empty());
+  for (const std::size_t max_cluxels : {std::size_t{1}, std::size_t{3000}, std::size_t{12'000}})
+    EXPECT_EQ(changesJson(*map, changesIn(*map, std::nullopt, 2, max_cluxels)), whole) << max_cluxels;
+}
+
+TEST_F(SiteChangesTest, ChangesAcrossTheBordersOfRegionsStayWhole) {
+  const auto crosses = [](const Eigen::AlignedBox3d& box) {
+    return perception::tileOf(box.min()) != perception::tileOf(box.max());
+  };
+  std::size_t across = 0;
+  for (const auto& [is_new, box] : reported(changesIn(*map, std::nullopt, 1, 1))) across += crosses(box) ? 1 : 0;
+  EXPECT_GE(across, 1) << "the campus has no change that lies in two tiles";
+}
+
 TEST_F(SiteChangesTest, MostThingsAreThereBeforeAndAfter) {
   std::size_t stable = 0;
   for (const ObjectStates& states : found->states)

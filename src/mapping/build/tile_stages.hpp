@@ -71,7 +71,11 @@ class TileStages {
   perception::SceneWindow window(const perception::TileSet& elsewhere, const std::vector<Cloud>& clouds) const {
     return assembleWindow(outputs_, elsewhere, params_.relation, viewsOf(clouds));
   }
-  /// The same, and gives memory back.
+  /// The cluxels of the tiles that are held, without their primitives.
+  perception::SceneCluxels heldCluxels(const perception::TileSet& elsewhere) const {
+    return assembleCluxels(outputs_, elsewhere);
+  }
+  /// The scene of what is loaded; gives memory back.
   perception::Scene takeScene(const std::vector<Cloud>& clouds);
   /// The seeds of the scene's cluxels.
   perception::SceneSeeds seeds() const { return seedsOf(outputs_); }

@@ -268,6 +268,11 @@ void describe(RelationParams& params, ParameterVisitor& visitor) {
   visitor.real({"relation.parallel", "rad", 0, 1.5708, "largest angle of parallel things"}, params.parallel_rad);
 }
 
+SceneCluxels assembleCluxels(const TileOutputs& tiles, const TileSet& elsewhere) {
+  checkFit(tiles, elsewhere);
+  return gatherCluxels(tiles, elsewhere);
+}
+
 SceneSeeds seedsOf(const TileOutputs& tiles) {
   checkFit(tiles, {});
   SceneSeeds seeds;

@@ -53,6 +53,9 @@ struct SceneWindow {
 SceneWindow assembleWindow(const TileOutputs& tiles, const TileSet& elsewhere, const RelationParams& params,
                            std::vector<SceneView> views = {});
 
+/// The cluxels of the same scene alone, without their primitives, with the same errors. Cost: about 100 ns a cluxel.
+SceneCluxels assembleCluxels(const TileOutputs& tiles, const TileSet& elsewhere);
+
 /// The seeds of its cluxels alone, with the same errors. Cost: about 50 ns a cluxel.
 SceneSeeds seedsOf(const TileOutputs& tiles);
 

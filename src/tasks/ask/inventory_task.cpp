@@ -133,7 +133,7 @@ std::string presenceLine(const ObjectStates& states) {
 
 TaskRow unobservedRow(const mapping::MapReader& map, const ObjectStates& states) {
   const rules::SemanticObject& object = map.objects()[states.object];
-  const Eigen::Vector2d at = mapping::geometryOf(map.scene().cluxels, mapping::cluxelsOf(object)).box.center.head<2>();
+  const Eigen::Vector2d& at = states.centre;
   return {{std::string("not observed"), rdf::iriOfObject(object.id), mapping::localName(object.class_iri),
            std::string("whole"), at.x(), at.y(), TaskCell(), TaskCell()},
           {TaskShape::Kind::Point, {at}}};

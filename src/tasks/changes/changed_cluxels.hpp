@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "mapping/map_reader.hpp"
+#include "perception/segments/scene.hpp"
+#include "perception/visibility/ray_bundle.hpp"
+#include "tasks/changes/change_groups.hpp"
 
 namespace cluxel::tasks {
 
@@ -25,17 +27,10 @@ struct RayFindings {
 
   /// Rays passed the place, and none ended there.
   bool isEmpty() const { return !is_hit && (is_seen_through || passed > 0); }
-};
 
-struct CluxelFindings {
-  std::vector<std::uint32_t> numbers;      ///< cluxels of the scene, ascending
-  std::vector<RayFindings> before, after;  ///< parallel to `numbers`
+  /// Adds what the rays of one scan found.
+  void add(const perception::PlaceVerdict& found, std::uint64_t scan_bit);
 };
-
-/// Compares the rays of the timed scans before `since_s`, and of those from it on, with the cluxels in `wanted`. Cost:
-/// the wanted cluxels times the scans within their range.
-CluxelFindings findingsAt(const mapping::MapReader& map, double since_s, const std::vector<bool>& wanted,
-                          unsigned threads);
 
 enum class CluxelChange : std::uint8_t {
   Undecided,  ///< not covered before or after
@@ -43,8 +38,18 @@ enum class CluxelChange : std::uint8_t {
   Vanished,   ///< hit before and empty after
   Appeared,   ///< empty before and hit after
 };
-/// By cluxel of the scene.
-std::vector<CluxelChange> changesOf(const CluxelFindings& findings, std::size_t cluxel_count);
+/// What changed at a cluxel of which rays tell at both times.
+CluxelChange changeOf(const RayFindings& before, const RayFindings& after);
+
+/// Cluxels that changed, and all that intersect one of them.
+struct ChangedCluxels {
+  perception::SceneCluxels cluxels;   ///< with the edges of those that changed; no labels, seeds and primitives
+  std::vector<std::uint32_t> number;  ///< of each in the scene of the map, ascending
+  std::vector<std::uint32_t> object;  ///< of each in MapReader::objects(), or kNoObject
+  std::vector<bool> is_told;          ///< rays are compared with it: false for ground
+  std::vector<CluxelChange> changes;
+  std::vector<RayFindings> before, after;
+};
 
 /// Connected clusters of five or more cluxels that changed alike, each ascending, in the order of their first cluxel. A
 /// cluster is dropped when the rays may have missed a thing that is still there. First, each scan that passed a cluxel
@@ -57,8 +62,6 @@ std::vector<CluxelChange> changesOf(const CluxelFindings& findings, std::size_t 
 ///   Each such scan adds log((1 - p) / 0.95) for each cluxel that it passed, where p is the share of hits among such
 ///   scans in and around the cluster while the thing was there, but -2 at least: where the pose of a scan is off, its
 ///   rays miss all of a thing together. The sum must be -6 or less, so that three scans are needed.
-std::vector<std::vector<std::uint32_t>> clustersOf(CluxelChange kind, const std::vector<CluxelChange>& changes,
-                                                   const CluxelFindings& findings,
-                                                   const perception::SceneCluxels& cluxels);
+std::vector<ChangeGroup> clustersOf(CluxelChange kind, const ChangedCluxels& all);
 
 }  // namespace cluxel::tasks

@@ -5,20 +5,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "perception/segments/scene.hpp"
+#include "tasks/changes/change_groups.hpp"
 #include "tasks/changes/point_cells.hpp"
 
 namespace cluxel::tasks {
 
-enum class CellState : std::uint8_t {
-  Undecided,
-  Stable,   ///< there at the other time, too
-  Changed,  ///< more than twice as many scans of the other time passed it as hit it
-};
-CellState stateOf(const PointCell& cell);
-
-/// Numbers of cells, ascending.
-using CellGroup = std::vector<std::uint32_t>;
+/// A cell is stable when it is there at the other time, too, and changed when more than twice as many scans of the
+/// other time passed it as hit it.
+ChangeState stateOf(const PointCell& cell);
 
 /// Groups of cells that only the one time measured, and that rays of the other time pass: what vanished, when `cells`
 /// are those before, and what appeared, when they are those after. Changed cells form a
@@ -31,6 +25,9 @@ using CellGroup = std::vector<std::uint32_t>;
 ///   time do, and 85 % of the decided cells in and around it changed like it.
 /// The poses of scans are off: some of them still hit a head that is gone, because the pole in it seems to stand
 /// elsewhere. And rays find gaps in a crown that no ray of the other time found, so that foliage is never called solid.
-std::vector<CellGroup> changedParts(const std::vector<PointCell>& cells, const perception::SceneCluxels& cluxels);
+std::vector<ChangeGroup> changedParts(const std::vector<PointCell>& cells);
+
+/// Groups that are kept if the looks of their own time allow it, from the looks of the other time alone.
+std::vector<ChangeGroup> possibleParts(const std::vector<PointCell>& cells);
 
 }  // namespace cluxel::tasks

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <map>
+#include <unordered_map>
 #include <utility>
 
 #include "mapping/facts/object_geometry.hpp"
-#include "rdf/vocabulary.hpp"
 #include "tasks/changes/changed_cluxels.hpp"
 #include "tasks/changes/changed_parts.hpp"
 #include "tasks/changes/point_cells.hpp"
@@ -19,26 +19,7 @@ namespace {
 
 constexpr double kSameChange_m = 0.3;  ///< a part that lies nearer to a change of its kind belongs to it
 
-/// The objects of cluxels, and which cluxels may change: those of no ground.
-struct Owners {
-  std::vector<std::uint32_t> object;  ///< by cluxel, or kNoObject
-  std::vector<bool> may_change;
-};
-
-Owners ownersIn(const mapping::MapReader& map) {
-  const std::size_t count = map.scene().cluxels.size();
-  Owners owners{std::vector<std::uint32_t>(count, mapping::kNoObject), std::vector<bool>(count, true)};
-  for (std::uint32_t i = 0; i < map.objects().size(); ++i) {
-    const bool is_ground = map.objects()[i].class_iri == rdf::vocabulary::clx("Ground");
-    for (const std::uint32_t cluxel : mapping::cluxelsOf(map.objects()[i])) {
-      owners.object[cluxel] = i;
-      if (is_ground) owners.may_change[cluxel] = false;
-    }
-  }
-  return owners;
-}
-
-Eigen::AlignedBox3d boxOf(const std::vector<PointCell>& cells, const CellGroup& group) {
+Eigen::AlignedBox3d boxOf(const std::vector<PointCell>& cells, const ChangeGroup& group) {
   Eigen::AlignedBox3d box;
   for (const std::uint32_t cell : group) box.extend(cells[cell].place);
   return box;
@@ -46,7 +27,7 @@ Eigen::AlignedBox3d boxOf(const std::vector<PointCell>& cells, const CellGroup& 
 
 /// Gives each cluxel to the group with most of its cells.
 std::vector<std::vector<std::uint32_t>> shareOut(const std::vector<PointCell>& cells,
-                                                 const std::vector<CellGroup>& groups) {
+                                                 const std::vector<ChangeGroup>& groups) {
   std::map<std::uint32_t, std::vector<std::size_t>> cells_of_cluxel;  // by group
   for (std::size_t group = 0; group < groups.size(); ++group)
     for (const std::uint32_t cell : groups[group]) {
@@ -64,41 +45,45 @@ std::vector<std::vector<std::uint32_t>> shareOut(const std::vector<PointCell>& c
 /// The things of one kind.
 class Things {
  public:
-  Things(CluxelChange kind, const perception::SceneCluxels& cluxels, const Owners& owners,
-         const std::vector<CluxelChange>& changes, const std::vector<PointCell>& cells)
-      : kind_(kind), cluxels_(cluxels), owners_(owners), cells_(cells), cells_of_cluxel_(cluxels.size()) {
-    for (std::uint32_t cell = 0; cell < cells.size(); ++cell)
-      if (stateOf(cells[cell]) == CellState::Changed) cells_of_cluxel_[cells[cell].cluxel].push_back(cell);
-    for (std::size_t i = 0; i < changes.size(); ++i)
-      if (changes[i] == CluxelChange::Stable && owners.object[i] != mapping::kNoObject)
-        ++stable_of_object_[owners.object[i]];
+  /// `cells`: of the time when the things were there.
+  Things(CluxelChange kind, const ChangeSurvey& survey, const std::vector<PointCell>& cells)
+      : kind_(kind), survey_(survey), cells_(cells) {
+    for (std::size_t i = 0; i < survey.cluxels.number.size(); ++i)
+      object_of_cluxel_[survey.cluxels.number[i]] = survey.cluxels.object[i];
+    for (std::uint32_t cell = 0; cell < cells.size(); ++cell) {
+      object_of_cluxel_[cells[cell].cluxel] = cells[cell].object;
+      if (stateOf(cells[cell]) == ChangeState::Changed) cells_of_cluxel_[cells[cell].cluxel].push_back(cell);
+    }
   }
 
-  std::vector<ChangedThing> run(const std::vector<CluxelChange>& changes, const CluxelFindings& findings) {
-    for (auto& cluster : clustersOf(kind_, changes, findings, cluxels_)) addCluster(std::move(cluster));
+  std::vector<ChangedThing> run() {
+    for (const ChangeGroup& cluster : clustersOf(kind_, survey_.cluxels)) addCluster(cluster);
     const std::size_t clusters = things_.size();
-    for (const CellGroup& part : changedParts(cells_, cluxels_))
+    for (const ChangeGroup& part : changedParts(cells_))
       if (!isNearChange(boxOf(cells_, part), clusters)) addGroups({part});
     return std::move(things_);
   }
 
  private:
-  void addCluster(std::vector<std::uint32_t> cluster) {
-    CellGroup group;
-    for (const std::uint32_t cluxel : cluster)
-      group.insert(group.end(), cells_of_cluxel_[cluxel].begin(), cells_of_cluxel_[cluxel].end());
-    std::sort(group.begin(), group.end());
-    std::vector<CellGroup> sheets = sheetsOf(cells_, cluxels_, group);
-    if (sheets.size() > 1) return addGroups(sheets);
+  void addCluster(const ChangeGroup& cluster) {
+    const perception::SceneCluxels& cluxels = survey_.cluxels.cluxels;
+    std::vector<std::uint32_t> numbers;
+    ChangeGroup group;
     Eigen::AlignedBox3d box;
     for (const std::uint32_t cluxel : cluster) {
-      box.extend(cluxels_.low_corner[cluxel]);
-      box.extend(cluxels_.low_corner[cluxel] + cluxels_.extent[cluxel].cast<double>());
+      numbers.push_back(survey_.cluxels.number[cluxel]);
+      box.extend(cluxels.low_corner[cluxel]);
+      box.extend(cluxels.low_corner[cluxel] + cluxels.extent[cluxel].cast<double>());
+      const auto cells = cells_of_cluxel_.find(numbers.back());
+      if (cells != cells_of_cluxel_.end()) group.insert(group.end(), cells->second.begin(), cells->second.end());
     }
-    addThing(std::move(cluster), box);
+    std::sort(group.begin(), group.end());
+    const std::vector<ChangeGroup> sheets = sheetsOf(cells_, group);
+    if (sheets.size() > 1) return addGroups(sheets);
+    addThing(std::move(numbers), box);
   }
 
-  void addGroups(const std::vector<CellGroup>& groups) {
+  void addGroups(const std::vector<ChangeGroup>& groups) {
     std::vector<std::vector<std::uint32_t>> shares = shareOut(cells_, groups);
     for (std::size_t i = 0; i < groups.size(); ++i) addThing(std::move(shares[i]), boxOf(cells_, groups[i]));
   }
@@ -108,13 +93,13 @@ class Things {
     if (cluxels.empty()) return;
     ChangedThing thing{std::move(cluxels), std::nullopt, false, box};
     std::map<std::uint32_t, std::size_t> votes;
-    for (const std::uint32_t cluxel : thing.cluxels) ++votes[owners_.object[cluxel]];
+    for (const std::uint32_t cluxel : thing.cluxels) ++votes[object_of_cluxel_.at(cluxel)];
     const auto most =
         std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
     if (most->first != mapping::kNoObject) {
       thing.object = most->first;
-      const auto stable = stable_of_object_.find(most->first);
-      thing.is_part = stable != stable_of_object_.end() && stable->second > most->second;
+      const auto stable = survey_.stable_of_object.find(most->first);
+      thing.is_part = stable != survey_.stable_of_object.end() && stable->second > most->second;
     }
     things_.push_back(std::move(thing));
   }
@@ -127,24 +112,18 @@ class Things {
   }
 
   CluxelChange kind_;
-  const perception::SceneCluxels& cluxels_;
-  const Owners& owners_;
+  const ChangeSurvey& survey_;
   const std::vector<PointCell>& cells_;
-  std::vector<std::vector<std::uint32_t>> cells_of_cluxel_;  ///< those that changed
-  std::map<std::uint32_t, std::size_t> stable_of_object_;
+  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> cells_of_cluxel_;  ///< those that changed
+  std::unordered_map<std::uint32_t, std::uint32_t> object_of_cluxel_;
   std::vector<ChangedThing> things_;
 };
 
 }  // namespace
 
-ChangedThings changedThings(const mapping::MapReader& map, double since_s, unsigned threads) {
-  const Owners owners = ownersIn(map);
-  const perception::SceneCluxels& cluxels = map.scene().cluxels;
-  const CluxelFindings findings = findingsAt(map, since_s, owners.may_change, threads);
-  const std::vector<CluxelChange> changes = changesOf(findings, cluxels.size());
-  const PointCells cells = pointCellsOf(map, since_s, owners.may_change, threads);
-  return {Things(CluxelChange::Vanished, cluxels, owners, changes, cells.before).run(changes, findings),
-          Things(CluxelChange::Appeared, cluxels, owners, changes, cells.after).run(changes, findings)};
+ChangedThings changedThings(const ChangeSurvey& survey) {
+  return {Things(CluxelChange::Vanished, survey, survey.cells[kBefore]).run(),
+          Things(CluxelChange::Appeared, survey, survey.cells[kAfter]).run()};
 }
 
 }  // namespace cluxel::tasks

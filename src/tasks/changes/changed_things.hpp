@@ -7,13 +7,13 @@
 #include <optional>
 #include <vector>
 
-#include "mapping/map_reader.hpp"
+#include "tasks/changes/change_survey.hpp"
 
 namespace cluxel::tasks {
 
 /// Connected cluxels that vanished or appeared together, or a part of them that did.
 struct ChangedThing {
-  std::vector<std::uint32_t> cluxels;   ///< numbers in the scene, ascending
+  std::vector<std::uint32_t> cluxels;   ///< numbers in the scene of the map, ascending
   std::optional<std::uint32_t> object;  ///< that most of them belong to; absent when most belong to none
   bool is_part = false;                 ///< more of that object is there before and after than changed
   Eigen::AlignedBox3d box;              ///< [m, map]
@@ -24,9 +24,8 @@ struct ChangedThings {
   std::vector<ChangedThing> gone, come;
 };
 
-/// Compares the timed scans before `since_s` with those from it on. A thing is a cluster of cluxels that changed alike
-/// (clustersOf), or where there is none within 0.3 m, a part of cluxels (changedParts). Things that stood side by side
-/// are told apart (sheetsOf).
-ChangedThings changedThings(const mapping::MapReader& map, double since_s, unsigned threads);
+/// A thing is a cluster of cluxels that changed alike (clustersOf), or where there is none within 0.3 m, a part of
+/// cluxels (changedParts). Things that stood side by side are told apart (sheetsOf).
+ChangedThings changedThings(const ChangeSurvey& survey);
 
 }  // namespace cluxel::tasks

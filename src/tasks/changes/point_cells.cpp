@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scans are read twice: once for their points and once, when all cells are known, for their rays.
+// Cells are cut within tiles, so that no cell lies in two.
 #include "tasks/changes/point_cells.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <unordered_map>
 #include <utility>
-
-#include "base/parallel.hpp"
-#include "mapping/presence/ray_pass.hpp"
 
 namespace cluxel::tasks {
 
@@ -18,8 +13,7 @@ namespace {
 using perception::RayVerdict;
 using BlockKey = std::uint64_t;
 
-constexpr double kCell_m = 0.1, kNear_m = 0.25;
-constexpr std::size_t kBefore = 0, kAfter = 1;
+constexpr double kCell_m = 0.1, kNear_m = kNearCells_m;
 constexpr std::uint32_t kMuchMore = 3;  ///< times the points of the other time
 
 /// Narrower than for cluxels, but wider than the errors of poses. ExpectedReturns counts rays within 0.15 m of a place:
@@ -38,102 +32,66 @@ BlockKey keyOf(const Eigen::Vector3d& p, double edge_m) {
   return key;
 }
 
-/// The points of each time in a cell.
-struct PointSums {
-  std::array<Eigen::Vector3d, 2> sum{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  std::array<std::uint32_t, 2> count{}, cluxel{};
-  std::array<std::uint64_t, 2> scans{};
-};
-
-/// A timed scan.
-struct TimedScan {
-  const mapping::Cloud& cloud;
-  std::size_t time;   ///< kBefore or kAfter
-  std::uint64_t bit;  ///< of RayLooks
-};
-
-class Cells {
- public:
-  Cells(const mapping::MapReader& map, double since_s, unsigned threads)
-      : map_(map), clouds_(map.clouds()), threads_(threads) {
-    for (const mapping::Cloud* cloud : mapping::timedClouds(clouds_))
-      scans_.push_back(
-          {*cloud, *cloud->time_s < since_s ? kBefore : kAfter, std::uint64_t{1} << (scans_.size() % kScanBits)});
-  }
-
-  PointCells run(const std::vector<bool>& wanted) {
-    collect(wanted);
-    for (const TimedScan& scan : scans_)
-      perception::forEachRayBundle(map_.scanOf(scan.cloud.id), [&](const perception::RayBundle& bundle) {
-        for (const std::size_t time : {kBefore, kAfter}) look(bundle, scan, time);
-      });
-    for (auto& cells : cells_)
-      for (PointCell& cell : cells)
-        for (RayLooks* looks : {&cell.own, &cell.other}) looks->through_scans &= ~looks->hit_scans;
-    return {std::move(cells_[kBefore]), std::move(cells_[kAfter])};
-  }
-
- private:
-  void collect(const std::vector<bool>& wanted) {
-    std::unordered_map<BlockKey, PointSums> sums;
-    for (const TimedScan& scan : scans_) addPoints(scan, wanted, sums);
-    std::vector<std::pair<BlockKey, PointSums>> sorted(sums.begin(), sums.end());
-    std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    for (const auto& [key, cell] : sorted)
-      for (const std::size_t time : {kBefore, kAfter}) addCell(cell, time);
-  }
-
-  void addPoints(const TimedScan& scan, const std::vector<bool>& wanted,
-                 std::unordered_map<BlockKey, PointSums>& sums) const {
-    const scan::ScanPoints points = map_.pointsOf(scan.cloud.id);
-    const std::vector<std::uint32_t> cluxel = map_.answersFor(scan.cloud).cluxel;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (!wanted[cluxel[i]]) continue;
-      const Eigen::Vector3d p_map = scan::toMap(scan.cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
-      PointSums& cell = sums[keyOf(p_map, kCell_m)];
-      if (cell.count[scan.time] == 0) cell.cluxel[scan.time] = cluxel[i];
-      cell.sum[scan.time] += p_map;
-      ++cell.count[scan.time];
-      cell.scans[scan.time] |= scan.bit;
-    }
-  }
-
-  void addCell(const PointSums& cell, std::size_t time) {
-    const std::uint32_t count = cell.count[time];
-    if (count == 0) return;
-    const bool is_shared = kMuchMore * cell.count[1 - time] > count;
-    cells_[time].push_back({cell.sum[time] / count, cell.cluxel[time], cell.scans[time], is_shared, {}, {}});
-  }
-
-  void look(const perception::RayBundle& bundle, const TimedScan& scan, std::size_t time) {
-    constexpr std::size_t kChunk = 2048;
-    std::vector<PointCell>& cells = cells_[time];
-    parallelFor((cells.size() + kChunk - 1) / kChunk, threads_, [&](std::size_t chunk) {
-      const std::size_t end = std::min(cells.size(), (chunk + 1) * kChunk);
-      for (std::size_t i = chunk * kChunk; i < end; ++i) {
-        if (cells[i].is_shared) continue;
-        const perception::PlaceVerdict found = bundle.verdictAt(cells[i].place, kRayParams);
-        RayLooks& looks = scan.time == time ? cells[i].own : cells[i].other;
-        looks.rays += found.rays;
-        if (found.verdict == RayVerdict::Hit) looks.hit_scans |= scan.bit;
-        if (found.verdict == RayVerdict::SeenThrough || found.verdict == RayVerdict::FewPassed)
-          looks.through_scans |= scan.bit;
-      }
-    });
-  }
-
-  const mapping::MapReader& map_;
-  std::vector<mapping::Cloud> clouds_;
-  unsigned threads_;
-  std::vector<TimedScan> scans_;
-  std::array<std::vector<PointCell>, 2> cells_;  ///< before and after
-};
+/// Eight bits for x and for y, which are below 160, and the rest for z.
+CellKey cellOf(const Eigen::Vector3d& p_map) {
+  constexpr double kPerTile = perception::kTileSize_m / kCell_m;
+  constexpr std::int64_t kLowest = -(std::int64_t{1} << 40);
+  const perception::TileKey tile = perception::tileOf(p_map);
+  const Eigen::Vector3d local = p_map - perception::cornerOf(tile);
+  const auto number = [](double at) {
+    return static_cast<std::uint64_t>(std::clamp(std::floor(at / kCell_m), 0.0, kPerTile - 1));
+  };
+  const auto height = static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(local.z() / kCell_m)) - kLowest);
+  return {tile, number(local.x()) << 56U | number(local.y()) << 48U | height};
+}
 
 }  // namespace
 
-PointCells pointCellsOf(const mapping::MapReader& map, double since_s, const std::vector<bool>& wanted,
-                        unsigned threads) {
-  return Cells(map, since_s, threads).run(wanted);
+std::size_t CellSums::Hash::operator()(const CellKey& key) const {
+  constexpr std::uint64_t kMultiplier = 0x9E3779B97F4A7C15U;
+  std::uint64_t hash = key.cell * kMultiplier;
+  hash = (hash ^ hash >> 32U ^ static_cast<std::uint32_t>(key.tile.x)) * kMultiplier;
+  hash = (hash ^ hash >> 32U ^ static_cast<std::uint32_t>(key.tile.y)) * kMultiplier;
+  return hash ^ hash >> 32U;
+}
+
+void CellSums::add(std::size_t time, std::uint64_t scan_bit, const Eigen::Vector3d& p_map, std::uint32_t cluxel) {
+  PointSums& cell = sums_[cellOf(p_map)];
+  if (cell.count[time] == 0) cell.cluxel[time] = cluxel;
+  cell.sum[time] += p_map;
+  ++cell.count[time];
+  cell.scans[time] |= scan_bit;
+}
+
+PointCells CellSums::take(const mapping::MapRegion& region) {
+  PointCells cells;
+  for (const auto& [key, sums] : sums_)
+    for (const std::size_t time : {kBefore, kAfter}) {
+      const std::uint32_t count = sums.count[time], cluxel = sums.cluxel[time];
+      if (count == 0) continue;
+      PointCell& cell = cells[time].emplace_back();
+      cell.key = key, cell.place = sums.sum[time] / count, cell.scans = sums.scans[time];
+      cell.cluxel = region.number[cluxel], cell.object = region.object[cluxel];
+      cell.is_foliage = region.scene.cluxels.label[cluxel] == scan::PrimitiveLabel::Scatter;
+      cell.is_shared = kMuchMore * sums.count[1 - time] > count;
+    }
+  sums_ = {};
+  for (auto& of_time : cells)
+    std::sort(of_time.begin(), of_time.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
+  return cells;
+}
+
+void lookAtCells(const perception::RayBundle& bundle, std::uint64_t scan_bit, RayLooks PointCell::*looks,
+                 std::span<PointCell> cells) {
+  for (PointCell& cell : cells) {
+    if (cell.is_shared) continue;
+    const perception::PlaceVerdict found = bundle.verdictAt(cell.place, kRayParams);
+    RayLooks& of_cell = cell.*looks;
+    of_cell.rays += found.rays;
+    if (found.verdict == RayVerdict::Hit) of_cell.hit_scans |= scan_bit;
+    if (found.verdict == RayVerdict::SeenThrough || found.verdict == RayVerdict::FewPassed)
+      of_cell.through_scans |= scan_bit;
+  }
 }
 
 CellNeighbours::CellNeighbours(const std::vector<PointCell>& cells) : cells_(cells) {

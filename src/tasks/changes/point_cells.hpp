@@ -3,12 +3,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <functional>
+#include <span>
+#include <unordered_map>
 #include <vector>
 
-#include "mapping/map_reader.hpp"
+#include "mapping/map_regions.hpp"
+#include "perception/tile.hpp"
 #include "perception/visibility/ray_bundle.hpp"
 #include "tasks/changes/changed_cluxels.hpp"
 
@@ -17,33 +21,64 @@ namespace cluxel::tasks {
 /// What the rays of some scans found at a place. Scans are bits (kScanBits).
 struct RayLooks {
   std::uint64_t hit_scans = 0;      ///< scans of which a ray ended there
-  std::uint64_t through_scans = 0;  ///< scans of which rays passed, and none ended there
+  std::uint64_t through_scans = 0;  ///< scans of which rays passed; those of which a ray ended there, too, do not count
   perception::RayCounts rays{};
 
   int hits() const { return std::popcount(hit_scans); }
-  int through() const { return std::popcount(through_scans); }
+  int through() const { return std::popcount(through_scans & ~hit_scans); }
+};
+
+/// A cell lies in one tile of the map.
+struct CellKey {
+  perception::TileKey tile;
+  std::uint64_t cell = 0;  ///< in the tile
+  auto operator<=>(const CellKey&) const = default;
 };
 
 /// A cell in which scans of one time measured points.
 struct PointCell {
+  CellKey key{};
   Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< the mean of these points [m, map]
-  std::uint32_t cluxel = 0;                         ///< of the first of them
-  std::uint64_t scans = 0;                          ///< that measured them, as bits like those of RayLooks
+  std::uint32_t cluxel = 0;                         ///< of the first of them, in the scene of the map
+  std::uint32_t object = 0;                         ///< of that cluxel, in MapReader::objects(), or kNoObject
+  bool is_foliage = false;                          ///< the label of that cluxel
   /// The other time measured more than a third as many points in the cell. No rays are looked at then.
   bool is_shared = false;
+  std::uint64_t scans = 0;  ///< that measured the points, as bits like those of RayLooks
   RayLooks own{}, other{};  ///< of the scans of that time, and of the other time
 };
 
-/// The cells with points before and after a time, by place.
-struct PointCells {
-  std::vector<PointCell> before, after;
+/// The cells with points before and after a time, by key.
+using PointCells = std::array<std::vector<PointCell>, 2>;
+inline constexpr std::size_t kBefore = 0, kAfter = 1;
+
+/// Gathers points in cells.
+class CellSums {
+ public:
+  /// `time`: kBefore or kAfter. `cluxel`: number in the scene of a region.
+  void add(std::size_t time, std::uint64_t scan_bit, const Eigen::Vector3d& p_map, std::uint32_t cluxel);
+  /// The cells; the sums are empty afterwards.
+  PointCells take(const mapping::MapRegion& region);
+
+ private:
+  struct Hash {
+    std::size_t operator()(const CellKey& key) const;
+  };
+  /// The points of each time in a cell.
+  struct PointSums {
+    std::array<Eigen::Vector3d, 2> sum{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+    std::array<std::uint32_t, 2> count{}, cluxel{};
+    std::array<std::uint64_t, 2> scans{};
+  };
+  std::unordered_map<CellKey, PointSums, Hash> sums_;
 };
 
-/// The cells of the points on `wanted` cluxels, by number in the scene, in the timed scans before `since_s` and in
-/// those from it on. Cost: the points of the timed scans, and the cells times the scans within their range. Memory:
-/// some 300 bytes a cell.
-PointCells pointCellsOf(const mapping::MapReader& map, double since_s, const std::vector<bool>& wanted,
-                        unsigned threads);
+/// Cells near to each other lie within this distance [m].
+inline constexpr double kNearCells_m = 0.25;
+
+/// Compares the rays of a scan with those of the cells that are not shared.
+void lookAtCells(const perception::RayBundle& bundle, std::uint64_t scan_bit, RayLooks PointCell::*looks,
+                 std::span<PointCell> cells);
 
 /// Finds the cells within 0.25 m of a cell. Refers to the cells.
 class CellNeighbours {

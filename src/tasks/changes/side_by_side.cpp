@@ -29,7 +29,7 @@ struct Slices {
   }
 };
 
-Slices slicesAcross(const Eigen::Vector2d& across, const std::vector<PointCell>& cells, const CellGroup& group) {
+Slices slicesAcross(const Eigen::Vector2d& across, const std::vector<PointCell>& cells, const ChangeGroup& group) {
   std::vector<double> along_m;
   for (const std::uint32_t cell : group) along_m.push_back(across.dot(cells[cell].place.head<2>()));
   const double first_m = *std::min_element(along_m.begin(), along_m.end());
@@ -43,7 +43,7 @@ Slices slicesAcross(const Eigen::Vector2d& across, const std::vector<PointCell>&
   return slices;
 }
 
-Slices mostCrowded(const std::vector<PointCell>& cells, const CellGroup& group) {
+Slices mostCrowded(const std::vector<PointCell>& cells, const ChangeGroup& group) {
   Slices best;
   for (int i = 0; i < kDirections; ++i) {
     const double angle = i * std::numbers::pi / kDirections;
@@ -75,7 +75,8 @@ std::vector<Sheet> sheetsIn(const Slices& slices) {
 
 /// Whether the cells in a sheet and in the slices beside it stand upright and are long enough for a thing of its own:
 /// longer than a wheel.
-bool isUpright(const CellGroup& group, const std::vector<PointCell>& cells, const Slices& slices, const Sheet& sheet) {
+bool isUpright(const ChangeGroup& group, const std::vector<PointCell>& cells, const Slices& slices,
+               const Sheet& sheet) {
   const Eigen::Vector2d lengthwise(-slices.across.y(), slices.across.x());
   Eigen::AlignedBox2d extent;  // along the sheet and in height
   std::size_t count = 0;
@@ -101,8 +102,9 @@ bool areCloseAndApart(const std::vector<Sheet>& sheets, const Slices& slices) {
   return between <= kMostBetween * static_cast<double>(slices.of_cell.size());
 }
 
-std::vector<CellGroup> splitBetween(const std::vector<Sheet>& sheets, const Slices& slices, const CellGroup& group) {
-  std::vector<CellGroup> parts(sheets.size());
+std::vector<ChangeGroup> splitBetween(const std::vector<Sheet>& sheets, const Slices& slices,
+                                      const ChangeGroup& group) {
+  std::vector<ChangeGroup> parts(sheets.size());
   for (std::size_t i = 0; i < group.size(); ++i) {
     const auto nearest = std::min_element(sheets.begin(), sheets.end(), [&](const Sheet& a, const Sheet& b) {
       return a.slicesTo(slices.of_cell[i]) < b.slicesTo(slices.of_cell[i]);
@@ -112,31 +114,29 @@ std::vector<CellGroup> splitBetween(const std::vector<Sheet>& sheets, const Slic
   return parts;
 }
 
-bool areOfLikeSize(const std::vector<CellGroup>& parts) {
+bool areOfLikeSize(const std::vector<ChangeGroup>& parts) {
   const auto [least, most] = std::minmax_element(
-      parts.begin(), parts.end(), [](const CellGroup& a, const CellGroup& b) { return a.size() < b.size(); });
+      parts.begin(), parts.end(), [](const ChangeGroup& a, const ChangeGroup& b) { return a.size() < b.size(); });
   return static_cast<double>(least->size()) >= kSmallest * static_cast<double>(most->size());
 }
 
-bool isFoliage(const std::vector<PointCell>& cells, const perception::SceneCluxels& cluxels, const CellGroup& group) {
-  const auto foliage = std::count_if(group.begin(), group.end(), [&](std::uint32_t cell) {
-    return cluxels.label[cells[cell].cluxel] == scan::PrimitiveLabel::Scatter;
-  });
+bool isFoliage(const std::vector<PointCell>& cells, const ChangeGroup& group) {
+  const auto foliage =
+      std::count_if(group.begin(), group.end(), [&](std::uint32_t cell) { return cells[cell].is_foliage; });
   return 2 * static_cast<std::size_t>(foliage) >= group.size();
 }
 
 }  // namespace
 
-std::vector<CellGroup> sheetsOf(const std::vector<PointCell>& cells, const perception::SceneCluxels& cluxels,
-                                const CellGroup& group) {
-  if (group.size() < 2 * kMinCells || isFoliage(cells, cluxels, group)) return {group};
+std::vector<ChangeGroup> sheetsOf(const std::vector<PointCell>& cells, const ChangeGroup& group) {
+  if (group.size() < 2 * kMinCells || isFoliage(cells, group)) return {group};
   const Slices slices = mostCrowded(cells, group);
   const std::vector<Sheet> sheets = sheetsIn(slices);
   const bool are_thin = std::all_of(sheets.begin(), sheets.end(), [&](const Sheet& sheet) {
     return sheet.last - sheet.first < kMostSlices && isUpright(group, cells, slices, sheet);
   });
   if (sheets.size() < 2 || !are_thin || !areCloseAndApart(sheets, slices)) return {group};
-  std::vector<CellGroup> parts = splitBetween(sheets, slices, group);
+  std::vector<ChangeGroup> parts = splitBetween(sheets, slices, group);
   if (!areOfLikeSize(parts)) return {group};
   return parts;
 }

@@ -4,7 +4,8 @@
 
 #include <vector>
 
-#include "tasks/changes/changed_parts.hpp"
+#include "tasks/changes/change_groups.hpp"
+#include "tasks/changes/point_cells.hpp"
 
 namespace cluxel::tasks {
 
@@ -15,7 +16,6 @@ namespace cluxel::tasks {
 /// slice from all sheets, so that a box with its front and rear stays whole; and when the smallest has a fifth or more
 /// of the cells of the largest. Each cell goes to the nearest sheet. Foliage is not split, as rays reach only the
 /// outside of a hedge. Else the group as it is.
-std::vector<CellGroup> sheetsOf(const std::vector<PointCell>& cells, const perception::SceneCluxels& cluxels,
-                                const CellGroup& group);
+std::vector<ChangeGroup> sheetsOf(const std::vector<PointCell>& cells, const ChangeGroup& group);
 
 }  // namespace cluxel::tasks

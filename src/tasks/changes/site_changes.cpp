@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// States of objects follow from the votes of rays; moves are pairs of things that vanished and appeared.
+// Moves are pairs of things that vanished and appeared.
 #include "tasks/changes/site_changes.hpp"
 
 #include <algorithm>
@@ -12,7 +12,6 @@
 #include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/facts/map_facts.hpp"
-#include "mapping/facts/object_geometry.hpp"
 #include "rdf/map_iris.hpp"
 #include "sparql/values/calendar.hpp"
 #include "tasks/ways/way_report.hpp"
@@ -99,34 +98,6 @@ std::vector<SiteChange> withMoves(const mapping::MapReader& map, const ChangedTh
   return changes;
 }
 
-/// The states of an object before and after.
-ObjectStates compare(std::uint32_t object, std::span<const perception::ScanVotes> all, double since_s) {
-  constexpr perception::PresenceParams kParams;
-  const auto later = std::find_if(all.begin(), all.end(), [&](const auto& vote) { return vote.time_s >= since_s; });
-  const auto before = all.first(static_cast<std::size_t>(later - all.begin())), after = all.subspan(before.size());
-  const perception::Visibility thing = perception::visibilityOf(all);
-  return {object, stateAfter(before, thing, kParams), stateAfter(after, thing, kParams),
-          logOddsOfPresence(before, thing.share_of_hits, kParams),
-          logOddsOfPresence(after, thing.share_of_hits, kParams)};
-}
-
-using Votes = std::vector<mapping::ObjectVotes>;
-
-/// What the rays of all scans say of each object. It is the same for each moment that is asked about.
-Votes votesIn(const mapping::MapReader& map, const std::vector<mapping::Cloud>& clouds, unsigned threads) {
-  return presenceVotes(
-      map.scene(), map.objects(), clouds, [&](const mapping::Cloud& cloud) { return map.scanOf(cloud.id); }, threads);
-}
-
-SiteChanges changesAt(const mapping::MapReader& map, const Votes& votes, double since_s, unsigned threads) {
-  SiteChanges found;
-  found.since_s = since_s;
-  for (std::uint32_t i = 0; i < votes.size(); ++i)
-    if (!votes[i].places.empty()) found.states.push_back(compare(i, votes[i].votes, since_s));
-  found.changes = withMoves(map, changedThings(map, since_s, threads));
-  return found;
-}
-
 ChangeJson boxJson(const Eigen::AlignedBox3d& box) {
   const auto rounded = [](const Eigen::Vector3d& v) {
     return ChangeJson{std::round(v.x() * 1000) / 1000, std::round(v.y() * 1000) / 1000,
@@ -165,20 +136,22 @@ std::vector<Visit> visitsOf(const std::vector<mapping::Cloud>& clouds) {
   return visits;
 }
 
-SiteChanges changesIn(const mapping::MapReader& map, std::optional<double> since_s, unsigned threads) {
+SiteChanges changesIn(const mapping::MapReader& map, std::optional<double> since_s, unsigned threads,
+                      std::size_t max_cluxels) {
   const std::vector<mapping::Cloud> clouds = map.clouds();
-  const double since = since_s ? *since_s : beginOfLastVisit(clouds);
-  requireBothSides(scanTimes(clouds), since);
-  return changesAt(map, votesIn(map, clouds, threads), since, threads);
+  SiteChanges found;
+  found.since_s = since_s ? *since_s : beginOfLastVisit(clouds);
+  requireBothSides(scanTimes(clouds), found.since_s);
+  ChangeSurvey survey = surveyOf(map, found.since_s, max_cluxels, threads);
+  found.changes = withMoves(map, changedThings(survey));
+  found.states = std::move(survey.states);
+  return found;
 }
 
 std::vector<SiteChanges> changesOfVisits(const mapping::MapReader& map, unsigned threads) {
-  const std::vector<mapping::Cloud> clouds = map.clouds();
-  const std::vector<Visit> visits = visitsOf(clouds);
+  const std::vector<Visit> visits = visitsOf(map.clouds());
   std::vector<SiteChanges> found;
-  if (visits.size() < 2) return found;
-  const Votes votes = votesIn(map, clouds, threads);
-  for (std::size_t i = 1; i < visits.size(); ++i) found.push_back(changesAt(map, votes, visits[i].begin_s, threads));
+  for (std::size_t i = 1; i < visits.size(); ++i) found.push_back(changesIn(map, visits[i].begin_s, threads));
   return found;
 }
 
@@ -234,8 +207,7 @@ std::string changesJson(const mapping::MapReader& map, const SiteChanges& found)
   }
   for (const ObjectStates& states : found.states) {
     ChangeJson entry = objectJson(map, states.object);
-    const auto geometry = mapping::geometryOf(map.scene().cluxels, mapping::cluxelsOf(map.objects()[states.object]));
-    entry["box_m"] = boxJson(Eigen::AlignedBox3d(geometry.min, geometry.max));
+    entry["box_m"] = boxJson(states.box);
     entry["before"] = nameOf(states.before);
     entry["after"] = nameOf(states.after);
     entry["log_odds_before"] = std::round(states.log_odds_before * 100) / 100;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "mapping/map_reader.hpp"
-#include "mapping/presence/presence_votes.hpp"
+#include "tasks/changes/change_survey.hpp"
 #include "tasks/changes/changed_things.hpp"
 
 namespace cluxel::tasks {
@@ -21,13 +21,6 @@ struct Visit {
 
 /// The visits of the clouds with a time and a pose, in the order of time.
 std::vector<Visit> visitsOf(const std::vector<mapping::Cloud>& clouds);
-
-struct ObjectStates {
-  std::uint32_t object = 0;  ///< number in MapReader::objects()
-  perception::PresenceState before = perception::PresenceState::NotObserved,
-                            after = perception::PresenceState::NotObserved;
-  double log_odds_before = 0, log_odds_after = 0;  ///< of "there"
-};
 
 struct SiteChange {
   enum class Kind { Vanished, Appeared, Moved };
@@ -47,8 +40,9 @@ struct SiteChanges {
 /// Compares the scans before `since_s` (default: the begin of the last visit) with those from it on. What vanished are
 /// clusters of cluxels that rays hit before and see through afterwards; what appeared, the other way round. Something
 /// of one class and nearly one size that vanished and appeared within 10 m has moved; nearest pairs first. Throws Error
-/// (InvalidArgument) when one side has no scan with time and pose.
-SiteChanges changesIn(const mapping::MapReader& map, std::optional<double> since_s, unsigned threads);
+/// (InvalidArgument) when one side has no scan with time and pose. Cost and memory as for surveyOf().
+SiteChanges changesIn(const mapping::MapReader& map, std::optional<double> since_s, unsigned threads,
+                      std::size_t max_cluxels = kRegionCluxels);
 
 /// changesIn for the begin of each visit but the first.
 std::vector<SiteChanges> changesOfVisits(const mapping::MapReader& map, unsigned threads);

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// Each region is read twice: for its points, and for the rays that pass it. What changed is looked at once more, when
+// it is known of the whole map.
+#include "tasks/changes/change_survey.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "base/parallel.hpp"
+#include "mapping/facts/object_geometry.hpp"
+#include "mapping/map_regions.hpp"
+#include "mapping/presence/presence_votes.hpp"
+#include "mapping/presence/ray_pass.hpp"
+#include "tasks/changes/changed_parts.hpp"
+#include "tasks/changes/kept_changes.hpp"
+
+namespace cluxel::tasks {
+
+namespace {
+
+constexpr perception::RayParams kCluxelRays;
+
+struct TimedScan {
+  const mapping::Cloud& cloud;
+  std::size_t time;   ///< kBefore or kAfter
+  std::uint64_t bit;  ///< of RayLooks and RayFindings
+};
+
+/// Calls `work(begin, end)` for pieces of [0, count).
+template <typename Work>
+void inPieces(std::size_t count, unsigned threads, const Work& work) {
+  constexpr std::size_t kPiece = 2048;
+  parallelFor((count + kPiece - 1) / kPiece, threads,
+              [&](std::size_t piece) { work(piece * kPiece, std::min(count, (piece + 1) * kPiece)); });
+}
+
+/// What rays must tell before it is known whether a cluxel changed.
+class FirstFindings {
+ public:
+  FirstFindings(const perception::SceneCluxels& cluxels, const std::vector<bool>& wanted) : cluxels_(cluxels) {
+    for (std::uint32_t i = 0; i < wanted.size(); ++i)
+      if (wanted[i]) numbers_.push_back(i);
+    for (auto& of_time : found_) of_time.resize(numbers_.size());
+  }
+
+  /// A cluxel that was hit at a time needs no more rays of that time.
+  void look(const perception::RayBundle& bundle, const TimedScan& scan, unsigned threads) {
+    std::vector<RayFindings>& found = found_[scan.time];
+    inPieces(numbers_.size(), threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        if (!found[i].is_hit) found[i].add(bundle.verdictAt(cluxels_.center[numbers_[i]], kCluxelRays), scan.bit);
+    });
+  }
+
+  std::vector<CluxelChange> changes() const {
+    std::vector<CluxelChange> changes(cluxels_.size(), CluxelChange::Undecided);
+    for (std::size_t i = 0; i < numbers_.size(); ++i)
+      changes[numbers_[i]] = changeOf(found_[kBefore][i], found_[kAfter][i]);
+    return changes;
+  }
+
+ private:
+  const perception::SceneCluxels& cluxels_;
+  std::vector<std::uint32_t> numbers_;
+  std::array<std::vector<RayFindings>, 2> found_;
+};
+
+class Survey {
+ public:
+  Survey(const mapping::MapReader& map, double since_s, std::size_t max_cluxels, unsigned threads)
+      : map_(map), since_s_(since_s), threads_(threads), clouds_(map.clouds()), regions_(map, max_cluxels) {
+    for (const mapping::Cloud* cloud : mapping::timedClouds(clouds_))
+      scans_.push_back(
+          {*cloud, *cloud->time_s < since_s ? kBefore : kAfter, std::uint64_t{1} << (scans_.size() % kScanBits)});
+  }
+
+  ChangeSurvey run() {
+    for (std::size_t i = 0; i < regions_.size(); ++i) surveyRegion(regions_.read(i));
+    std::sort(survey_.states.begin(), survey_.states.end(),
+              [](const ObjectStates& a, const ObjectStates& b) { return a.object < b.object; });
+    survey_.cluxels = kept_cluxels_.take();
+    for (const std::size_t time : {kBefore, kAfter}) survey_.cells[time] = nearChanges(std::move(kept_cells_[time]));
+    lookAgain();
+    return std::move(survey_);
+  }
+
+ private:
+  void surveyRegion(const mapping::MapRegion& region) {
+    const perception::SceneCluxels& cluxels = region.scene.cluxels;
+    std::vector<bool> may_change(cluxels.size()), wanted(cluxels.size());
+    for (std::size_t i = 0; i < cluxels.size(); ++i) {
+      may_change[i] = region.object[i] == mapping::kNoObject || !regions_.isGround(region.object[i]);
+      wanted[i] = may_change[i] && region.is_own[i];
+    }
+    PointCells cells = cellsIn(region, may_change);
+    FirstFindings findings(cluxels, wanted);
+    mapping::PresenceVoting voting(region.scene, region.objects, clouds_, threads_);
+    for (const TimedScan& scan : scans_) look(region, scan, findings, cells, voting);
+    for (const std::size_t time : {kBefore, kAfter}) keepCells(region, std::move(cells[time]), kept_cells_[time]);
+    keepCluxels(region, findings.changes(), may_change);
+    addStates(region, voting.finish());
+  }
+
+  PointCells cellsIn(const mapping::MapRegion& region, const std::vector<bool>& may_change) {
+    CellSums sums;
+    for (const TimedScan& scan : scans_)
+      regions_.forEachPoint(region, scan.cloud, [&](const Eigen::Vector3d& p_map, std::uint32_t cluxel) {
+        if (may_change[cluxel]) sums.add(scan.time, scan.bit, p_map, cluxel);
+      });
+    return sums.take(region);
+  }
+
+  void look(const mapping::MapRegion& region, const TimedScan& scan, FirstFindings& findings, PointCells& cells,
+            mapping::PresenceVoting& voting) const {
+    const bool votes = voting.wants(scan.cloud);
+    if (!votes && !mayPass(scan.cloud, region.scene.cluxels.center)) return;
+    const auto view = votes ? voting.view(scan.cloud) : nullptr;
+    std::vector<PointCell>& of_other_time = cells[1 - scan.time];
+    perception::forEachRayBundle(map_.scanOf(scan.cloud.id), [&](const perception::RayBundle& bundle) {
+      findings.look(bundle, scan, threads_);
+      inPieces(of_other_time.size(), threads_, [&](std::size_t begin, std::size_t end) {
+        lookAtCells(bundle, scan.bit, &PointCell::other, std::span(of_other_time).subspan(begin, end - begin));
+      });
+      if (view) view->look(bundle, threads_);
+    });
+    if (view) voting.take(*view);
+  }
+
+  void keepCluxels(const mapping::MapRegion& region, const std::vector<CluxelChange>& changes,
+                   const std::vector<bool>& may_change) {
+    for (std::size_t i = 0; i < changes.size(); ++i)
+      if (changes[i] == CluxelChange::Stable && region.object[i] != mapping::kNoObject)
+        ++survey_.stable_of_object[region.object[i]];
+    kept_cluxels_.add(region, changes, may_change);
+  }
+
+  void addStates(const mapping::MapRegion& region, const std::vector<mapping::ObjectVotes>& votes) {
+    for (std::size_t i = 0; i < region.objects.size(); ++i) {
+      if (votes[i].places.empty()) continue;
+      ObjectStates states = statesOf(region.number_of_objects[i], votes[i].votes, since_s_);
+      const auto geometry = mapping::geometryOf(region.scene.cluxels, mapping::cluxelsOf(region.objects[i]));
+      states.box = {geometry.min, geometry.max};
+      states.centre = geometry.box.center.head<2>();
+      survey_.states.push_back(states);
+    }
+  }
+
+  /// Completes what rays found at cluxels, and in cells of possible parts.
+  void lookAgain() {
+    PointCells parts;
+    std::array<std::vector<std::uint32_t>, 2> numbers;
+    for (const std::size_t time : {kBefore, kAfter})
+      for (const ChangeGroup& group : possibleParts(survey_.cells[time]))
+        for (const std::uint32_t cell : group) {
+          numbers[time].push_back(cell);
+          parts[time].push_back(survey_.cells[time][cell]);
+        }
+    for (const TimedScan& scan : scans_) lookAgain(scan, parts[scan.time]);
+    for (const std::size_t time : {kBefore, kAfter})
+      for (std::size_t i = 0; i < numbers[time].size(); ++i)
+        survey_.cells[time][numbers[time][i]].own = parts[time][i].own;
+  }
+
+  void lookAgain(const TimedScan& scan, std::vector<PointCell>& parts) {
+    ChangedCluxels& all = survey_.cluxels;
+    std::vector<RayFindings>& found = scan.time == kBefore ? all.before : all.after;
+    if (found.empty() && parts.empty()) return;
+    perception::forEachRayBundle(map_.scanOf(scan.cloud.id), [&](const perception::RayBundle& bundle) {
+      inPieces(found.size(), threads_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          if (all.is_told[i]) found[i].add(bundle.verdictAt(all.cluxels.center[i], kCluxelRays), scan.bit);
+      });
+      inPieces(parts.size(), threads_, [&](std::size_t begin, std::size_t end) {
+        lookAtCells(bundle, scan.bit, &PointCell::own, std::span(parts).subspan(begin, end - begin));
+      });
+    });
+  }
+
+  const mapping::MapReader& map_;
+  double since_s_;
+  unsigned threads_;
+  std::vector<mapping::Cloud> clouds_;
+  mapping::MapRegions regions_;
+  std::vector<TimedScan> scans_;
+  KeptCluxels kept_cluxels_;
+  PointCells kept_cells_;
+  ChangeSurvey survey_;
+};
+
+}  // namespace
+
+ChangeSurvey surveyOf(const mapping::MapReader& map, double since_s, std::size_t max_cluxels, unsigned threads) {
+  return Survey(map, since_s, max_cluxels, threads).run();
+}
+
+}  // namespace cluxel::tasks

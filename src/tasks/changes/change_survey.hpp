@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// What points and rays tell of the scans before a time and of those from it on, region by region.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "mapping/map_reader.hpp"
+#include "tasks/changes/changed_cluxels.hpp"
+#include "tasks/changes/object_states.hpp"
+#include "tasks/changes/point_cells.hpp"
+
+namespace cluxel::tasks {
+
+/// The cluxels that one region may hold, where single tiles hold fewer.
+inline constexpr std::size_t kRegionCluxels = 250'000;
+
+struct ChangeSurvey {
+  std::vector<ObjectStates> states;  ///< of each object but ground, by number
+  ChangedCluxels cluxels;
+  /// The cells that changed, and those near one of them. What rays of their own time found is known of cells in
+  /// possibleParts().
+  PointCells cells;
+  std::map<std::uint32_t, std::size_t> stable_of_object;  ///< cluxels that are there at both times, by object
+};
+
+/// Reads the map in regions of `max_cluxels`; the result does not depend on it. Memory: that of a region and of a scan,
+/// and of what changed. Cost: the points and cluxels of the map; each region reads the scans that reach it.
+ChangeSurvey surveyOf(const mapping::MapReader& map, double since_s, std::size_t max_cluxels, unsigned threads);
+
+}  // namespace cluxel::tasks

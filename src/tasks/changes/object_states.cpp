@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// How often rays hit a thing that is there is measured on the votes of all scans.
+#include "tasks/changes/object_states.hpp"
+
+#include <algorithm>
+
+namespace cluxel::tasks {
+
+ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVotes> votes, double since_s) {
+  constexpr perception::PresenceParams kParams;
+  const auto later = std::find_if(votes.begin(), votes.end(), [&](const auto& vote) { return vote.time_s >= since_s; });
+  const auto before = votes.first(static_cast<std::size_t>(later - votes.begin())),
+             after = votes.subspan(before.size());
+  const perception::Visibility thing = perception::visibilityOf(votes);
+  ObjectStates states;
+  states.object = object;
+  states.before = stateAfter(before, thing, kParams), states.after = stateAfter(after, thing, kParams);
+  states.log_odds_before = logOddsOfPresence(before, thing.share_of_hits, kParams);
+  states.log_odds_after = logOddsOfPresence(after, thing.share_of_hits, kParams);
+  return states;
+}
+
+}  // namespace cluxel::tasks

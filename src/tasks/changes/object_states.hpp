@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether an object was there before and after a time.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <span>
+
+#include "perception/visibility/presence.hpp"
+
+namespace cluxel::tasks {
+
+struct ObjectStates {
+  std::uint32_t object = 0;  ///< number in MapReader::objects()
+  perception::PresenceState before = perception::PresenceState::NotObserved,
+                            after = perception::PresenceState::NotObserved;
+  double log_odds_before = 0, log_odds_after = 0;    ///< of "there"
+  Eigen::AlignedBox3d box{};                         ///< of its cluxels [m, map]
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< of its upright box [m, map]
+};
+
+/// The states that the votes of scans before `since_s` and from it on tell. `votes` ascend by time.
+ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVotes> votes, double since_s);
+
+}  // namespace cluxel::tasks
