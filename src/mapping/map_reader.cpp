@@ -165,6 +165,10 @@ PointAnchor MapReader::anchorOf(const ContentHash& object) const {
 const std::vector<rules::SemanticObject>& MapReader::objects() const {
   return impl_->readObjects();
 }
+std::string MapReader::classOf(std::uint32_t object) const {
+  const std::optional<ObjectRecord> record = storedRecord(impl_->transaction, objectIds().at(object));
+  return record ? record->class_iri : std::string();
+}
 const std::vector<OverruledObject>& MapReader::overruled() const {
   if (!impl_->overruled) impl_->overruled = storedOverruled(impl_->transaction);
   return *impl_->overruled;

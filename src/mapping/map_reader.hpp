@@ -67,6 +67,8 @@ class MapReader {
   PointAnchor anchorOf(const ContentHash& object) const;
   /// The objects, sorted by id; cluxel numbers refer to scene().
   const std::vector<rules::SemanticObject>& objects() const;
+  /// The class of an object by its number in objects(), which need not be read for it.
+  std::string classOf(std::uint32_t object) const;
   /// Those that operator statements changed or removed, as the rules made them.
   const std::vector<OverruledObject>& overruled() const;
   /// The object as the rules made it: itself where nothing was stated.

@@ -27,17 +27,40 @@ perception::SceneCluxels board() {
   return cluxels;
 }
 
-/// Scans hit each cluxel before, and few rays of later ones passed each.
-std::size_t vanishedAfter(std::uint8_t scans) {
+/// Scans that hit each cluxel before.
+ChangedCluxels thereBefore() {
   ChangedCluxels all;
   all.cluxels = board();
-  for (std::uint32_t i = 0; i < all.cluxels.size(); ++i) {
-    all.is_told.push_back(true);
-    all.before.push_back({.is_hit = true, .hits = 9, .sparse_hits = 9});
-    all.after.push_back({.passed = scans, .passed_scans = (std::uint64_t{1} << scans) - 1});
-    all.changes.push_back(changeOf(all.before.back(), all.after.back()));
-  }
+  all.is_told.assign(all.cluxels.size(), true);
+  all.before.assign(all.cluxels.size(), {.is_hit = true, .hits = 9, .sparse_hits = 9});
+  all.after.resize(all.cluxels.size());
+  return all;
+}
+
+std::size_t vanishedIn(ChangedCluxels all) {
+  all.changes.clear();
+  for (std::uint32_t i = 0; i < all.cluxels.size(); ++i) all.changes.push_back(changeOf(all.before[i], all.after[i]));
   return clustersOf(CluxelChange::Vanished, all).size();
+}
+
+/// Few rays of later scans passed each cluxel.
+std::size_t vanishedAfter(std::uint8_t scans) {
+  ChangedCluxels all = thereBefore();
+  for (RayFindings& after : all.after) after = {.passed = scans, .passed_scans = (std::uint64_t{1} << scans) - 1};
+  return vanishedIn(all);
+}
+
+/// Several rays of later scans saw through the upper `rows` rows; the others are still hit.
+std::size_t vanishedAbove(std::size_t rows, std::uint8_t scans) {
+  constexpr std::size_t kColumns = 6;
+  ChangedCluxels all = thereBefore();
+  for (std::size_t i = 0; i < all.after.size(); ++i) {
+    if (i < all.after.size() - rows * kColumns)
+      all.after[i] = {.is_hit = true, .hits = 9};
+    else
+      all.after[i] = {.is_seen_through = true, .seen_through = scans, .through_scans = (std::uint64_t{1} << scans) - 1};
+  }
+  return vanishedIn(all);
 }
 
 TEST(ChangedCluxels, AThingThatNoLaterRayPassesIsNotGone) {
@@ -51,6 +74,23 @@ TEST(ChangedCluxels, FewRaysOfOneOrTwoScansDoNotShowThatAThingIsGone) {
 
 TEST(ChangedCluxels, FewRaysOfEachOfThreeScansShowThatAThingIsGone) {
   EXPECT_EQ(vanishedAfter(3), 1);
+}
+
+TEST(ChangedCluxels, SeveralRaysOfOneScanShowThatAWholeThingIsGone) {
+  EXPECT_EQ(vanishedAbove(5, 1), 1);
+}
+
+TEST(ChangedCluxels, ThreeScansMustAgreeThatAPartOfWhatStaysIsGone) {
+  EXPECT_EQ(vanishedAbove(3, 1), 0);
+  EXPECT_EQ(vanishedAbove(3, 2), 0);
+  EXPECT_EQ(vanishedAbove(3, 3), 1);
+}
+
+TEST(ChangedCluxels, FewRaysDoNotShowThatAPartOfWhatStaysIsGone) {
+  ChangedCluxels all = thereBefore();
+  for (std::size_t i = 0; i < all.after.size(); ++i)
+    all.after[i] = i < 12 ? RayFindings{.is_hit = true, .hits = 9} : RayFindings{.passed = 5, .passed_scans = 31};
+  EXPECT_EQ(vanishedIn(all), 0);
 }
 
 }  // namespace

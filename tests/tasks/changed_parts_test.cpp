@@ -84,6 +84,29 @@ TEST(ChangedParts, AGapInACrownIsNotGone) {
   EXPECT_EQ(partsIn(crown(kStructure)), 1U);
 }
 
+/// Copies of a group side by side.
+std::vector<PointCell> wider(const std::vector<PointCell>& cells, int copies) {
+  std::vector<PointCell> all;
+  for (int copy = 0; copy < copies; ++copy)
+    for (PointCell cell : cells) {
+      cell.place.x() += 0.7 * copy;
+      all.push_back(cell);
+    }
+  return all;
+}
+
+TEST(ChangedParts, MuchOfAThingThatRaysPartlyPassIsGoneWhenManyLooksMissIt) {
+  // Rays of its own time pass, and now and then one of the other time ends there. Four in five of its own looks hit.
+  std::vector<PointCell> cells = lampHead(kFoliage, 8);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    cells[i].own = {.hit_scans = bits(4), .through_scans = bits(5), .rays = {.ended = 10, .passed = 10}};
+    if (i % 3 == 0) cells[i].other.hit_scans = bits(1);
+  }
+  EXPECT_EQ(partsIn(wider(cells, 3)), 1U);
+  for (PointCell& cell : cells) cell.other.through_scans &= bits(2);
+  EXPECT_EQ(partsIn(wider(cells, 3)), 0U) << "two scans are too few";
+}
+
 TEST(ChangedParts, APartThatItsOwnScansMostlyMissTellsNothing) {
   std::vector<PointCell> cells = lampHead(kStructure, 8);
   for (PointCell& cell : cells) cell.own.through_scans = bits(12) & ~bits(5);

@@ -102,11 +102,11 @@ TaskAnswer runNextView(const TaskContext& context, const TaskValues& values) {
 }
 
 TaskCell objectCell(const mapping::MapReader& map, const ChangedThing& thing) {
-  return thing.object ? TaskCell(rdf::iriOfObject(map.objects()[*thing.object].id)) : TaskCell();
+  return thing.object ? TaskCell(rdf::iriOfObject(map.objectIds()[*thing.object])) : TaskCell();
 }
 
 TaskCell classCell(const mapping::MapReader& map, const ChangedThing& thing) {
-  return thing.object ? TaskCell(mapping::localName(map.objects()[*thing.object].class_iri)) : TaskCell();
+  return thing.object ? TaskCell(mapping::localName(map.classOf(*thing.object))) : TaskCell();
 }
 
 TaskRow changeRow(const mapping::MapReader& map, const SiteChange& change) {
@@ -132,11 +132,11 @@ std::string presenceLine(const ObjectStates& states) {
 }
 
 TaskRow unobservedRow(const mapping::MapReader& map, const ObjectStates& states) {
-  const rules::SemanticObject& object = map.objects()[states.object];
   const Eigen::Vector2d& at = states.centre;
-  return {{std::string("not observed"), rdf::iriOfObject(object.id), mapping::localName(object.class_iri),
-           std::string("whole"), at.x(), at.y(), TaskCell(), TaskCell()},
-          {TaskShape::Kind::Point, {at}}};
+  return {
+      {std::string("not observed"), rdf::iriOfObject(map.objectIds()[states.object]),
+       mapping::localName(map.classOf(states.object)), std::string("whole"), at.x(), at.y(), TaskCell(), TaskCell()},
+      {TaskShape::Kind::Point, {at}}};
 }
 
 TaskAnswer runChanges(const TaskContext& context, const TaskValues& values) {

@@ -14,7 +14,7 @@
 namespace cluxel::tasks {
 
 /// The cluxels that one region may hold, where single tiles hold fewer.
-inline constexpr std::size_t kRegionCluxels = 250'000;
+inline constexpr std::size_t kRegionCluxels = 100'000;
 
 struct ChangeSurvey {
   std::vector<ObjectStates> states;  ///< of each object but ground, by number

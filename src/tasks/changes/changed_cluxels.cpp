@@ -38,9 +38,9 @@ class Clustering {
  private:
   static constexpr std::size_t kMinCluxels = 5, kMany = 10;
   static constexpr double kShown = 3.5;  ///< log-odds of each cluxel of what is gone, on average
-  /// Log-odds that one scan with few rays adds at most. Its rays miss a thing together when its pose is off.
+  /// Log-odds that one scan adds at most. Its rays miss a thing together when its pose is off.
   static constexpr double kMostOfScan = 2;
-  static constexpr double kMinShare = 0.75, kMinShareOfMany = 0.5, kThin_m = 0.3;
+  static constexpr double kWhole = 0.9, kMinShare = 0.75, kMinShareOfMany = 0.5, kThin_m = 0.3;
   static constexpr perception::PresenceParams kPresence{};
 
   static std::vector<ChangeState> statesIn(CluxelChange kind, const ChangedCluxels& all) {
@@ -97,17 +97,21 @@ class Clustering {
     const ChangeGroup around = groups_.withNear(cluster);
     const double share = groups_.shareOfChanged(around);
     if (isPermeable(cluster, around)) return false;
-    if (dense >= kMinCluxels && share >= kMinShare) return true;
-    if (dense >= kMany && share >= kMinShareOfMany) return true;
-    return cluster.size() >= kMany && share >= kMinShare && !isThin(cluster) && isSureFromFewRays(cluster, around);
+    const bool scans_agree = doScansAgree(cluster, around);
+    if (share >= kWhole) return scans_agree || dense >= kMinCluxels;
+    return scans_agree &&
+           ((dense >= kMinCluxels && share >= kMinShare) || (dense >= kMany && share >= kMinShareOfMany));
   }
 
-  bool isSureFromFewRays(const ChangeGroup& cluster, const ChangeGroup& around) const {
+  /// Whether several scans show that the thing is gone, however many of its cluxels each of them passed.
+  bool doScansAgree(const ChangeGroup& cluster, const ChangeGroup& around) const {
     const double each = std::log((1 - sparseHits(cluster, around)) / (1 - kPresence.hit_when_gone));
     std::array<double, kScanBits> of_scan{};
-    for (const std::uint32_t cluxel : cluster)
-      for (std::uint64_t rest = findingsAt(cluxel, false)->passed_scans; rest != 0; rest &= rest - 1)
+    for (const std::uint32_t cluxel : cluster) {
+      const RayFindings& gone = *findingsAt(cluxel, false);
+      for (std::uint64_t rest = gone.passed_scans | gone.through_scans; rest != 0; rest &= rest - 1)
         of_scan[static_cast<std::size_t>(std::countr_zero(rest))] += std::min(each, 0.0);
+    }
     double log_odds = 0;
     for (const double sum : of_scan) log_odds += std::max(sum, -kMostOfScan);
     return log_odds <= -kPresence.decided;
@@ -124,7 +128,7 @@ class Clustering {
 void RayFindings::add(const perception::PlaceVerdict& found, std::uint64_t scan_bit) {
   if (found.verdict == RayVerdict::Hit) is_hit = true, count(hits);
   if (found.verdict == RayVerdict::Hit && found.is_sparse) count(sparse_hits);
-  if (found.verdict == RayVerdict::SeenThrough) is_seen_through = true, count(seen_through);
+  if (found.verdict == RayVerdict::SeenThrough) is_seen_through = true, count(seen_through), through_scans |= scan_bit;
   if (found.verdict == RayVerdict::FewPassed) count(passed), passed_scans |= scan_bit;
 }
 

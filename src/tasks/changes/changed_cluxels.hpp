@@ -22,8 +22,9 @@ struct RayFindings {
   std::uint8_t hits = 0, seen_through = 0;  ///< scans that hit the place, scans of which several rays saw through it
   /// Scans with so few rays near the place that they may have missed a thin thing: those that hit, those that passed.
   std::uint8_t sparse_hits = 0, passed = 0;
-  /// Those that passed, as bits. Scans that share a bit count once.
-  std::uint64_t passed_scans = 0;
+  /// Those of which few rays passed, and those that saw through with several, as bits. Scans that share a bit count
+  /// once.
+  std::uint64_t passed_scans = 0, through_scans = 0;
 
   /// Rays passed the place, and none ended there.
   bool isEmpty() const { return !is_hit && (is_seen_through || passed > 0); }
@@ -52,16 +53,18 @@ struct ChangedCluxels {
 };
 
 /// Connected clusters of five or more cluxels that changed alike, each ascending, in the order of their first cluxel. A
-/// cluster is dropped when the rays may have missed a thing that is still there. First, each scan that passed a cluxel
-/// adds log((1 - p) / 0.95), where p is the share of hits in and around the cluster while the thing was there: on
-/// average of its cluxels the sum must be -3.5 or less, so that a crown needs more scans than a car. Then two
-/// conditions keep it:
-/// - Enough of the decided cluxels in and around it changed like it, and enough of its cluxels were seen through by
-///   several rays of one scan: 75 % and 5 cluxels, or 50 % and 10 cluxels.
-/// - It has 10 or more cluxels, is at least 0.3 m wide, 75 % changed like it, and enough scans with few rays passed it.
-///   Each such scan adds log((1 - p) / 0.95) for each cluxel that it passed, where p is the share of hits among such
-///   scans in and around the cluster while the thing was there, but -2 at least: where the pose of a scan is off, its
-///   rays miss all of a thing together. The sum must be -6 or less, so that three scans are needed.
+/// cluster is dropped when the rays may have missed a thing that is still there:
+/// - Each scan that passed a cluxel adds log((1 - p) / 0.95), where p is the share of hits in and around the cluster
+///   while the thing was there: on average of its cluxels the sum must be -3.5 or less, so that a crown needs more
+///   scans than a car.
+/// - A cluster is gone as a whole when 90 % of the decided cluxels in and around it changed like it. Then either five
+///   of its cluxels were seen through by several rays of one scan, or scans agree: each that passed it adds
+///   log((1 - p) / 0.95) for each cluxel that it passed, where p is the share of hits among scans with few rays in and
+///   around the cluster while the thing was there, but -2 at least, because where the pose of a scan is off, its rays
+///   miss all of a thing together. The sum must be -6 or less, so that three scans are needed.
+/// - A part of something that stays needs both: scans agree, and several rays of one scan saw through five of its
+///   cluxels where 75 % changed like it, or ten where 50 % did. What scans with poor poses miss is mostly an edge of
+///   something that stays.
 std::vector<ChangeGroup> clustersOf(CluxelChange kind, const ChangedCluxels& all);
 
 }  // namespace cluxel::tasks

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+
+#include "perception/visibility/presence.hpp"
 
 namespace cluxel::tasks {
 
@@ -41,6 +44,7 @@ class Grouping {
  private:
   static constexpr std::size_t kSolidCells = 12, kWholeCells = 20, kOwnScans = 4, kPassing = 3, kPassingSolid = 4;
   static constexpr std::size_t kPassedCells = 3;  ///< of the group, by one scan
+  static constexpr double kEvident = 400, kEvidentOfCell = 3, kMostHitShare = 0.98;
   static constexpr double kOwnHits = 0.6, kOwnEnded = 0.7, kSolidRest = 0.15, kWholeRest = 0.02, kWholeAlike = 0.85;
 
   static std::vector<ChangeState> statesOf(const std::vector<PointCell>& cells) {
@@ -85,11 +89,22 @@ class Grouping {
            found.other_hits <= kSolidRest * found.other_looks;
   }
 
+  /// Whether the looks of the other time would hardly have missed the thing, so many are they.
+  static bool isEvident(const GroupEvidence& found, std::size_t cells) {
+    constexpr perception::PresenceParams kPresence;
+    const double share = std::min(found.own_hits / found.own_looks, kMostHitShare);
+    const double log_odds =
+        found.other_hits * std::log(share / kPresence.hit_when_gone) +
+        (found.other_looks - found.other_hits) * std::log((1 - share) / (1 - kPresence.hit_when_gone));
+    return log_odds <= -kEvident && log_odds <= -kEvidentOfCell * static_cast<double>(cells);
+  }
+
   bool isSure(const ChangeGroup& group) const {
     const GroupEvidence found = evidenceOf(group);
     if (!isPossible(found) || found.own_hits < kOwnHits * found.own_looks) return false;
     const bool is_solid = found.own_ended >= kOwnEnded * found.own_rays && 2 * found.foliage < group.size();
     if (is_solid && found.passing_scans >= kPassingSolid) return true;
+    if (isEvident(found, group.size())) return true;
     return group.size() >= kWholeCells && found.other_hits <= kWholeRest * found.other_looks &&
            groups_.shareOfChanged(groups_.withNear(group)) >= kWholeAlike;
   }

@@ -67,7 +67,7 @@ bool areOfOneSize(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 }
 
 std::string classOf(const mapping::MapReader& map, const ChangedThing& thing) {
-  return thing.object ? map.objects()[*thing.object].class_iri : std::string();
+  return thing.object ? map.classOf(*thing.object) : std::string();
 }
 
 /// Pairs what vanished with what appeared, nearest first.
@@ -77,8 +77,8 @@ std::vector<SiteChange> withMoves(const mapping::MapReader& map, const ChangedTh
   for (std::size_t i = 0; i < gone.size(); ++i)
     for (std::size_t j = 0; j < come.size(); ++j) {
       const double distance = (gone[i].box.center() - come[j].box.center()).norm();
-      const bool same_class = classOf(map, gone[i]) == classOf(map, come[j]);
-      if (same_class && distance <= kMaxMove_m && areOfOneSize(gone[i].box.sizes(), come[j].box.sizes()))
+      if (distance <= kMaxMove_m && areOfOneSize(gone[i].box.sizes(), come[j].box.sizes()) &&
+          classOf(map, gone[i]) == classOf(map, come[j]))
         pairs.emplace_back(distance, i, j);
     }
   std::sort(pairs.begin(), pairs.end());
@@ -107,8 +107,9 @@ ChangeJson boxJson(const Eigen::AlignedBox3d& box) {
 }
 
 ChangeJson objectJson(const mapping::MapReader& map, std::uint32_t number) {
-  const rules::SemanticObject& object = map.objects()[number];
-  return {{"object", rdf::iriOfObject(object.id)}, {"number", number}, {"class", mapping::localName(object.class_iri)}};
+  return {{"object", rdf::iriOfObject(map.objectIds()[number])},
+          {"number", number},
+          {"class", mapping::localName(map.classOf(number))}};
 }
 
 ChangeJson thingJson(const mapping::MapReader& map, const ChangedThing& thing) {

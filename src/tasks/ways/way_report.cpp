@@ -76,9 +76,8 @@ std::vector<Eigen::Vector2d> cornersOf(const GridFrame& frame, const std::vector
 
 std::string thingName(const mapping::MapReader& map, std::uint32_t thing) {
   if (thing == kUnnamedThing) return "something unnamed";
-  const rules::SemanticObject& object = map.objects()[thing];
   constexpr std::size_t digits = 12;
-  return mapping::localName(object.class_iri) + " object/" + object.id.hex().substr(0, digits);
+  return mapping::localName(map.classOf(thing)) + " object/" + map.objectIds()[thing].hex().substr(0, digits);
 }
 
 std::string barrierText(const mapping::MapReader& map, const Barrier& barrier) {
