@@ -58,6 +58,7 @@ void printJsonReport(const fs::path& map, const ChangeReport& report, bool dry_r
                  {"scans_moved", report.scans_moved},
                  {"tiles_touched", report.tiles_touched},
                  {"tiles_changed", report.tiles_changed},
+                 {"tiles_decided", report.tiles_decided},
                  {"local_commits", report.local_commits},
                  {"scans", report.scans},
                  {"tiles", report.tiles},

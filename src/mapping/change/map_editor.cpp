@@ -177,6 +177,7 @@ void MapEditor::report(const rdf::ReadTransaction& transaction, const SemanticUp
   report_.tiles_changed = changed_.size();
   report_.statements = update.statements;
   report_.local_commits += update.is_local ? 1 : 0;
+  report_.tiles_decided += update.is_local ? update.tiles_decided : report_.tiles;
   if (const std::string note = summaryOf(update.statements); !note.empty()) sink_.note(note);
 }
 

@@ -34,6 +34,7 @@ struct ChangeReport {
   std::size_t scans_added = 0, scans_already_there = 0, scans_removed = 0, scans_moved = 0;
   std::size_t tiles_touched = 0;  ///< a scan's points in them changed
   std::size_t tiles_changed = 0;  ///< the output of some stage changed
+  std::size_t tiles_decided = 0;  ///< in which the rules ran again; summed over the commits
   std::size_t scans = 0, tiles = 0, cluxels = 0, primitives = 0, object_count = 0;  ///< of the map afterwards
   /// The objects that differ; of a merge all objects of all maps, and all of the result.
   std::vector<ObjectMembers> before, after;

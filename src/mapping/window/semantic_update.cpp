@@ -184,6 +184,7 @@ class LocalUpdate {
                        const std::vector<std::uint32_t>& former, WindowStatements& statements) {
     SemanticUpdate update;
     update.is_local = true;
+    update.tiles_decided = window.tiles.size();
     FormerObjects members(transaction_, stages_, changes_);
     for (const auto& [tile, layer] : window.layers)
       members.add(layer, [&](const ContentHash& object) { return decision.replaced.contains(object); });
