@@ -74,12 +74,12 @@ void storeMargins(rdf::WriteTransaction& transaction, const rules::TileMargins& 
 }
 
 void updateMargins(rdf::WriteTransaction& transaction, const rules::TileMargins& margins, const TileSet& tiles,
-                   const TileSet& changed) {
+                   const TileSet& decided) {
   for (const TileKey& tile : tiles) {
     const std::string key = tables::keyOf(tile);
     const auto found = margins.find(tile);
     std::vector<ThresholdMargin> now = found == margins.end() ? std::vector<ThresholdMargin>{} : found->second;
-    if (const auto stored = transaction.block(tables::kMargins, key); stored && !changed.contains(tile))
+    if (const auto stored = transaction.block(tables::kMargins, key); stored && !decided.contains(tile))
       now = narrowed(marginsFrom(*stored), now);
     if (now.empty())
       transaction.eraseBlock(tables::kMargins, key);

@@ -13,11 +13,11 @@ namespace cluxel::mapping {
 /// Makes the map hold the margins of a run over all of it.
 void storeMargins(rdf::WriteTransaction& transaction, const rules::TileMargins& margins, const rules::RuleSet& rules);
 
-/// Takes those of a run over some `tiles`. In tiles that `changed` everything was decided anew. In the others some
+/// Takes those of a run over some `tiles`. In those that are `decided` everything was decided anew. In the others some
 /// things were decided in earlier runs, whose margins stay: so they may be narrower than those of a build, which costs
 /// time and changes no decision.
 void updateMargins(rdf::WriteTransaction& transaction, const rules::TileMargins& margins,
-                   const perception::TileSet& tiles, const perception::TileSet& changed);
+                   const perception::TileSet& tiles, const perception::TileSet& decided);
 
 /// The tiles in which other rules may decide otherwise than those of the map. Absent when that is not known: the rules
 /// differ by more than thresholds of which margins are stored. Cost: about 20 us a tile.

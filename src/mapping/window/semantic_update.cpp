@@ -60,6 +60,19 @@ std::vector<ContentHash> statementIds(const rdf::ReadTransaction& transaction) {
   return ids;
 }
 
+/// The tiles of a window in which everything was decided anew.
+TileSet tilesDecidedWhole(const MapWindow& window, const WindowDecision& decision) {
+  TileSet tiles;
+  for (const TileKey& tile : window.tiles) {
+    const auto here = window.primitive_of_component.find(tile);
+    if (here == window.primitive_of_component.end() ||
+        std::all_of(here->second.begin(), here->second.end(),
+                    [&](perception::PrimitiveIndex primitive) { return decision.is_decided[primitive] != 0; }))
+      tiles.insert(tile);
+  }
+  return tiles;
+}
+
 class LocalUpdate {
  public:
   LocalUpdate(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
@@ -115,7 +128,7 @@ class LocalUpdate {
       const std::vector<std::uint32_t> former = formerNumbers(*window, stages_, changes_);
       if (changesWideObjects(*window, *decision, former)) return std::nullopt;
       SemanticUpdate update = write(*window, change, *decision, former, statements);
-      updateMargins(transaction_, margins.found(), window->tiles, changes_.tiles);
+      updateMargins(transaction_, margins.found(), window->tiles, tilesDecidedWhole(*window, *decision));
       return update;
     }
     return std::nullopt;

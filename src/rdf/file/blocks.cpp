@@ -106,7 +106,7 @@ void WriteTransaction::putBlock(std::string_view table, std::string_view key, st
   std::memcpy(stored.mv_data, &head, sizeof head);
   if (!bytes.empty()) std::memcpy(static_cast<char*>(stored.mv_data) + sizeof head, bytes.data(), bytes.size());
   ++impl_->generation;
-  impl_->directories->noteBlock();
+  impl_->directories->noteBlock(bytes.size());
 }
 
 bool WriteTransaction::eraseBlock(std::string_view table, std::string_view key) {
@@ -119,7 +119,7 @@ bool WriteTransaction::eraseBlock(std::string_view table, std::string_view key) 
   impl_->block_keys.noteRemoved(*impl_, table, full);
   impl_->check(mdb_del(impl_->live(), impl_->table(Table::Blocks), &stored_key, nullptr), "erase a block");
   ++impl_->generation;
-  impl_->directories->noteBlock();
+  impl_->directories->noteBlock(0);
   return true;
 }
 

@@ -23,7 +23,7 @@ class DirectoryUpdate {
     if (before_.pageCount() < 2 || committed_.base == nullptr) return std::nullopt;
     for (const Key128 key : changed) {
       if (next_ == before_.pageCount()) break;
-      if (key < unchanged_until_) continue;
+      if (last_of_right_ && key <= *last_of_right_) continue;
       if (!listAround(key)) return std::nullopt;
     }
     keepUntil(before_.pageCount());
@@ -106,7 +106,8 @@ class DirectoryUpdate {
     if (!place || *place < next_) return false;
     add(right, firstKey(right));
     next_ = *place + 1;
-    if (next_ < before_.pageCount()) unchanged_until_ = before_.lower(next_);
+    // Keys between it and the first key of the next page may have gone to either.
+    last_of_right_ = toNumber(before_.page(*place).back());
     return true;
   }
 
@@ -115,8 +116,8 @@ class DirectoryUpdate {
   MDB_cursor* cursor_;
   std::vector<const std::uint8_t*> pages_;
   std::vector<Key128> lower_;
-  std::size_t next_ = 0;        ///< the first page of before that is neither kept nor replaced yet
-  Key128 unchanged_until_ = 0;  ///< changed keys below it are done with
+  std::size_t next_ = 0;                 ///< the first page of before that is neither kept nor replaced yet
+  std::optional<Key128> last_of_right_;  ///< of the committed page that ended the last run: keys up to it are done with
 };
 
 }  // namespace

@@ -69,10 +69,14 @@ void IndexDirectories::noteKeys(Table index, const Transaction& transaction, std
   entry.dirty_pages = updated->dirty_pages;
 }
 
-void IndexDirectories::noteRewritten(Table index, std::uint64_t keys) {
+void IndexDirectories::noteDrafted(Table index) {
   Entry& entry = entries_[numberOf(index)];
   entry.directory = nullptr;
   entry.is_committed = false;
+}
+
+void IndexDirectories::noteRewritten(Table index, std::uint64_t keys) {
+  noteDrafted(index);
   other_pages_ += keys;  // at most one page a key
 }
 

@@ -31,8 +31,9 @@ class IndexDirectories {
                 std::span<const Key128> removed);
   /// To be called after an index was written anew, or moved to or from memory; `keys` in its table are new.
   void noteRewritten(Table index, std::uint64_t keys);
-  void noteDrafted(Table index) { noteRewritten(index, 0); }
-  void noteBlock() { other_pages_ += 8; }
+  /// Several threads may call it for different indexes.
+  void noteDrafted(Table index);
+  void noteBlock(std::size_t bytes) { other_pages_ += 8 + bytes / 2048; }
   void noteTerms(std::uint64_t count) { other_pages_ += 2 * count; }
 
  private:
