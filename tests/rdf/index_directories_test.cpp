@@ -83,6 +83,26 @@ TEST_F(DirectoriesOfIndexes, FollowChangesOfSeveralTransactions) {
   }
 }
 
+/// LMDB keeps the bound of a page whose first keys were removed, so that they return to it.
+TEST_F(DirectoriesOfIndexes, FollowFirstKeysOfPagesThatReturn) {
+  WriteTransaction transaction = environment_->write();
+  const ReadTransaction::Impl& state = transaction.impl();
+  const auto pages = state.directories->of(Table::Spog, state);
+  for (std::size_t page = 4; page + 1 < pages->pageCount(); page += 7) {
+    std::vector<QuadIds> first;
+    for (const QuadKey& key : pages->page(page).first(3)) first.push_back(toQuad(key, QuadOrder::Spog));
+    const QuadIds nearby = toQuad(pages->page(page - 2).front(), QuadOrder::Spog);
+    QuadWriter writer(transaction);
+    for (const QuadIds& quad : first) writer.remove(quad);
+    writer.flush();
+    writer.remove(nearby);  // two pages before, with an unchanged page between
+    for (const QuadIds& quad : first) writer.add(quad);
+    writer.flush();
+    ASSERT_NO_FATAL_FAILURE(expectAsListedAnew(transaction)) << page;
+    for (const QuadIds& quad : first) ASSERT_TRUE(QuadReader(transaction).contains(quad)) << page;
+  }
+}
+
 TEST_F(DirectoriesOfIndexes, FollowRemovalOfNearlyEverything) {
   WriteTransaction transaction = environment_->write();
   QuadWriter writer(transaction);
