@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/parallel.hpp"
+#include "perception/stage_inputs.hpp"
 #include "perception/stage_tiles.hpp"
 
 namespace cluxel::perception {
@@ -25,9 +26,10 @@ class Run {
     toGround(std::move(segments));
     update(
         Stage::Features, out_.features, [this](const StageTiles& changed) { return nearFeatures(changed); },
-        [this](const TileKey& key) { return featuresOf(key); });
+        [this](const TileKey& key) { return inputs_.featuresOf(key); });
   }
   void toContacts(TileSegments segments, const TileLabeller& labeller, const SceneParams& params) {
+    widths_ = borderWidths(params_, params.labelling);
     toGround(std::move(segments));
     label(labeller, params.labelling);          // features to primitive labels, by the CRF (paper 3.1)
     summarise();                                // what the scene reads of points and cluxels
@@ -47,14 +49,18 @@ class Run {
   void thin(TileSegments segments) {
     TileSet grown;
     for (const auto& [key, parts] : segments) {
-      if (parts.empty()) emptied_.insert(key);
+      if (parts.empty()) tiles_.emptied.insert(key);
       if (!options_.anew.contains(key)) grown.insert(key);
     }
-    loadFor(grown);  // before the points change on which other outputs rest
+    inputs_.readOwn(grown);  // before the points change on which other outputs rest
     forget(options_.anew);
-    const TileSet own = options_.donor != nullptr ? options_.store->tiles() : TileSet();
-    if (options_.donor != nullptr) lent_ = without(options_.donor->tiles(), own);
-    differing_.fill(own);
+    TileSet of_both;
+    if (options_.donor != nullptr) {
+      const TileSet own = options_.store->tiles();
+      of_both = commonOf(own, options_.donor->tiles());
+      tiles_.lent = without(options_.donor->tiles(), own);
+      differing_.fill(without(own, options_.donor->tiles()));
+    }
     const TileSet with_segments = keysOf(segments), present = keysOf(out_.points);
     update(
         Stage::Points, out_.points, [&](const StageTiles&) { return with_segments; },
@@ -65,12 +71,13 @@ class Run {
           if (!grown.contains(key) || !present.contains(key)) return fresh;
           return perception::thin(key, std::array<const TilePoints*, 2>{&out_.points.at(key), &fresh}, params_.thin);
         });
-    tiles_ = options_.store != nullptr ? options_.store->tiles() : keysOf(out_.points);
-    TileSet& changed = changed_[Stage::Points];
-    if (options_.compute_all) changed = unionOf(std::move(changed), tiles_);
-    std::set_intersection(changed.begin(), changed.end(), options_.anew.begin(), options_.anew.end(),
-                          std::inserter(forgotten_, forgotten_.end()));
-    loadAround(without(changed, lent_), own);
+    tiles_.all = options_.store != nullptr ? options_.store->tiles() : keysOf(out_.points);
+    if (options_.compute_all)
+      for (const TileKey& key : tiles_.all) changed_.note(Stage::Points, key, kOtherEverywhere);
+    tiles_.forgotten = commonOf(changed_.of(Stage::Points), options_.anew);
+    differing_.fill(without(of_both, tiles_.forgotten));  // not computed, so not compared either
+    inputs_.read(around(
+        around(without(changed_.of(Stage::Points), tiles_.lent))));  // most of what is needed, in one pass over scans
   }
 
   /// Stored outputs of these tiles rest on points that are not there any more: stages do not read them.
@@ -84,31 +91,29 @@ class Run {
 
   void cluster() {
     update(
-        Stage::Cluxels, out_.cluxels, [this](const StageTiles& changed) { return around(changed[Stage::Points]); },
+        Stage::Cluxels, out_.cluxels,
+        [this](const StageTiles& changed) { return here(changed.readersOf(Stage::Points)); },
         [this](const TileKey& key) { return clusterTile(ringIn(out_.points, key), params_.clustering); });
   }
 
   void findGround() {
     update(
-        Stage::Ground, out_.ground, [this](const StageTiles& changed) { return around(changed[Stage::Cluxels]); },
+        Stage::Ground, out_.ground,
+        [this](const StageTiles& changed) { return around(changed.readByAll(Stage::Cluxels)); },
         [this](const TileKey& key) { return groundOf(ringIn(out_.cluxels, key), params_.ground); });
   }
 
   TileSet nearFeatures(const StageTiles& changed) const {
-    return around(unionOf(changed[Stage::Cluxels], changed[Stage::Ground]));
-  }
-
-  /// Cluxels and their 2-ring to HOR and other features (paper 3.1).
-  FeatureTile featuresOf(const TileKey& key) const {
-    return computeFeatures(ringIn(out_.cluxels, key), ringIn(out_.ground, key), params_.features);
+    return here(unionOf(changed.readersOf(Stage::Cluxels), changed.readersOf(Stage::Ground)));
   }
 
   /// Features and labels, in waves along x: rows of features take more memory than all else, and only the labels of
   /// the tile and of its ring read them.
   void label(const TileLabeller& labeller, const LabellingParams& params) {
-    const TileSet lent = without(lent_, nearFeatures(differing_));
+    const TileSet lent = without(tiles_.lent, nearFeatures(differing_));
     const std::vector<TileKey> features = completed(without(nearFeatures(changed_), lent));
     const std::vector<TileKey> candidates = completed(around(unionOf({features.begin(), features.end()}, lent)));
+    inputs_.read(around(around({features.begin(), features.end()})));  // most of what is needed, at once
     eraseEmptied(Stage::Features, out_.features), eraseEmptied(Stage::Labels, out_.labels);
     take(Stage::Features, lent);
     std::size_t done = 0, seen = 0;
@@ -116,7 +121,7 @@ class Run {
       const std::size_t first = done;
       while (done < features.size() && (done < first + kAhead || features[done].x == features[done - 1].x)) ++done;
       compute(Stage::Features, out_.features, features, first, done,
-              [this](const TileKey& key) { return featuresOf(key); });
+              [this](const TileKey& key) { return inputs_.featuresOf(key); });
       // Tiles up to this column have their features.
       const std::int32_t column =
           done < features.size() ? features[done].x - 1 : std::numeric_limits<std::int32_t>::max();
@@ -124,38 +129,42 @@ class Run {
       TileSet taken;
       for (; seen < candidates.size() && candidates[seen].x < column; ++seen) {
         const TileKey& key = candidates[seen];
-        if (lent_.contains(key) && !readsFeatures(key, differing_))
+        if (tiles_.lent.contains(key) && !differing_.readersOf(Stage::Features).contains(key))
           taken.insert(key);
-        else if (options_.compute_all || forgotten_.contains(key) || readsFeatures(key, changed_))
+        else if (options_.compute_all || tiles_.forgotten.contains(key) ||
+                 changed_.readersOf(Stage::Features).contains(key))
           dirty.push_back(key);
       }
       take(Stage::Labels, taken);
       compute(Stage::Labels, out_.labels, dirty, 0, dirty.size(),
               [&](const TileKey& key) { return labeller.label(ringIn(out_.features, key), params); });
-      if (options_.store != nullptr) dropRowsBefore(column - 1);
+      if (options_.store != nullptr) inputs_.dropRowsBefore(column - 1);
     }
-    if (options_.store != nullptr) dropVolumesOfAll();
+    if (options_.store != nullptr) inputs_.dropVolumes();
   }
 
   void summarise() {
     update(
         Stage::Summaries, out_.summaries,
-        [](const StageTiles& changed) { return unionOf(changed[Stage::Points], changed[Stage::Cluxels]); },
+        [](const StageTiles& changed) { return unionOf(changed.of(Stage::Points), changed.of(Stage::Cluxels)); },
         [this](const TileKey& key) { return summaryOf(out_.points.at(key), out_.cluxels.at(key)); });
   }
 
   void findEven() {
     update(
         Stage::Even, out_.even,
-        [this](const StageTiles& changed) { return around(unionOf(changed[Stage::Points], changed[Stage::Ground])); },
+        [this](const StageTiles& changed) {
+          return here(unionOf(unionOf(changed.readersOf(Stage::Points), changed.of(Stage::Ground)),
+                              changed.readersOf(Stage::Ground)));
+        },
         [this](const TileKey& key) { return evenGroundOf(ringIn(out_.points, key), ringIn(out_.ground, key)); });
   }
 
   void joinComponents(const ComponentParams& params) {
     const auto near = [this](const StageTiles& changed) {
-      const TileSet own = unionOf(unionOf(changed[Stage::Points], changed[Stage::Cluxels]),
-                                  unionOf(changed[Stage::Features], changed[Stage::Labels]));
-      return unionOf(own, around(changed[Stage::Ground]));
+      const TileSet own = unionOf(unionOf(changed.of(Stage::Points), changed.of(Stage::Cluxels)),
+                                  unionOf(changed.of(Stage::Features), changed.of(Stage::Labels)));
+      return unionOf(own, here(changed.readersOf(Stage::Ground)));
     };
     update(Stage::Components, out_.components, near, [&](const TileKey& key) {
       return componentsOf(out_.points.at(key), out_.cluxels.at(key), out_.features.at(key), out_.labels.at(key),
@@ -165,7 +174,8 @@ class Run {
 
   void findContacts(const SceneParams& params) {
     const auto near = [this](const StageTiles& changed) {
-      return unionOf(changed[Stage::Features], around(unionOf(changed[Stage::Components], changed[Stage::Cluxels])));
+      return unionOf(changed.of(Stage::Features),
+                     here(unionOf(changed.readersOf(Stage::Components), changed.readersOf(Stage::Cluxels))));
     };
     update(Stage::Contacts, out_.contacts, near, [&](const TileKey& key) {
       return contactsOf(ringIn(out_.components, key), ringIn(out_.cluxels, key), out_.features.at(key),
@@ -173,79 +183,25 @@ class Run {
     });
   }
 
-  TileSet around(const TileSet& changed) const { return withRing(changed, tiles_); }
-
-  /// Reads what the stages after the points may read: a change of points reaches labels up to four tiles away, and
-  /// contacts five. Labels read rows of the fifth, which are computed from volumes of the sixth, and these from points
-  /// of the seventh.
-  /// Of the donor's tiles only those are computed that are near others.
-  void loadAround(const TileSet& changed, const TileSet& own) {
-    const TileSet near_own = aroundFar(own), near_lent = aroundFar(lent_);
-    TileSet tiles = aroundFar(changed);
-    std::set_intersection(near_own.begin(), near_own.end(), near_lent.begin(), near_lent.end(),
-                          std::inserter(tiles, tiles.end()));
-    loadFor(without(without(tiles, forgotten_), lent_));
-    if (options_.donor == nullptr) return;
-    std::erase_if(tiles, [this](const TileKey& key) { return !lent_.contains(key); });
-    options_.donor->load(tiles, out_);
-  }
-
-  TileSet aroundFar(TileSet tiles) const {
-    for (int ring = 0; ring < 7 && !tiles.empty(); ++ring) tiles = around(tiles);
-    return tiles;
-  }
-
-  void loadFor(const TileSet& tiles) {
-    if (options_.store != nullptr && !options_.compute_all) options_.store->load(tiles, out_);
-  }
-
-  /// What is not stored is computed again before a stage reads it.
-  template <typename Tile>
-  void prepare(const std::map<TileKey, Tile>& /*stage*/, const TileSet& /*keys*/) {}
-  void prepare(const std::map<TileKey, FeatureTile>& /*stage*/, const TileSet& keys) { addVolumesOf(around(keys)); }
-  void prepare(const std::map<TileKey, LabelTile>& /*stage*/, const TileSet& keys) { addRowsOf(around(keys)); }
-
-  void addVolumesOf(const TileSet& keys) {
-    std::vector<CluxelTile*> without;
-    for (const TileKey& key : keys)
-      if (CluxelTile& tile = out_.cluxels.at(key); !tile.hasVolumes()) without.push_back(&tile);
-    parallelFor(without.size(), options_.threads, [&](std::size_t i) {
-      addVolumes(ringIn(out_.points, without[i]->key), params_.clustering, *without[i]);
-    });
-  }
-
-  void addRowsOf(const TileSet& keys) {
-    TileSet without;
-    for (const TileKey& key : keys)
-      if (!out_.features.at(key).hasRows()) without.insert(key);
-    addVolumesOf(around(without));
-    const std::vector<TileKey> each(without.begin(), without.end());
-    parallelFor(each.size(), options_.threads, [&](std::size_t i) { out_.features.at(each[i]) = featuresOf(each[i]); });
-  }
-
-  /// They are not stored; later runs compute them again where they need them.
-  void dropRowsBefore(std::int32_t column) {
-    for (auto& [key, tile] : out_.features)
-      if (key.x < column) tile.dropRows();
-  }
-  void dropVolumesOfAll() {
-    for (auto& [key, tile] : out_.cluxels) dropVolumes(tile);
-  }
+  TileSet around(const TileSet& changed) const { return tiles_.around(changed); }
+  /// Those with points.
+  TileSet here(const TileSet& tiles) const { return commonOf(tiles, tiles_.all); }
 
   /// The tiles that a stage computes when its inputs changed in `dirty`, ascending.
   std::vector<TileKey> completed(TileSet dirty) const {
-    const TileSet& points = changed_[Stage::Points];
+    const TileSet& points = changed_.of(Stage::Points);
     if (options_.compute_all) dirty.insert(points.begin(), points.end());
-    dirty.insert(forgotten_.begin(), forgotten_.end());
+    dirty.insert(tiles_.forgotten.begin(), tiles_.forgotten.end());
     std::vector<TileKey> keys;
-    std::set_difference(dirty.begin(), dirty.end(), emptied_.begin(), emptied_.end(), std::back_inserter(keys));
+    std::set_difference(dirty.begin(), dirty.end(), tiles_.emptied.begin(), tiles_.emptied.end(),
+                        std::back_inserter(keys));
     return keys;
   }
 
   /// Brings one stage up to date. `near`: the tiles that read an output that is among the changed ones.
   template <typename Tile, typename Near, typename Compute>
   void update(Stage stage, std::map<TileKey, Tile>& tiles, const Near& near, const Compute& compute_tile) {
-    const TileSet lent = without(lent_, near(differing_));
+    const TileSet lent = without(tiles_.lent, near(differing_));
     const std::vector<TileKey> keys = completed(without(near(changed_), lent));
     eraseEmptied(stage, tiles);
     take(stage, lent);
@@ -255,12 +211,18 @@ class Run {
   /// Takes outputs of the donor.
   void take(Stage stage, const TileSet& keys) {
     for (const TileKey& key : keys)
-      if (options_.store->store(stage, key, options_.donor->bytes(stage, key))) note(stage, key);
+      note(stage, key, options_.store->store(stage, key, options_.donor->bytes(stage, key)));
   }
 
-  void note(Stage stage, const TileKey& changed) {
-    changed_[stage].insert(changed);
-    all_changed_.insert(changed);
+  void note(Stage stage, const TileKey& key, const OutputChange& change) {
+    changed_.note(stage, key, change);
+    if (change.is_other) all_changed_.insert(key);
+  }
+
+  /// A tile that the donor has, too, may have another output there.
+  void compareWithDonor(Stage stage, const TileKey& key, std::string_view stored) {
+    if (options_.donor != nullptr && options_.donor->tiles().contains(key))
+      differing_.note(stage, key, changeOf(stage, options_.donor->bytes(stage, key), stored));
   }
 
   /// Computes the keys from `first` to `last` of those that the stage has to compute.
@@ -269,7 +231,7 @@ class Run {
                std::size_t last, const Compute& compute_tile) {
     const double start_s = processorSeconds();
     const auto wanted = keys.subspan(first, last - first);
-    prepare(tiles, {wanted.begin(), wanted.end()});
+    inputs_.readFor(tiles, {wanted.begin(), wanted.end()});
     computeEach(stage, tiles, wanted, compute_tile, [&](std::size_t done) {
       if (options_.observer != nullptr) options_.observer->progress(stage, first + done, keys.size());
     });
@@ -278,9 +240,9 @@ class Run {
 
   template <typename Tile>
   void eraseEmptied(Stage stage, std::map<TileKey, Tile>& tiles) {
-    for (const TileKey& key : emptied_) {
+    for (const TileKey& key : tiles_.emptied) {
       tiles.erase(key);
-      note(stage, key);
+      note(stage, key, kOtherEverywhere);
       if (options_.store != nullptr) options_.store->erase(stage, key);
     }
   }
@@ -295,15 +257,26 @@ class Run {
     const auto take = [&](std::size_t i) {
       const std::string stored = std::move(bytes[i % kAhead]);  // and gives the memory back
       tiles.at(keys[i]) = std::move(outputs[i % kAhead]);
-      if (options_.store == nullptr || options_.store->store(stage, keys[i], stored)) note(stage, keys[i]);
-      if (lent_.contains(keys[i]) && options_.donor->bytes(stage, keys[i]) != stored) differing_[stage].insert(keys[i]);
+      note(stage, keys[i],
+           options_.store == nullptr ? kOtherEverywhere : options_.store->store(stage, keys[i], stored));
+      compareWithDonor(stage, keys[i], stored);
       done(i + 1);
     };
     const auto work = [&](std::size_t i) {
       outputs[i % kAhead] = compute(keys[i]);
-      if (options_.store != nullptr) bytes[i % kAhead] = toBytes(outputs[i % kAhead]);
+      if (options_.store != nullptr) bytes[i % kAhead] = blockOf(outputs[i % kAhead]);
     };
     parallelInOrder(keys.size(), options_.threads, kAhead, work, take);
+  }
+
+  template <typename Tile>
+  std::string blockOf(const Tile& tile) const {
+    if constexpr (std::is_same_v<Tile, GroundTile>)
+      return withBorders(bordersOf(tile, out_.cluxels.at(tile.key), widths_), toBytes(tile));
+    else if constexpr (requires { bordersOf(tile, widths_); })
+      return withBorders(bordersOf(tile, widths_), toBytes(tile));
+    else
+      return toBytes(tile);
   }
 
   static constexpr std::size_t kAhead = 32;  ///< tiles whose outputs may wait for the store
@@ -311,12 +284,11 @@ class Run {
   const PerceptionParams& params_;
   TileOutputs& out_;
   const RunOptions& options_;
-  TileSet tiles_;
-  TileSet emptied_;    ///< tiles that lost their points
-  TileSet forgotten_;  ///< tiles whose stored outputs are not read; every stage computes them
-  TileSet lent_;       ///< tiles that only the donor has
+  RunTiles tiles_;
+  StageInputs inputs_{params_, out_, options_, tiles_};
   TileSet all_changed_;
   StageTiles changed_, differing_;  ///< against the store, and against the donor
+  BorderWidths widths_;
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include "perception/crf/labelling.hpp"
 #include "perception/segments/scene_assembly.hpp"
+#include "perception/tile_borders.hpp"
 
 namespace cluxel::perception {
 
@@ -30,6 +31,20 @@ struct SceneParams {
   RelationParams relation;
 };
 
+/// Whether the stored outputs of a stage begin with what the tiles around read of them: withBorders().
+constexpr bool hasBorders(Stage stage) {
+  return stage <= Stage::Features;
+}
+
+/// How a stored output differs from the one before.
+inline OutputChange changeOf(Stage stage, std::string_view before, std::string_view after) {
+  if (before == after) return {};
+  if (!hasBorders(stage)) return kOtherEverywhere;
+  OutputChange change = changeOfBordered(before, after);
+  if (stage != Stage::Ground) change.is_read[kRingCentre] = true;  // later stages read all of the tile itself
+  return change;
+}
+
 /// Points of scans by tile, the input of the first stage.
 using TileSegments = std::map<TileKey, std::vector<ScanSegment>>;
 
@@ -46,8 +61,8 @@ class OutputStore {
   /// contacts may be left out: no stage reads them. So may volumes of cluxels and rows of features: they are computed
   /// again where they are needed.
   virtual void load(const TileSet& tiles, TileOutputs& outputs) = 0;
-  /// Stores one output; false when the stored bytes are the same.
-  virtual bool store(Stage stage, const TileKey& key, std::string_view bytes) = 0;
+  /// Stores one output, and tells how it differs from the one before, as changeOf() does.
+  virtual OutputChange store(Stage stage, const TileKey& key, std::string_view bytes) = 0;
   /// Removes an output; does nothing when there is none.
   virtual void erase(Stage stage, const TileKey& key) = 0;
 };

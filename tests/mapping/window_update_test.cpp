@@ -62,13 +62,15 @@ class StreetScans {
   std::vector<Eigen::Isometry3d> poses_;
 };
 
-/// The blocks of the layers above the tiles.
+/// The blocks of the stages and of the layers above them.
 std::map<std::string, std::string> layerBlocks(const fs::path& file) {
   std::map<std::string, std::string> blocks;
   const auto environment = Environment::open(file, OpenMode::ReadOnly);
   const ReadTransaction transaction = environment->read();
-  for (const std::string_view table : {tables::kTileLayers, tables::kObjects, tables::kWideTiles, tables::kPresence,
-                                       tables::kPassedRays, tables::kOverruled, tables::kStated})
+  for (const std::string_view table :
+       {tables::kPoints, tables::kCluxels, tables::kGround, tables::kFeatures, tables::kLabels, tables::kSummaries,
+        tables::kEven, tables::kComponents, tables::kContacts, tables::kTileLayers, tables::kObjects,
+        tables::kWideTiles, tables::kPresence, tables::kPassedRays, tables::kOverruled, tables::kStated})
     transaction.forEachBlock(table, "", [&](std::string_view key, std::string_view bytes) {
       blocks[std::string(table) + "/" + std::string(key)] = std::string(bytes);
     });

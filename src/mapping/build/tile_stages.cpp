@@ -5,6 +5,7 @@
 #include <array>
 
 #include "cluxel/error.hpp"
+#include "mapping/build/recent_scans.hpp"
 #include "mapping/build/way_tiles.hpp"
 #include "mapping/map_tables.hpp"
 
@@ -32,8 +33,8 @@ Tile checked(const TileKey& key, Tile tile) {
 /// Reads stored outputs; what is computed from other outputs comes after them.
 class OutputReader {
  public:
-  OutputReader(const rdf::ReadTransaction& transaction, perception::TileOutputs& outputs)
-      : transaction_(transaction), out_(outputs) {}
+  OutputReader(const rdf::ReadTransaction& transaction, RecentScans& scans, perception::TileOutputs& outputs)
+      : transaction_(transaction), scans_(scans), out_(outputs) {}
 
   /// Outputs of the stages that other stages read, of the tiles that are not there.
   void read(const TileSet& keys) {
@@ -82,7 +83,8 @@ class OutputReader {
   void each(Stage stage, const TileSet& keys, const Tiles& tiles, const Visit& visit) {
     for (const TileKey& key : keys) {
       if (tiles.contains(key)) continue;
-      if (const auto bytes = transaction_.block(tableOf(stage), tables::keyOf(key))) visit(key, *bytes);
+      if (const auto block = transaction_.block(tableOf(stage), tables::keyOf(key)))
+        visit(key, perception::hasBorders(stage) ? perception::withoutBorders(*block) : *block);
     }
   }
 
@@ -103,11 +105,12 @@ class OutputReader {
       if (!storedCloud(transaction_, id))
         throw Error(ErrorKind::StoreUnavailable,
                     "a stored tile names scan " + id.hex() + ", which is not there; the map is damaged, build it anew");
-      tiles.fill(storedScan(transaction_, id));
+      tiles.fill(scans_.scan(id));
     }
   }
 
   const rdf::ReadTransaction& transaction_;
+  RecentScans& scans_;
   perception::TileOutputs& out_;
 };
 
@@ -115,23 +118,25 @@ class OutputReader {
 class MapOutputStore final : public perception::OutputStore {
  public:
   MapOutputStore(rdf::WriteTransaction& transaction, OutputChanges& changes)
-      : transaction_(transaction), tiles_(storedTiles(transaction)), changes_(changes) {}
+      : transaction_(transaction), scans_(transaction), tiles_(storedTiles(transaction)), changes_(changes) {}
 
   TileSet tiles() const override { return tiles_; }
 
   void load(const TileSet& keys, perception::TileOutputs& outputs) override {
-    OutputReader(transaction_, outputs).read(keys);
+    OutputReader(transaction_, scans_, outputs).read(keys);
   }
 
-  bool store(Stage stage, const TileKey& key, std::string_view bytes) override {
+  perception::OutputChange store(Stage stage, const TileKey& key, std::string_view bytes) override {
     const std::string block_key = tables::keyOf(key);
     if (stage == Stage::Points) tiles_.insert(key);
     const auto old = transaction_.block(tableOf(stage), block_key);
-    if (old && *old == bytes) return false;
+    const perception::OutputChange change =
+        old ? perception::changeOf(stage, *old, bytes) : perception::kOtherEverywhere;
+    if (!change.is_other) return change;
     note(stage, key, old);
     transaction_.putBlock(tableOf(stage), block_key, bytes);
     if (stage == Stage::Even) changed_even_.insert(key);
-    return true;
+    return change;
   }
 
   void erase(Stage stage, const TileKey& key) override {
@@ -152,6 +157,7 @@ class MapOutputStore final : public perception::OutputStore {
   }
 
   rdf::WriteTransaction& transaction_;
+  RecentScans scans_;
   TileSet tiles_, changed_even_;
   OutputChanges& changes_;
 };
@@ -160,7 +166,7 @@ class MapOutputStore final : public perception::OutputStore {
 class OtherMap final : public perception::OutputDonor {
  public:
   explicit OtherMap(const rdf::ReadTransaction& transaction)
-      : transaction_(transaction), tiles_(storedTiles(transaction)) {}
+      : transaction_(transaction), scans_(transaction), tiles_(storedTiles(transaction)) {}
 
   const TileSet& tiles() const override { return tiles_; }
   std::string_view bytes(Stage stage, const TileKey& key) const override {
@@ -168,11 +174,12 @@ class OtherMap final : public perception::OutputDonor {
     throw Error(ErrorKind::StoreUnavailable, "a stored tile lacks a block; the map is damaged, build it anew");
   }
   void load(const TileSet& keys, perception::TileOutputs& outputs) const override {
-    OutputReader(transaction_, outputs).read(keys);
+    OutputReader(transaction_, scans_, outputs).read(keys);
   }
 
  private:
   const rdf::ReadTransaction& transaction_;
+  mutable RecentScans scans_;
   TileSet tiles_;
 };
 
@@ -228,7 +235,8 @@ bool TileStages::updateWays(rdf::WriteTransaction& transaction, unsigned threads
 }
 
 void TileStages::load(const rdf::ReadTransaction& transaction) {
-  OutputReader(transaction, outputs_).readForScene(storedTiles(transaction));
+  RecentScans scans(transaction);
+  OutputReader(transaction, scans, outputs_).readForScene(storedTiles(transaction));
 }
 
 void TileStages::hold(const rdf::ReadTransaction& transaction, const TileSet& tiles, const TileSet& around) {
@@ -238,7 +246,8 @@ void TileStages::hold(const rdf::ReadTransaction& transaction, const TileSet& ti
   giveUpOthers(outputs_.summaries), giveUpOthers(outputs_.ground), giveUpOthers(outputs_.features);
   giveUpOthers(outputs_.points), giveUpOthers(outputs_.cluxels);
   giveUpOthers(outputs_.labels), giveUpOthers(outputs_.components), giveUpOthers(outputs_.contacts);
-  OutputReader reader(transaction, outputs_);
+  RecentScans scans(transaction);
+  OutputReader reader(transaction, scans, outputs_);
   reader.readForScene(tiles);
   reader.readGround(around);
 }
@@ -248,7 +257,8 @@ void TileStages::loadPoints(const rdf::ReadTransaction& transaction) {
 }
 
 void TileStages::loadPoints(const rdf::ReadTransaction& transaction, const TileSet& tiles) {
-  OutputReader(transaction, outputs_).readPoints(tiles);
+  RecentScans scans(transaction);
+  OutputReader(transaction, scans, outputs_).readPoints(tiles);
 }
 
 perception::Scene TileStages::takeScene(const std::vector<Cloud>& clouds) {

@@ -17,6 +17,7 @@ namespace {
 constexpr int kHalfWindow = 2;  // cells: windows have five by five
 /// Windows are centred up to half a window outside of the tile, and read as far again.
 constexpr int kMargin = 2 * kHalfWindow;
+static_assert(kMargin * kEvenCell_m <= kEvenMargin_m);
 constexpr int kPaddedCells = kEvenCellsPerTile + 2 * kMargin;
 
 std::size_t paddedIndex(int x, int y) {

@@ -16,6 +16,9 @@ inline constexpr int kEvenCellsPerTile = 64;
 inline constexpr std::uint32_t kEvenCellsOfTile = kEvenCellsPerTile * kEvenCellsPerTile;
 inline constexpr double kEvenCell_m = kTileSize_m / kEvenCellsPerTile;
 
+/// Points and ground of the tiles around are read this far [m].
+inline constexpr double kEvenMargin_m = 1.0;
+
 inline constexpr double kThingBottom_m = 0.2;  ///< above the ground: lower points are of the ground
 inline constexpr double kThingTop_m = 2.0;
 inline constexpr double kEvenSpread_m = 0.0025;  ///< of the ground about the plane of a window of 1.25 m

@@ -31,6 +31,9 @@ struct FeatureParams {
 };
 void describe(FeatureParams& params, ParameterVisitor& visitor);
 
+/// Beside what edges of the graph lead to, features read what lies this near to the tile [m].
+inline constexpr double kFeatureMargin_m = 1.5;
+
 /// Settings of all stages up to the features.
 struct PerceptionParams {
   ThinParams thin;

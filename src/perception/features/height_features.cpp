@@ -43,6 +43,7 @@ Profile profileOf(const CellStack& stack) {
 }
 
 constexpr int kWideReach = 3;  ///< radius of the neighbourhood [stacks]
+static_assert(kWideReach * kStackSize_m <= kFeatureMargin_m);
 constexpr int kPadded = kStacksPerTile + 2 * kWideReach;
 
 std::size_t cellAt(int x, int y) {

@@ -19,6 +19,7 @@ constexpr int kReach = 3;  ///< radius of the neighbourhood [cells]
 constexpr int kCore = 1;   ///< radius of the core, which belongs to the object itself [cells]
 constexpr int kTileCells = static_cast<int>(kTileSize_m / kCell_m);
 constexpr int kSide = kTileCells + 2 * kReach + 1;  // one cell of padding: rows are read eight cells at a time
+static_assert((kReach + 1) * kCell_m <= kFeatureMargin_m);
 constexpr double kBelowGround_m = 2.0;              ///< depth of the lowest slice below the tile's lowest ground
 constexpr int kOwnHeight = 2, kFarHeight = 6;       ///< half heights of the windows [slices]: 0.5 m and 1.5 m
 constexpr std::size_t kPillarColumns = 7;

@@ -12,6 +12,7 @@ namespace cluxel::perception {
 namespace {
 
 constexpr std::array<double, 2> kCells_m{0.5, 1.0};  // ascending
+static_assert(kCells_m.back() <= kFeatureMargin_m);
 constexpr std::size_t kColumnsPerScale = 8;
 
 /// Cluxels in and near the tile, summed per grid cell relative to one origin.

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Brings in memory what a stage is about to read: from the store, from a donor, or computed again.
+#pragma once
+
+#include "perception/pipeline.hpp"
+
+namespace cluxel::perception {
+
+/// The tiles of a run.
+struct RunTiles {
+  TileSet all;        ///< with points
+  TileSet emptied;    ///< that lost their points
+  TileSet forgotten;  ///< whose stored outputs are not read; every stage computes them
+  TileSet lent;       ///< that only the donor has
+
+  TileSet around(const TileSet& tiles) const { return withRing(tiles, all); }
+};
+
+/// All arguments must outlive it.
+class StageInputs {
+ public:
+  StageInputs(const PerceptionParams& params, TileOutputs& outputs, const RunOptions& options, const RunTiles& tiles)
+      : params_(params), out_(outputs), options_(options), tiles_(tiles) {}
+
+  /// Reads what is not there of these tiles from the run's own store.
+  void readOwn(const TileSet& tiles);
+  /// Reads what is not there of these tiles, but of forgotten ones.
+  void read(const TileSet& tiles);
+  /// Reads what a stage reads to compute an output for each of `keys`.
+  template <typename Tile>
+  void readFor(const std::map<TileKey, Tile>& /*stage*/, const TileSet& keys) {
+    read(tiles_.around(keys));
+  }
+  void readFor(const std::map<TileKey, TilePoints>& /*stage*/, const TileSet& /*keys*/) {}
+  void readFor(const std::map<TileKey, FeatureTile>& /*stage*/, const TileSet& keys) {
+    addVolumesOf(tiles_.around(keys));
+  }
+  void readFor(const std::map<TileKey, LabelTile>& /*stage*/, const TileSet& keys) { addRowsOf(tiles_.around(keys)); }
+
+  /// Cluxels and their 2-ring to HOR and other features (paper 3.1).
+  FeatureTile featuresOf(const TileKey& key) const;
+
+  /// Rows are not stored; later runs compute them again where they need them. So with volumes.
+  void dropRowsBefore(std::int32_t column);
+  void dropVolumes();
+
+ private:
+  void addVolumesOf(const TileSet& keys);
+  void addRowsOf(const TileSet& keys);
+
+  const PerceptionParams& params_;
+  TileOutputs& out_;
+  const RunOptions& options_;
+  const RunTiles& tiles_;
+};
+
+}  // namespace cluxel::perception
