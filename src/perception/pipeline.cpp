@@ -113,7 +113,7 @@ class Run {
     const TileSet lent = without(tiles_.lent, nearFeatures(differing_));
     const std::vector<TileKey> features = completed(without(nearFeatures(changed_), lent));
     const std::vector<TileKey> candidates = completed(around(unionOf({features.begin(), features.end()}, lent)));
-    inputs_.read(around(around({features.begin(), features.end()})));  // most of what is needed, at once
+    inputs_.read(around({features.begin(), features.end()}));  // most of what is needed, at once
     eraseEmptied(Stage::Features, out_.features), eraseEmptied(Stage::Labels, out_.labels);
     take(Stage::Features, lent);
     std::size_t done = 0, seen = 0;
@@ -284,11 +284,11 @@ class Run {
   const PerceptionParams& params_;
   TileOutputs& out_;
   const RunOptions& options_;
+  BorderWidths widths_;
   RunTiles tiles_;
-  StageInputs inputs_{params_, out_, options_, tiles_};
+  StageInputs inputs_{params_, widths_, out_, options_, tiles_};
   TileSet all_changed_;
   StageTiles changed_, differing_;  ///< against the store, and against the donor
-  BorderWidths widths_;
 };
 
 }  // namespace

@@ -19,8 +19,9 @@ struct RunTiles {
 /// All arguments must outlive it.
 class StageInputs {
  public:
-  StageInputs(const PerceptionParams& params, TileOutputs& outputs, const RunOptions& options, const RunTiles& tiles)
-      : params_(params), out_(outputs), options_(options), tiles_(tiles) {}
+  StageInputs(const PerceptionParams& params, const BorderWidths& widths, TileOutputs& outputs,
+              const RunOptions& options, const RunTiles& tiles)
+      : params_(params), widths_(widths), out_(outputs), options_(options), tiles_(tiles) {}
 
   /// Reads what is not there of these tiles from the run's own store.
   void readOwn(const TileSet& tiles);
@@ -33,9 +34,10 @@ class StageInputs {
   }
   void readFor(const std::map<TileKey, TilePoints>& /*stage*/, const TileSet& /*keys*/) {}
   void readFor(const std::map<TileKey, FeatureTile>& /*stage*/, const TileSet& keys) {
-    addVolumesOf(tiles_.around(keys));
+    for (const TileKey& key : keys) rows_near_.erase(key);  // all its rows are about to be computed
+    addVolumes(around(keys));
   }
-  void readFor(const std::map<TileKey, LabelTile>& /*stage*/, const TileSet& keys) { addRowsOf(tiles_.around(keys)); }
+  void readFor(const std::map<TileKey, LabelTile>& /*stage*/, const TileSet& keys) { addRows(keys); }
 
   /// Cluxels and their 2-ring to HOR and other features (paper 3.1).
   FeatureTile featuresOf(const TileKey& key) const;
@@ -45,13 +47,19 @@ class StageInputs {
   void dropVolumes();
 
  private:
-  void addVolumesOf(const TileSet& keys);
-  void addRowsOf(const TileSet& keys);
+  /// For each tile the ring places near which something is there, or needed: one bit for each. The centre: everywhere.
+  using Places = std::map<TileKey, std::uint32_t>;
+
+  Places around(const TileSet& keys) const;
+  void addVolumes(const Places& needed);
+  void addRows(const TileSet& keys);
 
   const PerceptionParams& params_;
+  const BorderWidths& widths_;
   TileOutputs& out_;
   const RunOptions& options_;
   const RunTiles& tiles_;
+  Places volumes_near_, rows_near_;  ///< of tiles that have volumes or rows of some cluxels only
 };
 
 }  // namespace cluxel::perception

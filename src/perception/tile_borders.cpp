@@ -135,7 +135,13 @@ BorderWidths borderWidths(const PerceptionParams& perception, const LabellingPar
   widths.ground = kEvenMargin_m + kStackSize_m;  // heights are interpolated between cells
   widths.ground_by_points = perception.clustering.radius_m + kStackSize_m;
   widths.features = labelling.halo_m;
+  // From the centre of a cluxel to its seed, over its volume, over that of a neighbour, to the seed of the next one.
+  widths.volumes = widths.features + perception.clustering.radius_m + 4 * reach;
   return widths;
+}
+
+std::uint32_t neighboursNear(const Eigen::Vector3f& p_local, double width_m) {
+  return NearNeighbours(width_m).of(p_local.x(), p_local.y(), p_local.x(), p_local.y());
 }
 
 TileBorders bordersOf(const TilePoints& tile, const BorderWidths& widths) {

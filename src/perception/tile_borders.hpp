@@ -17,8 +17,12 @@ namespace cluxel::perception {
 struct BorderWidths {
   double points = 0, cluxels = 0, ground = 0, features = 0;
   double ground_by_points = 0;  ///< and how far from a point of the tile its ground is read
+  double volumes = 0;           ///< and how far volumes are read for rows of features that lie within `features`
 };
 BorderWidths borderWidths(const PerceptionParams& perception, const LabellingParams& labelling);
+
+/// The neighbours of a tile that are within a distance of a position in it: one bit for each place of the ring.
+std::uint32_t neighboursNear(const Eigen::Vector3f& p_local, double width_m);
 
 /// Digests of what later stages read of an output.
 struct TileBorders {

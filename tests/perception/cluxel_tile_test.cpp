@@ -189,6 +189,12 @@ TEST(CluxelTile, SettingsOutsideTheirRangeAreRefusedByName) {
   EXPECT_NE(hashOf(ClusterParams{}), hashOf(paperClustering()));
 }
 
+std::vector<std::uint32_t> everyCluxelOf(const CluxelTile& tile) {
+  std::vector<std::uint32_t> all(tile.size());
+  std::iota(all.begin(), all.end(), 0U);
+  return all;
+}
+
 TEST(CluxelTile, ComesBackFromItsPointsBitForBit) {
   for (const ClusterParams& params : {ClusterParams{}, paperClustering()}) {
     auto tiles = streetTiles(18);
@@ -201,7 +207,7 @@ TEST(CluxelTile, ComesBackFromItsPointsBitForBit) {
       CluxelTile tile = cluxelTileFromBytes(bytes, points);
       EXPECT_FALSE(tile.hasVolumes());
       EXPECT_NE(toBytes(tile), bytes) << "volumes are missing";
-      addVolumes(ringIn(tiles, key), params, tile);
+      addVolumes(ringIn(tiles, key), params, everyCluxelOf(tile), tile);
       EXPECT_EQ(toBytes(tile), bytes);
       dropVolumes(tile);
       EXPECT_FALSE(tile.hasVolumes());

@@ -158,6 +158,55 @@ TEST(TileBorders, TellEveryTileThatAChangeReaches) {
   EXPECT_LT(10 * (cluxels.read + labels.read), 9 * (cluxels.around + labels.around)) << "borders spare nothing";
 }
 
+/// The bytes of the rows of a cluxel and of its edges.
+std::string rowsOf(const FeatureTile& tile, std::uint32_t c) {
+  const std::size_t columns = featureLayout({}).columns.size(), edge_columns = featureLayout({}).edge_columns.size();
+  const std::size_t first = tile.edge_row_offset[c] * edge_columns, last = tile.edge_row_offset[c + 1] * edge_columns;
+  std::string bytes(reinterpret_cast<const char*>(tile.features.data() + c * columns), columns * sizeof(float));
+  return bytes.append(reinterpret_cast<const char*>(tile.edge_features.data() + first), (last - first) * sizeof(float));
+}
+
+TEST(TileBorders, RowsNearATileNeedOnlyVolumesNearIt) {
+  const PerceptionParams params;
+  const BorderWidths widths = borderWidths(params, {});
+  const std::vector<Scan> scans{scanOf(place(300))};
+  const TileOutputs all = perceive(scans, params, 1);
+  std::size_t rows = 0, spared = 0;
+  for (const auto& [reader, own] : all.features) {
+    std::map<TileKey, CluxelTile> cluxels;  // with volumes of the tile, and of what is near to it
+    const auto ring = ringOf(reader);
+    for (std::size_t at = 0; at < ring.size(); ++at) {
+      const auto found = all.cluxels.find(ring[at]);
+      if (found == all.cluxels.end()) continue;
+      CluxelTile& tile = cluxels.emplace(*found).first->second;
+      dropVolumes(tile);
+      std::vector<std::uint32_t> chosen;
+      for (std::uint32_t c = 0; c < tile.size(); ++c)
+        if (at == kRingCentre ||
+            (neighboursNear(all.points.at(tile.key).at(tile.seed[c]), widths.volumes) >> (8 - at) & 1U) != 0)
+          chosen.push_back(c);
+      spared += tile.size() - chosen.size();
+      addVolumes(ringIn(all.points, tile.key), params.clustering, chosen, tile);
+    }
+    for (std::size_t at = 0; at < ring.size(); ++at) {
+      const auto found = all.features.find(ring[at]);
+      if (found == all.features.end()) continue;
+      const FeatureTile& full = found->second;
+      FeatureTile some = full;
+      some.dropRows();
+      std::vector<std::uint32_t> chosen;
+      for (std::uint32_t c = 0; c < full.size(); ++c)
+        if (at == kRingCentre || (neighboursNear(full.center[c], widths.features) >> (8 - at) & 1U) != 0)
+          chosen.push_back(c);
+      addRows(ringIn(cluxels, ring[at]), ringIn(all.ground, ring[at]), params.features, chosen, some);
+      for (const std::uint32_t c : chosen) ASSERT_EQ(rowsOf(some, c), rowsOf(full, c)) << at << " " << c;
+      rows += chosen.size();
+    }
+  }
+  EXPECT_GT(rows, 1000U);
+  EXPECT_GT(spared, rows);
+}
+
 TEST(TileBorders, RefuseABlockThatIsCutShort) {
   const std::string block = withBorders({}, "tile");
   EXPECT_EQ(withoutBorders(block), "tile");

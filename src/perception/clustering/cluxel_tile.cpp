@@ -6,6 +6,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "base/free_memory.hpp"
 #include "perception/clustering/cluxel_volumes.hpp"
@@ -115,6 +117,12 @@ void measureIntensity(const TilePoints& points, CluxelTile& tile) {
   }
 }
 
+std::vector<std::uint32_t> allOf(const CluxelTile& tile) {
+  std::vector<std::uint32_t> all(tile.size());
+  std::iota(all.begin(), all.end(), 0U);
+  return all;
+}
+
 PointGrid wideGrid(const Ring<TilePoints>& ring, const ClusterParams& params) {
   const double largest_m = std::max(params.radius_m, params.max_reach_m);
   return gridOf(ring, largest_m, largest_m);
@@ -145,13 +153,14 @@ CluxelTile clusterTile(const Ring<TilePoints>& ring, const ClusterParams& params
   tile.point_cluxel.resize(points.size());
   assignPoints(cells, static_cast<float>(params.radius_m), tile);
   measureOwn(points, tile);
-  measureVolumes(cells, wideGrid(ring, params), points, params, tile);
+  measureVolumes(cells, wideGrid(ring, params), points, params, allOf(tile), tile);
   return tile;
 }
 
-void addVolumes(const Ring<TilePoints>& ring, const ClusterParams& params, CluxelTile& tile) {
+void addVolumes(const Ring<TilePoints>& ring, const ClusterParams& params, std::vector<std::uint32_t> chosen,
+                CluxelTile& tile) {
   measureVolumes(gridOf(ring, params.radius_m, params.radius_m), wideGrid(ring, params), *ring[kRingCentre], params,
-                 tile);
+                 std::move(chosen), tile);
 }
 
 void dropVolumes(CluxelTile& tile) {

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <utility>
 
 #include "base/radix_order.hpp"
 #include "perception/clustering/fast_floor.hpp"
@@ -221,18 +221,18 @@ std::int32_t sliceOf(float z) {
 }  // namespace
 
 void measureVolumes(const PointGrid& cells, const PointGrid& wide_cells, const TilePoints& points,
-                    const ClusterParams& params, CluxelTile& tile) {
-  tile.volume_min.resize(tile.size());
-  tile.volume_max.resize(tile.size());
-  tile.ball.resize(tile.size());
-  tile.reach.resize(tile.size());
+                    const ClusterParams& params, std::vector<std::uint32_t> chosen, CluxelTile& tile) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  tile.volume_min.assign(tile.size(), Eigen::Vector3f::Constant(kInfinity));
+  tile.volume_max.assign(tile.size(), Eigen::Vector3f::Constant(-kInfinity));
+  tile.ball.assign(tile.size(), {});
+  tile.reach.assign(tile.size(), 0.0F);
   const double largest_m = std::max(params.radius_m, params.max_reach_m);
   const auto squareOf = [](double value_m) { return static_cast<float>(value_m) * static_cast<float>(value_m); };
   const Squares squares{squareOf(params.radius_m), squareOf(largest_m)};
   const auto target_points = static_cast<std::size_t>(params.target_points);
   const CellKeys key(params.radius_m, params.radius_m), wide_key(largest_m, largest_m);
-  std::vector<std::uint32_t> left(tile.size());
-  std::iota(left.begin(), left.end(), 0U);
+  std::vector<std::uint32_t> left = std::move(chosen);
   // Most cluxels are sparse, and the wide cells suffice for them; only the others need the narrow cells. On a surface,
   // 1 in 25 of the points in the neighbouring wide cells is within the radius, so a crowded neighbourhood is dense.
   const std::size_t crowd = 32 * target_points;

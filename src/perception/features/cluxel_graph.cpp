@@ -26,16 +26,17 @@ void extend(Volume& hull, const Volume& volume) {
   hull.high = hull.high.cwiseMax(volume.high);
 }
 
-/// Calls `visit(ring place, number, volume)` for every cluxel of the ring whose volume intersects `hull`.
+/// Calls `visit(ring place, number, volume)` for every own cluxel, and for those of the ring whose volume intersects
+/// `hull`.
 template <typename Visit>
 void forEachTouching(const Ring<CluxelTile>& ring, const Volume& hull, const Visit& visit) {
   for (int r = 0; r < 9; ++r) {
     const CluxelTile* tile = ring[static_cast<std::size_t>(r)];
-    if (tile == nullptr) continue;
+    if (tile == nullptr || !tile->hasVolumes()) continue;
     const Eigen::Vector3f shift = ringShift(r);
     for (std::uint32_t i = 0; i < tile->size(); ++i) {
       const Volume volume{tile->volume_min[i] + shift, tile->volume_max[i] + shift};
-      if (intersects(volume, hull)) visit(r, i, volume);
+      if (r == kRingCentre || intersects(volume, hull)) visit(r, i, volume);
     }
   }
 }
@@ -59,6 +60,7 @@ class VolumeCells {
     float min_size = std::numeric_limits<float>::infinity(), largest = 0;
     double sum = 0;
     for (const auto& volume : cluxels.volume) {
+      if (volume.isEmpty()) continue;
       extend(hull, volume);
       const float size = (volume.high - volume.low).maxCoeff();
       min_size = std::min(min_size, size);
@@ -101,6 +103,7 @@ Entries enterVolumes(const RingCluxels& cluxels) {
   entries.entry.reserve(6 * cluxels.size());
   entries.first_cell.resize(cluxels.size());
   for (std::uint32_t c = 0; c < cluxels.size(); ++c) {
+    if (cluxels.volume[c].isEmpty()) continue;
     const Cell low = cells.cellOf(cluxels.volume[c].low), high = cells.cellOf(cluxels.volume[c].high);
     entries.first_cell[c] = low;
     for (std::int32_t x = low[0]; x <= high[0]; ++x)

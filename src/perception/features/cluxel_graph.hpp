@@ -14,6 +14,8 @@ namespace cluxel::perception {
 /// A cluxel's bounding volume relative to the centre tile's corner [m].
 struct Volume {
   Eigen::Vector3f low, high;
+  /// It was not measured, and meets nothing.
+  bool isEmpty() const { return !(low.x() <= high.x()); }
 };
 
 inline bool intersects(const Volume& a, const Volume& b) {

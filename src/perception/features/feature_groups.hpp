@@ -18,7 +18,8 @@ struct FeatureInput {
   const Ring<GroundTile>& ground;
   const RingCluxels& cluxels;
   const RingGraph& graph;
-  const std::vector<EigenShape>& ball;  ///< of own and near cluxels
+  const std::vector<EigenShape>& ball;       ///< of own and near cluxels
+  const std::vector<std::uint32_t>& chosen;  ///< own cluxels of which rows are filled, ascending
   const CluxelTile& own() const { return *ring[kRingCentre]; }
 };
 

@@ -2,6 +2,11 @@
 // The feature stage: collect cluxels, build the graph, then fill the groups one by one.
 #include "perception/features/feature_tile.hpp"
 
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+
+#include "cluxel/error.hpp"
 #include "perception/features/feature_groups.hpp"
 
 namespace cluxel::perception {
@@ -74,13 +79,15 @@ FeatureLayout featureLayout(const FeatureParams& params) {
   return layout;
 }
 
-FeatureTile computeFeatures(const Ring<CluxelTile>& cluxels, const Ring<GroundTile>& ground,
-                            const FeatureParams& params) {
+namespace {
+
+FeatureTile featuresOfChosen(const Ring<CluxelTile>& cluxels, const Ring<GroundTile>& ground,
+                             const FeatureParams& params, const std::vector<std::uint32_t>& chosen) {
   const CluxelTile& own = *cluxels[kRingCentre];
   const RingCluxels gathered = gatherCluxels(cluxels);
   const RingGraph graph = intersectionGraph(gathered);
   const auto ball = ballShapes(cluxels, gathered);
-  const FeatureInput input{cluxels, ground, gathered, graph, ball};
+  const FeatureInput input{cluxels, ground, gathered, graph, ball, chosen};
   FeatureTile tile;
   tile.key = own.key;
   for (const auto& moments : own.own) {
@@ -100,6 +107,33 @@ FeatureTile computeFeatures(const Ring<CluxelTile>& cluxels, const Ring<GroundTi
   return tile;
 }
 
+}  // namespace
+
+FeatureTile computeFeatures(const Ring<CluxelTile>& cluxels, const Ring<GroundTile>& ground,
+                            const FeatureParams& params) {
+  for (const CluxelTile* tile : cluxels)
+    if (tile != nullptr && !tile->hasVolumes()) throw std::logic_error("features are computed without volumes");
+  std::vector<std::uint32_t> all(cluxels[kRingCentre]->size());
+  std::iota(all.begin(), all.end(), 0U);
+  return featuresOfChosen(cluxels, ground, params, all);
+}
+
+void addRows(const Ring<CluxelTile>& cluxels, const Ring<GroundTile>& ground, const FeatureParams& params,
+             const std::vector<std::uint32_t>& chosen, FeatureTile& tile) {
+  FeatureTile rows = featuresOfChosen(cluxels, ground, params, chosen);
+  const std::size_t columns = edgeColumns().size();
+  tile.center = std::move(rows.center), tile.point_count = std::move(rows.point_count);
+  tile.features = std::move(rows.features);
+  tile.edge_features.assign(tile.edge_row_offset.back() * columns, 0.0F);
+  for (const std::uint32_t c : chosen) {
+    const std::size_t from = rows.edge_row_offset[c], count = rows.edge_row_offset[c + 1] - from;
+    if (tile.edge_row_offset[c + 1] - tile.edge_row_offset[c] != count)
+      throw Error(ErrorKind::StoreUnavailable, "a stored graph is of other cluxels; the map is damaged, build it anew");
+    std::copy_n(rows.edge_features.begin() + static_cast<std::ptrdiff_t>(from * columns), count * columns,
+                tile.edge_features.begin() + static_cast<std::ptrdiff_t>(tile.edge_row_offset[c] * columns));
+  }
+}
+
 std::vector<std::string> intensityColumns() {
   return {"intensity.mean", "intensity.deviation", "intensity.known"};
 }
@@ -107,7 +141,7 @@ std::vector<std::string> intensityColumns() {
 void fillIntensityFeatures(const FeatureInput& input, std::size_t column, FeatureRows& rows) {
   const CluxelTile& own = input.own();
   if (own.intensity_mean.empty()) return;
-  for (std::size_t c = 0; c < own.size(); ++c) {
+  for (const std::uint32_t c : input.chosen) {
     auto out = rows.row(c, column, 3);
     out[0] = own.intensity_mean[c];
     out[1] = own.intensity_deviation[c];

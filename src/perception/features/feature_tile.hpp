@@ -79,6 +79,11 @@ FeatureLayout featureLayout(const FeatureParams& params);
 /// Graph and features of the ring's centre tile. Cost: about 2.5 microseconds a cluxel on sparse scans.
 FeatureTile computeFeatures(const Ring<CluxelTile>& cluxels, const Ring<GroundTile>& ground,
                             const FeatureParams& params);
+/// Adds to a tile of which the graph is there the rows of some of its cluxels (ascending) and of their edges; those of
+/// others are 0. Volumes may be missing of cluxels that no two edges of the graph lead to from these. Throws Error
+/// (StoreUnavailable) when the graph is not that of the cluxels.
+void addRows(const Ring<CluxelTile>& cluxels, const Ring<GroundTile>& ground, const FeatureParams& params,
+             const std::vector<std::uint32_t>& chosen, FeatureTile& tile);
 
 /// Stores the graph.
 std::string toBytes(const FeatureTile& tile);

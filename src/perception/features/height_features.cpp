@@ -133,7 +133,7 @@ std::size_t cellOf(const Eigen::Vector3f& center) {
 /// Profiles around the stacks that hold a cluxel's centre.
 std::vector<ProfileSquares::Nested> profilesOf(const FeatureInput& input) {
   std::vector<std::uint8_t> occupied(static_cast<std::size_t>(kStacksPerTile) * kStacksPerTile);
-  for (const auto& own : input.own().own) occupied[cellOf(own.mean)] = 1;
+  for (const std::uint32_t c : input.chosen) occupied[cellOf(input.own().own[c].mean)] = 1;
   const ProfileSquares squares(input.ring);
   std::vector<ProfileSquares::Nested> profiles(occupied.size());
   for (int y = 0; y < kStacksPerTile; ++y)
@@ -163,7 +163,7 @@ std::vector<std::string> heightColumns() {
 void fillHeightFeatures(const FeatureInput& input, std::size_t column, FeatureRows& rows) {
   const CluxelTile& own = input.own();
   const auto profiles = profilesOf(input);
-  for (std::size_t c = 0; c < own.size(); ++c) {
+  for (const std::uint32_t c : input.chosen) {
     const Eigen::Vector3f& center = own.own[c].mean;
     const auto& [narrow, middle, wide] = profiles[cellOf(center)];
     const double ground = groundHeightAt(input.ground, center.x(), center.y());

@@ -20,8 +20,8 @@ constexpr int kCore = 1;   ///< radius of the core, which belongs to the object 
 constexpr int kTileCells = static_cast<int>(kTileSize_m / kCell_m);
 constexpr int kSide = kTileCells + 2 * kReach + 1;  // one cell of padding: rows are read eight cells at a time
 static_assert((kReach + 1) * kCell_m <= kFeatureMargin_m);
-constexpr double kBelowGround_m = 2.0;              ///< depth of the lowest slice below the tile's lowest ground
-constexpr int kOwnHeight = 2, kFarHeight = 6;       ///< half heights of the windows [slices]: 0.5 m and 1.5 m
+constexpr double kBelowGround_m = 2.0;         ///< depth of the lowest slice below the tile's lowest ground
+constexpr int kOwnHeight = 2, kFarHeight = 6;  ///< half heights of the windows [slices]: 0.5 m and 1.5 m
 constexpr std::size_t kPillarColumns = 7;
 
 /// Occupied slices of kCell_m height in each cell; the first and last slice include everything below and above.
@@ -174,7 +174,7 @@ void fillPillarFeatures(const FeatureInput& input, std::size_t column, FeatureRo
   const CluxelTile& own = input.own();
   const Occupancy occupancy(input.ring, *input.ground[kRingCentre]);
   const SquareCells square;
-  for (std::size_t c = 0; c < own.size(); ++c)
+  for (const std::uint32_t c : input.chosen)
     fillOne(occupancy, square, own.own[c].mean, rows.row(c, column, kPillarColumns));
 }
 

@@ -181,16 +181,16 @@ void fillSupportFeatures(const FeatureInput& input, const FeatureParams& params,
     if (params.extent) putExtents(own, c, ball, ring1, ring2, around.ring2, row);
     if (params.density) putDensities(own, c, around, row);
   };
-  for (std::uint32_t c = 0; c < own.size(); c += 2) {
-    const std::uint32_t some = std::min<std::uint32_t>(2, static_cast<std::uint32_t>(own.size()) - c);
+  for (std::size_t first = 0; first < input.chosen.size(); first += 2) {
+    const std::size_t some = std::min<std::size_t>(2, input.chosen.size() - first);
     std::array<Covariance, 4> covariances{};
-    for (std::uint32_t i = 0; i < some; ++i) {
-      walk.walkAround(input.cluxels.own_begin + c + i, pair[i]);
+    for (std::size_t i = 0; i < some; ++i) {
+      walk.walkAround(input.cluxels.own_begin + input.chosen[first + i], pair[i]);
       covariances[2 * i] = covarianceOf(pair[i].ring1);
       covariances[2 * i + 1] = covarianceOf(pair[i].ring2.sum);
     }
     const auto shapes = shapesOf({covariances.data(), 2 * some});
-    for (std::uint32_t i = 0; i < some; ++i) fillRow(c + i, pair[i], shapes[2 * i], shapes[2 * i + 1]);
+    for (std::size_t i = 0; i < some; ++i) fillRow(input.chosen[first + i], pair[i], shapes[2 * i], shapes[2 * i + 1]);
   }
 }
 

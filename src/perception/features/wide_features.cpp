@@ -15,11 +15,11 @@ constexpr std::array<double, 2> kCells_m{0.5, 1.0};  // ascending
 static_assert(kCells_m.back() <= kFeatureMargin_m);
 constexpr std::size_t kColumnsPerScale = 8;
 
-/// Cluxels in and near the tile, summed per grid cell relative to one origin.
+/// Cluxels in and near the tile, summed per grid cell relative to the first cluxel of the tile.
 struct CellSums {
   std::vector<std::uint64_t> key;
   std::vector<MomentSum> sum;
-  std::vector<std::uint8_t> has_own;
+  std::vector<std::uint8_t> has_chosen;
   std::vector<std::uint32_t> cell_of_own;
 };
 
@@ -53,7 +53,8 @@ std::vector<Item> itemsNear(const Ring<CluxelTile>& ring, double margin_m) {
 }
 
 /// Sums of the items near the tile, added in their order.
-CellSums sumCells(const std::vector<Item>& items, double cell_m, std::size_t own) {
+CellSums sumCells(const std::vector<Item>& items, double cell_m, const std::vector<char>& is_chosen,
+                  const Eigen::Vector3f& origin) {
   const CellKeys key(cell_m, cell_m);
   std::vector<KeyedItem> order;
   order.reserve(items.size());
@@ -61,21 +62,20 @@ CellSums sumCells(const std::vector<Item>& items, double cell_m, std::size_t own
     if (const auto& center = items[i].center; isNear(center, cell_m))
       order.push_back({key(center.x(), center.y(), center.z()), i});
   CellSums cells;
-  cells.cell_of_own.resize(own);
+  cells.cell_of_own.resize(is_chosen.size());
   if (order.empty()) return cells;
-  const Eigen::Vector3f origin = items[order.front().item].center;
   sortByKey(order);
   for (const auto& entry : order) {
     const Item& item = items[entry.item];
     if (cells.key.empty() || cells.key.back() != entry.key) {
       cells.key.push_back(entry.key);
       cells.sum.emplace_back();
-      cells.has_own.push_back(0);
+      cells.has_chosen.push_back(0);
     }
     cells.sum.back().addSet(item.center - origin, item.spread);
     if (item.number == PointGrid::kForeign) continue;
     cells.cell_of_own[item.number] = static_cast<std::uint32_t>(cells.key.size() - 1);
-    cells.has_own.back() = 1;
+    if (is_chosen[item.number] != 0) cells.has_chosen.back() = 1;
   }
   endKeys(cells.key);
   return cells;
@@ -97,14 +97,15 @@ void putRise(const MomentSum& sum, int occupied, CubeRow& row) {
   row[kShapeColumns + 1] = static_cast<float>(occupied) / 27.0F;
 }
 
-void fillScale(const std::vector<Item>& items, std::size_t own, double cell_m, std::size_t column, FeatureRows& rows) {
-  const CellSums cells = sumCells(items, cell_m, own);
+void fillScale(const std::vector<Item>& items, const std::vector<char>& is_chosen, const Eigen::Vector3f& origin,
+               double cell_m, std::size_t column, FeatureRows& rows) {
+  const CellSums cells = sumCells(items, cell_m, is_chosen, origin);
   std::vector<CubeRow> cube(cells.sum.size());
   const auto keep = [&](std::size_t cell, const EigenShape& shape) { putShape(shape, cube[cell]); };
   FourShapes four;
   NeighbourWalk walk(cells.key);
   for (std::size_t cell = 0; cell < cells.sum.size(); ++cell) {
-    if (!cells.has_own[cell]) continue;
+    if (!cells.has_chosen[cell]) continue;
     walk.moveTo(cells.key[cell]);
     MomentSum sum;
     int occupied = 0;
@@ -114,7 +115,8 @@ void fillScale(const std::vector<Item>& items, std::size_t own, double cell_m, s
     putRise(sum, occupied, cube[cell]);
   }
   four.finish(keep);
-  for (std::size_t c = 0; c < cells.cell_of_own.size(); ++c) {
+  for (std::size_t c = 0; c < is_chosen.size(); ++c) {
+    if (is_chosen[c] == 0) continue;
     const auto& values = cube[cells.cell_of_own[c]];
     std::copy(values.begin(), values.end(), rows.row(c, column, kColumnsPerScale).begin());
   }
@@ -136,9 +138,12 @@ std::vector<std::string> wideColumns() {
 }
 
 void fillWideFeatures(const FeatureInput& input, std::size_t column, FeatureRows& rows) {
+  if (input.own().size() == 0) return;
   const auto items = itemsNear(input.ring, kCells_m.back());
+  std::vector<char> is_chosen(input.own().size(), 0);
+  for (const std::uint32_t c : input.chosen) is_chosen[c] = 1;
   for (std::size_t scale = 0; scale < kCells_m.size(); ++scale)
-    fillScale(items, input.own().size(), kCells_m[scale], column + scale * kColumnsPerScale, rows);
+    fillScale(items, is_chosen, input.own().own.front().mean, kCells_m[scale], column + scale * kColumnsPerScale, rows);
 }
 
 }  // namespace cluxel::perception
