@@ -19,6 +19,15 @@ void storeSplits(rdf::WriteTransaction& transaction, const rules::KnownSplits& s
     transaction.putBlock(tables::kMeta, kSplitsKey, splits.stored());
 }
 
+void copySplits(rdf::WriteTransaction& transaction, const rdf::ReadTransaction& other) {
+  const auto bytes = other.block(tables::kMeta, kSplitsKey);
+  if (!bytes) return;
+  rules::KnownSplits splits = storedSplits(transaction);
+  splits.learn(*bytes);
+  splits.keepAll();
+  storeSplits(transaction, splits);
+}
+
 rules::KnownSplits storedSplits(const rdf::ReadTransaction& transaction) {
   const auto bytes = transaction.block(tables::kMeta, kSplitsKey);
   return bytes ? rules::KnownSplits(*bytes) : rules::KnownSplits();

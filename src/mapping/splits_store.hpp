@@ -9,6 +9,8 @@ namespace cluxel::mapping {
 
 /// What this run of reasoning came to about shared crowns, for the next one.
 void storeSplits(rdf::WriteTransaction& transaction, const rules::KnownSplits& splits);
+/// Adds what another map knows.
+void copySplits(rdf::WriteTransaction& transaction, const rdf::ReadTransaction& other);
 /// Knows nothing for a map of a version that had none.
 rules::KnownSplits storedSplits(const rdf::ReadTransaction& transaction);
 

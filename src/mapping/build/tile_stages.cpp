@@ -213,7 +213,10 @@ TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes
   MapOutputStore store(transaction, changes_);
   StageProgress progress(sink);
   std::optional<OtherMap> donor;
-  if (changes.copied != nullptr) donor.emplace(*changes.copied);
+  if (changes.copied != nullptr) {
+    donor.emplace(*changes.copied);
+    changes_.has_copied_map = true;
+  }
   // The scans are stored already: all points of these tiles are read, also those that were added.
   for (auto& [tile, segments] : storedSegments(transaction, changes.anew))
     changes.added.insert_or_assign(tile, std::move(segments));

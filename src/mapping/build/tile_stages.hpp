@@ -26,6 +26,7 @@ struct OutputChanges {
   perception::TileSet tiles;  ///< of which an output changed, also those that are gone
   /// The summaries that these tiles had before, as stored; absent where there were none.
   std::map<perception::TileKey, std::optional<std::string>> former_summaries;
+  bool has_copied_map = false;  ///< tiles and rows of objects of another map were copied
 };
 
 /// `model` and `params` must outlive it.

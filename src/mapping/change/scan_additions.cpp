@@ -6,6 +6,10 @@
 #include <iterator>
 #include <utility>
 
+#include "mapping/map_tables.hpp"
+#include "mapping/presence/object_rows.hpp"
+#include "mapping/splits_store.hpp"
+
 namespace cluxel::mapping {
 
 void ScanAdditions::add(const scan::Scan& scan) {
@@ -46,6 +50,9 @@ void ScanAdditions::copy(const rdf::ReadTransaction& other) {
   std::set_intersection(own.begin(), own.end(), tiles.begin(), tiles.end(),
                         std::inserter(changes.anew, changes.anew.end()));
   editor_.update(*transaction_, std::move(changes), editor_.sink());
+  // What objects of the other map follow from is told with them: it is taken where that is the same.
+  for (const std::string_view table : {tables::kPresence, tables::kPassedRays}) copyRows(*transaction_, table, other);
+  copySplits(*transaction_, other);
   part_points_ = 0;
   if (!editor_.params().dry_run && points_ >= editor_.params().batch_points) finish();
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"
 
 namespace cluxel::mapping {
@@ -15,13 +16,34 @@ void putRow(rdf::WriteTransaction& transaction, std::string_view table, const Co
   transaction.putBlock(table, key, bytes);
 }
 
-void eraseRowsBut(rdf::WriteTransaction& transaction, std::string_view table, std::vector<ContentHash> kept) {
-  std::sort(kept.begin(), kept.end());
+void copyRows(rdf::WriteTransaction& transaction, std::string_view table, const rdf::ReadTransaction& other) {
+  other.forEachBlock(table, "", [&](std::string_view key, std::string_view bytes) {
+    if (!transaction.block(table, key)) transaction.putBlock(table, key, bytes);
+  });
+}
+
+namespace {
+
+template <typename Stays>
+void eraseRows(rdf::WriteTransaction& transaction, std::string_view table, const Stays& stays) {
   std::vector<std::string> gone;
   transaction.forEachBlock(table, "", [&](std::string_view key, std::string_view) {
-    if (!std::binary_search(kept.begin(), kept.end(), tables::hashOfKey(key))) gone.emplace_back(key);
+    if (!stays(key)) gone.emplace_back(key);
   });
   for (const std::string& key : gone) transaction.eraseBlock(table, key);
+}
+
+}  // namespace
+
+void eraseRowsBut(rdf::WriteTransaction& transaction, std::string_view table, std::vector<ContentHash> kept) {
+  std::sort(kept.begin(), kept.end());
+  eraseRows(transaction, table,
+            [&](std::string_view key) { return std::binary_search(kept.begin(), kept.end(), tables::hashOfKey(key)); });
+}
+
+void eraseRowsWithoutObject(rdf::WriteTransaction& transaction, std::string_view table) {
+  eraseRows(transaction, table,
+            [&](std::string_view key) { return storedRecord(transaction, tables::hashOfKey(key)).has_value(); });
 }
 
 }  // namespace cluxel::mapping

@@ -17,7 +17,11 @@ enum class Covered : std::uint8_t { All, Some };
 /// Writes the row of an object, unless it is there.
 void putRow(rdf::WriteTransaction& transaction, std::string_view table, const ContentHash& object,
             std::string_view bytes);
+/// Adds the rows that another map has of objects of which there is none.
+void copyRows(rdf::WriteTransaction& transaction, std::string_view table, const rdf::ReadTransaction& other);
 /// Removes the rows of all objects but those of `kept`.
 void eraseRowsBut(rdf::WriteTransaction& transaction, std::string_view table, std::vector<ContentHash> kept);
+/// Removes the rows of objects that the map does not have.
+void eraseRowsWithoutObject(rdf::WriteTransaction& transaction, std::string_view table);
 
 }  // namespace cluxel::mapping

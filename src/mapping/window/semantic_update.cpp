@@ -9,6 +9,8 @@
 #include "mapping/build/way_tiles.hpp"
 #include "mapping/layers/rule_margins.hpp"
 #include "mapping/layers/stored_layers.hpp"
+#include "mapping/map_tables.hpp"
+#include "mapping/presence/object_rows.hpp"
 #include "mapping/statements/statement_facts.hpp"
 #include "mapping/window/former_objects.hpp"
 #include "mapping/window/kept_objects.hpp"
@@ -281,8 +283,12 @@ SemanticUpdate updateSemanticLayer(rdf::WriteTransaction& transaction, const Par
                                    const rdf::InferenceCheck& check) {
   OutputChanges changes = stages.takeChanges();
   if (inputs != ChangedInputs::Any)
-    if (auto update = LocalUpdate(transaction, parsed, stages, changes, inputs, params, sink).run())
+    if (auto update = LocalUpdate(transaction, parsed, stages, changes, inputs, params, sink).run()) {
+      if (changes.has_copied_map)
+        for (const std::string_view table : {tables::kPresence, tables::kPassedRays})
+          eraseRowsWithoutObject(transaction, table);
       return *std::move(update);
+    }
   return updateAll(transaction, parsed, stages, changes, params, sink, check);
 }
 

@@ -61,7 +61,7 @@ class CauseBytes {
 
 }  // namespace
 
-KnownSplits::KnownSplits(std::string_view stored) {
+void KnownSplits::learn(std::string_view stored) {
   const auto unpacked = unpackedBytes(stored, kMaxStoredBytes);
   if (!unpacked) return;
   std::string_view rest = unpacked->view();

@@ -22,7 +22,11 @@ class KnownSplits {
  public:
   KnownSplits() = default;
   /// Knows what stored() returned. Of damaged bytes nothing is known.
-  explicit KnownSplits(std::string_view stored);
+  explicit KnownSplits(std::string_view stored) { learn(stored); }
+  /// Knows these outcomes, too.
+  void learn(std::string_view stored);
+  /// Counts all known outcomes to this run, so that they are stored.
+  void keepAll() { of_run_.insert(known_.begin(), known_.end()); }
 
   /// An earlier outcome; null when there is none. Threads may ask at the same time.
   const SplitOutcome* find(const ContentHash& cause) const;
