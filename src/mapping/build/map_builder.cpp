@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <future>
 #include <optional>
 #include <set>
 #include <utility>
@@ -141,6 +142,10 @@ class MapBuild {
     state_ = MapState{is_last, parsed_.inputs.hash().hex()};
     storeState(transaction, *state_);
     if (is_last) writeThings(transaction, dateTimeText(nowSeconds()), {}, namesOfObjects(transaction));
+    const auto policy = params_.threads > 1 ? std::launch::async : std::launch::deferred;
+    const auto freed = std::async(policy, [&] {  // beside LMDB, which uses one thread
+      if (is_last) stages_.dropAll();
+    });
     transaction.writeIndexes();
     clock.progress("indexes", 1, 1);
     addActivity(transaction, {"build", started_s, nowSeconds(), clock.seconds()}, clouds, parsed_.inputs);
