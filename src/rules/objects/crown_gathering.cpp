@@ -46,10 +46,9 @@ class Gathering {
     lookAround(0, theirs);
     for (std::uint64_t round = 1;; ++round) {
       state_.trace.enterRound(round);
-      const std::vector<ReachedFragment> in_reach = reached();
       std::vector<FragmentIndex> given;
       const auto before = static_cast<FragmentIndex>(state_.fragments.size());
-      for (const ReachedFragment& found : in_reach) hand(found, given);
+      for (const ReachedFragment& found : reached()) hand(found, given);
       if (given.empty()) break;
       lookAround(before, state_.grid);
       spreadFrom(given);
