@@ -56,9 +56,10 @@ TEST(CluxelGrid, VisitsEachNearCluxelOnceInTheSameOrderHoweverTheyAreGiven) {
       EXPECT_EQ(found, again);
       std::sort(found.begin(), found.end());
       EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end()) << "each once";
-      for (const std::uint32_t other : some)
-        if (gapBetween(all, from, other).gap() <= within_m)
-          EXPECT_TRUE(std::binary_search(found.begin(), found.end(), other)) << from << " " << other;
+      for (const std::uint32_t other : some) {
+        if (gapBetween(all, from, other).gap() > within_m) continue;
+        EXPECT_TRUE(std::binary_search(found.begin(), found.end(), other)) << from << " " << other;
+      }
     }
 }
 
