@@ -6,36 +6,84 @@
 #include <atomic>
 #include <condition_variable>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace cluxel {
 
-void parallelFor(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& work) {
-  std::atomic<std::size_t> next{0};
-  std::mutex failure_mutex;
-  std::size_t failed_piece = count;
-  std::exception_ptr failure;
-  const auto worker = [&] {
-    for (std::size_t i = next++; i < count; i = next++) {
+namespace {
+
+/// What the threads of one parallelFor() share. A thread may begin after the work is done: it then finds it closed, and
+/// nobody waits for it.
+class SharedPieces {
+ public:
+  SharedPieces(std::size_t count, const std::function<void(std::size_t)>& work)
+      : count_(count), work_(work), failed_piece_(count) {}
+
+  /// What the threads beside the calling one do.
+  void help() {
+    {
+      const std::lock_guard lock(mutex_);
+      if (is_closed_) return;
+      ++helpers_;
+    }
+    workOn();
+    const std::lock_guard lock(mutex_);
+    if (--helpers_ == 0) left_.notify_all();
+  }
+
+  void workOn() {
+    for (std::size_t i = next_++; i < count_; i = next_++) {
       try {
-        work(i);
+        work_(i);
       } catch (...) {
-        const std::lock_guard lock(failure_mutex);
-        if (i < failed_piece) failure = std::current_exception();
-        failed_piece = std::min(failed_piece, i);
-        next = count;  // all smaller pieces have been handed out already
+        const std::lock_guard lock(mutex_);
+        if (i < failed_piece_) failure_ = std::current_exception();
+        failed_piece_ = std::min(failed_piece_, i);
+        next_ = count_;  // all smaller pieces have been handed out already
       }
     }
-  };
-  const std::size_t extra = std::min<std::size_t>(std::max(threads, 1U), std::max<std::size_t>(count, 1)) - 1;
-  {
-    std::vector<std::jthread> pool;
-    for (std::size_t i = 0; i < extra; ++i) pool.emplace_back(worker);
-    worker();
   }
-  if (failure) std::rethrow_exception(failure);
+
+  /// Waits for the threads that have begun. Nobody uses `work` afterwards.
+  void close() {
+    std::unique_lock lock(mutex_);
+    is_closed_ = true;
+    left_.wait(lock, [this] { return helpers_ == 0; });
+  }
+
+  void rethrow() {
+    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  }
+
+ private:
+  const std::size_t count_;
+  const std::function<void(std::size_t)>& work_;
+  std::atomic<std::size_t> next_{0};
+  std::mutex mutex_;
+  std::condition_variable left_;
+  std::size_t helpers_ = 0, failed_piece_;
+  bool is_closed_ = false;
+  std::exception_ptr failure_;
+};
+
+}  // namespace
+
+void parallelFor(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& work) {
+  const std::size_t extra = std::min<std::size_t>(std::max(threads, 1U), std::max<std::size_t>(count, 1)) - 1;
+  const auto pieces = std::make_shared<SharedPieces>(count, work);
+  try {
+    for (std::size_t i = 0; i < extra; ++i) std::thread([pieces] { pieces->help(); }).detach();
+  } catch (...) {
+    pieces->close();
+    throw;
+  }
+  pieces->workOn();
+  pieces->close();
+  pieces->rethrow();
 }
 
 namespace {

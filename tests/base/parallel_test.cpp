@@ -37,6 +37,15 @@ TEST(ParallelFor, ThrowsTheErrorOfTheSmallestFailingPiece) {
     }
 }
 
+TEST(ParallelFor, MayEndBeforeAllItsThreadsHaveBegun) {
+  std::atomic<std::size_t> calls = 0;
+  for (int repeat = 0; repeat < 500; ++repeat) {
+    const std::vector<std::size_t> numbers{1, 2};  // gone when the last threads begin
+    parallelFor(numbers.size(), 16, [&calls, &numbers](std::size_t i) { calls += numbers[i]; });
+  }
+  EXPECT_EQ(calls, 1500U);
+}
+
 TEST(ParallelFor, BeginsNoPieceAfterAFailure) {
   for (const unsigned threads : {1U, 4U}) {
     std::atomic<std::size_t> calls = 0;

@@ -144,6 +144,10 @@ void expectSame(const std::vector<SemanticObject>& found, const std::vector<Sema
   }
 }
 
+void storeWhole(WriteTransaction& transaction, const SceneLayers& layers) {
+  storeLayers(transaction, layers, layerBlocks(layers));
+}
+
 World randomWorld(std::mt19937& random) {
   World world;
   for (int x = -2; x < 3; ++x)
@@ -158,10 +162,26 @@ TEST(StoredLayers, GiveTheObjectsOfTheSceneBack) {
   for (int round = 0; round < 20; ++round) {
     WriteTransaction transaction = environment->write();
     const Told scene = told(randomWorld(random));
-    storeLayers(transaction, scene.layers());
+    storeWhole(transaction, scene.layers());
     expectSame(storedObjects(transaction), scene.objects);
     EXPECT_EQ(storedTraces(transaction), scene.traces);
     transaction.commit();
+  }
+}
+
+TEST(StoredLayers, HaveTheSameBlocksForEveryNumberOfThreads) {
+  std::mt19937 random(6);
+  for (int round = 0; round < 20; ++round) {
+    const Told scene = told(randomWorld(random));
+    const LayerBlocks expected = layerBlocks(scene.layers());
+    for (const unsigned threads : {2U, 5U}) {
+      const LayerBlocks blocks = layerBlocks(scene.layers(), threads);
+      ASSERT_EQ(blocks.size(), expected.size());
+      for (const auto& [tile, block] : blocks) {
+        EXPECT_EQ(block.bytes, expected.at(tile).bytes);
+        EXPECT_EQ(block.objects, expected.at(tile).objects);
+      }
+    }
   }
 }
 
@@ -170,7 +190,7 @@ TEST(StoredLayers, OfSomeTilesWrittenAnewAreThoseOfTheWhole) {
   const auto changed = Environment::temporary(), whole = Environment::temporary();
   World world = randomWorld(random);
   WriteTransaction transaction = changed->write();
-  storeLayers(transaction, told(world).layers());
+  storeWhole(transaction, told(world).layers());
   for (int round = 0; round < 60; ++round) {
     TileSet tiles;
     for (unsigned i = 0; i < 1 + random() % 4; ++i) {
@@ -184,7 +204,7 @@ TEST(StoredLayers, OfSomeTilesWrittenAnewAreThoseOfTheWhole) {
       if (tiles.contains(key) || random() % 2 == 0) window.emplace(key, tile);
     replaceLayers(transaction, told(window).layers(), tiles);
     WriteTransaction from_scratch = whole->write();  // never committed
-    storeLayers(from_scratch, told(world).layers());
+    storeWhole(from_scratch, told(world).layers());
     ASSERT_EQ(blocksOf(transaction), blocksOf(from_scratch)) << "round " << round;
     expectSame(storedObjects(transaction), told(world).objects);
   }
@@ -195,7 +215,7 @@ TEST(StoredLayers, HoldTheBoundsOfPrimitivesInTheTile) {
   world[{-1, 3}] = {{"a", "b"}, {{0, "", ""}, {1, "", ""}, {0, "", ""}}};
   const auto environment = Environment::temporary();
   WriteTransaction transaction = environment->write();
-  storeLayers(transaction, told(world).layers());
+  storeWhole(transaction, told(world).layers());
   const auto layer = storedLayer(transaction, {-1, 3});
   ASSERT_TRUE(layer);
   ASSERT_EQ(layer->primitives.size(), 2U);
@@ -211,7 +231,7 @@ TEST(StoredLayers, ThatAreDamagedAreRefused) {
   const World world = randomWorld(random);
   const auto environment = Environment::temporary();
   WriteTransaction transaction = environment->write();
-  storeLayers(transaction, told(world).layers());
+  storeWhole(transaction, told(world).layers());
   const std::string valid = toBytes(*storedLayer(transaction, world.begin()->first));
   for (std::size_t length = 0; length < valid.size(); ++length)
     EXPECT_THROW(tileLayerFromBytes(valid.substr(0, length)), Error) << length;
@@ -254,13 +274,13 @@ TEST(StoredLayers, ThatDoNotFitTheRecordsAreRefused) {
   world[{0, 0}] = {{"a"}, {{0, "tree", "urn:Tree"}}};
   const auto environment = Environment::temporary();
   WriteTransaction transaction = environment->write();
-  storeLayers(transaction, told(world).layers());
+  storeWhole(transaction, told(world).layers());
   transaction.eraseBlock(tables::kObjects, tables::keyOf(nameHash("tree")));
   EXPECT_THROW(storedObjects(transaction), Error);
-  storeLayers(transaction, told(world).layers());
+  storeWhole(transaction, told(world).layers());
   transaction.eraseBlock(tables::kTileLayers, tables::keyOf(TileKey{0, 0}));
   EXPECT_THROW(storedObjects(transaction), Error);
-  storeLayers(transaction, told(world).layers());
+  storeWhole(transaction, told(world).layers());
   EXPECT_EQ(storedObjects(transaction).size(), 1U);
   transaction.putBlock(tables::kMeta, "objects", "of an earlier version");
   EXPECT_THROW(storedObjects(transaction), Error);

@@ -190,6 +190,34 @@ std::vector<Term> variedTerms() {
   return terms;
 }
 
+TEST(QuadStore, IsChangedByListsAsByOneCallAQuad) {
+  std::mt19937 random(9);
+  const auto environment = Environment::temporary();
+  std::set<QuadIds> quads;
+  for (int round = 0; round < 12; ++round) {
+    WriteTransaction transaction = environment->write();
+    transaction.useThreads(1 + static_cast<unsigned>(round) % 3);
+    QuadWriter writer(transaction);
+    std::set<QuadIds> added, removed;
+    for (int i = 0; i < (round % 3 == 0 ? 3000 : 30); ++i) {
+      const QuadIds quad = randomQuad(random, 400);
+      if (random() % 3 != 0)
+        added.insert(quad);
+      else
+        removed.insert(quad);
+    }
+    for (const QuadIds& quad : added) removed.erase(quad);
+    const QuadIds waiting = randomQuad(random, 400);
+    writer.add(waiting);  // is written before the lists are
+    quads.insert(waiting);
+    writer.change({{added.begin(), added.end()}, {removed.begin(), removed.end()}});
+    for (const QuadIds& quad : removed) quads.erase(quad);
+    quads.insert(added.begin(), added.end());
+    expectSameAnswers(QuadReader(transaction), quads, random, 400);
+    transaction.commit();
+  }
+}
+
 TEST(QuadStore, GivesBackEveryTermAndFindsItsIdAgain) {
   const std::vector<Term> terms = variedTerms();
   auto environment = Environment::temporary();

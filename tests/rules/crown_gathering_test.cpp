@@ -110,6 +110,37 @@ TEST(CrownGathering, DoesNotDependOnTheOrderOfBoxes) {
   }
 }
 
+/// Two trees with hanging leaves all around, which follow from each other.
+BoxScene treesAmongLeaves(std::mt19937& random) {
+  BoxScene scene = twoTrees();
+  const auto within = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  for (int i = 0; i < 60; ++i) {
+    const Eigen::Vector3d centre(within(-8, 8), within(-5, 5), within(2, 7)), size(within(0.4, 1), within(0.4, 1), 0.4);
+    scene.boxes.push_back(box("leaves" + std::to_string(i), kScatter, centre, size));
+  }
+  return scene;
+}
+
+TEST(CrownGathering, DoesNotDependOnTheNumberOfThreads) {
+  const RuleSet rules = gatheringRules(kGather);
+  std::mt19937 random(4);
+  std::size_t gathered = 0;
+  for (int round = 0; round < 8; ++round) {
+    const Scene scene = sceneOfBoxes(treesAmongLeaves(random)).scene;
+    const ReasoningResult expected = reason(scene, rules);
+    for (const unsigned threads : {2U, 3U}) {
+      const ReasoningResult result = reason(scene, rules, {.threads = threads});
+      EXPECT_EQ(result.traces, expected.traces);
+      ASSERT_EQ(result.objects.size(), expected.objects.size());
+      for (std::size_t i = 0; i < result.objects.size(); ++i) EXPECT_EQ(result.objects[i].id, expected.objects[i].id);
+    }
+    for (const Decision& decision : expected.decisions) gathered += decision.is_gathered ? 1 : 0;
+  }
+  EXPECT_GT(gathered, 50U);
+}
+
 TEST(CrownGathering, IsToldByExplain) {
   const BuiltBoxScene built = sceneOfBoxes(twoTrees());
   const RuleSet rules = gatheringRules(kGather);

@@ -40,6 +40,29 @@ TEST(CluxelGrid, FindsAllPrimitivesNearSeveralCluxels) {
     }
 }
 
+TEST(CluxelGrid, VisitsEachNearCluxelOnceInTheSameOrderHoweverTheyAreGiven) {
+  const Scene scene = sceneOfBoxes(streetOfBoxes()).scene;
+  const SceneCluxels& all = scene.cluxels;
+  std::vector<std::uint32_t> some;
+  for (std::uint32_t i = 0; i < all.size(); i += 2) some.push_back(i);
+  const CluxelGrid grid(all, some);
+  std::reverse(some.begin(), some.end());
+  const CluxelGrid reversed(all, some);
+  for (std::uint32_t from = 0; from < all.size(); from += 11)
+    for (const double within_m : {0.0, 0.7}) {
+      std::vector<std::uint32_t> found, again;
+      grid.near(from, within_m, [&](std::uint32_t other) { found.push_back(other); });
+      reversed.near(from, within_m, [&](std::uint32_t other) { again.push_back(other); });
+      EXPECT_EQ(found, again);
+      std::sort(found.begin(), found.end());
+      EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end()) << "each once";
+      for (const std::uint32_t other : some) {
+        if (gapBetween(all, from, other).gap() > within_m) continue;
+        EXPECT_TRUE(std::binary_search(found.begin(), found.end(), other)) << from << " " << other;
+      }
+    }
+}
+
 TEST(FragmentGaps, AreTheSmallestOfAllPairs) {
   const Scene scene = sceneOfBoxes(streetOfBoxes()).scene;
   const RuleSet rules = outdoorRules();

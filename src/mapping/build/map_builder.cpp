@@ -4,17 +4,16 @@
 
 #include <algorithm>
 #include <chrono>
-#include <deque>
-#include <exception>
+#include <future>
 #include <optional>
 #include <set>
 #include <utility>
 
-#include "base/parallel.hpp"
 #include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/build_poses.hpp"
 #include "mapping/build/operator_statements.hpp"
+#include "mapping/build/scan_reader.hpp"
 #include "mapping/build/scan_store.hpp"
 #include "mapping/build/stage_clock.hpp"
 #include "mapping/build/work_file.hpp"
@@ -53,23 +52,20 @@ void requireScansOf(const WorkFile& work, const scan::ScanSet& scans, const std:
 }
 
 /// Objects without members: nothing was there before, so that they are compared with nothing.
-std::vector<ObjectMembers> namesOf(const std::vector<rules::SemanticObject>& objects) {
+std::vector<ObjectMembers> namesOfObjects(const rdf::ReadTransaction& transaction) {
   std::vector<ObjectMembers> names;
-  for (const rules::SemanticObject& object : objects) names.push_back({object.id, object.class_iri, {}});
+  forEachRecord(transaction, [&](const ContentHash& id, const ObjectRecord& record) {
+    names.push_back({id, record.class_iri, {}});
+  });
   return names;
 }
 
-struct ReadScan {
-  scan::ScanReading reading;
-  PreparedScan scan;
-  std::exception_ptr fault;  ///< told when it is the scan's turn: batches before it are committed first
-};
-
 class MapBuild {
  public:
-  MapBuild(const scan::ScanSet& scans, const ParsedInputs& parsed, WorkFile& work, const BuildParams& params,
-           ProgressSink& sink)
+  MapBuild(const scan::ScanSet& scans, ScanReader& reader, const ParsedInputs& parsed, WorkFile& work,
+           const BuildParams& params, ProgressSink& sink)
       : scans_(scans),
+        reader_(reader),
         parsed_(parsed),
         work_(work),
         params_(params),
@@ -113,7 +109,7 @@ class MapBuild {
     std::uint64_t batch_points = 0, part_points = 0;
     std::size_t next = first;
     for (; next < scans_.size() && batch_points < params_.batch_points; ++next) {
-      ReadScan given = read(next);
+      ReadScan given = reader_.take(next);
       for (const std::string& note : reading_notes_.add(given.reading)) sink_.note(note);
       const std::uint64_t points = given.scan.cloud.point_count;
       auto segments = storeScan(transaction, std::move(given.scan));
@@ -132,25 +128,6 @@ class MapBuild {
     return next;
   }
 
-  /// Reads a scan, and on other threads the next ones: one a thread.
-  ReadScan read(std::size_t number) {
-    if (ahead_.empty()) {
-      ahead_.resize(std::min<std::size_t>(std::max(params_.threads, 1U), scans_.size() - number));
-      parallelFor(ahead_.size(), params_.threads, [&](std::size_t i) {
-        try {
-          const scan::LoadedScan loaded = scans_.read(number + i);
-          ahead_[i] = {loaded.reading, prepareScan(loaded.scan), nullptr};
-        } catch (...) {
-          ahead_[i].fault = std::current_exception();
-        }
-      });
-    }
-    ReadScan first = std::move(ahead_.front());
-    ahead_.pop_front();
-    if (first.fault) std::rethrow_exception(first.fault);
-    return first;
-  }
-
   void commitBatch(rdf::WriteTransaction& transaction, PointChanges changes, bool is_last, double started_s,
                    StageClock& clock) {
     stages_.update(transaction, std::move(changes), params_.threads, clock);
@@ -164,7 +141,11 @@ class MapBuild {
     storeInputs(transaction, parsed_.inputs);
     state_ = MapState{is_last, parsed_.inputs.hash().hex()};
     storeState(transaction, *state_);
-    if (is_last) writeThings(transaction, dateTimeText(nowSeconds()), {}, namesOf(storedObjects(transaction)));
+    if (is_last) writeThings(transaction, dateTimeText(nowSeconds()), {}, namesOfObjects(transaction));
+    const auto policy = params_.threads > 1 ? std::launch::async : std::launch::deferred;
+    const auto freed = std::async(policy, [&] {  // beside LMDB, which uses one thread
+      if (is_last) stages_.dropAll();
+    });
     transaction.writeIndexes();
     clock.progress("indexes", 1, 1);
     addActivity(transaction, {"build", started_s, nowSeconds(), clock.seconds()}, clouds, parsed_.inputs);
@@ -179,6 +160,7 @@ class MapBuild {
   }
 
   const scan::ScanSet& scans_;
+  ScanReader& reader_;
   const ParsedInputs& parsed_;
   WorkFile& work_;
   const BuildParams& params_;
@@ -186,13 +168,14 @@ class MapBuild {
   scan::ReadingNotes reading_notes_{scans_.remedies()};
   std::optional<MapState> state_;  ///< the state in the file after the last commit
   TileStages stages_;
-  std::deque<ReadScan> ahead_;  ///< read before their turn
   BuildReport report_;
 };
 
 BuildReport built(const scan::ScanSet& scans, const MapInputs& inputs, const fs::path& file, const BuildParams& params,
                   ProgressSink& sink) {
   if (scans.size() == 0) throw Error(ErrorKind::InvalidArgument, "there is no scan to build a map from");
+  ScanReader early(scans, params.threads);
+  if (!params.refine_poses) early.begin(0);  // beside what comes before the first scan is stored
   MapInputs complete = inputs;
   complete.map_origin = scans.mapOrigin();
   complete.crs = scans.crs();
@@ -210,7 +193,9 @@ BuildReport built(const scan::ScanSet& scans, const MapInputs& inputs, const fs:
   WorkFile work(file, complete.hash().hex(), params.force);
   if (!params.refine_poses) noteDoubtfulPoses(scans, params.threads, sink);
   const scan::ScanSet posed = params.refine_poses ? withRefinedPoses(scans, params.threads, sink) : scans;
-  const BuildReport report = MapBuild(posed, parsed, work, params, sink).run();
+  ScanReader refined(posed, params.threads);
+  ScanReader& reader = params.refine_poses ? refined : early;
+  const BuildReport report = MapBuild(posed, reader, parsed, work, params, sink).run();
   work.finish();
   return report;
 }

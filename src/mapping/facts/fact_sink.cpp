@@ -189,14 +189,15 @@ std::vector<rdf::QuadIds> FactSink::takeSorted() {
 }
 
 FactChange FactSink::writeDifference() {
-  const std::vector<rdf::QuadIds> facts = takeSorted();
+  std::vector<rdf::QuadIds> facts = takeSorted();
   const std::vector<rdf::QuadIds> old = storedToCompare(readerOf(transaction_));
   FactChange change;
   std::set_difference(old.begin(), old.end(), facts.begin(), facts.end(), std::back_inserter(change.removed));
-  std::set_difference(facts.begin(), facts.end(), old.begin(), old.end(), std::back_inserter(change.added));
-  for (const rdf::QuadIds& quad : change.removed) writer_.remove(quad);
-  for (const rdf::QuadIds& quad : change.added) writer_.add(quad);
-  writer_.flush();
+  if (old.empty())
+    change.added = std::move(facts);
+  else
+    std::set_difference(facts.begin(), facts.end(), old.begin(), old.end(), std::back_inserter(change.added));
+  writer_.change(change);
   return change;
 }
 

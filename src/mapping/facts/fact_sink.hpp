@@ -28,9 +28,7 @@ enum class FactsOf : std::uint8_t {
 };
 
 /// What a sink changed, ascending.
-struct FactChange {
-  std::vector<rdf::QuadIds> added, removed;
-};
+using FactChange = rdf::QuadDifference;
 
 class FactSink {
  public:

@@ -2,15 +2,13 @@
 // One thread at a time uses the transaction.
 #include "mapping/facts/scene_facts.hpp"
 
-#include "perception/segments/primitive_inputs.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::mapping {
 
 SceneFacts::SceneFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, const std::vector<Cloud>& clouds,
-                       const perception::Scene& scene,
-                       const std::map<perception::TileKey, perception::SummaryTile>& summaries)
-    : transaction_(transaction), inputs_(inputs), clouds_(clouds), scene_(scene), summaries_(summaries) {}
+                       const perception::Scene& scene)
+    : transaction_(transaction), inputs_(inputs), clouds_(clouds), scene_(scene) {}
 
 void SceneFacts::begin(std::shared_future<WayGraph> ways) {
   telling_ = std::async(std::launch::async, [this, ways = std::move(ways)] {
@@ -32,7 +30,6 @@ void SceneFacts::tell() {
   sink_.emplace(transaction_, rdf::vocabulary::kGraphObserved);
   addSceneFacts(inputs_, clouds_, scene_, *sink_);
   sink_->sortSoFar();
-  input_hashes_ = perception::inputHashes(scene_, summaries_);
 }
 
 }  // namespace cluxel::mapping

@@ -2,25 +2,22 @@
 // What follows from a scene alone, collected while its objects are decided.
 #pragma once
 
-#include <cstdint>
 #include <future>
-#include <map>
 #include <optional>
 #include <vector>
 
 #include "mapping/facts/fact_sink.hpp"
 #include "mapping/facts/map_facts.hpp"
 #include "mapping/ways/ways.hpp"
-#include "perception/segments/summary_tile.hpp"
+#include "perception/segments/scene.hpp"
 
 namespace cluxel::mapping {
 
-/// The facts about clouds and primitives, and the hashes of what primitives follow from. The arguments of the
-/// constructor must live as long.
+/// The facts about clouds and primitives. The arguments of the constructor must live as long.
 class SceneFacts {
  public:
   SceneFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, const std::vector<Cloud>& clouds,
-             const perception::Scene& scene, const std::map<perception::TileKey, perception::SummaryTile>& summaries);
+             const perception::Scene& scene);
 
   /// Collects them on a thread of its own when the ways are there, which may be made meanwhile. Nobody else may use the
   /// transaction until wait() or collect() has returned.
@@ -32,7 +29,6 @@ class SceneFacts {
 
   /// The sink of the observed graph; it has the facts when collect() has returned.
   FactSink& sink() { return *sink_; }
-  const std::vector<std::uint64_t>& inputHashes() const { return input_hashes_; }
 
  private:
   void tell();
@@ -41,9 +37,7 @@ class SceneFacts {
   const MapInputs& inputs_;
   const std::vector<Cloud>& clouds_;
   const perception::Scene& scene_;
-  const std::map<perception::TileKey, perception::SummaryTile>& summaries_;
   std::optional<FactSink> sink_;
-  std::vector<std::uint64_t> input_hashes_;
   std::future<void> telling_;  ///< its destructor waits
 };
 

@@ -23,6 +23,7 @@
 #include "mapping/statements/overruled_objects.hpp"
 #include "mapping/statements/statement_facts.hpp"
 #include "mapping/statements/statement_places.hpp"
+#include "perception/segments/primitive_inputs.hpp"
 #include "rdf/io/rdf_io.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
@@ -80,7 +81,7 @@ void writeObjectsSoFar(rdf::WriteTransaction& transaction, const MapInputs& inpu
   const std::vector<std::uint32_t> object_of = objectOfCluxel(so_far, scene.cluxels.size());
   const auto sightings = sightingsOf(stages.summaries(), object_of);
   const auto wide = mergedParts(wideTilesOf(scene, stages.summaries(), so_far.objects));
-  SceneFacts facts(transaction, inputs, clouds, scene, stages.summaries());
+  SceneFacts facts(transaction, inputs, clouds, scene);
   writeObserved(
       facts, {inputs, clouds, scene, so_far, sightings, {}, {}, nearOf(so_far.objects, scene.cluxels, object_of), wide},
       {}, ways);
@@ -117,7 +118,7 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
     if (check) check(0);
     writeObjectsSoFar(transaction, parsed.inputs, clouds, scene, stages, ways.get(), objects);
   });
-  SceneFacts facts(transaction, parsed.inputs, clouds, scene, stages.summaries());
+  SceneFacts facts(transaction, parsed.inputs, clouds, scene);
   if (is_beside) facts.begin(ways);
   rules::ThresholdMargins margins(scene, parsed.rules);
   rules::ReasoningResult result =
@@ -146,14 +147,17 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   const auto passed_rays = rays_update.finish(transaction, Covered::All);
   const auto sightings = sightingsOf(stages.summaries(), object_of);
   const std::vector<WideTile> wide = wide_tiles.get();
+  auto blocks = std::async(policy, [&] {  // nothing below needs them before storeLayers()
+    const std::vector<std::uint64_t> hashes = perception::inputHashes(scene, stages.summaries());
+    return layerBlocks({.scene = scene, .objects = result.objects, .traces = traces, .inputs = hashes});
+  });
   writeObserved(
       facts,
       {parsed.inputs, clouds, scene, result, sightings, presence, passed_rays, near.get(), mergedParts(wide), threads},
       stated.outcomes, ways.get());
   storeWideTiles(transaction, wide);
   inferFacts(transaction, parsed.inputs, sink, check);
-  storeLayers(transaction,
-              {.scene = scene, .objects = result.objects, .traces = traces, .inputs = facts.inputHashes()});
+  storeLayers(transaction, {.scene = scene, .objects = result.objects}, blocks.get());
   storeOverruled(transaction, stated.overruled, scene);
   storeStatementTiles(transaction, stated.tiles);
   storeSplits(transaction, splits);

@@ -6,7 +6,10 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "base/parallel.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"
@@ -43,12 +46,15 @@ class LayerMaker {
       }
   }
 
-  TileLayer layerOf(const TileKey& key, const Run& run) const {
+  LayerBlock blockOf(const TileKey& key, const Run& run) const {
     TileLayer layer;
     layer.key = key;
     addPrimitives(run, layer);
     addShares(run, layer);
-    return layer;
+    LayerBlock block{toBytes(layer), {}};
+    for (const TileLayer::Share& share : layer.shares)
+      if (block.objects.empty() || block.objects.back() != share.object) block.objects.push_back(share.object);
+    return block;
   }
 
  private:
@@ -106,10 +112,23 @@ void putIfChanged(rdf::WriteTransaction& transaction, std::string_view table, co
   transaction.putBlock(table, key, bytes);
 }
 
+LayerBlocks blocksOf(const SceneLayers& layers, const std::map<TileKey, Run>& runs, unsigned threads) {
+  const LayerMaker maker(layers);
+  LayerBlocks blocks;
+  std::vector<std::pair<const Run*, LayerBlocks::iterator>> places;
+  places.reserve(runs.size());
+  for (const auto& [tile, run] : runs) places.emplace_back(&run, blocks.emplace(tile, LayerBlock{}).first);
+  parallelFor(places.size(), threads, [&](std::size_t i) {
+    const auto& [run, block] = places[i];
+    block->second = maker.blockOf(block->first, *run);
+  });
+  return blocks;
+}
+
 class LayerUpdate {
  public:
-  LayerUpdate(rdf::WriteTransaction& transaction, const SceneLayers& layers)
-      : transaction_(transaction), layers_(layers), maker_(layers), runs_(runsOf(layers.scene.cluxels)) {}
+  LayerUpdate(rdf::WriteTransaction& transaction, const SceneLayers& layers, const LayerBlocks& blocks)
+      : transaction_(transaction), layers_(layers), blocks_(blocks) {}
 
   void write(const TileSet& tiles) {
     for (const TileKey& tile : tiles) writeTile(tile);
@@ -119,16 +138,15 @@ class LayerUpdate {
  private:
   void writeTile(const TileKey& tile) {
     const std::string key = tables::keyOf(tile);
-    const auto run = runs_.find(tile);
+    const auto block = blocks_.find(tile);
     if (const auto old = storedLayer(transaction_, tile))
       for (const TileLayer::Share& share : old->shares) tiles_of_[share.object];
-    if (run == runs_.end()) {
+    if (block == blocks_.end()) {
       transaction_.eraseBlock(tables::kTileLayers, key);
       return;
     }
-    const TileLayer layer = maker_.layerOf(tile, run->second);
-    for (const TileLayer::Share& share : layer.shares) tiles_of_[share.object].insert(tile);
-    putIfChanged(transaction_, tables::kTileLayers, key, toBytes(layer));
+    for (const ContentHash& object : block->second.objects) tiles_of_[object].insert(tile);
+    putIfChanged(transaction_, tables::kTileLayers, key, block->second.bytes);
   }
 
   void writeRecord(const ContentHash& object, const TileSet& now_in, const TileSet& written) {
@@ -156,23 +174,28 @@ class LayerUpdate {
 
   rdf::WriteTransaction& transaction_;
   const SceneLayers& layers_;
-  LayerMaker maker_;
-  std::map<TileKey, Run> runs_;
+  const LayerBlocks& blocks_;
   std::map<ContentHash, TileSet> tiles_of_;  ///< of objects in the written tiles before or now: where they are now
 };
 
 }  // namespace
 
-void storeLayers(rdf::WriteTransaction& transaction, const SceneLayers& layers) {
+LayerBlocks layerBlocks(const SceneLayers& layers, unsigned threads) {
+  return blocksOf(layers, runsOf(layers.scene.cluxels), threads);
+}
+
+void storeLayers(rdf::WriteTransaction& transaction, const SceneLayers& layers, const LayerBlocks& blocks) {
   TileSet tiles;
-  for (const auto& [tile, run] : runsOf(layers.scene.cluxels)) tiles.insert(tile);
+  for (const auto& [tile, block] : blocks) tiles.insert(tile);
   transaction.forEachBlock(tables::kTileLayers, "",
                            [&](std::string_view key, std::string_view) { tiles.insert(tables::tileOfKey(key)); });
-  replaceLayers(transaction, layers, tiles);
+  LayerUpdate(transaction, layers, blocks).write(tiles);
 }
 
 void replaceLayers(rdf::WriteTransaction& transaction, const SceneLayers& layers, const TileSet& tiles) {
-  LayerUpdate(transaction, layers).write(tiles);
+  std::map<TileKey, Run> runs = runsOf(layers.scene.cluxels);
+  std::erase_if(runs, [&](const auto& entry) { return !tiles.contains(entry.first); });
+  LayerUpdate(transaction, layers, blocksOf(layers, runs, 1)).write(tiles);
 }
 
 }  // namespace cluxel::mapping

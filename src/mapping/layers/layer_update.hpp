@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "perception/segments/scene.hpp"
@@ -20,8 +22,19 @@ struct SceneLayers {
   std::span<const std::uint64_t> traces = {}, inputs = {};  ///< by primitive; empty: all are 0
 };
 
-/// Makes the map hold the layers of the scene of all its tiles. Only blocks that differ are written.
-void storeLayers(rdf::WriteTransaction& transaction, const SceneLayers& layers);
+/// The block of one tile, and the objects that have a share of it, each once.
+struct LayerBlock {
+  std::string bytes;
+  std::vector<ContentHash> objects;
+};
+using LayerBlocks = std::map<perception::TileKey, LayerBlock>;
+
+/// The blocks of all tiles of the scene. They are a function of `layers`, whatever the number of threads.
+LayerBlocks layerBlocks(const SceneLayers& layers, unsigned threads = 1);
+
+/// Makes the map hold the layers of the scene of all its tiles, of which `blocks` are the blocks. Only blocks that
+/// differ are written.
+void storeLayers(rdf::WriteTransaction& transaction, const SceneLayers& layers, const LayerBlocks& blocks);
 /// The same for `tiles` alone; the scene is that of a window around them. A tile that the scene lacks is removed. The
 /// records of the objects in these tiles, before and after, follow; of an object that goes on outside of them, the
 /// tiles there are kept, so an object that gets another name must lie in `tiles` as a whole.

@@ -44,11 +44,6 @@ class QuadJournal {
   bool is_complete_ = false;
 };
 
-/// The quads by which two states of a store differ; both lists are sorted.
-struct QuadDifference {
-  std::vector<QuadIds> added, removed;
-};
-
 /// What the transaction has changed since it began, or since restartJournal(). Absent when that was too much to follow.
 std::optional<QuadDifference> changesOf(const WriteTransaction& transaction);
 void restartJournal(const WriteTransaction& transaction);

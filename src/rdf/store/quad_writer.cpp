@@ -67,7 +67,7 @@ struct QuadWriter::Impl {
   void flushTerms();
   void flushGeometries(TermId first, TermId last);
   QuadDifference takeChanges();
-  void flushQuads();
+  void flushQuads(const QuadDifference& difference);
 };
 
 TermId QuadWriter::Impl::internRecord(const Term& term) {
@@ -152,8 +152,7 @@ QuadDifference QuadWriter::Impl::takeChanges() {
   return difference;
 }
 
-void QuadWriter::Impl::flushQuads() {
-  const QuadDifference difference = takeChanges();
+void QuadWriter::Impl::flushQuads(const QuadDifference& difference) {
   // The longest first, so that no thread waits long.
   constexpr std::array<QuadOrder, 4> kOrders{QuadOrder::Posg, QuadOrder::Ospg, QuadOrder::Gspo, QuadOrder::Spog};
   std::array<IndexTask, 4> tasks;
@@ -200,6 +199,18 @@ void QuadWriter::remove(const QuadIds& quad) {
   if (impl_->changes.size() >= kMaxPendingQuads) flush();
 }
 
+void QuadWriter::change(const QuadDifference& difference) {
+  flush();
+  if (difference.added.size() + difference.removed.size() < kMaxPendingQuads) {
+    impl_->flushQuads(difference);
+    ++impl_->state().generation;
+    return;
+  }
+  for (const QuadIds& quad : difference.removed) remove(quad);
+  for (const QuadIds& quad : difference.added) add(quad);
+  flush();
+}
+
 void QuadWriter::clearGraph(TermId graph) {
   flush();
   QuadCursor quads = impl_->reader.scan({.s = {}, .p = {}, .o = {}, .g = graph}, QuadOrder::Gspo);
@@ -212,7 +223,7 @@ void QuadWriter::clearGraph(TermId graph) {
 void QuadWriter::flush() {
   if (impl_->changes.empty() && impl_->terms.entries().empty()) return;
   impl_->flushTerms();
-  impl_->flushQuads();
+  impl_->flushQuads(impl_->takeChanges());
   ++impl_->state().generation;
 }
 

@@ -46,15 +46,16 @@ class Gathering {
     lookAround(0, theirs);
     for (std::uint64_t round = 1;; ++round) {
       state_.trace.enterRound(round);
-      const std::vector<ReachedFragment> in_reach = reached();
       std::vector<FragmentIndex> given;
       const auto before = static_cast<FragmentIndex>(state_.fragments.size());
-      for (const ReachedFragment& found : in_reach) hand(found, given);
+      for (const ReachedFragment& found : reached()) hand(found, given);
       if (given.empty()) break;
       lookAround(before, state_.grid);
-      for (const FragmentIndex fragment : given) spreadFrom(fragment);
+      spreadFrom(given);
     }
-    for (const Gatherer& gatherer : gatherers_) renew(gatherer);
+    for (const Gatherer& gatherer : gatherers_)
+      for (PartInMaking& part : state_.objects[gatherer.owner].parts)
+        if (part.name == gatherer.spec->part) part.is_outdated = true;
   }
 
  private:
@@ -196,17 +197,24 @@ class Gathering {
 
   Eigen::AlignedBox3d boundsOf(FragmentIndex fragment) const { return rules::boundsOf(state_.fragments, fragment); }
 
-  /// Notes which free fragments are near one that an object has just got.
-  void spreadFrom(FragmentIndex fragment) {
+  /// Notes which free fragments are near those that objects have just got. The smallest gap counts, so that the order
+  /// does not matter.
+  void spreadFrom(const std::vector<FragmentIndex>& given) {
+    std::vector<std::vector<FragmentGap>> gaps(given.size());
+    parallelFor(given.size(), state_.threads(), [&](std::size_t i) { gaps[i] = gapsFrom(given[i]); });
+    for (std::size_t i = 0; i < given.size(); ++i)
+      for (const FragmentGap& to : gaps[i])
+        for (const std::size_t g : of_owner_[state_.fragments[given[i]].owner])
+          if (to.gap_m <= gatherers_[g].spec->gather->within_m && mayTake(gatherers_[g], to.fragment))
+            note(to.fragment, g, to.gap_m);
+  }
+
+  /// The gaps from a fragment to free ones that gatherers of its object may take.
+  std::vector<FragmentGap> gapsFrom(FragmentIndex fragment) const {
     const auto& numbers = of_owner_[state_.fragments[fragment].owner];
     double widest = 0;
     for (std::size_t g : numbers) widest = std::max(widest, gatherers_[g].spec->gather->within_m);
-    std::vector<FragmentIndex> wanted = wantedNear(fragment, widest, numbers);
-    if (wanted.empty()) return;
-    for (const FragmentGap& to : gapsTo(state_, state_.fragments[fragment].cluxels, std::move(wanted), widest))
-      for (const std::size_t g : numbers)
-        if (to.gap_m <= gatherers_[g].spec->gather->within_m && mayTake(gatherers_[g], to.fragment))
-          note(to.fragment, g, to.gap_m);
+    return gapsTo(state_, state_.fragments[fragment].cluxels, wantedNear(fragment, widest, numbers), widest);
   }
 
   /// The free fragments near one that one of the gatherers may take.
@@ -323,11 +331,6 @@ class Gathering {
     step.unit = "m";
     step.passed = true;
     decision.path.push_back(std::move(step));
-  }
-
-  void renew(const Gatherer& gatherer) {
-    for (PartInMaking& part : state_.objects[gatherer.owner].parts)
-      if (part.name == gatherer.spec->part) part.is_outdated = true;
   }
 
   ReasoningState& state_;

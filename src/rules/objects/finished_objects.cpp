@@ -3,6 +3,9 @@
 #include "rules/objects/finished_objects.hpp"
 
 #include <algorithm>
+#include <type_traits>
+
+#include "base/parallel.hpp"
 
 namespace cluxel::rules {
 
@@ -56,32 +59,45 @@ bool isClassWide(const ReasoningState& state, const ObjectInMaking& object) {
 
 ContentHash idOf(const perception::Scene& scene, const SemanticObject& object) {
   if (object.is_class_wide) return ContentHasher().addText(object.class_iri).addText("class-wide").finish();
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> members;
+  std::vector<std::uint64_t> members;  // scan and point, which sort as pairs do
   for (const ObjectPart& part : object.parts)
     for (const std::uint32_t cluxel : part.cluxels)
-      members.emplace_back(scene.cluxels.seed[cluxel].scan, scene.cluxels.seed[cluxel].point);
+      members.push_back(std::uint64_t{scene.cluxels.seed[cluxel].scan} << 32U | scene.cluxels.seed[cluxel].point);
   std::sort(members.begin(), members.end());
-  ContentHasher hasher;
-  hasher.addText(object.class_iri);
-  for (const auto& [scan, point] : members) hasher.add(scene.cluxels.scans[scan]).add(point);
-  return hasher.finish();
+  struct Member {
+    ContentHash scan;
+    std::uint32_t point;
+  };
+  static_assert(std::has_unique_object_representations_v<Member>);
+  std::vector<Member> named;  // the hasher is called once: a call for each costs as much as the hashing
+  named.reserve(members.size());
+  for (const std::uint64_t member : members)
+    named.push_back({scene.cluxels.scans[member >> 32U], static_cast<std::uint32_t>(member)});
+  return ContentHasher().addText(object.class_iri).addBytes(named.data(), named.size() * sizeof(Member)).finish();
 }
 
+namespace {
+
+SemanticObject finishedObject(const ReasoningState& state, const ObjectInMaking& making) {
+  SemanticObject object;
+  object.class_iri = making.rule->class_iri;
+  object.confidence = making.confidence;
+  object.rule_id = making.rule->id;
+  object.decision = making.decision;
+  object.is_class_wide = isClassWide(state, making);
+  if (object.is_class_wide) tellByText(state.rules, object);
+  object.parts = finishedParts(state, making);
+  if (!object.parts.empty()) object.id = idOf(state.scene, object);
+  return object;
+}
+
+}  // namespace
+
 std::vector<SemanticObject> finishedObjects(const ReasoningState& state) {
-  std::vector<SemanticObject> objects;
-  for (const ObjectInMaking& making : state.objects) {
-    SemanticObject object;
-    object.class_iri = making.rule->class_iri;
-    object.confidence = making.confidence;
-    object.rule_id = making.rule->id;
-    object.decision = making.decision;
-    object.is_class_wide = isClassWide(state, making);
-    if (object.is_class_wide) tellByText(state.rules, object);
-    object.parts = finishedParts(state, making);
-    if (object.parts.empty()) continue;
-    object.id = idOf(state.scene, object);
-    objects.push_back(std::move(object));
-  }
+  std::vector<SemanticObject> objects(state.objects.size());
+  parallelFor(objects.size(), state.threads(),
+              [&](std::size_t i) { objects[i] = finishedObject(state, state.objects[i]); });
+  std::erase_if(objects, [](const SemanticObject& object) { return object.parts.empty(); });
   std::sort(objects.begin(), objects.end(),
             [](const SemanticObject& a, const SemanticObject& b) { return a.id < b.id; });
   return objects;

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "base/disjoint_sets.hpp"
+#include "base/parallel.hpp"
 #include "rules/objects/seed_links.hpp"
 #include "rules/propose/condition_eval.hpp"
 
@@ -126,19 +127,25 @@ class Joining {
 /// Free fragments that may be members of a group, in canonical order.
 std::vector<FragmentIndex> members(const ReasoningState& state, const Rule& rule,
                                    const std::vector<FragmentIndex>& slices) {
-  std::vector<FragmentIndex> found;
-  auto consider = [&](FragmentIndex fragment) {
-    if (!state.fragments[fragment].alive || state.fragments[fragment].owner != kFree) return;
+  const std::size_t count = rule.seed.slice ? slices.size() : state.fragments.size();
+  const auto numbered = [&](std::size_t i) { return rule.seed.slice ? slices[i] : static_cast<FragmentIndex>(i); };
+  const auto isMember = [&](FragmentIndex fragment) {
+    if (!state.fragments[fragment].alive || state.fragments[fragment].owner != kFree) return false;
     const scan::PrimitiveLabel label = state.fragments.labelOf(fragment);
-    if (!isIn(rule.seed.labels, label) && !(rule.group && isIn(rule.group->labels, label))) return;
+    if (!isIn(rule.seed.labels, label) && !(rule.group && isIn(rule.group->labels, label))) return false;
     // For sliced seeds the conditions were tested on the whole fragment before it was cut.
-    if (rule.seed.slice || passes(state, rule, rule.seed.where, state.fragments.candidateOf({fragment})))
-      found.push_back(fragment);
+    return rule.seed.slice || rule.seed.where.empty() ||
+           passes(state, rule, rule.seed.where, state.fragments.candidateOf({fragment}));
   };
-  if (rule.seed.slice)
-    for (FragmentIndex fragment : slices) consider(fragment);
-  else
-    for (FragmentIndex fragment = 0; fragment < state.fragments.size(); ++fragment) consider(fragment);
+  constexpr std::size_t kTogether = 256;
+  std::vector<char> is_member(count, 0);  // bytes, written in parallel
+  parallelFor((count + kTogether - 1) / kTogether, state.threads(), [&](std::size_t chunk) {
+    const std::size_t end = std::min(count, (chunk + 1) * kTogether);
+    for (std::size_t i = chunk * kTogether; i < end; ++i) is_member[i] = isMember(numbered(i)) ? 1 : 0;
+  });
+  std::vector<FragmentIndex> found;
+  for (std::size_t i = 0; i < count; ++i)
+    if (is_member[i] != 0) found.push_back(numbered(i));
   std::sort(found.begin(), found.end(), [&](FragmentIndex a, FragmentIndex b) { return state.fragments.before(a, b); });
   return found;
 }

@@ -7,6 +7,9 @@
 #include <compare>
 #include <limits>
 #include <numeric>
+#include <utility>
+
+#include "base/radix_order.hpp"
 
 namespace cluxel::rules {
 
@@ -18,20 +21,11 @@ std::vector<std::uint32_t> numbersTo(std::size_t count) {
   return numbers;
 }
 
-/// Unsigned numbers in the order of others: they compare fast.
-std::uint32_t rankOf(std::int32_t cell) {
-  return static_cast<std::uint32_t>(cell) ^ 0x8000'0000U;
-}
+/// Unsigned numbers in the order of heights.
 std::uint32_t rankOf(float z) {
   const auto bits = std::bit_cast<std::uint32_t>(z + 0.0F);  // no negative zero
   return (bits >> 31U) != 0 ? ~bits : bits | 0x8000'0000U;
 }
-std::uint64_t joined(std::uint32_t high, std::uint32_t low) {
-  return std::uint64_t{high} << 32U | low;
-}
-
-/// The cell of a cluxel; its height and its number.
-using Placed = std::pair<std::uint64_t, std::uint64_t>;
 
 /// Cells of one x.
 struct CellRow {
@@ -73,22 +67,16 @@ CluxelGrid::CluxelGrid(const perception::SceneCluxels& all) : CluxelGrid(all, nu
 
 CluxelGrid::CluxelGrid(const perception::SceneCluxels& all, std::span<const std::uint32_t> some) : all_(all) {
   if (all.size() > 0) origin_z_ = all.center[all.size() / 2].z();
-  std::vector<Placed> placed;
-  placed.reserve(some.size());
   float highest = 0;
   for (const std::uint32_t i : some) {
     const float z = heightOf(i);
-    placed.emplace_back(joined(rankOf(cellOf(all.center[i].x())), rankOf(cellOf(all.center[i].y()))),
-                        joined(rankOf(z), i));
     margin_m_ = std::max(margin_m_, static_cast<double>(all.extent[i].head<2>().maxCoeff()) / 2);
     tallest_half_m_ = std::max(tallest_half_m_, all.extent[i].z() / 2);
     highest = std::max(highest, std::abs(z));
   }
   rounding_m_ = 1e-4F + 8 * std::numeric_limits<float>::epsilon() * highest;
-  std::sort(placed.begin(), placed.end());
-  entries_.reserve(placed.size());
-  for (const auto& [cell, place] : placed) {
-    const auto cluxel = static_cast<std::uint32_t>(place);
+  entries_.reserve(some.size());
+  for (const std::uint32_t cluxel : inCellOrder(some)) {
     const std::int32_t x = cellOf(all.center[cluxel].x()), y = cellOf(all.center[cluxel].y());
     if (columns_.empty() || columns_.back().first != x) columns_.emplace_back(x, cells_.size());
     if (cells_.empty() || cells_.back().x != x || cells_.back().y != y)
@@ -98,6 +86,30 @@ CluxelGrid::CluxelGrid(const perception::SceneCluxels& all, std::span<const std:
   constexpr std::int32_t kBeyond = std::numeric_limits<std::int32_t>::max();
   columns_.emplace_back(kBeyond, cells_.size());
   cells_.push_back({kBeyond, kBeyond, static_cast<std::uint32_t>(entries_.size())});
+}
+
+/// By cell, then by height, then by number.
+std::vector<std::uint32_t> CluxelGrid::inCellOrder(std::span<const std::uint32_t> some) const {
+  std::vector<std::uint32_t> cluxels(some.begin(), some.end());
+  if (!std::is_sorted(cluxels.begin(), cluxels.end())) std::sort(cluxels.begin(), cluxels.end());
+  std::vector<std::uint64_t> keys(cluxels.size());
+  const auto sortBy = [&](const auto& key_of) {  // stable
+    std::transform(cluxels.begin(), cluxels.end(), keys.begin(), key_of);
+    std::vector<std::uint32_t> order = orderOf(keys);
+    for (std::uint32_t& place : order) place = cluxels[place];
+    cluxels = std::move(order);
+  };
+  sortBy([this](std::uint32_t i) -> std::uint64_t { return rankOf(heightOf(i)); });
+  std::int64_t low_x = std::numeric_limits<std::int32_t>::max(), low_y = low_x;
+  for (const std::uint32_t i : cluxels) {
+    low_x = std::min<std::int64_t>(low_x, cellOf(all_.center[i].x()));
+    low_y = std::min<std::int64_t>(low_y, cellOf(all_.center[i].y()));
+  }
+  sortBy([&](std::uint32_t i) {
+    const auto x = static_cast<std::uint64_t>(cellOf(all_.center[i].x()) - low_x);
+    return x << 32U | static_cast<std::uint64_t>(cellOf(all_.center[i].y()) - low_y);
+  });
+  return cluxels;
 }
 
 void CluxelGrid::listPrimitives() {

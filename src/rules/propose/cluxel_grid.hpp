@@ -98,6 +98,7 @@ class CluxelGrid {
     return static_cast<std::uint32_t>(found - begin);
   }
 
+  std::vector<std::uint32_t> inCellOrder(std::span<const std::uint32_t> some) const;
   void listPrimitives();
   static std::int32_t cellOf(double coordinate_m) {
     return static_cast<std::int32_t>(std::floor(coordinate_m / kCell_m));

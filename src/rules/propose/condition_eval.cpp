@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "rdf/map_iris.hpp"
 #include "rules/decide/threshold_margins.hpp"
@@ -209,8 +210,7 @@ std::optional<double> ConditionEvaluator::gapToRivals(const Condition& condition
 }
 
 std::string ConditionEvaluator::unitOf(const Condition& condition) {
-  if (condition.ratio_attribute) return "";
-  return std::string(stepUnit(condition));
+  return condition.ratio_attribute ? "" : std::string(stepUnit(condition));
 }
 
 bool ConditionEvaluator::hasLabel(FragmentIndex fragment, const Target& target) const {
@@ -257,13 +257,16 @@ std::optional<std::pair<FragmentIndex, double>> ConditionEvaluator::nearestObjec
   const std::vector<bool>* classes = state_.classesBelow(target.object_class);
   if (classes == nullptr) return std::nullopt;
   std::optional<std::pair<FragmentIndex, double>> best;
+  auto last = static_cast<FragmentIndex>(state_.fragments.size());  // most cluxels of a cell are of one fragment
+  bool is_wanted = false;
   for (const FragmentIndex mine : subject.fragments)
     for (const std::uint32_t cluxel : state_.fragments[mine].cluxels)
       state_.grid.near(cluxel, best ? best->second : limit_m, [&](std::uint32_t other) {
         const FragmentIndex fragment = state_.fragments.fragmentOf(other);
-        if (!state_.belongsToAny(fragment, classes) || !hasLabel(fragment, target) ||
-            std::binary_search(subject.fragments.begin(), subject.fragments.end(), fragment))
-          return;
+        if (std::exchange(last, fragment) != fragment)
+          is_wanted = state_.belongsToAny(fragment, classes) && hasLabel(fragment, target) &&
+                      !std::binary_search(subject.fragments.begin(), subject.fragments.end(), fragment);
+        if (!is_wanted) return;
         const double gap = gapBetween(state_.scene.cluxels, cluxel, other).gap();
         if (gap > limit_m || (best && gap > best->second)) return;
         if (!best || gap < best->second || state_.fragments.before(fragment, best->first)) best = {fragment, gap};
@@ -294,10 +297,7 @@ bool ConditionEvaluator::holdsPair(const Condition& condition, DecisionStep& ste
 
 bool ConditionEvaluator::holdsRelation(const Condition& condition, DecisionStep& step) {
   const Candidate& subject = bindings_.at(condition.of);
-  if (condition.value) {
-    step.threshold = condition.value->value;
-    step.unit = "m";
-  }
+  if (condition.value) step.threshold = condition.value->value, step.unit = "m";
   if (condition.relation == perception::RelationKind::TouchesGround) {
     step.measured = subject.shape[perception::Attribute::Bottom];
     step.threshold = condition.value ? condition.value->value : kGroundTolerance_m;

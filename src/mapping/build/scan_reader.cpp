@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Each scan has its own future: nobody waits for the slowest of several scans.
+#include "mapping/build/scan_reader.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace cluxel::mapping {
+
+void ScanReader::begin(std::size_t number) {
+  const auto policy = threads_ > 1 ? std::launch::async : std::launch::deferred;
+  const std::size_t count = std::min<std::size_t>(std::max(threads_, 1U), scans_.size() - number);
+  while (ahead_.size() < count)
+    ahead_.push_back(std::async(policy, [this, next = number + ahead_.size()] {
+      const scan::LoadedScan loaded = scans_.read(next);
+      return ReadScan{loaded.reading, prepareScan(loaded.scan)};
+    }));
+}
+
+ReadScan ScanReader::take(std::size_t number) {
+  begin(number);
+  std::future<ReadScan> first = std::move(ahead_.front());
+  ahead_.pop_front();
+  return first.get();
+}
+
+}  // namespace cluxel::mapping
