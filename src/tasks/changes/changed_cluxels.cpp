@@ -100,11 +100,10 @@ class Clustering {
     for (const std::uint32_t cluxel : cluster) seen_through += findingsAt(cluxel, false)->is_seen_through ? 1 : 0;
     const double share = groups_.shareOfChanged(around), log_odds = logOddsOfScans(cluster, around);
     const bool scans_agree = log_odds <= -kPresence.decided;
-    if (share >= kWhole)
-      return scans_agree || seen_through >= kMinCluxels || isLarge(cluster, around, log_odds);
+    if (share >= kWhole) return scans_agree || seen_through >= kMinCluxels || isLarge(cluster, around, log_odds);
     if (!scans_agree) return false;
-    return (seen_through >= kMinCluxels && share >= kMinShare) ||
-           (seen_through >= kMany && share >= kMinShareOfMany) || isTop(cluster);
+    return (seen_through >= kMinCluxels && share >= kMinShare) || (seen_through >= kMany && share >= kMinShareOfMany) ||
+           isTop(cluster);
   }
 
   /// Whether all of something is gone from some height upwards: what was cut, while a crown has leaves beside a gap.

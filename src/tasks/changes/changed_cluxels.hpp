@@ -66,8 +66,8 @@ struct ChangedCluxels {
 /// - A part of something that stays needs scans that agree, and one of two: several rays of one scan saw through five
 ///   of its cluxels where 75 % changed like it, or ten where 50 % did; or it has eight cluxels or more, and of the
 ///   decided ones in and around it that lie at the height of its middle or higher, 90 % changed like it. Then all is
-///   gone from there upwards, as of a hedge that was cut. What scans with poor poses miss is mostly an edge of something
-///   that stays, and a gap in a crown has leaves beside it.
+///   gone from there upwards, as of a hedge that was cut. What scans with poor poses miss is mostly an edge of
+///   something that stays, and a gap in a crown has leaves beside it.
 std::vector<ChangeGroup> clustersOf(CluxelChange kind, const ChangedCluxels& all);
 
 }  // namespace cluxel::tasks

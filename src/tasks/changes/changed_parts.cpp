@@ -44,7 +44,7 @@ class Grouping {
  private:
   static constexpr std::size_t kSolidCells = 12, kTopCells = 16, kWholeCells = 20;
   static constexpr std::size_t kOwnScans = 4, kOwnScansOfTop = 3, kPassing = 3, kPassingSolid = 4;
-  static constexpr std::size_t kPassedCells = 3;  ///< of the group, by one scan
+  static constexpr std::size_t kPassedCells = 3;                                          ///< of the group, by one scan
   static constexpr double kWeak = 80, kStrong = 100, kEvident = 400, kEvidentOfCell = 3;  ///< log-odds of "gone"
   static constexpr double kMostHitShare = 0.98, kOwnHits = 0.6, kOwnEnded = 0.7, kOwnEndedStrong = 0.55;
   static constexpr double kRest = 0.15, kWholeRest = 0.02, kWholeAlike = 0.85, kAboveTop = 0.95, kAboveStrong = 0.7;
