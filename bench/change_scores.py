@@ -9,7 +9,8 @@ Events. A truth event is something that is gone ("left", "cut", and the old plac
 ("arrived", and the new place of "moved" and "replaced"). It counts when both visits measure, or would
 measure if it stood there, at least 20 points on it. A reported event matches one of the same kind when the boxes, padded by 0.1 m, overlap by an intersection over
 union of 0.2, or the centre of the smaller one lies within the other; the best pairs first, one to one. A further report whose centre
-lies within the box of a true event, padded by 0.5 m, is a piece of it: neither true nor false.
+lies within the box of a true event, padded by 0.5 m, is a piece of it: neither true nor false. That holds for events that
+do not count, too.
 
 States. For each object of the truth the reported object, or changed part of an object, whose box overlaps it most (intersection over union of at least
 0.2) gives the state in the last visit: present, absent or not observed. In the truth an object is not observed when the
@@ -106,7 +107,8 @@ def score_events(changes, folder, listing):
     left, right = match(reported, clear)
     rest = [event for i, event in enumerate(reported) if i not in left]
     rest = [event for i, event in enumerate(rest) if i not in match(rest, unclear)[0]]
-    pieces = [event for event in rest if any(event[0] == true[0] and lies_within(event[1], true[1]) for true in clear)]
+    true = clear + unclear
+    pieces = [e for e in rest if any(e[0] == other[0] and lies_within(e[1], other[1]) for other in true)]
     false = [event for event in rest if event not in pieces]
     if listing:
         for event in false:

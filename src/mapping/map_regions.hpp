@@ -34,6 +34,8 @@ class MapRegions {
   MapRegions& operator=(const MapRegions&) = delete;
 
   std::size_t size() const { return regions_.size(); }
+  /// The tiles of all regions.
+  const perception::TileSet& tiles() const { return all_tiles_; }
   /// Numbers of objects of ground; rays are not compared with them.
   bool isGround(std::uint32_t object) const { return is_ground_[object]; }
   /// Reads a region; gives up the one before. Cost: some milliseconds a tile.

@@ -80,6 +80,39 @@ TEST_F(SiteVisits, MovesThingsToFreePlacesOfTheSameSize) {
   }
 }
 
+TEST_F(SiteVisits, MovesNothingToWhereSomethingArrives) {
+  CampusParams params = test::smallCampus(50);  // with seed 50 a car would move into a car that arrives
+  params.size_m = 100;
+  params.stops = 12;
+  const VisitedSite other = visitSite(buildCampus(params), 2);
+  const auto boxOf = [&](std::int32_t instance) {
+    return other.visits[1].objects[static_cast<std::size_t>(instance)].box;
+  };
+  for (const SiteEvent& moved : other.events)
+    for (const SiteEvent& arrived : other.events)
+      if (moved.kind == SiteEventKind::Moved && arrived.kind == SiteEventKind::Arrived) {
+        EXPECT_FALSE(boxOf(moved.new_instance).intersects(boxOf(arrived.new_instance)))
+            << moved.new_instance << " moves to where " << arrived.new_instance << " arrives";
+      }
+}
+
+TEST_F(SiteVisits, StatesNoPartInWhichLampsAreAlike) {
+  for (const SiteEvent& event : site->events) {
+    if (event.kind != SiteEventKind::Replaced) continue;
+    double pole_top = 1e300;  // of the lower pole; above it only one of both lamps has a pole
+    for (const auto& [visit, lamp] : {std::pair(event.visit - 1, event.instance), {event.visit, event.new_instance}}) {
+      double top = -1e300;
+      for (const CampusMesh& mesh : site->visits[visit].meshes)
+        if (mesh.instance == lamp && mesh.label == SurfaceLabel::LampPole)
+          for (const Eigen::Vector3f& vertex : mesh.vertices) top = std::max<double>(top, vertex.z());
+      pole_top = std::min(pole_top, top);
+    }
+    EXPECT_GT(event.gone.min().z(), pole_top - 0.1);
+    EXPECT_LT(event.gone.min().z(), pole_top + 0.1);
+    EXPECT_EQ(event.gone.min().z(), event.come.min().z());
+  }
+}
+
 TEST_F(SiteVisits, CutsTheUpperPart) {
   for (const SiteEvent& event : site->events) {
     if (event.kind != SiteEventKind::Cut) continue;

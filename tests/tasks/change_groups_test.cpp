@@ -40,5 +40,12 @@ TEST(ChangeGroups, ShareOfChangedCountsDecidedItems) {
   EXPECT_DOUBLE_EQ(groups.shareOfChanged(around), 2.0 / 3);
 }
 
+TEST(ChangeGroups, ShareOfChangedAboveLeavesOutWhatLiesBelowTheMiddleOfTheGroup) {
+  const ChangeGroups groups = row({Stable, Changed, Changed, Changed, Stable});
+  EXPECT_DOUBLE_EQ(groups.shareOfChangedAbove({1, 2, 3}, [](std::uint32_t item) { return item; }), 2.0 / 3);
+  EXPECT_DOUBLE_EQ(groups.shareOfChangedAbove({1, 2, 3}, [](std::uint32_t item) { return item == 2 ? 1 : 0; }), 0.6);
+  EXPECT_DOUBLE_EQ(groups.shareOfChangedAbove({1, 2, 3}, [](std::uint32_t item) { return item % 4 == 0 ? 0 : 1; }), 1);
+}
+
 }  // namespace
 }  // namespace cluxel::tasks

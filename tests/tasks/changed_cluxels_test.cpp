@@ -7,7 +7,7 @@
 namespace cluxel::tasks {
 namespace {
 
-/// A board of 6 by 5 cluxels, 0.3 m apart; neighbours intersect.
+/// A board of 6 by 5 cluxels that lies flat, 0.3 m apart; neighbours intersect.
 perception::SceneCluxels board() {
   constexpr std::uint32_t kColumns = 6, kRows = 5;
   perception::SceneCluxels cluxels;
@@ -17,6 +17,7 @@ perception::SceneCluxels board() {
       cluxels.name.emplace_back();
       cluxels.low_corner.emplace_back(0.3 * column, 0.3 * row, 1);
       cluxels.extent.emplace_back(0.3F, 0.3F, 0.3F);
+      cluxels.center.emplace_back(0.3 * column + 0.15, 0.3 * row + 0.15, 1.15);
       const std::uint32_t number = row * kColumns + column;
       if (row > 0) cluxels.edge_target.push_back(number - kColumns);
       if (column > 0) cluxels.edge_target.push_back(number - 1);
@@ -43,12 +44,16 @@ std::size_t vanishedIn(ChangedCluxels all) {
   return clustersOf(CluxelChange::Vanished, all).size();
 }
 
-/// Few rays of later scans passed each cluxel.
-std::size_t vanishedAfter(std::uint8_t scans) {
+/// Few rays of later scans passed each cluxel; `before` was found while they were there.
+std::size_t vanishedAfter(std::uint8_t scans, const RayFindings& before) {
   ChangedCluxels all = thereBefore();
+  all.before.assign(all.cluxels.size(), before);
   for (RayFindings& after : all.after) after = {.passed = scans, .passed_scans = (std::uint64_t{1} << scans) - 1};
   return vanishedIn(all);
 }
+
+constexpr RayFindings kDense{.is_hit = true, .hits = 9, .sparse_hits = 9};
+constexpr RayFindings kHalfDense{.is_hit = true, .hits = 9, .sparse_hits = 5, .passed = 5};
 
 /// Several rays of later scans saw through the upper `rows` rows; the others are still hit.
 std::size_t vanishedAbove(std::size_t rows, std::uint8_t scans) {
@@ -64,16 +69,32 @@ std::size_t vanishedAbove(std::size_t rows, std::uint8_t scans) {
 }
 
 TEST(ChangedCluxels, AThingThatNoLaterRayPassesIsNotGone) {
-  EXPECT_EQ(vanishedAfter(0), 0);
+  EXPECT_EQ(vanishedAfter(0, kDense), 0);
 }
 
-TEST(ChangedCluxels, FewRaysOfOneOrTwoScansDoNotShowThatAThingIsGone) {
-  EXPECT_EQ(vanishedAfter(1), 0);
-  EXPECT_EQ(vanishedAfter(2), 0);
+TEST(ChangedCluxels, FewRaysOfOneScanDoNotShowThatAThingIsGone) {
+  EXPECT_EQ(vanishedAfter(1, kDense), 0);
+}
+
+TEST(ChangedCluxels, FewRaysOfTwoScansShowThatALargeDenseThingIsGone) {
+  EXPECT_EQ(vanishedAfter(2, kDense), 1);
+  EXPECT_EQ(vanishedAfter(2, kHalfDense), 0);
+}
+
+TEST(ChangedCluxels, FewRaysOfTwoScansDoNotShowThatASmallThingIsGone) {
+  ChangedCluxels all = thereBefore();
+  for (std::size_t i = 0; i < all.after.size(); ++i) {
+    if (i < 18) all.before[i] = {};
+    all.after[i] = {.passed = 2, .passed_scans = 3};
+  }
+  EXPECT_EQ(vanishedIn(all), 1) << "12 cluxels";
+  all.before[18] = {};
+  EXPECT_EQ(vanishedIn(all), 0) << "11 cluxels";
 }
 
 TEST(ChangedCluxels, FewRaysOfEachOfThreeScansShowThatAThingIsGone) {
-  EXPECT_EQ(vanishedAfter(3), 1);
+  EXPECT_EQ(vanishedAfter(3, kDense), 1);
+  EXPECT_EQ(vanishedAfter(3, kHalfDense), 1);
 }
 
 TEST(ChangedCluxels, SeveralRaysOfOneScanShowThatAWholeThingIsGone) {
@@ -86,11 +107,24 @@ TEST(ChangedCluxels, ThreeScansMustAgreeThatAPartOfWhatStaysIsGone) {
   EXPECT_EQ(vanishedAbove(3, 3), 1);
 }
 
-TEST(ChangedCluxels, FewRaysDoNotShowThatAPartOfWhatStaysIsGone) {
+/// Few rays of five later scans passed all but two rows; these are still hit.
+ChangedCluxels partlyPassed() {
   ChangedCluxels all = thereBefore();
   for (std::size_t i = 0; i < all.after.size(); ++i)
     all.after[i] = i < 12 ? RayFindings{.is_hit = true, .hits = 9} : RayFindings{.passed = 5, .passed_scans = 31};
-  EXPECT_EQ(vanishedIn(all), 0);
+  return all;
+}
+
+TEST(ChangedCluxels, FewRaysDoNotShowThatAPartOfWhatStaysIsGone) {
+  EXPECT_EQ(vanishedIn(partlyPassed()), 0);
+}
+
+TEST(ChangedCluxels, FewRaysOfSeveralScansShowThatAllIsGoneAboveWhatStays) {
+  ChangedCluxels all = partlyPassed();
+  for (Eigen::Vector3d& center : all.cluxels.center) std::swap(center.y(), center.z());
+  EXPECT_EQ(vanishedIn(all), 1);
+  for (Eigen::Vector3d& center : all.cluxels.center) center.z() *= -1;
+  EXPECT_EQ(vanishedIn(all), 0) << "what stays lies above";
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace cluxel::tasks {
 namespace {
@@ -26,6 +27,15 @@ std::vector<PointCell> lampHead(bool is_foliage, int passing_scans) {
       cell.other = {.through_scans = bits(passing_scans), .rays = {.passed = 10}};
       cells.push_back(cell);
     }
+  return cells;
+}
+
+/// With things beside it, at its height, that are there at both times.
+std::vector<PointCell> besideWhatStays(std::vector<PointCell> cells) {
+  for (int i = -4; i <= 4; ++i)
+    for (const Eigen::Vector3d& place :
+         {Eigen::Vector3d(0.1 * i, -0.4, 4), {0.1 * i, 0.4, 4}, {-0.4, 0.1 * i, 4}, {0.4, 0.1 * i, 4}})
+      cells.push_back({.place = place, .is_shared = true});
   return cells;
 }
 
@@ -78,10 +88,53 @@ TEST(ChangedParts, AGapInACrownIsNotGone) {
       cells[i].own.through_scans = bits(8) & ~bits(5);
       if (i % 3 == 0) cells[i].other.hit_scans = bits(1), cells[i].other.through_scans = bits(8) & ~bits(1);
     }
-    return cells;
+    return besideWhatStays(cells);
   };
   EXPECT_EQ(partsIn(crown(kFoliage)), 0U);
   EXPECT_EQ(partsIn(crown(kStructure)), 1U);
+}
+
+TEST(ChangedParts, FoliageOfWhichNothingIsLeftAtItsHeightIsGone) {
+  // A scan of the other time with a poor pose hits what stays below.
+  std::vector<PointCell> top = lampHead(kFoliage, 5);
+  for (std::size_t i = 0; i < top.size(); ++i) {
+    top[i].scans = bits(3);
+    if (i % 3 == 0) top[i].other.hit_scans = bits(1);
+  }
+  EXPECT_EQ(partsIn(top), 1U);
+  EXPECT_EQ(partsIn(besideWhatStays(top)), 0U);
+  for (PointCell& cell : top) cell.scans = bits(2);
+  EXPECT_EQ(partsIn(top), 0U) << "two scans measured it";
+}
+
+TEST(ChangedParts, WeakEvidenceDoesNotShowThatAPartBesideWhatStaysIsGone) {
+  std::vector<PointCell> plate = lampHead(kStructure, 4);
+  std::erase_if(plate, [](const PointCell& cell) {
+    return cell.is_shared || std::abs(cell.place.y()) > 0.15 || cell.place.x() < -0.15;
+  });
+  for (PointCell& cell : plate) cell.own.through_scans = bits(8) & ~bits(5);
+  EXPECT_EQ(partsIn(plate), 1U);
+  const auto besideOne = [&](std::vector<PointCell> cells) {
+    for (int i = -1; i <= 1; ++i) cells.push_back({.place = {0.5, 0.1 * i, 4}, .is_shared = true});
+    return cells;
+  };
+  EXPECT_EQ(partsIn(besideOne(plate)), 0U);
+  for (PointCell& cell : plate) cell.own.through_scans = 0;
+  EXPECT_EQ(partsIn(besideOne(plate)), 1U) << "strong evidence does";
+}
+
+TEST(ChangedParts, RaysMayPassBesideTheEdgeOfAHeadWhenTheEvidenceIsStrong) {
+  std::vector<PointCell> head = lampHead(kStructure, 6);
+  for (std::size_t i = 0; i < head.size(); ++i) {
+    head[i].own = {.hit_scans = bits(5), .through_scans = bits(8) & ~bits(5), .rays = {.ended = 10, .passed = 7}};
+    if (i % 3 == 0) head[i].other.hit_scans = bits(1);
+  }
+  const auto besideRow = [&](std::vector<PointCell> cells) {
+    for (int i = -3; i <= 3; ++i) cells.push_back({.place = {0.4, 0.1 * i, 4}, .is_shared = true});
+    return cells;
+  };
+  EXPECT_EQ(partsIn(besideRow(head)), 1U);
+  EXPECT_EQ(partsIn(besideWhatStays(head)), 0U) << "much stays beside it";
 }
 
 /// Copies of a group side by side.

@@ -122,7 +122,7 @@ class Visits {
       const Vector3d shift = alongGround(object.position, far_m * Vector2d(std::cos(angle), std::sin(angle)));
       AlignedBox3d place = object.box;
       place.translate(shift);
-      if (!isFree(next, place, instance)) continue;
+      if (!isFree(next, place, instance, visit)) continue;
       const std::int32_t moved = copyOf(next, instance, instance, shift);
       erase(next, instance);
       site_.events.push_back({SiteEventKind::Moved, visit, instance, moved, {}, {}});
@@ -135,13 +135,15 @@ class Visits {
     return {step.x(), step.y(), terrain_.heightAt(to.x(), to.y()) - terrain_.heightAt(from.x(), from.y())};
   }
 
-  static bool isFree(const Campus& campus, const AlignedBox3d& place, std::int32_t mover) {
-    AlignedBox3d roomy(place.min() - Vector3d::Constant(0.5), place.max() + Vector3d::Constant(0.5));
-    for (const CampusMesh& mesh : campus.meshes) {
-      if (mesh.instance == mover || mesh.instance <= 0) continue;  // 0 is the ground
-      const CampusObject& other = campus.objects[static_cast<std::size_t>(mesh.instance)];
-      if (roomy.intersects(other.box)) return false;
-    }
+  /// Whether nothing stands in the place, and nothing arrives there on this visit or later.
+  bool isFree(const Campus& campus, const AlignedBox3d& place, std::int32_t mover, std::size_t visit) const {
+    const AlignedBox3d roomy(place.min() - Vector3d::Constant(0.5), place.max() + Vector3d::Constant(0.5));
+    const auto isTaken = [&](std::size_t object) { return roomy.intersects(campus.objects[object].box); };
+    for (const CampusMesh& mesh : campus.meshes)
+      if (mesh.instance != mover && mesh.instance > 0 && isTaken(static_cast<std::size_t>(mesh.instance)))  // 0: ground
+        return false;
+    for (std::size_t object = 0; object < arrival_.size(); ++object)
+      if (arrival_[object] >= visit && isTaken(object)) return false;
     return true;
   }
 
@@ -164,8 +166,8 @@ class Visits {
     return made;
   }
 
-  /// Replaces a lamp by a copy of the nearest lamp of another kind. Both poles look alike up to the lower one's top, so
-  /// the event states from which height they differ.
+  /// Replaces a lamp by a copy of the nearest lamp of another kind. Both poles look alike up to the head of the lower
+  /// one, so the event states from which height they differ.
   void replace(Campus& next, std::int32_t instance, std::size_t visit) {
     const CampusObject old = next.objects[static_cast<std::size_t>(instance)];
     std::optional<std::int32_t> model;
@@ -180,11 +182,20 @@ class Visits {
     if (!model) return;
     const Vector3d shift = old.position - next.objects[static_cast<std::size_t>(*model)].position;
     const std::int32_t made = copyOf(next, *model, instance, shift);
-    erase(next, instance);
     const AlignedBox3d now = next.objects[static_cast<std::size_t>(made)].box;
-    const double differs_from = std::min(old.box.max().z(), now.max().z()) - 1;
+    const double differs_from = endOfPole(next, old.box.max().z() < now.max().z() ? instance : made);
+    erase(next, instance);
     site_.events.push_back(
         {SiteEventKind::Replaced, visit, instance, made, above(old.box, differs_from), above(now, differs_from)});
+  }
+
+  /// The height at which the head or the arm of a lamp begins.
+  static double endOfPole(const Campus& campus, std::int32_t lamp) {
+    double lowest = 1e300;
+    for (const CampusMesh& mesh : campus.meshes)
+      if (mesh.instance == lamp && mesh.label != SurfaceLabel::LampPole)
+        for (const Vector3f& vertex : mesh.vertices) lowest = std::min(lowest, static_cast<double>(vertex.z()));
+    return lowest;
   }
 
   static AlignedBox3d above(AlignedBox3d box, double height) {

@@ -21,7 +21,7 @@ struct SiteEvent {
   std::int32_t instance = -1;      ///< the object concerned, before; -1 when it arrived
   std::int32_t new_instance = -1;  ///< the object afterwards: what arrived, or is there after a move or a replacement
   /// Where the difference is, when it is not the whole object [m, map]: what was cut off; of lamps that were replaced
-  /// all above a metre below the lower top.
+  /// all from the head of the lower one upwards.
   Eigen::AlignedBox3d gone, come;
 };
 

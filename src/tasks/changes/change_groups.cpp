@@ -35,6 +35,17 @@ double ChangeGroups::shareOfChanged(const ChangeGroup& items) const {
   return changed / decided;
 }
 
+double ChangeGroups::shareOfChangedAbove(const ChangeGroup& group,
+                                         const std::function<double(std::uint32_t)>& height) const {
+  std::vector<double> heights;
+  for (const std::uint32_t item : group) heights.push_back(height(item));
+  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>((heights.size() - 1) / 2);
+  std::nth_element(heights.begin(), middle, heights.end());
+  ChangeGroup above = withNear(group);
+  std::erase_if(above, [&](std::uint32_t item) { return height(item) < *middle; });
+  return shareOfChanged(above);
+}
+
 bool ChangeGroups::agrees(std::uint32_t item) const {
   std::size_t changed = 0, decided = 0;
   for_each_near_(item, [&](std::uint32_t other) {

@@ -33,6 +33,9 @@ class ChangeGroups {
   ChangeGroup withNear(const ChangeGroup& group) const;
   /// The share of the decided items that changed.
   double shareOfChanged(const ChangeGroup& items) const;
+  /// The same for those in and near the group that lie at the height of its middle item or higher: 1 when all of
+  /// something is gone from some height upwards. `height(i)` is that of item i.
+  double shareOfChangedAbove(const ChangeGroup& group, const std::function<double(std::uint32_t)>& height) const;
 
  private:
   bool agrees(std::uint32_t item) const;

@@ -69,7 +69,12 @@ class FirstFindings {
 class Survey {
  public:
   Survey(const mapping::MapReader& map, double since_s, std::size_t max_cluxels, unsigned threads)
-      : map_(map), since_s_(since_s), threads_(threads), clouds_(map.clouds()), regions_(map, max_cluxels) {
+      : map_(map),
+        since_s_(since_s),
+        threads_(threads),
+        clouds_(map.clouds()),
+        regions_(map, max_cluxels),
+        unread_(regions_.tiles()) {
     for (const mapping::Cloud* cloud : mapping::timedClouds(clouds_))
       scans_.push_back(
           {*cloud, *cloud->time_s < since_s ? kBefore : kAfter, std::uint64_t{1} << (scans_.size() % kScanBits)});
@@ -80,7 +85,7 @@ class Survey {
     std::sort(survey_.states.begin(), survey_.states.end(),
               [](const ObjectStates& a, const ObjectStates& b) { return a.object < b.object; });
     survey_.cluxels = kept_cluxels_.take();
-    for (const std::size_t time : {kBefore, kAfter}) survey_.cells[time] = nearChanges(std::move(kept_cells_[time]));
+    for (const std::size_t time : {kBefore, kAfter}) survey_.cells[time] = kept_cells_[time].take();
     lookAgain();
     return std::move(survey_);
   }
@@ -97,8 +102,9 @@ class Survey {
     FirstFindings findings(cluxels, wanted);
     mapping::PresenceVoting voting(region.scene, region.objects, clouds_, threads_);
     for (const TimedScan& scan : scans_) look(region, scan, findings, cells, voting);
-    for (const std::size_t time : {kBefore, kAfter}) keepCells(region, std::move(cells[time]), kept_cells_[time]);
-    keepCluxels(region, findings.changes(), may_change);
+    const std::vector<CluxelChange> changes = findings.changes();
+    keepCells(region, changes, std::move(cells));
+    keepCluxels(region, changes, may_change);
     addStates(region, voting.finish());
   }
 
@@ -125,6 +131,19 @@ class Survey {
       if (view) view->look(bundle, threads_);
     });
     if (view) voting.take(*view);
+  }
+
+  void keepCells(const mapping::MapRegion& region, const std::vector<CluxelChange>& changes, PointCells cells) {
+    for (const perception::TileKey& tile : region.tiles) unread_.erase(tile);
+    for (const std::size_t time : {kBefore, kAfter}) {
+      const CluxelChange kind = time == kBefore ? CluxelChange::Vanished : CluxelChange::Appeared;
+      for (PointCell& cell : cells[time]) {
+        const auto at = std::lower_bound(region.number.begin(), region.number.end(), cell.cluxel);
+        const auto cluxel = static_cast<std::size_t>(at - region.number.begin());
+        cell.is_of_changed_cluxel = stateOf(cell) == ChangeState::Changed && changes[cluxel] == kind;
+      }
+      kept_cells_[time].add(region, std::move(cells[time]), unread_);
+    }
   }
 
   void keepCluxels(const mapping::MapRegion& region, const std::vector<CluxelChange>& changes,
@@ -184,7 +203,8 @@ class Survey {
   mapping::MapRegions regions_;
   std::vector<TimedScan> scans_;
   KeptCluxels kept_cluxels_;
-  PointCells kept_cells_;
+  std::array<KeptCells, 2> kept_cells_;  ///< before and after
+  perception::TileSet unread_;           ///< tiles of regions to come
   ChangeSurvey survey_;
 };
 

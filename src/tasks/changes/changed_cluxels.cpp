@@ -41,6 +41,8 @@ class Clustering {
   /// Log-odds that one scan adds at most. Its rays miss a thing together when its pose is off.
   static constexpr double kMostOfScan = 2;
   static constexpr double kWhole = 0.9, kMinShare = 0.75, kMinShareOfMany = 0.5, kThin_m = 0.3;
+  static constexpr std::size_t kMinTop = 8, kLarge = 12;
+  static constexpr double kDense = 0.6;  ///< share of scans with few rays that hit a thing through which few rays pass
   static constexpr perception::PresenceParams kPresence{};
 
   static std::vector<ChangeState> statesIn(CluxelChange kind, const ChangedCluxels& all) {
@@ -92,19 +94,31 @@ class Clustering {
   }
 
   bool isSure(const ChangeGroup& cluster) const {
-    std::size_t dense = 0;
-    for (const std::uint32_t cluxel : cluster) dense += findingsAt(cluxel, false)->is_seen_through ? 1 : 0;
     const ChangeGroup around = groups_.withNear(cluster);
-    const double share = groups_.shareOfChanged(around);
     if (isPermeable(cluster, around)) return false;
-    const bool scans_agree = doScansAgree(cluster, around);
-    if (share >= kWhole) return scans_agree || dense >= kMinCluxels;
-    return scans_agree &&
-           ((dense >= kMinCluxels && share >= kMinShare) || (dense >= kMany && share >= kMinShareOfMany));
+    std::size_t seen_through = 0;
+    for (const std::uint32_t cluxel : cluster) seen_through += findingsAt(cluxel, false)->is_seen_through ? 1 : 0;
+    const double share = groups_.shareOfChanged(around), log_odds = logOddsOfScans(cluster, around);
+    const bool scans_agree = log_odds <= -kPresence.decided;
+    if (share >= kWhole) return scans_agree || seen_through >= kMinCluxels || isLarge(cluster, around, log_odds);
+    if (!scans_agree) return false;
+    return (seen_through >= kMinCluxels && share >= kMinShare) || (seen_through >= kMany && share >= kMinShareOfMany) ||
+           isTop(cluster);
   }
 
-  /// Whether several scans show that the thing is gone, however many of its cluxels each of them passed.
-  bool doScansAgree(const ChangeGroup& cluster, const ChangeGroup& around) const {
+  /// Whether all of something is gone from some height upwards: what was cut, while a crown has leaves beside a gap.
+  bool isTop(const ChangeGroup& cluster) const {
+    const auto height = [this](std::uint32_t cluxel) { return cluxels_.center[cluxel].z(); };
+    return cluster.size() >= kMinTop && groups_.shareOfChangedAbove(cluster, height) >= kWhole;
+  }
+
+  /// Whether a thing is so large and dense that two scans do not miss it: their poses are not off alike.
+  bool isLarge(const ChangeGroup& cluster, const ChangeGroup& around, double log_odds) const {
+    return cluster.size() >= kLarge && sparseHits(cluster, around) >= kDense && log_odds <= -2 * kMostOfScan;
+  }
+
+  /// Log-odds of "there" from the scans that passed the thing, however many of its cluxels each of them passed.
+  double logOddsOfScans(const ChangeGroup& cluster, const ChangeGroup& around) const {
     const double each = std::log((1 - sparseHits(cluster, around)) / (1 - kPresence.hit_when_gone));
     std::array<double, kScanBits> of_scan{};
     for (const std::uint32_t cluxel : cluster) {
@@ -114,7 +128,7 @@ class Clustering {
     }
     double log_odds = 0;
     for (const double sum : of_scan) log_odds += std::max(sum, -kMostOfScan);
-    return log_odds <= -kPresence.decided;
+    return log_odds;
   }
 
   CluxelChange kind_;

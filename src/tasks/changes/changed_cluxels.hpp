@@ -61,10 +61,13 @@ struct ChangedCluxels {
 ///   of its cluxels were seen through by several rays of one scan, or scans agree: each that passed it adds
 ///   log((1 - p) / 0.95) for each cluxel that it passed, where p is the share of hits among scans with few rays in and
 ///   around the cluster while the thing was there, but -2 at least, because where the pose of a scan is off, its rays
-///   miss all of a thing together. The sum must be -6 or less, so that three scans are needed.
-/// - A part of something that stays needs both: scans agree, and several rays of one scan saw through five of its
-///   cluxels where 75 % changed like it, or ten where 50 % did. What scans with poor poses miss is mostly an edge of
-///   something that stays.
+///   miss all of a thing together. The sum must be -6 or less, so that three scans are needed; -4, thus two scans,
+///   for 12 cluxels or more that 60 % of the scans with few rays hit while the thing was there.
+/// - A part of something that stays needs scans that agree, and one of two: several rays of one scan saw through five
+///   of its cluxels where 75 % changed like it, or ten where 50 % did; or it has eight cluxels or more, and of the
+///   decided ones in and around it that lie at the height of its middle or higher, 90 % changed like it. Then all is
+///   gone from there upwards, as of a hedge that was cut. What scans with poor poses miss is mostly an edge of
+///   something that stays, and a gap in a crown has leaves beside it.
 std::vector<ChangeGroup> clustersOf(CluxelChange kind, const ChangedCluxels& all);
 
 }  // namespace cluxel::tasks

@@ -42,10 +42,12 @@ class Grouping {
   }
 
  private:
-  static constexpr std::size_t kSolidCells = 12, kWholeCells = 20, kOwnScans = 4, kPassing = 3, kPassingSolid = 4;
-  static constexpr std::size_t kPassedCells = 3;  ///< of the group, by one scan
-  static constexpr double kEvident = 400, kEvidentOfCell = 3, kMostHitShare = 0.98;
-  static constexpr double kOwnHits = 0.6, kOwnEnded = 0.7, kSolidRest = 0.15, kWholeRest = 0.02, kWholeAlike = 0.85;
+  static constexpr std::size_t kSolidCells = 12, kTopCells = 16, kWholeCells = 20;
+  static constexpr std::size_t kOwnScans = 4, kOwnScansOfTop = 3, kPassing = 3, kPassingSolid = 4;
+  static constexpr std::size_t kPassedCells = 3;                                          ///< of the group, by one scan
+  static constexpr double kWeak = 80, kStrong = 100, kEvident = 400, kEvidentOfCell = 3;  ///< log-odds of "gone"
+  static constexpr double kMostHitShare = 0.98, kOwnHits = 0.6, kOwnEnded = 0.7, kOwnEndedStrong = 0.55;
+  static constexpr double kRest = 0.15, kWholeRest = 0.02, kWholeAlike = 0.85, kAboveTop = 0.95, kAboveStrong = 0.7;
 
   static std::vector<ChangeState> statesOf(const std::vector<PointCell>& cells) {
     std::vector<ChangeState> states;
@@ -85,26 +87,37 @@ class Grouping {
 
   /// What the looks of the other time allow.
   static bool isPossible(const GroupEvidence& found) {
-    return found.scans >= kOwnScans && found.passing_scans >= kPassing &&
-           found.other_hits <= kSolidRest * found.other_looks;
+    return found.scans >= kOwnScansOfTop && found.passing_scans >= kPassing &&
+           found.other_hits <= kRest * found.other_looks;
   }
 
-  /// Whether the looks of the other time would hardly have missed the thing, so many are they.
-  static bool isEvident(const GroupEvidence& found, std::size_t cells) {
+  /// Log-odds of "gone" from the looks of the other time.
+  static double logOdds(const GroupEvidence& found) {
     constexpr perception::PresenceParams kPresence;
     const double share = std::min(found.own_hits / found.own_looks, kMostHitShare);
-    const double log_odds =
-        found.other_hits * std::log(share / kPresence.hit_when_gone) +
-        (found.other_looks - found.other_hits) * std::log((1 - share) / (1 - kPresence.hit_when_gone));
-    return log_odds <= -kEvident && log_odds <= -kEvidentOfCell * static_cast<double>(cells);
+    return found.other_hits * std::log(kPresence.hit_when_gone / share) +
+           (found.other_looks - found.other_hits) * std::log((1 - kPresence.hit_when_gone) / (1 - share));
   }
 
   bool isSure(const ChangeGroup& group) const {
     const GroupEvidence found = evidenceOf(group);
     if (!isPossible(found) || found.own_hits < kOwnHits * found.own_looks) return false;
-    const bool is_solid = found.own_ended >= kOwnEnded * found.own_rays && 2 * found.foliage < group.size();
-    if (is_solid && found.passing_scans >= kPassingSolid) return true;
-    if (isEvident(found, group.size())) return true;
+    const double log_odds = logOdds(found);
+    const auto height = [this](std::uint32_t cell) { return cells_[cell].place.z(); };
+    const double above = groups_.shareOfChangedAbove(group, height);
+    const bool is_top = above >= kAboveTop;
+    if (is_top && group.size() >= kTopCells && log_odds >= kWeak) return true;
+    if (found.scans < kOwnScans || (!is_top && log_odds < kWeak)) return false;
+    return isSolid(found, group.size(), log_odds >= kStrong && above >= kAboveStrong) || isWhole(found, group) ||
+           (log_odds >= kEvident && log_odds >= kEvidentOfCell * static_cast<double>(group.size()));
+  }
+
+  static bool isSolid(const GroupEvidence& found, std::size_t cells, bool is_strong) {
+    return 2 * found.foliage < cells && found.passing_scans >= kPassingSolid &&
+           found.own_ended >= (is_strong ? kOwnEndedStrong : kOwnEnded) * found.own_rays;
+  }
+
+  bool isWhole(const GroupEvidence& found, const ChangeGroup& group) const {
     return group.size() >= kWholeCells && found.other_hits <= kWholeRest * found.other_looks &&
            groups_.shareOfChanged(groups_.withNear(group)) >= kWholeAlike;
   }

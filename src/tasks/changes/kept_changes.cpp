@@ -15,12 +15,13 @@ bool hasChanged(CluxelChange change) {
   return change == CluxelChange::Vanished || change == CluxelChange::Appeared;
 }
 
-/// Whether tiles outside of the region lie within reach of cells at the place.
-bool isNearBorder(const mapping::MapRegion& region, const Eigen::Vector3d& place) {
+/// Whether tiles for which `is_beyond` holds lie within reach of cells at the place.
+template <typename IsBeyond>
+bool isNearTile(const Eigen::Vector3d& place, const IsBeyond& is_beyond) {
   constexpr double kReach_m = kNearCells_m + 0.01;
   for (const double x : {-kReach_m, 0.0, kReach_m})
     for (const double y : {-kReach_m, 0.0, kReach_m})
-      if (!region.tiles.contains(perception::tileOf(place + Eigen::Vector3d(x, y, 0)))) return true;
+      if (is_beyond(perception::tileOf(place + Eigen::Vector3d(x, y, 0)))) return true;
   return false;
 }
 
@@ -31,6 +32,42 @@ std::vector<bool> changedOrNear(const std::vector<PointCell>& cells) {
     if (stateOf(cells[i]) == ChangeState::Changed)
       neighbours.forEach(i, [&](std::uint32_t other) { is_kept[other] = true; });
   return is_kept;
+}
+
+/// Changed cells, each near another one of its group.
+std::vector<ChangeGroup> hangingTogether(const std::vector<PointCell>& cells, const CellNeighbours& neighbours) {
+  std::vector<bool> is_left(cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) is_left[i] = stateOf(cells[i]) == ChangeState::Changed;
+  std::vector<ChangeGroup> groups;
+  for (std::uint32_t start = 0; start < cells.size(); ++start) {
+    if (!is_left[start]) continue;
+    is_left[start] = false;
+    ChangeGroup& group = groups.emplace_back(ChangeGroup{start});
+    for (std::size_t next = 0; next < group.size(); ++next)
+      neighbours.forEach(group[next], [&](std::uint32_t other) {
+        if (!is_left[other]) return;
+        is_left[other] = false;
+        group.push_back(other);
+      });
+  }
+  return groups;
+}
+
+/// Cells from which something may follow.
+std::vector<bool> mattering(const std::vector<PointCell>& cells) {
+  std::vector<bool> matters(cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) matters[i] = cells[i].is_of_changed_cluxel;
+  for (const ChangeGroup& group : possibleParts(cells))
+    for (const std::uint32_t cell : group) matters[cell] = true;
+  return matters;
+}
+
+std::vector<PointCell> chosen(const std::vector<PointCell>& cells, const std::vector<bool>& is_chosen) {
+  std::vector<PointCell> some;
+  some.reserve(static_cast<std::size_t>(std::count(is_chosen.begin(), is_chosen.end(), true)));
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (is_chosen[i]) some.push_back(cells[i]);
+  return some;
 }
 
 }  // namespace
@@ -80,19 +117,47 @@ ChangedCluxels KeptCluxels::take() {
   return all;
 }
 
-void keepCells(const mapping::MapRegion& region, std::vector<PointCell> cells, std::vector<PointCell>& kept) {
-  const std::vector<bool> is_kept = changedOrNear(cells);
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    if (is_kept[i] || isNearBorder(region, cells[i].place)) kept.push_back(std::move(cells[i]));
+void KeptCells::add(const mapping::MapRegion& region, std::vector<PointCell> cells, const perception::TileSet& unread) {
+  std::vector<bool> is_kept = changedOrNear(cells);
+  const auto is_outside = [&](const perception::TileKey& tile) { return !region.tiles.contains(tile); };
+  for (std::size_t i = 0; i < cells.size(); ++i) is_kept[i] = is_kept[i] || isNearTile(cells[i].place, is_outside);
+  const std::vector<PointCell> kept = chosen(std::exchange(cells, {}), is_kept);
+  open_.insert(open_.end(), kept.begin(), kept.end());
+  settle(unread);
 }
 
-std::vector<PointCell> nearChanges(std::vector<PointCell> cells) {
-  std::sort(cells.begin(), cells.end(), [](const PointCell& a, const PointCell& b) { return a.key < b.key; });
-  const std::vector<bool> is_kept = changedOrNear(cells);
-  std::vector<PointCell> near;
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    if (is_kept[i]) near.push_back(std::move(cells[i]));
-  return near;
+/// What hangs together is decided when all cells near it were read: then the groups in it are known.
+void KeptCells::settle(const perception::TileSet& unread) {
+  const CellNeighbours neighbours(open_);
+  const std::vector<bool> matters = mattering(open_);
+  const auto is_unread = [&](const perception::TileKey& tile) { return unread.contains(tile); };
+  std::vector<bool> stays(open_.size()), settles(open_.size());
+  for (std::size_t i = 0; i < open_.size(); ++i) stays[i] = isNearTile(open_[i].place, is_unread);
+  for (const ChangeGroup& group : hangingTogether(open_, neighbours)) {
+    const bool is_open = std::any_of(group.begin(), group.end(), [&](std::uint32_t cell) { return stays[cell]; });
+    const bool is_kept = std::any_of(group.begin(), group.end(), [&](std::uint32_t cell) { return matters[cell]; });
+    if (!is_open && !is_kept) continue;
+    std::vector<bool>& marked = is_open ? stays : settles;
+    for (const std::uint32_t cell : group) neighbours.forEach(cell, [&](std::uint32_t near) { marked[near] = true; });
+  }
+  settled_.push_back(chosen(open_, settles));
+  open_ = chosen(open_, stays);
+}
+
+std::vector<PointCell> KeptCells::take() {
+  std::size_t count = 0;
+  for (const auto& of_region : settled_) count += of_region.size();
+  std::vector<PointCell> all;
+  all.reserve(count);
+  for (auto& of_region : settled_) {
+    all.insert(all.end(), of_region.begin(), of_region.end());
+    of_region = {};
+  }
+  settled_ = {};
+  std::sort(all.begin(), all.end(), [](const PointCell& a, const PointCell& b) { return a.key < b.key; });
+  const auto is_same = [](const PointCell& a, const PointCell& b) { return a.key == b.key; };
+  all.erase(std::unique(all.begin(), all.end(), is_same), all.end());
+  return all;
 }
 
 }  // namespace cluxel::tasks

@@ -31,9 +31,20 @@ class KeptCluxels {
   std::vector<Kept> kept_;
 };
 
-/// Adds the cells of a region that changed, or may be near one that did, to `kept`.
-void keepCells(const mapping::MapRegion& region, std::vector<PointCell> cells, std::vector<PointCell>& kept);
-/// The cells that changed and those near one of them, by key.
-std::vector<PointCell> nearChanges(std::vector<PointCell> cells);
+/// Collects cells of one time: those that changed, and those near them. Changed cells that hang together are dropped
+/// when nothing can follow from them: they hold no possible part (possibleParts), and none of their cluxels changed.
+class KeptCells {
+ public:
+  /// `unread`: the tiles of regions that come later. What reaches to them is not decided yet.
+  void add(const mapping::MapRegion& region, std::vector<PointCell> cells, const perception::TileSet& unread);
+  /// All that were kept, by key. Empty afterwards. No tile may be unread.
+  std::vector<PointCell> take();
+
+ private:
+  void settle(const perception::TileSet& unread);
+
+  std::vector<PointCell> open_;                  ///< those that reach to unread tiles, with what is near
+  std::vector<std::vector<PointCell>> settled_;  ///< of each region; two may hold the same cell
+};
 
 }  // namespace cluxel::tasks

@@ -44,8 +44,9 @@ struct PointCell {
   bool is_foliage = false;                          ///< the label of that cluxel
   /// The other time measured more than a third as many points in the cell. No rays are looked at then.
   bool is_shared = false;
-  std::uint64_t scans = 0;  ///< that measured the points, as bits like those of RayLooks
-  RayLooks own{}, other{};  ///< of the scans of that time, and of the other time
+  bool is_of_changed_cluxel = false;  ///< its cluxel vanished, of cells before, or appeared, of cells after
+  std::uint64_t scans = 0;            ///< that measured the points, as bits like those of RayLooks
+  RayLooks own{}, other{};            ///< of the scans of that time, and of the other time
 };
 
 /// The cells with points before and after a time, by key.
