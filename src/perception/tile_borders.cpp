@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 
 #include "base/packing/zstd_packing.hpp"
 #include "cluxel/error.hpp"
@@ -15,8 +16,17 @@ namespace cluxel::perception {
 namespace {
 
 constexpr auto kTile_m = static_cast<float>(kTileSize_m);
-constexpr std::size_t kBorderBytes = sizeof(TileBorders);
-static_assert(kBorderBytes == 10 * sizeof(std::uint64_t), "stored without padding");
+constexpr std::string_view kMark = "BRD1";  ///< the kind and version of the form
+constexpr std::size_t kHeadBytes = kMark.size() + sizeof(TileBorders);
+static_assert(sizeof(TileBorders) == 10 * sizeof(std::uint64_t), "stored without padding");
+
+/// None when the block is cut short or of another form.
+std::optional<TileBorders> bordersIn(std::string_view block) {
+  if (block.size() < kHeadBytes || !block.starts_with(kMark)) return std::nullopt;
+  TileBorders borders;
+  std::memcpy(&borders, block.data() + kMark.size(), sizeof borders);
+  return borders;
+}
 
 /// For each set of near sides (left 1, right 2, bottom 4, top 8) the neighbours there.
 constexpr std::array<std::uint16_t, 16> placesOfSides() {
@@ -208,25 +218,26 @@ TileBorders bordersOf(const FeatureTile& tile, const BorderWidths& widths) {
 }
 
 std::string withBorders(const TileBorders& borders, std::string_view tile_bytes) {
-  std::string block(reinterpret_cast<const char*>(&borders), kBorderBytes);
-  return block.append(tile_bytes);
+  std::string block(kMark);
+  return block.append(reinterpret_cast<const char*>(&borders), sizeof borders).append(tile_bytes);
 }
 
 std::string_view withoutBorders(std::string_view block) {
-  if (block.size() < kBorderBytes)
+  if (!block.starts_with(kMark))
+    throw Error(ErrorKind::StoreUnavailable,
+                "a stored block is of another version of cluxel, which writes it in another form; build the map anew");
+  if (block.size() < kHeadBytes)
     throw Error(ErrorKind::StoreUnavailable, "a stored block is cut short; the map is damaged, build it anew");
-  return block.substr(kBorderBytes);
+  return block.substr(kHeadBytes);
 }
 
 OutputChange changeOfBordered(std::string_view before, std::string_view after) {
-  if (before.size() < kBorderBytes || after.size() < kBorderBytes) return kOtherEverywhere;
-  TileBorders was, is;
-  std::memcpy(&was, before.data(), kBorderBytes);
-  std::memcpy(&is, after.data(), kBorderBytes);
+  const auto was = bordersIn(before), is = bordersIn(after);
+  if (!was || !is) return kOtherEverywhere;
   OutputChange change;
   change.is_other = before != after;
-  for (std::size_t place = 0; place < was.by.size(); ++place) change.is_read[place] = was.by[place] != is.by[place];
-  change.is_read_all = was.by_all != is.by_all;
+  for (std::size_t place = 0; place < was->by.size(); ++place) change.is_read[place] = was->by[place] != is->by[place];
+  change.is_read_all = was->by_all != is->by_all;
   return change;
 }
 
