@@ -23,6 +23,9 @@ std::string_view tableOf(Stage stage) {
   return kTables[static_cast<std::size_t>(stage)];
 }
 
+/// With more points in memory, these are given up before a window is assembled, which does not read them.
+constexpr std::size_t kPointsBeside = 1'000'000;
+
 /// A block names its tile, which later stages look up.
 template <typename Tile>
 Tile checked(const TileKey& key, Tile tile) {
@@ -249,6 +252,9 @@ void TileStages::hold(const rdf::ReadTransaction& transaction, const TileSet& ti
   giveUpOthers(outputs_.summaries), giveUpOthers(outputs_.ground), giveUpOthers(outputs_.features);
   giveUpOthers(outputs_.points), giveUpOthers(outputs_.cluxels);
   giveUpOthers(outputs_.labels), giveUpOthers(outputs_.components), giveUpOthers(outputs_.contacts);
+  std::size_t points = 0;
+  for (const auto& [key, tile] : outputs_.points) points += tile.size();
+  if (points > kPointsBeside) dropPoints();
   RecentScans scans(transaction);
   OutputReader reader(transaction, scans, outputs_);
   reader.readForScene(tiles);
