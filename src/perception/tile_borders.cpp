@@ -223,9 +223,7 @@ std::string withBorders(const TileBorders& borders, std::string_view tile_bytes)
 }
 
 std::string_view withoutBorders(std::string_view block) {
-  if (!block.starts_with(kMark))
-    throw Error(ErrorKind::StoreUnavailable,
-                "a stored block is of another version of cluxel, which writes it in another form; build the map anew");
+  if (!block.starts_with(kMark)) return block;
   if (block.size() < kHeadBytes)
     throw Error(ErrorKind::StoreUnavailable, "a stored block is cut short; the map is damaged, build it anew");
   return block.substr(kHeadBytes);

@@ -49,7 +49,8 @@ inline constexpr OutputChange kOtherEverywhere{true, 0x1ff, true};
 
 /// Stored outputs with borders: the digests stand before the bytes of the tile.
 std::string withBorders(const TileBorders& borders, std::string_view tile_bytes);
-/// The bytes of the tile. Throws Error (StoreUnavailable) when the block is cut short or of another version.
+/// The bytes of the tile; of earlier versions, which stored no borders, the whole block. Throws Error
+/// (StoreUnavailable) when the block is cut short.
 std::string_view withoutBorders(std::string_view block);
 /// Compares two blocks that withBorders() made.
 OutputChange changeOfBordered(std::string_view before, std::string_view after);
