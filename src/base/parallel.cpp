@@ -8,6 +8,7 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -23,8 +24,16 @@ class SharedPieces {
   SharedPieces(std::size_t count, const std::function<void(std::size_t)>& work)
       : count_(count), work_(work), failed_piece_(count) {}
 
+  /// Threads that were started and have not begun, of all loops of the process. They are few, though loops do not wait
+  /// for them: a loop starts no more while as many have not begun as it may use.
+  static std::atomic<std::size_t>& notBegun() {
+    static std::atomic<std::size_t> count{0};
+    return count;
+  }
+
   /// What the threads beside the calling one do.
   void help() {
+    --notBegun();
     {
       const std::lock_guard lock(mutex_);
       if (is_closed_) return;
@@ -70,16 +79,27 @@ class SharedPieces {
   std::exception_ptr failure_;
 };
 
+/// Whether a thread could be started. Where the system has no more, work goes on with those that there are.
+bool started(const std::function<void()>& run) {
+  try {
+    std::thread(run).detach();
+    return true;
+  } catch (const std::system_error&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 void parallelFor(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& work) {
   const std::size_t extra = std::min<std::size_t>(std::max(threads, 1U), std::max<std::size_t>(count, 1)) - 1;
   const auto pieces = std::make_shared<SharedPieces>(count, work);
-  try {
-    for (std::size_t i = 0; i < extra; ++i) std::thread([pieces] { pieces->help(); }).detach();
-  } catch (...) {
-    pieces->close();
-    throw;
+  for (std::size_t i = 0; i < extra && SharedPieces::notBegun() < extra; ++i) {
+    ++SharedPieces::notBegun();
+    if (!started([pieces] { pieces->help(); })) {
+      --SharedPieces::notBegun();
+      break;
+    }
   }
   pieces->workOn();
   pieces->close();
@@ -170,7 +190,10 @@ void parallelInOrder(std::size_t count, unsigned threads, std::size_t ahead,
   const std::size_t extra = std::min<std::size_t>(std::max(threads, 1U), std::max<std::size_t>(count, 1)) - 1;
   {
     std::vector<std::jthread> pool;
-    for (std::size_t i = 0; i < extra; ++i) pool.emplace_back([&] { pieces.workOn(); });
+    try {
+      for (std::size_t i = 0; i < extra; ++i) pool.emplace_back([&] { pieces.workOn(); });
+    } catch (const std::system_error&) {  // the system has no more threads: work goes on with those that there are
+    }
     pieces.takeAll(take);
   }
   pieces.rethrow();

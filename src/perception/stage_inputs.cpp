@@ -37,13 +37,14 @@ FeatureTile StageInputs::featuresOf(const TileKey& key) const {
   return computeFeatures(ringIn(out_.cluxels, key), ringIn(out_.ground, key), params_.features);
 }
 
-/// All of these tiles, and of the tiles around them what is near these.
+/// All of these tiles, and of the tiles around them what is near these: everything where stages read far.
 StageInputs::Places StageInputs::around(const TileSet& keys) const {
+  const bool is_far = widths_.volumes + widths_.points > kTileSize_m;
   Places places;
   for (const TileKey& key : keys) {
     const auto ring = ringOf(key);
-    for (std::size_t place = 0; place < ring.size(); ++place)  // from there, the tile lies at the opposite place
-      if (tiles_.all.contains(ring[place])) places[ring[place]] |= 1U << (ring.size() - 1 - place);
+    for (std::size_t place = 0; place < ring.size(); ++place)
+      if (tiles_.all.contains(ring[place])) places[ring[place]] |= is_far ? kEverywhere : 1U << opposite(place);
   }
   return places;
 }
@@ -51,11 +52,15 @@ StageInputs::Places StageInputs::around(const TileSet& keys) const {
 void StageInputs::addVolumes(const Places& needed) {
   read(keysOf(needed));
   std::vector<std::pair<CluxelTile*, std::uint32_t>> lacking;
+  TileSet whole;
   for (const auto& [key, places] : needed) {
     CluxelTile& tile = out_.cluxels.at(key);
     const std::uint32_t there = placesOf(tile.hasVolumes(), volumes_near_, key);
-    if (!holds(there, places)) lacking.emplace_back(&tile, there | places);
+    if (holds(there, places)) continue;
+    lacking.emplace_back(&tile, there | places);
+    if ((places & kEverywhere) != 0) whole.insert(key);
   }
+  read(tiles_.around(whole));
   parallelFor(lacking.size(), options_.threads, [&](std::size_t i) {
     const auto& [tile, places] = lacking[i];
     std::vector<std::uint32_t> chosen;
@@ -78,6 +83,7 @@ void StageInputs::addRows(const TileSet& keys) {
     const std::uint32_t there = placesOf(tile.hasRows(), rows_near_, key);
     if (holds(there, places)) continue;
     lacking.emplace_back(&tile, there | places);
+    if ((places & kEverywhere) != 0) readers.insert(key);
     for (const TileKey& near : ringOf(key))
       if (keys.contains(near)) readers.insert(near);
   }

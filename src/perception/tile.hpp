@@ -38,6 +38,10 @@ inline std::array<TileKey, 9> ringOf(const TileKey& key) {
   return ring;
 }
 inline constexpr int kRingCentre = 4;
+/// Where the tile itself is in the ring of the one at `place`.
+constexpr std::size_t opposite(std::size_t place) {
+  return 8 - place;
+}
 
 /// One stage's stored outputs of a tile and its 8 neighbours, in the order of ringOf(); null where there is none.
 template <typename Tile>

@@ -12,6 +12,7 @@
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/map_update.hpp"
+#include "mapping/change/map_change.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/small_campus.hpp"
 #include "sparql/query_engine.hpp"
@@ -112,11 +113,15 @@ class Street {
     });
   }
   std::size_t size() const { return from_west_.size(); }
-  fs::path built(std::size_t first, std::size_t end, const std::string& name) const {
+  ScanSet scans(std::size_t first, std::size_t end) const {
     std::vector<PosedScan> chosen;
     for (std::size_t i = first; i < end; ++i) chosen.push_back({from_west_[i], all_.file(from_west_[i]).T_map_sensor});
+    return all_.posed(chosen);
+  }
+  fs::path built(std::size_t first, std::size_t end, const std::string& name,
+                 const MapInputs& inputs = shippedInputs()) const {
     fs::remove(folder_.path() / name);
-    buildMap(all_.posed(chosen), shippedInputs(), folder_.path() / name, {}, silence());
+    buildMap(scans(first, end), inputs, folder_.path() / name, {}, silence());
     return folder_.path() / name;
   }
   fs::path merged() const { return folder_.path() / "merged"; }
@@ -145,6 +150,18 @@ TEST(MergeOfStreets, TakesTilesThatOnlyOneMapHas) {
     EXPECT_TRUE(canonicalText(street.merged()) == canonicalText(whole)) << end;
     EXPECT_TRUE(blocksOf(street.merged()) == blocksOf(whole)) << end;
     EXPECT_LT(3 * computed.tiles["cluxels"], 2 * tilesOf(street.merged())) << end;
+  }
+}
+
+TEST(ExtensionOfStreets, ReadsAsFarAsLabelsDo) {
+  const Street street;
+  for (const double halo_m : {0.0, 3.0, 14.0, 16.0}) {
+    MapInputs inputs = shippedInputs();
+    inputs.params.labelling.halo_m = halo_m;
+    const fs::path whole = street.built(0, street.size(), "whole", inputs);
+    const fs::path extended = street.built(0, street.size() - 1, "extended", inputs);
+    extendMap(extended, street.scans(street.size() - 1, street.size()), {}, silence());
+    EXPECT_TRUE(blocksOf(extended) == blocksOf(whole)) << halo_m;
   }
 }
 

@@ -69,12 +69,14 @@ std::string toBytes(const LabelInputs& inputs) {
   return inputs.bytes;
 }
 
-std::map<TileKey, LabelInputs> labelInputs(const std::map<TileKey, FeatureTile>& features) {
-  const std::size_t columns = featureLayout({}).columns.size(), edge_columns = featureLayout({}).edge_columns.size();
+std::map<TileKey, LabelInputs> labelInputs(const std::map<TileKey, FeatureTile>& features, const FeatureParams& params,
+                                           double halo_m) {
+  const std::size_t columns = featureLayout(params).columns.size(),
+                    edge_columns = featureLayout(params).edge_columns.size();
   std::map<TileKey, LabelInputs> all;
   for (const auto& [key, tile] : features) {
     const auto ring = ringIn(features, key);
-    const HaloGraph graph = haloGraph(ring, LabellingParams{}.halo_m);
+    const HaloGraph graph = haloGraph(ring, halo_m);
     std::string& bytes = all[key].bytes;
     const auto add = [&](const auto* from, std::size_t count) {
       bytes.append(reinterpret_cast<const char*>(from), count * sizeof *from);
@@ -118,9 +120,29 @@ TileSet differing(const std::map<TileKey, Tile>& before, const std::map<TileKey,
   return tiles;
 }
 
-TEST(TileBorders, TellEveryTileThatAChangeReaches) {
-  const PerceptionParams params;
-  const BorderWidths widths = borderWidths(params, {});
+/// Settings that read near and far.
+struct Settings {
+  PerceptionParams perception;
+  LabellingParams labelling;
+};
+
+std::vector<Settings> variedSettings() {
+  std::vector<Settings> all(4);
+  all[1].perception.clustering = {.radius_m = 1.0, .max_reach_m = 2.0};
+  all[2].perception.clustering = {.radius_m = 0.05, .max_reach_m = 0.05};
+  all[2].labelling.halo_m = 8;
+  all[3].perception.features.intensity = true;
+  all[3].labelling.halo_m = 0;
+  return all;
+}
+
+class TileBordersOf : public ::testing::TestWithParam<Settings> {};
+INSTANTIATE_TEST_SUITE_P(Settings, TileBordersOf, ::testing::ValuesIn(variedSettings()));
+
+TEST_P(TileBordersOf, TellEveryTileThatAChangeReaches) {
+  const PerceptionParams& params = GetParam().perception;
+  const BorderWidths widths = borderWidths(params, GetParam().labelling);
+  const double halo_m = GetParam().labelling.halo_m;
   std::mt19937 random(7);
   Count cluxels, ground, features, labels;
   for (int round = 0; round < 12; ++round) {
@@ -148,27 +170,29 @@ TEST(TileBorders, TellEveryTileThatAChangeReaches) {
     read.merge(TileSet(read_ground));
     check("features", a.features, b.features, read,
           unionOf(differing(a.cluxels, b.cluxels), differing(a.ground, b.ground)), features);
-    check("labels", labelInputs(a.features), labelInputs(b.features),
+    check("labels", labelInputs(a.features, params.features, halo_m), labelInputs(b.features, params.features, halo_m),
           readersOf(Stage::Features, a.features, b.features, ofFeatures), differing(a.features, b.features), labels);
   }
   for (const Count& count : {cluxels, ground, features, labels}) {
-    EXPECT_GT(count.differ, 10U);
+    EXPECT_GT(count.differ, 5U);
     EXPECT_LE(count.read, count.around);
   }
-  EXPECT_LT(10 * (cluxels.read + labels.read), 9 * (cluxels.around + labels.around)) << "borders spare nothing";
+  if (halo_m < 2) {
+    EXPECT_LT(10 * labels.read, 9 * labels.around) << "borders spare nothing";
+  }
 }
 
 /// The bytes of the rows of a cluxel and of its edges.
 std::string rowsOf(const FeatureTile& tile, std::uint32_t c) {
-  const std::size_t columns = featureLayout({}).columns.size(), edge_columns = featureLayout({}).edge_columns.size();
+  const std::size_t columns = tile.features.size() / tile.size(), edge_columns = featureLayout({}).edge_columns.size();
   const std::size_t first = tile.edge_row_offset[c] * edge_columns, last = tile.edge_row_offset[c + 1] * edge_columns;
   std::string bytes(reinterpret_cast<const char*>(tile.features.data() + c * columns), columns * sizeof(float));
   return bytes.append(reinterpret_cast<const char*>(tile.edge_features.data() + first), (last - first) * sizeof(float));
 }
 
-TEST(TileBorders, RowsNearATileNeedOnlyVolumesNearIt) {
-  const PerceptionParams params;
-  const BorderWidths widths = borderWidths(params, {});
+TEST_P(TileBordersOf, RowsNearATileNeedOnlyVolumesNearIt) {
+  const PerceptionParams& params = GetParam().perception;
+  const BorderWidths widths = borderWidths(params, GetParam().labelling);
   const std::vector<Scan> scans{scanOf(place(300))};
   const TileOutputs all = perceive(scans, params, 1);
   std::size_t rows = 0, spared = 0;
@@ -183,7 +207,7 @@ TEST(TileBorders, RowsNearATileNeedOnlyVolumesNearIt) {
       std::vector<std::uint32_t> chosen;
       for (std::uint32_t c = 0; c < tile.size(); ++c)
         if (at == kRingCentre ||
-            (neighboursNear(all.points.at(tile.key).at(tile.seed[c]), widths.volumes) >> (8 - at) & 1U) != 0)
+            (neighboursNear(all.points.at(tile.key).at(tile.seed[c]), widths.volumes) >> opposite(at) & 1U) != 0)
           chosen.push_back(c);
       spared += tile.size() - chosen.size();
       addVolumes(ringIn(all.points, tile.key), params.clustering, chosen, tile);
@@ -196,15 +220,15 @@ TEST(TileBorders, RowsNearATileNeedOnlyVolumesNearIt) {
       some.dropRows();
       std::vector<std::uint32_t> chosen;
       for (std::uint32_t c = 0; c < full.size(); ++c)
-        if (at == kRingCentre || (neighboursNear(full.center[c], widths.features) >> (8 - at) & 1U) != 0)
+        if (at == kRingCentre || (neighboursNear(full.center[c], widths.features) >> opposite(at) & 1U) != 0)
           chosen.push_back(c);
       addRows(ringIn(cluxels, ring[at]), ringIn(all.ground, ring[at]), params.features, chosen, some);
       for (const std::uint32_t c : chosen) ASSERT_EQ(rowsOf(some, c), rowsOf(full, c)) << at << " " << c;
       rows += chosen.size();
     }
   }
-  EXPECT_GT(rows, 1000U);
-  EXPECT_GT(spared, rows);
+  EXPECT_GT(rows, 100U);
+  EXPECT_GT(spared, 100U);
 }
 
 TEST(TileBorders, RefuseABlockThatIsCutShort) {

@@ -29,10 +29,6 @@ class RecentScans {
     }
     return scans_.front();
   }
-  void clear() {
-    scans_.clear();
-    points_ = 0;
-  }
 
  private:
   static constexpr std::size_t kMaxPoints = 2'000'000;  ///< some 40 MB

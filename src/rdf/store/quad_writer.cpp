@@ -201,6 +201,7 @@ void QuadWriter::remove(const QuadIds& quad) {
 
 void QuadWriter::change(const QuadDifference& difference) {
   flush();
+  if (difference.added.empty() && difference.removed.empty()) return;
   if (difference.added.size() + difference.removed.size() < kMaxPendingQuads) {
     impl_->flushQuads(difference);
     ++impl_->state().generation;

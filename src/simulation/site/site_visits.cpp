@@ -189,9 +189,9 @@ class Visits {
         {SiteEventKind::Replaced, visit, instance, made, above(old.box, differs_from), above(now, differs_from)});
   }
 
-  /// The height at which the head or the arm of a lamp begins.
+  /// The height at which the head or the arm of a lamp begins; its top when it has neither.
   static double endOfPole(const Campus& campus, std::int32_t lamp) {
-    double lowest = 1e300;
+    double lowest = campus.objects[static_cast<std::size_t>(lamp)].box.max().z();
     for (const CampusMesh& mesh : campus.meshes)
       if (mesh.instance == lamp && mesh.label != SurfaceLabel::LampPole)
         for (const Vector3f& vertex : mesh.vertices) lowest = std::min(lowest, static_cast<double>(vertex.z()));
