@@ -32,9 +32,11 @@ scans_of 1
 # The first district without its last scan, and that scan alone.
 rm -rf "$out/most" "$out/last"
 mkdir "$out/most" "$out/last"
-mv "$out/district_0000/$last.pcd" "$out/last/" 2>/dev/null || true
-for file in "$out"/district_0000/scan_*.pcd; do ln -s "$(realpath "$file")" "$out/most/"; done
-ln -s "$(realpath "$out/last/$last.pcd")" "$out/district_0000/$last.pcd"
+for file in "$out"/district_0000/scan_*.pcd; do
+  part=most
+  [ "$(basename "$file")" != "$last.pcd" ] || part=last
+  ln -s "$(realpath "$file")" "$out/$part/"
+done
 for table in poses times; do
   grep -v '^#' "$out/district_0000/$table.txt" | head -n 11 >"$out/most/$table.txt"
   grep -v '^#' "$out/district_0000/$table.txt" | tail -n 1 >"$out/last/$table.txt"

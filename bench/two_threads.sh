@@ -19,7 +19,8 @@ measure() { # measure NAME SCANS...
     for threads in 1 2; do
       {
         printf '%s ' "$threads"
-        "$here/measured.py" "$cluxel" --threads "$threads" build "$@" -o "$map" --force | tr '\n' ' '
+        rm -f "$map" "$map-lock"  # a map that is replaced is read and freed by one thread
+        "$here/measured.py" "$cluxel" --threads "$threads" build "$@" -o "$map" | tr '\n' ' '
         "$cluxel" info "$map" --json 2>/dev/null |
           python3 -c 'import json,sys; d = json.load(sys.stdin); print(json.dumps([d["points"], d["runs"][-1]]))'
       } >>"$out/$name.runs"
