@@ -88,17 +88,22 @@ TEST_F(SiteVisits, MovesNothingToWhereSomethingArrives) {
   const auto boxOf = [&](std::int32_t instance) {
     return other.visits[1].objects[static_cast<std::size_t>(instance)].box;
   };
+  std::size_t pairs = 0;
   for (const SiteEvent& moved : other.events)
     for (const SiteEvent& arrived : other.events)
       if (moved.kind == SiteEventKind::Moved && arrived.kind == SiteEventKind::Arrived) {
+        ++pairs;
         EXPECT_FALSE(boxOf(moved.new_instance).intersects(boxOf(arrived.new_instance)))
             << moved.new_instance << " moves to where " << arrived.new_instance << " arrives";
       }
+  EXPECT_GT(pairs, 0U);
 }
 
 TEST_F(SiteVisits, StatesNoPartInWhichLampsAreAlike) {
+  std::size_t replaced = 0;
   for (const SiteEvent& event : site->events) {
     if (event.kind != SiteEventKind::Replaced) continue;
+    ++replaced;
     double pole_top = 1e300;  // of the lower pole; above it only one of both lamps has a pole
     for (const auto& [visit, lamp] : {std::pair(event.visit - 1, event.instance), {event.visit, event.new_instance}}) {
       double top = -1e300;
@@ -111,6 +116,7 @@ TEST_F(SiteVisits, StatesNoPartInWhichLampsAreAlike) {
     EXPECT_LT(event.gone.min().z(), pole_top + 0.1);
     EXPECT_EQ(event.gone.min().z(), event.come.min().z());
   }
+  EXPECT_GT(replaced, 0U);
 }
 
 TEST_F(SiteVisits, CutsTheUpperPart) {
