@@ -8,7 +8,8 @@
 namespace cluxel::mapping {
 
 void ScanReader::begin(std::size_t number) {
-  const auto policy = threads_ > 1 ? std::launch::async : std::launch::deferred;
+  // Both: where the system has no more threads, a scan is read when it is asked for.
+  const auto policy = threads_ > 1 ? std::launch::async | std::launch::deferred : std::launch::deferred;
   const std::size_t count = std::min<std::size_t>(std::max(threads_, 1U), scans_.size() - number);
   while (ahead_.size() < count)
     ahead_.push_back(std::async(policy, [this, next = number + ahead_.size()] {
