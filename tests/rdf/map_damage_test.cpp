@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests of files that are not maps, of maps of newer formats, and of damaged maps.
 #include <lmdb.h>
+#define XXH_INLINE_ALL
+#include <xxhash.h>
 
+#include <cstring>
 #include <fstream>
 #include <random>
 
@@ -57,12 +60,52 @@ TEST_F(MapFile, RefusesANewerFormatAndForeignLmdbFiles) {
   EXPECT_THAT(refusal(), HasSubstr("not a Cluxel map"));
   fs::remove(file_);
   create().reset();
-  withLmdb(file_, [](MDB_txn* transaction, MDB_dbi main) { putText(transaction, main, "cluxel-format", "4"); });
-  EXPECT_THAT(refusal(), HasSubstr("newer format (4; this program reads 3)"));
+  withLmdb(file_, [](MDB_txn* transaction, MDB_dbi main) { putText(transaction, main, "cluxel-format", "5"); });
+  EXPECT_THAT(refusal(), HasSubstr("newer format (5; this program reads 4)"));
+}
+
+std::size_t entriesOf(MDB_txn* transaction, const char* table) {
+  MDB_dbi opened = 0;
+  MDB_stat stat{};
+  EXPECT_EQ(mdb_dbi_open(transaction, table, MDB_DUPSORT | MDB_DUPFIXED, &opened), 0);
+  EXPECT_EQ(mdb_stat(transaction, opened, &stat), 0);
+  return stat.ms_entries;
+}
+
+/// Undoes what the fourth format changed: adds literals to the index by object, whose sum the record lacks.
+void makeThirdFormat(MDB_txn* transaction, MDB_dbi main) {
+  putText(transaction, main, "cluxel-format", "3");
+  MDB_dbi spog = 0, ospg = 0;
+  ASSERT_EQ(mdb_dbi_open(transaction, "spog", MDB_DUPSORT | MDB_DUPFIXED, &spog), 0);
+  ASSERT_EQ(mdb_dbi_open(transaction, "ospg", MDB_DUPSORT | MDB_DUPFIXED, &ospg), 0);
+  MDB_cursor* quads = nullptr;
+  ASSERT_EQ(mdb_cursor_open(transaction, spog, &quads), 0);
+  std::vector<std::string> keys;
+  MDB_val name, value;
+  while (mdb_cursor_get(quads, &name, &value, MDB_NEXT) == 0) {
+    const std::string_view key(static_cast<const char*>(value.mv_data), value.mv_size);
+    keys.push_back(std::string(key.substr(8, 4)) + std::string(key.substr(0, 8)) + std::string(key.substr(12)));
+  }
+  mdb_cursor_close(quads);
+  for (std::string& key : keys) {
+    MDB_val stored_name{1, const_cast<char*>("q")}, stored{key.size(), key.data()};
+    ASSERT_EQ(mdb_put(transaction, ospg, &stored_name, &stored, 0), 0);
+  }
+  constexpr std::size_t kOldSums = 40;
+  MDB_val sums_key{11, const_cast<char*>("cluxel-sums")};
+  ASSERT_EQ(mdb_get(transaction, main, &sums_key, &value), 0);
+  std::string sums(static_cast<const char*>(value.mv_data), kOldSums);
+  // The record is of the commit that wrote it, which is this one.
+  const std::uint64_t commit = mdb_txn_id(transaction);
+  std::memcpy(sums.data(), &commit, sizeof commit);
+  const std::uint64_t checksum = XXH3_64bits(sums.data(), sums.size());
+  putText(transaction, main, "cluxel-sums",
+          sums + std::string(reinterpret_cast<const char*>(&checksum), sizeof checksum));
 }
 
 /// Removes what the second format added: the sums of quads and terms.
 void makeFirstFormat(MDB_txn* transaction, MDB_dbi main) {
+  makeThirdFormat(transaction, main);
   putText(transaction, main, "cluxel-format", "1");
   MDB_dbi blocks = 0;
   ASSERT_EQ(mdb_dbi_open(transaction, "blocks", 0, &blocks), 0);
@@ -75,23 +118,58 @@ void makeFirstFormat(MDB_txn* transaction, MDB_dbi main) {
   }
 }
 
+/// Quads with integers, and as many with an IRI.
+void addNumbers(Environment& environment, int first, int last) {
+  WriteTransaction transaction = environment.write();
+  QuadWriter writer(transaction);
+  for (int i = first; i < last; ++i) {
+    const Term subject = Term::iri("s" + std::to_string(i));
+    writer.add({subject, Term::iri("p"), Term::integer(i % 50), Term::iri("")});
+    writer.add({subject, Term::iri("q"), Term::iri("o"), Term::iri("")});
+  }
+  writer.flush();
+  transaction.commit();
+}
+
+std::uint64_t countOf(const Environment& environment, const Term& object) {
+  const QuadReader reader(environment.read());
+  return reader.count({.s = {}, .p = {}, .o = reader.idOf(object), .g = {}});
+}
+
+TEST_F(MapFile, KeepsLiteralsOutOfTheIndexByObject) {
+  addNumbers(*create(), 0, 500);
+  withLmdb(file_, [](MDB_txn* transaction, MDB_dbi) {
+    EXPECT_EQ(entriesOf(transaction, "ospg"), 500U);
+    EXPECT_EQ(entriesOf(transaction, "posg"), 1000U);
+  });
+  EXPECT_EQ(countOf(*open(OpenMode::ReadOnly), Term::integer(7)), 10U);
+  EXPECT_EQ(countOf(*open(OpenMode::ReadOnly), Term::iri("o")), 500U);
+}
+
+TEST_F(MapFile, OfTheThirdFormatKeepsLiteralsInTheIndexByObject) {
+  addNumbers(*create(), 0, 500);
+  withLmdb(file_, makeThirdFormat);
+  EXPECT_THAT(checkMap(file_).faults, ElementsAre());
+  EXPECT_EQ(countOf(*open(OpenMode::ReadOnly), Term::integer(7)), 10U);
+  addNumbers(*open(), 500, 600);
+  EXPECT_THAT(checkMap(file_).faults, ElementsAre());
+  EXPECT_EQ(countOf(*open(OpenMode::ReadOnly), Term::integer(7)), 12U);
+  const fs::path compacted = folder_.path() / "compacted.clx";
+  open(OpenMode::ReadOnly)->compactTo(compacted);
+  EXPECT_THAT(checkMap(compacted).faults, ElementsAre());
+  for (const fs::path& file : {file_, compacted})
+    withLmdb(file, [](MDB_txn* transaction, MDB_dbi) { EXPECT_EQ(entriesOf(transaction, "ospg"), 1200U); });
+}
+
 TEST_F(MapFile, OfTheFirstFormatIsReadAndGetsSumsWithItsNextCommit) {
-  const auto added = [](Environment& environment, int first, int last) {
-    WriteTransaction transaction = environment.write();
-    QuadWriter writer(transaction);
-    for (int i = first; i < last; ++i)
-      writer.add({Term::iri("s" + std::to_string(i)), Term::iri("p"), Term::integer(i), Term::iri("")});
-    writer.flush();
-    transaction.commit();
-  };
-  added(*create(), 0, 500);
+  addNumbers(*create(), 0, 500);
   withLmdb(file_, [](MDB_txn* transaction, MDB_dbi main) { makeFirstFormat(transaction, main); });
-  EXPECT_EQ(QuadReader(open(OpenMode::ReadOnly)->read()).size(), 500U);
+  EXPECT_EQ(QuadReader(open(OpenMode::ReadOnly)->read()).size(), 1000U);
   EXPECT_TRUE(checkMap(file_).sound());
   const fs::path compacted = folder_.path() / "compacted.clx";
   open(OpenMode::ReadOnly)->compactTo(compacted);
   EXPECT_TRUE(checkMap(compacted).sound());
-  added(*open(), 500, 600);
+  addNumbers(*open(), 500, 600);
   EXPECT_TRUE(checkMap(file_).sound());
   withLmdb(file_, [](MDB_txn* transaction, MDB_dbi main) {
     MDB_val key{11, const_cast<char*>("cluxel-sums")};

@@ -135,11 +135,24 @@ void expectSameAnswers(const QuadReader& reader, const std::set<QuadIds>& quads,
   expectLookupsFindWhatScansFind(reader, quads, random, range);
 }
 
+/// Makes the ids 1 to `count` known. Every second one, or one of five, is a literal.
+void addTerms(Environment& environment, TermId count, unsigned one_of) {
+  WriteTransaction transaction = environment.write();
+  QuadWriter writer(transaction);
+  for (TermId id = 1; id <= count; ++id) {
+    const std::string text = "t" + std::to_string(id);
+    ASSERT_EQ(writer.intern(id % one_of == 0 ? Term::literal(text) : Term::iri(text)), id);
+  }
+  writer.flush();
+  transaction.commit();
+}
+
 TEST(QuadStore, AnswersEveryPatternAsAPlainSetDoes) {
-  for (unsigned seed = 0; seed < 6; ++seed) {
+  for (unsigned seed = 0; seed < 8; ++seed) {
     std::mt19937 random(seed);
     const TermId range = seed % 2 == 0 ? 12 : 400;
     auto environment = Environment::temporary();
+    if (seed < 6) addTerms(*environment, range, seed < 3 ? 2 : 5);  // else without terms
     std::set<QuadIds> quads;
     for (int round = 0; round < 12; ++round) {
       WriteTransaction transaction = environment->write();

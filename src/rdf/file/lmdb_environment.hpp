@@ -11,6 +11,7 @@
 #include "rdf/file/block_keys.hpp"
 #include "rdf/file/environment.hpp"
 #include "rdf/file/lmdb_handles.hpp"
+#include "rdf/file/map_check.hpp"
 #include "rdf/file/store_sums.hpp"
 #include "rdf/store/quad_journal.hpp"
 
@@ -26,6 +27,10 @@ enum class Table : std::uint8_t { Blocks, Terms, TermHashes, Spog, Posg, Ospg, G
 inline constexpr std::size_t kTableCount = 7;
 inline constexpr std::array<const char*, kTableCount> kTableNames = {"blocks", "terms", "hashes", "spog",
                                                                      "posg",   "ospg",  "gspo"};
+
+/// The first format has no sums of quads and terms; the next commit adds them, which makes it the second. Up to the
+/// third one, the index by object holds literals.
+inline constexpr int kFirstFormat = 1, kFormatWithSums = 2, kFormatWithoutLiterals = 4;
 
 constexpr unsigned tableFlags(Table table) {
   switch (table) {
@@ -63,12 +68,16 @@ class LmdbEnvironment final : public Environment {
   /// From now on the file may be renamed or removed.
   void loseName() { has_name_ = false; }
   /// True for a map that was written before its quads and terms had sums; it gets them with the next commit.
-  bool isOfFirstFormat() const { return first_format_; }
+  bool isOfFirstFormat() const { return format_ == kFirstFormat; }
+  /// False for a map whose index by object holds literals, too.
+  bool omitsLiterals() const { return format_ >= kFormatWithoutLiterals; }
+  /// Before anything is copied from a map of this format.
+  void takeFormatOf(const LmdbEnvironment& other) { format_ = other.format_.load(); }
   /// True for the last commit of this process: what it read was verified, so what it wrote need not be.
   bool wrote(std::size_t transaction_id) const { return own_commit_ == transaction_id; }
   void noteCommit(std::size_t transaction_id) {
     own_commit_ = transaction_id;
-    first_format_ = false;
+    if (format_ == kFirstFormat) format_ = kFormatWithSums;
   }
   bool canWrite() const { return can_write_; }
   void check(int code, std::string_view doing) const { checkLmdb(code, file_, doing); }
@@ -89,7 +98,8 @@ class LmdbEnvironment final : public Environment {
   int data_lock_;
   bool can_write_, has_name_ = true;
   std::atomic<bool> writing_allowed_{false};
-  std::atomic<bool> first_format_{false}, verified_{false};  ///< verified_: writers may trust the file
+  std::atomic<int> format_{kMapFormat};
+  std::atomic<bool> verified_{false};  ///< writers may trust the file
   std::atomic<std::size_t> own_commit_{0};
   std::array<MDB_dbi, kTableCount> tables_{};
   MDB_dbi main_ = 0;

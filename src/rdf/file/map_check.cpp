@@ -139,14 +139,19 @@ class Check {
         last = toNumber(key);
         sum += mixed(quad);
         ++count;
+        if (order != QuadOrder::Spog || (omits_literals_ && reader_.isLiteral(quad.o))) continue;
+        links_.hash += mixed(quad);
+        ++links_.count;
       }
     if (order == QuadOrder::Spog) {
       result_.quads = count;
       sum_ = sum;
-    } else if (count != result_.quads || sum != sum_) {
-      fault("index " + name + " holds other quads than index spog");
     }
-    if (count != reader_.size()) fault("index " + name + " has a wrong count");
+    const bool is_by_object = order == QuadOrder::Ospg;
+    const std::uint64_t wanted = is_by_object ? links_.count : result_.quads;
+    if (count != wanted || sum != (is_by_object ? links_.hash : sum_))
+      fault("index " + name + " holds other quads than index spog");
+    if (!is_by_object && count != reader_.size()) fault("index " + name + " has a wrong count");
   }
 
   ReadTransaction::Impl& state() const { return transaction_.impl(); }
@@ -154,7 +159,9 @@ class Check {
   ReadTransaction transaction_;
   QuadReader reader_;
   MapCheck result_;
+  const bool omits_literals_ = state().environment->omitsLiterals();
   std::uint64_t sum_ = 0;
+  EntrySum links_;  ///< of the quads that index ospg should hold
 };
 
 }  // namespace

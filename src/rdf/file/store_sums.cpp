@@ -6,6 +6,8 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstring>
 #include <string>
 
@@ -21,13 +23,9 @@ constexpr std::string_view kSumsKey = "cluxel-sums", kTermSumTable = "term sums"
 /// A block of sums is short enough to lie within a page.
 constexpr TermId kSumsOfBlock = 128;
 
-struct SumsRecord {
-  StoreSums sums;
-  std::uint64_t checksum;
-};
-
-std::uint64_t checksumOf(const StoreSums& sums) {
-  return XXH3_64bits(&sums, sizeof sums);
+/// The bytes of the sums in the record, before their checksum. Maps whose ospg holds all quads have no sum of it.
+std::size_t sizeOfSums(const ReadTransaction::Impl& transaction) {
+  return transaction.environment->omitsLiterals() ? sizeof(StoreSums) : offsetof(StoreSums, links);
 }
 
 std::string keyOfSums(TermId block) {
@@ -101,18 +99,29 @@ std::optional<StoreSums> storedSums(const ReadTransaction::Impl& transaction, st
   if (code == MDB_NOTFOUND && transaction.environment->isOfFirstFormat()) return std::nullopt;
   if (code == MDB_NOTFOUND) refuseDamaged(file, "the sums of its quads are missing");
   transaction.check(code, "read the sums of quads");
-  SumsRecord record{};
-  if (value.mv_size == sizeof record) std::memcpy(&record, value.mv_data, sizeof record);
-  if (value.mv_size != sizeof record || record.checksum != checksumOf(record.sums))
+  StoreSums sums;
+  std::uint64_t checksum = 0;
+  const std::size_t size = sizeOfSums(transaction);
+  const bool is_whole = value.mv_size == size + sizeof checksum;
+  if (is_whole) {
+    std::memcpy(&sums, value.mv_data, size);
+    std::memcpy(&checksum, static_cast<const char*>(value.mv_data) + size, sizeof checksum);
+  }
+  if (!is_whole || checksum != XXH3_64bits(&sums, size))
     refuseDamaged(file, "the sums of its quads have a wrong checksum");
-  if (record.sums.transaction != commit) refuseDamaged(file, "the sums of its quads are those of another commit");
-  return record.sums;
+  if (sums.transaction != commit) refuseDamaged(file, "the sums of its quads are those of another commit");
+  if (!transaction.environment->omitsLiterals()) sums.links = sums.quads;
+  return sums;
 }
 
 void storeSums(const ReadTransaction::Impl& transaction, const StoreSums& sums) {
-  SumsRecord record{sums, checksumOf(sums)};
+  const std::size_t size = sizeOfSums(transaction);
+  const std::uint64_t checksum = XXH3_64bits(&sums, size);
+  std::array<char, sizeof sums + sizeof checksum> record{};
+  std::memcpy(record.data(), &sums, size);
+  std::memcpy(record.data() + size, &checksum, sizeof checksum);
   MDB_val key = toVal(kSumsKey);
-  MDB_val value{sizeof record, &record};
+  MDB_val value{size + sizeof checksum, record.data()};
   transaction.check(mdb_put(transaction.live(), transaction.environment->mainTable(), &key, &value, 0),
                     "write the sums of quads");
 }

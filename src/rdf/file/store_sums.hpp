@@ -43,8 +43,9 @@ struct EntrySum {
 /// The record of a commit in the main database.
 struct StoreSums {
   std::uint64_t transaction = 0;  ///< the commit that wrote it
-  EntrySum quads;                 ///< of each index, keys in the order s, p, o, g
+  EntrySum quads;                 ///< of each index but ospg, keys in the order s, p, o, g
   EntrySum term_hashes;
+  EntrySum links;  ///< of ospg, which may lack quads with literals; keys in the order s, p, o, g
   bool operator==(const StoreSums&) const = default;
 };
 

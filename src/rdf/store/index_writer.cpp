@@ -90,18 +90,25 @@ class IndexCursor {
 
 /// Tells the sum and the journal, as far as they are wanted, what has changed.
 struct ChangeNotes {
-  EntrySum* sum = nullptr;
-  QuadJournal* journal = nullptr;
+  explicit ChangeNotes(const IndexTask& task)
+      : sum(task.sum), journal(task.journal), is_by_object(task.index == Table::Ospg) {}
 
   void added(Key128 key) const {
-    if (sum != nullptr) sum->add(key);
+    if (sum != nullptr) sum->add(inSum(key));
     if (journal != nullptr) journal->note(quadOf(key), true);
   }
   void removed(Key128 key) const {
-    if (sum != nullptr) sum->remove(key);
+    if (sum != nullptr) sum->remove(inSum(key));
     if (journal != nullptr) journal->note(quadOf(key), false);
   }
   static QuadIds quadOf(Key128 key) { return toQuad(toKey(key), QuadOrder::Spog); }
+  Key128 inSum(Key128 key) const {
+    return is_by_object ? toNumber(toQuad(toKey(key), QuadOrder::Ospg), QuadOrder::Spog) : key;
+  }
+
+  EntrySum* sum;
+  QuadJournal* journal;
+  bool is_by_object;
 };
 
 std::uint64_t keyCount(const ReadTransaction::Impl& transaction, Table index) {
@@ -261,7 +268,7 @@ void appendKeys(const ReadTransaction::Impl& transaction, MDB_cursor* cursor, st
 namespace {
 
 void writeSingly(ReadTransaction::Impl& transaction, const IndexTask& task) {
-  const ChangeNotes notes{task.sum, task.journal};
+  const ChangeNotes notes(task);
   const std::uint64_t changes = task.change.added.size() + task.change.removed.size();
   const std::uint64_t entries = keyCount(transaction, task.index);
   if (entries > 0 && changes * kPutCost > entries + 1000) return writeAnew(transaction, task.index, task.change, notes);
@@ -280,7 +287,7 @@ void applyTo(ReadTransaction::Impl& transaction, std::span<IndexTask> tasks, std
   parallelFor(tasks.size(), transaction.flush_poll ? 1 : transaction.threads, [&](std::size_t i) {
     make(tasks[i]);
     if (is_drafted[i] == 0) return;
-    changeDraft(transaction, tasks[i].index, tasks[i].change, {tasks[i].sum, tasks[i].journal});
+    changeDraft(transaction, tasks[i].index, tasks[i].change, ChangeNotes(tasks[i]));
     tasks[i].change = {};
   });
   for (std::size_t i = 0; i < tasks.size(); ++i)

@@ -19,8 +19,8 @@ struct IndexChange {
 /// Appends ascending keys beyond the last one of an index. `cursor` is a cursor on it.
 void appendKeys(const ReadTransaction::Impl& transaction, MDB_cursor* cursor, std::span<const QuadKey> keys);
 
-/// A change of one index. `sum` and `journal`, if any, follow what really changes; the journal takes keys in the order
-/// s, p, o, g.
+/// A change of one index. `sum` and `journal`, if any, follow what really changes. The journal takes keys in the order
+/// s, p, o, g, and so does the sum, also of index ospg.
 struct IndexTask {
   Table index;
   IndexChange change;

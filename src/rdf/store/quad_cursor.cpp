@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "rdf/store/literal_entries.hpp"
+
 namespace cluxel::rdf {
 
 namespace {
@@ -21,6 +23,12 @@ const QuadKey* gallop(const QuadKey* first, const QuadKey* last, Key128 key) {
 QuadCursor::Impl::Impl(const PageDirectory& from, const IndexPattern& laid_out, QuadOrder sorted_by)
     : directory(from), pattern(laid_out), order(sorted_by), position(from.lowerBound(laid_out.range.first)) {
   loadPage();
+}
+
+QuadCursor::Impl::Impl(std::vector<QuadKey> keys, const IndexPattern& laid_out)
+    : collected(std::move(keys)), directory(none), pattern(laid_out), order(QuadOrder::Ospg) {
+  at = collected.data();
+  stop = at + collected.size();
 }
 
 bool QuadCursor::Impl::loadPage() {
@@ -44,6 +52,10 @@ void QuadCursor::Impl::moveTo(Key128 key) {
   if (key <= pattern.range.first) return;
   if (at != stop && toNumber(stop[-1]) >= key) {
     at = gallop(at, stop, key);
+    return;
+  }
+  if (directory.pageCount() == 0) {
+    at = stop;
     return;
   }
   const PageDirectory::Position present{position.page == 0 ? 0 : position.page - 1, 0};
@@ -106,8 +118,9 @@ void QuadCursor::seek(const QuadIds& quad) {
 
 std::span<const QuadKey> QuadCursor::nextBlock() {
   if (!impl_ || (impl_->at == impl_->stop && !impl_->loadPage())) return {};
-  const std::span<const QuadKey> block(impl_->at, impl_->stop);
-  impl_->at = impl_->stop;
+  constexpr std::ptrdiff_t kMaxOfBlock = 255;  // what fits into a page
+  const std::span<const QuadKey> block(impl_->at, std::min(impl_->stop, impl_->at + kMaxOfBlock));
+  impl_->at += block.size();
   return block;
 }
 
@@ -121,14 +134,18 @@ QuadOrder QuadCursor::order() const {
 
 /// The last position, where ascending lookups start, and prefetched positions of announced lookups.
 struct PrefixLookup::Impl {
-  explicit Impl(const PageDirectory& from) : directory(from) {}
+  Impl(const PageDirectory& from, std::optional<LiteralEntries> lacking)
+      : directory(from), literals(std::move(lacking)) {}
 
   const PageDirectory& directory;
+  std::optional<LiteralEntries> literals;  ///< of index ospg
+  std::vector<QuadKey> collected;          ///< those of the literal that was looked up last
   PageDirectory::Position position;
   KeyRange range;
   std::vector<Key128> expected;                 ///< the first keys of announced lookups
   std::vector<PageDirectory::Position> places;  ///< their lower bounds
   std::size_t next_expected = 0;
+  bool is_collected = false;
 
   void seek() {
     if (next_expected < expected.size() && expected[next_expected] == range.first) {
@@ -136,6 +153,16 @@ struct PrefixLookup::Impl {
     } else {
       position = directory.lowerBound(range.first, position);
     }
+  }
+
+  /// Expects the range of the lookup.
+  std::span<const QuadKey> collect(std::span<const TermId> prefix) {
+    if (next_expected < expected.size() && expected[next_expected] == range.first) ++next_expected;
+    const auto id = [prefix](std::size_t place) {
+      return place < prefix.size() ? std::optional(prefix[place]) : std::nullopt;
+    };
+    collected = literals->of({.s = id(1), .p = id(2), .o = id(0), .g = id(3)});
+    return collected;
   }
 
   std::span<const QuadKey> take() {
@@ -177,18 +204,22 @@ void PrefixLookup::expect(std::span<const TermId> prefixes, std::size_t length) 
 std::span<const QuadKey> PrefixLookup::find(std::span<const TermId> prefix) {
   if (!impl_) return {};
   impl_->range = rangeOf(prefix);
+  impl_->is_collected = impl_->literals && impl_->literals->isLiteral(prefix.front());
+  if (impl_->is_collected) return impl_->collect(prefix);
   impl_->seek();
   return impl_->take();
 }
 
 std::span<const QuadKey> PrefixLookup::more() {
   // The range continues only if it reached the end of the page.
-  if (!impl_ || impl_->position.index != 0) return {};
+  if (!impl_ || impl_->is_collected || impl_->position.index != 0) return {};
   return impl_->take();
 }
 
 PrefixLookup QuadReader::lookup(QuadOrder order) const {
-  return PrefixLookup(std::make_unique<PrefixLookup::Impl>(impl_->directory(order)));
+  std::optional<LiteralEntries> literals;
+  if (order == QuadOrder::Ospg && impl_->state().environment->omitsLiterals()) literals.emplace(impl_->transaction);
+  return PrefixLookup(std::make_unique<PrefixLookup::Impl>(impl_->directory(order), std::move(literals)));
 }
 
 }  // namespace cluxel::rdf

@@ -8,7 +8,11 @@ namespace cluxel::rdf {
 
 struct QuadCursor::Impl {
   Impl(const PageDirectory& directory, const IndexPattern& pattern, QuadOrder order);
+  /// Over collected keys of index ospg, which match the pattern.
+  Impl(std::vector<QuadKey> keys, const IndexPattern& pattern);
 
+  std::vector<QuadKey> collected;
+  PageDirectory none;  ///< of collected keys
   const PageDirectory& directory;
   IndexPattern pattern;
   QuadOrder order;

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "rdf/store/geometry_index.hpp"
+#include "rdf/store/literal_entries.hpp"
 #include "rdf/store/quad_cursor.hpp"
 #include "rdf/store/quad_reader_impl.hpp"
 #include "rdf/terms/literal_value.hpp"
@@ -111,6 +112,10 @@ Term QuadReader::termOf(TermId id) const {
   return {view.kind, std::string(view.text), std::string(view.datatype), std::string(view.language)};
 }
 
+bool QuadReader::isLiteral(TermId id) const {
+  return LiteralEntries(impl_->transaction).isLiteral(id);
+}
+
 const DecodedValue& QuadReader::valueOf(TermId id) const {
   static const DecodedValue none;
   if (id == kNoTerm) return none;
@@ -136,6 +141,11 @@ QuadOrder QuadReader::bestOrder(const QuadPattern& pattern) {
 }
 
 QuadCursor QuadReader::scan(const QuadPattern& pattern, QuadOrder order) const {
+  if (order == QuadOrder::Ospg) {
+    LiteralEntries literals(impl_->transaction);
+    if (literals.mayMatch(pattern.o))
+      return QuadCursor(std::make_unique<QuadCursor::Impl>(literals.of(pattern), layOut(pattern, order)));
+  }
   return QuadCursor(std::make_unique<QuadCursor::Impl>(impl_->directory(order), layOut(pattern, order), order));
 }
 

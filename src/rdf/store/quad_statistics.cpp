@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rdf/store/literal_entries.hpp"
 #include "rdf/store/quad_cursor.hpp"
 #include "rdf/store/quad_reader_impl.hpp"
 
@@ -84,10 +85,21 @@ std::vector<QuadIds> sampleOf(const PageDirectory& directory, Position from, Pos
   return sample;
 }
 
+/// Exact where index ospg lacks what matches; it has an object.
+std::optional<std::uint64_t> countWithLiterals(const ReadTransaction& transaction, const QuadPattern& pattern) {
+  const LiteralEntries literals(transaction);
+  if (!literals.mayMatch(pattern.o)) return std::nullopt;
+  const bool is_object_only = pattern.s.value_or(kNoTerm) == kNoTerm && !pattern.g;
+  return is_object_only ? literals.count(*pattern.o) : literals.of(pattern).size();
+}
+
 }  // namespace
 
 std::uint64_t QuadReader::count(const QuadPattern& pattern) const {
   const QuadOrder order = bestOrder(pattern);
+  if (order == QuadOrder::Ospg) {
+    if (const auto known = countWithLiterals(impl_->transaction, pattern)) return *known;
+  }
   const IndexPattern laid_out = layOut(pattern, order);
   if (laid_out.prefix_length == 0 && !laid_out.filtered) return size();
   const PageDirectory& directory = impl_->directory(order);
@@ -98,6 +110,9 @@ std::uint64_t QuadReader::count(const QuadPattern& pattern) const {
 
 std::uint64_t QuadReader::estimate(const QuadPattern& pattern) const {
   const QuadOrder order = bestOrder(pattern);
+  if (order == QuadOrder::Ospg) {
+    if (const auto known = countWithLiterals(impl_->transaction, pattern)) return *known;
+  }
   const IndexPattern laid_out = layOut(pattern, order);
   if (laid_out.prefix_length == 0 && !laid_out.filtered) return size();
   const PageDirectory& directory = impl_->directory(order);

@@ -37,7 +37,8 @@ struct QuadPattern {
   std::optional<TermId> s, p, o, g;
 };
 
-/// The sort orders of the indexes; the letters give the positions from most to least significant.
+/// The sort orders of the indexes; the letters give the positions from most to least significant. The index Ospg lacks
+/// quads whose object is a literal: readers collect these from the others.
 enum class QuadOrder : std::uint8_t { Spog, Posg, Ospg, Gspo };
 
 /// An index entry as stored: four big-endian ids in the order of the index, so that bytewise order is sort order.
@@ -177,6 +178,7 @@ class QuadReader {
   std::optional<TermId> idOf(const Term& term) const;
   Term termOf(TermId id) const;  ///< id 0, the unnamed default graph, is an IRI with empty text
   TermView viewOf(TermId id) const;
+  bool isLiteral(TermId id) const;               ///< false for unknown terms
   const DecodedValue& valueOf(TermId id) const;  ///< O(1); the reference lives as long as the reader
   /// Prefetches decoded values that are needed soon. A hint only; unknown ids are ignored.
   void expectValues(std::span<const TermId> ids) const;

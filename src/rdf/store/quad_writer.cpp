@@ -50,6 +50,8 @@ class RecentIris {
 };
 
 struct QuadWriter::Impl {
+  enum class Kind : char { Unknown, Literal, Other };
+
   WriteTransaction transaction;  ///< shares the write transaction
   QuadReader reader;
   PendingTerms terms;
@@ -58,6 +60,7 @@ struct QuadWriter::Impl {
   RecentIris recent;
   TermId next_id = kNoTerm;  ///< kNoTerm while no new term is pending, so that another writer can assign ids
   std::string record;
+  std::vector<Kind> kinds;  ///< of the terms that were asked for
 
   explicit Impl(WriteTransaction& from) : transaction(from), reader(from) {}
 
@@ -67,6 +70,8 @@ struct QuadWriter::Impl {
   void flushTerms();
   void flushGeometries(TermId first, TermId last);
   QuadDifference takeChanges();
+  bool isLiteral(TermId id);
+  QuadDifference withoutLiterals(const QuadDifference& difference);
   void flushQuads(const QuadDifference& difference);
 };
 
@@ -152,16 +157,34 @@ QuadDifference QuadWriter::Impl::takeChanges() {
   return difference;
 }
 
+bool QuadWriter::Impl::isLiteral(TermId id) {
+  if (kinds.size() <= id) kinds.resize(std::max<std::size_t>(id + 1, reader.termCount() + 1), Kind::Unknown);
+  if (kinds[id] == Kind::Unknown) kinds[id] = reader.isLiteral(id) ? Kind::Literal : Kind::Other;
+  return kinds[id] == Kind::Literal;
+}
+
+QuadDifference QuadWriter::Impl::withoutLiterals(const QuadDifference& difference) {
+  QuadDifference links;
+  const auto is_link = [this](const QuadIds& quad) { return !isLiteral(quad.o); };
+  std::copy_if(difference.added.begin(), difference.added.end(), std::back_inserter(links.added), is_link);
+  std::copy_if(difference.removed.begin(), difference.removed.end(), std::back_inserter(links.removed), is_link);
+  return links;
+}
+
 void QuadWriter::Impl::flushQuads(const QuadDifference& difference) {
   // The longest first, so that no thread waits long.
   constexpr std::array<QuadOrder, 4> kOrders{QuadOrder::Posg, QuadOrder::Ospg, QuadOrder::Gspo, QuadOrder::Spog};
   std::array<IndexTask, 4> tasks;
   for (std::size_t i = 0; i < tasks.size(); ++i) tasks[i].index = tableOf(kOrders[i]);
+  const bool omits_literals = state().environment->omitsLiterals();
+  const QuadDifference links = omits_literals ? withoutLiterals(difference) : QuadDifference();
+  tasks[1].sum = &state().sums.links;
   tasks.back().sum = &state().sums.quads;
   tasks.back().journal = &state().journal;
   applyTo(state(), tasks, difference.added.size() + difference.removed.size(), [&](IndexTask& task) {
     const QuadOrder order = kOrders[static_cast<std::size_t>(&task - tasks.data())];
-    task.change = {keysOf(difference.added, order), keysOf(difference.removed, order)};
+    const QuadDifference& of_task = omits_literals && order == QuadOrder::Ospg ? links : difference;
+    task.change = {keysOf(of_task.added, order), keysOf(of_task.removed, order)};
   });
 }
 

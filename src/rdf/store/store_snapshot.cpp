@@ -66,17 +66,21 @@ StoreSnapshot::StoreSnapshot(const ReadTransaction::Impl& transaction)
   if (sums_) requireCounts(transaction.environment->file());
 }
 
+const EntrySum& StoreSnapshot::sumOfTable(Table table) const {
+  if (table == Table::Terms || table == Table::TermHashes) return sums_->term_hashes;
+  return table == Table::Ospg ? sums_->links : sums_->quads;
+}
+
 void StoreSnapshot::requireCounts(const std::filesystem::path& file) const {
   for (std::size_t i = static_cast<std::size_t>(Table::Terms); i < kTableCount; ++i) {
-    const bool of_quads = i >= static_cast<std::size_t>(Table::Spog);
-    if (trees_[i].entries != (of_quads ? sums_->quads : sums_->term_hashes).count)
+    if (trees_[i].entries != sumOfTable(static_cast<Table>(i)).count)
       refuseDamaged(file, std::string("table ") + kTableNames[i] + " has another number of entries than was written");
   }
 }
 
 void StoreSnapshot::verifyIndex(Table index, const std::filesystem::path& file) const {
   const auto i = static_cast<std::size_t>(index);
-  if (sums_ && sumOf(*directories_[i], index, file) != (index == Table::TermHashes ? sums_->term_hashes : sums_->quads))
+  if (sums_ && sumOf(*directories_[i], index, file) != sumOfTable(index))
     refuseDamaged(file, std::string("index ") + kTableNames[i] + " differs from its checksum");
 }
 

@@ -47,6 +47,7 @@ class StoreSnapshot {
   void keep(const std::string& name, std::shared_ptr<const void> made);
 
  private:
+  const EntrySum& sumOfTable(Table table) const;
   void requireCounts(const std::filesystem::path& file) const;
   void verifyIndex(Table index, const std::filesystem::path& file) const;
   std::string_view storedRecord(TermId id, const ReadTransaction::Impl& transaction);

@@ -27,9 +27,6 @@ namespace {
 constexpr std::string_view kFormatKey = "cluxel-format";
 constexpr int kFormat = kMapFormat;
 
-/// The first format has no sums of quads and terms; the next commit adds them, which makes it the second.
-constexpr int kFirstFormat = 1, kFormatWithSums = 2;
-
 int checkedFormat(const std::string& text, const std::filesystem::path& file) {
   int format = 0;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), format);
@@ -55,7 +52,7 @@ void makeSums(WriteTransaction& transaction) {
   ReadTransaction::Impl& state = transaction.impl();
   StoreSnapshot& snapshot = snapshotOf(state);
   const std::filesystem::path& file = state.environment->file();
-  state.sums.quads = sumOf(snapshot.directory(Table::Spog, state), Table::Spog, file);
+  state.sums.quads = state.sums.links = sumOf(snapshot.directory(Table::Spog, state), Table::Spog, file);
   state.sums.term_hashes = sumOf(snapshot.directory(Table::TermHashes, state), Table::TermHashes, file);
   TermSumWriter terms(transaction);
   for (std::uint64_t id = 1; id <= snapshot.termCount(); ++id) {
@@ -83,7 +80,7 @@ void LmdbEnvironment::openTables() {
   MDB_val value;
   const int found = mdb_get(raw, main_, &key, &value);
   if (found == MDB_SUCCESS) {
-    first_format_ = checkedFormat(std::string(toView(value)), file_) == kFirstFormat;
+    format_ = checkedFormat(std::string(toView(value)), file_);
     for (std::size_t i = 0; i < kTableCount; ++i)
       check(mdb_dbi_open(raw, kTableNames[i], tableFlags(static_cast<Table>(i)), &tables_[i]), "read the map's tables");
     check(mdb_txn_commit(transaction.release()), "read the map's tables");
