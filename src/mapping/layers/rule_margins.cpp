@@ -3,9 +3,11 @@
 #include "mapping/layers/rule_margins.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "mapping/map_tables.hpp"
 #include "perception/tile_bytes.hpp"
+#include "rules/decide/local_reach.hpp"
 
 namespace cluxel::mapping {
 
@@ -15,7 +17,7 @@ using perception::TileKey;
 using perception::TileSet;
 using rules::ThresholdMargin;
 
-constexpr std::string_view kMarginKind = "MRGN", kStructureKey = "rule structure";
+constexpr std::string_view kMarginKind = "MRGN", kStructureKey = "rule structure", kReachKey = "rule reach";
 constexpr std::uint32_t kMarginVersion = 1;
 
 std::string toBytes(const TileKey& tile, const std::vector<ThresholdMargin>& margins) {
@@ -71,6 +73,21 @@ void storeMargins(rdf::WriteTransaction& transaction, const rules::TileMargins& 
   const std::string structure = tables::keyOf(rules.structure);
   if (transaction.block(tables::kMeta, kStructureKey) != structure)
     transaction.putBlock(tables::kMeta, kStructureKey, structure);
+  storeReach(transaction, rules);
+}
+
+std::optional<double> storedReach(const rdf::ReadTransaction& transaction) {
+  const auto bytes = transaction.block(tables::kMeta, kReachKey);
+  if (!bytes || bytes->size() != sizeof(double)) return std::nullopt;
+  double reach_m = 0;
+  std::memcpy(&reach_m, bytes->data(), sizeof(reach_m));
+  return reach_m >= 0 ? std::optional(reach_m) : std::nullopt;
+}
+
+void storeReach(rdf::WriteTransaction& transaction, const rules::RuleSet& rules) {
+  const double reach_m = rules::localReach(rules).reach_m.value_or(-1);
+  const std::string bytes(reinterpret_cast<const char*>(&reach_m), sizeof(reach_m));
+  if (transaction.block(tables::kMeta, kReachKey) != bytes) transaction.putBlock(tables::kMeta, kReachKey, bytes);
 }
 
 void updateMargins(rdf::WriteTransaction& transaction, const rules::TileMargins& margins, const TileSet& tiles,

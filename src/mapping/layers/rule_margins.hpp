@@ -19,6 +19,11 @@ void storeMargins(rdf::WriteTransaction& transaction, const rules::TileMargins& 
 void updateMargins(rdf::WriteTransaction& transaction, const rules::TileMargins& margins,
                    const perception::TileSet& tiles, const perception::TileSet& decided);
 
+/// How far the rules look by which the map was decided; absent when that is not bounded or not known [m].
+std::optional<double> storedReach(const rdf::ReadTransaction& transaction);
+/// The map was decided by these rules, whose margins it holds.
+void storeReach(rdf::WriteTransaction& transaction, const rules::RuleSet& rules);
+
 /// The tiles in which other rules may decide otherwise than those of the map. Absent when that is not known: the rules
 /// differ by more than thresholds of which margins are stored. Cost: about 20 us a tile.
 std::optional<perception::TileSet> tilesBeyondMargins(const rdf::ReadTransaction& transaction,

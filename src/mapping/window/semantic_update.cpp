@@ -89,7 +89,7 @@ class LocalUpdate {
 
   /// Absent when the whole map has to be computed; then nothing was written.
   std::optional<SemanticUpdate> run() {
-    const std::optional<double> reach_m = rules::localReach(parsed_.rules).reach_m;
+    std::optional<double> reach_m = rules::localReach(parsed_.rules).reach_m;
     std::optional<SemanticState> before = storedSemanticState(transaction_);
     if (!reach_m || *reach_m > perception::kTileSize_m || !before) return std::nullopt;
     clouds_ = storedClouds(transaction_);
@@ -99,9 +99,16 @@ class LocalUpdate {
     if (inputs_ == ChangedInputs::Rules) {
       const auto beyond = tilesBeyondMargins(transaction_, parsed_.rules);
       if (!beyond) return std::nullopt;
+      const std::optional<double> former_m = storedReach(transaction_);
+      if (!former_m) return std::nullopt;
+      reach_m = std::max(*reach_m, *former_m);  // both runs have to be the same beyond a seam
+      if (*reach_m > perception::kTileSize_m) return std::nullopt;
       decided_otherwise_ = *beyond;
       changes_.tiles.insert(beyond->begin(), beyond->end());
-      if (changes_.tiles.empty()) return unchanged();
+      if (changes_.tiles.empty()) {
+        storeReach(transaction_, parsed_.rules);
+        return unchanged();
+      }
     }
     WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, before_, now_);
     TileSet more = tilesOfPassedObjects();
@@ -131,6 +138,7 @@ class LocalUpdate {
       if (changesWideObjects(*window, *decision, former)) return std::nullopt;
       SemanticUpdate update = write(*window, change, *decision, former, statements);
       updateMargins(transaction_, margins.found(), window->tiles, tilesDecidedWhole(*window, *decision));
+      if (inputs_ == ChangedInputs::Rules) storeReach(transaction_, parsed_.rules);
       return update;
     }
     return std::nullopt;

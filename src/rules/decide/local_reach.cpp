@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "rules/propose/evidence.hpp"
+#include "rules/propose/fragment_search.hpp"
 #include "rules/propose/pair_measures.hpp"
 #include "rules/propose/unseen_ends.hpp"
 
@@ -90,7 +91,7 @@ class Reaching {
       return kContact_m + around;
     if (tie->measure == PairMeasure::VerticalGap || tie->measure == PairMeasure::AxisDistance)
       refuse("looks things up by a distance without a bound in plan view");
-    return (tie->upper ? tie->upper->value : tie->value->value) + around;
+    return searchedAround(tie->upper ? tie->upper->value : tie->value->value) + around;
   }
 
   /// How far a condition looks from what is bound.

@@ -3,6 +3,7 @@
 #include "rules/decide/threshold_margins.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace cluxel::rules {
@@ -34,6 +35,14 @@ ThresholdMargins::ThresholdMargins(const perception::Scene& scene, const RuleSet
     *bounds = std::make_unique<std::atomic<double>[]>(size);
     for (std::size_t i = 0; i < size; ++i) (*bounds)[i].store(start, std::memory_order_relaxed);
   }
+}
+
+void ThresholdMargins::noteUse(perception::PrimitiveIndex primitive, std::uint32_t threshold) {
+  const PlainThreshold& used = thresholds_[threshold - 1];
+  const std::size_t place = tile_of_[primitive] * count_ + threshold - 1;
+  const bool opens_below = !used.is_hash && used.is_met_by_equal, opens_above = !used.is_hash && !used.is_met_by_equal;
+  raise(below_[place], opens_below ? std::nextafter(used.value, -kInfinity) : used.value);
+  lower(above_[place], opens_above ? std::nextafter(used.value, kInfinity) : used.value);
 }
 
 TileMargins ThresholdMargins::found() const {

@@ -21,6 +21,7 @@ struct ThresholdMargin {
 
   /// Whether this value of the threshold gives all tests the outcomes that they had.
   bool allows(const PlainThreshold& now) const {
+    if (now.is_hash) return below == now.value && now.value == above;
     return now.is_met_by_equal ? below < now.value && now.value <= above : below <= now.value && now.value < above;
   }
   /// Keeps what both allow; of the same threshold.
@@ -40,24 +41,27 @@ class ThresholdMargins {
   /// `rules` must outlive it.
   ThresholdMargins(const perception::Scene& scene, const RuleSet& rules);
 
-  /// `value` of a thing that `primitive` is a part of was compared with the condition's threshold. Thread-safe.
-  void note(perception::PrimitiveIndex primitive, const Condition& condition, double value) {
-    noteAt(tile_of_[primitive], condition, value);
+  /// `value` of a thing that `primitive` is a part of was compared with the threshold of this number. Thread-safe.
+  void note(perception::PrimitiveIndex primitive, std::uint32_t threshold, double value) {
+    noteAt(tile_of_[primitive], threshold, value);
   }
 
   /// The same of a thing without primitives.
-  void noteEverywhere(const Condition& condition, double value) {
-    for (std::size_t tile = 0; tile < tiles_.size(); ++tile) noteAt(tile, condition, value);
+  void noteEverywhere(std::uint32_t threshold, double value) {
+    for (std::size_t tile = 0; tile < tiles_.size(); ++tile) noteAt(tile, threshold, value);
   }
+
+  /// Every other value of the threshold, or the hash, makes a difference to the primitive.
+  void noteUse(perception::PrimitiveIndex primitive, std::uint32_t threshold);
 
   TileMargins found() const;
 
  private:
   using Bounds = std::unique_ptr<std::atomic<double>[]>;
 
-  void noteAt(std::size_t tile, const Condition& condition, double value) {
-    const std::size_t number = condition.threshold - 1, place = tile * count_ + number;
-    const PlainThreshold& threshold = thresholds_[number];
+  void noteAt(std::size_t tile, std::uint32_t number, double value) {
+    const std::size_t place = tile * count_ + number - 1;
+    const PlainThreshold& threshold = thresholds_[number - 1];
     if (value > threshold.value || (value == threshold.value && threshold.is_met_by_equal))
       lower(above_[place], value);
     else if (value <= threshold.value)  // neither holds for what is no number

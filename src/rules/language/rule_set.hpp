@@ -132,6 +132,7 @@ struct AcceptLeaf {
   Confidence confidence;                                   ///< before the evidence
   SourceLocation confidence_at;
   std::vector<EvidenceLine> evidence;  ///< beside the rule's own
+  std::uint32_t weights = 0;           ///< the number of all its constants in RuleSet::thresholds, from 1; 0: none
   std::vector<AbsorbSpec> absorb;
   std::optional<SplittingSpec> splitting;
   MergeInto merge_into = MergeInto::Nothing;
@@ -163,10 +164,11 @@ struct Rule {
 /// In words, for explanations: "roughness of pole".
 std::string describe(const EvidenceLine& line);
 
-/// A constant that a measured number is compared with.
+/// A constant that a measured number is compared with, or a hash of constants that something is computed from.
 struct PlainThreshold {
-  double value = 0;              ///< SI
+  double value = 0;              ///< SI; a ratio: the measured number is the quotient of two attributes
   bool is_met_by_equal = false;  ///< an equal number has the outcome of larger ones, else that of smaller ones
+  bool is_hash = false;          ///< every other value makes a difference where it was used
 };
 
 /// A file of a rule set, under the name by which it was included.

@@ -2,17 +2,51 @@
 // Walks a rule set once, and hashes all that a run reads of it but the numbered thresholds.
 #include "rules/language/rule_thresholds.hpp"
 
+#include <cstring>
 #include <span>
 
 namespace cluxel::rules {
 
 namespace {
 
+constexpr std::uint32_t kNumbering = 2;  ///< changes with what is numbered
+
+/// A number that a double holds exactly.
+double numberOf(const ContentHash& hash) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &hash, sizeof(bits));
+  return static_cast<double>(bits >> 11U);
+}
+
+bool isOrdered(Comparison comparison) {
+  return comparison != Comparison::Equal && comparison != Comparison::NotEqual;
+}
+
+/// Whether the distance found does not follow from the threshold, which only says how far is looked.
+bool isPlainDistance(const Condition& condition) {
+  const double farthest_m = std::max(condition.value->value, condition.upper ? condition.upper->value : 0);
+  const bool is_bound = condition.target->kind == Target::Kind::Name;
+  switch (condition.measure) {
+    case PairMeasure::AdjacentFraction:
+      return true;
+    case PairMeasure::AxisDistance:
+    case PairMeasure::VerticalGap:
+      return is_bound;
+    default:
+      break;
+  }
+  // Which object passes a test of being far away follows from how far is looked.
+  const bool is_near = condition.comparison == Comparison::Less || condition.comparison == Comparison::LessEqual ||
+                       condition.comparison == Comparison::Between;
+  return farthest_m + kMeasureMargin_m < kMaxMeasure_m && (is_near || condition.target->kind != Target::Kind::Object);
+}
+
 class ThresholdNumbering {
  public:
   explicit ThresholdNumbering(RuleSet& rules) : rules_(rules) {}
 
   void run() {
+    hash_.add(kNumbering);
     for (const auto& [name, iri] : rules_.prefixes) hash_.addText(name).addText(iri);
     addTexts(rules_.order);
     hash_.add(rules_.strata.size());
@@ -20,6 +54,9 @@ class ThresholdNumbering {
     for (const double log_odds : rules_.nothing) hash_.add(log_odds);
     hash_.add(rules_.asks_map).add(rules_.rules.size());
     for (Rule& rule : rules_.rules) add(rule);
+    for (Rule& rule : rules_.rules)
+      for (TreeNode& node : rule.nodes)
+        if (auto* accept = std::get_if<AcceptLeaf>(&node.what)) numberWeights(rule, *accept);
     rules_.thresholds = std::move(thresholds_);
     rules_.structure = hash_.finish();
   }
@@ -49,17 +86,16 @@ class ThresholdNumbering {
     hash_.add(condition.measure).add(condition.relation);
     add(condition.target);
     hash_.add(condition.comparison);
-    condition.threshold = 0;
-    if (hasPlainThreshold(condition)) {
-      const bool is_met_by_equal =
-          condition.comparison == Comparison::GreaterEqual || condition.comparison == Comparison::Less;
-      thresholds_.push_back({condition.value->value, is_met_by_equal});
-      condition.threshold = static_cast<std::uint32_t>(thresholds_.size());
+    const bool is_plain = hasPlainThreshold(condition);
+    hash_.add(is_plain);
+    condition.threshold = condition.upper_threshold = 0;
+    if (is_plain) {
+      number(condition);
     } else {
-      add(condition.value);
+      add(condition.value), add(condition.upper);
+      hash_.add(condition.ratio);
     }
-    add(condition.upper);
-    hash_.add(condition.ratio).addText(condition.ratio_of).add(condition.ratio_attribute.has_value());
+    hash_.addText(condition.ratio_of).add(condition.ratio_attribute.has_value());
     if (condition.ratio_attribute) hash_.add(*condition.ratio_attribute);
     add(condition.ratio_slice);
     add(condition.labels);
@@ -67,6 +103,20 @@ class ThresholdNumbering {
     addTexts(condition.query_names);
     add(condition.operands);
   }
+  void number(Condition& condition) {
+    const bool is_range = condition.upper.has_value();
+    const bool is_met_by_equal = condition.ratio_attribute || is_range ||
+                                 condition.comparison == Comparison::GreaterEqual ||
+                                 condition.comparison == Comparison::Less;
+    condition.threshold =
+        number({condition.ratio_attribute ? condition.ratio : condition.value->value, is_met_by_equal});
+    if (is_range) condition.upper_threshold = number({condition.upper->value, false});
+  }
+  std::uint32_t number(const PlainThreshold& threshold) {
+    thresholds_.push_back(threshold);
+    return static_cast<std::uint32_t>(thresholds_.size());
+  }
+
   void add(std::vector<Condition>& conditions) {
     hash_.add(conditions.size());
     for (Condition& condition : conditions) add(condition);
@@ -75,11 +125,24 @@ class ThresholdNumbering {
   void add(std::vector<EvidenceLine>& lines) {
     hash_.add(lines.size());
     for (EvidenceLine& line : lines) {
-      hash_.add(line.kind).add(line.knots.size());
-      for (const EvidenceLine::Knot& knot : line.knots) hash_.add(knot.at).add(knot.log_odds);
-      hash_.add(line.about).add(line.spread).add(line.weight).add(line.missing).add(line.asks_rivals);
+      hash_.add(line.kind).add(line.asks_rivals);
       add(line.measure);
     }
+  }
+
+  /// A candidate of the leaf is weighed by them, and what it gets follows from them.
+  void numberWeights(const Rule& rule, AcceptLeaf& accept) {
+    ContentHasher hash;
+    hash.add(accept.confidence.low).add(accept.confidence.high);
+    for (const ConfidenceRamp& ramp : accept.confidence.ramps) hash.add(ramp.at_low).add(ramp.at_high);
+    for (const std::vector<EvidenceLine>* lines : {&rule.evidence, &std::as_const(accept).evidence})
+      for (const EvidenceLine& line : *lines) {
+        hash.add(line.knots.size());
+        for (const EvidenceLine::Knot& knot : line.knots) hash.add(knot.at).add(knot.log_odds);
+        hash.add(line.about).add(line.spread).add(line.weight).add(line.missing);
+      }
+    for (const AbsorbSpec& absorb : accept.absorb) hash.add(absorb.max_fraction_of_points);
+    accept.weights = number({.value = numberOf(hash.finish()), .is_hash = true});
   }
 
   void add(Rule& rule) {
@@ -116,19 +179,19 @@ class ThresholdNumbering {
   void add(AcceptLeaf& accept) {
     hash_.add(accept.parts.size());
     for (const auto& [name, part_class] : accept.parts) hash_.addText(name).addText(part_class);
-    hash_.add(accept.confidence.low).add(accept.confidence.high).add(accept.confidence.ramps.size());
-    for (const ConfidenceRamp& ramp : accept.confidence.ramps)
-      hash_.addText(ramp.of).add(ramp.attribute).add(ramp.at_low).add(ramp.at_high);
+    hash_.add(accept.merge_into).add(accept.confidence.ramps.size());
+    // The surest leaf of all tells about the object of a whole class.
+    if (accept.merge_into == MergeInto::Class) hash_.add(accept.confidence.low).add(accept.confidence.high);
+    for (const ConfidenceRamp& ramp : accept.confidence.ramps) hash_.addText(ramp.of).add(ramp.attribute);
     add(accept.evidence);
     hash_.add(accept.absorb.size());
     for (AbsorbSpec& absorb : accept.absorb) {
       add(absorb.labels);
       add(absorb.when);
-      hash_.add(absorb.max_fraction_of_points).addText(absorb.into).add(absorb.late);
+      hash_.addText(absorb.into).add(absorb.late);
     }
     hash_.add(accept.splitting.has_value());
     if (accept.splitting) add(*accept.splitting);
-    hash_.add(accept.merge_into);
   }
   void add(const SplittingSpec& split) {
     hash_.addText(split.part).addText(split.from);
@@ -146,17 +209,13 @@ class ThresholdNumbering {
 }  // namespace
 
 bool hasPlainThreshold(const Condition& condition) {
-  switch (condition.comparison) {
-    case Comparison::Less:
-    case Comparison::LessEqual:
-    case Comparison::Greater:
-    case Comparison::GreaterEqual:
-      break;
-    default:
-      return false;
-  }
-  return condition.value && ((condition.kind == Condition::Kind::Attribute && !condition.ratio_attribute) ||
-                             condition.kind == Condition::Kind::Label);
+  using Kind = Condition::Kind;
+  if (!isOrdered(condition.comparison)) return false;
+  if (condition.kind == Kind::Attribute)
+    return condition.ratio_attribute ? !condition.upper : condition.value.has_value();
+  if (!condition.value) return false;
+  return condition.kind == Kind::Label || condition.kind == Kind::Relation ||
+         (condition.kind == Kind::Pair && isPlainDistance(condition));
 }
 
 void numberThresholds(RuleSet& rules) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rules/decide/threshold_margins.hpp"
 #include "rules/propose/condition_eval.hpp"
 
 namespace cluxel::rules {
@@ -124,6 +125,10 @@ double logOddsOf(const EvidenceLine& line, double value) {
 
 void weigh(const ReasoningState& state, const Rule& rule, const AcceptLeaf& accept, const Bindings& bindings,
            Decision& decision) {
+  if (state.context.margins != nullptr) {
+    const FragmentIndex seed = bindings.at(rule.seed.name).fragments.front();
+    state.context.margins->noteUse(state.fragments[seed].primitive, accept.weights);
+  }
   const double confidence = std::clamp(confidenceOf(accept.confidence, bindings), 0.0, 1.0);
   EvidenceStep prior;
   prior.measured = confidence;
