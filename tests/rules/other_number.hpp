@@ -20,6 +20,7 @@ inline const std::vector<std::pair<std::string, std::regex>>& kindsOfNumbers() {
       {"ratio", std::regex("()[<>]=? ([0-9.]+) x")},
       {"lower bound", std::regex("()between ([0-9.]+)")},
       {"upper bound", std::regex("(between [0-9.]+ ?[a-z0-9]*) and ([0-9.]+)")},
+      {"group", std::regex("()(?:near|horizontal|vertical): ([0-9.]+) m")},
       {"confidence", std::regex("()confidence: ([0-9.]+)")},
       {"surest", std::regex("(from: [0-9.]+, to:) ([0-9.]+), over")},
       {"curve", std::regex("(curve: \\{ [0-9.]+ ?[a-z]*:) (-?[0-9.]+)")},

@@ -67,7 +67,7 @@ TEST(ThresholdMargins, TellWhereOtherNumbersDecideNothingOtherwise) {
   for (int street = 0; street < 6; ++street) {
     const Scene scene = sceneOfBoxes(randomStreet(random, 200, street < 3 ? 0.15 : 0.5)).scene;
     const NotedRun before = runOf(scene, rules);
-    EXPECT_TRUE(tilesBeyond(before.margins, rules).empty()) << "the same rules decide the same";
+    EXPECT_TRUE(tilesBeyond(before.margins, rules.constants, rules).empty()) << "the same rules decide the same";
     for (int change = 0; change < changes; ++change) {
       const test::OtherNumber other = test::withOtherNumber(text, random);
       SCOPED_TRACE(other.what + ", street " + std::to_string(street));
@@ -82,7 +82,7 @@ TEST(ThresholdMargins, TellWhereOtherNumbersDecideNothingOtherwise) {
       }
       const NotedRun after = runOf(scene, changed);
       kept.decided_otherwise += after.result.traces != before.result.traces ? 1 : 0;
-      const TileSet beyond = tilesBeyond(before.margins, changed);
+      const TileSet beyond = tilesBeyond(before.margins, rules.constants, changed);
       if (beyond.empty()) {
         ++kept.kept;
         ASSERT_EQ(after.result.traces, before.result.traces);
@@ -138,11 +138,15 @@ TEST(ThresholdMargins, AreTheNearestMeasuredNumbers) {
                                                                    {"height < 2 m", "height < 2.001 m"},
                                                                    {"height > 2 m", "height > 1.999 m"},
                                                                    {"height <= 2 m", "height <= 3.001 m"}};
+  const auto beyondOf = [&](const std::string& test, const std::string& other) {
+    const RuleSet before = rules(test);
+    return tilesBeyond(runOf(scene, before).margins, before.constants, rules(other));
+  };
   for (const auto& [test, allowed] : cases)
     for (const std::string& other : allowed)
-      EXPECT_TRUE(tilesBeyond(runOf(scene, rules(test)).margins, rules(other)).empty()) << test << ", " << other;
+      EXPECT_TRUE(beyondOf(test, other).empty()) << test << ", " << other;
   for (const auto& [test, other] : beyond)
-    EXPECT_EQ(tilesBeyond(runOf(scene, rules(test)).margins, rules(other)).size(), 1U) << test << ", " << other;
+    EXPECT_EQ(beyondOf(test, other).size(), 1U) << test << ", " << other;
 }
 
 TEST(RuleStructure, ChangesWithAllThatNoMarginTells) {
@@ -160,6 +164,8 @@ TEST(RuleStructure, ChangesWithAllThatNoMarginTells) {
            {"gap to top <= 1.2 m", "gap to top <= 1.3 m"},
            {"top >= 0.9 x top of trunk", "top >= 0.8 x top of trunk"},
            {"max_fraction_of_points: 0.3", "max_fraction_of_points: 0.2"},
+           {"group: { near: 1.5 m }", "group: { near: 1.4 m }"},
+           {"confidence: 0.75", "confidence: 0.7"},
            {"height between 0.2 m and 1.2 m", "height between 0.3 m and 1.3 m"}})
     EXPECT_EQ(structureWith(old_text, new_text), rules.structure) << new_text;
   for (const auto& [old_text, new_text] : std::vector<std::pair<std::string, std::string>>{
@@ -167,7 +173,7 @@ TEST(RuleStructure, ChangesWithAllThatNoMarginTells) {
            {"machine_made: [ height >= 3 m", "machine_made: [ length >= 3 m"},
            {"merge_into: class, confidence: 0.98", "merge_into: class, confidence: 0.97"},
            {"from 0.2 m to 1.3 m <= 0.25 m", "from 0.2 m to 1.4 m <= 0.25 m"},
-           {"group: { near: 1.5 m }", "group: { near: 1.4 m }"}})
+           {"clearance: $crown_clearance", "clearance: 0.7 m"}})
     EXPECT_NE(structureWith(old_text, new_text), rules.structure) << new_text;
 }
 

@@ -62,7 +62,7 @@ class Reaching {
   void lookAtSeeds() {
     for (const Condition& condition : rule_->seed.where) reach(reachOf(condition));
     if (!rule_->group) return;
-    reach(std::max(rule_->group->near_m.value_or(0), rule_->group->horizontal_m.value_or(0)));
+    reach(searchedAround(std::max(rule_->group->near_m.value_or(0), rule_->group->horizontal_m.value_or(0))));
     for (const Condition& limit : rule_->group->limits) reach(reachOf(limit));
   }
 

@@ -3,7 +3,9 @@
 #include "rules/language/rule_thresholds.hpp"
 
 #include <cstring>
+#include <initializer_list>
 #include <span>
+#include <utility>
 
 namespace cluxel::rules {
 
@@ -11,11 +13,10 @@ namespace {
 
 constexpr std::uint32_t kNumbering = 2;  ///< changes with what is numbered
 
-/// A number that a double holds exactly.
-double numberOf(const ContentHash& hash) {
-  std::uint64_t bits = 0;
-  std::memcpy(&bits, &hash, sizeof(bits));
-  return static_cast<double>(bits >> 11U);
+std::uint64_t startOf(const ContentHash& whole) {
+  std::uint64_t start = 0;
+  std::memcpy(&start, whole.bytes.data(), sizeof(start));
+  return start;
 }
 
 bool isOrdered(Comparison comparison) {
@@ -54,10 +55,8 @@ class ThresholdNumbering {
     for (const double log_odds : rules_.nothing) hash_.add(log_odds);
     hash_.add(rules_.asks_map).add(rules_.rules.size());
     for (Rule& rule : rules_.rules) add(rule);
-    for (Rule& rule : rules_.rules)
-      for (TreeNode& node : rule.nodes)
-        if (auto* accept = std::get_if<AcceptLeaf>(&node.what)) numberWeights(rule, *accept);
     rules_.thresholds = std::move(thresholds_);
+    rules_.constants = std::move(constants_);
     rules_.structure = hash_.finish();
   }
 
@@ -112,6 +111,10 @@ class ThresholdNumbering {
         number({condition.ratio_attribute ? condition.ratio : condition.value->value, is_met_by_equal});
     if (is_range) condition.upper_threshold = number({condition.upper->value, false});
   }
+  void number(const std::optional<double>& distance_m, std::uint32_t& threshold) {
+    hash_.add(distance_m.has_value());
+    threshold = distance_m ? number({*distance_m, false}) : 0;
+  }
   std::uint32_t number(const PlainThreshold& threshold) {
     thresholds_.push_back(threshold);
     return static_cast<std::uint32_t>(thresholds_.size());
@@ -125,24 +128,22 @@ class ThresholdNumbering {
   void add(std::vector<EvidenceLine>& lines) {
     hash_.add(lines.size());
     for (EvidenceLine& line : lines) {
-      hash_.add(line.kind).add(line.asks_rivals);
+      hash_.add(line.kind).add(line.asks_rivals).add(line.knots.size());
       add(line.measure);
+      line.constant = numberConstant({line.missing});
+      for (const EvidenceLine::Knot& knot : line.knots) numberConstant({knot.at, knot.log_odds});
+      if (line.kind != EvidenceLine::Kind::Curve) numberConstant({line.about, line.spread, line.weight});
     }
   }
 
-  /// A candidate of the leaf is weighed by them, and what it gets follows from them.
-  void numberWeights(const Rule& rule, AcceptLeaf& accept) {
-    ContentHasher hash;
-    hash.add(accept.confidence.low).add(accept.confidence.high);
-    for (const ConfidenceRamp& ramp : accept.confidence.ramps) hash.add(ramp.at_low).add(ramp.at_high);
-    for (const std::vector<EvidenceLine>* lines : {&rule.evidence, &std::as_const(accept).evidence})
-      for (const EvidenceLine& line : *lines) {
-        hash.add(line.knots.size());
-        for (const EvidenceLine::Knot& knot : line.knots) hash.add(knot.at).add(knot.log_odds);
-        hash.add(line.about).add(line.spread).add(line.weight).add(line.missing);
-      }
-    for (const AbsorbSpec& absorb : accept.absorb) hash.add(absorb.max_fraction_of_points);
-    accept.weights = number({.value = numberOf(hash.finish()), .is_hash = true});
+  std::uint32_t numberConstant(ContentHasher constant) {
+    constants_.push_back(startOf(constant.finish()));
+    return static_cast<std::uint32_t>(constants_.size());
+  }
+  std::uint32_t numberConstant(std::initializer_list<double> values) {
+    ContentHasher hasher;
+    for (const double value : values) hasher.add(value);
+    return numberConstant(std::move(hasher));
   }
 
   void add(Rule& rule) {
@@ -153,8 +154,11 @@ class ThresholdNumbering {
     hash_.add(rule.group.has_value());
     if (rule.group) {
       add(rule.group->labels);
-      for (const auto& distance : {rule.group->near_m, rule.group->horizontal_m, rule.group->vertical_m}) add(distance);
-      hash_.add(rule.group->adjacent);
+      GroupSpec& group = *rule.group;
+      number(group.near_m, group.near_threshold);
+      number(group.horizontal_m, group.horizontal_threshold);
+      number(group.vertical_m, group.vertical_threshold);
+      hash_.add(group.adjacent);
       add(rule.group->limits);
     }
     add(rule.evidence);
@@ -182,13 +186,20 @@ class ThresholdNumbering {
     hash_.add(accept.merge_into).add(accept.confidence.ramps.size());
     // The surest leaf of all tells about the object of a whole class.
     if (accept.merge_into == MergeInto::Class) hash_.add(accept.confidence.low).add(accept.confidence.high);
-    for (const ConfidenceRamp& ramp : accept.confidence.ramps) hash_.addText(ramp.of).add(ramp.attribute);
+    ContentHasher confidence;
+    confidence.add(accept.confidence.low).add(accept.confidence.high);
+    for (const ConfidenceRamp& ramp : accept.confidence.ramps) {
+      hash_.addText(ramp.of).add(ramp.attribute);
+      confidence.add(ramp.at_low).add(ramp.at_high);
+    }
+    accept.constant = numberConstant(std::move(confidence));
     add(accept.evidence);
     hash_.add(accept.absorb.size());
     for (AbsorbSpec& absorb : accept.absorb) {
       add(absorb.labels);
       add(absorb.when);
       hash_.addText(absorb.into).add(absorb.late);
+      absorb.threshold = number({absorb.max_fraction_of_points, true});
     }
     hash_.add(accept.splitting.has_value());
     if (accept.splitting) add(*accept.splitting);
@@ -204,6 +215,7 @@ class ThresholdNumbering {
   RuleSet& rules_;
   ContentHasher hash_;
   std::vector<PlainThreshold> thresholds_;
+  std::vector<std::uint64_t> constants_;
 };
 
 }  // namespace

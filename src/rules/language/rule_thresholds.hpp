@@ -12,8 +12,8 @@ namespace cluxel::rules {
 /// not where a distance is looked for in a way that follows from another distance.
 bool hasPlainThreshold(const Condition& condition);
 
-/// Numbers these thresholds, and the constants of each leaf that accepts, from 1 in the order written
-/// (Condition::threshold, AcceptLeaf::weights), and sets RuleSet::thresholds and RuleSet::structure.
+/// Numbers these thresholds, the distances of groups and the budgets of absorption, and the constants of confidence and
+/// evidence, and sets RuleSet::thresholds, RuleSet::constants and RuleSet::structure.
 void numberThresholds(RuleSet& rules);
 
 }  // namespace cluxel::rules

@@ -45,7 +45,7 @@ void noteSearch(const ReasoningState& state, const Condition& tie, const Candida
   if (anchor.fragments.empty()) return state.context.margins->noteEverywhere(threshold, reach_m);
   const perception::PrimitiveIndex primitive = state.fragments[anchor.fragments.front()].primitive;
   if (tie.measure == PairMeasure::AxisDistance)  // what is looked at follows from the threshold in another way
-    state.context.margins->noteUse(primitive, threshold);
+    state.context.margins->noteFixed(primitive, threshold);
   else
     state.context.margins->note(primitive, threshold, reach_m);
 }

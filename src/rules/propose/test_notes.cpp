@@ -23,12 +23,9 @@ void TestNotes::add(const Condition& condition, const Candidate& of, double valu
 }
 
 void TestNotes::addRatio(const Condition& condition, const Candidate& of, double value, double other) {
-  if (margins_ == nullptr || condition.threshold == 0 || other == 0) return;  // the ratio makes no difference to 0
-  const double ratio = value / other, rounding = 4 * std::numeric_limits<double>::epsilon() * std::abs(ratio);
-  if (ratio - rounding > condition.ratio) return addOne(condition.threshold, of, ratio - rounding);
-  if (ratio + rounding < condition.ratio) return addOne(condition.threshold, of, ratio + rounding);
-  addOne(condition.threshold, of, std::nextafter(condition.ratio, -kInfinity));
-  addOne(condition.threshold, of, condition.ratio);
+  if (margins_ == nullptr || condition.threshold == 0) return;
+  for (const double quotient : quotientsToNote(value, other, condition.ratio))
+    addOne(condition.threshold, of, quotient);
 }
 
 void TestNotes::addOne(std::uint32_t threshold, const Candidate& of, double value) {
