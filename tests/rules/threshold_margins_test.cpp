@@ -143,10 +143,109 @@ TEST(ThresholdMargins, AreTheNearestMeasuredNumbers) {
     return tilesBeyond(runOf(scene, before).margins, before.constants, rules(other));
   };
   for (const auto& [test, allowed] : cases)
-    for (const std::string& other : allowed)
-      EXPECT_TRUE(beyondOf(test, other).empty()) << test << ", " << other;
-  for (const auto& [test, other] : beyond)
-    EXPECT_EQ(beyondOf(test, other).size(), 1U) << test << ", " << other;
+    for (const std::string& other : allowed) EXPECT_TRUE(beyondOf(test, other).empty()) << test << ", " << other;
+  for (const auto& [test, other] : beyond) EXPECT_EQ(beyondOf(test, other).size(), 1U) << test << ", " << other;
+}
+
+/// Three things of 1, 2 and 3 m, of half a metre in plan view.
+TEST(ThresholdMargins, OfRangesRatiosAndConfidencesAreTheNearestNumbers) {
+  const auto rules = [](const std::string& test, const std::string& confidence = "0.9") {
+    return rulesOf("[clx:SmallObject]", R"(
+  - id: tall
+    class: clx:SmallObject
+    seed: { label: small_structure, as: thing }
+    tree: { test: )" + test + ", yes: { accept: { confidence: " +
+                                            confidence + " } }, no: { reject: too low } }\n");
+  };
+  BoxScene boxes;
+  for (const double height : {1.0, 2.0, 3.0})
+    boxes.boxes.push_back(
+        box("thing" + std::to_string(height), kSmall, {6 * height, 2, height / 2}, {0.5, 0.5, height}));
+  const Scene scene = sceneOfBoxes(boxes).scene;
+  const auto beyondOf = [&](const RuleSet& before, const RuleSet& other) {
+    EXPECT_EQ(before.structure, other.structure);
+    return tilesBeyond(runOf(scene, before).margins, before.constants, other).size();
+  };
+  const RuleSet range = rules("height between 1.5 m and 2.5 m"), ratio = rules("height >= 3 x width");
+  for (const std::string within : {"between 1.1 m and 2.9 m", "between 1.9 m and 2.1 m"})
+    EXPECT_EQ(beyondOf(range, rules("height " + within)), 0U) << within;
+  for (const std::string beyond : {"between 0.9 m and 2.5 m", "between 1.5 m and 3.1 m", "between 2.1 m and 2.5 m"})
+    EXPECT_EQ(beyondOf(range, rules("height " + beyond)), 1U) << beyond;
+  for (const std::string within : {"2.1 x", "3.9 x"})
+    EXPECT_EQ(beyondOf(ratio, rules("height >= " + within + " width")), 0U);
+  for (const std::string beyond : {"1.9 x", "4.1 x"})
+    EXPECT_EQ(beyondOf(ratio, rules("height >= " + beyond + " width")), 1U);
+  EXPECT_EQ(beyondOf(range, rules("height between 1.5 m and 2.5 m", "0.8")), 1U) << "one thing is accepted";
+  EXPECT_EQ(beyondOf(rules("height >= 5 m"), rules("height >= 5 m", "0.8")), 0U) << "nothing is accepted";
+}
+
+/// A thing, and a pole at some distance from it.
+TEST(ThresholdMargins, OfSearchesReachAsFarAsTheSearch) {
+  const auto rules = [](const std::string& distance) {
+    return rulesOf("[clx:SmallObject]", R"(
+  - id: beside
+    class: clx:SmallObject
+    seed: { label: small_structure, as: thing }
+    tree:
+      find: { as: pole, label: column, where: [ gap to thing <= )" +
+                                            distance + R"( ] }
+      found: { accept: { confidence: 0.9 } }
+      missing: { reject: alone }
+)");
+  };
+  const auto isBeyond = [&](double gap_m, const std::string& distance, const std::string& other) {
+    BoxScene boxes;
+    boxes.boxes.push_back(box("thing", kSmall, {2, 2, 0.5}, {0.5, 0.5, 1}));
+    boxes.boxes.push_back(box("pole", kColumn, {2.5 + gap_m, 2, 0.5}, {0.5, 0.5, 1}));
+    const RuleSet before = rules(distance);
+    return !tilesBeyond(runOf(sceneOfBoxes(boxes).scene, before).margins, before.constants, rules(other)).empty();
+  };
+  EXPECT_FALSE(isBeyond(0.8, "1 m", "0.9 m"));
+  EXPECT_TRUE(isBeyond(0.8, "1 m", "0.7 m"));
+  EXPECT_FALSE(isBeyond(1.15, "1 m", "1.1 m"));
+  EXPECT_TRUE(isBeyond(1.15, "1 m", "1.2 m"));
+  EXPECT_FALSE(isBeyond(9, "1 m", "1.2 m"));
+  EXPECT_FALSE(isBeyond(9, "1 m", "0.1 m"));
+  EXPECT_TRUE(isBeyond(9, "1 m", "1.4 m")) << "nobody looked so far";
+}
+
+/// Things in a row, and how far they are apart.
+TEST(ThresholdMargins, OfGroupsLeaveOutWhatIsJoinedAnyway) {
+  const auto rules = [](const std::string& group) {
+    return rulesOf("[clx:SmallObject]", R"(
+  - id: row
+    class: clx:SmallObject
+    seed: { label: small_structure, as: thing }
+    group: { )" + group + R"( }
+    tree: { test: length >= 0.1 m, yes: { accept: { confidence: 0.9 } }, no: { reject: no } }
+)");
+  };
+  const auto isBeyond = [&](const std::vector<double>& gaps, const std::string& group, const std::string& other) {
+    BoxScene boxes;
+    double x = 1;
+    boxes.boxes.push_back(box("first", kSmall, {x, 2, 0.5}, {0.5, 0.5, 1}));
+    for (const double gap : gaps) {
+      x += 0.5 + gap;
+      boxes.boxes.push_back(box("after" + std::to_string(x), kSmall, {x, 2, 0.5}, {0.5, 0.5, 1}));
+    }
+    const RuleSet before = rules(group);
+    return !tilesBeyond(runOf(sceneOfBoxes(boxes).scene, before).margins, before.constants, rules(other)).empty();
+  };
+  EXPECT_FALSE(isBeyond({1.15}, "near: 1 m", "near: 1.1 m"));
+  EXPECT_TRUE(isBeyond({1.15}, "near: 1 m", "near: 1.2 m"));
+  EXPECT_TRUE(isBeyond({9}, "near: 1 m", "near: 1.4 m")) << "nobody looked so far";
+  EXPECT_FALSE(isBeyond({0.8}, "near: 1 m", "near: 0.9 m"));
+  EXPECT_TRUE(isBeyond({0.8}, "near: 1 m", "near: 0.7 m"));
+  EXPECT_FALSE(isBeyond({0.3, 0.3}, "near: 1 m", "near: 1.2 m")) << "the outer two are 1.1 m apart";
+  EXPECT_FALSE(isBeyond({0.3, 0.3}, "near: 1.2 m", "near: 1 m"));
+  const auto stacked = [](double horizontal_m) {
+    return "horizontal: " + std::to_string(horizontal_m) + " m, vertical: 1 m";
+  };
+  EXPECT_FALSE(isBeyond({1.15}, stacked(1), stacked(1.1)));
+  EXPECT_TRUE(isBeyond({1.15}, stacked(1), stacked(1.2)));
+  EXPECT_FALSE(isBeyond({0.8}, stacked(1), stacked(0.9)));
+  EXPECT_TRUE(isBeyond({0.8}, stacked(1), stacked(0.7)));
+  EXPECT_TRUE(isBeyond({9}, stacked(1), stacked(1.4))) << "nobody looked so far";
 }
 
 TEST(RuleStructure, ChangesWithAllThatNoMarginTells) {

@@ -26,11 +26,11 @@ void storeNumbers(rdf::WriteTransaction& transaction, const rules::RuleSet& rule
 bool holdsMarginsOf(const rdf::ReadTransaction& transaction, const rules::RuleSet& rules);
 
 struct RuleChange {
-  perception::TileSet tiles;   ///< in which other rules may decide otherwise than those of the map
-  double former_reach_m = 0;   ///< how far those of the map look
+  perception::TileSet tiles;  ///< in which other rules may decide otherwise than those of the map
+  double former_reach_m = 0;  ///< how far those of the map look
 };
-/// Absent when that is not known: the rules differ by more than numbers of which margins are stored. Cost: about 20 us a
-/// tile.
+/// Absent when that is not known: the rules differ by more than numbers of which margins are stored. Cost: about 20 us
+/// a tile.
 std::optional<RuleChange> changeOfRules(const rdf::ReadTransaction& transaction, const rules::RuleSet& rules);
 
 }  // namespace cluxel::mapping

@@ -66,7 +66,8 @@ class ThresholdMargins {
   void noteUse(perception::PrimitiveIndex primitive, std::uint32_t constant) {
     const std::size_t place = tile_of_[primitive] * words_ + (constant - 1) / kBits;
     const std::uint64_t bit = std::uint64_t{1} << (constant - 1) % kBits;
-    if ((used_[place].load(std::memory_order_relaxed) & bit) == 0) used_[place].fetch_or(bit, std::memory_order_relaxed);
+    if ((used_[place].load(std::memory_order_relaxed) & bit) == 0)
+      used_[place].fetch_or(bit, std::memory_order_relaxed);
   }
 
   TileMargins found() const;
@@ -96,9 +97,9 @@ class ThresholdMargins {
 
   const std::vector<PlainThreshold>& thresholds_;
   std::size_t count_, constants_, words_;
-  std::vector<perception::TileKey> tiles_;  ///< ascending
-  std::vector<std::uint32_t> tile_of_;      ///< by primitive: the tile of its first cluxel
-  Bounds below_, above_;                    ///< by tile and threshold
+  std::vector<perception::TileKey> tiles_;              ///< ascending
+  std::vector<std::uint32_t> tile_of_;                  ///< by primitive: the tile of its first cluxel
+  Bounds below_, above_;                                ///< by tile and threshold
   std::unique_ptr<std::atomic<std::uint64_t>[]> used_;  ///< by tile, a bit for each constant
 };
 

@@ -25,7 +25,7 @@ struct GroupSpec {
   std::optional<double> horizontal_m, vertical_m;  ///< or when both gaps are
   /// Their numbers in RuleSet::thresholds, from 1; 0: none.
   std::uint32_t near_threshold = 0, horizontal_threshold = 0, vertical_threshold = 0;
-  bool adjacent = false;                           ///< or when a cluxel edge joins them
+  bool adjacent = false;  ///< or when a cluxel edge joins them
   std::vector<Condition> limits;
 };
 
@@ -105,8 +105,8 @@ struct AbsorbSpec {
   std::vector<Condition> when;
   double max_fraction_of_points = 1;
   std::uint32_t threshold = 0;  ///< its number in RuleSet::thresholds, from 1
-  std::string into;   ///< bound name whose part they join
-  bool late = false;  ///< after all classes instead of after this class
+  std::string into;             ///< bound name whose part they join
+  bool late = false;            ///< after all classes instead of after this class
 };
 
 /// Collects fragments that belong to a split primitive without touching it.
@@ -192,8 +192,8 @@ struct RuleSet {
   bool asks_map = false;    ///< some condition is an `ask:`
   std::vector<RuleSource> sources;
   ClassCatalogue catalogue;  ///< the classes it was checked against
-  /// What may change while all else stays, and a hash of all else that a run reads; see numberThresholds(). Of constants
-  /// that something is computed from, hashes.
+  /// What may change while all else stays, and a hash of all else that a run reads; see numberThresholds(). Of
+  /// constants that something is computed from, hashes.
   std::vector<PlainThreshold> thresholds;
   std::vector<std::uint64_t> constants;
   ContentHash structure;

@@ -31,7 +31,6 @@ struct SeedLinks {
 
 /// The links between `members` (in canonical order), shortest gap first, then by a and b. Cost: a search around those
 /// cluxels that lie within the tolerances of the bounds of another member. What always matters is noted in the margins.
-SeedLinks seedLinks(const ReasoningState& state, const GroupSpec& group,
-                                const std::vector<FragmentIndex>& members);
+SeedLinks seedLinks(const ReasoningState& state, const GroupSpec& group, const std::vector<FragmentIndex>& members);
 
 }  // namespace cluxel::rules
