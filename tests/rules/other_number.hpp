@@ -40,7 +40,7 @@ inline OtherNumber withOtherNumber(const std::string& text, std::mt19937& random
   const auto& [kind, pattern] = kindsOfNumbers()[random() % kindsOfNumbers().size()];
   const std::vector<std::smatch> found(std::sregex_iterator(text.begin(), text.end(), pattern), std::sregex_iterator());
   const std::smatch& match = found.at(random() % found.size());
-  const double factor = std::array{0.7, 0.9, 0.97, 0.99, 0.999, 1.001, 1.01, 1.03, 1.1, 1.3}[random() % 10];
+  const double factor = std::array{0.3, 0.6, 0.9, 0.98, 0.999, 1.001, 1.02, 1.1, 1.5, 2.5}[random() % 10];
   OtherNumber other{text, kind + ": " + match.str() + " times " + std::to_string(factor)};
   other.text.replace(static_cast<std::size_t>(match.position(2)), static_cast<std::size_t>(match.length(2)),
                      std::to_string(std::stod(match.str(2)) * factor));

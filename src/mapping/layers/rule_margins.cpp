@@ -111,10 +111,6 @@ void storeNumbers(rdf::WriteTransaction& transaction, const rules::RuleSet& rule
   if (transaction.block(tables::kMeta, kNumbersKey) != bytes) transaction.putBlock(tables::kMeta, kNumbersKey, bytes);
 }
 
-bool holdsMarginsOf(const rdf::ReadTransaction& transaction, const rules::RuleSet& rules) {
-  return transaction.block(tables::kMeta, kStructureKey) == tables::keyOf(rules.structure);
-}
-
 void updateMargins(rdf::WriteTransaction& transaction, const rules::TileMargins& margins, const TileSet& tiles,
                    const TileSet& decided) {
   for (const TileKey& tile : tiles) {
@@ -132,7 +128,8 @@ void updateMargins(rdf::WriteTransaction& transaction, const rules::TileMargins&
 
 std::optional<RuleChange> changeOfRules(const rdf::ReadTransaction& transaction, const rules::RuleSet& rules) {
   const auto former = storedNumbers(transaction);
-  if (!holdsMarginsOf(transaction, rules) || !former || former->reach_m < 0) return std::nullopt;
+  if (transaction.block(tables::kMeta, kStructureKey) != tables::keyOf(rules.structure)) return std::nullopt;
+  if (!former || former->reach_m < 0) return std::nullopt;
   rules::TileMargins margins;
   transaction.forEachBlock(tables::kMargins, "", [&](std::string_view key, std::string_view bytes) {
     margins[tables::tileOfKey(key)] = marginFrom(bytes);

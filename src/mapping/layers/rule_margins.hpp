@@ -22,9 +22,6 @@ void updateMargins(rdf::WriteTransaction& transaction, const rules::TileMargins&
 /// The map is now decided by these rules, of the structure of those before.
 void storeNumbers(rdf::WriteTransaction& transaction, const rules::RuleSet& rules);
 
-/// Whether the map's margins are of rules of this structure. Those of other versions of the program are not.
-bool holdsMarginsOf(const rdf::ReadTransaction& transaction, const rules::RuleSet& rules);
-
 struct RuleChange {
   perception::TileSet tiles;  ///< in which other rules may decide otherwise than those of the map
   double former_reach_m = 0;  ///< how far those of the map look

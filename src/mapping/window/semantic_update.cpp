@@ -96,7 +96,6 @@ class LocalUpdate {
     before_ = *std::move(before);
     now_ = {0, 0, 0, statementIds(transaction_), seenClouds(clouds_)};
     if (isTold(before_.clouds) != isTold(now_.clouds) || hasOtherTimes()) return std::nullopt;
-    if (!holdsMarginsOf(transaction_, parsed_.rules)) return std::nullopt;
     if (inputs_ == ChangedInputs::Rules) {
       const std::optional<RuleChange> other = changeOfRules(transaction_, parsed_.rules);
       if (!other || other->former_reach_m > perception::kTileSize_m) return std::nullopt;
