@@ -3,8 +3,9 @@
 # What it costs to apply rules of which one threshold is a little other, against the build of the map.
 # Usage: bench/threshold_cost.py CLUXEL OUT RULES SCANS...: a map of SCANS is built in OUT by the rule file RULES
 # COUNT (24) comparisons of the file, evenly spaced, are taken one at a time, their number times FACTOR (1.02). With
-# KIND, other numbers are taken instead: range, ratio, group, confidence, curve, weight, budget, split, slice or constant. What
-# concerns nothing costs the same for every map; what has to be decided as a whole costs what it did before.
+# KIND, other numbers are taken instead: range, ratio, group, confidence, curve, weight, budget, split, slice or
+# constant. What concerns nothing costs the same for every map; what has to be decided as a whole costs what it did
+# before.
 import json
 import os
 import re
