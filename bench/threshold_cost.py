@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # What it costs to apply rules of which one threshold is a little other, against the build of the map.
 # Usage: bench/threshold_cost.py CLUXEL OUT RULES SCANS...: a map of SCANS is built in OUT by the rule file RULES
-# COUNT (24) comparisons of the file, evenly spaced, are taken one at a time, their number times FACTOR (1.02). What
-# concerns nothing costs the same for every map; what has to be decided as a whole costs what it did before.
+# COUNT (24) comparisons of the file, evenly spaced, are taken one at a time, their number times FACTOR (1.02). With
+# KIND, other numbers are taken instead: range, ratio, group, confidence, curve, weight, budget, split, slice or
+# constant. What concerns nothing costs the same for every map; what has to be decided as a whole costs what it did
+# before.
 import json
 import os
 import re
@@ -30,8 +32,23 @@ def seconds(*command, report=None):
     return float(run.stdout.split()[0])
 
 
+NAME, NUMBER = r"[a-z_]+(?: (?:of|to) [a-zA-Z:]+)?", r"(-?[0-9.]+)"
+PATTERNS = {
+    "comparison": rf"{NAME} [<>]=? {NUMBER}",
+    "range": rf"{NAME}(?: from [^,]*? to [0-9.]+ m)? between (?:[0-9.]+ ?[a-z0-9]* and )?{NUMBER}",
+    "ratio": rf"{NAME} [<>]=? {NUMBER} x [a-z_]+",
+    "group": rf"(?:near|horizontal|vertical): {NUMBER} m",
+    "confidence": rf"(?:confidence:|confidence: {{ from:|from: [0-9.]+, to:) {NUMBER}",
+    "curve": rf"measure: [a-z_]+[^,]*, curve: {{ [0-9.]+ ?[a-z]*: {NUMBER}",
+    "weight": rf"when: [^,]*, weight: {NUMBER}",
+    "budget": rf"max_fraction_of_points: {NUMBER}",
+    "split": rf"(?:reach|jump|clearance|within|above): {NUMBER} m",
+    "slice": rf"[a-z_]+ from {NUMBER} m to",
+    "constant": rf"\n  [a-z_]+: {NUMBER} m",
+}
+kind = os.environ.get("KIND", "comparison")
 text = rules.read_text()
-tests = list(re.finditer(r"[a-z_]+(?: (?:of|to) [a-zA-Z:]+)? [<>]=? ([0-9.]+)", text))
+tests = list(re.finditer(PATTERNS[kind], text))
 built = seconds("build", *scans, "--rules", str(rules), "-o", str(out / "map.clx"), "--force")
 folder = out / "rules"
 shutil.copytree(rules.parent, folder, dirs_exist_ok=True)
@@ -47,7 +64,7 @@ for test in tests[:: max(1, len(tests) // count)]:
         continue
     report = json.loads((out / "report.json").read_text())
     changed = sum(len(report["objects"][kind]) for kind in ("added", "gone", "changed", "split", "joined"))
-    rows.append((cost, report["tiles_decided"], changed, test.group(0)))
+    rows.append((cost, report["tiles_decided"], changed, test.group(0).strip()))
 tiles = report["tiles"]
 print(f"| test, its number times {factor} | tiles decided of {tiles} | objects that differ | [s] | of the build ({built:.2f} s) |")
 print("|---|---|---|---|---|")

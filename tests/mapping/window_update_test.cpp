@@ -7,13 +7,13 @@
 #include <functional>
 #include <map>
 #include <random>
-#include <regex>
 
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/map_change.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/small_campus.hpp"
+#include "rules/other_number.hpp"
 
 namespace cluxel::mapping {
 namespace {
@@ -134,21 +134,21 @@ class StreetChanges {
     return text;
   }
 
-  /// A threshold of the shipped rules is moved a little.
-  std::string moveAThreshold() {
-    static const std::regex kThreshold(
-        "(height|length|top|bottom|width|radius|roughness|linearity|extent|thickness)( of [a-z]+)? [<>]=? ([0-9.]+)");
-    const std::string before = inputs_.rules.front().text;
-    const std::vector<std::smatch> found(std::sregex_iterator(before.begin(), before.end(), kThreshold),
-                                         std::sregex_iterator());
-    const std::smatch& match = found[below(found.size())];
-    const double factor = std::array{0.95, 0.99, 0.999, 1.001, 1.01, 1.05}[below(6)];
-    inputs_.rules.front().text.replace(static_cast<std::size_t>(match.position(3)),
-                                       static_cast<std::size_t>(match.length(3)),
-                                       std::to_string(std::stod(match.str(3)) * factor));
-    note(applyInputs(
-        map(), [&](const MapInputs&) { return inputs_; }, params(), silence()));
-    return match.str() + " times " + std::to_string(factor);
+  /// A number of the shipped rules is changed.
+  std::string changeANumber() {
+    while (true) {
+      const test::OtherNumber other = test::withOtherNumber(inputs_.rules.front().text, random_);
+      MapInputs changed = inputs_;
+      changed.rules.front().text = other.text;
+      try {
+        note(applyInputs(
+            map(), [&](const MapInputs&) { return changed; }, params(), silence()));
+      } catch (const InputError&) {
+        continue;  // a number that may not be other
+      }
+      inputs_ = std::move(changed);
+      return other.what;
+    }
   }
 
   void expectBuildFromScratch(const std::string& after) {
@@ -238,9 +238,9 @@ TEST(WindowUpdate, AppliesStatementsAsABuildDoes) {
       40, 7, [](StreetChanges& changes, unsigned i) { return i % 3 == 2 ? changes.step() : changes.stateSomething(); });
 }
 
-TEST(WindowUpdate, AppliesOtherThresholdsAsABuildDoes) {
+TEST(WindowUpdate, AppliesOtherNumbersOfRulesAsABuildDoes) {
   checkSequences(
-      60, 8, [](StreetChanges& changes, unsigned i) { return i % 4 == 3 ? changes.step() : changes.moveAThreshold(); });
+      60, 12, [](StreetChanges& changes, unsigned i) { return i % 4 == 3 ? changes.step() : changes.changeANumber(); });
 }
 
 TEST(WindowUpdate, TakesTheGroundOfAnAreaThatLosesItsOnlyScan) {

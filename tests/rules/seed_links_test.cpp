@@ -73,7 +73,7 @@ TEST(SeedLinks, AreThoseOfAllPairs) {
         if (threads == 1) expected.push_back(linksOfAllPairs(state, groups[g], members));
         Links links;
         SeedLink last{-1, 0, 0};
-        for (const SeedLink& link : seedLinks(state, groups[g], members)) {
+        for (const SeedLink& link : seedLinks(state, groups[g], members).links) {
           EXPECT_LT(link.a, link.b);
           EXPECT_LT(std::tie(last.gap, last.a, last.b), std::tie(link.gap, link.a, link.b));
           EXPECT_TRUE(links.try_emplace({link.a, link.b}, link.gap).second) << "a pair is linked once";

@@ -19,9 +19,15 @@ void storeMargins(rdf::WriteTransaction& transaction, const rules::TileMargins& 
 void updateMargins(rdf::WriteTransaction& transaction, const rules::TileMargins& margins,
                    const perception::TileSet& tiles, const perception::TileSet& decided);
 
-/// The tiles in which other rules may decide otherwise than those of the map. Absent when that is not known: the rules
-/// differ by more than thresholds of which margins are stored. Cost: about 20 us a tile.
-std::optional<perception::TileSet> tilesBeyondMargins(const rdf::ReadTransaction& transaction,
-                                                      const rules::RuleSet& rules);
+/// The map is now decided by these rules, of the structure of those before.
+void storeNumbers(rdf::WriteTransaction& transaction, const rules::RuleSet& rules);
+
+struct RuleChange {
+  perception::TileSet tiles;  ///< in which other rules may decide otherwise than those of the map
+  double former_reach_m = 0;  ///< how far those of the map look
+};
+/// Absent when that is not known: the rules differ by more than numbers of which margins are stored. Cost: about 20 us
+/// a tile.
+std::optional<RuleChange> changeOfRules(const rdf::ReadTransaction& transaction, const rules::RuleSet& rules);
 
 }  // namespace cluxel::mapping

@@ -89,7 +89,7 @@ class LocalUpdate {
 
   /// Absent when the whole map has to be computed; then nothing was written.
   std::optional<SemanticUpdate> run() {
-    const std::optional<double> reach_m = rules::localReach(parsed_.rules).reach_m;
+    std::optional<double> reach_m = rules::localReach(parsed_.rules).reach_m;
     std::optional<SemanticState> before = storedSemanticState(transaction_);
     if (!reach_m || *reach_m > perception::kTileSize_m || !before) return std::nullopt;
     clouds_ = storedClouds(transaction_);
@@ -97,10 +97,11 @@ class LocalUpdate {
     now_ = {0, 0, 0, statementIds(transaction_), seenClouds(clouds_)};
     if (isTold(before_.clouds) != isTold(now_.clouds) || hasOtherTimes()) return std::nullopt;
     if (inputs_ == ChangedInputs::Rules) {
-      const auto beyond = tilesBeyondMargins(transaction_, parsed_.rules);
-      if (!beyond) return std::nullopt;
-      decided_otherwise_ = *beyond;
-      changes_.tiles.insert(beyond->begin(), beyond->end());
+      const std::optional<RuleChange> other = changeOfRules(transaction_, parsed_.rules);
+      if (!other || other->former_reach_m > perception::kTileSize_m) return std::nullopt;
+      reach_m = std::max(*reach_m, other->former_reach_m);  // beyond a seam both runs must be the same
+      decided_otherwise_ = other->tiles;
+      changes_.tiles.insert(other->tiles.begin(), other->tiles.end());
       if (changes_.tiles.empty()) return unchanged();
     }
     WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, before_, now_);
@@ -131,14 +132,16 @@ class LocalUpdate {
       if (changesWideObjects(*window, *decision, former)) return std::nullopt;
       SemanticUpdate update = write(*window, change, *decision, former, statements);
       updateMargins(transaction_, margins.found(), window->tiles, tilesDecidedWhole(*window, *decision));
+      storeNumbers(transaction_, parsed_.rules);
       return update;
     }
     return std::nullopt;
   }
 
  private:
-  /// The layers as they are: other thresholds that decide nothing otherwise.
-  SemanticUpdate unchanged() const {
+  /// Leaves the layers as they are: other thresholds that decide nothing otherwise.
+  SemanticUpdate unchanged() {
+    storeNumbers(transaction_, parsed_.rules);
     SemanticUpdate update;
     update.is_local = true;
     update.objects = before_.objects, update.cluxels = before_.cluxels, update.primitives = before_.primitives;

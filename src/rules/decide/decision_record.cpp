@@ -65,14 +65,19 @@ class Judging {
     for (const auto& [name, candidate] : verdict.bindings.candidates)
       trace = mixed(trace, state_.fragments.hashOf(candidate.fragments));
     for (const DecisionStep& step : decision.path) {
-      trace = mixed(trace, std::uint64_t{step.passed});
-      trace = mixed(trace, step.measured.value_or(kNotMeasured));
-      // A threshold that is measured tells of what else was looked at; a constant one may change without a difference.
-      if (step.is_threshold_measured) trace = mixed(trace, step.threshold.value_or(kNotMeasured));
+      trace = mixed(trace, tracedMeasure(step));
+      if (step.other) trace = mixed(trace, *step.other);
     }
     for (const EvidenceStep& step : decision.evidence)
       trace = mixed(mixed(trace, step.measured.value_or(kNotMeasured)), step.log_odds);
     return mixed(StepKind::Judged, trace);
+  }
+
+  /// What is found whatever the thresholds are: they may change without a difference. How the tests ended is told by
+  /// the leaf.
+  static double tracedMeasure(const DecisionStep& step) {
+    const bool is_found = step.measured && (!step.is_looked_for || *step.measured <= kMeasureMargin_m);
+    return is_found ? *step.measured : kNotMeasured;
   }
 
   Decision describeSeed(const Candidate& seed) const {

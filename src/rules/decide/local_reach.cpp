@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "rules/propose/evidence.hpp"
+#include "rules/propose/fragment_search.hpp"
 #include "rules/propose/pair_measures.hpp"
 #include "rules/propose/unseen_ends.hpp"
 
@@ -61,7 +62,7 @@ class Reaching {
   void lookAtSeeds() {
     for (const Condition& condition : rule_->seed.where) reach(reachOf(condition));
     if (!rule_->group) return;
-    reach(std::max(rule_->group->near_m.value_or(0), rule_->group->horizontal_m.value_or(0)));
+    reach(searchedAround(std::max(rule_->group->near_m.value_or(0), rule_->group->horizontal_m.value_or(0))));
     for (const Condition& limit : rule_->group->limits) reach(reachOf(limit));
   }
 
@@ -90,7 +91,7 @@ class Reaching {
       return kContact_m + around;
     if (tie->measure == PairMeasure::VerticalGap || tie->measure == PairMeasure::AxisDistance)
       refuse("looks things up by a distance without a bound in plan view");
-    return (tie->upper ? tie->upper->value : tie->value->value) + around;
+    return searchedAround(tie->upper ? tie->upper->value : tie->value->value) + around;
   }
 
   /// How far a condition looks from what is bound.

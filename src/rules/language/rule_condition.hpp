@@ -30,6 +30,10 @@ enum class PairMeasure : std::uint8_t {
   AdjacentFraction,  ///< share of the subject's outward cluxel edges that lead to the other
 };
 
+/// Gaps are measured up to kMaxMeasure_m. The search radius exceeds the threshold of a test by kMeasureMargin_m, so
+/// that the measured value is reported also when it is slightly above the threshold.
+inline constexpr double kMaxMeasure_m = 50.0, kMeasureMargin_m = 0.5;
+
 /// The other operand of a relation or measure: a bound name, any primitive with one of some labels, or any object of a
 /// class.
 struct Target {
@@ -82,7 +86,8 @@ struct Condition {
   std::vector<std::string> query_names;      ///< bound names that the query mentions as variables
   std::vector<Condition> operands;           ///< of All, Any, Not, Unseen
   bool asks_rivals = false;                  ///< of Pair: the target are objects that won the first round
-  std::uint32_t threshold = 0;               ///< the number of `value` in RuleSet::thresholds, from 1; 0: none
+  /// The numbers of `value` (or `ratio`) and of `upper` in RuleSet::thresholds, from 1; 0: none.
+  std::uint32_t threshold = 0, upper_threshold = 0;
 };
 
 /// "a Tree", "an Avenue": a class or label with its article.

@@ -23,7 +23,9 @@ struct GroupSpec {
   std::vector<scan::PrimitiveLabel> labels;
   std::optional<double> near_m;                    ///< link when the gap is at most this
   std::optional<double> horizontal_m, vertical_m;  ///< or when both gaps are
-  bool adjacent = false;                           ///< or when a cluxel edge joins them
+  /// Their numbers in RuleSet::thresholds, from 1; 0: none.
+  std::uint32_t near_threshold = 0, horizontal_threshold = 0, vertical_threshold = 0;
+  bool adjacent = false;  ///< or when a cluxel edge joins them
   std::vector<Condition> limits;
 };
 
@@ -90,6 +92,8 @@ struct EvidenceLine {
   double weight = 0;  ///< of Bell and Test
   SourceLocation weight_at;
   double missing = 0;  ///< log-odds when the value cannot be measured: nothing is bound to the name, an empty slice
+  /// The number of `missing` in RuleSet::constants, from 1. Those of the knots, or of the bell or weight, follow.
+  std::uint32_t constant = 0;
   /// It looks at objects of classes that compete with the rule's: it counts in the second round only, and reads the
   /// winners of the first.
   bool asks_rivals = false;
@@ -100,8 +104,9 @@ struct AbsorbSpec {
   std::vector<scan::PrimitiveLabel> labels;
   std::vector<Condition> when;
   double max_fraction_of_points = 1;
-  std::string into;   ///< bound name whose part they join
-  bool late = false;  ///< after all classes instead of after this class
+  std::uint32_t threshold = 0;  ///< its number in RuleSet::thresholds, from 1
+  std::string into;             ///< bound name whose part they join
+  bool late = false;            ///< after all classes instead of after this class
 };
 
 /// Collects fragments that belong to a split primitive without touching it.
@@ -132,6 +137,7 @@ struct AcceptLeaf {
   Confidence confidence;                                   ///< before the evidence
   SourceLocation confidence_at;
   std::vector<EvidenceLine> evidence;  ///< beside the rule's own
+  std::uint32_t constant = 0;          ///< the number of `confidence` in RuleSet::constants, from 1
   std::vector<AbsorbSpec> absorb;
   std::optional<SplittingSpec> splitting;
   MergeInto merge_into = MergeInto::Nothing;
@@ -165,7 +171,7 @@ std::string describe(const EvidenceLine& line);
 
 /// A constant that a measured number is compared with.
 struct PlainThreshold {
-  double value = 0;              ///< SI
+  double value = 0;              ///< SI; a ratio: the measured number is the quotient of two attributes
   bool is_met_by_equal = false;  ///< an equal number has the outcome of larger ones, else that of smaller ones
 };
 
@@ -186,9 +192,10 @@ struct RuleSet {
   bool asks_map = false;    ///< some condition is an `ask:`
   std::vector<RuleSource> sources;
   ClassCatalogue catalogue;  ///< the classes it was checked against
-  /// The thresholds that may change while all else stays, and a hash of all else that a run reads; see
-  /// numberThresholds().
+  /// What may change while all else stays, and a hash of all else that a run reads; see numberThresholds(). Of
+  /// constants that something is computed from, hashes.
   std::vector<PlainThreshold> thresholds;
+  std::vector<std::uint64_t> constants;
   ContentHash structure;
   /// Hash of the sources' texts.
   ContentHash hash() const;

@@ -2,17 +2,52 @@
 // Walks a rule set once, and hashes all that a run reads of it but the numbered thresholds.
 #include "rules/language/rule_thresholds.hpp"
 
+#include <cstring>
+#include <initializer_list>
 #include <span>
+#include <utility>
 
 namespace cluxel::rules {
 
 namespace {
+
+constexpr std::uint32_t kNumbering = 2;  ///< changes with what is numbered
+
+std::uint64_t startOf(const ContentHash& whole) {
+  std::uint64_t start = 0;
+  std::memcpy(&start, whole.bytes.data(), sizeof(start));
+  return start;
+}
+
+bool isOrdered(Comparison comparison) {
+  return comparison != Comparison::Equal && comparison != Comparison::NotEqual;
+}
+
+/// Whether the distance found does not follow from the threshold, which only says how far is looked.
+bool isPlainDistance(const Condition& condition) {
+  const double farthest_m = std::max(condition.value->value, condition.upper ? condition.upper->value : 0);
+  const bool is_bound = condition.target->kind == Target::Kind::Name;
+  switch (condition.measure) {
+    case PairMeasure::AdjacentFraction:
+      return true;
+    case PairMeasure::AxisDistance:
+    case PairMeasure::VerticalGap:
+      return is_bound;
+    default:
+      break;
+  }
+  // Which object passes a test of being far away follows from how far is looked.
+  const bool is_near = condition.comparison == Comparison::Less || condition.comparison == Comparison::LessEqual ||
+                       condition.comparison == Comparison::Between;
+  return farthest_m + kMeasureMargin_m < kMaxMeasure_m && (is_near || condition.target->kind != Target::Kind::Object);
+}
 
 class ThresholdNumbering {
  public:
   explicit ThresholdNumbering(RuleSet& rules) : rules_(rules) {}
 
   void run() {
+    hash_.add(kNumbering);
     for (const auto& [name, iri] : rules_.prefixes) hash_.addText(name).addText(iri);
     addTexts(rules_.order);
     hash_.add(rules_.strata.size());
@@ -21,6 +56,7 @@ class ThresholdNumbering {
     hash_.add(rules_.asks_map).add(rules_.rules.size());
     for (Rule& rule : rules_.rules) add(rule);
     rules_.thresholds = std::move(thresholds_);
+    rules_.constants = std::move(constants_);
     rules_.structure = hash_.finish();
   }
 
@@ -49,17 +85,16 @@ class ThresholdNumbering {
     hash_.add(condition.measure).add(condition.relation);
     add(condition.target);
     hash_.add(condition.comparison);
-    condition.threshold = 0;
-    if (hasPlainThreshold(condition)) {
-      const bool is_met_by_equal =
-          condition.comparison == Comparison::GreaterEqual || condition.comparison == Comparison::Less;
-      thresholds_.push_back({condition.value->value, is_met_by_equal});
-      condition.threshold = static_cast<std::uint32_t>(thresholds_.size());
+    const bool is_plain = hasPlainThreshold(condition);
+    hash_.add(is_plain);
+    condition.threshold = condition.upper_threshold = 0;
+    if (is_plain) {
+      number(condition);
     } else {
-      add(condition.value);
+      add(condition.value), add(condition.upper);
+      hash_.add(condition.ratio);
     }
-    add(condition.upper);
-    hash_.add(condition.ratio).addText(condition.ratio_of).add(condition.ratio_attribute.has_value());
+    hash_.addText(condition.ratio_of).add(condition.ratio_attribute.has_value());
     if (condition.ratio_attribute) hash_.add(*condition.ratio_attribute);
     add(condition.ratio_slice);
     add(condition.labels);
@@ -67,6 +102,24 @@ class ThresholdNumbering {
     addTexts(condition.query_names);
     add(condition.operands);
   }
+  void number(Condition& condition) {
+    const bool is_range = condition.upper.has_value();
+    const bool is_met_by_equal = condition.ratio_attribute || is_range ||
+                                 condition.comparison == Comparison::GreaterEqual ||
+                                 condition.comparison == Comparison::Less;
+    condition.threshold =
+        number({condition.ratio_attribute ? condition.ratio : condition.value->value, is_met_by_equal});
+    if (is_range) condition.upper_threshold = number({condition.upper->value, false});
+  }
+  void number(const std::optional<double>& distance_m, std::uint32_t& threshold) {
+    hash_.add(distance_m.has_value());
+    threshold = distance_m ? number({*distance_m, false}) : 0;
+  }
+  std::uint32_t number(const PlainThreshold& threshold) {
+    thresholds_.push_back(threshold);
+    return static_cast<std::uint32_t>(thresholds_.size());
+  }
+
   void add(std::vector<Condition>& conditions) {
     hash_.add(conditions.size());
     for (Condition& condition : conditions) add(condition);
@@ -75,11 +128,22 @@ class ThresholdNumbering {
   void add(std::vector<EvidenceLine>& lines) {
     hash_.add(lines.size());
     for (EvidenceLine& line : lines) {
-      hash_.add(line.kind).add(line.knots.size());
-      for (const EvidenceLine::Knot& knot : line.knots) hash_.add(knot.at).add(knot.log_odds);
-      hash_.add(line.about).add(line.spread).add(line.weight).add(line.missing).add(line.asks_rivals);
+      hash_.add(line.kind).add(line.asks_rivals).add(line.knots.size());
       add(line.measure);
+      line.constant = numberConstant({line.missing});
+      for (const EvidenceLine::Knot& knot : line.knots) numberConstant({knot.at, knot.log_odds});
+      if (line.kind != EvidenceLine::Kind::Curve) numberConstant({line.about, line.spread, line.weight});
     }
+  }
+
+  std::uint32_t numberConstant(ContentHasher constant) {
+    constants_.push_back(startOf(constant.finish()));
+    return static_cast<std::uint32_t>(constants_.size());
+  }
+  std::uint32_t numberConstant(std::initializer_list<double> values) {
+    ContentHasher hasher;
+    for (const double value : values) hasher.add(value);
+    return numberConstant(std::move(hasher));
   }
 
   void add(Rule& rule) {
@@ -90,8 +154,11 @@ class ThresholdNumbering {
     hash_.add(rule.group.has_value());
     if (rule.group) {
       add(rule.group->labels);
-      for (const auto& distance : {rule.group->near_m, rule.group->horizontal_m, rule.group->vertical_m}) add(distance);
-      hash_.add(rule.group->adjacent);
+      GroupSpec& group = *rule.group;
+      number(group.near_m, group.near_threshold);
+      number(group.horizontal_m, group.horizontal_threshold);
+      number(group.vertical_m, group.vertical_threshold);
+      hash_.add(group.adjacent);
       add(rule.group->limits);
     }
     add(rule.evidence);
@@ -116,19 +183,26 @@ class ThresholdNumbering {
   void add(AcceptLeaf& accept) {
     hash_.add(accept.parts.size());
     for (const auto& [name, part_class] : accept.parts) hash_.addText(name).addText(part_class);
-    hash_.add(accept.confidence.low).add(accept.confidence.high).add(accept.confidence.ramps.size());
-    for (const ConfidenceRamp& ramp : accept.confidence.ramps)
-      hash_.addText(ramp.of).add(ramp.attribute).add(ramp.at_low).add(ramp.at_high);
+    hash_.add(accept.merge_into).add(accept.confidence.ramps.size());
+    // The surest leaf of all tells about the object of a whole class.
+    if (accept.merge_into == MergeInto::Class) hash_.add(accept.confidence.low).add(accept.confidence.high);
+    ContentHasher confidence;
+    confidence.add(accept.confidence.low).add(accept.confidence.high);
+    for (const ConfidenceRamp& ramp : accept.confidence.ramps) {
+      hash_.addText(ramp.of).add(ramp.attribute);
+      confidence.add(ramp.at_low).add(ramp.at_high);
+    }
+    accept.constant = numberConstant(std::move(confidence));
     add(accept.evidence);
     hash_.add(accept.absorb.size());
     for (AbsorbSpec& absorb : accept.absorb) {
       add(absorb.labels);
       add(absorb.when);
-      hash_.add(absorb.max_fraction_of_points).addText(absorb.into).add(absorb.late);
+      hash_.addText(absorb.into).add(absorb.late);
+      absorb.threshold = number({absorb.max_fraction_of_points, true});
     }
     hash_.add(accept.splitting.has_value());
     if (accept.splitting) add(*accept.splitting);
-    hash_.add(accept.merge_into);
   }
   void add(const SplittingSpec& split) {
     hash_.addText(split.part).addText(split.from);
@@ -141,22 +215,19 @@ class ThresholdNumbering {
   RuleSet& rules_;
   ContentHasher hash_;
   std::vector<PlainThreshold> thresholds_;
+  std::vector<std::uint64_t> constants_;
 };
 
 }  // namespace
 
 bool hasPlainThreshold(const Condition& condition) {
-  switch (condition.comparison) {
-    case Comparison::Less:
-    case Comparison::LessEqual:
-    case Comparison::Greater:
-    case Comparison::GreaterEqual:
-      break;
-    default:
-      return false;
-  }
-  return condition.value && ((condition.kind == Condition::Kind::Attribute && !condition.ratio_attribute) ||
-                             condition.kind == Condition::Kind::Label);
+  using Kind = Condition::Kind;
+  if (!isOrdered(condition.comparison)) return false;
+  if (condition.kind == Kind::Attribute)
+    return condition.ratio_attribute ? !condition.upper : condition.value.has_value();
+  if (!condition.value) return false;
+  return condition.kind == Kind::Label || condition.kind == Kind::Relation ||
+         (condition.kind == Kind::Pair && isPlainDistance(condition));
 }
 
 void numberThresholds(RuleSet& rules) {

@@ -7,12 +7,13 @@
 
 namespace cluxel::rules {
 
-/// True for a test of one measured number against a constant: an attribute, or the share of points with some labels.
-/// Not for distances: how far rules look follows from their thresholds.
+/// True for a test of a measured number against a constant or a range, or of two against a ratio, when the constants do
+/// nothing else: attributes, shares, and distances of bound names, of labels and of objects. Not for `=` and `!=`, and
+/// not where a distance is looked for in a way that follows from another distance.
 bool hasPlainThreshold(const Condition& condition);
 
-/// Numbers these thresholds from 1 in the order written (Condition::threshold), and sets RuleSet::thresholds and
-/// RuleSet::structure.
+/// Numbers these thresholds, the distances of groups and the budgets of absorption, and the constants of confidence and
+/// evidence, and sets RuleSet::thresholds, RuleSet::constants and RuleSet::structure.
 void numberThresholds(RuleSet& rules);
 
 }  // namespace cluxel::rules

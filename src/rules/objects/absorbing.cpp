@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/parallel.hpp"
+#include "rules/decide/threshold_margins.hpp"
 #include "rules/propose/fragment_search.hpp"
 #include "rules/propose/pair_measures.hpp"
 
@@ -178,6 +179,7 @@ class Absorbing {
       ObjectInMaking& object = state_.objects[claim.object];
       const double points = state_.fragments.shapeOf(claim.fragment).points;
       double& so_far = absorbed_[claim.object - first_];
+      noteBudget(claim, so_far + points);
       if (so_far + points > claim.spec->max_fraction_of_points * budget_[claim.object - first_]) {
         note(claim, false);
         continue;
@@ -191,6 +193,15 @@ class Absorbing {
     }
     for (const std::size_t object : granted_) traces_[object - first_] = state_.objects[object].trace;
     return any;
+  }
+
+  /// The points are compared with a share of those of the object.
+  void noteBudget(const Claim& claim, double points) const {
+    if (state_.context.margins == nullptr) return;
+    const perception::PrimitiveIndex primitive = state_.fragments[claim.fragment].primitive;
+    for (const double share :
+         quotientsToNote(points, budget_[claim.object - first_], claim.spec->max_fraction_of_points))
+      state_.context.margins->note(primitive, claim.spec->threshold, share);
   }
 
   void addTo(ObjectInMaking& object, const Claim& claim) {

@@ -8,6 +8,7 @@
 
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
+#include "rules/decide/threshold_margins.hpp"
 #include "rules/objects/seed_links.hpp"
 #include "rules/propose/condition_eval.hpp"
 
@@ -49,8 +50,12 @@ class Joining {
     for (std::size_t i = 0; i < members.size(); ++i) held_[i].outline = state.fragments.outlineOf(members[i]);
   }
 
-  std::vector<std::vector<FragmentIndex>> groups(const std::vector<SeedLink>& links) {
-    for (const SeedLink& link : links) join(setOf(link.a), setOf(link.b));
+  std::vector<std::vector<FragmentIndex>> groups(const SeedLinks& links) {
+    std::vector<Pair> idle;  // links between what was one already
+    for (const SeedLink& link : links.links)
+      if (!join(setOf(link.a), setOf(link.b)) && !links.notes.empty()) idle.emplace_back(link.a, link.b);
+    std::sort(idle.begin(), idle.end());
+    for (const LinkNote& note : links.notes) noteLink(note, idle);
     std::vector<std::vector<FragmentIndex>> groups;
     for (std::size_t i = 0; i < members_.size(); ++i) {
       if (setOf(i) != i) continue;
@@ -69,6 +74,16 @@ class Joining {
     bool is_linked = false;
   };
 
+  using Pair = std::pair<std::size_t, std::size_t>;
+
+  /// A link that is idle, and one between members of one group that would come after all others, does not matter.
+  void noteLink(const LinkNote& note, const std::vector<Pair>& idle) {
+    const bool is_link = note.distance_m <= state_.rules.thresholds[note.threshold - 1].value;
+    if (is_link ? std::binary_search(idle.begin(), idle.end(), Pair(note.a, note.b)) : setOf(note.a) == setOf(note.b))
+      return;
+    state_.context.margins->note(state_.fragments[members_[note.a]].primitive, note.threshold, note.distance_m);
+  }
+
   /// While a group of earlier rounds has all that its trace tells of, it comes about again: no trace returns.
   void note(const Group& group) {
     const std::uint64_t trace = mixed(StepKind::Grouped, mixed(hashOf(rule_.id), group.trace));
@@ -86,8 +101,9 @@ class Joining {
   const std::vector<Condition>& limits() const { return rule_.group->limits; }
   std::uint32_t setOf(std::size_t i) { return sets_.find(static_cast<std::uint32_t>(i)); }
 
-  void join(std::uint32_t a, std::uint32_t b) {
-    if (a == b) return;
+  /// False when the two are one.
+  bool join(std::uint32_t a, std::uint32_t b) {
+    if (a == b) return false;
     Group both;
     both.layers = held_[a].layers;
     both.layers.add(held_[b].layers);
@@ -107,13 +123,14 @@ class Joining {
       }
       if (!passes(state_, rule_, limits(), std::move(candidate))) {
         noteRefusal(held_[a], held_[b]);
-        return;
+        return true;
       }
     }
     const auto [keep, drop] = std::minmax(a, b);
     held_[keep] = std::move(both);
     held_[drop] = {};
     sets_.join(keep, drop);
+    return true;
   }
 
   ReasoningState& state_;

@@ -11,6 +11,8 @@
 #include <unordered_map>
 
 #include "base/parallel.hpp"
+#include "rules/decide/threshold_margins.hpp"
+#include "rules/propose/fragment_search.hpp"
 
 namespace cluxel::rules {
 
@@ -61,36 +63,84 @@ class Linking {
       : state_(state),
         group_(group),
         members_(members),
-        reach_m_(std::max(group.near_m.value_or(0), group.horizontal_m.value_or(0))),
+        margins_(state.context.margins),
+        near_m_(searched(group.near_m)),
+        horizontal_m_(searched(group.horizontal_m)),
+        vertical_m_(searched(group.vertical_m)),
+        reach_m_(std::max(near_m_, horizontal_m_)),
         boxes_(boxesOf(state, members)),
         cells_(boxes_),
         rank_(ranksOf(state, members)),
         place_(state.fragments.size(), kNowhere) {
-    const double height = std::max(group.near_m.value_or(0), group.vertical_m.value_or(0));
-    around_ = Eigen::Vector3d(reach_m_, reach_m_, height).array() + kBoundsSlack_m;
+    around_ = Eigen::Vector3d(reach_m_, reach_m_, std::max(near_m_, vertical_m_)).array() + kBoundsSlack_m;
     for (std::size_t i = 0; i < members.size(); ++i) place_[members[i]] = i;
   }
 
-  std::vector<SeedLink> links() const {
+  SeedLinks links() const {
     constexpr std::size_t kChunk = 64;
-    std::vector<std::vector<SeedLink>> of_chunk((members_.size() + kChunk - 1) / kChunk);
+    std::vector<SeedLinks> of_chunk((members_.size() + kChunk - 1) / kChunk);
     parallelFor(of_chunk.size(), state_.threads(), [&](std::size_t chunk) {
       const std::size_t end = std::min(members_.size(), (chunk + 1) * kChunk);
-      for (std::size_t i = chunk * kChunk; i < end; ++i)
-        for (const auto& [theirs, gap] : linksOf(i))
-          of_chunk[chunk].push_back({gap, std::min(i, theirs), std::max(i, theirs)});
+      for (std::size_t i = chunk * kChunk; i < end; ++i) {
+        noteSearch(i);
+        for (const auto& [theirs, nearest] : linksOf(i)) take(i, theirs, nearest, of_chunk[chunk]);
+      }
     });
-    std::vector<SeedLink> links;
-    for (const std::vector<SeedLink>& some : of_chunk) links.insert(links.end(), some.begin(), some.end());
-    std::sort(links.begin(), links.end(), [](const SeedLink& one, const SeedLink& other) {
+    SeedLinks all;
+    for (const SeedLinks& some : of_chunk) {
+      all.links.insert(all.links.end(), some.links.begin(), some.links.end());
+      all.notes.insert(all.notes.end(), some.notes.begin(), some.notes.end());
+    }
+    std::sort(all.links.begin(), all.links.end(), [](const SeedLink& one, const SeedLink& other) {
       return std::tie(one.gap, one.a, one.b) < std::tie(other.gap, other.a, other.b);
     });
-    return links;
+    return all;
   }
 
  private:
-  /// By position: the members of a higher rank that a link leads to, with the gap.
-  using Gaps = std::map<std::size_t, double>;
+  /// Two cluxels of two members: the nearest that link them, or else the nearest of all that were seen.
+  struct Nearest {
+    bool is_link = false, is_edge = false;
+    double gap = 0;
+    CluxelGap apart;
+  };
+  /// By position: the members of a higher rank.
+  using Gaps = std::map<std::size_t, Nearest>;
+
+  double searched(const std::optional<double>& within_m) const {
+    return within_m && state_.context.margins != nullptr ? searchedAround(*within_m) : within_m.value_or(0);
+  }
+
+  void note(std::size_t member, std::uint32_t threshold, double distance_m) const {
+    if (threshold != 0) margins_->note(state_.fragments[members_[member]].primitive, threshold, distance_m);
+  }
+  /// What is farther away was not looked at.
+  void noteSearch(std::size_t member) const {
+    if (margins_ == nullptr) return;
+    note(member, group_.near_threshold, near_m_);
+    note(member, group_.horizontal_threshold, horizontal_m_);
+    note(member, group_.vertical_threshold, vertical_m_);
+  }
+
+  bool isNear(double gap_m) const { return group_.near_m && gap_m <= *group_.near_m; }
+  bool isStacked(const CluxelGap& gap) const {
+    return group_.horizontal_m && gap.horizontal <= *group_.horizontal_m && gap.vertical <= *group_.vertical_m;
+  }
+
+  void take(std::size_t mine, std::size_t theirs, const Nearest& nearest, SeedLinks& found) const {
+    const auto [a, b] = std::minmax(mine, theirs);
+    if (nearest.is_link) found.links.push_back({nearest.gap, a, b});
+    if (margins_ == nullptr || nearest.is_edge) return;
+    const auto add = [&, a = a, b = b](std::uint32_t threshold, double distance_m) {
+      found.notes.push_back({threshold, distance_m, a, b});
+    };
+    if (!nearest.is_link || isNear(nearest.gap)) {
+      if (group_.near_m) add(group_.near_threshold, nearest.gap);
+    } else {
+      add(group_.horizontal_threshold, nearest.apart.horizontal);
+      add(group_.vertical_threshold, nearest.apart.vertical);
+    }
+  }
 
   static std::vector<Box> boxesOf(const ReasoningState& state, const std::vector<FragmentIndex>& members) {
     std::vector<Box> boxes;
@@ -120,7 +170,7 @@ class Linking {
     const std::vector<std::uint32_t>& cluxels = state_.fragments[members_[mine]].cluxels;
     if (group_.adjacent)
       for (const std::uint32_t cluxel : cluxels)
-        for (const std::uint32_t other : state_.scene.cluxels.neighbours(cluxel)) link(mine, other, 0, gaps);
+        for (const std::uint32_t other : state_.scene.cluxels.neighbours(cluxel)) linkByEdge(mine, other, gaps);
     if (!group_.near_m && !group_.horizontal_m) return gaps;
     const Box mine_around = around(boxes_[mine]);
     const std::vector<std::size_t> partners = cells_.near(mine_around, [&](std::size_t other) {
@@ -151,24 +201,38 @@ class Linking {
   void consider(std::size_t mine, std::uint32_t cluxel, std::uint32_t other, Gaps& gaps) const {
     const std::size_t theirs = place_[state_.fragments.fragmentOf(other)];
     if (theirs == kNowhere || rank_[theirs] <= rank_[mine]) return;
-    const CluxelGap gap = gapBetween(state_.scene.cluxels, cluxel, other);
-    const bool near = group_.near_m && gap.gap() <= *group_.near_m;
-    const bool stacked =
-        group_.horizontal_m && gap.horizontal <= *group_.horizontal_m && gap.vertical <= *group_.vertical_m;
-    if (near || stacked) link(mine, other, gap.gap(), gaps);
+    const CluxelGap apart = gapBetween(state_.scene.cluxels, cluxel, other);
+    const double gap = apart.gap();
+    const bool is_link = isNear(gap) || isStacked(apart);
+    if (!is_link && margins_ == nullptr) return;
+    const auto [entry, fresh] = gaps.try_emplace(theirs, Nearest{is_link, false, gap, apart});
+    Nearest& nearest = entry->second;
+    if (!is_link && group_.horizontal_m && (fresh || !nearest.is_link || gap < nearest.gap)) noteApart(mine, apart);
+    if (!fresh && (is_link > nearest.is_link || (is_link == nearest.is_link && gap < nearest.gap)))
+      nearest = {is_link, false, gap, apart};
   }
 
-  void link(std::size_t mine, std::uint32_t other, double gap, Gaps& gaps) const {
+  /// Were these two cluxels stacked, the order of the links would change.
+  void noteApart(std::size_t mine, const CluxelGap& apart) const {
+    if (group_.near_m) note(mine, group_.near_threshold, apart.gap());
+    if (apart.horizontal > *group_.horizontal_m)
+      note(mine, group_.horizontal_threshold, apart.horizontal);
+    else
+      note(mine, group_.vertical_threshold, apart.vertical);
+  }
+
+  void linkByEdge(std::size_t mine, std::uint32_t other, Gaps& gaps) const {
     const std::size_t theirs = place_[state_.fragments.fragmentOf(other)];
     if (theirs == kNowhere || rank_[theirs] <= rank_[mine]) return;
-    const auto [entry, fresh] = gaps.try_emplace(theirs, gap);
-    if (!fresh) entry->second = std::min(entry->second, gap);
+    gaps.insert_or_assign(theirs, Nearest{true, true, 0, {}});
   }
 
   const ReasoningState& state_;
   const GroupSpec& group_;
   const std::vector<FragmentIndex>& members_;
-  double reach_m_;
+  ThresholdMargins* margins_;
+  double near_m_, horizontal_m_, vertical_m_;  ///< how far is looked
+  double reach_m_;                             ///< in plan view
   std::vector<Box> boxes_;
   MemberCells cells_;
   std::vector<std::size_t> rank_;
@@ -179,8 +243,7 @@ class Linking {
 
 }  // namespace
 
-std::vector<SeedLink> seedLinks(const ReasoningState& state, const GroupSpec& group,
-                                const std::vector<FragmentIndex>& members) {
+SeedLinks seedLinks(const ReasoningState& state, const GroupSpec& group, const std::vector<FragmentIndex>& members) {
   return Linking(state, group, members).links();
 }
 

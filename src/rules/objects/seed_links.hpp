@@ -15,9 +15,22 @@ struct SeedLink {
   std::size_t a = 0, b = 0;  ///< positions among the members, a < b
 };
 
+/// A link, or two fragments that one of the distances keeps apart, in a run with margins. While the threshold stays on
+/// its side of the distance, the link stays as it is, or does not come about. When it does not matter that the two are
+/// linked, it does not matter where the threshold is.
+struct LinkNote {
+  std::uint32_t threshold = 0;  ///< in RuleSet::thresholds
+  double distance_m = 0;
+  std::size_t a = 0, b = 0;  ///< positions among the members
+};
+
+struct SeedLinks {
+  std::vector<SeedLink> links;
+  std::vector<LinkNote> notes;
+};
+
 /// The links between `members` (in canonical order), shortest gap first, then by a and b. Cost: a search around those
-/// cluxels that lie within the tolerances of the bounds of another member.
-std::vector<SeedLink> seedLinks(const ReasoningState& state, const GroupSpec& group,
-                                const std::vector<FragmentIndex>& members);
+/// cluxels that lie within the tolerances of the bounds of another member. What always matters is noted in the margins.
+SeedLinks seedLinks(const ReasoningState& state, const GroupSpec& group, const std::vector<FragmentIndex>& members);
 
 }  // namespace cluxel::rules

@@ -27,7 +27,8 @@ struct DecisionStep {
   std::string file;  ///< where the test stands
   std::size_t line = 0;
   std::optional<double> measured, threshold;  ///< SI
-  bool is_threshold_measured = false;         ///< it is a ratio of another attribute
+  std::optional<double> other;                ///< of a ratio: the attribute that the measured one is compared with
+  bool is_looked_for = false;                 ///< a gap that is measured up to a bound which the threshold gives
   std::string unit;
   bool passed = false;
 };

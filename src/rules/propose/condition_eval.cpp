@@ -3,21 +3,15 @@
 #include "rules/propose/condition_eval.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <utility>
 
 #include "rdf/map_iris.hpp"
-#include "rules/decide/threshold_margins.hpp"
 #include "rules/propose/pair_measures.hpp"
 #include "rules/propose/unseen_ends.hpp"
 
 namespace cluxel::rules {
 
 namespace {
-
-/// Subjects of more cluxels are compared with one target after the other.
-constexpr double kMaxScanned = 500;
 
 constexpr double kGroundTolerance_m = 0.30;  // the tolerance of touches_ground in relationInfos()
 
@@ -61,21 +55,30 @@ bool compare(const Condition& condition, double value, double threshold) {
 }
 
 bool ConditionEvaluator::holds(const Condition& condition, std::vector<DecisionStep>* steps) {
+  ++depth_;
+  const bool passed = outcomeOf(condition, steps);
+  if (--depth_ == 0) notes_.finish();
+  return passed;
+}
+
+bool ConditionEvaluator::outcomeOf(const Condition& condition, std::vector<DecisionStep>* steps) {
   using Kind = Condition::Kind;
   if (condition.kind == Kind::All || condition.kind == Kind::Any) {
     const bool all = condition.kind == Kind::All;
     bool outcome = all;
+    Witness witness(notes_);
     for (const Condition& operand : condition.operands) {
       // Queries are expensive: skip one whose answer cannot change the outcome.
       if (operand.kind == Kind::Ask && outcome != all) continue;
-      const bool passed = holds(operand, steps);
+      const bool passed = outcomeOf(operand, steps);
+      witness.take(passed != all);
       outcome = all ? outcome && passed : outcome || passed;
-      if (steps == nullptr && outcome != all) break;
+      if (steps == nullptr && outcome != all && witness.isSure()) break;
     }
     return outcome;
   }
   if (condition.kind == Kind::Not && !condition.operands.front().operands.empty())
-    return !holds(condition.operands.front(), steps);
+    return !outcomeOf(condition.operands.front(), steps);
   DecisionStep step;
   const bool negative = condition.kind == Kind::Not;
   const bool passed = holdsElementary(negative ? condition.operands.front() : condition, step) != negative;
@@ -96,9 +99,19 @@ bool ConditionEvaluator::allHold(const std::vector<Condition>& conditions) {
   const auto isCheap = [](const Condition& c) {
     return c.kind == Condition::Kind::Attribute && !c.slice && !c.ratio_slice;
   };
-  return std::all_of(conditions.begin(), conditions.end(),
-                     [&](const Condition& c) { return !isCheap(c) || holds(c); }) &&
-         std::all_of(conditions.begin(), conditions.end(), [&](const Condition& c) { return isCheap(c) || holds(c); });
+  ++depth_;
+  Witness witness(notes_);
+  bool passed = true;
+  for (const bool cheap : {true, false})
+    for (const Condition& condition : conditions) {
+      if (!passed && (!cheap || witness.isSure())) break;
+      if (isCheap(condition) != cheap) continue;
+      const bool holds_it = outcomeOf(condition, nullptr);
+      witness.take(!holds_it);
+      passed = passed && holds_it;
+    }
+  if (--depth_ == 0) notes_.finish();
+  return passed;
 }
 
 bool ConditionEvaluator::holdsElementary(const Condition& condition, DecisionStep& step) {
@@ -124,7 +137,7 @@ bool ConditionEvaluator::holdsElementary(const Condition& condition, DecisionSte
       return std::any_of(subject.fragments.begin(), subject.fragments.end(),
                          [&](FragmentIndex fragment) { return state_.belongsTo(fragment, condition.class_iri); });
     default:
-      return holds(condition);
+      return outcomeOf(condition, nullptr);
   }
 }
 
@@ -134,21 +147,16 @@ bool ConditionEvaluator::holdsAttribute(const Condition& condition, DecisionStep
   if (!condition.ratio_attribute)
     threshold = condition.value->value;
   else if (const auto other = measured(condition.ratio_of, condition.ratio_slice, *condition.ratio_attribute))
-    threshold = condition.ratio * *other;
+    step.other = other, threshold = condition.ratio * *other;
   step.measured = value;
-  step.is_threshold_measured = condition.ratio_attribute.has_value();
   step.unit = stepUnit(condition);
   if (!value || !threshold) return false;  // the slice is empty
-  noteTest(condition, *value);
+  if (step.other)
+    notes_.addRatio(condition, bindings_.at(condition.of), *value, *step.other);
+  else
+    notes_.add(condition, bindings_.at(condition.of), *value);
   step.threshold = nearerThreshold(condition, *value, *threshold);
   return compare(condition, *value, *threshold);
-}
-
-void ConditionEvaluator::noteTest(const Condition& condition, double value) const {
-  if (condition.threshold == 0 || state_.context.margins == nullptr) return;
-  const std::vector<FragmentIndex>& fragments = bindings_.at(condition.of).fragments;
-  if (fragments.empty()) return state_.context.margins->noteEverywhere(condition, value);
-  state_.context.margins->note(state_.fragments[fragments.front()].primitive, condition, value);
 }
 
 bool ConditionEvaluator::isUnseen(const Condition& condition, DecisionStep& step) {
@@ -169,7 +177,7 @@ bool ConditionEvaluator::holdsLabelShare(const Condition& condition, DecisionSte
     if (std::find(labels.begin(), labels.end(), state_.fragments.labelOf(fragment)) != labels.end()) labelled += points;
   }
   step.measured = all > 0 ? labelled / all : 0;
-  noteTest(condition, *step.measured);
+  notes_.add(condition, bindings_.at(condition.of), *step.measured);
   step.threshold = nearerThreshold(condition, *step.measured, condition.value->value);
   return compare(condition, *step.measured, condition.value->value);
 }
@@ -202,76 +210,8 @@ std::optional<double> ConditionEvaluator::measure(const Condition& condition, do
   return std::isfinite(value) ? value : none;
 }
 
-std::optional<double> ConditionEvaluator::gapToRivals(const Condition& condition, double limit_m) const {
-  const std::vector<bool>* classes = state_.classesBelow(condition.target->object_class);
-  if (classes == nullptr || state_.first_winners == nullptr) return std::nullopt;
-  return state_.first_winners->nearestGap(state_, bindings_.at(condition.of), *classes,
-                                          condition.measure == PairMeasure::HorizontalGap, limit_m);
-}
-
 std::string ConditionEvaluator::unitOf(const Condition& condition) {
   return condition.ratio_attribute ? "" : std::string(stepUnit(condition));
-}
-
-bool ConditionEvaluator::hasLabel(FragmentIndex fragment, const Target& target) const {
-  return target.labels.empty() || std::find(target.labels.begin(), target.labels.end(),
-                                            state_.fragments.labelOf(fragment)) != target.labels.end();
-}
-
-bool ConditionEvaluator::fits(FragmentIndex fragment, const Target& target) const {
-  return hasLabel(fragment, target) &&
-         (target.kind != Target::Kind::Object || state_.belongsTo(fragment, target.object_class));
-}
-
-void ConditionEvaluator::remember(FragmentIndex fragment, const Target& target) {
-  if (target.kind != Target::Kind::Object) return;
-  const OwnerIndex owner = state_.fragments[fragment].owner;
-  if (owner < state_.objects.size()) related_ = owner;
-}
-
-std::optional<std::pair<FragmentIndex, double>> ConditionEvaluator::nearestTarget(const Condition& condition,
-                                                                                  double limit_m, bool far) {
-  const Candidate& subject = bindings_.at(condition.of);
-  if (condition.measure == PairMeasure::Gap && condition.target->kind == Target::Kind::Object && !far &&
-      subject.shape[perception::Attribute::CluxelCount] <= kMaxScanned)
-    return nearestObject(*condition.target, subject, limit_m);
-  std::optional<std::pair<FragmentIndex, double>> best;
-  for (perception::PrimitiveIndex primitive : state_.grid.primitivesNear(state_.fragments.cluxelsOf(subject), limit_m))
-    for (FragmentIndex fragment : state_.fragments.fragmentsOf(primitive)) {
-      if (!fits(fragment, *condition.target) ||
-          std::binary_search(subject.fragments.begin(), subject.fragments.end(), fragment))
-        continue;
-      const double measure =
-          measurePair(state_, condition.measure, subject, state_.fragments.candidateOf({fragment}), limit_m);
-      const bool share = condition.measure == PairMeasure::AdjacentFraction;
-      const bool better = !best || (share ? measure > best->second : measure < best->second) ||
-                          (measure == best->second && state_.fragments.before(fragment, best->first));
-      if (better) best = {fragment, measure};
-    }
-  return best;
-}
-
-std::optional<std::pair<FragmentIndex, double>> ConditionEvaluator::nearestObject(const Target& target,
-                                                                                  const Candidate& subject,
-                                                                                  double limit_m) const {
-  const std::vector<bool>* classes = state_.classesBelow(target.object_class);
-  if (classes == nullptr) return std::nullopt;
-  std::optional<std::pair<FragmentIndex, double>> best;
-  auto last = static_cast<FragmentIndex>(state_.fragments.size());  // most cluxels of a cell are of one fragment
-  bool is_wanted = false;
-  for (const FragmentIndex mine : subject.fragments)
-    for (const std::uint32_t cluxel : state_.fragments[mine].cluxels)
-      state_.grid.near(cluxel, best ? best->second : limit_m, [&](std::uint32_t other) {
-        const FragmentIndex fragment = state_.fragments.fragmentOf(other);
-        if (std::exchange(last, fragment) != fragment)
-          is_wanted = state_.belongsToAny(fragment, classes) && hasLabel(fragment, target) &&
-                      !std::binary_search(subject.fragments.begin(), subject.fragments.end(), fragment);
-        if (!is_wanted) return;
-        const double gap = gapBetween(state_.scene.cluxels, cluxel, other).gap();
-        if (gap > limit_m || (best && gap > best->second)) return;
-        if (!best || gap < best->second || state_.fragments.before(fragment, best->first)) best = {fragment, gap};
-      });
-  return best;
 }
 
 bool ConditionEvaluator::holdsPair(const Condition& condition, DecisionStep& step) {
@@ -289,7 +229,9 @@ bool ConditionEvaluator::holdsPair(const Condition& condition, DecisionStep& ste
     measured = nearest->second;
     if (compare(condition, measured, threshold)) remember(nearest->first, *condition.target);
   }
+  step.is_looked_for = condition.measure == PairMeasure::Gap || condition.measure == PairMeasure::HorizontalGap;
   if (std::isfinite(measured)) step.measured = measured;
+  notes_.add(condition, bindings_.at(condition.of), step.is_looked_for ? std::min(measured, limit) : measured);
   step.threshold = nearerThreshold(condition, measured, threshold);
   step.unit = stepUnit(condition);
   return compare(condition, measured, threshold);
@@ -302,6 +244,7 @@ bool ConditionEvaluator::holdsRelation(const Condition& condition, DecisionStep&
     step.measured = subject.shape[perception::Attribute::Bottom];
     step.threshold = condition.value ? condition.value->value : kGroundTolerance_m;
     step.unit = "m";
+    notes_.add(condition, subject, *step.measured);
     return *step.measured <= *step.threshold;
   }
   std::optional<std::pair<FragmentIndex, double>> best;
@@ -318,6 +261,7 @@ bool ConditionEvaluator::holdsRelation(const Condition& condition, DecisionStep&
   }
   if (!best) return false;
   step.measured = best->second;
+  notes_.add(condition, subject, best->second);
   const bool passed = !condition.value || best->second <= condition.value->value;
   if (passed && condition.target->kind != Target::Kind::Name) remember(best->first, *condition.target);
   return passed;

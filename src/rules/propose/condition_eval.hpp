@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "rules/decide/reasoning_state.hpp"
+#include "rules/propose/test_notes.hpp"
 
 namespace cluxel::rules {
 
@@ -15,7 +16,7 @@ bool compare(const Condition& condition, double value, double threshold);
 class ConditionEvaluator {
  public:
   ConditionEvaluator(const ReasoningState& state, const Rule& rule, const Bindings& bindings)
-      : state_(state), rule_(rule), bindings_(bindings) {}
+      : state_(state), rule_(rule), bindings_(bindings), notes_(state) {}
 
   /// Evaluates, and appends one step per elementary test to `steps` when given.
   bool holds(const Condition& condition, std::vector<DecisionStep>* steps = nullptr);
@@ -29,11 +30,10 @@ class ConditionEvaluator {
   std::optional<OwnerIndex> related() const { return related_; }
 
  private:
+  bool outcomeOf(const Condition& condition, std::vector<DecisionStep>* steps);
   bool holdsElementary(const Condition& condition, DecisionStep& step);
   bool holdsAttribute(const Condition& condition, DecisionStep& step);
   bool isUnseen(const Condition& condition, DecisionStep& step);
-  /// Records that `value` of the subject is compared with the threshold.
-  void noteTest(const Condition& condition, double value) const;
   /// Absent when the candidate has no cluxel in the slice.
   std::optional<double> measured(const std::string& of, const std::optional<SliceSpec>& slice,
                                  perception::Attribute attribute) const;
@@ -57,6 +57,8 @@ class ConditionEvaluator {
   const Rule& rule_;
   const Bindings& bindings_;
   std::optional<OwnerIndex> related_;
+  TestNotes notes_;
+  int depth_ = 0;  ///< of evaluations within evaluations; the outermost hands over the notes
 };
 
 }  // namespace cluxel::rules

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rules/decide/threshold_margins.hpp"
 #include "rules/propose/condition_eval.hpp"
 
 namespace cluxel::rules {
@@ -22,20 +23,25 @@ double confidenceOf(const Confidence& confidence, const Bindings& bindings) {
   return confidence.low + (confidence.high - confidence.low) * share;
 }
 
+/// The first knot that is not below the value; one after the last when there is none.
+std::size_t knotAbove(const std::vector<EvidenceLine::Knot>& knots, double value) {
+  std::size_t i = 0;
+  while (i < knots.size() && value > knots[i].at) ++i;
+  return i;
+}
+
 double onCurve(const std::vector<EvidenceLine::Knot>& knots, double value) {
-  if (value <= knots.front().at) return knots.front().log_odds;
-  for (std::size_t i = 1; i < knots.size(); ++i) {
-    if (value > knots[i].at) continue;
-    const double share = (value - knots[i - 1].at) / (knots[i].at - knots[i - 1].at);
-    return knots[i - 1].log_odds + share * (knots[i].log_odds - knots[i - 1].log_odds);
-  }
-  return knots.back().log_odds;
+  const std::size_t i = knotAbove(knots, value);
+  if (i == 0) return knots.front().log_odds;
+  if (i == knots.size()) return knots.back().log_odds;
+  const double share = (value - knots[i - 1].at) / (knots[i].at - knots[i - 1].at);
+  return knots[i - 1].log_odds + share * (knots[i].log_odds - knots[i - 1].log_odds);
 }
 
 class Weighing {
  public:
   Weighing(const ReasoningState& state, const Rule& rule, const Bindings& bindings)
-      : state_(state), bindings_(bindings), evaluator_(state, rule, bindings) {}
+      : state_(state), rule_(rule), bindings_(bindings), evaluator_(state, rule, bindings) {}
 
   EvidenceStep of(const EvidenceLine& line) {
     EvidenceStep step;
@@ -46,8 +52,18 @@ class Weighing {
     step.line = line.at.line;
     if (line.asks_rivals && state_.first_winners == nullptr) return step;
     step.log_odds = line.missing;
-    if (isBound(line.measure)) measure(line, step);
+    if (isBound(line.measure))
+      measure(line, step);
+    else
+      noteUse(line.constant);
     return step;
+  }
+
+  /// Of the constant of this number.
+  void noteUse(std::uint32_t constant) const {
+    if (state_.context.margins == nullptr) return;
+    const FragmentIndex seed = bindings_.at(rule_.seed.name).fragments.front();
+    state_.context.margins->noteUse(state_.fragments[seed].primitive, constant);
   }
 
  private:
@@ -63,16 +79,28 @@ class Weighing {
     if (line.kind == EvidenceLine::Kind::Test) {
       step.holds = evaluator_.holds(line.measure);
       step.log_odds = *step.holds ? line.weight : 0;
+      if (*step.holds) noteUse(line.constant + 1);
       return;
     }
     const auto value = evaluator_.measure(line.measure, reachOf(line));
-    if (!value) return;
+    if (!value) return noteUse(line.constant);
+    noteUses(line, *value);
     step.measured = *value;
     step.unit = evaluator_.unitOf(line.measure);
     step.log_odds = logOddsOf(line, *value);
   }
 
+  /// Of the knots on both sides: as long as these stay, the value lies between them.
+  void noteUses(const EvidenceLine& line, double value) const {
+    const auto count = static_cast<std::uint32_t>(line.knots.size());
+    if (line.kind != EvidenceLine::Kind::Curve) return noteUse(line.constant + 1);
+    const auto above = static_cast<std::uint32_t>(knotAbove(line.knots, value));
+    if (above > 0) noteUse(line.constant + above);
+    if (above < count) noteUse(line.constant + above + 1);
+  }
+
   const ReasoningState& state_;
+  const Rule& rule_;
   const Bindings& bindings_;
   ConditionEvaluator evaluator_;
 };
@@ -136,6 +164,7 @@ void weigh(const ReasoningState& state, const Rule& rule, const AcceptLeaf& acce
   decision.evidence = {std::move(prior)};
   const Bindings with_whole = mentionsWhole(rule, accept) ? withWhole(state, accept, bindings) : bindings;
   Weighing weighing(state, rule, with_whole);
+  weighing.noteUse(accept.constant);
   for (const std::vector<EvidenceLine>* lines : {&rule.evidence, &accept.evidence})
     for (const EvidenceLine& line : *lines) {
       decision.evidence.push_back(weighing.of(line));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "rules/decide/threshold_margins.hpp"
 #include "rules/propose/condition_eval.hpp"
 #include "rules/propose/pair_measures.hpp"
 
@@ -37,11 +38,25 @@ void addAdjacent(const ReasoningState& state, const Candidate& anchor, std::vect
       }
 }
 
+/// What is farther away than `reach_m` was not looked at.
+void noteSearch(const ReasoningState& state, const Condition& tie, const Candidate& anchor, double reach_m) {
+  const std::uint32_t threshold = tie.upper ? tie.upper_threshold : tie.threshold;
+  if (threshold == 0) return;
+  if (anchor.fragments.empty()) return state.context.margins->noteEverywhere(threshold, reach_m);
+  const perception::PrimitiveIndex primitive = state.fragments[anchor.fragments.front()].primitive;
+  if (tie.measure == PairMeasure::AxisDistance)  // what is looked at follows from the threshold in another way
+    state.context.margins->noteFixed(primitive, threshold);
+  else
+    state.context.margins->note(primitive, threshold, reach_m);
+}
+
 void addNear(const ReasoningState& state, const Condition& tie, const Candidate& anchor,
              std::vector<FragmentIndex>& found) {
   const double within = tie.upper ? tie.upper->value : tie.value->value;
+  const double searched = state.context.margins != nullptr ? searchedAround(within) : within;
+  if (state.context.margins != nullptr) noteSearch(state, tie, anchor, searched);
   // The axis distance is measured from the centroid, which may be far from the nearest cluxel.
-  const double reach = within + (tie.measure == PairMeasure::AxisDistance ? 5.0 : 0.0);
+  const double reach = tie.measure == PairMeasure::AxisDistance ? within + 5 : searched;
   for (perception::PrimitiveIndex primitive : state.grid.primitivesNear(state.fragments.cluxelsOf(anchor), reach))
     addFragments(state, primitive, found);
 }

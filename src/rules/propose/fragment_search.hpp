@@ -9,6 +9,12 @@
 
 namespace cluxel::rules {
 
+/// How far a run with margins looks for what is within a distance [m]: it is known from when on a larger distance would
+/// find more.
+constexpr double searchedAround(double within_m) {
+  return 1.25 * within_m + 0.01;
+}
+
 /// A superset of the fragments that pass `conditions` when bound to `name`, in canonical order, restricted to those for
 /// which `is_eligible` holds. It is looked up by the first condition that relates `name` to a bound candidate; empty
 /// when there is none.

@@ -10,10 +10,6 @@
 
 namespace cluxel::rules {
 
-/// Gaps are measured up to kMaxMeasure_m. The search radius exceeds the threshold of a test by kMeasureMargin_m, so
-/// that the measured value is reported also when it is slightly above the threshold.
-inline constexpr double kMaxMeasure_m = 50.0, kMeasureMargin_m = 0.5;
-
 /// The measure from `a` to `b`: metres, or a share for AdjacentFraction. Gaps above `limit_m` are infinite.
 double measurePair(const ReasoningState& state, PairMeasure measure, const Candidate& a, const Candidate& b,
                    double limit_m = std::numeric_limits<double>::infinity());

@@ -14,9 +14,9 @@ namespace cluxel::rules {
 
 namespace {
 
-constexpr double kSpacing_m = 0.25;  // of cluxels; larger in large boxes
-constexpr int kMaxCluxels = 2500;    // per box
-constexpr double kMeet_m = 0.10;     // cluxels with a gap up to this are joined by an edge
+constexpr double kSpacing_m = 0.25;   // of cluxels; larger in large boxes
+constexpr int kMaxBoxCluxels = 2500;  // per box
+constexpr double kMeet_m = 0.10;      // cluxels with a gap up to this are joined by an edge
 constexpr double kTouches_m = 0.20, kNear_m = 1.0, kAbove_m = 0.25, kInside = 0.9;
 
 /// A cluxel before it is sorted into the scene.
@@ -35,7 +35,7 @@ std::array<int, 3> cellsOf(const Eigen::Vector3d& size) {
       cells[static_cast<std::size_t>(i)] = std::max(1, static_cast<int>(std::lround(std::min(size[i], 1e4) / spacing)));
       count *= cells[static_cast<std::size_t>(i)];
     }
-    if (count <= kMaxCluxels) return cells;
+    if (count <= kMaxBoxCluxels) return cells;
   }
 }
 
