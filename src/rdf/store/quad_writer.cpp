@@ -165,7 +165,12 @@ bool QuadWriter::Impl::isLiteral(TermId id) {
 
 QuadDifference QuadWriter::Impl::withoutLiterals(const QuadDifference& difference) {
   QuadDifference links;
-  const auto is_link = [this](const QuadIds& quad) { return !isLiteral(quad.o); };
+  constexpr std::size_t kQuadsBetweenPolls = 4096;
+  std::size_t seen = 0;
+  const auto is_link = [&](const QuadIds& quad) {
+    if (++seen % kQuadsBetweenPolls == 0 && state().flush_poll) state().flush_poll();
+    return !isLiteral(quad.o);
+  };
   std::copy_if(difference.added.begin(), difference.added.end(), std::back_inserter(links.added), is_link);
   std::copy_if(difference.removed.begin(), difference.removed.end(), std::back_inserter(links.removed), is_link);
   return links;
