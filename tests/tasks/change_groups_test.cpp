@@ -33,6 +33,11 @@ TEST(ChangeGroups, LeaveOutItemsThatMostOfTheirNeighboursContradict) {
   EXPECT_EQ(groups, (std::vector<ChangeGroup>{{2}}));
 }
 
+TEST(ChangeGroups, ConnectedItemsNeedNoAgreement) {
+  const auto groups = row({Stable, Changed, Stable, Changed, Changed, Stable}).connected();
+  EXPECT_EQ(groups, (std::vector<ChangeGroup>{{1}, {3, 4}}));
+}
+
 TEST(ChangeGroups, ShareOfChangedCountsDecidedItems) {
   const ChangeGroups groups = row({Stable, Changed, Changed, Undecided});
   const ChangeGroup around = groups.withNear({1, 2});

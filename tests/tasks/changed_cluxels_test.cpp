@@ -41,7 +41,12 @@ ChangedCluxels thereBefore() {
 std::size_t vanishedIn(ChangedCluxels all) {
   all.changes.clear();
   for (std::uint32_t i = 0; i < all.cluxels.size(); ++i) all.changes.push_back(changeOf(all.before[i], all.after[i]));
-  return clustersOf(CluxelChange::Vanished, all).size();
+  const std::vector<ChangeGroup> clusters = clustersOf(CluxelChange::Vanished, all);
+  ChangedCluxels without_own = all;
+  without_own.before.assign(all.before.size(), {});
+  const std::vector<ChangeGroup> possible = possibleClusters(CluxelChange::Vanished, without_own);
+  EXPECT_EQ(clustersAmong(possible, CluxelChange::Vanished, all), clusters) << "possible ones hold all that are sure";
+  return clusters.size();
 }
 
 /// Few rays of later scans passed each cluxel; `before` was found while they were there.
@@ -74,6 +79,14 @@ TEST(ChangedCluxels, AThingThatNoLaterRayPassesIsNotGone) {
 
 TEST(ChangedCluxels, FewRaysOfOneScanDoNotShowThatAThingIsGone) {
   EXPECT_EQ(vanishedAfter(1, kDense), 0);
+}
+
+TEST(ChangedCluxels, WhatNoLaterRaySawThroughIsNoPossibleCluster) {
+  ChangedCluxels all = thereBefore();
+  all.changes.assign(all.cluxels.size(), CluxelChange::Vanished);
+  EXPECT_TRUE(possibleClusters(CluxelChange::Vanished, all).empty());
+  for (RayFindings& after : all.after) after = {.passed = 3, .passed_scans = 7};
+  EXPECT_EQ(possibleClusters(CluxelChange::Vanished, all).size(), 1U);
 }
 
 TEST(ChangedCluxels, FewRaysOfTwoScansShowThatALargeDenseThingIsGone) {

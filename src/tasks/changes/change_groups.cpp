@@ -9,6 +9,16 @@ namespace cluxel::tasks {
 std::vector<ChangeGroup> ChangeGroups::all(std::size_t min_size) const {
   std::vector<bool> is_open(states_.size());
   for (std::uint32_t i = 0; i < states_.size(); ++i) is_open[i] = states_[i] == ChangeState::Changed && agrees(i);
+  return groupsOf(std::move(is_open), min_size);
+}
+
+std::vector<ChangeGroup> ChangeGroups::connected() const {
+  std::vector<bool> is_open(states_.size());
+  for (std::uint32_t i = 0; i < states_.size(); ++i) is_open[i] = states_[i] == ChangeState::Changed;
+  return groupsOf(std::move(is_open), 1);
+}
+
+std::vector<ChangeGroup> ChangeGroups::groupsOf(std::vector<bool> is_open, std::size_t min_size) const {
   std::vector<ChangeGroup> groups;
   for (std::uint32_t start = 0; start < states_.size(); ++start) {
     if (!is_open[start]) continue;

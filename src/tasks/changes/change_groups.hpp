@@ -29,6 +29,8 @@ class ChangeGroups {
   /// Groups of `min_size` or more changed items that are near to each other, where most of the decided items near each
   /// of them changed, too; in the order of their first items.
   std::vector<ChangeGroup> all(std::size_t min_size) const;
+  /// All changed items in groups of those that are near to each other, whatever else is near; in the same order.
+  std::vector<ChangeGroup> connected() const;
   /// The group and what is near it.
   ChangeGroup withNear(const ChangeGroup& group) const;
   /// The share of the decided items that changed.
@@ -40,6 +42,7 @@ class ChangeGroups {
  private:
   bool agrees(std::uint32_t item) const;
   ChangeGroup connectedFrom(std::uint32_t start, std::vector<bool>& is_open) const;
+  std::vector<ChangeGroup> groupsOf(std::vector<bool> is_open, std::size_t min_size) const;
 
   std::vector<ChangeState> states_;
   ForEachNear for_each_near_;

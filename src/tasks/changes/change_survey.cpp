@@ -13,7 +13,8 @@
 #include "mapping/presence/presence_votes.hpp"
 #include "mapping/presence/ray_pass.hpp"
 #include "tasks/changes/changed_parts.hpp"
-#include "tasks/changes/kept_changes.hpp"
+#include "tasks/changes/kept_cells.hpp"
+#include "tasks/changes/kept_cluxels.hpp"
 
 namespace cluxel::tasks {
 
@@ -53,11 +54,16 @@ class FirstFindings {
     });
   }
 
-  std::vector<CluxelChange> changes() const {
-    std::vector<CluxelChange> changes(cluxels_.size(), CluxelChange::Undecided);
-    for (std::size_t i = 0; i < numbers_.size(); ++i)
-      changes[numbers_[i]] = changeOf(found_[kBefore][i], found_[kAfter][i]);
-    return changes;
+  RegionFindings take(std::vector<bool> is_told) {
+    RegionFindings all{std::move(is_told), std::vector(cluxels_.size(), CluxelChange::Undecided), {}};
+    all.gone.resize(cluxels_.size());
+    for (std::size_t i = 0; i < numbers_.size(); ++i) {
+      const std::uint32_t cluxel = numbers_[i];
+      all.changes[cluxel] = changeOf(found_[kBefore][i], found_[kAfter][i]);
+      all.gone[cluxel] = found_[all.changes[cluxel] == CluxelChange::Vanished ? kAfter : kBefore][i];
+    }
+    found_ = {};
+    return all;
   }
 
  private:
@@ -84,8 +90,12 @@ class Survey {
     for (std::size_t i = 0; i < regions_.size(); ++i) surveyRegion(regions_.read(i));
     std::sort(survey_.states.begin(), survey_.states.end(),
               [](const ObjectStates& a, const ObjectStates& b) { return a.object < b.object; });
-    survey_.cluxels = kept_cluxels_.take();
-    for (const std::size_t time : {kBefore, kAfter}) survey_.cells[time] = kept_cells_[time].take();
+    KeptCluxels::Clusters clusters = kept_cluxels_.take();
+    survey_.cluxels = std::move(clusters.cluxels), survey_.clusters = std::move(clusters.groups);
+    for (const std::size_t time : {kBefore, kAfter}) {
+      KeptCells::Parts parts = kept_cells_[time].take();
+      survey_.cells[time] = std::move(parts.cells), survey_.parts[time] = std::move(parts.groups);
+    }
     lookAgain();
     return std::move(survey_);
   }
@@ -102,9 +112,10 @@ class Survey {
     FirstFindings findings(cluxels, wanted);
     mapping::PresenceVoting voting(region.scene, region.objects, clouds_, threads_);
     for (const TimedScan& scan : scans_) look(region, scan, findings, cells, voting);
-    const std::vector<CluxelChange> changes = findings.changes();
-    keepCells(region, changes, std::move(cells));
-    keepCluxels(region, changes, may_change);
+    const RegionFindings found = findings.take(std::move(may_change));
+    for (const perception::TileKey& tile : region.tiles) unread_.erase(tile);
+    keepCluxels(region, found);
+    keepCells(region, found.changes, std::move(cells));
     addStates(region, voting.finish());
   }
 
@@ -134,7 +145,6 @@ class Survey {
   }
 
   void keepCells(const mapping::MapRegion& region, const std::vector<CluxelChange>& changes, PointCells cells) {
-    for (const perception::TileKey& tile : region.tiles) unread_.erase(tile);
     for (const std::size_t time : {kBefore, kAfter}) {
       const CluxelChange kind = time == kBefore ? CluxelChange::Vanished : CluxelChange::Appeared;
       for (PointCell& cell : cells[time]) {
@@ -142,16 +152,15 @@ class Survey {
         const auto cluxel = static_cast<std::size_t>(at - region.number.begin());
         cell.is_of_changed_cluxel = stateOf(cell) == ChangeState::Changed && changes[cluxel] == kind;
       }
-      kept_cells_[time].add(region, std::move(cells[time]), unread_);
+      kept_cells_[time].add(region, std::move(cells[time]), unread_, kept_cluxels_);
     }
   }
 
-  void keepCluxels(const mapping::MapRegion& region, const std::vector<CluxelChange>& changes,
-                   const std::vector<bool>& may_change) {
-    for (std::size_t i = 0; i < changes.size(); ++i)
-      if (changes[i] == CluxelChange::Stable && region.object[i] != mapping::kNoObject)
+  void keepCluxels(const mapping::MapRegion& region, const RegionFindings& found) {
+    for (std::size_t i = 0; i < found.changes.size(); ++i)
+      if (found.changes[i] == CluxelChange::Stable && region.object[i] != mapping::kNoObject)
         ++survey_.stable_of_object[region.object[i]];
-    kept_cluxels_.add(region, changes, may_change);
+    kept_cluxels_.add(region, found, unread_);
   }
 
   void addStates(const mapping::MapRegion& region, const std::vector<mapping::ObjectVotes>& votes) {
@@ -170,7 +179,7 @@ class Survey {
     PointCells parts;
     std::array<std::vector<std::uint32_t>, 2> numbers;
     for (const std::size_t time : {kBefore, kAfter})
-      for (const ChangeGroup& group : possibleParts(survey_.cells[time]))
+      for (const ChangeGroup& group : survey_.parts[time])
         for (const std::uint32_t cell : group) {
           numbers[time].push_back(cell);
           parts[time].push_back(survey_.cells[time][cell]);

@@ -2,6 +2,7 @@
 // What points and rays tell of the scans before a time and of those from it on, region by region.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <vector>
@@ -17,11 +18,13 @@ namespace cluxel::tasks {
 inline constexpr std::size_t kRegionCluxels = 100'000;
 
 struct ChangeSurvey {
-  std::vector<ObjectStates> states;  ///< of each object but ground, by number
-  ChangedCluxels cluxels;
-  /// The cells that changed, and those near one of them. What rays of their own time found is known of cells in
-  /// possibleParts().
+  std::vector<ObjectStates> states;                  ///< of each object but ground, by number
+  ChangedCluxels cluxels;                            ///< those of possible clusters, and all that intersect one of them
+  std::array<std::vector<ChangeGroup>, 2> clusters;  ///< possible ones that vanished, and that appeared; in `cluxels`
+  /// The cells of possible parts, those near them, and the changed ones of possible clusters. What rays of their own
+  /// time found is known of those of possible parts.
   PointCells cells;
+  std::array<std::vector<ChangeGroup>, 2> parts;          ///< possible ones before, and after; in `cells`
   std::map<std::uint32_t, std::size_t> stable_of_object;  ///< cluxels that are there at both times, by object
 };
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "perception/visibility/presence.hpp"
 
@@ -29,8 +30,17 @@ class Clustering {
           for (const std::uint32_t other : cluxels_.neighbours(cluxel)) visit(other);
         }) {}
 
-  std::vector<ChangeGroup> run() const {
-    std::vector<ChangeGroup> clusters = groups_.all(kMinCluxels);
+  std::vector<ChangeGroup> all() const { return groups_.all(kMinCluxels); }
+
+  std::vector<ChangeGroup> possible() const {
+    std::vector<ChangeGroup> clusters = all();
+    std::erase_if(clusters, [this](const ChangeGroup& cluster) {
+      return !isShown(cluster, groups_.withNear(cluster), kMostSparseHits);
+    });
+    return clusters;
+  }
+
+  std::vector<ChangeGroup> sureOf(std::vector<ChangeGroup> clusters) const {
     std::erase_if(clusters, [this](const ChangeGroup& cluster) { return !isSure(cluster); });
     return clusters;
   }
@@ -42,6 +52,7 @@ class Clustering {
   static constexpr double kMostOfScan = 2;
   static constexpr double kWhole = 0.9, kMinShare = 0.75, kMinShareOfMany = 0.5, kThin_m = 0.3;
   static constexpr std::size_t kMinTop = 8, kLarge = 12;
+  static constexpr double kMostSparseHits = 0.95;
   static constexpr double kDense = 0.6;  ///< share of scans with few rays that hit a thing through which few rays pass
   static constexpr perception::PresenceParams kPresence{};
 
@@ -75,7 +86,7 @@ class Clustering {
     double hits = isThin(cluster) ? 0.5 : 2, passed = isThin(cluster) ? 2 : 0.5;
     for (const std::uint32_t cluxel : around)
       if (const RayFindings* there = findingsAt(cluxel, true)) hits += there->sparse_hits, passed += there->passed;
-    return std::min(hits / (hits + passed), 0.95);
+    return std::min(hits / (hits + passed), kMostSparseHits);
   }
 
   /// Whether the thing lets so many rays through while it is there that scans without a hit do not show that it is
@@ -95,12 +106,16 @@ class Clustering {
 
   bool isSure(const ChangeGroup& cluster) const {
     const ChangeGroup around = groups_.withNear(cluster);
-    if (isPermeable(cluster, around)) return false;
+    return !isPermeable(cluster, around) && isShown(cluster, around, sparseHits(cluster, around));
+  }
+
+  /// Whether the rays of the time without the thing show that it is gone. With more `sparse_hits` they show no less.
+  bool isShown(const ChangeGroup& cluster, const ChangeGroup& around, double sparse_hits) const {
     std::size_t seen_through = 0;
     for (const std::uint32_t cluxel : cluster) seen_through += findingsAt(cluxel, false)->is_seen_through ? 1 : 0;
-    const double share = groups_.shareOfChanged(around), log_odds = logOddsOfScans(cluster, around);
+    const double share = groups_.shareOfChanged(around), log_odds = logOddsOfScans(cluster, sparse_hits);
     const bool scans_agree = log_odds <= -kPresence.decided;
-    if (share >= kWhole) return scans_agree || seen_through >= kMinCluxels || isLarge(cluster, around, log_odds);
+    if (share >= kWhole) return scans_agree || seen_through >= kMinCluxels || isLarge(cluster, sparse_hits, log_odds);
     if (!scans_agree) return false;
     return (seen_through >= kMinCluxels && share >= kMinShare) || (seen_through >= kMany && share >= kMinShareOfMany) ||
            isTop(cluster);
@@ -113,13 +128,13 @@ class Clustering {
   }
 
   /// Whether a thing is so large and dense that two scans do not miss it: their poses are not off alike.
-  bool isLarge(const ChangeGroup& cluster, const ChangeGroup& around, double log_odds) const {
-    return cluster.size() >= kLarge && sparseHits(cluster, around) >= kDense && log_odds <= -2 * kMostOfScan;
+  static bool isLarge(const ChangeGroup& cluster, double sparse_hits, double log_odds) {
+    return cluster.size() >= kLarge && sparse_hits >= kDense && log_odds <= -2 * kMostOfScan;
   }
 
   /// Log-odds of "there" from the scans that passed the thing, however many of its cluxels each of them passed.
-  double logOddsOfScans(const ChangeGroup& cluster, const ChangeGroup& around) const {
-    const double each = std::log((1 - sparseHits(cluster, around)) / (1 - kPresence.hit_when_gone));
+  double logOddsOfScans(const ChangeGroup& cluster, double sparse_hits) const {
+    const double each = std::log((1 - sparse_hits) / (1 - kPresence.hit_when_gone));
     std::array<double, kScanBits> of_scan{};
     for (const std::uint32_t cluxel : cluster) {
       const RayFindings& gone = *findingsAt(cluxel, false);
@@ -154,7 +169,17 @@ CluxelChange changeOf(const RayFindings& before, const RayFindings& after) {
 }
 
 std::vector<ChangeGroup> clustersOf(CluxelChange kind, const ChangedCluxels& all) {
-  return Clustering(kind, all).run();
+  const Clustering clustering(kind, all);
+  return clustering.sureOf(clustering.all());
+}
+
+std::vector<ChangeGroup> clustersAmong(std::vector<ChangeGroup> possible, CluxelChange kind,
+                                       const ChangedCluxels& all) {
+  return Clustering(kind, all).sureOf(std::move(possible));
+}
+
+std::vector<ChangeGroup> possibleClusters(CluxelChange kind, const ChangedCluxels& all) {
+  return Clustering(kind, all).possible();
 }
 
 }  // namespace cluxel::tasks

@@ -69,5 +69,12 @@ struct ChangedCluxels {
 ///   gone from there upwards, as of a hedge that was cut. What scans with poor poses miss is mostly an edge of
 ///   something that stays, and a gap in a crown has leaves beside it.
 std::vector<ChangeGroup> clustersOf(CluxelChange kind, const ChangedCluxels& all);
+/// Those of the possible clusters that clustersOf() keeps. `all` need not hold more than these and what intersects
+/// them.
+std::vector<ChangeGroup> clustersAmong(std::vector<ChangeGroup> possible, CluxelChange kind, const ChangedCluxels& all);
+
+/// Clusters that are kept if rays hit the thing often enough while it was there. Only what rays found without it is
+/// read.
+std::vector<ChangeGroup> possibleClusters(CluxelChange kind, const ChangedCluxels& all);
 
 }  // namespace cluxel::tasks

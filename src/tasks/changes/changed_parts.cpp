@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "perception/visibility/presence.hpp"
 
@@ -29,15 +30,16 @@ class Grouping {
         neighbours_(cells),
         groups_(statesOf(cells), [this](auto cell, const auto& visit) { neighbours_.forEach(cell, visit); }) {}
 
+  std::vector<ChangeGroup> all() const { return groups_.all(kSolidCells); }
+
   std::vector<ChangeGroup> possible() const {
-    std::vector<ChangeGroup> groups = groups_.all(kSolidCells);
-    std::erase_if(groups, [this](const ChangeGroup& group) { return !isPossible(evidenceOf(group)); });
+    std::vector<ChangeGroup> groups = all();
+    std::erase_if(groups, [this](const ChangeGroup& group) { return !isGone(group, allHit(evidenceOf(group))); });
     return groups;
   }
 
-  std::vector<ChangeGroup> sure() const {
-    std::vector<ChangeGroup> groups = groups_.all(kSolidCells);
-    std::erase_if(groups, [this](const ChangeGroup& group) { return !isSure(group); });
+  std::vector<ChangeGroup> sureOf(std::vector<ChangeGroup> groups) const {
+    std::erase_if(groups, [this](const ChangeGroup& group) { return !isGone(group, evidenceOf(group)); });
     return groups;
   }
 
@@ -85,8 +87,13 @@ class Grouping {
     return found;
   }
 
-  /// What the looks of the other time allow.
-  static bool isPossible(const GroupEvidence& found) {
+  /// The most that looks and rays of its own time may tell.
+  static GroupEvidence allHit(GroupEvidence found) {
+    found.own_hits = found.own_looks = found.own_ended = found.own_rays = 1;
+    return found;
+  }
+
+  static bool isPassed(const GroupEvidence& found) {
     return found.scans >= kOwnScansOfTop && found.passing_scans >= kPassing &&
            found.other_hits <= kRest * found.other_looks;
   }
@@ -99,9 +106,8 @@ class Grouping {
            (found.other_looks - found.other_hits) * std::log((1 - kPresence.hit_when_gone) / (1 - share));
   }
 
-  bool isSure(const ChangeGroup& group) const {
-    const GroupEvidence found = evidenceOf(group);
-    if (!isPossible(found) || found.own_hits < kOwnHits * found.own_looks) return false;
+  bool isGone(const ChangeGroup& group, const GroupEvidence& found) const {
+    if (!isPassed(found) || found.own_hits < kOwnHits * found.own_looks) return false;
     const double log_odds = logOdds(found);
     const auto height = [this](std::uint32_t cell) { return cells_[cell].place.z(); };
     const double above = groups_.shareOfChangedAbove(group, height);
@@ -137,7 +143,12 @@ ChangeState stateOf(const PointCell& cell) {
 }
 
 std::vector<ChangeGroup> changedParts(const std::vector<PointCell>& cells) {
-  return Grouping(cells).sure();
+  const Grouping grouping(cells);
+  return grouping.sureOf(grouping.all());
+}
+
+std::vector<ChangeGroup> partsAmong(std::vector<ChangeGroup> possible, const std::vector<PointCell>& cells) {
+  return Grouping(cells).sureOf(std::move(possible));
 }
 
 std::vector<ChangeGroup> possibleParts(const std::vector<PointCell>& cells) {

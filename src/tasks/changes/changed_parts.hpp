@@ -35,7 +35,10 @@ ChangeState stateOf(const PointCell& cell);
 /// found, so that foliage is never called solid.
 std::vector<ChangeGroup> changedParts(const std::vector<PointCell>& cells);
 
-/// Groups that are kept if the looks of their own time allow it, from the looks of the other time alone.
+/// Those of the possible parts that changedParts() keeps. `cells` need not hold more than these and what is near them.
+std::vector<ChangeGroup> partsAmong(std::vector<ChangeGroup> possible, const std::vector<PointCell>& cells);
+
+/// Groups that are kept if all looks and rays of their own time hit them, from the looks of the other time alone.
 std::vector<ChangeGroup> possibleParts(const std::vector<PointCell>& cells);
 
 }  // namespace cluxel::tasks

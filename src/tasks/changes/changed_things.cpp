@@ -45,21 +45,22 @@ std::vector<std::vector<std::uint32_t>> shareOut(const std::vector<PointCell>& c
 /// The things of one kind.
 class Things {
  public:
-  /// `cells`: of the time when the things were there.
-  Things(CluxelChange kind, const ChangeSurvey& survey, const std::vector<PointCell>& cells)
-      : kind_(kind), survey_(survey), cells_(cells) {
+  /// `time`: kBefore or kAfter, when the things were there.
+  Things(std::size_t time, const ChangeSurvey& survey) : time_(time), survey_(survey), cells_(survey.cells[time]) {
     for (std::size_t i = 0; i < survey.cluxels.number.size(); ++i)
       object_of_cluxel_[survey.cluxels.number[i]] = survey.cluxels.object[i];
-    for (std::uint32_t cell = 0; cell < cells.size(); ++cell) {
-      object_of_cluxel_[cells[cell].cluxel] = cells[cell].object;
-      if (stateOf(cells[cell]) == ChangeState::Changed) cells_of_cluxel_[cells[cell].cluxel].push_back(cell);
+    for (std::uint32_t cell = 0; cell < cells_.size(); ++cell) {
+      object_of_cluxel_[cells_[cell].cluxel] = cells_[cell].object;
+      if (stateOf(cells_[cell]) == ChangeState::Changed) cells_of_cluxel_[cells_[cell].cluxel].push_back(cell);
     }
   }
 
   std::vector<ChangedThing> run() {
-    for (const ChangeGroup& cluster : clustersOf(kind_, survey_.cluxels)) addCluster(cluster);
+    const CluxelChange kind = time_ == kBefore ? CluxelChange::Vanished : CluxelChange::Appeared;
+    for (const ChangeGroup& cluster : clustersAmong(survey_.clusters[time_], kind, survey_.cluxels))
+      addCluster(cluster);
     const std::size_t clusters = things_.size();
-    for (const ChangeGroup& part : changedParts(cells_))
+    for (const ChangeGroup& part : partsAmong(survey_.parts[time_], cells_))
       if (!isNearChange(boxOf(cells_, part), clusters)) addGroups({part});
     return std::move(things_);
   }
@@ -111,7 +112,7 @@ class Things {
                        [&](const ChangedThing& thing) { return roomy.intersects(thing.box); });
   }
 
-  CluxelChange kind_;
+  std::size_t time_;
   const ChangeSurvey& survey_;
   const std::vector<PointCell>& cells_;
   std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> cells_of_cluxel_;  ///< those that changed
@@ -122,8 +123,7 @@ class Things {
 }  // namespace
 
 ChangedThings changedThings(const ChangeSurvey& survey) {
-  return {Things(CluxelChange::Vanished, survey, survey.cells[kBefore]).run(),
-          Things(CluxelChange::Appeared, survey, survey.cells[kAfter]).run()};
+  return {Things(kBefore, survey).run(), Things(kAfter, survey).run()};
 }
 
 }  // namespace cluxel::tasks

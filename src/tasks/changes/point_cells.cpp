@@ -65,6 +65,9 @@ void CellSums::add(std::size_t time, std::uint64_t scan_bit, const Eigen::Vector
 
 PointCells CellSums::take(const mapping::MapRegion& region) {
   PointCells cells;
+  for (const std::size_t time : {kBefore, kAfter})
+    cells[time].reserve(static_cast<std::size_t>(
+        std::count_if(sums_.begin(), sums_.end(), [&](const auto& of_key) { return of_key.second.count[time] > 0; })));
   for (const auto& [key, sums] : sums_)
     for (const std::size_t time : {kBefore, kAfter}) {
       const std::uint32_t count = sums.count[time], cluxel = sums.cluxel[time];
