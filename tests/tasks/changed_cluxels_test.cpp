@@ -44,10 +44,7 @@ std::size_t vanishedIn(ChangedCluxels all) {
   const std::vector<ChangeGroup> clusters = clustersOf(CluxelChange::Vanished, all);
   ChangedCluxels without_own = all;
   without_own.before.assign(all.before.size(), {});
-  std::vector<ChangeGroup> possible = possibleClusters(CluxelChange::Vanished, without_own);
-  const auto pieces = piecesOf(CluxelChange::Vanished, without_own);
-  for (const ChangeGroup& cluster : joinedPieces(pieces, CluxelChange::Vanished, without_own))
-    possible.push_back(cluster);
+  const std::vector<ChangeGroup> possible = possibleClusters(CluxelChange::Vanished, without_own);
   EXPECT_EQ(clustersAmong(possible, CluxelChange::Vanished, all), clusters) << "possible ones hold all that are sure";
   return clusters.size();
 }
@@ -121,24 +118,6 @@ TEST(ChangedCluxels, ThreeScansMustAgreeThatAPartOfWhatStaysIsGone) {
   EXPECT_EQ(vanishedAbove(3, 1), 0);
   EXPECT_EQ(vanishedAbove(3, 2), 0);
   EXPECT_EQ(vanishedAbove(3, 3), 1);
-}
-
-/// Few rays of three later scans passed pieces of 2 and 3 cluxels, with nothing that is known around. One lies `up_m`
-/// higher than it would.
-std::size_t vanishedInPieces(double up_m) {
-  ChangedCluxels all = thereBefore();
-  for (std::size_t i = 0; i < all.after.size(); ++i) {
-    const bool is_first = i < 2, is_second = i >= 12 && i < 15;
-    if (is_first || is_second) all.after[i] = {.passed = 3, .passed_scans = 7};
-    if (is_first) all.cluxels.low_corner[i].z() += up_m;
-    if (!is_first && !is_second) all.before[i] = {};
-  }
-  return vanishedIn(all);
-}
-
-TEST(ChangedCluxels, PiecesOfWhatIsGoneAreJudgedTogether) {
-  EXPECT_EQ(vanishedInPieces(0), 1);
-  EXPECT_EQ(vanishedInPieces(2), 0) << "2 m apart";
 }
 
 /// Few rays of five later scans passed all but two rows; these are still hit.

@@ -34,27 +34,6 @@ TEST(SideBySide, BicyclesInARackAreToldApart) {
   EXPECT_EQ(sizesAfterSplit(cells), std::vector<std::size_t>(3, each));
 }
 
-TEST(SideBySide, ABicycleOfWhichLittleIsSeenIsToldApart) {
-  std::vector<PointCell> cells;
-  addSheet(cells, 0, 0, 1.7, kStructure);
-  addSheet(cells, 0.55, 0.5, 1.25, kStructure);
-  const std::size_t all = cells.size();
-  for (const double at_m : {0.2, 0.3, 0.4}) cells.push_back({.place = {-0.6 * at_m, 0.8 * at_m, 1}});  // handlebars
-  const std::vector<std::size_t> sizes = sizesAfterSplit(cells);
-  ASSERT_EQ(sizes.size(), 2U);
-  EXPECT_GE(sizes[0] + sizes[1], all);
-}
-
-TEST(SideBySide, TheFrontAndRearOfABoxStayTogether) {
-  std::vector<PointCell> cells;
-  for (const double at_m : {0.0, 0.6}) addSheet(cells, at_m, 0, 1.2, kStructure);
-  for (double at_m = 0.1; at_m < 0.55; at_m += 0.1) {
-    addSheet(cells, at_m, 0, 0.05, kStructure);
-    addSheet(cells, at_m, 1.2, 1.25, kStructure);
-  }
-  EXPECT_EQ(sizesAfterSplit(cells).size(), 1U);
-}
-
 TEST(SideBySide, TheWheelsOfABicycleStayTogether) {
   std::vector<PointCell> cells;
   addSheet(cells, 0, 0, 0.65, kStructure);

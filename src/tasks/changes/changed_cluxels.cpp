@@ -2,7 +2,6 @@
 // Clusters are judged by the evidence of all their cluxels together.
 #include "tasks/changes/changed_cluxels.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -35,21 +34,9 @@ class Clustering {
 
   std::vector<ChangeGroup> possible() const {
     std::vector<ChangeGroup> clusters = all();
-    std::erase_if(clusters, [this](const ChangeGroup& cluster) { return !isPossible(cluster); });
-    return clusters;
-  }
-
-  std::vector<ChangeGroup> pieces() const {
-    std::vector<ChangeGroup> clusters = groups_.all(kMinPiece);
     std::erase_if(clusters, [this](const ChangeGroup& cluster) {
-      return groups_.shareOfChanged(groups_.withNear(cluster)) < kWhole || isPossible(cluster);
+      return !isShown(cluster, groups_.withNear(cluster), kMostSparseHits);
     });
-    return clusters;
-  }
-
-  std::vector<ChangeGroup> joined(const std::vector<ChangeGroup>& pieces) const {
-    std::vector<ChangeGroup> clusters = nearEachOther(pieces);
-    std::erase_if(clusters, [this](const ChangeGroup& cluster) { return !isPossible(cluster); });
     return clusters;
   }
 
@@ -59,9 +46,8 @@ class Clustering {
   }
 
  private:
-  static constexpr std::size_t kMinPiece = 2, kMinCluxels = 5, kMany = 10;
-  static constexpr double kJoined_m = 1;  ///< between pieces of one thing
-  static constexpr double kShown = 3.5;   ///< log-odds of each cluxel of what is gone, on average
+  static constexpr std::size_t kMinCluxels = 5, kMany = 10;
+  static constexpr double kShown = 3.5;  ///< log-odds of each cluxel of what is gone, on average
   /// Log-odds that one scan adds at most. Its rays miss a thing together when its pose is off.
   static constexpr double kMostOfScan = 2;
   static constexpr double kWhole = 0.9, kMinShare = 0.75, kMinShareOfMany = 0.5, kThin_m = 0.3;
@@ -85,40 +71,14 @@ class Clustering {
     return was_there == (kind_ == CluxelChange::Vanished) ? &all_.before[cluxel] : &all_.after[cluxel];
   }
 
-  Eigen::AlignedBox3d boxOf(const ChangeGroup& cluster) const {
-    Eigen::AlignedBox3d box;
+  bool isThin(const ChangeGroup& cluster) const {
+    Eigen::AlignedBox2d box;
     for (const std::uint32_t cluxel : cluster) {
-      const Eigen::Vector3d& low = cluxels_.low_corner[cluxel];
-      box.extend(low), box.extend(low + cluxels_.extent[cluxel].cast<double>());
+      const Eigen::Vector2d low = cluxels_.low_corner[cluxel].head<2>();
+      box.extend(low);
+      box.extend(low + cluxels_.extent[cluxel].head<2>().cast<double>());
     }
-    return box;
-  }
-
-  bool isThin(const ChangeGroup& cluster) const { return boxOf(cluster).sizes().head<2>().minCoeff() < kThin_m; }
-
-  /// Pieces joined with those whose boxes lie within 1 m.
-  std::vector<ChangeGroup> nearEachOther(const std::vector<ChangeGroup>& pieces) const {
-    std::vector<Eigen::AlignedBox3d> boxes;
-    for (const ChangeGroup& piece : pieces) boxes.push_back(boxOf(piece));
-    std::vector<bool> is_left(pieces.size(), true);
-    std::vector<ChangeGroup> joined;
-    for (std::size_t start = 0; start < pieces.size(); ++start) {
-      if (!is_left[start]) continue;
-      is_left[start] = false;
-      ChangeGroup& group = joined.emplace_back();
-      std::vector<std::size_t> members{start};
-      for (std::size_t next = 0; next < members.size(); ++next) {
-        const std::size_t piece = members[next];
-        group.insert(group.end(), pieces[piece].begin(), pieces[piece].end());
-        for (std::size_t other = start + 1; other < pieces.size(); ++other) {
-          if (!is_left[other] || boxes[piece].exteriorDistance(boxes[other]) > kJoined_m) continue;
-          is_left[other] = false;
-          members.push_back(other);
-        }
-      }
-      std::sort(group.begin(), group.end());
-    }
-    return joined;
+    return box.sizes().minCoeff() < kThin_m;
   }
 
   /// The chance that few rays hit the thing while it was there.
@@ -147,10 +107,6 @@ class Clustering {
   bool isSure(const ChangeGroup& cluster) const {
     const ChangeGroup around = groups_.withNear(cluster);
     return !isPermeable(cluster, around) && isShown(cluster, around, sparseHits(cluster, around));
-  }
-
-  bool isPossible(const ChangeGroup& cluster) const {
-    return cluster.size() >= kMinCluxels && isShown(cluster, groups_.withNear(cluster), kMostSparseHits);
   }
 
   /// Whether the rays of the time without the thing show that it is gone. With more `sparse_hits` they show no less.
@@ -214,10 +170,7 @@ CluxelChange changeOf(const RayFindings& before, const RayFindings& after) {
 
 std::vector<ChangeGroup> clustersOf(CluxelChange kind, const ChangedCluxels& all) {
   const Clustering clustering(kind, all);
-  std::vector<ChangeGroup> clusters = clustering.all(), joined = clustering.joined(clustering.pieces());
-  clusters.insert(clusters.end(), joined.begin(), joined.end());
-  std::sort(clusters.begin(), clusters.end());
-  return clustering.sureOf(std::move(clusters));
+  return clustering.sureOf(clustering.all());
 }
 
 std::vector<ChangeGroup> clustersAmong(std::vector<ChangeGroup> possible, CluxelChange kind,
@@ -227,15 +180,6 @@ std::vector<ChangeGroup> clustersAmong(std::vector<ChangeGroup> possible, Cluxel
 
 std::vector<ChangeGroup> possibleClusters(CluxelChange kind, const ChangedCluxels& all) {
   return Clustering(kind, all).possible();
-}
-
-std::vector<ChangeGroup> piecesOf(CluxelChange kind, const ChangedCluxels& all) {
-  return Clustering(kind, all).pieces();
-}
-
-std::vector<ChangeGroup> joinedPieces(const std::vector<ChangeGroup>& pieces, CluxelChange kind,
-                                      const ChangedCluxels& all) {
-  return Clustering(kind, all).joined(pieces);
 }
 
 }  // namespace cluxel::tasks

@@ -68,22 +68,13 @@ struct ChangedCluxels {
 ///   decided ones in and around it that lie at the height of its middle or higher, 90 % changed like it. Then all is
 ///   gone from there upwards, as of a hedge that was cut. What scans with poor poses miss is mostly an edge of
 ///   something that stays, and a gap in a crown has leaves beside it.
-/// Pieces (piecesOf) are judged together with those within 1 m.
 std::vector<ChangeGroup> clustersOf(CluxelChange kind, const ChangedCluxels& all);
 /// Those of the possible clusters that clustersOf() keeps. `all` need not hold more than these and what intersects
 /// them.
 std::vector<ChangeGroup> clustersAmong(std::vector<ChangeGroup> possible, CluxelChange kind, const ChangedCluxels& all);
 
-/// Connected clusters that are kept if rays hit the thing often enough while it was there. Only what rays found without
-/// it is read.
+/// Clusters that are kept if rays hit the thing often enough while it was there. Only what rays found without it is
+/// read.
 std::vector<ChangeGroup> possibleClusters(CluxelChange kind, const ChangedCluxels& all);
-
-/// Connected clusters of two or more cluxels that are gone as a whole, but are no possible clusters: what few rays of
-/// far scans reached of a car.
-std::vector<ChangeGroup> piecesOf(CluxelChange kind, const ChangedCluxels& all);
-/// Joins pieces that lie within 1 m of each other to possible clusters. `all` need not hold more than the pieces and
-/// what intersects them.
-std::vector<ChangeGroup> joinedPieces(const std::vector<ChangeGroup>& pieces, CluxelChange kind,
-                                      const ChangedCluxels& all);
 
 }  // namespace cluxel::tasks

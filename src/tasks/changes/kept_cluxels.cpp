@@ -30,22 +30,6 @@ std::uint32_t indexOf(std::uint32_t number, const std::vector<std::uint32_t>& as
   return static_cast<std::uint32_t>(std::lower_bound(ascending.begin(), ascending.end(), number) - ascending.begin());
 }
 
-std::vector<std::uint32_t> numbersOf(const ChangeGroup& group, const std::vector<std::uint32_t>& number) {
-  std::vector<std::uint32_t> numbers;
-  for (const std::uint32_t cluxel : group) numbers.push_back(number[cluxel]);
-  return numbers;
-}
-
-std::vector<ChangeGroup> groupsOf(const std::vector<std::vector<std::uint32_t>>& all,
-                                  const std::vector<std::uint32_t>& ascending) {
-  std::vector<ChangeGroup> groups;
-  for (const std::vector<std::uint32_t>& numbers : all) {
-    ChangeGroup& group = groups.emplace_back();
-    for (const std::uint32_t number : numbers) group.push_back(indexOf(number, ascending));
-  }
-  return groups;
-}
-
 }  // namespace
 
 void KeptCluxels::add(const mapping::MapRegion& region, const RegionFindings& found,
@@ -109,45 +93,34 @@ ChangedCluxels KeptCluxels::assembled(std::vector<Kept>& kept) {
   return all;
 }
 
-ChangedCluxels KeptCluxels::assembledWithFindings(std::vector<Kept>& kept) {
-  ChangedCluxels all = assembled(kept);
-  for (std::size_t i = 0; i < kept.size(); ++i)
-    (kept[i].change == CluxelChange::Vanished ? all.after : all.before)[i] = kept[i].gone;
-  return all;
-}
-
 void KeptCluxels::settle(const perception::TileSet& unread) {
-  const ChangedCluxels all = assembledWithFindings(open_);
-  std::vector<bool> reaches_unread(open_.size()), settles(open_.size()), is_open(open_.size());
+  ChangedCluxels all = assembled(open_);
   for (std::size_t i = 0; i < open_.size(); ++i)
-    reaches_unread[i] = std::any_of(open_[i].other_tiles.begin(), open_[i].other_tiles.end(),
-                                    [&](const perception::TileKey& tile) { return unread.contains(tile); });
-  std::vector<bool> stays = reaches_unread;
+    (open_[i].change == CluxelChange::Vanished ? all.after : all.before)[i] = open_[i].gone;
+  std::vector<bool> stays(open_.size()), settles(open_.size()), is_open(open_.size());
+  for (std::size_t i = 0; i < open_.size(); ++i)
+    stays[i] = std::any_of(open_[i].other_tiles.begin(), open_[i].other_tiles.end(),
+                           [&](const perception::TileKey& tile) { return unread.contains(tile); });
   const auto markNear = [&](const ChangeGroup& group, std::vector<bool>& marked) {
     for (const std::uint32_t cluxel : group) {
       marked[cluxel] = true;
       for (const std::uint32_t other : all.cluxels.neighbours(cluxel)) marked[other] = true;
     }
   };
+  const std::vector<bool> reaches_unread = stays;
   for (const ChangeGroup& group : hangingTogether(all)) {
     if (std::none_of(group.begin(), group.end(), [&](std::uint32_t i) { return reaches_unread[i]; })) continue;
     for (const std::uint32_t cluxel : group) is_open[cluxel] = true;
     markNear(group, stays);
   }
-  const auto settleAll = [&](const std::vector<ChangeGroup>& groups, std::vector<std::vector<std::uint32_t>>& settled) {
-    for (const ChangeGroup& group : groups)
-      if (!is_open[group.front()]) {
-        markNear(group, settles);
-        settled.push_back(numbersOf(group, all.number));
-      }
-  };
-  for (const std::size_t kind : {0U, 1U}) {
-    const std::size_t known = clusters_[kind].size();
-    settleAll(possibleClusters(kKinds[kind], all), clusters_[kind]);
-    for (std::size_t i = known; i < clusters_[kind].size(); ++i)
-      in_cluster_.insert(clusters_[kind][i].begin(), clusters_[kind][i].end());
-    settleAll(piecesOf(kKinds[kind], all), pieces_[kind]);
-  }
+  for (const std::size_t kind : {0U, 1U})
+    for (const ChangeGroup& cluster : possibleClusters(kKinds[kind], all)) {
+      if (is_open[cluster.front()]) continue;
+      markNear(cluster, settles);
+      std::vector<std::uint32_t>& numbers = clusters_[kind].emplace_back();
+      for (const std::uint32_t cluxel : cluster) numbers.push_back(all.number[cluxel]);
+      in_cluster_.insert(numbers.begin(), numbers.end());
+    }
   std::vector<Kept> open;
   for (std::size_t i = 0; i < open_.size(); ++i) {
     if (settles[i]) settled_.push_back(open_[i]);
@@ -157,17 +130,16 @@ void KeptCluxels::settle(const perception::TileSet& unread) {
 }
 
 KeptCluxels::Clusters KeptCluxels::take() {
-  Clusters all{assembledWithFindings(settled_), {}};
+  Clusters clusters{assembled(settled_), {}};
   for (const std::size_t kind : {0U, 1U}) {
-    const std::vector<ChangeGroup> pieces = groupsOf(std::exchange(pieces_[kind], {}), all.cluxels.number);
-    all.groups[kind] = groupsOf(std::exchange(clusters_[kind], {}), all.cluxels.number);
-    const std::vector<ChangeGroup> joined = joinedPieces(pieces, kKinds[kind], all.cluxels);
-    all.groups[kind].insert(all.groups[kind].end(), joined.begin(), joined.end());
-    std::sort(all.groups[kind].begin(), all.groups[kind].end());
+    for (const std::vector<std::uint32_t>& numbers : std::exchange(clusters_[kind], {})) {
+      ChangeGroup& group = clusters.groups[kind].emplace_back();
+      for (const std::uint32_t number : numbers) group.push_back(indexOf(number, clusters.cluxels.number));
+    }
+    std::sort(clusters.groups[kind].begin(), clusters.groups[kind].end());
   }
-  for (auto* found : {&all.cluxels.before, &all.cluxels.after}) found->assign(found->size(), {});
   settled_ = {}, open_ = {}, in_cluster_ = {};
-  return all;
+  return clusters;
 }
 
 }  // namespace cluxel::tasks

@@ -19,15 +19,15 @@ struct RegionFindings {
   std::vector<RayFindings> gone;  ///< of a changed one: all that the rays of the time without it found
 };
 
-/// Collects the possible clusters (possibleClusters, joinedPieces) of both kinds with the cluxels that intersect them.
-/// What is connected is settled as soon as no unread tile holds a cluxel that may belong to it.
+/// Collects the possible clusters (possibleClusters) of both kinds with the cluxels that intersect them. A cluster is
+/// settled as soon as no unread tile holds a cluxel that may belong to it.
 class KeptCluxels {
  public:
   /// Findings outside of the region's tiles are not read. `unread`: the tiles of regions that come later.
   void add(const mapping::MapRegion& region, const RegionFindings& found, const perception::TileSet& unread);
 
   enum class Fate : std::uint8_t { Open, InCluster, Dropped };
-  /// What became of a changed cluxel that was added, by its number in the map's scene. Pieces count as dropped.
+  /// What became of a changed cluxel that was added, by its number in the map's scene.
   Fate fateOf(std::uint32_t number) const;
 
   struct Clusters {
@@ -50,13 +50,11 @@ class KeptCluxels {
   };
   /// Sorts by number; of those with one number the first stays.
   static ChangedCluxels assembled(std::vector<Kept>& kept);
-  /// With what rays found of the time without what changed.
-  static ChangedCluxels assembledWithFindings(std::vector<Kept>& kept);
   void settle(const perception::TileSet& unread);
 
   std::vector<Kept> open_;     ///< what reaches to unread tiles, with what is near; ascending
-  std::vector<Kept> settled_;  ///< possible clusters and pieces, with what is near
-  std::array<std::vector<std::vector<std::uint32_t>>, 2> clusters_, pieces_;  ///< by numbers in the map's scene
+  std::vector<Kept> settled_;  ///< possible clusters, with what is near
+  std::array<std::vector<std::vector<std::uint32_t>>, 2> clusters_;  ///< by numbers in the map's scene
   std::unordered_set<std::uint32_t> in_cluster_;
 };
 

@@ -11,9 +11,9 @@ namespace cluxel::tasks {
 
 namespace {
 
-constexpr double kSlice_m = 0.1, kMinLength_m = 0.6, kMinHeight_m = 0.5;
-constexpr int kDirections = 36, kPeak = 2, kLeastBetween = 4, kMostBetween = 8;  ///< the last three in slices
-constexpr double kLowest = 0.15, kValley = 0.12, kSmallest = 0.2, kInSheets = 0.7;
+constexpr double kSlice_m = 0.1, kMinLength_m = 1, kMinHeight_m = 0.5;
+constexpr int kDirections = 36, kMostSlices = 3, kSlicesBetween = 2, kMostSlicesApart = 10;
+constexpr double kFull = 0.3, kSmallest = 0.2, kMostBetween = 0.15;
 constexpr std::size_t kMinCells = 12;
 
 /// The cells of a group in slices across a direction.
@@ -26,15 +26,6 @@ struct Slices {
     double sum = 0;
     for (const std::size_t count : cells) sum += static_cast<double>(count * count);
     return sum;
-  }
-
-  /// The cells of a slice, with half of those beside it.
-  double weight(int slice) const { return count(slice) + (count(slice - 1) + count(slice + 1)) / 2; }
-
- private:
-  double count(int slice) const {
-    const bool is_there = slice >= 0 && slice < static_cast<int>(cells.size());
-    return is_there ? static_cast<double>(cells[static_cast<std::size_t>(slice)]) : 0;
   }
 };
 
@@ -62,20 +53,35 @@ Slices mostCrowded(const std::vector<PointCell>& cells, const ChangeGroup& group
   return best;
 }
 
-/// Whether no slice near it weighs more; the first of several that weigh as much.
-bool isPeak(int slice, const Slices& slices) {
-  for (int other = slice - kPeak; other <= slice + kPeak; ++other)
-    if (slices.weight(other) > slices.weight(slice) - (other < slice ? 1e-9 : -1e-9)) return false;
-  return true;
+/// The first and last full slice of a sheet.
+struct Sheet {
+  int first = 0, last = 0;
+
+  int slicesTo(int slice) const { return std::max({first - slice, slice - last, 0}); }
+};
+
+std::vector<Sheet> sheetsIn(const Slices& slices) {
+  const double full = kFull * static_cast<double>(*std::max_element(slices.cells.begin(), slices.cells.end()));
+  std::vector<Sheet> sheets;
+  for (int slice = 0; slice < static_cast<int>(slices.cells.size()); ++slice) {
+    if (static_cast<double>(slices.cells[static_cast<std::size_t>(slice)]) < full) continue;
+    if (!sheets.empty() && slice - sheets.back().last <= kSlicesBetween)
+      sheets.back().last = slice;
+    else
+      sheets.push_back({slice, slice});
+  }
+  return sheets;
 }
 
-/// Whether the cells in a slice and beside it stand upright and are long enough for a thing of its own.
-bool isUpright(const ChangeGroup& group, const std::vector<PointCell>& cells, const Slices& slices, int slice) {
+/// Whether the cells in a sheet and in the slices beside it stand upright and are long enough for a thing of its own:
+/// longer than a wheel.
+bool isUpright(const ChangeGroup& group, const std::vector<PointCell>& cells, const Slices& slices,
+               const Sheet& sheet) {
   const Eigen::Vector2d lengthwise(-slices.across.y(), slices.across.x());
   Eigen::AlignedBox2d extent;  // along the sheet and in height
   std::size_t count = 0;
   for (std::size_t i = 0; i < group.size(); ++i) {
-    if (std::abs(slices.of_cell[i] - slice) > 1) continue;
+    if (sheet.slicesTo(slices.of_cell[i]) > 1) continue;
     const Eigen::Vector3d& place = cells[group[i]].place;
     extent.extend(Eigen::Vector2d(lengthwise.dot(place.head<2>()), place.z()));
     ++count;
@@ -83,45 +89,25 @@ bool isUpright(const ChangeGroup& group, const std::vector<PointCell>& cells, co
   return count >= kMinCells && extent.sizes().x() >= kMinLength_m && extent.sizes().y() >= kMinHeight_m;
 }
 
-bool isValleyBetween(int first, int second, const Slices& slices) {
-  const auto begin = slices.cells.begin();
-  const auto least = static_cast<double>(*std::min_element(begin + first, begin + second));
-  return least <= kValley * std::min(slices.weight(first), slices.weight(second));
-}
-
-/// The middle slices of sheets.
-std::vector<int> sheetsIn(const Slices& slices, const std::vector<PointCell>& cells, const ChangeGroup& group) {
-  const int count = static_cast<int>(slices.cells.size());
-  double most = 0;
-  for (int slice = 0; slice < count; ++slice) most = std::max(most, slices.weight(slice));
-  std::vector<int> sheets;
-  for (int slice = 0; slice < count; ++slice) {
-    if (slices.weight(slice) < kLowest * most || !isPeak(slice, slices) || !isUpright(group, cells, slices, slice))
-      continue;
-    if (sheets.empty() || isValleyBetween(sheets.back(), slice, slices))
-      sheets.push_back(slice);
-    else if (slices.weight(slice) > slices.weight(sheets.back()))
-      sheets.back() = slice;
-  }
-  return sheets;
-}
-
-/// Whether sheets stand so near to each other that they may touch, and most of the cells lie in them.
-bool areSideBySide(const std::vector<int>& sheets, const Slices& slices) {
+/// Whether sheets stand so near to each other that they may touch, and little lies between them.
+bool areCloseAndApart(const std::vector<Sheet>& sheets, const Slices& slices) {
   for (std::size_t i = 1; i < sheets.size(); ++i)
-    if (sheets[i] - sheets[i - 1] < kLeastBetween || sheets[i] - sheets[i - 1] > kMostBetween) return false;
-  const auto is_in_sheet = [&](int slice) {
-    return std::any_of(sheets.begin(), sheets.end(), [&](int sheet) { return std::abs(slice - sheet) <= 1; });
-  };
-  const auto in_sheets = std::count_if(slices.of_cell.begin(), slices.of_cell.end(), is_in_sheet);
-  return static_cast<double>(in_sheets) >= kInSheets * static_cast<double>(slices.of_cell.size());
+    if (sheets[i].first - sheets[i - 1].last > kMostSlicesApart) return false;
+  double between = 0;
+  for (std::size_t i = 0; i < slices.of_cell.size(); ++i)
+    between += std::all_of(sheets.begin(), sheets.end(),
+                           [&](const Sheet& sheet) { return sheet.slicesTo(slices.of_cell[i]) > 1; })
+                   ? 1
+                   : 0;
+  return between <= kMostBetween * static_cast<double>(slices.of_cell.size());
 }
 
-std::vector<ChangeGroup> splitBetween(const std::vector<int>& sheets, const Slices& slices, const ChangeGroup& group) {
+std::vector<ChangeGroup> splitBetween(const std::vector<Sheet>& sheets, const Slices& slices,
+                                      const ChangeGroup& group) {
   std::vector<ChangeGroup> parts(sheets.size());
   for (std::size_t i = 0; i < group.size(); ++i) {
-    const auto nearest = std::min_element(sheets.begin(), sheets.end(), [&](int a, int b) {
-      return std::abs(slices.of_cell[i] - a) < std::abs(slices.of_cell[i] - b);
+    const auto nearest = std::min_element(sheets.begin(), sheets.end(), [&](const Sheet& a, const Sheet& b) {
+      return a.slicesTo(slices.of_cell[i]) < b.slicesTo(slices.of_cell[i]);
     });
     parts[static_cast<std::size_t>(nearest - sheets.begin())].push_back(group[i]);
   }
@@ -145,8 +131,11 @@ bool isFoliage(const std::vector<PointCell>& cells, const ChangeGroup& group) {
 std::vector<ChangeGroup> sheetsOf(const std::vector<PointCell>& cells, const ChangeGroup& group) {
   if (group.size() < 2 * kMinCells || isFoliage(cells, group)) return {group};
   const Slices slices = mostCrowded(cells, group);
-  const std::vector<int> sheets = sheetsIn(slices, cells, group);
-  if (sheets.size() < 2 || !areSideBySide(sheets, slices)) return {group};
+  const std::vector<Sheet> sheets = sheetsIn(slices);
+  const bool are_thin = std::all_of(sheets.begin(), sheets.end(), [&](const Sheet& sheet) {
+    return sheet.last - sheet.first < kMostSlices && isUpright(group, cells, slices, sheet);
+  });
+  if (sheets.size() < 2 || !are_thin || !areCloseAndApart(sheets, slices)) return {group};
   std::vector<ChangeGroup> parts = splitBetween(sheets, slices, group);
   if (!areOfLikeSize(parts)) return {group};
   return parts;
