@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A map has some hundreds of predicates, so that a literal is looked up under each of them.
+// A map has about a hundred predicates, so that a literal is looked up under each of them.
 #include "rdf/store/literal_entries.hpp"
 
 #include <algorithm>

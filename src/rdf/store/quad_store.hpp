@@ -141,7 +141,7 @@ class QuadCursor {
 };
 
 /// Repeated prefix lookups in one index, as in an index nested loop join. Keeps its position, so that ascending
-/// prefixes are cheaper than random ones. Cost: about 0.1 us each when warm.
+/// prefixes are cheaper than random ones. Cost: about 0.1 us each when warm; some 10 us for a literal in Ospg.
 class PrefixLookup {
  public:
   struct Impl;
