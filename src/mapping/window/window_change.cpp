@@ -27,7 +27,7 @@ class WindowComparison {
     markOpen();
     findGone();
     markDirty();
-    markOpenDirty();
+    markUnclear();
     return std::move(result_);
   }
 
@@ -66,23 +66,32 @@ class WindowComparison {
         for (const PrimitiveIndex primitive : here->second) result_.is_dirty[primitive] = 1;
   }
 
-  /// The window lacks edges of open primitives, and cut ones have names of their own: their hashes tell nothing. They
-  /// count as dirty where something in or beside them changed; then the window has to grow.
-  void markOpenDirty() {
+  /// The window lacks edges of open primitives, cut ones have names of their own, and what is related to these has
+  /// other relations: their hashes tell nothing. They count as dirty where something in or beside them changed; then
+  /// the window has to grow where they are open.
+  void markUnclear() {
     const std::set<PrimitiveIndex> parted = partedByChange();
-    for (PrimitiveIndex i = 0; i < scene().primitives.size(); ++i)
-      if (result_.is_open[i] != 0)
-        result_.is_dirty[i] = isInChangedTile(i) || parted.contains(i) || isNearGone(i) ? 1 : 0;
-    std::vector<PrimitiveIndex> beside;
+    std::vector<PrimitiveIndex> clean;
     for (PrimitiveIndex i = 0; i < scene().primitives.size(); ++i) {
-      if (result_.is_open[i] == 0 || result_.is_dirty[i] != 0) continue;
-      const auto relations = scene().relationsOf(i);
-      if (std::any_of(relations.begin(), relations.end(), [&](const perception::Relation& relation) {
-            return relation.to != i && result_.is_dirty[relation.to] != 0;
-          }))
-        beside.push_back(i);
+      const bool is_open = result_.is_open[i] != 0;
+      if (!is_open && !isBesideCut(i)) continue;
+      const bool is_new = !is_open && !window_.known.contains(scene().primitives[i].id);
+      result_.is_dirty[i] = is_new || isInChangedTile(i) || parted.contains(i) || isNearGone(i) ? 1 : 0;
+      if (result_.is_dirty[i] == 0) clean.push_back(i);
     }
-    for (const PrimitiveIndex i : beside) result_.is_dirty[i] = 1;
+    std::erase_if(clean, [&](PrimitiveIndex i) {
+      const auto relations = scene().relationsOf(i);
+      return std::none_of(relations.begin(), relations.end(), [&](const perception::Relation& relation) {
+        return relation.to != i && result_.is_dirty[relation.to] != 0;
+      });
+    });
+    for (const PrimitiveIndex i : clean) result_.is_dirty[i] = 1;
+  }
+
+  bool isBesideCut(PrimitiveIndex primitive) const {
+    const auto relations = scene().relationsOf(primitive);
+    return std::any_of(relations.begin(), relations.end(),
+                       [&](const perception::Relation& relation) { return window_.is_cut[relation.to] != 0; });
   }
 
   bool isInChangedTile(PrimitiveIndex primitive) const {
