@@ -164,7 +164,7 @@ class StreetChanges {
  private:
   fs::path map() const { return folder_.path() / "map.clx"; }
   std::size_t below(std::size_t count) { return static_cast<std::size_t>(random_() % count); }
-  ChangeParams params() { return {.threads = 1 + static_cast<unsigned>(below(2)), .max_window_share = 1}; }
+  ChangeParams params() { return {.threads = 1 + static_cast<unsigned>(below(2)), .max_window_share = 2}; }
   std::vector<ContentHash> statements() const {
     std::vector<ContentHash> ids;
     for (const Statement& statement : storedStatements(MapReader(map()).quads())) ids.push_back(statement.id());
@@ -249,7 +249,7 @@ TEST(WindowUpdate, TakesTheGroundOfAnAreaThatLosesItsOnlyScan) {
   const fs::path map = folder.path() / "map.clx", fresh = folder.path() / "fresh.clx";
   const std::size_t alone = scans.size() - 1;  // some 110 m from the others
   buildMap(scans.at({{0, 0}, {1, 0}, {2, 0}, {alone, 0}}, folder.path()), shippedInputs(), map, {}, silence());
-  retractScans(map, {scans.idOf(alone)}, {.max_window_share = 1}, silence());
+  retractScans(map, {scans.idOf(alone)}, {.max_window_share = 2}, silence());
   buildMap(scans.at({{0, 0}, {1, 0}, {2, 0}}, folder.path()), shippedInputs(), fresh, {}, silence());
   EXPECT_TRUE(canonicalText(map) == canonicalText(fresh));
   EXPECT_THAT(differingTables(map, fresh), testing::IsEmpty());

@@ -32,7 +32,8 @@ namespace {
 using perception::TileKey;
 using perception::TileSet;
 
-constexpr int kRings = 1;  ///< of tiles around the changed ones that a window holds at least
+constexpr int kRings = 1;             ///< of tiles around the changed ones that a window holds at least
+constexpr double kUsualGrowth = 1.4;  ///< of a window from the first attempt to the last, at least
 /// The number of layers around a change that have to lie in the window; more where that is not enough.
 constexpr std::array<std::uint32_t, 4> kDepths{5, 8, 13, 21};
 constexpr std::size_t kMaxAttempts = 40;
@@ -109,8 +110,9 @@ class LocalUpdate {
     for (std::size_t attempt = 0, depth = 0;
          attempt < kMaxAttempts && depth < kDepths.size() && !statements.needsWholeMap(); ++attempt) {
       changes_.tiles.insert(statements.tiles().begin(), statements.tiles().end());
+      const double growth = attempt == 0 ? kUsualGrowth : 1;
       const std::optional<MapWindow> window =
-          windowAround(transaction_, stages_, changes_, more, kRings, clouds_, params_.max_window_share);
+          windowAround(transaction_, stages_, changes_, more, kRings, clouds_, params_.max_window_share / growth);
       if (!window) return std::nullopt;
       const WindowChange change =
           changeIn(*window, changes_, perception::unionOf(statements.tiles(), decided_otherwise_), *reach_m);
@@ -123,6 +125,7 @@ class LocalUpdate {
       rules::LocalRun rules_run(input, parsed_.rules, context, *reach_m);
       const TileSet beyond = tilesBeyond(*window, change, changes_, transaction_, rules_run.layers(), kDepths[depth]);
       more = perception::unionOf(std::move(more), attempt < kNarrowAttempts ? beyond : perception::grown(beyond));
+      if (attempt == 0 && willBeTooLarge(window->tiles, beyond)) return std::nullopt;
       if (!beyond.empty()) continue;
       sink_.progress("scene", window->scene.primitives.size(), window->scene.primitives.size());
       auto decision = decideIn(*window, change, transaction_, rules_run);
@@ -148,6 +151,12 @@ class LocalUpdate {
     if (!now_.statements.empty())
       update.statements = toldOutcomes(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction_)));
     return update;
+  }
+
+  /// A window that ends up too large is built for nothing. As many tiles follow as the first attempt asks for.
+  bool willBeTooLarge(const TileSet& window, const TileSet& beyond) const {
+    return static_cast<double>(window.size() + 2 * beyond.size()) >
+           params_.max_window_share * static_cast<double>(storedTiles(transaction_).size());
   }
 
   /// Facts about presence are told of objects when two clouds or more have a time and a pose.

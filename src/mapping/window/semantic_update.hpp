@@ -33,8 +33,9 @@ enum class ChangedInputs : std::uint8_t {
 };
 
 struct UpdateParams {
-  unsigned threads = 1;           ///< the result is the same for every number
-  double max_window_share = 0.6;  ///< of the tiles: what needs a larger window is computed over the whole map
+  unsigned threads = 1;  ///< the result is the same for every number
+  /// Of the tiles: what is expected to need a larger window is computed over the whole map. 2: nothing is.
+  double max_window_share = 0.6;
 };
 
 /// Takes the changes of `stages`. Stores everything but inputs and history.
