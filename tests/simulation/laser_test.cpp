@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <vector>
 
 #include "cluxel/error.hpp"
 #include "simulation/campus_fixture.hpp"
@@ -65,6 +66,14 @@ TEST(Laser, SeesTheNearestOfSeveralSurfaces) {
   EXPECT_EQ(hit->mesh, 1U);
   EXPECT_NEAR(hit->range_m, 3, 1e-6);
   EXPECT_FALSE(Laser(campus).cast(Vector3d::Zero(), -Vector3d::UnitX()));
+}
+
+/// A campus of several visits has one for each object of each visit. Embree starts some 1000 devices.
+TEST(Laser, MoreOfThemThanEmbreeHasDevicesWorkAtOnce) {
+  const Campus campus = room(smallCampus(1), 6);
+  std::vector<Laser> lasers;
+  for (int i = 0; i < 1100; ++i) lasers.emplace_back(campus);
+  for (const Laser& laser : lasers) ASSERT_TRUE(laser.cast(Vector3d::Zero(), Vector3d::UnitX()));
 }
 
 TEST(Laser, RefusesAStopThatIsNotThere) {

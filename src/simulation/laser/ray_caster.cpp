@@ -7,6 +7,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <type_traits>
 
@@ -23,11 +25,28 @@ struct DeviceDeleter {
 struct SceneDeleter {
   void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
 };
-using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceDeleter>;
+using Device = std::shared_ptr<std::remove_pointer_t<RTCDevice>>;
 using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneDeleter>;
 
 /// One building thread and one instruction set: the same tree on every machine and in every run.
 constexpr const char* kDeviceConfig = "threads=1,isa=sse4.2";
+
+/// All scenes share one device, as long as there are any: Embree starts no more than some 1000, as each takes one of
+/// the keys that a process has for data of its threads.
+Device sharedDevice() {
+  static std::mutex mutex;
+  static std::weak_ptr<Device::element_type> shared;
+  const std::scoped_lock lock(mutex);
+  if (Device device = shared.lock()) return device;
+  const RTCDevice made = rtcNewDevice(kDeviceConfig);
+  if (made == nullptr)
+    throw Error(ErrorKind::StoreUnavailable,
+                "Embree, which casts the laser's rays, does not start (its error code is " +
+                    std::to_string(rtcGetDeviceError(nullptr)) + "): it needs a processor with SSE 4.2");
+  Device device(made, DeviceDeleter());
+  shared = device;
+  return device;
+}
 
 void attach(RTCDevice device, RTCScene scene, const CampusMesh& mesh, unsigned number) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -82,11 +101,7 @@ struct RayCaster::Embree {
 };
 
 RayCaster::RayCaster(const Campus& campus) : embree_(std::make_unique<Embree>()), campus_(campus) {
-  embree_->device.reset(rtcNewDevice(kDeviceConfig));
-  if (!embree_->device)
-    throw Error(ErrorKind::StoreUnavailable,
-                "Embree, which casts the laser's rays, does not start (its error code is " +
-                    std::to_string(rtcGetDeviceError(nullptr)) + "): it needs a processor with SSE 4.2");
+  embree_->device = sharedDevice();
   RTCDevice device = embree_->device.get();
   embree_->scene.reset(rtcNewScene(device));
   rtcSetSceneFlags(embree_->scene.get(), RTC_SCENE_FLAG_ROBUST);
