@@ -28,10 +28,10 @@ namespace cluxel::mapping {
 /// program are then refused instead of mixed.
 inline constexpr std::uint32_t kStagesVersion = 16;
 
-/// An authored file as stored in a map.
 /// The name of a file relative to a folder; of a file outside of it the last part.
 std::filesystem::path nameWithin(const std::filesystem::path& folder, const std::filesystem::path& file);
 
+/// An authored file as stored in a map.
 struct NamedText {
   std::string name;  ///< file name, for messages
   std::string text;

@@ -47,12 +47,6 @@ void addRegions(TileIterator first, TileIterator last, std::size_t max_cluxels, 
   addRegions(middle, last, max_cluxels, regions);
 }
 
-TileSet without(const TileSet& tiles, const TileSet& others) {
-  TileSet rest;
-  std::set_difference(tiles.begin(), tiles.end(), others.begin(), others.end(), std::inserter(rest, rest.end()));
-  return rest;
-}
-
 [[noreturn]] void failUnfit() {
   throw Error(ErrorKind::StoreUnavailable,
               "stored tiles and what was decided about them do not belong together; the map is damaged, build it anew");

@@ -52,11 +52,6 @@ class StageTiles {
   std::array<Changes, kStageCount> stages_;
 };
 
-inline TileSet without(TileSet tiles, const TileSet& others) {
-  for (const TileKey& key : others) tiles.erase(key);
-  return tiles;
-}
-
 inline TileSet commonOf(const TileSet& a, const TileSet& b) {
   TileSet common;
   std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::inserter(common, common.end()));

@@ -87,6 +87,11 @@ inline TileSet unionOf(TileSet a, const TileSet& b) {
   return a;
 }
 
+inline TileSet without(TileSet tiles, const TileSet& others) {
+  for (const TileKey& key : others) tiles.erase(key);
+  return tiles;
+}
+
 /// A cluxel relative to a tile: the position of its tile in the ring, and its number in that tile.
 struct RingIndex {
   std::uint32_t ring : 4 = kRingCentre;

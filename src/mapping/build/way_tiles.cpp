@@ -134,10 +134,7 @@ class WayUpdate {
 
   void store(std::string_view table, const Bytes& outputs, TileSet& changed) {
     for (const auto& [tile, bytes] : outputs) {
-      const std::string key = tables::keyOf(tile);
-      if (const auto old = transaction_.block(table, key); old && *old == bytes) continue;
-      transaction_.putBlock(table, key, bytes);
-      changed.insert(tile);
+      if (transaction_.putIfDifferent(table, tables::keyOf(tile), bytes)) changed.insert(tile);
     }
   }
 

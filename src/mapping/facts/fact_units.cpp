@@ -70,9 +70,7 @@ std::vector<FactUnitKey> storedFactUnitKeys(const rdf::ReadTransaction& transact
 }
 
 void storeFactUnit(rdf::WriteTransaction& transaction, const FactUnit& unit) {
-  const std::string key = keyOf(unit.key), bytes = bytesOf(unit);
-  if (const auto old = transaction.block(tables::kFactUnits, key); old && *old == bytes) return;
-  transaction.putBlock(tables::kFactUnits, key, bytes);
+  transaction.putIfDifferent(tables::kFactUnits, keyOf(unit.key), bytesOf(unit));
 }
 
 void eraseFactUnit(rdf::WriteTransaction& transaction, const FactUnitKey& key) {

@@ -106,12 +106,6 @@ class LayerMaker {
   std::vector<std::uint32_t> part_of_;  ///< by cluxel; kNoShare: none
 };
 
-void putIfChanged(rdf::WriteTransaction& transaction, std::string_view table, const std::string& key,
-                  const std::string& bytes) {
-  if (const auto old = transaction.block(table, key); old && *old == bytes) return;
-  transaction.putBlock(table, key, bytes);
-}
-
 LayerBlocks blocksOf(const SceneLayers& layers, const std::map<TileKey, Run>& runs, unsigned threads) {
   const LayerMaker maker(layers);
   LayerBlocks blocks;
@@ -146,7 +140,7 @@ class LayerUpdate {
       return;
     }
     for (const ContentHash& object : block->second.objects) tiles_of_[object].insert(tile);
-    putIfChanged(transaction_, tables::kTileLayers, key, block->second.bytes);
+    transaction_.putIfDifferent(tables::kTileLayers, key, block->second.bytes);
   }
 
   void writeRecord(const ContentHash& object, const TileSet& now_in, const TileSet& written) {
@@ -161,7 +155,7 @@ class LayerUpdate {
     if (all.empty())
       transaction_.eraseBlock(tables::kObjects, key);
     else
-      putIfChanged(transaction_, tables::kObjects, key, toBytes(record));
+      transaction_.putIfDifferent(tables::kObjects, key, toBytes(record));
   }
 
   /// What the scene's objects say, or what was stored of an object that is none of them.

@@ -45,9 +45,7 @@ TileMargin marginFrom(std::string_view bytes) {
 }
 
 void put(rdf::WriteTransaction& transaction, const TileKey& tile, const TileMargin& margin) {
-  const std::string key = tables::keyOf(tile), bytes = toBytes(tile, margin);
-  if (const auto old = transaction.block(tables::kMargins, key); old && *old == bytes) return;
-  transaction.putBlock(tables::kMargins, key, bytes);
+  transaction.putIfDifferent(tables::kMargins, tables::keyOf(tile), toBytes(tile, margin));
 }
 
 /// What both allow.
@@ -97,9 +95,7 @@ void storeMargins(rdf::WriteTransaction& transaction, const rules::TileMargins& 
   });
   for (const std::string& key : left) transaction.eraseBlock(tables::kMargins, key);
   for (const auto& [tile, of_tile] : margins) put(transaction, tile, of_tile);
-  const std::string structure = tables::keyOf(rules.structure);
-  if (transaction.block(tables::kMeta, kStructureKey) != structure)
-    transaction.putBlock(tables::kMeta, kStructureKey, structure);
+  transaction.putIfDifferent(tables::kMeta, kStructureKey, tables::keyOf(rules.structure));
   storeNumbers(transaction, rules);
 }
 
@@ -108,7 +104,7 @@ void storeNumbers(rdf::WriteTransaction& transaction, const rules::RuleSet& rule
   std::string bytes(sizeof(double) + numbers.constants.size() * sizeof(std::uint64_t), '\0');
   std::memcpy(bytes.data(), &numbers.reach_m, sizeof(double));
   std::memcpy(bytes.data() + sizeof(double), numbers.constants.data(), bytes.size() - sizeof(double));
-  if (transaction.block(tables::kMeta, kNumbersKey) != bytes) transaction.putBlock(tables::kMeta, kNumbersKey, bytes);
+  transaction.putIfDifferent(tables::kMeta, kNumbersKey, bytes);
 }
 
 void updateMargins(rdf::WriteTransaction& transaction, const rules::TileMargins& margins, const TileSet& tiles,

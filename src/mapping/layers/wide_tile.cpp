@@ -136,9 +136,7 @@ void replaceWideTiles(rdf::WriteTransaction& transaction, const std::vector<Wide
   perception::TileSet empty = tiles;
   for (const WideTile& tile : wide) {
     empty.erase(tile.key);
-    const std::string key = tables::keyOf(tile.key), bytes = toBytes(tile);
-    if (const auto old = transaction.block(tables::kWideTiles, key); old && *old == bytes) continue;
-    transaction.putBlock(tables::kWideTiles, key, bytes);
+    transaction.putIfDifferent(tables::kWideTiles, tables::keyOf(tile.key), toBytes(tile));
   }
   for (const TileKey& tile : empty) transaction.eraseBlock(tables::kWideTiles, tables::keyOf(tile));
 }

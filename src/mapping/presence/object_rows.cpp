@@ -11,9 +11,7 @@ namespace cluxel::mapping {
 
 void putRow(rdf::WriteTransaction& transaction, std::string_view table, const ContentHash& object,
             std::string_view bytes) {
-  const std::string key = tables::keyOf(object);
-  if (const auto old = transaction.block(table, key); old && *old == bytes) return;
-  transaction.putBlock(table, key, bytes);
+  transaction.putIfDifferent(table, tables::keyOf(object), bytes);
 }
 
 void copyRows(rdf::WriteTransaction& transaction, std::string_view table, const rdf::ReadTransaction& other) {

@@ -54,9 +54,7 @@ class LayerWriting {
       transaction_.eraseBlock(tables::kTileLayers, key);
       return;
     }
-    const std::string bytes = toBytes(layerOf(tile, first->second));
-    if (const auto old = transaction_.block(tables::kTileLayers, key); old && *old == bytes) return;
-    transaction_.putBlock(tables::kTileLayers, key, bytes);
+    transaction_.putIfDifferent(tables::kTileLayers, key, toBytes(layerOf(tile, first->second)));
   }
 
   TileLayer layerOf(const TileKey& tile, std::uint32_t first) {

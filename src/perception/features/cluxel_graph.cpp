@@ -57,13 +57,12 @@ class VolumeCells {
  public:
   explicit VolumeCells(const RingCluxels& cluxels) {
     Volume hull = emptyVolume();
-    float min_size = std::numeric_limits<float>::infinity(), largest = 0;
+    float largest = 0;
     double sum = 0;
     for (const auto& volume : cluxels.volume) {
       if (volume.isEmpty()) continue;
       extend(hull, volume);
       const float size = (volume.high - volume.low).maxCoeff();
-      min_size = std::min(min_size, size);
       largest = std::max(largest, size);
       sum += size;
     }

@@ -109,6 +109,12 @@ void WriteTransaction::putBlock(std::string_view table, std::string_view key, st
   impl_->directories->noteBlock(bytes.size());
 }
 
+bool WriteTransaction::putIfDifferent(std::string_view table, std::string_view key, std::string_view bytes) {
+  if (block(table, key) == bytes) return false;
+  putBlock(table, key, bytes);
+  return true;
+}
+
 bool WriteTransaction::eraseBlock(std::string_view table, std::string_view key) {
   const std::string full = fullKey(table, key);
   MDB_val stored_key = toVal(full);

@@ -17,12 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-CursorHandle cursorOn(const ReadTransaction::Impl& state, Table table, const char* doing) {
-  MDB_cursor* raw = nullptr;
-  state.check(mdb_cursor_open(state.live(), state.table(table), &raw), doing);
-  return CursorHandle(raw);
-}
-
 /// Commits now and then: LMDB keeps what a transaction has written in memory.
 class CopyTarget {
  public:
@@ -42,7 +36,7 @@ class CopyTarget {
       transaction_.emplace(to_.write());
       written_ = 0;
     }
-    if (!cursor_ || table != table_) cursor_ = cursorOn(impl(), table_ = table, "write a table");
+    if (!cursor_ || table != table_) cursor_ = impl().cursorOn(table_ = table, "write a table");
     written_ += bytes;
     return cursor_.get();
   }
@@ -58,7 +52,7 @@ class CopyTarget {
 };
 
 void copyTable(const ReadTransaction::Impl& from, CopyTarget& to, Table table) {
-  const CursorHandle source = cursorOn(from, table, "read a table");
+  const CursorHandle source = from.cursorOn(table, "read a table");
   MDB_val key;
   MDB_val value;
   int code = mdb_cursor_get(source.get(), &key, &value, MDB_FIRST);
@@ -71,7 +65,7 @@ void copyTable(const ReadTransaction::Impl& from, CopyTarget& to, Table table) {
 }
 
 void copyIndex(const ReadTransaction::Impl& from, CopyTarget& to, Table index) {
-  const CursorHandle source = cursorOn(from, index, "read an index");
+  const CursorHandle source = from.cursorOn(index, "read an index");
   const PageDirectory pages(source.get());
   for (std::size_t i = 0; i < pages.pageCount(); ++i) {
     const auto keys = pages.page(i);

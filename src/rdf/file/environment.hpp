@@ -57,6 +57,8 @@ class WriteTransaction : public ReadTransaction {
  public:
   using ReadTransaction::ReadTransaction;
   void putBlock(std::string_view table, std::string_view key, std::string_view bytes);
+  /// False when the block holds these bytes already; then nothing is written.
+  bool putIfDifferent(std::string_view table, std::string_view key, std::string_view bytes);
   bool eraseBlock(std::string_view table, std::string_view key);  ///< false when the block does not exist
   /// How many threads may sort and merge what is written; the outcome is the same. One, unless it is told.
   void useThreads(unsigned threads);

@@ -13,6 +13,7 @@
 #include "rdf/file/lmdb_handles.hpp"
 #include "rdf/file/map_check.hpp"
 #include "rdf/file/store_sums.hpp"
+#include "rdf/file/table.hpp"
 #include "rdf/store/quad_journal.hpp"
 
 namespace cluxel::rdf {
@@ -21,12 +22,6 @@ class IndexDirectories;
 class IndexDraft;
 class StoreSnapshot;
 class ValueCache;
-
-/// The LMDB databases of a map file. An index is one constant key with sorted 16-byte values.
-enum class Table : std::uint8_t { Blocks, Terms, TermHashes, Spog, Posg, Ospg, Gspo };
-inline constexpr std::size_t kTableCount = 7;
-inline constexpr std::array<const char*, kTableCount> kTableNames = {"blocks", "terms", "hashes", "spog",
-                                                                     "posg",   "ospg",  "gspo"};
 
 /// The first format has no sums of quads and terms; the next commit adds them, which makes it the second. Up to the
 /// third one, the index by object holds literals.
@@ -138,6 +133,8 @@ struct ReadTransaction::Impl {
   MDB_dbi table(Table which) const { return environment->table(which); }
   IndexDraft* draftOf(Table index) const { return drafts[static_cast<std::size_t>(index)].get(); }
   void check(int code, std::string_view doing) const { environment->check(code, doing); }
+  /// `doing` is for the error, as in check().
+  CursorHandle cursorOn(Table which, std::string_view doing) const;
   MDB_txn* live() const;  ///< throws when the transaction has ended
   void end();
 };

@@ -11,12 +11,11 @@
 #include <vector>
 
 #include "rdf/file/page_directory.hpp"
+#include "rdf/file/table.hpp"
 #include "rdf/store/quad_store.hpp"
 #include "rdf/terms/term_record.hpp"
 
 namespace cluxel::rdf {
-
-enum class Table : std::uint8_t;
 
 /// A folded product of both halves: any changed bit changes about half of the result.
 inline std::uint64_t hashOfKey(Key128 key) {

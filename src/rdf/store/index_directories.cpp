@@ -22,12 +22,6 @@ std::size_t numberOf(Table index) {
   return static_cast<std::size_t>(index);
 }
 
-CursorHandle cursorOn(Table index, const ReadTransaction::Impl& transaction) {
-  MDB_cursor* raw = nullptr;
-  transaction.check(mdb_cursor_open(transaction.live(), transaction.table(index), &raw), "read an index");
-  return CursorHandle(raw);
-}
-
 }  // namespace
 
 void IndexDirectories::startFrom(std::shared_ptr<StoreSnapshot> committed) {
@@ -49,7 +43,7 @@ std::shared_ptr<const PageDirectory> IndexDirectories::of(Table index, const Tra
   else if (committed_ && entry.is_committed)
     entry.directory = committed_->sharedDirectory(index, transaction);
   else
-    entry.directory = std::make_shared<const PageDirectory>(cursorOn(index, transaction).get());
+    entry.directory = std::make_shared<const PageDirectory>(transaction.cursorOn(index, "read an index").get());
   return entry.directory;
 }
 
@@ -63,7 +57,8 @@ void IndexDirectories::noteKeys(Table index, const Transaction& transaction, std
   std::vector<Key128> changed;
   changed.reserve(added.size() + removed.size());
   std::merge(added.begin(), added.end(), removed.begin(), removed.end(), std::back_inserter(changed));
-  auto updated = updatedDirectory(*entry.directory, changed, committed_->map(), cursorOn(index, transaction).get());
+  auto updated = updatedDirectory(*entry.directory, changed, committed_->map(),
+                                  transaction.cursorOn(index, "read an index").get());
   if (!updated) return noteRewritten(index, changed.size());
   entry.directory = std::make_shared<const PageDirectory>(std::move(updated->directory));
   entry.dirty_pages = updated->dirty_pages;

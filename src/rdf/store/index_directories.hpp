@@ -8,12 +8,11 @@
 #include <span>
 
 #include "rdf/file/page_directory.hpp"
+#include "rdf/file/table.hpp"
 
 namespace cluxel::rdf {
 
 class StoreSnapshot;
-enum class Table : std::uint8_t;
-
 /// A directory is that of the commit before until its index changes, and then follows the changes. Each call belongs to
 /// the transaction that owns this.
 class IndexDirectories {
@@ -42,12 +41,11 @@ class IndexDirectories {
     bool is_committed = true;                        ///< the index is as it was before the transaction
     std::uint64_t dirty_pages = 0;                   ///< leaf pages that the transaction wrote
   };
-  static constexpr std::size_t kTables = 7;
 
   bool mayMovePages() const;
 
   std::shared_ptr<StoreSnapshot> committed_;
-  std::array<Entry, kTables> entries_;
+  std::array<Entry, kTableCount> entries_;
   std::uint64_t other_pages_ = 0;  ///< written at most, outside of indexes whose directories are known
 };
 

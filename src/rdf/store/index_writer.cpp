@@ -41,11 +41,8 @@ class EntryPoll {
 /// A write cursor on one index.
 class IndexCursor {
  public:
-  IndexCursor(ReadTransaction::Impl& transaction, Table index) : transaction_(transaction) {
-    MDB_cursor* raw = nullptr;
-    transaction.check(mdb_cursor_open(transaction.live(), transaction.table(index), &raw), "write an index");
-    cursor_.reset(raw);
-  }
+  IndexCursor(ReadTransaction::Impl& transaction, Table index)
+      : transaction_(transaction), cursor_(transaction.cursorOn(index, "write an index")) {}
 
   /// Keys beyond the last one, ascending.
   void append(std::span<const Key128> numbers, EntryPoll& poll) {

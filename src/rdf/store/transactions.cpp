@@ -214,6 +214,12 @@ MDB_txn* ReadTransaction::Impl::live() const {
   return txn;
 }
 
+CursorHandle ReadTransaction::Impl::cursorOn(Table which, std::string_view doing) const {
+  MDB_cursor* raw = nullptr;
+  check(mdb_cursor_open(live(), table(which), &raw), doing);
+  return CursorHandle(raw);
+}
+
 void WriteTransaction::useThreads(unsigned threads) {
   impl().threads = threads;
 }
