@@ -9,7 +9,6 @@
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "rules/decide/threshold_margins.hpp"
-#include "rules/objects/seed_links.hpp"
 #include "rules/propose/condition_eval.hpp"
 
 namespace cluxel::rules {
@@ -213,11 +212,11 @@ void SliceScope::putBack() {
 }
 
 std::vector<std::vector<FragmentIndex>> seedGroups(ReasoningState& state, const Rule& rule,
-                                                   const std::vector<FragmentIndex>& slices) {
+                                                   const std::vector<FragmentIndex>& slices, KnownLinks* known) {
   const std::vector<FragmentIndex> pool = members(state, rule, slices);
   std::vector<std::vector<FragmentIndex>> groups;
   if (rule.group)
-    groups = Joining(state, rule, pool).groups(seedLinks(state, *rule.group, pool));
+    groups = Joining(state, rule, pool).groups(seedLinks(state, *rule.group, pool, known));
   else
     for (FragmentIndex fragment : pool) groups.push_back({fragment});
   std::erase_if(groups, [&](const auto& group) {
