@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Multi-source Dijkstra: all trunks are sources, the vertices are the cluxels of the crown. Trunks that cannot take a
-// common cluxel are searched from apart; from a trunk alone, what it reaches is all that matters. A jump is mostly
-// longer than the path along the edges: long jumps are looked for late, when most of their ends are settled.
+// common cluxel are searched from apart; from a trunk alone, what it reaches is all that matters.
 #include "rules/objects/crown_splitting.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <deque>
 #include <limits>
+#include <utility>
 
 #include "base/parallel.hpp"
 #include "rules/objects/crown_groups.hpp"
@@ -21,7 +19,6 @@ namespace cluxel::rules {
 
 namespace {
 
-constexpr double kJumpPenalty = 2.0;
 constexpr double kTop_m = 0.5;
 constexpr double kRounding_m = 1e-6;  // half diagonals are rounded to floats
 
@@ -66,16 +63,15 @@ class GroupSearch {
 
   /// Edges first: what they reach needs no jump.
   void flood() {
-    std::deque<Departure>& jumps = rings_.front();
     while (true) {
       if (!reached_.empty()) {
         const std::uint32_t at = reached_.back();
         reached_.pop_back();
         settle(at);
-      } else if (!jumps.empty()) {
-        const Departure departure = jumps.back();
-        jumps.pop_back();
-        jumpFrom(departure, kRings_m.size() - 1);
+      } else if (!departures_.empty()) {
+        const auto [cluxel, way] = departures_.back();
+        departures_.pop_back();
+        jumpFrom(cluxel, way);
       } else {
         return;
       }
@@ -83,39 +79,18 @@ class GroupSearch {
   }
 
   void search() {
-    while (true) {
-      std::deque<Departure>* jumps = nextJumps();
-      const OpenVertex* next = open_.top(best_);
-      // Of equal lengths the jumps come first: they may lead to the vertex that would be settled.
-      if (jumps != nullptr && (next == nullptr || jumps->front().ready_m <= next->way.length)) {
-        const Departure departure = jumps->front();
-        jumps->pop_front();
-        jumpFrom(departure, static_cast<std::size_t>(jumps - rings_.data()));
-      } else if (next != nullptr) {
-        const std::uint32_t at = next->at;
-        open_.pop();
-        settle(at);
-      } else {
-        return;
-      }
+    while (const OpenVertex* next = open_.top(best_)) {
+      const std::uint32_t at = next->at;
+      open_.pop();
+      settle(at);
     }
   }
-
-  /// A cluxel from which jumps of one ring of distances are not looked for yet.
-  struct Departure {
-    double ready_m = 0;  ///< no shorter path leads over such a jump
-    std::uint32_t cluxel = 0;
-    Way way;
-  };
-  /// The smallest distance of the jumps of each ring [m]; a ring ends where the next begins.
-  static constexpr std::array<double, 2> kRings_m{0, 0.4};
 
   static std::vector<JumpGrid::Entry> entriesOf(const perception::SceneCluxels& all,
                                                 const std::vector<std::uint32_t>& cluxels) {
     std::vector<JumpGrid::Entry> entries;
     entries.reserve(cluxels.size());
-    for (std::uint32_t i = 0; i < cluxels.size(); ++i)
-      entries.push_back({all.center[cluxels[i]], static_cast<double>(all.extent[cluxels[i]].norm()) / 2, i});
+    for (const std::uint32_t cluxel : cluxels) entries.push_back({all.center[cluxel], all.extent[cluxel].norm() / 2});
     return entries;
   }
 
@@ -123,14 +98,6 @@ class GroupSearch {
     double longest = 0;
     for (const std::uint32_t source : group_.sources) longest = std::max(longest, parts_.sources[source].jump_m);
     return longest;
-  }
-
-  /// The ring with the shortest path that is ready; null when there is none. Paths enter a ring in ascending order.
-  std::deque<Departure>* nextJumps() {
-    std::deque<Departure>* next = nullptr;
-    for (std::deque<Departure>& ring : rings_)
-      if (!ring.empty() && (next == nullptr || ring.front().ready_m < next->front().ready_m)) next = &ring;
-    return next;
   }
 
   /// Paths start at the trunk's cluxels above the clearance, or at its highest ones when none is above it.
@@ -158,24 +125,25 @@ class GroupSearch {
       half_m = std::max(half_m, static_cast<double>(all_.extent[cluxel].norm()) / 2);
     }
     const double start = sourceAt(s).start_m, reach = start + half_m + grid_.widestHalf_m() + kRounding_m;
-    grid_.within(low.array() - reach, high.array() + reach, [&](const JumpGrid::Entry& entry) {
-      if (!mayTake(s, entry.at)) return;
+    grid_.within(low.array() - reach, high.array() + reach, [&](std::uint32_t at) {
+      if (!mayTake(s, at)) return;
+      const Eigen::Vector3d& centre = all_.center[cluxels_[at]];
       double shortest = std::numeric_limits<double>::infinity();  // squared
       for (std::uint32_t cluxel : from)
-        if (const double square = (entry.centre - all_.center[cluxel]).squaredNorm();
-            square < shortest && gapBetween(all_, cluxel, cluxels_[entry.at]).gap() <= start)
+        if (const double square = (centre - all_.center[cluxel]).squaredNorm();
+            square < shortest && gapBetween(all_, cluxel, cluxels_[at]).gap() <= start)
           shortest = square;
-      if (std::isfinite(shortest)) offer(entry.at, {lengthOf(kJumpPenalty * std::sqrt(shortest)), s});
+      if (std::isfinite(shortest)) offer(at, {lengthOf(kJumpPenalty * std::sqrt(shortest)), s});
     });
   }
 
   /// The shortest path to the vertex is known. The search for jumps leaves it out from now on.
   void settle(std::uint32_t at) {
-    grid_.remove(all_.center[cluxels_[at]], at);
+    grid_.remove(at);
     depart(cluxels_[at], best_[at]);
   }
 
-  /// Follows the edges of the cluxel graph, and notes the jumps.
+  /// Follows the edges of the cluxel graph, and jumps; from a source alone the jumps are only noted.
   void depart(std::uint32_t cluxel, const Way& way) {
     const Eigen::Vector3d& from = all_.center[cluxel];
     for (std::uint32_t neighbour : all_.neighbours(cluxel)) {
@@ -183,31 +151,21 @@ class GroupSearch {
       if (group == number_ && way < best_[to])
         offer(to, {way.length + lengthOf((all_.center[neighbour] - from).norm()), way.source});
     }
-    const double reach = isAlone() ? 0 : reachOf(cluxel, way.source) + grid_.widestHalf_m();
-    for (std::size_t ring = 0; ring < kRings_m.size() && kRings_m[ring] <= reach; ++ring)
-      rings_[ring].push_back({way.length + kJumpPenalty * kRings_m[ring], cluxel, way});
+    if (isAlone())
+      departures_.emplace_back(cluxel, way);
+    else
+      jumpFrom(cluxel, way);
   }
 
-  /// The largest distance from the cluxel's centre to the near end of another one's half diagonal.
-  double reachOf(std::uint32_t cluxel, std::uint32_t source) const {
-    return sourceAt(source).jump_m + static_cast<double>(all_.extent[cluxel].norm()) / 2 + kRounding_m;
-  }
-
-  /// Jumps over gaps to the vertices of a ring. Those that have a shorter path are skipped.
-  void jumpFrom(const Departure& departure, std::size_t ring) {
-    const std::uint32_t cluxel = departure.cluxel;
-    const Way& way = departure.way;
-    const double jump = sourceAt(way.source).jump_m, reach = reachOf(cluxel, way.source);
-    double outer = reach + grid_.widestHalf_m();
-    if (ring + 1 < kRings_m.size()) outer = std::min(outer, kRings_m[ring + 1]);
+  /// Jumps over gaps. Vertices that have a shorter path are skipped.
+  void jumpFrom(std::uint32_t cluxel, const Way& way) {
+    const double jump = sourceAt(way.source).jump_m;
+    const double reach = jump + static_cast<double>(all_.extent[cluxel].norm()) / 2 + kRounding_m;
     const Eigen::Vector3d& from = all_.center[cluxel];
-    grid_.within(from.array() - outer, from.array() + outer, [&](const JumpGrid::Entry& other) {
-      // Most pairs are too far apart, or have a shorter path: both are known before the gap is measured.
-      const double square = (other.centre - from).squaredNorm();
-      if (square > (reach + other.half_m) * (reach + other.half_m)) return;
-      const Way longer{way.length + lengthOf(kJumpPenalty * std::sqrt(square)), way.source};
-      if (longer < best_[other.at] && gapBetween(all_, cluxel, cluxels_[other.at]).gap() <= jump)
-        offer(other.at, longer);
+    grid_.nearer({from, reach, way.length}, [&](std::uint32_t at) {
+      const double distance = (all_.center[cluxels_[at]] - from).norm();
+      const Way longer{way.length + lengthOf(kJumpPenalty * distance), way.source};
+      if (longer < best_[at] && gapBetween(all_, cluxel, cluxels_[at]).gap() <= jump) offer(at, longer);
     });
   }
 
@@ -220,6 +178,7 @@ class GroupSearch {
   void offer(std::uint32_t to, const Way& way) {
     if (!(way < best_[to]) || !mayTake(way.source, to)) return;
     best_[to] = way;
+    grid_.reach(to, way.length);
     if (isAlone())
       reached_.push_back(to);
     else
@@ -236,8 +195,8 @@ class GroupSearch {
   std::vector<std::uint32_t> first_taker_;  ///< of each cluxel, in the group's takers
   std::vector<Way> best_;
   OpenVertices open_;
-  std::vector<std::uint32_t> reached_;  ///< of a source alone
-  std::array<std::deque<Departure>, kRings_m.size()> rings_;
+  std::vector<std::uint32_t> reached_;                     ///< of a source alone
+  std::vector<std::pair<std::uint32_t, Way>> departures_;  ///< of a source alone: cluxels to jump from
 };
 
 bool fits(const SplitOutcome& outcome, const SourceGroup& group) {
