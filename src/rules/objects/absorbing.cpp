@@ -33,6 +33,7 @@ bool measuresShape(const Condition& condition, const std::string& name) {
     case Kind::Attribute:
       return condition.of == name || condition.ratio_of == name;
     case Kind::Pair:
+      if (condition.of != name && condition.target->name != name) return false;
       return condition.target->kind != Target::Kind::Name || condition.measure == PairMeasure::AxisDistance ||
              condition.measure == PairMeasure::VerticalGap;
     case Kind::All:
