@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cluxel::rules {
 
@@ -52,13 +53,17 @@ double smallestGap(const ReasoningState& state, const Candidate& a, const Candid
   const Eigen::AlignedBox3d bounds = boundsOf(state, many);
   if (areBeyond(boundsOf(state, few), bounds, horizontal, farthest)) return std::numeric_limits<double>::infinity();
   const std::vector<std::uint32_t> cluxels = state.fragments.cluxelsOf(few);
+  auto last = static_cast<FragmentIndex>(state.fragments.size());  // many cluxels of a cell are of one fragment
+  bool is_of_many = false;
   for (double reach = std::min(1.0, farthest);; reach = std::min(reach * 4, farthest)) {
     double best = std::numeric_limits<double>::infinity();
     for (const std::uint32_t cluxel : cluxels) {
       const Eigen::AlignedBox3d box = boxAround(state.scene.cluxels, std::span(&cluxel, 1));
       if (areBeyond(box, bounds, horizontal, std::min(reach, best))) continue;
       const auto look = [&](std::uint32_t other) {
-        if (!contains(many, state.fragments.fragmentOf(other))) return;
+        const FragmentIndex fragment = state.fragments.fragmentOf(other);
+        if (std::exchange(last, fragment) != fragment) is_of_many = contains(many, fragment);
+        if (!is_of_many) return;
         const CluxelGap gap = gapBetween(state.scene.cluxels, cluxel, other);
         best = std::min(best, horizontal ? gap.horizontal : gap.gap());
       };
