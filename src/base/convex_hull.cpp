@@ -44,16 +44,17 @@ void appendChain(Iterator begin, Iterator end, std::vector<Eigen::Vector2d>& hul
 
 /// Drops the points inside the octagon whose corners are the extreme points in eight directions.
 void dropInner(std::vector<Eigen::Vector2d>& points) {
-  // Counter-clockwise, as the corners of a hull.
-  const std::array<Eigen::Vector2d, 8> directions{
-      {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
-  std::array<Eigen::Vector2d, 8> corner;
+  std::array<Eigen::Vector2d, 8> corner;  // counter-clockwise, as the corners of a hull; the first at the largest x
   corner.fill(points.front());
   std::array<double, 8> farthest;
   farthest.fill(-std::numeric_limits<double>::infinity());
-  for (const Eigen::Vector2d& point : points)
-    for (std::size_t i = 0; i < 8; ++i)
-      if (const double far = point.dot(directions[i]); far > farthest[i]) farthest[i] = far, corner[i] = point;
+  const auto extend = [&](std::size_t i, const Eigen::Vector2d& point, double far) {
+    if (far > farthest[i]) farthest[i] = far, corner[i] = point;
+  };
+  for (const Eigen::Vector2d& point : points) {
+    const std::array<double, 4> along{point.x(), point.x() + point.y(), point.y(), point.y() - point.x()};
+    for (std::size_t i = 0; i < 4; ++i) extend(i, point, along[i]), extend(i + 4, point, -along[i]);
+  }
   std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> sides;  // start, and the unit vector along it
   for (std::size_t i = 0; i < 8; ++i)
     if (const Eigen::Vector2d side = corner[(i + 1) % 8] - corner[i]; side.norm() > kInside_m)

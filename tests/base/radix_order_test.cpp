@@ -55,5 +55,19 @@ TEST(KeyBits, KeepTheOrderOfKeysInFewerBits) {
   for (std::size_t i = 1; i < keys.size(); ++i) EXPECT_EQ(keys[i] < keys[0], packed(keys[i]) < packed(keys[0]));
 }
 
+TEST(SortNumbers, SortsFewAndManyOfSmallAndLargeRanges) {
+  std::mt19937 random(1);
+  for (const std::size_t count : {0U, 1U, 100U, 128U, 5000U})
+    for (const std::uint32_t range : {1U, 200U, 70'000U, 0xFFFFFFFFU}) {
+      std::uniform_int_distribution<std::uint32_t> number(0xFFFFFFFFU - range, 0xFFFFFFFFU);
+      std::vector<std::uint32_t> numbers(count);
+      for (std::uint32_t& value : numbers) value = number(random);
+      std::vector<std::uint32_t> expected = numbers;
+      std::sort(expected.begin(), expected.end());
+      sortNumbers(numbers);
+      EXPECT_EQ(numbers, expected) << count << " numbers of a range of " << range;
+    }
+}
+
 }  // namespace
 }  // namespace cluxel

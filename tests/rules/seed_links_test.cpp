@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "rules/box_world.hpp"
+#include "rules/decide/threshold_margins.hpp"
+#include "rules/propose/fragment_search.hpp"
 
 namespace cluxel::testing {
 
@@ -85,6 +87,53 @@ TEST(SeedLinks, AreThoseOfAllPairs) {
     }
   }
   EXPECT_GT(found, 100U);
+}
+
+using Rows = std::vector<std::tuple<double, std::uint32_t, std::size_t, std::size_t>>;
+
+constexpr double kNear_m = 1.5;
+
+/// The links and then the notes, in their order. What lies beyond the distance that is looked at narrows no margin.
+Rows rowsOf(const SeedLinks& links) {
+  Rows rows;
+  for (const SeedLink& link : links.links) rows.emplace_back(link.gap, 0, link.a, link.b);
+  for (const LinkNote& note : links.notes)
+    if (note.distance_m <= searchedAround(kNear_m)) rows.emplace_back(note.distance_m, note.threshold, note.a, note.b);
+  return rows;
+}
+
+TEST(SeedLinks, OfFewerMembersAreTheSameWhenThoseOfMoreAreKnown) {
+  std::mt19937 random(12);
+  const RuleSet rules = outdoorRules();
+  std::vector<GroupSpec> groups(2);
+  groups[0].near_m = kNear_m, groups[0].near_threshold = 1, groups[0].adjacent = true;
+  groups[1].horizontal_m = 0.8, groups[1].vertical_m = 2;
+  groups[1].horizontal_threshold = 2, groups[1].vertical_threshold = 3;
+  const BuiltBoxScene built = sceneOfBoxes(scatteredBoxes(random));
+  ThresholdMargins margins(built.scene, rules);
+  const ReasoningContext context{.margins = &margins};
+  const ReasoningState state(built.scene, rules, context);
+  std::size_t reused = 0;
+  for (const GroupSpec& group : groups) {
+    std::vector<FragmentIndex> all, members;
+    for (FragmentIndex fragment = 0; fragment < state.fragments.size(); ++fragment) all.push_back(fragment);
+    KnownLinks known;
+    EXPECT_EQ(rowsOf(seedLinks(state, group, all, &known)), rowsOf(seedLinks(state, group, all)));
+    for (int round = 0; round < 10; ++round) {
+      members = all;
+      std::erase_if(members, [&](FragmentIndex) { return random() % 3 == 0; });
+      const TileMargins before = margins.found();
+      const Rows links = rowsOf(seedLinks(state, group, members, &known));
+      EXPECT_EQ(known.members, all);
+      EXPECT_EQ(links, rowsOf(seedLinks(state, group, members)));
+      EXPECT_EQ(margins.found(), before) << "what matters was noted before";
+      reused += links.size();
+    }
+    KnownLinks others{members, seedLinks(state, group, members)};
+    EXPECT_EQ(rowsOf(seedLinks(state, group, all, &others)), rowsOf(known.links)) << "some are not known";
+    EXPECT_EQ(others.members, all);
+  }
+  EXPECT_GT(reused, 100U);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "base/disjoint_sets.hpp"
@@ -61,7 +62,7 @@ class Competition {
   std::vector<Proposal> propose() {
     std::vector<Proposal> proposals;
     for (const Rule* rule : rules_) {
-      std::vector<std::vector<FragmentIndex>> groups = seedGroups(state_, *rule, {});
+      std::vector<std::vector<FragmentIndex>> groups = seedGroups(state_, *rule, {}, &links_[rule]);
       std::erase_if(groups, [&](const auto& group) { return rejected_.count({rule, group}) > 0; });
       std::vector<Verdict> verdicts(groups.size());
       parallelFor(groups.size(), state_.threads(),
@@ -203,6 +204,7 @@ class Competition {
   ReasoningState& state_;
   std::span<const Rule* const> rules_;
   std::set<std::pair<const Rule*, std::vector<FragmentIndex>>> rejected_, lost_;
+  std::map<const Rule*, KnownLinks> links_;          ///< of the first round; no round cuts fragments
   std::vector<std::vector<FragmentIndex>> unknown_;  ///< seeds of leaves with `leave: unknown`
 };
 

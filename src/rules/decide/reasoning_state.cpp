@@ -109,12 +109,4 @@ std::vector<FragmentIndex> ReasoningState::fragmentsOf(const ObjectInMaking& obj
   return all;
 }
 
-void ReasoningState::renewBindings(ObjectInMaking& object) const {
-  for (PartInMaking& part : object.parts) {
-    if (!part.is_outdated) continue;
-    part.is_outdated = false;
-    if (Candidate* candidate = object.bindings.find(part.name)) *candidate = fragments.candidateOf(part.fragments);
-  }
-}
-
 }  // namespace cluxel::rules

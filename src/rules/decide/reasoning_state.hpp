@@ -43,7 +43,7 @@ struct ObjectInMaking {
   double confidence = 0;
   std::size_t decision = 0;
   std::vector<PartInMaking> parts;
-  Bindings bindings;  ///< needed by absorbing; see ReasoningState::renewBindings
+  Bindings bindings;  ///< needed by absorbing, which measures candidates anew whose parts changed
   /// A hash of how it came about and grew. Of the one object of a class (`merge_into: class`) only the class's, and no
   /// layers: it reaches through the whole map.
   std::uint64_t trace = 0;
@@ -93,9 +93,6 @@ struct ReasoningState {
 
   /// The fragments of an object, ascending.
   std::vector<FragmentIndex> fragmentsOf(const ObjectInMaking& object) const;
-  /// Measures the bound candidates of parts whose fragments changed. Objects grow by many fragments, and measuring
-  /// costs time in all of their cluxels: it is done when a candidate is needed, not at each change.
-  void renewBindings(ObjectInMaking& object) const;
 };
 
 }  // namespace cluxel::rules

@@ -22,6 +22,29 @@ struct Claim {
   double share = 0, gap = 0;
 };
 
+/// Whether a condition measures more of a bound thing than its bounds and its cluxels.
+bool measuresShape(const Condition& condition, const std::string& name) {
+  using Kind = Condition::Kind;
+  const auto does = [&name](const Condition& operand) { return measuresShape(operand, name); };
+  switch (condition.kind) {
+    case Kind::Label:
+    case Kind::Class:
+      return false;
+    case Kind::Attribute:
+      return condition.of == name || condition.ratio_of == name;
+    case Kind::Pair:
+      if (condition.of != name && condition.target->name != name) return false;
+      return condition.target->kind != Target::Kind::Name || condition.measure == PairMeasure::AxisDistance ||
+             condition.measure == PairMeasure::VerticalGap;
+    case Kind::All:
+    case Kind::Any:
+    case Kind::Not:
+      return std::any_of(condition.operands.begin(), condition.operands.end(), does);
+    default:
+      return true;
+  }
+}
+
 class Absorbing {
  public:
   Absorbing(ReasoningState& state, std::size_t first, bool late) : state_(state), first_(first), late_(late) {
@@ -150,11 +173,31 @@ class Absorbing {
     std::vector<Claim> claims;
     if (std::none_of(object.leaf->absorb.begin(), object.leaf->absorb.end(), now)) return claims;
     if (state_.fragmentsOf(object).empty()) return claims;
-    state_.renewBindings(object);
+    renewBindings(object);
     const Candidate whole = state_.fragments.extentOf(state_.fragmentsOf(object));
     for (const AbsorbSpec& spec : object.leaf->absorb)
       if (now(spec)) weighSpec(number, spec, whole, claims);
     return claims;
+  }
+
+  bool isMeasured(const ObjectInMaking& object, const std::string& name) const {
+    return std::any_of(object.leaf->absorb.begin(), object.leaf->absorb.end(), [&](const AbsorbSpec& spec) {
+      return spec.late == late_ && std::any_of(spec.when.begin(), spec.when.end(), [&](const Condition& condition) {
+               return measuresShape(condition, name);
+             });
+    });
+  }
+
+  /// Renews the bound candidates of parts whose fragments changed. Objects grow by many fragments, and measuring costs
+  /// time in all of their cluxels: a shape that no condition measures stays outdated.
+  void renewBindings(ObjectInMaking& object) const {
+    for (PartInMaking& part : object.parts) {
+      Candidate* candidate = part.is_outdated ? object.bindings.find(part.name) : nullptr;
+      if (candidate == nullptr) continue;
+      part.is_outdated = !isMeasured(object, part.name);
+      *candidate =
+          part.is_outdated ? state_.fragments.extentOf(part.fragments) : state_.fragments.candidateOf(part.fragments);
+    }
   }
 
   void weighSpec(std::size_t number, const AbsorbSpec& spec, const Candidate& whole, std::vector<Claim>& claims) const {

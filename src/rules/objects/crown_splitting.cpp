@@ -1,82 +1,77 @@
 // SPDX-License-Identifier: Apache-2.0
 // Multi-source Dijkstra: all trunks are sources, the vertices are the cluxels of the crown. Trunks that cannot take a
-// common cluxel are searched from apart; from a trunk alone, what it reaches is all that matters. A jump is mostly
-// longer than the path along the edges: long jumps are looked for late, when most of their ends are settled.
+// common cluxel are searched from apart; from a trunk alone, what it reaches is all that matters.
 #include "rules/objects/crown_splitting.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <compare>
-#include <deque>
 #include <limits>
-#include <queue>
+#include <utility>
 
 #include "base/parallel.hpp"
 #include "rules/objects/crown_groups.hpp"
 #include "rules/objects/jump_grid.hpp"
 #include "rules/objects/known_splits.hpp"
+#include "rules/objects/open_vertices.hpp"
 #include "rules/propose/cluxel_grid.hpp"
 
 namespace cluxel::rules {
 
 namespace {
 
-constexpr double kJumpPenalty = 2.0;
 constexpr double kTop_m = 0.5;
 constexpr double kRounding_m = 1e-6;  // half diagonals are rounded to floats
-
-/// Length of a path and the number of its source. Shorter paths come first; of equal ones, the smaller source number.
-struct Way {
-  double length = 0;
-  std::uint32_t source = 0;
-  auto operator<=>(const Way&) const = default;
-};
-constexpr Way kNoWay{std::numeric_limits<double>::infinity(), kNoSource};
 
 /// The search from one group of sources. Clearance, reach and jump differ by source, so the edges of a vertex depend on
 /// the source of its path.
 class GroupSearch {
  public:
-  /// `cluxels` are those that some source of the group reaches; `places` are those of all cluxels of the scene.
-  GroupSearch(const CrownParts& parts, std::uint32_t group, const std::vector<std::uint32_t>& sources,
-              const std::vector<std::uint32_t>& cluxels, const std::vector<SearchPlace>& places)
+  /// `number` is the group's in `places`, which are those of all cluxels of the scene.
+  GroupSearch(const CrownParts& parts, const SourceGroup& group, std::uint32_t number,
+              const std::vector<SearchPlace>& places)
       : all_(parts.all),
         parts_(parts),
         group_(group),
-        group_sources_(sources),
-        cluxels_(cluxels),
+        number_(number),
+        cluxels_(group.cluxels),
         places_(places),
-        grid_(entriesOf(parts.all, cluxels), longestJump()),
-        best_(cluxels.size(), kNoWay) {}
+        grid_(entriesOf(parts.all, cluxels_), longestJump()),
+        best_(cluxels_.size(), kNoWay) {
+    first_taker_.reserve(cluxels_.size());
+    for (std::uint32_t i = 0; i < group.takers.size(); ++i)
+      if (i == 0 || group.takers[i - 1] == kNoSource) first_taker_.push_back(i);
+  }
 
-  /// The shortest path to each of the cluxels.
-  std::vector<Way> run() {
-    for (const std::uint32_t source : group_sources_) leave(source);
+  /// For each of the cluxels the source with the shortest path.
+  SplitOutcome run() {
+    for (std::uint32_t source = 0; source < group_.sources.size(); ++source) leave(source);
     if (isAlone())
       flood();
     else
       search();
-    return std::move(best_);
+    SplitOutcome outcome;
+    outcome.reserve(best_.size());
+    for (const Way& way : best_) outcome.push_back(way.source);
+    return outcome;
   }
 
  private:
-  bool isAlone() const { return group_sources_.size() == 1; }
+  bool isAlone() const { return group_.sources.size() == 1; }
+  const CrownSource& sourceAt(std::uint32_t place) const { return parts_.sources[group_.sources[place]]; }
   /// The length of a step of a path. Without rivals lengths do not matter.
   double lengthOf(double distance_m) const { return isAlone() ? 0 : distance_m; }
 
   /// Edges first: what they reach needs no jump.
   void flood() {
-    std::deque<Departure>& jumps = rings_.front();
     while (true) {
       if (!reached_.empty()) {
         const std::uint32_t at = reached_.back();
         reached_.pop_back();
         settle(at);
-      } else if (!jumps.empty()) {
-        const Departure departure = jumps.back();
-        jumps.pop_back();
-        jumpFrom(departure, kRings_m.size() - 1);
+      } else if (!departures_.empty()) {
+        const auto [cluxel, way] = departures_.back();
+        departures_.pop_back();
+        jumpFrom(cluxel, way);
       } else {
         return;
       }
@@ -84,63 +79,30 @@ class GroupSearch {
   }
 
   void search() {
-    while (true) {
-      std::deque<Departure>* jumps = nextJumps();
-      // Of equal lengths the jumps come first: they may lead to the vertex that would be settled.
-      if (jumps != nullptr && (open_.empty() || jumps->front().ready_m <= open_.top().way.length)) {
-        const Departure departure = jumps->front();
-        jumps->pop_front();
-        jumpFrom(departure, static_cast<std::size_t>(jumps - rings_.data()));
-      } else if (!open_.empty()) {
-        const Open next = open_.top();
-        open_.pop();
-        if (next.way == best_[next.at]) settle(next.at);
-      } else {
-        return;
-      }
+    while (const OpenVertex* next = open_.top(best_)) {
+      const std::uint32_t at = next->at;
+      open_.pop();
+      settle(at);
     }
   }
-
-  struct Open {
-    Way way;
-    std::uint32_t at = 0;
-    bool operator<(const Open& other) const { return way > other.way; }  // the shortest on top
-  };
-  /// A cluxel from which jumps of one ring of distances are not looked for yet.
-  struct Departure {
-    double ready_m = 0;  ///< no shorter path leads over such a jump
-    std::uint32_t cluxel = 0;
-    Way way;
-  };
-  /// The smallest distance of the jumps of each ring [m]; a ring ends where the next begins.
-  static constexpr std::array<double, 2> kRings_m{0, 0.4};
 
   static std::vector<JumpGrid::Entry> entriesOf(const perception::SceneCluxels& all,
                                                 const std::vector<std::uint32_t>& cluxels) {
     std::vector<JumpGrid::Entry> entries;
     entries.reserve(cluxels.size());
-    for (std::uint32_t i = 0; i < cluxels.size(); ++i)
-      entries.push_back({all.center[cluxels[i]], static_cast<double>(all.extent[cluxels[i]].norm()) / 2, i});
+    for (const std::uint32_t cluxel : cluxels) entries.push_back({all.center[cluxel], all.extent[cluxel].norm() / 2});
     return entries;
   }
 
   double longestJump() const {
     double longest = 0;
-    for (const std::uint32_t source : group_sources_) longest = std::max(longest, parts_.sources[source].jump_m);
+    for (const std::uint32_t source : group_.sources) longest = std::max(longest, parts_.sources[source].jump_m);
     return longest;
-  }
-
-  /// The ring with the shortest path that is ready; null when there is none. Paths enter a ring in ascending order.
-  std::deque<Departure>* nextJumps() {
-    std::deque<Departure>* next = nullptr;
-    for (std::deque<Departure>& ring : rings_)
-      if (!ring.empty() && (next == nullptr || ring.front().ready_m < next->front().ready_m)) next = &ring;
-    return next;
   }
 
   /// Paths start at the trunk's cluxels above the clearance, or at its highest ones when none is above it.
   void leave(std::uint32_t s) {
-    const CrownSource& source = parts_.sources[s];
+    const CrownSource& source = sourceAt(s);
     std::vector<std::uint32_t> from;
     double highest = -std::numeric_limits<double>::infinity();
     for (std::uint32_t cluxel : source.trunk) {
@@ -162,64 +124,61 @@ class GroupSearch {
       low = low.cwiseMin(all_.center[cluxel]), high = high.cwiseMax(all_.center[cluxel]);
       half_m = std::max(half_m, static_cast<double>(all_.extent[cluxel].norm()) / 2);
     }
-    const double start = parts_.sources[s].start_m, reach = start + half_m + grid_.widestHalf_m() + kRounding_m;
-    grid_.within(low.array() - reach, high.array() + reach, [&](const JumpGrid::Entry& entry) {
-      if (parts_.isBeyond(entry.centre, s)) return;
-      double shortest = std::numeric_limits<double>::infinity();
+    const double start = sourceAt(s).start_m, reach = start + half_m + grid_.widestHalf_m() + kRounding_m;
+    grid_.within(low.array() - reach, high.array() + reach, [&](std::uint32_t at) {
+      if (!mayTake(s, at)) return;
+      const Eigen::Vector3d& centre = all_.center[cluxels_[at]];
+      double shortest = std::numeric_limits<double>::infinity();  // squared
       for (std::uint32_t cluxel : from)
-        if (const double distance = (entry.centre - all_.center[cluxel]).norm();
-            distance < shortest && gapBetween(all_, cluxel, cluxels_[entry.at]).gap() <= start)
-          shortest = distance;
-      if (std::isfinite(shortest)) offer(entry.at, {lengthOf(kJumpPenalty * shortest), s});
+        if (const double square = (centre - all_.center[cluxel]).squaredNorm();
+            square < shortest && gapBetween(all_, cluxel, cluxels_[at]).gap() <= start)
+          shortest = square;
+      if (std::isfinite(shortest)) offer(at, {lengthOf(kJumpPenalty * std::sqrt(shortest)), s});
     });
   }
 
   /// The shortest path to the vertex is known. The search for jumps leaves it out from now on.
   void settle(std::uint32_t at) {
-    grid_.remove(all_.center[cluxels_[at]], at);
+    grid_.remove(at);
     depart(cluxels_[at], best_[at]);
   }
 
-  /// Follows the edges of the cluxel graph, and notes the jumps.
+  /// Follows the edges of the cluxel graph, and jumps; from a source alone the jumps are only noted.
   void depart(std::uint32_t cluxel, const Way& way) {
     const Eigen::Vector3d& from = all_.center[cluxel];
     for (std::uint32_t neighbour : all_.neighbours(cluxel)) {
       const auto [group, to] = places_[neighbour];
-      if (group == group_ && best_[to] > way)
+      if (group == number_ && way < best_[to])
         offer(to, {way.length + lengthOf((all_.center[neighbour] - from).norm()), way.source});
     }
-    const double reach = isAlone() ? 0 : reachOf(cluxel, way.source) + grid_.widestHalf_m();
-    for (std::size_t ring = 0; ring < kRings_m.size() && kRings_m[ring] <= reach; ++ring)
-      rings_[ring].push_back({way.length + kJumpPenalty * kRings_m[ring], cluxel, way});
+    if (isAlone())
+      departures_.emplace_back(cluxel, way);
+    else
+      jumpFrom(cluxel, way);
   }
 
-  /// The largest distance from the cluxel's centre to the near end of another one's half diagonal.
-  double reachOf(std::uint32_t cluxel, std::uint32_t source) const {
-    return parts_.sources[source].jump_m + static_cast<double>(all_.extent[cluxel].norm()) / 2 + kRounding_m;
-  }
-
-  /// Jumps over gaps to the vertices of a ring. Those that have a shorter path are skipped.
-  void jumpFrom(const Departure& departure, std::size_t ring) {
-    const std::uint32_t cluxel = departure.cluxel;
-    const Way& way = departure.way;
-    const double jump = parts_.sources[way.source].jump_m, reach = reachOf(cluxel, way.source);
-    double outer = reach + grid_.widestHalf_m();
-    if (ring + 1 < kRings_m.size()) outer = std::min(outer, kRings_m[ring + 1]);
+  /// Jumps over gaps. Vertices that have a shorter path are skipped.
+  void jumpFrom(std::uint32_t cluxel, const Way& way) {
+    const double jump = sourceAt(way.source).jump_m;
+    const double reach = jump + static_cast<double>(all_.extent[cluxel].norm()) / 2 + kRounding_m;
     const Eigen::Vector3d& from = all_.center[cluxel];
-    grid_.within(from.array() - outer, from.array() + outer, [&](const JumpGrid::Entry& other) {
-      // Most pairs are too far apart, or have a shorter path: both are known before the gap is measured.
-      const double square = (other.centre - from).squaredNorm();
-      if (square > (reach + other.half_m) * (reach + other.half_m)) return;
-      if (best_[other.at].length < way.length) return;
-      const Way longer{way.length + lengthOf(kJumpPenalty * (other.centre - from).norm()), way.source};
-      if (best_[other.at] > longer && gapBetween(all_, cluxel, cluxels_[other.at]).gap() <= jump)
-        offer(other.at, longer);
+    grid_.nearer({from, reach, way.length}, [&](std::uint32_t at) {
+      const double distance = (all_.center[cluxels_[at]] - from).norm();
+      const Way longer{way.length + lengthOf(kJumpPenalty * distance), way.source};
+      if (longer < best_[at] && gapBetween(all_, cluxel, cluxels_[at]).gap() <= jump) offer(at, longer);
     });
   }
 
+  bool mayTake(std::uint32_t source, std::uint32_t at) const {
+    auto taker = group_.takers.begin() + first_taker_[at];
+    while (*taker < source) ++taker;  // the last is kNoSource
+    return *taker == source;
+  }
+
   void offer(std::uint32_t to, const Way& way) {
-    if (best_[to] <= way || !parts_.mayTake(way.source, cluxels_[to])) return;
+    if (!(way < best_[to]) || !mayTake(way.source, to)) return;
     best_[to] = way;
+    grid_.reach(to, way.length);
     if (isAlone())
       reached_.push_back(to);
     else
@@ -228,22 +187,17 @@ class GroupSearch {
 
   const perception::SceneCluxels& all_;
   const CrownParts& parts_;
-  std::uint32_t group_;
-  const std::vector<std::uint32_t>&group_sources_, &cluxels_;
+  const SourceGroup& group_;
+  std::uint32_t number_;
+  const std::vector<std::uint32_t>& cluxels_;
   const std::vector<SearchPlace>& places_;
   JumpGrid grid_;
+  std::vector<std::uint32_t> first_taker_;  ///< of each cluxel, in the group's takers
   std::vector<Way> best_;
-  std::priority_queue<Open> open_;
-  std::vector<std::uint32_t> reached_;  ///< of a source alone
-  std::array<std::deque<Departure>, kRings_m.size()> rings_;
+  OpenVertices open_;
+  std::vector<std::uint32_t> reached_;                     ///< of a source alone
+  std::vector<std::pair<std::uint32_t, Way>> departures_;  ///< of a source alone: cluxels to jump from
 };
-
-/// The place of a source in its group; kNoSource for none.
-std::uint32_t placeIn(const SourceGroup& group, std::uint32_t source) {
-  if (source == kNoSource) return kNoSource;
-  const auto found = std::lower_bound(group.sources.begin(), group.sources.end(), source);
-  return static_cast<std::uint32_t>(found - group.sources.begin());
-}
 
 bool fits(const SplitOutcome& outcome, const SourceGroup& group) {
   return outcome.size() == group.cluxels.size() &&
@@ -292,8 +246,7 @@ std::vector<std::uint32_t> splitCrown(const perception::SceneCluxels& all, std::
         return;
       }
     }
-    for (const Way& way : GroupSearch(parts, number, group.sources, group.cluxels, places).run())
-      split.outcome.push_back(placeIn(group, way.source));
+    split.outcome = GroupSearch(parts, group, number, places).run();
   });
   std::vector<std::uint32_t> taken(crown.size(), kNoSource);
   for (std::size_t g = 0; g < groups.size(); ++g) {

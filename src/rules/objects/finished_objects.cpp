@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "base/parallel.hpp"
+#include "base/radix_order.hpp"
 
 namespace cluxel::rules {
 
@@ -27,7 +28,7 @@ std::vector<ObjectPart> finishedParts(const ReasoningState& state, const ObjectI
   for (ObjectPart& part : parts) {
     std::sort(part.primitives.begin(), part.primitives.end());
     part.primitives.erase(std::unique(part.primitives.begin(), part.primitives.end()), part.primitives.end());
-    std::sort(part.cluxels.begin(), part.cluxels.end());
+    sortNumbers(part.cluxels);
   }
   std::sort(parts.begin(), parts.end(),
             [](const ObjectPart& a, const ObjectPart& b) { return a.part_class < b.part_class; });

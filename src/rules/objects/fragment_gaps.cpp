@@ -3,6 +3,7 @@
 #include "rules/objects/fragment_gaps.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace cluxel::rules {
 
@@ -22,12 +23,12 @@ class GapSearch {
   void lookFrom(std::uint32_t cluxel) {
     const double search_m = searchFrom(cluxel);
     if (search_m < 0) return;
+    auto last = static_cast<FragmentIndex>(state_.fragments.size());  // many cluxels of a cell are of one fragment
+    FragmentGap* gap = nullptr;
     state_.grid.near(cluxel, search_m, [&](std::uint32_t other) {
       const FragmentIndex theirs = state_.fragments.fragmentOf(other);
-      const auto gap =
-          std::lower_bound(gaps_.begin(), gaps_.end(), theirs,
-                           [](const FragmentGap& known, FragmentIndex key) { return known.fragment < key; });
-      if (gap == gaps_.end() || gap->fragment != theirs) return;
+      if (std::exchange(last, theirs) != theirs) gap = gapOf(theirs);
+      if (gap == nullptr) return;
       gap->gap_m = std::min(gap->gap_m, gapBetween(state_.scene.cluxels, other, cluxel).gap());
     });
   }
@@ -35,6 +36,12 @@ class GapSearch {
   std::vector<FragmentGap> take() { return std::move(gaps_); }
 
  private:
+  /// Null when the gap to the fragment is not asked for.
+  FragmentGap* gapOf(FragmentIndex fragment) {
+    const auto gap = std::lower_bound(gaps_.begin(), gaps_.end(), fragment,
+                                      [](const FragmentGap& known, FragmentIndex key) { return known.fragment < key; });
+    return gap != gaps_.end() && gap->fragment == fragment ? &*gap : nullptr;
+  }
   /// Negative when no gap can become smaller.
   double searchFrom(std::uint32_t cluxel) const {
     const Eigen::AlignedBox3d box = boxAround(state_.scene.cluxels, std::span(&cluxel, 1));

@@ -9,7 +9,6 @@
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "rules/decide/threshold_margins.hpp"
-#include "rules/objects/seed_links.hpp"
 #include "rules/propose/condition_eval.hpp"
 
 namespace cluxel::rules {
@@ -146,19 +145,27 @@ std::vector<FragmentIndex> members(const ReasoningState& state, const Rule& rule
                                    const std::vector<FragmentIndex>& slices) {
   const std::size_t count = rule.seed.slice ? slices.size() : state.fragments.size();
   const auto numbered = [&](std::size_t i) { return rule.seed.slice ? slices[i] : static_cast<FragmentIndex>(i); };
-  const auto isMember = [&](FragmentIndex fragment) {
+  const auto mayBeMember = [&](FragmentIndex fragment) {
     if (!state.fragments[fragment].alive || state.fragments[fragment].owner != kFree) return false;
     const scan::PrimitiveLabel label = state.fragments.labelOf(fragment);
-    if (!isIn(rule.seed.labels, label) && !(rule.group && isIn(rule.group->labels, label))) return false;
-    // For sliced seeds the conditions were tested on the whole fragment before it was cut.
-    return rule.seed.slice || rule.seed.where.empty() ||
-           passes(state, rule, rule.seed.where, state.fragments.candidateOf({fragment}));
+    return isIn(rule.seed.labels, label) || (rule.group && isIn(rule.group->labels, label));
   };
+  // For sliced seeds the conditions were tested on the whole fragment before it was cut.
+  const bool is_tested = !rule.seed.slice && !rule.seed.where.empty();
   constexpr std::size_t kTogether = 256;
   std::vector<char> is_member(count, 0);  // bytes, written in parallel
   parallelFor((count + kTogether - 1) / kTogether, state.threads(), [&](std::size_t chunk) {
+    Bindings bindings;
+    Candidate& candidate = bindings.candidates.emplace_back(rule.seed.name, Candidate{}).second;
+    ConditionEvaluator evaluator(state, rule, bindings);
+    const auto passes = [&](FragmentIndex fragment) {
+      candidate.fragments.assign(1, fragment);
+      candidate.shape = state.fragments.shapeOf(fragment);
+      return evaluator.allHold(rule.seed.where);
+    };
     const std::size_t end = std::min(count, (chunk + 1) * kTogether);
-    for (std::size_t i = chunk * kTogether; i < end; ++i) is_member[i] = isMember(numbered(i)) ? 1 : 0;
+    for (std::size_t i = chunk * kTogether; i < end; ++i)
+      is_member[i] = mayBeMember(numbered(i)) && (!is_tested || passes(numbered(i))) ? 1 : 0;
   });
   std::vector<FragmentIndex> found;
   for (std::size_t i = 0; i < count; ++i)
@@ -213,11 +220,11 @@ void SliceScope::putBack() {
 }
 
 std::vector<std::vector<FragmentIndex>> seedGroups(ReasoningState& state, const Rule& rule,
-                                                   const std::vector<FragmentIndex>& slices) {
+                                                   const std::vector<FragmentIndex>& slices, KnownLinks* known) {
   const std::vector<FragmentIndex> pool = members(state, rule, slices);
   std::vector<std::vector<FragmentIndex>> groups;
   if (rule.group)
-    groups = Joining(state, rule, pool).groups(seedLinks(state, *rule.group, pool));
+    groups = Joining(state, rule, pool).groups(seedLinks(state, *rule.group, pool, known));
   else
     for (FragmentIndex fragment : pool) groups.push_back({fragment});
   std::erase_if(groups, [&](const auto& group) {

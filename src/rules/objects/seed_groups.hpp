@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "rules/decide/reasoning_state.hpp"
+#include "rules/objects/seed_links.hpp"
 
 namespace cluxel::rules {
 
@@ -30,8 +31,9 @@ class SliceScope {
 };
 
 /// The seed groups of a rule, by decreasing number of points, then in canonical order. For a rule with sliced seeds the
-/// members are `slices`. Of the state only the traces change.
+/// members are `slices`. Of the state only the traces change. `known`: see seedLinks().
 std::vector<std::vector<FragmentIndex>> seedGroups(ReasoningState& state, const Rule& rule,
-                                                   const std::vector<FragmentIndex>& slices);
+                                                   const std::vector<FragmentIndex>& slices,
+                                                   KnownLinks* known = nullptr);
 
 }  // namespace cluxel::rules

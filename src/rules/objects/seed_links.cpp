@@ -7,8 +7,10 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 
 #include "base/parallel.hpp"
 #include "rules/decide/threshold_margins.hpp"
@@ -241,10 +243,38 @@ class Linking {
   Eigen::Vector3d around_;          ///< how far a group looks around bounds
 };
 
+/// By place among all that are known the place among the members; kNoPlace for others. Both are in the same order.
+/// Absent when some member is not known.
+constexpr std::size_t kNoPlace = static_cast<std::size_t>(-1);
+std::optional<std::vector<std::size_t>> placesOf(const std::vector<FragmentIndex>& members,
+                                                 const std::vector<FragmentIndex>& known) {
+  std::vector<std::size_t> places(known.size(), kNoPlace);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < known.size() && next < members.size(); ++i)
+    if (known[i] == members[next]) places[i] = next++;
+  return next == members.size() ? std::optional(std::move(places)) : std::nullopt;
+}
+
+/// Those between two members, by their places.
+template <typename Link>
+std::vector<Link> amongMembers(const std::vector<Link>& links, const std::vector<std::size_t>& places) {
+  std::vector<Link> some;
+  for (Link link : links) {
+    link.a = places[link.a], link.b = places[link.b];
+    if (link.a != kNoPlace && link.b != kNoPlace) some.push_back(link);
+  }
+  return some;
+}
+
 }  // namespace
 
-SeedLinks seedLinks(const ReasoningState& state, const GroupSpec& group, const std::vector<FragmentIndex>& members) {
-  return Linking(state, group, members).links();
+SeedLinks seedLinks(const ReasoningState& state, const GroupSpec& group, const std::vector<FragmentIndex>& members,
+                    KnownLinks* known) {
+  if (known == nullptr) return Linking(state, group, members).links();
+  if (const auto places = placesOf(members, known->members))
+    return {amongMembers(known->links.links, *places), amongMembers(known->links.notes, *places)};
+  *known = {members, Linking(state, group, members).links()};
+  return known->links;
 }
 
 }  // namespace cluxel::rules

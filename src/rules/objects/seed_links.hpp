@@ -29,8 +29,18 @@ struct SeedLinks {
   std::vector<LinkNote> notes;
 };
 
+/// The links that a group had among some members.
+struct KnownLinks {
+  std::vector<FragmentIndex> members;
+  SeedLinks links;
+};
+
 /// The links between `members` (in canonical order), shortest gap first, then by a and b. Cost: a search around those
 /// cluxels that lie within the tolerances of the bounds of another member. What always matters is noted in the margins.
-SeedLinks seedLinks(const ReasoningState& state, const GroupSpec& group, const std::vector<FragmentIndex>& members);
+/// The gaps between fragments stay as they are until these are cut: as long, the links among fewer members than before
+/// are some of those that are `known`, and so are the notes, as far as is looked; farther ones narrow no margin. Other
+/// links are known from now on.
+SeedLinks seedLinks(const ReasoningState& state, const GroupSpec& group, const std::vector<FragmentIndex>& members,
+                    KnownLinks* known = nullptr);
 
 }  // namespace cluxel::rules

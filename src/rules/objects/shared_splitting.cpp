@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/disjoint_sets.hpp"
+#include "base/radix_order.hpp"
 #include "rules/objects/crown_splitting.hpp"
 
 namespace cluxel::rules {
@@ -23,7 +24,7 @@ class SharedSplitting {
     orderClaimants();
     for (const auto& [fragment, owners] : state_.claims)
       crown_.insert(crown_.end(), state_.fragments[fragment].cluxels.begin(), state_.fragments[fragment].cluxels.end());
-    std::sort(crown_.begin(), crown_.end());
+    sortNumbers(crown_);
     owners_of_.resize(state_.fragments.size(), nullptr);
     for (const auto& [fragment, owners] : state_.claims) owners_of_[fragment] = &owners;
     const auto sources = makeSources();

@@ -91,7 +91,7 @@ CluxelGrid::CluxelGrid(const perception::SceneCluxels& all, std::span<const std:
 /// By cell, then by height, then by number.
 std::vector<std::uint32_t> CluxelGrid::inCellOrder(std::span<const std::uint32_t> some) const {
   std::vector<std::uint32_t> cluxels(some.begin(), some.end());
-  if (!std::is_sorted(cluxels.begin(), cluxels.end())) std::sort(cluxels.begin(), cluxels.end());
+  sortNumbers(cluxels);
   std::vector<std::uint64_t> keys(cluxels.size());
   const auto sortBy = [&](const auto& key_of) {  // stable
     std::transform(cluxels.begin(), cluxels.end(), keys.begin(), key_of);
@@ -150,7 +150,7 @@ std::vector<perception::PrimitiveIndex> CluxelGrid::primitivesNear(std::span<con
     found.insert(found.end(), primitives_.begin() + first_primitive_[cell],
                  primitives_.begin() + first_primitive_[end]);
   }
-  std::sort(found.begin(), found.end());
+  sortNumbers(found);
   found.erase(std::unique(found.begin(), found.end()), found.end());
   return found;
 }

@@ -4,6 +4,7 @@
 #include "rules/propose/fragment_search.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "rules/decide/threshold_margins.hpp"
 #include "rules/propose/condition_eval.hpp"
@@ -13,30 +14,51 @@ namespace cluxel::rules {
 
 namespace {
 
-void addFragments(const ReasoningState& state, perception::PrimitiveIndex primitive,
-                  std::vector<FragmentIndex>& found) {
-  const auto& fragments = state.fragments.fragmentsOf(primitive);
-  found.insert(found.end(), fragments.begin(), fragments.end());
-}
+/// Things near an anchor that may be found, some of them more than once.
+class Looking {
+ public:
+  Looking(const ReasoningState& state, const Candidate& anchor, const std::function<bool(FragmentIndex)>& is_eligible)
+      : state_(state), anchor_(anchor), is_eligible_(is_eligible) {}
 
-void addRelated(const ReasoningState& state, perception::RelationKind kind, const Candidate& anchor,
-                std::vector<FragmentIndex>& found) {
-  for (FragmentIndex fragment : anchor.fragments) {
-    const perception::PrimitiveIndex primitive = state.fragments[fragment].primitive;
-    addFragments(state, primitive, found);
-    for (std::uint32_t number : state.relations_to[primitive])
-      if (state.scene.relations[number].kind == kind) addFragments(state, state.scene.relations[number].from, found);
+  void addRelated(perception::RelationKind kind) {
+    for (FragmentIndex fragment : anchor_.fragments) {
+      const perception::PrimitiveIndex primitive = state_.fragments[fragment].primitive;
+      addFragments(primitive);
+      for (std::uint32_t number : state_.relations_to[primitive])
+        if (state_.scene.relations[number].kind == kind) addFragments(state_.scene.relations[number].from);
+    }
   }
-}
 
-void addAdjacent(const ReasoningState& state, const Candidate& anchor, std::vector<FragmentIndex>& found) {
-  for (FragmentIndex fragment : anchor.fragments)
-    for (std::uint32_t cluxel : state.fragments[fragment].cluxels)
-      for (std::uint32_t neighbour : state.scene.cluxels.neighbours(cluxel)) {
-        const FragmentIndex other = state.fragments.fragmentOf(neighbour);
-        if (found.empty() || found.back() != other) found.push_back(other);
-      }
-}
+  void addAdjacent() {
+    auto last = static_cast<FragmentIndex>(state_.fragments.size());
+    for (FragmentIndex fragment : anchor_.fragments)
+      for (std::uint32_t cluxel : state_.fragments[fragment].cluxels)
+        for (std::uint32_t neighbour : state_.scene.cluxels.neighbours(cluxel))
+          if (const FragmentIndex other = state_.fragments.fragmentOf(neighbour); std::exchange(last, other) != other)
+            add(other);
+  }
+
+  void addNear(double reach_m) {
+    for (perception::PrimitiveIndex primitive :
+         state_.grid.primitivesNear(state_.fragments.cluxelsOf(anchor_), reach_m))
+      addFragments(primitive);
+  }
+
+  std::vector<FragmentIndex> take() { return std::move(found_); }
+
+ private:
+  void add(FragmentIndex fragment) {
+    if (is_eligible_(fragment)) found_.push_back(fragment);
+  }
+  void addFragments(perception::PrimitiveIndex primitive) {
+    for (const FragmentIndex fragment : state_.fragments.fragmentsOf(primitive)) add(fragment);
+  }
+
+  const ReasoningState& state_;
+  const Candidate& anchor_;
+  const std::function<bool(FragmentIndex)>& is_eligible_;
+  std::vector<FragmentIndex> found_;
+};
 
 /// What is farther away than `reach_m` was not looked at.
 void noteSearch(const ReasoningState& state, const Condition& tie, const Candidate& anchor, double reach_m) {
@@ -50,15 +72,13 @@ void noteSearch(const ReasoningState& state, const Condition& tie, const Candida
     state.context.margins->note(primitive, threshold, reach_m);
 }
 
-void addNear(const ReasoningState& state, const Condition& tie, const Candidate& anchor,
-             std::vector<FragmentIndex>& found) {
+/// How far around the anchor a distance makes things be looked up.
+double reachOf(const ReasoningState& state, const Condition& tie, const Candidate& anchor) {
   const double within = tie.upper ? tie.upper->value : tie.value->value;
   const double searched = state.context.margins != nullptr ? searchedAround(within) : within;
   if (state.context.margins != nullptr) noteSearch(state, tie, anchor, searched);
   // The axis distance is measured from the centroid, which may be far from the nearest cluxel.
-  const double reach = tie.measure == PairMeasure::AxisDistance ? within + 5 : searched;
-  for (perception::PrimitiveIndex primitive : state.grid.primitivesNear(state.fragments.cluxelsOf(anchor), reach))
-    addFragments(state, primitive, found);
+  return tie.measure == PairMeasure::AxisDistance ? within + 5 : searched;
 }
 
 }  // namespace
@@ -66,20 +86,20 @@ void addNear(const ReasoningState& state, const Condition& tie, const Candidate&
 std::vector<FragmentIndex> tiedFragments(const ReasoningState& state, const std::vector<Condition>& conditions,
                                          const std::string& name, const Bindings& bindings,
                                          const std::function<bool(FragmentIndex)>& is_eligible) {
-  std::vector<FragmentIndex> found;
   const auto tie =
       std::find_if(conditions.begin(), conditions.end(), [&](const Condition& c) { return looksNearby(c, name); });
-  if (tie == conditions.end()) return found;
+  if (tie == conditions.end()) return {};
   const Candidate& anchor = bindings.at(tie->target->name);
+  Looking looking(state, anchor, is_eligible);
   if (tie->kind == Condition::Kind::Relation)
-    addRelated(state, tie->relation, anchor, found);
+    looking.addRelated(tie->relation);
   else if (tie->measure == PairMeasure::AdjacentFraction)
-    addAdjacent(state, anchor, found);
+    looking.addAdjacent();
   else
-    addNear(state, *tie, anchor, found);
+    looking.addNear(reachOf(state, *tie, anchor));
+  std::vector<FragmentIndex> found = looking.take();
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
-  std::erase_if(found, [&](FragmentIndex fragment) { return !is_eligible(fragment); });
   std::sort(found.begin(), found.end(), [&](FragmentIndex a, FragmentIndex b) { return state.fragments.before(a, b); });
   return found;
 }

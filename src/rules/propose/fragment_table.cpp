@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/parallel.hpp"
+#include "base/radix_order.hpp"
 #include "rules/decide/trace_recorder.hpp"
 
 namespace cluxel::rules {
@@ -196,7 +197,7 @@ std::vector<std::uint32_t> FragmentTable::cluxelsOf(const Candidate& candidate) 
   std::vector<std::uint32_t> cluxels;
   for (FragmentIndex fragment : candidate.fragments)
     cluxels.insert(cluxels.end(), fragments_[fragment].cluxels.begin(), fragments_[fragment].cluxels.end());
-  if (!std::is_sorted(cluxels.begin(), cluxels.end())) std::sort(cluxels.begin(), cluxels.end());
+  sortNumbers(cluxels);
   return cluxels;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cluxel::rules {
 
@@ -11,6 +12,7 @@ namespace {
 
 /// Bounds of whole primitives may be tighter than their cluxels' boxes by less than this [m].
 constexpr double kBoundsMargin_m = 1.0;
+constexpr double kRounding_m = 1e-6;                                // gaps are computed from extents that are floats
 constexpr double kTouchTolerance_m = 0.20, kNearTolerance_m = 1.0;  // of relationInfos()
 
 bool contains(const Candidate& candidate, FragmentIndex fragment) {
@@ -23,12 +25,22 @@ double boundsGap(const Candidate& a, const Candidate& b, bool horizontal) {
   return apart.norm();
 }
 
-/// Whether the gap in plan view between a cluxel and anything within the bounds is surely larger than `distance_m`.
-bool isBeyond(const perception::SceneCluxels& all, std::uint32_t cluxel, const Shape& bounds, double distance_m) {
-  const Eigen::Vector2d centre = all.center[cluxel].head<2>();
-  const double half = static_cast<double>(all.extent[cluxel].head<2>().norm()) / 2;
-  const Eigen::Vector2d apart = (bounds.min.head<2>() - centre).cwiseMax(centre - bounds.max.head<2>()).cwiseMax(0);
-  return apart.norm() > distance_m + half + kBoundsMargin_m;
+/// The box around the boxes of a candidate's cluxels.
+Eigen::AlignedBox3d boundsOf(const ReasoningState& state, const Candidate& candidate) {
+  Eigen::AlignedBox3d box;
+  for (const FragmentIndex fragment : candidate.fragments) {
+    const Outline& outline = state.fragments.outlineOf(fragment);
+    box.extend(outline.min);
+    box.extend(outline.max);
+  }
+  return box;
+}
+
+/// Whether the gap between what is within two boxes is surely larger than `distance_m`.
+bool areBeyond(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b, bool horizontal, double distance_m) {
+  Eigen::Vector3d apart = (a.min() - b.max()).cwiseMax(b.min() - a.max()).cwiseMax(0);
+  if (horizontal) apart.z() = 0;
+  return apart.squaredNorm() > (distance_m + kRounding_m) * (distance_m + kRounding_m);
 }
 
 /// Smallest gap between cluxels. The search radius grows step by step because most pairs are close.
@@ -37,14 +49,21 @@ double smallestGap(const ReasoningState& state, const Candidate& a, const Candid
   const bool swap = b.shape[perception::Attribute::CluxelCount] < a.shape[perception::Attribute::CluxelCount];
   const Candidate& few = swap ? b : a;
   const Candidate& many = swap ? a : b;
-  const std::vector<std::uint32_t> cluxels = state.fragments.cluxelsOf(few);
   const double farthest = std::min(limit_m, kMaxMeasure_m);
+  const Eigen::AlignedBox3d bounds = boundsOf(state, many);
+  if (areBeyond(boundsOf(state, few), bounds, horizontal, farthest)) return std::numeric_limits<double>::infinity();
+  const std::vector<std::uint32_t> cluxels = state.fragments.cluxelsOf(few);
+  auto last = static_cast<FragmentIndex>(state.fragments.size());  // many cluxels of a cell are of one fragment
+  bool is_of_many = false;
   for (double reach = std::min(1.0, farthest);; reach = std::min(reach * 4, farthest)) {
     double best = std::numeric_limits<double>::infinity();
-    for (std::uint32_t cluxel : cluxels) {
-      if (isBeyond(state.scene.cluxels, cluxel, many.shape, std::min(reach, best))) continue;
+    for (const std::uint32_t cluxel : cluxels) {
+      const Eigen::AlignedBox3d box = boxAround(state.scene.cluxels, std::span(&cluxel, 1));
+      if (areBeyond(box, bounds, horizontal, std::min(reach, best))) continue;
       const auto look = [&](std::uint32_t other) {
-        if (!contains(many, state.fragments.fragmentOf(other))) return;
+        const FragmentIndex fragment = state.fragments.fragmentOf(other);
+        if (std::exchange(last, fragment) != fragment) is_of_many = contains(many, fragment);
+        if (!is_of_many) return;
         const CluxelGap gap = gapBetween(state.scene.cluxels, cluxel, other);
         best = std::min(best, horizontal ? gap.horizontal : gap.gap());
       };
@@ -52,6 +71,7 @@ double smallestGap(const ReasoningState& state, const Candidate& a, const Candid
         state.grid.nearInPlan(cluxel, std::min(reach, best), look);
       else
         state.grid.near(cluxel, std::min(reach, best), look);
+      if (best == 0) return best;
     }
     if (best <= reach) return best;
     if (reach >= farthest) return std::numeric_limits<double>::infinity();

@@ -146,8 +146,9 @@ class EndSight {
       const double a = (-half[i] - start[i]) / way[i], b = (half[i] - start[i]) / way[i];
       enters = std::max(enters, std::min(a, b));
       leaves = std::min(leaves, std::max(a, b));
+      if (enters > leaves) return false;
     }
-    return enters <= leaves;
+    return true;
   }
 
   const ReasoningState& state_;
