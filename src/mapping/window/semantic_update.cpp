@@ -33,7 +33,7 @@ using perception::TileKey;
 using perception::TileSet;
 
 constexpr int kRings = 1;             ///< of tiles around the changed ones that a window holds at least
-constexpr double kUsualGrowth = 1.4;  ///< of a window from the first attempt to the last, at least
+constexpr double kUsualGrowth = 1.4;  ///< of a window from the first attempt to the last
 /// The number of layers around a change that have to lie in the window; more where that is not enough.
 constexpr std::array<std::uint32_t, 4> kDepths{5, 8, 13, 21};
 constexpr std::size_t kMaxAttempts = 40;
