@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <iterator>
 
 #include "cluxel/error.hpp"
 #include "mapping/build/tile_stages.hpp"

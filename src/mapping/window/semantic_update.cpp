@@ -153,7 +153,8 @@ class LocalUpdate {
     return update;
   }
 
-  /// A window that ends up too large is built for nothing. As many tiles follow as the first attempt asks for.
+  /// A window that ends up too large is assembled for nothing. After the first attempt about as many tiles follow as it
+  /// asked for.
   bool willBeTooLarge(const TileSet& window, const TileSet& beyond) const {
     return static_cast<double>(window.size() + 2 * beyond.size()) >
            params_.max_window_share * static_cast<double>(storedTiles(transaction_).size());
