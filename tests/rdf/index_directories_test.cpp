@@ -14,7 +14,7 @@ namespace cluxel::rdf {
 namespace {
 
 void expectAsListedAnew(WriteTransaction& transaction) {
-  const ReadTransaction::Impl& state = transaction.impl();
+  ReadTransaction::Impl& state = transaction.impl();
   for (const QuadOrder order : {QuadOrder::Spog, QuadOrder::Posg, QuadOrder::Ospg, QuadOrder::Gspo}) {
     if (state.draftOf(tableOf(order)) != nullptr) continue;  // that is tested in index_draft_test.cpp
     MDB_cursor* raw = nullptr;
@@ -86,7 +86,7 @@ TEST_F(DirectoriesOfIndexes, FollowChangesOfSeveralTransactions) {
 /// LMDB keeps the bound of a page whose first keys were removed, so that they return to it.
 TEST_F(DirectoriesOfIndexes, FollowFirstKeysOfPagesThatReturn) {
   WriteTransaction transaction = environment_->write();
-  const ReadTransaction::Impl& state = transaction.impl();
+  ReadTransaction::Impl& state = transaction.impl();
   const auto pages = state.directories->of(Table::Spog, state);
   for (std::size_t page = 4; page + 1 < pages->pageCount(); page += 7) {
     std::vector<QuadIds> first;
@@ -116,7 +116,7 @@ TEST_F(DirectoriesOfIndexes, FollowRemovalOfNearlyEverything) {
 
 TEST_F(DirectoriesOfIndexes, AreKeptWhereNothingOfTheIndexChanges) {
   WriteTransaction transaction = environment_->write();
-  const ReadTransaction::Impl& state = transaction.impl();
+  ReadTransaction::Impl& state = transaction.impl();
   const auto before = state.directories->of(Table::Spog, state);
   transaction.putBlock("some", "key", "bytes");
   EXPECT_EQ(state.directories->of(Table::Spog, state), before);
@@ -133,7 +133,7 @@ TEST_F(DirectoriesOfIndexes, AreKeptWhereNothingOfTheIndexChanges) {
 
 TEST_F(DirectoriesOfIndexes, AreMadeAnewWhenLmdbMayMovePages) {
   WriteTransaction transaction = environment_->write();
-  const ReadTransaction::Impl& state = transaction.impl();
+  ReadTransaction::Impl& state = transaction.impl();
   change(transaction);
   const auto before = state.directories->of(Table::Spog, state);
   for (int i = 0; i < 20'000; ++i) transaction.putBlock("some", std::to_string(i), "bytes");

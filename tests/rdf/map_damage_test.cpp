@@ -60,8 +60,8 @@ TEST_F(MapFile, RefusesANewerFormatAndForeignLmdbFiles) {
   EXPECT_THAT(refusal(), HasSubstr("not a Cluxel map"));
   fs::remove(file_);
   create().reset();
-  withLmdb(file_, [](MDB_txn* transaction, MDB_dbi main) { putText(transaction, main, "cluxel-format", "5"); });
-  EXPECT_THAT(refusal(), HasSubstr("newer format (5; this program reads 4)"));
+  withLmdb(file_, [](MDB_txn* transaction, MDB_dbi main) { putText(transaction, main, "cluxel-format", "6"); });
+  EXPECT_THAT(refusal(), HasSubstr("newer format (6; this program reads 5)"));
 }
 
 std::size_t entriesOf(MDB_txn* transaction, const char* table) {
@@ -72,8 +72,36 @@ std::size_t entriesOf(MDB_txn* transaction, const char* table) {
   return stat.ms_entries;
 }
 
+/// Puts the first `size` bytes of the sums anew, as those of this transaction.
+void putSums(MDB_txn* transaction, MDB_dbi main, std::size_t size) {
+  MDB_val key{11, const_cast<char*>("cluxel-sums")}, value;
+  ASSERT_EQ(mdb_get(transaction, main, &key, &value), 0);
+  std::string sums(static_cast<const char*>(value.mv_data), size);
+  const std::uint64_t commit = mdb_txn_id(transaction);
+  std::memcpy(sums.data(), &commit, sizeof commit);
+  const std::uint64_t checksum = XXH3_64bits(sums.data(), sums.size());
+  putText(transaction, main, "cluxel-sums",
+          sums + std::string(reinterpret_cast<const char*>(&checksum), sizeof checksum));
+}
+
+/// Undoes what the fifth format added: the sums of ranges.
+void makeFourthFormat(MDB_txn* transaction, MDB_dbi main) {
+  putText(transaction, main, "cluxel-format", "4");
+  MDB_dbi blocks = 0;
+  ASSERT_EQ(mdb_dbi_open(transaction, "blocks", 0, &blocks), 0);
+  const auto remove = [&](MDB_dbi table, std::string name) {
+    MDB_val key{name.size(), name.data()};
+    ASSERT_EQ(mdb_del(transaction, table, &key, nullptr), 0) << name;
+  };
+  remove(main, "cluxel-keys:index sums");
+  for (const char* index : {"hashes", "spog", "posg", "ospg", "gspo"})
+    remove(blocks, std::string("index sums") + '\0' + index);
+  putSums(transaction, main, 56);
+}
+
 /// Undoes what the fourth format changed: adds literals to the index by object, whose sum the record lacks.
 void makeThirdFormat(MDB_txn* transaction, MDB_dbi main) {
+  makeFourthFormat(transaction, main);
   putText(transaction, main, "cluxel-format", "3");
   MDB_dbi spog = 0, ospg = 0;
   ASSERT_EQ(mdb_dbi_open(transaction, "spog", MDB_DUPSORT | MDB_DUPFIXED, &spog), 0);
@@ -91,16 +119,7 @@ void makeThirdFormat(MDB_txn* transaction, MDB_dbi main) {
     MDB_val stored_name{1, const_cast<char*>("q")}, stored{key.size(), key.data()};
     ASSERT_EQ(mdb_put(transaction, ospg, &stored_name, &stored, 0), 0);
   }
-  constexpr std::size_t kOldSums = 40;
-  MDB_val sums_key{11, const_cast<char*>("cluxel-sums")};
-  ASSERT_EQ(mdb_get(transaction, main, &sums_key, &value), 0);
-  std::string sums(static_cast<const char*>(value.mv_data), kOldSums);
-  // The record is of the commit that wrote it, which is this one.
-  const std::uint64_t commit = mdb_txn_id(transaction);
-  std::memcpy(sums.data(), &commit, sizeof commit);
-  const std::uint64_t checksum = XXH3_64bits(sums.data(), sums.size());
-  putText(transaction, main, "cluxel-sums",
-          sums + std::string(reinterpret_cast<const char*>(&checksum), sizeof checksum));
+  putSums(transaction, main, 40);
 }
 
 /// Removes what the second format added: the sums of quads and terms.
@@ -136,6 +155,12 @@ std::uint64_t countOf(const Environment& environment, const Term& object) {
   return reader.count({.s = {}, .p = {}, .o = reader.idOf(object), .g = {}});
 }
 
+std::size_t countOf(QuadCursor quads) {
+  std::size_t count = 0;
+  for (QuadIds quad; quads.next(quad);) ++count;
+  return count;
+}
+
 TEST_F(MapFile, KeepsLiteralsOutOfTheIndexByObject) {
   addNumbers(*create(), 0, 500);
   withLmdb(file_, [](MDB_txn* transaction, MDB_dbi) {
@@ -159,6 +184,24 @@ TEST_F(MapFile, OfTheThirdFormatKeepsLiteralsInTheIndexByObject) {
   EXPECT_THAT(checkMap(compacted).faults, ElementsAre());
   for (const fs::path& file : {file_, compacted})
     withLmdb(file, [](MDB_txn* transaction, MDB_dbi) { EXPECT_EQ(entriesOf(transaction, "ospg"), 1200U); });
+}
+
+TEST_F(MapFile, OfTheFourthFormatIsComparedAsAWhole) {
+  addNumbers(*create(), 0, 5000);
+  withLmdb(file_, [](MDB_txn* transaction, MDB_dbi main) { makeFourthFormat(transaction, main); });
+  EXPECT_THAT(checkMap(file_).faults, ElementsAre());
+  addNumbers(*open(), 5000, 5100);
+  EXPECT_THAT(checkMap(file_).faults, ElementsAre());
+  EXPECT_EQ(countOf(*open(OpenMode::ReadOnly), Term::integer(7)), 102U);
+  const fs::path compacted = folder_.path() / "compacted.clx";
+  open(OpenMode::ReadOnly)->compactTo(compacted);
+  EXPECT_THAT(checkMap(compacted).faults, ElementsAre());
+  std::string bytes = readFile(file_);
+  const std::size_t at = bytes.find("s4321");
+  ASSERT_NE(at, std::string::npos);
+  bytes[at] = 'S';
+  std::ofstream(file_, std::ios::binary) << bytes;
+  EXPECT_THROW(open()->write(), Error) << "a writer compares all";
 }
 
 TEST_F(MapFile, OfTheFirstFormatIsReadAndGetsSumsWithItsNextCommit) {
@@ -198,7 +241,7 @@ TEST_F(MapFile, TellsChangedQuadsAndTermsWhenTheyAreRead) {
     EXPECT_EQ(reader.size(), 2'000U);
     EXPECT_TRUE(reader.idOf(Term::iri("subject20")).has_value());
     EXPECT_THROW(for (TermId id = 1; id <= reader.termCount(); ++id) reader.termOf(id), Error);
-    EXPECT_THROW(open(OpenMode::ReadWrite)->write(), Error) << "a writer verifies all";
+    EXPECT_NO_THROW(open(OpenMode::ReadWrite)->write()) << "a writer verifies what it reads";
   }
   damaged = bytes;
   const std::array<std::uint8_t, 8> quad = {0, 0, 3, 233, 0, 0, 0, 2};  // subject 1001, predicate 2
@@ -208,8 +251,8 @@ TEST_F(MapFile, TellsChangedQuadsAndTermsWhenTheyAreRead) {
   std::ofstream(file_, std::ios::binary) << damaged;
   const QuadReader reader(open(OpenMode::ReadOnly)->read());
   EXPECT_EQ(reader.termOf(1).text, "subject0");
-  EXPECT_THROW(reader.scan({}, QuadOrder::Spog), Error);
-  EXPECT_NO_THROW(reader.scan({}, QuadOrder::Posg)) << "an index that is whole can be read";
+  EXPECT_THROW(countOf(reader.scan({}, QuadOrder::Spog)), Error);
+  EXPECT_EQ(countOf(reader.scan({}, QuadOrder::Posg)), 2'000U) << "an index that is whole can be read";
 }
 
 TEST_F(MapFile, RefusesAFileThatIsCutShort) {
@@ -264,7 +307,7 @@ TEST_F(MapFile, IsFoundSoundOrDamagedAsAWhole) {
   const MapCheck sound = checkMap(file_);
   EXPECT_THAT(sound.faults, ElementsAre());
   EXPECT_EQ(sound.quads, 2'999U);
-  EXPECT_EQ(sound.blocks, 2U);               // with one of the sums of terms
+  EXPECT_EQ(sound.blocks, 2U + 5);           // with one of the sums of terms, and those of the indexes
   EXPECT_EQ(sound.terms, 700U + 2'999 + 2);  // subjects, numbers, the predicate and xsd:integer
   const std::string bytes = readFile(file_);
   std::mt19937 random(11);

@@ -90,7 +90,7 @@ void copyMainRecords(const ReadTransaction::Impl& from, const ReadTransaction::I
 
 void copyAll(const ReadTransaction& from, Environment& to) {
   CopyTarget target(to);
-  target.impl().environment->takeFormatOf(*from.impl().environment);  // the first commit was of the newest
+  target.impl().environment->startCopyOf(*from.impl().environment);  // the first commit was of the newest
   for (const Table index : {Table::TermHashes, Table::Spog, Table::Posg, Table::Ospg, Table::Gspo})
     copyIndex(from.impl(), target, index);
   // The long blocks last: LMDB searches all pages of a transaction at each write.

@@ -32,6 +32,7 @@ class DirectoryUpdate {
     updated.dirty_pages = static_cast<std::uint64_t>(
         std::count_if(pages_.begin(), pages_.end(), [&](const std::uint8_t* page) { return !isCommitted(page); }));
     updated.directory = PageDirectory(pages_, lower_);
+    updated.directory.guardBy(before_.guard());
     return updated;
   }
 
@@ -69,13 +70,13 @@ class DirectoryUpdate {
   /// The place of a committed page in the list of before.
   std::optional<std::size_t> placeOf(const std::uint8_t* page) const {
     const std::size_t place = before_.pageOf(firstKey(page));
-    if (before_.page(place).data() != reinterpret_cast<const QuadKey*>(page + lmdb_page::kHeaderSize))
+    if (before_.uncheckedPage(place).data() != reinterpret_cast<const QuadKey*>(page + lmdb_page::kHeaderSize))
       return std::nullopt;
     return place;
   }
   void keepUntil(std::size_t end) {
     for (; next_ < end; ++next_)
-      add(reinterpret_cast<const std::uint8_t*>(before_.page(next_).data()) - lmdb_page::kHeaderSize,
+      add(reinterpret_cast<const std::uint8_t*>(before_.uncheckedPage(next_).data()) - lmdb_page::kHeaderSize,
           before_.lower(next_));
   }
   void add(const std::uint8_t* page, Key128 lower) {
@@ -107,7 +108,7 @@ class DirectoryUpdate {
     add(right, firstKey(right));
     next_ = *place + 1;
     // Keys between it and the first key of the next page may have gone to either.
-    last_of_right_ = toNumber(before_.page(*place).back());
+    last_of_right_ = toNumber(before_.uncheckedPage(*place).back());
     return true;
   }
 

@@ -9,23 +9,25 @@
 #include <thread>
 
 #include "rdf/file/block_keys.hpp"
+#include "rdf/file/check/store_sums.hpp"
 #include "rdf/file/environment.hpp"
 #include "rdf/file/lmdb_handles.hpp"
 #include "rdf/file/map_check.hpp"
-#include "rdf/file/store_sums.hpp"
 #include "rdf/file/table.hpp"
 #include "rdf/store/quad_journal.hpp"
 
 namespace cluxel::rdf {
 
+class ChangedRanges;
 class IndexDirectories;
 class IndexDraft;
 class StoreSnapshot;
+struct CheckedParts;
 class ValueCache;
 
 /// The first format has no sums of quads and terms; the next commit adds them, which makes it the second. Up to the
-/// third one, the index by object holds literals.
-inline constexpr int kFirstFormat = 1, kFormatWithSums = 2, kFormatWithoutLiterals = 4;
+/// third one, the index by object holds literals; up to the fourth one, an index has one sum, and none for its ranges.
+inline constexpr int kFirstFormat = 1, kFormatWithSums = 2, kFormatWithoutLiterals = 4, kFormatWithRanges = 5;
 
 constexpr unsigned tableFlags(Table table) {
   switch (table) {
@@ -66,14 +68,20 @@ class LmdbEnvironment final : public Environment {
   bool isOfFirstFormat() const { return format_ == kFirstFormat; }
   /// False for a map whose index by object holds literals, too.
   bool omitsLiterals() const { return format_ >= kFormatWithoutLiterals; }
-  /// Before anything is copied from a map of this format.
-  void takeFormatOf(const LmdbEnvironment& other) { format_ = other.format_.load(); }
+  bool hasRanges() const { return format_ >= kFormatWithRanges; }
+  /// Whether readers and writers compare what they read with its sums, part by part; else a writer compares all.
+  bool isComparedByParts() const { return hasRanges() && !is_copy_; }
+  /// Before anything is copied from a map: takes its format. The sums are copied last, so that nothing is compared.
+  void startCopyOf(const LmdbEnvironment& other) {
+    format_ = other.format_.load();
+    is_copy_ = true;
+  }
   /// True for the last commit of this process: what it read was verified, so what it wrote need not be.
   bool wrote(std::size_t transaction_id) const { return own_commit_ == transaction_id; }
-  void noteCommit(std::size_t transaction_id) {
-    own_commit_ = transaction_id;
-    if (format_ == kFirstFormat) format_ = kFormatWithSums;
-  }
+  /// `checked`: of the commit before.
+  void noteCommit(std::size_t transaction_id, std::shared_ptr<CheckedParts> checked);
+  /// Of an own commit what was compared of the commit before, else nothing.
+  std::shared_ptr<CheckedParts> checkedPartsOf(std::size_t transaction_id) const;
   bool canWrite() const { return can_write_; }
   void check(int code, std::string_view doing) const { checkLmdb(code, file_, doing); }
   void enterWriting();
@@ -94,8 +102,11 @@ class LmdbEnvironment final : public Environment {
   bool can_write_, has_name_ = true;
   std::atomic<bool> writing_allowed_{false};
   std::atomic<int> format_{kMapFormat};
+  std::atomic<bool> is_copy_{false};
   std::atomic<bool> verified_{false};  ///< writers may trust the file
   std::atomic<std::size_t> own_commit_{0};
+  mutable std::mutex checked_mutex_;
+  std::shared_ptr<CheckedParts> checked_;  ///< of the own commit
   std::array<MDB_dbi, kTableCount> tables_{};
   MDB_dbi main_ = 0;
   std::unique_ptr<ValueCache> values_;
@@ -121,7 +132,8 @@ struct ReadTransaction::Impl {
   std::uint64_t snapshot_generation = 0;
   std::function<void()> flush_poll;  ///< of a FlushPoll
   std::unique_ptr<IndexDirectories> directories;
-  unsigned threads = 1;  ///< for sorting and merging the changes of indexes
+  std::unique_ptr<ChangedRanges> ranges;  ///< of a write transaction
+  unsigned threads = 1;                   ///< for sorting and merging the changes of indexes
   /// Of a write transaction: indexes of which most is new, written by commit(). Their tables hold what was there
   /// before.
   std::array<std::unique_ptr<IndexDraft>, kTableCount> drafts;

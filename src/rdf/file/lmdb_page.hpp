@@ -63,6 +63,15 @@ inline std::size_t entryCount(const std::uint8_t* page) {
   return (static_cast<std::size_t>(load<std::uint16_t>(page + 12)) - kHeaderSize) / 2;
 }
 
+/// True for a page of fixed keys whose counts fit its size.
+inline bool isPageOfKeys(const std::uint8_t* page, std::size_t page_size, std::size_t key_size) {
+  const Header head = header(page);
+  if ((head.flags & kFixedKeys) == 0 || head.pad != key_size || head.lower <= kHeaderSize || head.lower % 2 != 0)
+    return false;
+  const std::size_t count = entryCount(page);
+  return kHeaderSize + count * key_size <= page_size && head.upper == page_size - count * (key_size - 2);
+}
+
 /// One entry of a leaf or branch page.
 class Node {
  public:

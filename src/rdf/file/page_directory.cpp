@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cluxel/error.hpp"
+#include "rdf/file/check/page_guard.hpp"
 
 namespace cluxel::rdf {
 
@@ -127,6 +128,23 @@ PageDirectory::PageDirectory(const PageMap& map, const Tree& table) {
     pages_.reserve(tree.leaf_pages);
     collect(map, tree.root, 0, 0);
   }
+}
+
+PageDirectory::PageDirectory(const PageDirectory& pages, std::shared_ptr<const PageGuard> guard)
+    : max_keys_(pages.max_keys_), lower_(pages.lower_), pages_(pages.pages_), single_(pages.single_) {
+  guardBy(std::move(guard));
+}
+
+void PageDirectory::guardBy(std::shared_ptr<const PageGuard> guard) {
+  guard_ = std::move(guard);
+  is_checked_ = guard_ ? std::make_unique<std::atomic<bool>[]>(pages_.size()) : nullptr;
+}
+
+/// A directory of a write transaction may have bounds of its own: the keys of the commit between them count.
+void PageDirectory::check(std::size_t page) const {
+  const Key128 first = page == 0 ? 0 : lower_[page];
+  guard_->check(first, page + 1 < lower_.size() ? lower_[page + 1] - 1 : ~Key128{0});
+  is_checked_[page].store(true, std::memory_order_relaxed);
 }
 
 void PageDirectory::addPage(Key128 lower, const std::uint8_t* page) {

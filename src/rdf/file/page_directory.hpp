@@ -2,6 +2,7 @@
 // The first keys of all leaf pages of an index: one binary search replaces the descent through the B-tree.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -53,7 +54,10 @@ struct PageMap {
 /// index that lies within its root's page.
 std::uint64_t leafPagesOf(const PageMap& map, const lmdb_page::Tree& table);
 
-/// The leaf pages of one index in key order, at one commit or one state of a write transaction.
+class PageGuard;
+
+/// The leaf pages of one index in key order, at one commit or one state of a write transaction. With a guard, a page is
+/// compared with its sums when it is first read, and what reads it throws Error (StoreUnavailable) when it differs.
 class PageDirectory {
  public:
   struct Position {
@@ -69,9 +73,19 @@ class PageDirectory {
   explicit PageDirectory(MDB_cursor* cursor);
   /// Of pages in memory with their first keys, ascending; none is empty. The pages must live as long.
   PageDirectory(std::span<const std::uint8_t* const> pages, std::span<const Key128> first_keys);
+  /// The same pages, guarded.
+  PageDirectory(const PageDirectory& pages, std::shared_ptr<const PageGuard> guard);
+
+  void guardBy(std::shared_ptr<const PageGuard> guard);
+  /// None where pages need not be compared.
+  const std::shared_ptr<const PageGuard>& guard() const { return guard_; }
 
   std::size_t pageCount() const { return pages_.size(); }
   std::span<const QuadKey> page(std::size_t i) const {
+    if (is_checked_ && !is_checked_[i].load(std::memory_order_relaxed)) check(i);
+    return uncheckedPage(i);
+  }
+  std::span<const QuadKey> uncheckedPage(std::size_t i) const {
     const QuadKey* keys = pages_[i];
     return {keys, single_ ? 1 : entryCount(keys)};
   }
@@ -95,6 +109,7 @@ class PageDirectory {
     const auto* page = reinterpret_cast<const std::uint8_t*>(keys) - lmdb_page::kHeaderSize;
     return std::min<std::size_t>(lmdb_page::entryCount(page), max_keys_);
   }
+  void check(std::size_t page) const;
   void addPage(Key128 lower, const std::uint8_t* page);
   void collect(const PageMap& map, lmdb_page::PageNumber number, Key128 lower, int depth);
   Position within(std::size_t page, Key128 key) const;
@@ -105,7 +120,9 @@ class PageDirectory {
   std::size_t max_keys_ = 65536 / sizeof(QuadKey);  ///< per page; bounds the entry count that a damaged page states
   std::vector<Key128> lower_;                       ///< the first key of each page
   std::vector<const QuadKey*> pages_;
-  bool single_ = false;  ///< a single key is stored in the node itself, without a sub-page
+  std::shared_ptr<const PageGuard> guard_;
+  std::unique_ptr<std::atomic<bool>[]> is_checked_;  ///< by page; none without a guard
+  bool single_ = false;                              ///< a single key is stored in the node itself, without a sub-page
 };
 
 }  // namespace cluxel::rdf

@@ -34,9 +34,9 @@ bool isBare(const Term& term) {
   return point != std::string_view::npos && all_digits(digits.substr(0, point)) && all_digits(digits.substr(point + 1));
 }
 
-struct Triple {
+struct WrittenTriple {
   Term subject, predicate, object;
-  auto operator<=>(const Triple&) const = default;
+  auto operator<=>(const WrittenTriple&) const = default;
 };
 
 bool isType(const Term& predicate) {
@@ -44,7 +44,7 @@ bool isType(const Term& predicate) {
 }
 
 /// Orders by subject, then rdf:type first, then by term.
-bool comesBefore(const Triple& a, const Triple& b) {
+bool comesBefore(const WrittenTriple& a, const WrittenTriple& b) {
   if (a.subject != b.subject) return a.subject < b.subject;
   if (a.predicate != b.predicate) {
     if (isType(a.predicate) != isType(b.predicate)) return isType(a.predicate);
@@ -53,8 +53,8 @@ bool comesBefore(const Triple& a, const Triple& b) {
   return a.object < b.object;
 }
 
-std::vector<Triple> triplesOf(const QuadReader& reader, const std::optional<Term>& graph) {
-  std::vector<Triple> triples;
+std::vector<WrittenTriple> triplesOf(const QuadReader& reader, const std::optional<Term>& graph) {
+  std::vector<WrittenTriple> triples;
   QuadPattern pattern;
   std::optional<TermId> history;
   if (graph) {
@@ -101,7 +101,7 @@ void writeTurtle(const QuadReader& reader, const std::optional<Term>& graph, con
                  const RdfPrefixes& prefixes) {
   const TurtleTerms terms(prefixes);
   out(terms.header());
-  const std::vector<Triple> triples = triplesOf(reader, graph);
+  const std::vector<WrittenTriple> triples = triplesOf(reader, graph);
   for (std::size_t i = 0; i < triples.size(); ++i) {
     const bool same_subject = i > 0 && triples[i].subject == triples[i - 1].subject;
     const bool same_predicate = same_subject && triples[i].predicate == triples[i - 1].predicate;

@@ -34,7 +34,7 @@ bool IndexDirectories::mayMovePages() const {
   return pages > kMaxDirtyPages;
 }
 
-std::shared_ptr<const PageDirectory> IndexDirectories::of(Table index, const Transaction& transaction) {
+std::shared_ptr<const PageDirectory> IndexDirectories::of(Table index, Transaction& transaction) {
   Entry& entry = entries_[numberOf(index)];
   const IndexDraft* draft = transaction.draftOf(index);
   if (entry.directory && (draft != nullptr || entry.is_committed || !mayMovePages())) return entry.directory;
@@ -43,11 +43,32 @@ std::shared_ptr<const PageDirectory> IndexDirectories::of(Table index, const Tra
   else if (committed_ && entry.is_committed)
     entry.directory = committed_->sharedDirectory(index, transaction);
   else
-    entry.directory = std::make_shared<const PageDirectory>(transaction.cursorOn(index, "read an index").get());
+    entry.directory = std::make_shared<const PageDirectory>(ofTable(index, transaction));
   return entry.directory;
 }
 
-void IndexDirectories::noteKeys(Table index, const Transaction& transaction, std::span<const Key128> added,
+PageDirectory IndexDirectories::ofTable(Table index, Transaction& transaction) {
+  const std::shared_ptr<const PageGuard> guard = guardOf(index, transaction);
+  if (guard) guard->requireAllWellFormed();
+  PageDirectory directory(transaction.cursorOn(index, "read an index").get());
+  directory.guardBy(guard);
+  return directory;
+}
+
+std::shared_ptr<const PageGuard> IndexDirectories::guardOf(Table index, Transaction& transaction) const {
+  if (!committed_ || !committed_->isComparedByParts()) return nullptr;
+  return committed_->sharedDirectory(index, transaction)->guard();
+}
+
+void IndexDirectories::requireWellFormed(Table index, Transaction& transaction, std::span<const Key128> added,
+                                         std::span<const Key128> removed) {
+  const std::shared_ptr<const PageGuard> guard = guardOf(index, transaction);
+  if (!guard) return;
+  guard->requireWellFormed(added);
+  guard->requireWellFormed(removed);
+}
+
+void IndexDirectories::noteKeys(Table index, Transaction& transaction, std::span<const Key128> added,
                                 std::span<const Key128> removed) {
   if (added.empty() && removed.empty()) return;
   Entry& entry = entries_[numberOf(index)];

@@ -12,7 +12,9 @@
 
 namespace cluxel::rdf {
 
+class PageGuard;
 class StoreSnapshot;
+
 /// A directory is that of the commit before until its index changes, and then follows the changes. Each call belongs to
 /// the transaction that owns this.
 class IndexDirectories {
@@ -21,13 +23,19 @@ class IndexDirectories {
 
   /// With the commit before the transaction. Without this call, directories are made anew after each change.
   void startFrom(std::shared_ptr<StoreSnapshot> committed);
+  /// None without that call, and for maps whose pages are not read in place.
+  const std::shared_ptr<StoreSnapshot>& committed() const { return committed_; }
 
   /// Of the index as the transaction sees it. Several threads may ask for different indexes.
-  std::shared_ptr<const PageDirectory> of(Table index, const Transaction& transaction);
+  std::shared_ptr<const PageDirectory> of(Table index, Transaction& transaction);
 
+  /// To be called before single keys are added or removed: looks at the pages that LMDB may touch.
+  void requireWellFormed(Table index, Transaction& transaction, std::span<const Key128> added,
+                         std::span<const Key128> removed);
+  /// Of the index in its table, also where there is a draft.
+  PageDirectory ofTable(Table index, Transaction& transaction);
   /// To be called after single keys were added or removed; both lists ascend.
-  void noteKeys(Table index, const Transaction& transaction, std::span<const Key128> added,
-                std::span<const Key128> removed);
+  void noteKeys(Table index, Transaction& transaction, std::span<const Key128> added, std::span<const Key128> removed);
   /// To be called after an index was written anew, or moved to or from memory; `keys` in its table are new.
   void noteRewritten(Table index, std::uint64_t keys);
   /// Several threads may call it for different indexes.
@@ -43,6 +51,7 @@ class IndexDirectories {
   };
 
   bool mayMovePages() const;
+  std::shared_ptr<const PageGuard> guardOf(Table index, Transaction& transaction) const;
 
   std::shared_ptr<StoreSnapshot> committed_;
   std::array<Entry, kTableCount> entries_;

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "base/parallel.hpp"
+#include "rdf/store/changed_ranges.hpp"
 #include "rdf/store/flush_poll.hpp"
 #include "rdf/store/index_directories.hpp"
 #include "rdf/store/index_draft.hpp"
@@ -85,27 +86,29 @@ class IndexCursor {
   CursorHandle cursor_;
 };
 
-/// Tells the sum and the journal, as far as they are wanted, what has changed.
+/// Tells the sums and the journal, as far as they are wanted, what has changed.
 struct ChangeNotes {
-  explicit ChangeNotes(const IndexTask& task)
-      : sum(task.sum), journal(task.journal), is_by_object(task.index == Table::Ospg) {}
+  explicit ChangeNotes(const IndexTask& task, RangeSums* sums_of_ranges = nullptr)
+      : sum(task.sum), journal(task.journal), ranges(sums_of_ranges), index(task.index) {}
 
   void added(Key128 key) const {
-    if (sum != nullptr) sum->add(inSum(key));
+    const Key128 in_sum = keyInSumOf(index, key);
+    if (sum != nullptr) sum->add(in_sum);
+    if (ranges != nullptr) ranges->add(key, in_sum);
     if (journal != nullptr) journal->note(quadOf(key), true);
   }
   void removed(Key128 key) const {
-    if (sum != nullptr) sum->remove(inSum(key));
+    const Key128 in_sum = keyInSumOf(index, key);
+    if (sum != nullptr) sum->remove(in_sum);
+    if (ranges != nullptr) ranges->remove(key, in_sum);
     if (journal != nullptr) journal->note(quadOf(key), false);
   }
   static QuadIds quadOf(Key128 key) { return toQuad(toKey(key), QuadOrder::Spog); }
-  Key128 inSum(Key128 key) const {
-    return is_by_object ? toNumber(toQuad(toKey(key), QuadOrder::Ospg), QuadOrder::Spog) : key;
-  }
 
   EntrySum* sum;
   QuadJournal* journal;
-  bool is_by_object;
+  RangeSums* ranges;
+  Table index;
 };
 
 std::uint64_t keyCount(const ReadTransaction::Impl& transaction, Table index) {
@@ -116,8 +119,7 @@ std::uint64_t keyCount(const ReadTransaction::Impl& transaction, Table index) {
 }
 
 std::unique_ptr<IndexDraft> draftFrom(ReadTransaction::Impl& transaction, Table index) {
-  const IndexCursor cursor(transaction, index);
-  const PageDirectory directory(cursor.get());
+  const PageDirectory directory = transaction.directories->ofTable(index, transaction);
   auto draft = std::make_unique<IndexDraft>();
   EntryPoll poll(transaction);
   for (std::size_t i = 0; i < directory.pageCount(); ++i) {
@@ -132,11 +134,14 @@ void writeDraft(ReadTransaction::Impl& transaction, Table index) {
   transaction.check(mdb_drop(transaction.live(), transaction.table(index), 0), "write an index");
   const IndexCursor cursor(transaction, index);
   EntryPoll poll(transaction);
+  RangeSummer sums(index);
   for (std::size_t i = 0; i < draft->pageCount(); ++i) {
     poll.count(draft->page(i).size());
     appendKeys(transaction, cursor.get(), draft->page(i));
+    if (transaction.environment->hasRanges()) sums.add(draft->page(i));
   }
   transaction.directories->noteRewritten(index, draft->pageCount());
+  if (transaction.environment->hasRanges()) transaction.ranges->replace(index, sums.take());
 }
 
 /// Whether the change goes to a draft, which is there then.
@@ -208,9 +213,11 @@ void writeAnew(ReadTransaction::Impl& transaction, Table index, const IndexChang
   transaction.check(mdb_drop(transaction.live(), transaction.table(index), 0), "write an index");
   IndexCursor cursor(transaction, index);
   EntryPoll poll(transaction), merged(transaction);
+  RangeSummer sums(index);
   std::vector<Key128> some;
   const auto append = [&] {
     cursor.append(some, poll);
+    if (transaction.environment->hasRanges()) sums.add(some);
     some.clear();
   };
   merge(*before, change, notes, merged, [&](Key128 key) {
@@ -219,6 +226,7 @@ void writeAnew(ReadTransaction::Impl& transaction, Table index, const IndexChang
   });
   append();
   transaction.directories->noteRewritten(index, before->pageCount() + change.added.size());
+  if (transaction.environment->hasRanges()) transaction.ranges->replace(index, sums.take());
 }
 
 /// Uses mdb_del only: loops of mdb_cursor_del over duplicates corrupt the file in LMDB 0.9.24.
@@ -265,10 +273,14 @@ void appendKeys(const ReadTransaction::Impl& transaction, MDB_cursor* cursor, st
 namespace {
 
 void writeSingly(ReadTransaction::Impl& transaction, const IndexTask& task) {
-  const ChangeNotes notes(task);
   const std::uint64_t changes = task.change.added.size() + task.change.removed.size();
   const std::uint64_t entries = keyCount(transaction, task.index);
-  if (entries > 0 && changes * kPutCost > entries + 1000) return writeAnew(transaction, task.index, task.change, notes);
+  if (entries > 0 && changes * kPutCost > entries + 1000)
+    return writeAnew(transaction, task.index, task.change, ChangeNotes(task));
+  if (changes == 0) return;
+  transaction.directories->requireWellFormed(task.index, transaction, task.change.added, task.change.removed);
+  const ChangeNotes notes(
+      task, transaction.environment->hasRanges() ? &transaction.ranges->of(task.index, transaction) : nullptr);
   removeSingly(transaction, task.index, task.change.removed, notes);
   addSingly(transaction, task.index, task.change.added, notes);
   transaction.directories->noteKeys(task.index, transaction, task.change.added, task.change.removed);

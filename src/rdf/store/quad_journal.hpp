@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "rdf/file/check/store_sums.hpp"
 #include "rdf/file/environment.hpp"
-#include "rdf/file/store_sums.hpp"
 #include "rdf/store/quad_store.hpp"
 
 namespace cluxel::rdf {

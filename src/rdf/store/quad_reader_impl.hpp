@@ -4,7 +4,7 @@
 
 #include <unordered_map>
 
-#include "rdf/file/page_directory.hpp"
+#include "rdf/file/check/page_guard.hpp"
 #include "rdf/store/quad_store.hpp"
 #include "rdf/store/store_snapshot.hpp"
 
@@ -56,6 +56,11 @@ struct QuadReader::Impl {
   ReadTransaction::Impl& state() const { return transaction.impl(); }
   StoreSnapshot& snapshot() const { return snapshotOf(state()); }
   const PageDirectory& directory(QuadOrder order) const { return snapshot().directory(tableOf(order), state()); }
+  /// Without comparison with sums; in a write transaction maybe as of the commit before.
+  const PageDirectory& pagesForEstimates(QuadOrder order) const {
+    const PageDirectory& guarded = directory(order);
+    return guarded.guard() ? guarded.guard()->pages() : guarded;
+  }
   std::string_view datatypeText(TermId id);
   std::string_view record(TermId id) const { return snapshot().record(id, state()); }
 };

@@ -17,8 +17,16 @@ constexpr std::size_t kExactPages = 32;  // some 8000 quads
 constexpr std::size_t kSampledPages = 8;
 constexpr std::size_t kSampledQuads = 256;
 
-Position endOf(const PageDirectory& directory, const KeyRange& range) {
-  return range.last == ~Key128{0} ? directory.end() : directory.lowerBound(range.last + 1);
+struct Stretch {
+  Position from, to;
+};
+
+/// Pages without comparison may be out of order in a damaged file: then the end may come before the start.
+Stretch stretchOf(const PageDirectory& directory, const KeyRange& range) {
+  const Position from = directory.lowerBound(range.first);
+  const Position to = range.last == ~Key128{0} ? directory.end() : directory.lowerBound(range.last + 1);
+  const bool is_ahead = to.page > from.page || (to.page == from.page && to.index >= from.index);
+  return {from, is_ahead ? to : from};
 }
 
 std::uint64_t matching(std::span<const QuadKey> keys, const IndexPattern& pattern) {
@@ -85,6 +93,16 @@ std::vector<QuadIds> sampleOf(const PageDirectory& directory, Position from, Pos
   return sample;
 }
 
+std::uint64_t countIn(const PageDirectory& directory, const IndexPattern& pattern) {
+  const auto [from, to] = stretchOf(directory, pattern.range);
+  return pattern.filtered ? countFiltered(directory, pattern, from, to) : directory.distance(from, to);
+}
+
+/// The share of one of the matching quads in all of them.
+double shareOf(const PageDirectory& directory, const QuadPattern& pattern, QuadOrder order) {
+  return 1.0 / static_cast<double>(std::max<std::uint64_t>(1, countIn(directory, layOut(pattern, order))));
+}
+
 /// Exact where index ospg lacks what matches; it has an object.
 std::optional<std::uint64_t> countWithLiterals(const ReadTransaction& transaction, const QuadPattern& pattern) {
   const LiteralEntries literals(transaction);
@@ -102,10 +120,7 @@ std::uint64_t QuadReader::count(const QuadPattern& pattern) const {
   }
   const IndexPattern laid_out = layOut(pattern, order);
   if (laid_out.prefix_length == 0 && !laid_out.filtered) return size();
-  const PageDirectory& directory = impl_->directory(order);
-  const Position from = directory.lowerBound(laid_out.range.first);
-  const Position to = endOf(directory, laid_out.range);
-  return laid_out.filtered ? countFiltered(directory, laid_out, from, to) : directory.distance(from, to);
+  return countIn(impl_->directory(order), laid_out);
 }
 
 std::uint64_t QuadReader::estimate(const QuadPattern& pattern) const {
@@ -115,19 +130,17 @@ std::uint64_t QuadReader::estimate(const QuadPattern& pattern) const {
   }
   const IndexPattern laid_out = layOut(pattern, order);
   if (laid_out.prefix_length == 0 && !laid_out.filtered) return size();
-  const PageDirectory& directory = impl_->directory(order);
-  const Position from = directory.lowerBound(laid_out.range.first);
-  const Position to = endOf(directory, laid_out.range);
+  const PageDirectory& directory = impl_->pagesForEstimates(order);
+  const auto [from, to] = stretchOf(directory, laid_out.range);
   if (to.page - from.page > kExactPages) return estimateOver(directory, laid_out, from, to);
   return laid_out.filtered ? countFiltered(directory, laid_out, from, to) : directory.distance(from, to);
 }
 
 QuadReader::PredicateStatistics QuadReader::statistics(TermId predicate) const {
   if (const auto known = impl_->snapshot().knownStatistics(predicate)) return *known;
-  const PageDirectory& directory = impl_->directory(QuadOrder::Posg);
-  const KeyRange range = rangeOf(std::array{predicate});
-  const Position from = directory.lowerBound(range.first);
-  const Position to = endOf(directory, range);
+  const PageDirectory& directory = impl_->pagesForEstimates(QuadOrder::Posg);
+  const PageDirectory& by_subject = impl_->pagesForEstimates(QuadOrder::Spog);
+  const auto [from, to] = stretchOf(directory, rangeOf(std::array{predicate}));
   PredicateStatistics statistics;
   statistics.quads = directory.distance(from, to);
   if (to.page - from.page <= kExactPages) {
@@ -142,8 +155,8 @@ QuadReader::PredicateStatistics QuadReader::statistics(TermId predicate) const {
     double objects = 0;
     const std::vector<QuadIds> sample = sampleOf(directory, from, to, false);
     for (const QuadIds& quad : sample) {
-      subjects += 1.0 / static_cast<double>(count({.s = quad.s, .p = predicate, .o = {}, .g = {}}));
-      objects += 1.0 / static_cast<double>(count({.s = {}, .p = predicate, .o = quad.o, .g = {}}));
+      subjects += shareOf(by_subject, {.s = quad.s, .p = predicate, .o = {}, .g = {}}, QuadOrder::Spog);
+      objects += shareOf(directory, {.s = {}, .p = predicate, .o = quad.o, .g = {}}, QuadOrder::Posg);
     }
     const double scale = static_cast<double>(statistics.quads) / static_cast<double>(sample.size());
     statistics.subjects = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(subjects * scale)));

@@ -50,7 +50,11 @@ PageMap mapAround(const void* inside, const ReadTransaction::Impl& transaction) 
 
 StoreSnapshot::StoreSnapshot(const ReadTransaction::Impl& transaction)
     : size_(entriesOf(transaction, Table::Spog)), term_count_(entriesOf(transaction, Table::Terms)) {
-  if (transaction.writing) return;
+  if (transaction.writing) {
+    const std::shared_ptr<StoreSnapshot>& before = transaction.directories->committed();
+    if (before && before->by_parts_) base_ = before;
+    return;
+  }
   MDB_dbi main = 0;
   transaction.check(mdb_dbi_open(transaction.live(), nullptr, 0, &main), "read the map");
   for (std::size_t i = 0; i < kTableCount; ++i) {
@@ -62,7 +66,9 @@ StoreSnapshot::StoreSnapshot(const ReadTransaction::Impl& transaction)
     if (i == 0) map_ = mapAround(record.mv_data, transaction);
   }
   const std::size_t commit = mdb_txn_id(transaction.live());
-  if (!transaction.environment->wrote(commit)) sums_ = storedSums(transaction, commit);
+  by_parts_ = map_.base != nullptr && transaction.environment->isComparedByParts();
+  checked_ = transaction.environment->checkedPartsOf(commit);
+  if (by_parts_ || !transaction.environment->wrote(commit)) sums_ = storedSums(transaction, commit);
   if (sums_) requireCounts(transaction.environment->file());
 }
 
@@ -86,20 +92,46 @@ void StoreSnapshot::verifyIndex(Table index, const std::filesystem::path& file) 
 
 void StoreSnapshot::verify(ReadTransaction::Impl& transaction) {
   for (const Table index : {Table::TermHashes, Table::Spog, Table::Posg, Table::Ospg, Table::Gspo})
-    directory(index, transaction);
+    if (const auto& guard = directory(index, transaction).guard()) guard->checkAll();
   for (std::uint64_t id = 1; id <= term_count_; id = (id / kTermsOfSum + 1) * kTermsOfSum)
     record(static_cast<TermId>(id), transaction);
 }
 
-std::shared_ptr<const PageDirectory> StoreSnapshot::sharedDirectory(Table index,
-                                                                    const ReadTransaction::Impl& transaction) {
+std::shared_ptr<const PageDirectory> StoreSnapshot::sharedDirectory(Table index, ReadTransaction::Impl& transaction) {
   const auto i = static_cast<std::size_t>(index);
   std::call_once(made_[i], [&] {
-    directories_[i] = map_.base != nullptr ? std::make_shared<const PageDirectory>(map_, trees_[i])
-                                           : transaction.directories->of(index, transaction);
+    if (map_.base == nullptr) {
+      directories_[i] = transaction.directories->of(index, transaction);
+    } else {
+      PageDirectory pages(map_, trees_[i]);
+      if (by_parts_ && pages.pageCount() > 1) {
+        directories_[i] = guarded(std::move(pages), index, transaction);
+        return;
+      }
+      directories_[i] = std::make_shared<const PageDirectory>(std::move(pages));
+    }
     verifyIndex(index, transaction.environment->file());
   });
   return directories_[i];
+}
+
+std::shared_ptr<const PageDirectory> StoreSnapshot::guarded(PageDirectory pages, Table index,
+                                                            ReadTransaction::Impl& transaction) {
+  const std::filesystem::path& file = transaction.environment->file();
+  RangeSums ranges = storedRanges(transaction, index);
+  if (ranges.whole() != sumOfTable(index))
+    refuseDamaged(file, std::string("the sums of index ") + kTableNames[static_cast<std::size_t>(index)] +
+                            " differ from the sum of the whole");
+  const auto guard = std::make_shared<PageGuard>(map_, std::move(pages), std::move(ranges), index, file);
+  const std::scoped_lock lock(checked_->mutex);
+  std::shared_ptr<const PageGuard>& last = checked_->guards[static_cast<std::size_t>(index)];
+  if (last) guard->inherit(*last);
+  last = guard;
+  return std::make_shared<const PageDirectory>(guard->pages(), guard);
+}
+
+void StoreSnapshot::prepareForWriting(ReadTransaction::Impl& transaction) {
+  if (by_parts_) requireSums(transaction);
 }
 
 const TermDirectory& StoreSnapshot::terms() {
@@ -125,18 +157,28 @@ std::string_view StoreSnapshot::storedRecord(TermId id, const ReadTransaction::I
 }
 
 std::string_view StoreSnapshot::record(TermId id, ReadTransaction::Impl& transaction) {
-  if (sums_ && id <= term_count_) {
-    requireSums(transaction);
-    const TermId number = id / kTermsOfSum;
-    if (!term_sums_verified_[number].load(std::memory_order_relaxed)) verifyTerms(number, transaction);
-  }
+  if (base_ && id <= base_->term_count_)
+    base_->requireTerm(id, transaction);
+  else if (sums_ && id <= term_count_)
+    requireTerm(id, transaction);
   return storedRecord(id, transaction);
+}
+
+void StoreSnapshot::requireTerm(TermId id, ReadTransaction::Impl& transaction) {
+  requireSums(transaction);
+  const TermId number = id / kTermsOfSum;
+  // Beyond the end are terms that this process wrote.
+  if (number < verified_terms_->size() && !(*verified_terms_)[number].load(std::memory_order_relaxed))
+    verifyTerms(number, transaction);
 }
 
 void StoreSnapshot::requireSums(ReadTransaction::Impl& transaction) {
   std::call_once(term_sums_read_, [&] {
     term_sums_ = storedTermSums(transaction, term_count_);
-    term_sums_verified_ = std::vector<std::atomic<bool>>(term_sums_.size());
+    const std::scoped_lock lock(checked_->mutex);
+    if (!checked_->verified_terms)
+      checked_->verified_terms = std::make_shared<std::vector<std::atomic<bool>>>(term_sums_.size());
+    verified_terms_ = checked_->verified_terms;
   });
 }
 
@@ -151,7 +193,7 @@ void StoreSnapshot::verifyTerms(TermId number, const ReadTransaction::Impl& tran
   if (sum != term_sums_[number])
     refuseDamaged(transaction.environment->file(), "the terms from " + std::to_string(first) + " to " +
                                                        std::to_string(last) + " differ from their checksum");
-  term_sums_verified_[number].store(true, std::memory_order_relaxed);
+  (*verified_terms_)[number].store(true, std::memory_order_relaxed);
 }
 
 std::optional<QuadReader::PredicateStatistics> StoreSnapshot::knownStatistics(TermId predicate) {

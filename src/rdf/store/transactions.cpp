@@ -14,6 +14,7 @@
 #include "rdf/file/lmdb_environment.hpp"
 #include "rdf/file/map_check.hpp"
 #include "rdf/file/map_replacement.hpp"
+#include "rdf/store/changed_ranges.hpp"
 #include "rdf/store/index_directories.hpp"
 #include "rdf/store/index_draft.hpp"
 #include "rdf/store/index_writer.hpp"
@@ -164,18 +165,33 @@ WriteTransaction LmdbEnvironment::write() {
   if (base > 0) {
     startSums(transaction, base);
     const ReadTransaction current = read();
+    sharedSnapshotOf(current.impl())->prepareForWriting(current.impl());
     transaction.impl().directories->startFrom(sharedSnapshotOf(current.impl()));
   }
   restartJournal(transaction);
   return transaction;
 }
 
-/// A writer trusts every page, and what it writes carries the sums on.
+/// LMDB trusts every page that it reads. What a writer reads is compared when it is read; of maps without sums of
+/// ranges all is compared before.
 void LmdbEnvironment::verifyForWriting(std::size_t commit) {
-  checkMapStructure(data_lock_, file_, commit, MapScope::Whole);
   const ReadTransaction current = read();
-  snapshotOf(current.impl()).verify(current.impl());
+  const bool by_parts = commit > 0 && snapshotOf(current.impl()).isComparedByParts();
+  checkMapStructure(data_lock_, file_, commit, by_parts ? MapScope::Writing : MapScope::Whole);
+  if (!by_parts) snapshotOf(current.impl()).verify(current.impl());
   verified_ = true;
+}
+
+void LmdbEnvironment::noteCommit(std::size_t transaction_id, std::shared_ptr<CheckedParts> checked) {
+  if (format_ == kFirstFormat) format_ = kFormatWithSums;
+  const std::lock_guard lock(checked_mutex_);
+  checked_ = std::move(checked);
+  own_commit_ = transaction_id;
+}
+
+std::shared_ptr<CheckedParts> LmdbEnvironment::checkedPartsOf(std::size_t transaction_id) const {
+  const std::lock_guard lock(checked_mutex_);
+  return checked_ && wrote(transaction_id) ? checked_ : std::make_shared<CheckedParts>();
 }
 
 void LmdbEnvironment::startSums(WriteTransaction& transaction, std::size_t commit) {
@@ -197,7 +213,8 @@ std::shared_ptr<StoreSnapshot> LmdbEnvironment::snapshot(
   return made;
 }
 
-ReadTransaction::Impl::Impl() : directories(std::make_unique<IndexDirectories>()) {}
+ReadTransaction::Impl::Impl()
+    : directories(std::make_unique<IndexDirectories>()), ranges(std::make_unique<ChangedRanges>()) {}
 
 ReadTransaction::Impl::~Impl() {
   end();
@@ -235,12 +252,15 @@ void WriteTransaction::commit() {
   const std::size_t id = mdb_txn_id(state.txn);
   writeDrafts(state);
   if (state.generation > 0) {
+    state.ranges->store(*this);
     state.block_keys.store(state);
     state.sums.transaction = id;
     storeSums(state, state.sums);
   }
+  const std::shared_ptr<StoreSnapshot>& before = state.directories->committed();
   const int code = mdb_txn_commit(std::exchange(state.txn, nullptr));
-  if (code == MDB_SUCCESS && state.generation > 0) state.environment->noteCommit(id);
+  if (code == MDB_SUCCESS && state.generation > 0)
+    state.environment->noteCommit(id, before ? before->checkedParts() : nullptr);
   state.end();
   state.check(code, "write the map");
 }

@@ -95,7 +95,7 @@ class StructureWalk {
     tree(meta_.main, TreeKind::Main);
     for (const std::string_view list : free_lists_) freeList(list);
     // LMDB leaves out pages behind the last used one when it writes, so all that the file lacks are free.
-    if (scope_ == MapScope::Whole && meta_.last_page >= file_pages_ + free_count_ + 1)
+    if (scope_ != MapScope::Reading && meta_.last_page >= file_pages_ + free_count_ + 1)
       refuseDamaged(file_, "its head names a page beyond the end");
   }
 
@@ -103,22 +103,31 @@ class StructureWalk {
   /// What the walk of one tree has met, in the terms of its record.
   struct Walked {
     TreeKind kind;
+    std::size_t known_depth = 0;  ///< of its leaves, which are not read; 0: they are
     std::uint64_t branch_pages = 0, leaf_pages = 0, overflow_pages = 0, entries = 0;
     std::size_t depth = 0;
   };
 
   std::uint64_t tree(const Tree& record, TreeKind kind) {
-    Walked walked{.kind = kind};
+    const bool skips_leaves = scope_ == MapScope::Writing && kind == TreeKind::IndexKeys;
+    Walked walked{.kind = kind, .known_depth = skips_leaves ? record.depth : std::size_t{0}};
     if (record.root != kNoPage) page(record.root, 1, {}, walked);
     if (walked.branch_pages != record.branch_pages || walked.leaf_pages != record.leaf_pages ||
-        walked.overflow_pages != record.overflow_pages || walked.entries != record.entries ||
-        walked.depth != record.depth)
+        walked.overflow_pages != record.overflow_pages || walked.depth != record.depth ||
+        (!skips_leaves && walked.entries != record.entries))
       refuseDamaged(file_, "a table holds more or less than its record states");
-    return walked.entries;
+    return record.entries;
   }
 
   void page(PageNumber number, std::size_t depth, const KeyBounds& bounds, Walked& walked) {
     if (depth > kMaxDepth) refuse(number, "lies too deep");
+    if (depth == walked.known_depth) {
+      if (number >= seen_.size()) refuse(number, "lies beyond the end: the file is cut short");
+      mark(number);
+      walked.depth = depth;
+      ++walked.leaf_pages;
+      return;
+    }
     const std::uint8_t* bytes = take(number);
     const Header head = header(bytes);
     if (head.lower <= kHeaderSize || head.lower > page_size_ || head.lower % 2 != 0 || head.lower > head.upper ||
@@ -130,7 +139,8 @@ class StructureWalk {
     ++walked.leaf_pages;
     const std::size_t count = entryCount(bytes);
     if (head.flags == (kLeaf | kFixedKeys)) {
-      if (walked.kind != TreeKind::IndexKeys || !isFixed(bytes, page_size_)) refuse(number, "has malformed keys");
+      if (walked.kind != TreeKind::IndexKeys || !isPageOfKeys(bytes, page_size_, kIndexKeySize))
+        refuse(number, "has malformed keys");
       walked.entries += count;
       return;
     }
@@ -159,7 +169,7 @@ class StructureWalk {
   /// Readers find out of order keys of blocks by their sum, so that the other blocks can still be read.
   void nodes(PageNumber number, const std::uint8_t* bytes, bool is_branch, const KeyBounds& bounds, TreeKind kind) {
     const std::size_t count = entryCount(bytes), upper = header(bytes).upper;
-    const bool in_order = scope_ == MapScope::Whole || kind != TreeKind::Blocks;
+    const bool in_order = scope_ != MapScope::Reading || kind != TreeKind::Blocks;
     std::size_t used = 0;
     std::optional<std::string_view> last;
     for (std::size_t i = 0; i < count; ++i) {
@@ -179,7 +189,7 @@ class StructureWalk {
       last = key;
     }
     if (used != page_size_ - upper) refuse(number, "has gaps between its entries");
-    if (scope_ == MapScope::Whole) requireDisjoint(number, bytes, is_branch);
+    if (scope_ != MapScope::Reading) requireDisjoint(number, bytes, is_branch);
   }
 
   static std::size_t nodeSize(const Node& node, bool is_branch) {
@@ -231,17 +241,17 @@ class StructureWalk {
       const auto which = static_cast<Table>(i);
       if (record.flags != tableFlags(which) || record.pad != 0 || record.depth > kMaxDepth)
         refuse(number, "has a table of the wrong kind");
-      if (scope_ == MapScope::Whole || which == Table::Blocks) tree(record, kindOf(which));
+      if (scope_ != MapScope::Reading || which == Table::Blocks) tree(record, kindOf(which));
       return;
     }
-    if (scope_ == MapScope::Whole) refuse(number, "has an unknown table");
+    if (scope_ != MapScope::Reading) refuse(number, "has an unknown table");
   }
 
   /// The entries of an index are the duplicates of one key: one in the node, some in an inner page, or many in a tree.
   std::uint64_t indexNode(PageNumber number, const Node& node) {
     if (node.flags() == 0 && node.dataSize() == kIndexKeySize) return 1;
     if (node.flags() == kDupData) {
-      if (node.dataSize() < kHeaderSize || !isFixed(node.data(), node.dataSize()))
+      if (node.dataSize() < kHeaderSize || !isPageOfKeys(node.data(), node.dataSize(), kIndexKeySize))
         refuse(number, "has a malformed inner page");
       return entryCount(node.data());
     }
@@ -252,21 +262,12 @@ class StructureWalk {
     return tree(record, TreeKind::IndexKeys);
   }
 
-  /// True for a page of fixed keys whose counts fit its size.
-  static bool isFixed(const std::uint8_t* bytes, std::size_t size) {
-    const Header head = header(bytes);
-    if ((head.flags & kFixedKeys) == 0 || head.pad != kIndexKeySize || head.lower <= kHeaderSize || head.lower % 2 != 0)
-      return false;
-    const std::size_t count = entryCount(bytes);
-    return kHeaderSize + count * kIndexKeySize <= size && head.upper == size - count * (kIndexKeySize - 2);
-  }
-
   void bigValue(PageNumber holder, const Node& node, Walked& walked) {
     const auto first = load<PageNumber>(node.data());
     const std::uint64_t pages = (kHeaderSize - 1 + node.dataSize()) / page_size_ + 1;
     if (node.dataSize() == 0 || first >= seen_.size() || pages > seen_.size() - first)
       refuse(holder, "has a value beyond the end: the file is cut short");
-    if (scope_ == MapScope::Whole || walked.kind == TreeKind::Free) {
+    if (scope_ != MapScope::Reading || walked.kind == TreeKind::Free) {
       const Header head = header(bytes_ + first * page_size_);
       const std::uint32_t stated = head.lower | (std::uint32_t{head.upper} << 16U);
       if (head.number != first || head.flags != kOverflow || stated != pages) refuse(first, "is of the wrong kind");

@@ -9,7 +9,8 @@ namespace cluxel::rdf {
 
 enum class MapScope : std::uint8_t {
   Reading,  ///< what LMDB itself reads for a reader: the tables' records, the blocks' keys, the list of free pages
-  Whole,    ///< every page but the contents of values and of index leaves; needed before a write
+  Writing,  ///< what LMDB reads for a writer, but the leaves of indexes, which page guards check when they are read
+  Whole,    ///< every page but the contents of values and the keys in leaves of indexes
 };
 
 /// Visits the pages reachable from the meta page of commit `transaction`, which a read transaction pins. Throws Error

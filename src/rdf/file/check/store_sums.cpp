@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads and writes the sums of quads and terms.
-#include "rdf/file/store_sums.hpp"
+#include "rdf/file/check/store_sums.hpp"
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -42,53 +42,29 @@ std::vector<std::uint64_t> sumsOfBlock(ReadTransaction::Impl& transaction, TermI
   return sums;
 }
 
-/// A key of an index, its ids in the order s, p, o, g.
-template <Table kIndex>
-Key128 inOrderOfSpog(Key128 key) {
-  const auto id = [key](unsigned place) { return Key128{static_cast<TermId>(key >> (32 * (3 - place)))}; };
-  const auto joined = [](Key128 s, Key128 p, Key128 o, Key128 g) { return s << 96U | p << 64U | o << 32U | g; };
-  if constexpr (kIndex == Table::Posg) return joined(id(2), id(0), id(1), id(3));
-  if constexpr (kIndex == Table::Ospg) return joined(id(1), id(2), id(0), id(3));
-  if constexpr (kIndex == Table::Gspo) return joined(id(1), id(2), id(3), id(0));
-  return key;
-}
-
-template <Table kIndex>
-EntrySum sumOfIndex(const PageDirectory& directory, const std::filesystem::path& file) {
-  EntrySum sum;
-  Key128 last = 0;
-  for (std::size_t i = 0; i < directory.pageCount(); ++i) {
-    const std::span<const QuadKey> keys = directory.page(i);
-    bool in_order = !keys.empty() && toNumber(keys.front()) >= directory.lower(i) &&
-                    (i == 0 || (last < directory.lower(i) && last < toNumber(keys.front())));
-    if (in_order) last = toNumber(keys.front()) - 1;
-    for (const QuadKey& key : keys) {
-      const Key128 number = toNumber(key);
-      in_order = in_order && number > last;
-      last = number;
-      sum.hash += hashOfKey(inOrderOfSpog<kIndex>(number));
-    }
-    sum.count += keys.size();
-    if (!in_order)
-      refuseDamaged(file, std::string("the keys of index ") + kTableNames[static_cast<std::size_t>(kIndex)] +
-                              " are out of order");
-  }
-  return sum;
-}
-
 }  // namespace
 
 EntrySum sumOf(const PageDirectory& directory, Table index, const std::filesystem::path& file) {
-  switch (index) {
-    case Table::Posg:
-      return sumOfIndex<Table::Posg>(directory, file);
-    case Table::Ospg:
-      return sumOfIndex<Table::Ospg>(directory, file);
-    case Table::Gspo:
-      return sumOfIndex<Table::Gspo>(directory, file);
-    default:
-      return sumOfIndex<Table::Spog>(directory, file);
-  }
+  EntrySum sum;
+  Key128 last = 0;
+  withKeysOfSum(index, [&](const auto& key_in_sum) {
+    for (std::size_t i = 0; i < directory.pageCount(); ++i) {
+      const std::span<const QuadKey> keys = directory.page(i);
+      bool in_order = !keys.empty() && toNumber(keys.front()) >= directory.lower(i) &&
+                      (i == 0 || (last < directory.lower(i) && last < toNumber(keys.front())));
+      if (in_order) last = toNumber(keys.front()) - 1;
+      for (const QuadKey& key : keys) {
+        const Key128 number = toNumber(key);
+        in_order = in_order && number > last;
+        last = number;
+        sum.add(key_in_sum(number));
+      }
+      if (!in_order)
+        refuseDamaged(file, std::string("the keys of index ") + kTableNames[static_cast<std::size_t>(index)] +
+                                " are out of order");
+    }
+  });
+  return sum;
 }
 
 std::optional<StoreSums> storedSums(const ReadTransaction::Impl& transaction, std::uint64_t commit) {

@@ -39,6 +39,36 @@ struct EntrySum {
   }
 };
 
+/// A key of an index as it counts in sums: a quad in the order s, p, o, g, so that all indexes have one sum.
+template <Table kIndex>
+Key128 keyInSum(Key128 key) {
+  const auto id = [key](unsigned place) { return Key128{static_cast<TermId>(key >> (32 * (3 - place)))}; };
+  const auto joined = [](Key128 s, Key128 p, Key128 o, Key128 g) { return s << 96U | p << 64U | o << 32U | g; };
+  if constexpr (kIndex == Table::Posg) return joined(id(2), id(0), id(1), id(3));
+  if constexpr (kIndex == Table::Ospg) return joined(id(1), id(2), id(0), id(3));
+  if constexpr (kIndex == Table::Gspo) return joined(id(1), id(2), id(3), id(0));
+  return key;
+}
+
+/// Calls `work` with the function that turns keys of the index into those of its sum.
+template <typename Work>
+auto withKeysOfSum(Table index, const Work& work) {
+  switch (index) {
+    case Table::Posg:
+      return work([](Key128 key) { return keyInSum<Table::Posg>(key); });
+    case Table::Ospg:
+      return work([](Key128 key) { return keyInSum<Table::Ospg>(key); });
+    case Table::Gspo:
+      return work([](Key128 key) { return keyInSum<Table::Gspo>(key); });
+    default:
+      return work([](Key128 key) { return keyInSum<Table::Spog>(key); });
+  }
+}
+
+inline Key128 keyInSumOf(Table index, Key128 key) {
+  return withKeysOfSum(index, [key](const auto& key_in_sum) { return key_in_sum(key); });
+}
+
 /// The record of a commit in the main database.
 struct StoreSums {
   std::uint64_t transaction = 0;  ///< the commit that wrote it

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ranges are adjusted once, when the transaction commits.
+#include "rdf/store/changed_ranges.hpp"
+
+#include "rdf/file/lmdb_environment.hpp"
+#include "rdf/store/index_directories.hpp"
+
+namespace cluxel::rdf {
+
+RangeSums& ChangedRanges::of(Table index, ReadTransaction::Impl& transaction) {
+  std::optional<RangeSums>& ranges = ranges_[static_cast<std::size_t>(index)];
+  if (!ranges) ranges = storedRanges(transaction, index);
+  return *ranges;
+}
+
+void ChangedRanges::store(WriteTransaction& transaction) {
+  ReadTransaction::Impl& state = transaction.impl();
+  for (std::size_t i = 0; i < kTableCount; ++i) {
+    if (!ranges_[i]) continue;
+    const auto index = static_cast<Table>(i);
+    if (ranges_[i]->needsAdjusting())
+      ranges_[i]->adjust(*state.directories->of(index, state), index, state.environment->file());
+    storeRanges(transaction, index, *ranges_[i]);
+  }
+}
+
+}  // namespace cluxel::rdf

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sums of ranges follow an index, and who reads a damaged range is told, while others read and write the rest.
+#include "rdf/file/check/page_guard.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <random>
+#include <set>
+
+#include "base/file_bytes.hpp"
+#include "rdf/file/map_check.hpp"
+#include "rdf/map_file_fixture.hpp"
+#include "rdf/store/quad_reader_impl.hpp"
+
+namespace cluxel::rdf {
+namespace {
+
+constexpr std::array kIndexes{Table::TermHashes, Table::Spog, Table::Posg, Table::Ospg, Table::Gspo};
+
+QuadIds quadOf(std::uint32_t number) {
+  return {number / 4 + 1, number % 7 + 1, number * 2654435761U % 100'003 + 1, number % 3 + 1};
+}
+
+/// Each range has the sum of its keys, none is too long, and together they are the whole.
+void expectSumsOfRanges(Environment& environment) {
+  const ReadTransaction transaction = environment.read();
+  for (const Table index : kIndexes) {
+    const RangeSums stored = storedRanges(transaction.impl(), index);
+    std::vector<RangeSums::Range> counted(stored.ranges().begin(), stored.ranges().end());
+    for (RangeSums::Range& range : counted) range.sum = {};
+    const PageDirectory& pages = snapshotOf(transaction.impl()).directory(index, transaction.impl());
+    for (std::size_t page = 0; page < pages.pageCount(); ++page)
+      for (const QuadKey& key : pages.page(page))
+        counted[stored.rangeOf(toNumber(key))].sum.add(keyInSumOf(index, toNumber(key)));
+    for (std::size_t range = 0; range < counted.size(); ++range) {
+      ASSERT_EQ(counted[range].sum, stored.ranges()[range].sum) << static_cast<int>(index) << ", range " << range;
+      ASSERT_LE(counted[range].sum.count, RangeSums::kMaxKeys);
+    }
+    ASSERT_EQ(stored.whole(), sumOf(pages, index, "map"));
+  }
+}
+
+class GuardedMap : public MapFile {
+ protected:
+  static constexpr std::uint32_t kQuads = 150'000;
+
+  void SetUp() override {
+    const auto environment = create();
+    add(*environment, 0, kQuads);
+  }
+
+  static void add(Environment& environment, std::uint32_t first, std::uint32_t last) {
+    WriteTransaction transaction = environment.write();
+    QuadWriter writer(transaction);
+    for (std::uint32_t number = first; number < last; ++number) writer.add(quadOf(number));
+    writer.flush();
+    transaction.commit();
+  }
+
+  /// Changes one id of a quad in the index by subject, on the page of the current commit.
+  void damage(std::uint32_t number) {
+    std::size_t at = 0;
+    {
+      const ReadTransaction transaction = open(OpenMode::ReadOnly)->read();
+      StoreSnapshot& snapshot = snapshotOf(transaction.impl());
+      const PageDirectory& pages = snapshot.directory(Table::Spog, transaction.impl());
+      const auto place = pages.lowerBound(toNumber(quadOf(number), QuadOrder::Spog));
+      at = reinterpret_cast<std::uintptr_t>(&pages.page(place.page)[place.index]) -
+           reinterpret_cast<std::uintptr_t>(snapshot.map().base);
+    }
+    std::fstream file(file_, std::ios::binary | std::ios::in | std::ios::out);
+    file.seekg(static_cast<std::streamoff>(at + 11));  // the last byte of the object
+    const auto byte = static_cast<char>(file.get() ^ 1);
+    file.seekp(static_cast<std::streamoff>(at + 11));
+    file.put(byte);
+  }
+
+  static std::size_t quadsOf(const Environment& environment, std::uint32_t subject) {
+    QuadCursor quads = QuadReader(environment.read()).scan({.s = subject, .p = {}, .o = {}, .g = {}}, QuadOrder::Spog);
+    std::size_t count = 0;
+    for (QuadIds quad; quads.next(quad);) ++count;
+    return count;
+  }
+};
+
+TEST_F(GuardedMap, KeepsTheSumsOfRangesThroughChangesOfAllSizes) {
+  const auto environment = open();
+  ASSERT_NO_FATAL_FAILURE(expectSumsOfRanges(*environment));
+  std::mt19937 random(5);
+  for (int round = 0; round < 25; ++round) {
+    WriteTransaction transaction = environment->write();
+    QuadWriter writer(transaction);
+    const std::uint32_t length = random() % (round % 5 == 0 ? 90'000 : 6'000), first = random() % kQuads;
+    const bool is_added = random() % 2 == 0;
+    for (std::uint32_t number = first; number < first + length; ++number) {
+      if (is_added)
+        writer.add(quadOf(number));
+      else
+        writer.remove(quadOf(number));
+      if (random() % 2000 == 0) writer.flush();
+    }
+    writer.flush();
+    if (round % 4 == 3) continue;  // is rolled back
+    transaction.commit();
+    ASSERT_NO_FATAL_FAILURE(expectSumsOfRanges(*environment)) << "round " << round;
+  }
+  ASSERT_NO_FATAL_FAILURE(expectSumsOfRanges(*environment));
+  const std::filesystem::path compacted = folder_.path() / "compacted.clx";
+  environment->compactTo(compacted);
+  ASSERT_NO_FATAL_FAILURE(expectSumsOfRanges(*Environment::open(compacted, OpenMode::ReadWrite)));
+}
+
+TEST_F(GuardedMap, TellsADamagedRangeFromWholeOnes) {
+  damage(kQuads / 2);
+  const auto environment = open(OpenMode::ReadOnly);
+  EXPECT_THROW(quadsOf(*environment, kQuads / 2 / 4 + 1), Error);
+  EXPECT_THROW(quadsOf(*environment, kQuads / 2 / 4 + 2), Error) << "nearby";
+  EXPECT_EQ(quadsOf(*environment, 1), 4U);
+  EXPECT_EQ(quadsOf(*environment, kQuads / 4 - 10), 4U);
+  EXPECT_EQ(QuadReader(environment->read()).size(), kQuads);
+  EXPECT_FALSE(checkMap(file_).sound());
+}
+
+TEST_F(GuardedMap, KeepsWhatIsKnownOfADamageThroughCommitsBesideIt) {
+  damage(kQuads / 2);
+  {
+    const auto environment = open();
+    for (std::uint32_t i = 0; i < 4; ++i) add(*environment, kQuads + i * 500, kQuads + i * 500 + 500);
+    EXPECT_EQ(quadsOf(*environment, (kQuads + 300) / 4 + 1), 4U);
+    EXPECT_THROW(quadsOf(*environment, kQuads / 2 / 4 + 1), Error) << "this process did not write it";
+  }
+  const auto environment = open();
+  EXPECT_EQ(quadsOf(*environment, (kQuads + 300) / 4 + 1), 4U);
+  EXPECT_THROW(quadsOf(*environment, kQuads / 2 / 4 + 1), Error);
+  EXPECT_THROW(environment->compactTo(folder_.path() / "compacted.clx"), Error) << "a copy would hold it";
+}
+
+/// LMDB splits and joins pages near a damage: what it moves stays known as damaged.
+TEST_F(GuardedMap, KeepsWhatIsKnownOfADamageThroughChangesAroundIt) {
+  damage(kQuads / 2);
+  for (int round = 0; round < 2; ++round) {
+    const auto environment = open();
+    WriteTransaction transaction = environment->write();
+    QuadWriter writer(transaction);
+    for (std::uint32_t number = kQuads / 2 - 2000; number < kQuads / 2 + 2000; ++number) {
+      if (number == kQuads / 2 || number % 8 == 0) continue;
+      if (round == 0)
+        writer.remove(quadOf(number));
+      else
+        writer.add(quadOf(number));
+    }
+    writer.flush();
+    const QuadReader within(transaction);
+    EXPECT_THROW(
+        {
+          QuadCursor quads = within.scan({.s = kQuads / 2 / 4 + 1, .p = {}, .o = {}, .g = {}}, QuadOrder::Spog);
+          for (QuadIds quad; quads.next(quad);) continue;
+        },
+        Error)
+        << "in the transaction that wrote the page, round " << round;
+    transaction.commit();
+    EXPECT_THROW(quadsOf(*environment, kQuads / 2 / 4 + 1), Error) << "after its commit, round " << round;
+  }
+  EXPECT_THROW(quadsOf(*open(OpenMode::ReadOnly), kQuads / 2 / 4 + 1), Error);
+  EXPECT_FALSE(checkMap(file_).sound());
+}
+
+TEST_F(GuardedMap, RefusesToWriteBesideAMalformedPage) {
+  std::size_t at = 0;
+  {
+    const ReadTransaction transaction = open(OpenMode::ReadOnly)->read();
+    StoreSnapshot& snapshot = snapshotOf(transaction.impl());
+    const PageDirectory& pages = snapshot.directory(Table::Spog, transaction.impl());
+    const auto place = pages.lowerBound(toNumber(quadOf(kQuads / 2), QuadOrder::Spog));
+    at = reinterpret_cast<std::uintptr_t>(pages.page(place.page).data()) -
+         reinterpret_cast<std::uintptr_t>(snapshot.map().base) - lmdb_page::kHeaderSize;
+  }
+  const std::string bytes = readFile(file_);
+  for (const std::size_t byte : {0U, 8U, 10U, 12U, 14U}) {  // of the number, the key size, the flags and the bounds
+    std::string damaged = bytes;
+    damaged[at + byte] = static_cast<char>(damaged[at + byte] ^ 0x44);
+    std::ofstream(file_, std::ios::binary) << damaged;
+    EXPECT_THROW(add(*open(), kQuads / 2 - 40, kQuads / 2 + 40), Error) << byte;
+    EXPECT_NO_THROW(add(*open(), kQuads, kQuads + 40)) << byte;
+    EXPECT_FALSE(checkMap(file_).sound()) << byte;
+  }
+}
+
+TEST(RangeSums, AreReadAsTheyWereWritten) {
+  RangeSummer summer(Table::Posg);
+  std::vector<Key128> keys;
+  for (std::uint32_t i = 1; i < 100'000; ++i) keys.push_back((Key128{i % 3} << 96U) + (Key128{i} << 64U) + i);
+  std::sort(keys.begin(), keys.end());
+  summer.add(keys);
+  const RangeSums made = summer.take();
+  EXPECT_EQ(made.ranges().size(), (keys.size() + RangeSums::kUsualKeys - 1) / RangeSums::kUsualKeys);
+  const RangeSums read = RangeSums::fromBytes(made.bytes(), "map");
+  ASSERT_EQ(read.ranges().size(), made.ranges().size());
+  for (std::size_t i = 0; i < read.ranges().size(); ++i) {
+    EXPECT_TRUE(read.ranges()[i].first == made.ranges()[i].first);
+    EXPECT_EQ(read.ranges()[i].sum, made.ranges()[i].sum);
+  }
+  EXPECT_THROW(RangeSums::fromBytes(made.bytes().substr(1), "map"), Error);
+  EXPECT_THROW(RangeSums::fromBytes("", "map"), Error);
+  EXPECT_THROW(RangeSums::fromBytes(made.bytes() + std::string(32, '\0'), "map"), Error);
+}
+
+}  // namespace
+}  // namespace cluxel::rdf
