@@ -72,6 +72,27 @@ perception::TileSet tilesOfObject(const rdf::ReadTransaction& transaction, const
   return {record->tiles.begin(), record->tiles.end()};
 }
 
+std::optional<PrimitivePlace> samplePrimitiveOf(const rdf::ReadTransaction& transaction, const ContentHash& object) {
+  const std::optional<ObjectRecord> record = storedRecord(transaction, object);
+  if (!record || record->tiles.empty()) return std::nullopt;
+  const perception::TileKey tile = record->tiles[record->tiles.size() / 2];
+  const std::optional<TileLayer> layer = storedLayer(transaction, tile);
+  if (!layer) return std::nullopt;
+  std::optional<PrimitivePlace> sample;
+  float widest_m2 = -1;
+  for (const TileLayer::Share& share : layer->shares) {
+    if (share.object != object) continue;
+    for (const std::uint32_t component : share.components) {
+      const TileLayer::PrimitiveHere& here = layer->primitives[component];
+      const float area_m2 = here.bounds.sizes().head<2>().prod();
+      if (area_m2 < widest_m2 || (area_m2 == widest_m2 && sample->primitive < here.id)) continue;
+      widest_m2 = area_m2;
+      sample = {here.id, tile};
+    }
+  }
+  return sample;
+}
+
 perception::TileSet tilesOfPrimitive(const rdf::ReadTransaction& transaction, const ContentHash& primitive) {
   perception::TileSet tiles;
   forEachStoredLayer(transaction, [&](const TileLayer& layer) {

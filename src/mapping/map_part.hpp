@@ -29,4 +29,12 @@ std::optional<MapPart> partOfMap(const rdf::ReadTransaction& transaction, TileSt
 perception::TileSet tilesOfObject(const rdf::ReadTransaction& transaction, const ContentHash& object);
 perception::TileSet tilesOfPrimitive(const rdf::ReadTransaction& transaction, const ContentHash& primitive);
 
+struct PrimitivePlace {
+  ContentHash primitive;
+  perception::TileKey tile;
+};
+/// The primitive at which an object is explained that reaches through the map: the widest one in the middle of the list
+/// of its tiles. Absent when there is no such object. Cost: that of one tile.
+std::optional<PrimitivePlace> samplePrimitiveOf(const rdf::ReadTransaction& transaction, const ContentHash& object);
+
 }  // namespace cluxel::mapping

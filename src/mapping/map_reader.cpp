@@ -152,6 +152,13 @@ std::optional<MapPart> MapReader::partAroundPrimitive(const ContentHash& primiti
   return impl_->partAround(tilesOfPrimitive(impl_->transaction, primitive), rings);
 }
 
+std::optional<MapPart> MapReader::partAroundTile(const perception::TileKey& tile, int rings) const {
+  return impl_->partAround({tile}, rings);
+}
+std::optional<PrimitivePlace> MapReader::samplePrimitiveOf(const ContentHash& object) const {
+  return mapping::samplePrimitiveOf(impl_->transaction, object);
+}
+
 bool MapReader::isClassWide(const ContentHash& object) const {
   const std::optional<ObjectRecord> record = storedRecord(impl_->transaction, object);
   return record && record->is_class_wide;

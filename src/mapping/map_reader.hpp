@@ -22,6 +22,7 @@ namespace cluxel::mapping {
 class TileStages;
 struct WayGraph;
 struct MapPart;
+struct PrimitivePlace;
 struct OverruledObject;
 
 struct MapSummary {
@@ -61,6 +62,9 @@ class MapReader {
   /// The part of the map `rings` tiles around an object or a primitive. Absent as for partOfMap().
   std::optional<MapPart> partAroundObject(const ContentHash& object, int rings) const;
   std::optional<MapPart> partAroundPrimitive(const ContentHash& primitive, int rings) const;
+  std::optional<MapPart> partAroundTile(const perception::TileKey& tile, int rings) const;
+  /// As samplePrimitiveOf() in map_part.hpp.
+  std::optional<PrimitivePlace> samplePrimitiveOf(const ContentHash& object) const;
   /// Whether an object takes in all of its class, as the ground does. False when there is none.
   bool isClassWide(const ContentHash& object) const;
   /// The points that a statement about an object is anchored to. Cost: that of the object's tiles.

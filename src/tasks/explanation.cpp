@@ -3,6 +3,7 @@
 #include "tasks/explanation.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -51,40 +52,58 @@ mapping::MapPart byRules(const mapping::MapReader& map, mapping::MapPart part) {
   return part;
 }
 
-std::optional<mapping::MapPart> partAround(const mapping::MapReader& map, const NamedThing& named, int rings) {
-  auto part =
-      named.primitive ? map.partAroundPrimitive(*named.primitive, rings) : map.partAroundObject(*named.object, rings);
+/// What is explained: an object or a primitive.
+struct Explainable {
+  std::optional<ContentHash> object, primitive;
+  std::optional<perception::TileKey> tile;  ///< of the primitive, if it is known
+};
+
+/// An object that reaches through the map is explained at one of its primitives.
+Explainable explainableOf(const mapping::MapReader& map, const NamedThing& named) {
+  if (named.object && map.isClassWide(*named.object))
+    if (const auto sample = map.samplePrimitiveOf(*named.object)) return {{}, sample->primitive, sample->tile};
+  return {named.object, named.primitive, {}};
+}
+
+std::optional<mapping::MapPart> partAround(const mapping::MapReader& map, const Explainable& what, int rings) {
+  auto part = what.tile        ? map.partAroundTile(*what.tile, rings)
+              : what.primitive ? map.partAroundPrimitive(*what.primitive, rings)
+                               : map.partAroundObject(*what.object, rings);
   return part ? std::optional(byRules(map, *std::move(part))) : std::nullopt;
 }
 
 std::vector<perception::PrimitiveIndex> primitivesIn(const perception::Scene& scene,
                                                      const std::vector<rules::SemanticObject>& objects,
-                                                     const NamedThing& named) {
-  if (named.object)
+                                                     const Explainable& what) {
+  if (what.object)
     for (const rules::SemanticObject& object : objects)
-      if (object.id == *named.object) return primitivesOf(object);
-  if (named.primitive)
+      if (object.id == *what.object) return primitivesOf(object);
+  if (what.primitive)
     for (perception::PrimitiveIndex i = 0; i < scene.primitives.size(); ++i)
-      if (scene.primitives[i].id == *named.primitive) return {i};
+      if (scene.primitives[i].id == *what.primitive) return {i};
   return {};
 }
 
 /// A run over a part of the map that decides about the thing as the run over the map did. Parts of some tiles are tried
 /// before the map is read as a whole.
-std::optional<rules::PartRun> runAround(const mapping::MapReader& map, const NamedThing& named,
+std::optional<rules::PartRun> runAround(const mapping::MapReader& map, const Explainable& what,
                                         const rules::RuleSet& rules) {
   if (rules.asks_map) return std::nullopt;
-  for (const int rings : {1, 3}) {
-    const std::optional<mapping::MapPart> part = partAround(map, named, rings);
+  struct Around {
+    int rings;
+    std::vector<double> margins_m;  ///< what is left out lies within those of fewer rings
+  };
+  constexpr double kAll = std::numeric_limits<double>::infinity();
+  for (const Around& around : {Around{1, {kAll}}, Around{3, {30, kAll}}}) {
+    const std::optional<mapping::MapPart> part = partAround(map, what, around.rings);
     if (!part) break;
-    constexpr double kAll = 1;
     if (auto run = runInPart(part->scene, rules, {part->traces, part->objects},
-                             primitivesIn(part->scene, part->objects, named), kAll))
+                             primitivesIn(part->scene, part->objects, what), {around.margins_m, 1}))
       return run;
   }
   const std::vector<std::uint64_t> traces = map.decisionTraces();
   const std::vector<rules::SemanticObject> by_rules = map.objectsByRules();
-  return runInPart(map.scene(), rules, {traces, by_rules}, primitivesIn(map.scene(), map.objects(), named));
+  return runInPart(map.scene(), rules, {traces, by_rules}, primitivesIn(map.scene(), map.objects(), what));
 }
 
 bool isByOperator(const mapping::MapReader& map, const ContentHash& object) {
@@ -131,18 +150,19 @@ ContentHash idByRules(const mapping::MapReader& map, const ContentHash& object) 
 }
 
 Explained explanationOf(const mapping::MapReader& map, const NamedThing& named, const rules::RuleSet& rules) {
-  if (auto run = runAround(map, named, rules)) {
+  const Explainable what = explainableOf(map, named);
+  if (auto run = runAround(map, what, rules)) {
     std::optional<rules::Explanation> explanation;
-    if (named.object)
-      explanation = explanationIn(run->result, rules, idByRules(map, *named.object));
+    if (what.object)
+      explanation = explanationIn(run->result, rules, idByRules(map, *what.object));
     else
       explanation = explanationIn(run->result, rules, run->primitives.front());
     if (explanation) return {std::move(*explanation), std::move(run)};
   }
   mapping::AskReplay oracle(map);
   const rules::ReasoningContext context{.oracle = &oracle};
-  if (!named.object)
-    return {explain(map.scene(), rules, context, primitivesIn(map.scene(), {}, named).front()), std::nullopt};
+  if (!what.object)
+    return {explain(map.scene(), rules, context, primitivesIn(map.scene(), {}, what).front()), std::nullopt};
   const rules::SemanticObject* object = &map.byRules(map.objects()[named.number]);
   std::optional<rules::Explanation> explanation = explain(map.scene(), rules, context, *object);
   if (!explanation)
@@ -176,7 +196,8 @@ WhyNotOfThing whyNotOf(const mapping::MapReader& map, const rules::RuleSet& rule
   mapping::AskReplay oracle(map);
   const rules::ReasoningContext context{.oracle = &oracle};
   const perception::Scene& scene = map.scene();
-  const std::vector<perception::PrimitiveIndex> primitives = primitivesIn(scene, map.objects(), named);
+  const std::vector<perception::PrimitiveIndex> primitives =
+      primitivesIn(scene, map.objects(), {named.object, named.primitive, {}});
   const rules::ReasoningResult made = reason(scene, rules, context);
   const rules::SemanticObject* owner = ownerOf(made.objects, primitives, id);
   WhyNotOfThing thing{whyNot(scene, rules, context, made, owner, primitives, class_iri), ""};
@@ -264,7 +285,11 @@ std::vector<std::string> explainObjects(const mapping::MapReader& map) {
   mapping::AskReplay oracle(map);
   const rules::ReasoningContext context{.oracle = &oracle};
   const rules::ReasoningResult result = reason(map.scene(), rules, context);
-  std::vector<rules::Explanation> explanations = explainAll(map.scene(), rules, context, result);
+  std::map<ContentHash, perception::PrimitiveIndex> samples;
+  for (const rules::SemanticObject& object : map.objects())
+    if (const Explainable what = explainableOf(map, NamedThing{object.id, std::nullopt, 0}); what.tile)
+      samples.emplace(map.byRules(object).id, primitivesIn(map.scene(), {}, what).front());
+  std::vector<rules::Explanation> explanations = explainAll(map.scene(), rules, context, result, samples);
   std::map<ContentHash, std::string> by_object;
   for (rules::Explanation& explanation : explanations) {
     shortenFiles(explanation, inputs);

@@ -74,23 +74,58 @@ std::string withoutFolder(std::string text, const MapInputs& inputs) {
   return text;
 }
 
-TEST(Explanation, ReadsSomeTilesAndSaysWhatTheWholeMapSays) {
-  const SmallCampus campus({.seed = 5, .stops = 12, .size_m = 150, .points_per_stop = 7000, .max_range_m = 16});
+/// A map of more tiles than an explanation reads.
+class ExplanationOfALongMap : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const SmallCampus campus({.seed = 5, .stops = 12, .size_m = 150, .points_per_stop = 7000, .max_range_m = 16});
+    buildMap(scansOf(campus.files()), shippedInputs(), folder.path() / "street.clx", {.threads = 2}, silence());
+    map.emplace(folder.path() / "street.clx");
+    inputs = map->inputs();
+    std::vector<RuleSource> sources;
+    for (const NamedText& text : inputs.rules) sources.push_back({text.name, text.text});
+    rules = loadRuleTexts(sources, inputs.rule_roots, classCatalogueOf(inputs.ontology)).require();
+  }
+
   const ScratchFolder folder;
-  buildMap(scansOf(campus.files()), shippedInputs(), folder.path() / "street.clx", {.threads = 2}, silence());
-  const MapReader map(folder.path() / "street.clx");
-  const MapInputs inputs = map.inputs();
-  std::vector<RuleSource> sources;
-  for (const NamedText& text : inputs.rules) sources.push_back({text.name, text.text});
-  const RuleSet rules = loadRuleTexts(sources, inputs.rule_roots, classCatalogueOf(inputs.ontology)).require();
+  std::optional<MapReader> map;
+  MapInputs inputs;
+  RuleSet rules;
+};
+
+TEST_F(ExplanationOfALongMap, OfAnObjectThroughoutTheMapReadsSomeTilesToo) {
+  const auto& objects = map->objects();
+  const auto ground =
+      std::find_if(objects.begin(), objects.end(), [](const SemanticObject& object) { return object.is_class_wide; });
+  ASSERT_NE(ground, objects.end());
+  const auto sample = map->samplePrimitiveOf(ground->id);
+  ASSERT_TRUE(sample && map->partAroundTile(sample->tile, 1));
+  const auto& primitives = map->scene().primitives;
+  const auto at = std::find_if(primitives.begin(), primitives.end(),
+                               [&](const Primitive& primitive) { return primitive.id == sample->primitive; });
+  ASSERT_NE(at, primitives.end());
+  const Explanation whole = explain(map->scene(), rules, {}, static_cast<PrimitiveIndex>(at - primitives.begin()));
+  ASSERT_TRUE(whole.object);
+  EXPECT_EQ(whole.object->id, ground->id);
+  EXPECT_THAT(whole.note, ::testing::IsEmpty()) << "it has a decision of its own";
+  const std::string expected = withoutFolder(textOf(whole, rules, map->scene()), inputs);
+  EXPECT_THAT(explainThing(*map, ground->id.hex(), false), ::testing::EndsWith(expected));
+  // All at once tells the same.
+  auto alone = nlohmann::ordered_json::parse(explainThing(*map, ground->id.hex(), true));
+  alone.erase("number"), alone.erase("thing");
+  EXPECT_EQ(nlohmann::ordered_json::parse(explainObjects(*map)[ground - objects.begin()]), alone);
+}
+
+TEST_F(ExplanationOfALongMap, ReadsSomeTilesAndSaysWhatTheWholeMapSays) {
   std::size_t in_part = 0;
-  for (std::size_t i = 0; i < map.objects().size(); i += 7) {
-    const SemanticObject& object = map.objects()[i];
-    const auto whole = explain(map.scene(), rules, {}, object);
+  for (std::size_t i = 0; i < map->objects().size(); i += 7) {
+    const SemanticObject& object = map->objects()[i];
+    if (object.is_class_wide) continue;
+    const auto whole = explain(map->scene(), rules, {}, object);
     ASSERT_TRUE(whole);
-    const std::string expected = withoutFolder(textOf(*whole, rules, map.scene()), inputs);
-    EXPECT_TRUE(explainThing(map, object.id.hex(), false).ends_with(expected)) << "object " << i;
-    if (map.partAroundObject(object.id, 1)) ++in_part;
+    const std::string expected = withoutFolder(textOf(*whole, rules, map->scene()), inputs);
+    EXPECT_TRUE(explainThing(*map, object.id.hex(), false).ends_with(expected)) << "object " << i;
+    if (map->partAroundObject(object.id, 1)) ++in_part;
   }
   EXPECT_GE(in_part, 5U);
 }

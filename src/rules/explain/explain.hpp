@@ -2,6 +2,7 @@
 // Explains why a primitive has its class, why not another one, and what would change that.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,9 +59,11 @@ std::optional<Explanation> explanationIn(const ReasoningResult& result, const Ru
 std::vector<perception::PrimitiveIndex> primitivesOf(const SemanticObject& object);
 
 /// The same for all objects of `result`, which reason() gave for the same scene, rules and context: one explanation for
-/// each, in their order. Cost: one run of the stage with a probe at every object.
+/// each, in their order. `samples`: primitives at which objects are explained instead of at their seeds. Cost: one run
+/// of the stage with a probe at every object.
 std::vector<Explanation> explainAll(const perception::Scene& scene, const RuleSet& rules,
-                                    const ReasoningContext& context, const ReasoningResult& result);
+                                    const ReasoningContext& context, const ReasoningResult& result,
+                                    const std::map<ContentHash, perception::PrimitiveIndex>& samples = {});
 
 /// As text: the path to the verdict, then the path of each rejected class with its nearest counterfactual.
 std::string textOf(const Explanation& explanation, const RuleSet& rules, const perception::Scene& scene);

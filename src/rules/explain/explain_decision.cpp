@@ -104,18 +104,22 @@ std::optional<Explanation> explain(const perception::Scene& scene, const RuleSet
 }
 
 std::vector<Explanation> explainAll(const perception::Scene& scene, const RuleSet& rules,
-                                    const ReasoningContext& context, const ReasoningResult& result) {
+                                    const ReasoningContext& context, const ReasoningResult& result,
+                                    const std::map<ContentHash, perception::PrimitiveIndex>& samples) {
+  const auto placeOf = [&samples](const SemanticObject& object, const ReasoningResult& made) {
+    const auto sample = samples.find(object.id);
+    return sample != samples.end() ? sample->second : made.decisions.at(object.decision).seed;
+  };
   ReasoningContext probing = context;
-  for (const SemanticObject& object : result.objects)
-    probing.probes.push_back(result.decisions.at(object.decision).seed);
+  for (const SemanticObject& object : result.objects) probing.probes.push_back(placeOf(object, result));
   std::sort(probing.probes.begin(), probing.probes.end());
   const ReasoningResult probed = reason(scene, rules, probing);
   const DecisionsOf decisions = decisionsAbout(probing.probes, probed);
   std::vector<Explanation> explanations;
   explanations.reserve(probed.objects.size());
   for (const SemanticObject& object : probed.objects) {
-    const perception::PrimitiveIndex seed = probed.decisions.at(object.decision).seed;
-    explanations.push_back(explanationOf(seed, decisions.at(seed), &object, probed, rules));
+    const perception::PrimitiveIndex place = placeOf(object, probed);
+    explanations.push_back(explanationOf(place, decisions.at(place), &object, probed, rules));
   }
   return explanations;
 }

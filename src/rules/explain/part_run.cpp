@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 
 #include "perception/segments/scene_part.hpp"
 
@@ -13,7 +12,6 @@ namespace cluxel::rules {
 namespace {
 
 constexpr double kChecked_m = 5;  ///< around what is explained
-constexpr std::array<double, 3> kMargins_m{12, 30, 75};
 
 using Box = Eigen::AlignedBox2d;
 
@@ -122,17 +120,20 @@ class PartSearch {
 }  // namespace
 
 std::optional<PartRun> runInPart(const perception::Scene& scene, const RuleSet& rules, const WholeRun& whole,
-                                 const std::vector<perception::PrimitiveIndex>& primitives, double max_share) {
+                                 const std::vector<perception::PrimitiveIndex>& primitives, const TriedParts& tried) {
   if (rules.asks_map || whole.traces.size() != scene.primitives.size() || primitives.empty()) return std::nullopt;
   const PartSearch search(scene, rules, whole, primitives);
-  for (const double margin_m : kMargins_m) {
-    const std::vector<perception::PrimitiveIndex> kept = search.within(margin_m, max_share);
+  std::vector<perception::PrimitiveIndex> before;
+  for (const double margin_m : tried.margins_m) {
+    std::vector<perception::PrimitiveIndex> kept = search.within(margin_m, tried.max_share);
     if (kept.empty()) return std::nullopt;
+    if (kept == before) continue;
     PartRun run{partOf(scene, kept), search.numbersIn(kept), {}};
     ReasoningContext probing;
     probing.probes = run.primitives;
     run.result = reason(run.part, rules, probing);
     if (search.agrees(kept, run.part, run.result)) return run;
+    before = std::move(kept);
   }
   return std::nullopt;
 }

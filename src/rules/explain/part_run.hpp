@@ -22,15 +22,19 @@ struct PartRun {
   ReasoningResult result;
 };
 
-inline constexpr double kMaxSharePart = 0.6;  ///< larger parts take as long as the whole
+/// The parts that are tried: the primitives within a margin around the explained ones.
+struct TriedParts {
+  std::vector<double> margins_m{12, 30, 75};  ///< ascending
+  double max_share = 0.6;                     ///< of the scene's cluxels: larger parts take as long as the whole
+};
 
 /// Tries parts of growing size. One counts when the traces of `primitives` (ascending), and of the seeds of the
 /// objects that own them, are those of the whole run, and when every cluxel within 5 m around them went to the same
 /// rule. A counterfactual may still read what lies farther away. Absent when no part counts that is clearly smaller
-/// than the scene, with at most `max_share` of its cluxels, or when the rules ask the map. `scene` may itself be cut
+/// than the scene,, or when the rules ask the map. `scene` may itself be cut
 /// out of a larger one, to which the traces belong.
 std::optional<PartRun> runInPart(const perception::Scene& scene, const RuleSet& rules, const WholeRun& whole,
                                  const std::vector<perception::PrimitiveIndex>& primitives,
-                                 double max_share = kMaxSharePart);
+                                 const TriedParts& tried = {});
 
 }  // namespace cluxel::rules
