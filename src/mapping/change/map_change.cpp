@@ -139,9 +139,8 @@ ChangeReport appliedTo(const fs::path& file, const std::function<MapInputs(MapIn
 }
 
 /// Frees the space that a committed change has left, where it is too much.
-ChangeReport compacted(ChangeReport report, const fs::path& file, const ChangeParams& params, ProgressSink& sink,
-                       double max_free_share = kMaxFreeShareOfChanged) {
-  if (report.has_changes && !params.dry_run && params.may_compact) compactIfSparse(file, sink, max_free_share);
+ChangeReport compacted(ChangeReport report, const fs::path& file, const ChangeParams& params, ProgressSink& sink) {
+  if (report.has_changes && !params.dry_run && params.may_compact) compactIfSparse(file, sink, kMaxFreeShareOfChanged);
   return report;
 }
 
@@ -168,7 +167,7 @@ ChangeReport MapExtension::add(const scan::ScanSet& scans) {
 
 ChangeReport retractScans(const fs::path& file, const std::vector<scan::ScanId>& scans, const ChangeParams& params,
                           ProgressSink& sink) {
-  return compacted(removedFrom(file, scans, params, sink), file, params, sink, kMaxFreeShare);
+  return compacted(removedFrom(file, scans, params, sink), file, params, sink);
 }
 
 ChangeReport moveScans(const fs::path& file, const std::vector<ScanPose>& poses, const ChangeParams& params,
