@@ -55,6 +55,7 @@ class DamagedMap : public Program {
             {"explain", "explain MAP 1", ""},
             {"doctor", "doctor MAP", ""},
             {"update", "update MAP -e 'INSERT DATA { <http://x/new> <http://x/p> 7 }'", "export OUT --format nquads"},
+            {"state", "state MAP --object 1 --label Seen --author somebody", "export OUT --canonical"},
             {"compact", "compact MAP", "export OUT --format nquads"}};
   }
 
@@ -67,7 +68,7 @@ class DamagedMap : public Program {
       return run(arguments.replace(arguments.find(mark), mark.size(), file));
     };
     Outcome first = on(action.arguments, "MAP");
-    if (action.name == "compact") first.out.clear();  // the sizes of the file
+    if (action.name == "compact" || action.name == "state") first.out.clear();  // sizes of the file, names by time
     if (first.code != 0 || action.then.empty()) return {first.code, first.out};
     const Outcome after = on(action.then, "OUT");
     return {after.code, first.out + after.out};

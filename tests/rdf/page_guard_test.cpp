@@ -4,9 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <fstream>
 #include <random>
-#include <set>
+#include <thread>
 
 #include "base/file_bytes.hpp"
 #include "rdf/file/map_check.hpp"
@@ -120,6 +121,28 @@ TEST_F(GuardedMap, TellsADamagedRangeFromWholeOnes) {
   EXPECT_EQ(quadsOf(*environment, kQuads / 4 - 10), 4U);
   EXPECT_EQ(QuadReader(environment->read()).size(), kQuads);
   EXPECT_FALSE(checkMap(file_).sound());
+}
+
+TEST_F(GuardedMap, IsComparedBySeveralReadersAtOnce) {
+  damage(kQuads / 2);
+  const auto environment = open(OpenMode::ReadOnly);
+  std::atomic<std::size_t> found{0}, refused{0};
+  std::vector<std::thread> readers;
+  for (std::uint32_t reader = 0; reader < 4; ++reader)
+    readers.emplace_back([&, reader] {
+      for (std::uint32_t i = 0; i < 40; ++i) {
+        const std::uint32_t subject = (i * 7919 + reader * 104'729) % (kQuads / 4) + 1;
+        try {
+          found += quadsOf(*environment, subject);
+        } catch (const Error&) {
+          ++refused;
+        }
+      }
+    });
+  for (std::thread& reader : readers) reader.join();
+  EXPECT_EQ(found + 4 * refused, 4U * 40 * 4);
+  EXPECT_GT(refused, 0U) << "some asked for the damaged range";
+  EXPECT_GT(found, 300U);
 }
 
 TEST_F(GuardedMap, KeepsWhatIsKnownOfADamageThroughCommitsBesideIt) {
