@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Adds scans to a map file in batches; each batch is one transaction from points to facts.
 #include "mapping/build/map_builder.hpp"
+#include "mapping/build/batch_end.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -107,8 +108,9 @@ class MapBuild {
     requireOwn(transaction);
     PointChanges changes;
     std::uint64_t batch_points = 0, part_points = 0;
-    std::size_t next = first;
-    for (; next < scans_.size() && batch_points < params_.batch_points; ++next) {
+    std::size_t next = first, batch_scans = 0;
+    for (; next < scans_.size() && !endsBatch(batch_points, batch_scans, scans_.size() - next, params_.batch_points);
+         ++next) {
       ReadScan given = reader_.take(next);
       for (const std::string& note : reading_notes_.add(given.reading)) sink_.note(note);
       const std::uint64_t points = given.scan.cloud.point_count;
@@ -116,6 +118,7 @@ class MapBuild {
       report_.scans_already_there += segments.empty() ? 1 : 0;
       const std::uint64_t added = segments.empty() ? 0 : points;
       batch_points += added, part_points += added;
+      batch_scans += segments.empty() ? 0 : 1;
       changes.add(std::move(segments));
       clock.progress("scans", next + 1, scans_.size());
       if (part_points < params_.stage_points) continue;

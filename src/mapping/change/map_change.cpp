@@ -63,7 +63,7 @@ ChangeReport addBy(MapEditor& editor, const scan::ScanSet& scans) {
     for (std::size_t i = 0; i < scans.size(); ++i) {
       const scan::LoadedScan loaded = scans.read(i);
       for (const std::string& note : notes.add(loaded.reading)) sink.note(note);
-      additions.add(loaded.scan);
+      additions.add(loaded.scan, scans.size() - i - 1);
       sink.progress("scans", i + 1, scans.size());
     }
     additions.finish();

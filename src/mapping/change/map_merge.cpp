@@ -185,7 +185,7 @@ class Merge {
     for (std::size_t i = 0; i < clouds.size(); ++i) {
       scan::Scan scan = readers_[number].scanOf(clouds[i].id);
       scan.T_map_sensor = maps_[number].T_first_map * scan.T_map_sensor;
-      additions.add(scan);
+      additions.add(scan, clouds.size() - i - 1);
       sink_.progress("scans", i + 1, clouds.size());
     }
   }

@@ -6,13 +6,14 @@
 #include <iterator>
 #include <utility>
 
+#include "mapping/build/batch_end.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/presence/object_rows.hpp"
 #include "mapping/splits_store.hpp"
 
 namespace cluxel::mapping {
 
-void ScanAdditions::add(const scan::Scan& scan) {
+void ScanAdditions::add(const scan::Scan& scan, std::size_t scans_left) {
   if (!transaction_) transaction_.emplace(editor_.begin());
   const std::optional<Cloud> known = storedCloud(*transaction_, scan.id);
   auto segments = storeScan(*transaction_, scan);
@@ -24,7 +25,8 @@ void ScanAdditions::add(const scan::Scan& scan) {
   }
   noteAdded(*storedCloud(*transaction_, scan.id));
   changes_.add(std::move(segments));
-  if (!editor_.params().dry_run && points_ >= editor_.params().batch_points) return finish();
+  if (!editor_.params().dry_run && endsBatch(points_, added_.size(), scans_left, editor_.params().batch_points))
+    return finish();
   if (part_points_ < editor_.params().stage_points) return;
   editor_.update(*transaction_, std::exchange(changes_, {}), editor_.sink());
   part_points_ = 0;

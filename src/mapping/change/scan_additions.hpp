@@ -15,9 +15,9 @@ class ScanAdditions {
   /// `operation` names the change in the history.
   ScanAdditions(MapEditor& editor, std::string operation) : editor_(editor), operation_(std::move(operation)) {}
 
-  /// Stores a scan, and commits when the batch is full. A dry run has one batch, because what is not committed cannot
-  /// be the base of another one.
-  void add(const scan::Scan& scan);
+  /// Stores a scan, and commits when the batch is full and more than a small rest of scans follows. A dry run has one
+  /// batch, because what is not committed cannot be the base of another one.
+  void add(const scan::Scan& scan, std::size_t scans_left);
   /// Copies all scans and tiles of another map, in one batch. The other map must have the frame, the model and the
   /// settings of this one.
   void copy(const rdf::ReadTransaction& other);
