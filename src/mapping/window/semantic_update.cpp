@@ -132,8 +132,9 @@ class LocalUpdate {
       if (!decision) ++depth;
       if (!decision || !statements.apply(*window, change, *decision)) continue;
       const std::vector<std::uint32_t> former = formerNumbers(*window, stages_, changes_);
-      if (changesWideObjects(*window, *decision, former)) return std::nullopt;
-      SemanticUpdate update = write(*window, change, *decision, former, statements);
+      const std::vector<rules::SemanticObject> wide = wideObjectsIn(transaction_, *window, *decision, former);
+      if (changesWideObjects(*window, *decision, wide)) return std::nullopt;
+      SemanticUpdate update = write(*window, change, *decision, former, wide, statements);
       updateMargins(transaction_, margins.found(), window->tiles, tilesDecidedWhole(*window, *decision));
       storeNumbers(transaction_, parsed_.rules);
       return update;
@@ -195,10 +196,9 @@ class LocalUpdate {
   /// Whether an object of a whole class comes or goes, or is not the ground, which alone has neither neighbours nor
   /// facts from rays: such a change is told by the whole map.
   bool changesWideObjects(const MapWindow& window, const WindowDecision& decision,
-                          const std::vector<std::uint32_t>& former) const {
+                          const std::vector<rules::SemanticObject>& there) const {
     for (const rules::SemanticObject& object : decision.objects)
       if (object.is_class_wide && !storedRecord(transaction_, object.id)) return true;
-    const auto there = wideObjectsIn(transaction_, window, decision, former);
     return std::any_of(there.begin(), there.end(), [&](const rules::SemanticObject& object) {
       if (object.class_iri != rdf::vocabulary::clx("Ground")) return true;
       const auto record = storedRecord(transaction_, object.id);
@@ -209,7 +209,8 @@ class LocalUpdate {
   }
 
   SemanticUpdate write(const MapWindow& window, const WindowChange& change, const WindowDecision& decision,
-                       const std::vector<std::uint32_t>& former, WindowStatements& statements) {
+                       const std::vector<std::uint32_t>& former, const std::vector<rules::SemanticObject>& wide,
+                       WindowStatements& statements) {
     SemanticUpdate update;
     update.is_local = true;
     update.tiles_decided = window.tiles.size();
@@ -225,9 +226,9 @@ class LocalUpdate {
     sink_.progress("objects", update.after.size(), update.after.size());
     const bool have_ways = stages_.updateWays(transaction_, params_.threads);
     const std::optional<WayGraph> ways = have_ways ? std::optional(storedWays(transaction_)) : std::nullopt;
-    writeWindowFacts(transaction_, {parsed_, stages_, clouds_, before_.clouds, window, change, decision, former,
+    writeWindowFacts(transaction_, {parsed_, stages_, clouds_, before_.clouds, window, change, decision, former, wide,
                                     statements, ways ? &*ways : nullptr, params_.threads});
-    writeLayers(transaction_, window, decision, changes_, former);
+    writeLayers(transaction_, window, decision, changes_, former, wide);
     statements.store(transaction_, window);
     if (!now_.statements.empty())
       update.statements = toldOutcomes(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction_)));
