@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "mapping/layers/stored_layers.hpp"
+#include "rules/decide/local_reach.hpp"
+#include "rules/objects/finished_objects.hpp"
 
 namespace cluxel::mapping {
 
@@ -154,10 +156,32 @@ class Deciding {
   rules::Seam seam_;  ///< layers up to its first are decided anew; up to its last the outcome is known
 };
 
+/// By primitive: whether it was part of an object that strata of lone seeds made.
+std::vector<char> wereTakenAlone(const MapWindow& window, const rules::RuleSet& rules) {
+  std::set<ContentHash> objects, taken;
+  for (std::size_t i = 0; i < rules::strataOfLoneSeeds(rules); ++i) {
+    rules::SemanticObject object;
+    object.class_iri = rules.strata[i].front(), object.is_class_wide = true;
+    objects.insert(rules::idOf(window.scene, object));
+  }
+  for (const auto& [tile, layer] : window.layers)
+    for (const TileLayer::Share& share : layer.shares)
+      if (objects.contains(share.object))
+        for (const std::uint32_t component : share.components) taken.insert(layer.primitives[component].id);
+  std::vector<char> were;
+  for (const perception::Primitive& primitive : window.scene.primitives)
+    were.push_back(taken.contains(primitive.id) ? 1 : 0);
+  return were;
+}
+
 }  // namespace
 
-rules::LocalInput localInputOf(const MapWindow& window, const WindowChange& change) {
+rules::LocalInput localInputOf(const MapWindow& window, const WindowChange& change, const rules::RuleSet& rules,
+                               double reach_m) {
   rules::LocalInput input{window.scene, change.is_dirty, change.is_open, change.gone_boxes, {}};
+  input.likely.is_fixed = wereTakenAlone(window, rules);
+  input.likely.layers =
+      rules::layersAround(window.scene, change.is_dirty, input.likely.is_fixed, change.gone_boxes, reach_m);
   for (const perception::Primitive& primitive : window.scene.primitives) {
     const auto known = window.known.find(primitive.id);
     input.stored_trace.push_back(known == window.known.end() ? std::nullopt : std::optional(known->second.trace));

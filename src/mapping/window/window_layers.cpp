@@ -20,13 +20,14 @@ class LayerWriting {
  public:
   LayerWriting(rdf::WriteTransaction& transaction, const MapWindow& window, const WindowDecision& decision,
                const OutputChanges& changes, const std::vector<std::uint32_t>& former,
-               const std::vector<rules::SemanticObject>& wide)
+               const std::vector<rules::SemanticObject>& wide, const InputOf& input_of)
       : transaction_(transaction),
         window_(window),
         decision_(decision),
         changes_(changes),
         former_(former),
         wide_(wide),
+        input_of_(input_of),
         part_of_(window.scene.cluxels.size(), kNoShare) {
     for (const rules::SemanticObject& object : decision.objects)
       for (const rules::ObjectPart& part : object.parts) {
@@ -77,9 +78,9 @@ class LayerWriting {
       if (!is_changed && decision_.is_decided[now[c]] == 0)
         layer.primitives.push_back(former->primitives[c]);
       else if (decision_.is_decided[now[c]] != 0)
-        layer.primitives.push_back({id, window_.inputs[now[c]], decision_.traces[now[c]], {}});
+        layer.primitives.push_back({id, input_of_(now[c]), decision_.traces[now[c]], {}});
       else
-        layer.primitives.push_back({id, window_.inputs[now[c]], window_.known.at(id).trace, {}});
+        layer.primitives.push_back({id, input_of_(now[c]), window_.known.at(id).trace, {}});
     }
     measure(layer);
   }
@@ -176,6 +177,7 @@ class LayerWriting {
   const OutputChanges& changes_;
   const std::vector<std::uint32_t>& former_;
   const std::vector<rules::SemanticObject>& wide_;
+  const InputOf& input_of_;
   std::vector<Part> parts_;
   std::vector<std::uint32_t> part_of_;
   std::map<ContentHash, TileSet> tiles_of_;  ///< of objects, within the window
@@ -185,8 +187,8 @@ class LayerWriting {
 
 void writeLayers(rdf::WriteTransaction& transaction, const MapWindow& window, const WindowDecision& decision,
                  const OutputChanges& changes, const std::vector<std::uint32_t>& former,
-                 const std::vector<rules::SemanticObject>& wide) {
-  LayerWriting(transaction, window, decision, changes, former, wide).run();
+                 const std::vector<rules::SemanticObject>& wide, const InputOf& input_of) {
+  LayerWriting(transaction, window, decision, changes, former, wide, input_of).run();
 }
 
 }  // namespace cluxel::mapping
