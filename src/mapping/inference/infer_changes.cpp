@@ -159,18 +159,20 @@ std::vector<ChangedQuad> ChangeInference::statedOrWithdrawn(const rdf::QuadDiffe
   return quads;
 }
 
-/// Whether something that is stated about the derivation of a fact has changed: rules do not look at that again.
+/// Whether a fact of which the derivation of another consists has been stated or withdrawn: rules do not look at that
+/// again.
 bool ChangeInference::touchesDerivations(const rdf::QuadDifference& change) const {
-  const auto is_derivation = [&](rdf::TermId subject) { return isDerivation(reader_.viewOf(subject).text); };
-  std::vector<rdf::TermId> subjects;
-  for (const std::vector<rdf::QuadIds>* quads : {&change.added, &change.removed})
-    for (const rdf::QuadIds& quad : *quads)
-      if (subjects.empty() || subjects.back() != quad.s) subjects.push_back(quad.s);
-  std::sort(subjects.begin(), subjects.end());
-  subjects.erase(std::unique(subjects.begin(), subjects.end()), subjects.end());
-  return std::any_of(subjects.begin(), subjects.end(), is_derivation) ||
+  std::vector<std::optional<rdf::TermId>> parts;
+  for (const std::string& property : propertiesOfDerivations()) parts.push_back(reader_.idOf(Term::iri(property)));
+  const auto type = reader_.idOf(Term::iri(rdf::vocabulary::clx("Derivation")));
+  const auto is_part = [&](const auto& fact) {
+    return (fact.p == words_.type ? fact.o == type : std::find(parts.begin(), parts.end(), fact.p) != parts.end()) &&
+           isDerivation(reader_.viewOf(fact.s).text);
+  };
+  return std::any_of(change.added.begin(), change.added.end(), is_part) ||
+         std::any_of(change.removed.begin(), change.removed.end(), is_part) ||
          std::any_of(facts_.changed().begin(), facts_.changed().end(), [&](const auto& entry) {
-           return entry.second.before != entry.second.now && is_derivation(entry.first.s);
+           return entry.second.before != entry.second.now && is_part(entry.first);
          });
 }
 
