@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Follows a change through the closure and through the rules, one stage after the other.
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -89,7 +90,7 @@ class ChangeInference {
   std::vector<rdf::QuadIds> unseen(Stage stage, const ReadTest& reads) const;
   std::vector<ChangedQuad> statedOrWithdrawn(const rdf::QuadDifference& change,
                                              const InferenceProperties& properties) const;
-  bool isStatedBeside(std::span<const ChangedQuad> of_fact) const;
+  bool isStatedBeside(std::span<const ChangedQuad> of_fact, rdf::PrefixLookup& stored) const;
   std::vector<SeenChange> seenChanges(Stage stage, const ReadTest& reads) const;
   bool isOtherBefore(Stage stage, const Triple& fact) const;
   void setBases(Stage stage, const RuleShape& shape, std::vector<Triple> touched, const Outputs& outputs);
@@ -114,6 +115,7 @@ bool ChangeInference::followStated(const rdf::QuadDifference& change, const std:
   const InferenceProperties properties(reader_, words_, schema_, rules);
   const std::vector<ChangedQuad> quads = statedOrWithdrawn(change, properties);
   std::vector<rdf::BaseChange> bases;
+  rdf::PrefixLookup stored = reader_.lookup(rdf::QuadOrder::Spog);  // facts ascend
   for (std::span<const ChangedQuad> rest(quads); !rest.empty();) {
     const Triple fact = factOf(rest.front());
     const auto end = std::find_if(rest.begin(), rest.end(), [&](const auto& quad) { return factOf(quad) != fact; });
@@ -122,7 +124,7 @@ bool ChangeInference::followStated(const rdf::QuadDifference& change, const std:
     const auto is_added = [](const ChangedQuad& quad) { return quad.is_added; };
     const bool is_stated = std::any_of(of_fact.begin(), of_fact.end(), is_added);
     const bool was_stated = !std::all_of(of_fact.begin(), of_fact.end(), is_added);
-    if (is_stated == was_stated || isStatedBeside(of_fact)) continue;
+    if (is_stated == was_stated || isStatedBeside(of_fact, stored)) continue;
     if (properties.useOf(fact.p) == PropertyUse::Read) {
       plain_[fact.p].push_back({fact, is_stated});
     } else {
@@ -136,12 +138,16 @@ bool ChangeInference::followStated(const rdf::QuadDifference& change, const std:
 }
 
 /// Whether some graph states the fact of these quads before the change and now.
-bool ChangeInference::isStatedBeside(std::span<const ChangedQuad> of_fact) const {
+bool ChangeInference::isStatedBeside(std::span<const ChangedQuad> of_fact, rdf::PrefixLookup& stored) const {
   const Triple fact = factOf(of_fact.front());
-  return std::any_of(graphs_.sources.begin(), graphs_.sources.end(), [&](rdf::TermId graph) {
-    return std::none_of(of_fact.begin(), of_fact.end(), [&](const auto& changed) { return changed.quad.g == graph; }) &&
-           reader_.contains(rdf::QuadIds{fact.s, fact.p, fact.o, graph});
-  });
+  const auto is_beside = [&](const rdf::QuadKey& entry) {
+    const rdf::TermId graph = rdf::toQuad(entry, rdf::QuadOrder::Spog).g;
+    return graphs_.isSource(graph) &&
+           std::none_of(of_fact.begin(), of_fact.end(), [&](const auto& changed) { return changed.quad.g == graph; });
+  };
+  for (auto entries = stored.find(std::array{fact.s, fact.p, fact.o}); !entries.empty(); entries = stored.more())
+    if (std::any_of(entries.begin(), entries.end(), is_beside)) return true;
+  return false;
 }
 
 /// The quads that were added or removed in graphs of stated facts, and which inference uses; sorted.
