@@ -2,6 +2,7 @@
 // The part of a map around a change: its tiles, its scene, and what the map knew of it before the change.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -15,6 +16,12 @@
 #include "rdf/file/environment.hpp"
 
 namespace cluxel::mapping {
+
+/// A tile in plan view [m, map].
+inline Eigen::AlignedBox2d boxOfTile(const perception::TileKey& tile) {
+  const Eigen::Vector2d corner = perception::cornerOf(tile).head<2>();
+  return {corner, Eigen::Vector2d(corner.array() + perception::kTileSize_m)};
+}
 
 /// What the map knew of a primitive.
 struct KnownPrimitive {

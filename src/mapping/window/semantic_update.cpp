@@ -15,6 +15,7 @@
 #include "mapping/statements/statement_facts.hpp"
 #include "mapping/window/former_objects.hpp"
 #include "mapping/window/kept_objects.hpp"
+#include "mapping/window/likely_tiles.hpp"
 #include "mapping/window/map_window.hpp"
 #include "mapping/window/semantic_state.hpp"
 #include "mapping/window/window_change.hpp"
@@ -35,8 +36,7 @@ namespace {
 using perception::TileKey;
 using perception::TileSet;
 
-constexpr int kRings = 1;             ///< of tiles around the changed ones that a window holds at least
-constexpr double kUsualGrowth = 1.4;  ///< of a window from the first attempt to the last
+constexpr int kRings = 1;  ///< of tiles around the changed ones that a window holds at least
 /// The number of layers around a change that have to lie in the window; more where that is not enough.
 constexpr std::array<std::uint32_t, 4> kDepths{5, 8, 13, 21};
 constexpr std::size_t kMaxAttempts = 40;
@@ -114,9 +114,9 @@ class LocalUpdate {
     WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, before_, now_);
     for (; attempt_ < kMaxAttempts && depth_ < kDepths.size() && !statements.needsWholeMap(); ++attempt_) {
       changes_.tiles.insert(statements.tiles().begin(), statements.tiles().end());
-      const double growth = attempt_ == 0 ? kUsualGrowth : 1;
+      if (attempt_ == 0) addLikelyTiles();
       const std::optional<MapWindow> window = windowAround(transaction_, stages_, changes_, former_summaries_, more_,
-                                                           kRings, clouds_, params_.max_window_share / growth);
+                                                           kRings, clouds_, params_.max_window_share);
       if (!window) return std::nullopt;
       if (auto update = decideAndWrite(*window, statements)) return update;
       if (needs_whole_map_) return std::nullopt;
@@ -135,7 +135,7 @@ class LocalUpdate {
     };
     const TileSet anew = perception::unionOf(statements.tiles(), decided_otherwise_);
     const WindowChange change = changeIn(window, changes_, anew, reach_m_, input_of);
-    const rules::LocalInput input = localInputOf(window, change, parsed_.rules, reach_m_);
+    const rules::LocalInput input = localInputOf(window, change, lone_objects_, reach_m_);
     if (isTooSmall(window, change, input.likely.layers)) return std::nullopt;
     rules::ThresholdMargins margins(window.scene, parsed_.rules);
     rules::ReasoningContext context;
@@ -157,6 +157,13 @@ class LocalUpdate {
     updateMargins(transaction_, margins.found(), window.tiles, tilesDecidedWhole(window, *decision));
     storeNumbers(transaction_, parsed_.rules);
     return update;
+  }
+
+  /// A first window that is large enough spares an attempt.
+  void addLikelyTiles() {
+    lone_objects_ = objectsOfLoneSeeds(parsed_.rules);
+    const TileSet window = perception::unionOf(perception::grown(changes_.tiles), more_);
+    more_.merge(likelyTiles(transaction_, window, lone_objects_, reach_m_));
   }
 
   /// Whether the window lacks tiles of the first layers, which the next one has.
@@ -278,6 +285,7 @@ class LocalUpdate {
   ProgressSink& sink_;
   TileSet decided_otherwise_;  ///< tiles in which thresholds of the rules moved beyond what was measured
   double reach_m_ = 0;
+  std::set<ContentHash> lone_objects_;
   TileSet more_;  ///< tiles that the window holds beside those around the change
   std::size_t attempt_ = 0, depth_ = 0;
   bool needs_whole_map_ = false;

@@ -12,11 +12,6 @@ namespace {
 using perception::PrimitiveIndex;
 using perception::TileKey;
 
-Eigen::AlignedBox2d boxOfTile(const TileKey& tile) {
-  const Eigen::Vector2d corner = perception::cornerOf(tile).head<2>();
-  return {corner, Eigen::Vector2d(corner.array() + perception::kTileSize_m)};
-}
-
 class WindowComparison {
  public:
   WindowComparison(const MapWindow& window, const OutputChanges& changes, const perception::TileSet& anew,

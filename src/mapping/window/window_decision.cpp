@@ -5,8 +5,6 @@
 #include <algorithm>
 
 #include "mapping/layers/stored_layers.hpp"
-#include "rules/decide/local_reach.hpp"
-#include "rules/objects/finished_objects.hpp"
 
 namespace cluxel::mapping {
 
@@ -157,13 +155,8 @@ class Deciding {
 };
 
 /// By primitive: whether it was part of an object that strata of lone seeds made.
-std::vector<char> wereTakenAlone(const MapWindow& window, const rules::RuleSet& rules) {
-  std::set<ContentHash> objects, taken;
-  for (std::size_t i = 0; i < rules::strataOfLoneSeeds(rules); ++i) {
-    rules::SemanticObject object;
-    object.class_iri = rules.strata[i].front(), object.is_class_wide = true;
-    objects.insert(rules::idOf(window.scene, object));
-  }
+std::vector<char> wereTakenAlone(const MapWindow& window, const std::set<ContentHash>& objects) {
+  std::set<ContentHash> taken;
   for (const auto& [tile, layer] : window.layers)
     for (const TileLayer::Share& share : layer.shares)
       if (objects.contains(share.object))
@@ -176,10 +169,10 @@ std::vector<char> wereTakenAlone(const MapWindow& window, const rules::RuleSet& 
 
 }  // namespace
 
-rules::LocalInput localInputOf(const MapWindow& window, const WindowChange& change, const rules::RuleSet& rules,
-                               double reach_m) {
+rules::LocalInput localInputOf(const MapWindow& window, const WindowChange& change,
+                               const std::set<ContentHash>& lone_objects, double reach_m) {
   rules::LocalInput input{window.scene, change.is_dirty, change.is_open, change.gone_boxes, {}};
-  input.likely.is_fixed = wereTakenAlone(window, rules);
+  input.likely.is_fixed = wereTakenAlone(window, lone_objects);
   input.likely.layers =
       rules::layersAround(window.scene, change.is_dirty, input.likely.is_fixed, change.gone_boxes, reach_m);
   for (const perception::Primitive& primitive : window.scene.primitives) {

@@ -23,11 +23,10 @@ using perception::TileSet;
 
 /// Tiles whose rectangle comes near a box.
 bool comesNear(const TileKey& tile, const Eigen::AlignedBox3d& box) {
-  const Eigen::Vector2d corner = perception::cornerOf(tile).head<2>();
-  const Eigen::AlignedBox2d own(corner, Eigen::Vector2d(corner.array() + perception::kTileSize_m));
   constexpr double kAround_m = 1;
-  return own.exteriorDistance(Eigen::AlignedBox2d(Eigen::Vector2d(box.min().head<2>().array() - kAround_m),
-                                                  Eigen::Vector2d(box.max().head<2>().array() + kAround_m))) <= 0;
+  return boxOfTile(tile).exteriorDistance(
+             Eigen::AlignedBox2d(Eigen::Vector2d(box.min().head<2>().array() - kAround_m),
+                                 Eigen::Vector2d(box.max().head<2>().array() + kAround_m))) <= 0;
 }
 
 }  // namespace
