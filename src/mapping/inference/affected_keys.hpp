@@ -55,9 +55,9 @@ class AffectedKeys {
   const rdf::InferenceCheck& check_;
   rdf::QuadReader reader_;
   std::map<ast::VariableIndex, std::vector<KeyStep>> steps_;
-  std::vector<rdf::Triple> gone_;  ///< what has ceased to be; sorted
-  std::vector<Link> gone_objects_,
-      gone_subjects_;  ///< of the properties of steps: with the subject, or object, first; sorted
+  std::vector<rdf::Triple> gone_;                     ///< what has ceased to be; sorted
+  std::vector<Link> gone_objects_;                    ///< of the properties of steps, by their subjects; sorted
+  std::vector<Link> gone_subjects_;                   ///< the same by their objects
   std::unordered_map<std::uint64_t, bool> may_bind_;  ///< of variable and value
   std::map<ast::VariableIndex, std::set<rdf::TermId>> reached_;
   std::vector<std::pair<ast::VariableIndex, rdf::TermId>> open_;  ///< reached, and not followed yet
