@@ -51,6 +51,8 @@ class FormerSummaries {
   bool isOther(const perception::TileKey& tile) const { return changes_.former_summaries.contains(tile); }
   /// Null where there was none.
   const perception::SummaryTile* of(const perception::TileKey& tile);
+  /// Gives their memory back; they are read again when they are needed.
+  void drop() { read_.clear(); }
 
  private:
   const OutputChanges& changes_;

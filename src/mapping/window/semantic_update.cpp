@@ -229,6 +229,7 @@ class LocalUpdate {
     update.is_local = true;
     update.tiles_decided = window.tiles.size();
     update.before = replacedObjects(window, decision);
+    former_summaries_.drop();
     std::vector<rules::SemanticObject> made = decision.objects;
     std::erase_if(made, [](const rules::SemanticObject& object) { return object.is_class_wide; });
     update.after = membersOf(made, window.scene.cluxels);
