@@ -53,8 +53,10 @@ std::vector<rules::SemanticObject> objectsIn(const rdf::ReadTransaction& transac
 std::optional<MapPart> partOfMap(const rdf::ReadTransaction& transaction, TileStages& stages,
                                  const perception::TileSet& tiles) {
   if (tiles.empty()) return std::nullopt;
+  const OutputChanges none;
+  FormerSummaries former(none);
   std::optional<MapWindow> window =
-      windowAround(transaction, stages, {}, tiles, 0, storedClouds(transaction), kMaxPartShare);
+      windowAround(transaction, stages, none, former, tiles, 0, storedClouds(transaction), kMaxPartShare);
   if (!window) return std::nullopt;
   MapPart part;
   part.objects = objectsIn(transaction, *window);

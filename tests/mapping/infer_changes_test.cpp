@@ -252,6 +252,23 @@ std::vector<NamedText> oddRules() {
       rule("9.rq", "CONSTRUCT { ?w clx:of ?b } WHERE { ?b clx:hasPart/clx:hasPrimitive ?w }")};
 }
 
+/// Rules whose solutions change by facts of things that patterns join with the key.
+std::vector<NamedText> joiningRules() {
+  return {rule("1.rq",
+               "CONSTRUCT { ?a clx:spot ?x } WHERE { ?a clx:minY ?y . { ?a clx:near ?p } UNION { ?p clx:hasPart ?a } "
+               "?p clx:minX ?x }"),
+          rule("2.rq",
+               "CONSTRUCT { ?a clx:spot ?x } WHERE { ?a clx:minY ?y . { ?a clx:near ?p } UNION { ?p a clx:Building } "
+               "?p clx:minX ?x }"),
+          rule("3.rq", "CONSTRUCT { ?a clx:beside ?b } WHERE { ?a clx:near ?b . ?b clx:height 5.000000 }"),
+          rule("4.rq",
+               "CONSTRUCT { ?a clx:at ?g } WHERE { ?a clx:hasPart ?b . ?b clx:hasPrimitive ?c . ?c clx:touchesGround "
+               "?g FILTER NOT EXISTS { ?a clx:near ?d } }"),
+          rule("5.rq",
+               "CONSTRUCT { ?a clx:far ?d } WHERE { ?a clx:minX ?m . { ?a clx:spot ?x } UNION { { ?a clx:at ?b } UNION "
+               "{ ?a clx:near ?b } ?b clx:near ?c } ?c clx:minX ?x ; clx:minY ?d }")};
+}
+
 TEST(InferChanges, OfRulesOfOtherShapesAreInferenceFromScratch) {
   for (unsigned seed = 10; seed < 14; ++seed) {
     ChangingStore store(seed, oddRules());
@@ -261,6 +278,19 @@ TEST(InferChanges, OfRulesOfOtherShapesAreInferenceFromScratch) {
       store.expectInferenceFromScratch(step);
     }
     EXPECT_GT(store.followed(), static_cast<std::size_t>(steps) / 4) << testing::PrintToString(store.sink.notes);
+  }
+}
+
+TEST(InferChanges, OfJoiningRulesAreInferenceFromScratch) {
+  for (unsigned seed = 20; seed < 24; ++seed) {
+    ChangingStore store(seed, joiningRules());
+    const int steps = stepsOf(40, 600);
+    for (int step = 0; step < steps && !testing::Test::HasFatalFailure(); ++step) {
+      store.step();
+      store.expectInferenceFromScratch(step);
+    }
+    EXPECT_GT(store.followed(), static_cast<std::size_t>(steps) / 4) << testing::PrintToString(store.sink.notes);
+    EXPECT_TRUE(store.sink.notes.empty()) << store.sink.notes.front();
   }
 }
 

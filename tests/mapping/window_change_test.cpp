@@ -18,7 +18,6 @@ constexpr double kReach_m = 5;
 MapWindow thingBesideACutWall() {
   MapWindow window;
   window.is_cut = {0, 1};
-  window.inputs = {1, 2};
   perception::Scene& scene = window.scene;
   scene.primitives.resize(2);
   for (PrimitiveIndex i = 0; i < 2; ++i) {
@@ -50,7 +49,7 @@ MapWindow thingBesideACutWall() {
 }
 
 std::vector<int> dirtyOf(const MapWindow& window, const OutputChanges& changes) {
-  const WindowChange change = changeIn(window, changes, {}, kReach_m);
+  const WindowChange change = changeIn(window, changes, {}, kReach_m, [](PrimitiveIndex) { return 1; });
   return {change.is_dirty.begin(), change.is_dirty.end()};
 }
 

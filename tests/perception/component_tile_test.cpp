@@ -12,6 +12,7 @@
 #include <set>
 
 #include "perception/cloud_fixture.hpp"
+#include "perception/segments/primitive_inputs.hpp"
 #include "perception/segments/scene_assembly.hpp"
 
 namespace cluxel::testing {
@@ -243,6 +244,25 @@ TEST(Scene, ACrownIsAboveItsTrunkAndTheTrunkBelowIt) {
     EXPECT_TRUE(holds(RelationKind::TouchesGround, trunk, trunk));
     EXPECT_FALSE(holds(RelationKind::TouchesGround, crown, crown));
   }
+}
+
+TEST(PrimitiveInputs, TellEveryCluxelOfAPrimitiveInWhateverOrderTheyAreAskedFor) {
+  HandLabelled all = labelled({scanOf(streetPoints(3))}, [](const auto&) { return PrimitiveLabel::HorizontalPlane; });
+  const std::vector<std::uint64_t> hashes = inputHashes(all.scene, all.tiles.summaries);
+  PrimitiveInputs backwards(all.scene, all.tiles.summaries);
+  for (auto i = static_cast<PrimitiveIndex>(hashes.size()); i-- > 0;) EXPECT_EQ(backwards.hashOf(i), hashes[i]);
+  const auto largest =
+      std::max_element(all.scene.primitives.begin(), all.scene.primitives.end(),
+                       [](const auto& a, const auto& b) { return a.cluxels.size() < b.cluxels.size(); });
+  const auto number = static_cast<PrimitiveIndex>(largest - all.scene.primitives.begin());
+  ASSERT_GT(largest->cluxels.size(), 100U) << "more bytes than are hashed at once";
+  std::set<std::uint64_t> different{hashes[number]};
+  for (const std::uint32_t cluxel : largest->cluxels) {
+    ++all.scene.cluxels.point_count[cluxel];
+    different.insert(PrimitiveInputs(all.scene, all.tiles.summaries).hashOf(number));
+    --all.scene.cluxels.point_count[cluxel];
+  }
+  EXPECT_EQ(different.size(), largest->cluxels.size() + 1);
 }
 
 /// Regression: half a corner at the end of a hull was dropped silently.

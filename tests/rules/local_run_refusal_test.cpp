@@ -78,6 +78,23 @@ TEST(LocalRun, IsEmptyWithoutAChange) {
   EXPECT_TRUE(std::all_of(outcome->layer.begin(), outcome->layer.end(), [](auto layer) { return layer == kNoLayer; }));
 }
 
+TEST(LocalRun, TakesLikelyLayersOnlyForTheFixedPrimitivesThatTheyAreOf) {
+  std::mt19937 random(15);
+  const RuleSet rules = rulesOfLoneGround();
+  const double reach_m = localReach(rules).reach_m.value();
+  const ChangedScene change = changeOf(sceneOfBoxes(randomStreet(random, 60, 0.3)).scene, {30, 0}, 4, random);
+  const Window window = windowOf(change, reason(change.before, rules), 100, reach_m);
+  LocalInput input = window.input();
+  const std::vector<std::uint32_t> layers = LocalRun(input, rules, {}, reach_m).layers();
+  for (std::size_t i = 0; i < layers.size(); ++i)
+    input.likely.is_fixed.push_back(layers[i] == kNoLayer || input.is_dirty[i] != 0 ? 1 : 0);
+  input.likely.layers.assign(layers.size(), 7);
+  EXPECT_EQ(LocalRun(input, rules, {}, reach_m).layers(), input.likely.layers) << "it is not known of dirty ones";
+  const auto clean = std::find(input.is_dirty.begin(), input.is_dirty.end(), 0) - input.is_dirty.begin();
+  input.likely.is_fixed[static_cast<std::size_t>(clean)] ^= 1;
+  EXPECT_EQ(LocalRun(input, rules, {}, reach_m).layers(), layers);
+}
+
 TEST(LocalRun, IsRefusedWhereTheWindowOrTheTracesDoNotShowIt) {
   std::mt19937 random(14);
   const RuleSet rules = smallRules();

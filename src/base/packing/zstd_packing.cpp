@@ -7,6 +7,7 @@
 #include <zstd.h>
 
 #include <bit>
+#include <new>
 
 #include "cluxel/error.hpp"
 
@@ -49,6 +50,16 @@ void joinWords(const char* planes, std::size_t count, char* items) {
   }
 }
 
+/// Of this thread: to make one costs as much as to unpack a small block.
+ZSTD_DCtx* unpacking() {
+  struct Free {
+    void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
+  };
+  thread_local const std::unique_ptr<ZSTD_DCtx, Free> context(ZSTD_createDCtx());
+  if (!context) throw std::bad_alloc();
+  return context.get();
+}
+
 }  // namespace
 
 std::string packedBytes(std::string_view bytes) {
@@ -66,7 +77,7 @@ std::optional<UnpackedBytes> unpackedBytes(std::string_view packed, std::uint64_
   if (stated > max_bytes || stated / kMaxRatio > packed.size()) return std::nullopt;
   if (ZSTD_findFrameCompressedSize(packed.data(), packed.size()) != packed.size()) return std::nullopt;
   UnpackedBytes bytes{std::make_unique_for_overwrite<char[]>(stated), stated};
-  const std::size_t size = ZSTD_decompress(bytes.data.get(), stated, packed.data(), packed.size());
+  const std::size_t size = ZSTD_decompressDCtx(unpacking(), bytes.data.get(), stated, packed.data(), packed.size());
   if (ZSTD_isError(size) != 0 || size != stated) return std::nullopt;
   return bytes;
 }

@@ -3,13 +3,14 @@
 #include "mapping/facts/fact_patch.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace cluxel::mapping {
 
 void FactPatch::replace(std::optional<rdf::TermId> subject, std::optional<rdf::TermId> property,
                         std::optional<rdf::TermId> object) {
   rdf::QuadCursor cursor = stored_.scan({.s = subject, .p = property, .o = object, .g = graph_});
-  for (rdf::QuadIds quad; cursor.next(quad);) old_.insert(quad);
+  for (rdf::QuadIds quad; cursor.next(quad);) old_.push_back(quad);
 }
 
 std::vector<rdf::TermId> FactPatch::objectsOf(rdf::TermId subject, rdf::TermId property) const {
@@ -29,16 +30,18 @@ std::vector<rdf::TermId> FactPatch::subjectsOf(rdf::TermId property, rdf::TermId
 void FactPatch::replaceBut(rdf::TermId subject, rdf::TermId kept_property) {
   rdf::QuadCursor cursor = stored_.scan({.s = subject, .p = {}, .o = {}, .g = graph_});
   for (rdf::QuadIds quad; cursor.next(quad);)
-    if (quad.p != kept_property) old_.insert(quad);
+    if (quad.p != kept_property) old_.push_back(quad);
 }
 
-void FactPatch::write(std::vector<rdf::QuadIds> fresh, rdf::QuadWriter& writer) const {
-  std::sort(fresh.begin(), fresh.end());
-  fresh.erase(std::unique(fresh.begin(), fresh.end()), fresh.end());
-  for (const rdf::QuadIds& quad : old_)
-    if (!std::binary_search(fresh.begin(), fresh.end(), quad)) writer.remove(quad);
-  for (const rdf::QuadIds& quad : fresh)
-    if (!old_.contains(quad)) writer.add(quad);
+void FactPatch::write(std::vector<rdf::QuadIds> fresh, rdf::QuadWriter& writer) {
+  for (std::vector<rdf::QuadIds>* quads : {&fresh, &old_}) {
+    std::sort(quads->begin(), quads->end());
+    quads->erase(std::unique(quads->begin(), quads->end()), quads->end());
+  }
+  rdf::QuadDifference difference;
+  std::set_difference(fresh.begin(), fresh.end(), old_.begin(), old_.end(), std::back_inserter(difference.added));
+  std::set_difference(old_.begin(), old_.end(), fresh.begin(), fresh.end(), std::back_inserter(difference.removed));
+  writer.change(difference);
 }
 
 }  // namespace cluxel::mapping

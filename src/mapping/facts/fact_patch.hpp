@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <set>
 #include <vector>
 
 #include "rdf/store/quad_store.hpp"
@@ -23,13 +22,13 @@ class FactPatch {
   std::vector<rdf::TermId> objectsOf(rdf::TermId subject, rdf::TermId property) const;
   std::vector<rdf::TermId> subjectsOf(rdf::TermId property, rdf::TermId object) const;
 
-  /// Writes the difference; `fresh` are the facts that are to be there.
-  void write(std::vector<rdf::QuadIds> fresh, rdf::QuadWriter& writer) const;
+  /// Writes the difference; `fresh` are the facts that are to be there. To be called once.
+  void write(std::vector<rdf::QuadIds> fresh, rdf::QuadWriter& writer);
 
  private:
   const rdf::QuadReader& stored_;
   rdf::TermId graph_;
-  std::set<rdf::QuadIds> old_;
+  std::vector<rdf::QuadIds> old_;  ///< in any order, some more than once
 };
 
 }  // namespace cluxel::mapping

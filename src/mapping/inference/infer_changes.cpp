@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Follows a change through the closure and through the rules, one stage after the other.
 #include <algorithm>
+#include <array>
 #include <optional>
-#include <set>
+#include <span>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -35,6 +36,15 @@ using Outputs = std::vector<RuleOutput>;
 bool isDerivation(std::string_view iri) {
   static const std::string some = rdf::iriOfDerivation({});
   return iri.starts_with(std::string_view(some).substr(0, some.rfind('/') + 1));
+}
+
+struct ChangedQuad {
+  rdf::QuadIds quad;
+  bool is_added = false;
+};
+
+Triple factOf(const ChangedQuad& changed) {
+  return {changed.quad.s, changed.quad.p, changed.quad.o};
 }
 
 class ChangeInference {
@@ -78,11 +88,11 @@ class ChangeInference {
   std::optional<Outputs> solutions(Stage stage, const RuleShape& shape, const ReadTest& reads,
                                    const std::optional<std::vector<rdf::TermId>>& keys);
   std::vector<rdf::QuadIds> unseen(Stage stage, const ReadTest& reads) const;
-  std::vector<Triple> statedOrWithdrawn(const rdf::QuadDifference& change) const;
-  bool isStated(const Triple& fact) const;
-  bool wasStated(const Triple& fact, const rdf::QuadDifference& change) const;
+  std::vector<ChangedQuad> statedOrWithdrawn(const rdf::QuadDifference& change,
+                                             const InferenceProperties& properties) const;
+  bool isStatedBeside(std::span<const ChangedQuad> of_fact, rdf::PrefixLookup& stored) const;
   std::vector<SeenChange> seenChanges(Stage stage, const ReadTest& reads) const;
-  std::vector<Triple> changedTemplateFacts(Stage stage, const RuleShape& shape) const;
+  bool isOtherBefore(Stage stage, const Triple& fact) const;
   void setBases(Stage stage, const RuleShape& shape, std::vector<Triple> touched, const Outputs& outputs);
   bool touchesDerivations(const rdf::QuadDifference& change) const;
   bool feedsItself(Stage stage, const ReadTest& reads) const;
@@ -101,34 +111,24 @@ class ChangeInference {
   rdf::StagedClosure closure_;
 };
 
-bool ChangeInference::isStated(const Triple& fact) const {
-  return std::any_of(graphs_.sources.begin(), graphs_.sources.end(), [&](rdf::TermId graph) {
-    return reader_.contains(rdf::QuadIds{fact.s, fact.p, fact.o, graph});
-  });
-}
-
-/// Whether some graph stated the fact before the change.
-bool ChangeInference::wasStated(const Triple& fact, const rdf::QuadDifference& change) const {
-  return std::any_of(graphs_.sources.begin(), graphs_.sources.end(), [&](rdf::TermId graph) {
-    const rdf::QuadIds quad{fact.s, fact.p, fact.o, graph};
-    const bool is_there = reader_.contains(quad);
-    const auto& other = is_there ? change.added : change.removed;
-    return is_there != std::binary_search(other.begin(), other.end(), quad);
-  });
-}
-
 bool ChangeInference::followStated(const rdf::QuadDifference& change, const std::vector<RuleShape>& rules) {
   const InferenceProperties properties(reader_, words_, schema_, rules);
+  const std::vector<ChangedQuad> quads = statedOrWithdrawn(change, properties);
   std::vector<rdf::BaseChange> bases;
-  for (const Triple& fact : statedOrWithdrawn(change)) {
-    const PropertyUse use = properties.useOf(fact.p);
-    if (use == PropertyUse::None) continue;
-    const bool is_stated = isStated(fact);
-    if (wasStated(fact, change) == is_stated) continue;
-    if (use == PropertyUse::Read) {
+  rdf::PrefixLookup stored = reader_.lookup(rdf::QuadOrder::Spog);  // facts ascend
+  for (std::span<const ChangedQuad> rest(quads); !rest.empty();) {
+    const Triple fact = factOf(rest.front());
+    const auto end = std::find_if(rest.begin(), rest.end(), [&](const auto& quad) { return factOf(quad) != fact; });
+    const std::span<const ChangedQuad> of_fact(rest.begin(), end);
+    rest = {end, rest.end()};
+    const auto is_added = [](const ChangedQuad& quad) { return quad.is_added; };
+    const bool is_stated = std::any_of(of_fact.begin(), of_fact.end(), is_added);
+    const bool was_stated = !std::all_of(of_fact.begin(), of_fact.end(), is_added);
+    if (is_stated == was_stated || isStatedBeside(of_fact, stored)) continue;
+    if (properties.useOf(fact.p) == PropertyUse::Read) {
       plain_[fact.p].push_back({fact, is_stated});
     } else {
-      facts_.restate(fact, !is_stated);
+      facts_.restate(fact, was_stated);
       bases.push_back({fact, is_stated ? 0 : kNever});
     }
   }
@@ -137,42 +137,63 @@ bool ChangeInference::followStated(const rdf::QuadDifference& change, const std:
   return !facts_.touchesSchema() && !touchesDerivations(change);
 }
 
-/// The facts of the quads that were added or removed in graphs of stated facts; sorted.
-std::vector<Triple> ChangeInference::statedOrWithdrawn(const rdf::QuadDifference& change) const {
-  std::vector<Triple> facts;
-  for (const std::vector<rdf::QuadIds>* quads : {&change.added, &change.removed})
-    for (const rdf::QuadIds& quad : *quads)
-      if (graphs_.isSource(quad.g)) facts.push_back({quad.s, quad.p, quad.o});
-  std::sort(facts.begin(), facts.end());
-  facts.erase(std::unique(facts.begin(), facts.end()), facts.end());
-  return facts;
+/// Whether some graph states the fact of these quads before the change and now.
+bool ChangeInference::isStatedBeside(std::span<const ChangedQuad> of_fact, rdf::PrefixLookup& stored) const {
+  const Triple fact = factOf(of_fact.front());
+  const auto is_beside = [&](const rdf::QuadKey& entry) {
+    const rdf::TermId graph = rdf::toQuad(entry, rdf::QuadOrder::Spog).g;
+    return graphs_.isSource(graph) &&
+           std::none_of(of_fact.begin(), of_fact.end(), [&](const auto& changed) { return changed.quad.g == graph; });
+  };
+  for (auto entries = stored.find(std::array{fact.s, fact.p, fact.o}); !entries.empty(); entries = stored.more())
+    if (std::any_of(entries.begin(), entries.end(), is_beside)) return true;
+  return false;
 }
 
-/// Whether something that is stated about the derivation of a fact has changed: rules do not look at that again.
+/// The quads that were added or removed in graphs of stated facts, and which inference uses; sorted.
+std::vector<ChangedQuad> ChangeInference::statedOrWithdrawn(const rdf::QuadDifference& change,
+                                                            const InferenceProperties& properties) const {
+  std::vector<ChangedQuad> quads;
+  const auto add = [&](const rdf::QuadIds& quad, bool is_added) {
+    if (graphs_.isSource(quad.g) && properties.useOf(quad.p) != PropertyUse::None) quads.push_back({quad, is_added});
+  };
+  for (const rdf::QuadIds& quad : change.added) add(quad, true);
+  const auto removed = static_cast<std::ptrdiff_t>(quads.size());
+  for (const rdf::QuadIds& quad : change.removed) add(quad, false);
+  std::inplace_merge(quads.begin(), quads.begin() + removed, quads.end(),
+                     [](const ChangedQuad& a, const ChangedQuad& b) { return a.quad < b.quad; });
+  return quads;
+}
+
+/// Whether a fact of which the derivation of another consists has been stated or withdrawn: rules do not look at that
+/// again.
 bool ChangeInference::touchesDerivations(const rdf::QuadDifference& change) const {
-  const auto is_derivation = [&](rdf::TermId subject) { return isDerivation(reader_.viewOf(subject).text); };
-  for (const std::vector<rdf::QuadIds>* quads : {&change.added, &change.removed}) {
-    rdf::TermId last = rdf::kNoTerm;  // subjects stand together
-    for (const rdf::QuadIds& quad : *quads)
-      if (std::exchange(last, quad.s) != quad.s && is_derivation(quad.s)) return true;
-  }
-  return std::any_of(facts_.changed().begin(), facts_.changed().end(), [&](const auto& entry) {
-    return entry.second.before != entry.second.now && is_derivation(entry.first.s);
-  });
+  std::vector<std::optional<rdf::TermId>> parts;
+  for (const std::string& property : propertiesOfDerivations()) parts.push_back(reader_.idOf(Term::iri(property)));
+  const auto type = reader_.idOf(Term::iri(rdf::vocabulary::clx("Derivation")));
+  const auto is_part = [&](const auto& fact) {
+    return (fact.p == words_.type ? fact.o == type : std::find(parts.begin(), parts.end(), fact.p) != parts.end()) &&
+           isDerivation(reader_.viewOf(fact.s).text);
+  };
+  return std::any_of(change.added.begin(), change.added.end(), is_part) ||
+         std::any_of(change.removed.begin(), change.removed.end(), is_part) ||
+         std::any_of(facts_.changed().begin(), facts_.changed().end(), [&](const auto& entry) {
+           return entry.second.before != entry.second.now && is_part(entry.first);
+         });
 }
 
 /// What the store holds of facts that a rule of this stage reads but may not see.
 std::vector<rdf::QuadIds> ChangeInference::unseen(Stage stage, const ReadTest& reads) const {
   std::vector<rdf::QuadIds> quads;
-  const auto add = [&](const Triple& fact, Stage now) {
-    if (now >= stage && now != kNever && reads.matches(fact))
-      quads.push_back({fact.s, fact.p, fact.o, graphs_.inferred});
-  };
+  const auto add = [&](const Triple& fact) { quads.push_back({fact.s, fact.p, fact.o, graphs_.inferred}); };
   for (const rdf::TermId property : reads.properties()) {
     for (const LateFact& late : facts_.lateOf(property))
-      if (!facts_.changed().contains(late.fact)) add(late.fact, late.stage);
-    for (const Triple& fact : facts_.changedOf(property))
-      if (const FactState& state = facts_.changed().at(fact); state.is_written) add(fact, state.now);
+      if (late.stage >= stage && reads.matches(late.fact) && !facts_.changed().contains(late.fact)) add(late.fact);
+    for (const Triple& fact : facts_.changedOf(property)) {
+      if (!reads.matches(fact)) continue;
+      const FactState& state = facts_.changed().at(fact);
+      if (state.is_written && state.now >= stage && state.now != kNever) add(fact);
+    }
   }
   return quads;
 }
@@ -182,11 +203,9 @@ std::vector<rdf::QuadIds> ChangeInference::unseen(Stage stage, const ReadTest& r
 std::vector<SeenChange> ChangeInference::seenChanges(Stage stage, const ReadTest& reads) const {
   std::vector<SeenChange> changes;
   for (const rdf::TermId property : reads.properties()) {
-    for (const Triple& fact : facts_.changedOf(property)) {
-      const FactState& state = facts_.changed().at(fact);
-      if ((state.before < stage) != (state.now < stage) && reads.matches(fact))
-        changes.push_back({fact, state.now != kNever});
-    }
+    for (const Triple& fact : facts_.changedOf(property))
+      if (reads.matches(fact) && isOtherBefore(stage, fact))
+        changes.push_back({fact, facts_.changed().at(fact).now != kNever});
     if (const auto plain = plain_.find(property); plain != plain_.end())
       for (const SeenChange& one : plain->second)
         if (reads.matches(one.fact)) changes.push_back(one);
@@ -194,18 +213,10 @@ std::vector<SeenChange> ChangeInference::seenChanges(Stage stage, const ReadTest
   return changes;
 }
 
-/// The facts of the properties that the rule derives which have become known before its stage, or have ceased to be.
-std::vector<Triple> ChangeInference::changedTemplateFacts(Stage stage, const RuleShape& shape) const {
-  std::set<rdf::TermId> properties;
-  for (const ast::TriplePattern& triple : shape.query.construct_template)
-    if (const auto id = reader_.idOf(triple.predicate.term())) properties.insert(*id);
-  std::vector<Triple> facts;
-  for (const rdf::TermId property : properties)
-    for (const Triple& fact : facts_.changedOf(property))
-      if (const FactState& state = facts_.changed().at(fact); (state.before < stage) != (state.now < stage))
-        facts.push_back(fact);
-  std::sort(facts.begin(), facts.end());
-  return facts;
+/// Whether the fact has become known before a stage, or has ceased to be.
+bool ChangeInference::isOtherBefore(Stage stage, const Triple& fact) const {
+  const auto changed = facts_.changed().find(fact);
+  return changed != facts_.changed().end() && (changed->second.before < stage) != (changed->second.now < stage);
 }
 
 /// The solutions of the rule for some keys, or all, from the facts of earlier stages.
@@ -246,9 +257,8 @@ bool ChangeInference::followRule(Stage stage, const RuleShape& shape, Outputs& o
     const std::optional<Outputs> now = solutions(stage, shape, reads, keys);
     touched = replaceOutputs(outputs, keys, *now);
   }
-  const std::vector<Triple> others = changedTemplateFacts(stage, shape);
   for (const RuleOutput& output : outputs)
-    if (std::binary_search(others.begin(), others.end(), output.fact)) touched.push_back(output.fact);
+    if (isOtherBefore(stage, output.fact)) touched.push_back(output.fact);
   if (touched.empty()) return true;
   setBases(stage, shape, std::move(touched), outputs);
   return !facts_.touchesSchema() && !feedsItself(stage, reads);
@@ -280,7 +290,7 @@ void ChangeInference::setBases(Stage stage, const RuleShape& shape, std::vector<
 
 /// Whether the rule reads what has come to be at its own stage: then it would have to be run again.
 bool ChangeInference::feedsItself(Stage stage, const ReadTest& reads) const {
-  const auto feeds = [&](const Triple& fact) { return facts_.changed().at(fact).now == stage && reads.matches(fact); };
+  const auto feeds = [&](const Triple& fact) { return reads.matches(fact) && facts_.changed().at(fact).now == stage; };
   return std::any_of(reads.properties().begin(), reads.properties().end(), [&](rdf::TermId property) {
     const std::vector<Triple>& changed = facts_.changedOf(property);
     return std::any_of(changed.begin(), changed.end(), feeds);

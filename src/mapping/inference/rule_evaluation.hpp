@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "mapping/inference/rule_shape.hpp"
+#include "mapping/inference/rule_queries.hpp"
 #include "rdf/file/environment.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/ontology/staged_facts.hpp"

@@ -14,6 +14,12 @@ namespace cluxel::mapping {
 
 namespace ast = sparql::ast;
 
+/// A branch of a UNION of which each solution takes one branch or another.
+struct UnionBranch {
+  std::size_t number = 0;  ///< of the UNION
+  std::size_t branch = 0;
+};
+
 /// A triple pattern of the WHERE clause, at any depth. Paths of sequences and inverses are patterns of their steps.
 struct ReadPattern {
   enum class Need {
@@ -25,6 +31,7 @@ struct ReadPattern {
   std::vector<Term> links;  ///< of a path: the properties that it walks
   bool has_key = false;     ///< the key is its subject or its object
   Need need = Need::No;
+  std::optional<UnionBranch> branch;  ///< all solutions that take this branch have a triple for it
 };
 
 struct RuleShape {
@@ -41,21 +48,10 @@ struct RuleShape {
   bool is_grouped = false;     ///< the patterns stand in a sub-select that groups by the key
   bool is_plain = false;       ///< only triple patterns, filters, BIND and VALUES: each row names its triples
   std::vector<ReadPattern> reads;
+  std::vector<std::size_t> branches;  ///< how many each UNION has, of those in UnionBranch
 };
 
 /// Throws InputError when the rule cannot be parsed.
 RuleShape shapeOf(const NamedText& rule);
-
-/// Some values of a variable.
-struct ValuesOf {
-  ast::VariableIndex variable = 0;
-  std::vector<Term> terms;
-};
-
-/// SELECT of the variables that the template needs; ByKey: after the key. `keys`: only solutions with one of these.
-/// `all`: with all variables of the patterns of a plain rule.
-ast::Query solutionsOf(const RuleShape& shape, const std::optional<ValuesOf>& keys, bool all);
-/// SELECT of the keys of solutions in which a variable may have one of the values: a superset of them.
-ast::Query keysOf(const RuleShape& shape, const ValuesOf& values);
 
 }  // namespace cluxel::mapping

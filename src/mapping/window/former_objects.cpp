@@ -14,13 +14,13 @@ void FormerObjects::add(const TileLayer& layer, const std::function<bool(const C
     const auto summary = stages_.summaries().find(layer.key);
     if (summary == stages_.summaries().end())
       throw Error(ErrorKind::StoreUnavailable, "a stored tile lacks a block; the map is damaged, build it anew");
-    addOf(layer, summary->second, is_wanted);
+    add(layer, summary->second, is_wanted);
   } else if (changed->second)
-    addOf(layer, perception::summaryTileFromBytes(*changed->second), is_wanted);
+    add(layer, perception::summaryTileFromBytes(*changed->second), is_wanted);
 }
 
-void FormerObjects::addOf(const TileLayer& layer, const perception::SummaryTile& summary,
-                          const std::function<bool(const ContentHash&)>& is_wanted) {
+void FormerObjects::add(const TileLayer& layer, const perception::SummaryTile& summary,
+                        const std::function<bool(const ContentHash&)>& is_wanted) {
   if (layer.size() != summary.size())
     throw Error(ErrorKind::StoreUnavailable, "stored objects are of other cluxels; the map is damaged, build it anew");
   std::vector<ObjectMembers*> of_share;

@@ -20,13 +20,13 @@ class FormerObjects {
 
   /// Adds the members that `layer` holds of the objects for which `is_wanted`.
   void add(const TileLayer& layer, const std::function<bool(const ContentHash&)>& is_wanted);
+  /// The same with the summary that the tile had when the layer was written.
+  void add(const TileLayer& layer, const perception::SummaryTile& summary,
+           const std::function<bool(const ContentHash&)>& is_wanted);
   /// Sorted by id.
   std::vector<ObjectMembers> take();
 
  private:
-  void addOf(const TileLayer& layer, const perception::SummaryTile& summary,
-             const std::function<bool(const ContentHash&)>& is_wanted);
-
   const rdf::ReadTransaction& transaction_;
   const TileStages& stages_;
   const OutputChanges& changes_;

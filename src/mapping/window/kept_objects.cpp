@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <unordered_map>
+#include <utility>
 
 #include "mapping/facts/object_geometry.hpp"
 #include "mapping/layers/stored_layers.hpp"
@@ -13,15 +14,21 @@ namespace cluxel::mapping {
 
 namespace {
 
-/// The share of an undecided cluxel before the change; null for none.
-const TileLayer::Share* formerShare(const MapWindow& window, const WindowDecision& decision,
-                                    const std::vector<std::uint32_t>& former, std::uint32_t cluxel) {
+/// Calls visit(cluxel, layer, number of a share) for each undecided cluxel that belonged to an object before the
+/// change.
+template <typename Visit>
+void forEachKept(const MapWindow& window, const WindowDecision& decision, const std::vector<std::uint32_t>& former,
+                 const Visit& visit) {
   const perception::SceneCluxels& all = window.scene.cluxels;
-  if (decision.is_decided[all.primitive[cluxel]] != 0 || former[cluxel] == kNoFormer) return nullptr;
-  const auto layer = window.layers.find(all.name[cluxel].tile);
-  if (layer == window.layers.end()) return nullptr;
-  const std::uint32_t share = layer->second.share_of_cluxel[former[cluxel]];
-  return share == kNoShare ? nullptr : &layer->second.shares[share];
+  for (const auto& [tile, first] : window.first_cluxel) {
+    const auto layer = window.layers.find(tile);
+    if (layer == window.layers.end()) continue;
+    for (std::uint32_t c = first; c < all.size() && all.name[c].tile == tile; ++c) {
+      if (decision.is_decided[all.primitive[c]] != 0 || former[c] == kNoFormer) continue;
+      if (const std::uint32_t share = layer->second.share_of_cluxel[former[c]]; share != kNoShare)
+        visit(c, layer->second, share);
+    }
+  }
 }
 
 bool isInside(const ObjectRecord& record, const MapWindow& window) {
@@ -44,9 +51,9 @@ WindowOwners ownersIn(const MapWindow& window, const WindowDecision& decision,
   for (const rules::SemanticObject& object : decision.objects)
     for (const rules::ObjectPart& part : object.parts)
       for (const std::uint32_t cluxel : part.cluxels) owners.owner_of[cluxel] = numberOf(object.id);
-  for (std::uint32_t c = 0; c < owners.owner_of.size(); ++c)
-    if (const TileLayer::Share* share = formerShare(window, decision, former, c))
-      owners.owner_of[c] = numberOf(share->object);
+  forEachKept(window, decision, former, [&](std::uint32_t cluxel, const TileLayer& layer, std::uint32_t share) {
+    owners.owner_of[cluxel] = numberOf(layer.shares[share].object);
+  });
   return owners;
 }
 
@@ -57,9 +64,14 @@ using PartsByClass = std::map<std::string, std::vector<std::uint32_t>>;  ///< cl
 std::map<ContentHash, PartsByClass> formerParts(const MapWindow& window, const WindowDecision& decision,
                                                 const std::vector<std::uint32_t>& former) {
   std::map<ContentHash, PartsByClass> parts;
-  for (std::uint32_t c = 0; c < former.size(); ++c)
-    if (const TileLayer::Share* share = formerShare(window, decision, former, c))
-      parts[share->object][share->part_class].push_back(c);
+  const TileLayer* last = nullptr;
+  std::vector<std::vector<std::uint32_t>*> of_share;  // of the layer at hand
+  forEachKept(window, decision, former, [&](std::uint32_t cluxel, const TileLayer& layer, std::uint32_t share) {
+    if (std::exchange(last, &layer) != &layer) of_share.assign(layer.shares.size(), nullptr);
+    const TileLayer::Share& of = layer.shares[share];
+    if (of_share[share] == nullptr) of_share[share] = &parts[of.object][of.part_class];
+    of_share[share]->push_back(cluxel);
+  });
   return parts;
 }
 
@@ -95,15 +107,18 @@ std::vector<rules::SemanticObject> wideObjectsIn(const rdf::ReadTransaction& tra
                                                  const WindowDecision& decision,
                                                  const std::vector<std::uint32_t>& former) {
   std::map<ContentHash, PartsByClass> parts = formerParts(window, decision, former);
-  for (const rules::SemanticObject& object : decision.objects)
+  for (const rules::SemanticObject& object : decision.objects) {
+    if (!object.is_class_wide) continue;
     for (const rules::ObjectPart& part : object.parts) {
       std::vector<std::uint32_t>& own = parts[object.id][part.part_class];
       own.insert(own.end(), part.cluxels.begin(), part.cluxels.end());
     }
+  }
   for (const auto& [tile, layer] : window.layers)
     for (const TileLayer::Share& share : layer.shares) parts.try_emplace(share.object);
   std::vector<rules::SemanticObject> wide;
   for (auto& [id, of_object] : parts) {
+    if (decision.replaced.contains(id)) continue;
     const std::optional<ObjectRecord> record = storedRecord(transaction, id);
     if (record && record->is_class_wide) wide.push_back(objectOf(id, *record, std::move(of_object)));
   }

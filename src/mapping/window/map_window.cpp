@@ -58,13 +58,12 @@ void requireFit(bool holds) {
 }
 
 /// Layers must be of the cluxels and components that the tiles had when they were written.
-void requireFit(const TileSet& held, const TileStages& stages, const OutputChanges& changes,
+void requireFit(const TileSet& held, const TileStages& stages, const OutputChanges& changes, FormerSummaries& former,
                 const std::map<TileKey, TileLayer>& layers) {
   for (const TileKey& tile : held) requireFit(stages.summaries().contains(tile) && stages.components().contains(tile));
   for (const auto& [tile, layer] : layers) {
-    const auto changed = changes.former_summaries.find(tile);
-    if (changed != changes.former_summaries.end())
-      requireFit(changed->second && perception::summaryTileFromBytes(*changed->second).size() == layer.size());
+    if (former.isOther(tile))
+      requireFit(former.of(tile) != nullptr && former.of(tile)->size() == layer.size());
     else
       requireFit(held.contains(tile) && stages.summaries().at(tile).size() == layer.size());
     if (!changes.tiles.contains(tile)) requireFit(stages.components().at(tile).size() == layer.primitives.size());
@@ -83,9 +82,17 @@ void forEachSeed(const perception::SummaryTile& tile, const Visit& visit) {
 
 }  // namespace
 
+const perception::SummaryTile* FormerSummaries::of(const TileKey& tile) {
+  const auto bytes = changes_.former_summaries.find(tile);
+  if (bytes == changes_.former_summaries.end() || !bytes->second) return nullptr;
+  const auto known = read_.find(tile);
+  if (known != read_.end()) return &known->second;
+  return &read_.emplace(tile, perception::summaryTileFromBytes(*bytes->second)).first->second;
+}
+
 std::optional<MapWindow> windowAround(const rdf::ReadTransaction& transaction, TileStages& stages,
-                                      const OutputChanges& changes, const TileSet& more, int rings,
-                                      const std::vector<Cloud>& clouds, double max_share) {
+                                      const OutputChanges& changes, FormerSummaries& former, const TileSet& more,
+                                      int rings, const std::vector<Cloud>& clouds, double max_share) {
   const TileSet map = storedTiles(transaction);
   WindowTiles tiles = tilesAround(changes.tiles, more, rings, map);
   if (static_cast<double>(tiles.held.size()) > max_share * static_cast<double>(map.size())) return std::nullopt;
@@ -94,11 +101,10 @@ std::optional<MapWindow> windowAround(const rdf::ReadTransaction& transaction, T
   window.elsewhere = std::move(tiles.elsewhere);
   if (!readLayers(transaction, changes, window)) return std::nullopt;
   stages.hold(transaction, tiles.held, window.elsewhere);
-  requireFit(tiles.held, stages, changes, window.layers);
+  requireFit(tiles.held, stages, changes, former, window.layers);
   perception::SceneWindow scene = stages.window(window.elsewhere, clouds);
   window.scene = std::move(scene.scene);
   window.is_cut = std::move(scene.is_cut);
-  window.inputs = perception::inputHashes(window.scene, stages.summaries());
   std::uint32_t first = 0;
   for (const auto& [tile, summary] : stages.summaries()) {
     window.first_cluxel.emplace(tile, first);
@@ -109,26 +115,23 @@ std::optional<MapWindow> windowAround(const rdf::ReadTransaction& transaction, T
   return window;
 }
 
-std::vector<std::uint32_t> formerNumbers(const MapWindow& window, const TileStages& stages,
-                                         const OutputChanges& changes) {
-  std::vector<std::uint32_t> former;
-  former.reserve(window.scene.cluxels.size());
+std::vector<std::uint32_t> formerNumbers(const MapWindow& window, const TileStages& stages, FormerSummaries& former) {
+  std::vector<std::uint32_t> numbers;
+  numbers.reserve(window.scene.cluxels.size());
   for (const auto& [tile, summary] : stages.summaries()) {
-    const auto changed = changes.former_summaries.find(tile);
-    if (changed == changes.former_summaries.end()) {
-      for (std::uint32_t c = 0; c < summary.size(); ++c) former.push_back(c);
+    if (!former.isOther(tile)) {
+      for (std::uint32_t c = 0; c < summary.size(); ++c) numbers.push_back(c);
       continue;
     }
     std::unordered_map<std::uint64_t, std::uint32_t> number;
-    if (changed->second)
-      forEachSeed(perception::summaryTileFromBytes(*changed->second),
-                  [&](std::uint64_t seed, std::uint32_t c) { number.emplace(seed, c); });
+    if (const perception::SummaryTile* before = former.of(tile))
+      forEachSeed(*before, [&](std::uint64_t seed, std::uint32_t c) { number.emplace(seed, c); });
     forEachSeed(summary, [&](std::uint64_t seed, std::uint32_t) {
       const auto found = number.find(seed);
-      former.push_back(found == number.end() ? kNoFormer : found->second);
+      numbers.push_back(found == number.end() ? kNoFormer : found->second);
     });
   }
-  return former;
+  return numbers;
 }
 
 }  // namespace cluxel::mapping

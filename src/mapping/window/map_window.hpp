@@ -2,7 +2,9 @@
 // The part of a map around a change: its tiles, its scene, and what the map knew of it before the change.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <vector>
@@ -15,6 +17,12 @@
 
 namespace cluxel::mapping {
 
+/// A tile in plan view [m, map].
+inline Eigen::AlignedBox2d boxOfTile(const perception::TileKey& tile) {
+  const Eigen::Vector2d corner = perception::cornerOf(tile).head<2>();
+  return {corner, Eigen::Vector2d(corner.array() + perception::kTileSize_m)};
+}
+
 /// What the map knew of a primitive.
 struct KnownPrimitive {
   std::uint64_t input = 0, trace = 0;  ///< as in TileLayer
@@ -25,22 +33,41 @@ struct MapWindow {
   perception::TileSet elsewhere;                              ///< other tiles of the map next to them
   perception::Scene scene;                                    ///< after the change
   std::vector<char> is_cut;                                   ///< by primitive
-  std::vector<std::uint64_t> inputs;                          ///< by primitive: inputHashes()
   std::map<perception::TileKey, std::uint32_t> first_cluxel;  ///< of each tile, in the scene
   std::map<perception::TileKey, std::vector<perception::PrimitiveIndex>> primitive_of_component;
   std::map<perception::TileKey, TileLayer> layers;  ///< before the change; tiles that are new have none
   std::map<ContentHash, KnownPrimitive> known;      ///< before the change, by id
 };
 
+/// The hash of what reasoning reads of a primitive of a window (perception::PrimitiveInputs).
+using InputOf = std::function<std::uint64_t(perception::PrimitiveIndex)>;
+
+/// The summaries that changed tiles had before the change, each read once.
+class FormerSummaries {
+ public:
+  explicit FormerSummaries(const OutputChanges& changes) : changes_(changes) {}
+
+  /// Whether the tile had another summary before, or none.
+  bool isOther(const perception::TileKey& tile) const { return changes_.former_summaries.contains(tile); }
+  /// Null where there was none.
+  const perception::SummaryTile* of(const perception::TileKey& tile);
+  /// Gives their memory back; they are read again when they are needed.
+  void drop() { read_.clear(); }
+
+ private:
+  const OutputChanges& changes_;
+  std::map<perception::TileKey, perception::SummaryTile> read_;
+};
+
 /// The window of the tiles `rings` around the changed ones and of `more`. Absent when it would hold more than
 /// `max_share` of the map's tiles, or when the map lacks layers: then the whole map is computed.
 std::optional<MapWindow> windowAround(const rdf::ReadTransaction& transaction, TileStages& stages,
-                                      const OutputChanges& changes, const perception::TileSet& more, int rings,
-                                      const std::vector<Cloud>& clouds, double max_share);
+                                      const OutputChanges& changes, FormerSummaries& former,
+                                      const perception::TileSet& more, int rings, const std::vector<Cloud>& clouds,
+                                      double max_share);
 
 /// For each cluxel of the window's scene its number in the layer of its tile before the change; kNoFormer for new ones.
 inline constexpr std::uint32_t kNoFormer = 0xFFFFFFFFU;
-std::vector<std::uint32_t> formerNumbers(const MapWindow& window, const TileStages& stages,
-                                         const OutputChanges& changes);
+std::vector<std::uint32_t> formerNumbers(const MapWindow& window, const TileStages& stages, FormerSummaries& former);
 
 }  // namespace cluxel::mapping

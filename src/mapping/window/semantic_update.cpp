@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <unordered_map>
 
 #include "mapping/build/scan_store.hpp"
 #include "mapping/build/way_tiles.hpp"
@@ -14,13 +15,16 @@
 #include "mapping/statements/statement_facts.hpp"
 #include "mapping/window/former_objects.hpp"
 #include "mapping/window/kept_objects.hpp"
+#include "mapping/window/likely_tiles.hpp"
 #include "mapping/window/map_window.hpp"
 #include "mapping/window/semantic_state.hpp"
 #include "mapping/window/window_change.hpp"
 #include "mapping/window/window_decision.hpp"
 #include "mapping/window/window_facts.hpp"
 #include "mapping/window/window_layers.hpp"
+#include "mapping/window/window_presence.hpp"
 #include "mapping/window/window_statements.hpp"
+#include "perception/segments/primitive_inputs.hpp"
 #include "rdf/store/quad_store.hpp"
 #include "rdf/vocabulary.hpp"
 #include "rules/decide/local_reach.hpp"
@@ -32,8 +36,7 @@ namespace {
 using perception::TileKey;
 using perception::TileSet;
 
-constexpr int kRings = 1;             ///< of tiles around the changed ones that a window holds at least
-constexpr double kUsualGrowth = 1.4;  ///< of a window from the first attempt to the last
+constexpr int kRings = 1;  ///< of tiles around the changed ones that a window holds at least
 /// The number of layers around a change that have to lie in the window; more where that is not enough.
 constexpr std::array<std::uint32_t, 4> kDepths{5, 8, 13, 21};
 constexpr std::size_t kMaxAttempts = 40;
@@ -46,15 +49,6 @@ void keepDifferent(std::vector<ObjectMembers>& before, std::vector<ObjectMembers
   for (const ObjectMembers& object : after) ids_after.insert(object.id);
   std::erase_if(before, [&](const ObjectMembers& object) { return ids_after.contains(object.id); });
   std::erase_if(after, [&](const ObjectMembers& object) { return ids_before.contains(object.id); });
-}
-
-/// Tiles whose rectangle comes near a box.
-bool comesNear(const TileKey& tile, const Eigen::AlignedBox3d& box) {
-  const Eigen::Vector2d corner = perception::cornerOf(tile).head<2>();
-  const Eigen::AlignedBox2d own(corner, Eigen::Vector2d(corner.array() + perception::kTileSize_m));
-  constexpr double kAround_m = 1;
-  return own.exteriorDistance(Eigen::AlignedBox2d(Eigen::Vector2d(box.min().head<2>().array() - kAround_m),
-                                                  Eigen::Vector2d(box.max().head<2>().array() + kAround_m))) <= 0;
 }
 
 std::vector<ContentHash> statementIds(const rdf::ReadTransaction& transaction) {
@@ -76,6 +70,15 @@ TileSet tilesDecidedWhole(const MapWindow& window, const WindowDecision& decisio
   return tiles;
 }
 
+struct DecidedWindow {
+  const MapWindow& window;
+  const WindowChange& change;
+  const WindowDecision& decision;
+  const std::vector<std::uint32_t>& former;
+  const std::vector<rules::SemanticObject>& wide;
+  const InputOf& input_of;
+};
+
 class LocalUpdate {
  public:
   LocalUpdate(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
@@ -86,13 +89,15 @@ class LocalUpdate {
         changes_(changes),
         inputs_(inputs),
         params_(params),
-        sink_(sink) {}
+        sink_(sink),
+        former_summaries_(changes) {}
 
   /// Absent when the whole map has to be computed; then nothing was written.
   std::optional<SemanticUpdate> run() {
-    std::optional<double> reach_m = rules::localReach(parsed_.rules).reach_m;
+    const std::optional<double> reach_m = rules::localReach(parsed_.rules).reach_m;
     std::optional<SemanticState> before = storedSemanticState(transaction_);
     if (!reach_m || *reach_m > perception::kTileSize_m || !before) return std::nullopt;
+    reach_m_ = *reach_m;
     clouds_ = storedClouds(transaction_);
     before_ = *std::move(before);
     now_ = {0, 0, 0, statementIds(transaction_), seenClouds(clouds_)};
@@ -100,48 +105,75 @@ class LocalUpdate {
     if (inputs_ == ChangedInputs::Rules) {
       const std::optional<RuleChange> other = changeOfRules(transaction_, parsed_.rules);
       if (!other || other->former_reach_m > perception::kTileSize_m) return std::nullopt;
-      reach_m = std::max(*reach_m, other->former_reach_m);  // beyond a seam both runs must be the same
+      reach_m_ = std::max(reach_m_, other->former_reach_m);  // beyond a seam both runs must be the same
       decided_otherwise_ = other->tiles;
       changes_.tiles.insert(other->tiles.begin(), other->tiles.end());
       if (changes_.tiles.empty()) return unchanged();
     }
+    more_ = tilesOfPassedObjects(transaction_, changedRays(before_.clouds, now_.clouds));
     WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, before_, now_);
-    TileSet more = tilesOfPassedObjects();
-    for (std::size_t attempt = 0, depth = 0;
-         attempt < kMaxAttempts && depth < kDepths.size() && !statements.needsWholeMap(); ++attempt) {
+    for (; attempt_ < kMaxAttempts && depth_ < kDepths.size() && !statements.needsWholeMap(); ++attempt_) {
       changes_.tiles.insert(statements.tiles().begin(), statements.tiles().end());
-      const double growth = attempt == 0 ? kUsualGrowth : 1;
-      const std::optional<MapWindow> window =
-          windowAround(transaction_, stages_, changes_, more, kRings, clouds_, params_.max_window_share / growth);
+      if (attempt_ == 0) addLikelyTiles();
+      const std::optional<MapWindow> window = windowAround(transaction_, stages_, changes_, former_summaries_, more_,
+                                                           kRings, clouds_, params_.max_window_share);
       if (!window) return std::nullopt;
-      const WindowChange change =
-          changeIn(*window, changes_, perception::unionOf(statements.tiles(), decided_otherwise_), *reach_m);
-      const rules::LocalInput input = localInputOf(*window, change);
-      rules::ThresholdMargins margins(window->scene, parsed_.rules);
-      rules::ReasoningContext context;
-      context.threads = params_.threads;
-      context.margins = &margins;
-      context.keeps_paths = false;
-      rules::LocalRun rules_run(input, parsed_.rules, context, *reach_m);
-      const TileSet beyond = tilesBeyond(*window, change, changes_, transaction_, rules_run.layers(), kDepths[depth]);
-      more = perception::unionOf(std::move(more), attempt < kNarrowAttempts ? beyond : perception::grown(beyond));
-      if (attempt == 0 && willBeTooLarge(window->tiles, beyond)) return std::nullopt;
-      if (!beyond.empty()) continue;
-      sink_.progress("scene", window->scene.primitives.size(), window->scene.primitives.size());
-      auto decision = decideIn(*window, change, transaction_, rules_run);
-      if (!decision) ++depth;
-      if (!decision || !statements.apply(*window, change, *decision)) continue;
-      const std::vector<std::uint32_t> former = formerNumbers(*window, stages_, changes_);
-      if (changesWideObjects(*window, *decision, former)) return std::nullopt;
-      SemanticUpdate update = write(*window, change, *decision, former, statements);
-      updateMargins(transaction_, margins.found(), window->tiles, tilesDecidedWhole(*window, *decision));
-      storeNumbers(transaction_, parsed_.rules);
-      return update;
+      if (auto update = decideAndWrite(*window, statements)) return update;
+      if (needs_whole_map_) return std::nullopt;
     }
     return std::nullopt;
   }
 
  private:
+  /// Absent when the window has to grow, or the whole map has to be computed.
+  std::optional<SemanticUpdate> decideAndWrite(const MapWindow& window, WindowStatements& statements) {
+    perception::PrimitiveInputs inputs(window.scene, stages_.summaries());
+    const InputOf input_of = [&](perception::PrimitiveIndex primitive) {
+      const auto [known, is_new] = inputs_of_.try_emplace(window.scene.primitives[primitive].id);
+      if (is_new) known->second = inputs.hashOf(primitive);
+      return known->second;
+    };
+    const TileSet anew = perception::unionOf(statements.tiles(), decided_otherwise_);
+    const WindowChange change = changeIn(window, changes_, anew, reach_m_, input_of);
+    const rules::LocalInput input = localInputOf(window, change, lone_objects_, reach_m_);
+    if (isTooSmall(window, change, input.likely.layers)) return std::nullopt;
+    rules::ThresholdMargins margins(window.scene, parsed_.rules);
+    rules::ReasoningContext context;
+    context.threads = params_.threads;
+    context.margins = &margins;
+    context.keeps_paths = false;
+    rules::LocalRun rules_run(input, parsed_.rules, context, reach_m_);
+    if (rules_run.layers() != input.likely.layers && isTooSmall(window, change, rules_run.layers()))
+      return std::nullopt;
+    sink_.progress("scene", window.scene.primitives.size(), window.scene.primitives.size());
+    auto decision = decideIn(window, change, transaction_, rules_run);
+    if (!decision) ++depth_;
+    if (!decision || !statements.apply(window, change, *decision)) return std::nullopt;
+    const std::vector<std::uint32_t> former = formerNumbers(window, stages_, former_summaries_);
+    const std::vector<rules::SemanticObject> wide = wideObjectsIn(transaction_, window, *decision, former);
+    needs_whole_map_ = changesWideObjects(window, *decision, wide);
+    if (needs_whole_map_) return std::nullopt;
+    SemanticUpdate update = write({window, change, *decision, former, wide, input_of}, statements);
+    updateMargins(transaction_, margins.found(), window.tiles, tilesDecidedWhole(window, *decision));
+    storeNumbers(transaction_, parsed_.rules);
+    return update;
+  }
+
+  /// A first window that is large enough spares an attempt.
+  void addLikelyTiles() {
+    lone_objects_ = objectsOfLoneSeeds(parsed_.rules);
+    const TileSet window = perception::unionOf(perception::grown(changes_.tiles), more_);
+    more_.merge(likelyTiles(transaction_, window, lone_objects_, reach_m_));
+  }
+
+  /// Whether the window lacks tiles of the first layers, which the next one has.
+  bool isTooSmall(const MapWindow& window, const WindowChange& change, const std::vector<std::uint32_t>& layers) {
+    const TileSet beyond = tilesBeyond(window, change, changes_, transaction_, layers, kDepths[depth_]);
+    more_ = perception::unionOf(std::move(more_), attempt_ < kNarrowAttempts ? beyond : perception::grown(beyond));
+    needs_whole_map_ = attempt_ == 0 && willBeTooLarge(window.tiles, beyond);
+    return needs_whole_map_ || !beyond.empty();
+  }
+
   /// Leaves the layers as they are: other thresholds that decide nothing otherwise.
   SemanticUpdate unchanged() {
     storeNumbers(transaction_, parsed_.rules);
@@ -176,29 +208,12 @@ class LocalUpdate {
     });
   }
 
-  /// The tiles of all objects that rays of changed clouds may pass: when these objects were there is computed anew.
-  TileSet tilesOfPassedObjects() const {
-    const std::vector<Eigen::AlignedBox3d> boxes = changedRays(before_.clouds, now_.clouds);
-    TileSet tiles;
-    std::set<ContentHash> objects;
-    for (const TileKey& tile : storedTiles(transaction_)) {
-      if (std::none_of(boxes.begin(), boxes.end(), [&](const auto& box) { return comesNear(tile, box); })) continue;
-      if (const auto layer = storedLayer(transaction_, tile))
-        for (const TileLayer::Share& share : layer->shares) objects.insert(share.object);
-    }
-    for (const ContentHash& object : objects)
-      if (const auto record = storedRecord(transaction_, object); record && !record->is_class_wide)
-        tiles.insert(record->tiles.begin(), record->tiles.end());
-    return tiles;
-  }
-
   /// Whether an object of a whole class comes or goes, or is not the ground, which alone has neither neighbours nor
   /// facts from rays: such a change is told by the whole map.
   bool changesWideObjects(const MapWindow& window, const WindowDecision& decision,
-                          const std::vector<std::uint32_t>& former) const {
+                          const std::vector<rules::SemanticObject>& there) const {
     for (const rules::SemanticObject& object : decision.objects)
       if (object.is_class_wide && !storedRecord(transaction_, object.id)) return true;
-    const auto there = wideObjectsIn(transaction_, window, decision, former);
     return std::any_of(there.begin(), there.end(), [&](const rules::SemanticObject& object) {
       if (object.class_iri != rdf::vocabulary::clx("Ground")) return true;
       const auto record = storedRecord(transaction_, object.id);
@@ -208,15 +223,13 @@ class LocalUpdate {
     });
   }
 
-  SemanticUpdate write(const MapWindow& window, const WindowChange& change, const WindowDecision& decision,
-                       const std::vector<std::uint32_t>& former, WindowStatements& statements) {
+  SemanticUpdate write(const DecidedWindow& decided, WindowStatements& statements) {
+    const auto& [window, change, decision, former, wide, input_of] = decided;
     SemanticUpdate update;
     update.is_local = true;
     update.tiles_decided = window.tiles.size();
-    FormerObjects members(transaction_, stages_, changes_);
-    for (const auto& [tile, layer] : window.layers)
-      members.add(layer, [&](const ContentHash& object) { return decision.replaced.contains(object); });
-    update.before = members.take();
+    update.before = replacedObjects(window, decision);
+    former_summaries_.drop();
     std::vector<rules::SemanticObject> made = decision.objects;
     std::erase_if(made, [](const rules::SemanticObject& object) { return object.is_class_wide; });
     update.after = membersOf(made, window.scene.cluxels);
@@ -225,9 +238,9 @@ class LocalUpdate {
     sink_.progress("objects", update.after.size(), update.after.size());
     const bool have_ways = stages_.updateWays(transaction_, params_.threads);
     const std::optional<WayGraph> ways = have_ways ? std::optional(storedWays(transaction_)) : std::nullopt;
-    writeWindowFacts(transaction_, {parsed_, stages_, clouds_, before_.clouds, window, change, decision, former,
+    writeWindowFacts(transaction_, {parsed_, stages_, clouds_, before_.clouds, window, change, decision, former, wide,
                                     statements, ways ? &*ways : nullptr, params_.threads});
-    writeLayers(transaction_, window, decision, changes_, former);
+    writeLayers(transaction_, window, decision, changes_, former, wide, input_of);
     statements.store(transaction_, window);
     if (!now_.statements.empty())
       update.statements = toldOutcomes(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction_)));
@@ -236,6 +249,18 @@ class LocalUpdate {
     storeSemanticState(transaction_, now_);
     sink_.progress("facts", 1, 1);
     return update;
+  }
+
+  std::vector<ObjectMembers> replacedObjects(const MapWindow& window, const WindowDecision& decision) {
+    const auto is_replaced = [&](const ContentHash& object) { return decision.replaced.contains(object); };
+    FormerObjects members(transaction_, stages_, changes_);
+    for (const auto& [tile, layer] : window.layers) {
+      if (!former_summaries_.isOther(tile))
+        members.add(layer, is_replaced);
+      else if (const perception::SummaryTile* former = former_summaries_.of(tile))
+        members.add(layer, *former, is_replaced);
+    }
+    return members.take();
   }
 
   void count(const MapWindow& window, const WindowChange& change, SemanticUpdate& update) const {
@@ -260,8 +285,15 @@ class LocalUpdate {
   UpdateParams params_;
   ProgressSink& sink_;
   TileSet decided_otherwise_;  ///< tiles in which thresholds of the rules moved beyond what was measured
+  double reach_m_ = 0;
+  std::set<ContentHash> lone_objects_;
+  TileSet more_;  ///< tiles that the window holds beside those around the change
+  std::size_t attempt_ = 0, depth_ = 0;
+  bool needs_whole_map_ = false;
   std::vector<Cloud> clouds_;
   SemanticState before_, now_;
+  FormerSummaries former_summaries_;
+  std::unordered_map<ContentHash, std::uint64_t> inputs_of_;  ///< hashes of primitives, kept from attempt to attempt
 };
 
 SemanticUpdate updateAll(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,

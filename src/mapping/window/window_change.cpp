@@ -12,16 +12,11 @@ namespace {
 using perception::PrimitiveIndex;
 using perception::TileKey;
 
-Eigen::AlignedBox2d boxOfTile(const TileKey& tile) {
-  const Eigen::Vector2d corner = perception::cornerOf(tile).head<2>();
-  return {corner, Eigen::Vector2d(corner.array() + perception::kTileSize_m)};
-}
-
 class WindowComparison {
  public:
   WindowComparison(const MapWindow& window, const OutputChanges& changes, const perception::TileSet& anew,
-                   double reach_m)
-      : window_(window), changes_(changes), anew_(anew), reach_m_(reach_m) {}
+                   double reach_m, const InputOf& input_of)
+      : window_(window), changes_(changes), anew_(anew), reach_m_(reach_m), input_of_(input_of) {}
 
   WindowChange run() {
     markOpen();
@@ -59,7 +54,8 @@ class WindowComparison {
   void markDirty() {
     for (PrimitiveIndex i = 0; i < scene().primitives.size(); ++i) {
       const auto known = window_.known.find(scene().primitives[i].id);
-      result_.is_dirty.push_back(known == window_.known.end() || known->second.input != window_.inputs[i] ? 1 : 0);
+      const bool is_other = known == window_.known.end() || (!isUnclear(i) && known->second.input != input_of_(i));
+      result_.is_dirty.push_back(is_other ? 1 : 0);
     }
     for (const TileKey& tile : anew_)
       if (const auto here = window_.primitive_of_component.find(tile); here != window_.primitive_of_component.end())
@@ -73,9 +69,8 @@ class WindowComparison {
     const std::set<PrimitiveIndex> parted = partedByChange();
     std::vector<PrimitiveIndex> clean;
     for (PrimitiveIndex i = 0; i < scene().primitives.size(); ++i) {
-      const bool is_open = result_.is_open[i] != 0;
-      if (!is_open && !isBesideCut(i)) continue;
-      const bool is_new = !is_open && !window_.known.contains(scene().primitives[i].id);
+      if (!isUnclear(i)) continue;
+      const bool is_new = result_.is_open[i] == 0 && !window_.known.contains(scene().primitives[i].id);
       result_.is_dirty[i] = is_new || isInChangedTile(i) || parted.contains(i) || isNearGone(i) ? 1 : 0;
       if (result_.is_dirty[i] == 0) clean.push_back(i);
     }
@@ -87,6 +82,8 @@ class WindowComparison {
     });
     for (const PrimitiveIndex i : clean) result_.is_dirty[i] = 1;
   }
+
+  bool isUnclear(PrimitiveIndex primitive) const { return result_.is_open[primitive] != 0 || isBesideCut(primitive); }
 
   bool isBesideCut(PrimitiveIndex primitive) const {
     const auto relations = scene().relationsOf(primitive);
@@ -159,14 +156,15 @@ class WindowComparison {
   const OutputChanges& changes_;
   const perception::TileSet& anew_;
   double reach_m_;
+  const InputOf& input_of_;
   WindowChange result_;
 };
 
 }  // namespace
 
 WindowChange changeIn(const MapWindow& window, const OutputChanges& changes, const perception::TileSet& anew,
-                      double reach_m) {
-  return WindowComparison(window, changes, anew, reach_m).run();
+                      double reach_m, const InputOf& input_of) {
+  return WindowComparison(window, changes, anew, reach_m, input_of).run();
 }
 
 }  // namespace cluxel::mapping

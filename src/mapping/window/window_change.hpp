@@ -18,8 +18,9 @@ struct WindowChange {
   std::vector<Eigen::AlignedBox2d> gone_boxes;  ///< where they were [m, map]
 };
 
-/// `anew`: changed tiles in which every primitive counts as dirty. `reach_m`: how far decisions look.
+/// `anew`: changed tiles in which every primitive counts as dirty. `reach_m`: how far decisions look. `input_of` is
+/// asked for primitives of which the window holds all that the hash is of, so that larger windows give the same.
 WindowChange changeIn(const MapWindow& window, const OutputChanges& changes, const perception::TileSet& anew,
-                      double reach_m);
+                      double reach_m, const InputOf& input_of);
 
 }  // namespace cluxel::mapping

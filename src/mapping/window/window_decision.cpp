@@ -154,10 +154,27 @@ class Deciding {
   rules::Seam seam_;  ///< layers up to its first are decided anew; up to its last the outcome is known
 };
 
+/// By primitive: whether it was part of an object that strata of lone seeds made.
+std::vector<char> wereTakenAlone(const MapWindow& window, const std::set<ContentHash>& objects) {
+  std::set<ContentHash> taken;
+  for (const auto& [tile, layer] : window.layers)
+    for (const TileLayer::Share& share : layer.shares)
+      if (objects.contains(share.object))
+        for (const std::uint32_t component : share.components) taken.insert(layer.primitives[component].id);
+  std::vector<char> were;
+  for (const perception::Primitive& primitive : window.scene.primitives)
+    were.push_back(taken.contains(primitive.id) ? 1 : 0);
+  return were;
+}
+
 }  // namespace
 
-rules::LocalInput localInputOf(const MapWindow& window, const WindowChange& change) {
+rules::LocalInput localInputOf(const MapWindow& window, const WindowChange& change,
+                               const std::set<ContentHash>& lone_objects, double reach_m) {
   rules::LocalInput input{window.scene, change.is_dirty, change.is_open, change.gone_boxes, {}};
+  input.likely.is_fixed = wereTakenAlone(window, lone_objects);
+  input.likely.layers =
+      rules::layersAround(window.scene, change.is_dirty, input.likely.is_fixed, change.gone_boxes, reach_m);
   for (const perception::Primitive& primitive : window.scene.primitives) {
     const auto known = window.known.find(primitive.id);
     input.stored_trace.push_back(known == window.known.end() ? std::nullopt : std::optional(known->second.trace));

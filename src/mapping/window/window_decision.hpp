@@ -24,8 +24,10 @@ struct WindowDecision {
   std::map<ContentHash, ObjectRecord> replaced;  ///< former objects of decided and gone primitives, none class-wide
 };
 
-/// What the rules' run over the window starts from.
-rules::LocalInput localInputOf(const MapWindow& window, const WindowChange& change);
+/// What the rules' run over the window starts from. Its layers are likely to be those of the run: strata of lone seeds
+/// are expected to take what they took before. `lone_objects`: objectsOfLoneSeeds().
+rules::LocalInput localInputOf(const MapWindow& window, const WindowChange& change,
+                               const std::set<ContentHash>& lone_objects, double reach_m);
 
 /// The map's tiles beyond the window that hold, or lie within reach of, open primitives in the first `depth` layers
 /// around the change. None when the window is large enough to look for a seam there.

@@ -44,10 +44,7 @@ class FactWriting {
     replaceWideObjects();
     replaceStatements();
     if (sources_.ways != nullptr) replaceWays();
-    rdf::QuadWriter& writer = facts_.writer();
-    writer.flush();
-    patch_.write(facts_.take(), writer);
-    writer.flush();
+    patch_.write(facts_.take(), facts_.writer());
     renewPatches();
   }
 
@@ -157,12 +154,11 @@ class FactWriting {
   /// Of class-wide objects the window holds a part: their primitives are exchanged one by one, and what is merged over
   /// all tiles is made anew.
   void replaceWideObjects() {
-    const std::vector<rules::SemanticObject> here =
-        wideObjectsIn(transaction_, sources_.window, sources_.decision, sources_.former);
-    replaceWideTiles(transaction_, wideTilesOf(scene_, sources_.stages.summaries(), here), sources_.window.tiles);
+    replaceWideTiles(transaction_, wideTilesOf(scene_, sources_.stages.summaries(), sources_.wide),
+                     sources_.window.tiles);
     const std::vector<WidePart> parts = mergedParts(storedWideTiles(transaction_));
     rules::ReasoningResult result;
-    for (const rules::SemanticObject& object : here) result.objects.push_back(wideFacts(object, parts));
+    for (const rules::SemanticObject& object : sources_.wide) result.objects.push_back(wideFacts(object, parts));
     const rdf::TermId has_primitive = facts_.property("hasPrimitive"), has_part = facts_.property("hasPart");
     const std::vector<rdf::TermId> exchanged = exchangedPrimitives();
     for (const rules::SemanticObject& object : result.objects) {

@@ -24,7 +24,8 @@ struct WindowFacts {
   const MapWindow& window;
   const WindowChange& change;
   const WindowDecision& decision;
-  const std::vector<std::uint32_t>& former;  ///< formerNumbers()
+  const std::vector<std::uint32_t>& former;        ///< formerNumbers()
+  const std::vector<rules::SemanticObject>& wide;  ///< wideObjectsIn()
   const WindowStatements& statements;
   const WayGraph* ways = nullptr;  ///< null when they are as before
   unsigned threads = 1;

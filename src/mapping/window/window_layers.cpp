@@ -19,12 +19,15 @@ using perception::TileSet;
 class LayerWriting {
  public:
   LayerWriting(rdf::WriteTransaction& transaction, const MapWindow& window, const WindowDecision& decision,
-               const OutputChanges& changes, const std::vector<std::uint32_t>& former)
+               const OutputChanges& changes, const std::vector<std::uint32_t>& former,
+               const std::vector<rules::SemanticObject>& wide, const InputOf& input_of)
       : transaction_(transaction),
         window_(window),
         decision_(decision),
         changes_(changes),
         former_(former),
+        wide_(wide),
+        input_of_(input_of),
         part_of_(window.scene.cluxels.size(), kNoShare) {
     for (const rules::SemanticObject& object : decision.objects)
       for (const rules::ObjectPart& part : object.parts) {
@@ -63,10 +66,7 @@ class LayerWriting {
     TileLayer layer;
     layer.key = tile;
     addPrimitives(former, layer);
-    std::vector<std::optional<Part>> parts;
-    for (std::uint32_t c = first; c < cluxels().size() && cluxels().name[c].tile == tile; ++c)
-      parts.push_back(partOf(c, former));
-    addShares(parts, first, layer);
+    addShares(partsOf(tile, first, former), former, layer);
     return layer;
   }
 
@@ -78,9 +78,9 @@ class LayerWriting {
       if (!is_changed && decision_.is_decided[now[c]] == 0)
         layer.primitives.push_back(former->primitives[c]);
       else if (decision_.is_decided[now[c]] != 0)
-        layer.primitives.push_back({id, window_.inputs[now[c]], decision_.traces[now[c]], {}});
+        layer.primitives.push_back({id, input_of_(now[c]), decision_.traces[now[c]], {}});
       else
-        layer.primitives.push_back({id, window_.inputs[now[c]], window_.known.at(id).trace, {}});
+        layer.primitives.push_back({id, input_of_(now[c]), window_.known.at(id).trace, {}});
     }
     measure(layer);
   }
@@ -100,28 +100,50 @@ class LayerWriting {
     }
   }
 
-  std::optional<Part> partOf(std::uint32_t cluxel, const TileLayer* former) const {
-    if (decision_.is_decided[cluxels().primitive[cluxel]] != 0) {
-      if (part_of_[cluxel] == kNoShare) return std::nullopt;
-      return parts_[part_of_[cluxel]];
+  /// What each cluxel of a tile belongs to: a number in parts_, or beyond them one of the former shares, or kNoShare.
+  std::vector<std::uint32_t> partsOf(const TileKey& tile, std::uint32_t first, const TileLayer* former) const {
+    std::vector<std::uint32_t> parts;
+    for (std::uint32_t c = first; c < cluxels().size() && cluxels().name[c].tile == tile; ++c) {
+      if (decision_.is_decided[cluxels().primitive[c]] != 0) {
+        parts.push_back(part_of_[c]);
+        continue;
+      }
+      const bool is_known = former != nullptr && former_[c] != kNoFormer;
+      const std::uint32_t share = is_known ? former->share_of_cluxel[former_[c]] : kNoShare;
+      parts.push_back(share == kNoShare ? kNoShare : static_cast<std::uint32_t>(parts_.size()) + share);
     }
-    if (former == nullptr || former_[cluxel] == kNoFormer) return std::nullopt;
-    const std::uint32_t share = former->share_of_cluxel[former_[cluxel]];
-    if (share == kNoShare) return std::nullopt;
-    return Part{former->shares[share].object, former->shares[share].part_class};
+    return parts;
   }
 
-  void addShares(const std::vector<std::optional<Part>>& parts, std::uint32_t first, TileLayer& layer) {
-    std::map<Part, std::set<std::uint32_t>> components;
+  Part partOf(std::uint32_t number, const TileLayer* former) const {
+    if (number < parts_.size()) return parts_[number];
+    const TileLayer::Share& share = former->shares[number - parts_.size()];
+    return {share.object, share.part_class};
+  }
+
+  /// A former share and a part that was decided can be the same.
+  void addShares(const std::vector<std::uint32_t>& parts, const TileLayer* former, TileLayer& layer) {
+    const std::uint32_t first = window_.first_cluxel.at(layer.key);
+    std::vector<std::vector<std::uint32_t>> components(parts_.size() + (former != nullptr ? former->shares.size() : 0));
     for (std::uint32_t i = 0; i < parts.size(); ++i)
-      if (parts[i]) components[*parts[i]].insert(cluxels().component[first + i]);
-    std::map<Part, std::uint32_t> number;
-    for (const auto& [part, own] : components) {
-      number.emplace(part, static_cast<std::uint32_t>(layer.shares.size()));
-      layer.shares.push_back({part.object, part.part_class, {own.begin(), own.end()}});
+      if (parts[i] != kNoShare) components[parts[i]].push_back(cluxels().component[first + i]);
+    std::map<Part, std::vector<std::uint32_t>> numbers;
+    for (std::uint32_t number = 0; number < components.size(); ++number)
+      if (!components[number].empty()) numbers[partOf(number, former)].push_back(number);
+    std::vector<std::uint32_t> share_of(components.size(), kNoShare);
+    for (const auto& [part, of_part] : numbers) {
+      std::vector<std::uint32_t> own;
+      for (const std::uint32_t number : of_part) {
+        own.insert(own.end(), components[number].begin(), components[number].end());
+        share_of[number] = static_cast<std::uint32_t>(layer.shares.size());
+      }
+      std::sort(own.begin(), own.end());
+      own.erase(std::unique(own.begin(), own.end()), own.end());
+      layer.shares.push_back({part.object, part.part_class, std::move(own)});
       tiles_of_[part.object].insert(layer.key);
     }
-    for (const auto& part : parts) layer.share_of_cluxel.push_back(part ? number.at(*part) : kNoShare);
+    for (const std::uint32_t part : parts)
+      layer.share_of_cluxel.push_back(part == kNoShare ? kNoShare : share_of[part]);
   }
 
   void writeRecords() {
@@ -132,26 +154,17 @@ class LayerWriting {
       const TileSet& tiles = tiles_of_[object.id];
       put({object.class_iri, object.rule_id, object.confidence, false, {tiles.begin(), tiles.end()}}, object.id);
     }
-    for (const ContentHash& id : sharedBefore()) writeWideRecord(id);
-  }
-
-  std::set<ContentHash> sharedBefore() const {
-    std::set<ContentHash> shared;
-    for (const auto& [tile, layer] : window_.layers)
-      for (const TileLayer::Share& share : layer.shares) shared.insert(share.object);
-    for (const rules::SemanticObject& object : decision_.objects) shared.insert(object.id);
-    return shared;
+    for (const rules::SemanticObject& object : wide_) writeWideRecord(object.id);
   }
 
   /// Of a class-wide object the tiles in the window are exchanged.
   void writeWideRecord(const ContentHash& id) {
-    std::optional<ObjectRecord> record = storedRecord(transaction_, id);
-    if (!record || !record->is_class_wide) return;
+    ObjectRecord record = storedRecord(transaction_, id).value();
     TileSet tiles = tiles_of_[id];
-    for (const TileKey& tile : record->tiles)
+    for (const TileKey& tile : record.tiles)
       if (!window_.tiles.contains(tile)) tiles.insert(tile);
-    record->tiles.assign(tiles.begin(), tiles.end());
-    put(*record, id);
+    record.tiles.assign(tiles.begin(), tiles.end());
+    put(record, id);
   }
 
   void put(const ObjectRecord& record, const ContentHash& id) {
@@ -163,6 +176,8 @@ class LayerWriting {
   const WindowDecision& decision_;
   const OutputChanges& changes_;
   const std::vector<std::uint32_t>& former_;
+  const std::vector<rules::SemanticObject>& wide_;
+  const InputOf& input_of_;
   std::vector<Part> parts_;
   std::vector<std::uint32_t> part_of_;
   std::map<ContentHash, TileSet> tiles_of_;  ///< of objects, within the window
@@ -171,8 +186,9 @@ class LayerWriting {
 }  // namespace
 
 void writeLayers(rdf::WriteTransaction& transaction, const MapWindow& window, const WindowDecision& decision,
-                 const OutputChanges& changes, const std::vector<std::uint32_t>& former) {
-  LayerWriting(transaction, window, decision, changes, former).run();
+                 const OutputChanges& changes, const std::vector<std::uint32_t>& former,
+                 const std::vector<rules::SemanticObject>& wide, const InputOf& input_of) {
+  LayerWriting(transaction, window, decision, changes, former, wide, input_of).run();
 }
 
 }  // namespace cluxel::mapping

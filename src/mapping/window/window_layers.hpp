@@ -9,8 +9,9 @@
 
 namespace cluxel::mapping {
 
-/// Undecided primitives keep their objects and traces. `former`: formerNumbers().
+/// Undecided primitives keep their objects and traces. `former`: formerNumbers(); `wide`: wideObjectsIn().
 void writeLayers(rdf::WriteTransaction& transaction, const MapWindow& window, const WindowDecision& decision,
-                 const OutputChanges& changes, const std::vector<std::uint32_t>& former);
+                 const OutputChanges& changes, const std::vector<std::uint32_t>& former,
+                 const std::vector<rules::SemanticObject>& wide, const InputOf& input_of);
 
 }  // namespace cluxel::mapping

@@ -2,8 +2,12 @@
 // Objects that stay count too: rays of the clouds that changed may pass them.
 #include "mapping/window/window_presence.hpp"
 
+#include <algorithm>
 #include <array>
+#include <set>
 
+#include "mapping/build/scan_store.hpp"
+#include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/presence/passed_rays.hpp"
 #include "mapping/presence/stored_presence.hpp"
@@ -11,6 +15,35 @@
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::mapping {
+
+namespace {
+
+using perception::TileKey;
+using perception::TileSet;
+
+/// Tiles whose rectangle comes near a box.
+bool comesNear(const TileKey& tile, const Eigen::AlignedBox3d& box) {
+  constexpr double kAround_m = 1;
+  return boxOfTile(tile).exteriorDistance(
+             Eigen::AlignedBox2d(Eigen::Vector2d(box.min().head<2>().array() - kAround_m),
+                                 Eigen::Vector2d(box.max().head<2>().array() + kAround_m))) <= 0;
+}
+
+}  // namespace
+
+TileSet tilesOfPassedObjects(const rdf::ReadTransaction& transaction, const std::vector<Eigen::AlignedBox3d>& rays) {
+  TileSet tiles;
+  std::set<ContentHash> objects;
+  for (const TileKey& tile : storedTiles(transaction)) {
+    if (std::none_of(rays.begin(), rays.end(), [&](const auto& box) { return comesNear(tile, box); })) continue;
+    if (const auto layer = storedLayer(transaction, tile))
+      for (const TileLayer::Share& share : layer->shares) objects.insert(share.object);
+  }
+  for (const ContentHash& object : objects)
+    if (const auto record = storedRecord(transaction, object); record && !record->is_class_wide)
+      tiles.insert(record->tiles.begin(), record->tiles.end());
+  return tiles;
+}
 
 WindowPresence updatePresenceIn(rdf::WriteTransaction& transaction, const WindowFacts& facts,
                                 const std::vector<rules::SemanticObject>& made) {

@@ -14,13 +14,14 @@ namespace cluxel::perception {
 
 namespace {
 
-/// Collects values as bytes.
+/// Collects values as bytes, and hashes them in pieces: large primitives have megabytes.
 class Bytes {
  public:
   template <typename Value>
   requires std::is_trivially_copyable_v<Value>
   void add(const Value& value) {
-    if (size_ + sizeof value > bytes_.size()) bytes_.resize(2 * bytes_.size() + sizeof value);
+    static_assert(sizeof value <= kPieceBytes);
+    if (size_ + sizeof value > kPieceBytes) hashPiece();
     std::memcpy(bytes_.data() + size_, &value, sizeof value);
     size_ += sizeof value;
   }
@@ -28,14 +29,28 @@ class Bytes {
   void addVector(const Vector& vector) {
     for (int axis = 0; axis < 3; ++axis) add(vector[axis]);
   }
-  std::uint64_t takeHash() { return XXH3_64bits(bytes_.data(), std::exchange(size_, 0)); }
+  std::uint64_t takeHash() {
+    if (!has_pieces_) return XXH3_64bits(bytes_.data(), std::exchange(size_, 0));
+    hashPiece();
+    has_pieces_ = false;
+    return XXH3_64bits_digest(&state_);
+  }
 
  private:
-  std::vector<char> bytes_;
-  std::size_t size_ = 0;  ///< of what was added
+  static constexpr std::size_t kPieceBytes = 4096;
+
+  void hashPiece() {
+    if (!std::exchange(has_pieces_, true)) XXH3_64bits_reset(&state_);
+    XXH3_64bits_update(&state_, bytes_.data(), std::exchange(size_, 0));
+  }
+
+  std::array<char, kPieceBytes> bytes_{};
+  std::size_t size_ = 0;  ///< of what was added since the last piece
+  bool has_pieces_ = false;
+  XXH3_state_t state_{};
 };
 
-std::uint64_t hashOf(const SceneView& view, Bytes& bytes) {
+std::uint64_t hashOfView(const SceneView& view, Bytes& bytes) {
   bytes.add(view.scan);
   for (int i = 0; i < 16; ++i) bytes.add(view.T_map_sensor.matrix().data()[i]);
   bytes.addVector(view.sight.origin);
@@ -47,12 +62,13 @@ std::uint64_t hashOf(const SceneView& view, Bytes& bytes) {
   return bytes.takeHash();
 }
 
-class InputHashing {
+}  // namespace
+
+struct PrimitiveInputs::Impl {
  public:
-  InputHashing(const Scene& scene, const std::map<TileKey, SummaryTile>& summaries)
-      : scene_(scene), seeds_(seedHashes(scene.cluxels)) {
-    for (const auto& [key, tile] : summaries) addSights(tile);
-    for (const SceneView& view : scene.views) views_.push_back(hashOf(view, bytes_));
+  Impl(const Scene& scene, const std::map<TileKey, SummaryTile>& summaries)
+      : scene_(scene), summaries_(summaries), seeds_(seedHashes(scene.cluxels)) {
+    for (const SceneView& view : scene.views) views_.push_back(hashOfView(view, bytes_));
   }
 
   std::uint64_t hashOfPrimitive(PrimitiveIndex number) {
@@ -69,16 +85,15 @@ class InputHashing {
   }
 
  private:
-  /// What each scan saw of the cluxels of a tile.
-  void addSights(const SummaryTile& tile) {
-    for (std::size_t c = 0; c < tile.size(); ++c) {
-      for (std::uint32_t view = tile.view_offset[c]; view < tile.view_offset[c + 1]; ++view) {
-        bytes_.add(tile.scans[tile.view_scan[view]]);
-        bytes_.add(tile.view_point_count[view]);
-        bytes_.add(tile.view_shift[view]);
-      }
-      sights_.push_back(bytes_.takeHash());
+  /// What each scan saw of a cluxel.
+  std::uint64_t hashOfSights(const CluxelName& cluxel) {
+    if (tile_ == nullptr || tile_->key != cluxel.tile) tile_ = &summaries_.at(cluxel.tile);
+    for (std::uint32_t view = tile_->view_offset[cluxel.index]; view < tile_->view_offset[cluxel.index + 1]; ++view) {
+      sights_.add(tile_->scans[tile_->view_scan[view]]);
+      sights_.add(tile_->view_point_count[view]);
+      sights_.add(tile_->view_shift[view]);
     }
+    return sights_.takeHash();
   }
 
   void addMeasures(const Primitive& primitive) {
@@ -103,17 +118,25 @@ class InputHashing {
     bytes_.add(all.label[cluxel]);
     bytes_.add(all.probability[cluxel]);
     bytes_.add(all.height_above_ground[cluxel]);
-    bytes_.add(sights_[cluxel]);
+    bytes_.add(hashOfSights(all.name[cluxel]));
     for (const std::uint32_t neighbour : all.neighbours(cluxel)) bytes_.add(seeds_[neighbour]);
   }
 
   const Scene& scene_;
-  std::vector<std::uint64_t> seeds_, sights_;  ///< by cluxel
+  const std::map<TileKey, SummaryTile>& summaries_;
+  const SummaryTile* tile_ = nullptr;  ///< that of the last cluxel
+  std::vector<std::uint64_t> seeds_;   ///< by cluxel
   std::vector<std::uint64_t> views_;
-  Bytes bytes_;
+  Bytes bytes_, sights_;
 };
 
-}  // namespace
+PrimitiveInputs::PrimitiveInputs(const Scene& scene, const std::map<TileKey, SummaryTile>& summaries)
+    : impl_(std::make_unique<Impl>(scene, summaries)) {}
+PrimitiveInputs::~PrimitiveInputs() = default;
+
+std::uint64_t PrimitiveInputs::hashOf(PrimitiveIndex primitive) {
+  return impl_->hashOfPrimitive(primitive);
+}
 
 std::vector<std::uint64_t> seedHashes(const SceneSeeds& seeds) {
   struct Seed {
@@ -131,10 +154,10 @@ std::vector<std::uint64_t> seedHashes(const SceneSeeds& seeds) {
 }
 
 std::vector<std::uint64_t> inputHashes(const Scene& scene, const std::map<TileKey, SummaryTile>& summaries) {
-  InputHashing hashing(scene, summaries);
+  PrimitiveInputs inputs(scene, summaries);
   std::vector<std::uint64_t> hashes;
   hashes.reserve(scene.primitives.size());
-  for (PrimitiveIndex i = 0; i < scene.primitives.size(); ++i) hashes.push_back(hashing.hashOfPrimitive(i));
+  for (PrimitiveIndex i = 0; i < scene.primitives.size(); ++i) hashes.push_back(inputs.hashOf(i));
   return hashes;
 }
 

@@ -112,6 +112,7 @@ void appendCluxels(const TileOutputs& tiles, const TileKey& key, const TileNumbe
                    const TileSet& elsewhere, SceneCluxels& all) {
   const SummaryTile& cluxels = tiles.summaries.at(key);
   const LabelTile& labels = tiles.labels.at(key);
+  const ComponentTile& components = tiles.components.at(key);
   const auto ground = ringIn(tiles.ground, key);
   const Eigen::Vector3d corner = cornerOf(key);
   const std::size_t count = cluxels.size();
@@ -123,7 +124,7 @@ void appendCluxels(const TileOutputs& tiles, const TileKey& key, const TileNumbe
   appendEach(all.low_corner, count,
              [&](auto c) -> Eigen::Vector3d { return corner + cluxels.box_min[c].template cast<double>(); });
   appendEach(all.point_count, count, [&](auto c) { return cluxels.point_count[c]; });
-  appendEach(all.component, count, [&](auto c) { return tiles.components.at(key).component_of[c]; });
+  appendEach(all.component, count, [&](auto c) { return components.component_of[c]; });
   appendEach(all.label, count, [&](auto c) { return static_cast<scan::PrimitiveLabel>(labels.label[c]); });
   appendEach(all.probability, count, [&](auto c) { return labels.probability[c]; });
   appendEach(all.height_above_ground, count, [&](auto c) {

@@ -73,11 +73,21 @@ std::vector<char> fixedPrimitives(const ReasoningState& state) {
   return is_fixed;
 }
 
+/// Whether the likely layers hold. Dirty primitives are in layer 0, fixed or not.
+bool areLikely(const LocalInput& input, const std::vector<char>& is_fixed) {
+  if (input.likely.is_fixed.size() != is_fixed.size()) return false;
+  for (std::size_t i = 0; i < is_fixed.size(); ++i)
+    if (is_fixed[i] != input.likely.is_fixed[i] && input.is_dirty[i] == 0) return false;
+  return true;
+}
+
 /// Decides the strata of lone seeds, and finds the layers of what they leave.
 std::vector<std::uint32_t> decideLoneSeeds(const LocalInput& input, double reach_m, ReasoningState& state) {
   const auto later = state.rules.strata.begin() + static_cast<std::ptrdiff_t>(strataOfLoneSeeds(state.rules));
   std::for_each(state.rules.strata.begin(), later, [&](const auto& stratum) { decideStratum(state, stratum); });
-  return layersAround(input.window, input.is_dirty, fixedPrimitives(state), input.gone, reach_m);
+  const std::vector<char> is_fixed = fixedPrimitives(state);
+  if (areLikely(input, is_fixed)) return input.likely.layers;
+  return layersAround(input.window, input.is_dirty, is_fixed, input.gone, reach_m);
 }
 
 }  // namespace

@@ -17,6 +17,13 @@ namespace cluxel::rules {
 
 struct ReasoningState;
 
+/// The layers that hold when the strata of lone seeds take just these primitives of those that are not dirty; see
+/// layersAround(). By primitive.
+struct LikelyLayers {
+  std::vector<char> is_fixed;
+  std::vector<std::uint32_t> layers;
+};
+
 /// A part of a scene around a change. Vectors are by primitive of the window.
 struct LocalInput {
   /// The primitives near the change, with the edges and relations among them; see perception::partOf().
@@ -29,6 +36,8 @@ struct LocalInput {
   std::vector<Eigen::AlignedBox2d> gone;
   /// Of the run before (ReasoningResult::traces); absent for what is new.
   std::vector<std::optional<std::uint64_t>> stored_trace;
+  /// Spares the run the search for layers, if these are the right ones.
+  LikelyLayers likely{};
 };
 
 /// Layers that the run over the window and the run before decided alike, and that no step spans.
