@@ -137,7 +137,10 @@ std::uint64_t QuadReader::estimate(const QuadPattern& pattern) const {
 }
 
 QuadReader::PredicateStatistics QuadReader::statistics(TermId predicate) const {
-  if (const auto known = impl_->snapshot().knownStatistics(predicate)) return *known;
+  // In a write transaction a guarded index is estimated as of the commit before, through all its changes.
+  const bool is_guarded = impl_->directory(QuadOrder::Posg).guard() && impl_->directory(QuadOrder::Spog).guard();
+  StoreSnapshot& keeper = is_guarded ? impl_->snapshot().keeperOfEstimates() : impl_->snapshot();
+  if (const auto known = keeper.knownStatistics(predicate)) return *known;
   const PageDirectory& directory = impl_->pagesForEstimates(QuadOrder::Posg);
   const PageDirectory& by_subject = impl_->pagesForEstimates(QuadOrder::Spog);
   const auto [from, to] = stretchOf(directory, rangeOf(std::array{predicate}));
@@ -162,7 +165,7 @@ QuadReader::PredicateStatistics QuadReader::statistics(TermId predicate) const {
     statistics.subjects = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(subjects * scale)));
     statistics.objects = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(objects * scale)));
   }
-  impl_->snapshot().keepStatistics(predicate, statistics);
+  keeper.keepStatistics(predicate, statistics);
   return statistics;
 }
 

@@ -157,10 +157,11 @@ std::string_view StoreSnapshot::storedRecord(TermId id, const ReadTransaction::I
 }
 
 std::string_view StoreSnapshot::record(TermId id, ReadTransaction::Impl& transaction) {
-  if (base_ && id <= base_->term_count_)
+  if (base_ && id <= base_->term_count_) {
     base_->requireTerm(id, transaction);
-  else if (sums_ && id <= term_count_)
-    requireTerm(id, transaction);
+    return base_->storedRecord(id, transaction);  // in place, which is faster than LMDB's search
+  }
+  if (sums_ && id <= term_count_) requireTerm(id, transaction);
   return storedRecord(id, transaction);
 }
 

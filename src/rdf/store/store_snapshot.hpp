@@ -55,6 +55,8 @@ class StoreSnapshot : public std::enable_shared_from_this<StoreSnapshot> {
   bool isComparedByParts() const { return by_parts_; }
   const std::shared_ptr<CheckedParts>& checkedParts() const { return checked_; }
 
+  /// Where estimates are kept that were made without comparison: with the commit before a write transaction.
+  StoreSnapshot& keeperOfEstimates() { return base_ ? *base_ : *this; }
   std::optional<QuadReader::PredicateStatistics> knownStatistics(TermId predicate);
   void keepStatistics(TermId predicate, const QuadReader::PredicateStatistics& statistics);
   std::shared_ptr<const void> kept(const std::string& name);
