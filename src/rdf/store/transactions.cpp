@@ -176,9 +176,10 @@ WriteTransaction LmdbEnvironment::write() {
 /// ranges all is compared before.
 void LmdbEnvironment::verifyForWriting(std::size_t commit) {
   const ReadTransaction current = read();
-  const bool by_parts = commit > 0 && snapshotOf(current.impl()).isComparedByParts();
-  checkMapStructure(data_lock_, file_, commit, by_parts ? MapScope::Writing : MapScope::Whole);
-  if (!by_parts) snapshotOf(current.impl()).verify(current.impl());
+  StoreSnapshot& snapshot = snapshotOf(current.impl());
+  const bool by_parts = snapshot.isComparedByParts();
+  checkMapStructure(data_lock_, file_, commit, by_parts ? MapScope::Writing : MapScope::Whole, snapshot.map().base);
+  if (!by_parts) snapshot.verify(current.impl());
   verified_ = true;
 }
 

@@ -80,9 +80,9 @@ struct KeyBounds {
 /// Visits every page of the trees of one commit.
 class StructureWalk {
  public:
-  StructureWalk(const FileMapping& mapping, const std::filesystem::path& file, const MapFileHead& head,
-                const Meta& meta, MapScope scope)
-      : bytes_(mapping.bytes()),
+  StructureWalk(const std::uint8_t* bytes, const std::filesystem::path& file, const MapFileHead& head, const Meta& meta,
+                MapScope scope)
+      : bytes_(bytes),
         file_(file),
         page_size_(head.page_size),
         file_pages_(head.file_size / head.page_size),
@@ -170,7 +170,8 @@ class StructureWalk {
   void nodes(PageNumber number, const std::uint8_t* bytes, bool is_branch, const KeyBounds& bounds, TreeKind kind) {
     const std::size_t count = entryCount(bytes), upper = header(bytes).upper;
     const bool in_order = scope_ != MapScope::Reading || kind != TreeKind::Blocks;
-    std::size_t used = 0;
+    std::size_t used = 0, before = page_size_;
+    bool in_a_row = true;  // as LMDB appends entries: from the end of the page, each before the last one
     std::optional<std::string_view> last;
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t at = load<std::uint16_t>(bytes + kHeaderSize + 2 * i);
@@ -179,6 +180,8 @@ class StructureWalk {
       const std::size_t size = nodeSize(node, is_branch);
       if (at + even(size) > page_size_) refuse(number, "has an entry outside itself");
       used += even(size);
+      in_a_row = in_a_row && at + even(size) == before;
+      before = at;
       if (is_branch && i == 0) continue;  // its key is not used
       const std::string_view key = keyOf(node);
       if (!hasKeySize(kind, key.size())) refuse(number, "has a key of a wrong size");
@@ -189,7 +192,7 @@ class StructureWalk {
       last = key;
     }
     if (used != page_size_ - upper) refuse(number, "has gaps between its entries");
-    if (scope_ != MapScope::Reading) requireDisjoint(number, bytes, is_branch);
+    if (scope_ != MapScope::Reading && !in_a_row) requireDisjoint(number, bytes, is_branch);
   }
 
   static std::size_t nodeSize(const Node& node, bool is_branch) {
@@ -323,12 +326,14 @@ class StructureWalk {
 
 }  // namespace
 
-void checkMapStructure(int descriptor, const std::filesystem::path& file, std::uint64_t transaction, MapScope scope) {
+void checkMapStructure(int descriptor, const std::filesystem::path& file, std::uint64_t transaction, MapScope scope,
+                       const std::uint8_t* mapped) {
   const MapFileHead head = readMapFileHead(descriptor, file);
   const Meta* meta = head.metaOf(transaction);
   if (meta == nullptr) refuseFile(file, "the map changed while it was checked; run again");
-  const FileMapping mapping(descriptor, head.file_size, file);
-  StructureWalk(mapping, file, head, *meta, scope).run();
+  std::optional<FileMapping> own;
+  if (mapped == nullptr) mapped = own.emplace(descriptor, head.file_size, file).bytes();
+  StructureWalk(mapped, file, head, *meta, scope).run();
 }
 
 }  // namespace cluxel::rdf

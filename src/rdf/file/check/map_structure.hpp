@@ -17,6 +17,8 @@ enum class MapScope : std::uint8_t {
 /// (StoreUnavailable) at the first page that is malformed, lies outside the file, is reached twice, or is listed as
 /// free, and when a table holds more or less than its record states. Never reads outside the file. Cost of Reading: one
 /// step per block; of Whole: one per block, per term, per page of an index, and per value of more than half a page.
-void checkMapStructure(int descriptor, const std::filesystem::path& file, std::uint64_t transaction, MapScope scope);
+/// `mapped`: the whole file in memory, if it is there already.
+void checkMapStructure(int descriptor, const std::filesystem::path& file, std::uint64_t transaction, MapScope scope,
+                       const std::uint8_t* mapped = nullptr);
 
 }  // namespace cluxel::rdf
