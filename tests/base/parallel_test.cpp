@@ -54,7 +54,8 @@ TEST(ParallelFor, MayEndBeforeAllItsThreadsHaveBegunButLeavesFewBehind) {
     most_threads = std::max(most_threads, threadsOfProcess());
   }
   EXPECT_EQ(calls, 2000U * 16U);
-  EXPECT_LE(most_threads, 3U * 16U);
+  // Threads that are ending count, too, and on a busy machine take their time; 30,000 were started.
+  EXPECT_LE(most_threads, 20U * 16U);
 }
 
 TEST(ParallelFor, BeginsNoPieceAfterAFailure) {
