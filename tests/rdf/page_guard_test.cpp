@@ -59,19 +59,19 @@ class GuardedMap : public MapFile {
     transaction.commit();
   }
 
-  /// Changes one id of a quad in the index by subject, on the page of the current commit.
-  void damage(std::uint32_t number) {
+  /// Changes the third id of a quad in an index, on the page of the current commit.
+  void damage(std::uint32_t number, QuadOrder order = QuadOrder::Spog) {
     std::size_t at = 0;
     {
       const ReadTransaction transaction = open(OpenMode::ReadOnly)->read();
       StoreSnapshot& snapshot = snapshotOf(transaction.impl());
-      const PageDirectory& pages = snapshot.directory(Table::Spog, transaction.impl());
-      const auto place = pages.lowerBound(toNumber(quadOf(number), QuadOrder::Spog));
+      const PageDirectory& pages = snapshot.directory(tableOf(order), transaction.impl());
+      const auto place = pages.lowerBound(toNumber(quadOf(number), order));
       at = reinterpret_cast<std::uintptr_t>(&pages.page(place.page)[place.index]) -
            reinterpret_cast<std::uintptr_t>(snapshot.map().base);
     }
     std::fstream file(file_, std::ios::binary | std::ios::in | std::ios::out);
-    file.seekg(static_cast<std::streamoff>(at + 11));  // the last byte of the object
+    file.seekg(static_cast<std::streamoff>(at + 11));  // its last byte
     const auto byte = static_cast<char>(file.get() ^ 1);
     file.seekp(static_cast<std::streamoff>(at + 11));
     file.put(byte);
@@ -189,6 +189,36 @@ TEST_F(GuardedMap, KeepsWhatIsKnownOfADamageThroughChangesAroundIt) {
   EXPECT_FALSE(checkMap(file_).sound());
 }
 
+/// A damaged index lacks the quad that the others have, so that it cannot follow. The index by object has a sum of its
+/// own: there the damage stays known.
+TEST_F(GuardedMap, LosesNothingByAChangeOfADamagedQuad) {
+  const std::string whole = readFile(file_);
+  const std::uint32_t number = kQuads / 2;
+  for (const QuadOrder order : {QuadOrder::Spog, QuadOrder::Posg, QuadOrder::Ospg, QuadOrder::Gspo})
+    for (const bool is_added : {true, false}) {
+      std::ofstream(file_, std::ios::binary) << whole;
+      damage(number, order);
+      const auto change = [&] {
+        const auto environment = open();
+        WriteTransaction transaction = environment->write();
+        QuadWriter writer(transaction);
+        if (is_added)
+          writer.add(quadOf(number));
+        else
+          writer.remove(quadOf(number));
+        writer.flush();
+        transaction.commit();
+      };
+      const std::string which = std::to_string(static_cast<int>(order)) + (is_added ? ", added" : ", removed");
+      if (order == QuadOrder::Ospg)
+        EXPECT_NO_THROW(change()) << which;
+      else
+        EXPECT_THROW(change(), Error) << which;
+      EXPECT_EQ(quadsOf(*open(OpenMode::ReadOnly), 1), 4U) << which;
+      EXPECT_FALSE(checkMap(file_).sound()) << which;
+    }
+}
+
 TEST_F(GuardedMap, RefusesToWriteBesideAMalformedPage) {
   std::size_t at = 0;
   {
@@ -208,6 +238,21 @@ TEST_F(GuardedMap, RefusesToWriteBesideAMalformedPage) {
     EXPECT_NO_THROW(add(*open(), kQuads, kQuads + 40)) << byte;
     EXPECT_FALSE(checkMap(file_).sound()) << byte;
   }
+}
+
+TEST(RangeSums, JoinShortRanges) {
+  const auto range = [](std::uint32_t first, std::uint64_t count) {
+    return RangeSums::Range{Key128{first}, EntrySum{count, first}};
+  };
+  RangeSums sums({range(0, 16384), range(1, 100), range(2, 3 * 8192), range(3, 20'000), range(4, 8'000), range(5, 50)});
+  const EntrySum whole = sums.whole();
+  EXPECT_FALSE(sums.hasLong());
+  sums.joinShort();
+  ASSERT_EQ(sums.ranges().size(), 4U);
+  EXPECT_EQ(sums.ranges()[0].sum.count, 16484U);
+  EXPECT_EQ(sums.ranges()[3].sum.count, 8'050U);
+  EXPECT_TRUE(sums.ranges()[3].first == Key128{4});
+  EXPECT_EQ(sums.whole(), whole);
 }
 
 TEST(RangeSums, AreReadAsTheyWereWritten) {

@@ -72,22 +72,17 @@ StoreSnapshot::StoreSnapshot(const ReadTransaction::Impl& transaction)
   if (sums_) requireCounts(transaction.environment->file());
 }
 
-const EntrySum& StoreSnapshot::sumOfTable(Table table) const {
-  if (table == Table::Terms || table == Table::TermHashes) return sums_->term_hashes;
-  return table == Table::Ospg ? sums_->links : sums_->quads;
-}
-
 void StoreSnapshot::requireCounts(const std::filesystem::path& file) const {
   for (std::size_t i = static_cast<std::size_t>(Table::Terms); i < kTableCount; ++i) {
-    if (trees_[i].entries != sumOfTable(static_cast<Table>(i)).count)
+    if (trees_[i].entries != sums_->of(static_cast<Table>(i)).count)
       refuseDamaged(file, std::string("table ") + kTableNames[i] + " has another number of entries than was written");
   }
 }
 
 void StoreSnapshot::verifyIndex(Table index, const std::filesystem::path& file) const {
   const auto i = static_cast<std::size_t>(index);
-  if (sums_ && sumOf(*directories_[i], index, file) != sumOfTable(index))
-    refuseDamaged(file, std::string("index ") + kTableNames[i] + " differs from its checksum");
+  if (sums_ && sumOf(*directories_[i], index, file) != sums_->of(index))
+    refuseIndex(file, index, "differs from its checksum");
 }
 
 void StoreSnapshot::verify(ReadTransaction::Impl& transaction) {
@@ -119,7 +114,7 @@ std::shared_ptr<const PageDirectory> StoreSnapshot::guarded(PageDirectory pages,
                                                             ReadTransaction::Impl& transaction) {
   const std::filesystem::path& file = transaction.environment->file();
   RangeSums ranges = storedRanges(transaction, index);
-  if (ranges.whole() != sumOfTable(index))
+  if (ranges.whole() != sums_->of(index))
     refuseDamaged(file, std::string("the sums of index ") + kTableNames[static_cast<std::size_t>(index)] +
                             " differ from the sum of the whole");
   const auto guard = std::make_shared<PageGuard>(map_, std::move(pages), std::move(ranges), index, file);

@@ -34,8 +34,8 @@ class StoreSnapshot : public std::enable_shared_from_this<StoreSnapshot> {
   std::uint64_t size() const { return size_; }
   std::uint64_t termCount() const { return term_count_; }
   /// The directory of an index; `transaction` must see the same state as this snapshot, or have begun with it. Its
-  /// pages are compared with their sums when they are first read, unless this process wrote them; those of maps without
-  /// sums of ranges and of small indexes by the first call. Thread-safe.
+  /// pages are compared with their sums when they are first read, unless this process compared them in an earlier
+  /// commit; those of maps without sums of ranges and of small indexes by the first call. Thread-safe.
   std::shared_ptr<const PageDirectory> sharedDirectory(Table index, ReadTransaction::Impl& transaction);
   const PageDirectory& directory(Table index, ReadTransaction::Impl& transaction) {
     return *sharedDirectory(index, transaction);
@@ -63,7 +63,6 @@ class StoreSnapshot : public std::enable_shared_from_this<StoreSnapshot> {
   void keep(const std::string& name, std::shared_ptr<const void> made);
 
  private:
-  const EntrySum& sumOfTable(Table table) const;
   void requireCounts(const std::filesystem::path& file) const;
   void verifyIndex(Table index, const std::filesystem::path& file) const;
   std::shared_ptr<const PageDirectory> guarded(PageDirectory pages, Table index, ReadTransaction::Impl& transaction);

@@ -165,8 +165,9 @@ WriteTransaction LmdbEnvironment::write() {
   if (base > 0) {
     startSums(transaction, base);
     const ReadTransaction current = read();
-    sharedSnapshotOf(current.impl())->prepareForWriting(current.impl());
-    transaction.impl().directories->startFrom(sharedSnapshotOf(current.impl()));
+    const std::shared_ptr<StoreSnapshot> snapshot = sharedSnapshotOf(current.impl());
+    snapshot->prepareForWriting(current.impl());
+    transaction.impl().directories->startFrom(snapshot);
   }
   restartJournal(transaction);
   return transaction;

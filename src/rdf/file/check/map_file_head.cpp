@@ -101,6 +101,10 @@ void refuseDamaged(const std::filesystem::path& file, const std::string& what) {
   refuseFile(file, "the map is damaged: " + what + "; restore a copy or build it again");
 }
 
+void refuseIndex(const std::filesystem::path& file, Table index, const std::string& what) {
+  refuseDamaged(file, std::string("index ") + kTableNames[static_cast<std::size_t>(index)] + " " + what);
+}
+
 const Meta* MapFileHead::metaOf(std::uint64_t wanted) const {
   for (const auto& meta : metas)
     if (meta && meta->transaction == wanted) return &*meta;

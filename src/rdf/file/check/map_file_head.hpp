@@ -9,6 +9,7 @@
 #include <string>
 
 #include "rdf/file/lmdb_page.hpp"
+#include "rdf/file/table.hpp"
 
 namespace cluxel::rdf {
 
@@ -28,5 +29,7 @@ MapFileHead readMapFileHead(int descriptor, const std::filesystem::path& file);
 [[noreturn]] void refuseFile(const std::filesystem::path& file, const std::string& what);
 /// "the map is damaged: `what`; restore ...".
 [[noreturn]] void refuseDamaged(const std::filesystem::path& file, const std::string& what);
+/// "the map is damaged: index NAME `what`; restore ...".
+[[noreturn]] void refuseIndex(const std::filesystem::path& file, Table index, const std::string& what);
 
 }  // namespace cluxel::rdf

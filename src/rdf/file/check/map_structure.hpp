@@ -9,7 +9,7 @@ namespace cluxel::rdf {
 
 enum class MapScope : std::uint8_t {
   Reading,  ///< what LMDB itself reads for a reader: the tables' records, the blocks' keys, the list of free pages
-  Writing,  ///< what LMDB reads for a writer, but the leaves of indexes, which page guards check when they are read
+  Writing,  ///< what LMDB reads for a writer, without the leaves of indexes: page guards check those
   Whole,    ///< every page but the contents of values and the keys in leaves of indexes
 };
 

@@ -29,7 +29,7 @@ void PageGuard::inherit(const PageGuard& earlier) {
 }
 
 void PageGuard::refuse(const std::string& what) const {
-  refuseDamaged(file_, std::string("index ") + kTableNames[static_cast<std::size_t>(index_)] + " " + what);
+  refuseIndex(file_, index_, what);
 }
 
 Key128 PageGuard::lastOf(std::size_t place) const {
@@ -37,6 +37,7 @@ Key128 PageGuard::lastOf(std::size_t place) const {
 }
 
 void PageGuard::check(Key128 first, Key128 last) const {
+  if (last < first) refuse("has keys out of order");
   for (std::size_t range = ranges_.rangeOf(first), end = ranges_.rangeOf(last); range <= end; ++range)
     if (!is_checked_[range].load(std::memory_order_relaxed)) checkRange(range);
 }

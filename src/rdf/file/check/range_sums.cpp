@@ -57,26 +57,16 @@ EntrySum RangeSums::whole() const {
   return whole;
 }
 
-bool RangeSums::needsAdjusting() const {
-  return std::any_of(ranges_.begin(), ranges_.end(), [this](const Range& range) {
-    return range.sum.count > kMaxKeys || (range.sum.count < kMinKeys && ranges_.size() > 1);
-  });
+bool RangeSums::hasLong() const {
+  return std::any_of(ranges_.begin(), ranges_.end(), [](const Range& range) { return range.sum.count > kMaxKeys; });
 }
 
-void RangeSums::adjust(const PageDirectory& directory, Table index, const std::filesystem::path& file) {
-  std::vector<Range> adjusted;
+void RangeSums::splitLong(const PageDirectory& directory, Table index, const std::filesystem::path& file) {
+  std::vector<Range> divided;
   for (std::size_t i = 0; i < ranges_.size(); ++i) {
     const Range& range = ranges_[i];
     if (range.sum.count <= kMaxKeys) {
-      Range* before = adjusted.empty() ? nullptr : &adjusted.back();
-      const bool is_short = before != nullptr && std::min(before->sum.count, range.sum.count) < kMinKeys &&
-                            before->sum.count + range.sum.count <= kUsualKeys;
-      if (!is_short) {
-        adjusted.push_back(range);
-        continue;
-      }
-      before->sum.count += range.sum.count;
-      before->sum.hash += range.sum.hash;
+      divided.push_back(range);
       continue;
     }
     RangeSummer summer(index);
@@ -90,13 +80,27 @@ void RangeSums::adjust(const PageDirectory& directory, Table index, const std::f
       if (stop != keys.end()) break;
     }
     RangeSums parts = summer.take();
-    if (parts.whole() != range.sum)
-      refuseDamaged(
-          file, std::string("index ") + kTableNames[static_cast<std::size_t>(index)] + " differs from its checksum");
+    if (parts.whole() != range.sum) refuseIndex(file, index, "differs from its checksum");
     parts.ranges_.front().first = range.first;
-    adjusted.insert(adjusted.end(), parts.ranges_.begin(), parts.ranges_.end());
+    divided.insert(divided.end(), parts.ranges_.begin(), parts.ranges_.end());
   }
-  ranges_ = std::move(adjusted);
+  ranges_ = std::move(divided);
+  found_ = 0;
+}
+
+void RangeSums::joinShort() {
+  std::vector<Range> joined{ranges_.front()};
+  for (std::size_t i = 1; i < ranges_.size(); ++i) {
+    const EntrySum& sum = ranges_[i].sum;
+    EntrySum& before = joined.back().sum;
+    if (std::min(before.count, sum.count) >= kMinKeys || before.count + sum.count > kMaxKeys) {
+      joined.push_back(ranges_[i]);
+      continue;
+    }
+    before.count += sum.count;
+    before.hash += sum.hash;
+  }
+  ranges_ = std::move(joined);
   found_ = 0;
 }
 

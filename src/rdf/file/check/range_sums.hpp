@@ -36,10 +36,13 @@ class RangeSums {
   /// To be called when a key of the index was added or removed. Ascending keys are faster than others.
   void add(Key128 key, Key128 in_sum) { ranges_[find(key)].sum.add(in_sum); }
   void remove(Key128 key, Key128 in_sum) { ranges_[find(key)].sum.remove(in_sum); }
-  /// Splits ranges that have grown too long and joins short ones. Throws Error (StoreUnavailable) when the index holds
-  /// other keys than these sums state. Cost: reads the keys of ranges that are split.
-  void adjust(const PageDirectory& directory, Table index, const std::filesystem::path& file);
-  bool needsAdjusting() const;
+  /// Whether some range has more than `kMaxKeys`.
+  bool hasLong() const;
+  /// Splits these. Throws Error (StoreUnavailable) when the index holds other keys than these sums state. Cost: reads
+  /// the keys of ranges that are split.
+  void splitLong(const PageDirectory& directory, Table index, const std::filesystem::path& file);
+  /// Joins ranges of less than `kMinKeys` to the one before or behind, where both together are short enough.
+  void joinShort();
 
   std::string bytes() const;
   /// Throws Error (StoreUnavailable) when the bytes are malformed.

@@ -76,6 +76,11 @@ struct StoreSums {
   EntrySum term_hashes;
   EntrySum links;  ///< of ospg, which may lack quads with literals; keys in the order s, p, o, g
   bool operator==(const StoreSums&) const = default;
+  /// Of the terms, or of an index.
+  const EntrySum& of(Table table) const {
+    if (table == Table::Terms || table == Table::TermHashes) return term_hashes;
+    return table == Table::Ospg ? links : quads;
+  }
 };
 
 /// None in a map of format 1. Throws Error (StoreUnavailable) when the record is damaged or of another commit than
