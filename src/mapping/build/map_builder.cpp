@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Adds scans to a map file in batches; each batch is one transaction from points to facts.
 #include "mapping/build/map_builder.hpp"
-#include "mapping/build/batch_end.hpp"
+#include "mapping/build/batch_size.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -108,8 +108,8 @@ class MapBuild {
     requireOwn(transaction);
     PointChanges changes;
     std::uint64_t batch_points = 0, part_points = 0;
-    std::size_t next = first, batch_scans = 0;
-    for (; next < scans_.size() && !endsBatch(batch_points, batch_scans, scans_.size() - next, params_.batch_points);
+    std::size_t next = first, batch_scans = 0, part_scans = 0;
+    for (; next < scans_.size() && !isFull(batch_points, batch_scans, scans_.size() - next, params_.batch_points);
          ++next) {
       ReadScan given = reader_.take(next);
       for (const std::string& note : reading_notes_.add(given.reading)) sink_.note(note);
@@ -118,13 +118,13 @@ class MapBuild {
       report_.scans_already_there += segments.empty() ? 1 : 0;
       const std::uint64_t added = segments.empty() ? 0 : points;
       batch_points += added, part_points += added;
-      batch_scans += segments.empty() ? 0 : 1;
+      batch_scans += segments.empty() ? 0 : 1, part_scans += segments.empty() ? 0 : 1;
       changes.add(std::move(segments));
       clock.progress("scans", next + 1, scans_.size());
-      if (part_points < params_.stage_points) continue;
+      if (!isFull(part_points, part_scans, scans_.size() - next - 1, params_.stage_points)) continue;
       stages_.update(transaction, std::exchange(changes, {}), params_.threads, clock);
       stages_.dropAll();
-      part_points = 0;
+      part_points = 0, part_scans = 0;
     }
     if (batch_points > 0 || next == scans_.size())
       commitBatch(transaction, std::move(changes), next == scans_.size(), started_s, clock);

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <utility>
 
-#include "mapping/build/batch_end.hpp"
+#include "mapping/build/batch_size.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/presence/object_rows.hpp"
 #include "mapping/splits_store.hpp"
@@ -25,16 +25,16 @@ void ScanAdditions::add(const scan::Scan& scan, std::size_t scans_left) {
   }
   noteAdded(*storedCloud(*transaction_, scan.id));
   changes_.add(std::move(segments));
-  if (!editor_.params().dry_run && endsBatch(points_, added_.size(), scans_left, editor_.params().batch_points))
+  if (!editor_.params().dry_run && isFull(points_, added_.size(), scans_left, editor_.params().batch_points))
     return finish();
-  if (part_points_ < editor_.params().stage_points) return;
+  if (!isFull(part_points_, part_scans_, scans_left, editor_.params().stage_points)) return;
   editor_.update(*transaction_, std::exchange(changes_, {}), editor_.sink());
-  part_points_ = 0;
+  part_points_ = 0, part_scans_ = 0;
 }
 
 void ScanAdditions::noteAdded(const Cloud& cloud) {
   added_.push_back(cloud);
-  points_ += cloud.point_count, part_points_ += cloud.point_count;
+  points_ += cloud.point_count, part_points_ += cloud.point_count, ++part_scans_;
 }
 
 void ScanAdditions::copy(const rdf::ReadTransaction& other) {
@@ -55,7 +55,7 @@ void ScanAdditions::copy(const rdf::ReadTransaction& other) {
   // What objects of the other map follow from is told with them: it is taken where that is the same.
   for (const std::string_view table : {tables::kPresence, tables::kPassedRays}) copyRows(*transaction_, table, other);
   copySplits(*transaction_, other);
-  part_points_ = 0;
+  part_points_ = 0, part_scans_ = 0;
   if (!editor_.params().dry_run && points_ >= editor_.params().batch_points) finish();
 }
 
@@ -71,7 +71,7 @@ void ScanAdditions::finish() {
   transaction_.reset();
   changes_ = {};
   added_.clear();
-  points_ = part_points_ = 0;
+  points_ = part_points_ = 0, part_scans_ = 0;
   has_other_changes_ = false;
 }
 

@@ -35,6 +35,7 @@ class ScanAdditions {
   PointChanges changes_;
   std::vector<Cloud> added_;
   std::uint64_t points_ = 0, part_points_ = 0;  ///< of the batch, and since the last update of the stages
+  std::size_t part_scans_ = 0;                  ///< likewise
   bool has_other_changes_ = false;
 };
 

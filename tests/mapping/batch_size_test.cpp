@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How scans of equal size are divided into batches.
-#include "mapping/build/batch_end.hpp"
+#include "mapping/build/batch_size.hpp"
 
 #include <gmock/gmock.h>
 
@@ -14,7 +14,7 @@ std::vector<std::size_t> batchesOf(std::size_t scans, std::uint64_t points_of_sc
   std::size_t of_batch = 0;
   for (std::size_t i = 0; i < scans; ++i) {
     ++of_batch;
-    if (!endsBatch(of_batch * points_of_scan, of_batch, scans - i - 1, batch_points)) continue;
+    if (!isFull(of_batch * points_of_scan, of_batch, scans - i - 1, batch_points)) continue;
     batches.push_back(of_batch);
     of_batch = 0;
   }
@@ -24,7 +24,7 @@ std::vector<std::size_t> batchesOf(std::size_t scans, std::uint64_t points_of_sc
 
 using ::testing::ElementsAre;
 
-TEST(BatchEnd, TakesAlongARestOfLessThanHalfABatch) {
+TEST(BatchSize, TakesAlongARestOfLessThanHalfABatch) {
   EXPECT_THAT(batchesOf(5, 100, 1000), ElementsAre(5));
   EXPECT_THAT(batchesOf(14, 100, 1000), ElementsAre(14));
   EXPECT_THAT(batchesOf(15, 100, 1000), ElementsAre(15));
@@ -32,9 +32,9 @@ TEST(BatchEnd, TakesAlongARestOfLessThanHalfABatch) {
   EXPECT_THAT(batchesOf(34, 100, 1000), ElementsAre(10, 10, 14));
 }
 
-TEST(BatchEnd, IsAfterEachScanThatFillsABatch) {
+TEST(BatchSize, IsAfterEachScanThatFillsABatch) {
   EXPECT_THAT(batchesOf(3, 100, 1), ElementsAre(1, 1, 1));
-  EXPECT_FALSE(endsBatch(0, 0, 9, 1)) << "nothing to commit";
+  EXPECT_FALSE(isFull(0, 0, 9, 1)) << "nothing to commit";
 }
 
 }  // namespace
