@@ -95,8 +95,8 @@ void occupyStandardStreams() {
 /// the kernel clears every page of the next array anew: some 3 % of an extension.
 void reuseFreedMemory() {
   constexpr int kMebibyte = 1 << 20;
-  ::mallopt(M_MMAP_THRESHOLD, 16 * kMebibyte);
-  ::mallopt(M_TRIM_THRESHOLD, 64 * kMebibyte);
+  ::mallopt(M_MMAP_THRESHOLD, 32 * kMebibyte);
+  ::mallopt(M_TRIM_THRESHOLD, 256 * kMebibyte);
   ::mallopt(M_TOP_PAD, 4 * kMebibyte);
 }
 
