@@ -137,7 +137,7 @@ bool ChangeInference::followStated(const rdf::QuadDifference& change, const std:
   return !facts_.touchesSchema() && !touchesDerivations(change);
 }
 
-/// Whether some graph states the fact of these quads before the change and now.
+/// Whether another graph states this fact, both before the change and now.
 bool ChangeInference::isStatedBeside(std::span<const ChangedQuad> of_fact, rdf::PrefixLookup& stored) const {
   const Triple fact = factOf(of_fact.front());
   const auto is_beside = [&](const rdf::QuadKey& entry) {
@@ -165,8 +165,7 @@ std::vector<ChangedQuad> ChangeInference::statedOrWithdrawn(const rdf::QuadDiffe
   return quads;
 }
 
-/// Whether a fact of which the derivation of another consists has been stated or withdrawn: rules do not look at that
-/// again.
+/// Whether a fact that describes a derivation was stated or withdrawn. Rules do not check these facts again.
 bool ChangeInference::touchesDerivations(const rdf::QuadDifference& change) const {
   std::vector<std::optional<rdf::TermId>> parts;
   for (const std::string& property : propertiesOfDerivations()) parts.push_back(reader_.idOf(Term::iri(property)));
@@ -304,7 +303,7 @@ void ChangeInference::finish() {
 
 /// Following a quad costs as much as inferring anew from some twelve.
 bool isLarge(const rdf::WriteTransaction& transaction, const rdf::QuadDifference& change) {
-  constexpr std::uint64_t kFewQuads = 1000, kShare = 12;
+  constexpr std::uint64_t kFewQuads = 1000, kShare = 7;
   const rdf::QuadReader reader(static_cast<const rdf::ReadTransaction&>(transaction));
   return change.added.size() + change.removed.size() > kFewQuads + reader.size() / kShare;
 }

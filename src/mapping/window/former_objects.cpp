@@ -8,20 +8,18 @@
 
 namespace cluxel::mapping {
 
-void FormerObjects::add(const TileLayer& layer, const std::function<bool(const ContentHash&)>& is_wanted) {
-  const auto changed = changes_.former_summaries.find(layer.key);
-  if (changed == changes_.former_summaries.end()) {
-    const auto summary = stages_.summaries().find(layer.key);
-    if (summary == stages_.summaries().end())
-      throw Error(ErrorKind::StoreUnavailable, "a stored tile lacks a block; the map is damaged, build it anew");
-    add(layer, summary->second, is_wanted);
-  } else if (changed->second)
-    add(layer, perception::summaryTileFromBytes(*changed->second), is_wanted);
+const perception::SummaryTile* FormerObjects::summaryOf(const perception::TileKey& tile) const {
+  if (former_.isOther(tile)) return former_.of(tile);
+  const auto same = stages_.summaries().find(tile);
+  if (same == stages_.summaries().end())
+    throw Error(ErrorKind::StoreUnavailable, "a stored tile lacks a block; the map is damaged, build it anew");
+  return &same->second;
 }
 
-void FormerObjects::add(const TileLayer& layer, const perception::SummaryTile& summary,
-                        const std::function<bool(const ContentHash&)>& is_wanted) {
-  if (layer.size() != summary.size())
+void FormerObjects::add(const TileLayer& layer, const std::function<bool(const ContentHash&)>& is_wanted) {
+  const perception::SummaryTile* summary = summaryOf(layer.key);
+  if (summary == nullptr) return;
+  if (layer.size() != summary->size())
     throw Error(ErrorKind::StoreUnavailable, "stored objects are of other cluxels; the map is damaged, build it anew");
   std::vector<ObjectMembers*> of_share;
   for (const TileLayer::Share& share : layer.shares) {
@@ -36,7 +34,7 @@ void FormerObjects::add(const TileLayer& layer, const perception::SummaryTile& s
   }
   for (std::size_t c = 0; c < layer.size(); ++c)
     if (const std::uint32_t share = layer.share_of_cluxel[c]; share != kNoShare && of_share[share] != nullptr)
-      of_share[share]->seeds.push_back(memberKey(summary.scans[summary.seed_scan[c]], summary.seed_point[c]));
+      of_share[share]->seeds.push_back(memberKey(summary->scans[summary->seed_scan[c]], summary->seed_point[c]));
 }
 
 std::vector<ObjectMembers> FormerObjects::take() {
@@ -47,9 +45,11 @@ std::vector<ObjectMembers> FormerObjects::take() {
 
 std::vector<ObjectMembers> formerObjects(const rdf::ReadTransaction& transaction, const TileStages& stages,
                                          const OutputChanges& changes) {
-  FormerObjects former(transaction, stages, changes);
+  FormerSummaries summaries(changes);
+  FormerObjects former(transaction, stages, summaries);
   transaction.forEachBlock(tables::kTileLayers, "", [&](std::string_view /*key*/, std::string_view bytes) {
     former.add(tileLayerFromBytes(bytes), [](const ContentHash&) { return true; });
+    summaries.drop();
   });
   return former.take();
 }

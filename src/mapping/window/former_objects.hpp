@@ -8,6 +8,7 @@
 #include "mapping/build/tile_stages.hpp"
 #include "mapping/change/object_changes.hpp"
 #include "mapping/layers/tile_layer.hpp"
+#include "mapping/window/map_window.hpp"
 
 namespace cluxel::mapping {
 
@@ -15,21 +16,21 @@ namespace cluxel::mapping {
 class FormerObjects {
  public:
   /// `stages` holds the summaries of the tiles that did not change.
-  FormerObjects(const rdf::ReadTransaction& transaction, const TileStages& stages, const OutputChanges& changes)
-      : transaction_(transaction), stages_(stages), changes_(changes) {}
+  FormerObjects(const rdf::ReadTransaction& transaction, const TileStages& stages, FormerSummaries& former)
+      : transaction_(transaction), stages_(stages), former_(former) {}
 
   /// Adds the members that `layer` holds of the objects for which `is_wanted`.
   void add(const TileLayer& layer, const std::function<bool(const ContentHash&)>& is_wanted);
-  /// The same with the summary that the tile had when the layer was written.
-  void add(const TileLayer& layer, const perception::SummaryTile& summary,
-           const std::function<bool(const ContentHash&)>& is_wanted);
   /// Sorted by id.
   std::vector<ObjectMembers> take();
 
  private:
+  /// The summary that the tile had when the layer was written. Null where there was none.
+  const perception::SummaryTile* summaryOf(const perception::TileKey& tile) const;
+
   const rdf::ReadTransaction& transaction_;
   const TileStages& stages_;
-  const OutputChanges& changes_;
+  FormerSummaries& former_;
   std::map<ContentHash, ObjectMembers> objects_;
 };
 

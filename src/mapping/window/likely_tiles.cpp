@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Only the outermost tiles of the window are looked at.
+// A breadth-first search over the boxes of primitives, tile by tile. Only tiles that it reaches are read.
 #include "mapping/window/likely_tiles.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+#include <vector>
 
 #include "mapping/build/scan_store.hpp"
 #include "mapping/layers/stored_layers.hpp"
@@ -17,22 +22,102 @@ namespace {
 using perception::TileKey;
 using perception::TileSet;
 
-/// Where primitives lie in a tile, other than those of some objects [m, map].
-std::vector<Eigen::AlignedBox2d> boxesIn(const TileLayer& layer, const std::set<ContentHash>& but) {
+/// Layers are made of cells, so that they reach somewhat farther; with more than this, windows get tiles that they do
+/// not need.
+constexpr double kSlack_m = 1;
+
+/// What lies in one tile of a primitive.
+struct Part {
+  ContentHash primitive;
+  Eigen::AlignedBox2d box;  ///< [m, map]
+  bool is_reached = false;
+};
+
+/// The primitives of a tile, other than those of some objects.
+std::vector<Part> partsIn(const TileLayer& layer, const std::set<ContentHash>& but) {
   std::vector<char> is_left_out(layer.primitives.size(), 0);
   for (const TileLayer::Share& share : layer.shares)
     if (but.contains(share.object))
       for (const std::uint32_t component : share.components) is_left_out[component] = 1;
   const Eigen::Vector2d corner = perception::cornerOf(layer.key).head<2>();
-  std::vector<Eigen::AlignedBox2d> boxes;
+  std::vector<Part> parts;
   for (std::size_t i = 0; i < is_left_out.size(); ++i) {
-    const Eigen::AlignedBox3f& bounds = layer.primitives[i].bounds;
-    if (is_left_out[i] == 0)
-      boxes.emplace_back(Eigen::Vector2d(corner + bounds.min().head<2>().cast<double>()),
-                         Eigen::Vector2d(corner + bounds.max().head<2>().cast<double>()));
+    if (is_left_out[i] != 0) continue;
+    const auto& [id, input, trace, bounds] = layer.primitives[i];
+    parts.push_back({id,
+                     {Eigen::Vector2d(corner + bounds.min().head<2>().cast<double>()),
+                      Eigen::Vector2d(corner + bounds.max().head<2>().cast<double>())}});
   }
-  return boxes;
+  return parts;
 }
+
+/// The layers around changed tiles (rules::layersAround()), as far as the stored layers of tiles tell them.
+class LayerSearch {
+ public:
+  LayerSearch(const rdf::ReadTransaction& transaction, const TileSet& changed,
+              const std::set<ContentHash>& lone_objects, double reach_m)
+      : transaction_(transaction), changed_(changed), lone_objects_(lone_objects), reach_m_(reach_m + kSlack_m) {}
+
+  /// The tiles within reach of the first `count` layers.
+  TileSet tilesOfFirst(std::uint32_t count) {
+    const TileSet map = storedTiles(transaction_);
+    for (const TileKey& tile : changed_) {
+      const auto ring = perception::ringOf(tile);
+      // Within changed tiles there is nothing to find.
+      if (std::all_of(ring.begin(), ring.end(),
+                      [&](const TileKey& near) { return changed_.contains(near) || !map.contains(near); }))
+        continue;
+      partsOf(tile);
+    }
+    TileSet found;
+    for (std::uint32_t layer = 0; layer < count && !reached_.empty(); ++layer)
+      for (const auto& [tile, box] : std::exchange(reached_, {}))
+        for (const TileKey& near : perception::ringOf(tile))
+          if (map.contains(near) && boxOfTile(near).exteriorDistance(box) <= reach_m_) {
+            found.insert(near);
+            lookIn(near, box);
+          }
+    return found;
+  }
+
+ private:
+  using Place = std::pair<TileKey, std::size_t>;
+
+  /// What has a reached primitive, or lies in a changed tile, counts as reached when its tile is read.
+  std::vector<Part>& partsOf(const TileKey& tile) {
+    const auto [place, is_new] = parts_.try_emplace(tile);
+    std::vector<Part>& parts = place->second;
+    const auto layer = is_new ? storedLayer(transaction_, tile) : std::nullopt;
+    if (!layer) return parts;
+    parts = partsIn(*layer, lone_objects_);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      places_[parts[i].primitive].emplace_back(tile, i);
+      if (changed_.contains(tile) || primitives_.contains(parts[i].primitive)) reach(tile, parts[i]);
+    }
+    return parts;
+  }
+
+  void lookIn(const TileKey& tile, const Eigen::AlignedBox2d& from) {
+    for (Part& part : partsOf(tile))
+      if (!part.is_reached && part.box.exteriorDistance(from) <= reach_m_)
+        for (const auto& [other, number] : places_.at(part.primitive)) reach(other, parts_.at(other)[number]);
+  }
+
+  void reach(const TileKey& tile, Part& part) {
+    if (std::exchange(part.is_reached, true)) return;
+    primitives_.insert(part.primitive);
+    reached_.emplace_back(tile, part.box);
+  }
+
+  const rdf::ReadTransaction& transaction_;
+  const TileSet& changed_;
+  const std::set<ContentHash>& lone_objects_;
+  double reach_m_;
+  std::map<TileKey, std::vector<Part>> parts_;                    ///< of the tiles that were read
+  std::unordered_map<ContentHash, std::vector<Place>> places_;    ///< of the parts of each primitive
+  std::unordered_set<ContentHash> primitives_;                    ///< that were reached
+  std::vector<std::pair<TileKey, Eigen::AlignedBox2d>> reached_;  ///< in the last layer
+};
 
 }  // namespace
 
@@ -46,25 +131,9 @@ std::set<ContentHash> objectsOfLoneSeeds(const rules::RuleSet& rules) {
   return objects;
 }
 
-TileSet likelyTiles(const rdf::ReadTransaction& transaction, const TileSet& window,
-                    const std::set<ContentHash>& lone_objects, double reach_m) {
-  const TileSet map = storedTiles(transaction);
-  TileSet likely;
-  for (const TileKey& tile : window) {
-    TileSet outside;
-    for (const TileKey& near : perception::ringOf(tile))
-      if (map.contains(near) && !window.contains(near)) outside.insert(near);
-    const auto layer = outside.empty() ? std::nullopt : storedLayer(transaction, tile);
-    if (!layer) continue;
-    const std::vector<Eigen::AlignedBox2d> boxes = boxesIn(*layer, lone_objects);
-    for (const TileKey& near : outside) {
-      const Eigen::AlignedBox2d there = boxOfTile(near);
-      if (std::any_of(boxes.begin(), boxes.end(),
-                      [&](const auto& box) { return box.exteriorDistance(there) <= reach_m; }))
-        likely.insert(near);
-    }
-  }
-  return likely;
+TileSet likelyTiles(const rdf::ReadTransaction& transaction, const TileSet& changed,
+                    const std::set<ContentHash>& lone_objects, double reach_m, std::uint32_t layers) {
+  return LayerSearch(transaction, changed, lone_objects, reach_m).tilesOfFirst(layers);
 }
 
 }  // namespace cluxel::mapping

@@ -37,8 +37,11 @@ using perception::TileKey;
 using perception::TileSet;
 
 constexpr int kRings = 1;  ///< of tiles around the changed ones that a window holds at least
-/// The number of layers around a change that have to lie in the window; more where that is not enough.
-constexpr std::array<std::uint32_t, 4> kDepths{5, 8, 13, 21};
+/// The number of layers around a change that have to lie in the window; more where that is not enough. The longer the
+/// border of a change, the likelier it is that five do not do somewhere.
+using Depths = std::array<std::uint32_t, 4>;
+constexpr Depths kDepths{5, 8, 13, 21}, kDepthsOfLargeChanges{6, 8, 13, 21};
+constexpr std::size_t kLargeChange = 100;  ///< tiles
 constexpr std::size_t kMaxAttempts = 40;
 constexpr std::size_t kNarrowAttempts = 6;  ///< later ones add the tiles around, too: each attempt costs a window
 
@@ -69,15 +72,6 @@ TileSet tilesDecidedWhole(const MapWindow& window, const WindowDecision& decisio
   }
   return tiles;
 }
-
-struct DecidedWindow {
-  const MapWindow& window;
-  const WindowChange& change;
-  const WindowDecision& decision;
-  const std::vector<std::uint32_t>& former;
-  const std::vector<rules::SemanticObject>& wide;
-  const InputOf& input_of;
-};
 
 class LocalUpdate {
  public:
@@ -112,9 +106,9 @@ class LocalUpdate {
     }
     more_ = tilesOfPassedObjects(transaction_, changedRays(before_.clouds, now_.clouds));
     WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, before_, now_);
-    for (; attempt_ < kMaxAttempts && depth_ < kDepths.size() && !statements.needsWholeMap(); ++attempt_) {
+    for (; attempt_ < kMaxAttempts && depth_ < depths_.size() && !statements.needsWholeMap(); ++attempt_) {
       changes_.tiles.insert(statements.tiles().begin(), statements.tiles().end());
-      if (attempt_ == 0) addLikelyTiles();
+      if (attempt_ == 0) beginWithLikelyTiles();
       const std::optional<MapWindow> window = windowAround(transaction_, stages_, changes_, former_summaries_, more_,
                                                            kRings, clouds_, params_.max_window_share);
       if (!window) return std::nullopt;
@@ -147,8 +141,11 @@ class LocalUpdate {
       return std::nullopt;
     sink_.progress("scene", window.scene.primitives.size(), window.scene.primitives.size());
     auto decision = decideIn(window, change, transaction_, rules_run);
-    if (!decision) ++depth_;
-    if (!decision || !statements.apply(window, change, *decision)) return std::nullopt;
+    if (!decision) {
+      if (++depth_ < depths_.size()) isTooSmall(window, change, rules_run.layers());  // then the next one is larger
+      return std::nullopt;
+    }
+    if (!statements.apply(window, change, *decision)) return std::nullopt;
     const std::vector<std::uint32_t> former = formerNumbers(window, stages_, former_summaries_);
     const std::vector<rules::SemanticObject> wide = wideObjectsIn(transaction_, window, *decision, former);
     needs_whole_map_ = changesWideObjects(window, *decision, wide);
@@ -160,15 +157,15 @@ class LocalUpdate {
   }
 
   /// A first window that is large enough spares an attempt.
-  void addLikelyTiles() {
+  void beginWithLikelyTiles() {
+    if (changes_.tiles.size() > kLargeChange) depths_ = kDepthsOfLargeChanges;
     lone_objects_ = objectsOfLoneSeeds(parsed_.rules);
-    const TileSet window = perception::unionOf(perception::grown(changes_.tiles), more_);
-    more_.merge(likelyTiles(transaction_, window, lone_objects_, reach_m_));
+    more_.merge(likelyTiles(transaction_, changes_.tiles, lone_objects_, reach_m_, depths_.front()));
   }
 
   /// Whether the window lacks tiles of the first layers, which the next one has.
   bool isTooSmall(const MapWindow& window, const WindowChange& change, const std::vector<std::uint32_t>& layers) {
-    const TileSet beyond = tilesBeyond(window, change, changes_, transaction_, layers, kDepths[depth_]);
+    const TileSet beyond = tilesBeyond(window, change, changes_, transaction_, layers, depths_[depth_]);
     more_ = perception::unionOf(std::move(more_), attempt_ < kNarrowAttempts ? beyond : perception::grown(beyond));
     needs_whole_map_ = attempt_ == 0 && willBeTooLarge(window.tiles, beyond);
     return needs_whole_map_ || !beyond.empty();
@@ -238,9 +235,9 @@ class LocalUpdate {
     sink_.progress("objects", update.after.size(), update.after.size());
     const bool have_ways = stages_.updateWays(transaction_, params_.threads);
     const std::optional<WayGraph> ways = have_ways ? std::optional(storedWays(transaction_)) : std::nullopt;
-    writeWindowFacts(transaction_, {parsed_, stages_, clouds_, before_.clouds, window, change, decision, former, wide,
-                                    statements, ways ? &*ways : nullptr, params_.threads});
-    writeLayers(transaction_, window, decision, changes_, former, wide, input_of);
+    writeWindowFacts(transaction_, {parsed_, stages_, clouds_, before_.clouds, decided, statements,
+                                    ways ? &*ways : nullptr, params_.threads});
+    writeLayers(transaction_, decided, changes_);
     statements.store(transaction_, window);
     if (!now_.statements.empty())
       update.statements = toldOutcomes(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction_)));
@@ -253,13 +250,8 @@ class LocalUpdate {
 
   std::vector<ObjectMembers> replacedObjects(const MapWindow& window, const WindowDecision& decision) {
     const auto is_replaced = [&](const ContentHash& object) { return decision.replaced.contains(object); };
-    FormerObjects members(transaction_, stages_, changes_);
-    for (const auto& [tile, layer] : window.layers) {
-      if (!former_summaries_.isOther(tile))
-        members.add(layer, is_replaced);
-      else if (const perception::SummaryTile* former = former_summaries_.of(tile))
-        members.add(layer, *former, is_replaced);
-    }
+    FormerObjects members(transaction_, stages_, former_summaries_);
+    for (const auto& [tile, layer] : window.layers) members.add(layer, is_replaced);
     return members.take();
   }
 
@@ -288,6 +280,7 @@ class LocalUpdate {
   double reach_m_ = 0;
   std::set<ContentHash> lone_objects_;
   TileSet more_;  ///< tiles that the window holds beside those around the change
+  Depths depths_ = kDepths;
   std::size_t attempt_ = 0, depth_ = 0;
   bool needs_whole_map_ = false;
   std::vector<Cloud> clouds_;

@@ -24,6 +24,16 @@ struct WindowDecision {
   std::map<ContentHash, ObjectRecord> replaced;  ///< former objects of decided and gone primitives, none class-wide
 };
 
+/// A window with all that is written of it.
+struct DecidedWindow {
+  const MapWindow& window;
+  const WindowChange& change;
+  const WindowDecision& decision;
+  const std::vector<std::uint32_t>& former;        ///< formerNumbers()
+  const std::vector<rules::SemanticObject>& wide;  ///< wideObjectsIn()
+  const InputOf& input_of;
+};
+
 /// What the rules' run over the window starts from. Its layers are likely to be those of the run: strata of lone seeds
 /// are expected to take what they took before. `lone_objects`: objectsOfLoneSeeds().
 rules::LocalInput localInputOf(const MapWindow& window, const WindowChange& change,

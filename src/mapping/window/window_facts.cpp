@@ -28,12 +28,12 @@ class FactWriting {
   FactWriting(rdf::WriteTransaction& transaction, const WindowFacts& sources)
       : transaction_(transaction),
         sources_(sources),
-        scene_(sources.window.scene),
+        scene_(sources.decided.window.scene),
         facts_(transaction, rdf::vocabulary::kGraphObserved, FactsOf::Collected),
         graph_(facts_.iri(rdf::vocabulary::kGraphObserved)),
         stored_(static_cast<const rdf::ReadTransaction&>(transaction)),
         patch_(stored_, graph_) {
-    for (const rules::SemanticObject& object : sources.decision.objects)
+    for (const rules::SemanticObject& object : sources.decided.decision.objects)
       (object.is_class_wide ? wide_ : made_).push_back(object);
   }
 
@@ -80,9 +80,9 @@ class FactWriting {
       for (const rdf::TermId patch : patch_.objectsOf(subject, touches)) touched_.insert(patch);
       patch_.replace(subject);
     };
-    for (const ContentHash& id : sources_.change.gone) forget(id);
+    for (const ContentHash& id : sources_.decided.change.gone) forget(id);
     for (PrimitiveIndex i = 0; i < scene_.primitives.size(); ++i) {
-      if (sources_.change.is_dirty[i] == 0 || sources_.decision.is_decided[i] == 0) continue;
+      if (sources_.decided.change.is_dirty[i] == 0 || sources_.decided.decision.is_decided[i] == 0) continue;
       forget(scene_.primitives[i].id);
       addPrimitive(scene_, i, facts_);
       if (const auto patch = touchedPatch(scene_, i)) touched_.insert(iri(*patch));
@@ -107,7 +107,7 @@ class FactWriting {
   }
 
   void replaceObjects() {
-    for (const auto& [id, record] : sources_.decision.replaced) forgetObject(id);
+    for (const auto& [id, record] : sources_.decided.decision.replaced) forgetObject(id);
     const WindowPresence presence = updatePresenceIn(transaction_, sources_, made_);
     const std::vector<std::vector<ContentHash>> near = nearOfMade();
     rules::ReasoningResult result;
@@ -129,7 +129,7 @@ class FactWriting {
   }
 
   std::vector<std::vector<ContentHash>> nearOfMade() const {
-    const WindowOwners owners = ownersIn(sources_.window, sources_.decision, sources_.former);
+    const WindowOwners owners = ownersIn(sources_.decided.window, sources_.decided.decision, sources_.decided.former);
     std::vector<rules::SemanticObject> named;
     for (const ContentHash& id : owners.objects) {
       rules::SemanticObject& object = named.emplace_back();
@@ -145,7 +145,7 @@ class FactWriting {
   }
 
   std::string classOf(const ContentHash& id) const {
-    for (const rules::SemanticObject& object : sources_.decision.objects)
+    for (const rules::SemanticObject& object : sources_.decided.decision.objects)
       if (object.id == id) return object.class_iri;
     const auto record = storedRecord(transaction_, id);
     return record ? record->class_iri : std::string();
@@ -154,11 +154,12 @@ class FactWriting {
   /// Of class-wide objects the window holds a part: their primitives are exchanged one by one, and what is merged over
   /// all tiles is made anew.
   void replaceWideObjects() {
-    replaceWideTiles(transaction_, wideTilesOf(scene_, sources_.stages.summaries(), sources_.wide),
-                     sources_.window.tiles);
+    replaceWideTiles(transaction_, wideTilesOf(scene_, sources_.stages.summaries(), sources_.decided.wide),
+                     sources_.decided.window.tiles);
     const std::vector<WidePart> parts = mergedParts(storedWideTiles(transaction_));
     rules::ReasoningResult result;
-    for (const rules::SemanticObject& object : sources_.wide) result.objects.push_back(wideFacts(object, parts));
+    for (const rules::SemanticObject& object : sources_.decided.wide)
+      result.objects.push_back(wideFacts(object, parts));
     const rdf::TermId has_primitive = facts_.property("hasPrimitive"), has_part = facts_.property("hasPart");
     const std::vector<rdf::TermId> exchanged = exchangedPrimitives();
     for (const rules::SemanticObject& object : result.objects) {
@@ -191,9 +192,10 @@ class FactWriting {
 
   std::vector<rdf::TermId> exchangedPrimitives() {
     std::vector<rdf::TermId> exchanged;
-    for (const ContentHash& id : sources_.change.gone) exchanged.push_back(iri(rdf::iriOfPrimitive(id)));
+    for (const ContentHash& id : sources_.decided.change.gone) exchanged.push_back(iri(rdf::iriOfPrimitive(id)));
     for (PrimitiveIndex i = 0; i < scene_.primitives.size(); ++i)
-      if (sources_.decision.is_decided[i] != 0) exchanged.push_back(iri(rdf::iriOfPrimitive(scene_.primitives[i].id)));
+      if (sources_.decided.decision.is_decided[i] != 0)
+        exchanged.push_back(iri(rdf::iriOfPrimitive(scene_.primitives[i].id)));
     return exchanged;
   }
 

@@ -21,11 +21,7 @@ struct WindowFacts {
   const TileStages& stages;
   const std::vector<Cloud>& clouds;
   const std::vector<SeenCloud>& clouds_before;
-  const MapWindow& window;
-  const WindowChange& change;
-  const WindowDecision& decision;
-  const std::vector<std::uint32_t>& former;        ///< formerNumbers()
-  const std::vector<rules::SemanticObject>& wide;  ///< wideObjectsIn()
+  const DecidedWindow& decided;
   const WindowStatements& statements;
   const WayGraph* ways = nullptr;  ///< null when they are as before
   unsigned threads = 1;

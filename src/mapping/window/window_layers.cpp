@@ -18,18 +18,16 @@ using perception::TileSet;
 
 class LayerWriting {
  public:
-  LayerWriting(rdf::WriteTransaction& transaction, const MapWindow& window, const WindowDecision& decision,
-               const OutputChanges& changes, const std::vector<std::uint32_t>& former,
-               const std::vector<rules::SemanticObject>& wide, const InputOf& input_of)
+  LayerWriting(rdf::WriteTransaction& transaction, const DecidedWindow& decided, const OutputChanges& changes)
       : transaction_(transaction),
-        window_(window),
-        decision_(decision),
+        window_(decided.window),
+        decision_(decided.decision),
         changes_(changes),
-        former_(former),
-        wide_(wide),
-        input_of_(input_of),
-        part_of_(window.scene.cluxels.size(), kNoShare) {
-    for (const rules::SemanticObject& object : decision.objects)
+        former_(decided.former),
+        wide_(decided.wide),
+        input_of_(decided.input_of),
+        part_of_(decided.window.scene.cluxels.size(), kNoShare) {
+    for (const rules::SemanticObject& object : decision_.objects)
       for (const rules::ObjectPart& part : object.parts) {
         for (const std::uint32_t cluxel : part.cluxels) part_of_[cluxel] = static_cast<std::uint32_t>(parts_.size());
         parts_.push_back({object.id, part.part_class});
@@ -185,10 +183,8 @@ class LayerWriting {
 
 }  // namespace
 
-void writeLayers(rdf::WriteTransaction& transaction, const MapWindow& window, const WindowDecision& decision,
-                 const OutputChanges& changes, const std::vector<std::uint32_t>& former,
-                 const std::vector<rules::SemanticObject>& wide, const InputOf& input_of) {
-  LayerWriting(transaction, window, decision, changes, former, wide, input_of).run();
+void writeLayers(rdf::WriteTransaction& transaction, const DecidedWindow& decided, const OutputChanges& changes) {
+  LayerWriting(transaction, decided, changes).run();
 }
 
 }  // namespace cluxel::mapping

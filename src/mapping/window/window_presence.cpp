@@ -47,9 +47,9 @@ TileSet tilesOfPassedObjects(const rdf::ReadTransaction& transaction, const std:
 
 WindowPresence updatePresenceIn(rdf::WriteTransaction& transaction, const WindowFacts& facts,
                                 const std::vector<rules::SemanticObject>& made) {
-  const perception::Scene& scene = facts.window.scene;
+  const perception::Scene& scene = facts.decided.window.scene;
   std::vector<rules::SemanticObject> asked = made;
-  const auto kept = keptObjects(transaction, facts.window, facts.decision, facts.former);
+  const auto kept = keptObjects(transaction, facts.decided.window, facts.decided.decision, facts.decided.former);
   asked.insert(asked.end(), kept.begin(), kept.end());
   const auto counts_rays = [&](const rules::SemanticObject& object) {
     return facts.parsed.rules.catalogue.isA(object.class_iri, rdf::vocabulary::clx("Barrier"));
@@ -59,7 +59,7 @@ WindowPresence updatePresenceIn(rdf::WriteTransaction& transaction, const Window
   std::vector<RayObserver*> observers{&rays};
   if (presence.observer() != nullptr) observers.push_back(presence.observer());
   passRays(facts.clouds, observers, [&](const Cloud& cloud) { return storedScan(transaction, cloud.id); });
-  for (const auto& [id, record] : facts.decision.replaced)
+  for (const auto& [id, record] : facts.decided.decision.replaced)
     for (const std::string_view table : {tables::kPresence, tables::kPassedRays})
       transaction.eraseBlock(table, tables::keyOf(id));
   WindowPresence result{presence.finish(transaction, Covered::Some), rays.finish(transaction, Covered::Some), {}};
