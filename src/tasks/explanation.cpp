@@ -91,7 +91,7 @@ std::optional<rules::PartRun> runAround(const mapping::MapReader& map, const Exp
   if (rules.asks_map) return std::nullopt;
   struct Around {
     int rings;
-    std::vector<double> margins_m;  ///< what is left out lies within those of fewer rings
+    std::vector<double> margins_m;  ///< smaller ones are held by the part with fewer rings
   };
   constexpr double kAll = std::numeric_limits<double>::infinity();
   for (const Around& around : {Around{1, {kAll}}, Around{3, {30, kAll}}}) {

@@ -269,27 +269,27 @@ std::vector<NamedText> joiningRules() {
                "{ ?a clx:near ?b } ?b clx:near ?c } ?c clx:minX ?x ; clx:minY ?d }")};
 }
 
+/// Compares after each of many changes, of which at least a quarter must not be inferred anew.
+void expectFollowed(ChangingStore& store) {
+  const int steps = stepsOf(40, 600);
+  for (int step = 0; step < steps && !testing::Test::HasFatalFailure(); ++step) {
+    store.step();
+    store.expectInferenceFromScratch(step);
+  }
+  EXPECT_GT(store.followed(), static_cast<std::size_t>(steps) / 4) << testing::PrintToString(store.sink.notes);
+}
+
 TEST(InferChanges, OfRulesOfOtherShapesAreInferenceFromScratch) {
   for (unsigned seed = 10; seed < 14; ++seed) {
     ChangingStore store(seed, oddRules());
-    const int steps = stepsOf(40, 600);
-    for (int step = 0; step < steps && !testing::Test::HasFatalFailure(); ++step) {
-      store.step();
-      store.expectInferenceFromScratch(step);
-    }
-    EXPECT_GT(store.followed(), static_cast<std::size_t>(steps) / 4) << testing::PrintToString(store.sink.notes);
+    expectFollowed(store);
   }
 }
 
 TEST(InferChanges, OfJoiningRulesAreInferenceFromScratch) {
   for (unsigned seed = 20; seed < 24; ++seed) {
     ChangingStore store(seed, joiningRules());
-    const int steps = stepsOf(40, 600);
-    for (int step = 0; step < steps && !testing::Test::HasFatalFailure(); ++step) {
-      store.step();
-      store.expectInferenceFromScratch(step);
-    }
-    EXPECT_GT(store.followed(), static_cast<std::size_t>(steps) / 4) << testing::PrintToString(store.sink.notes);
+    expectFollowed(store);
     EXPECT_TRUE(store.sink.notes.empty()) << store.sink.notes.front();
   }
 }

@@ -50,7 +50,7 @@ void joinWords(const char* planes, std::size_t count, char* items) {
   }
 }
 
-/// Of this thread: to make one costs as much as to unpack a small block.
+/// One context a thread, because making one costs as much as unpacking a small block.
 ZSTD_DCtx* unpacking() {
   struct Free {
     void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }

@@ -14,7 +14,7 @@ namespace cluxel::mapping {
 
 namespace ast = sparql::ast;
 
-/// A branch of a UNION of which each solution takes one branch or another.
+/// One branch of a UNION that every solution goes through.
 struct UnionBranch {
   std::size_t number = 0;  ///< of the UNION
   std::size_t branch = 0;

@@ -30,9 +30,9 @@ struct TriedParts {
 
 /// Tries parts of growing size. One counts when the traces of `primitives` (ascending), and of the seeds of the
 /// objects that own them, are those of the whole run, and when every cluxel within 5 m around them went to the same
-/// rule. A counterfactual may still read what lies farther away. Absent when no part counts that is clearly smaller
-/// than the scene,, or when the rules ask the map. `scene` may itself be cut
-/// out of a larger one, to which the traces belong.
+/// rule. A counterfactual may still read what lies farther away. Absent when no part counts that has at most
+/// `max_share` of the scene's cluxels, or when the rules ask the map. `scene` may itself be cut out of a larger one, to
+/// which the traces belong.
 std::optional<PartRun> runInPart(const perception::Scene& scene, const RuleSet& rules, const WholeRun& whole,
                                  const std::vector<perception::PrimitiveIndex>& primitives,
                                  const TriedParts& tried = {});
