@@ -189,6 +189,36 @@ TEST_F(GuardedMap, KeepsWhatIsKnownOfADamageThroughChangesAroundIt) {
   EXPECT_FALSE(checkMap(file_).sound());
 }
 
+/// LMDB gives back as many pages as the first page of a long value states.
+TEST_F(MapFile, RefusesToWriteOverALongBlockWithADamagedHead) {
+  const std::string text(20'000, 'x');
+  {
+    const auto environment = create();
+    WriteTransaction transaction = environment->write();
+    for (const char* key : {"a", "b"}) transaction.putBlock("long", key, key + text);
+    transaction.commit();
+  }
+  const std::string whole = readFile(file_);
+  const std::size_t value = whole.find("b" + text);
+  ASSERT_NE(value, std::string::npos);
+  const std::size_t head = value - value % 4096;
+  for (const std::size_t byte : {0U, 10U, 12U, 14U}) {  // of the number, the flags and the number of pages
+    std::string damaged = whole;
+    damaged[head + byte] = static_cast<char>(damaged[head + byte] ^ 0x11);
+    std::ofstream(file_, std::ios::binary) << damaged;
+    const auto environment = open();
+    WriteTransaction transaction = environment->write();
+    EXPECT_THROW(transaction.putBlock("long", "b", "short"), Error) << byte;
+    EXPECT_THROW(transaction.putBlock("long", "b", "c" + text), Error) << byte;
+    EXPECT_THROW(transaction.eraseBlock("long", "b"), Error) << byte;
+    transaction.putBlock("long", "a", "short");
+    EXPECT_TRUE(transaction.eraseBlock("long", "a")) << "written by this transaction";
+    transaction.commit();
+    EXPECT_EQ(environment->read().block("long", "b"), "b" + text) << byte;
+    EXPECT_FALSE(checkMap(file_).sound()) << byte;
+  }
+}
+
 /// A damaged index lacks the quad that the others have, so that it cannot follow. The index by object has a sum of its
 /// own: there the damage stays known.
 TEST_F(GuardedMap, LosesNothingByAChangeOfADamagedQuad) {

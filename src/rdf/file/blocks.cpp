@@ -8,8 +8,10 @@
 #include <stdexcept>
 
 #include "cluxel/error.hpp"
+#include "rdf/file/check/map_file_head.hpp"
 #include "rdf/file/lmdb_environment.hpp"
 #include "rdf/store/index_directories.hpp"
+#include "rdf/store/store_snapshot.hpp"
 
 namespace cluxel::rdf {
 
@@ -33,6 +35,21 @@ std::string fullKey(std::string_view table, std::string_view key) {
 /// The checksum covers the key, so that a block under a wrong key is detected.
 std::uint64_t checksumOf(std::string_view full_key, std::string_view bytes) {
   return XXH3_64bits_withSeed(bytes.data(), bytes.size(), XXH3_64bits(full_key.data(), full_key.size()));
+}
+
+/// LMDB gives back as many pages of a long value as the head of the first one states. To be called before a stored
+/// block is written over or erased.
+void requireHead(const ReadTransaction::Impl& transaction, const MDB_val& stored) {
+  const std::shared_ptr<StoreSnapshot>& committed = transaction.directories->committed();
+  if (!committed || !committed->isMapped()) return;  // then the whole file was looked at
+  const PageMap& map = committed->map();
+  const auto* bytes = static_cast<const std::uint8_t*>(stored.mv_data);
+  if (bytes < map.base || bytes >= map.base + map.page_count * map.page_size) return;  // of this transaction
+  const auto place = static_cast<std::uint64_t>(bytes - map.base);
+  if (place % map.page_size != lmdb_page::kHeaderSize) return;  // a short one
+  const lmdb_page::PageNumber first = place / map.page_size;
+  if (!lmdb_page::isHeadOfLongValue(map.page(first), first, lmdb_page::pagesOfLongValue(stored.mv_size, map.page_size)))
+    refuseDamaged(transaction.environment->file(), "page " + std::to_string(first) + " is of the wrong kind");
 }
 
 }  // namespace
@@ -96,6 +113,7 @@ void WriteTransaction::putBlock(std::string_view table, std::string_view key, st
     impl_->block_keys.noteAdded(*impl_, table, full);
   else
     impl_->check(there, "write a block");
+  if (there == MDB_SUCCESS) requireHead(*impl_, stored);
   // LMDB writes over a value of the same transaction and leaves it the pages that a longer one had: the table would
   // then have more pages than its values need, which a check of the file takes for damage.
   if (there == MDB_SUCCESS && stored.mv_size > sizeof head + bytes.size())
@@ -122,6 +140,7 @@ bool WriteTransaction::eraseBlock(std::string_view table, std::string_view key) 
   const int there = mdb_get(impl_->live(), impl_->table(Table::Blocks), &stored_key, &stored);
   if (there == MDB_NOTFOUND) return false;
   impl_->check(there, "erase a block");
+  requireHead(*impl_, stored);
   impl_->block_keys.noteRemoved(*impl_, table, full);
   impl_->check(mdb_del(impl_->live(), impl_->table(Table::Blocks), &stored_key, nullptr), "erase a block");
   ++impl_->generation;

@@ -58,6 +58,16 @@ inline Header header(const std::uint8_t* page) {
   return load<Header>(page);
 }
 
+/// A long value has pages of its own, of which only the first has a header.
+inline std::uint64_t pagesOfLongValue(std::size_t size, std::uint64_t page_size) {
+  return (kHeaderSize - 1 + size) / page_size + 1;
+}
+
+inline bool isHeadOfLongValue(const std::uint8_t* page, PageNumber number, std::uint64_t pages) {
+  const Header head = header(page);
+  return head.number == number && head.flags == kOverflow && (head.lower | (std::uint32_t{head.upper} << 16U)) == pages;
+}
+
 /// The number of keys of a fixed-key page, or of nodes of any other leaf or branch page.
 inline std::size_t entryCount(const std::uint8_t* page) {
   return (static_cast<std::size_t>(load<std::uint16_t>(page + 12)) - kHeaderSize) / 2;
