@@ -12,8 +12,9 @@
 
 namespace cluxel::mapping::tables {
 
-/// "inferred": what a later inference needs to follow changes.
-inline constexpr std::string_view kMeta = "meta";  ///< "state", "inputs", "semantic state", "splits", "tiles", "facts"
+/// "state", "inputs", "semantic state", "splits", "tiles", "facts"; "inferred": what a later inference needs to follow
+/// changes; "ways": what the facts about ways followed from.
+inline constexpr std::string_view kMeta = "meta";
 inline constexpr std::string_view kTexts = "texts";             ///< "ontology/0" ...: the inputs' texts
 inline constexpr std::string_view kScans = "scans";             ///< scan id → description
 inline constexpr std::string_view kScanPoints = "scan_points";  ///< scan id → points in the sensor frame

@@ -74,6 +74,7 @@ std::map<std::string, std::string> layerBlocks(const fs::path& file) {
     transaction.forEachBlock(table, "", [&](std::string_view key, std::string_view bytes) {
       blocks[std::string(table) + "/" + std::string(key)] = std::string(bytes);
     });
+  blocks["meta/ways"] = transaction.block(tables::kMeta, "ways").value_or("");
   return blocks;
 }
 

@@ -41,17 +41,18 @@ std::vector<rules::RuleSource> ruleSources(const std::vector<NamedText>& texts) 
   return sources;
 }
 
-/// Makes the observed graph hold the facts of the scene, of `reasoning`, of statements and of ways.
-void writeObserved(SceneFacts& of_scene, const ObservedMap& map, const std::vector<StatementOutcome>& statements,
-                   const WayGraph& ways) {
+/// Makes the observed graph hold the facts of the scene, of `reasoning`, of statements and of ways. Returns the ways.
+std::vector<ToldWay> writeObserved(SceneFacts& of_scene, const ObservedMap& map,
+                                   const std::vector<StatementOutcome>& statements, const WayGraph& ways) {
   of_scene.collect();
   FactSink& facts = of_scene.sink();
   for (const StatementOutcome& outcome : statements)
     if (outcome.object) facts.addToUnits(*outcome.object);
   addObjectFacts(map, facts);
   addStatementFacts(statements, facts);
-  addWayFacts(ways, facts);
+  ToldWays told = addWayFacts(ways, {}, facts);
   facts.finish();
+  return std::move(told.now);
 }
 
 /// The ways of the map. With `is_beside` another thread makes them, which alone uses the transaction until then.
@@ -151,10 +152,11 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
     const std::vector<std::uint64_t> hashes = perception::inputHashes(scene, stages.summaries());
     return layerBlocks({.scene = scene, .objects = result.objects, .traces = traces, .inputs = hashes});
   });
-  writeObserved(
+  const std::vector<ToldWay> told_ways = writeObserved(
       facts,
       {parsed.inputs, clouds, scene, result, sightings, presence, passed_rays, near.get(), mergedParts(wide), threads},
       stated.outcomes, ways.get());
+  storeToldWays(transaction, told_ways);
   storeWideTiles(transaction, wide);
   inferFacts(transaction, parsed.inputs, sink, check);
   storeLayers(transaction, {.scene = scene, .objects = result.objects}, blocks.get());

@@ -2,7 +2,11 @@
 // Coordinates are written with millimetres, as those of objects.
 #include "mapping/facts/way_facts.hpp"
 
+#include <algorithm>
 #include <map>
+#include <stdexcept>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "mapping/facts/object_facts.hpp"
 #include "rdf/map_iris.hpp"
@@ -27,9 +31,23 @@ std::string boxText(const Region& region) {
          ", " + placeText(a.x(), b.y()) + ", " + placeText(a.x(), a.y()) + "))";
 }
 
+std::string_view textOf(WayKind kind) {
+  switch (kind) {
+    case WayKind::Region:
+      return "region";
+    case WayKind::Junction:
+      return "junction";
+    case WayKind::Way:
+      return "way";
+    case WayKind::Kerb:
+      return "kerb";
+  }
+  throw std::logic_error("unknown kind of ways");
+}
+
 /// The name of a resource: a hash of its kind and of where it lies.
-ContentHash nameOf(std::string_view kind, const std::string& where) {
-  return ContentHasher().addText(kind).addText(where).finish();
+ContentHash nameOf(WayKind kind, const std::string& where) {
+  return ContentHasher().addText(textOf(kind)).addText(where).finish();
 }
 
 std::string regionPlace(const Region& region) {
@@ -89,12 +107,12 @@ void addWay(const Way& way, const std::string& iri, const WayGraph& graph, FactS
   facts.number(subject, "lowerBeside", way.lower_beside);
   facts.number(subject, "higherBeside", way.higher_beside);
   addLine(subject, iri, way.line, facts);
-  const auto link = [&](std::string_view property, std::string_view kind, const std::string& where) {
-    facts.link(subject, property, facts.iri(rdf::mapIri(kind, nameOf(kind, where).hex())));
+  const auto link = [&](std::string_view property, WayKind kind, const std::string& where) {
+    facts.link(subject, property, facts.iri(rdf::mapIri(textOf(kind), nameOf(kind, where).hex())));
   };
-  if (way.region != kNoPlace) link("inRegion", "region", regionPlace(graph.regions[way.region]));
+  if (way.region != kNoPlace) link("inRegion", WayKind::Region, regionPlace(graph.regions[way.region]));
   for (const std::size_t junction : way.junctions)
-    link("connects", "junction", junctionPlace(graph.junctions[junction]));
+    link("connects", WayKind::Junction, junctionPlace(graph.junctions[junction]));
 }
 
 void addPoint(const Eigen::Vector2d& point, ContentHasher& hasher) {
@@ -131,34 +149,111 @@ void addCause(const Way& way, const WayGraph& graph, ContentHasher& hasher) {
   for (const std::size_t junction : way.junctions) addPoint(graph.junctions[junction].place, hasher);
 }
 
-/// The facts of some resources of a kind, each a unit. Two of them can lie at the same place, as lines do around a
-/// small thing: then they have one name and are one unit.
-template <typename Resource, typename Where, typename Add>
-void addUnits(std::string_view kind, const std::vector<Resource>& resources, const WayGraph& graph, FactSink& facts,
-              const Where& where, const Add& add) {
-  std::map<ContentHash, std::vector<const Resource*>> by_name;
-  for (const Resource& resource : resources) by_name[nameOf(kind, where(resource))].push_back(&resource);
-  for (const auto& [name, of_name] : by_name) {
-    ContentHasher cause;
-    for (const Resource* resource : of_name) addCause(*resource, graph, cause);
-    if (!facts.beginUnit({name, Facet::Self}, cause.finish())) continue;
-    for (const Resource* resource : of_name) add(*resource, rdf::mapIri(kind, name.hex()));
-    facts.endUnit();
+/// Adds the facts of what has another cause than before, or shares its name with something that has. Two resources can
+/// lie at the same place, as lines do around a small thing: then they have one name and are one unit of facts.
+class WayTelling {
+ public:
+  WayTelling(const WayGraph& graph, FactSink& facts) : graph_(graph), facts_(facts) {}
+
+  ToldWays run(const std::vector<ToldWay>& before) {
+    collect(WayKind::Region, graph_.regions);
+    collect(WayKind::Junction, graph_.junctions);
+    collect(WayKind::Way, graph_.ways);
+    collect(WayKind::Kerb, graph_.kerbs);
+    findNames(before);
+    tell();
+    std::sort(told_.now.begin(), told_.now.end());
+    return std::move(told_);
   }
-}
+
+ private:
+  using Name = std::pair<WayKind, ContentHash>;
+
+  template <typename Resource>
+  void collect(WayKind kind, const std::vector<Resource>& resources) {
+    for (std::size_t i = 0; i < resources.size(); ++i) {
+      ContentHasher cause;
+      cause.add(kind);
+      addCause(resources[i], graph_, cause);
+      told_.now.push_back({cause.finish(), {}, kind});
+      numbers_.push_back(i);
+    }
+  }
+
+  void findNames(const std::vector<ToldWay>& before) {
+    std::unordered_map<ContentHash, ContentHash> known;  // names by cause
+    for (const ToldWay& way : before) known.emplace(way.cause, way.name);
+    std::unordered_set<ContentHash> causes;
+    for (std::size_t i = 0; i < told_.now.size(); ++i) {
+      ToldWay& way = told_.now[i];
+      causes.insert(way.cause);
+      const auto found = known.find(way.cause);
+      way.name = found != known.end() ? found->second : nameOf(way.kind, placeOf(way.kind, numbers_[i]));
+      if (found == known.end()) told_.exchanged.emplace(way.kind, way.name);
+    }
+    for (const ToldWay& way : before)
+      if (!causes.contains(way.cause)) told_.exchanged.emplace(way.kind, way.name);
+  }
+
+  std::string placeOf(WayKind kind, std::size_t number) const {
+    switch (kind) {
+      case WayKind::Region:
+        return regionPlace(graph_.regions[number]);
+      case WayKind::Junction:
+        return junctionPlace(graph_.junctions[number]);
+      case WayKind::Way:
+        return lineText(graph_.ways[number].line);
+      case WayKind::Kerb:
+        return lineText(graph_.kerbs[number].line);
+    }
+    throw std::logic_error("unknown kind of ways");
+  }
+
+  void tell() {
+    std::map<Name, std::vector<std::size_t>> of_name;
+    for (std::size_t i = 0; i < told_.now.size(); ++i)
+      if (const Name name{told_.now[i].kind, told_.now[i].name}; told_.exchanged.contains(name))
+        of_name[name].push_back(i);
+    for (const auto& [name, members] : of_name) {
+      ContentHasher cause;
+      for (const std::size_t i : members) cause.add(told_.now[i].cause);
+      if (!facts_.beginUnit({name.second, Facet::Self}, cause.finish())) continue;
+      for (const std::size_t i : members) add(name.first, numbers_[i], iriOfWay(name.first, name.second));
+      facts_.endUnit();
+    }
+  }
+
+  void add(WayKind kind, std::size_t number, const std::string& iri) {
+    switch (kind) {
+      case WayKind::Region:
+        return addRegion(graph_.regions[number], iri, facts_);
+      case WayKind::Junction:
+        return addJunction(graph_.junctions[number], iri, facts_);
+      case WayKind::Way:
+        return addWay(graph_.ways[number], iri, graph_, facts_);
+      case WayKind::Kerb:
+        return addKerb(graph_.kerbs[number], iri, facts_);
+    }
+  }
+
+  const WayGraph& graph_;
+  FactSink& facts_;
+  ToldWays told_;
+  std::vector<std::size_t> numbers_;  ///< of those in `told_.now`, in the lists of the graph
+};
 
 }  // namespace
 
-void addWayFacts(const WayGraph& graph, FactSink& facts) {
-  const auto line_of = [](const auto& resource) { return lineText(resource.line); };
-  addUnits("region", graph.regions, graph, facts, regionPlace,
-           [&](const Region& region, const std::string& iri) { addRegion(region, iri, facts); });
-  addUnits("junction", graph.junctions, graph, facts, junctionPlace,
-           [&](const Junction& junction, const std::string& iri) { addJunction(junction, iri, facts); });
-  addUnits("way", graph.ways, graph, facts, line_of,
-           [&](const Way& way, const std::string& iri) { addWay(way, iri, graph, facts); });
-  addUnits("kerb", graph.kerbs, graph, facts, line_of,
-           [&](const Kerb& kerb, const std::string& iri) { addKerb(kerb, iri, facts); });
+std::string iriOfWay(WayKind kind, const ContentHash& name) {
+  return rdf::mapIri(textOf(kind), name.hex());
+}
+
+std::string iriOfWays(WayKind kind) {
+  return rdf::mapIri(textOf(kind), "");
+}
+
+ToldWays addWayFacts(const WayGraph& graph, const std::vector<ToldWay>& before, FactSink& facts) {
+  return WayTelling(graph, facts).run(before);
 }
 
 }  // namespace cluxel::mapping

@@ -200,19 +200,29 @@ class FactWriting {
   }
 
   void replaceWays() {
+    const auto before = storedToldWays(transaction_);
+    if (!before) forgetWays();
+    const ToldWays told = addWayFacts(*sources_.ways, before.value_or(std::vector<ToldWay>()), facts_);
+    for (const auto& [kind, name] : told.exchanged) forgetWay(iri(iriOfWay(kind, name)));
+    storeToldWays(transaction_, told.now);
+  }
+
+  void forgetWay(rdf::TermId subject) {
     const std::string geo(rdf::vocabulary::kGeo);
+    for (const std::string_view property : {"hasGeometry", "hasCentroid", "hasBoundingBox"})
+      for (const rdf::TermId node : patch_.objectsOf(subject, facts_.property(geo + std::string(property))))
+        patch_.replace(node);
+    patch_.replace(subject);
+  }
+
+  /// All that have facts.
+  void forgetWays() {
     const rdf::TermId type = facts_.property(rdf::vocabulary::rdf("type"));
-    using Kind = std::pair<std::string_view, std::string_view>;  // class, and what IRIs name it
-    for (const auto& [name, kind] :
-         {Kind{"Way", "way"}, Kind{"Junction", "junction"}, Kind{"Region", "region"}, Kind{"Kerb", "kerb"}})
-      for (const rdf::TermId subject : patch_.subjectsOf(type, iri(rdf::vocabulary::clx(name)))) {
-        if (!stored_.termOf(subject).text.starts_with(rdf::mapIri(kind, ""))) continue;  // an object of that class
-        for (const std::string_view property : {"hasGeometry", "hasCentroid", "hasBoundingBox"})
-          for (const rdf::TermId node : patch_.objectsOf(subject, facts_.property(geo + std::string(property))))
-            patch_.replace(node);
-        patch_.replace(subject);
-      }
-    addWayFacts(*sources_.ways, facts_);
+    using Kind = std::pair<std::string_view, WayKind>;
+    for (const auto& [name, kind] : {Kind{"Way", WayKind::Way}, Kind{"Junction", WayKind::Junction},
+                                     Kind{"Region", WayKind::Region}, Kind{"Kerb", WayKind::Kerb}})
+      for (const rdf::TermId subject : patch_.subjectsOf(type, iri(rdf::vocabulary::clx(name))))
+        if (stored_.termOf(subject).text.starts_with(iriOfWays(kind))) forgetWay(subject);  // else an object
   }
 
   /// A ground patch is there as long as some primitive touches it.
