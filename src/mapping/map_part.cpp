@@ -7,6 +7,7 @@
 
 #include "mapping/build/scan_store.hpp"
 #include "mapping/layers/stored_layers.hpp"
+#include "mapping/window/likely_tiles.hpp"
 #include "mapping/window/map_window.hpp"
 
 namespace cluxel::mapping {
@@ -51,7 +52,7 @@ std::vector<rules::SemanticObject> objectsIn(const rdf::ReadTransaction& transac
 }  // namespace
 
 std::optional<MapPart> partOfMap(const rdf::ReadTransaction& transaction, TileStages& stages,
-                                 const perception::TileSet& tiles) {
+                                 const perception::TileSet& tiles, double reach_m) {
   if (tiles.empty()) return std::nullopt;
   const OutputChanges none;
   FormerSummaries former(none);
@@ -64,8 +65,33 @@ std::optional<MapPart> partOfMap(const rdf::ReadTransaction& transaction, TileSt
     const auto known = window->known.find(window->scene.primitives[i].id);
     part.traces.push_back(window->is_cut[i] != 0 || known == window->known.end() ? 0 : known->second.trace);
   }
+  part.is_open = openPrimitives(*window, reach_m);
   part.scene = std::move(window->scene);
   return part;
+}
+
+ThingPlace placeOfObject(const rdf::ReadTransaction& transaction, const ContentHash& object) {
+  ThingPlace place{{}, tilesOfObject(transaction, object)};
+  for (const perception::TileKey& tile : place.tiles)
+    if (const std::optional<TileLayer> layer = storedLayer(transaction, tile))
+      for (const TileLayer::Share& share : layer->shares)
+        if (share.object == object)
+          for (const std::uint32_t component : share.components)
+            place.primitives.insert(layer->primitives[component].id);
+  return place;
+}
+
+ThingPlace placeOfPrimitive(const rdf::ReadTransaction& transaction, const ContentHash& primitive) {
+  return {{primitive}, tilesOfPrimitive(transaction, primitive)};
+}
+
+std::optional<MapPart> partOfLayers(const rdf::ReadTransaction& transaction, TileStages& stages,
+                                    const ThingPlace& thing, const rules::RuleSet& rules, double reach_m,
+                                    const LayersAround& around) {
+  if (thing.tiles.empty()) return std::nullopt;
+  const perception::TileSet tiles = tilesAround(transaction, thing.primitives, thing.tiles, objectsOfLoneSeeds(rules),
+                                                reach_m + around.wider_m, around.count);
+  return partOfMap(transaction, stages, tiles, reach_m);
 }
 
 perception::TileSet tilesOfObject(const rdf::ReadTransaction& transaction, const ContentHash& object) {

@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "mapping/build/tile_stages.hpp"
 #include "perception/segments/scene.hpp"
+#include "rules/language/rule_set.hpp"
 #include "rules/objects/semantic_object.hpp"
 
 namespace cluxel::mapping {
@@ -16,13 +18,34 @@ namespace cluxel::mapping {
 struct MapPart {
   perception::Scene scene;                     ///< primitives that go on outside are cut and have other ids
   std::vector<std::uint64_t> traces;           ///< of the decisions, by primitive; 0 for cut ones
+  std::vector<char> is_open;                   ///< by primitive; openPrimitives()
   std::vector<rules::SemanticObject> objects;  ///< as far as they lie in the part, sorted by id
 };
 
 /// The part in those of `tiles` that the map has. Absent when there are none, or when they are most of the map, which
-/// is then quicker to read as a whole. Cost: some milliseconds a tile.
+/// is then quicker to read as a whole. `reach_m` tells what is open. Cost: some milliseconds a tile.
 std::optional<MapPart> partOfMap(const rdf::ReadTransaction& transaction, TileStages& stages,
-                                 const perception::TileSet& tiles);
+                                 const perception::TileSet& tiles, double reach_m);
+
+/// Where an object, or a primitive, is. Cost: of an object that of its tiles; of a primitive some microseconds a tile
+/// of the map.
+struct ThingPlace {
+  std::set<ContentHash> primitives;
+  perception::TileSet tiles;
+};
+ThingPlace placeOfObject(const rdf::ReadTransaction& transaction, const ContentHash& object);
+ThingPlace placeOfPrimitive(const rdf::ReadTransaction& transaction, const ContentHash& primitive);
+
+/// How much of what is around a thing a part is to have.
+struct LayersAround {
+  std::uint32_t count = 0;  ///< of layers (rules::layersAround())
+  double wider_m = 0;       ///< boxes tell layers only nearly: how much farther than `reach_m` they are taken to reach
+};
+
+/// The part with the first layers around a thing. Absent as for partOfMap(), and when there is no such thing.
+std::optional<MapPart> partOfLayers(const rdf::ReadTransaction& transaction, TileStages& stages,
+                                    const ThingPlace& thing, const rules::RuleSet& rules, double reach_m,
+                                    const LayersAround& around);
 
 /// The tiles with cluxels of an object, or of a primitive; empty when there is none. Cost: of a primitive some
 /// microseconds a tile of the map.

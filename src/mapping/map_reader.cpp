@@ -87,7 +87,7 @@ struct MapReader::Impl {
     const perception::TileSet map = storedTiles(transaction);
     for (int ring = 0; ring < rings; ++ring) tiles = perception::withRing(tiles, map);
     TileStages here(readModel(), readInputs().params);
-    return partOfMap(transaction, here, tiles);
+    return partOfMap(transaction, here, tiles, 0);
   }
 
   const TileStages& readPoints() {
@@ -155,6 +155,18 @@ std::optional<MapPart> MapReader::partAroundPrimitive(const ContentHash& primiti
 std::optional<MapPart> MapReader::partAroundTile(const perception::TileKey& tile, int rings) const {
   return impl_->partAround({tile}, rings);
 }
+ThingPlace MapReader::placeOfObject(const ContentHash& object) const {
+  return mapping::placeOfObject(impl_->transaction, object);
+}
+ThingPlace MapReader::placeOfPrimitive(const ContentHash& primitive) const {
+  return mapping::placeOfPrimitive(impl_->transaction, primitive);
+}
+std::optional<MapPart> MapReader::partOfLayers(const ThingPlace& thing, const rules::RuleSet& rules, double reach_m,
+                                               const LayersAround& around) const {
+  TileStages here(impl_->readModel(), impl_->readInputs().params);
+  return mapping::partOfLayers(impl_->transaction, here, thing, rules, reach_m, around);
+}
+
 std::optional<PrimitivePlace> MapReader::samplePrimitiveOf(const ContentHash& object) const {
   return mapping::samplePrimitiveOf(impl_->transaction, object);
 }

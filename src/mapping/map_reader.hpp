@@ -15,13 +15,16 @@
 #include "perception/segments/scene.hpp"
 #include "rdf/file/layer_sizes.hpp"
 #include "rdf/store/quad_store.hpp"
+#include "rules/language/rule_set.hpp"
 #include "rules/objects/semantic_object.hpp"
 
 namespace cluxel::mapping {
 
 class TileStages;
 struct WayGraph;
+struct LayersAround;
 struct MapPart;
+struct ThingPlace;
 struct PrimitivePlace;
 struct OverruledObject;
 
@@ -63,6 +66,11 @@ class MapReader {
   std::optional<MapPart> partAroundObject(const ContentHash& object, int rings) const;
   std::optional<MapPart> partAroundPrimitive(const ContentHash& primitive, int rings) const;
   std::optional<MapPart> partAroundTile(const perception::TileKey& tile, int rings) const;
+  /// As the functions of mapping/map_part.
+  ThingPlace placeOfObject(const ContentHash& object) const;
+  ThingPlace placeOfPrimitive(const ContentHash& primitive) const;
+  std::optional<MapPart> partOfLayers(const ThingPlace& thing, const rules::RuleSet& rules, double reach_m,
+                                      const LayersAround& around) const;
   /// As samplePrimitiveOf() in map_part.hpp.
   std::optional<PrimitivePlace> samplePrimitiveOf(const ContentHash& object) const;
   /// Whether an object takes in all of its class, as the ground does. False when there is none.

@@ -15,6 +15,7 @@
 #include "mapping/map_part.hpp"
 #include "mapping/statements/applied_statements.hpp"
 #include "rdf/map_iris.hpp"
+#include "rules/decide/local_reach.hpp"
 #include "rules/explain/part_run.hpp"
 #include "rules/explain/path_tree.hpp"
 #include "rules/explain/why_not.hpp"
@@ -51,6 +52,8 @@ mapping::MapPart byRules(const mapping::MapReader& map, mapping::MapPart part) {
       if (overruled.now == object.id) object.rule_id = overruled.by_rules.rule_id;
   return part;
 }
+
+constexpr double kAll = std::numeric_limits<double>::infinity();
 
 /// What is explained: an object or a primitive.
 struct Explainable {
@@ -93,7 +96,6 @@ std::optional<rules::PartRun> runAround(const mapping::MapReader& map, const Exp
     int rings;
     std::vector<double> margins_m;  ///< smaller ones are held by the part with fewer rings
   };
-  constexpr double kAll = std::numeric_limits<double>::infinity();
   for (const Around& around : {Around{1, {kAll}}, Around{3, {30, kAll}}}) {
     const std::optional<mapping::MapPart> part = partAround(map, what, around.rings);
     if (!part) break;
@@ -175,6 +177,11 @@ struct WhyNotOfThing {
   std::string headline;
 };
 
+std::string headlineOf(const rules::SemanticObject* owner, const rules::RuleSet& rules) {
+  if (owner == nullptr) return "belongs to no object: unknown";
+  return "belongs to " + rules.shorten(owner->class_iri) + " " + owner->id.hex() + ", by rule " + owner->rule_id;
+}
+
 /// The object that is named, or that owns the named primitive; null when there is none. `primitives` are the named
 /// ones by their numbers in the run that made `objects`.
 const rules::SemanticObject* ownerOf(const std::vector<rules::SemanticObject>& objects,
@@ -188,22 +195,52 @@ const rules::SemanticObject* ownerOf(const std::vector<rules::SemanticObject>& o
   return owner;
 }
 
+/// From the tiles around the thing, with what the whole map would tell. Absent when they may not be enough.
+std::optional<WhyNotOfThing> whyNotAround(const mapping::MapReader& map, const rules::RuleSet& rules,
+                                          const Explainable& what, const std::string& class_iri) {
+  const std::optional<double> reach_m = rules::localReach(rules).reach_m;
+  if (!reach_m || *reach_m > perception::kTileSize_m) return std::nullopt;
+  const mapping::ThingPlace place =
+      what.object ? map.placeOfObject(*what.object) : map.placeOfPrimitive(*what.primitive);
+  for (const mapping::LayersAround& around : {mapping::LayersAround{4, 0}, {7, 2}, {13, 4}}) {
+    auto part = map.partOfLayers(place, rules, *reach_m, around);
+    if (!part) return std::nullopt;
+    part = byRules(map, *std::move(part));
+    const std::vector<perception::PrimitiveIndex> primitives = primitivesIn(part->scene, part->objects, what);
+    std::vector<char> is_dirty(part->scene.primitives.size(), 0);
+    for (const perception::PrimitiveIndex primitive : primitives) is_dirty[primitive] = 1;
+    auto said = considerIn({part->scene, is_dirty, part->is_open, {}, {part->traces.begin(), part->traces.end()}},
+                           rules, {}, class_iri, *reach_m);
+    if (!said) continue;
+    const auto run = runInPart(part->scene, rules, {part->traces, part->objects}, primitives, {{16, kAll}, 1});
+    if (!run) continue;
+    const auto id = what.object ? std::optional(idByRules(map, *what.object)) : std::nullopt;
+    const rules::SemanticObject* owner = ownerOf(run->result.objects, run->primitives, id);
+    return WhyNotOfThing{whyNot(*std::move(said), rules, run->result, owner, class_iri), headlineOf(owner, rules)};
+  }
+  return std::nullopt;
+}
+
+WhyNotOfThing whyNotInMap(const mapping::MapReader& map, const rules::RuleSet& rules, const Explainable& what,
+                          const std::string& class_iri) {
+  mapping::AskReplay oracle(map);
+  const rules::ReasoningContext context{.oracle = &oracle};
+  const std::vector<perception::PrimitiveIndex> primitives = primitivesIn(map.scene(), map.objects(), what);
+  const rules::ReasoningResult made = reason(map.scene(), rules, context);
+  const auto id = what.object ? std::optional(idByRules(map, *what.object)) : std::nullopt;
+  const rules::SemanticObject* owner = ownerOf(made.objects, primitives, id);
+  auto said = considerFor(map.scene(), rules, context, class_iri, primitives);
+  return {whyNot(std::move(said), rules, made, owner, class_iri), headlineOf(owner, rules)};
+}
+
 WhyNotOfThing whyNotOf(const mapping::MapReader& map, const rules::RuleSet& rules, const mapping::MapInputs& inputs,
                        const std::string& written, const std::string& class_name) {
   const NamedThing named = thingNamed(map, written);
   const std::string class_iri = classNamed(rules, class_name);
-  const auto id = named.object ? std::optional(idByRules(map, *named.object)) : std::nullopt;
-  mapping::AskReplay oracle(map);
-  const rules::ReasoningContext context{.oracle = &oracle};
-  const perception::Scene& scene = map.scene();
-  const std::vector<perception::PrimitiveIndex> primitives =
-      primitivesIn(scene, map.objects(), {named.object, named.primitive, {}});
-  const rules::ReasoningResult made = reason(scene, rules, context);
-  const rules::SemanticObject* owner = ownerOf(made.objects, primitives, id);
-  WhyNotOfThing thing{whyNot(scene, rules, context, made, owner, primitives, class_iri), ""};
-  thing.headline = owner == nullptr ? "belongs to no object: unknown"
-                                    : "belongs to " + rules.shorten(owner->class_iri) + " " + owner->id.hex() +
-                                          ", by rule " + owner->rule_id;
+  const Explainable what{named.object, named.primitive, {}};
+  const bool reaches_far = named.object && map.isClassWide(*named.object);
+  auto around = reaches_far ? std::nullopt : whyNotAround(map, rules, what, class_iri);
+  WhyNotOfThing thing = around ? *std::move(around) : whyNotInMap(map, rules, what, class_iri);
   for (rules::RuleVerdict& verdict : thing.why.rules) shortenFiles(verdict.decision, inputs);
   return thing;
 }

@@ -4,14 +4,18 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+
 #include <nlohmann/json.hpp>
 
 #include "cluxel/error.hpp"
 #include "mapping/asking_rules.hpp"
 #include "mapping/map_part.hpp"
 #include "rdf/map_iris.hpp"
+#include "rules/decide/local_reach.hpp"
 #include "rules/decide/reason.hpp"
 #include "rules/explain/part_run.hpp"
+#include "rules/explain/why_not.hpp"
 #include "rules/language/rule_loader.hpp"
 #include "tasks/campus_map_fixture.hpp"
 #include "test_paths.hpp"
@@ -126,6 +130,27 @@ TEST_F(ExplanationOfALongMap, ReadsSomeTilesAndSaysWhatTheWholeMapSays) {
     const std::string expected = withoutFolder(textOf(*whole, rules, map->scene()), inputs);
     EXPECT_TRUE(explainThing(*map, object.id.hex(), false).ends_with(expected)) << "object " << i;
     if (map->partAroundObject(object.id, 1)) ++in_part;
+  }
+  EXPECT_GE(in_part, 5U);
+}
+
+/// Why a thing is of no other class is told from some tiles, too.
+TEST_F(ExplanationOfALongMap, WhyNotReadsSomeTilesAndSaysWhatTheWholeMapSays) {
+  const ReasoningResult made = reason(map->scene(), rules);
+  const double reach_m = localReach(rules).reach_m.value();
+  constexpr std::array<const char*, 3> kClasses{"StreetLamp", "Building", "SmallObject"};
+  std::size_t in_part = 0;
+  for (const SemanticObject& object : map->objects()) {
+    if (object.is_class_wide || in_part == 10) continue;
+    if (!map->partOfLayers(map->placeOfObject(object.id), rules, reach_m, {4, 0})) continue;
+    const auto owner = std::find_if(made.objects.begin(), made.objects.end(),
+                                    [&](const SemanticObject& other) { return other.id == object.id; });
+    ASSERT_NE(owner, made.objects.end());
+    const std::string asked = kClasses[in_part++ % kClasses.size()], class_iri = classNamed(rules, asked);
+    auto said = considerFor(map->scene(), rules, {}, class_iri, primitivesOf(object));
+    const std::string expected = textOf(whyNot(std::move(said), rules, made, &*owner, class_iri), rules);
+    const std::string told = explainWhyNot(*map, object.id.hex(), asked).text;
+    EXPECT_TRUE(told.ends_with(withoutFolder(expected, inputs))) << told << "\nis not\n" << expected;
   }
   EXPECT_GE(in_part, 5U);
 }

@@ -51,29 +51,39 @@ std::vector<Part> partsIn(const TileLayer& layer, const std::set<ContentHash>& b
   return parts;
 }
 
-/// The layers around changed tiles (rules::layersAround()), as far as the stored layers of tiles tell them.
+/// Layers (rules::layersAround()), as far as the stored layers of tiles tell them.
 class LayerSearch {
  public:
-  LayerSearch(const rdf::ReadTransaction& transaction, const TileSet& changed,
-              const std::set<ContentHash>& lone_objects, double reach_m)
-      : transaction_(transaction), changed_(changed), lone_objects_(lone_objects), reach_m_(reach_m + kSlack_m) {}
+  LayerSearch(const rdf::ReadTransaction& transaction, const std::set<ContentHash>& lone_objects, double reach_m)
+      : transaction_(transaction),
+        lone_objects_(lone_objects),
+        reach_m_(reach_m + kSlack_m),
+        map_(storedTiles(transaction)) {}
+
+  /// Everything in some tiles is layer 0.
+  void beginWith(const TileSet& tiles) {
+    begun_ = tiles;
+    for (const TileKey& tile : tiles) {
+      const auto ring = perception::ringOf(tile);
+      // Within them there is nothing to find.
+      if (!std::all_of(ring.begin(), ring.end(),
+                       [&](const TileKey& near) { return tiles.contains(near) || !map_.contains(near); }))
+        partsOf(tile);
+    }
+  }
+  /// Some primitives, which have cluxels in these tiles, are layer 0.
+  void beginWith(const std::set<ContentHash>& primitives, const TileSet& tiles) {
+    primitives_.insert(primitives.begin(), primitives.end());
+    for (const TileKey& tile : tiles) partsOf(tile);
+  }
 
   /// The tiles within reach of the first `count` layers.
   TileSet tilesOfFirst(std::uint32_t count) {
-    const TileSet map = storedTiles(transaction_);
-    for (const TileKey& tile : changed_) {
-      const auto ring = perception::ringOf(tile);
-      // Within changed tiles there is nothing to find.
-      if (std::all_of(ring.begin(), ring.end(),
-                      [&](const TileKey& near) { return changed_.contains(near) || !map.contains(near); }))
-        continue;
-      partsOf(tile);
-    }
     TileSet found;
     for (std::uint32_t layer = 0; layer < count && !reached_.empty(); ++layer)
       for (const auto& [tile, box] : std::exchange(reached_, {}))
         for (const TileKey& near : perception::ringOf(tile))
-          if (map.contains(near) && boxOfTile(near).exteriorDistance(box) <= reach_m_) {
+          if (map_.contains(near) && boxOfTile(near).exteriorDistance(box) <= reach_m_) {
             found.insert(near);
             lookIn(near, box);
           }
@@ -83,7 +93,7 @@ class LayerSearch {
  private:
   using Place = std::pair<TileKey, std::size_t>;
 
-  /// What has a reached primitive, or lies in a changed tile, counts as reached when its tile is read.
+  /// What is layer 0, or part of a reached primitive, counts as reached when its tile is read.
   std::vector<Part>& partsOf(const TileKey& tile) {
     const auto [place, is_new] = parts_.try_emplace(tile);
     std::vector<Part>& parts = place->second;
@@ -92,7 +102,7 @@ class LayerSearch {
     parts = partsIn(*layer, lone_objects_);
     for (std::size_t i = 0; i < parts.size(); ++i) {
       places_[parts[i].primitive].emplace_back(tile, i);
-      if (changed_.contains(tile) || primitives_.contains(parts[i].primitive)) reach(tile, parts[i]);
+      if (begun_.contains(tile) || primitives_.contains(parts[i].primitive)) reach(tile, parts[i]);
     }
     return parts;
   }
@@ -110,9 +120,9 @@ class LayerSearch {
   }
 
   const rdf::ReadTransaction& transaction_;
-  const TileSet& changed_;
   const std::set<ContentHash>& lone_objects_;
   double reach_m_;
+  TileSet map_, begun_;
   std::map<TileKey, std::vector<Part>> parts_;                    ///< of the tiles that were read
   std::unordered_map<ContentHash, std::vector<Place>> places_;    ///< of the parts of each primitive
   std::unordered_set<ContentHash> primitives_;                    ///< that were reached
@@ -133,7 +143,17 @@ std::set<ContentHash> objectsOfLoneSeeds(const rules::RuleSet& rules) {
 
 TileSet likelyTiles(const rdf::ReadTransaction& transaction, const TileSet& changed,
                     const std::set<ContentHash>& lone_objects, double reach_m, std::uint32_t layers) {
-  return LayerSearch(transaction, changed, lone_objects, reach_m).tilesOfFirst(layers);
+  LayerSearch search(transaction, lone_objects, reach_m);
+  search.beginWith(changed);
+  return search.tilesOfFirst(layers);
+}
+
+TileSet tilesAround(const rdf::ReadTransaction& transaction, const std::set<ContentHash>& primitives,
+                    const TileSet& tiles, const std::set<ContentHash>& lone_objects, double reach_m,
+                    std::uint32_t layers) {
+  LayerSearch search(transaction, lone_objects, reach_m);
+  search.beginWith(primitives, tiles);
+  return perception::unionOf(search.tilesOfFirst(layers), tiles);
 }
 
 }  // namespace cluxel::mapping

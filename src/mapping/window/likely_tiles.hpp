@@ -19,4 +19,9 @@ std::set<ContentHash> objectsOfLoneSeeds(const rules::RuleSet& rules);
 perception::TileSet likelyTiles(const rdf::ReadTransaction& transaction, const perception::TileSet& changed,
                                 const std::set<ContentHash>& lone_objects, double reach_m, std::uint32_t layers);
 
+/// The map's tiles within reach of the first layers around some primitives, which have cluxels in `tiles`, and these.
+perception::TileSet tilesAround(const rdf::ReadTransaction& transaction, const std::set<ContentHash>& primitives,
+                                const perception::TileSet& tiles, const std::set<ContentHash>& lone_objects,
+                                double reach_m, std::uint32_t layers);
+
 }  // namespace cluxel::mapping

@@ -3,6 +3,7 @@
 #include "mapping/window/map_window.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <unordered_map>
 
@@ -113,6 +114,27 @@ std::optional<MapWindow> windowAround(const rdf::ReadTransaction& transaction, T
     first += static_cast<std::uint32_t>(summary.size());
   }
   return window;
+}
+
+std::vector<char> openPrimitives(const MapWindow& window, double reach_m) {
+  std::vector<char> is_open = window.is_cut;
+  std::map<TileKey, std::vector<Eigen::AlignedBox2d>> outside;  // by held tile
+  const auto rings = static_cast<int>(std::ceil(reach_m / perception::kTileSize_m));
+  for (const TileKey& away : window.elsewhere)
+    for (int dx = -rings; dx <= rings; ++dx)
+      for (int dy = -rings; dy <= rings; ++dy)
+        if (const TileKey near{away.x + dx, away.y + dy}; window.first_cluxel.contains(near))
+          outside[near].push_back(boxOfTile(away));
+  const perception::SceneCluxels& all = window.scene.cluxels;
+  for (const auto& [tile, boxes] : outside)
+    for (std::uint32_t c = window.first_cluxel.at(tile); c < all.size() && all.name[c].tile == tile; ++c) {
+      const Eigen::Vector2d low = all.low_corner[c].head<2>();
+      const Eigen::AlignedBox2d own(low, Eigen::Vector2d(low + all.extent[c].head<2>().cast<double>()));
+      if (std::any_of(boxes.begin(), boxes.end(),
+                      [&](const auto& box) { return box.exteriorDistance(own) <= reach_m; }))
+        is_open[all.primitive[c]] = 1;
+    }
+  return is_open;
 }
 
 std::vector<std::uint32_t> formerNumbers(const MapWindow& window, const TileStages& stages, FormerSummaries& former) {

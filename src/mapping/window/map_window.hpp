@@ -39,6 +39,9 @@ struct MapWindow {
   std::map<ContentHash, KnownPrimitive> known;      ///< before the change, by id
 };
 
+/// By primitive: whether it is cut, or something within `reach_m` of it may lie in a tile that is not held.
+std::vector<char> openPrimitives(const MapWindow& window, double reach_m);
+
 /// The hash of what reasoning reads of a primitive of a window (perception::PrimitiveInputs).
 using InputOf = std::function<std::uint64_t(perception::PrimitiveIndex)>;
 

@@ -3,7 +3,6 @@
 #include "mapping/window/window_change.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace cluxel::mapping {
 
@@ -19,7 +18,7 @@ class WindowComparison {
       : window_(window), changes_(changes), anew_(anew), reach_m_(reach_m), input_of_(input_of) {}
 
   WindowChange run() {
-    markOpen();
+    result_.is_open = openPrimitives(window_, reach_m_);
     findGone();
     markDirty();
     markUnclear();
@@ -28,26 +27,6 @@ class WindowComparison {
 
  private:
   const perception::Scene& scene() const { return window_.scene; }
-
-  void markOpen() {
-    result_.is_open = window_.is_cut;
-    std::map<TileKey, std::vector<Eigen::AlignedBox2d>> outside;  // by held tile
-    const auto rings = static_cast<int>(std::ceil(reach_m_ / perception::kTileSize_m));
-    for (const TileKey& away : window_.elsewhere)
-      for (int dx = -rings; dx <= rings; ++dx)
-        for (int dy = -rings; dy <= rings; ++dy)
-          if (const TileKey near{away.x + dx, away.y + dy}; window_.first_cluxel.contains(near))
-            outside[near].push_back(boxOfTile(away));
-    const perception::SceneCluxels& all = scene().cluxels;
-    for (const auto& [tile, boxes] : outside)
-      for (std::uint32_t c = window_.first_cluxel.at(tile); c < all.size() && all.name[c].tile == tile; ++c) {
-        const Eigen::Vector2d low = all.low_corner[c].head<2>();
-        const Eigen::AlignedBox2d own(low, Eigen::Vector2d(low + all.extent[c].head<2>().cast<double>()));
-        if (std::any_of(boxes.begin(), boxes.end(),
-                        [&](const auto& box) { return box.exteriorDistance(own) <= reach_m_; }))
-          result_.is_open[all.primitive[c]] = 1;
-      }
-  }
 
   bool isChanged(const TileKey& tile) const { return changes_.tiles.contains(tile); }
 

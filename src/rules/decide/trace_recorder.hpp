@@ -93,6 +93,12 @@ class TraceRecorder {
     if (layers_ != nullptr && span.low <= span.high && span.high - span.low >= kFewestLayers) spans_.insert(span);
   }
 
+  /// Back to an earlier state, but for the spans of steps.
+  void takeBack(const TraceRecorder& earlier) {
+    traces_ = earlier.traces_, known_ = earlier.known_;
+    part_ = earlier.part_, round_ = earlier.round_;
+  }
+
   std::vector<std::uint64_t> takeTraces() { return std::move(traces_); }
   const std::set<LayerSpan>& spans() const { return spans_; }
 

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "rules/explain/counterfactuals.hpp"
-#include "rules/propose/consideration.hpp"
 
 namespace cluxel::rules {
 
@@ -87,14 +86,12 @@ std::string_view nameOf(Nearness nearness) {
   return kNames[static_cast<std::size_t>(nearness)];
 }
 
-WhyNot whyNot(const perception::Scene& scene, const RuleSet& rules, const ReasoningContext& context,
-              const ReasoningResult& made, const SemanticObject* owner,
-              const std::vector<perception::PrimitiveIndex>& primitives, const std::string& class_iri) {
+WhyNot whyNot(std::vector<Consideration> said, const RuleSet& rules, const ReasoningResult& made,
+              const SemanticObject* owner, const std::string& class_iri) {
   WhyNot why;
   why.class_iri = class_iri;
   const WhyNotSearch search(rules, made, owner);
-  for (Consideration& said : considerFor(scene, rules, context, class_iri, primitives))
-    why.rules.push_back(search.verdictOf(std::move(said)));
+  for (Consideration& one : said) why.rules.push_back(search.verdictOf(std::move(one)));
   std::stable_sort(why.rules.begin(), why.rules.end(), [](const RuleVerdict& a, const RuleVerdict& b) {
     return std::pair(a.nearness, costOfVerdict(a)) < std::pair(b.nearness, costOfVerdict(b));
   });

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "rules/explain/explain.hpp"
+#include "rules/propose/consideration.hpp"
 
 namespace cluxel::rules {
 
@@ -34,11 +35,10 @@ struct WhyNot {
   std::vector<RuleVerdict> rules;  ///< the nearest first
 };
 
-/// Judges the primitives of a thing by the rules of the class, as if no other class had taken them before. `made` are
-/// the objects and decisions of the same scene, rules and context; `owner` is the thing, when it is an object.
-WhyNot whyNot(const perception::Scene& scene, const RuleSet& rules, const ReasoningContext& context,
-              const ReasoningResult& made, const SemanticObject* owner,
-              const std::vector<perception::PrimitiveIndex>& primitives, const std::string& class_iri);
+/// Ranks what the rules of the class say of a thing (considerFor()). `owner` is the thing when it is an object, else
+/// what owns it, and null when nothing does; `made` is the run that made it.
+WhyNot whyNot(std::vector<Consideration> said, const RuleSet& rules, const ReasoningResult& made,
+              const SemanticObject* owner, const std::string& class_iri);
 
 std::string textOf(const WhyNot& why, const RuleSet& rules);
 std::string jsonOf(const WhyNot& why, const RuleSet& rules);

@@ -6,6 +6,7 @@
 
 #include "rules/decide/decision_record.hpp"
 #include "rules/decide/reasoning_strata.hpp"
+#include "rules/decide/seam_search.hpp"
 #include "rules/objects/seed_groups.hpp"
 #include "rules/propose/condition_eval.hpp"
 
@@ -13,28 +14,71 @@ namespace cluxel::rules {
 
 namespace {
 
+/// A rule looks once more at each of its finds, and from there as far as its reach.
+std::uint32_t layersSeenBy(const Rule& rule) {
+  return 1 + static_cast<std::uint32_t>(std::count_if(rule.nodes.begin(), rule.nodes.end(), [](const TreeNode& node) {
+           return std::holds_alternative<FindNode>(node.what);
+         }));
+}
+
 class Considering {
  public:
-  Considering(ReasoningState& state, const std::vector<perception::PrimitiveIndex>& primitives)
-      : state_(state), primitives_(primitives) {}
+  Considering(ReasoningState& state, const std::string& class_iri,
+              const std::vector<perception::PrimitiveIndex>& primitives)
+      : state_(state), class_iri_(class_iri), primitives_(primitives) {
+    setOwners(kUnknown);
+  }
 
+  /// To be called for all strata in their order.
+  void decide(const std::vector<std::string>& stratum) {
+    for (const std::string& decided : stratum) {
+      if (!state_.rules.catalogue.isA(decided, class_iri_)) continue;
+      setOwners(kFree);
+      for (const Rule& rule : state_.rules.rules)
+        if (rule.class_iri == decided) by(rule);
+      setOwners(kUnknown);
+    }
+    decideStratum(state_, stratum);
+  }
+
+  std::vector<Consideration> take() { return std::move(said_); }
+
+  /// The last layer that the rules have looked at.
+  std::uint32_t lastSeen(const std::vector<std::uint32_t>& layers) const {
+    std::uint32_t last = 0;
+    for (const auto& [primitive, beyond] : seen_from_) {
+      const std::uint32_t own = layers[primitive];
+      last = std::max(last, own == kNoLayer ? kNoLayer : own + beyond);
+    }
+    return last;
+  }
+
+ private:
   void setOwners(OwnerIndex owner) {
     for (const perception::PrimitiveIndex primitive : primitives_)
       for (const FragmentIndex fragment : state_.fragments.fragmentsOf(primitive)) state_.setOwner(fragment, owner);
   }
 
-  void by(const Rule& rule, std::vector<Consideration>& said) {
-    const std::size_t before = said.size();
+  /// What the rule says makes no difference to others: it leaves no traces.
+  void by(const Rule& rule) {
+    const TraceRecorder traces = state_.trace;
+    const std::size_t before = said_.size();
     SliceScope scope(state_, rule);
     for (const auto& group : seedGroups(state_, rule, scope.slices()))
-      if (std::any_of(group.begin(), group.end(), [this](FragmentIndex fragment) { return isOurs(fragment); }))
-        said.push_back({judge(state_, rule, group).decision, true, true});
+      if (std::any_of(group.begin(), group.end(), [this](FragmentIndex fragment) { return isOurs(fragment); })) {
+        said_.push_back({judge(state_, rule, group).decision, true, true});
+        for (const FragmentIndex fragment : group)
+          seen_from_.emplace_back(state_.fragments[fragment].primitive, layersSeenBy(rule));
+      }
     scope.putBack();
-    if (said.size() > before) return;
-    for (const perception::PrimitiveIndex primitive : primitives_) said.push_back(asNoSeed(rule, primitive));
+    state_.trace.takeBack(traces);
+    if (said_.size() > before) return;
+    for (const perception::PrimitiveIndex primitive : primitives_) {
+      said_.push_back(asNoSeed(rule, primitive));
+      seen_from_.emplace_back(primitive, 1);
+    }
   }
 
- private:
   bool isOurs(FragmentIndex fragment) const {
     return std::find(primitives_.begin(), primitives_.end(), state_.fragments[fragment].primitive) != primitives_.end();
   }
@@ -57,7 +101,10 @@ class Considering {
   }
 
   ReasoningState& state_;
+  const std::string& class_iri_;
   const std::vector<perception::PrimitiveIndex>& primitives_;
+  std::vector<Consideration> said_;
+  std::vector<std::pair<perception::PrimitiveIndex, std::uint32_t>> seen_from_;  ///< and how many layers farther
 };
 
 }  // namespace
@@ -68,20 +115,36 @@ std::vector<Consideration> considerFor(const perception::Scene& scene, const Rul
   ReasoningContext probing = context;
   probing.probes = primitives;
   ReasoningState state(scene, rules, probing);
-  Considering considering(state, primitives);
-  std::vector<Consideration> said;
-  considering.setOwners(kUnknown);
-  for (const std::vector<std::string>& stratum : rules.strata) {
-    for (const std::string& decided : stratum) {
-      if (!rules.catalogue.isA(decided, class_iri)) continue;
-      considering.setOwners(kFree);
-      for (const Rule& rule : rules.rules)
-        if (rule.class_iri == decided) considering.by(rule, said);
-      considering.setOwners(kUnknown);
-    }
-    decideStratum(state, stratum);
-  }
-  return said;
+  Considering considering(state, class_iri, primitives);
+  for (const std::vector<std::string>& stratum : rules.strata) considering.decide(stratum);
+  return considering.take();
+}
+
+std::optional<std::vector<Consideration>> considerIn(const LocalInput& window, const RuleSet& rules,
+                                                     const ReasoningContext& context, const std::string& class_iri,
+                                                     double reach_m) {
+  std::vector<perception::PrimitiveIndex> primitives;
+  for (perception::PrimitiveIndex i = 0; i < window.is_dirty.size(); ++i)
+    if (window.is_dirty[i] != 0) primitives.push_back(i);
+  ReasoningContext probing = context;
+  probing.probes = primitives;
+  ReasoningState state(window.window, rules, probing);
+  Considering considering(state, class_iri, primitives);
+  const auto later = rules.strata.begin() + static_cast<std::ptrdiff_t>(strataOfLoneSeeds(rules));
+  std::for_each(rules.strata.begin(), later, [&](const auto& stratum) { considering.decide(stratum); });
+  const std::vector<std::uint32_t> layers =
+      layersAround(window.window, window.is_dirty, fixedPrimitives(state), window.gone, reach_m);
+  const SeamSearch search(window, layers);
+  if (!search.mayFind()) return std::nullopt;
+  state.trace.useLayers(layers);
+  std::for_each(later, rules.strata.end(), [&](const auto& stratum) { considering.decide(stratum); });
+  const ReasoningResult result = finishedRun(state);
+  const std::vector<Seam> seams = search.find(result, state.trace.spans());
+  const std::uint32_t seen = considering.lastSeen(layers);
+  // Within a seam, too, all is in the state in which it would be in the run over the whole.
+  if (std::none_of(seams.begin(), seams.end(), [seen](const Seam& seam) { return seen <= seam.last; }))
+    return std::nullopt;
+  return considering.take();
 }
 
 }  // namespace cluxel::rules

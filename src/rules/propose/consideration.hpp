@@ -2,9 +2,11 @@
 // What the rules of a class say of a thing that no other class has taken before.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "rules/decide/local_run.hpp"
 #include "rules/decide/reason.hpp"
 
 namespace cluxel::rules {
@@ -22,5 +24,12 @@ struct Consideration {
 std::vector<Consideration> considerFor(const perception::Scene& scene, const RuleSet& rules,
                                        const ReasoningContext& context, const std::string& class_iri,
                                        const std::vector<perception::PrimitiveIndex>& primitives);
+
+/// The same for the dirty primitives of a window around them, in which nothing else changed; `reach_m` is that of
+/// localReach(). Absent when the window may be too small. That a thing is kept from other classes is a change like
+/// any other: it is shown to end within the window as LocalRun does.
+std::optional<std::vector<Consideration>> considerIn(const LocalInput& window, const RuleSet& rules,
+                                                     const ReasoningContext& context, const std::string& class_iri,
+                                                     double reach_m);
 
 }  // namespace cluxel::rules
