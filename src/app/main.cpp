@@ -92,7 +92,8 @@ void occupyStandardStreams() {
 }
 
 /// Stages take and free arrays of megabytes for each tile. By default the C library gives such memory back at once, and
-/// the kernel clears every page of the next array anew: some 3 % of an extension.
+/// the kernel clears every page of the next array anew: some 3 % of an extension by one scan. With a half and a quarter
+/// of these thresholds an extension by 48 scans takes 4 % longer.
 void reuseFreedMemory() {
   constexpr int kMebibyte = 1 << 20;
   ::mallopt(M_MMAP_THRESHOLD, 32 * kMebibyte);

@@ -15,8 +15,11 @@
 #include "perception/segments/scene.hpp"
 #include "rdf/file/layer_sizes.hpp"
 #include "rdf/store/quad_store.hpp"
-#include "rules/language/rule_set.hpp"
 #include "rules/objects/semantic_object.hpp"
+
+namespace cluxel::rules {
+struct RuleSet;
+}
 
 namespace cluxel::mapping {
 

@@ -94,7 +94,7 @@ std::optional<rules::PartRun> runAround(const mapping::MapReader& map, const Exp
   if (rules.asks_map) return std::nullopt;
   struct Around {
     int rings;
-    std::vector<double> margins_m;  ///< smaller ones are held by the part with fewer rings
+    std::vector<double> margins_m;  ///< smaller ones were tried with fewer rings
   };
   for (const Around& around : {Around{1, {kAll}}, Around{3, {30, kAll}}}) {
     const std::optional<mapping::MapPart> part = partAround(map, what, around.rings);

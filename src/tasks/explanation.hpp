@@ -26,8 +26,8 @@ std::string classNamed(const rules::RuleSet& rules, const std::string& written);
 std::string classNamed(const rules::ClassCatalogue& classes, const std::string& written);
 
 /// Why the thing is not of a class ("StreetSign", "clx:StreetSign" or an IRI): how near each rule of the class comes to
-/// it. Runs the rules twice on what lies around it, and on the whole map where that may not tell the same. Throws Error
-/// (NotFound) for a class that the ontology does not know, too.
+/// it. Runs the rules twice over the tiles around the thing; over the whole map when these may not be enough. Throws
+/// Error (NotFound) for a class that the ontology does not know, too.
 ExplanationTexts explainWhyNot(const mapping::MapReader& map, const std::string& name, const std::string& class_name);
 /// The tree of the rule that decided about the thing as a Graphviz graph, its path in bold; with a class, of the rule
 /// of that class that comes nearest.

@@ -22,9 +22,11 @@ struct ToldWay {
   auto operator<=>(const ToldWay&) const = default;
 };
 
-/// Absent in maps that were written before they were stored, and after storage by a program that tells other facts.
-/// Throws Error (StoreUnavailable) when the block is malformed.
+/// Absent when the map has no list, one of another version, or one of an earlier commit, after which another program
+/// may have told other facts. Throws Error (StoreUnavailable) when the block is malformed.
 std::optional<std::vector<ToldWay>> storedToldWays(const rdf::ReadTransaction& transaction);
 void storeToldWays(rdf::WriteTransaction& transaction, const std::vector<ToldWay>& ways);
+/// For a commit that leaves the facts about ways as they are.
+void keepToldWays(rdf::WriteTransaction& transaction);
 
 }  // namespace cluxel::mapping

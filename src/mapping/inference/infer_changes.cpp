@@ -301,7 +301,7 @@ void ChangeInference::finish() {
   record_.late = facts_.lateNow();
 }
 
-/// Following a quad costs as much as inferring anew from some twelve.
+/// Following a quad costs as much as inferring anew from some seven.
 bool isLarge(const rdf::WriteTransaction& transaction, const rdf::QuadDifference& change) {
   constexpr std::uint64_t kFewQuads = 1000, kShare = 7;
   const rdf::QuadReader reader(static_cast<const rdf::ReadTransaction&>(transaction));

@@ -22,8 +22,8 @@ namespace {
 using perception::TileKey;
 using perception::TileSet;
 
-/// Layers are made of cells, so that they reach somewhat farther; with more than this, windows get tiles that they do
-/// not need.
+/// Layers are made of cells, so that they reach somewhat farther. Of 0, 1 and 2 m, 1 m gave two parts of a city the
+/// fewest tiles with two attempts each.
 constexpr double kSlack_m = 1;
 
 /// What lies in one tile of a primitive.

@@ -13,9 +13,9 @@ namespace cluxel::mapping {
 /// The objects of the classes that the strata of lone seeds make (rules::strataOfLoneSeeds()).
 std::set<ContentHash> objectsOfLoneSeeds(const rules::RuleSet& rules);
 
-/// The map's tiles within reach of the first layers around changed tiles, without what these objects took. The layers
-/// are told from boxes that the map knew before the change, where everything in a changed tile counts as changed: a
-/// window asks for hardly any others, and for most of these. Cost: about 10 us for each tile read.
+/// The map's tiles within reach of the first layers around changed tiles, without what these objects took. Layers are
+/// estimated from stored boxes; everything in a changed tile counts as changed. A window needs most of these tiles and
+/// hardly any others. Cost: about 10 us for each tile read.
 perception::TileSet likelyTiles(const rdf::ReadTransaction& transaction, const perception::TileSet& changed,
                                 const std::set<ContentHash>& lone_objects, double reach_m, std::uint32_t layers);
 

@@ -8,6 +8,7 @@
 
 #include "mapping/build/scan_store.hpp"
 #include "mapping/build/way_tiles.hpp"
+#include "mapping/facts/told_ways.hpp"
 #include "mapping/layers/rule_margins.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"
@@ -38,7 +39,7 @@ using perception::TileSet;
 
 constexpr int kRings = 1;  ///< of tiles around the changed ones that a window holds at least
 /// The number of layers around a change that have to lie in the window; more where that is not enough. The longer the
-/// border of a change, the likelier it is that five do not do somewhere.
+/// border of a change, the likelier that five layers are too few at some place. The numbers were chosen, not measured.
 using Depths = std::array<std::uint32_t, 4>;
 constexpr Depths kDepths{5, 8, 13, 21}, kDepthsOfLargeChanges{6, 8, 13, 21};
 constexpr std::size_t kLargeChange = 100;  ///< tiles
@@ -142,7 +143,7 @@ class LocalUpdate {
     sink_.progress("scene", window.scene.primitives.size(), window.scene.primitives.size());
     auto decision = decideIn(window, change, transaction_, rules_run);
     if (!decision) {
-      if (++depth_ < depths_.size()) isTooSmall(window, change, rules_run.layers());  // then the next one is larger
+      while (++depth_ < depths_.size() && !isTooSmall(window, change, rules_run.layers())) continue;
       return std::nullopt;
     }
     if (!statements.apply(window, change, *decision)) return std::nullopt;
@@ -163,11 +164,11 @@ class LocalUpdate {
     more_.merge(likelyTiles(transaction_, changes_.tiles, lone_objects_, reach_m_, depths_.front()));
   }
 
-  /// Whether the window lacks tiles of the first layers, which the next one has.
+  /// Whether the window lacks tiles of the first layers. The next one has them.
   bool isTooSmall(const MapWindow& window, const WindowChange& change, const std::vector<std::uint32_t>& layers) {
     const TileSet beyond = tilesBeyond(window, change, changes_, transaction_, layers, depths_[depth_]);
     more_ = perception::unionOf(std::move(more_), attempt_ < kNarrowAttempts ? beyond : perception::grown(beyond));
-    needs_whole_map_ = attempt_ == 0 && willBeTooLarge(window.tiles, beyond);
+    needs_whole_map_ = attempt_ == 0 && depth_ == 0 && willBeTooLarge(window.tiles, beyond);
     return needs_whole_map_ || !beyond.empty();
   }
 
@@ -244,6 +245,7 @@ class LocalUpdate {
     inferFacts(transaction_, parsed_.inputs, sink_);
     now_.objects = update.objects, now_.cluxels = update.cluxels, now_.primitives = update.primitives;
     storeSemanticState(transaction_, now_);
+    keepToldWays(transaction_);
     sink_.progress("facts", 1, 1);
     return update;
   }

@@ -46,6 +46,8 @@ class ReadTransaction {
   /// Visits the blocks whose key starts with `prefix`, in bytewise key order.
   void forEachBlock(std::string_view table, std::string_view prefix,
                     const std::function<void(std::string_view key, std::string_view bytes)>& visit) const;
+  /// The number of the commit that it sees; of a write transaction, of the one that it began with.
+  std::uint64_t commitNumber() const;
   Impl& impl() const { return *impl_; }
 
  protected:

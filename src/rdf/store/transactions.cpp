@@ -243,6 +243,10 @@ void WriteTransaction::useThreads(unsigned threads) {
   impl().threads = threads;
 }
 
+std::uint64_t ReadTransaction::commitNumber() const {
+  return mdb_txn_id(impl_->live()) - (impl_->writing ? 1 : 0);
+}
+
 void WriteTransaction::writeIndexes() {
   writeDrafts(impl());
   ++impl().generation;  // so that readers look for them in the file

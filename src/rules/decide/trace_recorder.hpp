@@ -93,7 +93,7 @@ class TraceRecorder {
     if (layers_ != nullptr && span.low <= span.high && span.high - span.low >= kFewestLayers) spans_.insert(span);
   }
 
-  /// Back to an earlier state, but for the spans of steps.
+  /// Back to an earlier state. Spans of steps stay: a seam must enclose the groups that were looked at.
   void takeBack(const TraceRecorder& earlier) {
     traces_ = earlier.traces_, known_ = earlier.known_;
     part_ = earlier.part_, round_ = earlier.round_;

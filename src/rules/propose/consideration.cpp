@@ -14,11 +14,16 @@ namespace cluxel::rules {
 
 namespace {
 
-/// A rule looks once more at each of its finds, and from there as far as its reach.
+/// How many layers a rule sees beyond its seeds: one, and one more for each `find`, because it looks on from what it
+/// found. A find among objects may come to things that are in no layer.
 std::uint32_t layersSeenBy(const Rule& rule) {
-  return 1 + static_cast<std::uint32_t>(std::count_if(rule.nodes.begin(), rule.nodes.end(), [](const TreeNode& node) {
-           return std::holds_alternative<FindNode>(node.what);
-         }));
+  std::uint32_t seen = 1;
+  for (const TreeNode& node : rule.nodes)
+    if (const auto* find = std::get_if<FindNode>(&node.what)) {
+      if (!find->object_class.empty()) return kNoLayer;
+      ++seen;
+    }
+  return seen;
 }
 
 class Considering {
@@ -48,7 +53,7 @@ class Considering {
     std::uint32_t last = 0;
     for (const auto& [primitive, beyond] : seen_from_) {
       const std::uint32_t own = layers[primitive];
-      last = std::max(last, own == kNoLayer ? kNoLayer : own + beyond);
+      last = std::max(last, own == kNoLayer || beyond == kNoLayer ? kNoLayer : own + beyond);
     }
     return last;
   }
@@ -66,9 +71,11 @@ class Considering {
     SliceScope scope(state_, rule);
     for (const auto& group : seedGroups(state_, rule, scope.slices()))
       if (std::any_of(group.begin(), group.end(), [this](FragmentIndex fragment) { return isOurs(fragment); })) {
-        said_.push_back({judge(state_, rule, group).decision, true, true});
+        Verdict verdict = judge(state_, rule, group);
         for (const FragmentIndex fragment : group)
           seen_from_.emplace_back(state_.fragments[fragment].primitive, layersSeenBy(rule));
+        for (const perception::PrimitiveIndex member : verdict.members) seen_from_.emplace_back(member, 1);
+        said_.push_back({std::move(verdict.decision), true, true});
       }
     scope.putBack();
     state_.trace.takeBack(traces);

@@ -26,8 +26,8 @@ std::vector<Consideration> considerFor(const perception::Scene& scene, const Rul
                                        const std::vector<perception::PrimitiveIndex>& primitives);
 
 /// The same for the dirty primitives of a window around them, in which nothing else changed; `reach_m` is that of
-/// localReach(). Absent when the window may be too small. That a thing is kept from other classes is a change like
-/// any other: it is shown to end within the window as LocalRun does.
+/// localReach(). Keeping the thing from other classes changes the scene: as in LocalRun, a seam shows that the change
+/// ends within the window. Absent when there is none, or when the rules may look beyond it.
 std::optional<std::vector<Consideration>> considerIn(const LocalInput& window, const RuleSet& rules,
                                                      const ReasoningContext& context, const std::string& class_iri,
                                                      double reach_m);

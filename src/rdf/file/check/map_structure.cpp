@@ -119,7 +119,8 @@ class StructureWalk {
     return record.entries;
   }
 
-  /// A writer appends terms: LMDB reads the last of their leaves only.
+  /// A writer appends terms: LMDB reads the last of their leaves only. When some term is long, all are read: they tell
+  /// which pages its value takes.
   static bool hasUnreadLeaves(const Tree& record, TreeKind kind) {
     return kind == TreeKind::IndexKeys || (kind == TreeKind::Terms && record.overflow_pages == 0);
   }

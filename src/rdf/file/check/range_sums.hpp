@@ -41,7 +41,7 @@ class RangeSums {
   /// Splits these. Throws Error (StoreUnavailable) when the index holds other keys than these sums state. Cost: reads
   /// the keys of ranges that are split.
   void splitLong(const PageDirectory& directory, Table index, const std::filesystem::path& file);
-  /// Joins ranges of less than `kMinKeys` to the one before or behind, where both together are short enough.
+  /// Joins ranges of less than `kMinKeys` to the one before or behind, when both have at most `kMaxKeys` together.
   void joinShort();
 
   std::string bytes() const;
