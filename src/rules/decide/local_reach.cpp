@@ -187,4 +187,10 @@ std::size_t strataOfLoneSeeds(const RuleSet& rules) {
   return count;
 }
 
+DividedStrata dividedStrata(const RuleSet& rules) {
+  const std::span<const std::vector<std::string>> all(rules.strata);
+  const std::size_t lone = strataOfLoneSeeds(rules);
+  return {all.first(lone), all.subspan(lone)};
+}
+
 }  // namespace cluxel::rules

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "rules/language/rule_set.hpp"
 
@@ -28,5 +30,11 @@ LocalReach localReach(const RuleSet& rules);
 /// How many of the first strata decide about each primitive alone, looking at nothing else, and make the object of a
 /// whole class: what they take is the same in every run over the primitive.
 std::size_t strataOfLoneSeeds(const RuleSet& rules);
+
+/// The strata of a set in their order, divided behind those of lone seeds.
+struct DividedStrata {
+  std::span<const std::vector<std::string>> lone, later;
+};
+DividedStrata dividedStrata(const RuleSet& rules);
 
 }  // namespace cluxel::rules

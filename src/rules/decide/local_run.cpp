@@ -22,8 +22,7 @@ bool areLikely(const LocalInput& input, const std::vector<char>& is_fixed) {
 
 /// Decides the strata of lone seeds, and finds the layers of what they leave.
 std::vector<std::uint32_t> decideLoneSeeds(const LocalInput& input, double reach_m, ReasoningState& state) {
-  const auto later = state.rules.strata.begin() + static_cast<std::ptrdiff_t>(strataOfLoneSeeds(state.rules));
-  std::for_each(state.rules.strata.begin(), later, [&](const auto& stratum) { decideStratum(state, stratum); });
+  for (const std::vector<std::string>& stratum : dividedStrata(state.rules).lone) decideStratum(state, stratum);
   const std::vector<char> is_fixed = fixedPrimitives(state);
   if (areLikely(input, is_fixed)) return input.likely.layers;
   return layersAround(input.window, input.is_dirty, is_fixed, input.gone, reach_m);
@@ -49,8 +48,7 @@ std::optional<LocalOutcome> LocalRun::decide() {
   const SeamSearch seams(input_, layers_);
   if (!seams.mayFind()) return std::nullopt;
   state_->trace.useLayers(layers_);
-  const auto later = rules_.strata.begin() + static_cast<std::ptrdiff_t>(strataOfLoneSeeds(rules_));
-  std::for_each(later, rules_.strata.end(), [&](const auto& stratum) { decideStratum(*state_, stratum); });
+  for (const std::vector<std::string>& stratum : dividedStrata(rules_).later) decideStratum(*state_, stratum);
   outcome.result = finishedRun(*state_);
   outcome.seams = seams.find(outcome.result, state_->trace.spans());
   if (outcome.seams.empty()) return std::nullopt;

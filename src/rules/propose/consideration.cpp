@@ -137,14 +137,14 @@ std::optional<std::vector<Consideration>> considerIn(const LocalInput& window, c
   probing.probes = primitives;
   ReasoningState state(window.window, rules, probing);
   Considering considering(state, class_iri, primitives);
-  const auto later = rules.strata.begin() + static_cast<std::ptrdiff_t>(strataOfLoneSeeds(rules));
-  std::for_each(rules.strata.begin(), later, [&](const auto& stratum) { considering.decide(stratum); });
+  const DividedStrata strata = dividedStrata(rules);
+  for (const std::vector<std::string>& stratum : strata.lone) considering.decide(stratum);
   const std::vector<std::uint32_t> layers =
       layersAround(window.window, window.is_dirty, fixedPrimitives(state), window.gone, reach_m);
   const SeamSearch search(window, layers);
   if (!search.mayFind()) return std::nullopt;
   state.trace.useLayers(layers);
-  std::for_each(later, rules.strata.end(), [&](const auto& stratum) { considering.decide(stratum); });
+  for (const std::vector<std::string>& stratum : strata.later) considering.decide(stratum);
   const ReasoningResult result = finishedRun(state);
   const std::vector<Seam> seams = search.find(result, state.trace.spans());
   const std::uint32_t seen = considering.lastSeen(layers);
