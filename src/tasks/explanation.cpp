@@ -202,6 +202,7 @@ std::optional<WhyNotOfThing> whyNotAround(const mapping::MapReader& map, const r
   if (!reach_m || *reach_m > perception::kTileSize_m) return std::nullopt;
   const mapping::ThingPlace place =
       what.object ? map.placeOfObject(*what.object) : map.placeOfPrimitive(*what.primitive);
+  // The first holds the narrowest seam next to the thing; the wider ones were chosen, not measured.
   for (const mapping::LayersAround& around : {mapping::LayersAround{4, 0}, {7, 2}, {13, 4}}) {
     auto part = map.partOfLayers(place, rules, *reach_m, around);
     if (!part) return std::nullopt;
