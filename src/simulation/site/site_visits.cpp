@@ -228,8 +228,8 @@ class Visits {
       CampusRandom random = stream(i, 1000 + visit);
       const double share = random.uniform(0.2, 0.8);
       const Vector3d from = base.stops[i].translation(), step = base.stops[i + 1].translation() - from;
-      const Vector2d aside(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5));
-      const Vector3d to = from + share * step + Vector3d(aside.x(), aside.y(), 0);
+      const double north = random.uniform(-0.5, 0.5), east = random.uniform(-0.5, 0.5);
+      const Vector3d to = from + share * step + Vector3d(east, north, 0);
       const double height = from.z() - terrain_.heightAt(from.x(), from.y());
       stops[i].translation() = Vector3d(to.x(), to.y(), terrain_.heightAt(to.x(), to.y()) + height);
     }
