@@ -100,7 +100,8 @@ TEST_F(ServeCommand, PointsOfAnObjectLieInItsBox) {
 }
 
 TEST_F(ServeCommand, ShippedQuestionsAnswerAsTheCommandQuery) {
-  for (const ServeJson& question : jsonOf(shared().get("/questions")).at("questions")) {
+  const ServeJson known = jsonOf(shared().get("/questions"));
+  for (const ServeJson& question : known.at("questions")) {
     const std::string name = question.at("name");
     const Reply reply = shared().get("/questions/" + name + "?format=csv");
     EXPECT_EQ(reply.status, 200) << name << reply.body;

@@ -65,8 +65,11 @@ TEST_F(MapExtensionTest, SeesWhatOthersChangeInBetween) {
   retractScans(map, {first}, {}, silence());
   expectAsByAnother(2);
   std::string object;
-  for (const rules::SemanticObject& thing : MapReader(map).objects())
-    if (thing.class_iri != vocabulary::clx("Ground")) object = rdf::iriOfObject(thing.id);
+  {
+    const MapReader reader(map);
+    for (const rules::SemanticObject& thing : reader.objects())
+      if (thing.class_iri != vocabulary::clx("Ground")) object = rdf::iriOfObject(thing.id);
+  }
   updateMap(map, "INSERT DATA { <" + object + "> a <" + vocabulary::clx("UtilityPole") + "> }", {}, silence());
   expectAsByAnother(3);
   compactMap(map);

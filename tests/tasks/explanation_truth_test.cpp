@@ -61,7 +61,8 @@ std::optional<Condition> conditionOfStep(const DecisionStep& step, const Rule& r
 
 TEST(ExplanationTruth, EveryLineAboutAThingItselfHoldsInTheMap) {
   const perception::Scene& scene = CampusMap::shared().map().scene();
-  const ReasoningState state(scene, reasoned().rules, {});
+  const ReasoningContext context;
+  const ReasoningState state(scene, reasoned().rules, context);
   std::size_t checked = 0;
   for (const Decision& decision : reasoned().result.decisions) {
     const Rule& rule = *reasoned().rules.find(decision.rule_id);

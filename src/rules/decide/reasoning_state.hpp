@@ -56,6 +56,7 @@ struct ObjectInMaking {
 
 struct ReasoningState {
   ReasoningState(const perception::Scene& scene_, const RuleSet& rules_, const ReasoningContext& context_);
+  ReasoningState(const perception::Scene&, const RuleSet&, ReasoningContext&&) = delete;  // the context is kept
 
   const perception::Scene& scene;
   const RuleSet& rules;
