@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The directories of a write transaction follow its changes, and list what a look at all pages lists.
-#include "rdf/store/index_directories.hpp"
+#include "rdf/store/indexes/index_directories.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 void expectAsListedAnew(WriteTransaction& transaction) {
   ReadTransaction::Impl& state = transaction.impl();
-  for (const QuadOrder order : {QuadOrder::Spog, QuadOrder::Posg, QuadOrder::Ospg, QuadOrder::Gspo}) {
+  for (const QuadOrder order : kQuadOrders) {
     if (state.draftOf(tableOf(order)) != nullptr) continue;  // that is tested in index_draft_test.cpp
     MDB_cursor* raw = nullptr;
     ASSERT_EQ(mdb_cursor_open(state.live(), state.table(tableOf(order)), &raw), MDB_SUCCESS);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Indexes in memory hold what a set holds, and a transaction reads and writes through them as through the file.
-#include "rdf/store/index_draft.hpp"
+#include "rdf/store/indexes/index_draft.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "rdf/file/map_check.hpp"
 #include "rdf/map_file_fixture.hpp"
-#include "rdf/store/index_orders.hpp"
+#include "rdf/store/indexes/index_orders.hpp"
 #include "rdf/store/quad_journal.hpp"
 #include "rdf/store/quad_reader_impl.hpp"
 
@@ -69,7 +69,7 @@ TEST(IndexOrders, AreThoseOfASort) {
     const auto id = [&] { return static_cast<TermId>(random() % ids); };
     while (quads.size() < std::min<std::size_t>(ids * ids, 3000)) quads.insert({id(), id(), id(), id() % 3});
     const std::vector<QuadIds> sorted(quads.begin(), quads.end());
-    for (const QuadOrder order : {QuadOrder::Spog, QuadOrder::Posg, QuadOrder::Ospg, QuadOrder::Gspo}) {
+    for (const QuadOrder order : kQuadOrders) {
       std::vector<Key128> expected;
       for (const QuadIds& quad : quads) expected.push_back(toNumber(quad, order));
       std::sort(expected.begin(), expected.end());
@@ -103,7 +103,7 @@ class Changed {
   void expectSame() {
     writer_.flush();
     ASSERT_EQ(reader_.size(), quads_.size());
-    for (const QuadOrder order : {QuadOrder::Spog, QuadOrder::Posg, QuadOrder::Ospg, QuadOrder::Gspo}) {
+    for (const QuadOrder order : kQuadOrders) {
       std::vector<QuadIds> found;
       QuadCursor cursor = reader_.scan({}, order);
       for (QuadIds quad; cursor.next(quad);) found.push_back(quad);

@@ -8,14 +8,11 @@
 #include <random>
 #include <set>
 
-#include "base/parallel.hpp"
 #include "rdf/file/environment.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::rdf {
 namespace {
-
-constexpr std::array<QuadOrder, 4> kAllOrders = {QuadOrder::Spog, QuadOrder::Posg, QuadOrder::Ospg, QuadOrder::Gspo};
 
 std::array<TermId, 4> inOrder(const QuadIds& quad, QuadOrder order) {
   const std::array<TermId, 4> ids = {quad.s, quad.p, quad.o, quad.g};
@@ -45,9 +42,12 @@ std::vector<QuadIds> drain(QuadCursor cursor) {
   return found;
 }
 
+/// Predicates 6 and 7 have numbers only, if addTerms() made them.
 QuadIds randomQuad(std::mt19937& random, TermId range) {
   const auto id = [&](TermId max) { return static_cast<TermId>(random() % max); };
-  return {1 + id(range), 1 + id(7), 1 + id(range), id(3)};
+  QuadIds quad{1 + id(range), 1 + id(7), 1 + id(range), id(3)};
+  if (quad.p >= 6) quad.o = range < 20 ? 4 : 20 * (1 + quad.o % (range / 20));
+  return quad;
 }
 
 QuadPattern patternOf(const QuadIds& quad, unsigned bound) {
@@ -98,7 +98,9 @@ void expectSeeksLikeASortedList(QuadCursor cursor, const std::vector<QuadIds>& q
 
 void expectLookupsFindWhatScansFind(const QuadReader& reader, const std::set<QuadIds>& quads, std::mt19937& random,
                                     TermId range) {
-  for (const QuadOrder order : kAllOrders) {
+  EXPECT_THROW(reader.lookup(QuadOrder::Psog), std::logic_error);
+  for (const QuadOrder order : kQuadOrders) {
+    if (order == QuadOrder::Psog) continue;
     PrefixLookup lookup = reader.lookup(order);
     const std::vector<QuadIds> all = expected(quads, {}, order);
     for (int i = 0; i < 20; ++i) {
@@ -121,7 +123,7 @@ void expectSameAnswers(const QuadReader& reader, const std::set<QuadIds>& quads,
   ASSERT_EQ(reader.size(), quads.size());
   for (unsigned bound = 0; bound < 16; ++bound) {
     const QuadPattern pattern = patternOf(randomQuad(random, range), bound);
-    for (const QuadOrder order : kAllOrders) {
+    for (const QuadOrder order : kQuadOrders) {
       const std::vector<QuadIds> expected_quads = expected(quads, pattern, order);
       ASSERT_EQ(drain(reader.scan(pattern, order)), expected_quads) << bound;
       ASSERT_EQ(drainInBulk(reader.scan(pattern, order), 1 + random() % 300), expected_quads) << bound;
@@ -135,13 +137,16 @@ void expectSameAnswers(const QuadReader& reader, const std::set<QuadIds>& quads,
   expectLookupsFindWhatScansFind(reader, quads, random, range);
 }
 
-/// Makes the ids 1 to `count` known. Every second one, or one of five, is a literal.
+/// Makes the ids 1 to `count` known. Every second one, or one of five, is a literal, and every second of these a
+/// number.
 void addTerms(Environment& environment, TermId count, unsigned one_of) {
   WriteTransaction transaction = environment.write();
   QuadWriter writer(transaction);
   for (TermId id = 1; id <= count; ++id) {
     const std::string text = "t" + std::to_string(id);
-    ASSERT_EQ(writer.intern(id % one_of == 0 ? Term::literal(text) : Term::iri(text)), id);
+    Term term = id == 1 ? Term::iri(vocabulary::xsd("integer")) : Term::iri(text);
+    if (id % one_of == 0) term = id / one_of % 2 == 0 ? Term::integer(id) : Term::literal(text);
+    ASSERT_EQ(writer.intern(term), id);
   }
   writer.flush();
   transaction.commit();
@@ -183,26 +188,6 @@ TEST(QuadStore, AnswersEveryPatternAsAPlainSetDoes) {
   }
 }
 
-/// A store with terms of every kind and literals of every value type.
-std::vector<Term> variedTerms() {
-  using vocabulary::xsd;
-  std::vector<Term> terms = {Term::iri("http://a"),
-                             Term::blank("b"),
-                             Term::literal(""),
-                             Term::literal("x"),
-                             Term::langLiteral("x", "en"),
-                             Term::langLiteral("x", "de"),
-                             Term::literal("x", "http://t"),
-                             Term::literal(std::string(200'000, 'l')),
-                             Term::literal(std::string("a\0b", 3)),
-                             Term::literal("1", xsd("integer")),
-                             Term::literal("01", xsd("integer")),
-                             Term::literal("1", xsd("int")),
-                             Term::literal("1", xsd("decimal"))};
-  for (int i = 0; i < 3000; ++i) terms.push_back(Term::integer(i * 7919));
-  return terms;
-}
-
 TEST(QuadStore, IsChangedByListsAsByOneCallAQuad) {
   std::mt19937 random(9);
   const auto environment = Environment::temporary();
@@ -231,77 +216,10 @@ TEST(QuadStore, IsChangedByListsAsByOneCallAQuad) {
   }
 }
 
-TEST(QuadStore, GivesBackEveryTermAndFindsItsIdAgain) {
-  const std::vector<Term> terms = variedTerms();
+/// Of 3000 objects every `one_of`-th is a literal, and every second of these a number; 0: none.
+void expectGoodEstimates(unsigned one_of) {
   auto environment = Environment::temporary();
-  std::vector<TermId> ids;
-  for (std::size_t part = 0; part < 2; ++part) {  // the second time they are all there
-    WriteTransaction transaction = environment->write();
-    QuadWriter writer(transaction);
-    std::vector<TermId> given;
-    for (const Term& term : terms) given.push_back(writer.intern(term));
-    writer.flush();
-    for (std::size_t i = 0; i < terms.size(); ++i) ASSERT_EQ(QuadReader(transaction).termOf(given[i]), terms[i]);
-    if (part == 0) ids = given;
-    EXPECT_EQ(given, ids);
-    transaction.commit();
-  }
-  const QuadReader reader(environment->read());
-  EXPECT_EQ(std::set<TermId>(ids.begin(), ids.end()).size(), terms.size());
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    ASSERT_EQ(reader.idOf(terms[i]), ids[i]);
-    ASSERT_EQ(reader.termOf(ids[i]), terms[i]);
-    ASSERT_EQ(reader.viewOf(ids[i]).toTerm(), terms[i]);
-  }
-  EXPECT_EQ(reader.idOf(Term::literal("absent")), std::nullopt);
-  EXPECT_EQ(reader.idOf(Term::literal("1", "http://absent")), std::nullopt);
-  EXPECT_EQ(reader.idOf(Term::iri("")), kNoTerm) << "the unnamed graph";
-}
-
-TEST(QuadStore, ForgetsTermsOfATransactionThatWasNotCommitted) {
-  auto environment = Environment::temporary();
-  const auto intern = [&](const Term& term, bool commit) {
-    WriteTransaction transaction = environment->write();
-    QuadWriter writer(transaction);
-    const TermId id = writer.intern(term);
-    writer.flush();
-    EXPECT_EQ(QuadReader(transaction).valueOf(id).integer, std::stoi(term.text));
-    if (commit) transaction.commit();
-    return id;
-  };
-  intern(Term::integer(1), true);
-  const TermId dropped = intern(Term::integer(2), false);
-  EXPECT_EQ(intern(Term::integer(3), true), dropped) << "the number is given again";
-  EXPECT_EQ(QuadReader(environment->read()).valueOf(dropped).integer, 3);
-}
-
-TEST(QuadStore, SharesOneCommitAmongReadersOfManyThreads) {
-  auto environment = Environment::temporary();
-  {
-    WriteTransaction transaction = environment->write();
-    QuadWriter writer(transaction);
-    for (const Term& term : variedTerms()) {
-      const TermId id = writer.intern(term);
-      writer.add(QuadIds{id, 1 + id % 5, id, id % 3});
-    }
-    writer.flush();
-    transaction.commit();
-  }
-  std::array<std::uint64_t, 4> sums{};
-  parallelFor(sums.size(), 4, [&](std::size_t i) {
-    const QuadReader reader(environment->read());
-    PrefixLookup lookup = reader.lookup(QuadOrder::Ospg);
-    for (TermId id = 1; id <= reader.termCount(); ++id) {
-      sums[i] += static_cast<std::uint64_t>(reader.valueOf(id).integer) + reader.viewOf(id).text.size();
-      sums[i] += lookup.find(std::array{id}).size();
-    }
-    sums[i] += reader.statistics(2).subjects + reader.graphs().size();
-  });
-  EXPECT_EQ(std::set<std::uint64_t>(sums.begin(), sums.end()).size(), 1U);
-}
-
-TEST(QuadStore, EstimatesWithinAFactorOfTwoAndExactlyWhenFew) {
-  auto environment = Environment::temporary();
+  if (one_of > 0) addTerms(*environment, 3'000, one_of);
   std::set<QuadIds> quads;
   std::mt19937 random(4);
   WriteTransaction transaction = environment->write();
@@ -319,7 +237,8 @@ TEST(QuadStore, EstimatesWithinAFactorOfTwoAndExactlyWhenFew) {
   const QuadReader reader(environment->read());
   for (const TermId p : {1U, 2U, 17U}) {
     for (const auto& pattern : {QuadPattern{{}, p, {}, {}}, QuadPattern{{}, p, {}, 1}, QuadPattern{7, p, {}, {}},
-                                QuadPattern{{}, p, 5, {}}, QuadPattern{{}, {}, {}, 2}, QuadPattern{{}, {}, 9, {}}}) {
+                                QuadPattern{{}, p, 5, {}}, QuadPattern{{}, p, 8, {}}, QuadPattern{{}, {}, {}, 2},
+                                QuadPattern{{}, {}, 9, {}}, QuadPattern{{}, {}, 8, {}}}) {
       const auto exact = static_cast<double>(expected(quads, pattern, QuadOrder::Spog).size());
       const auto estimate = static_cast<double>(reader.estimate(pattern));
       EXPECT_TRUE(exact >= 4'000 || estimate == exact) << estimate << " for " << exact;
@@ -331,14 +250,18 @@ TEST(QuadStore, EstimatesWithinAFactorOfTwoAndExactlyWhenFew) {
     for (const QuadIds& quad : quads)
       if (quad.p == p) subjects.insert(quad.s), objects.insert(quad.o), ++count;
     const auto statistics = reader.statistics(p);
-    EXPECT_EQ(statistics.quads, count);
-    EXPECT_NEAR(static_cast<double>(statistics.subjects), subjects.size(), 0.35 * subjects.size());
-    EXPECT_NEAR(static_cast<double>(statistics.objects), objects.size(), 0.35 * objects.size());
+    EXPECT_NEAR(static_cast<double>(statistics.quads), count, count < 4'000 ? 0 : 0.5 * count);
+    EXPECT_NEAR(static_cast<double>(statistics.subjects), subjects.size(), 0.5 * subjects.size());
+    EXPECT_NEAR(static_cast<double>(statistics.objects), objects.size(), 0.5 * objects.size());
   }
   std::set<TermId> predicates;
   for (const QuadIds& quad : quads) predicates.insert(quad.p);
   EXPECT_EQ(reader.predicates(), std::vector<TermId>(predicates.begin(), predicates.end()));
   EXPECT_EQ(reader.graphs(), (std::vector<TermId>{1, 2}));
+}
+
+TEST(QuadStore, EstimatesWithinAFactorOfTwoAndExactlyWhenFew) {
+  for (const unsigned one_of : {0U, 2U, 5U}) expectGoodEstimates(one_of);
 }
 
 }  // namespace

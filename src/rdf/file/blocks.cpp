@@ -10,7 +10,7 @@
 #include "cluxel/error.hpp"
 #include "rdf/file/check/map_file_head.hpp"
 #include "rdf/file/lmdb_environment.hpp"
-#include "rdf/store/index_directories.hpp"
+#include "rdf/store/indexes/index_directories.hpp"
 #include "rdf/store/store_snapshot.hpp"
 
 namespace cluxel::rdf {

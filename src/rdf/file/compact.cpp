@@ -7,8 +7,8 @@
 #include "rdf/file/lmdb_environment.hpp"
 #include "rdf/file/lock_file.hpp"
 #include "rdf/file/page_directory.hpp"
-#include "rdf/store/index_directories.hpp"
-#include "rdf/store/index_writer.hpp"
+#include "rdf/store/indexes/index_directories.hpp"
+#include "rdf/store/indexes/index_writer.hpp"
 #include "rdf/store/store_snapshot.hpp"
 
 namespace cluxel::rdf {
@@ -91,12 +91,14 @@ void copyMainRecords(const ReadTransaction::Impl& from, const ReadTransaction::I
 void copyAll(const ReadTransaction& from, Environment& to) {
   CopyTarget target(to);
   target.impl().environment->startCopyOf(*from.impl().environment);  // the first commit was of the newest
-  for (const Table index : {Table::TermHashes, Table::Spog, Table::Posg, Table::Ospg, Table::Gspo})
-    copyIndex(from.impl(), target, index);
+  for (const Table index : target.impl().environment->indexes()) copyIndex(from.impl(), target, index);
   // The long blocks last: LMDB searches all pages of a transaction at each write.
   for (const Table table : {Table::Terms, Table::Blocks}) copyTable(from.impl(), target, table);
   target.closeCursor();
   WriteTransaction& transaction = target.transaction();
+  const LmdbEnvironment& environment = *transaction.impl().environment;
+  if (!environment.keepsNumbersApart())  // earlier programs know no such table
+    environment.check(mdb_drop(transaction.impl().live(), environment.table(Table::Psog), 1), "write a table");
   copyMainRecords(from.impl(), transaction.impl());
   const std::size_t commit = mdb_txn_id(from.impl().live());
   if (const auto sums = storedSums(from.impl(), commit))

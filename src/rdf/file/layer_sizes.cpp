@@ -67,8 +67,7 @@ class LayerCount {
   std::vector<LayerSize> run() {
     addBlocks();
     addTerms();
-    for (std::size_t i = 0; i < kTableCount; ++i)
-      if (const auto table = static_cast<Table>(i); table != Table::Blocks && table != Table::Terms) addIndex(table);
+    for (const Table index : state_.environment->indexes()) addIndex(index);
     addPages();
     return std::move(layers_);
   }
@@ -126,7 +125,7 @@ FreeSpace freeSpaceOf(const ReadTransaction& transaction) {
   FreeSpace space{freePages(state) * page, fileBytes(state, page)};
   StoreSnapshot& snapshot = snapshotOf(state);
   if (!snapshot.isMapped()) return space;  // then the pages of indexes are not known without reading them
-  for (const Table index : {Table::TermHashes, Table::Spog, Table::Posg, Table::Ospg, Table::Gspo}) {
+  for (const Table index : state.environment->indexes()) {
     state.check(mdb_stat(state.live(), state.table(index), &stat), "read the map");
     const std::uint64_t used = snapshot.leafPages(index) * page, needed = stat.ms_entries * sizeof(QuadKey);
     space.bytes += used - std::min(used, needed);

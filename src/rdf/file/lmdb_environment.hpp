@@ -6,6 +6,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
+#include <span>
 #include <thread>
 
 #include "rdf/file/block_keys.hpp"
@@ -26,8 +27,10 @@ struct CheckedParts;
 class ValueCache;
 
 /// The first format has no sums of quads and terms; the next commit adds them, which makes it the second. Up to the
-/// third one, the index by object holds literals; up to the fourth one, an index has one sum, and none for its ranges.
-inline constexpr int kFirstFormat = 1, kFormatWithSums = 2, kFormatWithoutLiterals = 4, kFormatWithRanges = 5;
+/// third one, the index by object holds literals; up to the fourth one, an index has one sum, and none for its ranges;
+/// up to the fifth one, index posg holds all quads, and there is no index psog.
+inline constexpr int kFirstFormat = 1, kFormatWithSums = 2, kFormatWithoutLiterals = 4, kFormatWithRanges = 5,
+                     kFormatWithNumbersApart = 6;
 
 constexpr unsigned tableFlags(Table table) {
   switch (table) {
@@ -68,6 +71,12 @@ class LmdbEnvironment final : public Environment {
   bool isOfFirstFormat() const { return format_ == kFirstFormat; }
   /// False for a map whose index by object holds literals, too.
   bool omitsLiterals() const { return format_ >= kFormatWithoutLiterals; }
+  /// Whether quads with numbers are in index psog instead of posg.
+  bool keepsNumbersApart() const { return format_ >= kFormatWithNumbersApart; }
+  /// The indexes of this map.
+  std::span<const Table> indexes() const {
+    return std::span(kIndexTables).first(kIndexTables.size() - (keepsNumbersApart() ? 0 : 1));
+  }
   bool hasRanges() const { return format_ >= kFormatWithRanges; }
   /// Whether readers and writers compare what they read with its sums, part by part; else a writer compares all.
   bool isComparedByParts() const { return hasRanges() && !is_copy_; }

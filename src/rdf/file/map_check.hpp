@@ -12,7 +12,7 @@ namespace cluxel::rdf {
 /// Version of the layout of a map file; none of a later one is opened. A map of version 1 is read too, and becomes one
 /// of version 2 with the next commit. Of a map before version 3 the RDF is read and changed; its points and tiles are
 /// not: they were stored in another form.
-inline constexpr int kMapFormat = 5;
+inline constexpr int kMapFormat = 6;
 
 struct MapCheck {
   std::uint64_t blocks = 0, terms = 0, quads = 0;  ///< numbers of checked items

@@ -7,7 +7,6 @@
 #include <memory>
 
 #include "rdf/store/quad_reader_impl.hpp"
-#include "rdf/terms/term_record.hpp"
 
 namespace cluxel::rdf {
 
@@ -44,12 +43,6 @@ void forEachPredicate(const ReadTransaction& transaction, const PageDirectory& p
 
 }  // namespace
 
-bool LiteralEntries::isLiteral(TermId id) const {
-  StoreSnapshot& snapshot = snapshotOf(transaction_.impl());
-  if (id == kNoTerm || id > snapshot.termCount()) return false;
-  return decodeTerm(snapshot.record(id, transaction_.impl())).kind == TermKind::Literal;
-}
-
 bool LiteralEntries::mayMatch(const std::optional<TermId>& object) const {
   if (!transaction_.impl().environment->omitsLiterals()) return false;
   return !object || *object == kNoTerm || isLiteral(*object);
@@ -62,7 +55,11 @@ std::vector<QuadKey> LiteralEntries::of(const QuadPattern& pattern) const {
     found.push_back(toNumber(toQuad(key, order), QuadOrder::Ospg));
   };
   const bool has_subject = pattern.s && *pattern.s != kNoTerm, has_object = pattern.o && *pattern.o != kNoTerm;
-  if (has_object && !has_subject) {
+  if (has_object && !has_subject && numbers_.areApart() && numbers_.isNumber(*pattern.o)) {
+    for (const TermId predicate : numbers_.predicates())
+      for (const QuadKey& key : keysWithin(*numbers_.of(predicate), rangeOf(std::array{predicate, *pattern.o})))
+        take(key, QuadOrder::Posg);
+  } else if (has_object && !has_subject) {
     const PageDirectory& posg = snapshot.directory(Table::Posg, transaction_.impl());
     forEachPredicate(transaction_, posg, *pattern.o, [&](Position at, Key128 last) {
       for (; at.page < posg.pageCount(); at = {at.page + 1, 0})

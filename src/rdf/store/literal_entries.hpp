@@ -7,27 +7,29 @@
 #include <vector>
 
 #include "rdf/file/page_directory.hpp"
+#include "rdf/store/number_entries.hpp"
 #include "rdf/store/quad_store.hpp"
 
 namespace cluxel::rdf {
 
-/// Collects entries from the indexes posg and spog.
+/// Collects entries from the indexes posg, psog and spog.
 class LiteralEntries {
  public:
-  explicit LiteralEntries(ReadTransaction transaction) : transaction_(std::move(transaction)) {}
+  explicit LiteralEntries(const ReadTransaction& transaction) : transaction_(transaction), numbers_(transaction) {}
 
-  bool isLiteral(TermId id) const;  ///< false for unknown terms
+  bool isLiteral(TermId id) const { return numbers_.kindOf(id) != ObjectKind::Link; }  ///< false for unknown terms
   /// Whether index ospg lacks quads with this object; any object may be a literal.
   bool mayMatch(const std::optional<TermId>& object) const;
   /// All quads that the bound positions admit, also those without literals, as ascending keys of ospg. Cost: of a
-  /// literal without a subject, a search for each predicate of the map; of a subject, all of its quads; without both,
-  /// all quads of the map.
+  /// literal without a subject, a search for each predicate of the map, and for the first number in a commit all quads
+  /// with numbers are ordered; of a subject, all of its quads; without both, all quads of the map.
   std::vector<QuadKey> of(const QuadPattern& pattern) const;
-  /// The number of quads with this literal, at the cost of a search for each predicate.
+  /// The number of quads with this literal in index posg, at the cost of a search for each predicate.
   std::uint64_t count(TermId literal) const;
 
  private:
   ReadTransaction transaction_;
+  NumberEntries numbers_;
 };
 
 }  // namespace cluxel::rdf

@@ -3,8 +3,10 @@
 #include "rdf/store/quad_cursor.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "rdf/store/literal_entries.hpp"
+#include "rdf/store/number_entries.hpp"
 
 namespace cluxel::rdf {
 
@@ -25,10 +27,11 @@ QuadCursor::Impl::Impl(const PageDirectory& from, const IndexPattern& laid_out, 
   loadPage();
 }
 
-QuadCursor::Impl::Impl(std::vector<QuadKey> keys, const IndexPattern& laid_out)
-    : collected(std::move(keys)), directory(none), pattern(laid_out), order(QuadOrder::Ospg) {
-  at = collected.data();
-  stop = at + collected.size();
+QuadCursor::Impl::Impl(std::shared_ptr<const std::vector<QuadKey>> keys, const IndexPattern& laid_out,
+                       QuadOrder sorted_by)
+    : collected(std::move(keys)), directory(none), pattern(laid_out), order(sorted_by) {
+  at = collected->data();
+  stop = at + collected->size();
 }
 
 bool QuadCursor::Impl::loadPage() {
@@ -108,6 +111,8 @@ std::size_t QuadCursor::next(std::span<QuadIds> out) {
       return impl_->copy<QuadOrder::Ospg>(out);
     case QuadOrder::Gspo:
       return impl_->copy<QuadOrder::Gspo>(out);
+    case QuadOrder::Psog:
+      return impl_->copy<QuadOrder::Psog>(out);
   }
   return 0;
 }
@@ -134,12 +139,15 @@ QuadOrder QuadCursor::order() const {
 
 /// The last position, where ascending lookups start, and prefetched positions of announced lookups.
 struct PrefixLookup::Impl {
-  Impl(const PageDirectory& from, std::optional<LiteralEntries> lacking)
-      : directory(from), literals(std::move(lacking)) {}
+  explicit Impl(const PageDirectory& from) : directory(from) {}
 
   const PageDirectory& directory;
   std::optional<LiteralEntries> literals;  ///< of index ospg
   std::vector<QuadKey> collected;          ///< those of the literal that was looked up last
+  std::optional<NumberEntries> numbers;    ///< of index posg
+  TermId predicate = kNoTerm;              ///< that was looked up last in posg
+  bool has_numbers = false;                ///< that predicate
+  NumberEntries::Keys of_predicate;        ///< its keys, made when they are wanted
   PageDirectory::Position position;
   KeyRange range;
   std::vector<Key128> expected;                 ///< the first keys of announced lookups
@@ -155,9 +163,25 @@ struct PrefixLookup::Impl {
     }
   }
 
+  /// Whether the index lacks quads with the prefix.
+  bool mustCollect(std::span<const TermId> prefix) {
+    if (literals) return literals->isLiteral(prefix.front());
+    if (!numbers) return false;
+    if (predicate != prefix.front()) {
+      predicate = prefix.front();
+      has_numbers = numbers->has(predicate);
+      of_predicate = nullptr;
+    }
+    return has_numbers && (prefix.size() == 1 || numbers->isNumber(prefix[1]));
+  }
+
   /// Expects the range of the lookup.
   std::span<const QuadKey> collect(std::span<const TermId> prefix) {
     if (next_expected < expected.size() && expected[next_expected] == range.first) ++next_expected;
+    if (numbers) {
+      if (!of_predicate) of_predicate = numbers->of(predicate);
+      return keysWithin(*of_predicate, range);
+    }
     const auto id = [prefix](std::size_t place) {
       return place < prefix.size() ? std::optional(prefix[place]) : std::nullopt;
     };
@@ -204,7 +228,7 @@ void PrefixLookup::expect(std::span<const TermId> prefixes, std::size_t length) 
 std::span<const QuadKey> PrefixLookup::find(std::span<const TermId> prefix) {
   if (!impl_) return {};
   impl_->range = rangeOf(prefix);
-  impl_->is_collected = impl_->literals && impl_->literals->isLiteral(prefix.front());
+  impl_->is_collected = impl_->mustCollect(prefix);
   if (impl_->is_collected) return impl_->collect(prefix);
   impl_->seek();
   return impl_->take();
@@ -217,9 +241,12 @@ std::span<const QuadKey> PrefixLookup::more() {
 }
 
 PrefixLookup QuadReader::lookup(QuadOrder order) const {
-  std::optional<LiteralEntries> literals;
-  if (order == QuadOrder::Ospg && impl_->state().environment->omitsLiterals()) literals.emplace(impl_->transaction);
-  return PrefixLookup(std::make_unique<PrefixLookup::Impl>(impl_->directory(order), std::move(literals)));
+  if (order == QuadOrder::Psog) throw std::logic_error("there are no lookups in the index of numbers");
+  auto impl = std::make_unique<PrefixLookup::Impl>(impl_->directory(order));
+  const LmdbEnvironment& environment = *impl_->state().environment;
+  if (order == QuadOrder::Ospg && environment.omitsLiterals()) impl->literals.emplace(impl_->transaction);
+  if (order == QuadOrder::Posg && environment.keepsNumbersApart()) impl->numbers.emplace(impl_->transaction);
+  return PrefixLookup(std::move(impl));
 }
 
 }  // namespace cluxel::rdf

@@ -8,10 +8,10 @@ namespace cluxel::rdf {
 
 struct QuadCursor::Impl {
   Impl(const PageDirectory& directory, const IndexPattern& pattern, QuadOrder order);
-  /// Over collected keys of index ospg, which match the pattern.
-  Impl(std::vector<QuadKey> keys, const IndexPattern& pattern);
+  /// Over collected keys of an index: all that match the bound prefix of the pattern.
+  Impl(std::shared_ptr<const std::vector<QuadKey>> keys, const IndexPattern& pattern, QuadOrder order);
 
-  std::vector<QuadKey> collected;
+  std::shared_ptr<const std::vector<QuadKey>> collected;
   PageDirectory none;  ///< of collected keys
   const PageDirectory& directory;
   IndexPattern pattern;

@@ -7,6 +7,7 @@
 
 #include "rdf/store/geometry_index.hpp"
 #include "rdf/store/literal_entries.hpp"
+#include "rdf/store/number_entries.hpp"
 #include "rdf/store/quad_cursor.hpp"
 #include "rdf/store/quad_reader_impl.hpp"
 #include "rdf/terms/literal_value.hpp"
@@ -17,8 +18,6 @@
 namespace cluxel::rdf {
 
 namespace {
-
-constexpr std::array<QuadOrder, 4> kOrders = {QuadOrder::Spog, QuadOrder::Posg, QuadOrder::Ospg, QuadOrder::Gspo};
 
 /// The bound ids in s, p, o, g order; 0 in s, p or o is a wildcard.
 std::array<std::optional<TermId>, 4> boundIds(const QuadPattern& pattern) {
@@ -50,6 +49,14 @@ IndexPattern layOut(const QuadPattern& pattern, QuadOrder order) {
   }
   laid_out.range = rangeOf(std::span(prefix).first(laid_out.prefix_length));
   return laid_out;
+}
+
+std::span<const QuadKey> keysWithin(std::span<const QuadKey> keys, const KeyRange& range) {
+  const auto first =
+      std::partition_point(keys.begin(), keys.end(), [&](const QuadKey& key) { return toNumber(key) < range.first; });
+  const auto last =
+      std::partition_point(first, keys.end(), [&](const QuadKey& key) { return toNumber(key) <= range.last; });
+  return {first, last};
 }
 
 QuadReader::Impl::Impl(ReadTransaction from) : transaction(std::move(from)) {
@@ -113,7 +120,7 @@ Term QuadReader::termOf(TermId id) const {
 }
 
 bool QuadReader::isLiteral(TermId id) const {
-  return LiteralEntries(impl_->transaction).isLiteral(id);
+  return NumberEntries(impl_->transaction).kindOf(id) != ObjectKind::Link;
 }
 
 const DecodedValue& QuadReader::valueOf(TermId id) const {
@@ -135,22 +142,58 @@ void QuadReader::expectValues(std::span<const TermId> ids) const {
 }
 
 QuadOrder QuadReader::bestOrder(const QuadPattern& pattern) {
-  return *std::max_element(kOrders.begin(), kOrders.end(), [&](QuadOrder a, QuadOrder b) {
+  constexpr auto kComplete = std::span(kQuadOrders).first<4>();  // or readers collect what lacks
+  return *std::max_element(kComplete.begin(), kComplete.end(), [&](QuadOrder a, QuadOrder b) {
     return layOut(pattern, a).prefix_length < layOut(pattern, b).prefix_length;
   });
 }
 
-QuadCursor QuadReader::scan(const QuadPattern& pattern, QuadOrder order) const {
+QuadOrder QuadReader::scanOrder(const QuadPattern& pattern) const {
+  const QuadOrder best = bestOrder(pattern);
+  const bool may_be_numbers = best == QuadOrder::Posg && pattern.o.value_or(kNoTerm) == kNoTerm;
+  return may_be_numbers && hasOnlyNumbers(*pattern.p) ? QuadOrder::Psog : best;
+}
+
+bool QuadReader::hasOnlyNumbers(TermId predicate) const {
+  const NumberEntries numbers(impl_->transaction);
+  return numbers.areApart() && numbers.hasOnly(predicate);
+}
+
+/// The keys of an index that lacks some of them, or else none.
+std::shared_ptr<const std::vector<QuadKey>> QuadReader::Impl::collected(const QuadPattern& pattern,
+                                                                        QuadOrder order) const {
+  const auto shared = [](std::vector<QuadKey> keys) {
+    return std::make_shared<const std::vector<QuadKey>>(std::move(keys));
+  };
+  const NumberEntries numbers(transaction);
+  const TermId predicate = pattern.p.value_or(kNoTerm), object = pattern.o.value_or(kNoTerm);
   if (order == QuadOrder::Ospg) {
-    LiteralEntries literals(impl_->transaction);
-    if (literals.mayMatch(pattern.o))
-      return QuadCursor(std::make_unique<QuadCursor::Impl>(literals.of(pattern), layOut(pattern, order)));
+    const LiteralEntries literals(transaction);
+    if (!literals.mayMatch(pattern.o)) return nullptr;
+    const bool is_apart = numbers.areApart() && pattern.s.value_or(kNoTerm) == kNoTerm && numbers.isNumber(object);
+    return shared(is_apart ? numbers.matching(pattern, order) : literals.of(pattern));
   }
-  return QuadCursor(std::make_unique<QuadCursor::Impl>(impl_->directory(order), layOut(pattern, order), order));
+  if (order != QuadOrder::Posg && order != QuadOrder::Psog) return nullptr;
+  if (order == QuadOrder::Psog) {
+    const bool is_whole = numbers.areApart() && predicate != kNoTerm && numbers.hasOnly(predicate);
+    return is_whole ? nullptr : shared(numbers.matching(pattern, order));
+  }
+  if (!numbers.areApart()) return nullptr;
+  if (predicate == kNoTerm) return shared(numbers.matching(pattern, order));
+  if (!numbers.has(predicate)) return nullptr;
+  if (object == kNoTerm) return numbers.of(predicate);
+  return numbers.isNumber(object) ? shared(numbers.matching(pattern, order)) : nullptr;
+}
+
+QuadCursor QuadReader::scan(const QuadPattern& pattern, QuadOrder order) const {
+  const IndexPattern laid_out = layOut(pattern, order);
+  if (auto keys = impl_->collected(pattern, order))
+    return QuadCursor(std::make_unique<QuadCursor::Impl>(std::move(keys), laid_out, order));
+  return QuadCursor(std::make_unique<QuadCursor::Impl>(impl_->directory(order), laid_out, order));
 }
 
 QuadCursor QuadReader::scan(const QuadPattern& pattern) const {
-  return scan(pattern, bestOrder(pattern));
+  return scan(pattern, scanOrder(pattern));
 }
 
 bool QuadReader::contains(const QuadIds& quad) const {

@@ -29,6 +29,9 @@ inline KeyRange rangeOf(std::span<const TermId> prefix) {
   return {first, first | ((Key128{1} << missing) - 1)};
 }
 
+/// The keys of a range among ascending keys.
+std::span<const QuadKey> keysWithin(std::span<const QuadKey> keys, const KeyRange& range);
+
 inline Key128 toNumber(const QuadIds& quad, QuadOrder order) {
   const std::array<TermId, 4> ids = {quad.s, quad.p, quad.o, quad.g};
   Key128 key = 0;
@@ -61,6 +64,7 @@ struct QuadReader::Impl {
     const PageDirectory& guarded = directory(order);
     return guarded.guard() ? guarded.guard()->pages() : guarded;
   }
+  std::shared_ptr<const std::vector<QuadKey>> collected(const QuadPattern& pattern, QuadOrder order) const;
   std::string_view datatypeText(TermId id);
   std::string_view record(TermId id) const { return snapshot().record(id, state()); }
 };

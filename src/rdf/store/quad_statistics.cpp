@@ -2,8 +2,10 @@
 // Cardinalities: exact counts over few pages, estimates by page counts and samples over many.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "rdf/store/literal_entries.hpp"
+#include "rdf/store/number_entries.hpp"
 #include "rdf/store/quad_cursor.hpp"
 #include "rdf/store/quad_reader_impl.hpp"
 
@@ -14,8 +16,10 @@ namespace {
 using Position = PageDirectory::Position;
 
 constexpr std::size_t kExactPages = 32;  // some 8000 quads
+/// The quads with one number are spread over those of its predicate.
+constexpr std::size_t kExactPagesOfNumbers = 512;
 constexpr std::size_t kSampledPages = 8;
-constexpr std::size_t kSampledQuads = 256;
+constexpr std::size_t kSampledQuads = 64;
 
 struct Stretch {
   Position from, to;
@@ -24,7 +28,7 @@ struct Stretch {
 /// Pages without comparison may be out of order in a damaged file: then the end may come before the start.
 Stretch stretchOf(const PageDirectory& directory, const KeyRange& range) {
   const Position from = directory.lowerBound(range.first);
-  const Position to = range.last == ~Key128{0} ? directory.end() : directory.lowerBound(range.last + 1);
+  const Position to = range.last == ~Key128{0} ? directory.end() : directory.lowerBound(range.last + 1, from);
   const bool is_ahead = to.page > from.page || (to.page == from.page && to.index >= from.index);
   return {from, is_ahead ? to : from};
 }
@@ -64,35 +68,6 @@ std::uint64_t estimateOver(const PageDirectory& directory, const IndexPattern& p
   return static_cast<std::uint64_t>(std::max(1.0, pattern.filtered ? all * share : all));
 }
 
-/// The number of distinct second ids among keys with the same first id.
-std::uint64_t distinctSecond(const PageDirectory& directory, Position from, Position to) {
-  std::uint64_t distinct = 0;
-  TermId last = kNoTerm;
-  for (Position at = from; at.page < to.page || (at.page == to.page && at.index < to.index);) {
-    for (const QuadKey& key : part(directory, at.page, at, to)) {
-      distinct += key.at(1) != last ? 1 : 0;
-      last = key.at(1);
-    }
-    at = {at.page + 1, 0};
-  }
-  return distinct;
-}
-
-/// All quads of a predicate, or an evenly spaced sample.
-std::vector<QuadIds> sampleOf(const PageDirectory& directory, Position from, Position to, bool whole) {
-  std::vector<QuadIds> sample;
-  const std::size_t pages = to.page - from.page + 1;
-  const std::size_t step = whole ? 1 : std::max<std::size_t>(1, pages / kSampledQuads);
-  for (std::size_t page = from.page; page < directory.pageCount() && page <= to.page; page += step) {
-    const auto keys = part(directory, page, from, to);
-    if (whole)
-      for (const QuadKey& key : keys) sample.push_back(toQuad(key, QuadOrder::Posg));
-    else if (!keys.empty())
-      sample.push_back(toQuad(keys[(page * 97) % keys.size()], QuadOrder::Posg));
-  }
-  return sample;
-}
-
 std::uint64_t countIn(const PageDirectory& directory, const IndexPattern& pattern) {
   const auto [from, to] = stretchOf(directory, pattern.range);
   return pattern.filtered ? countFiltered(directory, pattern, from, to) : directory.distance(from, to);
@@ -103,6 +78,103 @@ double shareOf(const PageDirectory& directory, const QuadPattern& pattern, QuadO
   return 1.0 / static_cast<double>(std::max<std::uint64_t>(1, countIn(directory, layOut(pattern, order))));
 }
 
+std::uint64_t distinct(const std::vector<QuadIds>& quads, TermId QuadIds::*place) {
+  std::vector<TermId> ids(quads.size());
+  std::transform(quads.begin(), quads.end(), ids.begin(), [place](const QuadIds& quad) { return quad.*place; });
+  std::sort(ids.begin(), ids.end());
+  return static_cast<std::uint64_t>(std::unique(ids.begin(), ids.end()) - ids.begin());
+}
+
+/// The quads of a predicate in index posg or psog.
+class PredicatePart {
+ public:
+  PredicatePart(const PageDirectory& directory, QuadOrder order, const Stretch& stretch)
+      : directory_(directory), order_(order), stretch_(stretch) {}
+
+  /// Exact if this is small.
+  std::uint64_t quads() const {
+    if (isSmall()) return directory_.distance(stretch_.from, stretch_.to);
+    return estimateOver(directory_, IndexPattern(), stretch_.from, stretch_.to);
+  }
+  bool isSmall() const { return stretch_.to.page - stretch_.from.page <= kExactPages; }
+
+  /// Adds all quads, or one of every `step`-th page if that is more than 1.
+  void addTo(std::vector<QuadIds>& quads, std::size_t step) const {
+    for (std::size_t page = stretch_.from.page; page < directory_.pageCount() && page <= stretch_.to.page;
+         page += step) {
+      const auto keys = part(directory_, page, stretch_.from, stretch_.to);
+      if (step == 1)
+        for (const QuadKey& key : keys) quads.push_back(toQuad(key, order_));
+      else if (!keys.empty())
+        quads.push_back(toQuad(keys[(page * 97) % keys.size()], order_));
+    }
+  }
+
+  /// The estimated number of subjects: a sampled quad counts as 1/n of its subject, where n is the subject's number of
+  /// quads with the predicate.
+  double subjects(const PageDirectory& by_subject) const {
+    return sumOverSample([&](const QuadIds& quad) {
+      return shareOf(by_subject, {.s = quad.s, .p = quad.p, .o = {}, .g = {}}, QuadOrder::Spog);
+    });
+  }
+
+  /// As above, of objects.
+  double objects() const {
+    if (order_ == QuadOrder::Psog) return numbers();
+    return sumOverSample([&](const QuadIds& quad) {
+      return shareOf(directory_, {.s = {}, .p = quad.p, .o = quad.o, .g = {}}, QuadOrder::Posg);
+    });
+  }
+
+ private:
+  std::size_t pages() const { return stretch_.to.page - stretch_.from.page + 1; }
+
+  template <typename Share>
+  double sumOverSample(const Share& share) const {
+    std::vector<QuadIds> sample;
+    addTo(sample, std::max<std::size_t>(1, pages() / kSampledQuads));
+    double sum = 0;
+    for (const QuadIds& quad : sample) sum += share(quad);
+    return sum * static_cast<double>(quads()) / static_cast<double>(std::max<std::size_t>(1, sample.size()));
+  }
+
+  /// Quads with a number are ordered by subject. By the estimator of Charikar, Chaudhuri, Motwani and Narasayya (PODS
+  /// 2000), what a sample has once stands for sqrt(quads / sample) numbers.
+  double numbers() const {
+    constexpr std::size_t kPages = 16;
+    std::vector<TermId> sample;
+    for (std::size_t i = 0; i < kPages; ++i) {
+      const std::size_t page = stretch_.from.page + i * pages() / kPages;
+      if (page < directory_.pageCount())
+        for (const QuadKey& key : part(directory_, page, stretch_.from, stretch_.to)) sample.push_back(key.at(2));
+    }
+    std::sort(sample.begin(), sample.end());
+    double often = 0, once = 0;
+    for (auto first = sample.begin(); first != sample.end();) {
+      const auto next = std::upper_bound(first, sample.end(), *first);
+      (next - first == 1 ? once : often) += 1;
+      first = next;
+    }
+    const auto of_sample = static_cast<double>(std::max<std::size_t>(1, sample.size()));
+    return often + once * std::sqrt(static_cast<double>(quads()) / of_sample);
+  }
+
+  const PageDirectory& directory_;
+  QuadOrder order_;
+  Stretch stretch_;
+};
+
+/// The indexes that hold the quads of a pattern, which goes best by `order`.
+std::vector<QuadOrder> holdersOf(const ReadTransaction& transaction, const QuadPattern& pattern, QuadOrder order) {
+  const NumberEntries numbers(transaction);
+  const TermId object = pattern.o.value_or(kNoTerm);
+  const bool has_subject = pattern.s.value_or(kNoTerm) != kNoTerm;
+  const bool may_lack = order == QuadOrder::Posg || (order == QuadOrder::Ospg && object != kNoTerm && !has_subject);
+  if (!numbers.areApart() || !may_lack) return {order};
+  if (object != kNoTerm) return {numbers.isNumber(object) ? QuadOrder::Psog : order};
+  return {QuadOrder::Posg, QuadOrder::Psog};
+}
+
 /// Exact where index ospg lacks what matches; it has an object.
 std::optional<std::uint64_t> countWithLiterals(const ReadTransaction& transaction, const QuadPattern& pattern) {
   const LiteralEntries literals(transaction);
@@ -111,29 +183,41 @@ std::optional<std::uint64_t> countWithLiterals(const ReadTransaction& transactio
   return is_object_only ? literals.count(*pattern.o) : literals.of(pattern).size();
 }
 
+std::uint64_t estimateIn(const PageDirectory& directory, const IndexPattern& pattern, QuadOrder order) {
+  const auto [from, to] = stretchOf(directory, pattern.range);
+  const bool is_of_number = order == QuadOrder::Psog && pattern.filtered;
+  if (to.page - from.page > (is_of_number ? kExactPagesOfNumbers : kExactPages))
+    return estimateOver(directory, pattern, from, to);
+  return pattern.filtered ? countFiltered(directory, pattern, from, to) : directory.distance(from, to);
+}
+
+/// Calls `count` with the pattern in the order of each index that holds quads of it, and adds up what it returns.
+template <typename Count>
+std::uint64_t countBy(const ReadTransaction& transaction, const QuadPattern& pattern, const Count& count) {
+  const QuadOrder best = QuadReader::bestOrder(pattern);
+  std::uint64_t sum = 0;
+  for (const QuadOrder order : holdersOf(transaction, pattern, best)) {
+    if (order == QuadOrder::Ospg)
+      if (const auto known = countWithLiterals(transaction, pattern)) return *known;
+    sum += count(layOut(pattern, order), order);
+  }
+  return sum;
+}
+
 }  // namespace
 
 std::uint64_t QuadReader::count(const QuadPattern& pattern) const {
-  const QuadOrder order = bestOrder(pattern);
-  if (order == QuadOrder::Ospg) {
-    if (const auto known = countWithLiterals(impl_->transaction, pattern)) return *known;
-  }
-  const IndexPattern laid_out = layOut(pattern, order);
-  if (laid_out.prefix_length == 0 && !laid_out.filtered) return size();
-  return countIn(impl_->directory(order), laid_out);
+  return countBy(impl_->transaction, pattern, [this](const IndexPattern& laid_out, QuadOrder order) {
+    const bool is_all = order == QuadOrder::Spog && laid_out.prefix_length == 0 && !laid_out.filtered;
+    return is_all ? size() : countIn(impl_->directory(order), laid_out);
+  });
 }
 
 std::uint64_t QuadReader::estimate(const QuadPattern& pattern) const {
-  const QuadOrder order = bestOrder(pattern);
-  if (order == QuadOrder::Ospg) {
-    if (const auto known = countWithLiterals(impl_->transaction, pattern)) return *known;
-  }
-  const IndexPattern laid_out = layOut(pattern, order);
-  if (laid_out.prefix_length == 0 && !laid_out.filtered) return size();
-  const PageDirectory& directory = impl_->pagesForEstimates(order);
-  const auto [from, to] = stretchOf(directory, laid_out.range);
-  if (to.page - from.page > kExactPages) return estimateOver(directory, laid_out, from, to);
-  return laid_out.filtered ? countFiltered(directory, laid_out, from, to) : directory.distance(from, to);
+  return countBy(impl_->transaction, pattern, [this](const IndexPattern& laid_out, QuadOrder order) {
+    const bool is_all = order == QuadOrder::Spog && laid_out.prefix_length == 0 && !laid_out.filtered;
+    return is_all ? size() : estimateIn(impl_->pagesForEstimates(order), laid_out, order);
+  });
 }
 
 QuadReader::PredicateStatistics QuadReader::statistics(TermId predicate) const {
@@ -141,57 +225,43 @@ QuadReader::PredicateStatistics QuadReader::statistics(TermId predicate) const {
   const bool is_guarded = impl_->directory(QuadOrder::Posg).guard() && impl_->directory(QuadOrder::Spog).guard();
   StoreSnapshot& keeper = is_guarded ? impl_->snapshot().keeperOfEstimates() : impl_->snapshot();
   if (const auto known = keeper.knownStatistics(predicate)) return *known;
-  const PageDirectory& directory = impl_->pagesForEstimates(QuadOrder::Posg);
-  const PageDirectory& by_subject = impl_->pagesForEstimates(QuadOrder::Spog);
-  const auto [from, to] = stretchOf(directory, rangeOf(std::array{predicate}));
+  const QuadPattern all{.s = {}, .p = predicate, .o = {}, .g = {}};
+  std::vector<PredicatePart> parts;
+  for (const QuadOrder order : holdersOf(impl_->transaction, all, QuadOrder::Posg)) {
+    const PageDirectory& directory = impl_->pagesForEstimates(order);
+    parts.push_back({directory, order, stretchOf(directory, rangeOf(std::array{predicate}))});
+  }
   PredicateStatistics statistics;
-  statistics.quads = directory.distance(from, to);
-  if (to.page - from.page <= kExactPages) {
-    statistics.objects = distinctSecond(directory, from, to);
-    std::vector<TermId> subjects;
-    for (const QuadIds& quad : sampleOf(directory, from, to, true)) subjects.push_back(quad.s);
-    std::sort(subjects.begin(), subjects.end());
-    statistics.subjects = static_cast<std::uint64_t>(std::unique(subjects.begin(), subjects.end()) - subjects.begin());
+  for (const PredicatePart& of : parts) statistics.quads += of.quads();
+  if (std::all_of(parts.begin(), parts.end(), [](const PredicatePart& of) { return of.isSmall(); })) {
+    std::vector<QuadIds> quads;
+    for (const PredicatePart& of : parts) of.addTo(quads, 1);
+    statistics.objects = distinct(quads, &QuadIds::o);
+    statistics.subjects = distinct(quads, &QuadIds::s);
   } else {
-    // A sampled quad counts as 1/n of its subject, where n is the subject's number of quads with this predicate.
-    double subjects = 0;
-    double objects = 0;
-    const std::vector<QuadIds> sample = sampleOf(directory, from, to, false);
-    for (const QuadIds& quad : sample) {
-      subjects += shareOf(by_subject, {.s = quad.s, .p = predicate, .o = {}, .g = {}}, QuadOrder::Spog);
-      objects += shareOf(directory, {.s = {}, .p = predicate, .o = quad.o, .g = {}}, QuadOrder::Posg);
+    double subjects = 0, objects = 0;
+    for (const PredicatePart& of : parts) {
+      subjects += of.subjects(impl_->pagesForEstimates(QuadOrder::Spog));
+      objects += of.objects();
     }
-    const double scale = static_cast<double>(statistics.quads) / static_cast<double>(sample.size());
-    statistics.subjects = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(subjects * scale)));
-    statistics.objects = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(objects * scale)));
+    statistics.subjects = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(subjects)));
+    statistics.objects = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(objects)));
   }
   keeper.keepStatistics(predicate, statistics);
   return statistics;
 }
-
-namespace {
-
-/// The distinct first ids of an index by a skip scan.
-std::vector<TermId> distinctFirst(const PageDirectory& directory) {
-  std::vector<TermId> ids;
-  Position at = directory.begin();
-  while (at.page < directory.pageCount()) {
-    const TermId id = directory.page(at.page)[at.index].at(0);
-    ids.push_back(id);
-    if (id == ~TermId{0}) break;
-    at = directory.lowerBound(Key128{id + 1} << 96U, at);
-  }
-  return ids;
-}
-
-}  // namespace
 
 std::vector<TermId> QuadReader::graphs() const {
   return distinctFirst(impl_->directory(QuadOrder::Gspo));
 }
 
 std::vector<TermId> QuadReader::predicates() const {
-  return distinctFirst(impl_->directory(QuadOrder::Posg));
+  std::vector<TermId> predicates = distinctFirst(impl_->directory(QuadOrder::Posg));
+  const NumberEntries numbers(impl_->transaction);
+  if (!numbers.areApart()) return predicates;
+  const std::vector<TermId> others = std::exchange(predicates, {}), of_numbers = numbers.predicates();
+  std::set_union(others.begin(), others.end(), of_numbers.begin(), of_numbers.end(), std::back_inserter(predicates));
+  return predicates;
 }
 
 }  // namespace cluxel::rdf

@@ -38,8 +38,11 @@ struct QuadPattern {
 };
 
 /// The sort orders of the indexes; the letters give the positions from most to least significant. The index Ospg lacks
-/// quads whose object is a literal: readers collect these from the others.
-enum class QuadOrder : std::uint8_t { Spog, Posg, Ospg, Gspo };
+/// quads whose object is a literal. Those whose object is a number are in Psog only, the others in Posg only. Readers
+/// collect what an index lacks from the others.
+enum class QuadOrder : std::uint8_t { Spog, Posg, Ospg, Gspo, Psog };
+inline constexpr std::array<QuadOrder, 5> kQuadOrders = {QuadOrder::Spog, QuadOrder::Posg, QuadOrder::Ospg,
+                                                         QuadOrder::Gspo, QuadOrder::Psog};
 
 /// An index entry as stored: four big-endian ids in the order of the index, so that bytewise order is sort order.
 /// Entries are read in place from the mapped file and may be unaligned.
@@ -64,6 +67,8 @@ constexpr std::array<std::uint8_t, 4> placesOf(QuadOrder order) {
       return {2, 0, 1, 3};
     case QuadOrder::Gspo:
       return {3, 0, 1, 2};
+    case QuadOrder::Psog:
+      return {1, 0, 2, 3};
     case QuadOrder::Spog:
       break;
   }
@@ -141,7 +146,8 @@ class QuadCursor {
 };
 
 /// Repeated prefix lookups in one index, as in an index nested loop join. Keeps its position, so that ascending
-/// prefixes are cheaper than random ones. Cost: about 0.1 us each when warm; some 10 us for a literal in Ospg.
+/// prefixes are cheaper than random ones. Cost: about 0.1 us each when warm; some 10 us for a literal in Ospg. The
+/// first lookup of a number in Posg, or of a predicate that has some, orders all quads of the predicate.
 class PrefixLookup {
  public:
   struct Impl;
@@ -185,14 +191,17 @@ class QuadReader {
   /// The matching quads in the order of the index `order`. Bound positions that form a prefix of the order limit the
   /// range; the others are filtered.
   QuadCursor scan(const QuadPattern& pattern, QuadOrder order) const;
-  /// As above, in the order of the index with the longest bound prefix.
+  /// As above, in the order that costs least.
   QuadCursor scan(const QuadPattern& pattern) const;
-  /// The index with the longest prefix bound by the pattern.
+  /// The index with the longest prefix bound by the pattern, not Psog.
   static QuadOrder bestOrder(const QuadPattern& pattern);
-  PrefixLookup lookup(QuadOrder order) const;
+  /// The order in which a scan costs least: as above, or Psog for a predicate that has numbers only.
+  QuadOrder scanOrder(const QuadPattern& pattern) const;
+  bool hasOnlyNumbers(TermId predicate) const;  ///< so that Psog holds all of its quads
+  PrefixLookup lookup(QuadOrder order) const;   ///< not for Psog
   bool contains(const QuadIds& quad) const;
   /// The number of matching quads: exact up to some thousands, above that an estimate within a factor of 2. Cost O(log
-  /// n).
+  /// n). Of a number among more than 100 thousand quads it is a guess.
   std::uint64_t estimate(const QuadPattern& pattern) const;
   /// The exact number of matching quads. Cost: one step per page of 255 quads if the bound positions form a prefix of
   /// an index, else one per quad in the best prefix range.

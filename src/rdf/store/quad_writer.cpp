@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <unordered_map>
+#include <vector>
 
 #include "cluxel/error.hpp"
 #include "rdf/store/geometry_index.hpp"
-#include "rdf/store/index_directories.hpp"
-#include "rdf/store/index_orders.hpp"
-#include "rdf/store/index_writer.hpp"
+#include "rdf/store/indexes/index_directories.hpp"
+#include "rdf/store/indexes/index_orders.hpp"
+#include "rdf/store/indexes/index_writer.hpp"
+#include "rdf/store/number_entries.hpp"
 #include "rdf/store/quad_reader_impl.hpp"
 #include "rdf/store/quad_store.hpp"
 #include "rdf/terms/pending_terms.hpp"
@@ -49,9 +52,13 @@ class RecentIris {
   std::array<Entry, 256> slots_;
 };
 
-struct QuadWriter::Impl {
-  enum class Kind : char { Unknown, Literal, Other };
+/// A change divided by the kind of its objects.
+struct QuadsByKind {
+  QuadDifference links, numbers;
+  QuadDifference others;  ///< than numbers
+};
 
+struct QuadWriter::Impl {
   WriteTransaction transaction;  ///< shares the write transaction
   QuadReader reader;
   PendingTerms terms;
@@ -60,7 +67,7 @@ struct QuadWriter::Impl {
   RecentIris recent;
   TermId next_id = kNoTerm;  ///< kNoTerm while no new term is pending, so that another writer can assign ids
   std::string record;
-  std::vector<Kind> kinds;  ///< of the terms that were asked for
+  std::vector<std::optional<ObjectKind>> kinds;  ///< of the terms that were asked for
 
   explicit Impl(WriteTransaction& from) : transaction(from), reader(from) {}
 
@@ -70,8 +77,9 @@ struct QuadWriter::Impl {
   void flushTerms();
   void flushGeometries(TermId first, TermId last);
   QuadDifference takeChanges();
-  bool isLiteral(TermId id);
-  QuadDifference withoutLiterals(const QuadDifference& difference);
+  ObjectKind kindOf(TermId id);
+  QuadsByKind byKind(const QuadDifference& difference);
+  IndexTask taskFor(QuadOrder order);
   void flushQuads(const QuadDifference& difference);
 };
 
@@ -120,7 +128,7 @@ void QuadWriter::Impl::flushTerms() {
   }
   sums.store();
   state().directories->noteTerms(hashes.size());
-  std::array<IndexTask, 1> index{{{Table::TermHashes, {}, &state().sums.term_hashes}}};
+  std::array<IndexTask, 1> index{IndexTask{.index = Table::TermHashes, .sum = &state().sums.term_hashes}};
   applyTo(state(), index, hashes.size(), [&hashes](IndexTask& task) {
     std::sort(hashes.begin(), hashes.end());
     task.change.added = std::move(hashes);
@@ -157,39 +165,62 @@ QuadDifference QuadWriter::Impl::takeChanges() {
   return difference;
 }
 
-bool QuadWriter::Impl::isLiteral(TermId id) {
-  if (kinds.size() <= id) kinds.resize(std::max<std::size_t>(id + 1, reader.termCount() + 1), Kind::Unknown);
-  if (kinds[id] == Kind::Unknown) kinds[id] = reader.isLiteral(id) ? Kind::Literal : Kind::Other;
-  return kinds[id] == Kind::Literal;
+ObjectKind QuadWriter::Impl::kindOf(TermId id) {
+  if (kinds.size() <= id) kinds.resize(std::max<std::size_t>(id + 1, reader.termCount() + 1));
+  if (!kinds[id]) kinds[id] = NumberEntries(transaction).kindOf(id);
+  return *kinds[id];
 }
 
-QuadDifference QuadWriter::Impl::withoutLiterals(const QuadDifference& difference) {
-  QuadDifference links;
+QuadsByKind QuadWriter::Impl::byKind(const QuadDifference& difference) {
+  QuadsByKind divided;
   constexpr std::size_t kQuadsBetweenPolls = 4096;
   std::size_t seen = 0;
-  const auto is_link = [&](const QuadIds& quad) {
-    if (++seen % kQuadsBetweenPolls == 0 && state().flush_poll) state().flush_poll();
-    return !isLiteral(quad.o);
+  const auto divide = [&](const std::vector<QuadIds>& quads, std::vector<QuadIds> QuadDifference::*list) {
+    for (const QuadIds& quad : quads) {
+      if (++seen % kQuadsBetweenPolls == 0 && state().flush_poll) state().flush_poll();
+      const ObjectKind kind = kindOf(quad.o);
+      if (kind == ObjectKind::Link) (divided.links.*list).push_back(quad);
+      (kind == ObjectKind::Number ? divided.numbers.*list : divided.others.*list).push_back(quad);
+    }
   };
-  std::copy_if(difference.added.begin(), difference.added.end(), std::back_inserter(links.added), is_link);
-  std::copy_if(difference.removed.begin(), difference.removed.end(), std::back_inserter(links.removed), is_link);
-  return links;
+  divide(difference.added, &QuadDifference::added);
+  divide(difference.removed, &QuadDifference::removed);
+  return divided;
+}
+
+/// Without its change.
+IndexTask QuadWriter::Impl::taskFor(QuadOrder order) {
+  StoreSums& sums = state().sums;
+  IndexTask task{.index = tableOf(order)};
+  if (order == QuadOrder::Ospg) task.sum = &sums.links;
+  if (order != QuadOrder::Spog) return task;
+  task.sum = &sums.quads;
+  task.journal = &state().journal;
+  if (!state().environment->keepsNumbersApart()) return task;
+  task.sum_of_numbers = &sums.numbers;
+  task.is_number = [this](TermId object) { return kinds[object] == ObjectKind::Number; };
+  return task;
 }
 
 void QuadWriter::Impl::flushQuads(const QuadDifference& difference) {
+  const LmdbEnvironment& environment = *state().environment;
+  const QuadsByKind divided = environment.omitsLiterals() ? byKind(difference) : QuadsByKind();
+  const bool keeps_numbers_apart = environment.keepsNumbersApart();
+  struct Part {
+    QuadOrder order;
+    const QuadDifference& quads;
+  };
   // The longest first, so that no thread waits long.
-  constexpr std::array<QuadOrder, 4> kOrders{QuadOrder::Posg, QuadOrder::Ospg, QuadOrder::Gspo, QuadOrder::Spog};
-  std::array<IndexTask, 4> tasks;
-  for (std::size_t i = 0; i < tasks.size(); ++i) tasks[i].index = tableOf(kOrders[i]);
-  const bool omits_literals = state().environment->omitsLiterals();
-  const QuadDifference links = omits_literals ? withoutLiterals(difference) : QuadDifference();
-  tasks[1].sum = &state().sums.links;
-  tasks.back().sum = &state().sums.quads;
-  tasks.back().journal = &state().journal;
+  std::vector<Part> parts = {{QuadOrder::Posg, keeps_numbers_apart ? divided.others : difference},
+                             {QuadOrder::Ospg, environment.omitsLiterals() ? divided.links : difference},
+                             {QuadOrder::Gspo, difference},
+                             {QuadOrder::Spog, difference}};
+  if (keeps_numbers_apart) parts.push_back({QuadOrder::Psog, divided.numbers});
+  std::vector<IndexTask> tasks;
+  for (const Part& part : parts) tasks.push_back(taskFor(part.order));
   applyTo(state(), tasks, difference.added.size() + difference.removed.size(), [&](IndexTask& task) {
-    const QuadOrder order = kOrders[static_cast<std::size_t>(&task - tasks.data())];
-    const QuadDifference& of_task = omits_literals && order == QuadOrder::Ospg ? links : difference;
-    task.change = {keysOf(of_task.added, order), keysOf(of_task.removed, order)};
+    const Part& part = parts[static_cast<std::size_t>(&task - tasks.data())];
+    task.change = {keysOf(part.quads.added, part.order), keysOf(part.quads.removed, part.order)};
   });
 }
 

@@ -9,8 +9,8 @@
 
 #include "cluxel/error.hpp"
 #include "rdf/file/check/map_file_head.hpp"
-#include "rdf/store/index_directories.hpp"
-#include "rdf/store/index_draft.hpp"
+#include "rdf/store/indexes/index_directories.hpp"
+#include "rdf/store/indexes/index_draft.hpp"
 #include "rdf/terms/term_record.hpp"
 
 namespace cluxel::rdf {
@@ -24,6 +24,11 @@ std::uint64_t entriesOf(const ReadTransaction::Impl& transaction, Table table) {
   MDB_stat stat;
   transaction.check(mdb_stat(transaction.live(), transaction.table(table), &stat), "read the map");
   return stat.ms_entries;
+}
+
+/// Maps of earlier formats have no index psog.
+bool isMissing(Table table, const ReadTransaction::Impl& transaction) {
+  return table == Table::Psog && !transaction.environment->keepsNumbersApart();
 }
 
 /// Every page stores its own number, so the address of one page gives the base of the mapping.
@@ -60,7 +65,12 @@ StoreSnapshot::StoreSnapshot(const ReadTransaction::Impl& transaction)
   for (std::size_t i = 0; i < kTableCount; ++i) {
     MDB_val key = toVal(kTableNames[i]);
     MDB_val record;
-    transaction.check(mdb_get(transaction.live(), main, &key, &record), "read the map");
+    const int code = mdb_get(transaction.live(), main, &key, &record);
+    if (code == MDB_NOTFOUND && isMissing(static_cast<Table>(i), transaction)) {
+      trees_[i].root = kNoPage;
+      continue;
+    }
+    transaction.check(code, "read the map");
     if (record.mv_size != sizeof(Tree)) failOutside("its dictionary");
     trees_[i] = load<Tree>(static_cast<const std::uint8_t*>(record.mv_data));
     if (i == 0) map_ = mapAround(record.mv_data, transaction);
@@ -86,7 +96,7 @@ void StoreSnapshot::verifyIndex(Table index, const std::filesystem::path& file) 
 }
 
 void StoreSnapshot::verify(ReadTransaction::Impl& transaction) {
-  for (const Table index : {Table::TermHashes, Table::Spog, Table::Posg, Table::Ospg, Table::Gspo})
+  for (const Table index : transaction.environment->indexes())
     if (const auto& guard = directory(index, transaction).guard()) guard->checkAll();
   for (std::uint64_t id = 1; id <= term_count_; id = (id / kTermsOfSum + 1) * kTermsOfSum)
     record(static_cast<TermId>(id), transaction);

@@ -14,10 +14,10 @@
 #include "rdf/file/lmdb_environment.hpp"
 #include "rdf/file/map_check.hpp"
 #include "rdf/file/map_replacement.hpp"
-#include "rdf/store/changed_ranges.hpp"
-#include "rdf/store/index_directories.hpp"
-#include "rdf/store/index_draft.hpp"
-#include "rdf/store/index_writer.hpp"
+#include "rdf/store/indexes/changed_ranges.hpp"
+#include "rdf/store/indexes/index_directories.hpp"
+#include "rdf/store/indexes/index_draft.hpp"
+#include "rdf/store/indexes/index_writer.hpp"
 #include "rdf/store/store_snapshot.hpp"
 #include "rdf/terms/value_cache.hpp"
 
@@ -82,8 +82,11 @@ void LmdbEnvironment::openTables() {
   const int found = mdb_get(raw, main_, &key, &value);
   if (found == MDB_SUCCESS) {
     format_ = checkedFormat(std::string(toView(value)), file_);
-    for (std::size_t i = 0; i < kTableCount; ++i)
-      check(mdb_dbi_open(raw, kTableNames[i], tableFlags(static_cast<Table>(i)), &tables_[i]), "read the map's tables");
+    for (std::size_t i = 0; i < kTableCount; ++i) {
+      const auto table = static_cast<Table>(i);
+      if (table == Table::Psog && !keepsNumbersApart()) continue;
+      check(mdb_dbi_open(raw, kTableNames[i], tableFlags(table), &tables_[i]), "read the map's tables");
+    }
     check(mdb_txn_commit(transaction.release()), "read the map's tables");
     return;
   }

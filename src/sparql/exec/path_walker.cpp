@@ -170,13 +170,15 @@ PathWalker::Nodes PathWalker::starts(const CompiledPath& path) {
     if (first->iri >= kFirstComputed) return nodes;
     pattern.p = first->iri;
   }
-  rdf::QuadCursor cursor = runtime_.reader.scan(pattern, one_predicate ? rdf::QuadOrder::Posg : rdf::QuadOrder::Spog);
+  const rdf::QuadOrder order = runtime_.reader.scanOrder(pattern);
+  const std::size_t at_subject = order == rdf::QuadOrder::Psog ? 1 : 2;  // of one predicate
+  rdf::QuadCursor cursor = runtime_.reader.scan(pattern, order);
   for (auto block = cursor.nextBlock(); !block.empty(); block = cursor.nextBlock()) {
     runtime_.guard.work(block.size());
     for (const rdf::QuadKey& key : block) {
       if (!graphs_.admits(key.at(3))) continue;
       if (one_predicate) {
-        nodes.push_back(key.at(2));
+        nodes.push_back(key.at(at_subject));
         continue;
       }
       if (nodes.empty() || nodes.back() != key.at(0)) nodes.push_back(key.at(0));

@@ -24,6 +24,11 @@ const rdf::QuadReader::PredicateStatistics& Cardinality::statistics(rdf::TermId 
   return statistics_.emplace(predicate, reader_.statistics(predicate)).first->second;
 }
 
+double Cardinality::quadsOf(ValueId predicate) {
+  if (predicate >= kFirstComputed) return 0;
+  return static_cast<double>(reader_.estimate({.s = {}, .p = predicate, .o = {}, .g = {}}));
+}
+
 double Cardinality::matches(const TripleNode& pattern) {
   const auto known = known_.find(&pattern);
   if (known != known_.end()) return known->second;
@@ -52,11 +57,10 @@ double Cardinality::fanOut(const TripleNode& pattern, const SlotSet& bound) {
   const bool p = isBound(pattern.predicate, bound);
   double result = count;
   if (!pattern.predicate.isSlot()) {
+    if (!s && !o) return result;
     const auto& known = statistics(pattern.predicate.constant);
-    const double subjects = std::max(1.0, static_cast<double>(known.subjects));
-    const double objects = std::max(1.0, static_cast<double>(known.objects));
-    if (s) result /= subjects;
-    if (o) result /= objects;
+    if (s) result /= std::max(1.0, static_cast<double>(known.subjects));
+    if (o) result /= std::max(1.0, static_cast<double>(known.objects));
   } else {
     const double nodes = std::max(1.0, static_cast<double>(reader_.size()) / kQuadsPerNode);
     if (s) result = std::min(result, std::max(count / nodes, kQuadsPerNode * (o ? 0.1 : 1)));
@@ -74,7 +78,7 @@ double Cardinality::pathRows(const TripleNode& pattern, const SlotSet& bound) {
   const CompiledPath* first = pattern.path.get();
   while (!first->parts.empty()) first = &first->parts[0];
   const bool link = first->kind == ast::Path::Kind::Link && first->iri < kFirstComputed && first->iri != kUnbound;
-  const double quads = link ? static_cast<double>(statistics(first->iri).quads) : all;
+  const double quads = link ? quadsOf(first->iri) : all;
   if (s || o) return std::min(20.0, quads + 1);
   return (link && pattern.path->kind == ast::Path::Kind::OneOrMore ? quads : all) * 4 + 1;
 }

@@ -18,9 +18,7 @@ class Cardinality {
   /// Rows per input solution that binds the slots of `bound`.
   double fanOut(const TripleNode& pattern, const SlotSet& bound);
   /// The number of quads of a predicate.
-  double quadsOf(ValueId predicate) {
-    return predicate < kFirstComputed ? static_cast<double>(statistics(predicate).quads) : 0;
-  }
+  double quadsOf(ValueId predicate);
   /// Rows of a node evaluated on its own.
   double rows(const Node& node);
 

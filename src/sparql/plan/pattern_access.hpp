@@ -21,7 +21,7 @@ GraphFilter graphFilterOf(const TripleNode& pattern, const Dataset& dataset);
 /// Bits of bound positions: 1 s, 2 p, 4 o, 8 g.
 using BoundMask = unsigned;
 
-/// The index order with the longest bound prefix, and the prefix length.
+/// The index order with the longest bound prefix, not psog, and the prefix length.
 struct OrderChoice {
   rdf::QuadOrder order = rdf::QuadOrder::Spog;
   std::size_t prefix = 0;

@@ -48,9 +48,17 @@ bool isImpossible(const TripleNode& pattern, const Dataset& dataset) {
 
 }  // namespace
 
+/// Numbers are in an index of their own, which sorts by subject.
+OrderChoice Planner::scanOf(const TripleNode& pattern) const {
+  const OrderChoice choice = chooseOrder(constantsOf(pattern, dataset_));
+  const bool is_of_predicate = choice.order == rdf::QuadOrder::Posg && choice.prefix == 1;
+  if (!is_of_predicate || pattern.predicate.constant >= kFirstComputed) return choice;
+  return reader_.hasOnlyNumbers(pattern.predicate.constant) ? OrderChoice{rdf::QuadOrder::Psog, 1} : choice;
+}
+
 /// The slot by which a scan of the pattern is sorted.
 Slot Planner::scannedBy(const TripleNode& pattern) const {
-  return sortedBy(pattern, chooseOrder(constantsOf(pattern, dataset_)));
+  return sortedBy(pattern, scanOf(pattern));
 }
 
 Planner::State Planner::joinPart(State state, const Node& part, double needed_rows) {
@@ -92,7 +100,7 @@ Planner::State Planner::joinTriple(State state, const Node& part, double needed_
     state.sorted_by = kNoSlot;
     return finish(makePathJoin(std::move(state.top), pattern));
   }
-  const OrderChoice scan = chooseOrder(constantsOf(pattern, dataset_));
+  const OrderChoice scan = scanOf(pattern);
   if (state.is_unit) {
     state.sorted_by = sortedBy(pattern, scan);
     return finish(makeScan(pattern, scan.order));

@@ -142,6 +142,7 @@ class Planner {
   State finishRange(State state, RangeJoin join);
   std::optional<State> joinByIndex(State& state, const RangeJoin& join, const Waiting& component);
   void searchBySpace(const Expr& condition, const Node& child, Parts& parts);
+  OrderChoice scanOf(const TripleNode& pattern) const;
   Slot scannedBy(const TripleNode& pattern) const;
   double disorder(const Node& part, const std::vector<const Node*>& parts) const;
   std::size_t choosePart(const State& state, const std::vector<const Node*>& parts);

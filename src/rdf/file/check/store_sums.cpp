@@ -23,9 +23,11 @@ constexpr std::string_view kSumsKey = "cluxel-sums", kTermSumTable = "term sums"
 /// A block of sums is short enough to lie within a page.
 constexpr TermId kSumsOfBlock = 128;
 
-/// The bytes of the sums in the record, before their checksum. Maps whose ospg holds all quads have no sum of it.
+/// The bytes of the sums in the record, before their checksum. Maps whose ospg holds all quads have no sum of it, and
+/// those without psog none of that.
 std::size_t sizeOfSums(const ReadTransaction::Impl& transaction) {
-  return transaction.environment->omitsLiterals() ? sizeof(StoreSums) : offsetof(StoreSums, links);
+  if (transaction.environment->keepsNumbersApart()) return sizeof(StoreSums);
+  return transaction.environment->omitsLiterals() ? offsetof(StoreSums, numbers) : offsetof(StoreSums, links);
 }
 
 std::string keyOfSums(TermId block) {

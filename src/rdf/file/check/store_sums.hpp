@@ -37,6 +37,7 @@ struct EntrySum {
     --count;
     hash -= hashOfKey(key);
   }
+  EntrySum operator-(const EntrySum& part) const { return {count - part.count, hash - part.hash}; }
 };
 
 /// A key of an index as it counts in sums: a quad in the order s, p, o, g, so that all indexes have one sum.
@@ -47,6 +48,7 @@ Key128 keyInSum(Key128 key) {
   if constexpr (kIndex == Table::Posg) return joined(id(2), id(0), id(1), id(3));
   if constexpr (kIndex == Table::Ospg) return joined(id(1), id(2), id(0), id(3));
   if constexpr (kIndex == Table::Gspo) return joined(id(1), id(2), id(3), id(0));
+  if constexpr (kIndex == Table::Psog) return joined(id(1), id(0), id(2), id(3));
   return key;
 }
 
@@ -60,6 +62,8 @@ auto withKeysOfSum(Table index, const Work& work) {
       return work([](Key128 key) { return keyInSum<Table::Ospg>(key); });
     case Table::Gspo:
       return work([](Key128 key) { return keyInSum<Table::Gspo>(key); });
+    case Table::Psog:
+      return work([](Key128 key) { return keyInSum<Table::Psog>(key); });
     default:
       return work([](Key128 key) { return keyInSum<Table::Spog>(key); });
   }
@@ -72,14 +76,26 @@ inline Key128 keyInSumOf(Table index, Key128 key) {
 /// The record of a commit in the main database.
 struct StoreSums {
   std::uint64_t transaction = 0;  ///< the commit that wrote it
-  EntrySum quads;                 ///< of each index but ospg, keys in the order s, p, o, g
+  EntrySum quads;                 ///< of spog and gspo, keys in the order s, p, o, g; so are those of the parts below
   EntrySum term_hashes;
-  EntrySum links;  ///< of ospg, which may lack quads with literals; keys in the order s, p, o, g
+  EntrySum links;    ///< of ospg, which may lack quads with literals
+  EntrySum numbers;  ///< of psog; posg has the other quads
   bool operator==(const StoreSums&) const = default;
   /// Of the terms, or of an index.
-  const EntrySum& of(Table table) const {
-    if (table == Table::Terms || table == Table::TermHashes) return term_hashes;
-    return table == Table::Ospg ? links : quads;
+  EntrySum of(Table table) const {
+    switch (table) {
+      case Table::Terms:
+      case Table::TermHashes:
+        return term_hashes;
+      case Table::Ospg:
+        return links;
+      case Table::Psog:
+        return numbers;
+      case Table::Posg:
+        return quads - numbers;
+      default:
+        return quads;
+    }
   }
 };
 

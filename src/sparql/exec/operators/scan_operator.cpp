@@ -16,6 +16,8 @@ const char* nameOf(rdf::QuadOrder order) {
       return "ospg";
     case rdf::QuadOrder::Gspo:
       return "gspo";
+    case rdf::QuadOrder::Psog:
+      return "psog";
   }
   return "";
 }

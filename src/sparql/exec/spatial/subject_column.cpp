@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds subject columns from the index "posg" by a counting sort, and searches them.
+// Builds subject columns from the index of the predicate by a counting sort, and searches them.
 #include "sparql/exec/spatial/subject_column.hpp"
 
 #include <sys/mman.h>
@@ -28,16 +28,19 @@ rdf::QuadPattern quadsOf(const ColumnPattern& pattern) {
   return quads;
 }
 
-/// Calls `take(subject, object)` for each distinct triple of the pattern, in order of object and subject.
+/// Calls `take(subject, object)` for each distinct triple of the pattern, in the order of the index.
 template <typename Take>
 void forEachTriple(const rdf::QuadReader& reader, const ColumnPattern& pattern, const GraphFilter& graphs, Guard& guard,
                    const Take& take) {
-  rdf::QuadCursor cursor = reader.scan(quadsOf(pattern), rdf::QuadOrder::Posg);
+  const rdf::QuadPattern quads = quadsOf(pattern);
+  const rdf::QuadOrder order = reader.scanOrder(quads);
+  const std::size_t at_subject = order == rdf::QuadOrder::Psog ? 1 : 2, at_object = 3 - at_subject;
+  rdf::QuadCursor cursor = reader.scan(quads, order);
   rdf::TermId last_subject = rdf::kNoTerm, last_object = rdf::kNoTerm;
   std::size_t seen = 0;
   for (auto block = cursor.nextBlock(); !block.empty(); block = cursor.nextBlock()) {
     for (const rdf::QuadKey& key : block) {
-      const rdf::TermId object = key.at(1), subject = key.at(2);
+      const rdf::TermId object = key.at(at_object), subject = key.at(at_subject);
       if (subject == last_subject && object == last_object) continue;  // duplicate in another graph
       if (!graphs.admits(key.at(3))) continue;
       last_subject = subject;

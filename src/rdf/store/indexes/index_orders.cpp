@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The ids of quads are dense, so that quads are counted by id rather than compared.
-#include "rdf/store/index_orders.hpp"
+#include "rdf/store/indexes/index_orders.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -40,8 +40,8 @@ std::vector<Key128> numbersOf(std::span<const QuadIds> quads, QuadOrder order) {
 
 }  // namespace
 
-/// Sorting by the first place is enough, when the rest is in order: s, p, o, g gives g, s, p, o and o, s, p, g, and
-/// that p, o, s, g.
+/// Sorting by the first place is enough, when the rest is in order: s, p, o, g gives g, s, p, o and p, s, o, g and
+/// o, s, p, g, and that p, o, s, g.
 std::vector<Key128> keysOf(std::span<const QuadIds> quads, QuadOrder order) {
   switch (order) {
     case QuadOrder::Posg:
@@ -50,6 +50,8 @@ std::vector<Key128> keysOf(std::span<const QuadIds> quads, QuadOrder order) {
       return numbersOf(sortedBy(&QuadIds::o, quads), order);
     case QuadOrder::Gspo:
       return numbersOf(sortedBy(&QuadIds::g, quads), order);
+    case QuadOrder::Psog:
+      return numbersOf(sortedBy(&QuadIds::p, quads), order);
     case QuadOrder::Spog:
       break;
   }

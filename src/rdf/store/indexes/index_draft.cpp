@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pages split in the middle when a key does not fit; appended ones are full.
-#include "rdf/store/index_draft.hpp"
+#include "rdf/store/indexes/index_draft.hpp"
 
 #include <algorithm>
 #include <cstring>

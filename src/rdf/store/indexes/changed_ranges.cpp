@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ranges are adjusted once, when the transaction commits.
-#include "rdf/store/changed_ranges.hpp"
+#include "rdf/store/indexes/changed_ranges.hpp"
 
 #include "rdf/file/check/map_file_head.hpp"
 #include "rdf/file/lmdb_environment.hpp"
-#include "rdf/store/index_directories.hpp"
+#include "rdf/store/indexes/index_directories.hpp"
 
 namespace cluxel::rdf {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes an index by appending, by single puts, or as a draft that is appended when the transaction commits.
-#include "rdf/store/index_writer.hpp"
+#include "rdf/store/indexes/index_writer.hpp"
 
 #include <algorithm>
 #include <array>
 #include <span>
 
 #include "base/parallel.hpp"
-#include "rdf/store/changed_ranges.hpp"
 #include "rdf/store/flush_poll.hpp"
-#include "rdf/store/index_directories.hpp"
-#include "rdf/store/index_draft.hpp"
+#include "rdf/store/indexes/changed_ranges.hpp"
+#include "rdf/store/indexes/index_directories.hpp"
+#include "rdf/store/indexes/index_draft.hpp"
 
 namespace cluxel::rdf {
 
@@ -86,29 +86,31 @@ class IndexCursor {
   CursorHandle cursor_;
 };
 
-/// Tells the sums and the journal, as far as they are wanted, what has changed.
+/// Tells the sums and the journal of a task, as far as they are wanted, what has changed.
 struct ChangeNotes {
-  explicit ChangeNotes(const IndexTask& task, RangeSums* sums_of_ranges = nullptr)
-      : sum(task.sum), journal(task.journal), ranges(sums_of_ranges), index(task.index) {}
+  explicit ChangeNotes(const IndexTask& of, RangeSums* sums_of_ranges = nullptr) : task(of), ranges(sums_of_ranges) {}
 
   void added(Key128 key) const {
-    const Key128 in_sum = keyInSumOf(index, key);
-    if (sum != nullptr) sum->add(in_sum);
+    const Key128 in_sum = keyInSumOf(task.index, key);
+    if (task.sum != nullptr) task.sum->add(in_sum);
+    if (isNumber(in_sum)) task.sum_of_numbers->add(in_sum);
     if (ranges != nullptr) ranges->add(key, in_sum);
-    if (journal != nullptr) journal->note(quadOf(key), true);
+    if (task.journal != nullptr) task.journal->note(quadOf(in_sum), true);
   }
   void removed(Key128 key) const {
-    const Key128 in_sum = keyInSumOf(index, key);
-    if (sum != nullptr) sum->remove(in_sum);
+    const Key128 in_sum = keyInSumOf(task.index, key);
+    if (task.sum != nullptr) task.sum->remove(in_sum);
+    if (isNumber(in_sum)) task.sum_of_numbers->remove(in_sum);
     if (ranges != nullptr) ranges->remove(key, in_sum);
-    if (journal != nullptr) journal->note(quadOf(key), false);
+    if (task.journal != nullptr) task.journal->note(quadOf(in_sum), false);
   }
-  static QuadIds quadOf(Key128 key) { return toQuad(toKey(key), QuadOrder::Spog); }
 
-  EntrySum* sum;
-  QuadJournal* journal;
+ private:
+  static QuadIds quadOf(Key128 in_sum) { return toQuad(toKey(in_sum), QuadOrder::Spog); }
+  bool isNumber(Key128 in_sum) const { return task.sum_of_numbers != nullptr && task.is_number(quadOf(in_sum).o); }
+
+  const IndexTask& task;
   RangeSums* ranges;
-  Table index;
 };
 
 std::uint64_t keyCount(const ReadTransaction::Impl& transaction, Table index) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lists of pages stay right as long as LMDB leaves the pages that it wrote where they are.
-#include "rdf/store/index_directories.hpp"
+#include "rdf/store/indexes/index_directories.hpp"
 
 #include <algorithm>
 #include <vector>
 
 #include "rdf/file/directory_update.hpp"
 #include "rdf/file/lmdb_environment.hpp"
-#include "rdf/store/index_draft.hpp"
+#include "rdf/store/indexes/index_draft.hpp"
 #include "rdf/store/store_snapshot.hpp"
 
 namespace cluxel::rdf {

@@ -19,13 +19,15 @@ struct IndexChange {
 /// Appends ascending keys beyond the last one of an index. `cursor` is a cursor on it.
 void appendKeys(const ReadTransaction::Impl& transaction, MDB_cursor* cursor, std::span<const QuadKey> keys);
 
-/// A change of one index. `sum` and `journal`, if any, follow what really changes. The journal takes keys in the order
-/// s, p, o, g, and so does the sum, also of index ospg.
+/// A change of one index. The sums and the journal, if any, follow what really changes. They take keys in the order s,
+/// p, o, g.
 struct IndexTask {
-  Table index;
-  IndexChange change;
+  Table index = Table::Spog;
+  IndexChange change = {};
   EntrySum* sum = nullptr;
   QuadJournal* journal = nullptr;
+  EntrySum* sum_of_numbers = nullptr;          ///< of those quads whose object is a number
+  std::function<bool(TermId)> is_number = {};  ///< set with it; several threads may call it
 };
 
 /// Applies a change of `count` keys to one index or more: by single puts, or to a draft when the change is large.
