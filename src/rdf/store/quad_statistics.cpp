@@ -19,7 +19,7 @@ constexpr std::size_t kExactPages = 32;  // some 8000 quads
 /// The quads with one number are spread over those of its predicate.
 constexpr std::size_t kExactPagesOfNumbers = 512;
 constexpr std::size_t kSampledPages = 8;
-constexpr std::size_t kSampledQuads = 64;
+constexpr std::size_t kSampledPagesOfPredicate = 64;
 
 struct Stretch {
   Position from, to;
@@ -98,21 +98,17 @@ class PredicatePart {
   }
   bool isSmall() const { return stretch_.to.page - stretch_.from.page <= kExactPages; }
 
-  /// Adds all quads, or one of every `step`-th page if that is more than 1.
-  void addTo(std::vector<QuadIds>& quads, std::size_t step) const {
-    for (std::size_t page = stretch_.from.page; page < directory_.pageCount() && page <= stretch_.to.page;
-         page += step) {
-      const auto keys = part(directory_, page, stretch_.from, stretch_.to);
-      if (step == 1)
-        for (const QuadKey& key : keys) quads.push_back(toQuad(key, order_));
-      else if (!keys.empty())
-        quads.push_back(toQuad(keys[(page * 97) % keys.size()], order_));
-    }
+  /// Adds all quads.
+  void addTo(std::vector<QuadIds>& quads) const {
+    forEachPage(1, [&](std::size_t, std::span<const QuadKey> keys) {
+      for (const QuadKey& key : keys) quads.push_back(toQuad(key, order_));
+    });
   }
 
-  /// The estimated number of subjects: a sampled quad counts as 1/n of its subject, where n is the subject's number of
-  /// quads with the predicate.
+  /// The number of subjects; if this is large, an estimate: a sampled quad counts as 1/n of its subject, where n is the
+  /// subject's number of quads with the predicate.
   double subjects(const PageDirectory& by_subject) const {
+    if (isSmall()) return static_cast<double>(distinct(all(), &QuadIds::s));
     return sumOverSample([&](const QuadIds& quad) {
       return shareOf(by_subject, {.s = quad.s, .p = quad.p, .o = {}, .g = {}}, QuadOrder::Spog);
     });
@@ -120,6 +116,7 @@ class PredicatePart {
 
   /// As above, of objects.
   double objects() const {
+    if (isSmall()) return static_cast<double>(distinct(all(), &QuadIds::o));
     if (order_ == QuadOrder::Psog) return numbers();
     return sumOverSample([&](const QuadIds& quad) {
       return shareOf(directory_, {.s = {}, .p = quad.p, .o = quad.o, .g = {}}, QuadOrder::Posg);
@@ -129,13 +126,30 @@ class PredicatePart {
  private:
   std::size_t pages() const { return stretch_.to.page - stretch_.from.page + 1; }
 
+  /// Calls `work` with the number and the keys of every `step`-th page.
+  template <typename Work>
+  void forEachPage(std::size_t step, const Work& work) const {
+    for (std::size_t page = stretch_.from.page; page < directory_.pageCount() && page <= stretch_.to.page; page += step)
+      work(page, part(directory_, page, stretch_.from, stretch_.to));
+  }
+
+  std::vector<QuadIds> all() const {
+    std::vector<QuadIds> quads;
+    addTo(quads);
+    return quads;
+  }
+
+  /// Of a sample of one quad a page.
   template <typename Share>
   double sumOverSample(const Share& share) const {
-    std::vector<QuadIds> sample;
-    addTo(sample, std::max<std::size_t>(1, pages() / kSampledQuads));
-    double sum = 0;
-    for (const QuadIds& quad : sample) sum += share(quad);
-    return sum * static_cast<double>(quads()) / static_cast<double>(std::max<std::size_t>(1, sample.size()));
+    double sum = 0, sampled = 0;
+    forEachPage(std::max<std::size_t>(1, pages() / kSampledPagesOfPredicate),
+                [&](std::size_t page, std::span<const QuadKey> keys) {
+                  if (keys.empty()) return;
+                  sum += share(toQuad(keys[(page * 97) % keys.size()], order_));
+                  ++sampled;
+                });
+    return sum * static_cast<double>(quads()) / std::max(1.0, sampled);
   }
 
   /// Quads with a number are ordered by subject. By the estimator of Charikar, Chaudhuri, Motwani and Narasayya (PODS
@@ -235,7 +249,7 @@ QuadReader::PredicateStatistics QuadReader::statistics(TermId predicate) const {
   for (const PredicatePart& of : parts) statistics.quads += of.quads();
   if (std::all_of(parts.begin(), parts.end(), [](const PredicatePart& of) { return of.isSmall(); })) {
     std::vector<QuadIds> quads;
-    for (const PredicatePart& of : parts) of.addTo(quads, 1);
+    for (const PredicatePart& of : parts) of.addTo(quads);
     statistics.objects = distinct(quads, &QuadIds::o);
     statistics.subjects = distinct(quads, &QuadIds::s);
   } else {
