@@ -10,7 +10,7 @@
 #include "base/file_bytes.hpp"
 #include "rdf/file/map_check.hpp"
 #include "rdf/map_file_fixture.hpp"
-#include "rdf/store/quad_store.hpp"
+#include "rdf/store/quad_reader_impl.hpp"
 
 namespace cluxel::rdf {
 namespace {
@@ -91,11 +91,29 @@ void putKey(MDB_txn* transaction, const char* index, std::string key) {
   ASSERT_EQ(mdb_put(transaction, table, &name, &stored, 0), 0);
 }
 
+void remove(MDB_txn* transaction, MDB_dbi table, std::string name) {
+  MDB_val key{name.size(), name.data()};
+  ASSERT_EQ(mdb_del(transaction, table, &key, nullptr), 0) << name;
+}
+
 constexpr std::size_t kSumsOfFifthFormat = 56, kSumsOfThirdFormat = 40;
 
-/// Undoes what the sixth format changed: moves quads with numbers from psog to posg. The sums of ranges of posg remain
-/// as they are.
-void moveNumbers(MDB_txn* transaction, MDB_dbi main) {
+/// Gives posg the sums of ranges that it had in the fifth format, which had no psog.
+void useRangesOfFifthFormat(Environment& environment) {
+  WriteTransaction transaction = environment.write();
+  std::vector<Key128> keys;
+  QuadCursor quads = QuadReader(transaction).scan({}, QuadOrder::Posg);
+  for (QuadIds quad; quads.next(quad);) keys.push_back(toNumber(quad, QuadOrder::Posg));
+  RangeSummer sums(Table::Posg);
+  sums.add(keys);
+  storeRanges(transaction, Table::Posg, sums.take());
+  transaction.eraseBlock("index sums", "psog");
+  transaction.commit();
+}
+
+/// Undoes what the sixth format changed: moves quads with numbers from psog to posg. It follows the function above.
+void makeFifthFormat(MDB_txn* transaction, MDB_dbi main) {
+  putText(transaction, main, "cluxel-format", "5");
   for (const std::string& key : keysOf(transaction, "psog"))
     putKey(transaction, "posg", key.substr(0, 4) + key.substr(8, 4) + key.substr(4, 4) + key.substr(12));
   MDB_dbi psog = 0;
@@ -106,17 +124,13 @@ void moveNumbers(MDB_txn* transaction, MDB_dbi main) {
 
 /// Undoes also what the fifth format added: the sums of ranges.
 void makeFourthFormat(MDB_txn* transaction, MDB_dbi main) {
-  moveNumbers(transaction, main);
+  makeFifthFormat(transaction, main);
   putText(transaction, main, "cluxel-format", "4");
   MDB_dbi blocks = 0;
   ASSERT_EQ(mdb_dbi_open(transaction, "blocks", 0, &blocks), 0);
-  const auto remove = [&](MDB_dbi table, std::string name) {
-    MDB_val key{name.size(), name.data()};
-    ASSERT_EQ(mdb_del(transaction, table, &key, nullptr), 0) << name;
-  };
-  remove(main, "cluxel-keys:index sums");
-  for (const char* index : {"hashes", "spog", "posg", "ospg", "gspo", "psog"})
-    remove(blocks, std::string("index sums") + '\0' + index);
+  remove(transaction, main, "cluxel-keys:index sums");
+  for (const char* index : {"hashes", "spog", "posg", "ospg", "gspo"})
+    remove(transaction, blocks, std::string("index sums") + '\0' + index);
 }
 
 /// Undoes what the fourth format changed: adds literals to the index by object, whose sum the record lacks.
@@ -134,13 +148,9 @@ void makeFirstFormat(MDB_txn* transaction, MDB_dbi main) {
   putText(transaction, main, "cluxel-format", "1");
   MDB_dbi blocks = 0;
   ASSERT_EQ(mdb_dbi_open(transaction, "blocks", 0, &blocks), 0);
-  const std::string of_terms = std::string("term sums") + std::string(5, '\0');
-  for (const auto& [table, name] :
-       {std::pair(main, std::string("cluxel-sums")), std::pair(main, std::string("cluxel-keys:term sums")),
-        std::pair(blocks, of_terms)}) {
-    MDB_val key{name.size(), const_cast<char*>(name.data())};
-    ASSERT_EQ(mdb_del(transaction, table, &key, nullptr), 0) << name;
-  }
+  remove(transaction, main, "cluxel-sums");
+  remove(transaction, main, "cluxel-keys:term sums");
+  remove(transaction, blocks, std::string("term sums") + std::string(5, '\0'));
 }
 
 /// Quads with integers, and as many with an IRI.
@@ -179,6 +189,7 @@ class MapOfEarlierFormat : public MapFile {
   template <typename Make>
   fs::path compactedAfterChange(std::uint32_t quads, const Make& make) {
     addNumbers(*create(), 0, quads);
+    useRangesOfFifthFormat(*open());
     withLmdb(file_, make);
     EXPECT_THAT(checkMap(file_).faults, ElementsAre());
     addNumbers(*open(), quads, quads + 100);
@@ -196,8 +207,17 @@ TEST_F(MapOfEarlierFormat, TheThirdKeepsLiteralsInTheIndexByObject) {
     withLmdb(file, [](MDB_txn* transaction, MDB_dbi) { EXPECT_EQ(entriesOf(transaction, "ospg"), 1200U); });
 }
 
+TEST_F(MapOfEarlierFormat, TheFifthKeepsNumbersInTheIndexByValue) {
+  for (const fs::path& file : {compactedAfterChange(5000, makeFifthFormat), file_})
+    withLmdb(file, [](MDB_txn* transaction, MDB_dbi) {
+      EXPECT_EQ(entriesOf(transaction, "posg"), 10'200U);
+      MDB_dbi psog = 0;
+      EXPECT_EQ(mdb_dbi_open(transaction, "psog", 0, &psog), MDB_NOTFOUND);
+    });
+}
+
 TEST_F(MapOfEarlierFormat, TheFourthIsComparedAsAWhole) {
-  compactedAfterChange(5000, [](MDB_txn* transaction, MDB_dbi main) { makeFourthFormat(transaction, main); });
+  compactedAfterChange(5000, makeFourthFormat);
   std::string bytes = readFile(file_);
   const std::size_t at = bytes.find("s4321");
   ASSERT_NE(at, std::string::npos);
@@ -208,7 +228,8 @@ TEST_F(MapOfEarlierFormat, TheFourthIsComparedAsAWhole) {
 
 TEST_F(MapFile, OfTheFirstFormatIsReadAndGetsSumsWithItsNextCommit) {
   addNumbers(*create(), 0, 500);
-  withLmdb(file_, [](MDB_txn* transaction, MDB_dbi main) { makeFirstFormat(transaction, main); });
+  useRangesOfFifthFormat(*open());
+  withLmdb(file_, makeFirstFormat);
   EXPECT_EQ(QuadReader(open(OpenMode::ReadOnly)->read()).size(), 1000U);
   EXPECT_TRUE(checkMap(file_).sound());
   const fs::path compacted = folder_.path() / "compacted.clx";
