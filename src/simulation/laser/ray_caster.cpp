@@ -11,6 +11,7 @@
 #include <mutex>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include "cluxel/error.hpp"
 
@@ -64,6 +65,13 @@ void attach(RTCDevice device, RTCScene scene, const CampusMesh& mesh, unsigned n
   rtcReleaseGeometry(geometry);
 }
 
+/// Embree's ranges stray by less than this share, by how the processor approximates reciprocals.
+constexpr double kRangeTolerance = 1e-5;
+
+float beyond(double range_m) {
+  return static_cast<float>(range_m * (1 + kRangeTolerance));
+}
+
 RTCRayHit rayFrom(const Vector3d& origin, const Vector3d& direction, double max_range_m) {
   RTCRayHit ray{};
   ray.ray.org_x = static_cast<float>(origin.x());
@@ -72,7 +80,7 @@ RTCRayHit rayFrom(const Vector3d& origin, const Vector3d& direction, double max_
   ray.ray.dir_x = static_cast<float>(direction.x());
   ray.ray.dir_y = static_cast<float>(direction.y());
   ray.ray.dir_z = static_cast<float>(direction.z());
-  ray.ray.tfar = static_cast<float>(max_range_m);
+  ray.ray.tfar = beyond(max_range_m);
   ray.ray.mask = ~0U;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
@@ -93,6 +101,35 @@ RayHit exactHit(const Campus& campus, const RTCHit& hit, const Vector3d& origin,
           .triangle = hit.primID};
 }
 
+/// A search for the nearest surface. Embree passes it to the filter in the place of its context.
+struct NearestHit {
+  RTCIntersectContext context;
+  const Campus& campus;
+  Vector3d origin, direction;  ///< of the ray as Embree sees it
+  double max_range_m;
+  RTCHit hit{};
+  double range_m = std::numeric_limits<double>::infinity();
+
+  bool isNearer(const RTCHit& other, double other_m) const {
+    if (other_m > max_range_m || other_m > range_m) return false;
+    return other_m < range_m || std::pair(other.geomID, other.primID) < std::pair(hit.geomID, hit.primID);
+  }
+};
+
+/// Keeps the nearest hit by exact ranges, and lets Embree search as far as its own ranges may stray from them.
+void filterHit(const RTCFilterFunctionNArguments* found) {
+  auto& nearest = *reinterpret_cast<NearestHit*>(found->context);
+  const RTCHit hit = rtcGetHitFromHitN(found->hit, found->N, 0);
+  const double range_m = exactHit(nearest.campus, hit, nearest.origin, nearest.direction).range_m;
+  if (!nearest.isNearer(hit, range_m)) {
+    found->valid[0] = 0;
+    return;
+  }
+  nearest.hit = hit;
+  nearest.range_m = range_m;
+  RTCRayN_tfar(found->ray, found->N, 0) = beyond(range_m);
+}
+
 }  // namespace
 
 struct RayCaster::Embree {
@@ -104,7 +141,7 @@ RayCaster::RayCaster(const Campus& campus) : embree_(std::make_unique<Embree>())
   embree_->device = sharedDevice();
   RTCDevice device = embree_->device.get();
   embree_->scene.reset(rtcNewScene(device));
-  rtcSetSceneFlags(embree_->scene.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneFlags(embree_->scene.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
   for (std::size_t i = 0; i < campus.meshes.size(); ++i)
     attach(device, embree_->scene.get(), campus.meshes[i], static_cast<unsigned>(i));
   rtcCommitScene(embree_->scene.get());
@@ -115,11 +152,16 @@ RayCaster::~RayCaster() = default;
 std::optional<RayHit> RayCaster::cast(const Vector3d& origin_map, const Vector3d& direction_map,
                                       double max_range_m) const {
   RTCRayHit ray = rayFrom(origin_map, direction_map, max_range_m);
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(embree_->scene.get(), &context, &ray);
-  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  return exactHit(campus_, ray.hit, origin_map, direction_map);
+  NearestHit nearest{.context = {},
+                     .campus = campus_,
+                     .origin = {ray.ray.org_x, ray.ray.org_y, ray.ray.org_z},
+                     .direction = {ray.ray.dir_x, ray.ray.dir_y, ray.ray.dir_z},
+                     .max_range_m = max_range_m};
+  rtcInitIntersectContext(&nearest.context);
+  nearest.context.filter = filterHit;
+  rtcIntersect1(embree_->scene.get(), &nearest.context, &ray);
+  if (std::isinf(nearest.range_m)) return std::nullopt;
+  return exactHit(campus_, nearest.hit, origin_map, direction_map);
 }
 
 }  // namespace cluxel::simulation

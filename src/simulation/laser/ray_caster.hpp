@@ -10,8 +10,9 @@
 
 namespace cluxel::simulation {
 
-/// Thread-safe for casting. Embree picks the triangle; range and incidence are computed here in double, so
-/// they do not depend on Embree's choice of vector instructions.
+/// Thread-safe for casting. Embree finds the triangles that a ray meets; which is the nearest, its range and its
+/// incidence are computed here in double, so that they do not depend on the processor. Of equal ranges the first
+/// triangle of the first mesh counts.
 class RayCaster {
  public:
   explicit RayCaster(const Campus& campus);
