@@ -142,7 +142,10 @@ TEST(WhyNot, OfItsOwnClassIsAcceptedByTheRuleThatMadeIt) {
   std::size_t told = 0;
   for (const SemanticObject& object : map.objects()) {
     if (localName(object.class_iri) != "StreetSign" || ++told > 3) continue;
-    const auto json = nlohmann::json::parse(explainWhyNot(map, object.id.hex(), "StreetSign").json);
+    const ExplanationTexts why = explainWhyNot(map, object.id.hex(), "StreetSign");
+    EXPECT_THAT(why.text, HasSubstr(object.rule_id + ": accepted with log-odds "));
+    EXPECT_THAT(why.text, HasSubstr(": it made the thing\n"));
+    const auto json = nlohmann::json::parse(why.json);
     EXPECT_EQ(json.at("rules").at(0).at("outcome"), "accepted");
     EXPECT_EQ(json.at("rules").at(0).at("rule"), object.rule_id);
   }

@@ -248,6 +248,8 @@ std::string textOf(const WhyNot& why, const RuleSet& rules) {
     text += "  " + decision.rule_id + ": " + std::string(nameOf(verdict.nearness));
     if (verdict.nearness != Nearness::Accepted)
       text += ": " + decision.reason;
+    else if (verdict.madeThing())
+      text += " with log-odds " + signedNumber(decision.log_odds) + ": it made the thing";
     else if (verdict.winner)
       text += " with log-odds " + signedNumber(decision.log_odds) + ", but " +
               rules.shorten(verdict.winner->class_iri) + " (" + verdict.winner->rule_id + ") has " +

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ranks what the rules of a class say: accepted, then by the least change of values, then what cannot be changed.
+// Ranks what the rules of a class say: the rule that made the thing, what accepts it, then by the least change of
+// values, then what cannot be changed.
 #include "rules/explain/why_not.hpp"
 
 #include <algorithm>
@@ -72,6 +73,7 @@ class WhyNotSearch {
 };
 
 double costOfVerdict(const RuleVerdict& verdict) {
+  if (verdict.madeThing()) return -std::numeric_limits<double>::infinity();
   if (verdict.nearness == Nearness::Accepted) return verdict.behind;
   if (verdict.counterfactual) return costOf(verdict.counterfactual->changes);
   // What cannot be changed: the farther down the tree, the nearer.

@@ -28,11 +28,14 @@ struct RuleVerdict {
   std::optional<Counterfactual> counterfactual;  ///< what would make it accept, or make the primitive a seed
   std::optional<RivalNote> winner;               ///< of Accepted: who took the thing
   double behind = 0;                             ///< log-odds that it lost by; below 0 when it only came later
+
+  /// Whether the thing is of the class already, by this rule.
+  bool madeThing() const { return winner && winner->rule_id == decision.rule_id; }
 };
 
 struct WhyNot {
   std::string class_iri;
-  std::vector<RuleVerdict> rules;  ///< the nearest first
+  std::vector<RuleVerdict> rules;  ///< the one that made the thing, then the nearest first
 };
 
 /// Ranks what the rules of the class say of a thing (considerFor()). `owner` is the thing when it is an object, else
