@@ -80,6 +80,16 @@ std::vector<QuadKey> NumberEntries::matching(const QuadPattern& pattern, QuadOrd
   return keys;
 }
 
+ObjectKind ObjectKinds::of(TermId id) {
+  const std::size_t number = id / kChunkSize;
+  if (chunks_.size() <= number) chunks_.resize(number + 1);
+  std::unique_ptr<Chunk>& chunk = chunks_[number];
+  if (!chunk) chunk = std::make_unique<Chunk>();
+  std::optional<ObjectKind>& kind = (*chunk)[id % kChunkSize];
+  if (!kind) kind = entries_.kindOf(id);
+  return *kind;
+}
+
 std::vector<TermId> distinctFirst(const PageDirectory& directory) {
   std::vector<TermId> ids;
   PageDirectory::Position at = directory.begin();

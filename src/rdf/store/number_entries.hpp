@@ -3,7 +3,9 @@
 // spread over the whole map, so that each number would cost a page of its own whenever a part of the map changes.
 #pragma once
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "rdf/file/page_directory.hpp"
@@ -40,6 +42,21 @@ class NumberEntries {
   bool hasIn(QuadOrder order, TermId predicate) const;
 
   ReadTransaction transaction_;
+};
+
+/// The kinds of objects, each found once. Memory follows the ids that are asked for, not the terms of the map.
+class ObjectKinds {
+ public:
+  explicit ObjectKinds(ReadTransaction transaction) : entries_(std::move(transaction)) {}
+  ObjectKind of(TermId id);
+  /// Of an id that was asked for.
+  ObjectKind known(TermId id) const { return *(*chunks_[id / kChunkSize])[id % kChunkSize]; }
+
+ private:
+  static constexpr TermId kChunkSize = 4096;
+  using Chunk = std::array<std::optional<ObjectKind>, kChunkSize>;
+  NumberEntries entries_;
+  std::vector<std::unique_ptr<Chunk>> chunks_;
 };
 
 /// The distinct first ids of an index, ascending. Cost: one seek for each.

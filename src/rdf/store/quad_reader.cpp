@@ -85,19 +85,7 @@ std::optional<TermId> QuadReader::idOf(const Term& term) const {
   }
   std::string record;
   encodeTerm(term, datatype, record);
-  const TermHash hash = hashOfRecord(record);
-  const PageDirectory& hashes = impl_->snapshot().directory(Table::TermHashes, impl_->state());
-  const Key128 first = (Key128{hash.high} << 64U) | (Key128{hash.low} << 32U);
-  auto position = hashes.lowerBound(first);
-  for (; position.page < hashes.pageCount(); ++position.index) {
-    const auto keys = hashes.page(position.page);
-    if (position.index == keys.size()) position = {position.page + 1, 0};
-    if (position.page == hashes.pageCount()) break;
-    const QuadKey& key = hashes.page(position.page)[position.index];
-    if ((toNumber(key) >> 32U) != (first >> 32U)) break;
-    if (impl_->record(key.at(3)) == record) return key.at(3);
-  }
-  return std::nullopt;
+  return impl_->snapshot().idOf(hashOfRecord(record), record, impl_->state());
 }
 
 TermView QuadReader::viewOf(TermId id) const {

@@ -67,32 +67,31 @@ struct QuadWriter::Impl {
   RecentIris recent;
   TermId next_id = kNoTerm;  ///< kNoTerm while no new term is pending, so that another writer can assign ids
   std::string record;
-  std::vector<std::optional<ObjectKind>> kinds;  ///< of the terms that were asked for
+  ObjectKinds kinds;
 
-  explicit Impl(WriteTransaction& from) : transaction(from), reader(from) {}
+  explicit Impl(WriteTransaction& from) : transaction(from), reader(from), kinds(from) {}
 
   ReadTransaction::Impl& state() const { return transaction.impl(); }
   TermId internIri(const Term& term);
-  TermId internRecord(const Term& term);
+  /// Of the term whose record is in `record`.
+  TermId internRecord();
   void flushTerms();
   void flushGeometries(TermId first, TermId last);
   QuadDifference takeChanges();
-  ObjectKind kindOf(TermId id);
   QuadsByKind byKind(const QuadDifference& difference);
   IndexTask taskFor(QuadOrder order);
   void flushQuads(const QuadDifference& difference);
 };
 
-TermId QuadWriter::Impl::internRecord(const Term& term) {
+TermId QuadWriter::Impl::internRecord() {
   const TermHash hash = hashOfRecord(record);
   if (const auto known = terms.find(hash, record)) return *known;
-  if (reader.termCount() > 0) {
-    if (const auto stored = reader.idOf(term)) {
-      terms.insert(hash, record, *stored, false);
-      return *stored;
-    }
+  StoreSnapshot& snapshot = snapshotOf(state());
+  if (const auto stored = snapshot.idOf(hash, record, state())) {
+    terms.insert(hash, record, *stored, false);
+    return *stored;
   }
-  if (next_id == kNoTerm) next_id = static_cast<TermId>(reader.termCount() + 1);
+  if (next_id == kNoTerm) next_id = static_cast<TermId>(snapshot.termCount() + 1);
   if (next_id == kMaxTerms) throw Error(ErrorKind::StoreUnavailable, "the map is full: it holds 2^31 different terms");
   terms.insert(hash, record, next_id, true);
   return next_id++;
@@ -103,7 +102,7 @@ TermId QuadWriter::Impl::internIri(const Term& term) {
   RecentIris::Entry& slot = recent.slotOf(term.text);
   if (slot.id != kNoTerm && slot.iri == term.text) return slot.id;
   encodeTerm(term, kNoTerm, record);
-  slot.id = internRecord(term);
+  slot.id = internRecord();
   slot.iri = term.text;
   return slot.id;
 }
@@ -165,12 +164,6 @@ QuadDifference QuadWriter::Impl::takeChanges() {
   return difference;
 }
 
-ObjectKind QuadWriter::Impl::kindOf(TermId id) {
-  if (kinds.size() <= id) kinds.resize(std::max<std::size_t>(id + 1, reader.termCount() + 1));
-  if (!kinds[id]) kinds[id] = NumberEntries(transaction).kindOf(id);
-  return *kinds[id];
-}
-
 QuadsByKind QuadWriter::Impl::byKind(const QuadDifference& difference) {
   QuadsByKind divided;
   constexpr std::size_t kQuadsBetweenPolls = 4096;
@@ -178,7 +171,7 @@ QuadsByKind QuadWriter::Impl::byKind(const QuadDifference& difference) {
   const auto divide = [&](const std::vector<QuadIds>& quads, std::vector<QuadIds> QuadDifference::*list) {
     for (const QuadIds& quad : quads) {
       if (++seen % kQuadsBetweenPolls == 0 && state().flush_poll) state().flush_poll();
-      const ObjectKind kind = kindOf(quad.o);
+      const ObjectKind kind = kinds.of(quad.o);
       if (kind == ObjectKind::Link) (divided.links.*list).push_back(quad);
       (kind == ObjectKind::Number ? divided.numbers.*list : divided.others.*list).push_back(quad);
     }
@@ -198,7 +191,7 @@ IndexTask QuadWriter::Impl::taskFor(QuadOrder order) {
   task.journal = &state().journal;
   if (!state().environment->keepsNumbersApart()) return task;
   task.sum_of_numbers = &sums.numbers;
-  task.is_number = [this](TermId object) { return kinds[object] == ObjectKind::Number; };
+  task.is_number = [this](TermId object) { return kinds.known(object) == ObjectKind::Number; };
   return task;
 }
 
@@ -236,7 +229,7 @@ TermId QuadWriter::intern(const Term& term) {
     if (known == impl_->datatypes.end()) impl_->datatypes.emplace(term.datatype, datatype);
   }
   encodeTerm(term, datatype, impl_->record);
-  return impl_->internRecord(term);
+  return impl_->internRecord();
 }
 
 void QuadWriter::add(const QuadIds& quad) {

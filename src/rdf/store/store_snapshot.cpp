@@ -170,6 +170,22 @@ std::string_view StoreSnapshot::record(TermId id, ReadTransaction::Impl& transac
   return storedRecord(id, transaction);
 }
 
+std::optional<TermId> StoreSnapshot::idOf(const TermHash& hash, std::string_view bytes,
+                                          ReadTransaction::Impl& transaction) {
+  if (term_count_ == 0) return std::nullopt;
+  const PageDirectory& hashes = directory(Table::TermHashes, transaction);
+  const Key128 first = keyOfTerm(hash, kNoTerm);
+  auto position = hashes.lowerBound(first);
+  for (; position.page < hashes.pageCount(); ++position.index) {
+    if (position.index == hashes.page(position.page).size()) position = {position.page + 1, 0};
+    if (position.page == hashes.pageCount()) break;
+    const QuadKey& key = hashes.page(position.page)[position.index];
+    if ((toNumber(key) >> 32U) != (first >> 32U)) break;
+    if (record(key.at(3), transaction) == bytes) return key.at(3);
+  }
+  return std::nullopt;
+}
+
 void StoreSnapshot::requireTerm(TermId id, ReadTransaction::Impl& transaction) {
   requireSums(transaction);
   const TermId number = id / kTermsOfSum;

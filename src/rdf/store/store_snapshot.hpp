@@ -47,6 +47,8 @@ class StoreSnapshot : public std::enable_shared_from_this<StoreSnapshot> {
   /// The record of a term; throws Error for an unknown id. Of each 64 terms the first one that is read compares all
   /// with their sum. Thread-safe.
   std::string_view record(TermId id, ReadTransaction::Impl& transaction);
+  /// The term with this record; `hash` is that of the record.
+  std::optional<TermId> idOf(const TermHash& hash, std::string_view record, ReadTransaction::Impl& transaction);
   /// Compares all indexes and terms with their sums.
   void verify(ReadTransaction::Impl& transaction);
   /// Reads what readers of a write transaction need that begins with this commit, which `transaction` sees.
