@@ -4,6 +4,7 @@
 #include "rdf/file/directory_update.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace cluxel::rdf {
@@ -30,8 +31,8 @@ class DirectoryUpdate {
     if (pages_.size() < 2) return std::nullopt;
     UpdatedDirectory updated;
     updated.dirty_pages = static_cast<std::uint64_t>(
-        std::count_if(pages_.begin(), pages_.end(), [&](const std::uint8_t* page) { return !isCommitted(page); }));
-    updated.directory = PageDirectory(pages_, lower_);
+        std::count_if(pages_.begin(), pages_.end(), [&](const QuadKey* keys) { return !isCommitted(pageOf(keys)); }));
+    updated.directory = PageDirectory(std::move(pages_), std::move(lower_));
     updated.directory.guardBy(before_.guard());
     return updated;
   }
@@ -40,9 +41,13 @@ class DirectoryUpdate {
   bool isCommitted(const std::uint8_t* page) const {
     return page >= committed_.base && page < committed_.base + committed_.page_size * committed_.page_count;
   }
-  static Key128 firstKey(const std::uint8_t* page) {
-    return toNumber(*reinterpret_cast<const QuadKey*>(page + lmdb_page::kHeaderSize));
+  static const std::uint8_t* pageOf(const QuadKey* keys) {
+    return reinterpret_cast<const std::uint8_t*>(keys) - lmdb_page::kHeaderSize;
   }
+  static const QuadKey* keysOf(const std::uint8_t* page) {
+    return reinterpret_cast<const QuadKey*>(page + lmdb_page::kHeaderSize);
+  }
+  static Key128 firstKey(const std::uint8_t* page) { return toNumber(*keysOf(page)); }
   /// The page to which the cursor moves, or none.
   const std::uint8_t* moved(MDB_cursor_op operation) {
     MDB_val key{};
@@ -70,17 +75,21 @@ class DirectoryUpdate {
   /// The place of a committed page in the list of before.
   std::optional<std::size_t> placeOf(const std::uint8_t* page) const {
     const std::size_t place = before_.pageOf(firstKey(page));
-    if (before_.uncheckedPage(place).data() != reinterpret_cast<const QuadKey*>(page + lmdb_page::kHeaderSize))
-      return std::nullopt;
+    if (before_.uncheckedPage(place).data() != keysOf(page)) return std::nullopt;
     return place;
   }
   void keepUntil(std::size_t end) {
-    for (; next_ < end; ++next_)
-      add(reinterpret_cast<const std::uint8_t*>(before_.uncheckedPage(next_).data()) - lmdb_page::kHeaderSize,
-          before_.lower(next_));
+    if (end <= next_) return;
+    const auto append = [&](const auto& from, auto& to) {
+      const auto kept = from.subspan(next_, end - next_);
+      to.insert(to.end(), kept.begin(), kept.end());
+    };
+    append(before_.pages(), pages_);
+    append(before_.lowers(), lower_);
+    next_ = end;
   }
   void add(const std::uint8_t* page, Key128 lower) {
-    pages_.push_back(page);
+    pages_.push_back(keysOf(page));
     lower_.push_back(lower);
   }
 
@@ -115,7 +124,7 @@ class DirectoryUpdate {
   const PageDirectory& before_;
   const PageMap& committed_;
   MDB_cursor* cursor_;
-  std::vector<const std::uint8_t*> pages_;
+  std::vector<const QuadKey*> pages_;
   std::vector<Key128> lower_;
   std::size_t next_ = 0;                 ///< the first page of before that is neither kept nor replaced yet
   std::optional<Key128> last_of_right_;  ///< of the committed page that ended the last run: keys up to it are done with

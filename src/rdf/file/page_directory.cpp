@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 
 #include "cluxel/error.hpp"
 #include "rdf/file/check/page_guard.hpp"
@@ -192,11 +193,9 @@ PageDirectory::PageDirectory(MDB_cursor* cursor) {
   }
 }
 
-PageDirectory::PageDirectory(std::span<const std::uint8_t* const> pages, std::span<const Key128> first_keys)
-    : lower_(first_keys.begin(), first_keys.end()) {
+PageDirectory::PageDirectory(std::vector<const QuadKey*> pages, std::vector<Key128> first_keys)
+    : lower_(std::move(first_keys)), pages_(std::move(pages)) {
   if (!lower_.empty()) lower_.front() = 0;
-  pages_.reserve(pages.size());
-  for (const std::uint8_t* page : pages) pages_.push_back(keysAt(page + kHeaderSize));
 }
 
 std::size_t PageDirectory::pageOf(Key128 key) const {

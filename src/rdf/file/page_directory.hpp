@@ -71,8 +71,9 @@ class PageDirectory {
   /// Built with an LMDB cursor, which also sees the dirty pages of a write transaction. Cost: reads the first key of
   /// each leaf page.
   explicit PageDirectory(MDB_cursor* cursor);
-  /// Of pages in memory with their first keys, ascending; none is empty. The pages must live as long.
-  PageDirectory(std::span<const std::uint8_t* const> pages, std::span<const Key128> first_keys);
+  /// Of pages in memory: where their keys begin, and their first keys, ascending; none is empty. The pages must live as
+  /// long.
+  PageDirectory(std::vector<const QuadKey*> pages, std::vector<Key128> first_keys);
   /// The same pages, guarded.
   PageDirectory(const PageDirectory& pages, std::shared_ptr<const PageGuard> guard);
 
@@ -89,6 +90,9 @@ class PageDirectory {
     const QuadKey* keys = pages_[i];
     return {keys, single_ ? 1 : entryCount(keys)};
   }
+  /// Where the keys of the pages begin, and the lower bounds of the pages.
+  std::span<const QuadKey* const> pages() const { return pages_; }
+  std::span<const Key128> lowers() const { return lower_; }
   /// No key of page `i` is less, and all keys of earlier pages are.
   Key128 lower(std::size_t i) const { return lower_[i]; }
   Position begin() const { return {}; }

@@ -91,10 +91,10 @@ bool IndexDraft::remove(Key128 key) {
 }
 
 PageDirectory IndexDraft::directory() const {
-  std::vector<const std::uint8_t*> pages;
+  std::vector<const QuadKey*> pages;
   pages.reserve(pages_.size());
-  for (const std::unique_ptr<Page>& page : pages_) pages.push_back(page->bytes.data());
-  return PageDirectory(pages, first_);
+  for (const std::unique_ptr<Page>& page : pages_) pages.push_back(page->first());
+  return PageDirectory(std::move(pages), first_);
 }
 
 }  // namespace cluxel::rdf
