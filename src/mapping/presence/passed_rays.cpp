@@ -87,9 +87,10 @@ PassedRaysUpdate::PassedRaysUpdate(const rdf::ReadTransaction& transaction, cons
     if (!counts_rays(objects[i])) continue;
     Target target{i, objects[i].id, placesWithin(scene, objects[i]), {}, {}};
     if (target.places.empty()) continue;
+    const Eigen::AlignedBox3d box = boxAround(target.places);
     std::vector<ContentHash> passing;  // in an order that does not follow that of the clouds
     for (std::size_t c = 0; c < clouds.size(); ++c)
-      if (mayPass(clouds[c], target.places)) passing.push_back(hashes[c]);
+      if (mayPass(clouds[c], target.places, box)) passing.push_back(hashes[c]);
     std::sort(passing.begin(), passing.end());
     ContentHasher hasher;
     hasher.add(kCountsVersion).addBytes(target.places.data(), target.places.size() * sizeof(Eigen::Vector3d));

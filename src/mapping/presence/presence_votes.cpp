@@ -20,6 +20,12 @@ constexpr float kClearOfGround_m = 0.3F;
 /// More than the distances at which a ray concerns a place (RayParams).
 constexpr double kAroundRays_m = 1;
 
+/// Where rays of the cloud end, and what they may concern around.
+Eigen::AlignedBox3d reachedBy(const Cloud& cloud) {
+  const Eigen::Vector3d around = Eigen::Vector3d::Constant(kAroundRays_m);
+  return {cloud.rays.min() - around, cloud.rays.max() + around};
+}
+
 }  // namespace
 
 /// Rays that graze the ground beside a low place end near it: such places are left out where there are others.
@@ -37,10 +43,19 @@ std::vector<Eigen::Vector3d> placesOn(const perception::Scene& scene, const rule
 }
 
 bool mayPass(const Cloud& cloud, const std::vector<Eigen::Vector3d>& places) {
-  const Eigen::Vector3d around = Eigen::Vector3d::Constant(kAroundRays_m);
-  const Eigen::AlignedBox3d reached(cloud.rays.min() - around, cloud.rays.max() + around);
+  const Eigen::AlignedBox3d reached = reachedBy(cloud);
   return std::any_of(places.begin(), places.end(),
                      [&](const Eigen::Vector3d& place) { return reached.contains(place); });
+}
+
+bool mayPass(const Cloud& cloud, const std::vector<Eigen::Vector3d>& places, const Eigen::AlignedBox3d& box) {
+  return reachedBy(cloud).intersects(box) && mayPass(cloud, places);
+}
+
+Eigen::AlignedBox3d boxAround(const std::vector<Eigen::Vector3d>& places) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& place : places) box.extend(place);
+  return box;
 }
 
 PresenceVoting::Sphere PresenceVoting::sphereAround(const std::vector<Eigen::Vector3d>& places) {
@@ -56,11 +71,13 @@ PresenceVoting::PresenceVoting(const perception::Scene& scene, std::span<const r
     : RayObserver(threads),
       is_told_(timedClouds(clouds).size() >= 2),
       votes_(objects.size()),
-      spheres_(objects.size()) {
+      spheres_(objects.size()),
+      boxes_(objects.size()) {
   if (!is_told_) return;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     votes_[i].places = placesOn(scene, objects[i]);
     spheres_[i] = sphereAround(votes_[i].places);
+    boxes_[i] = boxAround(votes_[i].places);
   }
 }
 
@@ -95,15 +112,16 @@ class PresenceVoting::View : public ScanView {
 };
 
 bool PresenceVoting::wants(const Cloud& cloud) const {
-  return is_told_ && cloud.time_s && cloud.has_pose &&
-         std::any_of(votes_.begin(), votes_.end(),
-                     [&](const ObjectVotes& object) { return mayPass(cloud, object.places); });
+  if (!is_told_ || !cloud.time_s || !cloud.has_pose) return false;
+  for (std::size_t i = 0; i < votes_.size(); ++i)
+    if (mayPass(cloud, votes_[i].places, boxes_[i])) return true;
+  return false;
 }
 
 std::unique_ptr<ScanView> PresenceVoting::view(const Cloud& cloud) const {
   std::vector<std::size_t> passed;
   for (std::size_t i = 0; i < votes_.size(); ++i)
-    if (mayPass(cloud, votes_[i].places)) passed.push_back(i);
+    if (mayPass(cloud, votes_[i].places, boxes_[i])) passed.push_back(i);
   return std::make_unique<View>(*this, *cloud.time_s, std::move(passed));
 }
 

@@ -2,6 +2,7 @@
 // What the rays of all timed scans say about the presence of each object.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <functional>
 #include <memory>
 #include <span>
@@ -26,6 +27,9 @@ std::vector<Eigen::Vector3d> placesOn(const perception::Scene& scene, const rule
 
 /// Whether rays of the cloud may pass a place or end there.
 bool mayPass(const Cloud& cloud, const std::vector<Eigen::Vector3d>& places);
+/// The same with the box around the places, which is fast for clouds that are far away.
+bool mayPass(const Cloud& cloud, const std::vector<Eigen::Vector3d>& places, const Eigen::AlignedBox3d& box);
+Eigen::AlignedBox3d boxAround(const std::vector<Eigen::Vector3d>& places);
 
 /// Collects the votes for each object. Rays are compared with up to 256 cluxels of an object, at least 0.3 m above the
 /// ground where it has such. Ground gets no votes, nor does anything when fewer than two clouds have a time and a pose.
@@ -53,6 +57,7 @@ class PresenceVoting : public RayObserver {
   bool is_told_ = false;  ///< two clouds or more have a time and a pose
   std::vector<ObjectVotes> votes_;
   std::vector<Sphere> spheres_;
+  std::vector<Eigen::AlignedBox3d> boxes_;  ///< around the places of each object
 };
 
 /// The votes for each object, from all clouds. `load` gives a cloud's scan.

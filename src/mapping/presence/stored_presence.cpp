@@ -74,10 +74,11 @@ PresenceUpdate::PresenceUpdate(const rdf::ReadTransaction& transaction, const pe
   std::vector<rules::SemanticObject> asked;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const std::vector<Eigen::Vector3d> places = placesOn(scene, objects[i]);
+    const Eigen::AlignedBox3d box = boxAround(places);
     ContentHasher hasher;
     hasher.add(kVersion).addBytes(places.data(), places.size() * sizeof(Eigen::Vector3d));
     for (std::size_t c = 0; c < timed.size() && !places.empty(); ++c)
-      if (mayPass(*timed[c], places)) hasher.add(cloud_hash[c]);
+      if (mayPass(*timed[c], places, box)) hasher.add(cloud_hash[c]);
     causes_[i] = hasher.finish();
     if (const auto row = storedRow(transaction, ids_[i]); row && row->cause == causes_[i]) {
       presence_[i] = presenceFrom(*row);
