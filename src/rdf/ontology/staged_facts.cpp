@@ -3,8 +3,18 @@
 #include "rdf/ontology/staged_facts.hpp"
 
 #include <algorithm>
+#include <span>
 
 namespace cluxel::rdf {
+
+namespace {
+
+std::span<const TermId> endsOf(const std::unordered_map<TermId, std::vector<TermId>>& ends, TermId end) {
+  const auto found = ends.find(end);
+  return found != ends.end() ? std::span<const TermId>(found->second) : std::span<const TermId>();
+}
+
+}  // namespace
 
 StagedFacts::StagedFacts(const QuadReader& reader, const SchemaWords& words, std::vector<TermId> sources,
                          TermId inferred, std::vector<LateFact> late)
@@ -16,14 +26,20 @@ bool StagedFacts::isSource(TermId graph) const {
   return std::find(sources_.begin(), sources_.end(), graph) != sources_.end();
 }
 
-/// The state of a fact that graph `inferred` holds.
-FactState StagedFacts::inferredState(const Triple& fact) const {
+/// Its place among the facts of later stages before the change.
+std::optional<std::size_t> StagedFacts::lateAt(const Triple& fact) const {
   const auto at = std::lower_bound(late_.begin(), late_.end(), fact,
                                    [](const LateFact& entry, const Triple& value) { return entry.fact < value; });
-  const bool is_late = at != late_.end() && at->fact == fact;
+  if (at == late_.end() || at->fact != fact) return std::nullopt;
+  return static_cast<std::size_t>(at - late_.begin());
+}
+
+/// The state of a fact that graph `inferred` holds.
+FactState StagedFacts::inferredState(const Triple& fact) const {
+  const auto place = lateAt(fact);
   FactState state;
-  state.before = state.now = is_late ? at->stage : 0;
-  state.base = is_late && at->is_base ? at->stage : kNever;
+  state.before = state.now = place ? late_[*place].stage : 0;
+  state.base = place && late_[*place].is_base ? late_[*place].stage : kNever;
   state.is_written = true;
   return state;
 }
@@ -48,10 +64,19 @@ FactState StagedFacts::stateOf(const Triple& fact) const {
 
 FactState& StagedFacts::insert(const Triple& fact, const FactState& state) {
   changed_of_[fact.p].push_back(fact);
-  objects_[key(fact.p, fact.s)].push_back(fact.o);
-  subjects_[key(fact.p, fact.o)].push_back(fact.s);
   touches_schema_ = touches_schema_ || words_.isAxiom(fact.p, fact.o);
   return changed_.emplace(fact, state).first->second;
+}
+
+const StagedFacts::Links& StagedFacts::linksOf(TermId property) const {
+  Links& links = links_[property];
+  const std::vector<Triple>& facts = changedOf(property);
+  for (; links.known < facts.size(); ++links.known) {
+    const Triple& fact = facts[links.known];
+    links.objects[fact.s].push_back(fact.o);
+    links.subjects[fact.o].push_back(fact.s);
+  }
+  return links;
 }
 
 FactState& StagedFacts::change(const Triple& fact) {
@@ -81,10 +106,9 @@ void StagedFacts::forEachObject(TermId subject, TermId property, const Visit& vi
     const Triple fact{subject, property, quad.o};
     if (quad.o != last && !changed_.contains(fact)) visit(quad.o, storedState(fact));
   }
-  const auto found = objects_.find(key(property, subject));
-  if (found == objects_.end()) return;
-  for (std::size_t i = 0; i < found->second.size(); ++i) {
-    const TermId object = found->second[i];
+  const auto ends = [&]() -> std::span<const TermId> { return endsOf(linksOf(property).objects, subject); };
+  for (std::size_t i = 0; i < ends().size(); ++i) {  // a visit may add some
+    const TermId object = ends()[i];
     visit(object, changed_.at({subject, property, object}));
   }
 }
@@ -96,10 +120,9 @@ void StagedFacts::forEachSubject(TermId property, TermId object, const Visit& vi
     const Triple fact{quad.s, property, object};
     if (quad.s != last && !changed_.contains(fact)) visit(quad.s, storedState(fact));
   }
-  const auto found = subjects_.find(key(property, object));
-  if (found == subjects_.end()) return;
-  for (std::size_t i = 0; i < found->second.size(); ++i) {
-    const TermId subject = found->second[i];
+  const auto ends = [&]() -> std::span<const TermId> { return endsOf(linksOf(property).subjects, object); };
+  for (std::size_t i = 0; i < ends().size(); ++i) {  // a visit may add some
+    const TermId subject = ends()[i];
     visit(subject, changed_.at({subject, property, object}));
   }
 }
@@ -119,12 +142,25 @@ void StagedFacts::write(QuadWriter& writer) {
 }
 
 std::vector<LateFact> StagedFacts::lateNow() const {
-  std::vector<LateFact> late;
-  for (const LateFact& entry : late_)
-    if (!changed_.contains(entry.fact)) late.push_back(entry);
+  std::vector<char> is_changed(late_.size(), 0);
+  for (const auto& [property, facts] : changed_of_) {
+    if (!late_of_.contains(property)) continue;
+    for (const Triple& fact : facts)
+      if (const auto place = lateAt(fact)) is_changed[*place] = 1;
+  }
+  std::vector<LateFact> made;
   for (const auto& [fact, state] : changed_)
-    if (state.now != kNever && state.now > 0) late.push_back({fact, state.now, state.base == state.now});
-  std::sort(late.begin(), late.end());
+    if (state.now != kNever && state.now > 0) made.push_back({fact, state.now, state.base == state.now});
+  std::sort(made.begin(), made.end());
+  std::vector<LateFact> late;
+  late.reserve(late_.size() + made.size());
+  auto next = made.begin();
+  for (std::size_t i = 0; i < late_.size(); ++i) {
+    if (is_changed[i] != 0) continue;
+    for (; next != made.end() && *next < late_[i]; ++next) late.push_back(*next);
+    late.push_back(late_[i]);
+  }
+  late.insert(late.end(), next, made.end());
   return late;
 }
 

@@ -79,8 +79,12 @@ class StagedFacts {
   std::vector<LateFact> lateNow() const;
 
  private:
-  using Ends = std::unordered_map<std::uint64_t, std::vector<TermId>>;
-  static std::uint64_t key(TermId property, TermId end) { return std::uint64_t{property} << 32U | end; }
+  using Ends = std::unordered_map<TermId, std::vector<TermId>>;
+  /// The changed facts of a property by their ends: the first so many.
+  struct Links {
+    std::size_t known = 0;
+    Ends objects, subjects;
+  };
   template <typename Fact>
   static const std::vector<Fact>& of(const std::unordered_map<TermId, std::vector<Fact>>& facts, TermId property) {
     static const std::vector<Fact> none;
@@ -88,9 +92,12 @@ class StagedFacts {
     return found != facts.end() ? found->second : none;
   }
   bool isSource(TermId graph) const;
+  std::optional<std::size_t> lateAt(const Triple& fact) const;
   FactState storedState(const Triple& fact) const;
   FactState inferredState(const Triple& fact) const;
   FactState& insert(const Triple& fact, const FactState& state);
+  /// Of all changed facts. Most properties are never followed, so that theirs are not made.
+  const Links& linksOf(TermId property) const;
 
   const QuadReader& reader_;
   const SchemaWords& words_;
@@ -101,7 +108,7 @@ class StagedFacts {
   std::unordered_map<TermId, std::vector<Triple>> changed_of_;  ///< by property
   std::unordered_map<TermId, std::vector<LateFact>> late_of_;
   std::vector<Triple> waiting_;
-  Ends objects_, subjects_;  ///< of changed facts
+  mutable std::unordered_map<TermId, Links> links_;
   bool touches_schema_ = false;
 };
 
