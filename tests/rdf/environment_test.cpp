@@ -2,11 +2,14 @@
 // Tests of opening maps, of blocks, transactions, snapshots and compact copies.
 #include "rdf/file/environment.hpp"
 
+#include <array>
 #include <atomic>
 #include <map>
 #include <random>
 #include <thread>
+#include <vector>
 
+#include "rdf/file/commit_stamps.hpp"
 #include "rdf/file/lmdb_environment.hpp"
 #include "rdf/file/map_check.hpp"
 #include "rdf/map_file_fixture.hpp"
@@ -18,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 TEST_F(MapFile, KeepsBlocksOfAnySizeByTableAndKey) {
   std::map<std::string, std::string> blocks = {{"", "empty key"},
@@ -174,6 +178,41 @@ TEST_F(MapFile, CompactsALargeMapInSeveralCommits) {
   EXPECT_GT(mdb_txn_id(copy.impl().live()), 3U) << "the tables, two full commits and the rest";
   EXPECT_EQ(QuadReader(copy).size(), 5000U);
   for (int i = 0; i < kBlocks; ++i) ASSERT_EQ(copy.block("t", std::to_string(i)), bytesOf(i)) << i;
+}
+
+/// The commits of a copy are numbered anew, so that an old stamp may have the number of one of them.
+TEST_F(MapFile, CopiesTheStampsOfTheLastCommitOnly) {
+  const auto environment = create();
+  const auto commit = [&](std::initializer_list<std::string_view> stamped) {
+    WriteTransaction transaction = environment->write();
+    transaction.putBlock("t", "a", std::to_string(transaction.commitNumber()));
+    for (const std::string_view name : stamped) {
+      stampCommit(transaction, name);
+      EXPECT_TRUE(hasStamp(transaction, name));
+    }
+    transaction.commit();
+  };
+  const std::array kOld = {"old 1", "old 2", "old 3", "old 4"};
+  for (const std::string_view name : kOld) commit({name});
+  commit({"last", "too"});
+  const fs::path target = folder_.path() / "copy.clx";
+  environment->compactTo(target);
+  EXPECT_TRUE(checkMap(target).sound());
+  const auto copy = Environment::open(target, OpenMode::ReadWrite);
+  const auto stamps = [&] {
+    const ReadTransaction transaction = copy->read();
+    std::vector<std::string_view> found;
+    for (const std::string_view name : {"old 1", "old 2", "old 3", "old 4", "last", "too", "unknown"})
+      if (hasStamp(transaction, name)) found.push_back(name);
+    return found;
+  };
+  EXPECT_THAT(stamps(), ElementsAre("last", "too"));
+  for (int i = 0; i < 5; ++i) {
+    WriteTransaction transaction = copy->write();
+    transaction.putBlock("t", "b", std::to_string(i));
+    transaction.commit();
+    EXPECT_THAT(stamps(), IsEmpty()) << "nobody stamped commit " << copy->read().commitNumber();
+  }
 }
 
 TEST_F(MapFile, CompactsIntoASmallerMapWithTheSameContents) {

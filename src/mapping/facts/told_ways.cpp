@@ -1,33 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// One block of rows, and the number of the commit that they are of.
+// One block of rows, stamped with the commit that they are of.
 #include "mapping/facts/told_ways.hpp"
-
-#include <cstring>
 
 #include "cluxel/error.hpp"
 #include "mapping/map_tables.hpp"
+#include "rdf/file/commit_stamps.hpp"
 
 namespace cluxel::mapping {
 
 namespace {
 
-constexpr std::string_view kWaysKey = "ways", kWaysStampKey = "ways stamp";
+constexpr std::string_view kWaysKey = "ways", kWaysStamp = "facts about ways";
 constexpr char kWaysVersion = 1;  ///< of the facts that are told of ways
 constexpr std::size_t kWayHashBytes = sizeof(ContentHash::bytes), kWayRowBytes = 2 * kWayHashBytes + 1;
-
-/// The number of the commit that the list is of.
-std::optional<std::uint64_t> stampOf(const rdf::ReadTransaction& transaction) {
-  const auto stored = transaction.block(tables::kMeta, kWaysStampKey);
-  std::uint64_t stamp = 0;
-  if (!stored || stored->size() != sizeof stamp) return std::nullopt;
-  std::memcpy(&stamp, stored->data(), sizeof stamp);
-  return stamp;
-}
-
-void stampNext(rdf::WriteTransaction& transaction) {
-  const std::uint64_t stamp = transaction.commitNumber() + 1;
-  transaction.putBlock(tables::kMeta, kWaysStampKey, {reinterpret_cast<const char*>(&stamp), sizeof stamp});
-}
 
 }  // namespace
 
@@ -36,17 +21,15 @@ void storeToldWays(rdf::WriteTransaction& transaction, const std::vector<ToldWay
   for (const ToldWay& way : ways)
     bytes += tables::keyOf(way.cause) + tables::keyOf(way.name) + static_cast<char>(way.kind);
   transaction.putIfDifferent(tables::kMeta, kWaysKey, bytes);
-  stampNext(transaction);
+  rdf::stampCommit(transaction, kWaysStamp);
 }
 
 void keepToldWays(rdf::WriteTransaction& transaction) {
-  if (stampOf(transaction) == transaction.commitNumber()) stampNext(transaction);
+  if (rdf::hasStamp(transaction, kWaysStamp)) rdf::stampCommit(transaction, kWaysStamp);
 }
 
 std::optional<std::vector<ToldWay>> storedToldWays(const rdf::ReadTransaction& transaction) {
-  const auto stamp = stampOf(transaction);
-  // A write transaction may have stored it itself.
-  if (!stamp || (*stamp != transaction.commitNumber() && *stamp != transaction.commitNumber() + 1)) return std::nullopt;
+  if (!rdf::hasStamp(transaction, kWaysStamp)) return std::nullopt;
   const auto stored = transaction.block(tables::kMeta, kWaysKey);
   if (!stored || stored->empty() || stored->front() != kWaysVersion) return std::nullopt;
   const std::string_view rows = stored->substr(1);

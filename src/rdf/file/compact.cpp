@@ -4,6 +4,7 @@
 
 #include "cluxel/error.hpp"
 #include "rdf/file/check/map_structure.hpp"
+#include "rdf/file/commit_stamps.hpp"
 #include "rdf/file/lmdb_environment.hpp"
 #include "rdf/file/lock_file.hpp"
 #include "rdf/file/page_directory.hpp"
@@ -100,6 +101,7 @@ void copyAll(const ReadTransaction& from, Environment& to) {
   if (!environment.keepsNumbersApart())  // earlier programs know no such table
     environment.check(mdb_drop(transaction.impl().live(), environment.table(Table::Psog), 1), "write a table");
   copyMainRecords(from.impl(), transaction.impl());
+  carryStamps(from, transaction);
   const std::size_t commit = mdb_txn_id(from.impl().live());
   if (const auto sums = storedSums(from.impl(), commit))
     transaction.impl().sums = *sums;
