@@ -5,6 +5,7 @@
 #include <embree3/rtcore.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -65,8 +66,9 @@ void attach(RTCDevice device, RTCScene scene, const CampusMesh& mesh, unsigned n
   rtcReleaseGeometry(geometry);
 }
 
-/// Embree's ranges stray by less than this share, by how the processor approximates reciprocals.
-constexpr double kRangeTolerance = 1e-5;
+/// Embree's ranges stray by less than this share: by the processor's approximate reciprocals, and by rounding where a
+/// ray grazes a surface.
+constexpr double kRangeTolerance = 1e-3;
 
 float beyond(double range_m) {
   return static_cast<float>(range_m * (1 + kRangeTolerance));
@@ -110,8 +112,9 @@ struct NearestHit {
   RTCHit hit{};
   double range_m = std::numeric_limits<double>::infinity();
 
+  /// False for the range of a plane that the ray lies in, which is no number.
   bool isNearer(const RTCHit& other, double other_m) const {
-    if (other_m > max_range_m || other_m > range_m) return false;
+    if (!(other_m <= std::min(range_m, max_range_m))) return false;
     return other_m < range_m || std::pair(other.geomID, other.primID) < std::pair(hit.geomID, hit.primID);
   }
 };
