@@ -28,10 +28,12 @@ std::string quoted(const std::string& text) {
 class ProgramCase {
  public:
   ProgramCase(const fs::path& program, const fs::path& scratch, const W3cFolder& folder, const W3cCase& test)
-      : program_(program), store_(scratch / "case.clx"), out_(scratch / "out"), folder_(folder), test_(test) {
-    writeFile(scratch / "empty.nt", "");
-    empty_ = scratch / "empty.nt";
-  }
+      : program_(program),
+        scratch_(scratch),
+        store_(scratch / "case.clx"),
+        out_(scratch / "out"),
+        folder_(folder),
+        test_(test) {}
 
   std::string run() {
     fs::remove(store_);
@@ -52,8 +54,7 @@ class ProgramCase {
     return what + " ended with exit code " + std::to_string(code) + ": " + readFile(out_.string() + ".err");
   }
   std::string load(const std::vector<W3cGraph>& graphs) {
-    if (const int code = call("load " + quoted(store_.string()) + " " + quoted(empty_.string())); code != 0)
-      return complaint("load", code);
+    if (graphs.empty()) return loadNothing(store_);
     for (const W3cGraph& graph : graphs) {
       const std::string target = graph.iri.empty() ? "" : " --graph " + quoted(graph.iri);
       const int code = call("load " + quoted(store_.string()) + " " + quoted(graph.file.string()) + target +
@@ -61,6 +62,11 @@ class ProgramCase {
       if (code != 0) return complaint("load", code);
     }
     return {};
+  }
+  std::string loadNothing(const fs::path& store) {
+    writeFile(scratch_ / "empty.nt", "");
+    const int code = call("load " + quoted(store.string()) + " " + quoted((scratch_ / "empty.nt").string()));
+    return code == 0 ? "" : complaint("load", code);
   }
   std::string request(const std::string& command, const std::string& more) const {
     return command + " " + quoted(store_.string()) + " " + quoted(test_.request.string()) + " --no-prefixes --base " +
@@ -102,11 +108,13 @@ class ProgramCase {
     return compareGraphs(folder_, test_, std::move(graphs));
   }
 
-  /// Queries are run on an empty store; those with SERVICE, and updates, are only checked.
+  /// Queries are run on an empty store, the same for all; those with SERVICE, and updates, are only checked.
   std::string syntax() {
     const bool is_update = test_.kind == W3cKind::PositiveUpdate || test_.kind == W3cKind::NegativeUpdate;
     const bool is_positive = test_.kind == W3cKind::PositiveQuery || test_.kind == W3cKind::PositiveUpdate;
-    if (std::string fault = load({}); !fault.empty()) return fault;
+    store_ = scratch_ / "empty.clx";
+    if (!fs::exists(store_))
+      if (std::string fault = loadNothing(store_); !fault.empty()) return fault;
     const std::string text = readFile(test_.request);
     const bool only_check = is_update || text.find("SERVICE") != std::string::npos;
     const int code = call(request(is_update ? "update" : "query", only_check ? "--check" : "--strict"));
@@ -115,7 +123,7 @@ class ProgramCase {
     return complaint(is_positive ? "a right request" : "a faulty request", code);
   }
 
-  fs::path program_, store_, out_, empty_;
+  fs::path program_, scratch_, store_, out_;
   const W3cFolder& folder_;
   const W3cCase& test_;
 };
