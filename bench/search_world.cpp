@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/data_home.hpp"
+#include "base/installation/data_home.hpp"
 #include "mapping/build/map_builder.hpp"
 #include "scan/formats/scan_writer.hpp"
 #include "scan/truth/truth.hpp"

@@ -10,6 +10,8 @@ install(DIRECTORY include/cluxel DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONE
 install(DIRECTORY ontology rules queries models labels DESTINATION ${CMAKE_INSTALL_DATADIR}/cluxel COMPONENT data)
 # The page of `cluxel view`, where `./run web` has made it.
 install(FILES web/dist/page.html DESTINATION ${CMAKE_INSTALL_DATADIR}/cluxel/web/dist COMPONENT data OPTIONAL)
+# The module that scan::pcl() loads, for the program and the library.
+install(TARGETS cluxel_pcl_module LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/cluxel COMPONENT library)
 # For stock Redland tools: REDLAND_MODULE_PATH names this folder.
 install(TARGETS librdf_storage_cluxel LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/cluxel/redland COMPONENT redland)
 

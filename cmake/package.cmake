@@ -37,11 +37,11 @@ which are asked in SPARQL.")
 
 cluxel_package(program cluxel science "semantic maps of laser scans"
   "${what_it_is}\n.\nThis package holds the program and a storage module for the Redland RDF tools."
-  DEPENDS "cluxel-data ${same_version}")
+  DEPENDS "cluxel-data ${same_version}, libcluxel0 ${same_version}")
 cluxel_package(data cluxel-data science "semantic maps of laser scans - rules and models"
   "${what_it_is}\n.\nThis package holds the ontology, rules, questions, label maps and trained\nmodels.")
 cluxel_package(library libcluxel0 libs "semantic maps of laser scans - library"
-  "${what_it_is}\n.\nThis package holds the shared library." DEPENDS "cluxel-data ${same_version}")
+  "${what_it_is}\n.\nThis package holds the shared library, and the module that uses PCL." DEPENDS "cluxel-data ${same_version}")
 cluxel_package(development libcluxel-dev libdevel "semantic maps of laser scans - headers"
   "${what_it_is}\n.\nThis package holds the C++20 headers, the CMake package and an example."
   DEPENDS "libcluxel0 ${same_version}")

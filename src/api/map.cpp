@@ -9,7 +9,7 @@
 #include "api/change_values.hpp"
 #include "api/object_query.hpp"
 #include "api/point_query.hpp"
-#include "base/data_home.hpp"
+#include "base/installation/data_home.hpp"
 #include "cluxel/cluxel.hpp"
 #include "mapping/build/map_builder.hpp"
 #include "mapping/build/map_update.hpp"

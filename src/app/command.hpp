@@ -11,7 +11,7 @@
 
 #include "app/console/progress_line.hpp"
 #include "app/exit_code.hpp"
-#include "base/data_home.hpp"
+#include "base/installation/data_home.hpp"
 #include "cluxel/progress.hpp"
 
 namespace cluxel::app {

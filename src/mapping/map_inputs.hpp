@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/content_hash.hpp"
-#include "base/data_home.hpp"
+#include "base/installation/data_home.hpp"
 #include "perception/crf/labelling.hpp"
 #include "perception/segments/component_tile.hpp"
 #include "perception/segments/contact_tile.hpp"

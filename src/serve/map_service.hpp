@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/data_home.hpp"
+#include "base/installation/data_home.hpp"
 #include "serve/http/http_message.hpp"
 #include "serve/http/rate_limit.hpp"
 #include "serve/http/url.hpp"

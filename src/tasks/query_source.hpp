@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/data_home.hpp"
+#include "base/installation/data_home.hpp"
 #include "rdf/store/quad_store.hpp"
 #include "sparql/query_engine.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The one home of the data folders, and what a name in it means.
-#include "base/data_home.hpp"
+#include "base/installation/data_home.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

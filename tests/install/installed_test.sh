@@ -46,6 +46,9 @@ if grep -m5 -E ' cluxel::(scan|perception|rdf|sparql|rules|mapping|tasks)::' "$w
 fi
 nm -D --defined-only "$lib/cluxel/redland/librdf_storage_cluxel.so" >"$work/redland_exports"
 wants "$work/redland_exports" ' T librdf_storage_module_register_factory$'
+nm -D --defined-only "$lib/cluxel/cluxel_pcl.so" >"$work/pcl_exports"
+wants "$work/pcl_exports" ' T cluxelPclFunctions$'
+if objdump -p "$prefix/bin/cluxel" "$lib/libcluxel.so.0" | grep 'NEEDED.*pcl'; then fail "PCL is loaded by each start"; fi
 if objdump -p "$prefix/bin/cluxel" "$lib/libcluxel.so.0" | grep -E 'R(UN)?PATH'; then fail "a run path is set"; fi
 
 # The example, built against the package, from a folder without data.

@@ -26,8 +26,8 @@ names=$(for file in "$work"/packages/*.deb; do dpkg-deb --field "$file" Package;
 version=$(field cluxel Version)
 [[ $version =~ ^[0-9]+\.[0-9]+\.[0-9]+-[0-9]+$ ]] || fail "'$version' is no version of a package"
 same="\\(= ${version//./\\.}\\)"
-depends cluxel "cluxel-data $same" 'libpcl-io[0-9.]+ \(.*\)' 'librdf0 \(.*\)' 'libembree3-3 \(.*\)'
-depends libcluxel0 "cluxel-data $same" 'liblmdb0 \(.*\)' 'libzstd1 \(.*\)' 'libproj[0-9]+ \(.*\)'
+depends cluxel "cluxel-data $same" "libcluxel0 $same" 'librdf0 \(.*\)' 'libembree3-3 \(.*\)'
+depends libcluxel0 "cluxel-data $same" 'libpcl-io[0-9.]+ \(.*\)' 'liblmdb0 \(.*\)' 'libzstd1 \(.*\)' 'libproj[0-9]+ \(.*\)'
 depends libcluxel-dev "libcluxel0 $same"
 depends python3-cluxel "libcluxel0 $same" 'python3 \(>= 3\.[0-9]+~\)' 'python3 \(<< 3\.[0-9]+\)' python3-numpy
 [ "$(field cluxel-data Architecture)" = all ] || fail "cluxel-data is not for all architectures"

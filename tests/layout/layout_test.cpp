@@ -34,6 +34,7 @@ const std::map<std::string, std::set<std::string>> kArrows{
     {"serve", {"api"}},
     {"app", {"serve", "simulation"}},
     {"redland_module", {"rdf"}},
+    {"pcl_module", {"scan"}},
 };
 
 std::set<std::string> reachable(const std::string& module) {

@@ -4,8 +4,8 @@
 
 #include <gmock/gmock.h>
 
-#include "base/data_home.hpp"
 #include "base/file_bytes.hpp"
+#include "base/installation/data_home.hpp"
 #include "mapping/facts/map_oracle.hpp"
 #include "mapping/map_inputs.hpp"
 #include "test_paths.hpp"

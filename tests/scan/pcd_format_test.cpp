@@ -4,7 +4,6 @@
 
 #include <limits>
 
-#include "scan/formats/pcl_clouds.hpp"
 #include "scan/scan_fixture.hpp"
 
 namespace cluxel::scan {

@@ -6,8 +6,8 @@
 #include <map>
 
 #include "scan/formats/little_endian.hpp"
-#include "scan/formats/pcl_clouds.hpp"
 #include "scan/formats/text_scanner.hpp"
+#include "scan/pcl/pcl_functions.hpp"
 
 namespace cluxel::scan {
 
@@ -173,7 +173,8 @@ RecordRange rangeOf(const PcdHeader& header) {
 ParsedScan fromBinary(const PcdHeader& header, std::string_view body, std::size_t count, const std::string& file) {
   const std::size_t stride = recordBytes(header.fields);
   checkLength(body.size(), count * stride, file, header.body_offset + body.size());
-  return scanFromRecords(pcdRecords(body, header.fields, count, false, file), header.fields, rangeOf(header), file);
+  return scanFromRecords(pcl().pcdRecords(body, header.fields, count, false, file), header.fields, rangeOf(header),
+                         file);
 }
 
 ParsedScan fromCompressed(const PcdHeader& header, std::string_view body, std::size_t count, const std::string& file) {
@@ -190,7 +191,7 @@ ParsedScan fromCompressed(const PcdHeader& header, std::string_view body, std::s
     refuseByte(file, header.body_offset + 4,
                "the size of the unpacked data, " + std::to_string(unpacked) +
                    ", does not fit the header or the compressed data");
-  return scanFromRecords(pcdRecords(body, stored, count, true, file), stored, rangeOf(header), file);
+  return scanFromRecords(pcl().pcdRecords(body, stored, count, true, file), stored, rangeOf(header), file);
 }
 
 }  // namespace

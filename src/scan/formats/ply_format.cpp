@@ -6,8 +6,8 @@
 #include <array>
 #include <utility>
 
-#include "scan/formats/pcl_clouds.hpp"
 #include "scan/formats/text_scanner.hpp"
+#include "scan/pcl/pcl_functions.hpp"
 
 namespace cluxel::scan {
 
@@ -174,8 +174,8 @@ ParsedScan fromBinary(const PlyHeaderParser& header, std::size_t vertex, std::st
   if (vertex + 1 == header.elements().size() && there != length)
     refuseByte(file, begin + length, std::to_string(there - length) + " bytes follow the last vertex",
                "the header and the data are not of the same cloud");
-  const std::string records = plyRecords(bytes.substr(begin, length), vertices.fields, vertices.count,
-                                         header.data() == PlyData::BigEndian, file);
+  const std::string records = pcl().plyRecords(bytes.substr(begin, length), vertices.fields, vertices.count,
+                                               header.data() == PlyData::BigEndian, file);
   return scanFromRecords(records, vertices.fields, {.count = vertices.count, .body_offset = begin}, file);
 }
 

@@ -114,17 +114,6 @@ std::vector<PlacedField> placedFields(const std::vector<PointField>& fields, con
 
 }  // namespace
 
-std::size_t bytesOf(FieldType type) {
-  constexpr std::array<std::size_t, 10> bytes{1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
-  return bytes[static_cast<std::size_t>(type)];
-}
-
-std::size_t recordBytes(const std::vector<PointField>& fields) {
-  std::size_t bytes = 0;
-  for (const PointField& field : fields) bytes += field.count * bytesOf(field.type);
-  return bytes;
-}
-
 FieldRoles rolesOf(const std::vector<PointField>& fields, const std::string& file) {
   FieldRoles found;
   std::vector<FieldRole>& roles = found.roles;

@@ -14,7 +14,10 @@
 namespace cluxel::scan {
 
 enum class FieldType : std::uint8_t { I8, U8, I16, U16, I32, U32, I64, U64, F32, F64 };
-std::size_t bytesOf(FieldType type);
+inline std::size_t bytesOf(FieldType type) {
+  constexpr std::array<std::size_t, 10> bytes{1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
+  return bytes[static_cast<std::size_t>(type)];
+}
 
 struct PointField {
   std::string name;
@@ -22,7 +25,11 @@ struct PointField {
   std::size_t count = 1;  ///< numbers of this field in one record
 };
 
-std::size_t recordBytes(const std::vector<PointField>& fields);
+inline std::size_t recordBytes(const std::vector<PointField>& fields) {
+  std::size_t bytes = 0;
+  for (const PointField& field : fields) bytes += field.count * bytesOf(field.type);
+  return bytes;
+}
 
 /// The role of a field in a scan.
 enum class FieldRole : std::uint8_t { X, Y, Z, Intensity, Label, OriginX, OriginY, OriginZ, None };

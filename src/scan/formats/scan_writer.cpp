@@ -7,7 +7,7 @@
 
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
-#include "scan/formats/pcl_clouds.hpp"
+#include "scan/pcl/pcl_functions.hpp"
 
 namespace cluxel::scan {
 
@@ -67,7 +67,8 @@ void appendNumber(std::string& text, double number, char end) {
 void writeScanFile(const Scan& scan, const fs::path& path) {
   checkLengths(scan.points, path);
   const std::vector<PointField> fields = fieldsOf(scan.points);
-  writeFile(path, pcdFile(recordsOf(scan.points, recordBytes(fields)), fields, scan.points.size(), scan.T_map_sensor));
+  writeFile(path,
+            pcl().pcdFile(recordsOf(scan.points, recordBytes(fields)), fields, scan.points.size(), scan.T_map_sensor));
 }
 
 void writePoses(const std::vector<Eigen::Isometry3d>& T_map_sensor, const fs::path& path) {

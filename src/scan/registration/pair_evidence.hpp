@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "scan/registration/pcl_registration.hpp"
+#include "scan/registration/surface_cloud.hpp"
 
 namespace cluxel::scan {
 

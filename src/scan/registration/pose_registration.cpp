@@ -91,7 +91,7 @@ class Registration {
 
   std::optional<PoseConstraint> aligned(const ScanPair& pair, const Eigen::Isometry3d& T_given) const {
     const SurfaceCloud &target = cloud(pair.first), &source = cloud(pair.second);
-    if (const auto T = alignedByGicp(target, source, T_given, params_->reach_m))
+    if (const auto T = pcl().alignedByGicp(target, source, T_given, params_->reach_m))
       if (const auto said = credibleConstraint(pair, T_given, *T)) return said;
     return credibleConstraint(pair, T_given, laidOnPlanes(target, source, T_given));
   }

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "scan/registration/pcl_registration.hpp"
 #include "scan/registration/pose_registration.hpp"
+#include "scan/registration/surface_cloud.hpp"
 
 namespace cluxel::scan {
 

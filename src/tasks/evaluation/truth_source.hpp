@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/data_home.hpp"
+#include "base/installation/data_home.hpp"
 #include "scan/scan.hpp"
 #include "scan/truth/truth.hpp"
 #include "tasks/evaluation/truth_class.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // PCL's readers and writer. They get new headers with neutral field names, because PCL treats some names specially and
 // does not check malformed headers.
-#include "scan/formats/pcl_clouds.hpp"
+#include "pcl_module/pcl_clouds.hpp"
 
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/console/print.h>

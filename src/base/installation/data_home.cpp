@@ -1,33 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the data folders lie: as given, beside the installed binary, or in the checkout.
-#include "base/data_home.hpp"
-
-#include <dlfcn.h>
-#include <sys/auxv.h>
+#include "base/installation/data_home.hpp"
 
 #include <cstdlib>
 #include <vector>
 
+#include "base/installation/own_binary.hpp"
 #include "cluxel/error.hpp"
 
 namespace cluxel {
 
 namespace fs = std::filesystem;
-
-namespace {
-
-/// The program or shared library that contains this code, symbolic links resolved; empty when unknown. The loader's
-/// name of the program may be relative to a working directory that has changed since, so /proc is asked instead.
-fs::path ownBinary() {
-  Dl_info own{}, program{};
-  std::error_code ignored;
-  const auto* entry = reinterpret_cast<const void*>(getauxval(AT_ENTRY));
-  const bool is_known = dladdr(reinterpret_cast<const void*>(&ownBinary), &own) != 0;
-  const bool is_library = is_known && dladdr(entry, &program) != 0 && own.dli_fbase != program.dli_fbase;
-  return fs::canonical(is_library ? fs::path(own.dli_fname) : fs::path("/proc/self/exe"), ignored);
-}
-
-}  // namespace
 
 fs::path dataHomeOf(const fs::path& binary) {
   constexpr std::size_t kMaxDepth = 3;  // prefix/lib/<architecture>/cluxel
