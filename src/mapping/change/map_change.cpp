@@ -140,7 +140,8 @@ ChangeReport appliedTo(const fs::path& file, const std::function<MapInputs(MapIn
 
 /// Frees the space that a committed change has left, where it is too much.
 ChangeReport compacted(ChangeReport report, const fs::path& file, const ChangeParams& params, ProgressSink& sink) {
-  if (report.has_changes && !params.dry_run && params.may_compact) compactIfSparse(file, sink, kMaxFreeShareOfChanged);
+  if (report.has_changes && !params.dry_run && params.may_compact)
+    compactIfSparse(file, report.free_space, sink, kMaxFreeShareOfChanged);
   return report;
 }
 

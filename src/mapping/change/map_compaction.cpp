@@ -12,7 +12,6 @@
 #include "cluxel/error.hpp"
 #include "mapping/build/build_lock.hpp"
 #include "rdf/file/environment.hpp"
-#include "rdf/file/layer_sizes.hpp"
 #include "rdf/file/lock_file.hpp"
 #include "rdf/file/map_replacement.hpp"
 
@@ -24,9 +23,7 @@ namespace {
 
 constexpr std::uint64_t kSmallestGain = std::uint64_t{1} << 20U;
 
-bool isSparse(const fs::path& map, double max_free_share) {
-  const auto environment = rdf::Environment::open(map, rdf::OpenMode::ReadOnly);
-  const rdf::FreeSpace space = rdf::freeSpaceOf(environment->read());
+bool isSparse(const rdf::FreeSpace& space, double max_free_share) {
   return space.bytes > kSmallestGain &&
          static_cast<double>(space.bytes) > max_free_share * static_cast<double>(space.file_bytes);
 }
@@ -57,6 +54,10 @@ fs::path copyOf(const fs::path& map) {
   return withoutLinks(map).string() + ".compact";
 }
 
+void noteFailure(const fs::path& map, const std::exception& error, ProgressSink& sink) {
+  sink.note(map.string() + ": the change is written, but its free space stays in the file: " + error.what());
+}
+
 }  // namespace
 
 /// Locks out other writers: what they commit while the file is replaced would be lost.
@@ -78,14 +79,23 @@ void compactMap(const fs::path& map) {
 
 void compactIfSparse(const fs::path& map, ProgressSink& sink, double max_free_share) {
   try {
-    if (!fs::exists(copyOf(map)) && !isSparse(map, max_free_share)) return;
+    const rdf::FreeSpace space = rdf::freeSpaceOf(rdf::Environment::open(map, rdf::OpenMode::ReadOnly)->read());
+    compactIfSparse(map, space, sink, max_free_share);
+  } catch (const std::exception& error) {
+    noteFailure(map, error, sink);
+  }
+}
+
+void compactIfSparse(const fs::path& map, const rdf::FreeSpace& space, ProgressSink& sink, double max_free_share) {
+  try {
+    if (!fs::exists(copyOf(map)) && !isSparse(space, max_free_share)) return;
     if (statusOf(map).st_nlink > 1)
       throw Error(ErrorKind::StoreUnavailable, "it has another name (a hard link), which would keep the old file");
     if (fs::space(fs::absolute(withoutLinks(map)).parent_path()).available < fs::file_size(map))
       throw Error(ErrorKind::StoreUnavailable, "there is no room beside it for a copy");
     compactMap(map);
   } catch (const std::exception& error) {
-    sink.note(map.string() + ": the change is written, but its free space stays in the file: " + error.what());
+    noteFailure(map, error, sink);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "cluxel/progress.hpp"
+#include "rdf/file/layer_sizes.hpp"
 
 namespace cluxel::mapping {
 
@@ -20,5 +21,8 @@ inline constexpr double kMaxFreeShare = 0.05, kMaxFreeShareOfChanged = 0.25;
 /// Compacts a map when that frees more than this share of it, and more than a mebibyte. So the cost follows the
 /// changes that left the space. Where it fails, the map stays larger, and a note tells why.
 void compactIfSparse(const std::filesystem::path& map, ProgressSink& sink, double max_free_share = kMaxFreeShare);
+/// The same when what it would free is known.
+void compactIfSparse(const std::filesystem::path& map, const rdf::FreeSpace& space, ProgressSink& sink,
+                     double max_free_share);
 
 }  // namespace cluxel::mapping

@@ -124,7 +124,9 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
                 keptBy(transaction, layers));
   report(transaction, layers);
   note(std::move(layers));
-  if (!params_.dry_run) transaction.commit();
+  if (params_.dry_run) return;
+  transaction.commit();
+  report_.free_space = rdf::freeSpaceOf(environment_->read());
 }
 
 /// What came and went again within the commits is no difference.

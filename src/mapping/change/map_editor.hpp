@@ -17,6 +17,7 @@
 #include "mapping/change/object_changes.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/window/semantic_update.hpp"
+#include "rdf/file/layer_sizes.hpp"
 
 namespace cluxel::mapping {
 
@@ -41,6 +42,7 @@ struct ChangeReport {
   ObjectChanges objects;
   std::vector<StatementOutcome> statements;  ///< what became of the operator's
   std::size_t local_commits = 0;             ///< of which objects and facts were computed around the change alone
+  rdf::FreeSpace free_space;                 ///< of the map afterwards
 };
 
 class MapEditor {

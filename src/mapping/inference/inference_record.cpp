@@ -40,8 +40,10 @@ void append(std::string& bytes, const Value& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-template <typename Value>
-void appendList(std::string& bytes, const std::vector<Value>& values) {
+/// `Values`: a vector or a string.
+template <typename Values>
+void appendList(std::string& bytes, const Values& values) {
+  using Value = typename Values::value_type;
   append(bytes, static_cast<std::uint64_t>(values.size()));
   bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value));
 }
@@ -68,8 +70,12 @@ void storeInferenceRecord(rdf::WriteTransaction& transaction, const InferenceRec
   const auto history = reader.idOf(Term::iri(rdf::vocabulary::kGraphHistory));
   const rdf::EntrySum sum = rdf::sumWithout(transaction, history.value_or(rdf::kNoGraph));
   std::string bytes;
+  std::size_t size = sizeof(Basis) + record.reason.size() + record.late.size() * sizeof(StoredLate) +
+                     (record.outputs.size() + 2) * sizeof(std::uint64_t);
+  for (const std::vector<RuleOutput>& outputs : record.outputs) size += outputs.size() * sizeof(RuleOutput);
+  bytes.reserve(size);
   append(bytes, basisOf(rules, sum));
-  appendList(bytes, std::vector<char>(record.reason.begin(), record.reason.end()));
+  appendList(bytes, record.reason);
   for (const std::vector<RuleOutput>& outputs : record.outputs) appendList(bytes, outputs);
   std::vector<StoredLate> late;
   for (const rdf::LateFact& fact : record.late)

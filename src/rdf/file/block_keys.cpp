@@ -69,6 +69,16 @@ bool isFound(const ReadTransaction::Impl& transaction, std::string_view full_key
   return mdb_get(transaction.live(), transaction.table(Table::Blocks), &key, &stored) == MDB_SUCCESS;
 }
 
+/// Reads the keys of a table, and looks up each one.
+KeySum readKeys(const ReadTransaction::Impl& transaction, std::string_view table) {
+  KeySum present;
+  forEachBlockKey(transaction, table, [&](std::string_view key) {
+    present.add(key);
+    if (!isFound(transaction, key)) failKeys(transaction, table, "a key is out of order");
+  });
+  return present;
+}
+
 }  // namespace
 
 void KeySum::add(std::string_view full_key) {
@@ -81,6 +91,13 @@ void KeySum::remove(std::string_view full_key) {
   hash -= XXH3_64bits(full_key.data(), full_key.size());
 }
 
+void PresentKeys::add(std::string_view full_key) {
+  const std::string_view table = full_key.substr(0, full_key.find('\0'));
+  auto entry = of_table.find(table);
+  if (entry == of_table.end()) entry = of_table.emplace(table, KeySum{}).first;
+  entry->second.add(full_key);
+}
+
 BlockKeys::Table& BlockKeys::changed(const ReadTransaction::Impl& transaction, std::string_view table) {
   Table& entry = tables_.try_emplace(std::string(table)).first->second;
   if (entry.is_changed) return entry;
@@ -89,6 +106,7 @@ BlockKeys::Table& BlockKeys::changed(const ReadTransaction::Impl& transaction, s
     entry.sum = *stored;
   else
     forEachBlockKey(transaction, table, [&](std::string_view key) { entry.sum.add(key); });
+  entry.before = entry.sum;
   return entry;
 }
 
@@ -117,17 +135,24 @@ void BlockKeys::verify(const ReadTransaction::Impl& transaction, std::string_vie
   if (entry.is_changed || entry.is_verified) return;
   const auto stored = storedSum(transaction, table);
   if (stored) {
-    KeySum present;
-    forEachBlockKey(transaction, table, [&](std::string_view key) {
-      present.add(key);
-      if (!isFound(transaction, key)) failKeys(transaction, table, "a key is out of order");
-    });
+    const std::optional<KeySum> known = transaction.environment->presentKeys(transaction.commitBefore(), table);
+    const KeySum present = known ? *known : readKeys(transaction, table);
     if (present != *stored)
       failKeys(transaction, table,
                std::to_string(stored->count) + " were written, " + std::to_string(present.count) + " are there" +
                    (present.count == stored->count ? ", some of them changed" : ""));
   }
   entry.is_verified = true;
+}
+
+PresentKeys BlockKeys::after(PresentKeys before) const {
+  for (const auto& [table, entry] : tables_) {
+    if (!entry.is_changed) continue;
+    KeySum& present = before.of_table[table];
+    present.count += entry.sum.count - entry.before.count;
+    present.hash += entry.sum.hash - entry.before.hash;
+  }
+  return before;
 }
 
 std::vector<std::string> BlockKeys::tablesOf(const ReadTransaction::Impl& transaction) {

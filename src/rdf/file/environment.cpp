@@ -113,20 +113,28 @@ EnvHandle openLmdbFor(const fs::path& file, std::uint64_t file_size, OpenMode mo
   return openLmdb(file, file_size, MDB_RDONLY | MDB_NOLOCK);
 }
 
+struct CheckedCommit {
+  std::size_t commit = 0;
+  PresentKeys keys;
+};
+
 /// Checks what LMDB reads of the current commit while a read transaction pins its pages.
-void checkUnderSnapshot(MDB_env* handle, int descriptor, const fs::path& file) {
+CheckedCommit checkUnderSnapshot(MDB_env* handle, int descriptor, const fs::path& file, MapScope scope) {
   MDB_txn* raw = nullptr;
   checkLmdb(mdb_txn_begin(handle, nullptr, MDB_RDONLY, &raw), file, "read the map");
   const TxnHandle transaction(raw);
-  checkMapStructure(descriptor, file, mdb_txn_id(raw), MapScope::Reading);
+  return {mdb_txn_id(raw), checkMapStructure(descriptor, file, mdb_txn_id(raw), scope)};
 }
 
 /// The environment of a file that LMDB has opened.
 std::shared_ptr<LmdbEnvironment> environmentOf(const fs::path& file, EnvHandle handle, Descriptor& descriptor,
                                                const MapFileHead& head, bool can_write, bool may_initialise) {
-  if (head.file_size != 0) checkUnderSnapshot(handle.get(), descriptor.get(), file);
+  const MapScope scope = may_initialise ? MapScope::Writing : MapScope::Reading;  // one walk for reading and writing
+  CheckedCommit checked;
+  if (head.file_size != 0) checked = checkUnderSnapshot(handle.get(), descriptor.get(), file, scope);
   auto environment = std::make_shared<LmdbEnvironment>(file, std::move(handle), descriptor.release(), can_write);
   if (may_initialise) environment->allowWriting();
+  environment->noteStructure(checked.commit, scope == MapScope::Writing, std::move(checked.keys));
   environment->openTables();
   return environment;
 }

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <thread>
 
@@ -65,6 +66,10 @@ class LmdbEnvironment final : public Environment {
   std::shared_ptr<StoreSnapshot> snapshot(std::size_t transaction_id,
                                           const std::function<std::shared_ptr<StoreSnapshot>()>& make) const;
   void allowWriting();
+  /// The pages of this commit were checked when the file was opened: `for_writing`, what LMDB reads for a writer.
+  void noteStructure(std::size_t commit, bool for_writing, PresentKeys keys);
+  /// The keys of a block table in a commit; absent when they are not known or out of order.
+  std::optional<KeySum> presentKeys(std::size_t commit, std::string_view table) const;
   /// From now on the file may be renamed or removed.
   void loseName() { has_name_ = false; }
   /// True for a map that was written before its quads and terms had sums; it gets them with the next commit.
@@ -88,7 +93,7 @@ class LmdbEnvironment final : public Environment {
   /// True for the last commit of this process: what it read was verified, so what it wrote need not be.
   bool wrote(std::size_t transaction_id) const { return own_commit_ == transaction_id; }
   /// `checked`: of the commit before.
-  void noteCommit(std::size_t transaction_id, std::shared_ptr<CheckedParts> checked);
+  void noteCommit(std::size_t transaction_id, std::shared_ptr<CheckedParts> checked, const BlockKeys& keys);
   /// Of an own commit what was compared of the commit before, else nothing.
   std::shared_ptr<CheckedParts> checkedPartsOf(std::size_t transaction_id) const;
   bool canWrite() const { return can_write_; }
@@ -113,9 +118,11 @@ class LmdbEnvironment final : public Environment {
   std::atomic<int> format_{kMapFormat};
   std::atomic<bool> is_copy_{false};
   std::atomic<bool> verified_{false};  ///< writers may trust the file
-  std::atomic<std::size_t> own_commit_{0};
+  std::atomic<std::size_t> own_commit_{0}, structure_commit_{0};
   mutable std::mutex checked_mutex_;
   std::shared_ptr<CheckedParts> checked_;  ///< of the own commit
+  std::size_t keys_commit_ = 0;
+  PresentKeys keys_;  ///< of commit keys_commit_
   std::array<MDB_dbi, kTableCount> tables_{};
   MDB_dbi main_ = 0;
   std::unique_ptr<ValueCache> values_;
@@ -158,6 +165,8 @@ struct ReadTransaction::Impl {
   CursorHandle cursorOn(Table which, std::string_view doing) const;
   MDB_txn* live() const;  ///< throws when the transaction has ended
   void end();
+  /// The commit that is read, or on which the write transaction builds.
+  std::size_t commitBefore() const { return mdb_txn_id(live()) - (writing ? 1 : 0); }
 };
 
 /// Adds the sums that a map of the first format lacks.

@@ -182,16 +182,35 @@ void LmdbEnvironment::verifyForWriting(std::size_t commit) {
   const ReadTransaction current = read();
   StoreSnapshot& snapshot = snapshotOf(current.impl());
   const bool by_parts = snapshot.isComparedByParts();
-  checkMapStructure(data_lock_, file_, commit, by_parts ? MapScope::Writing : MapScope::Whole, snapshot.map().base);
+  if (!by_parts || structure_commit_ != commit)
+    checkMapStructure(data_lock_, file_, commit, by_parts ? MapScope::Writing : MapScope::Whole, snapshot.map().base);
   if (!by_parts) snapshot.verify(current.impl());
   verified_ = true;
 }
 
-void LmdbEnvironment::noteCommit(std::size_t transaction_id, std::shared_ptr<CheckedParts> checked) {
+void LmdbEnvironment::noteStructure(std::size_t commit, bool for_writing, PresentKeys keys) {
+  if (for_writing) structure_commit_ = commit;
+  const std::lock_guard lock(checked_mutex_);
+  keys_commit_ = commit;
+  keys_ = std::move(keys);
+}
+
+std::optional<KeySum> LmdbEnvironment::presentKeys(std::size_t commit, std::string_view table) const {
+  const std::lock_guard lock(checked_mutex_);
+  if (keys_commit_ != commit || commit == 0 || !keys_.in_order) return std::nullopt;
+  const auto known = keys_.of_table.find(table);
+  return known == keys_.of_table.end() ? KeySum{} : known->second;
+}
+
+void LmdbEnvironment::noteCommit(std::size_t transaction_id, std::shared_ptr<CheckedParts> checked,
+                                 const BlockKeys& keys) {
   if (format_ == kFirstFormat) format_ = kFormatWithSums;
   const std::lock_guard lock(checked_mutex_);
   checked_ = std::move(checked);
   own_commit_ = transaction_id;
+  if (keys_commit_ == 0 || keys_commit_ + 1 != transaction_id) return;
+  keys_ = keys.after(std::move(keys_));
+  keys_commit_ = transaction_id;
 }
 
 std::shared_ptr<CheckedParts> LmdbEnvironment::checkedPartsOf(std::size_t transaction_id) const {
@@ -269,7 +288,7 @@ void WriteTransaction::commit() {
   const std::shared_ptr<StoreSnapshot>& before = state.directories->committed();
   const int code = mdb_txn_commit(std::exchange(state.txn, nullptr));
   if (code == MDB_SUCCESS && state.generation > 0)
-    state.environment->noteCommit(id, before ? before->checkedParts() : nullptr);
+    state.environment->noteCommit(id, before ? before->checkedParts() : nullptr, state.block_keys);
   state.end();
   state.check(code, "write the map");
 }

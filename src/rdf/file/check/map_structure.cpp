@@ -2,10 +2,7 @@
 // Walks the B-trees of a commit on a mapping of its own, with every number checked before it is used.
 #include "rdf/file/check/map_structure.hpp"
 
-#include <sys/mman.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <compare>
 #include <optional>
 #include <string>
@@ -13,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "rdf/file/check/file_mapping.hpp"
 #include "rdf/file/check/map_file_head.hpp"
 #include "rdf/file/lmdb_environment.hpp"
 
@@ -23,23 +21,6 @@ namespace {
 using namespace lmdb_page;
 
 constexpr std::uint32_t kIndexKeySize = 16;
-
-/// A read-only mapping of the whole file.
-class FileMapping {
- public:
-  FileMapping(int descriptor, std::size_t size, const std::filesystem::path& file) : size_(size) {
-    memory_ = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, descriptor, 0);
-    if (memory_ == MAP_FAILED) failStore(file, ENOMEM, "map the file");
-  }
-  FileMapping(const FileMapping&) = delete;
-  FileMapping& operator=(const FileMapping&) = delete;
-  ~FileMapping() { ::munmap(memory_, size_); }
-  const std::uint8_t* bytes() const { return static_cast<const std::uint8_t*>(memory_); }
-
- private:
-  std::size_t size_;
-  void* memory_;
-};
 
 enum class TreeKind : std::uint8_t { Main, Free, Blocks, Terms, Index, IndexKeys };
 
@@ -90,13 +71,14 @@ class StructureWalk {
         scope_(scope),
         seen_(std::min(meta.last_page + 1, file_pages_)) {}
 
-  void run() {
+  PresentKeys run() {
     tree(meta_.free_pages, TreeKind::Free);
     tree(meta_.main, TreeKind::Main);
     for (const std::string_view list : free_lists_) freeList(list);
     // LMDB leaves out pages behind the last used one when it writes, so all that the file lacks are free.
     if (scope_ != MapScope::Reading && meta_.last_page >= file_pages_ + free_count_ + 1)
       refuseDamaged(file_, "its head names a page beyond the end");
+    return std::move(block_keys_);
   }
 
  private:
@@ -176,7 +158,7 @@ class StructureWalk {
   /// Readers find out of order keys of blocks by their sum, so that the other blocks can still be read.
   void nodes(PageNumber number, const std::uint8_t* bytes, bool is_branch, const KeyBounds& bounds, TreeKind kind) {
     const std::size_t count = entryCount(bytes), upper = header(bytes).upper;
-    const bool in_order = scope_ != MapScope::Reading || kind != TreeKind::Blocks;
+    const bool may_be_unordered = scope_ == MapScope::Reading && kind == TreeKind::Blocks;
     std::size_t used = 0, before = page_size_;
     bool in_a_row = true;  // as LMDB appends entries: from the end of the page, each before the last one
     std::optional<std::string_view> last;
@@ -192,10 +174,11 @@ class StructureWalk {
       if (is_branch && i == 0) continue;  // its key is not used
       const std::string_view key = keyOf(node);
       if (!hasKeySize(kind, key.size())) refuse(number, "has a key of a wrong size");
-      if (in_order &&
-          ((last && compareKeys(kind, key, *last) <= 0) || (bounds.low && compareKeys(kind, key, *bounds.low) < 0) ||
-           (bounds.high && compareKeys(kind, key, *bounds.high) >= 0)))
-        refuse(number, "has keys out of order");
+      if ((last && compareKeys(kind, key, *last) <= 0) || (bounds.low && compareKeys(kind, key, *bounds.low) < 0) ||
+          (bounds.high && compareKeys(kind, key, *bounds.high) >= 0)) {
+        if (!may_be_unordered) refuse(number, "has keys out of order");
+        block_keys_.in_order = false;
+      }
       last = key;
     }
     if (used != page_size_ - upper) refuse(number, "has gaps between its entries");
@@ -223,6 +206,7 @@ class StructureWalk {
 
   /// The number of entries that a node stands for.
   std::uint64_t leafNode(PageNumber number, const Node& node, Walked& walked) {
+    if (walked.kind == TreeKind::Blocks) block_keys_.add(keyOf(node));
     const bool may_be_big = walked.kind != TreeKind::Main && walked.kind != TreeKind::Index;
     if (may_be_big && node.flags() == kBigData)
       bigValue(number, node, walked);
@@ -324,6 +308,7 @@ class StructureWalk {
   const Meta& meta_;
   MapScope scope_;
   std::vector<bool> seen_;
+  PresentKeys block_keys_;
   std::vector<std::string_view> free_lists_;
   std::uint64_t free_count_ = 0;
   std::vector<std::uint16_t> size_at_;  ///< of the entries of a page, by where they begin; empty between pages
@@ -331,14 +316,14 @@ class StructureWalk {
 
 }  // namespace
 
-void checkMapStructure(int descriptor, const std::filesystem::path& file, std::uint64_t transaction, MapScope scope,
-                       const std::uint8_t* mapped) {
+PresentKeys checkMapStructure(int descriptor, const std::filesystem::path& file, std::uint64_t transaction,
+                              MapScope scope, const std::uint8_t* mapped) {
   const MapFileHead head = readMapFileHead(descriptor, file);
   const Meta* meta = head.metaOf(transaction);
   if (meta == nullptr) refuseFile(file, "the map changed while it was checked; run again");
   std::optional<FileMapping> own;
   if (mapped == nullptr) mapped = own.emplace(descriptor, head.file_size, file).bytes();
-  StructureWalk(mapped, file, head, *meta, scope).run();
+  return StructureWalk(mapped, file, head, *meta, scope).run();
 }
 
 }  // namespace cluxel::rdf

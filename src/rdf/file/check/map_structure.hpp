@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "rdf/file/block_keys.hpp"
+
 namespace cluxel::rdf {
 
 enum class MapScope : std::uint8_t {
@@ -20,8 +22,8 @@ enum class MapScope : std::uint8_t {
 /// free, and when a table holds more or less than its record states. Never reads outside the file. Cost of Reading: one
 /// step per block; of Writing: also one per page of an index and of terms, and per page of a long value; of Whole: one
 /// per block, per term, per page of an index, and per page of a long value.
-/// `mapped`: the whole file in memory, if it is there already.
-void checkMapStructure(int descriptor, const std::filesystem::path& file, std::uint64_t transaction, MapScope scope,
-                       const std::uint8_t* mapped = nullptr);
+/// `mapped`: the whole file in memory, if it is there already. Returns the keys of the blocks.
+PresentKeys checkMapStructure(int descriptor, const std::filesystem::path& file, std::uint64_t transaction,
+                              MapScope scope, const std::uint8_t* mapped = nullptr);
 
 }  // namespace cluxel::rdf
