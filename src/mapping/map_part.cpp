@@ -94,6 +94,25 @@ std::optional<MapPart> partOfLayers(const rdf::ReadTransaction& transaction, Til
   return partOfMap(transaction, stages, tiles, reach_m);
 }
 
+perception::TileSet tilesOfPrimitives(const rdf::ReadTransaction& transaction, const ThingPlace& thing) {
+  perception::TileSet tiles = thing.tiles, seen = thing.tiles;
+  std::vector<perception::TileKey> open(tiles.begin(), tiles.end());
+  while (!open.empty()) {
+    const perception::TileKey tile = open.back();
+    open.pop_back();
+    for (const perception::TileKey& near : perception::ringOf(tile)) {
+      if (!seen.insert(near).second) continue;
+      const std::optional<TileLayer> layer = storedLayer(transaction, near);
+      if (!layer || std::none_of(layer->primitives.begin(), layer->primitives.end(),
+                                 [&](const auto& here) { return thing.primitives.contains(here.id); }))
+        continue;
+      tiles.insert(near);
+      open.push_back(near);
+    }
+  }
+  return tiles;
+}
+
 perception::TileSet tilesOfObject(const rdf::ReadTransaction& transaction, const ContentHash& object) {
   const std::optional<ObjectRecord> record = storedRecord(transaction, object);
   if (!record) return {};

@@ -36,6 +36,10 @@ struct ThingPlace {
 ThingPlace placeOfObject(const rdf::ReadTransaction& transaction, const ContentHash& object);
 ThingPlace placeOfPrimitive(const rdf::ReadTransaction& transaction, const ContentHash& primitive);
 
+/// The tiles of a thing, and those around into which its primitives go on: a crown may be shared by trees far beyond
+/// the tiles of one of them. Cost: that of the tiles and of those next to them.
+perception::TileSet tilesOfPrimitives(const rdf::ReadTransaction& transaction, const ThingPlace& thing);
+
 /// How much of what is around a thing a part is to have.
 struct LayersAround {
   std::uint32_t count = 0;  ///< of layers (rules::layersAround())

@@ -146,7 +146,8 @@ const std::vector<ContentHash>& MapReader::primitiveIds() const {
 }
 
 std::optional<MapPart> MapReader::partAroundObject(const ContentHash& object, int rings) const {
-  return impl_->partAround(tilesOfObject(impl_->transaction, object), rings);
+  const rdf::ReadTransaction& transaction = impl_->transaction;
+  return impl_->partAround(tilesOfPrimitives(transaction, mapping::placeOfObject(transaction, object)), rings);
 }
 std::optional<MapPart> MapReader::partAroundPrimitive(const ContentHash& primitive, int rings) const {
   return impl_->partAround(tilesOfPrimitive(impl_->transaction, primitive), rings);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "base/nearest_name.hpp"
@@ -96,11 +97,12 @@ std::optional<rules::PartRun> runAround(const mapping::MapReader& map, const Exp
     int rings;
     std::vector<double> margins_m;  ///< smaller ones were tried with fewer rings
   };
-  for (const Around& around : {Around{1, {kAll}}, Around{3, {30, kAll}}}) {
-    const std::optional<mapping::MapPart> part = partAround(map, what, around.rings);
+  for (const Around& around : {Around{1, {kAll}}, Around{2, {kAll}}, Around{3, {30, kAll}}}) {
+    std::optional<mapping::MapPart> part = partAround(map, what, around.rings);
     if (!part) break;
-    if (auto run = runInPart(part->scene, rules, {part->traces, part->objects},
-                             primitivesIn(part->scene, part->objects, what), {around.margins_m, 1}))
+    const auto primitives = primitivesIn(part->scene, part->objects, what);
+    const auto scene = std::make_shared<const perception::Scene>(std::move(part->scene));
+    if (auto run = runInPart(scene, rules, {part->traces, part->objects}, primitives, {around.margins_m, 1}))
       return run;
   }
   const std::vector<std::uint64_t> traces = map.decisionTraces();
@@ -141,7 +143,7 @@ struct Explained {
   rules::Explanation explanation;
   std::optional<rules::PartRun> run;
 
-  const perception::Scene& sceneOf(const mapping::MapReader& map) const { return run ? run->part : map.scene(); }
+  const perception::Scene& sceneOf(const mapping::MapReader& map) const { return run ? *run->part : map.scene(); }
 };
 
 /// The name that the rules gave to an object of the map.

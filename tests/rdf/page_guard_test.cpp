@@ -264,11 +264,11 @@ TEST_F(GuardedMap, LosesNothingByAChangeOfADamagedQuad) {
     while (hasNumber(quadOf(number)) != has_number) ++number;
     std::ofstream(file_, std::ios::binary) << whole;
     damage(number, order);
-    const auto change = [&] {
+    const auto change = [&, adds = is_added] {
       const auto environment = open();
       WriteTransaction transaction = environment->write();
       QuadWriter writer(transaction);
-      if (is_added)
+      if (adds)
         writer.add(quadOf(number));
       else
         writer.remove(quadOf(number));

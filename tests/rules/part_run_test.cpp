@@ -44,12 +44,12 @@ TEST(PartRun, ExplainsObjectsAndPrimitivesAsTheWholeRunDoes) {
     const auto run = runInPart(street.scene, street.rules, street.whole(), primitivesOf(object));
     if (!run) continue;
     ++in_part;
-    EXPECT_LT(run->part.cluxels.size(), street.scene.cluxels.size());
+    EXPECT_LT(run->part->cluxels.size(), street.scene.cluxels.size());
     const auto near = explanationIn(run->result, street.rules, object.id);
     const auto whole = explain(street.scene, street.rules, {}, object);
     ASSERT_TRUE(near && whole);
-    EXPECT_EQ(textOf(*near, street.rules, run->part), textOf(*whole, street.rules, street.scene));
-    EXPECT_EQ(jsonOf(*near, street.rules, run->part), jsonOf(*whole, street.rules, street.scene));
+    EXPECT_EQ(textOf(*near, street.rules, *run->part), textOf(*whole, street.rules, street.scene));
+    EXPECT_EQ(jsonOf(*near, street.rules, *run->part), jsonOf(*whole, street.rules, street.scene));
   }
   for (PrimitiveIndex i = 0; i < street.scene.primitives.size(); i += 3) {
     ++asked;
@@ -57,7 +57,7 @@ TEST(PartRun, ExplainsObjectsAndPrimitivesAsTheWholeRunDoes) {
     if (!run) continue;
     ++in_part;
     const auto near = explanationIn(run->result, street.rules, run->primitives.front());
-    EXPECT_EQ(textOf(near, street.rules, run->part),
+    EXPECT_EQ(textOf(near, street.rules, *run->part),
               textOf(explain(street.scene, street.rules, {}, i), street.rules, street.scene));
   }
   EXPECT_GE(4 * in_part, 3 * asked) << "most things are explained from a part";
@@ -103,7 +103,7 @@ TEST(PartRun, TellsOfAFoundCrownWhatTheWholeRunMeasuredAtItsTrunk) {
     const auto run = runInPart(built.scene, rules, {traces, result.objects}, {i});
     if (!run) continue;
     ++in_part;
-    EXPECT_EQ(textOf(explanationIn(run->result, rules, run->primitives.front()), rules, run->part),
+    EXPECT_EQ(textOf(explanationIn(run->result, rules, run->primitives.front()), rules, *run->part),
               textOf(explain(built.scene, rules, {}, i), rules, built.scene))
         << built.names[i];
   }

@@ -65,7 +65,7 @@ TEST(Explanation, FromAPartOfTheMapIsThatOfTheWhole) {
     const auto near = explanationIn(run->result, rules, object.id);
     const auto whole = explain(map.scene(), rules, {}, object);
     ASSERT_TRUE(near && whole);
-    EXPECT_EQ(textOf(*near, rules, run->part), textOf(*whole, rules, map.scene())) << "object " << i;
+    EXPECT_EQ(textOf(*near, rules, *run->part), textOf(*whole, rules, map.scene())) << "object " << i;
   }
   EXPECT_GE(in_part, 5U);
 }

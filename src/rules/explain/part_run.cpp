@@ -119,23 +119,32 @@ class PartSearch {
 
 }  // namespace
 
-std::optional<PartRun> runInPart(const perception::Scene& scene, const RuleSet& rules, const WholeRun& whole,
-                                 const std::vector<perception::PrimitiveIndex>& primitives, const TriedParts& tried) {
-  if (rules.asks_map || whole.traces.size() != scene.primitives.size() || primitives.empty()) return std::nullopt;
-  const PartSearch search(scene, rules, whole, primitives);
+std::optional<PartRun> runInPart(const std::shared_ptr<const perception::Scene>& scene, const RuleSet& rules,
+                                 const WholeRun& whole, const std::vector<perception::PrimitiveIndex>& primitives,
+                                 const TriedParts& tried) {
+  if (rules.asks_map || whole.traces.size() != scene->primitives.size() || primitives.empty()) return std::nullopt;
+  const PartSearch search(*scene, rules, whole, primitives);
   std::vector<perception::PrimitiveIndex> before;
   for (const double margin_m : tried.margins_m) {
     std::vector<perception::PrimitiveIndex> kept = search.within(margin_m, tried.max_share);
     if (kept.empty()) return std::nullopt;
     if (kept == before) continue;
-    PartRun run{partOf(scene, kept), search.numbersIn(kept), {}};
+    const bool is_all = kept.size() == scene->primitives.size();
+    PartRun run{
+        is_all ? scene : std::make_shared<const perception::Scene>(partOf(*scene, kept)), search.numbersIn(kept), {}};
     ReasoningContext probing;
     probing.probes = run.primitives;
-    run.result = reason(run.part, rules, probing);
-    if (search.agrees(kept, run.part, run.result)) return run;
+    run.result = reason(*run.part, rules, probing);
+    if (search.agrees(kept, *run.part, run.result)) return run;
     before = std::move(kept);
   }
   return std::nullopt;
+}
+
+std::optional<PartRun> runInPart(const perception::Scene& scene, const RuleSet& rules, const WholeRun& whole,
+                                 const std::vector<perception::PrimitiveIndex>& primitives, const TriedParts& tried) {
+  const std::shared_ptr<const perception::Scene> not_owned(std::shared_ptr<const void>(), &scene);
+  return runInPart(not_owned, rules, whole, primitives, tried);
 }
 
 }  // namespace cluxel::rules

@@ -2,6 +2,7 @@
 // The reasoning stage over what lies around a thing, with the outcome of the run over the whole scene.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -17,7 +18,7 @@ struct WholeRun {
 
 /// A run with probes at some primitives. All numbers refer to the part.
 struct PartRun {
-  perception::Scene part;
+  std::shared_ptr<const perception::Scene> part;
   std::vector<perception::PrimitiveIndex> primitives;  ///< the probed ones
   ReasoningResult result;
 };
@@ -32,7 +33,11 @@ struct TriedParts {
 /// objects that own them, are those of the whole run, and when every cluxel within 5 m around them went to the same
 /// rule. A counterfactual may still read what lies farther away. Absent when no part counts that has at most
 /// `max_share` of the scene's cluxels, or when the rules ask the map. `scene` may itself be cut out of a larger one, to
-/// which the traces belong.
+/// which the traces belong. A part that holds all of it is the scene itself.
+std::optional<PartRun> runInPart(const std::shared_ptr<const perception::Scene>& scene, const RuleSet& rules,
+                                 const WholeRun& whole, const std::vector<perception::PrimitiveIndex>& primitives,
+                                 const TriedParts& tried = {});
+/// The same with a scene that outlives the result.
 std::optional<PartRun> runInPart(const perception::Scene& scene, const RuleSet& rules, const WholeRun& whole,
                                  const std::vector<perception::PrimitiveIndex>& primitives,
                                  const TriedParts& tried = {});
