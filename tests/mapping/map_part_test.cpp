@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
 
 #include "mapping/small_campus.hpp"
+#include "rules/explain/explain.hpp"
 
 namespace cluxel::mapping {
 namespace {
@@ -63,6 +65,26 @@ TEST(MapPart, HoldsWhatTheMapSaysOfItsTiles) {
   }
   EXPECT_GE(parts, 8U);
   EXPECT_GE(primitives, 100U);
+}
+
+/// Trees share crowns that go on beyond the tiles of one tree. A run over a cut crown would decide otherwise.
+TEST(MapPart, CutsNoPrimitiveOfTheObjectThatItIsAround) {
+  const SmallCampus campus({.seed = 5, .stops = 12, .size_m = 150, .points_per_stop = 20000, .max_range_m = 25});
+  const ScratchFolder folder;
+  buildMap(scansOf(campus.files()), shippedInputs(), folder.path() / "street.clx", {}, silence());
+  const MapReader map(folder.path() / "street.clx");
+  std::size_t parts = 0;
+  for (const SemanticObject& object : map.objects()) {
+    const auto part = map.isClassWide(object.id) ? std::nullopt : map.partAroundObject(object.id, 1);
+    if (!part) continue;
+    ++parts;
+    std::set<ContentHash> whole;
+    for (std::size_t i = 0; i < part->traces.size(); ++i)
+      if (part->traces[i] != 0) whole.insert(part->scene.primitives[i].id);
+    for (const PrimitiveIndex primitive : rules::primitivesOf(object))
+      EXPECT_TRUE(whole.contains(map.scene().primitives[primitive].id)) << object.id.hex();
+  }
+  EXPECT_GE(parts, 20U);
 }
 
 TEST(MapPart, NamesObjectsAndPrimitivesAsTheMapDoes) {
