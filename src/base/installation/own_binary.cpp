@@ -18,8 +18,7 @@ namespace {
 
 /// An installed module of root is trusted, and one of the binary's owner.
 bool isTrusted(const fs::path& module, const fs::path& binary) {
-  struct stat of_module {
-  }, of_binary{};
+  struct ::stat of_module = {}, of_binary = {};
   if (stat(module.c_str(), &of_module) != 0 || stat(binary.c_str(), &of_binary) != 0) return false;
   return of_module.st_uid == 0 || of_module.st_uid == of_binary.st_uid;
 }

@@ -126,7 +126,11 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
   note(std::move(layers));
   if (params_.dry_run) return;
   transaction.commit();
-  report_.free_space = rdf::freeSpaceOf(environment_->read());
+  try {
+    report_.free_space = rdf::freeSpaceOf(environment_->read());
+  } catch (const Error& error) {
+    sink_.note(file_.string() + ": the change is written, but its free space is not known: " + error.what());
+  }
 }
 
 /// What came and went again within the commits is no difference.
