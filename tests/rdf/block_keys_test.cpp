@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A block that is gone, or that no search finds, is an error and not an absent block.
 #include <fstream>
+#include <random>
 
 #include "base/file_bytes.hpp"
+#include "rdf/file/lmdb_environment.hpp"
 #include "rdf/file/map_check.hpp"
 #include "rdf/map_file_fixture.hpp"
 
@@ -82,6 +84,34 @@ TEST_F(BlockKeySums, FindAKeyThatIsOutOfOrder) {
   EXPECT_THAT(visit(), HasSubstr("keys of the blocks 'scans' are damaged"));
   EXPECT_THROW(open(OpenMode::ReadOnly)->read().block("scans", nameOf(120)), Error) << "a block that is not found";
   EXPECT_EQ(open(OpenMode::ReadOnly)->read().block("other", "one"), "1") << "another table is as it was";
+}
+
+/// What each commit makes of the sums is what the file then holds.
+TEST_F(BlockKeySums, AreKnownWithoutReadingTheKeysAgain) {
+  fill();
+  const auto environment = open();
+  std::mt19937 random(3);
+  for (int round = 0; round < 20; ++round) {
+    WriteTransaction transaction = environment->write();
+    for (int i = 0; i < 30; ++i) {
+      const std::string table = random() % 3 == 0 ? "other" : "scans", name = nameOf(static_cast<int>(random() % 600));
+      if (random() % 2 == 0)
+        transaction.putBlock(table, name, "new");
+      else
+        transaction.eraseBlock(table, name);
+    }
+    if (round % 5 == 4) continue;  // is rolled back
+    transaction.commit();
+    const ReadTransaction now = environment->read();
+    const ReadTransaction::Impl& state = now.impl();
+    for (const std::string table : {"scans", "other", "no table"}) {
+      KeySum there;
+      now.forEachBlock(table, "", [&](std::string_view key, std::string_view) {
+        there.add(table + std::string(1, '\0') + std::string(key));
+      });
+      EXPECT_EQ(state.environment->presentKeys(state.commitBefore(), table), there) << round << table;
+    }
+  }
 }
 
 TEST_F(BlockKeySums, DoNotHideThatABlockWasNeverThere) {
