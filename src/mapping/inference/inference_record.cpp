@@ -70,10 +70,6 @@ void storeInferenceRecord(rdf::WriteTransaction& transaction, const InferenceRec
   const auto history = reader.idOf(Term::iri(rdf::vocabulary::kGraphHistory));
   const rdf::EntrySum sum = rdf::sumWithout(transaction, history.value_or(rdf::kNoGraph));
   std::string bytes;
-  std::size_t size = sizeof(Basis) + record.reason.size() + record.late.size() * sizeof(StoredLate) +
-                     (record.outputs.size() + 2) * sizeof(std::uint64_t);
-  for (const std::vector<RuleOutput>& outputs : record.outputs) size += outputs.size() * sizeof(RuleOutput);
-  bytes.reserve(size);
   append(bytes, basisOf(rules, sum));
   appendList(bytes, record.reason);
   for (const std::vector<RuleOutput>& outputs : record.outputs) appendList(bytes, outputs);
