@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Modules lie below one of the folders above the binary, which may be moved together with them.
+// Modules lie below the folder of the binary or one of the two above it, so that all may be moved together.
 #include "base/installation/own_binary.hpp"
 
 #include <dlfcn.h>
@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// An installed module of root is trusted, and one of the binary's owner.
+/// A module is trusted when root owns it, or the owner of the binary.
 bool isTrusted(const fs::path& module, const fs::path& binary) {
   struct ::stat of_module = {}, of_binary = {};
   if (stat(module.c_str(), &of_module) != 0 || stat(binary.c_str(), &of_binary) != 0) return false;
@@ -37,7 +37,7 @@ fs::path ownBinary() {
 }
 
 fs::path moduleOf(const fs::path& binary, const std::string& name) {
-  constexpr int kMaxDepth = 4;  // prefix/lib/<architecture>/, build/tests/fuzz/
+  constexpr int kMaxDepth = 3;  // prefix/lib/<architecture>/, build/tests/fuzz/
   const std::array folders{fs::path(CLUXEL_LIBRARY_FOLDER) / "cluxel", fs::path("modules")};
   fs::path above = binary.parent_path();
   for (int depth = 0; depth < kMaxDepth && above.has_relative_path(); ++depth, above = above.parent_path())
