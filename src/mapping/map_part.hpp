@@ -36,8 +36,8 @@ struct ThingPlace {
 ThingPlace placeOfObject(const rdf::ReadTransaction& transaction, const ContentHash& object);
 ThingPlace placeOfPrimitive(const rdf::ReadTransaction& transaction, const ContentHash& primitive);
 
-/// The tiles of a thing, and those around into which its primitives go on: a crown may be shared by trees far beyond
-/// the tiles of one of them. Cost: that of the tiles and of those next to them.
+/// All tiles that hold primitives of a thing. These may be more than its own tiles: trees share a crown, which reaches
+/// beyond the tiles of one of them. Cost: reads the layers of these tiles and of those next to them.
 perception::TileSet tilesOfPrimitives(const rdf::ReadTransaction& transaction, const ThingPlace& thing);
 
 /// How much of what is around a thing a part is to have.

@@ -65,7 +65,7 @@ class MapReader {
   /// The ids of objects(), and of the scene's primitives, ascending. Cost: some microseconds an object, or a tile.
   const std::vector<ContentHash>& objectIds() const;
   const std::vector<ContentHash>& primitiveIds() const;
-  /// The part of the map `rings` tiles around the primitives of an object, or one. Absent as for partOfMap().
+  /// The part of the map `rings` tiles around all primitives of an object, or around one. Absent as for partOfMap().
   std::optional<MapPart> partAroundObject(const ContentHash& object, int rings) const;
   std::optional<MapPart> partAroundPrimitive(const ContentHash& primitive, int rings) const;
   std::optional<MapPart> partAroundTile(const perception::TileKey& tile, int rings) const;

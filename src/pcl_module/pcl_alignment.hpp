@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PCL's search trees and its generalised ICP, as PclFunctions tells.
+// PCL's search trees and its generalised ICP, documented in PclFunctions.
 #pragma once
 
 #include <Eigen/Geometry>

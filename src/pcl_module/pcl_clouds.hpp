@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PCL's readers and writer, as PclFunctions tells. Headers and lengths are already checked.
+// PCL's readers and writer, documented in PclFunctions. Callers have checked headers and lengths.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -36,7 +36,7 @@ while read -r header; do
     fail "$header does not compile alone"
 done <"$work/headers.found"
 
-# The library exports the facade, the Redland module its one function.
+# The library exports the facade, each module its entry. No start loads PCL, and nothing has a run path.
 nm -DC --defined-only "$lib/libcluxel.so" | sed 's/^[0-9a-f]* //' >"$work/exports"
 wants "$work/exports" ' cluxel::Map::open'
 wants "$work/exports" 'typeinfo for cluxel::InputError'

@@ -119,7 +119,7 @@ TEST(Architecture, ListsTheModulesAndTheirPartsAsTheFoldersAre) {
   for (const auto& module : fs::directory_iterator(root() / "src")) {
     const std::string name = module.path().filename();
     if (!module.is_directory() || name.ends_with("_module")) continue;  // a plugin, told in the text
-    auto& parts = folders[module.path().filename()];
+    auto& parts = folders[name];
     for (const auto& part : fs::directory_iterator(module))
       if (part.is_directory()) parts.insert(part.path().filename());
   }

@@ -66,7 +66,8 @@ class LmdbEnvironment final : public Environment {
   std::shared_ptr<StoreSnapshot> snapshot(std::size_t transaction_id,
                                           const std::function<std::shared_ptr<StoreSnapshot>()>& make) const;
   void allowWriting();
-  /// The pages of this commit were checked when the file was opened: `for_writing`, what LMDB reads for a writer.
+  /// Notes which commit was checked when the file was opened. `for_writing`: the check was that of a writer
+  /// (MapScope::Writing). `keys`: the keys of the blocks that it met.
   void noteStructure(std::size_t commit, bool for_writing, PresentKeys keys);
   /// The keys of a block table in a commit; absent when they are not known or out of order.
   std::optional<KeySum> presentKeys(std::size_t commit, std::string_view table) const;

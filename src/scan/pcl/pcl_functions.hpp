@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Cluxel takes from PCL. PCL comes with some fifty libraries, which take longer to load than most questions take
-// to answer: so all code that uses it lies in a module of its own, which is loaded by the first call that needs it.
+// What Cluxel takes from PCL. PCL comes with some fifty libraries, and loading them took half of each start. So the
+// code that uses PCL is a module of its own, which the first call loads.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -50,8 +50,8 @@ class PclFunctions {
                                                          double reach_m) const = 0;
 };
 
-/// Loads the module at its first call, in some 30 to 60 ms. Throws Error (FaultyInput) when the module does not lie in
-/// the installation or build folder around the program, or a library of PCL is missing.
+/// Loads the module at its first call, which took some 50 ms on a slow machine. Throws Error (FaultyInput) when the
+/// module does not lie in the installation or build folder around the program, or a library of PCL is missing.
 const PclFunctions& pcl();
 
 /// The function that the module exports under kPclEntryName.
