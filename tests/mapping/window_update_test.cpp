@@ -241,7 +241,7 @@ TEST(WindowUpdate, AppliesStatementsAsABuildDoes) {
 
 TEST(WindowUpdate, AppliesOtherNumbersOfRulesAsABuildDoes) {
   checkSequences(
-      60, 12, [](StreetChanges& changes, unsigned i) { return i % 4 == 3 ? changes.step() : changes.changeANumber(); });
+      60, 8, [](StreetChanges& changes, unsigned i) { return i % 4 == 3 ? changes.step() : changes.changeANumber(); });
 }
 
 TEST(WindowUpdate, TakesTheGroundOfAnAreaThatLosesItsOnlyScan) {

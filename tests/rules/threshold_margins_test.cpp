@@ -63,7 +63,7 @@ TEST(ThresholdMargins, TellWhereOtherNumbersDecideNothingOtherwise) {
   const RuleSet rules = loadText(text).require();
   const double reach_m = localReach(rules).reach_m.value();
   std::map<std::string, Kept> of_kind;
-  const int changes = std::getenv("CLUXEL_LONG_TESTS") != nullptr ? 400 : 60;
+  const int changes = std::getenv("CLUXEL_LONG_TESTS") != nullptr ? 400 : 35;
   for (int street = 0; street < 6; ++street) {
     const Scene scene = sceneOfBoxes(randomStreet(random, 200, street < 3 ? 0.15 : 0.5)).scene;
     const NotedRun before = runOf(scene, rules);

@@ -5,7 +5,7 @@ import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { askNamed, drawn, openPage, startBrowser, stopBrowser } from './browser.mjs';
+import { askNamed, drawn, openPage, startBrowser, stopBrowser, writeText } from './browser.mjs';
 
 const folder = process.env.CLUXEL_PAGES, program = process.env.CLUXEL_PROGRAM, map = join(folder, 'campus.clx');
 const cluxel = (...args) => execFileSync(program, args, { encoding: 'utf8', maxBuffer: 1e9 });
@@ -54,7 +54,7 @@ test('a newcomer searches signs, asks why, changes a threshold and takes a cost 
   const rules = await page.inputValue('#rule-text'), changed = rules.replace('bush_top: 1.7 m', 'bush_top: 1.2 m');
   assert.notEqual(changed, rules);
   await page.fill('#token', readFileSync(join(folder, 'token'), 'utf8').trim());
-  await page.fill('#rule-text', changed);
+  await writeText(page, '#rule-text', changed);
   await page.waitForFunction(() => /^\d+ objects change/.test(document.querySelector('.rules .status').textContent), null, { timeout: 120_000 });
   const count = Number((await page.textContent('.rules .status')).match(/^\d+/)[0]);
   assert.ok(count > 0);

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, afterEach, before, beforeEach, test } from 'node:test';
-import { openPage, startBrowser, stopBrowser } from './browser.mjs';
+import { openPage, startBrowser, stopBrowser, writeText } from './browser.mjs';
 
 const page_address = `${process.env.CLUXEL_SERVICE.trim()}page`;
 const token = readFileSync(join(process.env.CLUXEL_PAGES, 'token'), 'utf8').trim();
@@ -67,9 +67,9 @@ for (const [what, reply] of [
     await page.route(/rules\/trial/, () => {});  // the second trial never ends
     const trial = { before: 1, after: 1, counts: {}, changes: [] };
     const release = await heldBack(page, /rules\/trial/, what === 'answer' ? { json: trial } : reply);
-    await page.fill('#rule-text', `${text}# first\n`);
+    await writeText(page, '#rule-text', `${text}# first\n`);
     await page.waitForFunction(() => document.querySelector('.rules').getAttribute('aria-busy') === 'true');
-    await page.fill('#rule-text', `${text}# second\n`);
+    await writeText(page, '#rule-text', `${text}# second\n`);
     await release();
     assert.equal(await textOf(page, '.rules .status'), 'Trying…');
     assert.equal(await page.locator('.rules .status.fault').count(), 0);

@@ -5,7 +5,7 @@ import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, afterEach, before, beforeEach, test } from 'node:test';
-import { askNamed, openPage, settled, startBrowser, states, stopBrowser } from './browser.mjs';
+import { askNamed, openPage, settled, startBrowser, states, stopBrowser, writeText } from './browser.mjs';
 
 const folder = process.env.CLUXEL_PAGES, program = process.env.CLUXEL_PROGRAM;
 const map = join(folder, 'visits.clx'), html = join(folder, 'visits.html');
@@ -131,7 +131,7 @@ test('without a service rules are shown and may be saved, and the page says so',
   assert.match(await page.textContent('.rules .status'), /no service/);
   const text = await page.inputValue('#rule-text');
   assert.equal(text, readFileSync(join(process.env.CLUXEL_SOURCE, 'rules', 'outdoor.rules.yaml'), 'utf8'));
-  await page.fill('#rule-text', `${text}# changed\n`);
+  await writeText(page, '#rule-text', `${text}# changed\n`);
   await page.waitForTimeout(900);
   assert.ok(await page.isEnabled('.rules .row button'));
   const [download] = await Promise.all([page.waitForEvent('download'), page.click('text=Save as a file')]);

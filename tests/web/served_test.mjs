@@ -5,7 +5,7 @@ import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, afterEach, before, beforeEach, test } from 'node:test';
-import { askNamed, openPage, startBrowser, states, stopBrowser } from './browser.mjs';
+import { askNamed, openPage, startBrowser, states, stopBrowser, writeText } from './browser.mjs';
 
 const folder = process.env.CLUXEL_PAGES, program = process.env.CLUXEL_PROGRAM, map = join(folder, 'served.clx');
 const page_address = `${process.env.CLUXEL_SERVICE.trim()}page`, token = readFileSync(join(folder, 'token'), 'utf8').trim();
@@ -96,7 +96,7 @@ test('a changed threshold is tried, and coloured before and after', async () => 
   const text = await page.inputValue('#rule-text'), changed = text.replace(/crown_top: 2\.2 m/, 'crown_top: 9 m');
   assert.notEqual(changed, text);
   await page.fill('#token', token);
-  await page.fill('#rule-text', changed);
+  await writeText(page, '#rule-text', changed);
   await page.waitForFunction(() => /objects change/.test(document.querySelector('.rules .status').textContent), null, { timeout: 60_000 });
   const file = join(folder, 'changed.rules.yaml');
   execFileSync('tee', [file], { input: changed });
@@ -126,7 +126,7 @@ test('a changed threshold is tried, and coloured before and after', async () => 
 test('faulty rules and a missing token are told', async () => {
   const { page } = open;
   await page.click('#tab-rules');
-  await page.fill('#rule-text', 'rules: 7\n');
+  await writeText(page, '#rule-text', 'rules: 7\n');
   await page.waitForSelector('.rules .status.fault');
   assert.match(await page.textContent('.rules .status.fault'), /token/i);
   await page.fill('#token', token);
