@@ -63,6 +63,19 @@ inline Eigen::Vector3f ringShift(int ring) {
           static_cast<float>(ring / 3 - 1) * static_cast<float>(kTileSize_m), 0.0F};
 }
 
+/// Where a tile lies on a curve through all tiles on which most neighbours are close to each other (Morton order).
+constexpr std::uint64_t mortonCode(const TileKey& key) {
+  const auto spread = [](std::int32_t value) {
+    std::uint64_t bits = static_cast<std::uint32_t>(value) ^ 0x8000'0000U;  // so that negative numbers come first
+    bits = (bits | bits << 16U) & 0x0000'FFFF'0000'FFFFU;
+    bits = (bits | bits << 8U) & 0x00FF'00FF'00FF'00FFU;
+    bits = (bits | bits << 4U) & 0x0F0F'0F0F'0F0F'0F0FU;
+    bits = (bits | bits << 2U) & 0x3333'3333'3333'3333U;
+    return (bits | bits << 1U) & 0x5555'5555'5555'5555U;
+  };
+  return spread(key.x) | spread(key.y) << 1U;
+}
+
 using TileSet = std::set<TileKey>;
 
 /// The tiles and their neighbours, as far as they are in `existing`.

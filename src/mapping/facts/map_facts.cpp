@@ -8,6 +8,7 @@
 #include <span>
 
 #include "base/utc_time.hpp"
+#include "mapping/facts/fact_order.hpp"
 #include "mapping/facts/object_facts.hpp"
 #include "rdf/map_iris.hpp"
 
@@ -169,7 +170,7 @@ void addSceneFacts(const MapInputs& inputs, const std::vector<Cloud>& clouds, co
                    FactSink& facts) {
   addMap(inputs, clouds, facts);
   for (const Cloud& cloud : clouds) addCloud(cloud, facts);
-  for (perception::PrimitiveIndex i = 0; i < scene.primitives.size(); ++i) addPrimitive(scene, i, facts);
+  for (const perception::PrimitiveIndex primitive : primitivesByPlace(scene)) addPrimitive(scene, primitive, facts);
   addGroundPatches(scene, facts);
 }
 

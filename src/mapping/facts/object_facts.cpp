@@ -11,6 +11,7 @@
 
 #include "base/parallel.hpp"
 #include "base/utc_time.hpp"
+#include "mapping/facts/fact_order.hpp"
 #include "rdf/map_iris.hpp"
 
 namespace cluxel::mapping {
@@ -266,10 +267,12 @@ void addObjectFacts(const ObservedMap& map, FactSink& facts) {
   views.reserve(objects.size());
   for (std::optional<ObjectView>& view : found) views.push_back(*std::move(view));
   addSightings(map, views);
-  for (std::size_t i = 0; i < map.near.size(); ++i) addNear(objects[i], map.near[i], facts);
+  const std::vector<std::size_t> by_place = objectsByPlace(map.scene, objects);
+  if (!map.near.empty())
+    for (const std::size_t i : by_place) addNear(objects[i], map.near[i], facts);
   for (std::size_t i = 0; i < map.presence.size(); ++i) views[i].presence = map.presence[i];
   for (std::size_t i = 0; i < map.passed_rays.size(); ++i) views[i].passed_rays = map.passed_rays[i];
-  for (const ObjectView& view : views) addObject(view, facts);
+  for (const std::size_t i : by_place) addObject(views[i], facts);
 }
 
 }  // namespace cluxel::mapping

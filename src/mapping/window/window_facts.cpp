@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "mapping/facts/fact_order.hpp"
 #include "mapping/facts/fact_patch.hpp"
 #include "mapping/facts/map_facts.hpp"
 #include "mapping/facts/object_facts.hpp"
@@ -81,7 +82,7 @@ class FactWriting {
       patch_.replace(subject);
     };
     for (const ContentHash& id : sources_.decided.change.gone) forget(id);
-    for (PrimitiveIndex i = 0; i < scene_.primitives.size(); ++i) {
+    for (const PrimitiveIndex i : primitivesByPlace(scene_)) {
       if (sources_.decided.change.is_dirty[i] == 0 || sources_.decided.decision.is_decided[i] == 0) continue;
       forget(scene_.primitives[i].id);
       addPrimitive(scene_, i, facts_);
