@@ -6,6 +6,7 @@
 #include <map>
 
 #include "mapping/build/scan_store.hpp"
+#include "mapping/layers/primitive_tiles.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/window/likely_tiles.hpp"
 #include "mapping/window/map_window.hpp"
@@ -95,22 +96,7 @@ std::optional<MapPart> partOfLayers(const rdf::ReadTransaction& transaction, Til
 }
 
 perception::TileSet tilesOfPrimitives(const rdf::ReadTransaction& transaction, const ThingPlace& thing) {
-  perception::TileSet tiles = thing.tiles, seen = thing.tiles;
-  std::vector<perception::TileKey> open(tiles.begin(), tiles.end());
-  while (!open.empty()) {
-    const perception::TileKey tile = open.back();
-    open.pop_back();
-    for (const perception::TileKey& near : perception::ringOf(tile)) {
-      if (!seen.insert(near).second) continue;
-      const std::optional<TileLayer> layer = storedLayer(transaction, near);
-      if (!layer || std::none_of(layer->primitives.begin(), layer->primitives.end(),
-                                 [&](const auto& here) { return thing.primitives.contains(here.id); }))
-        continue;
-      tiles.insert(near);
-      open.push_back(near);
-    }
-  }
-  return tiles;
+  return perception::unionOf(PrimitiveTiles(transaction).beyond(thing.tiles, thing.primitives), thing.tiles);
 }
 
 perception::TileSet tilesOfObject(const rdf::ReadTransaction& transaction, const ContentHash& object) {

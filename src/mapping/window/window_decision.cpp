@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "mapping/layers/primitive_tiles.hpp"
 #include "mapping/layers/stored_layers.hpp"
 
 namespace cluxel::mapping {
@@ -13,41 +14,6 @@ namespace {
 using perception::PrimitiveIndex;
 using perception::TileKey;
 using perception::TileSet;
-
-/// Follows primitives out of a window by the layers of the tiles outside.
-class Following {
- public:
-  Following(const MapWindow& window, const rdf::ReadTransaction& transaction)
-      : window_(window), transaction_(transaction) {}
-
-  /// The tiles outside that hold a primitive which goes on from `tile`.
-  void follow(const ContentHash& primitive, const TileKey& tile, TileSet& found) {
-    std::vector<TileKey> open{tile};
-    TileSet seen{tile};
-    while (!open.empty()) {
-      const TileKey at = open.back();
-      open.pop_back();
-      for (const TileKey& near : perception::ringOf(at)) {
-        if (window_.first_cluxel.contains(near) || !seen.insert(near).second || !holds(near, primitive)) continue;
-        found.insert(near);
-        open.push_back(near);
-      }
-    }
-  }
-
- private:
-  bool holds(const TileKey& tile, const ContentHash& primitive) {
-    const auto [place, is_new] = ids_.try_emplace(tile);
-    if (is_new)
-      if (const auto layer = storedLayer(transaction_, tile))
-        for (const TileLayer::PrimitiveHere& here : layer->primitives) place->second.insert(here.id);
-    return place->second.contains(primitive);
-  }
-
-  const MapWindow& window_;
-  const rdf::ReadTransaction& transaction_;
-  std::map<TileKey, std::set<ContentHash>> ids_;
-};
 
 class Deciding {
  public:
@@ -186,14 +152,15 @@ TileSet tilesBeyond(const MapWindow& window, const WindowChange& change, const O
                     const rdf::ReadTransaction& transaction, const std::vector<std::uint32_t>& layers,
                     std::uint32_t depth) {
   const auto isShort = [&](PrimitiveIndex i) { return layers[i] < depth && change.is_open[i] != 0; };
-  Following following(window, transaction);
+  PrimitiveTiles tiles(transaction);
+  const auto is_inside = [&](const TileKey& tile) { return window.first_cluxel.contains(tile); };
   TileSet beyond;
   for (const auto& [tile, layer] : window.layers) {
     const auto now = window.primitive_of_component.find(tile);
     if (now == window.primitive_of_component.end() || changes.tiles.contains(tile)) continue;
     for (std::size_t c = 0; c < now->second.size() && c < layer.primitives.size(); ++c)
       if (isShort(now->second[c]) && window.is_cut[now->second[c]] != 0)
-        following.follow(layer.primitives[c].id, tile, beyond);
+        beyond.merge(tiles.beyond({tile}, {layer.primitives[c].id}, is_inside));
   }
   const perception::SceneCluxels& all = window.scene.cluxels;
   for (std::uint32_t c = 0; c < all.size(); ++c)
