@@ -2,6 +2,7 @@
 // The part is the window of a change (mapping/window) in which nothing changed.
 #include "mapping/map_part.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
 
@@ -15,7 +16,8 @@ namespace cluxel::mapping {
 
 namespace {
 
-constexpr double kMaxPartShare = 0.6;  ///< of the map's tiles
+constexpr double kMaxPartShare = 0.6;   ///< of the map's tiles
+constexpr std::size_t kManyTiles = 25;  ///< of a near object: chosen, about as many as one more ring has
 
 using PartsByName = std::map<std::string, rules::ObjectPart>;
 
@@ -48,6 +50,12 @@ std::vector<rules::SemanticObject> objectsIn(const rdf::ReadTransaction& transac
     }
   }
   return objects;
+}
+
+Eigen::AlignedBox2d boxOf(const TileLayer::PrimitiveHere& primitive, const perception::TileKey& tile) {
+  const Eigen::Vector2d corner = perception::cornerOf(tile).head<2>();
+  return {Eigen::Vector2d(corner + primitive.bounds.min().head<2>().cast<double>()),
+          Eigen::Vector2d(corner + primitive.bounds.max().head<2>().cast<double>())};
 }
 
 }  // namespace
@@ -97,6 +105,31 @@ std::optional<MapPart> partOfLayers(const rdf::ReadTransaction& transaction, Til
 
 perception::TileSet tilesOfPrimitives(const rdf::ReadTransaction& transaction, const ThingPlace& thing) {
   return perception::unionOf(PrimitiveTiles(transaction).beyond(thing.tiles, thing.primitives), thing.tiles);
+}
+
+perception::TileSet tilesOfNearObjects(const rdf::ReadTransaction& transaction, const ThingPlace& thing,
+                                       const perception::TileSet& tiles, double near_m) {
+  std::vector<TileLayer> layers;
+  for (const perception::TileKey& tile : perception::grown(tiles))
+    if (std::optional<TileLayer> layer = storedLayer(transaction, tile)) layers.push_back(*std::move(layer));
+  Eigen::AlignedBox2d box;
+  for (const TileLayer& layer : layers)
+    for (const TileLayer::PrimitiveHere& here : layer.primitives)
+      if (thing.primitives.contains(here.id)) box.extend(boxOf(here, layer.key));
+  std::set<ContentHash> near;
+  for (const TileLayer& layer : layers)
+    for (const TileLayer::Share& share : layer.shares)
+      if (std::any_of(share.components.begin(), share.components.end(), [&](const std::uint32_t component) {
+            return box.exteriorDistance(boxOf(layer.primitives[component], layer.key)) <= near_m;
+          }))
+        near.insert(share.object);
+  perception::TileSet of_near;
+  for (const ContentHash& object : near) {
+    const std::optional<ObjectRecord> record = storedRecord(transaction, object);
+    if (record && !record->is_class_wide && record->tiles.size() <= kManyTiles)
+      of_near.insert(record->tiles.begin(), record->tiles.end());
+  }
+  return of_near;
 }
 
 perception::TileSet tilesOfObject(const rdf::ReadTransaction& transaction, const ContentHash& object) {

@@ -40,6 +40,12 @@ ThingPlace placeOfPrimitive(const rdf::ReadTransaction& transaction, const Conte
 /// beyond the tiles of one of them. Cost: reads the layers of these tiles and of those next to them.
 perception::TileSet tilesOfPrimitives(const rdf::ReadTransaction& transaction, const ThingPlace& thing);
 
+/// The tiles of the objects that come within `near_m` of a thing, in plan; none of class-wide ones, nor of those that
+/// reach over many tiles. `tiles`: tilesOfPrimitives(). Cost: reads the layers of these tiles and of those next to
+/// them.
+perception::TileSet tilesOfNearObjects(const rdf::ReadTransaction& transaction, const ThingPlace& thing,
+                                       const perception::TileSet& tiles, double near_m);
+
 /// How much of what is around a thing a part is to have.
 struct LayersAround {
   std::uint32_t count = 0;  ///< of layers (rules::layersAround())

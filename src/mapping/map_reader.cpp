@@ -83,9 +83,17 @@ struct MapReader::Impl {
     return *model;
   }
 
-  std::optional<MapPart> partAround(perception::TileSet tiles, int rings) {
+  std::optional<MapPart> partAroundThing(const ThingPlace& thing, int rings, double near_m) {
+    const perception::TileSet tiles = tilesOfPrimitives(transaction, thing);
+    std::optional<MapPart> part = partAround(tiles, rings, tilesOfNearObjects(transaction, thing, tiles, near_m));
+    return part ? std::move(part) : partAround(tiles, rings, {});  // the near objects may be too much of a small map
+  }
+
+  /// Some tiles with rings around them, and `more` without.
+  std::optional<MapPart> partAround(perception::TileSet tiles, int rings, const perception::TileSet& more) {
     const perception::TileSet map = storedTiles(transaction);
     for (int ring = 0; ring < rings; ++ring) tiles = perception::withRing(tiles, map);
+    tiles.insert(more.begin(), more.end());
     TileStages here(readModel(), readInputs().params);
     return partOfMap(transaction, here, tiles, 0);
   }
@@ -145,16 +153,15 @@ const std::vector<ContentHash>& MapReader::primitiveIds() const {
   return *impl_->primitive_ids;
 }
 
-std::optional<MapPart> MapReader::partAroundObject(const ContentHash& object, int rings) const {
-  const rdf::ReadTransaction& transaction = impl_->transaction;
-  return impl_->partAround(tilesOfPrimitives(transaction, mapping::placeOfObject(transaction, object)), rings);
+std::optional<MapPart> MapReader::partAroundObject(const ContentHash& object, int rings, double near_m) const {
+  return impl_->partAroundThing(placeOfObject(object), rings, near_m);
 }
-std::optional<MapPart> MapReader::partAroundPrimitive(const ContentHash& primitive, int rings) const {
-  return impl_->partAround(tilesOfPrimitive(impl_->transaction, primitive), rings);
+std::optional<MapPart> MapReader::partAroundPrimitive(const ContentHash& primitive, int rings, double near_m) const {
+  return impl_->partAroundThing(placeOfPrimitive(primitive), rings, near_m);
 }
 
 std::optional<MapPart> MapReader::partAroundTile(const perception::TileKey& tile, int rings) const {
-  return impl_->partAround({tile}, rings);
+  return impl_->partAround({tile}, rings, {});
 }
 ThingPlace MapReader::placeOfObject(const ContentHash& object) const {
   return mapping::placeOfObject(impl_->transaction, object);

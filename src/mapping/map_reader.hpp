@@ -65,9 +65,10 @@ class MapReader {
   /// The ids of objects(), and of the scene's primitives, ascending. Cost: some microseconds an object, or a tile.
   const std::vector<ContentHash>& objectIds() const;
   const std::vector<ContentHash>& primitiveIds() const;
-  /// The part of the map `rings` tiles around all primitives of an object, or around one. Absent as for partOfMap().
-  std::optional<MapPart> partAroundObject(const ContentHash& object, int rings) const;
-  std::optional<MapPart> partAroundPrimitive(const ContentHash& primitive, int rings) const;
+  /// The part of the map `rings` tiles around all primitives of an object, or around one, with the tiles of the objects
+  /// within `near_m` of it (tilesOfNearObjects()), unless these are most of the map. Absent as for partOfMap().
+  std::optional<MapPart> partAroundObject(const ContentHash& object, int rings, double near_m) const;
+  std::optional<MapPart> partAroundPrimitive(const ContentHash& primitive, int rings, double near_m) const;
   std::optional<MapPart> partAroundTile(const perception::TileKey& tile, int rings) const;
   /// As the functions of mapping/map_part.
   ThingPlace placeOfObject(const ContentHash& object) const;

@@ -70,9 +70,10 @@ Explainable explainableOf(const mapping::MapReader& map, const NamedThing& named
 }
 
 std::optional<mapping::MapPart> partAround(const mapping::MapReader& map, const Explainable& what, int rings) {
+  constexpr double near_m = rules::kSameOwnersWithin_m;  // a cut object there would be decided otherwise
   auto part = what.tile        ? map.partAroundTile(*what.tile, rings)
-              : what.primitive ? map.partAroundPrimitive(*what.primitive, rings)
-                               : map.partAroundObject(*what.object, rings);
+              : what.primitive ? map.partAroundPrimitive(*what.primitive, rings, near_m)
+                               : map.partAroundObject(*what.object, rings, near_m);
   return part ? std::optional(byRules(map, *std::move(part))) : std::nullopt;
 }
 

@@ -4,9 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 
+#include "mapping/facts/object_geometry.hpp"
 #include "mapping/small_campus.hpp"
 #include "rules/explain/explain.hpp"
 
@@ -45,7 +47,7 @@ TEST(MapPart, HoldsWhatTheMapSaysOfItsTiles) {
   std::size_t parts = 0, primitives = 0;
   for (std::size_t i = 0; i < map.objects().size(); i += 5) {
     const SemanticObject& object = map.objects()[i];
-    const auto part = map.partAroundObject(object.id, 1);
+    const auto part = map.partAroundObject(object.id, 1, 5);
     if (!part) continue;
     ++parts;
     EXPECT_LT(part->scene.cluxels.size(), map.scene().cluxels.size());
@@ -75,7 +77,7 @@ TEST(MapPart, CutsNoPrimitiveOfTheObjectThatItIsAround) {
   const MapReader map(folder.path() / "street.clx");
   std::size_t parts = 0;
   for (const SemanticObject& object : map.objects()) {
-    const auto part = map.isClassWide(object.id) ? std::nullopt : map.partAroundObject(object.id, 1);
+    const auto part = map.isClassWide(object.id) ? std::nullopt : map.partAroundObject(object.id, 1, 5);
     if (!part) continue;
     ++parts;
     std::set<ContentHash> whole;
@@ -85,6 +87,62 @@ TEST(MapPart, CutsNoPrimitiveOfTheObjectThatItIsAround) {
       EXPECT_TRUE(whole.contains(map.scene().primitives[primitive].id)) << object.id.hex();
   }
   EXPECT_GE(parts, 20U);
+}
+
+/// A run over a part cuts what goes on outside, and decides otherwise about it.
+TEST(MapPart, HoldsAllOfTheObjectsThatAreNear) {
+  const SmallCampus campus({.seed = 5, .stops = 12, .size_m = 150, .points_per_stop = 7000, .max_range_m = 25});
+  const ScratchFolder folder;
+  buildMap(scansOf(campus.files()), shippedInputs(), folder.path() / "street.clx", {}, silence());
+  const MapReader map(folder.path() / "street.clx");
+  const auto box_of = [&](const SemanticObject& object) {
+    Eigen::AlignedBox2d box;
+    for (const PrimitiveIndex i : rules::primitivesOf(object)) {
+      const Primitive& primitive = map.scene().primitives[i];
+      box.extend(Eigen::AlignedBox2d(primitive.min.head<2>().eval(), primitive.max.head<2>().eval()));
+    }
+    return box;
+  };
+  const SceneCluxels& all = map.scene().cluxels;
+  const auto near_objects = [&](const SemanticObject& object) {
+    const Eigen::AlignedBox2d around = box_of(object);
+    std::vector<const SemanticObject*> near;
+    for (const SemanticObject& other : map.objects()) {
+      const auto cluxels = cluxelsOf(other);
+      if (!other.is_class_wide && std::any_of(cluxels.begin(), cluxels.end(), [&](const std::uint32_t cluxel) {
+            return around.exteriorDistance(all.center[cluxel].head<2>().eval()) <= 5;
+          }))
+        near.push_back(&other);
+    }
+    return near;
+  };
+  TileSet map_tiles;
+  for (const CluxelName& name : all.name) map_tiles.insert(name.tile);
+  std::size_t looked_at = 0, beyond_the_ring = 0;
+  for (std::size_t i = 0; i < map.objects().size(); i += 2) {
+    const SemanticObject& object = map.objects()[i];
+    if (object.is_class_wide) continue;
+    const auto part = map.partAroundObject(object.id, 1, 5.1), ring = map.partAroundObject(object.id, 1, -1);
+    if (!part || !ring) continue;
+    const std::vector<const SemanticObject*> near = near_objects(object);
+    TileSet tiles;
+    for (const CluxelName& name : ring->scene.cluxels.name) tiles.insert(name.tile);
+    for (const SemanticObject* other : near)
+      for (const std::uint32_t cluxel : cluxelsOf(*other)) tiles.insert(all.name[cluxel].tile);
+    if (tiles.size() > map_tiles.size() / 2) continue;  // then the part may do without them
+    for (const SemanticObject* other : near) {
+      const auto is_whole_in = [&](const MapPart& some) {
+        const auto here = std::find_if(some.objects.begin(), some.objects.end(),
+                                       [&](const SemanticObject& one) { return one.id == other->id; });
+        return here != some.objects.end() && seedsOf(some.scene, *here) == seedsOf(map.scene(), *other);
+      };
+      EXPECT_TRUE(is_whole_in(*part)) << other->class_iri << " near " << object.class_iri;
+      ++looked_at;
+      beyond_the_ring += is_whole_in(*ring) ? 0 : 1;
+    }
+  }
+  EXPECT_GE(looked_at, 50U);
+  EXPECT_GE(beyond_the_ring, 3U) << "the ring alone would do: the test shows nothing";
 }
 
 TEST(MapPart, NamesObjectsAndPrimitivesAsTheMapDoes) {
@@ -98,7 +156,7 @@ TEST(MapPart, NamesObjectsAndPrimitivesAsTheMapDoes) {
   for (std::size_t i = 0; i < map.primitiveIds().size(); ++i)
     EXPECT_EQ(map.primitiveIds()[i], map.scene().primitives[i].id);
   EXPECT_EQ(map.summary().objects, map.objects().size());
-  EXPECT_FALSE(map.partAroundObject(ContentHash{}, 1)) << "there is no such object";
+  EXPECT_FALSE(map.partAroundObject(ContentHash{}, 1, 5)) << "there is no such object";
 }
 
 }  // namespace

@@ -133,7 +133,7 @@ TEST_F(ExplanationOfALongMap, ReadsSomeTilesAndSaysWhatTheWholeMapSays) {
     ASSERT_TRUE(whole);
     const std::string expected = withoutFolder(textOf(*whole, rules, map->scene()), inputs);
     EXPECT_TRUE(explainThing(*map, object.id.hex(), false).ends_with(expected)) << "object " << i;
-    if (map->partAroundObject(object.id, 1)) ++in_part;
+    if (map->partAroundObject(object.id, 1, 5)) ++in_part;
   }
   EXPECT_GE(in_part, 5U);
 }

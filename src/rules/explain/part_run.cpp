@@ -11,8 +11,6 @@ namespace cluxel::rules {
 
 namespace {
 
-constexpr double kChecked_m = 5;  ///< around what is explained
-
 using Box = Eigen::AlignedBox2d;
 
 Box boxOf(const perception::Primitive& primitive) {
@@ -98,7 +96,7 @@ class PartSearch {
   bool hasSameOwners(const std::vector<perception::PrimitiveIndex>& kept, const perception::Scene& part,
                      const ReasoningResult& result) const {
     const std::vector<const Rule*> owners = rulesOfCluxels(result.objects, rules_, part.cluxels.size());
-    const Box checked = grown(box_, kChecked_m);
+    const Box checked = grown(box_, kSameOwnersWithin_m);
     for (std::size_t i = 0; i < kept.size(); ++i) {
       const std::vector<std::uint32_t>&here = part.primitives[i].cluxels, &there = scene_.primitives[kept[i]].cluxels;
       for (std::size_t c = 0; c < here.size(); ++c)

@@ -29,11 +29,14 @@ struct TriedParts {
   double max_share = 0.6;                     ///< of the scene's cluxels: larger parts take as long as the whole
 };
 
+/// Around what is explained, a run over a part must give every cluxel to the same rule as the whole run [m].
+inline constexpr double kSameOwnersWithin_m = 5;
+
 /// Tries parts of growing size. One counts when the traces of `primitives` (ascending), and of the seeds of the
-/// objects that own them, are those of the whole run, and when every cluxel within 5 m around them went to the same
-/// rule. A counterfactual may still read what lies farther away. Absent when no part counts that has at most
-/// `max_share` of the scene's cluxels, or when the rules ask the map. `scene` may itself be cut out of a larger one, to
-/// which the traces belong. A part that holds all of it is the scene itself.
+/// objects that own them, are those of the whole run, and when every cluxel within kSameOwnersWithin_m around them went
+/// to the same rule. A counterfactual may still read what lies farther away. Absent when no part counts that has at
+/// most `max_share` of the scene's cluxels, or when the rules ask the map. `scene` may itself be cut out of a larger
+/// one, to which the traces belong. A part that holds all of it is the scene itself.
 std::optional<PartRun> runInPart(const std::shared_ptr<const perception::Scene>& scene, const RuleSet& rules,
                                  const WholeRun& whole, const std::vector<perception::PrimitiveIndex>& primitives,
                                  const TriedParts& tried = {});
