@@ -214,7 +214,7 @@ void checkSequences(std::uint64_t first_campus, unsigned steps,
                     const std::function<std::string(StreetChanges&, unsigned)>& step) {
   const bool is_long = std::getenv("CLUXEL_LONG_TESTS") != nullptr;
   const unsigned sequences = is_long ? 12 : 2;
-  if (is_long) steps = 2 * steps + 2;
+  if (is_long) steps = 3 * steps + 2;
   std::size_t local = 0;
   for (unsigned seed = 1; seed <= sequences; ++seed) {
     const StreetScans scans(first_campus + seed);
