@@ -52,12 +52,6 @@ std::vector<rules::SemanticObject> objectsIn(const rdf::ReadTransaction& transac
   return objects;
 }
 
-Eigen::AlignedBox2d boxOf(const TileLayer::PrimitiveHere& primitive, const perception::TileKey& tile) {
-  const Eigen::Vector2d corner = perception::cornerOf(tile).head<2>();
-  return {Eigen::Vector2d(corner + primitive.bounds.min().head<2>().cast<double>()),
-          Eigen::Vector2d(corner + primitive.bounds.max().head<2>().cast<double>())};
-}
-
 }  // namespace
 
 std::optional<MapPart> partOfMap(const rdf::ReadTransaction& transaction, TileStages& stages,
@@ -115,12 +109,12 @@ perception::TileSet tilesOfNearObjects(const rdf::ReadTransaction& transaction, 
   Eigen::AlignedBox2d box;
   for (const TileLayer& layer : layers)
     for (const TileLayer::PrimitiveHere& here : layer.primitives)
-      if (thing.primitives.contains(here.id)) box.extend(boxOf(here, layer.key));
+      if (thing.primitives.contains(here.id)) box.extend(boxInMap(here, layer.key));
   std::set<ContentHash> near;
   for (const TileLayer& layer : layers)
     for (const TileLayer::Share& share : layer.shares)
       if (std::any_of(share.components.begin(), share.components.end(), [&](const std::uint32_t component) {
-            return box.exteriorDistance(boxOf(layer.primitives[component], layer.key)) <= near_m;
+            return box.exteriorDistance(boxInMap(layer.primitives[component], layer.key)) <= near_m;
           }))
         near.insert(share.object);
   perception::TileSet of_near;

@@ -39,6 +39,9 @@ struct TileLayer {
   std::size_t size() const { return share_of_cluxel.size(); }
 };
 
+/// The box of a primitive's part in a tile, in plan [m, map].
+Eigen::AlignedBox2d boxInMap(const TileLayer::PrimitiveHere& primitive, const perception::TileKey& tile);
+
 std::string toBytes(const TileLayer& layer);
 /// Throws Error (StoreUnavailable) when the bytes are damaged or of another kind.
 TileLayer tileLayerFromBytes(std::string_view bytes);

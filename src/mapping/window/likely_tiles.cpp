@@ -39,15 +39,9 @@ std::vector<Part> partsIn(const TileLayer& layer, const std::set<ContentHash>& b
   for (const TileLayer::Share& share : layer.shares)
     if (but.contains(share.object))
       for (const std::uint32_t component : share.components) is_left_out[component] = 1;
-  const Eigen::Vector2d corner = perception::cornerOf(layer.key).head<2>();
   std::vector<Part> parts;
-  for (std::size_t i = 0; i < is_left_out.size(); ++i) {
-    if (is_left_out[i] != 0) continue;
-    const auto& [id, input, trace, bounds] = layer.primitives[i];
-    parts.push_back({id,
-                     {Eigen::Vector2d(corner + bounds.min().head<2>().cast<double>()),
-                      Eigen::Vector2d(corner + bounds.max().head<2>().cast<double>())}});
-  }
+  for (std::size_t i = 0; i < is_left_out.size(); ++i)
+    if (is_left_out[i] == 0) parts.push_back({layer.primitives[i].id, boxInMap(layer.primitives[i], layer.key)});
   return parts;
 }
 
