@@ -33,14 +33,15 @@ std::vector<fs::path> givenOr(const std::vector<fs::path>& given, const std::str
   return files;
 }
 
-/// The given rule files and all that they include. Faults are reported later, when the texts are loaded.
+/// The given rule files and all that they include. Throws InputError with all faults when files cannot be read or do
+/// not fit together; what they say is checked when the texts are loaded.
 std::vector<NamedText> readRules(std::vector<fs::path> roots, const std::vector<NamedText>& ontology) {
   // Includes are resolved to absolute paths, so the roots must be absolute as well.
   for (fs::path& root : roots) root = fs::absolute(root).lexically_normal();
+  auto sources = rules::readRuleSources(roots);
+  if (!sources) sources = loadRules(roots, classCatalogueOf(ontology)).require().sources;
   std::vector<NamedText> texts = readAll(roots);
-  const rules::LoadedRules loaded = loadRules(roots, classCatalogueOf(ontology));
-  if (!loaded.rules) return texts;
-  for (const rules::RuleSource& source : loaded.rules->sources) {
+  for (const rules::RuleSource& source : *sources) {
     const auto isSame = [&](const NamedText& text) { return text.name == source.name; };
     if (std::none_of(texts.begin(), texts.end(), isSame)) texts.push_back({source.name, source.text});
   }

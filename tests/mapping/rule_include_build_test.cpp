@@ -4,6 +4,7 @@
 
 #include "base/file_bytes.hpp"
 #include "mapping/asking_rules.hpp"
+#include "mapping/facts/semantic_layer.hpp"
 #include "test_paths.hpp"
 
 namespace cluxel::mapping {
@@ -70,6 +71,38 @@ TEST(RuleInclude, CountsInTheInputsOfTheMap) {
   const ContentHash before = readMapInputs(files, home).hash();
   writeFile(folder.path() / "base.rules.yaml", std::string(kBase) + "# changed\n");
   EXPECT_NE(readMapInputs(files, home).hash(), before);
+}
+
+/// What is told when a rule file is read, and its texts are loaded, which includes the base file.
+std::string faultsOf(const std::string& rule_file) {
+  const ScratchFolder folder;
+  std::filesystem::create_directories(folder.path() / "mine");
+  writeFile(folder.path() / "base.rules.yaml", kBase);
+  writeFile(folder.path() / "mine/over.rules.yaml", rule_file);
+  MapInputFiles files;
+  files.rules = {folder.path() / "mine/over.rules.yaml"};
+  try {
+    parseInputs(readMapInputs(files, DataHome(test::sourceFolder())));
+  } catch (const InputError& fault) {
+    std::string told;
+    for (const Diagnostic& diagnostic : fault.diagnostics()) told += diagnostic.message + "\n";
+    return told;
+  }
+  return {};
+}
+
+TEST(RuleInclude, FaultsAreThoseOfTheRulesAndNotOfTheInclude) {
+  const std::string over = kOver;
+  const auto with = [&](const std::string& from, const std::string& to) {
+    return std::string(over).replace(over.find(from), from.size(), to);
+  };
+  EXPECT_EQ(faultsOf(over), "");
+  EXPECT_EQ(faultsOf(with("attribute: top", "attribute: tpo")), "unknown attribute 'tpo'\n");
+  EXPECT_EQ(faultsOf(over + "override: { remove: [ground/nothing] }\n"),
+            "there is no rule 'ground/nothing' to override\n");
+  const std::string missing = faultsOf(with("../base.rules.yaml", "../bass.rules.yaml"));
+  EXPECT_NE(missing.find("bass.rules.yaml"), std::string::npos) << missing;
+  EXPECT_EQ(missing.find("not among"), std::string::npos) << missing;
 }
 
 }  // namespace

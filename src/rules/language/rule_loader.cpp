@@ -250,6 +250,12 @@ FoundSource findFile(const std::string& name, const std::string& from_key) {
   return found;
 }
 
+std::vector<std::string> namesOf(std::span<const std::filesystem::path> paths) {
+  std::vector<std::string> names;
+  for (const auto& path : paths) names.push_back(path.string());
+  return names;
+}
+
 }  // namespace
 
 RuleSet LoadedRules::require() && {
@@ -259,9 +265,14 @@ RuleSet LoadedRules::require() && {
 
 LoadedRules loadRules(std::span<const std::filesystem::path> paths, const ClassCatalogue& catalogue,
                       const RuleLoadOptions& options) {
-  std::vector<std::string> roots;
-  for (const auto& path : paths) roots.push_back(path.string());
-  return load(roots, findFile, catalogue, options);
+  return load(namesOf(paths), findFile, catalogue, options);
+}
+
+std::optional<std::vector<RuleSource>> readRuleSources(std::span<const std::filesystem::path> paths) {
+  FaultList faults;
+  GatheredRules gathered = gatherRules(namesOf(paths), findFile, faults);
+  if (faults.errorCount() > 0) return std::nullopt;
+  return std::move(gathered.sources);
 }
 
 LoadedRules loadRuleTexts(std::span<const RuleSource> texts, std::size_t roots, const ClassCatalogue& catalogue,

@@ -32,7 +32,11 @@ struct LoadedRules {
 LoadedRules loadRules(std::span<const std::filesystem::path> paths, const ClassCatalogue& catalogue,
                       const RuleLoadOptions& options = {});
 
-/// The same from texts, as a map stores them: `roots` are loaded, `include` finds the others by name.
+/// The texts of rule files and of all that they include, without reading what they say. Absent when a file cannot be
+/// read or is no YAML, or when files do not fit together: loadRules() tells the faults.
+std::optional<std::vector<RuleSource>> readRuleSources(std::span<const std::filesystem::path> paths);
+
+/// Loads rules from texts, as a map stores them: `roots` are loaded, `include` finds the others by name.
 LoadedRules loadRuleTexts(std::span<const RuleSource> texts, std::size_t roots, const ClassCatalogue& catalogue,
                           const RuleLoadOptions& options = {});
 
