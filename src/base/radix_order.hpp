@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -130,20 +131,21 @@ inline std::vector<std::uint32_t> orderOf(const std::vector<std::uint64_t>& keys
 }
 
 /// Sorts numbers. Those of a small range, such as positions, in linear time.
-inline void sortNumbers(std::vector<std::uint32_t>& numbers) {
+template <std::unsigned_integral Number>
+void sortNumbers(std::vector<Number>& numbers) {
   constexpr std::size_t kFew = 128;  // these are sorted faster by comparisons
   if (std::is_sorted(numbers.begin(), numbers.end())) return;
   if (numbers.size() < kFew) return std::sort(numbers.begin(), numbers.end());
   const auto [low, high] = std::minmax_element(numbers.begin(), numbers.end());
-  const std::uint32_t lowest = *low, range = *high - *low;
-  std::vector<std::uint32_t> other(numbers.size());
+  const Number lowest = *low, range = *high - *low;
+  std::vector<Number> other(numbers.size());
   for (int shift = 0; shift < static_cast<int>(std::bit_width(range)); shift += 8) {
-    const auto digit = [&](std::uint32_t number) { return ((number - lowest) >> shift) & 0xFFU; };
-    std::array<std::uint32_t, 256> start{};
-    for (const std::uint32_t number : numbers) ++start[digit(number)];
-    std::uint32_t sum = 0;
+    const auto digit = [&](Number number) { return ((number - lowest) >> shift) & 0xFFU; };
+    std::array<std::size_t, 256> start{};
+    for (const Number number : numbers) ++start[digit(number)];
+    std::size_t sum = 0;
     for (auto& value : start) sum += std::exchange(value, sum);
-    for (const std::uint32_t number : numbers) other[start[digit(number)]++] = number;
+    for (const Number number : numbers) other[start[digit(number)]++] = number;
     numbers.swap(other);
   }
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Extending a closure by what was added gives the closure of everything.
+// Extending a closure by what was added gives the closure of everything; the closure of many facts is right.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -115,6 +117,63 @@ TEST(ClosureExtension, ByFactsIsTheWholeClosure) {
 
 TEST(ClosureExtension, ByAxiomsIsTheWholeClosure) {
   for (unsigned seed = 100; seed < 160; ++seed) expectSameExtension(seed, true);
+}
+
+using Fact = std::array<std::string, 3>;
+
+/// So many facts that a property is read as a whole to find those that are stated. Some are stated already, some in a
+/// graph that does not count, some have numbers.
+TEST(Closure, OfManyFactsHasEachOnceAndNoneThatIsStated) {
+  constexpr int kThings = 6000;
+  std::mt19937 random(7);
+  const auto thing = [&] { return "http://x/t" + std::to_string(random() % kThings); };
+  const auto with = [](const std::string& s, const std::string& p, const Term& o, std::string_view graph) {
+    return Quad{Term::iri(s), Term::iri(p), o, Term::iri(std::string(graph))};
+  };
+  const auto number = [&] { return Term::literal(std::to_string(random() % 500), std::string(kXsd) + "integer"); };
+  std::vector<Quad> stated{
+      with("http://x/k0", rdfs("subClassOf"), Term::iri("http://x/k1"), kGraphOntology),
+      with("http://x/k1", rdfs("subClassOf"), Term::iri("http://x/k2"), kGraphOntology),
+      with("http://x/inside", owlName("inverseOf"), Term::iri("http://x/around"), kGraphOntology),
+      with("http://x/width", rdfs("subPropertyOf"), Term::iri("http://x/size"), kGraphOntology),
+  };
+  std::set<Fact> all, expected;
+  const auto state = [&](const std::string& s, const std::string& p, const Term& o) {
+    const bool counts = random() % 8 != 0;
+    stated.push_back(with(s, p, o, counts ? kGraphObserved : std::string_view("http://x/elsewhere")));
+    if (counts) all.insert({s, p, o.text});
+  };
+  for (int i = 0; i < kThings; ++i) {
+    state(thing(), rdf("type"), Term::iri("http://x/k" + std::to_string(random() % 3)));
+    state(thing(), "http://x/inside", Term::iri(thing()));
+    state(thing(), "http://x/around", Term::iri(thing()));
+    state(thing(), "http://x/width", number());
+    state(thing(), "http://x/size", number());
+  }
+  for (const auto& [s, p, o] : all) {
+    const auto derive = [&](const Fact& fact) {
+      if (!all.contains(fact)) expected.insert(fact);
+    };
+    if (o == "http://x/k0") derive({s, p, "http://x/k1"});
+    if (o == "http://x/k0" || o == "http://x/k1") derive({s, p, "http://x/k2"});
+    if (p == "http://x/inside") derive({o, "http://x/around", s});
+    if (p == "http://x/around") derive({o, "http://x/inside", s});
+    if (p == "http://x/width") derive({s, "http://x/size", o});
+  }
+  expected.insert({"http://x/k0", rdfs("subClassOf"), "http://x/k2"});
+  const auto environment = Environment::temporary();
+  WriteTransaction transaction = environment->write();
+  addTo(transaction, stated);
+  const QuadReader reader(transaction);
+  const std::vector<TermId> sources{*reader.idOf(Term::iri(std::string(kGraphObserved))),
+                                    *reader.idOf(Term::iri(std::string(kGraphOntology)))};
+  const EntailedQuads found = closureOf(reader, kNoTerm, sources, ClosureLimits::of(reader));
+  std::set<Fact> facts;
+  for (const QuadIds& quad : found.quads)
+    EXPECT_TRUE(
+        facts.insert({reader.termOf(quad.s).text, reader.termOf(quad.p).text, reader.termOf(quad.o).text}).second);
+  EXPECT_GT(facts.size(), 15'000U);
+  EXPECT_TRUE(facts == expected);
 }
 
 }  // namespace

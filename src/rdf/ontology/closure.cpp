@@ -4,8 +4,10 @@
 #include <map>
 #include <set>
 #include <span>
-#include <unordered_set>
+#include <utility>
+#include <vector>
 
+#include "base/radix_order.hpp"
 #include "rdf/ontology/closure_bounds.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/ontology/schema.hpp"
@@ -18,7 +20,9 @@ struct Pair {
   TermId subject = 0, object = 0;
 };
 
-/// The known facts by property: facts of the store are read on demand, derived facts are kept here.
+/// The known facts by property: facts of the store are read on demand, derived facts are kept here. What a round
+/// derives is collected, and compared with what is known when the round ends: sorted lists are quicker than single
+/// look-ups.
 class Facts {
  public:
   Facts(const QuadReader& reader, std::span<const TermId> sources, ClosureBounds& bounds)
@@ -41,7 +45,7 @@ class Facts {
     QuadCursor cursor = reader_.scan({.s = {}, .p = property, .o = only, .g = {}}, QuadOrder::Posg);
     for (QuadIds quad; cursor.next(quad);) {
       bounds_.addStep(property);
-      if (std::binary_search(sources_.begin(), sources_.end(), quad.g)) visit(quad.s, quad.o);
+      if (isSource(quad.g)) visit(quad.s, quad.o);
     }
     forEachDerived(property, 0, [&](TermId subject, TermId object) {
       if (only == kNoTerm || object == only) visit(subject, object);
@@ -61,22 +65,23 @@ class Facts {
     for (auto& [property, derived] : derived_) derived.stated = derived.round_start = derived.pairs.size();
   }
 
-  void beginRound() {
+  /// Ends a round; true when it has derived new facts. The next round sees them.
+  bool endRound() {
+    bool any = false;
     for (auto& [property, derived] : derived_) {
+      settle(property, derived);
       derived.round_before = derived.round_start;
       derived.round_start = derived.pairs.size();
+      any = any || derived.round_start != derived.round_before;
     }
+    return any;
   }
 
-  /// Returns true when the fact is new.
-  bool derive(TermId subject, TermId property, TermId object) {
+  void derive(TermId subject, TermId property, TermId object) {
     bounds_.addStep(property);
     Derived& derived = derived_[property];
-    if (derived.known.contains(key(subject, object)) || isStated(subject, property, object)) return false;
-    bounds_.addFact(property);
-    derived.known.insert(key(subject, object));
-    derived.pairs.push_back({subject, object});
-    return true;
+    derived.offered.push_back(key(subject, object));
+    if (derived.offered.size() > kMaxOffered + 2 * derived.known.size()) settle(property, derived);
   }
 
   std::vector<QuadIds> derivedQuads(TermId graph) const {
@@ -93,12 +98,61 @@ class Facts {
 
  private:
   struct Derived {
-    std::vector<Pair> pairs;                  ///< in derivation order, after those of setNew()
-    std::unordered_set<std::uint64_t> known;  ///< for membership tests; never iterated, so its order has no effect
+    std::vector<Pair> pairs;             ///< in derivation order, after those of setNew()
+    std::vector<std::uint64_t> known;    ///< keys of derived pairs, ascending
+    std::vector<std::uint64_t> offered;  ///< keys of pairs that were derived since, some of them known or stated
     std::size_t stated = 0, round_before = 0, round_start = 0;
   };
 
-  static std::uint64_t key(TermId subject, TermId object) { return std::uint64_t{subject} << 32U | object; }
+  static constexpr std::size_t kMaxOffered = std::size_t{1} << 16U;  ///< beside twice the known ones
+  /// From so many pairs on all stated facts of the property are read in their order, instead of a search for each.
+  static constexpr std::size_t kManyPairs = 1024;
+
+  /// Ascending keys are in the order of index posg.
+  static std::uint64_t key(TermId subject, TermId object) { return std::uint64_t{object} << 32U | subject; }
+  static Pair pairOf(std::uint64_t key) { return {static_cast<TermId>(key), static_cast<TermId>(key >> 32U)}; }
+
+  /// Moves those of the offered pairs that are new to the derived ones.
+  void settle(TermId property, Derived& derived) {
+    std::vector<std::uint64_t> fresh = std::exchange(derived.offered, {});
+    if (fresh.empty()) return;
+    sortNumbers(fresh);
+    fresh.erase(std::unique(fresh.begin(), fresh.end()), fresh.end());
+    if (!derived.known.empty())
+      std::erase_if(fresh, [&](std::uint64_t pair) {
+        return std::binary_search(derived.known.begin(), derived.known.end(), pair);
+      });
+    eraseStated(property, fresh);
+    for (const std::uint64_t pair : fresh) {
+      bounds_.addFact(property);
+      derived.pairs.push_back(pairOf(pair));
+    }
+    const auto before = static_cast<std::ptrdiff_t>(derived.known.size());
+    derived.known.insert(derived.known.end(), fresh.begin(), fresh.end());
+    std::inplace_merge(derived.known.begin(), derived.known.begin() + before, derived.known.end());
+  }
+
+  /// `pairs` are ascending.
+  void eraseStated(TermId property, std::vector<std::uint64_t>& pairs) {
+    if (pairs.size() < kManyPairs) {
+      std::erase_if(pairs, [&](std::uint64_t pair) { return isStated(pairOf(pair), property); });
+      return;
+    }
+    QuadCursor cursor = reader_.scan({.s = {}, .p = property, .o = {}, .g = {}}, QuadOrder::Posg);
+    QuadIds quad;
+    bool has_more = cursor.next(quad);
+    std::erase_if(pairs, [&](std::uint64_t pair) {
+      constexpr int kMaxReadOn = 64;
+      for (int read = 0; has_more && key(quad.s, quad.o) < pair; has_more = cursor.next(quad))
+        if (++read == kMaxReadOn) cursor.seek({pairOf(pair).subject, property, pairOf(pair).object, 0});
+      bool is_stated = false;
+      for (; has_more && key(quad.s, quad.o) == pair; has_more = cursor.next(quad))
+        is_stated = is_stated || isSource(quad.g);
+      return is_stated;
+    });
+  }
+
+  bool isSource(TermId graph) const { return std::binary_search(sources_.begin(), sources_.end(), graph); }
 
   template <typename Visit>
   void forEachDerived(TermId property, std::size_t from, const Visit& visit) const {
@@ -111,11 +165,11 @@ class Facts {
     }
   }
 
-  bool isStated(TermId subject, TermId property, TermId object) {
-    const std::array<TermId, 3> prefix = {subject, property, object};
+  bool isStated(const Pair& pair, TermId property) {
+    const std::array<TermId, 3> prefix = {pair.subject, property, pair.object};
     for (auto keys = lookup_.find(prefix); !keys.empty(); keys = lookup_.more())
       for (const QuadKey& stored : keys)
-        if (std::binary_search(sources_.begin(), sources_.end(), stored.at(3))) return true;
+        if (isSource(stored.at(3))) return true;
     return false;
   }
 
@@ -142,7 +196,6 @@ class Closure {
   void run(bool only_new) {
     rules_ = schema();
     while (round(only_new)) {
-      facts_.beginRound();
       Schema rules = schema();
       only_new = rules == rules_;
       rules_ = std::move(rules);
@@ -159,12 +212,11 @@ class Closure {
   }
 
   bool round(bool only_new) {
-    changed_ = false;
     only_new_ = only_new;
     for (const auto& [property, implied] : rules_.implications) applyImplications(property, implied);
     for (const TermId property : rules_.transitive) applyTransitivity(property);
     applyTypes();
-    return changed_;
+    return facts_.endRound();
   }
 
   template <typename Visit>
@@ -180,8 +232,10 @@ class Closure {
       const bool may_invert = facts_.isResource(object);
       for (const Implied& next : implied) {
         if (next.via_inverse && !may_invert) continue;
-        changed_ |= next.inverted ? facts_.derive(object, next.property, subject)
-                                  : facts_.derive(subject, next.property, object);
+        if (next.inverted)
+          facts_.derive(object, next.property, subject);
+        else
+          facts_.derive(subject, next.property, object);
       }
     });
   }
@@ -195,14 +249,14 @@ class Closure {
       for (const TermId reached : reachableFrom(node, edges, property, facts_.bounds()))
         // In a cycle of subclasses every class is its own superclass; such trivial facts are not stored.
         if (!targets.contains(reached) && (reached != node || !isSchema(property)))
-          changed_ |= facts_.derive(node, property, reached);
+          facts_.derive(node, property, reached);
   }
 
   void applyTypes() {
     visit(words_.type, [&](TermId subject, TermId kind) {
       const auto above = rules_.ancestors.find(kind);
       if (above == rules_.ancestors.end()) return;
-      for (const TermId ancestor : above->second) changed_ |= facts_.derive(subject, words_.type, ancestor);
+      for (const TermId ancestor : above->second) facts_.derive(subject, words_.type, ancestor);
     });
   }
 
@@ -213,7 +267,6 @@ class Closure {
   const SchemaWords& words_;
   Schema rules_;
   bool only_new_ = false;
-  bool changed_ = false;
 };
 
 }  // namespace
