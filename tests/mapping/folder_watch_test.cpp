@@ -83,6 +83,36 @@ TEST_F(FolderWatch, TakesOnlyWhatIsNewAfterARestart) {
   EXPECT_THAT(totals, ::testing::ElementsAre(2));
 }
 
+/// Ends a build after its first commit.
+class StopAtSecondScan : public ProgressSink {
+ public:
+  struct Stopped {};
+  void progress(std::string_view stage, std::size_t done, std::size_t) override {
+    if (stage == "scans" && done == 2) throw Stopped();
+  }
+};
+
+TEST_F(FolderWatch, GoesOnWithAFirstBuildThatWasInterrupted) {
+  arrive(0);
+  arrive(1);
+  StopAtSecondScan stop;
+  EXPECT_THROW(buildMap(scansOf({scans()}), *inputs, map(), {.batch_points = 1}, stop), StopAtSecondScan::Stopped);
+  ASSERT_TRUE(fs::exists(map()));
+  std::vector<std::size_t> totals;
+  watch(3, [&](std::size_t total) {
+    totals.push_back(total);
+    if (total == 2) arrive(2);
+  });
+  EXPECT_THAT(totals, ::testing::ElementsAre(2, 3));
+  EXPECT_TRUE(canonicalText(map()) == builtText(campus->files(), *inputs));
+}
+
+TEST_F(FolderWatch, BeginsInAnEmptyFile) {
+  writeFile(map(), "");
+  arrive(0);
+  EXPECT_EQ(watch(1, [](std::size_t) {}), 1);
+}
+
 TEST_F(FolderWatch, NotesAScanThatCannotBeReadAndGoesOn) {
   arrive(0);
   const std::string bytes = readFile(campus->files()[1]);

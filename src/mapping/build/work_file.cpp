@@ -64,6 +64,11 @@ void removeMap(const fs::path& file) {
 
 }  // namespace
 
+bool isToBuild(const fs::path& map) {
+  const Found found = lookAt(withoutLinks(map));
+  return found.isNothing() || (found.state && !found.isFinished());
+}
+
 WorkFile::WorkFile(const fs::path& map, const std::string& inputs_hash, bool force)
     : target_(withoutLinks(map)), lock_(target_) {
   chooseBetween(inputs_hash, force);

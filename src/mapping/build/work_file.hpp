@@ -14,6 +14,10 @@
 
 namespace cluxel::mapping {
 
+/// Whether a build begins or goes on at this name: there is no map, or one whose build was interrupted. Throws Error
+/// (StoreUnavailable) for what is no map.
+bool isToBuild(const std::filesystem::path& map);
+
 class WorkFile {
  public:
   /// Takes the build lock, inspects `map` and MAP.building, and opens the file to build in. Throws Error

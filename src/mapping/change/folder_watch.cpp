@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "cluxel/error.hpp"
+#include "mapping/build/work_file.hpp"
 #include "mapping/change/map_compaction.hpp"
 
 namespace cluxel::mapping {
@@ -106,11 +107,13 @@ class Watch {
   }
 
   void commit(const scan::ScanSet& scans) {
-    if (!fs::exists(map_)) {
+    if (!is_built_ && isToBuild(map_)) {  // perhaps an earlier watch was killed in its first build
       extension_.close();
       const BuildReport report = buildMap(scans, callbacks_.inputs(), map_, {.threads = params_.threads}, sink_);
+      is_built_ = true;
       return tell(report.scans, report.scans, report.objects);
     }
+    is_built_ = true;
     const ChangeReport report = extension_.add(scans);
     if (report.has_changes) tell(report.scans_added, report.scans, report.object_count);
   }
@@ -128,6 +131,7 @@ class Watch {
   ProgressSink quiet_;      ///< opening a set notes the same at each look
   FolderState done_;        ///< scans that were added, or could not be read, as they were then
   std::string last_fault_;
+  bool is_built_ = false;  ///< nothing is left of a first build
   std::size_t added_ = 0;
 };
 
