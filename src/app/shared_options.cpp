@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <string>
 
@@ -49,6 +50,17 @@ void addBudget(CLI::App& command, BudgetOptions& options) {
       ->check(above0());
   command.add_option("--max-memory", options.max_memory_mib, "MiB above which the command fails with exit code 6")
       ->check(above0());
+}
+
+void addAuthor(CLI::App& command, std::string& author) {
+  command.add_option("--author", author, "author of the statements, for the history (default: the user's name)")
+      ->check(validText());
+}
+
+std::string authorOr(const std::string& given) {
+  if (!given.empty()) return given;
+  const char* user = std::getenv("USER");
+  return user == nullptr ? "" : user;
 }
 
 void addHtmlFile(CLI::App& command, fs::path& file) {

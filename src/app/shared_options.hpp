@@ -31,6 +31,11 @@ struct BudgetOptions {
 /// Adds --deadline and --max-memory to a command. `options` must outlive it.
 void addBudget(CLI::App& command, BudgetOptions& options);
 
+/// Adds --author: who makes statements.
+void addAuthor(CLI::App& command, std::string& author);
+/// The given author, or else the user's name, if it is known.
+std::string authorOr(const std::string& given);
+
 /// Adds --html: a file for figures beside what the command prints.
 void addHtmlFile(CLI::App& command, fs::path& file);
 

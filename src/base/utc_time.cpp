@@ -9,6 +9,10 @@
 
 namespace cluxel {
 
+double secondsNow() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
 std::string dateTimeText(double time_s) {
   using namespace std::chrono;
   const auto total_us = static_cast<std::int64_t>(std::llround(time_s * 1e6));

@@ -5,15 +5,19 @@
 #include <cstdlib>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <map>
 #include <random>
 
+#include "mapping/build/map_update.hpp"
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/map_change.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/small_campus.hpp"
+#include "rdf/map_iris.hpp"
 #include "rules/other_number.hpp"
+#include "sparql/query_engine.hpp"
 
 namespace cluxel::mapping {
 namespace {
@@ -23,8 +27,8 @@ namespace fs = std::filesystem;
 /// Scans along a street: each sees little of what the others see.
 class StreetScans {
  public:
-  explicit StreetScans(std::uint64_t seed)
-      : campus_({.seed = seed, .stops = 12, .size_m = 130, .points_per_stop = 7000, .max_range_m = 16}) {
+  explicit StreetScans(std::uint64_t seed, double size_m = 130)
+      : campus_({.seed = seed, .stops = 12, .size_m = size_m, .points_per_stop = 7000, .max_range_m = 16}) {
     for (const fs::path& file : campus_.files()) {
       const ScanSet alone = scansOf({file});
       ids_.push_back(alone.load(0).id);
@@ -242,6 +246,56 @@ TEST(WindowUpdate, AppliesStatementsAsABuildDoes) {
 TEST(WindowUpdate, AppliesOtherNumbersOfRulesAsABuildDoes) {
   checkSequences(
       60, 8, [](StreetChanges& changes, unsigned i) { return i % 4 == 3 ? changes.step() : changes.changeANumber(); });
+}
+
+/// How many primitives were decided.
+class SceneSize : public ProgressSink {
+ public:
+  void progress(std::string_view stage, std::size_t, std::size_t total) override {
+    if (stage == "scene") primitives = total;
+  }
+  std::size_t primitives = 0;
+};
+
+/// The IRI of the westernmost tree.
+std::string treeAtTheEnd(const MapReader& reader) {
+  std::string tree;
+  double west = std::numeric_limits<double>::infinity();
+  for (const SemanticObject& object : reader.objects()) {
+    if (object.class_iri != vocabulary::clx("Tree")) continue;
+    const double x = reader.scene().cluxels.center[object.parts.front().cluxels.front()].x();
+    if (x < west) west = x, tree = rdf::iriOfObject(object.id);
+  }
+  return tree;
+}
+
+TEST(WindowUpdate, FollowsStatementsOfASparqlUpdate) {
+  const StreetScans scans(33, 300);
+  const ScratchFolder folder;
+  const fs::path map = folder.path() / "map.clx", stated = folder.path() / "stated.clx";
+  std::map<std::size_t, int> all;
+  for (std::size_t i = 0; i < scans.size(); ++i) all[i] = 0;
+  buildMap(scans.at(all, folder.path()), shippedInputs(), map, {}, silence());
+  fs::copy_file(map, stated);
+  const std::string tree = treeAtTheEnd(MapReader(map));
+  ASSERT_NE(tree, "");
+  SceneSize decided;
+  updateMap(map, "INSERT DATA { <" + tree + "> a <" + vocabulary::clx("UtilityPole") + "> }", {}, decided,
+            {.author = "anna", .layers = {.max_window_share = 2}});
+  EXPECT_GT(decided.primitives, 0U);
+  EXPECT_LT(decided.primitives, MapReader(map).scene().primitives.size()) << "the whole map was decided";
+  EXPECT_EQ(knownStatements(MapReader(map).quads()).front().author, "anna");
+  StatementEdit edit;
+  edit.added = storedStatements(MapReader(map).quads());
+  ASSERT_EQ(edit.added.size(), 1U);
+  changeStatements(stated, edit, {.max_window_share = 0}, silence());
+  EXPECT_TRUE(canonicalText(map) == canonicalText(stated));
+  EXPECT_THAT(differingTables(map, stated), testing::IsEmpty());
+  const std::string derived =
+      "PREFIX prov: <http://www.w3.org/ns/prov#> ASK { GRAPH <https://w3id.org/cluxel/graph/history> { ?new "
+      "prov:wasDerivedFrom <" +
+      tree + "> ; prov:wasGeneratedBy ?run } }";
+  EXPECT_TRUE(sparql::evaluateQuery(MapReader(map).quads(), derived).boolean) << "by the run of the update";
 }
 
 TEST(WindowUpdate, TakesTheGroundOfAnAreaThatLosesItsOnlyScan) {

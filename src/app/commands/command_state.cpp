@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel state`: what an operator states about objects and regions of a map.
-#include <cstdlib>
 
 #include "app/command.hpp"
 #include "app/commands/change_report.hpp"
@@ -120,15 +119,9 @@ void addAboutObject(const mapping::MapReader& map, const StateOptions& options, 
   }
 }
 
-std::string authorOf(const StateOptions& options) {
-  if (!options.author.empty()) return options.author;
-  const char* user = std::getenv("USER");
-  return user == nullptr ? "" : user;
-}
-
 ExitCode change(const StateOptions& options, Session& session) {
   mapping::StatementEdit edit;
-  edit.author = authorOf(options);
+  edit.author = authorOr(options.author);
   {
     const mapping::MapReader map(options.map);
     if (!options.object.empty()) addAboutObject(map, options, edit, session.console);
@@ -186,9 +179,7 @@ void addState(CLI::App& app, Session& session) {
                    "X0,Y0,X1,Y1 or a polygon X,Y,X,Y,X,Y… [m, map]: state that nothing in it is an object")
       ->delimiter(',');
   command->add_option("--withdraw", options->withdrawn, "take back a statement: the first digits of its id");
-  command
-      ->add_option("--author", options->author, "author of the statement, for the history (default: the user's name)")
-      ->check(validText());
+  addAuthor(*command, options->author);
   command->add_flag("--list", options->list, "list the statements, and whether each was applied");
   command->add_option("--export", options->export_file, "write the statements as N-Quads, for build --statements");
   addChangeOptions(*command, options->change, false);

@@ -35,7 +35,7 @@ struct UpdateArguments {
   fs::path map, file;
   std::string text;
   std::vector<std::string> loads;
-  std::string base_iri;
+  std::string base_iri, author;
   BudgetOptions budget;
   bool strict = false, no_prefixes = false, check = false;
 };
@@ -66,7 +66,8 @@ ExitCode update(const UpdateArguments& arguments, Session& session) {
   sparql::UpdateOptions options = optionsOf(arguments, question.file.string());
   if (arguments.check) return checkSyntax(options.query, question.text);
   if (!loads.empty()) options.load = [&loads](const std::string& iri) { return triplesOf(loads, iri); };
-  const sparql::UpdateReport report = mapping::updateMap(arguments.map, question.text, options, session.console);
+  const sparql::UpdateReport report = mapping::updateMap(arguments.map, question.text, options, session.console,
+                                                         {.author = authorOr(arguments.author)});
   if (session.json)
     printJson(Json{{"inserted", report.inserted}, {"deleted", report.deleted}});
   else
@@ -84,6 +85,7 @@ void addUpdate(CLI::App& app, Session& session) {
   command->add_option("update", options->file, "a file with the update");
   command->add_option("-e,--text", options->text, "the update itself");
   command->add_option("--load", options->loads, "IRI=FILE: the RDF file that LOAD <IRI> reads; others are refused");
+  addAuthor(*command, options->author);
   addBudget(*command, options->budget);
   command->add_option("--base", options->base_iri, "base IRI of relative IRIs");
   command->add_flag("--no-prefixes", options->no_prefixes, "know only the prefixes that the update declares");

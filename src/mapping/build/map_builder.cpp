@@ -4,7 +4,6 @@
 #include "mapping/build/batch_size.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <future>
 #include <optional>
 #include <set>
@@ -33,10 +32,6 @@ namespace cluxel::mapping {
 namespace fs = std::filesystem;
 
 namespace {
-
-double nowSeconds() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
 
 /// All clouds of an unfinished build must be among the given scans, otherwise the map would hold scans that were not
 /// given. Loads scans until every cloud is found; when the same command is repeated, these are the first ones.
@@ -101,7 +96,7 @@ class MapBuild {
 
   /// Adds scans from `first` on until the batch is full, and commits; returns the first scan of the next batch.
   std::size_t addBatch(std::size_t first) {
-    const double started_s = nowSeconds();
+    const double started_s = secondsNow();
     StageClock clock(sink_);
     rdf::WriteTransaction transaction = work_.environment().write();
     transaction.useThreads(params_.threads);
@@ -144,14 +139,14 @@ class MapBuild {
     storeInputs(transaction, parsed_.inputs);
     state_ = MapState{is_last, parsed_.inputs.hash().hex()};
     storeState(transaction, *state_);
-    if (is_last) writeThings(transaction, dateTimeText(nowSeconds()), {}, namesOfObjects(transaction));
+    if (is_last) writeThings(transaction, dateTimeText(secondsNow()), {}, namesOfObjects(transaction));
     const auto policy = params_.threads > 1 ? std::launch::async : std::launch::deferred;
     const auto freed = std::async(policy, [&] {  // beside LMDB, which uses one thread
       if (is_last) stages_.dropAll();
     });
     transaction.writeIndexes();
     clock.progress("indexes", 1, 1);
-    addActivity(transaction, {"build", started_s, nowSeconds(), clock.seconds()}, clouds, parsed_.inputs);
+    addActivity(transaction, {"build", started_s, secondsNow(), clock.seconds()}, clouds, parsed_.inputs);
     transaction.commit();
     report_.scans = clouds.size();
     report_.points = 0;

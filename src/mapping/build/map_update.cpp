@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// After the update, closure and SPARQL rules are computed again; the whole semantic layer only when rules use `ask:`,
-// or when statements came or went.
+// After the update, what it changes is inferred. When statements came or went, the objects around them are decided
+// again; when rules use `ask:`, all objects.
 #include "mapping/build/map_update.hpp"
 
 #include <chrono>
 
 #include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
+#include "mapping/build/stage_clock.hpp"
 #include "mapping/change/map_things.hpp"
+#include "mapping/facts/map_history.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/statements/stated_subjects.hpp"
 #include "mapping/statements/stated_values.hpp"
 #include "mapping/statements/statement_history.hpp"
-#include "mapping/window/semantic_update.hpp"
 #include "rdf/file/map_replacement.hpp"
 #include "rdf/store/flush_poll.hpp"
 
@@ -38,38 +39,43 @@ rdf::InferenceCheck checkOf(const sparql::QueryBudget& budget, Clock::time_point
 }
 
 /// Checks and records statements that the update made or withdrew as quads. False when there are none.
-bool takeNewStatements(rdf::WriteTransaction& transaction, const rules::ClassCatalogue& classes) {
+bool takeNewStatements(rdf::WriteTransaction& transaction, const rules::ClassCatalogue& classes,
+                       const std::string& author) {
   const NewStatements news = newStatements(transaction);
   std::vector<ContentHash> made;
   for (const Statement& statement : news.made) {
     requireStatable(statement, classes);
     made.push_back(statement.id());
   }
-  recordStatements(transaction, made, news.withdrawn);
+  recordStatements(transaction, made, news.withdrawn, author);
   return !made.empty() || !news.withdrawn.empty();
 }
 
 }  // namespace
 
-void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink, const rdf::InferenceCheck& check) {
+void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink, const rdf::InferenceCheck& check,
+                      const MapUpdateParams& params) {
   const ParsedInputs parsed = parseInputs(storedInputs(transaction));
   anchorStatedObjects(transaction, parsed, sink);
-  const bool has_news = takeNewStatements(transaction, parsed.rules.catalogue);
-  if (parsed.rules.asks_map || has_news) {
-    TileStages stages(parsed.model, parsed.inputs.params);
-    if (check) check(0);
-    const SemanticUpdate layers = updateSemanticLayer(transaction, parsed, stages, ChangedInputs::Any, {}, sink, check);
-    if (const std::string note = summaryOf(layers.statements); !note.empty()) sink.note(note);
-    const double now_s = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-    writeThings(transaction, dateTimeText(now_s), layers.before, layers.after, ObjectsOf::OneMap,
-                keptBy(transaction, layers));
-    return;
-  }
-  inferFacts(transaction, parsed.inputs, sink, check);
+  const bool has_news = takeNewStatements(transaction, parsed.rules.catalogue, params.author);
+  if (!parsed.rules.asks_map && !has_news) return inferFacts(transaction, parsed.inputs, sink, check);
+  const double started_s = secondsNow();
+  StageClock clock(sink);
+  TileStages stages(parsed.model, parsed.inputs.params);
+  if (check) check(0);
+  const SemanticUpdate layers =
+      updateSemanticLayer(transaction, parsed, stages, ChangedInputs::Scans, params.layers, clock, check);
+  if (const std::string note = summaryOf(layers.statements); !note.empty()) sink.note(note);
+  const Activity activity{"update", started_s, secondsNow(), clock.seconds()};
+  addLineage(transaction, addActivity(transaction, activity, {}, parsed.inputs),
+             compareStates(layers.before, layers.after));
+  writeThings(transaction, dateTimeText(activity.ended_s), layers.before, layers.after, ObjectsOf::OneMap,
+              keptBy(transaction, layers));
 }
 
 sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::string& update,
-                               const sparql::UpdateOptions& options, ProgressSink& sink) {
+                               const sparql::UpdateOptions& options, ProgressSink& sink,
+                               const MapUpdateParams& params) {
   const rdf::InferenceCheck check = checkOf(options.query.budget, Clock::now());
   rdf::WriteTransaction transaction = rdf::writeMap(file);
   const bool is_map = requireFinished(file, transaction);
@@ -80,7 +86,7 @@ sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::str
   const sparql::UpdateReport report = runUpdate(transaction, update, options);
   if (is_map && report.inserted + report.deleted > 0) {
     const rdf::FlushPoll poll(transaction, [&check] { check(0); });
-    inferAfterUpdate(transaction, sink, check);
+    inferAfterUpdate(transaction, sink, check, params);
     check(0);
   }
   transaction.commit();

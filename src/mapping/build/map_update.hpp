@@ -6,20 +6,29 @@
 #include <string>
 
 #include "cluxel/progress.hpp"
+#include "mapping/window/semantic_update.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "sparql/update_engine.hpp"
 
 namespace cluxel::mapping {
 
-/// Runs a SPARQL Update on a map or another quad file. In a map, graph `inferred` is computed again, SPARQL rules
-/// included; when its rules use `ask:`, the objects are computed again too, because answers may have changed. Commits
-/// everything or nothing. Throws as runUpdate(); Error (InvalidArgument) when a build of the map is unfinished,
-/// or all graphs of a map are to be writable. Deadline and budget of memory cover what is inferred, the
-/// queries of SPARQL rules included.
+/// How a map follows an update.
+struct MapUpdateParams {
+  std::string author = {};   ///< who makes and withdraws statements, for the history
+  UpdateParams layers = {};  ///< how objects are decided again
+};
+
+/// Runs a SPARQL Update on a map or another quad file. In a map, what follows is inferred, SPARQL rules included, and
+/// the objects around new and withdrawn statements are decided again; when its rules use `ask:`, all objects are,
+/// because answers may have changed. Commits everything or nothing. Throws as runUpdate(); Error (InvalidArgument) when
+/// a build of the map is unfinished, or all graphs of a map are to be writable. Deadline and budget of memory cover
+/// what is inferred, the queries of SPARQL rules included.
 sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::string& update,
-                               const sparql::UpdateOptions& options, ProgressSink& sink);
+                               const sparql::UpdateOptions& options, ProgressSink& sink,
+                               const MapUpdateParams& params = {});
 
 /// Computes again what follows from the operator's statements of a map.
-void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink, const rdf::InferenceCheck& check = {});
+void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink, const rdf::InferenceCheck& check = {},
+                      const MapUpdateParams& params = {});
 
 }  // namespace cluxel::mapping

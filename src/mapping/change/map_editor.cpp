@@ -3,7 +3,6 @@
 #include "mapping/change/map_editor.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "base/file_bytes.hpp"
@@ -24,10 +23,6 @@ namespace {
 
 /// A token in the cache of a commit tells whether the commit is still the newest.
 constexpr const char* kRestToken = "rest of a map editor";
-
-double secondsNow() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
 
 std::shared_ptr<rdf::Environment> openForChange(const fs::path& file) {
   if (!fs::exists(file))

@@ -112,10 +112,10 @@ void eraseStatement(rdf::WriteTransaction& transaction, const ContentHash& id) {
 }
 
 void recordStatements(rdf::WriteTransaction& transaction, const std::vector<ContentHash>& made,
-                      const std::vector<ContentHash>& withdrawn) {
+                      const std::vector<ContentHash>& withdrawn, const std::string& author) {
   StatementWriter writer(transaction);
-  for (const ContentHash& id : made) writer.recordMade(id, "");
-  for (const ContentHash& id : withdrawn) writer.recordWithdrawn(id, "");
+  for (const ContentHash& id : made) writer.recordMade(id, author);
+  for (const ContentHash& id : withdrawn) writer.recordWithdrawn(id, author);
   writer.flush();
 }
 

@@ -19,9 +19,9 @@ void withdrawStatement(rdf::WriteTransaction& transaction, const ContentHash& id
 /// Removes a statement that another map has withdrawn, whose history tells when.
 void eraseStatement(rdf::WriteTransaction& transaction, const ContentHash& id);
 
-/// Records statements that quads of graph `operator` made or withdrew, without an author.
+/// Records statements that quads of graph `operator` made or withdrew. `author` may be empty.
 void recordStatements(rdf::WriteTransaction& transaction, const std::vector<ContentHash>& made,
-                      const std::vector<ContentHash>& withdrawn);
+                      const std::vector<ContentHash>& withdrawn, const std::string& author);
 
 /// Those statements of maps that one of the maps has withdrawn after any of them made it, ascending. A statement whose
 /// time nobody recorded was made before every withdrawal. Its result is independent of the order of the maps.

@@ -77,7 +77,8 @@ TileSet tilesDecidedWhole(const MapWindow& window, const WindowDecision& decisio
 class LocalUpdate {
  public:
   LocalUpdate(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
-              OutputChanges& changes, ChangedInputs inputs, const UpdateParams& params, ProgressSink& sink)
+              OutputChanges& changes, ChangedInputs inputs, const UpdateParams& params, ProgressSink& sink,
+              const rdf::InferenceCheck& check)
       : transaction_(transaction),
         parsed_(parsed),
         stages_(stages),
@@ -85,6 +86,7 @@ class LocalUpdate {
         inputs_(inputs),
         params_(params),
         sink_(sink),
+        check_(check),
         former_summaries_(changes) {}
 
   /// Absent when the whole map has to be computed; then nothing was written.
@@ -108,6 +110,7 @@ class LocalUpdate {
     more_ = tilesOfPassedObjects(transaction_, changedRays(before_.clouds, now_.clouds));
     WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, before_, now_);
     for (; attempt_ < kMaxAttempts && depth_ < depths_.size() && !statements.needsWholeMap(); ++attempt_) {
+      if (check_) check_(0);
       changes_.tiles.insert(statements.tiles().begin(), statements.tiles().end());
       if (attempt_ == 0) beginWithLikelyTiles();
       const std::optional<MapWindow> window = windowAround(transaction_, stages_, changes_, former_summaries_, more_,
@@ -242,7 +245,8 @@ class LocalUpdate {
     statements.store(transaction_, window);
     if (!now_.statements.empty())
       update.statements = toldOutcomes(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction_)));
-    inferFacts(transaction_, parsed_.inputs, sink_);
+    if (check_) check_(0);
+    inferFacts(transaction_, parsed_.inputs, sink_, check_);
     now_.objects = update.objects, now_.cluxels = update.cluxels, now_.primitives = update.primitives;
     storeSemanticState(transaction_, now_);
     keepToldWays(transaction_);
@@ -278,6 +282,7 @@ class LocalUpdate {
   ChangedInputs inputs_;
   UpdateParams params_;
   ProgressSink& sink_;
+  const rdf::InferenceCheck& check_;
   TileSet decided_otherwise_;  ///< tiles in which thresholds of the rules moved beyond what was measured
   double reach_m_ = 0;
   std::set<ContentHash> lone_objects_;
@@ -323,7 +328,7 @@ SemanticUpdate updateSemanticLayer(rdf::WriteTransaction& transaction, const Par
                                    const rdf::InferenceCheck& check) {
   OutputChanges changes = stages.takeChanges();
   if (inputs != ChangedInputs::Any)
-    if (auto update = LocalUpdate(transaction, parsed, stages, changes, inputs, params, sink).run()) {
+    if (auto update = LocalUpdate(transaction, parsed, stages, changes, inputs, params, sink, check).run()) {
       if (changes.has_copied_map)
         for (const std::string_view table : {tables::kPresence, tables::kPassedRays})
           eraseRowsWithoutObject(transaction, table);
