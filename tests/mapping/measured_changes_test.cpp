@@ -61,9 +61,12 @@ std::vector<Scan> windowsOfOakland() {
   std::vector<Scan> scans;
   for (std::size_t i = 0; i < count; ++i) {
     const float first = middle_x + (static_cast<float>(i) - static_cast<float>(count) / 2) * stride_m;
-    scans.push_back(partOf(chunk, [&](float at_x, float at_y) {
+    Scan& window = scans.emplace_back(partOf(chunk, [&](float at_x, float at_y) {
       return at_x >= first && at_x < first + stride_m + overlap_m && std::abs(at_y - middle_y) < width_m / 2;
     }));
+    window.T_map_sensor.translation() << middle_x, middle_y, 0;  // points that two windows share stay the same
+    for (float& at_x : window.points.x) at_x -= middle_x;
+    for (float& at_y : window.points.y) at_y -= middle_y;
   }
   return scans;
 }
