@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <random>
+#include <set>
 
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
@@ -70,14 +71,17 @@ TEST_F(MapBuilder, FindsObjectsOnTheSmallCampus) {
 }
 
 TEST_F(MapBuilder, TwentyOrdersAndBatchingsOfTheScansGiveTheSameMap) {
+  const SmallCampus five({.seed = 8, .stops = 5, .size_m = 45, .points_per_stop = 1000});
   std::mt19937 random(7);
-  Files files = campus->files();
+  Files files = five.files();
+  const std::string expected = builtText(files, *inputs);
+  std::set<Files> orders{files};
   for (int round = 0; round < 20; ++round) {
-    std::shuffle(files.begin(), files.end(), random);
+    while (!orders.insert(files).second) std::shuffle(files.begin(), files.end(), random);
     const BuildParams params{.threads = 1U + round % 2U,
                              .batch_points = random() % 3 == 0 ? 1U : 20'000'000U,
                              .stage_points = random() % 2 == 0 ? 1U : 20'000'000U};
-    ASSERT_EQ(builtText(files, *inputs, params), *expected)
+    ASSERT_TRUE(builtText(files, *inputs, params) == expected)
         << "round " << round << ", first " << files[0] << ", " << params.threads << " threads, batch "
         << params.batch_points << ", parts of " << params.stage_points;
   }

@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "app/commands/statement_list.hpp"
 #include "mapping/map_reader.hpp"
 
 namespace cluxel::app {
@@ -47,6 +48,12 @@ Json objectsJson(const std::vector<DerivedObject>& objects, const std::map<Conte
   return json;
 }
 
+Json statementsJson(const std::vector<mapping::StatementOutcome>& outcomes) {
+  Json json = Json::array();
+  for (const mapping::StatementOutcome& outcome : outcomes) json.push_back(jsonOf(outcome));
+  return json;
+}
+
 void printJsonReport(const fs::path& map, const ChangeReport& report, bool dry_run) {
   const auto before = classesOf(report.before), after = classesOf(report.after);
   printJson(Json{{"map", map.string()},
@@ -62,6 +69,7 @@ void printJsonReport(const fs::path& map, const ChangeReport& report, bool dry_r
                  {"local_commits", report.local_commits},
                  {"scans", report.scans},
                  {"tiles", report.tiles},
+                 {"statements", statementsJson(report.statements)},
                  {"objects",
                   {{"unchanged", report.objects.unchanged},
                    {"added", objectsJson(report.objects.added, after)},
@@ -91,9 +99,9 @@ void printChange(const fs::path& map, const ChangeReport& report, const mapping:
   const mapping::ObjectChanges& objects = report.objects;
   const auto own = [](const ContentHash& id) { return id; };
   const auto derived = [](const DerivedObject& object) { return object.id; };
-  std::printf("%s%s: %zu scans added, %zu removed, %zu moved; %zu of %zu tiles computed anew\n", map.c_str(),
-              params.dry_run ? " (dry run, nothing written)" : "", report.scans_added, report.scans_removed,
-              report.scans_moved, report.tiles_changed, report.tiles);
+  std::printf("%s%s: %zu scans added, %zu removed, %zu moved; %zu of %zu tiles computed anew, %zu decided anew\n",
+              map.c_str(), params.dry_run ? " (dry run, nothing written)" : "", report.scans_added,
+              report.scans_removed, report.scans_moved, report.tiles_changed, report.tiles, report.tiles_decided);
   std::printf("objects: %zu unchanged\n", objects.unchanged);
   std::printf("  %zu added%s\n", objects.added.size(), byClass(objects.added, after, own).c_str());
   std::printf("  %zu gone%s\n", objects.gone.size(), byClass(objects.gone, before, own).c_str());

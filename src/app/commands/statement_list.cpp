@@ -20,12 +20,30 @@ std::string lineOfKnown(const KnownStatement& known) {
   return line;
 }
 
+Json jsonOfKnown(const KnownStatement& known) {
+  Json entry{{"id", known.statement.id().hex()}, {"states", textOf(known.statement)}, {"effect", known.effect}};
+  if (!known.object.empty()) entry["object"] = known.object;
+  if (!known.rules_class.empty()) entry["rules_say"] = known.rules_class;
+  entry["contradicts_rules"] = known.contradicts;
+  if (!known.author.empty()) entry["author"] = known.author;
+  if (!known.stated_at.empty()) entry["stated_at"] = known.stated_at;
+  return entry;
+}
+
+KnownStatement withoutHistory(const mapping::StatementOutcome& outcome) {
+  const std::string object = outcome.object ? rdf::iriOfObject(*outcome.object) : "";
+  return {
+      outcome.statement, std::string(nameOf(outcome.effect)), object, outcome.rules_class, outcome.contradicts, "", ""};
+}
+
 }  // namespace
 
 std::string lineOf(const mapping::StatementOutcome& outcome) {
-  const std::string object = outcome.object ? rdf::iriOfObject(*outcome.object) : "";
-  return lineOfKnown({outcome.statement, std::string(nameOf(outcome.effect)), object, outcome.rules_class,
-                      outcome.contradicts, "", ""});
+  return lineOfKnown(withoutHistory(outcome));
+}
+
+Json jsonOf(const mapping::StatementOutcome& outcome) {
+  return jsonOfKnown(withoutHistory(outcome));
 }
 
 void printStatements(const std::vector<KnownStatement>& statements, const Session& session) {
@@ -35,15 +53,7 @@ void printStatements(const std::vector<KnownStatement>& statements, const Sessio
     return;
   }
   Json json = Json::array();
-  for (const KnownStatement& known : statements) {
-    Json entry{{"id", known.statement.id().hex()}, {"states", textOf(known.statement)}, {"effect", known.effect}};
-    if (!known.object.empty()) entry["object"] = known.object;
-    if (!known.rules_class.empty()) entry["rules_say"] = known.rules_class;
-    entry["contradicts_rules"] = known.contradicts;
-    if (!known.author.empty()) entry["author"] = known.author;
-    if (!known.stated_at.empty()) entry["stated_at"] = known.stated_at;
-    json.push_back(std::move(entry));
-  }
+  for (const KnownStatement& known : statements) json.push_back(jsonOfKnown(known));
   printJson(Json{{"statements", std::move(json)}});
 }
 
