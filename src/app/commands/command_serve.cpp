@@ -53,16 +53,12 @@ class AccessLines {
     for (char& c : target)
       if (static_cast<unsigned char>(c) <= ' ' || c == '"' || c == '\x7f') c = '?';
     const std::lock_guard lock(mutex_);
-    std::fprintf(file_, "%s %s \"%s %s\" %d %zu %.1f ms\n", now().c_str(), entry.client.c_str(), entry.method.c_str(),
-                 target.c_str(), entry.status, entry.bytes, entry.seconds * 1000);
+    std::fprintf(file_, "%s %s \"%s %s\" %d %zu %.1f ms\n", dateTimeText(secondsNow()).c_str(), entry.client.c_str(),
+                 entry.method.c_str(), target.c_str(), entry.status, entry.bytes, entry.seconds * 1000);
     std::fflush(file_);
   }
 
  private:
-  static std::string now() {
-    const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
-    return dateTimeText(std::chrono::duration<double>(since_1970).count());
-  }
   std::FILE* file_ = nullptr;
   std::mutex mutex_;
 };

@@ -66,7 +66,7 @@ void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink, co
   const SemanticUpdate layers =
       updateSemanticLayer(transaction, parsed, stages, ChangedInputs::Scans, params.layers, clock, check);
   if (const std::string note = summaryOf(layers.statements); !note.empty()) sink.note(note);
-  const Activity activity{"update", started_s, secondsNow(), clock.seconds()};
+  const Activity activity{params.operation, started_s, secondsNow(), clock.seconds()};
   addLineage(transaction, addActivity(transaction, activity, {}, parsed.inputs),
              compareStates(layers.before, layers.after));
   writeThings(transaction, dateTimeText(activity.ended_s), layers.before, layers.after, ObjectsOf::OneMap,

@@ -14,8 +14,9 @@ namespace cluxel::mapping {
 
 /// How a map follows an update.
 struct MapUpdateParams {
-  std::string author = {};   ///< who makes and withdraws statements, for the history
-  UpdateParams layers = {};  ///< how objects are decided again
+  std::string author = {};           ///< who makes and withdraws statements, for the history
+  std::string operation = "update";  ///< the command, for the history
+  UpdateParams layers = {};          ///< how objects are decided again
 };
 
 /// Runs a SPARQL Update on a map or another quad file. In a map, what follows is inferred, SPARQL rules included, and

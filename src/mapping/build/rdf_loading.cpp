@@ -82,7 +82,7 @@ RdfLoadReport loadRdfFiles(const fs::path& store, const std::vector<fs::path>& f
     writer.flush();
   }
   report.added = reader.size() - before;
-  if (is_map && report.added > 0) inferAfterUpdate(transaction, sink);
+  if (is_map && report.added > 0) inferAfterUpdate(transaction, sink, {}, {.operation = "load"});
   transaction.commit();
   made.keep();
   return report;

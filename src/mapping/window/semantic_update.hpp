@@ -27,9 +27,9 @@ GoesOn keptBy(const rdf::ReadTransaction& transaction, const SemanticUpdate& upd
 
 /// What may have changed since the layers were made.
 enum class ChangedInputs : std::uint8_t {
-  Scans,  ///< scans and poses
+  Scans,  ///< scans, poses and statements
   Rules,  ///< and the rules that decide about objects
-  Any,    ///< SPARQL rules, ontology, model, settings or statements too
+  Any,    ///< SPARQL rules, ontology, model or settings too
 };
 
 struct UpdateParams {

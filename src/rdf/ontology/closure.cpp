@@ -104,7 +104,8 @@ class Facts {
     std::size_t stated = 0, round_before = 0, round_start = 0;
   };
 
-  static constexpr std::size_t kMaxOffered = std::size_t{1} << 16U;  ///< beside twice the known ones
+  /// More offered pairs than this, and than twice the known ones, are not collected: they are settled within the round.
+  static constexpr std::size_t kMaxOffered = std::size_t{1} << 16U;
   /// From so many pairs on all stated facts of the property are read in their order, instead of a search for each.
   static constexpr std::size_t kManyPairs = 1024;
 

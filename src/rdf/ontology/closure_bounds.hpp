@@ -25,7 +25,7 @@ class ClosureBounds {
 
  private:
   static constexpr std::uint64_t kStepsBetweenChecks = 4096;
-  /// In the list and the set of a property, in the lists that are compared with the store, and in the store's pages.
+  /// In the lists of a property, in those that are compared with the store, and in the store's pages.
   static constexpr std::size_t kBytesOfFact = 200;
   [[noreturn]] void fail(TermId property, const std::string& what) const {
     throw Error(ErrorKind::BudgetExceeded,
