@@ -98,11 +98,13 @@ TEST_F(FolderWatch, GoesOnWithAFirstBuildThatWasInterrupted) {
   StopAtSecondScan stop;
   EXPECT_THROW(buildMap(scansOf({scans()}), *inputs, map(), {.batch_points = 1}, stop), StopAtSecondScan::Stopped);
   ASSERT_TRUE(fs::exists(map()));
+  writeFile(scans() / "broken.pcd", readFile(campus->files()[2]).substr(0, 1000));  // the recorder was killed, too
   std::vector<std::size_t> totals;
   watch(3, [&](std::size_t total) {
     totals.push_back(total);
     if (total == 2) arrive(2);
   });
+  EXPECT_THAT(notes.all, ::testing::Contains(::testing::HasSubstr("broken.pcd")));
   EXPECT_THAT(totals, ::testing::ElementsAre(2, 3));
   EXPECT_TRUE(canonicalText(map()) == builtText(campus->files(), *inputs));
 }

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "cluxel/error.hpp"
+#include "mapping/build/scan_store.hpp"
 #include "mapping/build/work_file.hpp"
 #include "mapping/change/map_compaction.hpp"
 
@@ -90,20 +91,39 @@ class Watch {
     return done != done_.end() && done->second == file.second;
   }
 
-  /// Adds scans in one commit, or, when one of them cannot be read, one by one.
+  /// Adds scans in one commit, without those that cannot be read; or one by one, when they do not fit together.
   bool add(const scan::ScanSet& scans, const std::vector<std::size_t>& fresh) {
     try {
       commit(scans.only(fresh));
       return true;
     } catch (const InputError& fault) {
       if (fresh.size() == 1) {
-        sink_.note(std::string(fault.what()) + "; it is tried again when the file changes");
+        noteFaulty(fault);
         return false;
       }
     }
+    const std::vector<std::size_t> readable = readableOf(scans, fresh);
+    if (readable.size() < fresh.size()) return !readable.empty() && add(scans, readable);
     bool any = false;
     for (const std::size_t i : fresh) any = add(scans, {i}) || any;
     return any;
+  }
+
+  std::vector<std::size_t> readableOf(const scan::ScanSet& scans, const std::vector<std::size_t>& fresh) {
+    std::vector<std::size_t> readable;
+    for (const std::size_t i : fresh) {
+      try {
+        prepareScan(scans.load(i));
+        readable.push_back(i);
+      } catch (const InputError& fault) {
+        noteFaulty(fault);
+      }
+    }
+    return readable;
+  }
+
+  void noteFaulty(const InputError& fault) {
+    sink_.note(std::string(fault.what()) + "; it is tried again when the file changes");
   }
 
   void commit(const scan::ScanSet& scans) {
