@@ -38,14 +38,20 @@ rules:
     tree: { test: { attribute: top, op: between, min: 0.35 m, max: 1.2 m }, yes: { accept: { confidence: 0.7 } }, no: { reject: of another height } }
 )";
 
-TEST(RuleInclude, GoesIntoTheMapWithAllItsTexts) {
-  const ScratchFolder folder;
+/// Writes the base file, and a rule file that includes it.
+MapInputFiles writtenRules(const ScratchFolder& folder, const std::string& over = kOver) {
   std::filesystem::create_directories(folder.path() / "mine");
   writeFile(folder.path() / "base.rules.yaml", kBase);
-  writeFile(folder.path() / "mine/over.rules.yaml", kOver);
-  writeScanFile(parkWithBench(), folder.path() / "park.pcd");
+  writeFile(folder.path() / "mine/over.rules.yaml", over);
   MapInputFiles files;
   files.rules = {folder.path() / "mine/over.rules.yaml"};
+  return files;
+}
+
+TEST(RuleInclude, GoesIntoTheMapWithAllItsTexts) {
+  const ScratchFolder folder;
+  const MapInputFiles files = writtenRules(folder);
+  writeScanFile(parkWithBench(), folder.path() / "park.pcd");
   const MapInputs inputs = readMapInputs(files, DataHome(test::sourceFolder()));
   EXPECT_EQ(inputs.rule_roots, 1U);
   EXPECT_EQ(inputs.rules.size(), 2U);
@@ -62,27 +68,18 @@ TEST(RuleInclude, GoesIntoTheMapWithAllItsTexts) {
 
 TEST(RuleInclude, CountsInTheInputsOfTheMap) {
   const ScratchFolder folder;
-  std::filesystem::create_directories(folder.path() / "mine");
-  writeFile(folder.path() / "base.rules.yaml", kBase);
-  writeFile(folder.path() / "mine/over.rules.yaml", kOver);
-  MapInputFiles files;
-  files.rules = {folder.path() / "mine/over.rules.yaml"};
+  const MapInputFiles files = writtenRules(folder);
   const DataHome home(test::sourceFolder());
   const ContentHash before = readMapInputs(files, home).hash();
   writeFile(folder.path() / "base.rules.yaml", std::string(kBase) + "# changed\n");
   EXPECT_NE(readMapInputs(files, home).hash(), before);
 }
 
-/// What is told when a rule file is read, and its texts are loaded, which includes the base file.
-std::string faultsOf(const std::string& rule_file) {
+/// The faults that are told of a rule file, which includes the base file, when it is read and its texts are loaded.
+std::string faultsOf(const std::string& over) {
   const ScratchFolder folder;
-  std::filesystem::create_directories(folder.path() / "mine");
-  writeFile(folder.path() / "base.rules.yaml", kBase);
-  writeFile(folder.path() / "mine/over.rules.yaml", rule_file);
-  MapInputFiles files;
-  files.rules = {folder.path() / "mine/over.rules.yaml"};
   try {
-    parseInputs(readMapInputs(files, DataHome(test::sourceFolder())));
+    parseInputs(readMapInputs(writtenRules(folder, over), DataHome(test::sourceFolder())));
   } catch (const InputError& fault) {
     std::string told;
     for (const Diagnostic& diagnostic : fault.diagnostics()) told += diagnostic.message + "\n";
