@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scores `cluxel changes MAP --json` against the truth of a generated campus with two visits.
 
-Usage: change_scores.py CHANGES.json TRUTH_FOLDER [--list]
+Usage: change_scores.py CHANGES.json TRUTH_FOLDER [--points POINTS.csv] [--list]
        change_scores.py --sum SCORES...
 
 Events. A truth event is something that is gone ("left", "cut", and the old place of "moved" and "replaced") or new
@@ -19,9 +19,18 @@ A changed part speaks for an object of the truth when they overlap by half. Bush
 Lamps that were replaced are left out: another pole stands in the same place.
 Of the objects that are not observed, those are counted that a report says to be gone: as a state, or as a change that
 matches their box.
+
+Points (`changes --points`), as the DynamicMap benchmark counts them. A point of an earlier scan is dynamic when its object leaves or moves
+later, a point of a later scan when its object has arrived or moved. Static accuracy is the share of static points that are not reported
+as changed, dynamic accuracy the share of dynamic points that are, associated accuracy the root of their product. Objects
+that were cut or replaced are left out: no truth tells which of their points stay.
 """
 import csv
+import datetime
+import gzip
 import json
+import math
+import os
 import sys
 
 PAD_M = 0.1
@@ -147,12 +156,68 @@ def score_states(changes, seen, boxes, present, cut):
     return table, vanished
 
 
+def dynamic_instances(folder):
+    """By visit (0: earlier scans): instances with dynamic points, those of them whose event counts, and those left out."""
+    dynamic, counting, left_out = (set(), set()), (set(), set()), set()
+    for row in csv.DictReader(open(f"{folder}/events.csv")):
+        for visit, prefix in ((0, ""), (1, "new_")):
+            if not row[prefix + "xmin"]:
+                continue
+            instance = row[prefix + "instance"]
+            if row["event"] in ("cut", "replaced"):
+                left_out.add(instance)
+                continue
+            dynamic[visit].add(instance)
+            if min(int(row[f"{prefix}points_{when}"]) for when in ("before", "after")) >= MIN_SEEN:
+                counting[visit].add(instance)
+    return dynamic, counting, left_out
+
+
+def score_points(changes, folder, points_file):
+    """Counts of points: static, static that are kept, dynamic, dynamic that were found, and the same of counting events."""
+    reported = {}
+    for row in csv.DictReader(open(points_file, newline="")):
+        name = os.path.splitext(os.path.basename(row["source"]))[0]
+        reported.setdefault(name, set()).add(int(row["point"]))
+    scans = os.path.dirname(os.path.abspath(folder))
+    names = sorted(os.path.splitext(file)[0] for file in os.listdir(scans) if file.endswith(".pcd"))
+    times = [float(line) for line in open(f"{scans}/times.txt") if line.strip() and not line.startswith("#")]
+    since = datetime.datetime.fromisoformat(changes["since"].replace("Z", "+00:00")).timestamp()
+    dynamic, counting, left_out = dynamic_instances(folder)
+    counts = dict.fromkeys(("static", "kept", "dynamic", "found", "counting", "counting_found"), 0)
+    for name, time in zip(names, times, strict=True):
+        visit, marked = int(time >= since), reported.get(name, set())
+        for point, line in enumerate(gzip.open(f"{folder}/{name}.truth.gz", "rt")):
+            instance = line.rsplit(None, 1)[1]
+            if instance in left_out:
+                continue
+            is_marked = point in marked
+            if instance not in dynamic[visit]:
+                counts["static"] += 1
+                counts["kept"] += not is_marked
+                continue
+            counts["dynamic"] += 1
+            counts["found"] += is_marked
+            if instance in counting[visit]:
+                counts["counting"] += 1
+                counts["counting_found"] += is_marked
+    return counts
+
+
+def print_points(points):
+    static = points["kept"] / points["static"]
+    print("\n| points of | dynamic | static accuracy | dynamic accuracy | associated accuracy |\n|---|---|---|---|---|")
+    for name, all_points, found in (("all events", "dynamic", "found"), ("events that count", "counting", "counting_found")):
+        share = points[found] / points[all_points]
+        print(f"| {name} | {points[all_points]} | {static:.4f} | {share:.4f} | {math.sqrt(static * share):.4f} |")
+
+
 def sum_up(files):
     """One table over several campuses."""
-    events, states = {}, {}
+    events, states, points = {}, {}, {}
     for file in files:
         scores = json.load(open(file))
-        for total, part in ((events, scores["events"]), (states, scores["states"])):
+        for total, part in ((events, scores["events"]), (states, scores["states"]), (points, scores.get("points", {}))):
             for key, count in part.items():
                 total[key] = total.get(key, 0) + count
     true, false, missed = (events[key] for key in ("true", "false", "missed"))
@@ -167,6 +232,8 @@ def sum_up(files):
     print("\n| truth \\ reported | " + " | ".join(names) + " |\n|---|---|---|---|")
     for truth in names + ("cut",):
         print(f"| {truth} | " + " | ".join(str(states.get(f"{truth} -> {name}", 0)) for name in names) + " |")
+    if points:
+        print_points(points)
 
 
 def main():
@@ -189,7 +256,10 @@ def main():
             boxes.pop(row["instance"], None)
             boxes.pop(row["new_instance"], None)
     states, events["vanished"] = score_states(changes, seen, boxes, present, cut)
-    print(json.dumps({"events": events, "states": {f"{t} -> {r}": n for (t, r), n in sorted(states.items())}}))
+    scores = {"events": events, "states": {f"{t} -> {r}": n for (t, r), n in sorted(states.items())}}
+    if "--points" in sys.argv:
+        scores["points"] = score_points(changes, folder, sys.argv[sys.argv.index("--points") + 1])
+    print(json.dumps(scores))
 
 
 if __name__ == "__main__":

@@ -13,7 +13,8 @@ for seed in "$@"; do
   [ -d "$scans" ] || "$cluxel" simulate "$scans" --seed "$seed" --visits 2 --pose-error 0.05 \
     --later-stops "${LATER_STOPS:-0}" >/dev/null 2>&1
   "$cluxel" build "$scans" -o "$out/$seed.clx" --force >/dev/null 2>&1
-  "$cluxel" changes "$out/$seed.clx" --json >"$out/$seed.json" 2>/dev/null || true
-  python3 "$(dirname "$0")/change_scores.py" "$out/$seed.json" "$scans/truth" >"$out/$seed.scores"
+  "$cluxel" changes "$out/$seed.clx" --json --points "$out/$seed.points.csv" >"$out/$seed.json" 2>/dev/null || true
+  python3 "$(dirname "$0")/change_scores.py" "$out/$seed.json" "$scans/truth" --points "$out/$seed.points.csv" \
+    >"$out/$seed.scores"
 done
 python3 "$(dirname "$0")/change_scores.py" --sum "$out"/*.scores

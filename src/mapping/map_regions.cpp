@@ -166,7 +166,7 @@ void MapRegions::forEachPoint(const MapRegion& region, const Cloud& cloud, const
     const auto tile = points_->tiles.find(key);
     if (tile == points_->tiles.end()) continue;
     const std::uint32_t kept = tile->second.finder.find(perception::localPoint(key, p_map));
-    visit(p_map, tile->second.first + tile->second.cluxels->point_cluxel.at(kept));
+    visit(p_map, tile->second.first + tile->second.cluxels->point_cluxel.at(kept), i);
   }
 }
 

@@ -40,10 +40,10 @@ class MapRegions {
   bool isGround(std::uint32_t object) const { return is_ground_[object]; }
   /// Reads a region; gives up the one before. Cost: some milliseconds a tile.
   MapRegion read(std::size_t region);
-  using PointVisit = std::function<void(const Eigen::Vector3d& p_map, std::uint32_t cluxel)>;
+  using PointVisit = std::function<void(const Eigen::Vector3d& p_map, std::uint32_t cluxel, std::size_t point)>;
   /// Visits those points of the cloud that lie in the tiles of the region, in their order. `cluxel`: number in the
-  /// scene of the region, which must be the last that was read. Cost: the points of the cloud; the first call for a
-  /// region reads the points of all clouds in it.
+  /// scene of the region, which must be the last that was read; `point`: number in the cloud. Cost: the points of the
+  /// cloud; the first call for a region reads the points of all clouds in it.
   void forEachPoint(const MapRegion& region, const Cloud& cloud, const PointVisit& visit);
 
  private:

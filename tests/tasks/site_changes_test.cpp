@@ -19,6 +19,7 @@
 #include "simulation/laser/campus_writer.hpp"
 #include "sparql/query_engine.hpp"
 #include "tasks/ask/task_table.hpp"
+#include "tasks/changes/changed_points.hpp"
 #include "tasks/view/view_page.hpp"
 #include "tasks/view/view_values.hpp"
 #include "tasks/ways/route.hpp"
@@ -127,6 +128,29 @@ TEST_F(SiteChangesTest, FindsWhatLeftArrivedAndMoved) {
         << event.kind << " at " << event.centre.transpose();
   }
   EXPECT_GE(count, 4);
+}
+
+TEST_F(SiteChangesTest, HasThePointsOfWhatChanged) {
+  const std::vector<ChangedPoint> points = changedPoints(*map, *found, 2000);
+  std::vector<std::size_t> counts(found->changes.size());
+  std::map<scan::ScanId, mapping::PointAnswers> answers;
+  std::map<scan::ScanId, scan::Scan> scan_of;
+  for (const mapping::Cloud& cloud : map->clouds())
+    answers[cloud.id] = map->answersFor(cloud), scan_of[cloud.id] = map->scanOf(cloud.id);
+  for (const ChangedPoint& point : points) {
+    const SiteChange& change = found->changes[point.change];
+    ++counts[point.change];
+    const ChangedThing& thing = change.now && !point.is_gone ? *change.now : change.thing;
+    EXPECT_EQ(point.is_gone, *scan_of.at(point.cloud).time_s < found->since_s);
+    EXPECT_TRUE(
+        std::binary_search(thing.cluxels.begin(), thing.cluxels.end(), answers.at(point.cloud).cluxel.at(point.point)));
+  }
+  for (const std::size_t count : counts) EXPECT_GE(count, 5U);
+  const auto key = [](const ChangedPoint& point) { return std::pair(point.cloud, point.point); };
+  std::set<std::pair<scan::ScanId, std::uint32_t>> once;
+  for (const ChangedPoint& point : changedPoints(*map, *found)) once.insert(key(point));
+  EXPECT_EQ(once.size(), points.size());
+  for (const ChangedPoint& point : points) EXPECT_TRUE(once.contains(key(point)));
 }
 
 TEST_F(SiteChangesTest, TheTaskAnswersWithTheChangesAndTheirPlaces) {

@@ -2,8 +2,11 @@
 // `cluxel changes`: what vanished, appeared and moved between visits.
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
+#include "app/shared_options.hpp"
+#include "base/file_bytes.hpp"
 #include "base/utc_time.hpp"
 #include "mapping/facts/map_facts.hpp"
+#include "tasks/changes/changed_points.hpp"
 #include "tasks/changes/site_changes.hpp"
 #include "tasks/ways/way_report.hpp"
 
@@ -12,7 +15,7 @@ namespace cluxel::app {
 namespace {
 
 struct ChangesArguments {
-  fs::path map;
+  fs::path map, points;
   std::string since;
   bool states = false, allow_unfinished = false;
 };
@@ -45,12 +48,20 @@ void printChanges(const mapping::MapReader& map, const tasks::SiteChanges& found
   }
 }
 
+void writePoints(const fs::path& file, const mapping::MapReader& map, const tasks::SiteChanges& found) {
+  std::string text;
+  writeChangedPoints(changedPoints(map, found), map.clouds(), [&](std::string_view piece) { text.append(piece); });
+  writeFile(file, text);
+}
+
 ExitCode changes(const ChangesArguments& arguments, Session& session) {
+  if (!arguments.points.empty()) refuseToReplaceMap(arguments.points);
   const mapping::MapReader map(arguments.map);
   noteUnfinished(arguments.map, map.isFinished(), arguments.allow_unfinished, session);
   std::optional<double> since_s;
   if (!arguments.since.empty()) since_s = tasks::timeNamed(arguments.since);
   const tasks::SiteChanges found = tasks::changesIn(map, since_s, session.threadCount());
+  if (!arguments.points.empty()) writePoints(arguments.points, map, found);
   if (session.json)
     print(tasks::changesJson(map, found));
   else if (arguments.states)
@@ -71,6 +82,10 @@ void addChanges(CLI::App& app, Session& session) {
       "scans from this time on are later: 2023-11-15T22:13:20Z, or seconds since 1970 [the last visit]");
   command->add_flag("--states", arguments->states,
                     "list every object and changed part: present, absent or not observed, before and after");
+  command
+      ->add_option("--points", arguments->points,
+                   "write the measured points of what vanished and appeared, as CSV: cloud,source,point,change,kind")
+      ->check(named());
   addAllowUnfinished(*command, arguments->allow_unfinished);
   onRun(*command, session, [arguments, &session] { return changes(*arguments, session); });
 }

@@ -2,9 +2,9 @@
 // `cluxel export`: a map in other formats.
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
+#include "app/shared_options.hpp"
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
-#include "rdf/file/map_check.hpp"
 #include "tasks/export/map_export.hpp"
 
 namespace cluxel::app {
@@ -27,14 +27,6 @@ tasks::ExportFormat formatOf(const ExportOptions& options) {
                                               "geojson, or an output file that ends in .ttl, .nq, .ply or .geojson");
 }
 
-/// A map can take days to build, and `-o MAP` is easily written by mistake.
-void refuseToReplaceAMap(const fs::path& output) {
-  std::error_code ignored;
-  if (fs::is_regular_file(output, ignored) && rdf::looksLikeMap(output))
-    throw Error(ErrorKind::StoreUnavailable,
-                output.string() + ": is a map, which the export would replace; name another file");
-}
-
 }  // namespace
 
 void addExport(CLI::App& app, Session& session) {
@@ -50,7 +42,7 @@ void addExport(CLI::App& app, Session& session) {
   addAllowUnfinished(*command, options->allow_unfinished);
   onRun(*command, session, [options, &session] {
     const tasks::ExportFormat format = formatOf(*options);
-    refuseToReplaceAMap(options->output);
+    refuseToReplaceMap(options->output);
     std::string bytes;
     const bool to_stdout = options->output.empty();
     const auto write = [&](std::string_view piece) {

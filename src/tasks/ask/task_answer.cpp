@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/csv_text.hpp"
 #include "base/utf8.hpp"
 #include "rdf/vocabulary.hpp"
 #include "tasks/export/footprint_export.hpp"
@@ -76,13 +77,6 @@ std::string tableText(const TaskAnswer& answer) {
   }
   for (const std::string& note : answer.notes) text += note + "\n";
   return text;
-}
-
-std::string csvField(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
 }
 
 std::string csvText(const TaskAnswer& answer) {

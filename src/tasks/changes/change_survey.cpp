@@ -122,7 +122,7 @@ class Survey {
   PointCells cellsIn(const mapping::MapRegion& region, const std::vector<bool>& may_change) {
     CellSums sums;
     for (const TimedScan& scan : scans_)
-      regions_.forEachPoint(region, scan.cloud, [&](const Eigen::Vector3d& p_map, std::uint32_t cluxel) {
+      regions_.forEachPoint(region, scan.cloud, [&](const Eigen::Vector3d& p_map, std::uint32_t cluxel, std::size_t) {
         if (may_change[cluxel]) sums.add(scan.time, scan.bit, p_map, cluxel);
       });
     return sums.take(region);
