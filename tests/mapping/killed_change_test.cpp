@@ -1,169 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 // A change that is killed at any moment leaves the exact map before or after a commit; the same command finishes it.
-#include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <time.h>
-#include <unistd.h>
-
-#include <cmath>
-#include <cstdlib>
-#include <functional>
-#include <random>
-#include <set>
+#include "mapping/killed_change.hpp"
 
 #include "mapping/build/map_update.hpp"
-#include "mapping/change/map_change.hpp"
+#include "mapping/build/rdf_loading.hpp"
 #include "mapping/change/map_merge.hpp"
 #include "mapping/change/statement_change.hpp"
-#include "mapping/small_campus.hpp"
+#include "mapping/statements/statement.hpp"
 #include "rdf/map_iris.hpp"
 
 namespace cluxel::mapping {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// Kills its process at the n-th report of progress.
-class KillAt : public ProgressSink {
- public:
-  explicit KillAt(std::size_t call) : call_(call) {}
-  void progress(std::string_view, std::size_t, std::size_t) override {
-    if (++calls_ == call_) ::kill(::getpid(), SIGKILL);
-  }
-
- private:
-  std::size_t call_, calls_ = 0;
-};
-
-/// Kills this process when it has computed for so long. It tells when, never whether a test passes.
-void killAfter(double cpu_s) {
-  sigevent event{};
-  event.sigev_notify = SIGEV_SIGNAL;
-  event.sigev_signo = SIGKILL;
-  timer_t timer{};
-  const itimerspec time{{0, 0}, {static_cast<time_t>(cpu_s), 1 + static_cast<long>((cpu_s - std::floor(cpu_s)) * 1e9)}};
-  if (::timer_create(CLOCK_PROCESS_CPUTIME_ID, &event, &timer) != 0 || ::timer_settime(timer, 0, &time, nullptr) != 0)
-    ::_exit(1);
-}
-
-class CountCalls : public ProgressSink {
- public:
-  void progress(std::string_view, std::size_t, std::size_t) override { ++calls; }
-  std::size_t calls = 0;
-};
-
-using Change = std::function<void(ProgressSink&)>;
-
-class KilledChange : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    campus = new SmallCampus({.seed = 8, .stops = 3, .size_m = 45, .points_per_stop = 1000});
-    inputs = new MapInputs(shippedInputs());
-  }
-  static void TearDownTestSuite() {
-    delete campus;
-    delete inputs;
-  }
-
-  fs::path map() const { return folder.path() / "map.clx"; }
-  fs::path file(std::size_t stop) const { return campus->files()[stop]; }
-  void build(const std::vector<fs::path>& files, const fs::path& target) const {
-    buildMap(scansOf(files), *inputs, target, {.force = true}, silence());
-  }
-
-  /// Runs `change` in a process of its own, and returns how that ended.
-  static int ended(const std::function<void()>& change, rusage& usage) {
-    const pid_t child = ::fork();
-    if (child == 0) {
-      change();
-      ::_exit(0);
-    }
-    int status = 0;
-    if (child < 0 || ::wait4(child, &status, 0, &usage) != child) throw std::runtime_error("no process can be made");
-    return status;
-  }
-
-  /// Prepares, kills `change` at random reports of progress and at random times between them, and expects one of
-  /// `states` each time; then lets it finish.
-  void expectExact(const std::function<void()>& prepare, const Change& change, const std::set<std::string>& states,
-                   const std::string& finished, const std::function<std::string()>& state) const {
-    CountCalls counting;
-    prepare();
-    change(counting);
-    EXPECT_TRUE(state() == finished);
-    prepare();
-    rusage usage{};
-    ASSERT_EQ(ended([&] { change(silence()); }, usage), 0);
-    const auto seconds = [](const timeval& time) {
-      return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-    };
-    const double cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
-    std::mt19937 random(3);
-    const int moments = std::getenv("CLUXEL_LONG_TESTS") != nullptr ? 200 : 6;
-    int killed = 0;
-    for (int i = 0; i < moments; ++i) {
-      prepare();
-      const bool at_report = counting.calls > 5 && i % 2 == 0;
-      const std::size_t at = 1 + random() % std::max<std::size_t>(counting.calls, 1);
-      const double after_s = cpu_s * static_cast<double>(random() % 10000) / 10000;
-      const int status = ended(
-          [&] {
-            KillAt sink(at_report ? at : 0);
-            if (!at_report) killAfter(after_s);
-            change(sink);
-          },
-          usage);
-      const std::string moment = at_report ? "call " + std::to_string(at) + " of " + std::to_string(counting.calls)
-                                           : std::to_string(after_s) + " of " + std::to_string(cpu_s) + " s";
-      killed += WIFSIGNALED(status) ? 1 : 0;
-      EXPECT_TRUE(WIFSIGNALED(status) || (!at_report && status == 0)) << moment;
-      const std::string found = state();
-      EXPECT_TRUE(states.contains(found)) << "killed at " << moment;
-      if (found != finished) change(silence());  // a command that removes something refuses to do so twice
-      EXPECT_TRUE(state() == finished) << "after " << moment;
-    }
-    EXPECT_GT(killed, 0);
-  }
-  /// For changes of one map in one commit.
-  void expectAllOrNothing(const Change& change, const std::string& finished) const {
-    const fs::path kept = folder.path() / "kept";
-    fs::copy_file(map(), kept);
-    expectExact([&] { fs::copy_file(kept, map(), fs::copy_options::overwrite_existing); }, change,
-                {canonicalText(kept), finished}, finished, [&] { return canonicalText(map()); });
-  }
-  Statement someStatement(const std::string& local) const {
-    const MapReader reader(map());
-    for (const rules::SemanticObject& object : reader.objects())
-      if (object.class_iri != vocabulary::clx("Ground") && object.class_iri != vocabulary::clx(local))
-        return {
-            StatementKind::Is, "", Term::iri(vocabulary::clx(local)), anchorOf(reader.stagesWithPoints(), object), {}};
-    throw std::runtime_error("the campus has nothing but ground");
-  }
-  /// The map after a change of a copy.
-  std::string after(const Change& change) const {
-    const fs::path kept = folder.path() / "before";
-    fs::copy_file(map(), kept);
-    change(silence());
-    const std::string text = canonicalText(map());
-    fs::rename(kept, map());
-    return text;
-  }
-
-  ScratchFolder folder;
-  inline static SmallCampus* campus = nullptr;
-  inline static MapInputs* inputs = nullptr;
-};
-
 TEST_F(KilledChange, ExtendingGoesOn) {
   const std::string first = builtText({file(0)}, *inputs), two = builtText({file(0), file(1)}, *inputs),
                     all = builtText(campus->files(), *inputs);
+  std::size_t local_commits = 0;
   expectExact([&] { build({file(0)}, map()); },
               [&](ProgressSink& sink) {
-                extendMap(map(), scansOf({file(1), file(2)}), {.threads = 1, .batch_points = 1}, sink);
+                ChangeParams in_two_batches = params();
+                in_two_batches.batch_points = 1;
+                local_commits += extendMap(map(), scansOf({file(1), file(2)}), in_two_batches, sink).local_commits;
               },
               {first, two, all}, all, [&] { return canonicalText(map()); });
+  EXPECT_GT(local_commits, 0U) << "no change was computed around what changed";
 }
 
 TEST_F(KilledChange, MovingScansIsAllOrNothing) {
@@ -180,7 +40,7 @@ TEST_F(KilledChange, MovingScansIsAllOrNothing) {
         build({file(0), file(1)}, map());
       },
       [&](ProgressSink& sink) {
-        moveScans(map(), {{id, moved}}, {}, sink);
+        moveScans(map(), {{id, moved}}, params(), sink);
       },
       {before, after}, after, [&] { return canonicalText(map()); });
 }
@@ -192,7 +52,7 @@ TEST_F(KilledChange, AMergeIsThereWholeOrNotAtAll) {
   const std::string all = builtText(campus->files(), *inputs);
   expectExact([&] { fs::remove(map()); },
               [&](ProgressSink& sink) {
-                mergeMaps({{a}, {b}}, map(), {.change = {}, .use = std::nullopt, .force = true}, sink);
+                mergeMaps({{a}, {b}}, map(), {.change = params(), .use = std::nullopt, .force = false}, sink);
               },
               {"", all}, all, [&] { return fs::exists(map()) ? canonicalText(map()) : std::string(); });
   EXPECT_FALSE(fs::exists(map().string() + ".merging"));
@@ -201,7 +61,8 @@ TEST_F(KilledChange, AMergeIsThereWholeOrNotAtAll) {
 TEST_F(KilledChange, RetractingIsAllOrNothing) {
   build({file(0), file(1)}, map());
   const ScanId id = scansOf({file(1)}).load(0).id;
-  expectAllOrNothing([&](ProgressSink& sink) { retractScans(map(), {id}, {}, sink); }, builtText({file(0)}, *inputs));
+  expectAllOrNothing([&](ProgressSink& sink) { retractScans(map(), {id}, params(), sink); },
+                     builtText({file(0)}, *inputs));
 }
 
 TEST_F(KilledChange, ApplyingRulesIsAllOrNothing) {
@@ -213,7 +74,22 @@ TEST_F(KilledChange, ApplyingRulesIsAllOrNothing) {
   expectAllOrNothing(
       [&](ProgressSink& sink) {
         applyInputs(
-            map(), [&](const MapInputs&) { return other; }, {}, sink);
+            map(), [&](const MapInputs&) { return other; }, params(), sink);
+      },
+      builtText({file(0), file(1)}, other));
+}
+
+TEST_F(KilledChange, ApplyingAModelAndAnOntologyIsAllOrNothing) {
+  build({file(0), file(1)}, map());
+  MapInputFiles with_model;
+  with_model.model = test::sourceFolder() / "models/campus/model.json";
+  MapInputs other = readMapInputs(with_model, DataHome(test::sourceFolder()));
+  ASSERT_NE(other.model.text, inputs->model.text);
+  other.ontology.back().text += "\n<" + vocabulary::clx("Tree") + "> a <https://example.org/Plant> .\n";
+  expectAllOrNothing(
+      [&](ProgressSink& sink) {
+        applyInputs(
+            map(), [&](const MapInputs&) { return other; }, params(), sink);
       },
       builtText({file(0), file(1)}, other));
 }
@@ -223,7 +99,7 @@ TEST_F(KilledChange, StatingAndWithdrawingAreAllOrNothing) {
   const Statement first = someStatement("StreetSign"), second = someStatement("Barrier");
   changeStatements(map(), {{first}, {}, "anna"}, {}, silence());
   const Change change = [&](ProgressSink& sink) {
-    changeStatements(map(), {{second}, {first.id()}, "anna"}, {}, sink);
+    changeStatements(map(), {{second}, {first.id()}, "anna"}, params(), sink);
   };
   expectAllOrNothing(change, after(change));
 }
@@ -237,6 +113,15 @@ TEST_F(KilledChange, UpdatesAreAllOrNothing) {
                   "<https://example.org/b> 1 }",
               {}, sink);
   };
+  expectAllOrNothing(change, after(change));
+}
+
+TEST_F(KilledChange, LoadingIsAllOrNothing) {
+  build({file(0), file(1)}, map());
+  const fs::path statements = folder.path() / "statements.nt";
+  writeFile(statements, "<" + rdf::iriOfObject(MapReader(map()).objects().front().id) + "> <" +
+                            vocabulary::rdfs("label") + "> \"lawn\" .\n");
+  const Change change = [&](ProgressSink& sink) { loadRdfFiles(map(), {statements}, {}, sink); };
   expectAllOrNothing(change, after(change));
 }
 

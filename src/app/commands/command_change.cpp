@@ -35,7 +35,7 @@ ExitCode extend(const ChangeOptions& options, Session& session) {
 ExitCode retract(const ChangeOptions& options, Session& session) {
   mapping::ChangeParams params = options.change;
   params.threads = session.threadCount();
-  const auto clouds = mapping::cloudsNamed(options.map, options.clouds);
+  const auto clouds = mapping::cloudsNamed(options.map, options.clouds, mapping::Retracted::Named);
   printChange(options.map, retractScans(options.map, clouds, params, session.console), params, session);
   return ExitCode::Done;
 }

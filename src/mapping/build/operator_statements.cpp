@@ -16,18 +16,9 @@ Term withSuffix(const Term& term, const std::string& suffix) {
 
 std::uint64_t copyOperatorStatements(const rdf::QuadReader& from, rdf::WriteTransaction& into,
                                      const std::string& blank_suffix) {
-  const auto graph = from.idOf(Term::iri(rdf::vocabulary::kGraphOperator));
-  if (!graph) return 0;
-  rdf::QuadWriter writer(into);
-  rdf::QuadPattern pattern;
-  pattern.g = *graph;
-  rdf::QuadCursor cursor = from.scan(pattern);
-  std::uint64_t count = 0;
-  for (rdf::QuadIds quad; cursor.next(quad); ++count)
-    writer.add(Quad{withSuffix(from.termOf(quad.s), blank_suffix), from.termOf(quad.p),
-                    withSuffix(from.termOf(quad.o), blank_suffix), Term::iri(rdf::vocabulary::kGraphOperator)});
-  writer.flush();
-  return count;
+  const std::vector<Quad> quads = operatorStatements(from, blank_suffix);
+  addOperatorStatements(into, quads);
+  return quads.size();
 }
 
 void addOperatorStatements(rdf::WriteTransaction& transaction, const std::vector<Quad>& quads) {
@@ -38,13 +29,15 @@ void addOperatorStatements(rdf::WriteTransaction& transaction, const std::vector
   writer.flush();
 }
 
-std::vector<Quad> operatorStatements(const rdf::QuadReader& reader) {
-  const auto graph = reader.idOf(Term::iri(rdf::vocabulary::kGraphOperator));
+std::vector<Quad> operatorStatements(const rdf::QuadReader& reader, const std::string& blank_suffix) {
+  const Term graph_term = Term::iri(rdf::vocabulary::kGraphOperator);
+  const auto graph = reader.idOf(graph_term);
   if (!graph) return {};
   std::vector<Quad> quads;
   rdf::QuadCursor cursor = reader.scan({.s = {}, .p = {}, .o = {}, .g = *graph});
   for (rdf::QuadIds quad; cursor.next(quad);)
-    quads.push_back({reader.termOf(quad.s), reader.termOf(quad.p), reader.termOf(quad.o), reader.termOf(quad.g)});
+    quads.push_back({withSuffix(reader.termOf(quad.s), blank_suffix), reader.termOf(quad.p),
+                     withSuffix(reader.termOf(quad.o), blank_suffix), graph_term});
   return quads;
 }
 

@@ -17,8 +17,8 @@ std::uint64_t copyOperatorStatements(const rdf::QuadReader& from, rdf::WriteTran
                                      const std::string& blank_suffix = {});
 /// Adds quads to graph `operator`, whatever their graph, and flushes.
 void addOperatorStatements(rdf::WriteTransaction& transaction, const std::vector<Quad>& quads);
-/// The quads of graph `operator`.
-std::vector<Quad> operatorStatements(const rdf::QuadReader& reader);
+/// The quads of graph `operator`; labels of blank nodes get `blank_suffix`.
+std::vector<Quad> operatorStatements(const rdf::QuadReader& reader, const std::string& blank_suffix = {});
 /// Leaves graph `operator` empty.
 void clearOperatorStatements(rdf::WriteTransaction& transaction);
 

@@ -8,6 +8,7 @@
 #include "cluxel/error.hpp"
 #include "mapping/change/map_compaction.hpp"
 #include "mapping/change/scan_additions.hpp"
+#include "mapping/facts/map_history.hpp"
 #include "mapping/map_state.hpp"
 
 namespace cluxel::mapping {
@@ -22,13 +23,12 @@ void requireOnce(const std::vector<scan::ScanId>& scans) {
     if (!seen.insert(id).second) throw Error(ErrorKind::InvalidArgument, "cloud " + id.hex() + " is named twice");
 }
 
-bool isNamed(const Cloud& cloud, const std::string& name) {
+bool isNamed(const scan::ScanId& id, const fs::path& source, const std::string& name) {
   constexpr std::size_t kMinDigits = 4;
   std::string digits = name;
   if (const std::size_t slash = name.rfind('/'); slash != std::string::npos && name.find("cloud/") != std::string::npos)
     digits = name.substr(slash + 1);
-  if (digits.size() >= kMinDigits && cloud.id.hex().starts_with(digits)) return true;
-  const fs::path source = cloud.source;
+  if (digits.size() >= kMinDigits && id.hex().starts_with(digits)) return true;
   return source == name || source.filename() == name || source.stem() == name;  // "0001" may be meant as a file
 }
 
@@ -83,6 +83,16 @@ ChangeReport addedTo(const fs::path& file, const scan::ScanSet& scans, const Cha
   return addBy(editor, scans);
 }
 
+/// Whether an earlier command retracted the scan, perhaps this one before it was killed.
+bool noteRetracted(const rdf::ReadTransaction& transaction, const scan::ScanId& id, ProgressSink& sink) {
+  for (const RetractedScan& scan : retractedScans(transaction)) {
+    if (scan.id != id) continue;
+    sink.note("cloud " + id.hex() + " ('" + scan.source + "') was retracted already, on " + scan.time);
+    return true;
+  }
+  return false;
+}
+
 ChangeReport removedFrom(const fs::path& file, const std::vector<scan::ScanId>& scans, const ChangeParams& params,
                          ProgressSink& sink) {
   requireOnce(scans);
@@ -91,13 +101,15 @@ ChangeReport removedFrom(const fs::path& file, const std::vector<scan::ScanId>& 
   PointChanges changes;
   std::vector<Cloud> removed;
   for (const scan::ScanId& id : scans) {
-    if (const auto cloud = storedCloud(transaction, id)) removed.push_back(*cloud);
+    const auto cloud = storedCloud(transaction, id);
+    if (!cloud && noteRetracted(transaction, id, sink)) continue;
     changes.anew = unionOf(std::move(changes.anew), removeScan(transaction, id));
+    removed.push_back(*cloud);
     sink.progress("scans", ++editor.result().scans_removed, scans.size());
   }
   if (storedClouds(transaction).empty())
     throw Error(ErrorKind::InvalidArgument, file.string() + ": no scan would be left; remove the file instead");
-  if (!scans.empty()) editor.commit(transaction, "retract", std::move(changes), removed);
+  if (!removed.empty()) editor.commit(transaction, "retract", std::move(changes), removed);
   return std::move(editor.result());
 }
 
@@ -181,14 +193,18 @@ ChangeReport applyInputs(const fs::path& file, const std::function<MapInputs(Map
   return compacted(appliedTo(file, change, params, sink), file, params, sink);
 }
 
-std::vector<scan::ScanId> cloudsNamed(const fs::path& file, std::span<const std::string> names) {
+std::vector<scan::ScanId> cloudsNamed(const fs::path& file, std::span<const std::string> names, Retracted retracted) {
   const auto environment = rdf::Environment::open(file, rdf::OpenMode::ReadOnly);
-  const std::vector<Cloud> clouds = storedClouds(environment->read());
+  const rdf::ReadTransaction transaction = environment->read();
+  const std::vector<Cloud> clouds = storedClouds(transaction);
   std::vector<scan::ScanId> ids;
   for (const std::string& name : names) {
     std::vector<scan::ScanId> fitting;
     for (const Cloud& cloud : clouds)
-      if (isNamed(cloud, name)) fitting.push_back(cloud.id);
+      if (isNamed(cloud.id, cloud.source, name)) fitting.push_back(cloud.id);
+    if (fitting.empty() && retracted == Retracted::Named)
+      for (const RetractedScan& scan : retractedScans(transaction))
+        if (isNamed(scan.id, scan.source, name)) fitting.push_back(scan.id);
     if (fitting.empty())
       throw Error(ErrorKind::NotFound, file.string() + ": has no cloud '" + name + "'", Remedy::ListClouds);
     if (fitting.size() > 1)

@@ -44,7 +44,8 @@ class MapExtension {
   std::optional<MapEditor> editor_;
 };
 
-/// Removes scans. Throws Error: NotFound for an unknown scan, InvalidArgument when none would be left.
+/// Removes scans. One that was retracted before is noted, so that a killed command can be repeated. Throws Error:
+/// NotFound for a scan that was never there, InvalidArgument when none would be left.
 ChangeReport retractScans(const std::filesystem::path& file, const std::vector<scan::ScanId>& scans,
                           const ChangeParams& params, ProgressSink& sink);
 
@@ -62,8 +63,12 @@ ChangeReport moveScans(const std::filesystem::path& file, const std::vector<Scan
 ChangeReport applyInputs(const std::filesystem::path& file, const std::function<MapInputs(MapInputs)>& change,
                          const ChangeParams& params, ProgressSink& sink);
 
+/// Whether names may also mean scans that were retracted. Scans that are there come first.
+enum class Retracted : std::uint8_t { Unknown, Named };
+
 /// The clouds that people name by file name ("scan7.pcd"), source path, or at least four leading digits of the id.
 /// Throws Error (NotFound, InvalidArgument) for a name that fits none, or several.
-std::vector<scan::ScanId> cloudsNamed(const std::filesystem::path& file, std::span<const std::string> names);
+std::vector<scan::ScanId> cloudsNamed(const std::filesystem::path& file, std::span<const std::string> names,
+                                      Retracted retracted = Retracted::Unknown);
 
 }  // namespace cluxel::mapping

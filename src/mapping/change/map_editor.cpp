@@ -112,11 +112,12 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
   storeInputs(transaction, parsed_.inputs);
   storeState(transaction, MapState{true, inputs_hash_});
   const Activity activity{operation, started_s, secondsNow(), clock.seconds()};
-  addLineage(transaction, addActivity(transaction, activity, scans, parsed_.inputs),
-             compareStates(layers.before, layers.after));
-  if (!names_at_end_)
+  last_activity_ = addActivity(transaction, activity, scans, parsed_.inputs);
+  if (!names_at_end_) {
+    addLineage(transaction, last_activity_, compareStates(layers.before, layers.after));
     writeThings(transaction, dateTimeText(activity.ended_s), layers.before, layers.after, ObjectsOf::OneMap,
                 keptBy(transaction, layers));
+  }
   report(transaction, layers);
   note(std::move(layers));
   if (params_.dry_run) return;
@@ -145,6 +146,7 @@ void MapEditor::handOnNames() {
   rdf::WriteTransaction transaction = begin();
   report_.after = allObjects(transaction);
   report_.objects = compareObjects(report_.before, report_.after);
+  if (!last_activity_.empty()) addLineage(transaction, last_activity_, report_.objects);
   writeThings(transaction, dateTimeText(secondsNow()), report_.before, report_.after, ObjectsOf::SeveralMaps);
   if (!params_.dry_run) transaction.commit();
 }

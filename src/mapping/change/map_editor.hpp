@@ -93,7 +93,8 @@ class MapEditor {
   const ChangeParams& params_;
   ProgressSink& sink_;
   ParsedInputs parsed_;
-  std::string inputs_hash_;  ///< as stored in the file
+  std::string inputs_hash_;    ///< as stored in the file
+  std::string last_activity_;  ///< IRI of the run that the last commit was
   bool names_at_end_ = false;
   bool has_own_before_ = false;                          ///< of a merge: report_.before holds the objects of this map
   bool all_tiles_ = false;                               ///< the next commit computes every tile

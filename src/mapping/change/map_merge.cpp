@@ -3,6 +3,8 @@
 #include "mapping/change/map_merge.hpp"
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
@@ -14,6 +16,7 @@
 #include "mapping/map_state.hpp"
 #include "mapping/statements/statement_history.hpp"
 #include "rdf/file/map_replacement.hpp"
+#include "rdf/map_iris.hpp"
 
 namespace cluxel::mapping {
 
@@ -61,11 +64,10 @@ class Merge {
 
   ChangeReport run() {
     if (maps_.size() < 2) throw Error(ErrorKind::InvalidArgument, "a merge needs at least two maps");
-    if (fs::exists(target_) && !params_.force)
-      throw Error(ErrorKind::InvalidArgument, target_.string() + ": is there already", Remedy::ReplaceMap);
     requireDifferentFiles();
     for (const MapToMerge& map : maps_) readers_.emplace_back(map.file);
     requireEqualInputs();
+    if (fs::exists(target_) && !params_.force) return reportOfMerged();
     const std::size_t base = largest();
     removeBeside();
     rdf::Environment::open(maps_[base].file, rdf::OpenMode::ReadOnly)->compactTo(beside_);
@@ -105,6 +107,71 @@ class Merge {
     }
   }
 
+  /// A command that was killed after it had replaced the target may be repeated.
+  ChangeReport reportOfMerged() {
+    if (!isMerged())
+      throw Error(ErrorKind::InvalidArgument, target_.string() + ": is there already", Remedy::ReplaceMap);
+    sink_.note(target_.string() + ": is the merge of these maps already");
+    ChangeReport report;
+    const MapReader merged(target_);
+    report.scans = report.scans_already_there = merged.clouds().size();
+    report.tiles = storedTiles(merged.transaction()).size();
+    report.objects.unchanged = report.object_count = merged.objectIds().size();
+    return report;
+  }
+
+  /// A map is a function of its inputs: the target is the result when it has those of the result.
+  bool isMerged() const {
+    try {
+      const MapReader target(target_);
+      if (!target.isFinished() || target.inputs().hash() != inputsOfResult().hash()) return false;
+      std::map<scan::ScanId, ScanInputs> scans;
+      for (std::size_t i = 0; i < maps_.size(); ++i)
+        if (!addScansOf(readers_[i], maps_[i].T_first_map, scans)) return false;
+      std::map<scan::ScanId, ScanInputs> merged;
+      addScansOf(target, Eigen::Isometry3d::Identity(), merged);
+      return merged == scans && linesOf(operatorStatements(target.quads())) == statementsOfResult();
+    } catch (const Error&) {
+      return false;  // no map
+    }
+  }
+
+  /// What of a scan a map follows from, beside what it measured.
+  struct ScanInputs {
+    bool has_pose = false;
+    Eigen::Matrix4d pose = Eigen::Matrix4d::Identity();
+    std::optional<double> time_s;
+    bool operator==(const ScanInputs&) const = default;
+  };
+  /// Returns false when a scan has two poses.
+  static bool addScansOf(const MapReader& map, const Eigen::Isometry3d& T_first_map,
+                         std::map<scan::ScanId, ScanInputs>& scans) {
+    for (const Cloud& cloud : map.clouds()) {
+      ScanInputs inputs{cloud.has_pose, (T_first_map * cloud.T_map_sensor).matrix(), cloud.time_s};
+      const auto [known, is_new] = scans.emplace(cloud.id, inputs);
+      if (is_new) continue;
+      known->second.time_s = std::max(known->second.time_s, inputs.time_s);  // as when a scan is stored
+      inputs.time_s = known->second.time_s;
+      if (known->second != inputs) return false;
+    }
+    return true;
+  }
+
+  static std::set<std::string> linesOf(const std::vector<Quad>& quads) {
+    std::set<std::string> lines;
+    for (const Quad& quad : quads) lines.insert(toNQuads(quad));
+    return lines;
+  }
+  /// The operator's statements of the result.
+  std::set<std::string> statementsOfResult() const {
+    std::set<std::string> withdrawn, lines;
+    for (const ContentHash& id : withdrawnAmong(quadsOfMaps())) withdrawn.insert(rdf::iriOfStatement(id));
+    for (std::size_t i = 0; i < maps_.size(); ++i)
+      for (const Quad& quad : operatorStatements(readers_[i].quads(), blankSuffixOf(i)))
+        if (!withdrawn.contains(quad.subject.text)) lines.insert(toNQuads(quad));
+    return lines;
+  }
+
   /// Of the maps in the frame of the result, the one with most points: its scans need no new stages.
   std::size_t largest() const {
     std::size_t best = 0;
@@ -126,7 +193,7 @@ class Merge {
     editor.nameAtEnd();
     for (std::size_t i = 0; i < maps_.size(); ++i) {
       if (i == base) continue;
-      copyOperatorStatements(readers_[i].quads(), additions.transaction(), "of" + std::to_string(i) + scansHash(i));
+      copyOperatorStatements(readers_[i].quads(), additions.transaction(), blankSuffixOf(i));
       copyHistory(readers_[i].quads(), additions.transaction());
     }
     leaveOutWithdrawn(additions);
@@ -143,9 +210,7 @@ class Merge {
 
   /// An older copy of a map does not bring back what was withdrawn since.
   void leaveOutWithdrawn(ScanAdditions& additions) {
-    std::vector<const rdf::QuadReader*> maps;
-    for (const MapReader& reader : readers_) maps.push_back(&reader.quads());
-    const std::vector<ContentHash> withdrawn = withdrawnAmong(maps);
+    const std::vector<ContentHash> withdrawn = withdrawnAmong(quadsOfMaps());
     for (const ContentHash& id : withdrawn) eraseStatement(additions.transaction(), id);
     if (withdrawn.empty()) return;
     std::vector<std::string> ids;
@@ -155,11 +220,18 @@ class Merge {
                "; state them again to have them");
   }
 
-  /// Names a map by its scans, in digits.
-  std::string scansHash(std::size_t number) const {
+  std::vector<const rdf::QuadReader*> quadsOfMaps() const {
+    std::vector<const rdf::QuadReader*> maps;
+    for (const MapReader& reader : readers_) maps.push_back(&reader.quads());
+    return maps;
+  }
+
+  /// Keeps the blank nodes of the maps apart: names a map by its scans, in digits. Those of the largest map stay.
+  std::string blankSuffixOf(std::size_t number) const {
+    if (number == largest()) return "";
     ContentHasher hasher;
     for (const Cloud& cloud : readers_[number].clouds()) hasher.add(cloud.id);
-    return hasher.finish().hex().substr(0, 8);
+    return "of" + std::to_string(number) + hasher.finish().hex().substr(0, 8);
   }
 
   MapInputs inputsOfResult() const {

@@ -47,10 +47,18 @@ ChangeReport changeStatements(const std::filesystem::path& file, const Statement
                   "the statement " + statement.id().hex() + " is both made and withdrawn; do one of them");
   }
   rdf::WriteTransaction transaction = editor.begin();
-  for (const ContentHash& id : std::set<ContentHash>(edit.withdrawn.begin(), edit.withdrawn.end()))
-    withdrawStatement(transaction, id, edit.author);
-  for (const Statement& statement : edit.added) addStatement(transaction, statement, edit.author);
-  editor.commit(transaction, "state", {}, {});
+  bool has_changes = false;
+  for (const ContentHash& id : std::set<ContentHash>(edit.withdrawn.begin(), edit.withdrawn.end())) {
+    const bool was_there = withdrawStatement(transaction, id, edit.author);
+    if (!was_there) sink.note("the statement " + id.hex() + " was withdrawn already");
+    has_changes = has_changes || was_there;
+  }
+  for (const Statement& statement : edit.added) {
+    const bool is_new = addStatement(transaction, statement, edit.author);
+    if (!is_new) sink.note("the statement " + statement.id().hex() + " was made already");
+    has_changes = has_changes || is_new;
+  }
+  if (has_changes) editor.commit(transaction, "state", {}, {});
   return std::move(editor.result());
 }
 
@@ -94,6 +102,9 @@ ContentHash statementNamed(const rdf::QuadReader& quads, const std::string& name
   std::set<ContentHash> fitting;
   for (const Statement& statement : storedStatements(quads))
     if (statement.id().hex().starts_with(digits)) fitting.insert(statement.id());
+  if (fitting.empty())
+    for (const ContentHash& id : withdrawnStatements(quads))
+      if (id.hex().starts_with(digits)) fitting.insert(id);
   if (fitting.size() != 1)
     throw Error(ErrorKind::NotFound, "'" + name + "' names " + (fitting.empty() ? "no" : "more than one") +
                                          " operator statement of the map");

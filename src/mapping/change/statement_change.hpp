@@ -19,9 +19,10 @@ struct StatementEdit {
   std::string author;  ///< for the history
 };
 
-/// States and withdraws in one commit, with the objects that follow. Statements that are there count as added without
-/// effect. Throws Error: NotFound for a statement to withdraw that is not there, or a class that the ontology does not
-/// know; InvalidArgument for a property that the map computes itself; and as MapEditor does.
+/// States and withdraws in one commit, with the objects that follow. Statements that are there, and withdrawn ones that
+/// were withdrawn before, are noted; when there are no others, nothing is written. Throws Error: NotFound for a
+/// statement to withdraw that was never there, or a class that the ontology does not know; InvalidArgument for a
+/// property that the map computes itself; and as MapEditor does.
 ChangeReport changeStatements(const std::filesystem::path& file, const StatementEdit& edit, const ChangeParams& params,
                               ProgressSink& sink);
 
@@ -41,7 +42,8 @@ struct KnownStatement {
 };
 std::vector<KnownStatement> knownStatements(const rdf::QuadReader& quads);
 
-/// The statement with these first digits of its id. Throws Error (NotFound) when there is none, or several.
+/// The statement with these first digits of its id; when there is none, one that was withdrawn. Throws Error (NotFound)
+/// when there is none, or several.
 ContentHash statementNamed(const rdf::QuadReader& quads, const std::string& name);
 
 }  // namespace cluxel::mapping

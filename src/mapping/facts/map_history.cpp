@@ -4,9 +4,12 @@
 
 #include <array>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "base/utc_time.hpp"
+#include "mapping/build/scan_store.hpp"
+#include "mapping/change/thing_history.hpp"
 #include "mapping/facts/map_facts.hpp"
 #include "rdf/map_iris.hpp"
 #include "rdf/store/quad_store.hpp"
@@ -30,6 +33,21 @@ Term secondsLiteral(double seconds) {
 
 std::string prov(std::string_view local) {
   return std::string(rdf::vocabulary::kProv).append(local);
+}
+
+/// The values of a property of one subject in graph history.
+std::vector<Term> valuesOf(const rdf::QuadReader& quads, const Term& subject, const std::string& property) {
+  std::vector<Term> values;
+  const auto s = quads.idOf(subject), p = quads.idOf(Term::iri(property));
+  const auto g = quads.idOf(Term::iri(rdf::vocabulary::kGraphHistory));
+  if (!s || !p || !g) return values;
+  rdf::QuadCursor cursor = quads.scan({.s = *s, .p = *p, .o = {}, .g = *g});
+  for (rdf::QuadIds quad; cursor.next(quad);) values.push_back(quads.termOf(quad.o));
+  return values;
+}
+
+std::string firstOf(const std::vector<Term>& values) {
+  return values.empty() ? "" : values.front().text;
 }
 
 }  // namespace
@@ -66,6 +84,23 @@ std::string addActivity(rdf::WriteTransaction& transaction, const Activity& run,
   }
   writer.flush();
   return activity.text;
+}
+
+std::vector<RetractedScan> retractedScans(const rdf::ReadTransaction& transaction) {
+  const rdf::QuadReader quads(transaction);
+  std::map<scan::ScanId, RetractedScan> retracted;
+  forEachHistoryLink(quads, "used", [&](const Term& activity, const Term& cloud) {
+    const auto id = hashIn(cloud.text, "cloud");
+    if (!id || firstOf(valuesOf(quads, activity, rdf::vocabulary::clx("operation"))) != "retract") return;
+    if (storedCloud(transaction, *id)) return;  // it was added again
+    RetractedScan& scan = retracted[*id];
+    scan.id = *id;
+    scan.source = firstOf(valuesOf(quads, cloud, rdf::vocabulary::clx("sourceFile")));
+    scan.time = std::max(scan.time, firstOf(valuesOf(quads, activity, prov("endedAtTime"))));
+  });
+  std::vector<RetractedScan> scans;
+  for (auto& [id, scan] : retracted) scans.push_back(std::move(scan));
+  return scans;
 }
 
 void addLineage(rdf::WriteTransaction& transaction, const std::string& activity_iri, const ObjectChanges& changes) {

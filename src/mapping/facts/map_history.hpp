@@ -24,6 +24,15 @@ struct Activity {
 std::string addActivity(rdf::WriteTransaction& transaction, const Activity& activity, const std::vector<Cloud>& clouds,
                         const MapInputs& inputs);
 
+/// A scan that `retract` took out of the map.
+struct RetractedScan {
+  scan::ScanId id;
+  std::string source;  ///< its file
+  std::string time;    ///< when, the last time (xsd:dateTime)
+};
+/// Those that are not there now, by id. Cost: that of the history's activities.
+std::vector<RetractedScan> retractedScans(const rdf::ReadTransaction& transaction);
+
 /// Adds that each object of `objects` was derived from others, by the activity.
 void addLineage(rdf::WriteTransaction& transaction, const std::string& activity_iri, const ObjectChanges& changes);
 

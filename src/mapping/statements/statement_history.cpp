@@ -3,12 +3,12 @@
 #include "mapping/statements/statement_history.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <map>
 #include <set>
 
 #include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
+#include "mapping/change/thing_history.hpp"
 #include "rdf/map_iris.hpp"
 
 namespace cluxel::mapping {
@@ -36,11 +36,15 @@ class StatementWriter {
  public:
   explicit StatementWriter(rdf::WriteTransaction& transaction)
       : reader_(static_cast<const rdf::ReadTransaction&>(transaction)), writer_(transaction) {
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
-    now_ = Term::literal(dateTimeText(std::chrono::duration<double>(now).count()), rdf::vocabulary::xsd("dateTime"));
+    now_ = Term::literal(dateTimeText(secondsNow()), rdf::vocabulary::xsd("dateTime"));
   }
 
   bool has(const ContentHash& id) const { return !quadsAbout(reader_, id, rdf::vocabulary::kGraphOperator).empty(); }
+  bool wasWithdrawn(const ContentHash& id) const {
+    const std::vector<Quad> known = quadsAbout(reader_, id, rdf::vocabulary::kGraphHistory);
+    return std::any_of(known.begin(), known.end(),
+                       [](const Quad& quad) { return quad.predicate.text == statementTerm("invalidatedAtTime"); });
+  }
   void add(const Quad& quad) { writer_.add(quad); }
   void remove(const ContentHash& id, std::string_view graph_iri) {
     for (const Quad& quad : quadsAbout(reader_, id, graph_iri))
@@ -89,20 +93,23 @@ std::map<std::string, std::string> lastTimes(std::span<const rdf::QuadReader* co
 
 }  // namespace
 
-void addStatement(rdf::WriteTransaction& transaction, const Statement& statement, const std::string& author) {
+bool addStatement(rdf::WriteTransaction& transaction, const Statement& statement, const std::string& author) {
   StatementWriter writer(transaction);
-  if (writer.has(statement.id())) return;
+  if (writer.has(statement.id())) return false;
   for (const Quad& quad : quadsOf(statement)) writer.add(quad);
   writer.recordMade(statement.id(), author);
   writer.flush();
+  return true;
 }
 
-void withdrawStatement(rdf::WriteTransaction& transaction, const ContentHash& id, const std::string& author) {
+bool withdrawStatement(rdf::WriteTransaction& transaction, const ContentHash& id, const std::string& author) {
   StatementWriter writer(transaction);
+  if (!writer.has(id) && writer.wasWithdrawn(id)) return false;
   if (!writer.has(id)) throw Error(ErrorKind::NotFound, "the map has no operator statement " + id.hex());
   writer.remove(id, rdf::vocabulary::kGraphOperator);
   writer.recordWithdrawn(id, author);
   writer.flush();
+  return true;
 }
 
 void eraseStatement(rdf::WriteTransaction& transaction, const ContentHash& id) {
@@ -131,6 +138,15 @@ std::vector<ContentHash> withdrawnAmong(std::span<const rdf::QuadReader* const> 
       if (begin == made.end() || begin->second < end->second) ids.insert(statement.id());
     }
   return {ids.begin(), ids.end()};
+}
+
+std::vector<ContentHash> withdrawnStatements(const rdf::QuadReader& quads) {
+  const rdf::QuadReader* const only = &quads;
+  std::vector<ContentHash> ids;
+  for (const auto& [iri, time] : lastTimes({&only, 1}, "invalidatedAtTime"))
+    if (const auto id = hashIn(iri, "statement"); id && quadsAbout(quads, *id, rdf::vocabulary::kGraphOperator).empty())
+      ids.push_back(*id);
+  return ids;
 }
 
 StatementRecord recordOf(const rdf::QuadReader& quads, const ContentHash& id) {

@@ -12,10 +12,12 @@
 
 namespace cluxel::mapping {
 
-/// Adds a statement that is not there. What the history knew of an earlier one with the same content is forgotten.
-void addStatement(rdf::WriteTransaction& transaction, const Statement& statement, const std::string& author);
-/// Removes a statement, and records when. Throws Error (NotFound) for one that is not there.
-void withdrawStatement(rdf::WriteTransaction& transaction, const ContentHash& id, const std::string& author);
+/// Adds a statement, and returns whether it was not there. What the history knew of an earlier one with the same
+/// content is forgotten.
+bool addStatement(rdf::WriteTransaction& transaction, const Statement& statement, const std::string& author);
+/// Removes a statement, and records when. Returns false for one that was withdrawn before. Throws Error (NotFound) for
+/// one that never was there.
+bool withdrawStatement(rdf::WriteTransaction& transaction, const ContentHash& id, const std::string& author);
 /// Removes a statement that another map has withdrawn, whose history tells when.
 void eraseStatement(rdf::WriteTransaction& transaction, const ContentHash& id);
 
@@ -26,6 +28,9 @@ void recordStatements(rdf::WriteTransaction& transaction, const std::vector<Cont
 /// Those statements of maps that one of the maps has withdrawn after any of them made it, ascending. A statement whose
 /// time nobody recorded was made before every withdrawal. Its result is independent of the order of the maps.
 std::vector<ContentHash> withdrawnAmong(std::span<const rdf::QuadReader* const> maps);
+
+/// The statements that were withdrawn and not made again, by id.
+std::vector<ContentHash> withdrawnStatements(const rdf::QuadReader& quads);
 
 /// What the history of a map knows of a statement.
 struct StatementRecord {

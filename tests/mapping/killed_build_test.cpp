@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// A build, a watch or a compaction that is killed at any moment leaves an exact map; the same command finishes it.
+#include "base/file_bytes.hpp"
+#include "mapping/change/folder_watch.hpp"
+#include "mapping/change/map_compaction.hpp"
+#include "mapping/change/statement_change.hpp"
+#include "mapping/killed_change.hpp"
+#include "mapping/map_tables.hpp"
+
+namespace cluxel::mapping {
+namespace {
+
+class KilledBuild : public KilledChange {
+ protected:
+  unsigned threads() const { return params().threads; }
+  /// Leaves free pages: the bytes are written in one commit and erased in the next.
+  static void leaveFree(const fs::path& map, std::size_t bytes) {
+    const auto environment = Environment::open(map, OpenMode::ReadWrite);
+    for (const bool is_there : {true, false}) {
+      WriteTransaction transaction = environment->write();
+      if (is_there)
+        transaction.putBlock(tables::kTexts, "much", std::string(bytes, 'x'));
+      else
+        transaction.eraseBlock(tables::kTexts, "much");
+      transaction.commit();
+    }
+  }
+};
+
+TEST_F(KilledBuild, GoesOn) {
+  const std::string first = builtText({file(0)}, *inputs), two = builtText({file(0), file(1)}, *inputs),
+                    all = builtText(campus->files(), *inputs);
+  expectExact([&] { fs::remove(map()); },
+              [&](ProgressSink& sink) {
+                if (committedText(map()) == all) return;  // a finished map is not built again
+                buildMap(scansOf(campus->files()), *inputs, map(), {.threads = threads(), .batch_points = 1}, sink);
+              },
+              {"", first, two, all}, all, [&] { return committedText(map()); });
+  EXPECT_TRUE(MapReader(map()).isFinished());
+}
+
+TEST_F(KilledBuild, ThatReplacesAMapKeepsTheOldOneToTheEnd) {
+  build({file(0), file(1)}, map());
+  const Statement sign = someStatement("StreetSign");
+  const auto state = [&](const fs::path& file) { changeStatements(file, {{sign}, {}, "anna"}, {}, silence()); };
+  state(map());
+  const fs::path whole = folder.path() / "whole";
+  build(campus->files(), whole);
+  state(whole);
+  expectAllOrNothing(
+      [&](ProgressSink& sink) {
+        buildMap(scansOf(campus->files()), *inputs, map(), {.threads = threads(), .batch_points = 1, .force = true},
+                 sink);
+      },
+      canonicalText(whole));
+  EXPECT_FALSE(fs::exists(map().string() + ".building"));
+}
+
+TEST_F(KilledBuild, AWatchGoesOn) {
+  const fs::path scans = folder.path() / "scans";
+  const auto arrive = [&](std::size_t stop) {
+    // By a rename, so that a killed process leaves no half of a file.
+    fs::copy_file(file(stop), scans / "arriving", fs::copy_options::overwrite_existing);
+    fs::rename(scans / "arriving", scans / file(stop).filename());
+  };
+  const std::string two = builtText({file(0), file(1)}, *inputs), all = builtText(campus->files(), *inputs);
+  expectExact(
+      [&] {
+        fs::remove(map());
+        fs::remove_all(scans);
+        fs::create_directory(scans);
+        arrive(0), arrive(1);
+      },
+      [&](ProgressSink& sink) {
+        std::size_t in_map = committedText(map()) == all ? 3 : 0;
+        WatchCallbacks callbacks;
+        callbacks.inputs = [] { return *inputs; };
+        callbacks.committed = [&](std::size_t, std::size_t total, std::size_t) {
+          in_map = total;
+          if (total == 2) arrive(2);
+        };
+        callbacks.is_stopped = [&] { return in_map == 3; };
+        if (committedText(map()) == two) arrive(2);  // it was killed before it told of its commit
+        watchFolder(scans, map(), {.threads = threads(), .interval_s = 0.01, .idle_s = 120}, callbacks, sink);
+      },
+      {"", two, all}, all, [&] { return committedText(map()); });
+}
+
+TEST_F(KilledBuild, ACompactionKeepsTheMap) {
+  build({file(0), file(1)}, map());
+  leaveFree(map(), 8'000'000);
+  const auto sparse = fs::file_size(map());
+  expectAllOrNothing([&](ProgressSink&) { compactMap(map()); }, canonicalText(map()));
+  EXPECT_LT(fs::file_size(map()) + 7'000'000, sparse);
+}
+
+TEST_F(KilledBuild, AChangeThatIsCompactedIsAllOrNothing) {
+  build({file(0), file(1)}, map());
+  leaveFree(map(), 20'000'000);
+  const auto sparse = fs::file_size(map());
+  const ScanId id = scansOf({file(1)}).load(0).id;
+  expectAllOrNothing([&](ProgressSink& sink) { retractScans(map(), {id}, params(), sink); },
+                     builtText({file(0)}, *inputs));
+  const fs::path kept = folder.path() / "kept";
+  fs::copy_file(kept, map(), fs::copy_options::overwrite_existing);
+  retractScans(map(), {id}, {}, silence());
+  EXPECT_LT(fs::file_size(map()) + 19'000'000, sparse) << "the change was not compacted";
+}
+
+}  // namespace
+}  // namespace cluxel::mapping

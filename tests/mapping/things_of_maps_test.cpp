@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// Things of real maps keep their names while maps grow, shrink, move and merge, however a change is computed.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "mapping/change/map_change.hpp"
+#include "mapping/change/map_merge.hpp"
+#include "mapping/change/thing_history.hpp"
+#include "mapping/small_campus.hpp"
+#include "rdf/map_iris.hpp"
+
+namespace cluxel::mapping {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::map<ContentHash, std::string>;  ///< of present objects
+
+Names namesIn(const fs::path& file) {
+  const MapReader map(file);
+  const Things things = storedThings(map.quads());
+  Names names;
+  for (const ContentHash& object : map.objectIds()) names[object] = thingOf(things, object).iri;
+  return names;
+}
+
+/// A thing has one present object, or an end.
+void expectNothingStale(const fs::path& file) {
+  const Names names = namesIn(file);
+  std::set<std::string> present;
+  for (const auto& [object, thing] : names)
+    EXPECT_TRUE(present.insert(thing).second) << thing << " is the name of two objects";
+  const MapReader map(file);
+  const ThingLookup lookup(map.quads());
+  for (const auto& [thing, time] : timesOfThings(map.quads()))
+    EXPECT_EQ(lookup.endsOf(thing).empty(), present.contains(thing)) << thing;
+}
+
+/// Objects go on under their names: `report` tells which objects came from which.
+void expectNamesToGoOn(const Names& before, const Names& after, const ObjectChanges& changes) {
+  for (const auto& [object, thing] : before) {
+    const auto same = after.find(object);
+    EXPECT_TRUE(same == after.end() || same->second == thing) << thing;
+  }
+  std::set<std::string> former;
+  for (const auto& [object, thing] : before) former.insert(thing);
+  for (const ContentHash& added : changes.added) EXPECT_FALSE(former.contains(after.at(added)));
+  for (const DerivedObject& changed : changes.changed) EXPECT_EQ(after.at(changed.id), before.at(changed.from.front()));
+  for (const DerivedObject& joined : changes.joined) {
+    std::set<std::string> of_parts;
+    for (const ContentHash& part : joined.from) of_parts.insert(before.at(part));
+    EXPECT_TRUE(of_parts.contains(after.at(joined.id)));
+  }
+  std::map<ContentHash, std::size_t> heirs;  // of what was split
+  for (const DerivedObject& split : changes.split)
+    heirs[split.from.front()] += after.at(split.id) == before.at(split.from.front()) ? 1 : 0;
+  for (const auto& [object, count] : heirs) EXPECT_LE(count, 1U);
+}
+
+/// The lineage of objects in the history.
+std::set<std::pair<std::string, std::string>> derivationsIn(const fs::path& file) {
+  const MapReader map(file);
+  std::set<std::pair<std::string, std::string>> derivations;
+  forEachHistoryLink(map.quads(), "wasDerivedFrom", [&](const Term& object, const Term& from) {
+    if (hashIn(object.text, "object")) derivations.emplace(object.text, from.text);
+  });
+  return derivations;
+}
+
+void expectLineage(const fs::path& file, const ObjectChanges& changes) {
+  const auto derivations = derivationsIn(file);
+  for (const auto* objects : {&changes.changed, &changes.split, &changes.joined})
+    for (const DerivedObject& object : *objects)
+      for (const ContentHash& from : object.from)
+        EXPECT_TRUE(derivations.contains({rdf::iriOfObject(object.id), rdf::iriOfObject(from)}));
+}
+
+class ThingsOfMaps : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    campus = new SmallCampus({.seed = 6, .stops = 4, .size_m = 45, .points_per_stop = 2500});
+    inputs = new MapInputs(shippedInputs());
+  }
+  static void TearDownTestSuite() {
+    delete campus;
+    delete inputs;
+  }
+  static ScanSet scans(std::size_t first, std::size_t end) {
+    return scansOf({campus->files().begin() + static_cast<std::ptrdiff_t>(first),
+                    campus->files().begin() + static_cast<std::ptrdiff_t>(end)});
+  }
+  fs::path built(std::size_t first, std::size_t end, const std::string& name) const {
+    buildMap(scans(first, end), *inputs, folder.path() / name, {}, silence());
+    return folder.path() / name;
+  }
+
+  /// Changes two copies of a map: as a whole with one thread, and around the change with two. Both give the same names,
+  /// by the same lineage.
+  template <typename Change>
+  ChangeReport changedBothWays(const fs::path& map, const Change& change) {
+    const Names before = namesIn(map);
+    const fs::path other = map.string() + ".other";
+    fs::copy_file(map, other, fs::copy_options::overwrite_existing);
+    const ChangeReport report = change(map, ChangeParams{.threads = 1, .max_window_share = 0});
+    EXPECT_EQ(report.local_commits, 0U);
+    local_commits_ += change(other, ChangeParams{.threads = 2, .max_window_share = 2}).local_commits;
+    const Names after = namesIn(map);
+    EXPECT_EQ(after, namesIn(other));
+    EXPECT_EQ(derivationsIn(map), derivationsIn(other));
+    expectNamesToGoOn(before, after, report.objects);
+    expectLineage(map, report.objects);
+    expectNothingStale(map);
+    expectNothingStale(other);
+    derived_ += report.objects.changed.size() + report.objects.joined.size() + report.objects.split.size();
+    return report;
+  }
+
+  ScratchFolder folder;
+  std::size_t local_commits_ = 0, derived_ = 0;
+  inline static SmallCampus* campus = nullptr;
+  inline static MapInputs* inputs = nullptr;
+};
+
+TEST_F(ThingsOfMaps, KeepTheirNamesWhenAMapChanges) {
+  const fs::path map = built(0, 1, "map");
+  const Names of_first = namesIn(map);
+  for (std::size_t stop = 1; stop < 4; ++stop)
+    changedBothWays(map, [&](const fs::path& file, const ChangeParams& params) {
+      return extendMap(file, scans(stop, stop + 1), params, silence());
+    });
+  const ScanId last = scans(3, 4).load(0).id;
+  Eigen::Isometry3d moved = scans(3, 4).file(0).T_map_sensor;
+  moved.pretranslate(Eigen::Vector3d(0.4, -0.3, 0));
+  changedBothWays(map, [&](const fs::path& file, const ChangeParams& params) {
+    return moveScans(file, {{last, moved}}, params, silence());
+  });
+  for (std::size_t stop = 4; --stop > 0;) {
+    const ScanId id = scans(stop, stop + 1).load(0).id;
+    changedBothWays(map, [&](const fs::path& file, const ChangeParams& params) {
+      return retractScans(file, {id}, params, silence());
+    });
+  }
+  std::size_t same = 0;
+  for (const auto& [object, thing] : namesIn(map)) same += of_first.at(object) == thing ? 1 : 0;
+  EXPECT_GT(2 * same, of_first.size()) << "most things are there under their first names";
+  EXPECT_GT(local_commits_, 0U);
+  EXPECT_GT(derived_, 10U);
+}
+
+TEST_F(ThingsOfMaps, OfMergedMapsGoOnFromAllOfThem) {
+  const fs::path a = built(0, 2, "a"), b = built(1, 4, "b");  // both hold the second scan
+  const Names of_a = namesIn(a), of_b = namesIn(b);
+  ChangeReport one;
+  for (const unsigned threads : {1U, 2U}) {
+    const fs::path target = folder.path() / ("merged" + std::to_string(threads));
+    const ChangeReport report =
+        mergeMaps({{a}, {b}}, target, {.change = {.threads = threads}, .use = std::nullopt, .force = false}, silence());
+    expectNothingStale(target);
+    expectLineage(target, report.objects);
+    if (threads == 1) one = report;
+  }
+  const Names merged = namesIn(folder.path() / "merged1");
+  EXPECT_EQ(merged, namesIn(folder.path() / "merged2"));
+  std::size_t from_a = 0, from_b = 0;
+  for (const auto& [object, thing] : merged)
+    for (const auto& [of_map, count] : {std::pair(&of_a, &from_a), std::pair(&of_b, &from_b)})
+      *count += std::any_of(of_map->begin(), of_map->end(), [&](const auto& name) { return name.second == thing; });
+  EXPECT_GT(from_a, 0U);
+  EXPECT_GT(from_b, 0U);
+  std::size_t lineage_of_b = 0;
+  for (const auto* objects : {&one.objects.changed, &one.objects.joined, &one.objects.split})
+    for (const DerivedObject& object : *objects)
+      for (const ContentHash& from : object.from) lineage_of_b += of_b.contains(from) && !of_a.contains(from) ? 1 : 0;
+  EXPECT_GT(lineage_of_b, 0U);
+}
+
+}  // namespace
+}  // namespace cluxel::mapping
