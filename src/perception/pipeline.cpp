@@ -72,8 +72,8 @@ class Run {
           return perception::thin(key, std::array<const TilePoints*, 2>{&out_.points.at(key), &fresh}, params_.thin);
         });
     tiles_.all = options_.store != nullptr ? options_.store->tiles() : keysOf(out_.points);
-    if (options_.compute_all)
-      for (const TileKey& key : tiles_.all) changed_.note(Stage::Points, key, kOtherEverywhere);
+    if (options_.compute_anew)
+      for (const TileKey& key : here(options_.anew)) changed_.note(Stage::Points, key, kOtherEverywhere);
     tiles_.forgotten = commonOf(changed_.of(Stage::Points), options_.anew);
     differing_.fill(without(of_both, tiles_.forgotten));  // not computed, so not compared either
     inputs_.read(around(
@@ -131,8 +131,7 @@ class Run {
         const TileKey& key = candidates[seen];
         if (tiles_.lent.contains(key) && !differing_.readersOf(Stage::Features).contains(key))
           taken.insert(key);
-        else if (options_.compute_all || tiles_.forgotten.contains(key) ||
-                 changed_.readersOf(Stage::Features).contains(key))
+        else if (tiles_.forgotten.contains(key) || changed_.readersOf(Stage::Features).contains(key))
           dirty.push_back(key);
       }
       take(Stage::Labels, taken);
@@ -189,8 +188,6 @@ class Run {
 
   /// The tiles that a stage computes when its inputs changed in `dirty`, ascending.
   std::vector<TileKey> completed(TileSet dirty) const {
-    const TileSet& points = changed_.of(Stage::Points);
-    if (options_.compute_all) dirty.insert(points.begin(), points.end());
     dirty.insert(tiles_.forgotten.begin(), tiles_.forgotten.end());
     std::vector<TileKey> keys;
     std::set_difference(dirty.begin(), dirty.end(), tiles_.emptied.begin(), tiles_.emptied.end(),

@@ -92,11 +92,11 @@ struct RunOptions {
   unsigned threads = 1;               ///< outputs do not depend on it
   OutputStore* store = nullptr;       ///< without a store every tile is computed and kept in memory only
   StageObserver* observer = nullptr;  ///< may be absent
-  bool compute_all = false;           ///< every stage computes all tiles: the model or settings changed
   /// Tiles of which `segments` holds all points; one without segments has lost its points. In other tiles the segments
   /// are added to the points that are there.
   TileSet anew = {};
-  const OutputDonor* donor = nullptr;  ///< may be absent; expects a store, and compute_all to be false
+  bool compute_anew = false;           ///< every stage computes these tiles: the model or settings changed
+  const OutputDonor* donor = nullptr;  ///< may be absent; expects a store, and no compute_anew
 };
 
 /// Runs all stages: brings `outputs` and the store up to date after segments came in or went. `outputs` then holds what

@@ -25,7 +25,7 @@ std::uint32_t placesOf(bool has_some, const std::map<TileKey, std::uint32_t>& ne
 }  // namespace
 
 void StageInputs::readOwn(const TileSet& tiles) {
-  if (options_.store != nullptr && !options_.compute_all) options_.store->load(tiles, out_);
+  if (options_.store != nullptr) options_.store->load(tiles, out_);
 }
 
 void StageInputs::read(const TileSet& tiles) {

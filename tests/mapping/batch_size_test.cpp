@@ -37,5 +37,13 @@ TEST(BatchSize, IsAfterEachScanThatFillsABatch) {
   EXPECT_FALSE(isFull(0, 0, 9, 1)) << "nothing to commit";
 }
 
+TEST(PartSize, IsAQuarterOfTheMapAtMostUnlessOnePartIsEnough) {
+  EXPECT_EQ(partSize(1400, 9000, 1000), 1400U);
+  EXPECT_EQ(partSize(1600, 1600, 1000), 400U);
+  EXPECT_EQ(partSize(1600, 9000, 1000), 1000U);
+  EXPECT_EQ(partSize(9000, 9000, 1000), 1000U);
+  EXPECT_EQ(partSize(3, 3, 1), 1U);
+}
+
 }  // namespace
 }  // namespace cluxel::mapping

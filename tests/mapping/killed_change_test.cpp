@@ -45,6 +45,40 @@ TEST_F(KilledChange, MovingScansIsAllOrNothing) {
       {before, after}, after, [&] { return canonicalText(map()); });
 }
 
+TEST_F(KilledChange, MovingManyScansGoesOnBatchByBatch) {
+  build({file(0), file(1)}, map());
+  const ScanSet both = scansOf({file(0), file(1)});
+  std::vector<ScanPose> moves;
+  std::vector<PosedScan> posed;
+  for (const std::size_t i : {0U, 1U}) {
+    Eigen::Isometry3d pose = both.file(i).T_map_sensor;
+    pose.pretranslate(Eigen::Vector3d(0.5, 0.25, 0));
+    moves.push_back({both.load(i).id, pose});
+    posed.push_back({i, pose});
+  }
+  std::set<std::string> states;
+  for (const bool first : {false, true})
+    for (const bool second : {false, true}) {
+      const fs::path moved = folder.path() / "moved";
+      fs::remove(moved);
+      const auto poseOf = [&](std::size_t i, bool is_moved) {
+        return is_moved ? posed[i] : PosedScan{i, both.file(i).T_map_sensor};
+      };
+      buildMap(both.posed({poseOf(0, first), poseOf(1, second)}), *inputs, moved, {}, silence());
+      states.insert(canonicalText(moved));
+    }
+  const std::string after = canonicalText(folder.path() / "moved");
+  const fs::path kept = folder.path() / "kept";
+  fs::copy_file(map(), kept);
+  expectExact([&] { fs::copy_file(kept, map(), fs::copy_options::overwrite_existing); },
+              [&](ProgressSink& sink) {
+                ChangeParams one_by_one = params();
+                one_by_one.batch_points = 1;
+                moveScans(map(), moves, one_by_one, sink);
+              },
+              states, after, [&] { return canonicalText(map()); });
+}
+
 TEST_F(KilledChange, AMergeIsThereWholeOrNotAtAll) {
   const fs::path a = folder.path() / "a", b = folder.path() / "b";
   build({file(0)}, a);

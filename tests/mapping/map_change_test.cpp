@@ -165,6 +165,18 @@ TEST_F(MapChange, MovedScansGiveTheBuildWithTheirNewPoses) {
   EXPECT_EQ(move({{1, 0}}).scans_moved, 0U);
 }
 
+TEST_F(MapChange, ScansMoveBatchByBatch) {
+  const Poses before{{0, 0}, {1, 0}, {2, 0}, {3, 0}}, after{{0, 1}, {1, -1}, {2, 0}, {3, 1}};
+  build(before);
+  const std::string bytes = readFile(map());
+  EXPECT_EQ(move(after, {.batch_points = 1, .dry_run = true}).scans_moved, 3U);
+  EXPECT_TRUE(readFile(map()) == bytes);
+  EXPECT_EQ(move(after, {.batch_points = 1, .max_window_share = 2}).scans_moved, 3U);
+  expectExact(after);
+  move(before, {.threads = 2, .batch_points = 2500});
+  expectExact(before);
+}
+
 TEST_F(MapChange, ARandomSequenceOfOperationsKeepsTheMapExact) {
   const bool is_long = std::getenv("CLUXEL_LONG_TESTS") != nullptr;
   std::mt19937 random(7);
@@ -213,10 +225,20 @@ TEST_F(MapChange, AnotherModelGivesTheBuildWithThisModel) {
   MapInputFiles files;
   files.model = "campus";
   const MapInputs other = readMapInputs(files, DataHome(test::sourceFolder()));
-  build({{0, 0}, {1, 0}});
-  applyInputs(map(), always(other), {}, silence());
   buildMap(posed({{0, 0}, {1, 0}}), other, folder.path() / "other.clx", {}, silence());
-  EXPECT_TRUE(canonicalText(map()) == canonicalText(folder.path() / "other.clx"));
+  const Content expected = contentOf(folder.path() / "other.clx");
+  ChangeReport whole;
+  for (const std::uint64_t part_points : {100'000U, 1'000U, 1U}) {  // the map has 2400 points
+    build({{0, 0}, {1, 0}});
+    const ChangeParams params{.threads = 2, .stage_points = part_points, .max_window_share = 2};
+    const ChangeReport report = applyInputs(map(), always(other), params, silence());
+    EXPECT_TRUE(contentOf(map()) == expected) << "parts of " << part_points;
+    if (part_points > 10'000) whole = report;
+    EXPECT_EQ(report.local_commits, part_points > 10'000 ? 0U : 1U);
+    EXPECT_EQ(report.objects.added, whole.objects.added);
+    EXPECT_EQ(report.objects.gone, whole.objects.gone);
+    EXPECT_EQ(report.objects.unchanged, whole.objects.unchanged);
+  }
 }
 
 TEST_F(MapChange, ADryRunTellsTheChangeAndWritesNothing) {

@@ -2,6 +2,7 @@
 // Things of real maps keep their names while maps grow, shrink, move and merge, however a change is computed.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -9,6 +10,7 @@
 #include "mapping/change/map_merge.hpp"
 #include "mapping/change/thing_history.hpp"
 #include "mapping/small_campus.hpp"
+#include "mapping/window/former_objects.hpp"
 #include "rdf/map_iris.hpp"
 
 namespace cluxel::mapping {
@@ -121,6 +123,23 @@ class ThingsOfMaps : public testing::Test {
   inline static SmallCampus* campus = nullptr;
   inline static MapInputs* inputs = nullptr;
 };
+
+/// By id: class and sorted seeds.
+std::map<ContentHash, std::pair<std::string, std::vector<std::uint64_t>>> sorted(std::vector<ObjectMembers> objects) {
+  std::map<ContentHash, std::pair<std::string, std::vector<std::uint64_t>>> all;
+  for (ObjectMembers& object : objects) {
+    std::sort(object.seeds.begin(), object.seeds.end());
+    all[object.id] = {object.class_iri, std::move(object.seeds)};
+  }
+  return all;
+}
+
+TEST_F(ThingsOfMaps, MembersAreReadTileByTile) {
+  const MapReader map(built(0, 3, "map"));
+  const std::vector<ObjectMembers> members = storedMembers(map.transaction());
+  EXPECT_TRUE(std::is_sorted(members.begin(), members.end(), [](const auto& a, const auto& b) { return a.id < b.id; }));
+  EXPECT_EQ(sorted(members), sorted(membersOf(map.objects(), map.scene().cluxels)));
+}
 
 TEST_F(ThingsOfMaps, KeepTheirNamesWhenAMapChanges) {
   const fs::path map = built(0, 1, "map");

@@ -123,7 +123,7 @@ void addChange(CLI::App& app, Session& session) {
   reposing->add_option("map", options->map, "a finished map")->required();
   reposing->add_option("scans", options->inputs, "the scans, with their new poses: what 'register' writes")->required();
   addScanOptions(*reposing, options->scans);
-  addChangeOptions(*reposing, options->change, false);
+  addChangeOptions(*reposing, options->change, true);
   onRun(*reposing, session, [options, &session] { return repose(*options, session); });
 
   auto merging = std::make_shared<MergeOptions>();

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// When a batch of scans is committed, and when a part of it goes through the stages.
+// When a batch of scans is committed, and how much of a change goes through the stages at once.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -13,6 +14,14 @@ inline bool isFull(std::uint64_t points, std::size_t scans, std::size_t scans_le
   if (points < max_points || scans == 0) return false;
   const double left = static_cast<double>(scans_left) * static_cast<double>(points) / static_cast<double>(scans);
   return left > static_cast<double>(max_points) / 2;
+}
+
+/// The points of one part of a change that reaches `points` of the `map_points` of a map. Less than half a part more
+/// than `max_points` is one part. Else a part has a quarter of the map at most: only what is well below the whole map
+/// is computed around the change.
+inline std::uint64_t partSize(std::uint64_t points, std::uint64_t map_points, std::uint64_t max_points) {
+  if (static_cast<double>(points) < 1.5 * static_cast<double>(max_points)) return points;
+  return std::max<std::uint64_t>(1, std::min(max_points, map_points / 4));
 }
 
 }  // namespace cluxel::mapping

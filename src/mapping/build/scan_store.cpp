@@ -228,14 +228,13 @@ perception::TileSegments storedSegments(const rdf::ReadTransaction& transaction,
 }
 
 scan::Scan storedScan(const rdf::ReadTransaction& transaction, const scan::ScanId& id) {
-  const auto cloud = storedCloud(transaction, id);
-  if (!cloud) throw Error(ErrorKind::NotFound, "the map has no cloud " + id.hex());
+  const Cloud cloud = requiredCloud(transaction, id);
   scan::Scan scan;
   scan.points = storedPoints(transaction, id);
-  scan.time_s = cloud->time_s;
-  scan.T_map_sensor = cloud->T_map_sensor;
-  scan.has_pose = cloud->has_pose;
-  scan.source = cloud->source;
+  scan.time_s = cloud.time_s;
+  scan.T_map_sensor = cloud.T_map_sensor;
+  scan.has_pose = cloud.has_pose;
+  scan.source = cloud.source;
   scan.id = id;
   return scan;
 }
@@ -252,6 +251,11 @@ std::optional<Cloud> storedCloud(const rdf::ReadTransaction& transaction, const 
   const auto bytes = transaction.block(tables::kScans, tables::keyOf(id));
   if (!bytes) return std::nullopt;
   return cloudFromBytes(id, *bytes);
+}
+
+Cloud requiredCloud(const rdf::ReadTransaction& transaction, const scan::ScanId& id) {
+  if (auto cloud = storedCloud(transaction, id)) return *std::move(cloud);
+  throw Error(ErrorKind::NotFound, "the map has no cloud " + id.hex());
 }
 
 scan::ScanPoints storedPoints(const rdf::ReadTransaction& transaction, const scan::ScanId& id) {

@@ -66,6 +66,8 @@ void storeTiles(rdf::WriteTransaction& transaction, const TileSet& tiles);
 /// The clouds of the map, ascending by id.
 std::vector<Cloud> storedClouds(const rdf::ReadTransaction& transaction);
 std::optional<Cloud> storedCloud(const rdf::ReadTransaction& transaction, const scan::ScanId& id);
+/// Throws Error (NotFound) when there is none.
+Cloud requiredCloud(const rdf::ReadTransaction& transaction, const scan::ScanId& id);
 /// Points of a cloud as they were given.
 scan::ScanPoints storedPoints(const rdf::ReadTransaction& transaction, const scan::ScanId& id);
 

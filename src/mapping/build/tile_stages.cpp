@@ -204,14 +204,14 @@ TileSet TileStages::update(rdf::WriteTransaction& transaction, PointChanges chan
   return run(transaction, std::move(changes), threads, false, sink);
 }
 
-TileSet TileStages::updateAll(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads,
-                              ProgressSink& sink) {
-  changes.anew = unionOf(changes.tiles(), storedTiles(transaction));
-  changes.copied = nullptr;
+TileSet TileStages::computeAnew(rdf::WriteTransaction& transaction, TileSet tiles, unsigned threads,
+                                ProgressSink& sink) {
+  PointChanges changes;
+  changes.anew = std::move(tiles);
   return run(transaction, std::move(changes), threads, true, sink);
 }
 
-TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads, bool compute_all,
+TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads, bool compute_anew,
                         ProgressSink& sink) {
   MapOutputStore store(transaction, changes_);
   StageProgress progress(sink);
@@ -227,8 +227,8 @@ TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes
                                     {.threads = threads,
                                      .store = &store,
                                      .observer = &progress,
-                                     .compute_all = compute_all,
                                      .anew = std::move(changes.anew),
+                                     .compute_anew = compute_anew,
                                      .donor = donor ? &*donor : nullptr});
   storeTiles(transaction, store.tiles());
   changed_even_.insert(store.changedEven().begin(), store.changedEven().end());

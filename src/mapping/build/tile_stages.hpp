@@ -39,11 +39,12 @@ class TileStages {
   /// changed.
   perception::TileSet update(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads,
                              ProgressSink& sink);
-  /// Computes all stages of all tiles: the model or the settings changed. Returns the tiles of which an output changed.
-  perception::TileSet updateAll(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads,
-                                ProgressSink& sink);
-  /// Brings the two stages of ways up to date after update() or updateAll(). Returns whether what some tile contributes
-  /// to ways changed since ways were read last. The scene may be taken meanwhile.
+  /// Computes all stages of these tiles, because the model or the settings changed, and what follows from them. Returns
+  /// the tiles of which an output changed. All is up to date when it was called for all tiles of the map.
+  perception::TileSet computeAnew(rdf::WriteTransaction& transaction, perception::TileSet tiles, unsigned threads,
+                                  ProgressSink& sink);
+  /// Brings the two stages of ways up to date after update() or computeAnew(). Returns whether what some tile
+  /// contributes to ways changed since ways were read last. The scene may be taken meanwhile.
   bool updateWays(rdf::WriteTransaction& transaction, unsigned threads);
   /// All changes since the last call of this function.
   OutputChanges takeChanges() { return std::exchange(changes_, {}); }
@@ -89,7 +90,7 @@ class TileStages {
   const std::map<perception::TileKey, perception::ComponentTile>& components() const { return outputs_.components; }
 
  private:
-  perception::TileSet run(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads, bool compute_all,
+  perception::TileSet run(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads, bool compute_anew,
                           ProgressSink& sink);
 
   perception::SceneParams params_;

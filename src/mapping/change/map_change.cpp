@@ -6,6 +6,7 @@
 #include <set>
 
 #include "cluxel/error.hpp"
+#include "mapping/build/batch_size.hpp"
 #include "mapping/change/map_compaction.hpp"
 #include "mapping/change/scan_additions.hpp"
 #include "mapping/facts/map_history.hpp"
@@ -113,27 +114,62 @@ ChangeReport removedFrom(const fs::path& file, const std::vector<scan::ScanId>& 
   return std::move(editor.result());
 }
 
+/// Poses that scans do not have yet, from place to place, so that a batch changes few tiles that others change, too.
+struct Moves {
+  std::vector<ScanPose> poses;
+  std::uint64_t batch_points = 0;
+};
+
+Moves movesTo(const std::vector<ScanPose>& poses, const rdf::ReadTransaction& transaction, std::uint64_t max_points) {
+  Moves moves;
+  std::uint64_t points = 0, map_points = 0;
+  Eigen::AlignedBox2d area;
+  for (const ScanPose& pose : poses) {
+    const Cloud cloud = requiredCloud(transaction, pose.scan);
+    if (cloud.has_pose && cloud.T_map_sensor.matrix() == pose.T_map_sensor.matrix()) continue;
+    moves.poses.push_back(pose);
+    points += cloud.point_count;
+    area.extend(Eigen::Vector2d(pose.T_map_sensor.translation().head<2>()));
+  }
+  const Eigen::Index axis = !moves.poses.empty() && area.sizes().y() > area.sizes().x() ? 1 : 0;
+  std::sort(moves.poses.begin(), moves.poses.end(), [&](const ScanPose& a, const ScanPose& b) {
+    return std::pair(a.T_map_sensor.translation()[axis], a.scan) <
+           std::pair(b.T_map_sensor.translation()[axis], b.scan);
+  });
+  for (const Cloud& cloud : storedClouds(transaction)) map_points += cloud.point_count;
+  moves.batch_points = partSize(points, map_points, max_points);
+  return moves;
+}
+
 ChangeReport movedIn(const fs::path& file, const std::vector<ScanPose>& poses, const ChangeParams& params,
                      ProgressSink& sink) {
   std::vector<scan::ScanId> named;
   for (const ScanPose& pose : poses) named.push_back(pose.scan);
   requireOnce(named);
   MapEditor editor(file, params, sink);
-  rdf::WriteTransaction transaction = editor.begin();
+  std::optional<rdf::WriteTransaction> transaction(editor.begin());
+  const Moves moves = movesTo(poses, *transaction, params.batch_points);
   PointChanges changes;
   std::vector<Cloud> moved;
-  for (const ScanPose& pose : poses) {
-    scan::Scan scan = storedScan(transaction, pose.scan);
-    sink.progress("scans", moved.size() + 1, poses.size());
-    if (scan.has_pose && scan.T_map_sensor.matrix() == pose.T_map_sensor.matrix()) continue;
-    scan.T_map_sensor = pose.T_map_sensor;
+  std::uint64_t points = 0;
+  for (std::size_t i = 0; i < moves.poses.size(); ++i) {
+    if (!transaction) transaction.emplace(editor.begin());
+    scan::Scan scan = storedScan(*transaction, moves.poses[i].scan);
+    scan.T_map_sensor = moves.poses[i].T_map_sensor;
     scan.has_pose = true;
-    changes.anew = unionOf(std::move(changes.anew), removeScan(transaction, scan.id));
-    for (const auto& [tile, segment] : storeScan(transaction, scan)) changes.anew.insert(tile);
-    moved.push_back(*storedCloud(transaction, scan.id));
+    changes.anew = unionOf(std::move(changes.anew), removeScan(*transaction, scan.id));
+    for (const auto& [tile, segment] : storeScan(*transaction, scan)) changes.anew.insert(tile);
+    moved.push_back(*storedCloud(*transaction, scan.id));
+    points += moved.back().point_count;
+    sink.progress("scans", i + 1, moves.poses.size());
+    const std::size_t left = moves.poses.size() - i - 1;
+    if (left > 0 && !isFull(points, moved.size(), left, moves.batch_points)) continue;
+    editor.commit(*transaction, "repose", std::exchange(changes, {}), moved);
+    editor.result().scans_moved += moved.size();
+    moved.clear();
+    points = 0;
+    if (!params.dry_run) transaction.reset();
   }
-  editor.result().scans_moved = moved.size();
-  if (!moved.empty()) editor.commit(transaction, "repose", std::move(changes), moved);
   return std::move(editor.result());
 }
 

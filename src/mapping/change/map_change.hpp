@@ -14,7 +14,7 @@
 namespace cluxel::mapping {
 
 /// All functions throw the Errors of MapEditor, and leave the map as it is when they fail, except for batches of
-/// extendMap() that were committed before. With ChangeParams::dry_run nothing is written.
+/// extendMap() and moveScans() that were committed before. With ChangeParams::dry_run nothing is written.
 
 /// Scans that are given poses of their own must lie in the map's frame. Throws Error (InvalidArgument) when their
 /// manifest names another map origin or coordinate system than the map's, or when they are in outer coordinates.
@@ -53,8 +53,9 @@ struct ScanPose {
   scan::ScanId scan;
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
 };
-/// Gives scans other poses, all in one commit. Throws Error: NotFound for an unknown scan, InvalidArgument for a scan
-/// that is named twice.
+/// Gives scans other poses, batch by batch from place to place; each commit is the exact map of the poses that the
+/// scans have then, so that a killed run goes on when it is repeated. Throws Error: NotFound for an unknown scan,
+/// InvalidArgument for a scan that is named twice.
 ChangeReport moveScans(const std::filesystem::path& file, const std::vector<ScanPose>& poses,
                        const ChangeParams& params, ProgressSink& sink);
 

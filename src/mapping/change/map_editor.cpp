@@ -8,11 +8,12 @@
 #include "base/file_bytes.hpp"
 #include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
+#include "mapping/build/batch_size.hpp"
 #include "mapping/build/stage_clock.hpp"
 #include "mapping/change/map_things.hpp"
 #include "mapping/facts/map_history.hpp"
-#include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_state.hpp"
+#include "mapping/window/former_objects.hpp"
 #include "mapping/window/semantic_state.hpp"
 
 namespace cluxel::mapping {
@@ -35,6 +36,26 @@ bool reachTiles(const MapInputs& before, const MapInputs& after) {
   with_new_tiles.model = after.model;
   with_new_tiles.params = after.params;
   return with_new_tiles.hash() != before.hash();
+}
+
+/// Whether only what the stages compute of tiles follows from the difference.
+bool endsInTiles(const MapInputs& before, const MapInputs& after) {
+  MapInputs with_new_tiles = before;
+  with_new_tiles.model = after.model;
+  with_new_tiles.params = after.params;
+  with_new_tiles.params.relation = before.params.relation;
+  return with_new_tiles.hash() == after.hash();
+}
+
+/// Cuts tiles into `count` parts of the same size; strips along x.
+std::vector<TileSet> cutInto(std::size_t count, const TileSet& tiles) {
+  const std::size_t size = std::max<std::size_t>(1, (tiles.size() + count - 1) / count);
+  std::vector<TileSet> parts(1);
+  for (const TileKey& tile : tiles) {
+    if (parts.back().size() == size) parts.emplace_back();
+    parts.back().insert(tile);
+  }
+  return parts;
 }
 
 ChangedInputs changeOf(const MapInputs& before, const MapInputs& after) {
@@ -61,15 +82,10 @@ void MapEditor::readBefore(const rdf::ReadTransaction& transaction) {
   report_.tiles = storedTiles(transaction).size();
 }
 
-/// Reads the tiles of the whole map.
-std::vector<ObjectMembers> MapEditor::allObjects(const rdf::ReadTransaction& transaction) const {
-  TileStages stages(parsed_.model, parsed_.inputs.params);
-  stages.load(transaction);
-  return membersOf(storedObjects(transaction), stages.seeds());
-}
-
 void MapEditor::setInputs(ParsedInputs inputs) {
   all_tiles_ = all_tiles_ || reachTiles(parsed_.inputs, inputs.inputs);
+  // What was given before may need more.
+  ends_in_tiles_ = changed_inputs_ == ChangedInputs::Scans && endsInTiles(parsed_.inputs, inputs.inputs);
   if (parsed_.inputs.hash() != inputs.inputs.hash())
     changed_inputs_ = std::max(changed_inputs_, changeOf(parsed_.inputs, inputs.inputs));
   stages_.reset();
@@ -85,7 +101,7 @@ rdf::WriteTransaction MapEditor::begin() {
   transaction.useThreads(params_.threads);
   if (!std::exchange(has_begun_, true)) readBefore(transaction);  // an update may have come in between
   if (names_at_end_ && !std::exchange(has_own_before_, true)) {
-    const std::vector<ObjectMembers> own = allObjects(transaction);
+    const std::vector<ObjectMembers> own = storedMembers(transaction);
     report_.before.insert(report_.before.begin(), own.begin(), own.end());
   }
   return transaction;
@@ -94,20 +110,59 @@ rdf::WriteTransaction MapEditor::begin() {
 void MapEditor::update(rdf::WriteTransaction& transaction, PointChanges changes, ProgressSink& sink) {
   if (!stages_) stages_.emplace(parsed_.model, parsed_.inputs.params);
   touched_ = unionOf(std::move(touched_), changes.tiles());
-  const TileSet changed = all_tiles_ ? stages_->updateAll(transaction, std::move(changes), params_.threads, sink)
-                                     : stages_->update(transaction, std::move(changes), params_.threads, sink);
-  changed_.insert(changed.begin(), changed.end());
+  if (!std::exchange(all_tiles_, false))
+    return noteChanged(stages_->update(transaction, std::move(changes), params_.threads, sink));
+  for (TileSet& part : partsOfAll(transaction, changes.tiles())) {
+    stages_->dropAll();
+    noteChanged(stages_->computeAnew(transaction, std::move(part), params_.threads, sink));
+  }
+}
+
+std::vector<TileSet> MapEditor::partsOfAll(const rdf::ReadTransaction& transaction, const TileSet& more) const {
+  std::uint64_t points = 0;
+  for (const Cloud& cloud : storedClouds(transaction)) points += cloud.point_count;
+  const std::uint64_t part = std::max<std::uint64_t>(1, partSize(points, points, params_.stage_points));
+  return cutInto((points + part - 1) / part, unionOf(TileSet(more), storedTiles(transaction)));
+}
+
+SemanticUpdate MapEditor::decide(rdf::WriteTransaction& transaction, PointChanges changes, ProgressSink& sink) {
+  const ChangedInputs inputs = std::exchange(changed_inputs_, ChangedInputs::Scans);
+  if (all_tiles_ && ends_in_tiles_)
+    if (std::vector<TileSet> parts = partsOfAll(transaction, changes.tiles()); parts.size() > 1)
+      return decideInParts(transaction, std::move(parts), sink);
+  update(transaction, std::move(changes), sink);
+  return updateSemanticLayer(transaction, parsed_, *stages_, inputs, {params_.threads, params_.max_window_share}, sink);
+}
+
+/// After each part the map is the one that follows from the outputs that its tiles have then. So only what follows from
+/// the part has to be decided.
+SemanticUpdate MapEditor::decideInParts(rdf::WriteTransaction& transaction, std::vector<TileSet> parts,
+                                        ProgressSink& sink) {
   all_tiles_ = false;
+  stages_.emplace(parsed_.model, parsed_.inputs.params);
+  ObjectDifference difference;
+  SemanticUpdate update;
+  bool is_local = true;
+  std::size_t decided = 0;
+  for (TileSet& part : parts) {
+    noteChanged(stages_->computeAnew(transaction, std::move(part), params_.threads, sink));
+    update = updateSemanticLayer(transaction, parsed_, *stages_, ChangedInputs::Scans,
+                                 {params_.threads, params_.max_window_share}, sink);
+    stages_->dropAll();
+    difference.add(std::move(update.before), std::move(update.after));
+    is_local = is_local && update.is_local;
+    decided += update.tiles_decided;
+  }
+  update.is_local = is_local, update.tiles_decided = decided;
+  update.before = difference.before(), update.after = difference.after();
+  return update;
 }
 
 void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& operation, PointChanges changes,
                        const std::vector<Cloud>& scans) {
   const double started_s = secondsNow();
   StageClock clock(sink_);
-  update(transaction, std::move(changes), clock);
-  SemanticUpdate layers =
-      updateSemanticLayer(transaction, parsed_, *stages_, std::exchange(changed_inputs_, ChangedInputs::Scans),
-                          {params_.threads, params_.max_window_share}, clock);
+  SemanticUpdate layers = decide(transaction, std::move(changes), clock);
   inputs_hash_ = parsed_.inputs.hash().hex();
   storeInputs(transaction, parsed_.inputs);
   storeState(transaction, MapState{true, inputs_hash_});
@@ -129,22 +184,16 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
   }
 }
 
-/// What came and went again within the commits is no difference.
 void MapEditor::note(SemanticUpdate update) {
-  for (ObjectMembers& object : update.before)
-    if (fresh_.erase(object.id) == 0) gone_.emplace(object.id, std::move(object));
-  for (ObjectMembers& object : update.after)
-    if (gone_.erase(object.id) == 0) fresh_.emplace(object.id, std::move(object));
+  difference_.add(std::move(update.before), std::move(update.after));
   if (names_at_end_) return;
-  report_.before.clear(), report_.after.clear();
-  for (const auto& [id, object] : gone_) report_.before.push_back(object);
-  for (const auto& [id, object] : fresh_) report_.after.push_back(object);
+  report_.before = difference_.before(), report_.after = difference_.after();
   report_.objects = compareStates(report_.before, report_.after, report_.object_count - report_.after.size());
 }
 
 void MapEditor::handOnNames() {
   rdf::WriteTransaction transaction = begin();
-  report_.after = allObjects(transaction);
+  report_.after = storedMembers(transaction);
   report_.objects = compareObjects(report_.before, report_.after);
   if (!last_activity_.empty()) addLineage(transaction, last_activity_, report_.objects);
   writeThings(transaction, dateTimeText(secondsNow()), report_.before, report_.after, ObjectsOf::SeveralMaps);
@@ -169,7 +218,7 @@ bool MapEditor::resume() {
   has_begun_ = false;
   readBefore(environment_->read());
   touched_.clear(), changed_.clear();
-  gone_.clear(), fresh_.clear();
+  difference_ = {};
   return true;
 }
 

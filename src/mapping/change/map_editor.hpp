@@ -81,7 +81,12 @@ class MapEditor {
 
  private:
   void readBefore(const rdf::ReadTransaction& transaction);
-  std::vector<ObjectMembers> allObjects(const rdf::ReadTransaction& transaction) const;
+  /// Brings the stages and what follows from them up to date.
+  SemanticUpdate decide(rdf::WriteTransaction& transaction, PointChanges changes, ProgressSink& sink);
+  SemanticUpdate decideInParts(rdf::WriteTransaction& transaction, std::vector<TileSet> parts, ProgressSink& sink);
+  /// All tiles of the map and `more`, in parts that go through the stages at once.
+  std::vector<TileSet> partsOfAll(const rdf::ReadTransaction& transaction, const TileSet& more) const;
+  void noteChanged(const TileSet& tiles) { changed_.insert(tiles.begin(), tiles.end()); }
   rdf::QuadReader newest() const;
   void note(SemanticUpdate update);
   void report(const rdf::ReadTransaction& transaction, const SemanticUpdate& update);
@@ -96,12 +101,13 @@ class MapEditor {
   std::string inputs_hash_;    ///< as stored in the file
   std::string last_activity_;  ///< IRI of the run that the last commit was
   bool names_at_end_ = false;
-  bool has_own_before_ = false;                          ///< of a merge: report_.before holds the objects of this map
-  bool all_tiles_ = false;                               ///< the next commit computes every tile
+  bool has_own_before_ = false;  ///< of a merge: report_.before holds the objects of this map
+  bool all_tiles_ = false;       ///< the next commit computes every tile
+  bool ends_in_tiles_ = false;   ///< and decides what follows from their outputs, as after other scans
   ChangedInputs changed_inputs_ = ChangedInputs::Scans;  ///< since the last commit
   std::optional<TileStages> stages_;
-  TileSet touched_, changed_;                          ///< in all commits
-  std::map<ContentHash, ObjectMembers> gone_, fresh_;  ///< objects that differ from those before the first commit
+  TileSet touched_, changed_;    ///< in all commits
+  ObjectDifference difference_;  ///< from before the first commit on
   bool has_begun_ = false;
   ChangeReport report_;
 };

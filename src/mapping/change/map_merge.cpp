@@ -15,6 +15,7 @@
 #include "mapping/map_reader.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/statements/statement_history.hpp"
+#include "mapping/window/former_objects.hpp"
 #include "rdf/file/map_replacement.hpp"
 #include "rdf/map_iris.hpp"
 
@@ -199,7 +200,7 @@ class Merge {
     leaveOutWithdrawn(additions);
     for (std::size_t i = 0; i < maps_.size(); ++i) {
       if (i == base) continue;
-      const auto other = membersOf(readers_[i].objects(), readers_[i].scene().cluxels);
+      const std::vector<ObjectMembers> other = storedMembers(readers_[i].transaction());
       editor.result().before.insert(editor.result().before.end(), other.begin(), other.end());
       addMap(i, additions);
     }

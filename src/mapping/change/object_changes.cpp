@@ -115,4 +115,29 @@ ObjectChanges compareStates(const std::vector<ObjectMembers>& before, const std:
   return changes;
 }
 
+void ObjectDifference::add(std::vector<ObjectMembers> before, std::vector<ObjectMembers> after) {
+  for (ObjectMembers& object : before)
+    if (fresh_.erase(object.id) == 0) gone_.emplace(object.id, std::move(object));
+  for (ObjectMembers& object : after)
+    if (gone_.erase(object.id) == 0) fresh_.emplace(object.id, std::move(object));
+}
+
+namespace {
+
+std::vector<ObjectMembers> valuesOf(const std::map<ContentHash, ObjectMembers>& objects) {
+  std::vector<ObjectMembers> values;
+  for (const auto& [id, object] : objects) values.push_back(object);
+  return values;
+}
+
+}  // namespace
+
+std::vector<ObjectMembers> ObjectDifference::before() const {
+  return valuesOf(gone_);
+}
+
+std::vector<ObjectMembers> ObjectDifference::after() const {
+  return valuesOf(fresh_);
+}
+
 }  // namespace cluxel::mapping

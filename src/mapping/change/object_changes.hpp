@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -50,5 +51,17 @@ ObjectChanges compareObjects(const std::vector<ObjectMembers>& before, const std
 /// those that are not. Cost: linear in the members of those that differ.
 ObjectChanges compareStates(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after,
                             std::size_t others = 0);
+
+/// The objects that differ after several changes in turn. What came and went again is no difference.
+class ObjectDifference {
+ public:
+  /// The objects that one change took away, and those that it made.
+  void add(std::vector<ObjectMembers> before, std::vector<ObjectMembers> after);
+  std::vector<ObjectMembers> before() const;  ///< sorted by id
+  std::vector<ObjectMembers> after() const;   ///< sorted by id
+
+ private:
+  std::map<ContentHash, ObjectMembers> gone_, fresh_;
+};
 
 }  // namespace cluxel::mapping

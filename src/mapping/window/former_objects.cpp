@@ -8,18 +8,17 @@
 
 namespace cluxel::mapping {
 
-const perception::SummaryTile* FormerObjects::summaryOf(const perception::TileKey& tile) const {
-  if (former_.isOther(tile)) return former_.of(tile);
-  const auto same = stages_.summaries().find(tile);
-  if (same == stages_.summaries().end())
-    throw Error(ErrorKind::StoreUnavailable, "a stored tile lacks a block; the map is damaged, build it anew");
-  return &same->second;
+namespace {
+
+[[noreturn]] void refuseMissingBlock() {
+  throw Error(ErrorKind::StoreUnavailable, "a stored tile lacks a block; the map is damaged, build it anew");
 }
 
-void FormerObjects::add(const TileLayer& layer, const std::function<bool(const ContentHash&)>& is_wanted) {
-  const perception::SummaryTile* summary = summaryOf(layer.key);
-  if (summary == nullptr) return;
-  if (layer.size() != summary->size())
+}  // namespace
+
+void MemberLists::add(const TileLayer& layer, const perception::SummaryTile& summary,
+                      const std::function<bool(const ContentHash&)>& is_wanted) {
+  if (layer.size() != summary.size())
     throw Error(ErrorKind::StoreUnavailable, "stored objects are of other cluxels; the map is damaged, build it anew");
   std::vector<ObjectMembers*> of_share;
   for (const TileLayer::Share& share : layer.shares) {
@@ -34,13 +33,35 @@ void FormerObjects::add(const TileLayer& layer, const std::function<bool(const C
   }
   for (std::size_t c = 0; c < layer.size(); ++c)
     if (const std::uint32_t share = layer.share_of_cluxel[c]; share != kNoShare && of_share[share] != nullptr)
-      of_share[share]->seeds.push_back(memberKey(summary->scans[summary->seed_scan[c]], summary->seed_point[c]));
+      of_share[share]->seeds.push_back(memberKey(summary.scans[summary.seed_scan[c]], summary.seed_point[c]));
 }
 
-std::vector<ObjectMembers> FormerObjects::take() {
+std::vector<ObjectMembers> MemberLists::take() {
   std::vector<ObjectMembers> all;
   for (auto& [id, members] : objects_) all.push_back(std::move(members));
+  objects_.clear();
   return all;
+}
+
+std::vector<ObjectMembers> storedMembers(const rdf::ReadTransaction& transaction) {
+  MemberLists members(transaction);
+  forEachStoredLayer(transaction, [&](const TileLayer& layer) {
+    const auto summary = transaction.block(tables::kSummaries, tables::keyOf(layer.key));
+    if (!summary) refuseMissingBlock();
+    members.add(layer, perception::summaryTileFromBytes(*summary), [](const ContentHash&) { return true; });
+  });
+  return members.take();
+}
+
+const perception::SummaryTile* FormerObjects::summaryOf(const perception::TileKey& tile) const {
+  if (former_.isOther(tile)) return former_.of(tile);
+  const auto same = stages_.summaries().find(tile);
+  if (same == stages_.summaries().end()) refuseMissingBlock();
+  return &same->second;
+}
+
+void FormerObjects::add(const TileLayer& layer, const std::function<bool(const ContentHash&)>& is_wanted) {
+  if (const perception::SummaryTile* summary = summaryOf(layer.key)) members_.add(layer, *summary, is_wanted);
 }
 
 std::vector<ObjectMembers> formerObjects(const rdf::ReadTransaction& transaction, const TileStages& stages,

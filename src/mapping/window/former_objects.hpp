@@ -12,26 +12,43 @@
 
 namespace cluxel::mapping {
 
+/// Collects the members of objects from the layers of tiles.
+class MemberLists {
+ public:
+  explicit MemberLists(const rdf::ReadTransaction& transaction) : transaction_(transaction) {}
+  /// Adds the members that `layer` holds of the objects for which `is_wanted`. `summary`: of the same tile.
+  void add(const TileLayer& layer, const perception::SummaryTile& summary,
+           const std::function<bool(const ContentHash&)>& is_wanted);
+  /// Sorted by id.
+  std::vector<ObjectMembers> take();
+
+ private:
+  const rdf::ReadTransaction& transaction_;
+  std::map<ContentHash, ObjectMembers> objects_;
+};
+
+/// All objects of a map as it is stored, read tile by tile. Memory: 8 bytes a cluxel. Cost: about 10 us a tile.
+std::vector<ObjectMembers> storedMembers(const rdf::ReadTransaction& transaction);
+
 /// Collects members from the layers of tiles that are not written yet.
 class FormerObjects {
  public:
   /// `stages` holds the summaries of the tiles that did not change.
   FormerObjects(const rdf::ReadTransaction& transaction, const TileStages& stages, FormerSummaries& former)
-      : transaction_(transaction), stages_(stages), former_(former) {}
+      : stages_(stages), former_(former), members_(transaction) {}
 
   /// Adds the members that `layer` holds of the objects for which `is_wanted`.
   void add(const TileLayer& layer, const std::function<bool(const ContentHash&)>& is_wanted);
   /// Sorted by id.
-  std::vector<ObjectMembers> take();
+  std::vector<ObjectMembers> take() { return members_.take(); }
 
  private:
   /// The summary that the tile had when the layer was written. Null where there was none.
   const perception::SummaryTile* summaryOf(const perception::TileKey& tile) const;
 
-  const rdf::ReadTransaction& transaction_;
   const TileStages& stages_;
   FormerSummaries& former_;
-  std::map<ContentHash, ObjectMembers> objects_;
+  MemberLists members_;
 };
 
 /// All objects of the map before the change.
