@@ -58,8 +58,8 @@ MapChanges retract(Map& map, const std::vector<std::string>& clouds, unsigned th
                  [&](ProgressSink& sink) { return map.retract(clouds, options, sink); });
 }
 
-MapChanges repose(Map& map, const std::map<std::string, Matrix>& poses, unsigned threads, bool dry_run,
-                  py::object progress, py::object note) {
+MapChanges repose(Map& map, const std::map<std::string, Matrix>& poses, unsigned threads, std::uint64_t batch_points,
+                  bool dry_run, py::object progress, py::object note) {
   std::vector<CloudPose> given;
   for (const auto& [cloud, matrix] : poses) {
     if (matrix.ndim() != 2 || matrix.shape(0) != 4 || matrix.shape(1) != 4)
@@ -68,7 +68,7 @@ MapChanges repose(Map& map, const std::map<std::string, Matrix>& poses, unsigned
     std::copy_n(matrix.data(), pose.T_map_sensor.size(), pose.T_map_sensor.begin());
     given.push_back(std::move(pose));
   }
-  const ChangeOptions options{{}, threads, ChangeOptions().batch_points, dry_run};
+  const ChangeOptions options{{}, threads, batch_points, dry_run};
   return changed(std::move(progress), std::move(note),
                  [&](ProgressSink& sink) { return map.repose(given, options, sink); });
 }
@@ -113,9 +113,10 @@ void bindChanges(py::module_& module, py::class_<Map>& map) {
   map.def("retract", &retract, py::arg("clouds"), py::kw_only(), py::arg("threads") = 0U, py::arg("dry_run") = false,
           py::arg("progress") = py::none(), py::arg("note") = py::none(),
           "Removes scans, named by id (four digits or more), source path or file name. Gives MapChanges.");
-  map.def("repose", &repose, py::arg("poses"), py::kw_only(), py::arg("threads") = 0U, py::arg("dry_run") = false,
+  map.def("repose", &repose, py::arg("poses"), py::kw_only(), py::arg("threads") = 0U,
+          py::arg("batch_points") = ChangeOptions().batch_points, py::arg("dry_run") = false,
           py::arg("progress") = py::none(), py::arg("note") = py::none(),
-          "Gives scans other poses, all at once. poses: dict from cloud, named as in retract(), to the pose of the\n"
+          "Gives scans other poses, batch by batch. poses: dict from cloud, named as in retract(), to the pose of the\n"
           "sensor in the map, an array of shape (4, 4) [m]. Gives MapChanges.");
   module.def("merge", &merge, py::arg("maps"), py::arg("target"), py::kw_only(), py::arg("threads") = 0U,
              py::arg("batch_points") = ChangeOptions().batch_points, py::arg("progress") = py::none(),

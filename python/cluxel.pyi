@@ -239,6 +239,7 @@ class Map:
         poses: Mapping[str, npt.ArrayLike],
         *,
         threads: int = 0,
+        batch_points: int = ...,
         dry_run: bool = False,
         progress: Optional[Callable[[str, int, int], object]] = None,
         note: Optional[Callable[[str], object]] = None,

@@ -113,12 +113,15 @@ class CLUXEL_API Map {
   /// Adds scans (files, folders, manifests) to the map: it is then the map that build() makes from all scans. Scans
   /// that are there with the same pose are passed over. Each batch is one commit; progress and notes go to `sink`.
   MapChanges extend(const std::vector<std::filesystem::path>& scans, const ChangeOptions& options, ProgressSink& sink);
-  /// Removes scans, named as in CloudPose. NotFound for an unknown name; InvalidArgument when none would be left.
+  /// Removes scans, named as in CloudPose; those that were removed before are noted. NotFound for an unknown name;
+  /// InvalidArgument when none would be left.
   MapChanges retract(const std::vector<std::string>& clouds, const ChangeOptions& options, ProgressSink& sink);
-  /// Gives scans other poses, all in one commit, as after a loop closure.
+  /// Gives scans other poses, as after a loop closure. Many scans move in several commits, each of which is the exact
+  /// map of the poses that the scans have then.
   MapChanges repose(const std::vector<CloudPose>& poses, const ChangeOptions& options, ProgressSink& sink);
   /// Merges maps, all in the frame of the first, into the new file `target`, and opens it: the map that build() makes
-  /// from all scans. InvalidArgument when `target` exists, inputs differ, or a scan has two poses.
+  /// from all scans. A `target` that is the merge of these maps already is left as it is. InvalidArgument when another
+  /// file is there, inputs differ, or a scan has two poses.
   static Map merge(const std::vector<std::filesystem::path>& maps, const std::filesystem::path& target,
                    const ChangeOptions& options, ProgressSink& sink);
 

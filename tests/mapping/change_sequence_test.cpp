@@ -138,6 +138,7 @@ class ChangeSequence {
   }
   void applyRules() {
     rules_ = below(inputs_.size());
+    stage_points_ = oneIn(2) ? 2000 : 20'000'000;  // another model goes from part to part
     changed([&](const ChangeParams& params) {
       return applyInputs(
           map(), [&](const MapInputs&) { return inputs_[rules_]; }, params, silence());
@@ -310,7 +311,10 @@ TEST(ChangeSequences, GiveTheMapOfABuildFromTheInputsAfterEachOperation) {
   const MixedScans scans;
   scans.expectAllKinds();
   const MapInputs shipped = shippedInputs();
-  const std::vector<MapInputs> inputs{shipped, replaced(shipped, "bush_top: 1.7 m", "bush_top: 1.2 m"),
+  MapInputFiles files;
+  files.model = "campus";
+  const MapInputs other_model = readMapInputs(files, DataHome(test::sourceFolder()));
+  const std::vector<MapInputs> inputs{shipped, other_model, replaced(shipped, "bush_top: 1.7 m", "bush_top: 1.2 m"),
                                       replaced(shipped, "group: { near: 1.5 m }", "group: { near: 0.2 m }")};
   std::size_t stated = 0, applied = 0;
   for (unsigned seed = 0; seed < (is_long ? 6 : 1); ++seed) {

@@ -2,7 +2,9 @@
 // Aims for size and cost in a form without a clock: bytes a point, free space, and tiles that a change decides.
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <deque>
+#include <string>
+#include <vector>
 
 #include "mapping/change/map_change.hpp"
 #include "mapping/change/map_compaction.hpp"
@@ -59,35 +61,34 @@ TEST(CostBarsOfOakland, AMapTakesNinetyBytesAPoint) {
   EXPECT_LE(bytesPerPoint(folder.path() / "map.clx"), 90);
 }
 
-/// The same last scan of a street, in maps of two lengths: it changes the same tiles and decides about as many.
-TEST(CostBars, OneMoreScanDecidesNoMoreInALongMap) {
-  const SmallCampus campus({.seed = 8, .stops = 16, .size_m = 400, .points_per_stop = 4000, .max_range_m = 16});
-  const ScanSet all = scansOf(campus.files());
-  std::vector<PosedScan> from_west;
-  for (std::size_t i = 0; i < all.size(); ++i) from_west.push_back({i, all.file(i).T_map_sensor});
-  const auto x = [](const PosedScan& scan) { return scan.T_map_sensor.translation().x(); };
-  std::sort(from_west.begin(), from_west.end(), [&](const auto& a, const auto& b) { return x(a) < x(b); });
-  const auto scans = [&](std::size_t first, std::size_t end) {
-    return all.posed(
-        {from_west.begin() + static_cast<std::ptrdiff_t>(first), from_west.begin() + static_cast<std::ptrdiff_t>(end)});
-  };
+/// The same scan is added to the map of its campus, and to a map that has three more of them beside it.
+TEST(CostBars, OneMoreScanDecidesTheSameTilesInALargeMap) {
+  std::deque<SmallCampus> campuses;
+  for (const unsigned seed : {8U, 9U, 10U, 11U})
+    campuses.emplace_back(CampusParams{.seed = seed, .stops = 4, .size_m = 60, .points_per_stop = 4000});
+  std::vector<fs::path> files;
+  for (const SmallCampus& campus : campuses) files.insert(files.end(), campus.files().begin(), campus.files().end());
+  const ScanSet all = scansOf(files);
+  std::vector<PosedScan> scans;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    scans.push_back({i, all.file(i).T_map_sensor});
+    scans.back().T_map_sensor.pretranslate(Eigen::Vector3d(256 * static_cast<double>(i / 4), 0, 0));
+  }
+  const ScanSet added = all.posed({scans[3]});
+  const std::vector<PosedScan> of_campus(scans.begin(), scans.begin() + 3);
+  std::vector<PosedScan> of_all = of_campus;
+  of_all.insert(of_all.end(), scans.begin() + 4, scans.end());
   const ScratchFolder folder;
   std::vector<ChangeReport> reports;
-  std::vector<std::size_t> tiles;
-  for (const std::size_t first : {8U, 0U}) {
-    const fs::path map = folder.path() / ("from" + std::to_string(first));
-    buildMap(scans(first, all.size() - 1), shippedInputs(), map, {}, silence());
-    reports.push_back(extendMap(map, scans(all.size() - 1, all.size()), {.max_window_share = 2}, silence()));
-    tiles.push_back(reports.back().tiles);
+  for (const auto& before : {of_campus, of_all}) {
+    const fs::path map = folder.path() / std::to_string(before.size());
+    buildMap(all.posed(before), shippedInputs(), map, {.threads = 2}, silence());
+    reports.push_back(extendMap(map, added, {.max_window_share = 2}, silence()));
+    EXPECT_EQ(reports.back().local_commits, 1U);
   }
-  EXPECT_GT(2 * tiles[1], 3 * tiles[0]);
-  EXPECT_EQ(reports[0].local_commits, 1U);
-  EXPECT_EQ(reports[1].local_commits, 1U);
+  EXPECT_GT(reports[1].tiles, 3 * reports[0].tiles);
   EXPECT_EQ(reports[0].tiles_changed, reports[1].tiles_changed);
-  EXPECT_LT(2 * reports[1].tiles_decided, tiles[1]);
-  // Where the short map ends, the window ends, too.
-  EXPECT_LE(reports[0].tiles_decided, reports[1].tiles_decided);
-  EXPECT_LE(10 * reports[1].tiles_decided, 13 * reports[0].tiles_decided);
+  EXPECT_EQ(reports[0].tiles_decided, reports[1].tiles_decided);
 }
 
 }  // namespace

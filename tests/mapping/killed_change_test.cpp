@@ -2,10 +2,13 @@
 // A change that is killed at any moment leaves the exact map before or after a commit; the same command finishes it.
 #include "mapping/killed_change.hpp"
 
+#include <algorithm>
+
 #include "mapping/build/map_update.hpp"
 #include "mapping/build/rdf_loading.hpp"
 #include "mapping/change/map_merge.hpp"
 #include "mapping/change/statement_change.hpp"
+#include "mapping/facts/map_history.hpp"
 #include "mapping/statements/statement.hpp"
 #include "rdf/map_iris.hpp"
 
@@ -45,38 +48,67 @@ TEST_F(KilledChange, MovingScansIsAllOrNothing) {
       {before, after}, after, [&] { return canonicalText(map()); });
 }
 
-TEST_F(KilledChange, MovingManyScansGoesOnBatchByBatch) {
-  build({file(0), file(1)}, map());
-  const ScanSet both = scansOf({file(0), file(1)});
-  std::vector<ScanPose> moves;
-  std::vector<PosedScan> posed;
-  for (const std::size_t i : {0U, 1U}) {
-    Eigen::Isometry3d pose = both.file(i).T_map_sensor;
-    pose.pretranslate(Eigen::Vector3d(0.5, 0.25, 0));
-    moves.push_back({both.load(i).id, pose});
-    posed.push_back({i, pose});
+/// Scans that lie 80 m apart from each other in a row, as they are and all moved.
+class ApartScans {
+ public:
+  std::size_t size() const { return campus_.files().size(); }
+  /// The first `moved` of them moved.
+  ScanSet scans(std::size_t moved) const {
+    std::vector<PosedScan> posed;
+    for (std::size_t i = 0; i < size(); ++i) posed.push_back({i, poseOf(i, i < moved)});
+    return scansOf(campus_.files()).posed(posed);
   }
+  /// Of all, in another order.
+  std::vector<ScanPose> moves() const {
+    std::vector<ScanPose> all;
+    for (std::size_t i = size(); i-- > 0;) all.push_back({scansOf(campus_.files()).load(i).id, poseOf(i, true)});
+    return all;
+  }
+
+ private:
+  Eigen::Isometry3d poseOf(std::size_t i, bool is_moved) const {
+    Eigen::Isometry3d pose = scansOf(campus_.files()).file(i).T_map_sensor;
+    pose.translation().x() = 80 * static_cast<double>(i);
+    if (is_moved) pose.pretranslate(Eigen::Vector3d(0.5, 0.25, 0));
+    return pose;
+  }
+  SmallCampus campus_{{.seed = 8, .stops = 4, .size_m = 60, .points_per_stop = 1500, .max_range_m = 20}};
+};
+
+TEST_F(KilledChange, MovingManyScansGoesOnBatchByBatch) {
+  const ApartScans apart;
   std::set<std::string> states;
-  for (const bool first : {false, true})
-    for (const bool second : {false, true}) {
-      const fs::path moved = folder.path() / "moved";
-      fs::remove(moved);
-      const auto poseOf = [&](std::size_t i, bool is_moved) {
-        return is_moved ? posed[i] : PosedScan{i, both.file(i).T_map_sensor};
-      };
-      buildMap(both.posed({poseOf(0, first), poseOf(1, second)}), *inputs, moved, {}, silence());
-      states.insert(canonicalText(moved));
-    }
-  const std::string after = canonicalText(folder.path() / "moved");
+  std::string after;
+  for (std::size_t moved = 0; moved <= apart.size(); ++moved) {
+    buildMap(apart.scans(moved), *inputs, map(), {.force = true}, silence());
+    states.insert(after = canonicalText(map()));
+  }
+  EXPECT_EQ(states.size(), apart.size() + 1);
   const fs::path kept = folder.path() / "kept";
-  fs::copy_file(map(), kept);
-  expectExact([&] { fs::copy_file(kept, map(), fs::copy_options::overwrite_existing); },
-              [&](ProgressSink& sink) {
-                ChangeParams one_by_one = params();
-                one_by_one.batch_points = 1;
-                moveScans(map(), moves, one_by_one, sink);
-              },
-              states, after, [&] { return canonicalText(map()); });
+  buildMap(apart.scans(0), *inputs, kept, {}, silence());
+  std::size_t local_commits = 0;
+  const auto prepare = [&] { fs::copy_file(kept, map(), fs::copy_options::overwrite_existing); };
+  const auto change = [&](ProgressSink& sink) {
+    ChangeParams one_by_one = params();
+    one_by_one.batch_points = 1;
+    local_commits += moveScans(map(), apart.moves(), one_by_one, sink).local_commits;
+  };
+  expectExact(prepare, change, states, after, [&] { return canonicalText(map()); });
+  EXPECT_GT(local_commits, 0U);
+
+  // A dry run tells what all batches do.
+  prepare();
+  ChangeParams params{.batch_points = 1, .dry_run = true};
+  const ChangeReport dry = moveScans(map(), apart.moves(), params, silence());
+  EXPECT_TRUE(canonicalText(map()) == canonicalText(kept)) << "a dry run wrote";
+  params.dry_run = false;
+  const ChangeReport real = moveScans(map(), apart.moves(), params, silence());
+  for (const ChangeReport* report : {&dry, &real}) EXPECT_EQ(report->scans_moved, apart.size());
+  EXPECT_EQ(activitiesIn(MapReader(map()).quads()).size(), 1 + apart.size()) << "the build, and a commit for each scan";
+  EXPECT_EQ(dry.objects.added, real.objects.added);
+  EXPECT_EQ(dry.objects.gone, real.objects.gone);
+  EXPECT_EQ(dry.objects.unchanged, real.objects.unchanged);
+  EXPECT_EQ(dry.tiles_changed, real.tiles_changed);
 }
 
 TEST_F(KilledChange, AMergeIsThereWholeOrNotAtAll) {

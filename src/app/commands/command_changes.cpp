@@ -3,7 +3,7 @@
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
 #include "app/shared_options.hpp"
-#include "base/file_bytes.hpp"
+#include "base/file_pieces.hpp"
 #include "base/utc_time.hpp"
 #include "mapping/facts/map_facts.hpp"
 #include "tasks/changes/changed_points.hpp"
@@ -49,9 +49,8 @@ void printChanges(const mapping::MapReader& map, const tasks::SiteChanges& found
 }
 
 void writePoints(const fs::path& file, const mapping::MapReader& map, const tasks::SiteChanges& found) {
-  std::string text;
-  writeChangedPoints(changedPoints(map, found), map.clouds(), [&](std::string_view piece) { text.append(piece); });
-  writeFile(file, text);
+  const std::vector<tasks::ChangedPoint> points = changedPoints(map, found);
+  writeFileInPieces(file, [&](const auto& write) { writeChangedPoints(points, map.clouds(), write); });
 }
 
 ExitCode changes(const ChangesArguments& arguments, Session& session) {

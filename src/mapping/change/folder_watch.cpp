@@ -51,9 +51,10 @@ class Watch {
     using Clock = std::chrono::steady_clock;
     auto last_arrival = Clock::now();
     FolderState before;
-    while (!callbacks_.is_stopped()) {
+    for (bool is_first = true; !callbacks_.is_stopped(); is_first = false) {
       const FolderState now = stateOf(folder_);
-      if (look(before, now)) last_arrival = Clock::now();
+      // A first look only tells which files there are.
+      if (look(before, now) || is_first) last_arrival = Clock::now();
       before = now;
       const std::chrono::duration<double> idle = Clock::now() - last_arrival;
       if (params_.idle_s > 0 && idle.count() >= params_.idle_s) break;

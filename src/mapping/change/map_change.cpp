@@ -55,6 +55,13 @@ void requireScans(const scan::ScanSet& scans) {
   if (scans.size() == 0) throw Error(ErrorKind::InvalidArgument, "there is no scan to add");
 }
 
+/// What of an operation in batches was committed before an error.
+void noteDone(const MapEditor& editor, std::size_t scans, const std::string& done) {
+  if (scans > 0 && !editor.params().dry_run)
+    editor.sink().note(std::to_string(scans) + " scans were " + done +
+                       " before the error; the same command goes on from there");
+}
+
 ChangeReport addBy(MapEditor& editor, const scan::ScanSet& scans) {
   ProgressSink& sink = editor.sink();
   requireFrame(editor.inputs().inputs, scans);
@@ -69,9 +76,7 @@ ChangeReport addBy(MapEditor& editor, const scan::ScanSet& scans) {
     }
     additions.finish();
   } catch (...) {
-    if (editor.result().scans_added > 0 && !editor.params().dry_run)
-      sink.note(std::to_string(editor.result().scans_added) +
-                " scans were added before the error; the same command goes on from there");
+    noteDone(editor, editor.result().scans_added, "added");
     throw;
   }
   for (const std::string& note : notes.totals()) sink.note(note);
@@ -84,61 +89,89 @@ ChangeReport addedTo(const fs::path& file, const scan::ScanSet& scans, const Cha
   return addBy(editor, scans);
 }
 
-/// Whether an earlier command retracted the scan, perhaps this one before it was killed.
-bool noteRetracted(const rdf::ReadTransaction& transaction, const scan::ScanId& id, ProgressSink& sink) {
-  for (const RetractedScan& scan : retractedScans(transaction)) {
-    if (scan.id != id) continue;
-    sink.note("cloud " + id.hex() + " ('" + scan.source + "') was retracted already, on " + scan.time);
-    return true;
-  }
-  return false;
-}
-
 ChangeReport removedFrom(const fs::path& file, const std::vector<scan::ScanId>& scans, const ChangeParams& params,
                          ProgressSink& sink) {
   requireOnce(scans);
   MapEditor editor(file, params, sink);
   rdf::WriteTransaction transaction = editor.begin();
+  std::optional<std::vector<RetractedScan>> retracted;
+  // Whether an earlier command retracted the scan, perhaps this one before it was killed.
+  const auto isRetracted = [&](const scan::ScanId& id) {
+    if (!retracted) retracted = retractedScans(transaction);
+    const auto scan = std::find_if(retracted->begin(), retracted->end(), [&](const auto& one) { return one.id == id; });
+    if (scan == retracted->end()) return false;
+    const std::string source = scan->sources.empty() ? "" : " ('" + scan->sources.front() + "')";
+    sink.note("cloud " + id.hex() + source + " was retracted already, on " + scan->time);
+    return true;
+  };
   PointChanges changes;
   std::vector<Cloud> removed;
-  for (const scan::ScanId& id : scans) {
-    const auto cloud = storedCloud(transaction, id);
-    if (!cloud && noteRetracted(transaction, id, sink)) continue;
-    changes.anew = unionOf(std::move(changes.anew), removeScan(transaction, id));
-    removed.push_back(*cloud);
-    sink.progress("scans", ++editor.result().scans_removed, scans.size());
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    sink.progress("scans", i + 1, scans.size());
+    if (!storedCloud(transaction, scans[i]) && isRetracted(scans[i])) continue;
+    removed.push_back(requiredCloud(transaction, scans[i]));
+    changes.anew = unionOf(std::move(changes.anew), removeScan(transaction, scans[i]));
   }
   if (storedClouds(transaction).empty())
     throw Error(ErrorKind::InvalidArgument, file.string() + ": no scan would be left; remove the file instead");
+  editor.result().scans_removed = removed.size();
   if (!removed.empty()) editor.commit(transaction, "retract", std::move(changes), removed);
   return std::move(editor.result());
 }
 
-/// Poses that scans do not have yet, from place to place, so that a batch changes few tiles that others change, too.
-struct Moves {
-  std::vector<ScanPose> poses;
-  std::uint64_t batch_points = 0;
+/// A scan that gets another pose.
+struct Move {
+  ScanPose pose;
+  Cloud before;
 };
 
-Moves movesTo(const std::vector<ScanPose>& poses, const rdf::ReadTransaction& transaction, std::uint64_t max_points) {
-  Moves moves;
-  std::uint64_t points = 0, map_points = 0;
+/// Those poses that scans do not have yet, from place to place, so that a batch changes few tiles that others change,
+/// too.
+std::vector<Move> movesTo(const std::vector<ScanPose>& poses, const rdf::ReadTransaction& transaction) {
+  std::vector<Move> moves;
   Eigen::AlignedBox2d area;
   for (const ScanPose& pose : poses) {
-    const Cloud cloud = requiredCloud(transaction, pose.scan);
+    Cloud cloud = requiredCloud(transaction, pose.scan);
     if (cloud.has_pose && cloud.T_map_sensor.matrix() == pose.T_map_sensor.matrix()) continue;
-    moves.poses.push_back(pose);
-    points += cloud.point_count;
+    moves.push_back({pose, std::move(cloud)});
     area.extend(Eigen::Vector2d(pose.T_map_sensor.translation().head<2>()));
   }
-  const Eigen::Index axis = !moves.poses.empty() && area.sizes().y() > area.sizes().x() ? 1 : 0;
-  std::sort(moves.poses.begin(), moves.poses.end(), [&](const ScanPose& a, const ScanPose& b) {
-    return std::pair(a.T_map_sensor.translation()[axis], a.scan) <
-           std::pair(b.T_map_sensor.translation()[axis], b.scan);
-  });
-  for (const Cloud& cloud : storedClouds(transaction)) map_points += cloud.point_count;
-  moves.batch_points = partSize(points, map_points, max_points);
+  const Eigen::Index axis = !moves.empty() && area.sizes().y() > area.sizes().x() ? 1 : 0;
+  const auto place = [&](const Move& move) {
+    return std::pair(move.pose.T_map_sensor.translation()[axis], move.pose.scan);
+  };
+  std::sort(moves.begin(), moves.end(), [&](const Move& a, const Move& b) { return place(a) < place(b); });
   return moves;
+}
+
+TileSet tilesBelow(const Cloud& cloud) {
+  TileSet tiles;
+  const perception::TileKey first = perception::tileOf(cloud.min), last = perception::tileOf(cloud.max);
+  for (std::int32_t x = first.x; x <= last.x; ++x)
+    for (std::int32_t y = first.y; y <= last.y; ++y) tiles.insert({x, y});
+  return tiles;
+}
+
+/// The points of a batch of moves. All of them at once, where batches would compute most tiles more than twice: as
+/// where all scans see the same place.
+std::uint64_t batchSizeOf(const std::vector<Move>& moves, const rdf::ReadTransaction& transaction,
+                          std::uint64_t max_points) {
+  std::uint64_t points = 0, map_points = 0, batch_points = 0;
+  for (const Move& move : moves) points += move.before.point_count;
+  for (const Cloud& cloud : storedClouds(transaction)) map_points += cloud.point_count;
+  const std::uint64_t size = partSize(points, map_points, max_points);
+  TileSet all, of_batch;
+  std::size_t computed = 0, scans = 0;
+  for (std::size_t i = 0; i < moves.size(); ++i) {
+    of_batch.merge(tilesBelow(moves[i].before));
+    batch_points += moves[i].before.point_count;
+    const std::size_t left = moves.size() - i - 1;
+    if (left > 0 && !isFull(batch_points, ++scans, left, size)) continue;
+    computed += of_batch.size();
+    all.merge(std::exchange(of_batch, {}));
+    batch_points = 0, scans = 0;
+  }
+  return computed > 2 * all.size() ? std::max<std::uint64_t>(points, 1) : size;
 }
 
 ChangeReport movedIn(const fs::path& file, const std::vector<ScanPose>& poses, const ChangeParams& params,
@@ -148,27 +181,33 @@ ChangeReport movedIn(const fs::path& file, const std::vector<ScanPose>& poses, c
   requireOnce(named);
   MapEditor editor(file, params, sink);
   std::optional<rdf::WriteTransaction> transaction(editor.begin());
-  const Moves moves = movesTo(poses, *transaction, params.batch_points);
+  const std::vector<Move> moves = movesTo(poses, *transaction);
+  const std::uint64_t batch_points = batchSizeOf(moves, *transaction, params.batch_points);
   PointChanges changes;
   std::vector<Cloud> moved;
   std::uint64_t points = 0;
-  for (std::size_t i = 0; i < moves.poses.size(); ++i) {
-    if (!transaction) transaction.emplace(editor.begin());
-    scan::Scan scan = storedScan(*transaction, moves.poses[i].scan);
-    scan.T_map_sensor = moves.poses[i].T_map_sensor;
-    scan.has_pose = true;
-    changes.anew = unionOf(std::move(changes.anew), removeScan(*transaction, scan.id));
-    for (const auto& [tile, segment] : storeScan(*transaction, scan)) changes.anew.insert(tile);
-    moved.push_back(*storedCloud(*transaction, scan.id));
-    points += moved.back().point_count;
-    sink.progress("scans", i + 1, moves.poses.size());
-    const std::size_t left = moves.poses.size() - i - 1;
-    if (left > 0 && !isFull(points, moved.size(), left, moves.batch_points)) continue;
-    editor.commit(*transaction, "repose", std::exchange(changes, {}), moved);
-    editor.result().scans_moved += moved.size();
-    moved.clear();
-    points = 0;
-    if (!params.dry_run) transaction.reset();
+  try {
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+      if (!transaction) transaction.emplace(editor.begin());
+      scan::Scan scan = storedScan(*transaction, moves[i].pose.scan);
+      scan.T_map_sensor = moves[i].pose.T_map_sensor;
+      scan.has_pose = true;
+      changes.anew = unionOf(std::move(changes.anew), removeScan(*transaction, scan.id));
+      for (const auto& [tile, segment] : storeScan(*transaction, scan)) changes.anew.insert(tile);
+      moved.push_back(requiredCloud(*transaction, scan.id));
+      points += moved.back().point_count;
+      sink.progress("scans", i + 1, moves.size());
+      const std::size_t left = moves.size() - i - 1;
+      if (left > 0 && !isFull(points, moved.size(), left, batch_points)) continue;
+      editor.commit(*transaction, "repose", std::exchange(changes, {}), moved);
+      editor.result().scans_moved += moved.size();
+      moved.clear();
+      points = 0;
+      if (!params.dry_run) transaction.reset();
+    }
+  } catch (...) {
+    noteDone(editor, editor.result().scans_moved, "moved");
+    throw;
   }
   return std::move(editor.result());
 }
@@ -233,20 +272,25 @@ std::vector<scan::ScanId> cloudsNamed(const fs::path& file, std::span<const std:
   const auto environment = rdf::Environment::open(file, rdf::OpenMode::ReadOnly);
   const rdf::ReadTransaction transaction = environment->read();
   const std::vector<Cloud> clouds = storedClouds(transaction);
+  std::optional<std::vector<RetractedScan>> former;
   std::vector<scan::ScanId> ids;
   for (const std::string& name : names) {
     std::vector<scan::ScanId> fitting;
     for (const Cloud& cloud : clouds)
       if (isNamed(cloud.id, cloud.source, name)) fitting.push_back(cloud.id);
-    if (fitting.empty() && retracted == Retracted::Named)
-      for (const RetractedScan& scan : retractedScans(transaction))
-        if (isNamed(scan.id, scan.source, name)) fitting.push_back(scan.id);
-    if (fitting.empty())
-      throw Error(ErrorKind::NotFound, file.string() + ": has no cloud '" + name + "'", Remedy::ListClouds);
     if (fitting.size() > 1)
       throw Error(ErrorKind::InvalidArgument, file.string() + ": '" + name + "' names " +
                                                   std::to_string(fitting.size()) + " clouds; name each by its id");
-    ids.push_back(fitting.front());
+    if (fitting.empty() && retracted == Retracted::Named) {
+      if (!former) former = retractedScans(transaction);
+      for (const RetractedScan& scan : *former)  // nothing is to be done for any of them
+        if (std::any_of(scan.sources.begin(), scan.sources.end(),
+                        [&](const std::string& source) { return isNamed(scan.id, source, name); }))
+          fitting.push_back(scan.id);
+    }
+    if (fitting.empty())
+      throw Error(ErrorKind::NotFound, file.string() + ": has no cloud '" + name + "'", Remedy::ListClouds);
+    ids.insert(ids.end(), fitting.begin(), fitting.end());
   }
   return ids;
 }

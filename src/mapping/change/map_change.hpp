@@ -45,7 +45,8 @@ class MapExtension {
 };
 
 /// Removes scans. One that was retracted before is noted, so that a killed command can be repeated. Throws Error:
-/// NotFound for a scan that was never there, InvalidArgument when none would be left.
+/// NotFound for a scan that neither this map nor one that was merged into it ever had, InvalidArgument when none would
+/// be left.
 ChangeReport retractScans(const std::filesystem::path& file, const std::vector<scan::ScanId>& scans,
                           const ChangeParams& params, ProgressSink& sink);
 
@@ -68,7 +69,8 @@ ChangeReport applyInputs(const std::filesystem::path& file, const std::function<
 enum class Retracted : std::uint8_t { Unknown, Named };
 
 /// The clouds that people name by file name ("scan7.pcd"), source path, or at least four leading digits of the id.
-/// Throws Error (NotFound, InvalidArgument) for a name that fits none, or several.
+/// Throws Error (NotFound, InvalidArgument) for a name that fits none, or several that are there. A name may fit
+/// several retracted ones, which are all returned.
 std::vector<scan::ScanId> cloudsNamed(const std::filesystem::path& file, std::span<const std::string> names,
                                       Retracted retracted = Retracted::Unknown);
 

@@ -3,6 +3,8 @@
 #include "mapping/change/map_editor.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <utility>
 
 #include "base/file_bytes.hpp"
@@ -13,8 +15,10 @@
 #include "mapping/change/map_things.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/map_state.hpp"
+#include "mapping/map_tables.hpp"
 #include "mapping/window/former_objects.hpp"
 #include "mapping/window/semantic_state.hpp"
+#include "rules/decide/local_reach.hpp"
 
 namespace cluxel::mapping {
 
@@ -47,15 +51,15 @@ bool endsInTiles(const MapInputs& before, const MapInputs& after) {
   return with_new_tiles.hash() == after.hash();
 }
 
-/// Cuts tiles into `count` parts of the same size; strips along x.
-std::vector<TileSet> cutInto(std::size_t count, const TileSet& tiles) {
-  const std::size_t size = std::max<std::size_t>(1, (tiles.size() + count - 1) / count);
-  std::vector<TileSet> parts(1);
-  for (const TileKey& tile : tiles) {
-    if (parts.back().size() == size) parts.emplace_back();
-    parts.back().insert(tile);
-  }
-  return parts;
+/// The tiles from one end of the longer side of their area to the other.
+std::vector<TileKey> alongTheLongerSide(const TileSet& tiles) {
+  std::vector<TileKey> sorted(tiles.begin(), tiles.end());
+  const auto [west, east] = std::minmax_element(sorted.begin(), sorted.end(), [](auto a, auto b) { return a.x < b.x; });
+  const auto [south, north] =
+      std::minmax_element(sorted.begin(), sorted.end(), [](auto a, auto b) { return a.y < b.y; });
+  if (!sorted.empty() && north->y - south->y > east->x - west->x)
+    std::sort(sorted.begin(), sorted.end(), [](auto a, auto b) { return std::pair(a.y, a.x) < std::pair(b.y, b.x); });
+  return sorted;
 }
 
 ChangedInputs changeOf(const MapInputs& before, const MapInputs& after) {
@@ -119,23 +123,42 @@ void MapEditor::update(rdf::WriteTransaction& transaction, PointChanges changes,
 }
 
 std::vector<TileSet> MapEditor::partsOfAll(const rdf::ReadTransaction& transaction, const TileSet& more) const {
-  std::uint64_t points = 0;
+  std::uint64_t points = 0, bytes = 0;
   for (const Cloud& cloud : storedClouds(transaction)) points += cloud.point_count;
-  const std::uint64_t part = std::max<std::uint64_t>(1, partSize(points, points, params_.stage_points));
-  return cutInto((points + part - 1) / part, unionOf(TileSet(more), storedTiles(transaction)));
+  const std::uint64_t part_points = std::max<std::uint64_t>(1, partSize(points, points, params_.stage_points));
+  const double count = std::ceil(static_cast<double>(points) / static_cast<double>(part_points));
+  // The bytes of its points tell what a tile costs.
+  std::map<TileKey, std::uint64_t> bytes_of;
+  const TileSet tiles = unionOf(TileSet(more), storedTiles(transaction));
+  for (const TileKey& tile : tiles) {
+    const auto block = transaction.block(tables::kPoints, tables::keyOf(tile));
+    bytes += bytes_of[tile] = block ? block->size() : 0;
+  }
+  std::vector<TileSet> parts(1);
+  std::uint64_t of_part = 0;
+  for (const TileKey& tile : alongTheLongerSide(tiles)) {
+    if (of_part > 0 && static_cast<double>(of_part) * count >= static_cast<double>(bytes))
+      parts.emplace_back(), of_part = 0;
+    parts.back().insert(tile);
+    of_part += bytes_of.at(tile);
+  }
+  return parts;
 }
 
 SemanticUpdate MapEditor::decide(rdf::WriteTransaction& transaction, PointChanges changes, ProgressSink& sink) {
   const ChangedInputs inputs = std::exchange(changed_inputs_, ChangedInputs::Scans);
-  if (all_tiles_ && ends_in_tiles_)
+  if (all_tiles_ && ends_in_tiles_ && rules::localReach(parsed_.rules).reach_m) {
+    touched_ = unionOf(std::move(touched_), changes.tiles());
     if (std::vector<TileSet> parts = partsOfAll(transaction, changes.tiles()); parts.size() > 1)
       return decideInParts(transaction, std::move(parts), sink);
+  }
   update(transaction, std::move(changes), sink);
   return updateSemanticLayer(transaction, parsed_, *stages_, inputs, {params_.threads, params_.max_window_share}, sink);
 }
 
-/// After each part the map is the one that follows from the outputs that its tiles have then. So only what follows from
-/// the part has to be decided.
+/// After each part the map follows from the outputs that its tiles have then. So only what follows from the part has to
+/// be decided. Statements about points of later parts may be lost meanwhile: they are found when their part comes. When
+/// a part cannot be decided alone, the rest is decided with it as a whole.
 SemanticUpdate MapEditor::decideInParts(rdf::WriteTransaction& transaction, std::vector<TileSet> parts,
                                         ProgressSink& sink) {
   all_tiles_ = false;
@@ -144,9 +167,13 @@ SemanticUpdate MapEditor::decideInParts(rdf::WriteTransaction& transaction, std:
   SemanticUpdate update;
   bool is_local = true;
   std::size_t decided = 0;
-  for (TileSet& part : parts) {
-    noteChanged(stages_->computeAnew(transaction, std::move(part), params_.threads, sink));
-    update = updateSemanticLayer(transaction, parsed_, *stages_, ChangedInputs::Scans,
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    noteChanged(stages_->computeAnew(transaction, std::move(parts[i]), params_.threads, sink));
+    if (!is_local && i + 1 < parts.size()) {
+      stages_->dropAll();
+      continue;
+    }
+    update = updateSemanticLayer(transaction, parsed_, *stages_, is_local ? ChangedInputs::Scans : ChangedInputs::Any,
                                  {params_.threads, params_.max_window_share}, sink);
     stages_->dropAll();
     difference.add(std::move(update.before), std::move(update.after));
@@ -229,7 +256,7 @@ void MapEditor::report(const rdf::ReadTransaction& transaction, const SemanticUp
   report_.tiles_changed = changed_.size();
   report_.statements = update.statements;
   report_.local_commits += update.is_local ? 1 : 0;
-  report_.tiles_decided += update.is_local ? update.tiles_decided : report_.tiles;
+  report_.tiles_decided += update.tiles_decided;
   if (const std::string note = summaryOf(update.statements); !note.empty()) sink_.note(note);
 }
 

@@ -53,7 +53,8 @@ class MapEditor {
 
   const ParsedInputs& inputs() const { return parsed_; }
   /// Changes the inputs beside the scans; the next commit computes the map anew as far as they reach: a new model or
-  /// new settings reach everything, rules and ontology the layers above the scene.
+  /// new settings reach everything, rules and ontology the layers above the scene. No scan may be removed in the same
+  /// commit as other inputs are set.
   void setInputs(ParsedInputs inputs);
 
   rdf::WriteTransaction begin();
@@ -76,7 +77,7 @@ class MapEditor {
   bool resume();
 
   ChangeReport& result() { return report_; }
-  ProgressSink& sink() { return sink_; }
+  ProgressSink& sink() const { return sink_; }
   const ChangeParams& params() const { return params_; }
 
  private:

@@ -12,6 +12,7 @@
 #include "mapping/change/map_compaction.hpp"
 #include "mapping/change/map_things.hpp"
 #include "mapping/change/scan_additions.hpp"
+#include "mapping/facts/map_history.hpp"
 #include "mapping/map_reader.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/statements/statement_history.hpp"
@@ -121,19 +122,25 @@ class Merge {
     return report;
   }
 
-  /// A map is a function of its inputs: the target is the result when it has those of the result.
+  /// A map is a function of its inputs: the target is the result when it has those of the result. What the maps did
+  /// before, which things have which names among it, must have gone into it, too.
   bool isMerged() const {
     try {
+      const auto environment = rdf::Environment::open(target_, rdf::OpenMode::ReadOnly);
+      if (requireFinishedInputs(environment->read(), target_).hash() != inputsOfResult().hash()) return false;
       const MapReader target(target_);
-      if (!target.isFinished() || target.inputs().hash() != inputsOfResult().hash()) return false;
+      const std::set<std::string> activities = activitiesIn(target.quads());
       std::map<scan::ScanId, ScanInputs> scans;
-      for (std::size_t i = 0; i < maps_.size(); ++i)
+      for (std::size_t i = 0; i < maps_.size(); ++i) {
+        const std::set<std::string> own = activitiesIn(readers_[i].quads());
+        if (!std::includes(activities.begin(), activities.end(), own.begin(), own.end())) return false;
         if (!addScansOf(readers_[i], maps_[i].T_first_map, scans)) return false;
+      }
       std::map<scan::ScanId, ScanInputs> merged;
       addScansOf(target, Eigen::Isometry3d::Identity(), merged);
       return merged == scans && linesOf(operatorStatements(target.quads())) == statementsOfResult();
     } catch (const Error&) {
-      return false;  // no map
+      return false;  // no map, or one of another version
     }
   }
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "mapping/change/object_changes.hpp"
-#include "mapping/change/thing_history.hpp"
+#include "mapping/thing_history.hpp"
 #include "rdf/file/environment.hpp"
 #include "rdf/store/quad_store.hpp"
 

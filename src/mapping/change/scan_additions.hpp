@@ -16,7 +16,7 @@ class ScanAdditions {
   ScanAdditions(MapEditor& editor, std::string operation) : editor_(editor), operation_(std::move(operation)) {}
 
   /// Stores a scan, and commits when the batch is full and more than a small rest of scans follows. A dry run has one
-  /// batch, because what is not committed cannot be the base of another one.
+  /// batch, which stays in its transaction.
   void add(const scan::Scan& scan, std::size_t scans_left);
   /// Copies all scans and tiles of another map, in one batch. The other map must have the frame, the model and the
   /// settings of this one.

@@ -7,7 +7,9 @@
 
 #include "cluxel/error.hpp"
 #include "mapping/statements/stated_values.hpp"
+#include "mapping/statements/statement_facts.hpp"
 #include "mapping/statements/statement_history.hpp"
+#include "mapping/thing_history.hpp"
 #include "rdf/map_iris.hpp"
 
 namespace cluxel::mapping {
@@ -17,17 +19,6 @@ namespace {
 using rdf::vocabulary::clx;
 
 constexpr std::size_t kStatementDigits = 4;
-
-/// The quads of one subject in a graph.
-std::vector<Quad> quadsAbout(const rdf::QuadReader& reader, const std::string& iri, std::string_view graph_iri) {
-  const auto subject = reader.idOf(Term::iri(iri)), graph = reader.idOf(Term::iri(graph_iri));
-  std::vector<Quad> quads;
-  if (!subject || !graph) return quads;
-  rdf::QuadCursor cursor = reader.scan({.s = *subject, .p = {}, .o = {}, .g = *graph});
-  for (rdf::QuadIds quad; cursor.next(quad);)
-    quads.push_back({reader.termOf(quad.s), reader.termOf(quad.p), reader.termOf(quad.o), reader.termOf(quad.g)});
-  return quads;
-}
 
 /// The middle of what a scan saw from.
 Eigen::Vector2d standOf(const Cloud& cloud) {
@@ -58,7 +49,10 @@ ChangeReport changeStatements(const std::filesystem::path& file, const Statement
     if (!is_new) sink.note("the statement " + statement.id().hex() + " was made already");
     has_changes = has_changes || is_new;
   }
-  if (has_changes) editor.commit(transaction, "state", {}, {});
+  if (has_changes)
+    editor.commit(transaction, "state", {}, {});
+  else
+    editor.result().statements = toldOutcomes(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction)));
   return std::move(editor.result());
 }
 

@@ -2,6 +2,7 @@
 // Build runs as PROV activities.
 #include "mapping/facts/map_history.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <map>
@@ -9,8 +10,8 @@
 
 #include "base/utc_time.hpp"
 #include "mapping/build/scan_store.hpp"
-#include "mapping/change/thing_history.hpp"
 #include "mapping/facts/map_facts.hpp"
+#include "mapping/thing_history.hpp"
 #include "rdf/map_iris.hpp"
 #include "rdf/store/quad_store.hpp"
 
@@ -35,19 +36,12 @@ std::string prov(std::string_view local) {
   return std::string(rdf::vocabulary::kProv).append(local);
 }
 
-/// The values of a property of one subject in graph history.
-std::vector<Term> valuesOf(const rdf::QuadReader& quads, const Term& subject, const std::string& property) {
-  std::vector<Term> values;
-  const auto s = quads.idOf(subject), p = quads.idOf(Term::iri(property));
-  const auto g = quads.idOf(Term::iri(rdf::vocabulary::kGraphHistory));
-  if (!s || !p || !g) return values;
-  rdf::QuadCursor cursor = quads.scan({.s = *s, .p = *p, .o = {}, .g = *g});
-  for (rdf::QuadIds quad; cursor.next(quad);) values.push_back(quads.termOf(quad.o));
+/// The values of a property among the quads of one subject.
+std::vector<std::string> valuesOf(const std::vector<Quad>& about, const std::string& property) {
+  std::vector<std::string> values;
+  for (const Quad& quad : about)
+    if (quad.predicate.text == property) values.push_back(quad.object.text);
   return values;
-}
-
-std::string firstOf(const std::vector<Term>& values) {
-  return values.empty() ? "" : values.front().text;
 }
 
 }  // namespace
@@ -86,18 +80,29 @@ std::string addActivity(rdf::WriteTransaction& transaction, const Activity& run,
   return activity.text;
 }
 
+std::set<std::string> activitiesIn(const rdf::QuadReader& quads) {
+  std::set<std::string> activities;
+  forEachHistoryLink(quads, "startedAtTime",
+                     [&](const Term& activity, const Term&) { activities.insert(activity.text); });
+  return activities;
+}
+
 std::vector<RetractedScan> retractedScans(const rdf::ReadTransaction& transaction) {
   const rdf::QuadReader quads(transaction);
   std::map<scan::ScanId, RetractedScan> retracted;
-  forEachHistoryLink(quads, "used", [&](const Term& activity, const Term& cloud) {
-    const auto id = hashIn(cloud.text, "cloud");
-    if (!id || firstOf(valuesOf(quads, activity, rdf::vocabulary::clx("operation"))) != "retract") return;
-    if (storedCloud(transaction, *id)) return;  // it was added again
-    RetractedScan& scan = retracted[*id];
-    scan.id = *id;
-    scan.source = firstOf(valuesOf(quads, cloud, rdf::vocabulary::clx("sourceFile")));
-    scan.time = std::max(scan.time, firstOf(valuesOf(quads, activity, prov("endedAtTime"))));
-  });
+  for (const std::string& activity : activitiesIn(quads)) {
+    const std::vector<Quad> run = quadsAbout(quads, activity, rdf::vocabulary::kGraphHistory);
+    if (valuesOf(run, rdf::vocabulary::clx("operation")) != std::vector<std::string>{"retract"}) continue;
+    for (const std::string& cloud : valuesOf(run, prov("used"))) {
+      const auto id = hashIn(cloud, "cloud");
+      if (!id || storedCloud(transaction, *id)) continue;  // it was added again
+      RetractedScan& scan = retracted[*id];
+      scan.id = *id;
+      scan.sources =
+          valuesOf(quadsAbout(quads, cloud, rdf::vocabulary::kGraphHistory), rdf::vocabulary::clx("sourceFile"));
+      for (const std::string& time : valuesOf(run, prov("endedAtTime"))) scan.time = std::max(scan.time, time);
+    }
+  }
   std::vector<RetractedScan> scans;
   for (auto& [id, scan] : retracted) scans.push_back(std::move(scan));
   return scans;

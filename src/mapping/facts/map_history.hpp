@@ -2,6 +2,7 @@
 // The history graph: who ran what when, and from which files. Not part of the map function.
 #pragma once
 
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,11 +28,15 @@ std::string addActivity(rdf::WriteTransaction& transaction, const Activity& acti
 /// A scan that `retract` took out of the map.
 struct RetractedScan {
   scan::ScanId id;
-  std::string source;  ///< its file
-  std::string time;    ///< when, the last time (xsd:dateTime)
+  std::vector<std::string> sources;  ///< the files that it was read from
+  std::string time;                  ///< when, the last time (xsd:dateTime)
 };
-/// Those that are not there now, by id. Cost: that of the history's activities.
+/// Those that are not there now, by id; also of maps that were merged into this one. Cost: that of the history's
+/// activities.
 std::vector<RetractedScan> retractedScans(const rdf::ReadTransaction& transaction);
+
+/// The IRIs of the runs that the history of a map tells of.
+std::set<std::string> activitiesIn(const rdf::QuadReader& quads);
 
 /// Adds that each object of `objects` was derived from others, by the activity.
 void addLineage(rdf::WriteTransaction& transaction, const std::string& activity_iri, const ObjectChanges& changes);

@@ -3,8 +3,8 @@
 #include "mapping/statements/statement_facts.hpp"
 
 #include "mapping/build/scan_store.hpp"
-#include "mapping/change/thing_history.hpp"
 #include "mapping/statements/statement_places.hpp"
+#include "mapping/thing_history.hpp"
 #include "rdf/map_iris.hpp"
 
 namespace cluxel::mapping {

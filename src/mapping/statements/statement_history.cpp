@@ -8,7 +8,7 @@
 
 #include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
-#include "mapping/change/thing_history.hpp"
+#include "mapping/thing_history.hpp"
 #include "rdf/map_iris.hpp"
 
 namespace cluxel::mapping {
@@ -21,14 +21,8 @@ std::string statementTerm(std::string_view local) {
   return std::string(rdf::vocabulary::kProv).append(local);
 }
 
-std::vector<Quad> quadsAbout(const rdf::QuadReader& reader, const ContentHash& id, std::string_view graph_iri) {
-  const auto subject = reader.idOf(Term::iri(rdf::iriOfStatement(id))), graph = reader.idOf(Term::iri(graph_iri));
-  std::vector<Quad> quads;
-  if (!subject || !graph) return quads;
-  rdf::QuadCursor cursor = reader.scan({.s = *subject, .p = {}, .o = {}, .g = *graph});
-  for (rdf::QuadIds quad; cursor.next(quad);)
-    quads.push_back({reader.termOf(quad.s), reader.termOf(quad.p), reader.termOf(quad.o), reader.termOf(quad.g)});
-  return quads;
+std::vector<Quad> quadsAboutStatement(const rdf::QuadReader& reader, const ContentHash& id, std::string_view graph) {
+  return quadsAbout(reader, rdf::iriOfStatement(id), graph);
 }
 
 /// Quads about statements, written together.
@@ -39,15 +33,17 @@ class StatementWriter {
     now_ = Term::literal(dateTimeText(secondsNow()), rdf::vocabulary::xsd("dateTime"));
   }
 
-  bool has(const ContentHash& id) const { return !quadsAbout(reader_, id, rdf::vocabulary::kGraphOperator).empty(); }
+  bool has(const ContentHash& id) const {
+    return !quadsAboutStatement(reader_, id, rdf::vocabulary::kGraphOperator).empty();
+  }
   bool wasWithdrawn(const ContentHash& id) const {
-    const std::vector<Quad> known = quadsAbout(reader_, id, rdf::vocabulary::kGraphHistory);
+    const std::vector<Quad> known = quadsAboutStatement(reader_, id, rdf::vocabulary::kGraphHistory);
     return std::any_of(known.begin(), known.end(),
                        [](const Quad& quad) { return quad.predicate.text == statementTerm("invalidatedAtTime"); });
   }
   void add(const Quad& quad) { writer_.add(quad); }
   void remove(const ContentHash& id, std::string_view graph_iri) {
-    for (const Quad& quad : quadsAbout(reader_, id, graph_iri))
+    for (const Quad& quad : quadsAboutStatement(reader_, id, graph_iri))
       writer_.remove(rdf::QuadIds{writer_.intern(quad.subject), writer_.intern(quad.predicate),
                                   writer_.intern(quad.object), writer_.intern(quad.graph)});
   }
@@ -144,7 +140,8 @@ std::vector<ContentHash> withdrawnStatements(const rdf::QuadReader& quads) {
   const rdf::QuadReader* const only = &quads;
   std::vector<ContentHash> ids;
   for (const auto& [iri, time] : lastTimes({&only, 1}, "invalidatedAtTime"))
-    if (const auto id = hashIn(iri, "statement"); id && quadsAbout(quads, *id, rdf::vocabulary::kGraphOperator).empty())
+    if (const auto id = hashIn(iri, "statement");
+        id && quadsAboutStatement(quads, *id, rdf::vocabulary::kGraphOperator).empty())
       ids.push_back(*id);
   return ids;
 }
@@ -152,7 +149,7 @@ std::vector<ContentHash> withdrawnStatements(const rdf::QuadReader& quads) {
 StatementRecord recordOf(const rdf::QuadReader& quads, const ContentHash& id) {
   StatementRecord record;
   std::set<std::string> authors;
-  for (const Quad& quad : quadsAbout(quads, id, rdf::vocabulary::kGraphHistory)) {
+  for (const Quad& quad : quadsAboutStatement(quads, id, rdf::vocabulary::kGraphHistory)) {
     if (quad.predicate.text == clx("statedBy")) authors.insert(quad.object.text);
     if (quad.predicate.text == statementTerm("generatedAtTime"))
       record.stated_at = std::max(record.stated_at, quad.object.text);

@@ -301,6 +301,7 @@ SemanticUpdate updateAll(rdf::WriteTransaction& transaction, const ParsedInputs&
                          const rdf::InferenceCheck& check) {
   stages.load(transaction);
   SemanticUpdate update;
+  update.tiles_decided = storedTiles(transaction).size();
   update.before = formerObjects(transaction, stages, changes);
   SemanticLayer layer = writeSemanticLayer(transaction, parsed, stages, params.threads, sink, check);
   update.after = membersOf(layer.objects, layer.scene.cluxels);

@@ -20,7 +20,8 @@ struct ChangedPoint {
 };
 
 /// The points that scans measured on the changed things while these were there, by cloud and number: those in the
-/// cluxels of a thing, and within 0.1 m of its box. Cost: the regions of the map in which something changed.
+/// cluxels of a thing, and within 0.1 m of its box. Of clouds with a time and a pose. Cost: the regions of the map in
+/// which something changed, and for each the points of the clouds that reach it.
 std::vector<ChangedPoint> changedPoints(const mapping::MapReader& map, const SiteChanges& changes,
                                         std::size_t max_cluxels = kRegionCluxels);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scans of the properties that link things, objects and times.
-#include "mapping/change/thing_history.hpp"
+#include "mapping/thing_history.hpp"
 
 #include <algorithm>
 
@@ -31,6 +31,16 @@ std::optional<ContentHash> hashIn(const std::string& iri, std::string_view kind)
   } catch (const std::invalid_argument&) {
     return std::nullopt;
   }
+}
+
+std::vector<Quad> quadsAbout(const rdf::QuadReader& quads, const std::string& subject, std::string_view graph) {
+  const auto s = quads.idOf(Term::iri(subject)), g = quads.idOf(Term::iri(graph));
+  std::vector<Quad> about;
+  if (!s || !g) return about;
+  rdf::QuadCursor cursor = quads.scan({.s = *s, .p = {}, .o = {}, .g = *g});
+  for (rdf::QuadIds quad; cursor.next(quad);)
+    about.push_back({quads.termOf(quad.s), quads.termOf(quad.p), quads.termOf(quad.o), quads.termOf(quad.g)});
+  return about;
 }
 
 void forEachHistoryLink(const rdf::QuadReader& quads, std::string_view property,

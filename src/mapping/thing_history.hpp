@@ -26,6 +26,8 @@ using Things = std::map<ContentHash, std::vector<Thing>>;
 std::string provenance(std::string_view local);
 /// The hash in the IRI of a resource of the map, when it is of this kind ("object", "thing").
 std::optional<ContentHash> hashIn(const std::string& iri, std::string_view kind);
+/// The quads of one subject in a graph.
+std::vector<Quad> quadsAbout(const rdf::QuadReader& quads, const std::string& subject, std::string_view graph);
 /// Visits the subjects and objects of a property of PROV in graph history.
 void forEachHistoryLink(const rdf::QuadReader& quads, std::string_view property,
                         const std::function<void(const Term& subject, const Term& object)>& visit);
